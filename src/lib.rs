@@ -1,0 +1,16 @@
+//! The machine of NIMA Console: everything between a surgeon's hand and the tissue, without a screen.
+//!
+//! Rooms know only the rooms below them:
+//! `frames, signal` < `impedance, safety` < `device, sim` < `teleop` < `runtime` < `recording, study`.
+//! SI units inside (m, s, N, rad); a name carries its unit and frame where the type does not.
+
+pub mod config;
+pub mod device;
+pub mod impedance;
+pub mod recording;
+pub mod runtime;
+pub mod safety;
+pub mod signal;
+pub mod sim;
+pub mod study;
+pub mod teleop;

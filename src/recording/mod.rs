@@ -1,1 +1,214 @@
-//! ...
+//! Reading recordings of motion and force (CSV).
+//!
+//! Columns: `t_s`; `x_m, y_m, z_m` with `fx_n, fy_n, fz_n`, one to three axes. Other names are mapped onto these. SI units,
+//! or any consistent ones (rad and Nm of a lever). A missing column, a value that is no number and a clock that does not
+//! rise are refused with their place; nothing is guessed.
+
+mod mapping;
+mod table;
+mod write;
+
+use std::path::{Path, PathBuf};
+
+use nalgebra::Vector3;
+
+pub use mapping::{Mapping, MappingError};
+pub use write::write_atomically;
+
+use crate::impedance::{AXES, Sample};
+use table::Table;
+
+/// Names of the axes.
+pub const AXIS_NAMES: [&str; AXES] = ["x", "y", "z"];
+
+/// Why a recording could not be used: what, where, what to do.
+#[derive(Debug, thiserror::Error)]
+pub enum RecordingError {
+    /// The file could not be opened.
+    #[error("cannot read recording {path}: {source}")]
+    Open {
+        /// Its path.
+        path: PathBuf,
+        /// Why.
+        source: csv::Error,
+    },
+    /// A row could not be read.
+    #[error("recording {path}: {message}")]
+    Row {
+        /// Its path.
+        path: PathBuf,
+        /// Which row and why.
+        message: String,
+    },
+    /// A needed column is not there.
+    #[error(
+        "recording {path} has no column \"{column}\" for {purpose}; its columns are {available}; name another with --map {key}=COLUMN"
+    )]
+    NoColumn {
+        /// Its path.
+        path: PathBuf,
+        /// The column looked for.
+        column: String,
+        /// What it is for.
+        purpose: &'static str,
+        /// The columns there are.
+        available: String,
+        /// The key of a mapping that would help.
+        key: String,
+    },
+    /// A field is no finite number.
+    #[error(
+        "recording {path}, line {line}, column \"{column}\": \"{field}\" is not a finite number; remove or repair the row"
+    )]
+    NotANumber {
+        /// Its path.
+        path: PathBuf,
+        /// Line of the file, from 1.
+        line: u64,
+        /// Its column.
+        column: String,
+        /// The text found.
+        field: String,
+    },
+    /// Time does not rise.
+    #[error(
+        "recording {path}, line {line}: time does not rise ({before_s} s, then {now_s} s); sort the rows and remove duplicates"
+    )]
+    Clock {
+        /// Its path.
+        path: PathBuf,
+        /// Line of the file, from 1.
+        line: u64,
+        /// Time of the row before, s.
+        before_s: f64,
+        /// Time of this row, s.
+        now_s: f64,
+    },
+    /// Too few rows.
+    #[error("recording {path} has {found} samples, {needed} are needed; record longer or choose a shorter window")]
+    TooShort {
+        /// Its path.
+        path: PathBuf,
+        /// Samples found.
+        found: usize,
+        /// Samples needed.
+        needed: usize,
+    },
+}
+
+/// Motion and force over time at a nearly constant rate.
+#[derive(Clone, Debug)]
+pub struct Recording {
+    /// Where it came from.
+    pub path: PathBuf,
+    /// Which axes it holds, as indices into [`AXIS_NAMES`]; a sample's lane `i` is axis `axes[i]`.
+    pub axes: Vec<usize>,
+    /// Rate, Hz: one over the median time step.
+    pub rate_hz: f64,
+    /// The samples; lanes beyond `axes.len()` are zero.
+    pub samples: Vec<Sample>,
+}
+
+impl Recording {
+    /// Reads a CSV file under this mapping.
+    pub fn read(path: &Path, mapping: &Mapping) -> Result<Self, RecordingError> {
+        let table = Table::read(path)?;
+        let time = table.column(mapping.source("t_s"), "time", "t")?;
+        let axes = axes(&table, mapping)?;
+        let mut columns = Vec::with_capacity(axes.len());
+        for &axis in &axes {
+            let name = AXIS_NAMES[axis];
+            let position = table.column(mapping.source(&format!("{name}_m")), "position", name)?;
+            let force_key = format!("f{name}");
+            let force = table.column(mapping.source(&format!("{force_key}_n")), "force", &force_key)?;
+            columns.push((position, force));
+        }
+        let mut samples = Vec::with_capacity(table.rows());
+        for row in 0..table.rows() {
+            let t_s = table.number(row, &time)?;
+            if let Some(&Sample { t_s: before_s, .. }) = samples.last()
+                && t_s <= before_s
+            {
+                return Err(RecordingError::Clock {
+                    path: path.to_owned(),
+                    line: table.line(row),
+                    before_s,
+                    now_s: t_s,
+                });
+            }
+            let (mut position_m, mut force_n) = (Vector3::zeros(), Vector3::zeros());
+            for (lane, (position, force)) in columns.iter().enumerate() {
+                position_m[lane] = table.number(row, position)?;
+                force_n[lane] = table.number(row, force)?;
+            }
+            samples.push(Sample { t_s, position_m, force_n });
+        }
+        let too_short = |found| RecordingError::TooShort { path: path.to_owned(), found, needed: 3 };
+        let rate_hz = rate_hz(&samples).ok_or_else(|| too_short(samples.len()))?;
+        Ok(Self { path: path.to_owned(), axes, rate_hz, samples })
+    }
+}
+
+/// The axes of which position or force is there; a lone half is an error that names the other.
+fn axes(table: &Table, mapping: &Mapping) -> Result<Vec<usize>, RecordingError> {
+    let has = |name: &str| mapping.names(name) || table.has(mapping.source(name).column());
+    let found: Vec<usize> = (0..AXES)
+        .filter(|&axis| has(&format!("{}_m", AXIS_NAMES[axis])) || has(&format!("f{}_n", AXIS_NAMES[axis])))
+        .collect();
+    // With nothing at all, ask for x: the error then names the columns there are.
+    Ok(if found.is_empty() { vec![0] } else { found })
+}
+
+/// One over the median time step, rounded to a millionth so that 0.001 s steps give 1000 Hz.
+fn rate_hz(samples: &[Sample]) -> Option<f64> {
+    let mut steps: Vec<f64> = samples.windows(2).map(|pair| pair[1].t_s - pair[0].t_s).collect();
+    if steps.len() < 2 {
+        return None;
+    }
+    let middle = steps.len() / 2;
+    let (_, median, _) = steps.select_nth_unstable_by(middle, f64::total_cmp);
+    let rate = 1.0 / *median;
+    let step = 1e-6 * 10_f64.powf(rate.log10().floor());
+    Some((rate / step).round() * step)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn read(text: &str, maps: &[&str]) -> Result<Recording, RecordingError> {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("r.csv");
+        std::fs::write(&path, text).unwrap();
+        Recording::read(&path, &Mapping::parse(maps).unwrap())
+    }
+
+    #[test]
+    fn default_columns_in_any_order_and_number() {
+        let recording = read("fz_n,t_s,z_m,x_m,fx_n,note\n1,0,2,3,4,a\n1,0.01,2,3,4,b\n1,0.02,2,3,5,c\n", &[]).unwrap();
+        assert_eq!(recording.axes, [0, 2]);
+        assert!((recording.rate_hz - 100.0).abs() < 1e-9);
+        assert_eq!(recording.samples[2].position_m, Vector3::new(3.0, 2.0, 0.0));
+        assert_eq!(recording.samples[2].force_n, Vector3::new(5.0, 1.0, 0.0));
+    }
+
+    #[test]
+    fn mapped_columns_with_a_scale() {
+        let recording = read("t_s,px_mm,torque\n0,1,2\n1,2,3\n2,3,4\n", &["x=px_mm*0.001", "fx=torque*-1"]).unwrap();
+        assert!((recording.samples[1].position_m.x - 0.002).abs() < 1e-15);
+        assert!((recording.samples[1].force_n.x + 3.0).abs() < 1e-15);
+    }
+
+    #[test]
+    fn every_bad_input_names_its_place() {
+        let message = |text: &str, maps: &[&str]| read(text, maps).unwrap_err().to_string();
+        assert!(message("t_s,x_m\n0,1\n", &[]).contains("no column \"fx_n\""));
+        assert!(message("t_s,a,b\n0,1,2\n", &["x=a", "fx=c"]).contains("its columns are t_s, a, b"));
+        assert!(message("t_s,x_m,fx_n\n0,1,2\n1,nan,2\n", &[]).contains("line 3, column \"x_m\""));
+        assert!(message("t_s,x_m,fx_n\n0,1,2\n1,,2\n", &[]).contains("line 3"));
+        assert!(message("t_s,x_m,fx_n\n0,1,2\n1,1,2\n1,1,2\n", &[]).contains("line 4: time does not rise"));
+        assert!(message("t_s,x_m,fx_n\n0,1,2\n1,1\n", &[]).contains("line"));
+        assert!(message("t_s,x_m,fx_n\n0,1,2\n", &[]).contains("1 samples"));
+        assert!(message("", &[]).contains("t_s"));
+    }
+}

@@ -1,1 +1,42 @@
-//! ...
+//! Time and threads: runs the loop on the real clock in its own thread, or on the virtual clock as fast as it goes.
+//!
+//! Takes a [`Plan`]; gives a [`Handle`] (commands in; ticks and events out, over bounded queues) or a [`Summary`].
+//! The real-time thread owns the rig and the loop. It never waits for a receiver: what does not fit is dropped and counted.
+
+mod messages;
+mod os;
+mod percentiles;
+mod summary;
+mod thread;
+mod virtual_clock;
+
+pub use messages::{Command, Event, Fault, Tick};
+pub use os::Scheduling;
+pub use percentiles::{Percentiles, Quantiles};
+pub use summary::{ModeError, Summary};
+pub use thread::{Handle, StartError, start};
+pub use virtual_clock::run_virtual;
+
+use crate::{
+    config::{Rig, Scene},
+    impedance::SettingsError,
+    sim::World,
+    teleop::Loop,
+};
+
+/// What to run.
+#[derive(Clone, Debug)]
+pub struct Plan {
+    /// The rig.
+    pub rig: Rig,
+    /// The simulated world.
+    pub scene: Scene,
+    /// Engage at the first tick: for simulated rigs only, where nobody can be hurt.
+    pub engage: bool,
+}
+
+impl Plan {
+    fn build(&self) -> Result<(Loop, World), SettingsError> {
+        Ok((Loop::new(&self.rig)?, World::new(&self.scene, self.rig.rate_hz)))
+    }
+}

@@ -1,1 +1,3 @@
-//! ...
+//! Experiments that print figures.
+
+pub mod replay;

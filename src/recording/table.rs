@@ -1,0 +1,74 @@
+//! A CSV file in memory, with every complaint naming its place.
+
+use std::path::{Path, PathBuf};
+
+use csv::{ReaderBuilder, StringRecord, Trim};
+
+use super::{RecordingError, mapping::Source};
+
+/// All rows of a file, as text.
+pub(super) struct Table {
+    path: PathBuf,
+    header: StringRecord,
+    rows: Vec<StringRecord>,
+}
+
+/// A column found in a table.
+pub(super) struct Column {
+    index: usize,
+    name: String,
+    scale: f64,
+}
+
+impl Table {
+    pub(super) fn read(path: &Path) -> Result<Self, RecordingError> {
+        let open = |source| RecordingError::Open { path: path.to_owned(), source };
+        let mut reader = ReaderBuilder::new().trim(Trim::All).comment(Some(b'#')).from_path(path).map_err(open)?;
+        let header = reader.headers().map_err(open)?.clone();
+        let mut rows = Vec::new();
+        for row in reader.into_records() {
+            let wrong = |error: csv::Error| RecordingError::Row { path: path.to_owned(), message: error.to_string() };
+            rows.push(row.map_err(wrong)?);
+        }
+        Ok(Self { path: path.to_owned(), header, rows })
+    }
+
+    pub(super) fn rows(&self) -> usize {
+        self.rows.len()
+    }
+
+    pub(super) fn line(&self, row: usize) -> u64 {
+        self.rows[row].position().map_or(0, csv::Position::line)
+    }
+
+    pub(super) fn has(&self, column: &str) -> bool {
+        self.header.iter().any(|name| name == column)
+    }
+
+    pub(super) fn column(&self, source: Source, purpose: &'static str, key: &str) -> Result<Column, RecordingError> {
+        let name = source.column().to_owned();
+        match self.header.iter().position(|found| found == name) {
+            Some(index) => Ok(Column { index, name, scale: source.scale() }),
+            None => Err(RecordingError::NoColumn {
+                path: self.path.clone(),
+                column: name,
+                purpose,
+                available: self.header.iter().collect::<Vec<_>>().join(", "),
+                key: key.to_owned(),
+            }),
+        }
+    }
+
+    pub(super) fn number(&self, row: usize, column: &Column) -> Result<f64, RecordingError> {
+        let field = self.rows[row].get(column.index).unwrap_or_default();
+        match field.parse::<f64>() {
+            Ok(value) if (value * column.scale).is_finite() => Ok(value * column.scale),
+            _ => Err(RecordingError::NotANumber {
+                path: self.path.clone(),
+                line: self.line(row),
+                column: column.name.clone(),
+                field: field.to_owned(),
+            }),
+        }
+    }
+}

@@ -1,0 +1,131 @@
+//! What crosses between the loop and the screen: commands in, ticks and events out. Nothing else does.
+
+use nalgebra::Vector3;
+
+use crate::{impedance::Mode, safety::GateReport, teleop::LoopState};
+
+/// What a screen (or a script) may ask of the loop. Applied at the start of a tick, in order, at most a few per tick.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Command {
+    /// Render with this mode from the next tick on.
+    SetMode(Mode),
+    /// Feedback gain, 0 to 1; a value above 1 is refused here, see [`Command::SetGainAboveOne`].
+    SetGain(f64),
+    /// Feedback gain up to 3, given by the operator's second, deliberate action.
+    SetGainAboveOne(f64),
+    /// One-way delay of the link, seconds, 0 to [`crate::impedance::MAX_DELAY_S`].
+    SetDelay(f64),
+    /// Speed (m/s) below which nothing is rendered.
+    SetDeadBand(f64),
+    /// Keep rendering at standstill (true) or fade to zero in the dead band as the paper does (false).
+    SetStaticHold(bool),
+    /// Start force feedback and motion, from idle only.
+    Engage,
+    /// Zero force and a resting follower at once; latched until released.
+    Stop,
+    /// First of two steps out of a stop or a fault: back to idle. Refused while the cause of a fault lives.
+    ReleaseStop,
+    /// End the loop; its thread returns its final timing.
+    Shutdown,
+}
+
+/// One tick of the loop as the screen and the recorder see it. Frame: workspace (z up, tissue at rest near z = 0).
+#[derive(Clone, Copy, Debug)]
+pub struct Tick {
+    /// Counts executed ticks from 0.
+    pub index: u64,
+    /// Time of the tick on the loop's clock, seconds since its start.
+    pub t_s: f64,
+    /// State of the loop in this tick.
+    pub state: LoopState,
+    /// Mode that rendered.
+    pub mode: Mode,
+    /// Delay of the link in force, seconds.
+    pub delay_s: f64,
+    /// Leader's position mapped into the workspace, m.
+    pub leader_m: Vector3<f64>,
+    /// Instrument tip (follower), m.
+    pub tip_m: Vector3<f64>,
+    /// Tip force as measured at the follower now, N (on the instrument).
+    pub measured_n: Vector3<f64>,
+    /// The same force as the link delivers it now: delayed DFR, N.
+    pub delayed_n: Vector3<f64>,
+    /// What each mode asks for at this tick before the gates, N, indexed by [`Mode::index`].
+    pub asked_n: [Vector3<f64>; 4],
+    /// Force commanded to the hand after all gates, N.
+    pub rendered_n: Vector3<f64>,
+    /// What the gates did in this tick.
+    pub gates: GateReport,
+    /// What identification says in this tick.
+    pub identification: crate::impedance::Report,
+    /// How late this tick woke after its deadline, s (0 on the virtual clock).
+    pub wake_s: f64,
+    /// How long the tick before this one worked, s.
+    pub work_s: f64,
+    /// Periods missed so far.
+    pub missed: u64,
+    /// Ticks that did not reach the screen because its queue was full, so far.
+    pub dropped: u64,
+}
+
+/// A fault: zero force, shown with its cause and its cure; the first one is kept until released.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Fault {
+    /// The rig gave no finite sample for longer than the age limit.
+    SourceSilent,
+    /// The loop missed more than this many periods in a row.
+    LoopStalled {
+        /// Periods missed at once.
+        periods: u64,
+    },
+}
+
+impl Fault {
+    /// What happened, in one plain sentence.
+    pub const fn cause(self) -> &'static str {
+        match self {
+            Self::SourceSilent => "The rig sent no valid sample for 20 ms",
+            Self::LoopStalled { .. } => "The control loop was held up for more than 50 ms",
+        }
+    }
+
+    /// What the operator can do.
+    pub const fn cure(self) -> &'static str {
+        match self {
+            Self::SourceSilent => "Check the sensor and the leader device, then release the stop and engage again",
+            Self::LoopStalled { .. } => {
+                "Close other programs or grant real-time priority, then release the stop and engage again"
+            }
+        }
+    }
+}
+
+/// Something that happened once, told when it happens.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Event {
+    /// The loop went from one state to another at this time (s).
+    StateChanged {
+        /// Time on the loop's clock, s.
+        t_s: f64,
+        /// State before.
+        from: LoopState,
+        /// State now.
+        to: LoopState,
+    },
+    /// A fault was raised at this time (s).
+    FaultRaised {
+        /// Time on the loop's clock, s.
+        t_s: f64,
+        /// Which.
+        fault: Fault,
+    },
+    /// A command could not be carried out in the present state or range.
+    CommandRefused {
+        /// Time on the loop's clock, s.
+        t_s: f64,
+        /// The command as it came.
+        command: Command,
+    },
+    /// What the operating system granted the real-time thread.
+    Scheduling(super::Scheduling),
+}

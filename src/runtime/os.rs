@@ -1,0 +1,109 @@
+//! What the operating system grants a real-time thread: the one place with system calls.
+#![expect(unsafe_code, reason = "scheduling, memory locking and absolute sleep have no safe interface in std")]
+
+/// What was asked for and what was granted.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
+pub struct Scheduling {
+    /// `SCHED_FIFO` was granted.
+    pub fifo: bool,
+    /// Memory is locked: no page fault can delay a tick.
+    pub memory_locked: bool,
+}
+
+impl Scheduling {
+    /// What to grant, in words; `None` when everything was granted.
+    pub const fn advice(&self) -> Option<&'static str> {
+        if cfg!(not(target_os = "linux")) {
+            return Some("real-time scheduling is used on Linux only; expect more missed ticks here");
+        }
+        match (self.fifo, self.memory_locked) {
+            (true, true) => None,
+            (false, _) => Some(
+                "no real-time priority: add the line \"@realtime - rtprio 95\" to /etc/security/limits.d/realtime.conf, join the group realtime and log in again",
+            ),
+            (true, false) => Some(
+                "memory is not locked: add the line \"@realtime - memlock unlimited\" to /etc/security/limits.d/realtime.conf, join the group realtime and log in again",
+            ),
+        }
+    }
+}
+
+/// Priority of the loop: above ordinary audio (70), below the kernel's own threads (99).
+#[cfg(target_os = "linux")]
+const PRIORITY: i32 = 80;
+/// Stack touched in advance, bytes.
+const STACK_TOUCHED: usize = 128 * 1024;
+
+/// Asks for everything a real-time thread wants. Call it on that thread. Refusals are told, never fatal.
+pub(super) fn prepare_thread() -> Scheduling {
+    touch_stack();
+    granted()
+}
+
+#[inline(never)]
+fn touch_stack() {
+    let mut stack = [0_u8; STACK_TOUCHED];
+    for page in stack.chunks_mut(4096) {
+        page[0] = 1;
+    }
+    std::hint::black_box(&stack);
+}
+
+#[cfg(target_os = "linux")]
+fn granted() -> Scheduling {
+    // SAFETY: plain system calls on the calling thread with valid, initialised arguments.
+    unsafe {
+        libc::prctl(libc::PR_SET_TIMERSLACK, 1_usize);
+        let parameter = libc::sched_param { sched_priority: PRIORITY };
+        let fifo = libc::pthread_setschedparam(libc::pthread_self(), libc::SCHED_FIFO, &raw const parameter) == 0;
+        // With a finite limit a locked process soon fails to map memory, so lock only without one.
+        let mut limit = libc::rlimit { rlim_cur: 0, rlim_max: 0 };
+        let unlimited = libc::geteuid() == 0
+            || (libc::getrlimit(libc::RLIMIT_MEMLOCK, &raw mut limit) == 0 && limit.rlim_cur == libc::RLIM_INFINITY);
+        // On fault: pages are locked once they are touched, so untouched reserves of other threads cost nothing.
+        let flags = libc::MCL_CURRENT | libc::MCL_FUTURE | libc::MCL_ONFAULT;
+        Scheduling { fifo, memory_locked: unlimited && libc::mlockall(flags) == 0 }
+    }
+}
+
+#[cfg(not(target_os = "linux"))]
+fn granted() -> Scheduling {
+    Scheduling::default()
+}
+
+/// Nanoseconds on the monotonic clock.
+#[cfg(target_os = "linux")]
+pub(super) fn monotonic_ns() -> u64 {
+    let mut now = libc::timespec { tv_sec: 0, tv_nsec: 0 };
+    // SAFETY: `now` is valid for the call; the monotonic clock always exists.
+    unsafe { libc::clock_gettime(libc::CLOCK_MONOTONIC, &raw mut now) };
+    now.tv_sec as u64 * 1_000_000_000 + now.tv_nsec as u64
+}
+
+/// Nanoseconds on the monotonic clock.
+#[cfg(not(target_os = "linux"))]
+pub(super) fn monotonic_ns() -> u64 {
+    use std::{sync::OnceLock, time::Instant};
+    static START: OnceLock<Instant> = OnceLock::new();
+    START.get_or_init(Instant::now).elapsed().as_nanos() as u64
+}
+
+/// Sleeps until this instant of the monotonic clock, ns.
+#[cfg(target_os = "linux")]
+pub(super) fn sleep_until_ns(deadline_ns: u64) {
+    let deadline = libc::timespec {
+        tv_sec: (deadline_ns / 1_000_000_000) as libc::time_t,
+        tv_nsec: (deadline_ns % 1_000_000_000) as libc::c_long,
+    };
+    // SAFETY: `deadline` is valid for the call; an early return by a signal is repeated.
+    while unsafe {
+        libc::clock_nanosleep(libc::CLOCK_MONOTONIC, libc::TIMER_ABSTIME, &raw const deadline, std::ptr::null_mut())
+    } == libc::EINTR
+    {}
+}
+
+/// Sleeps until this instant of the monotonic clock, ns.
+#[cfg(not(target_os = "linux"))]
+pub(super) fn sleep_until_ns(deadline_ns: u64) {
+    std::thread::sleep(std::time::Duration::from_nanos(deadline_ns.saturating_sub(monotonic_ns())));
+}

@@ -1,0 +1,94 @@
+//! Percentiles of durations, constant in memory and without allocation while recording.
+
+use hdrhistogram::Histogram;
+use serde::Serialize;
+
+/// Longest duration told apart, ns (10 s); longer ones count as this.
+const LONGEST_NS: u64 = 10_000_000_000;
+
+/// A histogram of durations with three significant digits.
+#[derive(Clone, Debug)]
+pub struct Percentiles {
+    histogram: Histogram<u64>,
+}
+
+/// What is told of a histogram, microseconds.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Quantiles {
+    /// Median.
+    pub p50: f64,
+    /// 99th percentile.
+    pub p99: f64,
+    /// 99.9th percentile.
+    pub p999: f64,
+    /// Largest.
+    pub max: f64,
+}
+
+impl Default for Percentiles {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl Percentiles {
+    /// An empty histogram; allocates all it will ever need.
+    pub fn new() -> Self {
+        // The bounds are constants that the constructor accepts; the fallback only keeps the signature free of errors.
+        let histogram = Histogram::new_with_bounds(1, LONGEST_NS, 3)
+            .or_else(|_| Histogram::new_with_max(LONGEST_NS, 2))
+            .unwrap_or_else(|_| unreachable!("constant bounds"));
+        Self { histogram }
+    }
+
+    /// Takes in one duration, s. Negative or not finite counts as zero.
+    pub fn record(&mut self, seconds: f64) {
+        self.histogram.saturating_record((seconds * 1e9).max(0.0) as u64);
+    }
+
+    /// How many were recorded.
+    pub fn count(&self) -> u64 {
+        self.histogram.len()
+    }
+
+    /// The quantiles now, microseconds.
+    pub fn quantiles(&self) -> Quantiles {
+        let at = |q| self.histogram.value_at_quantile(q) as f64 * 1e-3;
+        Quantiles { p50: at(0.5), p99: at(0.99), p999: at(0.999), max: self.histogram.max() as f64 * 1e-3 }
+    }
+
+    /// Counts in `buckets` equal steps of `step_us`, the last one holding all that is longer.
+    pub fn bars(&self, step_us: f64, buckets: usize) -> Vec<u64> {
+        let mut bars = vec![0; buckets.max(1)];
+        for value in self.histogram.iter_recorded() {
+            let bar = (value.value_iterated_to() as f64 * 1e-3 / step_us) as usize;
+            bars[bar.min(buckets.max(1) - 1)] += value.count_at_value();
+        }
+        bars
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn quantiles_of_a_known_set() {
+        let mut percentiles = Percentiles::new();
+        for us in 1..=1000 {
+            percentiles.record(f64::from(us) * 1e-6);
+        }
+        let q = percentiles.quantiles();
+        assert!((q.p50 - 500.0).abs() < 2.0 && (q.p99 - 990.0).abs() < 2.0 && (q.max - 1000.0).abs() < 2.0, "{q:?}");
+        assert_eq!(percentiles.bars(100.0, 5).iter().sum::<u64>(), 1000);
+    }
+
+    #[test]
+    fn odd_durations_do_no_harm() {
+        let mut percentiles = Percentiles::new();
+        for seconds in [f64::NAN, -1.0, f64::INFINITY, 1e12] {
+            percentiles.record(seconds);
+        }
+        assert_eq!(percentiles.count(), 4);
+    }
+}

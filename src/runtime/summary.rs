@@ -1,0 +1,93 @@
+//! What a run tells at its end.
+
+use serde::Serialize;
+
+use super::{Percentiles, Quantiles, Scheduling};
+use crate::{impedance::Mode, teleop::Loop};
+
+/// Error of one mode over a run, against the force at the follower at the same instant.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct ModeError {
+    /// The mode.
+    pub mode: Mode,
+    /// Mean 3-D error, N.
+    pub mae_n: f64,
+    /// Standard deviation of the 3-D error, N.
+    pub sd_n: f64,
+    /// Largest 3-D error, N.
+    pub max_n: f64,
+    /// Ticks in which the mode had nothing valid.
+    pub invalid: u64,
+}
+
+/// Timing and error figures of a run.
+#[derive(Clone, Debug, Serialize)]
+pub struct Summary {
+    /// `real` or `virtual`.
+    pub clock: &'static str,
+    /// Ticks executed.
+    pub ticks: u64,
+    /// Periods missed and skipped.
+    pub missed: u64,
+    /// Ticks that did not fit into the screen's queue.
+    pub dropped: u64,
+    /// Loop time at the end, s.
+    pub seconds: f64,
+    /// Wall time per loop time: above 1 is faster than real time.
+    pub speed: f64,
+    /// Lateness of wake-ups, us (zero on the virtual clock).
+    pub wake_us: Quantiles,
+    /// Work of one tick of the loop, without rig and queues, us.
+    pub work_us: Quantiles,
+    /// Exchange with the rig (here: the simulation), us.
+    pub rig_us: Quantiles,
+    /// What the operating system granted.
+    pub scheduling: Scheduling,
+    /// Errors per mode, before the gates.
+    pub error: Vec<ModeError>,
+}
+
+/// Meters of a run, filled by both clocks.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Meters {
+    pub(super) wake: Percentiles,
+    pub(super) work: Percentiles,
+    pub(super) rig: Percentiles,
+    pub(super) ticks: u64,
+    pub(super) dropped: u64,
+}
+
+impl Meters {
+    pub(super) fn summary(
+        &self,
+        clock: &'static str,
+        of: &Loop,
+        seconds: f64,
+        wall_s: f64,
+        scheduling: Scheduling,
+    ) -> Summary {
+        let error = Mode::ALL.map(|mode| {
+            let stats = of.accuracy().of(mode);
+            ModeError {
+                mode,
+                mae_n: stats.mae_n,
+                sd_n: stats.sd_n(),
+                max_n: stats.max_n,
+                invalid: of.accuracy().invalid(mode),
+            }
+        });
+        Summary {
+            clock,
+            ticks: self.ticks,
+            missed: of.missed(),
+            dropped: self.dropped,
+            seconds,
+            speed: seconds / wall_s.max(1e-9),
+            wake_us: self.wake.quantiles(),
+            work_us: self.work.quantiles(),
+            rig_us: self.rig.quantiles(),
+            scheduling,
+            error: error.to_vec(),
+        }
+    }
+}

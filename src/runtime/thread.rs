@@ -1,0 +1,243 @@
+//! The loop on the real clock: a thread named `realtime` with absolute deadlines.
+
+use std::{
+    io,
+    thread::{Builder, JoinHandle},
+};
+
+use crossbeam_channel::{Receiver, Sender, TryRecvError, bounded};
+
+use super::{Command, Event, Plan, Summary, Tick, os, summary::Meters};
+use crate::{
+    device::{Outputs, Rig as _},
+    impedance::SettingsError,
+    sim::World,
+    teleop::{Loop, Timing},
+};
+
+/// Ticks that wait for the screen before new ones are dropped: 8 s at 1 kHz.
+const TICKS_WAITING_MAX: usize = 8192;
+/// Commands that wait for the loop.
+const COMMANDS_WAITING_MAX: usize = 64;
+/// Events that wait for the screen.
+const EVENTS_WAITING_MAX: usize = 256;
+/// Commands obeyed in one tick; the rest wait for the next.
+const COMMANDS_PER_TICK_MAX: usize = 2;
+
+/// Why a loop could not be started.
+#[derive(Debug, thiserror::Error)]
+pub enum StartError {
+    /// The rig's settings are not usable.
+    #[error(transparent)]
+    Settings(#[from] SettingsError),
+    /// The operating system gave no thread.
+    #[error("the real-time thread could not be started: {0}")]
+    Thread(#[from] io::Error),
+}
+
+/// One running loop. Dropping it ends the loop.
+#[derive(Debug)]
+pub struct Handle {
+    commands: Sender<Command>,
+    ticks: Receiver<Tick>,
+    events: Receiver<Event>,
+    thread: Option<JoinHandle<Summary>>,
+}
+
+/// Starts the loop in its own thread.
+pub fn start(plan: &Plan) -> Result<Handle, StartError> {
+    let (control, world) = plan.build()?;
+    let (commands, commands_in) = bounded(COMMANDS_WAITING_MAX);
+    let (ticks_out, ticks) = bounded(TICKS_WAITING_MAX);
+    let (events_out, events) = bounded(EVENTS_WAITING_MAX);
+    if plan.engage {
+        // An empty queue of 64 takes it.
+        commands.try_send(Command::Engage).ok();
+    }
+    let realtime = Realtime {
+        control,
+        world,
+        period_ns: (1e9 / plan.rig.rate_hz).round() as u64,
+        commands: commands_in,
+        ticks: ticks_out,
+        events: events_out,
+        meters: Meters::default(),
+    };
+    let thread = Builder::new().name("realtime".to_owned()).spawn(move || realtime.run())?;
+    Ok(Handle { commands, ticks, events, thread: Some(thread) })
+}
+
+impl Handle {
+    /// Sends a command; false when the queue is full or the loop has ended.
+    pub fn send(&self, command: Command) -> bool {
+        self.commands.try_send(command).is_ok()
+    }
+
+    /// Hands over every waiting tick, oldest first, without blocking.
+    pub fn drain_ticks(&self, mut each: impl FnMut(&Tick)) {
+        // Bounded, so that a slow screen cannot be kept here by a fast loop.
+        self.ticks.try_iter().take(TICKS_WAITING_MAX).for_each(|tick| each(&tick));
+    }
+
+    /// Hands over every waiting event, oldest first, without blocking.
+    pub fn drain_events(&self, mut each: impl FnMut(&Event)) {
+        self.events.try_iter().take(EVENTS_WAITING_MAX).for_each(|event| each(&event));
+    }
+
+    /// The loop's thread is alive.
+    pub fn is_running(&self) -> bool {
+        self.thread.as_ref().is_some_and(|thread| !thread.is_finished())
+    }
+
+    /// Ends the loop and gives its figures; `None` if its thread died.
+    pub fn stop_and_join(mut self) -> Option<Summary> {
+        self.end()
+    }
+
+    fn end(&mut self) -> Option<Summary> {
+        let thread = self.thread.take()?;
+        // A full queue must not keep a loop alive: wait for room.
+        self.commands.send(Command::Shutdown).ok();
+        thread.join().ok()
+    }
+}
+
+impl Drop for Handle {
+    fn drop(&mut self) {
+        self.end();
+    }
+}
+
+struct Realtime {
+    control: Loop,
+    world: World,
+    period_ns: u64,
+    commands: Receiver<Command>,
+    ticks: Sender<Tick>,
+    events: Sender<Event>,
+    meters: Meters,
+}
+
+impl Realtime {
+    fn run(mut self) -> Summary {
+        let scheduling = os::prepare_thread();
+        self.events.try_send(Event::Scheduling(scheduling)).ok();
+        let start_ns = os::monotonic_ns();
+        let mut deadline_ns = start_ns;
+        let mut outputs = Outputs::SAFE;
+        let mut timing = Timing::default();
+        while self.obey_commands(timing.now_s) {
+            deadline_ns += self.period_ns;
+            os::sleep_until_ns(deadline_ns);
+            let woke_ns = os::monotonic_ns();
+            let late_ns = woke_ns.saturating_sub(deadline_ns);
+            // Whole periods that passed are counted and skipped, never caught up in a burst.
+            timing.missed_now = late_ns / self.period_ns;
+            deadline_ns += timing.missed_now * self.period_ns;
+            timing.now_s = (deadline_ns - start_ns) as f64 * 1e-9;
+            timing.wake_s = late_ns as f64 * 1e-9;
+            outputs = self.tick(&outputs, &mut timing, woke_ns);
+        }
+        // Whatever ends the loop, the hand is left without force and the follower at rest.
+        self.world.exchange(timing.now_s, &Outputs::SAFE);
+        let wall_s = (os::monotonic_ns() - start_ns) as f64 * 1e-9;
+        self.meters.summary("real", &self.control, timing.now_s, wall_s, scheduling)
+    }
+
+    /// False when the loop shall end.
+    fn obey_commands(&mut self, now_s: f64) -> bool {
+        self.control.clear_events();
+        for _ in 0..COMMANDS_PER_TICK_MAX {
+            match self.commands.try_recv() {
+                Ok(Command::Shutdown) | Err(TryRecvError::Disconnected) => return false,
+                Ok(command) => self.control.obey(command, now_s),
+                Err(TryRecvError::Empty) => break,
+            }
+        }
+        true
+    }
+
+    fn tick(&mut self, outputs: &Outputs, timing: &mut Timing, woke_ns: u64) -> Outputs {
+        let inputs = self.world.exchange(timing.now_s, outputs);
+        let exchanged_ns = os::monotonic_ns();
+        let (next, mut tick) = self.control.step(inputs, timing);
+        let worked_ns = os::monotonic_ns();
+        timing.work_s = (worked_ns - exchanged_ns) as f64 * 1e-9;
+        self.meters.wake.record(timing.wake_s);
+        self.meters.rig.record((exchanged_ns - woke_ns) as f64 * 1e-9);
+        self.meters.work.record(timing.work_s);
+        self.meters.ticks += 1;
+        for event in self.control.events() {
+            self.events.try_send(*event).ok();
+        }
+        tick.dropped = self.meters.dropped;
+        if self.ticks.try_send(tick).is_err() {
+            self.meters.dropped += 1;
+        }
+        next
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::time::{Duration, Instant};
+
+    use super::*;
+    use crate::{
+        config::{Rig, Scene},
+        impedance::Mode,
+        teleop::LoopState,
+    };
+
+    fn plan() -> Plan {
+        Plan { rig: Rig::load("simulated").unwrap(), scene: Scene::load("peg_transfer").unwrap(), engage: true }
+    }
+
+    /// Waits until a tick satisfies `good`; gives it.
+    fn wait_for(handle: &Handle, good: impl Fn(&Tick) -> bool) -> Option<Tick> {
+        let until = Instant::now() + Duration::from_secs(10);
+        let mut found = None;
+        while found.is_none() && Instant::now() < until {
+            handle.drain_ticks(|tick| {
+                if found.is_none() && good(tick) {
+                    found = Some(*tick);
+                }
+            });
+            std::thread::sleep(Duration::from_millis(2));
+        }
+        found
+    }
+
+    #[test]
+    fn the_loop_runs_obeys_and_ends() {
+        let handle = start(&plan()).unwrap();
+        assert!(wait_for(&handle, |tick| tick.state == LoopState::Engaged).is_some());
+        assert!(handle.send(Command::SetMode(Mode::Dfr)));
+        assert!(wait_for(&handle, |tick| tick.mode == Mode::Dfr).is_some());
+        assert!(handle.send(Command::Stop));
+        let stopped = wait_for(&handle, |tick| tick.state == LoopState::Stopped).unwrap();
+        assert!(stopped.rendered_n.norm() < f64::EPSILON);
+        assert!(handle.send(Command::Engage));
+        assert!(handle.send(Command::ReleaseStop));
+        assert!(wait_for(&handle, |tick| tick.state == LoopState::Idle).is_some(), "engaging out of a stop is refused");
+        let mut refused = false;
+        handle.drain_events(|event| refused |= matches!(event, Event::CommandRefused { command: Command::Engage, .. }));
+        assert!(refused);
+        let summary = handle.stop_and_join().unwrap();
+        assert!(summary.ticks > 0);
+        let periods = summary.seconds * 1000.0;
+        assert!(
+            (periods - (summary.ticks + summary.missed) as f64).abs() < 1.5,
+            "every period is a tick or counted as missed"
+        );
+    }
+
+    #[test]
+    fn a_full_screen_queue_is_counted_and_never_waited_for() {
+        let handle = start(&plan()).unwrap();
+        std::thread::sleep(Duration::from_millis(9500));
+        let summary = handle.stop_and_join().unwrap();
+        assert_eq!(summary.dropped, summary.ticks.saturating_sub(TICKS_WAITING_MAX as u64));
+        assert!(summary.dropped > 0);
+    }
+}

@@ -1,0 +1,154 @@
+//! The simulated surgeon: minimum-jerk intentions, tremor, and a grip that gives way under force.
+
+use std::f64::consts::TAU;
+
+use nalgebra::Vector3;
+
+use super::Noise;
+use crate::config::{Hand as HandConfig, Scene};
+
+/// Height at which the hand carries from target to target, above the targets, m.
+const CARRY_HEIGHT_M: f64 = 0.015;
+/// Physiological tremor, Hz.
+const TREMOR_HZ: [f64; 3] = [8.3, 9.7, 11.6];
+
+/// One part of the task: minimum-jerk from one point to another within a time.
+#[derive(Clone, Copy, Debug)]
+struct Move {
+    from_m: Vector3<f64>,
+    to_m: Vector3<f64>,
+    seconds: f64,
+}
+
+impl Move {
+    /// Intended position (m) and velocity (m/s) after `t_s` of the move (Flash and Hogan 1985).
+    fn at(&self, t_s: f64) -> (Vector3<f64>, Vector3<f64>) {
+        if self.seconds <= 0.0 {
+            return (self.to_m, Vector3::zeros());
+        }
+        let s = (t_s / self.seconds).clamp(0.0, 1.0);
+        let way = self.to_m - self.from_m;
+        let share = s * s * s * (10.0 + s * (-15.0 + 6.0 * s));
+        let speed = 30.0 * s * s * (1.0 - s) * (1.0 - s) / self.seconds;
+        (self.from_m + way * share, way * speed)
+    }
+}
+
+/// Hand and handle as one mass on a spring and damper that pull it to where the surgeon intends.
+#[derive(Clone, Debug)]
+pub struct Hand {
+    config: HandConfig,
+    moves: Vec<Move>,
+    current: usize,
+    in_move_s: f64,
+    time_s: f64,
+    tremor_phase: [[f64; 3]; 3],
+    position_m: Vector3<f64>,
+    velocity_m_s: Vector3<f64>,
+}
+
+impl Hand {
+    /// The hand of `scene`, resting above its first target.
+    pub fn new(scene: &Scene) -> Self {
+        let mut noise = Noise::new(scene.seed);
+        let tremor_phase = std::array::from_fn(|_| std::array::from_fn(|_| TAU * noise.uniform()));
+        let moves = task(&scene.hand, &scene.targets_m);
+        let position_m = moves.first().map_or_else(Vector3::zeros, |first| first.from_m);
+        Self {
+            config: scene.hand,
+            moves,
+            current: 0,
+            in_move_s: 0.0,
+            time_s: 0.0,
+            tremor_phase,
+            position_m,
+            velocity_m_s: Vector3::zeros(),
+        }
+    }
+
+    /// Where hand and handle are, m.
+    pub const fn position_m(&self) -> Vector3<f64> {
+        self.position_m
+    }
+
+    /// Advances by `dt_s` under this force (N) from the handle.
+    pub fn advance(&mut self, dt_s: f64, force_n: &Vector3<f64>) {
+        self.time_s += dt_s;
+        self.in_move_s += dt_s;
+        if self.in_move_s >= self.moves[self.current].seconds {
+            self.in_move_s = 0.0;
+            self.current = (self.current + 1) % self.moves.len();
+        }
+        let (intended_m, intended_m_s) = self.moves[self.current].at(self.in_move_s);
+        let HandConfig { mass_kg, grip_stiffness_n_m, grip_damping_n_s_m, .. } = self.config;
+        let grip_n = (intended_m + self.tremor_m() - self.position_m) * grip_stiffness_n_m
+            + (intended_m_s - self.velocity_m_s) * grip_damping_n_s_m;
+        // Semi-implicit Euler: stable for these stiffnesses at 1 ms.
+        self.velocity_m_s += (grip_n + force_n) * (dt_s / mass_kg);
+        self.position_m += self.velocity_m_s * dt_s;
+    }
+
+    fn tremor_m(&self) -> Vector3<f64> {
+        if self.config.tremor_m == 0.0 {
+            return Vector3::zeros();
+        }
+        let amplitude_m = self.config.tremor_m / (TREMOR_HZ.len() as f64).sqrt();
+        Vector3::from_fn(|axis, _| {
+            let waves = TREMOR_HZ.iter().zip(&self.tremor_phase[axis]);
+            amplitude_m * waves.map(|(hz, phase)| (TAU * hz * self.time_s + phase).sin()).sum::<f64>()
+        })
+    }
+}
+
+/// The endless task: over each target go down, press, drag a little, hold, lift, and carry on to the next.
+fn task(hand: &HandConfig, targets_m: &[Vector3<f64>]) -> Vec<Move> {
+    let lift = Vector3::new(0.0, 0.0, CARRY_HEIGHT_M);
+    let press = Vector3::new(0.0, 0.0, -hand.press_depth_m);
+    let drag = Vector3::new(hand.drag_m, -0.5 * hand.drag_m, 0.0);
+    let mut moves = Vec::with_capacity(targets_m.len() * 5);
+    for (i, &target) in targets_m.iter().enumerate() {
+        let next = targets_m[(i + 1) % targets_m.len()];
+        let stations =
+            [target + lift, target + press, target + press + drag, target + press + drag, target + lift, next + lift];
+        let seconds = [hand.press_s, hand.hold_s, hand.hold_s, hand.press_s, hand.reach_s];
+        moves.extend(stations.windows(2).zip(seconds).map(|(pair, seconds)| Move {
+            from_m: pair[0],
+            to_m: pair[1],
+            seconds,
+        }));
+    }
+    moves
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_minimum_jerk_move_starts_and_ends_at_rest() {
+        let way = Move { from_m: Vector3::zeros(), to_m: Vector3::x(), seconds: 2.0 };
+        assert_eq!(way.at(0.0), (Vector3::zeros(), Vector3::zeros()));
+        let (end, speed) = way.at(2.0);
+        assert!((end - Vector3::x()).norm() < 1e-12 && speed.norm() < 1e-12);
+        let (middle, peak) = way.at(1.0);
+        assert!(
+            (middle.x - 0.5).abs() < 1e-12 && (peak.x - 1.875 / 2.0).abs() < 1e-12,
+            "peak speed is 1.875 of the mean"
+        );
+    }
+
+    #[test]
+    fn the_grip_gives_way_by_force_over_stiffness() {
+        let mut scene = Scene::load("free_motion").unwrap();
+        scene.hand.tremor_m = 0.0;
+        scene.hand.press_s = 100.0;
+        scene.hand.press_depth_m = -CARRY_HEIGHT_M;
+        let mut hand = Hand::new(&scene);
+        let start = hand.position_m();
+        for _ in 0..3000 {
+            hand.advance(1e-3, &Vector3::new(0.0, 0.0, 3.0));
+        }
+        let given_m = hand.position_m().z - start.z;
+        assert!((given_m - 3.0 / scene.hand.grip_stiffness_n_m).abs() < 1e-5, "{given_m}");
+    }
+}

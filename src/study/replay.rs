@@ -1,0 +1,343 @@
+//! Identification over a recording: causal, sample by sample, with the figures of `nima identify`.
+//!
+//! For every sample at time t the force is rendered from data up to t - D and the motion at t, exactly as a leader behind a
+//! link of delay D would, and compared with the force measured at t and with the held force f(t - D) (delayed DFR).
+//! Units are the recording's own (N and m, or Nm and rad).
+
+use std::time::Instant;
+
+use nalgebra::Vector3;
+use serde::Serialize;
+
+use crate::{
+    impedance::{Identifier, MAX_DEGREE, Mode, Report, Settings, SettingsError},
+    recording::Recording,
+    runtime::Percentiles,
+    safety::{Chain, ChainSettings, Request},
+};
+
+/// Why a recording could not be replayed.
+#[derive(Debug, thiserror::Error)]
+pub enum ReplayError {
+    /// Settings out of range.
+    #[error(transparent)]
+    Settings(#[from] SettingsError),
+    /// Not even one window and one delay long.
+    #[error(
+        "recording {path} has {found} samples; a window of {window_ms} ms and a delay of {delay_ms} ms at {rate_hz} Hz need {needed}; record longer or shorten the window"
+    )]
+    TooShort {
+        /// Its path.
+        path: String,
+        /// Samples found.
+        found: usize,
+        /// Samples needed.
+        needed: usize,
+        /// Window, ms.
+        window_ms: f64,
+        /// Delay, ms.
+        delay_ms: f64,
+        /// Rate of the recording, Hz.
+        rate_hz: f64,
+    },
+}
+
+/// Size and spread of an error.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct ErrorFigures {
+    /// Mean norm of the error.
+    pub mae: f64,
+    /// Standard deviation of the error about its mean (all axes together).
+    pub sd: f64,
+    /// 95th percentile of the norm.
+    pub p95: f64,
+    /// Largest norm.
+    pub max: f64,
+}
+
+/// In-window reconstruction error of one degree.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Reconstruction {
+    /// Mean norm.
+    pub mae: f64,
+    /// Standard deviation about the mean.
+    pub sd: f64,
+}
+
+/// In-window errors of the paper's recipe: the parameters fitted on a window, tested on the newest sample of that same window.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Reconstructions {
+    /// N = 1.
+    pub degree_1: Reconstruction,
+    /// N = 2.
+    pub degree_2: Reconstruction,
+    /// N = 3.
+    pub degree_3: Reconstruction,
+    /// N = 4.
+    pub degree_4: Reconstruction,
+    /// N = 5.
+    pub degree_5: Reconstruction,
+    /// The degree chosen in each window.
+    pub selected: Reconstruction,
+}
+
+/// Median, 95th percentile and maximum.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Spread {
+    /// Median.
+    pub p50: f64,
+    /// 95th percentile.
+    pub p95: f64,
+    /// Largest.
+    pub max: f64,
+}
+
+/// Time of one tick of identification, us.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct TickTime {
+    /// Median.
+    pub p50: f64,
+    /// 99th percentile.
+    pub p99: f64,
+    /// Largest.
+    pub max: f64,
+}
+
+/// All figures of a replay; the JSON of `nima identify`.
+#[derive(Clone, Debug, Serialize)]
+pub struct Figures {
+    /// Samples in the recording.
+    pub samples: usize,
+    /// Rate, Hz.
+    pub rate_hz: f64,
+    /// Axes, by name.
+    pub axes: Vec<&'static str>,
+    /// Mode that rendered.
+    pub mode: Mode,
+    /// Window in force, ms.
+    pub window_ms: f64,
+    /// Delay in force, ms: the asked one rounded to whole samples.
+    pub delay_ms: f64,
+    /// Samples compared: all from the first that has a delayed force.
+    pub compared: usize,
+    /// Rendered against measured.
+    pub error: ErrorFigures,
+    /// Held force against measured: delayed DFR.
+    pub hold: ErrorFigures,
+    /// In-window errors of the paper's recipe.
+    pub reconstruction: Reconstructions,
+    /// Share of compared samples with degree 1 to 5; the rest to 1 rendered without a correction.
+    pub degree_share: [f64; MAX_DEGREE],
+    /// Share of compared samples with a degree above 1.
+    pub nonlinear_share: f64,
+    /// Condition of the scaled regression; 0 while there is none.
+    pub condition: Spread,
+    /// Compared samples for which the mode had no valid force (it rendered none).
+    pub rejected: u64,
+    /// Time of one tick of identification.
+    pub tick_us: TickTime,
+}
+
+/// One row of the trace.
+#[derive(Clone, Copy, Debug)]
+pub struct Row {
+    /// Time, s.
+    pub t_s: f64,
+    /// Measured force.
+    pub measured: Vector3<f64>,
+    /// Rendered force, before the gates.
+    pub rendered: Vector3<f64>,
+    /// Held force.
+    pub held: Vector3<f64>,
+    /// Degree used, 0 for none.
+    pub degree: usize,
+    /// Condition of the scaled regression.
+    pub condition: f64,
+    /// First gate that would act on this force on its way to a hand.
+    pub gate: &'static str,
+}
+
+/// How to replay.
+#[derive(Clone, Copy, Debug)]
+pub struct Options {
+    /// Mode that renders.
+    pub mode: Mode,
+    /// Window, s.
+    pub window_s: f64,
+    /// Delay, s.
+    pub delay_s: f64,
+    /// Highest degree.
+    pub max_degree: usize,
+}
+
+/// Replays `recording`; `each` sees every row in order.
+pub fn replay(recording: &Recording, options: &Options, mut each: impl FnMut(&Row)) -> Result<Figures, ReplayError> {
+    let rate_hz = recording.rate_hz;
+    let delay = (options.delay_s * rate_hz).round() as usize;
+    let settings = Settings {
+        rate_hz,
+        window_s: options.window_s,
+        delay_s: delay as f64 / rate_hz,
+        max_degree: options.max_degree,
+        axes: recording.axes.len(),
+        ..Settings::default()
+    };
+    let mut identifier = Identifier::new(&settings)?;
+    let window = (options.window_s * rate_hz).round() as usize;
+    let needed = window + delay + 1;
+    if recording.samples.len() < needed {
+        return Err(ReplayError::TooShort {
+            path: recording.path.display().to_string(),
+            found: recording.samples.len(),
+            needed,
+            window_ms: options.window_s * 1e3,
+            delay_ms: settings.delay_s * 1e3,
+            rate_hz,
+        });
+    }
+    let mut tally = Tally::default();
+    let mut gates = Chain::new(ChainSettings::default(), 1.0 / rate_hz);
+    for (i, sample) in recording.samples.iter().enumerate() {
+        let start = Instant::now();
+        identifier.step(sample);
+        tally.tick.record(start.elapsed().as_secs_f64());
+        let report = identifier.report();
+        let rendered = report.prediction(options.mode);
+        let held = i.checked_sub(delay).map(|then| recording.samples[then].force_n);
+        let last_m = recording.samples[i.saturating_sub(1)].position_m;
+        let speed_m_s = (sample.position_m - last_m).norm() * rate_hz;
+        let (_, gate) = gates.step(&Request { force_n: rendered, age_s: 0.0, speed_m_s, permitted: true });
+        let row = Row {
+            t_s: sample.t_s,
+            measured: sample.force_n,
+            rendered: rendered.unwrap_or_else(Vector3::zeros),
+            held: held.unwrap_or_else(Vector3::zeros),
+            degree: degree(report, options.mode),
+            condition: report.condition,
+            gate: gate.first_closed(),
+        };
+        tally.add(&row, rendered.is_some(), held.is_some(), report);
+        each(&row);
+    }
+    Ok(tally.figures(recording, options.mode, &settings))
+}
+
+fn degree(report: &Report, mode: Mode) -> usize {
+    match mode {
+        Mode::Literal => usize::from(report.paper_degree),
+        Mode::Linear => usize::from(report.paper_degree > 0),
+        Mode::Dfr => 0,
+        Mode::Anchored => usize::from(report.degree),
+    }
+}
+
+/// Everything summed up on the way.
+#[derive(Default)]
+struct Tally {
+    error: Errors,
+    hold: Errors,
+    reconstruction: [Errors; MAX_DEGREE],
+    selected: Errors,
+    degrees: [u64; MAX_DEGREE + 1],
+    conditions: Vec<f64>,
+    rejected: u64,
+    tick: Percentiles,
+}
+
+impl Tally {
+    fn add(&mut self, row: &Row, valid: bool, has_held: bool, report: &Report) {
+        if let Some(chosen) = usize::from(report.paper_degree).checked_sub(1) {
+            for (errors, residual) in self.reconstruction.iter_mut().zip(&report.reconstruction_n) {
+                errors.add(residual);
+            }
+            self.selected.add(&report.reconstruction_n[chosen]);
+        }
+        if report.condition > 0.0 {
+            self.conditions.push(report.condition);
+        }
+        if !has_held {
+            return;
+        }
+        self.error.add(&(row.rendered - row.measured));
+        self.hold.add(&(row.held - row.measured));
+        self.degrees[row.degree.min(MAX_DEGREE)] += 1;
+        self.rejected += u64::from(!valid);
+    }
+
+    fn figures(mut self, recording: &Recording, mode: Mode, settings: &Settings) -> Figures {
+        let compared = self.error.norms.len();
+        let share = |count: u64| count as f64 / compared.max(1) as f64;
+        let [degree_1, degree_2, degree_3, degree_4, degree_5] =
+            self.reconstruction.map(|errors| errors.reconstruction());
+        let tick = self.tick.quantiles();
+        self.conditions.sort_unstable_by(f64::total_cmp);
+        Figures {
+            samples: recording.samples.len(),
+            rate_hz: recording.rate_hz,
+            axes: recording.axes.iter().map(|&axis| crate::recording::AXIS_NAMES[axis]).collect(),
+            mode,
+            window_ms: tidy_ms(settings.window_s),
+            delay_ms: tidy_ms(settings.delay_s),
+            compared,
+            error: self.error.figures(),
+            hold: self.hold.figures(),
+            reconstruction: Reconstructions {
+                degree_1,
+                degree_2,
+                degree_3,
+                degree_4,
+                degree_5,
+                selected: self.selected.reconstruction(),
+            },
+            degree_share: std::array::from_fn(|i| share(self.degrees[i + 1])),
+            nonlinear_share: share(self.degrees[2..].iter().sum()),
+            condition: Spread {
+                p50: quantile(&self.conditions, 0.5),
+                p95: quantile(&self.conditions, 0.95),
+                max: quantile(&self.conditions, 1.0),
+            },
+            rejected: self.rejected,
+            tick_us: TickTime { p50: tick.p50, p99: tick.p99, max: tick.max },
+        }
+    }
+}
+
+/// Seconds as milliseconds without the last digits of the division.
+fn tidy_ms(seconds: f64) -> f64 {
+    (seconds * 1e9).round() * 1e-6
+}
+
+/// Errors kept for their percentiles.
+#[derive(Default)]
+struct Errors {
+    norms: Vec<f64>,
+    sum: Vector3<f64>,
+    squares: f64,
+}
+
+impl Errors {
+    fn add(&mut self, error: &Vector3<f64>) {
+        self.norms.push(error.norm());
+        self.sum += error;
+        self.squares += error.norm_squared();
+    }
+
+    fn reconstruction(&self) -> Reconstruction {
+        let count = self.norms.len().max(1) as f64;
+        let mae = self.norms.iter().sum::<f64>() / count;
+        let variance = self.squares / count - (self.sum / count).norm_squared();
+        Reconstruction { mae, sd: variance.max(0.0).sqrt() }
+    }
+
+    fn figures(&mut self) -> ErrorFigures {
+        let Reconstruction { mae, sd } = self.reconstruction();
+        self.norms.sort_unstable_by(f64::total_cmp);
+        ErrorFigures { mae, sd, p95: quantile(&self.norms, 0.95), max: quantile(&self.norms, 1.0) }
+    }
+}
+
+/// Quantile of sorted values (nearest rank); 0 of none.
+fn quantile(sorted: &[f64], q: f64) -> f64 {
+    let rank = (q * sorted.len() as f64).ceil() as usize;
+    sorted.get(rank.clamp(1, sorted.len().max(1)) - 1).copied().unwrap_or(0.0)
+}

@@ -165,6 +165,8 @@ pub struct Tissue {
     pub damping_s_m: f64,
     /// Coulomb friction coefficient; zero for none.
     pub friction: f64,
+    /// Stiffness with which the surface sticks to the tip before it slips, N/m.
+    pub shear_stiffness_n_m: f64,
 }
 
 /// The leader device's measurable limits.
@@ -336,6 +338,7 @@ impl Scene {
             ranges.check("tissue.exponent", tissue.exponent, (1.0..=3.0).contains(&tissue.exponent), "1 to 3")?;
             ranges.not_negative("tissue.damping_s_m", tissue.damping_s_m)?;
             ranges.not_negative("tissue.friction", tissue.friction)?;
+            ranges.not_negative("tissue.shear_stiffness_n_m", tissue.shear_stiffness_n_m)?;
         }
         if let Some(leader) = &self.leader {
             ranges.positive("leader.resolution_m", leader.resolution_m)?;

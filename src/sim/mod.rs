@@ -12,10 +12,10 @@ use nalgebra::Vector3;
 
 pub use hand::Hand;
 pub use noise::Noise;
-pub use tissue::contact_force_n;
+pub use tissue::Tissue;
 
 use crate::{
-    config::{Follower, Leader, Scene, Tissue},
+    config::{Follower, Leader, Scene},
     device::{Inputs, Outputs, Rig},
 };
 
@@ -50,7 +50,7 @@ impl World {
             time_s: 0.0,
             leader: scene.leader,
             follower: scene.follower,
-            tissue: scene.tissue,
+            tissue: scene.tissue.map(Tissue::new),
             sensor_noise_n: scene.sensor.map(|sensor| (sensor.noise_n, Noise::new(scene.seed ^ 0x5e_50))),
             tip_m: start_m,
             tip_velocity_m_s: Vector3::zeros(),
@@ -63,11 +63,6 @@ impl World {
     /// The hand, for what only a simulation knows.
     pub const fn hand(&self) -> &Hand {
         &self.hand
-    }
-
-    /// True force of the tissue on the tip now, N, without sensor noise.
-    pub fn true_force_n(&self) -> Vector3<f64> {
-        self.tissue.map_or_else(Vector3::zeros, |tissue| contact_force_n(&tissue, &self.tip_m, &self.tip_velocity_m_s))
     }
 
     fn accept(&mut self, outputs: &Outputs) {
@@ -109,7 +104,10 @@ impl World {
     }
 
     fn measure(&mut self) -> Inputs {
-        let mut force_n = self.true_force_n();
+        let mut force_n = match &mut self.tissue {
+            Some(tissue) => tissue.contact_n(&self.tip_m, &self.tip_velocity_m_s),
+            None => Vector3::zeros(),
+        };
         if let Some((sigma_n, noise)) = &mut self.sensor_noise_n {
             force_n += Vector3::from_fn(|_, _| *sigma_n * noise.gaussian());
         }

@@ -7,12 +7,14 @@
 mod accuracy;
 mod link;
 mod state;
+mod tracking;
 
 use nalgebra::Vector3;
 
 pub use accuracy::{Accuracy, ErrorStats};
 pub use link::Link;
 pub use state::LoopState;
+pub use tracking::Tracking;
 
 use crate::{
     config::Rig as RigConfig,
@@ -53,6 +55,7 @@ pub struct Loop {
     identifier: Identifier,
     renderer: Renderer,
     link: Link,
+    tracking: Tracking,
     chain: Chain,
     last_inputs: Option<Inputs>,
     last_input_s: f64,
@@ -77,6 +80,7 @@ impl Loop {
             identifier: Identifier::new(&settings)?,
             renderer: Renderer::new(&settings)?,
             link: Link::new(rig.rate_hz, rig.delay_s),
+            tracking: Tracking::new(rig.rate_hz),
             chain: Chain::new(rig.gates, 1.0 / rig.rate_hz),
             last_inputs: None,
             last_input_s: 0.0,
@@ -208,8 +212,10 @@ impl Loop {
             // Nothing new: the link keeps delivering what is on its way, ever older; the age gate takes the force away.
             None => self.last_inputs.unwrap_or(NOTHING_YET),
         };
+        let tip_command_m = self.follow(&seen);
+        let motion_m = self.motion_at_leader(&seen, tip_command_m);
         let parcel = self.link.receive(now_s);
-        let rendered = self.renderer.step(&seen.leader_m, parcel);
+        let rendered = self.renderer.step(&motion_m, parcel);
         let delayed_n = parcel.map_or_else(Vector3::zeros, |parcel| parcel.force_n);
         let age_s = parcel.map_or(f64::INFINITY, |parcel| now_s - parcel.t_s - self.delay_s);
         let (hand_force_n, gates) = self.chain.step(&Request {
@@ -221,7 +227,7 @@ impl Loop {
         if inputs.is_some() {
             self.accuracy.add(&rendered, &seen.force_n);
         }
-        let outputs = Outputs { tip_command_m: self.follow(&seen), hand_force_n };
+        let outputs = Outputs { tip_command_m, hand_force_n };
         let tick = self.tick(&seen, &rendered, delayed_n, hand_force_n, gates, timing);
         self.ticks += 1;
         (outputs, tick)
@@ -237,13 +243,16 @@ impl Loop {
         }
     }
 
-    /// Hand speed for the dead band: a first-order low-pass (5 ms) over differences, so one step of the encoder does not open it.
+    /// Hand speed for the dead band, from differences: it rises within 5 ms, so one step of the encoder does not open the gate,
+    /// and falls within 40 ms, so a trembling hand does not switch its force on and off twenty times a second.
     fn measure_speed(&mut self, inputs: &Inputs, now_s: f64) {
-        const SMOOTHING_S: f64 = 0.005;
+        const RISE_S: f64 = 0.005;
+        const FALL_S: f64 = 0.040;
         if let Some(last) = self.last_inputs {
             let dt_s = (now_s - self.last_input_s).max(0.5 / self.rate_hz);
             let speed = (inputs.leader_m - last.leader_m).norm() / dt_s;
-            self.hand_speed_m_s += (speed - self.hand_speed_m_s) * (dt_s / (SMOOTHING_S + dt_s));
+            let smoothing_s = if speed > self.hand_speed_m_s { RISE_S } else { FALL_S };
+            self.hand_speed_m_s += (speed - self.hand_speed_m_s) * (dt_s / (smoothing_s + dt_s));
         }
     }
 
@@ -257,6 +266,17 @@ impl Loop {
         let share = if way.norm() > self.follower_step_max_m { self.follower_step_max_m / way.norm() } else { 1.0 };
         self.command_m = Some(from + way * share);
         self.command_m
+    }
+
+    /// The follower's motion now as the leader can know it: its command, as late as the follower is observed to be.
+    fn motion_at_leader(&mut self, seen: &Inputs, tip_command_m: Option<Vector3<f64>>) -> Vector3<f64> {
+        match tip_command_m {
+            Some(command_m) => self.tracking.step(&command_m, &seen.tip_m),
+            None => {
+                self.tracking.interrupt();
+                seen.tip_m
+            }
+        }
     }
 
     fn tick(

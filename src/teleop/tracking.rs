@@ -1,0 +1,142 @@
+//! How far the follower lags behind its command, measured while it moves, and its motion now as the leader can know it.
+//!
+//! An impedance identified from the follower's motion must be fed with the follower's motion. The leader knows only what it
+//! commanded; this aligns the two. The lag is the shift between command and tip with the least mean square difference over
+//! the last seconds of motion, refined by a parabola.
+
+use nalgebra::Vector3;
+
+/// Shifts compared.
+const CANDIDATES: usize = 64;
+/// Longest lag looked for, s.
+const LAG_MAX_S: f64 = 0.128;
+/// Memory of the comparison, s of motion.
+const MEMORY_S: f64 = 2.0;
+/// Speed below which shifts cannot be told apart, m/s.
+const MOVING_M_S: f64 = 0.005;
+
+/// Lag of a follower behind its command.
+#[derive(Debug)]
+pub struct Tracking {
+    ring: Vec<Vector3<f64>>,
+    newest: usize,
+    filled: usize,
+    stride: usize,
+    forget: f64,
+    step_min_m: f64,
+    cost_m2: [f64; CANDIDATES],
+    moving_ticks: u64,
+    warm_up_ticks: u64,
+    lag_samples: f64,
+}
+
+impl Tracking {
+    /// No lag known yet, for a loop of this rate (Hz).
+    pub fn new(rate_hz: f64) -> Self {
+        let stride = ((LAG_MAX_S * rate_hz / CANDIDATES as f64).round() as usize).max(1);
+        Self {
+            ring: vec![Vector3::zeros(); stride * CANDIDATES + 1],
+            newest: 0,
+            filled: 0,
+            stride,
+            forget: (1.0 / (MEMORY_S * rate_hz)).min(1.0),
+            step_min_m: MOVING_M_S / rate_hz,
+            cost_m2: [0.0; CANDIDATES],
+            moving_ticks: 0,
+            warm_up_ticks: (0.25 * rate_hz) as u64,
+            lag_samples: 0.0,
+        }
+    }
+
+    /// Forgets the commands so far (the lag is kept): the follower was not following.
+    pub fn interrupt(&mut self) {
+        self.filled = 0;
+    }
+
+    /// The lag in force, in ticks.
+    pub const fn lag_samples(&self) -> f64 {
+        self.lag_samples
+    }
+
+    fn back(&self, samples: usize) -> &Vector3<f64> {
+        let room = self.ring.len();
+        &self.ring[(self.newest + room - samples.min(self.filled.saturating_sub(1))) % room]
+    }
+
+    /// Takes in the command (m) and the tip (m) of this tick; gives where the leader may take the tip to be now, m.
+    pub fn step(&mut self, command_m: &Vector3<f64>, tip_m: &Vector3<f64>) -> Vector3<f64> {
+        self.newest = (self.newest + 1) % self.ring.len();
+        self.ring[self.newest] = *command_m;
+        self.filled = (self.filled + 1).min(self.ring.len());
+        let span = self.stride * 4;
+        let moving = (command_m - self.back(span)).norm() > self.step_min_m * span as f64;
+        if moving && self.filled == self.ring.len() {
+            self.compare(tip_m);
+        }
+        let whole = self.lag_samples.floor();
+        let (late, later) = (self.back(whole as usize), self.back(whole as usize + 1));
+        late + (later - late) * (self.lag_samples - whole)
+    }
+
+    fn compare(&mut self, tip_m: &Vector3<f64>) {
+        self.moving_ticks += 1;
+        // A plain mean until the memory is full, then a fading one.
+        let weight = self.forget.max(1.0 / self.moving_ticks as f64);
+        let mut best = 0;
+        for candidate in 0..CANDIDATES {
+            let difference_m2 = (self.back(candidate * self.stride) - tip_m).norm_squared();
+            self.cost_m2[candidate] += (difference_m2 - self.cost_m2[candidate]) * weight;
+            if self.cost_m2[candidate] < self.cost_m2[best] {
+                best = candidate;
+            }
+        }
+        if self.moving_ticks >= self.warm_up_ticks {
+            self.lag_samples = (best as f64 + self.vertex(best)) * self.stride as f64;
+        }
+    }
+
+    /// Offset of the parabola's lowest point through the neighbours of `best`, in candidates, -0.5 to 0.5.
+    fn vertex(&self, best: usize) -> f64 {
+        if best == 0 || best + 1 >= CANDIDATES {
+            return 0.0;
+        }
+        let [before, lowest, after] = [self.cost_m2[best - 1], self.cost_m2[best], self.cost_m2[best + 1]];
+        let curvature = before - 2.0 * lowest + after;
+        if curvature <= 0.0 { 0.0 } else { (0.5 * (before - after) / curvature).clamp(-0.5, 0.5) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn command(t_s: f64) -> Vector3<f64> {
+        Vector3::new((3.0 * t_s).sin(), (5.0 * t_s).cos(), 0.3 * (7.0 * t_s).sin()) * 0.03
+    }
+
+    #[test]
+    fn a_pure_lag_is_found_and_the_tip_predicted() {
+        for rate_hz in [100.0, 1000.0, 4000.0] {
+            for lag_s in [0.0, 0.021, 0.0605] {
+                let mut tracking = Tracking::new(rate_hz);
+                let mut error_m = 0.0;
+                for i in 0..(4.0 * rate_hz) as usize {
+                    let t_s = i as f64 / rate_hz;
+                    let tip_m = command(t_s - lag_s);
+                    error_m = (tracking.step(&command(t_s), &tip_m) - tip_m).norm();
+                }
+                assert!(error_m < 0.2e-3, "{rate_hz} Hz, lag {lag_s} s: {error_m} m, {} ticks", tracking.lag_samples());
+            }
+        }
+    }
+
+    #[test]
+    fn standstill_teaches_nothing_and_breaks_nothing() {
+        let mut tracking = Tracking::new(1000.0);
+        for _ in 0..5000 {
+            let at = tracking.step(&Vector3::repeat(0.01), &Vector3::repeat(0.02));
+            assert!(at == Vector3::repeat(0.01));
+        }
+        assert!(tracking.lag_samples().abs() < f64::EPSILON);
+    }
+}

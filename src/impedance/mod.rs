@@ -1,13 +1,50 @@
 //! The heart: from motion and tip force to an impedance `f = M X`, and from `M` back to a force for the hand.
 //!
-//! Takes: tip positions (m, workspace frame) and tip forces (N, same frame), one sample per tick at a fixed rate.
-//! Gives: a [`Parcel`] of parameters for the link (follower side) and a force (N) rendered from the leader's own
-//! motion (leader side). Pure and deterministic; nothing is allocated after construction; it knows no device, file or thread.
-//! Bad input (NaN, infinite, frozen) is counted, left out of the window and never reaches a parameter.
+//! Takes: tip positions (m, workspace frame) and tip forces (N, same frame), one [`Sample`] per tick at a fixed rate.
+//! Gives: a [`Parcel`] of parameters for the link (follower side, [`Identifier`]) and a force (N) rendered from the leader's
+//! own motion (leader side, [`Renderer`]). Pure and deterministic; nothing is allocated after construction; it knows no
+//! device, file or thread.
+//! Bad input (NaN, infinite, absurdly large, or a time stamp that does not advance) is counted, left out of the window, and
+//! bridged by a prediction of the motion; it never reaches a parameter. What is not handled here: dead band, gain, ceiling
+//! and age of the rendered force; those are the gates of `safety`.
+//!
+//! | file | holds |
+//! |---|---|
+//! | `features` | motion features `u, u', u'', ..., u^N, u'^N, u''^N` and their scales |
+//! | `factor`, `solution` | the triangular factor of a least-squares problem; all its nested solutions |
+//! | `gram`, `literal` | the paper's normal equations, all degrees, in-window choice |
+//! | `window` | a sliding window over either, at a constant cost per tick |
+//! | `horizon` | the running error of every candidate at the true delay, and the choice |
+//! | `identifier`, `renderer` | the two ends of the link |
 
+mod factor;
+mod features;
+mod gram;
+mod horizon;
+mod identifier;
+mod literal;
+mod messages;
 mod mode;
+mod renderer;
+mod settings;
+mod solution;
+mod track;
+mod window;
 
+#[cfg(test)]
+mod tests;
+
+pub use factor::Factor;
+pub use features::{Features, MOTION_COLUMNS, Scales};
+pub use gram::Gram;
+pub use identifier::Identifier;
+pub use literal::LiteralSolver;
+pub use messages::{AnchoredModel, Excitation, LiteralModel, Parcel, Rendered, Report, Sample};
 pub use mode::{Mode, ParseModeError};
+pub use renderer::Renderer;
+pub use settings::{MAX_DELAY_S, ModeSet, Settings, SettingsError};
+pub use solution::Solution;
+pub use window::{SlidingWindow, Summary};
 
 /// Axes handled in parallel: x, y, z of the workspace.
 pub const AXES: usize = 3;

@@ -1,0 +1,71 @@
+//! Sums of products of a window's rows: the paper's `X X^T` and `F X^T`.
+
+use super::{
+    factor::column_start,
+    features::{Features, MOTION_COLUMNS},
+    window::Summary,
+};
+use crate::signal::Lanes;
+
+/// Entries of a row: the motion columns, then the force.
+pub(super) const GRAM_ROW: usize = MOTION_COLUMNS + 1;
+const ELEMENTS: usize = GRAM_ROW * (GRAM_ROW + 1) / 2;
+
+/// `[X; f] [X; f]^T`, one per lane: the upper triangle packed by columns, the force in the last one.
+///
+/// The window slides it in blocks of sums; nothing is subtracted, so it does not drift.
+#[derive(Clone, Debug)]
+pub struct Gram {
+    columns: usize,
+    elements: [Lanes; ELEMENTS],
+}
+
+impl Gram {
+    /// The sums of no rows, for `columns <= 15` motion columns.
+    pub fn new(columns: usize) -> Self {
+        Self { columns: columns.min(MOTION_COLUMNS), elements: [Lanes::ZERO; ELEMENTS] }
+    }
+
+    /// Number of motion columns.
+    pub fn columns(&self) -> usize {
+        self.columns
+    }
+
+    /// Column `j` (rows `0..=j`); `j == columns()` is the force.
+    #[inline]
+    pub fn column(&self, j: usize) -> &[Lanes] {
+        &self.elements[column_start(j)..=column_start(j) + j]
+    }
+
+    /// A row for [`Summary::add`].
+    #[inline]
+    pub(super) fn row(&self, features: &Features, force_n: Lanes) -> [Lanes; GRAM_ROW] {
+        let mut row = [Lanes::ZERO; GRAM_ROW];
+        row[..self.columns].copy_from_slice(&features[..self.columns]);
+        row[self.columns] = force_n;
+        row
+    }
+}
+
+impl Summary for Gram {
+    /// `columns` motion columns, then the force at index `columns`; the rest is ignored.
+    type Row = [Lanes; GRAM_ROW];
+
+    const BLANK_ROW: Self::Row = [Lanes::ZERO; GRAM_ROW];
+
+    fn add(&mut self, row: &Self::Row) {
+        for j in 0..=self.columns {
+            let start = column_start(j);
+            for (element, entry) in self.elements[start..=start + j].iter_mut().zip(row) {
+                *element += *entry * row[j];
+            }
+        }
+    }
+
+    fn merge(&mut self, other: &Self) {
+        let used = column_start(self.columns + 1);
+        for (element, other) in self.elements[..used].iter_mut().zip(&other.elements) {
+            *element += *other;
+        }
+    }
+}

@@ -1,0 +1,165 @@
+//! The paper to the letter: `M = F X^T (X X^T)^-1` per axis and degree, and the degree with the least error in the window.
+
+use super::{
+    MAX_DEGREE,
+    factor::column_start,
+    features::{Features, MOTION_COLUMNS},
+    gram::{GRAM_ROW, Gram},
+};
+use crate::signal::{LANES, Lanes};
+
+/// Solves the normal equations of every degree from one Cholesky factorisation of the largest Gram matrix.
+///
+/// Raw SI columns, no constant, no ridge, no pivoting, no cut-off: where the matrix is not positive definite in floating
+/// point, or a number is not finite, that axis and degree has *failed*; it is counted, its coefficients are zero and its
+/// error is the whole force. Nothing else is done about it.
+#[derive(Clone, Debug)]
+pub struct LiteralSolver {
+    max_degree: usize,
+    axes: usize,
+    coefficients: [[Lanes; MOTION_COLUMNS]; MAX_DEGREE],
+    solved: [[bool; LANES]; MAX_DEGREE],
+    error_n: [f64; MAX_DEGREE],
+    failures: u64,
+}
+
+impl LiteralSolver {
+    /// A solver for degrees `1..=max_degree` of the first `axes` lanes.
+    pub fn new(max_degree: usize, axes: usize) -> Self {
+        Self {
+            max_degree,
+            axes,
+            coefficients: [[Lanes::ZERO; MOTION_COLUMNS]; MAX_DEGREE],
+            solved: [[false; LANES]; MAX_DEGREE],
+            error_n: [f64::INFINITY; MAX_DEGREE],
+            failures: 0,
+        }
+    }
+
+    /// Solves every degree on the sums of `rows` rows.
+    pub fn solve(&mut self, gram: &Gram, rows: usize) {
+        let n = gram.columns();
+        let (r, definite) = cholesky(gram);
+        for degree in 1..=self.max_degree {
+            let columns = 3 * degree;
+            let mut m = back_substitute(&r, columns, n);
+            let mut square_n2 = 0.0;
+            let squares = residual_squares(gram, &m, columns);
+            for axis in 0..self.axes {
+                let finite = squares[axis].is_finite() && m[..columns].iter().all(|m| m[axis].is_finite());
+                let solved = definite[axis] >= columns && finite;
+                self.solved[degree - 1][axis] = solved;
+                if solved {
+                    square_n2 += squares[axis].max(0.0);
+                } else {
+                    self.failures += 1;
+                    m = m.map(|m| m.without_lane(axis));
+                    square_n2 += gram.column(n)[n][axis];
+                }
+            }
+            self.coefficients[degree - 1] = m;
+            self.error_n[degree - 1] = (square_n2 / rows.max(1) as f64).sqrt();
+        }
+    }
+
+    /// Coefficients of `degree` (1-based), SI units, zero beyond `3 * degree` and where that axis failed.
+    pub fn coefficients(&self, degree: usize) -> &[Lanes; MOTION_COLUMNS] {
+        &self.coefficients[degree.clamp(1, MAX_DEGREE) - 1]
+    }
+
+    /// Root mean square 3-D error (N) inside the window with `degree`.
+    pub fn window_error_n(&self, degree: usize) -> f64 {
+        self.error_n[degree.clamp(1, MAX_DEGREE) - 1]
+    }
+
+    /// Whether at least one axis was solved with `degree`.
+    pub fn is_solved(&self, degree: usize) -> bool {
+        (1..=self.max_degree).contains(&degree) && self.solved[degree - 1].iter().any(|solved| *solved)
+    }
+
+    /// The paper's choice: the degree with the least 3-D error inside the window; 0 if none could be solved.
+    pub fn choice(&self) -> usize {
+        (1..=self.max_degree)
+            .filter(|&degree| self.is_solved(degree))
+            .min_by(|&a, &b| self.window_error_n(a).total_cmp(&self.window_error_n(b)))
+            .unwrap_or(0)
+    }
+
+    /// Solves (one per tick, axis and degree) that failed since construction or reset.
+    pub fn failures(&self) -> u64 {
+        self.failures
+    }
+
+    /// Forgets all solutions and the count of failures.
+    pub fn reset(&mut self) {
+        *self = Self::new(self.max_degree, self.axes);
+    }
+}
+
+/// `M X` (N) for `columns` columns.
+#[inline]
+pub(super) fn product(m: &[Lanes; MOTION_COLUMNS], features: &Features, columns: usize) -> Lanes {
+    m.iter().zip(features).take(columns).fold(Lanes::ZERO, |sum, (m, feature)| sum + *m * *feature)
+}
+
+type Triangle = [Lanes; GRAM_ROW * (GRAM_ROW + 1) / 2];
+
+/// `R` with `R^T R = [X; f] [X; f]^T` (the force column too), and for each lane how many leading pivots were positive.
+fn cholesky(gram: &Gram) -> (Triangle, [usize; LANES]) {
+    let n = gram.columns();
+    let mut r = [Lanes::ZERO; GRAM_ROW * (GRAM_ROW + 1) / 2];
+    let mut definite = [n; LANES];
+    for j in 0..=n {
+        let start = column_start(j);
+        let (done, rest) = r.split_at_mut(start);
+        let column = &mut rest[..=j];
+        for k in 0..=j {
+            let above = if k < j { &done[column_start(k)..=column_start(k) + k] } else { &[] };
+            let known = if k < j {
+                above.iter().zip(&*column).take(k).fold(Lanes::ZERO, |sum, (a, b)| sum + *a * *b)
+            } else {
+                column[..j].iter().fold(Lanes::ZERO, |sum, b| sum + *b * *b)
+            };
+            let rest = gram.column(j)[k] - known;
+            column[k] = if k < j { rest * above[k].recip_or_zero() } else { rest };
+        }
+        if j < n {
+            for (lane, definite) in definite.iter_mut().enumerate() {
+                // A NaN pivot is not positive either.
+                let positive = column[j][lane] > 0.0;
+                *definite = if positive { *definite } else { (*definite).min(j) };
+            }
+            column[j] = column[j].map(|pivot| pivot.max(0.0).sqrt());
+        }
+    }
+    (r, definite)
+}
+
+/// Solves `R_p M = z_p` for the leading `columns` columns; `n` is the column of the right-hand side.
+fn back_substitute(r: &Triangle, columns: usize, n: usize) -> [Lanes; MOTION_COLUMNS] {
+    let mut m = [Lanes::ZERO; MOTION_COLUMNS];
+    let z = column_start(n);
+    m[..columns].copy_from_slice(&r[z..z + columns]);
+    for j in (0..columns).rev() {
+        let column = &r[column_start(j)..=column_start(j) + j];
+        let value = m[j] * column[j].recip_or_zero();
+        m[j] = value;
+        for (m, r) in m.iter_mut().zip(column).take(j) {
+            *m -= value * *r;
+        }
+    }
+    m
+}
+
+/// `|f - M X|^2` over the window from the sums: `f f^T - 2 M X f^T + M X X^T M^T`.
+fn residual_squares(gram: &Gram, m: &[Lanes; MOTION_COLUMNS], columns: usize) -> Lanes {
+    let n = gram.columns();
+    let force = gram.column(n);
+    let mut sum = force[n];
+    for j in 0..columns {
+        let column = gram.column(j);
+        let off_diagonal = column.iter().zip(m).take(j).fold(Lanes::ZERO, |sum, (g, m)| sum + *g * *m);
+        sum += m[j] * (m[j] * column[j] + (off_diagonal - force[j]) * 2.0);
+    }
+    sum
+}

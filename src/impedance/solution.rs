@@ -1,0 +1,210 @@
+//! Every nested least-squares solution from one triangular factor.
+
+use super::{
+    factor::{Factor, MAX_COLUMNS, column_start},
+    features::MOTION_COLUMNS,
+};
+use crate::signal::Lanes;
+
+const PRODUCTS: usize = MAX_COLUMNS * (MAX_COLUMNS + 1) / 2;
+
+/// The solutions of `min |A_p M - b|` for every prefix `A_p` of the columns at once, one problem per lane.
+///
+/// With `R = [R_A z; 0 rho]` and `W = R_A^-1`, the solution with the first `p` columns is `W_p z_p` (leading blocks: the
+/// inverse of a triangle's leading block is the leading block of its inverse). So the products `W_ij z_j` hold them all:
+/// prefix `p` is the sum of their first `p` columns. Its sum of squared residuals is `sum_{j >= p} z_j^2 + rho^2`.
+/// A column that carries nothing (zero on the diagonal) gets the coefficient 0.
+#[derive(Clone, Debug)]
+pub struct Solution {
+    columns: usize,
+    /// `W_ij z_j`, packed by columns.
+    products: [Lanes; PRODUCTS],
+    /// Sum of squared residuals with the first `p` columns, at index `p`.
+    squares: [Lanes; MAX_COLUMNS + 1],
+    /// `|R_p|_F |R_p^-1|_F` of the first `p` columns, at index `p`.
+    condition: [Lanes; MAX_COLUMNS + 1],
+}
+
+impl Solution {
+    /// Room for the solutions of `columns <= 16` unknowns, all zero.
+    pub fn new(columns: usize) -> Self {
+        Self {
+            columns: columns.min(MAX_COLUMNS),
+            products: [Lanes::ZERO; PRODUCTS],
+            squares: [Lanes::ZERO; MAX_COLUMNS + 1],
+            condition: [Lanes::ZERO; MAX_COLUMNS + 1],
+        }
+    }
+
+    /// Number of unknowns.
+    pub fn columns(&self) -> usize {
+        self.columns
+    }
+
+    /// Solves for every prefix of the factor's columns.
+    pub fn solve(&mut self, factor: &Factor) {
+        let n = self.columns.min(factor.columns());
+        let mut inverse = [Lanes::ZERO; PRODUCTS];
+        let mut norm = Lanes::ZERO;
+        let mut inverse_norm = Lanes::ZERO;
+        let right = factor.column(factor.columns());
+        for j in 0..n {
+            let r = factor.column(j);
+            let diagonal = r[j].recip_or_zero();
+            let (done, rest) = inverse.split_at_mut(column_start(j));
+            let column = &mut rest[..=j];
+            // Column j of W: -W_jj * (W_0..j R_0..j,j), one earlier column of W at a time.
+            for k in 0..j {
+                let start = column_start(k);
+                for (sum, w) in column.iter_mut().zip(&done[start..=start + k]) {
+                    *sum += *w * r[k];
+                }
+            }
+            for sum in &mut column[..j] {
+                *sum = -(*sum * diagonal);
+            }
+            column[j] = diagonal;
+            let start = column_start(j);
+            for ((product, w), r) in self.products[start..=start + j].iter_mut().zip(&*column).zip(r) {
+                *product = *w * right[j];
+                norm += *r * *r;
+                inverse_norm += *w * *w;
+            }
+            self.condition[j + 1] = (norm * inverse_norm).sqrt();
+        }
+        let mut squares = right[n] * right[n];
+        self.squares[n] = squares;
+        for j in (0..n).rev() {
+            squares += right[j] * right[j];
+            self.squares[j] = squares;
+        }
+    }
+
+    /// What column `j` adds to the coefficients `0..=j` when it joins the columns before it.
+    #[inline]
+    pub(super) fn increment(&self, j: usize) -> &[Lanes] {
+        &self.products[column_start(j)..=column_start(j) + j]
+    }
+
+    /// All increments, packed by columns.
+    #[inline]
+    pub(super) fn increments(&self) -> &[Lanes; PRODUCTS] {
+        &self.products
+    }
+
+    /// Coefficients with the first `prefix` columns; those beyond are zero. Index 0 is the constant's.
+    pub fn coefficients(&self, prefix: usize) -> [Lanes; MAX_COLUMNS] {
+        let mut sum = [Lanes::ZERO; MAX_COLUMNS];
+        for j in 0..prefix.min(self.columns) {
+            for (sum, part) in sum.iter_mut().zip(self.increment(j)) {
+                *sum += *part;
+            }
+        }
+        sum
+    }
+
+    /// Coefficients of the motion columns (without the constant) with the first `motion_columns` of them.
+    pub(super) fn motion_coefficients(&self, motion_columns: usize) -> [Lanes; MOTION_COLUMNS] {
+        let mut sum = [Lanes::ZERO; MOTION_COLUMNS];
+        for j in 1..=motion_columns.min(self.columns.saturating_sub(1)) {
+            for (sum, part) in sum.iter_mut().zip(&self.increment(j)[1..]) {
+                *sum += *part;
+            }
+        }
+        sum
+    }
+
+    /// Sum of squared residuals (and of the ridge's penalty) with the first `prefix` columns (N²).
+    pub fn residual_squares(&self, prefix: usize) -> Lanes {
+        self.squares[prefix.min(self.columns)]
+    }
+
+    /// Condition number (Frobenius: at most `prefix` times the spectral one) of the first `prefix` scaled columns.
+    pub fn condition(&self, prefix: usize) -> Lanes {
+        self.condition[prefix.min(self.columns)]
+    }
+}
+
+pub(super) type Increments = [Lanes; PRODUCTS];
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::{DMatrix, DVector};
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::impedance::{factor::MAX_ROW, window::Summary as _};
+
+    fn rows(n: usize, columns: usize, seed: u64) -> Vec<[f64; MAX_ROW]> {
+        let mut state = seed.wrapping_mul(2).wrapping_add(1);
+        let mut random = move || {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (state >> 11) as f64 / (1_u64 << 53) as f64 * 2.0 - 1.0
+        };
+        (0..n)
+            .map(|_| {
+                std::array::from_fn(|j| {
+                    if j == 0 {
+                        1.0
+                    } else if j <= columns {
+                        random()
+                    } else {
+                        0.0
+                    }
+                })
+            })
+            .collect()
+    }
+
+    fn by_svd(rows: &[[f64; MAX_ROW]], prefix: usize, right: usize) -> (DVector<f64>, f64) {
+        let a = DMatrix::from_fn(rows.len(), prefix, |i, j| rows[i][j]);
+        let b = DVector::from_fn(rows.len(), |i, _| rows[i][right]);
+        let m = a.clone().svd(true, true).solve(&b, 0.0).unwrap();
+        let residual = (a * &m - b).norm_squared();
+        (m, residual)
+    }
+
+    proptest! {
+        #[test]
+        fn every_prefix_is_a_least_squares_solution(
+            columns in 1_usize..=16, count in 20_usize..60, seed in any::<u64>(), split in 0.0..1.0_f64,
+        ) {
+            let rows = rows(count, columns, seed);
+            let (mut first, mut second) = (Factor::new(columns), Factor::new(columns));
+            for (i, row) in rows.iter().enumerate() {
+                let lanes = row.map(|entry| Lanes([entry, 2.0 * entry, 0.0, 0.0]));
+                if (i as f64) < split * count as f64 { first.add(&lanes) } else { second.add(&lanes) }
+            }
+            first.merge(&second);
+            let mut solution = Solution::new(columns);
+            solution.solve(&first);
+            for prefix in 1..=columns {
+                let (expected, residual) = by_svd(&rows, prefix, columns);
+                let found = solution.coefficients(prefix);
+                for j in 0..prefix {
+                    prop_assert!((found[j][0] - expected[j]).abs() < 1e-9, "{} {}", found[j][0], expected[j]);
+                    prop_assert!((found[j][1] - expected[j]).abs() < 1e-9);
+                    prop_assert!(found[j][2].abs() < f64::MIN_POSITIVE);
+                }
+                prop_assert!((solution.residual_squares(prefix)[0] - residual).abs() < 1e-9);
+            }
+        }
+    }
+
+    #[test]
+    fn a_column_without_information_gets_zero() {
+        let mut factor = Factor::new(4);
+        for i in 0..20 {
+            let x = f64::from(i);
+            let mut row = [Lanes::ZERO; MAX_ROW];
+            row[..5].copy_from_slice(&[1.0, x, 0.0, x * x, 3.0 + 2.0 * x].map(Lanes::splat));
+            factor.add(&row);
+        }
+        let mut solution = Solution::new(4);
+        solution.solve(&factor);
+        let found = solution.coefficients(4).map(|lanes| lanes[0]);
+        for (found, expected) in found.iter().zip([3.0, 2.0, 0.0, 0.0]) {
+            assert!((found - expected).abs() < 1e-12, "{found} is not {expected}");
+        }
+    }
+}

@@ -1,0 +1,312 @@
+//! The two ends together: extremes, symmetry, delay, and real recordings.
+
+#![expect(clippy::float_cmp, reason = "where the same operations are done, the same bits come out")]
+
+use nalgebra::Vector3;
+
+use super::*;
+use crate::signal::Lanes;
+
+/// A palpation-like motion with contact, three axes, deterministic.
+pub(super) fn sample(k: usize, rate_hz: f64) -> Sample {
+    let t = k as f64 / rate_hz;
+    let x = Vector3::new(
+        0.02 * (5.0 * t).sin() + 0.003 * (31.0 * t).sin(),
+        0.015 * (4.0 * t + 0.5).sin() + 0.002 * (23.0 * t).cos(),
+        0.01 * (6.0 * t).cos() + 0.004 * (17.0 * t).sin(),
+    );
+    let v = Vector3::new(
+        0.1 * (5.0 * t).cos() + 0.093 * (31.0 * t).cos(),
+        0.06 * (4.0 * t + 0.5).cos() - 0.046 * (23.0 * t).sin(),
+        -0.06 * (6.0 * t).sin() + 0.068 * (17.0 * t).cos(),
+    );
+    let force = |x: f64, v: f64| 80.0 * x + 2000.0 * x * x + 3.0 * v + 0.3;
+    Sample { t_s: t, position_m: x, force_n: Vector3::new(force(x.x, v.x), force(x.y, v.y), force(x.z, v.z)) }
+}
+
+fn settings() -> Settings {
+    Settings { window_s: 0.1, delay_s: 0.03, ..Settings::default() }
+}
+
+fn assert_finite(report: &Report, parcel: &Parcel) {
+    let Report { prediction_n, reconstruction_n, condition, excitation, horizon_error_n, .. } = report;
+    let vectors = prediction_n.iter().chain(reconstruction_n).chain([
+        &excitation.position_m,
+        &excitation.velocity_m_s,
+        &excitation.acceleration_m_s2,
+        &parcel.force_n,
+    ]);
+    assert!(vectors.flat_map(|v| v.iter()).all(|v| v.is_finite()), "{report:?}");
+    assert!(condition.is_finite() && horizon_error_n.iter().all(|e| e.is_finite()), "{report:?}");
+    for coefficients in [&parcel.literal.coefficients, &parcel.linear.coefficients, &parcel.anchored.coefficients] {
+        assert!(coefficients.iter().all(|m| m.is_finite()), "{parcel:?}");
+    }
+}
+
+#[test]
+fn anchored_beats_delayed_reflection_on_contact() {
+    let mut identifier = Identifier::new(&settings()).unwrap();
+    for k in 0..3000 {
+        identifier.step(&sample(k, 1000.0));
+    }
+    let errors = identifier.report().horizon_error_n;
+    assert!(errors[Mode::Anchored.index()] < 0.3 * errors[Mode::Dfr.index()], "{errors:?}");
+    assert!(identifier.report().degree >= 1);
+    assert!(identifier.report().paper_degree >= 1);
+    assert!(identifier.report().rank >= 3);
+}
+
+#[test]
+fn without_delay_reflection_and_anchored_are_the_measured_force() {
+    let mut identifier = Identifier::new(&Settings { delay_s: 0.0, ..settings() }).unwrap();
+    for k in 0..500 {
+        let sample = sample(k, 1000.0);
+        identifier.step(&sample);
+        for mode in [Mode::Dfr, Mode::Anchored] {
+            assert_eq!(identifier.report().prediction_n[mode.index()], sample.force_n);
+        }
+    }
+}
+
+#[test]
+fn delay_is_exact_and_can_change() {
+    let mut identifier = Identifier::new(&Settings { modes: ModeSet::only(Mode::Dfr), ..settings() }).unwrap();
+    let mut delay = 30;
+    for k in 0..4000_usize {
+        if k == 1500 || k == 2700 {
+            delay = if k == 1500 { 1000 } else { 7 };
+            identifier.set_delay(delay as f64 * 1e-3);
+        }
+        identifier.step(&sample(k, 1000.0));
+        let report = identifier.report();
+        let expected = k.checked_sub(delay).map(|k| sample(k, 1000.0).force_n);
+        assert_eq!(report.prediction_valid[Mode::Dfr.index()], expected.is_some());
+        assert_eq!(report.prediction_n[Mode::Dfr.index()], expected.unwrap_or_default());
+    }
+}
+
+#[test]
+fn the_leader_renders_what_the_follower_predicted() {
+    let settings = settings();
+    let mut identifier = Identifier::new(&settings).unwrap();
+    let mut renderer = Renderer::new(&settings).unwrap();
+    let mut link = Vec::new();
+    for k in 0..1500 {
+        let sample = sample(k, 1000.0);
+        identifier.step(&sample);
+        link.push(*identifier.parcel());
+        let parcel = k.checked_sub(30).map(|k| link[k]);
+        let rendered = renderer.step(&sample.position_m, parcel.as_ref());
+        assert_eq!(rendered.force_n, identifier.report().prediction_n, "tick {k}");
+        assert_eq!(rendered.valid, identifier.report().prediction_valid, "tick {k}");
+    }
+}
+
+#[test]
+fn permuting_axes_permutes_results() {
+    let mut plain = Identifier::new(&settings()).unwrap();
+    let mut turned = Identifier::new(&settings()).unwrap();
+    let turn = |v: Vector3<f64>| Vector3::new(v.y, v.z, v.x);
+    for k in 0..800 {
+        let s = sample(k, 1000.0);
+        plain.step(&s);
+        turned.step(&Sample { t_s: s.t_s, position_m: turn(s.position_m), force_n: turn(s.force_n) });
+        let (a, b) = (plain.solution().unwrap().coefficients(16), turned.solution().unwrap().coefficients(16));
+        for (a, b) in a.iter().zip(&b) {
+            assert_eq!([a[1], a[2], a[0]], [b[0], b[1], b[2]]);
+        }
+        for degree in 1..=5 {
+            let (a, b) = (plain.literal().unwrap(), turned.literal().unwrap());
+            for (a, b) in a.coefficients(degree).iter().zip(b.coefficients(degree)) {
+                assert_eq!([a[1], a[2], a[0]], [b[0], b[1], b[2]]);
+            }
+        }
+    }
+}
+
+#[test]
+fn metres_and_millimetres_agree() {
+    let metres = settings();
+    let Scales { position_m, velocity_m_s, acceleration_m_s2, force_n } = metres.scales;
+    let scales = Scales {
+        position_m: 1e3 * position_m,
+        velocity_m_s: 1e3 * velocity_m_s,
+        acceleration_m_s2: 1e3 * acceleration_m_s2,
+        force_n,
+    };
+    let mut a = Identifier::new(&metres).unwrap();
+    let mut b = Identifier::new(&Settings { scales, ..metres }).unwrap();
+    for k in 0..2000 {
+        let s = sample(k, 1000.0);
+        a.step(&s);
+        b.step(&Sample { position_m: 1e3 * s.position_m, ..s });
+        let (a, b) = (a.report().prediction_n[3], b.report().prediction_n[3]);
+        assert!((a - b).norm() <= 1e-9 * (1.0 + a.norm()), "tick {k}: {a} {b}");
+    }
+}
+
+#[test]
+fn bad_samples_are_counted_and_leave_no_trace() {
+    let mut clean = Identifier::new(&settings()).unwrap();
+    let mut dirty = Identifier::new(&settings()).unwrap();
+    let bad = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 1e300, -1e18];
+    let mut expected = 0;
+    for k in 0..2000 {
+        let good = sample(k, 1000.0);
+        clean.step(&good);
+        let mut s = good;
+        let value = bad[k % bad.len()];
+        match k % 97 {
+            5 => s.position_m.y = value,
+            23 => s.force_n.x = value,
+            41 => s.t_s = value.min(0.0),
+            60 => s.t_s = sample(k - 1, 1000.0).t_s,
+            _ => {}
+        }
+        expected += u64::from(s != good);
+        dirty.step(&s);
+        assert_finite(dirty.report(), dirty.parcel());
+    }
+    assert_eq!(dirty.report().rejected, expected);
+    assert_eq!(clean.report().rejected, 0);
+    let error = |identifier: &Identifier| identifier.report().horizon_error_n[Mode::Anchored.index()];
+    assert!(error(&dirty) < 3.0 * error(&clean) + 0.02, "{} {}", error(&dirty), error(&clean));
+}
+
+#[test]
+fn standstill_renders_what_was_measured() {
+    let mut identifier = Identifier::new(&settings()).unwrap();
+    let still = Sample { t_s: 0.0, position_m: Vector3::new(0.01, -0.02, 0.03), force_n: Vector3::new(0.0, 1.4, 0.0) };
+    for k in 0..3000 {
+        identifier.step(&Sample { t_s: f64::from(k) * 1e-3, ..still });
+        assert_finite(identifier.report(), identifier.parcel());
+    }
+    let report = identifier.report();
+    assert_eq!(report.prediction_n[Mode::Dfr.index()], still.force_n);
+    assert!((report.prediction_n[Mode::Anchored.index()] - still.force_n).norm() < 1e-9);
+    assert_eq!(report.degree, 0);
+}
+
+#[test]
+fn one_axis_leaves_the_others_alone() {
+    let mut identifier = Identifier::new(&Settings { axes: 1, ..settings() }).unwrap();
+    for k in 0..1000 {
+        let mut s = sample(k, 1000.0);
+        s.position_m.y = f64::NAN;
+        s.force_n.z = f64::INFINITY;
+        identifier.step(&s);
+        assert_finite(identifier.report(), identifier.parcel());
+    }
+    assert_eq!(identifier.report().rejected, 0);
+    assert!(identifier.report().paper_degree >= 1);
+    let [_, y, z, spare] = identifier.solution().unwrap().coefficients(16).map(|m| m.0)[3];
+    assert_eq!([y, z, spare], [0.0; 3]);
+}
+
+#[test]
+fn reset_forgets_everything() {
+    let mut used = Identifier::new(&settings()).unwrap();
+    let mut fresh = used.clone();
+    for k in 0..777 {
+        used.step(&sample(k + 5000, 1000.0));
+    }
+    used.reset();
+    for k in 0..777 {
+        used.step(&sample(k, 1000.0));
+        fresh.step(&sample(k, 1000.0));
+        assert_eq!(used.report(), fresh.report(), "tick {k}");
+        assert_eq!(used.parcel(), fresh.parcel(), "tick {k}");
+    }
+}
+
+#[test]
+fn every_rate_and_amplitude_stays_finite() {
+    for rate_hz in [20.0_f64, 66.0, 1000.0, 10_000.0] {
+        for amplitude in [1e-6, 1e-3, 0.2, 50.0] {
+            let window_s = (12.0 / rate_hz).max(0.02);
+            let settings = Settings { rate_hz, window_s, ..Settings::default() };
+            let mut identifier = Identifier::new(&settings).unwrap();
+            for k in 0..1500 {
+                let mut s = sample(k, rate_hz);
+                s.position_m *= amplitude / 0.02;
+                identifier.step(&s);
+                assert_finite(identifier.report(), identifier.parcel());
+            }
+        }
+    }
+}
+
+#[test]
+fn settings_out_of_range_are_refused_with_one_line() {
+    let good = Settings::default;
+    let bad = [
+        Settings { rate_hz: 10.0, ..good() },
+        Settings { rate_hz: f64::NAN, ..good() },
+        Settings { window_s: 0.001, ..good() },
+        Settings { delay_s: 1.5, ..good() },
+        Settings { delay_s: f64::NAN, ..good() },
+        Settings { max_degree: 6, ..good() },
+        Settings { axes: 0, ..good() },
+        Settings { scales: Scales { position_m: 0.0, ..Scales::default() }, ..good() },
+        Settings { ridge: -1.0, ..good() },
+    ];
+    for settings in bad {
+        let error = Identifier::new(&settings).unwrap_err();
+        assert_eq!(Renderer::new(&settings).unwrap_err().to_string(), error.to_string());
+        assert!(!error.to_string().contains('\n'));
+    }
+}
+
+/// Samples of one recording of `../shared/data/tue_1dof` (x only), `None` where the folder is absent.
+pub(super) fn recording(name: &str) -> Option<Vec<Sample>> {
+    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data/tue_1dof").join(name);
+    let text = std::fs::read_to_string(path).ok()?;
+    let parse = |line: &str| {
+        let mut fields = line.split(',').map(|field| field.parse::<f64>().ok());
+        let (t_s, x, f) = (fields.next()??, fields.nth(1)??, fields.nth(1)??);
+        Some(Sample { t_s, position_m: Vector3::new(x, 0.0, 0.0), force_n: Vector3::new(f, 0.0, 0.0) })
+    };
+    text.lines().skip(1).map(parse).collect()
+}
+
+/// Mean 3-D error (N) of every mode over a recording.
+pub(super) fn mean_errors(samples: &[Sample], settings: &Settings) -> [f64; 4] {
+    let mut identifier = Identifier::new(settings).unwrap();
+    let mut sums = [0.0; 4];
+    let mut count = 0.0_f64;
+    for sample in samples {
+        identifier.step(sample);
+        let report = identifier.report();
+        if report.prediction_valid[Mode::Dfr.index()] {
+            count += 1.0;
+            for (sum, prediction) in sums.iter_mut().zip(&report.prediction_n) {
+                *sum += (Lanes::from(*prediction) - Lanes::from(sample.force_n)).norm();
+            }
+        }
+    }
+    sums.map(|sum| sum / count.max(1.0))
+}
+
+#[test]
+fn real_recordings() {
+    let materials = ["foam", "spring", "rigid", "free_motion"];
+    eprintln!("{:<16} {:>6}  anchored/dfr  dfr", "recording", "D (ms)");
+    for material in materials {
+        for question in ["1a", "1b"] {
+            let name = format!("m1_question{question}_{material}.csv");
+            let Some(samples) = recording(&name) else {
+                eprintln!("../shared/data/tue_1dof is absent: recordings not tested");
+                return;
+            };
+            for delay_ms in [0, 10, 50, 100, 300] {
+                let delay_s = f64::from(delay_ms) * 1e-3;
+                let settings =
+                    Settings { axes: 1, delay_s, modes: ModeSet::only(Mode::Anchored), ..Settings::default() };
+                let errors = mean_errors(&samples, &settings);
+                let (anchored, dfr) = (errors[Mode::Anchored.index()], errors[Mode::Dfr.index()]);
+                let ratio = if delay_ms == 0 { 1.0 } else { anchored / dfr };
+                eprintln!("{question} {material:<13} {delay_ms:>6}  {ratio:>12.3}  {dfr:.4}");
+            }
+        }
+    }
+}

@@ -1,0 +1,84 @@
+//! The motion at one end of the link: derivatives, increments over the window, and a bridge over missing samples.
+
+use super::{features::Scales, settings::Settings};
+use crate::signal::{DelayLine, Differentiator, Lanes, Motion};
+
+/// Longest stretch (s) over which a missing position is extrapolated at the last speed; after it the position is held.
+const BRIDGE_S: f64 = 0.01;
+
+/// Beyond this many scales a position or a force is absurd (1 km, 40 kN with the default scales): kept away from the powers.
+const ABSURD: f64 = 1e4;
+
+/// Makes [`Motion`] from positions and remembers it over one window.
+#[derive(Clone, Debug)]
+pub(super) struct Track {
+    differentiator: Differentiator,
+    history: DelayLine<Motion>,
+    last: Motion,
+    period_s: f64,
+    bridge_ticks: usize,
+    missing: usize,
+}
+
+impl Track {
+    pub(super) fn new(settings: &Settings) -> Self {
+        Self {
+            differentiator: Differentiator::new(settings.differentiator, settings.rate_hz),
+            history: DelayLine::new(2 * settings.block(), Motion::default()),
+            last: Motion::default(),
+            period_s: settings.rate_hz.recip(),
+            bridge_ticks: (BRIDGE_S * settings.rate_hz).ceil() as usize,
+            missing: 0,
+        }
+    }
+
+    /// Takes this tick's position; `None` where it is missing: then the last one goes on at its speed for 10 ms at most, and
+    /// stays put after that. Before the first good position the motion is zero.
+    pub(super) fn step(&mut self, position: Option<Lanes>) -> Motion {
+        let position = if let Some(position) = position {
+            self.missing = 0;
+            position
+        } else if self.history.is_empty() {
+            return self.last;
+        } else {
+            self.missing += 1;
+            let moving = self.missing <= self.bridge_ticks;
+            if moving { self.last.x + self.last.v * self.period_s } else { self.last.x }
+        };
+        self.last = self.differentiator.step(position);
+        self.history.push(self.last);
+        self.last
+    }
+
+    /// The paper's `u`: what position, velocity and acceleration have changed over the window (over the time since the
+    /// first sample, while that is less).
+    pub(super) fn increments(&self) -> Motion {
+        let window = self.history.max_delay();
+        let then = self.history.get_or_oldest(window).copied().unwrap_or_default();
+        Motion { x: self.last.x - then.x, v: self.last.v - then.v, a: self.last.a - then.a }
+    }
+
+    /// Whether the derivatives are those of a full filter.
+    pub(super) fn settled(&self) -> bool {
+        self.differentiator.settled()
+    }
+
+    pub(super) fn reset(&mut self) {
+        self.differentiator.reset();
+        self.history.clear();
+        self.last = Motion::default();
+        self.missing = 0;
+    }
+}
+
+/// A position that can be used: finite and not absurd.
+pub(super) fn usable_position(position: Lanes, scales: &Scales) -> Option<Lanes> {
+    let limit = ABSURD * scales.position_m;
+    position.0.iter().all(|x| x.abs() <= limit).then_some(position)
+}
+
+/// A force that can be used: finite and not absurd.
+pub(super) fn usable_force(force: Lanes, scales: &Scales) -> Option<Lanes> {
+    let limit = ABSURD * scales.force_n;
+    force.0.iter().all(|f| f.abs() <= limit).then_some(force)
+}

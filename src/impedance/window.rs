@@ -1,0 +1,216 @@
+//! A sliding window over anything that can be summed up row by row and merged.
+
+/// What a window knows about its rows: a sum, or a triangular factor.
+///
+/// Taking rows in one by one and merging two summaries must agree: the summary of a stretch is that of its parts merged, in
+/// any order, up to rounding.
+pub trait Summary: Clone {
+    /// One sample's entries.
+    type Row: Copy;
+    /// A row that changes nothing.
+    const BLANK_ROW: Self::Row;
+    /// Takes one row in.
+    fn add(&mut self, row: &Self::Row);
+    /// Takes in all that `other` has taken in.
+    fn merge(&mut self, other: &Self);
+}
+
+/// The summary of the last `2 B` rows, at a constant cost per tick and without ever taking a row out again.
+///
+/// Time is cut in blocks of `B`. In block `c`, after `p + 1` of its rows, the window holds those, all of block `c - 1`, and
+/// the last `B - p - 1` rows of block `c - 2`. Each tick
+/// 1. adds its row to two running summaries, one begun with block `c - 1`, one with block `c`;
+/// 2. takes one step backwards through block `c - 1`, keeping the summary of each of its endings for the next block;
+/// 3. merges the running summary begun with `c - 1` with the ending of `c - 2` kept one block ago.
+///
+/// So every tick does the same work; at the end of a block only names change. The endings of two blocks share one store: at
+/// each tick the ending just read makes room for the one just made, which the next block reads in the opposite direction.
+#[derive(Clone, Debug)]
+pub struct SlidingWindow<S: Summary> {
+    block: usize,
+    /// Rows of the block before (first or second half) and of this block (the other half).
+    rows: Vec<S::Row>,
+    this_half_first: bool,
+    /// Endings of block `c - 2` (unread) and of block `c - 1` (written), `B - 1` in all.
+    endings: Vec<S>,
+    upwards: bool,
+    position: usize,
+    /// Blocks completed so far, counted up to two.
+    completed: usize,
+    since_last_block: S,
+    since_this_block: S,
+    backwards: S,
+    empty: S,
+    prior: S,
+    current: S,
+}
+
+impl<S: Summary> SlidingWindow<S> {
+    /// A window of `2 * block` rows. `empty` is the summary of no rows; `prior` is what every window begins with (for
+    /// example a ridge), the same as `empty` if nothing.
+    pub fn new(block: usize, empty: S, prior: S) -> Self {
+        let block = block.max(1);
+        Self {
+            block,
+            rows: vec![S::BLANK_ROW; 2 * block],
+            this_half_first: true,
+            endings: vec![empty.clone(); block],
+            upwards: true,
+            position: 0,
+            completed: 0,
+            since_last_block: prior.clone(),
+            since_this_block: prior.clone(),
+            backwards: empty.clone(),
+            current: prior.clone(),
+            empty,
+            prior,
+        }
+    }
+
+    /// Number of rows in a full window.
+    pub fn len(&self) -> usize {
+        2 * self.block
+    }
+
+    /// Whether no row was taken yet.
+    pub fn is_empty(&self) -> bool {
+        self.completed == 0 && self.position == 0
+    }
+
+    /// Whether as many rows were taken in as the window holds.
+    pub fn is_full(&self) -> bool {
+        self.completed >= 2
+    }
+
+    /// The summary of the last `len()` rows (fewer at the beginning) on top of the prior.
+    pub fn current(&self) -> &S {
+        &self.current
+    }
+
+    /// Takes the newest row; the one `len()` rows older leaves.
+    pub fn push(&mut self, row: &S::Row) {
+        let (b, p) = (self.block, self.position);
+        let (this, last) = if self.this_half_first { (0, b) } else { (b, 0) };
+        self.rows[this + p] = *row;
+        self.since_last_block.add(row);
+        self.since_this_block.add(row);
+
+        self.current.clone_from(&self.since_last_block);
+        let slot = if self.upwards { p } else { (b - 1).saturating_sub(p + 1) };
+        if p + 1 < b {
+            if self.completed >= 2 {
+                self.current.merge(&self.endings[slot]);
+            }
+            if self.completed >= 1 {
+                self.backwards.add(&self.rows[last + b - 1 - p]);
+                self.endings[slot].clone_from(&self.backwards);
+            }
+        }
+        self.position += 1;
+        if self.position == b {
+            self.begin_block();
+        }
+    }
+
+    fn begin_block(&mut self) {
+        self.position = 0;
+        self.completed = (self.completed + 1).min(2);
+        self.this_half_first = !self.this_half_first;
+        self.upwards = !self.upwards;
+        self.since_last_block.clone_from(&self.since_this_block);
+        self.since_this_block.clone_from(&self.prior);
+        self.backwards.clone_from(&self.empty);
+    }
+
+    /// Forgets all rows, in constant time.
+    pub fn reset(&mut self) {
+        self.position = 0;
+        self.completed = 0;
+        self.since_last_block.clone_from(&self.prior);
+        self.since_this_block.clone_from(&self.prior);
+        self.backwards.clone_from(&self.empty);
+        self.current.clone_from(&self.prior);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        impedance::{Factor, Solution, factor::MAX_ROW},
+        signal::Lanes,
+    };
+
+    /// Which rows a summary holds, in order of their numbers.
+    #[derive(Clone, Debug, Default, PartialEq)]
+    struct Numbers(Vec<usize>);
+
+    impl Summary for Numbers {
+        type Row = usize;
+        const BLANK_ROW: usize = usize::MAX;
+        fn add(&mut self, row: &usize) {
+            self.0.push(*row);
+        }
+        fn merge(&mut self, other: &Self) {
+            self.0.extend(&other.0);
+        }
+    }
+
+    #[test]
+    fn holds_exactly_the_last_rows() {
+        for block in 1..12 {
+            let mut window = SlidingWindow::new(block, Numbers::default(), Numbers::default());
+            for round in 0..2 {
+                for k in 0..10 * block + 3 {
+                    window.push(&k);
+                    let mut held = window.current().0.clone();
+                    held.sort_unstable();
+                    let expected: Vec<_> = ((k + 1).saturating_sub(2 * block)..=k).collect();
+                    assert_eq!(held, expected, "block {block}, round {round}");
+                    assert_eq!(window.is_full(), k + 1 >= 2 * block);
+                }
+                window.reset();
+                assert!(window.is_empty());
+            }
+        }
+    }
+
+    fn row(k: usize) -> [Lanes; MAX_ROW] {
+        let t = k as f64;
+        let mut row = [Lanes::ZERO; MAX_ROW];
+        for (lane, phase) in [0.0, 1.0, 2.0, 3.0].into_iter().enumerate() {
+            for (j, entry) in row.iter_mut().enumerate() {
+                entry[lane] = if j == 0 { 1.0 } else { ((0.1 + 0.37 * j as f64) * t + phase).sin() };
+            }
+        }
+        row
+    }
+
+    #[test]
+    fn a_slid_factor_solves_like_a_fresh_one() {
+        for (block, columns) in [(5, 4), (20, 16), (150, 16), (33, 7)] {
+            let ridge = Factor::with_ridge(columns, 1e-6 * block as f64);
+            let mut window = SlidingWindow::new(block, Factor::new(columns), ridge.clone());
+            let (mut slid, mut fresh) = (Solution::new(columns), Solution::new(columns));
+            for k in 0..7 * block {
+                window.push(&row(k));
+                slid.solve(window.current());
+                let mut factor = ridge.clone();
+                ((k + 1).saturating_sub(2 * block)..=k).for_each(|k| factor.add(&row(k)));
+                fresh.solve(&factor);
+                for prefix in 1..=columns {
+                    let (a, b) = (slid.coefficients(prefix), fresh.coefficients(prefix));
+                    let condition = fresh.condition(prefix);
+                    for lane in 0..4 {
+                        let size = b.iter().map(|b| b[lane].abs()).fold(1.0, f64::max);
+                        let off = a.iter().zip(&b).map(|(a, b)| (a[lane] - b[lane]).abs()).fold(0.0, f64::max);
+                        assert!(
+                            off <= 1e-14 * condition[lane].powi(2) * size,
+                            "block {block} tick {k} prefix {prefix}: {off}"
+                        );
+                    }
+                }
+            }
+        }
+    }
+}

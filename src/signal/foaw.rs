@@ -1,0 +1,87 @@
+//! First-order adaptive windowing (Janabi-Sharifi, Hayward, Chen 2000).
+
+use super::{DelayLine, LANES, Lanes, Motion};
+
+/// The slope of the longest straight line that passes all its samples within a noise band.
+///
+/// Velocity from positions, acceleration from those velocities by the same rule. Short windows in fast motion, long ones at
+/// rest; a step of one encoder count at standstill gives no velocity spike.
+#[derive(Clone, Debug)]
+pub(super) struct Foaw {
+    position: AdaptiveSlope,
+    velocity: AdaptiveSlope,
+}
+
+impl Foaw {
+    /// Windows of up to `n` samples at `rate_hz`; `band_m` is the half width of the position noise.
+    pub(super) fn new(n: usize, rate_hz: f64, band_m: f64) -> Self {
+        let n = n.max(3);
+        // A line over the full window with noise `band` has this slope uncertainty; the second stage takes it for its noise.
+        let velocity_band = 4.0 * band_m * rate_hz / n as f64;
+        Self {
+            position: AdaptiveSlope::new(n, rate_hz, band_m),
+            velocity: AdaptiveSlope::new(n, rate_hz, velocity_band),
+        }
+    }
+
+    /// Takes the newest position, which is handed through.
+    pub(super) fn step(&mut self, position: Lanes) -> Motion {
+        let v = self.position.step(position);
+        let a = self.velocity.step(v);
+        Motion { x: position, v, a }
+    }
+
+    pub(super) fn settled(&self) -> bool {
+        self.velocity.samples.len() > self.velocity.samples.max_delay()
+    }
+
+    pub(super) fn reset(&mut self) {
+        self.position.samples.clear();
+        self.velocity.samples.clear();
+    }
+}
+
+#[derive(Clone, Debug)]
+struct AdaptiveSlope {
+    samples: DelayLine<Lanes>,
+    rate_hz: f64,
+    band: f64,
+}
+
+impl AdaptiveSlope {
+    fn new(n: usize, rate_hz: f64, band: f64) -> Self {
+        Self { samples: DelayLine::new(n - 1, Lanes::ZERO), rate_hz, band }
+    }
+
+    fn step(&mut self, value: Lanes) -> Lanes {
+        self.samples.push(value);
+        let mut slope = Lanes::ZERO;
+        for lane in 0..LANES {
+            slope[lane] = self.lane_slope(lane);
+        }
+        slope
+    }
+
+    /// Least-squares slope of the longest window whose end-to-end line keeps every sample within the band.
+    fn lane_slope(&self, lane: usize) -> f64 {
+        let at = |k: usize| self.samples.get(k).map_or(0.0, |sample| sample[lane]);
+        let newest = at(0);
+        let mut slope_per_tick = 0.0;
+        let (mut sum, mut weighted) = (0.0, 0.0);
+        for length in 1..self.samples.len() {
+            let oldest = at(length);
+            let line = (newest - oldest) / length as f64;
+            let fits = (1..length).all(|k| (newest - line * k as f64 - at(k)).abs() <= self.band);
+            if !fits {
+                break;
+            }
+            sum += oldest - newest;
+            weighted += (oldest - newest) * length as f64;
+            let n = (length + 1) as f64;
+            // Slope over k = 0..length against age; ages run backwards, hence the sign.
+            let mean_age = (n - 1.0) / 2.0;
+            slope_per_tick = -(weighted - mean_age * sum) / (n * (n * n - 1.0) / 12.0);
+        }
+        slope_per_tick * self.rate_hz
+    }
+}

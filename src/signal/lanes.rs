@@ -1,0 +1,175 @@
+//! Three axes side by side in one vector register.
+
+#![expect(
+    clippy::inline_always,
+    reason = "one instruction each; they must be inlined even into functions compiled for other vector widths"
+)]
+
+use std::ops::{Add, AddAssign, Div, Index, IndexMut, Mul, MulAssign, Neg, Sub, SubAssign};
+
+use nalgebra::Vector3;
+
+/// Lanes in one [`Lanes`]: x, y, z and a spare, so that one value fills one 256-bit register.
+pub const LANES: usize = 4;
+
+/// The same quantity of every axis: x, y, z, and a spare lane that stays zero.
+///
+/// Plain arrays and plain loops: the compiler turns them into vector instructions, and every machine computes the same bits.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[repr(align(32))]
+pub struct Lanes(pub [f64; LANES]);
+
+impl Lanes {
+    /// All lanes zero.
+    pub const ZERO: Self = Self([0.0; LANES]);
+
+    /// The same number in every lane.
+    #[inline(always)]
+    pub const fn splat(value: f64) -> Self {
+        Self([value; LANES])
+    }
+
+    /// Applies `f` lane by lane.
+    #[must_use]
+    #[inline(always)]
+    pub fn map(self, f: impl Fn(f64) -> f64) -> Self {
+        let [x, y, z, w] = self.0;
+        Self([f(x), f(y), f(z), f(w)])
+    }
+
+    /// Applies `f` to pairs of lanes.
+    #[must_use]
+    #[inline(always)]
+    pub fn zip(self, other: Self, f: impl Fn(f64, f64) -> f64) -> Self {
+        let ([a0, a1, a2, a3], [b0, b1, b2, b3]) = (self.0, other.0);
+        Self([f(a0, b0), f(a1, b1), f(a2, b2), f(a3, b3)])
+    }
+
+    /// Square roots.
+    #[must_use]
+    #[inline(always)]
+    pub fn sqrt(self) -> Self {
+        self.map(f64::sqrt)
+    }
+
+    /// `1 / self`, and 0 where a lane is 0.
+    #[must_use]
+    #[inline(always)]
+    pub fn recip_or_zero(self) -> Self {
+        self.map(|value| if value == 0.0 { 0.0 } else { 1.0 / value })
+    }
+
+    /// This value with one lane set to zero.
+    #[must_use]
+    #[inline(always)]
+    pub fn without_lane(mut self, lane: usize) -> Self {
+        self.0[lane] = 0.0;
+        self
+    }
+
+    /// Whether every lane is neither infinite nor NaN.
+    #[inline(always)]
+    pub fn is_finite(self) -> bool {
+        self.0.iter().all(|value| value.is_finite())
+    }
+
+    /// The three axes as a vector; the spare lane is left out.
+    #[inline(always)]
+    pub fn vector(self) -> Vector3<f64> {
+        let [x, y, z, _] = self.0;
+        Vector3::new(x, y, z)
+    }
+
+    /// Euclidean norm over the three axes.
+    #[inline(always)]
+    pub fn norm(self) -> f64 {
+        let [x, y, z, _] = self.0;
+        (x * x + y * y + z * z).sqrt()
+    }
+}
+
+impl From<Vector3<f64>> for Lanes {
+    fn from(v: Vector3<f64>) -> Self {
+        Self([v.x, v.y, v.z, 0.0])
+    }
+}
+
+impl Index<usize> for Lanes {
+    type Output = f64;
+    #[inline(always)]
+    fn index(&self, lane: usize) -> &f64 {
+        &self.0[lane]
+    }
+}
+
+impl IndexMut<usize> for Lanes {
+    #[inline(always)]
+    fn index_mut(&mut self, lane: usize) -> &mut f64 {
+        &mut self.0[lane]
+    }
+}
+
+macro_rules! lane_wise {
+    ($($trait:ident $method:ident $assign_trait:ident $assign_method:ident;)*) => {$(
+        impl $assign_trait for Lanes {
+            #[inline(always)]
+            fn $assign_method(&mut self, other: Self) {
+                *self = $trait::$method(*self, other);
+            }
+        }
+    )*};
+}
+
+impl Add for Lanes {
+    type Output = Self;
+    #[inline(always)]
+    fn add(self, other: Self) -> Self {
+        self.zip(other, |a, b| a + b)
+    }
+}
+
+impl Sub for Lanes {
+    type Output = Self;
+    #[inline(always)]
+    fn sub(self, other: Self) -> Self {
+        self.zip(other, |a, b| a - b)
+    }
+}
+
+impl Mul for Lanes {
+    type Output = Self;
+    #[inline(always)]
+    fn mul(self, other: Self) -> Self {
+        self.zip(other, |a, b| a * b)
+    }
+}
+
+impl Mul<f64> for Lanes {
+    type Output = Self;
+    #[inline(always)]
+    fn mul(self, factor: f64) -> Self {
+        self.map(|a| a * factor)
+    }
+}
+
+impl Div for Lanes {
+    type Output = Self;
+    #[inline(always)]
+    fn div(self, other: Self) -> Self {
+        self.zip(other, |a, b| a / b)
+    }
+}
+
+impl Neg for Lanes {
+    type Output = Self;
+    #[inline(always)]
+    fn neg(self) -> Self {
+        self.map(|a| -a)
+    }
+}
+
+lane_wise! {
+    Add add AddAssign add_assign;
+    Sub sub SubAssign sub_assign;
+    Mul mul MulAssign mul_assign;
+}

@@ -53,7 +53,7 @@ impl LiteralSolver {
                     square_n2 += squares[axis].max(0.0);
                 } else {
                     self.failures += 1;
-                    m.iter_mut().for_each(|m| m[axis] = 0.0);
+                    m = m.map(|m| m.without_lane(axis));
                     square_n2 += gram.column(n)[n][axis];
                 }
             }
@@ -126,9 +126,8 @@ fn cholesky(gram: &Gram) -> (Triangle, [usize; LANES]) {
         if j < n {
             for (lane, definite) in definite.iter_mut().enumerate() {
                 // A NaN pivot is not positive either.
-                if !(column[j][lane] > 0.0) {
-                    *definite = (*definite).min(j);
-                }
+                let positive = column[j][lane] > 0.0;
+                *definite = if positive { *definite } else { (*definite).min(j) };
             }
             column[j] = column[j].map(|pivot| pivot.max(0.0).sqrt());
         }

@@ -1,5 +1,7 @@
 //! The two ends together: extremes, symmetry, delay, and real recordings.
 
+#![expect(clippy::float_cmp, reason = "where the same operations are done, the same bits come out")]
+
 use nalgebra::Vector3;
 
 use super::*;
@@ -176,7 +178,7 @@ fn standstill_renders_what_was_measured() {
     let mut identifier = Identifier::new(&settings()).unwrap();
     let still = Sample { t_s: 0.0, position_m: Vector3::new(0.01, -0.02, 0.03), force_n: Vector3::new(0.0, 1.4, 0.0) };
     for k in 0..3000 {
-        identifier.step(&Sample { t_s: k as f64 * 1e-3, ..still });
+        identifier.step(&Sample { t_s: f64::from(k) * 1e-3, ..still });
         assert_finite(identifier.report(), identifier.parcel());
     }
     let report = identifier.report();
@@ -219,9 +221,9 @@ fn reset_forgets_everything() {
 
 #[test]
 fn every_rate_and_amplitude_stays_finite() {
-    for rate_hz in [20.0, 66.0, 1000.0, 10_000.0] {
+    for rate_hz in [20.0_f64, 66.0, 1000.0, 10_000.0] {
         for amplitude in [1e-6, 1e-3, 0.2, 50.0] {
-            let window_s = (10.0_f64 / rate_hz).max(0.02);
+            let window_s = (12.0 / rate_hz).max(0.02);
             let settings = Settings { rate_hz, window_s, ..Settings::default() };
             let mut identifier = Identifier::new(&settings).unwrap();
             for k in 0..1500 {
@@ -250,7 +252,7 @@ fn settings_out_of_range_are_refused_with_one_line() {
     ];
     for settings in bad {
         let error = Identifier::new(&settings).unwrap_err();
-        assert_eq!(Renderer::new(&settings).unwrap_err(), error);
+        assert_eq!(Renderer::new(&settings).unwrap_err().to_string(), error.to_string());
         assert!(!error.to_string().contains('\n'));
     }
 }
@@ -258,8 +260,7 @@ fn settings_out_of_range_are_refused_with_one_line() {
 /// Samples of one recording of `../shared/data/tue_1dof` (x only), `None` where the folder is absent.
 pub(super) fn recording(name: &str) -> Option<Vec<Sample>> {
     let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data/tue_1dof").join(name);
-    let fallback = std::path::Path::new("/nonexistent");
-    let text = std::fs::read_to_string(if path.exists() { &path } else { fallback }).ok()?;
+    let text = std::fs::read_to_string(path).ok()?;
     let parse = |line: &str| {
         let mut fields = line.split(',').map(|field| field.parse::<f64>().ok());
         let (t_s, x, f) = (fields.next()??, fields.nth(1)??, fields.nth(1)??);

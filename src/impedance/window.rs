@@ -132,3 +132,85 @@ impl<S: Summary> SlidingWindow<S> {
         self.current.clone_from(&self.prior);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        impedance::{Factor, Solution, factor::MAX_ROW},
+        signal::Lanes,
+    };
+
+    /// Which rows a summary holds, in order of their numbers.
+    #[derive(Clone, Debug, Default, PartialEq)]
+    struct Numbers(Vec<usize>);
+
+    impl Summary for Numbers {
+        type Row = usize;
+        const BLANK_ROW: usize = usize::MAX;
+        fn add(&mut self, row: &usize) {
+            self.0.push(*row);
+        }
+        fn merge(&mut self, other: &Self) {
+            self.0.extend(&other.0);
+        }
+    }
+
+    #[test]
+    fn holds_exactly_the_last_rows() {
+        for block in 1..12 {
+            let mut window = SlidingWindow::new(block, Numbers::default(), Numbers::default());
+            for round in 0..2 {
+                for k in 0..10 * block + 3 {
+                    window.push(&k);
+                    let mut held = window.current().0.clone();
+                    held.sort_unstable();
+                    let expected: Vec<_> = ((k + 1).saturating_sub(2 * block)..=k).collect();
+                    assert_eq!(held, expected, "block {block}, round {round}");
+                    assert_eq!(window.is_full(), k + 1 >= 2 * block);
+                }
+                window.reset();
+                assert!(window.is_empty());
+            }
+        }
+    }
+
+    fn row(k: usize) -> [Lanes; MAX_ROW] {
+        let t = k as f64;
+        let mut row = [Lanes::ZERO; MAX_ROW];
+        for (lane, phase) in [0.0, 1.0, 2.0, 3.0].into_iter().enumerate() {
+            for (j, entry) in row.iter_mut().enumerate() {
+                entry[lane] = if j == 0 { 1.0 } else { ((0.1 + 0.37 * j as f64) * t + phase).sin() };
+            }
+        }
+        row
+    }
+
+    #[test]
+    fn a_slid_factor_solves_like_a_fresh_one() {
+        for (block, columns) in [(5, 4), (20, 16), (150, 16), (33, 7)] {
+            let ridge = Factor::with_ridge(columns, 1e-6 * block as f64);
+            let mut window = SlidingWindow::new(block, Factor::new(columns), ridge.clone());
+            let (mut slid, mut fresh) = (Solution::new(columns), Solution::new(columns));
+            for k in 0..7 * block {
+                window.push(&row(k));
+                slid.solve(window.current());
+                let mut factor = ridge.clone();
+                ((k + 1).saturating_sub(2 * block)..=k).for_each(|k| factor.add(&row(k)));
+                fresh.solve(&factor);
+                for prefix in 1..=columns {
+                    let (a, b) = (slid.coefficients(prefix), fresh.coefficients(prefix));
+                    let condition = fresh.condition(prefix);
+                    for lane in 0..4 {
+                        let size = b.iter().map(|b| b[lane].abs()).fold(1.0, f64::max);
+                        let off = a.iter().zip(&b).map(|(a, b)| (a[lane] - b[lane]).abs()).fold(0.0, f64::max);
+                        assert!(
+                            off <= 1e-14 * condition[lane].powi(2) * size,
+                            "block {block} tick {k} prefix {prefix}: {off}"
+                        );
+                    }
+                }
+            }
+        }
+    }
+}

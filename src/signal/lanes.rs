@@ -30,6 +30,7 @@ impl Lanes {
     }
 
     /// Applies `f` lane by lane.
+    #[must_use]
     #[inline(always)]
     pub fn map(self, f: impl Fn(f64) -> f64) -> Self {
         let [x, y, z, w] = self.0;
@@ -37,6 +38,7 @@ impl Lanes {
     }
 
     /// Applies `f` to pairs of lanes.
+    #[must_use]
     #[inline(always)]
     pub fn zip(self, other: Self, f: impl Fn(f64, f64) -> f64) -> Self {
         let ([a0, a1, a2, a3], [b0, b1, b2, b3]) = (self.0, other.0);
@@ -44,15 +46,25 @@ impl Lanes {
     }
 
     /// Square roots.
+    #[must_use]
     #[inline(always)]
     pub fn sqrt(self) -> Self {
         self.map(f64::sqrt)
     }
 
     /// `1 / self`, and 0 where a lane is 0.
+    #[must_use]
     #[inline(always)]
     pub fn recip_or_zero(self) -> Self {
         self.map(|value| if value == 0.0 { 0.0 } else { 1.0 / value })
+    }
+
+    /// This value with one lane set to zero.
+    #[must_use]
+    #[inline(always)]
+    pub fn without_lane(mut self, lane: usize) -> Self {
+        self.0[lane] = 0.0;
+        self
     }
 
     /// Whether every lane is neither infinite nor NaN.

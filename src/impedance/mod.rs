@@ -17,6 +17,7 @@
 //! | `horizon` | the running error of every candidate at the true delay, and the choice |
 //! | `identifier`, `renderer` | the two ends of the link |
 
+mod by_mode;
 mod factor;
 mod features;
 mod gram;

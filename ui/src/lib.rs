@@ -1,1 +1,3 @@
-//! x
+//! The faces of NIMA Console: the operator's window.
+
+pub mod console;

@@ -1,0 +1,174 @@
+//! What is wrong, in order of urgency: cause first, then what to do. Worked out anew each frame from what came in, so an
+//! alarm ends when its cause ends and not before.
+
+use std::time::Duration;
+
+use egui::Color32;
+use nima::{
+    runtime::{Fault, Scheduling},
+    teleop::LoopState,
+};
+
+use super::theme;
+
+/// Urgency by IEC 60601-1-8.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Priority {
+    /// Act now. Red, flashing twice a second.
+    High,
+    /// Act soon. Yellow, flashing every second and a half.
+    Medium,
+    /// Know about it. Cyan, steady.
+    Low,
+}
+
+impl Priority {
+    /// Colour at this time; flashing dims it and never hides it.
+    pub fn colour(self, time_s: f64) -> Color32 {
+        let (colour, hz) = match self {
+            Self::High => (theme::ALARM_HIGH, 2.0),
+            Self::Medium => (theme::ALARM_MEDIUM, 0.6),
+            Self::Low => return theme::ALARM_LOW,
+        };
+        if (time_s * hz).fract() < 0.5 { colour } else { colour.gamma_multiply(0.35) }
+    }
+
+    /// The word for those who do not see the colour.
+    pub const fn word(self) -> &'static str {
+        match self {
+            Self::High => "Alarm",
+            Self::Medium => "Warning",
+            Self::Low => "Note",
+        }
+    }
+}
+
+/// One thing that is wrong.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Alarm {
+    /// How urgent.
+    pub priority: Priority,
+    /// What happened, and when if it has a moment.
+    pub cause: String,
+    /// What the operator can do.
+    pub cure: String,
+}
+
+/// What alarms are judged from.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Signs {
+    /// State of the loop as last seen.
+    pub state: Option<LoopState>,
+    /// The first fault since the last release, and when (s on the loop's clock).
+    pub first_fault: Option<(f64, Fault)>,
+    /// The loop's thread is alive.
+    pub running: bool,
+    /// Time since the last tick came.
+    pub silence: Duration,
+    /// Share of periods missed in the last seconds, 0 to 1.
+    pub missed_share: f64,
+    /// What the operating system granted, once told.
+    pub scheduling: Option<Scheduling>,
+    /// A stop could not be delivered.
+    pub stop_is_stuck: bool,
+}
+
+/// Ticks come every few milliseconds: half a second without one is a fault of its own.
+const SILENCE_MAX: Duration = Duration::from_millis(500);
+/// One lost period in a hundred is felt as roughness.
+const MISSED_SHARE_MAX: f64 = 0.01;
+
+/// All that is wrong, most urgent first.
+pub fn judge(signs: &Signs) -> Vec<Alarm> {
+    let mut alarms = Vec::new();
+    if signs.stop_is_stuck {
+        alarms.push(Alarm {
+            priority: Priority::High,
+            cause: "The stop has not reached the loop".to_owned(),
+            cure: "Cut the power of the arm with its own emergency stop".to_owned(),
+        });
+    }
+    if let (Some(LoopState::Faulted(_)), Some((t_s, fault))) = (signs.state, signs.first_fault) {
+        alarms.push(Alarm {
+            priority: Priority::High,
+            cause: format!("{} (at {t_s:.1} s)", fault.cause()),
+            cure: fault.cure().to_owned(),
+        });
+    }
+    if !signs.running || (signs.state.is_some() && signs.silence > SILENCE_MAX) {
+        alarms.push(Alarm {
+            priority: Priority::High,
+            cause: "The control loop sends nothing any more; the screen shows its last state".to_owned(),
+            cure: "Stop the arm by its own emergency stop, then start the console again".to_owned(),
+        });
+    }
+    if signs.missed_share > MISSED_SHARE_MAX {
+        alarms.push(Alarm {
+            priority: Priority::Medium,
+            cause: format!("The loop misses {:.1} % of its periods", 100.0 * signs.missed_share),
+            cure: "Close other programs, or grant real-time priority (see timing)".to_owned(),
+        });
+    }
+    if let Some(advice) = signs.scheduling.and_then(|scheduling| scheduling.advice()) {
+        let (cause, cure) = advice.split_once(": ").or_else(|| advice.split_once("; ")).unwrap_or((advice, ""));
+        alarms.push(Alarm { priority: Priority::Low, cause: sentence(cause), cure: sentence(cure) });
+    }
+    alarms
+}
+
+/// The same words with a capital first letter.
+fn sentence(words: &str) -> String {
+    let mut letters = words.chars();
+    letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn healthy() -> Signs {
+        Signs { state: Some(LoopState::Engaged), running: true, ..Signs::default() }
+    }
+
+    #[test]
+    fn a_healthy_loop_has_no_alarm() {
+        assert_eq!(judge(&healthy()), []);
+    }
+
+    #[test]
+    fn the_most_urgent_comes_first_with_cause_and_cure() {
+        let fault = Fault::SourceSilent;
+        let alarms = judge(&Signs {
+            state: Some(LoopState::Faulted(fault)),
+            first_fault: Some((12.34, fault)),
+            missed_share: 0.05,
+            scheduling: Some(Scheduling::default()),
+            ..healthy()
+        });
+        assert!(alarms.is_sorted_by_key(|alarm| alarm.priority));
+        assert!(alarms[0].cause.contains(fault.cause()) && alarms[0].cause.contains("12.3 s"));
+        assert!(alarms.iter().all(|alarm| !alarm.cure.is_empty()), "{alarms:?}");
+        assert_eq!(alarms.len(), 3);
+    }
+
+    #[test]
+    fn silence_and_a_dead_loop_are_alarms() {
+        assert_eq!(judge(&Signs { silence: Duration::from_secs(1), ..healthy() }).len(), 1);
+        assert_eq!(judge(&Signs { running: false, ..healthy() }).len(), 1);
+        assert_eq!(
+            judge(&Signs { running: true, ..Signs::default() }),
+            [],
+            "before the first tick nothing is wrong yet"
+        );
+    }
+
+    #[test]
+    fn flashing_never_hides_and_low_is_steady() {
+        for i in 0..100 {
+            let time_s = f64::from(i) * 0.05;
+            assert_eq!(Priority::Low.colour(time_s), theme::ALARM_LOW);
+            assert!(Priority::High.colour(time_s).a() > 0);
+        }
+        assert_ne!(Priority::High.colour(0.1), Priority::High.colour(0.3));
+    }
+}

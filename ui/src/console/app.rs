@@ -1,0 +1,177 @@
+//! The window: takes in what the loop sent, lays out the panels, sends what the operator asked.
+
+use std::time::{Duration, Instant};
+
+use eframe::glow;
+use egui::{CentralPanel, Event, Frame, Key, Margin, Panel, ScrollArea, Ui};
+use nima::{
+    config::{Rig, Scene},
+    runtime::{Command, Handle, Tick},
+};
+
+use super::{
+    Options,
+    live::Live,
+    outbox::Outbox,
+    panels::{
+        FeedbackState, ForcesState, TopBarState, degrees_ui, feedback_ui, forces_ui, gates_ui, horizon_ui, timing_ui,
+        top_bar_ui,
+    },
+    scene3d::{SceneView, scene_ui},
+    screenshot, theme,
+};
+
+/// Thirty pictures a second while data flow.
+const FRAME: Duration = Duration::from_millis(33);
+/// When a picture was asked for but no end: the demo is in full swing by then.
+const SCREENSHOT_AT: Duration = Duration::from_secs(3);
+/// Room for the picture to be taken before the window closes.
+const SCREENSHOT_BEFORE_EXIT: Duration = Duration::from_millis(700);
+
+/// The console's state.
+#[derive(Debug)]
+pub struct ConsoleApp {
+    handle: Option<Handle>,
+    live: Live,
+    outbox: Outbox,
+    top_bar: TopBarState,
+    feedback: FeedbackState,
+    forces: ForcesState,
+    scene: SceneView,
+    options: Options,
+    opened: Instant,
+    framed: Instant,
+    pictured: bool,
+}
+
+impl ConsoleApp {
+    /// The console on a running loop. Sets fonts and style of the context; draws in 3-D if it has OpenGL.
+    pub fn new(cc: &eframe::CreationContext<'_>, handle: Handle, rig: Rig, scene: Scene) -> Self {
+        theme::apply(&cc.egui_ctx);
+        let now = Instant::now();
+        Self {
+            handle: Some(handle),
+            live: Live::new(rig, scene),
+            outbox: Outbox::default(),
+            top_bar: TopBarState::default(),
+            feedback: FeedbackState::default(),
+            forces: ForcesState::default(),
+            scene: SceneView::new(cc.gl.as_deref()),
+            options: Options::default(),
+            opened: now,
+            framed: now,
+            pictured: false,
+        }
+    }
+
+    /// The same with wishes from outside.
+    #[must_use]
+    pub fn with_options(mut self, options: Options) -> Self {
+        self.options = options;
+        self
+    }
+
+    /// The newest tick that reached the screen.
+    pub fn tick(&self) -> Option<&Tick> {
+        self.live.tick.as_ref()
+    }
+
+    /// Space and Escape stop, wherever the keyboard's focus is; nothing else sees them, so no button is pressed by them.
+    fn stop_key(&mut self, ctx: &egui::Context) {
+        let stop = ctx.input_mut(|input| {
+            let mut stop = false;
+            input.events.retain(|event| match event {
+                Event::Key { key: Key::Space | Key::Escape, pressed, repeat, .. } => {
+                    stop |= *pressed && !*repeat;
+                    false
+                }
+                Event::Text(text) => text != " ",
+                _ => true,
+            });
+            stop
+        });
+        if stop {
+            self.outbox.push(Command::Stop);
+        }
+    }
+
+    fn layout(&mut self, ui: &mut Ui) {
+        let bar = Frame::new().fill(theme::PANEL).inner_margin(Margin::symmetric(14, 0));
+        Panel::top("top_bar").exact_size(72.0).resizable(false).frame(bar).show(ui, |ui| {
+            top_bar_ui(ui, &self.live, &mut self.top_bar, &mut self.outbox);
+        });
+        let side = Frame::new().fill(theme::PANEL).inner_margin(Margin::same(8));
+        Panel::left("feedback").exact_size(316.0).resizable(false).frame(side).show(ui, |ui| {
+            ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+                feedback_ui(ui, &mut self.live, &mut self.feedback, &mut self.outbox);
+                gates_ui(ui, &self.live);
+            });
+        });
+        Panel::right("figures").exact_size(348.0).resizable(false).frame(side).show(ui, |ui| {
+            ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+                horizon_ui(ui, &self.live);
+                degrees_ui(ui, &self.live);
+                timing_ui(ui, &self.live);
+            });
+        });
+        let ground = Frame::new().fill(theme::BACKGROUND);
+        CentralPanel::no_frame().frame(ground).show(ui, |ui| {
+            let traces = (0.44 * ui.available_height()).clamp(230.0, 460.0);
+            let frame = Frame::new().fill(theme::BACKGROUND).inner_margin(Margin::symmetric(12, 8));
+            Panel::bottom("forces").exact_size(traces).resizable(false).frame(frame).show(ui, |ui| {
+                forces_ui(ui, &self.live, &mut self.forces);
+            });
+            scene_ui(ui, &self.live, &mut self.scene);
+        });
+    }
+
+    fn obey_options(&mut self, ctx: &egui::Context) {
+        let open = self.opened.elapsed();
+        let Options { exit_after, screenshot } = &self.options;
+        let picture_at = exit_after.map_or(SCREENSHOT_AT, |exit| exit.saturating_sub(SCREENSHOT_BEFORE_EXIT));
+        if let Some(path) = screenshot.as_ref().filter(|_| !self.pictured && open >= picture_at) {
+            let path = path.clone();
+            self.pictured = true;
+            ctx.request_screenshot(move |picture| {
+                // The window has no one to tell but the terminal it was started from.
+                if let Err(error) = screenshot::save(&path, &picture) {
+                    eprintln!("{error:#}");
+                }
+            });
+        }
+        if exit_after.is_some_and(|exit| open >= exit) {
+            ctx.send_viewport_cmd(egui::ViewportCommand::Close);
+        }
+    }
+}
+
+impl eframe::App for ConsoleApp {
+    fn logic(&mut self, _ctx: &egui::Context, _frame: &mut eframe::Frame) {
+        // Also while the window is hidden, so that the queues stay empty and the history whole.
+        if let Some(handle) = &self.handle {
+            self.live.take_in(handle);
+        }
+    }
+
+    fn ui(&mut self, ui: &mut Ui, frame: &mut eframe::Frame) {
+        let ctx = ui.ctx().clone();
+        let period = std::mem::replace(&mut self.framed, Instant::now());
+        self.live.frame(self.framed.duration_since(period).as_secs_f64(), frame.info().cpu_usage.map(f64::from));
+        self.stop_key(&ctx);
+        self.layout(ui);
+        if let Some(handle) = &self.handle {
+            self.outbox.flush(handle);
+        }
+        self.obey_options(&ctx);
+        ctx.request_repaint_after(FRAME);
+    }
+
+    fn on_exit(&mut self, gl: Option<&glow::Context>) {
+        if let Some(gl) = gl {
+            self.scene.destroy(gl);
+        }
+        if let Some(handle) = self.handle.take() {
+            handle.stop_and_join();
+        }
+    }
+}

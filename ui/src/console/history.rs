@@ -1,0 +1,256 @@
+//! What the traces draw: minima and maxima per time bucket, kept while samples arrive, at three resolutions.
+//!
+//! A frame reads at most a few thousand buckets and never a raw sample: drawing costs the same after an hour as after a
+//! minute, and memory is flat. Times are seconds on the loop's clock; values are newtons here, but nothing depends on it.
+
+use std::collections::VecDeque;
+
+use egui_plot::PlotPoint;
+
+/// Values kept per sample: measured x, y, z and rendered x, y, z.
+pub const CHANNELS: usize = 6;
+
+/// Buckets kept per level.
+const CAPACITY: usize = 8192;
+/// Length of a bucket on each level, s: the last 33 s in detail, two minutes, nine minutes.
+const SPANS_S: [f64; 3] = [0.004, 0.016, 0.064];
+
+#[derive(Clone, Copy, Debug)]
+struct Bucket {
+    low: [f32; CHANNELS],
+    high: [f32; CHANNELS],
+    /// Bit per channel: the minimum came before the maximum.
+    low_first: u8,
+}
+
+impl Bucket {
+    const EMPTY: Self = Self { low: [f32::INFINITY; CHANNELS], high: [f32::NEG_INFINITY; CHANNELS], low_first: 0 };
+
+    fn add(&mut self, values: &[f32; CHANNELS]) {
+        for (channel, &value) in values.iter().enumerate() {
+            // Comparisons with NaN are false: a NaN leaves the bucket as it was.
+            if value < self.low[channel] {
+                self.low[channel] = value;
+                self.low_first &= !(1 << channel);
+            }
+            if value > self.high[channel] {
+                self.high[channel] = value;
+                self.low_first |= 1 << channel;
+            }
+        }
+    }
+
+    fn ends(&self, channel: usize) -> Option<(f32, f32)> {
+        (self.low[channel] <= self.high[channel]).then_some((self.low[channel], self.high[channel]))
+    }
+}
+
+#[derive(Debug)]
+struct Level {
+    span_s: f64,
+    /// Number of the first bucket kept, counted from time zero.
+    first: u64,
+    buckets: VecDeque<Bucket>,
+}
+
+impl Level {
+    fn new(span_s: f64) -> Self {
+        Self { span_s, first: 0, buckets: VecDeque::with_capacity(CAPACITY) }
+    }
+
+    fn number(&self, t_s: f64) -> u64 {
+        (t_s / self.span_s).floor().max(0.0) as u64
+    }
+
+    fn push(&mut self, t_s: f64, values: &[f32; CHANNELS]) {
+        let number = self.number(t_s);
+        let end = self.first + self.buckets.len() as u64;
+        if self.buckets.is_empty() || number >= end + CAPACITY as u64 {
+            self.buckets.clear();
+            self.first = number;
+        }
+        // Samples that never came leave empty buckets, so that the place in the queue stays the time.
+        while self.first + (self.buckets.len() as u64) <= number {
+            if self.buckets.len() == CAPACITY {
+                self.buckets.pop_front();
+                self.first += 1;
+            }
+            self.buckets.push_back(Bucket::EMPTY);
+        }
+        let place = number.checked_sub(self.first).and_then(|place| self.buckets.get_mut(place as usize));
+        if let Some(bucket) = place {
+            bucket.add(values);
+        }
+    }
+
+    fn reaches_back_to(&self, t_s: f64) -> bool {
+        self.number(t_s) >= self.first
+    }
+
+    /// Kept buckets that touch `from_s..=to_s`, with the time each begins at.
+    fn between(&self, from_s: f64, to_s: f64) -> impl Iterator<Item = (f64, &Bucket)> {
+        let from = self.number(from_s).saturating_sub(self.first).min(self.buckets.len() as u64) as usize;
+        let to = (self.number(to_s) + 1).saturating_sub(self.first).min(self.buckets.len() as u64) as usize;
+        let range = from..to.max(from);
+        let first = self.first;
+        let span_s = self.span_s;
+        self.buckets
+            .range(range)
+            .enumerate()
+            .map(move |(i, bucket)| ((first + from as u64 + i as u64) as f64 * span_s, bucket))
+    }
+}
+
+/// Minima and maxima of [`CHANNELS`] signals over the last minutes.
+#[derive(Debug)]
+pub struct History {
+    levels: [Level; SPANS_S.len()],
+    began_s: Option<f64>,
+    latest_s: f64,
+}
+
+impl Default for History {
+    fn default() -> Self {
+        Self { levels: SPANS_S.map(Level::new), began_s: None, latest_s: 0.0 }
+    }
+}
+
+impl History {
+    /// Takes one sample at `t_s` (s, not before the one before it by more than what is kept).
+    pub fn push(&mut self, t_s: f64, values: &[f32; CHANNELS]) {
+        if !t_s.is_finite() || t_s < 0.0 {
+            return;
+        }
+        self.began_s.get_or_insert(t_s);
+        self.latest_s = self.latest_s.max(t_s);
+        for level in &mut self.levels {
+            level.push(t_s, values);
+        }
+    }
+
+    /// Time of the newest sample, s.
+    pub const fn latest_s(&self) -> f64 {
+        self.latest_s
+    }
+
+    /// Time of the oldest moment still kept, s.
+    pub fn oldest_s(&self) -> f64 {
+        let coarsest = &self.levels[SPANS_S.len() - 1];
+        self.began_s.unwrap_or(0.0).max(coarsest.first as f64 * coarsest.span_s)
+    }
+
+    /// The finest level that reaches back to `from_s` with no more than about `most` buckets up to `to_s`.
+    fn level(&self, from_s: f64, to_s: f64, most: usize) -> &Level {
+        let from_s = from_s.max(self.oldest_s());
+        let fits = |level: &&Level| (to_s - from_s) / level.span_s <= most as f64 && level.reaches_back_to(from_s);
+        self.levels.iter().find(fits).unwrap_or(&self.levels[SPANS_S.len() - 1])
+    }
+
+    /// Replaces `line` by the signal between two times, two points a bucket, x counted from `origin_s`.
+    pub fn line(
+        &self,
+        channel: usize,
+        (from_s, to_s): (f64, f64),
+        origin_s: f64,
+        most: usize,
+        line: &mut Vec<PlotPoint>,
+    ) {
+        line.clear();
+        let level = self.level(from_s, to_s, most);
+        for (begin_s, bucket) in level.between(from_s, to_s) {
+            let Some((low, high)) = bucket.ends(channel) else { continue };
+            let (one, two) = if bucket.low_first & (1 << channel) == 0 { (high, low) } else { (low, high) };
+            let t_s = begin_s - origin_s;
+            line.push(PlotPoint::new(t_s + 0.25 * level.span_s, f64::from(one)));
+            line.push(PlotPoint::new(t_s + 0.75 * level.span_s, f64::from(two)));
+        }
+    }
+
+    /// Lowest and highest value of the channels between two times.
+    pub fn extent(&self, channels: &[usize], (from_s, to_s): (f64, f64)) -> Option<(f64, f64)> {
+        let mut extent: Option<(f32, f32)> = None;
+        for (_, bucket) in self.level(from_s, to_s, 1000).between(from_s, to_s) {
+            for (low, high) in channels.iter().filter_map(|&channel| bucket.ends(channel)) {
+                extent = Some(extent.map_or((low, high), |(l, h)| (l.min(low), h.max(high))));
+            }
+        }
+        extent.map(|(low, high)| (f64::from(low), f64::from(high)))
+    }
+
+    /// The value of a channel at a time: the middle of its bucket on the finest level that has it.
+    pub fn value_at(&self, channel: usize, t_s: f64) -> Option<f64> {
+        let level = self.levels.iter().find(|level| level.reaches_back_to(t_s))?;
+        let (_, bucket) = level.between(t_s, t_s).next()?;
+        bucket.ends(channel).map(|(low, high)| f64::midpoint(f64::from(low), f64::from(high)))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn filled(seconds: f64, rate_hz: f64, value: impl Fn(f64) -> f32) -> History {
+        let mut history = History::default();
+        for i in 0..(seconds * rate_hz) as u64 {
+            let t_s = i as f64 / rate_hz;
+            history.push(t_s, &[value(t_s); CHANNELS]);
+        }
+        history
+    }
+
+    #[test]
+    fn a_spike_of_one_sample_survives_at_every_resolution() {
+        let history = filled(120.0, 1000.0, |t_s| if (t_s - 100.0).abs() < 5e-4 { 3.0 } else { 0.0 });
+        let mut line = Vec::new();
+        for (from_s, most) in [(99.9, 10_000), (90.0, 2000), (0.0, 2000), (0.0, 10)] {
+            history.line(0, (from_s, 120.0), 120.0, most, &mut line);
+            assert!(line.iter().any(|p| (p.y - 3.0).abs() < 1e-9), "lost from {from_s}");
+            assert!(line.is_sorted_by(|a, b| a.x <= b.x), "x must rise, or plotting falls off its fast path");
+        }
+    }
+
+    #[test]
+    fn drawing_never_costs_more_than_the_kept_buckets() {
+        let history = filled(700.0, 1000.0, |t_s| t_s as f32);
+        let mut line = Vec::new();
+        history.line(0, (0.0, 700.0), 700.0, 1000, &mut line);
+        assert!(line.len() <= 2 * CAPACITY);
+        history.line(0, (690.0, 700.0), 700.0, 1000, &mut line);
+        assert!((600..=2002).contains(&line.len()), "{}", line.len());
+        assert!(history.oldest_s() > 170.0 && history.oldest_s() < 180.0, "{}", history.oldest_s());
+    }
+
+    #[test]
+    fn order_inside_a_bucket_is_kept() {
+        let mut history = History::default();
+        history.push(0.000, &[1.0; CHANNELS]);
+        history.push(0.001, &[-1.0; CHANNELS]);
+        let mut line = Vec::new();
+        history.line(2, (0.0, 0.003), 0.0, 100, &mut line);
+        let ys: Vec<f64> = line.iter().map(|p| p.y).collect();
+        assert_eq!(ys, [1.0, -1.0]);
+    }
+
+    #[test]
+    fn a_gap_stays_a_gap_and_bad_input_is_left_out() {
+        let mut history = History::default();
+        history.push(0.0, &[1.0; CHANNELS]);
+        history.push(f64::NAN, &[9.0; CHANNELS]);
+        history.push(0.5, &[f32::NAN; CHANNELS]);
+        history.push(1.0, &[2.0; CHANNELS]);
+        assert_eq!(history.value_at(0, 0.5), None);
+        assert_eq!(history.value_at(0, 1.0), Some(2.0));
+        assert_eq!(history.extent(&[0, 5], (0.0, 2.0)), Some((1.0, 2.0)));
+        history.push(1e5, &[3.0; CHANNELS]);
+        assert_eq!(history.extent(&[0], (0.0, 1e6)), Some((3.0, 3.0)), "a jump beyond what is kept begins anew");
+    }
+
+    #[test]
+    fn nothing_is_drawn_from_nothing() {
+        let history = History::default();
+        let mut line = vec![PlotPoint::new(0.0, 0.0)];
+        history.line(0, (-10.0, 0.0), 0.0, 100, &mut line);
+        assert!(line.is_empty());
+        assert_eq!(history.extent(&[0], (-10.0, 0.0)), None);
+    }
+}

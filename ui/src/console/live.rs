@@ -1,0 +1,315 @@
+//! What the screen knows of the loop: made from ticks and events, read by every panel, changed by none.
+
+use std::{
+    collections::VecDeque,
+    time::{Duration, Instant},
+};
+
+use nalgebra::Vector3;
+use nima::{
+    config::{Rig, Scene},
+    impedance::Mode,
+    runtime::{Command, Event, Fault, Handle, Percentiles, Quantiles, Scheduling, Tick},
+    teleop::LoopState,
+};
+
+use super::{
+    alarms::Signs,
+    history::{CHANNELS, History},
+    rolling::{DegreeShares, Fading},
+};
+
+/// Window of the degree histograms, s.
+pub const DEGREES_S: f64 = 10.0;
+/// Length of the tip's trail, s, and time between its points.
+const TRAIL_S: f64 = 1.2;
+const TRAIL_STEP_S: f64 = 0.02;
+/// Figures that are read, not watched, change four times a second.
+const FIGURES_EVERY: Duration = Duration::from_millis(250);
+/// How long a refused command stays on the screen.
+const REFUSAL_SHOWN: Duration = Duration::from_secs(6);
+
+/// Gates in the order of the chain, as shares of recent ticks in which each acted.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Gates {
+    /// Not engaged.
+    pub not_permitted: Fading,
+    /// Nothing valid to render.
+    pub invalid: Fading,
+    /// Data too old.
+    pub stale: Fading,
+    /// Hand too slow.
+    pub dead_band: Fading,
+    /// Force withheld by the dead band, N.
+    pub withheld_n: Fading,
+    /// Change too fast.
+    pub slew: Fading,
+    /// Force too large.
+    pub ceiling: Fading,
+}
+
+/// Numbers as shown: steady enough to be read.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Figures {
+    /// Mean size of the measured force, N.
+    pub measured_n: f64,
+    /// Mean size of the rendered force, N.
+    pub rendered_n: f64,
+    /// Error of each mode at the horizon, N, mean over the last seconds.
+    pub horizon_n: [f64; 4],
+    /// Force withheld by the dead band, N.
+    pub withheld_n: f64,
+    /// Lateness of wake-ups, us.
+    pub wake_us: Quantiles,
+    /// Work of a tick, us.
+    pub work_us: Quantiles,
+    /// Ticks that came per second.
+    pub rate_hz: f64,
+    /// Time from one frame of the console to the next, ms.
+    pub frame_ms: f64,
+    /// Processor time of one frame, ms.
+    pub frame_work_ms: f64,
+}
+
+/// Settings that ticks do not carry: as asked, taken back when refused.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Settings {
+    /// Speed below which nothing is rendered, m/s.
+    pub dead_band_m_s: f64,
+    /// Force is kept at standstill.
+    pub static_hold: bool,
+}
+
+/// The screen's knowledge.
+#[derive(Debug)]
+pub struct Live {
+    /// The rig.
+    pub rig: Rig,
+    /// The scene.
+    pub scene: Scene,
+    /// Newest tick.
+    pub tick: Option<Tick>,
+    /// Forces over time.
+    pub history: History,
+    /// Degrees chosen by the console.
+    pub degrees: DegreeShares,
+    /// Degrees the paper's in-window rule would choose.
+    pub paper_degrees: DegreeShares,
+    /// Gates over the last moments.
+    pub gates: Gates,
+    /// Numbers for reading.
+    pub figures: Figures,
+    /// Recent positions of the tip, m, oldest first.
+    pub trail: VecDeque<Vector3<f32>>,
+    /// What the operating system granted.
+    pub scheduling: Option<Scheduling>,
+    /// Settings that ticks do not carry.
+    pub settings: Settings,
+    first_fault: Option<(f64, Fault)>,
+    refusal: Option<(Instant, Command)>,
+    horizon: [Fading; 4],
+    measured: Fading,
+    rendered: Fading,
+    missed_share: Fading,
+    frame: Fading,
+    frame_work: Fading,
+    wake: Percentiles,
+    work: Percentiles,
+    trail_s: f64,
+    ticks_counted: u64,
+    figures_at: Instant,
+    tick_at: Instant,
+    running: bool,
+}
+
+impl Live {
+    /// Nothing known yet.
+    pub fn new(rig: Rig, scene: Scene) -> Self {
+        let ticks = (DEGREES_S * rig.rate_hz) as usize;
+        let settings = Settings { dead_band_m_s: rig.gates.dead_band_m_s, static_hold: rig.gates.static_hold };
+        let now = Instant::now();
+        Self {
+            rig,
+            scene,
+            tick: None,
+            history: History::default(),
+            degrees: DegreeShares::new(ticks),
+            paper_degrees: DegreeShares::new(ticks),
+            gates: Gates::default(),
+            figures: Figures::default(),
+            trail: VecDeque::new(),
+            scheduling: None,
+            settings,
+            first_fault: None,
+            refusal: None,
+            horizon: [Fading::default(); 4],
+            measured: Fading::default(),
+            rendered: Fading::default(),
+            missed_share: Fading::default(),
+            frame: Fading::default(),
+            frame_work: Fading::default(),
+            wake: Percentiles::new(),
+            work: Percentiles::new(),
+            trail_s: f64::NEG_INFINITY,
+            ticks_counted: 0,
+            figures_at: now,
+            tick_at: now,
+            running: true,
+        }
+    }
+
+    /// Takes in all that waits at the loop's door.
+    pub fn take_in(&mut self, handle: &Handle) {
+        handle.drain_events(|event| self.event(event));
+        let mut came = false;
+        handle.drain_ticks(|tick| {
+            self.tick(tick);
+            came = true;
+        });
+        if came {
+            self.tick_at = Instant::now();
+        }
+        self.running = handle.is_running();
+        self.refresh_figures();
+    }
+
+    /// Takes in how long the console's own frames take: from the last to this one, and its work (s).
+    pub fn frame(&mut self, period_s: f64, work_s: Option<f64>) {
+        self.frame.push(period_s * 1e3, period_s, 1.0);
+        self.frame_work.push(work_s.unwrap_or(0.0) * 1e3, period_s, 1.0);
+    }
+
+    /// State of the loop as last seen; idle before anything came.
+    pub fn state(&self) -> LoopState {
+        self.tick.map_or(LoopState::Idle, |tick| tick.state)
+    }
+
+    /// Mode in force.
+    pub fn mode(&self) -> Mode {
+        self.tick.map_or(self.rig.mode, |tick| tick.mode)
+    }
+
+    /// Gain in force.
+    pub fn gain(&self) -> f64 {
+        self.tick.map_or(self.rig.gates.gain, |tick| tick.gates.gain)
+    }
+
+    /// Delay in force, s.
+    pub fn delay_s(&self) -> f64 {
+        self.tick.map_or(self.rig.delay_s, |tick| tick.delay_s)
+    }
+
+    /// The last command that was refused, for a few seconds.
+    pub fn refusal(&self) -> Option<Command> {
+        self.refusal.filter(|(at, _)| at.elapsed() < REFUSAL_SHOWN).map(|(_, command)| command)
+    }
+
+    /// Remembers a setting on its way to the loop, which ticks will not confirm.
+    pub fn expect(&mut self, command: Command) {
+        match command {
+            Command::SetDeadBand(dead_band_m_s) => self.settings.dead_band_m_s = dead_band_m_s,
+            Command::SetStaticHold(static_hold) => self.settings.static_hold = static_hold,
+            _ => {}
+        }
+    }
+
+    /// What alarms are judged from.
+    pub fn signs(&self, stop_is_stuck: bool) -> Signs {
+        Signs {
+            state: self.tick.map(|tick| tick.state),
+            first_fault: self.first_fault,
+            running: self.running,
+            silence: self.tick_at.elapsed(),
+            missed_share: self.missed_share.get(),
+            scheduling: self.scheduling,
+            stop_is_stuck,
+        }
+    }
+
+    fn event(&mut self, event: &Event) {
+        match *event {
+            Event::FaultRaised { t_s, fault } => {
+                self.first_fault.get_or_insert((t_s, fault));
+            }
+            Event::StateChanged { to, .. } => {
+                if !matches!(to, LoopState::Faulted(_)) {
+                    self.first_fault = None;
+                }
+            }
+            Event::CommandRefused { command, .. } => {
+                self.refusal = Some((Instant::now(), command));
+                match command {
+                    Command::SetDeadBand(_) => self.settings.dead_band_m_s = self.rig.gates.dead_band_m_s,
+                    Command::SetStaticHold(_) => self.settings.static_hold = self.rig.gates.static_hold,
+                    _ => {}
+                }
+            }
+            Event::Scheduling(scheduling) => self.scheduling = Some(scheduling),
+        }
+    }
+
+    fn tick(&mut self, tick: &Tick) {
+        let before = self.tick.replace(*tick);
+        let dt_s = before.map_or(0.0, |before| (tick.t_s - before.t_s).max(0.0));
+        let missed = before.map_or(0, |before| tick.missed.saturating_sub(before.missed));
+        self.missed_share.push(missed as f64 / (missed as f64 + 1.0), dt_s, 3.0);
+        let (m, r) = (tick.measured_n, tick.rendered_n);
+        let values: [f32; CHANNELS] = [m.x, m.y, m.z, r.x, r.y, r.z].map(|x| x as f32);
+        self.history.push(tick.t_s, &values);
+        self.measured.push(m.norm(), dt_s, 0.1);
+        self.rendered.push(r.norm(), dt_s, 0.1);
+        self.degrees.push(tick.identification.degree);
+        self.paper_degrees.push(tick.identification.paper_degree);
+        for (mean, error_n) in self.horizon.iter_mut().zip(tick.identification.horizon_error_n) {
+            mean.push(error_n, dt_s, 4.0);
+        }
+        self.wake.record(tick.wake_s);
+        self.work.record(tick.work_s);
+        self.gates.push(tick, dt_s);
+        self.ticks_counted += 1;
+        if tick.t_s - self.trail_s >= TRAIL_STEP_S {
+            self.trail_s = tick.t_s;
+            self.trail.push_back(tick.tip_m.cast());
+            if self.trail.len() > (TRAIL_S / TRAIL_STEP_S) as usize {
+                self.trail.pop_front();
+            }
+        }
+    }
+
+    fn refresh_figures(&mut self) {
+        let since = self.figures_at.elapsed();
+        if since < FIGURES_EVERY {
+            return;
+        }
+        self.figures = Figures {
+            measured_n: self.measured.get(),
+            rendered_n: self.rendered.get(),
+            horizon_n: self.horizon.map(Fading::get),
+            withheld_n: self.gates.withheld_n.get(),
+            wake_us: self.wake.quantiles(),
+            work_us: self.work.quantiles(),
+            rate_hz: self.ticks_counted as f64 / since.as_secs_f64(),
+            frame_ms: self.frame.get(),
+            frame_work_ms: self.frame_work.get(),
+        };
+        self.ticks_counted = 0;
+        self.figures_at = Instant::now();
+    }
+}
+
+impl Gates {
+    fn push(&mut self, tick: &Tick, dt_s: f64) {
+        let gates = &tick.gates;
+        for (share, acted) in [
+            (&mut self.not_permitted, gates.not_permitted),
+            (&mut self.invalid, gates.invalid),
+            (&mut self.stale, gates.stale),
+            (&mut self.dead_band, gates.dead_band),
+            (&mut self.slew, gates.slew),
+            (&mut self.ceiling, gates.ceiling),
+        ] {
+            share.push(f64::from(u8::from(acted)), dt_s, 0.15);
+        }
+        self.withheld_n.push(gates.withheld_n, dt_s, 0.15);
+    }
+}

@@ -1,0 +1,59 @@
+//! The operator's window on one running loop.
+//!
+//! Takes a [`Handle`]: ticks and events come out of it, commands go in. Panels never change the machine; they show what
+//! comes back in the ticks and put what the operator asks into an outbox. All panels are plain functions over
+//! [`live::Live`], so they can be driven in tests without a screen. Only `scene3d/gl.rs` talks to the GPU.
+
+pub mod alarms;
+pub mod app;
+pub mod history;
+pub mod live;
+pub mod outbox;
+pub mod panels;
+pub mod rolling;
+pub mod scene3d;
+pub mod screenshot;
+pub mod theme;
+pub mod widgets;
+
+use std::{path::PathBuf, time::Duration};
+
+use anyhow::Context as _;
+use nima::{
+    config::{Rig, Scene},
+    runtime::Handle,
+};
+
+pub use app::ConsoleApp;
+
+/// What may be asked of the window from outside, for pictures and tests. The default opens it until it is closed.
+#[derive(Clone, Debug, Default)]
+pub struct Options {
+    /// Close the window by itself after this time.
+    pub exit_after: Option<Duration>,
+    /// Save the window as PNG here just before it closes by itself (or after three seconds if it does not).
+    pub screenshot: Option<PathBuf>,
+}
+
+/// Opens the console on a running loop; returns when the window is closed and the loop has ended.
+pub fn run(handle: Handle, rig: Rig, scene: Scene, options: Options) -> anyhow::Result<()> {
+    let viewport = egui::ViewportBuilder::default()
+        .with_title("NIMA Console")
+        .with_app_id("nima-console")
+        .with_inner_size([1600.0, 1000.0])
+        .with_min_inner_size([1100.0, 680.0]);
+    let native = eframe::NativeOptions {
+        viewport,
+        renderer: eframe::Renderer::Glow,
+        depth_buffer: 24,
+        multisampling: 4,
+        centered: true,
+        ..Default::default()
+    };
+    let create: eframe::AppCreator<'_> =
+        Box::new(move |cc| Ok(Box::new(ConsoleApp::new(cc, handle, rig, scene).with_options(options))));
+    // eframe's error is not Sync; its words are what matters.
+    eframe::run_native("NIMA Console", native, create)
+        .map_err(|error| anyhow::anyhow!("{error}"))
+        .context("the window could not be opened; on a machine without a display use `nima run`")
+}

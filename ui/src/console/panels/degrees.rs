@@ -1,0 +1,137 @@
+//! Which degree of impedance is identified, how often it is nonlinear, and how well the motion determines it.
+
+use egui::{Align2, Rect, Sense, Ui, vec2};
+
+use crate::console::{
+    live::{DEGREES_S, Live},
+    rolling::DEGREES,
+    theme,
+    widgets::{card, figure, small, three_digits},
+};
+
+const CHART_HEIGHT: f32 = 92.0;
+
+/// The panel.
+pub fn degrees_ui(ui: &mut Ui, live: &Live) {
+    let meaning =
+        "Degree N of the polynomial f = M X between motion and force, chosen anew each tick on the last 300 ms.";
+    card(ui, "Degrees", meaning, |ui| {
+        ui.horizontal(|ui| {
+            key_ui(
+                ui,
+                theme::RENDERED,
+                "this console",
+                "Chosen by the running error at the horizon; 0 means no correction.",
+            );
+            key_ui(
+                ui,
+                theme::REFERENCE,
+                "the paper's rule",
+                "Least error inside the window; 0 means the window is not full.",
+            );
+            ui.label(small(format!("last {DEGREES_S:.0} s")));
+        });
+        chart_ui(ui, live);
+        let share = |share: f64| format!("{:.0} %", 100.0 * share);
+        figure(
+            ui,
+            "Nonlinear, this console",
+            share(live.degrees.nonlinear()),
+            "Share of ticks in which a degree of 2 or more paid off at the horizon.",
+        );
+        figure(
+            ui,
+            "Nonlinear, the paper's rule",
+            share(live.paper_degrees.nonlinear()),
+            "Share of ticks with degree 2 or more by the error inside the window. The models are nested, so this is near 100 % \
+             whatever the tissue: it is not evidence of nonlinearity.",
+        );
+        quality_ui(ui, live);
+    });
+}
+
+fn quality_ui(ui: &mut Ui, live: &Live) {
+    let Some(tick) = &live.tick else { return };
+    let report = &tick.identification;
+    figure(
+        ui,
+        "Condition",
+        three_digits(report.condition),
+        "Condition number of the chosen model's scaled columns, the worst axis, without unit: 1 is perfect, above 1e4 the columns \
+         are hard to tell apart.",
+    );
+    figure(
+        ui,
+        "Rank",
+        format!("{} of {}", report.rank.min(report.columns), report.columns),
+        "Motion columns that carry information, of those the chosen model uses (three per degree: position, velocity, acceleration).",
+    );
+    let excitation = &report.excitation;
+    figure(
+        ui,
+        "Excitation",
+        format!("{:.1} mm   {:.0} mm/s", excitation.position_m.norm() * 1e3, excitation.velocity_m_s.norm() * 1e3),
+        "How much the motion varies within the window: standard deviation of position (mm) and velocity (mm/s), all axes. Without \
+         motion nothing can be identified.",
+    );
+}
+
+fn key_ui(ui: &mut Ui, colour: egui::Color32, name: &str, meaning: &str) {
+    let (rect, _) = ui.allocate_exact_size(vec2(10.0, 10.0), Sense::hover());
+    ui.painter().rect_filled(rect, 2.0, colour);
+    ui.label(small(name)).on_hover_text(meaning);
+}
+
+/// Six pairs of bars, 0 to 5, with their shares above.
+fn chart_ui(ui: &mut Ui, live: &Live) {
+    let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), CHART_HEIGHT + 20.0), Sense::hover());
+    let (ours, papers) = (live.degrees.shares(), live.paper_degrees.shares());
+    let words = |shares: &[f64; DEGREES]| {
+        shares
+            .iter()
+            .enumerate()
+            .map(|(n, share)| format!("{n}: {:.0} %", 100.0 * share))
+            .collect::<Vec<_>>()
+            .join("   ")
+    };
+    response.widget_info(|| {
+        egui::WidgetInfo::labeled(egui::Role::Label, true, format!("Degrees chosen: {}", words(&ours)))
+    });
+    response.on_hover_text(format!("This console  {}\nPaper's rule  {}", words(&ours), words(&papers)));
+    let painter = ui.painter();
+    let ground = Rect::from_min_size(rect.min, vec2(rect.width(), CHART_HEIGHT));
+    painter.rect_filled(ground, 3.0, theme::GROOVE);
+    let cell = ground.width() / DEGREES as f32;
+    let width = 0.32 * cell;
+    for degree in 0..DEGREES {
+        let middle = ground.left() + (degree as f32 + 0.5) * cell;
+        for (share, left, colour) in
+            [(ours[degree], middle - width - 1.0, theme::RENDERED), (papers[degree], middle + 1.0, theme::REFERENCE)]
+        {
+            let height = (CHART_HEIGHT - 18.0) * share as f32;
+            let filled = Rect::from_min_max(
+                egui::pos2(left, ground.bottom() - height.max(1.0)),
+                egui::pos2(left + width, ground.bottom()),
+            );
+            painter.rect_filled(filled, 1.0, colour);
+            if share >= 0.005 {
+                let place = egui::pos2(left + 0.5 * width, ground.bottom() - height - 8.0);
+                painter.text(
+                    place,
+                    Align2::CENTER_CENTER,
+                    format!("{:.0}", 100.0 * share),
+                    theme::regular(11.0),
+                    theme::TEXT_WEAK,
+                );
+            }
+        }
+        let name = if degree == 0 { "none".to_owned() } else { degree.to_string() };
+        painter.text(
+            egui::pos2(middle, ground.bottom() + 10.0),
+            Align2::CENTER_CENTER,
+            name,
+            theme::regular(12.5),
+            theme::TEXT_WEAK,
+        );
+    }
+}

@@ -1,0 +1,203 @@
+//! How force is fed back: mode, gain, delay, dead band, standstill.
+//!
+//! Controls show what is in force, as it came back from the loop; while a control is being moved, and for a moment after,
+//! it shows what was asked.
+
+use std::ops::RangeInclusive;
+
+use egui::{Button, DragValue, RichText, Slider, Ui, vec2};
+use nima::{impedance::Mode, runtime::Command};
+
+use super::{mode_meaning, mode_name};
+use crate::console::{
+    live::Live,
+    outbox::Outbox,
+    widgets::{card, small},
+};
+
+/// How long a control shows what was asked before it falls back to what is in force, s: the gain ramps at 2 per second.
+const ASKED_SHOWN_S: f64 = 1.6;
+const DELAY_MS: RangeInclusive<f64> = 0.0..=500.0;
+const DEAD_BAND_MM_S: RangeInclusive<f64> = 0.0..=10.0;
+const GAIN_LIMIT: f64 = 3.0;
+
+/// A value that was asked for and when (s on the window's clock).
+#[derive(Clone, Copy, Debug, Default)]
+struct Asked(Option<(f64, f64)>);
+
+impl Asked {
+    /// What a control shows at `time_s` when `in_force` came back.
+    fn shown(&mut self, in_force: f64, time_s: f64) -> f64 {
+        match self.0 {
+            Some((value, at_s)) if time_s - at_s < ASKED_SHOWN_S && (value - in_force).abs() > 1e-6 => value,
+            _ => {
+                self.0 = None;
+                in_force
+            }
+        }
+    }
+}
+
+/// What the panel remembers between frames.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct FeedbackState {
+    allow_above_one: bool,
+    gain: Asked,
+    delay_ms: Asked,
+    dead_band_mm_s: Asked,
+}
+
+/// The panel.
+pub fn feedback_ui(ui: &mut Ui, live: &mut Live, state: &mut FeedbackState, outbox: &mut Outbox) {
+    let meaning = "How the force measured at the instrument becomes the force in the hand.";
+    card(ui, "Feedback", meaning, |ui| {
+        mode_ui(ui, live, outbox);
+        ui.add_space(8.0);
+        gain_ui(ui, live, state, outbox);
+        ui.add_space(8.0);
+        delay_ui(ui, live, state, outbox);
+        ui.add_space(8.0);
+        standstill_ui(ui, live, state, outbox);
+    });
+}
+
+fn mode_ui(ui: &mut Ui, live: &Live, outbox: &mut Outbox) {
+    let size = vec2(0.5 * (ui.available_width() - 6.0), 32.0);
+    ui.spacing_mut().item_spacing = vec2(6.0, 6.0);
+    for pair in [[Mode::Anchored, Mode::Dfr], [Mode::Linear, Mode::Literal]] {
+        ui.horizontal(|ui| {
+            for mode in pair {
+                let button =
+                    Button::selectable(live.mode() == mode, mode_name(mode)).frame_when_inactive(true).min_size(size);
+                if ui.add(button).on_hover_text(mode_meaning(mode)).clicked() {
+                    outbox.push(Command::SetMode(mode));
+                }
+            }
+        });
+    }
+}
+
+/// One setting: its name, its value and a slider over its range.
+struct Setting {
+    name: &'static str,
+    meaning: &'static str,
+    suffix: &'static str,
+    decimals: usize,
+    /// Ask the loop while the slider moves, not only when it is let go.
+    at_once: bool,
+}
+
+/// Shows the setting; gives the value that the operator wants, when there is a new one.
+fn setting_ui(
+    ui: &mut Ui,
+    setting: &Setting,
+    range: RangeInclusive<f64>,
+    in_force: f64,
+    asked: &mut Asked,
+) -> Option<f64> {
+    let time_s = ui.input(|input| input.time);
+    let mut value = asked.shown(in_force, time_s);
+    let number = DragValue::new(&mut value)
+        .range(range.clone())
+        .speed((range.end() - range.start()) / 300.0)
+        .fixed_decimals(setting.decimals)
+        .suffix(setting.suffix);
+    let row = ui.horizontal(|ui| {
+        let label = ui.label(setting.name).on_hover_text(setting.meaning);
+        let number = ui
+            .with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| ui.add(number))
+            .inner
+            .labelled_by(label.id);
+        (label.id, number.on_hover_text(setting.meaning))
+    });
+    let (label, number) = row.inner;
+    ui.spacing_mut().slider_width = ui.available_width();
+    let slider = Slider::new(&mut value, range).show_value(false).step_by(10f64.powi(-(setting.decimals as i32)));
+    let slider = ui.add(slider).labelled_by(label).on_hover_text(setting.meaning);
+    let both = slider.union(number);
+    if both.changed() || both.dragged() {
+        asked.0 = Some((value, time_s));
+    }
+    let wanted =
+        if setting.at_once { both.changed() } else { both.drag_stopped() || (both.changed() && !both.dragged()) };
+    wanted.then_some(value)
+}
+
+fn gain_ui(ui: &mut Ui, live: &Live, state: &mut FeedbackState, outbox: &mut Outbox) {
+    let setting = Setting {
+        name: "Gain",
+        meaning: "Factor between the force asked for by the mode and the force in the hand, without unit. 0 is no force, 1 is \
+                  natural. Changes are ramped at 2 per second.",
+        suffix: "",
+        decimals: 2,
+        at_once: true,
+    };
+    let limit = if state.allow_above_one { GAIN_LIMIT } else { 1.0 };
+    if let Some(gain) = setting_ui(ui, &setting, 0.0..=limit, live.gain(), &mut state.gain) {
+        outbox.push(if gain > 1.0 { Command::SetGainAboveOne(gain) } else { Command::SetGain(gain) });
+    }
+    ui.horizontal(|ui| {
+        let meaning = "Second, deliberate action: lets the gain go up to 3, so that soft tissue feels harder than it is. The force \
+                       ceiling stays. Taking the mark away brings the gain back to 1 at most.";
+        let unlock = ui.checkbox(&mut state.allow_above_one, "Allow above 1").on_hover_text(meaning);
+        if unlock.changed() && !state.allow_above_one && live.gain() > 1.0 {
+            outbox.push(Command::SetGain(1.0));
+            state.gain = Asked::default();
+        }
+        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+            ui.label(small(format!("in force {:.2}", live.gain()))).on_hover_text("The gain the loop uses now, after its ramp.");
+        });
+    });
+}
+
+fn delay_ui(ui: &mut Ui, live: &Live, state: &mut FeedbackState, outbox: &mut Outbox) {
+    let setting = Setting {
+        name: "Link delay",
+        meaning: "One-way delay from the follower to the hand, ms, added to what the link has. The paper programs 300 ms. Taken \
+                  over when the slider is let go.",
+        suffix: " ms",
+        decimals: 0,
+        at_once: false,
+    };
+    let in_force = live.delay_s() * 1e3;
+    if let Some(delay_ms) = setting_ui(ui, &setting, DELAY_MS, in_force, &mut state.delay_ms) {
+        outbox.push(Command::SetDelay(delay_ms * 1e-3));
+    }
+}
+
+fn standstill_ui(ui: &mut Ui, live: &mut Live, state: &mut FeedbackState, outbox: &mut Outbox) {
+    let setting = Setting {
+        name: "Dead band",
+        meaning: "Speed of the hand, mm/s, below which nothing is rendered: at standstill an impedance is unknown. The paper uses \
+                  1 mm/s. The edge is smooth.",
+        suffix: " mm/s",
+        decimals: 1,
+        at_once: true,
+    };
+    let in_force = live.settings.dead_band_m_s * 1e3;
+    if let Some(mm_s) = setting_ui(ui, &setting, DEAD_BAND_MM_S, in_force, &mut state.dead_band_mm_s) {
+        let command = Command::SetDeadBand(mm_s * 1e-3);
+        live.expect(command);
+        outbox.push(command);
+    }
+    let mut hold = live.settings.static_hold;
+    let meaning = "Keeps the force when the hand rests, instead of fading it in the dead band as the paper does.";
+    if ui.checkbox(&mut hold, RichText::new("Keep force at standstill")).on_hover_text(meaning).changed() {
+        let command = Command::SetStaticHold(hold);
+        live.expect(command);
+        outbox.push(command);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_control_shows_what_was_asked_for_a_moment_and_then_the_truth() {
+        let mut asked = Asked(Some((0.3, 10.0)));
+        assert!((asked.shown(0.9, 10.5) - 0.3).abs() < 1e-12);
+        assert!((asked.shown(0.9, 12.0) - 0.9).abs() < 1e-12, "the loop did not follow: show that");
+        assert!((asked.shown(0.4, 10.5) - 0.4).abs() < 1e-12, "once given up it stays with the truth");
+    }
+}

@@ -1,0 +1,275 @@
+//! Force over time, x, y and z, measured against rendered, on one time axis.
+//!
+//! The view is a stretch of time counted back from now (or from the moment of the pause): it is panned by dragging, zoomed
+//! by the wheel and put back by a double click, also while data go on.
+
+use egui::{Align, Button, Color32, Layout, Rect, RichText, Sense, Ui, Vec2b, pos2, vec2};
+use egui_plot::{AxisHints, HoverPosition, Line, Plot, PlotBounds, PlotPoint, PlotPoints, PlotResponse, VLine};
+
+use crate::console::{
+    history::{CHANNELS, History},
+    live::Live,
+    theme,
+    widgets::{force_sign, small},
+};
+
+const DEFAULT_VIEW_S: (f64, f64) = (-10.0, 0.0);
+const SHORTEST_S: f64 = 0.2;
+const LONGEST_S: f64 = 500.0;
+const AXES: [&str; 3] = ["x", "y", "z"];
+/// The least that a plot shows up and down, N.
+const LEAST_RANGE_N: f64 = 0.25;
+
+/// What the panel remembers between frames.
+#[derive(Debug)]
+pub struct ForcesState {
+    /// Shown stretch, s, relative to `now`.
+    view_s: (f64, f64),
+    paused_at_s: Option<f64>,
+    ranges_n: [(f64, f64); 3],
+    lines: [Vec<PlotPoint>; CHANNELS],
+    cursor_s: Option<f64>,
+}
+
+impl Default for ForcesState {
+    fn default() -> Self {
+        Self {
+            view_s: DEFAULT_VIEW_S,
+            paused_at_s: None,
+            ranges_n: [(-LEAST_RANGE_N, LEAST_RANGE_N); 3],
+            lines: Default::default(),
+            cursor_s: None,
+        }
+    }
+}
+
+impl ForcesState {
+    fn now_s(&self, history: &History) -> f64 {
+        self.paused_at_s.unwrap_or(history.latest_s())
+    }
+
+    fn pan(&mut self, by_s: f64) {
+        let width_s = self.view_s.1 - self.view_s.0;
+        let to_s = (self.view_s.1 + by_s).clamp(width_s - LONGEST_S, 0.0);
+        self.view_s = (to_s - width_s, to_s);
+    }
+
+    /// Makes the stretch shorter by this factor, keeping `around_s` where it is.
+    fn zoom(&mut self, factor: f64, around_s: f64) {
+        let width_s = ((self.view_s.1 - self.view_s.0) / factor).clamp(SHORTEST_S, LONGEST_S);
+        let share = (around_s - self.view_s.0) / (self.view_s.1 - self.view_s.0);
+        let to_s = (around_s + (1.0 - share) * width_s).min(0.0);
+        self.view_s = (to_s - width_s, to_s);
+    }
+}
+
+/// The panel.
+pub fn forces_ui(ui: &mut Ui, live: &Live, state: &mut ForcesState) {
+    header_ui(ui, live, state);
+    ui.add_space(2.0);
+    let now_s = state.now_s(&live.history);
+    let (from_s, to_s) = (now_s + state.view_s.0, now_s + state.view_s.1);
+    let most = (ui.available_width() * 0.8) as usize;
+    for (channel, line) in state.lines.iter_mut().enumerate() {
+        live.history.line(channel, (from_s, to_s), now_s, most, line);
+    }
+    ui.spacing_mut().item_spacing.y = 4.0;
+    // The lowest plot carries the time axis and is taller by it.
+    const TIME_AXIS: f32 = 34.0;
+    let height = ((ui.available_height() - TIME_AXIS - 8.0) / 3.0).max(48.0);
+    let cursor_s = state.cursor_s.take();
+    for axis in 0..3 {
+        state.ranges_n[axis] = range_n(live.history.extent(&[axis, axis + 3], (from_s, to_s)), state.ranges_n[axis]);
+        let height = if axis == 2 { height + TIME_AXIS } else { height };
+        let response = plot_ui(ui, live, state, axis, height, cursor_s);
+        interact(ui, state, &response);
+    }
+}
+
+fn header_ui(ui: &mut Ui, live: &Live, state: &mut ForcesState) {
+    ui.horizontal(|ui| {
+        ui.label(RichText::new("Force at the tip and in the hand").text_style(egui::TextStyle::Heading)).on_hover_text(
+            "Newtons in the workspace frame: x to the right, y away from the trocar, z up. Measured at the instrument now; rendered \
+             to the hand after all gates. Drag to pan, wheel to zoom, double click for the last 10 s.",
+        );
+        ui.add_space(12.0);
+        for (name, rendered) in [("measured", false), ("rendered", true)] {
+            let (rect, _) = ui.allocate_exact_size(vec2(30.0, 14.0), Sense::hover());
+            force_sign(ui.painter(), rect, rendered);
+            ui.label(small(name));
+            ui.add_space(6.0);
+        }
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            let (name, meaning) = match state.paused_at_s {
+                None => ("Pause", "Holds the picture; data go on being kept, and the loop does not notice."),
+                Some(_) => ("Go on", "Shows what comes in again."),
+            };
+            let size = vec2(76.0, 26.0);
+            let paused = state.paused_at_s.is_some();
+            if ui.add(Button::new(name).selected(paused).min_size(size)).on_hover_text(meaning).clicked() {
+                state.paused_at_s = if paused { None } else { Some(live.history.latest_s()) };
+            }
+            let reset = ui.add(Button::new("Last 10 s").min_size(size)).on_hover_text("Back to the last ten seconds.");
+            if reset.clicked() {
+                state.view_s = DEFAULT_VIEW_S;
+            }
+        });
+    });
+}
+
+fn plot_ui(
+    ui: &mut Ui,
+    live: &Live,
+    state: &ForcesState,
+    axis: usize,
+    height: f32,
+    cursor_s: Option<f64>,
+) -> PlotResponse<()> {
+    let now_s = state.now_s(&live.history);
+    let history = &live.history;
+    let last = axis == 2;
+    let seconds =
+        AxisHints::new_x().label(if last { "Time before now (s)" } else { "" }).formatter(|mark, _| plain(mark.value));
+    let newtons = AxisHints::new_y()
+        .label(format!("{} (N)", AXES[axis]))
+        .min_thickness(46.0)
+        .formatter(|mark, _| plain(mark.value));
+    let plot = Plot::new(("forces", axis))
+        .height(height)
+        .custom_x_axes(if last { vec![seconds] } else { vec![] })
+        .custom_y_axes(vec![newtons])
+        .allow_drag(false)
+        .allow_zoom(false)
+        .allow_scroll(false)
+        .allow_boxed_zoom(false)
+        .allow_axis_zoom_drag(false)
+        .allow_double_click_reset(false)
+        .auto_bounds(Vec2b::FALSE)
+        .set_margin_fraction(vec2(0.0, 0.0))
+        .show_crosshair(false)
+        .grid_color(theme::LINE)
+        .label_formatter(move |hover| {
+            let (HoverPosition::NearDataPoint { position, .. } | HoverPosition::Elsewhere { position }) = hover;
+            readout(history, axis, now_s, position.x)
+        });
+    let lines = [(axis, "measured", theme::MEASURED, 2.2), (axis + 3, "rendered", theme::RENDERED, 1.6)];
+    let (low_n, high_n) = state.ranges_n[axis];
+    plot.show(ui, |plot| {
+        plot.set_plot_bounds(PlotBounds::from_min_max([state.view_s.0, low_n], [state.view_s.1, high_n]));
+        for (channel, name, colour, width) in lines {
+            let points = PlotPoints::Borrowed(&state.lines[channel]);
+            plot.line(Line::new(name, points).color(colour).width(width).allow_hover(false));
+        }
+        if let Some(cursor_s) = cursor_s {
+            plot.vline(VLine::new("cursor", cursor_s).color(theme::TEXT_WEAK).width(1.0).allow_hover(false));
+        }
+    })
+}
+
+fn readout(history: &History, axis: usize, now_s: f64, at_s: f64) -> Option<String> {
+    let measured = history.value_at(axis, now_s + at_s)?;
+    let rendered = history.value_at(axis + 3, now_s + at_s)?;
+    let name = AXES[axis];
+    Some(format!("{:.2} s before now\nmeasured {name} {measured:+.2} N\nrendered {name} {rendered:+.2} N", -at_s))
+}
+
+fn interact(ui: &Ui, state: &mut ForcesState, plot: &PlotResponse<()>) {
+    let response = &plot.response;
+    let s_per_point = plot.transform.dvalue_dpos()[0];
+    if response.dragged() {
+        state.pan(-f64::from(response.drag_delta().x) * s_per_point);
+    }
+    if response.double_clicked() {
+        state.view_s = DEFAULT_VIEW_S;
+    }
+    if let Some(pointer) = response.hover_pos() {
+        let at_s = plot.transform.value_from_position(pointer).x;
+        state.cursor_s = Some(at_s);
+        let wheel = ui.input(|input| input.smooth_scroll_delta().y + 100.0 * (input.zoom_delta() - 1.0));
+        if wheel.abs() > 0.0 {
+            state.zoom(f64::from(wheel * 0.004).exp(), at_s);
+        }
+    }
+}
+
+/// The range a plot shows: a round number that holds all there is, and that does not shrink at once when a peak leaves.
+fn range_n(extent_n: Option<(f64, f64)>, (low_n, high_n): (f64, f64)) -> (f64, f64) {
+    let (least, most) = extent_n.unwrap_or((0.0, 0.0));
+    let wanted = (-round_up(-least), round_up(most));
+    // Shrinks only when less than half is used: an axis that jumps with every peak cannot be read.
+    let keep = |old: f64, wanted: f64| if wanted > old || wanted < 0.45 * old { wanted } else { old };
+    (-keep(-low_n, -wanted.0), keep(high_n, wanted.1))
+}
+
+/// The next of 0.25, 0.5, 1, 1.5, 2, 3, 4, 6, 8, 12, ... with a tenth to spare.
+fn round_up(value_n: f64) -> f64 {
+    let needed = value_n * 1.1;
+    let mut step = LEAST_RANGE_N;
+    while step < needed && step < 1e6 {
+        step *= 2.0;
+        if step >= 2.0 && step * 0.75 >= needed {
+            return step * 0.75;
+        }
+    }
+    step
+}
+
+fn plain(value: f64) -> String {
+    let text = format!("{value:.2}");
+    let text = text.trim_end_matches('0').trim_end_matches('.');
+    if text == "-0" { "0".to_owned() } else { text.to_owned() }
+}
+
+/// A vertical gauge of both forces against the ceiling; `rect` is its place.
+pub fn gauge(painter: &egui::Painter, rect: Rect, measured_n: f64, rendered_n: f64, ceiling_n: f64) {
+    painter.rect_filled(rect, 3.0, Color32::from_black_alpha(120));
+    let top_n = ceiling_n * 1.25;
+    let y = |force_n: f64| rect.bottom() - rect.height() * (force_n / top_n).clamp(0.0, 1.0) as f32;
+    let half = 0.5 * rect.width();
+    for (force_n, left, colour) in
+        [(measured_n, rect.left(), theme::MEASURED), (rendered_n, rect.left() + half, theme::RENDERED)]
+    {
+        let filled = Rect::from_min_max(pos2(left + 2.0, y(force_n)), pos2(left + half - 2.0, rect.bottom() - 2.0));
+        painter.rect_filled(filled, 1.0, colour);
+    }
+    painter.hline(rect.x_range(), y(ceiling_n), egui::Stroke::new(2.0, theme::TEXT));
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_range_holds_what_there_is_and_does_not_jump() {
+        assert_eq!(range_n(Some((-0.1, 1.7)), (-0.25, 0.25)), (-0.25, 2.0));
+        assert_eq!(range_n(Some((-0.1, 1.3)), (-0.25, 2.0)), (-0.25, 2.0), "a smaller peak keeps the range");
+        assert_eq!(range_n(Some((-0.1, 0.3)), (-0.25, 2.0)), (-0.25, 0.5));
+        assert_eq!(range_n(None, (-1.0, 4.0)), (-0.25, 0.25));
+        assert_eq!(range_n(Some((-2.6, 0.0)), (-0.25, 0.25)), (-3.0, 0.25));
+        assert!(range_n(Some((0.0, f64::INFINITY)), (-0.25, 0.25)).1.is_finite());
+    }
+
+    #[test]
+    fn the_view_never_shows_the_future_and_zooms_around_the_pointer() {
+        let mut state = ForcesState::default();
+        state.pan(5.0);
+        assert_eq!(state.view_s, (-10.0, 0.0));
+        state.pan(-5.0);
+        assert_eq!(state.view_s, (-15.0, -5.0));
+        state.zoom(2.0, -10.0);
+        assert_eq!(state.view_s, (-12.5, -7.5));
+        for _ in 0..100 {
+            state.zoom(2.0, -10.0);
+        }
+        assert!((state.view_s.1 - state.view_s.0 - SHORTEST_S).abs() < 1e-9);
+        for _ in 0..100 {
+            state.zoom(0.5, -10.0);
+        }
+        assert!(state.view_s.1 <= 0.0 && state.view_s.1 - state.view_s.0 <= LONGEST_S + 1e-9);
+    }
+
+    #[test]
+    fn axis_numbers_are_plain() {
+        assert_eq!([0.0, -0.001, 2.5, -10.0, 0.25].map(plain), ["0", "0", "2.5", "-10", "0.25"]);
+    }
+}

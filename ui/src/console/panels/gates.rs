@@ -1,0 +1,141 @@
+//! "Why is there no force?": the gates between model and hand, in their order, and what each does just now.
+
+use egui::{Color32, RichText, Ui};
+use nima::teleop::LoopState;
+
+use crate::console::{
+    live::Live,
+    rolling::Fading,
+    theme,
+    widgets::{Sign, card, sign_ui, small},
+};
+
+/// Below this there is no contact worth rendering, N.
+const CONTACT_N: f64 = 0.1;
+
+/// The panel.
+pub fn gates_ui(ui: &mut Ui, live: &Live) {
+    let meaning = "A force passes these gates in this order. A closed gate stops it, a limiting gate makes it smaller.";
+    card(ui, "Why is there no force?", meaning, |ui| {
+        ui.label(RichText::new(answer(live)).font(theme::strong(14.0)));
+        ui.add_space(4.0);
+        for gate in gates(live) {
+            gate_ui(ui, &gate);
+        }
+    });
+}
+
+/// The answer in one sentence: the first closed gate, or that nothing is wrong.
+fn answer(live: &Live) -> String {
+    let figures = &live.figures;
+    match live.state() {
+        LoopState::Idle => return "No force: the loop is idle. Press Engage.".to_owned(),
+        LoopState::Stopped => return "No force: stopped by the operator.".to_owned(),
+        LoopState::Faulted(_) => return "No force: stopped by a fault.".to_owned(),
+        LoopState::Engaged => {}
+    }
+    if closed(live.gates.invalid) {
+        return "No force: the mode has nothing valid to render.".to_owned();
+    }
+    if closed(live.gates.stale) {
+        return "No force: the data are too old.".to_owned();
+    }
+    if figures.measured_n < CONTACT_N {
+        return "Free motion: no contact, nothing to render.".to_owned();
+    }
+    if closed(live.gates.dead_band) && figures.withheld_n > 0.05 {
+        return format!("{:.1} N not rendered (dead band)", figures.withheld_n);
+    }
+    if live.gain() < 0.01 {
+        return "No force: the gain is zero.".to_owned();
+    }
+    format!("There is: {:.1} N in the hand.", figures.rendered_n)
+}
+
+struct Gate {
+    name: &'static str,
+    share: f64,
+    limits: bool,
+    note: String,
+    meaning: &'static str,
+}
+
+fn closed(share: Fading) -> bool {
+    share.get() > 0.5
+}
+
+fn gates(live: &Live) -> [Gate; 7] {
+    let (gates, chain) = (&live.gates, &live.rig.gates);
+    let gate = |name, share: Fading, limits, note, meaning| Gate { name, share: share.get(), limits, note, meaning };
+    let mut dead_band = gate(
+        "Dead band",
+        gates.dead_band,
+        false,
+        format!("{:.1} mm/s", live.settings.dead_band_m_s * 1e3),
+        "Closed while the hand is slower than this. At standstill an impedance cannot be told from a constant force.",
+    );
+    if live.settings.static_hold {
+        dead_band.note = "off: force is kept".to_owned();
+    } else if closed(gates.dead_band) && live.figures.withheld_n > 0.05 {
+        dead_band.note = format!("{:.1} N not rendered", live.figures.withheld_n);
+    }
+    let mut gain = Fading::default();
+    gain.push(f64::from(u8::from(live.gain() < 0.01)), 0.0, 1.0);
+    [
+        gate(
+            "Engaged",
+            gates.not_permitted,
+            false,
+            live.state().word().to_lowercase(),
+            "Closed unless the loop is engaged. Stop closes it at once.",
+        ),
+        gate(
+            "Valid",
+            gates.invalid,
+            false,
+            String::new(),
+            "Closed when the mode asks for nothing, for something not finite, or for more than 1000 N.",
+        ),
+        gate(
+            "Age",
+            gates.stale,
+            false,
+            format!("zero after {:.0} ms", chain.zero_after_s * 1e3),
+            "Fades the force when data are older than the link's own delay, to zero after this time.",
+        ),
+        dead_band,
+        gate("Gain", gain, false, format!("{:.2}", live.gain()), "The operator's factor. Closed at zero."),
+        gate(
+            "Slew",
+            gates.slew,
+            true,
+            format!("{:.0} N/s", chain.slew_n_per_s),
+            "Limits how fast the force may change, so that no step kicks the hand.",
+        ),
+        gate(
+            "Ceiling",
+            gates.ceiling,
+            true,
+            format!("{:.1} N", chain.ceiling_n),
+            "The largest force that ever reaches the hand.",
+        ),
+    ]
+}
+
+fn gate_ui(ui: &mut Ui, gate: &Gate) {
+    let acting = gate.share > if gate.limits { 0.05 } else { 0.5 };
+    let (what, colour, word) = match (acting, gate.limits) {
+        (false, _) => (Sign::Disc, theme::ENGAGED.gamma_multiply(0.75), "open"),
+        (true, false) => (Sign::Square, theme::TEXT, "closed"),
+        (true, true) => (Sign::Ring, theme::TEXT, "limiting"),
+    };
+    let row = ui.horizontal(|ui| {
+        ui.set_min_height(20.0);
+        sign_ui(ui, what, 5.0, colour);
+        let ink: Color32 = if acting { theme::TEXT } else { theme::TEXT_WEAK };
+        ui.label(RichText::new(gate.name).color(ink));
+        ui.label(RichText::new(word).color(ink));
+        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| ui.label(small(&gate.note)));
+    });
+    row.response.on_hover_text(gate.meaning);
+}

@@ -1,0 +1,73 @@
+//! How far each mode's force is from the truth, at the true horizon: the delay of the link.
+
+use egui::{Align2, Rect, Sense, Ui, vec2};
+use nima::impedance::Mode;
+
+use super::{mode_meaning, mode_name};
+use crate::console::{
+    live::Live,
+    theme,
+    widgets::{Sign, bar, card, sign, small, three_digits},
+};
+
+/// Bars end here, in errors of delayed direct reflection.
+const LONGEST: f64 = 2.5;
+/// Below this an error is noise and a ratio means nothing, N.
+const LEAST_N: f64 = 1e-4;
+
+/// The panel.
+pub fn horizon_ui(ui: &mut Ui, live: &Live) {
+    let meaning = "Mean distance (N, 3-D) between the force each mode would render now and the force measured now, though it only \
+                   knows data as old as the link's delay. Mean over the last four seconds, before the gates. All four modes are \
+                   computed all the time.";
+    card(ui, "Error at the horizon", meaning, |ui| {
+        let dfr_n = live.figures.horizon_n[Mode::Dfr.index()];
+        ui.label(small(format!("{:.0} ms ahead, last seconds; the line is delayed DFR", live.delay_s() * 1e3)));
+        ui.add_space(2.0);
+        for mode in [Mode::Anchored, Mode::Dfr, Mode::Linear, Mode::Literal] {
+            mode_ui(ui, mode, live.figures.horizon_n[mode.index()], dfr_n, live.mode() == mode);
+        }
+    });
+}
+
+fn mode_ui(ui: &mut Ui, mode: Mode, error_n: f64, dfr_n: f64, active: bool) {
+    let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), 38.0), Sense::hover());
+    let ratio = if dfr_n > LEAST_N { error_n / dfr_n } else { f64::NAN };
+    let ratio_text = if mode == Mode::Dfr {
+        "reference".to_owned()
+    } else if ratio.is_finite() {
+        format!("{} x DFR", three_digits(ratio))
+    } else {
+        String::new()
+    };
+    let words = format!("{}: {} N, {ratio_text}", mode_name(mode), three_digits(error_n));
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, format!("Error {words}")));
+    response.on_hover_text(format!("{words}{}\n{}", if active { " (in force)" } else { "" }, mode_meaning(mode)));
+    let painter = ui.painter();
+    let (top, ink) = (rect.top() + 10.0, if active { theme::TEXT } else { theme::TEXT_WEAK });
+    if active {
+        sign(painter, Sign::Disc, egui::pos2(rect.left() + 4.0, top), 4.0, theme::RENDERED);
+    }
+    let font = if active { theme::strong(14.0) } else { theme::regular(14.0) };
+    painter.text(egui::pos2(rect.left() + 14.0, top), Align2::LEFT_CENTER, mode_name(mode), font.clone(), ink);
+    let number = format!("{} N", three_digits(error_n));
+    painter.text(egui::pos2(rect.left() + 200.0, top), Align2::RIGHT_CENTER, number, font, ink);
+    painter.text(
+        egui::pos2(rect.right(), top),
+        Align2::RIGHT_CENTER,
+        ratio_text,
+        theme::regular(12.5),
+        theme::TEXT_WEAK,
+    );
+    let groove =
+        Rect::from_min_max(egui::pos2(rect.left(), rect.top() + 22.0), egui::pos2(rect.right(), rect.top() + 30.0));
+    let colour = if active { theme::RENDERED } else { theme::REFERENCE };
+    bar(painter, groove, if ratio.is_finite() { ratio / LONGEST } else { 0.0 }, colour);
+    let line = groove.left() + groove.width() / LONGEST as f32;
+    painter.vline(line, groove.top() - 2.0..=groove.bottom() + 2.0, egui::Stroke::new(1.5, theme::TEXT));
+    if ratio > LONGEST {
+        let middle = groove.right_center();
+        let tip = vec![middle + vec2(0.0, -6.0), middle + vec2(7.0, 0.0), middle + vec2(0.0, 6.0)];
+        painter.add(egui::Shape::convex_polygon(tip, colour, egui::Stroke::NONE));
+    }
+}

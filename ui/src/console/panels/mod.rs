@@ -1,0 +1,45 @@
+//! One file per panel, each a function over what is known ([`super::live::Live`]) that puts what the operator asks into the outbox.
+
+pub mod degrees;
+pub mod feedback;
+pub mod forces;
+pub mod gates;
+pub mod horizon;
+pub mod timing;
+pub mod top_bar;
+
+pub use degrees::degrees_ui;
+pub use feedback::{FeedbackState, feedback_ui};
+pub use forces::{ForcesState, forces_ui, gauge};
+pub use gates::gates_ui;
+pub use horizon::horizon_ui;
+pub use timing::timing_ui;
+pub use top_bar::{TopBarState, top_bar_ui};
+
+use nima::impedance::Mode;
+
+/// Name of a mode on a button.
+pub const fn mode_name(mode: Mode) -> &'static str {
+    match mode {
+        Mode::Literal => "Literal (NIMA)",
+        Mode::Linear => "Linear (IMA)",
+        Mode::Dfr => "Direct (DFR)",
+        Mode::Anchored => "Anchored",
+    }
+}
+
+/// What a mode does, in a sentence.
+pub const fn mode_meaning(mode: Mode) -> &'static str {
+    match mode {
+        Mode::Literal => {
+            "The paper to the letter: renders M X from the hand's own motion, degree chosen by the error inside the window. \
+             Renders nothing at standstill."
+        }
+        Mode::Linear => "The paper's linear predecessor: the same with degree 1 only.",
+        Mode::Dfr => "Direct force reflection: the measured force, as late as the link delivers it.",
+        Mode::Anchored => {
+            "The last measured force, corrected by the identified impedance for what the hand did since. Falls back to \
+             direct reflection where a correction does not pay."
+        }
+    }
+}

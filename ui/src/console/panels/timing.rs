@@ -1,0 +1,113 @@
+//! Whether the loop keeps its time, and what it was granted.
+
+use egui::{Grid, RichText, Ui};
+use nima::runtime::Quantiles;
+
+use crate::console::{
+    live::Live,
+    theme,
+    widgets::{card, figure, small, weak},
+};
+
+/// The panel.
+pub fn timing_ui(ui: &mut Ui, live: &Live) {
+    let meaning = "The loop's own clock: how late it wakes for each period and how long it works in it, since the console opened.";
+    card(ui, "Timing", meaning, |ui| {
+        table_ui(ui, live);
+        ui.add_space(2.0);
+        let tick = live.tick.as_ref();
+        let rate = format!("{} at {:.0} Hz", grouped(tick.map_or(0, |tick| tick.index + 1)), live.figures.rate_hz);
+        figure(
+            ui,
+            "Ticks",
+            rate,
+            "Ticks executed since the loop began, and ticks that reached this screen in the last moment.",
+        );
+        let missed = grouped(tick.map_or(0, |tick| tick.missed));
+        figure(
+            ui,
+            "Missed",
+            missed,
+            "Periods in which the loop was not run in time. They are counted and skipped, never caught up.",
+        );
+        let dropped = grouped(tick.map_or(0, |tick| tick.dropped));
+        figure(
+            ui,
+            "Dropped",
+            dropped,
+            "Ticks that did not reach this screen because it was busy. The loop never waits for it.",
+        );
+        scheduling_ui(ui, live);
+        let frame = format!("{:.1} ms, work {:.1} ms", live.figures.frame_ms, live.figures.frame_work_ms);
+        figure(
+            ui,
+            "Console frame",
+            frame,
+            "Time from one picture of this window to the next (33 ms asked), and the work in it.",
+        );
+    });
+}
+
+fn table_ui(ui: &mut Ui, live: &Live) {
+    Grid::new("timing").num_columns(5).spacing([10.0, 3.0]).min_col_width(46.0).show(ui, |ui| {
+        ui.label(small("us"));
+        for head in ["p50", "p99", "p99.9", "max"] {
+            right(ui, small(head));
+        }
+        ui.end_row();
+        for (name, quantiles, meaning) in [
+            ("Wake-up", live.figures.wake_us, "Microseconds from the moment the loop should wake to when it does."),
+            (
+                "Work",
+                live.figures.work_us,
+                "Microseconds of one tick: gravity, identification, selection, rendering, gates.",
+            ),
+        ] {
+            ui.label(weak(name)).on_hover_text(meaning);
+            let Quantiles { p50, p99, p999, max } = quantiles;
+            for value in [p50, p99, p999, max] {
+                right(ui, RichText::new(format!("{value:.0}")).font(theme::strong(14.0)));
+            }
+            ui.end_row();
+        }
+    });
+}
+
+fn right(ui: &mut Ui, text: RichText) {
+    ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| ui.label(text));
+}
+
+fn scheduling_ui(ui: &mut Ui, live: &Live) {
+    let Some(scheduling) = live.scheduling else { return };
+    let yes_no = |granted| if granted { "granted" } else { "refused" };
+    let meaning =
+        "Real-time priority keeps other programs from delaying the loop; locked memory keeps page faults away.";
+    figure(ui, "Real-time priority", yes_no(scheduling.fifo), meaning);
+    figure(ui, "Locked memory", yes_no(scheduling.memory_locked), meaning);
+    if let Some(advice) = scheduling.advice() {
+        ui.label(small(advice));
+    }
+}
+
+/// Digits in groups of three.
+fn grouped(number: u64) -> String {
+    let digits = number.to_string();
+    let mut text = String::new();
+    for (i, digit) in digits.chars().enumerate() {
+        if i > 0 && (digits.len() - i).is_multiple_of(3) {
+            text.push(' ');
+        }
+        text.push(digit);
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::grouped;
+
+    #[test]
+    fn digits_stand_in_groups() {
+        assert_eq!([0, 999, 1000, 1_234_567].map(grouped), ["0", "999", "1 000", "1 234 567"]);
+    }
+}

@@ -1,0 +1,94 @@
+//! Figures over the last seconds, kept up to date sample by sample.
+
+use std::collections::VecDeque;
+
+/// Highest degree that can be chosen, plus one for "none".
+pub const DEGREES: usize = nima::impedance::MAX_DEGREE + 1;
+
+/// How often each degree was chosen in the last `capacity` ticks.
+#[derive(Clone, Debug)]
+pub struct DegreeShares {
+    chosen: VecDeque<u8>,
+    counts: [u32; DEGREES],
+    capacity: usize,
+}
+
+impl DegreeShares {
+    /// Remembers this many ticks.
+    pub fn new(capacity: usize) -> Self {
+        Self { chosen: VecDeque::with_capacity(capacity), counts: [0; DEGREES], capacity: capacity.max(1) }
+    }
+
+    /// Takes in one choice; a number that is no degree is left out.
+    pub fn push(&mut self, degree: u8) {
+        let Some(count) = self.counts.get_mut(usize::from(degree)) else { return };
+        *count += 1;
+        self.chosen.push_back(degree);
+        while self.chosen.len() > self.capacity {
+            if let Some(old) = self.chosen.pop_front() {
+                self.counts[usize::from(old)] -= 1;
+            }
+        }
+    }
+
+    /// Share of each degree, 0 to 1; zeros before anything came.
+    pub fn shares(&self) -> [f64; DEGREES] {
+        let total = self.chosen.len().max(1) as f64;
+        self.counts.map(|count| f64::from(count) / total)
+    }
+
+    /// Share of degrees 2 and above, 0 to 1.
+    pub fn nonlinear(&self) -> f64 {
+        self.shares().iter().skip(2).sum()
+    }
+}
+
+/// A mean that forgets with a time constant.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Fading {
+    value: Option<f64>,
+}
+
+impl Fading {
+    /// Takes in a value that stood for `dt_s`; what is not finite is left out.
+    pub fn push(&mut self, value: f64, dt_s: f64, constant_s: f64) {
+        if !value.is_finite() {
+            return;
+        }
+        let share = if dt_s > 0.0 { 1.0 - (-dt_s / constant_s).exp() } else { 0.0 };
+        self.value = Some(self.value.map_or(value, |old| old + share * (value - old)));
+    }
+
+    /// The mean now; zero before anything came.
+    pub fn get(self) -> f64 {
+        self.value.unwrap_or(0.0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn shares_forget_what_is_old() {
+        let mut shares = DegreeShares::new(4);
+        for degree in [5, 5, 5, 5, 1, 0, 2, 3, 99] {
+            shares.push(degree);
+        }
+        assert_eq!(shares.shares(), [0.25, 0.25, 0.25, 0.25, 0.0, 0.0]);
+        assert!((shares.nonlinear() - 0.5).abs() < 1e-12);
+        assert!(DegreeShares::new(10).nonlinear().abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_fading_mean_follows_and_ignores_nan() {
+        let mut mean = Fading::default();
+        mean.push(1.0, 0.001, 0.1);
+        mean.push(f64::NAN, 0.001, 0.1);
+        assert!((mean.get() - 1.0).abs() < 1e-12);
+        for _ in 0..1000 {
+            mean.push(3.0, 0.001, 0.1);
+        }
+        assert!((mean.get() - 3.0).abs() < 1e-3);
+    }
+}

@@ -1,0 +1,118 @@
+//! An orbit camera: looks at a point from a distance, turned by the mouse. Frame: workspace, z up, metres.
+
+use egui::{Pos2, Rect, Vec2};
+use nalgebra::{Matrix4, Perspective3, Point3, Vector3, Vector4};
+
+/// Vertical opening angle, rad.
+const FIELD_OF_VIEW: f32 = 0.62;
+const DISTANCE_M: std::ops::RangeInclusive<f32> = 0.06..=0.9;
+/// Just short of straight down and level with the surface, rad.
+const PITCH: std::ops::RangeInclusive<f32> = 0.03..=1.5;
+
+/// Where the operator looks from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Camera {
+    /// Point looked at, m.
+    pub target_m: Vector3<f32>,
+    /// Distance from it, m.
+    pub distance_m: f32,
+    /// Turn about z; 0 looks along +y, rad.
+    pub yaw: f32,
+    /// Height above the horizon, rad.
+    pub pitch: f32,
+}
+
+impl Default for Camera {
+    fn default() -> Self {
+        Self { target_m: Vector3::new(0.0, 0.002, 0.012), distance_m: 0.235, yaw: -0.62, pitch: 0.50 }
+    }
+}
+
+impl Camera {
+    /// Turns by a drag of so many points.
+    pub fn orbit(&mut self, drag: Vec2) {
+        self.yaw -= drag.x * 0.008;
+        self.pitch = (self.pitch + drag.y * 0.006).clamp(*PITCH.start(), *PITCH.end());
+    }
+
+    /// Comes nearer (factor above 1) or moves away.
+    pub fn zoom(&mut self, factor: f32) {
+        if factor.is_finite() && factor > 0.0 {
+            self.distance_m = (self.distance_m / factor).clamp(*DISTANCE_M.start(), *DISTANCE_M.end());
+        }
+    }
+
+    /// Position of the eye, m.
+    pub fn eye_m(&self) -> Vector3<f32> {
+        let (sin_yaw, cos_yaw) = self.yaw.sin_cos();
+        let (sin_pitch, cos_pitch) = self.pitch.sin_cos();
+        self.target_m + self.distance_m * Vector3::new(sin_yaw * cos_pitch, -cos_yaw * cos_pitch, sin_pitch)
+    }
+
+    /// Direction on the right of the screen, unit length.
+    pub fn right(&self) -> Vector3<f32> {
+        let (sin_yaw, cos_yaw) = self.yaw.sin_cos();
+        Vector3::new(cos_yaw, sin_yaw, 0.0)
+    }
+
+    /// Workspace to OpenGL clip space for a view of this width by height.
+    pub fn clip_from_workspace(&self, aspect: f32) -> Matrix4<f32> {
+        let aspect = if aspect.is_finite() { aspect.max(0.01) } else { 1.0 };
+        let projection = Perspective3::new(aspect, FIELD_OF_VIEW, 0.01, 3.0);
+        let view = Matrix4::look_at_rh(&Point3::from(self.eye_m()), &Point3::from(self.target_m), &Vector3::z());
+        projection.to_homogeneous() * view
+    }
+
+    /// Where a point appears in `rect`; `None` behind the eye.
+    pub fn project(&self, point_m: &Vector3<f32>, rect: Rect) -> Option<Pos2> {
+        let clip = self.clip_from_workspace(rect.aspect_ratio()) * Vector4::new(point_m.x, point_m.y, point_m.z, 1.0);
+        if clip.w <= 1e-4 {
+            return None;
+        }
+        let (x, y) = (clip.x / clip.w, clip.y / clip.w);
+        Some(rect.center() + Vec2::new(0.5 * x * rect.width(), -0.5 * y * rect.height()))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use egui::pos2;
+
+    use super::*;
+
+    fn view() -> Rect {
+        Rect::from_min_max(pos2(100.0, 50.0), pos2(900.0, 650.0))
+    }
+
+    #[test]
+    fn the_target_is_in_the_middle_and_up_is_up() {
+        let mut camera = Camera::default();
+        camera.orbit(Vec2::new(37.0, -20.0));
+        let middle = camera.project(&camera.target_m, view()).unwrap();
+        assert!((middle - view().center()).length() < 0.1, "{middle:?}");
+        let above = camera.project(&(camera.target_m + Vector3::z() * 0.01), view()).unwrap();
+        assert!(above.y < middle.y && (above.x - middle.x).abs() < 1.0);
+        let right = camera.project(&(camera.target_m + camera.right() * 0.01), view()).unwrap();
+        assert!(right.x > middle.x && (right.y - middle.y).abs() < 1.0);
+    }
+
+    #[test]
+    fn it_never_flips_over_or_dives_through() {
+        let mut camera = Camera::default();
+        for _ in 0..1000 {
+            camera.orbit(Vec2::new(13.0, 40.0));
+            camera.zoom(1.2);
+        }
+        assert!(camera.pitch <= 1.5 && camera.distance_m >= 0.06);
+        camera.zoom(f32::NAN);
+        assert!(camera.distance_m.is_finite());
+        assert!(camera.clip_from_workspace(f32::NAN).iter().all(|x| x.is_finite()));
+    }
+
+    #[test]
+    fn what_is_behind_the_eye_has_no_place() {
+        let camera = Camera::default();
+        let behind = camera.eye_m() + (camera.eye_m() - camera.target_m);
+        assert_eq!(camera.project(&behind, view()), None);
+    }
+}

@@ -1,0 +1,238 @@
+//! Triangles for the scene: tubes, spheres, rings and sheets with smooth normals. Knows no GPU.
+
+use egui::Color32;
+use nalgebra::Vector3;
+
+/// How a surface answers to light; the fragment shader tells them apart by this number.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u8)]
+pub enum Material {
+    /// Plastic: soft light, faint highlight.
+    Matte = 0,
+    /// Wet, mottled, with a 10 mm grid that shows the deformation; takes the instrument's shadow.
+    Tissue = 1,
+    /// Steel: strong highlight.
+    Metal = 2,
+    /// Its own colour, whatever the light: what is information and not a thing.
+    Plain = 3,
+}
+
+/// One corner as the GPU reads it: 28 bytes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C)]
+pub struct Vertex {
+    /// Workspace position, m.
+    pub position: [f32; 3],
+    /// Outward normal, unit length.
+    pub normal: [f32; 3],
+    /// sRGB colour; the last byte is the [`Material`].
+    pub colour: [u8; 4],
+}
+
+/// Colour and answer to light.
+#[derive(Clone, Copy, Debug)]
+pub struct Paint(pub Color32, pub Material);
+
+/// Triangles to be drawn.
+#[derive(Clone, Debug, Default)]
+pub struct Mesh {
+    /// Corners.
+    pub vertices: Vec<Vertex>,
+    /// Three per triangle.
+    pub indices: Vec<u32>,
+}
+
+impl Mesh {
+    /// Adds one corner, gives its number.
+    pub fn vertex(&mut self, position: Vector3<f32>, normal: Vector3<f32>, paint: Paint) -> u32 {
+        let [r, g, b, _] = paint.0.to_array();
+        self.vertices.push(Vertex {
+            position: position.into(),
+            normal: normal.into(),
+            colour: [r, g, b, paint.1 as u8],
+        });
+        self.vertices.len() as u32 - 1
+    }
+
+    /// Adds `rows` by `columns` cells over corners that were added row by row from `first`.
+    pub fn sheet(&mut self, first: u32, rows: u32, columns: u32) {
+        let stride = columns + 1;
+        for row in 0..rows {
+            for column in 0..columns {
+                let a = first + row * stride + column;
+                let (b, c, d) = (a + 1, a + stride, a + stride + 1);
+                self.indices.extend([a, b, d, a, d, c]);
+            }
+        }
+    }
+
+    /// A tube or cone from one radius to another, closed at both ends.
+    pub fn tube(&mut self, ends: [Vector3<f32>; 2], radii: [f32; 2], sides: u32, paint: Paint) {
+        let axis = ends[1] - ends[0];
+        let length = axis.norm();
+        let Some(along) = axis.try_normalize(1e-7) else { return };
+        let (u, v) = across(&along);
+        // On a cone the normal leans by the slope of its side.
+        let lean = along * ((radii[0] - radii[1]) / length);
+        let first = self.vertices.len() as u32;
+        for (end, radius) in ends.iter().zip(radii) {
+            for side in 0..=sides {
+                let out = around(&u, &v, side, sides);
+                self.vertex(end + out * radius, (out + lean).normalize(), paint);
+            }
+        }
+        self.sheet(first, 1, sides);
+        for (end, radius, facing) in [(ends[0], radii[0], -along), (ends[1], radii[1], along)] {
+            if radius > 1e-6 {
+                self.disc(end, facing, radius, sides, paint);
+            }
+        }
+    }
+
+    fn disc(&mut self, centre: Vector3<f32>, facing: Vector3<f32>, radius: f32, sides: u32, paint: Paint) {
+        let (u, v) = across(&facing);
+        let middle = self.vertex(centre, facing, paint);
+        for side in 0..=sides {
+            self.vertex(centre + around(&u, &v, side, sides) * radius, facing, paint);
+        }
+        for side in 1..=sides {
+            self.indices.extend([middle, middle + side, middle + side + 1]);
+        }
+    }
+
+    /// A ball.
+    pub fn sphere(&mut self, centre: Vector3<f32>, radius: f32, rings: u32, paint: Paint) {
+        let first = self.vertices.len() as u32;
+        let sides = 2 * rings;
+        for ring in 0..=rings {
+            let (sin, cos) = (std::f32::consts::PI * ring as f32 / rings as f32).sin_cos();
+            for side in 0..=sides {
+                let out = around(&Vector3::x(), &Vector3::y(), side, sides) * sin + Vector3::z() * cos;
+                self.vertex(centre + out * radius, out, paint);
+            }
+        }
+        self.sheet(first, rings, sides);
+    }
+
+    /// A ring that lies flat, each of its points lifted by `lift(x, y)` so that it rides on a surface.
+    pub fn ring(
+        &mut self,
+        centre: Vector3<f32>,
+        [radius, thickness]: [f32; 2],
+        lift: impl Fn(f32, f32) -> f32,
+        paint: Paint,
+    ) {
+        const AROUND: u32 = 28;
+        const ACROSS: u32 = 10;
+        let first = self.vertices.len() as u32;
+        for step in 0..=AROUND {
+            let out = around(&Vector3::x(), &Vector3::y(), step, AROUND);
+            let core = centre + out * radius;
+            let core = core + Vector3::z() * lift(core.x, core.y);
+            for side in 0..=ACROSS {
+                let normal = around(&out, &Vector3::z(), side, ACROSS);
+                self.vertex(core + normal * thickness, normal, paint);
+            }
+        }
+        self.sheet(first, AROUND, ACROSS);
+    }
+
+    /// A box from its lowest to its highest corner.
+    pub fn cuboid(&mut self, low: Vector3<f32>, high: Vector3<f32>, paint: Paint) {
+        let centre = (low + high) * 0.5;
+        let half = (high - low) * 0.5;
+        for axis in 0..3 {
+            let (a, b) = ((axis + 1) % 3, (axis + 2) % 3);
+            for sign in [-1.0, 1.0] {
+                let mut normal = Vector3::zeros();
+                normal[axis] = sign;
+                let first = self.vertices.len() as u32;
+                for (i, j) in [(-1.0, -1.0), (1.0, -1.0), (-1.0, 1.0), (1.0, 1.0)] {
+                    let mut corner = centre;
+                    corner[axis] += sign * half[axis];
+                    corner[a] += i * half[a];
+                    corner[b] += j * half[b];
+                    self.vertex(corner, normal, paint);
+                }
+                self.sheet(first, 1, 1);
+            }
+        }
+    }
+
+    /// A band along points that turns its flat side to the eye; `width` gives its width (m) at each point.
+    pub fn ribbon(
+        &mut self,
+        points: &[Vector3<f32>],
+        eye_m: &Vector3<f32>,
+        width: impl Fn(usize) -> f32,
+        paint: Paint,
+    ) {
+        if points.len() < 2 {
+            return;
+        }
+        let first = self.vertices.len() as u32;
+        for (i, point) in points.iter().enumerate() {
+            let way = points[(i + 1).min(points.len() - 1)] - points[i.saturating_sub(1)];
+            let to_eye = eye_m - point;
+            let side = way.cross(&to_eye).try_normalize(1e-9).unwrap_or_else(Vector3::x) * (0.5 * width(i));
+            let normal = to_eye.try_normalize(1e-9).unwrap_or_else(Vector3::z);
+            self.vertex(point - side, normal, paint);
+            self.vertex(point + side, normal, paint);
+        }
+        self.sheet(first, points.len() as u32 - 1, 1);
+    }
+}
+
+/// Two unit directions that make a right-handed frame with `along`.
+fn across(along: &Vector3<f32>) -> (Vector3<f32>, Vector3<f32>) {
+    let helper = if along.z.abs() < 0.9 { Vector3::z() } else { Vector3::x() };
+    let u = helper.cross(along).try_normalize(1e-9).unwrap_or_else(Vector3::x);
+    (u, along.cross(&u))
+}
+
+/// The direction after `step` of `steps` parts of a full turn from `u` towards `v`.
+fn around(u: &Vector3<f32>, v: &Vector3<f32>, step: u32, steps: u32) -> Vector3<f32> {
+    let (sin, cos) = (std::f32::consts::TAU * step as f32 / steps as f32).sin_cos();
+    u * cos + v * sin
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const PAINT: Paint = Paint(Color32::WHITE, Material::Matte);
+
+    fn sound(mesh: &Mesh) {
+        assert!(!mesh.indices.is_empty() && mesh.indices.len().is_multiple_of(3));
+        assert!(mesh.indices.iter().all(|&i| (i as usize) < mesh.vertices.len()));
+        for vertex in &mesh.vertices {
+            let normal = Vector3::from(vertex.normal);
+            assert!((normal.norm() - 1.0).abs() < 1e-4, "{normal}");
+            assert!(vertex.position.iter().all(|x| x.is_finite()));
+        }
+    }
+
+    #[test]
+    fn every_shape_is_sound() {
+        let mut mesh = Mesh::default();
+        mesh.tube([Vector3::zeros(), Vector3::new(0.0, 0.1, 0.3)], [0.01, 0.0], 12, PAINT);
+        mesh.sphere(Vector3::x(), 0.5, 8, PAINT);
+        mesh.ring(Vector3::zeros(), [0.01, 0.001], |x, y| x * y, PAINT);
+        mesh.cuboid(-Vector3::repeat(1.0), Vector3::repeat(2.0), PAINT);
+        mesh.ribbon(&[Vector3::zeros(), Vector3::x(), Vector3::x()], &Vector3::z(), |_| 0.01, PAINT);
+        sound(&mesh);
+    }
+
+    #[test]
+    fn nothing_long_is_left_out_without_a_nan() {
+        let mut mesh = Mesh::default();
+        mesh.tube([Vector3::x(), Vector3::x()], [0.01, 0.01], 12, PAINT);
+        mesh.ribbon(&[Vector3::x()], &Vector3::z(), |_| 0.01, PAINT);
+        assert!(mesh.vertices.is_empty() && mesh.indices.is_empty());
+    }
+
+    #[test]
+    fn the_gpu_reads_28_bytes_a_corner() {
+        assert_eq!(size_of::<Vertex>(), 28);
+    }
+}

@@ -1,0 +1,173 @@
+//! The operating field in three dimensions: a plain description of triangles ([`stage`]), drawn by the GPU ([`gl`]) inside
+//! egui's frame, with labels by egui's painter over it. Without a GPU (tests) everything but the triangles is there.
+
+pub mod camera;
+pub mod gl;
+pub mod mesh;
+pub mod stage;
+
+use std::sync::Arc;
+
+use eframe::{egui_glow, glow};
+use egui::{Align2, Color32, FontId, Painter, Pos2, Rect, Sense, Ui, pos2, vec2};
+use nalgebra::Vector3;
+
+pub use camera::Camera;
+
+use self::{gl::Renderer, stage::Pose};
+use super::{live::Live, panels::gauge, theme, widgets::force_sign};
+
+/// Camera and GPU objects of the view.
+#[derive(Debug, Default)]
+pub struct SceneView {
+    camera: Camera,
+    renderer: Option<Arc<Renderer>>,
+    problem: Option<String>,
+}
+
+impl SceneView {
+    /// A view that draws with this context; without one it shows labels only.
+    pub fn new(gl: Option<&glow::Context>) -> Self {
+        match gl.map(Renderer::new) {
+            None => Self::default(),
+            Some(Ok(renderer)) => Self { renderer: Some(Arc::new(renderer)), ..Self::default() },
+            Some(Err(problem)) => Self { problem: Some(problem), ..Self::default() },
+        }
+    }
+
+    /// Gives the GPU objects back.
+    pub fn destroy(&mut self, gl: &glow::Context) {
+        if let Some(renderer) = self.renderer.take() {
+            renderer.destroy(gl);
+        }
+    }
+}
+
+/// The view, over all the room there is.
+pub fn scene_ui(ui: &mut Ui, live: &Live, view: &mut SceneView) {
+    let (rect, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Canvas, true, "Operating field"));
+    if response.dragged() {
+        view.camera.orbit(response.drag_delta());
+    }
+    if response.double_clicked() {
+        view.camera = Camera::default();
+    }
+    if response.contains_pointer() {
+        let wheel = ui.input(|input| input.smooth_scroll_delta().y + 100.0 * (input.zoom_delta() - 1.0));
+        view.camera.zoom((wheel * 0.003).exp());
+    }
+    let pose = pose(live);
+    let painter = ui.painter_at(rect);
+    backdrop(&painter, rect);
+    triangles(&painter, rect, live, view, &pose);
+    labels(&painter, rect, live, view, &pose);
+    readings(&painter, rect, live);
+    hint(&painter, rect, view);
+}
+
+fn pose(live: &Live) -> Pose {
+    live.tick.as_ref().map_or(
+        Pose { tip_m: Vector3::new(0.0, 0.0, 0.02), measured_n: Vector3::zeros(), rendered_n: Vector3::zeros() },
+        |tick| Pose {
+            tip_m: tick.tip_m.cast(),
+            measured_n: tick.measured_n.cast(),
+            rendered_n: tick.rendered_n.cast(),
+        },
+    )
+}
+
+/// A soft light from above on a dark ground.
+fn backdrop(painter: &Painter, rect: Rect) {
+    let mut mesh = egui::Mesh::default();
+    for (corner, colour) in [
+        (rect.left_top(), theme::FIELD_FAR),
+        (rect.right_top(), theme::FIELD_FAR),
+        (rect.left_bottom(), theme::FIELD_NEAR),
+        (rect.right_bottom(), theme::FIELD_NEAR),
+    ] {
+        mesh.colored_vertex(corner, colour);
+    }
+    mesh.add_triangle(0, 1, 2);
+    mesh.add_triangle(2, 1, 3);
+    painter.add(mesh);
+}
+
+fn triangles(painter: &Painter, rect: Rect, live: &Live, view: &SceneView, pose: &Pose) {
+    let Some(renderer) = view.renderer.clone() else { return };
+    let trail: Vec<Vector3<f32>> = live.trail.iter().copied().collect();
+    let (eye_m, right) = (view.camera.eye_m(), view.camera.right());
+    let frame = gl::Frame {
+        mesh: stage::build(&live.scene, pose, &trail, &eye_m, &right),
+        clip_from_workspace: view.camera.clip_from_workspace(rect.aspect_ratio()),
+        eye_m,
+        shaft_m: [pose.tip_m, live.scene.trocar_m.cast()],
+    };
+    let paint = egui_glow::CallbackFn::new(move |_, painter| renderer.paint(painter.gl(), &frame));
+    painter.add(egui::PaintCallback { rect, callback: Arc::new(paint) });
+}
+
+/// Names and numbers beside the things they belong to.
+fn labels(painter: &Painter, rect: Rect, live: &Live, view: &SceneView, pose: &Pose) {
+    let at = |point_m: Vector3<f32>| view.camera.project(&point_m, rect);
+    let trocar_m = live.scene.trocar_m.cast::<f32>();
+    if let Some(place) = at(trocar_m) {
+        label(painter, place + vec2(18.0, 0.0), Align2::LEFT_CENTER, "Trocar", theme::regular(13.0), theme::TEXT_WEAK);
+    }
+    let right = view.camera.right();
+    for (rendered, force_n, colour) in
+        [(false, pose.measured_n, theme::MEASURED), (true, pose.rendered_n, theme::RENDERED)]
+    {
+        let size_n = force_n.norm();
+        if size_n < 0.15 {
+            continue;
+        }
+        let head = stage::arrow_base_m(pose, &right, rendered) + force_n * stage::ARROW_M_PER_N;
+        if let Some(place) = at(head) {
+            let (align, shift) = if rendered { (Align2::LEFT_CENTER, 8.0) } else { (Align2::RIGHT_CENTER, -8.0) };
+            label(painter, place + vec2(shift, -6.0), align, &format!("{size_n:.1} N"), theme::strong(15.0), colour);
+        }
+    }
+}
+
+/// Text with a dark edge, so that it reads on any ground.
+fn label(painter: &Painter, place: Pos2, align: Align2, text: &str, font: FontId, colour: Color32) {
+    let shade = Color32::from_black_alpha(190);
+    painter.text(place + vec2(1.0, 1.0), align, text, font.clone(), shade);
+    painter.text(place + vec2(-1.0, 1.0), align, text, font.clone(), shade);
+    painter.text(place, align, text, font, colour);
+}
+
+/// The two forces in large figures, and a gauge of both against the ceiling.
+fn readings(painter: &Painter, rect: Rect, live: &Live) {
+    let corner = rect.left_top() + vec2(16.0, 14.0);
+    let figures = &live.figures;
+    for (i, (name, force_n, colour)) in
+        [("Measured", figures.measured_n, theme::MEASURED), ("Rendered", figures.rendered_n, theme::RENDERED)]
+            .into_iter()
+            .enumerate()
+    {
+        let y = corner.y + 14.0 + 34.0 * i as f32;
+        force_sign(painter, Rect::from_center_size(pos2(corner.x + 18.0, y), vec2(36.0, 16.0)), i == 1);
+        painter.text(pos2(corner.x + 48.0, y), Align2::LEFT_CENTER, name, theme::regular(15.0), theme::TEXT);
+        let number = format!("{force_n:.2} N");
+        painter.text(pos2(corner.x + 210.0, y), Align2::RIGHT_CENTER, number, theme::strong(25.0), colour);
+    }
+    let height = (rect.height() - 110.0).clamp(60.0, 300.0);
+    let place = Rect::from_min_size(pos2(rect.right() - 46.0, rect.top() + 36.0), vec2(26.0, height));
+    let ceiling_n = live.rig.gates.ceiling_n;
+    let (measured_n, rendered_n) =
+        live.tick.as_ref().map_or((0.0, 0.0), |tick| (tick.measured_n.norm(), tick.rendered_n.norm()));
+    gauge(painter, place, measured_n, rendered_n, ceiling_n);
+    let line_y = place.bottom() - place.height() / 1.25;
+    let words = format!("ceiling\n{ceiling_n:.0} N");
+    painter.text(pos2(place.left() - 8.0, line_y), Align2::RIGHT_CENTER, words, theme::regular(12.5), theme::TEXT_WEAK);
+}
+
+fn hint(painter: &Painter, rect: Rect, view: &SceneView) {
+    let (words, colour) = match &view.problem {
+        Some(problem) => (format!("The 3-D view cannot be drawn by this graphics driver: {problem}"), theme::TEXT),
+        None => ("Drag to turn, wheel to zoom, double click to reset".to_owned(), theme::TEXT_WEAK),
+    };
+    painter.text(rect.left_bottom() + vec2(16.0, -12.0), Align2::LEFT_BOTTOM, words, theme::regular(12.5), colour);
+}

@@ -1,0 +1,216 @@
+//! What stands on the stage: tissue, targets, trocar, instrument, forces, trail. Made anew each frame from one tick.
+
+use egui::Color32;
+use nalgebra::Vector3;
+use nima::config::Scene;
+
+use super::mesh::{Material, Mesh, Paint};
+use crate::console::theme;
+
+/// Length of a force arrow, m per N.
+pub const ARROW_M_PER_N: f32 = 0.014;
+/// Below this a force has no arrow: it would be noise, N.
+const ARROW_LEAST_N: f32 = 0.06;
+/// Radius of the instrument's shaft, m (a 5 mm instrument).
+pub const SHAFT_RADIUS_M: f32 = 0.0025;
+/// Width of the dent under a tip, m.
+const DENT_M: f32 = 0.0085;
+const SLAB_THICKNESS_M: f32 = 0.016;
+const CELLS: u32 = 64;
+
+const TISSUE: Paint = Paint(Color32::from_rgb(0xc4, 0x6f, 0x6a), Material::Tissue);
+const TISSUE_SIDE: Paint = Paint(Color32::from_rgb(0x9e, 0x55, 0x54), Material::Matte);
+const TRAY: Paint = Paint(Color32::from_rgb(0x2c, 0x33, 0x3c), Material::Matte);
+const TARGET: Paint = Paint(Color32::from_rgb(0xd9, 0xde, 0xe3), Material::Matte);
+const STEEL: Paint = Paint(Color32::from_rgb(0xb4, 0xbc, 0xc6), Material::Metal);
+const SLEEVE: Paint = Paint(Color32::from_rgb(0x4a, 0x53, 0x5f), Material::Matte);
+const TRAIL: Paint = Paint(Color32::from_rgb(0xc8, 0xcf, 0xd8), Material::Plain);
+
+/// What changes from frame to frame, in the workspace frame.
+#[derive(Clone, Copy, Debug)]
+pub struct Pose {
+    /// Tip of the instrument, m.
+    pub tip_m: Vector3<f32>,
+    /// Force measured at it, N.
+    pub measured_n: Vector3<f32>,
+    /// Force rendered to the hand, N.
+    pub rendered_n: Vector3<f32>,
+}
+
+/// How far the surface is pushed down under a tip and around it.
+#[derive(Clone, Copy, Debug)]
+pub struct Dent {
+    at_m: [f32; 2],
+    depth_m: f32,
+}
+
+impl Dent {
+    /// The dent of a tip in the scene's tissue; none beside it or above it.
+    pub fn new(scene: &Scene, tip_m: &Vector3<f32>) -> Self {
+        let depth_m = scene.tissue.map_or(0.0, |tissue| {
+            let [x_m, y_m] = tissue.size_m.map(|x| 0.5 * x as f32);
+            let over = tip_m.x.abs() <= x_m && tip_m.y.abs() <= y_m;
+            if over { (tissue.surface_z_m as f32 - tip_m.z).clamp(0.0, SLAB_THICKNESS_M * 0.9) } else { 0.0 }
+        });
+        Self { at_m: [tip_m.x, tip_m.y], depth_m }
+    }
+
+    /// Height change at a place, m: down under the tip, a slight bulge around, as for a soft body that keeps its volume.
+    pub fn lift_m(&self, x: f32, y: f32) -> f32 {
+        let q = ((x - self.at_m[0]).powi(2) + (y - self.at_m[1]).powi(2)) / (DENT_M * DENT_M);
+        -self.depth_m * (1.0 - 0.22 * q) * (-q / 1.5).exp()
+    }
+
+    /// Upward normal of the deformed surface.
+    fn normal(&self, x: f32, y: f32) -> Vector3<f32> {
+        const STEP: f32 = 2e-4;
+        let slope = |dx, dy| (self.lift_m(x + dx, y + dy) - self.lift_m(x - dx, y - dy)) / (2.0 * STEP);
+        Vector3::new(-slope(STEP, 0.0), -slope(0.0, STEP), 1.0).normalize()
+    }
+}
+
+/// Builds the whole stage.
+pub fn build(scene: &Scene, pose: &Pose, trail: &[Vector3<f32>], eye_m: &Vector3<f32>, right: &Vector3<f32>) -> Mesh {
+    let mut mesh = Mesh { vertices: Vec::with_capacity(9000), indices: Vec::with_capacity(45_000) };
+    let dent = Dent::new(scene, &pose.tip_m);
+    tissue(&mut mesh, scene, &dent);
+    for target in &scene.targets_m {
+        let target = target.cast::<f32>();
+        mesh.ring(target, [0.0055, 0.0008], |x, y| dent.lift_m(x, y), TARGET);
+    }
+    mesh.ribbon(trail, eye_m, |i| 0.0011 * (i as f32 / trail.len() as f32), TRAIL);
+    instrument(&mut mesh, &scene.trocar_m.cast(), &pose.tip_m);
+    arrows(&mut mesh, pose, right);
+    mesh
+}
+
+fn tissue(mesh: &mut Mesh, scene: &Scene, dent: &Dent) {
+    let Some(tissue) = scene.tissue else { return };
+    let [x_m, y_m] = tissue.size_m.map(|x| 0.5 * x as f32);
+    let top_m = tissue.surface_z_m as f32;
+    let bottom_m = top_m - SLAB_THICKNESS_M;
+    mesh.cuboid(
+        Vector3::new(-x_m - 0.012, -y_m - 0.012, bottom_m - 0.004),
+        Vector3::new(x_m + 0.012, y_m + 0.012, bottom_m),
+        TRAY,
+    );
+    let place = |i: u32, half_m: f32| half_m * (2.0 * i as f32 / CELLS as f32 - 1.0);
+    let first = mesh.vertices.len() as u32;
+    for row in 0..=CELLS {
+        for column in 0..=CELLS {
+            let (x, y) = (place(column, x_m), place(row, y_m));
+            let position = Vector3::new(x, y, top_m + dent.lift_m(x, y));
+            mesh.vertex(position, dent.normal(x, y), TISSUE);
+        }
+    }
+    mesh.sheet(first, CELLS, CELLS);
+    for (sign, along_x) in [(-1.0, true), (1.0, true), (-1.0, false), (1.0, false)] {
+        let first = mesh.vertices.len() as u32;
+        let normal = if along_x { Vector3::new(0.0, sign, 0.0) } else { Vector3::new(sign, 0.0, 0.0) };
+        for low in [false, true] {
+            for i in 0..=CELLS {
+                let (x, y) = if along_x { (place(i, x_m), sign * y_m) } else { (sign * x_m, place(i, y_m)) };
+                let z = if low { bottom_m } else { top_m + dent.lift_m(x, y) };
+                mesh.vertex(Vector3::new(x, y, z), normal, TISSUE_SIDE);
+            }
+        }
+        mesh.sheet(first, 1, CELLS);
+    }
+}
+
+/// Shaft through the trocar to a blunt tip whose lowest point is the tip.
+fn instrument(mesh: &mut Mesh, trocar_m: &Vector3<f32>, tip_m: &Vector3<f32>) {
+    let Some(axis) = (trocar_m - tip_m).try_normalize(1e-4) else { return };
+    let knob = tip_m + Vector3::z() * SHAFT_RADIUS_M;
+    mesh.sphere(knob, SHAFT_RADIUS_M, 12, STEEL);
+    mesh.tube([knob, knob + axis * 0.012], [SHAFT_RADIUS_M * 0.8; 2], 20, STEEL);
+    mesh.tube([knob + axis * 0.011, knob + axis * 0.014], [SHAFT_RADIUS_M, SHAFT_RADIUS_M * 1.15], 20, STEEL);
+    mesh.tube([knob + axis * 0.014, trocar_m + axis * 0.12], [SHAFT_RADIUS_M * 1.15; 2], 20, SHAFT);
+    mesh.tube([trocar_m - axis * 0.012, trocar_m + axis * 0.012], [SHAFT_RADIUS_M * 2.0; 2], 24, SLEEVE);
+    mesh.tube([trocar_m + axis * 0.012, trocar_m + axis * 0.018], [SHAFT_RADIUS_M * 4.0; 2], 28, SLEEVE);
+}
+
+const SHAFT: Paint = Paint(Color32::from_rgb(0x6d, 0x76, 0x82), Material::Metal);
+
+/// Both arrows begin beside the tip, left and right of it as the operator sees it, so that equal forces stay two arrows.
+pub fn arrow_base_m(pose: &Pose, right: &Vector3<f32>, rendered: bool) -> Vector3<f32> {
+    let side = if rendered { 0.0065 } else { -0.0065 };
+    pose.tip_m + right * side + Vector3::z() * 0.002
+}
+
+fn arrows(mesh: &mut Mesh, pose: &Pose, right: &Vector3<f32>) {
+    measured_arrow(mesh, arrow_base_m(pose, right, false), &pose.measured_n);
+    rendered_arrow(mesh, arrow_base_m(pose, right, true), &pose.rendered_n);
+}
+
+/// One smooth shaft, one cone.
+fn measured_arrow(mesh: &mut Mesh, base: Vector3<f32>, force_n: &Vector3<f32>) {
+    let paint = Paint(theme::MEASURED, Material::Plain);
+    let size_n = force_n.norm();
+    let Some(along) = force_n.try_normalize(ARROW_LEAST_N) else { return };
+    let length = size_n * ARROW_M_PER_N;
+    let head = 0.007_f32.min(length * 0.6);
+    mesh.tube([base, base + along * (length - head)], [0.0011; 2], 14, paint);
+    mesh.tube([base + along * (length - head), base + along * length], [0.0030, 0.0], 18, paint);
+}
+
+/// A beaded shaft and a double cone: told from the other by its shape alone.
+fn rendered_arrow(mesh: &mut Mesh, base: Vector3<f32>, force_n: &Vector3<f32>) {
+    const BEAD_M: f32 = 0.0055;
+    let paint = Paint(theme::RENDERED, Material::Plain);
+    let size_n = force_n.norm();
+    let Some(along) = force_n.try_normalize(ARROW_LEAST_N) else { return };
+    let length = size_n * ARROW_M_PER_N;
+    let head = 0.009_f32.min(length * 0.6);
+    let shaft = length - head;
+    let beads = (shaft / BEAD_M).ceil().max(1.0) as u32;
+    for bead in 0..beads {
+        let from = bead as f32 * shaft / beads as f32;
+        let to = from + 0.62 * shaft / beads as f32;
+        mesh.tube([base + along * from, base + along * to], [0.0016; 2], 14, paint);
+    }
+    for half in [0.0, 0.45] {
+        let from = shaft + head * half;
+        mesh.tube([base + along * from, base + along * (from + head * 0.55)], [0.0030, 0.0], 18, paint);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn pose(z: f32, force_n: Vector3<f32>) -> Pose {
+        Pose { tip_m: Vector3::new(0.0, 0.018, z), measured_n: force_n, rendered_n: force_n * 0.5 }
+    }
+
+    #[test]
+    fn the_dent_is_as_deep_as_the_tip_and_local() {
+        let scene = Scene::load("peg_transfer").unwrap();
+        let dent = Dent::new(&scene, &Vector3::new(0.01, 0.0, -0.006));
+        assert!((dent.lift_m(0.01, 0.0) + 0.006).abs() < 1e-6);
+        assert!(dent.lift_m(0.05, 0.0).abs() < 1e-5);
+        let above = Dent::new(&scene, &Vector3::new(0.01, 0.0, 0.006));
+        assert!(above.lift_m(0.01, 0.0).abs() < 1e-9);
+        let beside = Dent::new(&scene, &Vector3::new(0.2, 0.0, -0.006));
+        assert!(beside.lift_m(0.2, 0.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn a_scene_without_tissue_has_none_and_no_force_has_no_arrow() {
+        let full = Scene::load("peg_transfer").unwrap();
+        let bare = Scene::load("free_motion").unwrap();
+        let size = |scene: &Scene, force_n| {
+            build(scene, &pose(0.01, force_n), &[], &Vector3::new(0.0, -0.3, 0.2), &Vector3::x()).vertices.len()
+        };
+        assert!(size(&full, Vector3::zeros()) > size(&bare, Vector3::zeros()) + 4000);
+        assert!(size(&bare, Vector3::z()) > size(&bare, Vector3::z() * 0.01));
+    }
+
+    #[test]
+    fn what_is_not_finite_reaches_no_arrow() {
+        let scene = Scene::load("free_motion").unwrap();
+        let mesh =
+            build(&scene, &pose(0.01, Vector3::repeat(f32::NAN)), &[], &Vector3::new(0.0, -0.3, 0.2), &Vector3::x());
+        assert!(mesh.vertices.iter().all(|v| v.position.iter().all(|x| x.is_finite())));
+    }
+}

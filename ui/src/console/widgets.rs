@@ -1,0 +1,140 @@
+//! Small parts that several panels share.
+
+use egui::{Align, Color32, Layout, Painter, Pos2, Rect, Response, RichText, Sense, Stroke, Ui, Vec2, pos2, vec2};
+
+use super::theme;
+
+/// A card with a heading that explains itself on hover.
+pub fn card<R>(ui: &mut Ui, title: &str, meaning: &str, content: impl FnOnce(&mut Ui) -> R) -> R {
+    let inner = theme::card().show(ui, |ui| {
+        ui.set_width(ui.available_width());
+        ui.label(RichText::new(title).text_style(egui::TextStyle::Heading)).on_hover_text(meaning);
+        ui.add_space(2.0);
+        content(ui)
+    });
+    ui.add_space(theme::GAP);
+    inner.inner
+}
+
+/// A name on the left, its value on the right; both explain themselves on hover.
+pub fn figure(ui: &mut Ui, name: &str, value: impl Into<String>, meaning: &str) -> Response {
+    let row = ui.horizontal(|ui| {
+        ui.label(weak(name)).on_hover_text(meaning);
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            ui.label(RichText::new(value.into()).font(theme::strong(14.0))).on_hover_text(meaning);
+        });
+    });
+    row.response
+}
+
+/// Text that explains.
+pub fn weak(text: impl Into<String>) -> RichText {
+    RichText::new(text).color(theme::TEXT_WEAK)
+}
+
+/// Small text that explains.
+pub fn small(text: impl Into<String>) -> RichText {
+    weak(text).text_style(egui::TextStyle::Small)
+}
+
+/// Shapes that carry a meaning together with their colour.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Sign {
+    /// At rest.
+    Ring,
+    /// Running.
+    Disc,
+    /// Stopped.
+    Square,
+    /// Something is wrong.
+    Triangle,
+    /// Halt.
+    Octagon,
+}
+
+/// Draws a sign of this radius.
+pub fn sign(painter: &Painter, sign: Sign, centre: Pos2, radius: f32, colour: Color32) {
+    match sign {
+        Sign::Ring => {
+            painter.circle_stroke(centre, radius * 0.85, Stroke::new(radius * 0.3, colour));
+        }
+        Sign::Disc => {
+            painter.circle_filled(centre, radius, colour);
+        }
+        Sign::Square => {
+            painter.rect_filled(Rect::from_center_size(centre, Vec2::splat(radius * 1.7)), 2.0, colour);
+        }
+        Sign::Triangle => {
+            let points = [vec2(0.0, -1.05), vec2(1.1, 0.85), vec2(-1.1, 0.85)].map(|p| centre + p * radius);
+            painter.add(egui::Shape::convex_polygon(points.to_vec(), colour, Stroke::NONE));
+        }
+        Sign::Octagon => {
+            let points = (0..8).map(|i| {
+                let angle = std::f32::consts::TAU * (i as f32 + 0.5) / 8.0;
+                centre + Vec2::angled(angle) * radius * 1.08
+            });
+            painter.add(egui::Shape::convex_polygon(points.collect(), colour, Stroke::NONE));
+        }
+    }
+}
+
+/// Allocates room for a sign in a row and draws it.
+pub fn sign_ui(ui: &mut Ui, what: Sign, radius: f32, colour: Color32) -> Response {
+    let (rect, response) = ui.allocate_exact_size(Vec2::splat(radius * 2.4), Sense::hover());
+    sign(ui.painter(), what, rect.center(), radius, colour);
+    response
+}
+
+/// The sign of a force as it stands beside its name: one line with a cone, or a beaded line with a double cone.
+pub fn force_sign(painter: &Painter, rect: Rect, rendered: bool) {
+    let colour = if rendered { theme::RENDERED } else { theme::MEASURED };
+    let (y, left, right) = (rect.center().y, rect.left(), rect.right());
+    let cone = |tip: f32| {
+        let points = vec![pos2(tip, y), pos2(tip - 9.0, y - 5.0), pos2(tip - 9.0, y + 5.0)];
+        painter.add(egui::Shape::convex_polygon(points, colour, Stroke::NONE));
+    };
+    let stroke = Stroke::new(3.0, colour);
+    if rendered {
+        for bead in 0..3 {
+            let x = left + bead as f32 * 7.0;
+            painter.hline(x..=x + 4.5, y, stroke);
+        }
+        cone(right - 6.0);
+    } else {
+        painter.hline(left..=right - 8.0, y, stroke);
+    }
+    cone(right);
+}
+
+/// A bar from the left of `rect` over this share of its width, in a groove.
+pub fn bar(painter: &Painter, rect: Rect, share: f64, colour: Color32) {
+    painter.rect_filled(rect, 2.0, theme::GROOVE);
+    let share = if share.is_finite() { share.clamp(0.0, 1.0) as f32 } else { 1.0 };
+    if share > 0.0 {
+        let filled = Rect::from_min_size(rect.min, vec2((rect.width() * share).max(2.0), rect.height()));
+        painter.rect_filled(filled, 2.0, colour);
+    }
+}
+
+/// A number with about three digits, in the unit given; large ones in powers of ten.
+pub fn three_digits(value: f64) -> String {
+    match value.abs() {
+        x if !x.is_finite() => "not finite".to_owned(),
+        x if x >= 1e5 => format!("{value:.1e}"),
+        x if x >= 100.0 => format!("{value:.0}"),
+        x if x >= 10.0 => format!("{value:.1}"),
+        x if x >= 1.0 => format!("{value:.2}"),
+        _ => format!("{value:.3}"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::three_digits;
+
+    #[test]
+    fn numbers_keep_three_digits() {
+        let texts = [0.012_34, 1.234, 12.34, 123.4, 1.2e9, f64::NAN].map(three_digits);
+        assert_eq!(texts, ["0.012", "1.23", "12.3", "123", "1.2e9", "not finite"]);
+    }
+}

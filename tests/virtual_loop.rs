@@ -1,4 +1,5 @@
 //! The whole loop on the virtual clock: what it does over whole scenes, faults included.
+#![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use nalgebra::Vector3;
 use nima::{

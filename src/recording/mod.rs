@@ -113,14 +113,14 @@ impl Recording {
     /// Reads a CSV file under this mapping.
     pub fn read(path: &Path, mapping: &Mapping) -> Result<Self, RecordingError> {
         let table = Table::read(path)?;
-        let time = table.column(mapping.source("t_s"), "time", "t")?;
-        let axes = axes(&table, mapping)?;
+        let time = table.column(&mapping.source("t_s"), "time", "t")?;
+        let axes = axes(&table, mapping);
         let mut columns = Vec::with_capacity(axes.len());
         for &axis in &axes {
             let name = AXIS_NAMES[axis];
-            let position = table.column(mapping.source(&format!("{name}_m")), "position", name)?;
+            let position = table.column(&mapping.source(&format!("{name}_m")), "position", name)?;
             let force_key = format!("f{name}");
-            let force = table.column(mapping.source(&format!("{force_key}_n")), "force", &force_key)?;
+            let force = table.column(&mapping.source(&format!("{force_key}_n")), "force", &force_key)?;
             columns.push((position, force));
         }
         let mut samples = Vec::with_capacity(table.rows());
@@ -149,14 +149,14 @@ impl Recording {
     }
 }
 
-/// The axes of which position or force is there; a lone half is an error that names the other.
-fn axes(table: &Table, mapping: &Mapping) -> Result<Vec<usize>, RecordingError> {
+/// The axes of which position or force is there; of a lone half the other is then found missing.
+fn axes(table: &Table, mapping: &Mapping) -> Vec<usize> {
     let has = |name: &str| mapping.names(name) || table.has(mapping.source(name).column());
     let found: Vec<usize> = (0..AXES)
         .filter(|&axis| has(&format!("{}_m", AXIS_NAMES[axis])) || has(&format!("f{}_n", AXIS_NAMES[axis])))
         .collect();
     // With nothing at all, ask for x: the error then names the columns there are.
-    Ok(if found.is_empty() { vec![0] } else { found })
+    if found.is_empty() { vec![0] } else { found }
 }
 
 /// One over the median time step, rounded to a millionth so that 0.001 s steps give 1000 Hz.

@@ -45,7 +45,7 @@ impl Table {
         self.header.iter().any(|name| name == column)
     }
 
-    pub(super) fn column(&self, source: Source, purpose: &'static str, key: &str) -> Result<Column, RecordingError> {
+    pub(super) fn column(&self, source: &Source, purpose: &'static str, key: &str) -> Result<Column, RecordingError> {
         let name = source.column().to_owned();
         match self.header.iter().position(|found| found == name) {
             Some(index) => Ok(Column { index, name, scale: source.scale() }),

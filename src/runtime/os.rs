@@ -41,6 +41,7 @@ pub(super) fn prepare_thread() -> Scheduling {
 }
 
 #[inline(never)]
+#[expect(clippy::large_stack_arrays, reason = "its only purpose is to touch the stack")]
 fn touch_stack() {
     let mut stack = [0_u8; STACK_TOUCHED];
     for page in stack.chunks_mut(4096) {
@@ -92,8 +93,8 @@ pub(super) fn monotonic_ns() -> u64 {
 #[cfg(target_os = "linux")]
 pub(super) fn sleep_until_ns(deadline_ns: u64) {
     let deadline = libc::timespec {
-        tv_sec: (deadline_ns / 1_000_000_000) as libc::time_t,
-        tv_nsec: (deadline_ns % 1_000_000_000) as libc::c_long,
+        tv_sec: (deadline_ns / 1_000_000_000).cast_signed(),
+        tv_nsec: (deadline_ns % 1_000_000_000).cast_signed(),
     };
     // SAFETY: `deadline` is valid for the call; an early return by a signal is repeated.
     while unsafe {

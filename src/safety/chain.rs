@@ -60,6 +60,7 @@ pub struct Request {
 
 /// What each gate did in one tick, in the order of the chain. `false` everywhere means the force passed untouched.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[expect(clippy::struct_excessive_bools, reason = "one independent flag per gate is what it reports")]
 pub struct GateReport {
     /// The loop is not engaged: no force.
     pub not_permitted: bool,
@@ -158,7 +159,7 @@ impl Chain {
         let mut report = GateReport::default();
         self.ramp_gain();
         report.gain = self.gain;
-        let asked = self.admitted(request, &mut report);
+        let asked = Self::admitted(request, &mut report);
         let aged = asked * self.freshness(request.age_s, &mut report);
         let moving = self.past_dead_band(aged, request.speed_m_s, &mut report);
         if !request.permitted || report.invalid {
@@ -176,7 +177,7 @@ impl Chain {
         self.gain += (self.settings.gain - self.gain).clamp(-step, step);
     }
 
-    fn admitted(&self, request: &Request, report: &mut GateReport) -> Vector3<f64> {
+    fn admitted(request: &Request, report: &mut GateReport) -> Vector3<f64> {
         report.not_permitted = !request.permitted;
         match request.force_n {
             Some(force_n) if force_n.iter().all(|f| f.is_finite()) && force_n.amax() <= PLAUSIBLE_N => force_n,

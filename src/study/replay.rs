@@ -173,15 +173,17 @@ pub struct Options {
 /// Replays `recording`; `each` sees every row in order.
 pub fn replay(recording: &Recording, options: &Options, mut each: impl FnMut(&Row)) -> Result<Figures, ReplayError> {
     let rate_hz = recording.rate_hz;
-    let delay = (options.delay_s * rate_hz).round() as usize;
-    let settings = Settings {
+    let mut settings = Settings {
         rate_hz,
         window_s: options.window_s,
-        delay_s: delay as f64 / rate_hz,
+        delay_s: options.delay_s,
         max_degree: options.max_degree,
         axes: recording.axes.len(),
         ..Settings::default()
     };
+    settings.validate()?;
+    let delay = (options.delay_s * rate_hz).round() as usize;
+    settings.delay_s = delay as f64 / rate_hz;
     let mut identifier = Identifier::new(&settings)?;
     let window = (options.window_s * rate_hz).round() as usize;
     let needed = window + delay + 1;

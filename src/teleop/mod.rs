@@ -270,13 +270,11 @@ impl Loop {
 
     /// The follower's motion now as the leader can know it: its command, as late as the follower is observed to be.
     fn motion_at_leader(&mut self, seen: &Inputs, tip_command_m: Option<Vector3<f64>>) -> Vector3<f64> {
-        match tip_command_m {
-            Some(command_m) => self.tracking.step(&command_m, &seen.tip_m),
-            None => {
-                self.tracking.interrupt();
-                seen.tip_m
-            }
+        if let Some(command_m) = tip_command_m {
+            return self.tracking.step(&command_m, &seen.tip_m);
         }
+        self.tracking.interrupt();
+        seen.tip_m
     }
 
     fn tick(

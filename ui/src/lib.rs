@@ -1,3 +1,4 @@
-//! The faces of NIMA Console: the operator's window.
+//! The faces of NIMA Console: the command line and the window.
 
+pub mod command;
 pub mod console;

@@ -1,2 +1,7 @@
-//! x
-fn main(){}
+//! The binary `nima`.
+
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    nima_console::command::main()
+}

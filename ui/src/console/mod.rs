@@ -18,7 +18,6 @@ pub mod widgets;
 
 use std::{path::PathBuf, time::Duration};
 
-use anyhow::Context as _;
 use nima::{
     config::{Rig, Scene},
     runtime::Handle,
@@ -52,8 +51,13 @@ pub fn run(handle: Handle, rig: Rig, scene: Scene, options: Options) -> anyhow::
     };
     let create: eframe::AppCreator<'_> =
         Box::new(move |cc| Ok(Box::new(ConsoleApp::new(cc, handle, rig, scene).with_options(options))));
-    // eframe's error is not Sync; its words are what matters.
-    eframe::run_native("NIMA Console", native, create)
-        .map_err(|error| anyhow::anyhow!("{error}"))
-        .context("the window could not be opened; on a machine without a display use `nima run`")
+    eframe::run_native("NIMA Console", native, create).map_err(|error| NoWindow { reason: error.to_string() }.into())
+}
+
+/// No window could be opened: there is no display, or it has no usable OpenGL.
+#[derive(Debug, thiserror::Error)]
+#[error("{reason}")]
+pub struct NoWindow {
+    /// What the window system said (its own error cannot cross threads; its words are what matters).
+    pub reason: String,
 }

@@ -1,0 +1,140 @@
+//! `nima identify`: identification over a recording.
+
+use std::{
+    fmt::Write as _,
+    io::{self, Write},
+    path::PathBuf,
+};
+
+use anyhow::{Context as _, bail};
+use clap::Args;
+use nima::{
+    impedance::{MAX_DEGREE, Mode},
+    recording::{AXIS_NAMES, Mapping, Recording, write_atomically},
+    study::replay::{Figures, Options, Row, replay},
+};
+
+use super::output;
+
+#[derive(Debug, Args)]
+pub(super) struct Arguments {
+    /// CSV file with `t_s`, `x_m, y_m, z_m`, `fx_n, fy_n, fz_n` (one to three axes)
+    recording: PathBuf,
+    /// Other column names, with an optional factor: `x=px_mm*0.001`
+    #[arg(long, value_name = "NAME=COLUMN[*SCALE]")]
+    map: Vec<String>,
+    /// Rendering mode: literal, linear, dfr or anchored
+    #[arg(long, default_value = "anchored")]
+    mode: Mode,
+    /// Length of the identification window, ms
+    #[arg(long, value_name = "MS", default_value_t = 300.0, allow_negative_numbers = true)]
+    window_ms: f64,
+    /// One-way delay of the link, ms
+    #[arg(long, value_name = "MS", default_value_t = 0.0, allow_negative_numbers = true)]
+    delay_ms: f64,
+    /// Highest polynomial degree
+    #[arg(long, value_name = "N", default_value_t = MAX_DEGREE)]
+    max_degree: usize,
+    /// Write one row per sample to this CSV file
+    #[arg(long, value_name = "TRACE.csv")]
+    out: Option<PathBuf>,
+    /// Print the figures as one JSON object
+    #[arg(long)]
+    json: bool,
+}
+
+pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
+    let recording = Recording::read(&arguments.recording, &Mapping::parse(&arguments.map)?)?;
+    if arguments.out.as_deref().is_some_and(|out| same_file(out, &arguments.recording)) {
+        bail!("--out {} is the recording itself; choose another file", arguments.recording.display());
+    }
+    let options = Options {
+        mode: arguments.mode,
+        window_s: arguments.window_ms * 1e-3,
+        delay_s: arguments.delay_ms * 1e-3,
+        max_degree: arguments.max_degree,
+    };
+    let mut trace = header(&recording);
+    let keep = arguments.out.is_some();
+    let figures = replay(&recording, &options, |row| {
+        if keep {
+            push_row(&mut trace, row, recording.axes.len());
+        }
+    })?;
+    if let Some(out) = &arguments.out {
+        let fill = |file: &mut dyn Write| -> io::Result<()> { file.write_all(trace.as_bytes()) };
+        write_atomically(out, fill).with_context(|| format!("cannot write the trace {}", out.display()))?;
+    }
+    if arguments.json { output::json(&figures) } else { output::line(&in_words(&figures)) }
+}
+
+fn same_file(a: &std::path::Path, b: &std::path::Path) -> bool {
+    matches!((a.canonicalize(), b.canonicalize()), (Ok(a), Ok(b)) if a == b)
+}
+
+fn header(recording: &Recording) -> String {
+    let mut text = String::from("t_s");
+    for prefix in ["f", "r", "h"] {
+        for &axis in &recording.axes {
+            write!(text, ",{prefix}{}_n", AXIS_NAMES[axis]).ok();
+        }
+    }
+    text.push_str(",degree,condition,gate\n");
+    text
+}
+
+fn push_row(trace: &mut String, row: &Row, axes: usize) {
+    // Writing into a String cannot fail. Rust prints the shortest digits that read back to the same number.
+    write!(trace, "{}", row.t_s).ok();
+    for force in [&row.measured, &row.rendered, &row.held] {
+        for lane in 0..axes {
+            write!(trace, ",{:e}", force[lane]).ok();
+        }
+    }
+    writeln!(trace, ",{},{:e},{}", row.degree, row.condition, row.gate).ok();
+}
+
+fn in_words(figures: &Figures) -> String {
+    let ratio = if figures.hold.mae > 0.0 { figures.error.mae / figures.hold.mae } else { f64::NAN };
+    let reconstruction = &figures.reconstruction;
+    let [d1, d2, d3, d4, d5] = figures.degree_share.map(|share| share * 100.0);
+    format!(
+        "{samples} samples at {rate:.1} Hz, axes {axes}; mode {mode}, window {window:.1} ms, delay {delay:.1} ms\n\
+         error at the horizon   mean {:.5}   sd {:.5}   p95 {:.5}   max {:.5}\n\
+         held force (DFR)       mean {:.5}   sd {:.5}   p95 {:.5}   max {:.5}\n\
+         rendered / held        {ratio:.3}\n\
+         in-window error        N=1 {:.6}   N=2 {:.6}   N=3 {:.6}   N=4 {:.6}   N=5 {:.6}   selected {:.6}\n\
+         degree chosen          N=1 {d1:.1} %   N=2 {d2:.1} %   N=3 {d3:.1} %   N=4 {d4:.1} %   N=5 {d5:.1} %   nonlinear {:.1} %\n\
+         condition              p50 {:.3e}   p95 {:.3e}   max {:.3e};   rejected {}\n\
+         one tick               p50 {:.1} us   p99 {:.1} us   max {:.1} us\n\
+         (units of the recording; in-window errors are not evidence of accuracy: they are fitted on the sample they are tested on)",
+        figures.error.mae,
+        figures.error.sd,
+        figures.error.p95,
+        figures.error.max,
+        figures.hold.mae,
+        figures.hold.sd,
+        figures.hold.p95,
+        figures.hold.max,
+        reconstruction.degree_1.mae,
+        reconstruction.degree_2.mae,
+        reconstruction.degree_3.mae,
+        reconstruction.degree_4.mae,
+        reconstruction.degree_5.mae,
+        reconstruction.selected.mae,
+        figures.nonlinear_share * 100.0,
+        figures.condition.p50,
+        figures.condition.p95,
+        figures.condition.max,
+        figures.rejected,
+        figures.tick_us.p50,
+        figures.tick_us.p99,
+        figures.tick_us.max,
+        samples = figures.samples,
+        rate = figures.rate_hz,
+        axes = figures.axes.join(", "),
+        mode = figures.mode,
+        window = figures.window_ms,
+        delay = figures.delay_ms,
+    )
+}

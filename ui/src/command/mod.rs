@@ -1,0 +1,73 @@
+//! The command line of `nima`: one file per subcommand. Failure is one clear line on stderr and a non-zero exit.
+
+mod console;
+mod identify;
+mod output;
+mod run;
+
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+
+/// Exit code for "no window can be opened" (`EX_UNAVAILABLE`): the start script falls back to `nima run` on it.
+const NO_WINDOW: u8 = 69;
+
+/// Operator console for haptic teleoperation in laparoscopy. Research software, not for clinical use.
+#[derive(Debug, Parser)]
+#[command(name = "nima", version, about, max_term_width = 100)]
+struct Cli {
+    #[command(subcommand)]
+    command: Option<Command>,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// Open the console (also what plain `nima` does)
+    Console(console::Arguments),
+    /// Run the same loop without a screen, then print timing and error figures
+    Run(run::Arguments),
+    /// Identify impedance over a recording, causally, sample by sample
+    Identify(identify::Arguments),
+}
+
+/// Tells what was wrong with the arguments in one line: the complaint without the usage text that follows it.
+fn usage(error: &clap::Error) -> ExitCode {
+    let text = error.to_string();
+    let complaint = text.lines().take_while(|line| !line.starts_with("Usage:")).collect::<Vec<_>>().join(" ");
+    let complaint = complaint.split_whitespace().collect::<Vec<_>>().join(" ");
+    eprintln!(
+        "nima: {}; see --help",
+        complaint.trim_start_matches("error: ").trim_end_matches(" For more information, try '--help'.")
+    );
+    ExitCode::from(2)
+}
+
+/// Runs the command line of this process.
+pub fn main() -> ExitCode {
+    let command = match Cli::try_parse() {
+        Ok(cli) => cli.command.unwrap_or_else(|| Command::Console(console::Arguments::default())),
+        Err(error) if error.use_stderr() => return usage(&error),
+        // --help and --version.
+        Err(error) => error.exit(),
+    };
+    let result = match command {
+        Command::Console(arguments) => console::run(&arguments),
+        Command::Run(arguments) => run::run(&arguments),
+        Command::Identify(arguments) => identify::run(&arguments),
+    };
+    match result {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            // One line: causes joined, line breaks of other people's messages folded.
+            let line = format!("{error:#}").split_whitespace().collect::<Vec<_>>().join(" ");
+            if error.is::<crate::console::NoWindow>() {
+                eprintln!(
+                    "nima: no window can be opened ({line}); start it on a desktop, or use `nima run` in this terminal"
+                );
+                return ExitCode::from(NO_WINDOW);
+            }
+            eprintln!("nima: {line}");
+            ExitCode::FAILURE
+        }
+    }
+}

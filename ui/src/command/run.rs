@@ -1,0 +1,166 @@
+//! `nima run`: the loop without a screen, with a live status line and figures at the end.
+
+use std::{
+    io::{self, IsTerminal as _, Write as _},
+    sync::{
+        Arc,
+        atomic::{AtomicBool, Ordering},
+    },
+    thread,
+    time::{Duration, Instant},
+};
+
+use anyhow::Context as _;
+use clap::Args;
+use nima::{
+    config::{Rig, Scene},
+    impedance::Mode,
+    runtime::{self, Plan, Quantiles, Summary, Tick},
+};
+
+use super::output;
+
+#[derive(Debug, Args)]
+pub(super) struct Arguments {
+    /// Rig: an embedded name or a TOML file
+    #[arg(long, value_name = "RIG", default_value = "simulated")]
+    rig: String,
+    /// Scene: an embedded name or a TOML file
+    #[arg(long, value_name = "SCENE", default_value = "peg_transfer")]
+    scene: String,
+    /// Loop time to run; without it, until Ctrl-C (real clock) or 60 s (virtual clock)
+    #[arg(long, value_name = "S", value_parser = positive_seconds, allow_negative_numbers = true)]
+    seconds: Option<f64>,
+    /// Rendering mode: literal, linear, dfr or anchored (default: the rig's)
+    #[arg(long)]
+    mode: Option<Mode>,
+    /// One-way delay of the link in ms (default: the rig's)
+    #[arg(long, value_name = "D", allow_negative_numbers = true)]
+    delay_ms: Option<f64>,
+    /// Run on the virtual clock, as fast as it goes
+    #[arg(long = "virtual")]
+    virtual_clock: bool,
+    /// Print the figures as one JSON object
+    #[arg(long)]
+    json: bool,
+}
+
+/// A finite number of seconds above zero.
+pub(super) fn positive_seconds(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(seconds) if seconds > 0.0 && seconds <= 1e7 => Ok(seconds),
+        _ => Err("give a number of seconds above 0".to_owned()),
+    }
+}
+
+pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
+    let mut rig = Rig::load(&arguments.rig)?;
+    rig.mode = arguments.mode.unwrap_or(rig.mode);
+    rig.delay_s = arguments.delay_ms.map_or(rig.delay_s, |delay_ms| delay_ms * 1e-3);
+    rig.validate()?;
+    let plan = Plan { rig, scene: Scene::load(&arguments.scene)?, engage: true };
+    let summary = if arguments.virtual_clock {
+        runtime::run_virtual(&plan, arguments.seconds.unwrap_or(60.0), |_| None)?
+    } else {
+        on_the_real_clock(&plan, arguments.seconds, arguments.json)?
+    };
+    if arguments.json { output::json(&summary) } else { output::line(&in_words(&plan, &summary)) }
+}
+
+fn on_the_real_clock(plan: &Plan, seconds: Option<f64>, quiet: bool) -> anyhow::Result<Summary> {
+    let interrupted = Arc::new(AtomicBool::new(false));
+    let flag = Arc::clone(&interrupted);
+    ctrlc::set_handler(move || flag.store(true, Ordering::Relaxed)).context("Ctrl-C cannot be caught")?;
+    let handle = runtime::start(plan)?;
+    let mut status = StatusLine::new(!quiet);
+    let start = Instant::now();
+    let end = seconds.map(|seconds| start + Duration::from_secs_f64(seconds));
+    while handle.is_running() && !interrupted.load(Ordering::Relaxed) && end.is_none_or(|end| Instant::now() < end) {
+        let rest = end.map_or(Duration::MAX, |end| end.saturating_duration_since(Instant::now()));
+        thread::sleep(rest.min(Duration::from_millis(50)));
+        let mut newest = None;
+        handle.drain_ticks(|tick| newest = Some(*tick));
+        if let Some(tick) = newest {
+            status.show(&tick);
+        }
+    }
+    status.end();
+    handle.stop_and_join().context("the real-time thread died; its figures are lost")
+}
+
+/// One line on stderr that is rewritten in place; on a pipe one line a second.
+struct StatusLine {
+    wanted: bool,
+    terminal: bool,
+    last: Option<Instant>,
+}
+
+impl StatusLine {
+    fn new(wanted: bool) -> Self {
+        Self { wanted, terminal: io::stderr().is_terminal(), last: None }
+    }
+
+    fn show(&mut self, tick: &Tick) {
+        let pause = Duration::from_millis(if self.terminal { 100 } else { 1000 });
+        if !self.wanted || self.last.is_some_and(|last| last.elapsed() < pause) {
+            return;
+        }
+        self.last = Some(Instant::now());
+        let text = format!(
+            "{:8.1} s  {:8}  {:8}  measured {:5.2} N  rendered {:5.2} N  degree {}  missed {}",
+            tick.t_s,
+            tick.state.word(),
+            tick.mode,
+            tick.measured_n.norm(),
+            tick.rendered_n.norm(),
+            tick.identification.degree,
+            tick.missed,
+        );
+        let mut err = io::stderr().lock();
+        let written = if self.terminal { write!(err, "\r{text}") } else { writeln!(err, "{text}") };
+        written.and_then(|()| err.flush()).ok();
+    }
+
+    fn end(&self) {
+        if self.wanted && self.terminal && self.last.is_some() {
+            eprintln!();
+        }
+    }
+}
+
+fn in_words(plan: &Plan, summary: &Summary) -> String {
+    let times =
+        |q: &Quantiles| format!("p50 {:7.1}   p99 {:7.1}   p99.9 {:7.1}   max {:7.1}", q.p50, q.p99, q.p999, q.max);
+    let mut text = format!(
+        "{} on \"{}\", {} clock: {:.1} s, {} ticks, {} missed, {:.1} times real time\n\
+         link delay {:.0} ms, mode {}\n\
+         wake-up us  {}\n\
+         work us     {}\n\
+         rig us      {}\n\
+         error of each mode before the gates, against the force at the tip at the same instant:",
+        plan.scene.name,
+        plan.rig.name,
+        summary.clock,
+        summary.seconds,
+        summary.ticks,
+        summary.missed,
+        summary.speed,
+        plan.rig.delay_s * 1e3,
+        plan.rig.mode,
+        times(&summary.wake_us),
+        times(&summary.work_us),
+        times(&summary.rig_us),
+    );
+    for error in &summary.error {
+        let fields = format!(
+            "\n  {:8}  mean {:10.4} N   sd {:10.4} N   max {:10.4} N   invalid {}",
+            error.mode, error.mae_n, error.sd_n, error.max_n, error.invalid
+        );
+        text.push_str(&fields);
+    }
+    if let (Some(advice), "real") = (summary.scheduling.advice(), summary.clock) {
+        text.push_str("\nnote: ");
+        text.push_str(advice);
+    }
+    text
+}

@@ -2,7 +2,7 @@
 
 use super::{
     features::{Features, MOTION_COLUMNS},
-    messages::{AnchoredModel, clip},
+    messages::clip,
     settings::MAX_DELAY_S,
     solution::{Increments, Solution},
 };
@@ -58,14 +58,14 @@ impl Horizon {
         }
     }
 
-    /// Judges all candidates on the newest sample (`good`: the force is a measurement) and returns the model to send.
+    /// Judges all candidates on the newest sample (`good`: the force is a measurement); gives the columns of the best one.
     pub(super) fn step(
         &mut self,
         solution: &Solution,
         features: &Features,
         force_n: Lanes,
         good: bool,
-    ) -> AnchoredModel {
+    ) -> usize {
         if let Some(then) = self.past.get(self.delay_ticks.wrapping_sub(1)).filter(|_| good && self.delay_ticks > 0) {
             let change = force_n - then.force_n;
             let decayed = self.largest_change_n * (1.0 - self.forget);
@@ -89,8 +89,7 @@ impl Horizon {
         slot.features = *features;
         slot.force_n = force_n;
         slot.bound_n = bound_n;
-        let columns = self.choice();
-        AnchoredModel { columns: columns as u8, coefficients: solution.motion_coefficients(columns), bound_n }
+        self.choice()
     }
 
     /// The candidate with the least running error; 0 unless one is clearly better than no correction.

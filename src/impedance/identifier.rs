@@ -2,12 +2,13 @@
 
 use super::{
     MAX_DEGREE, Mode,
+    anchored::{BandMotion, Follower},
     factor::{Factor, MAX_ROW},
-    features::{self, Features, MOTION_COLUMNS},
+    features::{self, Features},
     gram::Gram,
     horizon::Horizon,
     literal::{self, LiteralSolver},
-    messages::{AnchoredModel, Excitation, LiteralModel, Parcel, Report, Sample, active},
+    messages::{Excitation, LiteralModel, Parcel, Report, Sample, active},
     settings::{MAX_DELAY_S, Settings, SettingsError},
     solution::Solution,
     track::{Track, usable_force, usable_position},
@@ -30,7 +31,7 @@ pub struct Identifier {
     last_force_n: Lanes,
     paper: Option<Paper>,
     anchored: Option<Anchored>,
-    sent: DelayLine<(Parcel, Features)>,
+    sent: DelayLine<(Parcel, BandMotion)>,
     forget: f64,
     parcel: Parcel,
     report: Report,
@@ -48,6 +49,7 @@ struct Anchored {
     ridge: f64,
     solution: Solution,
     horizon: Horizon,
+    follower: Follower,
 }
 
 impl Identifier {
@@ -72,6 +74,7 @@ impl Identifier {
                 ridge,
                 solution: Solution::new(columns),
                 horizon: Horizon::new(settings.rate_hz, settings.max_degree, delay_ticks),
+                follower: Follower::new(settings.rate_hz, delay_ticks),
             }
         });
         let max_delay = (MAX_DELAY_S * settings.rate_hz).ceil() as usize;
@@ -82,7 +85,7 @@ impl Identifier {
             last_force_n: Lanes::ZERO,
             paper,
             anchored,
-            sent: DelayLine::new(max_delay, (Parcel::BLANK, [Lanes::ZERO; MOTION_COLUMNS])),
+            sent: DelayLine::new(max_delay, (Parcel::BLANK, BandMotion::default())),
             forget: 1.0 - (-1.0 / (ERROR_MEMORY_S * settings.rate_hz)).exp(),
             parcel: Parcel::BLANK,
             report: Report::BLANK,
@@ -116,9 +119,9 @@ impl Identifier {
         self.parcel.force_n = self.last_force_n.vector();
         self.parcel.fresh = good;
         self.step_paper(&increments, usable);
-        self.step_anchored(&now, good, usable);
-        self.sent.push((self.parcel, now));
-        self.predict(&now, &increments, good);
+        let bands = self.step_anchored(&now, motion.x, good, usable);
+        self.sent.push((self.parcel, bands));
+        self.predict(&bands, &increments, good);
     }
 
     fn step_paper(&mut self, increments: &Features, usable: bool) {
@@ -143,8 +146,11 @@ impl Identifier {
         }
     }
 
-    fn step_anchored(&mut self, now: &Features, good: bool, usable: bool) {
-        let Some(Anchored { window, ridge, solution, horizon }) = &mut self.anchored else { return };
+    fn step_anchored(&mut self, now: &Features, position: Lanes, good: bool, usable: bool) -> BandMotion {
+        let Some(Anchored { window, ridge, solution, horizon, follower }) = &mut self.anchored else {
+            return BandMotion::default();
+        };
+        self.parcel.anchored = follower.step(position, self.last_force_n, good);
         let columns = solution.columns();
         let mut row = [Lanes::ZERO; MAX_ROW];
         if usable {
@@ -154,18 +160,18 @@ impl Identifier {
         }
         window.push(&row);
         solution.solve(window.current());
-        let model = horizon.step(solution, now, self.last_force_n, good);
-        self.parcel.anchored = model;
-        self.report.columns = model.columns;
-        self.report.degree = model.columns.div_ceil(3);
-        let condition = solution.condition(2.max(1 + usize::from(model.columns)));
+        let columns = horizon.step(solution, now, self.last_force_n, good);
+        self.report.columns = columns as u8;
+        self.report.degree = columns.div_ceil(3) as u8;
+        let condition = solution.condition(2.max(1 + columns));
         self.report.condition = condition.0[..self.settings.axes].iter().fold(1.0, |worst, c| c.max(worst));
         self.report.rank = rank(window.current(), *ridge, self.settings.axes);
         self.report.excitation = excitation(window.current(), *ridge, &self.settings);
+        follower.motion()
     }
 
     /// What every mode renders for this tick from the parcel one delay old, and its running error.
-    fn predict(&mut self, now: &Features, increments: &Features, good: bool) {
+    fn predict(&mut self, now: &BandMotion, increments: &Features, good: bool) {
         let modes = self.settings.modes;
         let forces = match self.sent.get(self.delay_ticks) {
             Some((parcel, then)) if parcel.t_s.is_finite() => parcel.render(now, then, increments),
@@ -209,6 +215,7 @@ impl Identifier {
         self.delay_ticks = self.settings.delay_ticks(delay_s);
         if let Some(anchored) = &mut self.anchored {
             anchored.horizon.set_delay(self.delay_ticks);
+            anchored.follower.set_delay(self.delay_ticks);
         }
     }
 
@@ -224,10 +231,10 @@ impl Identifier {
         if let Some(anchored) = &mut self.anchored {
             anchored.window.reset();
             anchored.horizon.reset();
+            anchored.follower.reset();
         }
         self.sent.clear();
         self.parcel = Parcel::BLANK;
-        self.parcel.anchored = AnchoredModel::NONE;
         self.report = Report::BLANK;
     }
 }

@@ -4,6 +4,7 @@ use nalgebra::Vector3;
 
 use super::{
     MAX_DEGREE,
+    anchored::{BandMotion, Correction},
     features::{Features, MOTION_COLUMNS},
     literal,
 };
@@ -41,28 +42,6 @@ impl LiteralModel {
     }
 }
 
-/// Parameters of anchored rendering.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct AnchoredModel {
-    /// Motion columns in use, from the first; 0: no correction, the force is reflected as it comes.
-    pub columns: u8,
-    /// `M` (N per scaled feature).
-    pub coefficients: [Lanes; MOTION_COLUMNS],
-    /// Largest correction (N, norm over the axes).
-    pub bound_n: f64,
-}
-
-impl AnchoredModel {
-    /// No correction.
-    pub const NONE: Self = Self { columns: 0, coefficients: [Lanes::ZERO; MOTION_COLUMNS], bound_n: 0.0 };
-
-    /// `clip(M (phi(t) - phi(t - D)))` (N); zero where it is not finite.
-    pub(super) fn correction(&self, now: &Features, then: &Features) -> Lanes {
-        let terms = self.coefficients.iter().zip(now).zip(then).take(usize::from(self.columns));
-        clip(terms.fold(Lanes::ZERO, |sum, ((m, now), then)| sum + *m * (*now - *then)), self.bound_n)
-    }
-}
-
 /// Shortens a force to `bound_n`; zero where it is not finite.
 #[inline]
 pub(super) fn clip(force: Lanes, bound_n: f64) -> Lanes {
@@ -89,8 +68,8 @@ pub struct Parcel {
     pub literal: LiteralModel,
     /// The paper's linear model.
     pub linear: LiteralModel,
-    /// Anchored rendering's choice.
-    pub anchored: AnchoredModel,
+    /// Anchored rendering's correction.
+    pub anchored: Correction,
 }
 
 impl Parcel {
@@ -101,18 +80,18 @@ impl Parcel {
         fresh: false,
         literal: LiteralModel::NONE,
         linear: LiteralModel::NONE,
-        anchored: AnchoredModel::NONE,
+        anchored: Correction::NONE,
     };
 
-    /// The force of every mode for the motion now, by [`Mode::index`](super::Mode::index): `anchored` features now and at
-    /// the time of the parcel, `literal` increments now.
-    pub(super) fn render(&self, now: &Features, then: &Features, increments: &Features) -> [Option<Lanes>; 4] {
+    /// The force of every mode for the motion now, by [`Mode::index`](super::Mode::index): for `anchored` the motion now and
+    /// at the time of the parcel, for `literal` the increments now.
+    pub(super) fn render(&self, now: &BandMotion, then: &BandMotion, increments: &Features) -> [Option<Lanes>; 4] {
         let measured = Lanes::from(self.force_n);
         [
             self.literal.force(increments),
             self.linear.force(increments),
             Some(measured),
-            Some(measured + self.anchored.correction(now, then)),
+            Some(self.anchored.apply(measured, now, then)),
         ]
     }
 }

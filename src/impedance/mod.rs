@@ -17,6 +17,7 @@
 //! | `horizon` | the running error of every candidate at the true delay, and the choice |
 //! | `identifier`, `renderer` | the two ends of the link |
 
+mod anchored;
 mod by_mode;
 mod factor;
 mod features;
@@ -35,12 +36,13 @@ mod window;
 #[cfg(test)]
 mod tests;
 
+pub use anchored::Correction;
 pub use factor::Factor;
 pub use features::{Features, MOTION_COLUMNS, Scales};
 pub use gram::Gram;
 pub use identifier::Identifier;
 pub use literal::LiteralSolver;
-pub use messages::{AnchoredModel, Excitation, LiteralModel, Parcel, Rendered, Report, Sample};
+pub use messages::{Excitation, LiteralModel, Parcel, Rendered, Report, Sample};
 pub use mode::{Mode, ParseModeError};
 pub use renderer::Renderer;
 pub use settings::{MAX_DELAY_S, ModeSet, Settings, SettingsError};

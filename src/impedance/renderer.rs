@@ -3,12 +3,13 @@
 use nalgebra::Vector3;
 
 use super::{
-    features::{self, Features, MOTION_COLUMNS},
+    anchored::{BandMotion, Bands},
+    features,
     messages::{Parcel, Rendered, active},
     settings::{MAX_DELAY_S, Settings, SettingsError},
     track::{Track, usable_position},
 };
-use crate::signal::{DelayLine, Lanes};
+use crate::signal::DelayLine;
 
 /// Renders a force from what came over the link and the leader's motion. Nothing is allocated after construction.
 #[derive(Clone, Debug)]
@@ -16,7 +17,8 @@ pub struct Renderer {
     settings: Settings,
     delay_ticks: usize,
     track: Track,
-    features: DelayLine<Features>,
+    bands: Bands,
+    past: DelayLine<BandMotion>,
     parcel_t_s: f64,
     /// Ticks since the newest parcel came.
     waiting: usize,
@@ -30,7 +32,8 @@ impl Renderer {
         Ok(Self {
             delay_ticks: settings.delay_ticks(settings.delay_s),
             track: Track::new(settings),
-            features: DelayLine::new(2 * max_delay, [Lanes::ZERO; MOTION_COLUMNS]),
+            bands: Bands::new(settings.rate_hz),
+            past: DelayLine::new(2 * max_delay, BandMotion::default()),
             parcel_t_s: f64::NEG_INFINITY,
             waiting: 0,
             settings: settings.clone(),
@@ -47,9 +50,9 @@ impl Renderer {
         let degree = self.settings.max_degree;
         let position = usable_position(active(position_m, self.settings.axes), &self.settings.scales);
         let motion = self.track.step(position);
-        let now = self.settings.scales.features(&motion, degree);
         let increments = features::features(&self.track.increments(), degree);
-        self.features.push(now);
+        let now = self.bands.motion(motion.x);
+        self.past.push(now);
 
         let Some(parcel) = parcel.filter(|parcel| parcel.t_s.is_finite()) else {
             self.waiting = self.waiting.saturating_add(1);
@@ -63,7 +66,7 @@ impl Renderer {
         }
         // Not that much motion yet: the anchor is now, i.e. no correction.
         let age = self.delay_ticks.saturating_add(self.waiting);
-        let then = self.features.get(age).unwrap_or(&now);
+        let then = self.past.get(age).unwrap_or(&now);
         let mut forces = parcel.render(&now, then, &increments);
         for mode in super::Mode::ALL {
             if !self.settings.modes.contains(mode) {
@@ -81,7 +84,8 @@ impl Renderer {
     /// Forgets all motion.
     pub fn reset(&mut self) {
         self.track.reset();
-        self.features.clear();
+        self.bands.reset();
+        self.past.clear();
         self.parcel_t_s = f64::NEG_INFINITY;
         self.waiting = 0;
     }

@@ -62,7 +62,7 @@ impl Summary for Gram {
         }
     }
 
-    fn merge(&mut self, other: &Self) {
+    fn merge(&mut self, other: &mut Self) {
         let used = column_start(self.columns + 1);
         for (element, other) in self.elements[..used].iter_mut().zip(&other.elements) {
             *element += *other;

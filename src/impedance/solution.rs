@@ -6,6 +6,8 @@ use super::{
 };
 use crate::signal::Lanes;
 
+/// Rows of the inverse made side by side.
+const BLOCK: usize = 4;
 const PRODUCTS: usize = MAX_COLUMNS * (MAX_COLUMNS + 1) / 2;
 
 /// The solutions of `min |A_p M - b|` for every prefix `A_p` of the columns at once, one problem per lane.
@@ -17,6 +19,8 @@ const PRODUCTS: usize = MAX_COLUMNS * (MAX_COLUMNS + 1) / 2;
 #[derive(Clone, Debug)]
 pub struct Solution {
     columns: usize,
+    /// `W`, row by row; zero below the diagonal.
+    inverse: [[Lanes; MAX_COLUMNS]; MAX_COLUMNS],
     /// `W_ij z_j`, packed by columns.
     products: [Lanes; PRODUCTS],
     /// Sum of squared residuals with the first `p` columns, at index `p`.
@@ -30,6 +34,7 @@ impl Solution {
     pub fn new(columns: usize) -> Self {
         Self {
             columns: columns.min(MAX_COLUMNS),
+            inverse: [[Lanes::ZERO; MAX_COLUMNS]; MAX_COLUMNS],
             products: [Lanes::ZERO; PRODUCTS],
             squares: [Lanes::ZERO; MAX_COLUMNS + 1],
             condition: [Lanes::ZERO; MAX_COLUMNS + 1],
@@ -44,31 +49,26 @@ impl Solution {
     /// Solves for every prefix of the factor's columns.
     pub fn solve(&mut self, factor: &Factor) {
         let n = self.columns.min(factor.columns());
-        let mut inverse = [Lanes::ZERO; PRODUCTS];
         let mut norm = Lanes::ZERO;
         let mut inverse_norm = Lanes::ZERO;
         let right = factor.column(factor.columns());
         for j in 0..n {
             let r = factor.column(j);
             let diagonal = r[j].recip_or_zero();
-            let (done, rest) = inverse.split_at_mut(column_start(j));
-            let column = &mut rest[..=j];
-            // Column j of W: -W_jj * (W_0..j R_0..j,j), one earlier column of W at a time.
-            for k in 0..j {
-                let start = column_start(k);
-                for (sum, w) in column.iter_mut().zip(&done[start..=start + k]) {
-                    *sum += *w * r[k];
+            let start = column_start(j);
+            // Column j of W is -W_jj * (W_0..j R_0..j,j); four rows at a time, zeros below the diagonal of W included.
+            for first in (0..j).step_by(BLOCK) {
+                let sums = row_products(&self.inverse, r, first, j);
+                for (i, sum) in (first..j).zip(sums) {
+                    self.inverse[i][j] = -(sum * diagonal);
                 }
             }
-            for sum in &mut column[..j] {
-                *sum = -(*sum * diagonal);
-            }
-            column[j] = diagonal;
-            let start = column_start(j);
-            for ((product, w), r) in self.products[start..=start + j].iter_mut().zip(&*column).zip(r) {
-                *product = *w * right[j];
-                norm += *r * *r;
-                inverse_norm += *w * *w;
+            self.inverse[j][j] = diagonal;
+            for (i, product) in self.products[start..=start + j].iter_mut().enumerate() {
+                let w = self.inverse[i][j];
+                *product = w * right[j];
+                norm += r[i] * r[i];
+                inverse_norm += w * w;
             }
             self.condition[j + 1] = (norm * inverse_norm).sqrt();
         }
@@ -125,6 +125,19 @@ impl Solution {
     }
 }
 
+/// `sum_k W_ik r_k` over `first <= k < j` for the rows `first..first + BLOCK`.
+#[inline]
+fn row_products(w: &[[Lanes; MAX_COLUMNS]; MAX_COLUMNS], r: &[Lanes], first: usize, j: usize) -> [Lanes; BLOCK] {
+    let mut sums = [Lanes::ZERO; BLOCK];
+    let rows: [&[Lanes]; BLOCK] = std::array::from_fn(|i| &w[first + i][first..j]);
+    for (k, r) in r[first..j].iter().enumerate() {
+        for (sum, row) in sums.iter_mut().zip(rows) {
+            *sum += row[k] * *r;
+        }
+    }
+    sums
+}
+
 pub(super) type Increments = [Lanes; PRODUCTS];
 
 #[cfg(test)]
@@ -175,7 +188,7 @@ mod tests {
                 let lanes = row.map(|entry| Lanes([entry, 2.0 * entry, 0.0, 0.0]));
                 if (i as f64) < split * count as f64 { first.add(&lanes) } else { second.add(&lanes) }
             }
-            first.merge(&second);
+            first.merge(&mut second);
             let mut solution = Solution::new(columns);
             solution.solve(&first);
             for prefix in 1..=columns {

@@ -11,8 +11,14 @@ pub trait Summary: Clone {
     const BLANK_ROW: Self::Row;
     /// Takes one row in.
     fn add(&mut self, row: &Self::Row);
-    /// Takes in all that `other` has taken in.
-    fn merge(&mut self, other: &Self);
+    /// Takes one row into each of three summaries.
+    fn add_three(targets: [&mut Self; 3], rows: [&Self::Row; 3]) {
+        for (target, row) in targets.into_iter().zip(rows) {
+            target.add(row);
+        }
+    }
+    /// Takes in all that `other` has taken in; `other` may be used up as scratch space.
+    fn merge(&mut self, other: &mut Self);
 }
 
 /// The summary of the last `2 B` rows, at a constant cost per tick and without ever taking a row out again.
@@ -92,19 +98,18 @@ impl<S: Summary> SlidingWindow<S> {
         let (b, p) = (self.block, self.position);
         let (this, last) = if self.this_half_first { (0, b) } else { (b, 0) };
         self.rows[this + p] = *row;
-        self.since_last_block.add(row);
-        self.since_this_block.add(row);
-
+        let backward_row = self.rows[last + b - 1 - p];
+        S::add_three(
+            [&mut self.since_last_block, &mut self.since_this_block, &mut self.backwards],
+            [row, row, &backward_row],
+        );
         self.current.clone_from(&self.since_last_block);
-        let slot = if self.upwards { p } else { (b - 1).saturating_sub(p + 1) };
         if p + 1 < b {
+            let slot = if self.upwards { p } else { b - 2 - p };
             if self.completed >= 2 {
-                self.current.merge(&self.endings[slot]);
+                self.current.merge(&mut self.endings[slot]);
             }
-            if self.completed >= 1 {
-                self.backwards.add(&self.rows[last + b - 1 - p]);
-                self.endings[slot].clone_from(&self.backwards);
-            }
+            self.endings[slot].clone_from(&self.backwards);
         }
         self.position += 1;
         if self.position == b {
@@ -151,7 +156,7 @@ mod tests {
         fn add(&mut self, row: &usize) {
             self.0.push(*row);
         }
-        fn merge(&mut self, other: &Self) {
+        fn merge(&mut self, other: &mut Self) {
             self.0.extend(&other.0);
         }
     }

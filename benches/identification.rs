@@ -1,0 +1,175 @@
+//! Identification of all five degrees on three axes: ours beside what it replaces, in one run.
+//!
+//! First a table with p50 and p99 per tick and the ratios (written to be read by `./dev bench`), then the same routines
+//! under divan. `cargo bench -p nima --bench identification`.
+
+#![expect(clippy::expect_used, reason = "a benchmark may stop at a setting out of range")]
+
+use std::{hint::black_box, time::Instant};
+
+use nalgebra::{DMatrix, DVector, Vector3};
+use nima::impedance::{Factor, Identifier, Mode, ModeSet, Sample, Settings, SlidingWindow, Solution};
+use nima::signal::Lanes;
+
+const RATE_HZ: f64 = 1000.0;
+const COLUMNS: usize = 16;
+const ROW: usize = COLUMNS + 1;
+
+fn sample(k: usize) -> Sample {
+    let t = k as f64 / RATE_HZ;
+    let wave =
+        |phase: f64| 0.02 * (5.0 * t + phase).sin() + 0.003 * (31.0 * t).sin() + 1e-4 * (157.0 * t + phase).cos();
+    let x = Vector3::new(wave(0.0), wave(1.0), wave(2.0));
+    Sample { t_s: t, position_m: x, force_n: x.map(|x| 80.0 * x + 2000.0 * x * x + 0.1 * (400.0 * x).sin()) }
+}
+
+/// Rows of scaled features as the identifier makes them (here of analytic derivatives), right-hand side last.
+fn rows(count: usize) -> Vec<[Lanes; ROW]> {
+    (0..count)
+        .map(|k| {
+            let mut row = [Lanes::ZERO; ROW];
+            for lane in 0..3 {
+                let [before, now, after] = [k, k + 1, k + 2].map(|k| sample(k).position_m[lane]);
+                let base = [now / 0.1, (after - before) * 500.0 / 0.2, (after - 2.0 * now + before) * 1e6 / 4.0];
+                row[0][lane] = 1.0;
+                for j in 0..15 {
+                    row[j + 1][lane] = (0..=j / 3).map(|_| base[j % 3]).product();
+                }
+                row[COLUMNS][lane] = sample(k + 1).force_n[lane];
+            }
+            row
+        })
+        .collect()
+}
+
+/// Times of `work` per call (us), sorted.
+fn times_us(calls: usize, mut work: impl FnMut(usize)) -> Vec<f64> {
+    let mut times: Vec<f64> = (0..calls)
+        .map(|k| {
+            let start = Instant::now();
+            work(k);
+            start.elapsed().as_secs_f64() * 1e6
+        })
+        .collect();
+    times.sort_by(f64::total_cmp);
+    times
+}
+
+fn percentile(times: &[f64], share: f64) -> f64 {
+    times[((times.len() - 1) as f64 * share).round() as usize]
+}
+
+fn sliding(block: usize) -> (SlidingWindow<Factor>, Solution) {
+    let ridge = Factor::with_ridge(COLUMNS, 2e-6 * block as f64);
+    (SlidingWindow::new(block, Factor::new(COLUMNS), ridge), Solution::new(COLUMNS))
+}
+
+fn identifier(window: usize, modes: ModeSet) -> Identifier {
+    let settings = Settings { window_s: window as f64 / RATE_HZ, modes, ..Settings::default() };
+    Identifier::new(&settings).expect("settings are in range")
+}
+
+fn window_matrix(rows: &[[Lanes; ROW]], lane: usize, columns: std::ops::Range<usize>) -> DMatrix<f64> {
+    DMatrix::from_fn(rows.len(), columns.len(), |i, j| rows[i][columns.start + j][lane])
+}
+
+fn force(rows: &[[Lanes; ROW]], lane: usize) -> DVector<f64> {
+    DVector::from_fn(rows.len(), |i, _| rows[i][COLUMNS][lane])
+}
+
+/// Five pseudo-inverses per axis by singular values, the textbook's way.
+fn svd(rows: &[[Lanes; ROW]]) -> f64 {
+    let mut sum = 0.0;
+    for lane in 0..3 {
+        let f = force(rows, lane);
+        for degree in 1..=5 {
+            let x = window_matrix(rows, lane, 1..1 + 3 * degree);
+            sum += x.pseudo_inverse(1e-12).map_or(0.0, |inverse| (inverse * &f)[0]);
+        }
+    }
+    sum
+}
+
+/// `M = F X^T (X X^T)^-1` for five degrees per axis, made afresh.
+fn normal_equations(rows: &[[Lanes; ROW]]) -> f64 {
+    let mut sum = 0.0;
+    for lane in 0..3 {
+        let f = force(rows, lane);
+        for degree in 1..=5 {
+            let x = window_matrix(rows, lane, 1..1 + 3 * degree);
+            let gram = x.tr_mul(&x);
+            sum += gram.try_inverse().map_or(0.0, |inverse| (inverse * x.tr_mul(&f))[0]);
+        }
+    }
+    sum
+}
+
+/// One QR per axis and tick, made afresh (all five degrees follow from it).
+fn fresh_qr(rows: &[[Lanes; ROW]]) -> f64 {
+    (0..3).map(|lane| window_matrix(rows, lane, 0..ROW).qr().unpack_r()[(0, 0)]).sum()
+}
+
+fn table(window: usize) -> [f64; 2] {
+    let block = window / 2;
+    let rows = rows(3 * window + 20_000);
+    let calls = 20_000;
+    let warm = 3 * window;
+    let print = |name: &str, times: &[f64]| {
+        let [p50, p99, max] = [0.5, 0.99, 1.0].map(|share| percentile(times, share));
+        println!("{window:>6}  {name:<44} {p50:>10.2} {p99:>10.2} {max:>10.2}");
+        p50
+    };
+    let (mut slide, mut solution) = sliding(block);
+    rows[..warm].iter().for_each(|row| slide.push(row));
+    let times = times_us(calls, |k| {
+        slide.push(&rows[warm + k]);
+        solution.solve(slide.current());
+        black_box(&solution);
+    });
+    let ours = print("ours: all degrees, constant, ridge, 3 axes", &times);
+    for (name, modes) in [
+        ("identifier step, anchored", ModeSet::only(Mode::Anchored)),
+        ("identifier step, literal and linear", ModeSet::only(Mode::Literal).with(Mode::Linear)),
+        ("identifier step, all four modes", ModeSet::ALL),
+    ] {
+        let samples: Vec<_> = (0..warm + calls).map(sample).collect();
+        let mut identifier = identifier(window, modes);
+        samples[..warm].iter().for_each(|sample| identifier.step(sample));
+        let times = times_us(calls, |k| identifier.step(&samples[warm + k]));
+        print(name, &times);
+    }
+    let at = |k: usize| &rows[warm + k - window..warm + k];
+    let few = if window > 1000 { 10 } else { 100 };
+    let qr = print(
+        "fresh QR",
+        &times_us(few, |k| {
+            black_box(fresh_qr(at(k)));
+        }),
+    );
+    let normal = print(
+        "normal equations x 5, fresh",
+        &times_us(few, |k| {
+            black_box(normal_equations(at(k)));
+        }),
+    );
+    let svd = print(
+        "SVD pseudo-inverse x 5, fresh",
+        &times_us(few, |k| {
+            black_box(svd(at(k)));
+        }),
+    );
+    println!(
+        "{window:>6}  ratio to ours: SVD {:.0}, normal equations {:.0}, QR {:.1}",
+        svd / ours,
+        normal / ours,
+        qr / ours
+    );
+    [ours, svd / ours]
+}
+
+fn main() {
+    println!("{:>6}  {:<44} {:>10} {:>10} {:>10}", "rows", "per tick, 3 axes, N = 1..5", "p50 us", "p99 us", "max us");
+    let [short, _] = table(300);
+    let [long, _] = table(3000);
+    println!("3000 rows cost {:.2} times 300 rows", long / short);
+}

@@ -133,6 +133,7 @@ fn plot_ui(
     let newtons = AxisHints::new_y()
         .label(format!("{} (N)", AXES[axis]))
         .min_thickness(46.0)
+        .label_spacing(16.0..=30.0)
         .formatter(|mark, _| plain(mark.value));
     let plot = Plot::new(("forces", axis))
         .height(height)

@@ -130,7 +130,7 @@ fn gate_ui(ui: &mut Ui, gate: &Gate) {
         (true, true) => (Sign::Ring, theme::TEXT, "limiting"),
     };
     let row = ui.horizontal(|ui| {
-        ui.set_min_height(20.0);
+        ui.set_height(20.0);
         sign_ui(ui, what, 5.0, colour);
         let ink: Color32 = if acting { theme::TEXT } else { theme::TEXT_WEAK };
         ui.label(RichText::new(gate.name).color(ink));

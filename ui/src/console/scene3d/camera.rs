@@ -24,7 +24,7 @@ pub struct Camera {
 
 impl Default for Camera {
     fn default() -> Self {
-        Self { target_m: Vector3::new(0.0, 0.002, 0.012), distance_m: 0.235, yaw: -0.62, pitch: 0.50 }
+        Self { target_m: Vector3::new(0.0, -0.008, 0.042), distance_m: 0.33, yaw: -0.62, pitch: 0.46 }
     }
 }
 

@@ -1,6 +1,8 @@
 //! The console driven by accessible names on a real running loop: what is pressed must reach the loop, and what the loop
 //! does must come back to the screen.
 
+#![expect(clippy::unwrap_used, reason = "a console that cannot start is a failed test")]
+
 use std::time::{Duration, Instant};
 
 use eframe::App as _;

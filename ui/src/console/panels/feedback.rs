@@ -82,7 +82,7 @@ struct Setting {
     name: &'static str,
     meaning: &'static str,
     suffix: &'static str,
-    decimals: usize,
+    decimals: u8,
     /// Ask the loop while the slider moves, not only when it is let go.
     at_once: bool,
 }
@@ -98,14 +98,14 @@ fn setting_ui(
     let time_s = ui.input(|input| input.time);
     // Shown in whole steps. The widgets must not round or clamp by themselves: they would report it as an edit, and the
     // screen would send the loop a setting that nobody chose.
-    let step = 10f64.powi(-(setting.decimals as i32));
+    let step = 10f64.powi(-i32::from(setting.decimals));
     let whole = |value: f64| (value / step).round() * step;
     let mut value = whole(asked.shown(in_force, time_s));
     let number = DragValue::new(&mut value)
         .range(range.clone())
         .clamp_existing_to_range(false)
         .speed((range.end() - range.start()) / 300.0)
-        .fixed_decimals(setting.decimals)
+        .fixed_decimals(usize::from(setting.decimals))
         .suffix(setting.suffix);
     let row = ui.horizontal(|ui| {
         let label = ui.label(setting.name).on_hover_text(setting.meaning);

@@ -23,6 +23,10 @@ use super::{
 
 /// Thirty pictures a second while data flow.
 const FRAME: Duration = Duration::from_millis(33);
+/// Smooth edges in 3-D are given up when the work for one picture takes longer than this (25 pictures a second) ...
+const SLOW_MS: f64 = 38.0;
+/// ... though the window has had this time to warm up.
+const WARM_UP: Duration = Duration::from_secs(4);
 /// When a picture was asked for but no end: the demo is in full swing by then.
 const SCREENSHOT_AT: Duration = Duration::from_secs(3);
 /// Room for the picture to be taken before the window closes.
@@ -114,10 +118,9 @@ impl ConsoleApp {
                 timing_ui(ui, &self.live);
             });
         });
-        let ground = Frame::new().fill(theme::BACKGROUND);
-        CentralPanel::no_frame().frame(ground).show(ui, |ui| {
+        CentralPanel::no_frame().show(ui, |ui| {
             let traces = (0.44 * ui.available_height()).clamp(230.0, 460.0);
-            let frame = Frame::new().fill(theme::BACKGROUND).inner_margin(Margin::symmetric(12, 8));
+            let frame = Frame::new().inner_margin(Margin::symmetric(12, 8));
             Panel::bottom("forces").exact_size(traces).resizable(false).frame(frame).show(ui, |ui| {
                 forces_ui(ui, &self.live, &mut self.forces);
             });
@@ -157,6 +160,9 @@ impl eframe::App for ConsoleApp {
         let ctx = ui.ctx().clone();
         let period = std::mem::replace(&mut self.framed, Instant::now());
         self.live.frame(self.framed.duration_since(period).as_secs_f64(), frame.info().cpu_usage.map(f64::from));
+        // Once given up they stay so: a view that changes its look by itself again and again would be worse.
+        self.live.rough_edges |= self.opened.elapsed() > WARM_UP && self.live.figures.frame_work_ms > SLOW_MS;
+        self.scene.smooth = !self.live.rough_edges;
         self.stop_key(&ctx);
         self.layout(ui);
         if let Some(handle) = &self.handle {
@@ -164,6 +170,11 @@ impl eframe::App for ConsoleApp {
         }
         self.obey_options(&ctx);
         ctx.request_repaint_after(FRAME);
+    }
+
+    /// The ground of the whole window: clearing is far cheaper than painting panels over it.
+    fn clear_color(&self, _visuals: &egui::Visuals) -> [f32; 4] {
+        theme::BACKGROUND.to_normalized_gamma_f32()
     }
 
     fn on_exit(&mut self, gl: Option<&glow::Context>) {

@@ -26,6 +26,8 @@ const TRAIL_S: f64 = 1.2;
 const TRAIL_STEP_S: f64 = 0.02;
 /// Figures that are read, not watched, change four times a second.
 const FIGURES_EVERY: Duration = Duration::from_millis(250);
+/// The two large force readings follow the arrows more closely.
+const READINGS_EVERY: Duration = Duration::from_millis(100);
 /// How long a refused command stays on the screen.
 const REFUSAL_SHOWN: Duration = Duration::from_secs(6);
 
@@ -105,6 +107,8 @@ pub struct Live {
     pub scheduling: Option<Scheduling>,
     /// Settings that ticks do not carry.
     pub settings: Settings,
+    /// The 3-D view gave up smooth edges, because this computer draws too slowly.
+    pub rough_edges: bool,
     first_fault: Option<(f64, Fault)>,
     refusal: Option<(Instant, Command)>,
     horizon: [Fading; 4],
@@ -118,6 +122,7 @@ pub struct Live {
     trail_s: f64,
     ticks_counted: u64,
     figures_at: Instant,
+    readings_at: Instant,
     tick_at: Instant,
     running: bool,
 }
@@ -140,6 +145,7 @@ impl Live {
             trail: VecDeque::new(),
             scheduling: None,
             settings,
+            rough_edges: false,
             first_fault: None,
             refusal: None,
             horizon: [Fading::default(); 4],
@@ -153,6 +159,7 @@ impl Live {
             trail_s: f64::NEG_INFINITY,
             ticks_counted: 0,
             figures_at: now,
+            readings_at: now,
             tick_at: now,
             running: true,
         }
@@ -256,8 +263,8 @@ impl Live {
         let (m, r) = (tick.measured_n, tick.rendered_n);
         let values: [f32; CHANNELS] = [m.x, m.y, m.z, r.x, r.y, r.z].map(|x| x as f32);
         self.history.push(tick.t_s, &values);
-        self.measured.push(m.norm(), dt_s, 0.1);
-        self.rendered.push(r.norm(), dt_s, 0.1);
+        self.measured.push(m.norm(), dt_s, 0.05);
+        self.rendered.push(r.norm(), dt_s, 0.05);
         self.degrees.push(tick.identification.degree);
         self.paper_degrees.push(tick.identification.paper_degree);
         for (mean, error_n) in self.horizon.iter_mut().zip(tick.identification.horizon_error_n) {
@@ -277,13 +284,16 @@ impl Live {
     }
 
     fn refresh_figures(&mut self) {
+        if self.readings_at.elapsed() >= READINGS_EVERY {
+            self.figures.measured_n = self.measured.get();
+            self.figures.rendered_n = self.rendered.get();
+            self.readings_at = Instant::now();
+        }
         let since = self.figures_at.elapsed();
         if since < FIGURES_EVERY {
             return;
         }
         self.figures = Figures {
-            measured_n: self.measured.get(),
-            rendered_n: self.rendered.get(),
             horizon_n: self.horizon.map(Fading::get),
             withheld_n: self.gates.withheld_n.get(),
             wake_us: self.wake.quantiles(),
@@ -291,6 +301,7 @@ impl Live {
             rate_hz: self.ticks_counted as f64 / since.as_secs_f64(),
             frame_ms: self.frame.get(),
             frame_work_ms: self.frame_work.get(),
+            ..self.figures
         };
         self.ticks_counted = 0;
         self.figures_at = Instant::now();

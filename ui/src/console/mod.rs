@@ -45,7 +45,6 @@ pub fn run(handle: Handle, rig: Rig, scene: Scene, options: Options) -> anyhow::
         viewport,
         renderer: eframe::Renderer::Glow,
         depth_buffer: 24,
-        multisampling: 4,
         centered: true,
         ..Default::default()
     };

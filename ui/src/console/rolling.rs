@@ -75,7 +75,8 @@ mod tests {
         for degree in [5, 5, 5, 5, 1, 0, 2, 3, 99] {
             shares.push(degree);
         }
-        assert_eq!(shares.shares(), [0.25, 0.25, 0.25, 0.25, 0.0, 0.0]);
+        let percent = shares.shares().map(|share| (100.0 * share).round() as u32);
+        assert_eq!(percent, [25, 25, 25, 25, 0, 0]);
         assert!((shares.nonlinear() - 0.5).abs() < 1e-12);
         assert!(DegreeShares::new(10).nonlinear().abs() < 1e-12);
     }

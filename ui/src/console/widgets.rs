@@ -8,6 +8,7 @@ use super::theme;
 pub fn card<R>(ui: &mut Ui, title: &str, meaning: &str, content: impl FnOnce(&mut Ui) -> R) -> R {
     let inner = theme::card().show(ui, |ui| {
         ui.set_width(ui.available_width());
+        ui.spacing_mut().item_spacing.y = 4.0;
         ui.label(RichText::new(title).text_style(egui::TextStyle::Heading)).on_hover_text(meaning);
         ui.add_space(2.0);
         content(ui)
@@ -18,6 +19,7 @@ pub fn card<R>(ui: &mut Ui, title: &str, meaning: &str, content: impl FnOnce(&mu
 
 /// A name on the left, its value on the right; both explain themselves on hover.
 pub fn figure(ui: &mut Ui, name: &str, value: impl Into<String>, meaning: &str) -> Response {
+    ui.spacing_mut().interact_size.y = 18.0;
     let row = ui.horizontal(|ui| {
         ui.label(weak(name)).on_hover_text(meaning);
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {

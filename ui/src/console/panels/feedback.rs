@@ -5,7 +5,7 @@
 
 use std::ops::RangeInclusive;
 
-use egui::{Button, DragValue, RichText, Slider, Ui, vec2};
+use egui::{Button, DragValue, RichText, Slider, SliderClamping, Ui, vec2};
 use nima::{impedance::Mode, runtime::Command};
 
 use super::{mode_meaning, mode_name};
@@ -82,7 +82,7 @@ struct Setting {
     name: &'static str,
     meaning: &'static str,
     suffix: &'static str,
-    decimals: usize,
+    decimals: u8,
     /// Ask the loop while the slider moves, not only when it is let go.
     at_once: bool,
 }
@@ -96,11 +96,16 @@ fn setting_ui(
     asked: &mut Asked,
 ) -> Option<f64> {
     let time_s = ui.input(|input| input.time);
-    let mut value = asked.shown(in_force, time_s);
+    // Shown in whole steps. The widgets must not round or clamp by themselves: they would report it as an edit, and the
+    // screen would send the loop a setting that nobody chose.
+    let step = 10f64.powi(-i32::from(setting.decimals));
+    let whole = |value: f64| (value / step).round() * step;
+    let mut value = whole(asked.shown(in_force, time_s));
     let number = DragValue::new(&mut value)
         .range(range.clone())
+        .clamp_existing_to_range(false)
         .speed((range.end() - range.start()) / 300.0)
-        .fixed_decimals(setting.decimals)
+        .fixed_decimals(usize::from(setting.decimals))
         .suffix(setting.suffix);
     let row = ui.horizontal(|ui| {
         let label = ui.label(setting.name).on_hover_text(setting.meaning);
@@ -112,15 +117,15 @@ fn setting_ui(
     });
     let (label, number) = row.inner;
     ui.spacing_mut().slider_width = ui.available_width();
-    let slider = Slider::new(&mut value, range).show_value(false).step_by(10f64.powi(-(setting.decimals as i32)));
+    let slider = Slider::new(&mut value, range).show_value(false).clamping(SliderClamping::Edits);
     let slider = ui.add(slider).labelled_by(label).on_hover_text(setting.meaning);
     let both = slider.union(number);
     if both.changed() || both.dragged() {
-        asked.0 = Some((value, time_s));
+        asked.0 = Some((whole(value), time_s));
     }
     let wanted =
         if setting.at_once { both.changed() } else { both.drag_stopped() || (both.changed() && !both.dragged()) };
-    wanted.then_some(value)
+    wanted.then_some(whole(value))
 }
 
 fn gain_ui(ui: &mut Ui, live: &Live, state: &mut FeedbackState, outbox: &mut Outbox) {

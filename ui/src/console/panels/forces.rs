@@ -3,8 +3,12 @@
 //! The view is a stretch of time counted back from now (or from the moment of the pause): it is panned by dragging, zoomed
 //! by the wheel and put back by a double click, also while data go on.
 
+use std::ops::RangeInclusive;
+
 use egui::{Align, Button, Color32, Layout, Rect, RichText, Sense, Ui, Vec2b, pos2, vec2};
-use egui_plot::{AxisHints, HoverPosition, Line, Plot, PlotBounds, PlotPoint, PlotPoints, PlotResponse, VLine};
+use egui_plot::{
+    AxisHints, GridMark, HoverPosition, Line, Plot, PlotBounds, PlotPoint, PlotPoints, PlotResponse, VLine,
+};
 
 use crate::console::{
     history::{CHANNELS, History},
@@ -17,6 +21,8 @@ const DEFAULT_VIEW_S: (f64, f64) = (-10.0, 0.0);
 const SHORTEST_S: f64 = 0.2;
 const LONGEST_S: f64 = 500.0;
 const AXES: [&str; 3] = ["x", "y", "z"];
+/// The lowest plot carries the time axis and is taller by this.
+const TIME_AXIS: f32 = 34.0;
 /// The least that a plot shows up and down, N.
 const LEAST_RANGE_N: f64 = 0.25;
 
@@ -74,8 +80,6 @@ pub fn forces_ui(ui: &mut Ui, live: &Live, state: &mut ForcesState) {
         live.history.line(channel, (from_s, to_s), now_s, most, line);
     }
     ui.spacing_mut().item_spacing.y = 4.0;
-    // The lowest plot carries the time axis and is taller by it.
-    const TIME_AXIS: f32 = 34.0;
     let height = ((ui.available_height() - TIME_AXIS - 8.0) / 3.0).max(48.0);
     let cursor_s = state.cursor_s.take();
     for axis in 0..3 {
@@ -89,7 +93,7 @@ pub fn forces_ui(ui: &mut Ui, live: &Live, state: &mut ForcesState) {
 fn header_ui(ui: &mut Ui, live: &Live, state: &mut ForcesState) {
     ui.horizontal(|ui| {
         ui.label(RichText::new("Force at the tip and in the hand").text_style(egui::TextStyle::Heading)).on_hover_text(
-            "Newtons in the workspace frame: x to the right, y away from the trocar, z up. Measured at the instrument now; rendered \
+            "Newtons in the workspace frame: x, y and z as drawn in the view, z up. Measured at the instrument now; rendered \
              to the hand after all gates. Drag to pan, wheel to zoom, double click for the last 10 s.",
         );
         ui.add_space(12.0);
@@ -132,8 +136,9 @@ fn plot_ui(
         AxisHints::new_x().label(if last { "Time before now (s)" } else { "" }).formatter(|mark, _| plain(mark.value));
     let newtons = AxisHints::new_y()
         .label(format!("{} (N)", AXES[axis]))
-        .min_thickness(46.0)
-        .formatter(|mark, _| plain(mark.value));
+        .min_thickness(56.0)
+        .label_spacing(16.0..=30.0)
+        .formatter(|mark, shown| if near_end(mark.value, shown) { String::new() } else { plain(mark.value) });
     let plot = Plot::new(("forces", axis))
         .height(height)
         .custom_x_axes(if last { vec![seconds] } else { vec![] })
@@ -147,7 +152,9 @@ fn plot_ui(
         .auto_bounds(Vec2b::FALSE)
         .set_margin_fraction(vec2(0.0, 0.0))
         .show_crosshair(false)
+        .show_background(false)
         .grid_color(theme::LINE)
+        .y_grid_spacer(|grid| newton_marks(grid.bounds.0, grid.bounds.1))
         .label_formatter(move |hover| {
             let (HoverPosition::NearDataPoint { position, .. } | HoverPosition::Elsewhere { position }) = hover;
             readout(history, axis, now_s, position.x)
@@ -214,6 +221,28 @@ fn round_up(value_n: f64) -> f64 {
     step
 }
 
+/// About five round marks over a range, so that each plot has numbers to read by however low it is.
+fn newton_marks(low_n: f64, high_n: f64) -> Vec<GridMark> {
+    let rough = (high_n - low_n) / 6.0;
+    if !rough.is_finite() || rough <= 0.0 {
+        return Vec::new();
+    }
+    let decade = 10f64.powf(rough.log10().floor());
+    let step_size = [1.0, 2.0, 5.0, 10.0].map(|x| x * decade).into_iter().find(|&step| step >= rough).unwrap_or(rough);
+    let first = (low_n / step_size).ceil() as i64;
+    (first..first + 12)
+        .map(|i| i as f64 * step_size)
+        .take_while(|&value| value <= high_n)
+        .map(|value| GridMark { value, step_size })
+        .collect()
+}
+
+/// A number at the very end of an axis would run into the next plot.
+fn near_end(value: f64, shown: &RangeInclusive<f64>) -> bool {
+    let margin = 0.07 * (shown.end() - shown.start());
+    value < shown.start() + margin || value > shown.end() - margin
+}
+
 fn plain(value: f64) -> String {
     let text = format!("{value:.2}");
     let text = text.trim_end_matches('0').trim_end_matches('.');
@@ -266,6 +295,15 @@ mod tests {
             state.zoom(0.5, -10.0);
         }
         assert!(state.view_s.1 <= 0.0 && state.view_s.1 - state.view_s.0 <= LONGEST_S + 1e-9);
+    }
+
+    #[test]
+    fn every_range_has_a_few_marks() {
+        for (low_n, high_n) in [(-0.25, 0.25), (-1.0, 0.5), (-0.25, 4.0), (-6.0, 1e3)] {
+            let marks = newton_marks(low_n, high_n);
+            assert!((2..=8).contains(&marks.len()), "{low_n} to {high_n}: {}", marks.len());
+        }
+        assert!(newton_marks(0.0, 0.0).is_empty() && newton_marks(0.0, f64::NAN).is_empty());
     }
 
     #[test]

@@ -75,7 +75,7 @@ fn gates(live: &Live) -> [Gate; 7] {
         "Closed while the hand is slower than this. At standstill an impedance cannot be told from a constant force.",
     );
     if live.settings.static_hold {
-        dead_band.note = "off: force is kept".to_owned();
+        "off: force is kept".clone_into(&mut dead_band.note);
     } else if closed(gates.dead_band) && live.figures.withheld_n > 0.05 {
         dead_band.note = format!("{:.1} N not rendered", live.figures.withheld_n);
     }
@@ -130,7 +130,7 @@ fn gate_ui(ui: &mut Ui, gate: &Gate) {
         (true, true) => (Sign::Ring, theme::TEXT, "limiting"),
     };
     let row = ui.horizontal(|ui| {
-        ui.set_min_height(20.0);
+        ui.set_height(20.0);
         sign_ui(ui, what, 5.0, colour);
         let ink: Color32 = if acting { theme::TEXT } else { theme::TEXT_WEAK };
         ui.label(RichText::new(gate.name).color(ink));

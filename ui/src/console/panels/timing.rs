@@ -43,14 +43,19 @@ pub fn timing_ui(ui: &mut Ui, live: &Live) {
             ui,
             "Console frame",
             frame,
-            "Time from one picture of this window to the next (33 ms asked), and the work in it.",
+            if live.rough_edges {
+                "Time from one picture of this window to the next (33 ms asked), and the work in it. Edges in 3-D are not smoothed, \
+                 because this computer draws too slowly with it."
+            } else {
+                "Time from one picture of this window to the next (33 ms asked), and the work in it."
+            },
         );
     });
 }
 
 fn table_ui(ui: &mut Ui, live: &Live) {
     Grid::new("timing").num_columns(5).spacing([10.0, 3.0]).min_col_width(46.0).show(ui, |ui| {
-        ui.label(small("us"));
+        ui.label(small("µs"));
         for head in ["p50", "p99", "p99.9", "max"] {
             right(ui, small(head));
         }

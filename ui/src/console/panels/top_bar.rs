@@ -87,8 +87,10 @@ fn stop_ui(ui: &mut Ui, state: LoopState, outbox: &mut Outbox) {
     let (fill, ink) = if latched { (theme::CONTROL, theme::TEXT_WEAK) } else { (theme::STOP, theme::BACKGROUND) };
     let text = RichText::new("      Stop").font(theme::strong(21.0)).color(ink);
     let button = Button::new(text).min_size(theme::STOP_SIZE).fill(fill).corner_radius(theme::CORNER);
-    let response =
-        ui.add(button).on_hover_text("Zero force and a resting follower at once. Space or Escape does the same.");
+    let response = ui.add(button);
+    // The text leaves room for the sign; its name is one word.
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, "Stop"));
+    let response = response.on_hover_text("Zero force and a resting follower at once. Space or Escape does the same.");
     sign(ui.painter(), Sign::Octagon, response.rect.left_center() + vec2(32.0, 0.0), 11.0, ink);
     if response.clicked() {
         outbox.push(Command::Stop);

@@ -24,7 +24,8 @@ pub struct Camera {
 
 impl Default for Camera {
     fn default() -> Self {
-        Self { target_m: Vector3::new(0.0, 0.002, 0.012), distance_m: 0.235, yaw: -0.62, pitch: 0.50 }
+        // From beyond the field, so that the shaft leans away and covers neither the tip nor the forces.
+        Self { target_m: Vector3::new(0.0, -0.010, 0.046), distance_m: 0.298, yaw: 2.62, pitch: 0.40 }
     }
 }
 
@@ -53,6 +54,13 @@ impl Camera {
     pub fn right(&self) -> Vector3<f32> {
         let (sin_yaw, cos_yaw) = self.yaw.sin_cos();
         Vector3::new(cos_yaw, sin_yaw, 0.0)
+    }
+
+    /// Direction that is up on the screen, unit length.
+    pub fn up(&self) -> Vector3<f32> {
+        let (sin_yaw, cos_yaw) = self.yaw.sin_cos();
+        let (sin_pitch, cos_pitch) = self.pitch.sin_cos();
+        Vector3::new(-sin_yaw * sin_pitch, cos_yaw * sin_pitch, cos_pitch)
     }
 
     /// Workspace to OpenGL clip space for a view of this width by height.
@@ -92,6 +100,8 @@ mod tests {
         assert!((middle - view().center()).length() < 0.1, "{middle:?}");
         let above = camera.project(&(camera.target_m + Vector3::z() * 0.01), view()).unwrap();
         assert!(above.y < middle.y && (above.x - middle.x).abs() < 1.0);
+        let up = camera.project(&(camera.target_m + camera.up() * 0.01), view()).unwrap();
+        assert!(up.y < above.y && (up.x - middle.x).abs() < 1.0, "nothing is higher than straight up");
         let right = camera.project(&(camera.target_m + camera.right() * 0.01), view()).unwrap();
         assert!(right.x > middle.x && (right.y - middle.y).abs() < 1.0);
     }

@@ -18,11 +18,19 @@ use self::{gl::Renderer, stage::Pose};
 use super::{live::Live, panels::gauge, theme, widgets::force_sign};
 
 /// Camera and GPU objects of the view.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub struct SceneView {
+    /// Draw with smooth edges.
+    pub smooth: bool,
     camera: Camera,
     renderer: Option<Arc<Renderer>>,
     problem: Option<String>,
+}
+
+impl Default for SceneView {
+    fn default() -> Self {
+        Self { smooth: true, camera: Camera::default(), renderer: None, problem: None }
+    }
 }
 
 impl SceneView {
@@ -59,38 +67,21 @@ pub fn scene_ui(ui: &mut Ui, live: &Live, view: &mut SceneView) {
     }
     let pose = pose(live);
     let painter = ui.painter_at(rect);
-    backdrop(&painter, rect);
     triangles(&painter, rect, live, view, &pose);
     labels(&painter, rect, live, view, &pose);
     readings(&painter, rect, live);
+    axes(&painter, rect, &view.camera);
     hint(&painter, rect, view);
 }
 
 fn pose(live: &Live) -> Pose {
-    live.tick.as_ref().map_or(
-        Pose { tip_m: Vector3::new(0.0, 0.0, 0.02), measured_n: Vector3::zeros(), rendered_n: Vector3::zeros() },
-        |tick| Pose {
-            tip_m: tick.tip_m.cast(),
-            measured_n: tick.measured_n.cast(),
-            rendered_n: tick.rendered_n.cast(),
-        },
-    )
-}
-
-/// A soft light from above on a dark ground.
-fn backdrop(painter: &Painter, rect: Rect) {
-    let mut mesh = egui::Mesh::default();
-    for (corner, colour) in [
-        (rect.left_top(), theme::FIELD_FAR),
-        (rect.right_top(), theme::FIELD_FAR),
-        (rect.left_bottom(), theme::FIELD_NEAR),
-        (rect.right_bottom(), theme::FIELD_NEAR),
-    ] {
-        mesh.colored_vertex(corner, colour);
-    }
-    mesh.add_triangle(0, 1, 2);
-    mesh.add_triangle(2, 1, 3);
-    painter.add(mesh);
+    let finite = |v: Vector3<f64>| v.iter().all(|x| x.is_finite());
+    let rest = Pose { tip_m: Vector3::new(0.0, 0.0, 0.02), measured_n: Vector3::zeros(), rendered_n: Vector3::zeros() };
+    live.tick.as_ref().filter(|tick| finite(tick.tip_m)).map_or(rest, |tick| Pose {
+        tip_m: tick.tip_m.cast(),
+        measured_n: tick.measured_n.cast(),
+        rendered_n: tick.rendered_n.cast(),
+    })
 }
 
 fn triangles(painter: &Painter, rect: Rect, live: &Live, view: &SceneView, pose: &Pose) {
@@ -102,8 +93,12 @@ fn triangles(painter: &Painter, rect: Rect, live: &Live, view: &SceneView, pose:
         clip_from_workspace: view.camera.clip_from_workspace(rect.aspect_ratio()),
         eye_m,
         shaft_m: [pose.tip_m, live.scene.trocar_m.cast()],
+        backdrop: [theme::FIELD_FAR, theme::FIELD_NEAR],
+        smooth: view.smooth,
     };
-    let paint = egui_glow::CallbackFn::new(move |_, painter| renderer.paint(painter.gl(), &frame));
+    let paint = egui_glow::CallbackFn::new(move |info, painter| {
+        renderer.paint(painter.gl(), painter.intermediate_fbo(), &info.viewport_in_pixels(), &frame);
+    });
     painter.add(egui::PaintCallback { rect, callback: Arc::new(paint) });
 }
 
@@ -115,17 +110,23 @@ fn labels(painter: &Painter, rect: Rect, live: &Live, view: &SceneView, pose: &P
         label(painter, place + vec2(18.0, 0.0), Align2::LEFT_CENTER, "Trocar", theme::regular(13.0), theme::TEXT_WEAK);
     }
     let right = view.camera.right();
-    for (rendered, force_n, colour) in
-        [(false, pose.measured_n, theme::MEASURED), (true, pose.rendered_n, theme::RENDERED)]
-    {
+    let [measured, rendered] = stage::arrow_bases_m(pose, &trocar_m, &right);
+    // The outer one's number stands outside, the inner one's above its head: so they never meet.
+    let (outside, shift) = if (measured - rendered).dot(&right) < 0.0 {
+        (Align2::RIGHT_CENTER, vec2(-9.0, -6.0))
+    } else {
+        (Align2::LEFT_CENTER, vec2(9.0, -6.0))
+    };
+    for (base, force_n, colour, align, shift) in [
+        (measured, pose.measured_n, theme::MEASURED, outside, shift),
+        (rendered, pose.rendered_n, theme::RENDERED, Align2::CENTER_BOTTOM, vec2(0.0, -4.0)),
+    ] {
         let size_n = force_n.norm();
-        if size_n < 0.15 {
+        if !(0.15..1e6).contains(&size_n) {
             continue;
         }
-        let head = stage::arrow_base_m(pose, &right, rendered) + force_n * stage::ARROW_M_PER_N;
-        if let Some(place) = at(head) {
-            let (align, shift) = if rendered { (Align2::LEFT_CENTER, 8.0) } else { (Align2::RIGHT_CENTER, -8.0) };
-            label(painter, place + vec2(shift, -6.0), align, &format!("{size_n:.1} N"), theme::strong(15.0), colour);
+        if let Some(place) = at(base + force_n * stage::ARROW_M_PER_N) {
+            label(painter, place + shift, align, &format!("{size_n:.1} N"), theme::strong(15.0), colour);
         }
     }
 }
@@ -162,6 +163,20 @@ fn readings(painter: &Painter, rect: Rect, live: &Live) {
     let line_y = place.bottom() - place.height() / 1.25;
     let words = format!("ceiling\n{ceiling_n:.0} N");
     painter.text(pos2(place.left() - 8.0, line_y), Align2::RIGHT_CENTER, words, theme::regular(12.5), theme::TEXT_WEAK);
+}
+
+/// Which way x, y and z of the traces go, in the lower right corner.
+fn axes(painter: &Painter, rect: Rect, camera: &Camera) {
+    const LENGTH: f32 = 26.0;
+    let origin = rect.right_bottom() - vec2(54.0, 40.0);
+    for (name, axis) in [("x", Vector3::x()), ("y", Vector3::y()), ("z", Vector3::z())] {
+        let way = LENGTH * vec2(axis.dot(&camera.right()), -axis.dot(&camera.up()));
+        let stroke = egui::Stroke::new(1.5, theme::TEXT_WEAK);
+        painter.line_segment([origin, origin + way], stroke);
+        painter.circle_filled(origin + way, 2.5, theme::TEXT_WEAK);
+        let place = origin + way + way.normalized() * 10.0;
+        painter.text(place, Align2::CENTER_CENTER, name, theme::regular(13.0), theme::TEXT);
+    }
 }
 
 fn hint(painter: &Painter, rect: Rect, view: &SceneView) {

@@ -1,4 +1,4 @@
-// One lamp, a sky, a highlight. Materials (see mesh.rs) come as a number in the colour's last byte.
+// One lamp, a sky, a highlight; gamma 2, which a processor without a GPU can afford. Materials (see mesh.rs) come as a number in the colour's last byte.
 uniform vec3 u_eye;
 uniform vec3 u_shaft_tip;
 uniform vec3 u_shaft_top;
@@ -7,18 +7,7 @@ in vec3 v_normal;
 in vec4 v_colour;
 out vec4 f_colour;
 
-const vec3 LAMP = vec3(-0.36, -0.28, 0.89);
-
-float hash(vec2 p) {
-    return fract(sin(dot(p, vec2(127.1, 311.7))) * 43758.5453);
-}
-
-float noise(vec2 p) {
-    vec2 i = floor(p);
-    vec2 f = fract(p);
-    f = f * f * (3.0 - 2.0 * f);
-    return mix(mix(hash(i), hash(i + vec2(1.0, 0.0)), f.x), mix(hash(i + vec2(0.0, 1.0)), hash(i + vec2(1.0, 1.0)), f.x), f.y);
-}
+const vec3 LAMP = vec3(-0.42, 0.30, 0.857);
 
 // How much lamp light reaches p past the instrument's shaft: distance between the ray to the lamp and the shaft's axis.
 float light_past_shaft(vec3 p) {
@@ -45,7 +34,7 @@ void main() {
     vec3 normal = normalize(v_normal);
     vec3 to_eye = normalize(u_eye - v_position);
     if (dot(normal, to_eye) < 0.0) normal = -normal;
-    vec3 base = pow(v_colour.rgb, vec3(2.2));
+    vec3 base = v_colour.rgb * v_colour.rgb;
     vec3 halfway = normalize(LAMP + to_eye);
     float facing = dot(normal, LAMP);
     float sky = 0.5 + 0.5 * normal.z;
@@ -53,12 +42,10 @@ void main() {
     vec3 shaded;
     if (material == 1) {
         vec2 p = v_position.xy;
-        float mottle = 0.6 * noise(p * 140.0) + 0.4 * noise(p * 420.0);
-        base *= mix(vec3(0.80, 0.72, 0.72), vec3(1.12, 1.10, 1.08), mottle);
         vec2 cell = abs(fract(p * 100.0 - 0.5) - 0.5);
         vec2 width = fwidth(p * 100.0);
-        vec2 thread = 1.0 - smoothstep(0.5 * width, 1.5 * width, cell);
-        base = mix(base, base * 0.55, 0.6 * max(thread.x, thread.y));
+        vec2 thread = 1.0 - smoothstep(0.3 * width, 1.1 * width, cell);
+        base *= 1.0 - 0.28 * max(thread.x, thread.y);
         float lamp = light_past_shaft(v_position);
         float wrap = clamp((facing + 0.35) / 1.35, 0.0, 1.0) * lamp;
         // Light that entered the tissue comes back redder.
@@ -73,5 +60,5 @@ void main() {
         float shine = pow(clamp(dot(normal, halfway), 0.0, 1.0), 24.0);
         shaded = base * (0.70 * clamp(facing, 0.0, 1.0) + 0.28 * sky + 0.06) + vec3(0.08) * shine + vec3(0.03, 0.035, 0.04) * rim;
     }
-    f_colour = vec4(pow(clamp(shaded, 0.0, 1.0), vec3(1.0 / 2.2)), 1.0);
+    f_colour = vec4(sqrt(clamp(shaded, 0.0, 1.0)), 1.0);
 }

@@ -8,9 +8,11 @@ use super::mesh::{Material, Mesh, Paint};
 use crate::console::theme;
 
 /// Length of a force arrow, m per N.
-pub const ARROW_M_PER_N: f32 = 0.014;
+pub const ARROW_M_PER_N: f32 = 0.017;
 /// Below this a force has no arrow: it would be noise, N.
 const ARROW_LEAST_N: f32 = 0.06;
+/// An arrow grows no longer than this, N.
+const ARROW_MOST_N: f32 = 8.0;
 /// Radius of the instrument's shaft, m (a 5 mm instrument).
 pub const SHAFT_RADIUS_M: f32 = 0.0025;
 /// Width of the dent under a tip, m.
@@ -18,7 +20,8 @@ const DENT_M: f32 = 0.0085;
 const SLAB_THICKNESS_M: f32 = 0.016;
 const CELLS: u32 = 64;
 
-const TISSUE: Paint = Paint(Color32::from_rgb(0xc4, 0x6f, 0x6a), Material::Tissue);
+const TISSUE_DARK: Color32 = Color32::from_rgb(0xb9, 0x66, 0x62);
+const TISSUE_PALE: Color32 = Color32::from_rgb(0xcc, 0x7f, 0x77);
 const TISSUE_SIDE: Paint = Paint(Color32::from_rgb(0x9e, 0x55, 0x54), Material::Matte);
 const TRAY: Paint = Paint(Color32::from_rgb(0x2c, 0x33, 0x3c), Material::Matte);
 const TARGET: Paint = Paint(Color32::from_rgb(0xd9, 0xde, 0xe3), Material::Matte);
@@ -72,15 +75,19 @@ impl Dent {
 /// Builds the whole stage.
 pub fn build(scene: &Scene, pose: &Pose, trail: &[Vector3<f32>], eye_m: &Vector3<f32>, right: &Vector3<f32>) -> Mesh {
     let mut mesh = Mesh { vertices: Vec::with_capacity(9000), indices: Vec::with_capacity(45_000) };
+    // What is in front comes first, so that what it hides is never shaded.
+    let trocar_m = scene.trocar_m.cast();
+    let [measured, rendered] = arrow_bases_m(pose, &trocar_m, right);
+    measured_arrow(&mut mesh, measured, &pose.measured_n);
+    rendered_arrow(&mut mesh, rendered, &pose.rendered_n);
+    instrument(&mut mesh, &trocar_m, &pose.tip_m);
     let dent = Dent::new(scene, &pose.tip_m);
-    tissue(&mut mesh, scene, &dent);
     for target in &scene.targets_m {
         let target = target.cast::<f32>();
         mesh.ring(target, [0.0055, 0.0008], |x, y| dent.lift_m(x, y), TARGET);
     }
     mesh.ribbon(trail, eye_m, |i| 0.0011 * (i as f32 / trail.len() as f32), TRAIL);
-    instrument(&mut mesh, &scene.trocar_m.cast(), &pose.tip_m);
-    arrows(&mut mesh, pose, right);
+    tissue(&mut mesh, scene, &dent);
     mesh
 }
 
@@ -89,18 +96,13 @@ fn tissue(mesh: &mut Mesh, scene: &Scene, dent: &Dent) {
     let [x_m, y_m] = tissue.size_m.map(|x| 0.5 * x as f32);
     let top_m = tissue.surface_z_m as f32;
     let bottom_m = top_m - SLAB_THICKNESS_M;
-    mesh.cuboid(
-        Vector3::new(-x_m - 0.012, -y_m - 0.012, bottom_m - 0.004),
-        Vector3::new(x_m + 0.012, y_m + 0.012, bottom_m),
-        TRAY,
-    );
     let place = |i: u32, half_m: f32| half_m * (2.0 * i as f32 / CELLS as f32 - 1.0);
     let first = mesh.vertices.len() as u32;
     for row in 0..=CELLS {
         for column in 0..=CELLS {
             let (x, y) = (place(column, x_m), place(row, y_m));
             let position = Vector3::new(x, y, top_m + dent.lift_m(x, y));
-            mesh.vertex(position, dent.normal(x, y), TISSUE);
+            mesh.vertex(position, dent.normal(x, y), Paint(mottled(x, y), Material::Tissue));
         }
     }
     mesh.sheet(first, CELLS, CELLS);
@@ -116,6 +118,19 @@ fn tissue(mesh: &mut Mesh, scene: &Scene, dent: &Dent) {
         }
         mesh.sheet(first, 1, CELLS);
     }
+    mesh.cuboid(
+        Vector3::new(-x_m - 0.012, -y_m - 0.012, bottom_m - 0.004),
+        Vector3::new(x_m + 0.012, y_m + 0.012, bottom_m),
+        TRAY,
+    );
+}
+
+/// The tissue's colour at a place: slow waves of blood under the surface, so that it does not look like a tile.
+fn mottled(x: f32, y: f32) -> Color32 {
+    let wave = (x * 97.0 + 2.1 * (y * 61.0).sin()).sin() + (y * 83.0 - 2.3 * (x * 53.0).sin() + 1.0).sin();
+    let fine = ((x + 0.7 * y) * 271.0 + (y * 190.0).sin()).sin();
+    let share = (0.5 + 0.22 * wave + 0.10 * fine).clamp(0.0, 1.0);
+    TISSUE_DARK.lerp_to_gamma(TISSUE_PALE, share)
 }
 
 /// Shaft through the trocar to a blunt tip whose lowest point is the tip.
@@ -132,22 +147,24 @@ fn instrument(mesh: &mut Mesh, trocar_m: &Vector3<f32>, tip_m: &Vector3<f32>) {
 
 const SHAFT: Paint = Paint(Color32::from_rgb(0x6d, 0x76, 0x82), Material::Metal);
 
-/// Both arrows begin beside the tip, left and right of it as the operator sees it, so that equal forces stay two arrows.
-pub fn arrow_base_m(pose: &Pose, right: &Vector3<f32>, rendered: bool) -> Vector3<f32> {
-    let side = if rendered { 0.0065 } else { -0.0065 };
-    pose.tip_m + right * side + Vector3::z() * 0.002
+/// Both arrows begin beside the tip, on the side that the shaft does not cover as the operator sees it, measured outside:
+/// equal forces stay two arrows.
+pub fn arrow_bases_m(pose: &Pose, trocar_m: &Vector3<f32>, right: &Vector3<f32>) -> [Vector3<f32>; 2] {
+    let side = if (trocar_m - pose.tip_m).dot(right) > 0.0 { -1.0 } else { 1.0 };
+    [0.0135, 0.0060].map(|away| pose.tip_m + right * (side * away) + Vector3::z() * 0.002)
 }
 
-fn arrows(mesh: &mut Mesh, pose: &Pose, right: &Vector3<f32>) {
-    measured_arrow(mesh, arrow_base_m(pose, right, false), &pose.measured_n);
-    rendered_arrow(mesh, arrow_base_m(pose, right, true), &pose.rendered_n);
+/// `None` for a force too small to be shown, or not finite.
+fn size_and_direction(force_n: &Vector3<f32>) -> Option<(f32, Vector3<f32>)> {
+    let size_n = force_n.norm();
+    // Far beyond the ceiling an arrow would only fill the view.
+    (size_n.is_finite() && size_n >= ARROW_LEAST_N).then(|| (size_n.min(ARROW_MOST_N), force_n / size_n))
 }
 
 /// One smooth shaft, one cone.
 fn measured_arrow(mesh: &mut Mesh, base: Vector3<f32>, force_n: &Vector3<f32>) {
     let paint = Paint(theme::MEASURED, Material::Plain);
-    let size_n = force_n.norm();
-    let Some(along) = force_n.try_normalize(ARROW_LEAST_N) else { return };
+    let Some((size_n, along)) = size_and_direction(force_n) else { return };
     let length = size_n * ARROW_M_PER_N;
     let head = 0.007_f32.min(length * 0.6);
     mesh.tube([base, base + along * (length - head)], [0.0011; 2], 14, paint);
@@ -158,8 +175,7 @@ fn measured_arrow(mesh: &mut Mesh, base: Vector3<f32>, force_n: &Vector3<f32>) {
 fn rendered_arrow(mesh: &mut Mesh, base: Vector3<f32>, force_n: &Vector3<f32>) {
     const BEAD_M: f32 = 0.0055;
     let paint = Paint(theme::RENDERED, Material::Plain);
-    let size_n = force_n.norm();
-    let Some(along) = force_n.try_normalize(ARROW_LEAST_N) else { return };
+    let Some((size_n, along)) = size_and_direction(force_n) else { return };
     let length = size_n * ARROW_M_PER_N;
     let head = 0.009_f32.min(length * 0.6);
     let shaft = length - head;

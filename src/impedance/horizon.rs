@@ -59,13 +59,7 @@ impl Horizon {
     }
 
     /// Judges all candidates on the newest sample (`good`: the force is a measurement); gives the columns of the best one.
-    pub(super) fn step(
-        &mut self,
-        solution: &Solution,
-        features: &Features,
-        force_n: Lanes,
-        good: bool,
-    ) -> usize {
+    pub(super) fn step(&mut self, solution: &Solution, features: &Features, force_n: Lanes, good: bool) -> usize {
         if let Some(then) = self.past.get(self.delay_ticks.wrapping_sub(1)).filter(|_| good && self.delay_ticks > 0) {
             let change = force_n - then.force_n;
             let decayed = self.largest_change_n * (1.0 - self.forget);

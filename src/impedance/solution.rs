@@ -2,7 +2,6 @@
 
 use super::{
     factor::{Factor, MAX_COLUMNS, column_start},
-    features::MOTION_COLUMNS,
 };
 use crate::signal::Lanes;
 
@@ -97,17 +96,6 @@ impl Solution {
         let mut sum = [Lanes::ZERO; MAX_COLUMNS];
         for j in 0..prefix.min(self.columns) {
             for (sum, part) in sum.iter_mut().zip(self.increment(j)) {
-                *sum += *part;
-            }
-        }
-        sum
-    }
-
-    /// Coefficients of the motion columns (without the constant) with the first `motion_columns` of them.
-    pub(super) fn motion_coefficients(&self, motion_columns: usize) -> [Lanes; MOTION_COLUMNS] {
-        let mut sum = [Lanes::ZERO; MOTION_COLUMNS];
-        for j in 1..=motion_columns.min(self.columns.saturating_sub(1)) {
-            for (sum, part) in sum.iter_mut().zip(&self.increment(j)[1..]) {
                 *sum += *part;
             }
         }

@@ -162,7 +162,9 @@ mod tests {
 
     /// A column set that excites everything, deterministic.
     fn columns(i: usize) -> [Lanes; REGRESSORS] {
-        std::array::from_fn(|j| Lanes(std::array::from_fn(|lane| ((i * (j + 3) + 7 * lane * j) as f64 * 0.37).sin() * (1.0 + j as f64))))
+        std::array::from_fn(|j| {
+            Lanes(std::array::from_fn(|lane| ((i * (j + 3) + 7 * lane * j) as f64 * 0.37).sin() * (1.0 + j as f64)))
+        })
     }
 
     #[test]

@@ -78,7 +78,8 @@ impl Mixture {
         }
         for _ in 0..2 {
             for i in 0..VARIANTS {
-                let explained: f64 = (0..VARIANTS).filter(|&j| j != i).map(|j| self.products[i][j] * self.weights[j]).sum();
+                let explained: f64 =
+                    (0..VARIANTS).filter(|&j| j != i).map(|j| self.products[i][j] * self.weights[j]).sum();
                 let own = self.products[i][i] + STACK_RIDGE * self.truth;
                 self.weights[i] = ((self.with_truth[i] - explained) / own).max(0.0);
             }

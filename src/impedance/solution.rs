@@ -1,8 +1,6 @@
 //! Every nested least-squares solution from one triangular factor.
 
-use super::{
-    factor::{Factor, MAX_COLUMNS, column_start},
-};
+use super::factor::{Factor, MAX_COLUMNS, column_start};
 use crate::signal::Lanes;
 
 /// Rows of the inverse made side by side.

@@ -6,12 +6,10 @@
 use std::ops::RangeInclusive;
 
 use egui::{Align, Button, Color32, Layout, Rect, RichText, Sense, Ui, Vec2b, pos2, vec2};
-use egui_plot::{
-    AxisHints, GridMark, HoverPosition, Line, Plot, PlotBounds, PlotPoint, PlotPoints, PlotResponse, VLine,
-};
+use egui_plot::{AxisHints, GridMark, HoverPosition, Line, Plot, PlotBounds, PlotPoints, PlotResponse, VLine};
 
 use crate::console::{
-    history::{CHANNELS, History},
+    history::{CHANNELS, History, Trace},
     live::Live,
     theme,
     widgets::{force_sign, small},
@@ -33,7 +31,7 @@ pub struct ForcesState {
     view_s: (f64, f64),
     paused_at_s: Option<f64>,
     ranges_n: [(f64, f64); 3],
-    lines: [Vec<PlotPoint>; CHANNELS],
+    lines: [Trace; CHANNELS],
     cursor_s: Option<f64>,
 }
 
@@ -77,7 +75,7 @@ pub fn forces_ui(ui: &mut Ui, live: &Live, state: &mut ForcesState) {
     let (from_s, to_s) = (now_s + state.view_s.0, now_s + state.view_s.1);
     let most = (ui.available_width() * 0.8) as usize;
     for (channel, line) in state.lines.iter_mut().enumerate() {
-        live.history.line(channel, (from_s, to_s), now_s, most, line);
+        live.history.trace(channel, (from_s, to_s), now_s, most, line);
     }
     ui.spacing_mut().item_spacing.y = 4.0;
     let height = ((ui.available_height() - TIME_AXIS - 8.0) / 3.0).max(48.0);
@@ -164,8 +162,10 @@ fn plot_ui(
     plot.show(ui, |plot| {
         plot.set_plot_bounds(PlotBounds::from_min_max([state.view_s.0, low_n], [state.view_s.1, high_n]));
         for (channel, name, colour, width) in lines {
-            let points = PlotPoints::Borrowed(&state.lines[channel]);
-            plot.line(Line::new(name, points).color(colour).width(width).allow_hover(false));
+            for (run, points) in state.lines[channel].runs().enumerate() {
+                let line = Line::new(name, PlotPoints::Borrowed(points)).id((name, run));
+                plot.line(line.color(colour).width(width).allow_hover(false));
+            }
         }
         if let Some(cursor_s) = cursor_s {
             plot.vline(VLine::new("cursor", cursor_s).color(theme::TEXT_WEAK).width(1.0).allow_hover(false));

@@ -184,5 +184,5 @@ fn hint(painter: &Painter, rect: Rect, view: &SceneView) {
         Some(problem) => (format!("The 3-D view cannot be drawn by this graphics driver: {problem}"), theme::TEXT),
         None => ("Drag to turn, wheel to zoom, double click to reset".to_owned(), theme::TEXT_WEAK),
     };
-    painter.text(rect.left_bottom() + vec2(16.0, -12.0), Align2::LEFT_BOTTOM, words, theme::regular(12.5), colour);
+    label(painter, rect.left_bottom() + vec2(16.0, -12.0), Align2::LEFT_BOTTOM, &words, theme::regular(12.5), colour);
 }

@@ -154,7 +154,7 @@ fn readings(painter: &Painter, rect: Rect, live: &Live) {
         let number = format!("{force_n:.2} N");
         painter.text(pos2(corner.x + 210.0, y), Align2::RIGHT_CENTER, number, theme::strong(25.0), colour);
     }
-    let height = (rect.height() - 110.0).clamp(60.0, 300.0);
+    let height = (rect.height() - 150.0).clamp(60.0, 300.0);
     let place = Rect::from_min_size(pos2(rect.right() - 46.0, rect.top() + 36.0), vec2(26.0, height));
     let ceiling_n = live.rig.gates.ceiling_n;
     let (measured_n, rendered_n) =

@@ -117,7 +117,7 @@ pub fn judge(signs: &Signs) -> Vec<Alarm> {
 }
 
 /// The same words with a capital first letter.
-fn sentence(words: &str) -> String {
+pub fn sentence(words: &str) -> String {
     let mut letters = words.chars();
     letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
 }

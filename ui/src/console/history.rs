@@ -15,6 +15,26 @@ const CAPACITY: usize = 8192;
 /// Length of a bucket on each level, s: the last 33 s in detail, two minutes, nine minutes.
 const SPANS_S: [f64; 3] = [0.004, 0.016, 0.064];
 
+/// A stretch without samples that is shown as a gap, s; shorter ones are bridged.
+const GAP_S: f64 = 0.05;
+
+/// A signal ready to be drawn: points with rising x, in runs between gaps.
+#[derive(Clone, Debug, Default)]
+pub struct Trace {
+    points: Vec<PlotPoint>,
+    /// Where each run but the first begins.
+    breaks: Vec<usize>,
+}
+
+impl Trace {
+    /// The runs, oldest first, each without a gap.
+    pub fn runs(&self) -> impl Iterator<Item = &[PlotPoint]> {
+        let begins = std::iter::once(0).chain(self.breaks.iter().copied());
+        let ends = self.breaks.iter().copied().chain(std::iter::once(self.points.len()));
+        begins.zip(ends).map(|(begin, end)| &self.points[begin..end]).filter(|run| !run.is_empty())
+    }
+}
+
 #[derive(Clone, Copy, Debug)]
 struct Bucket {
     low: [f32; CHANNELS],
@@ -146,23 +166,22 @@ impl History {
         self.levels.iter().find(fits).unwrap_or(&self.levels[SPANS_S.len() - 1])
     }
 
-    /// Replaces `line` by the signal between two times, two points a bucket, x counted from `origin_s`.
-    pub fn line(
-        &self,
-        channel: usize,
-        (from_s, to_s): (f64, f64),
-        origin_s: f64,
-        most: usize,
-        line: &mut Vec<PlotPoint>,
-    ) {
-        line.clear();
+    /// Replaces `trace` by the signal between two times, two points a bucket, x counted from `origin_s`.
+    pub fn trace(&self, channel: usize, (from_s, to_s): (f64, f64), origin_s: f64, most: usize, trace: &mut Trace) {
+        trace.points.clear();
+        trace.breaks.clear();
         let level = self.level(from_s, to_s, most);
+        let mut last_s = f64::INFINITY;
         for (begin_s, bucket) in level.between(from_s, to_s) {
             let Some((low, high)) = bucket.ends(channel) else { continue };
+            if begin_s - last_s > GAP_S + level.span_s {
+                trace.breaks.push(trace.points.len());
+            }
+            last_s = begin_s;
             let (one, two) = if bucket.low_first & (1 << channel) == 0 { (high, low) } else { (low, high) };
             let t_s = begin_s - origin_s;
-            line.push(PlotPoint::new(t_s + 0.25 * level.span_s, f64::from(one)));
-            line.push(PlotPoint::new(t_s + 0.75 * level.span_s, f64::from(two)));
+            trace.points.push(PlotPoint::new(t_s + 0.25 * level.span_s, f64::from(one)));
+            trace.points.push(PlotPoint::new(t_s + 0.75 * level.span_s, f64::from(two)));
         }
     }
 
@@ -198,25 +217,45 @@ mod tests {
         history
     }
 
+    fn one_run(trace: &Trace) -> &[PlotPoint] {
+        assert_eq!(trace.breaks, [0; 0]);
+        &trace.points
+    }
+
+    #[test]
+    fn a_stall_is_drawn_as_a_gap_and_a_missed_tick_is_not() {
+        let mut history = History::default();
+        for i in (0..1000).filter(|i| !(300..600).contains(i) && i % 10 != 0) {
+            history.push(f64::from(i) * 1e-3, &[1.0; CHANNELS]);
+        }
+        let mut trace = Trace::default();
+        for most in [10_000, 20] {
+            history.trace(0, (0.0, 1.0), 0.0, most, &mut trace);
+            assert_eq!(trace.runs().count(), 2);
+            assert!(trace.runs().all(|run| run.is_sorted_by(|a, b| a.x <= b.x)));
+        }
+    }
+
     #[test]
     fn a_spike_of_one_sample_survives_at_every_resolution() {
         let history = filled(120.0, 1000.0, |t_s| if (t_s - 100.0).abs() < 5e-4 { 3.0 } else { 0.0 });
-        let mut line = Vec::new();
+        let mut line = Trace::default();
         for (from_s, most) in [(99.9, 10_000), (90.0, 2000), (0.0, 2000), (0.0, 10)] {
-            history.line(0, (from_s, 120.0), 120.0, most, &mut line);
-            assert!(line.iter().any(|p| (p.y - 3.0).abs() < 1e-9), "lost from {from_s}");
-            assert!(line.is_sorted_by(|a, b| a.x <= b.x), "x must rise, or plotting falls off its fast path");
+            history.trace(0, (from_s, 120.0), 120.0, most, &mut line);
+            let points = one_run(&line);
+            assert!(points.iter().any(|p| (p.y - 3.0).abs() < 1e-9), "lost from {from_s}");
+            assert!(points.is_sorted_by(|a, b| a.x <= b.x), "x must rise, or plotting falls off its fast path");
         }
     }
 
     #[test]
     fn drawing_never_costs_more_than_the_kept_buckets() {
         let history = filled(700.0, 1000.0, |t_s| t_s as f32);
-        let mut line = Vec::new();
-        history.line(0, (0.0, 700.0), 700.0, 1000, &mut line);
-        assert!(line.len() <= 2 * CAPACITY);
-        history.line(0, (690.0, 700.0), 700.0, 1000, &mut line);
-        assert!((600..=2002).contains(&line.len()), "{}", line.len());
+        let mut line = Trace::default();
+        history.trace(0, (0.0, 700.0), 700.0, 1000, &mut line);
+        assert!(one_run(&line).len() <= 2 * CAPACITY);
+        history.trace(0, (690.0, 700.0), 700.0, 1000, &mut line);
+        assert!((600..=2002).contains(&one_run(&line).len()), "{}", one_run(&line).len());
         assert!(history.oldest_s() > 170.0 && history.oldest_s() < 180.0, "{}", history.oldest_s());
     }
 
@@ -225,9 +264,9 @@ mod tests {
         let mut history = History::default();
         history.push(0.000, &[1.0; CHANNELS]);
         history.push(0.001, &[-1.0; CHANNELS]);
-        let mut line = Vec::new();
-        history.line(2, (0.0, 0.003), 0.0, 100, &mut line);
-        let ys: Vec<f64> = line.iter().map(|p| p.y).collect();
+        let mut line = Trace::default();
+        history.trace(2, (0.0, 0.003), 0.0, 100, &mut line);
+        let ys: Vec<f64> = one_run(&line).iter().map(|p| p.y).collect();
         assert_eq!(ys, [1.0, -1.0]);
     }
 
@@ -248,9 +287,9 @@ mod tests {
     #[test]
     fn nothing_is_drawn_from_nothing() {
         let history = History::default();
-        let mut line = vec![PlotPoint::new(0.0, 0.0)];
-        history.line(0, (-10.0, 0.0), 0.0, 100, &mut line);
-        assert!(line.is_empty());
+        let mut line = Trace { points: vec![PlotPoint::new(0.0, 0.0)], breaks: vec![1] };
+        history.trace(0, (-10.0, 0.0), 0.0, 100, &mut line);
+        assert_eq!(line.runs().count(), 0);
         assert_eq!(history.extent(&[0], (-10.0, 0.0)), None);
     }
 }

@@ -7,11 +7,11 @@ use std::ops::RangeInclusive;
 
 use egui::{Align, Button, Color32, Layout, Rect, RichText, Sense, Ui, Vec2b, pos2, vec2};
 use egui_plot::{
-    AxisHints, GridMark, HoverPosition, Line, Plot, PlotBounds, PlotPoint, PlotPoints, PlotResponse, VLine,
+    AxisHints, GridInput, GridMark, HoverPosition, Line, Plot, PlotBounds, PlotPoints, PlotResponse, VLine,
 };
 
 use crate::console::{
-    history::{CHANNELS, History},
+    history::{CHANNELS, History, Trace},
     live::Live,
     theme,
     widgets::{force_sign, small},
@@ -33,7 +33,7 @@ pub struct ForcesState {
     view_s: (f64, f64),
     paused_at_s: Option<f64>,
     ranges_n: [(f64, f64); 3],
-    lines: [Vec<PlotPoint>; CHANNELS],
+    lines: [Trace; CHANNELS],
     cursor_s: Option<f64>,
 }
 
@@ -77,7 +77,7 @@ pub fn forces_ui(ui: &mut Ui, live: &Live, state: &mut ForcesState) {
     let (from_s, to_s) = (now_s + state.view_s.0, now_s + state.view_s.1);
     let most = (ui.available_width() * 0.8) as usize;
     for (channel, line) in state.lines.iter_mut().enumerate() {
-        live.history.line(channel, (from_s, to_s), now_s, most, line);
+        live.history.trace(channel, (from_s, to_s), now_s, most, line);
     }
     ui.spacing_mut().item_spacing.y = 4.0;
     let height = ((ui.available_height() - TIME_AXIS - 8.0) / 3.0).max(48.0);
@@ -137,7 +137,7 @@ fn plot_ui(
     let newtons = AxisHints::new_y()
         .label(format!("{} (N)", AXES[axis]))
         .min_thickness(56.0)
-        .label_spacing(16.0..=30.0)
+        .label_spacing(12.0..=20.0)
         .formatter(|mark, shown| if near_end(mark.value, shown) { String::new() } else { plain(mark.value) });
     let plot = Plot::new(("forces", axis))
         .height(height)
@@ -154,7 +154,8 @@ fn plot_ui(
         .show_crosshair(false)
         .show_background(false)
         .grid_color(theme::LINE)
-        .y_grid_spacer(|grid| newton_marks(grid.bounds.0, grid.bounds.1))
+        .x_grid_spacer(|grid| marks(&grid, 64.0))
+        .y_grid_spacer(|grid| marks(&grid, 18.0))
         .label_formatter(move |hover| {
             let (HoverPosition::NearDataPoint { position, .. } | HoverPosition::Elsewhere { position }) = hover;
             readout(history, axis, now_s, position.x)
@@ -164,8 +165,10 @@ fn plot_ui(
     plot.show(ui, |plot| {
         plot.set_plot_bounds(PlotBounds::from_min_max([state.view_s.0, low_n], [state.view_s.1, high_n]));
         for (channel, name, colour, width) in lines {
-            let points = PlotPoints::Borrowed(&state.lines[channel]);
-            plot.line(Line::new(name, points).color(colour).width(width).allow_hover(false));
+            for (run, points) in state.lines[channel].runs().enumerate() {
+                let line = Line::new(name, PlotPoints::Borrowed(points)).id((name, run));
+                plot.line(line.color(colour).width(width).allow_hover(false));
+            }
         }
         if let Some(cursor_s) = cursor_s {
             plot.vline(VLine::new("cursor", cursor_s).color(theme::TEXT_WEAK).width(1.0).allow_hover(false));
@@ -221,19 +224,20 @@ fn round_up(value_n: f64) -> f64 {
     step
 }
 
-/// About five round marks over a range, so that each plot has numbers to read by however low it is.
-fn newton_marks(low_n: f64, high_n: f64) -> Vec<GridMark> {
-    let rough = (high_n - low_n) / 6.0;
-    if !rough.is_finite() || rough <= 0.0 {
+/// Round marks over the range of an axis, at least so many points apart: numbers to read by however small the plot is.
+fn marks(grid: &GridInput, apart: f64) -> Vec<GridMark> {
+    let (low, high) = grid.bounds;
+    // egui_plot's base step is 8 points long.
+    let least = (grid.base_step_size * apart / 8.0).max((high - low) / 12.0);
+    if !least.is_finite() || least <= 0.0 {
         return Vec::new();
     }
-    let decade = 10f64.powf(rough.log10().floor());
-    let step_size = [1.0, 2.0, 5.0, 10.0].map(|x| x * decade).into_iter().find(|&step| step >= rough).unwrap_or(rough);
-    let first = (low_n / step_size).ceil() as i64;
-    (first..first + 12)
-        .map(|i| i as f64 * step_size)
-        .take_while(|&value| value <= high_n)
-        .map(|value| GridMark { value, step_size })
+    let decade = 10f64.powf(least.log10().floor());
+    let step_size = [1.0, 2.0, 5.0, 10.0].map(|x| x * decade).into_iter().find(|&step| step >= least).unwrap_or(least);
+    let first = (low / step_size).ceil() as i64;
+    (first..=first + 12)
+        .map(|i| GridMark { value: i as f64 * step_size, step_size })
+        .take_while(|mark| mark.value <= high)
         .collect()
 }
 
@@ -298,12 +302,17 @@ mod tests {
     }
 
     #[test]
-    fn every_range_has_a_few_marks() {
-        for (low_n, high_n) in [(-0.25, 0.25), (-1.0, 0.5), (-0.25, 4.0), (-6.0, 1e3)] {
-            let marks = newton_marks(low_n, high_n);
-            assert!((2..=8).contains(&marks.len()), "{low_n} to {high_n}: {}", marks.len());
+    fn every_axis_has_a_few_marks_far_enough_apart() {
+        for (low, high) in [(-0.25, 0.25), (-1.0, 0.5), (-0.25, 4.0), (-6.0, 1e3), (-10.0, 0.0)] {
+            for points in [64.0, 100.0, 800.0] {
+                let grid = GridInput { bounds: (low, high), base_step_size: 8.0 * (high - low) / points };
+                let marks = marks(&grid, 18.0);
+                assert!((1..=13).contains(&marks.len()), "{low} to {high}: {}", marks.len());
+                assert!(marks.iter().all(|mark| mark.step_size * points / (high - low) >= 17.9));
+            }
         }
-        assert!(newton_marks(0.0, 0.0).is_empty() && newton_marks(0.0, f64::NAN).is_empty());
+        let nothing = GridInput { bounds: (0.0, f64::NAN), base_step_size: f64::NAN };
+        assert!(marks(&nothing, 18.0).is_empty());
     }
 
     #[test]

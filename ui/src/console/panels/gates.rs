@@ -49,6 +49,9 @@ fn answer(live: &Live) -> String {
     if live.gain() < 0.01 {
         return "No force: the gain is zero.".to_owned();
     }
+    if figures.rendered_n < 0.05 {
+        return format!("On its way: the link is {:.0} ms late.", live.delay_s() * 1e3);
+    }
     format!("There is: {:.1} N in the hand.", figures.rendered_n)
 }
 

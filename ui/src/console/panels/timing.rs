@@ -4,6 +4,7 @@ use egui::{Grid, RichText, Ui};
 use nima::runtime::Quantiles;
 
 use crate::console::{
+    alarms::sentence,
     live::Live,
     theme,
     widgets::{card, figure, small, weak},
@@ -90,7 +91,7 @@ fn scheduling_ui(ui: &mut Ui, live: &Live) {
     figure(ui, "Real-time priority", yes_no(scheduling.fifo), meaning);
     figure(ui, "Locked memory", yes_no(scheduling.memory_locked), meaning);
     if let Some(advice) = scheduling.advice() {
-        ui.label(small(advice));
+        ui.label(small(sentence(advice)));
     }
 }
 

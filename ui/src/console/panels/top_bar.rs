@@ -142,11 +142,12 @@ fn alarms_ui(ui: &mut Ui, live: &Live, alarms: &[Alarm], time_s: f64) {
         let (rect, _) = ui.allocate_exact_size(vec2(26.0, 44.0), Sense::hover());
         sign(ui.painter(), Sign::Triangle, rect.center(), 9.0, colour);
         ui.vertical(|ui| {
-            ui.spacing_mut().item_spacing.y = 1.0;
+            ui.spacing_mut().item_spacing.y = 2.0;
+            ui.add_space(4.0);
             let more = if alarms.len() > 1 { format!("   (+{} more)", alarms.len() - 1) } else { String::new() };
             let cause = format!("{}: {}{more}", first.priority.word(), first.cause);
             ui.add(egui::Label::new(RichText::new(cause).font(theme::strong(14.0))).truncate());
-            ui.add(egui::Label::new(small(&first.cure)).wrap());
+            ui.add(egui::Label::new(small(&first.cure)).truncate());
         });
     });
     pinned.response.on_hover_ui(|ui| {

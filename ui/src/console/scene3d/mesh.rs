@@ -9,7 +9,7 @@ use nalgebra::Vector3;
 pub enum Material {
     /// Plastic: soft light, faint highlight.
     Matte = 0,
-    /// Wet, mottled, with a 10 mm grid that shows the deformation; takes the instrument's shadow.
+    /// Wet, mottled, with a 5 mm grid that shows the deformation; takes the instrument's shadow.
     Tissue = 1,
     /// Steel: strong highlight.
     Metal = 2,

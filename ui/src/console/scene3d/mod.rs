@@ -154,7 +154,7 @@ fn readings(painter: &Painter, rect: Rect, live: &Live) {
         let number = format!("{force_n:.2} N");
         painter.text(pos2(corner.x + 210.0, y), Align2::RIGHT_CENTER, number, theme::strong(25.0), colour);
     }
-    let height = (rect.height() - 110.0).clamp(60.0, 300.0);
+    let height = (rect.height() - 150.0).clamp(60.0, 300.0);
     let place = Rect::from_min_size(pos2(rect.right() - 46.0, rect.top() + 36.0), vec2(26.0, height));
     let ceiling_n = live.rig.gates.ceiling_n;
     let (measured_n, rendered_n) =
@@ -184,5 +184,5 @@ fn hint(painter: &Painter, rect: Rect, view: &SceneView) {
         Some(problem) => (format!("The 3-D view cannot be drawn by this graphics driver: {problem}"), theme::TEXT),
         None => ("Drag to turn, wheel to zoom, double click to reset".to_owned(), theme::TEXT_WEAK),
     };
-    painter.text(rect.left_bottom() + vec2(16.0, -12.0), Align2::LEFT_BOTTOM, words, theme::regular(12.5), colour);
+    label(painter, rect.left_bottom() + vec2(16.0, -12.0), Align2::LEFT_BOTTOM, &words, theme::regular(12.5), colour);
 }

@@ -33,7 +33,6 @@ void main() {
     }
     vec3 normal = normalize(v_normal);
     vec3 to_eye = normalize(u_eye - v_position);
-    if (dot(normal, to_eye) < 0.0) normal = -normal;
     vec3 base = v_colour.rgb * v_colour.rgb;
     vec3 halfway = normalize(LAMP + to_eye);
     float facing = dot(normal, LAMP);
@@ -42,10 +41,10 @@ void main() {
     vec3 shaded;
     if (material == 1) {
         vec2 p = v_position.xy;
-        vec2 cell = abs(fract(p * 100.0 - 0.5) - 0.5);
-        vec2 width = fwidth(p * 100.0);
+        vec2 cell = abs(fract(p * 200.0 - 0.5) - 0.5);
+        vec2 width = fwidth(p * 200.0);
         vec2 thread = 1.0 - smoothstep(0.3 * width, 1.1 * width, cell);
-        base *= 1.0 - 0.28 * max(thread.x, thread.y);
+        base *= 1.0 - 0.17 * max(thread.x, thread.y);
         float lamp = light_past_shaft(v_position);
         float wrap = clamp((facing + 0.35) / 1.35, 0.0, 1.0) * lamp;
         // Light that entered the tissue comes back redder.

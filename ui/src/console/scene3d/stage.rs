@@ -22,6 +22,7 @@ const CELLS: u32 = 64;
 
 const TISSUE_DARK: Color32 = Color32::from_rgb(0xb9, 0x66, 0x62);
 const TISSUE_PALE: Color32 = Color32::from_rgb(0xcc, 0x7f, 0x77);
+const TISSUE_HOLLOW: Color32 = Color32::from_rgb(0x5c, 0x22, 0x26);
 const TISSUE_SIDE: Paint = Paint(Color32::from_rgb(0x9e, 0x55, 0x54), Material::Matte);
 const TRAY: Paint = Paint(Color32::from_rgb(0x2c, 0x33, 0x3c), Material::Matte);
 const TARGET: Paint = Paint(Color32::from_rgb(0xd9, 0xde, 0xe3), Material::Matte);
@@ -101,8 +102,12 @@ fn tissue(mesh: &mut Mesh, scene: &Scene, dent: &Dent) {
     for row in 0..=CELLS {
         for column in 0..=CELLS {
             let (x, y) = (place(column, x_m), place(row, y_m));
-            let position = Vector3::new(x, y, top_m + dent.lift_m(x, y));
-            mesh.vertex(position, dent.normal(x, y), Paint(mottled(x, y), Material::Tissue));
+            let lift_m = dent.lift_m(x, y);
+            // A hollow gets less light from the sky, and pressed tissue less blood.
+            let shade = (-lift_m / 0.010).clamp(0.0, 1.0) * 0.55;
+            let colour = mottled(x, y).lerp_to_gamma(TISSUE_HOLLOW, shade);
+            let position = Vector3::new(x, y, top_m + lift_m);
+            mesh.vertex(position, dent.normal(x, y), Paint(colour, Material::Tissue));
         }
     }
     mesh.sheet(first, CELLS, CELLS);

@@ -2,7 +2,11 @@
 
 use nalgebra::Vector3;
 
-use crate::{impedance::Mode, safety::{ChainSettings, GateReport}, teleop::LoopState};
+use crate::{
+    impedance::Mode,
+    safety::{ChainSettings, GateReport},
+    teleop::LoopState,
+};
 
 /// What a screen (or a script) may ask of the loop. Applied at the start of a tick, in order, at most a few per tick.
 #[derive(Clone, Copy, Debug, PartialEq)]

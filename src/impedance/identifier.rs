@@ -2,7 +2,7 @@
 
 use super::{
     MAX_DEGREE, Mode,
-    anchored::{BandMotion, Follower},
+    anchored::{Follower, Seen},
     factor::{Factor, MAX_ROW},
     features::{self, Features},
     gram::Gram,
@@ -31,7 +31,7 @@ pub struct Identifier {
     last_force_n: Lanes,
     paper: Option<Paper>,
     anchored: Option<Anchored>,
-    sent: DelayLine<(Parcel, BandMotion)>,
+    sent: DelayLine<(Parcel, Seen)>,
     forget: f64,
     parcel: Parcel,
     report: Report,
@@ -74,7 +74,7 @@ impl Identifier {
                 ridge,
                 solution: Solution::new(columns),
                 horizon: Horizon::new(settings.rate_hz, settings.max_degree, delay_ticks),
-                follower: Follower::new(settings.rate_hz, delay_ticks),
+                follower: Follower::new(settings.rate_hz, delay_ticks, settings.cross_talk),
             }
         });
         let max_delay = (MAX_DELAY_S * settings.rate_hz).ceil() as usize;
@@ -85,7 +85,7 @@ impl Identifier {
             last_force_n: Lanes::ZERO,
             paper,
             anchored,
-            sent: DelayLine::new(max_delay, (Parcel::BLANK, BandMotion::default())),
+            sent: DelayLine::new(max_delay, (Parcel::BLANK, Seen::default())),
             forget: 1.0 - (-1.0 / (ERROR_MEMORY_S * settings.rate_hz)).exp(),
             parcel: Parcel::BLANK,
             report: Report::BLANK,
@@ -119,9 +119,9 @@ impl Identifier {
         self.parcel.force_n = self.last_force_n.vector();
         self.parcel.fresh = good;
         self.step_paper(&increments, usable);
-        let bands = self.step_anchored(&now, motion.x, good, usable);
-        self.sent.push((self.parcel, bands));
-        self.predict(&bands, &increments, good);
+        let seen = self.step_anchored(&now, motion.x, good, usable);
+        self.sent.push((self.parcel, seen));
+        self.predict(&seen, &increments, good);
     }
 
     fn step_paper(&mut self, increments: &Features, usable: bool) {
@@ -146,11 +146,11 @@ impl Identifier {
         }
     }
 
-    fn step_anchored(&mut self, now: &Features, position: Lanes, good: bool, usable: bool) -> BandMotion {
+    fn step_anchored(&mut self, now: &Features, position: Lanes, good: bool, usable: bool) -> Seen {
         let Some(Anchored { window, ridge, solution, horizon, follower }) = &mut self.anchored else {
-            return BandMotion::default();
+            return Seen::default();
         };
-        self.parcel.anchored = follower.step(position, self.last_force_n, good);
+        self.parcel.anchored = follower.step(position, now, self.last_force_n, good);
         let columns = solution.columns();
         let mut row = [Lanes::ZERO; MAX_ROW];
         if usable {
@@ -167,11 +167,11 @@ impl Identifier {
         self.report.condition = condition.0[..self.settings.axes].iter().fold(1.0, |worst, c| c.max(worst));
         self.report.rank = rank(window.current(), *ridge, self.settings.axes);
         self.report.excitation = excitation(window.current(), *ridge, &self.settings);
-        follower.motion()
+        follower.seen()
     }
 
     /// What every mode renders for this tick from the parcel one delay old, and its running error.
-    fn predict(&mut self, now: &BandMotion, increments: &Features, good: bool) {
+    fn predict(&mut self, now: &Seen, increments: &Features, good: bool) {
         let modes = self.settings.modes;
         let forces = match self.sent.get(self.delay_ticks) {
             Some((parcel, then)) if parcel.t_s.is_finite() => parcel.render(now, then, increments),

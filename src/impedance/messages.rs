@@ -4,7 +4,7 @@ use nalgebra::Vector3;
 
 use super::{
     MAX_DEGREE,
-    anchored::{BandMotion, Correction},
+    anchored::{Correction, Seen},
     features::{Features, MOTION_COLUMNS},
     literal,
 };
@@ -85,7 +85,7 @@ impl Parcel {
 
     /// The force of every mode for the motion now, by [`Mode::index`](super::Mode::index): for `anchored` the motion now and
     /// at the time of the parcel, for `literal` the increments now.
-    pub(super) fn render(&self, now: &BandMotion, then: &BandMotion, increments: &Features) -> [Option<Lanes>; 4] {
+    pub(super) fn render(&self, now: &Seen, then: &Seen, increments: &Features) -> [Option<Lanes>; 4] {
         let measured = Lanes::from(self.force_n);
         [
             self.literal.force(increments),

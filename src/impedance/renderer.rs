@@ -3,7 +3,7 @@
 use nalgebra::Vector3;
 
 use super::{
-    anchored::{BandMotion, Bands},
+    anchored::{Bands, Seen},
     features,
     messages::{Parcel, Rendered, active},
     settings::{MAX_DELAY_S, Settings, SettingsError},
@@ -18,7 +18,7 @@ pub struct Renderer {
     delay_ticks: usize,
     track: Track,
     bands: Bands,
-    past: DelayLine<BandMotion>,
+    past: DelayLine<Seen>,
     parcel_t_s: f64,
     /// Ticks since the newest parcel came.
     waiting: usize,
@@ -33,7 +33,7 @@ impl Renderer {
             delay_ticks: settings.delay_ticks(settings.delay_s),
             track: Track::new(settings),
             bands: Bands::new(settings.rate_hz),
-            past: DelayLine::new(2 * max_delay, BandMotion::default()),
+            past: DelayLine::new(2 * max_delay, Seen::default()),
             parcel_t_s: f64::NEG_INFINITY,
             waiting: 0,
             settings: settings.clone(),
@@ -51,7 +51,8 @@ impl Renderer {
         let position = usable_position(active(position_m, self.settings.axes), &self.settings.scales);
         let motion = self.track.step(position);
         let increments = features::features(&self.track.increments(), degree);
-        let now = self.bands.motion(motion.x);
+        let features = self.settings.scales.features(&motion, degree);
+        let now = Seen { bands: self.bands.motion(motion.x), features };
         self.past.push(now);
 
         let Some(parcel) = parcel.filter(|parcel| parcel.t_s.is_finite()) else {

@@ -65,6 +65,8 @@ pub struct Settings {
     pub scales: Scales,
     /// The modes to compute.
     pub modes: ModeSet,
+    /// Whether anchored rendering also learns the full `M`, every axis' force from every axis' motion (45 columns).
+    pub cross_talk: bool,
     /// How velocity and acceleration are made.
     pub differentiator: DifferentiatorKind,
     /// Ridge of the anchored fit, per row of the window and in scaled columns: a coefficient costs as much as if each row had
@@ -82,6 +84,7 @@ impl Default for Settings {
             axes: AXES,
             scales: Scales::default(),
             modes: ModeSet::ALL,
+            cross_talk: false,
             differentiator: DifferentiatorKind::default(),
             ridge: 1e-6,
         }

@@ -1,11 +1,21 @@
 //! What the link carries of anchored rendering.
 
 use super::{
-    super::messages::clip,
+    super::{features::Features, messages::clip},
     bands::{BANDS, BandMotion},
+    cross_talk::{CrossModel, crossed},
     regressors::saturate,
 };
 use crate::signal::Lanes;
+
+/// The motion at one instant as corrections see it.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(in super::super) struct Seen {
+    /// Through the low-passes.
+    pub(in super::super) bands: BandMotion,
+    /// As the paper's features, scaled.
+    pub(in super::super) features: Features,
+}
 
 /// A correction ready to be evaluated on the leader's motion: all variants mixed, all that only the follower knows folded in.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -30,6 +40,8 @@ pub struct Correction {
     pub(super) friction: Lanes,
     /// Per change of `x^2` (N/m^2), of `x^3` (N/m^3) and of `x u` (N/m^2).
     pub(super) powers: [Lanes; 3],
+    /// The full `M` with cross-talk, where it is asked for and has earned weight.
+    pub(super) cross_talk: Option<CrossModel>,
 }
 
 impl Correction {
@@ -45,13 +57,16 @@ impl Correction {
         bands: [Lanes::ZERO; BANDS],
         friction: Lanes::ZERO,
         powers: [Lanes::ZERO; 3],
+        cross_talk: None,
     };
 
     /// The force (N) for the motion `now`, from `force` (N) when the motion was `then`.
-    pub(in super::super) fn apply(&self, force: Lanes, now: &BandMotion, then: &BandMotion) -> Lanes {
+    pub(in super::super) fn apply(&self, force: Lanes, now: &Seen, then: &Seen) -> Lanes {
         if self.share <= 0.0 {
             return force;
         }
+        let crossed = self.cross_talk.as_ref().map(|model| crossed(model, &now.features, &then.features));
+        let (now, then) = (&now.bands, &then.bands);
         let (a, b) = (now.x - self.centre, then.x - self.centre);
         let mut change = self.constant + self.stiffness * (now.x - then.x);
         for ((coefficient, now), then) in self.bands.iter().zip(&now.u).zip(&then.u) {
@@ -61,6 +76,7 @@ impl Correction {
         change += self.powers[0] * (a * a - b * b);
         change += self.powers[1] * (a * a * a - b * b * b);
         change += self.powers[2] * (a * now.u[1] - b * then.u[1]);
+        change += crossed.unwrap_or_default();
         within(force + clip(change, self.bound_n), &self.envelope)
     }
 }

@@ -1,13 +1,14 @@
 //! One tick of anchored rendering at the follower: remember, judge, learn, mix.
 
 use super::{
-    super::{messages::clip, settings::MAX_DELAY_S},
+    super::{features::Features, messages::clip, settings::MAX_DELAY_S},
     bands::{BandMotion, Bands},
-    correction::{Correction, within},
+    correction::{Correction, Seen, within},
+    cross_talk::CrossTalk,
     keep,
-    learner::{Coefficients, Learner, NOTHING, VARIANTS, expectations},
-    mixture::Mixture,
-    regressors::{FOLLOWER_ONLY, REGRESSORS, State, regressors},
+    learner::{self, Learner},
+    mixture::{EXPERTS, Mixture},
+    regressors::{FOLLOWER_ONLY, REGRESSORS, State, VARIANTS, VARIED, regressors},
 };
 use crate::signal::{DelayLine, Lanes};
 
@@ -21,13 +22,17 @@ const ENVELOPE_MARGIN: f64 = 0.1;
 /// What only the follower knows is bounded by this many times its typical size: a jump never seen before is not extrapolated.
 const SURPRISE: f64 = 6.0;
 
+/// Coefficients of the regression axis by axis.
+type Coefficients = learner::Coefficients<REGRESSORS, VARIANTS>;
+const NOTHING: Coefficients = learner::nothing();
+
 /// Everything about one tick that is needed when its consequences arrive a delay later.
 #[derive(Clone, Copy, Debug, Default)]
 struct Past {
     good: bool,
-    motion: BandMotion,
+    seen: Seen,
     state: State,
-    weights: [f64; VARIANTS],
+    weights: [f64; EXPERTS],
     bound_n: f64,
     envelope: [Lanes; 2],
 }
@@ -49,7 +54,8 @@ pub(in super::super) struct Follower {
     seen: [Lanes; 2],
     past: DelayLine<Past>,
     snapshots: DelayLine<Coefficients>,
-    learner: Learner,
+    learner: Learner<REGRESSORS, VARIANTS>,
+    cross_talk: Option<CrossTalk>,
     mixture: Mixture,
     judged: f64,
     largest_change_n: f64,
@@ -58,9 +64,9 @@ pub(in super::super) struct Follower {
 
 impl Follower {
     /// Allocates everything, for delays up to [`MAX_DELAY_S`].
-    pub(in super::super) fn new(rate_hz: f64, delay_ticks: usize) -> Self {
+    pub(in super::super) fn new(rate_hz: f64, delay_ticks: usize, cross_talk: bool) -> Self {
         let most = (MAX_DELAY_S * rate_hz).ceil() as usize;
-        let learner = Learner::new(rate_hz);
+        let learner = Learner::new(rate_hz, VARIED);
         Self {
             rate_hz,
             delay_ticks,
@@ -76,6 +82,7 @@ impl Follower {
             past: DelayLine::new(most, Past::default()),
             snapshots: DelayLine::new(most / learner.ticks_per_solve() + 1, NOTHING),
             learner,
+            cross_talk: cross_talk.then(|| CrossTalk::new(rate_hz, most)),
             mixture: Mixture::new(rate_hz),
             judged: 0.0,
             largest_change_n: 0.0,
@@ -83,27 +90,37 @@ impl Follower {
         }
     }
 
-    /// Takes this tick's position (m) and force (N); `good`: both were measured. Gives the correction to send.
-    pub(in super::super) fn step(&mut self, position: Lanes, force: Lanes, good: bool) -> Correction {
-        let motion = self.motion_bands.motion(position);
-        let state = self.observe(&motion, force, good);
+    /// Takes this tick's position (m), its features (scaled) and force (N); `good`: they were measured. Gives the correction
+    /// to send.
+    pub(in super::super) fn step(
+        &mut self,
+        position: Lanes,
+        features: &Features,
+        force: Lanes,
+        good: bool,
+    ) -> Correction {
+        let seen = Seen { bands: self.motion_bands.motion(position), features: *features };
+        let state = self.observe(&seen.bands, force, good);
         if self.tick.is_multiple_of(self.learner.ticks_per_solve()) {
             *self.snapshots.push_slot() = *self.learner.solutions();
+            if let Some(cross_talk) = &mut self.cross_talk {
+                cross_talk.begin_round();
+            }
         }
         if let Some(then) = self.past.get(self.delay_ticks.wrapping_sub(1)).filter(|_| self.delay_ticks > 0).copied()
             && good
             && then.good
         {
-            self.take_in(&motion, force, &then);
+            self.take_in(&seen, force, &then);
         }
         let early = self.tick < 3 * self.delay_ticks;
         let gate = if self.delay_ticks > 0 { self.mixture.gate(early) } else { 0.0 };
         let bound_n = BOUND * self.largest_change_n;
         let envelope = self.envelope();
         let weights = *self.mixture.weights();
-        self.past.push(Past { good, motion, state, weights, bound_n, envelope });
+        self.past.push(Past { good, seen, state, weights, bound_n, envelope });
         self.tick += 1;
-        self.mixed(&motion, &state, gate, bound_n, envelope)
+        self.mixed(&seen.bands, &state, gate, bound_n, envelope)
     }
 
     /// Updates the slow means and the envelope; gives the state of this tick.
@@ -142,10 +159,10 @@ impl Follower {
     }
 
     /// What the sample of one delay ago has led to: judge the variants by it, then learn from it.
-    fn take_in(&mut self, motion: &BandMotion, force: Lanes, then: &Past) {
+    fn take_in(&mut self, now: &Seen, force: Lanes, then: &Past) {
         let change = force - then.state.force;
         let change_n = change.norm();
-        let columns = regressors(motion, &then.motion, &then.state);
+        let columns = regressors(&now.bands, &then.seen.bands, &then.state);
         self.judged += 1.0;
         self.learner.measure(&columns);
         let fade = keep((2.0 * self.delay_ticks as f64 / self.rate_hz).max(0.5), self.rate_hz);
@@ -153,13 +170,16 @@ impl Follower {
         self.mean_change_n += (change_n - self.mean_change_n) / self.judged.min(2.0 * self.rate_hz);
         let newest = *self.snapshots.get(0).unwrap_or(&NOTHING);
         if self.tick > self.delay_ticks {
-            self.judge(&columns, change, then, &newest);
+            self.judge(&columns, now, change, then, &newest);
         }
         self.learner.learn(&columns, change, &newest);
         self.learner.solve_due(self.tick);
+        if let Some(cross_talk) = &mut self.cross_talk {
+            cross_talk.learn(&now.features, &then.seen.features, change, self.tick);
+        }
     }
 
-    fn judge(&mut self, columns: &[Lanes; REGRESSORS], change: Lanes, then: &Past, newest: &Coefficients) {
+    fn judge(&mut self, columns: &[Lanes; REGRESSORS], now: &Seen, change: Lanes, then: &Past, newest: &Coefficients) {
         // Early on the newest parameters stand in for those of a delay ago, so that rendering begins a delay sooner.
         let early = self.tick < 3 * self.delay_ticks;
         let latest = self.past.get(0).unwrap_or(then);
@@ -170,9 +190,13 @@ impl Follower {
         };
         // Snapshots are one a round; the one in force at the tick of `then`.
         let round = self.learner.ticks_per_solve();
-        let rounds_ago = self.tick / round - (self.tick.saturating_sub(self.delay_ticks)) / round;
-        let coefficients = if early { newest } else { self.snapshots.get(rounds_ago).unwrap_or(newest) };
-        let mut expected = expectations(coefficients, columns);
+        let rounds_ago = if early { 0 } else { self.tick / round - (self.tick - self.delay_ticks) / round };
+        let coefficients = self.snapshots.get(rounds_ago).unwrap_or(newest);
+        let mut expected = [Lanes::ZERO; EXPERTS];
+        expected[..VARIANTS].copy_from_slice(&self.learner.expectations(coefficients, columns));
+        if let Some(cross_talk) = &self.cross_talk {
+            expected[VARIANTS] = cross_talk.expectation(rounds_ago, &now.features, &then.seen.features);
+        }
         let mut mix = Lanes::ZERO;
         for (expected, weight) in expected.iter().zip(weights) {
             mix += *expected * weight;
@@ -217,12 +241,16 @@ impl Follower {
             bands: [sum[1], sum[2] + state.force * sum[10], sum[3], sum[4]],
             friction: sum[11],
             powers: [sum[12], sum[13], sum[14]],
+            cross_talk: self
+                .cross_talk
+                .as_ref()
+                .map(|learner| learner.newest().map(|m| m * (gate * self.mixture.weights()[VARIANTS]))),
         }
     }
 
     /// The newest motion.
-    pub(in super::super) fn motion(&self) -> BandMotion {
-        self.past.get(0).map(|past| past.motion).unwrap_or_default()
+    pub(in super::super) fn seen(&self) -> Seen {
+        self.past.get(0).map(|past| past.seen).unwrap_or_default()
     }
 
     /// Learns at another delay from now on; what was learnt at the old one is forgotten, the past itself is not.
@@ -236,6 +264,9 @@ impl Follower {
     fn forget(&mut self) {
         self.tick = 0;
         self.learner.reset();
+        if let Some(cross_talk) = &mut self.cross_talk {
+            cross_talk.reset();
+        }
         self.mixture.reset();
         self.snapshots.clear();
         self.judged = 0.0;

@@ -1,8 +1,10 @@
 //! The judge: how much of each variant is rendered, and whether anything is.
 
-use super::{keep, learner::VARIANTS};
+use super::{keep, regressors::VARIANTS};
 use crate::signal::Lanes;
 
+/// What is mixed: the variants of the regression axis by axis, and the one with cross-talk (silent where it is not asked for).
+pub(super) const EXPERTS: usize = VARIANTS + 1;
 /// Memory of the weights' fit, s.
 const STACK_MEMORY_S: f64 = 1.0;
 /// Ridge of the weights' fit, as a share of the energy to be explained.
@@ -21,10 +23,10 @@ const EARLY_BIAS: f64 = 0.4;
 #[derive(Clone, Debug)]
 pub(super) struct Mixture {
     rate_hz: f64,
-    products: [[f64; VARIANTS]; VARIANTS],
-    with_truth: [f64; VARIANTS],
+    products: [[f64; EXPERTS]; EXPERTS],
+    with_truth: [f64; EXPERTS],
     truth: f64,
-    weights: [f64; VARIANTS],
+    weights: [f64; EXPERTS],
     own_error: f64,
     reflected_error: f64,
     evidence: f64,
@@ -34,10 +36,10 @@ impl Mixture {
     pub(super) fn new(rate_hz: f64) -> Self {
         Self {
             rate_hz,
-            products: [[0.0; VARIANTS]; VARIANTS],
-            with_truth: [0.0; VARIANTS],
+            products: [[0.0; EXPERTS]; EXPERTS],
+            with_truth: [0.0; EXPERTS],
             truth: 0.0,
-            weights: [0.0; VARIANTS],
+            weights: [0.0; EXPERTS],
             own_error: 0.0,
             reflected_error: 0.0,
             evidence: 0.0,
@@ -45,13 +47,13 @@ impl Mixture {
     }
 
     /// Weights in force.
-    pub(super) const fn weights(&self) -> &[f64; VARIANTS] {
+    pub(super) const fn weights(&self) -> &[f64; EXPERTS] {
         &self.weights
     }
 
     /// Judges what the variants expected against the change that came (N); `error_n` is what the mixture in force missed,
     /// `typical_n` the mean change over the horizon.
-    pub(super) fn judge(&mut self, expected: &[Lanes; VARIANTS], change: Lanes, error_n: f64, typical_n: f64) {
+    pub(super) fn judge(&mut self, expected: &[Lanes; EXPERTS], change: Lanes, error_n: f64, typical_n: f64) {
         let reflected_n = change.norm();
         let guard = keep(GUARD_MEMORY_S, self.rate_hz).min(1.0 - 1.0 / (self.evidence / GUARD_GROWTH + 2.0));
         self.own_error = guard * self.own_error + error_n;
@@ -60,7 +62,7 @@ impl Mixture {
         let old = keep(STACK_MEMORY_S, self.rate_hz);
         let scale = error_n + 0.3 * typical_n;
         let weight = if scale > 0.0 { 1.0 / scale } else { 0.0 };
-        for i in 0..VARIANTS {
+        for i in 0..EXPERTS {
             let weighted = expected[i] * weight;
             self.with_truth[i] = old * self.with_truth[i] + dot(weighted, change);
             for (product, other) in self.products[i].iter_mut().zip(expected) {
@@ -77,9 +79,9 @@ impl Mixture {
             return;
         }
         for _ in 0..2 {
-            for i in 0..VARIANTS {
+            for i in 0..EXPERTS {
                 let explained: f64 =
-                    (0..VARIANTS).filter(|&j| j != i).map(|j| self.products[i][j] * self.weights[j]).sum();
+                    (0..EXPERTS).filter(|&j| j != i).map(|j| self.products[i][j] * self.weights[j]).sum();
                 let own = self.products[i][i] + STACK_RIDGE * self.truth;
                 self.weights[i] = ((self.with_truth[i] - explained) / own).max(0.0);
             }
@@ -122,7 +124,7 @@ mod tests {
     fn the_right_variant_gets_the_weight_and_the_guard_opens() {
         let mut mixture = Mixture::new(1000.0);
         for i in 0..3000 {
-            let mut expected = [Lanes::ZERO; VARIANTS];
+            let mut expected = [Lanes::ZERO; EXPERTS];
             expected[2] = force(i);
             expected[4] = force(i + 200);
             let mix = expected[2] * mixture.weights()[2] + expected[4] * mixture.weights()[4];
@@ -136,7 +138,7 @@ mod tests {
     fn useless_variants_get_nothing_and_a_worse_mixture_is_shut() {
         let mut mixture = Mixture::new(1000.0);
         for i in 0..3000 {
-            let expected = [force(i) * -1.0; VARIANTS];
+            let expected = [force(i) * -1.0; EXPERTS];
             mixture.judge(&expected, force(i), 1.5 * force(i).norm(), 1.0);
         }
         assert!(mixture.weights().iter().all(|&weight| weight == 0.0));

@@ -16,19 +16,22 @@
 //! | `bands` | motion and force seen through four low-passes instead of derivatives |
 //! | `regressors` | the 22 columns, and the state of the follower they are made from |
 //! | `learner` | weighted recursive least squares with three ridges |
+//! | `cross_talk` | one more expert with the full `M`, only where it is asked for |
 //! | `mixture` | the judge: weights of the variants, guard |
 //! | `correction` | what the link carries and how the leader evaluates it |
 //! | `follower` | one tick of all of it |
 
 mod bands;
 mod correction;
+mod cross_talk;
 mod follower;
 mod learner;
 mod mixture;
 mod regressors;
 
-pub(super) use bands::{BandMotion, Bands};
+pub(super) use bands::Bands;
 pub use correction::Correction;
+pub(super) use correction::Seen;
 pub(super) use follower::Follower;
 
 /// Weight of the old in a running mean with time constant `memory_s` (s) at `rate_hz`.

@@ -1,12 +1,17 @@
 //! The columns of the regression over the horizon, and the follower's state they are made from.
 
-use super::bands::{BANDS, BandMotion};
+use super::{
+    bands::{BANDS, BandMotion},
+    learner::Variants,
+};
 use crate::signal::Lanes;
 
 /// Columns.
 pub(super) const REGRESSORS: usize = 22;
-/// Nested sets of columns that are variants: linear in the motion (with stiffness that may scale with the force), and all.
-pub(super) const PREFIXES: [usize; 2] = [12, REGRESSORS];
+/// Three ridges; the columns linear in the motion (with stiffness that may scale with the force), and all.
+pub(super) const VARIED: Variants = Variants { ridges_s: &[0.0003, 0.01, 0.3], prefixes: &[12, REGRESSORS] };
+/// How many variants that makes.
+pub(super) const VARIANTS: usize = 6;
 /// The columns that only the follower knows; at the leader they are one constant.
 pub(super) const FOLLOWER_ONLY: [usize; 11] = [5, 6, 7, 8, 15, 16, 17, 18, 19, 20, 21];
 

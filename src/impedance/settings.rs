@@ -65,7 +65,9 @@ pub struct Settings {
     pub scales: Scales,
     /// The modes to compute.
     pub modes: ModeSet,
-    /// Whether anchored rendering also learns the full `M`, every axis' force from every axis' motion (45 columns).
+    /// Whether the force on each axis may depend on the motion of the others (the full `M`, 45 columns, in anchored
+    /// rendering). Costs 4 us a tick and 21 us more in every fifth at 1 kHz; gained 1 % at best on simulated reaches over
+    /// inclined tissue, nothing on palpation, so it is off unless asked for. The report shows the gain.
     pub cross_talk: bool,
     /// How velocity and acceleration are made.
     pub differentiator: DifferentiatorKind,

@@ -6,6 +6,7 @@
 //! Everything is allocated at construction. Bad input: callers hand in finite numbers only (the identifier fills gaps with
 //! a prediction before they get here); a non-finite sample would otherwise live in a filter until it leaves the window.
 
+mod bank;
 mod delay;
 mod differentiator;
 mod foaw;
@@ -13,9 +14,10 @@ mod kalman;
 mod lanes;
 mod savitzky_golay;
 
+pub use bank::{BANK, LowPassBank};
 pub use delay::DelayLine;
 pub use differentiator::{Differentiator, DifferentiatorKind};
-pub use lanes::{LANES, Lanes};
+pub use lanes::{LANES, Lanes, NOTHING, settled};
 
 /// Position, velocity and acceleration of one instant, one lane per axis.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

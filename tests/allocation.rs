@@ -1,4 +1,4 @@
-//! Nothing is allocated in a tick of identification and rendering.
+//! Nothing is allocated in a tick: of identification and rendering, of the whole loop, of the simulation.
 
 #![expect(unsafe_code, reason = "counting what is allocated takes a global allocator, whose trait is unsafe")]
 
@@ -9,8 +9,13 @@ use std::{
 
 use nalgebra::Vector3;
 use nima::{
-    impedance::{Identifier, ModeSet, Renderer, Sample, Settings},
+    config::{Rig, Scene},
+    device::{Outputs, Rig as _},
+    impedance::{Identifier, Mode, ModeSet, Renderer, Sample, Settings},
+    runtime::Command,
     signal::DifferentiatorKind,
+    sim::World,
+    teleop::{Loop, Timing},
 };
 
 struct Counting;
@@ -89,4 +94,30 @@ fn identification_and_rendering_allocate_nothing() {
     let before = CALLS.get();
     drop(std::hint::black_box(vec![1_u8; 10]));
     assert_eq!(CALLS.get() - before, 2, "the counter counts");
+}
+
+#[test]
+fn a_tick_of_the_whole_loop_and_of_the_simulation_allocates_nothing() {
+    let rig = Rig::load("simulated").unwrap();
+    let mut control = Loop::new(&rig).unwrap();
+    let mut world = World::new(&Scene::load("peg_transfer").unwrap(), rig.rate_hz);
+    let mut outputs = Outputs::SAFE;
+    control.obey(Command::Engage, 0.0);
+    let before = CALLS.get();
+    for k in 0..10_000_u32 {
+        let now_s = f64::from(k) * 1e-3;
+        control.clear_events();
+        match k {
+            3000 => control.obey(Command::SetDelay(0.3), now_s),
+            4000 => control.obey(Command::SetMode(Mode::Literal), now_s),
+            5000 => control.obey(Command::Stop, now_s),
+            5500 => control.obey(Command::ReleaseStop, now_s),
+            6000 => control.obey(Command::Engage, now_s),
+            _ => {}
+        }
+        // A silent rig now and then, long enough for a fault at last.
+        let inputs = world.exchange(now_s, &outputs).filter(|_| k % 1000 > 5 && k < 9000);
+        outputs = control.step(inputs, &Timing { now_s, ..Timing::default() }).0;
+    }
+    assert_eq!(CALLS.get() - before, 0);
 }

@@ -21,7 +21,9 @@ use super::{
 };
 
 /// Window of the degree histograms, s.
-pub const DEGREES_S: f64 = 10.0;
+pub const DEGREES_S: f64 = 120.0;
+/// Length of the trend of errors, s; one point a second.
+pub const TREND_S: usize = 180;
 /// Length of the tip's trail, s, and time between its points.
 const TRAIL_S: f64 = 1.2;
 const TRAIL_STEP_S: f64 = 0.02;
@@ -89,6 +91,8 @@ pub struct Live {
     pub degrees: DegreeShares,
     /// Degrees the paper's in-window rule would choose.
     pub paper_degrees: DegreeShares,
+    /// Error of each mode at the horizon, N, second by second, oldest first.
+    pub trend_n: VecDeque<[f64; 4]>,
     /// Gates over the last moments.
     pub gates: Gates,
     /// Numbers for reading.
@@ -136,6 +140,7 @@ impl Live {
             rough_edges: false,
             first_fault: None,
             refusal: None,
+            trend_n: VecDeque::with_capacity(TREND_S + 1),
             horizon: [Fading::default(); 4],
             measured: Fading::default(),
             rendered: Fading::default(),
@@ -244,6 +249,12 @@ impl Live {
         self.rendered.push(r.norm(), dt_s, 0.05);
         self.degrees.push(tick.identification.degree);
         self.paper_degrees.push(tick.identification.paper_degree);
+        if before.is_some_and(|before| before.t_s.floor() < tick.t_s.floor()) {
+            self.trend_n.push_back(tick.identification.horizon_error_n);
+            if self.trend_n.len() > TREND_S {
+                self.trend_n.pop_front();
+            }
+        }
         for (mean, error_n) in self.horizon.iter_mut().zip(tick.identification.horizon_error_n) {
             mean.push(error_n, dt_s, 4.0);
         }

@@ -29,7 +29,7 @@ pub fn degrees_ui(ui: &mut Ui, live: &Live) {
                 "the paper's rule",
                 "Least error inside the window; 0 means the window is not full.",
             );
-            ui.label(small(format!("last {DEGREES_S:.0} s")));
+            ui.label(small(format!("last {:.0} min", DEGREES_S / 60.0)));
         });
         chart_ui(ui, live);
         let share = |share: f64| format!("{:.0} %", 100.0 * share);

@@ -5,13 +5,15 @@ use nima::impedance::Mode;
 
 use super::{mode_meaning, mode_name};
 use crate::console::{
-    live::Live,
+    live::{Live, TREND_S},
     theme,
     widgets::{Sign, bar, card, sign, small, three_digits},
 };
 
 /// Bars end here, in errors of delayed direct reflection.
 const LONGEST: f64 = 2.5;
+/// Height of the trend.
+const TREND_HEIGHT: f32 = 46.0;
 /// Below this an error is noise and a ratio means nothing, N.
 const LEAST_N: f64 = 1e-4;
 
@@ -27,7 +29,49 @@ pub fn horizon_ui(ui: &mut Ui, live: &Live) {
         for mode in [Mode::Anchored, Mode::Dfr, Mode::Linear, Mode::Literal] {
             mode_ui(ui, mode, live.figures.horizon_n[mode.index()], dfr_n, live.mode() == mode);
         }
+        trend_ui(ui, live);
     });
+}
+
+/// The active mode beside delayed reflection over the last minutes, one point a second.
+fn trend_ui(ui: &mut Ui, live: &Live) {
+    let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), TREND_HEIGHT), Sense::hover());
+    let mean = |mode: Mode| {
+        live.trend_n.iter().map(|errors_n| errors_n[mode.index()]).sum::<f64>() / live.trend_n.len().max(1) as f64
+    };
+    let (ours_n, dfr_n) = (mean(live.mode()), mean(Mode::Dfr));
+    let words = format!(
+        "Last {} s: {} {} N, delayed DFR {} N",
+        live.trend_n.len(),
+        mode_name(live.mode()),
+        three_digits(ours_n),
+        three_digits(dfr_n)
+    );
+    response.widget_info(|| {
+        egui::WidgetInfo::labeled(egui::Role::Label, true, format!("Error over the last minutes. {words}"))
+    });
+    response.on_hover_text(format!("{words}. Mean error at the horizon (N), second by second, up to three minutes."));
+    let painter = ui.painter();
+    painter.rect_filled(rect, 3.0, theme::GROOVE);
+    let highest_n = 1.1 * live.trend_n.iter().map(|errors_n| errors_n[Mode::Dfr.index()]).fold(LEAST_N, f64::max);
+    for (mode, colour) in [(Mode::Dfr, theme::REFERENCE), (live.mode(), theme::RENDERED)] {
+        let points = live.trend_n.iter().rev().enumerate().map(|(age_s, errors_n)| {
+            let along = 1.0 - age_s as f32 / (TREND_S - 1) as f32;
+            let up = (errors_n[mode.index()] / highest_n).min(1.0) as f32;
+            egui::pos2(rect.left() + along * rect.width(), rect.bottom() - 2.0 - up * (rect.height() - 4.0))
+        });
+        painter.line(points.collect(), egui::Stroke::new(1.5, colour));
+    }
+    let note = format!("{} N", three_digits(highest_n));
+    painter.text(rect.left_top() + vec2(4.0, 3.0), Align2::LEFT_TOP, note, theme::regular(11.0), theme::TEXT_WEAK);
+    let note = "last 3 min";
+    painter.text(
+        rect.left_bottom() + vec2(4.0, -3.0),
+        Align2::LEFT_BOTTOM,
+        note,
+        theme::regular(11.0),
+        theme::TEXT_WEAK,
+    );
 }
 
 fn mode_ui(ui: &mut Ui, mode: Mode, error_n: f64, dfr_n: f64, active: bool) {

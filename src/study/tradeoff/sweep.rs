@@ -166,12 +166,11 @@ fn measure_source(
     for (place, choice) in places.iter_mut().zip(choices) {
         look(cancel)?;
         let settings = plan.settings(choice, axes);
-        match unfit(choice, &settings, longest_s) {
-            Some(reason) => skipped.push(Skipped { choice: *choice, reason }),
-            None => {
-                *place = Some(points.len());
-                points.push(measure_point(source, plan, choice, &settings, settle_s, cancel)?);
-            }
+        if let Some(reason) = unfit(choice, &settings, longest_s) {
+            skipped.push(Skipped { choice: *choice, reason });
+        } else {
+            *place = Some(points.len());
+            points.push(measure_point(source, plan, choice, &settings, settle_s, cancel)?);
         }
         one_done();
     }

@@ -1,3 +1,4 @@
 //! Experiments that print figures.
 
 pub mod replay;
+pub mod solvers;

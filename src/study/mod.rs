@@ -1,4 +1,5 @@
 //! Experiments that print figures.
 
 pub mod replay;
+pub mod solvers;
 pub mod tradeoff;

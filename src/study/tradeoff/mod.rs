@@ -13,12 +13,14 @@
 //! | `source` | recordings, scenes recorded open-loop, slower sampling |
 //! | `plan` | the knobs, and which of their values are tried |
 //! | `modes` | cost and error of a mode, as the loop runs it |
+//! | `windows` | cost and error of the plain model of a window, by each solver |
 //! | `sweep` | all points of all sources, their curves and the front |
 
 mod modes;
 mod plan;
 mod source;
 mod sweep;
+mod windows;
 
 #[cfg(test)]
 mod tests;

@@ -22,6 +22,7 @@ const LOOK_EVERY: usize = 512;
 pub(super) struct Measured {
     pub(super) cost_us: CostUs,
     pub(super) error: f64,
+    pub(super) error_p50: f64,
     pub(super) error_p95: f64,
     pub(super) dfr_error: f64,
     pub(super) not_rendered: f64,
@@ -48,11 +49,13 @@ impl Errors {
         let count = judged.max(1) as f64;
         let error = self.norms.iter().sum::<f64>() / count;
         self.norms.sort_unstable_by(f64::total_cmp);
-        let rank = ((0.95 * count).ceil() as usize).clamp(1, judged.max(1)) - 1;
+        let rank = |q: f64| ((q * count).ceil() as usize).clamp(1, judged.max(1)) - 1;
+        let quantile = |q: f64| self.norms.get(rank(q)).copied().unwrap_or(0.0);
         Measured {
             cost_us,
             error,
-            error_p95: self.norms.get(rank).copied().unwrap_or(0.0),
+            error_p50: quantile(0.5),
+            error_p95: quantile(0.95),
             dfr_error: self.dfr / count,
             not_rendered: self.not_rendered as f64 / count,
             judged,

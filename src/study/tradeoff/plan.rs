@@ -6,6 +6,7 @@ use super::source::Source;
 use crate::{
     impedance::{MAX_DEGREE, Mode, Settings},
     signal::DifferentiatorKind,
+    study::solvers::Solver,
 };
 
 /// What turns samples into a force.
@@ -14,6 +15,8 @@ use crate::{
 pub enum Method {
     /// A mode, as the loop runs it.
     Mode(Mode),
+    /// The plain model of a window, by this solver (and in its precision).
+    Solver(Solver),
 }
 
 impl Method {
@@ -21,6 +24,7 @@ impl Method {
     pub const fn name(self) -> &'static str {
         match self {
             Self::Mode(mode) => mode.name(),
+            Self::Solver(solver) => solver.name(),
         }
     }
 
@@ -28,6 +32,7 @@ impl Method {
     pub const fn mode(self) -> Option<Mode> {
         match self {
             Self::Mode(mode) => Some(mode),
+            Self::Solver(_) => None,
         }
     }
 }
@@ -114,7 +119,11 @@ pub struct Plan {
     pub delays_s: Vec<f64>,
     /// Differentiators.
     pub differentiators: Vec<DifferentiatorKind>,
-    /// Passes over the source for each point; the quietest one tells the cost.
+    /// Solvers of the plain model of a window, along degree and window.
+    pub solvers: Vec<Solver>,
+    /// Instants at which each solver is asked.
+    pub instants: usize,
+    /// Passes over the source for each point of a mode; the quietest one tells the cost.
     pub passes: usize,
 }
 
@@ -129,6 +138,8 @@ impl Plan {
             rates_hz: vec![500.0, 200.0, 66.0],
             delays_s: vec![0.01, 0.05, 0.1, 0.3],
             differentiators: DifferentiatorKind::ALL.to_vec(),
+            solvers: Solver::ALL.to_vec(),
+            instants: 200,
             passes: 3,
         }
     }
@@ -140,6 +151,7 @@ impl Plan {
             windows_s: vec![0.1, 0.3, 1.0],
             rates_hz: vec![200.0],
             delays_s: vec![base.delay_s],
+            solvers: Vec::new(),
             passes: 1,
             ..Self::full(base)
         }
@@ -182,6 +194,7 @@ impl Plan {
             let choices = Mode::ALL.map(|mode| Choice { method: Method::Mode(mode), ..base }).to_vec();
             layout.curve(Knob::Mode, base.method, choices);
         }
+        self.lay_out_solvers(source, &mut layout);
         for &delay_s in &self.delays_s {
             self.lay_out_grid(source, ms(delay_s), &mut layout);
         }
@@ -202,6 +215,18 @@ impl Plan {
                 _ => continue,
             };
             layout.curve(Knob::Grid, base.method, choices);
+        }
+    }
+
+    /// Every solver over the degrees at the base's window, and over the windows at the base's degree.
+    fn lay_out_solvers(&self, source: &Source, layout: &mut Layout) {
+        for &solver in &self.solvers {
+            let method = Method::Solver(solver);
+            let base = Choice { method, ..self.base_choice(source, Mode::Dfr) };
+            let degrees = self.degrees.iter().map(|&degree| Choice { degree, ..base }).collect();
+            let windows = self.windows_s.iter().map(|&s| Choice { window_ms: ms(s), ..base }).collect();
+            layout.curve(Knob::Degree, method, degrees);
+            layout.curve(Knob::Window, method, windows);
         }
     }
 

@@ -8,6 +8,7 @@ use super::{
     modes::{self, Measured, look},
     plan::{Choice, Curve, Method, Plan},
     source::Source,
+    windows,
 };
 use crate::{
     impedance::{Mode, Settings, SettingsError},
@@ -72,6 +73,8 @@ pub struct Point {
     pub load: f64,
     /// Mean error at the horizon, unit of the source.
     pub error: f64,
+    /// Its median.
+    pub error_p50: f64,
     /// Its 95th percentile.
     pub error_p95: f64,
     /// The same mean of delayed DFR on the same samples.
@@ -223,18 +226,22 @@ fn measure_point(
     let recording = source.slower(choice.every);
     let first_s = recording.samples.first().map_or(0.0, |first| first.t_s);
     let from_s = first_s + settle_s + settings.delay_s;
-    let Method::Mode(mode) = choice.method;
-    let measured = modes::measure(&recording.samples, settings, (mode, choice), from_s, plan.passes, cancel)?;
+    let samples = &recording.samples;
+    let measured = match choice.method {
+        Method::Mode(mode) => modes::measure(samples, settings, (mode, choice), from_s, plan.passes, cancel)?,
+        Method::Solver(solver) => windows::measure(samples, settings, solver, from_s, plan.instants, cancel)?,
+    };
     Ok(point(choice, &measured))
 }
 
 fn point(choice: &Choice, measured: &Measured) -> Point {
-    let Measured { cost_us, error, error_p95, dfr_error, not_rendered, judged } = *measured;
+    let Measured { cost_us, error, error_p50, error_p95, dfr_error, not_rendered, judged } = *measured;
     Point {
         choice: *choice,
         cost_us,
         load: cost_us.p50 * 1e-6 * choice.rate_hz,
         error,
+        error_p50,
         error_p95,
         dfr_error,
         ratio: error / dfr_error,

@@ -15,8 +15,8 @@ use super::{
     live::Live,
     outbox::Outbox,
     panels::{
-        FeedbackState, ForcesState, TopBarState, TradeoffState, degrees_ui, feedback_ui, forces_ui, gates_ui, horizon_ui, timing_ui,
-        top_bar_ui, tradeoff_ui,
+        FeedbackState, ForcesState, TopBarState, TradeoffState, degrees_ui, feedback_ui, forces_ui, gates_ui,
+        horizon_ui, timing_ui, top_bar_ui, tradeoff_ui,
     },
     scene3d::{SceneView, scene_ui},
     screenshot, theme,

@@ -1,7 +1,9 @@
 //! Cost against error, both on logarithmic axes, with the points that nothing beats joined.
 
 use egui::{Color32, Ui, Vec2b, vec2};
-use egui_plot::{AxisHints, GridInput, GridMark, HoverPosition, Line, MarkerShape, Plot, PlotPoint, PlotPoints, Points};
+use egui_plot::{
+    AxisHints, GridInput, GridMark, HoverPosition, Line, MarkerShape, Plot, PlotPoint, PlotPoints, Points,
+};
 use nima::{
     impedance::Mode,
     study::tradeoff::{Point, SourceFigures},
@@ -46,7 +48,8 @@ pub(super) fn plot_ui(ui: &mut Ui, figures: &SourceFigures, selected: Option<usi
         });
     let response = plot.show(ui, |plot| {
         plot.set_plot_bounds(egui_plot::PlotBounds::from_min_max(range.0, range.1));
-        let mut front: Vec<[f64; 2]> = shown.iter().filter(|&&i| points[i].pareto).map(|&i| place(&points[i])).collect();
+        let mut front: Vec<[f64; 2]> =
+            shown.iter().filter(|&&i| points[i].pareto).map(|&i| place(&points[i])).collect();
         front.sort_by(|a, b| a[0].total_cmp(&b[0]));
         plot.line(Line::new("front", PlotPoints::from(front)).color(theme::TEXT_WEAK).width(1.2).allow_hover(false));
         for mode in Mode::ALL {
@@ -58,7 +61,9 @@ pub(super) fn plot_ui(ui: &mut Ui, figures: &SourceFigures, selected: Option<usi
         }
         if let Some(index) = selected.filter(|index| shown.contains(index)) {
             let ring = Points::new("selected", PlotPoints::from(vec![place(&points[index])]));
-            plot.points(ring.shape(MarkerShape::Circle).filled(false).color(theme::TEXT).radius(8.0).allow_hover(false));
+            plot.points(
+                ring.shape(MarkerShape::Circle).filled(false).color(theme::TEXT).radius(8.0).allow_hover(false),
+            );
         }
     });
     let count = shown.len();

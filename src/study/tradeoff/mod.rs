@@ -15,11 +15,16 @@
 //! | `modes` | cost and error of a mode, as the loop runs it |
 //! | `windows` | cost and error of the plain model of a window, by each solver |
 //! | `sweep` | all points of all sources, their curves and the front |
+//! | `chart`, `pictures` | the curves as SVG |
+//! | `table` | the figures as CSV |
 
+mod chart;
 mod modes;
+mod pictures;
 mod plan;
 mod source;
 mod sweep;
+mod table;
 mod windows;
 
 #[cfg(test)]

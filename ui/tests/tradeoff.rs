@@ -169,8 +169,9 @@ fn a_measured_point_is_applied_and_a_restart_comes_back_idle() {
     harness.check_accessibility();
     harness.get_by_label_contains("Trade-off plot:");
     // The cheapest of all is direct reflection: the running loop takes it over.
-    let dfr = harness.get_by_label_contains("Direct (DFR): ");
-    dfr.click_accesskit();
+    harness
+        .get_by(|node| node.role() == Role::Button && node.label().is_some_and(|l| l.starts_with("Direct (DFR): ")))
+        .click_accesskit();
     harness.step();
     press(&mut harness, "Apply");
     until(&mut harness, "direct", |app| app.tick().is_some_and(|tick| tick.mode == nima::impedance::Mode::Dfr));

@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use super::{
     modes::{self, Measured, look},
-    plan::{Choice, Curve, Method, Plan},
+    plan::{Choice, Curve, Knob, Method, Plan},
     source::Source,
     windows,
 };
@@ -85,7 +85,7 @@ pub struct Point {
     pub not_rendered: f64,
     /// Samples judged and timed.
     pub judged: usize,
-    /// No other mode at the same source, rate and delay is both cheaper and nearer to the truth.
+    /// No other point of the grid (mode, degree, window) at the same delay is both cheaper and nearer to the truth.
     pub pareto: bool,
 }
 
@@ -184,7 +184,9 @@ fn measure_source(
     for curve in &mut curves {
         curve.points = curve.points.iter().filter_map(|&index| places[index]).collect();
     }
-    mark_front(&mut points);
+    let on_grid: Vec<usize> =
+        curves.iter().filter(|curve| curve.knob == Knob::Grid).flat_map(|curve| curve.points.iter().copied()).collect();
+    mark_front(&mut points, &on_grid);
     Ok(SourceFigures {
         source: source.name.clone(),
         unit: source.unit.clone(),
@@ -251,17 +253,14 @@ fn point(choice: &Choice, measured: &Measured) -> Point {
     }
 }
 
-/// Marks the modes that no other at the same rate and delay beats in both cost (median) and error.
-pub(super) fn mark_front(points: &mut [Point]) {
-    let modes: Vec<Point> = points.iter().filter(|point| point.choice.method.mode().is_some()).copied().collect();
-    for point in points.iter_mut() {
-        let rivals = modes.iter().filter(|other| {
-            other.choice.every == point.choice.every
-                && (other.choice.delay_ms - point.choice.delay_ms).abs() < f64::EPSILON
-        });
-        point.pareto = point.choice.method.mode().is_some()
-            && point.error.is_finite()
-            && rivals.into_iter().all(|other| !beats(other, point));
+/// Marks the points of the grid that no other of the grid at the same delay beats in both cost (median) and error.
+pub(super) fn mark_front(points: &mut [Point], on_grid: &[usize]) {
+    let grid: Vec<Point> = on_grid.iter().map(|&index| points[index]).collect();
+    for &index in on_grid {
+        let point = &mut points[index];
+        let mut rivals =
+            grid.iter().filter(|other| (other.choice.delay_ms - point.choice.delay_ms).abs() < f64::EPSILON);
+        point.pareto = point.error.is_finite() && rivals.all(|other| !beats(other, point));
     }
 }
 

@@ -134,9 +134,11 @@ fn the_front_holds_what_nothing_beats() {
         at(4.0, 1.0, 50.0),
         at(6.0, f64::NAN, 50.0),
         at(9.0, 9.0, 100.0),
+        at(0.1, 0.1, 50.0),
     ];
-    mark_front(&mut points);
-    assert_eq!(points.map(|p| p.pareto), [true, true, false, true, false, true, false, true]);
+    let on_grid = [0, 1, 2, 3, 4, 5, 6, 7];
+    mark_front(&mut points, &on_grid);
+    assert_eq!(points.map(|p| p.pareto), [true, true, false, true, false, true, false, true, false]);
 }
 
 #[test]

@@ -15,7 +15,7 @@ use anyhow::{Context as _, bail};
 use clap::Args;
 use nima::{
     config::Scene,
-    impedance::{MAX_DELAY_S, Settings},
+    impedance::{MAX_DELAY_S, Mode, Settings},
     recording::{Mapping, Recording, write_atomically},
     study::tradeoff::{Choice, Knob, Method, Plan, Point, Source, SourceFigures, Study, sweep},
 };
@@ -159,7 +159,12 @@ fn source_in_words(figures: &SourceFigures, text: &mut String) {
     writeln!(text, "  front (delay, mode, degree, window)").ok();
     for point in front {
         let Choice { method, degree, window_ms, delay_ms, .. } = point.choice;
-        row(point, &format!("{delay_ms:.0} ms {} N={degree} {window_ms:.0} ms", method.name()), text);
+        let knobs = match method {
+            Method::Mode(Mode::Dfr) => String::new(),
+            Method::Mode(Mode::Linear) => format!(" {window_ms:.0} ms"),
+            _ => format!(" N={degree} {window_ms:.0} ms"),
+        };
+        row(point, &format!("{delay_ms:.0} ms {}{knobs}", method.name()), text);
     }
     if let Some(first) = figures.skipped.first() {
         writeln!(text, "  {} points left out; the first: {}", figures.skipped.len(), first.reason).ok();

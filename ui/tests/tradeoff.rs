@@ -185,6 +185,13 @@ fn a_measured_point_is_applied_and_a_restart_comes_back_idle() {
     until(&mut harness, "idle", |app| app.tick().is_some_and(|tick| tick.state == LoopState::Idle));
     assert_eq!(harness.state().tick().unwrap().mode, nima::impedance::Mode::Anchored);
     harness.get_by_label_contains("is idle: engage it");
+    let waiting = |harness: &Harness<'_, ConsoleApp>| {
+        harness.get_by_role_and_label(Role::Button, "Engage").accesskit_node().is_disabled()
+    };
+    while waiting(&harness) {
+        std::thread::sleep(Duration::from_millis(5));
+        harness.step();
+    }
     press(&mut harness, "Engage");
     until(&mut harness, "engaged", |app| app.tick().is_some_and(|tick| tick.state == LoopState::Engaged));
 }

@@ -1,4 +1,7 @@
 //! Experiments that print figures.
 
+pub mod picture;
+pub mod reference;
 pub mod replay;
 pub mod solvers;
+pub mod stability;

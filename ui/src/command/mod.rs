@@ -4,6 +4,7 @@ mod console;
 mod identify;
 mod output;
 mod run;
+mod study;
 
 use std::process::ExitCode;
 
@@ -28,6 +29,8 @@ enum Command {
     Run(run::Arguments),
     /// Identify impedance over a recording, causally, sample by sample
     Identify(identify::Arguments),
+    /// Experiments that print figures
+    Study(study::Arguments),
 }
 
 /// Tells what was wrong with the arguments in one line: the complaint without the usage text that follows it.
@@ -54,6 +57,7 @@ pub fn main() -> ExitCode {
         Command::Console(arguments) => console::run(&arguments),
         Command::Run(arguments) => run::run(&arguments),
         Command::Identify(arguments) => identify::run(&arguments),
+        Command::Study(arguments) => study::run(&arguments),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

@@ -31,8 +31,7 @@ enum Command {
     /// Identify impedance over a recording, causally, sample by sample
     Identify(identify::Arguments),
     /// Experiments that print figures
-    #[command(subcommand)]
-    Study(study::StudyCommand),
+    Study(study::Arguments),
 }
 
 /// Tells what was wrong with the arguments in one line: the complaint without the usage text that follows it.
@@ -59,7 +58,7 @@ pub fn main() -> ExitCode {
         Command::Console(arguments) => console::run(&arguments),
         Command::Run(arguments) => run::run(&arguments),
         Command::Identify(arguments) => identify::run(&arguments),
-        Command::Study(study) => study::run(&study),
+        Command::Study(arguments) => study::run(&arguments),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

@@ -5,7 +5,7 @@ use crate::signal::Lanes;
 
 /// Rows of the inverse made side by side.
 const BLOCK: usize = 4;
-const PRODUCTS: usize = MAX_COLUMNS * (MAX_COLUMNS + 1) / 2;
+pub(super) const PRODUCTS: usize = MAX_COLUMNS * (MAX_COLUMNS + 1) / 2;
 
 /// The solutions of `min |A_p M - b|` for every prefix `A_p` of the columns at once, one problem per lane.
 ///

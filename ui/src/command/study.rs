@@ -14,20 +14,14 @@ use nima::{
 
 use super::output;
 
-#[derive(Debug, Args)]
-pub(super) struct Arguments {
-    #[command(subcommand)]
-    study: Study,
-}
-
 #[derive(Debug, Subcommand)]
-enum Study {
+pub(super) enum StudyCommand {
     /// Compare every solver with an arbitrary-precision reference at the extremes
     Stability(Stability),
 }
 
 #[derive(Debug, Args)]
-struct Stability {
+pub(super) struct Stability {
     /// Write stability.json, stability.csv and stability.svg into this folder (made if absent)
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
@@ -42,9 +36,9 @@ struct Stability {
     json: bool,
 }
 
-pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
-    match &arguments.study {
-        Study::Stability(arguments) => stability(arguments),
+pub(super) fn run(command: &StudyCommand) -> anyhow::Result<()> {
+    match command {
+        StudyCommand::Stability(arguments) => stability(arguments),
     }
 }
 

@@ -264,10 +264,10 @@ fn extreme(case: &Case) -> Result<Extreme, StabilityError> {
                 .map(|stream| (self::fits(case, solver, &stream, 1e3), stream));
             for degree in 1..=MAX_DEGREE {
                 let mut entry = Entry::new(solver, degree);
-                for (i, k) in instants(case).enumerate() {
-                    entry.compare(&windows[i], &fits[i], seen, k);
+                for (i, window) in windows.iter().enumerate() {
+                    entry.compare(window, &fits[i], seen);
                     if let Some((other, stream)) = &other_unit {
-                        entry.compare_units(&windows[i], [&fits[i].0, &other[i].0], [seen, stream], k);
+                        entry.compare_units(window, [&fits[i].0, &other[i].0], [seen, stream]);
                     }
                 }
                 entries.push(entry);
@@ -346,9 +346,8 @@ impl Entry {
         }
     }
 
-    fn compare(&mut self, window: &Window, (fit, sliding): &(Fit, Option<Sliding>), stream: &Stream, k: usize) {
+    fn compare(&mut self, window: &Window, (fit, sliding): &(Fit, Option<Sliding>), stream: &Stream) {
         let degree = self.degree;
-        debug_assert_eq!(window.at[0], k);
         for (i, at) in window.at.iter().enumerate() {
             self.asked += 1;
             let Some(found) = fit.predict(&stream.rows[*at])[degree - 1] else { continue };
@@ -373,7 +372,7 @@ impl Entry {
         });
     }
 
-    fn compare_units(&mut self, window: &Window, fits: [&Fit; 2], streams: [&Stream; 2], _k: usize) {
+    fn compare_units(&mut self, window: &Window, fits: [&Fit; 2], streams: [&Stream; 2]) {
         for at in window.at {
             let [metres, millimetres] = [0, 1].map(|i| fits[i].predict(&streams[i].rows[at])[self.degree - 1]);
             if let (Some(metres), Some(millimetres)) = (metres, millimetres) {

@@ -44,7 +44,8 @@ fn tissue(x: f64, v: f64, a: f64, noise: &mut fastrand::Rng) -> f64 {
 
 /// A hand's motion of the given size at `t`: position, velocity, acceleration.
 fn hand(amplitude: f64, t: f64) -> [f64; 3] {
-    let waves = [(0.75, 0.7, 0.3), (0.2, 2.3, 1.1), (0.05, 6.1, 2.0)];
+    // No common period: over one the paper's `u` would vanish.
+    let waves = [(0.75, 0.713, 0.3), (0.2, 2.331, 1.1), (0.05, 6.127, 2.0)];
     waves.iter().fold([0.0; 3], |[x, v, a], (share, hz, phase)| {
         let (size, w) = (amplitude * share, TAU * hz);
         let (sin, cos) = (w * t + phase).sin_cos();

@@ -31,7 +31,8 @@ enum Command {
     /// Identify impedance over a recording, causally, sample by sample
     Identify(identify::Arguments),
     /// Experiments that print figures
-    Study(study::Arguments),
+    #[command(subcommand, arg_required_else_help = false)]
+    Study(study::StudyCommand),
 }
 
 /// Tells what was wrong with the arguments in one line: the complaint without the usage text that follows it.
@@ -58,7 +59,7 @@ pub fn main() -> ExitCode {
         Command::Console(arguments) => console::run(&arguments),
         Command::Run(arguments) => run::run(&arguments),
         Command::Identify(arguments) => identify::run(&arguments),
-        Command::Study(arguments) => study::run(&arguments),
+        Command::Study(study) => study::run(&study),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

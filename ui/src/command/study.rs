@@ -14,14 +14,8 @@ use nima::{
 
 use super::{output, tradeoff};
 
-#[derive(Debug, Args)]
-pub(super) struct Arguments {
-    #[command(subcommand)]
-    study: Study,
-}
-
 #[derive(Debug, Subcommand)]
-enum Study {
+pub(super) enum StudyCommand {
     /// Compare every solver with an arbitrary-precision reference at the extremes
     Stability(Stability),
     /// Measure what every knob of the identification costs in time and gives in accuracy
@@ -29,7 +23,7 @@ enum Study {
 }
 
 #[derive(Debug, Args)]
-struct Stability {
+pub(super) struct Stability {
     /// Write stability.json, stability.csv and stability.svg into this folder (made if absent)
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
@@ -44,10 +38,10 @@ struct Stability {
     json: bool,
 }
 
-pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
-    match &arguments.study {
-        Study::Stability(arguments) => stability(arguments),
-        Study::Tradeoff(arguments) => tradeoff::run(arguments),
+pub(super) fn run(command: &StudyCommand) -> anyhow::Result<()> {
+    match command {
+        StudyCommand::Stability(arguments) => stability(arguments),
+        StudyCommand::Tradeoff(arguments) => tradeoff::run(arguments),
     }
 }
 

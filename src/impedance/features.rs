@@ -41,7 +41,7 @@ const FLUSH: f64 = 1e-20;
 impl Scales {
     /// Features of `motion` up to `degree`, each divided by its scale; columns beyond the degree stay zero.
     #[inline]
-    pub(super) fn features(&self, motion: &Motion, degree: usize) -> Features {
+    pub fn features(&self, motion: &Motion, degree: usize) -> Features {
         let scaled = Motion {
             x: motion.x * self.position_m.recip(),
             v: motion.v * self.velocity_m_s.recip(),

@@ -4,6 +4,8 @@ mod console;
 mod identify;
 mod output;
 mod run;
+mod study;
+mod tradeoff;
 
 use std::process::ExitCode;
 
@@ -28,6 +30,9 @@ enum Command {
     Run(run::Arguments),
     /// Identify impedance over a recording, causally, sample by sample
     Identify(identify::Arguments),
+    /// Experiments that print figures
+    #[command(subcommand, arg_required_else_help = false)]
+    Study(study::StudyCommand),
 }
 
 /// Tells what was wrong with the arguments in one line: the complaint without the usage text that follows it.
@@ -54,6 +59,7 @@ pub fn main() -> ExitCode {
         Command::Console(arguments) => console::run(&arguments),
         Command::Run(arguments) => run::run(&arguments),
         Command::Identify(arguments) => identify::run(&arguments),
+        Command::Study(study) => study::run(&study),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

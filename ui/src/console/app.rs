@@ -6,7 +6,8 @@ use eframe::glow;
 use egui::{CentralPanel, Event, Frame, Key, Margin, Panel, ScrollArea, Ui};
 use nima::{
     config::{Rig, Scene},
-    runtime::{Command, Handle, Tick},
+    runtime::{self, Command, Handle, Plan, Tick},
+    teleop::LoopState,
 };
 
 use super::{
@@ -14,8 +15,8 @@ use super::{
     live::Live,
     outbox::Outbox,
     panels::{
-        FeedbackState, ForcesState, TopBarState, degrees_ui, feedback_ui, forces_ui, gates_ui, horizon_ui, timing_ui,
-        top_bar_ui,
+        FeedbackState, ForcesState, TopBarState, TradeoffState, degrees_ui, feedback_ui, forces_ui, gates_ui,
+        horizon_ui, timing_ui, top_bar_ui, tradeoff_ui,
     },
     scene3d::{SceneView, scene_ui},
     screenshot, theme,
@@ -41,6 +42,7 @@ pub struct ConsoleApp {
     top_bar: TopBarState,
     feedback: FeedbackState,
     forces: ForcesState,
+    tradeoff: TradeoffState,
     scene: SceneView,
     options: Options,
     opened: Instant,
@@ -60,6 +62,7 @@ impl ConsoleApp {
             top_bar: TopBarState::default(),
             feedback: FeedbackState::default(),
             forces: ForcesState::default(),
+            tradeoff: TradeoffState::default(),
             scene: SceneView::new(cc.gl.as_deref()),
             options: Options::default(),
             opened: now,
@@ -78,6 +81,46 @@ impl ConsoleApp {
     /// The newest tick that reached the screen.
     pub fn tick(&self) -> Option<&Tick> {
         self.live.tick.as_ref()
+    }
+
+    /// The rig that the loop runs on now.
+    pub fn rig(&self) -> &Rig {
+        &self.live.rig
+    }
+
+    /// The trade-off panel's memory, for what it has measured.
+    pub fn tradeoff(&self) -> &TradeoffState {
+        &self.tradeoff
+    }
+
+    /// Ends the loop and starts it anew with `rig`, idle: only the operator engages it again.
+    fn restart(&mut self, rig: Rig) {
+        if let Err(error) = rig.validate() {
+            self.tradeoff.tell(format!("Not applied: {error}."));
+            return;
+        }
+        if let Some(handle) = &self.handle {
+            self.live.take_in(handle);
+        }
+        if !matches!(self.live.state(), LoopState::Idle | LoopState::Engaged) {
+            self.tradeoff.tell("Not applied: the loop has stopped. Release it first.");
+            return;
+        }
+        let scene = self.live.scene.clone();
+        // The old loop first: a rig has one master.
+        drop(self.handle.take());
+        match runtime::start(&Plan { rig: rig.clone(), scene: scene.clone(), engage: false }) {
+            Ok(handle) => {
+                self.handle = Some(handle);
+                self.tradeoff.tell("Applied. The loop was restarted and is idle: engage it when ready.");
+            }
+            Err(error) => self.tradeoff.tell(format!("The loop could not be started again: {error}.")),
+        }
+        let rough_edges = self.live.rough_edges;
+        self.live = Live::new(rig, scene);
+        self.live.rough_edges = rough_edges;
+        self.forces = ForcesState::default();
+        self.outbox = Outbox::default();
     }
 
     /// Space and Escape stop, wherever the keyboard's focus is; nothing else sees them, so no button is pressed by them.
@@ -100,6 +143,7 @@ impl ConsoleApp {
     }
 
     fn layout(&mut self, ui: &mut Ui) {
+        let mut restart = None;
         let bar = Frame::new().fill(theme::PANEL).inner_margin(Margin::symmetric(14, 0));
         Panel::top("top_bar").exact_size(72.0).resizable(false).frame(bar).show(ui, |ui| {
             top_bar_ui(ui, &self.live, &mut self.top_bar, &mut self.outbox);
@@ -116,6 +160,7 @@ impl ConsoleApp {
                 horizon_ui(ui, &self.live);
                 degrees_ui(ui, &self.live);
                 timing_ui(ui, &self.live);
+                restart = tradeoff_ui(ui, &self.live, &mut self.tradeoff, &mut self.outbox);
             });
         });
         CentralPanel::no_frame().show(ui, |ui| {
@@ -126,6 +171,10 @@ impl ConsoleApp {
             });
             scene_ui(ui, &self.live, &mut self.scene);
         });
+        // After everything was drawn of the loop as it was. A stop asked for in the same frame comes first.
+        if let Some(rig) = restart.filter(|_| !self.outbox.stop_is_stuck()) {
+            self.restart(rig);
+        }
     }
 
     fn obey_options(&mut self, ctx: &egui::Context) {
@@ -181,6 +230,7 @@ impl eframe::App for ConsoleApp {
         if let Some(gl) = gl {
             self.scene.destroy(gl);
         }
+        self.tradeoff.cancel();
         if let Some(handle) = self.handle.take() {
             handle.stop_and_join();
         }

@@ -7,6 +7,8 @@ pub mod gates;
 pub mod horizon;
 pub mod timing;
 pub mod top_bar;
+pub mod tradeoff;
+mod tradeoff_plot;
 
 pub use degrees::degrees_ui;
 pub use feedback::{FeedbackState, feedback_ui};
@@ -15,6 +17,7 @@ pub use gates::gates_ui;
 pub use horizon::horizon_ui;
 pub use timing::timing_ui;
 pub use top_bar::{TopBarState, top_bar_ui};
+pub use tradeoff::{TradeoffState, tradeoff_ui};
 
 use nima::impedance::Mode;
 

@@ -1,0 +1,320 @@
+//! The solvers that studies compare: one axis, degrees 1 to 5, one window of rows.
+//!
+//! Takes: [`Row`]s (motion in m, m/s, m/s²; force in N). Gives: a [`Fit`] that predicts a force (N) at any row.
+//! Nothing is guarded here: a row that is not finite, or a window that does not determine the unknowns, shows as a degree
+//! without an answer or as a number that is wrong. Finding out which is what the studies are for.
+
+use nalgebra::{DMatrix, DVector, RealField};
+use serde::Serialize;
+
+use crate::{
+    impedance::{Factor, MAX_DEGREE, MOTION_COLUMNS, Scales, SlidingWindow, Solution, Summary},
+    signal::{Lanes, Motion},
+};
+
+/// Entries of a row of columns: the constant (if the solver has one) and the motion columns.
+pub const MAX_COLUMNS: usize = 1 + MOTION_COLUMNS;
+
+/// One sample of one axis, in SI units (or all lengths in another unit, with [`Scales`] in the same one).
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Row {
+    /// Position, velocity, acceleration in the workspace, counted from its fixed origin.
+    pub position: [f64; 3],
+    /// The paper's `u`: their change since one window ago.
+    pub increment: [f64; 3],
+    /// Force (N).
+    pub force_n: f64,
+}
+
+/// What solves the least-squares problem.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Solver {
+    /// The paper's `M = F X^T (X X^T)^-1` with an explicit inverse, everything rounded to f32.
+    #[serde(rename = "literal-f32")]
+    LiteralF32,
+    /// The same in f64.
+    #[serde(rename = "literal-f64")]
+    LiteralF64,
+    /// `M = F X^+` on the paper's columns by singular values, those below [`CUT_OFF`] of the largest dropped.
+    PseudoInverse,
+    /// A fresh QR of the scaled columns with a constant, without a ridge.
+    FreshQr,
+    /// Ours: scaled columns, a constant and a ridge, from a sliding triangular factor.
+    Sliding,
+}
+
+/// Relative cut-off of the pseudo-inverse: rows times the rounding unit is the textbook's (numpy, Matlab); this is it at 300 rows.
+pub const CUT_OFF: f64 = 300.0 * f64::EPSILON;
+
+impl Solver {
+    /// Every solver, the paper's first.
+    pub const ALL: [Self; 5] = [Self::LiteralF32, Self::LiteralF64, Self::PseudoInverse, Self::FreshQr, Self::Sliding];
+
+    /// The name in tables and files.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::LiteralF32 => "literal-f32",
+            Self::LiteralF64 => "literal-f64",
+            Self::PseudoInverse => "pseudo-inverse",
+            Self::FreshQr => "fresh-qr",
+            Self::Sliding => "sliding",
+        }
+    }
+
+    /// Whether the columns are the paper's (increments in SI units, no constant) or ours (positions, scaled, a constant).
+    pub const fn is_paper(self) -> bool {
+        matches!(self, Self::LiteralF32 | Self::LiteralF64 | Self::PseudoInverse)
+    }
+
+    /// Unknowns of `degree`.
+    pub const fn unknowns(self, degree: usize) -> usize {
+        if self.is_paper() { 3 * degree } else { 1 + 3 * degree }
+    }
+
+    /// The columns of `row` up to `degree`; those beyond are zero.
+    pub fn columns(self, row: &Row, degree: usize, scales: &Scales) -> [f64; MAX_COLUMNS] {
+        const SI: Scales = Scales { position_m: 1.0, velocity_m_s: 1.0, acceleration_m_s2: 1.0, force_n: 1.0 };
+        let [x, v, a] = if self.is_paper() { row.increment } else { row.position }.map(Lanes::splat);
+        let motion = Motion { x, v, a };
+        let mut columns = [0.0; MAX_COLUMNS];
+        if self.is_paper() {
+            let features = SI.features(&motion, degree);
+            columns.iter_mut().zip(features).for_each(|(column, feature)| *column = feature[0]);
+        } else {
+            columns[0] = 1.0;
+            let features = scales.features(&motion, degree);
+            columns[1..].iter_mut().zip(features).for_each(|(column, feature)| *column = feature[0]);
+        }
+        columns
+    }
+
+    /// Fits degrees `1..=max_degree` on `rows`, afresh. `ridge` (per row, see [`crate::impedance::Settings`]) is ours alone.
+    ///
+    /// For [`Solver::Sliding`] this takes the rows into one factor; [`Sliding`] is the same kept from tick to tick.
+    pub fn fit(self, rows: &[Row], max_degree: usize, scales: &Scales, ridge: f64) -> Fit {
+        let max_degree = max_degree.clamp(1, MAX_DEGREE);
+        let mut fit = Fit::none(self, *scales);
+        if self == Self::Sliding {
+            let columns = self.unknowns(max_degree);
+            let mut factor = Factor::with_ridge(columns, ridge * rows.len() as f64);
+            rows.iter().for_each(|row| factor.add(&sliding_row(row, max_degree, scales)));
+            let mut solution = Solution::new(columns);
+            solution.solve(&factor);
+            fit.take(&solution, max_degree);
+            return fit;
+        }
+        let forces = DVector::from_iterator(rows.len(), rows.iter().map(|row| row.force_n));
+        let columns: Vec<_> = rows.iter().map(|row| self.columns(row, max_degree, scales)).collect();
+        let full = DMatrix::from_fn(rows.len(), self.unknowns(max_degree), |i, j| columns[i][j]);
+        if self == Self::FreshQr {
+            fit.coefficients = fresh_qr(full, &forces, max_degree);
+            return fit;
+        }
+        for degree in 1..=max_degree {
+            let x = full.columns(0, self.unknowns(degree)).into_owned();
+            let found = match self {
+                Self::LiteralF32 => explicit_inverse(&x.map(|x| x as f32), &forces.map(|f| f as f32))
+                    .map(|m| m.iter().map(|m| f64::from(*m)).collect()),
+                Self::LiteralF64 => explicit_inverse(&x, &forces).map(|m| m.as_slice().to_vec()),
+                _ => pseudo_inverse(x, &forces),
+            };
+            fit.coefficients[degree - 1] = found;
+        }
+        fit
+    }
+}
+
+/// Coefficients of every degree on one window.
+#[derive(Clone, Debug)]
+pub struct Fit {
+    solver: Solver,
+    scales: Scales,
+    coefficients: [Option<Vec<f64>>; MAX_DEGREE],
+}
+
+impl Fit {
+    fn none(solver: Solver, scales: Scales) -> Self {
+        Self { solver, scales, coefficients: [const { None }; MAX_DEGREE] }
+    }
+
+    fn take(&mut self, solution: &Solution, max_degree: usize) {
+        for degree in 1..=max_degree {
+            let columns = self.solver.unknowns(degree);
+            let found = solution.coefficients(columns)[..columns].iter().map(|m| m[0]).collect();
+            self.coefficients[degree - 1] = Some(found);
+        }
+    }
+
+    /// Coefficients of `degree` in the solver's own columns; `None` where the solver gave no answer.
+    pub fn coefficients(&self, degree: usize) -> Option<&[f64]> {
+        self.coefficients.get(degree.wrapping_sub(1))?.as_deref()
+    }
+
+    /// The force (N) every degree predicts at `at`: `None` without an answer or where it is not finite.
+    pub fn predict(&self, at: &Row) -> [Option<f64>; MAX_DEGREE] {
+        let columns = self.solver.columns(at, MAX_DEGREE, &self.scales);
+        std::array::from_fn(|i| {
+            let m = self.coefficients[i].as_ref()?;
+            let force: f64 = if self.solver == Solver::LiteralF32 {
+                f64::from(m.iter().zip(columns).map(|(m, column)| *m as f32 * column as f32).sum::<f32>())
+            } else {
+                m.iter().zip(columns).map(|(m, column)| m * column).sum()
+            };
+            force.is_finite().then_some(force)
+        })
+    }
+}
+
+/// Our solver as the loop runs it: one row per tick, cost independent of the window's length.
+#[derive(Clone, Debug)]
+pub struct Sliding {
+    window: SlidingWindow<Factor>,
+    solution: Solution,
+    max_degree: usize,
+    scales: Scales,
+}
+
+impl Sliding {
+    /// A window of `2 * block` rows.
+    pub fn new(block: usize, max_degree: usize, scales: Scales, ridge: f64) -> Self {
+        let max_degree = max_degree.clamp(1, MAX_DEGREE);
+        let columns = Solver::Sliding.unknowns(max_degree);
+        let prior = Factor::with_ridge(columns, ridge * 2.0 * block as f64);
+        let window = SlidingWindow::new(block, Factor::new(columns), prior);
+        Self { window, solution: Solution::new(columns), max_degree, scales }
+    }
+
+    /// Takes the newest row and solves; `None` stands for a rejected sample, which takes its place and changes nothing.
+    pub fn push(&mut self, row: Option<&Row>) {
+        let row = row.map_or(Factor::BLANK_ROW, |row| sliding_row(row, self.max_degree, &self.scales));
+        self.window.push(&row);
+        self.solution.solve(self.window.current());
+    }
+
+    /// The newest solutions.
+    pub fn fit(&self) -> Fit {
+        let mut fit = Fit::none(Solver::Sliding, self.scales);
+        fit.take(&self.solution, self.max_degree);
+        fit
+    }
+
+    /// Condition number (Frobenius) of the scaled columns of `degree` with their ridge.
+    pub fn condition(&self, degree: usize) -> f64 {
+        self.solution.condition(Solver::Sliding.unknowns(degree))[0]
+    }
+
+    /// Columns of `degree` whose part orthogonal to those before them outweighs the ridge, the constant included.
+    pub fn rank(&self, degree: usize, ridge: f64) -> usize {
+        let ridge = ridge * self.window.len() as f64;
+        let factor = self.window.current();
+        let outweighs = |j: &usize| {
+            let own = factor.column(*j)[*j][0].powi(2);
+            if *j == 0 { own > 0.0 } else { own > 2.0 * ridge }
+        };
+        (0..Solver::Sliding.unknowns(degree)).filter(outweighs).count()
+    }
+}
+
+fn sliding_row(row: &Row, degree: usize, scales: &Scales) -> <Factor as Summary>::Row {
+    let mut entries = Factor::BLANK_ROW;
+    let columns = Solver::Sliding.columns(row, degree, scales);
+    entries.iter_mut().zip(columns).for_each(|(entry, column)| entry[0] = column);
+    entries[Solver::Sliding.unknowns(degree)][0] = row.force_n;
+    entries
+}
+
+/// `(X X^T)^-1 X f` with `X^T = x`, as printed; `None` where the inverse does not exist in floating point.
+fn explicit_inverse<T: RealField>(x: &DMatrix<T>, f: &DVector<T>) -> Option<DVector<T>> {
+    let inverse = x.tr_mul(x).try_inverse()?;
+    Some(inverse * x.tr_mul(f))
+}
+
+/// `x^+ f`, singular values below the cut-off dropped; `None` where a number is not finite (the iteration would not end).
+fn pseudo_inverse(x: DMatrix<f64>, f: &DVector<f64>) -> Option<Vec<f64>> {
+    if !x.iter().chain(f.iter()).all(|entry| entry.is_finite()) {
+        return None;
+    }
+    let svd = x.svd(true, true);
+    let cut_off = CUT_OFF * svd.singular_values.max();
+    Some(svd.solve(f, cut_off).ok()?.as_slice().to_vec())
+}
+
+/// All degrees from one Householder factorisation; fewer rows than unknowns, or a zero on the diagonal, give no answer.
+fn fresh_qr(x: DMatrix<f64>, f: &DVector<f64>, max_degree: usize) -> [Option<Vec<f64>>; MAX_DEGREE] {
+    let (rows, unknowns) = x.shape();
+    let mut right = f.clone();
+    let qr = x.qr();
+    qr.q_tr_mul(&mut right);
+    let r = qr.unpack_r();
+    std::array::from_fn(|i| {
+        let columns = Solver::FreshQr.unknowns(i + 1);
+        if i >= max_degree || columns > rows || columns > unknowns {
+            return None;
+        }
+        let leading = r.view((0, 0), (columns, columns));
+        let m = leading.solve_upper_triangular(&right.rows(0, columns))?;
+        Some(m.as_slice().to_vec())
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A lively motion: every column carries something.
+    fn rows(count: usize) -> Vec<Row> {
+        (0..count)
+            .map(|k| {
+                let t = k as f64 * 0.37;
+                let position = [0.1 * t.sin(), 0.2 * (1.7 * t).cos(), 4.0 * (2.9 * t + 1.0).sin()];
+                let force_n = 300.0 * position[0] + 5.0 * position[1] + 0.1 * position[2] * position[2];
+                Row { position, increment: position, force_n }
+            })
+            .collect()
+    }
+
+    #[test]
+    fn all_agree_where_the_problem_is_well_conditioned() {
+        let rows = rows(300);
+        let scales = Scales::default();
+        let at = Row { force_n: 0.0, ..rows[123] };
+        for solver in Solver::ALL {
+            let predicted = solver.fit(&rows, 5, &scales, 0.0).predict(&at);
+            let tolerance = if solver == Solver::LiteralF32 { 1e-2 } else { 1e-9 };
+            for degree in 2..=3 {
+                let found = predicted[degree - 1].unwrap();
+                assert!((found - rows[123].force_n).abs() < tolerance, "{} N={degree}: {found}", solver.name());
+            }
+        }
+    }
+
+    #[test]
+    fn slid_and_fresh_are_the_same() {
+        let rows = rows(700);
+        let scales = Scales::default();
+        let mut sliding = Sliding::new(150, 5, scales, 1e-6);
+        for k in 0..rows.len() {
+            sliding.push(Some(&rows[k]));
+            if k >= 299 && k % 37 == 0 {
+                let fresh = Solver::Sliding.fit(&rows[k - 299..=k], 5, &scales, 1e-6).predict(&rows[k]);
+                for (slid, fresh) in sliding.fit().predict(&rows[k]).into_iter().zip(fresh) {
+                    assert!((slid.unwrap() - fresh.unwrap()).abs() < 1e-10);
+                }
+            }
+        }
+        assert_eq!(sliding.rank(5, 1e-6), 16);
+    }
+
+    #[test]
+    fn what_cannot_be_solved_has_no_answer() {
+        let still = vec![Row { force_n: 1.0, ..Row::default() }; 50];
+        let scales = Scales::default();
+        assert_eq!(Solver::LiteralF64.fit(&still, 5, &scales, 0.0).predict(&still[0]), [None; 5]);
+        let ours = Solver::Sliding.fit(&still, 5, &scales, 1e-6).predict(&still[0]);
+        assert!(ours.iter().all(|force| (force.unwrap() - 1.0).abs() < 1e-12));
+        let mut bad = rows(50);
+        bad[7].increment[1] = f64::NAN;
+        assert_eq!(Solver::PseudoInverse.fit(&bad, 2, &scales, 0.0).predict(&bad[0])[..2], [None; 2]);
+    }
+}

@@ -1,0 +1,472 @@
+//! Numerical stability at the extremes: every solver beside the exact answer of the problem it claims to solve.
+//!
+//! Takes: nothing but a number of ticks; the extremes are made here. Gives: a [`Report`] as table, CSV, JSON and picture.
+//!
+//! The paper's solvers and the fresh QR see the samples as they come; ours sees them through the identifier's checks (a
+//! sample that is not finite, absurd, or whose time does not advance takes its place and changes nothing). Each is compared
+//! with the arbitrary-precision solution of its own problem: same rows, same constant, same ridge, least norm where the rows
+//! do not determine the answer. The error is that of the predicted force, at the newest sample and 50 ms later, relative to
+//! the force or to its root mean square in the window, whichever is larger.
+
+mod cases;
+mod drift;
+mod present;
+
+use nalgebra::{DMatrix, Vector3};
+use serde::Serialize;
+
+use self::cases::{Case, horizon, warm};
+use super::{
+    reference::{PRECISION_BITS, Reference},
+    solvers::{CUT_OFF, Fit, Row, Sliding, Solver},
+};
+use crate::{
+    impedance::{Identifier, MAX_DEGREE, Mode, Sample, Scales, Settings, SettingsError},
+    signal::{Differentiator, Lanes, Motion},
+};
+
+pub use drift::Drift;
+
+/// Relative error that must hold wherever the condition is below [`ORDINARY_CONDITION`].
+pub const TARGET: f64 = 1e-9;
+/// Scaled condition up to which [`TARGET`] is promised.
+pub const ORDINARY_CONDITION: f64 = 1e6;
+
+/// What to study.
+#[derive(Clone, Debug)]
+pub struct Options {
+    /// Ticks of the run that looks for drift, [`Options::TICKS`].
+    pub ticks: u64,
+    /// Leave out windows longer than 300 samples (for tests).
+    pub quick: bool,
+}
+
+impl Options {
+    /// Ticks that can be asked for.
+    pub const TICKS: std::ops::RangeInclusive<u64> = 10_000..=1_000_000_000;
+}
+
+/// Why the study could not be made.
+#[derive(Debug, thiserror::Error)]
+pub enum StabilityError {
+    /// Number of ticks out of range.
+    #[error("{ticks} ticks were asked for; it must be 10000 to 1000000000")]
+    Ticks {
+        /// As given.
+        ticks: u64,
+    },
+    /// Settings out of range.
+    #[error(transparent)]
+    Settings(#[from] SettingsError),
+}
+
+/// One solver and degree in one extreme; worst over its windows.
+#[derive(Clone, Debug, Serialize)]
+pub struct Entry {
+    /// The solver.
+    pub solver: Solver,
+    /// Polynomial degree.
+    pub degree: usize,
+    /// Predictions asked for.
+    pub asked: usize,
+    /// Predictions that were finite numbers.
+    pub finite: usize,
+    /// Worst relative error of the finite ones; `None` if there were none or the window itself is not finite.
+    pub error: Option<f64>,
+    /// Unknowns.
+    pub unknowns: usize,
+    /// Least rank the solver worked with (pseudo-inverse: above its cut-off; ours: above the ridge; others: exact rank).
+    pub rank: usize,
+    /// Whether the rows do not determine the solution (exactly): then predictions only are comparable.
+    pub deficient: bool,
+    /// Largest condition number of the solver's own columns (ours with the ridge); `None` if infinite or not defined.
+    pub condition: Option<f64>,
+    /// Largest relative difference between working in metres and in millimetres (pseudo-inverse and ours).
+    pub unit_difference: Option<f64>,
+}
+
+/// One extreme.
+#[derive(Clone, Debug, Serialize)]
+pub struct Extreme {
+    /// Kind of extreme.
+    pub group: &'static str,
+    /// Which one.
+    pub name: String,
+    /// Samples per second.
+    pub rate_hz: f64,
+    /// Samples in the window.
+    pub window: usize,
+    /// Whether the whole identifier, all four modes, gave finite numbers at every tick.
+    pub identifier_finite: bool,
+    /// Every solver and degree.
+    pub entries: Vec<Entry>,
+}
+
+/// The study's result.
+#[derive(Clone, Debug, Serialize)]
+pub struct Report {
+    /// Bits of the reference.
+    pub reference_bits: usize,
+    /// What the targets come to.
+    pub verdict: Verdict,
+    /// The long run.
+    pub drift: Drift,
+    /// Every extreme.
+    pub extremes: Vec<Extreme>,
+}
+
+/// The targets, and the literal formula's failures beside them.
+#[derive(Clone, Debug, Serialize)]
+pub struct Verdict {
+    /// Whether ours reaches all targets.
+    pub reached: bool,
+    /// Share of our predictions that are finite.
+    pub ours_finite_share: f64,
+    /// Whether the whole identifier was finite in every extreme.
+    pub identifier_finite: bool,
+    /// Our worst relative error where the scaled condition is below 1e6.
+    pub ours_worst_error: f64,
+    /// Our worst relative error anywhere.
+    pub ours_worst_error_anywhere: f64,
+    /// Our largest scaled condition.
+    pub ours_worst_condition: f64,
+    /// Our worst difference between metres and millimetres where the scaled condition is below 1e6.
+    pub ours_unit_difference: f64,
+    /// The pseudo-inverse's worst difference between metres and millimetres.
+    pub pseudo_inverse_unit_difference: f64,
+    /// Share of predictions without a finite answer, or off by more than 1 % of the force.
+    pub failures: Vec<Failures>,
+}
+
+/// How often a solver fails.
+#[derive(Clone, Debug, Serialize)]
+pub struct Failures {
+    /// The solver.
+    pub solver: Solver,
+    /// Extremes and degrees tried.
+    pub tried: usize,
+    /// Of these: some prediction was not a finite number.
+    pub not_finite: usize,
+    /// Of these: all finite, but some off by more than 1 % of the force.
+    pub wrong: usize,
+}
+
+/// Makes the study; `progress` is told before each part how many of how many are done, and what comes.
+pub fn study(options: &Options, mut progress: impl FnMut(usize, usize, &str)) -> Result<Report, StabilityError> {
+    if !Options::TICKS.contains(&options.ticks) {
+        return Err(StabilityError::Ticks { ticks: options.ticks });
+    }
+    let cases = cases::all(options.quick);
+    let count = cases.len() + 1;
+    let mut extremes = Vec::with_capacity(cases.len());
+    for (done, case) in cases.iter().enumerate() {
+        progress(done, count, &case.name);
+        extremes.push(extreme(case)?);
+    }
+    progress(count - 1, count, "long run");
+    let drift = drift::run(options.ticks);
+    progress(count, count, "done");
+    Ok(Report { reference_bits: PRECISION_BITS, verdict: Verdict::of(&extremes, &drift), drift, extremes })
+}
+
+/// Rows of a case, and which of them the window takes.
+struct Stream {
+    rows: Vec<Row>,
+    used: Vec<bool>,
+}
+
+/// Motion of a case as a loop makes it; lengths times `unit`. `guard`: with the identifier's checks.
+fn stream(case: &Case, unit: f64, guard: bool) -> Stream {
+    let settings = Settings::default();
+    let mut differentiator = Differentiator::new(settings.differentiator, case.rate_hz);
+    let bridge = (0.01 * case.rate_hz).ceil() as usize;
+    let (mut motions, mut last, mut last_t_s, mut missing) = (Vec::new(), Motion::default(), f64::NEG_INFINITY, 0);
+    let (mut rows, mut used) = (Vec::new(), Vec::new());
+    for raw in &case.samples {
+        let usable = raw.position_m.is_finite() && raw.force_n.is_finite() && raw.t_s > last_t_s;
+        last_t_s = last_t_s.max(raw.t_s);
+        let position = if usable || !guard {
+            missing = 0;
+            Lanes::splat(raw.position_m * unit)
+        } else {
+            missing += 1;
+            if missing <= bridge { last.x + last.v * case.rate_hz.recip() } else { last.x }
+        };
+        last = differentiator.step(position);
+        motions.push(last);
+        let then: Motion = motions[motions.len().saturating_sub(case.window + 1)];
+        let position = [last.x, last.v, last.a].map(|lanes| lanes[0]);
+        let increment = [last.x - then.x, last.v - then.v, last.a - then.a].map(|lanes| lanes[0]);
+        rows.push(Row { position, increment, force_n: raw.force_n });
+        used.push((usable || !guard) && differentiator.settled());
+    }
+    Stream { rows, used }
+}
+
+/// The scales, lengths times `unit`.
+fn scales(unit: f64) -> Scales {
+    let Scales { position_m, velocity_m_s, acceleration_m_s2, force_n } = Scales::default();
+    Scales {
+        position_m: position_m * unit,
+        velocity_m_s: velocity_m_s * unit,
+        acceleration_m_s2: acceleration_m_s2 * unit,
+        force_n,
+    }
+}
+
+/// Fits of one solver at every instant of a case, and what our window knew of itself.
+fn fits(case: &Case, solver: Solver, stream: &Stream, unit: f64) -> Vec<(Fit, Option<Sliding>)> {
+    let (scales, ridge) = (scales(unit), Settings::default().ridge);
+    if solver != Solver::Sliding {
+        let window = |k: usize| solver.fit(&stream.rows[k + 1 - case.window..=k], MAX_DEGREE, &scales, 0.0);
+        return instants(case).map(|k| (window(k), None)).collect();
+    }
+    let mut sliding = Sliding::new(case.window / 2, MAX_DEGREE, scales, ridge);
+    let mut found = Vec::new();
+    for k in 0..stream.rows.len() {
+        sliding.push(stream.used[k].then_some(&stream.rows[k]));
+        if instants(case).any(|instant| instant == k) {
+            found.push((sliding.fit(), Some(sliding.clone())));
+        }
+    }
+    found
+}
+
+/// Ticks at which the window is looked at.
+fn instants(case: &Case) -> impl Iterator<Item = usize> {
+    let (first, window) = (warm(case.rate_hz, case.window), case.window);
+    [0, window / 2, window].into_iter().map(move |later| first + later)
+}
+
+/// Rows of columns with the force behind them, as the reference takes them.
+fn columns_of(solver: Solver, stream: &Stream, window: std::ops::RangeInclusive<usize>, force: bool) -> Vec<Vec<f64>> {
+    let unknowns = solver.unknowns(MAX_DEGREE);
+    let row = |row: &Row| {
+        let mut columns = solver.columns(row, MAX_DEGREE, &scales(1.0))[..unknowns].to_vec();
+        columns.extend(force.then_some(row.force_n));
+        columns
+    };
+    window.filter(|k| stream.used[*k]).map(|k| row(&stream.rows[k])).collect()
+}
+
+fn extreme(case: &Case) -> Result<Extreme, StabilityError> {
+    let bare = stream(case, 1.0, false);
+    let guarded = stream(case, 1.0, true);
+    let mut entries = Vec::new();
+    for solvers in [&Solver::ALL[..3], &Solver::ALL[3..4], &Solver::ALL[4..]] {
+        let ours = solvers[0] == Solver::Sliding;
+        let seen = if ours { &guarded } else { &bare };
+        let windows: Vec<_> = instants(case).map(|k| Window::new(case, solvers[0], seen, k)).collect();
+        for &solver in solvers {
+            let fits = fits(case, solver, seen, 1.0);
+            let other_unit = matches!(solver, Solver::PseudoInverse | Solver::Sliding)
+                .then(|| stream(case, 1e3, ours))
+                .map(|stream| (self::fits(case, solver, &stream, 1e3), stream));
+            for degree in 1..=MAX_DEGREE {
+                let mut entry = Entry::new(solver, degree);
+                for (i, window) in windows.iter().enumerate() {
+                    entry.compare(window, &fits[i], seen);
+                    if let Some((other, stream)) = &other_unit {
+                        entry.compare_units(window, [&fits[i].0, &other[i].0], [seen, stream]);
+                    }
+                }
+                entries.push(entry);
+            }
+        }
+    }
+    let identifier_finite = identifier_finite(case)?;
+    let Case { group, name, rate_hz, window, .. } = case.clone();
+    Ok(Extreme { group, name, rate_hz, window, identifier_finite, entries })
+}
+
+/// One window of one problem: its exact solution and its singular values.
+struct Window {
+    reference: Option<Reference>,
+    exact: Vec<Vec<Option<f64>>>,
+    /// Singular values of the first columns, by degree.
+    singular: Vec<Vec<f64>>,
+    force_rms_n: f64,
+    at: [usize; 2],
+}
+
+impl Window {
+    fn new(case: &Case, solver: Solver, stream: &Stream, k: usize) -> Self {
+        let unknowns = solver.unknowns(MAX_DEGREE);
+        let rows = columns_of(solver, stream, k + 1 - case.window..=k, true);
+        let ridge = if solver == Solver::Sliding { Settings::default().ridge } else { 0.0 };
+        let reference = Reference::new(&rows, unknowns, (ridge * case.window as f64).sqrt());
+        let at = [k, k + horizon(case.rate_hz, case.window)];
+        // The motion at those two instants counts even where the sample was rejected.
+        let seen = Stream { rows: at.map(|k| stream.rows[k]).to_vec(), used: vec![true; 2] };
+        let places = columns_of(solver, &seen, 0..=1, false);
+        let prefix = |degree| solver.unknowns(degree);
+        let exact = (1..=MAX_DEGREE)
+            .map(|degree| {
+                reference.as_ref().map_or_else(|| vec![None; 2], |exact| exact.predict(prefix(degree), &places))
+            })
+            .collect();
+        let singular = (1..=MAX_DEGREE).map(|degree| singular_values(&rows, prefix(degree))).collect();
+        let squares: f64 = rows.iter().map(|row| row[unknowns] * row[unknowns]).sum();
+        let force_rms_n = (squares / rows.len().max(1) as f64).sqrt();
+        Self { reference, exact, singular, force_rms_n, at }
+    }
+
+    fn relative(&self, found: f64, expected: f64) -> f64 {
+        let off = (found - expected).abs();
+        if off == 0.0 { 0.0 } else { off / expected.abs().max(self.force_rms_n).max(f64::MIN_POSITIVE) }
+    }
+}
+
+/// Largest first; empty if an entry is not finite.
+fn singular_values(rows: &[Vec<f64>], columns: usize) -> Vec<f64> {
+    if !rows.iter().flatten().all(|entry| entry.is_finite()) {
+        return Vec::new();
+    }
+    let x = DMatrix::from_fn(rows.len(), columns, |i, j| rows[i][j]);
+    let mut values = x.qr().r().singular_values().as_slice().to_vec();
+    values.sort_by(|a, b| b.total_cmp(a));
+    values.resize(columns, 0.0);
+    values
+}
+
+impl Entry {
+    fn new(solver: Solver, degree: usize) -> Self {
+        let unknowns = solver.unknowns(degree);
+        Self {
+            solver,
+            degree,
+            asked: 0,
+            finite: 0,
+            error: None,
+            unknowns,
+            rank: unknowns,
+            deficient: false,
+            condition: Some(1.0),
+            unit_difference: None,
+        }
+    }
+
+    fn compare(&mut self, window: &Window, (fit, sliding): &(Fit, Option<Sliding>), stream: &Stream) {
+        let degree = self.degree;
+        for (i, at) in window.at.iter().enumerate() {
+            self.asked += 1;
+            let Some(found) = fit.predict(&stream.rows[*at])[degree - 1] else { continue };
+            self.finite += 1;
+            if let Some(exact) = window.exact[degree - 1][i] {
+                self.error = worse(self.error, Some(window.relative(found, exact)));
+            }
+        }
+        let exact_rank = window.reference.as_ref().map_or(0, |reference| reference.rank(self.unknowns));
+        let singular = &window.singular[degree - 1];
+        let largest = singular.first().copied().unwrap_or(0.0);
+        self.deficient |= exact_rank < self.unknowns;
+        let condition = match sliding {
+            Some(sliding) => sliding.condition(degree),
+            None => largest / singular.last().copied().unwrap_or(0.0),
+        };
+        self.condition = self.condition.filter(|_| condition.is_finite()).map(|worst| worst.max(condition));
+        self.rank = self.rank.min(match (sliding, self.solver) {
+            (Some(sliding), _) => sliding.rank(degree, Settings::default().ridge),
+            (None, Solver::PseudoInverse) => singular.iter().filter(|value| **value > CUT_OFF * largest).count(),
+            (None, _) => exact_rank,
+        });
+    }
+
+    fn compare_units(&mut self, window: &Window, fits: [&Fit; 2], streams: [&Stream; 2]) {
+        for at in window.at {
+            let [metres, millimetres] = [0, 1].map(|i| fits[i].predict(&streams[i].rows[at])[self.degree - 1]);
+            if let (Some(metres), Some(millimetres)) = (metres, millimetres) {
+                self.unit_difference = worse(self.unit_difference, Some(window.relative(millimetres, metres)));
+            }
+        }
+    }
+}
+
+fn worse(a: Option<f64>, b: Option<f64>) -> Option<f64> {
+    a.into_iter().chain(b).reduce(f64::max)
+}
+
+/// Runs the identifier as the loop does, all modes, over the samples of a case.
+fn identifier_finite(case: &Case) -> Result<bool, StabilityError> {
+    let settings =
+        Settings { rate_hz: case.rate_hz, window_s: case.window as f64 / case.rate_hz, axes: 1, ..Settings::default() };
+    let mut identifier = Identifier::new(&settings)?;
+    let mut finite = true;
+    for raw in &case.samples {
+        let [position_m, force_n] = [raw.position_m, raw.force_n].map(|value| Vector3::new(value, 0.0, 0.0));
+        identifier.step(&Sample { t_s: raw.t_s, position_m, force_n });
+        let report = identifier.report();
+        finite &= Mode::ALL.iter().filter_map(|mode| report.prediction(*mode)).all(|force| force.x.is_finite());
+        finite &= report.condition.is_finite();
+    }
+    Ok(finite)
+}
+
+impl Verdict {
+    fn of(extremes: &[Extreme], drift: &Drift) -> Self {
+        let all = || extremes.iter().flat_map(|extreme| &extreme.entries);
+        let ours = || all().filter(|entry| entry.solver == Solver::Sliding);
+        let ordinary = || ours().filter(|entry| entry.condition.is_some_and(|c| c < ORDINARY_CONDITION));
+        let most = |values: &mut dyn Iterator<Item = Option<f64>>| values.flatten().fold(0.0, f64::max);
+        let (asked, finite) = ours().fold((0, 0), |(a, f), entry| (a + entry.asked, f + entry.finite));
+        let failures = Solver::ALL.map(|solver| {
+            let of = || all().filter(|entry| entry.solver == solver);
+            let wrong = |entry: &&Entry| entry.finite == entry.asked && entry.error.is_none_or(|error| error > 0.01);
+            Failures {
+                solver,
+                tried: of().count(),
+                not_finite: of().filter(|entry| entry.finite < entry.asked).count(),
+                wrong: of().filter(wrong).count(),
+            }
+        });
+        let mut verdict = Self {
+            reached: false,
+            ours_finite_share: finite as f64 / asked.max(1) as f64,
+            identifier_finite: extremes.iter().all(|extreme| extreme.identifier_finite),
+            ours_worst_error: most(&mut ordinary().map(|entry| entry.error)),
+            ours_worst_error_anywhere: most(&mut ours().map(|entry| entry.error)),
+            ours_worst_condition: most(&mut ours().map(|entry| entry.condition)),
+            ours_unit_difference: most(&mut ordinary().map(|entry| entry.unit_difference)),
+            pseudo_inverse_unit_difference: most(
+                &mut all().filter(|e| e.solver == Solver::PseudoInverse).map(|e| e.unit_difference),
+            ),
+            failures: failures.to_vec(),
+        };
+        verdict.reached = asked == finite
+            && verdict.identifier_finite
+            && verdict.ours_worst_error <= TARGET
+            && verdict.ours_unit_difference <= TARGET
+            && drift.ours_late <= drift.ours_early;
+        verdict
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ours_holds_at_the_extremes() {
+        let report = study(&Options { ticks: 10_000, quick: true }, |_, _, _| {}).unwrap();
+        for extreme in &report.extremes {
+            assert!(extreme.identifier_finite, "{}", extreme.name);
+            for entry in extreme.entries.iter().filter(|entry| entry.solver == Solver::Sliding) {
+                let name = format!("{} N={}: {entry:?}", extreme.name, entry.degree);
+                assert_eq!(entry.finite, entry.asked, "{name}");
+                if entry.condition.unwrap() < ORDINARY_CONDITION {
+                    assert!(entry.error.unwrap() <= TARGET, "{name}");
+                    assert!(entry.unit_difference.unwrap() <= TARGET, "{name}");
+                }
+            }
+        }
+        assert!(report.verdict.reached, "{:?} {:?}", report.verdict, report.drift);
+        let literal = &report.verdict.failures[0];
+        assert!(literal.not_finite + literal.wrong > literal.tried / 3, "{literal:?}");
+    }
+
+    #[test]
+    fn too_few_ticks_are_refused() {
+        let error = study(&Options { ticks: 9, quick: true }, |_, _, _| {}).unwrap_err();
+        assert_eq!(error.to_string(), "9 ticks were asked for; it must be 10000 to 1000000000");
+    }
+}

@@ -1,0 +1,169 @@
+//! The report as a table, as CSV and as a picture.
+
+use std::fmt::Write as _;
+
+use super::{Entry, Extreme, ORDINARY_CONDITION, Report, Solver, TARGET};
+use crate::study::picture::{Axis, Chart, Series, Style, svg};
+
+impl Report {
+    /// One row per extreme, solver and degree; empty where there is no figure.
+    pub fn csv(&self) -> String {
+        let mut out = String::from(
+            "group,name,rate_hz,window,solver,degree,asked,finite,error,unknowns,rank,deficient,condition,unit_difference\n",
+        );
+        let figure = |value: Option<f64>| value.map(|value| format!("{value:e}")).unwrap_or_default();
+        for extreme in &self.extremes {
+            let Extreme { group, name, rate_hz, window, .. } = extreme;
+            for entry in &extreme.entries {
+                let Entry { degree, asked, finite, unknowns, rank, deficient, .. } = entry;
+                // Writing into a String cannot fail.
+                writeln!(
+                    out,
+                    "{group},{name},{rate_hz},{window},{},{degree},{asked},{finite},{},{unknowns},{rank},{deficient},{},{}",
+                    entry.solver.name(),
+                    figure(entry.error),
+                    figure(entry.condition),
+                    figure(entry.unit_difference),
+                )
+                .ok();
+            }
+        }
+        out
+    }
+
+    /// The worst relative error of every solver over degrees 1 to 5 in every extreme, then the verdict.
+    pub fn table(&self) -> String {
+        let mut out = format!("{:<10} {:<37}", "extreme", "");
+        for solver in Solver::ALL {
+            write!(out, " {:>14}", solver.name()).ok();
+        }
+        out.push_str("  condition\n");
+        for extreme in &self.extremes {
+            write!(out, "{:<10} {:<37}", extreme.group, extreme.name).ok();
+            for solver in Solver::ALL {
+                write!(out, " {:>14}", worst(extreme, solver)).ok();
+            }
+            writeln!(out, "  {:>9}", condition(extreme)).ok();
+        }
+        out.push_str(&self.in_words());
+        out
+    }
+
+    fn in_words(&self) -> String {
+        let (verdict, drift) = (&self.verdict, &self.drift);
+        let mut out = String::from(
+            "\nWorst relative error of the predicted force, degrees 1 to 5, against an exact solution of the same problem;\n\
+             k/30: so many of 30 predictions were finite numbers; *: the rows do not determine the solution;\n\
+             condition: of the scaled columns with the ridge (ours).\n\n",
+        );
+        for failures in &verdict.failures {
+            writeln!(
+                out,
+                "{:<15} of {} extremes and degrees: {} not finite, {} off by more than 1 %",
+                failures.solver.name(),
+                failures.tried,
+                failures.not_finite,
+                failures.wrong
+            )
+            .ok();
+        }
+        writeln!(
+            out,
+            "ours            finite {:.1} %, error {:.1e} (target {TARGET:.0e} below condition {ORDINARY_CONDITION:.0e}; anywhere {:.1e}, largest condition {:.1e})",
+            verdict.ours_finite_share * 100.0,
+            verdict.ours_worst_error,
+            verdict.ours_worst_error_anywhere,
+            verdict.ours_worst_condition,
+        )
+        .ok();
+        writeln!(
+            out,
+            "metres or mm    ours {:.1e}, pseudo-inverse {:.1e}",
+            verdict.ours_unit_difference, verdict.pseudo_inverse_unit_difference
+        )
+        .ok();
+        let late = drift.running_sums_late.map_or_else(|| "none".into(), |late| format!("{late:.1e}"));
+        writeln!(
+            out,
+            "{} ticks  ours {:.1e} early, {:.1e} late; sums with rows subtracted {:.1e} early, {late} late",
+            drift.ticks, drift.ours_early, drift.ours_late, drift.running_sums_early
+        )
+        .ok();
+        write!(out, "targets {}", if verdict.reached { "reached" } else { "MISSED" }).ok();
+        out
+    }
+
+    /// Error over condition for every extreme and degree, and error over amplitude at degree 5.
+    pub fn svg(&self) -> String {
+        svg(&[self.by_condition(), self.by_amplitude()])
+    }
+
+    fn by_condition(&self) -> Chart {
+        let mut series: Vec<Series> = Solver::ALL
+            .iter()
+            .enumerate()
+            .map(|(colour, solver)| {
+                let entries = self.extremes.iter().flat_map(|extreme| &extreme.entries);
+                let points = entries
+                    .filter(|entry| entry.solver == *solver)
+                    .filter(|entry| entry.error.is_some() || entry.finite < entry.asked)
+                    .map(|entry| [entry.condition.unwrap_or(f64::MAX), height(entry)])
+                    .collect();
+                Series { name: solver.name().into(), colour, style: Style::Points, points }
+            })
+            .collect();
+        let target = vec![[1.0, TARGET], [ORDINARY_CONDITION, TARGET], [ORDINARY_CONDITION, 1e-17]];
+        series.push(Series {
+            name: "target: stay left of and below, or right of it".into(),
+            colour: 6,
+            style: Style::Dashed,
+            points: target,
+        });
+        Chart {
+            title: "Every extreme and degree (upper edge: no finite answer)".into(),
+            x: Axis::log("condition of the solver's own columns", 1.0, 1e30),
+            y: Axis::log("worst relative error of the force", 1e-17, 1e6),
+            series,
+        }
+    }
+
+    fn by_amplitude(&self) -> Chart {
+        let sizes = [1e-6, 1e-5, 1e-4, 1e-3, 1e-2, 0.1, 0.2];
+        let amplitudes = || self.extremes.iter().filter(|extreme| extreme.group == "amplitude");
+        let series = Solver::ALL.iter().enumerate().map(|(colour, solver)| {
+            let five = |extreme: &Extreme| {
+                extreme.entries.iter().find(|entry| entry.solver == *solver && entry.degree == 5).map(height)
+            };
+            let points = sizes.iter().zip(amplitudes()).filter_map(|(size, extreme)| Some([*size, five(extreme)?]));
+            Series { name: solver.name().into(), colour, style: Style::Line, points: points.collect() }
+        });
+        Chart {
+            title: "Degree 5, 300 samples at 1 kHz".into(),
+            x: Axis::log("amplitude of the motion (m)", 7e-7, 0.3),
+            y: Axis::log("worst relative error of the force", 1e-17, 1e6),
+            series: series.collect(),
+        }
+    }
+}
+
+/// The error to draw: the upper edge where an answer is missing.
+fn height(entry: &Entry) -> f64 {
+    if entry.finite < entry.asked { f64::MAX } else { entry.error.unwrap_or(f64::MAX) }
+}
+
+fn worst(extreme: &Extreme, solver: Solver) -> String {
+    let of = || extreme.entries.iter().filter(|entry| entry.solver == solver);
+    let (asked, finite) = of().fold((0, 0), |(a, f), entry| (a + entry.asked, f + entry.finite));
+    let mark = if of().any(|entry| entry.deficient) { "*" } else { "" };
+    if finite < asked {
+        return format!("{finite}/{asked}{mark}");
+    }
+    let error = of().filter_map(|entry| entry.error).reduce(f64::max);
+    error.map_or_else(|| "-".into(), |error| format!("{error:.1e}{mark}"))
+}
+
+fn condition(extreme: &Extreme) -> String {
+    let ours = extreme.entries.iter().filter(|entry| entry.solver == Solver::Sliding);
+    let condition = ours.filter_map(|entry| entry.condition).reduce(f64::max);
+    condition.map_or_else(|| "-".into(), |condition| format!("{condition:.1e}"))
+}

@@ -1,0 +1,114 @@
+//! Cost and error of a mode, as the loop runs it: one identifier that computes this mode (and DFR, which is free).
+
+use std::{
+    sync::atomic::{AtomicBool, Ordering},
+    time::Instant,
+};
+
+use super::{
+    plan::Choice,
+    sweep::{CostUs, SweepError},
+};
+use crate::{
+    impedance::{Identifier, Mode, ModeSet, Sample, Settings},
+    runtime::Percentiles,
+};
+
+/// How often a stop is looked for, in ticks.
+const LOOK_EVERY: usize = 512;
+
+/// What was found at one point.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Measured {
+    pub(super) cost_us: CostUs,
+    pub(super) error: f64,
+    pub(super) error_p50: f64,
+    pub(super) error_p95: f64,
+    pub(super) dfr_error: f64,
+    pub(super) not_rendered: f64,
+    pub(super) judged: usize,
+}
+
+/// Sums of an error and of delayed DFR's on the same samples.
+#[derive(Debug, Default)]
+pub(super) struct Errors {
+    norms: Vec<f64>,
+    dfr: f64,
+    not_rendered: usize,
+}
+
+impl Errors {
+    pub(super) fn add(&mut self, error: f64, dfr_error: f64, rendered: bool) {
+        self.norms.push(error);
+        self.dfr += dfr_error;
+        self.not_rendered += usize::from(!rendered);
+    }
+
+    pub(super) fn measured(mut self, cost_us: CostUs) -> Measured {
+        let judged = self.norms.len();
+        let count = judged.max(1) as f64;
+        let error = self.norms.iter().sum::<f64>() / count;
+        self.norms.sort_unstable_by(f64::total_cmp);
+        let rank = |q: f64| ((q * count).ceil() as usize).clamp(1, judged.max(1)) - 1;
+        let quantile = |q: f64| self.norms.get(rank(q)).copied().unwrap_or(0.0);
+        Measured {
+            cost_us,
+            error,
+            error_p50: quantile(0.5),
+            error_p95: quantile(0.95),
+            dfr_error: self.dfr / count,
+            not_rendered: self.not_rendered as f64 / count,
+            judged,
+        }
+    }
+}
+
+/// Fails when somebody asked to stop.
+pub(super) fn look(cancel: &AtomicBool) -> Result<(), SweepError> {
+    if cancel.load(Ordering::Relaxed) { Err(SweepError::Cancelled) } else { Ok(()) }
+}
+
+/// Runs `mode` over `samples` `passes` times; only samples from `from_s` on are judged and timed.
+pub(super) fn measure(
+    samples: &[Sample],
+    settings: &Settings,
+    (mode, choice): (Mode, &Choice),
+    from_s: f64,
+    passes: usize,
+    cancel: &AtomicBool,
+) -> Result<Measured, SweepError> {
+    let settings = Settings { modes: ModeSet::only(mode), ..settings.clone() };
+    let mut errors = Errors::default();
+    let mut cost_us = CostUs::WORST;
+    for pass in 0..passes.max(1) {
+        let mut identifier =
+            Identifier::new(&settings).map_err(|source| SweepError::Settings { choice: Box::new(*choice), source })?;
+        let mut times = Percentiles::new();
+        for (k, sample) in samples.iter().enumerate() {
+            if k % LOOK_EVERY == 0 {
+                look(cancel)?;
+            }
+            let start = Instant::now();
+            identifier.step(sample);
+            let spent_s = start.elapsed().as_secs_f64();
+            if sample.t_s < from_s {
+                continue;
+            }
+            times.record(spent_s);
+            if pass == 0 {
+                judge(&identifier, mode, sample, &mut errors);
+            }
+        }
+        cost_us = cost_us.quieter(&times.quantiles());
+    }
+    Ok(errors.measured(cost_us))
+}
+
+fn judge(identifier: &Identifier, mode: Mode, sample: &Sample, errors: &mut Errors) {
+    let report = identifier.report();
+    let (rendered, held) = (report.prediction(mode), report.prediction(Mode::Dfr));
+    // What is not rendered errs by the whole force.
+    let error = (rendered.unwrap_or_default() - sample.force_n).norm();
+    let dfr_error = (held.unwrap_or_default() - sample.force_n).norm();
+    errors.add(error, dfr_error, rendered.is_some());
+}

@@ -1,0 +1,142 @@
+//! The curves as pictures.
+
+use super::{
+    Knob, Method, Point, SourceFigures, Study,
+    chart::{Chart, Series},
+};
+use crate::{impedance::Mode, study::solvers::Solver};
+
+impl Study {
+    /// Pictures by name: cost against error for every source (by the source's own name), then one for every knob.
+    pub fn pictures(&self) -> Vec<(String, String)> {
+        let mut pictures: Vec<(String, String)> = Vec::new();
+        for figures in &self.sources {
+            let mut name = slug(&figures.source);
+            while pictures.iter().any(|(known, _)| *known == name) {
+                name.push_str("-2");
+            }
+            pictures.push((name, cost_against_error(figures).svg()));
+        }
+        let knobs = [
+            (Knob::Delay, Mode::Anchored, "Delay of the link (ms)"),
+            (Knob::Rate, Mode::Anchored, "Samples a second (Hz)"),
+            (Knob::Degree, Mode::Literal, "Highest degree N"),
+            (Knob::Window, Mode::Literal, "Window (ms)"),
+        ];
+        for (knob, mode, label) in knobs {
+            pictures.push((format!("knob-{}", knob.name()), self.along(knob, mode, label).svg()));
+        }
+        if let Some(first) = self.sources.iter().find(|figures| solver_curves(figures).next().is_some()) {
+            pictures.push(("knob-solver-cost".to_owned(), solvers(first, "Median time of one solve (us)", cost).svg()));
+            let error = |point: &Point| point.error_p50;
+            pictures.push(("knob-solver-error".to_owned(), solvers(first, "Median error at the horizon", error).svg()));
+        }
+        pictures
+    }
+
+    /// Error by delayed DFR's along one knob, a line for every source.
+    fn along(&self, knob: Knob, mode: Mode, label: &'static str) -> Chart {
+        let line = |figures: &SourceFigures| {
+            let curve = figures.curves.iter().find(|curve| curve.knob == knob && curve.method == Method::Mode(mode))?;
+            let points = curve.points.iter().map(|&i| &figures.points[i]);
+            let mut places: Vec<[f64; 2]> = points.map(|point| [setting(knob, point), point.ratio]).collect();
+            places.sort_by(|a, b| a[0].total_cmp(&b[0]));
+            Some(Series { name: figures.source.clone(), places, joined: true, marked: true })
+        };
+        Chart {
+            title: format!("{} along the {}: error by delayed DFR's", capital(mode.name()), knob.name()),
+            labels: [label, "Mean error / that of delayed DFR"],
+            x_logarithmic: knob != Knob::Degree,
+            level: Some(1.0),
+            series: self.sources.iter().filter_map(line).collect(),
+        }
+    }
+}
+
+/// All points of the modes at the base's delay and rate, and the front through them.
+fn cost_against_error(figures: &SourceFigures) -> Chart {
+    let base_ms = figures
+        .curves
+        .iter()
+        .find(|curve| curve.knob == Knob::Mode)
+        .and_then(|curve| curve.points.first())
+        .map_or(0.0, |&index| figures.points[index].choice.delay_ms);
+    let shown = |point: &&Point| point.choice.every == 1 && (point.choice.delay_ms - base_ms).abs() < f64::EPSILON;
+    let mut series: Vec<Series> = Mode::ALL
+        .into_iter()
+        .map(|mode| {
+            let of_mode = |point: &&Point| point.choice.method == Method::Mode(mode);
+            let places = figures.points.iter().filter(shown).filter(of_mode).map(place).collect();
+            Series { name: mode.name().to_owned(), places, joined: false, marked: true }
+        })
+        .collect();
+    let mut front: Vec<[f64; 2]> =
+        figures.points.iter().filter(shown).filter(|point| point.pareto).map(place).collect();
+    front.sort_by(|a, b| a[0].total_cmp(&b[0]));
+    series.push(Series { name: "nothing beats these".to_owned(), places: front, joined: true, marked: false });
+    Chart {
+        title: format!("{}: cost against error at {base_ms:.0} ms (force in {})", figures.source, figures.unit),
+        labels: ["Median time of one tick (us)", "Mean error at the horizon"],
+        x_logarithmic: true,
+        level: None,
+        series,
+    }
+}
+
+fn place(point: &Point) -> [f64; 2] {
+    [point.cost_us.p50, point.error]
+}
+
+fn cost(point: &Point) -> f64 {
+    point.cost_us.p50
+}
+
+fn solver_curves(figures: &SourceFigures) -> impl Iterator<Item = (Solver, &[usize])> {
+    figures.curves.iter().filter_map(|curve| match curve.method {
+        Method::Solver(solver) if curve.knob == Knob::Window => Some((solver, &curve.points[..])),
+        _ => None,
+    })
+}
+
+/// A figure of every solver over the length of the window.
+fn solvers(figures: &SourceFigures, label: &'static str, figure: impl Fn(&Point) -> f64) -> Chart {
+    let line = |(solver, points): (Solver, &[usize])| {
+        let places = points.iter().map(|&i| &figures.points[i]);
+        let places = places.map(|point| [point.choice.window_ms, figure(point)]).collect();
+        Series { name: solver.name().to_owned(), places, joined: true, marked: true }
+    };
+    Chart {
+        title: format!("{}: solvers of the plain model, all degrees", figures.source),
+        labels: ["Window (ms)", label],
+        x_logarithmic: true,
+        level: None,
+        series: solver_curves(figures).map(line).collect(),
+    }
+}
+
+fn setting(knob: Knob, point: &Point) -> f64 {
+    match knob {
+        Knob::Degree => point.choice.degree as f64,
+        Knob::Rate => point.choice.rate_hz,
+        Knob::Delay => point.choice.delay_ms,
+        _ => point.choice.window_ms,
+    }
+}
+
+/// A name that is safe in a path.
+fn slug(name: &str) -> String {
+    let mut slug = String::new();
+    for c in name.chars() {
+        if c.is_ascii_alphanumeric() || c == '_' {
+            slug.push(c.to_ascii_lowercase());
+        } else if !slug.ends_with('-') {
+            slug.push('-');
+        }
+    }
+    slug.trim_matches('-').to_owned()
+}
+
+fn capital(word: &str) -> String {
+    let mut letters = word.chars();
+    letters.next().map_or_else(String::new, |first| first.to_ascii_uppercase().to_string() + letters.as_str())
+}

@@ -1,0 +1,281 @@
+//! The knobs, and which of their values are tried.
+
+use serde::Serialize;
+
+use super::source::Source;
+use crate::{
+    impedance::{MAX_DEGREE, Mode, Settings},
+    signal::DifferentiatorKind,
+    study::solvers::Solver,
+};
+
+/// What turns samples into a force.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(untagged)]
+pub enum Method {
+    /// A mode, as the loop runs it.
+    Mode(Mode),
+    /// The plain model of a window, by this solver (and in its precision).
+    Solver(Solver),
+}
+
+impl Method {
+    /// Name in tables.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Mode(mode) => mode.name(),
+            Self::Solver(solver) => solver.name(),
+        }
+    }
+
+    /// The mode, if it is one.
+    pub const fn mode(self) -> Option<Mode> {
+        match self {
+            Self::Mode(mode) => Some(mode),
+            Self::Solver(_) => None,
+        }
+    }
+}
+
+/// One position of all knobs.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Choice {
+    /// What renders.
+    pub method: Method,
+    /// Highest degree.
+    pub degree: usize,
+    /// Window, ms.
+    pub window_ms: f64,
+    /// Rate, Hz.
+    pub rate_hz: f64,
+    /// Delay, ms.
+    pub delay_ms: f64,
+    /// How velocity and acceleration are made.
+    pub differentiator: DifferentiatorKind,
+    /// Every how many samples of the source one is taken.
+    pub every: usize,
+}
+
+/// A knob that is turned while the others stay.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Knob {
+    /// Highest degree.
+    Degree,
+    /// Length of the window.
+    Window,
+    /// Samples per second.
+    Rate,
+    /// Delay of the link.
+    Delay,
+    /// How velocity and acceleration are made.
+    Differentiator,
+    /// What renders.
+    Mode,
+    /// Degree and window together, at one delay.
+    Grid,
+}
+
+impl Knob {
+    /// Name in tables.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Degree => "degree",
+            Self::Window => "window",
+            Self::Rate => "rate",
+            Self::Delay => "delay",
+            Self::Differentiator => "differentiator",
+            Self::Mode => "mode",
+            Self::Grid => "grid",
+        }
+    }
+}
+
+/// Points along one knob.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Curve {
+    /// The knob.
+    pub knob: Knob,
+    /// What renders on the whole curve (of [`Knob::Mode`]: at the base).
+    pub method: Method,
+    /// Indices into the source's points.
+    pub points: Vec<usize>,
+}
+
+/// What is tried.
+#[derive(Clone, Debug)]
+pub struct Plan {
+    /// The base point, and what is not turned (scales, ridge). Rate and axes are those of the source.
+    pub base: Settings,
+    /// Modes on the grid and along every knob.
+    pub modes: Vec<Mode>,
+    /// Degrees.
+    pub degrees: Vec<usize>,
+    /// Windows, s.
+    pub windows_s: Vec<f64>,
+    /// Rates below that of the source, Hz.
+    pub rates_hz: Vec<f64>,
+    /// Delays, s.
+    pub delays_s: Vec<f64>,
+    /// Differentiators.
+    pub differentiators: Vec<DifferentiatorKind>,
+    /// Solvers of the plain model of a window, along degree and window.
+    pub solvers: Vec<Solver>,
+    /// Instants at which each solver is asked.
+    pub instants: usize,
+    /// Passes over the source for each point of a mode; the quietest one tells the cost.
+    pub passes: usize,
+}
+
+impl Plan {
+    /// Everything that the study prints.
+    pub fn full(base: Settings) -> Self {
+        Self {
+            base,
+            modes: vec![Mode::Anchored, Mode::Literal],
+            degrees: (1..=MAX_DEGREE).collect(),
+            windows_s: vec![0.1, 0.2, 0.3, 0.5, 1.0],
+            rates_hz: vec![500.0, 200.0, 66.0],
+            delays_s: vec![0.01, 0.05, 0.1, 0.3],
+            differentiators: DifferentiatorKind::ALL.to_vec(),
+            solvers: Solver::ALL.to_vec(),
+            instants: 200,
+            passes: 3,
+        }
+    }
+
+    /// What a minute allows: three degrees, three windows, the delay of the base.
+    pub fn quick(base: Settings) -> Self {
+        Self {
+            degrees: vec![1, 2, MAX_DEGREE],
+            windows_s: vec![0.1, 0.3, 1.0],
+            rates_hz: vec![200.0],
+            delays_s: vec![base.delay_s],
+            solvers: Vec::new(),
+            passes: 1,
+            ..Self::full(base)
+        }
+    }
+
+    /// The base point for `source` with this mode.
+    pub fn base_choice(&self, source: &Source, mode: Mode) -> Choice {
+        Choice {
+            method: Method::Mode(mode),
+            degree: self.base.max_degree,
+            window_ms: ms(self.base.window_s),
+            rate_hz: source.recording.rate_hz,
+            delay_ms: ms(self.base.delay_s),
+            differentiator: self.base.differentiator,
+            every: 1,
+        }
+    }
+
+    /// Points and curves for `source`; each point once, though several curves may pass through it.
+    pub(super) fn lay_out(&self, source: &Source) -> (Vec<Choice>, Vec<Curve>) {
+        let mut layout = Layout::default();
+        for &mode in &self.modes {
+            let base = self.base_choice(source, mode);
+            let knobs = [
+                (Knob::Degree, self.degrees.iter().map(|&degree| Choice { degree, ..base }).collect()),
+                (Knob::Window, self.windows_s.iter().map(|&s| Choice { window_ms: ms(s), ..base }).collect()),
+                (Knob::Rate, self.rates(&base)),
+                (Knob::Delay, self.delays_s.iter().map(|&s| Choice { delay_ms: ms(s), ..base }).collect()),
+                (
+                    Knob::Differentiator,
+                    self.differentiators.iter().map(|&differentiator| Choice { differentiator, ..base }).collect(),
+                ),
+            ];
+            for (knob, choices) in knobs {
+                layout.curve(knob, base.method, choices);
+            }
+        }
+        if let Some(&mode) = self.modes.first() {
+            let base = self.base_choice(source, mode);
+            let choices = Mode::ALL.map(|mode| Choice { method: Method::Mode(mode), ..base }).to_vec();
+            layout.curve(Knob::Mode, base.method, choices);
+        }
+        self.lay_out_solvers(source, &mut layout);
+        for &delay_s in &self.delays_s {
+            self.lay_out_grid(source, ms(delay_s), &mut layout);
+        }
+        (layout.choices, layout.curves)
+    }
+
+    /// Every degree with every window for the modes that use both; linear has one degree, DFR neither.
+    fn lay_out_grid(&self, source: &Source, delay_ms: f64, layout: &mut Layout) {
+        for mode in Mode::ALL {
+            let base = Choice { delay_ms, ..self.base_choice(source, mode) };
+            let windows = self.windows_s.iter().map(|&s| Choice { window_ms: ms(s), ..base });
+            let choices: Vec<Choice> = match mode {
+                Mode::Dfr => vec![base],
+                Mode::Linear => windows.collect(),
+                _ if self.modes.contains(&mode) => windows
+                    .flat_map(|choice| self.degrees.iter().map(move |&degree| Choice { degree, ..choice }))
+                    .collect(),
+                _ => continue,
+            };
+            layout.curve(Knob::Grid, base.method, choices);
+        }
+    }
+
+    /// Every solver over the degrees at the base's window, and over the windows at the base's degree.
+    fn lay_out_solvers(&self, source: &Source, layout: &mut Layout) {
+        for &solver in &self.solvers {
+            let method = Method::Solver(solver);
+            let base = Choice { method, ..self.base_choice(source, Mode::Dfr) };
+            let degrees = self.degrees.iter().map(|&degree| Choice { degree, ..base }).collect();
+            let windows = self.windows_s.iter().map(|&s| Choice { window_ms: ms(s), ..base }).collect();
+            layout.curve(Knob::Degree, method, degrees);
+            layout.curve(Knob::Window, method, windows);
+        }
+    }
+
+    fn rates(&self, base: &Choice) -> Vec<Choice> {
+        let mut choices = vec![*base];
+        for rate_hz in &self.rates_hz {
+            let every = (base.rate_hz / rate_hz).round() as usize;
+            if every > 1 {
+                choices.push(Choice { every, rate_hz: base.rate_hz / every as f64, ..*base });
+            }
+        }
+        choices
+    }
+
+    /// Settings of an identifier at `choice` for a source of so many axes.
+    pub(super) fn settings(&self, choice: &Choice, axes: usize) -> Settings {
+        Settings {
+            rate_hz: choice.rate_hz,
+            window_s: choice.window_ms * 1e-3,
+            delay_s: choice.delay_ms * 1e-3,
+            max_degree: choice.degree,
+            axes,
+            differentiator: choice.differentiator,
+            ..self.base.clone()
+        }
+    }
+}
+
+#[derive(Default)]
+struct Layout {
+    choices: Vec<Choice>,
+    curves: Vec<Curve>,
+}
+
+impl Layout {
+    fn curve(&mut self, knob: Knob, method: Method, choices: Vec<Choice>) {
+        let points = choices.into_iter().map(|choice| self.index(choice)).collect();
+        self.curves.push(Curve { knob, method, points });
+    }
+
+    fn index(&mut self, choice: Choice) -> usize {
+        self.choices.iter().position(|known| *known == choice).unwrap_or_else(|| {
+            self.choices.push(choice);
+            self.choices.len() - 1
+        })
+    }
+}
+
+/// Seconds as milliseconds without the last digits of the product, so that equal choices are equal.
+fn ms(seconds: f64) -> f64 {
+    (seconds * 1e9).round() / 1e6
+}

@@ -1,0 +1,65 @@
+//! Where motion and force come from.
+
+use crate::{
+    config::Scene,
+    device::{Outputs, Rig as _},
+    impedance::{AXES, Sample},
+    recording::Recording,
+    sim::World,
+};
+
+/// Motion and force over time, and what to call them.
+#[derive(Clone, Debug)]
+pub struct Source {
+    /// Name in tables and pictures.
+    pub name: String,
+    /// Unit of the force.
+    pub unit: String,
+    /// The samples.
+    pub recording: Recording,
+}
+
+impl Source {
+    /// Records `scene` open-loop on the virtual clock: the follower goes where the hand is, the hand feels nothing. So every
+    /// choice of the knobs sees the very same motion and force. The scene must have been validated.
+    pub fn from_scene(scene: &Scene, rate_hz: f64, seconds: f64) -> Self {
+        let mut world = World::new(scene, rate_hz);
+        let mut outputs = Outputs::SAFE;
+        let ticks = (seconds * rate_hz).round().max(0.0) as usize;
+        let mut samples = Vec::with_capacity(ticks);
+        for k in 0..ticks {
+            let t_s = k as f64 / rate_hz;
+            if let Some(inputs) = world.exchange(t_s, &outputs) {
+                outputs.tip_command_m = Some(inputs.leader_m);
+                samples.push(Sample { t_s, position_m: inputs.tip_m, force_n: inputs.force_n });
+            }
+        }
+        let recording = Recording { path: scene.name.clone().into(), axes: (0..AXES).collect(), rate_hz, samples };
+        Self { name: scene.name.clone(), unit: "N".to_owned(), recording }
+    }
+
+    /// A recording under the name of its file.
+    pub fn from_recording(recording: Recording, unit: &str) -> Self {
+        let name = recording.path.file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
+        Self { name, unit: unit.to_owned(), recording }
+    }
+
+    /// Length, s.
+    pub fn seconds(&self) -> f64 {
+        match &*self.recording.samples {
+            [first, .., last] => last.t_s - first.t_s,
+            _ => 0.0,
+        }
+    }
+
+    /// Every `every`-th sample, as a slower device would have read them (no filter).
+    pub(super) fn slower(&self, every: usize) -> Recording {
+        let every = every.max(1);
+        Recording {
+            path: self.recording.path.clone(),
+            axes: self.recording.axes.clone(),
+            rate_hz: self.recording.rate_hz / every as f64,
+            samples: self.recording.samples.iter().step_by(every).copied().collect(),
+        }
+    }
+}

@@ -1,0 +1,283 @@
+//! All points of all sources, their curves and the front.
+
+use std::sync::atomic::AtomicBool;
+
+use serde::Serialize;
+
+use super::{
+    modes::{self, Measured, look},
+    plan::{Choice, Curve, Knob, Method, Plan},
+    source::Source,
+    windows,
+};
+use crate::{
+    impedance::{Mode, Settings, SettingsError},
+    runtime::Quantiles,
+};
+
+/// Windows and delays longer than this share of a source leave too little to judge.
+const LONGEST_SHARE: f64 = 0.25;
+
+/// Why a sweep ended without figures.
+#[derive(Debug, thiserror::Error)]
+pub enum SweepError {
+    /// Somebody asked to stop.
+    #[error("cancelled; nothing was kept")]
+    Cancelled,
+    /// Nothing could be measured on a source.
+    #[error("{name}: no point of the plan can be measured on it ({reason}); record longer, or at a higher rate")]
+    Nothing {
+        /// Name of the source.
+        name: String,
+        /// Why the first point was left out.
+        reason: String,
+    },
+    /// A choice out of range that was not found out before.
+    #[error("{choice:?}: {source}")]
+    Settings {
+        /// The choice.
+        choice: Box<Choice>,
+        /// Why.
+        source: SettingsError,
+    },
+}
+
+/// Time of one tick, us.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct CostUs {
+    /// Median.
+    pub p50: f64,
+    /// 99th percentile.
+    pub p99: f64,
+}
+
+impl CostUs {
+    /// Slower than anything.
+    pub(super) const WORST: Self = Self { p50: f64::INFINITY, p99: f64::INFINITY };
+
+    /// The lower of both: what disturbs a computer only ever adds time.
+    pub(super) fn quieter(self, other: &Quantiles) -> Self {
+        Self { p50: self.p50.min(other.p50), p99: self.p99.min(other.p99) }
+    }
+}
+
+/// A choice and what it costs and gives.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Point {
+    /// The knobs.
+    #[serde(flatten)]
+    pub choice: Choice,
+    /// Time of one tick, us; the quietest of the passes.
+    pub cost_us: CostUs,
+    /// Share of one processor that the median tick takes at this rate.
+    pub load: f64,
+    /// Mean error at the horizon, unit of the source.
+    pub error: f64,
+    /// Its median.
+    pub error_p50: f64,
+    /// Its 95th percentile.
+    pub error_p95: f64,
+    /// The same mean of delayed DFR on the same samples.
+    pub dfr_error: f64,
+    /// `error / dfr_error`; not a number where DFR has none.
+    pub ratio: f64,
+    /// Share of samples for which there was nothing to render (they err by the whole force).
+    pub not_rendered: f64,
+    /// Samples judged and timed.
+    pub judged: usize,
+    /// No other point of the grid (mode, degree, window) at the same delay is both cheaper and nearer to the truth.
+    pub pareto: bool,
+}
+
+/// A choice that was left out, and why.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Skipped {
+    /// The knobs.
+    #[serde(flatten)]
+    pub choice: Choice,
+    /// Why.
+    pub reason: String,
+}
+
+/// Everything about one source.
+#[derive(Clone, Debug, Serialize)]
+pub struct SourceFigures {
+    /// Its name.
+    pub source: String,
+    /// Unit of its force.
+    pub unit: String,
+    /// Rate, Hz.
+    pub rate_hz: f64,
+    /// Samples.
+    pub samples: usize,
+    /// Number of axes.
+    pub axes: usize,
+    /// Only samples later than this and the delay are judged, s: the longest window must be full.
+    pub judged_from_s: f64,
+    /// All points.
+    pub points: Vec<Point>,
+    /// Points along each knob.
+    pub curves: Vec<Curve>,
+    /// What was left out.
+    pub skipped: Vec<Skipped>,
+}
+
+/// All figures; the JSON of `nima study tradeoff`.
+#[derive(Clone, Debug, Serialize)]
+pub struct Study {
+    /// One per source.
+    pub sources: Vec<SourceFigures>,
+}
+
+/// Measures all points of `plan` on all `sources`. `progress` is told how many points are done, of how many; set `cancel` to
+/// stop within milliseconds.
+pub fn sweep(
+    sources: &[Source],
+    plan: &Plan,
+    cancel: &AtomicBool,
+    mut progress: impl FnMut(usize, usize),
+) -> Result<Study, SweepError> {
+    let layouts: Vec<_> = sources.iter().map(|source| plan.lay_out(source)).collect();
+    let total = layouts.iter().map(|(choices, _)| choices.len()).sum();
+    let mut done = 0;
+    progress(0, total);
+    let mut figures = Vec::with_capacity(sources.len());
+    for (source, (choices, curves)) in sources.iter().zip(layouts) {
+        let one_done = || {
+            done += 1;
+            progress(done, total);
+        };
+        figures.push(measure_source(source, plan, &choices, curves, cancel, one_done)?);
+    }
+    Ok(Study { sources: figures })
+}
+
+fn measure_source(
+    source: &Source,
+    plan: &Plan,
+    choices: &[Choice],
+    mut curves: Vec<Curve>,
+    cancel: &AtomicBool,
+    mut one_done: impl FnMut(),
+) -> Result<SourceFigures, SweepError> {
+    let recording = &source.recording;
+    let axes = recording.axes.len();
+    let longest_s = LONGEST_SHARE * source.seconds();
+    let settle_s = longest_usable(choices, longest_s);
+    let (mut points, mut skipped) = (Vec::new(), Vec::new());
+    let mut places = vec![None; choices.len()];
+    for (place, choice) in places.iter_mut().zip(choices) {
+        look(cancel)?;
+        let settings = plan.settings(choice, axes);
+        if let Some(reason) = unfit(choice, &settings, longest_s) {
+            skipped.push(Skipped { choice: *choice, reason });
+        } else {
+            *place = Some(points.len());
+            points.push(measure_point(source, plan, choice, &settings, settle_s, cancel)?);
+        }
+        one_done();
+    }
+    if points.is_empty() {
+        let reason = skipped.first().map_or_else(|| "the plan is empty".to_owned(), |first| first.reason.clone());
+        return Err(SweepError::Nothing { name: source.name.clone(), reason });
+    }
+    for curve in &mut curves {
+        curve.points = curve.points.iter().filter_map(|&index| places[index]).collect();
+    }
+    let on_grid: Vec<usize> =
+        curves.iter().filter(|curve| curve.knob == Knob::Grid).flat_map(|curve| curve.points.iter().copied()).collect();
+    mark_front(&mut points, &on_grid);
+    Ok(SourceFigures {
+        source: source.name.clone(),
+        unit: source.unit.clone(),
+        rate_hz: recording.rate_hz,
+        samples: recording.samples.len(),
+        axes,
+        judged_from_s: settle_s,
+        points,
+        curves,
+        skipped,
+    })
+}
+
+/// The longest window that is measured at all: before it is full nothing is judged, so that all are judged on the same samples.
+fn longest_usable(choices: &[Choice], longest_s: f64) -> f64 {
+    choices.iter().map(|choice| choice.window_ms * 1e-3).filter(|&s| s <= longest_s).fold(0.0, f64::max)
+}
+
+fn unfit(choice: &Choice, settings: &Settings, longest_s: f64) -> Option<String> {
+    if settings.window_s > longest_s || settings.delay_s > longest_s {
+        return Some(format!(
+            "a window of {} ms and a delay of {} ms must each be at most a quarter of the {:.1} s recorded",
+            choice.window_ms,
+            choice.delay_ms,
+            longest_s / LONGEST_SHARE
+        ));
+    }
+    settings.validate().err().map(|error| error.to_string())
+}
+
+fn measure_point(
+    source: &Source,
+    plan: &Plan,
+    choice: &Choice,
+    settings: &Settings,
+    settle_s: f64,
+    cancel: &AtomicBool,
+) -> Result<Point, SweepError> {
+    let recording = source.slower(choice.every);
+    let first_s = recording.samples.first().map_or(0.0, |first| first.t_s);
+    let from_s = first_s + settle_s + settings.delay_s;
+    let samples = &recording.samples;
+    let measured = match choice.method {
+        Method::Mode(mode) => modes::measure(samples, settings, (mode, choice), from_s, plan.passes, cancel)?,
+        Method::Solver(solver) => windows::measure(samples, settings, solver, from_s, plan.instants, cancel)?,
+    };
+    Ok(point(choice, &measured))
+}
+
+fn point(choice: &Choice, measured: &Measured) -> Point {
+    let Measured { cost_us, error, error_p50, error_p95, dfr_error, not_rendered, judged } = *measured;
+    Point {
+        choice: *choice,
+        cost_us,
+        load: cost_us.p50 * 1e-6 * choice.rate_hz,
+        error,
+        error_p50,
+        error_p95,
+        dfr_error,
+        ratio: error / dfr_error,
+        not_rendered,
+        judged,
+        pareto: false,
+    }
+}
+
+/// Marks the points of the grid that no other of the grid at the same delay beats in both cost (median) and error.
+pub(super) fn mark_front(points: &mut [Point], on_grid: &[usize]) {
+    let grid: Vec<Point> = on_grid.iter().map(|&index| points[index]).collect();
+    for &index in on_grid {
+        let point = &mut points[index];
+        let mut rivals =
+            grid.iter().filter(|other| (other.choice.delay_ms - point.choice.delay_ms).abs() < f64::EPSILON);
+        point.pareto = point.error.is_finite() && rivals.all(|other| !beats(other, point));
+    }
+}
+
+/// At least as good in both and better in one.
+fn beats(a: &Point, b: &Point) -> bool {
+    let (cost, error) = (a.cost_us.p50, a.error);
+    cost <= b.cost_us.p50 && error <= b.error && (cost < b.cost_us.p50 || error < b.error)
+}
+
+impl SourceFigures {
+    /// The point of delayed DFR at this delay (ms), if it was measured at the source's own rate.
+    pub fn dfr(&self, delay_ms: f64) -> Option<&Point> {
+        let wanted = Method::Mode(Mode::Dfr);
+        self.points.iter().find(|point| {
+            point.choice.method == wanted
+                && point.choice.every == 1
+                && (point.choice.delay_ms - delay_ms).abs() < f64::EPSILON
+        })
+    }
+}

@@ -1,0 +1,82 @@
+//! `nima study`: experiments that print figures.
+
+use std::{
+    io::{self, IsTerminal as _, Write as _},
+    path::{Path, PathBuf},
+};
+
+use anyhow::Context as _;
+use clap::{Args, Subcommand};
+use nima::{
+    recording::write_atomically,
+    study::stability::{self, Options},
+};
+
+use super::{output, tradeoff};
+
+#[derive(Debug, Subcommand)]
+pub(super) enum StudyCommand {
+    /// Compare every solver with an arbitrary-precision reference at the extremes
+    Stability(Stability),
+    /// Measure what every knob of the identification costs in time and gives in accuracy
+    Tradeoff(tradeoff::Arguments),
+}
+
+#[derive(Debug, Args)]
+pub(super) struct Stability {
+    /// Write stability.json, stability.csv and stability.svg into this folder (made if absent)
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Ticks of the run that looks for drift, about 3 us each
+    #[arg(long, value_name = "N", default_value_t = 1_000_000)]
+    ticks: u64,
+    /// Leave out windows longer than 300 samples
+    #[arg(long)]
+    quick: bool,
+    /// Print the figures as one JSON object
+    #[arg(long)]
+    json: bool,
+}
+
+pub(super) fn run(command: &StudyCommand) -> anyhow::Result<()> {
+    match command {
+        StudyCommand::Stability(arguments) => stability(arguments),
+        StudyCommand::Tradeoff(arguments) => tradeoff::run(arguments),
+    }
+}
+
+fn stability(arguments: &Stability) -> anyhow::Result<()> {
+    if let Some(folder) = &arguments.out {
+        // Before the work, so that a wrong name does not cost its time.
+        std::fs::create_dir_all(folder).with_context(|| format!("cannot make the folder {}", folder.display()))?;
+    }
+    let options = Options { ticks: arguments.ticks, quick: arguments.quick };
+    let report = stability::study(&options, progress)?;
+    if let Some(folder) = &arguments.out {
+        write(folder, "stability.json", &serde_json::to_string_pretty(&report)?)?;
+        write(folder, "stability.csv", &report.csv())?;
+        write(folder, "stability.svg", &report.svg())?;
+    }
+    if arguments.json { output::json(&report) } else { output::line(&report.table()) }
+}
+
+/// One line on a terminal's stderr, written over and over, and wiped at the end.
+fn progress(done: usize, of: usize, what: &str) {
+    let mut stderr = io::stderr().lock();
+    if !stderr.is_terminal() {
+        return;
+    }
+    // A terminal that cannot be written to is no reason to stop a study.
+    if done < of {
+        write!(stderr, "\r\x1b[K{}/{of} {what}", done + 1).ok();
+    } else {
+        write!(stderr, "\r\x1b[K").ok();
+    }
+    stderr.flush().ok();
+}
+
+fn write(folder: &Path, name: &str, text: &str) -> anyhow::Result<()> {
+    let path = folder.join(name);
+    write_atomically(&path, |file| file.write_all(text.as_bytes()))
+        .with_context(|| format!("cannot write {}", path.display()))
+}

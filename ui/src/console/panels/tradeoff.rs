@@ -1,0 +1,280 @@
+//! What speed costs in accuracy on this computer: measured when asked, in the background, and applied when asked.
+
+use std::{
+    sync::{
+        Arc,
+        atomic::{AtomicBool, AtomicUsize, Ordering},
+    },
+    thread::{Builder, JoinHandle},
+};
+
+use egui::{Button, ProgressBar, Ui, vec2};
+use nima::{
+    config::{Identification, Rig},
+    impedance::Mode,
+    runtime::Command,
+    study::tradeoff::{Choice, Method, Plan, Point, Source, SourceFigures, Study, SweepError, sweep},
+    teleop::LoopState,
+};
+
+use super::{mode_meaning, mode_name, tradeoff_plot::plot_ui};
+use crate::console::{
+    live::Live,
+    outbox::Outbox,
+    widgets::{card, small, three_digits},
+};
+
+/// Length of the scene that is measured on, s.
+const SCENE_S: f64 = 6.0;
+const BUTTON: egui::Vec2 = vec2(120.0, 30.0);
+
+/// What the panel remembers between frames.
+#[derive(Debug, Default)]
+pub struct TradeoffState {
+    job: Option<Job>,
+    measured: Option<SourceFigures>,
+    selected: Option<usize>,
+    message: String,
+}
+
+/// A sweep in the background. Dropping it asks it to stop.
+#[derive(Debug)]
+struct Job {
+    cancel: Arc<AtomicBool>,
+    progress: Arc<[AtomicUsize; 2]>,
+    thread: JoinHandle<Result<Study, SweepError>>,
+}
+
+impl Job {
+    fn start(live: &Live) -> std::io::Result<Self> {
+        let mut rig = live.rig.clone();
+        rig.delay_s = live.delay_s();
+        let scene = live.scene.clone();
+        let cancel = Arc::new(AtomicBool::new(false));
+        let progress = Arc::new([AtomicUsize::new(0), AtomicUsize::new(1)]);
+        let (stop, told) = (Arc::clone(&cancel), Arc::clone(&progress));
+        // An ordinary thread: the loop's own has real-time priority where that is granted, and is not kept waiting.
+        let thread = Builder::new().name("trade-off".to_owned()).spawn(move || {
+            let source = Source::from_scene(&scene, rig.rate_hz, SCENE_S);
+            sweep(&[source], &Plan::quick(rig.settings()), &stop, |done, total| {
+                told[0].store(done, Ordering::Relaxed);
+                told[1].store(total, Ordering::Relaxed);
+            })
+        })?;
+        Ok(Self { cancel, progress, thread })
+    }
+
+    fn share(&self) -> f32 {
+        let [done, total] = [&self.progress[0], &self.progress[1]].map(|count| count.load(Ordering::Relaxed) as f32);
+        done / total.max(1.0)
+    }
+
+    fn join(self) -> Option<Result<Study, SweepError>> {
+        let Self { thread, .. } = self;
+        thread.join().ok()
+    }
+}
+
+impl TradeoffState {
+    /// Figures of the last sweep.
+    pub fn figures(&self) -> Option<&SourceFigures> {
+        self.measured.as_ref()
+    }
+
+    /// Tells the operator what became of what was asked.
+    pub fn tell(&mut self, message: impl Into<String>) {
+        self.message = message.into();
+    }
+
+    /// Asks a sweep that is going on to stop.
+    pub fn cancel(&self) {
+        if let Some(job) = &self.job {
+            job.cancel.store(true, Ordering::Relaxed);
+        }
+    }
+
+    fn take_in(&mut self) {
+        let Some(job) = self.job.take_if(|job| job.thread.is_finished()) else { return };
+        match job.join() {
+            Some(Ok(mut study)) if !study.sources.is_empty() => {
+                let figures = study.sources.swap_remove(0);
+                self.selected = most_accurate(&figures);
+                self.measured = Some(figures);
+                self.message.clear();
+            }
+            Some(Err(SweepError::Cancelled)) => self.tell("Cancelled. Earlier figures were kept."),
+            Some(Err(error)) => self.tell(error.to_string()),
+            Some(Ok(_)) | None => self.tell("The measurement broke off. Try again."),
+        }
+    }
+}
+
+impl Drop for TradeoffState {
+    fn drop(&mut self) {
+        self.cancel();
+    }
+}
+
+/// The panel. Gives a rig when the operator applies a point that the running loop cannot take over: the loop must then be
+/// restarted with it.
+pub fn tradeoff_ui(ui: &mut Ui, live: &Live, state: &mut TradeoffState, outbox: &mut Outbox) -> Option<Rig> {
+    state.take_in();
+    let meaning = "Time of one tick of identification (us, on this computer) against mean error at the horizon (N): every mode, \
+                   degree and window on this scene, recorded open-loop, at the rig's rate and the link's delay.";
+    card(ui, "Trade-off", meaning, |ui| {
+        measure_ui(ui, live, state);
+        if !state.message.is_empty() {
+            ui.label(small(state.message.clone()));
+        }
+        let Some(figures) = &state.measured else {
+            ui.label(small("Not measured yet. It takes some seconds; the loop goes on."));
+            return None;
+        };
+        if let Some(clicked) = plot_ui(ui, figures, state.selected) {
+            state.selected = Some(clicked);
+        }
+        front_ui(ui, figures, &mut state.selected);
+        let point = state.selected.and_then(|index| figures.points.get(index)).copied()?;
+        apply_ui(ui, live, &point, state, outbox)
+    })
+}
+
+fn measure_ui(ui: &mut Ui, live: &Live, state: &mut TradeoffState) {
+    let Some(job) = &state.job else {
+        let meaning = "Runs every choice over six seconds of this scene on an ordinary background thread. Other work on this \
+                       computer makes the times longer and their p99 uncertain.";
+        let button = Button::new("Measure on this machine...").min_size(vec2(ui.available_width(), 30.0));
+        if ui.add(button).on_hover_text(meaning).clicked() {
+            match Job::start(live) {
+                Ok(job) => state.job = Some(job),
+                Err(error) => state.tell(format!("The measurement could not be started: {error}")),
+            }
+        }
+        return;
+    };
+    ui.horizontal(|ui| {
+        let share = job.share();
+        let width = (ui.available_width() - BUTTON.x - 8.0).max(60.0);
+        let bar = ui.add(ProgressBar::new(share).desired_width(width).text(format!("{:.0} %", 100.0 * share)));
+        bar.widget_info(|| {
+            let words = format!("Trade-off measured: {:.0} %", 100.0 * share);
+            egui::WidgetInfo::labeled(egui::Role::ProgressIndicator, true, words)
+        });
+        let cancel = ui.add(Button::new("Cancel").min_size(BUTTON));
+        if cancel.on_hover_text("Stops measuring at once. Figures measured before are kept.").clicked() {
+            job.cancel.store(true, Ordering::Relaxed);
+        }
+    });
+}
+
+/// The points that nothing beats, cheapest first, each a button.
+fn front_ui(ui: &mut Ui, figures: &SourceFigures, selected: &mut Option<usize>) {
+    ui.label(small("Nothing measured beats these in both (cheapest first):")).on_hover_text(
+        "The Pareto front: every other point costs more time or errs more. In anchored mode degree and window change the \
+         cost and what the Degrees panel shows, not the force.",
+    );
+    for index in front(figures) {
+        let point = &figures.points[index];
+        let row = Button::selectable(*selected == Some(index), format!("{}: {}", name(point), figures_of(point)));
+        if ui.add(row.min_size(vec2(ui.available_width(), 24.0))).on_hover_text(words(point)).clicked() {
+            *selected = Some(index);
+        }
+    }
+}
+
+fn apply_ui(ui: &mut Ui, live: &Live, point: &Point, state: &mut TradeoffState, outbox: &mut Outbox) -> Option<Rig> {
+    let Some(mode) = point.choice.method.mode() else { return None };
+    let restart = needs_restart(&live.rig.identification, &point.choice);
+    // A restart begins idle: it must never be a way out of a stop or a fault.
+    let allowed = !restart || matches!(live.state(), LoopState::Idle | LoopState::Engaged);
+    let size = vec2(ui.available_width(), 30.0);
+    let button = ui.add_enabled(allowed, Button::new("Apply").min_size(size));
+    let note = if restart {
+        "Degree or window differ from the loop's: the loop is restarted with them and comes back idle, without force. Engage \
+         it again when ready."
+    } else {
+        "Taken over by the running loop at once."
+    };
+    ui.label(small(format!("{}. {note}", name(point))));
+    let clicked = button
+        .on_hover_text(format!("{}\n{}\n{note}", words(point), mode_meaning(mode)))
+        .on_disabled_hover_text("Release the stop or the fault first: a restart must not undo it.")
+        .clicked();
+    if !clicked {
+        return None;
+    }
+    if restart {
+        return Some(rig_with(live, mode, &point.choice));
+    }
+    outbox.push(Command::SetMode(mode));
+    outbox.push(Command::SetDelay(point.choice.delay_ms * 1e-3));
+    state.tell(format!("Applied: {}.", name(point)));
+    None
+}
+
+/// Whether the loop must be built anew for this choice: it cannot change degree or window while it runs.
+fn needs_restart(now: &Identification, choice: &Choice) -> bool {
+    let degree = choice.degree != now.max_degree;
+    let window = (choice.window_ms - now.window_s * 1e3).abs() > 1e-6;
+    match choice.method.mode() {
+        Some(Mode::Anchored | Mode::Literal) => degree || window,
+        Some(Mode::Linear) => window,
+        _ => false,
+    }
+}
+
+/// The rig with this choice and everything that the operator has set since it was started; a gain above 1 falls back to 1.
+fn rig_with(live: &Live, mode: Mode, choice: &Choice) -> Rig {
+    let mut rig = live.rig.clone();
+    rig.mode = mode;
+    rig.delay_s = choice.delay_ms * 1e-3;
+    rig.identification.window_s = choice.window_ms * 1e-3;
+    if mode != Mode::Linear {
+        rig.identification.max_degree = choice.degree;
+    }
+    rig.gates = live.gate_settings();
+    rig.gates.gain = live.gain().min(1.0);
+    rig
+}
+
+/// Indices of the front at the source's own rate, cheapest first.
+fn front(figures: &SourceFigures) -> Vec<usize> {
+    let points = &figures.points;
+    let mut front: Vec<usize> =
+        (0..points.len()).filter(|&i| points[i].pareto && points[i].choice.every == 1).collect();
+    front.sort_by(|&a, &b| points[a].cost_us.p50.total_cmp(&points[b].cost_us.p50));
+    front
+}
+
+fn most_accurate(figures: &SourceFigures) -> Option<usize> {
+    front(figures).into_iter().min_by(|&a, &b| figures.points[a].error.total_cmp(&figures.points[b].error))
+}
+
+/// Mode, degree and window, as far as they matter.
+pub(super) fn name(point: &Point) -> String {
+    let Choice { method, degree, window_ms, .. } = point.choice;
+    match method {
+        Method::Mode(mode @ Mode::Dfr) => mode_name(mode).to_owned(),
+        Method::Mode(mode @ Mode::Linear) => format!("{}, {window_ms:.0} ms", mode_name(mode)),
+        Method::Mode(mode) => format!("{}, N = {degree}, {window_ms:.0} ms", mode_name(mode)),
+        _ => method.name().to_owned(),
+    }
+}
+
+fn figures_of(point: &Point) -> String {
+    format!("{} us, {} N", three_digits(point.cost_us.p50), three_digits(point.error))
+}
+
+/// Everything about a point, for hovering.
+pub(super) fn words(point: &Point) -> String {
+    let front = if point.pareto { "\nNothing measured beats it in both." } else { "" };
+    format!(
+        "{}\none tick: median {} us, p99 {} us\nmean error at {:.0} ms: {} N, {} x DFR{front}",
+        name(point),
+        three_digits(point.cost_us.p50),
+        three_digits(point.cost_us.p99),
+        point.choice.delay_ms,
+        three_digits(point.error),
+        three_digits(point.ratio),
+    )
+}

@@ -109,24 +109,45 @@ fn fresh_qr(rows: &[[Lanes; ROW]]) -> f64 {
     (0..3).map(|lane| window_matrix(rows, lane, 0..ROW).qr().unpack_r()[(0, 0)]).sum()
 }
 
-fn table(window: usize) -> [f64; 2] {
-    let block = window / 2;
-    let rows = rows(3 * window + 20_000);
+/// Prints p50, p99 and the largest of sorted times; returns p50.
+fn print(window: usize, name: &str, times: &[f64]) -> f64 {
+    let [p50, p99, max] = [0.5, 0.99, 1.0].map(|share| percentile(times, share));
+    println!("{window:>6}  {name:<44} {p50:>10.2} {p99:>10.2} {max:>10.2}");
+    p50
+}
+
+/// The slowest tick's work relative to the median's: every tick of three blocks repeated, the least time of each taken, so
+/// that only its own work counts and not what interrupted it.
+fn worst_to_median(window: usize, rows: &[[Lanes; ROW]]) -> f64 {
+    let ticks = 3 * window / 2;
+    let mut least = vec![f64::INFINITY; ticks];
+    for _ in 0..15 {
+        let (mut slide, mut solution) = sliding(window / 2);
+        rows[..2 * window].iter().for_each(|row| slide.push(row));
+        for (least, row) in least.iter_mut().zip(&rows[2 * window..]) {
+            let start = Instant::now();
+            slide.push(row);
+            solution.solve(slide.current());
+            *least = least.min(start.elapsed().as_secs_f64());
+        }
+    }
+    least.sort_by(f64::total_cmp);
+    percentile(&least, 1.0) / percentile(&least, 0.5)
+}
+
+/// Prints all figures for one length of the window; returns p50 of ours (us).
+fn table(window: usize) -> f64 {
+    let rows = rows(4 * window + 20_000);
     let calls = 20_000;
     let warm = 3 * window;
-    let print = |name: &str, times: &[f64]| {
-        let [p50, p99, max] = [0.5, 0.99, 1.0].map(|share| percentile(times, share));
-        println!("{window:>6}  {name:<44} {p50:>10.2} {p99:>10.2} {max:>10.2}");
-        p50
-    };
-    let (mut slide, mut solution) = sliding(block);
+    let (mut slide, mut solution) = sliding(window / 2);
     rows[..warm].iter().for_each(|row| slide.push(row));
     let times = times_us(calls, |k| {
         slide.push(&rows[warm + k]);
         solution.solve(slide.current());
         black_box(&solution);
     });
-    let ours = print("ours: all degrees, constant, ridge, 3 axes", &times);
+    let ours = print(window, "ours: all degrees, constant, ridge, 3 axes", &times);
     for (name, modes) in [
         ("identifier step, anchored", ModeSet::only(Mode::Anchored)),
         ("identifier step, literal and linear", ModeSet::only(Mode::Literal).with(Mode::Linear)),
@@ -136,40 +157,55 @@ fn table(window: usize) -> [f64; 2] {
         let mut identifier = identifier(window, modes);
         samples[..warm].iter().for_each(|sample| identifier.step(sample));
         let times = times_us(calls, |k| identifier.step(&samples[warm + k]));
-        print(name, &times);
+        print(window, name, &times);
     }
     let at = |k: usize| &rows[warm + k - window..warm + k];
-    let few = if window > 1000 { 10 } else { 100 };
-    let qr = print(
-        "fresh QR",
-        &times_us(few, |k| {
-            black_box(fresh_qr(at(k)));
-        }),
-    );
-    let normal = print(
-        "normal equations x 5, fresh",
-        &times_us(few, |k| {
-            black_box(normal_equations(at(k)));
-        }),
-    );
-    let svd = print(
-        "SVD pseudo-inverse x 5, fresh",
-        &times_us(few, |k| {
-            black_box(svd(at(k)));
-        }),
-    );
-    println!(
-        "{window:>6}  ratio to ours: SVD {:.0}, normal equations {:.0}, QR {:.1}",
-        svd / ours,
-        normal / ours,
-        qr / ours
-    );
-    [ours, svd / ours]
+    let few = if window > 1000 { 11 } else { 101 };
+    let time = |work: fn(&[[Lanes; ROW]]) -> f64| {
+        times_us(few, |k| {
+            black_box(work(at(k)));
+        })
+    };
+    let qr = print(window, "fresh QR", &time(fresh_qr)) / ours;
+    let normal = print(window, "normal equations x 5, fresh", &time(normal_equations)) / ours;
+    let svd = print(window, "SVD pseudo-inverse x 5, fresh", &time(svd)) / ours;
+    println!("{window:>6}  ratio to ours: SVD {svd:.0}, normal equations {normal:.0}, fresh QR {qr:.1}");
+    println!("{window:>6}  slowest tick / median tick: {:.2}", worst_to_median(window, &rows));
+    ours
 }
 
 fn main() {
     println!("{:>6}  {:<44} {:>10} {:>10} {:>10}", "rows", "per tick, 3 axes, N = 1..5", "p50 us", "p99 us", "max us");
-    let [short, _] = table(300);
-    let [long, _] = table(3000);
-    println!("3000 rows cost {:.2} times 300 rows", long / short);
+    let short = table(300);
+    let long = table(3000);
+    println!("3000 rows cost {:.2} times 300 rows\n", long / short);
+    divan::main();
+}
+
+#[divan::bench(args = [300, 3000])]
+fn ours(bencher: divan::Bencher, window: usize) {
+    let rows = rows(3 * window);
+    let (mut slide, mut solution) = sliding(window / 2);
+    let mut next = rows.iter().cycle();
+    bencher.bench_local(|| {
+        next.next().into_iter().for_each(|row| slide.push(row));
+        solution.solve(slide.current());
+    });
+}
+
+#[divan::bench(args = [300, 3000])]
+fn all_four_modes(bencher: divan::Bencher, window: usize) {
+    let mut identifier = identifier(window, ModeSet::ALL);
+    (0..4 * window).for_each(|k| identifier.step(&sample(k)));
+    let mut k = 4 * window;
+    bencher.bench_local(|| {
+        identifier.step(&sample(k));
+        k += 1;
+    });
+}
+
+#[divan::bench(args = [300], sample_count = 20)]
+fn five_svd_pseudo_inverses(bencher: divan::Bencher, window: usize) {
+    let rows = rows(window);
+    bencher.bench_local(|| svd(&rows));
 }

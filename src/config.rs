@@ -89,13 +89,15 @@ pub struct Identification {
     pub window_s: f64,
     /// Highest degree identified, 1 to 5.
     pub max_degree: usize,
+    /// Learn the full `M` with cross-talk between the axes too; costs as much again.
+    pub cross_talk: bool,
     /// Fixed physical scales of the columns, from the rig's workspace.
     pub scales: Scales,
 }
 
 impl Default for Identification {
     fn default() -> Self {
-        Self { window_s: 0.3, max_degree: MAX_DEGREE, scales: Scales::default() }
+        Self { window_s: 0.3, max_degree: MAX_DEGREE, cross_talk: false, scales: Scales::default() }
     }
 }
 
@@ -115,6 +117,9 @@ pub struct Scene {
     pub targets_m: Vec<Vector3<f64>>,
     /// Where the instrument enters the body, m; drawn, and the pivot of the shaft.
     pub trocar_m: Vector3<f64>,
+    /// Axes of force depend on motion along other axes: identify the full `M`.
+    #[serde(default)]
+    pub cross_talk: bool,
     /// Soft tissue under the pegs.
     pub tissue: Option<Tissue>,
     /// The leader device.
@@ -259,8 +264,16 @@ impl Rig {
 
     /// Settings of the identification for this rig.
     pub fn settings(&self) -> Settings {
-        let Identification { window_s, max_degree, scales } = self.identification;
-        Settings { rate_hz: self.rate_hz, window_s, max_degree, scales, delay_s: self.delay_s, ..Settings::default() }
+        let Identification { window_s, max_degree, cross_talk, scales } = self.identification;
+        Settings {
+            rate_hz: self.rate_hz,
+            window_s,
+            max_degree,
+            cross_talk,
+            scales,
+            delay_s: self.delay_s,
+            ..Settings::default()
+        }
     }
 
     /// Checks every value's range.

@@ -1,12 +1,14 @@
-//! The judge of anchored rendering: every candidate's error at the true delay.
+//! Which of the nested window solutions foretells the change of force best at the true delay.
 
 use super::{
+    cross_talk::CrossTalk,
+    factor::column_start,
     features::{Features, MOTION_COLUMNS},
-    messages::clip,
-    settings::MAX_DELAY_S,
-    solution::{Increments, Solution},
+    messages::{Impedance, clip},
+    settings::{MAX_DELAY_S, Settings},
+    solution::{Increments, PRODUCTS, Solution},
 };
-use crate::signal::{DelayLine, Lanes};
+use crate::signal::{DelayLine, Lanes, settled};
 
 /// Time constant of the running errors (s).
 const MEMORY_S: f64 = 0.5;
@@ -14,87 +16,155 @@ const MEMORY_S: f64 = 0.5;
 const BOUND: f64 = 1.5;
 /// A candidate must do better than this share of the plain reflection's error.
 const MARGIN: f64 = 0.98;
+/// How often the solutions are renewed (Hz, at most once a tick): they are large, and hardly change in 5 ms.
+const RENEW_HZ: f64 = 200.0;
 
-/// Keeps what every candidate (motion columns 0 to 15; 0 is no correction) would have rendered, and compares it with the
-/// force that then arrived.
+/// Keeps what every candidate (motion columns 0 to 15; 0 is no correction) would have foretold, and compares it with the
+/// change of force that then came.
 ///
 /// The prediction for time `s` uses the solution, the force and the features of `s - D` and the features of `s`, exactly
 /// what the leader has at `s`; its running error decides what the parcel of time `s` carries. So the choice is causal and
 /// the leader only renders.
 #[derive(Clone, Debug)]
 pub(super) struct Horizon {
+    solutions: DelayLine<Increments>,
     past: DelayLine<Past>,
     candidates: usize,
     delay_ticks: usize,
+    every: usize,
+    tick: usize,
     forget: f64,
     errors_n: [f64; MOTION_COLUMNS + 1],
     largest_change_n: f64,
+    newest: Impedance,
+    cross: Option<CrossTalk>,
 }
 
 #[derive(Clone, Copy, Debug)]
 struct Past {
-    increments: Increments,
     features: Features,
     force_n: Lanes,
     bound_n: f64,
 }
 
 impl Horizon {
-    pub(super) fn new(rate_hz: f64, max_degree: usize, delay_ticks: usize) -> Self {
-        let blank = Past {
-            increments: [Lanes::ZERO; 136],
-            features: [Lanes::ZERO; MOTION_COLUMNS],
-            force_n: Lanes::ZERO,
-            bound_n: 0.0,
-        };
+    pub(super) fn new(settings: &Settings, ridge: f64, delay_ticks: usize) -> Self {
+        let Settings { rate_hz, max_degree, .. } = *settings;
+        let blank = Past { features: [Lanes::ZERO; MOTION_COLUMNS], force_n: Lanes::ZERO, bound_n: 0.0 };
         let max_delay = (MAX_DELAY_S * rate_hz).ceil() as usize;
+        let every = ((rate_hz / RENEW_HZ).round() as usize).max(1);
+        let forget = 1.0 - (-1.0 / (MEMORY_S * rate_hz)).exp();
+        let renewals = max_delay / every + 1;
+        let cross = (settings.cross_talk && settings.axes > 1)
+            .then(|| CrossTalk::new(settings.block(), max_degree, ridge, renewals, forget));
         Self {
+            solutions: DelayLine::new(renewals, [Lanes::ZERO; PRODUCTS]),
             past: DelayLine::new(max_delay, blank),
             candidates: 3 * max_degree,
             delay_ticks,
-            forget: 1.0 - (-1.0 / (MEMORY_S * rate_hz)).exp(),
+            every,
+            tick: 0,
+            forget,
             errors_n: [0.0; MOTION_COLUMNS + 1],
             largest_change_n: 0.0,
+            newest: Impedance::NONE,
+            cross,
         }
     }
 
-    /// Judges all candidates on the newest sample (`good`: the force is a measurement); gives the columns of the best one.
-    pub(super) fn step(&mut self, solution: &Solution, features: &Features, force_n: Lanes, good: bool) -> usize {
-        if let Some(then) = self.past.get(self.delay_ticks.wrapping_sub(1)).filter(|_| good && self.delay_ticks > 0) {
-            let change = force_n - then.force_n;
-            let decayed = self.largest_change_n * (1.0 - self.forget);
-            self.largest_change_n = decayed.max(change.norm());
-            let mut correction = Lanes::ZERO;
-            for columns in 0..=self.candidates {
-                if columns > 0 {
-                    let start = columns * (columns + 1) / 2 + 1;
-                    let part = &then.increments[start..start + columns];
-                    for ((m, now), then) in part.iter().zip(features).zip(&then.features) {
-                        correction += *m * (*now - *then);
-                    }
+    /// Judges all candidates on the newest sample and returns the one to send. `good`: the force is a measurement; `usable`:
+    /// the features are those of a full filter, too.
+    pub(super) fn step(
+        &mut self,
+        solution: &Solution,
+        features: &Features,
+        force_n: Lanes,
+        good: bool,
+        usable: bool,
+    ) -> Impedance {
+        if good && self.delay_ticks > 0 {
+            self.judge(features, force_n);
+        }
+        self.past.push(Past { features: *features, force_n, bound_n: BOUND * self.largest_change_n });
+        let renew = self.tick.is_multiple_of(self.every);
+        if renew {
+            self.solutions.push(*solution.increments());
+        }
+        if let Some(cross) = &mut self.cross {
+            cross.step(usable.then_some((features, force_n)), renew);
+        }
+        let (choice, coupled) = self.choice();
+        if renew || (choice, coupled) != (usize::from(self.newest.columns), self.newest.coupled) {
+            self.newest = match &self.cross {
+                Some(cross) if coupled => cross.impedance(choice / 3),
+                _ => self.impedance(choice),
+            };
+        }
+        self.tick += 1;
+        self.newest
+    }
+
+    fn judge(&mut self, features: &Features, force_n: Lanes) {
+        // Before this tick is stored: the newest is one tick old.
+        let Some(then) = self.past.get(self.delay_ticks - 1) else { return };
+        let age = (self.tick - 1) / self.every - (self.tick - self.delay_ticks) / self.every;
+        let Some(solution) = self.solutions.get(age) else { return };
+        let change = force_n - then.force_n;
+        let decayed = settled(self.largest_change_n * (1.0 - self.forget));
+        self.largest_change_n = decayed.max(change.norm());
+        let mut moved = *features;
+        for (now, then) in moved.iter_mut().zip(&then.features) {
+            *now -= *then;
+        }
+        let mut foretold = Lanes::ZERO;
+        for (columns, mean) in self.errors_n.iter_mut().enumerate().take(self.candidates + 1) {
+            foretold +=
+                part(solution, columns).iter().zip(&moved).fold(Lanes::ZERO, |sum, (m, moved)| sum + *m * *moved);
+            let error_n = (change - clip(foretold, then.bound_n)).norm();
+            *mean = settled(*mean + self.forget * (error_n - *mean));
+        }
+        if let Some(cross) = &mut self.cross {
+            cross.judge(age, &moved, change, then.bound_n);
+        }
+    }
+
+    /// The newest solution with this many motion columns.
+    fn impedance(&self, columns: usize) -> Impedance {
+        let mut impedance = Impedance { columns: columns as u8, ..Impedance::NONE };
+        if let Some(solution) = self.solutions.get(0) {
+            for column in 1..=columns {
+                for (sum, part) in impedance.coefficients.iter_mut().zip(part(solution, column)) {
+                    *sum += *part;
                 }
-                let error = (change - clip(correction, then.bound_n)).norm();
-                self.errors_n[columns] += self.forget * (error - self.errors_n[columns]);
             }
         }
-        let bound_n = BOUND * self.largest_change_n;
-        let slot = self.past.push_slot();
-        slot.increments = *solution.increments();
-        slot.features = *features;
-        slot.force_n = force_n;
-        slot.bound_n = bound_n;
-        self.choice()
+        impedance
     }
 
-    /// The candidate with the least running error; 0 unless one is clearly better than no correction.
-    fn choice(&self) -> usize {
+    /// The candidate with the least running error (motion columns; whether coupled); 0 unless one is clearly better than no
+    /// correction, coupled only if that is clearly better still.
+    fn choice(&self) -> (usize, bool) {
+        let (columns, error_n) = self.best();
+        match &self.cross {
+            Some(cross) if cross.best().1 < MARGIN * error_n => (3 * cross.best().0, true),
+            _ => (columns, false),
+        }
+    }
+
+    fn best(&self) -> (usize, f64) {
         let mut best = (0, MARGIN * self.errors_n[0]);
         for columns in 1..=self.candidates {
             if self.errors_n[columns] < best.1 {
                 best = (columns, self.errors_n[columns]);
             }
         }
-        best.0
+        best
+    }
+
+    /// Error of the best candidate with cross-talk relative to the best without; 1 where there is none.
+    pub(super) fn cross_talk_ratio(&self) -> f64 {
+        let error_n = self.best().1;
+        self.cross.as_ref().filter(|_| error_n > 0.0).map_or(1.0, |cross| cross.best().1 / error_n)
     }
 
     /// Judges at another delay from now on; what was learnt at the old one is forgotten.
@@ -103,12 +173,27 @@ impl Horizon {
             self.delay_ticks = delay_ticks;
             self.errors_n = [0.0; MOTION_COLUMNS + 1];
             self.largest_change_n = 0.0;
+            if let Some(cross) = &mut self.cross {
+                cross.forget_errors();
+            }
         }
     }
 
     pub(super) fn reset(&mut self) {
+        self.solutions.clear();
         self.past.clear();
+        self.tick = 0;
         self.errors_n = [0.0; MOTION_COLUMNS + 1];
         self.largest_change_n = 0.0;
+        self.newest = Impedance::NONE;
+        if let Some(cross) = &mut self.cross {
+            cross.reset();
+        }
     }
+}
+
+/// What motion column `column` (1 to 15) adds to the coefficients of the motion columns up to itself; nothing for column 0.
+#[inline]
+fn part(increments: &Increments, column: usize) -> &[Lanes] {
+    &increments[column_start(column) + 1..=column_start(column) + column]
 }

@@ -1,20 +1,19 @@
 //! The follower's end: from samples to a parcel, and a report of how good it would have been.
 
 use super::{
-    MAX_DEGREE, Mode,
-    anchored::{BandMotion, Follower},
+    MAX_DEGREE, Mode, anchored,
     factor::{Factor, MAX_ROW},
-    features::{self, Features},
+    features::Features,
     gram::Gram,
     horizon::Horizon,
     literal::{self, LiteralSolver},
-    messages::{Excitation, LiteralModel, Parcel, Report, Sample, active},
+    messages::{Excitation, LiteralModel, Parcel, Posture, Report, Sample, active},
     settings::{MAX_DELAY_S, Settings, SettingsError},
     solution::Solution,
     track::{Track, usable_force, usable_position},
     window::{SlidingWindow, Summary as _},
 };
-use crate::signal::{DelayLine, Lanes};
+use crate::signal::{DelayLine, Lanes, settled};
 
 /// Time constant of the report's running errors (s).
 const ERROR_MEMORY_S: f64 = 0.5;
@@ -31,7 +30,7 @@ pub struct Identifier {
     last_force_n: Lanes,
     paper: Option<Paper>,
     anchored: Option<Anchored>,
-    sent: DelayLine<(Parcel, BandMotion)>,
+    sent: DelayLine<(Parcel, Posture)>,
     forget: f64,
     parcel: Parcel,
     report: Report,
@@ -49,7 +48,7 @@ struct Anchored {
     ridge: f64,
     solution: Solution,
     horizon: Horizon,
-    follower: Follower,
+    correction: anchored::Anchored,
 }
 
 impl Identifier {
@@ -73,8 +72,8 @@ impl Identifier {
                 window: SlidingWindow::new(block, Factor::new(columns), Factor::with_ridge(columns, ridge)),
                 ridge,
                 solution: Solution::new(columns),
-                horizon: Horizon::new(settings.rate_hz, settings.max_degree, delay_ticks),
-                follower: Follower::new(settings.rate_hz, delay_ticks),
+                horizon: Horizon::new(settings, ridge, delay_ticks),
+                correction: anchored::Anchored::new(settings, delay_ticks),
             }
         });
         let max_delay = (MAX_DELAY_S * settings.rate_hz).ceil() as usize;
@@ -85,7 +84,7 @@ impl Identifier {
             last_force_n: Lanes::ZERO,
             paper,
             anchored,
-            sent: DelayLine::new(max_delay, (Parcel::BLANK, BandMotion::default())),
+            sent: DelayLine::new(max_delay, (Parcel::BLANK, Posture::BLANK)),
             forget: 1.0 - (-1.0 / (ERROR_MEMORY_S * settings.rate_hz)).exp(),
             parcel: Parcel::BLANK,
             report: Report::BLANK,
@@ -110,18 +109,17 @@ impl Identifier {
         self.report.t_s = self.last_t_s;
         self.report.rejected += u64::from(!good);
 
-        let motion = self.track.step(position);
-        let now = self.settings.scales.features(&motion, self.settings.max_degree);
-        let increments = features::features(&self.track.increments(), self.settings.max_degree);
+        let now = self.track.step(position);
+        let increments = self.track.increments();
         let usable = good && self.track.settled();
 
         self.parcel.t_s = self.last_t_s;
         self.parcel.force_n = self.last_force_n.vector();
         self.parcel.fresh = good;
         self.step_paper(&increments, usable);
-        let bands = self.step_anchored(&now, motion.x, good, usable);
-        self.sent.push((self.parcel, bands));
-        self.predict(&bands, &increments, good);
+        self.step_anchored(&now, good, usable);
+        self.sent.push((self.parcel, now));
+        self.predict(&now, &increments, good);
     }
 
     fn step_paper(&mut self, increments: &Features, usable: bool) {
@@ -146,32 +144,34 @@ impl Identifier {
         }
     }
 
-    fn step_anchored(&mut self, now: &Features, position: Lanes, good: bool, usable: bool) -> BandMotion {
-        let Some(Anchored { window, ridge, solution, horizon, follower }) = &mut self.anchored else {
-            return BandMotion::default();
-        };
-        self.parcel.anchored = follower.step(position, self.last_force_n, good);
+    fn step_anchored(&mut self, now: &Posture, good: bool, usable: bool) {
+        let Some(Anchored { window, ridge, solution, horizon, correction }) = &mut self.anchored else { return };
         let columns = solution.columns();
         let mut row = [Lanes::ZERO; MAX_ROW];
         if usable {
             row[0] = active(&nalgebra::Vector3::repeat(1.0), self.settings.axes);
-            row[1..columns].copy_from_slice(&now[..columns - 1]);
+            row[1..columns].copy_from_slice(&now.features[..columns - 1]);
             row[columns] = self.last_force_n;
         }
         window.push(&row);
         solution.solve(window.current());
-        let columns = horizon.step(solution, now, self.last_force_n, good);
-        self.report.columns = columns as u8;
-        self.report.degree = columns.div_ceil(3) as u8;
-        let condition = solution.condition(2.max(1 + columns));
+        let impedance = horizon.step(solution, &now.features, self.last_force_n, good, usable);
+        let model = correction.step(&now.stance, &now.features, self.last_force_n, &impedance, good);
+        self.parcel.anchored = model;
+        self.report.columns = impedance.columns;
+        self.report.coupled = impedance.coupled;
+        self.report.cross_talk_ratio = horizon.cross_talk_ratio();
+        self.report.degree = if model.gain > 0.0 { impedance.columns.div_ceil(3).max(1) } else { 0 };
+        self.report.gain = model.gain;
+        self.report.restarts = correction.restarts();
+        let condition = solution.condition(2.max(1 + usize::from(impedance.columns)));
         self.report.condition = condition.0[..self.settings.axes].iter().fold(1.0, |worst, c| c.max(worst));
         self.report.rank = rank(window.current(), *ridge, self.settings.axes);
         self.report.excitation = excitation(window.current(), *ridge, &self.settings);
-        follower.motion()
     }
 
     /// What every mode renders for this tick from the parcel one delay old, and its running error.
-    fn predict(&mut self, now: &BandMotion, increments: &Features, good: bool) {
+    fn predict(&mut self, now: &Posture, increments: &Features, good: bool) {
         let modes = self.settings.modes;
         let forces = match self.sent.get(self.delay_ticks) {
             Some((parcel, then)) if parcel.t_s.is_finite() => parcel.render(now, then, increments),
@@ -185,7 +185,7 @@ impl Identifier {
             if good && forces[Mode::Dfr.index()].is_some() && modes.contains(mode) {
                 let error_n = (self.last_force_n - force.unwrap_or_default()).norm();
                 let mean = &mut self.report.horizon_error_n[mode.index()];
-                *mean += self.forget * (error_n - *mean);
+                *mean = settled(*mean + self.forget * (error_n - *mean));
             }
         }
     }
@@ -215,7 +215,7 @@ impl Identifier {
         self.delay_ticks = self.settings.delay_ticks(delay_s);
         if let Some(anchored) = &mut self.anchored {
             anchored.horizon.set_delay(self.delay_ticks);
-            anchored.follower.set_delay(self.delay_ticks);
+            anchored.correction.set_delay(self.delay_ticks);
         }
     }
 
@@ -231,7 +231,7 @@ impl Identifier {
         if let Some(anchored) = &mut self.anchored {
             anchored.window.reset();
             anchored.horizon.reset();
-            anchored.follower.reset();
+            anchored.correction.reset();
         }
         self.sent.clear();
         self.parcel = Parcel::BLANK;

@@ -43,20 +43,21 @@ impl LiteralSolver {
         for degree in 1..=self.max_degree {
             let columns = 3 * degree;
             let mut m = back_substitute(&r, columns, n);
-            let mut square_n2 = 0.0;
             let squares = residual_squares(gram, &m, columns);
+            // Not finite in a lane where any coefficient or the error is not.
+            let finite = m[..columns].iter().fold(squares, |sum, m| sum + *m * 0.0);
+            let solved: [bool; LANES] =
+                std::array::from_fn(|lane| lane < self.axes && definite[lane] >= columns && finite[lane].is_finite());
+            let mut square_n2 = 0.0;
             for axis in 0..self.axes {
-                let finite = squares[axis].is_finite() && m[..columns].iter().all(|m| m[axis].is_finite());
-                let solved = definite[axis] >= columns && finite;
-                self.solved[degree - 1][axis] = solved;
-                if solved {
-                    square_n2 += squares[axis].max(0.0);
-                } else {
-                    self.failures += 1;
-                    m = m.map(|m| m.without_lane(axis));
-                    square_n2 += gram.column(n)[n][axis];
-                }
+                square_n2 += if solved[axis] { squares[axis].max(0.0) } else { gram.column(n)[n][axis] };
             }
+            let failed = solved[..self.axes].iter().filter(|solved| !**solved).count();
+            if failed > 0 {
+                self.failures += failed as u64;
+                m = m.map(|m| Lanes(std::array::from_fn(|lane| if solved[lane] { m[lane] } else { 0.0 })));
+            }
+            self.solved[degree - 1] = solved;
             self.coefficients[degree - 1] = m;
             self.error_n[degree - 1] = (square_n2 / rows.max(1) as f64).sqrt();
         }

@@ -4,9 +4,10 @@ use nalgebra::Vector3;
 
 use super::{
     MAX_DEGREE,
-    anchored::{BandMotion, Correction},
+    anchored::within,
     features::{Features, MOTION_COLUMNS},
     literal,
+    regressors::{Stance, motion_changes},
 };
 use crate::signal::{LANES, Lanes};
 
@@ -42,6 +43,129 @@ impl LiteralModel {
     }
 }
 
+/// An impedance between changes of motion and of force: `M (phi(t) - phi(t - D))`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Impedance {
+    /// Motion columns in use, from the first; 0: none.
+    pub columns: u8,
+    /// Whether axes are coupled.
+    pub coupled: bool,
+    /// `M` (N per scaled feature) from an axis' motion to its own force, zero beyond the columns in use.
+    pub coefficients: [Lanes; MOTION_COLUMNS],
+    /// The same from the motion of the next axis (y for x, z for y, x for z) and of the one after; used only if coupled.
+    pub cross: [[Lanes; MOTION_COLUMNS]; 2],
+}
+
+impl Impedance {
+    /// No impedance: no change of force.
+    pub const NONE: Self = Self {
+        columns: 0,
+        coupled: false,
+        coefficients: [Lanes::ZERO; MOTION_COLUMNS],
+        cross: [[Lanes::ZERO; MOTION_COLUMNS]; 2],
+    };
+
+    /// The change of force (N) from the features `then` to `now`.
+    #[inline]
+    pub(super) fn change(&self, now: &Features, then: &Features) -> Lanes {
+        let columns = usize::from(self.columns);
+        let terms = self.coefficients.iter().zip(now).zip(then).take(columns);
+        let own = terms.fold(Lanes::ZERO, |sum, ((m, now), then)| sum + *m * (*now - *then));
+        if !self.coupled {
+            return own;
+        }
+        let [next, last] = &self.cross;
+        let terms = next.iter().zip(last).zip(now).zip(then).take(columns);
+        terms.fold(own, |sum, (((next, last), now), then)| {
+            let [x, y, z, _] = (*now - *then).0;
+            sum + *next * Lanes([y, z, x, 0.0]) + *last * Lanes([z, x, y, 0.0])
+        })
+    }
+
+    /// This impedance times a factor.
+    pub(super) fn weighted(&self, factor: f64) -> Self {
+        let mut weighted = *self;
+        weighted.coefficients.iter_mut().for_each(|m| *m = *m * factor);
+        if self.coupled {
+            weighted.cross.as_flattened_mut().iter_mut().for_each(|m| *m = *m * factor);
+        }
+        weighted
+    }
+}
+
+impl Default for Impedance {
+    fn default() -> Self {
+        Self::NONE
+    }
+}
+
+/// Parameters of anchored rendering: `f^(t) = f(t - D) + clip(...)`, all experts folded into one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AnchoredModel {
+    /// The window's impedance, with its weight in the mixture.
+    pub impedance: Impedance,
+    /// The regressions' share: N per change of position (m), of its differences from four low-passes (m), of friction
+    /// (1), of square, cube and product of the position about the centre (m², m³, m²).
+    pub motion: [Lanes; 9],
+    /// What the follower alone knows: the change expected without any motion (N).
+    pub constant_n: Lanes,
+    /// Slow mean of the follower's position (m).
+    pub centre_m: Lanes,
+    /// Where friction saturates (m).
+    pub knee: Lanes,
+    /// Least force rendered (N): forces beyond those seen are not invented.
+    pub low_n: Lanes,
+    /// Greatest force rendered (N).
+    pub high_n: Lanes,
+    /// Largest correction (N, norm over the axes).
+    pub bound_n: f64,
+    /// How much of a full correction this is, 0 (plain reflection) to 1.
+    pub gain: f64,
+}
+
+impl AnchoredModel {
+    /// No correction.
+    pub const NONE: Self = Self {
+        impedance: Impedance::NONE,
+        motion: [Lanes::ZERO; 9],
+        constant_n: Lanes::ZERO,
+        centre_m: Lanes::ZERO,
+        knee: Lanes::ZERO,
+        low_n: Lanes::ZERO,
+        high_n: Lanes::ZERO,
+        bound_n: 0.0,
+        gain: 0.0,
+    };
+
+    /// The force (N) for the motion now, from the force and the motion at the anchor. The force as it came where nothing is
+    /// corrected or the correction is not finite.
+    pub(super) fn force(&self, measured: Lanes, now: &Posture, then: &Posture) -> Lanes {
+        if self.gain <= 0.0 {
+            return measured;
+        }
+        let changes = motion_changes(&now.stance, &then.stance, self.centre_m, self.knee);
+        let regressions = self.motion.iter().zip(changes).fold(self.constant_n, |sum, (k, change)| sum + *k * change);
+        let correction = regressions + self.impedance.change(&now.features, &then.features);
+        if correction.is_finite() {
+            within(measured + clip(correction, self.bound_n), self.low_n, self.high_n)
+        } else {
+            measured
+        }
+    }
+}
+
+/// One end's motion at one tick, as the models see it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Posture {
+    pub(super) features: Features,
+    pub(super) stance: Stance,
+}
+
+impl Posture {
+    pub(super) const BLANK: Self =
+        Self { features: [Lanes::ZERO; MOTION_COLUMNS], stance: Stance { x: Lanes::ZERO, u: [Lanes::ZERO; 4] } };
+}
+
 /// Shortens a force to `bound_n`; zero where it is not finite.
 #[inline]
 pub(super) fn clip(force: Lanes, bound_n: f64) -> Lanes {
@@ -68,8 +192,8 @@ pub struct Parcel {
     pub literal: LiteralModel,
     /// The paper's linear model.
     pub linear: LiteralModel,
-    /// Anchored rendering's correction.
-    pub anchored: Correction,
+    /// Anchored rendering's choice.
+    pub anchored: AnchoredModel,
 }
 
 impl Parcel {
@@ -80,18 +204,18 @@ impl Parcel {
         fresh: false,
         literal: LiteralModel::NONE,
         linear: LiteralModel::NONE,
-        anchored: Correction::NONE,
+        anchored: AnchoredModel::NONE,
     };
 
-    /// The force of every mode for the motion now, by [`Mode::index`](super::Mode::index): for `anchored` the motion now and
-    /// at the time of the parcel, for `literal` the increments now.
-    pub(super) fn render(&self, now: &BandMotion, then: &BandMotion, increments: &Features) -> [Option<Lanes>; 4] {
+    /// The force of every mode for the motion now, by [`Mode::index`](super::Mode::index): `anchored` features now and at
+    /// the time of the parcel, `literal` increments now.
+    pub(super) fn render(&self, now: &Posture, then: &Posture, increments: &Features) -> [Option<Lanes>; 4] {
         let measured = Lanes::from(self.force_n);
         [
             self.literal.force(increments),
             self.linear.force(increments),
             Some(measured),
-            Some(self.anchored.apply(measured, now, then)),
+            Some(self.anchored.force(measured, now, then)),
         ]
     }
 }
@@ -135,10 +259,18 @@ pub struct Report {
     pub reconstruction_n: [Vector3<f64>; MAX_DEGREE],
     /// The paper's in-window choice of the degree; 0 while the window is not full or nothing can be solved.
     pub paper_degree: u8,
-    /// Anchored rendering's choice of the degree; 0 is no correction.
+    /// Degree of anchored rendering: that of the nested window impedance which foretells force best at the horizon; 1 where
+    /// none does better than reflection but the regressions do; 0: no correction.
     pub degree: u8,
-    /// Motion columns of that choice, 0 to 15: three per degree (x, v, a); the last degree may hold x or x, v only.
+    /// Motion columns of that window impedance, 0 (none) to 15: three per degree (x, v, a); the last degree may hold x or
+    /// x, v only.
     pub columns: u8,
+    /// Whether that window impedance couples the axes.
+    pub coupled: bool,
+    /// Error at the horizon with cross-talk relative to that without (window impedances only); 1 where it is not computed.
+    pub cross_talk_ratio: f64,
+    /// How much of a full correction anchored rendering makes, 0 (plain reflection) to 1.
+    pub gain: f64,
     /// Condition (scaled columns) of that choice, the worst of the axes; of the constant and `x` if nothing is chosen.
     pub condition: f64,
     /// Motion columns that carry more information than the ridge, the fewest of the axes.
@@ -147,6 +279,8 @@ pub struct Report {
     pub excitation: Excitation,
     /// Samples rejected so far (not finite, absurd, or time not advancing).
     pub rejected: u64,
+    /// How often anchored rendering had to begin learning anew because a number was not finite.
+    pub restarts: u64,
     /// Literal solves (one per tick, axis and degree) that failed so far.
     pub literal_failures: u64,
     /// Running mean (about 0.5 s) of each mode's 3-D error at the horizon (N).
@@ -163,6 +297,9 @@ impl Report {
         paper_degree: 0,
         degree: 0,
         columns: 0,
+        coupled: false,
+        cross_talk_ratio: 1.0,
+        gain: 0.0,
         condition: 1.0,
         rank: 0,
         excitation: Excitation {
@@ -171,6 +308,7 @@ impl Report {
             acceleration_m_s2: Vector3::new(0.0, 0.0, 0.0),
         },
         rejected: 0,
+        restarts: 0,
         literal_failures: 0,
         horizon_error_n: [0.0; 4],
     };

@@ -10,15 +10,18 @@
 //!
 //! | file | holds |
 //! |---|---|
-//! | `features` | motion features `u, u', u'', ..., u^N, u'^N, u''^N` and their scales |
-//! | `factor`, `solution` | the triangular factor of a least-squares problem; all its nested solutions |
+//! | `track`, `features` | the motion of one end; its features `u, u', u'', ..., u^N, u'^N, u''^N` and their scales |
+//! | `window`, `factor`, `solution` | sliding window at a constant cost; triangular factor; all its nested solutions |
 //! | `gram`, `literal` | the paper's normal equations, all degrees, in-window choice |
-//! | `window` | a sliding window over either, at a constant cost per tick |
-//! | `horizon` | the running error of every candidate at the true delay, and the choice |
-//! | `identifier`, `renderer` | the two ends of the link |
+//! | `cross_factor`, `cross_talk` | the same with every axis' force from the motion of all axes, where a scene asks for it |
+//! | `horizon` | the nested solution that foretells force best at the true delay |
+//! | `anchored`, `regressors`, `regression`, `stack` | anchored rendering: experts, their trust, the guard |
+//! | `identifier`, `renderer`, `messages` | the two ends of the link, and what goes between them |
 
 mod anchored;
 mod by_mode;
+mod cross_factor;
+mod cross_talk;
 mod factor;
 mod features;
 mod gram;
@@ -27,22 +30,24 @@ mod identifier;
 mod literal;
 mod messages;
 mod mode;
+mod regression;
+mod regressors;
 mod renderer;
 mod settings;
 mod solution;
+mod stack;
 mod track;
 mod window;
 
 #[cfg(test)]
 mod tests;
 
-pub use anchored::Correction;
 pub use factor::Factor;
 pub use features::{Features, MOTION_COLUMNS, Scales};
 pub use gram::Gram;
 pub use identifier::Identifier;
 pub use literal::LiteralSolver;
-pub use messages::{Excitation, LiteralModel, Parcel, Rendered, Report, Sample};
+pub use messages::{AnchoredModel, Excitation, Impedance, LiteralModel, Parcel, Rendered, Report, Sample};
 pub use mode::{Mode, ParseModeError};
 pub use renderer::Renderer;
 pub use settings::{MAX_DELAY_S, ModeSet, Settings, SettingsError};

@@ -3,9 +3,7 @@
 use nalgebra::Vector3;
 
 use super::{
-    anchored::{BandMotion, Bands},
-    features,
-    messages::{Parcel, Rendered, active},
+    messages::{Parcel, Posture, Rendered, active},
     settings::{MAX_DELAY_S, Settings, SettingsError},
     track::{Track, usable_position},
 };
@@ -17,8 +15,7 @@ pub struct Renderer {
     settings: Settings,
     delay_ticks: usize,
     track: Track,
-    bands: Bands,
-    past: DelayLine<BandMotion>,
+    postures: DelayLine<Posture>,
     parcel_t_s: f64,
     /// Ticks since the newest parcel came.
     waiting: usize,
@@ -32,8 +29,7 @@ impl Renderer {
         Ok(Self {
             delay_ticks: settings.delay_ticks(settings.delay_s),
             track: Track::new(settings),
-            bands: Bands::new(settings.rate_hz),
-            past: DelayLine::new(2 * max_delay, BandMotion::default()),
+            postures: DelayLine::new(2 * max_delay, Posture::BLANK),
             parcel_t_s: f64::NEG_INFINITY,
             waiting: 0,
             settings: settings.clone(),
@@ -47,12 +43,10 @@ impl Renderer {
     /// or the same again, or an older one) the last is taken to have aged by the ticks since, and the correction goes on
     /// from the same anchor.
     pub fn step(&mut self, position_m: &Vector3<f64>, parcel: Option<&Parcel>) -> Rendered {
-        let degree = self.settings.max_degree;
         let position = usable_position(active(position_m, self.settings.axes), &self.settings.scales);
-        let motion = self.track.step(position);
-        let increments = features::features(&self.track.increments(), degree);
-        let now = self.bands.motion(motion.x);
-        self.past.push(now);
+        let now = self.track.step(position);
+        let increments = self.track.increments();
+        self.postures.push(now);
 
         let Some(parcel) = parcel.filter(|parcel| parcel.t_s.is_finite()) else {
             self.waiting = self.waiting.saturating_add(1);
@@ -66,7 +60,7 @@ impl Renderer {
         }
         // Not that much motion yet: the anchor is now, i.e. no correction.
         let age = self.delay_ticks.saturating_add(self.waiting);
-        let then = self.past.get(age).unwrap_or(&now);
+        let then = self.postures.get(age).unwrap_or(&now);
         let mut forces = parcel.render(&now, then, &increments);
         for mode in super::Mode::ALL {
             if !self.settings.modes.contains(mode) {
@@ -79,13 +73,15 @@ impl Renderer {
     /// Changes the programmed delay, exact to one sample, at most [`MAX_DELAY_S`].
     pub fn set_delay(&mut self, delay_s: f64) {
         self.delay_ticks = self.settings.delay_ticks(delay_s);
+        // Over a longer link older parcels come than before; they are new all the same.
+        self.parcel_t_s = f64::NEG_INFINITY;
+        self.waiting = 0;
     }
 
     /// Forgets all motion.
     pub fn reset(&mut self) {
         self.track.reset();
-        self.bands.reset();
-        self.past.clear();
+        self.postures.clear();
         self.parcel_t_s = f64::NEG_INFINITY;
         self.waiting = 0;
     }

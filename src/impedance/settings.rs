@@ -65,6 +65,10 @@ pub struct Settings {
     pub scales: Scales,
     /// The modes to compute.
     pub modes: ModeSet,
+    /// Whether the force on each axis may depend on the motion of the others (the full `M`, 45 columns, in anchored
+    /// rendering). Costs 4 us a tick and 21 us more in every fifth at 1 kHz; gained 1 % at best on simulated reaches over
+    /// inclined tissue, nothing on palpation, so it is off unless asked for. The report shows the gain.
+    pub cross_talk: bool,
     /// How velocity and acceleration are made.
     pub differentiator: DifferentiatorKind,
     /// Ridge of the anchored fit, per row of the window and in scaled columns: a coefficient costs as much as if each row had
@@ -82,6 +86,7 @@ impl Default for Settings {
             axes: AXES,
             scales: Scales::default(),
             modes: ModeSet::ALL,
+            cross_talk: false,
             differentiator: DifferentiatorKind::default(),
             ridge: 1e-6,
         }

@@ -38,7 +38,9 @@ fn assert_finite(report: &Report, parcel: &Parcel) {
     ]);
     assert!(vectors.flat_map(|v| v.iter()).all(|v| v.is_finite()), "{report:?}");
     assert!(condition.is_finite() && horizon_error_n.iter().all(|e| e.is_finite()), "{report:?}");
-    for coefficients in [&parcel.literal.coefficients, &parcel.linear.coefficients] {
+    for coefficients in
+        [&parcel.literal.coefficients, &parcel.linear.coefficients, &parcel.anchored.impedance.coefficients]
+    {
         assert!(coefficients.iter().all(|m| m.is_finite()), "{parcel:?}");
     }
 }

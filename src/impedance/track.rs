@@ -1,7 +1,12 @@
 //! The motion at one end of the link: derivatives, increments over the window, and a bridge over missing samples.
 
-use super::{features::Scales, settings::Settings};
-use crate::signal::{DelayLine, Differentiator, Lanes, Motion};
+use super::{
+    features::{Features, Scales, features},
+    messages::Posture,
+    regressors::{Stance, position_bank},
+    settings::Settings,
+};
+use crate::signal::{DelayLine, Differentiator, Lanes, LowPassBank, Motion};
 
 /// Longest stretch (s) over which a missing position is extrapolated at the last speed; after it the position is held.
 const BRIDGE_S: f64 = 0.01;
@@ -13,6 +18,10 @@ const ABSURD: f64 = 1e4;
 #[derive(Clone, Debug)]
 pub(super) struct Track {
     differentiator: Differentiator,
+    bank: LowPassBank,
+    scales: Scales,
+    degree: usize,
+    posture: Posture,
     history: DelayLine<Motion>,
     last: Motion,
     period_s: f64,
@@ -24,6 +33,10 @@ impl Track {
     pub(super) fn new(settings: &Settings) -> Self {
         Self {
             differentiator: Differentiator::new(settings.differentiator, settings.rate_hz),
+            bank: position_bank(settings),
+            scales: settings.scales,
+            degree: settings.max_degree,
+            posture: Posture::BLANK,
             history: DelayLine::new(2 * settings.block(), Motion::default()),
             last: Motion::default(),
             period_s: settings.rate_hz.recip(),
@@ -34,12 +47,12 @@ impl Track {
 
     /// Takes this tick's position; `None` where it is missing: then the last one goes on at its speed for 10 ms at most, and
     /// stays put after that. Before the first good position the motion is zero.
-    pub(super) fn step(&mut self, position: Option<Lanes>) -> Motion {
+    pub(super) fn step(&mut self, position: Option<Lanes>) -> Posture {
         let position = if let Some(position) = position {
             self.missing = 0;
             position
         } else if self.history.is_empty() {
-            return self.last;
+            return self.posture;
         } else {
             self.missing += 1;
             let moving = self.missing <= self.bridge_ticks;
@@ -47,15 +60,20 @@ impl Track {
         };
         self.last = self.differentiator.step(position);
         self.history.push(self.last);
-        self.last
+        self.posture = Posture {
+            features: self.scales.features(&self.last, self.degree),
+            stance: Stance { x: position, u: self.bank.step(position) },
+        };
+        self.posture
     }
 
-    /// The paper's `u`: what position, velocity and acceleration have changed over the window (over the time since the
+    /// The paper's features `X` (SI units) of `u`: what position, velocity and acceleration have changed over the window (over the time since the
     /// first sample, while that is less).
-    pub(super) fn increments(&self) -> Motion {
+    pub(super) fn increments(&self) -> Features {
         let window = self.history.max_delay();
         let then = self.history.get_or_oldest(window).copied().unwrap_or_default();
-        Motion { x: self.last.x - then.x, v: self.last.v - then.v, a: self.last.a - then.a }
+        let u = Motion { x: self.last.x - then.x, v: self.last.v - then.v, a: self.last.a - then.a };
+        features(&u, self.degree)
     }
 
     /// Whether the derivatives are those of a full filter.
@@ -65,6 +83,8 @@ impl Track {
 
     pub(super) fn reset(&mut self) {
         self.differentiator.reset();
+        self.bank.reset();
+        self.posture = Posture::BLANK;
         self.history.clear();
         self.last = Motion::default();
         self.missing = 0;

@@ -95,6 +95,12 @@ impl<S: Summary> SlidingWindow<S> {
 
     /// Takes the newest row; the one `len()` rows older leaves.
     pub fn push(&mut self, row: &S::Row) {
+        self.advance(row, true);
+    }
+
+    /// Like [`SlidingWindow::push`], but brings [`SlidingWindow::current`] up to date only if `wanted` (it is of no use
+    /// otherwise).
+    pub fn advance(&mut self, row: &S::Row, wanted: bool) {
         let (b, p) = (self.block, self.position);
         let (this, last) = if self.this_half_first { (0, b) } else { (b, 0) };
         self.rows[this + p] = *row;
@@ -103,10 +109,12 @@ impl<S: Summary> SlidingWindow<S> {
             [&mut self.since_last_block, &mut self.since_this_block, &mut self.backwards],
             [row, row, &backward_row],
         );
-        self.current.clone_from(&self.since_last_block);
+        if wanted {
+            self.current.clone_from(&self.since_last_block);
+        }
         if p + 1 < b {
             let slot = if self.upwards { p } else { b - 2 - p };
-            if self.completed >= 2 {
+            if wanted && self.completed >= 2 {
                 self.current.merge(&mut self.endings[slot]);
             }
             self.endings[slot].clone_from(&self.backwards);

@@ -159,7 +159,7 @@ fn axes(table: &Table, mapping: &Mapping) -> Vec<usize> {
     if found.is_empty() { vec![0] } else { found }
 }
 
-/// One over the median time step, rounded to a millionth so that 0.001 s steps give 1000 Hz.
+/// One over the median time step, to eight digits so that 0.001 s steps give 1000 Hz.
 fn rate_hz(samples: &[Sample]) -> Option<f64> {
     let mut steps: Vec<f64> = samples.windows(2).map(|pair| pair[1].t_s - pair[0].t_s).collect();
     if steps.len() < 2 {
@@ -167,9 +167,7 @@ fn rate_hz(samples: &[Sample]) -> Option<f64> {
     }
     let middle = steps.len() / 2;
     let (_, median, _) = steps.select_nth_unstable_by(middle, f64::total_cmp);
-    let rate = 1.0 / *median;
-    let step = 1e-6 * 10_f64.powf(rate.log10().floor());
-    Some((rate / step).round() * step)
+    format!("{:.7e}", 1.0 / *median).parse().ok()
 }
 
 #[cfg(test)]
@@ -187,7 +185,7 @@ mod tests {
     fn default_columns_in_any_order_and_number() {
         let recording = read("fz_n,t_s,z_m,x_m,fx_n,note\n1,0,2,3,4,a\n1,0.01,2,3,4,b\n1,0.02,2,3,5,c\n", &[]).unwrap();
         assert_eq!(recording.axes, [0, 2]);
-        assert!((recording.rate_hz - 100.0).abs() < 1e-9);
+        assert!((recording.rate_hz - 100.0).abs() < f64::EPSILON);
         assert_eq!(recording.samples[2].position_m, Vector3::new(3.0, 2.0, 0.0));
         assert_eq!(recording.samples[2].force_n, Vector3::new(5.0, 1.0, 0.0));
     }

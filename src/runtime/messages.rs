@@ -2,7 +2,11 @@
 
 use nalgebra::Vector3;
 
-use crate::{impedance::Mode, safety::GateReport, teleop::LoopState};
+use crate::{
+    impedance::Mode,
+    safety::{ChainSettings, GateReport},
+    teleop::LoopState,
+};
 
 /// What a screen (or a script) may ask of the loop. Applied at the start of a tick, in order, at most a few per tick.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -56,6 +60,8 @@ pub struct Tick {
     pub rendered_n: Vector3<f64>,
     /// What the gates did in this tick.
     pub gates: GateReport,
+    /// Limits and knobs of the gates in force (the gain the operator chose; the ramp is in `gates`).
+    pub gate_settings: ChainSettings,
     /// What identification says in this tick.
     pub identification: crate::impedance::Report,
     /// How late this tick woke after its deadline, s (0 on the virtual clock).

@@ -37,6 +37,9 @@ pub struct Plan {
 
 impl Plan {
     fn build(&self) -> Result<(Loop, World), SettingsError> {
-        Ok((Loop::new(&self.rig)?, World::new(&self.scene, self.rig.rate_hz)))
+        // What the scene requires is identified; what it does not is left out.
+        let mut rig = self.rig.clone();
+        rig.identification.cross_talk |= self.scene.cross_talk;
+        Ok((Loop::new(&rig)?, World::new(&self.scene, rig.rate_hz)))
     }
 }

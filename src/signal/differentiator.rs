@@ -8,12 +8,12 @@ use super::{Lanes, Motion, foaw::Foaw, kalman::Kalman, savitzky_golay::SavitzkyG
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum DifferentiatorKind {
-    /// Parabola through the last 30 ms (at least 5 samples): no lag at constant acceleration, fixed cost.
+    /// Parabola through the last 20 ms (at least 5 samples): no lag at constant acceleration, fixed cost.
     #[default]
     SavitzkyGolay,
-    /// Steady-state Kalman filter with a constant-jerk model, 12 Hz.
+    /// Steady-state Kalman filter with a constant-jerk model, 25 Hz.
     Kalman,
-    /// First-order adaptive windows up to 30 ms: quiet at rest, quick in motion.
+    /// First-order adaptive windows up to 20 ms: quiet at rest, quick in motion.
     Foaw,
 }
 
@@ -32,14 +32,15 @@ impl DifferentiatorKind {
 }
 
 /// Length of the finite windows (s).
-const SPAN_S: f64 = 0.03;
+const SPAN_S: f64 = 0.02;
 /// Fewest samples in a finite window, for low rates.
 const MIN_SAMPLES: usize = 5;
 /// Longest adaptive window: its cost grows with the square.
 const MAX_FOAW_SAMPLES: usize = 32;
 /// Bandwidth of the Kalman filter (Hz).
-const KALMAN_BANDWIDTH_HZ: f64 = 12.0;
-/// Half width of the position noise for adaptive windows (m): one count of a 0.01 mm encoder.
+const KALMAN_BANDWIDTH_HZ: f64 = 25.0;
+/// Half width of the position noise for adaptive windows (m): one count of a 0.01 mm encoder. Below 1 kHz the windows hold
+/// few samples and the band hardly matters.
 const FOAW_BAND_M: f64 = 1e-5;
 
 /// Turns positions at a fixed rate into [`Motion`]; nothing is allocated after construction.

@@ -1,11 +1,31 @@
-//! Signals at a fixed rate: derivatives of a sampled position and an exact delay line.
+//! Signals at a fixed rate: derivatives of a sampled position, a bank of low-passes, and an exact delay line.
 //!
 //! Takes: one position per tick (m, up to three axes, in [`Lanes`]) at a rate fixed at construction.
 //! Gives: position, velocity (m/s) and acceleration (m/s²) of the same instant ([`Motion`]), causal: only the present and
 //! past samples are used. [`DelayLine`] hands back what went in exactly `n` ticks ago.
+//!
+//! Which differentiator? Measured at 1 kHz on positions quantised to 0.01 mm (test `figures_of_every_differentiator`): noise of
+//! a resting hand that toggles one count, lag at 5 Hz by phase, and RMS error on a hand reaching 40 mm at 0.5 Hz with a tremor
+//! of 0.1 mm at 9 Hz; ratio is anchored rendering's mean error relative to reflection over 18 groups of recordings.
+//!
+//! | | noise v (mm/s), a (m/s²) | lag v, a (ms) | error v (mm/s), a (m/s²) | ratio |
+//! |---|---|---|---|---|
+//! | Savitzky-Golay, parabola over 20 ms (default) | 0.24, 0.023 | 0.2, 9.5 | 0.59, 0.126 | 0.477 |
+//! | the same over 30 ms | 0.21, 0.015 | 0.8, 14.5 | 1.02, 0.177 | 0.478 |
+//! | Kalman, constant jerk, 25 Hz | 0.30, 0.037 | -0.5, 1.3 | 0.54, 0.102 | 0.477 |
+//! | the same at 15 Hz | 0.11, 0.008 | -2.0, 5.2 | 2.16, 0.268 | |
+//! | FOAW up to 20 ms, band one count | 0.10, 0.003 | 1.1, 2.0 | 1.48, 0.260 | 0.478 |
+//!
+//! Savitzky-Golay and Kalman are equally good for velocity; Kalman's acceleration is less late, FOAW is quietest at rest and
+//! coarsest in motion. The default is Savitzky-Golay: it forgets a bad sample after exactly 20 ms and has nothing to tune;
+//! for rendering the choice does not matter.
+//!
 //! Everything is allocated at construction. Bad input: callers hand in finite numbers only (the identifier fills gaps with
 //! a prediction before they get here); a non-finite sample would otherwise live in a filter until it leaves the window.
 
+mod bank;
+#[cfg(test)]
+mod comparison;
 mod delay;
 mod differentiator;
 mod foaw;
@@ -13,9 +33,10 @@ mod kalman;
 mod lanes;
 mod savitzky_golay;
 
+pub use bank::{BANK, LowPassBank};
 pub use delay::DelayLine;
 pub use differentiator::{Differentiator, DifferentiatorKind};
-pub use lanes::{LANES, Lanes};
+pub use lanes::{LANES, Lanes, NOTHING, settled};
 
 /// Position, velocity and acceleration of one instant, one lane per axis.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

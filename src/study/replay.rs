@@ -168,6 +168,8 @@ pub struct Options {
     pub delay_s: f64,
     /// Highest degree.
     pub max_degree: usize,
+    /// Learn the full `M` with cross-talk.
+    pub cross_talk: bool,
 }
 
 /// Replays `recording`; `each` sees every row in order.
@@ -178,6 +180,7 @@ pub fn replay(recording: &Recording, options: &Options, mut each: impl FnMut(&Ro
         window_s: options.window_s,
         delay_s: options.delay_s,
         max_degree: options.max_degree,
+        cross_talk: options.cross_talk,
         axes: recording.axes.len(),
         ..Settings::default()
     };

@@ -299,6 +299,7 @@ impl Loop {
             asked_n: Mode::ALL.map(|mode| rendered.force(mode).unwrap_or_else(Vector3::zeros)),
             rendered_n,
             gates,
+            gate_settings: *self.chain.settings(),
             identification: *self.identifier.report(),
             wake_s: timing.wake_s,
             work_s: timing.work_s,

@@ -35,6 +35,9 @@ pub(super) struct Arguments {
     /// Highest polynomial degree
     #[arg(long, value_name = "N", default_value_t = MAX_DEGREE)]
     max_degree: usize,
+    /// Let every axis' force depend on every axis' motion (anchored mode; costs more)
+    #[arg(long)]
+    cross_talk: bool,
     /// Write one row per sample to this CSV file
     #[arg(long, value_name = "TRACE.csv")]
     out: Option<PathBuf>,
@@ -53,6 +56,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         window_s: arguments.window_ms * 1e-3,
         delay_s: arguments.delay_ms * 1e-3,
         max_degree: arguments.max_degree,
+        cross_talk: arguments.cross_talk,
     };
     let mut trace = header(&recording);
     let keep = arguments.out.is_some();

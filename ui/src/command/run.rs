@@ -37,6 +37,9 @@ pub(super) struct Arguments {
     /// One-way delay of the link in ms (default: the rig's)
     #[arg(long, value_name = "D", allow_negative_numbers = true)]
     delay_ms: Option<f64>,
+    /// Let every axis' force depend on every axis' motion (anchored mode; costs more)
+    #[arg(long)]
+    cross_talk: bool,
     /// Run on the virtual clock, as fast as it goes
     #[arg(long = "virtual")]
     virtual_clock: bool,
@@ -57,6 +60,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let mut rig = Rig::load(&arguments.rig)?;
     rig.mode = arguments.mode.unwrap_or(rig.mode);
     rig.delay_s = arguments.delay_ms.map_or(rig.delay_s, |delay_ms| delay_ms * 1e-3);
+    rig.identification.cross_talk |= arguments.cross_talk;
     rig.validate()?;
     let plan = Plan { rig, scene: Scene::load(&arguments.scene)?, engage: true };
     let summary = if arguments.virtual_clock {

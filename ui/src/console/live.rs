@@ -10,6 +10,7 @@ use nima::{
     config::{Rig, Scene},
     impedance::Mode,
     runtime::{Command, Event, Fault, Handle, Percentiles, Quantiles, Scheduling, Tick},
+    safety::ChainSettings,
     teleop::LoopState,
 };
 
@@ -73,15 +74,6 @@ pub struct Figures {
     pub frame_work_ms: f64,
 }
 
-/// Settings that ticks do not carry: as asked, taken back when refused.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Settings {
-    /// Speed below which nothing is rendered, m/s.
-    pub dead_band_m_s: f64,
-    /// Force is kept at standstill.
-    pub static_hold: bool,
-}
-
 /// The screen's knowledge.
 #[derive(Debug)]
 pub struct Live {
@@ -105,8 +97,6 @@ pub struct Live {
     pub trail: VecDeque<Vector3<f32>>,
     /// What the operating system granted.
     pub scheduling: Option<Scheduling>,
-    /// Settings that ticks do not carry.
-    pub settings: Settings,
     /// The 3-D view gave up smooth edges, because this computer draws too slowly.
     pub rough_edges: bool,
     first_fault: Option<(f64, Fault)>,
@@ -131,7 +121,6 @@ impl Live {
     /// Nothing known yet.
     pub fn new(rig: Rig, scene: Scene) -> Self {
         let ticks = (DEGREES_S * rig.rate_hz) as usize;
-        let settings = Settings { dead_band_m_s: rig.gates.dead_band_m_s, static_hold: rig.gates.static_hold };
         let now = Instant::now();
         Self {
             rig,
@@ -144,7 +133,6 @@ impl Live {
             figures: Figures::default(),
             trail: VecDeque::new(),
             scheduling: None,
-            settings,
             rough_edges: false,
             first_fault: None,
             refusal: None,
@@ -211,13 +199,9 @@ impl Live {
         self.refusal.filter(|(at, _)| at.elapsed() < REFUSAL_SHOWN).map(|(_, command)| command)
     }
 
-    /// Remembers a setting on its way to the loop, which ticks will not confirm.
-    pub fn expect(&mut self, command: Command) {
-        match command {
-            Command::SetDeadBand(dead_band_m_s) => self.settings.dead_band_m_s = dead_band_m_s,
-            Command::SetStaticHold(static_hold) => self.settings.static_hold = static_hold,
-            _ => {}
-        }
+    /// Settings of the gates in force.
+    pub fn gate_settings(&self) -> ChainSettings {
+        self.tick.map_or(self.rig.gates, |tick| tick.gate_settings)
     }
 
     /// What alarms are judged from.
@@ -243,14 +227,7 @@ impl Live {
                     self.first_fault = None;
                 }
             }
-            Event::CommandRefused { command, .. } => {
-                self.refusal = Some((Instant::now(), command));
-                match command {
-                    Command::SetDeadBand(_) => self.settings.dead_band_m_s = self.rig.gates.dead_band_m_s,
-                    Command::SetStaticHold(_) => self.settings.static_hold = self.rig.gates.static_hold,
-                    _ => {}
-                }
-            }
+            Event::CommandRefused { command, .. } => self.refusal = Some((Instant::now(), command)),
             Event::Scheduling(scheduling) => self.scheduling = Some(scheduling),
         }
     }

@@ -170,7 +170,7 @@ fn delay_ui(ui: &mut Ui, live: &Live, state: &mut FeedbackState, outbox: &mut Ou
     }
 }
 
-fn standstill_ui(ui: &mut Ui, live: &mut Live, state: &mut FeedbackState, outbox: &mut Outbox) {
+fn standstill_ui(ui: &mut Ui, live: &Live, state: &mut FeedbackState, outbox: &mut Outbox) {
     let setting = Setting {
         name: "Dead band",
         meaning: "Speed of the hand, mm/s, below which nothing is rendered: at standstill an impedance is unknown. The paper uses \
@@ -179,18 +179,14 @@ fn standstill_ui(ui: &mut Ui, live: &mut Live, state: &mut FeedbackState, outbox
         decimals: 1,
         at_once: true,
     };
-    let in_force = live.settings.dead_band_m_s * 1e3;
+    let in_force = live.gate_settings().dead_band_m_s * 1e3;
     if let Some(mm_s) = setting_ui(ui, &setting, DEAD_BAND_MM_S, in_force, &mut state.dead_band_mm_s) {
-        let command = Command::SetDeadBand(mm_s * 1e-3);
-        live.expect(command);
-        outbox.push(command);
+        outbox.push(Command::SetDeadBand(mm_s * 1e-3));
     }
-    let mut hold = live.settings.static_hold;
+    let mut hold = live.gate_settings().static_hold;
     let meaning = "Keeps the force when the hand rests, instead of fading it in the dead band as the paper does.";
     if ui.checkbox(&mut hold, RichText::new("Keep force at standstill")).on_hover_text(meaning).changed() {
-        let command = Command::SetStaticHold(hold);
-        live.expect(command);
-        outbox.push(command);
+        outbox.push(Command::SetStaticHold(hold));
     }
 }
 

@@ -74,10 +74,10 @@ fn gates(live: &Live) -> [Gate; 7] {
         "Dead band",
         gates.dead_band,
         false,
-        format!("{:.1} mm/s", live.settings.dead_band_m_s * 1e3),
+        format!("{:.1} mm/s", live.gate_settings().dead_band_m_s * 1e3),
         "Closed while the hand is slower than this. At standstill an impedance cannot be told from a constant force.",
     );
-    if live.settings.static_hold {
+    if live.gate_settings().static_hold {
         "off: force is kept".clone_into(&mut dead_band.note);
     } else if closed(gates.dead_band) && live.figures.withheld_n > 0.05 {
         dead_band.note = format!("{:.1} N not rendered", live.figures.withheld_n);

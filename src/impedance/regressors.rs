@@ -1,0 +1,167 @@
+//! What a change of force over the delay is explained by.
+
+use super::settings::Settings;
+use crate::signal::{BANK, LANES, Lanes, LowPassBank};
+
+/// Shortest and longest time constants of the filter bank (s).
+const BANK_S: [f64; 2] = [0.005, 0.32];
+/// Memory of the slow means: the motion's centre, the force's level, the size of the speed (s).
+const SLOW_S: f64 = 2.0;
+/// What only the follower knows is bounded by this many of its own running RMS: a jump never seen is not extrapolated.
+const USUAL: f64 = 6.0;
+
+/// Regressors per axis.
+pub(super) const REGRESSORS: usize = 22;
+/// The shorter model: the first regressors, linear in the motion.
+pub(super) const LINEAR_REGRESSORS: usize = 12;
+
+/// Index of the first regressor of each group.
+pub(super) mod at {
+    /// Change of position; then of its four differences from the low-passes.
+    pub(in super::super) const MOTION: usize = 0;
+    /// The force above its low-passes at the anchor.
+    pub(in super::super) const FORCE_TREND: usize = 5;
+    /// Change of position times the force at the anchor: stiffness that grows with load (zero in free motion).
+    pub(in super::super) const LOADED_POSITION: usize = 9;
+    /// Change of the second difference times the force at the anchor.
+    pub(in super::super) const LOADED_SPEED: usize = 10;
+    /// Change of the saturated second difference: dry friction.
+    pub(in super::super) const FRICTION: usize = 11;
+    /// Change of square, cube, and product with the second difference, of the position about its centre.
+    pub(in super::super) const CURVATURE: usize = 12;
+    /// Position above its centre at the anchor.
+    pub(in super::super) const POSITION_LEVEL: usize = 15;
+    /// Force above its level at the anchor; a steady drift comes next.
+    pub(in super::super) const FORCE_LEVEL: usize = 16;
+    /// The motion's differences from the low-passes at the anchor.
+    pub(in super::super) const MOTION_TREND: usize = 18;
+}
+
+/// Regressors of one instant, one lane per axis.
+pub(super) type Regressors = [Lanes; REGRESSORS];
+
+/// Position and its differences from the low-pass bank; at the follower from its tip, at the leader from its own motion.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Stance {
+    pub(super) x: Lanes,
+    pub(super) u: [Lanes; BANK],
+}
+
+/// What the follower knows at the anchor besides the motion.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Background {
+    pub(super) force_n: Lanes,
+    force_trend: [Lanes; BANK],
+    /// Slow mean of the position.
+    pub(super) centre: Lanes,
+    /// Half of the mean size of the second difference: where friction saturates.
+    pub(super) knee: Lanes,
+    position_level: Lanes,
+    force_level: Lanes,
+    motion_trend: [Lanes; BANK],
+}
+
+/// The bank for positions, the same at both ends of the link.
+pub(super) fn position_bank(settings: &Settings) -> LowPassBank {
+    LowPassBank::new(BANK_S[0], BANK_S[1], settings.rate_hz)
+}
+
+/// `u / (|u| + knee)`: the sign of the motion, smoothed.
+#[inline]
+pub(super) fn saturated(u: Lanes, knee: Lanes) -> Lanes {
+    let size = u.map(f64::abs) + knee;
+    u * size.recip_or_zero()
+}
+
+/// Changes from `then` to `now` that only the motion decides, in the order [position, four differences, friction, square,
+/// cube, product].
+#[inline]
+pub(super) fn motion_changes(now: &Stance, then: &Stance, centre: Lanes, knee: Lanes) -> [Lanes; 9] {
+    let (a, b) = (now.x - centre, then.x - centre);
+    let [u0, u1, u2, u3] = std::array::from_fn(|j| now.u[j] - then.u[j]);
+    [
+        now.x - then.x,
+        u0,
+        u1,
+        u2,
+        u3,
+        saturated(now.u[1], knee) - saturated(then.u[1], knee),
+        a * a - b * b,
+        a * a * a - b * b * b,
+        a * now.u[1] - b * then.u[1],
+    ]
+}
+
+impl Background {
+    /// The regressors for the motion `now`, anchored at `then` with this background.
+    pub(super) fn regressors(&self, now: &Stance, then: &Stance) -> Regressors {
+        let [dx, u0, u1, u2, u3, friction, square, cube, product] = motion_changes(now, then, self.centre, self.knee);
+        let [g0, g1, g2, g3] = self.force_trend;
+        let [m0, m1, m2, m3] = self.motion_trend;
+        let (position, force, drift) = (self.position_level, self.force_level, Lanes([1.0, 1.0, 1.0, 0.0]));
+        let (stiffening, damping) = (self.force_n * dx, self.force_n * u1);
+        [
+            dx, u0, u1, u2, u3, g0, g1, g2, g3, stiffening, damping, friction, square, cube, product, position, force,
+            drift, m0, m1, m2, m3,
+        ]
+    }
+}
+
+/// Makes [`Background`]s from the follower's motion and force.
+#[derive(Clone, Debug)]
+pub(super) struct Surroundings {
+    force_bank: LowPassBank,
+    share: f64,
+    centre: Lanes,
+    force_level: Lanes,
+    speed: Lanes,
+    started: bool,
+}
+
+impl Surroundings {
+    pub(super) fn new(settings: &Settings) -> Self {
+        Self {
+            force_bank: LowPassBank::new(BANK_S[0], BANK_S[1], settings.rate_hz),
+            share: -(-1.0 / (SLOW_S * settings.rate_hz)).exp_m1(),
+            centre: Lanes::ZERO,
+            force_level: Lanes::ZERO,
+            speed: Lanes::ZERO,
+            started: false,
+        }
+    }
+
+    /// The background of this tick. `usual`: mean squares of the regressors so far, `None` while too little was seen.
+    pub(super) fn step(&mut self, stance: &Stance, force_n: Lanes, usual: Option<&Regressors>) -> Background {
+        if !self.started {
+            (self.centre, self.force_level, self.speed) = (stance.x, force_n, Lanes::ZERO);
+            self.started = true;
+        }
+        let follow = |mean: Lanes, value: Lanes| (mean + (value - mean) * self.share).settled();
+        self.centre = follow(self.centre, stance.x);
+        self.force_level = follow(self.force_level, force_n);
+        self.speed = follow(self.speed, stance.u[1].map(f64::abs));
+        let bounded = |value: Lanes, index: usize| {
+            usual.map_or(value, |squares| {
+                let limit = squares[index].sqrt() * USUAL;
+                value.zip(limit, |value, limit| value.min(limit).max(-limit))
+            })
+        };
+        let force_trend = self.force_bank.step(force_n);
+        Background {
+            force_n,
+            force_trend: std::array::from_fn(|j| bounded(force_trend[j], at::FORCE_TREND + j)),
+            centre: self.centre,
+            knee: self.speed * 0.5,
+            position_level: bounded(stance.x - self.centre, at::POSITION_LEVEL),
+            force_level: bounded(force_n - self.force_level, at::FORCE_LEVEL),
+            motion_trend: std::array::from_fn(|j| bounded(stance.u[j], at::MOTION_TREND + j)),
+        }
+    }
+
+    pub(super) fn reset(&mut self) {
+        self.force_bank.reset();
+        self.started = false;
+    }
+}
+
+const _: () = assert!(at::MOTION_TREND + BANK == REGRESSORS && LANES == 4);

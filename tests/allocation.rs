@@ -1,0 +1,123 @@
+//! Nothing is allocated in a tick: of identification and rendering, of the whole loop, of the simulation.
+
+#![expect(unsafe_code, reason = "counting what is allocated takes a global allocator, whose trait is unsafe")]
+
+use std::{
+    alloc::{GlobalAlloc, Layout, System},
+    cell::Cell,
+};
+
+use nalgebra::Vector3;
+use nima::{
+    config::{Rig, Scene},
+    device::{Outputs, Rig as _},
+    impedance::{Identifier, Mode, ModeSet, Renderer, Sample, Settings},
+    runtime::Command,
+    signal::DifferentiatorKind,
+    sim::World,
+    teleop::{Loop, Timing},
+};
+
+struct Counting;
+
+thread_local! {
+    static CALLS: Cell<u64> = const { Cell::new(0) };
+}
+
+fn count() {
+    // A thread that is ending has no counter any more, and nothing of ours to count.
+    let _ = CALLS.try_with(|calls| calls.set(calls.get() + 1));
+}
+
+// SAFETY: every call is handed on to the system's allocator unchanged.
+unsafe impl GlobalAlloc for Counting {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        count();
+        // SAFETY: the caller's promises are passed on.
+        unsafe { System.alloc(layout) }
+    }
+
+    unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
+        count();
+        // SAFETY: the caller's promises are passed on.
+        unsafe { System.dealloc(pointer, layout) }
+    }
+
+    unsafe fn realloc(&self, pointer: *mut u8, layout: Layout, new_size: usize) -> *mut u8 {
+        count();
+        // SAFETY: the caller's promises are passed on.
+        unsafe { System.realloc(pointer, layout, new_size) }
+    }
+}
+
+#[global_allocator]
+static ALLOCATOR: Counting = Counting;
+
+fn sample(k: u32) -> Sample {
+    let t = f64::from(k) * 1e-3;
+    let position_m = Vector3::new((5.0 * t).sin(), (4.0 * t).cos(), (3.0 * t).sin()) * 0.02;
+    let mut sample = Sample { t_s: t, position_m, force_n: position_m * 80.0 };
+    match k % 500 {
+        100 => sample.position_m.y = f64::NAN,
+        200 => sample.force_n.z = f64::INFINITY,
+        300 => sample.t_s = -1.0,
+        _ => {}
+    }
+    sample
+}
+
+#[test]
+fn identification_and_rendering_allocate_nothing() {
+    for differentiator in DifferentiatorKind::ALL {
+        for cross_talk in [false, true] {
+            let settings =
+                Settings { differentiator, cross_talk, modes: ModeSet::ALL, delay_s: 0.05, ..Settings::default() };
+            let mut identifier = Identifier::new(&settings).unwrap();
+            let mut renderer = Renderer::new(&settings).unwrap();
+            let before = CALLS.get();
+            for k in 0..3000 {
+                let sample = sample(k);
+                identifier.step(&sample);
+                renderer.step(&sample.position_m, Some(identifier.parcel()));
+                if k == 1000 {
+                    identifier.set_delay(0.3);
+                    renderer.set_delay(0.3);
+                }
+                if k == 2000 {
+                    identifier.reset();
+                    renderer.reset();
+                }
+            }
+            assert_eq!(CALLS.get() - before, 0, "{differentiator:?}, cross-talk {cross_talk}");
+        }
+    }
+    let before = CALLS.get();
+    drop(std::hint::black_box(vec![1_u8; 10]));
+    assert_eq!(CALLS.get() - before, 2, "the counter counts");
+}
+
+#[test]
+fn a_tick_of_the_whole_loop_and_of_the_simulation_allocates_nothing() {
+    let rig = Rig::load("simulated").unwrap();
+    let mut control = Loop::new(&rig).unwrap();
+    let mut world = World::new(&Scene::load("peg_transfer").unwrap(), rig.rate_hz);
+    let mut outputs = Outputs::SAFE;
+    control.obey(Command::Engage, 0.0);
+    let before = CALLS.get();
+    for k in 0..10_000_u32 {
+        let now_s = f64::from(k) * 1e-3;
+        control.clear_events();
+        match k {
+            3000 => control.obey(Command::SetDelay(0.3), now_s),
+            4000 => control.obey(Command::SetMode(Mode::Literal), now_s),
+            5000 => control.obey(Command::Stop, now_s),
+            5500 => control.obey(Command::ReleaseStop, now_s),
+            6000 => control.obey(Command::Engage, now_s),
+            _ => {}
+        }
+        // A silent rig now and then, long enough for a fault at last.
+        let inputs = world.exchange(now_s, &outputs).filter(|_| k % 1000 > 5 && k < 9000);
+        outputs = control.step(inputs, &Timing { now_s, ..Timing::default() }).0;
+    }
+    assert_eq!(CALLS.get() - before, 0);
+}

@@ -79,7 +79,7 @@ impl Summary for Factor {
             let (v, mut rest) = below[start..].split_at_mut(k + 1);
             let squares = v.iter().fold(Lanes::ZERO, |sum, v| sum + *v * *v);
             let a = self.elements[start + k];
-            let norm = (a * a + squares).sqrt();
+            let norm = norm_of(a * a + squares);
             // u = (a + sign(a) norm, v); the reflection I - tau u u' takes (a, v) to (-sign(a) norm, 0).
             let signed_norm = norm.zip(a, f64::copysign);
             let head = a + signed_norm;
@@ -97,6 +97,14 @@ impl Summary for Factor {
         }
     }
 }
+
+/// The root of a sum of squares; zero below 1e-280, where squares lose digits, reflections would no longer be orthogonal and
+/// the reciprocal of a square overflows.
+#[inline]
+fn norm_of(squares: Lanes) -> Lanes {
+    squares.map(|squares| if squares < 1e-280 { 0.0 } else { squares }).sqrt()
+}
+
 /// Takes one row into each of several factors of the same size, column by column: the square root and the division of one
 /// rotation are waited for while the others go on.
 #[inline]
@@ -114,9 +122,11 @@ fn add_rows<const COUNT: usize>(mut targets: [&mut Factor; COUNT], rows: [&[Lane
                 entry = *cosine * entry - *sine * above;
             }
             let diagonal = column[j];
-            let norm = (diagonal * diagonal + entry * entry).sqrt();
+            let norm = norm_of(diagonal * diagonal + entry * entry);
             let inverse = norm.recip_or_zero();
-            rotations[j] = (diagonal * inverse, entry * inverse);
+            // Nothing to rotate: the row goes on to the next column as it is.
+            let cosine = (diagonal * inverse).zip(norm, |cosine, norm| if norm == 0.0 { 1.0 } else { cosine });
+            rotations[j] = (cosine, entry * inverse);
             column[j] = norm;
         }
     }

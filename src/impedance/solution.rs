@@ -206,4 +206,49 @@ mod tests {
             assert!((found - expected).abs() < 1e-12, "{found} is not {expected}");
         }
     }
+
+    #[test]
+    fn a_row_without_a_column_still_counts_in_the_others() {
+        // The second column is zero in the first rows, which arrive by a merge as in the sliding window.
+        let (mut early, mut late) = (Factor::new(3), Factor::new(3));
+        for (i, factor) in [0, 1, 2, 3].into_iter().zip([true, true, false, false]) {
+            let t = f64::from(i);
+            let mut row = [Lanes::ZERO; MAX_ROW];
+            row[..4].copy_from_slice(&[1.0, (t - 1.0).max(0.0), t * t, (2.0 * t).cos()].map(Lanes::splat));
+            if factor { early.add(&row) } else { late.add(&row) }
+        }
+        late.merge(&mut early);
+        let mut solution = Solution::new(3);
+        solution.solve(&late);
+        let rows: Vec<[f64; MAX_ROW]> = (0..4)
+            .map(|i| {
+                let t = f64::from(i);
+                let entries = [1.0, (t - 1.0).max(0.0), t * t, (2.0 * t).cos()];
+                std::array::from_fn(|j| entries.get(j).copied().unwrap_or(0.0))
+            })
+            .collect();
+        let (expected, residual) = by_svd(&rows, 3, 3);
+        for (found, expected) in solution.coefficients(3).iter().zip(&expected) {
+            assert!((found[0] - expected).abs() < 1e-12, "{} is not {expected}", found[0]);
+        }
+        assert!((solution.residual_squares(3)[0] - residual).abs() < 1e-12);
+    }
+
+    #[test]
+    fn vanishing_entries_neither_overflow_nor_spoil_the_others() {
+        for tiny in [1e-130, 1e-145, 1e-155, 1e-165, 1e-300] {
+            let (mut early, mut late) = (Factor::new(3), Factor::new(3));
+            for i in 0..8 {
+                let t = f64::from(i);
+                let mut row = [Lanes::ZERO; MAX_ROW];
+                row[..4].copy_from_slice(&[1.0, tiny * (3.0 * t).sin(), t, 3.0 + 2.0 * t].map(Lanes::splat));
+                if i < 4 { early.add(&row) } else { late.add(&row) }
+            }
+            late.merge(&mut early);
+            let mut solution = Solution::new(3);
+            solution.solve(&late);
+            let found = solution.coefficients(3).map(|lanes| lanes[0]);
+            assert!((found[0] - 3.0).abs() < 1e-12 && (found[2] - 2.0).abs() < 1e-12, "{tiny:e}: {found:?}");
+        }
+    }
 }

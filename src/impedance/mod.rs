@@ -40,6 +40,8 @@ mod track;
 mod window;
 
 #[cfg(test)]
+mod comparison_tests;
+#[cfg(test)]
 mod tests;
 
 pub use factor::Factor;

@@ -16,9 +16,6 @@ const GUARD_SHARE: f64 = 3.0;
 const GUARD_WIDTH: f64 = 0.05;
 /// Full trust needs that much evidence (s).
 const RAMP_S: f64 = 0.1;
-/// Added to the guard's ratio while the judgement is made with newer parameters than those that would have been sent (with
-/// 0.4 a first contact within the first quarter of a second was rendered up to 4 % worse than reflected).
-const EARLY_PENALTY: f64 = 0.8;
 /// Expert predictions are bounded by this many of the largest recent change.
 const EXPERT_BOUND: f64 = 2.0;
 
@@ -112,13 +109,12 @@ impl<const EXPERTS: usize> Stack<EXPERTS> {
         }
     }
 
-    /// How much of the stacked correction is rendered, 0 to 1; `early`: the judgement was made with newer parameters than
-    /// those that would have been sent.
-    pub(super) fn gate(&self, early: bool) -> f64 {
+    /// How much of the stacked correction is rendered, 0 to 1. `penalty` is added to the ratio of errors.
+    pub(super) fn gate(&self, penalty: f64) -> f64 {
         if self.reflection_n <= 0.0 {
             return 0.0;
         }
-        let ratio = self.error_n / self.reflection_n + if early { EARLY_PENALTY } else { 0.0 };
+        let ratio = self.error_n / self.reflection_n + penalty;
         ((1.0 - ratio) / GUARD_WIDTH).clamp(0.0, 1.0) * (self.evidence / (RAMP_S * self.rate_hz)).min(1.0)
     }
 

@@ -5,7 +5,6 @@
 use nalgebra::Vector3;
 
 use super::*;
-use crate::signal::Lanes;
 
 /// A palpation-like motion with contact, three axes, deterministic.
 pub(super) fn sample(k: usize, rate_hz: f64) -> Sample {
@@ -239,6 +238,40 @@ fn every_rate_and_amplitude_stays_finite() {
 }
 
 #[test]
+fn nothing_that_comes_in_makes_a_number_that_is_not_finite() {
+    let settings = Settings { cross_talk: true, ..settings() };
+    let mut identifier = Identifier::new(&settings).unwrap();
+    let mut renderer = Renderer::new(&settings).unwrap();
+    let mut state = 1_u64;
+    let mut random = move || {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (state >> 11) as f64 / (1_u64 << 53) as f64
+    };
+    // Stretches of ordinary motion, of constant values, and of numbers of every size.
+    let mut still = sample(0, 1000.0);
+    for k in 0..30_000 {
+        let mut s = sample(k, 1000.0);
+        match (k / 700) % 4 {
+            1 => s = Sample { t_s: s.t_s, ..still },
+            2 => {
+                let mut any = || (random() - 0.5) * 10.0_f64.powf(640.0 * random() - 320.0);
+                s.position_m = Vector3::from_fn(|_, _| any());
+                s.force_n = Vector3::from_fn(|_, _| any());
+            }
+            3 => s.force_n *= 10.0_f64.powf(f64::from((k % 40) as u32) - 20.0),
+            _ => still = s,
+        }
+        identifier.step(&s);
+        assert_finite(identifier.report(), identifier.parcel());
+        let rendered = renderer.step(&s.position_m, Some(identifier.parcel()));
+        assert!(rendered.force_n.iter().all(|force| force.iter().all(|f| f.is_finite())), "tick {k}");
+        let bound = 1e4 * settings.scales.force_n * 2.0;
+        assert!(rendered.force_n[Mode::Anchored.index()].norm() <= bound, "tick {k}");
+    }
+    assert_eq!(identifier.report().restarts, 0);
+}
+
+#[test]
 fn settings_out_of_range_are_refused_with_one_line() {
     let good = Settings::default;
     let bad = [
@@ -256,59 +289,5 @@ fn settings_out_of_range_are_refused_with_one_line() {
         let error = Identifier::new(&settings).unwrap_err();
         assert_eq!(Renderer::new(&settings).unwrap_err().to_string(), error.to_string());
         assert!(!error.to_string().contains('\n'));
-    }
-}
-
-/// Samples of one recording of `../shared/data/tue_1dof` (x only), `None` where the folder is absent.
-pub(super) fn recording(name: &str) -> Option<Vec<Sample>> {
-    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data/tue_1dof").join(name);
-    let text = std::fs::read_to_string(path).ok()?;
-    let parse = |line: &str| {
-        let mut fields = line.split(',').map(|field| field.parse::<f64>().ok());
-        let (t_s, x, f) = (fields.next()??, fields.nth(1)??, fields.nth(1)??);
-        Some(Sample { t_s, position_m: Vector3::new(x, 0.0, 0.0), force_n: Vector3::new(f, 0.0, 0.0) })
-    };
-    text.lines().skip(1).map(parse).collect()
-}
-
-/// Mean 3-D error (N) of every mode over a recording.
-pub(super) fn mean_errors(samples: &[Sample], settings: &Settings) -> [f64; 4] {
-    let mut identifier = Identifier::new(settings).unwrap();
-    let mut sums = [0.0; 4];
-    let mut count = 0.0_f64;
-    for sample in samples {
-        identifier.step(sample);
-        let report = identifier.report();
-        if report.prediction_valid[Mode::Dfr.index()] {
-            count += 1.0;
-            for (sum, prediction) in sums.iter_mut().zip(&report.prediction_n) {
-                *sum += (Lanes::from(*prediction) - Lanes::from(sample.force_n)).norm();
-            }
-        }
-    }
-    sums.map(|sum| sum / count.max(1.0))
-}
-
-#[test]
-fn real_recordings() {
-    let materials = ["foam", "spring", "rigid", "free_motion"];
-    eprintln!("{:<16} {:>6}  anchored/dfr  dfr", "recording", "D (ms)");
-    for material in materials {
-        for question in ["1a", "1b"] {
-            let name = format!("m1_question{question}_{material}.csv");
-            let Some(samples) = recording(&name) else {
-                eprintln!("../shared/data/tue_1dof is absent: recordings not tested");
-                return;
-            };
-            for delay_ms in [0, 10, 50, 100, 300] {
-                let delay_s = f64::from(delay_ms) * 1e-3;
-                let settings =
-                    Settings { axes: 1, delay_s, modes: ModeSet::only(Mode::Anchored), ..Settings::default() };
-                let errors = mean_errors(&samples, &settings);
-                let (anchored, dfr) = (errors[Mode::Anchored.index()], errors[Mode::Dfr.index()]);
-                let ratio = if delay_ms == 0 { 1.0 } else { anchored / dfr };
-                eprintln!("{question} {material:<13} {delay_ms:>6}  {ratio:>12.3}  {dfr:.4}");
-            }
-        }
     }
 }

@@ -226,4 +226,24 @@ mod tests {
             }
         }
     }
+
+    #[test]
+    fn nothing_drifts_and_a_long_window_is_exact() {
+        for (block, ticks) in [(150, 200_000), (5000, 25_000)] {
+            let columns = 7;
+            let ridge = Factor::with_ridge(columns, 1e-6 * block as f64);
+            let mut window = SlidingWindow::new(block, Factor::new(columns), ridge.clone());
+            (0..ticks).for_each(|k| window.push(&row(k)));
+            let (mut slid, mut fresh) = (Solution::new(columns), Solution::new(columns));
+            slid.solve(window.current());
+            let mut factor = ridge;
+            (ticks - 2 * block..ticks).for_each(|k| factor.add(&row(k)));
+            fresh.solve(&factor);
+            for (slid, fresh) in slid.coefficients(columns).iter().zip(fresh.coefficients(columns)) {
+                for lane in 0..4 {
+                    assert!((slid[lane] - fresh[lane]).abs() < 1e-12, "block {block}: {} {}", slid[lane], fresh[lane]);
+                }
+            }
+        }
+    }
 }

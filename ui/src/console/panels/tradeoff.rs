@@ -170,8 +170,8 @@ fn measure_ui(ui: &mut Ui, live: &Live, state: &mut TradeoffState) {
 /// The points that nothing beats, cheapest first, each a button.
 fn front_ui(ui: &mut Ui, figures: &SourceFigures, selected: &mut Option<usize>) {
     ui.label(small("Nothing measured beats these in both (cheapest first):")).on_hover_text(
-        "The Pareto front: every other point costs more time or errs more. In anchored mode degree and window change the \
-         cost and what the Degrees panel shows, not the force.",
+        "The Pareto front: every other point costs more time or errs more. In anchored mode the window's model is one of \
+         several experts, so degree and window change the error by a few hundredths only.",
     );
     for index in front(figures) {
         let point = &figures.points[index];

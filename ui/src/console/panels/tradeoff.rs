@@ -183,7 +183,7 @@ fn front_ui(ui: &mut Ui, figures: &SourceFigures, selected: &mut Option<usize>) 
 }
 
 fn apply_ui(ui: &mut Ui, live: &Live, point: &Point, state: &mut TradeoffState, outbox: &mut Outbox) -> Option<Rig> {
-    let Some(mode) = point.choice.method.mode() else { return None };
+    let mode = point.choice.method.mode()?;
     let restart = needs_restart(&live.rig.identification, &point.choice);
     // A restart begins idle: it must never be a way out of a stop or a fault.
     let allowed = !restart || matches!(live.state(), LoopState::Idle | LoopState::Engaged);
@@ -257,7 +257,7 @@ pub(super) fn name(point: &Point) -> String {
         Method::Mode(mode @ Mode::Dfr) => mode_name(mode).to_owned(),
         Method::Mode(mode @ Mode::Linear) => format!("{}, {window_ms:.0} ms", mode_name(mode)),
         Method::Mode(mode) => format!("{}, N = {degree}, {window_ms:.0} ms", mode_name(mode)),
-        _ => method.name().to_owned(),
+        Method::Solver(solver) => solver.name().to_owned(),
     }
 }
 

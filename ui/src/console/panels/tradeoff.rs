@@ -170,8 +170,8 @@ fn measure_ui(ui: &mut Ui, live: &Live, state: &mut TradeoffState) {
 /// The points that nothing beats, cheapest first, each a button.
 fn front_ui(ui: &mut Ui, figures: &SourceFigures, selected: &mut Option<usize>) {
     ui.label(small("Nothing measured beats these in both (cheapest first):")).on_hover_text(
-        "The Pareto front: every other point costs more time or errs more. In anchored mode degree and window change the \
-         cost and what the Degrees panel shows, not the force.",
+        "The Pareto front: every other point costs more time or errs more. In anchored mode the window's model is one of \
+         several experts, so degree and window change the error by a few hundredths only.",
     );
     for index in front(figures) {
         let point = &figures.points[index];
@@ -183,7 +183,7 @@ fn front_ui(ui: &mut Ui, figures: &SourceFigures, selected: &mut Option<usize>) 
 }
 
 fn apply_ui(ui: &mut Ui, live: &Live, point: &Point, state: &mut TradeoffState, outbox: &mut Outbox) -> Option<Rig> {
-    let Some(mode) = point.choice.method.mode() else { return None };
+    let mode = point.choice.method.mode()?;
     let restart = needs_restart(&live.rig.identification, &point.choice);
     // A restart begins idle: it must never be a way out of a stop or a fault.
     let allowed = !restart || matches!(live.state(), LoopState::Idle | LoopState::Engaged);
@@ -257,7 +257,7 @@ pub(super) fn name(point: &Point) -> String {
         Method::Mode(mode @ Mode::Dfr) => mode_name(mode).to_owned(),
         Method::Mode(mode @ Mode::Linear) => format!("{}, {window_ms:.0} ms", mode_name(mode)),
         Method::Mode(mode) => format!("{}, N = {degree}, {window_ms:.0} ms", mode_name(mode)),
-        _ => method.name().to_owned(),
+        Method::Solver(solver) => solver.name().to_owned(),
     }
 }
 

@@ -184,13 +184,15 @@ fn draw(out: &mut String, chart: &Chart, series: &Series) {
         let dashes = if series.style == Style::Dashed { " stroke-dasharray=\"5 4\"" } else { "" };
         write!(out, "<polyline fill=\"none\" stroke=\"{}\" stroke-width=\"1.5\"{dashes} points=\"", colour(series))
             .ok();
-        points.iter().for_each(|[x, y]| {
+        for [x, y] in &points {
             write!(out, "{x:.1},{y:.1} ").ok();
-        });
+        }
         out.push_str("\"/>\n");
     }
     if series.style != Style::Dashed {
-        points.iter().for_each(|[x, y]| marker(out, series, *x, *y));
+        for [x, y] in points {
+            marker(out, series, x, y);
+        }
     }
 }
 

@@ -94,7 +94,7 @@ impl Reference {
             for k in 0..=j {
                 system[j][k] = r[j].iter().zip(&r[k]).fold(zero(), |sum, (a, b)| sum + a * b);
             }
-            system[n][j] = self.right[independent[j]].clone();
+            system[n][j].clone_from(&self.right[independent[j]]);
         }
         let weights = Self::factorise(&system, n).solution(n);
         (0..prefix).map(|j| (0..n).fold(zero(), |sum, i| sum + &r[i][j] * &weights[i])).collect()

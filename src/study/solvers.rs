@@ -98,7 +98,9 @@ impl Solver {
         if self == Self::Sliding {
             let columns = self.unknowns(max_degree);
             let mut factor = Factor::with_ridge(columns, ridge * rows.len() as f64);
-            rows.iter().for_each(|row| factor.add(&sliding_row(row, max_degree, scales)));
+            for row in rows {
+                factor.add(&sliding_row(row, max_degree, scales));
+            }
             let mut solution = Solution::new(columns);
             solution.solve(&factor);
             fit.take(&solution, max_degree);

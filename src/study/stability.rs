@@ -11,6 +11,7 @@
 mod cases;
 mod drift;
 mod present;
+mod verdict;
 
 use nalgebra::{DMatrix, Vector3};
 use serde::Serialize;
@@ -26,6 +27,7 @@ use crate::{
 };
 
 pub use drift::Drift;
+pub use verdict::{Failures, Verdict};
 
 /// Relative error that must hold wherever the condition is below [`ORDINARY_CONDITION`].
 pub const TARGET: f64 = 1e-9;
@@ -113,42 +115,6 @@ pub struct Report {
     pub drift: Drift,
     /// Every extreme.
     pub extremes: Vec<Extreme>,
-}
-
-/// The targets, and the literal formula's failures beside them.
-#[derive(Clone, Debug, Serialize)]
-pub struct Verdict {
-    /// Whether ours reaches all targets.
-    pub reached: bool,
-    /// Share of our predictions that are finite.
-    pub ours_finite_share: f64,
-    /// Whether the whole identifier was finite in every extreme.
-    pub identifier_finite: bool,
-    /// Our worst relative error where the scaled condition is below 1e6.
-    pub ours_worst_error: f64,
-    /// Our worst relative error anywhere.
-    pub ours_worst_error_anywhere: f64,
-    /// Our largest scaled condition.
-    pub ours_worst_condition: f64,
-    /// Our worst difference between metres and millimetres where the scaled condition is below 1e6.
-    pub ours_unit_difference: f64,
-    /// The pseudo-inverse's worst difference between metres and millimetres.
-    pub pseudo_inverse_unit_difference: f64,
-    /// Share of predictions without a finite answer, or off by more than 1 % of the force.
-    pub failures: Vec<Failures>,
-}
-
-/// How often a solver fails.
-#[derive(Clone, Debug, Serialize)]
-pub struct Failures {
-    /// The solver.
-    pub solver: Solver,
-    /// Extremes and degrees tried.
-    pub tried: usize,
-    /// Of these: some prediction was not a finite number.
-    pub not_finite: usize,
-    /// Of these: all finite, but some off by more than 1 % of the force.
-    pub wrong: usize,
 }
 
 /// Makes the study; `progress` is told before each part how many of how many are done, and what comes.
@@ -400,45 +366,6 @@ fn identifier_finite(case: &Case) -> Result<bool, StabilityError> {
         finite &= report.condition.is_finite();
     }
     Ok(finite)
-}
-
-impl Verdict {
-    fn of(extremes: &[Extreme], drift: &Drift) -> Self {
-        let all = || extremes.iter().flat_map(|extreme| &extreme.entries);
-        let ours = || all().filter(|entry| entry.solver == Solver::Sliding);
-        let ordinary = || ours().filter(|entry| entry.condition.is_some_and(|c| c < ORDINARY_CONDITION));
-        let most = |values: &mut dyn Iterator<Item = Option<f64>>| values.flatten().fold(0.0, f64::max);
-        let (asked, finite) = ours().fold((0, 0), |(a, f), entry| (a + entry.asked, f + entry.finite));
-        let failures = Solver::ALL.map(|solver| {
-            let of = || all().filter(|entry| entry.solver == solver);
-            let wrong = |entry: &&Entry| entry.finite == entry.asked && entry.error.is_none_or(|error| error > 0.01);
-            Failures {
-                solver,
-                tried: of().count(),
-                not_finite: of().filter(|entry| entry.finite < entry.asked).count(),
-                wrong: of().filter(wrong).count(),
-            }
-        });
-        let mut verdict = Self {
-            reached: false,
-            ours_finite_share: finite as f64 / asked.max(1) as f64,
-            identifier_finite: extremes.iter().all(|extreme| extreme.identifier_finite),
-            ours_worst_error: most(&mut ordinary().map(|entry| entry.error)),
-            ours_worst_error_anywhere: most(&mut ours().map(|entry| entry.error)),
-            ours_worst_condition: most(&mut ours().map(|entry| entry.condition)),
-            ours_unit_difference: most(&mut ordinary().map(|entry| entry.unit_difference)),
-            pseudo_inverse_unit_difference: most(
-                &mut all().filter(|e| e.solver == Solver::PseudoInverse).map(|e| e.unit_difference),
-            ),
-            failures: failures.to_vec(),
-        };
-        verdict.reached = asked == finite
-            && verdict.identifier_finite
-            && verdict.ours_worst_error <= TARGET
-            && verdict.ours_unit_difference <= TARGET
-            && drift.ours_late <= drift.ours_early;
-        verdict
-    }
 }
 
 #[cfg(test)]

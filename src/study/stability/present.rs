@@ -121,7 +121,7 @@ impl Report {
         });
         Chart {
             title: "Every extreme and degree (upper edge: no finite answer)".into(),
-            x: Axis::log("condition of the solver's own columns", 1.0, 1e30),
+            x: Axis::log("condition of the solver's own columns (right edge: infinite)", 1.0, 1e18),
             y: Axis::log("worst relative error of the force", 1e-17, 1e6),
             series,
         }

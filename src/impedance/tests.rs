@@ -122,6 +122,10 @@ fn permuting_axes_permutes_results() {
                 assert_eq!([a[1], a[2], a[0]], [b[0], b[1], b[2]]);
             }
         }
+        // Norms over the axes are summed in another order: a rounding error may differ.
+        for (a, b) in plain.report().prediction_n.iter().zip(&turned.report().prediction_n) {
+            assert!((turn(*a) - b).norm() <= 1e-9 * (1.0 + a.norm()), "tick {k}: {a} {b}");
+        }
     }
 }
 
@@ -137,13 +141,20 @@ fn metres_and_millimetres_agree() {
     };
     let mut a = Identifier::new(&metres).unwrap();
     let mut b = Identifier::new(&Settings { scales, ..metres }).unwrap();
+    let mut worst = 0.0_f64;
     for k in 0..2000 {
         let s = sample(k, 1000.0);
         a.step(&s);
         b.step(&Sample { position_m: 1e3 * s.position_m, ..s });
-        let (a, b) = (a.report().prediction_n[3], b.report().prediction_n[3]);
-        assert!((a - b).norm() <= 1e-9 * (1.0 + a.norm()), "tick {k}: {a} {b}");
+        // Not literal: the paper's normal equations of degree 5 square a condition number near 1e8, and depend on the unit.
+        let literal = [&a, &b].map(|identifier| identifier.report().prediction_n[Mode::Literal.index()]);
+        worst = worst.max((literal[0] - literal[1]).norm() / (1e-3 + literal[0].norm()));
+        for (mode, tolerance) in [(Mode::Linear, 1e-9), (Mode::Dfr, 0.0), (Mode::Anchored, 1e-9)] {
+            let (a, b) = (a.report().prediction_n[mode.index()], b.report().prediction_n[mode.index()]);
+            assert!((a - b).norm() <= tolerance * (1.0 + a.norm()), "{mode}, tick {k}: {a} {b}");
+        }
     }
+    eprintln!("literal: metres and millimetres differ by up to {worst:.1e} of the force");
 }
 
 #[test]

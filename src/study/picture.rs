@@ -74,6 +74,17 @@ impl Axis {
         Self { title: title.into(), range: [from, to], logarithmic: false }
     }
 
+    /// An axis around all `values` that have a place on it, with a little room on both sides.
+    pub fn around(title: &str, values: impl Iterator<Item = f64>, logarithmic: bool) -> Self {
+        let map = |value: f64| if logarithmic { value.log10() } else { value };
+        let mapped = values.map(map).filter(|value| value.is_finite());
+        let (low, high) = mapped.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)));
+        let (low, high) = if low <= high { (low, high) } else { (0.0, 1.0) };
+        let room = 0.06 * (high - low).max(if logarithmic { 0.3 } else { 1.0 });
+        let back = |value: f64| if logarithmic { 10.0_f64.powf(value) } else { value };
+        Self { title: title.into(), range: [back(low - room), back(high + room)], logarithmic }
+    }
+
     /// Where `value` lies on the axis, 0 to 1; `None` if it has no place.
     fn place(&self, value: f64) -> Option<f64> {
         let map = |value: f64| if self.logarithmic { value.log10() } else { value };
@@ -89,9 +100,12 @@ impl Axis {
         if self.logarithmic {
             let (first, last) = (from.log10().ceil() as i32, to.log10().floor() as i32);
             let step = ((last - first) / 8 + 1).max(1);
-            return (first..=last)
+            let between: &[i32] = if to / from < 400.0 { &[1, 2, 5] } else { &[1] };
+            return (first - 1..=last)
                 .filter(|power| (power - first) % step == 0)
-                .map(|power| (10.0_f64.powi(power), power_of_ten(power)))
+                .flat_map(|power| between.iter().map(move |&first_digit| (first_digit, power)))
+                .map(|(digit, power)| (f64::from(digit) * 10.0_f64.powi(power), digit_and_power(digit, power)))
+                .filter(|(value, _)| (from..=to).contains(value))
                 .collect();
         }
         let rough = ((to - from) / 6.0).abs().max(f64::MIN_POSITIVE);
@@ -103,6 +117,15 @@ impl Axis {
             .filter(|value| *value <= to + 1e-9 * step)
             .map(|value| (value, format!("{:.decimals$}", if value.abs() < 1e-9 * step { 0.0 } else { value })))
             .collect()
+    }
+}
+
+fn digit_and_power(digit: i32, power: i32) -> String {
+    match (digit, power) {
+        (1, _) => power_of_ten(power),
+        (_, 0..=4) => format!("{}", i64::from(digit) * 10_i64.pow(power.unsigned_abs())),
+        (_, -3..=-1) => format!("{:.*}", power.unsigned_abs() as usize, f64::from(digit) * 10.0_f64.powi(power)),
+        _ => format!("{digit}\u{b7}{}", power_of_ten(power)),
     }
 }
 
@@ -255,6 +278,11 @@ mod tests {
         let labels: Vec<_> = Axis::linear("x", 0.0, 1.0).ticks().into_iter().map(|(_, label)| label).collect();
         assert_eq!(labels, ["0.0", "0.2", "0.4", "0.6", "0.8", "1.0"]);
         assert_eq!(Axis::log("x", 1e-17, 1e4).ticks().len(), 8);
+        let labels: Vec<_> = Axis::log("x", 0.15, 12.0).ticks().into_iter().map(|(_, label)| label).collect();
+        assert_eq!(labels, ["0.2", "0.5", "1", "2", "5", "10"]);
+        let around = Axis::around("x", [f64::NAN, 3.0, 0.0, 30.0].into_iter(), true);
+        assert!(around.range[0] > 1.0 && around.range[0] < 3.0 && around.range[1] > 30.0);
+        assert!(Axis::around("x", std::iter::empty(), true).ticks().len() > 1);
     }
 
     #[test]

@@ -18,7 +18,6 @@
 //! | `chart`, `pictures` | the curves as SVG |
 //! | `table` | the figures as CSV |
 
-mod chart;
 mod modes;
 mod pictures;
 mod plan;

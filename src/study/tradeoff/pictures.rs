@@ -1,10 +1,13 @@
 //! The curves as pictures.
 
-use super::{
-    Knob, Method, Point, SourceFigures, Study,
-    chart::{Chart, Series},
+use super::{Knob, Method, Point, SourceFigures, Study};
+use crate::{
+    impedance::Mode,
+    study::{
+        picture::{Axis, Chart, Series, Style, svg},
+        solvers::Solver,
+    },
 };
-use crate::{impedance::Mode, study::solvers::Solver};
 
 impl Study {
     /// Pictures by name: cost against error for every source (by the source's own name), then one for every knob.
@@ -15,7 +18,7 @@ impl Study {
             while pictures.iter().any(|(known, _)| *known == name) {
                 name.push_str("-2");
             }
-            pictures.push((name, cost_against_error(figures).svg()));
+            pictures.push((name, svg(&[cost_against_error(figures)])));
         }
         let knobs = [
             (Knob::Delay, Mode::Anchored, "Delay of the link (ms)"),
@@ -24,12 +27,14 @@ impl Study {
             (Knob::Window, Mode::Literal, "Window (ms)"),
         ];
         for (knob, mode, label) in knobs {
-            pictures.push((format!("knob-{}", knob.name()), self.along(knob, mode, label).svg()));
+            pictures.push((format!("knob-{}", knob.name()), svg(&[self.along(knob, mode, label)])));
         }
         if let Some(first) = self.sources.iter().find(|figures| solver_curves(figures).next().is_some()) {
-            pictures.push(("knob-solver-cost".to_owned(), solvers(first, "Median time of one solve (us)", cost).svg()));
+            pictures
+                .push(("knob-solver-cost".to_owned(), svg(&[solvers(first, "Median time of one solve (us)", cost)])));
             let error = |point: &Point| point.error_p50;
-            pictures.push(("knob-solver-error".to_owned(), solvers(first, "Median error at the horizon", error).svg()));
+            pictures
+                .push(("knob-solver-error".to_owned(), svg(&[solvers(first, "Median error at the horizon", error)])));
         }
         pictures
     }
@@ -41,15 +46,17 @@ impl Study {
             let points = curve.points.iter().map(|&i| &figures.points[i]);
             let mut places: Vec<[f64; 2]> = points.map(|point| [setting(knob, point), point.ratio]).collect();
             places.sort_by(|a, b| a[0].total_cmp(&b[0]));
-            Some(Series { name: figures.source.clone(), places, joined: true, marked: true })
+            Some((figures.source.clone(), places))
         };
-        Chart {
-            title: format!("{} along the {}: error by delayed DFR's", capital(mode.name()), knob.name()),
-            labels: [label, "Mean error / that of delayed DFR"],
-            x_logarithmic: knob != Knob::Degree,
-            level: Some(1.0),
-            series: self.sources.iter().filter_map(line).collect(),
-        }
+        let lines: Vec<_> = self.sources.iter().filter_map(line).collect();
+        let title = format!("{} along the {}: error by delayed DFR's", capital(mode.name()), knob.name());
+        let mut chart =
+            chart(title, [label, "Mean error / that of delayed DFR"], lines, Style::Line, knob != Knob::Degree);
+        // The level to compare with is always in sight.
+        chart.y.range = [chart.y.range[0].min(0.9), chart.y.range[1].max(1.1)];
+        let ends = chart.x.range.map(|x| [x, 1.0]).to_vec();
+        chart.series.push(Series { name: "delayed DFR".to_owned(), colour: 6, style: Style::Dashed, points: ends });
+        chart
     }
 }
 
@@ -62,24 +69,44 @@ fn cost_against_error(figures: &SourceFigures) -> Chart {
         .and_then(|curve| curve.points.first())
         .map_or(0.0, |&index| figures.points[index].choice.delay_ms);
     let shown = |point: &&Point| point.choice.every == 1 && (point.choice.delay_ms - base_ms).abs() < f64::EPSILON;
-    let mut series: Vec<Series> = Mode::ALL
+    let modes = Mode::ALL
         .into_iter()
         .map(|mode| {
             let of_mode = |point: &&Point| point.choice.method == Method::Mode(mode);
-            let places = figures.points.iter().filter(shown).filter(of_mode).map(place).collect();
-            Series { name: mode.name().to_owned(), places, joined: false, marked: true }
+            (mode.name().to_owned(), figures.points.iter().filter(shown).filter(of_mode).map(place).collect())
         })
         .collect();
     let mut front: Vec<[f64; 2]> =
         figures.points.iter().filter(shown).filter(|point| point.pareto).map(place).collect();
     front.sort_by(|a, b| a[0].total_cmp(&b[0]));
-    series.push(Series { name: "nothing beats these".to_owned(), places: front, joined: true, marked: false });
+    let title = format!("{}: cost against error at {base_ms:.0} ms (force in {})", figures.source, figures.unit);
+    let mut chart =
+        chart(title, ["Median time of one tick (us)", "Mean error at the horizon"], modes, Style::Points, true);
+    chart.series.push(Series {
+        name: "nothing beats these".to_owned(),
+        colour: 6,
+        style: Style::Dashed,
+        points: front,
+    });
+    chart
+}
+
+/// A chart around these series, its upright axis logarithmic.
+fn chart(
+    title: String,
+    [x, y]: [&str; 2],
+    series: Vec<(String, Vec<[f64; 2]>)>,
+    style: Style,
+    x_logarithmic: bool,
+) -> Chart {
+    let all = |axis: usize| series.iter().flat_map(|(_, points)| points).map(move |point| point[axis]);
+    let (x, y) = (Axis::around(x, all(0), x_logarithmic), Axis::around(y, all(1), true));
+    let numbered = series.into_iter().enumerate();
     Chart {
-        title: format!("{}: cost against error at {base_ms:.0} ms (force in {})", figures.source, figures.unit),
-        labels: ["Median time of one tick (us)", "Mean error at the horizon"],
-        x_logarithmic: true,
-        level: None,
-        series,
+        title,
+        x,
+        y,
+        series: numbered.map(|(colour, (name, points))| Series { name, colour, style, points }).collect(),
     }
 }
 
@@ -102,16 +129,10 @@ fn solver_curves(figures: &SourceFigures) -> impl Iterator<Item = (Solver, &[usi
 fn solvers(figures: &SourceFigures, label: &'static str, figure: impl Fn(&Point) -> f64) -> Chart {
     let line = |(solver, points): (Solver, &[usize])| {
         let places = points.iter().map(|&i| &figures.points[i]);
-        let places = places.map(|point| [point.choice.window_ms, figure(point)]).collect();
-        Series { name: solver.name().to_owned(), places, joined: true, marked: true }
+        (solver.name().to_owned(), places.map(|point| [point.choice.window_ms, figure(point)]).collect())
     };
-    Chart {
-        title: format!("{}: solvers of the plain model, all degrees", figures.source),
-        labels: ["Window (ms)", label],
-        x_logarithmic: true,
-        level: None,
-        series: solver_curves(figures).map(line).collect(),
-    }
+    let title = format!("{}: solvers of the plain model, all degrees", figures.source);
+    chart(title, ["Window (ms)", label], solver_curves(figures).map(line).collect(), Style::Line, true)
 }
 
 fn setting(knob: Knob, point: &Point) -> f64 {

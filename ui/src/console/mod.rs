@@ -50,7 +50,7 @@ pub fn run(handle: Handle, rig: Rig, scene: Scene, options: Options) -> anyhow::
     };
     let create: eframe::AppCreator<'_> =
         Box::new(move |cc| Ok(Box::new(ConsoleApp::new(cc, handle, rig, scene).with_options(options))));
-    eframe::run_native("NIMA Console", native, create).map_err(|error| NoWindow { reason: error.to_string() }.into())
+    eframe::run_native("NIMA Console", native, create).map_err(|error| NoWindow::new(&error.to_string()).into())
 }
 
 /// No window could be opened: there is no display, or it has no usable OpenGL.
@@ -59,4 +59,23 @@ pub fn run(handle: Handle, rig: Rig, scene: Scene, options: Options) -> anyhow::
 pub struct NoWindow {
     /// What the window system said (its own error cannot cross threads; its words are what matters).
     pub reason: String,
+}
+
+impl NoWindow {
+    /// The window system's words without the place in its source that they may begin with.
+    fn new(words: &str) -> Self {
+        let after_place = words.rsplit_once(".rs:").and_then(|(_, rest)| rest.split_once(": "));
+        Self { reason: after_place.map_or(words, |(_, reason)| reason).to_owned() }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::NoWindow;
+
+    #[test]
+    fn a_place_in_someone_elses_source_is_left_out() {
+        assert_eq!(NoWindow::new("os error at /a/b/mod.rs:765: no display is set").to_string(), "no display is set");
+        assert_eq!(NoWindow::new("no OpenGL").to_string(), "no OpenGL");
+    }
 }

@@ -3,7 +3,7 @@
 use nalgebra::Vector3;
 
 use super::{
-    MAX_DEGREE,
+    MAX_DEGREE, Mode,
     anchored::within,
     features::{Features, MOTION_COLUMNS},
     literal,
@@ -230,6 +230,11 @@ pub struct Rendered {
 }
 
 impl Rendered {
+    /// Force of `mode` (N); `None` where it has nothing valid.
+    pub fn force(&self, mode: Mode) -> Option<Vector3<f64>> {
+        self.valid[mode.index()].then(|| self.force_n[mode.index()])
+    }
+
     pub(super) fn new(forces: [Option<Lanes>; 4]) -> Self {
         Self { force_n: forces.map(|force| force.unwrap_or_default().vector()), valid: forces.map(|f| f.is_some()) }
     }
@@ -288,6 +293,11 @@ pub struct Report {
 }
 
 impl Report {
+    /// What `mode` would render now (N) from data up to `t - D`; `None` where it has nothing valid.
+    pub fn prediction(&self, mode: Mode) -> Option<Vector3<f64>> {
+        self.prediction_valid[mode.index()].then(|| self.prediction_n[mode.index()])
+    }
+
     /// Nothing measured yet.
     pub const BLANK: Self = Self {
         t_s: f64::NEG_INFINITY,

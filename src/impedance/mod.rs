@@ -19,7 +19,6 @@
 //! | `identifier`, `renderer`, `messages` | the two ends of the link, and what goes between them |
 
 mod anchored;
-mod by_mode;
 mod cross_factor;
 mod cross_talk;
 mod factor;

@@ -3,21 +3,15 @@
 use std::{path::PathBuf, time::Duration};
 
 use clap::Args;
-use nima::{
-    config::{Rig, Scene},
-    runtime::{self, Plan},
-};
+use nima::runtime::{self, Plan};
 
+use super::setup::Setup;
 use crate::console::{self, Options};
 
-#[derive(Debug, Args)]
+#[derive(Debug, Default, Args)]
 pub(super) struct Arguments {
-    /// Rig: an embedded name or a TOML file
-    #[arg(long, value_name = "RIG", default_value = "simulated")]
-    rig: String,
-    /// Scene: an embedded name or a TOML file
-    #[arg(long, value_name = "SCENE", default_value = "peg_transfer")]
-    scene: String,
+    #[command(flatten)]
+    setup: Setup,
     /// Close after this many seconds
     #[arg(long, value_name = "S", value_parser = super::run::positive_seconds)]
     exit_after: Option<f64>,
@@ -26,15 +20,8 @@ pub(super) struct Arguments {
     screenshot: Option<PathBuf>,
 }
 
-impl Default for Arguments {
-    fn default() -> Self {
-        Self { rig: "simulated".to_owned(), scene: "peg_transfer".to_owned(), exit_after: None, screenshot: None }
-    }
-}
-
 pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
-    let rig = Rig::load(&arguments.rig)?;
-    let scene = Scene::load(&arguments.scene)?;
+    let (rig, scene) = arguments.setup.load()?;
     // The simulated hand cannot be hurt: the demo runs at once.
     let handle = runtime::start(&Plan { rig: rig.clone(), scene: scene.clone(), engage: true })?;
     let options = Options {

@@ -4,6 +4,7 @@ mod console;
 mod identify;
 mod output;
 mod run;
+mod setup;
 mod study;
 mod tradeoff;
 

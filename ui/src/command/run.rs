@@ -13,21 +13,16 @@ use std::{
 use anyhow::Context as _;
 use clap::Args;
 use nima::{
-    config::{Rig, Scene},
     impedance::Mode,
     runtime::{self, Plan, Quantiles, Summary, Tick},
 };
 
-use super::output;
+use super::{output, setup::Setup};
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
-    /// Rig: an embedded name or a TOML file
-    #[arg(long, value_name = "RIG", default_value = "simulated")]
-    rig: String,
-    /// Scene: an embedded name or a TOML file
-    #[arg(long, value_name = "SCENE", default_value = "peg_transfer")]
-    scene: String,
+    #[command(flatten)]
+    setup: Setup,
     /// Loop time to run; without it, until Ctrl-C (real clock) or 60 s (virtual clock)
     #[arg(long, value_name = "S", value_parser = positive_seconds, allow_negative_numbers = true)]
     seconds: Option<f64>,
@@ -57,12 +52,12 @@ pub(super) fn positive_seconds(text: &str) -> Result<f64, String> {
 }
 
 pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
-    let mut rig = Rig::load(&arguments.rig)?;
+    let (mut rig, scene) = arguments.setup.load()?;
     rig.mode = arguments.mode.unwrap_or(rig.mode);
     rig.delay_s = arguments.delay_ms.map_or(rig.delay_s, |delay_ms| delay_ms * 1e-3);
     rig.identification.cross_talk |= arguments.cross_talk;
     rig.validate()?;
-    let plan = Plan { rig, scene: Scene::load(&arguments.scene)?, engage: true };
+    let plan = Plan { rig, scene, engage: true };
     let summary = if arguments.virtual_clock {
         runtime::run_virtual(&plan, arguments.seconds.unwrap_or(60.0), |_| None)?
     } else {

@@ -145,6 +145,12 @@ fn a_silent_or_poisoned_source_takes_the_force_away_within_20_ms_and_latches() {
                 after[20].rendered_n.norm()
             );
             assert_eq!(after[39].state, LoopState::Faulted(Fault::SourceSilent));
+            bench.control.clear_events();
+            bench.control.obey(Command::ReleaseStop, 1e-3 * bench.tick as f64);
+            assert!(
+                bench.control.events().any(|event| matches!(event, Event::CommandRefused { .. })),
+                "released in silence"
+            );
             let again: Vec<Tick> = (0..1000).map(|_| bench.step(Some)).collect();
             assert!(
                 again.iter().all(|tick| tick.rendered_n.norm() < f64::EPSILON),

@@ -1,19 +1,21 @@
 //! The paper's rule that nothing is rendered below 1 mm/s, with a smooth edge and hysteresis so that it does not chatter.
 
-/// Speed gate: 0 below the threshold, 1 above twice the threshold, smooth between.
+/// Speed gate: 0 below the threshold, 1 above twice the threshold, smooth between, without a step anywhere.
 ///
-/// Opening needs the threshold; once open it stays until the speed falls below half of it.
+/// Hysteresis is that of a loose gear (play): a rising speed counts as it is, a falling one counts up to half a threshold
+/// higher. So the gate begins to open at the threshold and is shut again only below half of it.
 #[derive(Clone, Copy, Debug)]
 pub struct DeadBand {
     /// Speed at which the gate begins to open, m/s (the paper's 1 mm/s). Zero means always open.
     pub threshold_m_s: f64,
-    open: bool,
+    /// The speed that counts, m/s.
+    counted_m_s: f64,
 }
 
 impl DeadBand {
     /// A closed gate with this threshold (m/s).
     pub const fn new(threshold_m_s: f64) -> Self {
-        Self { threshold_m_s, open: false }
+        Self { threshold_m_s, counted_m_s: 0.0 }
     }
 
     /// Share of the force that passes at this speed (m/s), 0 to 1. A speed that is not a number closes the gate.
@@ -22,16 +24,12 @@ impl DeadBand {
             return 1.0;
         }
         if !speed_m_s.is_finite() {
-            self.open = false;
+            self.counted_m_s = 0.0;
             return 0.0;
         }
-        let closing_below = if self.open { 0.5 } else { 1.0 } * self.threshold_m_s;
-        self.open = speed_m_s >= closing_below;
-        if !self.open {
-            return 0.0;
-        }
-        // Smoothstep from the closing edge to twice the threshold: no step in force at either end.
-        let s = ((speed_m_s - 0.5 * self.threshold_m_s) / (1.5 * self.threshold_m_s)).clamp(0.0, 1.0);
+        let play_m_s = 0.5 * self.threshold_m_s;
+        self.counted_m_s = self.counted_m_s.clamp(speed_m_s, speed_m_s + play_m_s);
+        let s = (self.counted_m_s / self.threshold_m_s - 1.0).clamp(0.0, 1.0);
         s * s * (3.0 - 2.0 * s)
     }
 }
@@ -48,6 +46,18 @@ mod tests {
         assert!(gate.step(0.7e-3) > 0.0, "hysteresis keeps it open down to half the threshold");
         assert!(gate.step(0.4e-3).abs() < f64::EPSILON);
         assert!(gate.step(0.7e-3).abs() < f64::EPSILON, "and closed until the threshold is reached again");
+    }
+
+    #[test]
+    fn it_never_jumps() {
+        let mut gate = DeadBand::new(1e-3);
+        let mut last = 0.0;
+        for i in 0..20_000 {
+            // Up and down through both edges, in steps of at most 0.3 um/s.
+            let share = gate.step(1.5e-3 * (1.0 - (f64::from(i) * 2e-4).cos()));
+            assert!((share - last).abs() < 1e-3, "from {last} to {share}");
+            last = share;
+        }
     }
 
     #[test]

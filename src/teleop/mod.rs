@@ -172,6 +172,8 @@ impl Loop {
                 self.chain.set_static_hold(hold);
                 true
             }
+            // A fault is not released while its cause lives.
+            Command::ReleaseStop if self.is_silent(t_s) => false,
             Command::Engage | Command::Stop | Command::ReleaseStop => match self.state.after(command) {
                 Some(next) => {
                     self.go(next, t_s);
@@ -233,9 +235,13 @@ impl Loop {
         (outputs, tick)
     }
 
+    fn is_silent(&self, now_s: f64) -> bool {
+        now_s - self.last_input_s > SILENT_AFTER_S
+    }
+
     fn watch(&mut self, inputs: Option<&Inputs>, timing: &Timing) {
         let silent = !inputs.is_some_and(Inputs::is_finite);
-        if silent && timing.now_s - self.last_input_s > SILENT_AFTER_S {
+        if silent && self.is_silent(timing.now_s) {
             self.fail(Fault::SourceSilent, timing.now_s);
         }
         if timing.missed_now as f64 / self.rate_hz > STALLED_AFTER_S {

@@ -63,8 +63,9 @@ fn quality_ui(ui: &mut Ui, live: &Live) {
     figure(
         ui,
         "Rank",
-        format!("{} of {}", report.rank.min(report.columns), report.columns),
-        "Motion columns that carry information, of those the chosen model uses (three per degree: position, velocity, acceleration).",
+        format!("{} of {}, {} used", report.rank, 3 * live.rig.identification.max_degree, report.columns),
+        "Motion columns with enough excitation in the window to carry information, of all (three per degree: position, velocity, \
+         acceleration); the others are left out: the ridge gives them no weight. Used: columns of the model chosen now.",
     );
     let excitation = &report.excitation;
     figure(

@@ -24,7 +24,7 @@ pub enum ConfigError {
         known: String,
     },
     /// The file could not be read.
-    #[error("cannot read {kind} file {path}: {source}")]
+    #[error("cannot read {kind} file {path}")]
     Read {
         /// `rig` or `scene`.
         kind: &'static str,

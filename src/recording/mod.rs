@@ -25,12 +25,12 @@ pub const AXIS_NAMES: [&str; AXES] = ["x", "y", "z"];
 #[derive(Debug, thiserror::Error)]
 pub enum RecordingError {
     /// The file could not be opened.
-    #[error("cannot read recording {path}: {source}")]
+    #[error("cannot read recording {path}: {reason}")]
     Open {
         /// Its path.
         path: PathBuf,
-        /// Why.
-        source: csv::Error,
+        /// Why, in the reader's words (which name their own source already).
+        reason: String,
     },
     /// A row could not be read.
     #[error("recording {path}: {message}")]

@@ -22,7 +22,7 @@ pub(super) struct Column {
 
 impl Table {
     pub(super) fn read(path: &Path) -> Result<Self, RecordingError> {
-        let open = |source| RecordingError::Open { path: path.to_owned(), source };
+        let open = |error: csv::Error| RecordingError::Open { path: path.to_owned(), reason: error.to_string() };
         let mut reader = ReaderBuilder::new().trim(Trim::All).comment(Some(b'#')).from_path(path).map_err(open)?;
         let header = reader.headers().map_err(open)?.clone();
         let mut rows = Vec::new();

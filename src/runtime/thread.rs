@@ -31,7 +31,7 @@ pub enum StartError {
     #[error(transparent)]
     Settings(#[from] SettingsError),
     /// The operating system gave no thread.
-    #[error("the real-time thread could not be started: {0}")]
+    #[error("the real-time thread could not be started")]
     Thread(#[from] io::Error),
 }
 

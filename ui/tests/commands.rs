@@ -170,7 +170,7 @@ fn identify_refuses_bad_recordings_and_writes_nothing() {
         refused(&arguments, words);
         assert!(!out.exists(), "something was written");
     };
-    refuse(&folder.path().join("none.csv"), &[], &["none.csv"]);
+    refuse(&folder.path().join("none.csv"), &[], &["none.csv", "No such file"]);
     refuse(&good, &["--map", "x=px"], &["px", "t_s, x_m, fx_n"]);
     refuse(&good, &["--map", "w=px"], &["w=px"]);
     refuse(&nan, &[], &["line 702", "NaN"]);
@@ -221,6 +221,8 @@ fn run_refuses_what_it_cannot_run() {
     let path = folder.path().join("broken.toml");
     std::fs::write(&path, "name = \"x\"\nseed = maybe\n").unwrap();
     refused(&["run", "--scene", path.to_str().unwrap()], &["broken.toml", "line 2"]);
+    let line = refused(&["run", "--scene", folder.path().to_str().unwrap()], &["cannot read scene file"]);
+    assert_eq!(line.matches("os error").count(), 1, "said twice: {line}");
 }
 
 #[test]

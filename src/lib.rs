@@ -1,11 +1,13 @@
 //! The machine of NIMA Console: everything between a surgeon's hand and the tissue, without a screen.
 //!
 //! Rooms know only the rooms below them:
-//! `frames, signal` < `impedance, safety` < `device, sim` < `teleop` < `runtime` < `recording, study`.
+//! `frames, signal` < `calibration, tip_force, impedance, safety` < `device, sim` < `teleop` < `runtime` < `recording, study`.
 //! SI units inside (m, s, N, rad); a name carries its unit and frame where the type does not.
 
+pub mod calibration;
 pub mod config;
 pub mod device;
+pub mod frames;
 pub mod impedance;
 pub mod recording;
 pub mod runtime;
@@ -14,3 +16,4 @@ pub mod signal;
 pub mod sim;
 pub mod study;
 pub mod teleop;
+pub mod tip_force;

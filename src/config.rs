@@ -1,9 +1,13 @@
 //! Rig and scene files (TOML). An unknown key is an error; what a scene does not list is not computed.
 
+mod wrist;
+
 use std::path::{Path, PathBuf};
 
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
+
+pub use wrist::{Flaw, Imu, Person, TissueSensor, Trocar, Wrist};
 
 use crate::{
     impedance::{MAX_DEGREE, MAX_DELAY_S, Mode, Scales, Settings},
@@ -126,8 +130,16 @@ pub struct Scene {
     pub leader: Option<Leader>,
     /// Tracking lag of the follower; without it the tip is where it is commanded.
     pub follower: Option<Follower>,
-    /// Noise of the force sensor.
+    /// Noise of the force sensor at the tip. Left out where a wrist sensor measures instead.
     pub sensor: Option<Sensor>,
+    /// Wrist sensor and tool; without it the force at the tip is measured there.
+    pub wrist: Option<Wrist>,
+    /// Friction where the instrument passes the body wall.
+    pub trocar: Option<Trocar>,
+    /// The sensor under the tissue.
+    pub tissue_sensor: Option<TissueSensor>,
+    /// Somebody at the arm, for calibration: then the loop's commands do not move it.
+    pub person: Option<Person>,
 }
 
 /// The simulated surgeon's hand.
@@ -201,9 +213,14 @@ pub struct Sensor {
 }
 
 const RIGS: [(&str, &str); 1] = [("simulated", include_str!("../config/rigs/simulated.toml"))];
-const SCENES: [(&str, &str); 2] = [
+const SCENES: [(&str, &str); 7] = [
     ("peg_transfer", include_str!("../config/scenes/peg_transfer.toml")),
     ("free_motion", include_str!("../config/scenes/free_motion.toml")),
+    ("palpation", include_str!("../config/scenes/palpation.toml")),
+    ("gravity", include_str!("../config/scenes/gravity.toml")),
+    ("correspondence", include_str!("../config/scenes/correspondence.toml")),
+    ("isolation", include_str!("../config/scenes/isolation.toml")),
+    ("no_contact", include_str!("../config/scenes/no_contact.toml")),
 ];
 
 /// The text of a file or an embedded name, and where it came from.
@@ -360,7 +377,14 @@ impl Scene {
         if let Some(follower) = &self.follower {
             ranges.positive("follower.bandwidth_hz", follower.bandwidth_hz)?;
         }
-        self.sensor.as_ref().map_or(Ok(()), |sensor| ranges.not_negative("sensor.noise_n", sensor.noise_n))
+        self.sensor.as_ref().map_or(Ok(()), |sensor| ranges.not_negative("sensor.noise_n", sensor.noise_n))?;
+        self.wrist.as_ref().map_or(Ok(()), |wrist| wrist.validate(&ranges))?;
+        self.trocar.as_ref().map_or(Ok(()), |trocar| trocar.validate(&ranges))?;
+        self.tissue_sensor.as_ref().map_or(Ok(()), |sensor| sensor.validate(&ranges))?;
+        // What hangs on the wrist is felt there and nowhere else.
+        let needs_wrist = self.trocar.is_some() || self.tissue_sensor.is_some() || self.person.is_some();
+        let wrists = if self.wrist.is_some() { 1.0 } else { 0.0 };
+        ranges.check("number of [wrist] parts", wrists, self.wrist.is_some() || !needs_wrist, "1 with these parts")
     }
 }
 

@@ -4,7 +4,7 @@
 use nalgebra::Vector3;
 use nima::{
     config::{Rig, Scene},
-    device::{Inputs, Outputs, Rig as _},
+    device::{Inputs, Outputs, Rig as _, Sensed},
     impedance::Mode,
     runtime::{Command, Event, Fault, Plan, Summary, Tick, run_virtual},
     sim::World,
@@ -134,7 +134,7 @@ impl Bench {
 
 #[test]
 fn a_silent_or_poisoned_source_takes_the_force_away_within_20_ms_and_latches() {
-    let poison = |inputs: Inputs| Some(Inputs { force_n: Vector3::repeat(f64::NAN), ..inputs });
+    let poison = |inputs: Inputs| Some(Inputs { sensed: Sensed::AtTip(Vector3::repeat(f64::NAN)), ..inputs });
     for edit in [&poison as &dyn Fn(Inputs) -> Option<Inputs>, &|_| None] {
         for mode in Mode::ALL {
             let mut bench = Bench::until_contact(mode);

@@ -3,7 +3,23 @@
 //! Positions in m, forces in N, both in the workspace frame (z up). A rig that cannot deliver a sample says so with
 //! `None`; it never repeats an old one as new.
 
+mod prompt;
+
 use nalgebra::Vector3;
+
+pub use prompt::Prompt;
+
+use crate::frames::WristSample;
+
+/// Where the force on the instrument is measured.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[expect(clippy::large_enum_variant, reason = "made and used within one tick, where a box would be an allocation")]
+pub enum Sensed {
+    /// At the tip: the force of the tissue on it, N.
+    AtTip(Vector3<f64>),
+    /// At the wrist: with weight, friction and bias in it, which calibrations take out.
+    AtWrist(WristSample),
+}
 
 /// One exchange's worth of measurements of an arm pair.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -12,14 +28,18 @@ pub struct Inputs {
     pub leader_m: Vector3<f64>,
     /// Position of the instrument's tip, m.
     pub tip_m: Vector3<f64>,
-    /// Force of the tissue on the tip, N.
-    pub force_n: Vector3<f64>,
+    /// What the force sensor says.
+    pub sensed: Sensed,
 }
 
 impl Inputs {
     /// Every number in it is finite.
     pub fn is_finite(&self) -> bool {
-        [&self.leader_m, &self.tip_m, &self.force_n].into_iter().all(|v| v.iter().all(|x| x.is_finite()))
+        let sensed = match &self.sensed {
+            Sensed::AtTip(force_n) => force_n.iter().all(|x| x.is_finite()),
+            Sensed::AtWrist(sample) => sample.is_finite(),
+        };
+        sensed && self.leader_m.iter().chain(self.tip_m.iter()).all(|x| x.is_finite())
     }
 }
 
@@ -30,11 +50,14 @@ pub struct Outputs {
     pub tip_command_m: Option<Vector3<f64>>,
     /// Force on the hand, N. Has passed every gate.
     pub hand_force_n: Vector3<f64>,
+    /// What the screen asks of the person at the arm.
+    pub prompt: Prompt,
 }
 
 impl Outputs {
     /// The safe outputs: no force, a resting follower.
-    pub const SAFE: Self = Self { tip_command_m: None, hand_force_n: Vector3::new(0.0, 0.0, 0.0) };
+    pub const SAFE: Self =
+        Self { tip_command_m: None, hand_force_n: Vector3::new(0.0, 0.0, 0.0), prompt: Prompt::Rest };
 }
 
 /// A leader, a follower and a force sensor that belong together. Owned by the real-time thread.

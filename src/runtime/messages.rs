@@ -3,9 +3,11 @@
 use nalgebra::Vector3;
 
 use crate::{
+    device::Prompt,
+    frames::WristSample,
     impedance::Mode,
     safety::{ChainSettings, GateReport},
-    teleop::LoopState,
+    teleop::{ForceReport, LoopState},
 };
 
 /// What a screen (or a script) may ask of the loop. Applied at the start of a tick, in order, at most a few per tick.
@@ -23,7 +25,9 @@ pub enum Command {
     SetDeadBand(f64),
     /// Keep rendering at standstill (true) or fade to zero in the dead band as the paper does (false).
     SetStaticHold(bool),
-    /// Start force feedback and motion, from idle only.
+    /// Ask the person at the arm for something while calibrating; in idle only.
+    Prompt(Prompt),
+    /// Start force feedback and motion, from idle only. Refused while the force at the tip is not known.
     Engage,
     /// Zero force and a resting follower at once; latched until released.
     Stop,
@@ -52,6 +56,12 @@ pub struct Tick {
     pub tip_m: Vector3<f64>,
     /// Tip force as measured at the follower now, N (on the instrument).
     pub measured_n: Vector3<f64>,
+    /// How the tip force was made.
+    pub force: ForceReport,
+    /// What the wrist sensor and its neighbours read, where the rig has one.
+    pub wrist: Option<WristSample>,
+    /// What the person at the arm is asked to do.
+    pub prompt: Prompt,
     /// The same force as the link delivers it now: delayed DFR, N.
     pub delayed_n: Vector3<f64>,
     /// What each mode asks for at this tick before the gates, N, indexed by [`Mode::index`].
@@ -84,6 +94,8 @@ pub enum Fault {
         /// Periods missed at once.
         periods: u64,
     },
+    /// Engaged, and the force at the tip is not known: a calibration or what it needs is missing.
+    ForceUnknown,
 }
 
 impl Fault {
@@ -92,6 +104,7 @@ impl Fault {
         match self {
             Self::SourceSilent => "The rig sent no valid sample for 20 ms",
             Self::LoopStalled { .. } => "The control loop was held up for more than 50 ms",
+            Self::ForceUnknown => "The force at the tip is not known: the wrist sensor is not calibrated for this tool",
         }
     }
 
@@ -102,6 +115,7 @@ impl Fault {
             Self::LoopStalled { .. } => {
                 "Close other programs or grant real-time priority, then release the stop and engage again"
             }
+            Self::ForceUnknown => "Calibrate gravity (Calibrate, Gravity), then release the stop and engage again",
         }
     }
 }

@@ -14,15 +14,15 @@ const TREMOR_HZ: [f64; 3] = [8.3, 9.7, 11.6];
 
 /// One part of the task: minimum-jerk from one point to another within a time.
 #[derive(Clone, Copy, Debug)]
-struct Move {
-    from_m: Vector3<f64>,
-    to_m: Vector3<f64>,
-    seconds: f64,
+pub(super) struct Move {
+    pub(super) from_m: Vector3<f64>,
+    pub(super) to_m: Vector3<f64>,
+    pub(super) seconds: f64,
 }
 
 impl Move {
     /// Intended position (m) and velocity (m/s) after `t_s` of the move (Flash and Hogan 1985).
-    fn at(&self, t_s: f64) -> (Vector3<f64>, Vector3<f64>) {
+    pub(super) fn at(&self, t_s: f64) -> (Vector3<f64>, Vector3<f64>) {
         if self.seconds <= 0.0 {
             return (self.to_m, Vector3::zeros());
         }

@@ -6,17 +6,23 @@
 
 mod hand;
 mod noise;
+mod person;
 mod tissue;
+mod trocar;
+mod wrist;
 
-use nalgebra::Vector3;
+use nalgebra::{UnitQuaternion, Vector3};
+use person::Person;
+use wrist::{Loads, Wrist, along_shaft};
 
 pub use hand::Hand;
 pub use noise::Noise;
 pub use tissue::Tissue;
+pub use trocar::Trocar;
 
 use crate::{
     config::{Follower, Leader, Scene},
-    device::{Inputs, Outputs, Rig},
+    device::{Inputs, Outputs, Prompt, Rig, Sensed},
 };
 
 /// The simulated rig: one hand, one leader, one follower, one sensor.
@@ -29,6 +35,12 @@ pub struct World {
     follower: Option<Follower>,
     tissue: Option<Tissue>,
     sensor_noise_n: Option<(f64, Noise)>,
+    wrist: Option<Wrist>,
+    trocar: Option<Trocar>,
+    trocar_m: Vector3<f64>,
+    person: Option<Person>,
+    prompt: Prompt,
+    true_tip_n: Vector3<f64>,
     tip_m: Vector3<f64>,
     tip_velocity_m_s: Vector3<f64>,
     command_m: Vector3<f64>,
@@ -52,6 +64,12 @@ impl World {
             follower: scene.follower,
             tissue: scene.tissue.map(Tissue::new),
             sensor_noise_n: scene.sensor.map(|sensor| (sensor.noise_n, Noise::new(scene.seed ^ 0x5e_50))),
+            wrist: scene.wrist.as_ref().map(|wrist| Wrist::new(wrist, scene.tissue_sensor, scene.seed ^ 0x77_51)),
+            trocar: scene.trocar.map(|trocar| Trocar::new(trocar, scene.trocar_m)),
+            trocar_m: scene.trocar_m,
+            person: scene.person.map(|person| Person::new(person, scene)),
+            prompt: Prompt::Rest,
+            true_tip_n: Vector3::zeros(),
             tip_m: start_m,
             tip_velocity_m_s: Vector3::zeros(),
             command_m: start_m,
@@ -63,6 +81,11 @@ impl World {
     /// The hand, for what only a simulation knows.
     pub const fn hand(&self) -> &Hand {
         &self.hand
+    }
+
+    /// Force on the tip in the last measurement without any sensor's error, N (`kbf`): what only a simulation knows.
+    pub const fn true_tip_n(&self) -> Vector3<f64> {
+        self.true_tip_n
     }
 
     fn accept(&mut self, outputs: &Outputs) {
@@ -81,6 +104,7 @@ impl World {
             Some(command) if command.iter().all(|x| x.is_finite()) => command,
             _ => self.tip_m,
         };
+        self.prompt = if outputs.prompt.is_finite() { outputs.prompt } else { Prompt::Rest };
     }
 
     fn advance(&mut self, dt_s: f64) {
@@ -89,6 +113,19 @@ impl World {
             self.hand.advance(dt_s / substeps, &self.hand_force_n);
         }
         self.time_s += dt_s;
+        match &mut self.person {
+            Some(person) => {
+                person.advance(&self.prompt, dt_s);
+                (self.tip_m, self.tip_velocity_m_s) = person.tip();
+            }
+            None => self.follow(dt_s),
+        }
+        if let Some(trocar) = &mut self.trocar {
+            trocar.advance(&self.tip_m, dt_s);
+        }
+    }
+
+    fn follow(&mut self, dt_s: f64) {
         let Some(Follower { bandwidth_hz }) = self.follower else {
             self.tip_velocity_m_s = (self.command_m - self.tip_m) / dt_s;
             self.tip_m = self.command_m;
@@ -103,19 +140,47 @@ impl World {
         self.tip_velocity_m_s = (velocity - slope * (omega * dt_s)) * decay;
     }
 
-    fn measure(&mut self) -> Inputs {
-        let mut force_n = match &mut self.tissue {
+    /// Force of the tissue, or of whoever pushes, on the tip, N; call once a step.
+    fn contact_n(&mut self) -> Vector3<f64> {
+        let tissue_n = match &mut self.tissue {
             Some(tissue) => tissue.contact_n(&self.tip_m, &self.tip_velocity_m_s),
             None => Vector3::zeros(),
         };
-        if let Some((sigma_n, noise)) = &mut self.sensor_noise_n {
-            force_n += Vector3::from_fn(|_, _| *sigma_n * noise.gaussian());
+        tissue_n + self.person.as_ref().map_or_else(Vector3::zeros, Person::push_n)
+    }
+
+    fn kbf_from_s1(&self) -> UnitQuaternion<f64> {
+        match &self.person {
+            Some(person) => person.kbf_from_s1(),
+            None => along_shaft(&trocar::shaft(&self.trocar_m, &self.tip_m).0),
         }
+    }
+
+    fn sense(&mut self) -> Sensed {
+        let tip_n = self.contact_n();
+        self.true_tip_n = tip_n;
+        let kbf_from_s1 = self.kbf_from_s1();
+        if let Some(wrist) = &mut self.wrist {
+            let wall = self.trocar.as_ref().map(|trocar| (trocar.force_n(), trocar.shaft(&self.tip_m).1));
+            let person = self.person.as_ref();
+            let touch_n = person.map_or_else(Vector3::zeros, Person::touch_n);
+            let stand_n = person.map_or_else(Vector3::zeros, Person::stand_n);
+            return Sensed::AtWrist(wrist.measure(&kbf_from_s1, &Loads { tip_n, wall, touch_n, stand_n }));
+        }
+        let noise_n = match &mut self.sensor_noise_n {
+            Some((sigma_n, noise)) => Vector3::from_fn(|_, _| *sigma_n * noise.gaussian()),
+            None => Vector3::zeros(),
+        };
+        Sensed::AtTip(tip_n + noise_n)
+    }
+
+    fn measure(&mut self) -> Inputs {
+        let sensed = self.sense();
         let hand_m = self.hand.position_m();
         let leader_m = self
             .leader
             .map_or(hand_m, |Leader { resolution_m, .. }| hand_m.map(|x| (x / resolution_m).round() * resolution_m));
-        Inputs { leader_m, tip_m: self.tip_m, force_n }
+        Inputs { leader_m, tip_m: self.tip_m, sensed }
     }
 }
 
@@ -138,6 +203,13 @@ impl Rig for World {
 mod tests {
     use super::*;
 
+    fn force_n(inputs: &Inputs) -> Vector3<f64> {
+        match inputs.sensed {
+            Sensed::AtTip(force_n) => force_n,
+            Sensed::AtWrist(sample) => panic!("a wrist in a scene without one: {sample:?}"),
+        }
+    }
+
     fn run(scene: &Scene, seconds: f64) -> Vec<Inputs> {
         let mut world = World::new(scene, 1000.0);
         let mut outputs = Outputs::SAFE;
@@ -153,9 +225,9 @@ mod tests {
     #[test]
     fn peg_transfer_presses_with_a_few_newtons_and_lets_go() {
         let inputs = run(&Scene::load("peg_transfer").unwrap(), 20.0);
-        let peak_n = inputs.iter().map(|i| i.force_n.z).fold(0.0, f64::max);
+        let peak_n = inputs.iter().map(|i| force_n(i).z).fold(0.0, f64::max);
         assert!((1.0..6.0).contains(&peak_n), "peak {peak_n} N");
-        let free = inputs.iter().filter(|i| i.force_n.norm() < 0.1).count();
+        let free = inputs.iter().filter(|i| force_n(i).norm() < 0.1).count();
         assert!(free * 4 > inputs.len(), "a good part of the task is in free space: {free}");
         let travel_m = inputs.iter().map(|i| i.tip_m.x).fold(0.0, f64::max);
         assert!(travel_m > 0.025, "it reaches the far pegs: {travel_m}");
@@ -170,7 +242,7 @@ mod tests {
     #[test]
     fn free_motion_measures_noise_only() {
         let inputs = run(&Scene::load("free_motion").unwrap(), 10.0);
-        let mean = inputs.iter().map(|i| i.force_n).sum::<Vector3<f64>>() / inputs.len() as f64;
+        let mean = inputs.iter().map(force_n).sum::<Vector3<f64>>() / inputs.len() as f64;
         assert!(mean.norm() < 0.002, "{mean}");
     }
 
@@ -179,7 +251,7 @@ mod tests {
         let mut scene = Scene::load("peg_transfer").unwrap();
         (scene.tissue, scene.leader, scene.follower, scene.sensor) = (None, None, None, None);
         let inputs = run(&scene, 5.0);
-        assert!(inputs.iter().all(|i| i.force_n == Vector3::zeros()));
+        assert!(inputs.iter().all(|i| force_n(i) == Vector3::zeros()));
         assert!(inputs.windows(2).all(|pair| pair[1].tip_m == pair[0].leader_m));
     }
 
@@ -189,7 +261,7 @@ mod tests {
         let pushed = |force_n| {
             let mut world = World::new(&scene, 1000.0);
             for i in 0..500 {
-                world.exchange(f64::from(i) * 1e-3, &Outputs { tip_command_m: None, hand_force_n: force_n });
+                world.exchange(f64::from(i) * 1e-3, &Outputs { hand_force_n: force_n, ..Outputs::SAFE });
             }
             world.hand().position_m()
         };

@@ -5,6 +5,7 @@
 //! construction. Bad input (missing or not finite) means no force at once and a fault if it lasts.
 
 mod accuracy;
+mod force_path;
 mod link;
 mod state;
 mod tracking;
@@ -12,13 +13,14 @@ mod tracking;
 use nalgebra::Vector3;
 
 pub use accuracy::{Accuracy, ErrorStats};
+pub use force_path::{ForcePath, ForceReport, ForceSource};
 pub use link::Link;
 pub use state::LoopState;
 pub use tracking::Tracking;
 
 use crate::{
     config::Rig as RigConfig,
-    device::{Inputs, Outputs},
+    device::{Inputs, Outputs, Prompt, Sensed},
     impedance::{Identifier, MAX_DELAY_S, Mode, Rendered, Renderer, Sample, SettingsError},
     runtime::{Command, Event, Fault, Tick},
     safety::{Chain, Request},
@@ -54,6 +56,9 @@ pub struct Loop {
     follower_step_max_m: f64,
     identifier: Identifier,
     renderer: Renderer,
+    force_path: ForcePath,
+    force: ForceReport,
+    prompt: Prompt,
     link: Link,
     tracking: Tracking,
     chain: Chain,
@@ -79,6 +84,9 @@ impl Loop {
             follower_step_max_m: rig.follower_speed_max_m_s / rig.rate_hz,
             identifier: Identifier::new(&settings)?,
             renderer: Renderer::new(&settings)?,
+            force_path: ForcePath::default(),
+            force: NO_FORCE_YET,
+            prompt: Prompt::Rest,
             link: Link::new(rig.rate_hz, rig.delay_s),
             tracking: Tracking::new(rig.rate_hz),
             chain: Chain::new(rig.gates, 1.0 / rig.rate_hz),
@@ -133,6 +141,7 @@ impl Loop {
             // Entering any state starts from no force; only an engaged loop builds it up again, under the slew limit.
             self.chain.reset();
             self.command_m = None;
+            self.prompt = Prompt::Rest;
         }
     }
 
@@ -172,6 +181,13 @@ impl Loop {
                 self.chain.set_static_hold(hold);
                 true
             }
+            // Whoever is asked to handle the arm must be safe from it.
+            Command::Prompt(prompt) if self.state == LoopState::Idle && prompt.is_finite() => {
+                self.prompt = prompt;
+                true
+            }
+            // A force that is mostly weight and bias must never reach a hand.
+            Command::Engage if !self.force.source.is_usable() => false,
             // A fault is not released while its cause lives.
             Command::ReleaseStop if self.is_silent(t_s) => false,
             Command::Engage | Command::Stop | Command::ReleaseStop => match self.state.after(command) {
@@ -205,10 +221,14 @@ impl Loop {
         let seen = match inputs.filter(Inputs::is_finite) {
             Some(inputs) => {
                 self.measure_speed(&inputs, now_s);
-                self.identifier.step(&Sample { t_s: now_s, position_m: inputs.tip_m, force_n: inputs.force_n });
+                self.force = self.force_path.step(&inputs.sensed);
+                self.identifier.step(&Sample { t_s: now_s, position_m: inputs.tip_m, force_n: self.force.tip_n });
                 self.link.send(self.identifier.parcel());
                 self.last_inputs = Some(inputs);
                 self.last_input_s = now_s;
+                if self.state == LoopState::Engaged && !self.force.source.is_usable() {
+                    self.fail(Fault::ForceUnknown, now_s);
+                }
                 inputs
             }
             // Nothing new: the link keeps delivering what is on its way, ever older; the age gate takes the force away.
@@ -224,12 +244,12 @@ impl Loop {
             force_n: rendered.force(self.mode),
             age_s,
             speed_m_s: self.hand_speed_m_s,
-            permitted: self.state == LoopState::Engaged,
+            permitted: self.state == LoopState::Engaged && self.force.source.is_usable(),
         });
         if inputs.is_some() {
-            self.accuracy.add(&rendered, &seen.force_n);
+            self.accuracy.add(&rendered, &self.force.tip_n);
         }
-        let outputs = Outputs { tip_command_m, hand_force_n };
+        let outputs = Outputs { tip_command_m, hand_force_n, prompt: self.prompt };
         let tick = self.tick(&seen, &rendered, delayed_n, hand_force_n, gates, timing);
         self.ticks += 1;
         (outputs, tick)
@@ -300,7 +320,13 @@ impl Loop {
             delay_s: self.delay_s,
             leader_m: seen.leader_m,
             tip_m: seen.tip_m,
-            measured_n: seen.force_n,
+            measured_n: self.force.tip_n,
+            force: self.force,
+            wrist: match seen.sensed {
+                Sensed::AtTip(_) => None,
+                Sensed::AtWrist(sample) => Some(sample),
+            },
+            prompt: self.prompt,
             delayed_n,
             asked_n: Mode::ALL.map(|mode| rendered.force(mode).unwrap_or_else(Vector3::zeros)),
             rendered_n,
@@ -319,5 +345,9 @@ impl Loop {
 const NOTHING_YET: Inputs = Inputs {
     leader_m: Vector3::new(0.0, 0.0, 0.0),
     tip_m: Vector3::new(0.0, 0.0, 0.0),
-    force_n: Vector3::new(0.0, 0.0, 0.0),
+    sensed: Sensed::AtTip(Vector3::new(0.0, 0.0, 0.0)),
 };
+
+/// Until the first sample: an absent force is no usable force, and a rig that measures at the tip shows so at once.
+const NO_FORCE_YET: ForceReport =
+    ForceReport { source: ForceSource::AtTip, tip_n: Vector3::new(0.0, 0.0, 0.0), gravity_free: None };

@@ -2,7 +2,7 @@
 
 use crate::{
     config::Scene,
-    device::{Outputs, Rig as _},
+    device::{Outputs, Rig as _, Sensed},
     impedance::{AXES, Sample},
     recording::Recording,
     sim::World,
@@ -31,7 +31,12 @@ impl Source {
             let t_s = k as f64 / rate_hz;
             if let Some(inputs) = world.exchange(t_s, &outputs) {
                 outputs.tip_command_m = Some(inputs.leader_m);
-                samples.push(Sample { t_s, position_m: inputs.tip_m, force_n: inputs.force_n });
+                // Identification is compared here, not the way to the tip force: a wrist's scene gives its true one.
+                let force_n = match inputs.sensed {
+                    Sensed::AtTip(force_n) => force_n,
+                    Sensed::AtWrist(_) => world.true_tip_n(),
+                };
+                samples.push(Sample { t_s, position_m: inputs.tip_m, force_n });
             }
         }
         let recording = Recording { path: scene.name.clone().into(), axes: (0..AXES).collect(), rate_hz, samples };

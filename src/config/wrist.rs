@@ -1,0 +1,156 @@
+//! The parts of a scene around the wrist: sensor and tool, trocar, the sensor under the tissue, and the person at the arm.
+
+use nalgebra::Vector3;
+use serde::{Deserialize, Serialize};
+
+use super::{ConfigError, Ranges};
+
+/// A force-torque sensor (`s1`) between arm and instrument, and the tool that hangs on it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Wrist {
+    /// Serial number of the sensor: calibrations are bound to it.
+    pub serial: String,
+    /// Name of the tool: calibrations are bound to it.
+    pub tool: String,
+    /// Mass of the tool beyond the sensor, kg.
+    pub tool_mass_kg: f64,
+    /// Its centre of mass, m (`s1`).
+    pub com_m: Vector3<f64>,
+    /// From the sensor's origin along the shaft (z of `s1`) to the tip, m.
+    pub shaft_m: f64,
+    /// Reading without any load, N.
+    pub force_bias_n: Vector3<f64>,
+    /// Reading without any load, Nm.
+    pub torque_bias_nm: Vector3<f64>,
+    /// What the sensor reads per N along x, y, z; 1 is right.
+    pub gain: Vector3<f64>,
+    /// Standard deviation of white noise per sample and axis, N.
+    pub force_noise_n: f64,
+    /// Standard deviation of white noise per sample and axis, Nm.
+    pub torque_noise_nm: f64,
+    /// The inertial unit inside; first-generation serial sensors have none.
+    pub imu: Option<Imu>,
+}
+
+/// The accelerometer inside the wrist sensor. At rest it reads `+g` away from the ground, opposite to the tool's weight.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Imu {
+    /// Mounting inside the sensor: roll, pitch, yaw of `s1_from_imu`, degrees.
+    pub s1_from_imu_deg: Vector3<f64>,
+    /// Constant error, m/s^2 (`imu`).
+    pub bias_m_s2: Vector3<f64>,
+    /// Standard deviation of white noise per sample and axis, m/s^2.
+    pub noise_m_s2: f64,
+    /// It reads towards the ground instead, as some drivers do.
+    #[serde(default)]
+    pub reads_gravity: bool,
+}
+
+/// Friction and support where the instrument passes the body wall.
+///
+/// Along the shaft the `LuGre` model (Canudas de Wit et al. 1995): sticks elastically, breaks away at `static_n`, slides at
+/// `coulomb_n` plus a viscous part; both grow with the sideways load. Across it the wall pushes a tilted shaft back and rubs.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Trocar {
+    /// Sliding friction along the shaft, N.
+    pub coulomb_n: f64,
+    /// Friction at which it breaks away, N; not below `coulomb_n`.
+    pub static_n: f64,
+    /// Speed at which the static part has faded, m/s.
+    pub stribeck_m_s: f64,
+    /// Viscous friction along the shaft, N s/m.
+    pub viscous_n_s_m: f64,
+    /// Stretch of the seal before it slides, m.
+    pub presliding_m: f64,
+    /// Friction added per N of sideways load.
+    pub friction_per_load: f64,
+    /// Sideways force of the wall per unit of tilt (sine of the angle from straight down), N.
+    pub wall_n: f64,
+    /// Sliding friction across the shaft, N.
+    pub across_n: f64,
+}
+
+/// The sensor under the tissue (`s2`), the tracker's camera and the instrument's marker: only there while calibrating.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct TissueSensor {
+    /// How the sensor lies: roll, pitch, yaw of `kbf_from_s2`, degrees.
+    pub kbf_from_s2_deg: Vector3<f64>,
+    /// Where the camera looks: roll, pitch, yaw of `kbf_from_c`, degrees.
+    pub kbf_from_c_deg: Vector3<f64>,
+    /// How the marker sits on the instrument: roll, pitch, yaw of `s1_from_m`, degrees.
+    pub s1_from_m_deg: Vector3<f64>,
+    /// Standard deviation of white noise per sample and axis, N.
+    pub noise_n: f64,
+    /// Standard deviation of the tracker's orientation about each axis, degrees.
+    pub tracker_noise_deg: f64,
+}
+
+/// Somebody who guides the arm by hand and does what the screen asks.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Person {
+    /// What the person does wrong, if anything: bad data on purpose, to see that they are refused.
+    pub flaw: Option<Flaw>,
+}
+
+/// Mistakes that calibrations must notice.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Flaw {
+    /// Keeps a hand on the tool while the sensor is read.
+    Touches,
+    /// Never holds still.
+    Trembles,
+    /// Leaves the tool where it is, whatever orientation is asked for.
+    KeepsOneOrientation,
+    /// Pushes along one line, whatever direction is asked for.
+    PushesOneLine,
+    /// Pushes within one plane, whatever direction is asked for.
+    PushesOnePlane,
+    /// Pulls at the tissue's stand now and then: the two sensors do not feel the same.
+    LeansOnTheStand,
+}
+
+impl Wrist {
+    pub(super) fn validate(&self, ranges: &Ranges<'_>) -> Result<(), ConfigError> {
+        ranges.positive("wrist.tool_mass_kg", self.tool_mass_kg)?;
+        ranges.positive("wrist.shaft_m", self.shaft_m)?;
+        let vectors =
+            [&self.com_m, &self.force_bias_n, &self.torque_bias_nm].into_iter().flat_map(Vector3::iter).sum::<f64>();
+        ranges.check("wrist: sum of com_m and biases", vectors, true, "finite")?;
+        ranges.positive("wrist.gain", self.gain.min())?;
+        ranges.not_negative("wrist.force_noise_n", self.force_noise_n)?;
+        ranges.not_negative("wrist.torque_noise_nm", self.torque_noise_nm)?;
+        self.imu.map_or(Ok(()), |imu| {
+            let all = imu.s1_from_imu_deg.sum() + imu.bias_m_s2.sum();
+            ranges.check("wrist.imu: sum of angles and bias", all, true, "finite")?;
+            ranges.not_negative("wrist.imu.noise_m_s2", imu.noise_m_s2)
+        })
+    }
+}
+
+impl Trocar {
+    pub(super) fn validate(&self, ranges: &Ranges<'_>) -> Result<(), ConfigError> {
+        ranges.not_negative("trocar.coulomb_n", self.coulomb_n)?;
+        ranges.check("trocar.static_n", self.static_n, self.static_n >= self.coulomb_n, "not below coulomb_n")?;
+        ranges.positive("trocar.stribeck_m_s", self.stribeck_m_s)?;
+        ranges.not_negative("trocar.viscous_n_s_m", self.viscous_n_s_m)?;
+        ranges.positive("trocar.presliding_m", self.presliding_m)?;
+        ranges.not_negative("trocar.friction_per_load", self.friction_per_load)?;
+        ranges.not_negative("trocar.wall_n", self.wall_n)?;
+        ranges.not_negative("trocar.across_n", self.across_n)
+    }
+}
+
+impl TissueSensor {
+    pub(super) fn validate(&self, ranges: &Ranges<'_>) -> Result<(), ConfigError> {
+        let angles = [self.kbf_from_s2_deg, self.kbf_from_c_deg, self.s1_from_m_deg].iter().map(Vector3::sum).sum();
+        ranges.check("tissue_sensor: sum of angles", angles, true, "finite")?;
+        ranges.not_negative("tissue_sensor.noise_n", self.noise_n)?;
+        ranges.not_negative("tissue_sensor.tracker_noise_deg", self.tracker_noise_deg)
+    }
+}

@@ -1,0 +1,38 @@
+//! What the screen asks of the person at the arm while calibrating.
+
+use nalgebra::{UnitQuaternion, UnitVector3};
+
+/// One thing to do. On a real rig it is read from the screen and no machine moves; on a simulated one somebody obeys.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Prompt {
+    /// Leave the instrument alone.
+    #[default]
+    Rest,
+    /// Turn the tool into this orientation, touch nothing, hold still.
+    Hold {
+        /// Orientation of the wrist sensor to take.
+        kbf_from_s1: UnitQuaternion<f64>,
+    },
+    /// Turn the tool slowly this way and that; touch nothing.
+    Wave,
+    /// Push with the tip so that the tissue answers along this direction; release, and again.
+    Push {
+        /// Direction of the force on the instrument (`kbf`).
+        direction: UnitVector3<f64>,
+    },
+    /// Work on the tissue: in and out through the trocar, sideways, in contact and free.
+    Work,
+    /// The same without touching the tissue.
+    WorkFree,
+}
+
+impl Prompt {
+    /// Every number in it is finite.
+    pub fn is_finite(&self) -> bool {
+        match self {
+            Self::Hold { kbf_from_s1 } => kbf_from_s1.coords.iter().all(|x| x.is_finite()),
+            Self::Push { direction } => direction.iter().all(|x| x.is_finite()),
+            Self::Rest | Self::Wave | Self::Work | Self::WorkFree => true,
+        }
+    }
+}

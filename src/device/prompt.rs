@@ -15,9 +15,9 @@ pub enum Prompt {
     },
     /// Turn the tool slowly this way and that; touch nothing.
     Wave,
-    /// Push with the tip so that the tissue answers along this direction; release, and again.
+    /// Push onto the tissue this way, hold, release, and again.
     Push {
-        /// Direction of the force on the instrument (`kbf`).
+        /// Which way the tool pushes (`kbf`); the tissue answers the other way.
         direction: UnitVector3<f64>,
     },
     /// Work on the tissue: in and out through the trocar, sideways, in contact and free.

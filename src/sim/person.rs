@@ -175,7 +175,7 @@ impl Person {
         if self.in_push_s > PUSH_S.iter().sum() {
             self.in_push_s = 0.0;
             let asked = match self.flaw {
-                Some(Flaw::PushesOneLine) => Vector3::z(),
+                Some(Flaw::PushesOneLine) => -Vector3::z(),
                 Some(Flaw::PushesOnePlane) => Vector3::new(direction.x, 0.0, direction.z),
                 _ => direction.into_inner(),
             };
@@ -184,8 +184,8 @@ impl Person {
             if self.flaw == Some(Flaw::PushesOnePlane) {
                 miss.y *= 0.1;
             }
-            let asked = if asked.norm() < 0.1 { Vector3::z() } else { asked.normalize() };
-            self.push = (asked + miss).normalize() * self.between(PUSH_N);
+            let asked = if asked.norm() < 0.1 { -Vector3::z() } else { asked.normalize() };
+            self.push = -(asked + miss).normalize() * self.between(PUSH_N);
             if self.flaw == Some(Flaw::LeansOnTheStand) {
                 self.stand = Vector3::from_fn(|_, _| 1.2 * self.noise.gaussian());
             }

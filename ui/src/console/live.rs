@@ -158,12 +158,13 @@ impl Live {
         }
     }
 
-    /// Takes in all that waits at the loop's door.
-    pub fn take_in(&mut self, handle: &Handle) {
+    /// Takes in all that waits at the loop's door; `each` sees every tick.
+    pub fn take_in(&mut self, handle: &Handle, mut each: impl FnMut(&Tick)) {
         handle.drain_events(|event| self.event(event));
         let mut came = false;
         handle.drain_ticks(|tick| {
             self.tick(tick);
+            each(tick);
             came = true;
         });
         if came {

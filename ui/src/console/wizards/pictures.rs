@@ -1,0 +1,151 @@
+//! Small pictures that guide a hand: the tool in the orientation to take, and a sphere that fills with directions.
+
+use egui::{Align2, Painter, Pos2, Rect, Sense, Shape, Stroke, Ui, WidgetInfo, pos2, vec2};
+use nalgebra::{UnitQuaternion, Vector3};
+
+use crate::console::theme;
+
+/// The viewer stands in front of the base, a little to the right and above (`kbf`: x to the right, z up).
+fn on_paper(centre: Pos2, scale: f32, point: &Vector3<f64>) -> (Pos2, f64) {
+    let (turn, raise) = (0.45_f64, 0.38_f64);
+    let right = point.x * turn.cos() + point.y * turn.sin();
+    let away = -point.x * turn.sin() + point.y * turn.cos();
+    let up = point.z * raise.cos() + away * raise.sin();
+    let depth = away * raise.cos() - point.z * raise.sin();
+    (pos2(centre.x + right as f32 * scale, centre.y - up as f32 * scale), depth)
+}
+
+/// The tool as it is held (solid) and as it should be (outline), with the angle between both.
+pub(super) fn pose_picture(ui: &mut Ui, target: Option<&UnitQuaternion<f64>>, held: Option<&UnitQuaternion<f64>>) {
+    let size = vec2(ui.available_width().min(320.0), 250.0);
+    let (rect, response) = ui.allocate_exact_size(size, Sense::hover());
+    response.widget_info(|| WidgetInfo::labeled(egui::Role::Label, true, "Picture of the orientation to take"));
+    let painter = ui.painter_at(rect);
+    painter.rect_filled(rect, theme::CORNER, theme::GROOVE);
+    let (centre, scale) = (rect.center() - vec2(0.0, 6.0), rect.height() * 0.34);
+    ground(&painter, centre, scale);
+    if let Some(target) = target {
+        tool(&painter, centre, scale, target, false);
+    }
+    if let Some(held) = held {
+        tool(&painter, centre, scale, held, true);
+    }
+    let caption = match (target, held) {
+        (Some(target), Some(held)) => {
+            let tilt = (target.inverse() * -Vector3::z()).angle(&(held.inverse() * -Vector3::z()));
+            format!("outline: asked   solid: held   tilt {:.0} deg off", tilt.to_degrees())
+        }
+        (None, Some(_)) => "solid: the tool as it is held".to_owned(),
+        _ => "the arm does not tell how the tool is held".to_owned(),
+    };
+    painter.text(
+        rect.center_bottom() - vec2(0.0, 8.0),
+        Align2::CENTER_BOTTOM,
+        caption,
+        theme::regular(12.5),
+        theme::TEXT_WEAK,
+    );
+}
+
+/// A square on the floor and the vertical, so that up is seen.
+fn ground(painter: &Painter, centre: Pos2, scale: f32) {
+    let corner = |x: f64, y: f64| on_paper(centre, scale, &Vector3::new(x, y, -1.15)).0;
+    let corners = vec![corner(-1.0, -1.0), corner(1.0, -1.0), corner(1.0, 1.0), corner(-1.0, 1.0)];
+    painter.add(Shape::convex_polygon(corners, theme::PANEL, Stroke::new(1.0, theme::LINE)));
+    let (top, bottom) = (on_paper(centre, scale, &Vector3::z()).0, corner(0.0, 0.0));
+    painter.extend(Shape::dashed_line(&[top, bottom], Stroke::new(1.0, theme::LINE), 5.0, 5.0));
+}
+
+/// Sensor (a disc with its x marked), shaft along z and a jaw at the end.
+fn tool(painter: &Painter, centre: Pos2, scale: f32, kbf_from_s1: &UnitQuaternion<f64>, solid: bool) {
+    let at = |x: f64, y: f64, z: f64| on_paper(centre, scale, &(kbf_from_s1 * Vector3::new(x, y, z))).0;
+    let (colour, width) = if solid { (theme::MEASURED, 3.0) } else { (theme::RENDERED, 1.5) };
+    let stroke = Stroke::new(width, colour);
+    let ring = (0..24).map(|i| {
+        let angle = std::f64::consts::TAU * f64::from(i) / 24.0;
+        at(0.28 * angle.cos(), 0.28 * angle.sin(), 0.0)
+    });
+    let fill = if solid { theme::CONTROL } else { egui::Color32::TRANSPARENT };
+    painter.add(Shape::convex_polygon(ring.collect(), fill, stroke));
+    let shaft = [at(0.0, 0.0, 0.0), at(0.0, 0.0, 0.95)];
+    if solid {
+        painter.line_segment(shaft, stroke);
+    } else {
+        painter.extend(Shape::dashed_line(&shaft, stroke, 7.0, 4.0));
+    }
+    for side in [-0.08, 0.08] {
+        painter.line_segment([at(0.0, 0.0, 0.95), at(side, 0.0, 1.12)], stroke);
+    }
+    // The sensor's x axis: tells a turn about the shaft.
+    painter.line_segment([at(0.28, 0.0, 0.0), at(0.46, 0.0, 0.0)], stroke);
+}
+
+/// Directions on a sphere: those wanted as rings, those taken as discs; hollow where they lie behind.
+pub(super) fn sphere_picture(ui: &mut Ui, name: &str, wanted: &[Vector3<f64>], taken: &[Vector3<f64>], now: Option<Vector3<f64>>) {
+    let size = vec2(ui.available_width().min(320.0), 250.0);
+    let (rect, response) = ui.allocate_exact_size(size, Sense::hover());
+    let words = format!("{name}: {} taken", taken.len());
+    response.widget_info(|| WidgetInfo::labeled(egui::Role::Label, true, words.clone()));
+    let painter = ui.painter_at(rect);
+    painter.rect_filled(rect, theme::CORNER, theme::GROOVE);
+    let (centre, scale) = (rect.center() - vec2(0.0, 6.0), rect.height() * 0.37);
+    painter.circle_stroke(centre, scale, Stroke::new(1.0, theme::TEXT_WEAK));
+    graticule(&painter, centre, scale);
+    for direction in wanted {
+        dot(&painter, centre, scale, direction, 7.0, Stroke::new(1.2, theme::REFERENCE), false);
+    }
+    for direction in taken {
+        dot(&painter, centre, scale, direction, 4.5, Stroke::new(1.5, theme::ENGAGED), true);
+    }
+    if let Some(direction) = now {
+        dot(&painter, centre, scale, &direction, 3.5, Stroke::new(1.5, theme::MEASURED), true);
+    }
+    let caption = format!("{name} (rings: wanted, discs: taken)");
+    painter.text(
+        rect.center_bottom() - vec2(0.0, 8.0),
+        Align2::CENTER_BOTTOM,
+        caption,
+        theme::regular(12.5),
+        theme::TEXT_WEAK,
+    );
+}
+
+/// Equator and two meridians; the parts behind are left out.
+fn graticule(painter: &Painter, centre: Pos2, scale: f32) {
+    let circles: [fn(f64) -> Vector3<f64>; 3] = [
+        |a| Vector3::new(a.cos(), a.sin(), 0.0),
+        |a| Vector3::new(a.cos(), 0.0, a.sin()),
+        |a| Vector3::new(0.0, a.cos(), a.sin()),
+    ];
+    for circle in circles {
+        let points: Vec<(Pos2, f64)> = (0..=72)
+            .map(|i| on_paper(centre, scale, &circle(std::f64::consts::TAU * f64::from(i) / 72.0)))
+            .collect();
+        for pair in points.windows(2).filter(|pair| pair[0].1 <= 0.0 && pair[1].1 <= 0.0) {
+            painter.line_segment([pair[0].0, pair[1].0], Stroke::new(1.0, theme::LINE));
+        }
+    }
+}
+
+fn dot(painter: &Painter, centre: Pos2, scale: f32, direction: &Vector3<f64>, radius: f32, stroke: Stroke, filled: bool) {
+    let Some(direction) = direction.try_normalize(1e-9) else { return };
+    let (place, depth) = on_paper(centre, scale, &direction);
+    if filled && depth <= 0.0 {
+        painter.circle_filled(place, radius, stroke.color);
+    } else {
+        painter.circle_stroke(place, radius, stroke);
+    }
+}
+
+/// A bar that fills, with words inside.
+pub(super) fn progress(ui: &mut Ui, name: &str, share: f64, words: &str) {
+    let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), 24.0), Sense::hover());
+    let label = format!("{name}: {words}");
+    response.widget_info(|| WidgetInfo::labeled(egui::Role::ProgressIndicator, true, label.clone()));
+    let painter = ui.painter();
+    painter.rect_filled(rect, 4.0, theme::GROOVE);
+    let share = if share.is_finite() { share.clamp(0.0, 1.0) as f32 } else { 0.0 };
+    let filled = Rect::from_min_size(rect.min, vec2(rect.width() * share, rect.height()));
+    painter.rect_filled(filled, 4.0, theme::SELECTED);
+    painter.text(rect.center(), Align2::CENTER_CENTER, label, theme::regular(13.0), theme::TEXT);
+}

@@ -9,8 +9,53 @@
 //! Three models are fitted to the same still poses and compared on poses they were not fitted on: the physical one above, one
 //! with a free 3x3 gain in place of `m R`, and the paper's, linear in sine and cosine of roll and pitch.
 
+mod consensus;
+mod coverage;
+mod fit;
 mod model;
+mod pose;
 mod record;
+mod report;
+mod solve;
+#[cfg(test)]
+mod tests;
 
+pub use fit::fit;
 pub use model::{GravityModel, ModelKind, Parameters, Source, TorqueParameters};
+pub use pose::{Orientation, Pose};
 pub use record::{GravityKind, GravityRecord};
+pub use report::{GravityReport, Limits, ModelFit, Settings};
+
+/// Why poses could not be fitted at all. Poses are counted from 1.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum GravityError {
+    /// Nothing to fit.
+    #[error("there are no poses; record still poses of the tool first")]
+    NoPoses,
+    /// A number is missing or not finite.
+    #[error("pose {} holds a number that is not finite; remove or repeat it", index + 1)]
+    NotFinite {
+        /// Index of the pose, from 0.
+        index: usize,
+    },
+    /// Orientation from the accelerometer and from the arm in one set.
+    #[error("pose {} takes its orientation from another source than the first; use one source for all", index + 1)]
+    MixedSources {
+        /// Index of the pose, from 0.
+        index: usize,
+    },
+    /// The accelerometer reads nothing.
+    #[error("pose {}: the accelerometer reads {norm_m_s2:.2} m/s^2 where gravity is 9.81; check it and its units", index + 1)]
+    DeadAccelerometer {
+        /// Index of the pose, from 0.
+        index: usize,
+        /// What it reads, m/s^2.
+        norm_m_s2: f64,
+    },
+    /// Only +1 and -1 are signs.
+    #[error("the accelerometer's sign is {sign}; give 1 or -1")]
+    BadSign {
+        /// As given.
+        sign: i8,
+    },
+}

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use crate::frames::{GRAVITY_M_S2, Wrench, WristSample};
 
 /// Below this an accelerometer is dead or the arm falls: no orientation can be read, m/s^2.
-const LEAST_FIELD_M_S2: f64 = 1.0;
+pub(super) const LEAST_FIELD_M_S2: f64 = 1.0;
 
 /// Where the direction of gravity comes from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]

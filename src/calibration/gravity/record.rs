@@ -44,8 +44,9 @@ pub struct GravityRecord {
     pub outliers: Vec<usize>,
     /// Share of all directions of gravity with a pose within 45 degrees, 0 to 1.
     pub coverage: f64,
-    /// Condition number of the design.
-    pub condition: f64,
+    /// Condition number of the design; none when the poses determine nothing.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub condition: Option<f64>,
     /// The model.
     #[serde(deserialize_with = "sound")]
     pub model: GravityModel,

@@ -1,0 +1,64 @@
+//! What is kept of a gravity calibration: the model, where it belongs and how good it was.
+
+use serde::{Deserialize, Deserializer, Serialize, de::Error as _};
+
+use super::GravityModel;
+use crate::calibration::{Residuals, Verdict};
+
+/// The only kind of this record: a file of another kind is refused on reading.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum GravityKind {
+    /// `kind = "gravity"`.
+    #[default]
+    Gravity,
+}
+
+/// A gravity calibration as it is written to a file.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct GravityRecord {
+    /// What the file is.
+    pub kind: GravityKind,
+    /// Serial number of the sensor it belongs to.
+    pub sensor: String,
+    /// Name of the tool on the sensor.
+    pub tool: String,
+    /// When it was made, ISO 8601, UTC.
+    pub date: String,
+    /// Version of this program that made it.
+    pub software: String,
+    /// Whether it may be used.
+    pub verdict: Verdict,
+    /// Why, in one sentence.
+    pub reason: String,
+    /// Who chose to keep it in spite of its verdict.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub override_by: Option<String>,
+    /// Why they did.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub override_reason: Option<String>,
+    /// Still poses it was made of.
+    pub poses: usize,
+    /// Poses left out as outliers, counted from 0.
+    pub outliers: Vec<usize>,
+    /// Share of all directions of gravity with a pose within 45 degrees, 0 to 1.
+    pub coverage: f64,
+    /// Condition number of the design; none when the poses determine nothing.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub condition: Option<f64>,
+    /// The model.
+    #[serde(deserialize_with = "sound")]
+    pub model: GravityModel,
+    /// Errors of the force, N.
+    pub residuals: Residuals,
+    /// Errors of the torque, Nm, where it was measured.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub torque_residuals: Option<Residuals>,
+}
+
+/// A model from a file is refused unless it can be used as it stands.
+fn sound<'de, D: Deserializer<'de>>(deserializer: D) -> Result<GravityModel, D::Error> {
+    let model = GravityModel::deserialize(deserializer)?;
+    model.fault().map_or(Ok(model), |fault| Err(D::Error::custom(fault)))
+}

@@ -15,7 +15,7 @@ use nima::{
     runtime::Command,
     signal::DifferentiatorKind,
     sim::World,
-    teleop::{Loop, Timing},
+    teleop::{Calibrations, Loop, Timing},
 };
 
 struct Counting;
@@ -99,7 +99,7 @@ fn identification_and_rendering_allocate_nothing() {
 #[test]
 fn a_tick_of_the_whole_loop_and_of_the_simulation_allocates_nothing() {
     let rig = Rig::load("simulated").unwrap();
-    let mut control = Loop::new(&rig).unwrap();
+    let mut control = Loop::new(&rig, &Calibrations::default()).unwrap();
     let mut world = World::new(&Scene::load("peg_transfer").unwrap(), rig.rate_hz);
     let mut outputs = Outputs::SAFE;
     control.obey(Command::Engage, 0.0);

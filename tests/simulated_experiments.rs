@@ -8,7 +8,7 @@ use nima::{
     frames::{GRAVITY_M_S2, WristSample, from_roll_pitch_yaw_deg},
     runtime::{Command, Plan, run_virtual},
     sim::World,
-    teleop::{ForceSource, LoopState},
+    teleop::{Calibrations, ForceSource, LoopState},
 };
 
 /// Samples of `scene` under this prompt for some seconds at 1 kHz, with the true force on the tip.
@@ -116,8 +116,12 @@ fn each_flaw_shows_in_the_data() {
 
 #[test]
 fn a_prompt_reaches_the_arm_in_idle_only() {
-    let plan =
-        |engage| Plan { rig: Rig::load("simulated").unwrap(), scene: Scene::load("peg_transfer").unwrap(), engage };
+    let plan = |engage| Plan {
+        rig: Rig::load("simulated").unwrap(),
+        scene: Scene::load("peg_transfer").unwrap(),
+        calibrations: Calibrations::default(),
+        engage,
+    };
     for (engage, expected) in [(false, Prompt::Wave), (true, Prompt::Rest)] {
         let mut last = Prompt::Rest;
         run_virtual(&plan(engage), 0.1, |tick| {
@@ -131,7 +135,12 @@ fn a_prompt_reaches_the_arm_in_idle_only() {
 
 #[test]
 fn an_uncalibrated_wrist_gives_no_force_and_cannot_be_engaged() {
-    let plan = Plan { rig: Rig::load("simulated").unwrap(), scene: Scene::load("palpation").unwrap(), engage: false };
+    let plan = Plan {
+        rig: Rig::load("simulated").unwrap(),
+        scene: Scene::load("palpation").unwrap(),
+        calibrations: Calibrations::default(),
+        engage: false,
+    };
     run_virtual(&plan, 2.0, |tick| {
         assert_eq!(tick.force.source, ForceSource::Uncalibrated);
         assert_eq!(tick.state, LoopState::Idle);

@@ -8,11 +8,16 @@ use nima::{
     impedance::Mode,
     runtime::{Command, Event, Fault, Plan, Summary, Tick, run_virtual},
     sim::World,
-    teleop::{Loop, LoopState, Timing},
+    teleop::{Calibrations, Loop, LoopState, Timing},
 };
 
 fn plan(scene: &str) -> Plan {
-    Plan { rig: Rig::load("simulated").unwrap(), scene: Scene::load(scene).unwrap(), engage: true }
+    Plan {
+        rig: Rig::load("simulated").unwrap(),
+        scene: Scene::load(scene).unwrap(),
+        calibrations: Calibrations::default(),
+        engage: true,
+    }
 }
 
 fn error_of(summary: &Summary, mode: Mode) -> f64 {
@@ -106,7 +111,7 @@ impl Bench {
     fn engaged(mode: Mode) -> Self {
         let Plan { mut rig, scene, .. } = plan("peg_transfer");
         rig.mode = mode;
-        let mut control = Loop::new(&rig).unwrap();
+        let mut control = Loop::new(&rig, &Calibrations::default()).unwrap();
         control.obey(Command::Engage, 0.0);
         Self { world: World::new(&scene, rig.rate_hz), control, outputs: Outputs::SAFE, tick: 0 }
     }

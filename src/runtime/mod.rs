@@ -21,7 +21,7 @@ use crate::{
     config::{Rig, Scene},
     impedance::SettingsError,
     sim::World,
-    teleop::Loop,
+    teleop::{Calibrations, Loop},
 };
 
 /// What to run.
@@ -31,6 +31,8 @@ pub struct Plan {
     pub rig: Rig,
     /// The simulated world.
     pub scene: Scene,
+    /// What is known of the wrist sensor and the tool.
+    pub calibrations: Calibrations,
     /// Engage at the first tick: for simulated rigs only, where nobody can be hurt.
     pub engage: bool,
 }
@@ -40,6 +42,6 @@ impl Plan {
         // What the scene requires is identified; what it does not is left out.
         let mut rig = self.rig.clone();
         rig.identification.cross_talk |= self.scene.cross_talk;
-        Ok((Loop::new(&rig)?, World::new(&self.scene, rig.rate_hz)))
+        Ok((Loop::new(&rig, &self.calibrations)?, World::new(&self.scene, rig.rate_hz)))
     }
 }

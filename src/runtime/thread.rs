@@ -186,11 +186,16 @@ mod tests {
     use crate::{
         config::{Rig, Scene},
         impedance::Mode,
-        teleop::LoopState,
+        teleop::{Calibrations, LoopState},
     };
 
     fn plan() -> Plan {
-        Plan { rig: Rig::load("simulated").unwrap(), scene: Scene::load("peg_transfer").unwrap(), engage: true }
+        Plan {
+            rig: Rig::load("simulated").unwrap(),
+            scene: Scene::load("peg_transfer").unwrap(),
+            calibrations: Calibrations::default(),
+            engage: true,
+        }
     }
 
     /// Waits until a tick satisfies `good`; gives it.

@@ -1,22 +1,43 @@
 //! From what the wrist feels to the force at the tip: one step a tick, allocation-free.
+//!
+//! Weight and bias go first (`gravity`); what is left is the tissue's force plus the trocar's friction. Every force leaves in
+//! the workspace frame (`kbf`). A sample from which no force can be told gives none, with the reason in [`ForceSource`].
 
 use nalgebra::Vector3;
 
-use crate::{device::Sensed, frames::Wrench};
+use crate::{
+    calibration::gravity::GravityModel,
+    device::Sensed,
+    frames::{Wrench, WristSample},
+};
 
 /// Where the tip force of a tick comes from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ForceSource {
     /// Measured at the tip.
     AtTip,
+    /// Measured at the wrist, weight and bias taken out; friction in the trocar is still in it.
+    Wrist,
     /// Measured at the wrist, and no calibration is in force: nothing is rendered from it.
     Uncalibrated,
+    /// Calibrated, but the sample lacks the orientation that the calibration needs.
+    NoOrientation,
 }
 
 impl ForceSource {
     /// The tip force may be felt by a hand.
     pub const fn is_usable(self) -> bool {
-        !matches!(self, Self::Uncalibrated)
+        matches!(self, Self::AtTip | Self::Wrist)
+    }
+
+    /// In words, for the screen.
+    pub const fn words(self) -> &'static str {
+        match self {
+            Self::AtTip => "measured at the tip",
+            Self::Wrist => "wrist force without weight; trocar friction is still in it",
+            Self::Uncalibrated => "unknown: the wrist sensor is not calibrated",
+            Self::NoOrientation => "unknown: the orientation of the wrist is missing",
+        }
     }
 }
 
@@ -31,18 +52,45 @@ pub struct ForceReport {
     pub gravity_free: Option<Wrench>,
 }
 
-/// The chain of calibrations in force.
+impl ForceReport {
+    const fn none(source: ForceSource, gravity_free: Option<Wrench>) -> Self {
+        Self { source, tip_n: Vector3::new(0.0, 0.0, 0.0), gravity_free }
+    }
+}
+
+/// The calibrations in force.
 #[derive(Clone, Debug, Default)]
-pub struct ForcePath {}
+pub struct Calibrations {
+    /// Weight of the tool and bias of the wrist sensor.
+    pub gravity: Option<GravityModel>,
+}
+
+/// The chain of calibrations at work.
+#[derive(Clone, Debug, Default)]
+pub struct ForcePath {
+    gravity: Option<GravityModel>,
+}
 
 impl ForcePath {
+    /// A path through these calibrations. Everything is allocated here.
+    pub const fn new(calibrations: &Calibrations) -> Self {
+        Self { gravity: calibrations.gravity }
+    }
+
     /// The tip force of this sample.
     pub fn step(&mut self, sensed: &Sensed) -> ForceReport {
         match sensed {
             Sensed::AtTip(tip_n) => ForceReport { source: ForceSource::AtTip, tip_n: *tip_n, gravity_free: None },
-            Sensed::AtWrist(_) => {
-                ForceReport { source: ForceSource::Uncalibrated, tip_n: Vector3::zeros(), gravity_free: None }
-            }
+            Sensed::AtWrist(sample) => self.at_wrist(sample),
         }
+    }
+
+    fn at_wrist(&mut self, sample: &WristSample) -> ForceReport {
+        let Some(gravity) = &self.gravity else { return ForceReport::none(ForceSource::Uncalibrated, None) };
+        let gravity_free = gravity.gravity_free(sample);
+        let (Some(wrench), Some(kbf_from_s1)) = (gravity_free, sample.kbf_from_s1) else {
+            return ForceReport::none(ForceSource::NoOrientation, gravity_free);
+        };
+        ForceReport { source: ForceSource::Wrist, tip_n: kbf_from_s1 * wrench.force_n, gravity_free }
     }
 }

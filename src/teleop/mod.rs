@@ -13,7 +13,7 @@ mod tracking;
 use nalgebra::Vector3;
 
 pub use accuracy::{Accuracy, ErrorStats};
-pub use force_path::{ForcePath, ForceReport, ForceSource};
+pub use force_path::{Calibrations, ForcePath, ForceReport, ForceSource};
 pub use link::Link;
 pub use state::LoopState;
 pub use tracking::Tracking;
@@ -74,7 +74,7 @@ pub struct Loop {
 
 impl Loop {
     /// A loop for this rig, idle. Everything is allocated here.
-    pub fn new(rig: &RigConfig) -> Result<Self, SettingsError> {
+    pub fn new(rig: &RigConfig, calibrations: &Calibrations) -> Result<Self, SettingsError> {
         let settings = rig.settings();
         let mut this = Self {
             state: LoopState::Idle,
@@ -84,7 +84,7 @@ impl Loop {
             follower_step_max_m: rig.follower_speed_max_m_s / rig.rate_hz,
             identifier: Identifier::new(&settings)?,
             renderer: Renderer::new(&settings)?,
-            force_path: ForcePath::default(),
+            force_path: ForcePath::new(calibrations),
             force: NO_FORCE_YET,
             prompt: Prompt::Rest,
             link: Link::new(rig.rate_hz, rig.delay_s),

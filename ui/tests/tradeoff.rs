@@ -16,7 +16,7 @@ use egui_kittest::{
 use nima::{
     config::{Rig, Scene},
     runtime::{Plan, start},
-    teleop::LoopState,
+    teleop::{Calibrations, LoopState},
 };
 use nima_console::console::ConsoleApp;
 use serde_json::Value;
@@ -119,7 +119,9 @@ fn bad_input_is_refused_in_one_line() {
 fn console() -> Harness<'static, ConsoleApp> {
     let rig = Rig::load("simulated").unwrap();
     let scene = Scene::load("peg_transfer").unwrap();
-    let handle = start(&Plan { rig: rig.clone(), scene: scene.clone(), engage: true }).unwrap();
+    let handle =
+        start(&Plan { rig: rig.clone(), scene: scene.clone(), calibrations: Calibrations::default(), engage: true })
+            .unwrap();
     let mut harness = Harness::builder()
         .with_size([1600.0, 2400.0])
         .with_step_dt(1.0 / 30.0)

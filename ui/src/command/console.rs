@@ -3,7 +3,10 @@
 use std::{path::PathBuf, time::Duration};
 
 use clap::Args;
-use nima::runtime::{self, Plan};
+use nima::{
+    runtime::{self, Plan},
+    teleop::Calibrations,
+};
 
 use super::setup::Setup;
 use crate::console::{self, Options};
@@ -23,7 +26,12 @@ pub(super) struct Arguments {
 pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let (rig, scene) = arguments.setup.load()?;
     // The simulated hand cannot be hurt: the demo runs at once.
-    let handle = runtime::start(&Plan { rig: rig.clone(), scene: scene.clone(), engage: true })?;
+    let handle = runtime::start(&Plan {
+        rig: rig.clone(),
+        scene: scene.clone(),
+        calibrations: Calibrations::default(),
+        engage: true,
+    })?;
     let options = Options {
         exit_after: arguments.exit_after.map(Duration::from_secs_f64),
         screenshot: arguments.screenshot.clone(),

@@ -15,6 +15,7 @@ use clap::Args;
 use nima::{
     impedance::Mode,
     runtime::{self, Plan, Quantiles, Summary, Tick},
+    teleop::Calibrations,
 };
 
 use super::{output, setup::Setup};
@@ -57,7 +58,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     rig.delay_s = arguments.delay_ms.map_or(rig.delay_s, |delay_ms| delay_ms * 1e-3);
     rig.identification.cross_talk |= arguments.cross_talk;
     rig.validate()?;
-    let plan = Plan { rig, scene, engage: true };
+    let plan = Plan { rig, scene, calibrations: Calibrations::default(), engage: true };
     let summary = if arguments.virtual_clock {
         runtime::run_virtual(&plan, arguments.seconds.unwrap_or(60.0), |_| None)?
     } else {

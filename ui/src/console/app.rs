@@ -7,7 +7,7 @@ use egui::{CentralPanel, Event, Frame, Key, Margin, Panel, ScrollArea, Ui};
 use nima::{
     config::{Rig, Scene},
     runtime::{self, Command, Handle, Plan, Tick},
-    teleop::LoopState,
+    teleop::{Calibrations, LoopState},
 };
 
 use super::{
@@ -100,7 +100,7 @@ impl ConsoleApp {
             return;
         }
         if let Some(handle) = &self.handle {
-            self.live.take_in(handle);
+            self.live.take_in(handle, |_| {});
         }
         if !matches!(self.live.state(), LoopState::Idle | LoopState::Engaged) {
             self.tradeoff.tell("Not applied: the loop has stopped. Release it first.");
@@ -109,7 +109,12 @@ impl ConsoleApp {
         let scene = self.live.scene.clone();
         // The old loop first: a rig has one master.
         drop(self.handle.take());
-        match runtime::start(&Plan { rig: rig.clone(), scene: scene.clone(), engage: false }) {
+        match runtime::start(&Plan {
+            rig: rig.clone(),
+            scene: scene.clone(),
+            calibrations: Calibrations::default(),
+            engage: false,
+        }) {
             Ok(handle) => {
                 self.handle = Some(handle);
                 self.tradeoff.tell("Applied. The loop was restarted and is idle: engage it when ready.");
@@ -201,7 +206,7 @@ impl eframe::App for ConsoleApp {
     fn logic(&mut self, _ctx: &egui::Context, _frame: &mut eframe::Frame) {
         // Also while the window is hidden, so that the queues stay empty and the history whole.
         if let Some(handle) = &self.handle {
-            self.live.take_in(handle);
+            self.live.take_in(handle, |_| {});
         }
     }
 

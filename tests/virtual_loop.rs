@@ -82,7 +82,7 @@ fn the_hand_never_feels_more_than_the_ceiling_and_nothing_when_stopped() {
 
 #[test]
 fn a_command_out_of_range_is_refused_and_changes_nothing() {
-    let mut control = Loop::new(&Rig::load("simulated").unwrap()).unwrap();
+    let mut control = Loop::new(&Rig::load("simulated").unwrap(), &Calibrations::default()).unwrap();
     let bad = [
         Command::SetGain(1.5),
         Command::SetGain(f64::NAN),

@@ -5,6 +5,7 @@
 //! rise are refused with their place; nothing is guessed.
 
 mod mapping;
+mod poses;
 mod table;
 mod write;
 
@@ -13,6 +14,7 @@ use std::path::{Path, PathBuf};
 use nalgebra::Vector3;
 
 pub use mapping::{Mapping, MappingError};
+pub use poses::{PosesError, read_poses};
 pub use write::write_atomically;
 
 use crate::impedance::{AXES, Sample};

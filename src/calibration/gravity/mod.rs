@@ -9,6 +9,8 @@
 //! Three models are fitted to the same still poses and compared on poses they were not fitted on: the physical one above, one
 //! with a free 3x3 gain in place of `m R`, and the paper's, linear in sine and cosine of roll and pitch.
 
+mod checks;
+mod compensator;
 mod consensus;
 mod coverage;
 mod fit;
@@ -16,15 +18,23 @@ mod model;
 mod pose;
 mod record;
 mod report;
+mod session;
 mod solve;
+mod still;
+mod targets;
 #[cfg(test)]
 mod tests;
 
+pub use checks::{CheckPass, Drift, DriftCheck, PassResult};
+pub use compensator::{Compensator, DEFAULT_TIME_CONSTANT_S};
 pub use fit::fit;
 pub use model::{GravityModel, ModelKind, Parameters, Source, TorqueParameters};
 pub use pose::{Orientation, Pose};
 pub use record::{GravityKind, GravityRecord};
 pub use report::{GravityReport, Limits, ModelFit, Settings};
+pub use session::{Check, CheckState, GravitySession, Phase, SessionSettings};
+pub use still::StillSettings;
+pub use targets::{PoseTarget, TARGETS};
 
 /// Why poses could not be fitted at all. Poses are counted from 1.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]

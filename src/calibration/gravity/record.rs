@@ -57,6 +57,13 @@ pub struct GravityRecord {
     pub torque_residuals: Option<Residuals>,
 }
 
+impl GravityRecord {
+    /// The record as TOML.
+    pub fn to_toml(&self) -> Result<String, toml::ser::Error> {
+        toml::to_string_pretty(self)
+    }
+}
+
 /// A model from a file is refused unless it can be used as it stands.
 fn sound<'de, D: Deserializer<'de>>(deserializer: D) -> Result<GravityModel, D::Error> {
     let model = GravityModel::deserialize(deserializer)?;

@@ -1,0 +1,131 @@
+//! Proving a calibration: a pass in free motion after it, and a few seconds at rest at every start.
+
+use super::{
+    Compensator, GravityModel,
+    still::{Still, StillSettings},
+};
+use crate::frames::WristSample;
+
+/// Width of a bin of the histogram of forces, N.
+const BIN_N: f64 = 0.01;
+const BINS: usize = 500;
+
+/// What a pass in free motion showed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PassResult {
+    /// Samples seen.
+    pub samples: u64,
+    /// Mean length of the gravity-free force, N; near zero when nothing is touched.
+    pub mean_n: f64,
+    /// 95 % of the samples are below this, N (to 0.01 N; 5 N stands for more).
+    pub p95_n: f64,
+    /// Angle between the direction of gravity at the start and the furthest seen, rad.
+    pub tilt_rad: f64,
+    /// Good enough, over enough tilt.
+    pub passed: bool,
+    /// Why, in a sentence.
+    pub reason: &'static str,
+}
+
+/// A pass with the tool moved freely through the air. Steps allocate nothing.
+#[derive(Clone, Debug)]
+pub struct CheckPass {
+    compensator: Compensator,
+    limit_n: f64,
+    first: Option<nalgebra::Vector3<f64>>,
+    tilt_rad: f64,
+    sum_n: f64,
+    samples: u64,
+    bins: Box<[u64; BINS]>,
+}
+
+impl CheckPass {
+    /// A pass whose 95 % must stay below `limit_n` (N).
+    pub fn new(compensator: Compensator, limit_n: f64) -> Self {
+        Self { compensator, limit_n, first: None, tilt_rad: 0.0, sum_n: 0.0, samples: 0, bins: Box::new([0; BINS]) }
+    }
+
+    /// Takes a sample; gives the length of its gravity-free force, N.
+    pub fn step(&mut self, sample: &WristSample) -> Option<f64> {
+        let force_n = self.compensator.step(sample)?.force_n.norm();
+        let field = self.compensator.model().field_m_s2(sample)?;
+        let first = *self.first.get_or_insert(field);
+        self.tilt_rad = self.tilt_rad.max(first.angle(&field));
+        self.sum_n += force_n;
+        self.samples += 1;
+        self.bins[((force_n / BIN_N) as usize).min(BINS - 1)] += 1;
+        Some(force_n)
+    }
+
+    /// What was seen so far; passed needs a second of samples and 45 degrees of tilt.
+    pub fn result(&self) -> PassResult {
+        let wanted = (self.samples as f64 * 0.95).ceil() as u64;
+        let mut seen = 0;
+        let below = |count: &u64| {
+            seen += count;
+            seen >= wanted
+        };
+        let p95_n = self.bins.iter().position(below).map_or(0.0, |bin| (bin + 1) as f64 * BIN_N);
+        let reason = if self.samples < 1000 {
+            "too few samples yet; keep moving"
+        } else if self.tilt_rad < 45_f64.to_radians() {
+            "tilt the tool by at least 45 degrees"
+        } else if p95_n > self.limit_n {
+            "force is left in free motion; repeat the calibration and touch nothing"
+        } else {
+            "free motion reads near zero"
+        };
+        let passed = self.samples >= 1000 && self.tilt_rad >= 45_f64.to_radians() && p95_n <= self.limit_n;
+        let mean_n = if self.samples > 0 { self.sum_n / self.samples as f64 } else { 0.0 };
+        PassResult { samples: self.samples, mean_n, p95_n, tilt_rad: self.tilt_rad, passed, reason }
+    }
+}
+
+/// How a saved calibration stands at start-up.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Drift {
+    /// No usable sample.
+    NoSample,
+    /// The tool moves, or has not been still for long enough yet.
+    Moving,
+    /// The bias is where it was.
+    Ok {
+        /// Force left at rest, N.
+        by_n: f64,
+    },
+    /// The sensor drifted, or something touches the tool: calibrate anew.
+    Drifted {
+        /// Force left at rest, N.
+        by_n: f64,
+    },
+}
+
+/// Compares the force left at rest with zero. Steps allocate nothing.
+#[derive(Clone, Debug)]
+pub struct DriftCheck {
+    model: GravityModel,
+    limit_n: f64,
+    still: Still,
+}
+
+impl DriftCheck {
+    /// A check with a limit (N).
+    pub fn new(model: GravityModel, limit_n: f64, still: StillSettings) -> Self {
+        Self { model, limit_n, still: Still::new(still) }
+    }
+
+    /// Takes a sample at time `t_s` (s, rising); says how the calibration stands.
+    pub fn step(&mut self, sample: &WristSample, t_s: f64) -> Drift {
+        let Some(field) = self.model.field_m_s2(sample).filter(|_| sample.raw.is_finite() && t_s.is_finite()) else {
+            self.still.reset();
+            return Drift::NoSample;
+        };
+        match (self.still.step(sample, &field, t_s), self.still.mean()) {
+            (Some(share), Some((wrench, field))) if share >= 1.0 => {
+                let by_n = (wrench.force_n - self.model.predict(&field).force_n).norm();
+                if by_n <= self.limit_n { Drift::Ok { by_n } } else { Drift::Drifted { by_n } }
+            }
+            _ => Drift::Moving,
+        }
+    }
+}

@@ -1,0 +1,354 @@
+//! Taking still poses, guided, from samples as they come: a state machine without a clock of its own.
+//!
+//! Every sample goes through [`GravitySession::step`], which allocates nothing but the place of a recorded pose. A pose is a
+//! stretch in which force and orientation stand still for as long as they must. When enough poses are there, a still pose far
+//! from what the others say is refused as touched, and can be taken again at once.
+
+use nalgebra::{UnitQuaternion, Vector3};
+
+use super::{
+    GravityError, GravityModel, GravityReport, Orientation, Pose, Settings, fit,
+    model::arm_field_m_s2,
+    still::{Still, StillSettings},
+    targets::{PoseTarget, TARGETS},
+};
+use crate::frames::{GRAVITY_M_S2, WristSample};
+
+/// Poses from which a new one is compared with the others.
+const COMPARE_FROM: usize = 6;
+/// A pose counts for a target within this angle of the direction of gravity, rad.
+const REACH_RAD: f64 = 25.0 * std::f64::consts::PI / 180.0;
+
+/// How a session takes poses.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SessionSettings {
+    /// How the poses are fitted.
+    pub fit: Settings,
+    /// What standing still means.
+    pub still: StillSettings,
+    /// Take the orientation from the arm although an accelerometer is there.
+    pub use_arm: bool,
+    /// A still pose whose force is further than this from the other poses' model was touched, N.
+    pub touched_n: f64,
+    /// The tool must be turned by this between two poses, rad.
+    pub turn_rad: f64,
+}
+
+impl Default for SessionSettings {
+    fn default() -> Self {
+        Self {
+            fit: Settings::default(),
+            still: StillSettings::default(),
+            use_arm: false,
+            touched_n: 0.3,
+            turn_rad: 10_f64.to_radians(),
+        }
+    }
+}
+
+/// What the session is doing.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Phase {
+    /// The sample lacks what a pose needs, or holds a number that is not finite.
+    NoSample,
+    /// The tool moves, or is where the last pose was taken.
+    Moving,
+    /// Still for too short a time yet.
+    Recording {
+        /// Share of the still time, 0 to 1.
+        share: f64,
+    },
+    /// A pose was recorded just now.
+    Recorded {
+        /// Its index, from 0.
+        index: usize,
+    },
+    /// Still, and off from what the other poses say: let go of the tool and take the pose again.
+    Touched {
+        /// How far off, N.
+        by_n: f64,
+    },
+}
+
+/// State of one check before the first pose.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum CheckState {
+    /// Not enough samples yet.
+    Waiting,
+    /// As it must be.
+    Good,
+    /// Wrong, and what to do.
+    Bad(&'static str),
+}
+
+/// One check before the first pose.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Check {
+    /// What is checked.
+    pub name: &'static str,
+    /// How it stands.
+    pub state: CheckState,
+}
+
+/// A guided calibration.
+#[derive(Clone, Debug)]
+pub struct GravitySession {
+    settings: SessionSettings,
+    still: Still,
+    poses: Vec<Pose>,
+    running: Option<GravityModel>,
+    last: Option<WristSample>,
+    refused: Option<f64>,
+}
+
+impl GravitySession {
+    /// A session without poses.
+    pub fn new(settings: SessionSettings) -> Self {
+        let still = Still::new(settings.still);
+        Self { settings, still, poses: Vec::with_capacity(64), running: None, last: None, refused: None }
+    }
+
+    /// Takes one sample at time `t_s` (s, rising); says what the session is doing.
+    pub fn step(&mut self, sample: &WristSample, t_s: f64) -> Phase {
+        let Some(field) = self.field(sample).filter(|_| sample.is_finite() && t_s.is_finite()) else {
+            self.still.reset();
+            self.last = None;
+            return Phase::NoSample;
+        };
+        self.last = Some(*sample);
+        let Some(progress) = self.still.step(sample, &field, t_s) else {
+            self.refused = None;
+            return Phase::Moving;
+        };
+        if self.taken_here(&field) {
+            return Phase::Moving;
+        }
+        if let Some(by_n) = self.refused {
+            // Held like this it stays refused; a new try begins when the tool has moved or was let go.
+            if progress >= 1.0 {
+                self.still.reset();
+                self.refused = None;
+            }
+            return Phase::Touched { by_n };
+        }
+        if progress < 1.0 {
+            return Phase::Recording { share: progress };
+        }
+        self.record()
+    }
+
+    /// Keeps the still stretch as a pose, unless the others say that it was touched.
+    fn record(&mut self) -> Phase {
+        let Some((mean, field)) = self.still.mean() else { return Phase::Moving };
+        self.still.reset();
+        let by_n = self.running.map_or(0.0, |model| (mean.force_n - model.predict(&field).force_n).norm());
+        if by_n > self.settings.touched_n {
+            self.refused = Some(by_n);
+            return Phase::Touched { by_n };
+        }
+        let orientation = match (self.settings.use_arm, self.last.and_then(|sample| sample.kbf_from_s1)) {
+            (true, Some(kbf_from_s1)) => Orientation::Arm(kbf_from_s1),
+            (true, None) => return Phase::NoSample,
+            (false, _) => Orientation::Imu(field * -f64::from(self.settings.fit.imu_sign)),
+        };
+        self.poses.push(Pose { wrench: mean, has_torque: true, orientation });
+        self.refit();
+        Phase::Recorded { index: self.poses.len() - 1 }
+    }
+
+    fn field(&self, sample: &WristSample) -> Option<Vector3<f64>> {
+        let field = if self.settings.use_arm {
+            arm_field_m_s2(&sample.kbf_from_s1?)
+        } else {
+            sample.acceleration_m_s2? * -f64::from(self.settings.fit.imu_sign)
+        };
+        (field.norm() >= super::model::LEAST_FIELD_M_S2).then_some(field)
+    }
+
+    fn pose_field(&self, pose: &Pose) -> Vector3<f64> {
+        match pose.orientation {
+            Orientation::Imu(acceleration) => acceleration * -f64::from(self.settings.fit.imu_sign),
+            Orientation::Arm(kbf_from_s1) => arm_field_m_s2(&kbf_from_s1),
+        }
+    }
+
+    fn taken_here(&self, field: &Vector3<f64>) -> bool {
+        self.poses.last().is_some_and(|pose| self.pose_field(pose).angle(field) < self.settings.turn_rad)
+    }
+
+    fn refit(&mut self) {
+        let enough = self.poses.len() >= COMPARE_FROM;
+        let report = enough.then(|| self.report().ok()).flatten();
+        // Only a model that may be used can say that a new pose is off.
+        let usable = report.filter(|report| report.verdict == crate::calibration::Verdict::Accepted);
+        self.running = usable.and_then(|report| report.chosen_fit().map(|fit| fit.model));
+    }
+
+    /// Checks before the first pose; `Waiting` until samples come.
+    pub fn precheck(&self) -> [Check; 4] {
+        let state = |good: Option<bool>, bad| match good {
+            None => CheckState::Waiting,
+            Some(true) => CheckState::Good,
+            Some(false) => CheckState::Bad(bad),
+        };
+        let field = self.last.and_then(|sample| self.field(&sample));
+        let near_g = field.map(|field| (field.norm() / GRAVITY_M_S2 - 1.0).abs() < 0.05);
+        [
+            Check { name: "sensor", state: state(self.last.map(|_| true), "") },
+            Check { name: "orientation", state: state(field.map(|_| true), "") },
+            Check {
+                name: "gravity",
+                state: state(
+                    near_g,
+                    "the accelerometer is more than 5 % off 9.81 m/s^2 at rest; check its range and units",
+                ),
+            },
+            Check {
+                name: "stillness",
+                state: state(self.still.is_still(), "force or orientation does not stand still; let go of the tool"),
+            },
+        ]
+    }
+
+    /// The next orientation to take: the first that no pose is near.
+    pub fn target(&self) -> Option<PoseTarget> {
+        TARGETS.into_iter().find(|target| !self.poses.iter().any(|pose| self.angle_to(pose, target) < REACH_RAD))
+    }
+
+    /// Targets that a pose was taken near.
+    pub fn targets_met(&self) -> usize {
+        let met = |target: &PoseTarget| self.poses.iter().any(|pose| self.angle_to(pose, target) < REACH_RAD);
+        TARGETS.iter().filter(|target| met(target)).count()
+    }
+
+    fn angle_to(&self, pose: &Pose, target: &PoseTarget) -> f64 {
+        self.pose_field(pose).angle(&self.target_field(target))
+    }
+
+    /// The target's field in the frame of the source; for an accelerometer once a model knows its mounting, before that as if
+    /// it were mounted straight.
+    fn target_field(&self, target: &PoseTarget) -> Vector3<f64> {
+        let field_s1 = arm_field_m_s2(&target.kbf_from_s1());
+        match self.running.map(|model| model.parameters) {
+            Some(super::Parameters::Physical { s1_from_source_wxyz: [w, x, y, z], .. }) if !self.settings.use_arm => {
+                UnitQuaternion::new_normalize(nalgebra::Quaternion::new(w, x, y, z)).inverse() * field_s1
+            }
+            _ => field_s1,
+        }
+    }
+
+    /// Angle of tilt between the newest sample and the next target, rad.
+    pub fn angle_to_target_rad(&self) -> Option<f64> {
+        let field = self.field(&self.last?)?;
+        Some(field.angle(&self.target_field(&self.target()?)))
+    }
+
+    /// Poses taken so far.
+    pub fn poses(&self) -> &[Pose] {
+        &self.poses
+    }
+
+    /// Takes a pose back; `None` when there is no such pose.
+    pub fn remove(&mut self, index: usize) -> Option<Pose> {
+        let removed = (index < self.poses.len()).then(|| self.poses.remove(index));
+        self.refit();
+        removed
+    }
+
+    /// Takes the newest pose back.
+    pub fn undo(&mut self) -> Option<Pose> {
+        self.remove(self.poses.len().checked_sub(1)?)
+    }
+
+    /// Fit of the poses taken so far.
+    pub fn report(&self) -> Result<GravityReport, GravityError> {
+        fit(&self.poses, &self.settings.fit)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::calibration::{
+        Verdict,
+        gravity::{CheckPass, Compensator, Drift, DriftCheck, tests::Tool},
+    };
+
+    /// Holds the tool still for 1.6 s with an extra force and noise of 0.02 N; gives the phases seen.
+    fn hold(
+        session: &mut GravitySession,
+        tool: &mut Tool,
+        target: &PoseTarget,
+        push_n: f64,
+        t_s: &mut f64,
+    ) -> Vec<Phase> {
+        let still = |tool: &mut Tool| {
+            let mut sample = tool.sample(target.kbf_from_s1(), 0.02, 1e-3);
+            sample.raw.force_n.x += push_n;
+            *t_s += 1e-3;
+            (sample, *t_s)
+        };
+        let mut still = still;
+        (0..1600)
+            .map(|_| {
+                let (sample, t_s) = still(tool);
+                session.step(&sample, t_s)
+            })
+            .collect()
+    }
+
+    #[test]
+    fn a_guided_session_ends_accepted_and_refuses_a_touched_pose() {
+        let mut tool = Tool::new(31, 0.4);
+        tool.s1_from_imu = UnitQuaternion::identity();
+        let mut session = GravitySession::new(SessionSettings::default());
+        let mut t_s = 0.0;
+        assert_eq!(session.precheck()[0].state, CheckState::Waiting);
+        for count in 0..9 {
+            let target = session.target().unwrap();
+            let phases = hold(&mut session, &mut tool, &target, 0.0, &mut t_s);
+            assert!(phases.contains(&Phase::Recorded { index: count }), "{}", target.name);
+            assert!(session.precheck().iter().all(|check| check.state == CheckState::Good));
+        }
+        let target = session.target().unwrap();
+        let touched = hold(&mut session, &mut tool, &target, 1.0, &mut t_s);
+        assert!(touched.iter().any(|phase| matches!(phase, Phase::Touched { .. })));
+        assert_eq!(session.poses().len(), 9);
+        while let Some(target) = session.target() {
+            hold(&mut session, &mut tool, &target, 0.0, &mut t_s);
+        }
+        let report = session.report().unwrap();
+        assert_eq!((report.verdict, session.targets_met()), (Verdict::Accepted, 12), "{}", report.reason);
+        assert!(session.undo().is_some() && session.remove(99).is_none());
+        assert!(session.target().is_some());
+
+        let model = report.chosen_fit().unwrap().model;
+        let mut pass = CheckPass::new(Compensator::new(model, 0.002, 1e-3), 0.2);
+        let mut drift = DriftCheck::new(model, 0.2, StillSettings::default());
+        let mut drifts = vec![];
+        for i in 0..3000 {
+            let tilt = UnitQuaternion::from_euler_angles(f64::from(i) * 5e-4, 0.0, 0.0);
+            pass.step(&tool.sample(tilt, 0.02, 1e-3));
+            let mut sample = tool.sample(UnitQuaternion::identity(), 0.02, 1e-3);
+            sample.raw.force_n.z += if i < 1500 { 0.0 } else { 0.5 };
+            drifts.push(drift.step(&sample, f64::from(i) * 1e-3));
+        }
+        assert!(pass.result().passed, "{:?}", pass.result());
+        assert!(matches!(drifts[1400], Drift::Ok { .. }), "{:?}", drifts[1400]);
+        assert!(matches!(drifts[2990], Drift::Drifted { by_n } if (by_n - 0.5).abs() < 0.05), "{:?}", drifts[2990]);
+    }
+
+    #[test]
+    fn a_moving_tool_and_a_poisoned_sample_record_nothing() {
+        let mut tool = Tool::new(32, 0.4);
+        let mut session = GravitySession::new(SessionSettings::default());
+        for i in 0..5000 {
+            let turning = UnitQuaternion::from_euler_angles(f64::from(i) * 1e-3, 0.0, 0.0);
+            session.step(&tool.sample(turning, 0.02, 1e-3), f64::from(i) * 1e-3);
+        }
+        let mut bad = tool.sample(UnitQuaternion::identity(), 0.0, 0.0);
+        bad.raw.force_n.x = f64::NAN;
+        assert_eq!(session.step(&bad, 6.0), Phase::NoSample);
+        assert!(session.poses().is_empty());
+    }
+}

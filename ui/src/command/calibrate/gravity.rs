@@ -1,0 +1,168 @@
+//! `nima calibrate gravity`: a gravity model from still poses, judged on poses held out.
+
+use std::{
+    fmt::Write as _,
+    io::{self, Write},
+    path::PathBuf,
+    time::{SystemTime, UNIX_EPOCH},
+};
+
+use anyhow::{Context as _, bail};
+use clap::{Args, ValueEnum};
+use nima::{
+    calibration::{
+        Residuals, Verdict,
+        gravity::{GravityReport, ModelKind, Settings, fit},
+    },
+    recording::{read_poses, write_atomically},
+};
+
+use crate::command::output;
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum Model {
+    Physical,
+    Gain,
+    Paper,
+}
+
+#[derive(Debug, Args)]
+pub(in crate::command) struct Arguments {
+    /// CSV file, a still pose a row: `fx_n,fy_n,fz_n[,tx_nm,ty_nm,tz_nm]` with `ax,ay,az` (m/s^2) or `qw,qx,qy,qz` (base from sensor)
+    poses: PathBuf,
+    /// Write the calibration to this TOML file, when it is accepted
+    #[arg(long, value_name = "F.toml")]
+    out: Option<PathBuf>,
+    /// Serial number of the sensor
+    #[arg(long, default_value = "unknown")]
+    sensor: String,
+    /// Name of the tool on the sensor
+    #[arg(long, default_value = "unknown")]
+    tool: String,
+    /// The accelerometer reads towards gravity at rest, not the support
+    #[arg(long)]
+    flip_imu: bool,
+    /// The model to keep; without it the physical one, or the gain where the poses clearly support it
+    #[arg(long)]
+    model: Option<Model>,
+    /// Write a refused calibration all the same; the name goes into the file
+    #[arg(long = "override", value_name = "NAME", requires = "out")]
+    override_by: Option<String>,
+    /// Why the refused calibration is kept
+    #[arg(long, value_name = "TEXT", requires = "override_by")]
+    override_reason: Option<String>,
+    /// Print the report as one JSON object
+    #[arg(long)]
+    json: bool,
+}
+
+pub(in crate::command) fn run(arguments: &Arguments) -> anyhow::Result<()> {
+    let poses = read_poses(&arguments.poses)?;
+    let model = arguments.model.map(|model| match model {
+        Model::Physical => ModelKind::Physical,
+        Model::Gain => ModelKind::Gain,
+        Model::Paper => ModelKind::Paper,
+    });
+    let settings = Settings { model, imu_sign: if arguments.flip_imu { -1 } else { 1 }, ..Settings::default() };
+    let report = fit(&poses, &settings).with_context(|| format!("poses {}", arguments.poses.display()))?;
+    let accepted = report.verdict == Verdict::Accepted;
+    if accepted || arguments.override_by.is_some() {
+        save(arguments, &report)?;
+    }
+    if arguments.json {
+        output::json(&report)?;
+    } else {
+        output::line(&in_words(&report))?;
+    }
+    if !accepted {
+        bail!("{}: {}", report.verdict.words(), report.reason);
+    }
+    Ok(())
+}
+
+fn save(arguments: &Arguments, report: &GravityReport) -> anyhow::Result<()> {
+    let Some(out) = &arguments.out else { return Ok(()) };
+    let Some(mut record) = report.record(&arguments.sensor, &arguments.tool, &now_utc()?) else {
+        bail!("there is no model to write to {}: {}", out.display(), report.reason);
+    };
+    if report.verdict != Verdict::Accepted {
+        record.override_by.clone_from(&arguments.override_by);
+        record.override_reason.clone_from(&arguments.override_reason);
+    }
+    let text = record.to_toml()?;
+    let fill = |file: &mut dyn Write| -> io::Result<()> { file.write_all(text.as_bytes()) };
+    write_atomically(out, fill).with_context(|| format!("cannot write the calibration {}", out.display()))
+}
+
+/// Now in ISO 8601, UTC, to the second.
+fn now_utc() -> anyhow::Result<String> {
+    let seconds =
+        SystemTime::now().duration_since(UNIX_EPOCH).context("the clock stands before 1970; set it")?.as_secs();
+    let (year, month, day) = civil(seconds / 86_400);
+    let [hour, minute, second] = [seconds / 3600 % 24, seconds / 60 % 60, seconds % 60];
+    Ok(format!("{year:04}-{month:02}-{day:02}T{hour:02}:{minute:02}:{second:02}Z"))
+}
+
+/// Year, month and day of a count of days since 1970-01-01 (years that begin in March, so that the leap day is their last).
+fn civil(days: u64) -> (u64, u64, u64) {
+    let days = days + 719_468;
+    let (era, of_era) = (days / 146_097, days % 146_097);
+    let year = (of_era - of_era / 1460 + of_era / 36_524 - of_era / 146_096) / 365;
+    let of_year = of_era - (365 * year + year / 4 - year / 100);
+    let march_month = (5 * of_year + 2) / 153;
+    let day = of_year - (153 * march_month + 2) / 5 + 1;
+    let month = if march_month < 10 { march_month + 3 } else { march_month - 9 };
+    (era * 400 + year + u64::from(month <= 2), month, day)
+}
+
+fn in_words(report: &GravityReport) -> String {
+    let mut text = format!("{}: {}\n", report.verdict.words(), report.reason);
+    let condition = report.condition.map_or_else(|| "infinite".to_owned(), |condition| format!("{condition:.1}"));
+    // Writing into a String cannot fail.
+    writeln!(text, "{} poses, coverage {:.2}, condition {condition}", report.poses, report.coverage).ok();
+    if !report.outliers.is_empty() {
+        let rows: Vec<String> = report.outliers.iter().map(|index| (index + 1).to_string()).collect();
+        writeln!(text, "left out: pose {}", rows.join(", ")).ok();
+    }
+    if let Some(mass_kg) = report.mass_kg {
+        write!(text, "mass {mass_kg:.4} kg").ok();
+        if let Some([x, y, z]) = report.com_m.map(|com| com.map(|c| c * 1e3)) {
+            write!(text, ", centre of mass {x:.1}, {y:.1}, {z:.1} mm").ok();
+        }
+        text.push('\n');
+    }
+    for fit in &report.fits {
+        let mark = if report.chosen == Some(fit.kind) { "(chosen)" } else { "" };
+        writeln!(text, "{:<9} force {} N {mark}", fit.kind.name(), figures(&fit.force_n, 4)).ok();
+        if let Some(torque_nm) = &fit.torque_nm {
+            writeln!(text, "{:<9} torque {} Nm", "", figures(torque_nm, 5)).ok();
+        }
+    }
+    text.push_str("(errors per axis x, y, z; held out: on poses the model was not fitted on)");
+    text
+}
+
+fn figures(residuals: &Residuals, digits: usize) -> String {
+    let triple = |values: [f64; 3]| values.map(|value| format!("{value:.digits$}")).join(" ");
+    let held_out = &residuals.held_out;
+    format!(
+        "held out  mean {}  sd {}  max {}   fitted  mean {}",
+        triple(held_out.mae),
+        triple(held_out.sd),
+        triple(held_out.max),
+        triple(residuals.fitted.mae)
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn days_are_dates() {
+        assert_eq!(civil(0), (1970, 1, 1));
+        assert_eq!(civil(11_016), (2000, 2, 29));
+        assert_eq!(civil(20_454), (2026, 1, 1));
+        assert_eq!(civil(20_453), (2025, 12, 31));
+    }
+}

@@ -4,6 +4,7 @@
 //! sensor under the tissue is turned against the one at the wrist; `store` keeps both in files bound to sensor, tool and date.
 //! SI units; frames as in [`crate::frames`].
 
+pub mod correspondence;
 pub mod gravity;
 mod verdict;
 

@@ -1,0 +1,121 @@
+//! What else may be wrong between two sensors: one reads more than the other, or was not zeroed.
+
+use nalgebra::{Rotation3, SMatrix, SVector, UnitQuaternion, Vector3};
+use serde::{Deserialize, Serialize};
+
+use super::solver::Row;
+
+/// In which sensor's axes a constant between the sensors stands still.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum OffsetFrame {
+    /// The wrist sensor's.
+    S1,
+    /// The tissue sensor's.
+    S2,
+    /// The wrist was not turned enough between the pushes to tell; the figures are in the wrist sensor's axes.
+    Unknown,
+}
+
+/// Gain and constant between the sensors, `f1 = gain R f2 + offset`, with their standard errors; by least squares together
+/// with the rotation, so that neither hides in it.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Diagnosis {
+    /// Force of the wrist sensor over that of the tissue sensor.
+    pub gain: f64,
+    /// Standard error of the gain.
+    pub gain_se: f64,
+    /// Constant between them, N.
+    pub offset_n: [f64; 3],
+    /// Standard error of the constant's worst axis, N.
+    pub offset_se_n: f64,
+    /// Whose axes the constant is given in.
+    pub offset_frame: OffsetFrame,
+}
+
+impl Diagnosis {
+    /// Length of the constant, N.
+    pub fn offset_norm_n(&self) -> f64 {
+        Vector3::from(self.offset_n).norm()
+    }
+
+    /// The gain departs from one by more than `limit`, and by more than three standard errors.
+    pub fn gain_is_off(&self, limit: f64) -> bool {
+        let by = (self.gain - 1.0).abs();
+        by > limit && by > 3.0 * self.gain_se
+    }
+
+    /// The constant exceeds `limit_n`, and four standard errors.
+    pub fn offset_is_off(&self, limit_n: f64) -> bool {
+        let by_n = self.offset_norm_n();
+        by_n > limit_n && by_n > 4.0 * self.offset_se_n
+    }
+
+    /// Diagnoses the rows around this rotation; `None` when they cannot tell.
+    pub(super) fn of(rows: &[Row], c_from_s2: &Rotation3<f64>) -> Option<Self> {
+        let wrist = joint_fit(rows, c_from_s2, |row, _| row.s1_from_c.inverse())?;
+        let tissue = joint_fit(rows, c_from_s2, |_, c_from_s2| UnitQuaternion::from(*c_from_s2));
+        let (fit, offset_frame) = match tissue {
+            Some(tissue) if tissue.sd_n < 0.9 * wrist.sd_n => (tissue, OffsetFrame::S2),
+            Some(tissue) if wrist.sd_n < 0.9 * tissue.sd_n => (wrist, OffsetFrame::S1),
+            _ => (wrist, OffsetFrame::Unknown),
+        };
+        Some(Self {
+            gain: fit.gain,
+            gain_se: fit.gain_se,
+            offset_n: fit.offset_n.into(),
+            offset_se_n: fit.offset_se_n,
+            offset_frame,
+        })
+    }
+}
+
+/// Rotation (3), gain (1) and constant (3).
+const UNKNOWNS: usize = 7;
+
+struct JointFit {
+    gain: f64,
+    gain_se: f64,
+    offset_n: Vector3<f64>,
+    offset_se_n: f64,
+    sd_n: f64,
+}
+
+/// Gauss-Newton on `c = gain R s2 + T offset` with `T = c_from_offset` of each row; it is nearly linear, so few steps do.
+fn joint_fit(
+    rows: &[Row],
+    start: &Rotation3<f64>,
+    c_from_offset: impl Fn(&Row, &Rotation3<f64>) -> UnitQuaternion<f64>,
+) -> Option<JointFit> {
+    let freedom = (3 * rows.len()).checked_sub(UNKNOWNS).filter(|&freedom| freedom > 0)?;
+    let (mut rotation, mut gain, mut offset_n) = (*start, 1.0, Vector3::zeros());
+    let (mut covariance, mut sd_n) = (SMatrix::<f64, UNKNOWNS, UNKNOWNS>::zeros(), 0.0);
+    for _ in 0..6 {
+        let mut normal = SMatrix::<f64, UNKNOWNS, UNKNOWNS>::zeros();
+        let mut right = SVector::<f64, UNKNOWNS>::zeros();
+        let mut squares = 0.0;
+        for row in rows {
+            let turned_n = rotation * row.s2_n;
+            let transform = *c_from_offset(row, &rotation).to_rotation_matrix().matrix();
+            let error_n = row.c_n - turned_n * gain - transform * offset_n;
+            let mut slopes = SMatrix::<f64, 3, UNKNOWNS>::zeros();
+            slopes.fixed_view_mut::<3, 3>(0, 0).copy_from(&(-turned_n * gain).cross_matrix());
+            slopes.fixed_view_mut::<3, 1>(0, 3).copy_from(&turned_n);
+            slopes.fixed_view_mut::<3, 3>(0, 4).copy_from(&transform);
+            normal += slopes.transpose() * slopes;
+            right += slopes.transpose() * error_n;
+            squares += error_n.norm_squared();
+        }
+        covariance = normal.cholesky()?.inverse();
+        sd_n = (squares / freedom as f64).sqrt();
+        let step = covariance * right;
+        rotation = Rotation3::new(step.fixed_rows::<3>(0).into_owned()) * rotation;
+        gain += step[3];
+        offset_n += step.fixed_rows::<3>(4);
+    }
+    let se = |index: usize| sd_n * covariance[(index, index)].max(0.0).sqrt();
+    let offset_se_n = (4..7).map(se).fold(0.0, f64::max);
+    let finite = gain.is_finite() && sd_n.is_finite() && offset_n.iter().all(|x| x.is_finite());
+    finite.then(|| JointFit { gain, gain_se: se(3), offset_n, offset_se_n, sd_n })
+}

@@ -1,0 +1,75 @@
+//! The paper's way to the rotation: a search over roll, pitch and yaw, here by the simplex of Nelder and Mead (Comput. J.
+//! 1965) from several starts. It shares nothing with the closed form but the residual, so it can find it out.
+
+use std::f64::consts::{FRAC_PI_2, PI};
+
+use nalgebra::{Rotation3, Vector3};
+
+use super::solver::Row;
+
+/// Starts (roll, pitch, yaw, rad): one of them is within 90 degrees of any rotation.
+const STARTS: [[f64; 3]; 6] = [
+    [0.0, 0.0, 0.0],
+    [PI, 0.0, 0.0],
+    [0.0, 0.0, PI],
+    [PI, 0.0, PI],
+    [FRAC_PI_2, 0.6, -FRAC_PI_2],
+    [-FRAC_PI_2, -0.6, FRAC_PI_2],
+];
+const MOST_STEPS: usize = 400;
+/// Size of a simplex that has converged, rad.
+const FINE: f64 = 1e-9;
+
+type Vertex = (Vector3<f64>, f64);
+
+/// The rotation of least squared residual that the search finds.
+pub(super) fn search(rows: &[Row]) -> Rotation3<f64> {
+    let cost = |angles: &Vector3<f64>| {
+        let rotation = rotation(angles);
+        rows.iter().map(|row| row.residual_n(&rotation).norm_squared()).sum::<f64>()
+    };
+    let mut best = (Vector3::zeros(), f64::INFINITY);
+    for start in STARTS {
+        let found = simplex(Vector3::from(start), &cost);
+        if found.1 < best.1 {
+            best = found;
+        }
+    }
+    rotation(&best.0)
+}
+
+/// `Rz(yaw) Ry(pitch) Rx(roll)`, the paper's order.
+fn rotation(angles: &Vector3<f64>) -> Rotation3<f64> {
+    Rotation3::from_euler_angles(angles.x, angles.y, angles.z)
+}
+
+fn simplex(start: Vector3<f64>, cost: &impl Fn(&Vector3<f64>) -> f64) -> Vertex {
+    let at = |point: Vector3<f64>| (point, cost(&point));
+    let mut vertices =
+        [at(start), at(start + Vector3::x() * 0.5), at(start + Vector3::y() * 0.5), at(start + Vector3::z() * 0.5)];
+    for _ in 0..MOST_STEPS {
+        vertices.sort_by(|a, b| a.1.total_cmp(&b.1));
+        let [best, _, second_worst, worst] = vertices;
+        if (worst.0 - best.0).norm() < FINE {
+            break;
+        }
+        let centre = (vertices[0].0 + vertices[1].0 + vertices[2].0) / 3.0;
+        let along = |step: f64| at(centre + (centre - worst.0) * step);
+        let reflected = along(1.0);
+        let replacement = if reflected.1 < best.1 {
+            let expanded = along(2.0);
+            if expanded.1 < reflected.1 { expanded } else { reflected }
+        } else if reflected.1 < second_worst.1 {
+            reflected
+        } else {
+            let contracted = along(if reflected.1 < worst.1 { 0.5 } else { -0.5 });
+            if contracted.1 >= worst.1.min(reflected.1) {
+                vertices = vertices.map(|vertex| at((vertex.0 + best.0) / 2.0));
+                continue;
+            }
+            contracted
+        };
+        vertices[3] = replacement;
+    }
+    vertices.into_iter().min_by(|a, b| a.1.total_cmp(&b.1)).unwrap_or(vertices[0])
+}

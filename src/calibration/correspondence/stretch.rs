@@ -1,0 +1,125 @@
+//! The stillest stretch of a push near its peak, found in one pass with constant memory.
+
+use std::collections::VecDeque;
+
+use nalgebra::{Quaternion, UnitQuaternion, Vector3};
+
+use super::Pair;
+
+/// One sample of both sensors.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Reading {
+    pub(super) t_s: f64,
+    pub(super) f1_n: Vector3<f64>,
+    pub(super) f2_n: Vector3<f64>,
+    pub(super) s1_from_c: UnitQuaternion<f64>,
+}
+
+/// A stretch that may be kept.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Best {
+    /// Means over the stretch.
+    pub(super) pair: Pair,
+    /// Standard deviation of the worst axis of either sensor, N.
+    pub(super) deviation_n: f64,
+}
+
+/// Samples a stretch holds at most (0.1 s at 10 kHz and room to spare); a faster source gets a shorter stretch.
+const CAPACITY: usize = 2048;
+/// Samples that make a mean.
+const LEAST_SAMPLES: usize = 10;
+/// A stretch this much below the strongest one is not near the peak.
+const NEAR_PEAK: f64 = 0.8;
+/// Readings further apart than this belong to different stretches, s.
+const LONGEST_GAP_S: f64 = 0.05;
+
+/// A sliding window with running sums, and the best that it has seen.
+#[derive(Clone, Debug)]
+pub(super) struct Stretch {
+    length_s: f64,
+    window: VecDeque<Reading>,
+    sums: Sums,
+    best: Option<Best>,
+}
+
+#[derive(Clone, Copy, Debug, Default)]
+struct Sums {
+    force_n: [Vector3<f64>; 2],
+    square_n2: [Vector3<f64>; 2],
+}
+
+impl Sums {
+    fn add(&mut self, reading: &Reading, sign: f64) {
+        for (sensor, force_n) in [reading.f1_n, reading.f2_n].iter().enumerate() {
+            self.force_n[sensor] += force_n * sign;
+            self.square_n2[sensor] += force_n.component_mul(force_n) * sign;
+        }
+    }
+
+    /// Means of both sensors and the standard deviation of the worst axis.
+    fn statistics(&self, count: f64) -> ([Vector3<f64>; 2], f64) {
+        let mean_n = self.force_n.map(|sum| sum / count);
+        let mut variance = 0.0;
+        for (square, mean_n) in self.square_n2.iter().zip(&mean_n) {
+            variance = (square / count - mean_n.component_mul(mean_n)).max().max(variance);
+        }
+        (mean_n, variance.sqrt())
+    }
+}
+
+impl Stretch {
+    /// Of this length, s.
+    pub(super) fn new(length_s: f64) -> Self {
+        Self { length_s, window: VecDeque::with_capacity(CAPACITY), sums: Sums::default(), best: None }
+    }
+
+    /// Forgets everything, for the next push.
+    pub(super) fn clear(&mut self) {
+        self.window.clear();
+        self.sums = Sums::default();
+        self.best = None;
+    }
+
+    /// The best stretch so far; `None` until one is full.
+    pub(super) const fn best(&self) -> Option<Best> {
+        self.best
+    }
+
+    /// Takes a reading; `true` when the stretch that ends with it is the best so far.
+    pub(super) fn take(&mut self, reading: &Reading) -> bool {
+        if self.window.back().is_some_and(|last| reading.t_s - last.t_s > LONGEST_GAP_S) {
+            self.window.clear();
+            self.sums = Sums::default();
+        }
+        self.window.push_back(*reading);
+        self.sums.add(reading, 1.0);
+        let mut full = self.window.len() == CAPACITY;
+        while let Some(first) = self.window.front().copied()
+            && (reading.t_s - first.t_s >= self.length_s || self.window.len() == CAPACITY)
+        {
+            full = true;
+            self.sums.add(&first, -1.0);
+            self.window.pop_front();
+        }
+        full && self.window.len() >= LEAST_SAMPLES && self.note()
+    }
+
+    fn note(&mut self) -> bool {
+        let ([f1_n, f2_n], deviation_n) = self.sums.statistics(self.window.len() as f64);
+        let better = self.best.is_none_or(|best| {
+            let (now_n, best_n) = (f1_n.norm(), best.pair.f1_n.norm());
+            best_n < NEAR_PEAK * now_n || (now_n >= NEAR_PEAK * best_n && deviation_n < best.deviation_n)
+        });
+        if better {
+            // The arm stands still while it pushes; the mean takes out the tracker's noise.
+            let near = self.window.back().map_or_else(UnitQuaternion::identity, |last| last.s1_from_c);
+            let sum = self.window.iter().fold(Quaternion::default(), |sum: Quaternion<f64>, reading| {
+                let part = reading.s1_from_c.into_inner();
+                if part.dot(&near) < 0.0 { sum - part } else { sum + part }
+            });
+            let s1_from_c = UnitQuaternion::try_new(sum, 1e-9).unwrap_or(near);
+            self.best = Some(Best { pair: Pair { f1_n, f2_n, s1_from_c }, deviation_n });
+        }
+        better
+    }
+}

@@ -4,7 +4,7 @@
 //! stretch in which force and orientation stand still for as long as they must. When enough poses are there, a still pose far
 //! from what the others say is refused as touched, and can be taken again at once.
 
-use nalgebra::{UnitQuaternion, Vector3};
+use nalgebra::Vector3;
 
 use super::{
     GravityError, GravityModel, GravityReport, Orientation, Pose, Settings, fit,
@@ -63,6 +63,10 @@ pub enum Phase {
         /// Its index, from 0.
         index: usize,
     },
+    /// The tool does not turn, and yet the force is not still: something touches it.
+    Disturbed,
+    /// Still where the last pose was taken: turn the tool to the next.
+    TakenHere,
     /// Still, and off from what the other poses say: let go of the tool and take the pose again.
     Touched {
         /// How far off, N.
@@ -90,12 +94,22 @@ pub struct Check {
     pub state: CheckState,
 }
 
+/// Where a pose was taken, for the guide only; the fit uses what was measured.
+#[derive(Clone, Copy, Debug)]
+struct Place {
+    /// Index of the target that it counts for.
+    target: Option<usize>,
+    /// Direction of gravity in `s1` by the arm, where it tells.
+    down_s1: Option<Vector3<f64>>,
+}
+
 /// A guided calibration.
 #[derive(Clone, Debug)]
 pub struct GravitySession {
     settings: SessionSettings,
     still: Still,
     poses: Vec<Pose>,
+    places: Vec<Place>,
     running: Option<GravityModel>,
     last: Option<WristSample>,
     refused: Option<f64>,
@@ -105,7 +119,8 @@ impl GravitySession {
     /// A session without poses.
     pub fn new(settings: SessionSettings) -> Self {
         let still = Still::new(settings.still);
-        Self { settings, still, poses: Vec::with_capacity(64), running: None, last: None, refused: None }
+        let (poses, places) = (Vec::with_capacity(64), Vec::with_capacity(64));
+        Self { settings, still, poses, places, running: None, last: None, refused: None }
     }
 
     /// Takes one sample at time `t_s` (s, rising); says what the session is doing.
@@ -118,10 +133,10 @@ impl GravitySession {
         self.last = Some(*sample);
         let Some(progress) = self.still.step(sample, &field, t_s) else {
             self.refused = None;
-            return Phase::Moving;
+            return if self.still.only_force_moved() { Phase::Disturbed } else { Phase::Moving };
         };
         if self.taken_here(&field) {
-            return Phase::Moving;
+            return Phase::TakenHere;
         }
         if let Some(by_n) = self.refused {
             // Held like this it stays refused; a new try begins when the tool has moved or was let go.
@@ -151,7 +166,9 @@ impl GravitySession {
             (true, None) => return Phase::NoSample,
             (false, _) => Orientation::Imu(field * -f64::from(self.settings.fit.imu_sign)),
         };
+        let place = self.place();
         self.poses.push(Pose { wrench: mean, has_torque: true, orientation });
+        self.places.push(place);
         self.refit();
         Phase::Recorded { index: self.poses.len() - 1 }
     }
@@ -210,37 +227,47 @@ impl GravitySession {
         ]
     }
 
-    /// The next orientation to take: the first that no pose is near.
+    /// The next orientation to take: the first that no pose counts for.
     pub fn target(&self) -> Option<PoseTarget> {
-        TARGETS.into_iter().find(|target| !self.poses.iter().any(|pose| self.angle_to(pose, target) < REACH_RAD))
+        self.next().map(|index| TARGETS[index])
+    }
+
+    fn next(&self) -> Option<usize> {
+        (0..TARGETS.len()).find(|&index| !self.is_met(index))
+    }
+
+    fn is_met(&self, index: usize) -> bool {
+        self.places.iter().any(|place| place.target == Some(index))
     }
 
     /// Targets that a pose was taken near.
     pub fn targets_met(&self) -> usize {
-        let met = |target: &PoseTarget| self.poses.iter().any(|pose| self.angle_to(pose, target) < REACH_RAD);
-        TARGETS.iter().filter(|target| met(target)).count()
+        (0..TARGETS.len()).filter(|&index| self.is_met(index)).count()
     }
 
-    fn angle_to(&self, pose: &Pose, target: &PoseTarget) -> f64 {
-        self.pose_field(pose).angle(&self.target_field(target))
+    /// What a pose taken now counts for: the nearest target within reach by the arm's word. Without an arm the sensor's mounting
+    /// is not known yet, and what was asked for is believed; the fit's coverage judges in the end.
+    fn place(&self) -> Place {
+        let Some(down_s1) = self.down_s1() else { return Place { target: self.next(), down_s1: None } };
+        let angle = |index: &usize| Vector3::from(TARGETS[*index].down_s1).angle(&down_s1);
+        let nearest = (0..TARGETS.len()).min_by(|a, b| angle(a).total_cmp(&angle(b)));
+        Place { target: nearest.filter(|index| angle(index) < REACH_RAD), down_s1: Some(down_s1) }
     }
 
-    /// The target's field in the frame of the source; for an accelerometer once a model knows its mounting, before that as if
-    /// it were mounted straight.
-    fn target_field(&self, target: &PoseTarget) -> Vector3<f64> {
-        let field_s1 = arm_field_m_s2(&target.kbf_from_s1());
-        match self.running.map(|model| model.parameters) {
-            Some(super::Parameters::Physical { s1_from_source_wxyz: [w, x, y, z], .. }) if !self.settings.use_arm => {
-                UnitQuaternion::new_normalize(nalgebra::Quaternion::new(w, x, y, z)).inverse() * field_s1
-            }
-            _ => field_s1,
-        }
+    /// Direction of gravity in `s1` now, by the arm.
+    fn down_s1(&self) -> Option<Vector3<f64>> {
+        arm_field_m_s2(&self.last?.kbf_from_s1?).try_normalize(1e-9)
     }
 
-    /// Angle of tilt between the newest sample and the next target, rad.
+    /// Angle of tilt between the newest sample and the next target, rad; `None` where no arm tells.
     pub fn angle_to_target_rad(&self) -> Option<f64> {
-        let field = self.field(&self.last?)?;
-        Some(field.angle(&self.target_field(&self.target()?)))
+        Some(self.down_s1()?.angle(&Vector3::from(self.target()?.down_s1)))
+    }
+
+    /// Directions of gravity in `s1` of the poses taken, for a picture: by the arm, else those asked for.
+    pub fn taken_down_s1(&self) -> Vec<Vector3<f64>> {
+        let known = |place: &Place| place.down_s1.or_else(|| Some(Vector3::from(TARGETS[place.target?].down_s1)));
+        self.places.iter().filter_map(known).collect()
     }
 
     /// Poses taken so far.
@@ -250,7 +277,10 @@ impl GravitySession {
 
     /// Takes a pose back; `None` when there is no such pose.
     pub fn remove(&mut self, index: usize) -> Option<Pose> {
-        let removed = (index < self.poses.len()).then(|| self.poses.remove(index));
+        let removed = (index < self.poses.len()).then(|| {
+            self.places.remove(index);
+            self.poses.remove(index)
+        });
         self.refit();
         removed
     }
@@ -268,6 +298,8 @@ impl GravitySession {
 
 #[cfg(test)]
 mod tests {
+    use nalgebra::UnitQuaternion;
+
     use super::*;
     use crate::calibration::{
         Verdict,

@@ -58,12 +58,22 @@ pub(super) struct Still {
     since_s: f64,
     last_s: Option<f64>,
     moved: Option<bool>,
+    field_moved_s: f64,
 }
 
 impl Still {
     pub(super) fn new(settings: StillSettings) -> Self {
         let nothing = Sums::default();
-        Self { settings, short: nothing, short_since_s: 0.0, whole: nothing, since_s: 0.0, last_s: None, moved: None }
+        Self {
+            settings,
+            short: nothing,
+            short_since_s: 0.0,
+            whole: nothing,
+            since_s: 0.0,
+            last_s: None,
+            moved: None,
+            field_moved_s: 0.0,
+        }
     }
 
     /// Forgets the stretch.
@@ -76,6 +86,11 @@ impl Still {
         self.moved.map(|moved| !moved)
     }
 
+    /// It moves, and for half a second it was the force alone that did.
+    pub(super) fn only_force_moved(&self) -> bool {
+        self.moved == Some(true) && self.last_s.is_some_and(|last| last - self.field_moved_s > 0.5)
+    }
+
     /// Mean of the stretch: wrench (`s1`) and field of gravity (m/s^2, source's frame).
     pub(super) fn mean(&self) -> Option<(Wrench, Vector3<f64>)> {
         (self.whole.count > 0.0).then(|| self.whole.mean())
@@ -85,7 +100,7 @@ impl Still {
     pub(super) fn step(&mut self, sample: &WristSample, field: &Vector3<f64>, t_s: f64) -> Option<f64> {
         if !self.last_s.is_some_and(|last| t_s > last && t_s - last <= self.settings.gap_s) {
             self.reset();
-            (self.short_since_s, self.since_s) = (t_s, t_s);
+            (self.short_since_s, self.since_s, self.field_moved_s) = (t_s, t_s, t_s);
         }
         self.last_s = Some(t_s);
         self.short.add(&sample.raw, field, 1.0);
@@ -99,8 +114,11 @@ impl Still {
         let (wrench, field) = self.short.mean();
         let far = self.whole.count > 0.0 && {
             let (mean, mean_field) = self.whole.mean();
-            (wrench.force_n - mean.force_n).norm() > self.settings.force_n
-                || (field - mean_field).norm() > self.settings.field_m_s2
+            let turned = (field - mean_field).norm() > self.settings.field_m_s2;
+            if turned {
+                self.field_moved_s = t_s;
+            }
+            turned || (wrench.force_n - mean.force_n).norm() > self.settings.force_n
         };
         if far {
             (self.whole, self.since_s) = (Sums::default(), t_s);

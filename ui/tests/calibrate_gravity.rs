@@ -2,6 +2,7 @@
 #![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use std::{
+    fmt::Write as _,
     path::Path,
     process::{Command, Output},
 };
@@ -19,7 +20,7 @@ fn poses(folder: &Path, count: usize, sign: f64) -> String {
         let down = [r * turn.cos(), r * turn.sin(), z].map(|d| d * 9.80665);
         let [fx, fy, fz] = down.map(|d| 0.4 * d + 1.0);
         let [ax, ay, az] = down.map(|d| -d * sign);
-        text.push_str(&format!("{fx},{fy},{fz},{ax},{ay},{az}\n"));
+        writeln!(text, "{fx},{fy},{fz},{ax},{ay},{az}").unwrap();
     }
     let path = folder.join("poses.csv");
     std::fs::write(&path, text).unwrap();

@@ -1,6 +1,7 @@
 //! Taking still poses, guided, from samples as they come: a state machine without a clock of its own.
 //!
-//! Every sample goes through [`GravitySession::step`], which allocates nothing but the place of a recorded pose. A pose is a
+//! Every sample goes through [`GravitySession::step`]. It allocates nothing, except in the step that records a pose, which fits
+//! anew (a few ms): it belongs to the side of the screen, not into a tick of the loop. A pose is a
 //! stretch in which force and orientation stand still for as long as they must. When enough poses are there, a still pose far
 //! from what the others say is refused as touched, and can be taken again at once.
 

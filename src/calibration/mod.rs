@@ -5,6 +5,7 @@
 //! SI units; frames as in [`crate::frames`].
 
 pub mod correspondence;
+pub mod store;
 mod verdict;
 
 pub use verdict::{AxisStats, Residuals, Verdict};

@@ -1,5 +1,6 @@
 //! The command line of `nima`: one file per subcommand. Failure is one clear line on stderr and a non-zero exit.
 
+mod calibrate;
 mod console;
 mod identify;
 mod output;
@@ -31,6 +32,9 @@ enum Command {
     Run(run::Arguments),
     /// Identify impedance over a recording, causally, sample by sample
     Identify(identify::Arguments),
+    /// Calibrate from a file: residuals on held-out data and a verdict
+    #[command(subcommand)]
+    Calibrate(calibrate::CalibrateCommand),
     /// Experiments that print figures
     #[command(subcommand, arg_required_else_help = false)]
     Study(study::StudyCommand),
@@ -60,6 +64,7 @@ pub fn main() -> ExitCode {
         Command::Console(arguments) => console::run(&arguments),
         Command::Run(arguments) => run::run(&arguments),
         Command::Identify(arguments) => identify::run(&arguments),
+        Command::Calibrate(calibrate) => calibrate::run(&calibrate),
         Command::Study(study) => study::run(&study),
     };
     match result {

@@ -6,6 +6,7 @@
 
 pub mod correspondence;
 pub mod gravity;
+pub mod store;
 mod verdict;
 
 pub use verdict::{AxisStats, Residuals, Verdict};

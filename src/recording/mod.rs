@@ -5,6 +5,7 @@
 //! rise are refused with their place; nothing is guessed.
 
 mod mapping;
+mod pairs;
 mod poses;
 mod table;
 mod write;
@@ -14,6 +15,7 @@ use std::path::{Path, PathBuf};
 use nalgebra::Vector3;
 
 pub use mapping::{Mapping, MappingError};
+pub use pairs::read_pairs;
 pub use poses::{PosesError, read_poses};
 pub use write::write_atomically;
 
@@ -57,6 +59,30 @@ pub enum RecordingError {
         available: String,
         /// The key of a mapping that would help.
         key: String,
+    },
+    /// A needed column is not there, and columns of this file have fixed names.
+    #[error("{path} has no column \"{column}\" for {purpose}; its columns are {available}; name the column so")]
+    NoNamedColumn {
+        /// Its path.
+        path: PathBuf,
+        /// The column looked for.
+        column: String,
+        /// What it is for.
+        purpose: &'static str,
+        /// The columns there are.
+        available: String,
+    },
+    /// A quaternion is far from length one.
+    #[error(
+        "{path}, line {line}: the quaternion qw, qx, qy, qz has length {length:.3}, not 1; remove or repair the row"
+    )]
+    NotARotation {
+        /// Its path.
+        path: PathBuf,
+        /// Line of the file, from 1.
+        line: u64,
+        /// Length found.
+        length: f64,
     },
     /// A field is no finite number.
     #[error(

@@ -15,6 +15,7 @@ mod diagnosis;
 mod euler;
 mod excitation;
 mod fit;
+mod record;
 mod report;
 mod session;
 mod solver;
@@ -28,6 +29,7 @@ use serde::{Deserialize, Serialize};
 pub use diagnosis::{Diagnosis, OffsetFrame};
 pub use excitation::Excitation;
 pub use fit::fit;
+pub use record::{CorrespondenceKind, CorrespondenceRecord};
 pub use report::{Agreement, CorrespondenceReport, Solution, Target};
 pub use session::{CorrespondenceSession, Missing, Phase, PushTarget, Refusal, SessionSettings};
 

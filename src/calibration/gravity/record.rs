@@ -3,7 +3,7 @@
 use serde::{Deserialize, Deserializer, Serialize, de::Error as _};
 
 use super::GravityModel;
-use crate::calibration::{Residuals, Verdict};
+use crate::calibration::{Residuals, Verdict, store::Record};
 
 /// The only kind of this record: a file of another kind is refused on reading.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -57,10 +57,31 @@ pub struct GravityRecord {
     pub torque_residuals: Option<Residuals>,
 }
 
-impl GravityRecord {
-    /// The record as TOML.
-    pub fn to_toml(&self) -> Result<String, toml::ser::Error> {
-        toml::to_string_pretty(self)
+impl Record for GravityRecord {
+    const KIND: &'static str = "gravity";
+
+    fn sensor(&self) -> &str {
+        &self.sensor
+    }
+
+    fn tool(&self) -> &str {
+        &self.tool
+    }
+
+    fn date(&self) -> &str {
+        &self.date
+    }
+
+    fn verdict(&self) -> Verdict {
+        self.verdict
+    }
+
+    fn reason(&self) -> &str {
+        &self.reason
+    }
+
+    fn override_by(&self) -> Option<&str> {
+        self.override_by.as_deref()
     }
 }
 

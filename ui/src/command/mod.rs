@@ -32,7 +32,7 @@ enum Command {
     Run(run::Arguments),
     /// Identify impedance over a recording, causally, sample by sample
     Identify(identify::Arguments),
-    /// Calibrate from recorded files and judge the result
+    /// Calibrate from a file: residuals on held-out data and a verdict
     #[command(subcommand, arg_required_else_help = false)]
     Calibrate(calibrate::CalibrateCommand),
     /// Experiments that print figures

@@ -1,11 +1,6 @@
 //! `nima calibrate gravity`: a gravity model from still poses, judged on poses held out.
 
-use std::{
-    fmt::Write as _,
-    io::{self, Write},
-    path::PathBuf,
-    time::{SystemTime, UNIX_EPOCH},
-};
+use std::{fmt::Write as _, path::PathBuf};
 
 use anyhow::{Context as _, bail};
 use clap::{Args, ValueEnum};
@@ -13,8 +8,9 @@ use nima::{
     calibration::{
         Residuals, Verdict,
         gravity::{GravityReport, ModelKind, Settings, fit},
+        store,
     },
-    recording::{read_poses, write_atomically},
+    recording::read_poses,
 };
 
 use crate::command::output;
@@ -82,37 +78,15 @@ pub(in crate::command) fn run(arguments: &Arguments) -> anyhow::Result<()> {
 
 fn save(arguments: &Arguments, report: &GravityReport) -> anyhow::Result<()> {
     let Some(out) = &arguments.out else { return Ok(()) };
-    let Some(mut record) = report.record(&arguments.sensor, &arguments.tool, &now_utc()?) else {
+    let Some(mut record) = report.record(&arguments.sensor, &arguments.tool, &store::utc_now()) else {
         bail!("there is no model to write to {}: {}", out.display(), report.reason);
     };
     if report.verdict != Verdict::Accepted {
         record.override_by.clone_from(&arguments.override_by);
         record.override_reason.clone_from(&arguments.override_reason);
     }
-    let text = record.to_toml()?;
-    let fill = |file: &mut dyn Write| -> io::Result<()> { file.write_all(text.as_bytes()) };
-    write_atomically(out, fill).with_context(|| format!("cannot write the calibration {}", out.display()))
-}
-
-/// Now in ISO 8601, UTC, to the second.
-fn now_utc() -> anyhow::Result<String> {
-    let seconds =
-        SystemTime::now().duration_since(UNIX_EPOCH).context("the clock stands before 1970; set it")?.as_secs();
-    let (year, month, day) = civil(seconds / 86_400);
-    let [hour, minute, second] = [seconds / 3600 % 24, seconds / 60 % 60, seconds % 60];
-    Ok(format!("{year:04}-{month:02}-{day:02}T{hour:02}:{minute:02}:{second:02}Z"))
-}
-
-/// Year, month and day of a count of days since 1970-01-01 (years that begin in March, so that the leap day is their last).
-fn civil(days: u64) -> (u64, u64, u64) {
-    let days = days + 719_468;
-    let (era, of_era) = (days / 146_097, days % 146_097);
-    let year = (of_era - of_era / 1460 + of_era / 36_524 - of_era / 146_096) / 365;
-    let of_year = of_era - (365 * year + year / 4 - year / 100);
-    let march_month = (5 * of_year + 2) / 153;
-    let day = of_year - (153 * march_month + 2) / 5 + 1;
-    let month = if march_month < 10 { march_month + 3 } else { march_month - 9 };
-    (era * 400 + year + u64::from(month <= 2), month, day)
+    store::write(out, &record)?;
+    Ok(())
 }
 
 fn in_words(report: &GravityReport) -> String {
@@ -152,17 +126,4 @@ fn figures(residuals: &Residuals, digits: usize) -> String {
         triple(held_out.max),
         triple(residuals.fitted.mae)
     )
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn days_are_dates() {
-        assert_eq!(civil(0), (1970, 1, 1));
-        assert_eq!(civil(11_016), (2000, 2, 29));
-        assert_eq!(civil(20_454), (2026, 1, 1));
-        assert_eq!(civil(20_453), (2025, 12, 31));
-    }
 }

@@ -1,0 +1,134 @@
+//! `nima calibrate correspondence`: the rotation between both sensors from a file of pairs.
+
+use std::{fmt::Write as _, path::PathBuf};
+
+use anyhow::{Context as _, bail};
+use clap::Args;
+use nima::{
+    calibration::{
+        AxisStats, Verdict,
+        correspondence::{CorrespondenceRecord, CorrespondenceReport, Options, Solution, fit},
+        store,
+    },
+    recording::read_pairs,
+};
+
+use crate::command::output;
+
+#[derive(Debug, Args)]
+pub(in crate::command) struct Arguments {
+    /// CSV file with `f1x_n, f1y_n, f1z_n` (wrist, gravity-free), `f2x_n, f2y_n, f2z_n` (tissue) and, where the wrist turned
+    /// between the pushes, `qw, qx, qy, qz` (`s1_from_c`)
+    pairs: PathBuf,
+    /// Write the calibration to this file; the one before is kept as F.toml.previous
+    #[arg(long, value_name = "F.toml")]
+    out: Option<PathBuf>,
+    /// Serial number of the wrist sensor, for the file
+    #[arg(long, value_name = "SERIAL", default_value = "unknown")]
+    sensor: String,
+    /// Name of the tool, for the file
+    #[arg(long, value_name = "NAME", default_value = "unknown")]
+    tool: String,
+    /// Sensor 2 tells the force on the tissue, not on the instrument: change its sign
+    #[arg(long)]
+    flip_s2: bool,
+    /// Write the file although the verdict refuses it; your name goes into it
+    #[arg(long = "override", value_name = "NAME")]
+    override_by: Option<String>,
+    /// Why it is written all the same
+    #[arg(long, value_name = "TEXT", requires = "override_by")]
+    override_reason: Option<String>,
+    /// Print the report as one JSON object
+    #[arg(long)]
+    json: bool,
+}
+
+pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
+    if arguments.override_by.as_deref().is_some_and(|name| name.trim().is_empty()) {
+        bail!("--override needs the name of who decides");
+    }
+    let pairs = read_pairs(&arguments.pairs)?;
+    if arguments.out.as_deref().is_some_and(|out| is_input(out, &arguments.pairs)) {
+        bail!("--out {} is the file of pairs itself; choose another file", arguments.pairs.display());
+    }
+    let options = Options { flip_s2: arguments.flip_s2, ..Options::default() };
+    let report = fit(&pairs, &options).with_context(|| format!("cannot use {}", arguments.pairs.display()))?;
+    if arguments.json { output::json(&report) } else { output::line(&in_words(&report)) }?;
+    let accepted = report.verdict == Verdict::Accepted;
+    if let Some(out) = &arguments.out
+        && (accepted || arguments.override_by.is_some())
+    {
+        let record = CorrespondenceRecord::of(&report, &arguments.sensor, &arguments.tool, arguments.flip_s2);
+        let mut record = record.with_context(|| format!("{}: there is no rotation to write", report.reason))?;
+        if !accepted {
+            record.override_by.clone_from(&arguments.override_by);
+            record.override_reason.clone_from(&arguments.override_reason);
+        }
+        store::write(out, &record)?;
+    }
+    if !accepted {
+        bail!("{}: {}", report.verdict.words(), report.reason);
+    }
+    Ok(())
+}
+
+fn is_input(out: &std::path::Path, input: &std::path::Path) -> bool {
+    matches!((out.canonicalize(), input.canonicalize()), (Ok(a), Ok(b)) if a == b)
+}
+
+fn in_words(report: &CorrespondenceReport) -> String {
+    // Writing into a String cannot fail.
+    let mut text = format!("{}: {}\n", report.verdict.words(), report.reason);
+    let excitation = &report.excitation;
+    writeln!(
+        text,
+        "{} pairs; too weak {:?}, contradicting the others {:?}\nspread of directions  second axis {:.2}   third axis {:.2}   \
+         weakest {:.2} N",
+        report.pairs, report.weak, report.outliers, excitation.second, excitation.third, excitation.weakest_n
+    )
+    .ok();
+    match &report.solution {
+        Some(solution) => describe(&mut text, solution),
+        None => text.push_str("no rotation"),
+    }
+    text
+}
+
+fn describe(text: &mut String, solution: &Solution) {
+    let [w, x, y, z] = solution.rotation_wxyz;
+    let [roll, pitch, yaw] = solution.roll_pitch_yaw_deg;
+    let agreement = &solution.agreement;
+    writeln!(
+        text,
+        "{}  quaternion w {w:.6} x {x:.6} y {y:.6} z {z:.6}   roll {roll:.2} pitch {pitch:.2} yaw {yaw:.2} deg\n\
+         expected error {:.3} deg   Euler-angle search differs by {:.1e} deg   noise {:.4} N\n\
+         error, fitted    {}   R2 {:.4}\n\
+         error, held out  {}   R2 {:.4}",
+        solution.target.name(),
+        solution.uncertainty_deg,
+        solution.cross_check_deg,
+        solution.noise_n,
+        axes(&agreement.residuals.fitted),
+        agreement.r2_fitted_overall,
+        axes(&agreement.residuals.held_out),
+        agreement.r2_held_out_overall,
+    )
+    .ok();
+    if let Some(diagnosis) = &solution.diagnosis {
+        write!(
+            text,
+            "sensor 1 / sensor 2 {:.3} +- {:.3}   constant {:.3} N +- {:.3} N",
+            diagnosis.gain,
+            diagnosis.gain_se,
+            diagnosis.offset_norm_n(),
+            diagnosis.offset_se_n
+        )
+        .ok();
+    }
+}
+
+fn axes(stats: &AxisStats) -> String {
+    let [x, y, z] = stats.mae;
+    let [sx, sy, sz] = stats.sd;
+    format!("mean {x:.4} {y:.4} {z:.4} N   sd {sx:.4} {sy:.4} {sz:.4} N   max {:.4} N", stats.largest())
+}

@@ -6,7 +6,7 @@ use nalgebra::Vector3;
 
 use super::*;
 use crate::{
-    calibration::correspondence::{CorrespondenceReport, Options, Pair, fit},
+    calibration::correspondence::{CorrespondenceRecord, CorrespondenceReport, Options, Pair, fit},
     frames::from_roll_pitch_yaw_deg,
     sim::Noise,
 };

@@ -1,25 +1,31 @@
 //! The window: takes in what the loop sent, lays out the panels, sends what the operator asked.
 
-use std::time::{Duration, Instant};
+use std::{
+    path::Path,
+    time::{Duration, Instant},
+};
 
 use eframe::glow;
 use egui::{CentralPanel, Event, Frame, Key, Margin, Panel, ScrollArea, Ui};
 use nima::{
     config::{Rig, Scene},
+    device::Prompt,
     runtime::{self, Command, Handle, Plan, Tick},
-    teleop::{Calibrations, LoopState},
+    teleop::LoopState,
 };
 
 use super::{
     Options,
+    in_force::InForce,
     live::Live,
     outbox::Outbox,
     panels::{
-        FeedbackState, ForcesState, TopBarState, TradeoffState, degrees_ui, feedback_ui, forces_ui, gates_ui,
-        horizon_ui, timing_ui, top_bar_ui, tradeoff_ui,
+        CalibrationWish, FeedbackState, ForcesState, TopBarState, TradeoffState, calibrations_ui, degrees_ui,
+        feedback_ui, forces_ui, gates_ui, horizon_ui, timing_ui, top_bar_ui, tradeoff_ui,
     },
     scene3d::{SceneView, scene_ui},
     screenshot, theme,
+    wizards::{Saving, Which, Wizards},
 };
 
 /// Thirty pictures a second while data flow.
@@ -44,6 +50,10 @@ pub struct ConsoleApp {
     forces: ForcesState,
     tradeoff: TradeoffState,
     scene: SceneView,
+    wizards: Wizards,
+    in_force: InForce,
+    /// What was watched before a wizard took the rig over.
+    watched: Option<Scene>,
     options: Options,
     opened: Instant,
     framed: Instant,
@@ -57,6 +67,9 @@ impl ConsoleApp {
         let now = Instant::now();
         Self {
             handle: Some(handle),
+            in_force: InForce::load(None, &scene),
+            wizards: Wizards::default(),
+            watched: None,
             live: Live::new(rig, scene),
             outbox: Outbox::default(),
             top_bar: TopBarState::default(),
@@ -93,51 +106,119 @@ impl ConsoleApp {
         &self.tradeoff
     }
 
-    /// Ends the loop and starts it anew with `rig`, idle: only the operator engages it again.
-    fn restart(&mut self, rig: Rig) {
-        if let Err(error) = rig.validate() {
-            self.tradeoff.tell(format!("Not applied: {error}."));
-            return;
-        }
+    /// What calibrations are in force.
+    pub fn in_force(&self) -> &InForce {
+        &self.in_force
+    }
+
+    /// Keeps calibrations in this store from now on, and uses what it holds for the scene's sensor and tool.
+    #[must_use]
+    pub fn with_store(mut self, folder: &Path) -> Self {
+        self.in_force = InForce::load(Some(folder), &self.live.scene);
+        self
+    }
+
+    /// Ends the loop and starts it anew, idle: only the operator engages it again. Never a way out of a stop or a fault.
+    fn restart(&mut self, rig: Rig, scene: Scene) -> Result<(), String> {
+        rig.validate().and_then(|()| scene.validate()).map_err(|error| error.to_string())?;
         if let Some(handle) = &self.handle {
-            self.live.take_in(handle, |_| {});
+            let wizards = &mut self.wizards;
+            self.live.take_in(handle, |tick| wizards.tick(tick));
         }
         if !matches!(self.live.state(), LoopState::Idle | LoopState::Engaged) {
-            self.tradeoff.tell("Not applied: the loop has stopped. Release it first.");
-            return;
+            return Err("the loop has stopped; release it first".to_owned());
         }
-        let scene = self.live.scene.clone();
         // The old loop first: a rig has one master.
         drop(self.handle.take());
-        match runtime::start(&Plan {
-            rig: rig.clone(),
-            scene: scene.clone(),
-            calibrations: Calibrations::default(),
-            engage: false,
-        }) {
-            Ok(handle) => {
-                self.handle = Some(handle);
-                self.tradeoff.tell("Applied. The loop was restarted and is idle: engage it when ready.");
-            }
-            Err(error) => self.tradeoff.tell(format!("The loop could not be started again: {error}.")),
-        }
+        let calibrations = self.in_force.calibrations();
+        let plan = Plan { rig: rig.clone(), scene: scene.clone(), calibrations, engage: false };
+        let started = runtime::start(&plan).map_err(|error| format!("the loop could not be started again: {error}"));
         let rough_edges = self.live.rough_edges;
         self.live = Live::new(rig, scene);
         self.live.rough_edges = rough_edges;
         self.forces = ForcesState::default();
         self.outbox = Outbox::default();
+        self.handle = Some(started?);
+        Ok(())
     }
 
-    /// Space and Escape stop, wherever the keyboard's focus is; nothing else sees them, so no button is pressed by them.
+    /// Takes over what the trade-off panel chose.
+    fn apply_tradeoff(&mut self, rig: Rig) {
+        let told = match self.restart(rig, self.live.scene.clone()) {
+            Ok(()) => "Applied. The loop was restarted and is idle: engage it when ready.".to_owned(),
+            Err(reason) => format!("Not applied: {reason}."),
+        };
+        self.tradeoff.tell(told);
+    }
+
+    /// Opens a wizard: a simulated rig goes over to its experiment, where somebody guides the arm.
+    fn open_wizard(&mut self, which: Which) {
+        let opened = if self.live.scene.person.is_some() && self.wizards.open.is_none() {
+            Ok(())
+        } else {
+            Scene::load(which.scene()).map_err(|error| error.to_string()).and_then(|scene| self.restart_in(scene))
+        };
+        match opened {
+            Ok(()) => self.wizards.open = Some(which),
+            Err(reason) => self.in_force.tell(format!("Not opened: {reason}.")),
+        }
+    }
+
+    /// The same rig in another scene; the scene that was watched is kept for the way back.
+    fn restart_in(&mut self, scene: Scene) -> Result<(), String> {
+        let watched = self.live.scene.clone();
+        self.restart(self.live.rig.clone(), scene)?;
+        self.watched.get_or_insert(watched);
+        Ok(())
+    }
+
+    /// Back to what was watched before; the wizards keep what they have.
+    fn close_wizard(&mut self) {
+        self.wizards.open = None;
+        let Some(scene) = self.watched.take() else {
+            self.outbox.push(Command::Prompt(Prompt::Rest));
+            return;
+        };
+        if let Err(reason) = self.restart(self.live.rig.clone(), scene.clone()) {
+            self.watched = Some(scene);
+            self.in_force.tell(format!("Still in the experiment: {reason}."));
+        }
+    }
+
+    /// Keeps a calibration and puts it in force.
+    fn save(&mut self, saving: Saving) {
+        let told = match self.in_force.save(saving) {
+            Ok(words) => match self.restart(self.live.rig.clone(), self.live.scene.clone()) {
+                Ok(()) => words,
+                Err(reason) => format!("{words} It comes into force with the next start: {reason}."),
+            },
+            Err(reason) => format!("Not saved: {reason}"),
+        };
+        self.wizards.tell_saved(told);
+    }
+
+    /// Asks the person at the arm for what the open wizard needs now.
+    fn ask(&mut self) {
+        let wanted = self.wizards.prompt();
+        let asked = self.live.tick.is_some_and(|tick| tick.state == LoopState::Idle && tick.prompt != wanted);
+        if self.wizards.open.is_some() && asked {
+            self.outbox.push(Command::Prompt(wanted));
+        }
+    }
+
+    /// Space and Escape stop, wherever the keyboard's focus is; nothing else sees them, so no button is pressed by them. While
+    /// a name is being written, Space is a letter and Escape alone stops.
     fn stop_key(&mut self, ctx: &egui::Context) {
+        let writing = ctx.text_edit_focused();
         let stop = ctx.input_mut(|input| {
             let mut stop = false;
             input.events.retain(|event| match event {
+                Event::Key { key: Key::Space, .. } if writing => true,
                 Event::Key { key: Key::Space | Key::Escape, pressed, repeat, .. } => {
                     stop |= *pressed && !*repeat;
                     false
                 }
-                Event::Text(text) => text != " ",
+                Event::Text(text) => writing || text != " ",
                 _ => true,
             });
             stop
@@ -148,15 +229,49 @@ impl ConsoleApp {
     }
 
     fn layout(&mut self, ui: &mut Ui) {
-        let mut restart = None;
         let bar = Frame::new().fill(theme::PANEL).inner_margin(Margin::symmetric(14, 0));
         Panel::top("top_bar").exact_size(72.0).resizable(false).frame(bar).show(ui, |ui| {
             top_bar_ui(ui, &self.live, &mut self.top_bar, &mut self.outbox);
         });
+        if self.wizards.open.is_some() { self.wizard_layout(ui) } else { self.monitor_layout(ui) }
+    }
+
+    /// A technician's view: one wizard, what is in force, and the way back.
+    fn wizard_layout(&mut self, ui: &mut Ui) {
+        let side = Frame::new().fill(theme::PANEL).inner_margin(Margin::same(8));
+        let mut wish = None;
+        Panel::left("calibrations").exact_size(316.0).resizable(false).frame(side).show(ui, |ui| {
+            wish = calibrations_ui(ui, &self.live, &self.in_force, self.wizards.open);
+        });
+        let binding = self.in_force.binding();
+        let mut saving = None;
+        CentralPanel::default().frame(Frame::new().inner_margin(Margin::symmetric(18, 14))).show(ui, |ui| {
+            ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+                ui.set_max_width(760.0);
+                saving = self.wizards.ui(ui, &binding);
+            });
+        });
+        if let Some(saving) = saving {
+            self.save(saving);
+        }
+        self.obey_calibrations(wish);
+    }
+
+    fn obey_calibrations(&mut self, wish: Option<CalibrationWish>) {
+        match wish {
+            Some(CalibrationWish::Open(which)) => self.open_wizard(which),
+            Some(CalibrationWish::Close) => self.close_wizard(),
+            None => {}
+        }
+    }
+
+    fn monitor_layout(&mut self, ui: &mut Ui) {
+        let (mut restart, mut wish) = (None, None);
         let side = Frame::new().fill(theme::PANEL).inner_margin(Margin::same(8));
         Panel::left("feedback").exact_size(316.0).resizable(false).frame(side).show(ui, |ui| {
             ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
                 feedback_ui(ui, &mut self.live, &mut self.feedback, &mut self.outbox);
+                wish = calibrations_ui(ui, &self.live, &self.in_force, None);
                 gates_ui(ui, &self.live);
             });
         });
@@ -177,9 +292,13 @@ impl ConsoleApp {
             scene_ui(ui, &self.live, &mut self.scene);
         });
         // After everything was drawn of the loop as it was. A stop asked for in the same frame comes first.
-        if let Some(rig) = restart.filter(|_| !self.outbox.stop_is_stuck()) {
-            self.restart(rig);
+        if self.outbox.stop_is_stuck() {
+            return;
         }
+        if let Some(rig) = restart {
+            self.apply_tradeoff(rig);
+        }
+        self.obey_calibrations(wish);
     }
 
     fn obey_options(&mut self, ctx: &egui::Context) {
@@ -206,8 +325,10 @@ impl eframe::App for ConsoleApp {
     fn logic(&mut self, _ctx: &egui::Context, _frame: &mut eframe::Frame) {
         // Also while the window is hidden, so that the queues stay empty and the history whole.
         if let Some(handle) = &self.handle {
-            self.live.take_in(handle, |_| {});
+            let wizards = &mut self.wizards;
+            self.live.take_in(handle, |tick| wizards.tick(tick));
         }
+        self.ask();
     }
 
     fn ui(&mut self, ui: &mut Ui, frame: &mut eframe::Frame) {

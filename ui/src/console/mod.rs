@@ -7,6 +7,7 @@
 pub mod alarms;
 pub mod app;
 pub mod history;
+pub mod in_force;
 pub mod live;
 pub mod outbox;
 pub mod panels;
@@ -15,6 +16,7 @@ pub mod scene3d;
 pub mod screenshot;
 pub mod theme;
 pub mod widgets;
+pub mod wizards;
 
 use std::{path::PathBuf, time::Duration};
 

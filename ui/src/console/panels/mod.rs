@@ -1,5 +1,6 @@
 //! One file per panel, each a function over what is known ([`super::live::Live`]) that puts what the operator asks into the outbox.
 
+pub mod calibrations;
 pub mod degrees;
 pub mod feedback;
 pub mod forces;
@@ -10,6 +11,7 @@ pub mod top_bar;
 pub mod tradeoff;
 mod tradeoff_plot;
 
+pub use calibrations::{CalibrationWish, calibrations_ui};
 pub use degrees::degrees_ui;
 pub use feedback::{FeedbackState, feedback_ui};
 pub use forces::{ForcesState, forces_ui, gauge};

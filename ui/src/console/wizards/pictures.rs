@@ -81,7 +81,13 @@ fn tool(painter: &Painter, centre: Pos2, scale: f32, kbf_from_s1: &UnitQuaternio
 }
 
 /// Directions on a sphere: those wanted as rings, those taken as discs; hollow where they lie behind.
-pub(super) fn sphere_picture(ui: &mut Ui, name: &str, wanted: &[Vector3<f64>], taken: &[Vector3<f64>], now: Option<Vector3<f64>>) {
+pub(super) fn sphere_picture(
+    ui: &mut Ui,
+    name: &str,
+    wanted: &[Vector3<f64>],
+    taken: &[Vector3<f64>],
+    now: Option<Vector3<f64>>,
+) {
     let size = vec2(ui.available_width().min(320.0), 250.0);
     let (rect, response) = ui.allocate_exact_size(size, Sense::hover());
     let words = format!("{name}: {} taken", taken.len());
@@ -118,16 +124,23 @@ fn graticule(painter: &Painter, centre: Pos2, scale: f32) {
         |a| Vector3::new(0.0, a.cos(), a.sin()),
     ];
     for circle in circles {
-        let points: Vec<(Pos2, f64)> = (0..=72)
-            .map(|i| on_paper(centre, scale, &circle(std::f64::consts::TAU * f64::from(i) / 72.0)))
-            .collect();
+        let points: Vec<(Pos2, f64)> =
+            (0..=72).map(|i| on_paper(centre, scale, &circle(std::f64::consts::TAU * f64::from(i) / 72.0))).collect();
         for pair in points.windows(2).filter(|pair| pair[0].1 <= 0.0 && pair[1].1 <= 0.0) {
             painter.line_segment([pair[0].0, pair[1].0], Stroke::new(1.0, theme::LINE));
         }
     }
 }
 
-fn dot(painter: &Painter, centre: Pos2, scale: f32, direction: &Vector3<f64>, radius: f32, stroke: Stroke, filled: bool) {
+fn dot(
+    painter: &Painter,
+    centre: Pos2,
+    scale: f32,
+    direction: &Vector3<f64>,
+    radius: f32,
+    stroke: Stroke,
+    filled: bool,
+) {
     let Some(direction) = direction.try_normalize(1e-9) else { return };
     let (place, depth) = on_paper(centre, scale, &direction);
     if filled && depth <= 0.0 {

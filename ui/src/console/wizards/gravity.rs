@@ -1,0 +1,398 @@
+//! The gravity wizard: check, twelve poses, result, free motion, save. What was good is kept at every step back and on closing.
+
+use egui::{Button, Grid, RichText, TextEdit, Ui, vec2};
+use nalgebra::{UnitQuaternion, Vector3};
+use nima::{
+    calibration::{
+        Verdict,
+        gravity::{
+            CheckPass, CheckState, Compensator, DEFAULT_TIME_CONSTANT_S, GravityRecord, GravityReport, GravitySession,
+            ModelFit, PassResult, Phase, SessionSettings, TARGETS,
+        },
+    },
+    device::Prompt,
+    frames::WristSample,
+    runtime::Tick,
+};
+
+use super::{
+    Binding, Step,
+    pictures::{pose_picture, progress, sphere_picture},
+    steps_ui,
+};
+use crate::console::{
+    theme,
+    widgets::{Sign, card, figure, sign_ui, small, three_digits, weak},
+};
+
+/// Free motion must read below this at its 95th percentile, N: noise of a sample included.
+const FREE_MOTION_LIMIT_N: f64 = 0.25;
+/// Fewest poses from which a fit is tried.
+const POSES_MIN: usize = 6;
+/// Steps of this wizard.
+const STEPS: [Step; 5] = [
+    Step { name: "Check", meaning: "Is everything there, and is nothing touching the tool?" },
+    Step { name: "Poses", meaning: "Twelve orientations that show gravity from all sides." },
+    Step { name: "Result", meaning: "The fit, judged on poses it has not seen." },
+    Step { name: "Free motion", meaning: "The proof: a tool moved through the air must weigh nothing." },
+    Step { name: "Save", meaning: "Kept for this sensor and this tool, with its residuals." },
+];
+const CHECK: usize = 0;
+const POSES: usize = 1;
+const RESULT: usize = 2;
+const FREE_MOTION: usize = 3;
+
+/// The wizard's memory.
+#[derive(Debug)]
+pub struct GravityWizard {
+    session: GravitySession,
+    step: usize,
+    phase: Phase,
+    held: Option<UnitQuaternion<f64>>,
+    report: Option<Result<GravityReport, String>>,
+    pass: Option<CheckPass>,
+    left_n: Option<f64>,
+    name: String,
+    why: String,
+    saved: Option<String>,
+}
+
+impl Default for GravityWizard {
+    fn default() -> Self {
+        Self {
+            session: GravitySession::new(SessionSettings::default()),
+            step: CHECK,
+            phase: Phase::NoSample,
+            held: None,
+            report: None,
+            pass: None,
+            left_n: None,
+            name: String::new(),
+            why: String::new(),
+            saved: None,
+        }
+    }
+}
+
+impl GravityWizard {
+    /// Takes in one tick of the loop.
+    pub fn tick(&mut self, tick: &Tick) {
+        let Some(sample) = &tick.wrist else {
+            self.phase = Phase::NoSample;
+            return;
+        };
+        self.held = sample.kbf_from_s1;
+        match self.step {
+            CHECK => self.phase = self.look_on(sample, tick.t_s),
+            POSES => self.pose(sample, tick.t_s),
+            FREE_MOTION => self.left_n = self.pass.as_mut().and_then(|pass| pass.step(sample)),
+            _ => {}
+        }
+    }
+
+    /// Before the first pose the session sees the samples, and what it would take is not kept.
+    fn look_on(&mut self, sample: &WristSample, t_s: f64) -> Phase {
+        let phase = self.session.step(sample, t_s);
+        if let Phase::Recorded { index } = phase {
+            self.session.remove(index);
+        }
+        phase
+    }
+
+    fn pose(&mut self, sample: &WristSample, t_s: f64) {
+        let phase = self.session.step(sample, t_s);
+        if matches!(phase, Phase::Recorded { .. }) {
+            // What was concluded from fewer poses does not hold any more.
+            self.report = (self.session.poses().len() >= POSES_MIN)
+                .then(|| self.session.report().map_err(|error| error.to_string()));
+            self.pass = None;
+        }
+        self.phase = phase;
+    }
+
+    /// What the person at the arm is to do now.
+    pub fn prompt(&self) -> Prompt {
+        match (self.step, self.session.target()) {
+            (POSES, Some(target)) => Prompt::Hold { kbf_from_s1: target.kbf_from_s1() },
+            (FREE_MOTION, _) => Prompt::Wave,
+            _ => Prompt::Rest,
+        }
+    }
+
+    /// Tells what became of the record that was handed out for saving.
+    pub fn tell_saved(&mut self, words: String) {
+        self.saved = Some(words);
+    }
+
+    fn pass_result(&self) -> Option<PassResult> {
+        self.pass.as_ref().map(CheckPass::result)
+    }
+
+    fn good_report(&self) -> Option<&GravityReport> {
+        self.report.as_ref().and_then(|report| report.as_ref().ok())
+    }
+
+    /// Whether the step after this one may begin, or why not.
+    fn may_go_on(&self) -> Result<(), &'static str> {
+        match self.step {
+            CHECK if self.session.precheck().iter().all(|check| check.state == CheckState::Good) => Ok(()),
+            CHECK => Err("A check is not met yet."),
+            POSES if self.session.poses().len() >= POSES_MIN => Ok(()),
+            POSES => Err("At least six poses are needed."),
+            RESULT if self.good_report().is_some_and(|report| report.chosen_fit().is_some()) => Ok(()),
+            RESULT => Err("There is no model to prove: go back and take more poses."),
+            FREE_MOTION if self.pass_result().is_some_and(|result| result.samples > 0) => Ok(()),
+            FREE_MOTION => Err("Nothing was measured in free motion yet."),
+            _ => Err("This is the last step."),
+        }
+    }
+
+    fn go_to(&mut self, step: usize) {
+        self.step = step;
+        if step == RESULT && self.report.is_none() {
+            self.report = Some(self.session.report().map_err(|error| error.to_string()));
+        }
+        if step == FREE_MOTION && self.pass.is_none() {
+            let model = self.good_report().and_then(GravityReport::chosen_fit).map(|fit| fit.model);
+            self.pass = model.map(|model| {
+                CheckPass::new(Compensator::new(model, DEFAULT_TIME_CONSTANT_S, 1e-3), FREE_MOTION_LIMIT_N)
+            });
+        }
+    }
+
+    /// The wizard; gives a record that shall be saved.
+    pub fn ui(&mut self, ui: &mut Ui, binding: &Binding) -> Option<GravityRecord> {
+        let wish = steps_ui(ui, &STEPS, self.step, self.may_go_on());
+        ui.add_space(theme::GAP);
+        let mut save = None;
+        match self.step {
+            CHECK => self.check_ui(ui),
+            POSES => self.poses_ui(ui),
+            RESULT => self.result_ui(ui),
+            FREE_MOTION => self.free_motion_ui(ui),
+            _ => save = self.save_ui(ui, binding),
+        }
+        match wish {
+            Some(super::Wish::GoTo(step)) => self.go_to(step),
+            Some(super::Wish::StartOver) => *self = Self::default(),
+            None => {}
+        }
+        save
+    }
+
+    fn check_ui(&self, ui: &mut Ui) {
+        card(ui, "Before the first pose", "All four must be met before poses are taken.", |ui| {
+            ui.label("Take the instrument out of the trocar. Let go of it: nothing may touch the tool.");
+            ui.add_space(6.0);
+            for check in self.session.precheck() {
+                let (what, colour, words) = match check.state {
+                    CheckState::Good => (Sign::Disc, theme::ENGAGED, "met"),
+                    CheckState::Waiting => (Sign::Ring, theme::AT_REST, "waiting"),
+                    CheckState::Bad(reason) => (Sign::Triangle, theme::TEXT, reason),
+                };
+                ui.horizontal(|ui| {
+                    sign_ui(ui, what, 6.0, colour);
+                    ui.label(format!("{}: {words}", crate::console::alarms::sentence(check.name)));
+                });
+            }
+        });
+    }
+
+    fn poses_ui(&mut self, ui: &mut Ui) {
+        let count = self.session.poses().len();
+        let met = self.session.targets_met();
+        let target = self.session.target();
+        card(ui, "Take this pose", "Turn the tool as the outline shows, let go, wait until the bar is full.", |ui| {
+            let name = target.map_or("All directions are taken: go on to the result", |target| target.name);
+            ui.label(RichText::new(crate::console::alarms::sentence(name)).font(theme::strong(19.0)));
+            let (share, words) = phase_words(&self.phase);
+            progress(ui, "Pose", share, &words);
+            ui.add_space(6.0);
+            let directions: Vec<Vector3<f64>> = TARGETS.iter().map(|target| Vector3::from(target.down_s1)).collect();
+            let taken = self.session.taken_down_s1();
+            let down_now = self.held.map(|held| held.inverse() * -Vector3::z());
+            ui.horizontal_wrapped(|ui| {
+                pose_picture(ui, target.map(|target| target.kbf_from_s1()).as_ref(), self.held.as_ref());
+                sphere_picture(ui, "Directions of gravity", &directions, &taken, down_now);
+            });
+            progress(ui, "Directions", met as f64 / TARGETS.len() as f64, &format!("{met} of {} taken", TARGETS.len()));
+        });
+        card(ui, "So far", "The fit is made anew after each pose, from the sixth on.", |ui| {
+            figure(ui, "Poses", count.to_string(), "Poses taken and kept.");
+            if let Some(report) = self.good_report() {
+                report_figures(ui, report);
+            } else {
+                ui.label(small("A first fit is shown from the sixth pose on."));
+            }
+            if ui.add_enabled(count > 0, Button::new("Remove the last pose")).clicked() {
+                self.session.undo();
+                self.report = (self.session.poses().len() >= POSES_MIN)
+                    .then(|| self.session.report().map_err(|error| error.to_string()));
+            }
+        });
+    }
+
+    fn result_ui(&self, ui: &mut Ui) {
+        match &self.report {
+            Some(Ok(report)) => {
+                verdict_ui(ui, report);
+                models_ui(ui, report);
+            }
+            Some(Err(error)) => {
+                card(ui, "No result", "The poses could not be fitted.", |ui| ui.label(error));
+            }
+            None => {
+                ui.label("There are no poses yet: go back and take some.");
+            }
+        }
+    }
+
+    fn free_motion_ui(&mut self, ui: &mut Ui) {
+        card(ui, "Move the tool freely", "Nothing may touch it. What is left of the force should be near 0 N.", |ui| {
+            ui.label("Turn the tool slowly this way and that, touching nothing. Expected: near 0 N.");
+            ui.add_space(4.0);
+            let left = self.left_n.map_or("no reading".to_owned(), |left_n| format!("{left_n:.2} N"));
+            ui.label(RichText::new(left).font(theme::strong(34.0)));
+            let Some(result) = self.pass_result() else { return };
+            figure(ui, "Mean", format!("{:.3} N", result.mean_n), "Mean size of what is left of the force.");
+            figure(
+                ui,
+                "95 % below",
+                format!("{:.2} N of {FREE_MOTION_LIMIT_N} N allowed", result.p95_n),
+                "The noise of single samples is in it.",
+            );
+            figure(ui, "Tilt covered", format!("{:.0} deg", result.tilt_rad.to_degrees()), "At least 45 degrees.");
+            let words = if result.passed { "Passed" } else { "Not passed yet" };
+            ui.label(RichText::new(format!("{words}: {}", result.reason)).font(theme::strong(15.0)));
+            if ui.button("Measure again").clicked() {
+                self.pass = None;
+                self.go_to(FREE_MOTION);
+            }
+        });
+    }
+
+    /// Good enough to be saved without anyone's word for it.
+    fn is_proven(&self) -> bool {
+        self.good_report().is_some_and(|report| report.verdict == Verdict::Accepted)
+            && self.pass_result().is_some_and(|result| result.passed)
+    }
+
+    fn save_ui(&mut self, ui: &mut Ui, binding: &Binding) -> Option<GravityRecord> {
+        let proven = self.is_proven();
+        let mut wanted = false;
+        card(ui, "Save", "Bound to this sensor and this tool; the file says how good it was.", |ui| {
+            figure(ui, "Sensor", &binding.sensor, "Serial number of the wrist sensor.");
+            figure(ui, "Tool", &binding.tool, "What hangs on it.");
+            if proven {
+                ui.label("Accepted, and proven in free motion.");
+                wanted = ui.add(Button::new("Save and use").min_size(vec2(180.0, 36.0))).clicked();
+            } else {
+                ui.label(weak("This calibration is not proven. It can be kept only under somebody's name, which is written into the file."));
+                override_ui(ui, &mut self.name, &mut self.why);
+                let named = !self.name.trim().is_empty() && !self.why.trim().is_empty();
+                wanted = ui
+                    .add_enabled(named, Button::new("Save in spite of the verdict").min_size(vec2(220.0, 36.0)))
+                    .on_disabled_hover_text("Give a name and a reason first.")
+                    .clicked();
+            }
+            if let Some(saved) = &self.saved {
+                ui.label(saved);
+            }
+        });
+        wanted.then(|| self.record(binding, proven)).flatten()
+    }
+
+    fn record(&self, binding: &Binding, proven: bool) -> Option<GravityRecord> {
+        let mut record = self.good_report()?.record(&binding.sensor, &binding.tool, &binding.date)?;
+        if !proven {
+            record.override_by = Some(self.name.trim().to_owned());
+            record.override_reason = Some(self.why.trim().to_owned());
+        }
+        Some(record)
+    }
+}
+
+/// Name and reason of whoever overrides a verdict.
+pub(super) fn override_ui(ui: &mut Ui, name: &mut String, why: &mut String) {
+    for (label, text) in [("Your name", name), ("Reason", why)] {
+        ui.horizontal(|ui| {
+            let label = ui.label(label);
+            ui.add(TextEdit::singleline(text).desired_width(280.0).char_limit(120)).labelled_by(label.id);
+        });
+    }
+}
+
+fn phase_words(phase: &Phase) -> (f64, String) {
+    match phase {
+        Phase::NoSample => (0.0, "no valid sample from the wrist sensor".to_owned()),
+        Phase::Moving => (0.0, "moving; hold the tool still in the pose".to_owned()),
+        Phase::Disturbed => (0.0, "the force is not still though the tool is: something touches it; let go".to_owned()),
+        Phase::TakenHere => (0.0, "taken here already; turn the tool to the pose shown".to_owned()),
+        Phase::Recording { share } => (*share, "still; being taken".to_owned()),
+        Phase::Recorded { index } => (1.0, format!("pose {} taken", index + 1)),
+        Phase::Touched { by_n } => (0.0, format!("{by_n:.1} N too much: something touches the tool; let go")),
+    }
+}
+
+fn report_figures(ui: &mut Ui, report: &GravityReport) {
+    let words = format!("{}: {}", report.verdict.words(), report.reason);
+    ui.label(RichText::new(words).font(theme::strong(14.0)));
+    figure(ui, "Coverage", format!("{:.2}", report.coverage), "Share of all directions with a pose within 45 degrees.");
+    if let Some(mass_kg) = report.mass_kg {
+        figure(ui, "Mass", format!("{mass_kg:.3} kg"), "Of what hangs on the sensor.");
+    }
+}
+
+fn verdict_ui(ui: &mut Ui, report: &GravityReport) {
+    card(ui, report.verdict.words(), "Judged on poses that the model has not seen.", |ui| {
+        ui.label(&report.reason);
+        ui.add_space(4.0);
+        figure(ui, "Poses", report.poses.to_string(), "Poses that were fitted and judged.");
+        figure(
+            ui,
+            "Coverage",
+            format!("{:.2}", report.coverage),
+            "Share of all directions with a pose within 45 degrees.",
+        );
+        let condition = report.condition.map_or("undetermined".to_owned(), three_digits);
+        figure(ui, "Condition", condition, "How evenly the poses determine the model; 1 is best.");
+        if let (Some(mass_kg), Some(com_m)) = (report.mass_kg, report.com_m) {
+            figure(ui, "Mass", format!("{mass_kg:.3} kg"), "Of what hangs on the sensor.");
+            let [x, y, z] = com_m.map(|m| m * 1e3);
+            figure(ui, "Centre of mass", format!("{x:.1}, {y:.1}, {z:.1} mm"), "In the sensor's frame (s1).");
+        }
+        if !report.outliers.is_empty() {
+            let list = report.outliers.iter().map(|i| (i + 1).to_string()).collect::<Vec<_>>().join(", ");
+            figure(ui, "Left out", format!("pose {list}"), "Far from what the other poses say: perhaps touched.");
+        }
+    });
+}
+
+/// The models side by side, on the poses of the fit and on those held out.
+fn models_ui(ui: &mut Ui, report: &GravityReport) {
+    card(ui, "Models side by side", "Force errors in N; held out: on poses that a model was not fitted on.", |ui| {
+        Grid::new("gravity models").num_columns(5).spacing(vec2(22.0, 6.0)).show(ui, |ui| {
+            for head in ["Model", "fitted: mean", "largest", "held out: mean", "largest"] {
+                ui.label(small(head));
+            }
+            ui.end_row();
+            for fit in &report.fits {
+                model_row(ui, fit, report.chosen == Some(fit.kind));
+            }
+        });
+    });
+}
+
+fn model_row(ui: &mut Ui, fit: &ModelFit, chosen: bool) {
+    let name = crate::console::alarms::sentence(fit.kind.name());
+    ui.label(if chosen {
+        RichText::new(format!("{name} (chosen)")).font(theme::strong(14.0))
+    } else {
+        RichText::new(name)
+    });
+    for stats in [&fit.force_n.fitted, &fit.force_n.held_out] {
+        ui.label(format!("{:.3}", stats.mean_mae()));
+        ui.label(format!("{:.3}", stats.largest()));
+    }
+    ui.end_row();
+}

@@ -1,0 +1,160 @@
+//! Wizards: a technician alone, step by step, from an uncalibrated sensor to a calibration that has proven itself.
+//!
+//! A wizard sees every tick, asks the person at the arm for something ([`Prompt`]) and hands out a record when it shall be
+//! saved. It never changes the loop: saving restarts it, idle, with the new calibration.
+
+mod gravity;
+mod pictures;
+
+use egui::{Button, RichText, Ui, vec2};
+use nima::{calibration::gravity::GravityRecord, device::Prompt, runtime::Tick};
+
+pub use gravity::GravityWizard;
+
+use super::{theme, widgets::small};
+
+/// What a calibration belongs to.
+#[derive(Clone, Debug, Default)]
+pub struct Binding {
+    /// Serial number of the wrist sensor.
+    pub sensor: String,
+    /// Name of the tool.
+    pub tool: String,
+    /// Now, ISO 8601, UTC.
+    pub date: String,
+}
+
+/// One step of a wizard.
+#[derive(Clone, Copy, Debug)]
+struct Step {
+    name: &'static str,
+    meaning: &'static str,
+}
+
+/// Where the technician wants to go.
+#[derive(Clone, Copy, Debug)]
+enum Wish {
+    GoTo(usize),
+    StartOver,
+}
+
+/// Which wizard.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Which {
+    /// Weight and bias.
+    Gravity,
+}
+
+impl Which {
+    /// All of them, in the order of work.
+    pub const ALL: [Self; 1] = [Self::Gravity];
+
+    /// On buttons.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Gravity => "Gravity",
+        }
+    }
+
+    /// What it is for.
+    pub const fn meaning(self) -> &'static str {
+        match self {
+            Self::Gravity => "Takes the tool's weight and the sensor's bias out of the wrist's force.",
+        }
+    }
+
+    /// The simulated experiment that it needs.
+    pub const fn scene(self) -> &'static str {
+        match self {
+            Self::Gravity => "gravity",
+        }
+    }
+}
+
+/// Something to be saved and used.
+#[derive(Clone, Debug)]
+pub enum Saving {
+    /// A gravity calibration.
+    Gravity(GravityRecord),
+}
+
+/// All wizards; each keeps what it has until it is started over.
+#[derive(Debug, Default)]
+pub struct Wizards {
+    /// The one on the screen.
+    pub open: Option<Which>,
+    gravity: GravityWizard,
+}
+
+impl Wizards {
+    /// Takes in one tick of the loop.
+    pub fn tick(&mut self, tick: &Tick) {
+        match self.open {
+            Some(Which::Gravity) => self.gravity.tick(tick),
+            None => {}
+        }
+    }
+
+    /// What the person at the arm is to do now.
+    pub fn prompt(&self) -> Prompt {
+        match self.open {
+            Some(Which::Gravity) => self.gravity.prompt(),
+            None => Prompt::Rest,
+        }
+    }
+
+    /// Tells the open wizard what became of its record.
+    pub fn tell_saved(&mut self, words: String) {
+        match self.open {
+            Some(Which::Gravity) => self.gravity.tell_saved(words),
+            None => {}
+        }
+    }
+
+    /// The open wizard; gives what shall be saved.
+    pub fn ui(&mut self, ui: &mut Ui, binding: &Binding) -> Option<Saving> {
+        let which = self.open?;
+        ui.label(RichText::new(format!("{} calibration", which.name())).font(theme::strong(22.0)));
+        ui.label(small(which.meaning()));
+        ui.add_space(theme::GAP);
+        match which {
+            Which::Gravity => self.gravity.ui(ui, binding).map(Saving::Gravity),
+        }
+    }
+}
+
+/// The row of steps with the ways back, on and over. Nothing good is lost by going back.
+fn steps_ui(ui: &mut Ui, steps: &[Step], now: usize, may_go_on: Result<(), &'static str>) -> Option<Wish> {
+    let mut wish = None;
+    ui.horizontal_wrapped(|ui| {
+        for (i, step) in steps.iter().enumerate() {
+            let (font, colour) =
+                if i == now { (theme::strong(15.0), theme::TEXT) } else { (theme::regular(14.0), theme::TEXT_WEAK) };
+            let mark = if i < now { "done" } else { "" };
+            let words = format!("{}. {} {mark}", i + 1, step.name);
+            ui.label(RichText::new(words.trim_end()).font(font).color(colour)).on_hover_text(step.meaning);
+            ui.add_space(10.0);
+        }
+    });
+    ui.label(small(steps[now].meaning));
+    ui.horizontal(|ui| {
+        let size = vec2(96.0, 34.0);
+        if ui.add_enabled(now > 0, Button::new("Back").min_size(size)).clicked() {
+            wish = Some(Wish::GoTo(now - 1));
+        }
+        let last = now + 1 == steps.len();
+        let next = ui.add_enabled(!last && may_go_on.is_ok(), Button::new("Next").min_size(size));
+        if next.clicked() {
+            wish = Some(Wish::GoTo(now + 1));
+        }
+        if let (Err(reason), false) = (may_go_on, last) {
+            next.on_disabled_hover_text(reason);
+            ui.label(small(reason));
+        }
+        ui.add_space(24.0);
+        if ui.button("Start over").on_hover_text("Throws away the data of this wizard.").clicked() {
+            wish = Some(Wish::StartOver);
+        }
+    });
+    wish
+}

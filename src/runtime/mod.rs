@@ -38,6 +38,11 @@ pub struct Plan {
 }
 
 impl Plan {
+    /// The force at the tip will be known and the follower will obey: without that nothing may be engaged by itself.
+    pub const fn may_engage(&self) -> bool {
+        self.scene.person.is_none() && (self.scene.wrist.is_none() || self.calibrations.gravity.is_some())
+    }
+
     fn build(&self) -> Result<(Loop, World), SettingsError> {
         // What the scene requires is identified; what it does not is left out.
         let mut rig = self.rig.clone();

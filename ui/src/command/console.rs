@@ -3,18 +3,18 @@
 use std::{path::PathBuf, time::Duration};
 
 use clap::Args;
-use nima::{
-    runtime::{self, Plan},
-    teleop::Calibrations,
-};
+use nima::runtime::{self, Plan};
 
 use super::setup::Setup;
-use crate::console::{self, Options};
+use crate::console::{self, Options, in_force::InForce, wizards::Which};
 
 #[derive(Debug, Default, Args)]
 pub(super) struct Arguments {
     #[command(flatten)]
     setup: Setup,
+    /// Begin with this calibration wizard
+    #[arg(long, value_name = "WIZARD")]
+    calibrate: Option<Which>,
     /// Close after this many seconds
     #[arg(long, value_name = "S", value_parser = super::run::positive_seconds)]
     exit_after: Option<f64>,
@@ -25,16 +25,15 @@ pub(super) struct Arguments {
 
 pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let (rig, scene) = arguments.setup.load()?;
+    let calibrations = InForce::load(None, &scene).calibrations();
+    let mut plan = Plan { rig: rig.clone(), scene: scene.clone(), calibrations, engage: false };
     // The simulated hand cannot be hurt: the demo runs at once.
-    let handle = runtime::start(&Plan {
-        rig: rig.clone(),
-        scene: scene.clone(),
-        calibrations: Calibrations::default(),
-        engage: true,
-    })?;
+    plan.engage = plan.may_engage();
+    let handle = runtime::start(&plan)?;
     let options = Options {
         exit_after: arguments.exit_after.map(Duration::from_secs_f64),
         screenshot: arguments.screenshot.clone(),
+        wizard: arguments.calibrate,
     };
     console::run(handle, rig, scene, options)
 }

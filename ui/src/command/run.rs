@@ -10,15 +10,15 @@ use std::{
     time::{Duration, Instant},
 };
 
-use anyhow::Context as _;
+use anyhow::{Context as _, bail};
 use clap::Args;
 use nima::{
     impedance::Mode,
     runtime::{self, Plan, Quantiles, Summary, Tick},
-    teleop::Calibrations,
 };
 
 use super::{output, setup::Setup};
+use crate::console::in_force::InForce;
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
@@ -58,7 +58,14 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     rig.delay_s = arguments.delay_ms.map_or(rig.delay_s, |delay_ms| delay_ms * 1e-3);
     rig.identification.cross_talk |= arguments.cross_talk;
     rig.validate()?;
-    let plan = Plan { rig, scene, calibrations: Calibrations::default(), engage: true };
+    let calibrations = InForce::load(None, &scene).calibrations();
+    let plan = Plan { rig, scene, calibrations, engage: true };
+    if !plan.may_engage() {
+        bail!(
+            "scene \"{}\" cannot be engaged: the force at its tip is not known; calibrate with `nima console --calibrate gravity`",
+            plan.scene.name
+        );
+    }
     let summary = if arguments.virtual_clock {
         runtime::run_virtual(&plan, arguments.seconds.unwrap_or(60.0), |_| None)?
     } else {

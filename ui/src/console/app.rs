@@ -88,6 +88,9 @@ impl ConsoleApp {
     #[must_use]
     pub fn with_options(mut self, options: Options) -> Self {
         self.options = options;
+        if let Some(which) = self.options.wizard {
+            self.open_wizard(which);
+        }
         self
     }
 
@@ -130,6 +133,7 @@ impl ConsoleApp {
         }
         // The old loop first: a rig has one master.
         drop(self.handle.take());
+        self.in_force.bind(&scene);
         let calibrations = self.in_force.calibrations();
         let plan = Plan { rig: rig.clone(), scene: scene.clone(), calibrations, engage: false };
         let started = runtime::start(&plan).map_err(|error| format!("the loop could not be started again: {error}"));
@@ -303,7 +307,7 @@ impl ConsoleApp {
 
     fn obey_options(&mut self, ctx: &egui::Context) {
         let open = self.opened.elapsed();
-        let Options { exit_after, screenshot } = &self.options;
+        let Options { exit_after, screenshot, .. } = &self.options;
         let picture_at = exit_after.map_or(SCREENSHOT_AT, |exit| exit.saturating_sub(SCREENSHOT_BEFORE_EXIT));
         if let Some(path) = screenshot.as_ref().filter(|_| !self.pictured && open >= picture_at) {
             let path = path.clone();

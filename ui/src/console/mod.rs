@@ -34,6 +34,8 @@ pub struct Options {
     pub exit_after: Option<Duration>,
     /// Save the window as PNG here just before it closes by itself (or after three seconds if it does not).
     pub screenshot: Option<PathBuf>,
+    /// Begin with this wizard.
+    pub wizard: Option<wizards::Which>,
 }
 
 /// Opens the console on a running loop; returns when the window is closed and the loop has ended.

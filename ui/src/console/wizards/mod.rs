@@ -39,7 +39,7 @@ enum Wish {
 }
 
 /// Which wizard.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
 pub enum Which {
     /// Weight and bias.
     Gravity,

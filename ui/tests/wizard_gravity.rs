@@ -1,0 +1,161 @@
+//! The gravity wizard walked from its first to its last step by accessible names, with good data and with bad.
+
+#![expect(clippy::unwrap_used, reason = "a console that cannot start is a failed test")]
+
+use std::{
+    path::Path,
+    time::{Duration, Instant},
+};
+
+use egui::accesskit::Role;
+use egui_kittest::{
+    Harness,
+    kittest::{NodeT as _, Queryable as _},
+};
+use nima::{
+    config::{Flaw, Rig, Scene},
+    runtime::{Plan, start},
+    teleop::{Calibrations, ForceSource},
+};
+use nima_console::console::ConsoleApp;
+
+/// Twelve poses of a simulated person take about half a minute; a busy machine takes longer.
+const PATIENCE: Duration = Duration::from_mins(2);
+
+type Console = Harness<'static, ConsoleApp>;
+
+fn console(scene: Scene, store: &Path) -> Console {
+    let rig = Rig::load("simulated").unwrap();
+    let calibrations = Calibrations::default();
+    let handle = start(&Plan { rig: rig.clone(), scene: scene.clone(), calibrations, engage: false }).unwrap();
+    let store = store.to_owned();
+    Harness::builder()
+        .with_size([1600.0, 1000.0])
+        .with_step_dt(1.0 / 30.0)
+        .build_eframe(move |cc| ConsoleApp::new(cc, handle, rig, scene).with_store(&store))
+}
+
+fn gravity_scene(flaw: Option<Flaw>) -> Scene {
+    let mut scene = Scene::load("gravity").unwrap();
+    scene.person.as_mut().unwrap().flaw = flaw;
+    scene
+}
+
+/// Steps the window until `good`; fails after a while.
+fn until(console: &mut Console, what: &str, good: impl Fn(&Console) -> bool) {
+    let began = Instant::now();
+    while !good(console) {
+        assert!(began.elapsed() < PATIENCE, "never came: {what}");
+        std::thread::sleep(Duration::from_millis(15));
+        console.step();
+    }
+}
+
+fn can_press(console: &Console, label: &str) -> bool {
+    console.query_by_role_and_label(Role::Button, label).is_some_and(|button| !button.accesskit_node().is_disabled())
+}
+
+fn press(console: &mut Console, label: &str) {
+    until(console, label, |console| can_press(console, label));
+    console.get_by_role_and_label(Role::Button, label).click();
+    console.step();
+    console.step();
+}
+
+fn shows(console: &Console, words: &str) -> bool {
+    console.query_all_by_label_contains(words).next().is_some()
+}
+
+fn write_into(console: &mut Console, label: &str, text: &str) {
+    console.get_by_role_and_label(Role::TextInput, label).focus();
+    console.step();
+    console.get_by_role_and_label(Role::TextInput, label).type_text(text);
+    console.step();
+    console.step();
+}
+
+fn files(folder: &Path) -> usize {
+    std::fs::read_dir(folder).map_or(0, Iterator::count)
+}
+
+#[test]
+fn a_technician_walks_from_an_uncalibrated_wrist_to_a_force_that_is_known() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut console = console(Scene::load("palpation").unwrap(), folder.path());
+    until(&mut console, "an unknown force", |c| shows(c, "the wrist sensor is not calibrated"));
+    press(&mut console, "Calibrate gravity...");
+    until(&mut console, "the first step", |c| shows(c, "Let go of it: nothing may touch the tool"));
+    press(&mut console, "Next");
+    until(&mut console, "some poses", |c| shows(c, "4 of 12 taken"));
+    // Back and closing lose nothing that was good.
+    press(&mut console, "Back");
+    press(&mut console, "Back to the monitor");
+    until(&mut console, "the monitor", |c| shows(c, "Calibrate gravity...") && c.state().tick().is_some());
+    press(&mut console, "Calibrate gravity...");
+    press(&mut console, "Next");
+    assert!(!shows(&console, "0 of 12 taken"), "the poses were lost");
+    until(&mut console, "all poses", |c| shows(c, "12 of 12 taken"));
+    press(&mut console, "Next");
+    until(&mut console, "a verdict", |c| shows(c, "Accepted"));
+    assert!(shows(&console, "Paper") && shows(&console, "Physical"), "the models side by side");
+    press(&mut console, "Next");
+    until(&mut console, "the proof", |c| shows(c, "Passed: free motion reads near zero"));
+    press(&mut console, "Next");
+    press(&mut console, "Save and use");
+    until(&mut console, "saved", |c| shows(c, "Saved and in force"));
+    assert_eq!(files(folder.path()), 1);
+    press(&mut console, "Back to the monitor");
+    until(&mut console, "a known force", |c| {
+        c.state().tick().is_some_and(|tick| tick.force.source == ForceSource::Wrist && tick.t_s > 0.1)
+    });
+    assert!(shows(&console, "held-out error"), "what is in force is on the monitor");
+}
+
+#[test]
+fn a_hand_on_the_tool_is_told_and_cannot_be_saved_without_a_name() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut console = console(gravity_scene(Some(Flaw::Touches)), folder.path());
+    press(&mut console, "Calibrate gravity...");
+    press(&mut console, "Next");
+    until(&mut console, "the touch", |c| shows(c, "something touches it") || shows(c, "something touches the tool"));
+    assert_eq!(files(folder.path()), 0);
+}
+
+#[test]
+fn a_trembling_tool_never_gives_a_pose() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut console = console(gravity_scene(Some(Flaw::Trembles)), folder.path());
+    press(&mut console, "Calibrate gravity...");
+    press(&mut console, "Next");
+    until(&mut console, "the trembling", |c| shows(c, "hold the tool still"));
+    let began = Instant::now();
+    until(&mut console, "five seconds", |_| began.elapsed() > Duration::from_secs(5));
+    assert!(shows(&console, "0 of 12 taken"));
+    assert!(!can_press(&console, "Next"), "too few poses lead nowhere");
+}
+
+#[test]
+fn a_wrong_sign_is_named_and_an_override_is_written_into_the_file() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut scene = gravity_scene(None);
+    scene.wrist.as_mut().unwrap().imu.as_mut().unwrap().reads_gravity = true;
+    let mut console = console(scene, folder.path());
+    press(&mut console, "Calibrate gravity...");
+    press(&mut console, "Next");
+    until(&mut console, "enough poses", |c| shows(c, "8 of 12 taken"));
+    press(&mut console, "Next");
+    until(&mut console, "the verdict", |c| shows(c, "Poor data") && shows(c, "sign"));
+    press(&mut console, "Next");
+    until(&mut console, "a reading", |c| shows(c, "Not passed yet"));
+    press(&mut console, "Next");
+    until(&mut console, "the last step", |c| shows(c, "not proven"));
+    assert!(!can_press(&console, "Save in spite of the verdict"), "a name and a reason come first");
+    write_into(&mut console, "Your name", "Ada Lovelace");
+    write_into(&mut console, "Reason", "bench test");
+    press(&mut console, "Save in spite of the verdict");
+    until(&mut console, "saved", |c| shows(c, "Saved and in force"));
+    let path = std::fs::read_dir(folder.path()).unwrap().next().unwrap().unwrap().path();
+    let text = std::fs::read_to_string(path).unwrap();
+    assert!(text.contains("Ada Lovelace") && text.contains("bench test"), "{text}");
+    until(&mut console, "who kept it", |c| shows(c, "NOT PROVEN, kept by Ada Lovelace"));
+}

@@ -22,7 +22,7 @@ pub(super) fn pose_picture(ui: &mut Ui, target: Option<&UnitQuaternion<f64>>, he
     response.widget_info(|| WidgetInfo::labeled(egui::Role::Label, true, "Picture of the orientation to take"));
     let painter = ui.painter_at(rect);
     painter.rect_filled(rect, theme::CORNER, theme::GROOVE);
-    let (centre, scale) = (rect.center() - vec2(0.0, 6.0), rect.height() * 0.34);
+    let (centre, scale) = (rect.center() - vec2(0.0, 22.0), rect.height() * 0.31);
     ground(&painter, centre, scale);
     if let Some(target) = target {
         tool(&painter, centre, scale, target, false);

@@ -33,27 +33,70 @@ pub const MAX_FEATURES: usize = 64;
 
 const QUATERNION: [&str; 4] = ["qw", "qx", "qy", "qz"];
 
-/// How input columns become features: plain ones as they are, in order, then the nine entries of the rotation matrix.
-#[derive(Clone, Debug, PartialEq, Eq)]
+/// How input columns become features, in this order: plain columns as they are; the nine entries of the rotation matrix; per
+/// direction of motion its soft sign `s = v / sqrt(v^2 + v0^2)`; and the products of that sign with every plain column that is
+/// no direction itself.
+///
+/// A direction is a column whose name holds `speed` or `presliding`. Coulomb friction is a sign times a load: with signs and
+/// products among the features the linear path of a network extrapolates it beyond the loads it was trained on.
+#[derive(Clone, Debug, PartialEq)]
 pub struct Expansion {
     plain: Vec<usize>,
     quaternion: Option<[usize; 4]>,
+    directions: Vec<(usize, f32)>,
+    loads: Vec<usize>,
 }
 
+/// `v0` as a share of the root mean square of a speed or travel.
+const SOFT_SHARE: f32 = 0.1;
+
 impl Expansion {
-    /// The expansion of these input columns.
-    pub fn of(inputs: &[String]) -> Self {
+    /// The expansion of these input columns; `soft[i]` is the `v0` of column `i` where that is a direction. `None` where such
+    /// a number is absent or not positive.
+    pub fn new(inputs: &[String], soft: &[f32]) -> Option<Self> {
         let at = |name: &str| inputs.iter().position(|input| input == name);
         let quaternion = match QUATERNION.map(at) {
             [Some(w), Some(x), Some(y), Some(z)] => Some([w, x, y, z]),
             _ => None,
         };
-        let plain = (0..inputs.len()).filter(|i| !quaternion.is_some_and(|q| q.contains(i))).collect();
-        Self { plain, quaternion }
+        let plain: Vec<usize> = (0..inputs.len()).filter(|i| !quaternion.is_some_and(|q| q.contains(i))).collect();
+        let (directions, loads): (Vec<_>, Vec<_>) = plain.iter().copied().partition(|&i| is_direction(&inputs[i]));
+        let softened = directions.iter().map(|&i| soft.get(i).map(|v0| (i, *v0))).collect::<Option<Vec<_>>>()?;
+        let positive = softened.iter().all(|(_, v0)| v0.is_finite() && *v0 > 0.0);
+        positive.then_some(Self { plain, quaternion, directions: softened, loads })
+    }
+
+    /// The expansion for these data: every `v0` is a tenth of the column's root mean square.
+    pub fn fit(inputs: &[String], x: &[f32]) -> Self {
+        let rows = (x.len() / inputs.len().max(1)).max(1) as f64;
+        let mut square = vec![0.0_f64; inputs.len()];
+        for row in x.chunks_exact(inputs.len().max(1)) {
+            square.iter_mut().zip(row).for_each(|(sum, value)| *sum += f64::from(*value).powi(2) / rows);
+        }
+        let soft: Vec<f32> = square.into_iter().map(|s| (SOFT_SHARE * s.sqrt() as f32).max(1e-9)).collect();
+        Self::new(inputs, &soft).unwrap_or_else(|| Self {
+            plain: (0..inputs.len()).collect(),
+            quaternion: None,
+            directions: Vec::new(),
+            loads: Vec::new(),
+        })
+    }
+
+    /// `v0` of every input column, 0 where it is no direction: what [`Self::new`] takes.
+    pub fn soft(&self, inputs: usize) -> Vec<f32> {
+        let mut soft = vec![0.0; inputs];
+        self.directions.iter().for_each(|(column, v0)| soft[*column] = *v0);
+        soft
     }
 
     /// How many features there are.
     pub fn width(&self) -> usize {
+        let rotation = if self.quaternion.is_some() { 9 } else { 0 };
+        self.plain.len() + rotation + self.directions.len() * (1 + self.loads.len())
+    }
+
+    /// How many of them, from the first, are measured quantities and not signs or products.
+    pub fn measured(&self) -> usize {
         self.plain.len() + if self.quaternion.is_some() { 9 } else { 0 }
     }
 
@@ -61,13 +104,14 @@ impl Expansion {
     pub fn name(&self, feature: usize, inputs: &[String]) -> String {
         match self.plain.get(feature) {
             Some(&column) => inputs[column].clone(),
-            None => format!("rotation entry {}", feature - self.plain.len()),
+            None if feature < self.measured() => format!("rotation entry {}", feature - self.plain.len()),
+            None => {
+                let place = feature - self.measured();
+                let (direction, load) = (place / (1 + self.loads.len()), place % (1 + self.loads.len()));
+                let sign = format!("sign of {}", inputs[self.directions[direction].0]);
+                if load == 0 { sign } else { format!("{sign} times {}", inputs[self.loads[load - 1]]) }
+            }
         }
-    }
-
-    /// Whether a feature is an input column as it stands; then which.
-    pub fn column(&self, feature: usize) -> Option<usize> {
-        self.plain.get(feature).copied()
     }
 
     /// Fills `features` (of [`Self::width`]) from one row of inputs.
@@ -77,9 +121,22 @@ impl Expansion {
         }
         if let Some(columns) = self.quaternion {
             let [w, x, y, z] = columns.map(|column| inputs[column]);
-            features[self.plain.len()..].copy_from_slice(&rotation_entries(w, x, y, z));
+            features[self.plain.len()..self.plain.len() + 9].copy_from_slice(&rotation_entries(w, x, y, z));
+        }
+        let products = features[self.measured()..].chunks_exact_mut(1 + self.loads.len());
+        for (&(column, v0), to) in self.directions.iter().zip(products) {
+            let v = inputs[column];
+            let sign = v / (v * v + v0 * v0).sqrt();
+            to[0] = sign;
+            for (to, &load) in to[1..].iter_mut().zip(&self.loads) {
+                *to = sign * inputs[load];
+            }
         }
     }
+}
+
+fn is_direction(name: &str) -> bool {
+    name.contains("speed") || name.contains("presliding")
 }
 
 /// The rotation matrix of a quaternion of any length, row by row.
@@ -107,7 +164,7 @@ mod tests {
     #[test]
     fn a_quaternion_becomes_its_matrix_whatever_its_sign_and_length() {
         let names = ["a", "qw", "qx", "qy", "qz", "b"].map(str::to_owned);
-        let expansion = Expansion::of(&names);
+        let expansion = Expansion::new(&names, &[]).unwrap();
         assert_eq!(expansion.width(), 11);
         let q = [0.5_f32, -0.3, 0.7, 0.2];
         let matrix = UnitQuaternion::from_quaternion(Quaternion::new(q[0], q[1], q[2], q[3])).to_rotation_matrix();
@@ -125,6 +182,20 @@ mod tests {
     #[test]
     fn three_quarters_of_a_quaternion_stay_plain_columns() {
         let names = ["qw", "qx", "qy"].map(str::to_owned);
-        assert_eq!(Expansion::of(&names).width(), 3);
+        assert_eq!(Expansion::new(&names, &[]).unwrap().width(), 3);
+    }
+
+    #[test]
+    fn a_speed_gives_its_sign_and_the_sign_times_every_load() {
+        let names = ["fz_n", "insertion_speed_m_s", "insertion_m"].map(str::to_owned);
+        let expansion = Expansion::new(&names, &[0.0, 0.003, 0.0]).unwrap();
+        assert_eq!((expansion.width(), expansion.measured()), (6, 3));
+        let mut features = [0.0; 6];
+        expansion.expand(&[2.0, -0.004, 0.1], &mut features);
+        let expected = [2.0, -0.004, 0.1, -0.8, -1.6, -0.08];
+        assert!(features.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-6), "{features:?}");
+        assert_eq!(expansion.name(4, &names), "sign of insertion_speed_m_s times fz_n");
+        assert_eq!(Expansion::new(&names, &expansion.soft(3)).unwrap(), expansion);
+        assert!(Expansion::new(&names, &[0.0; 3]).is_none());
     }
 }

@@ -188,7 +188,7 @@ fn check_columns(set: &DataSet) -> Result<(), TipForceError> {
     if set.outputs.is_empty() || set.outputs.len() > MAX_OUTPUTS {
         return refuse(format!("there are {} outputs, 1 to {MAX_OUTPUTS} are possible", set.outputs.len()));
     }
-    let width = Expansion::of(&set.inputs).width();
+    let width = Expansion::fit(&set.inputs, &[]).width();
     if width > MAX_FEATURES {
         return refuse(format!("the inputs make {width} numbers, at most {MAX_FEATURES} are possible"));
     }

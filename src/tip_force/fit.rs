@@ -6,7 +6,7 @@ use candle_core::{Device, Tensor, Var};
 use candle_nn::optim::{AdamW, Optimizer as _, ParamsAdamW};
 
 use super::{
-    Layer, Member, TipForceError,
+    Layer, Member, TipForceError, linear,
     training::{MemberFigures, Progress, Settings},
 };
 
@@ -28,7 +28,7 @@ pub(super) struct Fit<'a> {
 /// Weights under training.
 struct Weights {
     layers: Vec<(Var, Var)>,
-    skip: Var,
+    skip: Tensor,
 }
 
 impl Fit<'_> {
@@ -41,7 +41,8 @@ impl Fit<'_> {
     ) -> Result<(Member, MemberFigures), TipForceError> {
         let mut generator =
             fastrand::Rng::with_seed(self.settings.seed.wrapping_mul(1_000_003).wrapping_add(member as u64));
-        let weights = Weights::new(self.shape, &self.settings.hidden, &mut generator)?;
+        let skip = linear::solve(self.x, self.y, self.shape, training);
+        let weights = Weights::new(self.shape, &self.settings.hidden, skip, &mut generator)?;
         let parameters = ParamsAdamW {
             lr: self.settings.learning_rate,
             weight_decay: self.settings.weight_decay,
@@ -135,10 +136,12 @@ impl Fit<'_> {
 }
 
 impl Weights {
-    /// Uniform weights of variance one over the inputs; the last layer and the linear path start at zero.
+    /// Uniform weights of variance one over the inputs; the last layer starts at zero, so that the start is the linear path,
+    /// which stays as it was solved: what is linear is never unlearned, and beyond the data it is what is left.
     fn new(
         (inputs, outputs): (usize, usize),
         hidden: &[usize],
+        skip: Vec<f32>,
         generator: &mut fastrand::Rng,
     ) -> Result<Self, TipForceError> {
         let widths: Vec<usize> = [inputs].into_iter().chain(hidden.iter().copied()).chain([outputs]).collect();
@@ -151,13 +154,12 @@ impl Weights {
             let bias = Var::from_vec(draw(pair[1]), (1, pair[1]), &Device::Cpu)?;
             layers.push((matrix, bias));
         }
-        let skip = Var::from_vec(vec![0.0_f32; inputs * outputs], (inputs, outputs), &Device::Cpu)?;
+        let skip = Tensor::from_vec(skip, (inputs, outputs), &Device::Cpu)?;
         Ok(Self { layers, skip })
     }
 
     fn all(&self) -> Vec<Var> {
-        let layers = self.layers.iter().flat_map(|(matrix, bias)| [matrix.clone(), bias.clone()]);
-        layers.chain([self.skip.clone()]).collect()
+        self.layers.iter().flat_map(|(matrix, bias)| [matrix.clone(), bias.clone()]).collect()
     }
 
     fn forward(&self, x: &Tensor) -> candle_core::Result<Tensor> {
@@ -175,8 +177,8 @@ impl Weights {
 
     /// The weights as they are now, for inference.
     fn member(&self) -> Result<Member, TipForceError> {
-        let flat = |var: &Var| var.flatten_all().and_then(|flat| flat.to_vec1::<f32>());
-        let layer = |matrix: &Var, bias: Vec<f32>| {
+        let flat = |var: &Tensor| var.flatten_all().and_then(|flat| flat.to_vec1::<f32>());
+        let layer = |matrix: &Tensor, bias: Vec<f32>| {
             let (inputs, outputs) = matrix.dims2()?;
             let built = Layer::new(inputs, outputs, &flat(matrix)?, &bias);
             built.ok_or_else(|| candle_core::Error::Msg("a layer lost its shape".into()))

@@ -39,6 +39,11 @@ impl Folds {
         Self { blocks, fold, gap }
     }
 
+    /// How many folds there are.
+    pub(super) fn count(&self) -> usize {
+        self.fold.iter().max().map_or(0, |last| last + 1)
+    }
+
     /// Rows of training and of validation for a member.
     pub(super) fn split(&self, member: usize) -> (Vec<usize>, Vec<usize>) {
         let (mut training, mut validation) = (Vec::new(), Vec::new());

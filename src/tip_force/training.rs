@@ -25,7 +25,7 @@ pub struct Settings {
     pub members: usize,
     /// Widths of the hidden layers, one to four of 1 to 256.
     pub hidden: Vec<usize>,
-    /// Most epochs of a member; `None` chooses as many as give about 15000 steps.
+    /// Most epochs of a member; `None` chooses as many as give about 5000 steps.
     pub epochs: Option<usize>,
     /// Rows in a mini-batch.
     pub batch: usize,
@@ -50,7 +50,7 @@ impl Default for Settings {
 }
 
 /// Steps of the optimiser that a member gets where the caller names no epochs.
-const STEPS: usize = 15_000;
+const STEPS: usize = 5000;
 
 /// Fewest rows to learn from.
 pub const MIN_ROWS: usize = 200;
@@ -81,7 +81,7 @@ impl Settings {
 
     /// Most epochs for this many training rows.
     pub fn epochs_for(&self, rows: usize) -> usize {
-        self.epochs.unwrap_or_else(|| (STEPS / rows.div_ceil(self.batch).max(1)).clamp(20, 500))
+        self.epochs.unwrap_or_else(|| (STEPS / rows.div_ceil(self.batch).max(1)).clamp(10, 500))
     }
 }
 
@@ -128,12 +128,16 @@ pub struct Trained {
     pub members: Vec<Member>,
     /// What each reached.
     pub figures: Vec<MemberFigures>,
+    /// How inputs become features.
+    pub expansion: Expansion,
     /// Normalisation of the features.
     pub features: Normalisation,
     /// Normalisation of the outputs.
     pub outputs: Normalisation,
     /// Features that never change in the data and are neutral in the model, by name.
     pub constant: Vec<String>,
+    /// Rows that a fold learns from, and rows it is judged by.
+    pub(super) folds: Vec<(Vec<usize>, Vec<usize>)>,
     /// How long it took, s.
     pub elapsed_s: f64,
 }
@@ -161,7 +165,7 @@ pub fn train(
         return Err(TipForceError::TooFewRows { found: data.rows(), needed: MIN_ROWS });
     }
     let start = Instant::now();
-    let expansion = Expansion::of(&data.inputs);
+    let expansion = Expansion::fit(&data.inputs, &data.x);
     let mut x = features_of(data, &expansion);
     if let Some(row) = x.chunks(expansion.width()).position(|row| row.iter().any(|value| !value.is_finite())) {
         let reason = format!("row {} of the data has a quaternion of length zero", row + 1);
@@ -184,7 +188,17 @@ pub fn train(
     let fit = Fit { x: &x, y: &y, shape: (expansion.width(), data.outputs.len()), settings, cancel, progress: &report };
     let (members, figures) = all_members(&fit, &folds)?.into_iter().unzip();
     let constant = features.constant().map(|feature| expansion.name(feature, &data.inputs)).collect();
-    Ok(Trained { members, figures, features, outputs, constant, elapsed_s: start.elapsed().as_secs_f64() })
+    let folds = (0..folds.count()).map(|fold| folds.split(fold)).collect();
+    Ok(Trained {
+        members,
+        figures,
+        expansion,
+        features,
+        outputs,
+        constant,
+        folds,
+        elapsed_s: start.elapsed().as_secs_f64(),
+    })
 }
 
 /// Trains the members on as many threads as there are cores; the first failure ends all.

@@ -1,12 +1,14 @@
 //! The command line of `nima`: one file per subcommand. Failure is one clear line on stderr and a non-zero exit.
 
 mod console;
+mod evaluate;
 mod identify;
 mod output;
 mod run;
 mod setup;
 mod study;
 mod tradeoff;
+mod train;
 
 use std::process::ExitCode;
 
@@ -34,6 +36,12 @@ enum Command {
     /// Experiments that print figures
     #[command(subcommand, arg_required_else_help = false)]
     Study(study::StudyCommand),
+    /// Train models from data
+    #[command(subcommand, arg_required_else_help = false)]
+    Train(train::TrainCommand),
+    /// Judge models on data they were not trained on
+    #[command(subcommand, arg_required_else_help = false)]
+    Evaluate(evaluate::EvaluateCommand),
 }
 
 /// Tells what was wrong with the arguments in one line: the complaint without the usage text that follows it.
@@ -61,6 +69,8 @@ pub fn main() -> ExitCode {
         Command::Run(arguments) => run::run(&arguments),
         Command::Identify(arguments) => identify::run(&arguments),
         Command::Study(study) => study::run(&study),
+        Command::Train(train) => train::run(&train),
+        Command::Evaluate(evaluate) => evaluate::run(&evaluate),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

@@ -17,6 +17,8 @@ mod linear;
 mod model;
 mod network;
 mod normal;
+#[cfg(test)]
+mod tests;
 mod training;
 
 pub use baseline::{BASELINES, Baselines};

@@ -54,7 +54,7 @@ impl Doubt {
         let mut scratch = vec![0.0; width];
         for (fit, judge) in folds {
             let fold = Self::geometry(x, stride, width, fit, seed);
-            for &row in thinned(judge, ROWS / folds.len().max(1)).iter() {
+            for &row in &thinned(judge, ROWS / folds.len().max(1)) {
                 let features = &x[row * stride..row * stride + width];
                 distances.push(fold.distance(features, &mut scratch));
                 reaches.push(fold.reach(features));

@@ -197,7 +197,9 @@ mod tests {
         for (k, layer) in member.layers.iter().enumerate() {
             now = times(layer, &now);
             if k + 1 < member.layers.len() {
-                now.iter_mut().for_each(|z| *z /= z.hypot(1.0));
+                for z in &mut now {
+                    *z /= z.hypot(1.0);
+                }
             }
         }
         now.iter().zip(times(&member.skip, inputs)).map(|(a, b)| a + b).collect()

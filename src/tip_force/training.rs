@@ -16,7 +16,7 @@ use std::{
 
 use super::{DataSet, Expansion, Member, Normalisation, TipForceError, fit::Fit, folds::Folds};
 
-/// How to train. `Default` is what the figures in `docs/tip-force.md` were measured with.
+/// How to train.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Settings {
     /// Seed of weights, folds and orders.

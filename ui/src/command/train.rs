@@ -1,6 +1,7 @@
 //! `nima train`: models from data.
 
 use std::{
+    fmt::Write as _,
     io::{self, IsTerminal as _},
     path::PathBuf,
     sync::{
@@ -31,10 +32,10 @@ pub(super) struct TipForce {
     /// Where to write the model
     #[arg(long, value_name = "MODEL.safetensors")]
     out: PathBuf,
-    /// Input columns [default: fx_n .. tz_nm, qw .. qz, insertion_m, insertion_speed_m_s, presliding_m, as far as there]
+    /// Input columns [default: of `fx_n,fy_n,fz_n,tx_nm,ty_nm,tz_nm,qw,qx,qy,qz,insertion_m,insertion_speed_m_s,presliding_m` what is there]
     #[arg(long, value_name = "A,B,C", value_delimiter = ',')]
     inputs: Option<Vec<String>>,
-    /// Output columns [default: tip_fx_n,tip_fy_n,tip_fz_n]
+    /// Output columns [default: `tip_fx_n,tip_fy_n,tip_fz_n`]
     #[arg(long, value_name = "D,E", value_delimiter = ',')]
     outputs: Option<Vec<String>>,
     /// Seed: the same data, settings and seed give the same model
@@ -117,6 +118,7 @@ fn show(bar: &ProgressBar, progress: &Progress) {
     bar.set_message(format!("network {}: held-out loss {:.4}", progress.member + 1, progress.best));
 }
 
+/// Writing into a String cannot fail.
 fn in_words(model: &Model, arguments: &TipForce, seconds: f64) -> String {
     let origin = &model.origin;
     let losses: Vec<String> = origin.figures.iter().map(|f| format!("{:.4}", f.validation_loss)).collect();
@@ -131,11 +133,9 @@ fn in_words(model: &Model, arguments: &TipForce, seconds: f64) -> String {
     );
     if !origin.constant.is_empty() {
         let list = origin.constant.join(", ");
-        text.push_str(&format!("never changing and therefore unused (any other value will be in doubt): {list}\n"));
+        writeln!(text, "never changing and therefore unused (any other value will be in doubt): {list}").ok();
     }
-    text.push_str(&format!(
-        "written to {}; judge it on other data with `nima evaluate tip-force`",
-        arguments.out.display()
-    ));
+    let out = arguments.out.display();
+    write!(text, "written to {out}; judge it on other data with `nima evaluate tip-force`").ok();
     text
 }

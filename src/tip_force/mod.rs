@@ -1,4 +1,34 @@
 //! The force at the tip from what the wrist feels: a small network that takes the trocar's friction out.
 //!
 //! Takes named columns (wrist force in N, torque in Nm, orientation, motion through the trocar); gives the force at the tip in
-//! the frame of the wrist sensor (`s1`, N), and says when it is out of its depth.
+//! the frame of the wrist sensor (`s1`, N), and says when it is out of its depth. The same machinery learns any other
+//! instrument's named columns. Training ([`train`]) belongs on a background thread; [`Estimator`] allocates nothing.
+
+mod baseline;
+mod columns;
+mod dataset;
+mod doubt;
+mod error;
+mod estimator;
+mod evaluation;
+mod fit;
+mod folds;
+mod linear;
+mod model;
+mod network;
+mod normal;
+#[cfg(test)]
+mod tests;
+mod training;
+
+pub use baseline::{BASELINES, Baselines};
+pub use columns::{DEFAULT_INPUTS, DEFAULT_OUTPUTS, Expansion, MAX_FEATURES, MAX_OUTPUTS};
+pub use dataset::{DataSet, Selection, Trajectory};
+pub use doubt::{Doubt, FALSE_ALARMS};
+pub use error::TipForceError;
+pub use estimator::{Estimate, Estimator};
+pub use evaluation::{Evaluation, MethodFigures, NoContact, Part, Stats, evaluate};
+pub use model::{Model, Origin};
+pub use network::{Answer, Layer, Member, Network};
+pub use normal::Normalisation;
+pub use training::{MIN_ROWS, MemberFigures, Progress, Settings, Trained, train};

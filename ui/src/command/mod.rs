@@ -2,12 +2,14 @@
 
 mod calibrate;
 mod console;
+mod evaluate;
 mod identify;
 mod output;
 mod run;
 mod setup;
 mod study;
 mod tradeoff;
+mod train;
 
 use std::process::ExitCode;
 
@@ -38,6 +40,12 @@ enum Command {
     /// Experiments that print figures
     #[command(subcommand, arg_required_else_help = false)]
     Study(study::StudyCommand),
+    /// Train models from data
+    #[command(subcommand, arg_required_else_help = false)]
+    Train(train::TrainCommand),
+    /// Judge models on data they were not trained on
+    #[command(subcommand, arg_required_else_help = false)]
+    Evaluate(evaluate::EvaluateCommand),
 }
 
 /// Tells what was wrong with the arguments in one line: the complaint without the usage text that follows it.
@@ -66,6 +74,8 @@ pub fn main() -> ExitCode {
         Command::Identify(arguments) => identify::run(&arguments),
         Command::Calibrate(calibrate) => calibrate::run(&calibrate),
         Command::Study(study) => study::run(&study),
+        Command::Train(train) => train::run(&train),
+        Command::Evaluate(evaluate) => evaluate::run(&evaluate),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

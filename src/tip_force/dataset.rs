@@ -1,0 +1,256 @@
+//! Data sets for training and judging: CSV files with named columns.
+//!
+//! Inputs and outputs by name ([`DEFAULT_INPUTS`], [`DEFAULT_OUTPUTS`] or the caller's), optionally `trajectory` (whole
+//! number: consecutive rows of one number belong together; without it every file is one trajectory) and `contact` (0 or 1).
+//! A missing column and a field that is no finite number are refused with their place; nothing is guessed.
+
+use std::{
+    fs,
+    ops::Range,
+    path::{Path, PathBuf},
+};
+
+use csv::{ReaderBuilder, StringRecord, Trim};
+
+use super::{DEFAULT_INPUTS, DEFAULT_OUTPUTS, Expansion, MAX_FEATURES, MAX_OUTPUTS, TipForceError};
+
+/// Which columns to use; `None` means the default ones.
+#[derive(Clone, Debug, Default)]
+pub struct Selection {
+    /// Names of the inputs; by default those of [`DEFAULT_INPUTS`] that the first file has.
+    pub inputs: Option<Vec<String>>,
+    /// Names of the outputs; by default [`DEFAULT_OUTPUTS`].
+    pub outputs: Option<Vec<String>>,
+}
+
+/// Rows that belong together in time.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Trajectory {
+    /// Index into [`DataSet::files`].
+    pub file: usize,
+    /// Its rows.
+    pub rows: Range<usize>,
+}
+
+/// Rows of inputs and outputs, in the order of the files.
+#[derive(Clone, Debug)]
+pub struct DataSet {
+    /// Names of the input columns.
+    pub inputs: Vec<String>,
+    /// Names of the output columns.
+    pub outputs: Vec<String>,
+    /// Input values, row by row.
+    pub x: Vec<f32>,
+    /// Output values, row by row.
+    pub y: Vec<f32>,
+    /// Whether the tip touched something in a row; `None` where any file does not say.
+    pub contact: Option<Vec<bool>>,
+    /// The files.
+    pub files: Vec<PathBuf>,
+    /// What belongs together, in order, covering all rows.
+    pub trajectories: Vec<Trajectory>,
+    /// FNV-1a (64 bit) over the bytes of all files in order, as 16 hexadecimal digits.
+    pub hash: String,
+}
+
+impl DataSet {
+    /// Reads these files, all with the same columns.
+    pub fn read(paths: &[PathBuf], selection: &Selection) -> Result<Self, TipForceError> {
+        let mut hash = FNV_START;
+        let mut set: Option<Self> = None;
+        for path in paths {
+            let open = |reason: String| TipForceError::Open { path: path.clone(), reason };
+            let bytes = fs::read(path).map_err(|error| open(error.to_string()))?;
+            hash = bytes.iter().fold(hash, |hash, byte| (hash ^ u64::from(*byte)).wrapping_mul(FNV_PRIME));
+            let mut reader = ReaderBuilder::new().trim(Trim::All).comment(Some(b'#')).from_reader(&bytes[..]);
+            let header = reader.headers().map_err(|error| open(error.to_string()))?.clone();
+            let set = set.get_or_insert_with(|| Self::chosen(selection, &header));
+            check_columns(set)?;
+            set.append(path, &header, &mut reader)?;
+        }
+        let mut set = set.ok_or(TipForceError::TooFewRows { found: 0, needed: 1 })?;
+        if set.rows() == 0 {
+            return Err(TipForceError::TooFewRows { found: 0, needed: 1 });
+        }
+        set.hash = format!("{hash:016x}");
+        Ok(set)
+    }
+
+    /// How many rows there are.
+    pub fn rows(&self) -> usize {
+        self.y.len() / self.outputs.len().max(1)
+    }
+
+    /// Inputs of a row.
+    pub fn input(&self, row: usize) -> &[f32] {
+        &self.x[row * self.inputs.len()..(row + 1) * self.inputs.len()]
+    }
+
+    /// Outputs of a row.
+    pub fn output(&self, row: usize) -> &[f32] {
+        &self.y[row * self.outputs.len()..(row + 1) * self.outputs.len()]
+    }
+
+    fn chosen(selection: &Selection, header: &StringRecord) -> Self {
+        let has = |name: &&str| header.iter().any(|found| found == *name);
+        let owned = |names: Vec<&str>| names.into_iter().map(str::to_owned).collect::<Vec<_>>();
+        let inputs =
+            selection.inputs.clone().unwrap_or_else(|| owned(DEFAULT_INPUTS.into_iter().filter(has).collect()));
+        let outputs = selection.outputs.clone().unwrap_or_else(|| owned(DEFAULT_OUTPUTS.to_vec()));
+        Self {
+            // With nothing found, ask for the first default: the error then names the columns there are.
+            inputs: if inputs.is_empty() { owned(vec![DEFAULT_INPUTS[0]]) } else { inputs },
+            outputs,
+            x: Vec::new(),
+            y: Vec::new(),
+            contact: Some(Vec::new()),
+            files: Vec::new(),
+            trajectories: Vec::new(),
+            hash: String::new(),
+        }
+    }
+
+    fn append(
+        &mut self,
+        path: &Path,
+        header: &StringRecord,
+        reader: &mut csv::Reader<&[u8]>,
+    ) -> Result<(), TipForceError> {
+        let find = |name: &String| column(path, header, name);
+        let inputs = self.inputs.iter().map(find).collect::<Result<Vec<_>, _>>()?;
+        let outputs = self.outputs.iter().map(find).collect::<Result<Vec<_>, _>>()?;
+        let optional = |name: &str| header.iter().position(|found| found == name);
+        let (trajectory, contact) = (optional("trajectory"), optional("contact"));
+        if contact.is_none() {
+            self.contact = None;
+        }
+        let file = self.files.len();
+        self.files.push(path.to_owned());
+        let first = self.rows();
+        let (mut start, mut last) = (first, None);
+        let mut record = StringRecord::new();
+        let wrong = |error: csv::Error| TipForceError::Open { path: path.to_owned(), reason: error.to_string() };
+        while reader.read_record(&mut record).map_err(wrong)? {
+            let row = self.rows();
+            let id = trajectory.map(|index| number(path, header, &record, index)).transpose()?.map(f32::to_bits);
+            if row > first && id != last {
+                self.trajectories.push(Trajectory { file, rows: start..row });
+                start = row;
+            }
+            last = id;
+            for &index in &inputs {
+                self.x.push(number(path, header, &record, index)?);
+            }
+            if let (Some(index), Some(contacts)) = (contact, &mut self.contact) {
+                contacts.push(number(path, header, &record, index)? > 0.5);
+            }
+            for &index in &outputs {
+                self.y.push(number(path, header, &record, index)?);
+            }
+        }
+        if self.rows() > start {
+            self.trajectories.push(Trajectory { file, rows: start..self.rows() });
+        }
+        Ok(())
+    }
+}
+
+const FNV_START: u64 = 0xcbf2_9ce4_8422_2325;
+const FNV_PRIME: u64 = 0x0100_0000_01b3;
+
+fn column(path: &Path, header: &StringRecord, name: &str) -> Result<usize, TipForceError> {
+    header.iter().position(|found| found == name).ok_or_else(|| TipForceError::NoColumn {
+        path: path.to_owned(),
+        column: name.to_owned(),
+        available: header.iter().collect::<Vec<_>>().join(", "),
+    })
+}
+
+fn number(path: &Path, header: &StringRecord, record: &StringRecord, index: usize) -> Result<f32, TipForceError> {
+    let field = record.get(index).unwrap_or_default();
+    match field.parse::<f32>() {
+        Ok(value) if value.is_finite() => Ok(value),
+        _ => Err(TipForceError::NotANumber {
+            path: path.to_owned(),
+            line: record.position().map_or(0, csv::Position::line),
+            column: header.get(index).unwrap_or_default().to_owned(),
+            field: field.to_owned(),
+        }),
+    }
+}
+
+fn check_columns(set: &DataSet) -> Result<(), TipForceError> {
+    let refuse = |reason: String| Err(TipForceError::Columns { reason });
+    let names: Vec<&String> = set.inputs.iter().chain(&set.outputs).collect();
+    if let Some(twice) = names.iter().enumerate().find(|(i, name)| names[..*i].contains(name)) {
+        return refuse(format!("\"{}\" is named twice", twice.1));
+    }
+    if set.outputs.is_empty() || set.outputs.len() > MAX_OUTPUTS {
+        return refuse(format!("there are {} outputs, 1 to {MAX_OUTPUTS} are possible", set.outputs.len()));
+    }
+    let width = Expansion::fit(&set.inputs, &[]).width();
+    if width > MAX_FEATURES {
+        return refuse(format!("the inputs make {width} numbers, at most {MAX_FEATURES} are possible"));
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn read(texts: &[&str], inputs: &str, outputs: &str) -> Result<DataSet, TipForceError> {
+        let folder = tempfile::tempdir().unwrap();
+        let paths: Vec<PathBuf> = (0..texts.len()).map(|i| folder.path().join(format!("{i}.csv"))).collect();
+        for (path, text) in paths.iter().zip(texts) {
+            fs::write(path, text).unwrap();
+        }
+        let names = |list: &str| (!list.is_empty()).then(|| list.split(',').map(str::to_owned).collect());
+        DataSet::read(&paths, &Selection { inputs: names(inputs), outputs: names(outputs) })
+    }
+
+    #[test]
+    fn files_and_trajectory_numbers_make_trajectories() {
+        let set = read(
+            &["a,b,trajectory,contact\n1,2,0,0\n3,4,0,1\n5,6,1,1\n", "b,a,trajectory,contact\n8,7,1,0\n"],
+            "a",
+            "b",
+        )
+        .unwrap();
+        let rows: Vec<_> = set.trajectories.iter().map(|t| (t.file, t.rows.clone())).collect();
+        assert_eq!(rows, [(0, 0..2), (0, 2..3), (1, 3..4)]);
+        assert_eq!((set.x, set.y), (vec![1.0, 3.0, 5.0, 7.0], vec![2.0, 4.0, 6.0, 8.0]));
+        assert_eq!(set.contact.unwrap(), [false, true, true, false]);
+    }
+
+    #[test]
+    fn the_hash_is_that_of_the_bytes() {
+        let hash = |text: &str| read(&[text], "a", "b").unwrap().hash;
+        assert_eq!(hash("a,b\n1,2\n"), hash("a,b\n1,2\n"));
+        assert_ne!(hash("a,b\n1,2\n"), hash("a,b\n1,3\n"));
+        // The published test vector of FNV-1a 64 for "a".
+        assert_eq!((FNV_START ^ 0x61).wrapping_mul(FNV_PRIME), 0xaf63_dc4c_8601_ec8c);
+    }
+
+    #[test]
+    fn default_columns_are_those_that_exist() {
+        let set = read(&["fz_n,fx_n,tip_fx_n,tip_fy_n,tip_fz_n\n1,2,3,4,5\n"], "", "").unwrap();
+        assert_eq!(set.inputs, ["fx_n", "fz_n"]);
+        assert_eq!(set.outputs, DEFAULT_OUTPUTS);
+        assert_eq!(set.input(0), [2.0, 1.0]);
+    }
+
+    #[test]
+    fn every_bad_input_names_its_place() {
+        let message = |text: &str, inputs: &str, outputs: &str| read(&[text], inputs, outputs).unwrap_err().to_string();
+        assert!(message("a,b\n1,2\n", "", "").contains("no column \"fx_n\"; its columns are a, b"));
+        assert!(message("a,b\n1,2\n1,nan\n", "a", "b").contains("line 3, column \"b\""));
+        assert!(message("a,b\n1e300,2\n", "a", "b").contains("line 2, column \"a\""));
+        assert!(message("a,b\n1\n", "a", "b").contains("line"));
+        assert!(message("a,b\n1,2\n", "a", "a").contains("twice"));
+        assert!(message("a,b\n", "a", "b").contains("0 rows"));
+        assert!(message("", "a", "b").contains("no column"));
+        let absent = DataSet::read(&[PathBuf::from("/nowhere/d.csv")], &Selection::default()).unwrap_err();
+        assert!(absent.to_string().contains("/nowhere/d.csv"));
+    }
+}

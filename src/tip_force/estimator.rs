@@ -1,0 +1,75 @@
+//! One answer per row of inputs, with its doubt. Allocates nothing after construction; f32 inside.
+
+use super::{MAX_OUTPUTS, Model};
+
+/// What a model says of one row.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Estimate {
+    /// The outputs in their own units, in the model's order; beyond its outputs zeros.
+    pub output: [f32; MAX_OUTPUTS],
+    /// Largest disagreement of a member with the mean, per output, in the output's unit.
+    pub spread: [f32; MAX_OUTPUTS],
+    /// How far from the training data: 1 is the limit; endless for inputs that are not finite.
+    pub doubt: f32,
+    /// The answer is not to be believed.
+    pub in_doubt: bool,
+}
+
+/// A model ready to answer.
+#[derive(Clone, Debug)]
+pub struct Estimator {
+    model: Model,
+    features: Vec<f32>,
+    scratch: Vec<f32>,
+}
+
+impl Estimator {
+    /// Makes a model ready; allocates all it will ever need.
+    pub fn new(model: Model) -> Self {
+        let (features, scratch) = (vec![0.0; model.expansion.width()], vec![0.0; model.doubt.width]);
+        Self { model, features, scratch }
+    }
+
+    /// The model.
+    pub const fn model(&self) -> &Model {
+        &self.model
+    }
+
+    /// Answers one row of inputs, in the order of [`Model::inputs`]. A wrong number of inputs, or one that is not finite,
+    /// gives zeros in doubt.
+    pub fn estimate(&mut self, inputs: &[f32]) -> Estimate {
+        let refused = Estimate { doubt: f32::INFINITY, in_doubt: true, ..Estimate::default() };
+        let Self { model, features, scratch } = self;
+        if inputs.len() != model.inputs.len() || !inputs.iter().all(|x| x.is_finite()) {
+            return refused;
+        }
+        model.expansion.expand(inputs, features);
+        // Ranges are judged before a constant feature is made neutral.
+        let moved = moved(features, &model.features.mean, &model.features.inverse_sd);
+        model.features.apply(features);
+        if !features.iter().all(|x| x.is_finite()) {
+            return refused;
+        }
+        let answer = model.network.answer(features);
+        let outputs = model.outputs.len();
+        let score = model.doubt.score(features, &answer.spread[..outputs], scratch).max(moved);
+        let mut output = answer.mean;
+        model.scale.undo(&mut output[..outputs]);
+        output[outputs..].fill(0.0);
+        if !output.iter().all(|y| y.is_finite()) {
+            return refused;
+        }
+        let mut spread = [0.0; MAX_OUTPUTS];
+        for k in 0..outputs {
+            spread[k] = answer.spread[k] / model.scale.inverse_sd[k];
+        }
+        Estimate { output, spread, doubt: score, in_doubt: score > 1.0 }
+    }
+}
+
+/// Endless where a feature that was constant in training is anything else, beyond rounding; else zero.
+fn moved(features: &[f32], mean: &[f32], inverse_sd: &[f32]) -> f32 {
+    let differs =
+        |((x, mean), inverse): ((&f32, &f32), &f32)| *inverse == 0.0 && (x - mean).abs() > 1e-3 * mean.abs() + 1e-5;
+    if features.iter().zip(mean).zip(inverse_sd).any(differs) { f32::INFINITY } else { 0.0 }
+}

@@ -1,0 +1,175 @@
+//! `nima evaluate`: models on data they were not trained on.
+
+use std::{
+    fmt::Write as _,
+    fs,
+    path::{Path, PathBuf},
+};
+
+use anyhow::Context as _;
+use clap::{Args, Subcommand};
+use nima::{
+    recording::write_atomically,
+    study::picture::{Axis, Chart, Series, Style, svg},
+    tip_force::{DataSet, Estimator, Evaluation, Model, Part, evaluate},
+};
+
+use super::output;
+
+#[derive(Debug, Subcommand)]
+pub(super) enum EvaluateCommand {
+    /// Judge a tip-force model beside simpler methods fitted on its training data
+    TipForce(TipForce),
+}
+
+#[derive(Debug, Args)]
+pub(super) struct TipForce {
+    /// The model, as `nima train tip-force` wrote it
+    model: PathBuf,
+    /// CSV files with the model's columns, not those it was trained on
+    #[arg(required = true, value_name = "DATA.csv")]
+    data: Vec<PathBuf>,
+    /// Write predictions.csv, regression.svg and, where `contact` is a column, no-contact.svg into this folder
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Print the figures as one JSON object
+    #[arg(long)]
+    json: bool,
+}
+
+/// Points of a regression plot; more are thinned evenly.
+const POINTS: usize = 1500;
+/// Bars of the histogram.
+const BARS: usize = 40;
+
+pub(super) fn run(command: &EvaluateCommand) -> anyhow::Result<()> {
+    let EvaluateCommand::TipForce(arguments) = command;
+    let mut estimator = Estimator::new(Model::load(&arguments.model)?);
+    let data = DataSet::read(&arguments.data, &estimator.selection())?;
+    if let Some(out) = &arguments.out {
+        fs::create_dir_all(out).with_context(|| format!("cannot make the folder {}", out.display()))?;
+    }
+    let figures = evaluate(&mut estimator, &data)?;
+    if let Some(out) = &arguments.out {
+        write(out, "predictions.csv", &predictions(&figures, &data))?;
+        write(out, "regression.svg", &regression(&figures, &data))?;
+        if let Some(contact) = &data.contact {
+            write(out, "no-contact.svg", &histogram(&figures, contact))?;
+        }
+    }
+    if arguments.json { output::json(&figures) } else { output::line(in_words(&figures).trim_end()) }
+}
+
+fn write(folder: &Path, name: &str, text: &str) -> anyhow::Result<()> {
+    let path = folder.join(name);
+    write_atomically(&path, |file| file.write_all(text.as_bytes()))
+        .with_context(|| format!("cannot write {}", path.display()))
+}
+
+/// Writing into a String cannot fail, here and below.
+fn predictions(figures: &Evaluation, data: &DataSet) -> String {
+    let outputs = figures.outputs.len();
+    let mut text = String::from("file,row,in_doubt");
+    figures.outputs.iter().for_each(|name| write!(text, ",{name},{name}_predicted").unwrap_or_default());
+    text.push('\n');
+    for trajectory in &data.trajectories {
+        for row in trajectory.rows.clone() {
+            let doubt = u8::from(figures.in_doubt[row]);
+            write!(text, "{},{row},{doubt}", data.files[trajectory.file].display()).ok();
+            for k in 0..outputs {
+                write!(text, ",{:e},{:e}", data.output(row)[k], figures.predictions[row * outputs + k]).ok();
+            }
+            text.push('\n');
+        }
+    }
+    text
+}
+
+fn regression(figures: &Evaluation, data: &DataSet) -> String {
+    let outputs = figures.outputs.len();
+    let step = data.rows().div_ceil(POINTS).max(1);
+    let chart = |k: usize| {
+        let points: Vec<[f64; 2]> = (0..data.rows())
+            .step_by(step)
+            .map(|row| [data.output(row)[k], figures.predictions[row * outputs + k]].map(f64::from))
+            .collect();
+        let (low, high) =
+            points.iter().flatten().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(*v), h.max(*v)));
+        let room = 0.05 * (high - low).max(1e-9);
+        let (low, high) = (low - room, high + room);
+        Chart {
+            title: figures.outputs[k].clone(),
+            x: Axis::linear("measured", low, high),
+            y: Axis::linear("predicted", low, high),
+            series: vec![
+                Series { name: "held-out rows".into(), colour: 4, style: Style::Points, points },
+                Series {
+                    name: "exact".into(),
+                    colour: 6,
+                    style: Style::Dashed,
+                    points: vec![[low, low], [high, high]],
+                },
+            ],
+        }
+    };
+    svg(&(0..outputs).map(chart).collect::<Vec<_>>())
+}
+
+fn histogram(figures: &Evaluation, contact: &[bool]) -> String {
+    let outputs = figures.outputs.len();
+    let chart = |k: usize| {
+        let values: Vec<f64> = (0..contact.len())
+            .filter(|row| !contact[*row])
+            .map(|row| f64::from(figures.predictions[row * outputs + k]))
+            .collect();
+        let reach = values.iter().fold(1e-9_f64, |most, value| most.max(value.abs())) * 1.05;
+        let mut bars = vec![0.0_f64; BARS];
+        for value in &values {
+            let bar = ((value / reach + 1.0) * 0.5 * BARS as f64) as usize;
+            bars[bar.min(BARS - 1)] += 1.0 / values.len() as f64;
+        }
+        let edge = |bar: usize| (2.0 * bar as f64 / BARS as f64 - 1.0) * reach;
+        let steps = |(bar, share): (usize, &f64)| [[edge(bar), *share], [edge(bar + 1), *share]];
+        let points: Vec<[f64; 2]> = bars.iter().enumerate().flat_map(steps).collect();
+        let top = bars.iter().copied().fold(1e-3, f64::max) * 1.1;
+        Chart {
+            title: format!("{} without contact", figures.outputs[k]),
+            x: Axis::linear("predicted", -reach, reach),
+            y: Axis::linear("share of rows", 0.0, top),
+            series: vec![Series { name: String::new(), colour: 4, style: Style::Line, points }],
+        }
+    };
+    svg(&(0..outputs).map(chart).collect::<Vec<_>>())
+}
+
+fn in_words(figures: &Evaluation) -> String {
+    let mut text = String::new();
+    if figures.trained_on_these {
+        text.push_str("THE MODEL WAS TRAINED ON THESE FILES: these figures say nothing about new data\n");
+    }
+    for part in figures.files.iter().chain([&figures.overall]) {
+        part_in_words(part, &figures.outputs, &mut text);
+    }
+    let time = &figures.inference_us;
+    writeln!(text, "one answer: p50 {:.1} us, p99 {:.1} us, max {:.1} us", time.p50, time.p99, time.max).ok();
+    text.push_str("(units of the columns; baselines are fitted on the model's training data)");
+    text
+}
+
+fn part_in_words(part: &Part, outputs: &[String], text: &mut String) {
+    writeln!(text, "{}: {:.1} % in doubt", part.name, 100.0 * part.doubt_share).ok();
+    for method in &part.methods {
+        for (name, stats) in outputs.iter().zip(&method.outputs) {
+            let Some(s) = stats else { continue };
+            writeln!(
+                text,
+                "  {:<9} {name:<16} mae {:<9.5} sd {:<9.5} 95 % within {:<9.5} r2 {:<8.4} n {}",
+                method.method, s.mae, s.sd, s.band95, s.r2, s.n
+            )
+            .ok();
+        }
+    }
+    for (name, free) in outputs.iter().zip(&part.no_contact) {
+        writeln!(text, "  no contact {name:<16} mean {:.5} sd {:.5} n {}", free.mean, free.sd, free.n).ok();
+    }
+}

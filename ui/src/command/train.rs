@@ -1,0 +1,141 @@
+//! `nima train`: models from data.
+
+use std::{
+    fmt::Write as _,
+    io::{self, IsTerminal as _},
+    path::PathBuf,
+    sync::{
+        Arc,
+        atomic::{AtomicBool, Ordering},
+    },
+};
+
+use anyhow::{Context as _, bail};
+use clap::{Args, Subcommand};
+use indicatif::{ProgressBar, ProgressStyle};
+use nima::tip_force::{DataSet, Model, Progress, Selection, Settings};
+use serde::Serialize;
+
+use super::output;
+
+#[derive(Debug, Subcommand)]
+pub(super) enum TrainCommand {
+    /// Train the network that takes the trocar's friction out of the wrist force
+    TipForce(TipForce),
+}
+
+#[derive(Debug, Args)]
+pub(super) struct TipForce {
+    /// CSV files with named columns (see --inputs); rows of one `trajectory` number, else of one file, belong together
+    #[arg(required = true, value_name = "DATA.csv")]
+    data: Vec<PathBuf>,
+    /// Where to write the model
+    #[arg(long, value_name = "MODEL.safetensors")]
+    out: PathBuf,
+    /// Input columns [default: of `fx_n,fy_n,fz_n,tx_nm,ty_nm,tz_nm,qw,qx,qy,qz,insertion_m,insertion_speed_m_s,presliding_m` what is there]
+    #[arg(long, value_name = "A,B,C", value_delimiter = ',')]
+    inputs: Option<Vec<String>>,
+    /// Output columns [default: `tip_fx_n,tip_fy_n,tip_fz_n`]
+    #[arg(long, value_name = "D,E", value_delimiter = ',')]
+    outputs: Option<Vec<String>>,
+    /// Seed: the same data, settings and seed give the same model
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    seed: u64,
+    /// Networks in the ensemble
+    #[arg(long, value_name = "N", default_value_t = 4)]
+    members: usize,
+    /// Widths of the hidden layers
+    #[arg(long, value_name = "W,W", value_delimiter = ',', default_value = "32,32")]
+    hidden: Vec<usize>,
+    /// Most passes over the data [default: about 5000 steps]
+    #[arg(long, value_name = "N")]
+    epochs: Option<usize>,
+    /// Serial number of the sensor, kept in the file
+    #[arg(long, value_name = "S")]
+    sensor: Option<String>,
+    /// Name of the tool, kept in the file
+    #[arg(long, value_name = "T")]
+    tool: Option<String>,
+    /// Print the figures as one JSON object
+    #[arg(long)]
+    json: bool,
+}
+
+#[derive(Serialize)]
+struct Report<'a> {
+    model: String,
+    inputs: &'a [String],
+    outputs: &'a [String],
+    seconds: f64,
+    origin: &'a nima::tip_force::Origin,
+}
+
+pub(super) fn run(command: &TrainCommand) -> anyhow::Result<()> {
+    let TrainCommand::TipForce(arguments) = command;
+    let selection = Selection { inputs: arguments.inputs.clone(), outputs: arguments.outputs.clone() };
+    let same = |path: &PathBuf| matches!((path.canonicalize(), arguments.out.canonicalize()), (Ok(a), Ok(b)) if a == b);
+    if arguments.data.iter().any(same) {
+        bail!("--out {} is one of the data files; choose another file", arguments.out.display());
+    }
+    let data = DataSet::read(&arguments.data, &selection)?;
+    let settings = Settings {
+        seed: arguments.seed,
+        members: arguments.members,
+        hidden: arguments.hidden.clone(),
+        epochs: arguments.epochs,
+        ..Settings::default()
+    };
+    let cancel = Arc::new(AtomicBool::new(false));
+    let flag = Arc::clone(&cancel);
+    ctrlc::set_handler(move || flag.store(true, Ordering::Relaxed)).context("Ctrl-C cannot be caught")?;
+    let bar = bar(arguments.json);
+    let start = std::time::Instant::now();
+    let names = [arguments.sensor.clone(), arguments.tool.clone()];
+    let model = Model::train(&data, &settings, names, &cancel, &|progress| show(&bar, progress));
+    bar.finish_and_clear();
+    let model = model?;
+    model.save(&arguments.out)?;
+    let seconds = start.elapsed().as_secs_f64();
+    if arguments.json {
+        let Model { inputs, outputs, origin, .. } = &model;
+        return output::json(&Report { model: arguments.out.display().to_string(), inputs, outputs, seconds, origin });
+    }
+    output::line(&in_words(&model, arguments, seconds))
+}
+
+fn bar(hidden: bool) -> ProgressBar {
+    if hidden || !io::stderr().is_terminal() {
+        return ProgressBar::hidden();
+    }
+    let style = ProgressStyle::with_template("{elapsed} {wide_bar} {pos}/{len} epochs  {msg}");
+    ProgressBar::new(1).with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()))
+}
+
+/// A member that stops early jumps to its end.
+fn show(bar: &ProgressBar, progress: &Progress) {
+    bar.set_length((progress.epochs_max * progress.members) as u64);
+    bar.inc(if progress.finished { (progress.epochs_max - progress.epoch + 1) as u64 } else { 1 });
+    bar.set_message(format!("network {}: held-out loss {:.4}", progress.member + 1, progress.best));
+}
+
+/// Writing into a String cannot fail.
+fn in_words(model: &Model, arguments: &TipForce, seconds: f64) -> String {
+    let origin = &model.origin;
+    let losses: Vec<String> = origin.figures.iter().map(|f| format!("{:.4}", f.validation_loss)).collect();
+    let mut text = format!(
+        "{} rows, {} inputs, {} outputs; {} networks in {seconds:.1} s\n\
+         held-out mean square error, in variances of the outputs: {}\n",
+        origin.rows,
+        model.inputs.len(),
+        model.outputs.len(),
+        origin.figures.len(),
+        losses.join("  ")
+    );
+    if !origin.constant.is_empty() {
+        let list = origin.constant.join(", ");
+        writeln!(text, "never changing and therefore unused (any other value will be in doubt): {list}").ok();
+    }
+    let out = arguments.out.display();
+    write!(text, "written to {out}; judge it on other data with `nima evaluate tip-force`").ok();
+    text
+}

@@ -64,8 +64,8 @@ impl InForce {
     pub fn save(&mut self, saving: Saving) -> Result<String, String> {
         let store = self.store.as_ref().ok_or("no folder for calibrations is known; set NIMA_DATA_DIR")?;
         let path = match saving {
-            Saving::Gravity(record) => kept(store, record, &mut self.gravity)?,
-            Saving::Correspondence(record) => kept(store, record, &mut self.correspondence)?,
+            Saving::Gravity(record) => kept(store, *record, &mut self.gravity)?,
+            Saving::Correspondence(record) => kept(store, *record, &mut self.correspondence)?,
         };
         self.told = None;
         Ok(format!("Saved and in force: {}.", path.display()))

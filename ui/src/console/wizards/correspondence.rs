@@ -44,10 +44,9 @@ const CHECK: usize = 0;
 const PUSHES: usize = 1;
 const RESULT: usize = 2;
 
-/// What came with the last tick.
+/// What came with the wrist's sample in the last tick.
 #[derive(Clone, Copy, Debug, Default)]
 struct Sources {
-    wrist: bool,
     gravity: bool,
     tissue: bool,
     chain: bool,
@@ -58,7 +57,8 @@ struct Sources {
 pub struct CorrespondenceWizard {
     session: CorrespondenceSession,
     step: usize,
-    sources: Sources,
+    /// `None` while the wrist sensor is silent.
+    sources: Option<Sources>,
     /// The loop's clock begins anew with every start of it; the session's goes on.
     clock_s: (f64, f64),
     report: Option<Result<CorrespondenceReport, String>>,
@@ -72,7 +72,7 @@ impl Default for CorrespondenceWizard {
         Self {
             session: CorrespondenceSession::new(SessionSettings::default()),
             step: CHECK,
-            sources: Sources::default(),
+            sources: None,
             clock_s: (0.0, 0.0),
             report: None,
             name: String::new(),
@@ -86,16 +86,15 @@ impl CorrespondenceWizard {
     /// Takes in one tick of the loop. Pushes are kept in their own step only.
     pub fn tick(&mut self, tick: &Tick) {
         let Some(sample) = &tick.wrist else {
-            self.sources = Sources::default();
+            self.sources = None;
             return;
         };
         let mut f1_n = tick.force.gravity_free.map(|wrench| wrench.force_n);
-        self.sources = Sources {
-            wrist: true,
+        self.sources = Some(Sources {
             gravity: f1_n.is_some(),
             tissue: sample.tissue_n.is_some(),
             chain: sample.s1_from_c().is_some(),
-        };
+        });
         let (begin_s, last_s) = self.clock_s;
         let mut now_s = begin_s + tick.t_s;
         if now_s < last_s {
@@ -151,10 +150,9 @@ impl CorrespondenceWizard {
 
     /// All sources are there, and both sensors have rested.
     fn may_push(&self) -> Result<(), &'static str> {
-        let Sources { wrist, gravity, .. } = self.sources;
+        let Some(sources) = self.sources else { return Err("The wrist sensor is silent: connect it.") };
         match self.session.phase() {
-            _ if !wrist => Err("The wrist sensor is silent: connect it."),
-            _ if !gravity => Err("Gravity is not in force: calibrate it first."),
+            _ if !sources.gravity => Err("Gravity is not in force: calibrate it first."),
             Phase::Missing(_) => Err("A check is not met yet."),
             Phase::Resting { .. } => Err("Both sensors must rest without contact first."),
             _ => Ok(()),
@@ -198,8 +196,8 @@ impl CorrespondenceWizard {
                 "Lay the tissue on its sensor, without the body wall. Nothing may touch the tool or the tissue yet.",
             );
             ui.add_space(6.0);
-            let Sources { wrist, gravity, tissue, chain } = self.sources;
-            check_line(ui, "Force at the wrist", wrist && gravity, Missing::WristForce.words());
+            let Sources { gravity, tissue, chain } = self.sources.unwrap_or_default();
+            check_line(ui, "Force at the wrist", gravity, Missing::WristForce.words());
             check_line(ui, "Force under the tissue", tissue, Missing::TissueForce.words());
             check_line(ui, "Arm and tracker", chain, Missing::Chain.words());
             let (_, words) = phase_words(&self.session.phase());
@@ -216,7 +214,7 @@ impl CorrespondenceWizard {
             "Push the tissue, hold half a second, let go. The push is taken when it ends.",
             |ui| {
                 ui.label(RichText::new(sentence(wanted.name)).font(theme::strong(19.0)));
-                let (share, words) = if self.sources.wrist {
+                let (share, words) = if self.sources.is_some() {
                     phase_words(&self.session.phase())
                 } else {
                     (0.0, "the wrist sensor is silent; connect it".to_owned())

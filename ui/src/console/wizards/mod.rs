@@ -96,9 +96,9 @@ impl Which {
 #[derive(Clone, Debug)]
 pub enum Saving {
     /// A gravity calibration.
-    Gravity(GravityRecord),
+    Gravity(Box<GravityRecord>),
     /// A correspondence.
-    Correspondence(CorrespondenceRecord),
+    Correspondence(Box<CorrespondenceRecord>),
 }
 
 /// All wizards; each keeps what it has until it is started over.
@@ -149,9 +149,9 @@ impl Wizards {
                 let record = self.gravity.ui(ui, binding)?;
                 // Pushes are free of gravity by the calibration before this one: both do not mix.
                 self.correspondence = CorrespondenceWizard::default();
-                Some(Saving::Gravity(record))
+                Some(Saving::Gravity(Box::new(record)))
             }
-            Which::Correspondence => self.correspondence.ui(ui, binding).map(Saving::Correspondence),
+            Which::Correspondence => self.correspondence.ui(ui, binding).map(Box::new).map(Saving::Correspondence),
         }
     }
 }

@@ -1,10 +1,11 @@
 //! Calibrations taken from the simulated experiments, sample by sample, as a technician would take them.
 #![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
 
-use nalgebra::Vector3;
+use nalgebra::{UnitVector3, Vector3};
 use nima::{
     calibration::{
         Verdict,
+        correspondence::{self, CorrespondenceReport, CorrespondenceSession},
         gravity::{
             CheckPass, Compensator, DEFAULT_TIME_CONSTANT_S, Drift, DriftCheck, GravityModel, GravitySession, Phase,
             SessionSettings, StillSettings, TARGETS,
@@ -12,7 +13,7 @@ use nima::{
     },
     config::{Flaw, Scene},
     device::{Outputs, Prompt, Rig as _, Sensed},
-    frames::WristSample,
+    frames::{WristSample, from_roll_pitch_yaw_deg},
     sim::World,
 };
 
@@ -139,4 +140,65 @@ fn a_drifted_sensor_is_noticed_at_the_start() {
     assert!(matches!(drift(&scene), Drift::Ok { .. }), "{:?}", drift(&scene));
     scene.wrist.as_mut().unwrap().force_bias_n.x += 0.4;
     assert!(matches!(drift(&scene), Drift::Drifted { by_n } if by_n > 0.3));
+}
+
+/// Pushes as the session asks for, until `pushes` are kept or `seconds` are over; gravity as calibrated on its own scene.
+fn push(flaw: Option<Flaw>, pushes: usize, seconds: f64) -> CorrespondenceSession {
+    let gravity = model_of(&calibrate(&Scene::load("gravity").unwrap()).1);
+    let mut scene = Scene::load("correspondence").unwrap();
+    scene.person.as_mut().unwrap().flaw = flaw;
+    let mut bench = Bench::new(&scene);
+    let mut session = CorrespondenceSession::new(correspondence::SessionSettings::default());
+    let mut prompt = Prompt::Rest;
+    for _ in 0..(seconds * 1e3) as u32 {
+        let sample = bench.sample(prompt);
+        let f1_n = gravity.gravity_free(&sample).map(|wrench| wrench.force_n);
+        let phase = session.step(f1_n, &sample, bench.t_s);
+        if session.pushes() == pushes {
+            break;
+        }
+        if !matches!(phase, correspondence::Phase::Resting { .. } | correspondence::Phase::Missing(_)) {
+            let all = correspondence::TARGETS;
+            let target = session.target().unwrap_or(all[session.pushes() % all.len()]);
+            prompt = Prompt::Push { direction: UnitVector3::new_normalize(target.push_in_kbf) };
+        }
+    }
+    session
+}
+
+fn pushed(flaw: Flaw) -> CorrespondenceReport {
+    let session = push(Some(flaw), 18, 60.0);
+    assert_eq!(session.pushes(), 18, "{:?}", session.phase());
+    session.report().unwrap()
+}
+
+#[test]
+fn a_person_who_pushes_as_asked_finds_the_rotation_of_the_sensor_under_the_tissue() {
+    let session = push(None, 9, 40.0);
+    assert!(session.target().is_none(), "nine pushes as asked for meet all directions: {:?}", session.target());
+    let report = session.report().unwrap();
+    assert_eq!(report.verdict, Verdict::Accepted, "{}", report.reason);
+    let sensor = Scene::load("correspondence").unwrap().tissue_sensor.unwrap();
+    let c_from_s2 =
+        from_roll_pitch_yaw_deg(&sensor.kbf_from_c_deg).inverse() * from_roll_pitch_yaw_deg(&sensor.kbf_from_s2_deg);
+    let solution = report.solution.unwrap();
+    let off_deg = solution.rotation().angle_to(&c_from_s2).to_degrees();
+    println!("{off_deg:.3} deg off, told {:.3} deg; {:?}", solution.uncertainty_deg, solution.agreement);
+    assert!(off_deg < 0.5, "{off_deg} degrees off, told {}", solution.uncertainty_deg);
+}
+
+#[test]
+fn pushes_along_a_line_or_in_a_plane_are_called_so() {
+    for (flaw, words) in [(Flaw::PushesOneLine, "one line"), (Flaw::PushesOnePlane, "one plane")] {
+        let report = pushed(flaw);
+        assert_eq!(report.verdict, Verdict::InsufficientMotion, "{flaw:?}: {}", report.reason);
+        assert!(report.reason.contains(words), "{flaw:?}: {}", report.reason);
+    }
+}
+
+#[test]
+fn somebody_who_leans_on_the_stand_is_not_accepted() {
+    let report = pushed(Flaw::LeansOnTheStand);
+    assert_ne!(report.verdict, Verdict::Accepted, "{}", report.reason);
+    assert!(report.reason.contains("contradict") || report.reason.contains("missed by"), "{}", report.reason);
 }

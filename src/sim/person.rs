@@ -184,16 +184,25 @@ impl Person {
             if self.flaw == Some(Flaw::PushesOnePlane) {
                 miss.y *= 0.1;
             }
-            let asked = if asked.norm() < 0.1 { -Vector3::z() } else { asked.normalize() };
+            // Asked to push out of the plane, it pushes somewhere within it.
+            let asked = if asked.norm() < 0.1 { self.somewhere_down() } else { asked.normalize() };
             self.push = -(asked + miss).normalize() * self.between(PUSH_N);
             if self.flaw == Some(Flaw::LeansOnTheStand) {
-                self.stand = Vector3::from_fn(|_, _| 1.2 * self.noise.gaussian());
+                // Every other push or so; those between are good.
+                let leans_n = if self.noise.uniform() < 0.5 { 1.2 } else { 0.0 };
+                self.stand = Vector3::from_fn(|_, _| leans_n * self.noise.gaussian());
             }
             // Each push with the tool held a little differently.
             let tilt = Vector3::from_fn(|_, _| 0.25 * self.noise.gaussian());
             self.turn_to(along_shaft(&-Vector3::z()) * UnitQuaternion::from_scaled_axis(tilt));
         }
         self.turn(dt_s);
+    }
+
+    /// A direction of the lower half of the plane of x and z.
+    fn somewhere_down(&mut self) -> Vector3<f64> {
+        let angle = self.between([0.0, std::f64::consts::PI]);
+        Vector3::new(angle.cos(), 0.0, -angle.sin())
     }
 
     fn between(&mut self, [from, to]: [f64; 2]) -> f64 {

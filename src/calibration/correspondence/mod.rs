@@ -31,7 +31,7 @@ pub use excitation::Excitation;
 pub use fit::fit;
 pub use record::{CorrespondenceKind, CorrespondenceRecord};
 pub use report::{Agreement, CorrespondenceReport, Solution, Target};
-pub use session::{CorrespondenceSession, Missing, Phase, PushTarget, Refusal, SessionSettings};
+pub use session::{CorrespondenceSession, Missing, Phase, PushTarget, Refusal, SessionSettings, TARGETS};
 
 /// What both sensors felt in one push.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -144,7 +144,7 @@ const fn target(name: &'static str, x: f64, y: f64, z: f64) -> PushTarget {
 }
 
 /// What is asked for, in this order: what a tool can do to tissue that lies under it.
-const TARGETS: [PushTarget; 9] = [
+pub const TARGETS: [PushTarget; 9] = [
     target("down", 0.0, 0.0, -1.0),
     target("left", 0.0, 1.0, 0.0),
     target("right", 0.0, -1.0, 0.0),
@@ -295,6 +295,16 @@ impl CorrespondenceSession {
     /// Directions in all.
     pub const fn targets(&self) -> usize {
         TARGETS.len()
+    }
+
+    /// Which ways the kept pushes went: unit vectors (`kbf`); those taken without the arm's kinematics are left out.
+    pub fn taken_in_kbf(&self) -> Vec<Vector3<f64>> {
+        self.pushes.iter().filter_map(|push| push.towards_in_kbf).collect()
+    }
+
+    /// How many pushes are kept.
+    pub const fn pushes(&self) -> usize {
+        self.pushes.len()
     }
 
     /// The pushes kept so far.

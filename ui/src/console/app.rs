@@ -133,6 +133,7 @@ impl ConsoleApp {
         }
         // The old loop first: a rig has one master.
         drop(self.handle.take());
+        // Another scene may have another sensor or tool.
         self.in_force.bind(&scene);
         let calibrations = self.in_force.calibrations();
         let plan = Plan { rig: rig.clone(), scene: scene.clone(), calibrations, engage: false };
@@ -157,7 +158,7 @@ impl ConsoleApp {
 
     /// Opens a wizard: a simulated rig goes over to its experiment, where somebody guides the arm.
     fn open_wizard(&mut self, which: Which) {
-        let opened = if self.live.scene.person.is_some() && self.wizards.open.is_none() {
+        let opened = if which.suits(&self.live.scene) && self.wizards.open.is_none() {
             Ok(())
         } else {
             Scene::load(which.scene()).map_err(|error| error.to_string()).and_then(|scene| self.restart_in(scene))

@@ -1,11 +1,15 @@
 //! The calibrations in force for the scene's sensor and tool, as the screen tells them and as the loop gets them.
 
-use std::{path::Path, time::SystemTime};
+use std::{
+    path::{Path, PathBuf},
+    time::SystemTime,
+};
 
 use nima::{
     calibration::{
+        correspondence::CorrespondenceRecord,
         gravity::GravityRecord,
-        store::{Age, Loaded, Record, Store, utc_now},
+        store::{Age, Loaded, Record, Store, StoreError, utc_now},
     },
     config::Scene,
     teleop::Calibrations,
@@ -20,6 +24,7 @@ pub struct InForce {
     /// The sensor and tool that the calibrations are for; none where the force is measured at the tip.
     bound: Option<(String, String)>,
     gravity: Option<Loaded<GravityRecord>>,
+    correspondence: Option<Loaded<CorrespondenceRecord>>,
     told: Option<String>,
 }
 
@@ -36,16 +41,12 @@ impl InForce {
     pub fn bind(&mut self, scene: &Scene) {
         self.bound = scene.wrist.as_ref().map(|wrist| (wrist.serial.clone(), wrist.tool.clone()));
         let (Some(store), Some((sensor, tool))) = (&self.store, &self.bound) else {
-            self.gravity = None;
+            (self.gravity, self.correspondence) = (None, None);
             return;
         };
-        match store.load(sensor, tool, SystemTime::now()) {
-            Ok(loaded) => self.gravity = loaded,
-            Err(error) => {
-                self.gravity = None;
-                self.told = Some(format!("Gravity is not in force: {error}"));
-            }
-        }
+        let now = SystemTime::now();
+        self.gravity = usable("Gravity", store.load(sensor, tool, now), &mut self.told);
+        self.correspondence = usable("Correspondence", store.load(sensor, tool, now), &mut self.told);
     }
 
     /// For the loop.
@@ -62,12 +63,12 @@ impl InForce {
     /// Keeps a record and takes it into force; words for the screen.
     pub fn save(&mut self, saving: Saving) -> Result<String, String> {
         let store = self.store.as_ref().ok_or("no folder for calibrations is known; set NIMA_DATA_DIR")?;
-        let Saving::Gravity(record) = saving;
-        let path = store.save(&record).map_err(|error| in_one_line(&error))?;
-        let words = format!("Saved and in force: {}.", path.display());
-        self.gravity = Some(Loaded { record, age: Age::Fresh, path });
+        let path = match saving {
+            Saving::Gravity(record) => kept(store, *record, &mut self.gravity)?,
+            Saving::Correspondence(record) => kept(store, *record, &mut self.correspondence)?,
+        };
         self.told = None;
-        Ok(words)
+        Ok(format!("Saved and in force: {}.", path.display()))
     }
 
     /// Something that went wrong, for the card.
@@ -86,21 +87,60 @@ impl InForce {
             return vec!["This scene measures at the tip; a wrist sensor needs calibrations.".to_owned()];
         };
         let gravity = self.gravity.as_ref().map_or_else(|| "Gravity: none".to_owned(), line_of_gravity);
-        vec![format!("Sensor {sensor}, {tool}"), gravity]
+        let correspondence =
+            self.correspondence.as_ref().map_or_else(|| "Correspondence: none".to_owned(), line_of_correspondence);
+        vec![format!("Sensor {sensor}, {tool}"), gravity, correspondence]
     }
+}
+
+/// What was loaded; a file that cannot be used is told.
+fn usable<R>(
+    what: &str,
+    loaded: Result<Option<Loaded<R>>, StoreError>,
+    told: &mut Option<String>,
+) -> Option<Loaded<R>> {
+    loaded.unwrap_or_else(|error| {
+        *told = Some(format!("{what} is not in force: {}", in_one_line(&error)));
+        None
+    })
+}
+
+/// Saves and takes into force; gives the path.
+fn kept<R: Record>(store: &Store, record: R, in_force: &mut Option<Loaded<R>>) -> Result<PathBuf, String> {
+    let path = store.save(&record).map_err(|error| in_one_line(&error))?;
+    *in_force = Some(Loaded { record, age: Age::Fresh, path: path.clone() });
+    Ok(path)
 }
 
 fn line_of_gravity(loaded: &Loaded<GravityRecord>) -> String {
     let GravityRecord { residuals, poses, override_by, .. } = &loaded.record;
-    let day = loaded.record.date().split('T').next().unwrap_or_default();
-    let age = match loaded.age {
+    let (day, remarks) = (day(&loaded.record), remarks(loaded.age, override_by.as_deref()));
+    let error_n = residuals.held_out.mean_mae();
+    format!("Gravity: {day}, {poses} poses, held-out error {error_n:.3} N{remarks}")
+}
+
+fn line_of_correspondence(loaded: &Loaded<CorrespondenceRecord>) -> String {
+    let CorrespondenceRecord { agreement, pairs, uncertainty_deg, override_by, .. } = &loaded.record;
+    let (day, remarks) = (day(&loaded.record), remarks(loaded.age, override_by.as_deref()));
+    let error_n = agreement.residuals.held_out.mean_mae();
+    format!(
+        "Correspondence: {day}, {pairs} pushes, held-out error {error_n:.3} N, known to {uncertainty_deg:.2} deg{remarks}"
+    )
+}
+
+fn day(record: &impl Record) -> &str {
+    record.date().split('T').next().unwrap_or_default()
+}
+
+/// What to know of a record before it is trusted; empty when there is nothing.
+fn remarks(age: Age, override_by: Option<&str>) -> String {
+    let age = match age {
         Age::Fresh => String::new(),
         Age::Old { days } => format!("; {days} days old, repeat it"),
         Age::Future => "; made in the future, check the clock".to_owned(),
     };
-    let overridden = override_by.as_ref().map_or_else(String::new, |name| format!("; NOT PROVEN, kept by {name}"));
-    let error_n = residuals.held_out.mean_mae();
-    format!("Gravity: {day}, {poses} poses, held-out error {error_n:.3} N{age}{overridden}")
+    let overridden = override_by.map_or_else(String::new, |name| format!("; NOT PROVEN, kept by {name}"));
+    age + &overridden
 }
 
 fn in_one_line(error: &dyn std::error::Error) -> String {

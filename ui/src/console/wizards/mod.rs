@@ -3,12 +3,19 @@
 //! A wizard sees every tick, asks the person at the arm for something ([`Prompt`]) and hands out a record when it shall be
 //! saved. It never changes the loop: saving restarts it, idle, with the new calibration.
 
+mod correspondence;
 mod gravity;
 mod pictures;
 
 use egui::{Button, RichText, Ui, vec2};
-use nima::{calibration::gravity::GravityRecord, device::Prompt, runtime::Tick};
+use nima::{
+    calibration::{correspondence::CorrespondenceRecord, gravity::GravityRecord},
+    config::Scene,
+    device::Prompt,
+    runtime::Tick,
+};
 
+pub use correspondence::CorrespondenceWizard;
 pub use gravity::GravityWizard;
 
 use super::{theme, widgets::small};
@@ -43,16 +50,19 @@ enum Wish {
 pub enum Which {
     /// Weight and bias.
     Gravity,
+    /// How the sensor under the tissue is turned against the one at the wrist.
+    Correspondence,
 }
 
 impl Which {
     /// All of them, in the order of work.
-    pub const ALL: [Self; 1] = [Self::Gravity];
+    pub const ALL: [Self; 2] = [Self::Gravity, Self::Correspondence];
 
     /// On buttons.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Gravity => "Gravity",
+            Self::Correspondence => "Correspondence",
         }
     }
 
@@ -60,6 +70,7 @@ impl Which {
     pub const fn meaning(self) -> &'static str {
         match self {
             Self::Gravity => "Takes the tool's weight and the sensor's bias out of the wrist's force.",
+            Self::Correspondence => "Finds how the sensor under the tissue is turned against the one at the wrist.",
         }
     }
 
@@ -67,6 +78,16 @@ impl Which {
     pub const fn scene(self) -> &'static str {
         match self {
             Self::Gravity => "gravity",
+            Self::Correspondence => "correspondence",
+        }
+    }
+
+    /// Whether somebody guides the arm in this scene and all that is needed is there, so that it need not be left.
+    pub const fn suits(self, scene: &Scene) -> bool {
+        let guided = scene.person.is_some() && scene.wrist.is_some();
+        match self {
+            Self::Gravity => guided,
+            Self::Correspondence => guided && scene.tissue_sensor.is_some(),
         }
     }
 }
@@ -75,7 +96,9 @@ impl Which {
 #[derive(Clone, Debug)]
 pub enum Saving {
     /// A gravity calibration.
-    Gravity(GravityRecord),
+    Gravity(Box<GravityRecord>),
+    /// A correspondence.
+    Correspondence(Box<CorrespondenceRecord>),
 }
 
 /// All wizards; each keeps what it has until it is started over.
@@ -84,6 +107,7 @@ pub struct Wizards {
     /// The one on the screen.
     pub open: Option<Which>,
     gravity: GravityWizard,
+    correspondence: CorrespondenceWizard,
 }
 
 impl Wizards {
@@ -91,6 +115,7 @@ impl Wizards {
     pub fn tick(&mut self, tick: &Tick) {
         match self.open {
             Some(Which::Gravity) => self.gravity.tick(tick),
+            Some(Which::Correspondence) => self.correspondence.tick(tick),
             None => {}
         }
     }
@@ -99,6 +124,7 @@ impl Wizards {
     pub fn prompt(&self) -> Prompt {
         match self.open {
             Some(Which::Gravity) => self.gravity.prompt(),
+            Some(Which::Correspondence) => self.correspondence.prompt(),
             None => Prompt::Rest,
         }
     }
@@ -107,6 +133,7 @@ impl Wizards {
     pub fn tell_saved(&mut self, words: String) {
         match self.open {
             Some(Which::Gravity) => self.gravity.tell_saved(words),
+            Some(Which::Correspondence) => self.correspondence.tell_saved(words),
             None => {}
         }
     }
@@ -118,7 +145,13 @@ impl Wizards {
         ui.label(small(which.meaning()));
         ui.add_space(theme::GAP);
         match which {
-            Which::Gravity => self.gravity.ui(ui, binding).map(Saving::Gravity),
+            Which::Gravity => {
+                let record = self.gravity.ui(ui, binding)?;
+                // Pushes are free of gravity by the calibration before this one: both do not mix.
+                self.correspondence = CorrespondenceWizard::default();
+                Some(Saving::Gravity(Box::new(record)))
+            }
+            Which::Correspondence => self.correspondence.ui(ui, binding).map(Box::new).map(Saving::Correspondence),
         }
     }
 }

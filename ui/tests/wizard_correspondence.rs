@@ -1,0 +1,175 @@
+//! The correspondence wizard walked by accessible names on a real running loop, with a simulated person who pushes.
+
+#![expect(clippy::unwrap_used, reason = "a console that cannot start is a failed test")]
+
+use std::{
+    path::Path,
+    time::{Duration, Instant, SystemTime},
+};
+
+use egui::accesskit::Role;
+use egui_kittest::{
+    Harness,
+    kittest::{NodeT as _, Queryable as _},
+};
+use nima::{
+    calibration::{
+        Verdict,
+        correspondence::CorrespondenceRecord,
+        gravity::{GravityRecord, GravitySession, SessionSettings},
+        store::{Store, utc_now},
+    },
+    config::{Flaw, Rig, Scene},
+    device::{Outputs, Prompt, Rig as _, Sensed},
+    frames::from_roll_pitch_yaw_deg,
+    runtime::{Plan, start},
+    sim::World,
+    teleop::Calibrations,
+};
+use nima_console::console::ConsoleApp;
+
+const PATIENCE: Duration = Duration::from_secs(40);
+
+/// A gravity calibration taken sample by sample on its own scene.
+fn gravity() -> GravityRecord {
+    let scene = Scene::load("gravity").unwrap();
+    let (mut world, mut session) = (World::new(&scene, 1000.0), GravitySession::new(SessionSettings::default()));
+    for tick in 1..90_000 {
+        let Some(target) = session.target() else { break };
+        let t_s = f64::from(tick) * 1e-3;
+        let prompt = Prompt::Hold { kbf_from_s1: target.kbf_from_s1() };
+        let Sensed::AtWrist(sample) = world.exchange(t_s, &Outputs { prompt, ..Outputs::SAFE }).unwrap().sensed else {
+            panic!("a calibration scene without a wrist");
+        };
+        session.step(&sample, t_s);
+    }
+    let wrist = scene.wrist.unwrap();
+    session.report().unwrap().record(&wrist.serial, &wrist.tool, &utc_now()).unwrap()
+}
+
+fn console(scene: Scene, store: &Path, calibrations: Calibrations) -> Harness<'static, ConsoleApp> {
+    let rig = Rig::load("simulated").unwrap();
+    let plan = Plan { rig: rig.clone(), scene: scene.clone(), calibrations, engage: false };
+    let handle = start(&plan).unwrap();
+    let store = store.to_owned();
+    Harness::builder()
+        .with_size([1600.0, 1500.0])
+        .with_step_dt(1.0 / 30.0)
+        .build_eframe(move |cc| ConsoleApp::new(cc, handle, rig, scene).with_store(&store))
+}
+
+/// Steps the window until it is as wanted. The window never settles, so `run` is of no use.
+fn until(harness: &mut Harness<'_, ConsoleApp>, what: &str, good: impl Fn(&Harness<'_, ConsoleApp>) -> bool) {
+    let began = Instant::now();
+    while !good(harness) {
+        assert!(began.elapsed() < PATIENCE, "never: {what}");
+        std::thread::sleep(Duration::from_millis(5));
+        harness.step();
+    }
+}
+
+fn read(harness: &mut Harness<'_, ConsoleApp>, words: &str) {
+    until(harness, words, |harness| harness.query_all_by_label_contains(words).next().is_some());
+}
+
+fn is_ready(harness: &Harness<'_, ConsoleApp>, label: &str) -> bool {
+    let button = harness.query_by_role_and_label(Role::Button, label);
+    button.is_some_and(|button| !button.accesskit_node().is_disabled())
+}
+
+fn press(harness: &mut Harness<'_, ConsoleApp>, label: &str) {
+    until(harness, label, |harness| is_ready(harness, label));
+    harness.get_by_role_and_label(Role::Button, label).click();
+    harness.step();
+    harness.step();
+}
+
+fn saved(store: &Store, scene: &Scene) -> Option<CorrespondenceRecord> {
+    let wrist = scene.wrist.as_ref().unwrap();
+    store.load(&wrist.serial, &wrist.tool, SystemTime::now()).unwrap().map(|loaded| loaded.record)
+}
+
+#[test]
+fn nine_pushes_as_asked_end_in_a_saved_correspondence_and_more_may_follow() {
+    let folder = tempfile::tempdir().unwrap();
+    let store = Store::open(folder.path());
+    store.save(&gravity()).unwrap();
+    let scene = Scene::load("correspondence").unwrap();
+    let mut harness = console(Scene::load("peg_transfer").unwrap(), folder.path(), Calibrations::default());
+    press(&mut harness, "Calibrate correspondence...");
+    press(&mut harness, "Next");
+    read(&mut harness, "Pushes: 2 taken of 9");
+    press(&mut harness, "Remove the last push");
+    read(&mut harness, "Pushes: 1 taken of 9");
+    assert!(!is_ready(&harness, "Next"), "one push is no calibration");
+    read(&mut harness, "Pushes: 9 taken of 9");
+    press(&mut harness, "Next");
+    read(&mut harness, "Euler cross-check");
+    read(&mut harness, "held out: MAE");
+    harness.check_accessibility();
+    press(&mut harness, "Next");
+    assert!(saved(&store, &scene).is_none(), "nothing is kept without being asked");
+    press(&mut harness, "Save and use");
+    read(&mut harness, "Saved and in force");
+    let record = saved(&store, &scene).unwrap();
+    assert_eq!((record.verdict, record.override_by.as_deref()), (Verdict::Accepted, None));
+    let sensor = scene.tissue_sensor.unwrap();
+    let c_from_s2 =
+        from_roll_pitch_yaw_deg(&sensor.kbf_from_c_deg).inverse() * from_roll_pitch_yaw_deg(&sensor.kbf_from_s2_deg);
+    let off_deg = record.rotation().angle_to(&c_from_s2).to_degrees();
+    assert!(off_deg < 0.5, "{off_deg} degrees off");
+    let lines = harness.state().in_force().lines();
+    assert!(lines.iter().any(|line| line.starts_with("Correspondence: 2") && line.contains("pushes")), "{lines:?}");
+    // Saving started the loop, and with it its clock, anew: the pushes go on where they were.
+    press(&mut harness, "Back");
+    press(&mut harness, "Back");
+    read(&mut harness, &format!("Pushes: {} taken of 9", record.pairs + 1));
+}
+
+#[test]
+fn without_gravity_no_push_is_asked_for() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut harness = console(Scene::load("peg_transfer").unwrap(), folder.path(), Calibrations::default());
+    press(&mut harness, "Calibrate correspondence...");
+    read(&mut harness, "Gravity is not in force: calibrate it first.");
+    read(&mut harness, "Force under the tissue: met");
+    let from = Instant::now();
+    while from.elapsed() < Duration::from_secs(1) {
+        harness.step();
+        assert!(!is_ready(&harness, "Next"));
+    }
+    assert_eq!(harness.state().tick().map(|tick| tick.prompt), Some(Prompt::Rest));
+}
+
+#[test]
+fn pushes_along_one_line_are_kept_only_under_a_name() {
+    let folder = tempfile::tempdir().unwrap();
+    let store = Store::open(folder.path());
+    let record = gravity();
+    store.save(&record).unwrap();
+    let mut scene = Scene::load("correspondence").unwrap();
+    scene.person.as_mut().unwrap().flaw = Some(Flaw::PushesOneLine);
+    let mut harness = console(scene.clone(), folder.path(), Calibrations { gravity: Some(record.model) });
+    press(&mut harness, "Calibrate correspondence...");
+    press(&mut harness, "Next");
+    press(&mut harness, "Next");
+    read(&mut harness, "Insufficient motion");
+    read(&mut harness, "along one line");
+    press(&mut harness, "Next");
+    let button = "Save in spite of the verdict";
+    assert!(!is_ready(&harness, button) && harness.query_by_label("Save and use").is_none());
+    for (label, text) in [("Your name", "A. Technician"), ("Reason", "practice")] {
+        let field = harness.get_by_role_and_label(Role::TextInput, label);
+        field.focus();
+        field.type_text(text);
+        harness.step();
+        harness.step();
+    }
+    press(&mut harness, button);
+    read(&mut harness, "Saved and in force");
+    let record = saved(&store, &scene).unwrap();
+    assert_eq!(record.verdict, Verdict::InsufficientMotion);
+    assert_eq!(record.override_by.as_deref(), Some("A. Technician"));
+    let lines = harness.state().in_force().lines();
+    assert!(lines.iter().any(|line| line.contains("NOT PROVEN, kept by A. Technician")), "{lines:?}");
+}

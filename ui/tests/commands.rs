@@ -13,6 +13,8 @@ fn nima(arguments: &[&str]) -> Output {
         .args(arguments)
         .env_remove("DISPLAY")
         .env_remove("WAYLAND_DISPLAY")
+        // No calibrations of whoever runs the tests.
+        .env("NIMA_DATA_DIR", "no/such/folder")
         .output()
         .unwrap()
 }
@@ -241,4 +243,10 @@ fn without_a_display_the_console_says_so_with_its_own_exit_code() {
     let output = nima(&["console"]);
     assert_eq!(output.status.code(), Some(69), "{}", String::from_utf8_lossy(&output.stderr));
     assert!(String::from_utf8_lossy(&output.stderr).contains("nima run"), "it says what to do instead");
+}
+
+#[test]
+fn run_refuses_a_wrist_that_is_not_calibrated() {
+    refused(&["run", "--virtual", "--scene", "palpation"], &["Palpation through a trocar", "--calibrate gravity"]);
+    refused(&["run", "--virtual", "--scene", "gravity"], &["Gravity calibration", "cannot be engaged"]);
 }

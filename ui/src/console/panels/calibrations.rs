@@ -58,7 +58,7 @@ fn source_ui(ui: &mut Ui, live: &Live) {
     let (what, colour) = if source.is_usable() { (Sign::Disc, theme::ENGAGED) } else { (Sign::Triangle, theme::TEXT) };
     ui.horizontal(|ui| {
         sign_ui(ui, what, 5.0, colour);
-        let words = RichText::new(format!("Tip force {}", source.words())).font(theme::strong(14.0));
+        let words = RichText::new(format!("Tip force: {}", source.words())).font(theme::strong(14.0));
         ui.add(egui::Label::new(words).wrap()).on_hover_text(sentence(source.words()));
     });
 }

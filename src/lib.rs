@@ -2,6 +2,7 @@
 //!
 //! Rooms know only the rooms below them:
 //! `frames, signal` < `calibration, tip_force, impedance, safety` < `device, sim` < `teleop` < `runtime` < `recording, study`.
+//! Two helpers are known from below all the same: `recording::write_atomically` and `runtime::Percentiles`.
 //! SI units inside (m, s, N, rad); a name carries its unit and frame where the type does not.
 
 pub mod calibration;

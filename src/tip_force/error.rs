@@ -104,18 +104,6 @@ pub enum TipForceError {
         /// Why.
         reason: String,
     },
-    /// The model asks for columns that the live loop does not have.
-    #[error(
-        "the model of {path} needs \"{column}\", which the loop cannot serve (it has {available}); load a model trained on those columns"
-    )]
-    NotLive {
-        /// The model's file.
-        path: PathBuf,
-        /// The first such column.
-        column: String,
-        /// What there is.
-        available: String,
-    },
 }
 
 impl From<candle_core::Error> for TipForceError {

@@ -85,6 +85,7 @@ fn a_technician_walks_from_an_uncalibrated_wrist_to_a_force_that_is_known() {
     until(&mut console, "an unknown force", |c| shows(c, "the wrist sensor is not calibrated"));
     press(&mut console, "Calibrate gravity...");
     until(&mut console, "the first step", |c| shows(c, "Let go of it: nothing may touch the tool"));
+    assert!(!can_press(&console, "Engage"), "nobody engages an arm that is being guided by hand");
     press(&mut console, "Next");
     until(&mut console, "some poses", |c| shows(c, "4 of 12 taken"));
     // Back and closing lose nothing that was good.

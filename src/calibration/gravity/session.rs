@@ -260,11 +260,6 @@ impl GravitySession {
         arm_field_m_s2(&self.last?.kbf_from_s1?).try_normalize(1e-9)
     }
 
-    /// Angle of tilt between the newest sample and the next target, rad; `None` where no arm tells.
-    pub fn angle_to_target_rad(&self) -> Option<f64> {
-        Some(self.down_s1()?.angle(&Vector3::from(self.target()?.down_s1)))
-    }
-
     /// Directions of gravity in `s1` of the poses taken, for a picture: by the arm, else those asked for.
     pub fn taken_down_s1(&self) -> Vec<Vector3<f64>> {
         let known = |place: &Place| place.down_s1.or_else(|| Some(Vector3::from(TARGETS[place.target?].down_s1)));

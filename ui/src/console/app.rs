@@ -236,7 +236,8 @@ impl ConsoleApp {
     fn layout(&mut self, ui: &mut Ui) {
         let bar = Frame::new().fill(theme::PANEL).inner_margin(Margin::symmetric(14, 0));
         Panel::top("top_bar").exact_size(72.0).resizable(false).frame(bar).show(ui, |ui| {
-            top_bar_ui(ui, &self.live, &mut self.top_bar, &mut self.outbox);
+            let calibrating = self.wizards.open.is_some();
+            top_bar_ui(ui, &self.live, &mut self.top_bar, &mut self.outbox, calibrating);
         });
         if self.wizards.open.is_some() { self.wizard_layout(ui) } else { self.monitor_layout(ui) }
     }

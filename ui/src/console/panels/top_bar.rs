@@ -21,7 +21,8 @@ pub struct TopBarState {
 }
 
 /// The bar.
-pub fn top_bar_ui(ui: &mut Ui, live: &Live, state: &mut TopBarState, outbox: &mut Outbox) {
+/// While somebody's hands are on the arm (`calibrating`) it cannot be engaged.
+pub fn top_bar_ui(ui: &mut Ui, live: &Live, state: &mut TopBarState, outbox: &mut Outbox, calibrating: bool) {
     let time_s = ui.input(|input| input.time);
     let now = live.state();
     let since_s = match state.seen {
@@ -42,7 +43,8 @@ pub fn top_bar_ui(ui: &mut Ui, live: &Live, state: &mut TopBarState, outbox: &mu
         ui.add_space(10.0);
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             stop_ui(ui, now, outbox);
-            step_ui(ui, now, since_s >= STEP_WAITS_S, outbox);
+            let blocked = calibrating && now == LoopState::Idle;
+            step_ui(ui, now, since_s >= STEP_WAITS_S && !blocked, outbox);
             ui.add_space(6.0);
             alarms_ui(ui, live, &judge(&live.signs(outbox.stop_is_stuck())), time_s);
         });

@@ -16,14 +16,13 @@ use nima::{
 
 use super::{
     Binding, Step, Wish,
-    gravity::override_ui,
     pictures::{progress, sphere_picture},
-    steps_ui,
+    save_card, steps_ui,
 };
 use crate::console::{
     alarms::sentence,
     theme,
-    widgets::{Sign, card, figure, sign_ui, small, three_digits, weak},
+    widgets::{Sign, card, figure, sign_ui, small, three_digits},
 };
 
 /// Fewest pushes from which a fit is shown.
@@ -268,26 +267,8 @@ impl CorrespondenceWizard {
 
     fn save_ui(&mut self, ui: &mut Ui, binding: &Binding) -> Option<CorrespondenceRecord> {
         let accepted = self.good_report().is_some_and(|report| report.verdict == Verdict::Accepted);
-        let mut wanted = false;
-        card(ui, "Save", "Bound to this sensor and this tool; the file says how good it was.", |ui| {
-            figure(ui, "Sensor", &binding.sensor, "Serial number of the wrist sensor.");
-            figure(ui, "Tool", &binding.tool, "What hangs on it.");
-            if accepted {
-                ui.label("Accepted on pushes that were held out.");
-                wanted = ui.add(Button::new("Save and use").min_size(vec2(180.0, 36.0))).clicked();
-            } else {
-                ui.label(weak("This calibration was refused. It can be kept only under somebody's name, which is written into the file."));
-                override_ui(ui, &mut self.name, &mut self.why);
-                let named = !self.name.trim().is_empty() && !self.why.trim().is_empty();
-                wanted = ui
-                    .add_enabled(named, Button::new("Save in spite of the verdict").min_size(vec2(220.0, 36.0)))
-                    .on_disabled_hover_text("Give a name and a reason first.")
-                    .clicked();
-            }
-            if let Some(saved) = &self.saved {
-                ui.label(saved);
-            }
-        });
+        let proof = accepted.then_some("Accepted on pushes that were held out.");
+        let wanted = save_card(ui, binding, proof, [&mut self.name, &mut self.why], self.saved.as_deref());
         wanted.then(|| self.record(binding, accepted)).flatten()
     }
 

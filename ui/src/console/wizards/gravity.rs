@@ -1,6 +1,6 @@
 //! The gravity wizard: check, twelve poses, result, free motion, save. What was good is kept at every step back and on closing.
 
-use egui::{Button, Grid, RichText, TextEdit, Ui, vec2};
+use egui::{Button, Grid, RichText, Ui, vec2};
 use nalgebra::{UnitQuaternion, Vector3};
 use nima::{
     calibration::{
@@ -18,11 +18,11 @@ use nima::{
 use super::{
     Binding, Step,
     pictures::{pose_picture, progress, sphere_picture},
-    steps_ui,
+    save_card, steps_ui,
 };
 use crate::console::{
     theme,
-    widgets::{Sign, card, figure, sign_ui, small, three_digits, weak},
+    widgets::{Sign, card, figure, sign_ui, small, three_digits},
 };
 
 /// Free motion must read below this at its 95th percentile, N: noise of a sample included.
@@ -279,26 +279,8 @@ impl GravityWizard {
 
     fn save_ui(&mut self, ui: &mut Ui, binding: &Binding) -> Option<GravityRecord> {
         let proven = self.is_proven();
-        let mut wanted = false;
-        card(ui, "Save", "Bound to this sensor and this tool; the file says how good it was.", |ui| {
-            figure(ui, "Sensor", &binding.sensor, "Serial number of the wrist sensor.");
-            figure(ui, "Tool", &binding.tool, "What hangs on it.");
-            if proven {
-                ui.label("Accepted, and proven in free motion.");
-                wanted = ui.add(Button::new("Save and use").min_size(vec2(180.0, 36.0))).clicked();
-            } else {
-                ui.label(weak("This calibration is not proven. It can be kept only under somebody's name, which is written into the file."));
-                override_ui(ui, &mut self.name, &mut self.why);
-                let named = !self.name.trim().is_empty() && !self.why.trim().is_empty();
-                wanted = ui
-                    .add_enabled(named, Button::new("Save in spite of the verdict").min_size(vec2(220.0, 36.0)))
-                    .on_disabled_hover_text("Give a name and a reason first.")
-                    .clicked();
-            }
-            if let Some(saved) = &self.saved {
-                ui.label(saved);
-            }
-        });
+        let proof = proven.then_some("Accepted, and proven in free motion.");
+        let wanted = save_card(ui, binding, proof, [&mut self.name, &mut self.why], self.saved.as_deref());
         wanted.then(|| self.record(binding, proven)).flatten()
     }
 
@@ -309,16 +291,6 @@ impl GravityWizard {
             record.override_reason = Some(self.why.trim().to_owned());
         }
         Some(record)
-    }
-}
-
-/// Name and reason of whoever overrides a verdict.
-pub(super) fn override_ui(ui: &mut Ui, name: &mut String, why: &mut String) {
-    for (label, text) in [("Your name", name), ("Reason", why)] {
-        ui.horizontal(|ui| {
-            let label = ui.label(label);
-            ui.add(TextEdit::singleline(text).desired_width(280.0).char_limit(120)).labelled_by(label.id);
-        });
     }
 }
 

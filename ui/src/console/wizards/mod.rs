@@ -7,7 +7,7 @@ mod correspondence;
 mod gravity;
 mod pictures;
 
-use egui::{Button, RichText, Ui, vec2};
+use egui::{Button, RichText, TextEdit, Ui, vec2};
 use nima::{
     calibration::{correspondence::CorrespondenceRecord, gravity::GravityRecord},
     config::Scene,
@@ -18,7 +18,10 @@ use nima::{
 pub use correspondence::CorrespondenceWizard;
 pub use gravity::GravityWizard;
 
-use super::{theme, widgets::small};
+use super::{
+    theme,
+    widgets::{card, figure, small, weak},
+};
 
 /// What a calibration belongs to.
 #[derive(Clone, Debug, Default)]
@@ -190,4 +193,41 @@ fn steps_ui(ui: &mut Ui, steps: &[Step], now: usize, may_go_on: Result<(), &'sta
         }
     });
     wish
+}
+
+/// The last step of every wizard: what it will be bound to, and the button; true when it shall be saved. Without `proof` it takes
+/// a name and a reason.
+fn save_card(ui: &mut Ui, binding: &Binding, proof: Option<&str>, by: [&mut String; 2], saved: Option<&str>) -> bool {
+    card(ui, "Save", "Bound to this sensor and this tool; the file says how good it was.", |ui| {
+        figure(ui, "Sensor", &binding.sensor, "Serial number of the wrist sensor.");
+        figure(ui, "Tool", &binding.tool, "What hangs on it.");
+        let wanted = if let Some(proof) = proof {
+            ui.label(proof);
+            ui.add(Button::new("Save and use").min_size(vec2(180.0, 36.0))).clicked()
+        } else {
+            ui.label(weak(
+                "This calibration is not proven. It can be kept only under somebody's name, which is written into the file.",
+            ));
+            override_ui(ui, by)
+        };
+        if let Some(saved) = saved {
+            ui.label(saved);
+        }
+        wanted
+    })
+}
+
+/// Name and reason of whoever overrides a verdict; true when both are there and it shall be done.
+fn override_ui(ui: &mut Ui, by: [&mut String; 2]) -> bool {
+    let mut named = true;
+    for (label, text) in ["Your name", "Reason"].into_iter().zip(by) {
+        ui.horizontal(|ui| {
+            let label = ui.label(label);
+            ui.add(TextEdit::singleline(text).desired_width(280.0).char_limit(120)).labelled_by(label.id);
+        });
+        named &= !text.trim().is_empty();
+    }
+    ui.add_enabled(named, Button::new("Save in spite of the verdict").min_size(vec2(220.0, 36.0)))
+        .on_disabled_hover_text("Give a name and a reason first.")
+        .clicked()
 }

@@ -12,6 +12,7 @@ pub use wrist::{Flaw, Imu, Person, TissueSensor, Trocar, Wrist};
 use crate::{
     impedance::{MAX_DEGREE, MAX_DELAY_S, Mode, Scales, Settings},
     safety::ChainSettings,
+    tip_force::Fallback,
 };
 
 /// A file that could not be used: what, where, what to do.
@@ -83,6 +84,17 @@ pub struct Rig {
     /// Gates between model and hand.
     #[serde(default)]
     pub gates: ChainSettings,
+    /// The network against the trocar's friction.
+    #[serde(default)]
+    pub tip_force: TipForcePart,
+}
+
+/// Tip-force part of a rig file.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct TipForcePart {
+    /// What is felt while the network is in doubt.
+    pub fallback: Fallback,
 }
 
 /// Identification part of a rig file.

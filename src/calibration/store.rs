@@ -170,9 +170,14 @@ impl Store {
         Ok(self.folder.join(format!("{}-{}.toml", R::KIND, checked(sensor)?)))
     }
 
-    /// Where the tip-force network for this sensor and tool is.
-    pub fn tip_force_path(&self, sensor: &str, tool: &str) -> Result<PathBuf, StoreError> {
-        Ok(self.folder.join(format!("tip-force-{}-{}.safetensors", checked(sensor)?, checked(tool)?)))
+    /// Where another file of this kind for this sensor belongs, `KIND-SENSOR.ENDING`: networks and their data sets.
+    pub fn path_of(&self, kind: &str, sensor: &str, ending: &str) -> Result<PathBuf, StoreError> {
+        Ok(self.folder.join(format!("{}-{}.{ending}", checked(kind)?, checked(sensor)?)))
+    }
+
+    /// How old something of this date (UTC, ISO 8601) is; `None` for what is no date.
+    pub fn age_of(&self, date: &str, now: SystemTime) -> Option<Age> {
+        date::parse(date).map(|made_s| self.age(made_s, seconds(now)))
     }
 
     /// Saves a record under its sensor; the one before stays as `.previous`. Gives the path.
@@ -193,11 +198,10 @@ impl Store {
                 return Err(StoreError::Other { path, what, found, wanted });
             }
         }
-        let Some(made_s) = date::parse(record.date()) else {
+        let Some(age) = self.age_of(record.date(), now) else {
             let message = format!("date = \"{}\" is not like 2026-08-21T10:20:30Z", record.date());
             return Err(StoreError::Damaged { path, message });
         };
-        let age = self.age(made_s, seconds(now));
         Ok(Some(Loaded { record, age, path }))
     }
 
@@ -225,12 +229,17 @@ pub fn write<R: Record>(path: &Path, record: &R) -> Result<(), StoreError> {
     let text = toml::to_string(record).map_err(|error| unwritable(error.to_string()))?;
     let failed = |source| StoreError::Write { path: path.to_owned(), source };
     // A copy, then the rename of the new file: at no moment is there no calibration.
-    match fs::read(path) {
-        Ok(old) => write_atomically(&previous(path), |file| file.write_all(&old)).map_err(failed)?,
-        Err(error) if error.kind() == io::ErrorKind::NotFound => {}
-        Err(error) => return Err(failed(error)),
-    }
+    keep_previous(path).map_err(failed)?;
     write_atomically(path, |file| file.write_all(text.as_bytes())).map_err(failed)
+}
+
+/// Copies what is at `path`, if anything, to the same name with the ending `.previous`.
+pub fn keep_previous(path: &Path) -> io::Result<()> {
+    match fs::read(path) {
+        Ok(old) => write_atomically(&previous(path), |file| file.write_all(&old)),
+        Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(()),
+        Err(error) => Err(error),
+    }
 }
 
 /// Reads one record; `None` when there is no file. Checks the kind and the verdict's rule, not sensor and tool.

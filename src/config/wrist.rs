@@ -111,6 +111,8 @@ pub enum Flaw {
     PushesOneLine,
     /// Pushes within one plane, whatever direction is asked for.
     PushesOnePlane,
+    /// Works straight under the trocar only, whatever is asked for.
+    WorksInOnePlace,
     /// Pulls at the tissue's stand now and then: the two sensors do not feel the same.
     LeansOnTheStand,
 }

@@ -98,7 +98,9 @@ impl Person {
 
     /// Force on the tissue's stand that the tip does not feel, N (`kbf`).
     pub(super) fn stand_n(&self) -> Vector3<f64> {
-        self.stand * pulse(self.in_push_s)
+        let working = matches!(self.prompt, Prompt::Work);
+        let share = if working { pulse(PUSH_S[0] * self.in_reach_s / REACH_S[0]) } else { pulse(self.in_push_s) };
+        self.stand * share
     }
 
     /// Force of a hand on the tool, N (`kbf`).
@@ -188,15 +190,19 @@ impl Person {
             let asked = if asked.norm() < 0.1 { self.somewhere_down() } else { asked.normalize() };
             self.push = -(asked + miss).normalize() * self.between(PUSH_N);
             if self.flaw == Some(Flaw::LeansOnTheStand) {
-                // Every other push or so; those between are good.
-                let leans_n = if self.noise.uniform() < 0.5 { 1.2 } else { 0.0 };
-                self.stand = Vector3::from_fn(|_, _| leans_n * self.noise.gaussian());
+                self.lean();
             }
             // Each push with the tool held a little differently.
             let tilt = Vector3::from_fn(|_, _| 0.25 * self.noise.gaussian());
             self.turn_to(along_shaft(&-Vector3::z()) * UnitQuaternion::from_scaled_axis(tilt));
         }
         self.turn(dt_s);
+    }
+
+    /// Every other time or so; those between are good.
+    fn lean(&mut self) {
+        let leans_n = if self.noise.uniform() < 0.5 { 1.2 } else { 0.0 };
+        self.stand = Vector3::from_fn(|_, _| leans_n * self.noise.gaussian());
     }
 
     /// A direction of the lower half of the plane of x and z.
@@ -215,9 +221,14 @@ impl Person {
         if self.in_reach_s >= self.reach.seconds {
             let z_m =
                 if contact && self.noise.uniform() < 0.6 { -self.between(PRESS_M) } else { self.between(CARRY_M) };
+            if self.flaw == Some(Flaw::LeansOnTheStand) {
+                self.lean();
+            }
             let [x_m, y_m] = WORK_M.map(|half_m| half_m * (2.0 * self.noise.uniform() - 1.0));
             // Now and then held still: what is stuck in the seal then stays.
             let stay = self.noise.uniform() < 0.2;
+            let reach = if self.flaw == Some(Flaw::WorksInOnePlace) { 0.1 } else { 1.0 };
+            let [x_m, y_m] = [x_m * reach, y_m * reach];
             let to_m = if stay { self.tip_m } else { Vector3::new(x_m, y_m, self.surface_z_m + z_m) };
             self.reach = Move { from_m: self.tip_m, to_m, seconds: self.between(REACH_S) };
             self.in_reach_s = 0.0;

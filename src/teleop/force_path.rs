@@ -1,7 +1,8 @@
 //! From what the wrist feels to the force at the tip: one step a tick, allocation-free.
 //!
-//! Weight and bias go first (`gravity`); what is left is the tissue's force plus the trocar's friction. Every force leaves in
-//! the workspace frame (`kbf`). A sample from which no force can be told gives none, with the reason in [`ForceSource`].
+//! Weight and bias go first (`gravity`); what is left is the tissue's force plus the trocar's friction, which a trained network
+//! takes out. Every force leaves in the workspace frame (`kbf`). A sample from which no force can be told gives none, with the
+//! reason in [`ForceSource`].
 
 use nalgebra::Vector3;
 
@@ -9,6 +10,7 @@ use crate::{
     calibration::gravity::GravityModel,
     device::Sensed,
     frames::{Wrench, WristSample},
+    tip_force::{Fallback, TipForce, TipForceReport, Unsure},
 };
 
 /// Where the tip force of a tick comes from.
@@ -18,6 +20,15 @@ pub enum ForceSource {
     AtTip,
     /// Measured at the wrist, weight and bias taken out; friction in the trocar is still in it.
     Wrist,
+    /// Measured at the wrist, weight, bias and friction taken out.
+    Network,
+    /// The network is not sure: the fallback answers.
+    InDoubt {
+        /// Why.
+        unsure: Unsure,
+        /// Which fallback.
+        fallback: Fallback,
+    },
     /// Measured at the wrist, and no calibration is in force: nothing is rendered from it.
     Uncalibrated,
     /// Calibrated, but the sample lacks the orientation that the calibration needs.
@@ -27,7 +38,7 @@ pub enum ForceSource {
 impl ForceSource {
     /// The tip force may be felt by a hand.
     pub const fn is_usable(self) -> bool {
-        matches!(self, Self::AtTip | Self::Wrist)
+        !matches!(self, Self::Uncalibrated | Self::NoOrientation)
     }
 
     /// In words, for the screen.
@@ -35,8 +46,19 @@ impl ForceSource {
         match self {
             Self::AtTip => "measured at the tip",
             Self::Wrist => "wrist force without weight; trocar friction is still in it",
+            Self::Network => "wrist force without weight and trocar friction (network)",
+            Self::InDoubt { fallback: Fallback::WristForce, .. } => "network in doubt: the wrist force, with friction",
+            Self::InDoubt { fallback: Fallback::HoldAndFade, .. } => "network in doubt: the last sure force fades out",
             Self::Uncalibrated => "unknown: the wrist sensor is not calibrated",
             Self::NoOrientation => "unknown: the orientation of the wrist is missing",
+        }
+    }
+
+    /// Why the network does not answer, where it does not.
+    pub const fn doubt(self) -> Option<Unsure> {
+        match self {
+            Self::InDoubt { unsure, .. } => Some(unsure),
+            _ => None,
         }
     }
 }
@@ -50,11 +72,14 @@ pub struct ForceReport {
     pub tip_n: Vector3<f64>,
     /// What the wrist feels without weight and bias (`s1`), once gravity is calibrated.
     pub gravity_free: Option<Wrench>,
+    /// What the network said, where one is in force.
+    pub tip_force: Option<TipForceReport>,
 }
 
 impl ForceReport {
-    const fn none(source: ForceSource, gravity_free: Option<Wrench>) -> Self {
-        Self { source, tip_n: Vector3::new(0.0, 0.0, 0.0), gravity_free }
+    /// No force, for this reason.
+    pub(super) const fn none(source: ForceSource, gravity_free: Option<Wrench>) -> Self {
+        Self { source, tip_n: Vector3::new(0.0, 0.0, 0.0), gravity_free, tip_force: None }
     }
 }
 
@@ -63,34 +88,47 @@ impl ForceReport {
 pub struct Calibrations {
     /// Weight of the tool and bias of the wrist sensor.
     pub gravity: Option<GravityModel>,
+    /// The network against the trocar's friction.
+    pub tip_force: Option<TipForce>,
 }
 
 /// The chain of calibrations at work.
 #[derive(Clone, Debug, Default)]
 pub struct ForcePath {
     gravity: Option<GravityModel>,
+    tip_force: Option<TipForce>,
 }
 
 impl ForcePath {
     /// A path through these calibrations. Everything is allocated here.
-    pub const fn new(calibrations: &Calibrations) -> Self {
-        Self { gravity: calibrations.gravity }
+    pub fn new(calibrations: &Calibrations) -> Self {
+        Self { gravity: calibrations.gravity, tip_force: calibrations.tip_force.clone() }
     }
 
-    /// The tip force of this sample.
-    pub fn step(&mut self, sensed: &Sensed) -> ForceReport {
+    /// The tip force of this sample, taken at this time (s).
+    pub fn step(&mut self, t_s: f64, sensed: &Sensed) -> ForceReport {
         match sensed {
-            Sensed::AtTip(tip_n) => ForceReport { source: ForceSource::AtTip, tip_n: *tip_n, gravity_free: None },
-            Sensed::AtWrist(sample) => self.at_wrist(sample),
+            Sensed::AtTip(tip_n) => ForceReport { tip_n: *tip_n, ..ForceReport::none(ForceSource::AtTip, None) },
+            Sensed::AtWrist(sample) => self.at_wrist(t_s, sample),
         }
     }
 
-    fn at_wrist(&mut self, sample: &WristSample) -> ForceReport {
+    fn at_wrist(&mut self, t_s: f64, sample: &WristSample) -> ForceReport {
         let Some(gravity) = &self.gravity else { return ForceReport::none(ForceSource::Uncalibrated, None) };
         let gravity_free = gravity.gravity_free(sample);
         let (Some(wrench), Some(kbf_from_s1)) = (gravity_free, sample.kbf_from_s1) else {
             return ForceReport::none(ForceSource::NoOrientation, gravity_free);
         };
-        ForceReport { source: ForceSource::Wrist, tip_n: kbf_from_s1 * wrench.force_n, gravity_free }
+        let Some(tip_force) = &mut self.tip_force else {
+            return ForceReport {
+                tip_n: kbf_from_s1 * wrench.force_n,
+                ..ForceReport::none(ForceSource::Wrist, gravity_free)
+            };
+        };
+        let report = tip_force.step(t_s, &wrench, sample);
+        let fallback = tip_force.fallback();
+        let source = report.unsure.map_or(ForceSource::Network, |unsure| ForceSource::InDoubt { unsure, fallback });
+        let tip_n = kbf_from_s1 * report.force_s1_n;
+        ForceReport { source, tip_n, gravity_free, tip_force: Some(report) }
     }
 }

@@ -221,7 +221,7 @@ impl Loop {
         let seen = match inputs.filter(Inputs::is_finite) {
             Some(inputs) => {
                 self.measure_speed(&inputs, now_s);
-                self.force = self.force_path.step(&inputs.sensed);
+                self.force = self.force_path.step(now_s, &inputs.sensed);
                 self.identifier.step(&Sample { t_s: now_s, position_m: inputs.tip_m, force_n: self.force.tip_n });
                 self.link.send(self.identifier.parcel());
                 self.last_inputs = Some(inputs);
@@ -349,5 +349,4 @@ const NOTHING_YET: Inputs = Inputs {
 };
 
 /// Until the first sample: an absent force is no usable force, and a rig that measures at the tip shows so at once.
-const NO_FORCE_YET: ForceReport =
-    ForceReport { source: ForceSource::AtTip, tip_n: Vector3::new(0.0, 0.0, 0.0), gravity_free: None };
+const NO_FORCE_YET: ForceReport = ForceReport::none(ForceSource::AtTip, None);

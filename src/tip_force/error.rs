@@ -2,6 +2,8 @@
 
 use std::path::PathBuf;
 
+use crate::calibration::store::StoreError;
+
 /// What happened, where, and what to do about it, in one line.
 #[derive(Debug, thiserror::Error)]
 pub enum TipForceError {
@@ -96,6 +98,21 @@ pub enum TipForceError {
         /// What is wrong or absent.
         reason: String,
     },
+    /// A good model whose columns a live wrist does not deliver.
+    #[error("the model works with {found}, which the live loop does not know; train one on the default columns")]
+    NotLive {
+        /// What the loop does not know.
+        found: String,
+    },
+    /// Nobody may feel what is not proven.
+    #[error("the tip-force model may not be used: {reason}; check it on a new recording")]
+    NotProven {
+        /// Why.
+        reason: String,
+    },
+    /// The store of calibrations refused.
+    #[error(transparent)]
+    Store(#[from] StoreError),
     /// The file could not be written.
     #[error("cannot write the model {path}: {reason}")]
     Write {

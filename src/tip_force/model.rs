@@ -3,21 +3,16 @@
 //! The file holds names of inputs and outputs (units by their names), normalisation, weights, doubt, baselines and where it
 //! came from. Loading checks everything that inference relies on: an absent or unfitting piece is one clear error. f32.
 
-use std::{
-    collections::HashMap,
-    path::Path,
-    sync::atomic::AtomicBool,
-    time::{SystemTime, UNIX_EPOCH},
-};
+use std::{collections::HashMap, path::Path, sync::atomic::AtomicBool};
 
 use safetensors::{Dtype, SafeTensors, tensor::TensorView};
 use serde::{Deserialize, Serialize};
 
 use super::{
-    DataSet, Expansion, Layer, Member, MemberFigures, Network, Normalisation, Progress, Settings, TipForceError,
+    Check, DataSet, Expansion, Layer, Member, MemberFigures, Network, Normalisation, Progress, Settings, TipForceError,
     baseline::Baselines, doubt::Doubt, train, training::features_of,
 };
-use crate::recording::write_atomically;
+use crate::{calibration::store::utc_now, recording::write_atomically};
 
 /// What the file calls itself.
 const FORMAT: &str = "nima tip force 1";
@@ -44,6 +39,9 @@ pub struct Origin {
     pub figures: Vec<MemberFigures>,
     /// Features that never changed in the training data; any other value of them is in doubt.
     pub constant: Vec<String>,
+    /// What it showed on data recorded after the training.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub check: Option<Check>,
 }
 
 /// A trained model with all that belongs to it.
@@ -104,13 +102,14 @@ impl Model {
         let origin = Origin {
             sensor,
             tool,
-            date: utc(SystemTime::now()),
+            date: utc_now(),
             software: env!("CARGO_PKG_VERSION").to_owned(),
             data_hash: data.hash.clone(),
             rows: data.rows(),
             settings: settings.clone(),
             figures: trained.figures,
             constant: trained.constant,
+            check: None,
         };
         Ok(Self {
             inputs: data.inputs.clone(),
@@ -253,17 +252,4 @@ fn values(tensors: &SafeTensors<'_>, name: &str) -> Result<Vec<f32>, String> {
 
 fn bytes(values: &[f32]) -> Vec<u8> {
     values.iter().flat_map(|value| value.to_le_bytes()).collect()
-}
-
-/// A time as UTC in ISO 8601, to the second (days to date by counting eras of 400 years).
-fn utc(time: SystemTime) -> String {
-    let seconds = time.duration_since(UNIX_EPOCH).map_or(0, |since| since.as_secs());
-    let (days, rest) = (seconds / 86_400 + 719_468, seconds % 86_400);
-    let (era, day) = (days / 146_097, days % 146_097);
-    let year = (day - day / 1460 + day / 36_524 - day / 146_096) / 365;
-    let of_year = day - (365 * year + year / 4 - year / 100);
-    let shifted = (5 * of_year + 2) / 153;
-    let (date, month) = (of_year - (153 * shifted + 2) / 5 + 1, if shifted < 10 { shifted + 3 } else { shifted - 9 });
-    let year = era * 400 + year + u64::from(month <= 2);
-    format!("{year:04}-{month:02}-{date:02}T{:02}:{:02}:{:02}Z", rest / 3600, rest / 60 % 60, rest % 60)
 }

@@ -149,7 +149,8 @@ fn pushes_along_one_line_are_kept_only_under_a_name() {
     store.save(&record).unwrap();
     let mut scene = Scene::load("correspondence").unwrap();
     scene.person.as_mut().unwrap().flaw = Some(Flaw::PushesOneLine);
-    let mut harness = console(scene.clone(), folder.path(), Calibrations { gravity: Some(record.model) });
+    let mut harness =
+        console(scene.clone(), folder.path(), Calibrations { gravity: Some(record.model), tip_force: None });
     press(&mut harness, "Calibrate correspondence...");
     press(&mut harness, "Next");
     press(&mut harness, "Next");

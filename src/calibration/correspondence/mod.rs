@@ -26,6 +26,8 @@ mod tests;
 use nalgebra::{UnitQuaternion, Vector3};
 use serde::{Deserialize, Serialize};
 
+use crate::frames::WristSample;
+
 pub use diagnosis::{Diagnosis, OffsetFrame};
 pub use excitation::Excitation;
 pub use fit::fit;
@@ -48,6 +50,30 @@ impl Pair {
     /// A pair without a chain: the rotation found is then `s1_from_s2`.
     pub fn plain(f1_n: Vector3<f64>, f2_n: Vector3<f64>) -> Self {
         Self { f1_n, f2_n, s1_from_c: UnitQuaternion::identity() }
+    }
+}
+
+/// A known correspondence at work: what the sensor under the tissue reads, told in the frame of the wrist sensor.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Correspondence {
+    /// Which rotation it is.
+    pub target: Target,
+    /// The rotation.
+    pub rotation: UnitQuaternion<f64>,
+    /// The sensor under the tissue tells the force on the tissue, not on the instrument.
+    pub flip_s2: bool,
+}
+
+impl Correspondence {
+    /// Force on the tip, N (`s1`), of a reading of the sensor under the tissue, N (`s2`), taken with this sample; `None` where
+    /// the sample lacks a rotation of the chain.
+    pub fn tip_force_s1(&self, sample: &WristSample, tissue_n: &Vector3<f64>) -> Option<Vector3<f64>> {
+        let s1_from_s2 = match self.target {
+            Target::CFromS2 => sample.s1_from_c()? * self.rotation,
+            Target::S1FromS2 => self.rotation,
+        };
+        let on_tip_n = if self.flip_s2 { -tissue_n } else { *tissue_n };
+        Some(s1_from_s2 * on_tip_n)
     }
 }
 

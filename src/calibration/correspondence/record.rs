@@ -4,7 +4,7 @@ use nalgebra::UnitQuaternion;
 use serde::{Deserialize, Serialize};
 
 use super::{
-    Agreement, CorrespondenceReport, Diagnosis, Target,
+    Agreement, Correspondence, CorrespondenceReport, Diagnosis, Target,
     report::{from_wxyz, parts},
 };
 use crate::calibration::{Verdict, store};
@@ -84,6 +84,11 @@ impl CorrespondenceRecord {
             agreement: solution.agreement,
             diagnosis: solution.diagnosis,
         })
+    }
+
+    /// For use.
+    pub fn correspondence(&self) -> Correspondence {
+        Correspondence { target: self.target, rotation: self.rotation(), flip_s2: self.flip_s2 }
     }
 
     /// The rotation.

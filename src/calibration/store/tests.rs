@@ -136,10 +136,10 @@ fn names_never_lead_out_of_the_folder() {
     let store = Store::open("/calibrations");
     for name in ["", "..", ".hidden", "a/b", "a\\b", "a b", &"x".repeat(65)] {
         assert!(matches!(store.path::<CorrespondenceRecord>(name), Err(StoreError::Name { .. })), "{name}");
-        assert!(store.tip_force_path("A1", name).is_err(), "{name}");
+        assert!(store.path_of("tip-force", name, "csv").is_err(), "{name}");
     }
-    let path = store.tip_force_path("BFT-1", "grasper_2").unwrap();
-    assert_eq!(path, Path::new("/calibrations/tip-force-BFT-1-grasper_2.safetensors"));
+    let path = store.path_of("tip-force", "BFT-1", "safetensors").unwrap();
+    assert_eq!(path, Path::new("/calibrations/tip-force-BFT-1.safetensors"));
 }
 
 #[test]

@@ -25,7 +25,7 @@ pub(super) struct Arguments {
 
 pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let (rig, scene) = arguments.setup.load()?;
-    let calibrations = InForce::load(None, &scene).calibrations();
+    let calibrations = InForce::load(None, &scene).calibrations(&rig);
     let mut plan = Plan { rig: rig.clone(), scene: scene.clone(), calibrations, engage: false };
     // The simulated hand cannot be hurt: the demo runs at once.
     plan.engage = plan.may_engage();

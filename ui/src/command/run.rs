@@ -58,7 +58,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     rig.delay_s = arguments.delay_ms.map_or(rig.delay_s, |delay_ms| delay_ms * 1e-3);
     rig.identification.cross_talk |= arguments.cross_talk;
     rig.validate()?;
-    let calibrations = InForce::load(None, &scene).calibrations();
+    let calibrations = InForce::load(None, &scene).calibrations(&rig);
     let plan = Plan { rig, scene, calibrations, engage: true };
     if !plan.may_engage() {
         bail!(

@@ -7,12 +7,13 @@ use std::{
 
 use nima::{
     calibration::{
-        correspondence::CorrespondenceRecord,
+        correspondence::{Correspondence, CorrespondenceRecord},
         gravity::GravityRecord,
-        store::{Age, Loaded, Record, Store, StoreError, utc_now},
+        store::{Age, Loaded, Record, Store, utc_now},
     },
-    config::Scene,
+    config::{Rig, Scene},
     teleop::Calibrations,
+    tip_force::{Model, TipForce},
 };
 
 use super::wizards::{Binding, Saving};
@@ -25,6 +26,7 @@ pub struct InForce {
     bound: Option<(String, String)>,
     gravity: Option<Loaded<GravityRecord>>,
     correspondence: Option<Loaded<CorrespondenceRecord>>,
+    tip_force: Option<Loaded<Model>>,
     told: Option<String>,
 }
 
@@ -41,17 +43,28 @@ impl InForce {
     pub fn bind(&mut self, scene: &Scene) {
         self.bound = scene.wrist.as_ref().map(|wrist| (wrist.serial.clone(), wrist.tool.clone()));
         let (Some(store), Some((sensor, tool))) = (&self.store, &self.bound) else {
-            (self.gravity, self.correspondence) = (None, None);
+            (self.gravity, self.correspondence, self.tip_force) = (None, None, None);
             return;
         };
         let now = SystemTime::now();
         self.gravity = usable("Gravity", store.load(sensor, tool, now), &mut self.told);
         self.correspondence = usable("Correspondence", store.load(sensor, tool, now), &mut self.told);
+        self.tip_force = usable("Tip force", Model::kept(store, sensor, tool, now), &mut self.told);
     }
 
-    /// For the loop.
-    pub fn calibrations(&self) -> Calibrations {
-        Calibrations { gravity: self.gravity.as_ref().map(|loaded| loaded.record.model) }
+    /// For the loop of this rig.
+    pub fn calibrations(&mut self, rig: &Rig) -> Calibrations {
+        let model = self.tip_force.as_ref().map(|loaded| loaded.record.clone());
+        let tip_force = model.map(|model| TipForce::new(model, rig.tip_force.fallback)).transpose();
+        Calibrations {
+            gravity: self.gravity.as_ref().map(|loaded| loaded.record.model),
+            tip_force: usable("Tip force", tip_force, &mut self.told),
+        }
+    }
+
+    /// How the sensor under the tissue is turned, if that is known.
+    pub fn correspondence(&self) -> Option<Correspondence> {
+        self.correspondence.as_ref().map(|loaded| loaded.record.correspondence())
     }
 
     /// What a new calibration would belong to.
@@ -89,16 +102,13 @@ impl InForce {
         let gravity = self.gravity.as_ref().map_or_else(|| "Gravity: none".to_owned(), line_of_gravity);
         let correspondence =
             self.correspondence.as_ref().map_or_else(|| "Correspondence: none".to_owned(), line_of_correspondence);
-        vec![format!("Sensor {sensor}, {tool}"), gravity, correspondence]
+        let tip_force = self.tip_force.as_ref().map_or_else(|| "Tip force: none".to_owned(), line_of_tip_force);
+        vec![format!("Sensor {sensor}, {tool}"), gravity, correspondence, tip_force]
     }
 }
 
 /// What was loaded; a file that cannot be used is told.
-fn usable<R>(
-    what: &str,
-    loaded: Result<Option<Loaded<R>>, StoreError>,
-    told: &mut Option<String>,
-) -> Option<Loaded<R>> {
+fn usable<R>(what: &str, loaded: Result<Option<R>, impl std::error::Error>, told: &mut Option<String>) -> Option<R> {
     loaded.unwrap_or_else(|error| {
         *told = Some(format!("{what} is not in force: {}", in_one_line(&error)));
         None
@@ -128,8 +138,20 @@ fn line_of_correspondence(loaded: &Loaded<CorrespondenceRecord>) -> String {
     )
 }
 
+fn line_of_tip_force(loaded: &Loaded<Model>) -> String {
+    let origin = &loaded.record.origin;
+    let Some(check) = &origin.check else { return "Tip force: never checked".to_owned() };
+    let error_n = check.mae_n.iter().sum::<f64>() / 3.0;
+    let remarks = remarks(loaded.age, check.override_by.as_deref());
+    format!("Tip force: {}, {} rows, error on new data {error_n:.3} N{remarks}", day_of(&origin.date), origin.rows)
+}
+
 fn day(record: &impl Record) -> &str {
-    record.date().split('T').next().unwrap_or_default()
+    day_of(record.date())
+}
+
+fn day_of(date: &str) -> &str {
+    date.split('T').next().unwrap_or_default()
 }
 
 /// What to know of a record before it is trusted; empty when there is nothing.

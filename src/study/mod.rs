@@ -6,3 +6,4 @@ pub mod replay;
 pub mod solvers;
 pub mod stability;
 pub mod tradeoff;
+pub mod validation;

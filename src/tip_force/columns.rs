@@ -5,8 +5,9 @@
 //! both signs give the same bits. A quaternion of length zero gives numbers that are not finite, which the estimator refuses.
 
 /// Inputs taken by default, as far as a data set has them: gravity-free wrench at the wrist (`s1`; N, Nm), orientation
-/// (`kbf_from_s1`), depth through the trocar (m), its speed (m/s), and how far it went since it last turned back (m).
-pub const DEFAULT_INPUTS: [&str; 13] = [
+/// (`kbf_from_s1`), depth through the trocar (m), its speed (m/s), and what the seal remembers: how it is stretched (m) and how
+/// fast it slid (m/s); see [`super::Features`].
+pub const DEFAULT_INPUTS: [&str; 15] = [
     "fx_n",
     "fy_n",
     "fz_n",
@@ -19,7 +20,9 @@ pub const DEFAULT_INPUTS: [&str; 13] = [
     "qz",
     "insertion_m",
     "insertion_speed_m_s",
-    "presliding_m",
+    "presliding_200um_m",
+    "presliding_600um_m",
+    "slip_m_s",
 ];
 
 /// Outputs taken by default: the force of the tissue on the tip (`s1`, N).

@@ -122,7 +122,7 @@ impl Default for Coverage {
 impl Coverage {
     /// Takes one row.
     pub fn add(&mut self, inputs: &[f32; LIVE_INPUTS], tip_n: &[f32; 3], contact: bool) {
-        let [_, _, _, _, _, _, w, x, y, z, depth_m, speed_m_s, travel_m] = *inputs;
+        let [_, _, _, _, _, _, w, x, y, z, depth_m, speed_m_s, _, travel_m, _] = *inputs;
         let shaft = UnitQuaternion::from_quaternion(Quaternion::new(w, x, y, z)) * Vector3::z();
         self.tilt.add([shaft.x, shaft.y], [[-TILT, TILT]; 2]);
         let across_n = tip_n[0].hypot(tip_n[1]);

@@ -5,7 +5,7 @@
 //! A missing column and a field that is no finite number are refused with their place; nothing is guessed.
 
 use std::{
-    fs,
+    fs, io,
     ops::Range,
     path::{Path, PathBuf},
 };
@@ -56,11 +56,19 @@ pub struct DataSet {
 impl DataSet {
     /// Reads these files, all with the same columns.
     pub fn read(paths: &[PathBuf], selection: &Selection) -> Result<Self, TipForceError> {
+        let open = |path: &PathBuf| {
+            let failed = |error: io::Error| TipForceError::Open { path: path.clone(), reason: error.to_string() };
+            fs::read(path).map(|bytes| (path.clone(), bytes)).map_err(failed)
+        };
+        Self::parse(&paths.iter().map(open).collect::<Result<Vec<_>, _>>()?, selection)
+    }
+
+    /// The same of texts that go by these names.
+    pub fn parse(texts: &[(PathBuf, Vec<u8>)], selection: &Selection) -> Result<Self, TipForceError> {
         let mut hash = FNV_START;
         let mut set: Option<Self> = None;
-        for path in paths {
+        for (path, bytes) in texts {
             let open = |reason: String| TipForceError::Open { path: path.clone(), reason };
-            let bytes = fs::read(path).map_err(|error| open(error.to_string()))?;
             hash = bytes.iter().fold(hash, |hash, byte| (hash ^ u64::from(*byte)).wrapping_mul(FNV_PRIME));
             let mut reader = ReaderBuilder::new().trim(Trim::All).comment(Some(b'#')).from_reader(&bytes[..]);
             let header = reader.headers().map_err(|error| open(error.to_string()))?.clone();

@@ -232,14 +232,16 @@ impl Recorder {
 
     /// Writes the data set as CSV; on any error the old file (or none) stays.
     pub fn save(&self, path: &Path) -> io::Result<()> {
-        write_atomically(path, |file| {
-            writeln!(file, "t_s,trajectory,contact,{},{}", DEFAULT_INPUTS.join(","), DEFAULT_OUTPUTS.join(","))?;
-            for row in &self.rows {
-                let numbers = row.inputs.iter().chain(&row.tip_n).map(f32::to_string).collect::<Vec<_>>().join(",");
-                let contact = u8::from(row.contact);
-                writeln!(file, "{:.4},{},{contact},{numbers}", row.t_s, row.trajectory)?;
-            }
-            Ok(())
-        })
+        write_atomically(path, |file| self.write(file))
+    }
+
+    /// The data set as CSV.
+    pub fn write(&self, to: &mut dyn io::Write) -> io::Result<()> {
+        writeln!(to, "t_s,trajectory,contact,{},{}", DEFAULT_INPUTS.join(","), DEFAULT_OUTPUTS.join(","))?;
+        for row in &self.rows {
+            let numbers = row.inputs.iter().chain(&row.tip_n).map(f32::to_string).collect::<Vec<_>>().join(",");
+            writeln!(to, "{:.4},{},{},{numbers}", row.t_s, row.trajectory, u8::from(row.contact))?;
+        }
+        Ok(())
     }
 }

@@ -8,8 +8,10 @@ use std::{
 use anyhow::Context as _;
 use clap::{Args, Subcommand};
 use nima::{
+    impedance::MAX_DELAY_S,
     recording::write_atomically,
-    study::stability::{self, Options},
+    study::{stability, validation},
+    tip_force::MOST_ROWS,
 };
 
 use super::{output, tradeoff};
@@ -20,6 +22,41 @@ pub(super) enum StudyCommand {
     Stability(Stability),
     /// Measure what every knob of the identification costs in time and gives in accuracy
     Tradeoff(tradeoff::Arguments),
+    /// Repeat the paper's three validations on the simulated rig, its figures beside ours
+    Validation(Validation),
+}
+
+#[derive(Debug, Args)]
+pub(super) struct Validation {
+    /// Write validation.json and validation.md into this folder (made if absent)
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Seed of the simulated rig and of the training
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    seed: u64,
+    /// Rows to train the tip force on
+    #[arg(long, value_name = "N", default_value_t = validation::isolation::ROWS, value_parser = rows)]
+    rows: usize,
+    /// Delay of the link in the rendering part, ms
+    #[arg(long, value_name = "D", default_value_t = 300.0, value_parser = delay_ms)]
+    delay_ms: f64,
+    /// Print the figures as one JSON object
+    #[arg(long)]
+    json: bool,
+}
+
+fn rows(text: &str) -> Result<usize, String> {
+    match text.parse() {
+        Ok(rows @ 2000..=MOST_ROWS) => Ok(rows),
+        _ => Err(format!("give a number of rows from 2000 to {MOST_ROWS}")),
+    }
+}
+
+fn delay_ms(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(delay_ms) if (0.0..=1e3 * MAX_DELAY_S).contains(&delay_ms) => Ok(delay_ms),
+        _ => Err(format!("give a delay from 0 to {:.0} ms", 1e3 * MAX_DELAY_S)),
+    }
 }
 
 #[derive(Debug, Args)]
@@ -42,15 +79,31 @@ pub(super) fn run(command: &StudyCommand) -> anyhow::Result<()> {
     match command {
         StudyCommand::Stability(arguments) => stability(arguments),
         StudyCommand::Tradeoff(arguments) => tradeoff::run(arguments),
+        StudyCommand::Validation(arguments) => validation(arguments),
     }
 }
 
-fn stability(arguments: &Stability) -> anyhow::Result<()> {
+fn validation(arguments: &Validation) -> anyhow::Result<()> {
+    make(arguments.out.as_deref())?;
+    let options =
+        validation::Options { seed: arguments.seed, rows: arguments.rows, delay_s: 1e-3 * arguments.delay_ms };
+    let report = validation::study(&options, progress)?;
     if let Some(folder) = &arguments.out {
-        // Before the work, so that a wrong name does not cost its time.
-        std::fs::create_dir_all(folder).with_context(|| format!("cannot make the folder {}", folder.display()))?;
+        write(folder, "validation.json", &serde_json::to_string_pretty(&report)?)?;
+        write(folder, "validation.md", &report.markdown())?;
     }
-    let options = Options { ticks: arguments.ticks, quick: arguments.quick };
+    if arguments.json { output::json(&report) } else { output::line(report.text().trim_end()) }
+}
+
+/// Before the work, so that a wrong name does not cost its time.
+fn make(folder: Option<&Path>) -> anyhow::Result<()> {
+    let Some(folder) = folder else { return Ok(()) };
+    std::fs::create_dir_all(folder).with_context(|| format!("cannot make the folder {}", folder.display()))
+}
+
+fn stability(arguments: &Stability) -> anyhow::Result<()> {
+    make(arguments.out.as_deref())?;
+    let options = stability::Options { ticks: arguments.ticks, quick: arguments.quick };
     let report = stability::study(&options, progress)?;
     if let Some(folder) = &arguments.out {
         write(folder, "stability.json", &serde_json::to_string_pretty(&report)?)?;

@@ -1,0 +1,125 @@
+//! The paper's three validations, in simulation: its figures, ours, and why they differ.
+
+pub mod experiment;
+pub mod isolation;
+pub mod rendering;
+mod table;
+
+use nalgebra::Vector3;
+use serde::Serialize;
+
+pub use table::Row;
+
+use crate::{
+    calibration::AxisStats, config::ConfigError, impedance::SettingsError, study::validation::isolation::Isolation,
+    tip_force::TipForceError,
+};
+use rendering::Rendering;
+
+/// Why a validation could not be made.
+#[derive(Debug, thiserror::Error)]
+pub enum ValidationError {
+    /// A scene is wrong.
+    #[error(transparent)]
+    Config(#[from] ConfigError),
+    /// A setting of the loop is wrong.
+    #[error(transparent)]
+    Settings(#[from] SettingsError),
+    /// A calibration on the simulated rig gave nothing to go on with.
+    #[error("the simulated calibration failed: {0}; try another --seed")]
+    Calibration(String),
+    /// The network.
+    #[error(transparent)]
+    TipForce(#[from] TipForceError),
+    /// Writing in memory failed.
+    #[error("the simulated session could not be written down")]
+    Scratch(#[source] std::io::Error),
+}
+
+/// What to do.
+#[derive(Clone, Copy, Debug)]
+pub struct Options {
+    /// Seed of every scene and of the training.
+    pub seed: u64,
+    /// Rows to train on.
+    pub rows: usize,
+    /// Delay of the link in Validation III, s.
+    pub delay_s: f64,
+}
+
+/// Validation I: do the two sensors agree after the correspondence, on pushes that the fit never saw?
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct Agreement {
+    /// Error per axis, sample by sample, N (`s1`).
+    pub error_n: AxisStats,
+    /// Coefficient of determination of all axes together.
+    pub r2: f64,
+    /// Samples.
+    pub samples: usize,
+}
+
+/// All three.
+#[derive(Clone, Debug, Serialize)]
+pub struct Report {
+    /// Validation I.
+    pub correspondence: Agreement,
+    /// Validation II.
+    pub isolation: Isolation,
+    /// Validation III.
+    pub rendering: Rendering,
+    /// The paper's figures beside ours.
+    pub table: Vec<Row>,
+}
+
+/// Seconds of pushes that Validation I is judged by.
+const PUSHES_S: f64 = 60.0;
+
+/// Makes the validations; `progress` is told the number of the one that begins, of three.
+pub fn study(options: &Options, progress: impl Fn(usize, usize, &str)) -> Result<Report, ValidationError> {
+    progress(0, 3, "correspondence");
+    let gravity = experiment::gravity(options.seed)?;
+    let correspondence = agreement(&experiment::correspondence(&gravity, options.seed, PUSHES_S)?.unseen_s1_n);
+    progress(1, 3, "tip force through the trocar");
+    let isolation = isolation::study(options.seed, options.rows)?;
+    progress(2, 3, "rendering");
+    let rendering = rendering::study(options.seed, options.delay_s)?;
+    progress(3, 3, "");
+    let table = table::rows(&correspondence, &isolation, &rendering);
+    Ok(Report { correspondence, isolation, rendering, table })
+}
+
+fn agreement(pairs: &[[Vector3<f64>; 2]]) -> Agreement {
+    let count = pairs.len().max(1) as f64;
+    let mean_n = pairs.iter().map(|[wrist_n, _]| wrist_n).sum::<Vector3<f64>>() / count;
+    let squares =
+        |of: &dyn Fn(&[Vector3<f64>; 2]) -> Vector3<f64>| pairs.iter().map(|p| of(p).norm_squared()).sum::<f64>();
+    let varied = squares(&|[wrist_n, _]| wrist_n - mean_n);
+    let unexplained = squares(&|[wrist_n, tissue_n]| wrist_n - tissue_n);
+    Agreement {
+        error_n: AxisStats::of(pairs.iter().map(|[wrist_n, tissue_n]| wrist_n - tissue_n)),
+        r2: if varied > 0.0 { 1.0 - unexplained / varied } else { 0.0 },
+        samples: pairs.len(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_small_study_fills_every_row_and_separates_friction_from_tissue() {
+        let options = Options { seed: 5, rows: 4000, delay_s: 0.05 };
+        let report = study(&options, |_, _, _| {}).unwrap();
+        assert!(report.table.iter().all(|row| row.ours.iter().all(|value| value.is_finite())), "{:?}", report.table);
+        assert!(report.correspondence.r2 > 0.95, "{:?}", report.correspondence);
+        let worst = |reached: &isolation::Reached, method: usize| {
+            let stats = reached.truth.methods[method].outputs.iter();
+            stats.map(|stats| stats.map_or(f64::INFINITY, |stats| stats.mae)).fold(0.0, f64::max)
+        };
+        let ours = &report.isolation.our_inputs;
+        assert!(worst(ours, 0) < 0.10, "network {}", worst(ours, 0));
+        assert!(4.0 * worst(ours, 0) < worst(ours, 1), "no model {}", worst(ours, 1));
+        let foreign = &report.isolation.foreign;
+        assert!(foreign[..2].iter().all(|set| set.rows > 100 && set.flagged > 0.95), "{foreign:?}");
+    }
+}

@@ -1,0 +1,131 @@
+//! The paper's experiments in the simulated rig, sample by sample, with the truth that only a simulation knows.
+
+use nalgebra::{UnitVector3, Vector3};
+
+use super::ValidationError;
+use crate::{
+    calibration::{
+        correspondence::{self, Correspondence, CorrespondenceReport, CorrespondenceSession},
+        gravity::{GravityModel, GravitySession, SessionSettings},
+    },
+    config::Scene,
+    device::{Outputs, Prompt, Rig as _, Sensed},
+    frames::{Wrench, WristSample},
+    sim::World,
+};
+
+/// Rate of the rig, Hz.
+pub const RATE_HZ: f64 = 1000.0;
+/// Longest guided calibration, s.
+const PATIENCE_S: f64 = 120.0;
+
+/// A simulated rig and its time.
+#[derive(Clone, Debug)]
+pub struct Experiment {
+    world: World,
+    ticks: u64,
+}
+
+impl Experiment {
+    /// A scene with a person and a wrist sensor; other scenes give no samples.
+    pub fn new(scene: &Scene) -> Self {
+        Self { world: World::new(scene, RATE_HZ), ticks: 0 }
+    }
+
+    /// The embedded scene of this name with another seed.
+    pub fn scene(name: &str, seed: u64) -> Result<Scene, ValidationError> {
+        Ok(Scene { seed, ..Scene::load(name)? })
+    }
+
+    /// Time, s.
+    pub fn t_s(&self) -> f64 {
+        self.ticks as f64 / RATE_HZ
+    }
+
+    /// The next sample while the person does this.
+    pub fn sample(&mut self, prompt: Prompt) -> Option<WristSample> {
+        self.ticks += 1;
+        let outputs = Outputs { prompt, ..Outputs::SAFE };
+        match self.world.exchange(self.t_s(), &outputs)?.sensed {
+            Sensed::AtWrist(sample) => Some(sample),
+            Sensed::AtTip(_) => None,
+        }
+    }
+
+    /// True force on the tip in that sample, N (`s1`).
+    pub fn true_tip_s1_n(&self, sample: &WristSample) -> Vector3<f64> {
+        sample.kbf_from_s1.map_or_else(Vector3::zeros, |turn| turn.inverse() * self.world.true_tip_n())
+    }
+}
+
+/// Calibrates gravity on its own scene, as the wizard does.
+pub fn gravity(seed: u64) -> Result<GravityModel, ValidationError> {
+    let mut experiment = Experiment::new(&Experiment::scene("gravity", seed)?);
+    let mut session = GravitySession::new(SessionSettings::default());
+    while let Some(target) = session.target() {
+        let sample = experiment.sample(Prompt::Hold { kbf_from_s1: target.kbf_from_s1() });
+        if let Some(sample) = sample {
+            session.step(&sample, experiment.t_s());
+        }
+        if experiment.t_s() > PATIENCE_S {
+            break;
+        }
+    }
+    let report = session.report().map_err(|error| ValidationError::Calibration(error.to_string()))?;
+    let fit = report.chosen_fit().ok_or_else(|| ValidationError::Calibration(report.reason.clone()))?;
+    Ok(fit.model)
+}
+
+/// What pushing without a trocar gave.
+#[derive(Clone, Debug)]
+pub struct Pushes {
+    /// The fit of the pushes that were asked for.
+    pub report: CorrespondenceReport,
+    /// Later pushes that the fit never saw, sample by sample: force at the wrist, and force under the tissue told in its frame,
+    /// both N (`s1`).
+    pub unseen_s1_n: Vec<[Vector3<f64>; 2]>,
+}
+
+/// Pushes on the tissue without a trocar, as the wizard asks for them, and for `seconds` more to judge by.
+pub fn correspondence(gravity: &GravityModel, seed: u64, seconds: f64) -> Result<Pushes, ValidationError> {
+    let mut experiment = Experiment::new(&Experiment::scene("correspondence", seed)?);
+    let mut session = CorrespondenceSession::new(correspondence::SessionSettings::default());
+    let mut prompt = Prompt::Rest;
+    while session.pushes() < 2 * correspondence::TARGETS.len() && experiment.t_s() < PATIENCE_S {
+        let Some((sample, wrench)) = felt(&mut experiment, gravity, prompt) else { continue };
+        let phase = session.step(Some(wrench.force_n), &sample, experiment.t_s());
+        if !matches!(phase, correspondence::Phase::Resting { .. } | correspondence::Phase::Missing(_)) {
+            prompt = push(session.target(), session.pushes());
+        }
+    }
+    let report = session.report().map_err(|error| ValidationError::Calibration(error.to_string()))?;
+    let known = known(&report)?;
+    let mut unseen_s1_n = Vec::new();
+    let begin_s = experiment.t_s();
+    while experiment.t_s() < begin_s + seconds {
+        let prompt = push(None, ((experiment.t_s() - begin_s) / 2.0) as usize);
+        let Some((sample, wrench)) = felt(&mut experiment, gravity, prompt) else { continue };
+        if let Some(tip_n) = sample.tissue_n.and_then(|tissue_n| known.tip_force_s1(&sample, &tissue_n)) {
+            unseen_s1_n.push([wrench.force_n, tip_n]);
+        }
+    }
+    Ok(Pushes { report, unseen_s1_n })
+}
+
+/// The correspondence of a report, for use.
+pub fn known(report: &CorrespondenceReport) -> Result<Correspondence, ValidationError> {
+    let found = report.solution.as_ref().ok_or_else(|| ValidationError::Calibration(report.reason.clone()))?;
+    Ok(Correspondence { target: found.target, rotation: found.rotation(), flip_s2: false })
+}
+
+fn push(asked: Option<correspondence::PushTarget>, pushes: usize) -> Prompt {
+    let all = correspondence::TARGETS;
+    let target = asked.unwrap_or(all[pushes % all.len()]);
+    Prompt::Push { direction: UnitVector3::new_normalize(target.push_in_kbf) }
+}
+
+/// One sample and what it feels without weight and bias.
+pub fn felt(experiment: &mut Experiment, gravity: &GravityModel, prompt: Prompt) -> Option<(WristSample, Wrench)> {
+    let sample = experiment.sample(prompt)?;
+    Some((sample, gravity.gravity_free(&sample)?))
+}

@@ -1,0 +1,261 @@
+//! Validation II: the force at the tip through the trocar, learned from one session and judged on others.
+
+use std::{sync::atomic::AtomicBool, time::Instant};
+
+use nalgebra::{Quaternion, UnitQuaternion, Vector3};
+use serde::Serialize;
+
+use super::{ValidationError, experiment};
+use crate::{
+    calibration::{correspondence::Correspondence, gravity::GravityModel},
+    config::Scene,
+    device::Prompt,
+    runtime::Quantiles,
+    study::validation::experiment::{Experiment, felt},
+    tip_force::{
+        DataSet, Estimator, FeatureSettings, Model, NoContact, Part, Progress, Recorder, Selection, Settings, evaluate,
+    },
+};
+
+/// A recorded session: the data set as a technician gets it, and the truth beside every row.
+#[derive(Clone, Debug)]
+pub struct Session {
+    /// The data set, CSV.
+    pub text: Vec<u8>,
+    /// True force at the tip, row by row, N (`s1`).
+    pub truth_n: Vec<Vector3<f64>>,
+}
+
+/// What is known before a session.
+#[derive(Clone, Copy, Debug)]
+pub struct Known {
+    /// Weight and bias.
+    pub gravity: GravityModel,
+    /// How the sensor under the tissue is turned.
+    pub correspondence: Correspondence,
+}
+
+impl Known {
+    /// Calibrates both on their own scenes.
+    pub fn calibrate(seed: u64) -> Result<Self, ValidationError> {
+        let gravity = experiment::gravity(seed)?;
+        let report = experiment::correspondence(&gravity, seed, 0.0)?.report;
+        Ok(Self { gravity, correspondence: experiment::known(&report)? })
+    }
+}
+
+/// Records `rows` rows of a scene; of every ten seconds `contact_s` are worked in contact, the rest above the tissue.
+pub fn record(
+    scene: &Scene,
+    known: &Known,
+    features: FeatureSettings,
+    rows: usize,
+    contact_s: f64,
+) -> Result<Session, ValidationError> {
+    let mut experiment = Experiment::new(scene);
+    let mut recorder = Recorder::new(known.correspondence).with_features(features);
+    let mut truth_n = Vec::with_capacity(rows);
+    while recorder.rows() < rows {
+        let t_s = experiment.t_s();
+        let prompt = match t_s {
+            // The sensor under the tissue is zeroed first.
+            t if t < 1.0 => Prompt::Rest,
+            t if t % 10.0 < contact_s => Prompt::Work,
+            _ => Prompt::WorkFree,
+        };
+        if let Some((sample, wrench)) = felt(&mut experiment, &known.gravity, prompt) {
+            recorder.step(experiment.t_s(), Some(&wrench), &sample);
+            if recorder.rows() > truth_n.len() {
+                truth_n.push(experiment.true_tip_s1_n(&sample));
+            }
+        }
+        if t_s > 30.0 + rows as f64 * 0.02 {
+            let reason = format!("the recording stands still: {:?}", recorder.phase());
+            return Err(ValidationError::Calibration(reason));
+        }
+    }
+    let mut text = Vec::new();
+    recorder.write(&mut text).map_err(ValidationError::Scratch)?;
+    Ok(Session { text, truth_n })
+}
+
+impl Session {
+    /// The data set with these inputs; `None` takes the default ones.
+    pub fn data(&self, inputs: Option<&[&str]>) -> Result<DataSet, ValidationError> {
+        let inputs = inputs.map(|names| names.iter().map(|name| (*name).to_owned()).collect());
+        let texts = [("simulated session".into(), self.text.clone())];
+        Ok(DataSet::parse(&texts, &Selection { inputs, outputs: None })?)
+    }
+
+    /// The same with the true force at the tip in place of what the sensor under the tissue said.
+    pub fn true_data(&self, inputs: Option<&[&str]>) -> Result<DataSet, ValidationError> {
+        let mut data = self.data(inputs)?;
+        data.y = self.truth_n.iter().flat_map(|n| [n.x as f32, n.y as f32, n.z as f32]).collect();
+        data.contact = Some(self.truth_n.iter().map(|n| n.norm() > 0.0).collect());
+        Ok(data)
+    }
+}
+
+/// The paper's inputs: wrist force and orientation.
+pub const PAPER_INPUTS: [&str; 7] = ["fx_n", "fy_n", "fz_n", "qw", "qx", "qy", "qz"];
+/// Rows of a training session: the paper's.
+pub const ROWS: usize = 30_000;
+/// Rows of a session to be judged by.
+const JUDGED_ROWS: usize = 10_000;
+/// Seconds of every ten that are worked in contact.
+const CONTACT_S: f64 = 7.0;
+
+/// What a network reached on sessions that it never saw.
+#[derive(Clone, Debug, Serialize)]
+pub struct Reached {
+    /// Against the sensor under the tissue, as the paper measures.
+    pub measured: Part,
+    /// Against the truth, which only a simulation knows.
+    pub truth: Part,
+    /// In the experiment without contact.
+    pub no_contact: Vec<NoContact>,
+    /// Share of unseen samples in doubt.
+    pub false_alarms: f64,
+    /// Training, s.
+    pub training_s: f64,
+    /// One answer, microseconds.
+    pub inference_us: Quantiles,
+}
+
+/// Samples that lie outside of the training on purpose, and the share of them that is flagged.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct Foreign {
+    /// In what they are foreign.
+    pub what: &'static str,
+    /// Samples.
+    pub rows: usize,
+    /// Share of them in doubt.
+    pub flagged: f64,
+}
+
+/// All of Validation II.
+#[derive(Clone, Debug, Serialize)]
+pub struct Isolation {
+    /// With the inputs of the paper.
+    pub paper_inputs: Reached,
+    /// With ours.
+    pub our_inputs: Reached,
+    /// What doubt sees.
+    pub foreign: Vec<Foreign>,
+}
+
+/// One training session and sessions to judge by.
+#[derive(Clone, Debug)]
+pub struct Sessions {
+    known: Known,
+    seed: u64,
+    training: Session,
+    unseen: Session,
+    free: Session,
+}
+
+impl Sessions {
+    /// Records them; `rows` for training.
+    pub fn record(seed: u64, rows: usize, features: FeatureSettings) -> Result<Self, ValidationError> {
+        let known = Known::calibrate(seed)?;
+        let session = |scene: &str, seed: u64, rows: usize, contact_s: f64| {
+            record(&Experiment::scene(scene, seed)?, &known, features, rows, contact_s)
+        };
+        Ok(Self {
+            known,
+            seed,
+            training: session("isolation", seed, rows, CONTACT_S)?,
+            unseen: session("isolation", seed + 1, JUDGED_ROWS, CONTACT_S)?,
+            free: session("no_contact", seed + 2, JUDGED_ROWS, 0.0)?,
+        })
+    }
+
+    /// Trains on the one, judges on the others.
+    pub fn train(&self, inputs: Option<&[&str]>, settings: &Settings) -> Result<(Estimator, Reached), ValidationError> {
+        let start = Instant::now();
+        let model = Model::train(
+            &self.training.data(inputs)?,
+            settings,
+            [None, None],
+            &AtomicBool::new(false),
+            &|_: &Progress| {},
+        )?;
+        let training_s = start.elapsed().as_secs_f64();
+        let mut estimator = Estimator::new(model);
+        let measured = evaluate(&mut estimator, &self.unseen.data(inputs)?)?;
+        let truth = evaluate(&mut estimator, &self.unseen.true_data(inputs)?)?;
+        let free = evaluate(&mut estimator, &self.free.true_data(inputs)?)?;
+        let reached = Reached {
+            false_alarms: measured.overall.doubt_share,
+            inference_us: measured.inference_us,
+            measured: measured.overall,
+            truth: truth.overall,
+            no_contact: free.overall.no_contact,
+            training_s,
+        };
+        Ok((estimator, reached))
+    }
+
+    /// What doubt sees of samples unlike the training.
+    pub fn foreign(&self, estimator: &mut Estimator) -> Result<Vec<Foreign>, ValidationError> {
+        let strongest_n = self.training.truth_n.iter().map(Vector3::norm).fold(0.0, f64::max);
+        let directions = directions(&self.training.data(None)?);
+        let mut all = Vec::new();
+        let mut one = |what, change: &dyn Fn(&mut Scene), keep: &dyn Fn(&DataSet, usize, &Vector3<f64>) -> bool| {
+            let mut scene = Experiment::scene("isolation", self.seed + 3)?;
+            change(&mut scene);
+            let session = record(&scene, &self.known, FeatureSettings::default(), JUDGED_ROWS, CONTACT_S)?;
+            let data = session.data(None)?;
+            let doubts = (0..data.rows())
+                .filter(|row| keep(&data, *row, &session.truth_n[*row]))
+                .map(|row| estimator.estimate(data.input(row)).in_doubt);
+            let (rows, flagged) = doubts.fold((0, 0), |(n, k), doubt| (n + 1, k + usize::from(doubt)));
+            all.push(Foreign { what, rows, flagged: flagged as f64 / f64::from(rows.max(1) as u32) });
+            Ok::<(), ValidationError>(())
+        };
+        one(
+            "force at the tip a quarter above all trained",
+            &|scene| scene.tissue.iter_mut().for_each(|tissue| tissue.stiffness *= 3.0),
+            &|_, _, truth_n| truth_n.norm() > 1.25 * strongest_n,
+        )?;
+        one("shaft more than 5 degrees from all trained", &|scene| scene.trocar_m.x += 0.08, &|data, row, _| {
+            directions.iter().all(|known| known.angle(&direction(data, row)) > 5_f64.to_radians())
+        })?;
+        one(
+            "another seal, three times the friction, while it slides",
+            &|scene| {
+                scene.trocar.iter_mut().for_each(|trocar| {
+                    (trocar.coulomb_n, trocar.static_n) = (3.0 * trocar.coulomb_n, 3.0 * trocar.static_n);
+                });
+            },
+            &|data, row, _| data.input(row)[TRAVEL].abs() > 0.5e-3,
+        )?;
+        one(
+            "another tool, 150 g heavier",
+            &|scene| scene.wrist.iter_mut().for_each(|wrist| wrist.tool_mass_kg += 0.15),
+            &|_, _, _| true,
+        )?;
+        Ok(all)
+    }
+}
+
+const TRAVEL: usize = 13;
+
+fn direction(data: &DataSet, row: usize) -> Vector3<f64> {
+    let [w, x, y, z] = [6, 7, 8, 9].map(|column| f64::from(data.input(row)[column]));
+    UnitQuaternion::from_quaternion(Quaternion::new(w, x, y, z)) * Vector3::z()
+}
+
+/// Directions of the shaft in a session, thinned.
+fn directions(data: &DataSet) -> Vec<Vector3<f64>> {
+    (0..data.rows()).step_by(20).map(|row| direction(data, row)).collect()
+}
+
+/// Validation II with the default settings.
+pub fn study(seed: u64, rows: usize) -> Result<Isolation, ValidationError> {
+    let sessions = Sessions::record(seed, rows, FeatureSettings::default())?;
+    let (_, paper_inputs) = sessions.train(Some(&PAPER_INPUTS), &Settings::default())?;
+    let (mut estimator, our_inputs) = sessions.train(None, &Settings::default())?;
+    let foreign = sessions.foreign(&mut estimator)?;
+    Ok(Isolation { paper_inputs, our_inputs, foreign })
+}

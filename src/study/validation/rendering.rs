@@ -1,0 +1,101 @@
+//! Validation III: how well each mode renders the force, in the window that it was fitted on and at the horizon.
+
+use nalgebra::Vector3;
+use serde::Serialize;
+
+use super::ValidationError;
+use crate::{
+    config::{Rig, Scene},
+    impedance::Mode,
+    runtime::{Plan, run_virtual},
+    teleop::{Calibrations, ErrorStats},
+};
+
+/// The scene that is rendered: the paper's task.
+const SCENE: &str = "peg_transfer";
+/// How long, s, and how much at its beginning does not count: the window must fill.
+const SECONDS: f64 = 60.0;
+const FILL_S: f64 = 1.0;
+
+/// Mean absolute error and standard deviation of one axis, the mean of the three, N.
+#[derive(Clone, Copy, Debug, Default, Serialize)]
+pub struct Figures {
+    /// Mean absolute error, N.
+    pub mae_n: f64,
+    /// Standard deviation of the error, N.
+    pub sd_n: f64,
+}
+
+/// Figures of one mode.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct ModeFigures {
+    /// The mode.
+    pub mode: Mode,
+    /// Its error.
+    pub error: Figures,
+}
+
+/// All of Validation III.
+#[derive(Clone, Debug, Serialize)]
+pub struct Rendering {
+    /// The paper's recipe on the newest sample of the very window it was fitted on.
+    pub in_window_nonlinear: Figures,
+    /// The same with N = 1.
+    pub in_window_linear: Figures,
+    /// Share of windows that chose a degree above 1.
+    pub nonlinear_share: f64,
+    /// The delay of the link, s.
+    pub delay_s: f64,
+    /// At the horizon, per mode.
+    pub at_horizon: Vec<ModeFigures>,
+}
+
+/// Errors per axis.
+#[derive(Clone, Debug, Default)]
+struct Axes([ErrorStats; 3]);
+
+impl Axes {
+    fn add(&mut self, error_n: &Vector3<f64>) {
+        for (axis, stats) in self.0.iter_mut().enumerate() {
+            stats.add(&Vector3::new(error_n[axis], 0.0, 0.0));
+        }
+    }
+
+    fn figures(&self) -> Figures {
+        let mean = |of: &dyn Fn(&ErrorStats) -> f64| self.0.iter().map(of).sum::<f64>() / 3.0;
+        Figures { mae_n: mean(&|stats| stats.mae_n), sd_n: mean(&ErrorStats::sd_n) }
+    }
+}
+
+/// Runs the task with this delay (s).
+pub fn study(seed: u64, delay_s: f64) -> Result<Rendering, ValidationError> {
+    let scene = Scene { seed, ..Scene::load(SCENE)? };
+    let rig = Rig { delay_s, ..Rig::load("simulated")? };
+    let plan = Plan { rig, scene, calibrations: Calibrations::default(), engage: true };
+    let (mut nonlinear, mut linear) = (Axes::default(), Axes::default());
+    let mut at_horizon: [Axes; 4] = std::array::from_fn(|_| Axes::default());
+    let (mut windows, mut above_one) = (0_u32, 0_u32);
+    run_virtual(&plan, SECONDS, |tick| {
+        if tick.t_s < FILL_S + delay_s {
+            return None;
+        }
+        let report = &tick.identification;
+        if let degree @ 1.. = usize::from(report.paper_degree) {
+            windows += 1;
+            above_one += u32::from(degree > 1);
+            nonlinear.add(&report.reconstruction_n[degree - 1]);
+            linear.add(&report.reconstruction_n[0]);
+        }
+        for mode in Mode::ALL {
+            at_horizon[mode.index()].add(&(tick.asked_n[mode.index()] - tick.measured_n));
+        }
+        None
+    })?;
+    Ok(Rendering {
+        in_window_nonlinear: nonlinear.figures(),
+        in_window_linear: linear.figures(),
+        nonlinear_share: f64::from(above_one) / f64::from(windows.max(1)),
+        delay_s,
+        at_horizon: Mode::ALL.map(|mode| ModeFigures { mode, error: at_horizon[mode.index()].figures() }).to_vec(),
+    })
+}

@@ -1,0 +1,155 @@
+//! The paper's figures beside ours, with the reason for the difference.
+
+use std::fmt::Write as _;
+
+use serde::Serialize;
+
+use super::{Agreement, Isolation, Rendering, Report};
+use crate::{impedance::Mode, tip_force::Part};
+
+/// One figure: the paper's, ours, and why they differ.
+#[derive(Clone, Debug, Serialize)]
+pub struct Row {
+    /// `I`, `II` or `III`.
+    pub validation: &'static str,
+    /// What is compared, with its unit.
+    pub what: String,
+    /// The paper's value or values (x, y, z); none where the paper has no such figure.
+    pub paper: Vec<f64>,
+    /// Ours.
+    pub ours: Vec<f64>,
+    /// Why they differ.
+    pub why: &'static str,
+}
+
+fn row(
+    validation: &'static str,
+    what: impl Into<String>,
+    paper: &[f64],
+    ours: impl Into<Vec<f64>>,
+    why: &'static str,
+) -> Row {
+    Row { validation, what: what.into(), paper: paper.to_vec(), ours: ours.into(), why }
+}
+
+pub(super) fn rows(one: &Agreement, two: &Isolation, three: &Rendering) -> Vec<Row> {
+    let mut all = vec![
+        row(
+            "I",
+            "s1 against s2, MAE x y z (N)",
+            &[0.11, 0.09, 0.13],
+            one.error_n.mae,
+            "simulated sensors: noise 0.04 N each, no hysteresis, no inertia",
+        ),
+        row("I", "s1 against s2, SD x y z (N)", &[0.11, 0.12, 0.18], one.error_n.sd, "as above"),
+        row("I", "s1 against s2, R2", &[0.95], [one.r2], "as above"),
+    ];
+    all.extend(isolation(two));
+    all.extend(rendering(three));
+    all
+}
+
+fn axes(part: &Part, method: usize, of: impl Fn(&crate::tip_force::Stats) -> f64) -> Vec<f64> {
+    part.methods[method].outputs.iter().flatten().map(of).collect()
+}
+
+fn isolation(two: &Isolation) -> Vec<Row> {
+    const CANNOT: &str = "force and orientation do not tell which way the friction pulls; the paper's sessions may have favoured one way";
+    const MEMORY: &str = "the seal's memory is among the inputs";
+    let (theirs, ours) = (&two.paper_inputs, &two.our_inputs);
+    let free = |reached: &super::isolation::Reached, of: &dyn Fn(&crate::tip_force::NoContact) -> f64| {
+        reached.no_contact.iter().map(of).collect::<Vec<_>>()
+    };
+    let [mae, sd, mean_free, sd_free]: [&[f64]; 4] = [&[0.19, 0.16, 0.16], &[0.2; 3], &[0.02; 3], &[0.03; 3]];
+    let mut all = vec![
+        row("II", "tip force, the paper's 7 inputs, MAE x y z (N)", mae, axes(&theirs.measured, 0, |s| s.mae), CANNOT),
+        row("II", "tip force, the paper's 7 inputs, SD x y z (N)", sd, axes(&theirs.measured, 0, |s| s.sd), CANNOT),
+        row("II", "tip force, our 15 inputs, MAE x y z (N)", mae, axes(&ours.measured, 0, |s| s.mae), MEMORY),
+        row("II", "tip force, our 15 inputs, SD x y z (N)", sd, axes(&ours.measured, 0, |s| s.sd), MEMORY),
+        row(
+            "II",
+            "the same against the truth, MAE x y z (N)",
+            &[],
+            axes(&ours.truth, 0, |s| s.mae),
+            "the sensor under the tissue has noise of its own",
+        ),
+        row("II", "wrist force taken as it is, MAE x y z (N)", &[], axes(&ours.measured, 1, |s| s.mae), "no model"),
+        row("II", "linear regression, MAE x y z (N)", &[], axes(&ours.measured, 2, |s| s.mae), "same inputs"),
+        row(
+            "II",
+            "Coulomb and viscous friction, MAE x y z (N)",
+            &[],
+            axes(&ours.measured, 3, |s| s.mae),
+            "same inputs",
+        ),
+        row("II", "no contact, 7 inputs, mean x y z (N)", mean_free, free(theirs, &|n| n.mean), CANNOT),
+        row("II", "no contact, 7 inputs, SD x y z (N)", sd_free, free(theirs, &|n| n.sd), CANNOT),
+        row("II", "no contact, 15 inputs, mean x y z (N)", mean_free, free(ours, &|n| n.mean), MEMORY),
+        row("II", "no contact, 15 inputs, SD x y z (N)", sd_free, free(ours, &|n| n.sd), MEMORY),
+        row("II", "unseen samples in doubt (share)", &[], [ours.false_alarms], "false alarms; 0.05 is the limit"),
+    ];
+    for set in &two.foreign {
+        let what = format!("flagged: {} (share of {})", set.what, set.rows);
+        all.push(row("II", what, &[], [set.flagged], "outside of the training on purpose"));
+    }
+    all
+}
+
+fn rendering(three: &Rendering) -> Vec<Row> {
+    const IN_WINDOW: &str = "tested on the data it was fitted on, as the paper does; every axis weighs the same";
+    let pair = |figures: super::rendering::Figures| [figures.mae_n, figures.sd_n];
+    let mut all = vec![
+        row(
+            "III",
+            "nonlinear, in its window, MAE and SD (N)",
+            &[0.01, 0.02],
+            pair(three.in_window_nonlinear),
+            IN_WINDOW,
+        ),
+        row("III", "linear, in its window, MAE and SD (N)", &[0.2, 0.4], pair(three.in_window_linear), IN_WINDOW),
+        row(
+            "III",
+            "windows that chose a nonlinear degree (share)",
+            &[0.64],
+            [three.nonlinear_share],
+            "another task, other tissue, other noise",
+        ),
+    ];
+    for figures in &three.at_horizon {
+        let why = match figures.mode {
+            Mode::Dfr => "the force as late as it comes: the yardstick",
+            Mode::Anchored => "our rendering: reflection and what is learned of its change",
+            Mode::Linear | Mode::Literal => "what the hand would feel; the paper tests in the window only",
+        };
+        let what = format!("{}, {:.0} ms later, MAE and SD (N)", figures.mode.name(), 1e3 * three.delay_s);
+        all.push(row("III", what, &[], pair(figures.error), why));
+    }
+    all
+}
+
+impl Report {
+    /// For a terminal.
+    pub fn text(&self) -> String {
+        let mut out = format!("{:<4} {:<78} {:>17}  {:>23}\n", "", "", "paper", "ours");
+        for row in &self.table {
+            let Row { validation, what, paper, ours, .. } = row;
+            // Writing into a String cannot fail.
+            writeln!(out, "{validation:<4} {what:<78} {:>17}  {:>23}", words(paper), words(ours)).ok();
+        }
+        out
+    }
+
+    /// For the documentation: a Markdown table.
+    pub fn markdown(&self) -> String {
+        let mut out = String::from("| | | paper | ours | why they differ |\n|---|---|---|---|---|\n");
+        for Row { validation, what, paper, ours, why } in &self.table {
+            writeln!(out, "| {validation} | {what} | {} | {} | {why} |", words(paper), words(ours)).ok();
+        }
+        out
+    }
+}
+
+fn words(values: &[f64]) -> String {
+    let one = |value: &f64| if value.abs() >= 100.0 { format!("{value:.1e}") } else { format!("{value:.3}") };
+    if values.is_empty() { "-".to_owned() } else { values.iter().map(one).collect::<Vec<_>>().join(" ") }
+}

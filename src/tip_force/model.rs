@@ -17,7 +17,7 @@ use super::{
     DataSet, Expansion, Layer, Member, MemberFigures, Network, Normalisation, Progress, Settings, TipForceError,
     baseline::Baselines, doubt::Doubt, train, training::features_of,
 };
-use crate::recording::write_atomically;
+use crate::files::write_atomically;
 
 /// What the file calls itself.
 const FORMAT: &str = "nima tip force 1";

@@ -14,7 +14,8 @@ use anyhow::{Context as _, bail};
 use clap::Args;
 use nima::{
     impedance::Mode,
-    runtime::{self, Plan, Quantiles, Summary, Tick},
+    runtime::{self, Plan, Summary, Tick},
+    statistics::Quantiles,
 };
 
 use super::{output, setup::Setup};

@@ -8,7 +8,7 @@ use std::{
 use anyhow::Context as _;
 use clap::{Args, Subcommand};
 use nima::{
-    recording::write_atomically,
+    files::write_atomically,
     study::stability::{self, Options},
 };
 

@@ -9,8 +9,9 @@ use nalgebra::Vector3;
 use nima::{
     config::{Rig, Scene},
     impedance::Mode,
-    runtime::{Command, Event, Fault, Handle, Percentiles, Quantiles, Scheduling, Tick},
+    runtime::{Command, Event, Fault, Handle, Scheduling, Tick},
     safety::ChainSettings,
+    statistics::{Percentiles, Quantiles},
     teleop::LoopState,
 };
 

@@ -87,6 +87,9 @@ pub struct TissueSensor {
     pub noise_n: f64,
     /// Standard deviation of the tracker's orientation about each axis, degrees.
     pub tracker_noise_deg: f64,
+    /// It tells what presses on the tissue, not what the tissue does to the instrument, as scales do.
+    #[serde(default)]
+    pub reads_tissue: bool,
 }
 
 /// Somebody who guides the arm by hand and does what the screen asks.

@@ -8,11 +8,13 @@ use std::{
 use nima::{
     calibration::{
         correspondence::CorrespondenceRecord,
-        gravity::GravityRecord,
+        gravity::{Drift, DriftCheck, GravityRecord, StillSettings},
         store::{Age, Loaded, Record, Store, StoreError, utc_now},
     },
     config::Scene,
-    teleop::Calibrations,
+    device::Prompt,
+    runtime::Tick,
+    teleop::{Calibrations, LoopState},
 };
 
 use super::wizards::{Binding, Saving};
@@ -25,6 +27,8 @@ pub struct InForce {
     bound: Option<(String, String)>,
     gravity: Option<Loaded<GravityRecord>>,
     correspondence: Option<Loaded<CorrespondenceRecord>>,
+    /// How gravity stands since the loop began, and when that was found.
+    drift: Option<(DriftCheck, String)>,
     told: Option<String>,
 }
 
@@ -41,12 +45,43 @@ impl InForce {
     pub fn bind(&mut self, scene: &Scene) {
         self.bound = scene.wrist.as_ref().map(|wrist| (wrist.serial.clone(), wrist.tool.clone()));
         let (Some(store), Some((sensor, tool))) = (&self.store, &self.bound) else {
-            (self.gravity, self.correspondence) = (None, None);
+            (self.gravity, self.correspondence, self.drift) = (None, None, None);
             return;
         };
         let now = SystemTime::now();
         self.gravity = usable("Gravity", store.load(sensor, tool, now), &mut self.told);
         self.correspondence = usable("Correspondence", store.load(sensor, tool, now), &mut self.told);
+        self.drift = self.gravity.as_ref().map(|Loaded { record, .. }| {
+            (DriftCheck::new(record.model, record.drift_limit_n(), StillSettings::default()), String::new())
+        });
+    }
+
+    /// Takes in one tick of the loop: in the first seconds, idle and still, it shows whether the bias is where it was.
+    pub fn watch(&mut self, tick: &Tick) {
+        let Some((check, found_at)) = &mut self.drift else { return };
+        let idle = match tick.state {
+            LoopState::Idle if tick.prompt == Prompt::Rest => true,
+            LoopState::Engaged => false,
+            // Somebody guides the arm, or what is shown is not new.
+            _ => return,
+        };
+        let before = check.drift();
+        if check.step(tick.wrist.as_ref(), idle, tick.t_s) != before {
+            utc_now().get(11..16).unwrap_or_default().clone_into(found_at);
+        }
+    }
+
+    /// How gravity stands since the loop began; none where nothing is to be checked.
+    pub fn drift(&self) -> Option<Drift> {
+        self.drift.as_ref().map(|(check, _)| check.drift())
+    }
+
+    /// By how much the bias has moved, if it has, N.
+    pub fn bias_moved_n(&self) -> Option<f64> {
+        match self.drift() {
+            Some(Drift::Moved { by_n }) => Some(by_n),
+            _ => None,
+        }
     }
 
     /// For the loop.
@@ -89,7 +124,10 @@ impl InForce {
         let gravity = self.gravity.as_ref().map_or_else(|| "Gravity: none".to_owned(), line_of_gravity);
         let correspondence =
             self.correspondence.as_ref().map_or_else(|| "Correspondence: none".to_owned(), line_of_correspondence);
-        vec![format!("Sensor {sensor}, {tool}"), gravity, correspondence]
+        let mut lines = vec![format!("Sensor {sensor}, {tool}"), gravity];
+        lines.extend(self.drift.as_ref().map(line_of_drift));
+        lines.push(correspondence);
+        lines
     }
 }
 
@@ -117,6 +155,14 @@ fn line_of_gravity(loaded: &Loaded<GravityRecord>) -> String {
     let (day, remarks) = (day(&loaded.record), remarks(loaded.age, override_by.as_deref()));
     let error_n = residuals.held_out.mean_mae();
     format!("Gravity: {day}, {poses} poses, held-out error {error_n:.3} N{remarks}")
+}
+
+fn line_of_drift((check, found_at): &(DriftCheck, String)) -> String {
+    let words = check.drift().words();
+    match check.drift() {
+        Drift::Fine { .. } | Drift::Moved { .. } => format!("Bias, checked {found_at} UTC: {words}"),
+        Drift::Waiting | Drift::NotChecked(_) => format!("Bias: {words}"),
+    }
 }
 
 fn line_of_correspondence(loaded: &Loaded<CorrespondenceRecord>) -> String {

@@ -23,8 +23,9 @@ const FORCE_NOISE_N: f64 = 0.10;
 const ACCELERATION_NOISE_M_S2: f64 = 0.12;
 /// Largest departure of the accelerometer's reading at rest from gravity, as a share.
 const GRAVITY_SHARE: f64 = 0.05;
-/// Stillness is known to this, s, and shorter rests than the second are no rest.
+/// Stillness is told in steps of 20 ms, and its first sample is a tick late: a rest may seem shorter than it was by this, s.
 const REST_ROUNDING_S: f64 = 0.045;
+/// A tool that swings is still for a moment at its turning points; this long it is not, s.
 const REST_S: f64 = 0.2;
 /// Fewest samples of a stretch from which noise is told.
 const SAMPLES_MIN: f64 = 20.0;

@@ -273,6 +273,11 @@ impl Ranges<'_> {
         Err(ConfigError::Range { kind: self.kind, name: self.name.to_owned(), key, value, range })
     }
 
+    /// Every entry on its own: a sum would hide infinities that cancel.
+    fn finite(&self, key: &'static str, vector: &Vector3<f64>) -> Result<(), ConfigError> {
+        vector.iter().try_for_each(|entry| self.check(key, *entry, true, "finite numbers"))
+    }
+
     fn positive(&self, key: &'static str, value: f64) -> Result<(), ConfigError> {
         self.check(key, value, value > 0.0, "a number above 0")
     }
@@ -361,7 +366,9 @@ impl Scene {
             "at least one target",
         )?;
         for target in self.targets_m.iter().chain([&self.trocar_m]) {
-            ranges.check("targets_m, trocar_m", target.amax(), target.amax() <= 1.0, "within 1 m of the origin")?;
+            for entry in target {
+                ranges.check("targets_m, trocar_m", *entry, entry.abs() <= 1.0, "within 1 m of the origin")?;
+            }
         }
         let hand = &self.hand;
         ranges.positive("hand.reach_s", hand.reach_s)?;
@@ -375,7 +382,8 @@ impl Scene {
         ranges.not_negative("hand.grip_damping_n_s_m", hand.grip_damping_n_s_m)?;
         if let Some(tissue) = &self.tissue {
             ranges.check("tissue.surface_z_m", tissue.surface_z_m, tissue.surface_z_m.abs() <= 1.0, "within 1 m")?;
-            ranges.positive("tissue.size_m", tissue.size_m[0].min(tissue.size_m[1]))?;
+            ranges.positive("tissue.size_m", tissue.size_m[0])?;
+            ranges.positive("tissue.size_m", tissue.size_m[1])?;
             ranges.not_negative("tissue.stiffness", tissue.stiffness)?;
             ranges.check("tissue.exponent", tissue.exponent, (1.0..=3.0).contains(&tissue.exponent), "1 to 3")?;
             ranges.not_negative("tissue.damping_s_m", tissue.damping_s_m)?;

@@ -1,13 +1,13 @@
 //! The machine of NIMA Console: everything between a surgeon's hand and the tissue, without a screen.
 //!
 //! Rooms know only the rooms below them:
-//! `frames, signal` < `calibration, tip_force, impedance, safety` < `device, sim` < `teleop` < `runtime` < `recording, study`.
-//! Two helpers are known from below all the same: `recording::write_atomically` and `runtime::Percentiles`.
+//! `files, statistics, frames, signal` < `calibration, tip_force, impedance, safety` < `device, sim` < `teleop` < `runtime` < `recording, study`.
 //! SI units inside (m, s, N, rad); a name carries its unit and frame where the type does not.
 
 pub mod calibration;
 pub mod config;
 pub mod device;
+pub mod files;
 pub mod frames;
 pub mod impedance;
 pub mod recording;
@@ -15,6 +15,7 @@ pub mod runtime;
 pub mod safety;
 pub mod signal;
 pub mod sim;
+pub mod statistics;
 pub mod study;
 pub mod teleop;
 pub mod tip_force;

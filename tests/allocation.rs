@@ -1,12 +1,9 @@
 //! Nothing is allocated in a tick: of identification and rendering, of the whole loop, of the simulation.
 
-#![expect(unsafe_code, reason = "counting what is allocated takes a global allocator, whose trait is unsafe")]
+#[path = "common/counting.rs"]
+mod counting;
 
-use std::{
-    alloc::{GlobalAlloc, Layout, System},
-    cell::Cell,
-};
-
+use counting::calls;
 use nalgebra::Vector3;
 use nima::{
     config::{Rig, Scene},
@@ -17,41 +14,6 @@ use nima::{
     sim::World,
     teleop::{Calibrations, Loop, Timing},
 };
-
-struct Counting;
-
-thread_local! {
-    static CALLS: Cell<u64> = const { Cell::new(0) };
-}
-
-fn count() {
-    // A thread that is ending has no counter any more, and nothing of ours to count.
-    let _ = CALLS.try_with(|calls| calls.set(calls.get() + 1));
-}
-
-// SAFETY: every call is handed on to the system's allocator unchanged.
-unsafe impl GlobalAlloc for Counting {
-    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
-        count();
-        // SAFETY: the caller's promises are passed on.
-        unsafe { System.alloc(layout) }
-    }
-
-    unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
-        count();
-        // SAFETY: the caller's promises are passed on.
-        unsafe { System.dealloc(pointer, layout) }
-    }
-
-    unsafe fn realloc(&self, pointer: *mut u8, layout: Layout, new_size: usize) -> *mut u8 {
-        count();
-        // SAFETY: the caller's promises are passed on.
-        unsafe { System.realloc(pointer, layout, new_size) }
-    }
-}
-
-#[global_allocator]
-static ALLOCATOR: Counting = Counting;
 
 fn sample(k: u32) -> Sample {
     let t = f64::from(k) * 1e-3;
@@ -74,7 +36,7 @@ fn identification_and_rendering_allocate_nothing() {
                 Settings { differentiator, cross_talk, modes: ModeSet::ALL, delay_s: 0.05, ..Settings::default() };
             let mut identifier = Identifier::new(&settings).unwrap();
             let mut renderer = Renderer::new(&settings).unwrap();
-            let before = CALLS.get();
+            let before = calls();
             for k in 0..3000 {
                 let sample = sample(k);
                 identifier.step(&sample);
@@ -88,12 +50,12 @@ fn identification_and_rendering_allocate_nothing() {
                     renderer.reset();
                 }
             }
-            assert_eq!(CALLS.get() - before, 0, "{differentiator:?}, cross-talk {cross_talk}");
+            assert_eq!(calls() - before, 0, "{differentiator:?}, cross-talk {cross_talk}");
         }
     }
-    let before = CALLS.get();
+    let before = calls();
     drop(std::hint::black_box(vec![1_u8; 10]));
-    assert_eq!(CALLS.get() - before, 2, "the counter counts");
+    assert_eq!(calls() - before, 2, "the counter counts");
 }
 
 #[test]
@@ -103,7 +65,7 @@ fn a_tick_of_the_whole_loop_and_of_the_simulation_allocates_nothing() {
     let mut world = World::new(&Scene::load("peg_transfer").unwrap(), rig.rate_hz);
     let mut outputs = Outputs::SAFE;
     control.obey(Command::Engage, 0.0);
-    let before = CALLS.get();
+    let before = calls();
     for k in 0..10_000_u32 {
         let now_s = f64::from(k) * 1e-3;
         control.clear_events();
@@ -119,5 +81,5 @@ fn a_tick_of_the_whole_loop_and_of_the_simulation_allocates_nothing() {
         let inputs = world.exchange(now_s, &outputs).filter(|_| k % 1000 > 5 && k < 9000);
         outputs = control.step(inputs, &Timing { now_s, ..Timing::default() }).0;
     }
-    assert_eq!(CALLS.get() - before, 0);
+    assert_eq!(calls() - before, 0);
 }

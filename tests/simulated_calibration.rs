@@ -7,8 +7,8 @@ use nima::{
         Verdict,
         correspondence::{self, CorrespondenceReport, CorrespondenceSession},
         gravity::{
-            CheckPass, Compensator, DEFAULT_TIME_CONSTANT_S, Drift, DriftCheck, GravityModel, GravitySession, Phase,
-            SessionSettings, StillSettings, TARGETS,
+            CheckPass, Compensator, DEFAULT_TIME_CONSTANT_S, Drift, DriftCheck, GravityModel, GravitySession,
+            NotChecked, Phase, Precheck, SessionSettings, StillSettings, TARGETS,
         },
     },
     config::{Flaw, Scene},
@@ -108,10 +108,13 @@ fn a_trembling_tool_gives_no_pose_and_one_orientation_gives_one() {
 fn an_accelerometer_that_reads_the_other_way_is_named() {
     let mut scene = Scene::load("gravity").unwrap();
     scene.wrist.as_mut().unwrap().imu.as_mut().unwrap().reads_gravity = true;
-    let (_, session) = calibrate(&scene);
+    let (_, mut session) = calibrate(&scene);
     let report = session.report().unwrap();
     assert_eq!(report.verdict, Verdict::PoorData);
     assert!(report.reason.contains("sign"), "{}", report.reason);
+    session.set_imu_sign(-1);
+    let cured = session.report().unwrap();
+    assert_eq!(cured.verdict, Verdict::Accepted, "the poses taken serve with the other sign: {}", cured.reason);
 }
 
 #[test]
@@ -123,28 +126,122 @@ fn without_an_accelerometer_the_arm_serves() {
     assert_eq!(session.report().unwrap().verdict, Verdict::Accepted, "{}", session.report().unwrap().reason);
 }
 
+/// What the check at the start says after `seconds` in this scene, asked for this, idle or not.
+fn drift(session: &GravitySession, scene: &Scene, prompt: Prompt, idle: bool, seconds: f64) -> Drift {
+    let record = session.report().unwrap().record("S", "T", "2026-01-31T12:00:00Z").unwrap();
+    let mut bench = Bench::new(scene);
+    let mut check = DriftCheck::new(record.model, record.drift_limit_n(), StillSettings::default());
+    for _ in 0..(seconds * 1e3) as u32 {
+        let sample = bench.sample(prompt);
+        check.step(Some(&sample), idle, bench.t_s);
+    }
+    check.drift()
+}
+
 #[test]
-fn a_drifted_sensor_is_noticed_at_the_start() {
+fn a_bias_that_moved_is_noticed_at_the_start_and_one_that_did_not_is_fine() {
     let mut scene = Scene::load("gravity").unwrap();
     let (_, session) = calibrate(&scene);
-    let drift = |scene: &Scene| {
-        let mut bench = Bench::new(scene);
-        let mut check = DriftCheck::new(model_of(&session), 0.15, StillSettings::default());
-        let mut last = Drift::NoSample;
-        for _ in 0..3000 {
-            let sample = bench.sample(Prompt::Rest);
-            last = check.step(&sample, bench.t_s);
-        }
-        last
+    let at_rest = |scene: &Scene, seconds| drift(&session, scene, Prompt::Rest, true, seconds);
+    assert_eq!(at_rest(&scene, 1.5), Drift::Waiting, "not before the sensor has settled");
+    assert!(matches!(at_rest(&scene, 4.0), Drift::Fine { by_n } if by_n < 0.05), "{:?}", at_rest(&scene, 4.0));
+    for (axis, step_n) in [(0, 0.4), (1, -0.4), (2, 0.25)] {
+        let mut moved = scene.clone();
+        moved.wrist.as_mut().unwrap().force_bias_n[axis] += step_n;
+        let found = at_rest(&moved, 6.0);
+        assert!(matches!(found, Drift::Moved { by_n } if (by_n - f64::abs(step_n)).abs() < 0.05), "{found:?}");
+        assert!(found.words().contains("calibrate gravity again"), "{}", found.words());
+    }
+    scene.wrist.as_mut().unwrap().force_bias_n.x += 0.03;
+    assert!(matches!(at_rest(&scene, 4.0), Drift::Fine { .. }), "a step within the noise of the model is no drift");
+}
+
+#[test]
+fn a_tool_that_moves_or_is_touched_or_used_is_not_checked() {
+    let scene = Scene::load("gravity").unwrap();
+    let (_, session) = calibrate(&scene);
+    let not_checked = |scene: &Scene, prompt, idle, seconds| match drift(&session, scene, prompt, idle, seconds) {
+        Drift::NotChecked(why) => why,
+        other => panic!("{other:?}"),
     };
-    assert!(matches!(drift(&scene), Drift::Ok { .. }), "{:?}", drift(&scene));
-    scene.wrist.as_mut().unwrap().force_bias_n.x += 0.4;
-    assert!(matches!(drift(&scene), Drift::Drifted { by_n } if by_n > 0.3));
+    assert_eq!(not_checked(&scene, Prompt::Wave, true, 9.0), NotChecked::Moving);
+    let hold = Prompt::Hold { kbf_from_s1: TARGETS[0].kbf_from_s1() };
+    assert_eq!(not_checked(&flawed(Flaw::Touches), hold, true, 12.0), NotChecked::Touched);
+    assert_eq!(not_checked(&scene, Prompt::Rest, false, 4.0), NotChecked::Engaged);
+    let in_the_body = Scene::load("palpation").unwrap();
+    assert_eq!(not_checked(&in_the_body, Prompt::Rest, true, 4.0), NotChecked::InTrocar);
+}
+
+#[test]
+fn a_hand_taken_off_the_tool_takes_the_bad_verdict_back() {
+    let scene = Scene::load("gravity").unwrap();
+    let (_, session) = calibrate(&scene);
+    let mut bench = Bench::new(&scene);
+    let mut check = DriftCheck::new(model_of(&session), 0.15, StillSettings::default());
+    let mut run = |push_n: f64, silent: bool, seconds: f64| {
+        for _ in 0..(seconds * 1e3) as u32 {
+            let mut sample = bench.sample(Prompt::Rest);
+            sample.raw.force_n.y += push_n;
+            check.step(Some(&sample).filter(|_| !silent), true, bench.t_s);
+        }
+        check.drift()
+    };
+    assert_eq!(run(0.0, true, 8.0), Drift::NotChecked(NotChecked::NoSample));
+    let sample = Bench::new(&scene).sample(Prompt::Rest);
+    let mut hung = DriftCheck::new(model_of(&session), 0.15, StillSettings::default());
+    (0..8000).for_each(|tick| _ = hung.step(Some(&sample), true, f64::from(tick) * 1e-3));
+    assert_eq!(hung.drift(), Drift::NotChecked(NotChecked::NoSample), "a reading that hangs is not still");
+    assert!(matches!(run(0.6, false, 4.0), Drift::Moved { by_n } if by_n > 0.5));
+    assert!(matches!(run(0.0, true, 1.0), Drift::Moved { .. }), "silence takes no verdict back");
+    assert!(matches!(run(0.0, false, 3.0), Drift::Fine { .. }));
+    assert!(matches!(run(0.6, false, 4.0), Drift::Fine { .. }), "one good verdict is enough for a start");
+}
+
+/// Root of the mean square per axis of what is left of the force while nothing is touched, N.
+fn left_n(model: GravityModel, time_constant_s: f64, samples: &[WristSample]) -> f64 {
+    let mut compensator = Compensator::new(model, time_constant_s, 1e-3);
+    let squares: f64 = samples.iter().map(|s| compensator.step(s).unwrap().force_n.norm_squared()).sum();
+    (squares / (3 * samples.len()) as f64).sqrt()
+}
+
+#[test]
+fn the_low_pass_of_the_accelerometer_leaves_less_of_the_force_still_and_in_motion() {
+    let (mut bench, session) = calibrate(&Scene::load("gravity").unwrap());
+    let mut take = |prompt, seconds: f64| -> Vec<WristSample> {
+        (0..(seconds * 1e3) as u32).map(|_| bench.sample(prompt)).collect()
+    };
+    for (what, prompt) in [("still", Prompt::Rest), ("in motion", Prompt::Wave)] {
+        take(prompt, 3.0);
+        let samples = take(prompt, 15.0);
+        let left = [0.0, 0.001, DEFAULT_TIME_CONSTANT_S, 0.005, 0.02].map(|s| left_n(model_of(&session), s, &samples));
+        println!("{what}: {left:.5?} N without, at 1, 2, 5 and 20 ms");
+        assert!(left[2] < left[0], "{what}: {left:?}");
+    }
+}
+
+#[test]
+fn the_simulated_sensor_passes_the_check_before_the_first_pose_and_worse_ones_do_not() {
+    let checked = |edit: fn(&mut Scene)| {
+        let mut scene = Scene::load("gravity").unwrap();
+        edit(&mut scene);
+        let (mut bench, mut precheck) = (Bench::new(&scene), Precheck::new(SessionSettings::default()));
+        for _ in 0..2000 {
+            let sample = bench.sample(Prompt::Rest);
+            precheck.step(Some(&sample), bench.t_s);
+        }
+        precheck
+    };
+    let good = checked(|_| {});
+    assert!(good.passed(1000.0), "{:?}", good.checks(1000.0));
+    assert!(!good.passed(2000.0), "half of the rate that the loop needs");
+    assert!(!checked(|scene| scene.wrist.as_mut().unwrap().force_noise_n = 0.2).passed(1000.0));
+    assert!(!checked(|scene| scene.wrist.as_mut().unwrap().imu = None).passed(1000.0));
 }
 
 /// Pushes as the session asks for, until `pushes` are kept or `seconds` are over; gravity as calibrated on its own scene.
 fn push(flaw: Option<Flaw>, pushes: usize, seconds: f64) -> CorrespondenceSession {
     let gravity = model_of(&calibrate(&Scene::load("gravity").unwrap()).1);
+    let mut gravity = Compensator::new(gravity, DEFAULT_TIME_CONSTANT_S, 1e-3);
     let mut scene = Scene::load("correspondence").unwrap();
     scene.person.as_mut().unwrap().flaw = flaw;
     let mut bench = Bench::new(&scene);
@@ -152,7 +249,7 @@ fn push(flaw: Option<Flaw>, pushes: usize, seconds: f64) -> CorrespondenceSessio
     let mut prompt = Prompt::Rest;
     for _ in 0..(seconds * 1e3) as u32 {
         let sample = bench.sample(prompt);
-        let f1_n = gravity.gravity_free(&sample).map(|wrench| wrench.force_n);
+        let f1_n = gravity.step(&sample).map(|wrench| wrench.force_n);
         let phase = session.step(f1_n, &sample, bench.t_s);
         if session.pushes() == pushes {
             break;

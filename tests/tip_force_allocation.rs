@@ -1,49 +1,12 @@
 //! An answer of a tip-force model allocates nothing, whatever its inputs.
 
-#![expect(unsafe_code, reason = "counting what is allocated takes a global allocator, whose trait is unsafe")]
+#[path = "common/counting.rs"]
+mod counting;
 
-use std::{
-    alloc::{GlobalAlloc, Layout, System},
-    cell::Cell,
-    sync::atomic::AtomicBool,
-};
+use std::sync::atomic::AtomicBool;
 
+use counting::calls;
 use nima::tip_force::{DEFAULT_INPUTS, DataSet, Estimator, Model, Selection, Settings};
-
-struct Counting;
-
-thread_local! {
-    static CALLS: Cell<u64> = const { Cell::new(0) };
-}
-
-fn count() {
-    // A thread that is ending has no counter any more, and nothing of ours to count.
-    let _ = CALLS.try_with(|calls| calls.set(calls.get() + 1));
-}
-
-// SAFETY: every call is handed on to the system's allocator unchanged.
-unsafe impl GlobalAlloc for Counting {
-    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
-        count();
-        // SAFETY: the caller's promises are passed on.
-        unsafe { System.alloc(layout) }
-    }
-
-    unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
-        count();
-        // SAFETY: the caller's promises are passed on.
-        unsafe { System.dealloc(pointer, layout) }
-    }
-
-    unsafe fn realloc(&self, pointer: *mut u8, layout: Layout, new_size: usize) -> *mut u8 {
-        count();
-        // SAFETY: the caller's promises are passed on.
-        unsafe { System.realloc(pointer, layout, new_size) }
-    }
-}
-
-#[global_allocator]
-static ALLOCATOR: Counting = Counting;
 
 #[test]
 fn an_answer_on_the_default_inputs_with_the_default_network_allocates_nothing() {
@@ -60,14 +23,14 @@ fn an_answer_on_the_default_inputs_with_the_default_network_allocates_nothing() 
     let settings = Settings { epochs: Some(1), ..Settings::default() };
     let model = Model::train(&data, &settings, [None, None], &AtomicBool::new(false), &|_| {}).unwrap();
     let mut estimator = Estimator::new(model);
-    let before = CALLS.get();
+    let before = calls();
     let mut doubted = 0_u32;
     for row in 0..data.rows() {
         doubted += u32::from(estimator.estimate(data.input(row)).in_doubt);
     }
     assert!(estimator.estimate(&[f32::NAN; 13]).in_doubt && estimator.estimate(&[]).in_doubt);
-    assert_eq!(CALLS.get() - before, 0);
+    assert_eq!(calls() - before, 0);
     assert!(doubted < 400);
     drop(std::hint::black_box(vec![1_u8; 10]));
-    assert_eq!(CALLS.get() - before, 2, "the counter counts");
+    assert_eq!(calls() - before, 2, "the counter counts");
 }

@@ -15,7 +15,7 @@ use std::{
 use serde::{Serialize, de::DeserializeOwned};
 
 use super::Verdict;
-use crate::recording::write_atomically;
+use crate::files::write_atomically;
 
 /// What a calibration file holds. A record has a field `kind` with the text of [`KIND`](Self::KIND), and denies unknown keys.
 pub trait Record: Serialize + DeserializeOwned {

@@ -87,6 +87,9 @@ pub struct TissueSensor {
     pub noise_n: f64,
     /// Standard deviation of the tracker's orientation about each axis, degrees.
     pub tracker_noise_deg: f64,
+    /// It tells what presses on the tissue, not what the tissue does to the instrument, as scales do.
+    #[serde(default)]
+    pub reads_tissue: bool,
 }
 
 /// Somebody who guides the arm by hand and does what the screen asks.
@@ -121,15 +124,17 @@ impl Wrist {
     pub(super) fn validate(&self, ranges: &Ranges<'_>) -> Result<(), ConfigError> {
         ranges.positive("wrist.tool_mass_kg", self.tool_mass_kg)?;
         ranges.positive("wrist.shaft_m", self.shaft_m)?;
-        let vectors =
-            [&self.com_m, &self.force_bias_n, &self.torque_bias_nm].into_iter().flat_map(Vector3::iter).sum::<f64>();
-        ranges.check("wrist: sum of com_m and biases", vectors, true, "finite")?;
-        ranges.positive("wrist.gain", self.gain.min())?;
+        ranges.finite("wrist.com_m", &self.com_m)?;
+        ranges.finite("wrist.force_bias_n", &self.force_bias_n)?;
+        ranges.finite("wrist.torque_bias_nm", &self.torque_bias_nm)?;
+        for gain in &self.gain {
+            ranges.positive("wrist.gain", *gain)?;
+        }
         ranges.not_negative("wrist.force_noise_n", self.force_noise_n)?;
         ranges.not_negative("wrist.torque_noise_nm", self.torque_noise_nm)?;
         self.imu.map_or(Ok(()), |imu| {
-            let all = imu.s1_from_imu_deg.sum() + imu.bias_m_s2.sum();
-            ranges.check("wrist.imu: sum of angles and bias", all, true, "finite")?;
+            ranges.finite("wrist.imu.s1_from_imu_deg", &imu.s1_from_imu_deg)?;
+            ranges.finite("wrist.imu.bias_m_s2", &imu.bias_m_s2)?;
             ranges.not_negative("wrist.imu.noise_m_s2", imu.noise_m_s2)
         })
     }
@@ -150,9 +155,39 @@ impl Trocar {
 
 impl TissueSensor {
     pub(super) fn validate(&self, ranges: &Ranges<'_>) -> Result<(), ConfigError> {
-        let angles = [self.kbf_from_s2_deg, self.kbf_from_c_deg, self.s1_from_m_deg].iter().map(Vector3::sum).sum();
-        ranges.check("tissue_sensor: sum of angles", angles, true, "finite")?;
+        ranges.finite("tissue_sensor.kbf_from_s2_deg", &self.kbf_from_s2_deg)?;
+        ranges.finite("tissue_sensor.kbf_from_c_deg", &self.kbf_from_c_deg)?;
+        ranges.finite("tissue_sensor.s1_from_m_deg", &self.s1_from_m_deg)?;
         ranges.not_negative("tissue_sensor.noise_n", self.noise_n)?;
         ranges.not_negative("tissue_sensor.tracker_noise_deg", self.tracker_noise_deg)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::config::Scene;
+
+    #[test]
+    fn infinities_that_cancel_are_refused_with_the_name_of_their_vector() {
+        const UP: f64 = f64::INFINITY;
+        const DOWN: f64 = f64::NEG_INFINITY;
+        let mut scene = Scene::load("correspondence").unwrap();
+        scene.tissue = Scene::load("palpation").unwrap().tissue;
+        let refused = |edit: fn(&mut Scene), key: &str| {
+            let mut scene = scene.clone();
+            edit(&mut scene);
+            let message = scene.validate().unwrap_err().to_string();
+            assert!(message.contains(key), "{key} is not in: {message}");
+        };
+        refused(|scene| scene.targets_m[0].y = f64::NAN, "targets_m");
+        refused(|scene| scene.tissue.as_mut().unwrap().size_m[0] = f64::NAN, "tissue.size_m");
+        refused(|scene| scene.wrist.as_mut().unwrap().com_m = [UP, DOWN, 0.0].into(), "wrist.com_m is inf");
+        refused(|scene| scene.wrist.as_mut().unwrap().force_bias_n.y = f64::NAN, "wrist.force_bias_n is NaN");
+        refused(|scene| scene.wrist.as_mut().unwrap().torque_bias_nm.z = UP, "wrist.torque_bias_nm");
+        refused(|scene| scene.wrist.as_mut().unwrap().gain.y = UP, "wrist.gain");
+        refused(|scene| scene.wrist.as_mut().unwrap().gain.z = f64::NAN, "wrist.gain");
+        refused(|scene| scene.wrist.as_mut().unwrap().imu.as_mut().unwrap().bias_m_s2.x = DOWN, "wrist.imu.bias_m_s2");
+        let turned = |scene: &mut Scene| scene.tissue_sensor.as_mut().unwrap().kbf_from_c_deg = [DOWN, UP, 1.0].into();
+        refused(turned, "tissue_sensor.kbf_from_c_deg is -inf");
     }
 }

@@ -8,7 +8,6 @@ mod mapping;
 mod pairs;
 mod poses;
 mod table;
-mod write;
 
 use std::path::{Path, PathBuf};
 
@@ -16,8 +15,7 @@ use nalgebra::Vector3;
 
 pub use mapping::{Mapping, MappingError};
 pub use pairs::read_pairs;
-pub use poses::{PosesError, read_poses};
-pub use write::write_atomically;
+pub use poses::read_poses;
 
 use crate::impedance::{AXES, Sample};
 use table::Table;
@@ -45,9 +43,7 @@ pub enum RecordingError {
         message: String,
     },
     /// A needed column is not there.
-    #[error(
-        "recording {path} has no column \"{column}\" for {purpose}; its columns are {available}; name another with --map {key}=COLUMN"
-    )]
+    #[error("recording {path} has no column \"{column}\" for {purpose}; its columns are {available}; {cure}")]
     NoColumn {
         /// Its path.
         path: PathBuf,
@@ -57,24 +53,12 @@ pub enum RecordingError {
         purpose: &'static str,
         /// The columns there are.
         available: String,
-        /// The key of a mapping that would help.
-        key: String,
-    },
-    /// A needed column is not there, and columns of this file have fixed names.
-    #[error("{path} has no column \"{column}\" for {purpose}; its columns are {available}; name the column so")]
-    NoNamedColumn {
-        /// Its path.
-        path: PathBuf,
-        /// The column looked for.
-        column: String,
-        /// What it is for.
-        purpose: &'static str,
-        /// The columns there are.
-        available: String,
+        /// What to do: some files may have their columns mapped, in others the names are fixed.
+        cure: String,
     },
     /// A quaternion is far from length one.
     #[error(
-        "{path}, line {line}: the quaternion qw, qx, qy, qz has length {length:.3}, not 1; remove or repair the row"
+        "recording {path}, line {line}: the quaternion has length {length:.3} instead of 1; remove or repair the row"
     )]
     NotARotation {
         /// Its path.
@@ -141,14 +125,14 @@ impl Recording {
     /// Reads a CSV file under this mapping.
     pub fn read(path: &Path, mapping: &Mapping) -> Result<Self, RecordingError> {
         let table = Table::read(path)?;
-        let time = table.column(&mapping.source("t_s"), "time", "t")?;
+        let time = table.column(&mapping.source("t_s"), "time", &cure("t"))?;
         let axes = axes(&table, mapping);
         let mut columns = Vec::with_capacity(axes.len());
         for &axis in &axes {
             let name = AXIS_NAMES[axis];
-            let position = table.column(&mapping.source(&format!("{name}_m")), "position", name)?;
+            let position = table.column(&mapping.source(&format!("{name}_m")), "position", &cure(name))?;
             let force_key = format!("f{name}");
-            let force = table.column(&mapping.source(&format!("{force_key}_n")), "force", &force_key)?;
+            let force = table.column(&mapping.source(&format!("{force_key}_n")), "force", &cure(&force_key))?;
             columns.push((position, force));
         }
         let mut samples = Vec::with_capacity(table.rows());
@@ -175,6 +159,11 @@ impl Recording {
         let rate_hz = rate_hz(&samples).ok_or_else(|| too_short(samples.len()))?;
         Ok(Self { path: path.to_owned(), axes, rate_hz, samples })
     }
+}
+
+/// What to do about a column that may be mapped.
+fn cure(key: &str) -> String {
+    format!("name another with --map {key}=COLUMN")
 }
 
 /// The axes of which position or force is there; of a lone half the other is then found missing.

@@ -2,60 +2,35 @@
 
 use std::path::Path;
 
-use nalgebra::{Quaternion, UnitQuaternion, Vector3};
-
-use super::{Mapping, RecordingError, table::Table};
+use super::{RecordingError, table::Table};
 use crate::calibration::correspondence::Pair;
 
-/// A quaternion may depart from length one by this much: rounding in a file, not an error.
-const UNIT_TOLERANCE: f64 = 0.01;
+/// What to do about a missing column.
+const CURE: &str = "name the column so";
 
 /// Reads `f1x_n, f1y_n, f1z_n, f2x_n, f2y_n, f2z_n` (N) and, where the columns are there, `qw, qx, qy, qz` (`s1_from_c`, which
-/// is normalised; one far from length one is refused). Other columns are ignored. Pairs in the order of the rows.
+/// is normalised; one further than 1 % from unit length is refused). Other columns are ignored. Pairs in the order of the rows.
 pub fn read_pairs(path: &Path) -> Result<Vec<Pair>, RecordingError> {
     let table = Table::read(path)?;
-    let mapping = Mapping::default();
-    let find = |name: &str, purpose| match table.column(&mapping.source(name), purpose, name) {
-        // There is no mapping here: say what to do instead.
-        Err(RecordingError::NoColumn { path, column, purpose, available, .. }) => {
-            Err(RecordingError::NoNamedColumn { path, column, purpose, available })
-        }
-        found => found,
-    };
-    let force = |sensor: &str| -> Result<_, RecordingError> {
-        let axis = |axis: &str| find(&format!("f{sensor}{axis}_n"), "force");
-        Ok([axis("x")?, axis("y")?, axis("z")?])
-    };
-    let (f1, f2) = (force("1")?, force("2")?);
+    let f1 = table.columns(["f1x_n", "f1y_n", "f1z_n"], "force", CURE)?;
+    let f2 = table.columns(["f2x_n", "f2y_n", "f2z_n"], "force", CURE)?;
     let parts = ["qw", "qx", "qy", "qz"];
-    let rotation = if parts.iter().any(|name| table.has(name)) {
-        let part = |name: &str| find(name, "rotation s1_from_c");
-        Some([part("qw")?, part("qx")?, part("qy")?, part("qz")?])
-    } else {
-        None
-    };
-    let mut pairs = Vec::with_capacity(table.rows());
-    for row in 0..table.rows() {
-        let vector = |[x, y, z]: &[_; 3]| -> Result<_, RecordingError> {
-            Ok(Vector3::new(table.number(row, x)?, table.number(row, y)?, table.number(row, z)?))
-        };
-        let mut pair = Pair::plain(vector(&f1)?, vector(&f2)?);
-        if let Some([w, x, y, z]) = &rotation {
-            let number = |column| table.number(row, column);
-            let quaternion = Quaternion::new(number(w)?, number(x)?, number(y)?, number(z)?);
-            let length = quaternion.norm();
-            if (length - 1.0).abs() > UNIT_TOLERANCE {
-                return Err(RecordingError::NotARotation { path: path.to_owned(), line: table.line(row), length });
-            }
-            pair.s1_from_c = UnitQuaternion::from_quaternion(quaternion);
+    let turned = parts.iter().any(|name| table.has(name));
+    let rotation = if turned { Some(table.columns(parts, "rotation s1_from_c", CURE)?) } else { None };
+    let pair = |row| {
+        let mut pair = Pair::plain(table.vector(row, &f1)?, table.vector(row, &f2)?);
+        if let Some(rotation) = &rotation {
+            pair.s1_from_c = table.rotation(row, rotation)?;
         }
-        pairs.push(pair);
-    }
-    Ok(pairs)
+        Ok(pair)
+    };
+    (0..table.rows()).map(pair).collect()
 }
 
 #[cfg(test)]
 mod tests {
+    use nalgebra::Vector3;
+
     use super::*;
 
     fn read(text: &str) -> Result<Vec<Pair>, RecordingError> {

@@ -5,14 +5,12 @@
 
 mod messages;
 mod os;
-mod percentiles;
 mod summary;
 mod thread;
 mod virtual_clock;
 
 pub use messages::{Command, Event, Fault, Tick};
 pub use os::Scheduling;
-pub use percentiles::{Percentiles, Quantiles};
 pub use summary::{ModeError, Summary};
 pub use thread::{Handle, StartError, start};
 pub use virtual_clock::run_virtual;

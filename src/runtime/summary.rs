@@ -2,8 +2,12 @@
 
 use serde::Serialize;
 
-use super::{Percentiles, Quantiles, Scheduling};
-use crate::{impedance::Mode, teleop::Loop};
+use super::Scheduling;
+use crate::{
+    impedance::Mode,
+    statistics::{Percentiles, Quantiles},
+    teleop::Loop,
+};
 
 /// Error of one mode over a run, against the force at the follower at the same instant.
 #[derive(Clone, Copy, Debug, Serialize)]

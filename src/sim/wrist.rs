@@ -86,7 +86,8 @@ impl Wrist {
         sample.kbf_from_m = Some(kbf_from_m);
         sample.m_from_c = Some(wobble * kbf_from_m.inverse() * from_roll_pitch_yaw_deg(&sensor.kbf_from_c_deg));
         let s2_from_kbf = from_roll_pitch_yaw_deg(&sensor.kbf_from_s2_deg).inverse();
-        sample.tissue_n = Some(s2_from_kbf * (loads.tip_n + loads.stand_n) + self.white(sensor.noise_n));
+        let sign = if sensor.reads_tissue { -1.0 } else { 1.0 };
+        sample.tissue_n = Some(s2_from_kbf * (loads.tip_n + loads.stand_n) * sign + self.white(sensor.noise_n));
     }
 }
 

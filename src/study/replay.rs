@@ -12,8 +12,8 @@ use serde::Serialize;
 use crate::{
     impedance::{Identifier, MAX_DEGREE, Mode, Report, Settings, SettingsError},
     recording::Recording,
-    runtime::Percentiles,
     safety::{Chain, ChainSettings, Request},
+    statistics::Percentiles,
 };
 
 /// Why a recording could not be replayed.

@@ -7,7 +7,7 @@
 use nalgebra::Vector3;
 
 use crate::{
-    calibration::gravity::GravityModel,
+    calibration::gravity::{Compensator, DEFAULT_TIME_CONSTANT_S, GravityModel},
     device::Sensed,
     frames::{Wrench, WristSample},
     tip_force::{Fallback, TipForce, TipForceReport, Unsure},
@@ -95,14 +95,15 @@ pub struct Calibrations {
 /// The chain of calibrations at work.
 #[derive(Clone, Debug, Default)]
 pub struct ForcePath {
-    gravity: Option<GravityModel>,
+    gravity: Option<Compensator>,
     tip_force: Option<TipForce>,
 }
 
 impl ForcePath {
-    /// A path through these calibrations. Everything is allocated here.
-    pub fn new(calibrations: &Calibrations) -> Self {
-        Self { gravity: calibrations.gravity, tip_force: calibrations.tip_force.clone() }
+    /// A path through these calibrations for a loop of this period (s). Everything is allocated here.
+    pub fn new(calibrations: &Calibrations, period_s: f64) -> Self {
+        let live = |model| Compensator::new(model, DEFAULT_TIME_CONSTANT_S, period_s);
+        Self { gravity: calibrations.gravity.map(live), tip_force: calibrations.tip_force.clone() }
     }
 
     /// The tip force of this sample, taken at this time (s).
@@ -114,8 +115,8 @@ impl ForcePath {
     }
 
     fn at_wrist(&mut self, t_s: f64, sample: &WristSample) -> ForceReport {
-        let Some(gravity) = &self.gravity else { return ForceReport::none(ForceSource::Uncalibrated, None) };
-        let gravity_free = gravity.gravity_free(sample);
+        let Some(gravity) = &mut self.gravity else { return ForceReport::none(ForceSource::Uncalibrated, None) };
+        let gravity_free = gravity.step(sample);
         let (Some(wrench), Some(kbf_from_s1)) = (gravity_free, sample.kbf_from_s1) else {
             return ForceReport::none(ForceSource::NoOrientation, gravity_free);
         };

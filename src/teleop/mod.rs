@@ -84,7 +84,7 @@ impl Loop {
             follower_step_max_m: rig.follower_speed_max_m_s / rig.rate_hz,
             identifier: Identifier::new(&settings)?,
             renderer: Renderer::new(&settings)?,
-            force_path: ForcePath::new(calibrations),
+            force_path: ForcePath::new(calibrations, 1.0 / rig.rate_hz),
             force: NO_FORCE_YET,
             prompt: Prompt::Rest,
             link: Link::new(rig.rate_hz, rig.delay_s),

@@ -5,7 +5,7 @@ use std::time::Instant;
 use serde::Serialize;
 
 use super::{BASELINES, DataSet, Estimator, Selection, TipForceError};
-use crate::runtime::{Percentiles, Quantiles};
+use crate::statistics::{Percentiles, Quantiles};
 
 /// Errors of one output, in its unit.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]

@@ -12,7 +12,7 @@ use super::{
     Check, DataSet, Expansion, Layer, Member, MemberFigures, Network, Normalisation, Progress, Settings, TipForceError,
     baseline::Baselines, doubt::Doubt, train, training::features_of,
 };
-use crate::{calibration::store::utc_now, recording::write_atomically};
+use crate::{calibration::store::utc_now, files::write_atomically};
 
 /// What the file calls itself.
 const FORMAT: &str = "nima tip force 1";

@@ -11,8 +11,8 @@ use nalgebra::Vector3;
 use super::{Coverage, DEFAULT_INPUTS, DEFAULT_OUTPUTS, FeatureSettings, Features, LIVE_INPUTS, NoRow};
 use crate::{
     calibration::correspondence::Correspondence,
+    files::write_atomically,
     frames::{Wrench, WristSample},
-    recording::write_atomically,
 };
 
 /// Rows that a recording holds at most: four of the paper's data sets.

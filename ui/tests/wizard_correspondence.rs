@@ -2,6 +2,9 @@
 
 #![expect(clippy::unwrap_used, reason = "a console that cannot start is a failed test")]
 
+#[path = "common/gravity.rs"]
+mod gravity;
+
 use std::{
     path::Path,
     time::{Duration, Instant, SystemTime},
@@ -12,40 +15,18 @@ use egui_kittest::{
     Harness,
     kittest::{NodeT as _, Queryable as _},
 };
+use gravity::gravity;
 use nima::{
-    calibration::{
-        Verdict,
-        correspondence::CorrespondenceRecord,
-        gravity::{GravityRecord, GravitySession, SessionSettings},
-        store::{Store, utc_now},
-    },
+    calibration::{Verdict, correspondence::CorrespondenceRecord, store::Store},
     config::{Flaw, Rig, Scene},
-    device::{Outputs, Prompt, Rig as _, Sensed},
+    device::Prompt,
     frames::from_roll_pitch_yaw_deg,
     runtime::{Plan, start},
-    sim::World,
     teleop::Calibrations,
 };
 use nima_console::console::ConsoleApp;
 
 const PATIENCE: Duration = Duration::from_secs(40);
-
-/// A gravity calibration taken sample by sample on its own scene.
-fn gravity() -> GravityRecord {
-    let scene = Scene::load("gravity").unwrap();
-    let (mut world, mut session) = (World::new(&scene, 1000.0), GravitySession::new(SessionSettings::default()));
-    for tick in 1..90_000 {
-        let Some(target) = session.target() else { break };
-        let t_s = f64::from(tick) * 1e-3;
-        let prompt = Prompt::Hold { kbf_from_s1: target.kbf_from_s1() };
-        let Sensed::AtWrist(sample) = world.exchange(t_s, &Outputs { prompt, ..Outputs::SAFE }).unwrap().sensed else {
-            panic!("a calibration scene without a wrist");
-        };
-        session.step(&sample, t_s);
-    }
-    let wrist = scene.wrist.unwrap();
-    session.report().unwrap().record(&wrist.serial, &wrist.tool, &utc_now()).unwrap()
-}
 
 fn console(scene: Scene, store: &Path, calibrations: Calibrations) -> Harness<'static, ConsoleApp> {
     let rig = Rig::load("simulated").unwrap();
@@ -173,4 +154,41 @@ fn pushes_along_one_line_are_kept_only_under_a_name() {
     assert_eq!(record.override_by.as_deref(), Some("A. Technician"));
     let lines = harness.state().in_force().lines();
     assert!(lines.iter().any(|line| line.contains("NOT PROVEN, kept by A. Technician")), "{lines:?}");
+}
+
+#[test]
+fn a_sensor_of_the_opposite_sign_is_named_and_the_switch_cures_it_without_new_pushes() {
+    let folder = tempfile::tempdir().unwrap();
+    let store = Store::open(folder.path());
+    let record = gravity();
+    store.save(&record).unwrap();
+    let mut scene = Scene::load("correspondence").unwrap();
+    scene.tissue_sensor.as_mut().unwrap().reads_tissue = true;
+    let mut harness = console(scene.clone(), folder.path(), Calibrations { gravity: Some(record.model), tip_force: None });
+    press(&mut harness, "Calibrate correspondence...");
+    press(&mut harness, "Next");
+    read(&mut harness, "Pushes: 9 taken of 9");
+    press(&mut harness, "Next");
+    read(&mut harness, "opposite forces");
+    press(&mut harness, "Back");
+    press(&mut harness, "Back");
+    let switch = |harness: &mut Harness<'_, ConsoleApp>, words: &str| {
+        harness.query_all_by_label_contains(words).next().unwrap().click();
+        harness.step();
+        harness.step();
+    };
+    let tracker = harness.query_all_by_label_contains("No tracker").next().unwrap();
+    assert!(tracker.accesskit_node().is_disabled(), "what is in the pushes cannot be changed");
+    switch(&mut harness, "tells what presses on it");
+    press(&mut harness, "Next");
+    press(&mut harness, "Next");
+    read(&mut harness, "Accepted");
+    press(&mut harness, "Next");
+    press(&mut harness, "Save and use");
+    read(&mut harness, "Saved and in force");
+    let record = saved(&store, &scene).unwrap();
+    assert!(record.flip_s2 && record.verdict == Verdict::Accepted, "{}", record.reason);
+    press(&mut harness, "Start over");
+    switch(&mut harness, "No tracker");
+    read(&mut harness, "Arm and tracker (not used): met");
 }

@@ -146,6 +146,21 @@ fn a_wrong_sign_is_named_and_an_override_is_written_into_the_file() {
     until(&mut console, "enough poses", |c| shows(c, "8 of 12 taken"));
     press(&mut console, "Next");
     until(&mut console, "the verdict", |c| shows(c, "Poor data") && shows(c, "sign"));
+    // The switch cures it without a new pose; and back again.
+    for verdict in ["Accepted", "Poor data"] {
+        press(&mut console, "Back");
+        press(&mut console, "Back");
+        let by_arm = console.query_all_by_label_contains("Take the orientation from the arm").next().unwrap();
+        assert!(by_arm.accesskit_node().is_disabled(), "what is in the poses cannot be changed");
+        console.query_all_by_label_contains("points to the ground at rest").next().unwrap().click();
+        // The sensor is looked at anew: the way on is shut until then, from the second frame on.
+        console.step();
+        console.step();
+        assert!(!can_press(&console, "Next"));
+        press(&mut console, "Next");
+        press(&mut console, "Next");
+        until(&mut console, verdict, |c| shows(c, verdict));
+    }
     press(&mut console, "Next");
     until(&mut console, "a reading", |c| shows(c, "Not passed yet"));
     press(&mut console, "Next");
@@ -159,4 +174,32 @@ fn a_wrong_sign_is_named_and_an_override_is_written_into_the_file() {
     let text = std::fs::read_to_string(path).unwrap();
     assert!(text.contains("Ada Lovelace") && text.contains("bench test"), "{text}");
     until(&mut console, "who kept it", |c| shows(c, "NOT PROVEN, kept by Ada Lovelace"));
+}
+
+#[test]
+fn a_noisy_sensor_is_told_with_its_figure_and_the_way_on_stays_shut() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut scene = gravity_scene(None);
+    scene.wrist.as_mut().unwrap().force_noise_n = 0.3;
+    let mut console = console(scene, folder.path());
+    press(&mut console, "Calibrate gravity...");
+    until(&mut console, "the noise", |c| shows(c, "Force noise: 0.3") && shows(c, "check shield and earth"));
+    until(&mut console, "the good lines", |c| shows(c, "Rate: ") && shows(c, "of the loop's 1000 Hz, met"));
+    assert!(!can_press(&console, "Next"));
+}
+
+#[test]
+fn a_sensor_without_an_accelerometer_goes_on_by_the_arm() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut scene = gravity_scene(None);
+    scene.wrist.as_mut().unwrap().imu = None;
+    let mut console = console(scene, folder.path());
+    press(&mut console, "Calibrate gravity...");
+    until(&mut console, "the cure", |c| shows(c, "take the orientation from the arm"));
+    assert!(!can_press(&console, "Next"));
+    console.query_all_by_label_contains("Take the orientation from the arm, not").next().unwrap().click();
+    console.step();
+    console.step();
+    press(&mut console, "Next");
+    until(&mut console, "a pose by the arm", |c| shows(c, "1 of 12 taken"));
 }

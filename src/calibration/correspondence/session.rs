@@ -302,6 +302,16 @@ impl CorrespondenceSession {
         self.pushes.iter().filter_map(|push| push.towards_in_kbf).collect()
     }
 
+    /// How pushes are taken and fitted.
+    pub const fn settings(&self) -> &SessionSettings {
+        &self.settings
+    }
+
+    /// Fits with the forces under the tissue of the opposite sign from now on, or not; pushes taken before are kept.
+    pub const fn set_flip_s2(&mut self, flip_s2: bool) {
+        self.settings.options.flip_s2 = flip_s2;
+    }
+
     /// How many pushes are kept.
     pub const fn pushes(&self) -> usize {
         self.pushes.len()

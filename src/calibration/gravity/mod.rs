@@ -9,15 +9,18 @@
 //! Three models are fitted to the same still poses and compared on poses they were not fitted on: the physical one above, one
 //! with a free 3x3 gain in place of `m R`, and the paper's, linear in sine and cosine of roll and pitch.
 
-mod checks;
 mod compensator;
 mod consensus;
 mod coverage;
+mod drift;
 mod fit;
 mod model;
+mod pass;
 mod pose;
+mod precheck;
 mod record;
 mod report;
+mod rotation_mean;
 mod session;
 mod solve;
 mod still;
@@ -25,14 +28,16 @@ mod targets;
 #[cfg(test)]
 mod tests;
 
-pub use checks::{CheckPass, Drift, DriftCheck, PassResult};
 pub use compensator::{Compensator, DEFAULT_TIME_CONSTANT_S};
+pub use drift::{Drift, DriftCheck, NotChecked};
 pub use fit::fit;
 pub use model::{GravityModel, ModelKind, Parameters, Source, TorqueParameters};
+pub use pass::{CheckPass, PassResult};
 pub use pose::{Orientation, Pose};
+pub use precheck::{Check, CheckState, Precheck};
 pub use record::{GravityKind, GravityRecord};
 pub use report::{GravityReport, Limits, ModelFit, Settings};
-pub use session::{Check, CheckState, GravitySession, Phase, SessionSettings};
+pub use session::{GravitySession, Phase, SessionSettings};
 pub use still::StillSettings;
 pub use targets::{PoseTarget, TARGETS};
 

@@ -162,19 +162,6 @@ impl GravityModel {
             }
         }
     }
-
-    /// The sample's wrench without gravity and bias (`s1`, N and Nm). `None` when the wrench is not finite or the source of
-    /// orientation is missing, not finite or dead: no force is better than one with the tool's weight in it.
-    pub fn gravity_free(&self, sample: &WristSample) -> Option<Wrench> {
-        if !sample.raw.is_finite() {
-            return None;
-        }
-        let gravity = self.predict(&self.field_m_s2(sample)?);
-        Some(Wrench {
-            force_n: sample.raw.force_n - gravity.force_n,
-            torque_nm: sample.raw.torque_nm - gravity.torque_nm,
-        })
-    }
 }
 
 /// Field of gravity in `s1`, m/s^2, by the arm's orientation.

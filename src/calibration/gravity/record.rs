@@ -57,6 +57,19 @@ pub struct GravityRecord {
     pub torque_residuals: Option<Residuals>,
 }
 
+/// A bias that moved by less than this is not told from the temperature of a sensor that just started, N.
+const DRIFT_FLOOR_N: f64 = 0.10;
+/// Whatever a calibration missed: this is no rest, N.
+const DRIFT_MOST_N: f64 = 0.50;
+
+impl GravityRecord {
+    /// What the force left at rest may be before the bias has moved, N: what the model missed on poses held out, and a little.
+    pub fn drift_limit_n(&self) -> f64 {
+        // Written so that a NaN from a file gives the narrow limit.
+        (DRIFT_FLOOR_N + self.residuals.held_out.largest().max(0.0)).min(DRIFT_MOST_N)
+    }
+}
+
 impl Record for GravityRecord {
     const KIND: &'static str = "gravity";
 

@@ -1,7 +1,8 @@
 //! Telling whether force and orientation stand still, with bounded memory: running means that start anew on any motion.
 
-use nalgebra::Vector3;
+use nalgebra::{UnitQuaternion, Vector3};
 
+use super::rotation_mean::RotationMean;
 use crate::frames::{Wrench, WristSample};
 
 /// What standing still means.
@@ -31,14 +32,30 @@ struct Sums {
     count: f64,
     wrench: Wrench,
     field: Vector3<f64>,
+    /// Samples with an orientation by the arm, and those orientations.
+    turned: f64,
+    kbf_from_s1: RotationMean,
 }
 
 impl Sums {
-    fn add(&mut self, wrench: &Wrench, field: &Vector3<f64>, count: f64) {
-        self.count += count;
-        self.wrench.force_n += wrench.force_n;
-        self.wrench.torque_nm += wrench.torque_nm;
+    fn add(&mut self, sample: &WristSample, field: &Vector3<f64>) {
+        self.count += 1.0;
+        self.wrench.force_n += sample.raw.force_n;
+        self.wrench.torque_nm += sample.raw.torque_nm;
         self.field += field;
+        if let Some(kbf_from_s1) = &sample.kbf_from_s1 {
+            self.turned += 1.0;
+            self.kbf_from_s1.add(kbf_from_s1);
+        }
+    }
+
+    fn merge(&mut self, other: &Self) {
+        self.count += other.count;
+        self.wrench.force_n += other.wrench.force_n;
+        self.wrench.torque_nm += other.wrench.torque_nm;
+        self.field += other.field;
+        self.turned += other.turned;
+        self.kbf_from_s1.merge(&other.kbf_from_s1);
     }
 
     fn mean(&self) -> (Wrench, Vector3<f64>) {
@@ -96,6 +113,11 @@ impl Still {
         (self.whole.count > 0.0).then(|| self.whole.mean())
     }
 
+    /// Mean orientation over the stretch by the arm; `None` unless every sample of it had one.
+    pub(super) fn mean_kbf_from_s1(&self) -> Option<UnitQuaternion<f64>> {
+        self.whole.kbf_from_s1.mean().filter(|_| self.whole.turned >= self.whole.count)
+    }
+
     /// Takes a sample; share of the still time so far (1 and more: enough), `None` while it moves.
     pub(super) fn step(&mut self, sample: &WristSample, field: &Vector3<f64>, t_s: f64) -> Option<f64> {
         if !self.last_s.is_some_and(|last| t_s > last && t_s - last <= self.settings.gap_s) {
@@ -103,7 +125,7 @@ impl Still {
             (self.short_since_s, self.since_s, self.field_moved_s) = (t_s, t_s, t_s);
         }
         self.last_s = Some(t_s);
-        self.short.add(&sample.raw, field, 1.0);
+        self.short.add(sample, field);
         if t_s - self.short_since_s >= SHORT_S {
             self.close_short(t_s);
         }
@@ -124,8 +146,7 @@ impl Still {
             (self.whole, self.since_s) = (Sums::default(), t_s);
         }
         self.moved = Some(far);
-        let Sums { count, wrench, field } = self.short;
-        self.whole.add(&wrench, &field, count);
+        self.whole.merge(&self.short);
         (self.short, self.short_since_s) = (Sums::default(), t_s);
     }
 }

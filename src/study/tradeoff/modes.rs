@@ -11,7 +11,7 @@ use super::{
 };
 use crate::{
     impedance::{Identifier, Mode, ModeSet, Sample, Settings},
-    runtime::Percentiles,
+    statistics::Percentiles,
 };
 
 /// How often a stop is looked for, in ticks.

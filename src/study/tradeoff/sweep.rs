@@ -12,7 +12,7 @@ use super::{
 };
 use crate::{
     impedance::{Mode, Settings, SettingsError},
-    runtime::Quantiles,
+    statistics::Quantiles,
 };
 
 /// Windows and delays longer than this share of a source leave too little to judge.

@@ -13,8 +13,8 @@ use super::{
 };
 use crate::{
     impedance::{MAX_DEGREE, Sample, Settings},
-    runtime::Percentiles,
     signal::{DelayLine, Differentiator, Lanes, Motion},
+    statistics::Percentiles,
     study::solvers::{Fit, Row, Sliding, Solver},
 };
 

@@ -6,7 +6,7 @@ use super::ValidationError;
 use crate::{
     calibration::{
         correspondence::{self, Correspondence, CorrespondenceReport, CorrespondenceSession},
-        gravity::{GravityModel, GravitySession, SessionSettings},
+        gravity::{Compensator, DEFAULT_TIME_CONSTANT_S, GravityModel, GravitySession, SessionSettings},
     },
     config::Scene,
     device::{Outputs, Prompt, Rig as _, Sensed},
@@ -24,6 +24,11 @@ const PATIENCE_S: f64 = 120.0;
 pub struct Experiment {
     world: World,
     ticks: u64,
+}
+
+/// The live compensation of gravity, for the rate of the rig.
+pub fn compensator(gravity: &GravityModel) -> Compensator {
+    Compensator::new(*gravity, DEFAULT_TIME_CONSTANT_S, 1.0 / RATE_HZ)
 }
 
 impl Experiment {
@@ -89,10 +94,11 @@ pub struct Pushes {
 /// Pushes on the tissue without a trocar, as the wizard asks for them, and for `seconds` more to judge by.
 pub fn correspondence(gravity: &GravityModel, seed: u64, seconds: f64) -> Result<Pushes, ValidationError> {
     let mut experiment = Experiment::new(&Experiment::scene("correspondence", seed)?);
+    let mut gravity = compensator(gravity);
     let mut session = CorrespondenceSession::new(correspondence::SessionSettings::default());
     let mut prompt = Prompt::Rest;
     while session.pushes() < 2 * correspondence::TARGETS.len() && experiment.t_s() < PATIENCE_S {
-        let Some((sample, wrench)) = felt(&mut experiment, gravity, prompt) else { continue };
+        let Some((sample, wrench)) = felt(&mut experiment, &mut gravity, prompt) else { continue };
         let phase = session.step(Some(wrench.force_n), &sample, experiment.t_s());
         if !matches!(phase, correspondence::Phase::Resting { .. } | correspondence::Phase::Missing(_)) {
             prompt = push(session.target(), session.pushes());
@@ -104,7 +110,7 @@ pub fn correspondence(gravity: &GravityModel, seed: u64, seconds: f64) -> Result
     let begin_s = experiment.t_s();
     while experiment.t_s() < begin_s + seconds {
         let prompt = push(None, ((experiment.t_s() - begin_s) / 2.0) as usize);
-        let Some((sample, wrench)) = felt(&mut experiment, gravity, prompt) else { continue };
+        let Some((sample, wrench)) = felt(&mut experiment, &mut gravity, prompt) else { continue };
         if let Some(tip_n) = sample.tissue_n.and_then(|tissue_n| known.tip_force_s1(&sample, &tissue_n)) {
             unseen_s1_n.push([wrench.force_n, tip_n]);
         }
@@ -125,7 +131,7 @@ fn push(asked: Option<correspondence::PushTarget>, pushes: usize) -> Prompt {
 }
 
 /// One sample and what it feels without weight and bias.
-pub fn felt(experiment: &mut Experiment, gravity: &GravityModel, prompt: Prompt) -> Option<(WristSample, Wrench)> {
+pub fn felt(experiment: &mut Experiment, gravity: &mut Compensator, prompt: Prompt) -> Option<(WristSample, Wrench)> {
     let sample = experiment.sample(prompt)?;
-    Some((sample, gravity.gravity_free(&sample)?))
+    Some((sample, gravity.step(&sample)?))
 }

@@ -10,7 +10,7 @@ use crate::{
     calibration::{correspondence::Correspondence, gravity::GravityModel},
     config::Scene,
     device::Prompt,
-    runtime::Quantiles,
+    statistics::Quantiles,
     study::validation::experiment::{Experiment, felt},
     tip_force::{
         DataSet, Estimator, FeatureSettings, Model, NoContact, Part, Progress, Recorder, Selection, Settings, evaluate,
@@ -53,6 +53,7 @@ pub fn record(
     contact_s: f64,
 ) -> Result<Session, ValidationError> {
     let mut experiment = Experiment::new(scene);
+    let mut gravity = experiment::compensator(&known.gravity);
     let mut recorder = Recorder::new(known.correspondence).with_features(features);
     let mut truth_n = Vec::with_capacity(rows);
     while recorder.rows() < rows {
@@ -63,7 +64,7 @@ pub fn record(
             t if t % 10.0 < contact_s => Prompt::Work,
             _ => Prompt::WorkFree,
         };
-        if let Some((sample, wrench)) = felt(&mut experiment, &known.gravity, prompt) {
+        if let Some((sample, wrench)) = felt(&mut experiment, &mut gravity, prompt) {
             recorder.step(experiment.t_s(), Some(&wrench), &sample);
             if recorder.rows() > truth_n.len() {
                 truth_n.push(experiment.true_tip_s1_n(&sample));

@@ -9,7 +9,7 @@ use std::{
 use anyhow::Context as _;
 use clap::{Args, Subcommand};
 use nima::{
-    recording::write_atomically,
+    files::write_atomically,
     study::picture::{Axis, Chart, Series, Style, svg},
     tip_force::{DataSet, Estimator, Evaluation, Model, Part, evaluate},
 };

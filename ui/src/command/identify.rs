@@ -9,8 +9,9 @@ use std::{
 use anyhow::{Context as _, bail};
 use clap::Args;
 use nima::{
+    files::write_atomically,
     impedance::{MAX_DEGREE, Mode},
-    recording::{AXIS_NAMES, Mapping, Recording, write_atomically},
+    recording::{AXIS_NAMES, Mapping, Recording},
     study::replay::{Figures, Options, Row, replay},
 };
 

@@ -13,8 +13,10 @@ use std::{
 use anyhow::{Context as _, bail};
 use clap::Args;
 use nima::{
+    calibration::gravity::Drift,
     impedance::Mode,
-    runtime::{self, Plan, Quantiles, Summary, Tick},
+    runtime::{self, Command, Plan, Summary, Tick},
+    statistics::Quantiles,
 };
 
 use super::{output, setup::Setup};
@@ -58,8 +60,11 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     rig.delay_s = arguments.delay_ms.map_or(rig.delay_s, |delay_ms| delay_ms * 1e-3);
     rig.identification.cross_talk |= arguments.cross_talk;
     rig.validate()?;
-    let calibrations = InForce::load(None, &scene).calibrations(&rig);
-    let plan = Plan { rig, scene, calibrations, engage: true };
+    let mut in_force = InForce::load(None, &scene);
+    let calibrations = in_force.calibrations(&rig);
+    // With a calibrated wrist the bias is looked at before the tool may touch anything.
+    let plan = Plan { rig, scene, calibrations, engage: in_force.drift().is_none() };
+    let mut start = Start { in_force, engaged: plan.engage };
     if !plan.may_engage() {
         bail!(
             "scene \"{}\" cannot be engaged: the force at its tip is not known; calibrate with `nima console --calibrate gravity`",
@@ -67,26 +72,53 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         );
     }
     let summary = if arguments.virtual_clock {
-        runtime::run_virtual(&plan, arguments.seconds.unwrap_or(60.0), |_| None)?
+        runtime::run_virtual(&plan, arguments.seconds.unwrap_or(60.0), |tick| start.watch(tick))?
     } else {
-        on_the_real_clock(&plan, arguments.seconds, arguments.json)?
+        on_the_real_clock(&plan, &mut start, arguments.seconds, arguments.json)?
     };
-    if arguments.json { output::json(&summary) } else { output::line(&in_words(&plan, &summary)) }
+    let drift = start.in_force.drift();
+    if arguments.json {
+        if let Some(drift @ Drift::Moved { .. }) = drift {
+            eprintln!("warning: {}", drift.words());
+        }
+        return output::json(&summary);
+    }
+    let bias = drift.map_or_else(String::new, |drift| format!("\nbias of the wrist sensor: {}", drift.words()));
+    output::line(&(in_words(&plan, &summary) + &bias))
 }
 
-fn on_the_real_clock(plan: &Plan, seconds: Option<f64>, quiet: bool) -> anyhow::Result<Summary> {
+/// Engages once it was looked whether the bias of the wrist sensor is where it was; whatever the answer.
+struct Start {
+    in_force: InForce,
+    engaged: bool,
+}
+
+impl Start {
+    fn watch(&mut self, tick: &Tick) -> Option<Command> {
+        self.in_force.watch(tick);
+        let go = !self.engaged && self.in_force.drift() != Some(Drift::Waiting);
+        self.engaged |= go;
+        go.then_some(Command::Engage)
+    }
+}
+
+fn on_the_real_clock(plan: &Plan, start: &mut Start, seconds: Option<f64>, quiet: bool) -> anyhow::Result<Summary> {
     let interrupted = Arc::new(AtomicBool::new(false));
     let flag = Arc::clone(&interrupted);
     ctrlc::set_handler(move || flag.store(true, Ordering::Relaxed)).context("Ctrl-C cannot be caught")?;
     let handle = runtime::start(plan)?;
     let mut status = StatusLine::new(!quiet);
-    let start = Instant::now();
-    let end = seconds.map(|seconds| start + Duration::from_secs_f64(seconds));
+    let end = seconds.map(|seconds| Instant::now() + Duration::from_secs_f64(seconds));
     while handle.is_running() && !interrupted.load(Ordering::Relaxed) && end.is_none_or(|end| Instant::now() < end) {
         let rest = end.map_or(Duration::MAX, |end| end.saturating_duration_since(Instant::now()));
         thread::sleep(rest.min(Duration::from_millis(50)));
-        let mut newest = None;
-        handle.drain_ticks(|tick| newest = Some(*tick));
+        let (mut newest, mut command) = (None, None);
+        handle.drain_ticks(|tick| {
+            newest = Some(*tick);
+            command = start.watch(tick).or(command);
+        });
+        // The queue of commands holds nothing else: it takes this one.
+        command.map(|command| handle.send(command));
         if let Some(tick) = newest {
             status.show(&tick);
         }

@@ -8,8 +8,8 @@ use std::{
 use anyhow::Context as _;
 use clap::{Args, Subcommand};
 use nima::{
+    files::write_atomically,
     impedance::MAX_DELAY_S,
-    recording::write_atomically,
     study::{stability, validation},
     tip_force::MOST_ROWS,
 };

@@ -15,8 +15,9 @@ use anyhow::{Context as _, bail};
 use clap::Args;
 use nima::{
     config::Scene,
+    files::write_atomically,
     impedance::{MAX_DELAY_S, Mode, Settings},
-    recording::{Mapping, Recording, write_atomically},
+    recording::{Mapping, Recording},
     study::tradeoff::{Choice, Knob, Method, Plan, Point, Source, SourceFigures, Study, sweep},
 };
 

@@ -71,6 +71,8 @@ pub struct Signs {
     pub scheduling: Option<Scheduling>,
     /// A stop could not be delivered.
     pub stop_is_stuck: bool,
+    /// By how much the bias of the wrist sensor has moved since its calibration, if it has, N.
+    pub bias_moved_n: Option<f64>,
 }
 
 /// Ticks come every few milliseconds: half a second without one is a fault of its own.
@@ -109,6 +111,13 @@ pub fn judge(signs: &Signs) -> Vec<Alarm> {
             cure: "Close other programs, or grant real-time priority (see timing)".to_owned(),
         });
     }
+    if let Some(by_n) = signs.bias_moved_n {
+        alarms.push(Alarm {
+            priority: Priority::Medium,
+            cause: format!("The wrist sensor reads {by_n:.2} N at rest: its bias has moved since the calibration"),
+            cure: "Let nothing touch the tool; if this stays, calibrate gravity again".to_owned(),
+        });
+    }
     if let Some(advice) = signs.scheduling.and_then(|scheduling| scheduling.advice()) {
         let (cause, cure) = advice.split_once(": ").or_else(|| advice.split_once("; ")).unwrap_or((advice, ""));
         alarms.push(Alarm { priority: Priority::Low, cause: sentence(cause), cure: sentence(cure) });
@@ -142,13 +151,15 @@ mod tests {
             state: Some(LoopState::Faulted(fault)),
             first_fault: Some((12.34, fault)),
             missed_share: 0.05,
+            bias_moved_n: Some(0.41),
             scheduling: Some(Scheduling::default()),
             ..healthy()
         });
         assert!(alarms.is_sorted_by_key(|alarm| alarm.priority));
         assert!(alarms[0].cause.contains(fault.cause()) && alarms[0].cause.contains("12.3 s"));
         assert!(alarms.iter().all(|alarm| !alarm.cure.is_empty()), "{alarms:?}");
-        assert_eq!(alarms.len(), 3);
+        assert!(alarms.iter().any(|alarm| alarm.priority == Priority::Medium && alarm.cause.contains("0.41 N")));
+        assert_eq!(alarms.len(), 4);
     }
 
     #[test]

@@ -121,13 +121,22 @@ impl ConsoleApp {
         self
     }
 
+    /// Takes in all that the loop has sent.
+    fn take_in(&mut self) {
+        let Some(handle) = &self.handle else { return };
+        let rate_hz = self.live.rig.rate_hz;
+        let (wizards, in_force) = (&mut self.wizards, &mut self.in_force);
+        self.live.take_in(handle, |tick| {
+            wizards.tick(tick, rate_hz);
+            in_force.watch(tick);
+        });
+        self.live.bias_moved_n = self.in_force.bias_moved_n();
+    }
+
     /// Ends the loop and starts it anew, idle: only the operator engages it again. Never a way out of a stop or a fault.
     fn restart(&mut self, rig: Rig, scene: Scene) -> Result<(), String> {
         rig.validate().and_then(|()| scene.validate()).map_err(|error| error.to_string())?;
-        if let Some(handle) = &self.handle {
-            let wizards = &mut self.wizards;
-            self.live.take_in(handle, |tick| wizards.tick(tick));
-        }
+        self.take_in();
         if !matches!(self.live.state(), LoopState::Idle | LoopState::Engaged) {
             return Err("the loop has stopped; release it first".to_owned());
         }
@@ -330,10 +339,7 @@ impl ConsoleApp {
 impl eframe::App for ConsoleApp {
     fn logic(&mut self, _ctx: &egui::Context, _frame: &mut eframe::Frame) {
         // Also while the window is hidden, so that the queues stay empty and the history whole.
-        if let Some(handle) = &self.handle {
-            let wizards = &mut self.wizards;
-            self.live.take_in(handle, |tick| wizards.tick(tick));
-        }
+        self.take_in();
         self.ask();
     }
 

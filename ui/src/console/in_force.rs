@@ -8,11 +8,13 @@ use std::{
 use nima::{
     calibration::{
         correspondence::{Correspondence, CorrespondenceRecord},
-        gravity::GravityRecord,
+        gravity::{Drift, DriftCheck, GravityRecord, StillSettings},
         store::{Age, Loaded, Record, Store, utc_now},
     },
     config::{Rig, Scene},
-    teleop::Calibrations,
+    device::Prompt,
+    runtime::Tick,
+    teleop::{Calibrations, LoopState},
     tip_force::{Model, TipForce},
 };
 
@@ -27,6 +29,8 @@ pub struct InForce {
     gravity: Option<Loaded<GravityRecord>>,
     correspondence: Option<Loaded<CorrespondenceRecord>>,
     tip_force: Option<Loaded<Model>>,
+    /// How gravity stands since the loop began, and when that was found.
+    drift: Option<(DriftCheck, String)>,
     told: Option<String>,
 }
 
@@ -43,13 +47,44 @@ impl InForce {
     pub fn bind(&mut self, scene: &Scene) {
         self.bound = scene.wrist.as_ref().map(|wrist| (wrist.serial.clone(), wrist.tool.clone()));
         let (Some(store), Some((sensor, tool))) = (&self.store, &self.bound) else {
-            (self.gravity, self.correspondence, self.tip_force) = (None, None, None);
+            (self.gravity, self.correspondence, self.tip_force, self.drift) = (None, None, None, None);
             return;
         };
         let now = SystemTime::now();
         self.gravity = usable("Gravity", store.load(sensor, tool, now), &mut self.told);
         self.correspondence = usable("Correspondence", store.load(sensor, tool, now), &mut self.told);
         self.tip_force = usable("Tip force", Model::kept(store, sensor, tool, now), &mut self.told);
+        self.drift = self.gravity.as_ref().map(|Loaded { record, .. }| {
+            (DriftCheck::new(record.model, record.drift_limit_n(), StillSettings::default()), String::new())
+        });
+    }
+
+    /// Takes in one tick of the loop: in the first seconds, idle and still, it shows whether the bias is where it was.
+    pub fn watch(&mut self, tick: &Tick) {
+        let Some((check, found_at)) = &mut self.drift else { return };
+        let idle = match tick.state {
+            LoopState::Idle if tick.prompt == Prompt::Rest => true,
+            LoopState::Engaged => false,
+            // Somebody guides the arm, or what is shown is not new.
+            _ => return,
+        };
+        let before = check.drift();
+        if check.step(tick.wrist.as_ref(), idle, tick.t_s) != before {
+            utc_now().get(11..16).unwrap_or_default().clone_into(found_at);
+        }
+    }
+
+    /// How gravity stands since the loop began; none where nothing is to be checked.
+    pub fn drift(&self) -> Option<Drift> {
+        self.drift.as_ref().map(|(check, _)| check.drift())
+    }
+
+    /// By how much the bias has moved, if it has, N.
+    pub fn bias_moved_n(&self) -> Option<f64> {
+        match self.drift() {
+            Some(Drift::Moved { by_n }) => Some(by_n),
+            _ => None,
+        }
     }
 
     /// For the loop of this rig.
@@ -103,7 +138,10 @@ impl InForce {
         let correspondence =
             self.correspondence.as_ref().map_or_else(|| "Correspondence: none".to_owned(), line_of_correspondence);
         let tip_force = self.tip_force.as_ref().map_or_else(|| "Tip force: none".to_owned(), line_of_tip_force);
-        vec![format!("Sensor {sensor}, {tool}"), gravity, correspondence, tip_force]
+        let mut lines = vec![format!("Sensor {sensor}, {tool}"), gravity];
+        lines.extend(self.drift.as_ref().map(line_of_drift));
+        lines.extend([correspondence, tip_force]);
+        lines
     }
 }
 
@@ -127,6 +165,14 @@ fn line_of_gravity(loaded: &Loaded<GravityRecord>) -> String {
     let (day, remarks) = (day(&loaded.record), remarks(loaded.age, override_by.as_deref()));
     let error_n = residuals.held_out.mean_mae();
     format!("Gravity: {day}, {poses} poses, held-out error {error_n:.3} N{remarks}")
+}
+
+fn line_of_drift((check, found_at): &(DriftCheck, String)) -> String {
+    let words = check.drift().words();
+    match check.drift() {
+        Drift::Fine { .. } | Drift::Moved { .. } => format!("Bias, checked {found_at} UTC: {words}"),
+        Drift::Waiting | Drift::NotChecked(_) => format!("Bias: {words}"),
+    }
 }
 
 fn line_of_correspondence(loaded: &Loaded<CorrespondenceRecord>) -> String {

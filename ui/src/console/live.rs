@@ -9,8 +9,9 @@ use nalgebra::Vector3;
 use nima::{
     config::{Rig, Scene},
     impedance::Mode,
-    runtime::{Command, Event, Fault, Handle, Percentiles, Quantiles, Scheduling, Tick},
+    runtime::{Command, Event, Fault, Handle, Scheduling, Tick},
     safety::ChainSettings,
+    statistics::{Percentiles, Quantiles},
     teleop::LoopState,
 };
 
@@ -103,6 +104,8 @@ pub struct Live {
     pub scheduling: Option<Scheduling>,
     /// The 3-D view gave up smooth edges, because this computer draws too slowly.
     pub rough_edges: bool,
+    /// By how much the bias of the wrist sensor was found to have moved, if it has, N.
+    pub bias_moved_n: Option<f64>,
     first_fault: Option<(f64, Fault)>,
     refusal: Option<(Instant, Command)>,
     horizon: [Fading; 4],
@@ -138,6 +141,7 @@ impl Live {
             trail: VecDeque::new(),
             scheduling: None,
             rough_edges: false,
+            bias_moved_n: None,
             first_fault: None,
             refusal: None,
             trend_n: VecDeque::with_capacity(TREND_S + 1),
@@ -220,6 +224,7 @@ impl Live {
             missed_share: self.missed_share.get(),
             scheduling: self.scheduling,
             stop_is_stuck,
+            bias_moved_n: self.bias_moved_n,
         }
     }
 

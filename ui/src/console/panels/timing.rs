@@ -1,7 +1,7 @@
 //! Whether the loop keeps its time, and what it was granted.
 
 use egui::{Grid, RichText, Ui};
-use nima::runtime::Quantiles;
+use nima::statistics::Quantiles;
 
 use crate::console::{
     alarms::sentence,

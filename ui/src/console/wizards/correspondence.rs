@@ -16,13 +16,14 @@ use nima::{
 
 use super::{
     Binding, Step, Wish,
+    checks::{check_line, switch_ui},
     pictures::{progress, sphere_picture},
     save_card, steps_ui,
 };
 use crate::console::{
     alarms::sentence,
     theme,
-    widgets::{Sign, card, figure, sign_ui, small, three_digits},
+    widgets::{card, figure, small, three_digits},
 };
 
 /// Fewest pushes from which a fit is shown.
@@ -68,8 +69,15 @@ pub struct CorrespondenceWizard {
 
 impl Default for CorrespondenceWizard {
     fn default() -> Self {
+        Self::of(SessionSettings::default())
+    }
+}
+
+impl CorrespondenceWizard {
+    /// Nothing taken yet, on a rig that is built so.
+    fn of(settings: SessionSettings) -> Self {
         Self {
-            session: CorrespondenceSession::new(SessionSettings::default()),
+            session: CorrespondenceSession::new(settings),
             step: CHECK,
             sources: None,
             clock_s: (0.0, 0.0),
@@ -79,9 +87,7 @@ impl Default for CorrespondenceWizard {
             saved: None,
         }
     }
-}
 
-impl CorrespondenceWizard {
     /// Takes in one tick of the loop. Pushes are kept in their own step only.
     pub fn tick(&mut self, tick: &Tick) {
         let Some(sample) = &tick.wrist else {
@@ -183,13 +189,17 @@ impl CorrespondenceWizard {
         }
         match wish {
             Some(Wish::GoTo(step)) => self.step = step,
-            Some(Wish::StartOver) => *self = Self { clock_s: self.clock_s, ..Self::default() },
+            Some(Wish::StartOver) => self.start_over(*self.session.settings()),
             None => {}
         }
         save
     }
 
-    fn check_ui(&self, ui: &mut Ui) {
+    fn start_over(&mut self, settings: SessionSettings) {
+        *self = Self { clock_s: self.clock_s, ..Self::of(settings) };
+    }
+
+    fn check_ui(&mut self, ui: &mut Ui) {
         card(ui, "Before the first push", "All four must be met before pushes are taken.", |ui| {
             ui.label(
                 "Lay the tissue on its sensor, without the body wall. Nothing may touch the tool or the tissue yet.",
@@ -198,9 +208,24 @@ impl CorrespondenceWizard {
             let Sources { gravity, tissue, chain } = self.sources.unwrap_or_default();
             check_line(ui, "Force at the wrist", gravity, Missing::WristForce.words());
             check_line(ui, "Force under the tissue", tissue, Missing::TissueForce.words());
-            check_line(ui, "Arm and tracker", chain, Missing::Chain.words());
+            let tracker = if self.session.settings().chain { "Arm and tracker" } else { "Arm and tracker (not used)" };
+            check_line(ui, tracker, chain || !self.session.settings().chain, Missing::Chain.words());
             let (_, words) = phase_words(&self.session.phase());
             check_line(ui, "Rest", self.may_push().is_ok(), &words);
+        });
+        card(ui, "How this rig is built", "Leave both off unless you know, or a verdict says so.", |ui| {
+            let SessionSettings { chain, options, .. } = *self.session.settings();
+            let flip = "The sensor under the tissue tells what presses on it, not what the tissue does to the tool";
+            let meaning = "As scales do: both sensors then tell opposite forces. Pushes that were taken are kept.";
+            if let Some(flip_s2) = switch_ui(ui, true, options.flip_s2, flip, meaning) {
+                self.session.set_flip_s2(flip_s2);
+                self.fit();
+            }
+            let alone = "No tracker: the wrist is never turned between the pushes";
+            let meaning = "The rotation then holds for this one orientation of the wrist only.";
+            if let Some(alone) = switch_ui(ui, self.session.pushes() == 0, !chain, alone, meaning) {
+                self.start_over(SessionSettings { chain: !alone, ..*self.session.settings() });
+            }
         });
     }
 
@@ -273,7 +298,7 @@ impl CorrespondenceWizard {
     }
 
     fn record(&self, binding: &Binding, accepted: bool) -> Option<CorrespondenceRecord> {
-        let flip_s2 = SessionSettings::default().options.flip_s2;
+        let flip_s2 = self.session.settings().options.flip_s2;
         let mut record = CorrespondenceRecord::of(self.good_report()?, &binding.sensor, &binding.tool, flip_s2)?;
         if !accepted {
             record.override_by = Some(self.name.trim().to_owned());
@@ -281,15 +306,6 @@ impl CorrespondenceWizard {
         }
         Some(record)
     }
-}
-
-fn check_line(ui: &mut Ui, name: &str, met: bool, otherwise: &str) {
-    let (what, colour, words) =
-        if met { (Sign::Disc, theme::ENGAGED, "met") } else { (Sign::Triangle, theme::TEXT, otherwise) };
-    ui.horizontal_wrapped(|ui| {
-        sign_ui(ui, what, 6.0, colour);
-        ui.label(format!("{name}: {words}"));
-    });
 }
 
 /// How far the push is, and what to do.

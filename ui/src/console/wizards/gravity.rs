@@ -6,8 +6,8 @@ use nima::{
     calibration::{
         Verdict,
         gravity::{
-            CheckPass, CheckState, Compensator, DEFAULT_TIME_CONSTANT_S, GravityRecord, GravityReport, GravitySession,
-            ModelFit, PassResult, Phase, SessionSettings, TARGETS,
+            CheckPass, Compensator, DEFAULT_TIME_CONSTANT_S, GravityRecord, GravityReport, GravitySession, ModelFit,
+            PassResult, Phase, Precheck, SessionSettings, TARGETS,
         },
     },
     device::Prompt,
@@ -17,12 +17,13 @@ use nima::{
 
 use super::{
     Binding, Step,
+    checks::{check_ui, switch_ui},
     pictures::{pose_picture, progress, sphere_picture},
     save_card, steps_ui,
 };
 use crate::console::{
     theme,
-    widgets::{Sign, card, figure, sign_ui, small, three_digits},
+    widgets::{card, figure, small, three_digits},
 };
 
 /// Free motion must read below this at its 95th percentile, N: noise of a sample included.
@@ -31,7 +32,7 @@ const FREE_MOTION_LIMIT_N: f64 = 0.25;
 const POSES_MIN: usize = 6;
 /// Steps of this wizard.
 const STEPS: [Step; 5] = [
-    Step { name: "Check", meaning: "Is everything there, and is nothing touching the tool?" },
+    Step { name: "Check", meaning: "Does the sensor deliver well, and is nothing touching the tool?" },
     Step { name: "Poses", meaning: "Twelve orientations that show gravity from all sides." },
     Step { name: "Result", meaning: "The fit, judged on poses it has not seen." },
     Step { name: "Free motion", meaning: "The proof: a tool moved through the air must weigh nothing." },
@@ -46,6 +47,8 @@ const FREE_MOTION: usize = 3;
 #[derive(Debug)]
 pub struct GravityWizard {
     session: GravitySession,
+    precheck: Precheck,
+    rate_hz: f64,
     step: usize,
     phase: Phase,
     held: Option<UnitQuaternion<f64>>,
@@ -59,8 +62,17 @@ pub struct GravityWizard {
 
 impl Default for GravityWizard {
     fn default() -> Self {
+        Self::of(SessionSettings::default())
+    }
+}
+
+impl GravityWizard {
+    /// Nothing taken yet, on a rig that is built so.
+    fn of(settings: SessionSettings) -> Self {
         Self {
-            session: GravitySession::new(SessionSettings::default()),
+            session: GravitySession::new(settings),
+            precheck: Precheck::new(settings),
+            rate_hz: f64::INFINITY,
             step: CHECK,
             phase: Phase::NoSample,
             held: None,
@@ -72,42 +84,39 @@ impl Default for GravityWizard {
             saved: None,
         }
     }
-}
 
-impl GravityWizard {
-    /// Takes in one tick of the loop.
-    pub fn tick(&mut self, tick: &Tick) {
+    /// Takes in one tick of a loop of this rate (Hz).
+    pub fn tick(&mut self, tick: &Tick, rate_hz: f64) {
+        self.rate_hz = rate_hz;
+        if self.step == CHECK {
+            self.precheck.step(tick.wrist.as_ref(), tick.t_s);
+        }
         let Some(sample) = &tick.wrist else {
             self.phase = Phase::NoSample;
             return;
         };
         self.held = sample.kbf_from_s1;
         match self.step {
-            CHECK => self.phase = self.look_on(sample, tick.t_s),
             POSES => self.pose(sample, tick.t_s),
             FREE_MOTION => self.left_n = self.pass.as_mut().and_then(|pass| pass.step(sample)),
             _ => {}
         }
     }
 
-    /// Before the first pose the session sees the samples, and what it would take is not kept.
-    fn look_on(&mut self, sample: &WristSample, t_s: f64) -> Phase {
-        let phase = self.session.step(sample, t_s);
-        if let Phase::Recorded { index } = phase {
-            self.session.remove(index);
-        }
-        phase
-    }
-
     fn pose(&mut self, sample: &WristSample, t_s: f64) {
         let phase = self.session.step(sample, t_s);
         if matches!(phase, Phase::Recorded { .. }) {
-            // What was concluded from fewer poses does not hold any more.
-            self.report = (self.session.poses().len() >= POSES_MIN)
-                .then(|| self.session.report().map_err(|error| error.to_string()));
-            self.pass = None;
+            self.fit();
         }
         self.phase = phase;
+    }
+
+    /// What was concluded from other poses does not hold any more.
+    fn fit(&mut self) {
+        self.report =
+            (self.session.poses().len() >= POSES_MIN).then(|| self.session.report().map_err(|error| error.to_string()));
+        self.pass = None;
+        self.saved = None;
     }
 
     /// What the person at the arm is to do now.
@@ -135,7 +144,7 @@ impl GravityWizard {
     /// Whether the step after this one may begin, or why not.
     fn may_go_on(&self) -> Result<(), &'static str> {
         match self.step {
-            CHECK if self.session.precheck().iter().all(|check| check.state == CheckState::Good) => Ok(()),
+            CHECK if self.precheck.passed(self.rate_hz) => Ok(()),
             CHECK => Err("A check is not met yet."),
             POSES if self.session.poses().len() >= POSES_MIN => Ok(()),
             POSES => Err("At least six poses are needed."),
@@ -155,7 +164,10 @@ impl GravityWizard {
         if step == FREE_MOTION && self.pass.is_none() {
             let model = self.good_report().and_then(GravityReport::chosen_fit).map(|fit| fit.model);
             self.pass = model.map(|model| {
-                CheckPass::new(Compensator::new(model, DEFAULT_TIME_CONSTANT_S, 1e-3), FREE_MOTION_LIMIT_N)
+                CheckPass::new(
+                    Compensator::new(model, DEFAULT_TIME_CONSTANT_S, 1.0 / self.rate_hz),
+                    FREE_MOTION_LIMIT_N,
+                )
             });
         }
     }
@@ -174,26 +186,34 @@ impl GravityWizard {
         }
         match wish {
             Some(super::Wish::GoTo(step)) => self.go_to(step),
-            Some(super::Wish::StartOver) => *self = Self::default(),
+            Some(super::Wish::StartOver) => *self = Self::of(*self.session.settings()),
             None => {}
         }
         save
     }
 
-    fn check_ui(&self, ui: &mut Ui) {
-        card(ui, "Before the first pose", "All four must be met before poses are taken.", |ui| {
+    fn check_ui(&mut self, ui: &mut Ui) {
+        card(ui, "Before the first pose", "All must be met before poses are taken.", |ui| {
             ui.label("Take the instrument out of the trocar. Let go of it: nothing may touch the tool.");
             ui.add_space(6.0);
-            for check in self.session.precheck() {
-                let (what, colour, words) = match check.state {
-                    CheckState::Good => (Sign::Disc, theme::ENGAGED, "met"),
-                    CheckState::Waiting => (Sign::Ring, theme::AT_REST, "waiting"),
-                    CheckState::Bad(reason) => (Sign::Triangle, theme::TEXT, reason),
-                };
-                ui.horizontal(|ui| {
-                    sign_ui(ui, what, 6.0, colour);
-                    ui.label(format!("{}: {words}", crate::console::alarms::sentence(check.name)));
-                });
+            for check in self.precheck.checks(self.rate_hz) {
+                check_ui(ui, &check);
+            }
+        });
+        card(ui, "How this rig is built", "Leave both off unless you know, or a verdict says so.", |ui| {
+            let SessionSettings { use_arm, fit, .. } = *self.session.settings();
+            let none_taken = self.session.poses().is_empty();
+            let by_arm = "Take the orientation from the arm, not from the accelerometer";
+            let meaning = "For sensors without an accelerometer. The arm must tell how the sensor is turned.";
+            if let Some(use_arm) = switch_ui(ui, none_taken, use_arm, by_arm, meaning) {
+                *self = Self::of(SessionSettings { use_arm, ..*self.session.settings() });
+            }
+            let flipped = "The accelerometer points to the ground at rest, not away from it";
+            let meaning = "Some drivers tell gravity and not the support. Poses that were taken are kept.";
+            if let Some(flip) = switch_ui(ui, !use_arm, fit.imu_sign < 0, flipped, meaning) {
+                self.session.set_imu_sign(if flip { -1 } else { 1 });
+                self.precheck = Precheck::new(*self.session.settings());
+                self.fit();
             }
         });
     }
@@ -226,8 +246,7 @@ impl GravityWizard {
             }
             if ui.add_enabled(count > 0, Button::new("Remove the last pose")).clicked() {
                 self.session.undo();
-                self.report = (self.session.poses().len() >= POSES_MIN)
-                    .then(|| self.session.report().map_err(|error| error.to_string()));
+                self.fit();
             }
         });
     }

@@ -3,6 +3,7 @@
 //! A wizard sees every tick, asks the person at the arm for something ([`Prompt`]) and hands out a record when it shall be
 //! saved. It never changes the loop: saving restarts it, idle, with the new calibration.
 
+mod checks;
 mod correspondence;
 mod gravity;
 mod pictures;
@@ -114,10 +115,10 @@ pub struct Wizards {
 }
 
 impl Wizards {
-    /// Takes in one tick of the loop.
-    pub fn tick(&mut self, tick: &Tick) {
+    /// Takes in one tick of a loop of this rate (Hz).
+    pub fn tick(&mut self, tick: &Tick, rate_hz: f64) {
         match self.open {
-            Some(Which::Gravity) => self.gravity.tick(tick),
+            Some(Which::Gravity) => self.gravity.tick(tick, rate_hz),
             Some(Which::Correspondence) => self.correspondence.tick(tick),
             None => {}
         }

@@ -1,9 +1,6 @@
-//! Proving a calibration: a pass in free motion after it, and a few seconds at rest at every start.
+//! Proving a calibration: a pass in free motion after it.
 
-use super::{
-    Compensator, GravityModel,
-    still::{Still, StillSettings},
-};
+use super::Compensator;
 use crate::frames::WristSample;
 
 /// Width of a bin of the histogram of forces, N.
@@ -78,54 +75,5 @@ impl CheckPass {
         let passed = self.samples >= 1000 && self.tilt_rad >= 45_f64.to_radians() && p95_n <= self.limit_n;
         let mean_n = if self.samples > 0 { self.sum_n / self.samples as f64 } else { 0.0 };
         PassResult { samples: self.samples, mean_n, p95_n, tilt_rad: self.tilt_rad, passed, reason }
-    }
-}
-
-/// How a saved calibration stands at start-up.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Drift {
-    /// No usable sample.
-    NoSample,
-    /// The tool moves, or has not been still for long enough yet.
-    Moving,
-    /// The bias is where it was.
-    Ok {
-        /// Force left at rest, N.
-        by_n: f64,
-    },
-    /// The sensor drifted, or something touches the tool: calibrate anew.
-    Drifted {
-        /// Force left at rest, N.
-        by_n: f64,
-    },
-}
-
-/// Compares the force left at rest with zero. Steps allocate nothing.
-#[derive(Clone, Debug)]
-pub struct DriftCheck {
-    model: GravityModel,
-    limit_n: f64,
-    still: Still,
-}
-
-impl DriftCheck {
-    /// A check with a limit (N).
-    pub fn new(model: GravityModel, limit_n: f64, still: StillSettings) -> Self {
-        Self { model, limit_n, still: Still::new(still) }
-    }
-
-    /// Takes a sample at time `t_s` (s, rising); says how the calibration stands.
-    pub fn step(&mut self, sample: &WristSample, t_s: f64) -> Drift {
-        let Some(field) = self.model.field_m_s2(sample).filter(|_| sample.raw.is_finite() && t_s.is_finite()) else {
-            self.still.reset();
-            return Drift::NoSample;
-        };
-        match (self.still.step(sample, &field, t_s), self.still.mean()) {
-            (Some(share), Some((wrench, field))) if share >= 1.0 => {
-                let by_n = (wrench.force_n - self.model.predict(&field).force_n).norm();
-                if by_n <= self.limit_n { Drift::Ok { by_n } } else { Drift::Drifted { by_n } }
-            }
-            _ => Drift::Moving,
-        }
     }
 }

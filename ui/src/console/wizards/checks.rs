@@ -1,0 +1,44 @@
+//! Lines of what must be met before a wizard begins, and switches for how a rig is built.
+
+use egui::{Checkbox, Ui};
+use nima::calibration::gravity::{Check, CheckState};
+
+use crate::console::{
+    alarms::sentence,
+    theme,
+    widgets::{Sign, sign_ui},
+};
+
+/// One check with its figure, or with cause and cure.
+pub(super) fn check_ui(ui: &mut Ui, check: &Check) {
+    let (what, colour, words) = match &check.state {
+        CheckState::Good if check.measured.is_empty() => (Sign::Disc, theme::ENGAGED, "met".to_owned()),
+        CheckState::Good => (Sign::Disc, theme::ENGAGED, format!("{}, met", check.measured)),
+        CheckState::Waiting => (Sign::Ring, theme::AT_REST, "waiting".to_owned()),
+        CheckState::Bad { cause, cure } => (Sign::Triangle, theme::TEXT, format!("{cause}; {cure}")),
+    };
+    line_ui(ui, what, colour, &format!("{}: {words}", sentence(check.name)));
+}
+
+/// A check that is met or says what to do.
+pub(super) fn check_line(ui: &mut Ui, name: &str, met: bool, otherwise: &str) {
+    let (what, colour, words) =
+        if met { (Sign::Disc, theme::ENGAGED, "met") } else { (Sign::Triangle, theme::TEXT, otherwise) };
+    line_ui(ui, what, colour, &format!("{name}: {words}"));
+}
+
+fn line_ui(ui: &mut Ui, what: Sign, colour: egui::Color32, words: &str) {
+    ui.horizontal_wrapped(|ui| {
+        sign_ui(ui, what, 6.0, colour);
+        ui.label(words);
+    });
+}
+
+/// A switch for how the rig is built; the new state when it was pressed.
+pub(super) fn switch_ui(ui: &mut Ui, free: bool, on: bool, name: &str, meaning: &str) -> Option<bool> {
+    let mut wanted = on;
+    let switch = ui.add_enabled(free, Checkbox::new(&mut wanted, name));
+    let switch =
+        switch.on_hover_text(meaning).on_disabled_hover_text("Start over to change this: it is in what was taken.");
+    switch.changed().then_some(wanted)
+}

@@ -39,7 +39,7 @@ fn console(store: &Path, step_n: f64) -> Harness<'static, ConsoleApp> {
     let record = gravity();
     Store::open(store).save(&record).unwrap();
     let (rig, scene) = (Rig::load("simulated").unwrap(), free_scene(step_n));
-    let calibrations = Calibrations { gravity: Some(record.model) };
+    let calibrations = Calibrations { gravity: Some(record.model), tip_force: None };
     let handle = start(&Plan { rig: rig.clone(), scene: scene.clone(), calibrations, engage: false }).unwrap();
     let store = store.to_owned();
     Harness::builder()

@@ -121,6 +121,13 @@ impl ConsoleApp {
         self
     }
 
+    /// Goes on with these wizards and what they have taken.
+    #[must_use]
+    pub fn with_wizards(mut self, wizards: Wizards) -> Self {
+        self.wizards = wizards;
+        self
+    }
+
     /// Ends the loop and starts it anew, idle: only the operator engages it again. Never a way out of a stop or a fault.
     fn restart(&mut self, rig: Rig, scene: Scene) -> Result<(), String> {
         rig.validate().and_then(|()| scene.validate()).map_err(|error| error.to_string())?;

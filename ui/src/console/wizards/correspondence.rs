@@ -283,7 +283,8 @@ impl CorrespondenceWizard {
     }
 }
 
-fn check_line(ui: &mut Ui, name: &str, met: bool, otherwise: &str) {
+/// One thing that must be met, or what to do about it.
+pub(super) fn check_line(ui: &mut Ui, name: &str, met: bool, otherwise: &str) {
     let (what, colour, words) =
         if met { (Sign::Disc, theme::ENGAGED, "met") } else { (Sign::Triangle, theme::TEXT, otherwise) };
     ui.horizontal_wrapped(|ui| {

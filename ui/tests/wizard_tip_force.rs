@@ -38,7 +38,7 @@ use nima_console::console::{
     wizards::{Binding, Saving, Which, Wizards},
 };
 
-const PATIENCE: Duration = Duration::from_mins(2);
+const PATIENCE: Duration = Duration::from_secs(40);
 /// Ticks of the virtual clock between two pictures of the window.
 const TICKS: usize = 250;
 
@@ -201,15 +201,22 @@ impl Console {
         self.step();
     }
 
-    fn record_all(&mut self) {
-        self.press("Next");
-        self.press("Start recording");
-        self.read("All goals are met");
-        self.press("Next");
+    /// As the label of the bar says.
+    fn rows(&self) -> usize {
+        let label = self.window.get_by_label_contains(" s (the paper has").accesskit_node().label().unwrap();
+        label.trim_start_matches("Rows: ").split(',').next().unwrap().parse().unwrap()
     }
 
-    fn train(&mut self) {
-        self.press("Small (16)");
+    fn record(&mut self, rows: usize) {
+        let began = Instant::now();
+        while self.rows() < rows {
+            assert!(began.elapsed() < PATIENCE, "no rows; there is: {:?}", texts(&self.window));
+            self.step();
+        }
+    }
+
+    fn train(&mut self, size: &str) {
+        self.press(size);
         self.press("Start training");
         self.read("networks on");
     }
@@ -222,7 +229,8 @@ fn is_ready<A>(window: &Harness<'_, A>, label: &str) -> bool {
 
 /// All that can be read, for the words of a failure.
 fn texts<A>(window: &Harness<'_, A>) -> Vec<String> {
-    window.query_all_by_label_contains("").filter_map(|node| node.accesskit_node().label()).collect()
+    let words = |node: egui_kittest::Node<'_>| node.accesskit_node().value().or_else(|| node.accesskit_node().label());
+    window.query_all_by_label_contains("").filter_map(words).collect()
 }
 
 fn rows_of(folder: &Path, kind: &str) -> Option<usize> {
@@ -270,9 +278,13 @@ fn from_an_empty_recording_to_a_network_that_answers_in_the_loop() {
     store.save(&records().1).unwrap();
     let mut console = Console::new(None, folder.path());
     let began = Instant::now();
-    console.record_all();
+    console.press("Next");
+    console.press("Start recording");
+    console.record(12_000);
+    console.read("All goals are met");
+    console.press("Next");
     eprintln!("recorded {:?}", began.elapsed());
-    console.train();
+    console.train("Usual (32-32)");
     eprintln!("trained {:?}", began.elapsed());
     assert!(rows_of(folder.path(), "tip-force-data").unwrap() >= 6000, "the data set is on disk for the command line");
     console.press("Next");
@@ -349,13 +361,13 @@ fn work_in_one_place_never_meets_the_goals_and_its_network_needs_a_name() {
     console.press("Next");
     console.press("Start recording");
     console.read("Still to do: reach left, right, near and far (tilt of the shaft).");
-    console.read("Rows: 65");
+    console.record(6500);
     assert!(
         console.shows("Still to do: reach left") && !console.is_ready("Next"),
         "all rows, and not enough of the space"
     );
     console.press("Train anyway");
-    console.train();
+    console.train("Small (16)");
     assert!(console.shows("Its recording was not complete (tilt of the shaft)"));
     console.press("Next");
     console.press("Start the check");
@@ -370,8 +382,11 @@ fn work_in_one_place_never_meets_the_goals_and_its_network_needs_a_name() {
 fn sensors_that_do_not_agree_are_refused_and_an_override_is_written_into_the_file() {
     let folder = tempfile::tempdir().unwrap();
     let mut console = Console::new(Some(Flaw::LeansOnTheStand), folder.path());
-    console.record_all();
-    console.train();
+    console.press("Next");
+    console.press("Start recording");
+    console.read("All goals are met");
+    console.press("Next");
+    console.train("Small (16)");
     console.press("Next");
     console.press("Start the check");
     console.read("Verdict: ");
@@ -406,28 +421,24 @@ fn a_cancelled_training_and_steps_back_keep_the_recording() {
     let mut console = Console::new(None, folder.path());
     console.press("Next");
     console.press("Start recording");
-    console.read("Rows: 10");
+    console.record(1000);
     console.press("Pause");
-    let rows = shown_rows(&console);
+    let rows = console.rows();
     console.press("Back");
     console.press("Next");
-    assert_eq!(shown_rows(&console), rows, "a step back costs no row, and nothing is taken meanwhile");
+    assert_eq!(console.rows(), rows, "a step back costs no row, and nothing is taken meanwhile");
     console.press("Train anyway");
     console.press("Start training");
     console.press("Cancel training");
     console.read("Cancelled. The recording is kept.");
     assert!(console.is_ready("Start training") && !console.is_ready("Next"), "nothing was trained");
     console.press("Back");
-    assert_eq!(shown_rows(&console), rows);
+    assert_eq!(console.rows(), rows);
     assert_eq!(rows_of(folder.path(), "tip-force-data"), Some(rows), "it is on disk too");
     console.press("Go on recording");
-    console.read(&format!("Rows: {}", (rows + 300) / 100));
-    assert!(shown_rows(&console) > rows, "new rows are added to the old ones");
+    console.record(rows + 300);
     console.press("Start over");
-    assert!(console.shows("All six must be met") || console.shows("Lay the tissue on its sensor"));
-}
-
-fn shown_rows(console: &Console) -> usize {
-    let label = console.window.get_by_label_contains("Rows: ").accesskit_node().label().unwrap();
-    label.trim_start_matches("Rows: ").split(',').next().unwrap().parse().unwrap()
+    assert!(console.shows("Lay the tissue on its sensor"));
+    console.press("Next");
+    assert_eq!(console.rows(), 0, "started over");
 }

@@ -36,6 +36,9 @@ const RECORD: usize = 1;
 const TRAIN: usize = 2;
 const CHECK: usize = 3;
 
+/// Rows between two spells without contact, and rows of such a spell: where nothing is touched, nothing may be told.
+const SPELL_EVERY: usize = 3000;
+const SPELL: usize = 900;
 /// Rows of the check: with work on the tissue (40 s), and then without contact (15 s).
 const CHECK_WORK: usize = 8000;
 const CHECK_ROWS: usize = CHECK_WORK + 3000;
@@ -155,7 +158,8 @@ impl TipForceWizard {
         match self.step {
             RECORD => {
                 if let Some(take) = &mut self.recording {
-                    take.step(now_s, tick, Prompt::Work);
+                    let free = take.recorder.rows() % SPELL_EVERY >= SPELL_EVERY - SPELL;
+                    take.step(now_s, tick, if free { Prompt::WorkFree } else { Prompt::Work });
                 }
             }
             CHECK => {

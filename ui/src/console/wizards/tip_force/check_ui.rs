@@ -44,8 +44,9 @@ impl TipForceWizard {
                     wish = Some(Wish::GoTo(RECORD));
                 }
             });
-            let rows = self.proof.as_ref().map_or(0, |take| take.recorder.rows());
-            let rows = if self.judging.is_some() { CHECK_ROWS } else { rows };
+            let judged = self.judging.is_some() || self.checked.is_some();
+            let none = if judged { CHECK_ROWS } else { 0 };
+            let rows = self.proof.as_ref().map_or(none, |take| take.recorder.rows());
             progress(ui, "Rows of the check", rows as f64 / CHECK_ROWS as f64, &format!("{rows} of {CHECK_ROWS}"));
         });
         if let Some(checked) = &self.checked {

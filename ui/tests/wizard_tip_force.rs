@@ -2,12 +2,10 @@
 
 #![expect(clippy::unwrap_used, reason = "a console that cannot start is a failed test")]
 
+mod virtual_rig;
+
 use std::{
     path::{Path, PathBuf},
-    sync::{
-        OnceLock,
-        mpsc::{Receiver, Sender, channel},
-    },
     thread,
     time::{Duration, Instant, SystemTime},
 };
@@ -20,14 +18,11 @@ use egui_kittest::{
 use nima::{
     calibration::{
         Verdict,
-        correspondence::{self, CorrespondenceRecord, CorrespondenceSession},
-        gravity::{GravityRecord, GravitySession, SessionSettings},
         store::{Store, utc_now},
     },
     config::{Flaw, Rig, Scene},
-    device::{Outputs, Prompt, Rig as _, Sensed},
-    runtime::{Command, Plan, Tick, run_virtual, start},
-    sim::World,
+    device::Prompt,
+    runtime::{Command, Plan, run_virtual, start},
     teleop::{Calibrations, ForceSource},
     tip_force::{DataSet, Model, Selection},
 };
@@ -37,88 +32,11 @@ use nima_console::console::{
     theme,
     wizards::{Binding, Saving, Which, Wizards},
 };
+use virtual_rig::{VirtualRig, records};
 
 const PATIENCE: Duration = Duration::from_secs(40);
 /// Ticks of the virtual clock between two pictures of the window.
 const TICKS: usize = 250;
-
-/// Samples of a calibration scene, each under the prompt that `session` wants after the one before; ends with `None`.
-fn calibrate(scene: &Scene, mut session: impl FnMut(&nima::frames::WristSample, f64) -> Option<Prompt>) {
-    let (mut world, mut prompt) = (World::new(scene, 1000.0), Prompt::Rest);
-    for tick in 1..200_000 {
-        let t_s = f64::from(tick) * 1e-3;
-        let Sensed::AtWrist(sample) = world.exchange(t_s, &Outputs { prompt, ..Outputs::SAFE }).unwrap().sensed else {
-            panic!("a calibration scene without a wrist");
-        };
-        let Some(next) = session(&sample, t_s) else { return };
-        prompt = next;
-    }
-    panic!("the calibration never ended");
-}
-
-/// Gravity and correspondence of the simulated wrist, taken once by their own sessions.
-fn records() -> &'static (GravityRecord, CorrespondenceRecord) {
-    static RECORDS: OnceLock<(GravityRecord, CorrespondenceRecord)> = OnceLock::new();
-    RECORDS.get_or_init(|| {
-        let scene = Scene::load("gravity").unwrap();
-        let mut session = GravitySession::new(SessionSettings::default());
-        calibrate(&scene, |sample, t_s| {
-            session.step(sample, t_s);
-            session.target().map(|target| Prompt::Hold { kbf_from_s1: target.kbf_from_s1() })
-        });
-        let wrist = scene.wrist.unwrap();
-        let gravity = session.report().unwrap().record(&wrist.serial, &wrist.tool, &utc_now()).unwrap();
-        let scene = Scene::load("correspondence").unwrap();
-        let mut session = CorrespondenceSession::new(correspondence::SessionSettings::default());
-        calibrate(&scene, |sample, t_s| {
-            let force_n = gravity.model.gravity_free(sample).map(|wrench| wrench.force_n);
-            session.step(force_n, sample, t_s);
-            let pushing = |target: correspondence::PushTarget| Prompt::Push {
-                direction: nalgebra::UnitVector3::new_normalize(target.push_in_kbf),
-            };
-            // The zero first: both sensors rest.
-            if t_s < 2.0 { Some(Prompt::Rest) } else { session.target().map(pushing) }
-        });
-        let report = session.report().unwrap();
-        let correspondence = CorrespondenceRecord::of(&report, &wrist.serial, &wrist.tool, false).unwrap();
-        assert_eq!(correspondence.verdict, Verdict::Accepted);
-        (gravity, correspondence)
-    })
-}
-
-/// A simulated rig on the virtual clock, in a thread of its own; it goes on only when it is asked to.
-struct VirtualRig {
-    orders: Sender<(usize, Prompt)>,
-    ticks: Receiver<Vec<Tick>>,
-}
-
-impl VirtualRig {
-    fn start(scene: Scene, calibrations: Calibrations) -> Self {
-        let ((orders, ordered), (give, ticks)) = (channel(), channel());
-        let plan = Plan { rig: Rig::load("simulated").unwrap(), scene, calibrations, engage: false };
-        thread::spawn(move || {
-            let (mut left, mut batch) = (1, Vec::new());
-            run_virtual(&plan, 1e5, |tick| {
-                batch.push(*tick);
-                left -= 1;
-                if left > 0 {
-                    return None;
-                }
-                give.send(std::mem::take(&mut batch)).ok();
-                let Ok((count, prompt)) = ordered.recv() else { return Some(Command::Shutdown) };
-                left = count;
-                Some(Command::Prompt(prompt))
-            })
-        });
-        Self { orders, ticks }
-    }
-
-    fn go_on(&self, count: usize, prompt: Prompt) -> Vec<Tick> {
-        let ticks = self.ticks.recv().unwrap();
-        self.orders.send((count, prompt)).unwrap();
-        ticks
-    }
-}
 
 /// A window with nothing but the wizard.
 struct Bench {
@@ -170,7 +88,9 @@ impl Console {
     fn step(&mut self) {
         let wizards = &mut self.window.state_mut().wizards;
         let ticks = self.rig.go_on(TICKS, wizards.prompt());
-        ticks.iter().for_each(|tick| wizards.tick(tick));
+        for tick in &ticks {
+            wizards.tick(tick);
+        }
         self.window.step();
     }
 

@@ -168,7 +168,7 @@ pub(super) fn progress(ui: &mut Ui, name: &str, share: f64, words: &str) {
 }
 
 /// Rows in a field of a map at which it is as bright as it gets.
-const BRIGHTEST: f32 = 200.0;
+const BRIGHTEST: f32 = 1000.0;
 /// Room for the words below and left of a map.
 const BELOW: f32 = 34.0;
 const LEFT: f32 = 34.0;

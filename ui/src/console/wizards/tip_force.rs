@@ -5,6 +5,7 @@
 
 mod check_ui;
 mod job;
+mod ready_ui;
 mod record_ui;
 mod take;
 mod train_ui;
@@ -19,8 +20,8 @@ use nima::{
     tip_force::{Model, Settings},
 };
 
-use super::{Binding, Step, Wish, correspondence::check_line, save_card, steps_ui};
-use crate::console::{theme, widgets::card};
+use super::{Binding, Step, Wish, save_card, steps_ui};
+use crate::console::theme;
 use job::{Checked, Job, Order, Shared, judge, look, train};
 use take::{Clock, Take};
 
@@ -42,29 +43,6 @@ const SPELL: usize = 900;
 /// Rows of the check: with work on the tissue (40 s), and then without contact (15 s).
 const CHECK_WORK: usize = 8000;
 const CHECK_ROWS: usize = CHECK_WORK + 3000;
-
-/// What the last tick brought.
-#[derive(Clone, Copy, Debug, Default)]
-struct Sources {
-    wrist: bool,
-    gravity: bool,
-    tissue: bool,
-    chain: bool,
-    depth: bool,
-}
-
-impl Sources {
-    fn of(tick: &Tick) -> Self {
-        let Some(sample) = &tick.wrist else { return Self::default() };
-        Self {
-            wrist: true,
-            gravity: tick.force.gravity_free.is_some(),
-            tissue: sample.tissue_n.is_some(),
-            chain: sample.s1_from_c().is_some(),
-            depth: sample.insertion_m.is_some(),
-        }
-    }
-}
 
 /// What a recording was made with: rows of different rigs do not mix.
 #[derive(Clone, Debug)]
@@ -129,7 +107,8 @@ impl Size {
 pub struct TipForceWizard {
     step: usize,
     clock: Clock,
-    sources: Sources,
+    /// What the last tick brought.
+    sources: ready_ui::Sources,
     recorded_with: Option<RecordedWith>,
     recording: Option<Take>,
     /// This recording has been written: its own file need not be kept as the previous one.
@@ -151,7 +130,7 @@ impl TipForceWizard {
     /// Takes in one tick of the loop. Rows are taken in the two steps that record, and only while that was started.
     pub fn tick(&mut self, tick: &Tick) {
         let (now_s, broken) = self.clock.at(tick.t_s);
-        self.sources = Sources::of(tick);
+        self.sources = ready_ui::sources(tick);
         if broken {
             [&mut self.recording, &mut self.proof].into_iter().flatten().for_each(Take::break_off);
         }
@@ -206,11 +185,10 @@ impl TipForceWizard {
     }
 
     fn may_record(&self, binding: &Binding) -> Result<(), &'static str> {
-        let Sources { wrist, gravity, tissue, chain, depth } = self.sources;
         if binding.correspondence.is_none() {
             return Err("The correspondence is not known: calibrate it first.");
         }
-        if wrist && gravity && tissue && chain && depth { Ok(()) } else { Err("A check is not met yet.") }
+        if self.sources.iter().all(|there| *there) { Ok(()) } else { Err("A check is not met yet.") }
     }
 
     /// Whether the step after this one may begin, or why not.
@@ -348,39 +326,17 @@ impl TipForceWizard {
         }
     }
 
-    fn ready_ui(&self, ui: &mut Ui, binding: &Binding) {
-        card(ui, "Before the recording", "All six must be met before rows are taken.", |ui| {
-            ui.label(
-                "Lay the tissue on its sensor, put the instrument through the trocar, and hold its tip above the tissue.",
-            );
-            ui.add_space(6.0);
-            let Sources { wrist, gravity, tissue, chain, depth } = self.sources;
-            let known = binding.correspondence.is_some();
-            let lines = [
-                ("Wrist sensor", wrist, "silent; connect it"),
-                ("Gravity", gravity, "not in force; press \"Calibrate gravity...\" on the left"),
-                ("Correspondence", known, "not known; press \"Calibrate correspondence...\" on the left"),
-                ("Sensor under the tissue", tissue, "silent; connect it"),
-                (
-                    "Arm and tracker",
-                    chain,
-                    "the tracker does not see the marker, or the arm is silent; clear its sight",
-                ),
-                ("Depth through the trocar", depth, "not told; mount the trocar and check the arm"),
-            ];
-            for (name, met, otherwise) in lines {
-                check_line(ui, name, met, otherwise);
-            }
-        });
-    }
-
     fn save_ui(&mut self, ui: &mut Ui, binding: &Binding) -> Option<Model> {
         let (Some(trained), Some(checked)) = (&self.trained, &self.checked) else {
             ui.label("There is no checked network: go back.");
             return None;
         };
         let accepted = checked.check.verdict == Verdict::Accepted;
-        let proof = format!("Accepted: {}.", checked.check.reason);
+        let proof = format!("{}: {}.", checked.check.verdict.words(), checked.check.reason);
+        if !accepted {
+            ui.label(&proof);
+            ui.add_space(theme::GAP);
+        }
         let [name, why] = &mut self.by;
         let wanted = save_card(ui, binding, accepted.then_some(proof.as_str()), [name, why], self.saved.as_deref());
         wanted.then(|| {

@@ -22,7 +22,7 @@ const AXES: [&str; 3] = ["x", "y", "z"];
 /// The paper's mean absolute error per axis, and standard deviation of the error, N.
 const PAPER_MAE_N: [f64; 3] = [0.19, 0.16, 0.16];
 const PAPER_SD_N: f64 = 0.20;
-const HEIGHT: f32 = 270.0;
+const HEIGHT: f32 = 228.0;
 
 impl TipForceWizard {
     /// Gives the wish to go back and record more.

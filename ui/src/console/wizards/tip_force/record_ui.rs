@@ -1,7 +1,10 @@
 //! The recording: what to do now, how much there is, what it still lacks, and three maps that fill.
 
 use egui::{Align, Button, Layout, RichText, Ui, vec2};
-use nima::tip_force::{Coverage, MIN_ROWS, ROW_EVERY_S};
+use nima::{
+    device::Prompt,
+    tip_force::{Coverage, MIN_ROWS, ROW_EVERY_S},
+};
 
 use super::{
     super::{
@@ -71,7 +74,8 @@ impl TipForceWizard {
         };
         ui.label(RichText::new(task).font(theme::strong(19.0)));
         if let (Some(goal), true) = (self.lacking(), take.running) {
-            let advice = format!("Still to do: {} ({}).", goal.advice, goal.name.to_lowercase());
+            let when = if take.prompt() == Prompt::WorkFree { "After that" } else { "Still to do" };
+            let advice = format!("{when}: {} ({}).", goal.advice, goal.name.to_lowercase());
             ui.label(RichText::new(advice).font(theme::strong(16.0)));
         }
         ui.label(format!("State: {}.", take.phase_words()));
@@ -106,8 +110,9 @@ fn goals_ui(ui: &mut Ui, coverage: &Coverage) {
     card(ui, "Goals", "What the network will meet must be in the recording, in all of these respects.", |ui| {
         ui.columns(2, |columns| {
             for (i, goal) in coverage.goals().iter().enumerate() {
-                let words = if goal.share >= 1.0 { "met" } else { goal.advice };
-                progress(&mut columns[i / 3], goal.name, goal.share, words);
+                // Never 100 before it is met.
+                let percent = format!("{:.0} %", (100.0 * goal.share).floor());
+                progress(&mut columns[i / 3], goal.name, goal.share, if goal.share < 1.0 { &percent } else { "met" });
             }
         });
     });

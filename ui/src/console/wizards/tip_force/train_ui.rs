@@ -19,10 +19,10 @@ const HEIGHT: f32 = 330.0;
 impl TipForceWizard {
     pub(super) fn train_ui(&mut self, ui: &mut Ui, binding: &Binding) {
         card(ui, "Train", "Four networks learn side by side, each judged by another part of the recording.", |ui| {
+            self.size_ui(ui);
             let rows = self.rows();
             let told = format!("{rows} rows, {:.0} s", rows as f64 * ROW_EVERY_S);
             figure(ui, "Recording", told, "It is written to a file first, so that nothing is lost.");
-            self.size_ui(ui);
             let (share, elapsed_s) = self.progress();
             ui.horizontal(|ui| {
                 if self.is_training() {
@@ -109,9 +109,12 @@ fn curves_ui(ui: &mut Ui, curves: &Curves) {
         .height(HEIGHT)
         .custom_x_axes(vec![AxisHints::new_x().label("Epoch")])
         .custom_y_axes(vec![
-            AxisHints::new_y().label("Mean square error").min_thickness(52.0).formatter(move |mark, _| decades(mark)),
+            AxisHints::new_y()
+                .label("Mean square error (1: knows nothing)")
+                .min_thickness(52.0)
+                .formatter(move |mark, _| decades(mark)),
         ])
-        .y_grid_spacer(whole_decades)
+        .y_grid_spacer(|grid| whole_decades(&grid))
         .grid_color(theme::LINE)
         .allow_scroll(false)
         .include_x(0.0)
@@ -135,7 +138,7 @@ fn curves_ui(ui: &mut Ui, curves: &Curves) {
 }
 
 /// Marks at 1, 2 and 5 in each decade, values being decades.
-fn whole_decades(grid: GridInput) -> Vec<GridMark> {
+fn whole_decades(grid: &GridInput) -> Vec<GridMark> {
     let (low, high) = (grid.bounds.0.max(-12.0), grid.bounds.1.min(12.0));
     let fine = high - low < 3.0;
     let decades = (low.floor() as i32)..=(high.ceil() as i32);
@@ -149,7 +152,8 @@ fn whole_decades(grid: GridInput) -> Vec<GridMark> {
 
 fn power_of_ten(decades: f64) -> String {
     let value = 10f64.powf(decades);
-    if value >= 0.0999 { format!("{value:.1}") } else { format!("{value:.0e}") }
+    let places = (-(decades + 1e-9).floor()).clamp(0.0, 6.0) as usize;
+    if decades < -6.0 { format!("{value:.0e}") } else { format!("{value:.places$}") }
 }
 
 #[cfg(test)]
@@ -158,9 +162,9 @@ mod tests {
 
     #[test]
     fn marks_stand_at_round_losses() {
-        let marks = whole_decades(GridInput { bounds: (-2.1, 0.2), base_step_size: 0.1 });
+        let marks = whole_decades(&GridInput { bounds: (-2.1, 0.2), base_step_size: 0.1 });
         let words: Vec<String> = marks.iter().map(|mark| power_of_ten(mark.value)).collect();
-        assert_eq!(words, ["1e-2", "2e-2", "5e-2", "0.1", "0.2", "0.5", "1.0"]);
-        assert_eq!(whole_decades(GridInput { bounds: (-6.0, 0.0), base_step_size: 0.1 }).len(), 7);
+        assert_eq!(words, ["0.01", "0.02", "0.05", "0.1", "0.2", "0.5", "1"]);
+        assert_eq!(whole_decades(&GridInput { bounds: (-6.0, 0.0), base_step_size: 0.1 }).len(), 7);
     }
 }

@@ -26,6 +26,8 @@ const CARRY_M: [f64; 2] = [0.004, 0.025];
 const PRESS_M: [f64; 2] = [0.002, 0.010];
 /// Time of one reach while working, s: slow enough that inertia does not matter.
 const REACH_S: [f64; 2] = [0.5, 1.6];
+/// Time in which the tip is lifted off the tissue for a rest, s.
+const LIFT_S: f64 = 0.8;
 
 /// The person's hands and what they are doing.
 #[derive(Clone, Debug)]
@@ -120,6 +122,7 @@ impl Person {
             self.begin(prompt);
         }
         match self.prompt {
+            Prompt::Rest if self.wall_m.is_some() => self.reach_on(dt_s),
             Prompt::Rest | Prompt::Hold { .. } => self.turn(dt_s),
             Prompt::Wave => self.wave(),
             Prompt::Push { direction } => self.push(&direction, dt_s),
@@ -133,6 +136,9 @@ impl Person {
         (self.push, self.stand, self.in_push_s) = (Vector3::zeros(), Vector3::zeros(), f64::INFINITY);
         self.velocity_m_s = Vector3::zeros();
         self.in_reach_s = f64::INFINITY;
+        if *prompt == Prompt::Rest && self.wall_m.is_some() {
+            self.lift_off();
+        }
         if let Prompt::Hold { kbf_from_s1 } = *prompt
             && self.flaw != Some(Flaw::KeepsOneOrientation)
             && self.wall_m.is_none()
@@ -141,6 +147,14 @@ impl Person {
             let miss = Vector3::from_fn(|_, _| 0.05 * self.noise.gaussian());
             self.turn_to(kbf_from_s1 * UnitQuaternion::from_scaled_axis(miss));
         }
+    }
+
+    /// Nobody rests with the tip in the tissue.
+    fn lift_off(&mut self) {
+        let clear_z_m = self.surface_z_m + CARRY_M[0];
+        let to_m = Vector3::new(self.tip_m.x, self.tip_m.y, self.tip_m.z.max(clear_z_m));
+        self.reach = Move { from_m: self.tip_m, to_m, seconds: LIFT_S };
+        self.in_reach_s = 0.0;
     }
 
     fn turn_to(&mut self, target: UnitQuaternion<f64>) {
@@ -233,6 +247,12 @@ impl Person {
             self.reach = Move { from_m: self.tip_m, to_m, seconds: self.between(REACH_S) };
             self.in_reach_s = 0.0;
         }
+        self.reach_on(0.0);
+    }
+
+    /// Goes on with the reach that was begun; the shaft always points through the wall.
+    fn reach_on(&mut self, dt_s: f64) {
+        self.in_reach_s += dt_s;
         (self.tip_m, self.velocity_m_s) = self.reach.at(self.in_reach_s);
         if let Some(wall_m) = self.wall_m {
             self.kbf_from_s1 = along_shaft(&shaft(&wall_m, &self.tip_m).0);

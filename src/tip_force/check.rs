@@ -43,6 +43,9 @@ pub struct Check {
     /// Who chose to keep it although it was refused.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub override_by: Option<String>,
+    /// Why.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub override_reason: Option<String>,
 }
 
 impl Check {
@@ -78,6 +81,7 @@ pub fn check(estimator: &mut Estimator, data: &DataSet) -> Result<(Check, Evalua
         free_sd_n: at_rest(&|rest| rest.sd),
         doubt_share: part.doubt_share,
         override_by: None,
+        override_reason: None,
     };
     Ok((check, evaluation))
 }

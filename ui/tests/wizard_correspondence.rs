@@ -164,7 +164,8 @@ fn a_sensor_of_the_opposite_sign_is_named_and_the_switch_cures_it_without_new_pu
     store.save(&record).unwrap();
     let mut scene = Scene::load("correspondence").unwrap();
     scene.tissue_sensor.as_mut().unwrap().reads_tissue = true;
-    let mut harness = console(scene.clone(), folder.path(), Calibrations { gravity: Some(record.model), tip_force: None });
+    let mut harness =
+        console(scene.clone(), folder.path(), Calibrations { gravity: Some(record.model), tip_force: None });
     press(&mut harness, "Calibrate correspondence...");
     press(&mut harness, "Next");
     read(&mut harness, "Pushes: 9 taken of 9");

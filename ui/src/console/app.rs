@@ -121,6 +121,13 @@ impl ConsoleApp {
         self
     }
 
+    /// Goes on with these wizards and what they have taken.
+    #[must_use]
+    pub fn with_wizards(mut self, wizards: Wizards) -> Self {
+        self.wizards = wizards;
+        self
+    }
+
     /// Takes in all that the loop has sent.
     fn take_in(&mut self) {
         let Some(handle) = &self.handle else { return };

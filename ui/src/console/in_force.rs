@@ -105,7 +105,7 @@ impl InForce {
     /// What a new calibration would belong to.
     pub fn binding(&self) -> Binding {
         let (sensor, tool) = self.bound.clone().unwrap_or_default();
-        Binding { sensor, tool, date: utc_now() }
+        Binding { sensor, tool, date: utc_now(), correspondence: self.correspondence(), store: self.store.clone() }
     }
 
     /// Keeps a record and takes it into force; words for the screen.
@@ -114,6 +114,11 @@ impl InForce {
         let path = match saving {
             Saving::Gravity(record) => kept(store, *record, &mut self.gravity)?,
             Saving::Correspondence(record) => kept(store, *record, &mut self.correspondence)?,
+            Saving::TipForce(model) => {
+                let path = model.keep(store).map_err(|error| in_one_line(&error))?;
+                self.tip_force = Some(Loaded { record: *model, age: Age::Fresh, path: path.clone() });
+                path
+            }
         };
         self.told = None;
         Ok(format!("Saved and in force: {}.", path.display()))

@@ -44,6 +44,9 @@ pub const MEASURED: Color32 = Color32::from_rgb(0xf3, 0xe9, 0xd2);
 pub const RENDERED: Color32 = Color32::from_rgb(0x6c, 0x9d, 0xff);
 /// What our own figures are compared with (delayed DFR, the paper's choice).
 pub const REFERENCE: Color32 = Color32::from_rgb(0x87, 0x91, 0x9d);
+/// Lines that stand side by side: axes x, y, z, or the members of an ensemble. They differ in lightness too.
+pub const SERIES: [Color32; 4] =
+    [MEASURED, RENDERED, Color32::from_rgb(0x63, 0xc2, 0x8c), Color32::from_rgb(0xc0, 0x7a, 0xd8)];
 /// The loop runs and feeds force back.
 pub const ENGAGED: Color32 = Color32::from_rgb(0x63, 0xc2, 0x8c);
 /// The loop is at rest.

@@ -7,24 +7,31 @@ mod checks;
 mod correspondence;
 mod gravity;
 mod pictures;
+mod tip_force;
 
 use egui::{Button, RichText, TextEdit, Ui, vec2};
 use nima::{
-    calibration::{correspondence::CorrespondenceRecord, gravity::GravityRecord},
+    calibration::{
+        correspondence::{Correspondence, CorrespondenceRecord},
+        gravity::GravityRecord,
+        store::Store,
+    },
     config::Scene,
     device::Prompt,
     runtime::Tick,
+    tip_force::Model,
 };
 
 pub use correspondence::CorrespondenceWizard;
 pub use gravity::GravityWizard;
+pub use tip_force::TipForceWizard;
 
 use super::{
     theme,
     widgets::{card, figure, small, weak},
 };
 
-/// What a calibration belongs to.
+/// What a calibration belongs to, and what a later one builds on.
 #[derive(Clone, Debug, Default)]
 pub struct Binding {
     /// Serial number of the wrist sensor.
@@ -33,6 +40,10 @@ pub struct Binding {
     pub tool: String,
     /// Now, ISO 8601, UTC.
     pub date: String,
+    /// How the sensor under the tissue is turned, if that is known.
+    pub correspondence: Option<Correspondence>,
+    /// Where calibrations and their data are kept; none where no folder is known.
+    pub store: Option<Store>,
 }
 
 /// One step of a wizard.
@@ -56,17 +67,20 @@ pub enum Which {
     Gravity,
     /// How the sensor under the tissue is turned against the one at the wrist.
     Correspondence,
+    /// A network that takes the trocar's friction out.
+    TipForce,
 }
 
 impl Which {
     /// All of them, in the order of work.
-    pub const ALL: [Self; 2] = [Self::Gravity, Self::Correspondence];
+    pub const ALL: [Self; 3] = [Self::Gravity, Self::Correspondence, Self::TipForce];
 
     /// On buttons.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Gravity => "Gravity",
             Self::Correspondence => "Correspondence",
+            Self::TipForce => "Tip force",
         }
     }
 
@@ -75,6 +89,7 @@ impl Which {
         match self {
             Self::Gravity => "Takes the tool's weight and the sensor's bias out of the wrist's force.",
             Self::Correspondence => "Finds how the sensor under the tissue is turned against the one at the wrist.",
+            Self::TipForce => "Teaches a network to take the trocar's friction out of the wrist's force.",
         }
     }
 
@@ -83,6 +98,7 @@ impl Which {
         match self {
             Self::Gravity => "gravity",
             Self::Correspondence => "correspondence",
+            Self::TipForce => "isolation",
         }
     }
 
@@ -92,6 +108,7 @@ impl Which {
         match self {
             Self::Gravity => guided,
             Self::Correspondence => guided && scene.tissue_sensor.is_some(),
+            Self::TipForce => guided && scene.tissue_sensor.is_some() && scene.trocar.is_some(),
         }
     }
 }
@@ -103,6 +120,8 @@ pub enum Saving {
     Gravity(Box<GravityRecord>),
     /// A correspondence.
     Correspondence(Box<CorrespondenceRecord>),
+    /// A network with its check.
+    TipForce(Box<Model>),
 }
 
 /// All wizards; each keeps what it has until it is started over.
@@ -112,14 +131,21 @@ pub struct Wizards {
     pub open: Option<Which>,
     gravity: GravityWizard,
     correspondence: CorrespondenceWizard,
+    tip_force: TipForceWizard,
 }
 
 impl Wizards {
+    /// With this one on the screen.
+    pub fn at(which: Which) -> Self {
+        Self { open: Some(which), ..Self::default() }
+    }
+
     /// Takes in one tick of a loop of this rate (Hz).
     pub fn tick(&mut self, tick: &Tick, rate_hz: f64) {
         match self.open {
             Some(Which::Gravity) => self.gravity.tick(tick, rate_hz),
             Some(Which::Correspondence) => self.correspondence.tick(tick),
+            Some(Which::TipForce) => self.tip_force.tick(tick),
             None => {}
         }
     }
@@ -129,6 +155,7 @@ impl Wizards {
         match self.open {
             Some(Which::Gravity) => self.gravity.prompt(),
             Some(Which::Correspondence) => self.correspondence.prompt(),
+            Some(Which::TipForce) => self.tip_force.prompt(),
             None => Prompt::Rest,
         }
     }
@@ -138,6 +165,7 @@ impl Wizards {
         match self.open {
             Some(Which::Gravity) => self.gravity.tell_saved(words),
             Some(Which::Correspondence) => self.correspondence.tell_saved(words),
+            Some(Which::TipForce) => self.tip_force.tell_saved(words),
             None => {}
         }
     }
@@ -151,11 +179,13 @@ impl Wizards {
         match which {
             Which::Gravity => {
                 let record = self.gravity.ui(ui, binding)?;
-                // Pushes are free of gravity by the calibration before this one: both do not mix.
+                // Pushes and recordings are free of gravity by the calibration before this one: both do not mix.
                 self.correspondence = CorrespondenceWizard::default();
+                self.tip_force = TipForceWizard::default();
                 Some(Saving::Gravity(Box::new(record)))
             }
             Which::Correspondence => self.correspondence.ui(ui, binding).map(Box::new).map(Saving::Correspondence),
+            Which::TipForce => self.tip_force.ui(ui, binding).map(Box::new).map(Saving::TipForce),
         }
     }
 }

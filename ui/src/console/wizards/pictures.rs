@@ -1,7 +1,11 @@
-//! Small pictures that guide a hand: the tool in the orientation to take, and a sphere that fills with directions.
+//! Small pictures that guide a hand: the tool in the orientation to take, a sphere that fills with directions, maps that fill with
+//! rows.
 
-use egui::{Align2, Painter, Pos2, Rect, Sense, Shape, Stroke, Ui, WidgetInfo, pos2, vec2};
+use egui::{
+    Align2, Color32, Painter, Pos2, Rect, Sense, Shape, Stroke, Ui, WidgetInfo, epaint::TextShape, lerp, pos2, vec2,
+};
 use nalgebra::{UnitQuaternion, Vector3};
+use nima::tip_force::{MAP, Map};
 
 use crate::console::theme;
 
@@ -161,4 +165,63 @@ pub(super) fn progress(ui: &mut Ui, name: &str, share: f64, words: &str) {
     let filled = Rect::from_min_size(rect.min, vec2(rect.width() * share, rect.height()));
     painter.rect_filled(filled, 4.0, theme::SELECTED);
     painter.text(rect.center(), Align2::CENTER_CENTER, label, theme::regular(13.0), theme::TEXT);
+}
+
+/// Rows in a field of a map at which it is as bright as it gets.
+const BRIGHTEST: f32 = 1000.0;
+/// Room for the words below and left of a map.
+const BELOW: f32 = 34.0;
+const LEFT: f32 = 34.0;
+
+/// What an axis of a map shows: lowest value, name with unit, highest value.
+pub(super) type AxisWords = [&'static str; 3];
+
+/// A map that fills with rows: dark where there are none, brighter with their number (logarithmic).
+pub(super) fn heat_map(ui: &mut Ui, width: f32, title: &str, map: &Map, [across, up]: [AxisWords; 2]) {
+    let (rect, response) = ui.allocate_exact_size(vec2(width, width - LEFT + BELOW + 20.0), Sense::hover());
+    let words = format!("{title}: {} of {} fields filled", map.filled(), MAP * MAP);
+    response.widget_info(|| WidgetInfo::labeled(egui::Role::Label, true, words.clone()));
+    response.on_hover_text(words);
+    let painter = ui.painter_at(rect);
+    let side = width - LEFT - 2.0;
+    let field = Rect::from_min_size(rect.min + vec2(LEFT, 20.0), vec2(side, side));
+    painter.text(rect.left_top() + vec2(LEFT, 0.0), Align2::LEFT_TOP, title, theme::strong(13.0), theme::TEXT);
+    painter.rect_filled(field, 2.0, theme::GROOVE);
+    let cell = side / MAP as f32;
+    for (row, counts) in map.counts.iter().enumerate() {
+        for (column, count) in counts.iter().enumerate().filter(|(_, count)| **count > 0) {
+            let corner = pos2(field.left() + column as f32 * cell, field.bottom() - (row + 1) as f32 * cell);
+            let share = ((1.0 + *count as f32).ln() / (1.0 + BRIGHTEST).ln()).min(1.0);
+            painter.rect_filled(Rect::from_min_size(corner, vec2(cell - 0.5, cell - 0.5)), 0.0, heat(share));
+        }
+    }
+    painter.rect_stroke(field, 2.0, Stroke::new(1.0, theme::LINE), egui::StrokeKind::Outside);
+    axis_words(&painter, field, across, up);
+}
+
+/// From the darkest to the brightest field.
+fn heat(share: f32) -> Color32 {
+    let [from, to] = [theme::SELECTED, theme::MEASURED].map(|colour| colour.to_array());
+    let mix = |k: usize| lerp(f32::from(from[k])..=f32::from(to[k]), share) as u8;
+    Color32::from_rgb(mix(0), mix(1), mix(2))
+}
+
+fn axis_words(painter: &Painter, field: Rect, across: AxisWords, up: AxisWords) {
+    let font = theme::regular(11.5);
+    let below = field.bottom() + 3.0;
+    let places = [
+        (field.left(), Align2::LEFT_TOP, across[0], 0.0),
+        (field.right(), Align2::RIGHT_TOP, across[2], 0.0),
+        (field.center().x, Align2::CENTER_TOP, across[1], 14.0),
+    ];
+    for (x, anchor, words, lower) in places {
+        painter.text(pos2(x, below + lower), anchor, words, font.clone(), theme::TEXT_WEAK);
+    }
+    let left = field.left() - 3.0;
+    for (y, anchor, words) in [(field.bottom(), Align2::RIGHT_BOTTOM, up[0]), (field.top(), Align2::RIGHT_TOP, up[2])] {
+        painter.text(pos2(left, y), anchor, words, font.clone(), theme::TEXT_WEAK);
+    }
+    let name = painter.layout_no_wrap(up[1].to_owned(), font, theme::TEXT_WEAK);
+    let place = pos2(field.left() - 18.0 - 0.5 * name.size().y, field.center().y + 0.5 * name.size().x);
+    painter.add(TextShape::new(place, name, theme::TEXT_WEAK).with_angle(-std::f32::consts::FRAC_PI_2));
 }

@@ -1,0 +1,189 @@
+//! The check: a new recording by prompts, then the network's errors beside the paper's and beside simpler methods.
+
+use egui::{Button, Grid, RichText, Ui, vec2};
+use egui_plot::{AxisHints, Bar, BarChart, Corner, Legend, Line, LineStyle, MarkerShape, Plot, PlotPoints, Points};
+use nima::{
+    calibration::Verdict,
+    tip_force::{Part, ROW_EVERY_S},
+};
+
+use super::{
+    super::{Wish, pictures::progress},
+    Binding, CHECK_ROWS, CHECK_WORK, RECORD, TipForceWizard,
+    job::{BIN_N, BINS, Checked},
+    take::words,
+};
+use crate::console::{
+    theme,
+    widgets::{card, figure, small},
+};
+
+const AXES: [&str; 3] = ["x", "y", "z"];
+/// The paper's mean absolute error per axis, and standard deviation of the error, N.
+const PAPER_MAE_N: [f64; 3] = [0.19, 0.16, 0.16];
+const PAPER_SD_N: f64 = 0.20;
+const HEIGHT: f32 = 228.0;
+
+impl TipForceWizard {
+    /// Gives the wish to go back and record more.
+    pub(super) fn check_ui(&mut self, ui: &mut Ui, binding: &Binding) -> Option<Wish> {
+        let mut wish = None;
+        card(ui, "A new recording", "Rows that the network has never seen: only they tell how good it is.", |ui| {
+            let (work_s, free_s) = (CHECK_WORK as f64 * ROW_EVERY_S, (CHECK_ROWS - CHECK_WORK) as f64 * ROW_EVERY_S);
+            ui.label(RichText::new(self.task(work_s, free_s)).font(theme::strong(18.0)));
+            if let Some(take) = &self.proof {
+                ui.label(format!("State: {}.", take.phase_words()));
+            }
+            ui.horizontal(|ui| {
+                self.check_button_ui(ui, binding);
+                if ui
+                    .add(Button::new("Record more").min_size(vec2(130.0, 40.0)))
+                    .on_hover_text("Back to the recording; new rows are added to those that are there.")
+                    .clicked()
+                {
+                    wish = Some(Wish::GoTo(RECORD));
+                }
+            });
+            let judged = self.judging.is_some() || self.checked.is_some();
+            let none = if judged { CHECK_ROWS } else { 0 };
+            let rows = self.proof.as_ref().map_or(none, |take| take.recorder.rows());
+            progress(ui, "Rows of the check", rows as f64 / CHECK_ROWS as f64, &format!("{rows} of {CHECK_ROWS}"));
+        });
+        if let Some(checked) = &self.checked {
+            verdict_ui(ui, checked);
+            figures_ui(ui, checked);
+            plots_ui(ui, checked);
+        }
+        wish
+    }
+
+    fn task(&self, work_s: f64, free_s: f64) -> String {
+        match &self.proof {
+            _ if self.judging.is_some() => "The network is being judged".to_owned(),
+            Some(take) if take.running => words(take.prompt()).to_owned(),
+            Some(_) => "Paused: press \"Go on with the check\"".to_owned(),
+            None if self.checked.is_some() => "The check is done".to_owned(),
+            None => format!("{work_s:.0} s of work on the tissue, then {free_s:.0} s without touching it"),
+        }
+    }
+
+    fn check_button_ui(&mut self, ui: &mut Ui, binding: &Binding) {
+        let running = self.proof.as_ref().is_some_and(|take| take.running);
+        let text = match &self.proof {
+            Some(_) if running => "Pause",
+            Some(_) => "Go on with the check",
+            None if self.checked.is_some() => "Check again",
+            None => "Start the check",
+        };
+        let may = if self.judging.is_some() { Err("Wait for the verdict.") } else { self.may_record(binding) };
+        let button = Button::new(RichText::new(text).font(theme::strong(16.0))).min_size(vec2(220.0, 40.0));
+        let response = ui.add_enabled(running || may.is_ok(), button);
+        if response.on_disabled_hover_text(may.err().unwrap_or_default()).clicked() {
+            match &mut self.proof {
+                Some(take) if running => take.running = false,
+                _ => self.start_check(binding),
+            }
+        }
+        if let (Err(reason), false) = (may, running) {
+            ui.label(small(reason));
+        }
+    }
+}
+
+fn verdict_ui(ui: &mut Ui, checked: &Checked) {
+    let check = &checked.check;
+    card(ui, check.verdict.words(), "By the paper's figures, on rows recorded after the training.", |ui| {
+        let words = format!("Verdict: {}.", check.reason);
+        ui.label(RichText::new(words).font(theme::strong(14.0)));
+        if check.verdict != Verdict::Accepted {
+            ui.label(small("It can still be kept under somebody's name in the next step."));
+        }
+        let doubt = format!("{:.1} % of {} rows", 100.0 * check.doubt_share, check.rows);
+        figure(ui, "In doubt", doubt, "Rows outside of what was trained: there the fallback answers. At most 10 %.");
+    });
+}
+
+/// Mean absolute error of another method on an axis, N, as text.
+fn mae_of(part: &Part, method: &str, axis: usize) -> String {
+    let figures = part.methods.iter().find(|figures| figures.method == method);
+    let stats = figures.and_then(|figures| figures.outputs.get(axis).copied().flatten());
+    stats.map_or_else(|| "-".to_owned(), |stats| format!("{:.3}", stats.mae))
+}
+
+fn figures_ui(ui: &mut Ui, checked: &Checked) {
+    let meaning = "All in N, in the axes of the wrist sensor (z along the shaft). MAE: mean absolute error. SD: standard deviation of the error.";
+    card(ui, "Errors in N, per axis of the wrist sensor", meaning, |ui| {
+        let check = &checked.check;
+        Grid::new("tip_force_check").num_columns(9).spacing(vec2(20.0, 5.0)).show(ui, |ui| {
+            let heads = ["Axis", "MAE", "paper", "SD", "paper", "wrist force\nalone: MAE", "friction\nmodel: MAE"];
+            for head in heads.into_iter().chain(["no contact:\nmean (paper 0.02)", "no contact:\nSD (paper 0.03)"]) {
+                ui.label(small(head));
+            }
+            ui.end_row();
+            for (axis, name) in AXES.into_iter().enumerate() {
+                ui.label(name);
+                let strong = |value: f64| RichText::new(format!("{value:.3}")).font(theme::strong(14.0));
+                ui.label(strong(check.mae_n[axis]));
+                ui.label(small(format!("{:.2}", PAPER_MAE_N[axis])));
+                ui.label(strong(check.sd_n[axis]));
+                ui.label(small(format!("{PAPER_SD_N:.2}")));
+                ui.label(mae_of(&checked.part, "no model", axis));
+                ui.label(mae_of(&checked.part, "friction", axis));
+                ui.label(strong(check.free_mean_n[axis]));
+                ui.label(strong(check.free_sd_n[axis]));
+                ui.end_row();
+            }
+        });
+    });
+}
+
+fn plots_ui(ui: &mut Ui, checked: &Checked) {
+    ui.columns(2, |columns| {
+        card(&mut columns[0], "Measured against predicted", "A perfect network lies on the dashed line.", |ui| {
+            regression_ui(ui, checked);
+        });
+        card(&mut columns[1], "Answers without contact", "All of it should stand at zero.", |ui| free_ui(ui, checked));
+    });
+}
+
+fn plot<'a>(name: &str, x: &str, y: &str) -> Plot<'a> {
+    Plot::new(name)
+        .height(HEIGHT)
+        .custom_x_axes(vec![AxisHints::new_x().label(x)])
+        .custom_y_axes(vec![AxisHints::new_y().label(y).min_thickness(44.0)])
+        .grid_color(theme::LINE)
+        .allow_scroll(false)
+        .show_crosshair(false)
+        .legend(Legend::default().position(Corner::LeftTop).follow_insertion_order(true))
+}
+
+fn regression_ui(ui: &mut Ui, checked: &Checked) {
+    let all = || checked.points.iter().flatten().flatten();
+    let (low, high) = all().fold((-1.0_f64, 1.0_f64), |(low, high), value| (low.min(*value), high.max(*value)));
+    let response = plot("tip_force_regression", "Measured (N)", "Predicted (N)").show(ui, |plot| {
+        let ends = PlotPoints::from(vec![[low, low], [high, high]]);
+        plot.line(Line::new("perfect", ends).color(theme::REFERENCE).style(LineStyle::dashed_loose()));
+        for ((axis, points), colour) in AXES.iter().zip(&checked.points).zip(theme::SERIES) {
+            let marks = Points::new(*axis, PlotPoints::from(points.clone())).shape(MarkerShape::Circle);
+            plot.points(marks.radius(1.6).color(colour));
+        }
+    });
+    let described = "Regression plot: measured against predicted force, three axes";
+    response.response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, described));
+}
+
+fn free_ui(ui: &mut Ui, checked: &Checked) {
+    let response = plot("tip_force_free", "Answer (N)", "Share of rows (%)").show(ui, |plot| {
+        for (k, ((axis, bins), colour)) in AXES.iter().zip(&checked.bins).zip(theme::SERIES).enumerate() {
+            // Three narrow bars side by side in each bin.
+            let bar = |(i, share): (usize, &f64)| {
+                let middle_n = (i as f64 - (BINS / 2) as f64) * BIN_N;
+                Bar::new(middle_n + (k as f64 - 1.0) * BIN_N / 3.0, 100.0 * share).width(BIN_N / 3.0)
+            };
+            let bars = bins.iter().enumerate().filter(|(_, share)| **share > 0.0).map(bar).collect();
+            plot.bar_chart(BarChart::new(*axis, bars).color(colour));
+        }
+    });
+    let described = "Histogram of the answers without contact, three axes";
+    response.response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, described));
+}

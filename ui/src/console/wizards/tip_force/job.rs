@@ -1,0 +1,210 @@
+//! Work in the background of the wizard: training and judging. The window never waits for it.
+
+use std::{
+    fs,
+    path::{Path, PathBuf},
+    sync::{
+        Arc, Mutex, MutexGuard, PoisonError,
+        atomic::{AtomicBool, Ordering},
+    },
+    thread::{Builder, JoinHandle},
+};
+
+use nima::{
+    calibration::{
+        Verdict,
+        store::{Store, keep_previous},
+    },
+    tip_force::{Check, DataSet, Estimator, Evaluation, Model, Part, Progress, Recorder, Selection, Settings, check},
+};
+
+/// A thread at work. Dropping it asks it to stop; it then ends by itself, and nobody hears of its result.
+#[derive(Debug)]
+pub(super) struct Job<T> {
+    cancel: Arc<AtomicBool>,
+    thread: Option<JoinHandle<Result<T, String>>>,
+}
+
+impl<T: Send + 'static> Job<T> {
+    /// Begins `work` on an ordinary thread: the loop's own comes first where that is granted.
+    pub(super) fn start(
+        name: &str,
+        work: impl FnOnce(&AtomicBool) -> Result<T, String> + Send + 'static,
+    ) -> Result<Self, String> {
+        let cancel = Arc::new(AtomicBool::new(false));
+        let stop = Arc::clone(&cancel);
+        let thread = Builder::new().name(name.to_owned()).spawn(move || work(&stop));
+        let thread = thread.map_err(|error| format!("No thread could be started: {error}"))?;
+        Ok(Self { cancel, thread: Some(thread) })
+    }
+
+    /// The result, once; `None` while it works.
+    pub(super) fn take_result(&mut self) -> Option<Result<T, String>> {
+        let thread = self.thread.take_if(|thread| thread.is_finished())?;
+        Some(thread.join().unwrap_or_else(|_| Err("It broke off. Try again.".to_owned())))
+    }
+}
+
+impl<T> Job<T> {
+    /// Asks it to stop.
+    pub(super) fn cancel(&self) {
+        self.cancel.store(true, Ordering::Relaxed);
+    }
+
+    /// It was asked to stop.
+    pub(super) fn is_cancelled(&self) -> bool {
+        self.cancel.load(Ordering::Relaxed)
+    }
+}
+
+impl<T> Drop for Job<T> {
+    fn drop(&mut self) {
+        self.cancel();
+    }
+}
+
+/// Losses of one member, epoch by epoch.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Curve {
+    /// Epoch and decades of the loss on what it learns from.
+    pub(super) training: Vec<[f64; 2]>,
+    /// The same on what it never sees.
+    pub(super) held_out: Vec<[f64; 2]>,
+    share: f64,
+}
+
+/// What the training has told so far.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Curves {
+    /// Member by member.
+    pub(super) members: Vec<Curve>,
+    /// Since it began, s.
+    pub(super) elapsed_s: f64,
+}
+
+impl Curves {
+    fn add(&mut self, now: &Progress) {
+        self.members.resize_with(self.members.len().max(now.members), Curve::default);
+        self.elapsed_s = now.elapsed_s;
+        let decades = |loss: f64| [now.epoch as f64, loss.max(1e-12).log10()];
+        let Some(curve) = self.members.get_mut(now.member) else { return };
+        curve.training.push(decades(now.training_loss));
+        curve.held_out.push(decades(now.validation_loss));
+        curve.share = if now.finished { 1.0 } else { now.epoch as f64 / now.epochs_max.max(1) as f64 };
+    }
+
+    /// Share of the work that is done, 0 to 1.
+    pub(super) fn share(&self) -> f64 {
+        self.members.iter().map(|curve| curve.share).sum::<f64>() / self.members.len().max(1) as f64
+    }
+}
+
+/// Curves that two threads see.
+pub(super) type Shared = Arc<Mutex<Curves>>;
+
+/// A look at the curves; a thread that broke off leaves them as they were.
+pub(super) fn look(curves: &Mutex<Curves>) -> MutexGuard<'_, Curves> {
+    curves.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// What to train, and where its data are kept.
+#[derive(Debug)]
+pub(super) struct Order {
+    /// The recording.
+    pub(super) recorder: Recorder,
+    /// An earlier data set of another recording is there and must be kept.
+    pub(super) keep_previous: bool,
+    /// How to train.
+    pub(super) settings: Settings,
+    /// Sensor and tool.
+    pub(super) bound: [String; 2],
+    /// Where.
+    pub(super) store: Store,
+}
+
+/// Where a recording of this kind is kept.
+pub(super) fn path_of(store: &Store, kind: &str, sensor: &str) -> Result<PathBuf, String> {
+    store.path_of(kind, sensor, "csv").map_err(|error| error.to_string())
+}
+
+fn write(recorder: &Recorder, path: &Path, keeps: bool) -> Result<(), String> {
+    let failed = |error: std::io::Error| format!("The recording could not be written to {}: {error}", path.display());
+    path.parent().map_or(Ok(()), fs::create_dir_all).map_err(failed)?;
+    if keeps {
+        keep_previous(path).map_err(failed)?;
+    }
+    recorder.save(path).map_err(failed)
+}
+
+/// Writes the data set, so that nothing is lost and the command line can train on it; then trains on what was written.
+pub(super) fn train(order: Order, curves: &Mutex<Curves>, cancel: &AtomicBool) -> Result<Model, String> {
+    let Order { recorder, keep_previous, settings, bound: [sensor, tool], store } = order;
+    let path = path_of(&store, "tip-force-data", &sensor)?;
+    write(&recorder, &path, keep_previous)?;
+    drop(recorder);
+    let data = DataSet::read(&[path], &Selection::default()).map_err(|error| error.to_string())?;
+    let told = |now: &Progress| look(curves).add(now);
+    Model::train(&data, &settings, [Some(sensor), Some(tool)], cancel, &told).map_err(|error| error.to_string())
+}
+
+/// Bins of the histogram of answers without contact, and their width, N.
+pub(super) const BINS: usize = 41;
+pub(super) const BIN_N: f64 = 0.01;
+/// Points of a regression plot at most.
+const POINTS: usize = 700;
+
+/// What a check found, made ready to be drawn.
+#[derive(Clone, Debug)]
+pub(super) struct Checked {
+    /// Figures and verdict.
+    pub(super) check: Check,
+    /// All methods side by side.
+    pub(super) part: Part,
+    /// Per axis: measured and predicted, N; a share of the rows.
+    pub(super) points: [Vec<[f64; 2]>; 3],
+    /// Per axis: share of the rows without contact in each bin; the middle one is about zero, the outer ones hold all beyond.
+    pub(super) bins: [[f64; BINS]; 3],
+}
+
+/// Judges a model on a new recording, which is kept beside the data set. What it was trained on was not complete where
+/// `narrow` says so: then it is not proven, whatever the figures.
+pub(super) fn judge(
+    recorder: &Recorder,
+    model: Model,
+    narrow: Option<&'static str>,
+    (store, sensor): (&Store, &str),
+) -> Result<Checked, String> {
+    let path = path_of(store, "tip-force-check", sensor)?;
+    write(recorder, &path, true)?;
+    let mut estimator = Estimator::new(model);
+    let data = DataSet::read(&[path], &estimator.selection()).map_err(|error| error.to_string())?;
+    let (mut check, evaluation) = check(&mut estimator, &data).map_err(|error| error.to_string())?;
+    if let (Some(goal), Verdict::Accepted) = (narrow, check.verdict) {
+        check.verdict = Verdict::InsufficientMotion;
+        let goal = goal.to_lowercase();
+        check.reason = format!("the recording it was trained on was not complete ({goal}); record more");
+    }
+    let (points, bins) = (points(&data, &evaluation), bins(&data, &evaluation));
+    Ok(Checked { check, part: evaluation.overall, points, bins })
+}
+
+fn points(data: &DataSet, evaluation: &Evaluation) -> [Vec<[f64; 2]>; 3] {
+    let every = data.rows().div_ceil(POINTS).max(1);
+    std::array::from_fn(|axis| {
+        let point = |row: usize| [data.output(row)[axis], evaluation.predictions[row * 3 + axis]].map(f64::from);
+        (0..data.rows()).step_by(every).map(point).collect()
+    })
+}
+
+fn bins(data: &DataSet, evaluation: &Evaluation) -> [[f64; BINS]; 3] {
+    let free = |row: &usize| data.contact.as_ref().is_some_and(|contact| !contact[*row]);
+    let rows: Vec<usize> = (0..data.rows()).filter(free).collect();
+    std::array::from_fn(|axis| {
+        let mut bins = [0.0; BINS];
+        for &row in &rows {
+            let place = (f64::from(evaluation.predictions[row * 3 + axis]) / BIN_N).round() + (BINS / 2) as f64;
+            bins[place.clamp(0.0, (BINS - 1) as f64) as usize] += 1.0 / rows.len() as f64;
+        }
+        bins
+    })
+}

@@ -1,0 +1,119 @@
+//! A recording that can be paused, broken off and gone on with, on a clock of its own.
+
+use nima::{
+    calibration::correspondence::Correspondence,
+    device::Prompt,
+    runtime::Tick,
+    tip_force::{MOST_ROWS, Recorder, RecorderPhase},
+};
+
+/// A longer hole in the ticks, s, means that nobody has watched the rig meanwhile.
+const HOLE_S: f64 = 1.0;
+
+/// The loop's clock begins anew with every start of it; this one goes on.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Clock {
+    begin_s: f64,
+    last_s: Option<f64>,
+}
+
+impl Clock {
+    /// Time that only rises, s; and whether ticks were missing before this one.
+    pub(super) fn at(&mut self, t_s: f64) -> (f64, bool) {
+        let now_s = self.begin_s + t_s;
+        let Some(last_s) = self.last_s.replace(now_s) else { return (now_s, false) };
+        if now_s > last_s {
+            return (now_s, now_s - last_s > HOLE_S);
+        }
+        let now_s = last_s + HOLE_S;
+        self.begin_s = now_s - t_s;
+        self.last_s = Some(now_s);
+        (now_s, true)
+    }
+}
+
+/// A recording.
+#[derive(Clone, Debug)]
+pub(super) struct Take {
+    /// The rows.
+    pub(super) recorder: Recorder,
+    /// Rows are being taken, or would be if nothing were missing.
+    pub(super) running: bool,
+    /// The wrist sensor is silent.
+    silent: bool,
+    /// What the person is to do.
+    asked: Prompt,
+}
+
+impl Take {
+    pub(super) fn new(correspondence: Correspondence) -> Self {
+        Self { recorder: Recorder::new(correspondence), running: false, silent: false, asked: Prompt::Rest }
+    }
+
+    /// Takes one tick; `work` is what the person is to do once the rest is over.
+    pub(super) fn step(&mut self, now_s: f64, tick: &Tick, work: Prompt) {
+        self.silent = tick.wrist.is_none();
+        let (Some(sample), true) = (&tick.wrist, self.running) else { return };
+        match self.recorder.step(now_s, tick.force.gravity_free.as_ref(), sample) {
+            RecorderPhase::Resting { .. } => self.asked = Prompt::Rest,
+            RecorderPhase::NotMoved | RecorderPhase::Recording => self.asked = work,
+            // A short loss of a source changes nothing of what is to be done.
+            RecorderPhase::Lacks(_) => {}
+            RecorderPhase::Full => self.running = false,
+        }
+    }
+
+    /// Somebody else may have touched the rig: it rests anew before it goes on.
+    pub(super) fn break_off(&mut self) {
+        self.recorder.interrupt();
+        (self.running, self.asked) = (false, Prompt::Rest);
+    }
+
+    /// What the person at the arm is to do now.
+    pub(super) const fn prompt(&self) -> Prompt {
+        if self.running { self.asked } else { Prompt::Rest }
+    }
+
+    /// What the recording is doing, in words.
+    pub(super) fn phase_words(&self) -> String {
+        if self.recorder.rows() == MOST_ROWS {
+            return "the recording is full; go on to the training".to_owned();
+        }
+        match self.recorder.phase() {
+            _ if !self.running => "paused".to_owned(),
+            _ if self.silent => "nothing is taken: the wrist sensor is silent; connect it".to_owned(),
+            RecorderPhase::Lacks(lack) => format!("nothing is taken: {}", lack.words()),
+            RecorderPhase::Resting { share } => {
+                format!("zero of the sensor under the tissue: {:.0} %", 100.0 * share)
+            }
+            RecorderPhase::NotMoved => "waiting until the instrument has moved in or out by 2 mm".to_owned(),
+            RecorderPhase::Recording | RecorderPhase::Full => "recording".to_owned(),
+        }
+    }
+}
+
+/// What the screen says to the person at the arm.
+pub(super) const fn words(prompt: Prompt) -> &'static str {
+    match prompt {
+        Prompt::Work => "Work on the tissue: in and out, sideways, in contact and free",
+        Prompt::WorkFree => "Move in and out and sideways without touching the tissue",
+        _ => "Lift the tip off the tissue and hold it still",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Clock;
+
+    #[test]
+    fn time_only_rises_and_every_hole_is_told() {
+        let mut clock = Clock::default();
+        assert_eq!(clock.at(5.0), (5.0, false));
+        assert_eq!(clock.at(5.001), (5.001, false));
+        assert_eq!(clock.at(9.0), (9.0, true), "nobody watched for four seconds");
+        let (now_s, broken) = clock.at(0.001);
+        assert!(broken && now_s > 9.0, "the loop was started anew");
+        let (next_s, broken) = clock.at(0.002);
+        assert!(!broken && (next_s - now_s - 0.001).abs() < 1e-9);
+    }
+}

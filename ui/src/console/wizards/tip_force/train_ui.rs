@@ -1,0 +1,170 @@
+//! The training: size, start and cancel, how far it is, and the losses as they fall.
+
+use egui::{Button, Ui, vec2};
+use egui_plot::{AxisHints, Corner, GridInput, GridMark, Legend, Line, LineStyle, Plot, PlotPoints};
+use nima::tip_force::ROW_EVERY_S;
+
+use super::{
+    super::pictures::progress,
+    Binding, Size, TipForceWizard,
+    job::{Curves, look},
+};
+use crate::console::{
+    theme,
+    widgets::{card, figure, small},
+};
+
+const HEIGHT: f32 = 330.0;
+
+impl TipForceWizard {
+    pub(super) fn train_ui(&mut self, ui: &mut Ui, binding: &Binding) {
+        card(ui, "Train", "Four networks learn side by side, each judged by another part of the recording.", |ui| {
+            self.size_ui(ui);
+            let rows = self.rows();
+            let told = format!("{rows} rows, {:.0} s", rows as f64 * ROW_EVERY_S);
+            figure(ui, "Recording", told, "It is written to a file first, so that nothing is lost.");
+            let (share, elapsed_s) = self.progress();
+            ui.horizontal(|ui| {
+                if self.is_training() {
+                    if ui.add(Button::new("Cancel training").min_size(vec2(180.0, 40.0))).clicked() {
+                        self.cancel_training();
+                    }
+                    return;
+                }
+                let text = if self.trained.is_some() { "Train again" } else { "Start training" };
+                let button = ui.add_enabled(rows > 0, Button::new(text).min_size(vec2(180.0, 40.0)));
+                if button.on_disabled_hover_text("Record first.").clicked() {
+                    self.start_training(binding);
+                }
+            });
+            progress(ui, "Training", share, &self.progress_words(share, elapsed_s));
+        });
+        self.outcome_ui(ui);
+        let meaning = "Mean square error in squares of the forces' standard deviation: 1 is knowing nothing. What counts \
+                       is the held-out one, of rows that this network never learns from.";
+        card(ui, "Loss of each network, epoch by epoch", meaning, |ui| curves_ui(ui, &look(&self.curves)));
+    }
+
+    fn cancel_training(&self) {
+        if let Some((job, _)) = &self.training {
+            job.cancel();
+        }
+    }
+
+    fn size_ui(&mut self, ui: &mut Ui) {
+        let training = self.is_training();
+        ui.horizontal(|ui| {
+            ui.label("Size");
+            for size in Size::ALL {
+                let hidden = size.settings().hidden.iter().map(usize::to_string).collect::<Vec<_>>().join("-");
+                let chosen = self.size == size;
+                let words = format!("{} ({hidden})", size.name());
+                let response = ui.add_enabled(!training, Button::selectable(chosen, words));
+                let meaning = "Neurons in the hidden layers. The usual size is the one that was measured.";
+                if response.on_hover_text(meaning).clicked() {
+                    self.size = size;
+                }
+            }
+        });
+    }
+
+    fn progress_words(&self, share: f64, elapsed_s: f64) -> String {
+        match &self.training {
+            Some((job, _)) if job.is_cancelled() => "stopping".to_owned(),
+            Some(_) if share <= 0.0 => "writing the recording, then beginning".to_owned(),
+            Some(_) => {
+                let left_s = elapsed_s * (1.0 - share) / share;
+                format!("{:.0} %, {elapsed_s:.0} s, at most {left_s:.0} s to go", 100.0 * share)
+            }
+            None if self.trained.is_some() => "done".to_owned(),
+            None => "not begun".to_owned(),
+        }
+    }
+
+    fn outcome_ui(&self, ui: &mut Ui) {
+        let Some(trained) = &self.trained else { return };
+        card(ui, "Trained", "The network that goes on to the check.", |ui| {
+            let origin = &trained.model.origin;
+            let losses = origin.figures.iter().map(|member| member.validation_loss);
+            let mean = losses.sum::<f64>() / origin.figures.len().max(1) as f64;
+            let told = format!("{} networks on {} rows", origin.figures.len(), origin.rows);
+            figure(ui, "Ensemble", told, "Their mean is the answer; where they disagree it is in doubt.");
+            figure(ui, "Held-out loss", format!("{mean:.4}"), "Mean over the networks; 1 is knowing nothing.");
+            if let Some(goal) = trained.narrow {
+                ui.label(format!(
+                    "Its recording was not complete ({}): it can be kept only under somebody's name.",
+                    goal.to_lowercase()
+                ));
+            }
+            if origin.rows < self.rows() {
+                ui.label(small("The recording has grown since: train again to use all of it."));
+            }
+        });
+    }
+}
+
+fn curves_ui(ui: &mut Ui, curves: &Curves) {
+    let decades = |mark: GridMark| power_of_ten(mark.value);
+    let plot = Plot::new("losses")
+        .height(HEIGHT)
+        .custom_x_axes(vec![AxisHints::new_x().label("Epoch")])
+        .custom_y_axes(vec![
+            AxisHints::new_y()
+                .label("Mean square error (1: knows nothing)")
+                .min_thickness(52.0)
+                .formatter(move |mark, _| decades(mark)),
+        ])
+        .y_grid_spacer(|grid| whole_decades(&grid))
+        .grid_color(theme::LINE)
+        .allow_scroll(false)
+        .include_x(0.0)
+        .include_x(10.0)
+        .include_y(0.0)
+        .include_y(-2.0)
+        .show_crosshair(false)
+        .legend(Legend::default().position(Corner::RightTop).follow_insertion_order(true));
+    let response = plot.show(ui, |plot| {
+        for (i, member) in curves.members.iter().enumerate() {
+            let colour = theme::SERIES[i % theme::SERIES.len()];
+            let held_out = Line::new(format!("{} held out", i + 1), PlotPoints::from(member.held_out.clone()));
+            plot.line(held_out.color(colour).width(2.0));
+            let training = Line::new(format!("{} training", i + 1), PlotPoints::from(member.training.clone()));
+            plot.line(training.color(colour.gamma_multiply(0.7)).width(1.0).style(LineStyle::dashed_dense()));
+        }
+    });
+    let epochs = curves.members.iter().map(|member| member.training.len()).max().unwrap_or_default();
+    let described = format!("Losses of {} networks over {epochs} epochs", curves.members.len());
+    response.response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, described.clone()));
+}
+
+/// Marks at 1, 2 and 5 in each decade, values being decades.
+fn whole_decades(grid: &GridInput) -> Vec<GridMark> {
+    let (low, high) = (grid.bounds.0.max(-12.0), grid.bounds.1.min(12.0));
+    let fine = high - low < 3.0;
+    let decades = (low.floor() as i32)..=(high.ceil() as i32);
+    let within = |decade: i32| {
+        let parts: &[f64] = if fine { &[1.0, 2.0, 5.0] } else { &[1.0] };
+        parts.iter().map(move |part| f64::from(decade) + part.log10())
+    };
+    let marks = decades.flat_map(within).filter(|value| (low..=high).contains(value));
+    marks.map(|value| GridMark { value, step_size: 1.0 }).collect()
+}
+
+fn power_of_ten(decades: f64) -> String {
+    let value = 10f64.powf(decades);
+    let places = (-(decades + 1e-9).floor()).clamp(0.0, 6.0) as usize;
+    if decades < -6.0 { format!("{value:.0e}") } else { format!("{value:.places$}") }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn marks_stand_at_round_losses() {
+        let marks = whole_decades(&GridInput { bounds: (-2.1, 0.2), base_step_size: 0.1 });
+        let words: Vec<String> = marks.iter().map(|mark| power_of_ten(mark.value)).collect();
+        assert_eq!(words, ["0.01", "0.02", "0.05", "0.1", "0.2", "0.5", "1"]);
+        assert_eq!(whole_decades(&GridInput { bounds: (-6.0, 0.0), base_step_size: 0.1 }).len(), 7);
+    }
+}

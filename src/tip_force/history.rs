@@ -8,7 +8,9 @@
 //! `presliding` is the stop operator of the position over its width, -1 to 1: +1 slides forwards, -1 backwards, between is
 //! turning round. `midline` is the load without its friction: the difference between the loads of the two directions (the
 //! swing) is measured at every reversal, while the far side stays where it is, and half of it is taken off. Until the first
-//! reversal the swing is not known; the mean one of the training data stands for it, as a fourth number in the name.
+//! reversal the swing is not known; the mean one of the training data stands for it, as a second number in the name. The
+//! midline is smoothed over four widths of travel and stands still while the instrument turns: it follows a slow load; give
+//! the load itself beside it for what is quick.
 
 /// An input made from others.
 #[derive(Clone, Debug, PartialEq)]
@@ -27,7 +29,7 @@ pub struct Memory {
     /// Where the position was last, and how far it has gone since it turned, within the width.
     last: Option<f32>,
     travel: f32,
-    /// The side that last slid (1, -1, or 0 before the first), and its load, smoothed over the travel of turning round.
+    /// The side that last slid (1, -1, or 0 before the first), and its load, smoothed over twice the travel of turning round.
     side: f32,
     load: f32,
     swing: f32,
@@ -104,7 +106,7 @@ impl Memory {
         }
         let side = self.travel.signum();
         if side == self.side {
-            self.load += (load - self.load) * (moved.abs() / (2.0 * self.width)).min(1.0);
+            self.load += (load - self.load) * (moved.abs() / (4.0 * self.width)).min(1.0);
             return false;
         }
         let turned = self.side != 0.0;

@@ -18,7 +18,7 @@ use super::{DEFAULT_INPUTS, DEFAULT_OUTPUTS, Derived, Expansion, MAX_FEATURES, M
 /// Which columns to use; `None` means the default ones.
 #[derive(Clone, Debug, Default)]
 pub struct Selection {
-    /// Names of the inputs; by default those of [`DEFAULT_INPUTS`] that the first file has.
+    /// Names of the inputs, columns or [`Derived`]; by default those of [`DEFAULT_INPUTS`] that the first file has.
     pub inputs: Option<Vec<String>>,
     /// Names of the outputs; by default [`DEFAULT_OUTPUTS`].
     pub outputs: Option<Vec<String>>,
@@ -36,7 +36,7 @@ pub struct Trajectory {
 /// Rows of inputs and outputs, in the order of the files.
 #[derive(Clone, Debug)]
 pub struct DataSet {
-    /// Names of the input columns.
+    /// Names of the inputs; a derived one is complete here (see [`Derived`]).
     pub inputs: Vec<String>,
     /// Names of the output columns.
     pub outputs: Vec<String>,
@@ -307,6 +307,25 @@ mod tests {
         assert_ne!(hash("a,b\n1,2\n"), hash("a,b\n1,3\n"));
         // The published test vector of FNV-1a 64 for "a".
         assert_eq!((FNV_START ^ 0x61).wrapping_mul(FNV_PRIME), 0xaf63_dc4c_8601_ec8c);
+    }
+
+    #[test]
+    fn a_derived_input_begins_anew_in_every_trajectory_and_its_swing_is_found_once() {
+        let there_and_back = "x,f,y\n0,1,0\n1,1,0\n2,1,0\n1,3,0\n0,3,0\n";
+        let set = read(&[there_and_back, there_and_back], "f,presliding:x:0.5,midline:f:x:0.5", "y").unwrap();
+        assert_eq!(set.inputs[2], "midline:f:x:0.5:-2.000e0");
+        let half = set.x.len() / 2;
+        assert_eq!(set.x[..half], set.x[half..]);
+        let column = |k: usize| set.x[..half].iter().skip(k).step_by(3).copied().collect::<Vec<_>>();
+        assert_eq!(column(1), [0.0, 1.0, 1.0, -1.0, -1.0]);
+        assert_eq!(column(2), [1.0, 2.0, 2.0, 2.0, 2.0]);
+        // What a model keeps is a name that reads the same from any file, also one that never turns back.
+        let other = read(&["x,f,y\n0,1,0\n1,1,0\n"], &set.inputs.join(","), "y").unwrap();
+        assert_eq!(other.x[5].to_bits(), 2.0_f32.to_bits());
+        let message = |inputs: &str| read(&["x,f,y\n0,1,0\n1,1,0\n"], inputs, "y").unwrap_err().to_string();
+        assert!(message("midline:f:x:0.5").contains("turns back"));
+        assert!(message("presliding:x").contains("presliding:POSITION:WIDTH"));
+        assert!(message("presliding:z:1").contains("no column \"z\""));
     }
 
     #[test]

@@ -68,9 +68,9 @@ impl Estimator {
     }
 }
 
-/// How much of the network counts: all within the training data, nothing from twice the limit of doubt on.
+/// How much of the network counts: all within the training data, nothing from a quarter beyond the limit of doubt on.
 fn trust(outside: f32) -> f32 {
-    (2.0 - outside).clamp(0.0, 1.0)
+    (5.0 - 4.0 * outside).clamp(0.0, 1.0)
 }
 
 /// Endless where a feature that was constant in training is anything else, beyond rounding; else zero.

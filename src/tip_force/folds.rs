@@ -7,7 +7,8 @@ use super::DataSet;
 /// Rows left out between a validation block and its neighbours where a trajectory had to be cut.
 const GAP: usize = 50;
 
-/// With fewer trajectories than this, trajectories are cut into blocks.
+/// With fewer trajectories than this, trajectories are cut into blocks. Whole ones are better judges: a network that is
+/// stopped by them is rewarded for what holds beyond the loads it saw.
 const FEW: usize = 3;
 
 /// Blocks dealt to folds.

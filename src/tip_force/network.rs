@@ -101,7 +101,9 @@ impl Member {
             to.copy_from_slice(&layer.bias);
             layer.accumulate(if k == 0 { inputs } else { now }, to);
             if k == last {
-                to.iter_mut().for_each(|z| *z *= trust);
+                for z in &mut *to {
+                    *z *= trust;
+                }
                 self.skip.accumulate(inputs, to);
             } else {
                 for z in to {

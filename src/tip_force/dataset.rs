@@ -2,7 +2,8 @@
 //!
 //! Inputs and outputs by name ([`DEFAULT_INPUTS`], [`DEFAULT_OUTPUTS`] or the caller's), optionally `trajectory` (whole
 //! number: consecutive rows of one number belong together; without it every file is one trajectory) and `contact` (0 or 1).
-//! A missing column and a field that is no finite number are refused with their place; nothing is guessed.
+//! A missing column and a field that is no finite number are refused with their place; nothing is guessed. An input can be
+//! made from the history of others (see [`Derived`]).
 
 use std::{
     fs, io,
@@ -12,12 +13,12 @@ use std::{
 
 use csv::{ReaderBuilder, StringRecord, Trim};
 
-use super::{DEFAULT_INPUTS, DEFAULT_OUTPUTS, Expansion, MAX_FEATURES, MAX_OUTPUTS, TipForceError};
+use super::{DEFAULT_INPUTS, DEFAULT_OUTPUTS, Derived, Expansion, MAX_FEATURES, MAX_OUTPUTS, TipForceError};
 
 /// Which columns to use; `None` means the default ones.
 #[derive(Clone, Debug, Default)]
 pub struct Selection {
-    /// Names of the inputs; by default those of [`DEFAULT_INPUTS`] that the first file has.
+    /// Names of the inputs, columns or [`Derived`]; by default those of [`DEFAULT_INPUTS`] that the first file has.
     pub inputs: Option<Vec<String>>,
     /// Names of the outputs; by default [`DEFAULT_OUTPUTS`].
     pub outputs: Option<Vec<String>>,
@@ -35,7 +36,7 @@ pub struct Trajectory {
 /// Rows of inputs and outputs, in the order of the files.
 #[derive(Clone, Debug)]
 pub struct DataSet {
-    /// Names of the input columns.
+    /// Names of the inputs; a derived one is complete here (see [`Derived`]).
     pub inputs: Vec<String>,
     /// Names of the output columns.
     pub outputs: Vec<String>,
@@ -67,18 +68,28 @@ impl DataSet {
     pub fn parse(texts: &[(PathBuf, Vec<u8>)], selection: &Selection) -> Result<Self, TipForceError> {
         let mut hash = FNV_START;
         let mut set: Option<Self> = None;
+        let mut histories = Vec::new();
         for (path, bytes) in texts {
             let open = |reason: String| TipForceError::Open { path: path.clone(), reason };
             hash = bytes.iter().fold(hash, |hash, byte| (hash ^ u64::from(*byte)).wrapping_mul(FNV_PRIME));
             let mut reader = ReaderBuilder::new().trim(Trim::All).comment(Some(b'#')).from_reader(&bytes[..]);
             let header = reader.headers().map_err(|error| open(error.to_string()))?.clone();
-            let set = set.get_or_insert_with(|| Self::chosen(selection, &header));
-            check_columns(set)?;
-            set.append(path, &header, &mut reader)?;
+            if set.is_none() {
+                let chosen = Self::chosen(selection, &header);
+                check_columns(&chosen)?;
+                histories = histories_of(&chosen.inputs)?;
+                set = Some(chosen);
+            }
+            if let Some(set) = &mut set {
+                set.append(path, &header, &mut reader, &mut histories)?;
+            }
         }
         let mut set = set.ok_or(TipForceError::TooFewRows { found: 0, needed: 1 })?;
         if set.rows() == 0 {
             return Err(TipForceError::TooFewRows { found: 0, needed: 1 });
+        }
+        for history in histories {
+            set.fill(history)?;
         }
         set.hash = format!("{hash:016x}");
         Ok(set)
@@ -123,10 +134,16 @@ impl DataSet {
         path: &Path,
         header: &StringRecord,
         reader: &mut csv::Reader<&[u8]>,
+        histories: &mut [History],
     ) -> Result<(), TipForceError> {
-        let find = |name: &String| column(path, header, name);
-        let inputs = self.inputs.iter().map(find).collect::<Result<Vec<_>, _>>()?;
-        let outputs = self.outputs.iter().map(find).collect::<Result<Vec<_>, _>>()?;
+        let find = |name: &str| column(path, header, name);
+        let plain = |name: &String| (!name.contains(':')).then(|| find(name)).transpose();
+        let inputs = self.inputs.iter().map(plain).collect::<Result<Vec<_>, _>>()?;
+        let outputs = self.outputs.iter().map(|name| find(name)).collect::<Result<Vec<_>, _>>()?;
+        for history in &mut *histories {
+            let [position, load] = history.derived.columns();
+            history.columns = [find(position)?, find(load)?];
+        }
         let optional = |name: &str| header.iter().position(|found| found == name);
         let (trajectory, contact) = (optional("trajectory"), optional("contact"));
         if contact.is_none() {
@@ -147,7 +164,13 @@ impl DataSet {
             }
             last = id;
             for &index in &inputs {
-                self.x.push(number(path, header, &record, index)?);
+                // A derived input gets its value once all files are read.
+                self.x.push(index.map_or(Ok(0.0), |index| number(path, header, &record, index))?);
+            }
+            for history in &mut *histories {
+                let [position, load] = history.columns;
+                let values = [number(path, header, &record, position)?, number(path, header, &record, load)?];
+                history.rows.push(values);
             }
             if let (Some(index), Some(contacts)) = (contact, &mut self.contact) {
                 contacts.push(number(path, header, &record, index)? > 0.5);
@@ -161,6 +184,60 @@ impl DataSet {
         }
         Ok(())
     }
+
+    /// Writes a derived input into its place. An open swing becomes the mean of all that were measured, in the name; within
+    /// these data a trajectory's own first one stands for what was not measured yet, which only training needs.
+    fn fill(&mut self, history: History) -> Result<(), TipForceError> {
+        let History { input, mut derived, rows, .. } = history;
+        let open = derived.is_open();
+        let mut firsts = vec![None; self.trajectories.len()];
+        if open {
+            let swings: Vec<_> = self.trajectories.iter().map(|t| derived.swings(&rows[t.rows.clone()])).collect();
+            firsts = swings.iter().map(|swings| swings.first().copied()).collect();
+            let all: Vec<f32> = swings.concat();
+            if all.is_empty() {
+                let reason = format!("\"{}\" needs a position that turns back in the data", self.inputs[input]);
+                return Err(TipForceError::Columns { reason });
+            }
+            let mean = all.iter().sum::<f32>() / all.len() as f32;
+            let named = format!("{}:{mean:.3e}", self.inputs[input]);
+            derived = parsed(&named)?.unwrap_or(derived);
+            self.inputs[input] = named;
+        }
+        let width = self.inputs.len();
+        for (trajectory, first) in self.trajectories.iter().zip(firsts) {
+            let mut memory = derived.memory(first);
+            for row in trajectory.rows.clone() {
+                self.x[row * width + input] = derived.step(&mut memory, rows[row]).0;
+            }
+        }
+        Ok(())
+    }
+}
+
+/// A derived input under construction.
+struct History {
+    /// Which input it is.
+    input: usize,
+    derived: Derived,
+    /// Columns of position and load in the present file.
+    columns: [usize; 2],
+    /// Position and load, row by row.
+    rows: Vec<[f32; 2]>,
+}
+
+fn histories_of(inputs: &[String]) -> Result<Vec<History>, TipForceError> {
+    let mut histories = Vec::new();
+    for (input, name) in inputs.iter().enumerate() {
+        if let Some(derived) = parsed(name)? {
+            histories.push(History { input, derived, columns: [0; 2], rows: Vec::new() });
+        }
+    }
+    Ok(histories)
+}
+
+fn parsed(name: &str) -> Result<Option<Derived>, TipForceError> {
+    Derived::parse(name).transpose().map_err(|reason| TipForceError::Columns { reason })
 }
 
 const FNV_START: u64 = 0xcbf2_9ce4_8422_2325;
@@ -238,6 +315,25 @@ mod tests {
         assert_ne!(hash("a,b\n1,2\n"), hash("a,b\n1,3\n"));
         // The published test vector of FNV-1a 64 for "a".
         assert_eq!((FNV_START ^ 0x61).wrapping_mul(FNV_PRIME), 0xaf63_dc4c_8601_ec8c);
+    }
+
+    #[test]
+    fn a_derived_input_begins_anew_in_every_trajectory_and_its_swing_is_found_once() {
+        let there_and_back = "x,f,y\n0,1,0\n1,1,0\n2,1,0\n1,3,0\n0,3,0\n";
+        let set = read(&[there_and_back, there_and_back], "f,presliding:x:0.5,midline:f:x:0.5", "y").unwrap();
+        assert_eq!(set.inputs[2], "midline:f:x:0.5:-2.000e0");
+        let half = set.x.len() / 2;
+        assert_eq!(set.x[..half], set.x[half..]);
+        let column = |k: usize| set.x[..half].iter().skip(k).step_by(3).copied().collect::<Vec<_>>();
+        assert_eq!(column(1), [0.0, 1.0, 1.0, -1.0, -1.0]);
+        assert_eq!(column(2), [1.0, 2.0, 2.0, 2.0, 2.0]);
+        // What a model keeps is a name that reads the same from any file, also one that never turns back.
+        let other = read(&["x,f,y\n0,1,0\n1,1,0\n"], &set.inputs.join(","), "y").unwrap();
+        assert_eq!(other.x[5].to_bits(), 2.0_f32.to_bits());
+        let message = |inputs: &str| read(&["x,f,y\n0,1,0\n1,1,0\n"], inputs, "y").unwrap_err().to_string();
+        assert!(message("midline:f:x:0.5").contains("turns back"));
+        assert!(message("presliding:x").contains("presliding:POSITION:WIDTH"));
+        assert!(message("presliding:z:1").contains("no column \"z\""));
     }
 
     #[test]

@@ -3,7 +3,7 @@
 //! Three scores, each 1 at its limit, the largest counts: the distance to the nearest of some centres of the training data
 //! in whitened features, the reach of any one feature beyond its range, and the disagreement of the ensemble. Limits of
 //! distance and range are calibrated on trajectories that the statistics were not made of (each fold in turn), so that at
-//! most about [`FALSE_ALARMS`] of unseen samples are flagged. Anything that is not finite has an endless score.
+//! most about [`FALSE_ALARMS`] of unseen samples in the range of the others are flagged. Anything that is not finite has an endless score.
 
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
@@ -53,15 +53,18 @@ impl Doubt {
         let (mut distances, mut reaches) = (Vec::new(), Vec::new());
         let mut scratch = vec![0.0; width];
         for (fit, judge) in folds {
+            let (mut fold_distances, mut fold_reaches) = (Vec::new(), Vec::new());
             let fold = Self::geometry(x, stride, width, fit, seed);
             for &row in &thinned(judge, ROWS / folds.len().max(1)) {
                 let features = &x[row * stride..row * stride + width];
-                distances.push(fold.distance(features, &mut scratch));
-                reaches.push(fold.reach(features));
+                fold_distances.push(fold.distance(features, &mut scratch));
+                fold_reaches.push(fold.reach(features));
             }
+            distances.push(quantile(fold_distances));
+            reaches.push(quantile(fold_reaches));
         }
-        doubt.distance_limit = quantile(distances).max(1e-3);
-        doubt.range_limit = quantile(reaches).max(1.0);
+        doubt.distance_limit = median(distances).max(1e-3);
+        doubt.range_limit = median(reaches).max(1.0);
         doubt.spread_limit = quantile(spreads).max(1e-6);
         doubt
     }
@@ -84,13 +87,19 @@ impl Doubt {
         Self { width, whitening, centres, range, distance_limit: 1.0, range_limit: 1.0, spread_limit: 1.0 }
     }
 
-    /// The score of one row: normalised features and the ensemble's spread. `scratch` has room for `width`. Allocates nothing.
-    pub fn score(&self, features: &[f32], spread: &[f32], scratch: &mut [f32]) -> f32 {
-        let spread = spread.iter().copied().fold(0.0, f32::max) / self.spread_limit;
+    /// How far outside of the training data a row of normalised features lies. `scratch` has room for `width`. Allocates
+    /// nothing.
+    pub fn outside(&self, features: &[f32], scratch: &mut [f32]) -> f32 {
         let distance = self.distance(features, scratch) / self.distance_limit;
-        let score = distance.max(self.reach(features) / self.range_limit).max(spread);
+        let score = distance.max(self.reach(features) / self.range_limit);
         let finite = features[..self.width].iter().all(|x| x.is_finite());
         if finite && score.is_finite() { score } else { f32::INFINITY }
+    }
+
+    /// The score of the ensemble's spread, per output, in standard deviations of it.
+    pub fn disagreement(&self, spread: &[f32]) -> f32 {
+        let score = spread.iter().copied().fold(0.0, f32::max) / self.spread_limit;
+        if score.is_finite() { score } else { f32::INFINITY }
     }
 
     fn distance(&self, features: &[f32], scratch: &mut [f32]) -> f32 {
@@ -113,6 +122,12 @@ impl Doubt {
 /// Evenly thinned to at most `most` rows.
 fn thinned(rows: &[usize], most: usize) -> Vec<usize> {
     rows.iter().copied().step_by(rows.len().div_ceil(most.max(1)).max(1)).collect()
+}
+
+/// That of the typical fold: one that leaves out an end of the range is rightly in doubt and sets no limit.
+fn median(mut values: Vec<f32>) -> f32 {
+    values.sort_by(f32::total_cmp);
+    values.get(values.len().saturating_sub(1) / 2).copied().unwrap_or(0.0)
 }
 
 /// The limit that [`FALSE_ALARMS`] of these values pass.

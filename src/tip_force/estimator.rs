@@ -50,9 +50,10 @@ impl Estimator {
         if !features.iter().all(|x| x.is_finite()) {
             return refused;
         }
-        let answer = model.network.answer(features);
+        let outside = model.doubt.outside(features, scratch).max(moved);
+        let answer = model.network.answer(features, trust(outside));
         let outputs = model.outputs.len();
-        let score = model.doubt.score(features, &answer.spread[..outputs], scratch).max(moved);
+        let score = outside.max(model.doubt.disagreement(&answer.spread[..outputs]));
         let mut output = answer.mean;
         model.scale.undo(&mut output[..outputs]);
         output[outputs..].fill(0.0);
@@ -65,6 +66,11 @@ impl Estimator {
         }
         Estimate { output, spread, doubt: score, in_doubt: score > 1.0 }
     }
+}
+
+/// How much of the network counts: all within the training data, nothing from a quarter beyond the limit of doubt on.
+fn trust(outside: f32) -> f32 {
+    (5.0 - 4.0 * outside).clamp(0.0, 1.0)
 }
 
 /// Endless where a feature that was constant in training is anything else, beyond rounding; else zero.

@@ -7,8 +7,9 @@ use super::DataSet;
 /// Rows left out between a validation block and its neighbours where a trajectory had to be cut.
 const GAP: usize = 50;
 
-/// With fewer trajectories than this, trajectories are cut into blocks.
-const FEW: usize = 8;
+/// With fewer trajectories than this, trajectories are cut into blocks. Whole ones are better judges: a network that is
+/// stopped by them is rewarded for what holds beyond the loads it saw.
+const FEW: usize = 3;
 
 /// Blocks dealt to folds.
 #[derive(Clone, Debug)]
@@ -20,16 +21,18 @@ pub(super) struct Folds {
 }
 
 impl Folds {
-    /// At least five folds of whole trajectories, or of blocks where there are few trajectories.
+    /// Five folds or one per member, of whole trajectories (not more folds than those), or of blocks where there are few
+    /// trajectories.
     pub(super) fn of(data: &DataSet, members: usize, seed: u64) -> Self {
         let count = members.max(5);
         let whole: Vec<Range<usize>> = data.trajectories.iter().map(|trajectory| trajectory.rows.clone()).collect();
-        let (blocks, gap) = if whole.len() >= FEW.max(count) {
+        let (blocks, gap) = if whole.len() >= FEW {
             (whole, 0)
         } else {
             let pieces = (2 * count).div_ceil(whole.len()).max(2);
             (whole.iter().flat_map(|rows| cut(rows, pieces)).collect(), GAP)
         };
+        let count = count.min(blocks.len());
         let mut order: Vec<usize> = (0..blocks.len()).collect();
         fastrand::Rng::with_seed(seed ^ 0xf01d).shuffle(&mut order);
         let mut fold = vec![0; blocks.len()];
@@ -48,7 +51,7 @@ impl Folds {
     pub(super) fn split(&self, member: usize) -> (Vec<usize>, Vec<usize>) {
         let (mut training, mut validation) = (Vec::new(), Vec::new());
         for (block, fold) in self.blocks.iter().zip(&self.fold) {
-            if *fold == member {
+            if *fold == member % self.count() {
                 // A short block gives up no more than half of itself to the gaps.
                 let gap = self.gap.min(block.len() / 4);
                 validation.extend(block.start + gap..block.end - gap);

@@ -93,7 +93,7 @@ impl Model {
         let mut spreads = Vec::new();
         for (_, judge) in trained.folds.iter().take(settings.members) {
             for row in judge {
-                let spread = network.answer(&x[row * width..(row + 1) * width]).spread;
+                let spread = network.answer(&x[row * width..(row + 1) * width], 1.0).spread;
                 spreads.push(spread.iter().copied().fold(0.0, f32::max));
             }
         }

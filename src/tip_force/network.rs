@@ -2,7 +2,7 @@
 //!
 //! Member: `y = S x + W_k a(... a(W_1 x + b_1) ...) + b_k` with the activation `a(z) = z / sqrt(1 + z^2)`, smooth, bounded, and
 //! made of operations that a vector unit has, so that training and inference compute the very same function. The linear path
-//! `S` carries what is linear; the rest learns what is not. The ensemble's answer is the mean of its members. Inputs and
+//! `S` carries what is linear; the rest learns what is not, and fades out beyond the training data. The ensemble's answer is the mean of its members. Inputs and
 //! outputs are normalised numbers (see [`Normalisation`](super::Normalisation)); NaN in gives NaN out.
 
 use super::MAX_OUTPUTS;
@@ -94,13 +94,16 @@ impl Member {
         self.skip.shape()
     }
 
-    fn run(&self, inputs: &[f32], [now, next]: &mut [Vec<f32>; 2]) -> [f32; MAX_OUTPUTS] {
+    fn run(&self, inputs: &[f32], trust: f32, [now, next]: &mut [Vec<f32>; 2]) -> [f32; MAX_OUTPUTS] {
         let last = self.layers.len() - 1;
         for (k, layer) in self.layers.iter().enumerate() {
             let to = &mut next[..layer.padded];
             to.copy_from_slice(&layer.bias);
             layer.accumulate(if k == 0 { inputs } else { now }, to);
             if k == last {
+                for z in &mut *to {
+                    *z *= trust;
+                }
                 self.skip.accumulate(inputs, to);
             } else {
                 for z in to {
@@ -153,13 +156,14 @@ impl Network {
         self.members[0].shape()
     }
 
-    /// Runs all members on normalised inputs. Allocates nothing.
-    pub fn answer(&mut self, inputs: &[f32]) -> Answer {
+    /// Runs all members on normalised inputs. `trust` (0 to 1) is the share of what is not linear: beyond the training data
+    /// a network knows nothing, and the linear path alone is the better guess. Allocates nothing.
+    pub fn answer(&mut self, inputs: &[f32], trust: f32) -> Answer {
         let count = self.members.len() as f32;
         let (mut mean, mut low, mut high) =
             ([0.0; MAX_OUTPUTS], [f32::INFINITY; MAX_OUTPUTS], [f32::NEG_INFINITY; MAX_OUTPUTS]);
         for member in &self.members {
-            let outputs = member.run(inputs, &mut self.buffers);
+            let outputs = member.run(inputs, trust, &mut self.buffers);
             for k in 0..MAX_OUTPUTS {
                 mean[k] += outputs[k] / count;
                 low[k] = low[k].min(outputs[k]);
@@ -214,7 +218,7 @@ mod tests {
         for _ in 0..1000 {
             let inputs: Vec<f32> = (0..18).map(|_| 6.0 * generator.f32() - 3.0).collect();
             let wide: Vec<f64> = inputs.iter().map(|x| f64::from(*x)).collect();
-            let answer = network.answer(&inputs);
+            let answer = network.answer(&inputs, 1.0);
             let all: Vec<_> = members.iter().map(|member| reference(member, &wide)).collect();
             for k in 0..3 {
                 let mean = all.iter().map(|y| y[k]).sum::<f64>() / 4.0;

@@ -14,7 +14,7 @@ use std::{
     time::Instant,
 };
 
-use super::{DataSet, Expansion, Member, Normalisation, TipForceError, fit::Fit, folds::Folds};
+use super::{DataSet, Expansion, Member, Normalisation, TipForceError, fit::Fit, folds::Folds, linear};
 
 /// How to train.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -111,7 +111,7 @@ pub struct Progress {
 /// What one member reached.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct MemberFigures {
-    /// Epoch whose weights were kept, from 1.
+    /// Epoch whose weights were kept, from 1; 0 where the linear path alone was best.
     pub epoch: usize,
     /// Epochs run.
     pub epochs: usize,
@@ -185,7 +185,9 @@ pub fn train(
         let _one_at_a_time = alone.lock();
         progress(&Progress { elapsed_s: start.elapsed().as_secs_f64(), ..*now });
     };
-    let fit = Fit { x: &x, y: &y, shape: (expansion.width(), data.outputs.len()), settings, cancel, progress: &report };
+    let shape = (expansion.width(), data.outputs.len());
+    let skip = linear::solve(&x, &y, shape, &(0..data.rows()).collect::<Vec<_>>());
+    let fit = Fit { x: &x, y: &y, shape, skip: &skip, settings, cancel, progress: &report };
     let (members, figures) = all_members(&fit, &folds)?.into_iter().unzip();
     let constant = features.constant().map(|feature| expansion.name(feature, &data.inputs)).collect();
     let folds = (0..folds.count()).map(|fold| folds.split(fold)).collect();

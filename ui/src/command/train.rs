@@ -32,7 +32,8 @@ pub(super) struct TipForce {
     /// Where to write the model
     #[arg(long, value_name = "MODEL.safetensors")]
     out: PathBuf,
-    /// Input columns [default: of `fx_n,fy_n,fz_n,tx_nm,ty_nm,tz_nm,qw,qx,qy,qz,insertion_m,insertion_speed_m_s,presliding_200um_m,presliding_600um_m,slip_m_s` what is there]
+    /// Input columns, and inputs made of the history of columns: `presliding:POSITION:WIDTH` tells sliding from turning round,
+    /// `midline:LOAD:POSITION:WIDTH` is a load without the friction that reversals show [default: of `fx_n,fy_n,fz_n,tx_nm,ty_nm,tz_nm,qw,qx,qy,qz,insertion_m,insertion_speed_m_s,presliding_200um_m,presliding_600um_m,slip_m_s` what is there]
     #[arg(long, value_name = "A,B,C", value_delimiter = ',')]
     inputs: Option<Vec<String>>,
     /// Output columns [default: `tip_fx_n,tip_fy_n,tip_fz_n`]

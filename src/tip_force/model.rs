@@ -98,7 +98,9 @@ impl Model {
             }
         }
         let measured = trained.expansion.measured();
-        let doubt = Doubt::fit(&x, width, measured, &trained.folds, spreads, settings.seed);
+        // Every trajectory a file of its own: what is left out is another session.
+        let whole_sessions = data.files.len() > 1 && data.trajectories.len() == data.files.len();
+        let doubt = Doubt::fit(&x, width, measured, &trained.folds, spreads, whole_sessions, settings.seed);
         let origin = Origin {
             sensor,
             tool,

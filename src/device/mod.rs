@@ -3,11 +3,29 @@
 //! Positions in m, forces in N, both in the workspace frame (z up). A rig that cannot deliver a sample says so with
 //! `None`; it never repeats an old one as new.
 
+//!
+//! Drivers of real devices live in a folder each: a codec without input and output, a driver over a [`transport`], an emulator.
+
+pub mod emulation;
+mod health;
+#[cfg(unix)]
+mod os;
 mod prompt;
+mod reading;
+mod slot;
+pub mod transport;
+mod trouble;
 
 use nalgebra::Vector3;
 
+pub use health::{Health, Identity, Loss, Standing};
 pub use prompt::Prompt;
+pub use reading::{
+    ARM_JOINTS, ArmReading, CapReading, ForceReading, ForceStatus, HandleReading, PedalReading, SERVOS, ServoReading,
+    Stamped, TRACKED_TOOLS, Tracked, TrackerReading,
+};
+pub use slot::{Slot, SlotReport, SlotView};
+pub use trouble::Trouble;
 
 use crate::frames::WristSample;
 
@@ -58,6 +76,24 @@ impl Outputs {
     /// The safe outputs: no force, a resting follower.
     pub const SAFE: Self =
         Self { tip_command_m: None, hand_force_n: Vector3::new(0.0, 0.0, 0.0), prompt: Prompt::Rest };
+}
+
+/// A device that is open and delivers.
+///
+/// The real-time thread owns it: [`poll`](Self::poll) must neither wait nor allocate.
+pub trait Device: Send {
+    /// What it reads.
+    type Reading: Copy + Send;
+
+    /// Takes in all that has arrived until `now_s` (loop time) and gives the newest reading since the last call, if any. What is
+    /// lost, damaged or refused is counted in [`Device::health`]; a device that is lost stays so until it is opened again.
+    fn poll(&mut self, now_s: f64) -> Option<Stamped<Self::Reading>>;
+
+    /// How it is.
+    fn health(&self) -> &Health;
+
+    /// Who it is.
+    fn identity(&self) -> &Identity;
 }
 
 /// A leader, a follower and a force sensor that belong together. Owned by the real-time thread.

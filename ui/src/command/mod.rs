@@ -2,6 +2,7 @@
 
 mod calibrate;
 mod console;
+mod emulate;
 mod evaluate;
 mod identify;
 mod output;
@@ -34,6 +35,8 @@ enum Command {
     Run(run::Arguments),
     /// Identify impedance over a recording, causally, sample by sample
     Identify(identify::Arguments),
+    /// Emulate devices on their real wire
+    Emulate(emulate::Arguments),
     /// Calibrate from a file: residuals on held-out data and a verdict
     #[command(subcommand, arg_required_else_help = false)]
     Calibrate(calibrate::CalibrateCommand),
@@ -72,6 +75,7 @@ pub fn main() -> ExitCode {
         Command::Console(arguments) => console::run(&arguments),
         Command::Run(arguments) => run::run(&arguments),
         Command::Identify(arguments) => identify::run(&arguments),
+        Command::Emulate(arguments) => emulate::run(&arguments),
         Command::Calibrate(calibrate) => calibrate::run(&calibrate),
         Command::Study(study) => study::run(&study),
         Command::Train(train) => train::run(&train),

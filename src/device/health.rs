@@ -80,6 +80,11 @@ pub struct Health {
 const RATE_WINDOW_S: f64 = 0.5;
 
 impl Health {
+    /// Of a device that is being opened.
+    pub fn opening() -> Self {
+        Self { standing: Standing::Opening, ..Self::default() }
+    }
+
     /// Counts an accepted reading that arrived at `now_s`.
     pub fn accept(&mut self, now_s: f64) {
         let begin_s = *self.window_s.get_or_insert(now_s);

@@ -52,7 +52,7 @@ impl<D: Device + 'static> Slot<D> {
         shared.wanted.store(true, Ordering::Release);
         let keeper = Keeper { give, take, shared: shared.clone() };
         let thread = Builder::new().name(format!("open {name}")).spawn(move || keeper.run(open))?;
-        let health = Health { standing: Standing::Opening, ..Health::default() };
+        let health = Health::opening();
         Ok(Self { device: None, health, opened, lost, shared, thread: Some(thread) })
     }
 

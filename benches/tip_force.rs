@@ -1,0 +1,62 @@
+//! The tip-force network's size against accuracy and time, on sessions it never saw; and beside what a user would use instead.
+//!
+//! `./dev bench` prints one row per size: errors against the truth of the simulated trocar, answers without contact, time of one
+//! answer, time of training 30000 rows. Below it the same network evaluated by the tensor library that trained it.
+#![expect(clippy::unwrap_used, reason = "a benchmark fails by panicking")]
+
+use std::time::Instant;
+
+use candle_core::{Device, Tensor};
+use nima::{
+    study::validation::isolation::{ROWS, Reached, Sessions},
+    tip_force::{FeatureSettings, Settings},
+};
+
+const SIZES: [&[usize]; 7] = [&[8], &[16], &[32], &[16, 16], &[32, 32], &[64, 64], &[128, 128]];
+
+fn main() {
+    let sessions = Sessions::record(1, ROWS, FeatureSettings::default()).unwrap();
+    println!(
+        "{:>10} {:>24} {:>8} {:>18} {:>10}",
+        "hidden", "MAE x y z (N)", "free sd", "answer p50/p99 us", "training s"
+    );
+    for hidden in SIZES {
+        let settings = Settings { hidden: hidden.to_vec(), ..Settings::default() };
+        let (_, Reached { truth, no_contact, inference_us, training_s, .. }) = sessions.train(None, &settings).unwrap();
+        let mae: Vec<String> =
+            truth.methods[0].outputs.iter().flatten().map(|stats| format!("{:.3}", stats.mae)).collect();
+        let free = no_contact.iter().map(|free| free.sd).fold(0.0, f64::max);
+        let times = format!("{:.1} / {:.1}", inference_us.p50, inference_us.p99);
+        println!("{:>10} {:>24} {free:>8.3} {times:>18} {training_s:>10.1}", format!("{hidden:?}"), mae.join(" "));
+    }
+    println!("\nsmoothing of the wrench and the depth (ms), usual size:");
+    for smoothing_s in [0.001, 0.002, 0.005, 0.010, 0.020] {
+        let features = FeatureSettings { smoothing_s, ..FeatureSettings::default() };
+        let sessions = Sessions::record(1, ROWS, features).unwrap();
+        let (_, Reached { truth, no_contact, .. }) = sessions.train(None, &Settings::default()).unwrap();
+        let mae = truth.methods[0].outputs.iter().flatten().map(|stats| stats.mae).fold(0.0, f64::max);
+        let free = no_contact.iter().map(|free| free.sd).fold(0.0, f64::max);
+        println!("{:>6.0} worst MAE {mae:.3} N, free sd {free:.3} N", 1e3 * smoothing_s);
+    }
+    println!("\nfour networks of 36-32-32-3 for one row in the tensor library: {:.1} us median", tensors_us());
+}
+
+/// Median time of the same arithmetic as separate tensor operations, microseconds.
+fn tensors_us() -> f64 {
+    let device = Device::Cpu;
+    let random = |rows: usize, columns: usize| Tensor::randn(0.0_f32, 1.0, (rows, columns), &device).unwrap();
+    let layers: Vec<[Tensor; 3]> = (0..4).map(|_| [random(36, 32), random(32, 32), random(32, 3)]).collect();
+    let input = random(1, 36);
+    let mut times: Vec<f64> = (0..2000)
+        .map(|_| {
+            let start = Instant::now();
+            for [first, second, last] in &layers {
+                let hidden = input.matmul(first).unwrap().tanh().unwrap().matmul(second).unwrap().tanh().unwrap();
+                std::hint::black_box(hidden.matmul(last).unwrap());
+            }
+            1e6 * start.elapsed().as_secs_f64()
+        })
+        .collect();
+    times.sort_by(f64::total_cmp);
+    times[times.len() / 2]
+}

@@ -61,7 +61,8 @@ fn source_ui(ui: &mut Ui, live: &Live) {
         sign_ui(ui, what, 5.0, colour);
         let words = RichText::new(format!("Tip force: {}", source.words())).font(theme::strong(14.0));
         ui.add(egui::Label::new(words).wrap()).on_hover_text(sentence(source.words()));
-    });    if let Some(unsure) = source.doubt() {
+    });
+    if let Some(unsure) = source.doubt() {
         ui.label(small(sentence(unsure.words())));
     }
 }

@@ -1,4 +1,4 @@
-//! An answer of a tip-force model allocates nothing, whatever its inputs.
+//! An answer of a tip-force model allocates nothing, whatever its inputs; nor does the loop with a network in it.
 
 #[path = "common/counting.rs"]
 mod counting;
@@ -6,14 +6,25 @@ mod counting;
 use std::sync::atomic::AtomicBool;
 
 use counting::calls;
-use nima::tip_force::{DEFAULT_INPUTS, DataSet, Estimator, Model, Selection, Settings};
+use nima::{
+    config::{Rig, Scene},
+    device::{Outputs, Rig as _},
+    runtime::Command,
+    sim::World,
+    study::validation::{
+        experiment::Experiment,
+        isolation::{Known, record},
+    },
+    teleop::{Calibrations, ForceSource, Loop, Timing},
+    tip_force::{DEFAULT_INPUTS, DataSet, Estimator, Fallback, FeatureSettings, Model, Selection, Settings, TipForce},
+};
 
 #[test]
 fn an_answer_on_the_default_inputs_with_the_default_network_allocates_nothing() {
     let mut generator = fastrand::Rng::with_seed(1);
     let mut text = DEFAULT_INPUTS.join(",") + ",tip_fx_n,tip_fy_n,tip_fz_n\n";
     for _ in 0..400 {
-        let row: Vec<String> = (0..16).map(|_| (generator.f32() - 0.5).to_string()).collect();
+        let row: Vec<String> = (0..DEFAULT_INPUTS.len() + 3).map(|_| (generator.f32() - 0.5).to_string()).collect();
         text += &(row.join(",") + "\n");
     }
     let folder = tempfile::tempdir().unwrap();
@@ -28,9 +39,41 @@ fn an_answer_on_the_default_inputs_with_the_default_network_allocates_nothing() 
     for row in 0..data.rows() {
         doubted += u32::from(estimator.estimate(data.input(row)).in_doubt);
     }
-    assert!(estimator.estimate(&[f32::NAN; 13]).in_doubt && estimator.estimate(&[]).in_doubt);
+    assert!(estimator.estimate(&[f32::NAN; DEFAULT_INPUTS.len()]).in_doubt && estimator.estimate(&[]).in_doubt);
     assert_eq!(calls() - before, 0);
     assert!(doubted < 400);
     drop(std::hint::black_box(vec![1_u8; 10]));
     assert_eq!(calls() - before, 2, "the counter counts");
+}
+
+#[test]
+fn the_loop_with_a_network_in_it_allocates_nothing() {
+    let known = Known::calibrate(2).unwrap();
+    let session = Experiment::scene("isolation", 2).unwrap();
+    let data = record(&session, &known, FeatureSettings::default(), 4000, 7.0).unwrap().data(None).unwrap();
+    let settings = Settings { epochs: Some(2), ..Settings::default() };
+    let model = Model::train(&data, &settings, [None, None], &AtomicBool::new(false), &|_| {}).unwrap();
+    let tip_force = Some(TipForce::new(model, Fallback::HoldAndFade).unwrap());
+    let rig = Rig::load("simulated").unwrap();
+    let calibrations = Calibrations { gravity: Some(known.gravity), tip_force };
+    let mut control = Loop::new(&rig, &calibrations).unwrap();
+    let mut world = World::new(&Scene::load("palpation").unwrap(), rig.rate_hz);
+    let mut outputs = Outputs::SAFE;
+    let (mut sure, mut doubtful) = (0, 0);
+    let before = calls();
+    for k in 0..10_000_u32 {
+        let now_s = f64::from(k) * 1e-3;
+        control.clear_events();
+        if k == 100 {
+            control.obey(Command::Engage, now_s);
+        }
+        // A silent rig now and then: a hole in the network's memory.
+        let inputs = world.exchange(now_s, &outputs).filter(|_| k % 3000 > 15);
+        let (next, tick) = control.step(inputs, &Timing { now_s, ..Timing::default() });
+        outputs = next;
+        sure += u32::from(tick.force.source == ForceSource::Network);
+        doubtful += u32::from(tick.force.source.doubt().is_some());
+    }
+    assert_eq!(calls() - before, 0);
+    assert!(sure > 1000 && doubtful > 100, "both ways were gone: {sure} sure, {doubtful} doubtful");
 }

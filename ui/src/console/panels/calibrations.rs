@@ -55,10 +55,14 @@ pub fn calibrations_ui(ui: &mut Ui, live: &Live, in_force: &InForce, open: Optio
 
 fn source_ui(ui: &mut Ui, live: &Live) {
     let source = live.tick.map_or(ForceSource::AtTip, |tick| tick.force.source);
-    let (what, colour) = if source.is_usable() { (Sign::Disc, theme::ENGAGED) } else { (Sign::Triangle, theme::TEXT) };
+    let sure = source.is_usable() && source.doubt().is_none();
+    let (what, colour) = if sure { (Sign::Disc, theme::ENGAGED) } else { (Sign::Triangle, theme::TEXT) };
     ui.horizontal(|ui| {
         sign_ui(ui, what, 5.0, colour);
         let words = RichText::new(format!("Tip force: {}", source.words())).font(theme::strong(14.0));
         ui.add(egui::Label::new(words).wrap()).on_hover_text(sentence(source.words()));
     });
+    if let Some(unsure) = source.doubt() {
+        ui.label(small(sentence(unsure.words())));
+    }
 }

@@ -102,4 +102,49 @@ pub trait Rig: Send {
     ///
     /// Must not block and must not allocate.
     fn exchange(&mut self, now_s: f64, outputs: &Outputs) -> Option<Inputs>;
+
+    /// A device that came or went since the last call; call until `None`. Rigs without devices have none.
+    fn event(&mut self) -> Option<DeviceEvent> {
+        None
+    }
+
+    /// How the devices are, in the order of the rig's [`Roster`].
+    fn health(&self) -> Healths {
+        Healths::default()
+    }
 }
+
+/// Most devices of a rig.
+pub const DEVICES_MAX: usize = 16;
+
+/// How every device of a rig is.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Healths {
+    /// In the order of the roster; those beyond its end are closed.
+    pub devices: [Health; DEVICES_MAX],
+}
+
+/// A device came or went.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DeviceEvent {
+    /// When it was noticed, s on the loop's clock.
+    pub t_s: f64,
+    /// Its place in the roster.
+    pub device: u8,
+    /// Where it is now.
+    pub standing: Standing,
+}
+
+/// One device of a rig, as everybody but the real-time thread sees it.
+#[derive(Clone, Debug)]
+pub struct RosterEntry {
+    /// Its name in the rig: `left wrist sensor`.
+    pub name: String,
+    /// What drives it: `Bota socket 192.168.1.1`.
+    pub driver: String,
+    /// Connects, disconnects, tells troubles.
+    pub view: SlotView,
+}
+
+/// The devices of a rig.
+pub type Roster = Vec<RosterEntry>;

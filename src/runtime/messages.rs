@@ -3,7 +3,7 @@
 use nalgebra::Vector3;
 
 use crate::{
-    device::Prompt,
+    device::{DeviceEvent, Prompt},
     frames::WristSample,
     impedance::Mode,
     safety::{ChainSettings, GateReport},
@@ -146,6 +146,8 @@ pub enum Event {
         /// The command as it came.
         command: Command,
     },
+    /// A device of the rig came or went.
+    Device(DeviceEvent),
     /// What the operating system granted the real-time thread.
     Scheduling(super::Scheduling),
 }

@@ -41,10 +41,14 @@ impl Plan {
         self.scene.person.is_none() && (self.scene.wrist.is_none() || self.calibrations.gravity.is_some())
     }
 
-    fn build(&self) -> Result<(Loop, World), SettingsError> {
+    fn control(&self) -> Result<Loop, SettingsError> {
         // What the scene requires is identified; what it does not is left out.
         let mut rig = self.rig.clone();
         rig.identification.cross_talk |= self.scene.cross_talk;
-        Ok((Loop::new(&rig, &self.calibrations)?, World::new(&self.scene, rig.rate_hz)))
+        Loop::new(&rig, &self.calibrations)
+    }
+
+    fn world(&self) -> World {
+        World::new(&self.scene, self.rig.rate_hz)
     }
 }

@@ -9,9 +9,8 @@ use crossbeam_channel::{Receiver, Sender, TryRecvError, bounded};
 
 use super::{Command, Event, Plan, Summary, Tick, os, summary::Meters};
 use crate::{
-    device::{Outputs, Rig as _},
+    device::{Healths, Outputs, Rig, Roster},
     impedance::SettingsError,
-    sim::World,
     teleop::{Loop, Timing},
 };
 
@@ -21,6 +20,10 @@ const TICKS_WAITING_MAX: usize = 8192;
 const COMMANDS_WAITING_MAX: usize = 64;
 /// Events that wait for the screen.
 const EVENTS_WAITING_MAX: usize = 256;
+/// Ticks between two looks at the health of the devices.
+const HEALTH_EVERY: u64 = 100;
+/// Devices that may come or go in one tick.
+const DEVICE_EVENTS_PER_TICK_MAX: usize = 4;
 /// Commands obeyed in one tick; the rest wait for the next.
 const COMMANDS_PER_TICK_MAX: usize = 2;
 
@@ -41,30 +44,35 @@ pub struct Handle {
     commands: Sender<Command>,
     ticks: Receiver<Tick>,
     events: Receiver<Event>,
+    healths: Receiver<Healths>,
+    roster: Roster,
     thread: Option<JoinHandle<Summary>>,
 }
 
 /// Starts the loop in its own thread.
 pub fn start(plan: &Plan) -> Result<Handle, StartError> {
-    let (control, world) = plan.build()?;
+    let control = plan.control()?;
+    let rig: Box<dyn Rig> = Box::new(plan.world());
     let (commands, commands_in) = bounded(COMMANDS_WAITING_MAX);
     let (ticks_out, ticks) = bounded(TICKS_WAITING_MAX);
     let (events_out, events) = bounded(EVENTS_WAITING_MAX);
+    let (healths_out, healths) = bounded(1);
     if plan.engage {
         // An empty queue of 64 takes it.
         commands.try_send(Command::Engage).ok();
     }
     let realtime = Realtime {
         control,
-        world,
+        rig,
         period_ns: (1e9 / plan.rig.rate_hz).round() as u64,
         commands: commands_in,
         ticks: ticks_out,
         events: events_out,
+        healths: healths_out,
         meters: Meters::default(),
     };
     let thread = Builder::new().name("realtime".to_owned()).spawn(move || realtime.run())?;
-    Ok(Handle { commands, ticks, events, thread: Some(thread) })
+    Ok(Handle { commands, ticks, events, healths, roster: Roster::new(), thread: Some(thread) })
 }
 
 impl Handle {
@@ -82,6 +90,16 @@ impl Handle {
     /// Hands over every waiting event, oldest first, without blocking.
     pub fn drain_events(&self, mut each: impl FnMut(&Event)) {
         self.events.try_iter().take(EVENTS_WAITING_MAX).for_each(|event| each(&event));
+    }
+
+    /// The devices of the rig; empty where everything is simulated.
+    pub fn roster(&self) -> &Roster {
+        &self.roster
+    }
+
+    /// How the devices are, if that is newer than the last time.
+    pub fn healths(&self) -> Option<Healths> {
+        self.healths.try_recv().ok()
     }
 
     /// The loop's thread is alive.
@@ -110,11 +128,12 @@ impl Drop for Handle {
 
 struct Realtime {
     control: Loop,
-    world: World,
+    rig: Box<dyn Rig>,
     period_ns: u64,
     commands: Receiver<Command>,
     ticks: Sender<Tick>,
     events: Sender<Event>,
+    healths: Sender<Healths>,
     meters: Meters,
 }
 
@@ -139,7 +158,7 @@ impl Realtime {
             outputs = self.tick(&outputs, &mut timing, woke_ns);
         }
         // Whatever ends the loop, the hand is left without force and the follower at rest.
-        self.world.exchange(timing.now_s, &Outputs::SAFE);
+        self.rig.exchange(timing.now_s, &Outputs::SAFE);
         let wall_s = (os::monotonic_ns() - start_ns) as f64 * 1e-9;
         self.meters.summary("real", &self.control, timing.now_s, wall_s, scheduling)
     }
@@ -158,7 +177,7 @@ impl Realtime {
     }
 
     fn tick(&mut self, outputs: &Outputs, timing: &mut Timing, woke_ns: u64) -> Outputs {
-        let inputs = self.world.exchange(timing.now_s, outputs);
+        let inputs = self.rig.exchange(timing.now_s, outputs);
         let exchanged_ns = os::monotonic_ns();
         let (next, mut tick) = self.control.step(inputs, timing);
         let worked_ns = os::monotonic_ns();
@@ -169,6 +188,13 @@ impl Realtime {
         self.meters.ticks += 1;
         for event in self.control.events() {
             self.events.try_send(*event).ok();
+        }
+        for _ in 0..DEVICE_EVENTS_PER_TICK_MAX {
+            let Some(event) = self.rig.event() else { break };
+            self.events.try_send(Event::Device(event)).ok();
+        }
+        if self.meters.ticks.is_multiple_of(HEALTH_EVERY) {
+            self.healths.try_send(self.rig.health()).ok();
         }
         tick.dropped = self.meters.dropped;
         if self.ticks.try_send(tick).is_err() {

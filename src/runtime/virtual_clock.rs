@@ -16,7 +16,7 @@ pub fn run_virtual(
     seconds: f64,
     mut each: impl FnMut(&Tick) -> Option<Command>,
 ) -> Result<Summary, SettingsError> {
-    let (mut control, mut world) = plan.build()?;
+    let (mut control, mut world) = (plan.control()?, plan.world());
     let period_s = 1.0 / plan.rig.rate_hz;
     let ticks = (seconds * plan.rig.rate_hz).round() as u64;
     let mut meters = Meters::default();

@@ -45,6 +45,8 @@ pub struct World {
     tip_velocity_m_s: Vector3<f64>,
     command_m: Vector3<f64>,
     hand_force_n: Vector3<f64>,
+    /// Orientation of the wrist where an arm outside of this world carries it.
+    carried: Option<UnitQuaternion<f64>>,
 }
 
 /// Longest stretch simulated in one exchange, in periods: after a longer stall the world skips ahead.
@@ -74,6 +76,7 @@ impl World {
             tip_velocity_m_s: Vector3::zeros(),
             command_m: start_m,
             hand_force_n: Vector3::zeros(),
+            carried: None,
             hand,
         }
     }
@@ -86,6 +89,11 @@ impl World {
     /// Force on the tip in the last measurement without any sensor's error, N (`kbf`): what only a simulation knows.
     pub const fn true_tip_n(&self) -> Vector3<f64> {
         self.true_tip_n
+    }
+
+    /// Hands the wrist to an arm outside of this world: its orientation from now on (`kbf_from_s1`). Its place is commanded.
+    pub const fn carry(&mut self, kbf_from_s1: UnitQuaternion<f64>) {
+        self.carried = Some(kbf_from_s1);
     }
 
     fn accept(&mut self, outputs: &Outputs) {
@@ -150,9 +158,10 @@ impl World {
     }
 
     fn kbf_from_s1(&self) -> UnitQuaternion<f64> {
-        match &self.person {
-            Some(person) => person.kbf_from_s1(),
-            None => along_shaft(&trocar::shaft(&self.trocar_m, &self.tip_m).0),
+        match (&self.carried, &self.person) {
+            (Some(carried), _) => *carried,
+            (None, Some(person)) => person.kbf_from_s1(),
+            (None, None) => along_shaft(&trocar::shaft(&self.trocar_m, &self.tip_m).0),
         }
     }
 

@@ -21,7 +21,7 @@ use super::{
     outbox::Outbox,
     panels::{
         CalibrationWish, FeedbackState, ForcesState, TopBarState, TradeoffState, calibrations_ui, degrees_ui,
-        feedback_ui, forces_ui, gates_ui, horizon_ui, timing_ui, top_bar_ui, tradeoff_ui,
+        devices_ui, feedback_ui, forces_ui, gates_ui, horizon_ui, timing_ui, top_bar_ui, tradeoff_ui,
     },
     scene3d::{SceneView, scene_ui},
     screenshot, theme,
@@ -293,6 +293,7 @@ impl ConsoleApp {
         Panel::left("feedback").exact_size(316.0).resizable(false).frame(side).show(ui, |ui| {
             ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
                 feedback_ui(ui, &mut self.live, &mut self.feedback, &mut self.outbox);
+                devices_ui(ui, &self.live);
                 wish = calibrations_ui(ui, &self.live, &self.in_force, None);
                 gates_ui(ui, &self.live);
             });

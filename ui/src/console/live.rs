@@ -8,6 +8,7 @@ use std::{
 use nalgebra::Vector3;
 use nima::{
     config::{Rig, Scene},
+    device::{Healths, Roster},
     impedance::Mode,
     runtime::{Command, Event, Fault, Handle, Scheduling, Tick},
     safety::ChainSettings,
@@ -106,6 +107,10 @@ pub struct Live {
     pub rough_edges: bool,
     /// By how much the bias of the wrist sensor was found to have moved, if it has, N.
     pub bias_moved_n: Option<f64>,
+    /// The devices of the rig; empty where everything is simulated.
+    pub roster: Roster,
+    /// How they are, in the same order.
+    pub healths: Healths,
     first_fault: Option<(f64, Fault)>,
     refusal: Option<(Instant, Command)>,
     horizon: [Fading; 4],
@@ -142,6 +147,8 @@ impl Live {
             scheduling: None,
             rough_edges: false,
             bias_moved_n: None,
+            roster: Roster::new(),
+            healths: Healths::default(),
             first_fault: None,
             refusal: None,
             trend_n: VecDeque::with_capacity(TREND_S + 1),
@@ -164,6 +171,12 @@ impl Live {
 
     /// Takes in all that waits at the loop's door; `each` sees every tick.
     pub fn take_in(&mut self, handle: &Handle, mut each: impl FnMut(&Tick)) {
+        if self.roster.len() != handle.roster().len() {
+            self.roster.clone_from(handle.roster());
+        }
+        if let Some(healths) = handle.healths() {
+            self.healths = healths;
+        }
         handle.drain_events(|event| self.event(event));
         let mut came = false;
         handle.drain_ticks(|tick| {
@@ -240,6 +253,11 @@ impl Live {
             }
             Event::CommandRefused { command, .. } => self.refusal = Some((Instant::now(), command)),
             Event::Scheduling(scheduling) => self.scheduling = Some(scheduling),
+            Event::Device(event) => {
+                if let Some(health) = self.healths.devices.get_mut(usize::from(event.device)) {
+                    health.standing = event.standing;
+                }
+            }
         }
     }
 

@@ -2,6 +2,7 @@
 
 pub mod calibrations;
 pub mod degrees;
+pub mod devices;
 pub mod feedback;
 pub mod forces;
 pub mod gates;
@@ -13,6 +14,7 @@ mod tradeoff_plot;
 
 pub use calibrations::{CalibrationWish, calibrations_ui};
 pub use degrees::degrees_ui;
+pub use devices::devices_ui;
 pub use feedback::{FeedbackState, feedback_ui};
 pub use forces::{ForcesState, forces_ui, gauge};
 pub use gates::gates_ui;

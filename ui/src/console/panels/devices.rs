@@ -1,0 +1,65 @@
+//! The devices of the rig: where each is, how well it delivers, and for what fails the cause and the cure.
+
+use egui::{Button, Label, RichText, Ui, vec2};
+use nima::device::{Health, RosterEntry, Standing};
+
+use crate::console::{
+    live::Live,
+    theme,
+    widgets::{Sign, card, sign_ui, small},
+};
+
+/// The card; nothing where everything is simulated.
+pub fn devices_ui(ui: &mut Ui, live: &Live) {
+    if live.roster.is_empty() {
+        return;
+    }
+    card(ui, "Devices", "What the rig is made of. Connected never means engaged.", |ui| {
+        for (entry, health) in live.roster.iter().zip(&live.healths.devices) {
+            device_ui(ui, entry, health);
+        }
+    });
+}
+
+fn device_ui(ui: &mut Ui, entry: &RosterEntry, health: &Health) {
+    let (what, colour, words) = standing_words(health);
+    ui.horizontal(|ui| {
+        sign_ui(ui, what, 5.0, colour);
+        ui.label(RichText::new(&entry.name).font(theme::strong(14.0))).on_hover_text(&entry.driver);
+        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+            let wanted = !matches!(health.standing, Standing::Closed);
+            let text = if wanted { "Disconnect" } else { "Connect" };
+            let button = ui.add(Button::new(small(text)).min_size(vec2(84.0, 22.0)));
+            button.widget_info(|| {
+                let name = format!("{text} {}", entry.name);
+                egui::WidgetInfo::labeled(egui::Role::Button, true, name)
+            });
+            if button.on_hover_text("A lost device is opened again by itself until it is disconnected.").clicked() {
+                entry.view.want(!wanted);
+            }
+        });
+    });
+    ui.add(Label::new(small(words)).wrap());
+    let report = entry.view.report();
+    if let Some(identity) = report.identity.filter(|identity| !identity.product.is_empty()) {
+        ui.label(small(format!("{} {}, firmware {}", identity.product, identity.serial, identity.firmware)));
+    }
+    if let Some(trouble) = report.trouble {
+        ui.add(Label::new(trouble.to_string()).wrap());
+        ui.add(Label::new(small(trouble.cure())).wrap());
+    }
+    ui.add_space(4.0);
+}
+
+fn standing_words(health: &Health) -> (Sign, egui::Color32, String) {
+    let figures = || {
+        let Health { rate_hz, lost, damaged, refused, .. } = health;
+        format!("{rate_hz:.0} Hz; lost {lost}, damaged {damaged}, refused {refused}")
+    };
+    match health.standing {
+        Standing::Connected => (Sign::Disc, theme::ENGAGED, figures()),
+        Standing::Opening => (Sign::Ring, theme::TEXT, "being opened".to_owned()),
+        Standing::Closed => (Sign::Ring, theme::TEXT_WEAK, "disconnected".to_owned()),
+        Standing::Lost(loss) => (Sign::Triangle, theme::ALARM_MEDIUM, format!("lost: {}; {}", loss.cause(), figures())),
+    }
+}

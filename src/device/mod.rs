@@ -70,12 +70,14 @@ pub struct Outputs {
     pub hand_force_n: Vector3<f64>,
     /// What the screen asks of the person at the arm.
     pub prompt: Prompt,
+    /// Where the person at the screen leads the handle with mouse or keyboard, m; `None`: nobody does.
+    pub guide_m: Option<Vector3<f64>>,
 }
 
 impl Outputs {
     /// The safe outputs: no force, a resting follower.
     pub const SAFE: Self =
-        Self { tip_command_m: None, hand_force_n: Vector3::new(0.0, 0.0, 0.0), prompt: Prompt::Rest };
+        Self { tip_command_m: None, hand_force_n: Vector3::new(0.0, 0.0, 0.0), prompt: Prompt::Rest, guide_m: None };
 }
 
 /// A device that is open and delivers.

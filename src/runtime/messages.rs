@@ -27,6 +27,9 @@ pub enum Command {
     SetStaticHold(bool),
     /// Ask the person at the arm for something while calibrating; in idle only.
     Prompt(Prompt),
+    /// Lead the handle from the screen to this place, m (workspace), at most [`crate::teleop::GUIDE_MAX_M`] from its middle on
+    /// each axis; `None` lets it go. A stop and a fault let it go too.
+    Guide(Option<Vector3<f64>>),
     /// Start force feedback and motion, from idle only. Refused while the force at the tip is not known.
     Engage,
     /// Zero force and a resting follower at once; latched until released.
@@ -62,6 +65,8 @@ pub struct Tick {
     pub wrist: Option<WristSample>,
     /// What the person at the arm is asked to do.
     pub prompt: Prompt,
+    /// Where the screen leads the handle, m.
+    pub guide_m: Option<Vector3<f64>>,
     /// The same force as the link delivers it now: delayed DFR, N.
     pub delayed_n: Vector3<f64>,
     /// What each mode asks for at this tick before the gates, N, indexed by [`Mode::index`].

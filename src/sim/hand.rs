@@ -12,6 +12,11 @@ const CARRY_HEIGHT_M: f64 = 0.015;
 /// Physiological tremor, Hz.
 const TREMOR_HZ: [f64; 3] = [8.3, 9.7, 11.6];
 
+/// Fastest way of a handle that is led from the screen, m/s.
+const GUIDE_M_S: f64 = 0.15;
+/// So near to the task's own way a hand that was let go takes it up again, m.
+const CAUGHT_UP_M: f64 = 5e-4;
+
 /// One part of the task: minimum-jerk from one point to another within a time.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Move {
@@ -45,6 +50,9 @@ pub struct Hand {
     tremor_phase: [[f64; 3]; 3],
     position_m: Vector3<f64>,
     velocity_m_s: Vector3<f64>,
+    guide_m: Option<Vector3<f64>>,
+    /// Where the hand is meant to be while it is led, and on its way back to the task.
+    led_m: Option<Vector3<f64>>,
 }
 
 impl Hand {
@@ -63,7 +71,32 @@ impl Hand {
             tremor_phase,
             position_m,
             velocity_m_s: Vector3::zeros(),
+            guide_m: None,
+            led_m: None,
         }
+    }
+
+    /// Leads the hand to this place instead of its task; `None` lets it go on. Neither way is a jump.
+    pub fn guide(&mut self, guide_m: Option<Vector3<f64>>) {
+        self.guide_m = guide_m.filter(|at_m| at_m.iter().all(|x| x.is_finite()));
+        if self.guide_m.is_some() {
+            self.led_m.get_or_insert(self.position_m);
+        }
+    }
+
+    /// Where it is meant to be, m, and how fast, m/s: on its task's way, or led.
+    fn intended(&mut self, dt_s: f64) -> (Vector3<f64>, Vector3<f64>) {
+        let (task_m, task_m_s) = self.moves[self.current].at(self.in_move_s);
+        let Some(led_m) = &mut self.led_m else { return (task_m + self.tremor_m(), task_m_s) };
+        let way_m = self.guide_m.unwrap_or(task_m) - *led_m;
+        let step_m = GUIDE_M_S * dt_s;
+        let share = if way_m.norm() > step_m { step_m / way_m.norm() } else { 1.0 };
+        *led_m += way_m * share;
+        let intended = (*led_m, way_m * (share / dt_s));
+        if self.guide_m.is_none() && way_m.norm() < CAUGHT_UP_M {
+            self.led_m = None;
+        }
+        intended
     }
 
     /// Where hand and handle are, m.
@@ -74,14 +107,16 @@ impl Hand {
     /// Advances by `dt_s` under this force (N) from the handle.
     pub fn advance(&mut self, dt_s: f64, force_n: &Vector3<f64>) {
         self.time_s += dt_s;
-        self.in_move_s += dt_s;
+        if self.guide_m.is_none() {
+            self.in_move_s += dt_s;
+        }
         if self.in_move_s >= self.moves[self.current].seconds {
             self.in_move_s = 0.0;
             self.current = (self.current + 1) % self.moves.len();
         }
-        let (intended_m, intended_m_s) = self.moves[self.current].at(self.in_move_s);
+        let (intended_m, intended_m_s) = self.intended(dt_s);
         let HandConfig { mass_kg, grip_stiffness_n_m, grip_damping_n_s_m, .. } = self.config;
-        let grip_n = (intended_m + self.tremor_m() - self.position_m) * grip_stiffness_n_m
+        let grip_n = (intended_m - self.position_m) * grip_stiffness_n_m
             + (intended_m_s - self.velocity_m_s) * grip_damping_n_s_m;
         // Semi-implicit Euler: stable for these stiffnesses at 1 ms.
         self.velocity_m_s += (grip_n + force_n) * (dt_s / mass_kg);
@@ -135,6 +170,21 @@ mod tests {
             (middle.x - 0.5).abs() < 1e-12 && (peak.x - 1.875 / 2.0).abs() < 1e-12,
             "peak speed is 1.875 of the mean"
         );
+    }
+
+    #[test]
+    fn a_led_hand_goes_where_it_is_led_and_back_to_its_task_without_a_jump() {
+        let mut hand = Hand::new(&Scene::load("free_motion").unwrap());
+        let (mut last_m, mut fastest_m_s, aim_m) = (hand.position_m(), 0.0_f64, Vector3::new(0.04, -0.03, 0.01));
+        for tick in 0..6000 {
+            hand.guide((1000..3000).contains(&tick).then_some(aim_m));
+            hand.advance(1e-3, &Vector3::zeros());
+            fastest_m_s = fastest_m_s.max((hand.position_m() - last_m).norm() / 1e-3);
+            last_m = hand.position_m();
+            assert!(tick != 2999 || (last_m - aim_m).norm() < 1e-3, "{last_m}");
+        }
+        assert!(fastest_m_s < 0.4, "{fastest_m_s} m/s");
+        assert!(hand.led_m.is_none(), "it has taken up its task");
     }
 
     #[test]

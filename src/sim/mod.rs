@@ -112,6 +112,7 @@ impl World {
             Some(command) if command.iter().all(|x| x.is_finite()) => command,
             _ => self.tip_m,
         };
+        self.hand.guide(outputs.guide_m);
         self.prompt = if outputs.prompt.is_finite() { outputs.prompt } else { Prompt::Rest };
     }
 

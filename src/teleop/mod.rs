@@ -30,6 +30,8 @@ use crate::{
 const SILENT_AFTER_S: f64 = 0.020;
 /// Missed periods in a row that make a fault, as time, s.
 const STALLED_AFTER_S: f64 = 0.050;
+/// Farthest from the middle of the workspace that the screen may lead the handle, on each axis, m.
+pub const GUIDE_MAX_M: f64 = 0.1;
 /// Most events told in one tick; more in one tick is not possible.
 pub const EVENTS_PER_TICK_MAX: usize = 4;
 
@@ -59,6 +61,7 @@ pub struct Loop {
     force_path: ForcePath,
     force: ForceReport,
     prompt: Prompt,
+    guide_m: Option<Vector3<f64>>,
     link: Link,
     tracking: Tracking,
     chain: Chain,
@@ -87,6 +90,7 @@ impl Loop {
             force_path: ForcePath::new(calibrations, 1.0 / rig.rate_hz),
             force: NO_FORCE_YET,
             prompt: Prompt::Rest,
+            guide_m: None,
             link: Link::new(rig.rate_hz, rig.delay_s),
             tracking: Tracking::new(rig.rate_hz),
             chain: Chain::new(rig.gates, 1.0 / rig.rate_hz),
@@ -142,6 +146,9 @@ impl Loop {
             self.chain.reset();
             self.command_m = None;
             self.prompt = Prompt::Rest;
+            if matches!(to, LoopState::Stopped | LoopState::Faulted(_)) {
+                self.guide_m = None;
+            }
         }
     }
 
@@ -184,6 +191,13 @@ impl Loop {
             // Whoever is asked to handle the arm must be safe from it.
             Command::Prompt(prompt) if self.state == LoopState::Idle && prompt.is_finite() => {
                 self.prompt = prompt;
+                true
+            }
+            Command::Guide(guide_m)
+                if !matches!(self.state, LoopState::Stopped | LoopState::Faulted(_))
+                    && guide_m.is_none_or(|at_m| at_m.iter().all(|x| x.abs() <= GUIDE_MAX_M)) =>
+            {
+                self.guide_m = guide_m;
                 true
             }
             // A force that is mostly weight and bias must never reach a hand.
@@ -249,7 +263,7 @@ impl Loop {
         if inputs.is_some() {
             self.accuracy.add(&rendered, &self.force.tip_n);
         }
-        let outputs = Outputs { tip_command_m, hand_force_n, prompt: self.prompt };
+        let outputs = Outputs { tip_command_m, hand_force_n, prompt: self.prompt, guide_m: self.guide_m };
         let tick = self.tick(&seen, &rendered, delayed_n, hand_force_n, gates, timing);
         self.ticks += 1;
         (outputs, tick)
@@ -327,6 +341,7 @@ impl Loop {
                 Sensed::AtWrist(sample) => Some(sample),
             },
             prompt: self.prompt,
+            guide_m: self.guide_m,
             delayed_n,
             asked_n: Mode::ALL.map(|mode| rendered.force(mode).unwrap_or_else(Vector3::zeros)),
             rendered_n,

@@ -233,3 +233,29 @@ fn closing_the_window_ends_the_loop() {
     harness.run_steps(2);
     assert_eq!(harness.state().tick().map(|tick| tick.index), last);
 }
+
+#[test]
+fn the_instrument_is_led_by_mouse_and_keys_and_a_stop_lets_it_go() {
+    let mut harness = console();
+    press_when_ready(&mut harness, "Your turn (M)");
+    until(&mut harness, "led", |tick| tick.guide_m.is_some());
+    for _ in 0..5 {
+        harness.key_press(Key::PageUp);
+        harness.step();
+    }
+    let view = harness.get_by_label("Operating field").rect();
+    harness.drag_at(view.center());
+    harness.step();
+    harness.hover_at(view.center() + egui::vec2(60.0, 0.0));
+    harness.step();
+    harness.drop_at(view.center() + egui::vec2(60.0, 0.0));
+    harness.step();
+    let aim_m = harness.state().tick().unwrap().guide_m.unwrap();
+    until(&mut harness, "where it is led", |tick| (tick.leader_m - tick.guide_m.unwrap_or_default()).norm() < 3e-3);
+    press_when_ready(&mut harness, "Let it go (M)");
+    until(&mut harness, "let go", |tick| tick.guide_m.is_none());
+    harness.key_press(Key::M);
+    until(&mut harness, "led again", |tick| tick.guide_m.is_some_and(|at_m| at_m != aim_m));
+    press_when_ready(&mut harness, "Stop");
+    until(&mut harness, "stopped and let go", |tick| tick.state == LoopState::Stopped && tick.guide_m.is_none());
+}

@@ -312,7 +312,7 @@ impl ConsoleApp {
             Panel::bottom("forces").exact_size(traces).resizable(false).frame(frame).show(ui, |ui| {
                 forces_ui(ui, &self.live, &mut self.forces);
             });
-            scene_ui(ui, &self.live, &mut self.scene);
+            scene_ui(ui, &self.live, &mut self.scene, &mut self.outbox);
         });
         // After everything was drawn of the loop as it was. A stop asked for in the same frame comes first.
         if self.outbox.stop_is_stuck() {

@@ -63,6 +63,17 @@ impl Camera {
         Vector3::new(-sin_yaw * sin_pitch, cos_yaw * sin_pitch, cos_pitch)
     }
 
+    /// Metres per point of the screen at the distance of the target, in a view of this height (points).
+    pub fn metres_per_point(&self, height: f32) -> f32 {
+        2.0 * self.distance_m * (0.5 * FIELD_OF_VIEW).tan() / height.max(1.0)
+    }
+
+    /// Direction away from the eye along the ground, unit length.
+    pub fn away(&self) -> Vector3<f32> {
+        let (sin_yaw, cos_yaw) = self.yaw.sin_cos();
+        Vector3::new(-sin_yaw, cos_yaw, 0.0)
+    }
+
     /// Workspace to OpenGL clip space for a view of this width by height.
     pub fn clip_from_workspace(&self, aspect: f32) -> Matrix4<f32> {
         let aspect = if aspect.is_finite() { aspect.max(0.01) } else { 1.0 };

@@ -3,6 +3,7 @@
 
 pub mod camera;
 pub mod gl;
+mod lead;
 pub mod mesh;
 pub mod stage;
 
@@ -14,8 +15,8 @@ use nalgebra::Vector3;
 
 pub use camera::Camera;
 
-use self::{gl::Renderer, stage::Pose};
-use super::{live::Live, panels::gauge, theme, widgets::force_sign};
+use self::{gl::Renderer, lead::Lead, stage::Pose};
+use super::{live::Live, outbox::Outbox, panels::gauge, theme, widgets::force_sign};
 
 /// Camera and GPU objects of the view.
 #[derive(Debug)]
@@ -23,13 +24,14 @@ pub struct SceneView {
     /// Draw with smooth edges.
     pub smooth: bool,
     camera: Camera,
+    lead: Lead,
     renderer: Option<Arc<Renderer>>,
     problem: Option<String>,
 }
 
 impl Default for SceneView {
     fn default() -> Self {
-        Self { smooth: true, camera: Camera::default(), renderer: None, problem: None }
+        Self { smooth: true, camera: Camera::default(), lead: Lead::default(), renderer: None, problem: None }
     }
 }
 
@@ -52,16 +54,17 @@ impl SceneView {
 }
 
 /// The view, over all the room there is.
-pub fn scene_ui(ui: &mut Ui, live: &Live, view: &mut SceneView) {
+pub fn scene_ui(ui: &mut Ui, live: &Live, view: &mut SceneView, outbox: &mut Outbox) {
     let (rect, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Canvas, true, "Operating field"));
-    if response.dragged() {
+    let leading = view.lead.ui(ui, rect, &response, live, &view.camera, outbox);
+    if response.dragged() && !leading {
         view.camera.orbit(response.drag_delta());
     }
     if response.double_clicked() {
         view.camera = Camera::default();
     }
-    if response.contains_pointer() {
+    if response.contains_pointer() && !leading {
         let wheel = ui.input(|input| input.smooth_scroll_delta().y + 100.0 * (input.zoom_delta() - 1.0));
         view.camera.zoom((wheel * 0.003).exp());
     }
@@ -182,6 +185,11 @@ fn axes(painter: &Painter, rect: Rect, camera: &Camera) {
 fn hint(painter: &Painter, rect: Rect, view: &SceneView) {
     let (words, colour) = match &view.problem {
         Some(problem) => (format!("The 3-D view cannot be drawn by this graphics driver: {problem}"), theme::TEXT),
+        None if view.lead.is_on() => (
+            "Drag to move the instrument, wheel or Page Up and Down for its height, arrow keys for small steps"
+                .to_owned(),
+            theme::TEXT,
+        ),
         None => ("Drag to turn, wheel to zoom, double click to reset".to_owned(), theme::TEXT_WEAK),
     };
     label(painter, rect.left_bottom() + vec2(16.0, -12.0), Align2::LEFT_BOTTOM, &words, theme::regular(12.5), colour);

@@ -1,0 +1,96 @@
+//! Your turn: the instrument led by mouse and keyboard, for a demonstration on any laptop.
+//!
+//! The screen sends places (m, workspace); the hand that holds the handle goes there, and gives way under the force that is
+//! rendered. Nothing is led while the loop has stopped; a stop lets go.
+
+use egui::{Button, Key, Rect, Response, RichText, Ui, vec2};
+use nalgebra::Vector3;
+use nima::{runtime::Command, teleop::LoopState};
+
+use super::{Camera, Live, Outbox};
+use crate::console::theme;
+
+/// One press of an arrow key, m.
+const STEP_M: f32 = 0.001;
+/// Height per point of the wheel, m.
+const WHEEL_M: f32 = 0.0001;
+/// Where the instrument may be led: half width, half depth, lowest and highest, m.
+const SIDE_M: f32 = 0.055;
+const HEIGHT_M: std::ops::RangeInclusive<f32> = -0.02..=0.06;
+
+/// The switch and the place.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Lead {
+    at_m: Option<Vector3<f32>>,
+}
+
+impl Lead {
+    /// Somebody leads.
+    pub(super) const fn is_on(self) -> bool {
+        self.at_m.is_some()
+    }
+
+    /// The switch in the view, and what mouse and keys do while it is on. True while it is on.
+    pub(super) fn ui(
+        &mut self,
+        ui: &mut Ui,
+        rect: Rect,
+        view: &Response,
+        live: &Live,
+        camera: &Camera,
+        outbox: &mut Outbox,
+    ) -> bool {
+        let runs = matches!(live.state(), LoopState::Idle | LoopState::Engaged);
+        if self.is_on() && !runs {
+            // The loop has let go already.
+            self.at_m = None;
+        }
+        let place = Rect::from_min_size(rect.right_bottom() - vec2(250.0, 46.0), vec2(150.0, 34.0));
+        let text = if self.is_on() { "Let it go (M)" } else { "Your turn (M)" };
+        let button = Button::selectable(self.is_on(), RichText::new(text).font(theme::strong(14.0)));
+        let clicked = ui.add_enabled_ui(runs, |ui| ui.put(rect.intersect(place), button).clicked()).inner;
+        let pressed = !ui.ctx().text_edit_focused() && ui.input(|input| input.key_pressed(Key::M));
+        if runs && (clicked || pressed) {
+            self.at_m = match self.at_m {
+                Some(_) => None,
+                None => live.tick.map(|tick| tick.leader_m.cast()),
+            };
+            outbox.push(Command::Guide(self.at_m.map(Vector3::cast)));
+        }
+        let Some(at_m) = &mut self.at_m else { return false };
+        let before_m = *at_m;
+        if view.dragged() {
+            let drag = view.drag_delta() * camera.metres_per_point(rect.height());
+            *at_m += camera.right() * drag.x - camera.away() * drag.y;
+        }
+        *at_m += keys_m(ui, camera);
+        if view.contains_pointer() {
+            at_m.z += WHEEL_M * ui.input(|input| input.smooth_scroll_delta().y);
+        }
+        *at_m = Vector3::new(
+            at_m.x.clamp(-SIDE_M, SIDE_M),
+            at_m.y.clamp(-SIDE_M, SIDE_M),
+            at_m.z.clamp(*HEIGHT_M.start(), *HEIGHT_M.end()),
+        );
+        if *at_m != before_m {
+            outbox.push(Command::Guide(Some(at_m.cast())));
+        }
+        true
+    }
+}
+
+/// Small steps by keys, as the screen shows them.
+fn keys_m(ui: &Ui, camera: &Camera) -> Vector3<f32> {
+    if ui.ctx().text_edit_focused() {
+        return Vector3::zeros();
+    }
+    let ways = [
+        (Key::ArrowLeft, -camera.right()),
+        (Key::ArrowRight, camera.right()),
+        (Key::ArrowUp, camera.away()),
+        (Key::ArrowDown, -camera.away()),
+        (Key::PageUp, Vector3::z()),
+        (Key::PageDown, -Vector3::z()),
+    ];
+    ui.input(|input| ways.iter().filter(|(key, _)| input.key_pressed(*key)).map(|(_, way)| way * STEP_M).sum())
+}

@@ -6,8 +6,10 @@
 //!
 //! Drivers of real devices live in a folder each: a codec without input and output, a driver over a [`transport`], an emulator.
 
+pub mod discovery;
 pub mod emulation;
 mod health;
+pub mod hid;
 #[cfg(unix)]
 mod os;
 mod prompt;

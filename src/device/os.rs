@@ -49,3 +49,22 @@ pub(super) fn ask_low_latency(port: &impl AsRawFd) -> bool {
 pub(super) fn ask_low_latency(_: &impl AsRawFd) -> bool {
     false
 }
+
+/// Errors that the port's hardware has counted (framing, parity, overrun, break); `None` where it does not count.
+#[cfg(target_os = "linux")]
+pub(super) fn line_errors(port: &impl AsRawFd) -> Option<u32> {
+    /// `struct serial_icounter_struct` of <linux/serial.h>: twenty 32-bit integers; after cts, dsr, rng, dcd, rx and tx come frame, overrun,
+    /// parity and brk.
+    const WORDS: usize = 20;
+    const TIOCGICOUNT: libc::Ioctl = 0x545D;
+    let mut counts = [0_u32; WORDS];
+    // SAFETY: the buffer has the size of the structure that the kernel writes.
+    let answered = unsafe { libc::ioctl(port.as_raw_fd(), TIOCGICOUNT, counts.as_mut_ptr()) == 0 };
+    answered.then(|| counts[6..10].iter().fold(0, |sum, count| u32::wrapping_add(sum, *count)))
+}
+
+/// Errors that the port's hardware has counted; other systems do not tell.
+#[cfg(not(target_os = "linux"))]
+pub(super) fn line_errors(_: &impl AsRawFd) -> Option<u32> {
+    None
+}

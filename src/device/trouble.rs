@@ -3,7 +3,8 @@
 use std::{io, path::Path};
 
 /// What went wrong on the way to a device.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error, serde::Serialize)]
+#[serde(rename_all = "snake_case", tag = "trouble")]
 pub enum Trouble {
     /// Nothing is there.
     #[error("{place} is not there")]

@@ -73,6 +73,19 @@ impl Serial {
         self.low_latency
     }
 
+    /// Errors that the port's hardware has counted (framing, parity, overrun, break); `None` where it does not count.
+    #[cfg_attr(not(unix), expect(clippy::unused_self, reason = "only other systems count"))]
+    pub fn line_errors(&self) -> Option<u32> {
+        #[cfg(unix)]
+        {
+            os::line_errors(&self.port)
+        }
+        #[cfg(not(unix))]
+        {
+            None
+        }
+    }
+
     /// Another speed on an open line.
     pub fn set_baud(&mut self, baud: u32) -> Result<(), Loss> {
         self.port.set_baud_rate(baud).map_err(|_| Loss::Disconnected)

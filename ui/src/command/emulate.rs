@@ -4,6 +4,9 @@
 //! input. Lines on standard input set faults: `fault NAME` (see `--help`), `fault none` takes it back; with several devices
 //! `fault DEVICE NAME`.
 
+#[cfg(target_os = "linux")]
+mod hid;
+
 use std::{
     io::BufRead as _,
     sync::{
@@ -59,7 +62,14 @@ impl Emulated {
 type Known = (&'static str, fn(&Settings) -> anyhow::Result<Vec<Emulated>>);
 
 /// All that can be emulated.
-const KNOWN: &[Known] = &[];
+const KNOWN: &[Known] = &[
+    #[cfg(target_os = "linux")]
+    ("spacemouse", hid::cap),
+    #[cfg(target_os = "linux")]
+    ("spacenavd", hid::spacenavd),
+    #[cfg(target_os = "linux")]
+    ("pedal", hid::pedal),
+];
 
 #[derive(Serialize)]
 struct Endpoint<'a> {

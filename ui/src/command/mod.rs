@@ -2,6 +2,7 @@
 
 mod calibrate;
 mod console;
+mod devices;
 mod emulate;
 mod evaluate;
 mod identify;
@@ -35,6 +36,8 @@ enum Command {
     Run(run::Arguments),
     /// Identify impedance over a recording, causally, sample by sample
     Identify(identify::Arguments),
+    /// List what is plugged in, and try devices: cause and cure of what does not work
+    Devices(devices::Arguments),
     /// Emulate devices on their real wire
     Emulate(emulate::Arguments),
     /// Calibrate from a file: residuals on held-out data and a verdict
@@ -75,6 +78,7 @@ pub fn main() -> ExitCode {
         Command::Console(arguments) => console::run(&arguments),
         Command::Run(arguments) => run::run(&arguments),
         Command::Identify(arguments) => identify::run(&arguments),
+        Command::Devices(arguments) => devices::run(&arguments),
         Command::Emulate(arguments) => emulate::run(&arguments),
         Command::Calibrate(calibrate) => calibrate::run(&calibrate),
         Command::Study(study) => study::run(&study),

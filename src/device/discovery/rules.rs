@@ -1,0 +1,38 @@
+//! The udev rules that let the person at the computer use the devices.
+
+use super::plugged::UsbIds;
+
+/// All of them, as installed.
+pub const RULES: &str = include_str!("../../../assets/70-nima.rules");
+/// Where they belong; the number must be below 73, where the system gives the rights.
+pub const FILE: &str = "/etc/udev/rules.d/70-nima.rules";
+
+const RIGHTS: &str = r#"MODE="0660", GROUP="plugdev", TAG+="uaccess""#;
+
+/// The rule for one human interface device, or for all of them.
+pub fn of_hidraw(ids: Option<(u16, u16)>) -> String {
+    let ids = ids.map(|(vendor, product)| matching(vendor, product)).unwrap_or_default();
+    format!(r#"KERNEL=="hidraw*", {ids}{RIGHTS}"#)
+}
+
+/// The rule for one serial port, or for all on USB.
+pub fn of_serial(ids: Option<&UsbIds>) -> String {
+    match ids {
+        Some(UsbIds { vendor, product, .. }) => {
+            format!(r#"SUBSYSTEM=="tty", {}{RIGHTS}"#, matching(*vendor, *product))
+        }
+        None => format!(r#"SUBSYSTEM=="tty", SUBSYSTEMS=="usb", {RIGHTS}"#),
+    }
+}
+
+fn matching(vendor: u16, product: u16) -> String {
+    format!(r#"ATTRS{{idVendor}}=="{vendor:04x}", ATTRS{{idProduct}}=="{product:04x}", "#)
+}
+
+/// The one command that installs what `program devices --udev-rules` prints.
+pub fn install_command(program: &str) -> String {
+    let quoted = format!("'{}'", program.replace('\'', r"'\''"));
+    format!(
+        "{quoted} devices --udev-rules | sudo tee {FILE} >/dev/null && sudo udevadm control --reload && sudo udevadm trigger"
+    )
+}

@@ -1,0 +1,307 @@
+//! The emulated devices themselves: what they send and when.
+
+use std::path::Path;
+
+use super::{
+    CapReading, CapReport, Duration, EmulatedFault, Event, HidIdentity, Layout, PedalReading, Side, UnixListener,
+    Vector3, cap_codec, counts_of, io, pedal_codec, seqpacket,
+};
+
+/// Zero reports before a cap falls silent at rest.
+const ZEROS: u32 = 3;
+
+/// Which cap.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum CapModel {
+    /// `SpaceNavigator`: translation and rotation in turn, one report every 8 ms.
+    #[default]
+    Split,
+    /// `SpaceMouse Wireless` on its cable: both in one report every 16 ms.
+    Combined,
+}
+
+/// What moves an emulated cap, and what it shows.
+pub struct CapBody {
+    /// Where the cap is at a time since the start, s.
+    pub now: Box<dyn FnMut(f64) -> CapReading + Send>,
+    /// Called when its light is switched.
+    pub light: Box<dyn FnMut(bool) + Send>,
+}
+
+impl CapBody {
+    /// A slow turn through all axes with a rest in every cycle of 8 s; the first button blinks.
+    pub fn alone() -> Self {
+        Self { now: Box::new(demonstration), light: Box::new(|_| {}) }
+    }
+
+    /// Moved by a function of time.
+    pub fn moved_by(now: impl FnMut(f64) -> CapReading + Send + 'static) -> Self {
+        Self { now: Box::new(now), light: Box::new(|_| {}) }
+    }
+}
+
+fn demonstration(now_s: f64) -> CapReading {
+    const CYCLE_S: f64 = 8.0;
+    const MOVING_S: f64 = 6.0;
+    let phase_s = now_s.rem_euclid(CYCLE_S);
+    let buttons = u32::from(phase_s < 1.0);
+    if phase_s > MOVING_S {
+        return CapReading { buttons, ..CapReading::default() };
+    }
+    let wave = |turns: f64| 0.8 * (std::f64::consts::TAU * turns * phase_s / MOVING_S).sin();
+    CapReading {
+        translation: Vector3::new(wave(1.0), wave(2.0), wave(3.0)),
+        rotation: Vector3::new(wave(4.0), wave(5.0), wave(6.0)) * 0.5,
+        buttons,
+    }
+}
+
+/// What emulated caps share: when they speak, and the reading that a fault may freeze.
+struct Mover {
+    body: CapBody,
+    reading: CapReading,
+    zeros_left: u32,
+    told_buttons: u32,
+}
+
+impl Mover {
+    const fn new(body: CapBody) -> Self {
+        let reading = CapReading { translation: ZERO, rotation: ZERO, buttons: 0 };
+        Self { body, reading, zeros_left: 0, told_buttons: 0 }
+    }
+
+    /// Moves on; true when axes are to be told, and the buttons when they changed.
+    fn step(&mut self, now_s: f64, fault: EmulatedFault) -> (bool, Option<u32>) {
+        if fault != EmulatedFault::Freeze {
+            self.reading = (self.body.now)(now_s);
+        }
+        let deflected = counts_of(&self.reading) != [0; 6];
+        let speaks = deflected || self.zeros_left > 0;
+        self.zeros_left = if deflected { ZEROS } else { self.zeros_left.saturating_sub(1) };
+        let buttons = self.reading.buttons;
+        let changed = buttons != self.told_buttons;
+        self.told_buttons = buttons;
+        (speaks, changed.then_some(buttons))
+    }
+}
+
+const ZERO: Vector3<f64> = Vector3::new(0.0, 0.0, 0.0);
+
+pub(super) struct CapSide {
+    model: CapModel,
+    mover: Mover,
+    second_half: bool,
+}
+
+impl CapSide {
+    pub(super) const fn new(model: CapModel, body: CapBody) -> Self {
+        Self { model, mover: Mover::new(body), second_half: false }
+    }
+
+    fn report(&mut self, counts: [i16; 6]) -> CapReport {
+        let [x, y, z, rx, ry, rz] = counts;
+        match self.model {
+            CapModel::Combined => CapReport::Motion(counts),
+            CapModel::Split => {
+                self.second_half = !self.second_half;
+                if self.second_half { CapReport::Translation([x, y, z]) } else { CapReport::Rotation([rx, ry, rz]) }
+            }
+        }
+    }
+}
+
+impl Side for CapSide {
+    fn period(&self) -> Duration {
+        Duration::from_millis(match self.model {
+            CapModel::Split => 8,
+            CapModel::Combined => 16,
+        })
+    }
+
+    fn hello(&self) -> Option<String> {
+        let (vendor, product, name) = match self.model {
+            CapModel::Split => (0x046d, 0xc626, "SpaceNavigator"),
+            CapModel::Combined => (0x256f, 0xc62e, "SpaceMouse Wireless"),
+        };
+        Some(HidIdentity { vendor, product, serial: "EMULATED".to_owned(), name: name.to_owned() }.hello())
+    }
+
+    fn listen(&self, path: &Path) -> io::Result<UnixListener> {
+        seqpacket::listen(path)
+    }
+
+    fn step(&mut self, now_s: f64, fault: EmulatedFault, send: &mut dyn FnMut(&[u8])) {
+        let (speaks, buttons) = self.mover.step(now_s, fault);
+        let mut buffer = [0; cap_codec::LENGTH_MAX];
+        if let Some(buttons) = buttons {
+            let length = CapReport::Buttons(buttons).encode(&mut buffer);
+            send(&buffer[..length]);
+        }
+        if !speaks {
+            return;
+        }
+        let mut counts = counts_of(&self.mover.reading);
+        if fault == EmulatedFault::NotANumber {
+            counts = [i16::MAX; 6];
+        }
+        let length = self.report(counts).encode(&mut buffer);
+        // Between the two lengths there is no report.
+        let length = if fault == EmulatedFault::WrongFrame { 5 } else { length };
+        send(&buffer[..length]);
+    }
+
+    fn command(&mut self, bytes: &[u8]) {
+        for on in [false, true] {
+            if *bytes == cap_codec::light(on) {
+                (self.mover.body.light)(on);
+            }
+        }
+    }
+}
+
+/// The daemon with one cap.
+pub(super) struct SpacenavdSide {
+    mover: Mover,
+}
+
+impl SpacenavdSide {
+    pub(super) const fn new(body: CapBody) -> Self {
+        Self { mover: Mover::new(body) }
+    }
+}
+
+/// Between two events of the daemon, ms.
+const SPACENAVD_MS: u8 = 16;
+
+impl Side for SpacenavdSide {
+    fn period(&self) -> Duration {
+        Duration::from_millis(u64::from(SPACENAVD_MS))
+    }
+
+    fn hello(&self) -> Option<String> {
+        None
+    }
+
+    fn listen(&self, path: &Path) -> io::Result<UnixListener> {
+        let listener = UnixListener::bind(path)?;
+        listener.set_nonblocking(true)?;
+        Ok(listener)
+    }
+
+    fn step(&mut self, now_s: f64, fault: EmulatedFault, send: &mut dyn FnMut(&[u8])) {
+        let before = self.mover.told_buttons;
+        let (speaks, buttons) = self.mover.step(now_s, fault);
+        let mut changed = buttons.map_or(0, |now| now ^ before);
+        while changed != 0 {
+            let number = changed.trailing_zeros();
+            changed &= changed - 1;
+            let pressed = self.mover.told_buttons >> number & 1 == 1;
+            send(&Event::Button { number, pressed }.encode(0));
+        }
+        if speaks {
+            let [x, y, z, rx, ry, rz] = counts_of(&self.mover.reading).map(i32::from);
+            // To the daemon's axes from those of the device.
+            let mut event = Event::Motion([x, -z, -y, rx, -rz, -ry]).encode(i32::from(SPACENAVD_MS));
+            if fault == EmulatedFault::WrongFrame {
+                event[..4].copy_from_slice(&99_i32.to_ne_bytes());
+            }
+            if fault == EmulatedFault::NotANumber {
+                event[4..8].copy_from_slice(&i32::MAX.to_ne_bytes());
+            }
+            send(&event);
+        }
+    }
+
+    fn command(&mut self, _: &[u8]) {
+        // A request for protocol 1; without an answer a client takes protocol 0.
+    }
+}
+
+/// Which pedal.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum PedalModel {
+    /// `PCsensor`, three switches: keys `b`, `a`, `c`.
+    #[default]
+    Keyboard,
+    /// VEC Infinity, three switches.
+    Switches,
+}
+
+/// What presses an emulated pedal: the switches at a time since the start, s.
+pub struct PedalBody(pub Box<dyn FnMut(f64) -> PedalReading + Send>);
+
+impl PedalBody {
+    /// The first switch is pressed for one second in three, the second after it for half a second.
+    pub fn alone() -> Self {
+        Self::pressed_by(|now_s| {
+            let phase_s = now_s.rem_euclid(3.0);
+            PedalReading { pressed: u32::from(phase_s < 1.0) | u32::from((1.5..2.0).contains(&phase_s)) << 1 }
+        })
+    }
+
+    /// Pressed by a function of time.
+    pub fn pressed_by(now: impl FnMut(f64) -> PedalReading + Send + 'static) -> Self {
+        Self(Box::new(now))
+    }
+}
+
+pub(super) struct PedalSide {
+    model: PedalModel,
+    layout: Layout,
+    body: PedalBody,
+    reading: PedalReading,
+    told: PedalReading,
+}
+
+impl PedalSide {
+    pub(super) const fn new(model: PedalModel, body: PedalBody) -> Self {
+        let layout = match model {
+            PedalModel::Keyboard => Layout::Keyboard { keys: [5, 4, 6, 0, 0, 0, 0, 0] },
+            PedalModel::Switches => Layout::Switches,
+        };
+        let released = PedalReading { pressed: 0 };
+        Self { model, layout, body, reading: released, told: released }
+    }
+}
+
+impl Side for PedalSide {
+    fn period(&self) -> Duration {
+        Duration::from_millis(8)
+    }
+
+    fn hello(&self) -> Option<String> {
+        let (vendor, product, name) = match self.model {
+            PedalModel::Keyboard => (0x0c45, 0x7403, "FootSwitch"),
+            PedalModel::Switches => (0x05f3, 0x00ff, "VEC USB Footpedal"),
+        };
+        Some(HidIdentity { vendor, product, serial: String::new(), name: name.to_owned() }.hello())
+    }
+
+    fn listen(&self, path: &Path) -> io::Result<UnixListener> {
+        seqpacket::listen(path)
+    }
+
+    fn step(&mut self, now_s: f64, fault: EmulatedFault, send: &mut dyn FnMut(&[u8])) {
+        use EmulatedFault::{Garbage, NotANumber, Reorder, WrongFrame};
+        if fault != EmulatedFault::Freeze {
+            self.reading = (self.body.0)(now_s);
+        }
+        // A faulty device does not wait for a foot.
+        let chatters = matches!(fault, Garbage | NotANumber | Reorder | WrongFrame);
+        if self.reading == self.told && !chatters {
+            return;
+        }
+        self.told = self.reading;
+        let mut buffer = [0; pedal_codec::LENGTH_MAX];
+        let mut length = self.layout.encode(self.reading.pressed, &mut buffer);
+        match (fault, self.model) {
+            (WrongFrame, _) => length = 5,
+            (NotANumber, PedalModel::Keyboard) => buffer[2..].fill(1),
+            (NotANumber, PedalModel::Switches) => buffer[0] = 0xff,
+            _ => {}
+        }
+        send(&buffer[..length]);
+    }
+
+    fn command(&mut self, _: &[u8]) {}
+}

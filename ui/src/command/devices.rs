@@ -1,0 +1,118 @@
+//! `nima devices`: what is plugged in, and for what was asked: how it is, or why it does not work and what to do.
+
+use std::fmt::Write as _;
+
+use anyhow::Context as _;
+use clap::Args;
+use nima::device::{
+    Standing,
+    discovery::{Diagnosis, Found, KINDS, Outcome, PATIENCE, Plugged, UsbIds, diagnose, probe_named, rules},
+};
+use serde::Serialize;
+
+use super::output;
+
+#[derive(Debug, Args)]
+pub(super) struct Arguments {
+    /// A device to try, as often as there are some: `spacemouse`, `pedal`, `force-dimension`, each with `=PLACE`;
+    /// `serial=PORT@BAUD[,HEADER][,quiet]`, `tcp=HOST:PORT`
+    #[arg(long, value_name = "KIND[=PLACE]")]
+    probe: Vec<String>,
+    /// Print one JSON object
+    #[arg(long)]
+    json: bool,
+    /// Print the one command that lets you use the devices without root
+    #[arg(long, conflicts_with_all = ["json", "probe"])]
+    udev: bool,
+    /// Print the udev rules
+    #[arg(long, conflicts_with_all = ["json", "probe", "udev"])]
+    udev_rules: bool,
+}
+
+#[derive(Serialize)]
+struct Report {
+    plugged: Plugged,
+    devices: Vec<Diagnosis>,
+}
+
+pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
+    if arguments.udev_rules {
+        return output::line(rules::RULES.trim_end());
+    }
+    if arguments.udev {
+        let program = std::env::current_exe().context("this program does not know where it is")?;
+        return output::line(&rules::install_command(&program.to_string_lossy()));
+    }
+    let mut probes = Vec::new();
+    for text in &arguments.probe {
+        probes.push(probe_named(text).map_err(|trouble| anyhow::anyhow!("{trouble}"))?);
+    }
+    let report = Report { plugged: Plugged::list(), devices: diagnose(probes, PATIENCE) };
+    if arguments.json { output::json(&report) } else { output::line(in_words(&report).trim_end()) }
+}
+
+/// Columns that are as wide as their widest entry.
+fn table(text: &mut String, rows: &[[String; 3]]) {
+    let width = |column: usize| rows.iter().map(|row| row[column].chars().count()).max().unwrap_or(0);
+    let (first, second) = (width(0), width(1));
+    for [a, b, c] in rows {
+        writeln!(text, "{}", format!("  {a:first$}  {b:second$}  {c}").trim_end()).ok();
+    }
+}
+
+fn in_words(report: &Report) -> String {
+    let Report { plugged, devices } = report;
+    let mut text = String::from("Plugged in\n");
+    let usb = |usb: &Option<UsbIds>| usb.as_ref().map_or_else(|| "not on USB".to_owned(), UsbIds::words);
+    let mut rows = Vec::new();
+    for port in &plugged.serial {
+        rows.push([port.path.display().to_string(), "serial port".to_owned(), usb(&port.usb)]);
+    }
+    for node in &plugged.hid {
+        let used = node.usable_as.unwrap_or("other input device").to_owned();
+        rows.push([node.path.display().to_string(), used, node.usb.words()]);
+    }
+    for device in &plugged.usb {
+        rows.push(["USB".to_owned(), device.usable_as.to_owned(), device.usb.words()]);
+    }
+    if let Some(library) = &plugged.force_dimension_library {
+        rows.push(["library".to_owned(), "Force Dimension SDK".to_owned(), library.display().to_string()]);
+    }
+    if rows.is_empty() {
+        text.push_str("  nothing that this program could use\n");
+    }
+    table(&mut text, &rows);
+    text.push_str("\nTried\n");
+    if devices.is_empty() {
+        let kinds: Vec<_> = KINDS.iter().map(|kind| kind.name).collect();
+        writeln!(text, "  nothing; --probe KIND[=PLACE] tries one of {}", kinds.join(", ")).ok();
+    }
+    let width = devices.iter().map(|device| device.name.chars().count()).max().unwrap_or(0);
+    for Diagnosis { name, outcome, .. } in devices {
+        match outcome {
+            Outcome::Connected(found) => writeln!(text, "  {name:width$}  {}", told(found)).ok(),
+            Outcome::Trouble { cause, cure, .. } => {
+                writeln!(text, "  {name:width$}  trouble: {cause}\n  {:width$}  {cure}", "").ok()
+            }
+        };
+    }
+    text
+}
+
+fn told(found: &Found) -> String {
+    let standing = match found.standing {
+        Standing::Lost(loss) => format!("lost: {}", loss.cause()),
+        _ => "connected".to_owned(),
+    };
+    let mut words = vec![standing];
+    let identity = &found.identity;
+    words.extend(
+        [&identity.product, &identity.serial, &identity.firmware].into_iter().filter(|word| !word.is_empty()).cloned(),
+    );
+    words.extend(found.rate_hz.map(|rate_hz| format!("{rate_hz:.0} Hz")));
+    if found.readings > 0 || found.lost + found.damaged > 0 {
+        words.push(format!("{} readings, {} lost, {} damaged", found.readings, found.lost, found.damaged));
+    }
+    words.extend(found.latency_s.map(|latency_s| format!("answers in {:.1} ms", latency_s * 1e3)));
+    words.join(", ")
+}

@@ -166,7 +166,9 @@ impl Trouble {
                 "Correct the port number in the rig file, or wait until the device has started.".to_owned()
             }
             Self::SendsElsewhere { to, .. } => {
-                format!("Give this computer the address that the device sends to ({to}), or set the device to send here.")
+                format!(
+                    "Give this computer the address that the device sends to ({to}), or set the device to send here."
+                )
             }
             Self::RefusedLogin { .. } => "Correct user and password in the rig file.".to_owned(),
             Self::SdkMissing { searched, .. } => {

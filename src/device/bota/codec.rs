@@ -113,10 +113,8 @@ impl Frame {
             return Err(NoFrame::Checksum);
         }
         let [temperature_c] = take(&body[31..35]);
-        let inertial = (header == HEADER_INERTIAL).then(|| Inertial {
-            acceleration_m_s2: take(&body[35..47]),
-            angular_velocity_rad_s: take(&body[47..59]),
-        });
+        let inertial = (header == HEADER_INERTIAL)
+            .then(|| Inertial { acceleration_m_s2: take(&body[35..47]), angular_velocity_rad_s: take(&body[47..59]) });
         Ok(Self {
             status: u16::from_le_bytes([body[1], body[2]]),
             force_n: take(&body[3..15]),

@@ -15,14 +15,10 @@ fn golden() -> [(Frame, Vec<u8>); 2] {
         temperature_c: 25.5,
         inertial: None,
     };
-    let inertial =
-        Inertial { acceleration_m_s2: [0.25, -0.5, -9.75], angular_velocity_rad_s: [0.0625, -0.125, 0.5] };
+    let inertial = Inertial { acceleration_m_s2: [0.25, -0.5, -9.75], angular_velocity_rad_s: [0.0625, -0.125, 0.5] };
     let with = Frame { status: 2, timestamp_us: u32::MAX, inertial: Some(inertial), ..wrench };
     [
-        (
-            wrench,
-            bytes_of("aa 0000 0000803f 000000c0 00006040 0000003e 000080be 0000003f 40420f00 0000cc41 3447"),
-        ),
+        (wrench, bytes_of("aa 0000 0000803f 000000c0 00006040 0000003e 000080be 0000003f 40420f00 0000cc41 3447")),
         (
             with,
             bytes_of(

@@ -209,7 +209,14 @@ struct Judge {
 impl Judge {
     fn new(period_us: f64) -> Self {
         let health = Health::opening();
-        Self { clock: Clock::new(period_us), clock_runs: false, health, status: 0, usable_s: 0.0, suspect: Loss::Silent }
+        Self {
+            clock: Clock::new(period_us),
+            clock_runs: false,
+            health,
+            status: 0,
+            usable_s: 0.0,
+            suspect: Loss::Silent,
+        }
     }
 
     fn take(&mut self, frame: &Frame, now_s: f64) -> Option<Stamped<ForceReading>> {
@@ -255,3 +262,7 @@ impl Judge {
 #[cfg(test)]
 #[path = "driver_tests.rs"]
 mod tests;
+
+#[cfg(all(test, unix))]
+#[path = "wire_tests.rs"]
+mod wire_tests;

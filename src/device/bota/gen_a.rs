@@ -85,8 +85,8 @@ impl Answer {
 /// The newest whole answer in `bytes` to a command that began with `letters` (`wh` or `rh`).
 pub fn answer(bytes: &[u8], letters: &[u8; 2]) -> Option<Answer> {
     let head = [letters[0], letters[1], b','];
-    let begins = bytes.windows(head.len()).enumerate().rev().filter(|(_, window)| *window == head);
-    begins.filter_map(|(at, _)| whole(&bytes[at + head.len()..])).next()
+    let mut begins = bytes.windows(head.len()).enumerate().rev().filter(|(_, window)| *window == head);
+    begins.find_map(|(at, _)| whole(&bytes[at + head.len()..]))
 }
 
 /// Status and value up to the end of the line; `None` where anything else is between.
@@ -116,7 +116,8 @@ pub const fn words(status: u32) -> &'static str {
 
 /// Text as the sensor writes it.
 pub fn hex_of(text: &str) -> String {
-    text.bytes().map(|byte| format!("{byte:02x}")).collect()
+    let digit = |value: u8| char::from_digit(u32::from(value), 16).unwrap_or('0');
+    text.bytes().flat_map(|byte| [digit(byte >> 4), digit(byte & 15)]).collect()
 }
 
 #[cfg(test)]

@@ -158,7 +158,9 @@ fn open_socket(settings: &Settings, patience: Patience) -> Result<Opened, Troubl
     let rate_hz = configure_gen_a(&mut session, settings)?;
     let mut link = Link::new(session.into_line(), Some(stream));
     match first_readings(&mut link, &address.to_string(), rate_hz, settings, patience) {
-        Err(Trouble::Silent { place }) => Err(sends_elsewhere(place, address, SocketAddr::new(destination.into(), port))),
+        Err(Trouble::Silent { place }) => {
+            Err(sends_elsewhere(place, address, SocketAddr::new(destination.into(), port)))
+        }
         Err(other) => Err(other),
         Ok(()) => Ok(Opened { link, identity, rate_hz, low_latency: true, stop: STOP_GEN_A }),
     }
@@ -182,7 +184,9 @@ fn sends_elsewhere(place: String, sensor: SocketAddr, to: SocketAddr) -> Trouble
         socket.local_addr()
     });
     match route {
-        Ok(here) if here.ip() != to.ip() => Trouble::SendsElsewhere { place, to: to.to_string(), here: here.ip().to_string() },
+        Ok(here) if here.ip() != to.ip() => {
+            Trouble::SendsElsewhere { place, to: to.to_string(), here: here.ip().to_string() }
+        }
         _ => Trouble::Silent { place },
     }
 }

@@ -129,7 +129,9 @@ impl Gen0 {
                 Err(_) => false,
             },
             // Binary frames with the calibration applied are all that it can do.
-            (b'c', [_, calibrated, format, index]) => *calibrated == 1.0 && *format == 0.0 && *index <= 5.0,
+            (b'c', [_, calibrated, format, index]) => {
+                *calibrated > 0.5 && format.abs() < 0.5 && (0.0..=5.0).contains(index)
+            }
             (b'm', [_, _, _, _, _, _]) => true,
             _ => false,
         }
@@ -171,9 +173,8 @@ impl Wire for Gen0 {
                 self.start();
                 self.mode = Mode::Run;
                 let (name, serial, firmware) = (&self.product, &self.serial, &self.firmware);
-                answer.extend(
-                    format!("App Init\r\nname: {name}\r\nS/N: {serial}\r\nFW version: {firmware}\r\n").bytes(),
-                );
+                answer
+                    .extend(format!("App Init\r\nname: {name}\r\nS/N: {serial}\r\nFW version: {firmware}\r\n").bytes());
             }
             _ if !self.pending.is_empty() && now_s - self.heard_s > IDLE_S => self.command(answer),
             _ => {}

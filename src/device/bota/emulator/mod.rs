@@ -73,19 +73,19 @@ impl Emulated {
     #[cfg(unix)]
     pub fn serve_gen0(self, body: Body) -> io::Result<Serving> {
         let wire = gen0::Gen0::new(&self);
-        serial::serve("bota-gen0", wire, self, body)
+        serial::serve("bota-gen0", wire, &self, body)
     }
 
     /// Serves a second-generation sensor on a pseudo-terminal; the endpoint is its path.
     #[cfg(unix)]
     pub fn serve_gen_a(self, body: Body) -> io::Result<Serving> {
         let wire = gen_a::GenA::new(&self);
-        serial::serve("bota-gen-a", wire, self, body)
+        serial::serve("bota-gen-a", wire, &self, body)
     }
 
     /// Serves a second-generation sensor in the network of this computer; the endpoint is `127.0.0.1:<port>`.
     pub fn serve_socket(self, body: Body) -> io::Result<Serving> {
-        socket::serve(self, FaultSwitch::default(), body)
+        socket::serve(&self, FaultSwitch::default(), body)
     }
 }
 

@@ -19,7 +19,7 @@ use crate::device::{
 
 const NAP: Duration = Duration::from_micros(300);
 
-pub(super) fn serve(name: &str, wire: impl Wire, emulated: Emulated, body: Body) -> io::Result<Serving> {
+pub(super) fn serve(name: &str, wire: impl Wire, emulated: &Emulated, body: Body) -> io::Result<Serving> {
     let folder = tempfile::Builder::new().prefix("nima-").tempdir()?;
     let path = folder.path().join(name);
     let faults = FaultSwitch::default();
@@ -117,10 +117,10 @@ impl Line {
     /// What does not fit is lost, as on a real line that nobody reads; another speed turns bytes into others.
     fn write(&mut self, bytes: &[u8], understood: bool) {
         if understood {
-            self.bytes.write(bytes).ok();
+            let _ = self.bytes.write(bytes);
         } else {
             let other: Vec<u8> = bytes.iter().map(|byte| byte.rotate_left(3) ^ 0x5A).collect();
-            self.bytes.write(&other).ok();
+            let _ = self.bytes.write(&other);
         }
     }
 }

@@ -15,13 +15,13 @@ use crate::device::{
 
 const NAP: Duration = Duration::from_micros(300);
 
-pub(super) fn serve(emulated: Emulated, faults: FaultSwitch, body: Body) -> io::Result<Serving> {
+pub(super) fn serve(emulated: &Emulated, faults: FaultSwitch, body: Body) -> io::Result<Serving> {
     let listener = listen(SocketAddrV4::new(Ipv4Addr::LOCALHOST, emulated.tcp_port))?;
     let address = listener.local_addr()?;
     let stream = UdpSocket::bind((Ipv4Addr::LOCALHOST, 0))?;
     stream.set_nonblocking(true)?;
     let mut sensor = Sensor {
-        wire: GenA::new(&emulated),
+        wire: GenA::new(emulated),
         frames: Frames::new(body, emulated.first_timestamp_us, emulated.status),
         stream,
         destination: emulated.destination,

@@ -263,6 +263,7 @@ impl Judge {
 #[path = "driver_tests.rs"]
 mod tests;
 
-#[cfg(all(test, unix))]
+#[cfg(test)]
+#[cfg(unix)]
 #[path = "wire_tests.rs"]
 mod wire_tests;

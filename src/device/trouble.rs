@@ -62,6 +62,16 @@ pub enum Trouble {
         /// Address with port.
         place: String,
     },
+    /// It sends what it reads to another address than this computer's.
+    #[error("{place} sends its readings to {to}, and this computer is {here}")]
+    SendsElsewhere {
+        /// Address of the device.
+        place: String,
+        /// Address and port it sends to.
+        to: String,
+        /// This computer's address as the device sees it.
+        here: String,
+    },
     /// User or password is wrong.
     #[error("{place} refuses user \"{user}\"")]
     RefusedLogin {
@@ -155,6 +165,11 @@ impl Trouble {
             }
             Self::NobodyListens { .. } => {
                 "Correct the port number in the rig file, or wait until the device has started.".to_owned()
+            }
+            Self::SendsElsewhere { to, .. } => {
+                format!(
+                    "Give this computer the address that the device sends to ({to}), or set the device to send here."
+                )
             }
             Self::RefusedLogin { .. } => "Correct user and password in the rig file.".to_owned(),
             Self::SdkMissing { searched, .. } => {

@@ -131,6 +131,8 @@ impl Serial {
 impl Bytes for Serial {
     fn receive(&mut self, buffer: &mut [u8]) -> Result<usize, Loss> {
         match self.stream().read(buffer) {
+            // Where nothing is there, reading is an error (raw mode waits for one byte at least); an end is a line hung up.
+            Ok(0) if !buffer.is_empty() => Err(Loss::Disconnected),
             Ok(count) => Ok(count),
             Err(error)
                 if matches!(error.kind(), ErrorKind::TimedOut | ErrorKind::WouldBlock | ErrorKind::Interrupted) =>

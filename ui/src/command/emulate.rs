@@ -6,6 +6,7 @@
 
 #[cfg(target_os = "linux")]
 mod hid;
+mod bota;
 
 use std::{
     io::BufRead as _,
@@ -69,6 +70,11 @@ const KNOWN: &[Known] = &[
     ("spacenavd", hid::spacenavd),
     #[cfg(target_os = "linux")]
     ("pedal", hid::pedal),
+    #[cfg(unix)]
+    ("bota-gen0", bota::gen0),
+    #[cfg(unix)]
+    ("bota-gen-a", bota::gen_a),
+    ("bota-socket", bota::socket),
 ];
 
 #[derive(Serialize)]

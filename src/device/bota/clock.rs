@@ -1,0 +1,119 @@
+//! The sensor's clock made endless, and what its steps tell: readings that never came, came twice, or in the wrong order.
+
+/// Follows the 32-bit microseconds of a sensor that measures with a fixed period.
+#[derive(Clone, Debug)]
+pub struct Clock {
+    period_us: f64,
+    newest: Option<u32>,
+    total_us: u64,
+    /// The newest gap, while a late reading may still fill it: the last time before it, and how many are missing.
+    gap: Option<(u32, u64)>,
+}
+
+/// What the clock says of a reading.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Step {
+    /// It is newer than all before; so many are missing between.
+    Newer {
+        /// Time since the clock's zero, without jumps, s.
+        device_s: f64,
+        /// Readings missing between this one and the one before.
+        missing: u64,
+    },
+    /// It is one of those that were counted as missing.
+    Late,
+    /// It is not newer: sent twice, or the clock stands still, or has begun anew.
+    Stale,
+}
+
+impl Clock {
+    /// Of a sensor with this period, us (a positive number).
+    pub const fn new(period_us: f64) -> Self {
+        Self { period_us, newest: None, total_us: 0, gap: None }
+    }
+
+    /// Takes the time of the next reading.
+    pub fn step(&mut self, timestamp_us: u32) -> Step {
+        let Some(newest) = self.newest else {
+            self.newest = Some(timestamp_us);
+            self.total_us = u64::from(timestamp_us);
+            return Step::Newer { device_s: self.total_us as f64 * 1e-6, missing: 0 };
+        };
+        let ahead_us = timestamp_us.wrapping_sub(newest);
+        // More than half the range ahead is behind.
+        if ahead_us == 0 || ahead_us > u32::MAX / 2 {
+            return self.behind(timestamp_us, newest);
+        }
+        let periods = (f64::from(ahead_us) / self.period_us).round();
+        let missing = (periods - 1.0).max(0.0) as u64;
+        self.gap = if missing > 0 { Some((newest, missing)) } else { self.gap };
+        self.newest = Some(timestamp_us);
+        self.total_us += u64::from(ahead_us);
+        Step::Newer { device_s: self.total_us as f64 * 1e-6, missing }
+    }
+
+    fn behind(&mut self, timestamp_us: u32, newest: u32) -> Step {
+        let Some((before, missing)) = self.gap else { return Step::Stale };
+        let since = timestamp_us.wrapping_sub(before);
+        if since == 0 || since >= newest.wrapping_sub(before) {
+            return Step::Stale;
+        }
+        self.gap = (missing > 1).then_some((before, missing - 1));
+        Step::Late
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn device_s(step: Step) -> f64 {
+        match step {
+            Step::Newer { device_s, missing: 0 } => device_s,
+            other => panic!("{other:?}"),
+        }
+    }
+
+    #[test]
+    fn time_goes_on_where_the_counter_begins_again() {
+        let mut clock = Clock::new(1250.0);
+        let begin = u32::MAX - 10_000;
+        let zero_s = device_s(clock.step(begin));
+        for k in 1..100_000_u32 {
+            let now_s = device_s(clock.step(begin.wrapping_add(k * 1250)));
+            assert!((now_s - zero_s - f64::from(k) * 1250e-6).abs() < 1e-9, "{k}: {now_s}");
+        }
+    }
+
+    #[test]
+    fn what_is_missing_is_counted_over_the_wrap_too_and_in_spite_of_jitter() {
+        let mut clock = Clock::new(1000.0);
+        let mut lost = 0;
+        let mut random = fastrand::Rng::with_seed(4);
+        let mut left_out = 0;
+        for k in 0..20_000_u32 {
+            if k > 0 && k < 19_999 && random.u8(..) < 50 {
+                left_out += 1;
+                continue;
+            }
+            let jitter = random.u32(0..400);
+            match clock.step((u32::MAX - 5_000_000).wrapping_add(k * 1000 + jitter)) {
+                Step::Newer { missing, .. } => lost += missing,
+                other => panic!("{k}: {other:?}"),
+            }
+        }
+        assert_eq!(lost, left_out);
+    }
+
+    #[test]
+    fn late_readings_are_told_from_repeated_ones() {
+        let mut clock = Clock::new(1000.0);
+        clock.step(10_000);
+        assert_eq!(clock.step(13_000), Step::Newer { device_s: 0.013, missing: 2 });
+        assert_eq!(clock.step(11_000), Step::Late);
+        assert_eq!(clock.step(12_000), Step::Late);
+        assert_eq!(clock.step(12_000), Step::Stale, "no more were missing");
+        assert_eq!(clock.step(13_000), Step::Stale);
+        assert_eq!(clock.step(0), Step::Stale, "a clock that began anew is not newer");
+    }
+}

@@ -6,6 +6,7 @@
 //!
 //! Drivers of real devices live in a folder each: a codec without input and output, a driver over a [`transport`], an emulator.
 
+pub mod dynamixel;
 pub mod emulation;
 mod health;
 #[cfg(unix)]

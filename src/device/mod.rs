@@ -8,6 +8,7 @@
 
 pub mod discovery;
 pub mod bota;
+pub mod dynamixel;
 pub mod emulation;
 mod health;
 pub mod hid;

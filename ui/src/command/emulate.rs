@@ -7,6 +7,7 @@
 #[cfg(target_os = "linux")]
 mod hid;
 mod bota;
+mod dynamixel;
 
 use std::{
     io::BufRead as _,
@@ -76,6 +77,7 @@ const KNOWN: &[Known] = &[
     ("bota-gen-a", bota::gen_a),
     ("bota-socket", bota::socket),
 ];
+const KNOWN: &[Known] = &[("dynamixel", dynamixel::start)];
 
 #[derive(Serialize)]
 struct Endpoint<'a> {

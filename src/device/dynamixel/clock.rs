@@ -1,0 +1,87 @@
+//! The servos' clock: 15 bits of milliseconds (register 120) as seconds without jumps, and which readings are old.
+
+use super::table::TICK_WRAP;
+
+/// A reading this much later than the quickest ones is an answer to an earlier question, s.
+const LATE_S: f64 = 0.015;
+/// How fast the quickest delay is forgotten: clocks of servos are off by less than this.
+const DRIFT: f64 = 0.02;
+
+/// What the time of a reading says.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Age {
+    /// Newer than all before.
+    New,
+    /// Of the same millisecond as the one before.
+    Same,
+    /// Older than one before, or too long on the way.
+    Old,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Last {
+    tick: i32,
+    device_s: f64,
+    arrival_s: f64,
+    /// Arrival less device time of the quickest reading.
+    offset_s: f64,
+}
+
+/// Unwraps the clock.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct DeviceClock(Option<Last>);
+
+impl DeviceClock {
+    /// Takes the tick of a reading that arrived at `arrival_s`; its time, s, and whether it is old.
+    pub(super) fn take(&mut self, tick: u16, arrival_s: f64) -> (f64, Age) {
+        let tick = i32::from(tick) % TICK_WRAP;
+        let Some(last) = &mut self.0 else {
+            let device_s = f64::from(tick) * 1e-3;
+            self.0 = Some(Last { tick, device_s, arrival_s, offset_s: arrival_s - device_s });
+            return (device_s, Age::New);
+        };
+        let elapsed_s = (arrival_s - last.arrival_s).max(0.0);
+        let wrap_s = f64::from(TICK_WRAP) * 1e-3;
+        let step_s = f64::from(tick - last.tick) * 1e-3;
+        let step_s = step_s + wrap_s * ((elapsed_s - step_s) / wrap_s).round();
+        let device_s = last.device_s + step_s;
+        let offset_s = arrival_s - device_s;
+        let quickest_s = offset_s.min(last.offset_s + DRIFT * elapsed_s);
+        if step_s < -0.5e-3 || offset_s - quickest_s > LATE_S {
+            return (device_s, Age::Old);
+        }
+        let age = if step_s > 0.5e-3 { Age::New } else { Age::Same };
+        *last = Last { tick, device_s, arrival_s, offset_s: quickest_s };
+        (device_s, age)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_clock_runs_on_over_its_wrap_and_over_long_pauses() {
+        let mut clock = DeviceClock::default();
+        let mut now_s = 0.0;
+        for (k, step_ms) in [1_u64, 1, 0, 3, 20_000, 31_000, 100_000, 5].into_iter().enumerate() {
+            now_s += step_ms as f64 * 1e-3;
+            let tick = ((now_s * 1e3).round() as u64 + 32_760) % 32_768;
+            let (device_s, age) = clock.take(tick as u16, now_s);
+            assert!((device_s - 32.760 - now_s).abs() < 1e-9, "step {k}: {device_s}");
+            assert_eq!(age, if step_ms == 0 { Age::Same } else { Age::New });
+        }
+    }
+
+    #[test]
+    fn what_was_long_on_the_way_is_old_and_a_slow_clock_is_not() {
+        let mut clock = DeviceClock::default();
+        for k in 0..20_000_u16 {
+            // One percent slow.
+            assert_ne!(clock.take((k as f64 * 0.99) as u16, f64::from(k) * 1e-3).1, Age::Old, "{k}");
+        }
+        assert_eq!(clock.take(19_801, 20.050).1, Age::Old, "50 ms late");
+        assert_eq!(clock.take(19_700, 20.001).1, Age::Old, "from before");
+        assert_eq!(clock.take(19_802, 20.002).1, Age::New);
+    }
+}

@@ -1,0 +1,106 @@
+//! The emulated bus on a pseudo-terminal, behind a name that stays when the line is cut and comes back.
+
+use std::{
+    io::{Read as _, Write as _},
+    os::unix::fs::symlink,
+    path::Path,
+    sync::atomic::{AtomicBool, Ordering},
+    time::{Duration, Instant},
+};
+
+use serialport::{SerialPort as _, TTYPort};
+
+use super::Emulator;
+use crate::device::{
+    emulation::{EmulatedFault, FaultSwitch, Serving},
+    os,
+};
+
+/// Between two looks at the line while nothing is due.
+const WAIT: Duration = Duration::from_millis(1);
+/// Between two looks at what clients left set on the line.
+const TIDY_S: f64 = 0.050;
+
+/// Our two ends of the terminal. The client's end stays open here, so that the line outlives its clients.
+struct Line {
+    ours: TTYPort,
+    bytes: std::fs::File,
+    theirs: TTYPort,
+    tidied_s: f64,
+}
+
+impl Line {
+    fn open(name: &Path, baud: u32) -> std::io::Result<Self> {
+        let (mut ours, mut theirs) = TTYPort::pair()?;
+        ours.set_timeout(WAIT)?;
+        theirs.set_baud_rate(baud)?;
+        let path = theirs.name().ok_or_else(|| std::io::Error::other("a pseudo-terminal without a name"))?;
+        let fresh = name.with_extension("new");
+        std::fs::remove_file(&fresh).ok();
+        symlink(path, &fresh)?;
+        std::fs::rename(&fresh, name)?;
+        let bytes = os::bytes_of(&ours)?;
+        Ok(Self { ours, bytes, theirs, tidied_s: 0.0 })
+    }
+}
+
+impl Emulator {
+    /// Serves on a new pseudo-terminal until the result is dropped. Clients whose line speed is not the servos' are not understood.
+    pub fn serve(mut self) -> std::io::Result<Serving> {
+        let folder = tempfile::Builder::new().prefix("nima-dynamixel-").tempdir()?;
+        let name = folder.path().join("bus");
+        let mut line = Some(Line::open(&name, self.baud())?);
+        let faults = FaultSwitch::default();
+        let switch = faults.clone();
+        let endpoint = name.display().to_string();
+        Serving::start(endpoint, faults, move |stop| {
+            // Kept as long as it serves: dropping it removes the name.
+            let _folder = folder;
+            let begin = Instant::now();
+            while !stop.load(Ordering::Acquire) {
+                let fault = switch.get();
+                if fault == EmulatedFault::Disconnect {
+                    line = None;
+                    std::fs::remove_file(&name).ok();
+                    std::thread::sleep(WAIT);
+                } else if let Some(line) = &mut line {
+                    self.exchange(line, fault, begin, stop);
+                } else {
+                    line = Line::open(&name, self.baud()).ok();
+                }
+            }
+        })
+    }
+
+    /// Takes what is there, waits a moment for more, gives what is due.
+    fn exchange(&mut self, line: &mut Line, fault: EmulatedFault, begin: Instant, stop: &AtomicBool) {
+        let now_s = || begin.elapsed().as_secs_f64();
+        let mut buffer = [0; 1024];
+        let count = match self.due_s() {
+            // Something is due soon: no waiting for more.
+            Some(due_s) => {
+                let rest_s = (due_s - now_s()).clamp(0.0, WAIT.as_secs_f64());
+                if rest_s > 50e-6 {
+                    std::thread::sleep(Duration::from_secs_f64(rest_s - 50e-6));
+                }
+                line.bytes.read(&mut buffer)
+            }
+            None => line.ours.read(&mut buffer),
+        };
+        if let Ok(count) = count
+            && count > 0
+            && line.theirs.baud_rate().is_ok_and(|baud| baud == self.baud())
+        {
+            self.receive(now_s(), &buffer[..count]);
+        }
+        self.send(now_s(), fault, &mut |bytes| {
+            // A client that does not read loses bytes, as on a real line.
+            line.bytes.write(bytes).ok();
+        });
+        if now_s() - line.tidied_s > TIDY_S && !stop.load(Ordering::Relaxed) {
+            // A client that took the terminal for itself alone and is gone leaves it so.
+            line.theirs.set_exclusive(false).ok();
+            line.tidied_s = now_s();
+        }
+    }
+}

@@ -1,7 +1,7 @@
 //! The machine of NIMA Console: everything between a surgeon's hand and the tissue, without a screen.
 //!
 //! Rooms know only the rooms below them:
-//! `files, statistics, frames, signal` < `calibration, tip_force, impedance, safety` < `device, sim` < `teleop` < `runtime` < `recording, study`.
+//! `files, statistics, frames, signal` < `kinematics, calibration, tip_force, impedance, safety` < `device, sim` < `teleop` < `runtime` < `recording, study`.
 //! SI units inside (m, s, N, rad); a name carries its unit and frame where the type does not.
 
 pub mod calibration;
@@ -10,6 +10,7 @@ pub mod device;
 pub mod files;
 pub mod frames;
 pub mod impedance;
+pub mod kinematics;
 pub mod recording;
 pub mod runtime;
 pub mod safety;

@@ -57,13 +57,13 @@ pub struct Header {
 #[derive(Clone, Copy, PartialEq, Message)]
 struct RawHeader {
     #[prost(fixed32, tag = "1")]
-    frame_info: u32,
+    frame: u32,
     #[prost(fixed32, tag = "2")]
-    message_info: u32,
+    message: u32,
     #[prost(fixed32, tag = "3")]
-    service_info: u32,
+    service: u32,
     #[prost(fixed32, tag = "4")]
-    payload_info: u32,
+    payload: u32,
 }
 
 impl Header {
@@ -75,33 +75,33 @@ impl Header {
     fn raw(&self, payload: usize) -> RawHeader {
         let bits = |value: u32, width: u32, shift: u32| (value & ((1 << width) - 1)) << shift;
         RawHeader {
-            frame_info: bits(VERSION, 4, 28)
+            frame: bits(VERSION, 4, 28)
                 | bits(u32::from(self.kind), 4, 24)
                 | bits(u32::from(self.device), 8, 16)
                 | bits(u32::from(self.error), 4, 12)
                 | bits(u32::from(self.sub_error), 12, 0),
-            message_info: bits(u32::from(self.session), 16, 16) | bits(u32::from(self.message), 16, 0),
-            service_info: bits(VERSION, 4, 28)
+            message: bits(u32::from(self.session), 16, 16) | bits(u32::from(self.message), 16, 0),
+            service: bits(VERSION, 4, 28)
                 | bits(u32::from(self.service), 12, 16)
                 | bits(u32::from(self.function), 16, 0),
-            payload_info: bits(payload as u32, 24, 0),
+            payload: bits(payload as u32, 24, 0),
         }
     }
 
     fn of(raw: &RawHeader) -> Result<Self, Damaged> {
         let bits = |value: u32, width: u32, shift: u32| (value >> shift) & ((1 << width) - 1);
-        if bits(raw.frame_info, 4, 28) != VERSION || bits(raw.service_info, 4, 28) != VERSION {
+        if bits(raw.frame, 4, 28) != VERSION || bits(raw.service, 4, 28) != VERSION {
             return Err(Damaged);
         }
         Ok(Self {
-            kind: bits(raw.frame_info, 4, 24) as u8,
-            device: bits(raw.frame_info, 8, 16) as u8,
-            error: bits(raw.frame_info, 4, 12) as u8,
-            sub_error: bits(raw.frame_info, 12, 0) as u16,
-            session: bits(raw.message_info, 16, 16) as u16,
-            message: bits(raw.message_info, 16, 0) as u16,
-            service: bits(raw.service_info, 12, 16) as u16,
-            function: bits(raw.service_info, 16, 0) as u16,
+            kind: bits(raw.frame, 4, 24) as u8,
+            device: bits(raw.frame, 8, 16) as u8,
+            error: bits(raw.frame, 4, 12) as u8,
+            sub_error: bits(raw.frame, 12, 0) as u16,
+            session: bits(raw.message, 16, 16) as u16,
+            message: bits(raw.message, 16, 0) as u16,
+            service: bits(raw.service, 12, 16) as u16,
+            function: bits(raw.service, 16, 0) as u16,
         })
     }
 }
@@ -127,7 +127,7 @@ impl<'a> Frame<'a> {
             }
         }
         let raw = raw.ok_or(Damaged)?;
-        if (raw.payload_info & 0xff_ffff) as usize != payload.len() {
+        if (raw.payload & 0xff_ffff) as usize != payload.len() {
             return Err(Damaged);
         }
         Ok(Self { header: Header::of(&raw)?, payload })
@@ -138,10 +138,10 @@ fn raw_header(bytes: &[u8]) -> Result<RawHeader, Damaged> {
     let mut raw = RawHeader::default();
     for field in Fields::of(bytes) {
         match field? {
-            (1, value) => raw.frame_info = value.fixed32()?,
-            (2, value) => raw.message_info = value.fixed32()?,
-            (3, value) => raw.service_info = value.fixed32()?,
-            (4, value) => raw.payload_info = value.fixed32()?,
+            (1, value) => raw.frame = value.fixed32()?,
+            (2, value) => raw.message = value.fixed32()?,
+            (3, value) => raw.service = value.fixed32()?,
+            (4, value) => raw.payload = value.fixed32()?,
             _ => {}
         }
     }

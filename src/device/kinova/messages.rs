@@ -18,7 +18,7 @@ macro_rules! calls {
     ($($name:ident = $service:literal / $function:literal, $words:literal;)*) => {
         impl Rpc {
             $(
-                #[doc = $words]
+                #[doc = concat!("`", $words, "`.")]
                 pub const $name: Self = Self { service: $service, function: $function };
             )*
 

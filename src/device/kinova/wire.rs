@@ -36,7 +36,7 @@ impl<'a> Value<'a> {
 }
 
 /// The fields of a message in their order; ends after the first error.
-#[derive(Clone, Copy, Debug)]
+#[derive(Debug)]
 pub(super) struct Fields<'a> {
     rest: &'a [u8],
 }

@@ -23,8 +23,10 @@ struct Session {
     number: u16,
     link: Link,
     heard_s: f64,
-    session_s: f64,
-    connection_s: f64,
+    /// Silent for so long it is closed, s.
+    closes_s: f64,
+    /// Silent for so long its motion stops, s.
+    stops_s: f64,
 }
 
 /// The base: who is logged in, who drives, and the robot behind it.
@@ -49,11 +51,11 @@ impl Base {
 
     pub(super) fn advance(&mut self, now_s: f64, fault: EmulatedFault) {
         self.robot.advance(now_s, fault);
-        let silent = |session: &Session| now_s - session.heard_s > session.connection_s;
+        let silent = |session: &Session| now_s - session.heard_s > session.stops_s;
         if self.sessions.iter().any(|session| Some(session.number) == self.driving && silent(session)) {
             self.release();
         }
-        self.sessions.retain(|session| now_s - session.heard_s <= session.session_s);
+        self.sessions.retain(|session| now_s - session.heard_s <= session.closes_s);
     }
 
     /// Sessions of links that are gone.
@@ -110,8 +112,8 @@ impl Base {
             number: self.made,
             link,
             heard_s: now_s,
-            session_s: f64::from(login.session_inactivity_ms) * 1e-3,
-            connection_s: f64::from(login.connection_inactivity_ms) * 1e-3,
+            closes_s: f64::from(login.session_inactivity_ms) * 1e-3,
+            stops_s: f64::from(login.connection_inactivity_ms) * 1e-3,
         });
         Ok(self.made)
     }

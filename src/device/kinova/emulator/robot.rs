@@ -236,7 +236,9 @@ impl Robot {
     pub(super) fn told(&mut self, fault: EmulatedFault) -> Feedback {
         let mut actuators: Vec<_> = (0..ARM_JOINTS.min(self.arm.joints as usize)).map(|j| self.actuator(j)).collect();
         if fault == EmulatedFault::NotANumber {
-            actuators.iter_mut().for_each(|actuator| actuator.position_deg = f32::NAN);
+            for actuator in &mut actuators {
+                actuator.position_deg = f32::NAN;
+            }
         }
         Feedback { frame_id: self.frame_id, base: Some(self.base()), actuators }
     }

@@ -182,7 +182,7 @@ impl Server {
         match fault {
             // There is no checksum; a datagram cut short is the nearest.
             EmulatedFault::BadChecksum => out.truncate(out.len() - 1),
-            EmulatedFault::Freeze => out = self.frozen.get_or_insert(out).clone(),
+            EmulatedFault::Freeze => return self.frozen.get_or_insert(out).clone(),
             _ => self.frozen = None,
         }
         out

@@ -12,6 +12,7 @@ pub mod dynamixel;
 pub mod emulation;
 mod health;
 pub mod hid;
+pub mod kinova;
 #[cfg(unix)]
 mod os;
 mod prompt;

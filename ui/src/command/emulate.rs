@@ -8,6 +8,7 @@
 mod hid;
 mod bota;
 mod dynamixel;
+mod kinova;
 
 use std::{
     io::BufRead as _,
@@ -78,6 +79,7 @@ const KNOWN: &[Known] = &[
     ("bota-socket", bota::socket),
 ];
 const KNOWN: &[Known] = &[("dynamixel", dynamixel::start)];
+const KNOWN: &[Known] = &[("kinova", kinova::start)];
 
 #[derive(Serialize)]
 struct Endpoint<'a> {

@@ -1,0 +1,60 @@
+//! An emulated Gen3: sessions, calls and the cycle on the real wire, and a body that follows commands.
+//!
+//! Not known of the real arm, and assumed here: the time of the watchdog and the distance that trips a following error. Both are
+//! in [`EmulatedArm`].
+
+mod body;
+mod calls;
+mod robot;
+mod server;
+mod told;
+
+use std::net::{TcpListener, UdpSocket};
+
+pub use body::{Asked, Body, BodyState, StandIn};
+
+use crate::device::{
+    ARM_JOINTS,
+    emulation::{FaultSwitch, Serving},
+};
+
+/// How the emulated arm is.
+#[derive(Clone, Debug, PartialEq)]
+pub struct EmulatedArm {
+    /// User that may log in.
+    pub user: String,
+    /// The user's password.
+    pub password: String,
+    /// How many joints it says it has.
+    pub joints: u32,
+    /// State that it tells while it is not in fault: 7 ready, 3 initialisation, 5 maintenance.
+    pub idle_state: u32,
+    /// Low level without a command for so long is a fault, ms. An assumption: the manufacturer tells only that "a fair amount of
+    /// jitter" is tolerated (kortex issue 211).
+    pub watchdog_ms: f64,
+    /// A command so far from the measured angle is a fault, degrees. An assumption.
+    pub following_error_deg: f64,
+}
+
+impl Default for EmulatedArm {
+    fn default() -> Self {
+        Self {
+            user: "admin".to_owned(),
+            password: "admin".to_owned(),
+            joints: ARM_JOINTS as u32,
+            idle_state: 7,
+            watchdog_ms: 50.0,
+            following_error_deg: 5.0,
+        }
+    }
+}
+
+/// Starts an emulated arm on free ports of this machine; its endpoint is `127.0.0.1 tcp=PORT udp=PORT`, for
+/// [`Settings::at`](super::Settings::at).
+pub fn emulate(arm: EmulatedArm, body: impl Body + 'static, faults: FaultSwitch) -> std::io::Result<Serving> {
+    let listener = TcpListener::bind(("127.0.0.1", 0))?;
+    let socket = UdpSocket::bind(("127.0.0.1", 0))?;
+    let endpoint = format!("127.0.0.1 tcp={} udp={}", listener.local_addr()?.port(), socket.local_addr()?.port());
+    let server = server::Server::new(listener, socket, arm, Box::new(body), faults.clone())?;
+    Serving::start(endpoint, faults, move |stop| server.serve(stop))
+}

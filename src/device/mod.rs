@@ -8,6 +8,7 @@
 
 pub mod emulation;
 mod health;
+pub mod ndi;
 #[cfg(unix)]
 mod os;
 mod prompt;

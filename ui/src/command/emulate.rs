@@ -4,6 +4,9 @@
 //! input. Lines on standard input set faults: `fault NAME` (see `--help`), `fault none` takes it back; with several devices
 //! `fault DEVICE NAME`.
 
+#[cfg(unix)]
+mod ndi;
+
 use std::{
     io::BufRead as _,
     sync::{
@@ -59,7 +62,12 @@ impl Emulated {
 type Known = (&'static str, fn(&Settings) -> anyhow::Result<Vec<Emulated>>);
 
 /// All that can be emulated.
-const KNOWN: &[Known] = &[];
+const KNOWN: &[Known] = &[
+    #[cfg(unix)]
+    ("ndi", ndi::network),
+    #[cfg(unix)]
+    ("ndi-serial", ndi::line),
+];
 
 #[derive(Serialize)]
 struct Endpoint<'a> {

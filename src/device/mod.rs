@@ -13,6 +13,7 @@ pub mod emulation;
 mod health;
 pub mod hid;
 pub mod kinova;
+pub mod ndi;
 #[cfg(unix)]
 mod os;
 mod prompt;

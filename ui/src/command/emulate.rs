@@ -9,6 +9,8 @@ mod hid;
 mod bota;
 mod dynamixel;
 mod kinova;
+#[cfg(unix)]
+mod ndi;
 
 use std::{
     io::BufRead as _,
@@ -80,6 +82,11 @@ const KNOWN: &[Known] = &[
 ];
 const KNOWN: &[Known] = &[("dynamixel", dynamixel::start)];
 const KNOWN: &[Known] = &[("kinova", kinova::start)];
+    #[cfg(unix)]
+    ("ndi", ndi::network),
+    #[cfg(unix)]
+    ("ndi-serial", ndi::line),
+];
 
 #[derive(Serialize)]
 struct Endpoint<'a> {

@@ -1,0 +1,199 @@
+//! Replies out of a stream of bytes that may be dirty: ASCII lines and binary blocks, each with its checksum (reference 1.2).
+//!
+//! Bounded memory, no allocation after [`Inbox::new`]. A binary block is found again by its start and the checksum of its header;
+//! a line by its CR. What fails its checksum is told as [`Arrival::Damaged`] and gone.
+
+use super::crc::{crc16, read_hex};
+
+/// First bytes of a binary reply: 0xA5C4, little-endian.
+const BINARY_START: [u8; 2] = [0xC4, 0xA5];
+/// Longest reply that is taken, bytes on the wire. 24 tools in `TX` make 1700.
+pub const REPLY_MAX: usize = 4096;
+const HEADER: usize = 6;
+
+/// What a host waits for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Expected {
+    /// An ASCII line.
+    Line,
+    /// A binary block, or `ERRORnn`, or `RESET` where the unit was switched off and on.
+    Block,
+}
+
+/// What came.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Arrival<'a> {
+    /// An ASCII reply, checked, without checksum and CR.
+    Line(&'a [u8]),
+    /// The body of a binary reply, checked.
+    Block(&'a [u8]),
+    /// Something with a wrong checksum or of a wrong length.
+    Damaged,
+}
+
+/// Bytes that have arrived and are not yet a reply.
+#[derive(Debug)]
+pub struct Inbox {
+    bytes: Box<[u8; REPLY_MAX]>,
+    begin: usize,
+    end: usize,
+    skipped: u64,
+}
+
+impl Default for Inbox {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl Inbox {
+    /// Empty.
+    pub fn new() -> Self {
+        Self { bytes: Box::new([0; REPLY_MAX]), begin: 0, end: 0, skipped: 0 }
+    }
+
+    /// Room for what arrives next; never empty.
+    pub fn room(&mut self) -> &mut [u8] {
+        if self.end == REPLY_MAX {
+            self.bytes.copy_within(self.begin..self.end, 0);
+            (self.begin, self.end) = (0, self.end - self.begin);
+        }
+        if self.end == REPLY_MAX {
+            // Full of something that never became a reply.
+            self.clear();
+        }
+        &mut self.bytes[self.end..]
+    }
+
+    /// So many bytes of the room were filled.
+    pub fn filled(&mut self, count: usize) {
+        self.end = (self.end + count).min(REPLY_MAX);
+    }
+
+    /// Forgets what has arrived.
+    pub fn clear(&mut self) {
+        self.skipped += (self.end - self.begin) as u64;
+        (self.begin, self.end) = (0, 0);
+    }
+
+    /// Bytes that were part of no reply, since the last call.
+    pub const fn take_skipped(&mut self) -> u64 {
+        std::mem::replace(&mut self.skipped, 0)
+    }
+
+    /// The next reply in what has arrived, if it is whole.
+    pub fn next(&mut self, expected: Expected) -> Option<Arrival<'_>> {
+        if self.begin == self.end {
+            (self.begin, self.end) = (0, 0);
+        }
+        match expected {
+            Expected::Line => self.next_line(),
+            Expected::Block => self.next_block(),
+        }
+    }
+
+    fn next_line(&mut self) -> Option<Arrival<'_>> {
+        let length = self.bytes[self.begin..self.end].iter().position(|byte| *byte == b'\r')?;
+        let line = self.begin..self.begin + length;
+        self.begin = line.end + 1;
+        if checked(&self.bytes[line.clone()]).is_none() {
+            self.skipped += length as u64 + 1;
+            return Some(Arrival::Damaged);
+        }
+        Some(Arrival::Line(&self.bytes[line.start..line.end - 4]))
+    }
+
+    fn next_block(&mut self) -> Option<Arrival<'_>> {
+        loop {
+            let rest = &self.bytes[self.begin..self.end];
+            match seek(rest) {
+                Found::Nothing if rest.is_empty() => return None,
+                Found::Nothing => {
+                    self.begin += 1;
+                    self.skipped += 1;
+                }
+                Found::Part => return None,
+                Found::Bad => {
+                    self.begin += 2;
+                    self.skipped += 2;
+                    return Some(Arrival::Damaged);
+                }
+                Found::Block(body) => {
+                    let begin = self.begin + HEADER;
+                    self.begin = begin + body + 2;
+                    return Some(Arrival::Block(&self.bytes[begin..begin + body]));
+                }
+                Found::Line(text) => {
+                    let begin = self.begin;
+                    self.begin = begin + text + 5;
+                    return Some(Arrival::Line(&self.bytes[begin..begin + text]));
+                }
+            }
+        }
+    }
+}
+
+/// The text of a line whose checksum is right.
+fn checked(line: &[u8]) -> Option<&[u8]> {
+    let (text, crc) = line.split_at_checked(line.len().checked_sub(4)?)?;
+    (read_hex(crc) == Some(u32::from(crc16(text)))).then_some(text)
+}
+
+/// What the bytes begin with, where a block is expected.
+enum Found {
+    /// No reply.
+    Nothing,
+    /// It may become one.
+    Part,
+    /// A reply with a wrong checksum.
+    Bad,
+    /// A block with a body of this length.
+    Block(usize),
+    /// A line with a text of this length.
+    Line(usize),
+}
+
+fn seek(bytes: &[u8]) -> Found {
+    for (word, text) in [(b"ERROR", 7), (b"RESET", 5)] {
+        let common = word.len().min(bytes.len());
+        if common > 0 && bytes[..common] == word[..common] {
+            return match bytes.get(..text + 5) {
+                None => Found::Part,
+                Some(line) if line[text + 4] == b'\r' && checked(&line[..text + 4]).is_some() => Found::Line(text),
+                Some(_) => Found::Bad,
+            };
+        }
+    }
+    let common = BINARY_START.len().min(bytes.len());
+    if common == 0 || bytes[..common] != BINARY_START[..common] {
+        return Found::Nothing;
+    }
+    let Some(header) = bytes.get(..HEADER) else { return Found::Part };
+    let body = usize::from(u16::from_le_bytes([header[2], header[3]]));
+    if u16::from_le_bytes([header[4], header[5]]) != crc16(&header[..4]) || body > REPLY_MAX - HEADER - 2 {
+        return Found::Nothing;
+    }
+    let Some(tail) = bytes.get(HEADER + body..HEADER + body + 2) else { return Found::Part };
+    if u16::from_le_bytes([tail[0], tail[1]]) == crc16(&bytes[HEADER..HEADER + body]) {
+        Found::Block(body)
+    } else {
+        Found::Bad
+    }
+}
+
+/// Appends the checksum and CR to the text in `reply`, which becomes an ASCII reply.
+pub fn finish_line(reply: &mut Vec<u8>) {
+    let crc = crc16(reply);
+    reply.extend_from_slice(format!("{crc:04X}\r").as_bytes());
+}
+
+/// A binary reply around `body`; what is longer than 65535 bytes has no such form and is cut off.
+pub fn block_of(body: &[u8]) -> Vec<u8> {
+    let body = &body[..body.len().min(usize::from(u16::MAX))];
+    let mut reply = BINARY_START.to_vec();
+    reply.extend_from_slice(&(body.len() as u16).to_le_bytes());
+    reply.extend_from_slice(&crc16(&reply).to_le_bytes());
+    reply.extend_from_slice(body);
+    reply.extend_from_slice(&crc16(body).to_le_bytes());
+    reply
+}

@@ -1,0 +1,173 @@
+//! What the unit's numbers mean: error codes and status bits, in words.
+
+/// An `ERRORnn` of the unit.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ErrorCode(pub u8);
+
+impl ErrorCode {
+    /// Unknown name of a command.
+    pub const INVALID_COMMAND: Self = Self(0x01);
+    /// Longer than any command.
+    pub const TOO_LONG: Self = Self(0x02);
+    /// Shorter than the command may be.
+    pub const TOO_SHORT: Self = Self(0x03);
+    /// The command's checksum is wrong.
+    pub const BAD_CRC: Self = Self(0x04);
+    /// The line cannot be set so.
+    pub const COMM_PARAMETERS: Self = Self(0x06);
+    /// Too few or too many parameters.
+    pub const PARAMETER_COUNT: Self = Self(0x07);
+    /// No such handle.
+    pub const INVALID_HANDLE: Self = Self(0x08);
+    /// Priority is none of S, D, B.
+    pub const INVALID_PRIORITY: Self = Self(0x09);
+    /// Not in this mode: tracking or not tracking.
+    pub const INVALID_MODE: Self = Self(0x0C);
+    /// The handle has no tool.
+    pub const NO_TOOL: Self = Self(0x0D);
+    /// The handle is not initialised.
+    pub const NOT_INITIALISED: Self = Self(0x0E);
+    /// The handle is not enabled.
+    pub const NOT_ENABLED: Self = Self(0x0F);
+    /// `INIT` was not sent.
+    pub const SYSTEM_NOT_INITIALISED: Self = Self(0x10);
+    /// A parameter is out of its range.
+    pub const OUT_OF_RANGE: Self = Self(0x23);
+    /// No handle is left.
+    pub const NO_HANDLES_LEFT: Self = Self(0x2D);
+    /// No such user parameter.
+    pub const NO_SUCH_PARAMETER: Self = Self(0x34);
+    /// The user parameter cannot be written.
+    pub const READ_ONLY: Self = Self(0x39);
+
+    /// In words.
+    pub const fn words(self) -> &'static str {
+        match self.0 {
+            0x01 => "unknown command",
+            0x02 => "command too long",
+            0x03 => "command too short",
+            0x04 => "checksum of the command is wrong",
+            0x05 => "the command took too long",
+            0x06 => "the line cannot be set so",
+            0x07 => "wrong number of parameters",
+            0x08 => "no such tool handle",
+            0x09 => "no such tracking priority",
+            0x0A | 0x0B => "no such light, or no such state of it",
+            0x0C => "not possible in the current mode",
+            0x0D => "the handle has no tool",
+            0x0E => "the tool is not initialised",
+            0x0F => "the tool is not enabled",
+            0x10 => "the system is not initialised",
+            0x11 => "tracking cannot be stopped",
+            0x12 => "tracking cannot be started",
+            0x13 => "the tool cannot be initialised",
+            0x14 => "the calibration of the camera is damaged",
+            0x15 => "the system cannot be initialised",
+            0x16 | 0x17 => "diagnostics cannot be started or stopped",
+            0x19 => "the firmware version cannot be read",
+            0x1A => "internal fault",
+            0x1C => "the markers' firing cannot be set",
+            0x1E | 0x1F => "the tool's memory cannot be read or written",
+            0x21 => "the tool's current test failed",
+            0x22 => "no camera parameters for the tool's wavelength",
+            0x23 => "a parameter is out of range",
+            0x24 => "no camera parameters for this volume",
+            0x25 => "the features cannot be determined",
+            0x28 => "too many tools, or the hardware has changed",
+            0x2A => "out of memory",
+            0x2B => "the handle was not given out",
+            0x2C => "the handle is empty now",
+            0x2D => "no handle is left",
+            0x2E => "the parts' firmwares do not fit together",
+            0x2F => "no such port",
+            0x30 => "the port has a handle already",
+            0x32 => "not possible",
+            0x33 => "this feature is not available",
+            0x34 => "no such user parameter",
+            0x35..=0x38 => "the user parameter's type, range, index or size is wrong",
+            0x39 => "the user parameter cannot be written",
+            0x3B..=0x3D => "a file of the unit cannot be found, written or read",
+            0x40 | 0x41 => "the tool definition is not usable",
+            0x42 => "a part of the system is missing",
+            0xF1 => "too much infrared light",
+            0xF4..=0xF6 => "the unit's flash memory cannot be read, written or erased",
+            _ => "a code without a meaning in the guide",
+        }
+    }
+}
+
+impl std::fmt::Display for ErrorCode {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "{} (ERROR{:02X})", self.words(), self.0)
+    }
+}
+
+/// Status of one tool, as in `TX`, `BX` and (its low 12 bits) `PHSR`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct PortStatus(pub u32);
+
+impl PortStatus {
+    /// A tool is there.
+    pub const OCCUPIED: u32 = 1;
+    /// `PINIT` was done.
+    pub const INITIALISED: u32 = 1 << 4;
+    /// `PENA` was done.
+    pub const ENABLED: u32 = 1 << 5;
+    /// Outside of the measurement volume.
+    pub const OUT_OF_VOLUME: u32 = 1 << 6;
+    /// Some markers are outside.
+    pub const PARTLY_OUT: u32 = 1 << 7;
+
+    /// Any of these bits is set.
+    pub const fn has(self, bits: u32) -> bool {
+        self.0 & bits != 0
+    }
+}
+
+/// Status of the whole unit.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct SystemStatus(pub u16);
+
+impl SystemStatus {
+    /// Bits that make the numbers doubtful: sync error, recoverable exception, temperature, changed hardware.
+    pub const FAULTS: u16 = 1 | 1 << 3 | 1 << 9 | 1 << 10;
+    /// A recoverable processing exception.
+    pub const EXCEPTION: u16 = 1 << 3;
+    /// A tool came.
+    pub const TOOL_CAME: u16 = 1 << 6;
+    /// A tool went.
+    pub const TOOL_WENT: u16 = 1 << 7;
+    /// A diagnostic message waits to be read (a knock, for one).
+    pub const DIAGNOSTIC: u16 = 1 << 8;
+
+    /// The bits that are faults; 0 where there are none.
+    pub const fn faults(self) -> u16 {
+        self.0 & Self::FAULTS
+    }
+
+    /// The gravest fault in words; nothing where there is none.
+    pub const fn words(self) -> &'static str {
+        match self.0 & Self::FAULTS {
+            0 => "",
+            bits if bits & 1 != 0 => "its parts are out of step (communication synchronisation error)",
+            bits if bits & 1 << 3 != 0 => "it had an exception while processing",
+            bits if bits & 1 << 9 != 0 => "its temperature is out of range",
+            _ => "its hardware configuration has changed",
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn codes_and_faults_are_told_in_words() {
+        assert_eq!(ErrorCode(0x0C).to_string(), "not possible in the current mode (ERROR0C)");
+        assert_eq!(ErrorCode(0xEE).to_string(), "a code without a meaning in the guide (ERROREE)");
+        assert_eq!(SystemStatus(0x01C0).faults(), 0, "coming, going and messages are no faults");
+        for bit in [0, 3, 9, 10] {
+            assert!(!SystemStatus(1 << bit).words().is_empty());
+        }
+    }
+}

@@ -7,6 +7,7 @@
 //! Drivers of real devices live in a folder each: a codec without input and output, a driver over a [`transport`], an emulator.
 
 pub mod emulation;
+pub mod force_dimension;
 mod health;
 #[cfg(unix)]
 mod os;

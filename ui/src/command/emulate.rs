@@ -4,6 +4,8 @@
 //! input. Lines on standard input set faults: `fault NAME` (see `--help`), `fault none` takes it back; with several devices
 //! `fault DEVICE NAME`.
 
+mod force_dimension;
+
 use std::{
     io::BufRead as _,
     sync::{
@@ -59,7 +61,7 @@ impl Emulated {
 type Known = (&'static str, fn(&Settings) -> anyhow::Result<Vec<Emulated>>);
 
 /// All that can be emulated.
-const KNOWN: &[Known] = &[];
+const KNOWN: &[Known] = &[(force_dimension::NAME, force_dimension::start)];
 
 #[derive(Serialize)]
 struct Endpoint<'a> {

@@ -10,6 +10,7 @@ pub mod discovery;
 pub mod bota;
 pub mod dynamixel;
 pub mod emulation;
+pub mod force_dimension;
 mod health;
 pub mod hid;
 pub mod kinova;

@@ -11,6 +11,7 @@ mod dynamixel;
 mod kinova;
 #[cfg(unix)]
 mod ndi;
+mod force_dimension;
 
 use std::{
     io::BufRead as _,
@@ -87,6 +88,7 @@ const KNOWN: &[Known] = &[("kinova", kinova::start)];
     #[cfg(unix)]
     ("ndi-serial", ndi::line),
 ];
+const KNOWN: &[Known] = &[(force_dimension::NAME, force_dimension::start)];
 
 #[derive(Serialize)]
 struct Endpoint<'a> {

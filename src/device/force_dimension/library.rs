@@ -1,0 +1,123 @@
+//! Where the manufacturer's library may be, in the order in which it is looked for.
+
+use std::{
+    env,
+    path::{Path, PathBuf},
+};
+
+/// Something to try.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) enum Candidate {
+    /// A file that exists.
+    File(PathBuf),
+    /// A name for the system's own search.
+    Name(&'static str),
+}
+
+/// Names for the system's own search: what is complete first (`libdrd` holds all of `libdhd`).
+#[cfg(target_os = "windows")]
+const NAMES: &[&str] = &["drd64.dll", "dhd64.dll"];
+#[cfg(target_os = "macos")]
+const NAMES: &[&str] = &["libdrd.dylib", "libdhd.dylib"];
+#[cfg(not(any(target_os = "windows", target_os = "macos")))]
+const NAMES: &[&str] = &["libdrd.so.3", "libdrd.so", "libdhd.so.3", "libdhd.so"];
+
+/// Beginnings of file names, the same order.
+#[cfg(target_os = "windows")]
+const FILES: &[&str] = &["drd64.dll", "dhd64.dll"];
+#[cfg(target_os = "macos")]
+const FILES: &[&str] = &["libdrd.", "libdhd."];
+#[cfg(not(any(target_os = "windows", target_os = "macos")))]
+const FILES: &[&str] = &["libdrd.so", "libdhd.so"];
+
+/// Folder of the library within the SDK.
+fn within_sdk() -> PathBuf {
+    if cfg!(target_os = "windows") {
+        PathBuf::from("bin")
+    } else if cfg!(target_os = "macos") {
+        Path::new("lib/release").join(format!("mac-{}-clang", env::consts::ARCH))
+    } else {
+        Path::new("lib/release").join(format!("lin-{}-gcc", env::consts::ARCH))
+    }
+}
+
+/// The folders, most particular first, with `variable` giving the environment.
+fn folders(variable: impl Fn(&str) -> Option<PathBuf>) -> (Vec<PathBuf>, Vec<PathBuf>) {
+    let sdk = ["FDSDK", "FORCEDIM_SDK"].into_iter().filter_map(&variable).map(|sdk| sdk.join(within_sdk())).collect();
+    let mut system = Vec::new();
+    if cfg!(unix) {
+        system.push(PathBuf::from("/usr/local/lib"));
+        system.extend(variable("HOME").map(|home| home.join(".local/lib")));
+    }
+    (sdk, system)
+}
+
+/// The numbers in a file name, so that 3.17 is newer than 3.9.
+fn version(path: &Path) -> Vec<u32> {
+    let name = path.file_name().and_then(|name| name.to_str()).unwrap_or_default();
+    name.split('.').filter_map(|part| part.parse().ok()).collect()
+}
+
+/// The newest library in a folder.
+fn newest(folder: &Path, beginning: &str) -> Option<PathBuf> {
+    let here = std::fs::read_dir(folder).ok()?.flatten().map(|entry| entry.path());
+    let fits = |path: &PathBuf| {
+        path.file_name().and_then(|name| name.to_str()).is_some_and(|name| name.starts_with(beginning))
+            && path.is_file()
+    };
+    here.filter(fits).max_by_key(|path| version(path))
+}
+
+/// What to try, and the same as a list for a person.
+pub(super) fn candidates() -> (Vec<Candidate>, String) {
+    search(|name| env::var_os(name).filter(|value| !value.is_empty()).map(PathBuf::from))
+}
+
+fn search(variable: impl Fn(&str) -> Option<PathBuf>) -> (Vec<Candidate>, String) {
+    let (sdk, system) = folders(&variable);
+    let all_of = |folders: &[PathBuf]| -> Vec<Candidate> {
+        let found = FILES.iter().flat_map(|file| folders.iter().filter_map(|folder| newest(folder, file)));
+        found.map(Candidate::File).collect()
+    };
+    let mut candidates = all_of(&sdk);
+    candidates.extend(NAMES.iter().copied().map(Candidate::Name));
+    candidates.extend(all_of(&system));
+    let mut places: Vec<String> = sdk.iter().map(|folder| folder.display().to_string()).collect();
+    if variable("FDSDK").is_none() {
+        places.push("the folder that FDSDK names (it is not set)".to_owned());
+    }
+    places.push(format!("the system's libraries ({})", NAMES.join(", ")));
+    places.extend(system.iter().map(|folder| folder.display().to_string()));
+    (candidates, places.join("; "))
+}
+
+#[cfg(all(test, target_os = "linux"))]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_newest_library_of_the_sdk_comes_first_and_the_list_tells_every_place() {
+        let sdk = tempfile::tempdir().unwrap();
+        let folder = sdk.path().join(within_sdk());
+        std::fs::create_dir_all(&folder).unwrap();
+        for name in ["libdrd.so.3.9.1", "libdrd.so.3.17.5", "libdhd.so.3.17.5", "libdrd.a"] {
+            std::fs::write(folder.join(name), "").unwrap();
+        }
+        let home = tempfile::tempdir().unwrap();
+        let set = |name: &str| match name {
+            "FDSDK" => Some(sdk.path().to_owned()),
+            "HOME" => Some(home.path().to_owned()),
+            _ => None,
+        };
+        let (candidates, places) = search(set);
+        assert_eq!(candidates[0], Candidate::File(folder.join("libdrd.so.3.17.5")));
+        assert_eq!(candidates[1], Candidate::File(folder.join("libdhd.so.3.17.5")));
+        assert_eq!(candidates[2], Candidate::Name("libdrd.so.3"));
+        for place in [folder.display().to_string().as_str(), "libdhd.so", "/usr/local/lib", ".local/lib"] {
+            assert!(places.contains(place), "{place} is not in {places}");
+        }
+        let (candidates, places) = search(|_| None);
+        assert_eq!(candidates[0], Candidate::Name("libdrd.so.3"));
+        assert!(places.contains("FDSDK names (it is not set)"));
+    }
+}

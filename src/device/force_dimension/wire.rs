@@ -1,0 +1,241 @@
+//! One exchange with an emulated handle: a request and a reply, each one datagram, as a USB exchange of the real device is.
+//!
+//! This file is compiled twice, here and in the stand-in library (`emulators/omega`), so that both sides agree by construction;
+//! it uses the standard library alone. Numbers are little-endian; lengths in m, forces in N, angles in rad. A datagram ends with
+//! a checksum (FNV-1a, 32 bits); whatever is too short, too long, of another kind or damaged is `None`.
+
+/// Entries of the status array (SDK 3.17: power ... axis checked).
+pub const STATUS_ENTRIES: usize = 17;
+/// Length of a request, bytes.
+pub const REQUEST_BYTES: usize = 60;
+/// Length of a reply, bytes.
+pub const REPLY_BYTES: usize = 228;
+/// Environment variable with the addresses of emulated handles, separated by commas; without it no device is attached.
+pub const ADDRESS_VARIABLE: &str = "NIMA_EMULATED_HANDLE";
+
+const REQUEST_KIND: u32 = 0x514d_494e; // "NIMQ"
+const REPLY_KIND: u32 = 0x524d_494e; // "NIMR"
+
+/// What a client asks of the device.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u32)]
+pub enum Order {
+    /// Who are you? Changes nothing; anybody may ask.
+    Hello = 0,
+    /// Take possession.
+    Open,
+    /// Read all.
+    Read,
+    /// Set force (first three values) and gripper force (fourth); read all.
+    Force,
+    /// Argument 1: force on. 0: force off.
+    EnableForce,
+    /// Argument 1: brakes on. 0: brakes off, no current.
+    Brakes,
+    /// Argument: 125 us steps without a force command until the device gives up; 0 is never.
+    Watchdog,
+    /// Argument: speed at which force is cut, mm/s here (the real unit is the device's own); 0 is never.
+    VelocityThreshold,
+    /// Argument 1: the gripper counts as a button when closed.
+    Button,
+    /// Give it back; the device brakes.
+    Close,
+}
+
+impl Order {
+    const ALL: [Self; 10] = [
+        Self::Hello,
+        Self::Open,
+        Self::Read,
+        Self::Force,
+        Self::EnableForce,
+        Self::Brakes,
+        Self::Watchdog,
+        Self::VelocityThreshold,
+        Self::Button,
+        Self::Close,
+    ];
+}
+
+/// A request.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Request {
+    /// Who asks: any number that differs between clients.
+    pub client: u64,
+    /// Number of the exchange.
+    pub sequence: u32,
+    /// What.
+    pub order: Order,
+    /// Of the order.
+    pub argument: u32,
+    /// Of [`Order::Force`], N.
+    pub values: [f64; 4],
+}
+
+impl Request {
+    /// To bytes.
+    pub fn encode(&self) -> [u8; REQUEST_BYTES] {
+        let mut out = Out([0; REQUEST_BYTES], 0);
+        out.put(&REQUEST_KIND.to_le_bytes());
+        out.put(&self.client.to_le_bytes());
+        out.put(&self.sequence.to_le_bytes());
+        out.put(&(self.order as u32).to_le_bytes());
+        out.put(&self.argument.to_le_bytes());
+        out.numbers(&self.values);
+        out.sealed()
+    }
+
+    /// From bytes.
+    pub fn decode(bytes: &[u8]) -> Option<Self> {
+        let mut of = In::opened(bytes, REQUEST_BYTES, REQUEST_KIND)?;
+        let (client, sequence, order) = (u64::from_le_bytes(of.take()?), of.word()?, of.word()?);
+        let order = Order::ALL.into_iter().find(|known| *known as u32 == order)?;
+        Some(Self { client, sequence, order, argument: of.word()?, values: of.numbers()? })
+    }
+}
+
+/// A reply: the whole state of the device.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Reply {
+    /// Of the request.
+    pub client: u64,
+    /// Of the request.
+    pub sequence: u32,
+    /// Number of the SDK's error; 0 is none.
+    pub error: u32,
+    /// Bit 0: the state is newer than the one before. Bit 1: the motors were saturated. Bit 2: somebody else has it open.
+    pub flags: u32,
+    /// Serial number.
+    pub serial: u32,
+    /// Type of the device as the SDK numbers them.
+    pub kind: u32,
+    /// Buttons, first in the lowest bit.
+    pub buttons: u32,
+    /// Velocity threshold.
+    pub velocity_threshold: u32,
+    /// Watchdog, 125 us steps.
+    pub watchdog: u32,
+    /// The status array.
+    pub status: [u32; STATUS_ENTRIES],
+    /// Firmware version.
+    pub firmware: f64,
+    /// Position, m.
+    pub position_m: [f64; 3],
+    /// Rotation matrix, row by row.
+    pub frame: [f64; 9],
+    /// Opening of the gripper, rad, negative on left-handed devices.
+    pub gripper_rad: f64,
+}
+
+/// [`Reply::flags`]: the state is newer than the one before.
+pub const FRESH: u32 = 1;
+/// [`Reply::flags`]: the motors were saturated.
+pub const SATURATED: u32 = 2;
+/// [`Reply::flags`]: somebody else has it open.
+pub const TAKEN: u32 = 4;
+
+impl Reply {
+    /// To bytes.
+    pub fn encode(&self) -> [u8; REPLY_BYTES] {
+        let mut out = Out([0; REPLY_BYTES], 0);
+        out.put(&REPLY_KIND.to_le_bytes());
+        out.put(&self.client.to_le_bytes());
+        let words = [self.sequence, self.error, self.flags, self.serial, self.kind, self.buttons];
+        for word in words.into_iter().chain([self.velocity_threshold, self.watchdog]).chain(self.status) {
+            out.put(&word.to_le_bytes());
+        }
+        out.numbers(&[self.firmware]);
+        out.numbers(&self.position_m);
+        out.numbers(&self.frame);
+        out.numbers(&[self.gripper_rad]);
+        out.sealed()
+    }
+
+    /// From bytes.
+    pub fn decode(bytes: &[u8]) -> Option<Self> {
+        let mut of = In::opened(bytes, REPLY_BYTES, REPLY_KIND)?;
+        let client = u64::from_le_bytes(of.take()?);
+        let (sequence, error, flags, serial) = (of.word()?, of.word()?, of.word()?, of.word()?);
+        let (kind, buttons, velocity_threshold, watchdog) = (of.word()?, of.word()?, of.word()?, of.word()?);
+        let mut status = [0; STATUS_ENTRIES];
+        for entry in &mut status {
+            *entry = of.word()?;
+        }
+        let [firmware] = of.numbers()?;
+        let (position_m, frame, [gripper_rad]) = (of.numbers()?, of.numbers()?, of.numbers()?);
+        Some(Self {
+            client,
+            sequence,
+            error,
+            flags,
+            serial,
+            kind,
+            buttons,
+            velocity_threshold,
+            watchdog,
+            status,
+            firmware,
+            position_m,
+            frame,
+            gripper_rad,
+        })
+    }
+}
+
+fn checksum(bytes: &[u8]) -> u32 {
+    bytes.iter().fold(0x811c_9dc5, |sum, byte| (sum ^ u32::from(*byte)).wrapping_mul(0x0100_0193))
+}
+
+/// A datagram being written; what does not fit is left out, which no message here can do.
+struct Out<const N: usize>([u8; N], usize);
+
+impl<const N: usize> Out<N> {
+    fn put(&mut self, bytes: &[u8]) {
+        if let Some(place) = self.0.get_mut(self.1..self.1 + bytes.len()) {
+            place.copy_from_slice(bytes);
+        }
+        self.1 += bytes.len();
+    }
+
+    fn numbers(&mut self, numbers: &[f64]) {
+        for number in numbers {
+            self.put(&number.to_le_bytes());
+        }
+    }
+
+    fn sealed(mut self) -> [u8; N] {
+        let sum = checksum(&self.0[..N - 4]);
+        self.1 = N - 4;
+        self.put(&sum.to_le_bytes());
+        self.0
+    }
+}
+
+/// A datagram being read.
+struct In<'a>(&'a [u8]);
+
+impl<'a> In<'a> {
+    fn opened(bytes: &'a [u8], length: usize, kind: u32) -> Option<Self> {
+        let (body, sum) = bytes.split_last_chunk().filter(|_| bytes.len() == length)?;
+        let mut of = Self(body);
+        (u32::from_le_bytes(*sum) == checksum(body) && of.word()? == kind).then_some(of)
+    }
+
+    fn take<const N: usize>(&mut self) -> Option<[u8; N]> {
+        let (taken, rest) = self.0.split_first_chunk()?;
+        self.0 = rest;
+        Some(*taken)
+    }
+
+    fn word(&mut self) -> Option<u32> {
+        self.take().map(u32::from_le_bytes)
+    }
+
+    fn numbers<const N: usize>(&mut self) -> Option<[f64; N]> {
+        let mut numbers = [0.0; N];
+        for number in &mut numbers {
+            *number = f64::from_le_bytes(self.take()?);
+        }
+        Some(numbers)
+    }
+}

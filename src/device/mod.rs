@@ -2,12 +2,11 @@
 //!
 //! Positions in m, forces in N, both in the workspace frame (z up). A rig that cannot deliver a sample says so with
 //! `None`; it never repeats an old one as new.
-
 //!
 //! Drivers of real devices live in a folder each: a codec without input and output, a driver over a [`transport`], an emulator.
 
-pub mod discovery;
 pub mod bota;
+pub mod discovery;
 pub mod dynamixel;
 pub mod emulation;
 pub mod force_dimension;

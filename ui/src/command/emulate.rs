@@ -4,14 +4,14 @@
 //! input. Lines on standard input set faults: `fault NAME` (see `--help`), `fault none` takes it back; with several devices
 //! `fault DEVICE NAME`.
 
-#[cfg(target_os = "linux")]
-mod hid;
 mod bota;
 mod dynamixel;
+mod force_dimension;
+#[cfg(target_os = "linux")]
+mod hid;
 mod kinova;
 #[cfg(unix)]
 mod ndi;
-mod force_dimension;
 
 use std::{
     io::BufRead as _,
@@ -69,26 +69,25 @@ type Known = (&'static str, fn(&Settings) -> anyhow::Result<Vec<Emulated>>);
 
 /// All that can be emulated.
 const KNOWN: &[Known] = &[
-    #[cfg(target_os = "linux")]
-    ("spacemouse", hid::cap),
-    #[cfg(target_os = "linux")]
-    ("spacenavd", hid::spacenavd),
-    #[cfg(target_os = "linux")]
-    ("pedal", hid::pedal),
     #[cfg(unix)]
     ("bota-gen0", bota::gen0),
     #[cfg(unix)]
     ("bota-gen-a", bota::gen_a),
     ("bota-socket", bota::socket),
-];
-const KNOWN: &[Known] = &[("dynamixel", dynamixel::start)];
-const KNOWN: &[Known] = &[("kinova", kinova::start)];
+    ("dynamixel", dynamixel::start),
+    (force_dimension::NAME, force_dimension::start),
+    ("kinova", kinova::start),
     #[cfg(unix)]
     ("ndi", ndi::network),
     #[cfg(unix)]
     ("ndi-serial", ndi::line),
+    #[cfg(target_os = "linux")]
+    ("pedal", hid::pedal),
+    #[cfg(target_os = "linux")]
+    ("spacemouse", hid::cap),
+    #[cfg(target_os = "linux")]
+    ("spacenavd", hid::spacenavd),
 ];
-const KNOWN: &[Known] = &[(force_dimension::NAME, force_dimension::start)];
 
 #[derive(Serialize)]
 struct Endpoint<'a> {

@@ -17,7 +17,9 @@ use crate::{
 const HANDLES: usize = 16;
 /// Without an answer for so long an exchange has failed. An emulator shares its processor with others.
 const EXCHANGE: Duration = Duration::from_millis(2);
-/// The same while looking for devices.
+/// Between two looks for an answer.
+const LOOK: Duration = Duration::from_micros(30);
+/// The same as [`EXCHANGE`] while looking for devices.
 const GREETING: Duration = Duration::from_millis(200);
 /// `DHD_TIMEGUARD`: nothing newer was to be had.
 pub(crate) const TIMEGUARD: c_int = 1;
@@ -78,6 +80,7 @@ impl Handle {
     fn reach(address: SocketAddr) -> Option<Self> {
         let socket = UdpSocket::bind(("127.0.0.1", 0)).ok()?;
         socket.connect(address).ok()?;
+        socket.set_nonblocking(true).ok()?;
         let mut registry = locked(&REGISTRY);
         registry.clients += 1;
         let client = u64::from(std::process::id()) << 32 | registry.clients;
@@ -115,14 +118,14 @@ impl Handle {
         let (begin, mut damaged) = (Instant::now(), false);
         let mut buffer = [0; 512];
         loop {
-            let left = patience.saturating_sub(begin.elapsed());
-            if left.is_zero() {
-                return Err(if damaged { COMMUNICATION } else { TIMED_OUT });
-            }
-            self.socket.set_read_timeout(Some(left)).map_err(gone)?;
             let count = match self.socket.recv(&mut buffer) {
                 Ok(count) => count,
-                Err(error) if matches!(error.kind(), std::io::ErrorKind::WouldBlock | std::io::ErrorKind::TimedOut) => {
+                Err(error) if error.kind() == std::io::ErrorKind::WouldBlock => {
+                    if begin.elapsed() > patience {
+                        return Err(if damaged { COMMUNICATION } else { TIMED_OUT });
+                    }
+                    // A time limit of the socket's own is rounded up to the kernel's tick, several milliseconds.
+                    std::thread::sleep(LOOK);
                     continue;
                 }
                 Err(error) => return Err(gone(error)),

@@ -175,6 +175,7 @@ pub struct Driver {
     limits_n: (f64, f64),
     cycle: Option<u64>,
     first_poll_s: Option<f64>,
+    failing: Option<Loss>,
     reports: Receiver<Report>,
     events: Receiver<HandleEvent>,
     commands: Sender<ForceCommand>,
@@ -233,6 +234,7 @@ pub fn open(settings: &Settings) -> Result<Driver, Trouble> {
         limits_n: (settings.force_max_n, settings.gripper_max_n),
         cycle: None,
         first_poll_s: None,
+        failing: None,
         reports,
         events,
         commands,
@@ -320,6 +322,7 @@ impl Driver {
         (self.status, self.counters) = (report.status, report.counters);
         self.health.damaged = report.counters.failed_calls;
         self.health.refused = report.counters.implausible;
+        self.failing = report.failing;
         if let Some(loss) = report.loss {
             self.health.lose(loss);
             return None;
@@ -348,7 +351,7 @@ impl Device for Driver {
             }
         }
         if now_s - self.health.newest_s.unwrap_or(first_s) > SILENCE_S {
-            self.health.lose(Loss::Silent);
+            self.health.lose(self.failing.unwrap_or(Loss::Silent));
         }
         if matches!(self.health.standing, crate::device::Standing::Lost(_)) {
             return None;

@@ -55,6 +55,8 @@ pub(super) struct Report {
     pub(super) status: Status,
     pub(super) counters: Counters,
     pub(super) loss: Option<Loss>,
+    /// What it will be lost to if calls go on failing as the last one.
+    pub(super) failing: Option<Loss>,
 }
 
 /// What both threads share.
@@ -152,10 +154,13 @@ impl Worker {
     fn step(&mut self) {
         self.cycle += 1;
         let reading = self.read();
-        if self.cycle % STATUS_EVERY == 1 {
-            self.read_status();
+        // After a reading that failed the next one is tried at once: more calls would only wait for the same trouble.
+        if self.failure.is_none() {
+            if self.cycle % STATUS_EVERY == 1 {
+                self.read_status();
+            }
+            self.drive();
         }
-        self.drive();
         self.judge_silence();
         if self.ends.reports.try_send(self.report(reading)).is_err() {
             // Counted by the loop from the numbers of the cycles.
@@ -164,7 +169,11 @@ impl Worker {
 
     const fn report(&self, reading: Option<HandleReading>) -> Report {
         let (cycle, status, counters) = (self.cycle, self.status, self.counters);
-        Report { cycle, reading, status, counters, loss: self.loss }
+        let failing = match self.failure {
+            Some(error) => Some(error.loss()),
+            None => None,
+        };
+        Report { cycle, reading, status, counters, loss: self.loss, failing }
     }
 
     fn fail(&mut self, error: SdkError) {
@@ -185,6 +194,7 @@ impl Worker {
                 return None;
             }
         };
+        self.failure = None;
         // Until two positions were read within its window there is no velocity, which is no fault.
         let velocity = self.device.velocity_m_s().ok();
         // The sign on left-handed devices is the other one.
@@ -204,7 +214,6 @@ impl Worker {
             return None;
         }
         self.fresh_at = Instant::now();
-        self.failure = None;
         self.last = Some(reading);
         Some(reading)
     }
@@ -309,8 +318,9 @@ fn plausible(
     let frame = Matrix3::from_row_slice(&frame);
     // Comparisons with a number that is not finite are false.
     let placed = position_m.norm() < POSITION_MAX_M && gripper_rad.abs() < std::f64::consts::PI;
-    let error = (frame * frame.transpose() - Matrix3::identity()).abs().max();
-    if !placed || !(error < FRAME_TOLERANCE) || !(frame.determinant() > 0.0) {
+    let error = frame * frame.transpose() - Matrix3::identity();
+    let turned = error.iter().all(|entry| entry.abs() < FRAME_TOLERANCE) && frame.determinant() > 0.0;
+    if !placed || !turned {
         return None;
     }
     let orientation = UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix_unchecked(frame));

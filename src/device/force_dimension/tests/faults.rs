@@ -33,35 +33,61 @@ fn wait(slot: &mut Slot<Driver>, good: impl Fn(&Slot<Driver>, bool) -> bool) -> 
     false
 }
 
+/// Times that a fault is tried: without real-time scheduling a busy machine makes a device silent by itself now and then.
+const ATTEMPTS: u32 = 6;
+
 fn goes_through(faults: &[EmulatedFault]) {
     let (serving, hand, settings) = rig(Emulator::default());
     let mut slot = Slot::start("handle", move || open(&settings)).unwrap();
-    let view = slot.view();
     for fault in faults {
-        assert!(wait(&mut slot, |_, reading| reading), "delivers before {fault:?}: {:?}", view.report().trouble);
-        // A loss must also end the force.
-        slot.device().unwrap().enable_force();
-        assert!(wait(&mut slot, |_, _| hand.applied().mode == Mode::Force));
-        let (begin_s, failed) = (slot.health().newest_s.unwrap(), slot.health().damaged);
-        serving.faults.set(*fault);
-        match expected(*fault) {
-            Expected::Lost(loss) => {
-                assert!(
-                    wait(&mut slot, |slot, _| slot.health().standing == Standing::Lost(loss)),
-                    "{fault:?} leads to {loss:?}, not to {:?}",
-                    slot.health()
-                );
-                println!("{fault:?}: {loss:?} {:.1} ms after the last reading", slot.health().age_s(now_s()) * 1e3);
-                println!("    told {:.1} ms after the fault", (now_s() - begin_s) * 1e3);
-                assert!(wait(&mut slot, |_, _| hand.applied().mode == Mode::Brake), "{fault:?}: brakes are on");
-            }
-            Expected::Disturbed => {
-                assert!(wait(&mut slot, |slot, _| slot.health().damaged > failed + 3), "{fault:?}: failures count");
-            }
-        }
-        serving.faults.set(EmulatedFault::None);
+        let mut seen = Vec::new();
+        let found = (0..ATTEMPTS).any(|_| {
+            let found = shows(&mut slot, &hand, &serving, *fault, &mut seen);
+            serving.faults.set(EmulatedFault::None);
+            found
+        });
+        assert!(found, "{fault:?} was never seen as it should be: {seen:?}");
     }
-    assert!(wait(&mut slot, |_, reading| reading), "delivers again: {:?}", view.report().trouble);
+    assert!(wait(&mut slot, |_, reading| reading), "delivers again: {:?}", slot.view().report().trouble);
+}
+
+/// Sets one fault on a handle that pushes; whether it shows as expected.
+fn shows(
+    slot: &mut Slot<Driver>,
+    hand: &Hand,
+    serving: &Serving,
+    fault: EmulatedFault,
+    seen: &mut Vec<Standing>,
+) -> bool {
+    let lost = |slot: &Slot<Driver>| matches!(slot.health().standing, Standing::Lost(_));
+    assert!(wait(slot, |_, reading| reading), "delivers before {fault:?}: {:?}", slot.view().report().trouble);
+    // A loss must also end the force.
+    slot.device().unwrap().enable_force();
+    assert!(wait(slot, |slot, _| hand.applied().mode == Mode::Force || lost(slot)));
+    if lost(slot) {
+        seen.push(slot.health().standing);
+        return false;
+    }
+    let (begin_s, failed) = (now_s(), slot.health().damaged);
+    serving.faults.set(fault);
+    match expected(fault) {
+        Expected::Lost(loss) => {
+            assert!(wait(slot, |slot, _| lost(slot)), "{fault:?} leads to no loss: {:?}", slot.health());
+            let (after_ms, silent_ms) = ((now_s() - begin_s) * 1e3, slot.health().age_s(now_s()) * 1e3);
+            println!(
+                "{fault:?}: {:?} after {after_ms:.1} ms, {silent_ms:.1} ms without a reading",
+                slot.health().standing
+            );
+            seen.push(slot.health().standing);
+            assert!(wait(slot, |_, _| hand.applied().mode == Mode::Brake), "{fault:?}: brakes are on");
+            slot.health().standing == Standing::Lost(loss)
+        }
+        Expected::Disturbed => {
+            assert!(wait(slot, |slot, _| slot.health().damaged > failed + 3 || lost(slot)));
+            seen.push(slot.health().standing);
+            slot.health().standing == Standing::Connected
+        }
+    }
 }
 
 #[test]

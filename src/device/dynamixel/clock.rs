@@ -78,7 +78,7 @@ mod tests {
         let mut clock = DeviceClock::default();
         for k in 0..20_000_u16 {
             // One percent slow.
-            assert_ne!(clock.take((k as f64 * 0.99) as u16, f64::from(k) * 1e-3).1, Age::Old, "{k}");
+            assert_ne!(clock.take((f64::from(k) * 0.99) as u16, f64::from(k) * 1e-3).1, Age::Old, "{k}");
         }
         assert_eq!(clock.take(19_801, 20.050).1, Age::Old, "50 ms late");
         assert_eq!(clock.take(19_700, 20.001).1, Age::Old, "from before");

@@ -207,11 +207,11 @@ pub fn open(settings: &Settings) -> Result<Driver, Trouble> {
     let of_thread = settings.clone();
     let work = move || {
         super::sdk::prepare_thread();
-        let opened = super::opening::open(sdk, &of_thread).and_then(|opened| {
+        let opened = super::opening::open(sdk, &of_thread).map(|opened| {
             let super::opening::Opened { device, identity, left_handed, velocity_threshold } = opened;
             let period = Duration::from_secs_f64(1.0 / of_thread.rate_hz);
             answer.send(Ok(Opened { identity, velocity_threshold })).ok();
-            Ok(Worker::new(device, ends, left_handed, of_thread.idle, period))
+            Worker::new(device, ends, left_handed, of_thread.idle, period)
         });
         match opened {
             Ok(worker) => worker.run(),

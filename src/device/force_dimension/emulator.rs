@@ -171,11 +171,14 @@ fn open(address: SocketAddr) -> Option<UdpSocket> {
     UdpSocket::bind(address).ok()
 }
 
+/// What the hand at the handle does: its state for the time (s) and the force that is applied.
+type Hand = Box<dyn FnMut(f64, &Applied) -> HandState + Send>;
+
 /// The device that serves.
 struct Machine {
     of: Emulator,
     begin: Instant,
-    body: Box<dyn FnMut(f64, &Applied) -> HandState + Send>,
+    body: Hand,
     firmware: Firmware,
     state: HandState,
     /// What clients see while it is frozen.
@@ -188,7 +191,7 @@ struct Machine {
 }
 
 impl Machine {
-    fn new(of: Emulator, mut body: Box<dyn FnMut(f64, &Applied) -> HandState + Send>) -> Self {
+    fn new(of: Emulator, mut body: Hand) -> Self {
         let firmware = Firmware::new(of.motor_limit_n);
         let state = body(0.0, firmware.applied());
         Self {

@@ -150,6 +150,7 @@ impl Firmware {
 }
 
 #[cfg(test)]
+#[expect(clippy::float_cmp, reason = "numbers are copied, not computed")]
 mod tests {
     use super::*;
 

@@ -22,6 +22,7 @@ mod opening;
 mod sdk;
 pub mod status;
 #[cfg(test)]
+#[expect(clippy::float_cmp, reason = "numbers are copied, not computed")]
 mod tests;
 pub mod wire;
 mod worker;

@@ -9,7 +9,7 @@ use super::{
     },
     world::{Bench, emulated, settings},
 };
-use crate::device::{Device as _, Standing, Trouble, emulation::EmulatedFault, transport::Bytes as _};
+use crate::device::{Device as _, Standing, Trouble, emulation::EmulatedFault};
 
 /// Reads registers of a servo behind the driver's back.
 fn peek(bench: &Bench, id: u8, address: u16, count: u16) -> Vec<u8> {

@@ -1,6 +1,6 @@
 //! The driver: asks for a frame as soon as the last reply is in, one command in flight, never waiting.
 //!
-//! Readings in m, camera frame `c`, orientation `c_from_tool`. A reading is new by its frame number; the same frame again is none.
+//! Readings in m, camera frame `c`, orientation `c_from_tool`. A reading is new by its frame number.
 //! Losses: [`Loss::Silent`] where no new frame came for [`SILENT_S`] and nothing at all for the command in flight,
 //! [`Loss::Corrupt`] where only bytes came that make no reply, or [`DAMAGED_MAX`] damaged replies in a row, [`Loss::Implausible`]
 //! for numbers that are none or impossible, [`Loss::Device`] for fault bits of the unit (`0x10000 +` system status), its errors
@@ -73,6 +73,8 @@ pub struct Driver {
     frame: Option<u32>,
     frames_since_open: u64,
     beeps: u8,
+    /// The last command was a beep.
+    beeped: bool,
     system: SystemStatus,
     status: [PortStatus; TRACKED_TOOLS],
 }
@@ -108,6 +110,7 @@ impl Driver {
             frame: None,
             frames_since_open: 0,
             beeps: 0,
+            beeped: false,
             system: SystemStatus::default(),
             status: [PortStatus::default(); TRACKED_TOOLS],
         })
@@ -128,7 +131,7 @@ impl Driver {
         self.status
     }
 
-    /// Lets the unit beep, 1 to 9 times, as soon as no other command is in flight.
+    /// Lets the unit beep, 1 to 9 times, as soon as no other command is in flight; between two beeps it is asked for a frame.
     pub fn beep(&mut self, times: u8) {
         self.beeps = times.min(9);
     }
@@ -266,9 +269,12 @@ impl Driver {
         if now_s < due_s {
             return Ok(());
         }
-        let beep = self.beeps > 0;
+        let beep = self.beeps > 0 && !self.beeped;
+        self.beeped = beep;
         let command = if beep { Command::Beep(self.beeps) } else { Command::Track(self.form, OPTIONS) };
-        self.beeps = 0;
+        if beep {
+            self.beeps = 0;
+        }
         self.session.inbox.clear();
         self.heard_s = None;
         self.session.wire.send(command.encode().as_bytes())?;
@@ -296,7 +302,9 @@ impl Device for Driver {
                 value,
             }),
             Err(loss) => {
-                self.health.lose(loss);
+                // A serial line that was pulled out reads as one with nothing on it.
+                let gone = loss == Loss::Silent && self.session.wire.is_gone();
+                self.health.lose(if gone { Loss::Disconnected } else { loss });
                 None
             }
         }

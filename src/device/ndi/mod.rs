@@ -25,6 +25,8 @@ mod words;
 mod codec_tests;
 #[cfg(test)]
 mod driver_tests;
+#[cfg(test)]
+mod fault_tests;
 
 pub use command::{
     CHUNK, COMMAND_MAX, Command, CommandLine, Filter, Form, OUTSIDE_TOO, Priority, STRAYS, TRANSFORMS, WIRELESS,

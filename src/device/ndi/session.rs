@@ -22,6 +22,16 @@ pub(super) enum Wire {
     Serial(Serial),
 }
 
+impl Wire {
+    /// The line does not exist any more. A connection tells that by itself when it is read.
+    pub(super) fn is_gone(&mut self) -> bool {
+        match self {
+            Self::Tcp(_) => false,
+            Self::Serial(serial) => serial.clear().is_err(),
+        }
+    }
+}
+
 impl Bytes for Wire {
     fn receive(&mut self, buffer: &mut [u8]) -> Result<usize, Loss> {
         match self {

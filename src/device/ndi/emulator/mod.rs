@@ -2,9 +2,10 @@
 //!
 //! It takes both forms of commands, keeps the unit's modes (not initialised, set up, tracking) with its error codes, counts frames
 //! at 60 Hz and sends each reply in one write. On the pseudo-terminal it keeps the line's speed: what is sent at another speed
-//! than its own is not understood, and a reply takes the time that its bytes need. A pseudo-terminal carries no break; setting
-//! its speed to 9600 while the unit has another stands for one.
+//! than its own is not understood, and commands and replies take the line for as long as their bytes need. A pseudo-terminal carries
+//! no break; setting its speed to 9600 while the unit has another stands for one.
 
+mod port;
 mod serve;
 mod unit;
 

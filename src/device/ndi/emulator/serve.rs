@@ -110,7 +110,9 @@ struct Host {
     line: Vec<u8>,
     /// Speed of the unit's side of a serial line, bit/s.
     baud: u32,
-    /// What the line says once the bytes of the reply have had their time.
+    /// Until when the last reply takes the line, s.
+    taken_s: f64,
+    /// What the line says once the bytes of the command have had their time.
     due: Option<(f64, Answer)>,
     reset_s: Option<f64>,
 }
@@ -125,6 +127,7 @@ impl Host {
             begin: Instant::now(),
             line: Vec::with_capacity(COMMAND_MAX),
             baud: FIRST_BAUD,
+            taken_s: 0.0,
             due: None,
             reset_s: None,
         }
@@ -195,8 +198,11 @@ impl Host {
         for byte in arrived[..count].iter().filter(|_| same) {
             let length = self.line.len() + 1;
             if let Some(answer) = self.hear(*byte) {
-                let bytes = length + answer.bytes.len();
-                self.due = Some((now_s + bytes as f64 * BITS / f64::from(self.baud), answer));
+                let took_s = |bytes: usize| bytes as f64 * BITS / f64::from(self.baud);
+                // The reply is written at once when its first byte would come; the line is taken until its last one has passed.
+                let due_s = now_s.max(self.taken_s) + took_s(length);
+                self.taken_s = due_s + took_s(answer.bytes.len());
+                self.due = Some((due_s, answer));
             }
         }
         let Some((_, answer)) = self.due.take_if(|(due_s, _)| *due_s <= now_s) else {

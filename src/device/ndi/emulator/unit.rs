@@ -1,8 +1,9 @@
 //! The unit itself, without input and output: a command line in, a reply out.
 
-use std::fmt::Write as _;
-
-use super::{Body, FRAME_HZ, Profile};
+use super::{
+    Body, FRAME_HZ, Profile,
+    port::{Port, information},
+};
 use crate::device::{
     Tracked,
     emulation::EmulatedFault,
@@ -38,25 +39,6 @@ pub struct Answer {
     pub bytes: Vec<u8>,
     /// The speed of the line after the reply, bit/s.
     pub then_baud: Option<u32>,
-}
-
-#[derive(Clone, Debug)]
-struct Port {
-    handle: u8,
-    number: usize,
-    definition: Box<[u8; DEFINITION]>,
-    written: bool,
-    initialised: bool,
-    enabled: bool,
-}
-
-impl Port {
-    fn status(&self) -> u32 {
-        let bit = |on, bit| if on { bit } else { 0 };
-        bit(self.written, PortStatus::OCCUPIED)
-            | bit(self.initialised, PortStatus::INITIALISED)
-            | bit(self.enabled, PortStatus::ENABLED)
-    }
 }
 
 /// The modes of a unit and what it knows.
@@ -387,29 +369,6 @@ fn sight_of(tracked: &Tracked, fault: EmulatedFault) -> Option<(Sight, u32)> {
 
 fn known(name: &str) -> Option<&'static str> {
     PARAMETERS.iter().find(|(known, _)| *known == name).map(|(_, value)| *value)
-}
-
-/// `PHINF` by its option bits, in their order (reference 1.3).
-fn information(port: &Port, options: u16) -> String {
-    let mut text = String::new();
-    let status = port.status() & 0xFF;
-    if options & 0x01 != 0 {
-        write!(text, "02000000{:<12}001{:08X}{status:02X}", "NIMA", port.number).ok();
-    }
-    if options & 0x02 != 0 {
-        text.push_str("00000000");
-    }
-    if options & 0x04 != 0 {
-        let name: String = port.definition[592..612].iter().map(|byte| char::from(*byte)).collect();
-        let name: String = name.chars().filter(char::is_ascii_graphic).collect();
-        write!(text, "{name:<20}").ok();
-    }
-    for (bit, part) in [(0x08, "00"), (0x10, "29"), (0x20, "00000000000000"), (0x40, "00")] {
-        if options & bit != 0 {
-            text.push_str(part);
-        }
-    }
-    text
 }
 
 /// An ASCII reply.

@@ -21,7 +21,7 @@ use super::{
     session::{Failure, Lines},
 };
 use crate::device::{
-    ARM_JOINTS, ArmReading, Device as _, Loss, Slot, Stamped, Standing, Trouble,
+    ARM_JOINTS, ArmReading, Device as _, Loss, Stamped, Standing, Trouble,
     emulation::{EmulatedFault, FaultSwitch, Serving},
 };
 
@@ -29,11 +29,11 @@ const TICK_S: f64 = 1e-3;
 const HOME_RAD: [f64; ARM_JOINTS] = [0.0, 0.26, 3.12, -2.27, 0.0, 0.96, 1.57];
 
 /// An arm that does not mind pauses of a busy machine.
-fn patient() -> EmulatedArm {
+pub(super) fn patient() -> EmulatedArm {
     EmulatedArm { watchdog_ms: 5_000.0, ..EmulatedArm::default() }
 }
 
-fn started(arm: EmulatedArm) -> (Serving, Settings) {
+pub(super) fn started(arm: EmulatedArm) -> (Serving, Settings) {
     started_with(arm, StandIn::at(HOME_RAD))
 }
 
@@ -44,14 +44,14 @@ fn started_with(arm: EmulatedArm, body: impl Body + 'static) -> (Serving, Settin
 }
 
 /// A driver with its own clock of ticks.
-struct Ticking {
-    driver: Driver,
-    now_s: f64,
-    reading: Option<Stamped<ArmReading>>,
+pub(super) struct Ticking {
+    pub(super) driver: Driver,
+    pub(super) now_s: f64,
+    pub(super) reading: Option<Stamped<ArmReading>>,
 }
 
 impl Ticking {
-    fn open(settings: &Settings) -> Self {
+    pub(super) fn open(settings: &Settings) -> Self {
         Self { driver: open(settings).unwrap(), now_s: 0.0, reading: None }
     }
 
@@ -68,7 +68,7 @@ impl Ticking {
     }
 
     /// Ticks until it is so; at most `ticks`.
-    fn until(&mut self, ticks: u32, good: impl Fn(&Self) -> bool) -> bool {
+    pub(super) fn until(&mut self, ticks: u32, good: impl Fn(&Self) -> bool) -> bool {
         (0..ticks).any(|_| {
             self.tick();
             good(self)
@@ -340,74 +340,4 @@ fn a_silent_arm_and_a_stranger_at_its_port_are_told_apart() {
     let trouble = open(&Settings { tcp_port, ..settings }).unwrap_err();
     assert!(matches!(&trouble, Trouble::WrongProduct { .. }), "{trouble}");
     answering.join().unwrap();
-}
-
-/// Runs a slot until it is so.
-fn until(slot: &mut Slot<Driver>, begin: Instant, good: impl Fn(&mut Slot<Driver>) -> bool) -> bool {
-    let end = Instant::now() + Duration::from_secs(5);
-    while Instant::now() < end {
-        slot.poll(begin.elapsed().as_secs_f64());
-        if good(slot) {
-            return true;
-        }
-        sleep(Duration::from_millis(1));
-    }
-    false
-}
-
-#[test]
-fn every_fault_is_noticed_and_passes_without_a_restart() {
-    let (serving, settings) = started(patient());
-    let settings = Settings { patience_s: 0.4, ..settings };
-    let mut slot = Slot::start("kinova", move || open(&settings)).unwrap();
-    let begin = Instant::now();
-    let connected = |slot: &mut Slot<Driver>| slot.health().standing == Standing::Connected;
-    for fault in EmulatedFault::ALL {
-        assert!(until(&mut slot, begin, connected), "before {fault:?}: {:?}", slot.view().report());
-        let before = *slot.health();
-        serving.faults.set(fault);
-        let noticed = |slot: &mut Slot<Driver>| {
-            let health = slot.health();
-            let lost_by = |losses: &[Loss]| matches!(health.standing, Standing::Lost(loss) if losses.contains(&loss));
-            match fault {
-                EmulatedFault::Loss => health.lost > before.lost,
-                EmulatedFault::Reorder => health.out_of_order > before.out_of_order,
-                EmulatedFault::Garbage => health.damaged > before.damaged,
-                EmulatedFault::Delay | EmulatedFault::Silence => lost_by(&[Loss::Silent]),
-                EmulatedFault::Freeze => lost_by(&[Loss::Silent]) && health.out_of_order > before.out_of_order,
-                EmulatedFault::BadChecksum | EmulatedFault::WrongFrame => lost_by(&[Loss::Corrupt]),
-                EmulatedFault::Disconnect => lost_by(&[Loss::Disconnected]),
-                EmulatedFault::DeviceFault => lost_by(&[Loss::Device { code: faults::MAXIMUM_TORQUE }]),
-                EmulatedFault::NotANumber => lost_by(&[Loss::Implausible]),
-                EmulatedFault::None => true,
-            }
-        };
-        assert!(until(&mut slot, begin, noticed), "{fault:?}: {:?}", slot.health());
-        serving.faults.set(EmulatedFault::None);
-    }
-    assert!(until(&mut slot, begin, connected), "after all");
-}
-
-#[test]
-#[ignore = "prints figures; takes ten seconds"]
-fn figures_of_the_cycle() {
-    let (_serving, settings) = started(patient());
-    let mut driver = open(&settings).unwrap();
-    let begin = Instant::now();
-    let (mut longest, mut total, mut polls) = (Duration::ZERO, Duration::ZERO, 0_u32);
-    let mut next = Duration::ZERO;
-    while begin.elapsed() < Duration::from_secs(10) {
-        let from = Instant::now();
-        driver.poll(begin.elapsed().as_secs_f64());
-        let took = from.elapsed();
-        (longest, total, polls) = (longest.max(took), total + took, polls + 1);
-        if polls == 100 {
-            driver.enter_low_level().unwrap();
-        }
-        next += Duration::from_millis(1);
-        sleep(next.saturating_sub(begin.elapsed()));
-    }
-    let health = driver.health();
-    println!("{polls} polls, mean {:?}, longest {longest:?}; {health:?}", total / polls);
-    assert_eq!(health.standing, Standing::Connected);
 }

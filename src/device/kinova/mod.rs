@@ -30,6 +30,8 @@ pub mod wire;
 #[cfg(test)]
 mod driver_tests;
 #[cfg(test)]
+mod fault_tests;
+#[cfg(test)]
 mod golden_tests;
 
 pub use driver::{Answer, Driver, Refusal, ToolReading, ToolTwist, TwistFrame};

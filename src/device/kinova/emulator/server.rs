@@ -21,7 +21,6 @@ use crate::device::{
 
 /// Longest wait for a datagram: calls on TCP and the body go on at least so often.
 const NAP: Duration = Duration::from_millis(1);
-const DATAGRAMS: usize = 32;
 
 /// Who asks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -144,27 +143,23 @@ impl Server {
         }
     }
 
+    /// Waits for one datagram only, so that calls and the switch of faults are never far away.
     fn serve_cycle(&mut self, buffer: &mut [u8], fault: EmulatedFault) {
-        for _ in 0..DATAGRAMS {
-            let Some(socket) = &self.socket else { return };
-            let received = socket.recv_from(buffer);
-            let now_s = self.begin.elapsed().as_secs_f64();
-            let mut out = Vec::new();
-            if let Ok((count, peer)) = received {
-                self.peer = Some(peer);
-                self.base.advance(now_s, fault);
-                if let Ok(asked) = Frame::decode(&buffer[..count]) {
-                    out = self.datagram(Link::Udp(peer), &asked, now_s, fault);
-                }
-            }
-            let (Some(socket), Some(peer)) = (&self.socket, self.peer) else { return };
-            self.line.pass(now_s, &out, fault, &mut |bytes| {
-                socket.send_to(bytes, peer).ok();
-            });
-            if received.is_err() {
-                return;
+        let Some(socket) = &self.socket else { return };
+        let received = socket.recv_from(buffer);
+        let now_s = self.begin.elapsed().as_secs_f64();
+        let mut out = Vec::new();
+        if let Ok((count, peer)) = received {
+            self.peer = Some(peer);
+            self.base.advance(now_s, fault);
+            if let Ok(asked) = Frame::decode(&buffer[..count]) {
+                out = self.datagram(Link::Udp(peer), &asked, now_s, fault);
             }
         }
+        let (Some(socket), Some(peer)) = (&self.socket, self.peer) else { return };
+        self.line.pass(now_s, &out, fault, &mut |bytes| {
+            socket.send_to(bytes, peer).ok();
+        });
     }
 
     /// The answer on the cyclic connection, spoilt as the fault has it.

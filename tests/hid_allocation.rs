@@ -1,6 +1,5 @@
 //! Polling a cap or a pedal allocates nothing, whatever arrives and also when it is lost.
 #![cfg(target_os = "linux")]
-#![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 #[path = "common/counting.rs"]
 mod counting;

@@ -77,7 +77,6 @@ impl CapReport {
             [TRANSLATION, rest @ ..] if rest.len() == 6 => axes(rest).map(Self::Translation),
             [TRANSLATION, rest @ ..] if rest.len() >= 12 => axes(rest).map(Self::Motion),
             [ROTATION, rest @ ..] if rest.len() == 6 => axes(rest).map(Self::Rotation),
-            [TRANSLATION | ROTATION, ..] => Err(BadReport::Shape),
             [BUTTONS, rest @ ..] if !rest.is_empty() => {
                 let mut bits = [0; 4];
                 bits.iter_mut().zip(rest).for_each(|(bit, byte)| *bit = *byte);
@@ -87,7 +86,7 @@ impl CapReport {
                 Ok(Self::Battery { percent: *percent, charging: rest.first().is_some_and(|byte| *byte != 0) })
             }
             [BATTERY, _, ..] => Err(BadReport::Content),
-            [] | [0 | BUTTONS | BATTERY, ..] => Err(BadReport::Shape),
+            [] | [0 | TRANSLATION | ROTATION | BUTTONS | BATTERY, ..] => Err(BadReport::Shape),
             _ => Ok(Self::Other),
         }
     }

@@ -22,7 +22,7 @@ mod seqpacket;
 mod source;
 pub mod spacenavd;
 
-#[cfg(all(test, target_os = "linux"))]
+#[cfg(test)]
 mod tests;
 
 pub use cap_codec::RELEASE_AFTER_S;

@@ -64,7 +64,7 @@ impl Event {
                 words[7] = period_ms;
             }
             Self::Button { number, pressed } => {
-                words[..2].copy_from_slice(&[if *pressed { PRESS } else { RELEASE }, *number as i32]);
+                words[..2].copy_from_slice(&[if *pressed { PRESS } else { RELEASE }, number.cast_signed()]);
             }
         }
         let mut bytes = [0; EVENT_LENGTH];

@@ -27,7 +27,7 @@ pub const KINDS: &[ProbeKind] = &[
     ProbeKind { name: "force-dimension", usage: "force-dimension", make: force_dimension },
 ];
 
-#[expect(clippy::unnecessary_wraps, reason = "one signature for all kinds")]
+#[expect(clippy::unnecessary_wraps, reason = "every row of the table has one form")]
 fn cap(place: &str) -> Result<Box<dyn Probe>, Trouble> {
     let mut settings = CapSettings::default();
     if !place.is_empty() {
@@ -37,7 +37,7 @@ fn cap(place: &str) -> Result<Box<dyn Probe>, Trouble> {
     Ok(Box::new(DeviceProbe::new("spacemouse", place, Speaks::OnChange, move || CapDriver::open(&settings))))
 }
 
-#[expect(clippy::unnecessary_wraps, reason = "one signature for all kinds")]
+#[expect(clippy::unnecessary_wraps, reason = "every row of the table has one form")]
 fn pedal(place: &str) -> Result<Box<dyn Probe>, Trouble> {
     let mut settings = PedalSettings::default();
     if !place.is_empty() {
@@ -55,7 +55,7 @@ fn tcp(place: &str) -> Result<Box<dyn Probe>, Trouble> {
     Ok(Box::new(TcpProbe::new(place)?))
 }
 
-#[expect(clippy::unnecessary_wraps, reason = "one signature for all kinds")]
+#[expect(clippy::unnecessary_wraps, reason = "every row of the table has one form")]
 fn force_dimension(_: &str) -> Result<Box<dyn Probe>, Trouble> {
     Ok(Box::new(LibraryProbe::force_dimension()))
 }

@@ -1,5 +1,4 @@
 //! Nothing is allocated between the hand and the arm's joints.
-#![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 #[path = "common/counting.rs"]
 mod counting;

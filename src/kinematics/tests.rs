@@ -165,6 +165,27 @@ fn every_corner_of_the_space_is_reached_to_a_micrometre_through_the_trocar() {
 }
 
 #[test]
+fn a_hands_motion_is_followed_without_lag() {
+    let mut inverse = started(20.0);
+    let (mut worst_m, mut before, mut change_rad_s2) = (0.0_f64, [*inverse.joint_rad(); 2], 0.0_f64);
+    for k in 0..5000 {
+        let t_s = f64::from(k) * PERIOD_S;
+        let share = t_s.min(1.0);
+        // Smoothly in, then 10 to 20 mm about once a second: up to 0.09 m/s.
+        let way_m = Vector3::new((6.0 * t_s).sin(), 1.0 - (5.0 * t_s).cos(), (4.0 * t_s).sin())
+            * 0.01
+            * (share * share * (3.0 - 2.0 * share));
+        let step = inverse.step(&(middle_m() + way_m));
+        worst_m = worst_m.max(step.measures.tip_miss_m);
+        change_rad_s2 = change_rad_s2.max((step.joint_rad - 2.0 * before[1] + before[0]).amax() / PERIOD_S.powi(2));
+        before = [before[1], step.joint_rad];
+    }
+    assert!(worst_m < 1e-6, "the tip lags by {worst_m} m");
+    assert!(change_rad_s2 < 10.0, "the joints jerk: {change_rad_s2} rad/s^2");
+    println!("tip within {worst_m} m, joints within {change_rad_s2} rad/s^2");
+}
+
+#[test]
 fn a_far_target_is_approached_no_faster_than_tip_and_shaft_may_move() {
     let mut inverse = started(20.0);
     let before = *inverse.pose();

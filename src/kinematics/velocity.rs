@@ -1,10 +1,12 @@
 //! Joint steps from shaft steps: three tasks, each within what the ones above leave free.
 //!
-//! 1. The shaft's axis goes through the trocar (2 rows). 2. The shaft turns about the trocar and slides in it (3 rows; damped near
-//! singularities). 3. A better posture (what remains: the elbow, the turn about the shaft). Because the second is solved in the null
-//! space of the first, damping and slowing it down cost speed, never the trocar. Projections after Siciliano and Slotine (1991),
-//! damping after Nakamura and Hanafusa (1986) but per singular direction, joints near a limit made stiff by weights as in Chan and
-//! Dubey (1995). All of it in `kbf`, m and rad, on the stack.
+//! - First, the shaft's axis goes through the trocar (2 rows).
+//! - Second, the shaft turns about the trocar and slides in it (3 rows; damped near singularities).
+//! - Third, a better posture (what remains: the elbow, the turn about the shaft).
+//!
+//! Because the second is solved in the null space of the first, damping and slowing it down cost speed, never the trocar.
+//! Projections after Siciliano and Slotine (1991), damping after Nakamura and Hanafusa (1986) but per singular direction, joints
+//! near a limit made stiff by weights as in Chan and Dubey (1995). All of it in `kbf`, m and rad, on the stack.
 
 use nalgebra::{Matrix2, SMatrix, SymmetricEigen, Vector2, Vector3};
 

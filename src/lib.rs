@@ -1,7 +1,8 @@
 //! The machine of NIMA Console: everything between a surgeon's hand and the tissue, without a screen.
 //!
 //! Rooms know only the rooms below them:
-//! `files, statistics, frames, signal` < `kinematics, calibration, tip_force, impedance, safety` < `device, sim` < `teleop` < `runtime` < `recording, study`.
+//! `files, statistics, frames, signal` < `kinematics, calibration, tip_force, impedance, safety` < `device, sim` < `teleop` <
+//! `runtime` < `recording, study`.
 //! SI units inside (m, s, N, rad); a name carries its unit and frame where the type does not.
 
 pub mod calibration;

@@ -170,8 +170,11 @@ fn a_hands_motion_is_followed_without_lag() {
     let (mut worst_m, mut before, mut change_rad_s2) = (0.0_f64, [*inverse.joint_rad(); 2], 0.0_f64);
     for k in 0..5000 {
         let t_s = f64::from(k) * PERIOD_S;
-        // Slowly in, then 25 mm about once a second: up to 0.17 m/s.
-        let way_m = Vector3::new((6.0 * t_s).sin(), 1.0 - (5.0 * t_s).cos(), (4.0 * t_s).sin()) * 0.025 * t_s.min(1.0);
+        let share = t_s.min(1.0);
+        // Smoothly in, then 10 to 20 mm about once a second: up to 0.09 m/s.
+        let way_m = Vector3::new((6.0 * t_s).sin(), 1.0 - (5.0 * t_s).cos(), (4.0 * t_s).sin())
+            * 0.01
+            * (share * share * (3.0 - 2.0 * share));
         let step = inverse.step(&(middle_m() + way_m));
         worst_m = worst_m.max(step.measures.tip_miss_m);
         change_rad_s2 = change_rad_s2.max((step.joint_rad - 2.0 * before[1] + before[0]).amax() / PERIOD_S.powi(2));

@@ -1,6 +1,6 @@
 //! From an open line to four configured servos with the torque off. Blocks and allocates; runs on the opening thread.
 //!
-//! Every answer is awaited for 30 ms, three times. What the EEPROM holds is compared first, and written only where it
+//! Every answer is awaited for 0.1 s, three times. What the EEPROM holds is compared first, and written only where it
 //! differs (it wears out). All that is written is read back.
 
 use std::{
@@ -20,8 +20,8 @@ use super::{
 };
 use crate::device::{Identity, SERVOS, Trouble, transport::Bytes};
 
-/// For one answer, s.
-const ANSWER_S: f64 = 0.030;
+/// For one answer, s: far more than a servo takes, for machines under load.
+const ANSWER_S: f64 = 0.1;
 const TRIES: usize = 3;
 /// For a servo to come back after a reboot, s.
 const REBOOT_S: f64 = 2.0;

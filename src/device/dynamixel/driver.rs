@@ -15,7 +15,7 @@ use super::opening::Pace;
 use super::{
     clock::DeviceClock,
     codec::{Incoming, OVERHEAD, Outgoing},
-    opening::{Opened, Reboots, Session, Wall},
+    opening::{Opened, REST_READS, Reboots, Session, Wall},
     settings::Settings,
     table::{BAUDS, EEPROM_BYTES, HardwareError, TEMPERATURE, ticks_from_rad},
 };
@@ -306,7 +306,11 @@ impl<T: Bytes> Drop for Driver<T> {
         for _ in 0..3 {
             let mut buffer = [0; 256];
             std::thread::sleep(Duration::from_secs_f64((400.0 * self.byte_s + 0.002).min(0.5)));
-            while self.line.receive(&mut buffer).is_ok_and(|count| count > 0) {}
+            for _ in 0..REST_READS {
+                if !self.line.receive(&mut buffer).is_ok_and(|count| count > 0) {
+                    break;
+                }
+            }
             if self.line.send(self.outgoing.bytes()).is_err() {
                 return;
             }

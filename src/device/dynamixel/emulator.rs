@@ -209,6 +209,12 @@ impl Emulator {
         self.queue.front().map(|(due_s, _)| *due_s)
     }
 
+    /// Pseudo-terminals exist on Unix alone.
+    #[cfg(not(unix))]
+    pub fn serve(self) -> std::io::Result<crate::device::emulation::Serving> {
+        Err(std::io::ErrorKind::Unsupported.into())
+    }
+
     fn advance(&mut self, now_s: f64) {
         self.advanced_s = now_s;
         for (index, servo) in self.servos.iter_mut().enumerate() {

@@ -2,8 +2,6 @@
 
 use super::table::TICK_WRAP;
 
-/// A reading this much later than the quickest ones is an answer to an earlier question, s.
-const LATE_S: f64 = 0.015;
 /// How fast the quickest delay is forgotten: clocks of servos are off by less than this.
 const DRIFT: f64 = 0.02;
 
@@ -28,16 +26,24 @@ struct Last {
 }
 
 /// Unwraps the clock.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct DeviceClock(Option<Last>);
+#[derive(Clone, Copy, Debug)]
+pub(super) struct DeviceClock {
+    last: Option<Last>,
+    late_s: f64,
+}
 
 impl DeviceClock {
+    /// A reading `late_s` later than the quickest ones counts as an answer to an earlier question.
+    pub(super) const fn new(late_s: f64) -> Self {
+        Self { last: None, late_s }
+    }
+
     /// Takes the tick of a reading that arrived at `arrival_s`; its time, s, and whether it is old.
     pub(super) fn take(&mut self, tick: u16, arrival_s: f64) -> (f64, Age) {
         let tick = i32::from(tick) % TICK_WRAP;
-        let Some(last) = &mut self.0 else {
+        let Some(last) = &mut self.last else {
             let device_s = f64::from(tick) * 1e-3;
-            self.0 = Some(Last { tick, device_s, arrival_s, offset_s: arrival_s - device_s });
+            self.last = Some(Last { tick, device_s, arrival_s, offset_s: arrival_s - device_s });
             return (device_s, Age::New);
         };
         let elapsed_s = (arrival_s - last.arrival_s).max(0.0);
@@ -47,7 +53,7 @@ impl DeviceClock {
         let device_s = last.device_s + step_s;
         let offset_s = arrival_s - device_s;
         let quickest_s = offset_s.min(last.offset_s + DRIFT * elapsed_s);
-        if step_s < -0.5e-3 || offset_s - quickest_s > LATE_S {
+        if step_s < -0.5e-3 || offset_s - quickest_s > self.late_s {
             return (device_s, Age::Old);
         }
         let age = if step_s > 0.5e-3 { Age::New } else { Age::Same };
@@ -62,7 +68,7 @@ mod tests {
 
     #[test]
     fn the_clock_runs_on_over_its_wrap_and_over_long_pauses() {
-        let mut clock = DeviceClock::default();
+        let mut clock = DeviceClock::new(0.015);
         let mut now_s = 0.0;
         for (k, step_ms) in [1_u64, 1, 0, 3, 20_000, 31_000, 100_000, 5].into_iter().enumerate() {
             now_s += step_ms as f64 * 1e-3;
@@ -75,7 +81,7 @@ mod tests {
 
     #[test]
     fn what_was_long_on_the_way_is_old_and_a_slow_clock_is_not() {
-        let mut clock = DeviceClock::default();
+        let mut clock = DeviceClock::new(0.015);
         for k in 0..20_000_u16 {
             // One percent slow.
             assert_ne!(clock.take((f64::from(k) * 0.99) as u16, f64::from(k) * 1e-3).1, Age::Old, "{k}");

@@ -15,7 +15,7 @@ use super::opening::Pace;
 use super::{
     clock::DeviceClock,
     codec::{Incoming, OVERHEAD, Outgoing},
-    opening::{Opened, Reboots, Session, Wall},
+    opening::{Opened, REST_READS, Reboots, Session, Wall},
     settings::Settings,
     table::{BAUDS, EEPROM_BYTES, HardwareError, TEMPERATURE, ticks_from_rad},
 };
@@ -33,8 +33,12 @@ const CONDITION_BYTES: usize = (TEMPERATURE.address + 1 - CONDITION_FROM) as usi
 const LONGEST: usize = OVERHEAD + (CONDITION_BYTES + 1) * 4 / 3;
 /// Between two questions after a condition, s.
 const CONDITION_EVERY_S: f64 = 0.050;
-/// What adapter, operating system and servo may add to the time on the wire, s.
-const SLACK_S: f64 = 0.006;
+/// What adapter, operating system and servo may add to the time on the wire, of the time until silence: three attempts.
+const SLACK: f64 = 0.3;
+/// A reading this much later than the quickest ones is old, of the time until silence.
+const LATE: f64 = 0.75;
+/// Bytes of an ordinary exchange, goals and all.
+const WIRE_BYTES: f64 = 160.0;
 /// No servo turns faster, units of 0.229 rpm (98 rad/s).
 const VELOCITY_MAX: i32 = 4095;
 /// No servo turns further, ticks (256 turns and the largest homing offset).
@@ -192,21 +196,24 @@ impl<T: Bytes> Driver<T> {
             let limits_ticks = servo.limits_ticks();
             Servo { id: servo.id, current_unit_a, limits_ticks, condition: None, driven: false }
         });
-        let mut driver = Self {
+        let byte_s = 10.0 / f64::from(settings.baud);
+        // A slow line needs longer for three exchanges.
+        let silence_s = settings.silence_s.max(3.0 * WIRE_BYTES / (1.0 - 3.0 * SLACK) * byte_s);
+        Self {
             line,
             health: Health::opening(),
             identity: opened.identity,
             reboots,
             servos,
             fast: opened.fast,
-            byte_s: 10.0 / f64::from(settings.baud),
-            silence_s: settings.silence_s,
+            byte_s,
+            silence_s,
             watchdog: settings.watchdog_units(),
             incoming: Incoming::new(LONGEST),
             outgoing: Outgoing::new(512),
             exchange: None,
             motions: [Motion::default(); SERVOS],
-            clock: DeviceClock::default(),
+            clock: DeviceClock::new(LATE * silence_s),
             goals: None,
             torque: Torque::Off,
             condition_due_s: 0.0,
@@ -214,11 +221,7 @@ impl<T: Bytes> Driver<T> {
             alert: None,
             quiet: Quiet::default(),
             wrong: 0,
-        };
-        // A slow line cannot answer in 20 ms: three exchanges then.
-        let exchange_s = 200.0 * driver.byte_s + SLACK_S;
-        driver.silence_s = driver.silence_s.max(if exchange_s > 0.010 { 3.0 * exchange_s } else { 0.0 });
-        driver
+        }
     }
 
     /// Switches the torque on, held at the present angles, or off. Happens with the next exchange.
@@ -303,7 +306,11 @@ impl<T: Bytes> Drop for Driver<T> {
         for _ in 0..3 {
             let mut buffer = [0; 256];
             std::thread::sleep(Duration::from_secs_f64((400.0 * self.byte_s + 0.002).min(0.5)));
-            while self.line.receive(&mut buffer).is_ok_and(|count| count > 0) {}
+            for _ in 0..REST_READS {
+                if !self.line.receive(&mut buffer).is_ok_and(|count| count > 0) {
+                    break;
+                }
+            }
             if self.line.send(self.outgoing.bytes()).is_err() {
                 return;
             }

@@ -1,8 +1,8 @@
 //! Emulated servos on one bus: every instruction of Protocol 2.0, at the pace of the line.
 //!
 //! Sans-IO: [`Emulator::receive`] takes what a client sent, [`Emulator::send`] gives what leaves by now. [`Emulator::serve`] puts it on
-//! a pseudo-terminal. What the world does to the shafts comes from a closure, [`Body`], called at every instruction and at
-//! least every 20 ms; what commands do to them is told to it with the same call.
+//! a pseudo-terminal. What the world does to the shafts comes from a closure, [`Body`], called at every instruction and every
+//! millisecond between them; what commands do to them is told to it with the same call.
 //!
 //! Inferred, because the e-manual is silent: servos after a missing one do not answer a sync read; a failed part of a fast
 //! read answers zeros with its error.
@@ -26,6 +26,8 @@ use servo::Servo;
 
 /// Longest instruction that an emulated servo takes.
 const LONGEST: usize = 2048;
+/// Between two looks at the world while no instruction comes, s.
+const ADVANCE_S: f64 = 0.001;
 /// A packet that pauses for longer is given up, s.
 const PAUSE_S: f64 = 0.050;
 
@@ -183,7 +185,7 @@ impl Emulator {
             servo.frozen = fault == EmulatedFault::Freeze;
             servo.impossible = fault == EmulatedFault::NotANumber;
         }
-        if now_s - self.advanced_s > 0.020 {
+        if now_s - self.advanced_s >= ADVANCE_S {
             self.advance(now_s);
         }
         while self.queue.front().is_some_and(|(due_s, _)| *due_s <= now_s) {
@@ -205,6 +207,12 @@ impl Emulator {
     /// When the next answer is due, s.
     pub fn due_s(&self) -> Option<f64> {
         self.queue.front().map(|(due_s, _)| *due_s)
+    }
+
+    /// Pseudo-terminals exist on Unix alone.
+    #[cfg(not(unix))]
+    pub fn serve(self) -> std::io::Result<crate::device::emulation::Serving> {
+        Err(std::io::ErrorKind::Unsupported.into())
     }
 
     fn advance(&mut self, now_s: f64) {

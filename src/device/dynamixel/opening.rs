@@ -1,6 +1,6 @@
 //! From an open line to four configured servos with the torque off. Blocks and allocates; runs on the opening thread.
 //!
-//! Every answer is awaited for 30 ms, three times. What the EEPROM holds is compared first, and written only where it
+//! Every answer is awaited for 0.1 s, three times. What the EEPROM holds is compared first, and written only where it
 //! differs (it wears out). All that is written is read back.
 
 use std::{
@@ -20,9 +20,11 @@ use super::{
 };
 use crate::device::{Identity, SERVOS, Trouble, transport::Bytes};
 
-/// For one answer, s.
-const ANSWER_S: f64 = 0.030;
+/// For one answer, s: far more than a servo takes, for machines under load.
+const ANSWER_S: f64 = 0.1;
 const TRIES: usize = 3;
+/// Reads at most to throw away what is left from before.
+pub(super) const REST_READS: usize = 64;
 /// For a servo to come back after a reboot, s.
 const REBOOT_S: f64 = 2.0;
 /// Longest packet while opening: the whole EEPROM, stuffed.
@@ -296,7 +298,11 @@ impl<'a, T: Bytes, P: Pace> Session<'a, T, P> {
     fn send(&mut self, id: u8, instruction: &Instruction<'_>) -> Result<(), Trouble> {
         // Whatever is still there answers to something else.
         let mut rest = [0; LONGEST];
-        while self.line.receive(&mut rest).map_err(|_| self.gone())? > 0 {}
+        for _ in 0..REST_READS {
+            if self.line.receive(&mut rest).map_err(|_| self.gone())? == 0 {
+                break;
+            }
+        }
         self.incoming.reset();
         self.outgoing.clear();
         instruction.encode(id, &mut self.outgoing);

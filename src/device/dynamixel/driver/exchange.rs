@@ -8,7 +8,7 @@ use super::{
         table::{self, Fault, HardwareError, TEMPERATURE, VELOCITY_UNIT_RAD_S, rad_from_ticks},
     },
     CONDITION_BYTES, CONDITION_EVERY_S, CONDITION_FROM, CURRENT_MAX, Condition, Driver, Exchange, LONGEST,
-    MOTION_BYTES, Motion, POSITION_MAX, Question, Quiet, SLACK_S, Torque, VELOCITY_MAX,
+    MOTION_BYTES, Motion, POSITION_MAX, Question, Quiet, SLACK, Torque, VELOCITY_MAX,
 };
 use crate::device::{Health, Loss, SERVOS, ServoReading, Stamped, Standing, transport::Bytes};
 
@@ -214,7 +214,7 @@ impl<T: Bytes> Driver<T> {
         };
         self.line.send(self.outgoing.bytes())?;
         let wire_s = (self.outgoing.bytes().len() + answer_bytes) as f64 * self.byte_s;
-        self.exchange = Some(Exchange { question, until_s: now_s + wire_s + SLACK_S });
+        self.exchange = Some(Exchange { question, until_s: now_s + wire_s + SLACK * self.silence_s });
         Ok(())
     }
 

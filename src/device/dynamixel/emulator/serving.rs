@@ -19,13 +19,14 @@ use crate::device::{
 /// Between two looks at the line while nothing is due.
 const WAIT: Duration = Duration::from_millis(1);
 /// Between two looks at what clients left set on the line.
-const TIDY_S: f64 = 0.050;
+const TIDY_S: f64 = 0.250;
 
 /// Our two ends of the terminal. The client's end stays open here, so that the line outlives its clients.
 struct Line {
     ours: TTYPort,
     bytes: std::fs::File,
     theirs: TTYPort,
+    lock: std::fs::File,
     tidied_s: f64,
 }
 
@@ -39,8 +40,8 @@ impl Line {
         std::fs::remove_file(&fresh).ok();
         symlink(path, &fresh)?;
         std::fs::rename(&fresh, name)?;
-        let bytes = os::bytes_of(&ours)?;
-        Ok(Self { ours, bytes, theirs, tidied_s: 0.0 })
+        let (bytes, lock) = (os::bytes_of(&ours)?, os::bytes_of(&theirs)?);
+        Ok(Self { ours, bytes, theirs, lock, tidied_s: 0.0 })
     }
 }
 
@@ -95,11 +96,13 @@ impl Emulator {
         }
         self.send(now_s(), fault, &mut |bytes| {
             // A client that does not read loses bytes, as on a real line.
-            let _taken = line.bytes.write(bytes).unwrap_or(0);
+            line.bytes.write_all(bytes).ok();
         });
         if now_s() - line.tidied_s > TIDY_S && !stop.load(Ordering::Relaxed) {
-            // A client that took the terminal for itself alone and is gone leaves it so.
+            // A client that took the terminal for itself alone and is gone leaves it so. This takes a shared lock, which would
+            // keep the next client out.
             line.theirs.set_exclusive(false).ok();
+            line.lock.unlock().ok();
             line.tidied_s = now_s();
         }
     }

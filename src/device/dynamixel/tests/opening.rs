@@ -3,13 +3,18 @@
 use super::{
     super::{
         Emulator, EmulatorSettings, HardwareError, OperatingMode, Settings,
-        codec::{Incoming, Outgoing},
+        codec::{BROADCAST, Incoming, Outgoing},
+        driver::open_over,
         message::Instruction,
         opening::Pace as _,
     },
     world::{Bench, emulated, settings},
 };
-use crate::device::{Device as _, Standing, Trouble, emulation::EmulatedFault};
+use crate::device::{
+    Device as _, Loss, Standing, Trouble,
+    emulation::EmulatedFault,
+    transport::{Bytes, MemoryBytes},
+};
 
 /// Reads registers of a servo behind the driver's back.
 fn peek(bench: &Bench, id: u8, address: u16, count: u16) -> Vec<u8> {
@@ -153,39 +158,30 @@ fn a_servo_that_shut_down_opens_after_a_restart_by_command_only() {
     assert!(bench.run(&mut driver, 0.1).is_some() && !bench.reboots.is_any());
 }
 
-#[test]
-fn a_refused_setting_says_what_the_servo_answered() {
-    // The small series has another range of limits, which its own answer tells.
-    let mut bench = Bench::usual();
-    let mut wanted = settings();
-    wanted.servos[0].position_max_rad = 1.0;
-    bench.settings = wanted;
-    let driver = bench.open().unwrap();
-    assert_eq!(number(&peek(&bench, 1, 48, 4)), 2048 + 651);
-    drop(driver);
-    // Somebody else holds the torque on while we configure: the EEPROM stays closed, and that is said.
-    struct Meddler(crate::device::transport::MemoryBytes);
-    impl crate::device::transport::Bytes for Meddler {
-        fn receive(&mut self, buffer: &mut [u8]) -> Result<usize, crate::device::Loss> {
-            self.0.receive(buffer)
-        }
+/// A line on which somebody else switches the torque of servo 1 on again and again.
+struct Meddler(MemoryBytes);
 
-        fn send(&mut self, bytes: &[u8]) -> Result<(), crate::device::Loss> {
-            let mut out = Outgoing::new(64);
-            Instruction::SyncWrite { address: 64, count: 1, items: &[1, 1] }.encode(0xFE, &mut out);
-            self.0.send(out.bytes())?;
-            self.0.send(bytes)
-        }
+impl Bytes for Meddler {
+    fn receive(&mut self, buffer: &mut [u8]) -> Result<usize, Loss> {
+        self.0.receive(buffer)
     }
-    let [ours, theirs] = crate::device::transport::MemoryBytes::pair();
+
+    fn send(&mut self, bytes: &[u8]) -> Result<(), Loss> {
+        let mut out = Outgoing::new(64);
+        Instruction::SyncWrite { address: 64, count: 1, items: &[1, 1] }.encode(BROADCAST, &mut out);
+        self.0.send(out.bytes())?;
+        self.0.send(bytes)
+    }
+}
+
+#[test]
+fn a_servo_that_does_not_keep_what_is_written_is_told() {
+    let mut bench = Bench::usual();
+    let [ours, theirs] = MemoryBytes::pair();
     bench.world.borrow_mut().end = theirs;
-    let mut wanted = settings();
-    wanted.servos[0].current_limit_a = 1.0;
-    let reboots = bench.reboots.clone();
-    let told = super::super::driver::open_over(Meddler(ours), &mut bench, &wanted, &reboots).err();
-    assert!(
-        matches!(&told, Some(Trouble::Refused { answer, .. })
-            if answer == "the register cannot be written now" || answer == "it keeps 1"),
-        "{told:?}"
-    );
+    let (wanted, reboots) = (bench.settings.clone(), bench.reboots.clone());
+    let told = open_over(Meddler(ours), &mut bench, &wanted, &reboots).err();
+    let Some(Trouble::Refused { place, command, answer }) = told else { panic!("{told:?}") };
+    assert_eq!((place.as_str(), command.as_str()), ("servo 1 on test", "0 in register 64"));
+    assert_eq!(answer, "it keeps 1");
 }

@@ -114,8 +114,6 @@ fn why_it_cannot_be_opened_is_told() {
     drop(driver);
     serving.faults.set(EmulatedFault::Silence);
     assert!(matches!(open(&settings).err(), Some(Trouble::Silent { .. })));
-    serving.faults.set(EmulatedFault::Garbage);
-    assert!(open(&settings).is_ok_and(|_| true) || open(&settings).is_err(), "either, but it ends");
     drop(serving);
     assert_eq!(open(&settings).err(), Some(Trouble::Absent { place: settings.port.clone() }));
 }

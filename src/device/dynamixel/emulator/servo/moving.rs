@@ -9,7 +9,7 @@ use super::{
     Servo,
 };
 
-/// Full current at standstill for this long is an overload, s.
+/// Full drive at standstill for this long is an overload, s.
 const OVERLOAD_S: f64 = 1.0;
 /// Steps of the motor made up for at most in one go.
 const CATCH_UP_STEPS: usize = 200;
@@ -64,6 +64,7 @@ impl Servo {
         if active && now_s - self.heard_s > units as f64 * table::WATCHDOG_UNIT_S {
             self.set(table::BUS_WATCHDOG, table::WATCHDOG_EXPIRED.into());
             // It stops where it is, and quickly.
+            self.motor.restart();
             self.set(table::PROFILE_ACCELERATION, 0);
             self.set(table::PROFILE_VELOCITY, 0);
             self.set(table::GOAL_VELOCITY, 0);
@@ -98,9 +99,11 @@ impl Servo {
         }
     }
 
-    /// Overload: nearly all the current, and no movement, for too long.
+    /// Overload: all the drive or all the current, and no movement, for too long.
     fn guard(&mut self, drive: &Drive) {
-        let strained = self.motor.current_a.abs() > 0.8 * drive.current_limit_a && drive.current_limit_a > 0.0;
+        let all_pwm = self.motor.pwm.abs() >= 0.95 * drive.pwm_limit && drive.pwm_limit > 0.0;
+        let all_current = drive.mode != 5 && self.motor.current_a.abs() >= 0.95 * drive.current_limit_a;
+        let strained = all_pwm || all_current;
         let stalled = drive.torque_on && strained && self.motor.velocity_rad_s.abs() < 0.05;
         self.stalled_s = if stalled { self.stalled_s + STEP_S } else { 0.0 };
         if self.stalled_s > OVERLOAD_S {

@@ -1,5 +1,4 @@
 //! Polling a haptic handle and giving it forces allocates nothing on the loop's thread.
-#![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 #[path = "common/counting.rs"]
 mod counting;

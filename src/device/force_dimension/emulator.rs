@@ -175,7 +175,7 @@ fn open(address: SocketAddr) -> Option<UdpSocket> {
 struct Machine {
     of: Emulator,
     begin: Instant,
-    body: Box<dyn FnMut(f64, &Applied) -> HandState + Send>,
+    body: Box<dyn Body>,
     firmware: Firmware,
     state: HandState,
     /// What clients see while it is frozen.
@@ -188,7 +188,7 @@ struct Machine {
 }
 
 impl Machine {
-    fn new(of: Emulator, mut body: Box<dyn FnMut(f64, &Applied) -> HandState + Send>) -> Self {
+    fn new(of: Emulator, mut body: Box<dyn Body>) -> Self {
         let firmware = Firmware::new(of.motor_limit_n);
         let state = body(0.0, firmware.applied());
         Self {

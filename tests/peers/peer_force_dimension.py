@@ -108,9 +108,9 @@ def no_device():
     for what, result in [("open", fd.dhd.open()), ("drd open", fd.drd.open()), ("force", fd.dhd.setForce([0.0] * 3))]:
         equal(f"{what} fails", result, -1)
         equal(f"{what}: no device found", int(fd.dhd.errorGetLast()), 5)
-    position = [7.0, 8.0, 9.0]
-    equal("position fails", fd.dhd.getPosition(position), -1)
-    equal("outputs stay as they were", position, [7.0, 8.0, 9.0])
+    position = fd.containers.Vec3([7.0, 8.0, 9.0])
+    equal("position fails", fd.dhd.direct.getPosition(position), -1)
+    equal("outputs stay as they were", list(position), [7.0, 8.0, 9.0])
     equal("no buttons", fd.dhd.getButtonMask(), 0)
     equal("no frequency", fd.dhd.getComFreq(), -1.0)
     equal("no device chosen", fd.dhd.getDeviceID(), -1)
@@ -149,7 +149,8 @@ def reading(fd):
     position, matrix = [0.0] * 3, [[0.0] * 3 for _ in range(3)]
     equal("position", dhd.getPosition(position), 0)
     near("position of the hand", position, [0.01, -0.02, 0.03], 1e-6)
-    equal("the second at once is guarded", int(dhd.getPosition(position)), 1)
+    # A busy machine may put a pause between two calls.
+    check("a second one at once is guarded", any(int(dhd.getPosition(position)) == 1 for _ in range(50)))
     check("frame", dhd.getOrientationFrame(matrix) in (0, 1))
     c, s = math.cos(0.5), math.sin(0.5)
     near("a turn about z, row by row", sum(map(list, matrix), []), [c, -s, 0, s, c, 0, 0, 0, 1], 1e-9)

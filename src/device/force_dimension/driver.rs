@@ -193,7 +193,7 @@ struct Opened {
 /// device has its brakes on (or is free, as set); no force.
 pub fn open(settings: &Settings) -> Result<Driver, Trouble> {
     settings.check()?;
-    let sdk = super::sdk::load(settings.library.as_deref())?;
+    let sdk = super::library::load(settings.library.as_deref())?;
     if let Some(address) = settings.emulator {
         sdk.emulate(&address.to_string())?;
     }
@@ -207,14 +207,12 @@ pub fn open(settings: &Settings) -> Result<Driver, Trouble> {
     let of_thread = settings.clone();
     let work = move || {
         super::sdk::prepare_thread();
-        let opened = super::opening::open(sdk, &of_thread).map(|opened| {
-            let super::opening::Opened { device, identity, left_handed, velocity_threshold } = opened;
-            let period = Duration::from_secs_f64(1.0 / of_thread.rate_hz);
-            answer.send(Ok(Opened { identity, velocity_threshold })).ok();
-            Worker::new(device, ends, left_handed, of_thread.idle, period)
-        });
-        match opened {
-            Ok(worker) => worker.run(),
+        match super::opening::open(sdk, &of_thread) {
+            Ok(super::opening::Opened { device, identity, left_handed, velocity_threshold }) => {
+                let period = Duration::from_secs_f64(1.0 / of_thread.rate_hz);
+                answer.send(Ok(Opened { identity, velocity_threshold })).ok();
+                Worker::new(device, ends, left_handed, of_thread.idle, period).run();
+            }
             Err(trouble) => drop(answer.send(Err(trouble))),
         }
     };

@@ -178,7 +178,7 @@ type Hand = Box<dyn FnMut(f64, &Applied) -> HandState + Send>;
 struct Machine {
     of: Emulator,
     begin: Instant,
-    body: Hand,
+    body: Box<dyn Body>,
     firmware: Firmware,
     state: HandState,
     /// What clients see while it is frozen.
@@ -191,7 +191,7 @@ struct Machine {
 }
 
 impl Machine {
-    fn new(of: Emulator, mut body: Hand) -> Self {
+    fn new(of: Emulator, mut body: Box<dyn Body>) -> Self {
         let firmware = Firmware::new(of.motor_limit_n);
         let state = body(0.0, firmware.applied());
         Self {

@@ -150,7 +150,7 @@ impl Firmware {
 }
 
 #[cfg(test)]
-#[expect(clippy::float_cmp, reason = "numbers are copied, not computed")]
+#[expect(clippy::float_cmp, reason = "a force is handed on as it is, and none is exactly zero")]
 mod tests {
     use super::*;
 

@@ -1,13 +1,16 @@
-//! Where the manufacturer's library may be, in the order in which it is looked for.
+//! Where the manufacturer's library may be, in the order in which it is looked for, and taking the first that is there.
 
 use std::{
     env,
     path::{Path, PathBuf},
 };
 
+use super::sdk::{NAME, Sdk, keep, open_library, unusable};
+use crate::device::Trouble;
+
 /// Something to try.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) enum Candidate {
+enum Candidate {
     /// A file that exists.
     File(PathBuf),
     /// A name for the system's own search.
@@ -69,7 +72,7 @@ fn newest(folder: &Path, beginning: &str) -> Option<PathBuf> {
 }
 
 /// What to try, and the same as a list for a person.
-pub(super) fn candidates() -> (Vec<Candidate>, String) {
+fn candidates() -> (Vec<Candidate>, String) {
     search(|name| env::var_os(name).filter(|value| !value.is_empty()).map(PathBuf::from))
 }
 
@@ -89,6 +92,39 @@ fn search(variable: impl Fn(&str) -> Option<PathBuf>) -> (Vec<Candidate>, String
     places.push(format!("the system's libraries ({})", NAMES.join(", ")));
     places.extend(system.iter().map(|folder| folder.display().to_string()));
     (candidates, places.join("; "))
+}
+
+/// The library at `explicit`, or the first that is found.
+pub(super) fn load(explicit: Option<&Path>) -> Result<&'static Sdk, Trouble> {
+    if let Some(path) = explicit {
+        if !path.is_file() {
+            return Err(missing(path.display().to_string()));
+        }
+        return load_file(path);
+    }
+    let (candidates, searched) = candidates();
+    for candidate in candidates {
+        match candidate {
+            Candidate::File(path) => return load_file(&path),
+            Candidate::Name(name) => match open_library(Path::new(name)) {
+                Ok(library) => return keep(Path::new(name), library),
+                // The message begins with the file that is missing: another one is a library that this one needs.
+                Err(error) if error.starts_with(name) || cfg!(not(target_os = "linux")) => {}
+                Err(error) => return Err(unusable(name, error)),
+            },
+        }
+    }
+    Err(missing(searched))
+}
+
+fn missing(searched: String) -> Trouble {
+    Trouble::SdkMissing { name: NAME.to_owned(), searched }
+}
+
+fn load_file(path: &Path) -> Result<&'static Sdk, Trouble> {
+    let path = path.canonicalize().unwrap_or_else(|_| path.to_owned());
+    let library = open_library(&path).map_err(|error| unusable(&path.display().to_string(), error))?;
+    keep(&path, library)
 }
 
 #[cfg(all(test, target_os = "linux"))]

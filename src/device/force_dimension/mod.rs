@@ -22,7 +22,7 @@ mod opening;
 mod sdk;
 pub mod status;
 #[cfg(test)]
-#[expect(clippy::float_cmp, reason = "numbers are copied, not computed")]
+#[expect(clippy::float_cmp, reason = "forces and positions arrive as they were sent, to the last bit")]
 mod tests;
 pub mod wire;
 mod worker;

@@ -17,10 +17,7 @@ use std::{
 
 use libloading::Library;
 
-use super::{
-    library::{Candidate, candidates},
-    status::{ENTRIES, SdkError, Status, Success},
-};
+use super::status::{ENTRIES, SdkError, Status, Success};
 use crate::device::Trouble;
 
 /// Its name for a person.
@@ -95,44 +92,13 @@ static LOADED: Mutex<Vec<(PathBuf, &'static Sdk)>> = Mutex::new(Vec::new());
 /// A position (m) and a rotation matrix by rows.
 pub(super) type Pose = ([f64; 3], [f64; 9]);
 
-/// The library at `explicit`, or the first that is found.
-pub(super) fn load(explicit: Option<&Path>) -> Result<&'static Sdk, Trouble> {
-    if let Some(path) = explicit {
-        if !path.is_file() {
-            return Err(missing(path.display().to_string()));
-        }
-        return load_file(path);
-    }
-    let (candidates, searched) = candidates();
-    for candidate in candidates {
-        match candidate {
-            Candidate::File(path) => return load_file(&path),
-            Candidate::Name(name) => match open_library(Path::new(name)) {
-                Ok(library) => return keep(Path::new(name), library),
-                // The message begins with the file that is missing: another one is a library that this one needs.
-                Err(error) if error.starts_with(name) || cfg!(not(target_os = "linux")) => {}
-                Err(error) => return Err(unusable(name, error)),
-            },
-        }
-    }
-    Err(missing(searched))
-}
-
-fn missing(searched: String) -> Trouble {
-    Trouble::SdkMissing { name: NAME.to_owned(), searched }
-}
-
-fn unusable(path: &str, reason: String) -> Trouble {
+/// The library is there and does not fit.
+pub(super) fn unusable(path: &str, reason: String) -> Trouble {
     Trouble::SdkUnusable { name: NAME.to_owned(), path: path.to_owned(), reason }
 }
 
-fn load_file(path: &Path) -> Result<&'static Sdk, Trouble> {
-    let path = path.canonicalize().unwrap_or_else(|_| path.to_owned());
-    let library = open_library(&path).map_err(|error| unusable(&path.display().to_string(), error))?;
-    keep(&path, library)
-}
-
-fn open_library(path: &Path) -> Result<Library, String> {
+/// Opens a library; an error in the system's words.
+pub(super) fn open_library(path: &Path) -> Result<Library, String> {
     // SAFETY: loading runs the library's own beginning. It is the manufacturer's, named by the person at the rig or found
     // where it is installed.
     unsafe { Library::new(path) }.map_err(|error| {
@@ -145,7 +111,7 @@ fn open_library(path: &Path) -> Result<Library, String> {
 }
 
 /// Checks a library and keeps it for ever.
-fn keep(path: &Path, library: Library) -> Result<&'static Sdk, Trouble> {
+pub(super) fn keep(path: &Path, library: Library) -> Result<&'static Sdk, Trouble> {
     let mut loaded = LOADED.lock().unwrap_or_else(PoisonError::into_inner);
     if let Some((_, sdk)) = loaded.iter().find(|(known, _)| known == path) {
         return Ok(sdk);

@@ -1,6 +1,5 @@
 //! The driver of the servos allocates nothing while it runs, over a real terminal.
 #![cfg(unix)]
-#![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 #[path = "common/counting.rs"]
 mod counting;

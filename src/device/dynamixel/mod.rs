@@ -18,7 +18,6 @@ mod opening;
 mod settings;
 pub mod table;
 #[cfg(test)]
-#[expect(clippy::items_after_statements, reason = "a stand-in beside its only use")]
 mod tests;
 
 pub use driver::{Condition, Driver, Taken, open, open_with};

@@ -171,9 +171,6 @@ fn open(address: SocketAddr) -> Option<UdpSocket> {
     UdpSocket::bind(address).ok()
 }
 
-/// What the hand at the handle does: its state for the time (s) and the force that is applied.
-type Hand = Box<dyn FnMut(f64, &Applied) -> HandState + Send>;
-
 /// The device that serves.
 struct Machine {
     of: Emulator,

@@ -50,6 +50,7 @@ fn serve(transport: Transport, emulated: Emulated) -> (Serving, Settings) {
 const TRANSPORTS: [Transport; 3] = [Transport::Gen0, Transport::GenA, Transport::Socket];
 
 #[test]
+#[ignore = "real lines in real time: `./dev test` runs it alone"]
 fn sensors_on_real_wires_are_read_whole_and_without_loss() {
     for (transport, product_hz) in TRANSPORTS.into_iter().zip([800.0, 500.0, 500.0]) {
         let (_serving, mut settings) = serve(transport, emulated());
@@ -128,6 +129,7 @@ enum Expected {
 use Expected::{Counter, Loss as Loses};
 
 #[test]
+#[ignore = "real lines in real time: `./dev test` runs it alone"]
 fn faults_of_the_first_generation_that_lose_it() {
     faults(
         Transport::Gen0,
@@ -140,6 +142,7 @@ fn faults_of_the_first_generation_that_lose_it() {
 }
 
 #[test]
+#[ignore = "real lines in real time: `./dev test` runs it alone"]
 fn faults_of_the_second_generation_that_lose_it() {
     faults(
         Transport::GenA,
@@ -153,6 +156,7 @@ fn faults_of_the_second_generation_that_lose_it() {
 }
 
 #[test]
+#[ignore = "real lines in real time: `./dev test` runs it alone"]
 fn faults_in_the_network_that_lose_it() {
     faults(
         Transport::Socket,
@@ -166,6 +170,7 @@ fn faults_in_the_network_that_lose_it() {
 }
 
 #[test]
+#[ignore = "real lines in real time: `./dev test` runs it alone"]
 fn faults_that_are_only_counted() {
     for transport in TRANSPORTS {
         faults(
@@ -184,6 +189,7 @@ fn trouble(settings: &Settings) -> Trouble {
 }
 
 #[test]
+#[ignore = "real lines in real time: `./dev test` runs it alone"]
 fn troubles_of_the_line_are_told_apart() {
     let nowhere = Settings::new(Transport::Gen0, "/dev/nima-no-such-port");
     assert!(matches!(trouble(&nowhere), Trouble::Absent { .. }));
@@ -204,6 +210,7 @@ fn troubles_of_the_line_are_told_apart() {
 }
 
 #[test]
+#[ignore = "real lines in real time: `./dev test` runs it alone"]
 fn the_wrong_generation_is_told_by_its_name() {
     for (real, taken_for, name) in
         [(Transport::Gen0, Transport::GenA, "first"), (Transport::GenA, Transport::Gen0, "second")]
@@ -217,6 +224,7 @@ fn the_wrong_generation_is_told_by_its_name() {
 }
 
 #[test]
+#[ignore = "real lines in real time: `./dev test` runs it alone"]
 fn a_sensor_without_its_calibration_is_restarted_and_one_that_stays_so_is_refused() {
     let (_serving, settings) = serve(Transport::Gen0, Emulated { raw_starts: 2, ..emulated() });
     let driver = Driver::open_within(&settings, PATIENCE).unwrap();
@@ -233,6 +241,7 @@ fn a_sensor_without_its_calibration_is_restarted_and_one_that_stays_so_is_refuse
 }
 
 #[test]
+#[ignore = "real lines in real time: `./dev test` runs it alone"]
 fn troubles_of_the_network_are_told_apart() {
     let closed = std::net::TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap();
     let nobody = Settings::new(Transport::Socket, closed.to_string());
@@ -253,6 +262,7 @@ fn troubles_of_the_network_are_told_apart() {
 }
 
 #[test]
+#[ignore = "real lines in real time: `./dev test` runs it alone"]
 fn a_command_that_the_sensor_refuses_is_told_with_its_words() {
     let listener = std::net::TcpListener::bind("127.0.0.1:0").unwrap();
     let settings = Settings::new(Transport::Socket, listener.local_addr().unwrap().to_string());

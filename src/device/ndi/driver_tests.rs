@@ -120,6 +120,7 @@ fn follows(settings: &Settings, form: Form, within_m: f64) {
 }
 
 #[test]
+#[ignore = "real lines in real time: `./dev test` runs it alone"]
 fn over_a_network_every_frame_arrives_in_both_forms() {
     let (_folder, tools) = definitions(2);
     for (firmware, form, within_m) in [(BLOCK_FIRMWARE, Form::Binary, 1e-6), (TEXT_FIRMWARE, Form::Text, 1e-5)] {
@@ -129,6 +130,7 @@ fn over_a_network_every_frame_arrives_in_both_forms() {
 }
 
 #[test]
+#[ignore = "real lines in real time: `./dev test` runs it alone"]
 fn over_a_line_every_frame_arrives_in_binary() {
     let (_folder, tools) = definitions(2);
     let served = serve_line(profile(BLOCK_FIRMWARE), wandering).unwrap();
@@ -136,6 +138,7 @@ fn over_a_line_every_frame_arrives_in_binary() {
 }
 
 #[test]
+#[ignore = "real lines in real time: `./dev test` runs it alone"]
 fn over_a_line_text_arrives_as_often_as_the_line_carries_it() {
     let (_folder, tools) = definitions(1);
     let served = serve_line(profile(TEXT_FIRMWARE), wandering).unwrap();
@@ -159,6 +162,7 @@ fn say(endpoint: &str, baud: u32, command: &Command<'_>) -> String {
 }
 
 #[test]
+#[ignore = "real lines in real time: `./dev test` runs it alone"]
 fn a_line_left_at_another_speed_is_found_or_reset() {
     let (_folder, tools) = definitions(1);
     let served = serve_line(profile(BLOCK_FIRMWARE), wandering).unwrap();
@@ -214,6 +218,7 @@ impl Body for World {
 }
 
 #[test]
+#[ignore = "real lines in real time: `./dev test` runs it alone"]
 fn what_happens_to_a_tool_is_told() {
     let (_folder, tools) = definitions(2);
     for firmware in [BLOCK_FIRMWARE, TEXT_FIRMWARE] {
@@ -266,6 +271,7 @@ fn what_happens_to_a_tool_is_told() {
 }
 
 #[test]
+#[ignore = "real lines in real time: `./dev test` runs it alone"]
 fn dropping_it_stops_tracking() {
     let (_folder, tools) = definitions(1);
     let served = serve_network(0, Profile::default(), wandering).unwrap();
@@ -298,6 +304,7 @@ fn stranger(reply: &'static [u8]) -> (String, std::thread::JoinHandle<()>) {
 }
 
 #[test]
+#[ignore = "real lines in real time: `./dev test` runs it alone"]
 fn who_is_not_a_tracker_is_told() {
     let (_folder, tools) = definitions(1);
     let open = |address: String| {
@@ -317,6 +324,7 @@ fn who_is_not_a_tracker_is_told() {
 }
 
 #[test]
+#[ignore = "real lines in real time: `./dev test` runs it alone"]
 fn a_unit_with_a_fault_is_told_while_opening() {
     let (_folder, tools) = definitions(1);
     let world = World::default();
@@ -327,6 +335,7 @@ fn a_unit_with_a_fault_is_told_while_opening() {
 }
 
 #[test]
+#[ignore = "real lines in real time: `./dev test` runs it alone"]
 fn impossible_settings_are_told() {
     let (folder, tools) = definitions(5);
     let key_of = |settings: &Settings| match Driver::open(settings) {
@@ -351,6 +360,7 @@ fn impossible_settings_are_told() {
 }
 
 #[test]
+#[ignore = "real lines in real time: `./dev test` runs it alone"]
 fn settings_are_read_as_documented() {
     let text = "address = \"10.0.0.5\"\ntools = [\"a.rom\"]\nreplies = \"text\"\n";
     let settings: Settings = toml::from_str(text).unwrap();

@@ -5,11 +5,9 @@ mod faults;
 mod troubles;
 
 use std::{
+    cell::RefCell,
     path::PathBuf,
-    sync::{
-        Arc, Mutex,
-        atomic::{AtomicU32, Ordering},
-    },
+    sync::{Arc, Mutex},
     time::{Duration, Instant},
 };
 
@@ -18,15 +16,18 @@ use nalgebra::{UnitQuaternion, Vector3};
 use super::*;
 use crate::device::{Device, HandleReading, Stamped, Standing, emulation::Serving};
 
+thread_local! {
+    /// Folders of this test's copies: gone with its thread. What is loaded stays usable without its file.
+    static COPIES: RefCell<Vec<tempfile::TempDir>> = const { RefCell::new(Vec::new()) };
+}
+
 /// A stand-in library of its own for each test: a copy, so that it knows this test's devices only.
 pub(super) fn library() -> PathBuf {
-    static COPIES: AtomicU32 = AtomicU32::new(0);
     let built = stand_in().expect("cargo builds the stand-in library before the tests");
-    let name = format!("nima-omega-{}-{}", std::process::id(), COPIES.fetch_add(1, Ordering::Relaxed));
-    let folder = std::env::temp_dir().join(name);
-    std::fs::create_dir_all(&folder).unwrap();
-    let copy = folder.join("libdrd.so.3");
+    let folder = tempfile::tempdir().unwrap();
+    let copy = folder.path().join("libdrd.so.3");
     std::fs::copy(built, &copy).unwrap();
+    COPIES.with_borrow_mut(|copies| copies.push(folder));
     copy
 }
 

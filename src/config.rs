@@ -10,6 +10,7 @@ use serde::{Deserialize, Serialize};
 pub use wrist::{Flaw, Imu, Person, TissueSensor, Trocar, Wrist};
 
 use crate::{
+    device,
     impedance::{MAX_DEGREE, MAX_DELAY_S, Mode, Scales, Settings},
     safety::ChainSettings,
     tip_force::Fallback,
@@ -87,6 +88,9 @@ pub struct Rig {
     /// The network against the trocar's friction.
     #[serde(default)]
     pub tip_force: TipForcePart,
+    /// The devices; without them everything is simulated.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub devices: Option<device::rig::Settings>,
 }
 
 /// Tip-force part of a rig file.

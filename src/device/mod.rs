@@ -18,6 +18,8 @@ pub mod ndi;
 mod os;
 mod prompt;
 mod reading;
+pub mod rig;
+mod side;
 mod slot;
 pub mod transport;
 mod trouble;
@@ -30,6 +32,7 @@ pub use reading::{
     ARM_JOINTS, ArmReading, CapReading, ForceReading, ForceStatus, HandleReading, PedalReading, SERVOS, ServoReading,
     Stamped, TRACKED_TOOLS, Tracked, TrackerReading,
 };
+pub use side::{SIDES, Side};
 pub use slot::{Slot, SlotReport, SlotView};
 pub use trouble::Trouble;
 

@@ -1,0 +1,71 @@
+//! What the rig file says of the devices: which there are, where, and what hangs on them.
+
+use serde::{Deserialize, Serialize};
+
+use crate::{
+    device::{Side, bota, dynamixel, force_dimension, hid, kinova, ndi},
+    kinematics::{ArmSettings, RcmSettings},
+};
+
+/// The devices of a rig. Each is there or not; an arm pair is there as a whole.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Settings {
+    /// The devices are emulated on this computer, at the places that stand here: the console starts them itself.
+    pub emulated: bool,
+    /// The right arm pair, or the only one.
+    pub right: Option<ArmSet>,
+    /// The left arm pair.
+    pub left: Option<ArmSet>,
+    /// The sensor under the tissue, for calibration.
+    pub tissue_sensor: Option<bota::Settings>,
+    /// The optical tracker.
+    pub tracker: Option<ndi::Settings>,
+    /// The foot pedal: clutch and presence.
+    pub pedal: Option<hid::PedalSettings>,
+}
+
+/// A handle, an arm and what it carries.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ArmSet {
+    /// Name of the tool: calibrations are bound to it.
+    pub tool: String,
+    /// Where the sensor feels: at the wrist, with the tool's weight and the trocar's friction, or at the tip itself.
+    #[serde(default)]
+    pub sensor_at: SensorPlace,
+    /// The haptic handle.
+    pub handle: force_dimension::Settings,
+    /// The arm.
+    pub arm: kinova::Settings,
+    /// How the arm is mounted, and the instrument.
+    pub mount: ArmSettings,
+    /// Where the instrument enters the body.
+    pub rcm: RcmSettings,
+    /// The force sensor between arm and instrument.
+    pub sensor: bota::Settings,
+    /// The servos of the instrument.
+    #[serde(default)]
+    pub servos: Option<dynamixel::Settings>,
+}
+
+/// Where a force sensor feels.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum SensorPlace {
+    /// Between arm and instrument.
+    #[default]
+    Wrist,
+    /// At the tip, beyond the trocar: what it reads is the tissue's force.
+    Tip,
+}
+
+impl Settings {
+    /// The arm pair of this side.
+    pub const fn arm(&self, side: Side) -> Option<&ArmSet> {
+        match side {
+            Side::Right => self.right.as_ref(),
+            Side::Left => self.left.as_ref(),
+        }
+    }
+}

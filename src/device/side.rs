@@ -1,0 +1,43 @@
+//! The two arm pairs.
+
+use serde::{Deserialize, Serialize};
+
+/// Arm pairs at most.
+pub const SIDES: usize = 2;
+
+/// Which arm pair, as the surgeon sees it. A rig with one has the right one.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Side {
+    /// The right hand's.
+    #[default]
+    Right,
+    /// The left hand's.
+    Left,
+}
+
+impl Side {
+    /// Both, in the order of every array of sides.
+    pub const ALL: [Self; SIDES] = [Self::Right, Self::Left];
+
+    /// Its place in an array of sides.
+    pub const fn index(self) -> usize {
+        self as usize
+    }
+
+    /// The other one.
+    pub const fn other(self) -> Self {
+        match self {
+            Self::Right => Self::Left,
+            Self::Left => Self::Right,
+        }
+    }
+
+    /// One word for the screen.
+    pub const fn word(self) -> &'static str {
+        match self {
+            Self::Right => "right",
+            Self::Left => "left",
+        }
+    }
+}

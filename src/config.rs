@@ -4,14 +4,16 @@ mod wrist;
 
 use std::path::{Path, PathBuf};
 
-use nalgebra::Vector3;
+use nalgebra::{UnitQuaternion, Vector3};
 use serde::{Deserialize, Serialize};
 
 pub use wrist::{Flaw, Imu, Person, TissueSensor, Trocar, Wrist};
 
 use crate::{
-    device,
+    device::{self, Side},
+    frames::from_roll_pitch_yaw_deg,
     impedance::{MAX_DEGREE, MAX_DELAY_S, Mode, Scales, Settings},
+    kinematics::{Mapping, SCALES, view_from_omega},
     safety::ChainSettings,
     tip_force::Fallback,
 };
@@ -88,9 +90,53 @@ pub struct Rig {
     /// The network against the trocar's friction.
     #[serde(default)]
     pub tip_force: TipForcePart,
+    /// From the hand's motion to the tip's.
+    #[serde(default)]
+    pub teleoperation: Teleoperation,
     /// The devices; without them everything is simulated.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub devices: Option<device::rig::Settings>,
+}
+
+/// From the hand's motion to the tip's: `kbf_from_view * view_from_leader`, and the scale.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Teleoperation {
+    /// The tip's way per way of the hand.
+    pub scale: f64,
+    /// How the endoscope looks: roll, pitch, yaw of `kbf_from_view`, degrees (picture: x right, y down, z into it).
+    pub kbf_from_view_deg: Vector3<f64>,
+    /// How the leader stands before the picture.
+    pub leader: LeaderMount,
+}
+
+impl Default for Teleoperation {
+    fn default() -> Self {
+        Self { scale: 1.0, kbf_from_view_deg: Vector3::zeros(), leader: LeaderMount::Workspace }
+    }
+}
+
+/// How a leader stands before the picture.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum LeaderMount {
+    /// Its axes are those of the picture.
+    #[default]
+    Workspace,
+    /// An Omega whose base faces the user below the screen.
+    Omega,
+}
+
+impl Teleoperation {
+    /// The mapping; the default one where the numbers are none ([`Rig::validate`] refuses them).
+    pub fn mapping(&self) -> Mapping {
+        let kbf_from_view = from_roll_pitch_yaw_deg(&self.kbf_from_view_deg);
+        let view_from_leader = match self.leader {
+            LeaderMount::Workspace => UnitQuaternion::identity(),
+            LeaderMount::Omega => view_from_omega(),
+        };
+        Mapping::new(&kbf_from_view, &view_from_leader, self.scale).unwrap_or_default()
+    }
 }
 
 /// Tip-force part of a rig file.
@@ -137,6 +183,8 @@ pub struct Scene {
     pub targets_m: Vec<Vector3<f64>>,
     /// Where the instrument enters the body, m; drawn, and the pivot of the shaft.
     pub trocar_m: Vector3<f64>,
+    /// What the left hand does, where the scene has two.
+    pub left: Option<LeftHand>,
     /// Axes of force depend on motion along other axes: identify the full `M`.
     #[serde(default)]
     pub cross_talk: bool,
@@ -156,6 +204,16 @@ pub struct Scene {
     pub tissue_sensor: Option<TissueSensor>,
     /// Somebody at the arm, for calibration: then the loop's commands do not move it.
     pub person: Option<Person>,
+}
+
+/// The left hand's part of a scene; everything else is the same for both.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct LeftHand {
+    /// Its pegs, m.
+    pub targets_m: Vec<Vector3<f64>>,
+    /// Its trocar, m.
+    pub trocar_m: Vector3<f64>,
 }
 
 /// The simulated surgeon's hand.
@@ -229,8 +287,9 @@ pub struct Sensor {
 }
 
 const RIGS: [(&str, &str); 1] = [("simulated", include_str!("../config/rigs/simulated.toml"))];
-const SCENES: [(&str, &str); 7] = [
+const SCENES: [(&str, &str); 8] = [
     ("peg_transfer", include_str!("../config/scenes/peg_transfer.toml")),
+    ("bimanual", include_str!("../config/scenes/bimanual.toml")),
     ("free_motion", include_str!("../config/scenes/free_motion.toml")),
     ("palpation", include_str!("../config/scenes/palpation.toml")),
     ("gravity", include_str!("../config/scenes/gravity.toml")),
@@ -320,6 +379,9 @@ impl Rig {
         ranges.check("rate_hz", self.rate_hz, (20.0..=10_000.0).contains(&self.rate_hz), "20 to 10000 Hz")?;
         ranges.check("delay_s", self.delay_s, (0.0..=MAX_DELAY_S).contains(&self.delay_s), "0 to 1 s")?;
         ranges.positive("follower_speed_max_m_s", self.follower_speed_max_m_s)?;
+        let scale = self.teleoperation.scale;
+        ranges.check("teleoperation.scale", scale, SCALES.contains(&scale), "0.01 to 5")?;
+        ranges.finite("teleoperation.kbf_from_view_deg", &self.teleoperation.kbf_from_view_deg)?;
         let window_s = self.identification.window_s;
         let samples = window_s * self.rate_hz;
         ranges.check(
@@ -352,6 +414,30 @@ impl Rig {
 }
 
 impl Scene {
+    /// The scene as one hand has it; `None` for a left hand that is not in it.
+    pub fn of_side(&self, side: Side) -> Option<Self> {
+        let scene = Self { left: None, ..self.clone() };
+        match side {
+            Side::Right => Some(scene),
+            Side::Left => self.left.clone().map(|LeftHand { targets_m, trocar_m }| {
+                // Another tremor and other noise than the right hand's.
+                Self { targets_m, trocar_m, seed: scene.seed.wrapping_add(1), ..scene }
+            }),
+        }
+    }
+
+    /// The same with a left hand, which does what the right one does in a mirror, where the scene has none.
+    #[must_use]
+    pub fn with_left_hand(mut self) -> Self {
+        let mirrored = |at_m: &Vector3<f64>| Vector3::new(-at_m.x, at_m.y, at_m.z);
+        let mirror = || LeftHand {
+            targets_m: self.targets_m.iter().map(mirrored).collect(),
+            trocar_m: mirrored(&self.trocar_m),
+        };
+        self.left = Some(self.left.clone().unwrap_or_else(mirror));
+        self
+    }
+
     /// The scene of this embedded name or TOML file.
     pub fn load(name: &str) -> Result<Self, ConfigError> {
         let (path, text) = text("scene", name, &SCENES)?;
@@ -369,7 +455,10 @@ impl Scene {
             !self.targets_m.is_empty(),
             "at least one target",
         )?;
-        for target in self.targets_m.iter().chain([&self.trocar_m]) {
+        let left = self.left.iter().flat_map(|left| left.targets_m.iter().chain([&left.trocar_m]));
+        let left_count = self.left.as_ref().map_or(1, |left| left.targets_m.len());
+        ranges.check("left.targets_m (count)", left_count as f64, left_count > 0, "at least one target")?;
+        for target in self.targets_m.iter().chain([&self.trocar_m]).chain(left) {
             for entry in target {
                 ranges.check("targets_m, trocar_m", *entry, entry.abs() <= 1.0, "within 1 m of the origin")?;
             }

@@ -7,11 +7,11 @@ use counting::calls;
 use nalgebra::Vector3;
 use nima::{
     config::{Rig, Scene},
-    device::{Outputs, Rig as _},
+    device::{Outputs, Rig as _, SIDES},
     impedance::{Identifier, Mode, ModeSet, Renderer, Sample, Settings},
     runtime::Command,
     signal::DifferentiatorKind,
-    sim::World,
+    sim::Worlds,
     teleop::{Calibrations, Loop, Timing},
 };
 
@@ -61,9 +61,9 @@ fn identification_and_rendering_allocate_nothing() {
 #[test]
 fn a_tick_of_the_whole_loop_and_of_the_simulation_allocates_nothing() {
     let rig = Rig::load("simulated").unwrap();
-    let mut control = Loop::new(&rig, &Calibrations::default()).unwrap();
-    let mut world = World::new(&Scene::load("peg_transfer").unwrap(), rig.rate_hz);
-    let mut outputs = Outputs::SAFE;
+    let mut control = Loop::new(&rig, &[Some(Calibrations::default()), Some(Calibrations::default())]).unwrap();
+    let mut world = Worlds::new(&Scene::load("bimanual").unwrap(), rig.rate_hz);
+    let mut outputs = [Outputs::SAFE; SIDES];
     control.obey(Command::Engage, 0.0);
     let before = calls();
     for k in 0..10_000_u32 {
@@ -78,7 +78,7 @@ fn a_tick_of_the_whole_loop_and_of_the_simulation_allocates_nothing() {
             _ => {}
         }
         // A silent rig now and then, long enough for a fault at last.
-        let inputs = world.exchange(now_s, &outputs).filter(|_| k % 1000 > 5 && k < 9000);
+        let inputs = world.exchange(now_s, &outputs).map(|inputs| inputs.filter(|_| k % 1000 > 5 && k < 9000));
         outputs = control.step(inputs, &Timing { now_s, ..Timing::default() }).0;
     }
     assert_eq!(calls() - before, 0);

@@ -12,7 +12,7 @@ use nima::{
         },
     },
     config::{Flaw, Scene},
-    device::{Outputs, Prompt, Rig as _, Sensed},
+    device::{Outputs, Prompt, Sensed},
     frames::{WristSample, from_roll_pitch_yaw_deg},
     sim::World,
 };

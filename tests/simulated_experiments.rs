@@ -4,7 +4,7 @@
 use nalgebra::{UnitQuaternion, Vector3};
 use nima::{
     config::{Flaw, Rig, Scene},
-    device::{Outputs, Prompt, Rig as _, Sensed},
+    device::{Outputs, Prompt, Sensed},
     frames::{GRAVITY_M_S2, WristSample, from_roll_pitch_yaw_deg},
     runtime::{Command, Plan, run_virtual},
     sim::World,
@@ -120,6 +120,7 @@ fn a_prompt_reaches_the_arm_in_idle_only() {
         rig: Rig::load("simulated").unwrap(),
         scene: Scene::load("peg_transfer").unwrap(),
         calibrations: Calibrations::default(),
+        left_calibrations: Calibrations::default(),
         engage,
     };
     for (engage, expected) in [(false, Prompt::Wave), (true, Prompt::Rest)] {
@@ -139,6 +140,7 @@ fn an_uncalibrated_wrist_gives_no_force_and_cannot_be_engaged() {
         rig: Rig::load("simulated").unwrap(),
         scene: Scene::load("palpation").unwrap(),
         calibrations: Calibrations::default(),
+        left_calibrations: Calibrations::default(),
         engage: false,
     };
     run_virtual(&plan, 2.0, |tick| {

@@ -8,14 +8,14 @@ use std::sync::atomic::AtomicBool;
 use counting::calls;
 use nima::{
     config::{Rig, Scene},
-    device::{Outputs, Rig as _},
+    device::{Outputs, Side},
     runtime::Command,
     sim::World,
     study::validation::{
         experiment::Experiment,
         isolation::{Known, record},
     },
-    teleop::{Calibrations, ForceSource, Loop, Timing},
+    teleop::{Calibrations, ForceSource, Pair, Timing},
     tip_force::{DEFAULT_INPUTS, DataSet, Estimator, Fallback, FeatureSettings, Model, Selection, Settings, TipForce},
 };
 
@@ -56,7 +56,7 @@ fn the_loop_with_a_network_in_it_allocates_nothing() {
     let tip_force = Some(TipForce::new(model, Fallback::HoldAndFade).unwrap());
     let rig = Rig::load("simulated").unwrap();
     let calibrations = Calibrations { gravity: Some(known.gravity), tip_force };
-    let mut control = Loop::new(&rig, &calibrations).unwrap();
+    let mut control = Pair::new(&rig, Side::Right, &calibrations).unwrap();
     let mut world = World::new(&Scene::load("palpation").unwrap(), rig.rate_hz);
     let mut outputs = Outputs::SAFE;
     let (mut sure, mut doubtful) = (0, 0);

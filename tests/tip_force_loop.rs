@@ -6,7 +6,7 @@ use std::sync::{OnceLock, atomic::AtomicBool};
 use nalgebra::Vector3;
 use nima::{
     config::Scene,
-    device::{Outputs, Prompt, Rig as _},
+    device::{Outputs, Prompt},
     sim::World,
     study::validation::{
         experiment::Experiment,

@@ -24,7 +24,7 @@ mod slot;
 pub mod transport;
 mod trouble;
 
-use nalgebra::Vector3;
+use nalgebra::{UnitQuaternion, Vector3};
 
 pub use health::{Health, Identity, Loss, Standing};
 pub use prompt::Prompt;
@@ -36,7 +36,7 @@ pub use side::{SIDES, Side};
 pub use slot::{Slot, SlotReport, SlotView};
 pub use trouble::Trouble;
 
-use crate::frames::WristSample;
+use crate::{frames::WristSample, kinematics::Hand};
 
 /// Where the force on the instrument is measured.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -48,15 +48,34 @@ pub enum Sensed {
     AtWrist(WristSample),
 }
 
+/// What switches and grips say about the operator.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Switches {
+    /// The clutch is pressed: the hand moves freely.
+    pub clutch: bool,
+    /// Somebody holds the handle; `None` where nothing tells.
+    pub presence: Option<bool>,
+}
+
 /// One exchange's worth of measurements of an arm pair.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Inputs {
-    /// Position of the leader's handle, mapped into the workspace, m.
-    pub leader_m: Vector3<f64>,
+    /// The hand, as its device sees it.
+    pub hand: Hand,
+    /// Opening of the gripper, rad, where there is one.
+    pub gripper_rad: Option<f64>,
     /// Position of the instrument's tip, m.
     pub tip_m: Vector3<f64>,
+    /// Orientation of the instrument's jaws, where it is known.
+    pub kbf_from_jaws: Option<UnitQuaternion<f64>>,
     /// What the force sensor says.
     pub sensed: Sensed,
+    /// Clutch and presence.
+    pub switches: Switches,
+    /// The drives obey: the arm follows commands, the handle's motors are on.
+    pub powered: bool,
+    /// Age of the oldest part, s: devices tick by their own clocks. Zero in a simulation.
+    pub age_s: f64,
 }
 
 impl Inputs {
@@ -66,17 +85,28 @@ impl Inputs {
             Sensed::AtTip(force_n) => force_n.iter().all(|x| x.is_finite()),
             Sensed::AtWrist(sample) => sample.is_finite(),
         };
-        sensed && self.leader_m.iter().chain(self.tip_m.iter()).all(|x| x.is_finite())
+        sensed
+            && self.hand.is_finite()
+            && self.tip_m.iter().all(|x| x.is_finite())
+            && self.kbf_from_jaws.is_none_or(|q| q.coords.iter().all(|x| x.is_finite()))
+            && self.gripper_rad.is_none_or(f64::is_finite)
+            && self.age_s.is_finite()
     }
 }
 
-/// What the loop commands.
+/// What the loop commands to an arm pair.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Outputs {
+    /// Drives and motors may be on: without it the arm rests by itself and the handle has no force.
+    pub drives: bool,
     /// Where the tip shall go, m; `None` holds the follower where it is.
     pub tip_command_m: Option<Vector3<f64>>,
-    /// Force on the hand, N. Has passed every gate.
+    /// How the jaws shall stand; `None` holds them.
+    pub kbf_from_jaws: Option<UnitQuaternion<f64>>,
+    /// Force on the hand, N, in the frame of its device. Has passed every gate.
     pub hand_force_n: Vector3<f64>,
+    /// Force on the gripper, N. Has passed its gates.
+    pub gripper_n: f64,
     /// What the screen asks of the person at the arm.
     pub prompt: Prompt,
     /// Where the person at the screen leads the handle with mouse or keyboard, m; `None`: nobody does.
@@ -84,9 +114,16 @@ pub struct Outputs {
 }
 
 impl Outputs {
-    /// The safe outputs: no force, a resting follower.
-    pub const SAFE: Self =
-        Self { tip_command_m: None, hand_force_n: Vector3::new(0.0, 0.0, 0.0), prompt: Prompt::Rest, guide_m: None };
+    /// The safe outputs: no force, a resting follower, drives off.
+    pub const SAFE: Self = Self {
+        drives: false,
+        tip_command_m: None,
+        kbf_from_jaws: None,
+        hand_force_n: Vector3::new(0.0, 0.0, 0.0),
+        gripper_n: 0.0,
+        prompt: Prompt::Rest,
+        guide_m: None,
+    };
 }
 
 /// A device that is open and delivers.
@@ -107,12 +144,12 @@ pub trait Device: Send {
     fn identity(&self) -> &Identity;
 }
 
-/// A leader, a follower and a force sensor that belong together. Owned by the real-time thread.
+/// Leaders, followers and force sensors that belong together, a pair for each side. Owned by the real-time thread.
 pub trait Rig: Send {
     /// Applies `outputs` and gives the newest measurements at loop time `now_s`; `None` when there are none.
     ///
     /// Must not block and must not allocate.
-    fn exchange(&mut self, now_s: f64, outputs: &Outputs) -> Option<Inputs>;
+    fn exchange(&mut self, now_s: f64, outputs: &[Outputs; SIDES]) -> [Option<Inputs>; SIDES];
 
     /// A device that came or went since the last call; call until `None`. Rigs without devices have none.
     fn event(&mut self) -> Option<DeviceEvent> {
@@ -133,6 +170,8 @@ pub const DEVICES_MAX: usize = 16;
 pub struct Healths {
     /// In the order of the roster; those beyond its end are closed.
     pub devices: [Health; DEVICES_MAX],
+    /// Why an arm that delivers cannot be engaged from where it is.
+    pub obstacles: [Option<rig::Obstacle>; SIDES],
 }
 
 /// A device came or went.
@@ -144,6 +183,8 @@ pub struct DeviceEvent {
     pub device: u8,
     /// Where it is now.
     pub standing: Standing,
+    /// The arm pairs whose force path it is part of.
+    pub of_side: [bool; SIDES],
 }
 
 /// One device of a rig, as everybody but the real-time thread sees it.

@@ -47,6 +47,13 @@ pub struct Mapping {
     scale: f64,
 }
 
+impl Default for Mapping {
+    /// The leader's axes are the workspace's, one to one.
+    fn default() -> Self {
+        Self { kbf_from_leader: UnitQuaternion::identity(), scale: 1.0 }
+    }
+}
+
 impl Mapping {
     /// A mapping by the chain `kbf_from_view * view_from_leader`; `scale` is the tip's way per way of the hand.
     ///
@@ -66,6 +73,14 @@ impl Mapping {
             return Err(MappingError::Scale { scale });
         }
         Ok(Self { kbf_from_leader, scale })
+    }
+
+    /// The same with another scale.
+    ///
+    /// # Errors
+    /// When the scale is not within [`SCALES`].
+    pub fn scaled(&self, scale: f64) -> Result<Self, MappingError> {
+        if SCALES.contains(&scale) { Ok(Self { scale, ..*self }) } else { Err(MappingError::Scale { scale }) }
     }
 
     /// The rotation that takes a vector of the leader to the arm's base.
@@ -99,7 +114,13 @@ pub struct Hand {
 }
 
 impl Hand {
-    fn is_finite(&self) -> bool {
+    /// A hand on a device without a wrist.
+    pub const fn at(position_m: Vector3<f64>) -> Self {
+        Self { position_m, orientation: None }
+    }
+
+    /// Every number in it is finite.
+    pub fn is_finite(&self) -> bool {
         self.position_m.iter().all(|x| x.is_finite())
             && self.orientation.is_none_or(|q| q.coords.iter().all(|x| x.is_finite()))
     }

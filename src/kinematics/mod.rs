@@ -17,6 +17,7 @@ mod ready;
 #[cfg(test)]
 mod tests;
 mod velocity;
+mod wrist;
 
 pub use gen3::{Chain, JOINTS, Joints, LIMIT_RAD, SPEED_RAD_S, limit_margin_rad};
 pub use hand_eye::{Hand, HandEye, Mapping, MappingError, SCALES, Target, kbf_from_tracked_view, view_from_omega};
@@ -24,3 +25,4 @@ pub use instrument::{Arm, ArmError, ArmSettings, Pose};
 pub use inverse::{Inverse, KEEP_OFF_RAD, Measures, START_MISS_M, StartError, Step};
 pub use rcm::{Confined, Rcm, RcmError, RcmSettings, Shaft};
 pub use ready::{Ready, ReadyError, find};
+pub use wrist::{Jaws, PITCH_MAX_RAD};

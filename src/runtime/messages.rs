@@ -3,10 +3,10 @@
 use nalgebra::Vector3;
 
 use crate::{
-    device::{DeviceEvent, Prompt},
+    device::{DeviceEvent, Loss, Prompt, Side},
     frames::WristSample,
     impedance::Mode,
-    safety::{ChainSettings, GateReport},
+    safety::{ChainSettings, GateReport, Why},
     teleop::{ForceReport, LoopState},
 };
 
@@ -30,8 +30,14 @@ pub enum Command {
     /// Lead the handle from the screen to this place, m (workspace), at most [`crate::teleop::GUIDE_MAX_M`] from its middle on
     /// each axis; `None` lets it go. A stop and a fault let it go too.
     Guide(Option<Vector3<f64>>),
-    /// Start force feedback and motion, from idle only. Refused while the force at the tip is not known.
+    /// The tip's way per way of the hand, within [`crate::kinematics::SCALES`].
+    SetScale(f64),
+    /// Start force feedback and motion of every arm pair that is idle. Refused while the force at the tip is not known.
     Engage,
+    /// The same for one arm pair.
+    EngageOne(Side),
+    /// End force feedback and motion without a latch.
+    Rest,
     /// Zero force and a resting follower at once; latched until released.
     Stop,
     /// First of two steps out of a stop or a fault: back to idle. Refused while the cause of a fault lives.
@@ -40,20 +46,33 @@ pub enum Command {
     Shutdown,
 }
 
-/// One tick of the loop as the screen and the recorder see it. Frame: workspace (z up, tissue at rest near z = 0).
+impl Command {
+    /// It is for the pair of this side. The screen leads the right hand.
+    pub fn concerns(self, side: Side) -> bool {
+        match self {
+            Self::EngageOne(of) => of == side,
+            Self::Guide(_) | Self::Prompt(_) => side == Side::Right,
+            _ => true,
+        }
+    }
+}
+
+/// One tick of an arm pair as the screen and the recorder see it. Frame: workspace (z up, tissue at rest near z = 0).
 #[derive(Clone, Copy, Debug)]
 pub struct Tick {
     /// Counts executed ticks from 0.
     pub index: u64,
+    /// Which arm pair.
+    pub side: Side,
     /// Time of the tick on the loop's clock, seconds since its start.
     pub t_s: f64,
-    /// State of the loop in this tick.
+    /// State of the pair in this tick.
     pub state: LoopState,
     /// Mode that rendered.
     pub mode: Mode,
     /// Delay of the link in force, seconds.
     pub delay_s: f64,
-    /// Leader's position mapped into the workspace, m.
+    /// Where the hand leads the tip, m (workspace); while it does not, where the tip is.
     pub leader_m: Vector3<f64>,
     /// Instrument tip (follower), m.
     pub tip_m: Vector3<f64>,
@@ -101,6 +120,17 @@ pub enum Fault {
     },
     /// Engaged, and the force at the tip is not known: a calibration or what it needs is missing.
     ForceUnknown,
+    /// A device of the force path was lost.
+    DeviceLost {
+        /// Its place in the rig's roster.
+        device: u8,
+        /// Why.
+        loss: Loss,
+    },
+    /// Engaged, and the arm does not follow or the handle's motors are off.
+    DrivesOff,
+    /// The other arm pair has a fault.
+    OtherArm,
 }
 
 impl Fault {
@@ -110,6 +140,15 @@ impl Fault {
             Self::SourceSilent => "The rig sent no valid sample for 20 ms",
             Self::LoopStalled { .. } => "The control loop was held up for more than 50 ms",
             Self::ForceUnknown => "The force at the tip is not known: the wrist sensor is not calibrated for this tool",
+            Self::DeviceLost { loss, .. } => match loss {
+                Loss::Disconnected => "A device was lost: the connection is gone",
+                Loss::Silent => "A device was lost: it sends nothing",
+                Loss::Corrupt => "A device was lost: what it sends is damaged",
+                Loss::Implausible => "A device was lost: it sends impossible numbers",
+                Loss::Device { .. } => "A device was lost: it reports a fault of its own",
+            },
+            Self::DrivesOff => "The arm stopped obeying, or the handle switched its motors off",
+            Self::OtherArm => "The other arm has a fault",
         }
     }
 
@@ -121,6 +160,13 @@ impl Fault {
                 "Close other programs or grant real-time priority, then release the stop and engage again"
             }
             Self::ForceUnknown => "Calibrate gravity (Calibrate, Gravity), then release the stop and engage again",
+            Self::DeviceLost { .. } => {
+                "See the devices: it is opened again by itself; then release the stop and engage again"
+            }
+            Self::DrivesOff => {
+                "Look at the arm's and the handle's own lamps and buttons, then release the stop and engage again"
+            }
+            Self::OtherArm => "Mend the other arm's fault, then release the stop and engage again",
         }
     }
 }
@@ -132,15 +178,21 @@ pub enum Event {
     StateChanged {
         /// Time on the loop's clock, s.
         t_s: f64,
+        /// Which arm pair.
+        side: Side,
         /// State before.
         from: LoopState,
         /// State now.
         to: LoopState,
+        /// Why.
+        why: Why,
     },
     /// A fault was raised at this time (s).
     FaultRaised {
         /// Time on the loop's clock, s.
         t_s: f64,
+        /// Which arm pair.
+        side: Side,
         /// Which.
         fault: Fault,
     },

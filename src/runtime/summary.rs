@@ -4,14 +4,17 @@ use serde::Serialize;
 
 use super::Scheduling;
 use crate::{
+    device::{Health, Side},
     impedance::Mode,
     statistics::{Percentiles, Quantiles},
-    teleop::Loop,
+    teleop::{Loop, Pair},
 };
 
 /// Error of one mode over a run, against the force at the follower at the same instant.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct ModeError {
+    /// Of which arm pair.
+    pub side: Side,
     /// The mode.
     pub mode: Mode,
     /// Mean 3-D error, N.
@@ -22,6 +25,25 @@ pub struct ModeError {
     pub max_n: f64,
     /// Ticks in which the mode had nothing valid.
     pub invalid: u64,
+}
+
+/// Processor time per wall time, in shares of one core.
+#[derive(Clone, Copy, Debug, Default, Serialize)]
+pub struct CpuShare {
+    /// The real-time thread.
+    pub realtime: f64,
+    /// The whole process.
+    pub process: f64,
+}
+
+/// How one device was at the end of a run.
+#[derive(Clone, Debug, Serialize)]
+pub struct DeviceFigures {
+    /// Its name in the rig.
+    pub name: String,
+    /// All that was counted since it was opened.
+    #[serde(flatten)]
+    pub health: Health,
 }
 
 /// Timing and error figures of a run.
@@ -43,11 +65,17 @@ pub struct Summary {
     pub wake_us: Quantiles,
     /// Work of one tick of the loop, without rig and queues, us.
     pub work_us: Quantiles,
-    /// Exchange with the rig (here: the simulation), us.
+    /// Exchange with the rig (devices or simulation), us.
     pub rig_us: Quantiles,
+    /// Time from the arrival of the oldest measurement to the force made from it, us; zero in a simulation but for the work.
+    pub sample_to_force_us: Quantiles,
+    /// Processor time; zero on the virtual clock.
+    pub cpu: CpuShare,
     /// What the operating system granted.
     pub scheduling: Scheduling,
-    /// Errors per mode, before the gates.
+    /// The devices, where there are some.
+    pub devices: Vec<DeviceFigures>,
+    /// Errors per arm pair and mode, the right one's first, before the gates.
     pub error: Vec<ModeError>,
 }
 
@@ -57,6 +85,7 @@ pub(super) struct Meters {
     pub(super) wake: Percentiles,
     pub(super) work: Percentiles,
     pub(super) rig: Percentiles,
+    pub(super) sample_to_force: Percentiles,
     pub(super) ticks: u64,
     pub(super) dropped: u64,
 }
@@ -70,28 +99,33 @@ impl Meters {
         wall_s: f64,
         scheduling: Scheduling,
     ) -> Summary {
-        let error = Mode::ALL.map(|mode| {
-            let stats = of.accuracy().of(mode);
+        let of_mode = |pair: &Pair, mode| {
+            let stats = pair.accuracy().of(mode);
             ModeError {
+                side: pair.side(),
                 mode,
                 mae_n: stats.mae_n,
                 sd_n: stats.sd_n(),
                 max_n: stats.max_n,
-                invalid: of.accuracy().invalid(mode),
+                invalid: pair.accuracy().invalid(mode),
             }
-        });
+        };
+        let error = of.pairs().flat_map(|pair| Mode::ALL.map(|mode| of_mode(pair, mode)));
         Summary {
             clock,
             ticks: self.ticks,
-            missed: of.missed(),
+            missed: of.pairs().map(Pair::missed).max().unwrap_or_default(),
             dropped: self.dropped,
             seconds,
             speed: seconds / wall_s.max(1e-9),
             wake_us: self.wake.quantiles(),
             work_us: self.work.quantiles(),
             rig_us: self.rig.quantiles(),
+            sample_to_force_us: self.sample_to_force.quantiles(),
+            cpu: CpuShare::default(),
+            devices: Vec::new(),
             scheduling,
-            error: error.to_vec(),
+            error: error.collect(),
         }
     }
 }

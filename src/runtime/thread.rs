@@ -7,9 +7,12 @@ use std::{
 
 use crossbeam_channel::{Receiver, Sender, TryRecvError, bounded};
 
-use super::{Command, Event, Plan, Summary, Tick, os, summary::Meters};
+use super::{
+    Command, Event, Plan, Summary, Tick, os,
+    summary::{CpuShare, DeviceFigures, Meters},
+};
 use crate::{
-    device::{Healths, Outputs, Rig, Roster},
+    device::{Healths, Outputs, Rig, Roster, SIDES, rig::RigError},
     impedance::SettingsError,
     teleop::{Loop, Timing},
 };
@@ -33,6 +36,9 @@ pub enum StartError {
     /// The rig's settings are not usable.
     #[error(transparent)]
     Settings(#[from] SettingsError),
+    /// The rig's devices cannot be set up.
+    #[error(transparent)]
+    Rig(#[from] RigError),
     /// The operating system gave no thread.
     #[error("the real-time thread could not be started")]
     Thread(#[from] io::Error),
@@ -52,18 +58,16 @@ pub struct Handle {
 /// Starts the loop in its own thread.
 pub fn start(plan: &Plan) -> Result<Handle, StartError> {
     let control = plan.control()?;
-    let rig: Box<dyn Rig> = Box::new(plan.world());
+    let (rig, roster) = plan.assemble()?;
     let (commands, commands_in) = bounded(COMMANDS_WAITING_MAX);
     let (ticks_out, ticks) = bounded(TICKS_WAITING_MAX);
     let (events_out, events) = bounded(EVENTS_WAITING_MAX);
     let (healths_out, healths) = bounded(1);
-    if plan.engage {
-        // An empty queue of 64 takes it.
-        commands.try_send(Command::Engage).ok();
-    }
     let realtime = Realtime {
         control,
         rig,
+        engage: plan.engage,
+        names: roster.iter().map(|entry| entry.name.clone()).collect(),
         period_ns: (1e9 / plan.rig.rate_hz).round() as u64,
         commands: commands_in,
         ticks: ticks_out,
@@ -72,7 +76,7 @@ pub fn start(plan: &Plan) -> Result<Handle, StartError> {
         meters: Meters::default(),
     };
     let thread = Builder::new().name("realtime".to_owned()).spawn(move || realtime.run())?;
-    Ok(Handle { commands, ticks, events, healths, roster: Roster::new(), thread: Some(thread) })
+    Ok(Handle { commands, ticks, events, healths, roster, thread: Some(thread) })
 }
 
 impl Handle {
@@ -129,6 +133,10 @@ impl Drop for Handle {
 struct Realtime {
     control: Loop,
     rig: Box<dyn Rig>,
+    /// Names of the devices.
+    names: Vec<String>,
+    /// Engage once, as soon as everything delivers.
+    engage: bool,
     period_ns: u64,
     commands: Receiver<Command>,
     ticks: Sender<Tick>,
@@ -141,9 +149,10 @@ impl Realtime {
     fn run(mut self) -> Summary {
         let scheduling = os::prepare_thread();
         self.events.try_send(Event::Scheduling(scheduling)).ok();
+        let cpu_s = os::cpu_s();
         let start_ns = os::monotonic_ns();
         let mut deadline_ns = start_ns;
-        let mut outputs = Outputs::SAFE;
+        let mut outputs = [Outputs::SAFE; SIDES];
         let mut timing = Timing::default();
         while self.obey_commands(timing.now_s) {
             deadline_ns += self.period_ns;
@@ -158,9 +167,19 @@ impl Realtime {
             outputs = self.tick(&outputs, &mut timing, woke_ns);
         }
         // Whatever ends the loop, the hand is left without force and the follower at rest.
-        self.rig.exchange(timing.now_s, &Outputs::SAFE);
+        self.rig.exchange(timing.now_s, &[Outputs::SAFE; SIDES]);
         let wall_s = (os::monotonic_ns() - start_ns) as f64 * 1e-9;
-        self.meters.summary("real", &self.control, timing.now_s, wall_s, scheduling)
+        let [realtime, process] = {
+            let used_s = os::cpu_s();
+            std::array::from_fn(|i| (used_s[i] - cpu_s[i]) / wall_s.max(1e-9))
+        };
+        let healths = self.rig.health();
+        let devices = self.names.iter().zip(healths.devices);
+        Summary {
+            cpu: CpuShare { realtime, process },
+            devices: devices.map(|(name, health)| DeviceFigures { name: name.clone(), health }).collect(),
+            ..self.meters.summary("real", &self.control, timing.now_s, wall_s, scheduling)
+        }
     }
 
     /// False when the loop shall end.
@@ -176,29 +195,40 @@ impl Realtime {
         true
     }
 
-    fn tick(&mut self, outputs: &Outputs, timing: &mut Timing, woke_ns: u64) -> Outputs {
+    fn tick(&mut self, outputs: &[Outputs; SIDES], timing: &mut Timing, woke_ns: u64) -> [Outputs; SIDES] {
         let inputs = self.rig.exchange(timing.now_s, outputs);
         let exchanged_ns = os::monotonic_ns();
-        let (next, mut tick) = self.control.step(inputs, timing);
+        for _ in 0..DEVICE_EVENTS_PER_TICK_MAX {
+            let Some(event) = self.rig.event() else { break };
+            self.control.notice(&event);
+            self.events.try_send(Event::Device(event)).ok();
+        }
+        if self.engage && self.control.is_idle_with(&inputs) {
+            self.engage = false;
+            self.control.obey(Command::Engage, timing.now_s);
+        }
+        let (next, ticks) = self.control.step(inputs, timing);
         let worked_ns = os::monotonic_ns();
         timing.work_s = (worked_ns - exchanged_ns) as f64 * 1e-9;
         self.meters.wake.record(timing.wake_s);
         self.meters.rig.record((exchanged_ns - woke_ns) as f64 * 1e-9);
         self.meters.work.record(timing.work_s);
+        let age_s = inputs.iter().flatten().map(|inputs| inputs.age_s).fold(0.0, f64::max);
+        if inputs.iter().any(Option::is_some) {
+            self.meters.sample_to_force.record(age_s + (worked_ns - woke_ns) as f64 * 1e-9);
+        }
         self.meters.ticks += 1;
         for event in self.control.events() {
             self.events.try_send(*event).ok();
         }
-        for _ in 0..DEVICE_EVENTS_PER_TICK_MAX {
-            let Some(event) = self.rig.event() else { break };
-            self.events.try_send(Event::Device(event)).ok();
-        }
         if self.meters.ticks.is_multiple_of(HEALTH_EVERY) {
             self.healths.try_send(self.rig.health()).ok();
         }
-        tick.dropped = self.meters.dropped;
-        if self.ticks.try_send(tick).is_err() {
-            self.meters.dropped += 1;
+        for mut tick in ticks.into_iter().flatten() {
+            tick.dropped = self.meters.dropped;
+            if self.ticks.try_send(tick).is_err() {
+                self.meters.dropped += 1;
+            }
         }
         next
     }
@@ -220,6 +250,7 @@ mod tests {
             rig: Rig::load("simulated").unwrap(),
             scene: Scene::load("peg_transfer").unwrap(),
             calibrations: Calibrations::default(),
+            left_calibrations: Calibrations::default(),
             engage: true,
         }
     }

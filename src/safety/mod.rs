@@ -6,6 +6,8 @@
 
 mod chain;
 mod dead_band;
+mod interlock;
 
 pub use chain::{Chain, ChainSettings, GateReport, MAX_GAIN, Request};
 pub use dead_band::DeadBand;
+pub use interlock::{Change, Interlock, Permits, READY_WITHIN_S, Refused, Seen, State, Why, Wish};

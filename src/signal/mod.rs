@@ -31,12 +31,14 @@ mod differentiator;
 mod foaw;
 mod kalman;
 mod lanes;
+mod pid;
 mod savitzky_golay;
 
 pub use bank::{BANK, LowPassBank};
 pub use delay::DelayLine;
 pub use differentiator::{Differentiator, DifferentiatorKind};
 pub use lanes::{LANES, Lanes, NOTHING, settled};
+pub use pid::{Pid, PidGains};
 
 /// Position, velocity and acceleration of one instant, one lane per axis.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -51,6 +51,8 @@ pub struct Hand {
     position_m: Vector3<f64>,
     velocity_m_s: Vector3<f64>,
     guide_m: Option<Vector3<f64>>,
+    /// Where it waits, while it does not work.
+    waits_m: Option<Vector3<f64>>,
     /// Where the hand is meant to be while it is led, and on its way back to the task.
     led_m: Option<Vector3<f64>>,
 }
@@ -72,6 +74,7 @@ impl Hand {
             position_m,
             velocity_m_s: Vector3::zeros(),
             guide_m: None,
+            waits_m: None,
             led_m: None,
         }
     }
@@ -84,16 +87,30 @@ impl Hand {
         }
     }
 
+    /// Lets the hand wait at this place instead of its task; `None` lets it work. Neither way is a jump.
+    pub(super) fn wait(&mut self, waits_m: Option<Vector3<f64>>) {
+        self.waits_m = waits_m;
+        if waits_m.is_some() {
+            self.led_m.get_or_insert(self.position_m);
+        }
+    }
+
+    /// Where it is led, or waits; a lead goes first.
+    fn aside_m(&self) -> Option<Vector3<f64>> {
+        self.guide_m.or(self.waits_m)
+    }
+
     /// Where it is meant to be, m, and how fast, m/s: on its task's way, or led.
     fn intended(&mut self, dt_s: f64) -> (Vector3<f64>, Vector3<f64>) {
         let (task_m, task_m_s) = self.moves[self.current].at(self.in_move_s);
+        let aside_m = self.aside_m();
         let Some(led_m) = &mut self.led_m else { return (task_m + self.tremor_m(), task_m_s) };
-        let way_m = self.guide_m.unwrap_or(task_m) - *led_m;
+        let way_m = aside_m.unwrap_or(task_m) - *led_m;
         let step_m = GUIDE_M_S * dt_s;
         let share = if way_m.norm() > step_m { step_m / way_m.norm() } else { 1.0 };
         *led_m += way_m * share;
         let intended = (*led_m, way_m * (share / dt_s));
-        if self.guide_m.is_none() && way_m.norm() < CAUGHT_UP_M {
+        if aside_m.is_none() && way_m.norm() < CAUGHT_UP_M {
             self.led_m = None;
         }
         intended
@@ -107,7 +124,7 @@ impl Hand {
     /// Advances by `dt_s` under this force (N) from the handle.
     pub fn advance(&mut self, dt_s: f64, force_n: &Vector3<f64>) {
         self.time_s += dt_s;
-        if self.guide_m.is_none() {
+        if self.aside_m().is_none() {
             self.in_move_s += dt_s;
         }
         if self.in_move_s >= self.moves[self.current].seconds {

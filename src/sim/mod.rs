@@ -9,6 +9,7 @@ mod noise;
 mod person;
 mod tissue;
 mod trocar;
+mod worlds;
 mod wrist;
 
 use nalgebra::{UnitQuaternion, Vector3};
@@ -19,13 +20,15 @@ pub use hand::Hand;
 pub use noise::Noise;
 pub use tissue::Tissue;
 pub use trocar::Trocar;
+pub use worlds::Worlds;
 
 use crate::{
     config::{Follower, Leader, Scene},
-    device::{Inputs, Outputs, Prompt, Rig, Sensed},
+    device::{Inputs, Outputs, Prompt, Sensed, Switches},
+    kinematics,
 };
 
-/// The simulated rig: one hand, one leader, one follower, one sensor.
+/// The simulated world of one arm pair: one hand, one leader, one follower, one sensor.
 #[derive(Clone, Debug)]
 pub struct World {
     period_s: f64,
@@ -94,6 +97,32 @@ impl World {
     /// Hands the wrist to an arm outside of this world: its orientation from now on (`kbf_from_s1`). Its place is commanded.
     pub const fn carry(&mut self, kbf_from_s1: UnitQuaternion<f64>) {
         self.carried = Some(kbf_from_s1);
+    }
+
+    /// The hand's task stands still and the hand keeps to the tip (true), or it works (false).
+    pub fn wait(&mut self, waits: bool) {
+        self.hand.wait(waits.then_some(self.tip_m));
+    }
+
+    /// Applies the loop's outputs and gives what a rig would measure at loop time `now_s`. Until the follower is commanded the hand
+    /// waits at the tip.
+    pub fn exchange(&mut self, now_s: f64, outputs: &Outputs) -> Option<Inputs> {
+        self.wait(outputs.tip_command_m.is_none());
+        Some(self.advance_to(now_s, outputs))
+    }
+
+    /// The same, with a hand that waits only where it was told to ([`World::wait`]).
+    pub fn advance_to(&mut self, now_s: f64, outputs: &Outputs) -> Inputs {
+        self.accept(outputs);
+        let behind = ((now_s - self.time_s) / self.period_s).round();
+        if behind > f64::from(CATCH_UP_PERIODS_MAX) {
+            self.time_s = now_s - f64::from(CATCH_UP_PERIODS_MAX) * self.period_s;
+        }
+        let steps = (behind.max(0.0) as u32).min(CATCH_UP_PERIODS_MAX);
+        for _ in 0..steps {
+            self.advance(self.period_s);
+        }
+        self.measure()
     }
 
     fn accept(&mut self, outputs: &Outputs) {
@@ -190,22 +219,16 @@ impl World {
         let leader_m = self
             .leader
             .map_or(hand_m, |Leader { resolution_m, .. }| hand_m.map(|x| (x / resolution_m).round() * resolution_m));
-        Inputs { leader_m, tip_m: self.tip_m, sensed }
-    }
-}
-
-impl Rig for World {
-    fn exchange(&mut self, now_s: f64, outputs: &Outputs) -> Option<Inputs> {
-        self.accept(outputs);
-        let behind = ((now_s - self.time_s) / self.period_s).round();
-        if behind > f64::from(CATCH_UP_PERIODS_MAX) {
-            self.time_s = now_s - f64::from(CATCH_UP_PERIODS_MAX) * self.period_s;
+        Inputs {
+            hand: kinematics::Hand::at(leader_m),
+            gripper_rad: None,
+            tip_m: self.tip_m,
+            kbf_from_jaws: None,
+            sensed,
+            switches: Switches::default(),
+            powered: true,
+            age_s: 0.0,
         }
-        let steps = (behind.max(0.0) as u32).min(CATCH_UP_PERIODS_MAX);
-        for _ in 0..steps {
-            self.advance(self.period_s);
-        }
-        Some(self.measure())
     }
 }
 
@@ -226,7 +249,7 @@ mod tests {
         (0..(seconds * 1000.0) as usize)
             .filter_map(|i| {
                 let inputs = world.exchange(i as f64 * 1e-3, &outputs);
-                outputs.tip_command_m = inputs.map(|inputs| inputs.leader_m);
+                outputs.tip_command_m = inputs.map(|inputs| inputs.hand.position_m);
                 inputs
             })
             .collect()
@@ -262,7 +285,7 @@ mod tests {
         (scene.tissue, scene.leader, scene.follower, scene.sensor) = (None, None, None, None);
         let inputs = run(&scene, 5.0);
         assert!(inputs.iter().all(|i| force_n(i) == Vector3::zeros()));
-        assert!(inputs.windows(2).all(|pair| pair[1].tip_m == pair[0].leader_m));
+        assert!(inputs.windows(2).all(|pair| pair[1].tip_m == pair[0].hand.position_m));
     }
 
     #[test]

@@ -24,8 +24,14 @@ const PATIENCE: Duration = Duration::from_secs(20);
 fn console_of(scene: &str, size: [f32; 2], engage: bool) -> Harness<'static, ConsoleApp> {
     let rig = Rig::load("simulated").unwrap();
     let scene = Scene::load(scene).unwrap();
-    let handle =
-        start(&Plan { rig: rig.clone(), scene: scene.clone(), calibrations: Calibrations::default(), engage }).unwrap();
+    let handle = start(&Plan {
+        rig: rig.clone(),
+        scene: scene.clone(),
+        calibrations: Calibrations::default(),
+        left_calibrations: Calibrations::default(),
+        engage,
+    })
+    .unwrap();
     Harness::builder()
         .with_size(size)
         .with_step_dt(1.0 / 30.0)

@@ -40,7 +40,14 @@ fn console(store: &Path, step_n: f64) -> Harness<'static, ConsoleApp> {
     Store::open(store).save(&record).unwrap();
     let (rig, scene) = (Rig::load("simulated").unwrap(), free_scene(step_n));
     let calibrations = Calibrations { gravity: Some(record.model), tip_force: None };
-    let handle = start(&Plan { rig: rig.clone(), scene: scene.clone(), calibrations, engage: false }).unwrap();
+    let handle = start(&Plan {
+        rig: rig.clone(),
+        scene: scene.clone(),
+        calibrations,
+        left_calibrations: Calibrations::default(),
+        engage: false,
+    })
+    .unwrap();
     let store = store.to_owned();
     Harness::builder()
         .with_size([1600.0, 1000.0])

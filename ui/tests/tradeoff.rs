@@ -119,9 +119,14 @@ fn bad_input_is_refused_in_one_line() {
 fn console() -> Harness<'static, ConsoleApp> {
     let rig = Rig::load("simulated").unwrap();
     let scene = Scene::load("peg_transfer").unwrap();
-    let handle =
-        start(&Plan { rig: rig.clone(), scene: scene.clone(), calibrations: Calibrations::default(), engage: true })
-            .unwrap();
+    let handle = start(&Plan {
+        rig: rig.clone(),
+        scene: scene.clone(),
+        calibrations: Calibrations::default(),
+        left_calibrations: Calibrations::default(),
+        engage: true,
+    })
+    .unwrap();
     let mut harness = Harness::builder()
         .with_size([1600.0, 2400.0])
         .with_step_dt(1.0 / 30.0)

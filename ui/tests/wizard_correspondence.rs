@@ -30,7 +30,13 @@ const PATIENCE: Duration = Duration::from_secs(40);
 
 fn console(scene: Scene, store: &Path, calibrations: Calibrations) -> Harness<'static, ConsoleApp> {
     let rig = Rig::load("simulated").unwrap();
-    let plan = Plan { rig: rig.clone(), scene: scene.clone(), calibrations, engage: false };
+    let plan = Plan {
+        rig: rig.clone(),
+        scene: scene.clone(),
+        calibrations,
+        left_calibrations: Calibrations::default(),
+        engage: false,
+    };
     let handle = start(&plan).unwrap();
     let store = store.to_owned();
     Harness::builder()

@@ -27,7 +27,14 @@ type Console = Harness<'static, ConsoleApp>;
 fn console(scene: Scene, store: &Path) -> Console {
     let rig = Rig::load("simulated").unwrap();
     let calibrations = Calibrations::default();
-    let handle = start(&Plan { rig: rig.clone(), scene: scene.clone(), calibrations, engage: false }).unwrap();
+    let handle = start(&Plan {
+        rig: rig.clone(),
+        scene: scene.clone(),
+        calibrations,
+        left_calibrations: Calibrations::default(),
+        engage: false,
+    })
+    .unwrap();
     let store = store.to_owned();
     Harness::builder()
         .with_size([1600.0, 1000.0])

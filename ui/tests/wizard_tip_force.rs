@@ -174,7 +174,14 @@ fn model_path(folder: &Path) -> PathBuf {
 fn real_console(wizards: Wizards, folder: &Path) -> Harness<'static, ConsoleApp> {
     let (rig, scene) = (Rig::load("simulated").unwrap(), Scene::load("isolation").unwrap());
     let calibrations = InForce::load(Some(folder), &scene).calibrations(&rig);
-    let handle = start(&Plan { rig: rig.clone(), scene: scene.clone(), calibrations, engage: false }).unwrap();
+    let handle = start(&Plan {
+        rig: rig.clone(),
+        scene: scene.clone(),
+        calibrations,
+        left_calibrations: Calibrations::default(),
+        engage: false,
+    })
+    .unwrap();
     let folder = folder.to_owned();
     Harness::builder()
         .with_size([1600.0, 1500.0])
@@ -248,7 +255,7 @@ fn answers_in_the_loop(folder: &Path) {
     let (rig, mut scene) = (Rig::load("simulated").unwrap(), Scene::load("isolation").unwrap());
     scene.seed += 1;
     let calibrations = InForce::load(Some(folder), &scene).calibrations(&rig);
-    let plan = Plan { rig, scene, calibrations, engage: false };
+    let plan = Plan { rig, scene, calibrations, left_calibrations: Calibrations::default(), engage: false };
     let [mut by_network, mut by_wrist, mut answered] = [0.0; 3];
     let correspondence = records().1.correspondence();
     run_virtual(&plan, 15.0, |tick| {

@@ -1,7 +1,9 @@
 //! What the rig file says of the devices: which there are, where, and what hangs on them.
 
+use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
+use super::JawsSettings;
 use crate::{
     device::{Side, bota, dynamixel, force_dimension, hid, kinova, ndi},
     kinematics::{ArmSettings, RcmSettings},
@@ -44,9 +46,15 @@ pub struct ArmSet {
     pub rcm: RcmSettings,
     /// The force sensor between arm and instrument.
     pub sensor: bota::Settings,
+    /// How the tracker's marker sits on the instrument: roll, pitch, yaw of `s1_from_m`, degrees; where there is one.
+    #[serde(default)]
+    pub s1_from_m_deg: Option<Vector3<f64>>,
     /// The servos of the instrument.
     #[serde(default)]
     pub servos: Option<dynamixel::Settings>,
+    /// How the servos move its wrist.
+    #[serde(default)]
+    pub jaws: JawsSettings,
 }
 
 /// Where a force sensor feels.

@@ -2,7 +2,7 @@
 
 use crate::{
     config::Scene,
-    device::{Outputs, Rig as _, Sensed},
+    device::{Outputs, Sensed},
     impedance::{AXES, Sample},
     recording::Recording,
     sim::World,
@@ -30,7 +30,7 @@ impl Source {
         for k in 0..ticks {
             let t_s = k as f64 / rate_hz;
             if let Some(inputs) = world.exchange(t_s, &outputs) {
-                outputs.tip_command_m = Some(inputs.leader_m);
+                outputs.tip_command_m = Some(inputs.hand.position_m);
                 // Identification is compared here, not the way to the tip force: a wrist's scene gives its true one.
                 let force_n = match inputs.sensed {
                     Sensed::AtTip(force_n) => force_n,

@@ -9,7 +9,7 @@ use crate::{
         gravity::{Compensator, DEFAULT_TIME_CONSTANT_S, GravityModel, GravitySession, SessionSettings},
     },
     config::Scene,
-    device::{Outputs, Prompt, Rig as _, Sensed},
+    device::{Outputs, Prompt, Sensed},
     frames::{Wrench, WristSample},
     sim::World,
 };

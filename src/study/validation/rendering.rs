@@ -71,7 +71,13 @@ impl Axes {
 pub fn study(seed: u64, delay_s: f64) -> Result<Rendering, ValidationError> {
     let scene = Scene { seed, ..Scene::load(SCENE)? };
     let rig = Rig { delay_s, ..Rig::load("simulated")? };
-    let plan = Plan { rig, scene, calibrations: Calibrations::default(), engage: true };
+    let plan = Plan {
+        rig,
+        scene,
+        calibrations: Calibrations::default(),
+        left_calibrations: Calibrations::default(),
+        engage: true,
+    };
     let (mut nonlinear, mut linear) = (Axes::default(), Axes::default());
     let mut at_horizon: [Axes; 4] = std::array::from_fn(|_| Axes::default());
     let (mut windows, mut above_one) = (0_u32, 0_u32);

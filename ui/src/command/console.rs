@@ -5,7 +5,7 @@ use std::{path::PathBuf, time::Duration};
 use clap::Args;
 use nima::runtime::{self, Plan};
 
-use super::setup::Setup;
+use super::{emulators::Emulators, setup::Setup};
 use crate::console::{self, Options, in_force::InForce, wizards::Which};
 
 #[derive(Debug, Default, Args)]
@@ -25,10 +25,13 @@ pub(super) struct Arguments {
 
 pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let (rig, scene) = arguments.setup.load()?;
+    let _emulators = Emulators::start(&arguments.setup, rig.devices.as_ref())?;
     let calibrations = InForce::load(None, &scene).calibrations(&rig);
-    let mut plan = Plan { rig: rig.clone(), scene: scene.clone(), calibrations, engage: false };
+    let left_calibrations = calibrations.clone();
+    let mut plan = Plan { rig: rig.clone(), scene: scene.clone(), calibrations, left_calibrations, engage: false };
     // The simulated hand cannot be hurt: the demo runs at once.
-    plan.engage = plan.may_engage();
+    let by_itself = rig.devices.as_ref().is_none_or(|devices| devices.emulated);
+    plan.engage = by_itself && plan.may_engage();
     let handle = runtime::start(&plan)?;
     let options = Options {
         exit_after: arguments.exit_after.map(Duration::from_secs_f64),

@@ -4,6 +4,7 @@ mod calibrate;
 mod console;
 mod devices;
 mod emulate;
+mod emulators;
 mod evaluate;
 mod identify;
 mod output;

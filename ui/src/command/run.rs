@@ -19,7 +19,7 @@ use nima::{
     statistics::Quantiles,
 };
 
-use super::{output, setup::Setup};
+use super::{emulators::Emulators, output, setup::Setup};
 use crate::console::in_force::InForce;
 
 #[derive(Debug, Args)]
@@ -60,11 +60,19 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     rig.delay_s = arguments.delay_ms.map_or(rig.delay_s, |delay_ms| delay_ms * 1e-3);
     rig.identification.cross_talk |= arguments.cross_talk;
     rig.validate()?;
+    if arguments.virtual_clock && rig.devices.is_some() {
+        bail!("rig \"{}\" has devices, and they live on the real clock: leave --virtual out", rig.name);
+    }
+    let emulators = Emulators::start(&arguments.setup, rig.devices.as_ref())?;
     let mut in_force = InForce::load(None, &scene);
     let calibrations = in_force.calibrations(&rig);
-    // With a calibrated wrist the bias is looked at before the tool may touch anything.
-    let plan = Plan { rig, scene, calibrations, engage: in_force.drift().is_none() };
-    let mut start = Start { in_force, engaged: plan.engage };
+    // With a calibrated wrist the bias is looked at before the tool may touch anything; and only what can hurt nobody engages by
+    // itself.
+    let by_itself = rig.devices.as_ref().is_none_or(|devices| devices.emulated);
+    let left_calibrations = calibrations.clone();
+    let engage = by_itself && in_force.drift().is_none();
+    let plan = Plan { rig, scene, calibrations, left_calibrations, engage };
+    let mut start = Start { in_force, engaged: plan.engage || !by_itself };
     if !plan.may_engage() {
         bail!(
             "scene \"{}\" cannot be engaged: the force at its tip is not known; calibrate with `nima console --calibrate gravity`",
@@ -76,6 +84,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     } else {
         on_the_real_clock(&plan, &mut start, arguments.seconds, arguments.json)?
     };
+    drop(emulators);
     let drift = start.in_force.drift();
     if arguments.json {
         if let Some(drift @ Drift::Moved { .. }) = drift {

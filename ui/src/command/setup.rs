@@ -20,6 +20,16 @@ impl Default for Setup {
 }
 
 impl Setup {
+    /// The rig as it was named.
+    pub(super) fn rig(&self) -> &str {
+        &self.rig
+    }
+
+    /// The scene as it was named.
+    pub(super) fn scene(&self) -> &str {
+        &self.scene
+    }
+
     /// Reads and checks both.
     pub(super) fn load(&self) -> Result<(Rig, Scene), ConfigError> {
         Ok((Rig::load(&self.rig)?, Scene::load(&self.scene)?))

@@ -152,7 +152,8 @@ impl ConsoleApp {
         // Another scene may have another sensor or tool.
         self.in_force.bind(&scene);
         let calibrations = self.in_force.calibrations(&rig);
-        let plan = Plan { rig: rig.clone(), scene: scene.clone(), calibrations, engage: false };
+        let left_calibrations = calibrations.clone();
+        let plan = Plan { rig: rig.clone(), scene: scene.clone(), calibrations, left_calibrations, engage: false };
         let started = runtime::start(&plan).map_err(|error| format!("the loop could not be started again: {error}"));
         let rough_edges = self.live.rough_edges;
         self.live = Live::new(rig, scene);

@@ -8,7 +8,7 @@ use std::{
 use nalgebra::Vector3;
 use nima::{
     config::{Rig, Scene},
-    device::{Healths, Roster},
+    device::{Healths, Roster, Side},
     impedance::Mode,
     runtime::{Command, Event, Fault, Handle, Scheduling, Tick},
     safety::ChainSettings,
@@ -85,8 +85,10 @@ pub struct Live {
     pub rig: Rig,
     /// The scene.
     pub scene: Scene,
-    /// Newest tick.
+    /// Newest tick of the right arm pair, or the only one.
     pub tick: Option<Tick>,
+    /// Newest tick of the left arm pair.
+    pub left: Option<Tick>,
     /// Forces over time.
     pub history: History,
     /// Degrees chosen by the console.
@@ -138,6 +140,7 @@ impl Live {
             rig,
             scene,
             tick: None,
+            left: None,
             history: History::default(),
             degrees: DegreeShares::new(ticks),
             paper_degrees: DegreeShares::new(ticks),
@@ -169,7 +172,7 @@ impl Live {
         }
     }
 
-    /// Takes in all that waits at the loop's door; `each` sees every tick.
+    /// Takes in all that waits at the loop's door; `each` sees every tick of the right arm pair.
     pub fn take_in(&mut self, handle: &Handle, mut each: impl FnMut(&Tick)) {
         if self.roster.len() != handle.roster().len() {
             self.roster.clone_from(handle.roster());
@@ -180,8 +183,13 @@ impl Live {
         handle.drain_events(|event| self.event(event));
         let mut came = false;
         handle.drain_ticks(|tick| {
-            self.tick(tick);
-            each(tick);
+            match tick.side {
+                Side::Right => {
+                    self.tick(tick);
+                    each(tick);
+                }
+                Side::Left => self.left = Some(*tick),
+            }
             came = true;
         });
         if came {
@@ -197,9 +205,10 @@ impl Live {
         self.frame_work.push(work_s.unwrap_or(0.0) * 1e3, period_s, 1.0);
     }
 
-    /// State of the loop as last seen; idle before anything came.
+    /// State of the loop as last seen, of two arm pairs the one that needs more attention; idle before anything came.
     pub fn state(&self) -> LoopState {
-        self.tick.map_or(LoopState::Idle, |tick| tick.state)
+        let states = self.tick.iter().chain(&self.left).map(|tick| tick.state);
+        states.max_by_key(|state| attention(*state)).unwrap_or(LoopState::Idle)
     }
 
     /// Mode in force.
@@ -230,7 +239,7 @@ impl Live {
     /// What alarms are judged from.
     pub fn signs(&self, stop_is_stuck: bool) -> Signs {
         Signs {
-            state: self.tick.map(|tick| tick.state),
+            state: self.tick.map(|_| self.state()),
             first_fault: self.first_fault,
             running: self.running,
             silence: self.tick_at.elapsed(),
@@ -243,7 +252,7 @@ impl Live {
 
     fn event(&mut self, event: &Event) {
         match *event {
-            Event::FaultRaised { t_s, fault } => {
+            Event::FaultRaised { t_s, fault, .. } => {
                 self.first_fault.get_or_insert((t_s, fault));
             }
             Event::StateChanged { to, .. } => {
@@ -317,6 +326,20 @@ impl Live {
         };
         self.ticks_counted = 0;
         self.figures_at = Instant::now();
+    }
+}
+
+/// How much attention a state needs.
+const fn attention(state: LoopState) -> u8 {
+    match state {
+        LoopState::Engaged => 0,
+        LoopState::Clutched => 1,
+        LoopState::Ready => 2,
+        LoopState::Idle => 3,
+        LoopState::Disconnected => 4,
+        LoopState::Stopped => 5,
+        LoopState::Faulted(Fault::OtherArm) => 6,
+        LoopState::Faulted(_) => 7,
     }
 }
 

@@ -6,7 +6,7 @@ use nima::{
         store::utc_now,
     },
     config::Scene,
-    device::{Outputs, Prompt, Rig as _, Sensed},
+    device::{Outputs, Prompt, Sensed},
     sim::World,
 };
 

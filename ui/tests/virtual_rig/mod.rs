@@ -16,7 +16,7 @@ use nima::{
         store::utc_now,
     },
     config::{Rig, Scene},
-    device::{Outputs, Prompt, Rig as _, Sensed},
+    device::{Outputs, Prompt, Sensed},
     runtime::{Command, Plan, Tick, run_virtual},
     sim::World,
     teleop::Calibrations,
@@ -76,7 +76,13 @@ pub(crate) struct VirtualRig {
 impl VirtualRig {
     pub(crate) fn start(scene: Scene, calibrations: Calibrations) -> Self {
         let ((orders, ordered), (give, ticks)) = (channel(), channel());
-        let plan = Plan { rig: Rig::load("simulated").unwrap(), scene, calibrations, engage: false };
+        let plan = Plan {
+            rig: Rig::load("simulated").unwrap(),
+            scene,
+            calibrations,
+            left_calibrations: Calibrations::default(),
+            engage: false,
+        };
         thread::spawn(move || {
             let (mut left, mut batch) = (1, Vec::new());
             run_virtual(&plan, 1e5, |tick| {

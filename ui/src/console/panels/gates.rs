@@ -29,7 +29,10 @@ pub fn gates_ui(ui: &mut Ui, live: &Live) {
 fn answer(live: &Live) -> String {
     let figures = &live.figures;
     match live.state() {
+        LoopState::Disconnected => return "No force: a device is missing (see the devices).".to_owned(),
         LoopState::Idle => return "No force: the loop is idle. Press Engage.".to_owned(),
+        LoopState::Ready => return "No force yet: the drives are coming on.".to_owned(),
+        LoopState::Clutched => return "No force: the clutch is pressed, the hand moves freely.".to_owned(),
         LoopState::Stopped => return "No force: stopped by the operator.".to_owned(),
         LoopState::Faulted(_) => return "No force: stopped by a fault.".to_owned(),
         LoopState::Engaged => {}

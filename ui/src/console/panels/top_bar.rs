@@ -66,6 +66,15 @@ fn identity_ui(ui: &mut Ui, live: &Live) {
 
 fn state_ui(ui: &mut Ui, state: LoopState) {
     let (what, colour, meaning) = match state {
+        LoopState::Disconnected => {
+            (Sign::Ring, theme::TEXT_WEAK, "A device that force needs is missing; it is opened again by itself.")
+        }
+        LoopState::Ready => {
+            (Sign::Ring, theme::ENGAGED, "Drives on, at rest, without force, until hand and tip agree.")
+        }
+        LoopState::Clutched => {
+            (Sign::Ring, theme::ENGAGED, "The clutch is pressed: the hand moves freely, the follower rests, no force.")
+        }
         LoopState::Idle => (Sign::Ring, theme::AT_REST, "The loop measures. No force, no motion until it is engaged."),
         LoopState::Engaged => (Sign::Disc, theme::ENGAGED, "The follower moves with the hand and force is fed back."),
         LoopState::Stopped => (Sign::Square, theme::STOP, "Stopped by the operator: no force, no motion. Latched."),
@@ -111,7 +120,7 @@ fn step_ui(ui: &mut Ui, state: LoopState, ready: bool, outbox: &mut Outbox) {
             Command::ReleaseStop,
             "First of two steps: back to idle. Refused while the cause of the fault lives.",
         ),
-        LoopState::Engaged => {
+        LoopState::Engaged | LoopState::Ready | LoopState::Clutched | LoopState::Disconnected => {
             ui.add_space(theme::STOP_SIZE.x + 8.0);
             return;
         }

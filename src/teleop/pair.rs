@@ -1,0 +1,420 @@
+//! One arm pair: handle, arm, force sensor, and the loop between them.
+
+use nalgebra::{UnitQuaternion, Vector3};
+
+use super::{Accuracy, Calibrations, ForcePath, ForceReport, ForceSource, Link, LoopState, Tracking};
+use crate::{
+    config::Rig as RigConfig,
+    device::{DeviceEvent, Inputs, Outputs, Prompt, Sensed, Side, Standing, Switches},
+    impedance::{Identifier, MAX_DELAY_S, Mode, Rendered, Renderer, Sample, SettingsError},
+    kinematics::{Hand, HandEye, Target},
+    runtime::{Command, Event, Fault, Tick},
+    safety::{Chain, Change, Interlock, Request, Seen, Wish},
+};
+
+/// Rig silent for longer than this, s: fault.
+const SILENT_AFTER_S: f64 = 0.020;
+/// Missed periods in a row that make a fault, as time, s.
+const STALLED_AFTER_S: f64 = 0.050;
+/// Farthest from the middle of the workspace that the screen may lead the handle, on each axis, m.
+pub const GUIDE_MAX_M: f64 = 0.1;
+/// Most events told in one tick; more in one tick is not possible.
+pub const EVENTS_PER_TICK_MAX: usize = 6;
+/// After each engagement the force rises to its full size within this time, s.
+const RAMP_S: f64 = 0.2;
+/// A tip that moved more than this within a tick does not rest: nothing is engaged then, m.
+const AT_REST_M: f64 = 0.2e-3;
+
+/// When a tick ran: handed in, never asked for.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Timing {
+    /// Loop time of this tick, s.
+    pub now_s: f64,
+    /// How late the tick woke after its deadline, s.
+    pub wake_s: f64,
+    /// How long the tick before worked, s.
+    pub work_s: f64,
+    /// Periods missed just before this tick.
+    pub missed_now: u64,
+}
+
+/// The pair's whole memory.
+#[derive(Debug)]
+pub struct Pair {
+    side: Side,
+    interlock: Interlock<Fault>,
+    hand_eye: HandEye,
+    engaged_s: f64,
+    mode: Mode,
+    delay_s: f64,
+    rate_hz: f64,
+    follower_step_max_m: f64,
+    identifier: Identifier,
+    renderer: Renderer,
+    force_path: ForcePath,
+    force: ForceReport,
+    prompt: Prompt,
+    guide_m: Option<Vector3<f64>>,
+    link: Link,
+    tracking: Tracking,
+    chain: Chain,
+    last_inputs: Option<Inputs>,
+    last_input_s: f64,
+    command_m: Option<Vector3<f64>>,
+    hand_speed_m_s: f64,
+    accuracy: Accuracy,
+    ticks: u64,
+    missed: u64,
+    events: [Option<Event>; EVENTS_PER_TICK_MAX],
+}
+
+impl Pair {
+    /// The pair of this side, idle. Everything is allocated here.
+    pub fn new(rig: &RigConfig, side: Side, calibrations: &Calibrations) -> Result<Self, SettingsError> {
+        let settings = rig.settings();
+        let at_rest = Target { tip_m: Vector3::zeros(), kbf_from_jaws: UnitQuaternion::identity() };
+        let mut this = Self {
+            side,
+            interlock: Interlock::default(),
+            hand_eye: HandEye::new(rig.teleoperation.mapping(), at_rest),
+            engaged_s: 0.0,
+            mode: rig.mode,
+            delay_s: rig.delay_s,
+            rate_hz: rig.rate_hz,
+            follower_step_max_m: rig.follower_speed_max_m_s / rig.rate_hz,
+            identifier: Identifier::new(&settings)?,
+            renderer: Renderer::new(&settings)?,
+            force_path: ForcePath::new(calibrations, 1.0 / rig.rate_hz),
+            force: NO_FORCE_YET,
+            prompt: Prompt::Rest,
+            guide_m: None,
+            link: Link::new(rig.rate_hz, rig.delay_s),
+            tracking: Tracking::new(rig.rate_hz),
+            chain: Chain::new(rig.gates, 1.0 / rig.rate_hz),
+            last_inputs: None,
+            last_input_s: 0.0,
+            command_m: None,
+            hand_speed_m_s: 0.0,
+            accuracy: Accuracy::default(),
+            ticks: 0,
+            missed: 0,
+            events: [None; EVENTS_PER_TICK_MAX],
+        };
+        this.set_delay(rig.delay_s);
+        Ok(this)
+    }
+
+    /// Which pair.
+    pub const fn side(&self) -> Side {
+        self.side
+    }
+
+    /// State now.
+    pub const fn state(&self) -> LoopState {
+        self.interlock.state()
+    }
+
+    /// Errors per mode since construction.
+    pub const fn accuracy(&self) -> &Accuracy {
+        &self.accuracy
+    }
+
+    /// Periods missed since construction.
+    pub const fn missed(&self) -> u64 {
+        self.missed
+    }
+
+    /// What happened since [`Pair::clear_events`], oldest first.
+    pub fn events(&self) -> impl Iterator<Item = &Event> {
+        self.events.iter().flatten()
+    }
+
+    /// Forgets the events; call before handling commands of the next tick.
+    pub fn clear_events(&mut self) {
+        self.events = [None; EVENTS_PER_TICK_MAX];
+    }
+
+    fn tell(&mut self, event: Event) {
+        if let Some(free) = self.events.iter_mut().find(|slot| slot.is_none()) {
+            *free = Some(event);
+        }
+    }
+
+    /// What entering a state does: everything begins from no force and a resting follower.
+    fn enter(&mut self, change: Change<Fault>, t_s: f64) {
+        let Change { from, to, why } = change;
+        self.tell(Event::StateChanged { t_s, side: self.side, from, to, why });
+        self.chain.reset();
+        self.command_m = None;
+        self.hand_eye.release();
+        if !to.permits().drives || !from.permits().drives {
+            self.prompt = Prompt::Rest;
+        }
+        if to.is_latched() {
+            self.guide_m = None;
+        }
+        if let (LoopState::Engaged, Some(seen)) = (to, self.last_inputs) {
+            // Hand and tip are joined where both are: the first command is where the tip is.
+            let kbf_from_jaws = seen.kbf_from_jaws.unwrap_or_else(UnitQuaternion::identity);
+            self.hand_eye.engage(Target { tip_m: seen.tip_m, kbf_from_jaws });
+            self.engaged_s = t_s;
+        }
+    }
+
+    fn set_delay(&mut self, delay_s: f64) {
+        // The delay is exact to one sample, and the screen shows what is in force.
+        let samples = (delay_s * self.rate_hz).round();
+        self.delay_s = samples / self.rate_hz;
+        self.link.set_delay(self.delay_s);
+        self.identifier.set_delay(self.delay_s);
+        self.renderer.set_delay(self.delay_s);
+    }
+
+    fn ask(&mut self, wish: Wish, t_s: f64) -> bool {
+        match self.interlock.ask(wish, t_s) {
+            Ok(change) => {
+                if let Some(change) = change {
+                    self.enter(change, t_s);
+                }
+                true
+            }
+            Err(_) => false,
+        }
+    }
+
+    /// Carries out one command; false when it cannot be. [`Command::Shutdown`] is the runtime's.
+    pub fn obey(&mut self, command: Command, t_s: f64) -> bool {
+        match command {
+            Command::SetMode(mode) => self.mode = mode,
+            Command::SetGain(gain) if (0.0..=1.0).contains(&gain) => self.chain.set_gain(gain),
+            Command::SetGainAboveOne(gain) if (0.0..=crate::safety::MAX_GAIN).contains(&gain) => {
+                self.chain.set_gain(gain);
+            }
+            Command::SetDelay(delay_s) if (0.0..=MAX_DELAY_S).contains(&delay_s) => self.set_delay(delay_s),
+            Command::SetDeadBand(speed_m_s) if (0.0..=0.1).contains(&speed_m_s) => self.chain.set_dead_band(speed_m_s),
+            Command::SetStaticHold(hold) => self.chain.set_static_hold(hold),
+            Command::SetScale(scale) => match self.hand_eye.mapping().scaled(scale) {
+                Ok(mapping) => self.hand_eye.set_mapping(mapping),
+                Err(_) => return false,
+            },
+            // Whoever is asked to handle the arm must be safe from it.
+            Command::Prompt(prompt) if self.state() == LoopState::Idle && prompt.is_finite() => self.prompt = prompt,
+            Command::Guide(guide_m)
+                if !self.state().is_latched()
+                    && guide_m.is_none_or(|at_m| at_m.iter().all(|x| x.abs() <= GUIDE_MAX_M)) =>
+            {
+                self.guide_m = guide_m;
+            }
+            // A force that is mostly weight and bias must never reach a hand.
+            Command::Engage | Command::EngageOne(_) if !self.force.source.is_usable() => return false,
+            // A fault is not released while its cause lives.
+            Command::ReleaseStop if self.is_silent(t_s) => return false,
+            Command::Engage | Command::EngageOne(_) => return self.ask(Wish::Engage, t_s),
+            Command::Rest => return self.ask(Wish::Rest, t_s),
+            Command::Stop => return self.ask(Wish::Stop, t_s),
+            Command::ReleaseStop => return self.ask(Wish::Release, t_s),
+            Command::Shutdown => {}
+            _ => return false,
+        }
+        true
+    }
+
+    fn fail(&mut self, fault: Fault, t_s: f64) {
+        if let Some(change) = self.interlock.fail(fault) {
+            self.tell(Event::FaultRaised { t_s, side: self.side, fault });
+            self.enter(change, t_s);
+        }
+    }
+
+    /// A fault that matters only while drives are on.
+    pub(super) fn fail_if_driven(&mut self, fault: Fault, t_s: f64) {
+        if self.state().permits().drives {
+            self.fail(fault, t_s);
+        }
+    }
+
+    /// A device of this pair came or went.
+    pub(super) fn notice(&mut self, event: &DeviceEvent) {
+        if let Standing::Lost(loss) = event.standing {
+            self.fail_if_driven(Fault::DeviceLost { device: event.device, loss }, event.t_s);
+        }
+    }
+
+    /// One tick: measurements in, commands out, everything about it in the [`Tick`].
+    pub fn step(&mut self, inputs: Option<Inputs>, timing: &Timing) -> (Outputs, Tick) {
+        let now_s = timing.now_s;
+        self.missed += timing.missed_now;
+        let inputs = inputs.filter(Inputs::is_finite);
+        let moved_m = inputs.zip(self.last_inputs).map_or(0.0, |(now, last)| (now.tip_m - last.tip_m).norm());
+        if let Some(inputs) = &inputs {
+            self.take_in(inputs, now_s);
+        }
+        self.watch(inputs.as_ref(), moved_m, timing);
+        // Nothing new: the link keeps delivering what is on its way, ever older; the age gate takes the force away.
+        let seen = self.last_inputs.unwrap_or(NOTHING_YET);
+        let target = self.hand_eye.step(&seen.hand);
+        let tip_command_m = self.follow(&seen, &target);
+        let motion_m = self.motion_at_leader(&seen, tip_command_m);
+        let parcel = self.link.receive(now_s);
+        let rendered = self.renderer.step(&motion_m, parcel);
+        let delayed_n = parcel.map_or_else(Vector3::zeros, |parcel| parcel.force_n);
+        let age_s = parcel.map_or(f64::INFINITY, |parcel| now_s - parcel.t_s - self.delay_s + seen.age_s);
+        let permits = self.state().permits();
+        let ramp = ((now_s - self.engaged_s) / RAMP_S).clamp(0.0, 1.0);
+        let (rendered_n, gates) = self.chain.step(&Request {
+            force_n: rendered.force(self.mode).map(|force_n| force_n * ramp),
+            age_s,
+            speed_m_s: self.hand_speed_m_s,
+            permitted: permits.coupled && self.force.source.is_usable(),
+        });
+        if inputs.is_some() {
+            self.accuracy.add(&rendered, &self.force.tip_n);
+        }
+        let outputs = Outputs {
+            drives: permits.drives,
+            tip_command_m,
+            kbf_from_jaws: tip_command_m.and(seen.kbf_from_jaws).map(|_| target.kbf_from_jaws),
+            hand_force_n: self.hand_eye.mapping().force_to_hand(&rendered_n),
+            gripper_n: 0.0,
+            prompt: self.prompt,
+            guide_m: self.guide_m,
+        };
+        let leader_m = if tip_command_m.is_some() { target.tip_m } else { seen.tip_m };
+        let tick = self.tick(&seen, leader_m, &rendered, delayed_n, rendered_n, gates, timing);
+        self.ticks += 1;
+        (outputs, tick)
+    }
+
+    fn take_in(&mut self, inputs: &Inputs, now_s: f64) {
+        self.measure_speed(inputs, now_s);
+        self.force = self.force_path.step(now_s, &inputs.sensed);
+        self.identifier.step(&Sample { t_s: now_s, position_m: inputs.tip_m, force_n: self.force.tip_n });
+        self.link.send(self.identifier.parcel());
+        self.last_inputs = Some(*inputs);
+        self.last_input_s = now_s - inputs.age_s;
+    }
+
+    fn is_silent(&self, now_s: f64) -> bool {
+        now_s - self.last_input_s > SILENT_AFTER_S
+    }
+
+    /// Faults first, then the interlock's look at the machine.
+    fn watch(&mut self, inputs: Option<&Inputs>, moved_m: f64, timing: &Timing) {
+        let now_s = timing.now_s;
+        if timing.missed_now as f64 / self.rate_hz > STALLED_AFTER_S {
+            self.fail(Fault::LoopStalled { periods: timing.missed_now }, now_s);
+        }
+        let connected = !self.is_silent(now_s);
+        if !connected {
+            self.fail_if_driven(Fault::SourceSilent, now_s);
+        }
+        let coupled = matches!(self.state(), LoopState::Engaged | LoopState::Clutched);
+        if coupled && !self.force.source.is_usable() {
+            self.fail(Fault::ForceUnknown, now_s);
+        }
+        if coupled && inputs.is_some_and(|inputs| !inputs.powered) {
+            self.fail(Fault::DrivesOff, now_s);
+        }
+        let switches = self.last_inputs.map_or_else(Switches::default, |seen| seen.switches);
+        let seen = Seen {
+            connected,
+            powered: inputs.is_some_and(|inputs| inputs.powered),
+            agreed: inputs.is_some() && self.force.source.is_usable() && moved_m <= AT_REST_M,
+            present: switches.presence.unwrap_or(true),
+            clutch: switches.clutch,
+        };
+        if let Some(change) = self.interlock.step(&seen, now_s) {
+            self.enter(change, now_s);
+        }
+    }
+
+    /// Hand speed for the dead band, from differences: it rises within 5 ms, so one step of the encoder does not open the gate,
+    /// and falls within 40 ms, so a trembling hand does not switch its force on and off twenty times a second.
+    fn measure_speed(&mut self, inputs: &Inputs, now_s: f64) {
+        const RISE_S: f64 = 0.005;
+        const FALL_S: f64 = 0.040;
+        if let Some(last) = self.last_inputs {
+            let dt_s = (now_s - self.last_input_s).max(0.5 / self.rate_hz);
+            let speed = (inputs.hand.position_m - last.hand.position_m).norm() / dt_s;
+            let smoothing_s = if speed > self.hand_speed_m_s { RISE_S } else { FALL_S };
+            self.hand_speed_m_s += (speed - self.hand_speed_m_s) * (dt_s / (smoothing_s + dt_s));
+        }
+    }
+
+    /// The follower goes where the hand leads it, never faster than its speed limit; only while engaged.
+    fn follow(&mut self, seen: &Inputs, target: &Target) -> Option<Vector3<f64>> {
+        if !self.hand_eye.is_engaged() {
+            return None;
+        }
+        let from = self.command_m.unwrap_or(seen.tip_m);
+        let way = target.tip_m - from;
+        let share = if way.norm() > self.follower_step_max_m { self.follower_step_max_m / way.norm() } else { 1.0 };
+        self.command_m = Some(from + way * share);
+        self.command_m
+    }
+
+    /// The follower's motion now as the leader can know it: its command, as late as the follower is observed to be.
+    fn motion_at_leader(&mut self, seen: &Inputs, tip_command_m: Option<Vector3<f64>>) -> Vector3<f64> {
+        if let Some(command_m) = tip_command_m {
+            return self.tracking.step(&command_m, &seen.tip_m);
+        }
+        self.tracking.interrupt();
+        seen.tip_m
+    }
+
+    #[expect(clippy::too_many_arguments, reason = "all that one tick tells")]
+    fn tick(
+        &self,
+        seen: &Inputs,
+        leader_m: Vector3<f64>,
+        rendered: &Rendered,
+        delayed_n: Vector3<f64>,
+        rendered_n: Vector3<f64>,
+        gates: crate::safety::GateReport,
+        timing: &Timing,
+    ) -> Tick {
+        Tick {
+            index: self.ticks,
+            t_s: timing.now_s,
+            side: self.side,
+            state: self.state(),
+            mode: self.mode,
+            delay_s: self.delay_s,
+            leader_m,
+            tip_m: seen.tip_m,
+            measured_n: self.force.tip_n,
+            force: self.force,
+            wrist: match seen.sensed {
+                Sensed::AtTip(_) => None,
+                Sensed::AtWrist(sample) => Some(sample),
+            },
+            prompt: self.prompt,
+            guide_m: self.guide_m,
+            delayed_n,
+            asked_n: Mode::ALL.map(|mode| rendered.force(mode).unwrap_or_else(Vector3::zeros)),
+            rendered_n,
+            gates,
+            gate_settings: *self.chain.settings(),
+            identification: *self.identifier.report(),
+            wake_s: timing.wake_s,
+            work_s: timing.work_s,
+            missed: self.missed,
+            dropped: 0,
+        }
+    }
+}
+
+/// Shown until the rig has delivered its first sample.
+const NOTHING_YET: Inputs = Inputs {
+    hand: Hand::at(Vector3::new(0.0, 0.0, 0.0)),
+    gripper_rad: None,
+    tip_m: Vector3::new(0.0, 0.0, 0.0),
+    kbf_from_jaws: None,
+    sensed: Sensed::AtTip(Vector3::new(0.0, 0.0, 0.0)),
+    switches: Switches { clutch: false, presence: None },
+    powered: false,
+    age_s: 0.0,
+};
+
+/// Until the first sample: an absent force is no usable force, and a rig that measures at the tip shows so at once.
+const NO_FORCE_YET: ForceReport = ForceReport::none(ForceSource::AtTip, None);

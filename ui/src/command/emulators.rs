@@ -1,0 +1,78 @@
+//! Starts the emulators of a rig that is emulated, as a process of their own, for as long as this one runs.
+
+use std::{
+    io::{BufRead as _, BufReader},
+    process::{Child, Command, Stdio},
+    time::Duration,
+};
+
+use anyhow::{Context as _, bail};
+use nima::device::{SIDES, Side, rig::Settings};
+
+use super::setup::Setup;
+
+/// Emulators find good poses for their arms before they serve.
+const READY_WITHIN: Duration = Duration::from_secs(60);
+
+/// The emulators' process; dropping it ends it.
+#[derive(Debug)]
+pub(super) struct Emulators {
+    child: Child,
+}
+
+impl Emulators {
+    /// Starts them where the rig asks for it, and waits until they serve.
+    pub(super) fn start(setup: &Setup, devices: Option<&Settings>) -> anyhow::Result<Option<Self>> {
+        let Some(devices) = devices.filter(|devices| devices.emulated) else { return Ok(None) };
+        let program = std::env::current_exe().context("this program does not know where it is")?;
+        let child = Command::new(program)
+            .args(["emulate", "rig", "--rig", setup.rig(), "--scene", setup.scene()])
+            .stdin(Stdio::piped())
+            .stdout(Stdio::piped())
+            .spawn()
+            .context("the emulators cannot be started")?;
+        let mut this = Self { child };
+        this.wait(count(devices))?;
+        Ok(Some(this))
+    }
+
+    /// Each emulator tells its endpoint in one line once it serves.
+    fn wait(&mut self, devices: usize) -> anyhow::Result<()> {
+        let Some(told) = self.child.stdout.take() else { return Ok(()) };
+        let (line, lines) = std::sync::mpsc::channel();
+        std::thread::spawn(move || {
+            // Goes on reading to the end: a pipe that nobody empties would hold the emulators up.
+            for text in BufReader::new(told).lines().map_while(Result::ok) {
+                line.send(text).ok();
+            }
+        });
+        for served in 0..devices {
+            if lines.recv_timeout(READY_WITHIN).is_err() {
+                bail!("{served} of {devices} emulators of this rig serve; see `nima emulate rig`");
+            }
+        }
+        Ok(())
+    }
+}
+
+impl Drop for Emulators {
+    fn drop(&mut self) {
+        // The end of its input ends it in order.
+        drop(self.child.stdin.take());
+        for _ in 0..100 {
+            if !matches!(self.child.try_wait(), Ok(None)) {
+                return;
+            }
+            std::thread::sleep(Duration::from_millis(20));
+        }
+        self.child.kill().ok();
+        self.child.wait().ok();
+    }
+}
+
+fn count(devices: &Settings) -> usize {
+    let of_side = |side| devices.arm(side).map_or(0, |set| 3 + usize::from(set.servos.is_some()));
+    let shared = [devices.tissue_sensor.is_some(), devices.tracker.is_some(), devices.pedal.is_some()];
+    let sides: [usize; SIDES] = Side::ALL.map(of_side);
+    sides.into_iter().sum::<usize>() + shared.into_iter().map(usize::from).sum::<usize>()
+}

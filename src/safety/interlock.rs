@@ -194,23 +194,22 @@ impl<F: Copy> Interlock<F> {
         }
     }
 
-    const fn go(&mut self, at: At<F>, why: Why) -> Option<Change<F>> {
+    const fn go(&mut self, at: At<F>, why: Why) -> Change<F> {
         let from = self.state();
         self.at = at;
-        Some(Change { from, to: self.state(), why })
+        Change { from, to: self.state(), why }
     }
 
     /// Does what the operator wants, as far as this state allows; `Err` when it does not.
     pub fn ask(&mut self, wish: Wish, now_s: f64) -> Result<Option<Change<F>>, Refused> {
         let next = match (wish, self.at) {
             // The safe state is reachable from everywhere; a fault stays visible under a stop's latch.
-            (Wish::Stop, At::Faulted(..)) => return Ok(None),
+            (Wish::Stop, At::Stopped(_) | At::Faulted(..)) => return Ok(None),
             (Wish::Stop, At::Disconnected(at)) => At::Stopped(at.stop()),
             (Wish::Stop, At::Idle(at)) => At::Stopped(at.stop()),
             (Wish::Stop, At::Ready(at)) => At::Stopped(at.stop()),
             (Wish::Stop, At::Engaged(at)) => At::Stopped(at.stop()),
             (Wish::Stop, At::Clutched(at)) => At::Stopped(at.stop()),
-            (Wish::Stop, At::Stopped(_)) => return Ok(None),
             (Wish::Engage, At::Idle(at)) => {
                 self.ready_until_s = now_s + READY_WITHIN_S;
                 At::Ready(at.power())
@@ -222,7 +221,7 @@ impl<F: Copy> Interlock<F> {
             (Wish::Release, At::Faulted(at, _)) => At::Idle(at.release()),
             (Wish::Engage | Wish::Rest | Wish::Release, _) => return Err(Refused),
         };
-        Ok(self.go(next, Why::Asked))
+        Ok(Some(self.go(next, Why::Asked)))
     }
 
     /// Takes a fault in. The first one is kept; a stop stays a stop.
@@ -234,7 +233,7 @@ impl<F: Copy> Interlock<F> {
             At::Clutched(at) => at.fail(),
             At::Disconnected(_) | At::Stopped(_) | At::Faulted(..) => return None,
         };
-        self.go(At::Faulted(next, fault), Why::Fault)
+        Some(self.go(At::Faulted(next, fault), Why::Fault))
     }
 
     /// Looks at the machine once a tick.
@@ -242,23 +241,25 @@ impl<F: Copy> Interlock<F> {
     /// A device that goes while engaged is a fault, which the caller raises with its cause by [`Interlock::fail`]; drives that no
     /// longer obey too.
     pub fn step(&mut self, seen: &Seen, now_s: f64) -> Option<Change<F>> {
-        match self.at {
-            At::Disconnected(at) if seen.connected => self.go(At::Idle(at.connect()), Why::Connected),
-            At::Idle(at) if !seen.connected => self.go(At::Disconnected(at.disconnect()), Why::Disconnected),
-            At::Ready(at) if !seen.connected => self.go(At::Disconnected(at.disconnect()), Why::Disconnected),
+        let in_time = now_s <= self.ready_until_s;
+        let (next, why) = match self.at {
+            At::Disconnected(at) if seen.connected => (At::Idle(at.connect()), Why::Connected),
+            At::Idle(at) if !seen.connected => (At::Disconnected(at.disconnect()), Why::Disconnected),
+            At::Ready(at) if !seen.connected => (At::Disconnected(at.disconnect()), Why::Disconnected),
             At::Ready(at) if seen.powered && seen.agreed && seen.present && !seen.clutch => {
-                self.go(At::Engaged(at.engage()), Why::Agreed)
+                (At::Engaged(at.engage()), Why::Agreed)
             }
-            // Written so that a time that is no number gives up.
-            At::Ready(at) if !(now_s <= self.ready_until_s) => self.go(At::Idle(at.rest()), Why::Late),
-            At::Engaged(at) if !seen.present => self.go(At::Idle(at.rest()), Why::Absent),
-            At::Engaged(at) if seen.clutch => self.go(At::Clutched(at.clutch()), Why::Clutch),
-            At::Clutched(at) if !seen.present => self.go(At::Idle(at.rest()), Why::Absent),
+            // A time that is no number is not in time.
+            At::Ready(at) if !in_time => (At::Idle(at.rest()), Why::Late),
+            At::Engaged(at) if !seen.present => (At::Idle(at.rest()), Why::Absent),
+            At::Engaged(at) if seen.clutch => (At::Clutched(at.clutch()), Why::Clutch),
+            At::Clutched(at) if !seen.present => (At::Idle(at.rest()), Why::Absent),
             At::Clutched(at) if !seen.clutch && seen.agreed && seen.powered => {
-                self.go(At::Engaged(at.unclutch()), Why::Clutch)
+                (At::Engaged(at.unclutch()), Why::Clutch)
             }
-            _ => None,
-        }
+            _ => return None,
+        };
+        Some(self.go(next, why))
     }
 }
 

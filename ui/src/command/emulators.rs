@@ -12,7 +12,7 @@ use nima::device::{SIDES, Side, rig::Settings};
 use super::setup::Setup;
 
 /// Emulators find good poses for their arms before they serve.
-const READY_WITHIN: Duration = Duration::from_secs(60);
+const READY_WITHIN: Duration = Duration::from_mins(1);
 
 /// The emulators' process; dropping it ends it.
 #[derive(Debug)]

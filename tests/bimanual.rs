@@ -1,0 +1,221 @@
+//! Two arm pairs in one loop: independent and together, clutch and presence, agreement and ramp, shared faults.
+#![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+use nalgebra::Vector3;
+use nima::{
+    config::{Rig, Scene},
+    device::{DeviceEvent, Inputs, Loss, Outputs, Rig as _, SIDES, Side, Standing, Switches},
+    runtime::{Command, Event, Fault, Plan, Tick, run_virtual},
+    sim::Worlds,
+    teleop::{Calibrations, Loop, LoopState, Timing},
+};
+
+struct Bench {
+    worlds: Worlds,
+    control: Loop,
+    outputs: [Outputs; SIDES],
+    ticks: [Tick; SIDES],
+    tick: u64,
+}
+
+fn stepped(control: &mut Loop, inputs: [Option<Inputs>; SIDES], tick: u64) -> ([Outputs; SIDES], [Tick; SIDES]) {
+    let (outputs, ticks) = control.step(inputs, &Timing { now_s: tick as f64 * 1e-3, ..Timing::default() });
+    (outputs, ticks.map(Option::unwrap))
+}
+
+impl Bench {
+    fn new() -> Self {
+        let rig = Rig::load("simulated").unwrap();
+        let mut control = Loop::new(&rig, &[Some(Calibrations::default()), Some(Calibrations::default())]).unwrap();
+        let mut worlds = Worlds::new(&Scene::load("bimanual").unwrap(), rig.rate_hz);
+        let outputs = [Outputs::SAFE; SIDES];
+        let inputs = worlds.exchange(0.0, &outputs);
+        let (outputs, ticks) = stepped(&mut control, inputs, 0);
+        Self { worlds, control, outputs, ticks, tick: 1 }
+    }
+
+    fn obey(&mut self, command: Command) {
+        self.control.clear_events();
+        self.control.obey(command, self.now_s());
+    }
+
+    fn now_s(&self) -> f64 {
+        self.tick as f64 * 1e-3
+    }
+
+    fn step(&mut self, edit: impl Fn(Side, Inputs) -> Option<Inputs>) {
+        let mut inputs = self.worlds.exchange(self.now_s(), &self.outputs);
+        for side in Side::ALL {
+            inputs[side.index()] = inputs[side.index()].and_then(|inputs| edit(side, inputs));
+        }
+        (self.outputs, self.ticks) = stepped(&mut self.control, inputs, self.tick);
+        self.tick += 1;
+    }
+
+    fn run(&mut self, ticks: usize, edit: impl Fn(Side, Inputs) -> Option<Inputs>) {
+        for _ in 0..ticks {
+            self.step(&edit);
+        }
+    }
+
+    fn states(&self) -> [LoopState; SIDES] {
+        self.ticks.each_ref().map(|tick| tick.state)
+    }
+}
+
+const AS_IT_IS: fn(Side, Inputs) -> Option<Inputs> = |_, inputs| Some(inputs);
+
+#[test]
+fn each_hand_works_on_its_own_pegs_and_both_feel() {
+    let plan = Plan {
+        rig: Rig::load("simulated").unwrap(),
+        scene: Scene::load("bimanual").unwrap(),
+        calibrations: Calibrations::default(),
+        left_calibrations: Calibrations::default(),
+        engage: true,
+    };
+    let mut felt_n = [0.0_f64; SIDES];
+    run_virtual(&plan, 10.0, |tick| {
+        let felt = &mut felt_n[tick.side.index()];
+        *felt = felt.max(tick.rendered_n.norm());
+        let beyond_m = if tick.side == Side::Right { -tick.tip_m.x } else { tick.tip_m.x };
+        assert!(beyond_m < 0.0, "{:?} is on the other side", tick.side);
+        None
+    })
+    .unwrap();
+    assert!(felt_n.iter().all(|felt| *felt > 0.5), "{felt_n:?}");
+}
+
+#[test]
+fn one_hand_may_engage_and_a_stop_is_for_both() {
+    let mut bench = Bench::new();
+    bench.obey(Command::EngageOne(Side::Left));
+    bench.run(5, AS_IT_IS);
+    assert_eq!(bench.states(), [LoopState::Idle, LoopState::Engaged]);
+    bench.obey(Command::Engage);
+    bench.run(5, AS_IT_IS);
+    assert_eq!(bench.states(), [LoopState::Engaged; SIDES]);
+    bench.obey(Command::Stop);
+    bench.step(AS_IT_IS);
+    assert_eq!(bench.states(), [LoopState::Stopped; SIDES]);
+    assert_eq!(bench.outputs, [Outputs::SAFE; SIDES]);
+    bench.obey(Command::EngageOne(Side::Left));
+    assert!(bench.control.events().any(|event| matches!(event, Event::CommandRefused { .. })));
+    bench.obey(Command::ReleaseStop);
+    bench.run(1000, AS_IT_IS);
+    assert_eq!(bench.states(), [LoopState::Idle; SIDES], "nothing resumes by itself");
+}
+
+#[test]
+fn a_fault_of_one_takes_the_other_out_of_engagement() {
+    let mut bench = Bench::new();
+    bench.obey(Command::Engage);
+    bench.run(500, AS_IT_IS);
+    bench.run(25, |side, inputs| (side == Side::Right).then_some(inputs));
+    let [right, left] = bench.states();
+    assert_eq!(left, LoopState::Faulted(Fault::SourceSilent));
+    assert_eq!(right, LoopState::Faulted(Fault::OtherArm));
+    assert_eq!(bench.outputs, [Outputs::SAFE; SIDES]);
+}
+
+#[test]
+fn a_lost_device_is_a_fault_at_once_and_only_while_it_matters() {
+    let lost = |t_s| DeviceEvent { t_s, device: 2, standing: Standing::Lost(Loss::Silent), of_side: [true, false] };
+    let mut bench = Bench::new();
+    bench.control.notice(&lost(bench.now_s()));
+    assert_eq!(bench.states(), [LoopState::Idle; SIDES], "idle: it is shown, no fault");
+    bench.obey(Command::Engage);
+    bench.run(10, AS_IT_IS);
+    bench.control.notice(&lost(bench.now_s()));
+    bench.step(AS_IT_IS);
+    let fault = Fault::DeviceLost { device: 2, loss: Loss::Silent };
+    assert_eq!(bench.states(), [LoopState::Faulted(fault), LoopState::Faulted(Fault::OtherArm)]);
+}
+
+#[test]
+fn the_clutch_frees_the_hand_and_coupling_again_never_moves_the_tip() {
+    let mut bench = Bench::new();
+    bench.obey(Command::Engage);
+    bench.run(2000, AS_IT_IS);
+    let clutched = |_: Side, inputs: Inputs| {
+        // The hand goes elsewhere meanwhile, by 30 mm.
+        let mut inputs = inputs;
+        inputs.hand.position_m += Vector3::new(0.03, 0.0, 0.0);
+        Some(Inputs { switches: Switches { clutch: true, presence: None }, ..inputs })
+    };
+    bench.run(300, clutched);
+    assert_eq!(bench.states(), [LoopState::Clutched; SIDES]);
+    assert!(bench.outputs.iter().all(|o| o.drives && o.tip_command_m.is_none() && o.hand_force_n.norm() < 1e-15));
+    let moved = |_: Side, inputs: Inputs| {
+        let mut inputs = inputs;
+        inputs.hand.position_m += Vector3::new(0.03, 0.0, 0.0);
+        Some(inputs)
+    };
+    // The first command is where the tip is; the next ones follow at the follower's speed.
+    let mut last_m = bench.ticks.each_ref().map(|tick| tick.tip_m);
+    for _ in 0..50 {
+        bench.step(moved);
+        for side in Side::ALL {
+            let asked_m = bench.outputs[side.index()].tip_command_m.unwrap();
+            let step_m = (asked_m - last_m[side.index()]).norm();
+            assert!(step_m < 0.31e-3, "a jump of {step_m} m");
+            last_m[side.index()] = asked_m;
+        }
+    }
+    assert_eq!(bench.states(), [LoopState::Engaged; SIDES]);
+}
+
+#[test]
+fn engaging_begins_where_the_tip_is_and_the_force_rises_over_a_fifth_of_a_second() {
+    let mut bench = Bench::new();
+    // Held against the tissue while idle: the tip is pressed in, the hand elsewhere.
+    bench.obey(Command::SetStaticHold(true));
+    bench.obey(Command::SetMode(nima::impedance::Mode::Dfr));
+    let pressed = |_: Side, inputs: Inputs| {
+        Some(Inputs { sensed: nima::device::Sensed::AtTip(Vector3::new(0.0, 0.0, 3.0)), ..inputs })
+    };
+    bench.run(500, pressed);
+    bench.obey(Command::Engage);
+    bench.step(pressed);
+    assert_eq!(bench.states(), [LoopState::Engaged; SIDES]);
+    for side in Side::ALL {
+        let step_m = bench.outputs[side.index()].tip_command_m.unwrap() - bench.ticks[side.index()].tip_m;
+        assert!(step_m.norm() <= 0.2e-3, "{step_m}");
+    }
+    bench.run(99, pressed);
+    let halfway_n = bench.ticks[0].rendered_n.z;
+    assert!((halfway_n - 1.5).abs() < 0.05, "{halfway_n}");
+    bench.run(101, pressed);
+    assert!((bench.ticks[0].rendered_n.z - 3.0).abs() < 1e-6, "{}", bench.ticks[0].rendered_n);
+}
+
+#[test]
+fn a_hand_that_lets_go_ends_the_engagement_and_drives_that_switch_off_are_a_fault() {
+    let absent = |_: Side, inputs: Inputs| {
+        Some(Inputs { switches: Switches { clutch: false, presence: Some(false) }, ..inputs })
+    };
+    let mut bench = Bench::new();
+    bench.obey(Command::Engage);
+    bench.run(10, AS_IT_IS);
+    bench.step(absent);
+    assert_eq!(bench.states(), [LoopState::Idle; SIDES]);
+    bench.run(100, AS_IT_IS);
+    assert_eq!(bench.states(), [LoopState::Idle; SIDES]);
+    bench.obey(Command::Engage);
+    bench.run(10, AS_IT_IS);
+    bench.step(|_, inputs| Some(Inputs { powered: false, ..inputs }));
+    assert_eq!(bench.states(), [LoopState::Faulted(Fault::DrivesOff); SIDES]);
+}
+
+#[test]
+fn a_scale_changes_the_way_and_never_the_place() {
+    let mut bench = Bench::new();
+    bench.obey(Command::Engage);
+    bench.run(300, AS_IT_IS);
+    bench.obey(Command::SetScale(0.2));
+    let before_m = bench.outputs[0].tip_command_m.unwrap();
+    bench.step(AS_IT_IS);
+    assert!((bench.outputs[0].tip_command_m.unwrap() - before_m).norm() < 0.31e-3, "no faster than it may be");
+    bench.obey(Command::SetScale(7.0));
+    assert!(bench.control.events().any(|event| matches!(event, Event::CommandRefused { .. })));
+}

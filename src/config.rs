@@ -90,12 +90,19 @@ pub struct Rig {
     /// The network against the trocar's friction.
     #[serde(default)]
     pub tip_force: TipForcePart,
+    /// Ask the operating system for real-time priority and locked memory; what it refuses is told.
+    #[serde(default = "yes")]
+    pub real_time: bool,
     /// From the hand's motion to the tip's.
     #[serde(default)]
     pub teleoperation: Teleoperation,
     /// The devices; without them everything is simulated.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub devices: Option<device::rig::Settings>,
+}
+
+const fn yes() -> bool {
+    true
 }
 
 /// From the hand's motion to the tip's: `kbf_from_view * view_from_leader`, and the scale.

@@ -13,6 +13,7 @@ pub mod force_dimension;
 mod health;
 pub mod hid;
 pub mod kinova;
+mod lever;
 pub mod ndi;
 #[cfg(unix)]
 mod os;
@@ -27,6 +28,7 @@ mod trouble;
 use nalgebra::{UnitQuaternion, Vector3};
 
 pub use health::{Health, Identity, Loss, Standing};
+pub use lever::Lever;
 pub use prompt::Prompt;
 pub use reading::{
     ARM_JOINTS, ArmReading, CapReading, ForceReading, ForceStatus, HandleReading, PedalReading, SERVOS, ServoReading,
@@ -154,6 +156,11 @@ pub trait Rig: Send {
     /// A device that came or went since the last call; call until `None`. Rigs without devices have none.
     fn event(&mut self) -> Option<DeviceEvent> {
         None
+    }
+
+    /// What another thread may pull when the loop no longer runs; asked for once, before the loop begins.
+    fn levers(&self) -> Vec<Lever> {
+        Vec::new()
     }
 
     /// How the devices are, in the order of the rig's [`Roster`].

@@ -113,7 +113,7 @@ pub struct Tick {
 pub enum Fault {
     /// The rig gave no finite sample for longer than the age limit.
     SourceSilent,
-    /// The loop missed more than this many periods in a row.
+    /// The loop was held up: it missed too many periods in a row, or the supervisor found it silent.
     LoopStalled {
         /// Periods missed at once.
         periods: u64,
@@ -138,7 +138,7 @@ impl Fault {
     pub const fn cause(self) -> &'static str {
         match self {
             Self::SourceSilent => "The rig sent no valid sample for 20 ms",
-            Self::LoopStalled { .. } => "The control loop was held up for more than 50 ms",
+            Self::LoopStalled { .. } => "The control loop was held up: drives and force were switched off",
             Self::ForceUnknown => "The force at the tip is not known: the wrist sensor is not calibrated for this tool",
             Self::DeviceLost { loss, .. } => match loss {
                 Loss::Disconnected => "A device was lost: the connection is gone",

@@ -6,12 +6,14 @@
 mod messages;
 mod os;
 mod summary;
+mod supervisor;
 mod thread;
 mod virtual_clock;
 
 pub use messages::{Command, Event, Fault, Tick};
 pub use os::Scheduling;
 pub use summary::{CpuShare, DeviceFigures, ModeError, Summary};
+pub use supervisor::STALL_MAX_S;
 pub use thread::{Handle, StartError, start};
 pub use virtual_clock::run_virtual;
 

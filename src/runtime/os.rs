@@ -51,10 +51,10 @@ const PRIORITY: i32 = 80;
 /// Stack touched in advance, bytes.
 const STACK_TOUCHED: usize = 128 * 1024;
 
-/// Asks for everything a real-time thread wants. Call it on that thread. Refusals are told, never fatal.
-pub(super) fn prepare_thread() -> Scheduling {
+/// Asks for everything a real-time thread wants, if it is wanted. Call it on that thread. Refusals are told, never fatal.
+pub(super) fn prepare_thread(real_time: bool) -> Scheduling {
     touch_stack();
-    granted()
+    if real_time { granted() } else { Scheduling::default() }
 }
 
 #[inline(never)]
@@ -65,6 +65,16 @@ fn touch_stack() {
         page[0] = 1;
     }
     std::hint::black_box(&stack);
+}
+
+/// A place above the loop for the thread that watches it, where that is granted.
+pub(super) fn prepare_supervisor() {
+    #[cfg(target_os = "linux")]
+    // SAFETY: a plain system call on the calling thread with a valid, initialised argument.
+    unsafe {
+        let parameter = libc::sched_param { sched_priority: PRIORITY + 5 };
+        libc::pthread_setschedparam(libc::pthread_self(), libc::SCHED_FIFO, &raw const parameter);
+    }
 }
 
 #[cfg(target_os = "linux")]

@@ -2,6 +2,7 @@
 
 use std::{
     io,
+    sync::Arc,
     thread::{Builder, JoinHandle},
 };
 
@@ -10,6 +11,7 @@ use crossbeam_channel::{Receiver, Sender, TryRecvError, bounded};
 use super::{
     Command, Event, Plan, Summary, Tick, os,
     summary::{CpuShare, DeviceFigures, Meters},
+    supervisor::{Pulse, Supervisor},
 };
 use crate::{
     device::{Healths, Outputs, Rig, Roster, SIDES, rig::RigError},
@@ -53,12 +55,15 @@ pub struct Handle {
     healths: Receiver<Healths>,
     roster: Roster,
     thread: Option<JoinHandle<Summary>>,
+    /// Outlives the loop: fields are dropped after [`Drop`] has joined its thread.
+    _supervisor: Supervisor,
 }
 
 /// Starts the loop in its own thread.
 pub fn start(plan: &Plan) -> Result<Handle, StartError> {
     let control = plan.control()?;
     let (rig, roster) = plan.assemble()?;
+    let (pulse, levers) = (Arc::new(Pulse::default()), rig.levers());
     let (commands, commands_in) = bounded(COMMANDS_WAITING_MAX);
     let (ticks_out, ticks) = bounded(TICKS_WAITING_MAX);
     let (events_out, events) = bounded(EVENTS_WAITING_MAX);
@@ -67,6 +72,7 @@ pub fn start(plan: &Plan) -> Result<Handle, StartError> {
         control,
         rig,
         engage: plan.engage,
+        real_time: plan.rig.real_time,
         names: roster.iter().map(|entry| entry.name.clone()).collect(),
         period_ns: (1e9 / plan.rig.rate_hz).round() as u64,
         commands: commands_in,
@@ -74,9 +80,11 @@ pub fn start(plan: &Plan) -> Result<Handle, StartError> {
         events: events_out,
         healths: healths_out,
         meters: Meters::default(),
+        pulse: Arc::clone(&pulse),
     };
+    let supervisor = Supervisor::start(pulse, levers, plan.rig.real_time)?;
     let thread = Builder::new().name("realtime".to_owned()).spawn(move || realtime.run())?;
-    Ok(Handle { commands, ticks, events, healths, roster, thread: Some(thread) })
+    Ok(Handle { commands, ticks, events, healths, roster, thread: Some(thread), _supervisor: supervisor })
 }
 
 impl Handle {
@@ -133,6 +141,7 @@ impl Drop for Handle {
 struct Realtime {
     control: Loop,
     rig: Box<dyn Rig>,
+    real_time: bool,
     /// Names of the devices.
     names: Vec<String>,
     /// Engage once, as soon as everything delivers.
@@ -143,11 +152,12 @@ struct Realtime {
     events: Sender<Event>,
     healths: Sender<Healths>,
     meters: Meters,
+    pulse: Arc<Pulse>,
 }
 
 impl Realtime {
     fn run(mut self) -> Summary {
-        let scheduling = os::prepare_thread();
+        let scheduling = os::prepare_thread(self.real_time);
         self.events.try_send(Event::Scheduling(scheduling)).ok();
         let cpu_s = os::cpu_s();
         let start_ns = os::monotonic_ns();
@@ -168,6 +178,7 @@ impl Realtime {
         }
         // Whatever ends the loop, the hand is left without force and the follower at rest.
         self.rig.exchange(timing.now_s, &[Outputs::SAFE; SIDES]);
+        self.pulse.beat(os::monotonic_ns(), false);
         let wall_s = (os::monotonic_ns() - start_ns) as f64 * 1e-9;
         let [realtime, process] = {
             let used_s = os::cpu_s();
@@ -198,6 +209,9 @@ impl Realtime {
     fn tick(&mut self, outputs: &[Outputs; SIDES], timing: &mut Timing, woke_ns: u64) -> [Outputs; SIDES] {
         let inputs = self.rig.exchange(timing.now_s, outputs);
         let exchanged_ns = os::monotonic_ns();
+        if let Some(silent_s) = self.pulse.take_pulled() {
+            self.control.notice_stall(silent_s, timing.now_s);
+        }
         for _ in 0..DEVICE_EVENTS_PER_TICK_MAX {
             let Some(event) = self.rig.event() else { break };
             self.control.notice(&event);
@@ -208,6 +222,7 @@ impl Realtime {
             self.control.obey(Command::Engage, timing.now_s);
         }
         let (next, ticks) = self.control.step(inputs, timing);
+        self.pulse.beat(os::monotonic_ns(), next.iter().any(|outputs| outputs.drives));
         let worked_ns = os::monotonic_ns();
         timing.work_s = (worked_ns - exchanged_ns) as f64 * 1e-9;
         self.meters.wake.record(timing.wake_s);

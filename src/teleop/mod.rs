@@ -93,6 +93,14 @@ impl Loop {
         }
     }
 
+    /// Takes in that the supervisor found the loop silent for so long, s, and switched the drives off.
+    pub fn notice_stall(&mut self, silent_s: f64, t_s: f64) {
+        for pair in self.pairs.iter_mut().flatten() {
+            let periods = (silent_s * pair.rate_hz()).round() as u64;
+            pair.fail_if_driven(Fault::LoopStalled { periods }, t_s);
+        }
+    }
+
     /// One tick of each pair. Sides without a pair rest and tell nothing.
     pub fn step(
         &mut self,

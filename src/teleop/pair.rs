@@ -109,6 +109,11 @@ impl Pair {
         self.side
     }
 
+    /// Ticks per second.
+    pub(super) const fn rate_hz(&self) -> f64 {
+        self.rate_hz
+    }
+
     /// State now.
     pub const fn state(&self) -> LoopState {
         self.interlock.state()

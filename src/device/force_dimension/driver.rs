@@ -267,6 +267,12 @@ impl Driver {
         self.shared.force_wanted.store(false, Ordering::Release);
     }
 
+    /// What another thread may do in an emergency: force off and brakes on within a cycle of the device's own thread.
+    pub fn lever(&self) -> impl FnMut() + Send + 'static {
+        let shared = Arc::clone(&self.shared);
+        move || shared.force_wanted.store(false, Ordering::Release)
+    }
+
     /// Force is wanted; false again once the device took it away.
     pub fn is_force_wanted(&self) -> bool {
         self.shared.force_wanted.load(Ordering::Acquire)

@@ -107,6 +107,14 @@ impl Lines {
         Ok(Self { tcp, packets, calls: Caller::new(true), udp, cyclic: Caller::new(false), datagram, place, patience })
     }
 
+    /// Another end of the calls' connection with a request that is written already, for an emergency.
+    pub(super) fn last_words(&self, rpc: Rpc, question: &impl Message) -> std::io::Result<(Tcp, Vec<u8>)> {
+        // A number of its own: ordinary calls count up from 1.
+        let mut caller = Caller { session: self.calls.session, message: u16::MAX - 1, out: Vec::new(), packets: true };
+        caller.request(rpc, question);
+        Ok((self.tcp.duplicate()?, caller.out))
+    }
+
     /// Makes a session on each connection.
     pub(super) fn log_in(&mut self, settings: &Settings) -> Result<(), Trouble> {
         let login = CreateSessionInfo {

@@ -5,8 +5,8 @@ use nalgebra::{UnitQuaternion, Vector3};
 use super::{ArmSet, OLDEST_S, RigError, enrol, is_there, jaws::JawsControl};
 use crate::{
     device::{
-        ArmReading, ForceReading, HandleReading, Health, Inputs, Outputs, Roster, Sensed, ServoReading, Side, Slot,
-        Stamped, Switches, bota, dynamixel,
+        ArmReading, ForceReading, HandleReading, Health, Inputs, Lever, Outputs, Roster, Sensed, ServoReading, Side,
+        Slot, Stamped, Switches, bota, dynamixel,
         force_dimension::{self, HandleEvent},
         kinova,
     },
@@ -27,6 +27,7 @@ pub(super) struct Shared {
 /// The devices of one side.
 #[derive(Debug)]
 pub struct ArmPair {
+    levers: [Lever; 2],
     handle: Slot<force_dimension::Driver>,
     arm: Slot<kinova::Driver>,
     sensor: Slot<bota::Driver>,
@@ -61,12 +62,22 @@ impl ArmPair {
         let mount = Arm::new(&set.mount).map_err(|source| RigError::Mount { side: word, source })?;
         let rcm = Rcm::new(&set.rcm).map_err(|source| RigError::Rcm { side: word, source })?;
         let ArmSet { handle, arm, sensor, servos, .. } = set.clone();
-        let of_handle = handle.serial.map_or_else(|| "any".to_owned(), |serial| serial.to_string());
-        let places = [of_handle, arm.host.clone(), sensor.port.clone()];
+        let which = handle.serial.map_or_else(|| "any".to_owned(), |serial| serial.to_string());
+        let places = [which, arm.host.clone(), sensor.port.clone()];
         let names = ["handle", "arm", "sensor"].map(|device| format!("{word} {device}"));
-        let handle = Slot::start(&names[0], move || force_dimension::open(&handle))?;
+        let levers = [Lever::default(), Lever::default()];
+        let [of_handle, of_arm] = levers.clone();
+        let handle = Slot::start(&names[0], move || {
+            force_dimension::open(&handle).inspect(|driver| of_handle.attach(driver.lever()))
+        })?;
         enrol(roster, &names[0], format!("Force Dimension omega.7, {}", places[0]), &handle);
-        let arm = Slot::start(&names[1], move || kinova::open(&arm))?;
+        let arm = Slot::start(&names[1], move || {
+            kinova::open(&arm).inspect(|driver| {
+                if let Ok(lever) = driver.lever() {
+                    of_arm.attach(lever);
+                }
+            })
+        })?;
         enrol(roster, &names[1], format!("Kinova Gen3, {}", places[1]), &arm);
         let sensor = Slot::start(&names[2], move || bota::Driver::open(&sensor))?;
         enrol(roster, &names[2], format!("Bota sensor, {}", places[2]), &sensor);
@@ -78,6 +89,7 @@ impl ArmPair {
             Ok::<_, std::io::Error>((slot, JawsControl::new(set.jaws, period_s)))
         });
         Ok(Self {
+            levers,
             handle,
             arm,
             sensor,
@@ -246,6 +258,11 @@ impl ArmPair {
         if let Some(servos) = slot.device() {
             servos.set_goals(&goals);
         }
+    }
+
+    /// Of the handle and the arm.
+    pub(super) const fn levers(&self) -> &[Lever; 2] {
+        &self.levers
     }
 
     /// Why the arm cannot be engaged from where it is.

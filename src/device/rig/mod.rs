@@ -17,8 +17,8 @@ pub use jaws::JawsSettings;
 pub use settings::{ArmSet, SensorPlace, Settings};
 
 use super::{
-    DEVICES_MAX, Device, DeviceEvent, Health, Healths, Inputs, Outputs, PedalReading, Rig, Roster, RosterEntry, SIDES,
-    Side, Slot, Stamped, Standing, Switches, Tracked, TrackerReading, bota, hid, hid::Held, ndi,
+    DEVICES_MAX, Device, DeviceEvent, Health, Healths, Inputs, Lever, Outputs, PedalReading, Rig, Roster, RosterEntry,
+    SIDES, Side, Slot, Stamped, Standing, Switches, Tracked, TrackerReading, bota, hid, hid::Held, ndi,
 };
 use watch::Watch;
 
@@ -200,6 +200,10 @@ impl Rig for DeviceRig {
 
     fn event(&mut self) -> Option<DeviceEvent> {
         self.watch.take()
+    }
+
+    fn levers(&self) -> Vec<Lever> {
+        self.pairs.iter().flatten().flat_map(|pair| pair.levers().clone()).collect()
     }
 
     fn health(&self) -> Healths {

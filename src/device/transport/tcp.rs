@@ -26,6 +26,11 @@ impl Tcp {
         Self::of(stream).map_err(trouble)
     }
 
+    /// Another end of the same connection, for an emergency.
+    pub fn duplicate(&self) -> std::io::Result<Self> {
+        Ok(Self { stream: self.stream.try_clone()? })
+    }
+
     /// Of an accepted connection.
     pub fn of(stream: TcpStream) -> std::io::Result<Self> {
         stream.set_nonblocking(true)?;

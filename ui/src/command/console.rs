@@ -21,10 +21,20 @@ pub(super) struct Arguments {
     /// Save a picture of the window (PNG) just before closing; needs --exit-after
     #[arg(long, value_name = "FILE", requires = "exit_after")]
     screenshot: Option<PathBuf>,
+    /// Do not ask for real-time priority and locked memory
+    #[arg(long)]
+    ordinary: bool,
+    /// Write the loop's figures (JSON) here when the window is closed
+    #[arg(long, value_name = "FILE")]
+    summary: Option<PathBuf>,
+    /// Hold the window up for this many seconds, once: to see that the loop does not mind
+    #[arg(long, value_name = "S", value_parser = super::run::positive_seconds)]
+    stall: Option<f64>,
 }
 
 pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
-    let (rig, scene) = arguments.setup.load()?;
+    let (mut rig, scene) = arguments.setup.load()?;
+    rig.real_time &= !arguments.ordinary;
     let _emulators = Emulators::start(&arguments.setup, rig.devices.as_ref())?;
     let calibrations = InForce::load(None, &scene).calibrations(&rig);
     let left_calibrations = calibrations.clone();
@@ -37,6 +47,8 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         exit_after: arguments.exit_after.map(Duration::from_secs_f64),
         screenshot: arguments.screenshot.clone(),
         wizard: arguments.calibrate,
+        summary: arguments.summary.clone(),
+        stall: arguments.stall.map(Duration::from_secs_f64),
     };
     console::run(handle, rig, scene, options)
 }

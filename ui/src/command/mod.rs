@@ -11,6 +11,7 @@ mod output;
 mod run;
 mod setup;
 mod study;
+mod timing;
 mod tradeoff;
 mod train;
 

@@ -14,8 +14,9 @@ use anyhow::{Context as _, bail};
 use clap::Args;
 use nima::{
     calibration::gravity::Drift,
+    device::{Health, Standing, Trouble},
     impedance::Mode,
-    runtime::{self, Command, Plan, Summary, Tick},
+    runtime::{self, Command, DeviceFigures, Handle, Plan, Summary, Tick},
     statistics::Quantiles,
 };
 
@@ -41,6 +42,9 @@ pub(super) struct Arguments {
     /// Run on the virtual clock, as fast as it goes
     #[arg(long = "virtual")]
     virtual_clock: bool,
+    /// Do not ask for real-time priority and locked memory
+    #[arg(long)]
+    ordinary: bool,
     /// Print the figures as one JSON object
     #[arg(long)]
     json: bool,
@@ -59,6 +63,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     rig.mode = arguments.mode.unwrap_or(rig.mode);
     rig.delay_s = arguments.delay_ms.map_or(rig.delay_s, |delay_ms| delay_ms * 1e-3);
     rig.identification.cross_talk |= arguments.cross_talk;
+    rig.real_time &= !arguments.ordinary;
     rig.validate()?;
     if arguments.virtual_clock && rig.devices.is_some() {
         bail!("rig \"{}\" has devices, and they live on the real clock: leave --virtual out", rig.name);
@@ -117,6 +122,7 @@ fn on_the_real_clock(plan: &Plan, start: &mut Start, seconds: Option<f64>, quiet
     ctrlc::set_handler(move || flag.store(true, Ordering::Relaxed)).context("Ctrl-C cannot be caught")?;
     let handle = runtime::start(plan)?;
     let mut status = StatusLine::new(!quiet);
+    let mut troubles = Troubles::default();
     let end = seconds.map(|seconds| Instant::now() + Duration::from_secs_f64(seconds));
     while handle.is_running() && !interrupted.load(Ordering::Relaxed) && end.is_none_or(|end| Instant::now() < end) {
         let rest = end.map_or(Duration::MAX, |end| end.saturating_duration_since(Instant::now()));
@@ -126,6 +132,7 @@ fn on_the_real_clock(plan: &Plan, start: &mut Start, seconds: Option<f64>, quiet
             newest = Some(*tick);
             command = start.watch(tick).or(command);
         });
+        troubles.tell(&handle);
         // The queue of commands holds nothing else: it takes this one.
         command.map(|command| handle.send(command));
         if let Some(tick) = newest {
@@ -134,6 +141,31 @@ fn on_the_real_clock(plan: &Plan, start: &mut Start, seconds: Option<f64>, quiet
     }
     status.end();
     handle.stop_and_join().context("the real-time thread died; its figures are lost")
+}
+
+/// Tells of each device that cannot be opened why, and what to do; again only when that changes.
+#[derive(Default)]
+struct Troubles {
+    told: Vec<Option<Trouble>>,
+    looked: Option<Instant>,
+}
+
+impl Troubles {
+    fn tell(&mut self, handle: &Handle) {
+        const LOOK_EVERY: Duration = Duration::from_millis(500);
+        if self.looked.is_some_and(|looked| looked.elapsed() < LOOK_EVERY) {
+            return;
+        }
+        self.looked = Some(Instant::now());
+        self.told.resize(handle.roster().len(), None);
+        for (entry, told) in handle.roster().iter().zip(&mut self.told) {
+            let trouble = entry.view.report().trouble;
+            if let Some(trouble) = trouble.as_ref().filter(|trouble| told.as_ref() != Some(trouble)) {
+                eprintln!("{}: {trouble}. {}", entry.name, trouble.cure());
+            }
+            *told = trouble;
+        }
+    }
 }
 
 /// One line on stderr that is rewritten in place; on a pipe one line a second.
@@ -185,6 +217,8 @@ fn in_words(plan: &Plan, summary: &Summary) -> String {
          wake-up us  {}\n\
          work us     {}\n\
          rig us      {}\n\
+         sample to force us {}\n\
+         processor   {:.1} % of a core in the loop's thread, {:.1} % in the whole program{}\n\
          error of each mode before the gates, against the force at the tip at the same instant:",
         plan.scene.name,
         plan.rig.name,
@@ -198,17 +232,44 @@ fn in_words(plan: &Plan, summary: &Summary) -> String {
         times(&summary.wake_us),
         times(&summary.work_us),
         times(&summary.rig_us),
+        times(&summary.sample_to_force_us),
+        summary.cpu.realtime * 100.0,
+        summary.cpu.process * 100.0,
+        devices_in_words(summary),
     );
     for error in &summary.error {
         let fields = format!(
-            "\n  {:8}  mean {:10.4} N   sd {:10.4} N   max {:10.4} N   invalid {}",
-            error.mode, error.mae_n, error.sd_n, error.max_n, error.invalid
+            "\n  {:5}  {:8}  mean {:10.4} N   sd {:10.4} N   max {:10.4} N   invalid {}",
+            error.side.word(),
+            error.mode,
+            error.mae_n,
+            error.sd_n,
+            error.max_n,
+            error.invalid
         );
         text.push_str(&fields);
     }
     if let (Some(advice), "real") = (summary.scheduling.advice(), summary.clock) {
         text.push_str("\nnote: ");
         text.push_str(advice);
+    }
+    text
+}
+
+fn devices_in_words(summary: &Summary) -> String {
+    let mut text = String::new();
+    for DeviceFigures { name, health } in &summary.devices {
+        let standing = match health.standing {
+            Standing::Connected => "connected".to_owned(),
+            Standing::Opening => "never came".to_owned(),
+            Standing::Closed => "disconnected".to_owned(),
+            Standing::Lost(loss) => format!("lost: {}", loss.cause()),
+        };
+        let Health { readings, rate_hz, lost, damaged, refused, .. } = health;
+        let line = format!(
+            "\n  {name:14}  {standing:12}  {readings:8} readings   {rate_hz:7.1} Hz   lost {lost}   damaged {damaged}   refused {refused}"
+        );
+        text.push_str(&line);
     }
     text
 }

@@ -14,7 +14,7 @@ use nima::{
     tip_force::MOST_ROWS,
 };
 
-use super::{output, tradeoff};
+use super::{output, timing, tradeoff};
 
 #[derive(Debug, Subcommand)]
 pub(super) enum StudyCommand {
@@ -22,6 +22,8 @@ pub(super) enum StudyCommand {
     Stability(Stability),
     /// Measure what every knob of the identification costs in time and gives in accuracy
     Tradeoff(tradeoff::Arguments),
+    /// Time the loop beside its console, busy cores, a held-up window and heavy disk writing
+    Timing(timing::Arguments),
     /// Repeat the paper's three validations on the simulated rig, its figures beside ours
     Validation(Validation),
 }
@@ -79,6 +81,7 @@ pub(super) fn run(command: &StudyCommand) -> anyhow::Result<()> {
     match command {
         StudyCommand::Stability(arguments) => stability(arguments),
         StudyCommand::Tradeoff(arguments) => tradeoff::run(arguments),
+        StudyCommand::Timing(arguments) => timing::run(arguments),
         StudyCommand::Validation(arguments) => validation(arguments),
     }
 }

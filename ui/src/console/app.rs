@@ -1,6 +1,7 @@
 //! The window: takes in what the loop sent, lays out the panels, sends what the operator asked.
 
 use std::{
+    io::Write as _,
     path::Path,
     time::{Duration, Instant},
 };
@@ -10,6 +11,7 @@ use egui::{CentralPanel, Event, Frame, Key, Margin, Panel, ScrollArea, Ui};
 use nima::{
     config::{Rig, Scene},
     device::Prompt,
+    files::write_atomically,
     runtime::{self, Command, Handle, Plan, Tick},
     teleop::LoopState,
 };
@@ -327,10 +329,9 @@ impl ConsoleApp {
 
     fn obey_options(&mut self, ctx: &egui::Context) {
         let open = self.opened.elapsed();
-        let Options { exit_after, screenshot, .. } = &self.options;
+        let Options { exit_after, screenshot, .. } = self.options.clone();
         let picture_at = exit_after.map_or(SCREENSHOT_AT, |exit| exit.saturating_sub(SCREENSHOT_BEFORE_EXIT));
-        if let Some(path) = screenshot.as_ref().filter(|_| !self.pictured && open >= picture_at) {
-            let path = path.clone();
+        if let Some(path) = screenshot.filter(|_| !self.pictured && open >= picture_at) {
             self.pictured = true;
             ctx.request_screenshot(move |picture| {
                 // The window has no one to tell but the terminal it was started from.
@@ -338,6 +339,9 @@ impl ConsoleApp {
                     eprintln!("{error:#}");
                 }
             });
+        }
+        if let Some(stall) = self.options.stall.take_if(|_| open >= WARM_UP) {
+            std::thread::sleep(stall);
         }
         if exit_after.is_some_and(|exit| open >= exit) {
             ctx.send_viewport_cmd(egui::ViewportCommand::Close);
@@ -378,8 +382,14 @@ impl eframe::App for ConsoleApp {
             self.scene.destroy(gl);
         }
         self.tradeoff.cancel();
-        if let Some(handle) = self.handle.take() {
-            handle.stop_and_join();
+        let summary = self.handle.take().and_then(Handle::stop_and_join);
+        if let (Some(path), Some(summary)) = (&self.options.summary, summary) {
+            let written = serde_json::to_vec_pretty(&summary)
+                .map_err(std::io::Error::from)
+                .and_then(|text| write_atomically(path, |file| file.write_all(&text)));
+            if let Err(error) = written {
+                eprintln!("cannot write {}: {error}", path.display());
+            }
         }
     }
 }

@@ -36,6 +36,10 @@ pub struct Options {
     pub screenshot: Option<PathBuf>,
     /// Begin with this wizard.
     pub wizard: Option<wizards::Which>,
+    /// Write the loop's figures here when the window is closed.
+    pub summary: Option<PathBuf>,
+    /// Hold the window up for so long, once.
+    pub stall: Option<Duration>,
 }
 
 /// Opens the console on a running loop; returns when the window is closed and the loop has ended.

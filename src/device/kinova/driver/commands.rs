@@ -10,6 +10,7 @@ use crate::device::{
         feedback::Feedback,
         messages::{Number, Rpc, ServoingMode},
     },
+    transport::Bytes as _,
 };
 
 /// Why a command was not taken.
@@ -158,6 +159,19 @@ impl Driver {
         self.twist.twist = twist.limited(self.settings.twist_m_s, self.settings.twist_rad_s);
         (self.twist.active, self.twist.renewed_s) = (true, self.now_s);
         Ok(())
+    }
+
+    /// What another thread may do in an emergency: take the arm out of low-level servoing, whereupon it holds where it is.
+    ///
+    /// # Errors
+    /// When the operating system gives no second end of the connection.
+    pub fn lever(&self) -> std::io::Result<impl FnMut() + Send + 'static> {
+        let single = Number { value: ServoingMode::Single as u32 };
+        let (mut tcp, words) = self.lines.last_words(Rpc::SET_SERVOING_MODE, &single)?;
+        // With a broken connection the arm's own watchdog has acted.
+        Ok(move || {
+            tcp.send(&words).ok();
+        })
     }
 
     /// Clears warnings of a connected arm. An arm in fault is lost; its faults are cleared while opening it

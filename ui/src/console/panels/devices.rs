@@ -1,7 +1,7 @@
 //! The devices of the rig: where each is, how well it delivers, and for what fails the cause and the cure.
 
 use egui::{Button, Label, RichText, Ui, vec2};
-use nima::device::{Health, RosterEntry, Standing};
+use nima::device::{Health, RosterEntry, Side, Standing};
 
 use crate::console::{
     live::Live,
@@ -17,6 +17,11 @@ pub fn devices_ui(ui: &mut Ui, live: &Live) {
     card(ui, "Devices", "What the rig is made of. Connected never means engaged.", |ui| {
         for (entry, health) in live.roster.iter().zip(&live.healths.devices) {
             device_ui(ui, entry, health);
+        }
+        for (side, obstacle) in Side::ALL.into_iter().zip(&live.healths.obstacles) {
+            if let Some(obstacle) = obstacle {
+                ui.add(Label::new(format!("The {} arm cannot be engaged: {obstacle}.", side.word())).wrap());
+            }
         }
     });
 }

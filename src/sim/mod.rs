@@ -4,6 +4,8 @@
 //! workspace frame (z up). Deterministic for a seed. Parts that the scene does not list are absent and cost nothing.
 //! Bad input: a command that is not finite is ignored, a force that is not finite counts as zero.
 
+#[cfg(unix)]
+pub mod emulated;
 mod hand;
 mod noise;
 mod person;
@@ -47,6 +49,7 @@ pub struct World {
     hand_force_n: Vector3<f64>,
     /// Orientation of the wrist where an arm outside of this world carries it.
     carried: Option<UnitQuaternion<f64>>,
+    waits: bool,
 }
 
 /// Longest stretch simulated in one exchange, in periods: after a longer stall the world skips ahead.
@@ -77,6 +80,7 @@ impl World {
             command_m: start_m,
             hand_force_n: Vector3::zeros(),
             carried: None,
+            waits: false,
             hand,
         }
     }
@@ -96,6 +100,11 @@ impl World {
         self.carried = Some(kbf_from_s1);
     }
 
+    /// The hand's task stands still, and the hand keeps to the tip; or the task goes on.
+    pub const fn wait(&mut self, waits: bool) {
+        self.waits = waits;
+    }
+
     fn accept(&mut self, outputs: &Outputs) {
         // A real leader gives no more than its motors can, whatever it is asked.
         let most_n = self.leader.map_or(f64::INFINITY, |leader| leader.force_max_n);
@@ -112,7 +121,7 @@ impl World {
             Some(command) if command.iter().all(|x| x.is_finite()) => command,
             _ => self.tip_m,
         };
-        self.hand.guide(outputs.guide_m);
+        self.hand.guide(if self.waits { Some(self.tip_m) } else { outputs.guide_m });
         self.prompt = if outputs.prompt.is_finite() { outputs.prompt } else { Prompt::Rest };
     }
 

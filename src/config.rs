@@ -51,6 +51,14 @@ pub enum ConfigError {
         /// Line, column and key.
         message: String,
     },
+    /// A device of the rig has a setting that it cannot have.
+    #[error("rig \"{name}\"")]
+    Device {
+        /// Its name.
+        name: String,
+        /// Which setting.
+        source: device::Trouble,
+    },
     /// A value is outside its range.
     #[error("{kind} \"{name}\": {key} is {value}, must be {range}")]
     Range {
@@ -293,7 +301,11 @@ pub struct Sensor {
     pub noise_n: f64,
 }
 
-const RIGS: [(&str, &str); 1] = [("simulated", include_str!("../config/rigs/simulated.toml"))];
+const RIGS: [(&str, &str); 3] = [
+    ("simulated", include_str!("../config/rigs/simulated.toml")),
+    ("emulated", include_str!("../config/rigs/emulated.toml")),
+    ("paper", include_str!("../config/rigs/paper.toml")),
+];
 const SCENES: [(&str, &str); 8] = [
     ("peg_transfer", include_str!("../config/scenes/peg_transfer.toml")),
     ("bimanual", include_str!("../config/scenes/bimanual.toml")),
@@ -416,7 +428,9 @@ impl Rig {
         ranges.positive("gates.gain_rate_per_s", gates.gain_rate_per_s)?;
         ranges.not_negative("gates.dead_band_m_s", gates.dead_band_m_s)?;
         let ages = gates.fade_after_s >= 0.0 && gates.zero_after_s > gates.fade_after_s;
-        ranges.check("gates.zero_after_s", gates.zero_after_s, ages, "later than fade_after_s")
+        ranges.check("gates.zero_after_s", gates.zero_after_s, ages, "later than fade_after_s")?;
+        let devices = self.devices.as_ref().map_or(Ok(()), device::rig::Settings::check);
+        devices.map_err(|source| ConfigError::Device { name: self.name.clone(), source })
     }
 }
 

@@ -46,6 +46,6 @@ fn polling_allocates_nothing() {
         let settings = Settings { address: Some(served.endpoint.clone()), ..settings.clone() };
         assert_eq!(allocations(&settings), 0, "{firmware}");
     }
-    let served = serve_line(Profile::default(), wandering).unwrap();
+    let served = serve_line(None, Profile::default(), wandering).unwrap();
     assert_eq!(allocations(&Settings { port: Some(served.endpoint.clone()), ..settings }), 0, "line");
 }

@@ -4,6 +4,8 @@
 //! it serves; what concerns bytes is done by [`FaultyLine`], what concerns meaning (checksum, status bits, numbers) by
 //! the emulator itself.
 
+pub(super) mod places;
+
 use std::{
     sync::{
         Arc,

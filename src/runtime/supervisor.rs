@@ -95,7 +95,9 @@ mod tests {
         let pulse = Arc::new(Pulse::default());
         let (lever, count) = (Lever::default(), Arc::new(AtomicU64::new(0)));
         let counted = Arc::clone(&count);
-        lever.attach(move || drop(counted.fetch_add(1, Ordering::Relaxed)));
+        lever.attach(move || {
+            counted.fetch_add(1, Ordering::Relaxed);
+        });
         let supervisor = Supervisor::start(Arc::clone(&pulse), vec![lever], true).unwrap();
         pulse.beat(os::monotonic_ns(), false);
         std::thread::sleep(Duration::from_millis(80));

@@ -4,6 +4,8 @@
 //! workspace frame (z up). Deterministic for a seed. Parts that the scene does not list are absent and cost nothing.
 //! Bad input: a command that is not finite is ignored, a force that is not finite counts as zero.
 
+#[cfg(unix)]
+pub mod emulated;
 mod hand;
 mod noise;
 mod person;

@@ -20,4 +20,5 @@ mod settings;
 
 pub use clock::{Clock, Step};
 pub use driver::{Driver, reading_of, status_of};
+pub use opening::TCP_PORT;
 pub use settings::{Settings, Transport};

@@ -30,7 +30,7 @@ pub(super) struct Opened {
 }
 
 /// Port for commands of a sensor in the network.
-const TCP_PORT: u16 = 23;
+pub const TCP_PORT: u16 = 23;
 /// How often a first-generation sensor without its calibration is restarted.
 const RESTARTS: u32 = 5;
 const STOP_GEN_A: &[u8] = b"wh,1,2,1\n";

@@ -118,10 +118,14 @@ impl Settings {
         Ok(())
     }
 
+    /// A serial device on USB, which has no line speed.
+    pub fn is_usb(&self) -> bool {
+        self.transport == Transport::GenA && self.port.contains("ttyACM")
+    }
+
     /// Readings per second that fit through the line; endless for the network and for USB, which has no speed.
     fn line_hz(&self) -> f64 {
-        let is_usb = self.transport == Transport::GenA && self.port.contains("ttyACM");
-        if is_usb || self.transport == Transport::Socket {
+        if self.is_usb() || self.transport == Transport::Socket {
             return f64::INFINITY;
         }
         let bytes = if self.is_inertial() { codec::INERTIAL_BYTES } else { codec::WRENCH_BYTES };

@@ -212,6 +212,12 @@ impl Emulator {
     /// Pseudo-terminals exist on Unix alone.
     #[cfg(not(unix))]
     pub fn serve(self) -> std::io::Result<crate::device::emulation::Serving> {
+        self.serve_at(None)
+    }
+
+    /// Pseudo-terminals exist on Unix alone.
+    #[cfg(not(unix))]
+    pub fn serve_at(self, _: Option<&std::path::Path>) -> std::io::Result<crate::device::emulation::Serving> {
         Err(std::io::ErrorKind::Unsupported.into())
     }
 

@@ -50,7 +50,8 @@ pub enum IdleMode {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Settings {
-    /// File of the manufacturer's library; without it, it is looked for where the SDK puts it.
+    /// File of the manufacturer's library; without it, it is looked for where the SDK puts it, and the stand-in of an emulated
+    /// handle beside this program.
     pub library: Option<PathBuf>,
     /// Serial number of the device; without it, any that is free. Two devices need theirs.
     pub serial: Option<u16>,
@@ -91,7 +92,7 @@ impl Default for Settings {
 
 impl Settings {
     /// Checks ranges.
-    pub(super) fn check(&self) -> Result<(), Trouble> {
+    pub(in crate::device) fn check(&self) -> Result<(), Trouble> {
         let ranges = [
             ("rate_hz", self.rate_hz, 100.0, 2000.0),
             ("watchdog_ms", self.watchdog_ms, 1.0, 31.0),
@@ -193,7 +194,9 @@ struct Opened {
 /// device has its brakes on (or is free, as set); no force.
 pub fn open(settings: &Settings) -> Result<Driver, Trouble> {
     settings.check()?;
-    let sdk = super::library::load(settings.library.as_deref())?;
+    // An emulated handle is reached by the stand-in library alone.
+    let stand_in = || settings.emulator.and_then(|_| super::stand_in());
+    let sdk = super::library::load(settings.library.clone().or_else(stand_in).as_deref())?;
     if let Some(address) = settings.emulator {
         sdk.emulate(&address.to_string())?;
     }

@@ -18,7 +18,7 @@ use super::{
     status::{ForceOffCause, Kind, SdkError},
     wire::{FRESH, Order, Reply, Request, SATURATED, TAKEN},
 };
-use crate::device::emulation::{EmulatedFault, FaultSwitch, FaultyLine, Serving};
+use crate::device::emulation::{EmulatedFault, FaultSwitch, FaultyLine, Serving, places};
 
 /// Where the handle is, in the device's frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -139,7 +139,7 @@ const GRIPPER_CLOSED_RAD: f64 = 0.02;
 impl Emulator {
     /// Serves on the loopback interface; the endpoint is the address for `NIMA_EMULATED_HANDLE`.
     pub fn serve(self, body: impl Body) -> io::Result<Serving> {
-        let mut socket = Some(UdpSocket::bind(("127.0.0.1", self.port))?);
+        let mut socket = Some(places::taken(self.port, "UDP", UdpSocket::bind(("127.0.0.1", self.port)))?);
         let address = socket.as_ref().map(UdpSocket::local_addr).transpose()?;
         let address = address.ok_or_else(|| io::Error::other("no address"))?;
         let faults = FaultSwitch::default();

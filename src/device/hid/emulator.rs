@@ -6,8 +6,11 @@
 
 use std::{
     io::{self, Read as _, Write as _},
-    os::unix::net::{UnixListener, UnixStream},
-    path::PathBuf,
+    os::unix::{
+        fs::FileTypeExt as _,
+        net::{UnixListener, UnixStream},
+    },
+    path::{Path, PathBuf},
     sync::atomic::{AtomicBool, Ordering},
     time::{Duration, Instant},
 };
@@ -36,7 +39,7 @@ pub enum Place {
     /// In a folder of its own, which goes away with it.
     #[default]
     Temporary,
-    /// At this path, which must not exist.
+    /// At this path. What a dead process left there is replaced; folders above it are made.
     Path(PathBuf),
 }
 
@@ -71,7 +74,10 @@ pub fn serve_spacenavd(place: Place, body: CapBody) -> io::Result<Serving> {
 
 fn serve(place: Place, name: &str, prefix: &str, side: impl Side + 'static) -> io::Result<Serving> {
     let (path, folder) = match place {
-        Place::Path(path) => (path, None),
+        Place::Path(path) => {
+            clear(&path)?;
+            (path, None)
+        }
         Place::Temporary => {
             let folder = tempfile::Builder::new().prefix("nima-").tempdir()?;
             (folder.path().join(format!("{name}.sock")), Some(folder))
@@ -85,6 +91,21 @@ fn serve(place: Place, name: &str, prefix: &str, side: impl Side + 'static) -> i
         server.run(stop, &faults);
         drop(folder);
     })
+}
+
+/// Makes room for a socket: nothing may be there but one that nobody serves any more.
+fn clear(path: &Path) -> io::Result<()> {
+    let refuse = |kind, told: &str| Err(io::Error::new(kind, format!("{} {told}", path.display())));
+    match std::fs::symlink_metadata(path) {
+        Err(_) => path.parent().map_or(Ok(()), std::fs::create_dir_all),
+        Ok(there) if !there.file_type().is_socket() => {
+            refuse(io::ErrorKind::AlreadyExists, "is no emulator's: take another place, or remove it")
+        }
+        Ok(_) => match seqpacket::connect(path) {
+            Err(error) if error.kind() == io::ErrorKind::ConnectionRefused => std::fs::remove_file(path),
+            _ => refuse(io::ErrorKind::AddrInUse, "is served by another emulator: end it, or take another place"),
+        },
+    }
 }
 
 struct Server<S> {

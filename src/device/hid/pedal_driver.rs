@@ -72,6 +72,12 @@ impl PedalSettings {
         Ok(PedalRoles { clutch: self.clutch, presence: self.presence })
     }
 
+    /// Refuses switches, keys and sources that cannot be.
+    pub fn check(&self) -> Result<(), Trouble> {
+        self.roles()?;
+        self.source.parse::<Source>().map(drop)
+    }
+
     fn layout(&self, kind: Kind) -> Layout {
         if kind == Kind::SwitchPedal {
             return Layout::Switches;

@@ -9,13 +9,13 @@ mod robot;
 mod server;
 mod told;
 
-use std::net::{TcpListener, UdpSocket};
+use std::net::{Ipv4Addr, TcpListener, UdpSocket};
 
 pub use body::{Asked, Body, BodyState, StandIn};
 
 use crate::device::{
     ARM_JOINTS,
-    emulation::{FaultSwitch, Serving},
+    emulation::{FaultSwitch, Serving, places},
 };
 
 /// How the emulated arm is.
@@ -34,6 +34,10 @@ pub struct EmulatedArm {
     pub watchdog_ms: f64,
     /// A command so far from the measured angle is a fault, degrees. An assumption.
     pub following_error_deg: f64,
+    /// Port of the calls (TCP); 0 takes a free one.
+    pub tcp_port: u16,
+    /// Port of the cycle (UDP); 0 takes a free one.
+    pub udp_port: u16,
 }
 
 impl Default for EmulatedArm {
@@ -45,15 +49,17 @@ impl Default for EmulatedArm {
             idle_state: 7,
             watchdog_ms: 50.0,
             following_error_deg: 5.0,
+            tcp_port: 0,
+            udp_port: 0,
         }
     }
 }
 
-/// Starts an emulated arm on free ports of this machine; its endpoint is `127.0.0.1 tcp=PORT udp=PORT`, for
+/// Starts an emulated arm on ports of this machine; its endpoint is `127.0.0.1 tcp=PORT udp=PORT`, for
 /// [`Settings::at`](super::Settings::at).
 pub fn emulate(arm: EmulatedArm, body: impl Body + 'static, faults: FaultSwitch) -> std::io::Result<Serving> {
-    let listener = TcpListener::bind(("127.0.0.1", 0))?;
-    let socket = UdpSocket::bind(("127.0.0.1", 0))?;
+    let listener = places::taken(arm.tcp_port, "TCP", TcpListener::bind((Ipv4Addr::LOCALHOST, arm.tcp_port)))?;
+    let socket = places::taken(arm.udp_port, "UDP", UdpSocket::bind((Ipv4Addr::LOCALHOST, arm.udp_port)))?;
     let endpoint = format!("127.0.0.1 tcp={} udp={}", listener.local_addr()?.port(), socket.local_addr()?.port());
     let server = server::Server::new(listener, socket, arm, Box::new(body), faults.clone())?;
     Serving::start(endpoint, faults, move |stop| server.serve(stop))

@@ -133,7 +133,7 @@ fn over_a_network_every_frame_arrives_in_both_forms() {
 #[ignore = "real lines in real time: `./dev test` runs it alone"]
 fn over_a_line_every_frame_arrives_in_binary() {
     let (_folder, tools) = definitions(2);
-    let served = serve_line(profile(BLOCK_FIRMWARE), wandering).unwrap();
+    let served = serve_line(None, profile(BLOCK_FIRMWARE), wandering).unwrap();
     follows(&line(&served, tools), Form::Binary, 1e-6);
 }
 
@@ -141,7 +141,7 @@ fn over_a_line_every_frame_arrives_in_binary() {
 #[ignore = "real lines in real time: `./dev test` runs it alone"]
 fn over_a_line_text_arrives_as_often_as_the_line_carries_it() {
     let (_folder, tools) = definitions(1);
-    let served = serve_line(profile(TEXT_FIRMWARE), wandering).unwrap();
+    let served = serve_line(None, profile(TEXT_FIRMWARE), wandering).unwrap();
     let settings = Settings { baud: 230_400, ..line(&served, tools) };
     follows(&settings, Form::Text, 1e-5);
 }
@@ -165,7 +165,7 @@ fn say(endpoint: &str, baud: u32, command: &Command<'_>) -> String {
 #[ignore = "real lines in real time: `./dev test` runs it alone"]
 fn a_line_left_at_another_speed_is_found_or_reset() {
     let (_folder, tools) = definitions(1);
-    let served = serve_line(profile(BLOCK_FIRMWARE), wandering).unwrap();
+    let served = serve_line(None, profile(BLOCK_FIRMWARE), wandering).unwrap();
     let settings = line(&served, tools);
     for left_at in [115_200, 38_400] {
         assert_eq!(say(&served.endpoint, 9600, &Command::Comm { baud: left_at }), "OKAYA896\r");

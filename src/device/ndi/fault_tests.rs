@@ -114,7 +114,7 @@ fn it_survives_a_unit_that_is_wrong() {
 
 fn survives_over_a_line(faults: &[EmulatedFault]) {
     let (_folder, tools) = definitions(1);
-    let served = serve_line(profile(BLOCK_FIRMWARE), wandering).unwrap();
+    let served = serve_line(None, profile(BLOCK_FIRMWARE), wandering).unwrap();
     survives_all(&served, line(&served, tools), Form::Binary, faults);
 }
 

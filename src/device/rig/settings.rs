@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use super::JawsSettings;
 use crate::{
-    device::{Side, bota, dynamixel, force_dimension, hid, kinova, ndi},
+    device::{Side, Trouble, bota, dynamixel, force_dimension, hid, kinova, ndi},
     kinematics::{ArmSettings, RcmSettings},
 };
 
@@ -75,5 +75,41 @@ impl Settings {
             Side::Right => self.right.as_ref(),
             Side::Left => self.left.as_ref(),
         }
+    }
+
+    /// Tells the first setting that no device can have, by its whole key; nothing is opened.
+    ///
+    /// # Errors
+    /// [`Trouble::Setting`].
+    pub fn check(&self) -> Result<(), Trouble> {
+        for side in Side::ALL {
+            let Some(set) = self.arm(side) else { continue };
+            let of = |part: &'static str| move |trouble| below(&format!("{}.{part}", side.word()), trouble);
+            set.handle.check().map_err(of("handle"))?;
+            set.arm.check().map_err(of("arm"))?;
+            set.sensor.check().map_err(of("sensor"))?;
+            set.servos.as_ref().map_or(Ok(()), dynamixel::Settings::check).map_err(of("servos"))?;
+        }
+        if let (Some(right), Some(left)) = (&self.right, &self.left)
+            && (right.handle.serial.is_none() || right.handle.serial == left.handle.serial)
+        {
+            let value = right.handle.serial.map_or_else(|| "not given".to_owned(), |serial| serial.to_string());
+            let allowed = "two handles are told apart by their serial numbers: give each its own".to_owned();
+            return Err(Trouble::Setting { key: "devices.right.handle.serial".to_owned(), value, allowed });
+        }
+        let of = |part: &'static str| move |trouble| below(part, trouble);
+        self.tissue_sensor.as_ref().map_or(Ok(()), bota::Settings::check).map_err(of("tissue_sensor"))?;
+        self.tracker.as_ref().map_or(Ok(()), ndi::Settings::check).map_err(of("tracker"))?;
+        self.pedal.as_ref().map_or(Ok(()), hid::PedalSettings::check).map_err(of("pedal"))
+    }
+}
+
+/// A trouble with its key as it stands in the rig file.
+fn below(part: &str, trouble: Trouble) -> Trouble {
+    match trouble {
+        Trouble::Setting { key, value, allowed } => {
+            Trouble::Setting { key: format!("devices.{part}.{key}"), value, allowed }
+        }
+        other => other,
     }
 }

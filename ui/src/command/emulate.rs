@@ -2,7 +2,8 @@
 //!
 //! Prints one JSON line per endpoint (`{"device": ..., "endpoint": ...}`), then serves until Ctrl-C or the end of its standard
 //! input. Lines on standard input set faults: `fault NAME` (see `--help`), `fault none` takes it back; with several devices
-//! `fault DEVICE NAME`.
+//! `fault DEVICE NAME`, the name in quotes or with dashes where it has blanks. `nima emulate rig` emulates a whole rig around one
+//! simulated world; `pedal BITS` presses its pedal's switches.
 
 mod bota;
 mod dynamixel;
@@ -12,6 +13,8 @@ mod hid;
 mod kinova;
 #[cfg(unix)]
 mod ndi;
+#[cfg(unix)]
+mod rig;
 
 use std::{
     io::BufRead as _,
@@ -31,12 +34,18 @@ use super::output;
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
-    /// Which devices
+    /// Which devices; or `rig`, all devices of a rig file
     #[arg(required = true, value_name = "DEVICE")]
     devices: Vec<String>,
     /// A setting of the emulated devices, as far as they have it
     #[arg(long, value_name = "KEY=VALUE")]
     set: Vec<String>,
+    /// With `rig`: a rig by name, or its file
+    #[arg(long, default_value = "emulated")]
+    rig: String,
+    /// With `rig`: a scene by name, or its file
+    #[arg(long, default_value = "peg_transfer")]
+    scene: String,
 }
 
 /// Settings by name, as given with `--set`.
@@ -96,6 +105,10 @@ struct Endpoint<'a> {
 }
 
 pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
+    #[cfg(unix)]
+    if arguments.devices == ["rig"] {
+        return rig::run(&arguments.rig, &arguments.scene);
+    }
     let pair = |text: &String| {
         let (key, value) = text.split_once('=').with_context(|| format!("--set {text} is not KEY=VALUE"))?;
         Ok((key.to_owned(), value.to_owned()))
@@ -109,12 +122,13 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         };
         emulated.extend(start(&settings).with_context(|| format!("cannot emulate {name}"))?);
     }
-    serve(&emulated)
+    let served: Vec<_> = emulated.iter().map(|one| (one.device.as_str(), &one.serving)).collect();
+    serve(&served, |_| false)
 }
 
-/// Tells the endpoints and serves until somebody ends it.
-fn serve(emulated: &[Emulated]) -> anyhow::Result<()> {
-    for Emulated { device, serving } in emulated {
+/// Tells the endpoints and serves until somebody ends it. Lines on standard input that `other` knows are obeyed by it.
+fn serve(emulated: &[(&str, &Serving)], other: impl Fn(&str) -> bool) -> anyhow::Result<()> {
+    for (device, serving) in emulated {
         output::line(&serde_json::to_string(&Endpoint { device, endpoint: &serving.endpoint })?)?;
     }
     let stop = Arc::new(AtomicBool::new(false));
@@ -128,8 +142,9 @@ fn serve(emulated: &[Emulated]) -> anyhow::Result<()> {
             }
         }
     });
-    while !stop.load(Ordering::Relaxed) && emulated.iter().all(|one| one.serving.is_serving()) {
+    while !stop.load(Ordering::Relaxed) && emulated.iter().all(|(_, serving)| serving.is_serving()) {
         match told.recv_timeout(Duration::from_millis(50)) {
+            Ok(line) if other(&line) => {}
             Ok(line) => obey(&line, emulated),
             Err(std::sync::mpsc::RecvTimeoutError::Timeout) => {}
             // Whoever started it is gone.
@@ -139,12 +154,17 @@ fn serve(emulated: &[Emulated]) -> anyhow::Result<()> {
     Ok(())
 }
 
-fn obey(line: &str, emulated: &[Emulated]) {
+/// A device's name, however its blanks are written.
+fn plain(name: &str) -> String {
+    name.trim_matches(['"', '\'']).replace('-', " ")
+}
+
+fn obey(line: &str, emulated: &[(&str, &Serving)]) {
     let words: Vec<&str> = line.split_whitespace().collect();
     let (device, name) = match words[..] {
         [] => return,
         ["fault", name] => (None, name),
-        ["fault", device, name] => (Some(device), name),
+        ["fault", ref device @ .., name] => (Some(plain(&device.join(" "))), name),
         _ => {
             eprintln!("\"{line}\" is not understood: fault [DEVICE] NAME");
             return;
@@ -155,7 +175,12 @@ fn obey(line: &str, emulated: &[Emulated]) {
         eprintln!("there is no fault \"{name}\": none, {}", known.join(", "));
         return;
     };
-    for one in emulated.iter().filter(|one| device.is_none_or(|device| device == one.device)) {
-        one.serving.faults.set(fault);
+    let meant = |known: &str| device.as_ref().is_none_or(|device| *device == plain(known));
+    if !emulated.iter().any(|(known, _)| meant(known)) {
+        let known: Vec<_> = emulated.iter().map(|(known, _)| *known).collect();
+        eprintln!("there is no device \"{}\": there are {}", device.as_deref().unwrap_or_default(), known.join(", "));
+    }
+    for (_, serving) in emulated.iter().filter(|(known, _)| meant(known)) {
+        serving.faults.set(fault);
     }
 }

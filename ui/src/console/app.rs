@@ -1,7 +1,6 @@
 //! The window: takes in what the loop sent, lays out the panels, sends what the operator asked.
 
 use std::{
-    io::Write as _,
     path::Path,
     time::{Duration, Instant},
 };

@@ -45,6 +45,8 @@ pub struct Emulated {
     pub first_timestamp_us: u32,
     /// Status bits that are always set.
     pub status: u16,
+    /// Serial: the name of its line; a folder of its own where none is given.
+    pub link: Option<std::path::PathBuf>,
     /// Socket: port for commands; 0 takes a free one.
     pub tcp_port: u16,
     /// Socket: where readings go.
@@ -62,6 +64,7 @@ impl Default for Emulated {
             raw_starts: 0,
             first_timestamp_us: 0,
             status: 0,
+            link: None,
             tcp_port: 23,
             destination: std::net::SocketAddrV4::new(std::net::Ipv4Addr::LOCALHOST, 50_001),
         }

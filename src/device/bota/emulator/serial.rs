@@ -3,8 +3,6 @@
 use std::{
     fs::File,
     io::{self, ErrorKind, Read as _, Write as _},
-    os::unix::fs::symlink,
-    path::{Path, PathBuf},
     sync::atomic::{AtomicBool, Ordering},
     time::{Duration, Instant},
 };
@@ -13,25 +11,20 @@ use serialport::{SerialPort as _, TTYPort};
 
 use super::{Body, Emulated, Wire, frames::Frames};
 use crate::device::{
-    emulation::{EmulatedFault, FaultSwitch, Serving},
+    emulation::{EmulatedFault, FaultSwitch, Serving, places::TerminalName},
     os,
 };
 
 const NAP: Duration = Duration::from_micros(300);
 
 pub(super) fn serve(name: &str, wire: impl Wire, emulated: &Emulated, body: Body) -> io::Result<Serving> {
-    let folder = tempfile::Builder::new().prefix("nima-").tempdir()?;
-    let path = folder.path().join(name);
+    let name = TerminalName::claim(emulated.link.as_deref(), name)?;
     let faults = FaultSwitch::default();
-    let line = Line::open(&path)?;
+    let line = Line::open(&name)?;
     let frames = Frames::new(body, emulated.first_timestamp_us, emulated.status);
     let mut sensor =
         Sensor { wire, frames, baud: emulated.baud, faults: faults.clone(), begin: Instant::now(), present: false };
-    let endpoint = path.display().to_string();
-    Serving::start(endpoint, faults, move |stop| {
-        sensor.serve(&path, line, stop);
-        drop(folder);
-    })
+    Serving::start(name.path(), faults, move |stop| sensor.serve(&name, line, stop))
 }
 
 struct Sensor<W> {
@@ -45,14 +38,15 @@ struct Sensor<W> {
 }
 
 impl<W: Wire> Sensor<W> {
-    fn serve(&mut self, path: &Path, line: Line, stop: &AtomicBool) {
+    fn serve(&mut self, name: &TerminalName, line: Line, stop: &AtomicBool) {
         let mut line = Some(line);
         while !stop.load(Ordering::Acquire) {
             let fault = self.faults.get();
             if fault == EmulatedFault::Disconnect {
                 (line, self.present) = (None, false);
+                name.cut();
             } else if line.is_none() {
-                line = Line::open(path).ok();
+                line = Line::open(name).ok();
             } else if let Some(line) = &mut line {
                 self.exchange(line, fault);
             }
@@ -84,20 +78,18 @@ impl<W: Wire> Sensor<W> {
     }
 }
 
-/// The sensor's end of the line, and the link to the other.
+/// The sensor's end of the line.
 struct Line {
     port: TTYPort,
     bytes: File,
-    link: PathBuf,
 }
 
 impl Line {
-    fn open(link: &Path) -> io::Result<Self> {
+    fn open(name: &TerminalName) -> io::Result<Self> {
         let (port, other) = TTYPort::pair().map_err(io::Error::other)?;
-        let path = other.name().ok_or_else(|| io::Error::other("the pseudo-terminal has no name"))?;
         let bytes = os::bytes_of(&port)?;
-        symlink(path, link)?;
-        Ok(Self { port, bytes, link: link.to_owned() })
+        name.lead_to(&other)?;
+        Ok(Self { port, bytes })
     }
 
     /// `None` while no client has the line open.
@@ -122,11 +114,5 @@ impl Line {
             let other: Vec<u8> = bytes.iter().map(|byte| byte.rotate_left(3) ^ 0x5A).collect();
             let _ = self.bytes.write(&other);
         }
-    }
-}
-
-impl Drop for Line {
-    fn drop(&mut self) {
-        std::fs::remove_file(&self.link).ok();
     }
 }

@@ -9,7 +9,7 @@ use std::{
 
 use super::{Body, Emulated, Wire as _, frames::Frames, gen_a::GenA};
 use crate::device::{
-    emulation::{EmulatedFault, FaultSwitch, Serving},
+    emulation::{EmulatedFault, FaultSwitch, Serving, places},
     transport::{Bytes as _, Tcp},
 };
 
@@ -46,7 +46,7 @@ pub(super) fn serve(emulated: &Emulated, faults: FaultSwitch, body: Body) -> io:
 }
 
 fn listen(address: SocketAddrV4) -> io::Result<TcpListener> {
-    let listener = TcpListener::bind(address)?;
+    let listener = places::taken(address.port(), "TCP", TcpListener::bind(address))?;
     listener.set_nonblocking(true)?;
     Ok(listener)
 }

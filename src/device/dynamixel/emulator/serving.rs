@@ -2,7 +2,6 @@
 
 use std::{
     io::{Read as _, Write as _},
-    os::unix::fs::symlink,
     path::Path,
     sync::atomic::{AtomicBool, Ordering},
     time::{Duration, Instant},
@@ -12,7 +11,7 @@ use serialport::{SerialPort as _, TTYPort};
 
 use super::Emulator;
 use crate::device::{
-    emulation::{EmulatedFault, FaultSwitch, Serving},
+    emulation::{EmulatedFault, FaultSwitch, Serving, places::TerminalName},
     os,
 };
 
@@ -31,15 +30,11 @@ struct Line {
 }
 
 impl Line {
-    fn open(name: &Path, baud: u32) -> std::io::Result<Self> {
+    fn open(name: &TerminalName, baud: u32) -> std::io::Result<Self> {
         let (mut ours, mut theirs) = TTYPort::pair()?;
         ours.set_timeout(WAIT)?;
         theirs.set_baud_rate(baud)?;
-        let path = theirs.name().ok_or_else(|| std::io::Error::other("a pseudo-terminal without a name"))?;
-        let fresh = name.with_extension("new");
-        std::fs::remove_file(&fresh).ok();
-        symlink(path, &fresh)?;
-        std::fs::rename(&fresh, name)?;
+        name.lead_to(&theirs)?;
         let (bytes, lock) = (os::bytes_of(&ours)?, os::bytes_of(&theirs)?);
         Ok(Self { ours, bytes, theirs, lock, tidied_s: 0.0 })
     }
@@ -47,22 +42,23 @@ impl Line {
 
 impl Emulator {
     /// Serves on a new pseudo-terminal until the result is dropped. Clients whose line speed is not the servos' are not understood.
-    pub fn serve(mut self) -> std::io::Result<Serving> {
-        let folder = tempfile::Builder::new().prefix("nima-dynamixel-").tempdir()?;
-        let name = folder.path().join("bus");
+    pub fn serve(self) -> std::io::Result<Serving> {
+        self.serve_at(None)
+    }
+
+    /// The same under this name, if one is given.
+    pub fn serve_at(mut self, link: Option<&Path>) -> std::io::Result<Serving> {
+        let name = TerminalName::claim(link, "bus")?;
         let mut line = Some(Line::open(&name, self.baud())?);
         let faults = FaultSwitch::default();
         let switch = faults.clone();
-        let endpoint = name.display().to_string();
-        Serving::start(endpoint, faults, move |stop| {
-            // Kept as long as it serves: dropping it removes the name.
-            let _folder = folder;
+        Serving::start(name.path(), faults, move |stop| {
             let begin = Instant::now();
             while !stop.load(Ordering::Acquire) {
                 let fault = switch.get();
                 if fault == EmulatedFault::Disconnect {
                     line = None;
-                    std::fs::remove_file(&name).ok();
+                    name.cut();
                     std::thread::sleep(WAIT);
                 } else if let Some(line) = &mut line {
                     self.exchange(line, fault, begin, stop);

@@ -3,7 +3,6 @@
 use std::{
     io,
     net::{TcpListener, TcpStream},
-    os::unix::fs::symlink,
     path::Path,
     sync::atomic::Ordering,
     time::{Duration, Instant},
@@ -13,7 +12,7 @@ use serialport::{SerialPort as _, TTYPort};
 
 use super::{Answer, Body, Profile, Unit, unit::FIRST_BAUD};
 use crate::device::{
-    emulation::{EmulatedFault, FaultSwitch, FaultyLine, Serving},
+    emulation::{EmulatedFault, FaultSwitch, FaultyLine, Serving, places, places::TerminalName},
     ndi::command::COMMAND_MAX,
     os,
     transport::{Bytes as _, Tcp},
@@ -27,7 +26,7 @@ const BITS: f64 = 10.0;
 
 /// Serves on TCP; `port` 0 takes a free one. The newest connection is the one that is answered.
 pub fn serve_network(port: u16, profile: Profile, body: impl Body + 'static) -> io::Result<Serving> {
-    let listener = TcpListener::bind(("127.0.0.1", port))?;
+    let listener = places::taken(port, "TCP", TcpListener::bind(("127.0.0.1", port)))?;
     listener.set_nonblocking(true)?;
     let endpoint = listener.local_addr()?.to_string();
     let faults = FaultSwitch::default();
@@ -56,22 +55,21 @@ fn welcome(stream: TcpStream) -> Option<Tcp> {
     Tcp::of(stream).ok()
 }
 
-/// Serves on a pseudo-terminal; the endpoint is a link to it that stays the same after a disconnection.
-pub fn serve_line(profile: Profile, body: impl Body + 'static) -> io::Result<Serving> {
-    let folder = tempfile::Builder::new().prefix("nima-ndi-").tempdir()?;
-    let link = folder.path().join("tty");
-    let first = Line::new(&link)?;
+/// Serves on a pseudo-terminal; the endpoint is a link to it that stays the same after a disconnection: `link` where one is given.
+pub fn serve_line(link: Option<&Path>, profile: Profile, body: impl Body + 'static) -> io::Result<Serving> {
+    let name = TerminalName::claim(link, "tty")?;
+    let first = Line::new(&name)?;
     let faults = FaultSwitch::default();
     let mut host = Host::new(profile, false, Box::new(body), faults.clone());
-    Serving::start(link.display().to_string(), faults, move |stop| {
+    Serving::start(name.path(), faults, move |stop| {
         let mut line = Some(first);
         while !stop.load(Ordering::Acquire) {
             if host.faults.get() == EmulatedFault::Disconnect {
                 line = None;
-                std::fs::remove_file(folder.path().join("tty")).ok();
+                name.cut();
                 host.forget();
             } else if line.is_none() {
-                line = Line::new(&link).ok();
+                line = Line::new(&name).ok();
             }
             let lost = line.as_mut().is_some_and(|line| host.turn_line(line).is_err());
             if lost {
@@ -90,12 +88,11 @@ struct Line {
 }
 
 impl Line {
-    fn new(link: &Path) -> io::Result<Self> {
+    fn new(name: &TerminalName) -> io::Result<Self> {
         let (near, mut far) = TTYPort::pair()?;
         far.set_baud_rate(FIRST_BAUD)?;
         let bytes = os::bytes_of(&near)?;
-        std::fs::remove_file(link).ok();
-        symlink(far.name().unwrap_or_default(), link)?;
+        name.lead_to(&far)?;
         Ok(Self { near, bytes, _far: far })
     }
 }

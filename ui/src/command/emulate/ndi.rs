@@ -35,5 +35,5 @@ pub(super) fn network(settings: &Settings) -> anyhow::Result<Vec<Emulated>> {
 }
 
 pub(super) fn line(settings: &Settings) -> anyhow::Result<Vec<Emulated>> {
-    Ok(vec![Emulated::new("ndi-serial", serve_line(profile(settings)?, body(settings)?)?)])
+    Ok(vec![Emulated::new("ndi-serial", serve_line(None, profile(settings)?, body(settings)?)?)])
 }

@@ -1,0 +1,47 @@
+//! Places of a rig file, as far as they are on this computer.
+
+use std::net::{IpAddr, Ipv4Addr};
+
+use super::EmulatedRigError;
+
+fn wrong(device: &str, place: &str, wanted: &'static str) -> EmulatedRigError {
+    EmulatedRigError::Place { device: device.to_owned(), place: place.to_owned(), wanted }
+}
+
+/// This host is this computer.
+pub(super) fn local(device: &str, host: &str) -> Result<(), EmulatedRigError> {
+    if host == "localhost" || host.parse() == Ok(IpAddr::V4(Ipv4Addr::LOCALHOST)) {
+        return Ok(());
+    }
+    Err(wrong(device, host, "it must be 127.0.0.1 for an emulator on this computer"))
+}
+
+/// The port of `127.0.0.1:PORT`, or `usual` where none is given.
+pub(super) fn port(device: &str, address: &str, usual: u16) -> Result<u16, EmulatedRigError> {
+    let (host, port) = address.rsplit_once(':').map_or((address, None), |(host, port)| (host, Some(port)));
+    local(device, host)?;
+    port.map_or(Ok(usual), |port| port.parse().map_err(|_| wrong(device, address, "it must be 127.0.0.1:PORT")))
+}
+
+/// The path of a pedal's `emulated:PATH`.
+pub(super) fn pedal<'a>(device: &str, source: &'a str) -> Result<&'a str, EmulatedRigError> {
+    let path = source.strip_prefix("emulated:").filter(|path| !path.is_empty());
+    path.ok_or_else(|| wrong(device, source, "it must be emulated:PATH"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_this_computer_can_be_emulated() {
+        assert_eq!(port("arm", "127.0.0.1:47140", 23).unwrap(), 47140);
+        assert_eq!(port("arm", "localhost", 23).unwrap(), 23);
+        for bad in ["192.168.1.1", "192.168.1.1:23", "127.0.0.1:many", "127.0.0.1:99999", ""] {
+            let told = port("right arm", bad, 23).unwrap_err().to_string();
+            assert!(told.contains("right arm") && told.contains("127.0.0.1"), "{told}");
+        }
+        assert_eq!(pedal("pedal", "emulated:/tmp/x").unwrap(), "/tmp/x");
+        assert!(pedal("pedal", "any").is_err() && pedal("pedal", "emulated:").is_err());
+    }
+}

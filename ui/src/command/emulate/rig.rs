@@ -1,0 +1,33 @@
+//! `nima emulate rig`: every device of a rig file at its place, all around one simulated world; `--rig F`, `--scene F`. `pedal BITS` on
+//! standard input presses the pedal's switches (first in the lowest bit) until the next such line.
+
+use anyhow::{Context as _, bail};
+use nima::{
+    config::{Rig, Scene},
+    sim::emulated::{EmulatedRig, HandFrame},
+};
+
+pub(super) fn run(rig: &str, scene: &str) -> anyhow::Result<()> {
+    let rig = Rig::load(rig)?;
+    let Some(devices) = &rig.devices else {
+        bail!("rig \"{}\" has no devices to emulate: give another one, such as --rig emulated", rig.name);
+    };
+    if !devices.emulated {
+        bail!("rig \"{}\" is for real devices: it is emulated only where it says emulated = true", rig.name);
+    }
+    let scene = Scene::load(scene)?;
+    let emulated = EmulatedRig::start(devices, &scene, &[HandFrame::of(&rig.teleoperation.mapping()); 2])
+        .with_context(|| format!("rig \"{}\"", rig.name))?;
+    let served: Vec<_> = emulated.servings().iter().map(|device| (device.name.as_str(), &device.serving)).collect();
+    super::serve(&served, |line| press(&emulated, line))
+}
+
+/// Obeys `pedal BITS`; false where the line is another.
+fn press(emulated: &EmulatedRig, line: &str) -> bool {
+    let Some(switches) = line.strip_prefix("pedal ") else { return false };
+    match switches.trim().parse() {
+        Ok(switches) => emulated.press(switches),
+        Err(_) => eprintln!("\"{line}\" is not understood: pedal BITS, 1 for the first switch"),
+    }
+    true
+}

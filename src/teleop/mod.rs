@@ -258,6 +258,7 @@ impl Loop {
             force_n: rendered.force(self.mode),
             age_s,
             speed_m_s: self.hand_speed_m_s,
+            hand_m: inputs.map(|inputs| inputs.leader_m),
             permitted: self.state == LoopState::Engaged && self.force.source.is_usable(),
         });
         if inputs.is_some() {

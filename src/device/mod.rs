@@ -66,6 +66,8 @@ pub struct Inputs {
     pub hand: Hand,
     /// Opening of the gripper, rad, where there is one.
     pub gripper_rad: Option<f64>,
+    /// Force that opens the jaws, N at the finger, where it is known.
+    pub grip_n: Option<f64>,
     /// Position of the instrument's tip, m.
     pub tip_m: Vector3<f64>,
     /// Orientation of the instrument's jaws, where it is known.
@@ -92,6 +94,7 @@ impl Inputs {
             && self.tip_m.iter().all(|x| x.is_finite())
             && self.kbf_from_jaws.is_none_or(|q| q.coords.iter().all(|x| x.is_finite()))
             && self.gripper_rad.is_none_or(f64::is_finite)
+            && self.grip_n.is_none_or(f64::is_finite)
             && self.age_s.is_finite()
     }
 }

@@ -1,127 +1,74 @@
-//! The gates in their fixed order: validity, age, dead band, gain, slew, ceiling.
+//! The gates in their fixed order: permission, hand, validity, age, dead band, gain, slew, energy, ceiling.
+//!
+//! One chain for a force in space, one for a torque, one for a gripper: the same gates, of as many axes as are asked for.
 
-use nalgebra::Vector3;
+use nalgebra::SVector;
 
-use super::DeadBand;
+use super::{
+    Age, Ceiling, ChainSettings, DeadBand, Energy, EnergyMode, Gain, Gate, GateCounts, GateReport, Reason, Release,
+    Slew, admitted, settings::DEAD_BAND_MAX_M_S,
+};
 
-/// Limits and knobs of the chain. Defaults are the project's safe values.
-#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
-#[serde(deny_unknown_fields, default)]
-pub struct ChainSettings {
-    /// Feedback gain, 0 to 3.
-    pub gain: f64,
-    /// Fastest change of the gain, 1/s: a slider jump becomes a ramp.
-    pub gain_rate_per_s: f64,
-    /// Largest force that ever reaches the hand, N (norm of the vector).
-    pub ceiling_n: f64,
-    /// Fastest change of the force, N/s.
-    pub slew_n_per_s: f64,
-    /// Age beyond the link's own delay at which the force begins to fade, s.
-    pub fade_after_s: f64,
-    /// Age beyond the link's own delay at which it is zero, s.
-    pub zero_after_s: f64,
-    /// Speed below which nothing is rendered, m/s.
-    pub dead_band_m_s: f64,
-    /// Keep the force at standstill instead of fading it in the dead band.
-    pub static_hold: bool,
-}
-
-impl Default for ChainSettings {
-    fn default() -> Self {
-        Self {
-            gain: 1.0,
-            gain_rate_per_s: 2.0,
-            ceiling_n: 4.0,
-            // 5 N within 10 ms: faster than a hand can feel as a ramp, slow enough that one bad sample moves 0.5 N.
-            slew_n_per_s: 500.0,
-            fade_after_s: 0.005,
-            zero_after_s: 0.020,
-            dead_band_m_s: 1e-3,
-            static_hold: false,
-        }
-    }
-}
-
-/// Highest gain an operator can choose.
-pub const MAX_GAIN: f64 = 3.0;
-
-/// One force asking to reach the hand.
+/// One force asking to reach the hand. [`Request::default`] is one that is not permitted.
 #[derive(Clone, Copy, Debug)]
-pub struct Request {
+pub struct Request<const D: usize = 3> {
     /// The force a mode asks for, N; `None` when the mode has nothing valid.
-    pub force_n: Option<Vector3<f64>>,
+    pub force_n: Option<SVector<f64, D>>,
     /// Age of the newest data behind it beyond the link's own delay, s.
     pub age_s: f64,
     /// Speed of the hand, m/s.
     pub speed_m_s: f64,
+    /// Where the handle is, m, on the axes of the force, as the device reads it (not scaled); `None`: not known, then the energy
+    /// gate sees no motion. A place and not a velocity, because force times way is the energy exactly.
+    pub hand_m: Option<SVector<f64, D>>,
     /// The state machine allows force at all.
     pub permitted: bool,
 }
 
-/// What each gate did in one tick, in the order of the chain. `false` everywhere means the force passed untouched.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-#[expect(clippy::struct_excessive_bools, reason = "one independent flag per gate is what it reports")]
-pub struct GateReport {
-    /// The loop is not engaged: no force.
-    pub not_permitted: bool,
-    /// The request was missing, not finite or not plausible: no force.
-    pub invalid: bool,
-    /// The data were older than allowed: faded or zero.
-    pub stale: bool,
-    /// Too slow a hand: the dead band took something off.
-    pub dead_band: bool,
-    /// How much force the dead band kept from the hand, N.
-    pub withheld_n: f64,
-    /// The gain in force in this tick.
-    pub gain: f64,
-    /// The slew limit held the force back.
-    pub slew: bool,
-    /// The ceiling cut the force.
-    pub ceiling: bool,
-}
-
-impl GateReport {
-    /// The first closed gate in one word, for a trace; `open` when the force passed untouched.
-    pub const fn first_closed(&self) -> &'static str {
-        match self {
-            Self { not_permitted: true, .. } => "not_permitted",
-            Self { invalid: true, .. } => "validity",
-            Self { stale: true, .. } => "age",
-            Self { dead_band: true, .. } => "dead_band",
-            Self { slew: true, .. } => "slew",
-            Self { ceiling: true, .. } => "ceiling",
-            _ => "open",
-        }
+impl<const D: usize> Default for Request<D> {
+    fn default() -> Self {
+        Self { force_n: None, age_s: f64::INFINITY, speed_m_s: 0.0, hand_m: None, permitted: false }
     }
 }
 
-/// The chain and its memory (gain ramp, last force, dead band).
+/// The chain and its memory (gain ramp, last force, dead band, energy, counters).
 #[derive(Clone, Debug)]
-pub struct Chain {
+pub struct Chain<const D: usize = 3> {
     settings: ChainSettings,
     period_s: f64,
-    gain: f64,
-    last_n: Vector3<f64>,
+    release: Release<D>,
+    age: Age,
     dead_band: DeadBand,
+    gain: Gain,
+    slew: Slew<D>,
+    energy: Energy<D>,
+    ceiling: Ceiling,
+    counts: GateCounts,
 }
 
-/// A request beyond this is a computing error, not a contact, N: it is refused, not clipped.
-const PLAUSIBLE_N: f64 = 1e3;
+/// The chain of a gripper's force.
+pub type GripperChain = Chain<1>;
+/// The chain of a torque.
+pub type TorqueChain = Chain<3>;
 
-impl Chain {
-    /// A chain for a loop of this period (s). Settings outside their ranges are pulled into them.
+impl<const D: usize> Chain<D> {
+    /// A chain for a loop of this period (s). Settings outside their ranges are pulled into them, the gain to 1 at most.
     pub fn new(settings: ChainSettings, period_s: f64) -> Self {
-        let mut chain = Self {
+        let mut settings = settings.pulled_in();
+        let gain = Gain::new(settings.gain, settings.gain_rate_per_s);
+        settings.gain = gain.chosen();
+        Self {
             settings,
             period_s,
-            gain: 0.0,
-            last_n: Vector3::zeros(),
+            release: Release::new(settings.handle_kg, period_s),
+            age: Age::new(settings.fade_after_s, settings.zero_after_s),
             dead_band: DeadBand::new(settings.dead_band_m_s),
-        };
-        chain.set_gain(settings.gain);
-        chain.set_dead_band(settings.dead_band_m_s);
-        chain.gain = chain.settings.gain;
-        chain
+            gain,
+            slew: Slew::new(settings.slew_n_per_s, period_s),
+            energy: Energy::new(settings.energy, period_s),
+            ceiling: Ceiling::new(settings.ceiling_n, settings.device_limit_n),
+            counts: GateCounts::default(),
+        }
     }
 
     /// Settings in force.
@@ -129,17 +76,39 @@ impl Chain {
         &self.settings
     }
 
-    /// Chooses the gain to ramp to, 0 to [`MAX_GAIN`]; anything else is pulled in, NaN is ignored.
-    pub fn set_gain(&mut self, gain: f64) {
-        if !gain.is_nan() {
-            self.settings.gain = gain.clamp(0.0, MAX_GAIN);
-        }
+    /// Counters since construction.
+    pub const fn counts(&self) -> &GateCounts {
+        &self.counts
+    }
+
+    /// The largest force that can leave, N.
+    pub const fn most_n(&self) -> f64 {
+        self.ceiling.most_n()
+    }
+
+    /// Chooses the gain to ramp to, 0 to 1; more is pulled down to 1 unless [`Chain::set_gain_above_one`] came before and no
+    /// choice of 1 or less since. NaN is ignored.
+    pub const fn set_ordinary_gain(&mut self, gain: f64) {
+        self.gain.choose(gain);
+        self.settings.gain = self.gain.chosen();
+    }
+
+    /// The second, deliberate action: chooses a gain up to [`MAX_GAIN`](super::MAX_GAIN). NaN is ignored.
+    pub const fn set_gain_above_one(&mut self, gain: f64) {
+        self.gain.choose_above_one(gain);
+        self.settings.gain = self.gain.chosen();
+    }
+
+    /// Chooses the gain for a caller that has made sure of the second action itself, as the loop does: it accepts a gain above 1
+    /// by a command of its own only. Everybody else uses the two methods above.
+    pub const fn set_gain(&mut self, gain: f64) {
+        self.set_gain_above_one(gain);
     }
 
     /// Chooses the dead band, m/s, 0 to 0.1; anything else is pulled in, NaN is ignored.
     pub fn set_dead_band(&mut self, threshold_m_s: f64) {
         if !threshold_m_s.is_nan() {
-            self.settings.dead_band_m_s = threshold_m_s.clamp(0.0, 0.1);
+            self.settings.dead_band_m_s = threshold_m_s.clamp(0.0, DEAD_BAND_MAX_M_S);
             self.dead_band.threshold_m_s = self.settings.dead_band_m_s;
         }
     }
@@ -149,93 +118,79 @@ impl Chain {
         self.settings.static_hold = hold;
     }
 
-    /// Forgets the last force, so that the next one starts from zero.
+    /// Forgets the last force, so that the next one starts from zero, and the hand's motion; the hand is taken to be there.
     pub fn reset(&mut self) {
-        self.last_n = Vector3::zeros();
+        self.slew.left(SVector::zeros());
+        self.energy.reset();
+        self.release.reset();
     }
 
-    /// Sends one request through all gates; gives the force for the hand (N) and what each gate did.
-    pub fn step(&mut self, request: &Request) -> (Vector3<f64>, GateReport) {
+    /// Sends one request through all gates; gives the force for the hand (N) and what each gate did. Call once a period.
+    pub fn step(&mut self, request: &Request<D>) -> (SVector<f64, D>, GateReport) {
         let mut report = GateReport::default();
-        self.ramp_gain();
-        report.gain = self.gain;
-        let asked = Self::admitted(request, &mut report);
-        let aged = asked * self.freshness(request.age_s, &mut report);
-        let moving = self.past_dead_band(aged, request.speed_m_s, &mut report);
-        if !request.permitted || report.invalid {
+        if self.settings.energy != EnergyMode::Off {
+            self.energy.observe(request.hand_m, &self.slew.last_n());
+        }
+        let force_n = self.through(request, &mut report);
+        self.slew.left(force_n);
+        report.stored_j = self.energy.stored_j();
+        self.counts.add(&report.reasons);
+        report.counts = self.counts;
+        (force_n, report)
+    }
+
+    fn through(&mut self, request: &Request<D>, report: &mut GateReport) -> SVector<f64, D> {
+        let admitted = admitted(request.force_n);
+        let (fresh, age) = self.age.share(request.age_s);
+        let (gain, ramp) = self.gain.step(self.period_s);
+        report.gain = gain;
+        report.note(Gate::Validity, admitted.err().unwrap_or_default());
+        report.note(Gate::Age, age);
+        report.note(Gate::Gain, ramp);
+        let aged_n = admitted.unwrap_or_else(|_| SVector::zeros()) * fresh;
+        let hand = self.release.step(request.hand_m, &self.slew.last_n(), &aged_n);
+        report.note(Gate::Release, hand);
+        let moving_n = self.past_dead_band(aged_n, request.speed_m_s, report);
+        if !request.permitted {
+            report.note(Gate::Permission, Reason::NotPermitted);
+            report.note(Gate::Release, Reason::Open);
+            self.reset();
+        }
+        if !request.permitted || report.invalid || report.released {
             // A stop is a stop: no ramp down, the slew limit does not apply to letting go.
-            self.last_n = Vector3::zeros();
-            return (self.last_n, report);
+            return SVector::zeros();
         }
-        let slewed = self.slewed(moving * self.gain, &mut report);
-        self.last_n = self.under_ceiling(slewed, &mut report);
-        (self.last_n, report)
+        let (slewed_n, slew) = self.slew.limited(moving_n * gain);
+        report.note(Gate::Slew, slew);
+        let (paid_n, energy) = self.energy.controlled(slewed_n);
+        report.note(Gate::Energy, energy);
+        // What the energy gate takes goes as fast as a force may change, no faster. The ceiling shortens towards a ball in which
+        // the last force lies, which brings no two forces further apart: the slew limit holds behind it.
+        let (force_n, ceiling) = self.ceiling.under(self.slew.limited(paid_n).0);
+        report.note(Gate::Ceiling, ceiling);
+        force_n
     }
 
-    fn ramp_gain(&mut self) {
-        let step = self.settings.gain_rate_per_s * self.period_s;
-        self.gain += (self.settings.gain - self.gain).clamp(-step, step);
-    }
-
-    fn admitted(request: &Request, report: &mut GateReport) -> Vector3<f64> {
-        report.not_permitted = !request.permitted;
-        match request.force_n {
-            Some(force_n) if force_n.iter().all(|f| f.is_finite()) && force_n.amax() <= PLAUSIBLE_N => force_n,
-            _ => {
-                report.invalid = true;
-                Vector3::zeros()
-            }
-        }
-    }
-
-    fn freshness(&self, age_s: f64, report: &mut GateReport) -> f64 {
-        let ChainSettings { fade_after_s, zero_after_s, .. } = self.settings;
-        if age_s <= fade_after_s {
-            return 1.0;
-        }
-        report.stale = true;
-        // Written so that a NaN age falls through to zero.
-        if age_s < zero_after_s { (zero_after_s - age_s) / (zero_after_s - fade_after_s) } else { 0.0 }
-    }
-
-    fn past_dead_band(&mut self, force_n: Vector3<f64>, speed_m_s: f64, report: &mut GateReport) -> Vector3<f64> {
+    fn past_dead_band(&mut self, force_n: SVector<f64, D>, speed_m_s: f64, report: &mut GateReport) -> SVector<f64, D> {
         let share = self.dead_band.step(speed_m_s);
         if self.settings.static_hold || share >= 1.0 {
             return force_n;
         }
-        report.dead_band = true;
+        report.note(Gate::DeadBand, if speed_m_s.is_finite() { Reason::HandSlow } else { Reason::SpeedUnknown });
         report.withheld_n = force_n.norm() * (1.0 - share);
         force_n * share
-    }
-
-    fn slewed(&self, force_n: Vector3<f64>, report: &mut GateReport) -> Vector3<f64> {
-        let step = force_n - self.last_n;
-        let most = self.settings.slew_n_per_s * self.period_s;
-        if step.norm() <= most {
-            return force_n;
-        }
-        report.slew = true;
-        self.last_n + step * (most / step.norm())
-    }
-
-    fn under_ceiling(&self, force_n: Vector3<f64>, report: &mut GateReport) -> Vector3<f64> {
-        let norm = force_n.norm();
-        if norm <= self.settings.ceiling_n {
-            return force_n;
-        }
-        report.ceiling = true;
-        force_n * (self.settings.ceiling_n / norm)
     }
 }
 
 #[cfg(test)]
 mod tests {
+    use nalgebra::{SVector, Vector3};
     use proptest::prelude::*;
 
     use super::*;
 
     fn request(force_n: Vector3<f64>) -> Request {
-        Request { force_n: Some(force_n), age_s: 0.0, speed_m_s: 0.1, permitted: true }
+        Request { force_n: Some(force_n), age_s: 0.0, speed_m_s: 0.1, hand_m: None, permitted: true }
     }
 
     #[test]
@@ -248,6 +203,7 @@ mod tests {
         let (force_n, report) = chain.step(&request(asked));
         assert!((force_n - asked).norm() < 1e-12);
         assert_eq!(report.first_closed(), "open");
+        assert_eq!(report.counts.ticks, 101);
     }
 
     #[test]
@@ -270,7 +226,8 @@ mod tests {
         }
         let (force_n, report) = chain.step(&Request { permitted: false, ..request(Vector3::z() * 3.0) });
         assert!(force_n.norm() < 1e-15);
-        assert_eq!(report.first_closed(), "not_permitted");
+        assert_eq!(report.first(), Some((Gate::Permission, Reason::NotPermitted)));
+        assert_eq!(chain.counts().acted[Gate::Permission.index()], 1);
     }
 
     #[test]
@@ -286,25 +243,69 @@ mod tests {
         assert!((chain.step(&held).0.z - 1.4).abs() < 1e-12);
     }
 
+    #[test]
+    fn the_ceiling_is_never_above_what_the_device_can_give() {
+        let settings = ChainSettings { device_limit_n: 2.5, ..ChainSettings::default() };
+        let mut chain = Chain::new(settings, 1e-3);
+        let last = (0..100).map(|_| chain.step(&request(Vector3::z() * 30.0))).last().unwrap();
+        assert!((last.0.norm() - 2.5).abs() < 1e-12);
+        assert_eq!(last.1.reason(Gate::Ceiling), Reason::AboveDeviceLimit);
+    }
+
+    #[test]
+    fn a_gripper_and_a_torque_pass_gates_of_their_own() {
+        let mut gripper = GripperChain::new(ChainSettings::gripper(), 1e-3);
+        let squeeze = Request::<1> {
+            force_n: Some(SVector::from([1e2])),
+            age_s: 0.0,
+            speed_m_s: 0.0,
+            hand_m: None,
+            permitted: true,
+        };
+        let held = (0..100).map(|_| gripper.step(&squeeze).0.x).last().unwrap();
+        assert!((held - 4.0).abs() < 1e-12, "a held grip is felt, up to the ceiling: {held}");
+        let mut torque = TorqueChain::new(ChainSettings::torque(0.4), 1e-3);
+        let twist = (0..100).map(|_| torque.step(&request(Vector3::x())).0.norm()).last().unwrap();
+        assert!((twist - 0.1).abs() < 1e-12, "{twist} Nm");
+        let mut none = TorqueChain::new(ChainSettings::torque(0.0), 1e-3);
+        assert!(none.step(&request(Vector3::x())).0.norm() < 1e-15, "a device without torques is sent none");
+    }
+
+    #[test]
+    fn a_gain_above_one_takes_the_second_action() {
+        let settings = ChainSettings { gain: 2.0, gain_rate_per_s: 1e3, ..ChainSettings::default() };
+        let mut chain = Chain::new(settings, 1e-3);
+        assert!((chain.settings().gain - 1.0).abs() < 1e-12);
+        let felt = |chain: &mut Chain| (0..20).map(|_| chain.step(&request(Vector3::x())).0.x).last().unwrap();
+        chain.set_ordinary_gain(2.0);
+        assert!((felt(&mut chain) - 1.0).abs() < 1e-12);
+        chain.set_gain_above_one(2.0);
+        assert!((felt(&mut chain) - 2.0).abs() < 1e-12);
+    }
+
     proptest! {
         #[test]
         fn no_sequence_of_requests_breaches_ceiling_or_slew(
             requests in prop::collection::vec(
-                (prop::array::uniform3(prop::num::f64::ANY), prop::num::f64::ANY, prop::num::f64::ANY, any::<bool>(), 0.0..5.0f64),
+                (prop::array::uniform3(prop_oneof![-20.0..20.0f64, prop::num::f64::ANY]), prop::num::f64::ANY, prop::num::f64::ANY, any::<bool>(), 0.0..5.0f64),
                 1..200,
             ),
         ) {
             let settings = ChainSettings::default();
             let mut chain = Chain::new(settings, 1e-3);
-            let mut last = Vector3::<f64>::zeros();
+            let (mut last, mut last_gain) = (Vector3::<f64>::zeros(), 1.0);
             for (force, age_s, speed_m_s, permitted, gain) in requests {
-                chain.set_gain(gain);
-                let (now, _) = chain.step(&Request { force_n: Some(Vector3::from(force)), age_s, speed_m_s, permitted });
+                chain.set_gain_above_one(gain);
+                let force = Vector3::from(force);
+                let asked = Request { force_n: Some(force), age_s, speed_m_s, hand_m: Some(force * 1e-4), permitted };
+                let (now, report) = chain.step(&asked);
                 prop_assert!(now.iter().all(|f| f.is_finite()));
                 prop_assert!(now.norm() <= settings.ceiling_n * (1.0 + 1e-12));
-                let rise = now.norm() - last.norm();
-                prop_assert!(rise <= settings.slew_n_per_s * 1e-3 * (1.0 + 1e-9), "rise {rise}");
-                last = now;
+                let let_go = report.not_permitted || report.invalid || report.released;
+                let change = (now - last).norm();
+                prop_assert!(if let_go { now.norm() == 0.0 } else { change <= 0.5 * (1.0 + 1e-9) }, "change {}", change);
+                prop_assert!((report.gain - last_gain).abs() <= 2e-3 * (1.0 + 1e-9));
+                (last, last_gain) = (now, report.gain);
             }
         }
     }

@@ -1,4 +1,4 @@
-//! The paper's rule that nothing is rendered below 1 mm/s, with a smooth edge and hysteresis so that it does not chatter.
+//! Third gate: the paper's rule that nothing is rendered below 1 mm/s, with a smooth edge and hysteresis so that it does not chatter.
 
 /// Speed gate: 0 below the threshold, 1 above twice the threshold, smooth between, without a step anywhere.
 ///
@@ -36,7 +36,24 @@ impl DeadBand {
 
 #[cfg(test)]
 mod tests {
+    use proptest::prelude::*;
+
     use super::*;
+
+    proptest! {
+        #[test]
+        fn shut_below_half_open_above_double_whatever_came_before(
+            before in prop::collection::vec(prop::num::f64::ANY, 0..50), slow in 0.0..0.5e-3f64, fast in 2e-3..10.0f64,
+        ) {
+            let mut gate = DeadBand::new(1e-3);
+            for speed_m_s in before {
+                let share = gate.step(speed_m_s);
+                prop_assert!((0.0..=1.0).contains(&share) && (speed_m_s.is_finite() || share == 0.0));
+            }
+            prop_assert!(gate.step(slow) == 0.0);
+            prop_assert!(gate.step(fast) == 1.0);
+        }
+    }
 
     #[test]
     fn passes_nothing_below_and_everything_well_above_the_threshold() {

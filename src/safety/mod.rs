@@ -1,13 +1,31 @@
 //! Between every model and the hand: a fixed chain of gates. Nothing passes around it.
 //!
-//! Takes the force (N) a mode asks for, its age (s) and the hand's speed (m/s); gives a force that is finite, young,
-//! wanted and bounded, and says which gates acted. Bad input (NaN, infinite, too old) gives zero, never a panic.
-//! Knows no device, file or thread.
+//! Takes the force (N) a mode asks for, its age (s), the hand's speed (m/s) and place (m); gives a force that is finite, young,
+//! wanted, paid for and bounded, and says which gates acted, why, and how often. One file per gate; [`Chain`] is their order.
+//! Bad input (NaN, infinite, too old) gives zero, never a panic. Knows no device, file or thread.
 
+mod age;
+mod ceiling;
 mod chain;
 mod dead_band;
+mod energy;
+mod gain;
 mod interlock;
+mod release;
+mod report;
+mod settings;
+mod slew;
+mod validity;
 
-pub use chain::{Chain, ChainSettings, GateReport, MAX_GAIN, Request};
+pub use age::Age;
+pub use ceiling::Ceiling;
+pub use chain::{Chain, GripperChain, Request, TorqueChain};
 pub use dead_band::DeadBand;
+pub use energy::{ALLOWANCE_J, Energy, LEAK_S, MOST_J};
+pub use gain::{Gain, MAX_GAIN};
 pub use interlock::{Change, Interlock, Permits, READY_WITHIN_S, Refused, Seen, State, Why, Wish};
+pub use release::Release;
+pub use report::{GATES, Gate, GateCounts, GateReport, Reason};
+pub use settings::{ChainSettings, EnergyMode};
+pub use slew::Slew;
+pub use validity::{PLAUSIBLE_N, admitted};

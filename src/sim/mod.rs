@@ -224,6 +224,7 @@ impl World {
         Inputs {
             hand: kinematics::Hand::at(leader_m),
             gripper_rad: None,
+            grip_n: None,
             tip_m: self.tip_m,
             kbf_from_jaws: None,
             sensed,

@@ -211,7 +211,8 @@ pub fn replay(recording: &Recording, options: &Options, mut each: impl FnMut(&Ro
         let held = i.checked_sub(delay).map(|then| recording.samples[then].force_n);
         let last_m = recording.samples[i.saturating_sub(1)].position_m;
         let speed_m_s = (sample.position_m - last_m).norm() * rate_hz;
-        let (_, gate) = gates.step(&Request { force_n: rendered, age_s: 0.0, speed_m_s, permitted: true });
+        let (_, gate) =
+            gates.step(&Request { force_n: rendered, age_s: 0.0, speed_m_s, hand_m: None, permitted: true });
         let row = Row {
             t_s: sample.t_s,
             measured: sample.force_n,

@@ -1,6 +1,6 @@
 //! One arm pair: handle, arm, force sensor, and the loop between them.
 
-use nalgebra::{UnitQuaternion, Vector3};
+use nalgebra::{UnitQuaternion, Vector1, Vector3};
 
 use super::{Accuracy, Calibrations, ForcePath, ForceReport, ForceSource, Link, LoopState, Tracking};
 use crate::{
@@ -9,7 +9,7 @@ use crate::{
     impedance::{Identifier, MAX_DELAY_S, Mode, Rendered, Renderer, Sample, SettingsError},
     kinematics::{Hand, HandEye, Target},
     runtime::{Command, Event, Fault, Tick},
-    safety::{Chain, Change, Interlock, Request, Seen, Wish},
+    safety::{Chain, Change, GripperChain, Interlock, Request, Seen, Wish},
 };
 
 /// Rig silent for longer than this, s: fault.
@@ -20,6 +20,8 @@ const STALLED_AFTER_S: f64 = 0.050;
 pub const GUIDE_MAX_M: f64 = 0.1;
 /// Most events told in one tick; more in one tick is not possible.
 pub const EVENTS_PER_TICK_MAX: usize = 6;
+/// From the gripper's hinge to the finger, m (omega.7).
+const GRIPPER_ARM_M: f64 = 0.048;
 /// After each engagement the force rises to its full size within this time, s.
 const RAMP_S: f64 = 0.2;
 /// A tip that moved more than this within a tick does not rest: nothing is engaged then, m.
@@ -58,6 +60,7 @@ pub struct Pair {
     link: Link,
     tracking: Tracking,
     chain: Chain,
+    gripper_chain: GripperChain,
     last_inputs: Option<Inputs>,
     last_input_s: f64,
     command_m: Option<Vector3<f64>>,
@@ -91,6 +94,7 @@ impl Pair {
             link: Link::new(rig.rate_hz, rig.delay_s),
             tracking: Tracking::new(rig.rate_hz),
             chain: Chain::new(rig.gates, 1.0 / rig.rate_hz),
+            gripper_chain: GripperChain::new(rig.gates, 1.0 / rig.rate_hz),
             last_inputs: None,
             last_input_s: 0.0,
             command_m: None,
@@ -150,6 +154,7 @@ impl Pair {
         let Change { from, to, why } = change;
         self.tell(Event::StateChanged { t_s, side: self.side, from, to, why });
         self.chain.reset();
+        self.gripper_chain.reset();
         self.command_m = None;
         self.hand_eye.release();
         if !to.permits().drives || !from.permits().drives {
@@ -191,9 +196,9 @@ impl Pair {
     pub fn obey(&mut self, command: Command, t_s: f64) -> bool {
         match command {
             Command::SetMode(mode) => self.mode = mode,
-            Command::SetGain(gain) if (0.0..=1.0).contains(&gain) => self.chain.set_gain(gain),
+            Command::SetGain(gain) if (0.0..=1.0).contains(&gain) => self.chain.set_ordinary_gain(gain),
             Command::SetGainAboveOne(gain) if (0.0..=crate::safety::MAX_GAIN).contains(&gain) => {
-                self.chain.set_gain(gain);
+                self.chain.set_gain_above_one(gain);
             }
             Command::SetDelay(delay_s) if (0.0..=MAX_DELAY_S).contains(&delay_s) => self.set_delay(delay_s),
             Command::SetDeadBand(speed_m_s) if (0.0..=0.1).contains(&speed_m_s) => self.chain.set_dead_band(speed_m_s),
@@ -265,13 +270,17 @@ impl Pair {
         let delayed_n = parcel.map_or_else(Vector3::zeros, |parcel| parcel.force_n);
         let age_s = parcel.map_or(f64::INFINITY, |parcel| now_s - parcel.t_s - self.delay_s + seen.age_s);
         let permits = self.state().permits();
+        let permitted = permits.coupled && self.force.source.is_usable();
         let ramp = ((now_s - self.engaged_s) / RAMP_S).clamp(0.0, 1.0);
         let (rendered_n, gates) = self.chain.step(&Request {
             force_n: rendered.force(self.mode).map(|force_n| force_n * ramp),
             age_s,
             speed_m_s: self.hand_speed_m_s,
-            permitted: permits.coupled && self.force.source.is_usable(),
+            // On the axes of the force; the way of the hand itself, whatever the scale makes of it.
+            hand_m: inputs.map(|inputs| self.hand_eye.mapping().kbf_from_leader() * inputs.hand.position_m),
+            permitted,
         });
+        let gripper_n = self.grip(inputs.as_ref(), age_s, permitted);
         if inputs.is_some() {
             self.accuracy.add(&rendered, &self.force.tip_n);
         }
@@ -280,7 +289,7 @@ impl Pair {
             tip_command_m,
             kbf_from_jaws: tip_command_m.and(seen.kbf_from_jaws).map(|_| target.kbf_from_jaws),
             hand_force_n: self.hand_eye.mapping().force_to_hand(&rendered_n),
-            gripper_n: 0.0,
+            gripper_n,
             prompt: self.prompt,
             guide_m: self.guide_m,
         };
@@ -288,6 +297,20 @@ impl Pair {
         let tick = self.tick(&seen, leader_m, &rendered, delayed_n, rendered_n, gates, timing);
         self.ticks += 1;
         (outputs, tick)
+    }
+
+    /// The gripper feels what its jaws hold, through gates of its own.
+    fn grip(&mut self, inputs: Option<&Inputs>, age_s: f64, permitted: bool) -> f64 {
+        let (opening_rad, grip_n) = (inputs.and_then(|i| i.gripper_rad), inputs.and_then(|i| i.grip_n));
+        let (force_n, _) = self.gripper_chain.step(&Request {
+            force_n: grip_n.map(Vector1::new),
+            age_s,
+            // A gripper that rests on what it holds goes on feeling it.
+            speed_m_s: 1.0,
+            hand_m: opening_rad.map(|rad| Vector1::new(rad * GRIPPER_ARM_M)),
+            permitted: permitted && grip_n.is_some(),
+        });
+        force_n.x
     }
 
     fn take_in(&mut self, inputs: &Inputs, now_s: f64) {
@@ -413,6 +436,7 @@ impl Pair {
 const NOTHING_YET: Inputs = Inputs {
     hand: Hand::at(Vector3::new(0.0, 0.0, 0.0)),
     gripper_rad: None,
+    grip_n: None,
     tip_m: Vector3::new(0.0, 0.0, 0.0),
     kbf_from_jaws: None,
     sensed: Sensed::AtTip(Vector3::new(0.0, 0.0, 0.0)),

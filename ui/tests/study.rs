@@ -60,3 +60,16 @@ fn bad_input_is_one_line() {
     let file = tempfile::NamedTempFile::new().unwrap();
     refused(&["study", "stability", "--out", file.path().to_str().unwrap()], "folder");
 }
+
+#[test]
+fn the_gates_hold_against_a_short_attack_and_a_wrong_number_is_refused() {
+    let output = nima(&["study", "gates", "--requests", "2e4", "--json"]);
+    assert!(output.status.success() && output.stderr.is_empty(), "{}", String::from_utf8_lossy(&output.stderr));
+    let report: Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(report["requests"], 20_000);
+    assert!(report["breaches"].as_object().unwrap().values().all(|count| *count == 0), "{}", report["breaches"]);
+    assert_eq!(report["acted"].as_array().unwrap().len(), 9);
+    for wrong in ["0", "1.5", "-3", "many", "1e13", "nan"] {
+        refused(&["study", "gates", &format!("--requests={wrong}")], "whole number");
+    }
+}

@@ -162,6 +162,7 @@ impl ArmPair {
         Some(Inputs {
             hand: Hand { position_m, orientation },
             gripper_rad,
+            grip_n: self.servos.as_ref().zip(self.turned).and_then(|((_, jaws), turned)| jaws.grip_n(&turned.value)),
             tip_m: pose.tip_m,
             kbf_from_jaws: jaws.map(|jaws| kbf_from_s1 * jaws.s1_from_jaws()),
             sensed: self.sensed(&force.value, pose, &kbf_from_s1, shared),

@@ -17,6 +17,8 @@ pub struct JawsSettings {
     pub ratio: [f64; SERVOS],
     /// Opening of the jaws per opening of the gripper.
     pub grip_per_gripper: f64,
+    /// Force at the finger per current of the servo that closes the jaws, N/A; zero: the gripper feels nothing.
+    pub grip_n_per_a: f64,
     /// Around each servo's own loops; takes out what load and slack leave.
     pub pid: PidGains,
 }
@@ -24,7 +26,7 @@ pub struct JawsSettings {
 impl Default for JawsSettings {
     fn default() -> Self {
         let pid = PidGains { proportional: 0.15, integral_per_s: 4.0, derivative_s: 0.002, integral_max: 0.15 };
-        Self { ratio: [1.0; SERVOS], grip_per_gripper: 1.0, pid }
+        Self { ratio: [1.0; SERVOS], grip_per_gripper: 1.0, grip_n_per_a: 0.0, pid }
     }
 }
 
@@ -47,6 +49,13 @@ impl JawsControl {
     pub(super) fn measured(&self, reading: &ServoReading) -> Jaws {
         let [roll_rad, pitch_rad, yaw_rad, _] = self.angles(reading);
         Jaws { roll_rad, pitch_rad, yaw_rad }
+    }
+
+    /// Force that opens the jaws, N at the finger: what the closing servo holds against.
+    pub(super) fn grip_n(&self, reading: &ServoReading) -> Option<f64> {
+        let Self { settings: JawsSettings { grip_n_per_a, ratio, .. }, .. } = self;
+        let closing_a = -reading.current_a[SERVOS - 1] * ratio[SERVOS - 1].signum();
+        (*grip_n_per_a > 0.0).then(|| (closing_a * grip_n_per_a).max(0.0))
     }
 
     fn angles(&self, reading: &ServoReading) -> [f64; SERVOS] {

@@ -10,7 +10,7 @@ use clap::{Args, Subcommand};
 use nima::{
     files::write_atomically,
     impedance::MAX_DELAY_S,
-    study::{stability, validation},
+    study::{gates, release, stability, stability_map::StabilityMap, validation},
     tip_force::MOST_ROWS,
 };
 
@@ -18,8 +18,14 @@ use super::{output, timing, tradeoff};
 
 #[derive(Debug, Subcommand)]
 pub(super) enum StudyCommand {
+    /// Attack the gates between model and hand with requests that no honest mode makes, and count what gets through
+    Gates(Gates),
+    /// Let go of a handle pressed with 5 N, in every mode and at every delay, without and with gates
+    Release(Release),
     /// Compare every solver with an arbitrary-precision reference at the extremes
     Stability(Stability),
+    /// Find by simulation where gain, delay and stiffness are stable in a gripping hand (minutes)
+    StabilityMap(Map),
     /// Measure what every knob of the identification costs in time and gives in accuracy
     Tradeoff(tradeoff::Arguments),
     /// Time the loop beside its console, busy cores, a held-up window and heavy disk writing
@@ -62,6 +68,44 @@ fn delay_ms(text: &str) -> Result<f64, String> {
 }
 
 #[derive(Debug, Args)]
+pub(super) struct Gates {
+    /// Requests to make, up to 1e12
+    #[arg(long, value_name = "N", default_value = "1e8", value_parser = requests)]
+    requests: u64,
+    /// Seed of the adversary
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    seed: u64,
+    /// Print the figures as one JSON object
+    #[arg(long)]
+    json: bool,
+}
+
+/// A whole number, also as `1e8`.
+fn requests(text: &str) -> Result<u64, String> {
+    match text.parse::<f64>() {
+        Ok(count) if (1.0..=1e12).contains(&count) && count.fract() == 0.0 => Ok(count as u64),
+        _ => Err("give a whole number from 1 to 1e12".to_owned()),
+    }
+}
+
+#[derive(Debug, Args)]
+pub(super) struct Release {
+    /// Write release.json, release.md and release.svg into this folder (made if absent)
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Print the figures as one JSON object
+    #[arg(long)]
+    json: bool,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct Map {
+    /// Write stability_map.csv and stability_map.md into this folder (made if absent)
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+}
+
+#[derive(Debug, Args)]
 pub(super) struct Stability {
     /// Write stability.json, stability.csv and stability.svg into this folder (made if absent)
     #[arg(long, value_name = "DIR")]
@@ -79,6 +123,9 @@ pub(super) struct Stability {
 
 pub(super) fn run(command: &StudyCommand) -> anyhow::Result<()> {
     match command {
+        StudyCommand::Gates(arguments) => gates(arguments),
+        StudyCommand::Release(arguments) => release(arguments),
+        StudyCommand::StabilityMap(arguments) => stability_map(arguments),
         StudyCommand::Stability(arguments) => stability(arguments),
         StudyCommand::Tradeoff(arguments) => tradeoff::run(arguments),
         StudyCommand::Timing(arguments) => timing::run(arguments),
@@ -96,6 +143,39 @@ fn validation(arguments: &Validation) -> anyhow::Result<()> {
         write(folder, "validation.md", &report.markdown())?;
     }
     if arguments.json { output::json(&report) } else { output::line(report.text().trim_end()) }
+}
+
+fn gates(arguments: &Gates) -> anyhow::Result<()> {
+    let report = gates::study(arguments.requests, arguments.seed, progress);
+    if arguments.json {
+        output::json(&report)?
+    } else {
+        output::line(&report.text())?
+    }
+    let breaches = report.breaches.total();
+    anyhow::ensure!(breaches == 0, "{breaches} breaches in {} requests: the gates do not hold", report.requests);
+    Ok(())
+}
+
+fn release(arguments: &Release) -> anyhow::Result<()> {
+    make(arguments.out.as_deref())?;
+    let report = release::study(progress)?;
+    if let Some(folder) = &arguments.out {
+        write(folder, "release.json", &serde_json::to_string_pretty(&report)?)?;
+        write(folder, "release.md", &report.markdown())?;
+        write(folder, "release.svg", &report.svg())?;
+    }
+    if arguments.json { output::json(&report) } else { output::line(report.markdown().trim_end()) }
+}
+
+fn stability_map(arguments: &Map) -> anyhow::Result<()> {
+    make(arguments.out.as_deref())?;
+    let map = StabilityMap::simulate(progress)?;
+    if let Some(folder) = &arguments.out {
+        write(folder, "stability_map.csv", &map.csv())?;
+        write(folder, "stability_map.md", &map.markdown())?;
+    }
+    output::line(map.markdown().trim_end())
 }
 
 /// Before the work, so that a wrong name does not cost its time.

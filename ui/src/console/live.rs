@@ -41,6 +41,8 @@ const REFUSAL_SHOWN: Duration = Duration::from_secs(6);
 pub struct Gates {
     /// Not engaged.
     pub not_permitted: Fading,
+    /// Nobody holds the handle.
+    pub released: Fading,
     /// Nothing valid to render.
     pub invalid: Fading,
     /// Data too old.
@@ -51,6 +53,8 @@ pub struct Gates {
     pub withheld_n: Fading,
     /// Change too fast.
     pub slew: Fading,
+    /// More energy than the hand gave.
+    pub energy: Fading,
     /// Force too large.
     pub ceiling: Fading,
 }
@@ -348,10 +352,12 @@ impl Gates {
         let gates = &tick.gates;
         for (share, acted) in [
             (&mut self.not_permitted, gates.not_permitted),
+            (&mut self.released, gates.released),
             (&mut self.invalid, gates.invalid),
             (&mut self.stale, gates.stale),
             (&mut self.dead_band, gates.dead_band),
             (&mut self.slew, gates.slew),
+            (&mut self.energy, gates.energy),
             (&mut self.ceiling, gates.ceiling),
         ] {
             share.push(f64::from(u8::from(acted)), dt_s, 0.15);

@@ -1,7 +1,10 @@
 //! "Why is there no force?": the gates between model and hand, in their order, and what each does just now.
 
 use egui::{Color32, RichText, Ui};
-use nima::teleop::LoopState;
+use nima::{
+    safety::{EnergyMode, Gate as Which, Reason},
+    teleop::LoopState,
+};
 
 use crate::console::{
     live::Live,
@@ -20,7 +23,7 @@ pub fn gates_ui(ui: &mut Ui, live: &Live) {
         ui.label(RichText::new(answer(live)).font(theme::strong(14.0)));
         ui.add_space(4.0);
         for gate in gates(live) {
-            gate_ui(ui, &gate);
+            gate_ui(ui, live, &gate);
         }
     });
 }
@@ -37,6 +40,9 @@ fn answer(live: &Live) -> String {
         LoopState::Faulted(_) => return "No force: stopped by a fault.".to_owned(),
         LoopState::Engaged => {}
     }
+    if closed(live.gates.released) {
+        return "No force: the hand has let go. It comes back when the contact has ended.".to_owned();
+    }
     if closed(live.gates.invalid) {
         return "No force: the mode has nothing valid to render.".to_owned();
     }
@@ -52,6 +58,9 @@ fn answer(live: &Live) -> String {
     if live.gain() < 0.01 {
         return "No force: the gain is zero.".to_owned();
     }
+    if closed(live.gates.energy) {
+        return "Less force: the hand would get back more energy than it gave.".to_owned();
+    }
     if figures.rendered_n < 0.05 {
         return format!("On its way: the link is {:.0} ms late.", live.delay_s() * 1e3);
     }
@@ -59,6 +68,7 @@ fn answer(live: &Live) -> String {
 }
 
 struct Gate {
+    which: Which,
     name: &'static str,
     share: f64,
     limits: bool,
@@ -70,10 +80,18 @@ fn closed(share: Fading) -> bool {
     share.get() > 0.5
 }
 
-fn gates(live: &Live) -> [Gate; 7] {
+fn gates(live: &Live) -> [Gate; 9] {
     let (gates, chain) = (&live.gates, &live.rig.gates);
-    let gate = |name, share: Fading, limits, note, meaning| Gate { name, share: share.get(), limits, note, meaning };
+    let gate = |which, name, share: Fading, limits, note, meaning| Gate {
+        which,
+        name,
+        share: share.get(),
+        limits,
+        note,
+        meaning,
+    };
     let mut dead_band = gate(
+        Which::DeadBand,
         "Dead band",
         gates.dead_band,
         false,
@@ -89,6 +107,7 @@ fn gates(live: &Live) -> [Gate; 7] {
     gain.push(f64::from(u8::from(live.gain() < 0.01)), 0.0, 1.0);
     [
         gate(
+            Which::Permission,
             "Engaged",
             gates.not_permitted,
             false,
@@ -96,6 +115,15 @@ fn gates(live: &Live) -> [Gate; 7] {
             "Closed unless the loop is engaged. Stop closes it at once.",
         ),
         gate(
+            Which::Release,
+            "Hand",
+            gates.released,
+            false,
+            if chain.handle_kg > 0.0 { String::new() } else { "off: handle's mass unknown".to_owned() },
+            "Closed when the handle flies off as it does without a hand, until the contact has ended or the loop is engaged anew.",
+        ),
+        gate(
+            Which::Validity,
             "Valid",
             gates.invalid,
             false,
@@ -103,6 +131,7 @@ fn gates(live: &Live) -> [Gate; 7] {
             "Closed when the mode asks for nothing, for something not finite, or for more than 1000 N.",
         ),
         gate(
+            Which::Age,
             "Age",
             gates.stale,
             false,
@@ -110,8 +139,9 @@ fn gates(live: &Live) -> [Gate; 7] {
             "Fades the force when data are older than the link's own delay, to zero after this time.",
         ),
         dead_band,
-        gate("Gain", gain, false, format!("{:.2}", live.gain()), "The operator's factor. Closed at zero."),
+        gate(Which::Gain, "Gain", gain, false, format!("{:.2}", live.gain()), "The operator's factor. Closed at zero."),
         gate(
+            Which::Slew,
             "Slew",
             gates.slew,
             true,
@@ -119,16 +149,43 @@ fn gates(live: &Live) -> [Gate; 7] {
             "Limits how fast the force may change, so that no step kicks the hand.",
         ),
         gate(
+            Which::Energy,
+            "Energy",
+            gates.energy,
+            true,
+            stored(live),
+            "Lets the hand get back what it gave and a little more: takes the force along its motion away when that is used up.",
+        ),
+        gate(
+            Which::Ceiling,
             "Ceiling",
             gates.ceiling,
             true,
-            format!("{:.1} N", chain.ceiling_n),
-            "The largest force that ever reaches the hand.",
+            format!("{:.1} N", chain.ceiling_n.min(chain.device_limit_n)),
+            "The largest force that ever reaches the hand, never above what the device can give.",
         ),
     ]
 }
 
-fn gate_ui(ui: &mut Ui, gate: &Gate) {
+/// What the hand may still get back.
+fn stored(live: &Live) -> String {
+    if live.gate_settings().energy == EnergyMode::Off {
+        return "off".to_owned();
+    }
+    live.tick.map_or_else(String::new, |tick| format!("{:.0} mJ left", tick.gates.stored_j * 1e3))
+}
+
+/// How often the gate acted since the loop was made, and why it last did.
+fn history(live: &Live, gate: Which) -> String {
+    let Some(counts) = live.tick.map(|tick| tick.gates.counts) else { return String::new() };
+    let (acted, share, last) = (counts.acted[gate.index()], counts.share(gate), counts.last[gate.index()]);
+    match last {
+        Reason::Open => "It has not acted so far.".to_owned(),
+        last => format!("Acted on {acted} ticks ({:.1} %); the last time: {}.", 100.0 * share, last.words()),
+    }
+}
+
+fn gate_ui(ui: &mut Ui, live: &Live, gate: &Gate) {
     let acting = gate.share > if gate.limits { 0.05 } else { 0.5 };
     let (what, colour, word) = match (acting, gate.limits) {
         (false, _) => (Sign::Disc, theme::ENGAGED.gamma_multiply(0.75), "open"),
@@ -143,5 +200,5 @@ fn gate_ui(ui: &mut Ui, gate: &Gate) {
         ui.label(RichText::new(word).color(ink));
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| ui.label(small(&gate.note)));
     });
-    row.response.on_hover_text(gate.meaning);
+    row.response.on_hover_text(format!("{} {}", gate.meaning, history(live, gate.which)));
 }

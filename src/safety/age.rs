@@ -1,0 +1,53 @@
+//! Second gate: old data fade. A source that falls silent takes its force with it.
+
+use super::Reason;
+
+/// Fades a force between two ages of the data behind it, beyond the link's own delay.
+#[derive(Clone, Copy, Debug)]
+pub struct Age {
+    fade_after_s: f64,
+    zero_after_s: f64,
+}
+
+impl Age {
+    /// Whole until `fade_after_s`, nothing from `zero_after_s` on (s, the second above the first).
+    pub const fn new(fade_after_s: f64, zero_after_s: f64) -> Self {
+        Self { fade_after_s, zero_after_s }
+    }
+
+    /// Share of the force that passes at this age (s), 0 to 1, and why not all. An age that is not finite passes nothing.
+    pub fn share(&self, age_s: f64) -> (f64, Reason) {
+        if !age_s.is_finite() || age_s >= self.zero_after_s {
+            return (0.0, Reason::TooOld);
+        }
+        if age_s <= self.fade_after_s {
+            return (1.0, Reason::Open);
+        }
+        ((self.zero_after_s - age_s) / (self.zero_after_s - self.fade_after_s), Reason::Ageing)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    proptest! {
+        #[test]
+        fn older_never_passes_more(age_s in prop::num::f64::ANY, more_s in 0.0..1.0f64) {
+            let age = Age::new(0.005, 0.020);
+            let ((share, reason), (later, _)) = (age.share(age_s), age.share(age_s + more_s));
+            prop_assert!((0.0..=1.0).contains(&share) && later <= share);
+            prop_assert_eq!(reason == Reason::Open, share >= 1.0);
+            prop_assert!(age_s < 0.020 || share == 0.0);
+        }
+    }
+
+    #[test]
+    fn an_age_that_is_no_number_passes_nothing() {
+        for age_s in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+            assert_eq!(Age::new(0.005, 0.020).share(age_s), (0.0, Reason::TooOld));
+        }
+    }
+}

@@ -1,0 +1,169 @@
+//! Sixth gate: the hand gets back no more energy than it gave, but for a small allowance.
+//!
+//! Time-domain passivity (Hannaford and Ryu, "Time-domain passivity control of haptic interfaces", 2002) at the hand's port,
+//! all axes together. *Observer*: the force that was held over the last period times the way the hand went in it is the energy
+//! that crossed, exactly (the device holds a force for a period). *Controller*: while force and motion point the same way, the
+//! device gives energy; with little left in the store it takes the force along the motion away, smoothly, to none when the
+//! store is empty. Unlike theirs it never turns a force round: a gate takes, it does not add; what one prediction of motion
+//! was wrong by stays in the store as a debt.
+//!
+//! Two deliberate leaks, both towards the allowance: what was put in long ago cannot come back as a kick, and a sensor's noise
+//! cannot close the gate for ever. So the hand is given at most [`MOST_J`] at once, and [`ALLOWANCE_J`]/[`LEAK_S`] (W) on end.
+//! The way must be the handle's own, unscaled, with the clutch's jumps left out; a way faster than any hand counts as none.
+
+use nalgebra::SVector;
+
+use super::{EnergyMode, Reason};
+
+/// What the hand may get that it did not give, J.
+pub const ALLOWANCE_J: f64 = 0.030;
+/// Most that is kept for the hand to get back, J.
+pub const MOST_J: f64 = 0.200;
+/// Time in which store and debt go back to the allowance, s.
+pub const LEAK_S: f64 = 2.0;
+/// Below this the controller begins to take, J.
+const SOFT_J: f64 = 0.010;
+/// Smoothing of the direction of motion, s: one step of an encoder is no motion.
+const SMOOTHING_S: f64 = 0.004;
+/// Faster than any hand, m/s: a jump of the reading.
+const JUMP_M_S: f64 = 5.0;
+
+/// The store and what is needed to keep it.
+#[derive(Clone, Copy, Debug)]
+pub struct Energy<const D: usize> {
+    mode: EnergyMode,
+    period_s: f64,
+    stored_j: f64,
+    hand_m: Option<SVector<f64, D>>,
+    hand_m_s: SVector<f64, D>,
+}
+
+impl<const D: usize> Energy<D> {
+    /// A store with its allowance, for a loop of this period (s).
+    pub fn new(mode: EnergyMode, period_s: f64) -> Self {
+        Self { mode, period_s, stored_j: ALLOWANCE_J, hand_m: None, hand_m_s: SVector::zeros() }
+    }
+
+    /// Observes the period that has passed: the hand is here now (m), and this force (N) was held since the last call.
+    pub fn observe(&mut self, hand_m: Option<SVector<f64, D>>, held_n: &SVector<f64, D>) {
+        let hand_m = hand_m.filter(|at_m| at_m.iter().all(|x| x.is_finite()));
+        let way_m = match (hand_m, self.hand_m) {
+            (Some(now_m), Some(then_m)) => now_m - then_m,
+            _ => SVector::zeros(),
+        };
+        self.hand_m = hand_m;
+        // Also false for the infinite difference of two finite places.
+        let way_m = if way_m.norm() <= JUMP_M_S * self.period_s { way_m } else { SVector::zeros() };
+        let smoothing = self.period_s / (SMOOTHING_S + self.period_s);
+        self.hand_m_s += (way_m / self.period_s - self.hand_m_s) * smoothing;
+        let leak = (self.period_s / LEAK_S).min(1.0);
+        self.stored_j += (ALLOWANCE_J - self.stored_j) * leak - held_n.dot(&way_m);
+        self.stored_j = self.stored_j.clamp(-MOST_J, MOST_J);
+    }
+
+    /// What of `force_n` (N) may pass now, and why not all.
+    pub fn controlled(&self, force_n: SVector<f64, D>) -> (SVector<f64, D>, Reason) {
+        let share = (self.stored_j / SOFT_J).clamp(0.0, 1.0);
+        let (speed_m_s, giving_w) = (self.hand_m_s.norm(), force_n.dot(&self.hand_m_s));
+        if self.mode != EnergyMode::Control || share >= 1.0 || giving_w <= 0.0 || speed_m_s < 1e-6 {
+            return (force_n, Reason::Open);
+        }
+        // (f . v) v / |v|^2, in an order that cannot divide by the square of a tiny number.
+        let direction = self.hand_m_s / speed_m_s;
+        (force_n - direction * ((1.0 - share) * force_n.dot(&direction)), Reason::EnergySpent)
+    }
+
+    /// What the hand may still get, J; below zero what it got too much. 0 while the gate is off.
+    pub fn stored_j(&self) -> f64 {
+        if self.mode == EnergyMode::Off { 0.0 } else { self.stored_j }
+    }
+
+    /// Starts anew from rest. What is left of the store is forgotten, a debt is not: else a flapping permission would be a pump.
+    pub fn reset(&mut self) {
+        self.stored_j = self.stored_j.min(ALLOWANCE_J);
+        self.hand_m = None;
+        self.hand_m_s = SVector::zeros();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::Vector3;
+    use proptest::prelude::*;
+
+    use super::*;
+
+    /// A handle of 0.25 kg pushed by `force(t, x, v)` (N) through the gate for `seconds`: energy the hand got, J, and the largest
+    /// share taken while the hand itself pushed.
+    fn pushed(mode: EnergyMode, seconds: f64, force: impl Fn(f64, f64, f64) -> f64) -> f64 {
+        let mut gate = Energy::<1>::new(mode, 1e-3);
+        let (mut x, mut v, mut got_j, mut held_n) = (0.0, 0.0, 0.0, 0.0);
+        for i in 0..(seconds * 1e3) as u32 {
+            gate.observe(Some([x].into()), &[held_n].into());
+            held_n = gate.controlled([force(f64::from(i) * 1e-3, x, v)].into()).0.x;
+            v += held_n / 0.25 * 1e-3;
+            x += v * 1e-3;
+            got_j += held_n * v * 1e-3;
+        }
+        got_j
+    }
+
+    #[test]
+    fn a_push_that_the_hand_did_not_pay_for_ends_with_the_allowance() {
+        let (free_j, held_j) =
+            (pushed(EnergyMode::Observe, 0.3, |_, _, _| 4.0), pushed(EnergyMode::Control, 0.3, |_, _, _| 4.0));
+        assert!(free_j > 2.0, "{free_j} J");
+        // What leaked in during the push, and the prediction's lag.
+        assert!(held_j < 1.3 * ALLOWANCE_J, "{held_j} J");
+    }
+
+    #[test]
+    fn a_spring_that_gives_back_what_it_took_is_never_touched() {
+        let mut gate = Energy::<1>::new(EnergyMode::Control, 1e-3);
+        let mut held_n = 0.0;
+        for i in 0..5000 {
+            // 500 N/m pressed 8 mm deep once a second, without loss.
+            let depth_m = 0.004 * (1.0 - (f64::from(i) * 1e-3 * std::f64::consts::TAU).cos());
+            gate.observe(Some([-depth_m].into()), &[held_n].into());
+            let (force_n, reason) = gate.controlled([500.0 * depth_m].into());
+            assert_eq!(reason, Reason::Open, "after {i} ms: {} J", gate.stored_j());
+            held_n = force_n.x;
+        }
+    }
+
+    #[test]
+    fn resetting_again_and_again_gives_no_energy() {
+        let mut gate = Energy::<1>::new(EnergyMode::Control, 1e-3);
+        for i in 0..400 {
+            gate.observe(Some([f64::from(i) * 1e-4].into()), &[1.0].into());
+        }
+        let owed_j = gate.stored_j();
+        gate.reset();
+        assert!(owed_j < 0.0 && gate.stored_j() <= owed_j);
+    }
+
+    proptest! {
+        #[test]
+        fn it_only_ever_takes_and_its_store_is_bounded(
+            ticks in prop::collection::vec(
+                (prop::array::uniform3(-20.0..20.0f64), prop::array::uniform3(prop_oneof![9 => -2e-3..2e-3f64, 1 => prop::num::f64::ANY])),
+                1..300,
+            ),
+        ) {
+            let mut gate = Energy::<3>::new(EnergyMode::Control, 1e-3);
+            let (mut at_m, mut held_n) = (Vector3::zeros(), Vector3::zeros());
+            for (force, way) in ticks {
+                let force = Vector3::from(force);
+                let now_m = at_m + Vector3::from(way);
+                gate.observe(Some(now_m), &held_n);
+                at_m = if now_m.iter().all(|x| x.abs() < 1.0) { now_m } else { Vector3::zeros() };
+                let (passed, reason) = gate.controlled(force);
+                prop_assert!(passed.iter().all(|f| f.is_finite()) && passed.norm() <= force.norm() * (1.0 + 1e-12));
+                prop_assert!(passed.dot(&force) >= -1e-9);
+                prop_assert!(gate.stored_j().abs() <= MOST_J);
+                prop_assert_eq!(reason == Reason::Open, passed == force);
+                held_n = passed;
+            }
+        }
+    }
+}

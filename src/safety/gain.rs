@@ -1,0 +1,108 @@
+//! Fourth gate: the operator's factor, ramped, above 1 only by a second, deliberate action.
+
+use super::Reason;
+
+/// Highest gain an operator can choose.
+pub const MAX_GAIN: f64 = 3.0;
+
+/// The gain and its ramp.
+#[derive(Clone, Copy, Debug)]
+pub struct Gain {
+    chosen: f64,
+    /// The operator took the second action; withdrawn by any choice of 1 or less.
+    above_one: bool,
+    now: f64,
+    rate_per_s: f64,
+}
+
+impl Gain {
+    /// Starts at this gain (at most 1: nobody has taken the second action yet), changing by at most `rate_per_s` (1/s).
+    pub const fn new(gain: f64, rate_per_s: f64) -> Self {
+        let chosen = if gain.is_nan() { 0.0 } else { gain.clamp(0.0, 1.0) };
+        Self { chosen, above_one: false, now: chosen, rate_per_s }
+    }
+
+    /// Chooses a gain of 0 to 1; more is pulled down to 1, or kept where the second action already allowed more than 1. NaN is
+    /// ignored. A choice of 1 or less withdraws that permission.
+    pub const fn choose(&mut self, gain: f64) {
+        if gain.is_nan() {
+            return;
+        }
+        self.above_one = self.above_one && gain > 1.0;
+        self.chosen = gain.clamp(0.0, if self.above_one { MAX_GAIN } else { 1.0 });
+    }
+
+    /// The second, deliberate action: chooses a gain of 0 to [`MAX_GAIN`]. NaN is ignored.
+    pub const fn choose_above_one(&mut self, gain: f64) {
+        if !gain.is_nan() {
+            self.above_one = gain > 1.0;
+            self.chosen = gain.clamp(0.0, MAX_GAIN);
+        }
+    }
+
+    /// The gain chosen; [`Gain::step`] is on its way there.
+    pub const fn chosen(&self) -> f64 {
+        self.chosen
+    }
+
+    /// The gain in force after one more period (s), and why it is not the chosen one, or passes nothing.
+    pub fn step(&mut self, period_s: f64) -> (f64, Reason) {
+        let step = self.rate_per_s * period_s;
+        self.now += (self.chosen - self.now).clamp(-step, step);
+        let reason = if self.now <= 0.0 {
+            Reason::GainZero
+        } else if (self.now - self.chosen).abs() > 1e-12 {
+            Reason::GainRamping
+        } else {
+            Reason::Open
+        };
+        (self.now, reason)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    proptest! {
+        #[test]
+        fn it_never_leaves_its_range_its_rate_or_its_permission(
+            choices in prop::collection::vec((prop::num::f64::ANY, any::<bool>()), 1..200),
+        ) {
+            let (mut gain, mut last, mut allowed) = (Gain::new(1.0, 2.0), 1.0, false);
+            for (choice, deliberate) in choices {
+                if deliberate {
+                    gain.choose_above_one(choice);
+                    allowed = if choice.is_nan() { allowed } else { choice > 1.0 };
+                } else {
+                    gain.choose(choice);
+                    allowed = if choice.is_nan() { allowed } else { allowed && choice > 1.0 };
+                }
+                let (now, _) = gain.step(1e-3);
+                prop_assert!((0.0..=MAX_GAIN).contains(&now) && (now - last).abs() <= 2e-3 + 1e-12);
+                prop_assert!(allowed || gain.chosen() <= 1.0);
+                last = now;
+            }
+        }
+    }
+
+    #[test]
+    fn more_than_one_takes_the_second_action_and_is_withdrawn_by_going_back() {
+        let mut gain = Gain::new(3.0, 1e6);
+        let at = |gain: &mut Gain| gain.step(1e-3).0;
+        assert!((at(&mut gain) - 1.0).abs() < 1e-12, "no file starts above 1");
+        gain.choose(2.0);
+        assert!((at(&mut gain) - 1.0).abs() < 1e-12);
+        gain.choose_above_one(2.0);
+        assert!((at(&mut gain) - 2.0).abs() < 1e-12);
+        gain.choose(1.5);
+        assert!((at(&mut gain) - 1.5).abs() < 1e-12, "allowed while above 1");
+        gain.choose(1.0);
+        gain.choose(2.0);
+        assert!((at(&mut gain) - 1.0).abs() < 1e-12, "going back to 1 withdrew it");
+        gain.choose(0.0);
+        assert_eq!(gain.step(1e-3), (0.0, Reason::GainZero));
+    }
+}

@@ -1,0 +1,175 @@
+//! The gates against an adversary: millions of requests that no honest mode would make, and everything that leaves is judged.
+//!
+//! Takes a number of requests and a seed; gives counted [`Breaches`] (0 is the promise) and how often each gate acted, which
+//! shows that the adversary found it. Every 2000 requests meet a new chain with other settings (all that can be chosen, and some that
+//! cannot), of one axis or of three, at another rate; in between gains, dead band and permission are meddled with.
+
+mod adversary;
+mod watch;
+
+use std::time::Instant;
+
+use fastrand::Rng;
+use nalgebra::SVector;
+use serde::Serialize;
+
+use self::{
+    adversary::{Adversary, Meddling, settings},
+    watch::Watch,
+};
+use crate::safety::{Chain, GATES, Gate};
+
+pub use watch::Breaches;
+
+/// Requests to one chain.
+const PER_CHAIN: u64 = 2000;
+
+/// How often a gate acted.
+#[derive(Clone, Debug, Serialize)]
+pub struct Acted {
+    /// Which.
+    pub gate: Gate,
+    /// Requests.
+    pub requests: u64,
+}
+
+/// The study's result.
+#[derive(Clone, Debug, Serialize)]
+pub struct Report {
+    /// Requests made.
+    pub requests: u64,
+    /// Chains they were made to.
+    pub chains: u64,
+    /// Seed of the adversary.
+    pub seed: u64,
+    /// What must not be.
+    pub breaches: Breaches,
+    /// Every gate, in its order.
+    pub acted: Vec<Acted>,
+    /// Forces other than zero that left.
+    pub forces: u64,
+    /// Time it took, s.
+    pub seconds: f64,
+}
+
+/// Makes `requests` requests; `progress` is told now and then how many of how many thousand are done.
+pub fn study(requests: u64, seed: u64, mut progress: impl FnMut(usize, usize, &str)) -> Report {
+    let start = Instant::now();
+    let mut rng = Rng::with_seed(seed);
+    let mut tally = Tally::default();
+    while tally.requests < requests {
+        if tally.chains % 500 == 0 {
+            progress((tally.requests / 1000) as usize, (requests / 1000) as usize, "thousand requests");
+        }
+        let count = PER_CHAIN.min(requests - tally.requests);
+        if rng.bool() { tally.chain::<3>(&mut rng, count) } else { tally.chain::<1>(&mut rng, count) }
+    }
+    progress(1, 1, "done");
+    Report {
+        requests,
+        chains: tally.chains,
+        seed,
+        breaches: tally.breaches,
+        acted: Gate::ALL.map(|gate| Acted { gate, requests: tally.acted[gate.index()] }).into(),
+        forces: tally.forces,
+        seconds: start.elapsed().as_secs_f64(),
+    }
+}
+
+#[derive(Default)]
+struct Tally {
+    requests: u64,
+    chains: u64,
+    breaches: Breaches,
+    acted: [u64; GATES],
+    forces: u64,
+}
+
+impl Tally {
+    fn chain<const D: usize>(&mut self, rng: &mut Rng, count: u64) {
+        let period_s = [1e-4, 1e-3, 1e-2][rng.usize(..3)];
+        let mut chain = Chain::<D>::new(settings(rng), period_s);
+        let in_force = *chain.settings();
+        let mut watch = Watch {
+            most_n: in_force.ceiling_n.min(in_force.device_limit_n),
+            step_n: in_force.slew_n_per_s * period_s,
+            gain_step: in_force.gain_rate_per_s * period_s,
+            last_n: SVector::zeros(),
+            gain: in_force.gain,
+            above_one: false,
+        };
+        let mut adversary = Adversary::<D>::new(rng);
+        for _ in 0..count {
+            meddle(&mut chain, &mut watch, adversary.meddling());
+            let (force_n, report) = chain.step(&adversary.request());
+            watch.look(&force_n, &report, chain.settings().gain, &mut self.breaches);
+            self.forces += u64::from(force_n.norm() > 0.0);
+        }
+        for (sum, acted) in self.acted.iter_mut().zip(chain.counts().acted) {
+            *sum += acted;
+        }
+        self.requests += count;
+        self.chains += 1;
+    }
+}
+
+fn meddle<const D: usize>(chain: &mut Chain<D>, watch: &mut Watch<D>, meddling: Meddling) {
+    match meddling {
+        Meddling::Nothing => {}
+        Meddling::OrdinaryGain(gain) => {
+            chain.set_ordinary_gain(gain);
+            watch.above_one &= gain.is_nan() || gain > 1.0;
+        }
+        Meddling::GainAboveOne(gain) => {
+            chain.set_gain_above_one(gain);
+            watch.above_one = if gain.is_nan() { watch.above_one } else { gain > 1.0 };
+        }
+        Meddling::DeadBand(m_s) => chain.set_dead_band(m_s),
+        Meddling::StaticHold(hold) => chain.set_static_hold(hold),
+        Meddling::Reset => {
+            chain.reset();
+            watch.last_n = SVector::zeros();
+        }
+    }
+}
+
+impl Report {
+    /// For a terminal.
+    pub fn text(&self) -> String {
+        let Breaches { not_finite, ceiling, slew, gain_rate, gain_range, uncalled, energy } = self.breaches;
+        let lines = [
+            format!(
+                "{} requests to {} chains in {:.1} s (seed {})",
+                self.requests, self.chains, self.seconds, self.seed
+            ),
+            format!("{} left as a force other than zero", self.forces),
+            "gate            acted on".to_owned(),
+        ];
+        let gates = self.acted.iter().map(|acted| format!("{:14} {:9}", acted.gate.name(), acted.requests));
+        let breaches = [
+            format!("breaches        {}", self.breaches.total()),
+            format!(
+                "  not finite {not_finite}, ceiling {ceiling}, slew {slew}, gain's rate {gain_rate}, gain's range {gain_range}"
+            ),
+            format!("  without permission, hand or valid request {uncalled}, energy's bound {energy}"),
+        ];
+        lines.into_iter().chain(gates).chain(breaches).collect::<Vec<_>>().join("\n")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn half_a_million_adversarial_requests_breach_nothing_and_find_every_gate() {
+        let report = study(500_000, 3, |_, _, _| {});
+        assert_eq!(report.breaches, Breaches::default());
+        // A chain that gave nothing would breach nothing either.
+        assert!(report.forces > 50_000, "{}", report.forces);
+        for acted in &report.acted {
+            assert!(acted.requests > 100, "{acted:?}");
+        }
+        assert_eq!(report.requests, 500_000);
+    }
+}

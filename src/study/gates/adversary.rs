@@ -1,0 +1,173 @@
+//! Requests that no honest mode would make, in an endless reproducible stream.
+
+use fastrand::Rng;
+use nalgebra::SVector;
+
+use crate::safety::{ChainSettings, EnergyMode, Request};
+
+/// How the force goes on for a while.
+#[derive(Clone, Copy, Debug)]
+enum Pattern {
+    NotANumber,
+    Infinite,
+    Huge,
+    AtTheLimit,
+    Missing,
+    Alternating,
+    Creep,
+    Noise,
+    Tiny,
+    Honest,
+}
+
+const PATTERNS: [Pattern; 10] = [
+    Pattern::NotANumber,
+    Pattern::Infinite,
+    Pattern::Huge,
+    Pattern::AtTheLimit,
+    Pattern::Missing,
+    Pattern::Alternating,
+    Pattern::Creep,
+    Pattern::Noise,
+    Pattern::Tiny,
+    Pattern::Honest,
+];
+
+/// What an operator, or a broken screen, does besides.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Meddling {
+    Nothing,
+    OrdinaryGain(f64),
+    GainAboveOne(f64),
+    DeadBand(f64),
+    StaticHold(bool),
+    Reset,
+}
+
+/// The source of one chain's requests.
+#[derive(Debug)]
+pub(super) struct Adversary<'a, const D: usize> {
+    rng: &'a mut Rng,
+    pattern: Pattern,
+    left: u32,
+    force_n: SVector<f64, D>,
+    hand_m: SVector<f64, D>,
+    running: bool,
+    permitted: bool,
+}
+
+/// Any settings that can be chosen, and some that cannot.
+pub(super) fn settings(rng: &mut Rng) -> ChainSettings {
+    let fade_after_s = 0.02 * rng.f64();
+    ChainSettings {
+        gain: odd(rng, 3.0),
+        gain_rate_per_s: 10.0 * rng.f64(),
+        ceiling_n: [0.0, 0.5, 4.0, 12.0, odd(rng, 12.0)][rng.usize(..5)],
+        device_limit_n: [0.4, 8.0, 12.0, odd(rng, 12.0)][rng.usize(..4)],
+        slew_n_per_s: [1.0, 50.0, 500.0, 1e4][rng.usize(..4)],
+        fade_after_s,
+        zero_after_s: fade_after_s + 0.05 * rng.f64(),
+        dead_band_m_s: [0.0, 1e-3, odd(rng, 0.1)][rng.usize(..3)],
+        static_hold: rng.bool(),
+        handle_kg: [0.0, 0.0, 0.25, odd(rng, 1.0)][rng.usize(..4)],
+        energy: EnergyMode::ALL[rng.usize(..EnergyMode::ALL.len())],
+    }
+}
+
+/// Mostly a number from 0 to `most`, now and then one from outside, or none at all.
+fn odd(rng: &mut Rng, most: f64) -> f64 {
+    match rng.u32(..16) {
+        0 => f64::NAN,
+        1 => f64::INFINITY,
+        2 => -most,
+        3 => 1e18,
+        _ => most * rng.f64(),
+    }
+}
+
+impl<'a, const D: usize> Adversary<'a, D> {
+    pub(super) fn new(rng: &'a mut Rng) -> Self {
+        let zeros = SVector::zeros();
+        Self { rng, pattern: Pattern::Honest, left: 0, force_n: zeros, hand_m: zeros, running: false, permitted: true }
+    }
+
+    fn vector(&mut self, size: f64) -> SVector<f64, D> {
+        SVector::from_fn(|_, _| size * (2.0 * self.rng.f64() - 1.0))
+    }
+
+    /// A vector with this value on one axis at least.
+    fn poisoned(&mut self, value: f64) -> SVector<f64, D> {
+        let mut vector = self.vector(4.0);
+        vector[self.rng.usize(..D)] = if self.rng.bool() { value } else { -value };
+        vector
+    }
+
+    fn force(&mut self) -> Option<SVector<f64, D>> {
+        if self.left == 0 {
+            self.pattern = PATTERNS[self.rng.usize(..PATTERNS.len())];
+            self.left = self.rng.u32(1..60);
+            self.force_n = self.vector(8.0);
+            self.running = self.rng.u32(..4) == 0;
+        }
+        self.left -= 1;
+        Some(match self.pattern {
+            Pattern::NotANumber => self.poisoned(f64::NAN),
+            Pattern::Infinite => self.poisoned(f64::INFINITY),
+            Pattern::Huge => self.poisoned(1e18),
+            Pattern::AtTheLimit => self.poisoned(1e3),
+            Pattern::Missing => return None,
+            Pattern::Alternating => {
+                self.force_n = -self.force_n;
+                self.force_n
+            }
+            Pattern::Creep => {
+                let creep_n = self.vector(0.1).map(f64::abs);
+                self.force_n += creep_n;
+                self.force_n
+            }
+            Pattern::Noise => self.vector(20.0),
+            Pattern::Tiny => self.poisoned(f64::MIN_POSITIVE),
+            Pattern::Honest => self.force_n,
+        })
+    }
+
+    fn hand(&mut self) -> Option<SVector<f64, D>> {
+        // A hand that runs before the force takes energy all the time.
+        let along = if self.running { self.force_n / self.force_n.norm().max(1e-9) } else { SVector::zeros() };
+        let way_m = self.vector(1e-4) + along * 2e-4;
+        self.hand_m += way_m;
+        match self.rng.u32(..64) {
+            0 => None,
+            1 => Some(self.poisoned(f64::NAN)),
+            2 => Some(self.poisoned(f64::MAX)),
+            3 => Some(self.vector(1.0)),
+            _ => Some(self.hand_m),
+        }
+    }
+
+    /// The next request.
+    pub(super) fn request(&mut self) -> Request<D> {
+        if self.rng.u32(..if self.permitted { 200 } else { 20 }) == 0 {
+            self.permitted = !self.permitted;
+        }
+        Request {
+            force_n: self.force(),
+            age_s: if self.rng.u32(..4) == 0 { odd(self.rng, 0.05) } else { 0.0 },
+            speed_m_s: odd(self.rng, 0.01),
+            hand_m: self.hand(),
+            permitted: self.permitted,
+        }
+    }
+
+    /// What somebody does to the chain before the next request.
+    pub(super) fn meddling(&mut self) -> Meddling {
+        match self.rng.u32(..100) {
+            0 => Meddling::OrdinaryGain(odd(self.rng, 3.0)),
+            1 => Meddling::GainAboveOne(odd(self.rng, 3.0)),
+            2 => Meddling::DeadBand(odd(self.rng, 0.1)),
+            3 => Meddling::StaticHold(self.rng.bool()),
+            4 => Meddling::Reset,
+            _ => Meddling::Nothing,
+        }
+    }
+}

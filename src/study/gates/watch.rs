@@ -1,0 +1,113 @@
+//! Looks at everything that leaves a chain and counts what must not be. Knows the limits, not how the gates keep them.
+
+use nalgebra::SVector;
+use serde::Serialize;
+
+use crate::safety::{GateReport, MAX_GAIN, MOST_J};
+
+/// Rounding allowed in a limit, relative.
+const ROUNDING: f64 = 1e-9;
+
+/// What must not happen, and how often it did.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct Breaches {
+    /// A force that is not finite.
+    pub not_finite: u64,
+    /// A force above the ceiling, or above what the device can give.
+    pub ceiling: u64,
+    /// Two forces in a row further apart than the slew limit, other than by letting go altogether.
+    pub slew: u64,
+    /// A gain that changed faster than its rate.
+    pub gain_rate: u64,
+    /// A gain outside 0 to 3, or one above 1 chosen without the second action.
+    pub gain_range: u64,
+    /// A force without permission, without a hand, or from a request that is not valid.
+    pub uncalled: u64,
+    /// A store of energy beyond its bound.
+    pub energy: u64,
+}
+
+impl Breaches {
+    /// All of them.
+    pub const fn total(&self) -> u64 {
+        let Self { not_finite, ceiling, slew, gain_rate, gain_range, uncalled, energy } = *self;
+        not_finite + ceiling + slew + gain_rate + gain_range + uncalled + energy
+    }
+}
+
+/// The limits of one chain and what it did last.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Watch<const D: usize> {
+    pub(super) most_n: f64,
+    pub(super) step_n: f64,
+    pub(super) gain_step: f64,
+    pub(super) last_n: SVector<f64, D>,
+    pub(super) gain: f64,
+    /// The second action was taken and not withdrawn.
+    pub(super) above_one: bool,
+}
+
+impl<const D: usize> Watch<D> {
+    /// Judges one force (N) with its report; `chosen` is the gain that is aimed at.
+    pub(super) fn look(&mut self, now_n: &SVector<f64, D>, report: &GateReport, chosen: f64, breaches: &mut Breaches) {
+        let within = |value: f64, limit: f64| value <= limit * (1.0 + ROUNDING) + f64::MIN_POSITIVE;
+        let finite = now_n.iter().all(|f| f.is_finite()) && report.gain.is_finite();
+        let let_go = report.not_permitted || report.invalid || report.released;
+        let change_n = (now_n - self.last_n).norm();
+        // The last digit of a gain near 3 is larger than a slow ramp's relative rounding.
+        let gain_change = (report.gain - self.gain).abs() - 4.0 * f64::EPSILON;
+        let chosen_well = (0.0..=if self.above_one { MAX_GAIN } else { 1.0 }).contains(&chosen);
+        breaches.not_finite += u64::from(!finite);
+        breaches.ceiling += u64::from(!within(now_n.norm(), self.most_n));
+        // The last digits of the two forces, not of their small difference.
+        breaches.slew += u64::from(!let_go && !within(change_n - 1e-14 * self.most_n, self.step_n));
+        breaches.gain_rate += u64::from(!within(gain_change, self.gain_step));
+        breaches.gain_range += u64::from(!chosen_well || !(0.0..=MAX_GAIN).contains(&report.gain));
+        breaches.uncalled += u64::from(let_go && now_n.norm() != 0.0);
+        breaches.energy += u64::from(!within(report.stored_j.abs(), MOST_J));
+        (self.last_n, self.gain) = (*now_n, report.gain);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::Vector3;
+
+    use super::*;
+
+    fn seen(now_n: Vector3<f64>, report: GateReport, chosen: f64) -> Breaches {
+        let mut watch = Watch {
+            most_n: 4.0,
+            step_n: 0.5,
+            gain_step: 0.002,
+            last_n: Vector3::new(3.8, 0.0, 0.0),
+            gain: 1.0,
+            above_one: false,
+        };
+        let mut breaches = Breaches::default();
+        watch.look(&now_n, &report, chosen, &mut breaches);
+        breaches
+    }
+
+    #[test]
+    fn every_kind_of_breach_is_seen_and_nothing_else() {
+        let good = GateReport { gain: 1.0, ..GateReport::default() };
+        let near = Vector3::new(3.9, 0.1, 0.0);
+        assert_eq!(seen(near, good, 1.0), Breaches::default());
+        assert_eq!(seen(Vector3::new(4.1, 0.0, 0.0), good, 1.0), Breaches { ceiling: 1, ..Breaches::default() });
+        assert_eq!(seen(Vector3::new(3.2, 0.0, 0.0), good, 1.0), Breaches { slew: 1, ..Breaches::default() });
+        assert!(seen(Vector3::new(f64::NAN, 0.0, 0.0), good, 1.0).not_finite == 1);
+        let fast = GateReport { gain: 0.99, ..good };
+        assert_eq!(seen(near, fast, 0.5), Breaches { gain_rate: 1, ..Breaches::default() });
+        assert_eq!(seen(near, good, 1.5), Breaches { gain_range: 1, ..Breaches::default() });
+        let forbidden = GateReport { not_permitted: true, ..good };
+        assert_eq!(seen(near, forbidden, 1.0), Breaches { uncalled: 1, ..Breaches::default() });
+        assert_eq!(
+            seen(Vector3::zeros(), forbidden, 1.0),
+            Breaches::default(),
+            "letting go is no breach of the slew limit"
+        );
+        let pump = GateReport { stored_j: 2.0 * MOST_J, ..good };
+        assert_eq!(seen(near, pump, 1.0), Breaches { energy: 1, ..Breaches::default() });
+    }
+}

@@ -1,0 +1,222 @@
+//! One hand, one handle, one follower in tissue, and the loop between them: the bench of the studies of letting go and of
+//! stability.
+//!
+//! The parts of the loop are the real ones (identifier, link, tracking, renderer, gates); hand, handle and follower are models.
+//! SI units, workspace frame (z up, tissue at rest at z = 0), 1 kHz. Deterministic for a seed. Unlike the simulated world of the
+//! scenes, the hand here can open: then the handle is alone.
+
+use std::f64::consts::TAU;
+
+use nalgebra::Vector3;
+
+use crate::{
+    config::Tissue as TissueConfig,
+    impedance::{Identifier, Mode, ModeSet, Renderer, Sample, Settings, SettingsError},
+    safety::{Chain, ChainSettings, GateReport, Request},
+    sim::{Noise, Tissue},
+    teleop::{Link, Tracking},
+};
+
+/// Ticks per second.
+pub(super) const RATE_HZ: f64 = 1000.0;
+/// Steps of the equation of motion in a tick.
+const SUBSTEPS: u32 = 4;
+/// The hand that grips, as in the scenes: with the handle, kg, N/m, N s/m.
+pub(super) const GRIP_KG: f64 = 0.35;
+pub(super) const GRIP_N_M: f64 = 900.0;
+const GRIP_N_S_M: f64 = 18.0;
+/// The handle alone: apparent mass of an omega.7 at its grip, kg, and what its bearings and cables brake, N s/m.
+pub(super) const HANDLE_KG: f64 = 0.25;
+pub(super) const HANDLE_N_S_M: f64 = 0.5;
+/// What the device gives at most whatever it is asked, N.
+pub(super) const DEVICE_N: f64 = 12.0;
+/// As in the scenes: noise of the force sensor (N), step of the handle's reading (m), the follower's natural frequency (Hz) and
+/// fastest command (m/s).
+const NOISE_N: f64 = 0.02;
+const RESOLUTION_M: f64 = 1e-5;
+const FOLLOWER_HZ: f64 = 12.0;
+const FOLLOWER_M_S: f64 = 0.3;
+
+/// What is to be tried.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Trial {
+    pub(super) mode: Mode,
+    pub(super) delay_s: f64,
+    /// `None`: what the mode asks for goes to the device as it is.
+    pub(super) gates: Option<ChainSettings>,
+    pub(super) gain: f64,
+    pub(super) tissue: TissueConfig,
+    /// Amplitude of the hand's tremor, m.
+    pub(super) tremor_m: f64,
+    pub(super) seed: u64,
+}
+
+/// The bench at work.
+#[derive(Debug)]
+pub(super) struct Pair {
+    trial: Trial,
+    tick: u64,
+    handle_m: Vector3<f64>,
+    handle_m_s: Vector3<f64>,
+    /// A hand is there.
+    gripped: bool,
+    tremor_phase: [[f64; 3]; 3],
+    tip_m: Vector3<f64>,
+    tip_m_s: Vector3<f64>,
+    command_m: Vector3<f64>,
+    tissue: Tissue,
+    noise: Noise,
+    identifier: Identifier,
+    link: Link,
+    tracking: Tracking,
+    renderer: Renderer,
+    chain: Chain,
+    read_m: Vector3<f64>,
+    speed_m_s: f64,
+    tip_n: Vector3<f64>,
+    force_n: Vector3<f64>,
+    report: GateReport,
+}
+
+impl Pair {
+    /// At rest at this place (m).
+    pub(super) fn new(trial: &Trial, at_m: Vector3<f64>) -> Result<Self, SettingsError> {
+        let settings = Settings {
+            rate_hz: RATE_HZ,
+            delay_s: trial.delay_s,
+            modes: ModeSet::only(trial.mode),
+            ..Settings::default()
+        };
+        let mut noise = Noise::new(trial.seed);
+        let tremor_phase = std::array::from_fn(|_| std::array::from_fn(|_| TAU * noise.uniform()));
+        let mut chain = Chain::new(trial.gates.unwrap_or_default(), 1.0 / RATE_HZ);
+        chain.set_gain_above_one(trial.gain);
+        Ok(Self {
+            trial: *trial,
+            tick: 0,
+            handle_m: at_m,
+            handle_m_s: Vector3::zeros(),
+            gripped: true,
+            tremor_phase,
+            tip_m: at_m,
+            tip_m_s: Vector3::zeros(),
+            command_m: at_m,
+            tissue: Tissue::new(trial.tissue),
+            noise,
+            identifier: Identifier::new(&settings)?,
+            link: Link::new(RATE_HZ, trial.delay_s),
+            tracking: Tracking::new(RATE_HZ),
+            renderer: Renderer::new(&settings)?,
+            chain,
+            read_m: at_m,
+            speed_m_s: 0.0,
+            tip_n: Vector3::zeros(),
+            force_n: Vector3::zeros(),
+            report: GateReport::default(),
+        })
+    }
+
+    pub(super) const fn handle_m(&self) -> Vector3<f64> {
+        self.handle_m
+    }
+
+    pub(super) const fn handle_m_s(&self) -> Vector3<f64> {
+        self.handle_m_s
+    }
+
+    /// Force on the handle, N.
+    pub(super) const fn force_n(&self) -> Vector3<f64> {
+        self.force_n
+    }
+
+    /// Force of the tissue on the tip without the sensor's noise, N.
+    pub(super) const fn tip_n(&self) -> Vector3<f64> {
+        self.tip_n
+    }
+
+    /// What the gates did in the last tick.
+    pub(super) const fn report(&self) -> &GateReport {
+        &self.report
+    }
+
+    /// The hand opens: neither stiffness nor damping nor the hand's mass is left.
+    pub(super) const fn let_go(&mut self) {
+        self.gripped = false;
+    }
+
+    /// One tick, the hand meaning to be at this place (m).
+    pub(super) fn step(&mut self, intended_m: &Vector3<f64>) {
+        self.tick += 1;
+        let now_s = self.tick as f64 / RATE_HZ;
+        self.move_handle(&(intended_m + self.tremor(now_s)));
+        self.follow();
+        self.tip_n = self.tissue.contact_n(&self.tip_m, &self.tip_m_s);
+        let noise = &mut self.noise;
+        let force_n = self.tip_n + Vector3::from_fn(|_, _| NOISE_N * noise.gaussian());
+        self.identifier.step(&Sample { t_s: now_s, position_m: self.tip_m, force_n });
+        self.link.send(self.identifier.parcel());
+        let read_m = self.handle_m.map(|x| (x / RESOLUTION_M).round() * RESOLUTION_M);
+        self.measure_speed(&read_m);
+        self.command(&read_m);
+        let motion_m = self.tracking.step(&self.command_m, &self.tip_m);
+        let parcel = self.link.receive(now_s);
+        let age_s = parcel.map_or(f64::INFINITY, |parcel| now_s - parcel.t_s - self.trial.delay_s);
+        let asked_n = self.renderer.step(&motion_m, parcel).force(self.trial.mode);
+        self.force_n = self.gated(asked_n, age_s, read_m);
+    }
+
+    fn gated(&mut self, asked_n: Option<Vector3<f64>>, age_s: f64, hand_m: Vector3<f64>) -> Vector3<f64> {
+        if self.trial.gates.is_none() {
+            let force_n = asked_n.filter(|f| f.norm().is_finite()).unwrap_or_else(Vector3::zeros) * self.trial.gain;
+            return force_n * (DEVICE_N / force_n.norm().max(DEVICE_N));
+        }
+        let speed_m_s = self.speed_m_s;
+        let (force_n, report) =
+            self.chain.step(&Request { force_n: asked_n, age_s, speed_m_s, hand_m: Some(hand_m), permitted: true });
+        self.report = report;
+        force_n
+    }
+
+    fn move_handle(&mut self, intended_m: &Vector3<f64>) {
+        let dt_s = 1.0 / (RATE_HZ * f64::from(SUBSTEPS));
+        let (mass_kg, grip_n_m, brake_n_s_m) =
+            if self.gripped { (GRIP_KG, GRIP_N_M, GRIP_N_S_M) } else { (HANDLE_KG, 0.0, HANDLE_N_S_M) };
+        for _ in 0..SUBSTEPS {
+            let hand_n = (intended_m - self.handle_m) * grip_n_m - self.handle_m_s * brake_n_s_m;
+            self.handle_m_s += (hand_n + self.force_n) * (dt_s / mass_kg);
+            self.handle_m += self.handle_m_s * dt_s;
+        }
+    }
+
+    /// The follower: critically damped, exact over the tick for a constant command.
+    fn follow(&mut self) {
+        let (omega, dt_s) = (TAU * FOLLOWER_HZ, 1.0 / RATE_HZ);
+        let (offset_m, decay) = (self.tip_m - self.command_m, (-omega * dt_s).exp());
+        let slope_m_s = self.tip_m_s + offset_m * omega;
+        self.tip_m = self.command_m + (offset_m + slope_m_s * dt_s) * decay;
+        self.tip_m_s = (self.tip_m_s - slope_m_s * (omega * dt_s)) * decay;
+    }
+
+    fn command(&mut self, read_m: &Vector3<f64>) {
+        let (way_m, most_m) = (read_m - self.command_m, FOLLOWER_M_S / RATE_HZ);
+        self.command_m += way_m * (most_m / way_m.norm().max(most_m));
+    }
+
+    /// As the loop measures it for the dead band: fast up, slow down.
+    fn measure_speed(&mut self, read_m: &Vector3<f64>) {
+        let dt_s = 1.0 / RATE_HZ;
+        let speed_m_s = (read_m - self.read_m).norm() / dt_s;
+        let smoothing_s = if speed_m_s > self.speed_m_s { 0.005 } else { 0.040 };
+        self.speed_m_s += (speed_m_s - self.speed_m_s) * (dt_s / (smoothing_s + dt_s));
+        self.read_m = *read_m;
+    }
+
+    fn tremor(&self, now_s: f64) -> Vector3<f64> {
+        const TREMOR_HZ: [f64; 3] = [8.3, 9.7, 11.6];
+        let amplitude_m = self.trial.tremor_m / 3.0_f64.sqrt();
+        Vector3::from_fn(|axis, _| {
+            let waves = TREMOR_HZ.iter().zip(&self.tremor_phase[axis]);
+            amplitude_m * waves.map(|(hz, phase)| (TAU * hz * now_s + phase).sin()).sum::<f64>()
+        })
+    }
+}

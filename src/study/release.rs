@@ -1,0 +1,254 @@
+//! Letting go: a hand presses with 5 N, opens, and the handle is alone with the force that the link still delivers.
+//!
+//! Takes nothing; gives a [`Report`] for every mode and delay, in two situations (held for two seconds, and let go while still
+//! pressing), without gates, with the gates but the one that tells an opened hand, and with all of them. The path of the handle
+//! is compared with the one it would have gone without any force: what the hand's own swing did is no kick.
+
+mod present;
+
+use nalgebra::Vector3;
+use serde::Serialize;
+
+use super::pair::{HANDLE_KG, HANDLE_N_S_M, Pair, RATE_HZ, Trial};
+use crate::{
+    config::{ConfigError, Scene, Tissue},
+    impedance::{Mode, SettingsError},
+    safety::ChainSettings,
+};
+
+/// Delays of the link, ms.
+pub const DELAYS_MS: [f64; 6] = [0.0, 10.0, 50.0, 100.0, 200.0, 300.0];
+/// Force of the contact that is let go, N.
+pub const CONTACT_N: f64 = 5.0;
+/// After this long there should be no force, s.
+pub const SOON_S: f64 = 0.020;
+/// What is left of a force that is gone, N, and how far a handle may go, m: the aims.
+pub const AIM_N: f64 = 0.05;
+/// The handle's way that is aimed at, m.
+pub const AIM_M: f64 = 1e-3;
+/// Time looked at after the hand has opened, s.
+const AFTER_S: f64 = 1.0;
+/// Speed of pressing (m/s), height at the start (m), time of holding (s), patience (s).
+const PRESS_M_S: f64 = 0.020;
+const START_M: f64 = 0.005;
+const HOLD_S: f64 = 2.0;
+const PATIENCE_S: f64 = 20.0;
+const TREMOR_M: f64 = 8e-5;
+
+/// Why the study could not be made.
+#[derive(Debug, thiserror::Error)]
+pub enum ReleaseError {
+    /// The scene whose tissue is pressed cannot be had.
+    #[error(transparent)]
+    Scene(#[from] ConfigError),
+    /// Settings out of range.
+    #[error(transparent)]
+    Settings(#[from] SettingsError),
+    /// The scene has no tissue.
+    #[error("the scene peg_transfer has no [tissue]: there is nothing to press")]
+    NoTissue,
+    /// Five newtons were never reached.
+    #[error("{mode} at {delay_ms} ms: the hand did not reach {CONTACT_N} N within {PATIENCE_S} s")]
+    NoContact {
+        /// Mode that rendered.
+        mode: Mode,
+        /// Delay, ms.
+        delay_ms: f64,
+    },
+}
+
+/// When the hand opens.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Situation {
+    /// After two seconds at about 5 N, with the hand's tremor.
+    Held,
+    /// The moment 5 N are reached, at 20 mm/s.
+    Pressing,
+}
+
+/// Which gates were in the way.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Gates {
+    /// None: the force goes to the device as it is asked for.
+    None,
+    /// As they come: all but the one that tells an opened hand.
+    WithoutRelease,
+    /// All.
+    All,
+}
+
+impl Gates {
+    /// Every choice.
+    pub const ALL: [Self; 3] = [Self::None, Self::WithoutRelease, Self::All];
+
+    /// In words.
+    pub const fn words(self) -> &'static str {
+        match self {
+            Self::None => "no gates",
+            Self::WithoutRelease => "gates",
+            Self::All => "gates and the hand's",
+        }
+    }
+
+    fn settings(self) -> Option<ChainSettings> {
+        match self {
+            Self::None => None,
+            Self::WithoutRelease => Some(ChainSettings::default()),
+            Self::All => Some(ChainSettings { handle_kg: HANDLE_KG, ..ChainSettings::default() }),
+        }
+    }
+}
+
+/// One letting go.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct Outcome {
+    /// When the hand opened.
+    pub situation: Situation,
+    /// Which gates.
+    pub gates: Gates,
+    /// Mode that rendered.
+    pub mode: Mode,
+    /// Delay of the link, ms.
+    pub delay_ms: f64,
+    /// Force on the handle when the hand opened, N.
+    pub before_n: f64,
+    /// Whether the gate had already taken the force away for good, wrongly: the hand was still there.
+    pub closed_before: bool,
+    /// Farthest from where the handle would have been without force, mm.
+    pub travel_mm: f64,
+    /// The same, of the first 20 ms, mm.
+    pub travel_soon_mm: f64,
+    /// Largest force on the handle, N.
+    pub peak_n: f64,
+    /// Largest force later than 20 ms, N.
+    pub late_n: f64,
+    /// Most energy that the handle had been given, mJ.
+    pub energy_mj: f64,
+}
+
+/// The study's result.
+#[derive(Clone, Debug, Serialize)]
+pub struct Report {
+    /// Every letting go.
+    pub outcomes: Vec<Outcome>,
+}
+
+/// Makes the study; `progress` is told before each part how many of how many are done, and what comes.
+pub fn study(mut progress: impl FnMut(usize, usize, &str)) -> Result<Report, ReleaseError> {
+    let tissue = Scene::load("peg_transfer")?.tissue.ok_or(ReleaseError::NoTissue)?;
+    let mut outcomes = Vec::new();
+    let all = 2 * Gates::ALL.len() * Mode::ALL.len() * DELAYS_MS.len();
+    for situation in [Situation::Held, Situation::Pressing] {
+        for gates in Gates::ALL {
+            for mode in [Mode::Dfr, Mode::Linear, Mode::Literal, Mode::Anchored] {
+                for delay_ms in DELAYS_MS {
+                    progress(outcomes.len(), all, mode.name());
+                    outcomes.push(let_go(situation, gates, mode, delay_ms, tissue)?);
+                }
+            }
+        }
+    }
+    progress(all, all, "done");
+    Ok(Report { outcomes })
+}
+
+/// One letting go.
+pub fn let_go(
+    situation: Situation,
+    gates: Gates,
+    mode: Mode,
+    delay_ms: f64,
+    tissue: Tissue,
+) -> Result<Outcome, ReleaseError> {
+    let trial = Trial {
+        mode,
+        delay_s: 1e-3 * delay_ms,
+        gates: gates.settings(),
+        gain: 1.0,
+        tissue,
+        tremor_m: TREMOR_M,
+        seed: 1,
+    };
+    let mut intended_m = Vector3::new(0.0, 0.0, START_M);
+    let mut pair = Pair::new(&trial, intended_m)?;
+    let mut patience = (PATIENCE_S * RATE_HZ) as u32;
+    while pair.tip_n().z < CONTACT_N {
+        patience = patience.checked_sub(1).ok_or(ReleaseError::NoContact { mode, delay_ms })?;
+        intended_m.z -= PRESS_M_S / RATE_HZ;
+        pair.step(&intended_m);
+    }
+    if situation == Situation::Held {
+        for _ in 0..(HOLD_S * RATE_HZ) as u32 {
+            // Whoever holds 5 N corrects slowly, 2 mm/s for a newton that is missing.
+            intended_m.z += 0.002 / RATE_HZ * (pair.tip_n().z - CONTACT_N).clamp(-1.0, 1.0);
+            pair.step(&intended_m);
+        }
+    }
+    let start = Outcome {
+        situation,
+        gates,
+        mode,
+        delay_ms,
+        before_n: pair.force_n().norm(),
+        closed_before: pair.report().released,
+        travel_mm: 0.0,
+        travel_soon_mm: 0.0,
+        peak_n: 0.0,
+        late_n: 0.0,
+        energy_mj: 0.0,
+    };
+    Ok(watch(pair, &intended_m, start))
+}
+
+/// Opens the hand and looks at the handle.
+fn watch(mut pair: Pair, intended_m: &Vector3<f64>, mut outcome: Outcome) -> Outcome {
+    let (from_m, from_m_s) = (pair.handle_m(), pair.handle_m_s());
+    let swing_s = HANDLE_KG / HANDLE_N_S_M;
+    let mut energy_j = 0.0;
+    pair.let_go();
+    for tick in 1..=(AFTER_S * RATE_HZ) as u32 {
+        let (held_n, at_m) = (pair.force_n(), pair.handle_m());
+        pair.step(intended_m);
+        let t_s = f64::from(tick) / RATE_HZ;
+        let alone_m = from_m + from_m_s * (swing_s * (1.0 - (-t_s / swing_s).exp()));
+        let travel_mm = 1e3 * (pair.handle_m() - alone_m).norm();
+        energy_j += held_n.dot(&(pair.handle_m() - at_m));
+        let force_n = pair.force_n().norm();
+        outcome.travel_mm = outcome.travel_mm.max(travel_mm);
+        outcome.peak_n = outcome.peak_n.max(held_n.norm());
+        outcome.energy_mj = outcome.energy_mj.max(1e3 * energy_j);
+        if t_s <= SOON_S {
+            outcome.travel_soon_mm = outcome.travel_soon_mm.max(travel_mm);
+        } else {
+            outcome.late_n = outcome.late_n.max(force_n);
+        }
+    }
+    outcome
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn held(gates: Gates, mode: Mode, delay_ms: f64) -> Outcome {
+        let tissue = Scene::load("peg_transfer").unwrap().tissue.unwrap();
+        let_go(Situation::Held, gates, mode, delay_ms, tissue).unwrap()
+    }
+
+    #[test]
+    fn late_reflection_kicks_and_the_gates_take_the_kick_away() {
+        let [bare, energy, all] = Gates::ALL.map(|gates| held(gates, Mode::Dfr, 300.0));
+        assert!(bare.travel_mm > 500.0 && bare.energy_mj > 1000.0, "{bare:?}");
+        assert!(energy.energy_mj < 0.05 * bare.energy_mj, "{energy:?}");
+        assert!(!all.closed_before && all.before_n > 3.5, "{all:?}");
+        assert!(all.energy_mj < 0.1 * energy.energy_mj && all.travel_soon_mm < 0.7 * energy.travel_soon_mm, "{all:?}");
+    }
+
+    #[test]
+    fn without_a_delay_anchored_is_reflection() {
+        let [anchored, dfr] = [Mode::Anchored, Mode::Dfr].map(|mode| held(Gates::None, mode, 0.0));
+        assert!((anchored.travel_mm - dfr.travel_mm).abs() < 1e-9 && dfr.travel_mm > 1.0, "{anchored:?}");
+    }
+}

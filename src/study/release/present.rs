@@ -1,0 +1,86 @@
+//! The study of letting go as a table, as Markdown, and as a picture.
+
+use std::fmt::Write as _;
+
+use super::{AIM_M, AIM_N, DELAYS_MS, Gates, Outcome, Report, Situation};
+use crate::{
+    impedance::Mode,
+    study::picture::{Axis, Chart, Series, Style, svg},
+};
+
+const MODES: [Mode; 4] = [Mode::Dfr, Mode::Linear, Mode::Literal, Mode::Anchored];
+
+impl Report {
+    /// For a terminal and for a document: one Markdown table for each situation.
+    pub fn markdown(&self) -> String {
+        let mut text = String::new();
+        for (situation, title) in [(Situation::Held, "Held for two seconds"), (Situation::Pressing, "While pressing")] {
+            // Writing into a String cannot fail, here and below.
+            writeln!(text, "{title}:\n").ok();
+            text.push_str(
+                "| gates | mode | delay (ms) | force before (N) | travel in 20 ms (mm) | travel in 1 s (mm) | peak (N) | after 20 ms (N) | energy (mJ) |\n|---|---|---|---|---|---|---|---|---|\n",
+            );
+            for outcome in self.outcomes.iter().filter(|outcome| outcome.situation == situation) {
+                row(&mut text, outcome);
+            }
+            text.push('\n');
+        }
+        text
+    }
+
+    /// How many of the ways of letting go with a force in the hand reach both aims, by gates and mode: `(reached, of)`.
+    pub fn reached(&self, gates: Gates, mode: Mode) -> (usize, usize) {
+        let with_force = |outcome: &&Outcome| {
+            outcome.gates == gates && outcome.mode == mode && outcome.before_n > AIM_N && !outcome.closed_before
+        };
+        let good = |outcome: &&Outcome| outcome.late_n <= AIM_N && outcome.travel_mm <= 1e3 * AIM_M;
+        (self.outcomes.iter().filter(with_force).filter(good).count(), self.outcomes.iter().filter(with_force).count())
+    }
+
+    /// Travel and energy over the delay, for the hand that held, each mode without and with all gates.
+    pub fn svg(&self) -> String {
+        let chart = |title: &str, unit: &str, low: f64, high: f64, of: fn(&Outcome) -> f64| Chart {
+            title: title.into(),
+            x: Axis::linear("delay of the link (ms)", 0.0, DELAYS_MS[DELAYS_MS.len() - 1]),
+            y: Axis::log(unit, low, high),
+            series: [
+                (Gates::None, Style::Dashed, "no gates"),
+                (Gates::WithoutRelease, Style::Line, "gates"),
+                (Gates::All, Style::Points, "and the hand's"),
+            ]
+            .into_iter()
+            .flat_map(|(gates, style, word)| {
+                MODES.into_iter().enumerate().map(move |(colour, mode)| (gates, style, word, colour, mode))
+            })
+            .map(|(gates, style, word, colour, mode)| Series {
+                name: format!("{mode}, {word}"),
+                colour,
+                style,
+                points: self.points(gates, mode, of),
+            })
+            .collect(),
+        };
+        svg(&[
+            chart("Handle travel within 1 s of letting go", "travel (mm)", 1.0, 1e4, |outcome| outcome.travel_mm),
+            chart("Energy given to the handle", "energy (mJ)", 0.1, 1e5, |outcome| outcome.energy_mj),
+        ])
+    }
+
+    fn points(&self, gates: Gates, mode: Mode, of: fn(&Outcome) -> f64) -> Vec<[f64; 2]> {
+        let wanted =
+            |outcome: &&Outcome| outcome.situation == Situation::Held && outcome.gates == gates && outcome.mode == mode;
+        self.outcomes.iter().filter(wanted).map(|outcome| [outcome.delay_ms, of(outcome)]).collect()
+    }
+}
+
+fn row(text: &mut String, outcome: &Outcome) {
+    let Outcome { gates, mode, delay_ms, before_n, closed_before, .. } = *outcome;
+    let Outcome { travel_mm, travel_soon_mm, peak_n, late_n, energy_mj, .. } = *outcome;
+    let before = if closed_before { "closed wrongly".to_owned() } else { format!("{before_n:.2}") };
+    writeln!(
+        text,
+        "| {} | {mode} | {delay_ms:.0} | {before} | {travel_soon_mm:.2} | {travel_mm:.1} | {peak_n:.2} | {late_n:.2} | {energy_mj:.1} |",
+        gates.words()
+    )
+    .ok();
+}

@@ -1,0 +1,310 @@
+//! Where in gain, delay and stiffness a gripping hand and the loop are stable together: made by simulation, kept in a file, asked by
+//! the gain's slider.
+//!
+//! One trial: a hand presses on elastic tissue until about 1.2 N, is knocked 3 mm aside for a moment, and holds still. Five seconds
+//! later it must have come to rest. The force is kept at standstill and the energy gate is off, which is harder than the
+//! defaults: what is stable here is stable with them. Slew and ceiling (4 N) act, so that an unstable loop is a limit cycle.
+//!
+//! [`StabilityMap::committed`] reads `assets/stability_map.csv` (`mode,delay_ms,stiffness_n_m` and one letter for each gain: S, M, U).
+//! Between the grid's points the worst of the neighbours answers; beyond its ends the last one does.
+
+use std::{fmt::Write as _, sync::OnceLock};
+
+use nalgebra::Vector3;
+use serde::Serialize;
+
+use super::pair::{GRIP_N_M, Pair, RATE_HZ, Trial};
+use crate::{
+    config::Tissue,
+    impedance::{Mode, SettingsError},
+    safety::{ChainSettings, EnergyMode},
+};
+
+/// Gains of the map.
+pub const GAINS: [f64; 8] = [0.25, 0.5, 0.75, 1.0, 1.5, 2.0, 2.5, 3.0];
+/// Delays of the map, s.
+pub const DELAYS_S: [f64; 8] = [0.0, 0.01, 0.02, 0.05, 0.1, 0.15, 0.2, 0.3];
+/// Stiffnesses of the map, N/m: from fat to a stiff wall.
+pub const STIFFNESSES_N_M: [f64; 8] = [12.0, 50.0, 100.0, 200.0, 400.0, 800.0, 2000.0, 6000.0];
+const MODES: [Mode; 4] = Mode::ALL;
+const POINTS: usize = MODES.len() * DELAYS_S.len() * STIFFNESSES_N_M.len() * GAINS.len();
+/// Force of the contact, N, without what the loop adds.
+const CONTACT_N: f64 = 1.2;
+/// A hand at rest moves less than this from end to end, m; one that moves more than that is unstable.
+const STILL_M: f64 = 1e-4;
+const SHAKING_M: f64 = 5e-4;
+/// Length of a trial, of its approach, and of the end that is judged, s; when and how far it is knocked aside.
+const TRIAL_S: f64 = 6.5;
+const APPROACH_S: f64 = 0.5;
+const JUDGED_S: f64 = 1.0;
+const KNOCK_S: [f64; 2] = [1.0, 1.1];
+const KNOCK_M: f64 = 3e-3;
+
+/// What the loop does at one point.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Verdict {
+    /// Comes to rest.
+    Stable,
+    /// Keeps moving by 0.1 to 0.5 mm.
+    Marginal,
+    /// Shakes the hand by more than 0.5 mm.
+    Unstable,
+}
+
+impl Verdict {
+    const fn letter(self) -> char {
+        match self {
+            Self::Stable => 'S',
+            Self::Marginal => 'M',
+            Self::Unstable => 'U',
+        }
+    }
+
+    const fn of_letter(letter: char) -> Option<Self> {
+        match letter {
+            'S' => Some(Self::Stable),
+            'M' => Some(Self::Marginal),
+            'U' => Some(Self::Unstable),
+            _ => None,
+        }
+    }
+
+    /// In words, for the screen.
+    pub const fn words(self) -> &'static str {
+        match self {
+            Self::Stable => "stable",
+            Self::Marginal => "at the edge",
+            Self::Unstable => "unstable",
+        }
+    }
+}
+
+/// A file that is no map: what, where.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error(
+    "line {line} of the stability map is not \"{expected}\" and eight letters S, M or U; make the map anew with nima study stability-map"
+)]
+pub struct MapError {
+    /// Line, from 1.
+    pub line: usize,
+    /// How the line should begin.
+    pub expected: String,
+}
+
+/// Verdicts over mode, delay, stiffness and gain.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct StabilityMap {
+    verdicts: Vec<Verdict>,
+}
+
+const fn index(mode: usize, delay: usize, stiffness: usize, gain: usize) -> usize {
+    ((mode * DELAYS_S.len() + delay) * STIFFNESSES_N_M.len() + stiffness) * GAINS.len() + gain
+}
+
+/// The places in `grid` (rising) between which `value` lies; the last one beyond its ends and for NaN.
+fn around(grid: &[f64], value: f64) -> [usize; 2] {
+    let last = grid.len() - 1;
+    let above = grid.iter().position(|point| value <= point * (1.0 + 1e-9)).unwrap_or(last);
+    let on_it = (grid[above] - value).abs() <= 1e-9 * grid[above].max(1e-3);
+    [if on_it || value > grid[last] { above } else { above.saturating_sub(1) }, above]
+}
+
+impl StabilityMap {
+    /// The map that came with the program; `None` if the file was spoilt when the program was made (a test looks).
+    pub fn committed() -> Option<&'static Self> {
+        static MAP: OnceLock<Option<StabilityMap>> = OnceLock::new();
+        MAP.get_or_init(|| Self::parse(include_str!("../../assets/stability_map.csv")).ok()).as_ref()
+    }
+
+    /// Reads what [`StabilityMap::csv`] writes.
+    pub fn parse(text: &str) -> Result<Self, MapError> {
+        let mut lines = text.lines().enumerate().skip(1);
+        let mut verdicts = Vec::with_capacity(POINTS);
+        for row in rows() {
+            let (at, line) = lines.next().unwrap_or((verdicts.len() / GAINS.len() + 1, ""));
+            let wrong = || MapError { line: at + 1, expected: row.clone() };
+            let letters = line.strip_prefix(&row).ok_or_else(wrong)?.trim_end();
+            let found: Option<Vec<Verdict>> = letters.chars().map(Verdict::of_letter).collect();
+            verdicts.extend(found.filter(|found| found.len() == GAINS.len()).ok_or_else(wrong)?);
+        }
+        Ok(Self { verdicts })
+    }
+
+    /// The file.
+    pub fn csv(&self) -> String {
+        let mut text = "mode,delay_ms,stiffness_n_m,gain 0.25 0.5 0.75 1 1.5 2 2.5 3\n".to_owned();
+        for (row, verdicts) in rows().zip(self.verdicts.chunks(GAINS.len())) {
+            let letters: String = verdicts.iter().map(|verdict| verdict.letter()).collect();
+            // Writing into a String cannot fail.
+            writeln!(text, "{row}{letters}").ok();
+        }
+        text
+    }
+
+    /// Makes the map, which takes minutes; `progress` is told how many of how many are done.
+    pub fn simulate(mut progress: impl FnMut(usize, usize, &str)) -> Result<Self, SettingsError> {
+        let mut verdicts = Vec::with_capacity(POINTS);
+        for mode in MODES {
+            for delay_s in DELAYS_S {
+                for stiffness_n_m in STIFFNESSES_N_M {
+                    progress(verdicts.len(), POINTS, mode.name());
+                    for gain in GAINS {
+                        verdicts.push(trial(mode, gain, delay_s, stiffness_n_m)?);
+                    }
+                }
+            }
+        }
+        progress(POINTS, POINTS, "done");
+        Ok(Self { verdicts })
+    }
+
+    /// The worst verdict of the neighbours of this point. A gain of zero is stable; a value beyond the grid counts as its last, NaN too.
+    pub fn at(&self, mode: Mode, gain: f64, delay_s: f64, stiffness_n_m: f64) -> Verdict {
+        if gain <= 0.0 {
+            return Verdict::Stable;
+        }
+        let (gains, delays) = (around(&GAINS, gain), around(&DELAYS_S, delay_s));
+        let mut worst = Verdict::Stable;
+        for delay in delays {
+            for stiffness in around(&STIFFNESSES_N_M, stiffness_n_m) {
+                for gain in gains {
+                    worst = worst.max(self.verdicts[index(mode.index(), delay, stiffness, gain)]);
+                }
+            }
+        }
+        worst
+    }
+
+    /// The greatest gain of the grid up to which every one is stable at this delay (s) and stiffness (N/m); 0 if none is.
+    pub fn greatest_stable_gain(&self, mode: Mode, delay_s: f64, stiffness_n_m: f64) -> f64 {
+        let stable = |gain: &&f64| self.at(mode, **gain, delay_s, stiffness_n_m) == Verdict::Stable;
+        GAINS.iter().take_while(stable).last().copied().unwrap_or(0.0)
+    }
+
+    /// For a terminal and a document: the greatest stable gain over delay and stiffness, for every mode.
+    pub fn markdown(&self) -> String {
+        let mut text = String::new();
+        for mode in [Mode::Dfr, Mode::Anchored, Mode::Linear, Mode::Literal] {
+            let stiffnesses = STIFFNESSES_N_M.map(|n_m| format!(" {n_m:.0} N/m |")).concat();
+            writeln!(
+                text,
+                "{mode}, greatest stable gain:\n\n| delay (ms) |{stiffnesses}\n|---|{}",
+                "---|".repeat(STIFFNESSES_N_M.len())
+            )
+            .ok();
+            for delay_s in DELAYS_S {
+                let gains =
+                    STIFFNESSES_N_M.map(|n_m| format!(" {} |", self.greatest_stable_gain(mode, delay_s, n_m))).concat();
+                writeln!(text, "| {:.0} |{gains}", 1e3 * delay_s).ok();
+            }
+            text.push('\n');
+        }
+        text
+    }
+}
+
+fn rows() -> impl Iterator<Item = String> {
+    MODES.into_iter().flat_map(|mode| {
+        DELAYS_S.into_iter().flat_map(move |delay_s| {
+            STIFFNESSES_N_M.into_iter().map(move |n_m| format!("{mode},{:.0},{n_m:.0},", 1e3 * delay_s))
+        })
+    })
+}
+
+/// One trial: does a hand that grips come to rest?
+pub fn trial(mode: Mode, gain: f64, delay_s: f64, stiffness_n_m: f64) -> Result<Verdict, SettingsError> {
+    let tissue = Tissue {
+        surface_z_m: 0.0,
+        size_m: [1.0, 1.0],
+        stiffness: stiffness_n_m,
+        exponent: 1.0,
+        damping_s_m: 0.0,
+        friction: 0.0,
+        shear_stiffness_n_m: 0.0,
+    };
+    let gates =
+        ChainSettings { static_hold: true, energy: EnergyMode::Off, gain_rate_per_s: 1e3, ..ChainSettings::default() };
+    let seed = 1;
+    let above_m = Vector3::new(0.0, 0.0, 2e-3);
+    // Where the hand must mean to be so that tissue and feedback together leave it at the contact force.
+    let deep_m = Vector3::new(0.0, 0.0, -CONTACT_N / stiffness_n_m - gain.min(4.0 / CONTACT_N) * CONTACT_N / GRIP_N_M);
+    let mut pair = Pair::new(&Trial { mode, delay_s, gates: Some(gates), gain, tissue, tremor_m: 0.0, seed }, above_m)?;
+    let (mut low_m, mut high_m) = (Vector3::repeat(f64::INFINITY), Vector3::repeat(f64::NEG_INFINITY));
+    for tick in 0..(TRIAL_S * RATE_HZ) as u32 {
+        let t_s = f64::from(tick) / RATE_HZ;
+        let s = (t_s / APPROACH_S).min(1.0);
+        let knock_m = if (KNOCK_S[0]..KNOCK_S[1]).contains(&t_s) { KNOCK_M } else { 0.0 };
+        let way = s * s * s * (10.0 + s * (-15.0 + 6.0 * s));
+        pair.step(&(above_m + (deep_m - above_m) * way + Vector3::z() * knock_m));
+        if t_s >= TRIAL_S - JUDGED_S {
+            low_m = low_m.inf(&pair.handle_m());
+            high_m = high_m.sup(&pair.handle_m());
+        }
+    }
+    let moved_m = (high_m - low_m).amax();
+    Ok(if moved_m < STILL_M {
+        Verdict::Stable
+    } else if moved_m < SHAKING_M {
+        Verdict::Marginal
+    } else {
+        Verdict::Unstable
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_committed_map_is_whole_and_is_what_it_writes() {
+        let map = StabilityMap::committed().unwrap();
+        assert_eq!(map.csv(), include_str!("../../assets/stability_map.csv"));
+        let error = StabilityMap::parse("header\nliteral,0,12,SSSSSSS\n").unwrap_err();
+        assert_eq!(error.line, 2);
+        assert!(StabilityMap::parse("").is_err());
+    }
+
+    #[test]
+    fn the_committed_map_is_what_the_simulation_says_now() {
+        let map = StabilityMap::committed().unwrap();
+        for (mode, gain, delay_s, n_m) in [
+            (Mode::Dfr, 0.5, 0.0, 100.0),
+            (Mode::Dfr, 1.0, 0.1, 100.0),
+            (Mode::Dfr, 3.0, 0.3, 6000.0),
+            (Mode::Anchored, 1.0, 0.05, 200.0),
+            (Mode::Linear, 1.0, 0.05, 400.0),
+        ] {
+            assert_eq!(
+                trial(mode, gain, delay_s, n_m).unwrap(),
+                map.at(mode, gain, delay_s, n_m),
+                "{mode} {gain} {delay_s} {n_m}"
+            );
+        }
+    }
+
+    #[test]
+    fn soft_contact_is_stable_and_late_reflection_of_a_wall_is_not() {
+        let map = StabilityMap::committed().unwrap();
+        assert_eq!(map.at(Mode::Dfr, 1.0, 0.0, 12.0), Verdict::Stable);
+        assert_eq!(map.at(Mode::Dfr, 1.0, 0.3, 6000.0), Verdict::Unstable);
+        assert!(map.greatest_stable_gain(Mode::Dfr, 0.3, 12.0) > map.greatest_stable_gain(Mode::Dfr, 0.3, 6000.0));
+    }
+
+    #[test]
+    fn between_points_the_worst_neighbour_answers_and_beyond_the_ends_the_last() {
+        let mut map = StabilityMap { verdicts: vec![Verdict::Stable; POINTS] };
+        map.verdicts[index(Mode::Dfr.index(), 4, 2, 5)] = Verdict::Unstable;
+        assert_eq!(map.at(Mode::Dfr, 2.0, 0.1, 100.0), Verdict::Unstable);
+        assert_eq!(map.at(Mode::Dfr, 1.9, 0.08, 90.0), Verdict::Unstable);
+        assert_eq!(map.at(Mode::Dfr, 1.5, 0.1, 100.0), Verdict::Stable);
+        assert!((map.greatest_stable_gain(Mode::Dfr, 0.1, 100.0) - 1.5).abs() < f64::EPSILON);
+        assert!((map.greatest_stable_gain(Mode::Dfr, 0.2, 100.0) - 3.0).abs() < f64::EPSILON);
+        let last = index(Mode::Dfr.index(), 7, 7, 7);
+        map.verdicts[last] = Verdict::Marginal;
+        for point in [[9.0, 9.0, 1e9], [f64::NAN; 3]] {
+            assert_eq!(map.at(Mode::Dfr, point[0], point[1], point[2]), Verdict::Marginal, "{point:?}");
+        }
+        assert_eq!(map.at(Mode::Dfr, 0.0, 9.0, 1e9), Verdict::Stable);
+    }
+}

@@ -292,6 +292,19 @@ mod tests {
     }
 
     #[test]
+    fn late_reflection_is_stable_where_theory_says() {
+        // Whatever the delay, a loop is stable while gain times stiffness stays below the least dynamic stiffness of the hand:
+        // k 2 z sqrt(1 - z^2), z = 0.507 its damping ratio: 787 N/m. After a long delay it is unstable above.
+        let map = StabilityMap::committed().unwrap();
+        for n_m in STIFFNESSES_N_M {
+            for gain in GAINS.into_iter().filter(|gain| (gain * n_m / 787.0 - 1.0).abs() > 0.01) {
+                let stable = map.at(Mode::Dfr, gain, 0.3, n_m) == Verdict::Stable;
+                assert_eq!(stable, gain * n_m < 787.0, "gain {gain}, {n_m} N/m");
+            }
+        }
+    }
+
+    #[test]
     fn between_points_the_worst_neighbour_answers_and_beyond_the_ends_the_last() {
         let mut map = StabilityMap { verdicts: vec![Verdict::Stable; POINTS] };
         map.verdicts[index(Mode::Dfr.index(), 4, 2, 5)] = Verdict::Unstable;

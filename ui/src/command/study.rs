@@ -100,7 +100,7 @@ pub(super) struct Release {
 
 #[derive(Debug, Args)]
 pub(super) struct Map {
-    /// Write stability_map.csv and stability_map.md into this folder (made if absent)
+    /// Write the map (CSV) and its table (Markdown) into this folder (made if absent)
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
 }
@@ -147,11 +147,7 @@ fn validation(arguments: &Validation) -> anyhow::Result<()> {
 
 fn gates(arguments: &Gates) -> anyhow::Result<()> {
     let report = gates::study(arguments.requests, arguments.seed, progress);
-    if arguments.json {
-        output::json(&report)?
-    } else {
-        output::line(&report.text())?
-    }
+    if arguments.json { output::json(&report) } else { output::line(&report.text()) }?;
     let breaches = report.breaches.total();
     anyhow::ensure!(breaches == 0, "{breaches} breaches in {} requests: the gates do not hold", report.requests);
     Ok(())

@@ -2,60 +2,19 @@
 #![cfg(target_os = "linux")]
 #![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
 
-use std::{
-    net::{TcpListener, UdpSocket},
-    path::Path,
-    time::{Duration, Instant},
-};
+#[path = "common/emulated.rs"]
+mod emulated;
 
+use std::time::{Duration, Instant};
+
+use emulated::{elsewhere, started};
 use nalgebra::Vector3;
 use nima::{
-    config::{Rig, Scene},
+    config::Scene,
     device::{Device, Side, Trouble, bota, dynamixel, force_dimension, hid, kinova, ndi, rig::Settings},
     kinematics::{Arm, Inverse, Rcm},
     sim::emulated::{EmulatedRig, HandFrame},
 };
-
-/// A port that is free for TCP and UDP.
-fn free_port() -> u16 {
-    loop {
-        let listener = TcpListener::bind("127.0.0.1:0").unwrap();
-        let port = listener.local_addr().unwrap().port();
-        if UdpSocket::bind(("127.0.0.1", port)).is_ok() {
-            return port;
-        }
-    }
-}
-
-/// The embedded rig on free ports and in a folder of its own.
-fn elsewhere(folder: &Path) -> Settings {
-    let mut devices = Rig::load("emulated").unwrap().devices.unwrap();
-    let within = |port: &str| folder.join(Path::new(port).file_name().unwrap()).display().to_string();
-    for set in [&mut devices.right, &mut devices.left].into_iter().flatten() {
-        set.handle.emulator = Some(format!("127.0.0.1:{}", free_port()).parse().unwrap());
-        (set.arm.tcp_port, set.arm.udp_port) = (free_port(), free_port());
-        set.sensor.port = match set.sensor.transport {
-            bota::Transport::Socket => format!("127.0.0.1:{}", free_port()),
-            _ => within(&set.sensor.port),
-        };
-        if let Some(servos) = &mut set.servos {
-            servos.port = within(&servos.port);
-        }
-    }
-    if let Some(sensor) = &mut devices.tissue_sensor {
-        sensor.port = within(&sensor.port);
-    }
-    if let Some(tracker) = &mut devices.tracker {
-        tracker.address = Some(format!("127.0.0.1:{}", free_port()));
-        tracker.tools.iter_mut().for_each(|tool| *tool = folder.join(tool.file_name().unwrap()));
-    }
-    devices.pedal.as_mut().unwrap().source = format!("emulated:{}", folder.join("pedal").display());
-    devices
-}
-
-fn started(devices: &Settings) -> EmulatedRig {
-    EmulatedRig::start(devices, &Scene::load("peg_transfer").unwrap(), &[HandFrame::default(); 2]).unwrap()
-}
 
 /// Polls once a millisecond until something is so.
 fn until<D: Device>(device: &mut D, what: &str, mut good: impl FnMut(&mut D, Option<D::Reading>) -> bool) {

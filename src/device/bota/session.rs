@@ -36,7 +36,7 @@ impl Default for Patience {
 impl Patience {
     /// For a diagnosis: a second, and as long again for the start of a first-generation sensor.
     pub(super) const SHORT: Self = Self {
-        boot: Duration::from_millis(1000),
+        boot: Duration::from_secs(1),
         answer: Duration::from_millis(150),
         tries: 2,
         init: Duration::from_millis(100),

@@ -6,7 +6,7 @@ use super::{DeviceProbe, Probe, Speaks};
 use crate::device::{Side, bota, dynamixel, force_dimension, hid, kinova, ndi, rig::Settings};
 
 /// A first-generation sensor starts anew whenever its line is opened.
-const START: Duration = Duration::from_millis(1000);
+const START: Duration = Duration::from_secs(1);
 /// For one answer of an arm, s.
 const ARM_S: f64 = 0.4;
 

@@ -11,7 +11,7 @@ use std::{
     time::{Duration, Instant},
 };
 
-use emulated::{elsewhere, started};
+use emulated::{alone, elsewhere, started};
 use nima::{
     config::{Rig, Scene},
     device::{Health, Loss, Standing, emulation::EmulatedFault, rig::Settings},
@@ -207,6 +207,7 @@ fn table(rows: &[Row]) -> String {
 #[test]
 #[ignore = "minutes in real time: `./dev test` runs it alone"]
 fn every_fault_of_every_device_is_told_takes_the_force_away_and_passes() {
+    let _alone = alone();
     let folder = tempfile::tempdir().unwrap();
     let devices = Settings { left: None, ..elsewhere(folder.path()) };
     let mut bench = Bench::new(&devices);

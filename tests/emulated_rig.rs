@@ -7,7 +7,7 @@ mod emulated;
 
 use std::time::{Duration, Instant};
 
-use emulated::{elsewhere, started};
+use emulated::{alone, elsewhere, started};
 use nalgebra::Vector3;
 use nima::{
     config::Scene,
@@ -38,6 +38,7 @@ fn delivers<D: Device>(what: &str, opened: Result<D, Trouble>) {
 
 #[test]
 fn every_device_of_the_embedded_rig_delivers_at_its_place() {
+    let _alone = alone();
     let folder = tempfile::tempdir().unwrap();
     let devices = elsewhere(folder.path());
     let rig = started(&devices);
@@ -75,6 +76,7 @@ fn every_device_of_the_embedded_rig_delivers_at_its_place() {
 
 #[test]
 fn a_second_rig_at_the_same_places_is_refused_and_a_new_one_comes_after_the_first() {
+    let _alone = alone();
     let folder = tempfile::tempdir().unwrap();
     let devices = Settings { left: None, ..elsewhere(folder.path()) };
     let scene = Scene::load("peg_transfer").unwrap();
@@ -93,6 +95,7 @@ fn a_second_rig_at_the_same_places_is_refused_and_a_new_one_comes_after_the_firs
 #[test]
 fn the_sensor_feels_what_the_arm_presses() {
     const DEPTH_M: f64 = 0.005;
+    let _alone = alone();
     let folder = tempfile::tempdir().unwrap();
     let devices = Settings { left: None, tissue_sensor: None, tracker: None, pedal: None, ..elsewhere(folder.path()) };
     let rig = started(&devices);

@@ -1,8 +1,9 @@
-//! The embedded emulated rig on free ports and in a folder of its own, so that tests do not meet.
+//! The embedded emulated rig away from its fixed places, so that tests disturb nobody.
 
 use std::{
     net::{TcpListener, UdpSocket},
     path::Path,
+    sync::{Mutex, MutexGuard, PoisonError},
 };
 
 use nima::{
@@ -22,8 +23,14 @@ fn free_port() -> u16 {
     }
 }
 
+/// One rig at a time: devices in real time look silent beside others that take every core.
+pub(crate) fn alone() -> MutexGuard<'static, ()> {
+    static ALONE: Mutex<()> = Mutex::new(());
+    ALONE.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
 /// The embedded rig on free ports and in a folder of its own.
-pub fn elsewhere(folder: &Path) -> Settings {
+pub(crate) fn elsewhere(folder: &Path) -> Settings {
     let mut devices = Rig::load("emulated").unwrap().devices.unwrap();
     let within = |port: &str| folder.join(Path::new(port).file_name().unwrap()).display().to_string();
     for set in [&mut devices.right, &mut devices.left].into_iter().flatten() {
@@ -48,7 +55,7 @@ pub fn elsewhere(folder: &Path) -> Settings {
     devices
 }
 
-pub fn started(devices: &Settings) -> EmulatedRig {
+pub(crate) fn started(devices: &Settings) -> EmulatedRig {
     EmulatedRig::start(
         devices,
         &Scene::load("peg_transfer").unwrap(),

@@ -20,7 +20,7 @@ const EXCHANGE: Duration = Duration::from_millis(2);
 /// Between two looks for an answer.
 const LOOK: Duration = Duration::from_micros(30);
 /// The same as [`EXCHANGE`] while looking for devices.
-const GREETING: Duration = Duration::from_millis(200);
+const GREETING: Duration = Duration::from_millis(80);
 /// `DHD_TIMEGUARD`: nothing newer was to be had.
 pub(crate) const TIMEGUARD: c_int = 1;
 /// `DHD_MOTOR_SATURATED`: the force was scaled down.

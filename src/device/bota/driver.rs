@@ -88,6 +88,11 @@ impl Driver {
         Self::open_within(settings, Patience::default())
     }
 
+    /// Opens for a diagnosis: what does not answer is told soon, within a second where the sensor does not start anew.
+    pub(in crate::device) fn try_open(settings: &Settings) -> Result<Self, Trouble> {
+        Self::open_within(settings, Patience::SHORT)
+    }
+
     pub(super) fn open_within(settings: &Settings, patience: Patience) -> Result<Self, Trouble> {
         opening::open(settings, patience).map(Self::of)
     }

@@ -142,7 +142,7 @@ fn open_gen_a(settings: &Settings, patience: Patience) -> Result<Opened, Trouble
 
 fn open_socket(settings: &Settings, patience: Patience) -> Result<Opened, Trouble> {
     let address = address_of(&settings.port)?;
-    let line = Tcp::open(&address.to_string(), patience.answer.max(Duration::from_secs(1)))?;
+    let line = Tcp::open(&address.to_string(), patience.stream)?;
     let mut session = Session::new(Box::new(line), &address.to_string(), patience);
     enter_config_gen_a(&mut session, None)?;
     let mut destination = [0; 4];

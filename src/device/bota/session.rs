@@ -33,6 +33,17 @@ impl Default for Patience {
     }
 }
 
+impl Patience {
+    /// For a diagnosis: a second, and as long again for the start of a first-generation sensor.
+    pub(super) const SHORT: Self = Self {
+        boot: Duration::from_secs(1),
+        answer: Duration::from_millis(150),
+        tries: 2,
+        init: Duration::from_millis(100),
+        stream: Duration::from_millis(200),
+    };
+}
+
 /// Of what was heard, so much is kept to look for an answer in.
 const HEARD_MAX: usize = 8192;
 const NAP: Duration = Duration::from_millis(1);

@@ -19,6 +19,7 @@ pub struct DeviceProbe<F> {
     name: String,
     place: String,
     speaks: Speaks,
+    extra: Duration,
     open: F,
 }
 
@@ -29,7 +30,13 @@ const NAP: Duration = Duration::from_micros(500);
 impl<F> DeviceProbe<F> {
     /// Of what `open` opens at `place`.
     pub fn new(name: impl Into<String>, place: impl Into<String>, speaks: Speaks, open: F) -> Self {
-        Self { name: name.into(), place: place.into(), speaks, open }
+        Self { name: name.into(), place: place.into(), speaks, extra: Duration::ZERO, open }
+    }
+
+    /// Of a device that needs so much longer than others, for instance because it starts anew.
+    #[must_use]
+    pub fn with_extra(self, extra: Duration) -> Self {
+        Self { extra, ..self }
     }
 
     fn verdict(&self, health: &Health) -> Result<(), Trouble> {
@@ -60,6 +67,10 @@ where
 {
     fn name(&self) -> &str {
         &self.name
+    }
+
+    fn extra(&self) -> Duration {
+        self.extra
     }
 
     fn probe(&mut self, patience: Duration) -> Result<Found, Trouble> {

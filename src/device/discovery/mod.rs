@@ -4,12 +4,13 @@
 //! [`PATIENCE`]; the real-time thread has no part in it, and a device that a running console holds is [`Trouble::Busy`]. A driver takes part by
 //! one line in [`KINDS`]: an open function in a [`DeviceProbe`].
 
+mod bus;
 mod device_probe;
 mod kinds;
 mod network;
 mod plugged;
+mod rig;
 pub mod rules;
-mod sdk;
 mod serial;
 
 #[cfg(test)]
@@ -29,7 +30,7 @@ pub use device_probe::{DeviceProbe, Speaks};
 pub use kinds::{KINDS, ProbeKind, probe_named};
 pub use network::TcpProbe;
 pub use plugged::{HidNode, Plugged, SerialPort, UsbDevice, UsbIds};
-pub use sdk::{LibraryProbe, force_dimension_library};
+pub use rig::rig_probes;
 pub use serial::SerialProbe;
 
 /// Time for one device, and so for all.
@@ -58,6 +59,10 @@ pub struct Found {
 pub trait Probe: Send {
     /// What it tries, for the first column of a table.
     fn name(&self) -> &str;
+    /// Time that it needs beyond the usual one.
+    fn extra(&self) -> Duration {
+        Duration::ZERO
+    }
     /// Tries it, within `patience` as well as it can.
     fn probe(&mut self, patience: Duration) -> Result<Found, Trouble>;
 }
@@ -101,16 +106,19 @@ pub struct Diagnosis {
     pub outcome: Outcome,
 }
 
-/// Tries all, each on a thread of its own; gives them in the order asked. One that does not come back within `patience` is told
-/// so and left to itself.
+/// Tries all, each on a thread of its own; gives them in the order asked. One that does not come back within `patience`, and what it
+/// needs beyond it, is told so and left to itself.
 pub fn diagnose(probes: Vec<Box<dyn Probe>>, patience: Duration) -> Vec<Diagnosis> {
     let begin = Instant::now();
-    let running: Vec<_> = probes.into_iter().map(|probe| start(probe, patience)).collect();
-    let deadline = begin + patience;
+    let started = |probe: Box<dyn Probe>| {
+        let patience = patience + probe.extra();
+        (start(probe, patience), patience)
+    };
+    let running: Vec<_> = probes.into_iter().map(started).collect();
     running
         .into_iter()
-        .map(|(name, answer)| {
-            let answer = answer.recv_timeout(deadline.saturating_duration_since(Instant::now()));
+        .map(|((name, answer), patience)| {
+            let answer = answer.recv_timeout((begin + patience).saturating_duration_since(Instant::now()));
             let (result, took) = answer.unwrap_or_else(|error| {
                 let reason = match error {
                     mpsc::RecvTimeoutError::Timeout => format!("no answer within {:.1} s", patience.as_secs_f64()),

@@ -121,7 +121,7 @@ impl UsbIds {
 impl Plugged {
     /// On this computer.
     pub fn list() -> Self {
-        let library = super::force_dimension_library();
+        let library = crate::device::force_dimension::installed_library();
         Self { force_dimension_library: library, ..Self::under(Path::new("/sys")) }
     }
 

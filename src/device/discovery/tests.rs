@@ -12,10 +12,10 @@ use std::{
 };
 
 use super::{
-    DeviceProbe, Diagnosis, Found, LibraryProbe, Outcome, PATIENCE, Plugged, Probe, SerialPort, SerialProbe, Speaks,
-    TcpProbe, diagnose, probe_named, rules, serial::frames,
+    DeviceProbe, Diagnosis, Found, Outcome, PATIENCE, Plugged, Probe, SerialPort, SerialProbe, Speaks, TcpProbe,
+    diagnose, probe_named, rules, serial::frames,
 };
-use crate::device::{Device, Health, Identity, Loss, Stamped, Standing, Trouble};
+use crate::device::{Device, Health, Identity, Loss, Stamped, Standing, Trouble, force_dimension};
 
 /// A device that does what a test says.
 struct Fake {
@@ -128,7 +128,10 @@ fn twelve_causes_come_out_each_with_a_cure_of_its_own() {
         fail(Trouble::of_address("192.168.1.10:10000", &timed_out)),
         probe_named(&format!("tcp={}", free_address())).unwrap(),
         fail(Trouble::RefusedLogin { place: place(), user: "admin".to_owned() }),
-        Box::new(LibraryProbe::force_dimension().in_folders(vec!["/no/such/folder".into()])),
+        super::rig::handle(
+            "handle",
+            force_dimension::Settings { library: Some("/no/such/file".into()), ..Default::default() },
+        ),
         fail(Trouble::NotReady { place: place(), mode: "calibration".to_owned(), cure: "Press reset.".to_owned() }),
         of_fake(|| Ok(Fake::new(1.0, Some(Loss::Device { code: 0x20 })))),
     ];
@@ -354,17 +357,6 @@ fn what_is_plugged_in_is_read_from_the_kernels_files() {
     assert_eq!(plugged.usb.len(), 1);
     assert_eq!(plugged.usb[0].usb.product, 0x0402);
     assert_eq!(Plugged::under(&sys.join("nothing")), Plugged::default());
-}
-
-#[test]
-fn a_library_is_found_by_its_beginning_and_its_highest_version() {
-    let folder = tempfile::tempdir().unwrap();
-    for name in ["libdrd.so.3.16.0", "libdrd.so.3.17.5", "other.so"] {
-        std::fs::write(folder.path().join(name), b"").unwrap();
-    }
-    let probe = LibraryProbe::force_dimension().in_folders(vec![folder.path().to_owned()]);
-    assert!(probe.find().unwrap().ends_with("libdrd.so.3.17.5"));
-    assert!(one(Box::new(probe)).unwrap().identity.product.contains("libdrd"));
 }
 
 #[cfg(target_os = "linux")]

@@ -15,7 +15,7 @@ use super::opening::Pace;
 use super::{
     clock::DeviceClock,
     codec::{Incoming, OVERHEAD, Outgoing},
-    opening::{Opened, REST_READS, Reboots, Session, Wall},
+    opening::{Opened, Patience, REST_READS, Reboots, Session, Wall},
     settings::Settings,
     table::{BAUDS, EEPROM_BYTES, HardwareError, TEMPERATURE, ticks_from_rad},
 };
@@ -153,26 +153,65 @@ pub fn open(settings: &Settings) -> Result<Driver, Trouble> {
 
 /// The same, and restarts the servos that `reboots` asks for; the driver heeds it as well.
 pub fn open_with(settings: &Settings, reboots: &Reboots) -> Result<Driver, Trouble> {
+    open_within(settings, reboots, Patience::USUAL)
+}
+
+/// Opens for a diagnosis: what does not answer is told within a second.
+pub(in crate::device) fn try_open(settings: &Settings) -> Result<Driver, Trouble> {
+    open_within(settings, &Reboots::default(), Patience::SHORT)
+}
+
+/// Ids of the servos that answer on a line, and what they are; nothing is written.
+pub(in crate::device) fn who_is_there(port: &str, baud: u32) -> Result<Vec<(u8, &'static str)>, Trouble> {
+    if !BAUDS.contains(&baud) {
+        let allowed = format!("servos can have {BAUDS:?}");
+        return Err(Trouble::Setting { key: "baud".to_owned(), value: baud.to_string(), allowed });
+    }
+    let mut line = Serial::open(&SerialSettings { port: port.to_owned(), baud })?;
+    let mut pace = Wall(Instant::now());
+    let mut session = Session::new(&mut line, &mut pace, port, Patience::SHORT);
+    let servos = session.everybody()?;
+    if !servos.is_empty() {
+        return Ok(servos);
+    }
+    let heard = session.heard_anything();
+    Err(why_silent(&mut line, &mut pace, port, baud, heard, Patience::SHORT)?)
+}
+
+/// Servos that do not answer are at another speed, or not there.
+fn why_silent(
+    line: &mut Serial,
+    pace: &mut Wall,
+    port: &str,
+    baud: u32,
+    heard: bool,
+    patience: Patience,
+) -> Result<Trouble, Trouble> {
+    let wrong = Trouble::WrongBaud { place: port.to_owned(), baud };
+    if heard {
+        return Ok(wrong);
+    }
+    for other in BAUDS.into_iter().filter(|other| *other != baud) {
+        // A speed that the adapter does not have cannot be the servos', either.
+        if line.set_baud(other).is_ok() && Session::new(line, pace, port, patience).anybody()? {
+            return Ok(wrong);
+        }
+    }
+    Ok(Trouble::Silent { place: port.to_owned() })
+}
+
+fn open_within(settings: &Settings, reboots: &Reboots, patience: Patience) -> Result<Driver, Trouble> {
     settings.check()?;
     let mut line = Serial::open(&SerialSettings { port: settings.port.clone(), baud: settings.baud })?;
     let mut pace = Wall(Instant::now());
-    let mut session = Session::new(&mut line, &mut pace, &settings.port);
-    let silent = match session.configure(settings, reboots) {
+    let mut session = Session::new(&mut line, &mut pace, &settings.port, patience);
+    match session.configure(settings, reboots) {
         Ok(opened) => return Ok(Driver::new(line, settings, opened, reboots.clone())),
-        Err(silent @ Trouble::Silent { .. }) => silent,
+        Err(Trouble::Silent { .. }) => {}
         Err(other) => return Err(other),
-    };
-    let wrong = Trouble::WrongBaud { place: settings.port.clone(), baud: settings.baud };
-    if session.heard_anything() {
-        return Err(wrong);
     }
-    for baud in BAUDS.into_iter().filter(|baud| *baud != settings.baud) {
-        // A speed that the adapter does not have cannot be the servos', either.
-        if line.set_baud(baud).is_ok() && Session::new(&mut line, &mut pace, &settings.port).anybody()? {
-            return Err(wrong);
-        }
-    }
-    Err(silent)
+    let heard = session.heard_anything();
+    Err(why_silent(&mut line, &mut pace, &settings.port, settings.baud, heard, patience)?)
 }
 
 /// Over a line that is open already and a time of its own, for tests.
@@ -184,7 +223,7 @@ pub(super) fn open_over<T: Bytes>(
     reboots: &Reboots,
 ) -> Result<Driver<T>, Trouble> {
     settings.check()?;
-    let opened = Session::new(&mut line, pace, &settings.port).configure(settings, reboots)?;
+    let opened = Session::new(&mut line, pace, &settings.port, Patience::USUAL).configure(settings, reboots)?;
     Ok(Driver::new(line, settings, opened, reboots.clone()))
 }
 

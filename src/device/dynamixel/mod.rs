@@ -21,6 +21,7 @@ pub mod table;
 mod tests;
 
 pub use driver::{Condition, Driver, Taken, open, open_with};
+pub(in crate::device) use driver::{try_open, who_is_there};
 pub use emulator::{Body, Emulator, EmulatorSettings, Shaft, Surroundings, swaying};
 pub use opening::Reboots;
 pub use settings::{Gains, OperatingMode, ServoSettings, Settings};

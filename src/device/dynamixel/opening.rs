@@ -1,6 +1,6 @@
 //! From an open line to four configured servos with the torque off. Blocks and allocates; runs on the opening thread.
 //!
-//! Every answer is awaited for 0.1 s, three times. What the EEPROM holds is compared first, and written only where it
+//! Every answer is awaited for 0.1 s, three times; for a diagnosis less. What the EEPROM holds is compared first, and written only where it
 //! differs (it wears out). All that is written is read back.
 
 use std::{
@@ -20,9 +20,20 @@ use super::{
 };
 use crate::device::{Identity, SERVOS, Trouble, transport::Bytes};
 
-/// For one answer, s: far more than a servo takes, for machines under load.
-const ANSWER_S: f64 = 0.1;
-const TRIES: usize = 3;
+/// How long to wait for answers, and how often to ask.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Patience {
+    answer_s: f64,
+    tries: usize,
+}
+
+impl Patience {
+    /// Far more than a servo takes, for machines under load.
+    pub(super) const USUAL: Self = Self { answer_s: 0.1, tries: 3 };
+    /// Enough for an adapter that holds bytes back for 16 ms; all line speeds are tried within the second of a diagnosis.
+    pub(super) const SHORT: Self = Self { answer_s: 0.04, tries: 2 };
+}
+
 /// Reads at most to throw away what is left from before.
 pub(super) const REST_READS: usize = 64;
 /// For a servo to come back after a reboot, s.
@@ -89,6 +100,7 @@ pub(super) struct Session<'a, T, P> {
     incoming: Incoming,
     outgoing: Outgoing,
     heard: usize,
+    patience: Patience,
 }
 
 struct Answer {
@@ -97,8 +109,9 @@ struct Answer {
 }
 
 impl<'a, T: Bytes, P: Pace> Session<'a, T, P> {
-    pub(super) fn new(line: &'a mut T, pace: &'a mut P, place: &'a str) -> Self {
-        Self { line, pace, place, incoming: Incoming::new(LONGEST), outgoing: Outgoing::new(LONGEST), heard: 0 }
+    pub(super) fn new(line: &'a mut T, pace: &'a mut P, place: &'a str, patience: Patience) -> Self {
+        let (incoming, outgoing) = (Incoming::new(LONGEST), Outgoing::new(LONGEST));
+        Self { line, pace, place, incoming, outgoing, heard: 0, patience }
     }
 
     /// Some bytes arrived, whatever they were.
@@ -209,7 +222,7 @@ impl<'a, T: Bytes, P: Pace> Session<'a, T, P> {
         self.send(id, &Instruction::Reboot)?;
         let begin_s = self.pace.now_s();
         while self.pace.now_s() - begin_s < REBOOT_S {
-            self.wait(ANSWER_S);
+            self.wait(self.patience.answer_s);
             if self.once(id, &Instruction::Ping)?.is_some() {
                 return Ok(());
             }
@@ -221,7 +234,7 @@ impl<'a, T: Bytes, P: Pace> Session<'a, T, P> {
     fn answers_fast(&mut self, settings: &Settings) -> Result<bool, Trouble> {
         let ids = settings.servos.each_ref().map(|servo| servo.id);
         let (address, count) = (table::TICK.address, MOTION_BYTES as u16);
-        for _ in 0..TRIES {
+        for _ in 0..self.patience.tries {
             self.send(BROADCAST, &Instruction::SyncRead { address, count, ids: &ids, fast: true })?;
             let whole = |packet: &Packet<'_>| packet.id == BROADCAST && packet.instruction == STATUS;
             let answer = self.receive(whole)?;
@@ -276,7 +289,7 @@ impl<'a, T: Bytes, P: Pace> Session<'a, T, P> {
 
     /// Asks until it answers, a few times.
     fn ask(&mut self, id: u8, instruction: &Instruction<'_>) -> Result<Option<Answer>, Trouble> {
-        for _ in 0..TRIES {
+        for _ in 0..self.patience.tries {
             let answer = self.once(id, instruction)?;
             if answer.is_some() {
                 return Ok(answer);
@@ -295,6 +308,26 @@ impl<'a, T: Bytes, P: Pace> Session<'a, T, P> {
         Ok(self.once(BROADCAST, &Instruction::Ping)?.is_some())
     }
 
+    /// Everyone who answers to a ping of all, one after the other: id and model.
+    pub(super) fn everybody(&mut self) -> Result<Vec<(u8, &'static str)>, Trouble> {
+        let mut servos: Vec<(u8, &'static str)> = Vec::new();
+        self.send(BROADCAST, &Instruction::Ping)?;
+        loop {
+            let mut id = 0;
+            let answer = self.receive(|packet| {
+                id = packet.id;
+                packet.instruction == STATUS
+            })?;
+            let Some(answer) = answer else { return Ok(servos) };
+            let number = answer.data.first_chunk().map_or(0, |bytes| u16::from_le_bytes(*bytes));
+            let model = Model::numbered(number).map_or("unknown servo", |model| model.name);
+            if servos.len() > usize::from(BROADCAST) {
+                return Ok(servos);
+            }
+            servos.push((id, model));
+        }
+    }
+
     fn send(&mut self, id: u8, instruction: &Instruction<'_>) -> Result<(), Trouble> {
         // Whatever is still there answers to something else.
         let mut rest = [0; LONGEST];
@@ -309,7 +342,7 @@ impl<'a, T: Bytes, P: Pace> Session<'a, T, P> {
         self.line.send(self.outgoing.bytes()).map_err(|_| self.gone())
     }
 
-    fn receive(&mut self, fits: impl Fn(&Packet<'_>) -> bool) -> Result<Option<Answer>, Trouble> {
+    fn receive(&mut self, mut fits: impl FnMut(&Packet<'_>) -> bool) -> Result<Option<Answer>, Trouble> {
         let begin_s = self.pace.now_s();
         let mut buffer = [0; LONGEST];
         loop {
@@ -324,7 +357,7 @@ impl<'a, T: Bytes, P: Pace> Session<'a, T, P> {
                     }
                 }
             }
-            if self.pace.now_s() - begin_s > ANSWER_S {
+            if self.pace.now_s() - begin_s > self.patience.answer_s {
                 return Ok(None);
             }
             if count == 0 {

@@ -49,12 +49,11 @@ mod terminal {
     impl TerminalName {
         /// Claims `link`; without one, `name` in a folder of its own. Folders above it are made.
         pub(in crate::device) fn claim(link: Option<&Path>, name: &str) -> Result<Self> {
-            let (path, folder) = match link {
-                Some(link) => (link.to_owned(), None),
-                None => {
-                    let folder = tempfile::Builder::new().prefix("nima-").tempdir()?;
-                    (folder.path().join(name), Some(folder))
-                }
+            let (path, folder) = if let Some(link) = link {
+                (link.to_owned(), None)
+            } else {
+                let folder = tempfile::Builder::new().prefix("nima-").tempdir()?;
+                (folder.path().join(name), Some(folder))
             };
             if let Some(parent) = path.parent() {
                 fs::create_dir_all(parent)?;

@@ -117,6 +117,27 @@ pub(super) fn load(explicit: Option<&Path>) -> Result<&'static Sdk, Trouble> {
     Err(missing(searched))
 }
 
+/// The library that would be loaded, where it is a file; looked for, not loaded.
+pub fn installed_library() -> Option<PathBuf> {
+    let by_linker =
+        |name: &str| linker_folders().into_iter().map(|folder| folder.join(name)).find(|path| path.is_file());
+    candidates().0.into_iter().find_map(|candidate| match candidate {
+        Candidate::File(path) => Some(path),
+        Candidate::Name(name) => by_linker(name),
+    })
+}
+
+/// Where the system's own search looks.
+fn linker_folders() -> Vec<PathBuf> {
+    let named = env::var_os("LD_LIBRARY_PATH").unwrap_or_default();
+    let mut folders: Vec<_> = env::split_paths(&named).filter(|path| !path.as_os_str().is_empty()).collect();
+    if cfg!(unix) {
+        folders.push(format!("/usr/lib/{}-linux-gnu", env::consts::ARCH).into());
+        folders.extend(["/usr/lib64", "/usr/lib", "/lib"].map(PathBuf::from));
+    }
+    folders
+}
+
 fn missing(searched: String) -> Trouble {
     Trouble::SdkMissing { name: NAME.to_owned(), searched }
 }

@@ -32,4 +32,5 @@ pub use driver::{
 };
 pub use emulator::{Body, Emulator, HandState, Held, stand_in};
 pub use firmware::{Applied, Mode};
+pub use library::installed_library;
 pub use status::{ForceOffCause, Kind, SdkError, Status};

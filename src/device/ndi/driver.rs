@@ -91,7 +91,16 @@ enum Event {
 impl Driver {
     /// Opens, configures and starts the unit; may take some seconds.
     pub fn open(settings: &Settings) -> Result<Self, Trouble> {
-        let Opened { session, identity, form, handles } = opening::open(settings)?;
+        Self::open_within(settings, opening::Patience::USUAL)
+    }
+
+    /// Opens for a diagnosis: what does not answer is told within a second.
+    pub(in crate::device) fn try_open(settings: &Settings) -> Result<Self, Trouble> {
+        Self::open_within(settings, opening::Patience::SHORT)
+    }
+
+    fn open_within(settings: &Settings, patience: opening::Patience) -> Result<Self, Trouble> {
+        let Opened { session, identity, form, handles } = opening::open(settings, patience)?;
         let mut health = Health::opening();
         health.standing = Standing::Connected;
         Ok(Self {

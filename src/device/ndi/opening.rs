@@ -21,12 +21,26 @@ use crate::device::{
 pub(super) const OPTIONS: u16 = TRANSFORMS | OUTSIDE_TOO;
 /// Speed of the line after switching on and after a reset.
 pub(super) const FIRST_BAUD: u32 = 9600;
-/// For commands that the unit answers at once.
-const QUICK: Duration = Duration::from_millis(500);
-/// For those for which it does something.
-const SLOW: Duration = Duration::from_secs(5);
+/// How long to wait for the unit.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Patience {
+    /// For commands that it answers at once.
+    quick: Duration,
+    /// For those for which it does something.
+    slow: Duration,
+}
+
+impl Patience {
+    /// As the guide has it.
+    pub(super) const USUAL: Self = Self { quick: Duration::from_millis(500), slow: Duration::from_secs(5) };
+    /// For a diagnosis, which tells within a second.
+    pub(super) const SHORT: Self = Self { quick: Duration::from_millis(200), slow: Duration::from_millis(400) };
+}
+
 /// After `INIT` and after a change of speed, as the guide asks.
 const SETTLE: Duration = Duration::from_millis(100);
+/// For a connection to be made.
+const CONNECT: Duration = Duration::from_secs(2);
 const BREAK: Duration = Duration::from_millis(250);
 
 /// A unit that tracks.
@@ -39,25 +53,29 @@ pub(super) struct Opened {
 }
 
 /// Opens, configures and starts the unit.
-pub(super) fn open(settings: &Settings) -> Result<Opened, Trouble> {
+pub(super) fn open(settings: &Settings, patience: Patience) -> Result<Opened, Trouble> {
     settings.check()?;
     let key = |k: usize| format!("tools[{k}]");
     let load = |(k, path): (usize, &std::path::PathBuf)| Definition::load(&key(k), path);
     let definitions = settings.tools.iter().enumerate().map(load).collect::<Result<Vec<_>, _>>()?;
     let place = settings.place();
-    let session = if settings.address.is_some() { over_network(&place) } else { over_line(&place, settings.baud) }?;
-    Opening { session, place, baud: settings.port.is_some().then_some(settings.baud) }.start(settings, &definitions)
+    let baud = settings.port.is_some().then_some(settings.baud);
+    let session = match baud {
+        None => over_network(&place, patience),
+        Some(baud) => over_line(&place, baud, patience),
+    }?;
+    Opening { session, place, baud, patience }.start(settings, &definitions)
 }
 
-fn over_network(place: &str) -> Result<Session, Trouble> {
-    let mut session = Session::new(Wire::Tcp(Tcp::open(place, Duration::from_secs(2))?));
-    session.ask(&Command::Init, SLOW).map_err(|failure| trouble(place, None, "INIT", failure))?;
+fn over_network(place: &str, patience: Patience) -> Result<Session, Trouble> {
+    let mut session = Session::new(Wire::Tcp(Tcp::open(place, patience.slow.min(CONNECT))?));
+    session.ask(&Command::Init, patience.slow).map_err(|failure| trouble(place, None, "INIT", failure))?;
     std::thread::sleep(SETTLE);
     Ok(session)
 }
 
 /// Finds the speed of the line: as the last console left it, as after switching on, or after a reset by a break.
-fn over_line(place: &str, baud: u32) -> Result<Session, Trouble> {
+fn over_line(place: &str, baud: u32, patience: Patience) -> Result<Session, Trouble> {
     let line = Serial::open(&SerialSettings { port: place.to_owned(), baud })?;
     let mut session = Session::new(Wire::Serial(line));
     let told = |command, failure| trouble(place, Some(baud), command, failure);
@@ -65,11 +83,11 @@ fn over_line(place: &str, baud: u32) -> Result<Session, Trouble> {
     let mut found = false;
     for speed in [baud, FIRST_BAUD] {
         set_baud(&mut session, speed).map_err(|failure| told("INIT", failure))?;
-        let mut answered = session.ask_again(&Command::Init, QUICK / 2);
+        let mut answered = session.ask_again(&Command::Init, patience.quick / 2);
         if answered.as_deref() == Ok("RESET") {
             // What is slow for a unit at a higher speed is a break to it.
             std::thread::sleep(SETTLE);
-            answered = session.ask_again(&Command::Init, SLOW);
+            answered = session.ask_again(&Command::Init, patience.slow);
         }
         if answered == Err(Failure::Gone) {
             return Err(told("INIT", Failure::Gone));
@@ -80,11 +98,11 @@ fn over_line(place: &str, baud: u32) -> Result<Session, Trouble> {
         }
     }
     if !found {
-        reset(&mut session).map_err(|failure| told("a reset", failure))?;
-        session.ask_again(&Command::Init, SLOW).map_err(|failure| told("INIT", failure))?;
+        reset(&mut session, patience).map_err(|failure| told("a reset", failure))?;
+        session.ask_again(&Command::Init, patience.slow).map_err(|failure| told("INIT", failure))?;
     }
     std::thread::sleep(SETTLE);
-    session.ask(&Command::Comm { baud }, QUICK).map_err(|failure| told("COMM", failure))?;
+    session.ask(&Command::Comm { baud }, patience.quick).map_err(|failure| told("COMM", failure))?;
     std::thread::sleep(SETTLE);
     set_baud(&mut session, baud).map_err(|failure| told("COMM", failure))?;
     Ok(session)
@@ -98,13 +116,13 @@ fn set_baud(session: &mut Session, baud: u32) -> Result<(), Failure> {
 }
 
 /// A break on the line at the first speed; the unit says `RESET`.
-fn reset(session: &mut Session) -> Result<(), Failure> {
+fn reset(session: &mut Session, patience: Patience) -> Result<(), Failure> {
     set_baud(session, FIRST_BAUD)?;
     session.drain()?;
     if let Wire::Serial(serial) = &mut session.wire {
         serial.send_break(BREAK).map_err(|_| Failure::Gone)?;
     }
-    session.wait(SLOW)?;
+    session.wait(patience.slow)?;
     std::thread::sleep(SETTLE);
     Ok(())
 }
@@ -131,6 +149,7 @@ struct Opening {
     session: Session,
     place: String,
     baud: Option<u32>,
+    patience: Patience,
 }
 
 impl Opening {
@@ -167,7 +186,7 @@ impl Opening {
         if frames.system.faults() == 0 {
             return Ok(());
         }
-        self.session.ask(&Command::Stop, QUICK).ok();
+        self.session.ask(&Command::Stop, self.patience.quick).ok();
         Err(Trouble::DeviceFault {
             place: self.place.clone(),
             words: format!("{} (system status {:04X})", frames.system.words(), frames.system.0),
@@ -207,11 +226,11 @@ impl Opening {
     }
 
     fn quick(&mut self, command: &Command<'_>) -> Result<String, Trouble> {
-        self.session.ask_again(command, QUICK).map_err(|failure| self.trouble(command.name(), failure))
+        self.session.ask_again(command, self.patience.quick).map_err(|failure| self.trouble(command.name(), failure))
     }
 
     fn slow(&mut self, command: &Command<'_>, name: &str) -> Result<String, Trouble> {
-        self.session.ask(command, SLOW).map_err(|failure| self.trouble(name, failure))
+        self.session.ask(command, self.patience.slow).map_err(|failure| self.trouble(name, failure))
     }
 
     fn trouble(&self, command: &str, failure: Failure) -> Trouble {

@@ -160,7 +160,7 @@ fn servos(side: Side, chosen: &dynamixel::Settings) -> Served {
         baud: chosen.baud,
         fast: usual.fast,
     };
-    let supply_v = if known.is_some_and(|model| model.is_small()) { 5.0 } else { 12.0 };
+    let supply_v = if known.is_some_and(dynamixel::table::Model::is_small) { 5.0 } else { 12.0 };
     // Nothing in this world loads the instrument's jaws.
     let unloaded = dynamixel::Surroundings { load_nm: 0.0, supply_v, temperature_c: 31.0 };
     let emulator = dynamixel::Emulator::new(&emulated, Some(Box::new(move |_, _, _| unloaded)));

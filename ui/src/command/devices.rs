@@ -2,11 +2,16 @@
 
 use std::fmt::Write as _;
 
-use anyhow::Context as _;
+use anyhow::{Context as _, bail};
 use clap::Args;
-use nima::device::{
-    Standing,
-    discovery::{Diagnosis, Found, KINDS, Outcome, PATIENCE, Plugged, UsbIds, diagnose, probe_named, rules},
+use nima::{
+    config::Rig,
+    device::{
+        Standing,
+        discovery::{
+            Diagnosis, Found, KINDS, Outcome, PATIENCE, Plugged, UsbIds, diagnose, probe_named, rig_probes, rules,
+        },
+    },
 };
 use serde::Serialize;
 
@@ -14,18 +19,21 @@ use super::output;
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
-    /// A device to try, as often as there are some: `spacemouse`, `pedal`, `force-dimension`, each with `=PLACE`;
-    /// `serial=PORT@BAUD[,HEADER][,quiet]`, `tcp=HOST:PORT`
+    /// A device to try, as often as there are some: `spacemouse`, `pedal`, `force-dimension`, `kinova`, `ndi`, `dynamixel`, `bota-gen0`,
+    /// `bota-gen-a`, `bota-socket`, each with `=PLACE`; `serial=PORT@BAUD[,HEADER][,quiet]`, `tcp=HOST:PORT`
     #[arg(long, value_name = "KIND[=PLACE]")]
     probe: Vec<String>,
+    /// Try every device of a rig, by name or file; end a console that uses them first
+    #[arg(long, value_name = "RIG")]
+    rig: Option<String>,
     /// Print one JSON object
     #[arg(long)]
     json: bool,
     /// Print the one command that lets you use the devices without root
-    #[arg(long, conflicts_with_all = ["json", "probe"])]
+    #[arg(long, conflicts_with_all = ["json", "probe", "rig"])]
     udev: bool,
     /// Print the udev rules
-    #[arg(long, conflicts_with_all = ["json", "probe", "udev"])]
+    #[arg(long, conflicts_with_all = ["json", "probe", "rig", "udev"])]
     udev_rules: bool,
 }
 
@@ -46,6 +54,11 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let mut probes = Vec::new();
     for text in &arguments.probe {
         probes.push(probe_named(text).map_err(|trouble| anyhow::anyhow!("{trouble}"))?);
+    }
+    if let Some(name) = &arguments.rig {
+        let rig = Rig::load(name)?;
+        let Some(devices) = &rig.devices else { bail!("rig \"{}\" has no devices: all of it is simulated", rig.name) };
+        probes.extend(rig_probes(devices));
     }
     let report = Report { plugged: Plugged::list(), devices: diagnose(probes, PATIENCE) };
     if arguments.json { output::json(&report) } else { output::line(in_words(&report).trim_end()) }
@@ -85,7 +98,8 @@ fn in_words(report: &Report) -> String {
     text.push_str("\nTried\n");
     if devices.is_empty() {
         let kinds: Vec<_> = KINDS.iter().map(|kind| kind.name).collect();
-        writeln!(text, "  nothing; --probe KIND[=PLACE] tries one of {}", kinds.join(", ")).ok();
+        writeln!(text, "  nothing; --rig RIG tries all of a rig, --probe KIND[=PLACE] one of {}", kinds.join(", "))
+            .ok();
     }
     let width = devices.iter().map(|device| device.name.chars().count()).max().unwrap_or(0);
     for Diagnosis { name, outcome, .. } in devices {

@@ -24,6 +24,7 @@ use super::{emulators::Emulators, output, setup::Setup};
 use crate::console::in_force::InForce;
 
 #[derive(Debug, Args)]
+#[expect(clippy::struct_excessive_bools, reason = "flags of a command line")]
 pub(super) struct Arguments {
     #[command(flatten)]
     setup: Setup,

@@ -224,21 +224,18 @@ fn table(cases: &[Case]) -> String {
     for Case { beside, asked, figures, skipped } in cases {
         // Writing into a String cannot fail.
         write!(out, "| {} | {} |", beside.words(), priority(*asked)).ok();
-        match figures {
-            Some(Figures { ticks, missed, wake_us: wake, work_us: work, scheduling }) => {
-                let refused = if *asked && !scheduling.fifo { " (refused)" } else { "" };
-                writeln!(
-                    out,
-                    " {ticks}{refused} | {missed} | {:.0} | {:.0} | {:.0} | {:.0} | {:.1} | {:.1} |",
-                    wake.p50, wake.p99, wake.p999, wake.max, work.p50, work.p99
-                )
-                .ok();
-            }
-            None => {
-                let why = skipped.as_deref().unwrap_or("not measured");
-                writeln!(out, " {why} | | | | | | | |").ok();
-            }
-        }
+        let Some(Figures { ticks, missed, wake_us: wake, work_us: work, scheduling }) = figures else {
+            let why = skipped.as_deref().unwrap_or("not measured");
+            writeln!(out, " {why} | | | | | | | |").ok();
+            continue;
+        };
+        let refused = if *asked && !scheduling.fifo { " (refused)" } else { "" };
+        writeln!(
+            out,
+            " {ticks}{refused} | {missed} | {:.0} | {:.0} | {:.0} | {:.0} | {:.1} | {:.1} |",
+            wake.p50, wake.p99, wake.p999, wake.max, work.p50, work.p99
+        )
+        .ok();
     }
     out
 }

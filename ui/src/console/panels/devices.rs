@@ -1,7 +1,7 @@
 //! The devices of the rig: where each is, how well it delivers, and for what fails the cause and the cure.
 
 use egui::{Button, Label, RichText, Ui, vec2};
-use nima::device::{Health, RosterEntry, Side, Standing};
+use nima::device::{Health, RosterEntry, Side, Standing, Trouble};
 
 use crate::console::{
     live::Live,
@@ -52,6 +52,15 @@ fn device_ui(ui: &mut Ui, entry: &RosterEntry, health: &Health) {
     if let Some(trouble) = report.trouble {
         ui.add(Label::new(trouble.to_string()).wrap());
         ui.add(Label::new(small(trouble.cure())).wrap());
+        if let (Trouble::DeviceFault { .. }, Some(clear)) = (&trouble, &entry.clear_faults) {
+            let button = ui.add(Button::new(small("Clear faults")).min_size(vec2(84.0, 22.0)));
+            button.widget_info(|| {
+                egui::WidgetInfo::labeled(egui::Role::Button, true, format!("Clear faults of the {}", entry.name))
+            });
+            if button.on_hover_text("Once nobody is near the arm and the cause is gone: it may move again.").clicked() {
+                clear.command();
+            }
+        }
     }
     ui.add_space(4.0);
 }

@@ -6,7 +6,7 @@ use crate::{
     device::{DeviceEvent, Loss, Prompt, Side},
     frames::WristSample,
     impedance::Mode,
-    safety::{ChainSettings, GateReport, Why},
+    safety::{ChainSettings, GateReport, Implausible, Why},
     teleop::{ForceReport, LoopState},
 };
 
@@ -131,6 +131,13 @@ pub enum Fault {
     DrivesOff,
     /// The other arm pair has a fault.
     OtherArm,
+    /// Time did not go on by whole periods.
+    ClockJumped,
+    /// Numbers came in time, are finite, and cannot be true.
+    Implausible {
+        /// Which, and how.
+        what: Implausible,
+    },
 }
 
 impl Fault {
@@ -149,6 +156,8 @@ impl Fault {
             },
             Self::DrivesOff => "The arm stopped obeying, or the handle switched its motors off",
             Self::OtherArm => "The other arm has a fault",
+            Self::ClockJumped => "The loop's clock jumped or stood still",
+            Self::Implausible { what } => what.words(),
         }
     }
 
@@ -167,6 +176,8 @@ impl Fault {
                 "Look at the arm's and the handle's own lamps and buttons, then release the stop and engage again"
             }
             Self::OtherArm => "Mend the other arm's fault, then release the stop and engage again",
+            Self::ClockJumped => "See what sets or stops this computer's clock, then release the stop and engage again",
+            Self::Implausible { what } => what.cure(),
         }
     }
 }

@@ -10,6 +10,7 @@ use crate::{
     calibration::gravity::{Compensator, DEFAULT_TIME_CONSTANT_S, GravityModel},
     device::Sensed,
     frames::{Wrench, WristSample},
+    safety::PLAUSIBLE_N,
     tip_force::{Fallback, TipForce, TipForceReport, Unsure},
 };
 
@@ -33,12 +34,14 @@ pub enum ForceSource {
     Uncalibrated,
     /// Calibrated, but the sample lacks the orientation that the calibration needs.
     NoOrientation,
+    /// A calibration or the network made an impossible number of a good sample.
+    Poisoned,
 }
 
 impl ForceSource {
     /// The tip force may be felt by a hand.
     pub const fn is_usable(self) -> bool {
-        !matches!(self, Self::Uncalibrated | Self::NoOrientation)
+        !matches!(self, Self::Uncalibrated | Self::NoOrientation | Self::Poisoned)
     }
 
     /// In words, for the screen.
@@ -51,6 +54,7 @@ impl ForceSource {
             Self::InDoubt { fallback: Fallback::HoldAndFade, .. } => "network in doubt: the last sure force fades out",
             Self::Uncalibrated => "unknown: the wrist sensor is not calibrated",
             Self::NoOrientation => "unknown: the orientation of the wrist is missing",
+            Self::Poisoned => "unknown: the calibration or the network gives impossible numbers",
         }
     }
 
@@ -108,6 +112,13 @@ impl ForcePath {
 
     /// The tip force of this sample, taken at this time (s).
     pub fn step(&mut self, t_s: f64, sensed: &Sensed) -> ForceReport {
+        let report = self.report(t_s, sensed);
+        // Not so on a plausible sample: then it is the calibration, and the last good force must not stand for it.
+        let possible = report.tip_n.iter().all(|f| f.abs() <= PLAUSIBLE_N);
+        if possible { report } else { ForceReport::none(ForceSource::Poisoned, None) }
+    }
+
+    fn report(&mut self, t_s: f64, sensed: &Sensed) -> ForceReport {
         match sensed {
             Sensed::AtTip(tip_n) => ForceReport { tip_n: *tip_n, ..ForceReport::none(ForceSource::AtTip, None) },
             Sensed::AtWrist(sample) => self.at_wrist(t_s, sample),

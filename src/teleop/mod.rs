@@ -13,7 +13,7 @@ mod tracking;
 
 pub use accuracy::{Accuracy, ErrorStats};
 pub use force_path::{Calibrations, ForcePath, ForceReport, ForceSource};
-pub use link::Link;
+pub use link::{Link, Weather};
 pub use pair::{EVENTS_PER_TICK_MAX, GUIDE_MAX_M, Pair, Timing};
 pub use tracking::Tracking;
 
@@ -29,7 +29,7 @@ use crate::{
 pub type LoopState = safety::State<Fault>;
 
 /// The pairs of a rig.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Loop {
     /// Boxed: a pair is large, and a thread's stack is not.
     pairs: [Option<Box<Pair>>; SIDES],
@@ -98,6 +98,13 @@ impl Loop {
         for pair in self.pairs.iter_mut().flatten() {
             let periods = (silent_s * pair.rate_hz()).round() as u64;
             pair.fail_if_driven(Fault::LoopStalled { periods }, t_s);
+        }
+    }
+
+    /// Makes the link of this side a bad one, for studies of faults.
+    pub fn disturb(&mut self, side: Side, weather: Weather) {
+        if let Some(pair) = &mut self.pairs[side.index()] {
+            pair.disturb(weather);
         }
     }
 

@@ -2,14 +2,14 @@
 
 use nalgebra::{UnitQuaternion, Vector1, Vector3};
 
-use super::{Accuracy, Calibrations, ForcePath, ForceReport, ForceSource, Link, LoopState, Tracking};
+use super::{Accuracy, Calibrations, ForcePath, ForceReport, ForceSource, Link, LoopState, Tracking, Weather};
 use crate::{
     config::Rig as RigConfig,
     device::{DeviceEvent, Inputs, Outputs, Prompt, Sensed, Side, Standing, Switches},
     impedance::{Identifier, MAX_DELAY_S, Mode, Rendered, Renderer, Sample, SettingsError},
     kinematics::{Hand, HandEye, Target},
     runtime::{Command, Event, Fault, Tick},
-    safety::{Chain, Change, GripperChain, Interlock, Request, Seen, Wish},
+    safety::{CHANNELS, Chain, Change, GripperChain, Interlock, Observed, Plausibility, Request, Seen, Wish},
 };
 
 /// Rig silent for longer than this, s: fault.
@@ -41,7 +41,7 @@ pub struct Timing {
 }
 
 /// The pair's whole memory.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Pair {
     side: Side,
     interlock: Interlock<Fault>,
@@ -59,10 +59,13 @@ pub struct Pair {
     guide_m: Option<Vector3<f64>>,
     link: Link,
     tracking: Tracking,
+    plausibility: Plausibility,
     chain: Chain,
     gripper_chain: GripperChain,
     last_inputs: Option<Inputs>,
     last_input_s: f64,
+    last_now_s: Option<f64>,
+    hand_force_n: Vector3<f64>,
     command_m: Option<Vector3<f64>>,
     hand_speed_m_s: f64,
     accuracy: Accuracy,
@@ -93,10 +96,13 @@ impl Pair {
             guide_m: None,
             link: Link::new(rig.rate_hz, rig.delay_s),
             tracking: Tracking::new(rig.rate_hz),
+            plausibility: Plausibility::new(1.0 / rig.rate_hz),
             chain: Chain::new(rig.gates, 1.0 / rig.rate_hz),
             gripper_chain: GripperChain::new(rig.gates, 1.0 / rig.rate_hz),
             last_inputs: None,
             last_input_s: 0.0,
+            last_now_s: None,
+            hand_force_n: Vector3::zeros(),
             command_m: None,
             hand_speed_m_s: 0.0,
             accuracy: Accuracy::default(),
@@ -168,6 +174,7 @@ impl Pair {
             let kbf_from_jaws = seen.kbf_from_jaws.unwrap_or_else(UnitQuaternion::identity);
             self.hand_eye.engage(Target { tip_m: seen.tip_m, kbf_from_jaws });
             self.engaged_s = t_s;
+            self.plausibility.engage();
         }
     }
 
@@ -217,8 +224,10 @@ impl Pair {
             }
             // A force that is mostly weight and bias must never reach a hand.
             Command::Engage | Command::EngageOne(_) if !self.force.source.is_usable() => return false,
+            // Neither one that cannot be true.
+            Command::Engage | Command::EngageOne(_) if self.plausibility.doubt().is_some() => return false,
             // A fault is not released while its cause lives.
-            Command::ReleaseStop if self.is_silent(t_s) => return false,
+            Command::ReleaseStop if self.is_silent(t_s) || self.plausibility.doubt().is_some() => return false,
             Command::Engage | Command::EngageOne(_) => return self.ask(Wish::Engage, t_s),
             Command::Rest => return self.ask(Wish::Rest, t_s),
             Command::Stop => return self.ask(Wish::Stop, t_s),
@@ -254,11 +263,10 @@ impl Pair {
     pub fn step(&mut self, inputs: Option<Inputs>, timing: &Timing) -> (Outputs, Tick) {
         let now_s = timing.now_s;
         self.missed += timing.missed_now;
+        self.check_clock(timing);
         let inputs = inputs.filter(Inputs::is_finite);
         let moved_m = inputs.zip(self.last_inputs).map_or(0.0, |(now, last)| (now.tip_m - last.tip_m).norm());
-        if let Some(inputs) = &inputs {
-            self.take_in(inputs, now_s);
-        }
+        let inputs = inputs.map(|inputs| self.take_in(inputs, now_s));
         self.watch(inputs.as_ref(), moved_m, timing);
         // Nothing new: the link keeps delivering what is on its way, ever older; the age gate takes the force away.
         let seen = self.last_inputs.unwrap_or(NOTHING_YET);
@@ -266,6 +274,9 @@ impl Pair {
         let tip_command_m = self.follow(&seen, &target);
         let motion_m = self.motion_at_leader(&seen, tip_command_m);
         let parcel = self.link.receive(now_s);
+        if let Some(parcel) = parcel {
+            self.plausibility.delivered(&parcel.force_n, parcel.t_s);
+        }
         let rendered = self.renderer.step(&motion_m, parcel);
         let delayed_n = parcel.map_or_else(Vector3::zeros, |parcel| parcel.force_n);
         let age_s = parcel.map_or(f64::INFINITY, |parcel| now_s - parcel.t_s - self.delay_s + seen.age_s);
@@ -293,6 +304,7 @@ impl Pair {
             prompt: self.prompt,
             guide_m: self.guide_m,
         };
+        self.hand_force_n = outputs.hand_force_n;
         let leader_m = if tip_command_m.is_some() { target.tip_m } else { seen.tip_m };
         let tick = self.tick(&seen, leader_m, &rendered, delayed_n, rendered_n, gates, timing);
         self.ticks += 1;
@@ -313,13 +325,48 @@ impl Pair {
         force_n.x
     }
 
-    fn take_in(&mut self, inputs: &Inputs, now_s: f64) {
-        self.measure_speed(inputs, now_s);
+    /// Takes a sample in; what leaps where nothing can is bridged in what is given back.
+    fn take_in(&mut self, mut inputs: Inputs, now_s: f64) -> Inputs {
         self.force = self.force_path.step(now_s, &inputs.sensed);
+        let admitted = self.plausibility.step(&Observed {
+            t_s: now_s,
+            sensed: numbers(&inputs.sensed),
+            force_n: self.force.tip_n,
+            tip_m: inputs.tip_m,
+            hand_m: inputs.hand.position_m,
+            command_m: self.command_m,
+            hand_force_n: self.hand_force_n,
+        });
+        (self.force.tip_n, inputs.tip_m, inputs.hand.position_m) = (admitted.force_n, admitted.tip_m, admitted.hand_m);
+        self.measure_speed(&inputs, now_s);
         self.identifier.step(&Sample { t_s: now_s, position_m: inputs.tip_m, force_n: self.force.tip_n });
         self.link.send(self.identifier.parcel());
-        self.last_inputs = Some(*inputs);
+        self.last_inputs = Some(inputs);
         self.last_input_s = now_s - inputs.age_s;
+        inputs
+    }
+
+    /// Time goes on by whole periods, as many as were missed and one. A clock that does not is a fault, and what was learnt by it is
+    /// forgotten: parcels from the future would never grow old.
+    fn check_clock(&mut self, timing: &Timing) {
+        let period_s = 1.0 / self.rate_hz;
+        let Some(last_s) = self.last_now_s.replace(timing.now_s) else { return };
+        let surplus_s = timing.now_s - last_s - period_s * (1 + timing.missed_now) as f64;
+        if surplus_s.abs() <= 0.5 * period_s {
+            return;
+        }
+        self.fail_if_driven(Fault::ClockJumped, timing.now_s);
+        if !(timing.now_s > last_s) {
+            self.identifier.reset();
+            self.renderer.reset();
+            self.link.clear();
+            self.last_input_s = timing.now_s;
+        }
+    }
+
+    /// Makes the link a bad one.
+    pub(super) fn disturb(&mut self, weather: Weather) {
+        self.link.disturb(weather);
     }
 
     fn is_silent(&self, now_s: f64) -> bool {
@@ -342,6 +389,9 @@ impl Pair {
         }
         if coupled && inputs.is_some_and(|inputs| !inputs.powered) {
             self.fail(Fault::DrivesOff, now_s);
+        }
+        if let Some(what) = self.plausibility.doubt() {
+            self.fail_if_driven(Fault::Implausible { what }, now_s);
         }
         let switches = self.last_inputs.map_or_else(Switches::default, |seen| seen.switches);
         let seen = Seen {
@@ -430,6 +480,22 @@ impl Pair {
             dropped: 0,
         }
     }
+}
+
+/// The numbers of a force sensor as they were read; NaN where it has none.
+fn numbers(sensed: &Sensed) -> [f64; CHANNELS] {
+    let mut all = [f64::NAN; CHANNELS];
+    match sensed {
+        Sensed::AtTip(force_n) => all[..3].copy_from_slice(force_n.as_slice()),
+        Sensed::AtWrist(sample) => {
+            all[..3].copy_from_slice(sample.raw.force_n.as_slice());
+            all[3..6].copy_from_slice(sample.raw.torque_nm.as_slice());
+            if let Some(acceleration_m_s2) = &sample.acceleration_m_s2 {
+                all[6..].copy_from_slice(acceleration_m_s2.as_slice());
+            }
+        }
+    }
+    all
 }
 
 /// Shown until the rig has delivered its first sample.

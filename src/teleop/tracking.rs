@@ -16,7 +16,7 @@ const MEMORY_S: f64 = 2.0;
 const MOVING_M_S: f64 = 0.005;
 
 /// Lag of a follower behind its command.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Tracking {
     ring: Vec<Vector3<f64>>,
     newest: usize,

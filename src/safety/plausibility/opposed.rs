@@ -1,0 +1,78 @@
+//! The sign of the force, at each first touch: whatever is touched resists.
+//!
+//! From the moment that a free tip begins to feel something, the work of the force along the tip's way is compared with what it would
+//! be were the force along the motion all the time. A force that drives the tip into what it touches has the wrong sign, or the
+//! wrong frame. Only the first touch is judged: later another arm or a breathing patient may drive the tip.
+
+use nalgebra::Vector3;
+
+/// A force below this is none, N.
+const FREE_N: f64 = 0.1;
+/// The tip must have been free for so long before a touch is judged, s.
+const FREE_S: f64 = 0.05;
+/// Work that is enough for a judgement, J: a soft touch of 0.3 N over 1 mm.
+const ENOUGH_J: f64 = 0.1e-3;
+/// Way that is enough, m.
+const ENOUGH_M: f64 = 0.3e-3;
+/// Share of that work which the force must give to be along the motion.
+const ALONG: f64 = 0.7;
+/// A touch that is not judged by then will not be, s.
+const WITHIN_S: f64 = 0.3;
+/// Time constant against noise, s.
+const SMOOTHING_S: f64 = 0.002;
+
+/// The memory of one touch.
+#[derive(Clone, Copy, Debug)]
+pub struct Opposed {
+    period_s: f64,
+    share: f64,
+    force_n: Vector3<f64>,
+    free_s: f64,
+    touch: Option<Touch>,
+}
+
+#[derive(Clone, Copy, Debug, Default)]
+struct Touch {
+    seconds: f64,
+    way_m: f64,
+    work_j: f64,
+    most_j: f64,
+}
+
+impl Opposed {
+    /// Nothing touched, for a loop of this period (s).
+    pub fn new(period_s: f64) -> Self {
+        let share = -(-period_s / SMOOTHING_S).exp_m1();
+        Self { period_s, share, force_n: Vector3::zeros(), free_s: 0.0, touch: None }
+    }
+
+    /// Takes the force (N) and the way of the tip since the last tick (m); `led`: the tip is commanded. Says whether a touch drives
+    /// the tip into what it touches.
+    pub fn look(&mut self, force_n: &Vector3<f64>, way_m: &Vector3<f64>, led: bool) -> bool {
+        self.force_n += (force_n - self.force_n) * self.share;
+        let felt_n = self.force_n.norm();
+        if felt_n < FREE_N || !led {
+            self.free_s = if led { self.free_s + self.period_s } else { 0.0 };
+            self.touch = None;
+            return false;
+        }
+        if self.free_s >= FREE_S {
+            self.touch = Some(Touch::default());
+        }
+        self.free_s = 0.0;
+        let Some(touch) = &mut self.touch else { return false };
+        touch.seconds += self.period_s;
+        touch.way_m += way_m.norm();
+        touch.work_j += self.force_n.dot(way_m);
+        touch.most_j += felt_n * way_m.norm();
+        let Touch { seconds, way_m, work_j, most_j } = *touch;
+        if most_j > ENOUGH_J && way_m > ENOUGH_M {
+            self.touch = None;
+            return work_j > ALONG * most_j;
+        }
+        if seconds > WITHIN_S {
+            self.touch = None;
+        }
+        false
+    }
+}

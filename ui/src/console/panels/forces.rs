@@ -10,6 +10,8 @@ use egui_plot::{
     AxisHints, GridInput, GridMark, HoverPosition, Line, Plot, PlotBounds, PlotPoints, PlotResponse, VLine,
 };
 
+use nima::device::Side;
+
 use crate::console::{
     history::{CHANNELS, History, Trace},
     live::Live,
@@ -35,6 +37,8 @@ pub struct ForcesState {
     ranges_n: [(f64, f64); 3],
     lines: [Trace; CHANNELS],
     cursor_s: Option<f64>,
+    /// Whose forces are shown.
+    side: Side,
 }
 
 impl Default for ForcesState {
@@ -45,11 +49,16 @@ impl Default for ForcesState {
             ranges_n: [(-LEAST_RANGE_N, LEAST_RANGE_N); 3],
             lines: Default::default(),
             cursor_s: None,
+            side: Side::Right,
         }
     }
 }
 
 impl ForcesState {
+    const fn history<'a>(&self, live: &'a Live) -> &'a History {
+        &live.history[self.side.index()]
+    }
+
     fn now_s(&self, history: &History) -> f64 {
         self.paused_at_s.unwrap_or(history.latest_s())
     }
@@ -73,17 +82,18 @@ impl ForcesState {
 pub fn forces_ui(ui: &mut Ui, live: &Live, state: &mut ForcesState) {
     header_ui(ui, live, state);
     ui.add_space(2.0);
-    let now_s = state.now_s(&live.history);
+    let now_s = state.now_s(state.history(live));
     let (from_s, to_s) = (now_s + state.view_s.0, now_s + state.view_s.1);
     let most = (ui.available_width() * 0.8) as usize;
+    let history = &live.history[state.side.index()];
     for (channel, line) in state.lines.iter_mut().enumerate() {
-        live.history.trace(channel, (from_s, to_s), now_s, most, line);
+        history.trace(channel, (from_s, to_s), now_s, most, line);
     }
     ui.spacing_mut().item_spacing.y = 4.0;
     let height = ((ui.available_height() - TIME_AXIS - 8.0) / 3.0).max(48.0);
     let cursor_s = state.cursor_s.take();
     for axis in 0..3 {
-        state.ranges_n[axis] = range_n(live.history.extent(&[axis, axis + 3], (from_s, to_s)), state.ranges_n[axis]);
+        state.ranges_n[axis] = range_n(history.extent(&[axis, axis + 3], (from_s, to_s)), state.ranges_n[axis]);
         let height = if axis == 2 { height + TIME_AXIS } else { height };
         let response = plot_ui(ui, live, state, axis, height, cursor_s);
         interact(ui, state, &response);
@@ -111,7 +121,18 @@ fn header_ui(ui: &mut Ui, live: &Live, state: &mut ForcesState) {
             let size = vec2(76.0, 26.0);
             let paused = state.paused_at_s.is_some();
             if ui.add(Button::new(name).selected(paused).min_size(size)).on_hover_text(meaning).clicked() {
-                state.paused_at_s = if paused { None } else { Some(live.history.latest_s()) };
+                state.paused_at_s = if paused { None } else { Some(state.history(live).latest_s()) };
+            }
+            if live.is_bimanual() {
+                for side in [Side::Right, Side::Left] {
+                    let name = if side == Side::Right { "Right" } else { "Left" };
+                    let button = Button::selectable(state.side == side, name).frame_when_inactive(true);
+                    let meaning = format!("Shows the forces of the {} hand.", side.word());
+                    if ui.add(button.min_size(vec2(52.0, 26.0))).on_hover_text(meaning).clicked() {
+                        state.side = side;
+                    }
+                }
+                ui.add_space(6.0);
             }
             let reset = ui.add(Button::new("Last 10 s").min_size(size)).on_hover_text("Back to the last ten seconds.");
             if reset.clicked() {
@@ -129,8 +150,8 @@ fn plot_ui(
     height: f32,
     cursor_s: Option<f64>,
 ) -> PlotResponse<()> {
-    let now_s = state.now_s(&live.history);
-    let history = &live.history;
+    let now_s = state.now_s(state.history(live));
+    let history = state.history(live);
     let last = axis == 2;
     let seconds =
         AxisHints::new_x().label(if last { "Time before now (s)" } else { "" }).formatter(|mark, _| plain(mark.value));

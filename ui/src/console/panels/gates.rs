@@ -2,6 +2,7 @@
 
 use egui::{Color32, RichText, Ui};
 use nima::{
+    device::Side,
     safety::{EnergyMode, Gate as Which, Reason},
     teleop::LoopState,
 };
@@ -13,6 +14,8 @@ use crate::console::{
     widgets::{Sign, card, sign_ui, small},
 };
 
+/// The panel tells of the right hand.
+const RIGHT: usize = Side::Right.index();
 /// Below this there is no contact worth rendering, N.
 const CONTACT_N: f64 = 0.1;
 
@@ -49,7 +52,7 @@ fn answer(live: &Live) -> String {
     if closed(live.gates.stale) {
         return "No force: the data are too old.".to_owned();
     }
-    if figures.measured_n < CONTACT_N {
+    if figures.measured_n[RIGHT] < CONTACT_N {
         return "Free motion: no contact, nothing to render.".to_owned();
     }
     if closed(live.gates.dead_band) && figures.withheld_n > 0.05 {
@@ -61,10 +64,10 @@ fn answer(live: &Live) -> String {
     if closed(live.gates.energy) {
         return "Less force: the hand would get back more energy than it gave.".to_owned();
     }
-    if figures.rendered_n < 0.05 {
+    if figures.rendered_n[RIGHT] < 0.05 {
         return format!("On its way: the link is {:.0} ms late.", live.delay_s() * 1e3);
     }
-    format!("There is: {:.1} N in the hand.", figures.rendered_n)
+    format!("There is: {:.1} N in the hand.", figures.rendered_n[RIGHT])
 }
 
 struct Gate {

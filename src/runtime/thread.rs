@@ -14,6 +14,7 @@ use super::{
     supervisor::{Pulse, Supervisor},
 };
 use crate::{
+    config::SchedulingClass,
     device::{Healths, Outputs, Rig, Roster, SIDES, rig::RigError},
     impedance::SettingsError,
     teleop::{Loop, Timing},
@@ -72,7 +73,7 @@ pub fn start(plan: &Plan) -> Result<Handle, StartError> {
         control,
         rig,
         engage: plan.engage,
-        real_time: plan.rig.real_time,
+        scheduling: plan.rig.scheduling,
         names: roster.iter().map(|entry| entry.name.clone()).collect(),
         period_ns: (1e9 / plan.rig.rate_hz).round() as u64,
         commands: commands_in,
@@ -82,7 +83,7 @@ pub fn start(plan: &Plan) -> Result<Handle, StartError> {
         meters: Meters::default(),
         pulse: Arc::clone(&pulse),
     };
-    let supervisor = Supervisor::start(pulse, levers, plan.rig.real_time)?;
+    let supervisor = Supervisor::start(pulse, levers, plan.rig.scheduling != SchedulingClass::Ordinary)?;
     let thread = Builder::new().name("realtime".to_owned()).spawn(move || realtime.run())?;
     Ok(Handle { commands, ticks, events, healths, roster, thread: Some(thread), _supervisor: supervisor })
 }
@@ -141,7 +142,7 @@ impl Drop for Handle {
 struct Realtime {
     control: Loop,
     rig: Box<dyn Rig>,
-    real_time: bool,
+    scheduling: SchedulingClass,
     /// Names of the devices.
     names: Vec<String>,
     /// Engage once, as soon as everything delivers.
@@ -157,7 +158,7 @@ struct Realtime {
 
 impl Realtime {
     fn run(mut self) -> Summary {
-        let scheduling = os::prepare_thread(self.real_time);
+        let scheduling = os::prepare_thread(self.scheduling, self.period_ns);
         self.events.try_send(Event::Scheduling(scheduling)).ok();
         let cpu_s = os::cpu_s();
         let start_ns = os::monotonic_ns();

@@ -3,7 +3,10 @@
 use std::{path::PathBuf, time::Duration};
 
 use clap::Args;
-use nima::runtime::{self, Plan};
+use nima::{
+    config::SchedulingClass,
+    runtime::{self, Plan},
+};
 
 use super::{emulators::Emulators, setup::Setup};
 use crate::console::{self, Options, in_force::InForce, wizards::Which};
@@ -21,9 +24,9 @@ pub(super) struct Arguments {
     /// Save a picture of the window (PNG) just before closing; needs --exit-after
     #[arg(long, value_name = "FILE", requires = "exit_after")]
     screenshot: Option<PathBuf>,
-    /// Do not ask for real-time priority and locked memory
-    #[arg(long)]
-    ordinary: bool,
+    /// What to ask of the operating system for the loop: ordinary, fifo or deadline (default: the rig's)
+    #[arg(long, value_name = "CLASS")]
+    scheduling: Option<SchedulingClass>,
     /// Write the loop's figures (JSON) here when the window is closed
     #[arg(long, value_name = "FILE")]
     summary: Option<PathBuf>,
@@ -34,7 +37,7 @@ pub(super) struct Arguments {
 
 pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let (mut rig, scene) = arguments.setup.load()?;
-    rig.real_time &= !arguments.ordinary;
+    rig.scheduling = arguments.scheduling.unwrap_or(rig.scheduling);
     let _emulators = Emulators::start(&arguments.setup, rig.devices.as_ref())?;
     let calibrations = InForce::load(None, &scene).calibrations(&rig);
     let left_calibrations = calibrations.clone();

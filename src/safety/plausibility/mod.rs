@@ -66,7 +66,9 @@ impl Implausible {
         match self {
             Self::ForceFrozen => "The force sensor repeats one reading, or is at the end of its range",
             Self::ForceJumped => "The measured force jumped as no contact can",
-            Self::ForceAlong => "The measured force drives the tip into what it touches: its sign or its frame is wrong",
+            Self::ForceAlong => {
+                "The measured force drives the tip into what it touches: its sign or its frame is wrong"
+            }
             Self::LinkFrozen => "The link repeats one message under new times",
             Self::HandleJumped => "The handle's position jumped as no hand can",
             Self::HandleFrozen => "The handle's position stands still under a changing force",
@@ -91,7 +93,9 @@ impl Implausible {
             Self::HandleJumped | Self::HandleFrozen => {
                 "Bring the handle to its rest and calibrate it (its own button), then release the stop and engage again"
             }
-            Self::TipJumped => "Check the arm's connection and its joint readings, then release the stop and engage again",
+            Self::TipJumped => {
+                "Check the arm's connection and its joint readings, then release the stop and engage again"
+            }
             Self::ArmAstray => {
                 "See what holds the arm up, or its lamps and its reach; then release the stop and engage again"
             }
@@ -139,9 +143,7 @@ impl Stuck {
     /// `still` has not changed for [`STUCK_S`] while `moving` went farther than `most` from where it was then.
     fn look(&mut self, still: &Vector3<f64>, moving: &Vector3<f64>, most: f64, t_s: f64) -> bool {
         match self.at {
-            Some((was, from, since_s)) if was == *still => {
-                t_s - since_s > STUCK_S && (moving - from).norm() > most
-            }
+            Some((was, from, since_s)) if was == *still => t_s - since_s > STUCK_S && (moving - from).norm() > most,
             _ => {
                 self.at = Some((*still, *moving, t_s));
                 false

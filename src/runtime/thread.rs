@@ -62,8 +62,13 @@ pub struct Handle {
 
 /// Starts the loop in its own thread.
 pub fn start(plan: &Plan) -> Result<Handle, StartError> {
-    let control = plan.control()?;
     let (rig, roster) = plan.assemble()?;
+    start_on(plan, rig, roster)
+}
+
+/// The same on a rig that the caller made: one with faults in it.
+pub fn start_on(plan: &Plan, rig: Box<dyn Rig>, roster: Roster) -> Result<Handle, StartError> {
+    let control = plan.control()?;
     let (pulse, levers) = (Arc::new(Pulse::default()), rig.levers());
     let (commands, commands_in) = bounded(COMMANDS_WAITING_MAX);
     let (ticks_out, ticks) = bounded(TICKS_WAITING_MAX);

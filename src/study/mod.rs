@@ -1,5 +1,6 @@
 //! Experiments that print figures.
 
+pub mod faults;
 pub mod gates;
 mod pair;
 pub mod picture;

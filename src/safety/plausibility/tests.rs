@@ -77,12 +77,13 @@ fn a_sensor_of_a_fifth_of_the_loops_rate_is_not_frozen() {
 
 #[test]
 fn a_step_is_told_in_three_ticks_and_a_spike_is_taken_out() {
-    let told = after(|_, seen| {
-        seen.tip_m = Vector3::zeros();
+    let mut kept = None;
+    let told = after(|k, seen| {
+        seen.tip_m = *kept.get_or_insert(seen.tip_m);
         seen.command_m = None;
-        seen.force_n.x += 1.0;
+        seen.force_n.x += if k > 10 { 1.0 } else { 0.0 };
     });
-    assert_eq!(told, Some((3, Implausible::ForceJumped)));
+    assert_eq!(told, Some((13, Implausible::ForceJumped)));
     let mut bench = Bench::new();
     bench.run(100, |_, _| {});
     let mut seen = bench.seen();
@@ -95,14 +96,6 @@ fn a_step_is_told_in_three_ticks_and_a_spike_is_taken_out() {
 #[test]
 fn a_stiff_contact_is_no_jump() {
     // 5000 N/m at 60 mm/s: 0.3 N a tick.
-    let told = after(|k, seen| {
-        let depth_m = f64::from(k) * 6e-5;
-        let at_m = Vector3::new(0.0, 0.0, -depth_m);
-        (seen.tip_m, seen.command_m, seen.hand_m) = (at_m, Some(at_m), at_m);
-        seen.force_n += Vector3::z() * 5000.0 * depth_m;
-    });
-    // The first tick takes the tip elsewhere by more than an arm can; that is what must be told, and nothing else.
-    assert!(matches!(told, Some((3, Implausible::TipJumped))), "{told:?}");
     let mut bench = Bench::new();
     let press = |k: u32, seen: &mut Observed| {
         let depth_m = f64::from(k.saturating_sub(200)) * 6e-5;

@@ -6,7 +6,7 @@ use super::ValidationError;
 use crate::{
     calibration::{
         correspondence::{self, Correspondence, CorrespondenceReport, CorrespondenceSession},
-        gravity::{Compensator, DEFAULT_TIME_CONSTANT_S, GravityModel, GravitySession, SessionSettings},
+        gravity::{Compensator, DEFAULT_TIME_CONSTANT_S, GravityModel, GravityReport, GravitySession, SessionSettings},
     },
     config::Scene,
     device::{Outputs, Prompt, Sensed},
@@ -65,6 +65,13 @@ impl Experiment {
 
 /// Calibrates gravity on its own scene, as the wizard does.
 pub fn gravity(seed: u64) -> Result<GravityModel, ValidationError> {
+    let report = gravity_report(seed)?;
+    let fit = report.chosen_fit().ok_or_else(|| ValidationError::Calibration(report.reason.clone()))?;
+    Ok(fit.model)
+}
+
+/// The same with all that is known of how good it is.
+pub fn gravity_report(seed: u64) -> Result<GravityReport, ValidationError> {
     let mut experiment = Experiment::new(&Experiment::scene("gravity", seed)?);
     let mut session = GravitySession::new(SessionSettings::default());
     while let Some(target) = session.target() {
@@ -76,9 +83,7 @@ pub fn gravity(seed: u64) -> Result<GravityModel, ValidationError> {
             break;
         }
     }
-    let report = session.report().map_err(|error| ValidationError::Calibration(error.to_string()))?;
-    let fit = report.chosen_fit().ok_or_else(|| ValidationError::Calibration(report.reason.clone()))?;
-    Ok(fit.model)
+    session.report().map_err(|error| ValidationError::Calibration(error.to_string()))
 }
 
 /// What pushing without a trocar gave.

@@ -10,7 +10,7 @@ use clap::{Args, Subcommand};
 use nima::{
     files::write_atomically,
     impedance::MAX_DELAY_S,
-    study::{gates, release, stability, stability_map::StabilityMap, validation},
+    study::{faults, gates, release, stability, stability_map::StabilityMap, validation},
     tip_force::MOST_ROWS,
 };
 
@@ -18,6 +18,8 @@ use super::{output, timing, tradeoff};
 
 #[derive(Debug, Subcommand)]
 pub(super) enum StudyCommand {
+    /// Let every kind of fault happen in every state, and see what is told, how soon, and how wrong the hand was
+    Faults(Faults),
     /// Attack the gates between model and hand with requests that no honest mode makes, and count what gets through
     Gates(Gates),
     /// Let go of a handle pressed with 5 N, in every mode and at every delay, without and with gates
@@ -89,6 +91,19 @@ fn requests(text: &str) -> Result<u64, String> {
 }
 
 #[derive(Debug, Args)]
+pub(super) struct Faults {
+    /// Write faults.json and faults.md into this folder (made if absent)
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Moments at which each fault begins while engaged, 1 to 20
+    #[arg(long, value_name = "N", default_value_t = 3, value_parser = clap::value_parser!(u32).range(1..=20))]
+    moments: u32,
+    /// Print the figures as one JSON object
+    #[arg(long)]
+    json: bool,
+}
+
+#[derive(Debug, Args)]
 pub(super) struct Release {
     /// Write release.json, release.md and release.svg into this folder (made if absent)
     #[arg(long, value_name = "DIR")]
@@ -123,6 +138,7 @@ pub(super) struct Stability {
 
 pub(super) fn run(command: &StudyCommand) -> anyhow::Result<()> {
     match command {
+        StudyCommand::Faults(arguments) => faults(arguments),
         StudyCommand::Gates(arguments) => gates(arguments),
         StudyCommand::Release(arguments) => release(arguments),
         StudyCommand::StabilityMap(arguments) => stability_map(arguments),
@@ -143,6 +159,19 @@ fn validation(arguments: &Validation) -> anyhow::Result<()> {
         write(folder, "validation.md", &report.markdown())?;
     }
     if arguments.json { output::json(&report) } else { output::line(report.text().trim_end()) }
+}
+
+fn faults(arguments: &Faults) -> anyhow::Result<()> {
+    make(arguments.out.as_deref())?;
+    let report = faults::study(&faults::Options { moments: arguments.moments, live: true }, progress)?;
+    if let Some(folder) = &arguments.out {
+        write(folder, "faults.json", &serde_json::to_string_pretty(&report)?)?;
+        write(folder, "faults.md", &report.markdown())?;
+    }
+    if arguments.json { output::json(&report) } else { output::line(report.markdown().trim_end()) }?;
+    let silent = report.sums.silent;
+    anyhow::ensure!(silent == 0, "{silent} cases are silent: see the table");
+    Ok(())
 }
 
 fn gates(arguments: &Gates) -> anyhow::Result<()> {

@@ -1,0 +1,168 @@
+//! Poisoned calibrations and networks: in their files, where loading must refuse them, and in memory, where the loop must.
+
+use std::{fs, path::Path, sync::atomic::AtomicBool, time::SystemTime};
+
+use nalgebra::Vector3;
+
+use super::{FaultsError, LiveError, SensorAt, Special, Verdict};
+use crate::{
+    calibration::{
+        gravity::{GravityModel, GravityRecord, Parameters},
+        store::{Store, utc_now},
+    },
+    config::{Rig as RigConfig, Scene},
+    device::{Outputs, Rig as _, SIDES, Side},
+    impedance::Mode,
+    runtime::Command,
+    sim::Worlds,
+    study::{
+        release::{self, Gates, Situation},
+        validation::{ValidationError, experiment, experiment::Experiment, isolation},
+    },
+    teleop::{Calibrations, Loop, LoopState, Timing},
+    tip_force::{FeatureSettings, Model, Settings},
+};
+
+/// Every fault of a file or of what was loaded.
+pub(super) fn all() -> Result<Vec<Special>, FaultsError> {
+    let folder = tempfile::tempdir().map_err(LiveError::Scratch)?;
+    let gravity = experiment::gravity(1)?;
+    let mut specials = vec![
+        in_memory("gravity calibration with NaN in memory", &poisoned(&gravity, f64::NAN))?,
+        in_memory("gravity calibration of 1e9 kg in memory", &poisoned(&gravity, 1e9))?,
+        let_go()?,
+    ];
+    specials.extend(networks(folder.path())?);
+    specials.extend(gravity_files(folder.path())?);
+    Ok(specials)
+}
+
+/// The same model with another mass, or gain.
+fn poisoned(model: &GravityModel, by: f64) -> GravityModel {
+    let mut poisoned = *model;
+    match &mut poisoned.parameters {
+        Parameters::Physical { mass_kg, .. } => *mass_kg = by,
+        Parameters::Gain { gain_kg, .. } => gain_kg[2][2] = by,
+        Parameters::Paper { force_n, .. } => force_n[2][4] = by,
+    }
+    poisoned
+}
+
+/// The loop with a calibration that was sound when it was loaded: engaging must be refused.
+fn in_memory(what: &str, gravity: &GravityModel) -> Result<Special, FaultsError> {
+    let mut config = RigConfig::load("simulated")?;
+    config.mode = Mode::Dfr;
+    let known = Calibrations { gravity: Some(*gravity), tip_force: None };
+    let mut control = Loop::new(&config, &[Some(known), None])?;
+    let mut worlds = Worlds::new(&Scene::load(SensorAt::Wrist.scene())?, config.rate_hz);
+    let mut outputs = [Outputs::SAFE; SIDES];
+    let mut force = false;
+    for tick in 0..500_u32 {
+        let now_s = f64::from(tick) * 1e-3;
+        let inputs = worlds.exchange(now_s, &outputs);
+        control.clear_events();
+        if tick % 100 == 50 {
+            control.obey(Command::Engage, now_s);
+        }
+        outputs = control.step(inputs, &Timing { now_s, ..Timing::default() }).0;
+        force |= outputs[0].hand_force_n != Vector3::zeros() || outputs[0].drives;
+    }
+    let idle = control.pair(Side::Right).map(crate::teleop::Pair::state) == Some(LoopState::Idle);
+    Ok(Special {
+        what: what.to_owned(),
+        verdict: if idle && !force { Verdict::Detected } else { Verdict::Silent },
+        told: "the force is unknown; engaging is refused".to_owned(),
+        detection_ms: Some(1.0),
+        zero_ms: None,
+    })
+}
+
+/// A hand that opens where nothing tells it: what the gates leave of it.
+fn let_go() -> Result<Special, FaultsError> {
+    let tissue = Scene::load("peg_transfer")?.tissue;
+    let wrong = |reason: String| FaultsError::Calibration(ValidationError::Calibration(reason));
+    let tissue = tissue.ok_or_else(|| wrong("peg_transfer has no tissue".to_owned()))?;
+    let outcome = release::let_go(Situation::Held, Gates::WithoutRelease, Mode::Anchored, 50.0, tissue)
+        .map_err(|error| wrong(error.to_string()))?;
+    Ok(Special {
+        what: "the hand lets go, nothing tells".to_owned(),
+        verdict: Verdict::Bounded,
+        told: format!(
+            "energy gate: {:.0} mJ, peak {:.1} N (no presence switch; docs/release.md)",
+            outcome.energy_mj, outcome.peak_n
+        ),
+        detection_ms: None,
+        zero_ms: None,
+    })
+}
+
+/// A file with one number made NaN, one cut short, one of another format.
+fn networks(folder: &Path) -> Result<Vec<Special>, FaultsError> {
+    let known = isolation::Known::calibrate(1)?;
+    let scene = Experiment::scene("isolation", 1)?;
+    let data = isolation::record(&scene, &known, FeatureSettings::default(), 2000, 7.0)?.data(None)?;
+    let settings = Settings { members: 1, epochs: Some(1), ..Settings::default() };
+    let model = Model::train(&data, &settings, [None, None], &AtomicBool::new(false), &|_| {})?;
+    let path = folder.join("network.safetensors");
+    model.save(&path)?;
+    let sound = fs::read(&path).map_err(LiveError::Scratch)?;
+    let mut specials = Vec::new();
+    // The weights are the last tensors of the file, f32 in little-endian order.
+    let mut nan = sound.clone();
+    let end = nan.len();
+    nan[end - 4..].copy_from_slice(&f32::NAN.to_le_bytes());
+    let mut header = sound.clone();
+    header[9] ^= 0xff;
+    let cases = [
+        ("network file with a NaN among its weights", nan),
+        ("network file cut short", sound[..sound.len() / 2].to_vec()),
+        ("network file with a damaged header", header),
+    ];
+    for (what, bytes) in cases {
+        fs::write(&path, &bytes).map_err(LiveError::Scratch)?;
+        specials.push(refused(what, Model::load(&path).err().map(|error| error.to_string()), &path));
+    }
+    Ok(specials)
+}
+
+fn refused(what: &str, told: Option<String>, path: &Path) -> Special {
+    let verdict = if told.is_some() { Verdict::Detected } else { Verdict::Silent };
+    let name = path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
+    let told =
+        told.map_or_else(String::new, |told| format!("refused: {}", told.replace(&*path.to_string_lossy(), &name)));
+    Special { what: what.to_owned(), verdict, told, detection_ms: None, zero_ms: None }
+}
+
+/// The file of a sound calibration with one number made NaN, one cut short, and the sound one for another sensor and tool.
+fn gravity_files(folder: &Path) -> Result<Vec<Special>, FaultsError> {
+    let wrong = |reason: String| FaultsError::Calibration(ValidationError::Calibration(reason));
+    let record = experiment::gravity_report(1)?.record("S1", "grasper", &utc_now());
+    let record = record.ok_or_else(|| wrong("the simulated calibration gives no record".to_owned()))?;
+    let store = Store::open(folder);
+    let path = store.save(&record).map_err(|error| wrong(error.to_string()))?;
+    let sound = fs::read_to_string(&path).map_err(LiveError::Scratch)?;
+    let load = |sensor: &str, tool: &str| {
+        let loaded = store.load::<GravityRecord>(sensor, tool, SystemTime::now());
+        loaded.err().map(|error| error.to_string())
+    };
+    let mut specials = vec![refused("gravity file of another tool", load("S1", "scissors"), &path)];
+    let other = store.path::<GravityRecord>("S2").map_err(|error| wrong(error.to_string()))?;
+    fs::copy(&path, &other).map_err(LiveError::Scratch)?;
+    specials.push(refused("gravity file of another sensor", load("S2", "grasper"), &other));
+    for (what, text) in [
+        ("gravity file with NaN", numbers_replaced(&sound, "nan")),
+        ("gravity file with infinite numbers", numbers_replaced(&sound, "inf")),
+        ("gravity file cut short", sound[..sound.len() / 2].to_owned()),
+    ] {
+        fs::write(&path, text).map_err(LiveError::Scratch)?;
+        specials.push(refused(what, load("S1", "grasper"), &path));
+    }
+    Ok(specials)
+}
+
+/// The text with the first bias of its model replaced.
+fn numbers_replaced(text: &str, by: &str) -> String {
+    let Some((before, after)) = text.split_once("bias_n = [") else { return String::new() };
+    let rest = after.split_once(',').map_or(after, |(_, rest)| rest);
+    format!("{before}bias_n = [{by},{rest}")
+}

@@ -1,0 +1,287 @@
+//! The virtual bench: one world, the machine with the fault, and its twin that is given the truth of the same world.
+
+use nalgebra::Vector3;
+
+use super::{
+    FaultsError, HARMLESS_N, Kind, Part, Place, SensorAt,
+    inject::{FAULTY, Faulty, force_of},
+};
+use crate::{
+    config::{Rig as RigConfig, Scene},
+    device::{Inputs, Outputs, Rig as _, SIDES, Sensed, Side},
+    impedance::Mode,
+    runtime::{Command, Event, Fault, Tick},
+    sim::Worlds,
+    study::validation::experiment,
+    teleop::{Calibrations, Loop, LoopState, Timing, Weather},
+};
+
+const PERIOD_S: f64 = 1e-3;
+/// Longest search for a place in the task, ticks.
+const PATIENCE: u32 = 12_000;
+/// So long the machine runs before any fault, ticks: the watch on frozen numbers has then seen their noise.
+const WARM_UP: u32 = 3500;
+/// Moments lie apart by this, ticks.
+const APART: u32 = 370;
+/// Positions nearer than this are the same, m.
+const NEAR_M: f64 = 5e-4;
+
+/// World, machine and twin.
+#[derive(Clone, Debug)]
+pub(super) struct Bench {
+    pub(super) rig: Faulty<Worlds>,
+    pub(super) machine: Loop,
+    pub(super) twin: Loop,
+    outputs: [Outputs; SIDES],
+    tick: u32,
+    fault: Option<(Kind, u32)>,
+    twin_n: Vector3<f64>,
+}
+
+/// One tick of both.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Step {
+    pub(super) machine: Tick,
+    pub(super) twin: Tick,
+    /// What the twin commanded for this exchange, N.
+    pub(super) twin_before_n: Vector3<f64>,
+    /// What the rig was given.
+    pub(super) applied: Outputs,
+    /// What the machine wanted the rig to have.
+    pub(super) wanted: Outputs,
+    /// What the loop was given or gave differs from the truth.
+    pub(super) shows: bool,
+    pub(super) raised: Option<Fault>,
+    pub(super) refused: bool,
+    pub(super) device_lost: bool,
+}
+
+impl Bench {
+    /// An idle rig whose force is measured there, in this mode.
+    pub(super) fn new(sensor: SensorAt, mode: Mode, seed: u64) -> Result<Self, FaultsError> {
+        let mut config = RigConfig::load("simulated")?;
+        config.mode = mode;
+        config.gates.static_hold = true;
+        let scene = Scene::load(sensor.scene())?;
+        let scene = Scene { seed: scene.seed + 1000 * seed, ..scene };
+        let gravity = match sensor {
+            SensorAt::Tip => None,
+            SensorAt::Wrist => Some(experiment::gravity(1)?),
+        };
+        let known = Calibrations { gravity, tip_force: None };
+        let machine = Loop::new(&config, &[Some(known), None])?;
+        let rig = Faulty::new(Worlds::new(&scene, config.rate_hz));
+        let outputs = [Outputs::SAFE; SIDES];
+        Ok(Self { rig, twin: machine.clone(), machine, outputs, tick: 0, fault: None, twin_n: Vector3::zeros() })
+    }
+
+    pub(super) fn begin(&mut self, fault: Kind) {
+        self.rig.begin(fault);
+        self.fault = Some((fault, self.tick));
+        let weather = match fault {
+            Kind::LinkSilent => Weather::Silent,
+            Kind::LinkHalf => Weather::LosesHalf,
+            Kind::LinkLate => Weather::Late(0.1),
+            Kind::LinkJitter => Weather::Late(0.003),
+            Kind::LinkSwaps => Weather::Swaps,
+            Kind::LinkDoubles => Weather::Doubles,
+            Kind::LinkPoisoned => Weather::Poisons,
+            Kind::LinkRepeats => Weather::Repeats,
+            _ => Weather::Fair,
+        };
+        self.machine.disturb(Side::Right, weather);
+    }
+
+    /// A command for both.
+    pub(super) fn obey(&mut self, command: Command) {
+        let now_s = f64::from(self.tick) * PERIOD_S;
+        self.machine.obey(command, now_s);
+        self.twin.obey(command, now_s);
+    }
+
+    /// The machine's clock as the fault has it.
+    fn timing(&self, now_s: f64) -> Timing {
+        let honest = Timing { now_s, ..Timing::default() };
+        let Some((fault, since)) = self.fault else { return honest };
+        let since_s = f64::from(since) * PERIOD_S;
+        let now_s = match fault {
+            Kind::ClockForward => now_s + 1.0,
+            Kind::ClockBackward => now_s - 1.0,
+            Kind::ClockStops => since_s - PERIOD_S,
+            Kind::ClockSlow => since_s - PERIOD_S + 0.5 * (now_s - since_s + PERIOD_S),
+            Kind::ClockNan => f64::NAN,
+            Kind::PeriodsMissed => now_s + 0.1,
+            Kind::FewPeriodsMissed => now_s + 0.01,
+            _ => now_s,
+        };
+        let missed_now = match fault {
+            Kind::PeriodsMissed if self.tick == since => 100,
+            Kind::FewPeriodsMissed if self.tick == since => 10,
+            _ => 0,
+        };
+        Timing { now_s, missed_now, ..honest }
+    }
+
+    /// What a broken screen sends in this tick.
+    fn mischief(&mut self, now_s: f64) {
+        match self.fault {
+            Some((Kind::CommandsPoisoned, since)) if self.tick - since < 4 => {
+                let bad = [Command::SetGain(f64::NAN), Command::SetDelay(-1.0), Command::SetScale(f64::INFINITY)];
+                self.machine.obey(bad[(self.tick % 3) as usize], now_s);
+                self.machine.obey(Command::SetGainAboveOne(1e9), now_s);
+            }
+            Some((Kind::CommandsDoubled, since)) if self.tick - since < 4 => {
+                for _ in 0..2 {
+                    self.machine.obey(Command::SetStaticHold(true), now_s);
+                    self.machine.obey(Command::SetGain(1.0), now_s);
+                }
+            }
+            Some((Kind::SliderShakes, _)) => {
+                self.machine.obey(Command::SetGain(f64::from(self.tick % 2)), now_s);
+            }
+            _ => {}
+        }
+    }
+
+    /// One tick of everything; `None` only where there is no right pair.
+    pub(super) fn step(&mut self) -> Option<Step> {
+        let now_s = f64::from(self.tick) * PERIOD_S;
+        let timing = self.timing(now_s);
+        let wanted = self.outputs[FAULTY];
+        let inputs = self.rig.exchange(now_s, &self.outputs);
+        let (truth, applied) = (self.rig.truth, self.rig.applied);
+        let mut device_lost = false;
+        self.machine.clear_events();
+        while let Some(event) = self.rig.event() {
+            self.machine.notice(&event);
+            device_lost = true;
+        }
+        self.mischief(timing.now_s);
+        let (outputs, ticks) = self.machine.step(inputs, &timing);
+        self.outputs = outputs;
+        self.twin.clear_events();
+        let (twin_outputs, twins) = self.twin.step(truth, &Timing { now_s, ..Timing::default() });
+        let twin_before_n = std::mem::replace(&mut self.twin_n, twin_outputs[FAULTY].hand_force_n);
+        self.tick += 1;
+        let raised = self.machine.events().find_map(|event| match event {
+            Event::FaultRaised { fault, .. } => Some(*fault),
+            _ => None,
+        });
+        let (given, truth) = (inputs[FAULTY], truth[FAULTY]);
+        Some(Step {
+            machine: ticks[FAULTY]?,
+            twin: twins[FAULTY]?,
+            twin_before_n,
+            applied,
+            wanted,
+            shows: self.is_elsewhere() || differs(given.as_ref(), truth.as_ref()) || altered(&wanted, &applied),
+            raised,
+            refused: self.machine.events().any(|event| matches!(event, Event::CommandRefused { .. })),
+            device_lost,
+        })
+    }
+
+    /// The fault is not in the rig.
+    fn is_elsewhere(&self) -> bool {
+        self.fault.is_some_and(|(fault, _)| matches!(fault.part(), Part::Clock | Part::Link | Part::Commands))
+    }
+
+    /// Brings the bench to a place; `moment` tells cases at the same place apart.
+    pub(super) fn prepare(&mut self, place: Place, moment: u32) -> Result<(), FaultsError> {
+        let engaged = !matches!(place, Place::Disconnected | Place::Idle | Place::Ready);
+        if engaged {
+            self.obey(Command::Engage);
+        }
+        self.run(WARM_UP + moment * APART);
+        if engaged {
+            let free = place == Place::Free;
+            let mut patience = PATIENCE;
+            while !self.is_at(free) && patience > 0 {
+                self.run(1);
+                patience -= 1;
+            }
+        }
+        match place {
+            Place::Disconnected => self.without(30),
+            Place::Ready => {
+                self.rig.situation.powered = false;
+                self.obey(Command::Engage);
+                self.run(20);
+            }
+            Place::Clutched => {
+                self.rig.situation.clutch = true;
+                self.run(20);
+            }
+            Place::Stopped => self.obey(Command::Stop),
+            Place::Faulted => {
+                self.without(30);
+                self.rig.situation.connected = true;
+                self.run(5);
+            }
+            Place::Idle | Place::Free | Place::Contact => {}
+        }
+        let reached = self.state();
+        if place.is(reached) {
+            Ok(())
+        } else {
+            Err(FaultsError::NotReached { place: place.word(), state: reached.word() })
+        }
+    }
+
+    /// The tip is well above the tissue, or well in it.
+    fn is_at(&self, free: bool) -> bool {
+        let tip_z_m = self.rig.truth[FAULTY].map_or(0.0, |seen| seen.tip_m.z);
+        if free { tip_z_m > 0.008 } else { tip_z_m < -0.005 }
+    }
+
+    fn without(&mut self, ticks: u32) {
+        self.rig.situation.connected = false;
+        self.run(ticks);
+    }
+
+    fn run(&mut self, ticks: u32) {
+        for _ in 0..ticks {
+            self.step();
+        }
+    }
+
+    /// Force that the machine wants in the hand now, N.
+    pub(super) fn wanted_n(&self) -> Vector3<f64> {
+        self.outputs[FAULTY].hand_force_n
+    }
+
+    /// State of the machine.
+    pub(super) fn state(&self) -> LoopState {
+        self.machine.pair(Side::Right).map_or(LoopState::Idle, crate::teleop::Pair::state)
+    }
+}
+
+/// What the loop is given is not what was measured.
+fn differs(given: Option<&Inputs>, truth: Option<&Inputs>) -> bool {
+    let (Some(given), Some(truth)) = (given, truth) else { return given.is_some() != truth.is_some() };
+    let force_n = (force_of(&given.sensed) - force_of(&truth.sensed)).norm();
+    let hand_m = (given.hand.position_m - truth.hand.position_m).norm();
+    let tip_m = (given.tip_m - truth.tip_m).norm();
+    let turned = match (&given.sensed, &truth.sensed) {
+        (Sensed::AtWrist(given), Sensed::AtWrist(truth)) => {
+            given.kbf_from_s1 != truth.kbf_from_s1
+                || match (given.acceleration_m_s2, truth.acceleration_m_s2) {
+                    (Some(given), Some(truth)) => !((given - truth).norm() <= 0.2),
+                    (given, truth) => given.is_some() != truth.is_some(),
+                }
+        }
+        _ => false,
+    };
+    let near = force_n <= HARMLESS_N && hand_m <= NEAR_M && tip_m <= NEAR_M;
+    !near || turned || given.switches != truth.switches || given.powered != truth.powered || given.age_s > truth.age_s
+}
+
+/// What the rig is given is not what the loop wanted.
+fn altered(wanted: &Outputs, applied: &Outputs) -> bool {
+    let apart_m = match (wanted.tip_command_m, applied.tip_command_m) {
+        (Some(wanted), Some(applied)) => (wanted - applied).norm(),
+        (None, None) => 0.0,
+        _ => f64::INFINITY,
+    };
+    apart_m > NEAR_M || (wanted.hand_force_n - applied.hand_force_n).norm() > HARMLESS_N
+}

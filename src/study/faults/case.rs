@@ -1,0 +1,156 @@
+//! One case: the fault begins, machine and twin go on, and what is told, when, and how wrong the hand was is written down.
+
+use super::{
+    HARMLESS_N, Kind, Outcome, Place, SensorAt, Verdict,
+    bench::{Bench, Step},
+};
+use crate::{
+    impedance::Mode,
+    runtime::Fault,
+    safety::{Gate, Reason},
+};
+
+/// Ticks until what a place waits for comes: drives, the clutch.
+const LATER: u32 = 200;
+/// A latched machine is watched for so long, ticks.
+const AFTER_LATCH: u32 = 100;
+
+/// What was seen until now.
+#[derive(Debug)]
+struct Watch {
+    shows: Option<u32>,
+    told: Option<(String, u32)>,
+    zero: Option<u32>,
+    felt: bool,
+    moved: bool,
+    peak_error_n: f64,
+    most_n: f64,
+    step_n: f64,
+    last_n: nalgebra::Vector3<f64>,
+}
+
+/// Lets the fault happen on a bench that is ready for it.
+pub(super) fn tried(mut bench: Bench, kind: Kind, sensor: SensorAt, mode: Mode, place: Place, moment: u32) -> Outcome {
+    let mut watch = Watch {
+        shows: None,
+        told: None,
+        zero: None,
+        felt: false,
+        moved: false,
+        peak_error_n: 0.0,
+        most_n: 0.0,
+        step_n: 0.0,
+        last_n: bench.wanted_n(),
+    };
+    bench.begin(kind);
+    let begun_latched = bench.state().is_latched();
+    let mut latched = 0;
+    for tick in 0..place.ticks() {
+        if tick == LATER {
+            bench.rig.situation.powered = true;
+            bench.rig.situation.clutch = false;
+        }
+        let Some(step) = bench.step() else { break };
+        watch.look(tick, &step);
+        latched += u32::from(step.machine.state.is_latched() && !begun_latched);
+        if latched > AFTER_LATCH {
+            break;
+        }
+    }
+    watch.outcome(kind, sensor, mode, place, moment)
+}
+
+impl Watch {
+    fn look(&mut self, tick: u32, step: &Step) {
+        if step.shows && self.shows.is_none() {
+            self.shows = Some(tick);
+        }
+        if self.told.is_none()
+            && let Some(what) = told(step)
+        {
+            self.told = Some((what, tick));
+        }
+        let (applied_n, wanted_n) = (step.applied.hand_force_n, step.wanted.hand_force_n);
+        self.felt |= applied_n.norm() > 0.0;
+        self.moved |= step.wanted.tip_command_m.is_some();
+        let gone = applied_n.norm() == 0.0;
+        if self.told.is_some() && self.felt && gone && self.zero.is_none() {
+            self.zero = Some(tick);
+        }
+        // The rig is given in a tick what the tick before made: so is the twin's.
+        if self.zero.is_none() {
+            self.peak_error_n = self.peak_error_n.max((applied_n - step.twin_before_n).norm());
+        }
+        self.most_n = self.most_n.max(wanted_n.norm());
+        if wanted_n.norm() > 0.0 {
+            self.step_n = self.step_n.max((wanted_n - self.last_n).norm());
+        }
+        self.last_n = wanted_n;
+    }
+
+    fn outcome(self, kind: Kind, sensor: SensorAt, mode: Mode, place: Place, moment: u32) -> Outcome {
+        let told_at = self.told.as_ref().map(|(_, tick)| *tick);
+        // What was told before it showed is counted from the beginning.
+        let origin = self.shows.filter(|shows| told_at.is_none_or(|told| *shows <= told)).unwrap_or(0);
+        let since_ms = |tick: u32| f64::from(tick - origin.min(tick)) + 1.0;
+        let verdict = if told_at.is_some() {
+            Verdict::Detected
+        } else if !self.felt && !self.moved {
+            Verdict::NoForce
+        } else if self.peak_error_n <= HARMLESS_N {
+            Verdict::Harmless
+        } else if kind.untellable().is_some() {
+            Verdict::Bounded
+        } else {
+            Verdict::Silent
+        };
+        Outcome {
+            kind,
+            part: kind.part(),
+            sensor,
+            mode,
+            place,
+            moment,
+            verdict,
+            told: self.told.map(|(what, _)| what),
+            detection_ms: told_at.map(since_ms),
+            zero_ms: self.zero.map(since_ms),
+            peak_error_n: self.peak_error_n,
+            most_n: self.most_n,
+            step_n: self.step_n,
+        }
+    }
+}
+
+/// What the machine tells in this tick and its twin does not.
+fn told(step: &Step) -> Option<String> {
+    let (machine, twin) = (&step.machine, &step.twin);
+    if let Some(fault) = step.raised {
+        return Some(fault_word(fault));
+    }
+    if step.device_lost {
+        return Some("device lost".to_owned());
+    }
+    if machine.state != twin.state {
+        return Some(format!("state {}", machine.state.word().to_lowercase()));
+    }
+    if step.refused {
+        return Some("command refused".to_owned());
+    }
+    if !machine.force.source.is_usable() {
+        return Some("force unknown".to_owned());
+    }
+    [Gate::Validity, Gate::Age].into_iter().find_map(|gate| {
+        let new = machine.gates.reason(gate) != Reason::Open && twin.gates.reason(gate) == Reason::Open;
+        new.then(|| format!("gate {}", gate.name()))
+    })
+}
+
+fn fault_word(fault: Fault) -> String {
+    match fault {
+        Fault::Implausible { what } => format!("{what:?}"),
+        Fault::DeviceLost { .. } => "DeviceLost".to_owned(),
+        Fault::LoopStalled { .. } => "LoopStalled".to_owned(),
+        _ => format!("{fault:?}"),
+    }
+}

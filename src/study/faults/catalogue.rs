@@ -1,0 +1,258 @@
+//! Every kind of fault on the virtual clock: what it is, where it sits, and why it cannot be told where nothing can.
+
+use serde::Serialize;
+
+/// Where a fault sits.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Part {
+    /// The force sensor.
+    Force,
+    /// Orientation of the wrist: accelerometer or arm.
+    Orientation,
+    /// The handle.
+    Handle,
+    /// The arm.
+    Arm,
+    /// Pedal and presence.
+    Switches,
+    /// The loop's clock.
+    Clock,
+    /// The link between follower and leader.
+    Link,
+    /// Commands of the screen.
+    Commands,
+}
+
+impl Part {
+    /// A number that becomes a force in the hand passes here.
+    pub const fn is_on_force_path(self) -> bool {
+        matches!(self, Self::Force | Self::Orientation | Self::Clock | Self::Link)
+    }
+}
+
+/// A fault on the virtual clock.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+#[expect(missing_docs, reason = "each is told by `Kind::words`, which is what a reader sees")]
+pub enum Kind {
+    ForceSilent,
+    ForceGaps,
+    ForceFrozen,
+    ForceAxisFrozen,
+    ForceDead,
+    ForceStep,
+    ForceSmallStep,
+    ForceDrift,
+    ForceSlowDrift,
+    ForceSign,
+    ForceAxes,
+    ForceSpike,
+    ForceSpikes,
+    ForceSaturated,
+    ForceNoise,
+    ForceLate,
+    ForceLateTold,
+    ForceDoubled,
+    ForceReordered,
+    ForceNan,
+    ForceInfinite,
+    ForceAbsurd,
+    ForceGain,
+    ForceLost,
+    ImuStops,
+    ImuFrozen,
+    ImuSign,
+    ImuNan,
+    ImuDead,
+    OrientationMissing,
+    OrientationJump,
+    HandFrozen,
+    HandJump,
+    HandSpike,
+    HandSign,
+    HandAxes,
+    HandNan,
+    HandNoise,
+    HandLate,
+    HandDrift,
+    HandleWithoutForce,
+    HandleInverted,
+    HandleKeepsForce,
+    TipFrozen,
+    TipJump,
+    TipDrift,
+    TipSign,
+    TipNan,
+    ArmIgnores,
+    ArmAxes,
+    DrivesOff,
+    PedalDown,
+    PedalUp,
+    PedalBounces,
+    HandAbsent,
+    ClockForward,
+    ClockBackward,
+    ClockStops,
+    ClockSlow,
+    ClockNan,
+    PeriodsMissed,
+    FewPeriodsMissed,
+    LinkSilent,
+    LinkHalf,
+    LinkLate,
+    LinkJitter,
+    LinkSwaps,
+    LinkDoubles,
+    LinkPoisoned,
+    LinkRepeats,
+    CommandsPoisoned,
+    CommandsDoubled,
+    SliderShakes,
+}
+
+use Kind as K;
+
+impl Kind {
+    /// All of them, part by part.
+    #[rustfmt::skip]
+    pub const ALL: [Self; 73] = [
+        K::ForceSilent, K::ForceGaps, K::ForceFrozen, K::ForceAxisFrozen, K::ForceDead, K::ForceStep, K::ForceSmallStep,
+        K::ForceDrift, K::ForceSlowDrift, K::ForceSign, K::ForceAxes, K::ForceSpike, K::ForceSpikes, K::ForceSaturated,
+        K::ForceNoise, K::ForceLate, K::ForceLateTold, K::ForceDoubled, K::ForceReordered, K::ForceNan, K::ForceInfinite,
+        K::ForceAbsurd, K::ForceGain, K::ForceLost,
+        K::ImuStops, K::ImuFrozen, K::ImuSign, K::ImuNan, K::ImuDead, K::OrientationMissing, K::OrientationJump,
+        K::HandFrozen, K::HandJump, K::HandSpike, K::HandSign, K::HandAxes, K::HandNan, K::HandNoise, K::HandLate,
+        K::HandDrift, K::HandleWithoutForce, K::HandleInverted, K::HandleKeepsForce,
+        K::TipFrozen, K::TipJump, K::TipDrift, K::TipSign, K::TipNan, K::ArmIgnores, K::ArmAxes, K::DrivesOff,
+        K::PedalDown, K::PedalUp, K::PedalBounces, K::HandAbsent,
+        K::ClockForward, K::ClockBackward, K::ClockStops, K::ClockSlow, K::ClockNan, K::PeriodsMissed, K::FewPeriodsMissed,
+        K::LinkSilent, K::LinkHalf, K::LinkLate, K::LinkJitter, K::LinkSwaps, K::LinkDoubles, K::LinkPoisoned,
+        K::LinkRepeats,
+        K::CommandsPoisoned, K::CommandsDoubled, K::SliderShakes,
+    ];
+
+    /// Where it sits.
+    pub const fn part(self) -> Part {
+        match self {
+            K::ImuStops | K::ImuFrozen | K::ImuSign | K::ImuNan | K::ImuDead => Part::Orientation,
+            K::OrientationMissing | K::OrientationJump => Part::Orientation,
+            K::HandFrozen | K::HandJump | K::HandSpike | K::HandSign | K::HandAxes | K::HandNan => Part::Handle,
+            K::HandNoise | K::HandLate | K::HandDrift => Part::Handle,
+            K::HandleWithoutForce | K::HandleInverted | K::HandleKeepsForce => Part::Handle,
+            K::TipFrozen | K::TipJump | K::TipDrift | K::TipSign | K::TipNan => Part::Arm,
+            K::ArmIgnores | K::ArmAxes | K::DrivesOff => Part::Arm,
+            K::PedalDown | K::PedalUp | K::PedalBounces | K::HandAbsent => Part::Switches,
+            K::ClockForward | K::ClockBackward | K::ClockStops | K::ClockSlow | K::ClockNan => Part::Clock,
+            K::PeriodsMissed | K::FewPeriodsMissed => Part::Clock,
+            K::LinkSilent | K::LinkHalf | K::LinkLate | K::LinkJitter => Part::Link,
+            K::LinkSwaps | K::LinkDoubles | K::LinkPoisoned | K::LinkRepeats => Part::Link,
+            K::CommandsPoisoned | K::CommandsDoubled | K::SliderShakes => Part::Commands,
+            _ => Part::Force,
+        }
+    }
+
+    /// It needs a sensor at the wrist.
+    pub const fn needs_wrist(self) -> bool {
+        matches!(self.part(), Part::Orientation)
+    }
+
+    /// What happens.
+    #[rustfmt::skip]
+    pub const fn words(self) -> &'static str {
+        match self {
+            K::ForceSilent => "sensor sends nothing",
+            K::ForceGaps => "every second sample is lost",
+            K::ForceFrozen => "force repeats itself",
+            K::ForceAxisFrozen => "one axis of the force repeats itself",
+            K::ForceDead => "force reads exactly zero",
+            K::ForceStep => "bias steps by 1.5 N",
+            K::ForceSmallStep => "bias steps by 0.3 N",
+            K::ForceDrift => "bias drifts by 0.5 N/s",
+            K::ForceSlowDrift => "bias drifts by 0.05 N/s",
+            K::ForceSign => "sign of the force is inverted",
+            K::ForceAxes => "axes of the force are exchanged",
+            K::ForceSpike => "one sample is 10 N off",
+            K::ForceSpikes => "every 50th sample is 10 N off",
+            K::ForceSaturated => "range of the force ends 1 N from here",
+            K::ForceNoise => "noise of 0.4 N",
+            K::ForceLate => "force comes 50 ms late, untold",
+            K::ForceLateTold => "samples are 15 ms old, told",
+            K::ForceDoubled => "every sample comes twice, every second is lost",
+            K::ForceReordered => "neighbouring samples are exchanged",
+            K::ForceNan => "force is NaN",
+            K::ForceInfinite => "force is infinite",
+            K::ForceAbsurd => "force is 1e18 N",
+            K::ForceGain => "force is doubled",
+            K::ForceLost => "driver reports the sensor lost",
+            K::ImuStops => "accelerometer is silent",
+            K::ImuFrozen => "accelerometer repeats itself",
+            K::ImuSign => "accelerometer is inverted",
+            K::ImuNan => "accelerometer is NaN",
+            K::ImuDead => "accelerometer reads exactly zero",
+            K::OrientationMissing => "arm's orientation is missing",
+            K::OrientationJump => "arm's orientation turns by 90 degrees",
+            K::HandFrozen => "handle's position repeats itself",
+            K::HandJump => "handle's position jumps by 20 mm",
+            K::HandSpike => "one handle position is 20 mm off",
+            K::HandSign => "handle's axes are inverted",
+            K::HandAxes => "handle's axes are exchanged",
+            K::HandNan => "handle's position is NaN",
+            K::HandNoise => "handle's position has 0.3 mm of noise",
+            K::HandLate => "handle's position comes 50 ms late",
+            K::HandDrift => "handle's position drifts by 5 mm/s",
+            K::HandleWithoutForce => "handle gives no force",
+            K::HandleInverted => "handle gives the opposite force",
+            K::HandleKeepsForce => "handle keeps its last force",
+            K::TipFrozen => "arm's position repeats itself",
+            K::TipJump => "arm's position jumps by 10 mm",
+            K::TipDrift => "arm's position drifts by 5 mm/s",
+            K::TipSign => "arm's axes are inverted",
+            K::TipNan => "arm's position is NaN",
+            K::ArmIgnores => "arm does not move",
+            K::ArmAxes => "arm moves along exchanged axes",
+            K::DrivesOff => "drives switch themselves off",
+            K::PedalDown => "pedal is stuck down",
+            K::PedalUp => "pedal is stuck up",
+            K::PedalBounces => "pedal bounces every 20 ms",
+            K::HandAbsent => "hand lets go, the handle tells",
+            K::ClockForward => "clock jumps 1 s ahead",
+            K::ClockBackward => "clock jumps 1 s back",
+            K::ClockStops => "clock stands still",
+            K::ClockSlow => "clock goes at half its rate",
+            K::ClockNan => "time is NaN",
+            K::PeriodsMissed => "100 periods are missed",
+            K::FewPeriodsMissed => "10 periods are missed",
+            K::LinkSilent => "link loses everything",
+            K::LinkHalf => "link loses every second parcel",
+            K::LinkLate => "link is 100 ms later than programmed",
+            K::LinkJitter => "link is 3 ms later than programmed",
+            K::LinkSwaps => "link exchanges neighbours",
+            K::LinkDoubles => "link delivers everything twice",
+            K::LinkPoisoned => "link delivers NaN",
+            K::LinkRepeats => "link repeats one parcel under new times",
+            K::CommandsPoisoned => "commands with NaN and out of range",
+            K::CommandsDoubled => "every command comes twice",
+            K::SliderShakes => "gain is commanded to and fro each tick",
+        }
+    }
+
+    /// Why it cannot be told from an honest machine, where that is so; it must then be bounded.
+    pub const fn untellable(self) -> Option<&'static str> {
+        Some(match self {
+            K::ForceSmallStep => "a small step is within what a contact does in a tick",
+            K::ForceDrift | K::ForceSlowDrift => "a slow bias looks like a slow contact",
+            K::ForceAxes => "before a contact: a slanting surface gives the same",
+            K::ForceGain => "before a contact: a stiffer tissue gives the same",
+            K::ForceLate => "without time stamps of the sensor: a lagging arm gives the same",
+            K::ForceNoise => "what is left of it under the jumps",
+            K::ForceDead => "in the air: an ideal sensor gives the same",
+            K::HandleWithoutForce | K::HandleInverted | K::HandleKeepsForce => {
+                "nothing measures the force in the handle"
+            }
+            K::HandDrift | K::HandLate | K::HandNoise => "another motion of a hand gives the same",
+            K::TipDrift => "another place gives the same",
+            _ => return None,
+        })
+    }
+}

@@ -1,0 +1,241 @@
+//! Faults between a rig and the loop: what the loop is given and what the rig is given, edited from a moment on.
+
+use std::collections::VecDeque;
+
+use nalgebra::{UnitQuaternion, Vector3};
+
+use super::Kind;
+use crate::{
+    device::{DeviceEvent, Inputs, Loss, Outputs, Rig, SIDES, Sensed, Standing},
+    sim::Noise,
+};
+
+/// The side whose devices fail.
+pub(super) const FAULTY: usize = 0;
+/// Delay of late data, exchanges.
+const LATE: usize = 50;
+
+/// What a situation does to the devices, no fault of theirs.
+#[derive(Clone, Copy, Debug)]
+#[expect(clippy::struct_excessive_bools, reason = "independent facts")]
+pub(super) struct Situation {
+    pub(super) connected: bool,
+    pub(super) powered: bool,
+    pub(super) clutch: bool,
+}
+
+/// A rig with a fault between it and the loop.
+#[derive(Clone, Debug)]
+pub struct Faulty<R> {
+    pub(super) rig: R,
+    pub(super) situation: Situation,
+    fault: Option<Kind>,
+    /// Exchanges since the fault began.
+    age: u32,
+    noise: Noise,
+    first: Option<(Inputs, Outputs)>,
+    before: Option<Inputs>,
+    late: VecDeque<Inputs>,
+    event: Option<DeviceEvent>,
+    /// What the rig measured in the last exchange, before the fault.
+    pub(super) truth: [Option<Inputs>; SIDES],
+    /// What the rig was given in the last exchange.
+    pub(super) applied: Outputs,
+}
+
+impl<R: Rig> Faulty<R> {
+    /// A rig that is well.
+    pub fn new(rig: R) -> Self {
+        Self {
+            rig,
+            situation: Situation { connected: true, powered: true, clutch: false },
+            fault: None,
+            age: 0,
+            noise: Noise::new(99),
+            first: None,
+            before: None,
+            late: VecDeque::new(),
+            event: None,
+            truth: [None; SIDES],
+            applied: Outputs::SAFE,
+        }
+    }
+
+    /// From the next exchange on this fault acts.
+    pub fn begin(&mut self, fault: Kind) {
+        (self.fault, self.age, self.first, self.before) = (Some(fault), 0, None, None);
+        self.late.clear();
+    }
+
+    fn to_rig(&mut self, mut outputs: Outputs) -> Outputs {
+        match self.fault {
+            Some(Kind::HandleWithoutForce) => outputs.hand_force_n = Vector3::zeros(),
+            Some(Kind::HandleInverted) => outputs.hand_force_n = -outputs.hand_force_n,
+            // Its motors obey the switch all the same.
+            Some(Kind::HandleKeepsForce) if outputs.drives => {
+                outputs.hand_force_n = self.first.map_or(outputs, |(_, first)| first).hand_force_n;
+            }
+            Some(Kind::ArmIgnores) => outputs.tip_command_m = None,
+            Some(Kind::ArmAxes) => outputs.tip_command_m = outputs.tip_command_m.map(exchanged),
+            _ => {}
+        }
+        outputs
+    }
+
+    fn to_loop(&mut self, inputs: Inputs, outputs: &Outputs) -> Option<Inputs> {
+        let Some(fault) = self.fault else { return Some(inputs) };
+        self.age += 1;
+        let (first, _) = *self.first.get_or_insert((inputs, *outputs));
+        self.late.push_back(inputs);
+        let late = if self.late.len() > LATE { self.late.pop_front() } else { self.late.front().copied() };
+        let before = self.before.replace(inputs).unwrap_or(inputs);
+        let with = |given: Option<Inputs>| given;
+        match fault {
+            Kind::ForceSilent => None,
+            Kind::ForceGaps => (self.age % 2 == 0).then_some(inputs),
+            Kind::ForceFrozen => with(Some(Inputs { sensed: first.sensed, ..inputs })),
+            Kind::ForceLate => with(Some(Inputs { sensed: late.unwrap_or(inputs).sensed, ..inputs })),
+            Kind::ForceLateTold => with(Some(Inputs { age_s: 0.015, ..inputs })),
+            Kind::ForceDoubled => {
+                let sensed = if self.age % 2 == 0 { before.sensed } else { inputs.sensed };
+                with(Some(Inputs { sensed, ..inputs }))
+            }
+            Kind::ForceReordered => Some(Inputs { sensed: self.reordered(&inputs, &before), ..inputs }),
+            Kind::HandLate => Some(Inputs { hand: late.unwrap_or(inputs).hand, ..inputs }),
+            Kind::HandFrozen => Some(Inputs { hand: first.hand, ..inputs }),
+            Kind::TipFrozen => Some(Inputs { tip_m: first.tip_m, ..inputs }),
+            Kind::DrivesOff => Some(Inputs { powered: false, ..inputs }),
+            _ => Some(self.edited(fault, inputs, &first)),
+        }
+    }
+
+    /// The later of two neighbours first: what came one exchange ago, or the one before that again.
+    fn reordered(&self, inputs: &Inputs, before: &Inputs) -> Sensed {
+        let two_ago = self.late.iter().rev().nth(2).unwrap_or(before);
+        match self.age % 2 {
+            0 => inputs.sensed,
+            _ => two_ago.sensed,
+        }
+    }
+
+    fn edited(&mut self, fault: Kind, mut inputs: Inputs, first: &Inputs) -> Inputs {
+        let since_s = f64::from(self.age) * 1e-3;
+        let white = |noise: &mut Noise, sigma: f64| Vector3::from_fn(|_, _| sigma * noise.gaussian());
+        match fault {
+            Kind::HandJump => inputs.hand.position_m.x += 0.02,
+            Kind::HandSpike if self.age == 1 => inputs.hand.position_m.x += 0.02,
+            Kind::HandSign => inputs.hand.position_m = -inputs.hand.position_m,
+            Kind::HandAxes => inputs.hand.position_m = exchanged(inputs.hand.position_m),
+            Kind::HandNan => inputs.hand.position_m.y = f64::NAN,
+            Kind::HandNoise => inputs.hand.position_m += white(&mut self.noise, 3e-4),
+            Kind::HandDrift => inputs.hand.position_m.x += 0.005 * since_s,
+            Kind::TipJump => inputs.tip_m.z += 0.01,
+            Kind::TipDrift => inputs.tip_m.x += 0.005 * since_s,
+            Kind::TipSign => inputs.tip_m = -inputs.tip_m,
+            Kind::TipNan => inputs.tip_m.z = f64::NAN,
+            Kind::PedalDown => inputs.switches.clutch = true,
+            Kind::PedalUp => inputs.switches.clutch = false,
+            Kind::PedalBounces => inputs.switches.clutch = self.age / 20 % 2 == 0,
+            Kind::HandAbsent => inputs.switches.presence = Some(false),
+            Kind::ImuStops | Kind::ImuFrozen | Kind::ImuSign | Kind::ImuNan | Kind::ImuDead => {
+                turn_imu(fault, &mut inputs.sensed, first);
+            }
+            Kind::OrientationMissing | Kind::OrientationJump => turn_arm(fault, &mut inputs.sensed),
+            _ => {
+                let (now, then) = (force_of(&inputs.sensed), force_of(&first.sensed));
+                let bad_n = self.bad_force(fault, now, &then, since_s);
+                set_force(&mut inputs.sensed, bad_n);
+            }
+        }
+        inputs
+    }
+
+    fn bad_force(&mut self, fault: Kind, now: Vector3<f64>, then: &Vector3<f64>, since_s: f64) -> Vector3<f64> {
+        let down = -Vector3::z();
+        match fault {
+            Kind::ForceAxisFrozen => Vector3::new(now.x, now.y, then.z),
+            Kind::ForceDead => Vector3::zeros(),
+            Kind::ForceStep => now + down * 1.5,
+            Kind::ForceSmallStep => now + down * 0.3,
+            Kind::ForceDrift => now + down * (0.5 * since_s),
+            Kind::ForceSlowDrift => now + down * (0.05 * since_s),
+            Kind::ForceSign => -now,
+            Kind::ForceAxes => exchanged(now),
+            Kind::ForceSpike if self.age == 1 => now + down * 10.0,
+            Kind::ForceSpikes if self.age % 50 == 1 => now + down * 10.0,
+            Kind::ForceSaturated => now.zip_map(then, |now, then| now.clamp(then - 1.0, then + 1.0)),
+            Kind::ForceNoise => now + Vector3::from_fn(|_, _| 0.4 * self.noise.gaussian()),
+            Kind::ForceNan => Vector3::new(now.x, f64::NAN, now.z),
+            Kind::ForceInfinite => Vector3::new(now.x, now.y, f64::INFINITY),
+            Kind::ForceAbsurd => now + down * 1e18,
+            Kind::ForceGain => now * 2.0,
+            _ => now,
+        }
+    }
+}
+
+impl<R: Rig> Rig for Faulty<R> {
+    fn exchange(&mut self, now_s: f64, outputs: &[Outputs; SIDES]) -> [Option<Inputs>; SIDES] {
+        let mut to_rig = *outputs;
+        to_rig[FAULTY] = self.to_rig(outputs[FAULTY]);
+        self.applied = to_rig[FAULTY];
+        let mut inputs = self.rig.exchange(now_s, &to_rig);
+        let Situation { connected, powered, clutch } = self.situation;
+        if let Some(seen) = &mut inputs[FAULTY] {
+            seen.powered &= powered;
+            seen.switches.clutch |= clutch;
+        }
+        inputs[FAULTY] = inputs[FAULTY].filter(|_| connected);
+        self.truth = inputs;
+        inputs[FAULTY] = inputs[FAULTY].and_then(|seen| self.to_loop(seen, &to_rig[FAULTY]));
+        if self.fault == Some(Kind::ForceLost) {
+            if self.age == 1 {
+                let standing = Standing::Lost(Loss::Disconnected);
+                self.event = Some(DeviceEvent { t_s: now_s, device: 2, standing, of_side: [true, false] });
+            }
+            inputs[FAULTY] = None;
+        }
+        inputs
+    }
+
+    fn event(&mut self) -> Option<DeviceEvent> {
+        self.event.take().or_else(|| self.rig.event())
+    }
+}
+
+/// x for z.
+fn exchanged(v: Vector3<f64>) -> Vector3<f64> {
+    Vector3::new(v.z, v.y, v.x)
+}
+
+/// What the force sensor reads, N.
+pub(super) fn force_of(sensed: &Sensed) -> Vector3<f64> {
+    match sensed {
+        Sensed::AtTip(force_n) => *force_n,
+        Sensed::AtWrist(sample) => sample.raw.force_n,
+    }
+}
+
+fn set_force(sensed: &mut Sensed, force_n: Vector3<f64>) {
+    match sensed {
+        Sensed::AtTip(at) => *at = force_n,
+        Sensed::AtWrist(sample) => sample.raw.force_n = force_n,
+    }
+}
+
+fn turn_imu(fault: Kind, sensed: &mut Sensed, first: &Inputs) {
+    let (Sensed::AtWrist(sample), Sensed::AtWrist(then)) = (sensed, &first.sensed) else { return };
+    sample.acceleration_m_s2 = match fault {
+        Kind::ImuStops => None,
+        Kind::ImuFrozen => then.acceleration_m_s2,
+        Kind::ImuSign => sample.acceleration_m_s2.map(|a| -a),
+        Kind::ImuNan => Some(Vector3::repeat(f64::NAN)),
+        _ => Some(Vector3::zeros()),
+    };
+}
+
+fn turn_arm(fault: Kind, sensed: &mut Sensed) {
+    let Sensed::AtWrist(sample) = sensed else { return };
+    let quarter = UnitQuaternion::from_axis_angle(&Vector3::x_axis(), std::f64::consts::FRAC_PI_2);
+    sample.kbf_from_s1 = sample.kbf_from_s1.filter(|_| fault == Kind::OrientationJump).map(|turn| turn * quarter);
+}

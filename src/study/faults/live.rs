@@ -1,0 +1,250 @@
+//! Faults of threads and disks, on the real clock: a rig that hangs, a screen that hangs, busy cores, a slow and a full disk.
+
+use std::{
+    fs, io,
+    path::Path,
+    sync::{
+        Arc,
+        atomic::{AtomicBool, AtomicU64, Ordering},
+    },
+    thread,
+    time::{Duration, Instant},
+};
+
+use serde::Serialize;
+
+use super::Verdict;
+use crate::{
+    config::{ConfigError, Rig as RigConfig, Scene},
+    device::{Inputs, Lever, Outputs, Rig, Roster, SIDES},
+    files::write_atomically,
+    impedance::Mode,
+    runtime::{Event, Fault, Handle, Plan, StartError, Summary, Tick, start, start_on},
+    sim::Worlds,
+    teleop::{Calibrations, LoopState},
+};
+
+/// A fault that is not one of the virtual clock.
+#[derive(Clone, Debug, Serialize)]
+pub struct Special {
+    /// What fails.
+    pub what: String,
+    /// What became of it.
+    pub verdict: Verdict,
+    /// What was told, or why it is harmless.
+    pub told: String,
+    /// When, ms, where it was timed.
+    pub detection_ms: Option<f64>,
+    /// When the force was gone, ms, where there was one.
+    pub zero_ms: Option<f64>,
+}
+
+/// Why a fault could not be tried on the real clock.
+#[derive(Debug, thiserror::Error)]
+pub enum LiveError {
+    /// A scene or rig is wrong.
+    #[error(transparent)]
+    Config(#[from] ConfigError),
+    /// The loop did not start.
+    #[error(transparent)]
+    Start(#[from] StartError),
+    /// The loop was not engaged within 5 s.
+    #[error("the loop on the real clock did not engage within 5 s: too much runs beside it")]
+    NotEngaged,
+    /// The loop's thread died.
+    #[error("the loop's thread died: start the study again and report this")]
+    Died,
+    /// The scratch folder.
+    #[error("no scratch folder can be made")]
+    Scratch(#[source] io::Error),
+}
+
+/// A rig that hangs once, and tells when its lever was pulled.
+struct Hanging {
+    rig: Worlds,
+    /// Loop time at which it hangs, s, and for how long.
+    at_s: f64,
+    length: Duration,
+    began: Arc<AtomicU64>,
+    pulled: Arc<AtomicU64>,
+    clock: Instant,
+}
+
+impl Rig for Hanging {
+    fn exchange(&mut self, now_s: f64, outputs: &[Outputs; SIDES]) -> [Option<Inputs>; SIDES] {
+        if now_s >= self.at_s && self.began.load(Ordering::Relaxed) == 0 {
+            self.began.store(nanoseconds(self.clock), Ordering::Relaxed);
+            thread::sleep(self.length);
+        }
+        self.rig.exchange(now_s, outputs)
+    }
+
+    fn levers(&self) -> Vec<Lever> {
+        let lever = Lever::default();
+        let (pulled, clock) = (Arc::clone(&self.pulled), self.clock);
+        lever.attach(move || pulled.store(nanoseconds(clock), Ordering::Relaxed));
+        vec![lever]
+    }
+}
+
+/// Never zero.
+fn nanoseconds(clock: Instant) -> u64 {
+    clock.elapsed().as_nanos() as u64 + 1
+}
+
+fn plan(rate_hz: f64) -> Result<Plan, LiveError> {
+    let mut rig = RigConfig::load("simulated")?;
+    (rig.mode, rig.rate_hz, rig.gates.static_hold) = (Mode::Dfr, rate_hz, true);
+    Ok(Plan {
+        rig,
+        scene: Scene::load("peg_transfer")?,
+        calibrations: Calibrations::default(),
+        left_calibrations: Calibrations::default(),
+        engage: true,
+    })
+}
+
+fn until(handle: &Handle, good: impl Fn(&Tick) -> bool) -> Result<(), LiveError> {
+    let begin = Instant::now();
+    while begin.elapsed() < Duration::from_secs(5) {
+        let mut found = false;
+        handle.drain_ticks(|tick| found |= good(tick));
+        if found {
+            return Ok(());
+        }
+        thread::sleep(Duration::from_millis(2));
+    }
+    Err(LiveError::NotEngaged)
+}
+
+/// Every fault on the real clock.
+pub(super) fn all() -> Result<Vec<Special>, LiveError> {
+    let folder = tempfile::tempdir().map_err(LiveError::Scratch)?;
+    Ok(vec![
+        hang("an exchange with the devices takes 60 ms", Duration::from_millis(60))?,
+        hang("an exchange with the devices takes 500 ms", Duration::from_millis(500))?,
+        screen_hangs()?,
+        beside("a busy thread on each core for 1 s", |stop| {
+            let cores = thread::available_parallelism().map_or(2, std::num::NonZero::get);
+            thread::scope(|scope| {
+                for _ in 0..cores {
+                    scope.spawn(|| {
+                        while !stop.load(Ordering::Relaxed) {
+                            std::hint::black_box((0..10_000_u64).fold(1.0_f64, |sum, k| (sum + k as f64).sqrt()));
+                        }
+                    });
+                }
+            });
+        })?,
+        beside("a disk that is written through all the time while summaries are kept", |stop| {
+            slow_disk(stop, folder.path())
+        })?,
+        full_disk(folder.path())?,
+    ])
+}
+
+fn hang(what: &str, length: Duration) -> Result<Special, LiveError> {
+    let plan = plan(1000.0)?;
+    let (began, pulled) = (Arc::new(AtomicU64::new(0)), Arc::new(AtomicU64::new(0)));
+    let rig = Hanging {
+        rig: Worlds::new(&plan.scene, plan.rig.rate_hz),
+        at_s: 1.3,
+        length,
+        began: Arc::clone(&began),
+        pulled: Arc::clone(&pulled),
+        clock: Instant::now(),
+    };
+    let handle = start_on(&plan, Box::new(rig), Roster::new())?;
+    let faulted = until(&handle, |tick| matches!(tick.state, LoopState::Faulted(_)));
+    let mut told = String::new();
+    handle.drain_events(|event| {
+        if let Event::FaultRaised { fault: Fault::LoopStalled { .. }, .. } = event {
+            told = "supervisor pulls the levers; then LoopStalled".to_owned();
+        }
+    });
+    handle.stop_and_join().ok_or(LiveError::Died)?;
+    let [began, pulled] = [began, pulled].map(|at| at.load(Ordering::Relaxed));
+    let after_ms = (pulled > began).then(|| (pulled - began) as f64 * 1e-6);
+    let verdict = if faulted.is_ok() && after_ms.is_some() { Verdict::Detected } else { Verdict::Silent };
+    Ok(Special { what: what.to_owned(), verdict, told, detection_ms: after_ms, zero_ms: after_ms })
+}
+
+/// Nobody takes the ticks: at 4 kHz the queue of 8192 is full after two seconds.
+fn screen_hangs() -> Result<Special, LiveError> {
+    let handle = start(&plan(4000.0)?)?;
+    thread::sleep(Duration::from_millis(2500));
+    let running = handle.is_running();
+    let summary = handle.stop_and_join().ok_or(LiveError::Died)?;
+    let counted = summary.dropped > 0 && running;
+    Ok(Special {
+        what: "the screen hangs: nobody takes ticks".to_owned(),
+        verdict: if counted { Verdict::Detected } else { Verdict::Silent },
+        told: format!("{} ticks counted as dropped; the loop went on, {}", summary.dropped, timing(&summary)),
+        detection_ms: None,
+        zero_ms: None,
+    })
+}
+
+fn timing(summary: &Summary) -> String {
+    format!("{} of {} periods missed, all counted", summary.missed, summary.missed + summary.ticks)
+}
+
+/// One second of the loop beside this load.
+fn beside(what: &str, load: impl Fn(&AtomicBool) + Send + Sync) -> Result<Special, LiveError> {
+    let handle = start(&plan(1000.0)?)?;
+    until(&handle, |tick| tick.state == LoopState::Engaged)?;
+    let stop = AtomicBool::new(false);
+    thread::scope(|scope| {
+        scope.spawn(|| load(&stop));
+        thread::sleep(Duration::from_secs(1));
+        stop.store(true, Ordering::Relaxed);
+    });
+    let mut stalled = false;
+    handle.drain_events(|event| stalled |= matches!(event, Event::FaultRaised { .. }));
+    let summary = handle.stop_and_join().ok_or(LiveError::Died)?;
+    let periods = summary.seconds * 1000.0;
+    let all_counted = (periods - (summary.ticks + summary.missed) as f64).abs() < 2.0;
+    let verdict = match (stalled || summary.missed > 0, all_counted) {
+        (_, false) => Verdict::Silent,
+        (true, true) => Verdict::Detected,
+        (false, true) => Verdict::Harmless,
+    };
+    let fault = if stalled { "; LoopStalled" } else { "" };
+    Ok(Special {
+        what: what.to_owned(),
+        verdict,
+        told: format!("{}{fault}", timing(&summary)),
+        detection_ms: None,
+        zero_ms: None,
+    })
+}
+
+/// Writes through to the disk, 1 MB at a time, and a result beside it.
+fn slow_disk(stop: &AtomicBool, folder: &Path) {
+    let bytes = vec![0x5a_u8; 1 << 20];
+    while !stop.load(Ordering::Relaxed) {
+        let written = fs::File::create(folder.join("load")).and_then(|mut file| {
+            io::Write::write_all(&mut file, &bytes)?;
+            file.sync_all()
+        });
+        let kept = write_atomically(&folder.join("summary.json"), |file| file.write_all(&bytes));
+        if written.and(kept).is_err() {
+            thread::sleep(Duration::from_millis(10));
+        }
+    }
+}
+
+/// A result on a disk without room: the error of the device that is always full, met half-way through.
+fn full_disk(folder: &Path) -> Result<Special, LiveError> {
+    let path = folder.join("kept.json");
+    write_atomically(&path, |file| file.write_all(b"the result before")).map_err(LiveError::Scratch)?;
+    let told = write_atomically(&path, |file| {
+        file.write_all(b"half of a")?;
+        let mut full = fs::OpenOptions::new().write(true).open("/dev/full")?;
+        io::Write::write_all(&mut full, b"result")
+    });
+    let kept = fs::read(&path).is_ok_and(|bytes| bytes == b"the result before");
+    let verdict = if told.is_err() && kept { Verdict::Detected } else { Verdict::Silent };
+    let told = told.err().map_or_else(String::new, |error| format!("{error}; the file before is kept"));
+    Ok(Special { what: "the disk is full".to_owned(), verdict, told, detection_ms: None, zero_ms: None })
+}

@@ -1,0 +1,107 @@
+//! The study of faults as Markdown: sums, one row for each fault and sensor, the faults outside of the virtual clock, the bounded ones.
+
+use std::fmt::Write as _;
+
+use super::{HARMLESS_N, Kind, Outcome, Place, Report, SensorAt, Special, Sums, Verdict};
+
+impl Report {
+    /// For a document and a terminal.
+    pub fn markdown(&self) -> String {
+        let mut text = self.sums_text();
+        // Writing into a String cannot fail, here and below.
+        writeln!(text, "\n| fault | sensor at |{}", Place::ALL.map(|place| format!(" {} |", place.word())).concat())
+            .ok();
+        writeln!(text, "|---|---|{}", "---|".repeat(Place::ALL.len())).ok();
+        for kind in Kind::ALL {
+            for sensor in SensorAt::ALL {
+                self.row(&mut text, kind, sensor);
+            }
+        }
+        text.push_str("\nOn the real clock, and of files:\n\n| fault | verdict | detection (ms) | force gone (ms) | what is told |\n|---|---|---|---|---|\n");
+        for Special { what, verdict, told, detection_ms, zero_ms } in &self.specials {
+            let number = |ms: &Option<f64>| ms.map_or_else(|| "-".to_owned(), |ms| format!("{ms:.1}"));
+            let [detection, zero] = [detection_ms, zero_ms].map(number);
+            writeln!(text, "| {what} | {} | {detection} | {zero} | {told} |", word(*verdict)).ok();
+        }
+        text.push_str("\nBounded, not detected:\n\n| fault | sensor at | largest error (N) | why it cannot be told |\n|---|---|---|---|\n");
+        for kind in Kind::ALL {
+            for sensor in SensorAt::ALL {
+                let of =
+                    self.outcomes.iter().filter(|o| (o.kind, o.sensor, o.verdict) == (kind, sensor, Verdict::Bounded));
+                let largest_n =
+                    of.map(|outcome| outcome.peak_error_n).fold(None, |most, n| Some(n.max(most.unwrap_or(0.0))));
+                if let (Some(n), Some(why)) = (largest_n, kind.untellable()) {
+                    writeln!(text, "| {} | {} | {n:.2} | {why} |", kind.words(), sensor.word()).ok();
+                }
+            }
+        }
+        text
+    }
+
+    fn sums_text(&self) -> String {
+        let Sums { kinds, cases, no_force, harmless, detected, bounded, silent, on_force_path, .. } = self.sums;
+        let Sums { detection_p50_ms, detection_p99_ms, detection_max_ms, bounded_error_n, most_n, step_n, .. } =
+            self.sums;
+        let lines = [
+            format!("{kinds} kinds of fault; {cases} cases on the virtual clock, {} beside it.", self.specials.len()),
+            format!("- no force and no motion: {no_force}"),
+            format!("- harmless (at most {HARMLESS_N} N from the twin): {harmless}"),
+            format!("- detected: {detected}"),
+            format!("- bounded, not detected: {bounded} (largest error {bounded_error_n:.2} N)"),
+            format!("- silent: {silent}"),
+            format!(
+                "- detection on the force path while engaged ({on_force_path} cases): p50 {detection_p50_ms:.0} ms, p99 {detection_p99_ms:.0} ms, \
+                 max {detection_max_ms:.0} ms"
+            ),
+            format!("- largest force commanded {most_n:.2} N, largest change in a tick {step_n:.2} N"),
+        ];
+        lines.join("\n") + "\n"
+    }
+
+    fn row(&self, text: &mut String, kind: Kind, sensor: SensorAt) {
+        let of = |place: Place| {
+            let at = move |o: &&Outcome| o.kind == kind && o.sensor == sensor && o.place == place;
+            self.outcomes.iter().filter(at).collect::<Vec<_>>()
+        };
+        if of(Place::Contact).is_empty() {
+            return;
+        }
+        write!(text, "| {} | {} |", kind.words(), sensor.word()).ok();
+        for place in Place::ALL {
+            write!(text, " {} |", cell(&of(place))).ok();
+        }
+        text.push('\n');
+    }
+}
+
+/// The worst of some cases: verdict, slowest detection / force gone (ms), largest error (N).
+fn cell(cases: &[&Outcome]) -> String {
+    let Some(worst) = cases.iter().map(|outcome| outcome.verdict).max() else { return "-".to_owned() };
+    let most = |of: fn(&Outcome) -> Option<f64>| cases.iter().filter_map(|outcome| of(outcome)).fold(None, larger);
+    let number = |ms: Option<f64>| ms.map_or_else(|| "-".to_owned(), |ms| format!("{ms:.0}"));
+    let error_n = most(|outcome| Some(outcome.peak_error_n)).unwrap_or(0.0);
+    match worst {
+        Verdict::NoForce => "0".to_owned(),
+        Verdict::Harmless => format!("h {error_n:.2}"),
+        Verdict::Bounded => format!("**b** {error_n:.2}"),
+        Verdict::Silent => format!("**SILENT** {error_n:.2}"),
+        Verdict::Detected => {
+            let (told, zero) = (most(|outcome| outcome.detection_ms), most(|outcome| outcome.zero_ms));
+            format!("d {} / {} / {error_n:.2}", number(told), number(zero))
+        }
+    }
+}
+
+fn larger(most: Option<f64>, next: f64) -> Option<f64> {
+    Some(most.map_or(next, |most| most.max(next)))
+}
+
+const fn word(verdict: Verdict) -> &'static str {
+    match verdict {
+        Verdict::NoForce => "no force",
+        Verdict::Harmless => "harmless",
+        Verdict::Detected => "detected",
+        Verdict::Bounded => "bounded",
+        Verdict::Silent => "SILENT",
+    }
+}

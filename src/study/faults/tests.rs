@@ -1,0 +1,53 @@
+use super::*;
+
+fn tried(sensor: SensorAt, place: Place, kinds: &[Kind]) -> Vec<Outcome> {
+    let mut bench = Bench::new(sensor, Mode::Anchored, 3).unwrap();
+    bench.prepare(place, 0).unwrap();
+    kinds.iter().map(|kind| case::tried(bench.clone(), *kind, sensor, Mode::Anchored, place, 0)).collect()
+}
+
+#[test]
+fn what_cannot_be_true_is_told_within_20_ms_in_contact_and_the_force_is_gone() {
+    let kinds = [
+        Kind::ForceFrozen,
+        Kind::ForceStep,
+        Kind::ForceSign,
+        Kind::ForceNan,
+        Kind::ClockStops,
+        Kind::ClockBackward,
+        Kind::LinkSilent,
+        Kind::LinkRepeats,
+        Kind::HandJump,
+        Kind::TipJump,
+    ];
+    for outcome in tried(SensorAt::Tip, Place::Contact, &kinds) {
+        assert_eq!(outcome.verdict, Verdict::Detected, "{outcome:?}");
+        assert!(outcome.detection_ms.is_some_and(|ms| ms <= 20.0), "{outcome:?}");
+        assert!(outcome.zero_ms.is_some_and(|ms| ms <= 30.0), "{outcome:?}");
+        assert!(outcome.most_n <= 4.0 + 1e-9 && outcome.step_n <= 0.5 + 1e-9, "{outcome:?}");
+    }
+}
+
+#[test]
+fn a_spike_is_not_felt_and_a_creeping_bias_is_called_bounded() {
+    let [spike, drift] = tried(SensorAt::Tip, Place::Contact, &[Kind::ForceSpike, Kind::ForceDrift])[..] else {
+        panic!()
+    };
+    assert_eq!(spike.verdict, Verdict::Harmless, "{spike:?}");
+    assert!(drift.verdict == Verdict::Bounded && drift.peak_error_n > 0.5, "{drift:?}");
+}
+
+#[test]
+fn without_drives_no_fault_makes_force_or_motion() {
+    for place in [Place::Idle, Place::Stopped] {
+        for outcome in tried(SensorAt::Wrist, place, &Kind::ALL) {
+            assert!(outcome.verdict <= Verdict::Detected && outcome.most_n == 0.0, "{outcome:?}");
+        }
+    }
+}
+
+#[test]
+fn a_healthy_machine_is_its_twin() {
+    let outcome = tried(SensorAt::Wrist, Place::Contact, &[Kind::LinkDoubles]);
+    assert!(outcome[0].verdict == Verdict::Harmless && outcome[0].most_n > 0.5, "{outcome:?}");
+}

@@ -9,12 +9,15 @@ use nima::{
 };
 
 use super::{emulators::Emulators, setup::Setup};
-use crate::console::{self, Options, in_force::InForce, wizards::Which};
+use crate::console::{self, Options, in_force::InForce, roles::Role, wizards::Which};
 
 #[derive(Debug, Default, Args)]
 pub(super) struct Arguments {
     #[command(flatten)]
     setup: Setup,
+    /// Begin in this role (otherwise the one of the last time)
+    #[arg(long)]
+    role: Option<Role>,
     /// Begin with this calibration wizard
     #[arg(long, value_name = "WIZARD")]
     calibrate: Option<Which>,
@@ -49,6 +52,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let options = Options {
         exit_after: arguments.exit_after.map(Duration::from_secs_f64),
         screenshot: arguments.screenshot.clone(),
+        role: arguments.role,
         wizard: arguments.calibrate,
         summary: arguments.summary.clone(),
         stall: arguments.stall.map(Duration::from_secs_f64),

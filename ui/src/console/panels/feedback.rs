@@ -12,6 +12,7 @@ use super::{mode_meaning, mode_name};
 use crate::console::{
     live::Live,
     outbox::Outbox,
+    theme,
     widgets::{card, small},
 };
 
@@ -20,6 +21,8 @@ const ASKED_SHOWN_S: f64 = 1.6;
 const DELAY_MS: RangeInclusive<f64> = 0.0..=500.0;
 const DEAD_BAND_MM_S: RangeInclusive<f64> = 0.0..=10.0;
 const GAIN_LIMIT: f64 = 3.0;
+const GAIN_MEANING: &str = "Factor between the force asked for by the mode and the force in the hand, without unit. 0 is no force, \
+                            1 is natural. Changes are ramped at 2 per second.";
 
 /// A value that was asked for and when (s on the window's clock).
 #[derive(Clone, Copy, Debug, Default)]
@@ -129,14 +132,7 @@ fn setting_ui(
 }
 
 fn gain_ui(ui: &mut Ui, live: &Live, state: &mut FeedbackState, outbox: &mut Outbox) {
-    let setting = Setting {
-        name: "Gain",
-        meaning: "Factor between the force asked for by the mode and the force in the hand, without unit. 0 is no force, 1 is \
-                  natural. Changes are ramped at 2 per second.",
-        suffix: "",
-        decimals: 2,
-        at_once: true,
-    };
+    let setting = Setting { name: "Gain", meaning: GAIN_MEANING, suffix: "", decimals: 2, at_once: true };
     let limit = if state.allow_above_one { GAIN_LIMIT } else { 1.0 };
     if let Some(gain) = setting_ui(ui, &setting, 0.0..=limit, live.gain(), &mut state.gain) {
         outbox.push(if gain > 1.0 { Command::SetGainAboveOne(gain) } else { Command::SetGain(gain) });
@@ -153,6 +149,41 @@ fn gain_ui(ui: &mut Ui, live: &Live, state: &mut FeedbackState, outbox: &mut Out
             ui.label(small(format!("in force {:.2}", live.gain()))).on_hover_text("The gain the loop uses now, after its ramp.");
         });
     });
+}
+
+/// The gain alone, large: one figure, one slider, two buttons for steps of a tenth. Never above 1.
+pub fn calm_gain_ui(ui: &mut Ui, live: &Live, state: &mut FeedbackState, outbox: &mut Outbox) {
+    let time_s = ui.input(|input| input.time);
+    let shown = state.gain.shown(live.gain(), time_s);
+    let mut wanted = None;
+    ui.horizontal(|ui| {
+        ui.label(RichText::new("Gain").font(theme::strong(17.0))).on_hover_text(GAIN_MEANING);
+        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+            let mut step = |ui: &mut Ui, text: &str, name: &str, by: f64| {
+                let button =
+                    ui.add(Button::new(RichText::new(text).font(theme::strong(22.0))).min_size(vec2(48.0, 48.0)));
+                button.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, name));
+                if button.on_hover_text(format!("{name} by 0.1")).clicked() {
+                    wanted = Some(((shown + by) * 10.0).round() / 10.0);
+                }
+            };
+            step(ui, "+", "Raise the gain", 0.1);
+            step(ui, "-", "Lower the gain", -0.1);
+            ui.add_space(8.0);
+            ui.label(RichText::new(format!("{shown:.2}")).font(theme::strong(38.0))).on_hover_text(GAIN_MEANING);
+        });
+    });
+    let mut value = shown.min(1.0);
+    ui.spacing_mut().slider_width = ui.available_width();
+    let slider = ui.add(Slider::new(&mut value, 0.0..=1.0).show_value(false).clamping(SliderClamping::Edits));
+    slider.widget_info(|| egui::WidgetInfo::slider(true, value, "Gain"));
+    if slider.on_hover_text(GAIN_MEANING).changed() {
+        wanted = Some(value);
+    }
+    if let Some(gain) = wanted.map(|gain| gain.clamp(0.0, 1.0)) {
+        state.gain = Asked(Some((gain, time_s)));
+        outbox.push(Command::SetGain(gain));
+    }
 }
 
 fn delay_ui(ui: &mut Ui, live: &Live, state: &mut FeedbackState, outbox: &mut Outbox) {

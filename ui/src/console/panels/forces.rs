@@ -78,8 +78,8 @@ impl ForcesState {
     }
 }
 
-/// The panel.
-pub fn forces_ui(ui: &mut Ui, live: &Live, state: &mut ForcesState) {
+/// The panel, with these axes (0 is x) one under the other.
+pub fn forces_ui(ui: &mut Ui, live: &Live, state: &mut ForcesState, axes: &[usize]) {
     header_ui(ui, live, state);
     ui.add_space(2.0);
     let now_s = state.now_s(state.history(live));
@@ -90,12 +90,13 @@ pub fn forces_ui(ui: &mut Ui, live: &Live, state: &mut ForcesState) {
         history.trace(channel, (from_s, to_s), now_s, most, line);
     }
     ui.spacing_mut().item_spacing.y = 4.0;
-    let height = ((ui.available_height() - TIME_AXIS - 8.0) / 3.0).max(48.0);
+    let height = ((ui.available_height() - TIME_AXIS - 4.0 * (axes.len() - 1) as f32) / axes.len() as f32).max(48.0);
     let cursor_s = state.cursor_s.take();
-    for axis in 0..3 {
+    for &axis in axes {
+        let last = axes.last() == Some(&axis);
         state.ranges_n[axis] = range_n(history.extent(&[axis, axis + 3], (from_s, to_s)), state.ranges_n[axis]);
-        let height = if axis == 2 { height + TIME_AXIS } else { height };
-        let response = plot_ui(ui, live, state, axis, height, cursor_s);
+        let height = if last { height + TIME_AXIS } else { height };
+        let response = plot_ui(ui, live, state, (axis, last), height, cursor_s);
         interact(ui, state, &response);
     }
 }
@@ -146,13 +147,12 @@ fn plot_ui(
     ui: &mut Ui,
     live: &Live,
     state: &ForcesState,
-    axis: usize,
+    (axis, last): (usize, bool),
     height: f32,
     cursor_s: Option<f64>,
 ) -> PlotResponse<()> {
     let now_s = state.now_s(state.history(live));
     let history = state.history(live);
-    let last = axis == 2;
     let seconds =
         AxisHints::new_x().label(if last { "Time before now (s)" } else { "" }).formatter(|mark, _| plain(mark.value));
     let newtons = AxisHints::new_y()

@@ -33,41 +33,41 @@ pub fn gates_ui(ui: &mut Ui, live: &Live) {
 
 /// The answer in one sentence: the first closed gate, or that nothing is wrong.
 fn answer(live: &Live) -> String {
+    why_no_force(live).unwrap_or_else(|| match live.figures {
+        figures if figures.measured_n[RIGHT] < CONTACT_N => "Free motion: no contact, nothing to render.".to_owned(),
+        figures => format!("There is: {:.1} N in the hand.", figures.rendered_n[RIGHT]),
+    })
+}
+
+/// Why the hand feels nothing, or less than it should; `None` where nothing is wrong.
+pub fn why_no_force(live: &Live) -> Option<String> {
     let figures = &live.figures;
-    match live.state() {
-        LoopState::Disconnected => return "No force: a device is missing (see the devices).".to_owned(),
-        LoopState::Idle => return "No force: the loop is idle. Press Engage.".to_owned(),
-        LoopState::Ready => return "No force yet: the drives are coming on.".to_owned(),
-        LoopState::Clutched => return "No force: the clutch is pressed, the hand moves freely.".to_owned(),
-        LoopState::Stopped => return "No force: stopped by the operator.".to_owned(),
-        LoopState::Faulted(_) => return "No force: stopped by a fault.".to_owned(),
-        LoopState::Engaged => {}
-    }
-    if closed(live.gates.released) {
-        return "No force: the hand has let go. It comes back when the contact has ended.".to_owned();
-    }
-    if closed(live.gates.invalid) {
-        return "No force: the mode has nothing valid to render.".to_owned();
-    }
-    if closed(live.gates.stale) {
-        return "No force: the data are too old.".to_owned();
-    }
-    if figures.measured_n[RIGHT] < CONTACT_N {
-        return "Free motion: no contact, nothing to render.".to_owned();
-    }
-    if closed(live.gates.dead_band) && figures.withheld_n > 0.05 {
-        return format!("{:.1} N not rendered (dead band)", figures.withheld_n);
-    }
-    if live.gain() < 0.01 {
-        return "No force: the gain is zero.".to_owned();
-    }
-    if closed(live.gates.energy) {
-        return "Less force: the hand would get back more energy than it gave.".to_owned();
-    }
-    if figures.rendered_n[RIGHT] < 0.05 {
-        return format!("On its way: the link is {:.0} ms late.", live.delay_s() * 1e3);
-    }
-    format!("There is: {:.1} N in the hand.", figures.rendered_n[RIGHT])
+    let words = match live.state() {
+        LoopState::Disconnected => "No force: a device is missing (see the devices).",
+        LoopState::Idle => "No force: the loop is idle. Press Engage.",
+        LoopState::Ready => "No force yet: the drives are coming on.",
+        LoopState::Clutched => "No force: the clutch is pressed, the hand moves freely.",
+        LoopState::Stopped => "No force: stopped by the operator.",
+        LoopState::Faulted(_) => "No force: stopped by a fault.",
+        LoopState::Engaged if closed(live.gates.released) => {
+            "No force: the hand has let go. It comes back when the contact has ended."
+        }
+        LoopState::Engaged if closed(live.gates.invalid) => "No force: the mode has nothing valid to render.",
+        LoopState::Engaged if closed(live.gates.stale) => "No force: the data are too old.",
+        LoopState::Engaged if figures.measured_n[RIGHT] < CONTACT_N => return None,
+        LoopState::Engaged if closed(live.gates.dead_band) && figures.withheld_n > 0.05 => {
+            return Some(format!("{:.1} N not rendered (dead band)", figures.withheld_n));
+        }
+        LoopState::Engaged if live.gain() < 0.01 => "No force: the gain is zero.",
+        LoopState::Engaged if closed(live.gates.energy) => {
+            "Less force: the hand would get back more energy than it gave."
+        }
+        LoopState::Engaged if figures.rendered_n[RIGHT] < 0.05 => {
+            return Some(format!("On its way: the link is {:.0} ms late.", live.delay_s() * 1e3));
+        }
+        LoopState::Engaged => return None,
+    };
+    Some(words.to_owned())
 }
 
 struct Gate {

@@ -7,6 +7,7 @@ use crate::console::{
     alarms::{Alarm, judge},
     live::Live,
     outbox::Outbox,
+    roles::{Role, switch_ui},
     theme,
     widgets::{Sign, sign, small},
 };
@@ -20,9 +21,15 @@ pub struct TopBarState {
     seen: Option<(LoopState, f64)>,
 }
 
-/// The bar.
-/// While somebody's hands are on the arm (`calibrating`) it cannot be engaged.
-pub fn top_bar_ui(ui: &mut Ui, live: &Live, state: &mut TopBarState, outbox: &mut Outbox, calibrating: bool) {
+/// The bar; gives the role that was chosen. While somebody's hands are on the arm (`calibrating`) it cannot be engaged.
+pub fn top_bar_ui(
+    ui: &mut Ui,
+    live: &Live,
+    state: &mut TopBarState,
+    outbox: &mut Outbox,
+    role: Role,
+    calibrating: bool,
+) -> Option<Role> {
     let time_s = ui.input(|input| input.time);
     let now = live.state();
     let since_s = match state.seen {
@@ -41,6 +48,8 @@ pub fn top_bar_ui(ui: &mut Ui, live: &Live, state: &mut TopBarState, outbox: &mu
         ui.add_space(10.0);
         state_ui(ui, now);
         ui.add_space(10.0);
+        let chosen = switch_ui(ui, role, !calibrating);
+        ui.add_space(10.0);
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             stop_ui(ui, now, outbox);
             let blocked = calibrating && now == LoopState::Idle;
@@ -48,7 +57,9 @@ pub fn top_bar_ui(ui: &mut Ui, live: &Live, state: &mut TopBarState, outbox: &mu
             ui.add_space(6.0);
             alarms_ui(ui, live, &judge(&live.signs(outbox.stop_is_stuck())), time_s);
         });
-    });
+        chosen
+    })
+    .inner
 }
 
 fn identity_ui(ui: &mut Ui, live: &Live) {

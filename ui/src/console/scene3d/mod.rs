@@ -40,6 +40,8 @@ pub struct SceneView {
     pub smooth: bool,
     /// From where it is seen.
     pub look: Look,
+    /// Figures in the view: forces in numbers, and their gauges.
+    pub figures: bool,
     camera: Camera,
     /// The scene that the cameras were set for.
     set_for: Option<String>,
@@ -53,6 +55,7 @@ impl Default for SceneView {
         Self {
             smooth: true,
             look: Look::Free,
+            figures: true,
             camera: Camera::default(),
             set_for: None,
             lead: Lead::default(),
@@ -70,6 +73,11 @@ impl SceneView {
             Some(Ok(renderer)) => Self { renderer: Some(Arc::new(renderer)), ..Self::default() },
             Some(Err(problem)) => Self { problem: Some(problem), ..Self::default() },
         }
+    }
+
+    /// Somebody leads the instrument from the screen.
+    pub const fn is_led(&self) -> bool {
+        self.lead.is_on()
     }
 
     /// The camera in use.
@@ -96,20 +104,29 @@ pub fn scene_ui(ui: &mut Ui, live: &Live, view: &mut SceneView, outbox: &mut Out
     }
     let (rect, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Canvas, true, "Operating field"));
+    // The triangles lie under the button that is put into the view, though they are known only after it.
+    let ground = ui.painter_at(rect).add(egui::Shape::Noop);
     let camera = view.camera(&live.scene);
-    let leading = view.lead.ui(ui, rect, &response, live, &camera, outbox);
+    // A surgeon's view is led by the surgeon's own hands.
+    let leading = (view.figures || view.lead.is_on()) && view.lead.ui(ui, rect, &response, live, &camera, outbox);
     if view.look == Look::Free {
         turn(ui, live, view, &response, leading);
     }
     let camera = view.camera(&live.scene);
     let arms: Vec<Arm> = live.sides().filter_map(|side| arm(live, side)).collect();
     let painter = ui.painter_at(rect);
-    triangles(&painter, rect, live, view, &arms);
-    for arm in &arms {
-        labels(&painter, rect, live, &camera, arm);
+    if let Some(callback) = triangles(rect, live, view, &arms) {
+        painter.set(ground, callback);
     }
-    readings(&painter, rect, live);
-    axes(&painter, rect, &camera);
+    for arm in &arms {
+        labels(&painter, rect, live, &camera, arm, view.figures);
+    }
+    if view.figures {
+        readings(&painter, rect, live);
+    }
+    if view.look == Look::Free {
+        axes(&painter, rect, &camera);
+    }
     hint(&painter, rect, view);
 }
 
@@ -147,8 +164,8 @@ fn arm(live: &Live, side: Side) -> Option<Arm> {
     })
 }
 
-fn triangles(painter: &Painter, rect: Rect, live: &Live, view: &SceneView, arms: &[Arm]) {
-    let Some(renderer) = view.renderer.clone() else { return };
+fn triangles(rect: Rect, live: &Live, view: &SceneView, arms: &[Arm]) -> Option<egui::PaintCallback> {
+    let renderer = view.renderer.clone()?;
     let camera = view.camera(&live.scene);
     let (eye_m, right) = (camera.eye_m(), camera.right());
     let frame = gl::Frame {
@@ -162,14 +179,14 @@ fn triangles(painter: &Painter, rect: Rect, live: &Live, view: &SceneView, arms:
     let paint = egui_glow::CallbackFn::new(move |info, painter| {
         renderer.paint(painter.gl(), painter.intermediate_fbo(), &info.viewport_in_pixels(), &frame);
     });
-    painter.add(egui::PaintCallback { rect, callback: Arc::new(paint) });
+    Some(egui::PaintCallback { rect, callback: Arc::new(paint) })
 }
 
 /// Height above the tip at which the name of a hand stands beside its shaft, m.
 const NAME_ABOVE_M: f32 = 0.05;
 
 /// Names and numbers beside the things of one side.
-fn labels(painter: &Painter, rect: Rect, live: &Live, camera: &Camera, arm: &Arm) {
+fn labels(painter: &Painter, rect: Rect, live: &Live, camera: &Camera, arm: &Arm, figures: bool) {
     let at = |point_m: Vector3<f32>| camera.project(&point_m, rect);
     let Arm { trocar_m, pose, side, .. } = arm;
     if let Some(place) = at(*trocar_m) {
@@ -196,7 +213,7 @@ fn labels(painter: &Painter, rect: Rect, live: &Live, camera: &Camera, arm: &Arm
         (rendered, pose.rendered_n, theme::RENDERED, Align2::CENTER_BOTTOM, vec2(0.0, -4.0)),
     ] {
         let size_n = force_n.norm();
-        if !(0.15..1e6).contains(&size_n) {
+        if !figures || !(0.15..1e6).contains(&size_n) {
             continue;
         }
         if let Some(place) = at(base + force_n * stage::ARROW_M_PER_N) {

@@ -208,9 +208,13 @@ impl Parcel {
     };
 
     /// The force of every mode for the motion now, by [`Mode::index`](super::Mode::index): `anchored` features now and at
-    /// the time of the parcel, `literal` increments now.
+    /// the time of the parcel, `literal` increments now. Nothing is made of a force that is not finite: limits would turn it into
+    /// one of their edges.
     pub(super) fn render(&self, now: &Posture, then: &Posture, increments: &Features) -> [Option<Lanes>; 4] {
         let measured = Lanes::from(self.force_n);
+        if !measured.is_finite() {
+            return [None; 4];
+        }
         [
             self.literal.force(increments),
             self.linear.force(increments),

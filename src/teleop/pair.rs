@@ -267,6 +267,10 @@ impl Pair {
         let inputs = inputs.filter(Inputs::is_finite);
         let moved_m = inputs.zip(self.last_inputs).map_or(0.0, |(now, last)| (now.tip_m - last.tip_m).norm());
         let inputs = inputs.map(|inputs| self.take_in(inputs, now_s));
+        if inputs.is_none() {
+            // Identification goes by even samples: a missing one is bridged, and nothing is sent of it.
+            self.identifier.step(&Sample { t_s: now_s, position_m: NOWHERE, force_n: NOWHERE });
+        }
         self.watch(inputs.as_ref(), moved_m, timing);
         // Nothing new: the link keeps delivering what is on its way, ever older; the age gate takes the force away.
         let seen = self.last_inputs.unwrap_or(NOTHING_YET);
@@ -332,6 +336,7 @@ impl Pair {
             t_s: now_s,
             sensed: numbers(&inputs.sensed),
             force_n: self.force.tip_n,
+            kbf_from_s1: orientation(&inputs.sensed),
             tip_m: inputs.tip_m,
             hand_m: inputs.hand.position_m,
             command_m: self.command_m,
@@ -370,7 +375,7 @@ impl Pair {
     }
 
     fn is_silent(&self, now_s: f64) -> bool {
-        now_s - self.last_input_s > SILENT_AFTER_S
+        now_s - self.last_input_s > SILENT_AFTER_S - 0.5 / self.rate_hz
     }
 
     /// Faults first, then the interlock's look at the machine.
@@ -482,6 +487,14 @@ impl Pair {
     }
 }
 
+/// Orientation of a wrist sensor by the arm.
+fn orientation(sensed: &Sensed) -> Option<UnitQuaternion<f64>> {
+    match sensed {
+        Sensed::AtTip(_) => None,
+        Sensed::AtWrist(sample) => sample.kbf_from_s1,
+    }
+}
+
 /// The numbers of a force sensor as they were read; NaN where it has none.
 fn numbers(sensed: &Sensed) -> [f64; CHANNELS] {
     let mut all = [f64::NAN; CHANNELS];
@@ -497,6 +510,9 @@ fn numbers(sensed: &Sensed) -> [f64; CHANNELS] {
     }
     all
 }
+
+/// What was not measured.
+const NOWHERE: Vector3<f64> = Vector3::new(f64::NAN, f64::NAN, f64::NAN);
 
 /// Shown until the rig has delivered its first sample.
 const NOTHING_YET: Inputs = Inputs {

@@ -1,41 +1,49 @@
-//! A vector that changes faster than it can: single leaps are bridged, lasting ones told.
+//! A vector that changes faster than it can: single leaps are bridged, lasting and frequent ones told.
 
-use nalgebra::Vector3;
+use nalgebra::SVector;
 
 /// Samples in a row that are bridged; the next one is a jump.
 const BRIDGED: u32 = 2;
+/// So many bridged samples, less one for each [`CALM`] good ones, are no spikes any more.
+const FREQUENT: f64 = 4.0;
+/// Good samples that make up for a bridged one.
+const CALM: f64 = 25.0;
 
 /// The last vector that was believed.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Leap {
-    last: Option<Vector3<f64>>,
-    moved: Vector3<f64>,
-    refused: u32,
+#[derive(Clone, Copy, Debug)]
+pub struct Leap<const D: usize = 3> {
+    last: Option<SVector<f64, D>>,
+    moved: SVector<f64, D>,
+    in_a_row: u32,
+    level: f64,
 }
 
-impl Leap {
-    /// Gives the vector, or the last believed one in its place when it lies farther than `most` from it for every sample since; and
-    /// whether this is no spike but a jump. What has jumped is believed from then on.
-    pub fn admit(&mut self, now: &Vector3<f64>, most: f64) -> (Vector3<f64>, bool) {
+impl<const D: usize> Default for Leap<D> {
+    fn default() -> Self {
+        Self { last: None, moved: SVector::zeros(), in_a_row: 0, level: 0.0 }
+    }
+}
+
+impl<const D: usize> Leap<D> {
+    /// Gives the vector, or the last believed one in its place when it lies farther than `most` from it; and whether this is no spike
+    /// but a jump, or one spike too many. What has jumped is believed from then on.
+    pub fn admit(&mut self, now: &SVector<f64, D>, most: f64) -> (SVector<f64, D>, bool) {
         let last = self.last.unwrap_or(*now);
-        let far = (now - last).norm() > most * f64::from(self.refused + 1);
-        if far && self.refused < BRIDGED {
-            self.refused += 1;
-            self.moved = Vector3::zeros();
-            return (last, false);
+        let far = (now - last).norm() > most;
+        self.level = if far { self.level + 1.0 } else { (self.level - 1.0 / CALM).max(0.0) };
+        let frequent = self.level >= FREQUENT;
+        if far && self.in_a_row < BRIDGED {
+            self.in_a_row += 1;
+            self.moved = SVector::zeros();
+            return (last, frequent);
         }
         self.moved = now - last;
-        (self.last, self.refused) = (Some(*now), 0);
-        (*now, far)
+        (self.last, self.in_a_row) = (Some(*now), 0);
+        (*now, far || frequent)
     }
 
     /// How far the believed vector went in the last step.
-    pub fn moved(&self) -> Vector3<f64> {
-        self.moved
-    }
-
-    /// The same as a length.
-    pub fn way(&self) -> f64 {
-        self.moved.norm()
+    pub const fn moved(&self) -> &SVector<f64, D> {
+        &self.moved
     }
 }

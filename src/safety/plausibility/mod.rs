@@ -12,7 +12,7 @@ mod frozen;
 mod leap;
 mod opposed;
 
-use nalgebra::Vector3;
+use nalgebra::{SVector, UnitQuaternion, Vector3};
 
 pub use frozen::{CHANNELS, Frozen};
 pub use leap::Leap;
@@ -26,8 +26,10 @@ const TIP_MAX_M_S: f64 = 1.0;
 const POSITION_SLACK_M: f64 = 2e-3;
 /// A force of a resting tip changes by less than this from one sample to the next, N: nine deviations of the noisiest sensor here.
 const FORCE_SLACK_N: f64 = 0.5;
-/// And by so much per metre that the tip moved, N/m: thirty times soft tissue; metal on metal behind a sensor's own filter.
-const STIFFEST_N_M: f64 = 1e4;
+/// And by so much per metre that the tip moved, N/m: fifteen times soft tissue. With the slack it lets 15 kN/m pass at 50 mm/s.
+const STIFFEST_N_M: f64 = 5e3;
+/// A wrist turns by no more than this in a tick (length of the way of its axes): 50 rad/s at 1 kHz.
+const TURN_MAX: f64 = 0.1;
 /// The tip's way in one tick is the largest of so many ticks: arm and force sensor tick by their own clocks.
 const WAY_TICKS: usize = 4;
 /// A handle that stands to the last bit while its force changes by this much is stuck, N: a gripping hand of 900 N/m gives way by 0.8 mm.
@@ -36,8 +38,8 @@ const STUCK_FORCE_N: f64 = 0.7;
 const STUCK_COMMAND_M: f64 = 0.5e-3;
 /// Shortest time to call something stuck, s.
 const STUCK_S: f64 = 0.015;
-/// A tip so far from its command has lost it, m: five times the lag of the simulated follower at its fastest.
-const ASTRAY_M: f64 = 0.04;
+/// A tip so far from its command has lost it, m: an arm of 60 ms lag at the fastest command.
+const ASTRAY_M: f64 = 0.02;
 
 /// What cannot be true.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -112,6 +114,8 @@ pub struct Observed {
     pub sensed: [f64; CHANNELS],
     /// Force at the tip made of them, N.
     pub force_n: Vector3<f64>,
+    /// Orientation of the wrist by the arm, where it is known.
+    pub kbf_from_s1: Option<UnitQuaternion<f64>>,
     /// The tip, m.
     pub tip_m: Vector3<f64>,
     /// The handle, m (its device's axes).
@@ -161,6 +165,7 @@ pub struct Plausibility {
     force: Leap,
     tip: Leap,
     hand: Leap,
+    turn: Leap<6>,
     opposed: Opposed,
     handle_stuck: Stuck,
     tip_stuck: Stuck,
@@ -180,6 +185,7 @@ impl Plausibility {
             force: Leap::default(),
             tip: Leap::default(),
             hand: Leap::default(),
+            turn: Leap::default(),
             opposed: Opposed::new(period_s),
             handle_stuck: Stuck::default(),
             tip_stuck: Stuck::default(),
@@ -212,19 +218,20 @@ impl Plausibility {
         let dt_s = if dt_s.is_finite() { dt_s.max(self.period_s) } else { self.period_s };
         let (tip_m, tip_jumped) = self.tip.admit(&seen.tip_m, POSITION_SLACK_M + TIP_MAX_M_S * dt_s);
         let (hand_m, hand_jumped) = self.hand.admit(&seen.hand_m, POSITION_SLACK_M + HAND_MAX_M_S * dt_s);
-        let way_m = self.tip.way();
+        let way_m = self.tip.moved().norm();
         self.ways_m.rotate_right(1);
         self.ways_m[0] = way_m;
         let widest_m = self.ways_m.iter().copied().fold(0.0, f64::max);
         let (force_n, force_jumped) = self.force.admit(&seen.force_n, FORCE_SLACK_N + STIFFEST_N_M * widest_m);
         let frozen = self.frozen.look(&seen.sensed, seen.t_s);
-        let along = self.opposed.look(&force_n, &self.tip.moved(), seen.command_m.is_some());
+        let along = self.opposed.look(&force_n, self.tip.moved(), seen.command_m.is_some());
+        let turned = seen.kbf_from_s1.is_some_and(|turn| self.turn.admit(&axes(&turn), TURN_MAX).1);
         let doubts = [
             (force_jumped, Implausible::ForceJumped),
             (frozen, Implausible::ForceFrozen),
             (along, Implausible::ForceAlong),
             (hand_jumped, Implausible::HandleJumped),
-            (tip_jumped, Implausible::TipJumped),
+            (tip_jumped || turned, Implausible::TipJumped),
             (self.handle_is_stuck(seen), Implausible::HandleFrozen),
             (self.arm_is_astray(seen), Implausible::ArmAstray),
         ];
@@ -249,6 +256,12 @@ impl Plausibility {
     pub fn delivered(&mut self, force_n: &Vector3<f64>, stamp_s: f64) {
         self.link_doubt = self.link_frozen.look(force_n.as_ref(), stamp_s);
     }
+}
+
+/// Two axes of a frame, which tell it.
+fn axes(turn: &UnitQuaternion<f64>) -> SVector<f64, 6> {
+    let (x, z) = (turn * Vector3::x(), turn * Vector3::z());
+    SVector::from([x.x, x.y, x.z, z.x, z.y, z.z])
 }
 
 #[cfg(test)]

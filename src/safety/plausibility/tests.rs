@@ -23,6 +23,7 @@ impl Bench {
             t_s,
             sensed,
             force_n,
+            kbf_from_s1: None,
             tip_m: at_m,
             hand_m: at_m,
             command_m: Some(at_m),

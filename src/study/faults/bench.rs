@@ -23,6 +23,8 @@ const PATIENCE: u32 = 12_000;
 const WARM_UP: u32 = 3500;
 /// Moments lie apart by this, ticks.
 const APART: u32 = 370;
+/// Delay of the link in the simulated rig, ticks.
+const LINK_TICKS: u32 = 50;
 /// Positions nearer than this are the same, m.
 const NEAR_M: f64 = 5e-4;
 
@@ -181,9 +183,14 @@ impl Bench {
         })
     }
 
-    /// The fault is not in the rig.
+    /// The fault is not in the rig, and acts by now: of what a link loses or spoils nothing shows until it is due.
     fn is_elsewhere(&self) -> bool {
-        self.fault.is_some_and(|(fault, _)| matches!(fault.part(), Part::Clock | Part::Link | Part::Commands))
+        let Some((fault, since)) = self.fault else { return false };
+        match fault.part() {
+            Part::Clock | Part::Commands => true,
+            Part::Link => matches!(fault, Kind::LinkLate | Kind::LinkJitter) || self.tick > since + LINK_TICKS,
+            _ => false,
+        }
     }
 
     /// Brings the bench to a place; `moment` tells cases at the same place apart.
@@ -212,7 +219,10 @@ impl Bench {
                 self.rig.situation.clutch = true;
                 self.run(20);
             }
-            Place::Stopped => self.obey(Command::Stop),
+            Place::Stopped => {
+                self.obey(Command::Stop);
+                self.run(5);
+            }
             Place::Faulted => {
                 self.without(30);
                 self.rig.situation.connected = true;

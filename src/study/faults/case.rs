@@ -1,5 +1,9 @@
 //! One case: the fault begins, machine and twin go on, and what is told, when, and how wrong the hand was is written down.
 
+use std::collections::VecDeque;
+
+use nalgebra::Vector3;
+
 use super::{
     HARMLESS_N, Kind, Outcome, Place, SensorAt, Verdict,
     bench::{Bench, Step},
@@ -15,29 +19,41 @@ const LATER: u32 = 200;
 /// A latched machine is watched for so long, ticks.
 const AFTER_LATCH: u32 = 100;
 
+/// A fault that does not show for so long begins anew when it shows again, ticks.
+const PAUSE: u32 = 20;
+/// Forces are compared with the twin's of so many ticks before and after: what comes 5 ms late is fresh to the age gate.
+const SHIFT: usize = 5;
+
 /// What was seen until now.
 #[derive(Debug)]
 struct Watch {
     shows: Option<u32>,
+    last_shown: u32,
+    /// The newest forces in the hand and of the twin, N, newest last.
+    forces_n: VecDeque<[Vector3<f64>; 2]>,
     told: Option<(String, u32)>,
     zero: Option<u32>,
     felt: bool,
     moved: bool,
     peak_error_n: f64,
+    error_n: f64,
     most_n: f64,
     step_n: f64,
-    last_n: nalgebra::Vector3<f64>,
+    last_n: Vector3<f64>,
 }
 
 /// Lets the fault happen on a bench that is ready for it.
 pub(super) fn tried(mut bench: Bench, kind: Kind, sensor: SensorAt, mode: Mode, place: Place, moment: u32) -> Outcome {
     let mut watch = Watch {
         shows: None,
+        last_shown: 0,
+        forces_n: VecDeque::new(),
         told: None,
         zero: None,
         felt: false,
         moved: false,
         peak_error_n: 0.0,
+        error_n: 0.0,
         most_n: 0.0,
         step_n: 0.0,
         last_n: bench.wanted_n(),
@@ -51,6 +67,10 @@ pub(super) fn tried(mut bench: Bench, kind: Kind, sensor: SensorAt, mode: Mode, 
             bench.rig.situation.clutch = false;
         }
         let Some(step) = bench.step() else { break };
+        // The twin may lose its way where the fault leads the arm elsewhere; then it is no measure any more.
+        if step.twin.state.is_latched() && !begun_latched {
+            break;
+        }
         watch.look(tick, &step);
         latched += u32::from(step.machine.state.is_latched() && !begun_latched);
         if latched > AFTER_LATCH {
@@ -62,8 +82,11 @@ pub(super) fn tried(mut bench: Bench, kind: Kind, sensor: SensorAt, mode: Mode, 
 
 impl Watch {
     fn look(&mut self, tick: u32, step: &Step) {
-        if step.shows && self.shows.is_none() {
-            self.shows = Some(tick);
+        if step.shows && self.told.is_none() {
+            if self.shows.is_none() || tick > self.last_shown + PAUSE {
+                self.shows = Some(tick);
+            }
+            self.last_shown = tick;
         }
         if self.told.is_none()
             && let Some(what) = told(step)
@@ -80,12 +103,25 @@ impl Watch {
         // The rig is given in a tick what the tick before made: so is the twin's.
         if self.zero.is_none() {
             self.peak_error_n = self.peak_error_n.max((applied_n - step.twin_before_n).norm());
+            self.compare(applied_n, step.twin_before_n);
         }
         self.most_n = self.most_n.max(wanted_n.norm());
         if wanted_n.norm() > 0.0 {
             self.step_n = self.step_n.max((wanted_n - self.last_n).norm());
         }
         self.last_n = wanted_n;
+    }
+
+    fn compare(&mut self, applied_n: Vector3<f64>, twin_n: Vector3<f64>) {
+        self.forces_n.push_back([applied_n, twin_n]);
+        if self.forces_n.len() <= 2 * SHIFT {
+            return;
+        }
+        let [applied_n, _] = self.forces_n[SHIFT];
+        let nearest_n =
+            self.forces_n.iter().map(|[_, twin_n]| (applied_n - twin_n).norm()).fold(f64::INFINITY, f64::min);
+        self.error_n = self.error_n.max(nearest_n);
+        self.forces_n.pop_front();
     }
 
     fn outcome(self, kind: Kind, sensor: SensorAt, mode: Mode, place: Place, moment: u32) -> Outcome {
@@ -97,7 +133,7 @@ impl Watch {
             Verdict::Detected
         } else if !self.felt && !self.moved {
             Verdict::NoForce
-        } else if self.peak_error_n <= HARMLESS_N {
+        } else if self.error_n <= HARMLESS_N {
             Verdict::Harmless
         } else if kind.untellable().is_some() {
             Verdict::Bounded
@@ -116,6 +152,7 @@ impl Watch {
             detection_ms: told_at.map(since_ms),
             zero_ms: self.zero.map(since_ms),
             peak_error_n: self.peak_error_n,
+            error_n: self.error_n,
             most_n: self.most_n,
             step_n: self.step_n,
         }
@@ -130,6 +167,9 @@ fn told(step: &Step) -> Option<String> {
     }
     if step.device_lost {
         return Some("device lost".to_owned());
+    }
+    if machine.missed > twin.missed {
+        return Some("missed periods counted".to_owned());
     }
     if machine.state != twin.state {
         return Some(format!("state {}", machine.state.word().to_lowercase()));

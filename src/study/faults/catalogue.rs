@@ -245,12 +245,13 @@ impl Kind {
             K::ForceAxes => "before a contact: a slanting surface gives the same",
             K::ForceGain => "before a contact: a stiffer tissue gives the same",
             K::ForceLate => "without time stamps of the sensor: a lagging arm gives the same",
-            K::ForceNoise => "what is left of it under the jumps",
             K::ForceDead => "in the air: an ideal sensor gives the same",
             K::HandleWithoutForce | K::HandleInverted | K::HandleKeepsForce => {
                 "nothing measures the force in the handle"
             }
-            K::HandDrift | K::HandLate | K::HandNoise => "another motion of a hand gives the same",
+            K::HandDrift | K::HandLate | K::HandNoise | K::HandSign | K::HandAxes => {
+                "another motion of a hand gives the same"
+            }
             K::TipDrift => "another place gives the same",
             _ => return None,
         })

@@ -75,7 +75,10 @@ impl<R: Rig> Faulty<R> {
             Some(Kind::HandleKeepsForce) if outputs.drives => {
                 outputs.hand_force_n = self.first.map_or(outputs, |(_, first)| first).hand_force_n;
             }
-            Some(Kind::ArmIgnores) => outputs.tip_command_m = None,
+            Some(Kind::ArmIgnores) => {
+                let stays_m = self.first.map(|(first, _)| first.tip_m);
+                outputs.tip_command_m = outputs.tip_command_m.map(|command_m| stays_m.unwrap_or(command_m));
+            }
             Some(Kind::ArmAxes) => outputs.tip_command_m = outputs.tip_command_m.map(exchanged),
             _ => {}
         }

@@ -3,11 +3,12 @@
 //! Each case is a machine whose rig, clock, link or screen fails at a moment, and its twin in the same world that is given the truth.
 //! Takes nothing but [`Options`]; gives a [`Report`] (ms, N). A case is *detected* (a fault, a change of state, a refusal, a closed
 //! gate or an unusable force is told), *harmless* (there is no force and no motion, or the force in the hand differs from the
-//! twin's by at most [`HARMLESS_N`]), *bounded* (it cannot be told in principle; its largest error is given), or *silent*.
+//! twin's of the same 5 ms by at most [`HARMLESS_N`]), *bounded* (it cannot be told in principle; its largest error is given), or *silent*.
 //! Faults of threads and disks run on the real clock, those of files on files.
 
 mod at_rest;
 mod bench;
+mod calm;
 mod case;
 mod catalogue;
 mod inject;
@@ -16,6 +17,7 @@ mod present;
 
 use serde::Serialize;
 
+pub use calm::Calm;
 pub use catalogue::{Kind, Part};
 pub use inject::Faulty;
 pub use live::{LiveError, Special};
@@ -168,7 +170,7 @@ impl Place {
 pub enum Verdict {
     /// Neither force nor motion all the time.
     NoForce,
-    /// The force differs from the twin's by at most [`HARMLESS_N`].
+    /// The force differs from the nearest of the twin's within 5 ms by at most [`HARMLESS_N`].
     Harmless,
     /// Something was told.
     Detected,
@@ -203,6 +205,8 @@ pub struct Outcome {
     pub zero_ms: Option<f64>,
     /// Largest difference of the force in the hand from the twin's until the force was gone, N.
     pub peak_error_n: f64,
+    /// The same against the nearest of the twin's forces of 5 ms before and after, N: what is late by less is fresh to the age gate.
+    pub error_n: f64,
     /// Largest force that the machine commanded, N.
     pub most_n: f64,
     /// Largest change of it in a tick other than to nothing, N.
@@ -216,6 +220,8 @@ pub struct Options {
     pub moments: u32,
     /// The faults of threads, disks and files too (some seconds on the real clock).
     pub live: bool,
+    /// Time of each healthy run in which nothing may be told, s.
+    pub calm_s: f64,
 }
 
 /// The study's result.
@@ -225,6 +231,8 @@ pub struct Report {
     pub outcomes: Vec<Outcome>,
     /// Faults on the real clock and of files.
     pub specials: Vec<Special>,
+    /// Healthy runs.
+    pub calm: Calm,
     /// Sums.
     pub sums: Sums,
 }
@@ -322,9 +330,11 @@ pub fn study(options: &Options, mut progress: impl FnMut(usize, usize, &str)) ->
         specials.extend(at_rest::all()?);
         specials.extend(live::all()?);
     }
+    progress(all - 1, all, "healthy runs");
+    let calm = calm::runs(options.calm_s)?;
     progress(all, all, "done");
     let sums = Sums::of(&outcomes, &specials);
-    Ok(Report { outcomes, specials, sums })
+    Ok(Report { outcomes, specials, calm, sums })
 }
 
 /// Every kind of fault at one place.

@@ -45,7 +45,7 @@ impl Report {
         let lines = [
             format!("{kinds} kinds of fault; {cases} cases on the virtual clock, {} beside it.", self.specials.len()),
             format!("- no force and no motion: {no_force}"),
-            format!("- harmless (at most {HARMLESS_N} N from the twin): {harmless}"),
+            format!("- harmless (at most {HARMLESS_N} N from the twin within 5 ms): {harmless}"),
             format!("- detected: {detected}"),
             format!("- bounded, not detected: {bounded} (largest error {bounded_error_n:.2} N)"),
             format!("- silent: {silent}"),
@@ -53,6 +53,7 @@ impl Report {
                 "- detection on the force path while engaged ({on_force_path} cases): p50 {detection_p50_ms:.0} ms, p99 {detection_p99_ms:.0} ms, \
                  max {detection_max_ms:.0} ms"
             ),
+            self.calm.line(),
             format!("- largest force commanded {most_n:.2} N, largest change in a tick {step_n:.2} N"),
         ];
         lines.join("\n") + "\n"
@@ -79,15 +80,16 @@ fn cell(cases: &[&Outcome]) -> String {
     let Some(worst) = cases.iter().map(|outcome| outcome.verdict).max() else { return "-".to_owned() };
     let most = |of: fn(&Outcome) -> Option<f64>| cases.iter().filter_map(|outcome| of(outcome)).fold(None, larger);
     let number = |ms: Option<f64>| ms.map_or_else(|| "-".to_owned(), |ms| format!("{ms:.0}"));
-    let error_n = most(|outcome| Some(outcome.peak_error_n)).unwrap_or(0.0);
+    let peak_n = most(|outcome| Some(outcome.peak_error_n)).unwrap_or(0.0);
+    let error_n = most(|outcome| Some(outcome.error_n)).unwrap_or(0.0);
     match worst {
         Verdict::NoForce => "0".to_owned(),
         Verdict::Harmless => format!("h {error_n:.2}"),
-        Verdict::Bounded => format!("**b** {error_n:.2}"),
-        Verdict::Silent => format!("**SILENT** {error_n:.2}"),
+        Verdict::Bounded => format!("**b** {peak_n:.2}"),
+        Verdict::Silent => format!("**SILENT** {peak_n:.2}"),
         Verdict::Detected => {
             let (told, zero) = (most(|outcome| outcome.detection_ms), most(|outcome| outcome.zero_ms));
-            format!("d {} / {} / {error_n:.2}", number(told), number(zero))
+            format!("d {} / {} / {peak_n:.2}", number(told), number(zero))
         }
     }
 }

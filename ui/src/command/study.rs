@@ -98,6 +98,9 @@ pub(super) struct Faults {
     /// Moments at which each fault begins while engaged, 1 to 20
     #[arg(long, value_name = "N", default_value_t = 3, value_parser = clap::value_parser!(u32).range(1..=20))]
     moments: u32,
+    /// Length of each of the 32 healthy runs in which nothing may be told, s
+    #[arg(long, value_name = "S", default_value_t = 20.0, value_parser = super::run::positive_seconds)]
+    calm: f64,
     /// Print the figures as one JSON object
     #[arg(long)]
     json: bool,
@@ -163,14 +166,16 @@ fn validation(arguments: &Validation) -> anyhow::Result<()> {
 
 fn faults(arguments: &Faults) -> anyhow::Result<()> {
     make(arguments.out.as_deref())?;
-    let report = faults::study(&faults::Options { moments: arguments.moments, live: true }, progress)?;
+    let options = faults::Options { moments: arguments.moments, live: true, calm_s: arguments.calm };
+    let report = faults::study(&options, progress)?;
     if let Some(folder) = &arguments.out {
         write(folder, "faults.json", &serde_json::to_string_pretty(&report)?)?;
         write(folder, "faults.md", &report.markdown())?;
     }
     if arguments.json { output::json(&report) } else { output::line(report.markdown().trim_end()) }?;
-    let silent = report.sums.silent;
+    let (silent, false_alarms) = (report.sums.silent, report.calm.false_alarms.len());
     anyhow::ensure!(silent == 0, "{silent} cases are silent: see the table");
+    anyhow::ensure!(false_alarms == 0, "{false_alarms} faults were told of healthy machines: see the table");
     Ok(())
 }
 

@@ -1,0 +1,66 @@
+//! Healthy machines at ordinary work, of which nothing may be told.
+
+use serde::Serialize;
+
+use super::FaultsError;
+use crate::{
+    config::{Rig as RigConfig, Scene},
+    impedance::Mode,
+    runtime::{Command, Plan, run_virtual},
+    study::validation::experiment,
+    teleop::{Calibrations, LoopState},
+};
+
+const SCENES: [&str; 4] = ["peg_transfer", "palpation", "free_motion", "bimanual"];
+const DELAYS_S: [f64; 4] = [0.0, 0.01, 0.05, 0.3];
+
+/// Healthy runs and what was told of them.
+#[derive(Clone, Debug, Default, Serialize)]
+pub struct Calm {
+    /// Runs.
+    pub runs: usize,
+    /// All of them together, s of loop time.
+    pub seconds: f64,
+    /// What was told, with scene, mode, delay and time.
+    pub false_alarms: Vec<String>,
+}
+
+impl Calm {
+    pub(super) fn line(&self) -> String {
+        let told = if self.false_alarms.is_empty() { "none".to_owned() } else { self.false_alarms.join("; ") };
+        format!("- false alarms in {} healthy runs of {:.0} minutes together: {told}", self.runs, self.seconds / 60.0)
+    }
+}
+
+/// Runs every scene in both modes at every delay, each for so long, s.
+pub(super) fn runs(seconds: f64) -> Result<Calm, FaultsError> {
+    let mut calm = Calm::default();
+    let gravity = experiment::gravity(1)?;
+    for scene in SCENES {
+        for mode in [Mode::Anchored, Mode::Dfr] {
+            for delay_s in DELAYS_S {
+                let mut rig = RigConfig::load("simulated")?;
+                (rig.mode, rig.delay_s, rig.gates.static_hold) = (mode, delay_s, calm.runs % 2 == 0);
+                let known = Calibrations { gravity: Some(gravity), tip_force: None };
+                let scene = Scene::load(scene)?;
+                let (calibrations, left_calibrations) = (known, Calibrations::default());
+                let plan = Plan { rig, scene, calibrations, left_calibrations, engage: true };
+                let mut told = None;
+                let summary = run_virtual(&plan, seconds, |tick| match tick.state {
+                    LoopState::Faulted(fault) => {
+                        told = Some((tick.t_s, fault));
+                        Some(Command::Shutdown)
+                    }
+                    _ => None,
+                })?;
+                if let Some((t_s, fault)) = told {
+                    let name = &plan.scene.name;
+                    calm.false_alarms.push(format!("{name}, {mode}, {:.0} ms: {fault:?} at {t_s:.3} s", 1e3 * delay_s));
+                }
+                calm.runs += 1;
+                calm.seconds += summary.seconds;
+            }
+        }
+    }
+    Ok(calm)
+}

@@ -291,8 +291,9 @@ impl Pair {
             force_n: rendered.force(self.mode).map(|force_n| force_n * ramp),
             age_s,
             speed_m_s: self.hand_speed_m_s,
-            // On the axes of the force; the way of the hand itself, whatever the scale makes of it.
-            hand_m: inputs.map(|inputs| self.hand_eye.mapping().kbf_from_leader() * inputs.hand.position_m),
+            // On the axes of the force; the way of the hand itself, whatever the scale makes of it. A lost sample hides no way: the
+            // next one shows it.
+            hand_m: self.hand_now_m(now_s),
             permitted,
         });
         let gripper_n = self.grip(inputs.as_ref(), age_s, permitted);
@@ -313,6 +314,12 @@ impl Pair {
         let tick = self.tick(&seen, leader_m, &rendered, delayed_n, rendered_n, gates, timing);
         self.ticks += 1;
         (outputs, tick)
+    }
+
+    /// Where the hand was last seen, m (`kbf`), while that is not long ago.
+    fn hand_now_m(&self, now_s: f64) -> Option<Vector3<f64>> {
+        let seen = self.last_inputs.filter(|_| !self.is_silent(now_s))?;
+        Some(self.hand_eye.mapping().kbf_from_leader() * seen.hand.position_m)
     }
 
     /// The gripper feels what its jaws hold, through gates of its own.
@@ -341,6 +348,7 @@ impl Pair {
             hand_m: inputs.hand.position_m,
             command_m: self.command_m,
             hand_force_n: self.hand_force_n,
+            guided: self.guide_m.is_some(),
         });
         (self.force.tip_n, inputs.tip_m, inputs.hand.position_m) = (admitted.force_n, admitted.tip_m, admitted.hand_m);
         self.measure_speed(&inputs, now_s);

@@ -34,6 +34,9 @@ const TURN_MAX: f64 = 0.1;
 const WAY_TICKS: usize = 4;
 /// A handle that stands to the last bit while its force changes by this much is stuck, N: a gripping hand of 900 N/m gives way by 0.8 mm.
 const STUCK_FORCE_N: f64 = 0.7;
+/// Or that stands so for [`UNMOVED_S`] under this force, N: a hand that grips trembles, one that is gone gives way.
+const UNMOVED_FORCE_N: f64 = 0.5;
+const UNMOVED_S: f64 = 0.1;
 /// A tip that stands to the last bit while its command goes this far does not follow, m.
 const STUCK_COMMAND_M: f64 = 0.5e-3;
 /// Shortest time to call something stuck, s.
@@ -124,6 +127,8 @@ pub struct Observed {
     pub command_m: Option<Vector3<f64>>,
     /// Force on the hand as commanded one tick ago, N.
     pub hand_force_n: Vector3<f64>,
+    /// The handle is led from the screen: then it may stand still under a force.
+    pub guided: bool,
 }
 
 /// What may be used of it.
@@ -169,6 +174,8 @@ pub struct Plausibility {
     opposed: Opposed,
     handle_stuck: Stuck,
     tip_stuck: Stuck,
+    hand_before_m: Option<Vector3<f64>>,
+    unmoved_since_s: f64,
     ways_m: [f64; WAY_TICKS],
     last_t_s: f64,
     doubt: Option<Implausible>,
@@ -189,6 +196,8 @@ impl Plausibility {
             opposed: Opposed::new(period_s),
             handle_stuck: Stuck::default(),
             tip_stuck: Stuck::default(),
+            hand_before_m: None,
+            unmoved_since_s: f64::INFINITY,
             ways_m: [0.0; WAY_TICKS],
             last_t_s: f64::NEG_INFINITY,
             doubt: None,
@@ -240,7 +249,13 @@ impl Plausibility {
     }
 
     fn handle_is_stuck(&mut self, seen: &Observed) -> bool {
-        self.handle_stuck.look(&seen.hand_m, &seen.hand_force_n, STUCK_FORCE_N, seen.t_s)
+        let stuck = self.handle_stuck.look(&seen.hand_m, &seen.hand_force_n, STUCK_FORCE_N, seen.t_s);
+        let pressed = !seen.guided && seen.hand_force_n.norm() >= UNMOVED_FORCE_N;
+        if !pressed || self.hand_before_m != Some(seen.hand_m) {
+            self.unmoved_since_s = seen.t_s;
+        }
+        self.hand_before_m = Some(seen.hand_m);
+        (stuck && !seen.guided) || seen.t_s - self.unmoved_since_s > UNMOVED_S
     }
 
     fn arm_is_astray(&mut self, seen: &Observed) -> bool {

@@ -28,6 +28,7 @@ impl Bench {
             hand_m: at_m,
             command_m: Some(at_m),
             hand_force_n: Vector3::zeros(),
+            guided: false,
         }
     }
 
@@ -137,6 +138,18 @@ fn what_stands_while_its_cause_moves_is_stuck() {
         seen.hand_force_n = Vector3::x() * 0.05 * f64::from(k);
     });
     assert!(matches!(told, Some((15..=20, Implausible::HandleFrozen))), "{told:?}");
+    let mut kept = None;
+    let told = after(|_, seen| {
+        seen.hand_m = *kept.get_or_insert(seen.hand_m);
+        seen.hand_force_n = Vector3::x() * 0.6;
+    });
+    assert!(matches!(told, Some((100..=103, Implausible::HandleFrozen))), "{told:?}");
+    let mut kept = None;
+    let told = after(|k, seen| {
+        seen.hand_m = *kept.get_or_insert(seen.hand_m);
+        (seen.hand_force_n, seen.guided) = (Vector3::x() * 0.05 * f64::from(k), true);
+    });
+    assert_eq!(told, None, "led from the screen");
     let mut kept = None;
     let told = after(|_, seen| seen.tip_m = *kept.get_or_insert(seen.tip_m));
     assert!(matches!(told, Some((15..=20, Implausible::ArmAstray))), "{told:?}");

@@ -38,6 +38,7 @@ pub(super) struct Bench {
     tick: u32,
     fault: Option<(Kind, u32)>,
     twin_n: Vector3<f64>,
+    tip_n: Vector3<f64>,
 }
 
 /// One tick of both.
@@ -47,6 +48,8 @@ pub(super) struct Step {
     pub(super) twin: Tick,
     /// What the twin commanded for this exchange, N.
     pub(super) twin_before_n: Vector3<f64>,
+    /// Force at the tip when it did, as the twin makes it of the truth, N.
+    pub(super) tip_before_n: Vector3<f64>,
     /// What the rig was given.
     pub(super) applied: Outputs,
     /// What the machine wanted the rig to have.
@@ -74,7 +77,16 @@ impl Bench {
         let machine = Loop::new(&config, &[Some(known), None])?;
         let rig = Faulty::new(Worlds::new(&scene, config.rate_hz));
         let outputs = [Outputs::SAFE; SIDES];
-        Ok(Self { rig, twin: machine.clone(), machine, outputs, tick: 0, fault: None, twin_n: Vector3::zeros() })
+        Ok(Self {
+            rig,
+            twin: machine.clone(),
+            machine,
+            outputs,
+            tick: 0,
+            fault: None,
+            twin_n: Vector3::zeros(),
+            tip_n: Vector3::zeros(),
+        })
     }
 
     pub(super) fn begin(&mut self, fault: Kind) {
@@ -163,6 +175,8 @@ impl Bench {
         self.outputs = outputs;
         self.twin.clear_events();
         let (twin_outputs, twins) = self.twin.step(truth, &Timing { now_s, ..Timing::default() });
+        let tip_n = twins[FAULTY].map_or_else(Vector3::zeros, |tick| tick.measured_n);
+        let tip_before_n = std::mem::replace(&mut self.tip_n, tip_n);
         let twin_before_n = std::mem::replace(&mut self.twin_n, twin_outputs[FAULTY].hand_force_n);
         self.tick += 1;
         let raised = self.machine.events().find_map(|event| match event {
@@ -174,6 +188,7 @@ impl Bench {
             machine: ticks[FAULTY]?,
             twin: twins[FAULTY]?,
             twin_before_n,
+            tip_before_n,
             applied,
             wanted,
             shows: self.is_elsewhere() || differs(given.as_ref(), truth.as_ref()) || altered(&wanted, &applied),

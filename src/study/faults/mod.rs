@@ -3,7 +3,7 @@
 //! Each case is a machine whose rig, clock, link or screen fails at a moment, and its twin in the same world that is given the truth.
 //! Takes nothing but [`Options`]; gives a [`Report`] (ms, N). A case is *detected* (a fault, a change of state, a refusal, a closed
 //! gate or an unusable force is told), *harmless* (there is no force and no motion, or the force in the hand differs from the
-//! twin's of the same 5 ms by at most [`HARMLESS_N`]), *bounded* (it cannot be told in principle; its largest error is given), or *silent*.
+//! twin's of the same 5 ms by at most [`HARMLESS_N`], or is no farther from the force at the tip than the twin's own), *bounded* (it cannot be told in principle; its largest error is given), or *silent*.
 //! Faults of threads and disks run on the real clock, those of files on files.
 
 mod at_rest;
@@ -170,7 +170,8 @@ impl Place {
 pub enum Verdict {
     /// Neither force nor motion all the time.
     NoForce,
-    /// The force differs from the nearest of the twin's within 5 ms by at most [`HARMLESS_N`].
+    /// The force differs from the nearest of the twin's within 5 ms by at most [`HARMLESS_N`], or is no farther from the force at the tip
+    /// than the twin's own: its largest error by at most [`HARMLESS_N`], its mean error by at most 0.02 N.
     Harmless,
     /// Something was told.
     Detected,

@@ -45,7 +45,9 @@ impl Report {
         let lines = [
             format!("{kinds} kinds of fault; {cases} cases on the virtual clock, {} beside it.", self.specials.len()),
             format!("- no force and no motion: {no_force}"),
-            format!("- harmless (at most {HARMLESS_N} N from the twin within 5 ms): {harmless}"),
+            format!(
+                "- harmless (at most {HARMLESS_N} N from the twin within 5 ms, or no farther from the truth than the twin): {harmless}"
+            ),
             format!("- detected: {detected}"),
             format!("- bounded, not detected: {bounded} (largest error {bounded_error_n:.2} N)"),
             format!("- silent: {silent}"),

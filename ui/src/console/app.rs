@@ -20,6 +20,7 @@ use super::{
     in_force::InForce,
     keys,
     live::Live,
+    menu,
     outbox::Outbox,
     panels::{CalibrationWish, ForcesState, TopBarState, TradeoffState, calibrations_ui, top_bar_ui},
     roles::{Panels, Role, Wishes, role_ui},
@@ -99,6 +100,7 @@ impl ConsoleApp {
         if let Some(told) = settings.told() {
             self.in_force.tell(format!("{told}."));
         }
+        self.panels.tab = settings.now.tab;
         self.settings = settings;
         self
     }
@@ -121,6 +123,11 @@ impl ConsoleApp {
     /// The trade-off panel's memory, for what it has measured.
     pub fn tradeoff(&self) -> &TradeoffState {
         &self.panels.tradeoff
+    }
+
+    /// Moments that were marked, s on the loop's clock.
+    pub fn marks_s(&self) -> impl Iterator<Item = f64> {
+        self.live.marks_s.iter().copied()
     }
 
     /// What calibrations are in force.
@@ -243,20 +250,19 @@ impl ConsoleApp {
     }
 
     fn layout(&mut self, ui: &mut Ui) {
-        let bar = Frame::new().fill(theme::PANEL).inner_margin(Margin::symmetric(14, 0));
+        let bar = Frame::new().fill(theme::now().panel).inner_margin(Margin::symmetric(14, 0));
         Panel::top("top_bar").exact_size(72.0).resizable(false).frame(bar).show(ui, |ui| {
             let calibrating = self.wizards.open.is_some();
-            let role = self.role();
-            let chosen = top_bar_ui(ui, &self.live, &mut self.top_bar, &mut self.outbox, role, calibrating);
+            top_bar_ui(ui, &self.live, &mut self.top_bar, &mut self.outbox, &mut self.settings.now, calibrating);
             let pressed = keys::role_pressed(ui.ctx()).filter(|_| !calibrating);
-            self.settings.now.role = chosen.or(pressed).unwrap_or(role);
+            self.settings.now.role = pressed.unwrap_or(self.role());
         });
         if self.wizards.open.is_some() { self.wizard_layout(ui) } else { self.monitor_layout(ui) }
     }
 
     /// A technician's view: one wizard, what is in force, and the way back.
     fn wizard_layout(&mut self, ui: &mut Ui) {
-        let side = Frame::new().fill(theme::PANEL).inner_margin(Margin::same(8));
+        let side = Frame::new().fill(theme::now().panel).inner_margin(Margin::same(8));
         let mut wish = None;
         Panel::left("calibrations").exact_size(316.0).resizable(false).frame(side).show(ui, |ui| {
             wish = calibrations_ui(ui, &self.live, &self.in_force, self.wizards.open);
@@ -333,10 +339,15 @@ impl eframe::App for ConsoleApp {
         // Once given up they stay so: a view that changes its look by itself again and again would be worse.
         self.live.rough_edges |= self.opened.elapsed() > WARM_UP && self.live.figures.frame_work_ms > SLOW_MS;
         self.panels.scene.smooth = !self.live.rough_edges;
+        menu::apply(&ctx, &mut self.settings.now);
         if keys::stop_pressed(&ctx) {
             self.outbox.push(Command::Stop);
         }
+        if keys::mark_pressed(&ctx) {
+            self.live.mark();
+        }
         self.layout(ui);
+        self.settings.now.tab = self.panels.tab;
         self.settings.save();
         if let Some(handle) = &self.handle {
             self.outbox.flush(handle);
@@ -347,7 +358,7 @@ impl eframe::App for ConsoleApp {
 
     /// The ground of the whole window: clearing is far cheaper than painting panels over it.
     fn clear_color(&self, _visuals: &egui::Visuals) -> [f32; 4] {
-        theme::BACKGROUND.to_normalized_gamma_f32()
+        theme::now().background.to_normalized_gamma_f32()
     }
 
     fn on_exit(&mut self, gl: Option<&glow::Context>) {

@@ -27,3 +27,8 @@ pub(super) fn stop_pressed(ctx: &Context) -> bool {
 pub(super) fn role_pressed(ctx: &Context) -> Option<Role> {
     ctx.input(|input| Role::ALL.into_iter().find(|role| input.key_pressed(role.key())))
 }
+
+/// This moment shall be marked.
+pub(super) fn mark_pressed(ctx: &Context) -> bool {
+    !ctx.text_edit_focused() && ctx.input(|input| input.key_pressed(Key::E))
+}

@@ -11,21 +11,25 @@ use nima::{
     device::{Healths, Roster, SIDES, Side},
     impedance::Mode,
     runtime::{Command, Event, Fault, Handle, Scheduling, Tick},
-    safety::ChainSettings,
+    safety::{ChainSettings, Why},
     statistics::{Percentiles, Quantiles},
     teleop::LoopState,
 };
 
 use super::{
     alarms::Signs,
+    cloud::Cloud,
     history::{CHANNELS, History},
     rolling::{DegreeShares, Fading},
+    stiffness::ContactStiffness,
 };
 
 /// Window of the degree histograms, s.
 pub const DEGREES_S: f64 = 120.0;
 /// Length of the trend of errors, s; one point a second.
 pub const TREND_S: usize = 180;
+/// Marks kept.
+const MARKS: usize = 100;
 /// Length of the tip's trail, s, and time between its points.
 const TRAIL_S: f64 = 1.2;
 const TRAIL_STEP_S: f64 = 0.02;
@@ -57,6 +61,17 @@ pub struct Gates {
     pub energy: Fading,
     /// Force too large.
     pub ceiling: Fading,
+}
+
+/// How an arm pair came into its present state.
+#[derive(Clone, Copy, Debug)]
+pub struct Change {
+    /// When, s on the loop's clock.
+    pub t_s: f64,
+    /// From which state.
+    pub from: LoopState,
+    /// Why.
+    pub why: Why,
 }
 
 /// Numbers as shown: steady enough to be read.
@@ -95,14 +110,22 @@ pub struct Live {
     pub left: Option<Tick>,
     /// Forces over time, of each side.
     pub history: [History; SIDES],
+    /// Pairs of forces of the last seconds, of each side.
+    pub clouds: [Cloud; SIDES],
+    /// Moments that the operator marked, s on the loop's clock, oldest first.
+    pub marks_s: VecDeque<f64>,
     /// Degrees chosen by the console.
     pub degrees: DegreeShares,
     /// Degrees the paper's in-window rule would choose.
     pub paper_degrees: DegreeShares,
     /// Error of each mode at the horizon, N, second by second, oldest first.
     pub trend_n: VecDeque<[f64; 4]>,
-    /// Gates over the last moments.
-    pub gates: Gates,
+    /// Gates of each side over the last moments.
+    pub gates: [Gates; SIDES],
+    /// The last change of each side's state.
+    pub changes: [Option<Change>; SIDES],
+    /// How stiff each side's contact is, or the last one was.
+    pub stiffness: [ContactStiffness; SIDES],
     /// Numbers for reading.
     pub figures: Figures,
     /// Recent positions of each side's tip, m, oldest first.
@@ -146,9 +169,13 @@ impl Live {
             tick: None,
             left: None,
             history: Default::default(),
+            clouds: Default::default(),
+            marks_s: VecDeque::new(),
             degrees: DegreeShares::new(ticks),
             paper_degrees: DegreeShares::new(ticks),
-            gates: Gates::default(),
+            gates: Default::default(),
+            changes: [None; SIDES],
+            stiffness: Default::default(),
             figures: Figures::default(),
             trails: Default::default(),
             scheduling: None,
@@ -212,6 +239,15 @@ impl Live {
         self.frame_work.push(work_s.unwrap_or(0.0) * 1e3, period_s, 1.0);
     }
 
+    /// Marks this moment.
+    pub fn mark(&mut self) {
+        let Some(tick) = &self.tick else { return };
+        self.marks_s.push_back(tick.t_s);
+        if self.marks_s.len() > MARKS {
+            self.marks_s.pop_front();
+        }
+    }
+
     /// Newest tick of this side.
     pub const fn tick_of(&self, side: Side) -> Option<&Tick> {
         match side {
@@ -261,6 +297,11 @@ impl Live {
         self.tick.map_or(self.rig.gates, |tick| tick.gate_settings)
     }
 
+    /// Stiffness of the stiffer contact that either hand has or had last, N/m: the gain is the same for both.
+    pub fn stiffness_n_m(&self) -> Option<f64> {
+        self.stiffness.iter().filter_map(ContactStiffness::n_m).max_by(f64::total_cmp)
+    }
+
     /// What alarms are judged from.
     pub fn signs(&self, stop_is_stuck: bool) -> Signs {
         Signs {
@@ -280,7 +321,8 @@ impl Live {
             Event::FaultRaised { t_s, fault, .. } => {
                 self.first_fault.get_or_insert((t_s, fault));
             }
-            Event::StateChanged { to, .. } => {
+            Event::StateChanged { t_s, side, from, to, why } => {
+                self.changes[side.index()] = Some(Change { t_s, from, why });
                 if !matches!(to, LoopState::Faulted(_)) {
                     self.first_fault = None;
                 }
@@ -314,7 +356,6 @@ impl Live {
         }
         self.wake.record(tick.wake_s);
         self.work.record(tick.work_s);
-        self.gates.push(tick, dt_s);
         self.ticks_counted += 1;
     }
 
@@ -326,6 +367,9 @@ impl Live {
         self.history[side].push(tick.t_s, &values);
         self.measured[side].push(m.norm(), dt_s, 0.05);
         self.rendered[side].push(r.norm(), dt_s, 0.05);
+        self.gates[side].push(tick, dt_s);
+        self.clouds[side].push(tick.t_s, m, r);
+        self.stiffness[side].push(tick.t_s, &tick.tip_m, &m);
         if tick.t_s - self.trail_s[side] >= TRAIL_STEP_S && tick.tip_m.iter().all(|x| x.is_finite()) {
             self.trail_s[side] = tick.t_s;
             self.trails[side].push_back(tick.tip_m.cast());
@@ -347,7 +391,7 @@ impl Live {
         }
         self.figures = Figures {
             horizon_n: self.horizon.map(Fading::get),
-            withheld_n: self.gates.withheld_n.get(),
+            withheld_n: self.gates[Side::Right.index()].withheld_n.get(),
             wake_us: self.wake.quantiles(),
             work_us: self.work.quantiles(),
             rate_hz: self.ticks_counted as f64 / since.as_secs_f64(),

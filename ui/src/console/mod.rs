@@ -6,10 +6,12 @@
 
 pub mod alarms;
 pub mod app;
+pub mod cloud;
 pub mod history;
 pub mod in_force;
 mod keys;
 pub mod live;
+mod menu;
 pub mod outbox;
 pub mod panels;
 pub mod roles;
@@ -17,6 +19,7 @@ pub mod rolling;
 pub mod scene3d;
 pub mod screenshot;
 pub mod settings;
+pub mod stiffness;
 pub mod theme;
 pub mod widgets;
 pub mod wizards;

@@ -11,17 +11,32 @@ use std::{
 use nima::{calibration::store::Store, files::write_atomically};
 use serde::{Deserialize, Serialize};
 
-use super::roles::Role;
+use super::roles::{Role, Tab};
 
 const FILE: &str = "console.json";
 const SET_ASIDE: &str = "console.corrupted.json";
 
 /// The settings.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Settings {
     /// Who sits before the screen.
     pub role: Role,
+    /// What a technician sees under the field.
+    pub tab: Tab,
+    /// Dark on light.
+    pub light: bool,
+    /// Size of everything, percent; [`SCALES`].
+    pub scale_percent: u16,
+}
+
+/// Least and largest size of everything, percent.
+pub const SCALES: std::ops::RangeInclusive<u16> = 100..=200;
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self { role: Role::default(), tab: Tab::default(), light: false, scale_percent: 100 }
+    }
 }
 
 /// Settings and the folder that they are kept in.

@@ -71,9 +71,11 @@ fn standing_words(health: &Health) -> (Sign, egui::Color32, String) {
         format!("{rate_hz:.0} Hz; lost {lost}, damaged {damaged}, refused {refused}")
     };
     match health.standing {
-        Standing::Connected => (Sign::Disc, theme::ENGAGED, figures()),
-        Standing::Opening => (Sign::Ring, theme::TEXT, "being opened".to_owned()),
-        Standing::Closed => (Sign::Ring, theme::TEXT_WEAK, "disconnected".to_owned()),
-        Standing::Lost(loss) => (Sign::Triangle, theme::ALARM_MEDIUM, format!("lost: {}; {}", loss.cause(), figures())),
+        Standing::Connected => (Sign::Disc, theme::now().engaged, figures()),
+        Standing::Opening => (Sign::Ring, theme::now().text, "being opened".to_owned()),
+        Standing::Closed => (Sign::Ring, theme::now().text_weak, "disconnected".to_owned()),
+        Standing::Lost(loss) => {
+            (Sign::Triangle, theme::now().alarm_medium, format!("lost: {}; {}", loss.cause(), figures()))
+        }
     }
 }

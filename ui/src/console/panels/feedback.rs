@@ -8,7 +8,7 @@ use std::ops::RangeInclusive;
 use egui::{Button, DragValue, RichText, Slider, SliderClamping, Ui, vec2};
 use nima::{impedance::Mode, runtime::Command};
 
-use super::{mode_meaning, mode_name};
+use super::{mode_meaning, mode_name, stable_gain::stable_gain_ui};
 use crate::console::{
     live::Live,
     outbox::Outbox,
@@ -90,14 +90,14 @@ struct Setting {
     at_once: bool,
 }
 
-/// Shows the setting; gives the value that the operator wants, when there is a new one.
+/// Shows the setting; gives the value that the operator wants, when there is a new one, and where the slider is.
 fn setting_ui(
     ui: &mut Ui,
     setting: &Setting,
     range: RangeInclusive<f64>,
     in_force: f64,
     asked: &mut Asked,
-) -> Option<f64> {
+) -> (Option<f64>, egui::Rect) {
     let time_s = ui.input(|input| input.time);
     // Shown in whole steps. The widgets must not round or clamp by themselves: they would report it as an edit, and the
     // screen would send the loop a setting that nobody chose.
@@ -122,19 +122,22 @@ fn setting_ui(
     ui.spacing_mut().slider_width = ui.available_width();
     let slider = Slider::new(&mut value, range).show_value(false).clamping(SliderClamping::Edits);
     let slider = ui.add(slider).labelled_by(label).on_hover_text(setting.meaning);
+    let rail = slider.rect;
     let both = slider.union(number);
     if both.changed() || both.dragged() {
         asked.0 = Some((whole(value), time_s));
     }
     let wanted =
         if setting.at_once { both.changed() } else { both.drag_stopped() || (both.changed() && !both.dragged()) };
-    wanted.then_some(whole(value))
+    (wanted.then_some(whole(value)), rail)
 }
 
 fn gain_ui(ui: &mut Ui, live: &Live, state: &mut FeedbackState, outbox: &mut Outbox) {
     let setting = Setting { name: "Gain", meaning: GAIN_MEANING, suffix: "", decimals: 2, at_once: true };
     let limit = if state.allow_above_one { GAIN_LIMIT } else { 1.0 };
-    if let Some(gain) = setting_ui(ui, &setting, 0.0..=limit, live.gain(), &mut state.gain) {
+    let (wanted, rail) = setting_ui(ui, &setting, 0.0..=limit, live.gain(), &mut state.gain);
+    stable_gain_ui(ui, live, rail, limit);
+    if let Some(gain) = wanted {
         outbox.push(if gain > 1.0 { Command::SetGainAboveOne(gain) } else { Command::SetGain(gain) });
     }
     ui.horizontal(|ui| {
@@ -196,7 +199,7 @@ fn delay_ui(ui: &mut Ui, live: &Live, state: &mut FeedbackState, outbox: &mut Ou
         at_once: false,
     };
     let in_force = live.delay_s() * 1e3;
-    if let Some(delay_ms) = setting_ui(ui, &setting, DELAY_MS, in_force, &mut state.delay_ms) {
+    if let Some(delay_ms) = setting_ui(ui, &setting, DELAY_MS, in_force, &mut state.delay_ms).0 {
         outbox.push(Command::SetDelay(delay_ms * 1e-3));
     }
 }
@@ -211,7 +214,7 @@ fn standstill_ui(ui: &mut Ui, live: &Live, state: &mut FeedbackState, outbox: &m
         at_once: true,
     };
     let in_force = live.gate_settings().dead_band_m_s * 1e3;
-    if let Some(mm_s) = setting_ui(ui, &setting, DEAD_BAND_MM_S, in_force, &mut state.dead_band_mm_s) {
+    if let Some(mm_s) = setting_ui(ui, &setting, DEAD_BAND_MM_S, in_force, &mut state.dead_band_mm_s).0 {
         outbox.push(Command::SetDeadBand(mm_s * 1e-3));
     }
     let mut hold = live.gate_settings().static_hold;

@@ -8,7 +8,7 @@ use super::Panels;
 use crate::console::{
     live::Live,
     outbox::Outbox,
-    panels::{forces_ui, horizon_ui},
+    panels::{force_space_ui, forces_ui, horizon_ui},
     scene3d::scene_ui,
     theme,
     widgets::{bar, small},
@@ -139,7 +139,7 @@ pub(super) fn demo_ui(ui: &mut Ui, live: &mut Live, panels: &mut Panels, outbox:
         let dt_s = f64::from(ui.input(|input| input.stable_dt)).min(0.1);
         panels.demo.play(live, panels.scene.is_led(), dt_s, outbox);
     }
-    let side = Frame::new().fill(theme::PANEL).inner_margin(Margin::same(8));
+    let side = Frame::new().fill(theme::now().panel).inner_margin(Margin::same(8));
     Panel::bottom("caption")
         .exact_size(140.0)
         .resizable(false)
@@ -148,7 +148,10 @@ pub(super) fn demo_ui(ui: &mut Ui, live: &mut Live, panels: &mut Panels, outbox:
             caption_ui(ui, live, &mut panels.demo);
         });
     Panel::right("figures").exact_size(348.0).resizable(false).frame(side).show(ui, |ui| {
-        egui::ScrollArea::vertical().auto_shrink(false).show(ui, |ui| horizon_ui(ui, live));
+        horizon_ui(ui, live);
+        let Panels { forces, space, .. } = panels;
+        let room = vec2(ui.available_width(), ui.available_height().min(380.0));
+        ui.allocate_ui(room, |ui| force_space_ui(ui, live, forces.side(), space, forces.cursor_at_s(live)));
     });
     CentralPanel::no_frame().show(ui, |ui| {
         let frame = Frame::new().inner_margin(Margin::symmetric(12, 8));
@@ -196,7 +199,7 @@ fn caption_ui(ui: &mut Ui, live: &Live, demo: &mut DemoState) {
     ui.add(Label::new(RichText::new(words).font(theme::regular(18.0))).wrap());
     let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), 4.0), egui::Sense::hover());
     if plays && live.state() == LoopState::Engaged {
-        bar(ui.painter(), rect, demo.shown_s / SCRIPT[demo.step].seconds, theme::REFERENCE);
+        bar(ui.painter(), rect, demo.shown_s / SCRIPT[demo.step].seconds, theme::now().reference);
     }
     if !plays {
         ui.label(small("Choose a simulated rig to see it."));

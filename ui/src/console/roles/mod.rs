@@ -16,7 +16,7 @@ use super::{
     in_force::InForce,
     live::Live,
     outbox::Outbox,
-    panels::{CalibrationWish, FeedbackState, ForcesState, TradeoffState},
+    panels::{CalibrationWish, FeedbackState, ForceSpaceState, ForcesState, TradeoffState},
     scene3d::{Look, SceneView},
 };
 
@@ -67,6 +67,36 @@ impl Role {
     }
 }
 
+/// What a technician sees under the field.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Tab {
+    /// Forces over time.
+    #[default]
+    Traces,
+    /// Interlock and gates.
+    Safety,
+}
+
+impl Tab {
+    /// All of them.
+    pub const ALL: [Self; 2] = [Self::Traces, Self::Safety];
+
+    const fn name(self) -> &'static str {
+        match self {
+            Self::Traces => "Traces",
+            Self::Safety => "Safety",
+        }
+    }
+
+    const fn meaning(self) -> &'static str {
+        match self {
+            Self::Traces => "Force over time along x, y and z, measured and rendered.",
+            Self::Safety => "What stands between a model and a hand: the interlock and the gates of each arm.",
+        }
+    }
+}
+
 /// What the panels of all roles remember between frames.
 #[derive(Debug, Default)]
 pub struct Panels {
@@ -74,10 +104,14 @@ pub struct Panels {
     pub feedback: FeedbackState,
     /// Traces.
     pub forces: ForcesState,
+    /// Force space.
+    pub space: ForceSpaceState,
     /// Speed against accuracy.
     pub tradeoff: TradeoffState,
     /// The operating field.
     pub scene: SceneView,
+    /// What a technician sees under the field.
+    pub tab: Tab,
     /// Where the demonstration is.
     pub demo: DemoState,
 }
@@ -118,17 +152,15 @@ pub fn role_ui(
     }
 }
 
-/// One click for each role; gives the one that was chosen.
-pub fn switch_ui(ui: &mut Ui, now: Role, allowed: bool) -> Option<Role> {
-    let mut chosen = None;
+/// One click for each role.
+pub fn switch_ui(ui: &mut Ui, now: &mut Role, allowed: bool) {
     ui.spacing_mut().item_spacing.x = 4.0;
     for role in Role::ALL {
-        let button = Button::selectable(now == role, role.name()).frame_when_inactive(true).min_size(vec2(62.0, 34.0));
+        let button = Button::selectable(*now == role, role.name()).frame_when_inactive(true).min_size(vec2(62.0, 34.0));
         let response = ui.add_enabled(allowed, button);
         let response = response.on_hover_text(format!("{} Key {}.", role.meaning(), role.key().name()));
         if response.on_disabled_hover_text("Close the wizard first.").clicked() {
-            chosen = Some(role);
+            *now = role;
         }
     }
-    chosen
 }

@@ -21,7 +21,7 @@ const BEYOND_CEILING: f64 = 1.25;
 
 /// The view.
 pub(super) fn surgeon_ui(ui: &mut Ui, live: &mut Live, panels: &mut Panels, outbox: &mut Outbox) {
-    let strip = Frame::new().fill(theme::PANEL).inner_margin(Margin::same(8));
+    let strip = Frame::new().fill(theme::now().panel).inner_margin(Margin::same(8));
     Panel::bottom("strip").exact_size(STRIP).resizable(false).frame(strip).show(ui, |ui| {
         let room = ui.available_rect_before_wrap();
         let gain = Rect::from_center_size(room.center(), vec2(GAIN_WIDTH, room.height()));
@@ -48,15 +48,15 @@ pub(super) fn surgeon_ui(ui: &mut Ui, live: &mut Live, panels: &mut Panels, outb
 /// Where a second hand would be: what the colours mean.
 fn told_ui(ui: &Ui, live: &Live, place: Rect) {
     let painter = ui.painter_at(place);
-    painter.rect_filled(place, theme::CORNER, theme::CARD);
+    painter.rect_filled(place, theme::CORNER, theme::now().card);
     let text = place.left_top() + vec2(16.0, 16.0);
-    painter.text(text, Align2::LEFT_TOP, &live.scene.name, theme::strong(17.0), theme::TEXT);
+    painter.text(text, Align2::LEFT_TOP, &live.scene.name, theme::strong(17.0), theme::now().text);
     for (i, (rendered, words)) in
         [(false, "measured at the instrument"), (true, "rendered to the hand")].into_iter().enumerate()
     {
         let y = text.y + 52.0 + 34.0 * i as f32;
-        force_sign(&painter, Rect::from_center_size(pos2(text.x + 18.0, y), vec2(36.0, 16.0)), rendered);
-        painter.text(pos2(text.x + 48.0, y), Align2::LEFT_CENTER, words, theme::regular(15.0), theme::TEXT_WEAK);
+        force_sign(&painter, theme::now(), Rect::from_center_size(pos2(text.x + 18.0, y), vec2(36.0, 16.0)), rendered);
+        painter.text(pos2(text.x + 48.0, y), Align2::LEFT_CENTER, words, theme::regular(15.0), theme::now().text_weak);
     }
 }
 
@@ -73,23 +73,28 @@ fn hand_ui(ui: &mut Ui, live: &Live, side: Side, place: Rect) {
          larger force ever reaches the hand.",
     );
     let painter = ui.painter_at(place);
-    painter.rect_filled(place, theme::CORNER, theme::CARD);
+    painter.rect_filled(place, theme::CORNER, theme::now().card);
     let inner = place.shrink2(vec2(16.0, 12.0));
-    painter.text(inner.left_top(), Align2::LEFT_TOP, name, theme::strong(17.0), theme::TEXT);
+    painter.text(inner.left_top(), Align2::LEFT_TOP, name, theme::strong(17.0), theme::now().text);
     let bars = Rect::from_min_max(inner.left_top() + vec2(190.0, 34.0), inner.max);
     let mark = bars.left() + bars.width() / BEYOND_CEILING as f32;
     for (i, (force_n, rendered, colour)) in
-        [(measured_n, false, theme::MEASURED), (rendered_n, true, theme::RENDERED)].into_iter().enumerate()
+        [(measured_n, false, theme::now().measured), (rendered_n, true, theme::now().rendered)].into_iter().enumerate()
     {
         let y = bars.top() + (0.25 + 0.5 * i as f32) * bars.height();
-        force_sign(&painter, Rect::from_center_size(pos2(inner.left() + 18.0, y), vec2(36.0, 16.0)), rendered);
+        force_sign(
+            &painter,
+            theme::now(),
+            Rect::from_center_size(pos2(inner.left() + 18.0, y), vec2(36.0, 16.0)),
+            rendered,
+        );
         let number = format!("{force_n:.1} N");
         painter.text(pos2(inner.left() + 172.0, y), Align2::RIGHT_CENTER, number, theme::strong(38.0), colour);
         let groove = Rect::from_center_size(pos2(bars.center().x, y), vec2(bars.width(), 26.0));
         bar(&painter, groove, force_n / (BEYOND_CEILING * ceiling_n), colour);
     }
-    painter.vline(mark, bars.top()..=bars.bottom(), egui::Stroke::new(2.5, theme::TEXT));
+    painter.vline(mark, bars.top()..=bars.bottom(), egui::Stroke::new(2.5, theme::now().text));
     let words = format!("ceiling {ceiling_n:.0} N");
     let at = pos2(mark, inner.top() + 2.0);
-    painter.text(at, Align2::CENTER_TOP, words, theme::regular(14.0), theme::TEXT_WEAK);
+    painter.text(at, Align2::CENTER_TOP, words, theme::regular(14.0), theme::now().text_weak);
 }

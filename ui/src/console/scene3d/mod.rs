@@ -190,7 +190,14 @@ fn labels(painter: &Painter, rect: Rect, live: &Live, camera: &Camera, arm: &Arm
     let at = |point_m: Vector3<f32>| camera.project(&point_m, rect);
     let Arm { trocar_m, pose, side, .. } = arm;
     if let Some(place) = at(*trocar_m) {
-        label(painter, place + vec2(18.0, 0.0), Align2::LEFT_CENTER, "Trocar", theme::regular(13.0), theme::TEXT_WEAK);
+        label(
+            painter,
+            place + vec2(18.0, 0.0),
+            Align2::LEFT_CENTER,
+            "Trocar",
+            theme::regular(13.0),
+            theme::DARK.text_weak,
+        );
     }
     let along = (trocar_m - pose.tip_m).try_normalize(1e-4).unwrap_or_else(Vector3::z);
     if let (true, Some(place)) = (live.is_bimanual(), at(pose.tip_m + along * NAME_ABOVE_M)) {
@@ -198,7 +205,7 @@ fn labels(painter: &Painter, rect: Rect, live: &Live, camera: &Camera, arm: &Arm
             Side::Right => (Align2::LEFT_CENTER, vec2(20.0, 0.0)),
             Side::Left => (Align2::RIGHT_CENTER, vec2(-20.0, 0.0)),
         };
-        label(painter, place + shift, align, side_name(*side), theme::strong(15.0), theme::TEXT);
+        label(painter, place + shift, align, side_name(*side), theme::strong(15.0), theme::DARK.text);
     }
     let right = camera.right();
     let [measured, rendered] = stage::arrow_bases_m(pose, trocar_m, &right);
@@ -209,8 +216,8 @@ fn labels(painter: &Painter, rect: Rect, live: &Live, camera: &Camera, arm: &Arm
         (Align2::LEFT_CENTER, vec2(9.0, -6.0))
     };
     for (base, force_n, colour, align, shift) in [
-        (measured, pose.measured_n, theme::MEASURED, outside, shift),
-        (rendered, pose.rendered_n, theme::RENDERED, Align2::CENTER_BOTTOM, vec2(0.0, -4.0)),
+        (measured, pose.measured_n, theme::DARK.measured, outside, shift),
+        (rendered, pose.rendered_n, theme::DARK.rendered, Align2::CENTER_BOTTOM, vec2(0.0, -4.0)),
     ] {
         let size_n = force_n.norm();
         if !figures || !(0.15..1e6).contains(&size_n) {
@@ -250,13 +257,13 @@ fn readings(painter: &Painter, rect: Rect, live: &Live) {
         Rect::from_min_max(rect.left_top() + vec2(8.0, 8.0), pos2(column(sides.len() - 1) + 12.0, corner.y + 72.0));
     painter.rect_filled(plate, theme::CORNER, Color32::from_black_alpha(150));
     for (i, (name, forces_n, colour)) in
-        [("Measured", figures.measured_n, theme::MEASURED), ("Rendered", figures.rendered_n, theme::RENDERED)]
+        [("Measured", figures.measured_n, theme::DARK.measured), ("Rendered", figures.rendered_n, theme::DARK.rendered)]
             .into_iter()
             .enumerate()
     {
         let y = corner.y + 14.0 + 34.0 * i as f32;
-        force_sign(painter, Rect::from_center_size(pos2(corner.x + 18.0, y), vec2(36.0, 16.0)), i == 1);
-        painter.text(pos2(corner.x + 48.0, y), Align2::LEFT_CENTER, name, theme::regular(15.0), theme::TEXT);
+        force_sign(painter, &theme::DARK, Rect::from_center_size(pos2(corner.x + 18.0, y), vec2(36.0, 16.0)), i == 1);
+        painter.text(pos2(corner.x + 48.0, y), Align2::LEFT_CENTER, name, theme::regular(15.0), theme::DARK.text);
         for (k, side) in sides.iter().enumerate() {
             let number = format!("{:.2} N", forces_n[side.index()]);
             painter.text(pos2(column(k), y), Align2::RIGHT_CENTER, number, theme::strong(25.0), colour);
@@ -273,14 +280,14 @@ fn readings(painter: &Painter, rect: Rect, live: &Live) {
         gauge(painter, place, measured_n, rendered_n, ceiling_n);
         if both {
             let over = pos2(column(k), corner.y - 13.0);
-            painter.text(over, Align2::RIGHT_CENTER, side_name(*side), theme::regular(15.0), theme::TEXT_WEAK);
+            painter.text(over, Align2::RIGHT_CENTER, side_name(*side), theme::regular(15.0), theme::DARK.text_weak);
             let under = place.center_bottom() + vec2(0.0, 11.0);
-            painter.text(under, Align2::CENTER_CENTER, side_name(*side), theme::regular(12.5), theme::TEXT_WEAK);
+            painter.text(under, Align2::CENTER_CENTER, side_name(*side), theme::regular(12.5), theme::DARK.text_weak);
         }
     }
     let line_y = gauges.bottom() - gauges.height() / 1.25;
     let words = format!("ceiling\n{ceiling_n:.0} N");
-    painter.text(pos2(first - 8.0, line_y), Align2::RIGHT_CENTER, words, theme::regular(12.5), theme::TEXT_WEAK);
+    painter.text(pos2(first - 8.0, line_y), Align2::RIGHT_CENTER, words, theme::regular(12.5), theme::DARK.text_weak);
 }
 
 /// Which way x, y and z of the traces go, in the lower right corner.
@@ -289,24 +296,24 @@ fn axes(painter: &Painter, rect: Rect, camera: &Camera) {
     let origin = rect.right_bottom() - vec2(54.0, 40.0);
     for (name, axis) in [("x", Vector3::x()), ("y", Vector3::y()), ("z", Vector3::z())] {
         let way = LENGTH * vec2(axis.dot(&camera.right()), -axis.dot(&camera.up()));
-        let stroke = egui::Stroke::new(1.5, theme::TEXT_WEAK);
+        let stroke = egui::Stroke::new(1.5, theme::DARK.text_weak);
         painter.line_segment([origin, origin + way], stroke);
-        painter.circle_filled(origin + way, 2.5, theme::TEXT_WEAK);
+        painter.circle_filled(origin + way, 2.5, theme::DARK.text_weak);
         let place = origin + way + way.normalized() * 10.0;
-        painter.text(place, Align2::CENTER_CENTER, name, theme::regular(13.0), theme::TEXT);
+        painter.text(place, Align2::CENTER_CENTER, name, theme::regular(13.0), theme::DARK.text);
     }
 }
 
 fn hint(painter: &Painter, rect: Rect, view: &SceneView) {
     let (words, colour) = match &view.problem {
-        Some(problem) => (format!("The 3-D view cannot be drawn by this graphics driver: {problem}"), theme::TEXT),
+        Some(problem) => (format!("The 3-D view cannot be drawn by this graphics driver: {problem}"), theme::DARK.text),
         None if view.lead.is_on() => (
             "Drag to move the instrument, wheel or Page Up and Down for its height, arrow keys for small steps"
                 .to_owned(),
-            theme::TEXT,
+            theme::DARK.text,
         ),
-        None if view.look == Look::Endoscope => ("As the endoscope sees it".to_owned(), theme::TEXT_WEAK),
-        None => ("Drag to turn, wheel to zoom, double click to reset".to_owned(), theme::TEXT_WEAK),
+        None if view.look == Look::Endoscope => ("As the endoscope sees it".to_owned(), theme::DARK.text_weak),
+        None => ("Drag to turn, wheel to zoom, double click to reset".to_owned(), theme::DARK.text_weak),
     };
     label(painter, rect.left_bottom() + vec2(16.0, -12.0), Align2::LEFT_BOTTOM, &words, theme::regular(12.5), colour);
 }

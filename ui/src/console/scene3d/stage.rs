@@ -204,7 +204,7 @@ fn size_and_direction(force_n: &Vector3<f32>) -> Option<(f32, Vector3<f32>)> {
 
 /// One smooth shaft, one cone.
 fn measured_arrow(mesh: &mut Mesh, base: Vector3<f32>, force_n: &Vector3<f32>) {
-    let paint = Paint(theme::MEASURED, Material::Plain);
+    let paint = Paint(theme::DARK.measured, Material::Plain);
     let Some((size_n, along)) = size_and_direction(force_n) else { return };
     let length = size_n * ARROW_M_PER_N;
     let head = 0.007_f32.min(length * 0.6);
@@ -215,7 +215,7 @@ fn measured_arrow(mesh: &mut Mesh, base: Vector3<f32>, force_n: &Vector3<f32>) {
 /// A beaded shaft and a double cone: told from the other by its shape alone.
 fn rendered_arrow(mesh: &mut Mesh, base: Vector3<f32>, force_n: &Vector3<f32>) {
     const BEAD_M: f32 = 0.0055;
-    let paint = Paint(theme::RENDERED, Material::Plain);
+    let paint = Paint(theme::DARK.rendered, Material::Plain);
     let Some((size_n, along)) = size_and_direction(force_n) else { return };
     let length = size_n * ARROW_M_PER_N;
     let head = 0.009_f32.min(length * 0.6);

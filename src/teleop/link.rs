@@ -89,9 +89,12 @@ impl Link {
         match self.weather {
             Weather::Fair | Weather::Late(_) => self.push(parcel),
             Weather::Silent => {}
-            Weather::LosesHalf if offered % 2 == 1 => {}
-            Weather::LosesHalf => self.push(parcel),
-            Weather::Swaps if offered % 2 == 0 => self.kept = *parcel,
+            Weather::LosesHalf => {
+                if offered.is_multiple_of(2) {
+                    self.push(parcel);
+                }
+            }
+            Weather::Swaps if offered.is_multiple_of(2) => self.kept = *parcel,
             Weather::Swaps => {
                 let kept = self.kept;
                 self.push(parcel);

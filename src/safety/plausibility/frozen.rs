@@ -30,7 +30,7 @@ impl<const N: usize> Frozen<N> {
     ///
     /// A saturated number is frozen too: at the end of its range noise is cut off.
     pub fn look(&mut self, now: &[f64; N], t_s: f64) -> bool {
-        if !(t_s > self.t_s) {
+        if t_s.is_nan() || t_s <= self.t_s {
             return false;
         }
         self.t_s = t_s;

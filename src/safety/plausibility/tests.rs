@@ -69,7 +69,7 @@ fn a_sensor_of_a_fifth_of_the_loops_rate_is_not_frozen() {
     let mut bench = Bench::new();
     let mut kept = None;
     let slow = |k: u32, seen: &mut Observed| {
-        if k % 5 == 0 || kept.is_none() {
+        if k.is_multiple_of(5) || kept.is_none() {
             kept = Some(seen.sensed);
         }
         seen.sensed = kept.unwrap();

@@ -291,7 +291,7 @@ fn differs(given: Option<&Inputs>, truth: Option<&Inputs>) -> bool {
         (Sensed::AtWrist(given), Sensed::AtWrist(truth)) => {
             given.kbf_from_s1 != truth.kbf_from_s1
                 || match (given.acceleration_m_s2, truth.acceleration_m_s2) {
-                    (Some(given), Some(truth)) => !((given - truth).norm() <= 0.2),
+                    (Some(given), Some(truth)) => (given - truth).norm() > 0.2 || given.sum().is_nan(),
                     (given, truth) => given.is_some() != truth.is_some(),
                 }
         }

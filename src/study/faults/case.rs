@@ -19,6 +19,8 @@ const LATER: u32 = 200;
 /// A latched machine is watched for so long, ticks.
 const AFTER_LATCH: u32 = 100;
 
+/// Another state for so long is told, ticks.
+const APART: u32 = 5;
 /// A fault that does not show for so long begins anew when it shows again, ticks.
 const PAUSE: u32 = 20;
 /// Forces are compared with the twin's of so many ticks before and after: what comes 5 ms late is fresh to the age gate.
@@ -61,6 +63,8 @@ struct Watch {
     most_n: f64,
     step_n: f64,
     last_n: Vector3<f64>,
+    /// Ticks for which machine and twin have been in different states.
+    apart: u32,
 }
 
 /// Lets the fault happen on a bench that is ready for it.
@@ -81,6 +85,7 @@ pub(super) fn tried(mut bench: Bench, kind: Kind, sensor: SensorAt, mode: Mode, 
         most_n: 0.0,
         step_n: 0.0,
         last_n: bench.wanted_n(),
+        apart: 0,
     };
     bench.begin(kind);
     let begun_latched = bench.state().is_latched();
@@ -112,10 +117,14 @@ impl Watch {
             }
             self.last_shown = tick;
         }
-        if self.told.is_none()
-            && let Some(what) = told(step)
-        {
-            self.told = Some((what, tick));
+        self.apart = if step.machine.state == step.twin.state { 0 } else { self.apart + 1 };
+        if self.told.is_none() {
+            let state = || format!("state {}", step.machine.state.word().to_lowercase());
+            self.told = told(step).map(|what| (what, tick));
+            // One that is a tick behind tells nothing.
+            if self.told.is_none() && self.apart == APART {
+                self.told = Some((state(), tick));
+            }
         }
         let (applied_n, wanted_n) = (step.applied.hand_force_n, step.wanted.hand_force_n);
         self.felt |= applied_n.norm() > 0.0;
@@ -166,10 +175,12 @@ impl Watch {
             Verdict::Detected
         } else if !self.felt && !self.moved {
             Verdict::NoForce
-        } else if self.error_n <= HARMLESS_N || self.is_no_worse() {
+        } else if self.error_n <= HARMLESS_N {
             Verdict::Harmless
         } else if kind.untellable().is_some() {
             Verdict::Bounded
+        } else if self.is_no_worse() {
+            Verdict::Harmless
         } else {
             Verdict::Silent
         };
@@ -203,9 +214,6 @@ fn told(step: &Step) -> Option<String> {
     }
     if machine.missed > twin.missed {
         return Some("missed periods counted".to_owned());
-    }
-    if machine.state != twin.state {
-        return Some(format!("state {}", machine.state.word().to_lowercase()));
     }
     if step.refused {
         return Some("command refused".to_owned());

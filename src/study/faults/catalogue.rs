@@ -135,18 +135,49 @@ impl Kind {
     /// Where it sits.
     pub const fn part(self) -> Part {
         match self {
-            K::ImuStops | K::ImuFrozen | K::ImuSign | K::ImuNan | K::ImuDead => Part::Orientation,
-            K::OrientationMissing | K::OrientationJump => Part::Orientation,
-            K::HandFrozen | K::HandJump | K::HandSpike | K::HandSign | K::HandAxes | K::HandNan => Part::Handle,
-            K::HandNoise | K::HandLate | K::HandDrift => Part::Handle,
-            K::HandleWithoutForce | K::HandleInverted | K::HandleKeepsForce => Part::Handle,
-            K::TipFrozen | K::TipJump | K::TipDrift | K::TipSign | K::TipNan => Part::Arm,
-            K::ArmIgnores | K::ArmAxes | K::DrivesOff => Part::Arm,
+            K::ImuStops
+            | K::ImuFrozen
+            | K::ImuSign
+            | K::ImuNan
+            | K::ImuDead
+            | K::OrientationMissing
+            | K::OrientationJump => Part::Orientation,
+            K::HandFrozen
+            | K::HandJump
+            | K::HandSpike
+            | K::HandSign
+            | K::HandAxes
+            | K::HandNan
+            | K::HandNoise
+            | K::HandLate
+            | K::HandDrift
+            | K::HandleWithoutForce
+            | K::HandleInverted
+            | K::HandleKeepsForce => Part::Handle,
+            K::TipFrozen
+            | K::TipJump
+            | K::TipDrift
+            | K::TipSign
+            | K::TipNan
+            | K::ArmIgnores
+            | K::ArmAxes
+            | K::DrivesOff => Part::Arm,
             K::PedalDown | K::PedalUp | K::PedalBounces | K::HandAbsent => Part::Switches,
-            K::ClockForward | K::ClockBackward | K::ClockStops | K::ClockSlow | K::ClockNan => Part::Clock,
-            K::PeriodsMissed | K::FewPeriodsMissed => Part::Clock,
-            K::LinkSilent | K::LinkHalf | K::LinkLate | K::LinkJitter => Part::Link,
-            K::LinkSwaps | K::LinkDoubles | K::LinkPoisoned | K::LinkRepeats => Part::Link,
+            K::ClockForward
+            | K::ClockBackward
+            | K::ClockStops
+            | K::ClockSlow
+            | K::ClockNan
+            | K::PeriodsMissed
+            | K::FewPeriodsMissed => Part::Clock,
+            K::LinkSilent
+            | K::LinkHalf
+            | K::LinkLate
+            | K::LinkJitter
+            | K::LinkSwaps
+            | K::LinkDoubles
+            | K::LinkPoisoned
+            | K::LinkRepeats => Part::Link,
             K::CommandsPoisoned | K::CommandsDoubled | K::SliderShakes => Part::Commands,
             _ => Part::Force,
         }

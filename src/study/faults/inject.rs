@@ -17,7 +17,6 @@ const LATE: usize = 50;
 
 /// What a situation does to the devices, no fault of theirs.
 #[derive(Clone, Copy, Debug)]
-#[expect(clippy::struct_excessive_bools, reason = "independent facts")]
 pub(super) struct Situation {
     pub(super) connected: bool,
     pub(super) powered: bool,
@@ -67,7 +66,7 @@ impl<R: Rig> Faulty<R> {
         self.late.clear();
     }
 
-    fn to_rig(&mut self, mut outputs: Outputs) -> Outputs {
+    fn for_rig(&self, mut outputs: Outputs) -> Outputs {
         match self.fault {
             Some(Kind::HandleWithoutForce) => outputs.hand_force_n = Vector3::zeros(),
             Some(Kind::HandleInverted) => outputs.hand_force_n = -outputs.hand_force_n,
@@ -85,23 +84,23 @@ impl<R: Rig> Faulty<R> {
         outputs
     }
 
-    fn to_loop(&mut self, inputs: Inputs, outputs: &Outputs) -> Option<Inputs> {
+    fn for_loop(&mut self, inputs: &Inputs, outputs: &Outputs) -> Option<Inputs> {
+        let inputs = *inputs;
         let Some(fault) = self.fault else { return Some(inputs) };
         self.age += 1;
         let (first, _) = *self.first.get_or_insert((inputs, *outputs));
         self.late.push_back(inputs);
         let late = if self.late.len() > LATE { self.late.pop_front() } else { self.late.front().copied() };
         let before = self.before.replace(inputs).unwrap_or(inputs);
-        let with = |given: Option<Inputs>| given;
         match fault {
             Kind::ForceSilent => None,
-            Kind::ForceGaps => (self.age % 2 == 0).then_some(inputs),
-            Kind::ForceFrozen => with(Some(Inputs { sensed: first.sensed, ..inputs })),
-            Kind::ForceLate => with(Some(Inputs { sensed: late.unwrap_or(inputs).sensed, ..inputs })),
-            Kind::ForceLateTold => with(Some(Inputs { age_s: 0.015, ..inputs })),
+            Kind::ForceGaps => (self.age.is_multiple_of(2)).then_some(inputs),
+            Kind::ForceFrozen => Some(Inputs { sensed: first.sensed, ..inputs }),
+            Kind::ForceLate => Some(Inputs { sensed: late.unwrap_or(inputs).sensed, ..inputs }),
+            Kind::ForceLateTold => Some(Inputs { age_s: 0.015, ..inputs }),
             Kind::ForceDoubled => {
-                let sensed = if self.age % 2 == 0 { before.sensed } else { inputs.sensed };
-                with(Some(Inputs { sensed, ..inputs }))
+                let sensed = if self.age.is_multiple_of(2) { before.sensed } else { inputs.sensed };
+                Some(Inputs { sensed, ..inputs })
             }
             Kind::ForceReordered => Some(Inputs { sensed: self.reordered(&inputs, &before), ..inputs }),
             Kind::HandLate => Some(Inputs { hand: late.unwrap_or(inputs).hand, ..inputs }),
@@ -138,7 +137,7 @@ impl<R: Rig> Faulty<R> {
             Kind::TipNan => inputs.tip_m.z = f64::NAN,
             Kind::PedalDown => inputs.switches.clutch = true,
             Kind::PedalUp => inputs.switches.clutch = false,
-            Kind::PedalBounces => inputs.switches.clutch = self.age / 20 % 2 == 0,
+            Kind::PedalBounces => inputs.switches.clutch = (self.age / 20).is_multiple_of(2),
             Kind::HandAbsent => inputs.switches.presence = Some(false),
             Kind::ImuStops | Kind::ImuFrozen | Kind::ImuSign | Kind::ImuNan | Kind::ImuDead => {
                 turn_imu(fault, &mut inputs.sensed, first);
@@ -180,7 +179,7 @@ impl<R: Rig> Faulty<R> {
 impl<R: Rig> Rig for Faulty<R> {
     fn exchange(&mut self, now_s: f64, outputs: &[Outputs; SIDES]) -> [Option<Inputs>; SIDES] {
         let mut to_rig = *outputs;
-        to_rig[FAULTY] = self.to_rig(outputs[FAULTY]);
+        to_rig[FAULTY] = self.for_rig(outputs[FAULTY]);
         self.applied = to_rig[FAULTY];
         let mut inputs = self.rig.exchange(now_s, &to_rig);
         let Situation { connected, powered, clutch } = self.situation;
@@ -190,7 +189,7 @@ impl<R: Rig> Rig for Faulty<R> {
         }
         inputs[FAULTY] = inputs[FAULTY].filter(|_| connected);
         self.truth = inputs;
-        inputs[FAULTY] = inputs[FAULTY].and_then(|seen| self.to_loop(seen, &to_rig[FAULTY]));
+        inputs[FAULTY] = inputs[FAULTY].and_then(|seen| self.for_loop(&seen, &to_rig[FAULTY]));
         if self.fault == Some(Kind::ForceLost) {
             if self.age == 1 {
                 let standing = Standing::Lost(Loss::Disconnected);

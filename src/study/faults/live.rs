@@ -137,7 +137,7 @@ pub(super) fn all() -> Result<Vec<Special>, LiveError> {
             });
         })?,
         beside("a disk that is written through all the time while summaries are kept", |stop| {
-            slow_disk(stop, folder.path())
+            slow_disk(stop, folder.path());
         })?,
         full_disk(folder.path())?,
     ])
@@ -156,16 +156,15 @@ fn hang(what: &str, length: Duration) -> Result<Special, LiveError> {
     };
     let handle = start_on(&plan, Box::new(rig), Roster::new())?;
     let faulted = until(&handle, |tick| matches!(tick.state, LoopState::Faulted(_)));
-    let mut told = String::new();
+    let mut stalled = false;
     handle.drain_events(|event| {
-        if let Event::FaultRaised { fault: Fault::LoopStalled { .. }, .. } = event {
-            told = "supervisor pulls the levers; then LoopStalled".to_owned();
-        }
+        stalled |= matches!(event, Event::FaultRaised { fault: Fault::LoopStalled { .. }, .. });
     });
     handle.stop_and_join().ok_or(LiveError::Died)?;
     let [began, pulled] = [began, pulled].map(|at| at.load(Ordering::Relaxed));
     let after_ms = (pulled > began).then(|| (pulled - began) as f64 * 1e-6);
-    let verdict = if faulted.is_ok() && after_ms.is_some() { Verdict::Detected } else { Verdict::Silent };
+    let verdict = if faulted.is_ok() && stalled && after_ms.is_some() { Verdict::Detected } else { Verdict::Silent };
+    let told = "supervisor pulls the levers; then LoopStalled".to_owned();
     Ok(Special { what: what.to_owned(), verdict, told, detection_ms: after_ms, zero_ms: after_ms })
 }
 

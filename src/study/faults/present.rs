@@ -80,7 +80,7 @@ impl Report {
 /// The worst of some cases: verdict, slowest detection / force gone (ms), largest error (N).
 fn cell(cases: &[&Outcome]) -> String {
     let Some(worst) = cases.iter().map(|outcome| outcome.verdict).max() else { return "-".to_owned() };
-    let most = |of: fn(&Outcome) -> Option<f64>| cases.iter().filter_map(|outcome| of(outcome)).fold(None, larger);
+    let most = |of: fn(&Outcome) -> Option<f64>| cases.iter().filter_map(|outcome| of(outcome)).reduce(f64::max);
     let number = |ms: Option<f64>| ms.map_or_else(|| "-".to_owned(), |ms| format!("{ms:.0}"));
     let peak_n = most(|outcome| Some(outcome.peak_error_n)).unwrap_or(0.0);
     let error_n = most(|outcome| Some(outcome.error_n)).unwrap_or(0.0);
@@ -94,10 +94,6 @@ fn cell(cases: &[&Outcome]) -> String {
             format!("d {} / {} / {peak_n:.2}", number(told), number(zero))
         }
     }
-}
-
-fn larger(most: Option<f64>, next: f64) -> Option<f64> {
-    Some(most.map_or(next, |most| most.max(next)))
 }
 
 const fn word(verdict: Verdict) -> &'static str {

@@ -45,7 +45,7 @@ fn the_loop_of_another_process() {
         engage: true,
     };
     let _handle = runtime::start(&plan).unwrap();
-    std::thread::sleep(Duration::from_secs(60));
+    std::thread::sleep(Duration::from_mins(1));
 }
 
 struct Killed(Child);

@@ -2,11 +2,12 @@
 
 use std::{path::PathBuf, time::Duration};
 
+use anyhow::Context as _;
 use clap::Args;
 use nima::runtime::{self, Plan};
 
 use super::{emulators::Emulators, setup::Setup};
-use crate::console::{self, Options, in_force::InForce, roles::Role, wizards::Which};
+use crate::console::{self, Options, in_force::InForce, pictures::Album, roles::Role, wizards::Which};
 
 #[derive(Debug, Default, Args)]
 pub(super) struct Arguments {
@@ -24,6 +25,9 @@ pub(super) struct Arguments {
     /// Save a picture of the window (PNG) just before closing; needs --exit-after
     #[arg(long, value_name = "FILE", requires = "exit_after")]
     screenshot: Option<PathBuf>,
+    /// Take pictures of every view (PNG) into this folder, then close
+    #[arg(long, value_name = "DIR", conflicts_with_all = ["exit_after", "calibrate", "role"])]
+    pictures: Option<PathBuf>,
     /// Do not ask for real-time priority and locked memory
     #[arg(long)]
     ordinary: bool,
@@ -49,10 +53,21 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let options = Options {
         exit_after: arguments.exit_after.map(Duration::from_secs_f64),
         screenshot: arguments.screenshot.clone(),
+        pictures: arguments.pictures.as_deref().map(Album::new),
         role: arguments.role,
         wizard: arguments.calibrate,
         summary: arguments.summary.clone(),
         stall: arguments.stall.map(Duration::from_secs_f64),
     };
-    console::run(handle, rig, scene, options)
+    let album = options.pictures.clone();
+    if let Some(folder) = &arguments.pictures {
+        std::fs::create_dir_all(folder)
+            .with_context(|| format!("the folder for pictures {} cannot be made", folder.display()))?;
+    }
+    console::run(handle, rig, scene, options)?;
+    anyhow::ensure!(
+        album.is_none_or(|album| album.is_complete()),
+        "the window was closed before all pictures were taken"
+    );
+    Ok(())
 }

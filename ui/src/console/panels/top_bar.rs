@@ -5,6 +5,7 @@ use nima::{runtime::Command, teleop::LoopState};
 
 use crate::console::{
     alarms::{Alarm, judge},
+    help::Help,
     live::Live,
     menu::menu_ui,
     outbox::Outbox,
@@ -33,6 +34,7 @@ pub fn top_bar_ui(
     state: &mut TopBarState,
     outbox: &mut Outbox,
     settings: &mut Settings,
+    help: &mut Help,
     calibrating: bool,
 ) {
     let time_s = ui.input(|input| input.time);
@@ -54,7 +56,7 @@ pub fn top_bar_ui(
         state_ui(ui, now);
         ui.add_space(10.0);
         switch_ui(ui, &mut settings.role, !calibrating);
-        menu_ui(ui, settings);
+        menu_ui(ui, settings, help);
         ui.add_space(10.0);
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             stop_ui(ui, now, outbox);

@@ -67,7 +67,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     console::run(handle, rig, scene, options)?;
     anyhow::ensure!(
         album.is_none_or(|album| album.is_complete()),
-        "the window was closed before all pictures were taken"
+        "not all pictures were taken: the loop stopped or the window was closed; try again on a machine at rest"
     );
     Ok(())
 }

@@ -35,6 +35,8 @@ use super::{
 
 /// Thirty pictures a second while data flow.
 const FRAME: Duration = Duration::from_millis(33);
+/// Ten while nothing is engaged; the mouse and the keyboard are answered at once all the same.
+const FRAME_AT_REST: Duration = Duration::from_millis(100);
 /// Smooth edges in 3-D are given up when the work for one picture takes longer than this (25 pictures a second) ...
 const SLOW_MS: f64 = 38.0;
 /// ... though the window has had this time to warm up.
@@ -281,9 +283,9 @@ impl ConsoleApp {
         });
         let room = ui.available_rect_before_wrap();
         if self.wizards.open.is_some() {
-            self.wizard_layout(ui)
+            self.wizard_layout(ui);
         } else {
-            self.monitor_layout(ui)
+            self.monitor_layout(ui);
         }
         self.settings.now.toured |= self.help.ui(ui.ctx(), room);
     }
@@ -382,7 +384,9 @@ impl eframe::App for ConsoleApp {
             self.outbox.flush(handle);
         }
         self.obey_options(&ctx);
-        ctx.request_repaint_after(FRAME);
+        let at_rest = self.live.state().is_latched() || self.live.state() == LoopState::Idle;
+        let calm = at_rest && self.wizards.open.is_none();
+        ctx.request_repaint_after(if calm { FRAME_AT_REST } else { FRAME });
     }
 
     /// The ground of the whole window: clearing is far cheaper than painting panels over it.

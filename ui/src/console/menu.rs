@@ -13,7 +13,7 @@ const STEPS_PERCENT: [u16; 5] = [100, 125, 150, 175, 200];
 
 /// The menu in the top bar.
 pub(super) fn menu_ui(ui: &mut Ui, settings: &mut Settings, help: &mut Help) {
-    let button = Button::new("View").min_size(vec2(52.0, 34.0));
+    let button = Button::new("View").min_size(vec2(52.0, 30.0));
     let menu = egui::containers::menu::MenuButton::from_button(button);
     let (response, _) = menu.ui(ui, |ui| {
         ui.set_min_width(220.0);

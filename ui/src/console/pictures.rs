@@ -9,6 +9,8 @@ use std::{
     time::{Duration, Instant},
 };
 
+use nima::teleop::LoopState;
+
 use super::{
     live::Live,
     roles::{Role, Tab},
@@ -24,6 +26,8 @@ const SETTLED: Duration = Duration::from_millis(1200);
 const PATIENCE: Duration = Duration::from_secs(6);
 /// A force worth a picture, N.
 const CONTACT_N: f64 = 1.5;
+/// A loop that is not engaged for so long gives no picture.
+const GIVE_UP: Duration = Duration::from_secs(10);
 /// Time for the last picture to be taken.
 const LAST: Duration = Duration::from_millis(700);
 
@@ -68,14 +72,19 @@ impl Photographer {
         Self { album, next: 0, since: Instant::now() }
     }
 
-    /// Sets the next view, takes its picture when it is ready; true when all are taken.
+    /// Sets the next view, takes its picture when it is ready; true when all are taken or
+    /// the loop has stopped.
     pub(super) fn step(&mut self, ctx: &egui::Context, live: &Live, settings: &mut Settings) -> bool {
         let Some((name, role, tab, light)) = SHOTS.get(self.next) else { return self.since.elapsed() > LAST };
         (settings.role, settings.tab, settings.light) = (*role, *tab, *light);
         let least = if self.next == 0 { FILLED } else { SETTLED };
         let shown = self.since.elapsed();
+        let engaged = live.state() == LoopState::Engaged;
         let contact = live.figures.measured_n.iter().zip(live.figures.rendered_n).any(|(m, r)| m.min(r) > CONTACT_N);
-        if shown < least || (!contact && shown < least + PATIENCE) {
+        if shown > least + GIVE_UP {
+            return true;
+        }
+        if !engaged || shown < least || (!contact && shown < least + PATIENCE) {
             return false;
         }
         let path = self.album.folder.join(format!("{name}.png"));

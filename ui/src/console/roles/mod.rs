@@ -156,7 +156,7 @@ pub fn role_ui(
 pub fn switch_ui(ui: &mut Ui, now: &mut Role, allowed: bool) {
     ui.spacing_mut().item_spacing.x = 4.0;
     for role in Role::ALL {
-        let button = Button::selectable(*now == role, role.name()).frame_when_inactive(true).min_size(vec2(62.0, 34.0));
+        let button = Button::selectable(*now == role, role.name()).frame_when_inactive(true).min_size(vec2(62.0, 30.0));
         let response = ui.add_enabled(allowed, button);
         let response = response.on_hover_text(format!("{} Key {}.", role.meaning(), role.key().name()));
         if response.on_disabled_hover_text("Close the wizard first.").clicked() {

@@ -17,22 +17,26 @@ use nima::{
 
 use super::{
     Options,
+    help::Help,
     in_force::InForce,
     keys,
     live::Live,
     menu,
     outbox::Outbox,
     panels::{CalibrationWish, ForcesState, TopBarState, TradeoffState, calibrations_ui, top_bar_ui},
+    pictures::Photographer,
     roles::{Panels, Role, Wishes, role_ui},
     scene3d::SceneView,
     screenshot,
-    settings::Kept,
+    settings::{Kept, Settings},
     theme,
     wizards::{Saving, Which, Wizards},
 };
 
 /// Thirty pictures a second while data flow.
 const FRAME: Duration = Duration::from_millis(33);
+/// Ten while nothing is engaged; the mouse and the keyboard are answered at once all the same.
+const FRAME_AT_REST: Duration = Duration::from_millis(100);
 /// Smooth edges in 3-D are given up when the work for one picture takes longer than this (25 pictures a second) ...
 const SLOW_MS: f64 = 38.0;
 /// ... though the window has had this time to warm up.
@@ -51,6 +55,8 @@ pub struct ConsoleApp {
     top_bar: TopBarState,
     panels: Panels,
     settings: Kept,
+    help: Help,
+    photographer: Option<Photographer>,
     wizards: Wizards,
     in_force: InForce,
     /// What was watched before a wizard took the rig over.
@@ -76,6 +82,8 @@ impl ConsoleApp {
             top_bar: TopBarState::default(),
             panels: Panels { scene: SceneView::new(cc.gl.as_deref()), ..Panels::default() },
             settings: Kept::default(),
+            help: Help::default(),
+            photographer: None,
             options: Options::default(),
             opened: now,
             framed: now,
@@ -87,6 +95,7 @@ impl ConsoleApp {
     #[must_use]
     pub fn with_options(mut self, options: Options) -> Self {
         self.options = options;
+        self.photographer = self.options.pictures.clone().map(Photographer::new);
         self.settings.now.role = self.options.role.unwrap_or(self.settings.now.role);
         if let Some(which) = self.options.wizard {
             self.open_wizard(which);
@@ -100,9 +109,16 @@ impl ConsoleApp {
         if let Some(told) = settings.told() {
             self.in_force.tell(format!("{told}."));
         }
-        self.panels.tab = settings.now.tab;
+        if settings.is_first_run() {
+            self.help.begin_tour();
+        }
         self.settings = settings;
         self
+    }
+
+    /// What is remembered from one day to the next, to be changed from outside.
+    pub const fn settings_mut(&mut self) -> &mut Settings {
+        &mut self.settings.now
     }
 
     /// Who sits before the screen.
@@ -253,11 +269,25 @@ impl ConsoleApp {
         let bar = Frame::new().fill(theme::now().panel).inner_margin(Margin::symmetric(14, 0));
         Panel::top("top_bar").exact_size(72.0).resizable(false).frame(bar).show(ui, |ui| {
             let calibrating = self.wizards.open.is_some();
-            top_bar_ui(ui, &self.live, &mut self.top_bar, &mut self.outbox, &mut self.settings.now, calibrating);
+            top_bar_ui(
+                ui,
+                &self.live,
+                &mut self.top_bar,
+                &mut self.outbox,
+                &mut self.settings.now,
+                &mut self.help,
+                calibrating,
+            );
             let pressed = keys::role_pressed(ui.ctx()).filter(|_| !calibrating);
             self.settings.now.role = pressed.unwrap_or(self.role());
         });
-        if self.wizards.open.is_some() { self.wizard_layout(ui) } else { self.monitor_layout(ui) }
+        let room = ui.available_rect_before_wrap();
+        if self.wizards.open.is_some() {
+            self.wizard_layout(ui);
+        } else {
+            self.monitor_layout(ui);
+        }
+        self.settings.now.toured |= self.help.ui(ui.ctx(), room);
     }
 
     /// A technician's view: one wizard, what is in force, and the way back.
@@ -290,9 +320,8 @@ impl ConsoleApp {
     }
 
     fn monitor_layout(&mut self, ui: &mut Ui) {
-        let role = self.role();
         let Wishes { restart, calibration } =
-            role_ui(ui, role, &mut self.live, &mut self.panels, &self.in_force, &mut self.outbox);
+            role_ui(ui, &mut self.settings.now, &mut self.live, &mut self.panels, &self.in_force, &mut self.outbox);
         // After everything was drawn of the loop as it was. A stop asked for in the same frame comes first.
         if self.outbox.stop_is_stuck() {
             return;
@@ -316,10 +345,12 @@ impl ConsoleApp {
                 }
             });
         }
+        let finished =
+            self.photographer.as_mut().is_some_and(|taker| taker.step(ctx, &self.live, &mut self.settings.now));
         if let Some(stall) = self.options.stall.take_if(|_| open >= WARM_UP) {
             std::thread::sleep(stall);
         }
-        if exit_after.is_some_and(|exit| open >= exit) {
+        if finished || exit_after.is_some_and(|exit| open >= exit) {
             ctx.send_viewport_cmd(egui::ViewportCommand::Close);
         }
     }
@@ -343,17 +374,19 @@ impl eframe::App for ConsoleApp {
         if keys::stop_pressed(&ctx) {
             self.outbox.push(Command::Stop);
         }
+        self.help.glossary ^= keys::glossary_pressed(&ctx);
         if keys::mark_pressed(&ctx) {
             self.live.mark();
         }
         self.layout(ui);
-        self.settings.now.tab = self.panels.tab;
         self.settings.save();
         if let Some(handle) = &self.handle {
             self.outbox.flush(handle);
         }
         self.obey_options(&ctx);
-        ctx.request_repaint_after(FRAME);
+        let at_rest = self.live.state().is_latched() || self.live.state() == LoopState::Idle;
+        let calm = at_rest && self.wizards.open.is_none();
+        ctx.request_repaint_after(if calm { FRAME_AT_REST } else { FRAME });
     }
 
     /// The ground of the whole window: clearing is far cheaper than painting panels over it.

@@ -189,7 +189,9 @@ const NAME_ABOVE_M: f32 = 0.05;
 fn labels(painter: &Painter, rect: Rect, live: &Live, camera: &Camera, arm: &Arm, figures: bool) {
     let at = |point_m: Vector3<f32>| camera.project(&point_m, rect);
     let Arm { trocar_m, pose, side, .. } = arm;
-    if let Some(place) = at(*trocar_m) {
+    // Not under the plate of the readings.
+    let free = |place: &Pos2| !figures || place.y > rect.top() + 110.0 || place.x > rect.left() + 350.0;
+    if let Some(place) = at(*trocar_m).filter(free) {
         label(
             painter,
             place + vec2(18.0, 0.0),

@@ -98,9 +98,9 @@ pub struct Rig {
     /// The network against the trocar's friction.
     #[serde(default)]
     pub tip_force: TipForcePart,
-    /// Ask the operating system for real-time priority and locked memory; what it refuses is told.
-    #[serde(default = "yes")]
-    pub real_time: bool,
+    /// What to ask of the operating system for the loop's thread; what it refuses is told.
+    #[serde(default)]
+    pub scheduling: SchedulingClass,
     /// From the hand's motion to the tip's.
     #[serde(default)]
     pub teleoperation: Teleoperation,
@@ -109,8 +109,41 @@ pub struct Rig {
     pub devices: Option<device::rig::Settings>,
 }
 
-const fn yes() -> bool {
-    true
+/// How the operating system shall treat the loop's thread (Linux).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum SchedulingClass {
+    /// As any other thread.
+    Ordinary,
+    /// `SCHED_FIFO` and locked memory.
+    #[default]
+    Fifo,
+    /// `SCHED_DEADLINE` and locked memory: before the share that newer kernels keep for ordinary threads; a runaway loop is
+    /// held back by the kernel. Needs root.
+    Deadline,
+}
+
+impl SchedulingClass {
+    /// All, most modest first.
+    pub const ALL: [Self; 3] = [Self::Ordinary, Self::Fifo, Self::Deadline];
+
+    /// Its name in files and on the command line.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Ordinary => "ordinary",
+            Self::Fifo => "fifo",
+            Self::Deadline => "deadline",
+        }
+    }
+}
+
+impl std::str::FromStr for SchedulingClass {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let known = || Self::ALL.map(Self::name).join(", ");
+        Self::ALL.into_iter().find(|class| class.name() == text).ok_or_else(|| format!("give one of {}", known()))
+    }
 }
 
 /// From the hand's motion to the tip's: `kbf_from_view * view_from_leader`, and the scale.

@@ -18,8 +18,8 @@ struct Bench {
     tick: u64,
 }
 
-fn stepped(control: &mut Loop, inputs: [Option<Inputs>; SIDES], tick: u64) -> ([Outputs; SIDES], [Tick; SIDES]) {
-    let (outputs, ticks) = control.step(inputs, &Timing { now_s: tick as f64 * 1e-3, ..Timing::default() });
+fn stepped(control: &mut Loop, inputs: &[Option<Inputs>; SIDES], tick: u64) -> ([Outputs; SIDES], [Tick; SIDES]) {
+    let (outputs, ticks) = control.step(*inputs, &Timing { now_s: tick as f64 * 1e-3, ..Timing::default() });
     (outputs, ticks.map(Option::unwrap))
 }
 
@@ -30,7 +30,7 @@ impl Bench {
         let mut worlds = Worlds::new(&Scene::load("bimanual").unwrap(), rig.rate_hz);
         let outputs = [Outputs::SAFE; SIDES];
         let inputs = worlds.exchange(0.0, &outputs);
-        let (outputs, ticks) = stepped(&mut control, inputs, 0);
+        let (outputs, ticks) = stepped(&mut control, &inputs, 0);
         Self { worlds, control, outputs, ticks, tick: 1 }
     }
 
@@ -48,7 +48,7 @@ impl Bench {
         for side in Side::ALL {
             inputs[side.index()] = inputs[side.index()].and_then(|inputs| edit(side, inputs));
         }
-        (self.outputs, self.ticks) = stepped(&mut self.control, inputs, self.tick);
+        (self.outputs, self.ticks) = stepped(&mut self.control, &inputs, self.tick);
         self.tick += 1;
     }
 

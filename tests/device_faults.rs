@@ -14,7 +14,7 @@ use std::{
 use emulated::{alone, elsewhere, started};
 use nima::{
     config::{Rig, Scene},
-    device::{Health, Loss, Standing, emulation::EmulatedFault, rig::Settings},
+    device::{Health, Loss, Standing, Trouble, emulation::EmulatedFault, rig::Settings},
     impedance::Mode,
     runtime::{self, Command, Event, Handle, Plan, Tick},
     sim::emulated::EmulatedRig,
@@ -171,7 +171,14 @@ fn try_out(bench: &mut Bench, device: &'static str, fault: EmulatedFault) -> Row
     };
     let state = bench.state().word();
     bench.rig.set_fault(device, EmulatedFault::None);
-    let back = bench.until(BACK_WITHIN, |bench| bench.healths[place].standing == Standing::Connected);
+    // A fault of the device's own is cleared by a person's command, as the console's button gives it.
+    let back = bench.until(BACK_WITHIN, |bench| {
+        let entry = &bench.handle.roster()[place];
+        if let (Some(Trouble::DeviceFault { .. }), Some(clear)) = (entry.view.report().trouble, &entry.clear_faults) {
+            clear.command();
+        }
+        bench.healths[place].standing == Standing::Connected
+    });
     bench.until(Duration::from_millis(300), |_| false);
     let by_itself = state != "Engaged" && bench.state() == LoopState::Engaged;
     if bench.state() != LoopState::Engaged {

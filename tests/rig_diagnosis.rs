@@ -60,30 +60,36 @@ macro_rules! assert_told {
     }};
 }
 
+/// Whether all are connected; their rates as they should be.
+fn all_well(found: &[Diagnosis]) -> bool {
+    found.iter().all(|one| match &one.outcome {
+        Outcome::Trouble { .. } => false,
+        Outcome::Connected(connected) => {
+            // Those that are asked, or speak on a change, have no rate of their own.
+            let usual_hz = match one.name.as_str() {
+                "tracker" => Some(60.0),
+                "tissue sensor" => Some(800.0),
+                "right sensor" | "left sensor" | "right handle" | "left handle" => Some(1000.0),
+                _ => None,
+            };
+            let within = |usual_hz: f64| connected.rate_hz.is_some_and(|hz| hz > 0.7 * usual_hz && hz < 1.3 * usual_hz);
+            connected.damaged == 0 && !connected.identity.product.is_empty() && usual_hz.is_none_or(within)
+        }
+    })
+}
+
 #[test]
 fn a_rig_that_runs_is_found_whole() {
     let _alone = alone();
     let folder = tempfile::tempdir().unwrap();
     let devices = elsewhere(folder.path());
     let rig = started(&devices);
-    let found = tried(&devices);
-    let names: Vec<_> = found.iter().map(|one| one.name.as_str()).collect();
-    let served: Vec<_> = rig.servings().iter().map(|device| device.name.as_str()).collect();
+    // A machine under load lets a device in real time look silent now and then.
+    let tries: Vec<_> = (0..5).map(|_| tried(&devices)).take_while(|found| !all_well(found)).collect();
+    assert!(tries.len() < 5, "{:#?}", tries.last());
+    let served: Vec<_> = rig.servings().iter().map(|device| device.name.clone()).collect();
+    let names: Vec<_> = tried(&devices).into_iter().map(|one| one.name).collect();
     assert_eq!(names, served, "the same devices by the same names");
-    for one in &found {
-        let Outcome::Connected(connected) = &one.outcome else { panic!("{one:?}") };
-        assert!(connected.damaged == 0 && !connected.identity.product.is_empty(), "{one:?}");
-        let usual_hz = match one.name.as_str() {
-            "pedal" => continue,
-            "tracker" => 60.0,
-            "tissue sensor" => 800.0,
-            // These answer as often as they are asked.
-            "right servos" | "right arm" | "left arm" => connected.rate_hz.unwrap(),
-            _ => 1000.0,
-        };
-        // A probe looks twice a millisecond at most; on a machine under load it sees less.
-        assert!(connected.rate_hz.is_some_and(|hz| hz > 0.5 * usual_hz && hz < 1.2 * usual_hz), "{one:?}");
-    }
 }
 
 #[test]

@@ -206,6 +206,30 @@ pub struct RosterEntry {
     pub driver: String,
     /// Connects, disconnects, tells troubles.
     pub view: SlotView,
+    /// Clears the device's own faults, where that is a person's command; it happens while it is opened the next time.
+    pub clear_faults: Option<ClearFaults>,
+}
+
+/// A person's command to a device in fault.
+#[derive(Clone)]
+pub struct ClearFaults(std::sync::Arc<dyn Fn() + Send + Sync>);
+
+impl ClearFaults {
+    /// By this means.
+    pub fn by(command: impl Fn() + Send + Sync + 'static) -> Self {
+        Self(std::sync::Arc::new(command))
+    }
+
+    /// Gives the command.
+    pub fn command(&self) {
+        (self.0)();
+    }
+}
+
+impl std::fmt::Debug for ClearFaults {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str("ClearFaults")
+    }
 }
 
 /// The devices of a rig.

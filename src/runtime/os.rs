@@ -1,11 +1,15 @@
 //! What the operating system grants a real-time thread: the one place with system calls.
 #![expect(unsafe_code, reason = "scheduling, memory locking and absolute sleep have no safe interface in std")]
 
+use crate::config::SchedulingClass;
+
 /// What was asked for and what was granted.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
 pub struct Scheduling {
     /// `SCHED_FIFO` was granted.
     pub fifo: bool,
+    /// `SCHED_DEADLINE` was granted.
+    pub deadline: bool,
     /// Memory is locked: no page fault can delay a tick.
     pub memory_locked: bool,
 }
@@ -16,7 +20,7 @@ impl Scheduling {
         if cfg!(not(target_os = "linux")) {
             return Some("real-time scheduling is used on Linux only; expect more missed ticks here");
         }
-        match (self.fifo, self.memory_locked) {
+        match (self.fifo || self.deadline, self.memory_locked) {
             (true, true) => None,
             (false, _) => Some(
                 "no real-time priority: add the line \"@realtime - rtprio 95\" to /etc/security/limits.d/realtime.conf, join the group realtime and log in again",
@@ -51,10 +55,14 @@ const PRIORITY: i32 = 80;
 /// Stack touched in advance, bytes.
 const STACK_TOUCHED: usize = 128 * 1024;
 
-/// Asks for everything a real-time thread wants, if it is wanted. Call it on that thread. Refusals are told, never fatal.
-pub(super) fn prepare_thread(real_time: bool) -> Scheduling {
+/// Asks for what a thread of this class and period wants. Call it on that thread. Refusals are told, never fatal.
+pub(super) fn prepare_thread(class: SchedulingClass, period_ns: u64) -> Scheduling {
     touch_stack();
-    if real_time { granted() } else { Scheduling::default() }
+    match class {
+        SchedulingClass::Ordinary => Scheduling::default(),
+        SchedulingClass::Fifo => granted(None),
+        SchedulingClass::Deadline => granted(Some(period_ns)),
+    }
 }
 
 #[inline(never)]
@@ -77,25 +85,64 @@ pub(super) fn prepare_supervisor() {
     }
 }
 
+/// Share of a period that the loop may run before the kernel holds it back until the next one (`SCHED_DEADLINE`).
 #[cfg(target_os = "linux")]
-fn granted() -> Scheduling {
+const BUDGET: f64 = 0.8;
+
+/// `sched_setattr(2)`: the kernel's structure, of which the C library has no name everywhere.
+#[cfg(target_os = "linux")]
+#[repr(C)]
+struct SchedulingAttributes {
+    size: u32,
+    policy: u32,
+    flags: u64,
+    nice: i32,
+    priority: u32,
+    runtime_ns: u64,
+    deadline_ns: u64,
+    period_ns: u64,
+}
+
+/// Asks for a budget in every period. The kernel refuses it where not all of the processors are open to the thread, or booked.
+#[cfg(target_os = "linux")]
+fn deadline_granted(period_ns: u64) -> bool {
+    const SCHED_DEADLINE: u32 = 6;
+    let attributes = SchedulingAttributes {
+        size: size_of::<SchedulingAttributes>() as u32,
+        policy: SCHED_DEADLINE,
+        flags: 0,
+        nice: 0,
+        priority: 0,
+        runtime_ns: (BUDGET * period_ns as f64) as u64,
+        deadline_ns: period_ns,
+        period_ns,
+    };
+    // SAFETY: a plain system call on the calling thread with a valid, initialised structure of the size that it says.
+    unsafe { libc::syscall(libc::SYS_sched_setattr, 0, &raw const attributes, 0) == 0 }
+}
+
+/// First come: a budget in every period where one is given and granted, else a fixed priority.
+#[cfg(target_os = "linux")]
+fn granted(period_ns: Option<u64>) -> Scheduling {
+    let deadline = period_ns.is_some_and(deadline_granted);
     // SAFETY: plain system calls on the calling thread with valid, initialised arguments.
     unsafe {
         libc::prctl(libc::PR_SET_TIMERSLACK, 1_usize);
         let parameter = libc::sched_param { sched_priority: PRIORITY };
-        let fifo = libc::pthread_setschedparam(libc::pthread_self(), libc::SCHED_FIFO, &raw const parameter) == 0;
+        let fifo =
+            !deadline && libc::pthread_setschedparam(libc::pthread_self(), libc::SCHED_FIFO, &raw const parameter) == 0;
         // With a finite limit a locked process soon fails to map memory, so lock only without one.
         let mut limit = libc::rlimit { rlim_cur: 0, rlim_max: 0 };
         let unlimited = libc::geteuid() == 0
             || (libc::getrlimit(libc::RLIMIT_MEMLOCK, &raw mut limit) == 0 && limit.rlim_cur == libc::RLIM_INFINITY);
         // On fault: pages are locked once they are touched, so untouched reserves of other threads cost nothing.
         let flags = libc::MCL_CURRENT | libc::MCL_FUTURE | libc::MCL_ONFAULT;
-        Scheduling { fifo, memory_locked: unlimited && libc::mlockall(flags) == 0 }
+        Scheduling { fifo, deadline, memory_locked: unlimited && libc::mlockall(flags) == 0 }
     }
 }
 
 #[cfg(not(target_os = "linux"))]
-fn granted() -> Scheduling {
+fn granted(_: Option<u64>) -> Scheduling {
     Scheduling::default()
 }
 

@@ -14,6 +14,7 @@ use super::{
     supervisor::{Pulse, Supervisor},
 };
 use crate::{
+    config::SchedulingClass,
     device::{Healths, Outputs, Rig, Roster, SIDES, rig::RigError},
     impedance::SettingsError,
     teleop::{Loop, Timing},
@@ -77,7 +78,7 @@ pub fn start_on(plan: &Plan, rig: Box<dyn Rig>, roster: Roster) -> Result<Handle
         control,
         rig,
         engage: plan.engage,
-        real_time: plan.rig.real_time,
+        scheduling: plan.rig.scheduling,
         names: roster.iter().map(|entry| entry.name.clone()).collect(),
         period_ns: (1e9 / plan.rig.rate_hz).round() as u64,
         commands: commands_in,
@@ -87,7 +88,7 @@ pub fn start_on(plan: &Plan, rig: Box<dyn Rig>, roster: Roster) -> Result<Handle
         meters: Meters::default(),
         pulse: Arc::clone(&pulse),
     };
-    let supervisor = Supervisor::start(pulse, levers, plan.rig.real_time)?;
+    let supervisor = Supervisor::start(pulse, levers, plan.rig.scheduling != SchedulingClass::Ordinary)?;
     let thread = Builder::new().name("realtime".to_owned()).spawn(move || realtime.run())?;
     Ok(Handle { commands, ticks, events, healths, roster, thread: Some(thread), _supervisor: supervisor })
 }
@@ -146,7 +147,7 @@ impl Drop for Handle {
 struct Realtime {
     control: Loop,
     rig: Box<dyn Rig>,
-    real_time: bool,
+    scheduling: SchedulingClass,
     /// Names of the devices.
     names: Vec<String>,
     /// Engage once, as soon as everything delivers.
@@ -162,7 +163,7 @@ struct Realtime {
 
 impl Realtime {
     fn run(mut self) -> Summary {
-        let scheduling = os::prepare_thread(self.real_time);
+        let scheduling = os::prepare_thread(self.scheduling, self.period_ns);
         self.events.try_send(Event::Scheduling(scheduling)).ok();
         let cpu_s = os::cpu_s();
         let start_ns = os::monotonic_ns();

@@ -99,12 +99,6 @@ impl<const D: usize> Chain<D> {
         self.settings.gain = self.gain.chosen();
     }
 
-    /// Chooses the gain for a caller that has made sure of the second action itself, as the loop does: it accepts a gain above 1
-    /// by a command of its own only. Everybody else uses the two methods above.
-    pub const fn set_gain(&mut self, gain: f64) {
-        self.set_gain_above_one(gain);
-    }
-
     /// Chooses the dead band, m/s, 0 to 0.1; anything else is pulled in, NaN is ignored.
     pub fn set_dead_band(&mut self, threshold_m_s: f64) {
         if !threshold_m_s.is_nan() {

@@ -51,7 +51,7 @@ mod tests {
                 prop_assert!((0.0..=1.0).contains(&share) && (speed_m_s.is_finite() || share == 0.0));
             }
             prop_assert!(gate.step(slow) == 0.0);
-            prop_assert!(gate.step(fast) == 1.0);
+            prop_assert!(gate.step(fast) >= 1.0);
         }
     }
 

@@ -16,7 +16,7 @@ use crate::{
 };
 
 /// A sensor is lost when nothing usable came for this long, s, at rates that give five readings in it.
-const SILENCE_S: f64 = 0.020;
+const SILENCE_S: f64 = 0.018;
 /// At lower rates: for so many readings.
 const SILENCE_READINGS: f64 = 5.0;
 /// More than any sensor of the family measures, N: beyond it a number is no force.
@@ -59,7 +59,7 @@ fn is_plausible(reading: &ForceReading) -> bool {
 /// An open sensor that measures. Dropping it stops the measurement.
 ///
 /// Only readings that may be used are handed out: one that is overrange, invalid or raw, or has impossible numbers, is refused
-/// and counted; a throttled one is handed out with its flag. When nothing usable came for 20 ms (five readings, where
+/// and counted; a throttled one is handed out with its flag. When nothing usable came for 18 ms (five readings, where
 /// those take longer) the sensor is lost, with the cause that its last words tell.
 pub struct Driver {
     link: Link,

@@ -75,19 +75,19 @@ fn every_loss_is_told_within_twenty_milliseconds_by_its_cause() {
         bytes_of(&frame)
     };
     let (loss, ms, _) = lost_after(|_| Vec::new());
-    assert_eq!((loss, ms), (Loss::Silent, 21));
+    assert_eq!((loss, ms), (Loss::Silent, 18));
     let (loss, ms, health) = lost_after(|k| {
         let mut bytes = bytes_of(&frame(k));
         bytes[36] ^= 1;
         bytes
     });
-    assert_eq!((loss, ms), (Loss::Corrupt, 21));
-    assert!(health.damaged >= 20 && health.skipped_bytes >= 20 * 37, "{health:?}");
+    assert_eq!((loss, ms), (Loss::Corrupt, 18));
+    assert!(health.damaged >= 17 && health.skipped_bytes >= 17 * 37, "{health:?}");
     let (loss, _, health) = lost_after(|k| vec![k as u8 & 0x7F; 40]);
     assert_eq!((loss, health.damaged), (Loss::Corrupt, 0), "no frame at all");
     for (bits, code) in [(2, 2), (4, 4), (8, 8), (0b1_0110, 0b0110)] {
         let (loss, ms, health) = lost_after(|k| bytes_of(&Frame { status: bits, ..frame(k) }));
-        assert_eq!((loss, ms, health.refused), (Loss::Device { code }, 21, 21));
+        assert_eq!((loss, ms, health.refused), (Loss::Device { code }, 18, 18));
     }
     let impossible: [fn(&mut Frame); 4] = [
         |frame| frame.force_n[2] = f32::NAN,
@@ -100,10 +100,10 @@ fn every_loss_is_told_within_twenty_milliseconds_by_its_cause() {
     ];
     for spoil in impossible {
         let (loss, ms, health) = lost_after(|k| spoilt(k, spoil));
-        assert_eq!((loss, ms, health.refused), (Loss::Implausible, 21, 21));
+        assert_eq!((loss, ms, health.refused), (Loss::Implausible, 18, 18));
     }
     let (loss, ms, health) = lost_after(|_| bytes_of(&frame(10)));
-    assert_eq!((loss, ms, health.out_of_order), (Loss::Implausible, 21, 21), "a clock that stands still");
+    assert_eq!((loss, ms, health.out_of_order), (Loss::Implausible, 18, 18), "a clock that stands still");
 }
 
 #[test]

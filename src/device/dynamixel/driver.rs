@@ -3,7 +3,7 @@
 //! An exchange is one `send`: a sync write of the goals (while the torque is on) and a sync read of clock, current, velocity
 //! and position of all four. Now and then one servo is asked for its condition instead (torque, hardware error, watchdog, voltage,
 //! temperature). What nobody answers within a few milliseconds is lost and asked anew. Lost for good: nothing new for
-//! `silence_s` (20 ms, more on slow lines: three exchanges), impossible numbers, a hardware error, an expired watchdog, a torque that
+//! `silence_s` (18 ms, more on slow lines: three exchanges), impossible numbers, a hardware error, an expired watchdog, a torque that
 //! went off by itself. Times in s on the caller's clock.
 
 mod exchange;
@@ -34,7 +34,7 @@ const LONGEST: usize = OVERHEAD + (CONDITION_BYTES + 1) * 4 / 3;
 /// Between two questions after a condition, s.
 const CONDITION_EVERY_S: f64 = 0.050;
 /// What adapter, operating system and servo may add to the time on the wire, of the time until silence: three attempts.
-const SLACK: f64 = 0.3;
+const SLACK: f64 = 0.2;
 /// A reading this much later than the quickest ones is old, of the time until silence.
 const LATE: f64 = 0.75;
 /// Bytes of an ordinary exchange, goals and all.

@@ -125,7 +125,7 @@ const fn watchdog_s() -> f64 {
 }
 
 const fn silence_s() -> f64 {
-    0.020
+    0.018
 }
 
 /// Highest id.

@@ -1,6 +1,6 @@
 //! The running arm: one cyclic exchange a tick, calls that are never waited for, commands behind a guard.
 //!
-//! Lost after 20 ms without a good reading, 10 damaged or 5 impossible frames in a row, half a second without an answer to a call,
+//! Lost after 18 ms without a good reading, 10 damaged or 5 impossible frames in a row, half a second without an answer to a call,
 //! the first fault, or a broken connection. Waiting is measured from the request on, so a tick that comes late loses nothing.
 
 use nalgebra::{UnitQuaternion, Vector3};
@@ -26,7 +26,7 @@ pub use commands::{Refusal, ToolTwist, TwistFrame};
 pub(super) use leaving::close_sessions;
 
 /// Longest wait for a cyclic answer, s.
-const SILENT_S: f64 = 0.020;
+const SILENT_S: f64 = 0.018;
 /// Longest wait for the answer to a call, s.
 const CALL_SILENT_S: f64 = 0.5;
 /// Between two signs of life on each connection, s (the manufacturer's client has the same).

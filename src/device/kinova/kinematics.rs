@@ -1,31 +1,22 @@
-//! Where the tool of a Gen3 with 7 joints is: classical Denavit-Hartenberg parameters of the manufacturer, equal to its URDF.
+//! Where the tool of a Gen3 is, in the arm's own base frame: the project's one chain of the arm, as this driver and its emulator use it.
 //!
 //! Angles in rad, lengths in m, in the arm's base frame.
 
-use nalgebra::{Isometry3, Matrix6, SMatrix, Translation3, UnitQuaternion, Vector3, Vector6};
+use nalgebra::{Isometry3, IsometryMatrix3, Matrix6, SMatrix, UnitQuaternion, Vector6};
 
-use crate::device::ARM_JOINTS;
+use crate::{
+    device::ARM_JOINTS,
+    kinematics::{Chain, Joints},
+};
 
-/// `d` (m), `a` is zero everywhere; `alpha` is a quarter turn but for the last, `theta` is turned by half a turn but for the first.
-const OFFSET_M: [f64; ARM_JOINTS] = [-0.28481, -0.01175, -0.42076, -0.01275, -0.31436, -0.000_350_1, -0.167_455];
-
-fn joint_frames(joint_rad: &[f64; ARM_JOINTS]) -> [Isometry3<f64>; ARM_JOINTS + 1] {
-    use std::f64::consts::{FRAC_PI_2, PI};
-    let turn_x = |angle| UnitQuaternion::from_axis_angle(&Vector3::x_axis(), angle);
-    let mut frames = [Isometry3::from_parts(Translation3::identity(), turn_x(PI)); ARM_JOINTS + 1];
-    for j in 0..ARM_JOINTS {
-        let theta = joint_rad[j] + if j == 0 { 0.0 } else { PI };
-        let alpha = if j + 1 == ARM_JOINTS { PI } else { FRAC_PI_2 };
-        let about_z = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), theta);
-        let link = Isometry3::from_parts(Translation3::new(0.0, 0.0, OFFSET_M[j]), about_z * turn_x(alpha));
-        frames[j + 1] = frames[j] * link;
-    }
-    frames
+fn chain(joint_rad: &[f64; ARM_JOINTS]) -> Chain {
+    Chain::new(&IsometryMatrix3::identity(), &Joints::from(*joint_rad))
 }
 
 /// Place and orientation of the tool in the base frame.
 pub fn tool(joint_rad: &[f64; ARM_JOINTS]) -> Isometry3<f64> {
-    joint_frames(joint_rad)[ARM_JOINTS]
+    let flange = chain(joint_rad).kbf_from_flange;
+    Isometry3::from_parts(flange.translation, UnitQuaternion::from_rotation_matrix(&flange.rotation))
 }
 
 /// The angles of a pose as the arm tells them, rad: `R = Rz(theta_z) Ry(theta_y) Rx(theta_x)` (not confirmed by any source; the
@@ -37,16 +28,8 @@ pub fn theta_rad(rotation: &UnitQuaternion<f64>) -> [f64; 3] {
 
 /// Linear (m/s) over angular (rad/s) velocity of the tool in the base frame for every joint speed.
 pub fn jacobian(joint_rad: &[f64; ARM_JOINTS]) -> SMatrix<f64, 6, ARM_JOINTS> {
-    let frames = joint_frames(joint_rad);
-    let end = frames[ARM_JOINTS].translation.vector;
-    let mut jacobian = SMatrix::<f64, 6, ARM_JOINTS>::zeros();
-    for j in 0..ARM_JOINTS {
-        let axis = frames[j].rotation * Vector3::z();
-        let arm = end - frames[j].translation.vector;
-        jacobian.fixed_view_mut::<3, 1>(0, j).copy_from(&axis.cross(&arm));
-        jacobian.fixed_view_mut::<3, 1>(3, j).copy_from(&axis);
-    }
-    jacobian
+    let chain = chain(joint_rad);
+    chain.jacobian(&chain.kbf_from_flange.translation.vector)
 }
 
 /// Joint speeds, rad/s, that move the tool with `twist` (base frame), damped near singular poses.
@@ -60,7 +43,7 @@ pub fn joint_speeds(joint_rad: &[f64; ARM_JOINTS], twist: &Vector6<f64>) -> [f64
 
 #[cfg(test)]
 mod tests {
-    use nalgebra::Matrix3;
+    use nalgebra::{Matrix3, Vector3};
 
     use super::*;
 

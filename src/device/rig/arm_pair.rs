@@ -5,8 +5,8 @@ use nalgebra::{UnitQuaternion, Vector3};
 use super::{ArmSet, OLDEST_S, RigError, enrol, is_there, jaws::JawsControl};
 use crate::{
     device::{
-        ArmReading, ForceReading, HandleReading, Health, Inputs, Lever, Outputs, Roster, Sensed, ServoReading, Side,
-        Slot, Stamped, Switches, bota, dynamixel,
+        ArmReading, ClearFaults, ForceReading, HandleReading, Health, Inputs, Lever, Outputs, Roster, SERVOS, Sensed,
+        ServoReading, Side, Slot, Stamped, Switches, bota, dynamixel,
         force_dimension::{self, HandleEvent},
         kinova,
     },
@@ -22,6 +22,13 @@ pub type Obstacle = StartError;
 pub(super) struct Shared {
     pub(super) tissue_n: Option<Vector3<f64>>,
     pub(super) m_from_c: Option<UnitQuaternion<f64>>,
+}
+
+/// Gives the device that was enrolled last its way to clear faults.
+fn clears(roster: &mut Roster, command: impl Fn() + Send + Sync + 'static) {
+    if let Some(entry) = roster.last_mut() {
+        entry.clear_faults = Some(ClearFaults::by(command));
+    }
 }
 
 /// The devices of one side.
@@ -71,21 +78,27 @@ impl ArmPair {
             force_dimension::open(&handle).inspect(|driver| of_handle.attach(driver.lever()))
         })?;
         enrol(roster, &names[0], format!("Force Dimension omega.7, {}", places[0]), &handle);
+        let clearing = kinova::FaultClearing::default();
+        let of_opening = clearing.clone();
         let arm = Slot::start(&names[1], move || {
-            kinova::open(&arm).inspect(|driver| {
+            kinova::open_clearing(&arm, &of_opening).inspect(|driver| {
                 if let Ok(lever) = driver.lever() {
                     of_arm.attach(lever);
                 }
             })
         })?;
         enrol(roster, &names[1], format!("Kinova Gen3, {}", places[1]), &arm);
+        clears(roster, move || clearing.command());
         let sensor = Slot::start(&names[2], move || bota::Driver::open(&sensor))?;
         enrol(roster, &names[2], format!("Bota sensor, {}", places[2]), &sensor);
         let servos = servos.map(|settings| {
             let name = format!("{word} servos");
             let place = settings.port.clone();
-            let slot = Slot::start(&name, move || dynamixel::open(&settings))?;
+            let reboots = dynamixel::Reboots::default();
+            let of_opening = reboots.clone();
+            let slot = Slot::start(&name, move || dynamixel::open_with(&settings, &of_opening))?;
             enrol(roster, &name, format!("DYNAMIXEL servos, {place}"), &slot);
+            clears(roster, move || (0..SERVOS).for_each(|servo| reboots.ask(servo)));
             Ok::<_, std::io::Error>((slot, JawsControl::new(set.jaws, period_s)))
         });
         Ok(Self {

@@ -223,7 +223,7 @@ impl Rig for DeviceRig {
 /// Enters a device into the list.
 fn enrol<D: Device + 'static>(roster: &mut Roster, name: &str, driver: String, slot: &Slot<D>) {
     debug_assert!(roster.len() < DEVICES_MAX, "more devices than places");
-    roster.push(RosterEntry { name: name.to_owned(), driver, view: slot.view() });
+    roster.push(RosterEntry { name: name.to_owned(), driver, view: slot.view(), clear_faults: None });
 }
 
 /// It delivers now.

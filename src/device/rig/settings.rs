@@ -113,3 +113,27 @@ fn below(part: &str, trouble: Trouble) -> Trouble {
         other => other,
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use crate::config::Rig;
+
+    #[test]
+    fn an_impossible_setting_is_told_by_its_whole_key() {
+        let good = Rig::load("paper").unwrap().devices.unwrap();
+        assert_eq!(good.check(), Ok(()));
+        let told = |change: fn(&mut super::Settings)| {
+            let mut settings = good.clone();
+            change(&mut settings);
+            settings.check().unwrap_err().to_string()
+        };
+        let same = told(|settings| settings.left.as_mut().unwrap().handle.serial = Some(1));
+        assert!(same.contains("devices.right.handle.serial") && same.contains("serial numbers"), "{same}");
+        let speed = told(|settings| settings.left.as_mut().unwrap().arm.speed_fraction = f64::NAN);
+        assert!(speed.contains("devices.left.arm.speed_fraction"), "{speed}");
+        let baud = told(|settings| settings.right.as_mut().unwrap().servos.as_mut().unwrap().baud = 1);
+        assert!(baud.contains("devices.right.servos.baud"), "{baud}");
+        let pedal = told(|settings| settings.pedal.as_mut().unwrap().source = "nothing".to_owned());
+        assert!(pedal.contains("devices.pedal.source"), "{pedal}");
+    }
+}

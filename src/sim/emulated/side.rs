@@ -43,6 +43,10 @@ pub struct Truth {
     pub joint_rad: [f64; ARM_JOINTS],
     /// How the wrist sensor is turned.
     pub kbf_from_s1: UnitQuaternion<f64>,
+    /// What the motors of the handle do.
+    pub applied: Applied,
+    /// The arm moves as it is asked to; else it holds.
+    pub servoing: bool,
 }
 
 /// The world of one side.
@@ -190,6 +194,8 @@ impl SideWorld {
             hand_m: self.world.hand().position_m(),
             joint_rad: self.body.joint_rad,
             kbf_from_s1: self.kbf_from_s1,
+            applied: self.applied,
+            servoing: self.asked != Asked::Rest,
         }
     }
 

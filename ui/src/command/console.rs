@@ -3,15 +3,21 @@
 use std::{path::PathBuf, time::Duration};
 
 use clap::Args;
-use nima::runtime::{self, Plan};
+use nima::{
+    config::SchedulingClass,
+    runtime::{self, Plan},
+};
 
 use super::{emulators::Emulators, setup::Setup};
-use crate::console::{self, Options, in_force::InForce, wizards::Which};
+use crate::console::{self, Options, in_force::InForce, roles::Role, wizards::Which};
 
 #[derive(Debug, Default, Args)]
 pub(super) struct Arguments {
     #[command(flatten)]
     setup: Setup,
+    /// Begin in this role (otherwise the one of the last time)
+    #[arg(long)]
+    role: Option<Role>,
     /// Begin with this calibration wizard
     #[arg(long, value_name = "WIZARD")]
     calibrate: Option<Which>,
@@ -21,9 +27,9 @@ pub(super) struct Arguments {
     /// Save a picture of the window (PNG) just before closing; needs --exit-after
     #[arg(long, value_name = "FILE", requires = "exit_after")]
     screenshot: Option<PathBuf>,
-    /// Do not ask for real-time priority and locked memory
-    #[arg(long)]
-    ordinary: bool,
+    /// What to ask of the operating system for the loop: ordinary, fifo or deadline (default: the rig's)
+    #[arg(long, value_name = "CLASS")]
+    scheduling: Option<SchedulingClass>,
     /// Write the loop's figures (JSON) here when the window is closed
     #[arg(long, value_name = "FILE")]
     summary: Option<PathBuf>,
@@ -34,7 +40,7 @@ pub(super) struct Arguments {
 
 pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let (mut rig, scene) = arguments.setup.load()?;
-    rig.real_time &= !arguments.ordinary;
+    rig.scheduling = arguments.scheduling.unwrap_or(rig.scheduling);
     let _emulators = Emulators::start(&arguments.setup, rig.devices.as_ref())?;
     let calibrations = InForce::load(None, &scene).calibrations(&rig);
     let left_calibrations = calibrations.clone();
@@ -46,6 +52,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let options = Options {
         exit_after: arguments.exit_after.map(Duration::from_secs_f64),
         screenshot: arguments.screenshot.clone(),
+        role: arguments.role,
         wizard: arguments.calibrate,
         summary: arguments.summary.clone(),
         stall: arguments.stall.map(Duration::from_secs_f64),

@@ -14,6 +14,7 @@ use anyhow::{Context as _, bail};
 use clap::Args;
 use nima::{
     calibration::gravity::Drift,
+    config::SchedulingClass,
     device::{Health, Standing, Trouble},
     impedance::Mode,
     runtime::{self, Command, DeviceFigures, Handle, Plan, Summary, Tick},
@@ -42,9 +43,9 @@ pub(super) struct Arguments {
     /// Run on the virtual clock, as fast as it goes
     #[arg(long = "virtual")]
     virtual_clock: bool,
-    /// Do not ask for real-time priority and locked memory
-    #[arg(long)]
-    ordinary: bool,
+    /// What to ask of the operating system for the loop: ordinary, fifo or deadline (default: the rig's)
+    #[arg(long, value_name = "CLASS")]
+    scheduling: Option<SchedulingClass>,
     /// Print the figures as one JSON object
     #[arg(long)]
     json: bool,
@@ -63,7 +64,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     rig.mode = arguments.mode.unwrap_or(rig.mode);
     rig.delay_s = arguments.delay_ms.map_or(rig.delay_s, |delay_ms| delay_ms * 1e-3);
     rig.identification.cross_talk |= arguments.cross_talk;
-    rig.real_time &= !arguments.ordinary;
+    rig.scheduling = arguments.scheduling.unwrap_or(rig.scheduling);
     rig.validate()?;
     if arguments.virtual_clock && rig.devices.is_some() {
         bail!("rig \"{}\" has devices, and they live on the real clock: leave --virtual out", rig.name);

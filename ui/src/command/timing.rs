@@ -1,4 +1,4 @@
-//! `nima study timing`: the loop on the real clock beside everything that may hold it up, with and without real-time priority.
+//! `nima study timing`: the loop on the real clock beside everything that may hold it up, under each scheduling class.
 //!
 //! Each case is a process of its own, as in use; loads run in this one. Cases with a window need a display.
 
@@ -16,7 +16,7 @@ use std::{
 
 use anyhow::{Context as _, bail};
 use clap::Args;
-use nima::files::write_atomically;
+use nima::{config::SchedulingClass, files::write_atomically};
 use serde::{Deserialize, Serialize};
 
 use super::output;
@@ -88,14 +88,15 @@ struct Figures {
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 struct Scheduling {
     fifo: bool,
+    deadline: bool,
     memory_locked: bool,
 }
 
 #[derive(Debug, Serialize)]
 struct Case {
     beside: Beside,
-    /// Real-time priority was asked for.
-    asked: bool,
+    /// What was asked of the operating system.
+    asked: SchedulingClass,
     #[serde(flatten)]
     figures: Option<Figures>,
     /// Why there are no figures.
@@ -108,8 +109,8 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     }
     let mut cases = Vec::new();
     for beside in Beside::ALL {
-        for asked in [true, false] {
-            eprintln!("{}, {}", beside.words(), priority(asked));
+        for asked in [SchedulingClass::Fifo, SchedulingClass::Deadline, SchedulingClass::Ordinary] {
+            eprintln!("{}, {}", beside.words(), asked.name());
             let measured = measure(arguments, beside, asked);
             let skipped = measured.as_ref().err().map(|error| format!("{error:#}"));
             cases.push(Case { beside, asked, figures: measured.ok(), skipped });
@@ -127,11 +128,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     if arguments.json { output::json(&cases) } else { output::line(table.trim_end()) }
 }
 
-const fn priority(asked: bool) -> &'static str {
-    if asked { "real-time" } else { "ordinary" }
-}
-
-fn measure(arguments: &Arguments, beside: Beside, asked: bool) -> anyhow::Result<Figures> {
+fn measure(arguments: &Arguments, beside: Beside, asked: SchedulingClass) -> anyhow::Result<Figures> {
     let program = std::env::current_exe().context("this program does not know where it is")?;
     let folder = tempfile::tempdir()?;
     let load = match beside {
@@ -151,9 +148,7 @@ fn measure(arguments: &Arguments, beside: Beside, asked: bool) -> anyhow::Result
         command.args(["--stall", "5"]);
     }
     command.args(["--scene", &arguments.scene]);
-    if !asked {
-        command.arg("--ordinary");
-    }
+    command.args(["--scheduling", asked.name()]);
     let done = command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped()).output()?;
     drop(load);
     if !done.status.success() {
@@ -218,27 +213,29 @@ impl Drop for Load {
 
 fn table(cases: &[Case]) -> String {
     let mut out = String::from(
-        "| beside the loop | priority | ticks | missed | wake-up us p50 | p99 | p99.9 | max | work us p50 | p99 |\n\
+        "| beside the loop | class | ticks | missed | wake-up us p50 | p99 | p99.9 | max | work us p50 | p99 |\n\
          |---|---|---|---|---|---|---|---|---|---|\n",
     );
     for Case { beside, asked, figures, skipped } in cases {
         // Writing into a String cannot fail.
-        write!(out, "| {} | {} |", beside.words(), priority(*asked)).ok();
-        match figures {
-            Some(Figures { ticks, missed, wake_us: wake, work_us: work, scheduling }) => {
-                let refused = if *asked && !scheduling.fifo { " (refused)" } else { "" };
-                writeln!(
-                    out,
-                    " {ticks}{refused} | {missed} | {:.0} | {:.0} | {:.0} | {:.0} | {:.1} | {:.1} |",
-                    wake.p50, wake.p99, wake.p999, wake.max, work.p50, work.p99
-                )
-                .ok();
-            }
-            None => {
-                let why = skipped.as_deref().unwrap_or("not measured");
-                writeln!(out, " {why} | | | | | | | |").ok();
-            }
-        }
+        write!(out, "| {} | {} |", beside.words(), asked.name()).ok();
+        let Some(Figures { ticks, missed, wake_us: wake, work_us: work, scheduling }) = figures else {
+            let why = skipped.as_deref().unwrap_or("not measured");
+            writeln!(out, " {why} | | | | | | | |").ok();
+            continue;
+        };
+        let granted = match asked {
+            SchedulingClass::Ordinary => true,
+            SchedulingClass::Fifo => scheduling.fifo,
+            SchedulingClass::Deadline => scheduling.deadline,
+        };
+        let refused = if granted { "" } else { " (refused)" };
+        writeln!(
+            out,
+            " {ticks}{refused} | {missed} | {:.0} | {:.0} | {:.0} | {:.0} | {:.1} | {:.1} |",
+            wake.p50, wake.p99, wake.p999, wake.max, work.p50, work.p99
+        )
+        .ok();
     }
     out
 }

@@ -23,12 +23,12 @@ pub enum Priority {
 }
 
 impl Priority {
-    /// Colour at this time; flashing dims it and never hides it.
+    /// Colour at this time on the dark plate that alarms stand on; flashing dims it and never hides it.
     pub fn colour(self, time_s: f64) -> Color32 {
         let (colour, hz) = match self {
-            Self::High => (theme::ALARM_HIGH, 2.0),
-            Self::Medium => (theme::ALARM_MEDIUM, 0.6),
-            Self::Low => return theme::ALARM_LOW,
+            Self::High => (theme::DARK.alarm_high, 2.0),
+            Self::Medium => (theme::DARK.alarm_medium, 0.6),
+            Self::Low => return theme::DARK.alarm_low,
         };
         if (time_s * hz).fract() < 0.5 { colour } else { colour.gamma_multiply(0.35) }
     }
@@ -177,7 +177,7 @@ mod tests {
     fn flashing_never_hides_and_low_is_steady() {
         for i in 0..100 {
             let time_s = f64::from(i) * 0.05;
-            assert_eq!(Priority::Low.colour(time_s), theme::ALARM_LOW);
+            assert_eq!(Priority::Low.colour(time_s), theme::DARK.alarm_low);
             assert!(Priority::High.colour(time_s).a() > 0);
         }
         assert_ne!(Priority::High.colour(0.1), Priority::High.colour(0.3));

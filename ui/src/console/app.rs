@@ -6,7 +6,7 @@ use std::{
 };
 
 use eframe::glow;
-use egui::{CentralPanel, Event, Frame, Key, Margin, Panel, ScrollArea, Ui};
+use egui::{CentralPanel, Frame, Margin, Panel, ScrollArea, Ui};
 use nima::{
     config::{Rig, Scene},
     device::Prompt,
@@ -18,14 +18,16 @@ use nima::{
 use super::{
     Options,
     in_force::InForce,
+    keys,
     live::Live,
+    menu,
     outbox::Outbox,
-    panels::{
-        CalibrationWish, FeedbackState, ForcesState, TopBarState, TradeoffState, calibrations_ui, degrees_ui,
-        devices_ui, feedback_ui, forces_ui, gates_ui, horizon_ui, timing_ui, top_bar_ui, tradeoff_ui,
-    },
-    scene3d::{SceneView, scene_ui},
-    screenshot, theme,
+    panels::{CalibrationWish, ForcesState, TopBarState, TradeoffState, calibrations_ui, top_bar_ui},
+    roles::{Panels, Role, Wishes, role_ui},
+    scene3d::SceneView,
+    screenshot,
+    settings::Kept,
+    theme,
     wizards::{Saving, Which, Wizards},
 };
 
@@ -47,10 +49,8 @@ pub struct ConsoleApp {
     live: Live,
     outbox: Outbox,
     top_bar: TopBarState,
-    feedback: FeedbackState,
-    forces: ForcesState,
-    tradeoff: TradeoffState,
-    scene: SceneView,
+    panels: Panels,
+    settings: Kept,
     wizards: Wizards,
     in_force: InForce,
     /// What was watched before a wizard took the rig over.
@@ -74,10 +74,8 @@ impl ConsoleApp {
             live: Live::new(rig, scene),
             outbox: Outbox::default(),
             top_bar: TopBarState::default(),
-            feedback: FeedbackState::default(),
-            forces: ForcesState::default(),
-            tradeoff: TradeoffState::default(),
-            scene: SceneView::new(cc.gl.as_deref()),
+            panels: Panels { scene: SceneView::new(cc.gl.as_deref()), ..Panels::default() },
+            settings: Kept::default(),
             options: Options::default(),
             opened: now,
             framed: now,
@@ -89,10 +87,27 @@ impl ConsoleApp {
     #[must_use]
     pub fn with_options(mut self, options: Options) -> Self {
         self.options = options;
+        self.settings.now.role = self.options.role.unwrap_or(self.settings.now.role);
         if let Some(which) = self.options.wizard {
             self.open_wizard(which);
         }
         self
+    }
+
+    /// The same with what was chosen before; changes are kept.
+    #[must_use]
+    pub fn with_settings(mut self, settings: Kept) -> Self {
+        if let Some(told) = settings.told() {
+            self.in_force.tell(format!("{told}."));
+        }
+        self.panels.tab = settings.now.tab;
+        self.settings = settings;
+        self
+    }
+
+    /// Who sits before the screen.
+    pub const fn role(&self) -> Role {
+        self.settings.now.role
     }
 
     /// The newest tick that reached the screen.
@@ -107,7 +122,12 @@ impl ConsoleApp {
 
     /// The trade-off panel's memory, for what it has measured.
     pub fn tradeoff(&self) -> &TradeoffState {
-        &self.tradeoff
+        &self.panels.tradeoff
+    }
+
+    /// Moments that were marked, s on the loop's clock.
+    pub fn marks_s(&self) -> impl Iterator<Item = f64> {
+        self.live.marks_s.iter().copied()
     }
 
     /// What calibrations are in force.
@@ -159,7 +179,7 @@ impl ConsoleApp {
         let rough_edges = self.live.rough_edges;
         self.live = Live::new(rig, scene);
         self.live.rough_edges = rough_edges;
-        self.forces = ForcesState::default();
+        self.panels.forces = ForcesState::default();
         self.outbox = Outbox::default();
         self.handle = Some(started?);
         Ok(())
@@ -171,7 +191,7 @@ impl ConsoleApp {
             Ok(()) => "Applied. The loop was restarted and is idle: engage it when ready.".to_owned(),
             Err(reason) => format!("Not applied: {reason}."),
         };
-        self.tradeoff.tell(told);
+        self.panels.tradeoff.tell(told);
     }
 
     /// Opens a wizard: a simulated rig goes over to its experiment, where somebody guides the arm.
@@ -229,40 +249,20 @@ impl ConsoleApp {
         }
     }
 
-    /// Space and Escape stop, wherever the keyboard's focus is; nothing else sees them, so no button is pressed by them. While
-    /// a name is being written, Space is a letter and Escape alone stops.
-    fn stop_key(&mut self, ctx: &egui::Context) {
-        let writing = ctx.text_edit_focused();
-        let stop = ctx.input_mut(|input| {
-            let mut stop = false;
-            input.events.retain(|event| match event {
-                Event::Key { key: Key::Space, .. } if writing => true,
-                Event::Key { key: Key::Space | Key::Escape, pressed, repeat, .. } => {
-                    stop |= *pressed && !*repeat;
-                    false
-                }
-                Event::Text(text) => writing || text != " ",
-                _ => true,
-            });
-            stop
-        });
-        if stop {
-            self.outbox.push(Command::Stop);
-        }
-    }
-
     fn layout(&mut self, ui: &mut Ui) {
-        let bar = Frame::new().fill(theme::PANEL).inner_margin(Margin::symmetric(14, 0));
+        let bar = Frame::new().fill(theme::now().panel).inner_margin(Margin::symmetric(14, 0));
         Panel::top("top_bar").exact_size(72.0).resizable(false).frame(bar).show(ui, |ui| {
             let calibrating = self.wizards.open.is_some();
-            top_bar_ui(ui, &self.live, &mut self.top_bar, &mut self.outbox, calibrating);
+            top_bar_ui(ui, &self.live, &mut self.top_bar, &mut self.outbox, &mut self.settings.now, calibrating);
+            let pressed = keys::role_pressed(ui.ctx()).filter(|_| !calibrating);
+            self.settings.now.role = pressed.unwrap_or(self.role());
         });
         if self.wizards.open.is_some() { self.wizard_layout(ui) } else { self.monitor_layout(ui) }
     }
 
     /// A technician's view: one wizard, what is in force, and the way back.
     fn wizard_layout(&mut self, ui: &mut Ui) {
-        let side = Frame::new().fill(theme::PANEL).inner_margin(Margin::same(8));
+        let side = Frame::new().fill(theme::now().panel).inner_margin(Margin::same(8));
         let mut wish = None;
         Panel::left("calibrations").exact_size(316.0).resizable(false).frame(side).show(ui, |ui| {
             wish = calibrations_ui(ui, &self.live, &self.in_force, self.wizards.open);
@@ -290,32 +290,9 @@ impl ConsoleApp {
     }
 
     fn monitor_layout(&mut self, ui: &mut Ui) {
-        let (mut restart, mut wish) = (None, None);
-        let side = Frame::new().fill(theme::PANEL).inner_margin(Margin::same(8));
-        Panel::left("feedback").exact_size(316.0).resizable(false).frame(side).show(ui, |ui| {
-            ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
-                feedback_ui(ui, &mut self.live, &mut self.feedback, &mut self.outbox);
-                devices_ui(ui, &self.live);
-                wish = calibrations_ui(ui, &self.live, &self.in_force, None);
-                gates_ui(ui, &self.live);
-            });
-        });
-        Panel::right("figures").exact_size(348.0).resizable(false).frame(side).show(ui, |ui| {
-            ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
-                horizon_ui(ui, &self.live);
-                degrees_ui(ui, &self.live);
-                timing_ui(ui, &self.live);
-                restart = tradeoff_ui(ui, &self.live, &mut self.tradeoff, &mut self.outbox);
-            });
-        });
-        CentralPanel::no_frame().show(ui, |ui| {
-            let traces = (0.44 * ui.available_height()).clamp(230.0, 460.0);
-            let frame = Frame::new().inner_margin(Margin::symmetric(12, 8));
-            Panel::bottom("forces").exact_size(traces).resizable(false).frame(frame).show(ui, |ui| {
-                forces_ui(ui, &self.live, &mut self.forces);
-            });
-            scene_ui(ui, &self.live, &mut self.scene, &mut self.outbox);
-        });
+        let role = self.role();
+        let Wishes { restart, calibration } =
+            role_ui(ui, role, &mut self.live, &mut self.panels, &self.in_force, &mut self.outbox);
         // After everything was drawn of the loop as it was. A stop asked for in the same frame comes first.
         if self.outbox.stop_is_stuck() {
             return;
@@ -323,7 +300,7 @@ impl ConsoleApp {
         if let Some(rig) = restart {
             self.apply_tradeoff(rig);
         }
-        self.obey_calibrations(wish);
+        self.obey_calibrations(calibration);
     }
 
     fn obey_options(&mut self, ctx: &egui::Context) {
@@ -361,9 +338,17 @@ impl eframe::App for ConsoleApp {
         self.live.frame(self.framed.duration_since(period).as_secs_f64(), frame.info().cpu_usage.map(f64::from));
         // Once given up they stay so: a view that changes its look by itself again and again would be worse.
         self.live.rough_edges |= self.opened.elapsed() > WARM_UP && self.live.figures.frame_work_ms > SLOW_MS;
-        self.scene.smooth = !self.live.rough_edges;
-        self.stop_key(&ctx);
+        self.panels.scene.smooth = !self.live.rough_edges;
+        menu::apply(&ctx, &mut self.settings.now);
+        if keys::stop_pressed(&ctx) {
+            self.outbox.push(Command::Stop);
+        }
+        if keys::mark_pressed(&ctx) {
+            self.live.mark();
+        }
         self.layout(ui);
+        self.settings.now.tab = self.panels.tab;
+        self.settings.save();
         if let Some(handle) = &self.handle {
             self.outbox.flush(handle);
         }
@@ -373,14 +358,14 @@ impl eframe::App for ConsoleApp {
 
     /// The ground of the whole window: clearing is far cheaper than painting panels over it.
     fn clear_color(&self, _visuals: &egui::Visuals) -> [f32; 4] {
-        theme::BACKGROUND.to_normalized_gamma_f32()
+        theme::now().background.to_normalized_gamma_f32()
     }
 
     fn on_exit(&mut self, gl: Option<&glow::Context>) {
         if let Some(gl) = gl {
-            self.scene.destroy(gl);
+            self.panels.scene.destroy(gl);
         }
-        self.tradeoff.cancel();
+        self.panels.tradeoff.cancel();
         let summary = self.handle.take().and_then(Handle::stop_and_join);
         if let (Some(path), Some(summary)) = (&self.options.summary, summary) {
             let written = serde_json::to_vec_pretty(&summary)

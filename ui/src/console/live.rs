@@ -8,24 +8,28 @@ use std::{
 use nalgebra::Vector3;
 use nima::{
     config::{Rig, Scene},
-    device::{Healths, Roster, Side},
+    device::{Healths, Roster, SIDES, Side},
     impedance::Mode,
     runtime::{Command, Event, Fault, Handle, Scheduling, Tick},
-    safety::ChainSettings,
+    safety::{ChainSettings, Why},
     statistics::{Percentiles, Quantiles},
     teleop::LoopState,
 };
 
 use super::{
     alarms::Signs,
+    cloud::Cloud,
     history::{CHANNELS, History},
     rolling::{DegreeShares, Fading},
+    stiffness::ContactStiffness,
 };
 
 /// Window of the degree histograms, s.
 pub const DEGREES_S: f64 = 120.0;
 /// Length of the trend of errors, s; one point a second.
 pub const TREND_S: usize = 180;
+/// Marks kept.
+const MARKS: usize = 100;
 /// Length of the tip's trail, s, and time between its points.
 const TRAIL_S: f64 = 1.2;
 const TRAIL_STEP_S: f64 = 0.02;
@@ -59,13 +63,24 @@ pub struct Gates {
     pub ceiling: Fading,
 }
 
+/// How an arm pair came into its present state.
+#[derive(Clone, Copy, Debug)]
+pub struct Change {
+    /// When, s on the loop's clock.
+    pub t_s: f64,
+    /// From which state.
+    pub from: LoopState,
+    /// Why.
+    pub why: Why,
+}
+
 /// Numbers as shown: steady enough to be read.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Figures {
-    /// Mean size of the measured force, N.
-    pub measured_n: f64,
-    /// Mean size of the rendered force, N.
-    pub rendered_n: f64,
+    /// Mean size of the measured force of each side, N, indexed by [`Side::index`].
+    pub measured_n: [f64; SIDES],
+    /// Mean size of the rendered force of each side, N.
+    pub rendered_n: [f64; SIDES],
     /// Error of each mode at the horizon, N, mean over the last seconds.
     pub horizon_n: [f64; 4],
     /// Force withheld by the dead band, N.
@@ -93,20 +108,28 @@ pub struct Live {
     pub tick: Option<Tick>,
     /// Newest tick of the left arm pair.
     pub left: Option<Tick>,
-    /// Forces over time.
-    pub history: History,
+    /// Forces over time, of each side.
+    pub history: [History; SIDES],
+    /// Pairs of forces of the last seconds, of each side.
+    pub clouds: [Cloud; SIDES],
+    /// Moments that the operator marked, s on the loop's clock, oldest first.
+    pub marks_s: VecDeque<f64>,
     /// Degrees chosen by the console.
     pub degrees: DegreeShares,
     /// Degrees the paper's in-window rule would choose.
     pub paper_degrees: DegreeShares,
     /// Error of each mode at the horizon, N, second by second, oldest first.
     pub trend_n: VecDeque<[f64; 4]>,
-    /// Gates over the last moments.
-    pub gates: Gates,
+    /// Gates of each side over the last moments.
+    pub gates: [Gates; SIDES],
+    /// The last change of each side's state.
+    pub changes: [Option<Change>; SIDES],
+    /// How stiff each side's contact is, or the last one was.
+    pub stiffness: [ContactStiffness; SIDES],
     /// Numbers for reading.
     pub figures: Figures,
-    /// Recent positions of the tip, m, oldest first.
-    pub trail: VecDeque<Vector3<f32>>,
+    /// Recent positions of each side's tip, m, oldest first.
+    pub trails: [VecDeque<Vector3<f32>>; SIDES],
     /// What the operating system granted.
     pub scheduling: Option<Scheduling>,
     /// The 3-D view gave up smooth edges, because this computer draws too slowly.
@@ -120,14 +143,14 @@ pub struct Live {
     first_fault: Option<(f64, Fault)>,
     refusal: Option<(Instant, Command)>,
     horizon: [Fading; 4],
-    measured: Fading,
-    rendered: Fading,
+    measured: [Fading; SIDES],
+    rendered: [Fading; SIDES],
     missed_share: Fading,
     frame: Fading,
     frame_work: Fading,
     wake: Percentiles,
     work: Percentiles,
-    trail_s: f64,
+    trail_s: [f64; SIDES],
     ticks_counted: u64,
     figures_at: Instant,
     readings_at: Instant,
@@ -145,12 +168,16 @@ impl Live {
             scene,
             tick: None,
             left: None,
-            history: History::default(),
+            history: Default::default(),
+            clouds: Default::default(),
+            marks_s: VecDeque::new(),
             degrees: DegreeShares::new(ticks),
             paper_degrees: DegreeShares::new(ticks),
-            gates: Gates::default(),
+            gates: Default::default(),
+            changes: [None; SIDES],
+            stiffness: Default::default(),
             figures: Figures::default(),
-            trail: VecDeque::new(),
+            trails: Default::default(),
             scheduling: None,
             rough_edges: false,
             bias_moved_n: None,
@@ -160,14 +187,14 @@ impl Live {
             refusal: None,
             trend_n: VecDeque::with_capacity(TREND_S + 1),
             horizon: [Fading::default(); 4],
-            measured: Fading::default(),
-            rendered: Fading::default(),
+            measured: Default::default(),
+            rendered: Default::default(),
             missed_share: Fading::default(),
             frame: Fading::default(),
             frame_work: Fading::default(),
             wake: Percentiles::new(),
             work: Percentiles::new(),
-            trail_s: f64::NEG_INFINITY,
+            trail_s: [f64::NEG_INFINITY; SIDES],
             ticks_counted: 0,
             figures_at: now,
             readings_at: now,
@@ -192,7 +219,10 @@ impl Live {
                     self.tick(tick);
                     each(tick);
                 }
-                Side::Left => self.left = Some(*tick),
+                Side::Left => {
+                    let before = self.left.replace(*tick);
+                    self.follow(tick, before.as_ref());
+                }
             }
             came = true;
         });
@@ -207,6 +237,33 @@ impl Live {
     pub fn frame(&mut self, period_s: f64, work_s: Option<f64>) {
         self.frame.push(period_s * 1e3, period_s, 1.0);
         self.frame_work.push(work_s.unwrap_or(0.0) * 1e3, period_s, 1.0);
+    }
+
+    /// Marks this moment.
+    pub fn mark(&mut self) {
+        let Some(tick) = &self.tick else { return };
+        self.marks_s.push_back(tick.t_s);
+        if self.marks_s.len() > MARKS {
+            self.marks_s.pop_front();
+        }
+    }
+
+    /// Newest tick of this side.
+    pub const fn tick_of(&self, side: Side) -> Option<&Tick> {
+        match side {
+            Side::Right => self.tick.as_ref(),
+            Side::Left => self.left.as_ref(),
+        }
+    }
+
+    /// The arm pairs that the loop runs; the right one is always there.
+    pub fn sides(&self) -> impl Iterator<Item = Side> {
+        Side::ALL.into_iter().filter(|&side| side == Side::Right || self.is_bimanual())
+    }
+
+    /// There are two arm pairs.
+    pub const fn is_bimanual(&self) -> bool {
+        self.scene.left.is_some() || self.left.is_some()
     }
 
     /// State of the loop as last seen, of two arm pairs the one that needs more attention; idle before anything came.
@@ -240,6 +297,11 @@ impl Live {
         self.tick.map_or(self.rig.gates, |tick| tick.gate_settings)
     }
 
+    /// Stiffness of the stiffer contact that either hand has or had last, N/m: the gain is the same for both.
+    pub fn stiffness_n_m(&self) -> Option<f64> {
+        self.stiffness.iter().filter_map(ContactStiffness::n_m).max_by(f64::total_cmp)
+    }
+
     /// What alarms are judged from.
     pub fn signs(&self, stop_is_stuck: bool) -> Signs {
         Signs {
@@ -259,7 +321,8 @@ impl Live {
             Event::FaultRaised { t_s, fault, .. } => {
                 self.first_fault.get_or_insert((t_s, fault));
             }
-            Event::StateChanged { to, .. } => {
+            Event::StateChanged { t_s, side, from, to, why } => {
+                self.changes[side.index()] = Some(Change { t_s, from, why });
                 if !matches!(to, LoopState::Faulted(_)) {
                     self.first_fault = None;
                 }
@@ -279,11 +342,7 @@ impl Live {
         let dt_s = before.map_or(0.0, |before| (tick.t_s - before.t_s).max(0.0));
         let missed = before.map_or(0, |before| tick.missed.saturating_sub(before.missed));
         self.missed_share.push(missed as f64 / (missed as f64 + 1.0), dt_s, 3.0);
-        let (m, r) = (tick.measured_n, tick.rendered_n);
-        let values: [f32; CHANNELS] = [m.x, m.y, m.z, r.x, r.y, r.z].map(|x| x as f32);
-        self.history.push(tick.t_s, &values);
-        self.measured.push(m.norm(), dt_s, 0.05);
-        self.rendered.push(r.norm(), dt_s, 0.05);
+        self.follow(tick, before.as_ref());
         self.degrees.push(tick.identification.degree);
         self.paper_degrees.push(tick.identification.paper_degree);
         if before.is_some_and(|before| before.t_s.floor() < tick.t_s.floor()) {
@@ -297,21 +356,33 @@ impl Live {
         }
         self.wake.record(tick.wake_s);
         self.work.record(tick.work_s);
-        self.gates.push(tick, dt_s);
         self.ticks_counted += 1;
-        if tick.t_s - self.trail_s >= TRAIL_STEP_S {
-            self.trail_s = tick.t_s;
-            self.trail.push_back(tick.tip_m.cast());
-            if self.trail.len() > (TRAIL_S / TRAIL_STEP_S) as usize {
-                self.trail.pop_front();
+    }
+
+    /// What is kept of both sides alike: forces and the way of the tip.
+    fn follow(&mut self, tick: &Tick, before: Option<&Tick>) {
+        let (side, dt_s) = (tick.side.index(), before.map_or(0.0, |before| (tick.t_s - before.t_s).max(0.0)));
+        let (m, r) = (tick.measured_n, tick.rendered_n);
+        let values: [f32; CHANNELS] = [m.x, m.y, m.z, r.x, r.y, r.z].map(|x| x as f32);
+        self.history[side].push(tick.t_s, &values);
+        self.measured[side].push(m.norm(), dt_s, 0.05);
+        self.rendered[side].push(r.norm(), dt_s, 0.05);
+        self.gates[side].push(tick, dt_s);
+        self.clouds[side].push(tick.t_s, m, r);
+        self.stiffness[side].push(tick.t_s, &tick.tip_m, &m);
+        if tick.t_s - self.trail_s[side] >= TRAIL_STEP_S && tick.tip_m.iter().all(|x| x.is_finite()) {
+            self.trail_s[side] = tick.t_s;
+            self.trails[side].push_back(tick.tip_m.cast());
+            if self.trails[side].len() > (TRAIL_S / TRAIL_STEP_S) as usize {
+                self.trails[side].pop_front();
             }
         }
     }
 
     fn refresh_figures(&mut self) {
         if self.readings_at.elapsed() >= READINGS_EVERY {
-            self.figures.measured_n = self.measured.get();
-            self.figures.rendered_n = self.rendered.get();
+            self.figures.measured_n = self.measured.map(Fading::get);
+            self.figures.rendered_n = self.rendered.map(Fading::get);
             self.readings_at = Instant::now();
         }
         let since = self.figures_at.elapsed();
@@ -320,7 +391,7 @@ impl Live {
         }
         self.figures = Figures {
             horizon_n: self.horizon.map(Fading::get),
-            withheld_n: self.gates.withheld_n.get(),
+            withheld_n: self.gates[Side::Right.index()].withheld_n.get(),
             wake_us: self.wake.quantiles(),
             work_us: self.work.quantiles(),
             rate_hz: self.ticks_counted as f64 / since.as_secs_f64(),

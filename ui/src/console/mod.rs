@@ -6,14 +6,20 @@
 
 pub mod alarms;
 pub mod app;
+pub mod cloud;
 pub mod history;
 pub mod in_force;
+mod keys;
 pub mod live;
+mod menu;
 pub mod outbox;
 pub mod panels;
+pub mod roles;
 pub mod rolling;
 pub mod scene3d;
 pub mod screenshot;
+pub mod settings;
+pub mod stiffness;
 pub mod theme;
 pub mod widgets;
 pub mod wizards;
@@ -26,6 +32,7 @@ use nima::{
 };
 
 pub use app::ConsoleApp;
+use settings::Kept;
 
 /// What may be asked of the window from outside, for pictures and tests. The default opens it until it is closed.
 #[derive(Clone, Debug, Default)]
@@ -34,6 +41,8 @@ pub struct Options {
     pub exit_after: Option<Duration>,
     /// Save the window as PNG here just before it closes by itself (or after three seconds if it does not).
     pub screenshot: Option<PathBuf>,
+    /// Begin in this role instead of the last one.
+    pub role: Option<roles::Role>,
     /// Begin with this wizard.
     pub wizard: Option<wizards::Which>,
     /// Write the loop's figures here when the window is closed.
@@ -56,8 +65,9 @@ pub fn run(handle: Handle, rig: Rig, scene: Scene, options: Options) -> anyhow::
         centered: true,
         ..Default::default()
     };
-    let create: eframe::AppCreator<'_> =
-        Box::new(move |cc| Ok(Box::new(ConsoleApp::new(cc, handle, rig, scene).with_options(options))));
+    let create: eframe::AppCreator<'_> = Box::new(move |cc| {
+        Ok(Box::new(ConsoleApp::new(cc, handle, rig, scene).with_settings(Kept::of_user()).with_options(options)))
+    });
     eframe::run_native("NIMA Console", native, create).map_err(|error| NoWindow::new(&error.to_string()).into())
 }
 

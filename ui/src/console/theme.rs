@@ -3,60 +3,128 @@
 //! Red, yellow and cyan are kept for alarms (IEC 60601-1-8) and mean nothing else. The two forces differ in lightness
 //! as much as in hue, so that they stay apart for colour-blind eyes and on a grey print: measured is ivory, rendered blue.
 
-use std::sync::Arc;
+use std::{cell::Cell, sync::Arc};
 
 use egui::{
     Color32, CornerRadius, FontData, FontDefinitions, FontFamily, FontId, Margin, Stroke, Style, TextStyle, Visuals,
     epaint::Shadow, vec2,
 };
 
-/// Behind everything.
-pub const BACKGROUND: Color32 = Color32::from_rgb(0x10, 0x13, 0x17);
-/// Bars and side panels.
-pub const PANEL: Color32 = Color32::from_rgb(0x15, 0x19, 0x1f);
-/// A card on a panel.
-pub const CARD: Color32 = Color32::from_rgb(0x1c, 0x21, 0x29);
-/// Tooltips and menus.
-pub const POPUP: Color32 = Color32::from_rgb(0x26, 0x2d, 0x37);
-/// A control at rest.
-pub const CONTROL: Color32 = Color32::from_rgb(0x2b, 0x33, 0x3e);
-/// A control under the pointer.
-pub const CONTROL_HOVER: Color32 = Color32::from_rgb(0x37, 0x41, 0x4e);
+/// Every colour that a panel may name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Palette {
+    /// Behind everything.
+    pub background: Color32,
+    /// Bars and side panels.
+    pub panel: Color32,
+    /// A card on a panel.
+    pub card: Color32,
+    /// Tooltips and menus.
+    pub popup: Color32,
+    /// A control at rest.
+    pub control: Color32,
+    /// A control under the pointer.
+    pub control_hover: Color32,
+    /// A groove: slider rails, empty bars, plot grounds.
+    pub groove: Color32,
+    /// Hairlines.
+    pub line: Color32,
+    /// Text that is read first.
+    pub text: Color32,
+    /// Text that explains; at least 5.5:1 on a card.
+    pub text_weak: Color32,
+    /// The one thing on the screen that must be found without looking: the stop button.
+    pub stop: Color32,
+    /// What is selected or set by the operator.
+    pub selected: Color32,
+    /// The force measured at the instrument.
+    pub measured: Color32,
+    /// The force rendered to the hand.
+    pub rendered: Color32,
+    /// What our own figures are compared with (delayed DFR, the paper's choice).
+    pub reference: Color32,
+    /// Lines that stand side by side: axes x, y, z, or the members of an ensemble. They differ in lightness too.
+    pub series: [Color32; 4],
+    /// The loop runs and feeds force back.
+    pub engaged: Color32,
+    /// The loop is at rest.
+    pub at_rest: Color32,
+    /// High-priority alarm, flashing.
+    pub alarm_high: Color32,
+    /// Medium-priority alarm, flashing slowly.
+    pub alarm_medium: Color32,
+    /// Low-priority alarm, steady.
+    pub alarm_low: Color32,
+}
+
+const fn rgb(hex: u32) -> Color32 {
+    Color32::from_rgb((hex >> 16) as u8, (hex >> 8) as u8, hex as u8)
+}
+
+/// For a dark room; and for all that lies on the operating field and on alarms, which are dark in both.
+pub const DARK: Palette = Palette {
+    background: rgb(0x10_1317),
+    panel: rgb(0x15_191f),
+    card: rgb(0x1c_2129),
+    popup: rgb(0x26_2d37),
+    control: rgb(0x2b_333e),
+    control_hover: rgb(0x37_414e),
+    groove: rgb(0x11_151a),
+    line: rgb(0x2d_3540),
+    text: rgb(0xe6_eaee),
+    text_weak: rgb(0x9d_a8b4),
+    stop: rgb(0xff_ffff),
+    selected: rgb(0x3f_5d86),
+    measured: rgb(0xf3_e9d2),
+    rendered: rgb(0x6c_9dff),
+    reference: rgb(0x87_919d),
+    series: [rgb(0xf3_e9d2), rgb(0x6c_9dff), rgb(0x63_c28c), rgb(0xc0_7ad8)],
+    engaged: rgb(0x63_c28c),
+    at_rest: rgb(0xc3_cad2),
+    alarm_high: rgb(0xff_4d4d),
+    alarm_medium: rgb(0xff_d73d),
+    alarm_low: rgb(0x41_d6e0),
+};
+
+/// For a bright room and for print.
+pub const LIGHT: Palette = Palette {
+    background: rgb(0xf4_f6f8),
+    panel: rgb(0xe4_e9ee),
+    card: rgb(0xfc_fdfe),
+    popup: rgb(0xff_ffff),
+    control: rgb(0xdc_e2e9),
+    control_hover: rgb(0xcb_d4dd),
+    groove: rgb(0xe9_edf1),
+    line: rgb(0xc2_cad3),
+    text: rgb(0x16_1b21),
+    text_weak: rgb(0x4b_5764),
+    stop: rgb(0x10_1317),
+    selected: rgb(0xa8_c4ec),
+    measured: rgb(0x5d_4715),
+    rendered: rgb(0x1c_63dd),
+    reference: rgb(0x6c_7783),
+    series: [rgb(0x5d_4715), rgb(0x1c_63dd), rgb(0x1f_8a53), rgb(0x8a_3ba8)],
+    engaged: rgb(0x1f_8a53),
+    at_rest: rgb(0x5a_646f),
+    alarm_high: rgb(0xc9_1f2a),
+    alarm_medium: rgb(0x8a_6a00),
+    alarm_low: rgb(0x00_7480),
+};
+
+thread_local! {
+    // A window lives on one thread; tests have many windows on many threads.
+    static NOW: Cell<&'static Palette> = const { Cell::new(&DARK) };
+}
+
+/// The palette in force.
+pub fn now() -> &'static Palette {
+    NOW.get()
+}
+
 /// Ground of the 3-D view, far and near.
 pub const FIELD_FAR: Color32 = Color32::from_rgb(0x2b, 0x33, 0x3d);
 /// See [`FIELD_FAR`].
 pub const FIELD_NEAR: Color32 = Color32::from_rgb(0x13, 0x17, 0x1c);
-/// A groove: slider rails, empty bars, plot grounds.
-pub const GROOVE: Color32 = Color32::from_rgb(0x11, 0x15, 0x1a);
-/// Hairlines.
-pub const LINE: Color32 = Color32::from_rgb(0x2d, 0x35, 0x40);
-/// Text that is read first.
-pub const TEXT: Color32 = Color32::from_rgb(0xe6, 0xea, 0xee);
-/// Text that explains; 5.5:1 on a card.
-pub const TEXT_WEAK: Color32 = Color32::from_rgb(0x9d, 0xa8, 0xb4);
-/// The one thing on the screen that must be found without looking: the stop button.
-pub const STOP: Color32 = Color32::from_rgb(0xff, 0xff, 0xff);
-/// What is selected or set by the operator.
-pub const SELECTED: Color32 = Color32::from_rgb(0x3f, 0x5d, 0x86);
-/// The force measured at the instrument.
-pub const MEASURED: Color32 = Color32::from_rgb(0xf3, 0xe9, 0xd2);
-/// The force rendered to the hand.
-pub const RENDERED: Color32 = Color32::from_rgb(0x6c, 0x9d, 0xff);
-/// What our own figures are compared with (delayed DFR, the paper's choice).
-pub const REFERENCE: Color32 = Color32::from_rgb(0x87, 0x91, 0x9d);
-/// Lines that stand side by side: axes x, y, z, or the members of an ensemble. They differ in lightness too.
-pub const SERIES: [Color32; 4] =
-    [MEASURED, RENDERED, Color32::from_rgb(0x63, 0xc2, 0x8c), Color32::from_rgb(0xc0, 0x7a, 0xd8)];
-/// The loop runs and feeds force back.
-pub const ENGAGED: Color32 = Color32::from_rgb(0x63, 0xc2, 0x8c);
-/// The loop is at rest.
-pub const AT_REST: Color32 = Color32::from_rgb(0xc3, 0xca, 0xd2);
-/// High-priority alarm, flashing.
-pub const ALARM_HIGH: Color32 = Color32::from_rgb(0xff, 0x4d, 0x4d);
-/// Medium-priority alarm, flashing slowly.
-pub const ALARM_MEDIUM: Color32 = Color32::from_rgb(0xff, 0xd7, 0x3d);
-/// Low-priority alarm, steady.
-pub const ALARM_LOW: Color32 = Color32::from_rgb(0x41, 0xd6, 0xe0);
 
 /// Space between a card's edge and its content.
 pub const CARD_PADDING: i8 = 12;
@@ -83,8 +151,15 @@ pub fn regular(size: f32) -> FontId {
 /// Sets fonts and style of a context, once.
 pub fn apply(ctx: &egui::Context) {
     ctx.set_fonts(fonts());
-    ctx.set_theme(egui::Theme::Dark);
-    ctx.all_styles_mut(set_style);
+    ctx.style_mut_of(egui::Theme::Dark, |style| set_style(style, Visuals::dark(), &DARK));
+    ctx.style_mut_of(egui::Theme::Light, |style| set_style(style, Visuals::light(), &LIGHT));
+    choose(ctx, false);
+}
+
+/// Goes over to the light or the dark palette; call at the start of a frame.
+pub fn choose(ctx: &egui::Context, light: bool) {
+    NOW.set(if light { &LIGHT } else { &DARK });
+    ctx.set_theme(if light { egui::Theme::Light } else { egui::Theme::Dark });
 }
 
 fn fonts() -> FontDefinitions {
@@ -101,7 +176,7 @@ fn fonts() -> FontDefinitions {
     fonts
 }
 
-fn set_style(style: &mut Style) {
+fn set_style(style: &mut Style, base: Visuals, palette: &Palette) {
     style.text_styles = [
         (TextStyle::Heading, strong(15.0)),
         (TextStyle::Body, regular(14.0)),
@@ -120,46 +195,81 @@ fn set_style(style: &mut Style) {
     style.spacing.menu_margin = Margin::same(10);
     style.interaction.selectable_labels = false;
     style.interaction.tooltip_delay = 0.35;
-    style.visuals = visuals();
+    style.visuals = visuals(base, palette);
 }
 
-fn visuals() -> Visuals {
-    let mut visuals = Visuals::dark();
-    visuals.panel_fill = PANEL;
-    visuals.window_fill = POPUP;
-    visuals.window_stroke = Stroke::new(1.0, LINE);
+fn visuals(mut visuals: Visuals, palette: &Palette) -> Visuals {
+    visuals.panel_fill = palette.panel;
+    visuals.window_fill = palette.popup;
+    visuals.window_stroke = Stroke::new(1.0, palette.line);
     visuals.popup_shadow = Shadow { offset: [0, 4], blur: 12, spread: 0, color: Color32::from_black_alpha(110) };
-    visuals.extreme_bg_color = GROOVE;
-    visuals.faint_bg_color = CARD;
-    visuals.weak_text_color = Some(TEXT_WEAK);
-    visuals.hyperlink_color = RENDERED;
-    visuals.warn_fg_color = ALARM_MEDIUM;
-    visuals.error_fg_color = ALARM_HIGH;
-    visuals.selection.bg_fill = SELECTED;
-    visuals.selection.stroke = Stroke::new(1.0, TEXT);
+    visuals.extreme_bg_color = palette.groove;
+    visuals.faint_bg_color = palette.card;
+    visuals.weak_text_color = Some(palette.text_weak);
+    visuals.hyperlink_color = palette.rendered;
+    visuals.warn_fg_color = palette.alarm_medium;
+    visuals.error_fg_color = palette.alarm_high;
+    visuals.selection.bg_fill = palette.selected;
+    visuals.selection.stroke = Stroke::new(1.0, palette.text);
     visuals.slider_trailing_fill = true;
     let widgets = &mut visuals.widgets;
-    widgets.noninteractive.fg_stroke = Stroke::new(1.0, TEXT);
-    widgets.noninteractive.bg_stroke = Stroke::new(1.0, LINE);
+    widgets.noninteractive.fg_stroke = Stroke::new(1.0, palette.text);
+    widgets.noninteractive.bg_stroke = Stroke::new(1.0, palette.line);
     for (state, fill) in [
-        (&mut widgets.inactive, CONTROL),
-        (&mut widgets.hovered, CONTROL_HOVER),
-        (&mut widgets.active, SELECTED),
-        (&mut widgets.open, CONTROL_HOVER),
+        (&mut widgets.inactive, palette.control),
+        (&mut widgets.hovered, palette.control_hover),
+        (&mut widgets.active, palette.selected),
+        (&mut widgets.open, palette.control_hover),
     ] {
         state.bg_fill = fill;
         state.weak_bg_fill = fill;
-        state.bg_stroke = Stroke::new(1.0, LINE);
-        state.fg_stroke = Stroke::new(1.5, TEXT);
+        state.bg_stroke = Stroke::new(1.0, palette.line);
+        state.fg_stroke = Stroke::new(1.5, palette.text);
         state.corner_radius = CORNER;
         state.expansion = 0.0;
     }
     // The rail of a slider is painted with the resting fill: a little lighter than the card, so that it is seen.
-    visuals.widgets.hovered.bg_stroke = Stroke::new(1.0, TEXT_WEAK);
+    visuals.widgets.hovered.bg_stroke = Stroke::new(1.0, palette.text_weak);
     visuals
 }
 
 /// Frame of a card.
 pub fn card() -> egui::Frame {
-    egui::Frame::new().fill(CARD).corner_radius(CORNER).inner_margin(Margin::same(CARD_PADDING))
+    egui::Frame::new().fill(now().card).corner_radius(CORNER).inner_margin(Margin::same(CARD_PADDING))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Relative luminance by WCAG 2.
+    fn luminance(colour: Color32) -> f64 {
+        let linear = |byte: u8| {
+            let x = f64::from(byte) / 255.0;
+            if x <= 0.040_45 { x / 12.92 } else { ((x + 0.055) / 1.055).powf(2.4) }
+        };
+        0.2126 * linear(colour.r()) + 0.7152 * linear(colour.g()) + 0.0722 * linear(colour.b())
+    }
+
+    fn contrast(a: Color32, b: Color32) -> f64 {
+        let (a, b) = (luminance(a), luminance(b));
+        (a.max(b) + 0.05) / (a.min(b) + 0.05)
+    }
+
+    #[test]
+    fn text_and_forces_are_read_on_every_ground_of_both_palettes() {
+        for palette in [&DARK, &LIGHT] {
+            for ground in [palette.background, palette.panel, palette.card, palette.popup, palette.groove] {
+                assert!(contrast(palette.text, ground) > 10.0);
+                assert!(contrast(palette.text_weak, ground) > 5.0, "{palette:?} {ground:?}");
+                for colour in [palette.measured, palette.rendered, palette.alarm_high, palette.alarm_medium] {
+                    assert!(contrast(colour, ground) > 4.0, "{colour:?} on {ground:?}");
+                }
+                assert!(contrast(palette.engaged, ground) > 3.0 && contrast(palette.alarm_low, ground) > 4.0);
+            }
+            assert!(contrast(palette.text, palette.control) > 7.0 && contrast(palette.text, palette.selected) > 4.5);
+            assert!(contrast(palette.stop, palette.panel) > 10.0, "the stop must be found without looking");
+            assert!(contrast(palette.measured, palette.rendered) > 1.4, "the forces differ in lightness too");
+        }
+    }
 }

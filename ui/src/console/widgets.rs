@@ -31,7 +31,7 @@ pub fn figure(ui: &mut Ui, name: &str, value: impl Into<String>, meaning: &str) 
 
 /// Text that explains.
 pub fn weak(text: impl Into<String>) -> RichText {
-    RichText::new(text).color(theme::TEXT_WEAK)
+    RichText::new(text).color(theme::now().text_weak)
 }
 
 /// Small text that explains.
@@ -88,8 +88,8 @@ pub fn sign_ui(ui: &mut Ui, what: Sign, radius: f32, colour: Color32) -> Respons
 }
 
 /// The sign of a force as it stands beside its name: one line with a cone, or a beaded line with a double cone.
-pub fn force_sign(painter: &Painter, rect: Rect, rendered: bool) {
-    let colour = if rendered { theme::RENDERED } else { theme::MEASURED };
+pub fn force_sign(painter: &Painter, palette: &theme::Palette, rect: Rect, rendered: bool) {
+    let colour = if rendered { palette.rendered } else { palette.measured };
     let (y, left, right) = (rect.center().y, rect.left(), rect.right());
     let cone = |tip: f32| {
         let points = vec![pos2(tip, y), pos2(tip - 9.0, y - 5.0), pos2(tip - 9.0, y + 5.0)];
@@ -110,7 +110,7 @@ pub fn force_sign(painter: &Painter, rect: Rect, rendered: bool) {
 
 /// A bar from the left of `rect` over this share of its width, in a groove.
 pub fn bar(painter: &Painter, rect: Rect, share: f64, colour: Color32) {
-    painter.rect_filled(rect, 2.0, theme::GROOVE);
+    painter.rect_filled(rect, 2.0, theme::now().groove);
     let share = if share.is_finite() { share.clamp(0.0, 1.0) as f32 } else { 1.0 };
     if share > 0.0 {
         let filled = Rect::from_min_size(rect.min, vec2((rect.width() * share).max(2.0), rect.height()));

@@ -56,7 +56,7 @@ pub fn calibrations_ui(ui: &mut Ui, live: &Live, in_force: &InForce, open: Optio
 fn source_ui(ui: &mut Ui, live: &Live) {
     let source = live.tick.map_or(ForceSource::AtTip, |tick| tick.force.source);
     let sure = source.is_usable() && source.doubt().is_none();
-    let (what, colour) = if sure { (Sign::Disc, theme::ENGAGED) } else { (Sign::Triangle, theme::TEXT) };
+    let (what, colour) = if sure { (Sign::Disc, theme::now().engaged) } else { (Sign::Triangle, theme::now().text) };
     ui.horizontal(|ui| {
         sign_ui(ui, what, 5.0, colour);
         let words = RichText::new(format!("Tip force: {}", source.words())).font(theme::strong(14.0));

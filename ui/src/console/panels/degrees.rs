@@ -19,13 +19,13 @@ pub fn degrees_ui(ui: &mut Ui, live: &Live) {
         ui.horizontal(|ui| {
             key_ui(
                 ui,
-                theme::RENDERED,
+                theme::now().rendered,
                 "this console",
                 "Chosen by the running error at the horizon; 0 means no correction.",
             );
             key_ui(
                 ui,
-                theme::REFERENCE,
+                theme::now().reference,
                 "the paper's rule",
                 "Least error inside the window; 0 means the window is not full.",
             );
@@ -101,14 +101,15 @@ fn chart_ui(ui: &mut Ui, live: &Live) {
     response.on_hover_text(format!("This console  {}\nPaper's rule  {}", words(&ours), words(&papers)));
     let painter = ui.painter();
     let ground = Rect::from_min_size(rect.min, vec2(rect.width(), CHART_HEIGHT));
-    painter.rect_filled(ground, 3.0, theme::GROOVE);
+    painter.rect_filled(ground, 3.0, theme::now().groove);
     let cell = ground.width() / DEGREES as f32;
     let width = 0.32 * cell;
     for degree in 0..DEGREES {
         let middle = ground.left() + (degree as f32 + 0.5) * cell;
-        for (share, left, colour) in
-            [(ours[degree], middle - width - 1.0, theme::RENDERED), (papers[degree], middle + 1.0, theme::REFERENCE)]
-        {
+        for (share, left, colour) in [
+            (ours[degree], middle - width - 1.0, theme::now().rendered),
+            (papers[degree], middle + 1.0, theme::now().reference),
+        ] {
             let height = (CHART_HEIGHT - 18.0) * share as f32;
             let filled = Rect::from_min_max(
                 egui::pos2(left, ground.bottom() - height.max(1.0)),
@@ -122,7 +123,7 @@ fn chart_ui(ui: &mut Ui, live: &Live) {
                     Align2::CENTER_CENTER,
                     format!("{:.0}", 100.0 * share),
                     theme::regular(11.0),
-                    theme::TEXT_WEAK,
+                    theme::now().text_weak,
                 );
             }
         }
@@ -132,7 +133,7 @@ fn chart_ui(ui: &mut Ui, live: &Live) {
             Align2::CENTER_CENTER,
             name,
             theme::regular(12.5),
-            theme::TEXT_WEAK,
+            theme::now().text_weak,
         );
     }
 }

@@ -1,7 +1,7 @@
 //! The devices of the rig: where each is, how well it delivers, and for what fails the cause and the cure.
 
 use egui::{Button, Label, RichText, Ui, vec2};
-use nima::device::{Health, RosterEntry, Side, Standing};
+use nima::device::{Health, RosterEntry, Side, Standing, Trouble};
 
 use crate::console::{
     live::Live,
@@ -52,6 +52,15 @@ fn device_ui(ui: &mut Ui, entry: &RosterEntry, health: &Health) {
     if let Some(trouble) = report.trouble {
         ui.add(Label::new(trouble.to_string()).wrap());
         ui.add(Label::new(small(trouble.cure())).wrap());
+        if let (Trouble::DeviceFault { .. }, Some(clear)) = (&trouble, &entry.clear_faults) {
+            let button = ui.add(Button::new(small("Clear faults")).min_size(vec2(84.0, 22.0)));
+            button.widget_info(|| {
+                egui::WidgetInfo::labeled(egui::Role::Button, true, format!("Clear faults of the {}", entry.name))
+            });
+            if button.on_hover_text("Once nobody is near the arm and the cause is gone: it may move again.").clicked() {
+                clear.command();
+            }
+        }
     }
     ui.add_space(4.0);
 }
@@ -62,9 +71,11 @@ fn standing_words(health: &Health) -> (Sign, egui::Color32, String) {
         format!("{rate_hz:.0} Hz; lost {lost}, damaged {damaged}, refused {refused}")
     };
     match health.standing {
-        Standing::Connected => (Sign::Disc, theme::ENGAGED, figures()),
-        Standing::Opening => (Sign::Ring, theme::TEXT, "being opened".to_owned()),
-        Standing::Closed => (Sign::Ring, theme::TEXT_WEAK, "disconnected".to_owned()),
-        Standing::Lost(loss) => (Sign::Triangle, theme::ALARM_MEDIUM, format!("lost: {}; {}", loss.cause(), figures())),
+        Standing::Connected => (Sign::Disc, theme::now().engaged, figures()),
+        Standing::Opening => (Sign::Ring, theme::now().text, "being opened".to_owned()),
+        Standing::Closed => (Sign::Ring, theme::now().text_weak, "disconnected".to_owned()),
+        Standing::Lost(loss) => {
+            (Sign::Triangle, theme::now().alarm_medium, format!("lost: {}; {}", loss.cause(), figures()))
+        }
     }
 }

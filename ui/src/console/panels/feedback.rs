@@ -8,10 +8,11 @@ use std::ops::RangeInclusive;
 use egui::{Button, DragValue, RichText, Slider, SliderClamping, Ui, vec2};
 use nima::{impedance::Mode, runtime::Command};
 
-use super::{mode_meaning, mode_name};
+use super::{mode_meaning, mode_name, stable_gain::stable_gain_ui};
 use crate::console::{
     live::Live,
     outbox::Outbox,
+    theme,
     widgets::{card, small},
 };
 
@@ -20,6 +21,8 @@ const ASKED_SHOWN_S: f64 = 1.6;
 const DELAY_MS: RangeInclusive<f64> = 0.0..=500.0;
 const DEAD_BAND_MM_S: RangeInclusive<f64> = 0.0..=10.0;
 const GAIN_LIMIT: f64 = 3.0;
+const GAIN_MEANING: &str = "Factor between the force asked for by the mode and the force in the hand, without unit. 0 is no force, \
+                            1 is natural. Changes are ramped at 2 per second.";
 
 /// A value that was asked for and when (s on the window's clock).
 #[derive(Clone, Copy, Debug, Default)]
@@ -87,14 +90,14 @@ struct Setting {
     at_once: bool,
 }
 
-/// Shows the setting; gives the value that the operator wants, when there is a new one.
+/// Shows the setting; gives the value that the operator wants, when there is a new one, and where the slider is.
 fn setting_ui(
     ui: &mut Ui,
     setting: &Setting,
     range: RangeInclusive<f64>,
     in_force: f64,
     asked: &mut Asked,
-) -> Option<f64> {
+) -> (Option<f64>, egui::Rect) {
     let time_s = ui.input(|input| input.time);
     // Shown in whole steps. The widgets must not round or clamp by themselves: they would report it as an edit, and the
     // screen would send the loop a setting that nobody chose.
@@ -119,26 +122,22 @@ fn setting_ui(
     ui.spacing_mut().slider_width = ui.available_width();
     let slider = Slider::new(&mut value, range).show_value(false).clamping(SliderClamping::Edits);
     let slider = ui.add(slider).labelled_by(label).on_hover_text(setting.meaning);
+    let rail = slider.rect;
     let both = slider.union(number);
     if both.changed() || both.dragged() {
         asked.0 = Some((whole(value), time_s));
     }
     let wanted =
         if setting.at_once { both.changed() } else { both.drag_stopped() || (both.changed() && !both.dragged()) };
-    wanted.then_some(whole(value))
+    (wanted.then_some(whole(value)), rail)
 }
 
 fn gain_ui(ui: &mut Ui, live: &Live, state: &mut FeedbackState, outbox: &mut Outbox) {
-    let setting = Setting {
-        name: "Gain",
-        meaning: "Factor between the force asked for by the mode and the force in the hand, without unit. 0 is no force, 1 is \
-                  natural. Changes are ramped at 2 per second.",
-        suffix: "",
-        decimals: 2,
-        at_once: true,
-    };
+    let setting = Setting { name: "Gain", meaning: GAIN_MEANING, suffix: "", decimals: 2, at_once: true };
     let limit = if state.allow_above_one { GAIN_LIMIT } else { 1.0 };
-    if let Some(gain) = setting_ui(ui, &setting, 0.0..=limit, live.gain(), &mut state.gain) {
+    let (wanted, rail) = setting_ui(ui, &setting, 0.0..=limit, live.gain(), &mut state.gain);
+    stable_gain_ui(ui, live, rail, limit);
+    if let Some(gain) = wanted {
         outbox.push(if gain > 1.0 { Command::SetGainAboveOne(gain) } else { Command::SetGain(gain) });
     }
     ui.horizontal(|ui| {
@@ -155,6 +154,41 @@ fn gain_ui(ui: &mut Ui, live: &Live, state: &mut FeedbackState, outbox: &mut Out
     });
 }
 
+/// The gain alone, large: one figure, one slider, two buttons for steps of a tenth. Never above 1.
+pub fn calm_gain_ui(ui: &mut Ui, live: &Live, state: &mut FeedbackState, outbox: &mut Outbox) {
+    let time_s = ui.input(|input| input.time);
+    let shown = state.gain.shown(live.gain(), time_s);
+    let mut wanted = None;
+    ui.horizontal(|ui| {
+        ui.label(RichText::new("Gain").font(theme::strong(17.0))).on_hover_text(GAIN_MEANING);
+        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+            let mut step = |ui: &mut Ui, text: &str, name: &str, by: f64| {
+                let button =
+                    ui.add(Button::new(RichText::new(text).font(theme::strong(22.0))).min_size(vec2(48.0, 48.0)));
+                button.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, name));
+                if button.on_hover_text(format!("{name} by 0.1")).clicked() {
+                    wanted = Some(((shown + by) * 10.0).round() / 10.0);
+                }
+            };
+            step(ui, "+", "Raise the gain", 0.1);
+            step(ui, "-", "Lower the gain", -0.1);
+            ui.add_space(8.0);
+            ui.label(RichText::new(format!("{shown:.2}")).font(theme::strong(38.0))).on_hover_text(GAIN_MEANING);
+        });
+    });
+    let mut value = shown.min(1.0);
+    ui.spacing_mut().slider_width = ui.available_width();
+    let slider = ui.add(Slider::new(&mut value, 0.0..=1.0).show_value(false).clamping(SliderClamping::Edits));
+    slider.widget_info(|| egui::WidgetInfo::slider(true, value, "Gain"));
+    if slider.on_hover_text(GAIN_MEANING).changed() {
+        wanted = Some(value);
+    }
+    if let Some(gain) = wanted.map(|gain| gain.clamp(0.0, 1.0)) {
+        state.gain = Asked(Some((gain, time_s)));
+        outbox.push(Command::SetGain(gain));
+    }
+}
+
 fn delay_ui(ui: &mut Ui, live: &Live, state: &mut FeedbackState, outbox: &mut Outbox) {
     let setting = Setting {
         name: "Link delay",
@@ -165,7 +199,7 @@ fn delay_ui(ui: &mut Ui, live: &Live, state: &mut FeedbackState, outbox: &mut Ou
         at_once: false,
     };
     let in_force = live.delay_s() * 1e3;
-    if let Some(delay_ms) = setting_ui(ui, &setting, DELAY_MS, in_force, &mut state.delay_ms) {
+    if let Some(delay_ms) = setting_ui(ui, &setting, DELAY_MS, in_force, &mut state.delay_ms).0 {
         outbox.push(Command::SetDelay(delay_ms * 1e-3));
     }
 }
@@ -180,7 +214,7 @@ fn standstill_ui(ui: &mut Ui, live: &Live, state: &mut FeedbackState, outbox: &m
         at_once: true,
     };
     let in_force = live.gate_settings().dead_band_m_s * 1e3;
-    if let Some(mm_s) = setting_ui(ui, &setting, DEAD_BAND_MM_S, in_force, &mut state.dead_band_mm_s) {
+    if let Some(mm_s) = setting_ui(ui, &setting, DEAD_BAND_MM_S, in_force, &mut state.dead_band_mm_s).0 {
         outbox.push(Command::SetDeadBand(mm_s * 1e-3));
     }
     let mut hold = live.gate_settings().static_hold;

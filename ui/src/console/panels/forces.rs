@@ -5,10 +5,13 @@
 
 use std::ops::RangeInclusive;
 
-use egui::{Align, Button, Color32, Layout, Rect, RichText, Sense, Ui, Vec2b, pos2, vec2};
+use egui::{Align, Align2, Button, Color32, Layout, Rect, RichText, Sense, Ui, Vec2b, pos2, vec2};
 use egui_plot::{
-    AxisHints, GridInput, GridMark, HoverPosition, Line, Plot, PlotBounds, PlotPoints, PlotResponse, VLine,
+    AxisHints, GridInput, GridMark, HoverPosition, Line, LineStyle, Plot, PlotBounds, PlotPoint, PlotPoints,
+    PlotResponse, Text, VLine,
 };
+
+use nima::device::Side;
 
 use crate::console::{
     history::{CHANNELS, History, Trace},
@@ -26,6 +29,11 @@ const TIME_AXIS: f32 = 34.0;
 /// The least that a plot shows up and down, N.
 const LEAST_RANGE_N: f64 = 0.25;
 
+/// Room from which the header has a heading.
+const HEADING_FROM: f32 = 800.0;
+const MEANING: &str = "Newtons in the workspace frame: x, y and z as drawn in the view, z up. Measured at the instrument now; rendered to the \
+                       hand after all gates. Drag to pan, wheel to zoom, double click for the last 10 s. E marks a moment.";
+
 /// What the panel remembers between frames.
 #[derive(Debug)]
 pub struct ForcesState {
@@ -35,6 +43,8 @@ pub struct ForcesState {
     ranges_n: [(f64, f64); 3],
     lines: [Trace; CHANNELS],
     cursor_s: Option<f64>,
+    /// Whose forces are shown.
+    side: Side,
 }
 
 impl Default for ForcesState {
@@ -45,11 +55,26 @@ impl Default for ForcesState {
             ranges_n: [(-LEAST_RANGE_N, LEAST_RANGE_N); 3],
             lines: Default::default(),
             cursor_s: None,
+            side: Side::Right,
         }
     }
 }
 
 impl ForcesState {
+    /// Whose forces are shown.
+    pub const fn side(&self) -> Side {
+        self.side
+    }
+
+    /// The time that the pointer is at, s on the loop's clock.
+    pub fn cursor_at_s(&self, live: &Live) -> Option<f64> {
+        self.cursor_s.map(|cursor_s| self.now_s(self.history(live)) + cursor_s)
+    }
+
+    const fn history<'a>(&self, live: &'a Live) -> &'a History {
+        &live.history[self.side.index()]
+    }
+
     fn now_s(&self, history: &History) -> f64 {
         self.paused_at_s.unwrap_or(history.latest_s())
     }
@@ -69,38 +94,40 @@ impl ForcesState {
     }
 }
 
-/// The panel.
-pub fn forces_ui(ui: &mut Ui, live: &Live, state: &mut ForcesState) {
+/// The panel, with these axes (0 is x) one under the other.
+pub fn forces_ui(ui: &mut Ui, live: &mut Live, state: &mut ForcesState, axes: &[usize]) {
     header_ui(ui, live, state);
     ui.add_space(2.0);
-    let now_s = state.now_s(&live.history);
+    let now_s = state.now_s(state.history(live));
     let (from_s, to_s) = (now_s + state.view_s.0, now_s + state.view_s.1);
     let most = (ui.available_width() * 0.8) as usize;
+    let history = &live.history[state.side.index()];
     for (channel, line) in state.lines.iter_mut().enumerate() {
-        live.history.trace(channel, (from_s, to_s), now_s, most, line);
+        history.trace(channel, (from_s, to_s), now_s, most, line);
     }
     ui.spacing_mut().item_spacing.y = 4.0;
-    let height = ((ui.available_height() - TIME_AXIS - 8.0) / 3.0).max(48.0);
+    let height = ((ui.available_height() - TIME_AXIS - 4.0 * (axes.len() - 1) as f32) / axes.len() as f32).max(48.0);
     let cursor_s = state.cursor_s.take();
-    for axis in 0..3 {
-        state.ranges_n[axis] = range_n(live.history.extent(&[axis, axis + 3], (from_s, to_s)), state.ranges_n[axis]);
-        let height = if axis == 2 { height + TIME_AXIS } else { height };
-        let response = plot_ui(ui, live, state, axis, height, cursor_s);
+    for &axis in axes {
+        let last = axes.last() == Some(&axis);
+        state.ranges_n[axis] = range_n(history.extent(&[axis, axis + 3], (from_s, to_s)), state.ranges_n[axis]);
+        let height = if last { height + TIME_AXIS } else { height };
+        let response = plot_ui(ui, live, state, (axis, last, axes.len() == 1), height, cursor_s);
         interact(ui, state, &response);
     }
 }
 
-fn header_ui(ui: &mut Ui, live: &Live, state: &mut ForcesState) {
+fn header_ui(ui: &mut Ui, live: &mut Live, state: &mut ForcesState) {
     ui.horizontal(|ui| {
-        ui.label(RichText::new("Force at the tip and in the hand").text_style(egui::TextStyle::Heading)).on_hover_text(
-            "Newtons in the workspace frame: x, y and z as drawn in the view, z up. Measured at the instrument now; rendered \
-             to the hand after all gates. Drag to pan, wheel to zoom, double click for the last 10 s.",
-        );
-        ui.add_space(12.0);
+        if ui.available_width() > HEADING_FROM {
+            ui.label(RichText::new("Force at the tip and in the hand").text_style(egui::TextStyle::Heading))
+                .on_hover_text(MEANING);
+            ui.add_space(12.0);
+        }
         for (name, rendered) in [("measured", false), ("rendered", true)] {
             let (rect, _) = ui.allocate_exact_size(vec2(30.0, 14.0), Sense::hover());
-            force_sign(ui.painter(), rect, rendered);
-            ui.label(small(name));
+            force_sign(ui.painter(), theme::now(), rect, rendered);
+            ui.label(small(name)).on_hover_text(MEANING);
             ui.add_space(6.0);
         }
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
@@ -111,7 +138,22 @@ fn header_ui(ui: &mut Ui, live: &Live, state: &mut ForcesState) {
             let size = vec2(76.0, 26.0);
             let paused = state.paused_at_s.is_some();
             if ui.add(Button::new(name).selected(paused).min_size(size)).on_hover_text(meaning).clicked() {
-                state.paused_at_s = if paused { None } else { Some(live.history.latest_s()) };
+                state.paused_at_s = if paused { None } else { Some(state.history(live).latest_s()) };
+            }
+            let mark = ui.add(Button::new("Mark (E)").min_size(size));
+            if mark.on_hover_text("Marks this moment in all traces, also while they are paused.").clicked() {
+                live.mark();
+            }
+            if live.is_bimanual() {
+                for side in [Side::Right, Side::Left] {
+                    let name = if side == Side::Right { "Right" } else { "Left" };
+                    let button = Button::selectable(state.side == side, name).frame_when_inactive(true);
+                    let meaning = format!("Shows the forces of the {} hand.", side.word());
+                    if ui.add(button.min_size(vec2(52.0, 26.0))).on_hover_text(meaning).clicked() {
+                        state.side = side;
+                    }
+                }
+                ui.add_space(6.0);
             }
             let reset = ui.add(Button::new("Last 10 s").min_size(size)).on_hover_text("Back to the last ten seconds.");
             if reset.clicked() {
@@ -125,13 +167,12 @@ fn plot_ui(
     ui: &mut Ui,
     live: &Live,
     state: &ForcesState,
-    axis: usize,
+    (axis, last, only): (usize, bool, bool),
     height: f32,
     cursor_s: Option<f64>,
 ) -> PlotResponse<()> {
-    let now_s = state.now_s(&live.history);
-    let history = &live.history;
-    let last = axis == 2;
+    let now_s = state.now_s(state.history(live));
+    let history = state.history(live);
     let seconds =
         AxisHints::new_x().label(if last { "Time before now (s)" } else { "" }).formatter(|mark, _| plain(mark.value));
     let newtons = AxisHints::new_y()
@@ -153,14 +194,14 @@ fn plot_ui(
         .set_margin_fraction(vec2(0.0, 0.0))
         .show_crosshair(false)
         .show_background(false)
-        .grid_color(theme::LINE)
+        .grid_color(theme::now().line)
         .x_grid_spacer(|grid| marks(&grid, 64.0))
         .y_grid_spacer(|grid| marks(&grid, 18.0))
         .label_formatter(move |hover| {
             let (HoverPosition::NearDataPoint { position, .. } | HoverPosition::Elsewhere { position }) = hover;
             readout(history, axis, now_s, position.x)
         });
-    let lines = [(axis, "measured", theme::MEASURED, 2.2), (axis + 3, "rendered", theme::RENDERED, 1.6)];
+    let lines = [(axis, "measured", theme::now().measured, 2.2), (axis + 3, "rendered", theme::now().rendered, 1.6)];
     let (low_n, high_n) = state.ranges_n[axis];
     plot.show(ui, |plot| {
         plot.set_plot_bounds(PlotBounds::from_min_max([state.view_s.0, low_n], [state.view_s.1, high_n]));
@@ -170,8 +211,23 @@ fn plot_ui(
                 plot.line(line.color(colour).width(width).allow_hover(false));
             }
         }
+        for (number, mark_s) in live.marks_s.iter().enumerate() {
+            let (name, at_s) = (format!("mark {}", number + 1), mark_s - now_s);
+            let dashed = LineStyle::dashed_loose();
+            plot.vline(VLine::new(name, at_s).color(theme::now().text).width(1.2).style(dashed).allow_hover(false));
+            if axis == 0 || only {
+                let text = RichText::new((number + 1).to_string()).font(theme::strong(13.0));
+                let place = PlotPoint::new(at_s, high_n - 0.12 * (high_n - low_n));
+                plot.text(
+                    Text::new("marks", place, text)
+                        .color(theme::now().text)
+                        .anchor(Align2::LEFT_CENTER)
+                        .allow_hover(false),
+                );
+            }
+        }
         if let Some(cursor_s) = cursor_s {
-            plot.vline(VLine::new("cursor", cursor_s).color(theme::TEXT_WEAK).width(1.0).allow_hover(false));
+            plot.vline(VLine::new("cursor", cursor_s).color(theme::now().text_weak).width(1.0).allow_hover(false));
         }
     })
 }
@@ -260,12 +316,12 @@ pub fn gauge(painter: &egui::Painter, rect: Rect, measured_n: f64, rendered_n: f
     let y = |force_n: f64| rect.bottom() - rect.height() * (force_n / top_n).clamp(0.0, 1.0) as f32;
     let half = 0.5 * rect.width();
     for (force_n, left, colour) in
-        [(measured_n, rect.left(), theme::MEASURED), (rendered_n, rect.left() + half, theme::RENDERED)]
+        [(measured_n, rect.left(), theme::DARK.measured), (rendered_n, rect.left() + half, theme::DARK.rendered)]
     {
         let filled = Rect::from_min_max(pos2(left + 2.0, y(force_n)), pos2(left + half - 2.0, rect.bottom() - 2.0));
         painter.rect_filled(filled, 1.0, colour);
     }
-    painter.hline(rect.x_range(), y(ceiling_n), egui::Stroke::new(2.0, theme::TEXT));
+    painter.hline(rect.x_range(), y(ceiling_n), egui::Stroke::new(2.0, theme::DARK.text));
 }
 
 #[cfg(test)]

@@ -2,6 +2,7 @@
 
 use egui::{Color32, RichText, Ui};
 use nima::{
+    device::Side,
     safety::{EnergyMode, Gate as Which, Reason},
     teleop::LoopState,
 };
@@ -13,6 +14,8 @@ use crate::console::{
     widgets::{Sign, card, sign_ui, small},
 };
 
+/// The panel tells of the right hand.
+const RIGHT: usize = Side::Right.index();
 /// Below this there is no contact worth rendering, N.
 const CONTACT_N: f64 = 0.1;
 
@@ -22,7 +25,7 @@ pub fn gates_ui(ui: &mut Ui, live: &Live) {
     card(ui, "Why is there no force?", meaning, |ui| {
         ui.label(RichText::new(answer(live)).font(theme::strong(14.0)));
         ui.add_space(4.0);
-        for gate in gates(live) {
+        for gate in gates(live, Side::Right) {
             gate_ui(ui, live, &gate);
         }
     });
@@ -30,58 +33,72 @@ pub fn gates_ui(ui: &mut Ui, live: &Live) {
 
 /// The answer in one sentence: the first closed gate, or that nothing is wrong.
 fn answer(live: &Live) -> String {
-    let figures = &live.figures;
-    match live.state() {
-        LoopState::Disconnected => return "No force: a device is missing (see the devices).".to_owned(),
-        LoopState::Idle => return "No force: the loop is idle. Press Engage.".to_owned(),
-        LoopState::Ready => return "No force yet: the drives are coming on.".to_owned(),
-        LoopState::Clutched => return "No force: the clutch is pressed, the hand moves freely.".to_owned(),
-        LoopState::Stopped => return "No force: stopped by the operator.".to_owned(),
-        LoopState::Faulted(_) => return "No force: stopped by a fault.".to_owned(),
-        LoopState::Engaged => {}
-    }
-    if closed(live.gates.released) {
-        return "No force: the hand has let go. It comes back when the contact has ended.".to_owned();
-    }
-    if closed(live.gates.invalid) {
-        return "No force: the mode has nothing valid to render.".to_owned();
-    }
-    if closed(live.gates.stale) {
-        return "No force: the data are too old.".to_owned();
-    }
-    if figures.measured_n < CONTACT_N {
-        return "Free motion: no contact, nothing to render.".to_owned();
-    }
-    if closed(live.gates.dead_band) && figures.withheld_n > 0.05 {
-        return format!("{:.1} N not rendered (dead band)", figures.withheld_n);
-    }
-    if live.gain() < 0.01 {
-        return "No force: the gain is zero.".to_owned();
-    }
-    if closed(live.gates.energy) {
-        return "Less force: the hand would get back more energy than it gave.".to_owned();
-    }
-    if figures.rendered_n < 0.05 {
-        return format!("On its way: the link is {:.0} ms late.", live.delay_s() * 1e3);
-    }
-    format!("There is: {:.1} N in the hand.", figures.rendered_n)
+    why_no_force(live).unwrap_or_else(|| match live.figures {
+        figures if figures.measured_n[RIGHT] < CONTACT_N => "Free motion: no contact, nothing to render.".to_owned(),
+        figures => format!("There is: {:.1} N in the hand.", figures.rendered_n[RIGHT]),
+    })
 }
 
-struct Gate {
-    which: Which,
-    name: &'static str,
+/// Why the hand feels nothing, or less than it should; `None` where nothing is wrong.
+pub fn why_no_force(live: &Live) -> Option<String> {
+    let figures = &live.figures;
+    let words = match live.state() {
+        LoopState::Disconnected => "No force: a device is missing (see the devices).",
+        LoopState::Idle => "No force: the loop is idle. Press Engage.",
+        LoopState::Ready => "No force yet: the drives are coming on.",
+        LoopState::Clutched => "No force: the clutch is pressed, the hand moves freely.",
+        LoopState::Stopped => "No force: stopped by the operator.",
+        LoopState::Faulted(_) => "No force: stopped by a fault.",
+        LoopState::Engaged if closed(live.gates[RIGHT].released) => {
+            "No force: the hand has let go. It comes back when the contact has ended."
+        }
+        LoopState::Engaged if closed(live.gates[RIGHT].invalid) => "No force: the mode has nothing valid to render.",
+        LoopState::Engaged if closed(live.gates[RIGHT].stale) => "No force: the data are too old.",
+        LoopState::Engaged if figures.measured_n[RIGHT] < CONTACT_N => return None,
+        LoopState::Engaged if closed(live.gates[RIGHT].dead_band) && figures.withheld_n > 0.05 => {
+            return Some(format!("{:.1} N not rendered (dead band)", figures.withheld_n));
+        }
+        LoopState::Engaged if live.gain() < 0.01 => "No force: the gain is zero.",
+        LoopState::Engaged if closed(live.gates[RIGHT].energy) => {
+            "Less force: the hand would get back more energy than it gave."
+        }
+        LoopState::Engaged if figures.rendered_n[RIGHT] < 0.05 => {
+            return Some(format!("On its way: the link is {:.0} ms late.", live.delay_s() * 1e3));
+        }
+        LoopState::Engaged => return None,
+    };
+    Some(words.to_owned())
+}
+
+/// One gate as the screen tells it.
+pub(super) struct Gate {
+    pub(super) which: Which,
+    pub(super) name: &'static str,
     share: f64,
     limits: bool,
-    note: String,
-    meaning: &'static str,
+    pub(super) note: String,
+    pub(super) meaning: &'static str,
+}
+
+impl Gate {
+    /// Its sign and its word.
+    pub(super) fn standing(&self) -> (Sign, &'static str) {
+        let acting = self.share > if self.limits { 0.05 } else { 0.5 };
+        match (acting, self.limits) {
+            (false, _) => (Sign::Disc, "open"),
+            (true, false) => (Sign::Square, "closed"),
+            (true, true) => (Sign::Ring, "limiting"),
+        }
+    }
 }
 
 fn closed(share: Fading) -> bool {
     share.get() > 0.5
 }
 
-fn gates(live: &Live) -> [Gate; 9] {
-    let (gates, chain) = (&live.gates, &live.rig.gates);
+/// All of them, in the order of the chain.
+pub(super) fn gates(live: &Live, side: Side) -> [Gate; 9] {
+    let (gates, chain) = (&live.gates[side.index()], &live.rig.gates);
     let gate = |which, name, share: Fading, limits, note, meaning| Gate {
         which,
         name,
@@ -100,8 +117,8 @@ fn gates(live: &Live) -> [Gate; 9] {
     );
     if live.gate_settings().static_hold {
         "off: force is kept".clone_into(&mut dead_band.note);
-    } else if closed(gates.dead_band) && live.figures.withheld_n > 0.05 {
-        dead_band.note = format!("{:.1} N not rendered", live.figures.withheld_n);
+    } else if closed(gates.dead_band) && gates.withheld_n.get() > 0.05 {
+        dead_band.note = format!("{:.1} N not rendered", gates.withheld_n.get());
     }
     let mut gain = Fading::default();
     gain.push(f64::from(u8::from(live.gain() < 0.01)), 0.0, 1.0);
@@ -111,7 +128,7 @@ fn gates(live: &Live) -> [Gate; 9] {
             "Engaged",
             gates.not_permitted,
             false,
-            live.state().word().to_lowercase(),
+            live.tick_of(side).map_or(LoopState::Idle, |tick| tick.state).word().to_lowercase(),
             "Closed unless the loop is engaged. Stop closes it at once.",
         ),
         gate(
@@ -153,7 +170,7 @@ fn gates(live: &Live) -> [Gate; 9] {
             "Energy",
             gates.energy,
             true,
-            stored(live),
+            stored(live, side),
             "Lets the hand get back what it gave and a little more: takes the force along its motion away when that is used up.",
         ),
         gate(
@@ -168,16 +185,16 @@ fn gates(live: &Live) -> [Gate; 9] {
 }
 
 /// What the hand may still get back.
-fn stored(live: &Live) -> String {
+fn stored(live: &Live, side: Side) -> String {
     if live.gate_settings().energy == EnergyMode::Off {
         return "off".to_owned();
     }
-    live.tick.map_or_else(String::new, |tick| format!("{:.0} mJ left", tick.gates.stored_j * 1e3))
+    live.tick_of(side).map_or_else(String::new, |tick| format!("{:.0} mJ left", tick.gates.stored_j * 1e3))
 }
 
 /// How often the gate acted since the loop was made, and why it last did.
-fn history(live: &Live, gate: Which) -> String {
-    let Some(counts) = live.tick.map(|tick| tick.gates.counts) else { return String::new() };
+pub(super) fn history(live: &Live, side: Side, gate: Which) -> String {
+    let Some(counts) = live.tick_of(side).map(|tick| tick.gates.counts) else { return String::new() };
     let (acted, share, last) = (counts.acted[gate.index()], counts.share(gate), counts.last[gate.index()]);
     match last {
         Reason::Open => "It has not acted so far.".to_owned(),
@@ -186,19 +203,16 @@ fn history(live: &Live, gate: Which) -> String {
 }
 
 fn gate_ui(ui: &mut Ui, live: &Live, gate: &Gate) {
-    let acting = gate.share > if gate.limits { 0.05 } else { 0.5 };
-    let (what, colour, word) = match (acting, gate.limits) {
-        (false, _) => (Sign::Disc, theme::ENGAGED.gamma_multiply(0.75), "open"),
-        (true, false) => (Sign::Square, theme::TEXT, "closed"),
-        (true, true) => (Sign::Ring, theme::TEXT, "limiting"),
-    };
+    let (what, word) = gate.standing();
+    let acting = what != Sign::Disc;
+    let colour = if acting { theme::now().text } else { theme::now().engaged.gamma_multiply(0.75) };
     let row = ui.horizontal(|ui| {
         ui.set_height(20.0);
         sign_ui(ui, what, 5.0, colour);
-        let ink: Color32 = if acting { theme::TEXT } else { theme::TEXT_WEAK };
+        let ink: Color32 = if acting { theme::now().text } else { theme::now().text_weak };
         ui.label(RichText::new(gate.name).color(ink));
         ui.label(RichText::new(word).color(ink));
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| ui.label(small(&gate.note)));
     });
-    row.response.on_hover_text(format!("{} {}", gate.meaning, history(live, gate.which)));
+    row.response.on_hover_text(format!("{} {}", gate.meaning, history(live, Side::Right, gate.which)));
 }

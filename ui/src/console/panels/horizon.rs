@@ -52,9 +52,9 @@ fn trend_ui(ui: &mut Ui, live: &Live) {
     });
     response.on_hover_text(format!("{words}. Mean error at the horizon (N), second by second, up to three minutes."));
     let painter = ui.painter();
-    painter.rect_filled(rect, 3.0, theme::GROOVE);
+    painter.rect_filled(rect, 3.0, theme::now().groove);
     let highest_n = 1.1 * live.trend_n.iter().map(|errors_n| errors_n[Mode::Dfr.index()]).fold(LEAST_N, f64::max);
-    for (mode, colour) in [(Mode::Dfr, theme::REFERENCE), (live.mode(), theme::RENDERED)] {
+    for (mode, colour) in [(Mode::Dfr, theme::now().reference), (live.mode(), theme::now().rendered)] {
         let points = live.trend_n.iter().rev().enumerate().map(|(age_s, errors_n)| {
             let along = 1.0 - age_s as f32 / (TREND_S - 1) as f32;
             let up = (errors_n[mode.index()] / highest_n).min(1.0) as f32;
@@ -63,14 +63,20 @@ fn trend_ui(ui: &mut Ui, live: &Live) {
         painter.line(points.collect(), egui::Stroke::new(1.5, colour));
     }
     let note = format!("{} N", three_digits(highest_n));
-    painter.text(rect.left_top() + vec2(4.0, 3.0), Align2::LEFT_TOP, note, theme::regular(11.0), theme::TEXT_WEAK);
+    painter.text(
+        rect.left_top() + vec2(4.0, 3.0),
+        Align2::LEFT_TOP,
+        note,
+        theme::regular(11.0),
+        theme::now().text_weak,
+    );
     let note = "last 3 min";
     painter.text(
         rect.left_bottom() + vec2(4.0, -3.0),
         Align2::LEFT_BOTTOM,
         note,
         theme::regular(11.0),
-        theme::TEXT_WEAK,
+        theme::now().text_weak,
     );
 }
 
@@ -88,9 +94,9 @@ fn mode_ui(ui: &mut Ui, mode: Mode, error_n: f64, dfr_n: f64, active: bool) {
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, format!("Error {words}")));
     response.on_hover_text(format!("{words}{}\n{}", if active { " (in force)" } else { "" }, mode_meaning(mode)));
     let painter = ui.painter();
-    let (top, ink) = (rect.top() + 10.0, if active { theme::TEXT } else { theme::TEXT_WEAK });
+    let (top, ink) = (rect.top() + 10.0, if active { theme::now().text } else { theme::now().text_weak });
     if active {
-        sign(painter, Sign::Disc, egui::pos2(rect.left() + 4.0, top), 4.0, theme::RENDERED);
+        sign(painter, Sign::Disc, egui::pos2(rect.left() + 4.0, top), 4.0, theme::now().rendered);
     }
     let font = if active { theme::strong(14.0) } else { theme::regular(14.0) };
     painter.text(egui::pos2(rect.left() + 14.0, top), Align2::LEFT_CENTER, mode_name(mode), font.clone(), ink);
@@ -101,14 +107,14 @@ fn mode_ui(ui: &mut Ui, mode: Mode, error_n: f64, dfr_n: f64, active: bool) {
         Align2::RIGHT_CENTER,
         ratio_text,
         theme::regular(12.5),
-        theme::TEXT_WEAK,
+        theme::now().text_weak,
     );
     let groove =
         Rect::from_min_max(egui::pos2(rect.left(), rect.top() + 22.0), egui::pos2(rect.right(), rect.top() + 30.0));
-    let colour = if active { theme::RENDERED } else { theme::REFERENCE };
+    let colour = if active { theme::now().rendered } else { theme::now().reference };
     bar(painter, groove, if ratio.is_finite() { ratio / LONGEST } else { 0.0 }, colour);
     let line = groove.left() + groove.width() / LONGEST as f32;
-    painter.vline(line, groove.top() - 2.0..=groove.bottom() + 2.0, egui::Stroke::new(1.5, theme::TEXT));
+    painter.vline(line, groove.top() - 2.0..=groove.bottom() + 2.0, egui::Stroke::new(1.5, theme::now().text));
     if ratio > LONGEST {
         let middle = groove.right_center();
         let tip = vec![middle + vec2(0.0, -6.0), middle + vec2(7.0, 0.0), middle + vec2(0.0, 6.0)];

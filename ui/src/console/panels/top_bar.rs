@@ -6,7 +6,10 @@ use nima::{runtime::Command, teleop::LoopState};
 use crate::console::{
     alarms::{Alarm, judge},
     live::Live,
+    menu::menu_ui,
     outbox::Outbox,
+    roles::switch_ui,
+    settings::Settings,
     theme,
     widgets::{Sign, sign, small},
 };
@@ -14,15 +17,24 @@ use crate::console::{
 /// After a change of state the next step waits this long (s), so that a double click is never two steps.
 const STEP_WAITS_S: f64 = 0.7;
 
+/// Width of the window from which there is room for the scene's name.
+const SCENE_FROM: f32 = 1400.0;
+
 /// When the state last changed, on the window's clock.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct TopBarState {
     seen: Option<(LoopState, f64)>,
 }
 
-/// The bar.
-/// While somebody's hands are on the arm (`calibrating`) it cannot be engaged.
-pub fn top_bar_ui(ui: &mut Ui, live: &Live, state: &mut TopBarState, outbox: &mut Outbox, calibrating: bool) {
+/// The bar, with the switch of roles and the menu. While somebody's hands are on the arm (`calibrating`) it cannot be engaged.
+pub fn top_bar_ui(
+    ui: &mut Ui,
+    live: &Live,
+    state: &mut TopBarState,
+    outbox: &mut Outbox,
+    settings: &mut Settings,
+    calibrating: bool,
+) {
     let time_s = ui.input(|input| input.time);
     let now = live.state();
     let since_s = match state.seen {
@@ -41,6 +53,9 @@ pub fn top_bar_ui(ui: &mut Ui, live: &Live, state: &mut TopBarState, outbox: &mu
         ui.add_space(10.0);
         state_ui(ui, now);
         ui.add_space(10.0);
+        switch_ui(ui, &mut settings.role, !calibrating);
+        menu_ui(ui, settings);
+        ui.add_space(10.0);
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             stop_ui(ui, now, outbox);
             let blocked = calibrating && now == LoopState::Idle;
@@ -57,7 +72,10 @@ fn identity_ui(ui: &mut Ui, live: &Live) {
         ui.spacing_mut().item_spacing.y = 3.0;
         ui.horizontal(|ui| {
             ui.label(RichText::new("NIMA Console").font(theme::strong(19.0)));
-            ui.label(RichText::new(&live.scene.name).color(theme::TEXT_WEAK))
+            if ui.ctx().content_rect().width() < SCENE_FROM {
+                return;
+            }
+            ui.label(RichText::new(&live.scene.name).color(theme::now().text_weak))
                 .on_hover_text(format!("Scene: {}\nRig: {}", live.scene.description, live.rig.name));
         });
         ui.label(small("Research software, not for clinical use"));
@@ -67,35 +85,47 @@ fn identity_ui(ui: &mut Ui, live: &Live) {
 fn state_ui(ui: &mut Ui, state: LoopState) {
     let (what, colour, meaning) = match state {
         LoopState::Disconnected => {
-            (Sign::Ring, theme::TEXT_WEAK, "A device that force needs is missing; it is opened again by itself.")
+            (Sign::Ring, theme::now().text_weak, "A device that force needs is missing; it is opened again by itself.")
         }
         LoopState::Ready => {
-            (Sign::Ring, theme::ENGAGED, "Drives on, at rest, without force, until hand and tip agree.")
+            (Sign::Ring, theme::now().engaged, "Drives on, at rest, without force, until hand and tip agree.")
         }
-        LoopState::Clutched => {
-            (Sign::Ring, theme::ENGAGED, "The clutch is pressed: the hand moves freely, the follower rests, no force.")
+        LoopState::Clutched => (
+            Sign::Ring,
+            theme::now().engaged,
+            "The clutch is pressed: the hand moves freely, the follower rests, no force.",
+        ),
+        LoopState::Idle => {
+            (Sign::Ring, theme::now().at_rest, "The loop measures. No force, no motion until it is engaged.")
         }
-        LoopState::Idle => (Sign::Ring, theme::AT_REST, "The loop measures. No force, no motion until it is engaged."),
-        LoopState::Engaged => (Sign::Disc, theme::ENGAGED, "The follower moves with the hand and force is fed back."),
-        LoopState::Stopped => (Sign::Square, theme::STOP, "Stopped by the operator: no force, no motion. Latched."),
+        LoopState::Engaged => {
+            (Sign::Disc, theme::now().engaged, "The follower moves with the hand and force is fed back.")
+        }
+        LoopState::Stopped => {
+            (Sign::Square, theme::now().stop, "Stopped by the operator: no force, no motion. Latched.")
+        }
         LoopState::Faulted(_) => {
-            (Sign::Triangle, theme::ALARM_HIGH, "Stopped by a fault: no force, no motion. Latched.")
+            (Sign::Triangle, theme::now().alarm_high, "Stopped by a fault: no force, no motion. Latched.")
         }
     };
     let (rect, response) = ui.allocate_exact_size(vec2(136.0, 44.0), Sense::hover());
     let response = response.on_hover_text(format!("State of the loop. {meaning}"));
     response
         .widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, format!("Loop state: {}", state.word())));
-    ui.painter().rect(rect, theme::CORNER, theme::CARD, egui::Stroke::new(1.5, colour), egui::StrokeKind::Inside);
+    ui.painter().rect(rect, theme::CORNER, theme::now().card, egui::Stroke::new(1.5, colour), egui::StrokeKind::Inside);
     sign(ui.painter(), what, rect.left_center() + vec2(24.0, 0.0), 8.5, colour);
     let place = rect.left_center() + vec2(44.0, 0.0);
-    ui.painter().text(place, egui::Align2::LEFT_CENTER, state.word(), theme::strong(17.0), theme::TEXT);
+    ui.painter().text(place, egui::Align2::LEFT_CENTER, state.word(), theme::strong(17.0), theme::now().text);
 }
 
 /// Always in the same place, always ready: pressing it twice does no harm.
 fn stop_ui(ui: &mut Ui, state: LoopState, outbox: &mut Outbox) {
     let latched = matches!(state, LoopState::Stopped | LoopState::Faulted(_));
-    let (fill, ink) = if latched { (theme::CONTROL, theme::TEXT_WEAK) } else { (theme::STOP, theme::BACKGROUND) };
+    let (fill, ink) = if latched {
+        (theme::now().control, theme::now().text_weak)
+    } else {
+        (theme::now().stop, theme::now().background)
+    };
     let text = RichText::new("      Stop").font(theme::strong(21.0)).color(ink);
     let button = Button::new(text).min_size(theme::STOP_SIZE).fill(fill).corner_radius(theme::CORNER);
     let response = ui.add(button);
@@ -143,7 +173,7 @@ fn alarms_ui(ui: &mut Ui, live: &Live, alarms: &[Alarm], time_s: f64) {
     };
     let colour = first.priority.colour(time_s);
     let frame = egui::Frame::new()
-        .fill(theme::CARD)
+        .fill(theme::DARK.card)
         .stroke(egui::Stroke::new(1.5, colour))
         .corner_radius(theme::CORNER)
         .inner_margin(egui::Margin::symmetric(12, 5));
@@ -157,8 +187,8 @@ fn alarms_ui(ui: &mut Ui, live: &Live, alarms: &[Alarm], time_s: f64) {
             ui.add_space(4.0);
             let more = if alarms.len() > 1 { format!("   (+{} more)", alarms.len() - 1) } else { String::new() };
             let cause = format!("{}: {}{more}", first.priority.word(), first.cause);
-            ui.add(egui::Label::new(RichText::new(cause).font(theme::strong(14.0))).truncate());
-            ui.add(egui::Label::new(small(&first.cure)).truncate());
+            ui.add(egui::Label::new(RichText::new(cause).font(theme::strong(14.0)).color(theme::DARK.text)).truncate());
+            ui.add(egui::Label::new(small(&first.cure).color(theme::DARK.text_weak)).truncate());
         });
     });
     pinned.response.on_hover_ui(|ui| {

@@ -39,7 +39,7 @@ pub(super) fn plot_ui(ui: &mut Ui, figures: &SourceFigures, selected: Option<usi
         .auto_bounds(Vec2b::FALSE)
         .set_margin_fraction(vec2(0.0, 0.0))
         .show_crosshair(false)
-        .grid_color(theme::LINE)
+        .grid_color(theme::now().line)
         .x_grid_spacer(|grid| marks(&grid))
         .y_grid_spacer(|grid| marks(&grid))
         .label_formatter(|hover| {
@@ -51,7 +51,9 @@ pub(super) fn plot_ui(ui: &mut Ui, figures: &SourceFigures, selected: Option<usi
         let mut front: Vec<[f64; 2]> =
             shown.iter().filter(|&&i| points[i].pareto).map(|&i| place(&points[i])).collect();
         front.sort_by(|a, b| a[0].total_cmp(&b[0]));
-        plot.line(Line::new("front", PlotPoints::from(front)).color(theme::TEXT_WEAK).width(1.2).allow_hover(false));
+        plot.line(
+            Line::new("front", PlotPoints::from(front)).color(theme::now().text_weak).width(1.2).allow_hover(false),
+        );
         for mode in Mode::ALL {
             let (shape, colour, radius) = look(mode);
             let of_mode = |i: &&usize| points[**i].choice.method.mode() == Some(mode);
@@ -62,7 +64,7 @@ pub(super) fn plot_ui(ui: &mut Ui, figures: &SourceFigures, selected: Option<usi
         if let Some(index) = selected.filter(|index| shown.contains(index)) {
             let ring = Points::new("selected", PlotPoints::from(vec![place(&points[index])]));
             plot.points(
-                ring.shape(MarkerShape::Circle).filled(false).color(theme::TEXT).radius(8.0).allow_hover(false),
+                ring.shape(MarkerShape::Circle).filled(false).color(theme::now().text).radius(8.0).allow_hover(false),
             );
         }
     });
@@ -76,10 +78,10 @@ pub(super) fn plot_ui(ui: &mut Ui, figures: &SourceFigures, selected: Option<usi
 /// Shape, colour and size of a mode's marks.
 fn look(mode: Mode) -> (MarkerShape, Color32, f32) {
     match mode {
-        Mode::Anchored => (MarkerShape::Circle, theme::RENDERED, 4.0),
-        Mode::Dfr => (MarkerShape::Square, theme::MEASURED, 5.0),
-        Mode::Linear => (MarkerShape::Up, theme::REFERENCE, 4.5),
-        Mode::Literal => (MarkerShape::Diamond, theme::REFERENCE, 4.5),
+        Mode::Anchored => (MarkerShape::Circle, theme::now().rendered, 4.0),
+        Mode::Dfr => (MarkerShape::Square, theme::now().measured, 5.0),
+        Mode::Linear => (MarkerShape::Up, theme::now().reference, 4.5),
+        Mode::Literal => (MarkerShape::Diamond, theme::now().reference, 4.5),
     }
 }
 

@@ -2,9 +2,12 @@
 
 use egui::{Pos2, Rect, Vec2};
 use nalgebra::{Matrix4, Perspective3, Point3, Vector3, Vector4};
+use nima::config::Scene;
 
-/// Vertical opening angle, rad.
+/// Vertical opening angle of the free view, rad.
 const FIELD_OF_VIEW: f32 = 0.62;
+/// The same of an endoscope: wide.
+const ENDOSCOPE_FIELD: f32 = 0.92;
 const DISTANCE_M: std::ops::RangeInclusive<f32> = 0.06..=0.9;
 /// Just short of straight down and level with the surface, rad.
 const PITCH: std::ops::RangeInclusive<f32> = 0.03..=1.5;
@@ -20,16 +23,34 @@ pub struct Camera {
     pub yaw: f32,
     /// Height above the horizon, rad.
     pub pitch: f32,
+    /// Vertical opening angle, rad.
+    pub field_of_view: f32,
 }
 
 impl Default for Camera {
     fn default() -> Self {
         // From beyond the field, so that the shaft leans away and covers neither the tip nor the forces.
-        Self { target_m: Vector3::new(0.0, -0.010, 0.046), distance_m: 0.298, yaw: 2.62, pitch: 0.40 }
+        let target_m = Vector3::new(0.0, -0.010, 0.046);
+        Self { target_m, distance_m: 0.298, yaw: 2.62, pitch: 0.40, field_of_view: FIELD_OF_VIEW }
     }
 }
 
 impl Camera {
+    /// Where a scene is best seen from. Two hands are seen from where they stand, so that the right one is on the right.
+    pub fn of(scene: &Scene) -> Self {
+        if scene.left.is_none() {
+            return Self::default();
+        }
+        Self { target_m: Vector3::new(0.0, -0.012, 0.042), distance_m: 0.30, yaw: 0.16, pitch: 0.58, ..Self::default() }
+    }
+
+    /// Where the endoscope looks from: between two instruments, or beside a single one.
+    pub fn endoscope(scene: &Scene) -> Self {
+        let yaw = if scene.left.is_some() { 0.0 } else { -0.55 };
+        let target_m = Vector3::new(0.0, 0.0, 0.006);
+        Self { target_m, distance_m: 0.128, yaw, pitch: 0.72, field_of_view: ENDOSCOPE_FIELD }
+    }
+
     /// Turns by a drag of so many points.
     pub fn orbit(&mut self, drag: Vec2) {
         self.yaw -= drag.x * 0.008;
@@ -65,7 +86,7 @@ impl Camera {
 
     /// Metres per point of the screen at the distance of the target, in a view of this height (points).
     pub fn metres_per_point(&self, height: f32) -> f32 {
-        2.0 * self.distance_m * (0.5 * FIELD_OF_VIEW).tan() / height.max(1.0)
+        2.0 * self.distance_m * (0.5 * self.field_of_view).tan() / height.max(1.0)
     }
 
     /// Direction away from the eye along the ground, unit length.
@@ -77,7 +98,7 @@ impl Camera {
     /// Workspace to OpenGL clip space for a view of this width by height.
     pub fn clip_from_workspace(&self, aspect: f32) -> Matrix4<f32> {
         let aspect = if aspect.is_finite() { aspect.max(0.01) } else { 1.0 };
-        let projection = Perspective3::new(aspect, FIELD_OF_VIEW, 0.01, 3.0);
+        let projection = Perspective3::new(aspect, self.field_of_view, 0.01, 3.0);
         let view = Matrix4::look_at_rh(&Point3::from(self.eye_m()), &Point3::from(self.target_m), &Vector3::z());
         projection.to_homogeneous() * view
     }
@@ -115,6 +136,20 @@ mod tests {
         assert!(up.y < above.y && (up.x - middle.x).abs() < 1.0, "nothing is higher than straight up");
         let right = camera.project(&(camera.target_m + camera.right() * 0.01), view()).unwrap();
         assert!(right.x > middle.x && (right.y - middle.y).abs() < 1.0);
+    }
+
+    #[test]
+    fn from_every_camera_the_targets_are_seen_and_the_right_hand_is_on_the_right() {
+        let scene = Scene::load("bimanual").unwrap();
+        for camera in [Camera::of(&scene), Camera::endoscope(&scene)] {
+            let place = |at_m: &Vector3<f64>| camera.project(&at_m.cast(), view()).unwrap();
+            assert!(scene.targets_m.iter().all(|at_m| view().contains(place(at_m))));
+            let middle = |targets_m: &[Vector3<f64>]| targets_m.iter().map(|at_m| place(at_m).x).sum::<f32>() / 3.0;
+            assert!(middle(&scene.targets_m) > middle(&scene.left.as_ref().unwrap().targets_m) + 50.0);
+        }
+        let single = Scene::load("peg_transfer").unwrap();
+        let camera = Camera::endoscope(&single);
+        assert!(single.targets_m.iter().all(|at_m| view().contains(camera.project(&at_m.cast(), view()).unwrap())));
     }
 
     #[test]

@@ -22,8 +22,8 @@ pub struct Frame {
     pub clip_from_workspace: Matrix4<f32>,
     /// Position of the eye, m.
     pub eye_m: Vector3<f32>,
-    /// Both ends of the instrument's shaft, m: it throws a shadow.
-    pub shaft_m: [Vector3<f32>; 2],
+    /// Tip and top of each instrument's shaft, m: they throw shadows. At most two shafts count.
+    pub shafts_m: Vec<[Vector3<f32>; 2]>,
     /// Colours at the top and at the bottom of the backdrop.
     pub backdrop: [Color32; 2],
     /// Draw with smooth edges.
@@ -132,11 +132,11 @@ impl Renderer {
             gl.bind_buffer(glow::ELEMENT_ARRAY_BUFFER, Some(self.indices));
             gl.buffer_data_u8_slice(glow::ELEMENT_ARRAY_BUFFER, bytes(&frame.mesh.indices), glow::STREAM_DRAW);
             let place = |name| gl.get_uniform_location(self.program, name);
-            for (name, v) in
-                [("u_eye", &frame.eye_m), ("u_shaft_tip", &frame.shaft_m[0]), ("u_shaft_top", &frame.shaft_m[1])]
-            {
-                gl.uniform_3_f32(place(name).as_ref(), v.x, v.y, v.z);
-            }
+            gl.uniform_3_f32(place("u_eye").as_ref(), frame.eye_m.x, frame.eye_m.y, frame.eye_m.z);
+            let shafts = &frame.shafts_m[..frame.shafts_m.len().min(2)];
+            let ends: Vec<f32> = shafts.iter().flatten().flat_map(|end| [end.x, end.y, end.z]).collect();
+            gl.uniform_3_f32_slice(place("u_shaft_ends").as_ref(), &ends);
+            gl.uniform_1_i32(place("u_shafts").as_ref(), i32::try_from(shafts.len()).unwrap_or(0));
             gl.uniform_matrix_4_f32_slice(
                 place("u_clip_from_workspace").as_ref(),
                 false,

@@ -47,7 +47,8 @@ impl Lead {
         }
         let place = Rect::from_min_size(rect.right_bottom() - vec2(250.0, 46.0), vec2(150.0, 34.0));
         let text = if self.is_on() { "Let it go (M)" } else { "Your turn (M)" };
-        let button = Button::selectable(self.is_on(), RichText::new(text).font(theme::strong(14.0)));
+        let button =
+            Button::selectable(self.is_on(), RichText::new(text).font(theme::strong(14.0))).frame_when_inactive(true);
         let clicked = ui.add_enabled_ui(runs, |ui| ui.put(rect.intersect(place), button).clicked()).inner;
         let pressed = !ui.ctx().text_edit_focused() && ui.input(|input| input.key_pressed(Key::M));
         if runs && (clicked || pressed) {

@@ -12,18 +12,39 @@ use std::sync::Arc;
 use eframe::{egui_glow, glow};
 use egui::{Align2, Color32, FontId, Painter, Pos2, Rect, Sense, Ui, pos2, vec2};
 use nalgebra::Vector3;
+use nima::{config::Scene, device::Side};
 
 pub use camera::Camera;
 
-use self::{gl::Renderer, lead::Lead, stage::Pose};
+use self::{
+    gl::Renderer,
+    lead::Lead,
+    stage::{Arm, Pose},
+};
 use super::{live::Live, outbox::Outbox, panels::gauge, theme, widgets::force_sign};
+
+/// Two ways to look.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Look {
+    /// From anywhere.
+    #[default]
+    Free,
+    /// As the endoscope sees it.
+    Endoscope,
+}
 
 /// Camera and GPU objects of the view.
 #[derive(Debug)]
 pub struct SceneView {
     /// Draw with smooth edges.
     pub smooth: bool,
+    /// From where it is seen.
+    pub look: Look,
+    /// Figures in the view: forces in numbers, and their gauges.
+    pub figures: bool,
     camera: Camera,
+    /// The scene that the cameras were set for.
+    set_for: Option<String>,
     lead: Lead,
     renderer: Option<Arc<Renderer>>,
     problem: Option<String>,
@@ -31,7 +52,16 @@ pub struct SceneView {
 
 impl Default for SceneView {
     fn default() -> Self {
-        Self { smooth: true, camera: Camera::default(), lead: Lead::default(), renderer: None, problem: None }
+        Self {
+            smooth: true,
+            look: Look::Free,
+            figures: true,
+            camera: Camera::default(),
+            set_for: None,
+            lead: Lead::default(),
+            renderer: None,
+            problem: None,
+        }
     }
 }
 
@@ -45,6 +75,19 @@ impl SceneView {
         }
     }
 
+    /// Somebody leads the instrument from the screen.
+    pub const fn is_led(&self) -> bool {
+        self.lead.is_on()
+    }
+
+    /// The camera in use.
+    fn camera(&self, scene: &Scene) -> Camera {
+        match self.look {
+            Look::Free => self.camera,
+            Look::Endoscope => Camera::endoscope(scene),
+        }
+    }
+
     /// Gives the GPU objects back.
     pub fn destroy(&mut self, gl: &glow::Context) {
         if let Some(renderer) = self.renderer.take() {
@@ -55,65 +98,117 @@ impl SceneView {
 
 /// The view, over all the room there is.
 pub fn scene_ui(ui: &mut Ui, live: &Live, view: &mut SceneView, outbox: &mut Outbox) {
+    if view.set_for.as_ref() != Some(&live.scene.name) {
+        view.set_for = Some(live.scene.name.clone());
+        view.camera = Camera::of(&live.scene);
+    }
     let (rect, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Canvas, true, "Operating field"));
-    let leading = view.lead.ui(ui, rect, &response, live, &view.camera, outbox);
+    // The triangles lie under the button that is put into the view, though they are known only after it.
+    let ground = ui.painter_at(rect).add(egui::Shape::Noop);
+    let camera = view.camera(&live.scene);
+    // A surgeon's view is led by the surgeon's own hands.
+    let leading = (view.figures || view.lead.is_on()) && view.lead.ui(ui, rect, &response, live, &camera, outbox);
+    if view.look == Look::Free {
+        turn(ui, live, view, &response, leading);
+    }
+    let camera = view.camera(&live.scene);
+    let arms: Vec<Arm> = live.sides().filter_map(|side| arm(live, side)).collect();
+    let painter = ui.painter_at(rect);
+    if let Some(callback) = triangles(rect, live, view, &arms) {
+        painter.set(ground, callback);
+    }
+    for arm in &arms {
+        labels(&painter, rect, live, &camera, arm, view.figures);
+    }
+    if view.figures {
+        readings(&painter, rect, live);
+    }
+    if view.look == Look::Free {
+        axes(&painter, rect, &camera);
+    }
+    hint(&painter, rect, view);
+}
+
+/// Mouse and wheel turn the free camera.
+fn turn(ui: &Ui, live: &Live, view: &mut SceneView, response: &egui::Response, leading: bool) {
     if response.dragged() && !leading {
         view.camera.orbit(response.drag_delta());
     }
     if response.double_clicked() {
-        view.camera = Camera::default();
+        view.camera = Camera::of(&live.scene);
     }
     if response.contains_pointer() && !leading {
         let wheel = ui.input(|input| input.smooth_scroll_delta().y + 100.0 * (input.zoom_delta() - 1.0));
         view.camera.zoom((wheel * 0.003).exp());
     }
-    let pose = pose(live);
-    let painter = ui.painter_at(rect);
-    triangles(&painter, rect, live, view, &pose);
-    labels(&painter, rect, live, view, &pose);
-    readings(&painter, rect, live);
-    axes(&painter, rect, &view.camera);
-    hint(&painter, rect, view);
 }
 
-fn pose(live: &Live) -> Pose {
+/// What stands on the stage of one side: the last that is known of it, at rest above the field before anything is.
+fn arm(live: &Live, side: Side) -> Option<Arm> {
+    let scene = live.scene.of_side(side)?;
     let finite = |v: Vector3<f64>| v.iter().all(|x| x.is_finite());
-    let rest = Pose { tip_m: Vector3::new(0.0, 0.0, 0.02), measured_n: Vector3::zeros(), rendered_n: Vector3::zeros() };
-    live.tick.as_ref().filter(|tick| finite(tick.tip_m)).map_or(rest, |tick| Pose {
+    let above_m = scene.targets_m.first().copied().unwrap_or_default() + Vector3::z() * 0.02;
+    let rest = Pose { tip_m: above_m.cast(), measured_n: Vector3::zeros(), rendered_n: Vector3::zeros() };
+    let pose = live.tick_of(side).filter(|tick| finite(tick.tip_m)).map_or(rest, |tick| Pose {
         tip_m: tick.tip_m.cast(),
         measured_n: tick.measured_n.cast(),
         rendered_n: tick.rendered_n.cast(),
+    });
+    Some(Arm {
+        side,
+        trocar_m: scene.trocar_m.cast(),
+        targets_m: scene.targets_m.iter().map(|at_m| at_m.cast()).collect(),
+        pose,
+        trail_m: live.trails[side.index()].iter().copied().collect(),
     })
 }
 
-fn triangles(painter: &Painter, rect: Rect, live: &Live, view: &SceneView, pose: &Pose) {
-    let Some(renderer) = view.renderer.clone() else { return };
-    let trail: Vec<Vector3<f32>> = live.trail.iter().copied().collect();
-    let (eye_m, right) = (view.camera.eye_m(), view.camera.right());
+fn triangles(rect: Rect, live: &Live, view: &SceneView, arms: &[Arm]) -> Option<egui::PaintCallback> {
+    let renderer = view.renderer.clone()?;
+    let camera = view.camera(&live.scene);
+    let (eye_m, right) = (camera.eye_m(), camera.right());
     let frame = gl::Frame {
-        mesh: stage::build(&live.scene, pose, &trail, &eye_m, &right),
-        clip_from_workspace: view.camera.clip_from_workspace(rect.aspect_ratio()),
+        mesh: stage::build(&live.scene, arms, &eye_m, &right),
+        clip_from_workspace: camera.clip_from_workspace(rect.aspect_ratio()),
         eye_m,
-        shaft_m: [pose.tip_m, live.scene.trocar_m.cast()],
+        shafts_m: arms.iter().map(|arm| [arm.pose.tip_m, arm.trocar_m]).collect(),
         backdrop: [theme::FIELD_FAR, theme::FIELD_NEAR],
         smooth: view.smooth,
     };
     let paint = egui_glow::CallbackFn::new(move |info, painter| {
         renderer.paint(painter.gl(), painter.intermediate_fbo(), &info.viewport_in_pixels(), &frame);
     });
-    painter.add(egui::PaintCallback { rect, callback: Arc::new(paint) });
+    Some(egui::PaintCallback { rect, callback: Arc::new(paint) })
 }
 
-/// Names and numbers beside the things they belong to.
-fn labels(painter: &Painter, rect: Rect, live: &Live, view: &SceneView, pose: &Pose) {
-    let at = |point_m: Vector3<f32>| view.camera.project(&point_m, rect);
-    let trocar_m = live.scene.trocar_m.cast::<f32>();
-    if let Some(place) = at(trocar_m) {
-        label(painter, place + vec2(18.0, 0.0), Align2::LEFT_CENTER, "Trocar", theme::regular(13.0), theme::TEXT_WEAK);
+/// Height above the tip at which the name of a hand stands beside its shaft, m.
+const NAME_ABOVE_M: f32 = 0.05;
+
+/// Names and numbers beside the things of one side.
+fn labels(painter: &Painter, rect: Rect, live: &Live, camera: &Camera, arm: &Arm, figures: bool) {
+    let at = |point_m: Vector3<f32>| camera.project(&point_m, rect);
+    let Arm { trocar_m, pose, side, .. } = arm;
+    if let Some(place) = at(*trocar_m) {
+        label(
+            painter,
+            place + vec2(18.0, 0.0),
+            Align2::LEFT_CENTER,
+            "Trocar",
+            theme::regular(13.0),
+            theme::DARK.text_weak,
+        );
     }
-    let right = view.camera.right();
-    let [measured, rendered] = stage::arrow_bases_m(pose, &trocar_m, &right);
+    let along = (trocar_m - pose.tip_m).try_normalize(1e-4).unwrap_or_else(Vector3::z);
+    if let (true, Some(place)) = (live.is_bimanual(), at(pose.tip_m + along * NAME_ABOVE_M)) {
+        let (align, shift) = match side {
+            Side::Right => (Align2::LEFT_CENTER, vec2(20.0, 0.0)),
+            Side::Left => (Align2::RIGHT_CENTER, vec2(-20.0, 0.0)),
+        };
+        label(painter, place + shift, align, side_name(*side), theme::strong(15.0), theme::DARK.text);
+    }
+    let right = camera.right();
+    let [measured, rendered] = stage::arrow_bases_m(pose, trocar_m, &right);
     // The outer one's number stands outside, the inner one's above its head: so they never meet.
     let (outside, shift) = if (measured - rendered).dot(&right) < 0.0 {
         (Align2::RIGHT_CENTER, vec2(-9.0, -6.0))
@@ -121,16 +216,24 @@ fn labels(painter: &Painter, rect: Rect, live: &Live, view: &SceneView, pose: &P
         (Align2::LEFT_CENTER, vec2(9.0, -6.0))
     };
     for (base, force_n, colour, align, shift) in [
-        (measured, pose.measured_n, theme::MEASURED, outside, shift),
-        (rendered, pose.rendered_n, theme::RENDERED, Align2::CENTER_BOTTOM, vec2(0.0, -4.0)),
+        (measured, pose.measured_n, theme::DARK.measured, outside, shift),
+        (rendered, pose.rendered_n, theme::DARK.rendered, Align2::CENTER_BOTTOM, vec2(0.0, -4.0)),
     ] {
         let size_n = force_n.norm();
-        if !(0.15..1e6).contains(&size_n) {
+        if !figures || !(0.15..1e6).contains(&size_n) {
             continue;
         }
         if let Some(place) = at(base + force_n * stage::ARROW_M_PER_N) {
             label(painter, place + shift, align, &format!("{size_n:.1} N"), theme::strong(15.0), colour);
         }
+    }
+}
+
+/// Name of a hand.
+pub const fn side_name(side: Side) -> &'static str {
+    match side {
+        Side::Right => "Right",
+        Side::Left => "Left",
     }
 }
 
@@ -142,30 +245,49 @@ fn label(painter: &Painter, place: Pos2, align: Align2, text: &str, font: FontId
     painter.text(place, align, text, font, colour);
 }
 
-/// The two forces in large figures, and a gauge of both against the ceiling.
+/// The forces in large figures, a column for each hand as they stand on the screen, and gauges of both against the ceiling.
 fn readings(painter: &Painter, rect: Rect, live: &Live) {
-    let corner = rect.left_top() + vec2(16.0, 14.0);
+    let mut sides: Vec<Side> = live.sides().collect();
+    sides.reverse();
+    let both = sides.len() > 1;
+    let corner = rect.left_top() + vec2(16.0, if both { 36.0 } else { 14.0 });
     let figures = &live.figures;
-    for (i, (name, force_n, colour)) in
-        [("Measured", figures.measured_n, theme::MEASURED), ("Rendered", figures.rendered_n, theme::RENDERED)]
+    let column = |i: usize| corner.x + 210.0 + 112.0 * i as f32;
+    let plate =
+        Rect::from_min_max(rect.left_top() + vec2(8.0, 8.0), pos2(column(sides.len() - 1) + 12.0, corner.y + 72.0));
+    painter.rect_filled(plate, theme::CORNER, Color32::from_black_alpha(150));
+    for (i, (name, forces_n, colour)) in
+        [("Measured", figures.measured_n, theme::DARK.measured), ("Rendered", figures.rendered_n, theme::DARK.rendered)]
             .into_iter()
             .enumerate()
     {
         let y = corner.y + 14.0 + 34.0 * i as f32;
-        force_sign(painter, Rect::from_center_size(pos2(corner.x + 18.0, y), vec2(36.0, 16.0)), i == 1);
-        painter.text(pos2(corner.x + 48.0, y), Align2::LEFT_CENTER, name, theme::regular(15.0), theme::TEXT);
-        let number = format!("{force_n:.2} N");
-        painter.text(pos2(corner.x + 210.0, y), Align2::RIGHT_CENTER, number, theme::strong(25.0), colour);
+        force_sign(painter, &theme::DARK, Rect::from_center_size(pos2(corner.x + 18.0, y), vec2(36.0, 16.0)), i == 1);
+        painter.text(pos2(corner.x + 48.0, y), Align2::LEFT_CENTER, name, theme::regular(15.0), theme::DARK.text);
+        for (k, side) in sides.iter().enumerate() {
+            let number = format!("{:.2} N", forces_n[side.index()]);
+            painter.text(pos2(column(k), y), Align2::RIGHT_CENTER, number, theme::strong(25.0), colour);
+        }
     }
     let height = (rect.height() - 150.0).clamp(60.0, 300.0);
-    let place = Rect::from_min_size(pos2(rect.right() - 46.0, rect.top() + 36.0), vec2(26.0, height));
-    let ceiling_n = live.rig.gates.ceiling_n;
-    let (measured_n, rendered_n) =
-        live.tick.as_ref().map_or((0.0, 0.0), |tick| (tick.measured_n.norm(), tick.rendered_n.norm()));
-    gauge(painter, place, measured_n, rendered_n, ceiling_n);
-    let line_y = place.bottom() - place.height() / 1.25;
+    let ceiling_n = live.gate_settings().ceiling_n;
+    let first = rect.right() - 46.0 - 38.0 * (sides.len() - 1) as f32;
+    let gauges = Rect::from_min_size(pos2(first, rect.top() + 36.0), vec2(26.0, height));
+    for (k, side) in sides.iter().enumerate() {
+        let place = gauges.translate(vec2(38.0 * k as f32, 0.0));
+        let (measured_n, rendered_n) =
+            live.tick_of(*side).map_or((0.0, 0.0), |tick| (tick.measured_n.norm(), tick.rendered_n.norm()));
+        gauge(painter, place, measured_n, rendered_n, ceiling_n);
+        if both {
+            let over = pos2(column(k), corner.y - 13.0);
+            painter.text(over, Align2::RIGHT_CENTER, side_name(*side), theme::regular(15.0), theme::DARK.text_weak);
+            let under = place.center_bottom() + vec2(0.0, 11.0);
+            painter.text(under, Align2::CENTER_CENTER, side_name(*side), theme::regular(12.5), theme::DARK.text_weak);
+        }
+    }
+    let line_y = gauges.bottom() - gauges.height() / 1.25;
     let words = format!("ceiling\n{ceiling_n:.0} N");
-    painter.text(pos2(place.left() - 8.0, line_y), Align2::RIGHT_CENTER, words, theme::regular(12.5), theme::TEXT_WEAK);
+    painter.text(pos2(first - 8.0, line_y), Align2::RIGHT_CENTER, words, theme::regular(12.5), theme::DARK.text_weak);
 }
 
 /// Which way x, y and z of the traces go, in the lower right corner.
@@ -174,23 +296,24 @@ fn axes(painter: &Painter, rect: Rect, camera: &Camera) {
     let origin = rect.right_bottom() - vec2(54.0, 40.0);
     for (name, axis) in [("x", Vector3::x()), ("y", Vector3::y()), ("z", Vector3::z())] {
         let way = LENGTH * vec2(axis.dot(&camera.right()), -axis.dot(&camera.up()));
-        let stroke = egui::Stroke::new(1.5, theme::TEXT_WEAK);
+        let stroke = egui::Stroke::new(1.5, theme::DARK.text_weak);
         painter.line_segment([origin, origin + way], stroke);
-        painter.circle_filled(origin + way, 2.5, theme::TEXT_WEAK);
+        painter.circle_filled(origin + way, 2.5, theme::DARK.text_weak);
         let place = origin + way + way.normalized() * 10.0;
-        painter.text(place, Align2::CENTER_CENTER, name, theme::regular(13.0), theme::TEXT);
+        painter.text(place, Align2::CENTER_CENTER, name, theme::regular(13.0), theme::DARK.text);
     }
 }
 
 fn hint(painter: &Painter, rect: Rect, view: &SceneView) {
     let (words, colour) = match &view.problem {
-        Some(problem) => (format!("The 3-D view cannot be drawn by this graphics driver: {problem}"), theme::TEXT),
+        Some(problem) => (format!("The 3-D view cannot be drawn by this graphics driver: {problem}"), theme::DARK.text),
         None if view.lead.is_on() => (
             "Drag to move the instrument, wheel or Page Up and Down for its height, arrow keys for small steps"
                 .to_owned(),
-            theme::TEXT,
+            theme::DARK.text,
         ),
-        None => ("Drag to turn, wheel to zoom, double click to reset".to_owned(), theme::TEXT_WEAK),
+        None if view.look == Look::Endoscope => ("As the endoscope sees it".to_owned(), theme::DARK.text_weak),
+        None => ("Drag to turn, wheel to zoom, double click to reset".to_owned(), theme::DARK.text_weak),
     };
     label(painter, rect.left_bottom() + vec2(16.0, -12.0), Align2::LEFT_BOTTOM, &words, theme::regular(12.5), colour);
 }

@@ -1,7 +1,8 @@
 // One lamp, a sky, a highlight; gamma 2, which a processor without a GPU can afford. Materials (see mesh.rs) come as a number in the colour's last byte.
 uniform vec3 u_eye;
-uniform vec3 u_shaft_tip;
-uniform vec3 u_shaft_top;
+// Tip and top of each instrument's shaft, m; the second pair counts when there are two.
+uniform vec3 u_shaft_ends[4];
+uniform int u_shafts;
 in vec3 v_position;
 in vec3 v_normal;
 in vec4 v_colour;
@@ -10,9 +11,9 @@ out vec4 f_colour;
 const vec3 LAMP = vec3(-0.42, 0.30, 0.857);
 
 // How much lamp light reaches p past the instrument's shaft: distance between the ray to the lamp and the shaft's axis.
-float light_past_shaft(vec3 p) {
-    vec3 v = u_shaft_top - u_shaft_tip;
-    vec3 w = p - u_shaft_tip;
+float light_past_shaft(vec3 p, vec3 tip, vec3 top) {
+    vec3 v = top - tip;
+    vec3 w = p - tip;
     float b = dot(LAMP, v);
     float c = dot(v, v);
     float d = dot(LAMP, w);
@@ -45,7 +46,10 @@ void main() {
         vec2 width = fwidth(p * 200.0);
         vec2 thread = 1.0 - smoothstep(0.3 * width, 1.1 * width, cell);
         base *= 1.0 - 0.17 * max(thread.x, thread.y);
-        float lamp = light_past_shaft(v_position);
+        float lamp = light_past_shaft(v_position, u_shaft_ends[0], u_shaft_ends[1]);
+        if (u_shafts > 1) {
+            lamp = min(lamp, light_past_shaft(v_position, u_shaft_ends[2], u_shaft_ends[3]));
+        }
         float wrap = clamp((facing + 0.35) / 1.35, 0.0, 1.0) * lamp;
         // Light that entered the tissue comes back redder.
         vec3 diffuse = vec3(0.78, 0.74, 0.72) * wrap + vec3(0.16, 0.06, 0.05) * (1.0 - wrap) * sky;

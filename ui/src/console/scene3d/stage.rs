@@ -2,7 +2,10 @@
 
 use egui::Color32;
 use nalgebra::Vector3;
-use nima::config::Scene;
+use nima::{
+    config::Scene,
+    device::{SIDES, Side},
+};
 
 use super::mesh::{Material, Mesh, Paint};
 use crate::console::theme;
@@ -49,6 +52,9 @@ pub struct Dent {
 }
 
 impl Dent {
+    /// No dent.
+    pub const NONE: Self = Self { at_m: [0.0; 2], depth_m: 0.0 };
+
     /// The dent of a tip in the scene's tissue; none beside it or above it.
     pub fn new(scene: &Scene, tip_m: &Vector3<f32>) -> Self {
         let depth_m = scene.tissue.map_or(0.0, |tissue| {
@@ -64,6 +70,18 @@ impl Dent {
         let q = ((x - self.at_m[0]).powi(2) + (y - self.at_m[1]).powi(2)) / (DENT_M * DENT_M);
         -self.depth_m * (1.0 - 0.22 * q) * (-q / 1.5).exp()
     }
+}
+
+/// The dents of both instruments in one surface.
+#[derive(Clone, Copy, Debug)]
+pub struct Dents(pub [Dent; SIDES]);
+
+impl Dents {
+    /// Height change at a place, m. Where two dents meet the deeper one counts: tissue is never lower than the lowest tip.
+    pub fn lift_m(&self, x: f32, y: f32) -> f32 {
+        let [one, other] = self.0.each_ref().map(|dent| dent.lift_m(x, y));
+        if one < 0.0 && other < 0.0 { one.min(other) } else { one + other }
+    }
 
     /// Upward normal of the deformed surface.
     fn normal(&self, x: f32, y: f32) -> Vector3<f32> {
@@ -73,26 +91,44 @@ impl Dent {
     }
 }
 
-/// Builds the whole stage.
-pub fn build(scene: &Scene, pose: &Pose, trail: &[Vector3<f32>], eye_m: &Vector3<f32>, right: &Vector3<f32>) -> Mesh {
-    let mut mesh = Mesh { vertices: Vec::with_capacity(9000), indices: Vec::with_capacity(45_000) };
+/// One arm pair's part of the stage.
+#[derive(Clone, Debug)]
+pub struct Arm {
+    /// Which.
+    pub side: Side,
+    /// Where its shaft goes through the wall, m.
+    pub trocar_m: Vector3<f32>,
+    /// What it goes to, m.
+    pub targets_m: Vec<Vector3<f32>>,
+    /// What it does now.
+    pub pose: Pose,
+    /// Where its tip was, m, oldest first.
+    pub trail_m: Vec<Vector3<f32>>,
+}
+
+/// Builds the whole stage as seen from `eye_m`, with `right` on the right of the screen.
+pub fn build(scene: &Scene, arms: &[Arm], eye_m: &Vector3<f32>, right: &Vector3<f32>) -> Mesh {
+    let mut mesh = Mesh { vertices: Vec::with_capacity(12_000), indices: Vec::with_capacity(60_000) };
+    let mut dents = Dents([Dent::NONE; SIDES]);
     // What is in front comes first, so that what it hides is never shaded.
-    let trocar_m = scene.trocar_m.cast();
-    let [measured, rendered] = arrow_bases_m(pose, &trocar_m, right);
-    measured_arrow(&mut mesh, measured, &pose.measured_n);
-    rendered_arrow(&mut mesh, rendered, &pose.rendered_n);
-    instrument(&mut mesh, &trocar_m, &pose.tip_m);
-    let dent = Dent::new(scene, &pose.tip_m);
-    for target in &scene.targets_m {
-        let target = target.cast::<f32>();
-        mesh.ring(target, [0.0055, 0.0008], |x, y| dent.lift_m(x, y), TARGET);
+    for Arm { side, trocar_m, pose, .. } in arms {
+        let [measured, rendered] = arrow_bases_m(pose, trocar_m, right);
+        measured_arrow(&mut mesh, measured, &pose.measured_n);
+        rendered_arrow(&mut mesh, rendered, &pose.rendered_n);
+        instrument(&mut mesh, trocar_m, &pose.tip_m);
+        dents.0[side.index()] = Dent::new(scene, &pose.tip_m);
     }
-    mesh.ribbon(trail, eye_m, |i| 0.0011 * (i as f32 / trail.len() as f32), TRAIL);
-    tissue(&mut mesh, scene, &dent);
+    for Arm { targets_m, trail_m, .. } in arms {
+        for target_m in targets_m {
+            mesh.ring(*target_m, [0.0055, 0.0008], |x, y| dents.lift_m(x, y), TARGET);
+        }
+        mesh.ribbon(trail_m, eye_m, |i| 0.0011 * (i as f32 / trail_m.len() as f32), TRAIL);
+    }
+    tissue(&mut mesh, scene, &dents);
     mesh
 }
 
-fn tissue(mesh: &mut Mesh, scene: &Scene, dent: &Dent) {
+fn tissue(mesh: &mut Mesh, scene: &Scene, dents: &Dents) {
     let Some(tissue) = scene.tissue else { return };
     let [x_m, y_m] = tissue.size_m.map(|x| 0.5 * x as f32);
     let top_m = tissue.surface_z_m as f32;
@@ -102,12 +138,12 @@ fn tissue(mesh: &mut Mesh, scene: &Scene, dent: &Dent) {
     for row in 0..=CELLS {
         for column in 0..=CELLS {
             let (x, y) = (place(column, x_m), place(row, y_m));
-            let lift_m = dent.lift_m(x, y);
+            let lift_m = dents.lift_m(x, y);
             // A hollow gets less light from the sky, and pressed tissue less blood.
             let shade = (-lift_m / 0.010).clamp(0.0, 1.0) * 0.55;
             let colour = mottled(x, y).lerp_to_gamma(TISSUE_HOLLOW, shade);
             let position = Vector3::new(x, y, top_m + lift_m);
-            mesh.vertex(position, dent.normal(x, y), Paint(colour, Material::Tissue));
+            mesh.vertex(position, dents.normal(x, y), Paint(colour, Material::Tissue));
         }
     }
     mesh.sheet(first, CELLS, CELLS);
@@ -117,7 +153,7 @@ fn tissue(mesh: &mut Mesh, scene: &Scene, dent: &Dent) {
         for low in [false, true] {
             for i in 0..=CELLS {
                 let (x, y) = if along_x { (place(i, x_m), sign * y_m) } else { (sign * x_m, place(i, y_m)) };
-                let z = if low { bottom_m } else { top_m + dent.lift_m(x, y) };
+                let z = if low { bottom_m } else { top_m + dents.lift_m(x, y) };
                 mesh.vertex(Vector3::new(x, y, z), normal, TISSUE_SIDE);
             }
         }
@@ -168,7 +204,7 @@ fn size_and_direction(force_n: &Vector3<f32>) -> Option<(f32, Vector3<f32>)> {
 
 /// One smooth shaft, one cone.
 fn measured_arrow(mesh: &mut Mesh, base: Vector3<f32>, force_n: &Vector3<f32>) {
-    let paint = Paint(theme::MEASURED, Material::Plain);
+    let paint = Paint(theme::DARK.measured, Material::Plain);
     let Some((size_n, along)) = size_and_direction(force_n) else { return };
     let length = size_n * ARROW_M_PER_N;
     let head = 0.007_f32.min(length * 0.6);
@@ -179,7 +215,7 @@ fn measured_arrow(mesh: &mut Mesh, base: Vector3<f32>, force_n: &Vector3<f32>) {
 /// A beaded shaft and a double cone: told from the other by its shape alone.
 fn rendered_arrow(mesh: &mut Mesh, base: Vector3<f32>, force_n: &Vector3<f32>) {
     const BEAD_M: f32 = 0.0055;
-    let paint = Paint(theme::RENDERED, Material::Plain);
+    let paint = Paint(theme::DARK.rendered, Material::Plain);
     let Some((size_n, along)) = size_and_direction(force_n) else { return };
     let length = size_n * ARROW_M_PER_N;
     let head = 0.009_f32.min(length * 0.6);
@@ -204,6 +240,31 @@ mod tests {
         Pose { tip_m: Vector3::new(0.0, 0.018, z), measured_n: force_n, rendered_n: force_n * 0.5 }
     }
 
+    fn arm(pose: Pose) -> Arm {
+        let trocar_m = Vector3::new(0.0, -0.06, 0.14);
+        Arm { side: Side::Right, trocar_m, targets_m: vec![], pose, trail_m: vec![] }
+    }
+
+    #[test]
+    fn two_dents_are_both_there_and_where_they_meet_no_deeper_than_the_deeper_one() {
+        let scene = Scene::load("bimanual").unwrap();
+        let dent = |x, z| Dent::new(&scene, &Vector3::new(x, 0.0, z));
+        let apart = Dents([dent(0.03, -0.006), dent(-0.03, -0.004)]);
+        assert!((apart.lift_m(0.03, 0.0) + 0.006).abs() < 1e-5 && (apart.lift_m(-0.03, 0.0) + 0.004).abs() < 1e-5);
+        let together = Dents([dent(0.001, -0.006), dent(-0.001, -0.005)]);
+        let deepest = (-20..=20).map(|i| together.lift_m(i as f32 * 5e-4, 0.0)).fold(0.0, f32::min);
+        assert!((deepest + 0.006).abs() < 1e-4, "{deepest}");
+    }
+
+    #[test]
+    fn both_instruments_stand_on_the_stage() {
+        let scene = Scene::load("free_motion").unwrap();
+        let one = arm(pose(0.01, Vector3::z()));
+        let other = Arm { side: Side::Left, ..one.clone() };
+        let corners = |arms: &[Arm]| build(&scene, arms, &Vector3::new(0.0, -0.3, 0.2), &Vector3::x()).vertices.len();
+        assert_eq!(corners(&[one.clone(), other]), 2 * corners(&[one]));
+    }
+
     #[test]
     fn the_dent_is_as_deep_as_the_tip_and_local() {
         let scene = Scene::load("peg_transfer").unwrap();
@@ -221,7 +282,7 @@ mod tests {
         let full = Scene::load("peg_transfer").unwrap();
         let bare = Scene::load("free_motion").unwrap();
         let size = |scene: &Scene, force_n| {
-            build(scene, &pose(0.01, force_n), &[], &Vector3::new(0.0, -0.3, 0.2), &Vector3::x()).vertices.len()
+            build(scene, &[arm(pose(0.01, force_n))], &Vector3::new(0.0, -0.3, 0.2), &Vector3::x()).vertices.len()
         };
         assert!(size(&full, Vector3::zeros()) > size(&bare, Vector3::zeros()) + 4000);
         assert!(size(&bare, Vector3::z()) > size(&bare, Vector3::z() * 0.01));
@@ -230,8 +291,8 @@ mod tests {
     #[test]
     fn what_is_not_finite_reaches_no_arrow() {
         let scene = Scene::load("free_motion").unwrap();
-        let mesh =
-            build(&scene, &pose(0.01, Vector3::repeat(f32::NAN)), &[], &Vector3::new(0.0, -0.3, 0.2), &Vector3::x());
+        let nowhere = arm(pose(0.01, Vector3::repeat(f32::NAN)));
+        let mesh = build(&scene, &[nowhere], &Vector3::new(0.0, -0.3, 0.2), &Vector3::x());
         assert!(mesh.vertices.iter().all(|v| v.position.iter().all(|x| x.is_finite())));
     }
 }

@@ -12,10 +12,10 @@ use crate::console::{
 /// One check with its figure, or with cause and cure.
 pub(super) fn check_ui(ui: &mut Ui, check: &Check) {
     let (what, colour, words) = match &check.state {
-        CheckState::Good if check.measured.is_empty() => (Sign::Disc, theme::ENGAGED, "met".to_owned()),
-        CheckState::Good => (Sign::Disc, theme::ENGAGED, format!("{}, met", check.measured)),
-        CheckState::Waiting => (Sign::Ring, theme::AT_REST, "waiting".to_owned()),
-        CheckState::Bad { cause, cure } => (Sign::Triangle, theme::TEXT, format!("{cause}; {cure}")),
+        CheckState::Good if check.measured.is_empty() => (Sign::Disc, theme::now().engaged, "met".to_owned()),
+        CheckState::Good => (Sign::Disc, theme::now().engaged, format!("{}, met", check.measured)),
+        CheckState::Waiting => (Sign::Ring, theme::now().at_rest, "waiting".to_owned()),
+        CheckState::Bad { cause, cure } => (Sign::Triangle, theme::now().text, format!("{cause}; {cure}")),
     };
     line_ui(ui, what, colour, &format!("{}: {words}", sentence(check.name)));
 }
@@ -23,7 +23,7 @@ pub(super) fn check_ui(ui: &mut Ui, check: &Check) {
 /// A check that is met or says what to do.
 pub(super) fn check_line(ui: &mut Ui, name: &str, met: bool, otherwise: &str) {
     let (what, colour, words) =
-        if met { (Sign::Disc, theme::ENGAGED, "met") } else { (Sign::Triangle, theme::TEXT, otherwise) };
+        if met { (Sign::Disc, theme::now().engaged, "met") } else { (Sign::Triangle, theme::now().text, otherwise) };
     line_ui(ui, what, colour, &format!("{name}: {words}"));
 }
 

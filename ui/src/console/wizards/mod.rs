@@ -195,8 +195,11 @@ fn steps_ui(ui: &mut Ui, steps: &[Step], now: usize, may_go_on: Result<(), &'sta
     let mut wish = None;
     ui.horizontal_wrapped(|ui| {
         for (i, step) in steps.iter().enumerate() {
-            let (font, colour) =
-                if i == now { (theme::strong(15.0), theme::TEXT) } else { (theme::regular(14.0), theme::TEXT_WEAK) };
+            let (font, colour) = if i == now {
+                (theme::strong(15.0), theme::now().text)
+            } else {
+                (theme::regular(14.0), theme::now().text_weak)
+            };
             let mark = if i < now { "(done)" } else { "" };
             let words = format!("{}. {} {mark}", i + 1, step.name);
             ui.label(RichText::new(words.trim_end()).font(font).color(colour)).on_hover_text(step.meaning);

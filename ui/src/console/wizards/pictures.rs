@@ -25,7 +25,7 @@ pub(super) fn pose_picture(ui: &mut Ui, target: Option<&UnitQuaternion<f64>>, he
     let (rect, response) = ui.allocate_exact_size(size, Sense::hover());
     response.widget_info(|| WidgetInfo::labeled(egui::Role::Label, true, "Picture of the orientation to take"));
     let painter = ui.painter_at(rect);
-    painter.rect_filled(rect, theme::CORNER, theme::GROOVE);
+    painter.rect_filled(rect, theme::CORNER, theme::now().groove);
     let (centre, scale) = (rect.center() - vec2(0.0, 22.0), rect.height() * 0.31);
     ground(&painter, centre, scale);
     if let Some(target) = target {
@@ -47,7 +47,7 @@ pub(super) fn pose_picture(ui: &mut Ui, target: Option<&UnitQuaternion<f64>>, he
         Align2::CENTER_BOTTOM,
         caption,
         theme::regular(12.5),
-        theme::TEXT_WEAK,
+        theme::now().text_weak,
     );
 }
 
@@ -55,21 +55,21 @@ pub(super) fn pose_picture(ui: &mut Ui, target: Option<&UnitQuaternion<f64>>, he
 fn ground(painter: &Painter, centre: Pos2, scale: f32) {
     let corner = |x: f64, y: f64| on_paper(centre, scale, &Vector3::new(x, y, -1.15)).0;
     let corners = vec![corner(-1.0, -1.0), corner(1.0, -1.0), corner(1.0, 1.0), corner(-1.0, 1.0)];
-    painter.add(Shape::convex_polygon(corners, theme::PANEL, Stroke::new(1.0, theme::LINE)));
+    painter.add(Shape::convex_polygon(corners, theme::now().panel, Stroke::new(1.0, theme::now().line)));
     let (top, bottom) = (on_paper(centre, scale, &Vector3::z()).0, corner(0.0, 0.0));
-    painter.extend(Shape::dashed_line(&[top, bottom], Stroke::new(1.0, theme::LINE), 5.0, 5.0));
+    painter.extend(Shape::dashed_line(&[top, bottom], Stroke::new(1.0, theme::now().line), 5.0, 5.0));
 }
 
 /// Sensor (a disc with its x marked), shaft along z and a jaw at the end.
 fn tool(painter: &Painter, centre: Pos2, scale: f32, kbf_from_s1: &UnitQuaternion<f64>, solid: bool) {
     let at = |x: f64, y: f64, z: f64| on_paper(centre, scale, &(kbf_from_s1 * Vector3::new(x, y, z))).0;
-    let (colour, width) = if solid { (theme::MEASURED, 3.0) } else { (theme::RENDERED, 1.5) };
+    let (colour, width) = if solid { (theme::now().measured, 3.0) } else { (theme::now().rendered, 1.5) };
     let stroke = Stroke::new(width, colour);
     let ring = (0..24).map(|i| {
         let angle = std::f64::consts::TAU * f64::from(i) / 24.0;
         at(0.28 * angle.cos(), 0.28 * angle.sin(), 0.0)
     });
-    let fill = if solid { theme::CONTROL } else { egui::Color32::TRANSPARENT };
+    let fill = if solid { theme::now().control } else { egui::Color32::TRANSPARENT };
     painter.add(Shape::convex_polygon(ring.collect(), fill, stroke));
     let shaft = [at(0.0, 0.0, 0.0), at(0.0, 0.0, 0.95)];
     if solid {
@@ -97,18 +97,18 @@ pub(super) fn sphere_picture(
     let words = format!("{name}: {} taken", taken.len());
     response.widget_info(|| WidgetInfo::labeled(egui::Role::Label, true, words.clone()));
     let painter = ui.painter_at(rect);
-    painter.rect_filled(rect, theme::CORNER, theme::GROOVE);
+    painter.rect_filled(rect, theme::CORNER, theme::now().groove);
     let (centre, scale) = (rect.center() - vec2(0.0, 6.0), rect.height() * 0.37);
-    painter.circle_stroke(centre, scale, Stroke::new(1.0, theme::TEXT_WEAK));
+    painter.circle_stroke(centre, scale, Stroke::new(1.0, theme::now().text_weak));
     graticule(&painter, centre, scale);
     for direction in wanted {
-        dot(&painter, centre, scale, direction, 7.0, Stroke::new(1.2, theme::REFERENCE), false);
+        dot(&painter, centre, scale, direction, 7.0, Stroke::new(1.2, theme::now().reference), false);
     }
     for direction in taken {
-        dot(&painter, centre, scale, direction, 4.5, Stroke::new(1.5, theme::ENGAGED), true);
+        dot(&painter, centre, scale, direction, 4.5, Stroke::new(1.5, theme::now().engaged), true);
     }
     if let Some(direction) = now {
-        dot(&painter, centre, scale, &direction, 3.5, Stroke::new(1.5, theme::MEASURED), true);
+        dot(&painter, centre, scale, &direction, 3.5, Stroke::new(1.5, theme::now().measured), true);
     }
     let caption = format!("{name} (rings: wanted, discs: taken)");
     painter.text(
@@ -116,7 +116,7 @@ pub(super) fn sphere_picture(
         Align2::CENTER_BOTTOM,
         caption,
         theme::regular(12.5),
-        theme::TEXT_WEAK,
+        theme::now().text_weak,
     );
 }
 
@@ -131,7 +131,7 @@ fn graticule(painter: &Painter, centre: Pos2, scale: f32) {
         let points: Vec<(Pos2, f64)> =
             (0..=72).map(|i| on_paper(centre, scale, &circle(std::f64::consts::TAU * f64::from(i) / 72.0))).collect();
         for pair in points.windows(2).filter(|pair| pair[0].1 <= 0.0 && pair[1].1 <= 0.0) {
-            painter.line_segment([pair[0].0, pair[1].0], Stroke::new(1.0, theme::LINE));
+            painter.line_segment([pair[0].0, pair[1].0], Stroke::new(1.0, theme::now().line));
         }
     }
 }
@@ -160,11 +160,11 @@ pub(super) fn progress(ui: &mut Ui, name: &str, share: f64, words: &str) {
     let label = format!("{name}: {words}");
     response.widget_info(|| WidgetInfo::labeled(egui::Role::ProgressIndicator, true, label.clone()));
     let painter = ui.painter();
-    painter.rect_filled(rect, 4.0, theme::GROOVE);
+    painter.rect_filled(rect, 4.0, theme::now().groove);
     let share = if share.is_finite() { share.clamp(0.0, 1.0) as f32 } else { 0.0 };
     let filled = Rect::from_min_size(rect.min, vec2(rect.width() * share, rect.height()));
-    painter.rect_filled(filled, 4.0, theme::SELECTED);
-    painter.text(rect.center(), Align2::CENTER_CENTER, label, theme::regular(13.0), theme::TEXT);
+    painter.rect_filled(filled, 4.0, theme::now().selected);
+    painter.text(rect.center(), Align2::CENTER_CENTER, label, theme::regular(13.0), theme::now().text);
 }
 
 /// Rows in a field of a map at which it is as bright as it gets.
@@ -185,8 +185,8 @@ pub(super) fn heat_map(ui: &mut Ui, width: f32, title: &str, map: &Map, [across,
     let painter = ui.painter_at(rect);
     let side = width - LEFT - 2.0;
     let field = Rect::from_min_size(rect.min + vec2(LEFT, 20.0), vec2(side, side));
-    painter.text(rect.left_top() + vec2(LEFT, 0.0), Align2::LEFT_TOP, title, theme::strong(13.0), theme::TEXT);
-    painter.rect_filled(field, 2.0, theme::GROOVE);
+    painter.text(rect.left_top() + vec2(LEFT, 0.0), Align2::LEFT_TOP, title, theme::strong(13.0), theme::now().text);
+    painter.rect_filled(field, 2.0, theme::now().groove);
     let cell = side / MAP as f32;
     for (row, counts) in map.counts.iter().enumerate() {
         for (column, count) in counts.iter().enumerate().filter(|(_, count)| **count > 0) {
@@ -195,13 +195,13 @@ pub(super) fn heat_map(ui: &mut Ui, width: f32, title: &str, map: &Map, [across,
             painter.rect_filled(Rect::from_min_size(corner, vec2(cell - 0.5, cell - 0.5)), 0.0, heat(share));
         }
     }
-    painter.rect_stroke(field, 2.0, Stroke::new(1.0, theme::LINE), egui::StrokeKind::Outside);
+    painter.rect_stroke(field, 2.0, Stroke::new(1.0, theme::now().line), egui::StrokeKind::Outside);
     axis_words(&painter, field, across, up);
 }
 
 /// From the darkest to the brightest field.
 fn heat(share: f32) -> Color32 {
-    let [from, to] = [theme::SELECTED, theme::MEASURED].map(|colour| colour.to_array());
+    let [from, to] = [theme::now().selected, theme::now().measured].map(|colour| colour.to_array());
     let mix = |k: usize| lerp(f32::from(from[k])..=f32::from(to[k]), share) as u8;
     Color32::from_rgb(mix(0), mix(1), mix(2))
 }
@@ -215,13 +215,13 @@ fn axis_words(painter: &Painter, field: Rect, across: AxisWords, up: AxisWords) 
         (field.center().x, Align2::CENTER_TOP, across[1], 14.0),
     ];
     for (x, anchor, words, lower) in places {
-        painter.text(pos2(x, below + lower), anchor, words, font.clone(), theme::TEXT_WEAK);
+        painter.text(pos2(x, below + lower), anchor, words, font.clone(), theme::now().text_weak);
     }
     let left = field.left() - 3.0;
     for (y, anchor, words) in [(field.bottom(), Align2::RIGHT_BOTTOM, up[0]), (field.top(), Align2::RIGHT_TOP, up[2])] {
-        painter.text(pos2(left, y), anchor, words, font.clone(), theme::TEXT_WEAK);
+        painter.text(pos2(left, y), anchor, words, font.clone(), theme::now().text_weak);
     }
-    let name = painter.layout_no_wrap(up[1].to_owned(), font, theme::TEXT_WEAK);
+    let name = painter.layout_no_wrap(up[1].to_owned(), font, theme::now().text_weak);
     let place = pos2(field.left() - 18.0 - 0.5 * name.size().y, field.center().y + 0.5 * name.size().x);
-    painter.add(TextShape::new(place, name, theme::TEXT_WEAK).with_angle(-std::f32::consts::FRAC_PI_2));
+    painter.add(TextShape::new(place, name, theme::now().text_weak).with_angle(-std::f32::consts::FRAC_PI_2));
 }

@@ -151,7 +151,7 @@ fn plot<'a>(name: &str, x: &str, y: &str) -> Plot<'a> {
         .height(HEIGHT)
         .custom_x_axes(vec![AxisHints::new_x().label(x)])
         .custom_y_axes(vec![AxisHints::new_y().label(y).min_thickness(44.0)])
-        .grid_color(theme::LINE)
+        .grid_color(theme::now().line)
         .allow_scroll(false)
         .show_crosshair(false)
         .legend(Legend::default().position(Corner::LeftTop).follow_insertion_order(true))
@@ -162,8 +162,8 @@ fn regression_ui(ui: &mut Ui, checked: &Checked) {
     let (low, high) = all().fold((-1.0_f64, 1.0_f64), |(low, high), value| (low.min(*value), high.max(*value)));
     let response = plot("tip_force_regression", "Measured (N)", "Predicted (N)").show(ui, |plot| {
         let ends = PlotPoints::from(vec![[low, low], [high, high]]);
-        plot.line(Line::new("perfect", ends).color(theme::REFERENCE).style(LineStyle::dashed_loose()));
-        for ((axis, points), colour) in AXES.iter().zip(&checked.points).zip(theme::SERIES) {
+        plot.line(Line::new("perfect", ends).color(theme::now().reference).style(LineStyle::dashed_loose()));
+        for ((axis, points), colour) in AXES.iter().zip(&checked.points).zip(theme::now().series) {
             let marks = Points::new(*axis, PlotPoints::from(points.clone())).shape(MarkerShape::Circle);
             plot.points(marks.radius(1.6).color(colour));
         }
@@ -174,7 +174,7 @@ fn regression_ui(ui: &mut Ui, checked: &Checked) {
 
 fn free_ui(ui: &mut Ui, checked: &Checked) {
     let response = plot("tip_force_free", "Answer (N)", "Share of rows (%)").show(ui, |plot| {
-        for (k, ((axis, bins), colour)) in AXES.iter().zip(&checked.bins).zip(theme::SERIES).enumerate() {
+        for (k, ((axis, bins), colour)) in AXES.iter().zip(&checked.bins).zip(theme::now().series).enumerate() {
             // Three narrow bars side by side in each bin.
             let bar = |(i, share): (usize, &f64)| {
                 let middle_n = (i as f64 - (BINS / 2) as f64) * BIN_N;

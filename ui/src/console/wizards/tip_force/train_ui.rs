@@ -115,7 +115,7 @@ fn curves_ui(ui: &mut Ui, curves: &Curves) {
                 .formatter(move |mark, _| decades(mark)),
         ])
         .y_grid_spacer(|grid| whole_decades(&grid))
-        .grid_color(theme::LINE)
+        .grid_color(theme::now().line)
         .allow_scroll(false)
         .include_x(0.0)
         .include_x(10.0)
@@ -125,7 +125,7 @@ fn curves_ui(ui: &mut Ui, curves: &Curves) {
         .legend(Legend::default().position(Corner::RightTop).follow_insertion_order(true));
     let response = plot.show(ui, |plot| {
         for (i, member) in curves.members.iter().enumerate() {
-            let colour = theme::SERIES[i % theme::SERIES.len()];
+            let colour = theme::now().series[i % theme::now().series.len()];
             let held_out = Line::new(format!("{} held out", i + 1), PlotPoints::from(member.held_out.clone()));
             plot.line(held_out.color(colour).width(2.0));
             let training = Line::new(format!("{} training", i + 1), PlotPoints::from(member.training.clone()));

@@ -1,0 +1,93 @@
+//! The loop's process is killed in the middle of a contact: the devices' own watchdogs take the force from the hand and hold the arm.
+#![cfg(target_os = "linux")]
+#![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+#[path = "common/emulated.rs"]
+mod emulated;
+
+use std::{
+    process::{Child, Command, Stdio},
+    time::{Duration, Instant},
+};
+
+use emulated::{alone, elsewhere, started};
+use nima::{
+    config::{Rig, Scene},
+    device::{Side, force_dimension::Mode as Motors, rig::Settings},
+    impedance::Mode,
+    runtime::{self, Plan},
+    sim::emulated::Truth,
+    teleop::Calibrations,
+};
+
+const DEVICES: &str = "NIMA_TEST_DEVICES";
+/// Watchdog of the handle as the rig file has it, s.
+const WATCHDOG_S: f64 = 0.020;
+/// Of the emulated arm, s.
+const ARM_WATCHDOG_S: f64 = 0.050;
+/// What a shared computer may add, s.
+const SLACK_S: f64 = 0.030;
+
+/// The process that is killed; the test below starts it.
+#[test]
+#[ignore = "run by the other test, which kills it"]
+fn the_loop_of_another_process() {
+    let Ok(devices) = std::env::var(DEVICES) else { return };
+    let mut rig = Rig::load("emulated").unwrap();
+    rig.devices = Some(serde_json::from_str::<Settings>(&devices).unwrap());
+    rig.mode = Mode::Dfr;
+    rig.gates.static_hold = true;
+    let plan = Plan {
+        rig,
+        scene: Scene::load("peg_transfer").unwrap(),
+        calibrations: Calibrations::default(),
+        left_calibrations: Calibrations::default(),
+        engage: true,
+    };
+    let _handle = runtime::start(&plan).unwrap();
+    std::thread::sleep(Duration::from_mins(1));
+}
+
+struct Killed(Child);
+
+impl Drop for Killed {
+    fn drop(&mut self) {
+        self.0.kill().ok();
+        self.0.wait().ok();
+    }
+}
+
+#[test]
+fn a_killed_process_leaves_no_force_in_the_hand() {
+    let _alone = alone();
+    let folder = tempfile::tempdir().unwrap();
+    let devices = Settings { left: None, tissue_sensor: None, tracker: None, pedal: None, ..elsewhere(folder.path()) };
+    let rig = started(&devices);
+    let truth = || rig.truth(Side::Right).unwrap();
+    let child = Command::new(std::env::current_exe().unwrap())
+        .args(["the_loop_of_another_process", "--exact", "--ignored"])
+        .env(DEVICES, serde_json::to_string(&devices).unwrap())
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .spawn()
+        .unwrap();
+    let mut child = Killed(child);
+    let until = |within: Duration, good: &dyn Fn(&Truth) -> bool| {
+        let begin = Instant::now();
+        while begin.elapsed() < within {
+            if good(&truth()) {
+                return Some(begin.elapsed().as_secs_f64());
+            }
+            std::thread::sleep(Duration::from_micros(200));
+        }
+        None
+    };
+    until(Duration::from_secs(20), &|truth| truth.applied.force_n.norm() > 0.5).expect("the hand feels something");
+    assert!(truth().servoing);
+    child.0.kill().unwrap();
+    let free_s = until(Duration::from_secs(1), &|truth| truth.applied.mode != Motors::Force).expect("no force");
+    let held_s = free_s + until(Duration::from_secs(1), &|truth| !truth.servoing).expect("the arm holds");
+    println!("killed: no force after {:.1} ms, the arm holds after {:.1} ms", free_s * 1e3, held_s * 1e3);
+    assert!(truth().applied.force_n.norm() < 1e-12);
+    assert!(free_s < WATCHDOG_S + SLACK_S && held_s < ARM_WATCHDOG_S + 2.0 * SLACK_S, "{free_s} s, {held_s} s");
+}

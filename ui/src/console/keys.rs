@@ -1,0 +1,34 @@
+//! Keys that mean the same everywhere.
+
+use egui::{Context, Event, Key};
+
+use super::roles::Role;
+
+/// Space and Escape stop, wherever the keyboard's focus is; nothing else sees them, so no button is pressed by them. While a name is
+/// being written, Space is a letter and Escape alone stops.
+pub(super) fn stop_pressed(ctx: &Context) -> bool {
+    let writing = ctx.text_edit_focused();
+    ctx.input_mut(|input| {
+        let mut stop = false;
+        input.events.retain(|event| match event {
+            Event::Key { key: Key::Space, .. } if writing => true,
+            Event::Key { key: Key::Space | Key::Escape, pressed, repeat, .. } => {
+                stop |= *pressed && !*repeat;
+                false
+            }
+            Event::Text(text) => writing || text != " ",
+            _ => true,
+        });
+        stop
+    })
+}
+
+/// The role whose key was pressed.
+pub(super) fn role_pressed(ctx: &Context) -> Option<Role> {
+    ctx.input(|input| Role::ALL.into_iter().find(|role| input.key_pressed(role.key())))
+}
+
+/// This moment shall be marked.
+pub(super) fn mark_pressed(ctx: &Context) -> bool {
+    !ctx.text_edit_focused() && ctx.input(|input| input.key_pressed(Key::E))
+}

@@ -1,0 +1,60 @@
+//! How the console looks: light or dark, and how large. Kept from one day to the next.
+
+use egui::{Button, Context, Ui, vec2};
+
+use super::settings::{SCALES, Settings};
+
+/// What every view needs, in points: a larger scale than the window has room for is not used.
+const NEEDED: egui::Vec2 = vec2(1100.0, 680.0);
+const STEPS_PERCENT: [u16; 5] = [100, 125, 150, 175, 200];
+
+/// The menu in the top bar.
+pub(super) fn menu_ui(ui: &mut Ui, settings: &mut Settings) {
+    let button = Button::new("View").min_size(vec2(52.0, 34.0));
+    let menu = egui::containers::menu::MenuButton::from_button(button);
+    let (response, _) = menu.ui(ui, |ui| {
+        ui.set_min_width(220.0);
+        ui.label("Palette");
+        ui.horizontal(|ui| {
+            for (name, light) in [("Dark", false), ("Light", true)] {
+                let button = Button::selectable(settings.light == light, name).frame_when_inactive(true);
+                if ui.add(button.min_size(vec2(96.0, 30.0))).clicked() {
+                    settings.light = light;
+                }
+            }
+        });
+        ui.add_space(6.0);
+        ui.label("Size of everything (Ctrl + and Ctrl -)");
+        ui.horizontal(|ui| {
+            for percent in STEPS_PERCENT {
+                let chosen = settings.scale_percent == percent;
+                if ui.add(Button::selectable(chosen, format!("{percent} %")).frame_when_inactive(true)).clicked() {
+                    settings.scale_percent = percent;
+                }
+            }
+        });
+        ui.label(super::widgets::small("Never larger than this window has room for."));
+    });
+    response.on_hover_text("Light or dark, and how large.");
+}
+
+/// Puts the settings in force; call at the start of a frame.
+pub(super) fn apply(ctx: &Context, settings: &mut Settings) {
+    super::theme::choose(ctx, settings.light);
+    ctx.options_mut(|options| options.zoom_with_keyboard = false);
+    let step = ctx.input_mut(|input| {
+        let more = input.consume_shortcut(&egui::gui_zoom::kb_shortcuts::ZOOM_IN)
+            || input.consume_shortcut(&egui::gui_zoom::kb_shortcuts::ZOOM_IN_SECONDARY);
+        let less = input.consume_shortcut(&egui::gui_zoom::kb_shortcuts::ZOOM_OUT);
+        i32::from(more) - i32::from(less)
+    });
+    let wanted = i32::from(settings.scale_percent) + 25 * step;
+    settings.scale_percent =
+        wanted.clamp(i32::from(*SCALES.start()), i32::from(*SCALES.end())).unsigned_abs().try_into().unwrap_or(100);
+    let window = ctx.content_rect().size() * ctx.zoom_factor();
+    let room = (window / NEEDED).min_elem().max(1.0);
+    let factor = (f32::from(settings.scale_percent) / 100.0).min(room);
+    if (factor - ctx.zoom_factor()).abs() > 1e-3 {
+        ctx.set_zoom_factor(factor);
+    }
+}

@@ -1,0 +1,223 @@
+//! Forces in force space: where the two were in the last seconds, the ceiling as a sphere, and the ellipsoid that holds 95 % of
+//! their difference. Turned by dragging; drawn by egui's painter, so that it is the same with and without a GPU.
+
+use std::f32::consts::TAU;
+
+use egui::{Align2, Color32, Painter, Pos2, Rect, Sense, Stroke, Ui, Vec2, pos2, vec2};
+use nalgebra::Vector3;
+use nima::device::Side;
+
+use crate::console::{
+    cloud::{Ellipsoid, SECONDS},
+    live::Live,
+    theme,
+};
+
+/// The caption's height.
+const CAPTION: f32 = 40.0;
+/// Less than this fills the view, N.
+const LEAST_N: f32 = 0.75;
+const RING: u32 = 48;
+
+/// From where it is seen, and how far it reaches.
+#[derive(Clone, Copy, Debug)]
+pub struct ForceSpaceState {
+    yaw: f32,
+    pitch: f32,
+    reach_n: f32,
+}
+
+impl Default for ForceSpaceState {
+    fn default() -> Self {
+        Self { yaw: 0.6, pitch: 0.35, reach_n: LEAST_N }
+    }
+}
+
+/// How force becomes a place on the screen.
+struct View {
+    centre: Pos2,
+    points_per_n: f32,
+    right: Vector3<f32>,
+    up: Vector3<f32>,
+    /// Half of the reach above the middle: contact pushes up.
+    middle_n: Vector3<f32>,
+}
+
+impl View {
+    fn place(&self, force_n: &Vector3<f32>) -> Pos2 {
+        let from_middle = force_n - self.middle_n;
+        self.centre + self.points_per_n * vec2(from_middle.dot(&self.right), -from_middle.dot(&self.up))
+    }
+}
+
+/// The plot, over all the room there is; `cursor_s` is the time that a trace points at, s on the loop's clock.
+pub fn force_space_ui(ui: &mut Ui, live: &Live, side: Side, state: &mut ForceSpaceState, cursor_s: Option<f64>) {
+    let (rect, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
+    let cloud = &live.clouds[side.index()];
+    let ellipsoid = cloud.ellipsoid();
+    let words = caption(ellipsoid.as_ref());
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Canvas, true, format!("Force space. {words}")));
+    if response.dragged() {
+        state.yaw += response.drag_delta().x * 0.01;
+        state.pitch = (state.pitch + response.drag_delta().y * 0.01).clamp(-1.5, 1.5);
+    }
+    if response.double_clicked() {
+        *state = ForceSpaceState::default();
+    }
+    response.on_hover_text(MEANING);
+    let painter = ui.painter_at(rect);
+    painter.rect_filled(rect, theme::CORNER, theme::now().groove);
+    let most_n = cloud.pairs().map(|pair| pair.measured_n.amax().max(pair.rendered_n.amax())).fold(0.0, f64::max);
+    state.reach_n = reach_n(most_n as f32, state.reach_n);
+    let place = Rect::from_min_max(rect.min, rect.max - vec2(0.0, CAPTION));
+    let view = view(state, place);
+    axes(&painter, &view, state.reach_n);
+    ceiling(&painter.with_clip_rect(place), &view, live.gate_settings().ceiling_n as f32);
+    for (colour, width, rendered) in [(theme::now().measured, 2.2, false), (theme::now().rendered, 1.6, true)] {
+        let force_n = |pair: &crate::console::cloud::Pair| if rendered { pair.rendered_n } else { pair.measured_n };
+        let points: Vec<Pos2> = cloud.pairs().map(|pair| view.place(&force_n(pair).cast())).collect();
+        painter.line(points, Stroke::new(width, colour.gamma_multiply(0.75)));
+        // The newest, or the one that a trace points at.
+        let shown = cursor_s.and_then(|at_s| cloud.pairs().find(|pair| pair.t_s >= at_s));
+        if let Some(pair) = shown.or_else(|| cloud.pairs().next_back()) {
+            painter.circle_filled(view.place(&force_n(pair).cast()), 4.5, colour);
+        }
+    }
+    if let (Some(ellipsoid), Some(pair)) = (ellipsoid, cloud.pairs().next_back()) {
+        rings(&painter.with_clip_rect(place), &view, &pair.measured_n.cast(), &ellipsoid);
+    }
+    let at = pos2(rect.left() + 10.0, rect.bottom() - CAPTION + 4.0);
+    for (i, line) in words.split("; ").enumerate() {
+        let at = at + vec2(0.0, 16.0 * i as f32);
+        painter.text(at, Align2::LEFT_TOP, line, theme::regular(12.5), theme::now().text_weak);
+    }
+}
+
+const MEANING: &str = "Both forces of the last six seconds in force space (N, axes of the workspace): a line each, a dot where they are now or \
+                       where a trace points. The three rings are the ellipsoid that holds 95 % of the difference between rendered and \
+                       measured, if it were normal, around the force measured now; how much it really holds stands below. The dashed \
+                       circle is the ceiling. Drag to turn, double click to reset.";
+
+fn caption(ellipsoid: Option<&Ellipsoid>) -> String {
+    ellipsoid.map_or_else(
+        || format!("Last {SECONDS:.0} s; the error's ellipsoid needs a second of data"),
+        |Ellipsoid { mean_n, half_axes_n, holds }| {
+            let mut halves_n: Vec<f64> = half_axes_n.column_iter().map(|axis| axis.norm()).collect();
+            halves_n.sort_by(|a, b| b.total_cmp(a));
+            format!(
+                "Error, last {SECONDS:.0} s: mean {:.2} N, 95 % half axes; {:.2}, {:.2}, {:.2} N (holds {:.0} %)",
+                mean_n.norm(),
+                halves_n[0],
+                halves_n[1],
+                halves_n[2],
+                100.0 * holds
+            )
+        },
+    )
+}
+
+/// A round reach that holds all there is and does not shrink at once.
+fn reach_n(most_n: f32, now_n: f32) -> f32 {
+    let steps = [LEAST_N, 1.5, 3.0, 4.5, 6.0, 9.0, 12.0];
+    let wanted = steps.into_iter().find(|&step| most_n <= step).unwrap_or(12.0);
+    if wanted > now_n || most_n < 0.3 * now_n { wanted } else { now_n }
+}
+
+fn view(state: &ForceSpaceState, place: Rect) -> View {
+    let ((sin_yaw, cos_yaw), (sin_pitch, cos_pitch)) = (state.yaw.sin_cos(), state.pitch.sin_cos());
+    View {
+        centre: place.center(),
+        points_per_n: 0.56 * place.width().min(place.height()) / state.reach_n,
+        right: Vector3::new(cos_yaw, sin_yaw, 0.0),
+        up: Vector3::new(-sin_yaw * sin_pitch, cos_yaw * sin_pitch, cos_pitch),
+        middle_n: Vector3::z() * 0.35 * state.reach_n,
+    }
+}
+
+/// Three axes with a mark at each newton, or each half where that is all there is.
+fn axes(painter: &Painter, view: &View, reach_n: f32) {
+    let stroke = Stroke::new(1.0, theme::now().line.lerp_to_gamma(theme::now().text_weak, 0.4));
+    let step_n = if reach_n > 4.0 {
+        2.0
+    } else if reach_n > 1.6 {
+        1.0
+    } else {
+        0.5
+    };
+    for (name, axis) in [("x", Vector3::x()), ("y", Vector3::y()), ("z", Vector3::z())] {
+        let low_n = if name == "z" { -0.4 * reach_n } else { -0.75 * reach_n };
+        let high_n = if name == "z" { 1.1 * reach_n } else { 0.75 * reach_n };
+        painter.line_segment([view.place(&(axis * low_n)), view.place(&(axis * high_n))], stroke);
+        for i in (low_n / step_n).ceil() as i32..=(high_n / step_n) as i32 {
+            let force_n = i as f32 * step_n;
+            let at = view.place(&(axis * force_n));
+            painter.circle_filled(at, 1.6, theme::now().text_weak);
+            if i != 0 && name == "z" {
+                let words = format!("{force_n} N");
+                painter.text(
+                    at - vec2(7.0, 0.0),
+                    Align2::RIGHT_CENTER,
+                    words,
+                    theme::regular(11.5),
+                    theme::now().text_weak,
+                );
+            }
+        }
+        let end = view.place(&(axis * high_n));
+        let out = (end - view.place(&Vector3::zeros())).normalized();
+        let out = if out.is_finite() { out } else { Vec2::ZERO };
+        painter.text(end + out * 9.0, Align2::CENTER_CENTER, name, theme::regular(13.0), theme::now().text);
+    }
+}
+
+fn ring(at: impl Fn(f32, f32) -> Pos2) -> Vec<Pos2> {
+    (0..=RING)
+        .map(|i| {
+            let (sin, cos) = (TAU * i as f32 / RING as f32).sin_cos();
+            at(cos, sin)
+        })
+        .collect()
+}
+
+/// The outline of the ceiling's sphere.
+fn ceiling(painter: &Painter, view: &View, ceiling_n: f32) {
+    let points = ring(|cos, sin| view.place(&(ceiling_n * (view.right * cos + view.up * sin))));
+    painter.add(egui::Shape::Vec(egui::Shape::dashed_line(
+        &points,
+        Stroke::new(1.2, theme::now().text_weak),
+        6.0,
+        6.0,
+    )));
+}
+
+/// The ellipsoid by its three sections through two half axes each.
+fn rings(painter: &Painter, view: &View, around_n: &Vector3<f32>, ellipsoid: &Ellipsoid) {
+    let half_n = ellipsoid.half_axes_n.cast::<f32>();
+    let centre_n = around_n + ellipsoid.mean_n.cast::<f32>();
+    let colour: Color32 = theme::now().engaged;
+    for (a, b) in [(0, 1), (1, 2), (2, 0)] {
+        let points = ring(|cos, sin| view.place(&(centre_n + half_n.column(a) * cos + half_n.column(b) * sin)));
+        painter.line(points, Stroke::new(1.4, colour));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_reach_grows_at_once_and_shrinks_late() {
+        assert!((reach_n(2.4, LEAST_N) - 3.0).abs() < 1e-6);
+        assert!((reach_n(1.2, 3.0) - 3.0).abs() < 1e-6);
+        assert!((reach_n(0.1, 3.0) - LEAST_N).abs() < 1e-6);
+        assert!((reach_n(1e9, 3.0) - 12.0).abs() < 1e-6);
+    }
+
+    #[test]
+    fn up_is_up_and_the_place_is_finite() {
+        let rect = Rect::from_min_size(pos2(10.0, 20.0), vec2(300.0, 280.0));
+        let view = view(&ForceSpaceState::default(), rect);
+        let (low, high) = (view.place(&Vector3::zeros()), view.place(&Vector3::z()));
+        assert!(high.y < low.y && (high.x - low.x).abs() < 1e-3 && rect.contains(low));
+    }
+}

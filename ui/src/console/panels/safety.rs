@@ -1,0 +1,255 @@
+//! What stands between a model and a hand: the interlock of each arm pair as a diagram that lights up where it is, and the gates in
+//! the order in which a force passes them, with how often each acted and why.
+
+use egui::{Align2, Color32, Painter, Pos2, Rect, ScrollArea, Sense, Stroke, Ui, pos2, vec2};
+use nima::{device::Side, safety::Why, teleop::LoopState};
+
+use super::gates::{Gate, gates, history};
+use crate::console::{
+    live::{Change, Live},
+    scene3d::side_name,
+    theme,
+    widgets::{Sign, sign},
+};
+
+const NODE: egui::Vec2 = vec2(82.0, 28.0);
+const DIAGRAM_HEIGHT: f32 = 118.0;
+const GATE_HEIGHT: f32 = 82.0;
+
+/// The panel.
+pub fn safety_ui(ui: &mut Ui, live: &Live) {
+    ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+        let mut sides: Vec<Side> = live.sides().collect();
+        sides.reverse();
+        ui.columns(sides.len(), |columns| {
+            for (ui, side) in columns.iter_mut().zip(&sides) {
+                interlock_ui(ui, live, *side);
+            }
+        });
+        for side in sides {
+            gates_row_ui(ui, live, side);
+        }
+    });
+}
+
+/// Of which hand, where there are two.
+fn of_side(live: &Live, side: Side) -> String {
+    if live.is_bimanual() { format!(", {} hand", side.word()) } else { String::new() }
+}
+
+/// States and where they stand, in parts of the diagram.
+const PLACES: [(&str, f32, f32); 7] = [
+    ("No device", 0.10, 0.26),
+    ("Idle", 0.32, 0.26),
+    ("Ready", 0.52, 0.26),
+    ("Engaged", 0.72, 0.26),
+    ("Clutched", 0.90, 0.26),
+    ("Stopped", 0.32, 0.82),
+    ("Fault", 0.72, 0.82),
+];
+/// Ways from one state to another; a stop and a fault come from everywhere and lead back to idle.
+const WAYS: [(usize, usize); 6] = [(0, 1), (1, 2), (2, 3), (3, 4), (5, 1), (6, 1)];
+
+const fn place_of(state: LoopState) -> usize {
+    match state {
+        LoopState::Disconnected => 0,
+        LoopState::Idle => 1,
+        LoopState::Ready => 2,
+        LoopState::Engaged => 3,
+        LoopState::Clutched => 4,
+        LoopState::Stopped => 5,
+        LoopState::Faulted(_) => 6,
+    }
+}
+
+const fn why_words(why: Why) -> &'static str {
+    match why {
+        Why::Asked => "the operator asked for it",
+        Why::Connected => "the devices came",
+        Why::Disconnected => "a device went",
+        Why::Agreed => "drives obey, hand and tip agree",
+        Why::Clutch => "the clutch",
+        Why::Late => "the drives did not obey in time",
+        Why::Absent => "nobody holds the handle",
+        Why::Fault => "a fault",
+    }
+}
+
+fn interlock_ui(ui: &mut Ui, live: &Live, side: Side) {
+    let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), DIAGRAM_HEIGHT + 40.0), Sense::hover());
+    let state = live.tick_of(side).map_or(LoopState::Idle, |tick| tick.state);
+    let change = live.changes[side.index()];
+    let since = change.map_or_else(
+        || "since the loop began".to_owned(),
+        |Change { t_s, why, .. }| format!("since {t_s:.1} s: {}", why_words(why)),
+    );
+    let title = format!("Interlock{}: {}", of_side(live, side), state.word().to_lowercase());
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, format!("{title}, {since}")));
+    response.on_hover_text(
+        "Force and motion exist in Engaged only. Stop and fault are latched: out of them it takes a release to Idle and a new \
+         engagement. What went away comes back as Idle. Nothing resumes by itself; only the clutch returns to Engaged.",
+    );
+    let painter = ui.painter_at(rect);
+    painter.text(rect.left_top() + vec2(4.0, 2.0), Align2::LEFT_TOP, title, theme::strong(15.0), theme::now().text);
+    painter.text(
+        rect.left_top() + vec2(4.0, 22.0),
+        Align2::LEFT_TOP,
+        since,
+        theme::regular(12.5),
+        theme::now().text_weak,
+    );
+    let diagram = Rect::from_min_max(rect.min + vec2(0.0, 40.0), rect.max);
+    let node = vec2(NODE.x.min(0.172 * diagram.width()), NODE.y);
+    let at = |i: usize| {
+        let (_, x, y) = PLACES[i];
+        Rect::from_center_size(diagram.min + vec2(x * diagram.width(), y * diagram.height()), node)
+    };
+    let last = change.map(|change| (place_of(change.from), place_of(state)));
+    for (from, to) in WAYS {
+        let lit = last.is_some_and(|last| last == (from, to) || last == (to, from));
+        way(&painter, at(from), at(to), from < 5, lit);
+    }
+    // Stop and fault from everywhere: one rail under all states.
+    let rail = diagram.top() + 0.54 * diagram.height();
+    let stroke = Stroke::new(1.0, theme::now().text_weak);
+    painter.add(egui::Shape::dashed_line(&[pos2(at(0).left(), rail), pos2(at(4).right(), rail)], stroke, 4.0, 4.0));
+    let right = pos2(at(4).right(), rail - 2.0);
+    painter.text(right, Align2::RIGHT_BOTTOM, "from everywhere", theme::regular(11.0), theme::now().text_weak);
+    for i in [5, 6] {
+        let x = at(i).center().x + 16.0;
+        arrow(&painter, pos2(x, rail), pos2(x, at(i).top()), stroke);
+    }
+    for (i, (name, ..)) in PLACES.iter().enumerate() {
+        node_ui(&painter, at(i), name, i == place_of(state), state);
+    }
+}
+
+fn node_ui(painter: &Painter, rect: Rect, name: &str, lit: bool, state: LoopState) {
+    let (fill, ink, line) = match state {
+        _ if !lit => (theme::now().groove, theme::now().text_weak, theme::now().line),
+        LoopState::Engaged | LoopState::Ready | LoopState::Clutched => {
+            (theme::now().engaged, theme::now().background, theme::now().text)
+        }
+        LoopState::Faulted(_) => (theme::now().alarm_high, theme::now().background, theme::now().text),
+        LoopState::Stopped => (theme::now().stop, theme::now().background, theme::now().text),
+        LoopState::Idle | LoopState::Disconnected => (theme::now().at_rest, theme::now().background, theme::now().text),
+    };
+    painter.rect(rect, theme::CORNER, fill, Stroke::new(if lit { 2.0 } else { 1.0 }, line), egui::StrokeKind::Inside);
+    let font = if lit { theme::strong(14.0) } else { theme::regular(13.0) };
+    painter.text(rect.center(), Align2::CENTER_CENTER, name, font, ink);
+}
+
+fn way(painter: &Painter, from: Rect, to: Rect, along: bool, lit: bool) {
+    let stroke = if lit {
+        Stroke::new(2.5, theme::now().text)
+    } else {
+        Stroke::new(1.0, theme::now().text_weak.gamma_multiply(0.8))
+    };
+    if along {
+        arrow(painter, from.right_center(), to.left_center(), stroke);
+    } else {
+        let x = to.center().x - if from.center().x > to.center().x { -16.0 } else { 16.0 };
+        let turn = pos2(x, from.center().y);
+        if (from.center().x - to.center().x).abs() > from.width() {
+            painter.line_segment([from.left_center(), turn], stroke);
+            arrow(painter, turn, pos2(x, to.bottom()), stroke);
+        } else {
+            arrow(painter, pos2(x, from.top()), pos2(x, to.bottom()), stroke);
+        }
+    }
+}
+
+fn arrow(painter: &Painter, from: Pos2, to: Pos2, stroke: Stroke) {
+    painter.line_segment([from, to], stroke);
+    let Some(along) = Some((to - from).normalized()).filter(|along| along.is_finite()) else { return };
+    let head = 6.0;
+    let side = vec2(-along.y, along.x) * 0.5 * head;
+    let base = to - along * head;
+    painter.add(egui::Shape::convex_polygon(vec![to, base + side, base - side], stroke.color, Stroke::NONE));
+}
+
+fn gates_row_ui(ui: &mut Ui, live: &Live, side: Side) {
+    let Some(tick) = live.tick_of(side) else { return };
+    let asked_n = tick.asked_n[tick.mode.index()].norm();
+    ui.add_space(6.0);
+    ui.horizontal(|ui| {
+        ui.spacing_mut().item_spacing.x = 5.0;
+        let ends = 66.0;
+        let gates = gates(live, side);
+        let width = ((ui.available_width() - 2.0 * ends) / gates.len() as f32 - 5.5).max(56.0);
+        end_ui(ui, ends, if live.is_bimanual() { side_name(side) } else { "asked" }, asked_n);
+        for gate in &gates {
+            gate_ui(ui, live, side, gate, width);
+        }
+        end_ui(ui, ends, "hand", live.figures.rendered_n[side.index()]);
+    });
+}
+
+/// Where the row begins and ends: a force.
+fn end_ui(ui: &mut Ui, width: f32, name: &str, force_n: f64) {
+    let (rect, response) = ui.allocate_exact_size(vec2(width, GATE_HEIGHT), Sense::hover());
+    let number = if force_n < 1e3 { format!("{force_n:.1} N") } else { "> 1 kN".to_owned() };
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, format!("{name}: {number}")));
+    response.on_hover_text(
+        "Size of the force that the mode asks for now, and of what reaches the hand after all gates (N).",
+    );
+    let painter = ui.painter_at(rect);
+    painter.text(
+        rect.center() - vec2(0.0, 10.0),
+        Align2::CENTER_CENTER,
+        name,
+        theme::regular(12.5),
+        theme::now().text_weak,
+    );
+    painter.text(rect.center() + vec2(0.0, 9.0), Align2::CENTER_CENTER, number, theme::strong(16.0), theme::now().text);
+}
+
+/// One gate: its lamp, what it does, how often it acted.
+fn gate_ui(ui: &mut Ui, live: &Live, side: Side, gate: &Gate, width: f32) {
+    let (rect, response) = ui.allocate_exact_size(vec2(width, GATE_HEIGHT), Sense::hover());
+    let (what, word) = gate.standing();
+    let acted = live.tick_of(side).map_or(0, |tick| tick.gates.counts.acted[gate.which.index()]);
+    let words = format!("Gate {}{}: {word}, acted on {acted} ticks", gate.name, of_side(live, side));
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, &words));
+    response.on_hover_text(format!("{}\n{}\n{}", gate.meaning, gate.note, history(live, side, gate.which)));
+    let open = what == Sign::Disc;
+    let line: Color32 = if open { theme::now().line } else { theme::now().text };
+    let painter = ui.painter_at(rect);
+    painter.rect(
+        rect,
+        theme::CORNER,
+        theme::now().card,
+        Stroke::new(if open { 1.0 } else { 2.0 }, line),
+        egui::StrokeKind::Inside,
+    );
+    let colour = if open { theme::now().engaged.gamma_multiply(0.75) } else { theme::now().text };
+    sign(&painter, what, rect.center_top() + vec2(0.0, 15.0), 6.0, colour);
+    for (y, text, font, ink) in [
+        (34.0, gate.name.to_owned(), theme::strong(13.0), theme::now().text),
+        (51.0, word.to_owned(), theme::regular(12.5), if open { theme::now().text_weak } else { theme::now().text }),
+        (69.0, compact(acted), theme::regular(12.5), theme::now().text_weak),
+    ] {
+        painter.text(rect.center_top() + vec2(0.0, y), Align2::CENTER_CENTER, text, font, ink);
+    }
+}
+
+/// A count that fits under a gate.
+fn compact(count: u64) -> String {
+    match count {
+        0 => "never".to_owned(),
+        1..=9999 => format!("{count} x"),
+        10_000..=9_999_999 => format!("{} k x", count / 1000),
+        _ => format!("{} M x", count / 1_000_000),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn counts_fit_under_a_gate() {
+        assert_eq!([0, 7, 12_345, 99_000_000].map(compact), ["never", "7 x", "12 k x", "99 M x"].map(str::to_owned));
+        assert!(compact(u64::MAX).len() < 24);
+    }
+}

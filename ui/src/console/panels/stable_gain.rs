@@ -1,0 +1,53 @@
+//! Where the gain stands in the map of stability: a strip under its slider, whole where a gripping hand comes to rest, broken where
+//! it shakes, for the mode and delay in force and the stiffness of the contact now.
+
+use egui::{Rect, Sense, Stroke, Ui, pos2, vec2};
+use nima::study::stability_map::{StabilityMap, Verdict};
+
+use crate::console::{live::Live, theme, widgets::small};
+
+const HEIGHT: f32 = 8.0;
+/// Parts of the strip.
+const PARTS: u32 = 60;
+
+/// The strip and what it says; `rail` is the slider's place, `limit` the gain at its right end.
+pub(super) fn stable_gain_ui(ui: &mut Ui, live: &Live, rail: Rect, limit: f64) {
+    let Some(map) = StabilityMap::committed() else { return };
+    let Some(n_m) = live.stiffness_n_m() else {
+        ui.label(small("Stable up to: not known before a contact")).on_hover_text(MEANING);
+        return;
+    };
+    let (mode, delay_s) = (live.mode(), live.delay_s());
+    // The slider's handle stays within the rail by its own half width.
+    let ends = rail.x_range().shrink(0.3 * rail.height());
+    let (rect, response) = ui.allocate_exact_size(vec2(rail.width(), HEIGHT), Sense::hover());
+    let painter = ui.painter();
+    for part in 0..PARTS {
+        let gain = limit * (f64::from(part) + 0.5) / f64::from(PARTS);
+        let x = |edge: u32| ends.min + ends.span() * edge as f32 / PARTS as f32;
+        let cell = Rect::from_x_y_ranges(x(part)..=x(part + 1), rect.y_range());
+        match map.at(mode, gain, delay_s, n_m) {
+            Verdict::Stable => {
+                painter.rect_filled(cell, 0.0, theme::now().engaged.gamma_multiply(0.8));
+            }
+            Verdict::Marginal => {
+                painter.rect_filled(cell.shrink2(vec2(0.0, 2.5)), 0.0, theme::now().at_rest);
+            }
+            Verdict::Unstable if part % 2 == 0 => {
+                let (low, high) = (pos2(cell.left(), cell.bottom()), pos2(cell.right(), cell.top()));
+                painter.line_segment([low, high], Stroke::new(1.5, theme::now().text));
+            }
+            Verdict::Unstable => {}
+        }
+    }
+    let greatest = map.greatest_stable_gain(mode, delay_s, n_m);
+    let now = map.at(mode, live.gain(), delay_s, n_m);
+    let words = format!("Here {}; stable up to {greatest:.2} at {n_m:.0} N/m", now.words());
+    response.on_hover_text(MEANING);
+    ui.label(small(words)).on_hover_text(MEANING);
+}
+
+const MEANING: &str = "From the map of stability, made by simulation: a hand that grips is knocked aside and must come to rest, with \
+                       the force kept at standstill and without the energy gate, which is harder than the defaults. For the mode \
+                       and the delay in force and the stiffness of the contact now (N/m, slope of force over way, of the last contact \
+                       in between). Whole: stable. Thin: at the edge. Hatched: the hand shakes.";

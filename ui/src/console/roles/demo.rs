@@ -1,0 +1,227 @@
+//! The demonstration: a script that goes through the modes at a long and a short delay, tells what is seen, and invites to take
+//! over. It plays on simulated and emulated rigs only; where it is left, mode and delay are put back as they were.
+
+use egui::{Button, CentralPanel, Frame, Label, Margin, Panel, RichText, Ui, vec2};
+use nima::{impedance::Mode, runtime::Command, teleop::LoopState};
+
+use super::Panels;
+use crate::console::{
+    live::Live,
+    outbox::Outbox,
+    panels::{force_space_ui, forces_ui, horizon_ui},
+    scene3d::scene_ui,
+    theme,
+    widgets::{bar, small},
+};
+
+/// One scene of the script.
+#[derive(Debug)]
+pub struct Step {
+    /// On its button.
+    pub name: &'static str,
+    /// What is seen, and why.
+    pub words: &'static str,
+    /// What is rendered with.
+    pub mode: Mode,
+    /// Delay of the link, s.
+    pub delay_s: f64,
+    /// How long it is shown, s.
+    pub seconds: f64,
+}
+
+/// The script.
+pub const SCRIPT: [Step; 6] = [
+    Step {
+        name: "What is seen",
+        words: "A hand carries an instrument from peg to peg and presses into soft tissue. The ivory arrow is the force measured at \
+                the instrument, the blue one the force that the hand feels. The link is 50 ms late.",
+        mode: Mode::Anchored,
+        delay_s: 0.05,
+        seconds: 14.0,
+    },
+    Step {
+        name: "Direct, late",
+        words: "Now the link is 300 ms late, and the force is sent as it is: the blue arrow comes after the ivory one. The hand \
+                feels a contact that is over, and misses one that has begun.",
+        mode: Mode::Dfr,
+        delay_s: 0.3,
+        seconds: 14.0,
+    },
+    Step {
+        name: "Linear impedance",
+        words: "Instead of the force, its law crosses the link: stiffness, damping and mass of the last 300 ms, rendered from the \
+                hand's own motion (IMA). It answers at once. But where the law has changed since, so has the force.",
+        mode: Mode::Linear,
+        delay_s: 0.3,
+        seconds: 14.0,
+    },
+    Step {
+        name: "Nonlinear, to the letter",
+        words: "The paper's recipe: a law of degree 1 to 5 (NIMA). It fits the past so closely that it foretells the future badly, \
+                and renders nothing where the hand rests. The gates keep its excesses from the hand.",
+        mode: Mode::Literal,
+        delay_s: 0.3,
+        seconds: 14.0,
+    },
+    Step {
+        name: "Anchored",
+        words: "Ours: the last measured force, corrected for what the hand did since, and only as far as such corrections have \
+                proven themselves. See the error on the right, beside direct reflection.",
+        mode: Mode::Anchored,
+        delay_s: 0.3,
+        seconds: 14.0,
+    },
+    Step {
+        name: "Your turn",
+        words: "Press M, or the button in the view, and lead the instrument yourself: drag with the mouse, wheel for the height, arrow \
+                keys for small steps. Press into the tissue and watch the arrows.",
+        mode: Mode::Anchored,
+        delay_s: 0.05,
+        seconds: 20.0,
+    },
+];
+
+/// Where the script is.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct DemoState {
+    step: usize,
+    shown_s: f64,
+    held: bool,
+    /// The step that the loop was last told of.
+    told: Option<usize>,
+    /// Mode and delay (s) before the demonstration.
+    before: Option<(Mode, f64)>,
+}
+
+impl DemoState {
+    /// Puts back what was found.
+    pub fn leave(&mut self, outbox: &mut Outbox) {
+        self.told = None;
+        if let Some((mode, delay_s)) = self.before.take() {
+            outbox.push(Command::SetMode(mode));
+            outbox.push(Command::SetDelay(delay_s));
+        }
+    }
+
+    /// Goes on by `dt_s`; time stands while somebody leads, has paused it, or the loop does not run.
+    fn play(&mut self, live: &Live, leading: bool, dt_s: f64, outbox: &mut Outbox) {
+        if live.tick.is_none() || live.state() != LoopState::Engaged {
+            return;
+        }
+        self.before.get_or_insert((live.mode(), live.delay_s()));
+        if !self.held && !leading {
+            self.shown_s += dt_s;
+        }
+        if self.shown_s >= SCRIPT[self.step].seconds {
+            self.go_to((self.step + 1) % SCRIPT.len());
+        }
+        if self.told != Some(self.step) {
+            self.told = Some(self.step);
+            outbox.push(Command::SetMode(SCRIPT[self.step].mode));
+            outbox.push(Command::SetDelay(SCRIPT[self.step].delay_s));
+        }
+    }
+
+    const fn go_to(&mut self, step: usize) {
+        self.step = step;
+        self.shown_s = 0.0;
+    }
+}
+
+/// Nobody can be hurt on this rig.
+fn may_play(live: &Live) -> bool {
+    live.rig.devices.as_ref().is_none_or(|devices| devices.emulated)
+}
+
+/// The view.
+pub(super) fn demo_ui(ui: &mut Ui, live: &mut Live, panels: &mut Panels, outbox: &mut Outbox) {
+    if may_play(live) {
+        let dt_s = f64::from(ui.input(|input| input.stable_dt)).min(0.1);
+        panels.demo.play(live, panels.scene.is_led(), dt_s, outbox);
+    }
+    let side = Frame::new().fill(theme::now().panel).inner_margin(Margin::same(8));
+    Panel::bottom("caption")
+        .exact_size(140.0)
+        .resizable(false)
+        .frame(side.inner_margin(Margin::symmetric(18, 12)))
+        .show(ui, |ui| {
+            caption_ui(ui, live, &mut panels.demo);
+        });
+    Panel::right("figures").exact_size(348.0).resizable(false).frame(side).show(ui, |ui| {
+        horizon_ui(ui, live);
+        let Panels { forces, space, .. } = panels;
+        let room = vec2(ui.available_width(), ui.available_height().min(380.0));
+        ui.allocate_ui(room, |ui| force_space_ui(ui, live, forces.side(), space, forces.cursor_at_s(live)));
+    });
+    CentralPanel::no_frame().show(ui, |ui| {
+        let frame = Frame::new().inner_margin(Margin::symmetric(12, 8));
+        Panel::bottom("trace").exact_size(200.0).resizable(false).frame(frame).show(ui, |ui| {
+            forces_ui(ui, live, &mut panels.forces, &[2]);
+        });
+        scene_ui(ui, live, &mut panels.scene, outbox);
+    });
+}
+
+/// The chapters, what is told now, and how far it is.
+fn caption_ui(ui: &mut Ui, live: &Live, demo: &mut DemoState) {
+    let plays = may_play(live);
+    ui.horizontal(|ui| {
+        ui.spacing_mut().item_spacing.x = 6.0;
+        for (i, step) in SCRIPT.iter().enumerate() {
+            let name = format!("{}. {}", i + 1, step.name);
+            let button = Button::selectable(demo.step == i, name).frame_when_inactive(true).min_size(vec2(0.0, 30.0));
+            if ui.add_enabled(plays, button).on_hover_text(step.words).clicked() {
+                demo.go_to(i);
+            }
+        }
+        ui.add_space(10.0);
+        let (name, meaning) = if demo.held {
+            ("Play", "The script goes on by itself.")
+        } else {
+            ("Hold", "Stays in this chapter; the loop goes on.")
+        };
+        if ui.add_enabled(plays, Button::new(name).min_size(vec2(64.0, 30.0))).on_hover_text(meaning).clicked() {
+            demo.held = !demo.held;
+        }
+    });
+    ui.add_space(4.0);
+    let words = match live.state() {
+        _ if !plays => {
+            "The demonstration plays on simulated rigs only: on a real one nothing changes mode or delay by itself."
+        }
+        LoopState::Engaged => SCRIPT[demo.step].words,
+        LoopState::Idle => "The loop is idle. Press Engage, and the demonstration goes on.",
+        LoopState::Stopped | LoopState::Faulted(_) => {
+            "Stopped: no force, no motion. Press Release stop, then Engage; these are two steps on purpose."
+        }
+        LoopState::Ready | LoopState::Clutched | LoopState::Disconnected => "The loop gets ready.",
+    };
+    ui.add(Label::new(RichText::new(words).font(theme::regular(18.0))).wrap());
+    let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), 4.0), egui::Sense::hover());
+    if plays && live.state() == LoopState::Engaged {
+        bar(ui.painter(), rect, demo.shown_s / SCRIPT[demo.step].seconds, theme::now().reference);
+    }
+    if !plays {
+        ui.label(small("Choose a simulated rig to see it."));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_chapter_is_long_enough_to_be_read() {
+        for step in &SCRIPT {
+            let words = step.words.split_whitespace().count() as f64;
+            assert!(step.seconds >= words / 4.0, "{}: {words} words in {} s", step.name, step.seconds);
+        }
+    }
+
+    #[test]
+    fn the_modes_of_the_paper_and_ours_are_all_shown() {
+        for mode in Mode::ALL {
+            assert!(SCRIPT.iter().any(|step| step.mode == mode), "{mode}");
+        }
+    }
+}

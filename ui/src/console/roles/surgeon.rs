@@ -1,0 +1,100 @@
+//! A calm monitor: the field as the endoscope sees it, and under it, where each hand is, its two forces against the ceiling
+//! with the gain between them. Six figures at most: two forces of each hand, the gain, the ceiling.
+
+use egui::{Align2, CentralPanel, Frame, Margin, Panel, Rect, Sense, Ui, pos2, vec2};
+use nima::device::Side;
+
+use super::Panels;
+use crate::console::{
+    live::Live,
+    outbox::Outbox,
+    panels::{calm_gain_ui, mode_name, why_no_force},
+    scene3d::{scene_ui, side_name},
+    theme,
+    widgets::{bar, force_sign, small},
+};
+
+const STRIP: f32 = 176.0;
+const GAIN_WIDTH: f32 = 330.0;
+/// A bar reaches this far beyond the ceiling.
+const BEYOND_CEILING: f64 = 1.25;
+
+/// The view.
+pub(super) fn surgeon_ui(ui: &mut Ui, live: &mut Live, panels: &mut Panels, outbox: &mut Outbox) {
+    let strip = Frame::new().fill(theme::now().panel).inner_margin(Margin::same(8));
+    Panel::bottom("strip").exact_size(STRIP).resizable(false).frame(strip).show(ui, |ui| {
+        let room = ui.available_rect_before_wrap();
+        let gain = Rect::from_center_size(room.center(), vec2(GAIN_WIDTH, room.height()));
+        let left = Rect::from_min_max(room.min, pos2(gain.left() - theme::GAP, room.bottom()));
+        let right = Rect::from_min_max(pos2(gain.right() + theme::GAP, room.top()), room.max);
+        hand_ui(ui, live, Side::Right, right);
+        if live.is_bimanual() {
+            hand_ui(ui, live, Side::Left, left);
+        } else {
+            told_ui(ui, live, left);
+        }
+        ui.scope_builder(egui::UiBuilder::new().max_rect(gain), |ui| {
+            theme::card().show(ui, |ui| {
+                ui.set_min_size(ui.available_size());
+                calm_gain_ui(ui, live, &mut panels.feedback, outbox);
+                let words = why_no_force(live).unwrap_or_else(|| mode_name(live.mode()).to_owned());
+                ui.add(egui::Label::new(small(words)).truncate());
+            });
+        });
+    });
+    CentralPanel::no_frame().show(ui, |ui| scene_ui(ui, live, &mut panels.scene, outbox));
+}
+
+/// Where a second hand would be: what the colours mean.
+fn told_ui(ui: &Ui, live: &Live, place: Rect) {
+    let painter = ui.painter_at(place);
+    painter.rect_filled(place, theme::CORNER, theme::now().card);
+    let text = place.left_top() + vec2(16.0, 16.0);
+    painter.text(text, Align2::LEFT_TOP, &live.scene.name, theme::strong(17.0), theme::now().text);
+    for (i, (rendered, words)) in
+        [(false, "measured at the instrument"), (true, "rendered to the hand")].into_iter().enumerate()
+    {
+        let y = text.y + 52.0 + 34.0 * i as f32;
+        force_sign(&painter, theme::now(), Rect::from_center_size(pos2(text.x + 18.0, y), vec2(36.0, 16.0)), rendered);
+        painter.text(pos2(text.x + 48.0, y), Align2::LEFT_CENTER, words, theme::regular(15.0), theme::now().text_weak);
+    }
+}
+
+/// Both forces of a hand as figures and as bars against the ceiling.
+fn hand_ui(ui: &mut Ui, live: &Live, side: Side, place: Rect) {
+    let ceiling_n = live.gate_settings().ceiling_n;
+    let (measured_n, rendered_n) = (live.figures.measured_n[side.index()], live.figures.rendered_n[side.index()]);
+    let response = ui.allocate_rect(place, Sense::hover());
+    let name = format!("{} hand", side_name(side));
+    let words = format!("{name}: measured {measured_n:.1} N, rendered {rendered_n:.1} N, ceiling {ceiling_n:.0} N");
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, &words));
+    response.on_hover_text(
+        "Size of the force measured at the instrument and of the force rendered to the hand (N). The mark is the ceiling: no \
+         larger force ever reaches the hand.",
+    );
+    let painter = ui.painter_at(place);
+    painter.rect_filled(place, theme::CORNER, theme::now().card);
+    let inner = place.shrink2(vec2(16.0, 12.0));
+    painter.text(inner.left_top(), Align2::LEFT_TOP, name, theme::strong(17.0), theme::now().text);
+    let bars = Rect::from_min_max(inner.left_top() + vec2(190.0, 34.0), inner.max);
+    let mark = bars.left() + bars.width() / BEYOND_CEILING as f32;
+    for (i, (force_n, rendered, colour)) in
+        [(measured_n, false, theme::now().measured), (rendered_n, true, theme::now().rendered)].into_iter().enumerate()
+    {
+        let y = bars.top() + (0.25 + 0.5 * i as f32) * bars.height();
+        force_sign(
+            &painter,
+            theme::now(),
+            Rect::from_center_size(pos2(inner.left() + 18.0, y), vec2(36.0, 16.0)),
+            rendered,
+        );
+        let number = format!("{force_n:.1} N");
+        painter.text(pos2(inner.left() + 172.0, y), Align2::RIGHT_CENTER, number, theme::strong(38.0), colour);
+        let groove = Rect::from_center_size(pos2(bars.center().x, y), vec2(bars.width(), 26.0));
+        bar(&painter, groove, force_n / (BEYOND_CEILING * ceiling_n), colour);
+    }
+    painter.vline(mark, bars.top()..=bars.bottom(), egui::Stroke::new(2.5, theme::now().text));
+    let words = format!("ceiling {ceiling_n:.0} N");
+    let at = pos2(mark, inner.top() + 2.0);
+    painter.text(at, Align2::CENTER_TOP, words, theme::regular(14.0), theme::now().text_weak);
+}

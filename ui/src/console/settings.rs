@@ -1,0 +1,141 @@
+//! What the console remembers from one day to the next: who sits before it, and how it looks. Nothing of the loop: a rig begins with
+//! its own file.
+//!
+//! Kept as JSON beside the calibrations. A file that cannot be read is set aside under another name and told, never fatal.
+
+use std::{
+    io,
+    path::{Path, PathBuf},
+};
+
+use nima::{calibration::store::Store, files::write_atomically};
+use serde::{Deserialize, Serialize};
+
+use super::roles::{Role, Tab};
+
+const FILE: &str = "console.json";
+const SET_ASIDE: &str = "console.corrupted.json";
+
+/// The settings.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Settings {
+    /// Who sits before the screen.
+    pub role: Role,
+    /// What a technician sees under the field.
+    pub tab: Tab,
+    /// Dark on light.
+    pub light: bool,
+    /// Size of everything, percent; [`SCALES`].
+    pub scale_percent: u16,
+}
+
+/// Least and largest size of everything, percent.
+pub const SCALES: std::ops::RangeInclusive<u16> = 100..=200;
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self { role: Role::default(), tab: Tab::default(), light: false, scale_percent: 100 }
+    }
+}
+
+/// Settings and the folder that they are kept in.
+#[derive(Debug, Default)]
+pub struct Kept {
+    folder: Option<PathBuf>,
+    /// In force.
+    pub now: Settings,
+    saved: Settings,
+    told: Option<String>,
+}
+
+impl Kept {
+    /// The user's own, beside the calibrations.
+    pub fn of_user() -> Self {
+        let folder = Store::of_user().ok().and_then(|store| store.folder().parent().map(Path::to_path_buf));
+        folder.map_or_else(Self::default, |folder| Self::open(&folder))
+    }
+
+    /// Those in this folder; the defaults where there are none or they cannot be read.
+    pub fn open(folder: &Path) -> Self {
+        let (now, told) = match std::fs::read_to_string(folder.join(FILE)) {
+            Err(error) if error.kind() == io::ErrorKind::NotFound => (Settings::default(), None),
+            Err(error) => (Settings::default(), Some(format!("The settings cannot be read: {error}"))),
+            Ok(text) => match serde_json::from_str(&text) {
+                Ok(settings) => (settings, None),
+                Err(error) => (Settings::default(), Some(set_aside(folder, &error))),
+            },
+        };
+        Self { folder: Some(folder.to_path_buf()), now, saved: now, told }
+    }
+
+    /// Writes the settings if they have changed.
+    pub fn save(&mut self) {
+        let Some(folder) = self.folder.as_ref().filter(|_| self.now != self.saved) else { return };
+        self.saved = self.now;
+        let text = serde_json::to_vec_pretty(&self.now).map_err(io::Error::from);
+        let written = std::fs::create_dir_all(folder)
+            .and(text)
+            .and_then(|text| write_atomically(&folder.join(FILE), |file| file.write_all(&text)));
+        if let Err(error) = written {
+            self.told = Some(format!("The settings are not kept: {error}"));
+        }
+    }
+
+    /// What went wrong with them.
+    pub fn told(&self) -> Option<&str> {
+        self.told.as_deref()
+    }
+}
+
+fn set_aside(folder: &Path, error: &serde_json::Error) -> String {
+    match std::fs::rename(folder.join(FILE), folder.join(SET_ASIDE)) {
+        Ok(()) => {
+            format!("The settings were damaged ({error}); they are set aside as {SET_ASIDE}, and the defaults are used")
+        }
+        Err(_) => format!("The settings are damaged ({error}); the defaults are used"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_was_chosen_is_there_the_next_day() {
+        let folder = tempfile::tempdir().unwrap();
+        let folder = folder.path().join("new");
+        let mut kept = Kept::open(&folder);
+        assert_eq!((kept.now, kept.told()), (Settings::default(), None));
+        kept.now.role = Role::Surgeon;
+        kept.save();
+        let again = Kept::open(&folder);
+        assert_eq!((again.now.role, again.told()), (Role::Surgeon, None));
+    }
+
+    #[test]
+    fn a_damaged_file_is_set_aside_and_told() {
+        let folder = tempfile::tempdir().unwrap();
+        for damage in ["{\"role\":", "", "{\"role\":\"king\"}", "{\"colour\":1}", "[]x"] {
+            std::fs::write(folder.path().join(FILE), damage).unwrap();
+            let mut kept = Kept::open(folder.path());
+            assert_eq!(kept.now, Settings::default());
+            assert!(kept.told().unwrap().contains(SET_ASIDE));
+            assert_eq!(std::fs::read_to_string(folder.path().join(SET_ASIDE)).unwrap(), damage);
+            kept.now.role = Role::Demo;
+            kept.save();
+            assert_eq!(Kept::open(folder.path()).now.role, Role::Demo);
+        }
+    }
+
+    #[test]
+    fn what_cannot_be_written_is_told() {
+        let folder = tempfile::tempdir().unwrap();
+        let in_the_way = folder.path().join("file");
+        std::fs::write(&in_the_way, "").unwrap();
+        let mut kept = Kept::open(&in_the_way.join("folder"));
+        kept.now.role = Role::Demo;
+        kept.save();
+        assert!(kept.told().is_some());
+    }
+}

@@ -1,0 +1,124 @@
+//! How stiff the contact is just now, from what the screen sees: the slope of force over way along the force, by least squares
+//! over the last half second of contact.
+//!
+//! Way in m, force in N (workspace frame), stiffness in N/m. Only moments are kept, so a tick costs a few multiplications. What
+//! is not finite is left out; between contacts the last stiffness stays.
+
+use nalgebra::{Matrix3, Vector3};
+
+/// Below this there is no contact to measure, N.
+const CONTACT_N: f64 = 0.3;
+/// Memory, s.
+const MEMORY_S: f64 = 0.5;
+/// A contact after so long a pause begins anew, s.
+const PAUSE_S: f64 = 0.2;
+/// Contact needed before a stiffness is told, s, and variation of the way, m.
+const LEAST_S: f64 = 0.15;
+const LEAST_WAY_M: f64 = 2e-4;
+
+/// Moments of way and force, forgetting.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct ContactStiffness {
+    weight_s: f64,
+    way_m: Vector3<f64>,
+    force_n: Vector3<f64>,
+    way_way: Matrix3<f64>,
+    force_way: Matrix3<f64>,
+    last_s: Option<f64>,
+    n_m: Option<f64>,
+}
+
+impl ContactStiffness {
+    /// Takes in the tip and its force at a time (s).
+    pub fn push(&mut self, t_s: f64, tip_m: &Vector3<f64>, force_n: &Vector3<f64>) {
+        let finite = t_s.is_finite() && tip_m.iter().chain(force_n).all(|x| x.is_finite());
+        if !finite || force_n.norm() < CONTACT_N {
+            return;
+        }
+        let dt_s = self.last_s.map_or(f64::INFINITY, |last_s| t_s - last_s);
+        if !(0.0..PAUSE_S).contains(&dt_s) {
+            *self = Self { n_m: self.n_m, last_s: Some(t_s), ..Self::default() };
+            return;
+        }
+        self.last_s = Some(t_s);
+        self.weight_s = self.weight_s * (-dt_s / MEMORY_S).exp() + dt_s;
+        if self.weight_s <= 0.0 {
+            return;
+        }
+        let share = dt_s / self.weight_s;
+        let (way, force) = (tip_m - self.way_m, force_n - self.force_n);
+        self.way_m += share * way;
+        self.force_n += share * force;
+        let keep = 1.0 - share;
+        self.way_way = keep * (self.way_way + share * way * way.transpose());
+        self.force_way = keep * (self.force_way + share * force * way.transpose());
+        self.tell();
+    }
+
+    fn tell(&mut self) {
+        let Some(along) = self.force_n.try_normalize(1e-9) else { return };
+        let way_m2 = (along.transpose() * self.way_way * along)[0];
+        if self.weight_s < LEAST_S || way_m2 < LEAST_WAY_M * LEAST_WAY_M {
+            return;
+        }
+        // The tissue pushes back: more force against less way.
+        let n_m = -(along.transpose() * self.force_way * along)[0] / way_m2;
+        if (1.0..1e6).contains(&n_m) {
+            self.n_m = Some(n_m);
+        }
+    }
+
+    /// Stiffness of the contact now, or of the last one, N/m; `None` before there was one.
+    pub const fn n_m(&self) -> Option<f64> {
+        self.n_m
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Presses and lets go along a direction, with noise of 0.02 N.
+    fn pressed(stiffness_n_m: f64, along: Vector3<f64>) -> ContactStiffness {
+        let along = along.normalize();
+        let mut found = ContactStiffness::default();
+        let mut seed = 1_u32;
+        for i in 0..2000 {
+            let t_s = f64::from(i) * 1e-3;
+            let deep_m = 1.2 / stiffness_n_m * (1.0 + 0.6 * (9.0 * t_s).sin()).max(0.0);
+            seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            let noise_n = 0.04 * (f64::from(seed >> 8) / f64::from(1 << 24) - 0.5);
+            found.push(t_s, &(-along * deep_m), &(along * (stiffness_n_m * deep_m + noise_n)));
+        }
+        found
+    }
+
+    #[test]
+    fn a_spring_is_found_whatever_its_stiffness_and_direction() {
+        for n_m in [50.0, 240.0, 1200.0] {
+            for along in [Vector3::z(), Vector3::new(1.0, -2.0, 0.5)] {
+                let found = pressed(n_m, along).n_m().unwrap();
+                assert!((found / n_m - 1.0).abs() < 0.05, "{found} for {n_m}");
+            }
+        }
+    }
+
+    #[test]
+    fn without_contact_or_without_motion_nothing_is_told_and_a_known_stiffness_stays() {
+        let mut found = ContactStiffness::default();
+        for i in 0..1000 {
+            let t_s = f64::from(i) * 1e-3;
+            found.push(t_s, &Vector3::new(0.0, 0.0, t_s), &(0.1 * Vector3::z()));
+            found.push(t_s, &Vector3::zeros(), &Vector3::z());
+            found.push(f64::NAN, &Vector3::z(), &Vector3::z());
+            found.push(t_s, &Vector3::repeat(f64::NAN), &Vector3::z());
+        }
+        assert_eq!(found.n_m(), None);
+        let mut known = pressed(240.0, Vector3::z());
+        let before = known.n_m();
+        for i in 0..1000 {
+            known.push(3.0 + f64::from(i) * 1e-3, &Vector3::zeros(), &Vector3::zeros());
+        }
+        assert_eq!(known.n_m(), before);
+    }
+}

@@ -131,6 +131,8 @@ pub enum Fault {
     DrivesOff,
     /// The other arm pair has a fault.
     OtherArm,
+    /// The rig gave samples, and too many of them were missing or not finite.
+    SamplesLost,
     /// Engaged, and nothing has come over the link for too long.
     LinkSilent,
     /// Time did not go on by whole periods.
@@ -158,6 +160,7 @@ impl Fault {
             },
             Self::DrivesOff => "The arm stopped obeying, or the handle switched its motors off",
             Self::OtherArm => "The other arm has a fault",
+            Self::SamplesLost => "Too many samples of the rig are lost or damaged",
             Self::LinkSilent => "Nothing came over the link for 0.1 s",
             Self::ClockJumped => "The loop's clock jumped or stood still",
             Self::Implausible { what } => what.words(),
@@ -179,6 +182,9 @@ impl Fault {
                 "Look at the arm's and the handle's own lamps and buttons, then release the stop and engage again"
             }
             Self::OtherArm => "Mend the other arm's fault, then release the stop and engage again",
+            Self::SamplesLost => {
+                "See the devices' counts of lost samples, check their cables; then release the stop and engage again"
+            }
             Self::LinkSilent => "Check the link to the follower, then release the stop and engage again",
             Self::ClockJumped => "See what sets or stops this computer's clock, then release the stop and engage again",
             Self::Implausible { what } => what.cure(),

@@ -69,6 +69,9 @@ pub struct Pair {
     last_inputs: Option<Inputs>,
     last_input_s: f64,
     last_now_s: Option<f64>,
+    /// How often samples were missing lately, and whether the last one was there.
+    gaps: f64,
+    was_there: bool,
     hand_force_n: Vector3<f64>,
     command_m: Option<Vector3<f64>>,
     hand_speed_m_s: f64,
@@ -106,6 +109,8 @@ impl Pair {
             last_inputs: None,
             last_input_s: 0.0,
             last_now_s: None,
+            gaps: 0.0,
+            was_there: false,
             hand_force_n: Vector3::zeros(),
             command_m: None,
             hand_speed_m_s: 0.0,

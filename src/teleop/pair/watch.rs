@@ -64,6 +64,9 @@ impl Pair {
             self.fail_if_driven(Fault::SourceSilent, now_s);
         }
         let coupled = matches!(self.state(), LoopState::Engaged | LoopState::Clutched);
+        if self.loses_samples(inputs.is_some()) {
+            self.fail_if_driven(Fault::SamplesLost, now_s);
+        }
         if coupled && !self.force.source.is_usable() {
             self.fail(Fault::ForceUnknown, now_s);
         }
@@ -84,6 +87,20 @@ impl Pair {
         if let Some(change) = self.interlock.step(&seen, now_s) {
             self.enter(change, now_s);
         }
+    }
+
+    /// Gaps come so often that identification learns from what is not there: more than one sample in six, within 20 ms where it is
+    /// every second one. A silence is one gap.
+    fn loses_samples(&mut self, there: bool) -> bool {
+        const TOO_MANY: f64 = 8.0;
+        const FORGIVEN: f64 = 0.2;
+        match (there, self.was_there) {
+            (true, _) => self.gaps = (self.gaps - FORGIVEN).max(0.0),
+            (false, true) => self.gaps += 1.0,
+            (false, false) => {}
+        }
+        self.was_there = there;
+        self.gaps >= TOO_MANY
     }
 
     /// Hand speed for the dead band, from differences: it rises within 5 ms, so one step of the encoder does not open the gate,

@@ -83,7 +83,8 @@ impl Photographer {
         let engaged = live.state() == LoopState::Engaged;
         let touching = live.tick.is_some_and(|tick| tick.measured_n.norm().min(tick.rendered_n.norm()) > CONTACT_N);
         // At its beginning: the picture itself comes a frame or two later.
-        let contact = touching && !std::mem::replace(&mut self.touching, touching);
+        let before = std::mem::replace(&mut self.touching, touching);
+        let contact = touching && !before;
         if shown > least + GIVE_UP {
             return true;
         }

@@ -16,6 +16,7 @@ mod menu;
 pub mod outbox;
 pub mod panels;
 pub mod pictures;
+pub mod readings;
 pub mod roles;
 pub mod rolling;
 pub mod scene3d;

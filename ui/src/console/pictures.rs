@@ -65,11 +65,12 @@ pub(super) struct Photographer {
     album: Album,
     next: usize,
     since: Instant,
+    touching: bool,
 }
 
 impl Photographer {
     pub(super) fn new(album: Album) -> Self {
-        Self { album, next: 0, since: Instant::now() }
+        Self { album, next: 0, since: Instant::now(), touching: false }
     }
 
     /// Sets the next view, takes its picture when it is ready; true when all are taken or
@@ -80,7 +81,10 @@ impl Photographer {
         let least = if self.next == 0 { FILLED } else { SETTLED };
         let shown = self.since.elapsed();
         let engaged = live.state() == LoopState::Engaged;
-        let contact = live.figures.measured_n.iter().zip(live.figures.rendered_n).any(|(m, r)| m.min(r) > CONTACT_N);
+        let touching = live.tick.is_some_and(|tick| tick.measured_n.norm().min(tick.rendered_n.norm()) > CONTACT_N);
+        // At its beginning: the picture itself comes a frame or two later.
+        let before = std::mem::replace(&mut self.touching, touching);
+        let contact = touching && !before;
         if shown > least + GIVE_UP {
             return true;
         }
@@ -98,5 +102,27 @@ impl Photographer {
         self.next += 1;
         self.since = Instant::now();
         false
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use nima::config::{Rig, Scene};
+
+    use super::*;
+
+    #[test]
+    fn a_view_is_set_at_once_and_no_picture_is_taken_before_there_is_something_to_see() {
+        let folder = tempfile::tempdir().unwrap();
+        let album = Album::new(folder.path());
+        let mut photographer = Photographer::new(album.clone());
+        let live = Live::new(Rig::load("simulated").unwrap(), Scene::load("bimanual").unwrap());
+        let mut settings = Settings { role: Role::Demo, light: true, ..Settings::default() };
+        assert!(!photographer.step(&egui::Context::default(), &live, &mut settings));
+        assert_eq!((settings.role, settings.tab, settings.light), (SHOTS[0].1, SHOTS[0].2, SHOTS[0].3));
+        assert_eq!(photographer.next, 0);
+        photographer.since = Instant::now().checked_sub(FILLED + GIVE_UP + SETTLED).unwrap();
+        assert!(photographer.step(&egui::Context::default(), &live, &mut settings), "a loop at rest is given up");
+        assert!(!album.is_complete());
     }
 }

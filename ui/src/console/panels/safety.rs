@@ -6,7 +6,8 @@ use nima::{device::Side, safety::Why, teleop::LoopState};
 
 use super::gates::{Gate, gates, history};
 use crate::console::{
-    live::{Change, Live},
+    live::Live,
+    readings::Change,
     scene3d::side_name,
     theme,
     widgets::{Sign, sign},

@@ -28,6 +28,8 @@ const POSITION_SLACK_M: f64 = 2e-3;
 const FORCE_SLACK_N: f64 = 0.5;
 /// And by so much per metre that the tip moved, N/m: fifteen times soft tissue. With the slack it lets 15 kN/m pass at 50 mm/s.
 const STIFFEST_N_M: f64 = 5e3;
+/// After a start or a gap the filters behind a force settle for so long: it may leap, s.
+const SETTLE_S: f64 = 0.05;
 /// A wrist turns by no more than this in a tick (length of the way of its axes): 50 rad/s at 1 kHz.
 const TURN_MAX: f64 = 0.1;
 /// The tip's way in one tick is the largest of so many ticks: arm and force sensor tick by their own clocks.
@@ -178,6 +180,8 @@ pub struct Plausibility {
     unmoved_since_s: f64,
     ways_m: [f64; WAY_TICKS],
     last_t_s: f64,
+    /// When this watch began, s; not known before the first look.
+    began_s: Option<f64>,
     doubt: Option<Implausible>,
     link_doubt: bool,
 }
@@ -200,6 +204,7 @@ impl Plausibility {
             unmoved_since_s: f64::INFINITY,
             ways_m: [0.0; WAY_TICKS],
             last_t_s: f64::NEG_INFINITY,
+            began_s: None,
             doubt: None,
             link_doubt: false,
         }
@@ -231,7 +236,9 @@ impl Plausibility {
         self.ways_m.rotate_right(1);
         self.ways_m[0] = way_m;
         let widest_m = self.ways_m.iter().copied().fold(0.0, f64::max);
-        let (force_n, force_jumped) = self.force.admit(&seen.force_n, FORCE_SLACK_N + STIFFEST_N_M * widest_m);
+        let settles = seen.t_s - *self.began_s.get_or_insert(seen.t_s) < SETTLE_S;
+        let most_n = if settles { f64::INFINITY } else { FORCE_SLACK_N + STIFFEST_N_M * widest_m };
+        let (force_n, force_jumped) = self.force.admit(&seen.force_n, most_n);
         let frozen = self.frozen.look(&seen.sensed, seen.t_s);
         let along = self.opposed.look(&force_n, self.tip.moved(), seen.command_m.is_some());
         let turned = seen.kbf_from_s1.is_some_and(|turn| self.turn.admit(&axes(&turn), TURN_MAX).1);

@@ -249,7 +249,7 @@ impl Bench {
         if place.is(reached) {
             Ok(())
         } else {
-            Err(FaultsError::NotReached { place: place.word(), state: reached.word() })
+            Err(FaultsError::NotReached { place: place.word(), state: format!("{reached:?}") })
         }
     }
 

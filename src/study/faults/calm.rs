@@ -43,6 +43,8 @@ pub(super) fn runs(seconds: f64) -> Result<Calm, FaultsError> {
                 (rig.mode, rig.delay_s, rig.gates.static_hold) = (mode, delay_s, calm.runs % 2 == 0);
                 let known = Calibrations { gravity: Some(gravity), tip_force: None };
                 let scene = Scene::load(scene)?;
+                // Every run is another hand's tremor, noise and beginning.
+                let scene = Scene { seed: scene.seed + 1000 * calm.runs as u64, ..scene };
                 let (calibrations, left_calibrations) = (known, Calibrations::default());
                 let plan = Plan { rig, scene, calibrations, left_calibrations, engage: true };
                 let mut told = None;

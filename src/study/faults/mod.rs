@@ -47,12 +47,14 @@ pub enum FaultsError {
     #[error(transparent)]
     Network(#[from] TipForceError),
     /// The healthy machine did not come to where a fault was to be tried.
-    #[error("the healthy machine is {state} where it should be {place}: this study's scenes have changed")]
+    #[error(
+        "the healthy machine is {state} where it should be {place}: a false alarm, or this study's scenes have changed"
+    )]
     NotReached {
         /// Where it should be.
         place: &'static str,
         /// Where it is.
-        state: &'static str,
+        state: String,
     },
     /// Faults on the real clock.
     #[error(transparent)]

@@ -7,7 +7,7 @@ use crate::{
     device::{Inputs, Sensed, Switches},
     impedance::Sample,
     runtime::Fault,
-    safety::{CHANNELS, Observed, Seen},
+    safety::{CHANNELS, Implausible, Observed, Seen},
     teleop::LoopState,
 };
 
@@ -73,7 +73,9 @@ impl Pair {
         if coupled && inputs.is_some_and(|inputs| !inputs.powered) {
             self.fail(Fault::DrivesOff, now_s);
         }
-        if let Some(what) = self.plausibility.doubt() {
+        // A handle that leads nothing may be anywhere.
+        let leads = self.state().permits().coupled;
+        if let Some(what) = self.plausibility.doubt().filter(|what| leads || *what != Implausible::HandleJumped) {
             self.fail_if_driven(Fault::Implausible { what }, now_s);
         }
         let switches = self.last_inputs.map_or_else(Switches::default, |seen| seen.switches);

@@ -115,11 +115,11 @@ pub(super) fn tried(mut bench: Bench, kind: Kind, sensor: SensorAt, mode: Mode, 
             bench.rig.situation.clutch = false;
         }
         let Some(step) = bench.step() else { break };
+        watch.look(tick, &step);
         // The twin may lose its way where the fault leads the arm elsewhere; then it is no measure any more.
         if step.twin.state.is_latched() && !begun_latched {
             break;
         }
-        watch.look(tick, &step);
         latched += u32::from(step.machine.state.is_latched() && !begun_latched);
         if latched > AFTER_LATCH {
             break;

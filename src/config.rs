@@ -104,6 +104,9 @@ pub struct Rig {
     /// From the hand's motion to the tip's.
     #[serde(default)]
     pub teleoperation: Teleoperation,
+    /// A cap and pedals before a simulated rig.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub desk: Option<device::rig::DeskSettings>,
     /// The devices; without them everything is simulated.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub devices: Option<device::rig::Settings>,
@@ -334,8 +337,9 @@ pub struct Sensor {
     pub noise_n: f64,
 }
 
-const RIGS: [(&str, &str); 3] = [
+const RIGS: [(&str, &str); 4] = [
     ("simulated", include_str!("../config/rigs/simulated.toml")),
+    ("desk", include_str!("../config/rigs/desk.toml")),
     ("emulated", include_str!("../config/rigs/emulated.toml")),
     ("paper", include_str!("../config/rigs/paper.toml")),
 ];
@@ -431,6 +435,17 @@ impl Rig {
         ranges.check("rate_hz", self.rate_hz, (20.0..=10_000.0).contains(&self.rate_hz), "20 to 10000 Hz")?;
         ranges.check("delay_s", self.delay_s, (0.0..=MAX_DELAY_S).contains(&self.delay_s), "0 to 1 s")?;
         ranges.positive("follower_speed_max_m_s", self.follower_speed_max_m_s)?;
+        if let Some(desk) = &self.desk {
+            let speed = desk.speed_m_s;
+            ranges.check("desk.speed_m_s", speed, speed > 0.0 && speed <= 0.15, "above 0, at most 0.15 m/s")?;
+            let simulated = if self.devices.is_none() { 1.0 } else { 0.0 };
+            ranges.check(
+                "desk beside [devices]",
+                simulated,
+                self.devices.is_none(),
+                "left out: a rig has one or the other",
+            )?;
+        }
         let scale = self.teleoperation.scale;
         ranges.check("teleoperation.scale", scale, SCALES.contains(&scale), "0.01 to 5")?;
         ranges.finite("teleoperation.kbf_from_view_deg", &self.teleoperation.kbf_from_view_deg)?;

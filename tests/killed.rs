@@ -58,20 +58,22 @@ impl Drop for Killed {
 }
 
 #[test]
+#[ignore = "real lines in real time: `./dev test` runs it alone"]
 fn a_killed_process_leaves_no_force_in_the_hand() {
     let _alone = alone();
     let folder = tempfile::tempdir().unwrap();
     let devices = Settings { left: None, tissue_sensor: None, tracker: None, pedal: None, ..elsewhere(folder.path()) };
     let rig = started(&devices);
     let truth = || rig.truth(Side::Right).unwrap();
-    let child = Command::new(std::env::current_exe().unwrap())
-        .args(["the_loop_of_another_process", "--exact", "--ignored"])
-        .env(DEVICES, serde_json::to_string(&devices).unwrap())
-        .stdout(Stdio::null())
-        .stderr(Stdio::null())
-        .spawn()
-        .unwrap();
-    let mut child = Killed(child);
+    let loop_of_another_process = || {
+        let child = Command::new(std::env::current_exe().unwrap())
+            .args(["the_loop_of_another_process", "--exact", "--ignored"])
+            .env(DEVICES, serde_json::to_string(&devices).unwrap())
+            .stdout(Stdio::null())
+            .stderr(Stdio::null())
+            .spawn();
+        Killed(child.unwrap())
+    };
     let until = |within: Duration, good: &dyn Fn(&Truth) -> bool| {
         let begin = Instant::now();
         while begin.elapsed() < within {
@@ -82,8 +84,11 @@ fn a_killed_process_leaves_no_force_in_the_hand() {
         }
         None
     };
-    until(Duration::from_secs(20), &|truth| truth.applied.force_n.norm() > 0.5).expect("the hand feels something");
-    assert!(truth().servoing);
+    // A busy machine may hold a loop up before it has touched anything: then it has stopped, and another one is tried.
+    let feels = |child: Killed| {
+        until(Duration::from_secs(8), &|truth| truth.applied.force_n.norm() > 0.5 && truth.servoing).map(|_| child)
+    };
+    let mut child = (0..4).find_map(|_| feels(loop_of_another_process())).expect("the hand feels something");
     child.0.kill().unwrap();
     let free_s = until(Duration::from_secs(1), &|truth| truth.applied.mode != Motors::Force).expect("no force");
     let held_s = free_s + until(Duration::from_secs(1), &|truth| !truth.servoing).expect("the arm holds");

@@ -99,6 +99,9 @@ impl Inputs {
     }
 }
 
+/// Farthest from the middle of the workspace that a handle may be led ([`Outputs::guide_m`]), on each axis, m.
+pub const GUIDE_MAX_M: f64 = 0.1;
+
 /// What the loop commands to an arm pair.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Outputs {

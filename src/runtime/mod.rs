@@ -24,7 +24,7 @@ use crate::{
         rig::{DeviceRig, RigError, SensorPlace},
     },
     impedance::SettingsError,
-    sim::Worlds,
+    sim::{Desk, Worlds},
     teleop::{Calibrations, Loop},
 };
 
@@ -86,6 +86,10 @@ impl Plan {
 
     /// The rig, and the devices in it.
     fn assemble(&self) -> Result<(Box<dyn device::Rig>, Roster), RigError> {
+        if let Some(desk) = &self.rig.desk {
+            let (desk, roster) = Desk::start(desk, self.worlds())?;
+            return Ok((Box::new(desk), roster));
+        }
         let Some(devices) = &self.rig.devices else { return Ok((Box::new(self.worlds()), Roster::new())) };
         let at_wrist = Side::ALL.map(|side| self.is_at_wrist(side));
         let (rig, roster) = DeviceRig::start(devices, 1.0 / self.rig.rate_hz, at_wrist)?;

@@ -5,6 +5,7 @@
 //! Bad input: a command that is not finite is ignored, a force that is not finite counts as zero.
 
 #[cfg(unix)]
+mod desk;
 pub mod emulated;
 mod hand;
 mod noise;
@@ -18,6 +19,7 @@ use nalgebra::{UnitQuaternion, Vector3};
 use person::Person;
 use wrist::{Loads, Wrist, along_shaft};
 
+pub use desk::Desk;
 pub use hand::Hand;
 pub use noise::Noise;
 pub use tissue::Tissue;

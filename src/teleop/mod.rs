@@ -11,10 +11,11 @@ mod link;
 mod pair;
 mod tracking;
 
+pub use crate::device::GUIDE_MAX_M;
 pub use accuracy::{Accuracy, ErrorStats};
 pub use force_path::{Calibrations, ForcePath, ForceReport, ForceSource};
 pub use link::{Link, Weather};
-pub use pair::{EVENTS_PER_TICK_MAX, GUIDE_MAX_M, Pair, Timing};
+pub use pair::{EVENTS_PER_TICK_MAX, Pair, Timing};
 pub use tracking::Tracking;
 
 use crate::{

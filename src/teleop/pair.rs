@@ -7,7 +7,7 @@ use nalgebra::{UnitQuaternion, Vector1, Vector3};
 use super::{Accuracy, Calibrations, ForcePath, ForceReport, ForceSource, Link, LoopState, Tracking, Weather};
 use crate::{
     config::Rig as RigConfig,
-    device::{DeviceEvent, Inputs, Outputs, Prompt, Sensed, Side, Standing, Switches},
+    device::{DeviceEvent, GUIDE_MAX_M, Inputs, Outputs, Prompt, Sensed, Side, Standing, Switches},
     impedance::{Identifier, MAX_DELAY_S, Mode, Rendered, Renderer, Sample, SettingsError},
     kinematics::{Hand, HandEye, Target},
     runtime::{Command, Event, Fault, Tick},
@@ -20,8 +20,6 @@ const SILENT_AFTER_S: f64 = 0.020;
 const LINK_SILENT_AFTER_S: f64 = 0.1;
 /// Missed periods in a row that make a fault, as time, s.
 const STALLED_AFTER_S: f64 = 0.050;
-/// Farthest from the middle of the workspace that the screen may lead the handle, on each axis, m.
-pub const GUIDE_MAX_M: f64 = 0.1;
 /// Most events told in one tick; more in one tick is not possible.
 pub const EVENTS_PER_TICK_MAX: usize = 6;
 /// From the gripper's hinge to the finger, m (omega.7).

@@ -75,6 +75,7 @@ fn the_window_opens_shows_a_living_picture_and_closes() {
     let mut nima = x
         .command(env!("CARGO_BIN_EXE_nima"))
         .env("XDG_RUNTIME_DIR", folder.path())
+        .env("NIMA_DATA_DIR", folder.path())
         .args(["console", "--exit-after", "8", "--screenshot"])
         .arg(&own)
         .stdout(Stdio::null())

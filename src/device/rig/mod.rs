@@ -14,13 +14,13 @@ use std::io;
 
 pub use arm_pair::{ArmPair, Obstacle};
 pub use jaws::JawsSettings;
-pub use settings::{ArmSet, SensorPlace, Settings};
+pub use settings::{ArmSet, DeskSettings, SensorPlace, Settings};
 
 use super::{
     DEVICES_MAX, Device, DeviceEvent, Health, Healths, Inputs, Lever, Outputs, PedalReading, Rig, Roster, RosterEntry,
     SIDES, Side, Slot, Stamped, Standing, Switches, Tracked, TrackerReading, bota, hid, hid::Held, ndi,
 };
-use watch::Watch;
+pub use watch::Watch;
 
 /// A part older than this is not there, s.
 const OLDEST_S: f64 = 0.020;

@@ -57,6 +57,24 @@ pub struct ArmSet {
     pub jaws: JawsSettings,
 }
 
+/// The desk part of a rig file: what leads a simulated rig.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct DeskSettings {
+    /// The cap.
+    pub cap: Option<hid::CapSettings>,
+    /// The pedals.
+    pub pedal: Option<hid::PedalSettings>,
+    /// Speed of the hand at a full push, m/s, above 0 to 0.15.
+    pub speed_m_s: f64,
+}
+
+impl Default for DeskSettings {
+    fn default() -> Self {
+        Self { cap: Some(hid::CapSettings::default()), pedal: None, speed_m_s: 0.06 }
+    }
+}
+
 /// Where a force sensor feels.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]

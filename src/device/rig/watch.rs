@@ -7,7 +7,7 @@ const WAITING: usize = 32;
 
 /// Where every device was, and what is still to be told.
 #[derive(Debug)]
-pub(super) struct Watch {
+pub struct Watch {
     before: [Standing; DEVICES_MAX],
     events: [Option<DeviceEvent>; WAITING],
     first: usize,
@@ -22,7 +22,7 @@ impl Default for Watch {
 
 impl Watch {
     /// Takes in where a device is now.
-    pub(super) fn look(&mut self, t_s: f64, device: usize, standing: Standing, of_side: [bool; SIDES]) {
+    pub fn look(&mut self, t_s: f64, device: usize, standing: Standing, of_side: [bool; SIDES]) {
         let Some(before) = self.before.get_mut(device) else { return };
         if *before == standing {
             return;
@@ -36,7 +36,7 @@ impl Watch {
     }
 
     /// The oldest event that was not told yet.
-    pub(super) const fn take(&mut self) -> Option<DeviceEvent> {
+    pub const fn take(&mut self) -> Option<DeviceEvent> {
         if self.count == 0 {
             return None;
         }

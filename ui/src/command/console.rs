@@ -2,6 +2,7 @@
 
 use std::{path::PathBuf, time::Duration};
 
+use anyhow::Context as _;
 use clap::Args;
 use nima::{
     config::SchedulingClass,
@@ -9,7 +10,7 @@ use nima::{
 };
 
 use super::{emulators::Emulators, setup::Setup};
-use crate::console::{self, Options, in_force::InForce, roles::Role, wizards::Which};
+use crate::console::{self, Options, in_force::InForce, pictures::Album, roles::Role, wizards::Which};
 
 #[derive(Debug, Default, Args)]
 pub(super) struct Arguments {
@@ -30,6 +31,9 @@ pub(super) struct Arguments {
     /// What to ask of the operating system for the loop: ordinary, fifo or deadline (default: the rig's)
     #[arg(long, value_name = "CLASS")]
     scheduling: Option<SchedulingClass>,
+    /// Take pictures of every view (PNG) into this folder, then close
+    #[arg(long, value_name = "DIR", conflicts_with_all = ["exit_after", "calibrate", "role"])]
+    pictures: Option<PathBuf>,
     /// Write the loop's figures (JSON) here when the window is closed
     #[arg(long, value_name = "FILE")]
     summary: Option<PathBuf>,
@@ -52,10 +56,21 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let options = Options {
         exit_after: arguments.exit_after.map(Duration::from_secs_f64),
         screenshot: arguments.screenshot.clone(),
+        pictures: arguments.pictures.as_deref().map(Album::new),
         role: arguments.role,
         wizard: arguments.calibrate,
         summary: arguments.summary.clone(),
         stall: arguments.stall.map(Duration::from_secs_f64),
     };
-    console::run(handle, rig, scene, options)
+    let album = options.pictures.clone();
+    if let Some(folder) = &arguments.pictures {
+        std::fs::create_dir_all(folder)
+            .with_context(|| format!("the folder for pictures {} cannot be made", folder.display()))?;
+    }
+    console::run(handle, rig, scene, options)?;
+    anyhow::ensure!(
+        album.is_none_or(|album| album.is_complete()),
+        "not all pictures were taken: the loop stopped or the window was closed; try again on a machine at rest"
+    );
+    Ok(())
 }

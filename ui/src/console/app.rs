@@ -1,15 +1,16 @@
 //! The window: takes in what the loop sent, lays out the panels, sends what the operator asked.
 
+mod calibrating;
+
 use std::{
     path::Path,
     time::{Duration, Instant},
 };
 
 use eframe::glow;
-use egui::{CentralPanel, Frame, Margin, Panel, ScrollArea, Ui};
+use egui::{Frame, Margin, Panel, Ui};
 use nima::{
     config::{Rig, Scene},
-    device::Prompt,
     files::write_atomically,
     runtime::{self, Command, Handle, Plan, Tick},
     teleop::LoopState,
@@ -17,23 +18,27 @@ use nima::{
 
 use super::{
     Options,
+    help::Help,
     in_force::InForce,
     keys,
     live::Live,
     menu,
     outbox::Outbox,
-    panels::{CalibrationWish, ForcesState, TopBarState, TradeoffState, calibrations_ui, top_bar_ui},
+    panels::{ForcesState, TopBarState, TradeoffState, top_bar_ui},
+    pictures::Photographer,
     roles::{Panels, Role, Wishes, role_ui},
     scene3d::SceneView,
     screenshot,
-    settings::Kept,
+    settings::{Kept, Settings},
     theme,
-    wizards::{Saving, Which, Wizards},
+    wizards::Wizards,
 };
 
 /// Thirty pictures a second while data flow.
 const FRAME: Duration = Duration::from_millis(33);
-/// Smooth edges in 3-D are given up when the work for one picture takes longer than this (25 pictures a second) ...
+/// Ten while nothing is engaged; the mouse and the keyboard are answered at once all the same.
+const FRAME_AT_REST: Duration = Duration::from_millis(100);
+/// Smooth edges in 3-D are given up when every second picture comes later than this after the one before (25 a second) ...
 const SLOW_MS: f64 = 38.0;
 /// ... though the window has had this time to warm up.
 const WARM_UP: Duration = Duration::from_secs(4);
@@ -51,6 +56,8 @@ pub struct ConsoleApp {
     top_bar: TopBarState,
     panels: Panels,
     settings: Kept,
+    help: Help,
+    photographer: Option<Photographer>,
     wizards: Wizards,
     in_force: InForce,
     /// What was watched before a wizard took the rig over.
@@ -59,6 +66,8 @@ pub struct ConsoleApp {
     opened: Instant,
     framed: Instant,
     pictured: bool,
+    /// Few pictures are drawn, because nothing is engaged.
+    calm: bool,
 }
 
 impl ConsoleApp {
@@ -76,10 +85,13 @@ impl ConsoleApp {
             top_bar: TopBarState::default(),
             panels: Panels { scene: SceneView::new(cc.gl.as_deref()), ..Panels::default() },
             settings: Kept::default(),
+            help: Help::default(),
+            photographer: None,
             options: Options::default(),
             opened: now,
             framed: now,
             pictured: false,
+            calm: false,
         }
     }
 
@@ -87,6 +99,7 @@ impl ConsoleApp {
     #[must_use]
     pub fn with_options(mut self, options: Options) -> Self {
         self.options = options;
+        self.photographer = self.options.pictures.clone().map(Photographer::new);
         self.settings.now.role = self.options.role.unwrap_or(self.settings.now.role);
         if let Some(which) = self.options.wizard {
             self.open_wizard(which);
@@ -100,9 +113,16 @@ impl ConsoleApp {
         if let Some(told) = settings.told() {
             self.in_force.tell(format!("{told}."));
         }
-        self.panels.tab = settings.now.tab;
+        if settings.is_first_run() {
+            self.help.begin_tour();
+        }
         self.settings = settings;
         self
+    }
+
+    /// What is remembered from one day to the next, to be changed from outside.
+    pub const fn settings_mut(&mut self) -> &mut Settings {
+        &mut self.settings.now
     }
 
     /// Who sits before the screen.
@@ -194,105 +214,34 @@ impl ConsoleApp {
         self.panels.tradeoff.tell(told);
     }
 
-    /// Opens a wizard: a simulated rig goes over to its experiment, where somebody guides the arm.
-    fn open_wizard(&mut self, which: Which) {
-        let opened = if which.suits(&self.live.scene) && self.wizards.open.is_none() {
-            Ok(())
-        } else {
-            Scene::load(which.scene()).map_err(|error| error.to_string()).and_then(|scene| self.restart_in(scene))
-        };
-        match opened {
-            Ok(()) => self.wizards.open = Some(which),
-            Err(reason) => self.in_force.tell(format!("Not opened: {reason}.")),
-        }
-    }
-
-    /// The same rig in another scene; the scene that was watched is kept for the way back.
-    fn restart_in(&mut self, scene: Scene) -> Result<(), String> {
-        let watched = self.live.scene.clone();
-        self.restart(self.live.rig.clone(), scene)?;
-        self.watched.get_or_insert(watched);
-        Ok(())
-    }
-
-    /// Back to what was watched before; the wizards keep what they have.
-    fn close_wizard(&mut self) {
-        self.wizards.open = None;
-        let Some(scene) = self.watched.take() else {
-            self.outbox.push(Command::Prompt(Prompt::Rest));
-            return;
-        };
-        if let Err(reason) = self.restart(self.live.rig.clone(), scene.clone()) {
-            self.watched = Some(scene);
-            self.in_force.tell(format!("Still in the experiment: {reason}."));
-        }
-    }
-
-    /// Keeps a calibration and puts it in force.
-    fn save(&mut self, saving: Saving) {
-        let told = match self.in_force.save(saving) {
-            Ok(words) => match self.restart(self.live.rig.clone(), self.live.scene.clone()) {
-                Ok(()) => words,
-                Err(reason) => format!("{words} It comes into force with the next start: {reason}."),
-            },
-            Err(reason) => format!("Not saved: {reason}"),
-        };
-        self.wizards.tell_saved(told);
-    }
-
-    /// Asks the person at the arm for what the open wizard needs now.
-    fn ask(&mut self) {
-        let wanted = self.wizards.prompt();
-        let asked = self.live.tick.is_some_and(|tick| tick.state == LoopState::Idle && tick.prompt != wanted);
-        if self.wizards.open.is_some() && asked {
-            self.outbox.push(Command::Prompt(wanted));
-        }
-    }
-
     fn layout(&mut self, ui: &mut Ui) {
         let bar = Frame::new().fill(theme::now().panel).inner_margin(Margin::symmetric(14, 0));
         Panel::top("top_bar").exact_size(72.0).resizable(false).frame(bar).show(ui, |ui| {
             let calibrating = self.wizards.open.is_some();
-            top_bar_ui(ui, &self.live, &mut self.top_bar, &mut self.outbox, &mut self.settings.now, calibrating);
+            top_bar_ui(
+                ui,
+                &self.live,
+                &mut self.top_bar,
+                &mut self.outbox,
+                &mut self.settings.now,
+                &mut self.help,
+                calibrating,
+            );
             let pressed = keys::role_pressed(ui.ctx()).filter(|_| !calibrating);
             self.settings.now.role = pressed.unwrap_or(self.role());
         });
-        if self.wizards.open.is_some() { self.wizard_layout(ui) } else { self.monitor_layout(ui) }
-    }
-
-    /// A technician's view: one wizard, what is in force, and the way back.
-    fn wizard_layout(&mut self, ui: &mut Ui) {
-        let side = Frame::new().fill(theme::now().panel).inner_margin(Margin::same(8));
-        let mut wish = None;
-        Panel::left("calibrations").exact_size(316.0).resizable(false).frame(side).show(ui, |ui| {
-            wish = calibrations_ui(ui, &self.live, &self.in_force, self.wizards.open);
-        });
-        let binding = self.in_force.binding();
-        let mut saving = None;
-        CentralPanel::default().frame(Frame::new().inner_margin(Margin::symmetric(18, 14))).show(ui, |ui| {
-            ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
-                ui.set_max_width(760.0);
-                saving = self.wizards.ui(ui, &binding);
-            });
-        });
-        if let Some(saving) = saving {
-            self.save(saving);
+        let room = ui.available_rect_before_wrap();
+        if self.wizards.open.is_some() {
+            self.wizard_layout(ui);
+        } else {
+            self.monitor_layout(ui);
         }
-        self.obey_calibrations(wish);
-    }
-
-    fn obey_calibrations(&mut self, wish: Option<CalibrationWish>) {
-        match wish {
-            Some(CalibrationWish::Open(which)) => self.open_wizard(which),
-            Some(CalibrationWish::Close) => self.close_wizard(),
-            None => {}
-        }
+        self.settings.now.toured |= self.help.ui(ui.ctx(), room);
     }
 
     fn monitor_layout(&mut self, ui: &mut Ui) {
-        let role = self.role();
         let Wishes { restart, calibration } =
-            role_ui(ui, role, &mut self.live, &mut self.panels, &self.in_force, &mut self.outbox);
+            role_ui(ui, &mut self.settings.now, &mut self.live, &mut self.panels, &self.in_force, &mut self.outbox);
         // After everything was drawn of the loop as it was. A stop asked for in the same frame comes first.
         if self.outbox.stop_is_stuck() {
             return;
@@ -316,10 +265,12 @@ impl ConsoleApp {
                 }
             });
         }
+        let finished =
+            self.photographer.as_mut().is_some_and(|taker| taker.step(ctx, &self.live, &mut self.settings.now));
         if let Some(stall) = self.options.stall.take_if(|_| open >= WARM_UP) {
             std::thread::sleep(stall);
         }
-        if exit_after.is_some_and(|exit| open >= exit) {
+        if finished || exit_after.is_some_and(|exit| open >= exit) {
             ctx.send_viewport_cmd(egui::ViewportCommand::Close);
         }
     }
@@ -335,25 +286,29 @@ impl eframe::App for ConsoleApp {
     fn ui(&mut self, ui: &mut Ui, frame: &mut eframe::Frame) {
         let ctx = ui.ctx().clone();
         let period = std::mem::replace(&mut self.framed, Instant::now());
-        self.live.frame(self.framed.duration_since(period).as_secs_f64(), frame.info().cpu_usage.map(f64::from));
+        if !self.calm {
+            self.live.frame(self.framed.duration_since(period).as_secs_f64(), frame.info().cpu_usage.map(f64::from));
+        }
         // Once given up they stay so: a view that changes its look by itself again and again would be worse.
-        self.live.rough_edges |= self.opened.elapsed() > WARM_UP && self.live.figures.frame_work_ms > SLOW_MS;
+        self.live.rough_edges |= self.opened.elapsed() > WARM_UP && self.live.figures.frame_ms[0] > SLOW_MS;
         self.panels.scene.smooth = !self.live.rough_edges;
         menu::apply(&ctx, &mut self.settings.now);
         if keys::stop_pressed(&ctx) {
             self.outbox.push(Command::Stop);
         }
+        self.help.glossary ^= keys::glossary_pressed(&ctx);
         if keys::mark_pressed(&ctx) {
             self.live.mark();
         }
         self.layout(ui);
-        self.settings.now.tab = self.panels.tab;
         self.settings.save();
         if let Some(handle) = &self.handle {
             self.outbox.flush(handle);
         }
         self.obey_options(&ctx);
-        ctx.request_repaint_after(FRAME);
+        let at_rest = self.live.state().is_latched() || self.live.state() == LoopState::Idle;
+        self.calm = at_rest && self.wizards.open.is_none();
+        ctx.request_repaint_after(if self.calm { FRAME_AT_REST } else { FRAME });
     }
 
     /// The ground of the whole window: clearing is far cheaper than painting panels over it.

@@ -32,3 +32,8 @@ pub(super) fn role_pressed(ctx: &Context) -> Option<Role> {
 pub(super) fn mark_pressed(ctx: &Context) -> bool {
     !ctx.text_edit_focused() && ctx.input(|input| input.key_pressed(Key::E))
 }
+
+/// The glossary shall be opened or closed.
+pub(super) fn glossary_pressed(ctx: &Context) -> bool {
+    ctx.input(|input| input.key_pressed(Key::F4))
+}

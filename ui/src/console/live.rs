@@ -11,7 +11,7 @@ use nima::{
     device::{Healths, Roster, SIDES, Side},
     impedance::Mode,
     runtime::{Command, Event, Fault, Handle, Scheduling, Tick},
-    safety::{ChainSettings, Why},
+    safety::ChainSettings,
     statistics::{Percentiles, Quantiles},
     teleop::LoopState,
 };
@@ -20,6 +20,7 @@ use super::{
     alarms::Signs,
     cloud::Cloud,
     history::{CHANNELS, History},
+    readings::{Change, Figures, Gates},
     rolling::{DegreeShares, Fading},
     stiffness::ContactStiffness,
 };
@@ -39,63 +40,6 @@ const FIGURES_EVERY: Duration = Duration::from_millis(250);
 const READINGS_EVERY: Duration = Duration::from_millis(100);
 /// How long a refused command stays on the screen.
 const REFUSAL_SHOWN: Duration = Duration::from_secs(6);
-
-/// Gates in the order of the chain, as shares of recent ticks in which each acted.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Gates {
-    /// Not engaged.
-    pub not_permitted: Fading,
-    /// Nobody holds the handle.
-    pub released: Fading,
-    /// Nothing valid to render.
-    pub invalid: Fading,
-    /// Data too old.
-    pub stale: Fading,
-    /// Hand too slow.
-    pub dead_band: Fading,
-    /// Force withheld by the dead band, N.
-    pub withheld_n: Fading,
-    /// Change too fast.
-    pub slew: Fading,
-    /// More energy than the hand gave.
-    pub energy: Fading,
-    /// Force too large.
-    pub ceiling: Fading,
-}
-
-/// How an arm pair came into its present state.
-#[derive(Clone, Copy, Debug)]
-pub struct Change {
-    /// When, s on the loop's clock.
-    pub t_s: f64,
-    /// From which state.
-    pub from: LoopState,
-    /// Why.
-    pub why: Why,
-}
-
-/// Numbers as shown: steady enough to be read.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Figures {
-    /// Mean size of the measured force of each side, N, indexed by [`Side::index`].
-    pub measured_n: [f64; SIDES],
-    /// Mean size of the rendered force of each side, N.
-    pub rendered_n: [f64; SIDES],
-    /// Error of each mode at the horizon, N, mean over the last seconds.
-    pub horizon_n: [f64; 4],
-    /// Force withheld by the dead band, N.
-    pub withheld_n: f64,
-    /// Lateness of wake-ups, us.
-    pub wake_us: Quantiles,
-    /// Work of a tick, us.
-    pub work_us: Quantiles,
-    /// Ticks that came per second.
-    pub rate_hz: f64,
-    /// Time from one frame of the console to the next, ms.
-    pub frame_ms: f64,
-    /// Processor time of one frame, ms.
-    pub frame_work_ms: f64,
-}
 
 /// The screen's knowledge.
 #[derive(Debug)]
@@ -146,7 +90,7 @@ pub struct Live {
     measured: [Fading; SIDES],
     rendered: [Fading; SIDES],
     missed_share: Fading,
-    frame: Fading,
+    frames: Percentiles,
     frame_work: Fading,
     wake: Percentiles,
     work: Percentiles,
@@ -190,7 +134,7 @@ impl Live {
             measured: Default::default(),
             rendered: Default::default(),
             missed_share: Fading::default(),
-            frame: Fading::default(),
+            frames: Percentiles::new(),
             frame_work: Fading::default(),
             wake: Percentiles::new(),
             work: Percentiles::new(),
@@ -235,7 +179,7 @@ impl Live {
 
     /// Takes in how long the console's own frames take: from the last to this one, and its work (s).
     pub fn frame(&mut self, period_s: f64, work_s: Option<f64>) {
-        self.frame.push(period_s * 1e3, period_s, 1.0);
+        self.frames.record(period_s);
         self.frame_work.push(work_s.unwrap_or(0.0) * 1e3, period_s, 1.0);
     }
 
@@ -395,7 +339,10 @@ impl Live {
             wake_us: self.wake.quantiles(),
             work_us: self.work.quantiles(),
             rate_hz: self.ticks_counted as f64 / since.as_secs_f64(),
-            frame_ms: self.frame.get(),
+            frame_ms: {
+                let Quantiles { p50, p99, .. } = self.frames.quantiles();
+                [p50 * 1e-3, p99 * 1e-3]
+            },
             frame_work_ms: self.frame_work.get(),
             ..self.figures
         };
@@ -415,24 +362,5 @@ const fn attention(state: LoopState) -> u8 {
         LoopState::Stopped => 5,
         LoopState::Faulted(Fault::OtherArm) => 6,
         LoopState::Faulted(_) => 7,
-    }
-}
-
-impl Gates {
-    fn push(&mut self, tick: &Tick, dt_s: f64) {
-        let gates = &tick.gates;
-        for (share, acted) in [
-            (&mut self.not_permitted, gates.not_permitted),
-            (&mut self.released, gates.released),
-            (&mut self.invalid, gates.invalid),
-            (&mut self.stale, gates.stale),
-            (&mut self.dead_band, gates.dead_band),
-            (&mut self.slew, gates.slew),
-            (&mut self.energy, gates.energy),
-            (&mut self.ceiling, gates.ceiling),
-        ] {
-            share.push(f64::from(u8::from(acted)), dt_s, 0.15);
-        }
-        self.withheld_n.push(gates.withheld_n, dt_s, 0.15);
     }
 }

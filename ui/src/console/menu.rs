@@ -2,15 +2,18 @@
 
 use egui::{Button, Context, Ui, vec2};
 
-use super::settings::{SCALES, Settings};
+use super::{
+    help::Help,
+    settings::{SCALES, Settings},
+};
 
 /// What every view needs, in points: a larger scale than the window has room for is not used.
 const NEEDED: egui::Vec2 = vec2(1100.0, 680.0);
 const STEPS_PERCENT: [u16; 5] = [100, 125, 150, 175, 200];
 
 /// The menu in the top bar.
-pub(super) fn menu_ui(ui: &mut Ui, settings: &mut Settings) {
-    let button = Button::new("View").min_size(vec2(52.0, 34.0));
+pub(super) fn menu_ui(ui: &mut Ui, settings: &mut Settings, help: &mut Help) {
+    let button = Button::new("View").min_size(vec2(52.0, 30.0));
     let menu = egui::containers::menu::MenuButton::from_button(button);
     let (response, _) = menu.ui(ui, |ui| {
         ui.set_min_width(220.0);
@@ -34,8 +37,17 @@ pub(super) fn menu_ui(ui: &mut Ui, settings: &mut Settings) {
             }
         });
         ui.label(super::widgets::small("Never larger than this window has room for."));
+        ui.add_space(6.0);
+        ui.horizontal(|ui| {
+            if ui.add(Button::new("Glossary (F4)").min_size(vec2(110.0, 30.0))).clicked() {
+                help.glossary = true;
+            }
+            if ui.add(Button::new("Tour").min_size(vec2(82.0, 30.0))).clicked() {
+                help.begin_tour();
+            }
+        });
     });
-    response.on_hover_text("Light or dark, and how large.");
+    response.on_hover_text("Light or dark, how large; glossary and tour.");
 }
 
 /// Puts the settings in force; call at the start of a frame.

@@ -7,6 +7,7 @@
 pub mod alarms;
 pub mod app;
 pub mod cloud;
+pub mod help;
 pub mod history;
 pub mod in_force;
 mod keys;
@@ -14,6 +15,8 @@ pub mod live;
 mod menu;
 pub mod outbox;
 pub mod panels;
+pub mod pictures;
+pub mod readings;
 pub mod roles;
 pub mod rolling;
 pub mod scene3d;
@@ -41,6 +44,8 @@ pub struct Options {
     pub exit_after: Option<Duration>,
     /// Save the window as PNG here just before it closes by itself (or after three seconds if it does not).
     pub screenshot: Option<PathBuf>,
+    /// Take pictures of every view, then close.
+    pub pictures: Option<pictures::Album>,
     /// Begin in this role instead of the last one.
     pub role: Option<roles::Role>,
     /// Begin with this wizard.
@@ -65,10 +70,14 @@ pub fn run(handle: Handle, rig: Rig, scene: Scene, options: Options) -> anyhow::
         centered: true,
         ..Default::default()
     };
-    let create: eframe::AppCreator<'_> = Box::new(move |cc| {
-        Ok(Box::new(ConsoleApp::new(cc, handle, rig, scene).with_settings(Kept::of_user()).with_options(options)))
-    });
+    let create: eframe::AppCreator<'_> = Box::new(move |cc| Ok(Box::new(console(cc, handle, rig, scene, options))));
     eframe::run_native("NIMA Console", native, create).map_err(|error| NoWindow::new(&error.to_string()).into())
+}
+
+/// The console with the user's settings; pictures are taken with the defaults and leave the settings alone.
+fn console(cc: &eframe::CreationContext<'_>, handle: Handle, rig: Rig, scene: Scene, options: Options) -> ConsoleApp {
+    let settings = if options.pictures.is_some() { Kept::default() } else { Kept::of_user() };
+    ConsoleApp::new(cc, handle, rig, scene).with_settings(settings).with_options(options)
 }
 
 /// No window could be opened: there is no display, or it has no usable OpenGL.

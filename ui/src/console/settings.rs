@@ -26,6 +26,8 @@ pub struct Settings {
     pub tab: Tab,
     /// Dark on light.
     pub light: bool,
+    /// The tour was seen, or skipped.
+    pub toured: bool,
     /// Size of everything, percent; [`SCALES`].
     pub scale_percent: u16,
 }
@@ -35,7 +37,7 @@ pub const SCALES: std::ops::RangeInclusive<u16> = 100..=200;
 
 impl Default for Settings {
     fn default() -> Self {
-        Self { role: Role::default(), tab: Tab::default(), light: false, scale_percent: 100 }
+        Self { role: Role::default(), tab: Tab::default(), light: false, toured: false, scale_percent: 100 }
     }
 }
 
@@ -80,6 +82,11 @@ impl Kept {
         if let Err(error) = written {
             self.told = Some(format!("The settings are not kept: {error}"));
         }
+    }
+
+    /// There is somebody who could take a tour and has not.
+    pub const fn is_first_run(&self) -> bool {
+        self.folder.is_some() && !self.now.toured
     }
 
     /// What went wrong with them.

@@ -6,7 +6,8 @@ use nima::{device::Side, safety::Why, teleop::LoopState};
 
 use super::gates::{Gate, gates, history};
 use crate::console::{
-    live::{Change, Live},
+    live::Live,
+    readings::Change,
     scene3d::side_name,
     theme,
     widgets::{Sign, sign},
@@ -172,11 +173,11 @@ fn gates_row_ui(ui: &mut Ui, live: &Live, side: Side) {
     let Some(tick) = live.tick_of(side) else { return };
     let asked_n = tick.asked_n[tick.mode.index()].norm();
     ui.add_space(6.0);
-    ui.horizontal(|ui| {
-        ui.spacing_mut().item_spacing.x = 5.0;
+    ui.horizontal_wrapped(|ui| {
+        ui.spacing_mut().item_spacing = vec2(5.0, 5.0);
         let ends = 66.0;
         let gates = gates(live, side);
-        let width = ((ui.available_width() - 2.0 * ends) / gates.len() as f32 - 5.5).max(56.0);
+        let width = ((ui.available_width() - 2.0 * ends) / gates.len() as f32 - 5.6).max(72.0);
         end_ui(ui, ends, if live.is_bimanual() { side_name(side) } else { "asked" }, asked_n);
         for gate in &gates {
             gate_ui(ui, live, side, gate, width);

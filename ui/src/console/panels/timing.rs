@@ -39,16 +39,17 @@ pub fn timing_ui(ui: &mut Ui, live: &Live) {
             "Ticks that did not reach this screen because it was busy. The loop never waits for it.",
         );
         scheduling_ui(ui, live);
-        let frame = format!("{:.1} ms, work {:.1} ms", live.figures.frame_ms, live.figures.frame_work_ms);
+        let [p50, p99] = live.figures.frame_ms;
+        let frame = format!("p50 {p50:.0}, p99 {p99:.0}, work {:.0} ms", live.figures.frame_work_ms);
         figure(
             ui,
             "Console frame",
             frame,
             if live.rough_edges {
-                "Time from one picture of this window to the next (33 ms asked), and the work in it. Edges in 3-D are not smoothed, \
+                "Time from one picture of this window to the next since it opened (33 ms asked, 100 ms while idle), and the work in it now. Edges in 3-D are not smoothed, \
                  because this computer draws too slowly with it."
             } else {
-                "Time from one picture of this window to the next (33 ms asked), and the work in it."
+                "Time from one picture of this window to the next since it opened (33 ms asked, 100 ms while idle), and the work in it now."
             },
         );
     });

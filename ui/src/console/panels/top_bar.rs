@@ -5,13 +5,14 @@ use nima::{runtime::Command, teleop::LoopState};
 
 use crate::console::{
     alarms::{Alarm, judge},
+    help::Help,
     live::Live,
     menu::menu_ui,
     outbox::Outbox,
     roles::switch_ui,
     settings::Settings,
     theme,
-    widgets::{Sign, sign, small},
+    widgets::{Sign, sign, small, weak},
 };
 
 /// After a change of state the next step waits this long (s), so that a double click is never two steps.
@@ -19,6 +20,13 @@ const STEP_WAITS_S: f64 = 0.7;
 
 /// Width of the window from which there is room for the scene's name.
 const SCENE_FROM: f32 = 1400.0;
+
+/// Height of the alarm's plate: two lines of cause, two of cure.
+const ALARM_HEIGHT: f32 = 66.0;
+/// Room in which a cause and a cure take two lines each; with less they are cut, and whole on hover.
+const TWO_LINES: f32 = 370.0;
+/// Room in which a cause and a cure take one line each.
+const ONE_LINE: f32 = 560.0;
 
 /// When the state last changed, on the window's clock.
 #[derive(Clone, Copy, Debug, Default)]
@@ -33,6 +41,7 @@ pub fn top_bar_ui(
     state: &mut TopBarState,
     outbox: &mut Outbox,
     settings: &mut Settings,
+    help: &mut Help,
     calibrating: bool,
 ) {
     let time_s = ui.input(|input| input.time);
@@ -49,12 +58,9 @@ pub fn top_bar_ui(
         }
     };
     ui.horizontal_centered(|ui| {
-        identity_ui(ui, live);
+        identity_ui(ui, live, settings, help, calibrating);
         ui.add_space(10.0);
         state_ui(ui, now);
-        ui.add_space(10.0);
-        switch_ui(ui, &mut settings.role, !calibrating);
-        menu_ui(ui, settings);
         ui.add_space(10.0);
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             stop_ui(ui, now, outbox);
@@ -66,19 +72,24 @@ pub fn top_bar_ui(
     });
 }
 
-fn identity_ui(ui: &mut Ui, live: &Live) {
+/// What this is, and under it the switch of roles and the menu.
+fn identity_ui(ui: &mut Ui, live: &Live, settings: &mut Settings, help: &mut Help, calibrating: bool) {
     ui.vertical(|ui| {
-        ui.add_space(9.0);
-        ui.spacing_mut().item_spacing.y = 3.0;
+        ui.add_space(8.0);
+        ui.spacing_mut().item_spacing.y = 4.0;
         ui.horizontal(|ui| {
             ui.label(RichText::new("NIMA Console").font(theme::strong(19.0)));
-            if ui.ctx().content_rect().width() < SCENE_FROM {
-                return;
-            }
-            ui.label(RichText::new(&live.scene.name).color(theme::now().text_weak))
-                .on_hover_text(format!("Scene: {}\nRig: {}", live.scene.description, live.rig.name));
+            ui.label(small("Research software, not for clinical use"));
         });
-        ui.label(small("Research software, not for clinical use"));
+        ui.horizontal(|ui| {
+            switch_ui(ui, &mut settings.role, !calibrating);
+            menu_ui(ui, settings, help);
+            if ui.ctx().content_rect().width() >= SCENE_FROM {
+                ui.add_space(4.0);
+                ui.label(weak(&live.scene.name))
+                    .on_hover_text(format!("Scene: {}\nRig: {}", live.scene.description, live.rig.name));
+            }
+        });
     });
 }
 
@@ -162,33 +173,43 @@ fn step_ui(ui: &mut Ui, state: LoopState, ready: bool, outbox: &mut Outbox) {
     }
 }
 
-/// The most urgent alarm pinned with cause and cure; the others are counted and unfold on hover.
+/// What is wrong; where nothing is, the last refusal.
 fn alarms_ui(ui: &mut Ui, live: &Live, alarms: &[Alarm], time_s: f64) {
     let room = ui.available_rect_before_wrap();
-    let room = Rect::from_center_size(room.center(), vec2(room.width(), 56.0));
+    let room = Rect::from_center_size(room.center(), vec2(room.width(), ALARM_HEIGHT));
     let mut ui = ui.new_child(UiBuilder::new().max_rect(room).layout(Layout::left_to_right(Align::Center)));
-    let Some(first) = alarms.first() else {
-        refusal_ui(&mut ui, live);
-        return;
-    };
+    match alarms.first() {
+        Some(first) => alarm_ui(&mut ui, first, alarms, time_s),
+        None => refusal_ui(&mut ui, live),
+    }
+}
+
+/// The most urgent alarm pinned with cause and cure; the others are counted and unfold on hover.
+fn alarm_ui(ui: &mut Ui, first: &Alarm, alarms: &[Alarm], time_s: f64) {
     let colour = first.priority.colour(time_s);
     let frame = egui::Frame::new()
         .fill(theme::DARK.card)
         .stroke(egui::Stroke::new(1.5, colour))
         .corner_radius(theme::CORNER)
-        .inner_margin(egui::Margin::symmetric(12, 5));
-    let pinned = frame.show(&mut ui, |ui| {
+        .inner_margin(egui::Margin::symmetric(10, 2));
+    let pinned = frame.show(ui, |ui| {
         ui.set_width(ui.available_width());
-        ui.set_height(44.0);
-        let (rect, _) = ui.allocate_exact_size(vec2(26.0, 44.0), Sense::hover());
+        ui.set_height(ALARM_HEIGHT - 6.0);
+        let (rect, _) = ui.allocate_exact_size(vec2(24.0, ALARM_HEIGHT - 6.0), Sense::hover());
         sign(ui.painter(), Sign::Triangle, rect.center(), 9.0, colour);
         ui.vertical(|ui| {
-            ui.spacing_mut().item_spacing.y = 2.0;
-            ui.add_space(4.0);
-            let more = if alarms.len() > 1 { format!("   (+{} more)", alarms.len() - 1) } else { String::new() };
+            ui.spacing_mut().item_spacing.y = 1.0;
+            let more = if alarms.len() > 1 { format!(" (+{} more)", alarms.len() - 1) } else { String::new() };
             let cause = format!("{}: {}{more}", first.priority.word(), first.cause);
-            ui.add(egui::Label::new(RichText::new(cause).font(theme::strong(14.0)).color(theme::DARK.text)).truncate());
-            ui.add(egui::Label::new(small(&first.cure).color(theme::DARK.text_weak)).truncate());
+            let cause = RichText::new(cause).font(theme::strong(13.0)).color(theme::DARK.text);
+            let cure = RichText::new(&first.cure).font(theme::regular(12.0)).color(theme::DARK.text_weak);
+            // In the middle when both take one line each.
+            ui.add_space(if ui.available_width() > ONE_LINE { 12.0 } else { 0.0 });
+            let narrow = ui.available_width() < TWO_LINES;
+            for text in [cause, cure] {
+                let label = egui::Label::new(text);
+                ui.add(if narrow { label.truncate() } else { label.wrap() });
+            }
         });
     });
     pinned.response.on_hover_ui(|ui| {
@@ -207,4 +228,41 @@ fn refusal_ui(ui: &mut Ui, live: &Live) {
         _ => "The loop refused the last setting: it is outside its range",
     };
     ui.label(small(words));
+}
+
+#[cfg(test)]
+mod tests {
+    use nima::{device::Loss, runtime::Fault};
+
+    use super::*;
+    use crate::console::alarms::Priority;
+
+    /// Room for the alarm in a window of 1280 points while a step button stands beside the stop.
+    const ROOM_AT_1280: f32 = 430.0;
+
+    #[test]
+    fn every_fault_is_told_whole_with_its_cure_in_a_small_window() {
+        let device = 3;
+        let lost = [Loss::Disconnected, Loss::Silent, Loss::Corrupt, Loss::Implausible, Loss::Device { code: 7 }]
+            .map(|loss| Fault::DeviceLost { device, loss });
+        let stalled = Fault::LoopStalled { periods: 99 };
+        let others = [Fault::SourceSilent, stalled, Fault::ForceUnknown, Fault::DrivesOff, Fault::OtherArm];
+        for fault in lost.into_iter().chain(others) {
+            let alarm = Alarm {
+                priority: Priority::High,
+                cause: format!("{} (at 1234.5 s)", fault.cause()),
+                cure: fault.cure().to_owned(),
+            };
+            let mut bottom = 0.0;
+            let mut harness = egui_kittest::Harness::new_ui(|ui| {
+                theme::apply(ui.ctx());
+                ui.set_width(ROOM_AT_1280);
+                ui.horizontal(|ui| alarm_ui(ui, &alarm, &[alarm.clone(), alarm.clone()], 0.0));
+                bottom = ui.min_rect().height();
+            });
+            harness.run_steps(2);
+            drop(harness);
+            assert!(bottom <= ALARM_HEIGHT + 6.0, "{bottom} points for \"{}\"", alarm.cause);
+        }
+    }
 }

@@ -18,6 +18,7 @@ use super::{
     outbox::Outbox,
     panels::{CalibrationWish, FeedbackState, ForceSpaceState, ForcesState, TradeoffState},
     scene3d::{Look, SceneView},
+    settings::Settings,
 };
 
 /// Who sits before the screen.
@@ -110,8 +111,6 @@ pub struct Panels {
     pub tradeoff: TradeoffState,
     /// The operating field.
     pub scene: SceneView,
-    /// What a technician sees under the field.
-    pub tab: Tab,
     /// Where the demonstration is.
     pub demo: DemoState,
 }
@@ -125,15 +124,16 @@ pub struct Wishes {
     pub calibration: Option<CalibrationWish>,
 }
 
-/// The view of this role, under the top bar.
+/// The view of the role in force, under the top bar.
 pub fn role_ui(
     ui: &mut Ui,
-    role: Role,
+    settings: &mut Settings,
     live: &mut Live,
     panels: &mut Panels,
     in_force: &InForce,
     outbox: &mut Outbox,
 ) -> Wishes {
+    let role = settings.role;
     panels.scene.look = if role == Role::Surgeon { Look::Endoscope } else { Look::Free };
     panels.scene.figures = role != Role::Surgeon;
     if role != Role::Demo {
@@ -144,7 +144,7 @@ pub fn role_ui(
             surgeon::surgeon_ui(ui, live, panels, outbox);
             Wishes::default()
         }
-        Role::Technician => technician::technician_ui(ui, live, panels, in_force, outbox),
+        Role::Technician => technician::technician_ui(ui, &mut settings.tab, live, panels, in_force, outbox),
         Role::Demo => {
             demo::demo_ui(ui, live, panels, outbox);
             Wishes::default()
@@ -156,7 +156,7 @@ pub fn role_ui(
 pub fn switch_ui(ui: &mut Ui, now: &mut Role, allowed: bool) {
     ui.spacing_mut().item_spacing.x = 4.0;
     for role in Role::ALL {
-        let button = Button::selectable(*now == role, role.name()).frame_when_inactive(true).min_size(vec2(62.0, 34.0));
+        let button = Button::selectable(*now == role, role.name()).frame_when_inactive(true).min_size(vec2(62.0, 30.0));
         let response = ui.add_enabled(allowed, button);
         let response = response.on_hover_text(format!("{} Key {}.", role.meaning(), role.key().name()));
         if response.on_disabled_hover_text("Close the wizard first.").clicked() {

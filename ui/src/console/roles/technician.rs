@@ -21,6 +21,7 @@ const FORCE_SPACE: f32 = 300.0;
 /// The view.
 pub(super) fn technician_ui(
     ui: &mut Ui,
+    tab: &mut Tab,
     live: &mut Live,
     panels: &mut Panels,
     in_force: &InForce,
@@ -48,8 +49,8 @@ pub(super) fn technician_ui(
         let traces = (0.47 * ui.available_height()).clamp(262.0, 492.0);
         let frame = Frame::new().inner_margin(Margin::symmetric(12, 8));
         Panel::bottom("forces").exact_size(traces).resizable(false).frame(frame).show(ui, |ui| {
-            tabs_ui(ui, &mut panels.tab);
-            match panels.tab {
+            tabs_ui(ui, tab);
+            match *tab {
                 Tab::Traces => traces_ui(ui, live, panels),
                 Tab::Safety => safety_ui(ui, live),
             }

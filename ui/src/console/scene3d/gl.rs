@@ -135,8 +135,10 @@ impl Renderer {
             gl.uniform_3_f32(place("u_eye").as_ref(), frame.eye_m.x, frame.eye_m.y, frame.eye_m.z);
             let shafts = &frame.shafts_m[..frame.shafts_m.len().min(2)];
             let ends: Vec<f32> = shafts.iter().flatten().flat_map(|end| [end.x, end.y, end.z]).collect();
-            gl.uniform_3_f32_slice(place("u_shaft_ends").as_ref(), &ends);
-            gl.uniform_1_i32(place("u_shafts").as_ref(), i32::try_from(shafts.len()).unwrap_or(0));
+            if !ends.is_empty() {
+                gl.uniform_3_f32_slice(place("u_shaft_ends").as_ref(), &ends);
+            }
+            gl.uniform_1_i32(place("u_shafts").as_ref(), 1 + i32::from(shafts.len() > 1));
             gl.uniform_matrix_4_f32_slice(
                 place("u_clip_from_workspace").as_ref(),
                 false,

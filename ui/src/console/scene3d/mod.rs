@@ -182,14 +182,17 @@ fn triangles(rect: Rect, live: &Live, view: &SceneView, arms: &[Arm]) -> Option<
     Some(egui::PaintCallback { rect, callback: Arc::new(paint) })
 }
 
-/// Height above the tip at which the name of a hand stands beside its shaft, m.
-const NAME_ABOVE_M: f32 = 0.05;
+/// Way up the shaft at which the name of a hand stands beside it, m: above the forces' numbers, and without them so low that the
+/// endoscope sees it.
+const NAME_ABOVE_M: [f32; 2] = [0.05, 0.085];
 
 /// Names and numbers beside the things of one side.
 fn labels(painter: &Painter, rect: Rect, live: &Live, camera: &Camera, arm: &Arm, figures: bool) {
     let at = |point_m: Vector3<f32>| camera.project(&point_m, rect);
     let Arm { trocar_m, pose, side, .. } = arm;
-    if let Some(place) = at(*trocar_m) {
+    // Not under the plate of the readings.
+    let free = |place: &Pos2| !figures || place.y > rect.top() + 110.0 || place.x > rect.left() + 350.0;
+    if let Some(place) = at(*trocar_m).filter(free) {
         label(
             painter,
             place + vec2(18.0, 0.0),
@@ -200,7 +203,7 @@ fn labels(painter: &Painter, rect: Rect, live: &Live, camera: &Camera, arm: &Arm
         );
     }
     let along = (trocar_m - pose.tip_m).try_normalize(1e-4).unwrap_or_else(Vector3::z);
-    if let (true, Some(place)) = (live.is_bimanual(), at(pose.tip_m + along * NAME_ABOVE_M)) {
+    if let (true, Some(place)) = (live.is_bimanual(), at(pose.tip_m + along * NAME_ABOVE_M[usize::from(figures)])) {
         let (align, shift) = match side {
             Side::Right => (Align2::LEFT_CENTER, vec2(20.0, 0.0)),
             Side::Left => (Align2::RIGHT_CENTER, vec2(-20.0, 0.0)),

@@ -1,0 +1,97 @@
+//! The console while a wizard is open: another scene on the same rig, what is kept of it, and the way back.
+
+use egui::{CentralPanel, Frame, Margin, Panel, ScrollArea, Ui};
+use nima::{config::Scene, device::Prompt, runtime::Command, teleop::LoopState};
+
+use super::ConsoleApp;
+use crate::console::{
+    panels::{CalibrationWish, calibrations_ui},
+    theme,
+    wizards::{Saving, Which},
+};
+
+impl ConsoleApp {
+    /// Opens a wizard: a simulated rig goes over to its experiment, where somebody guides the arm.
+    pub(super) fn open_wizard(&mut self, which: Which) {
+        let opened = if which.suits(&self.live.scene) && self.wizards.open.is_none() {
+            Ok(())
+        } else {
+            Scene::load(which.scene()).map_err(|error| error.to_string()).and_then(|scene| self.restart_in(scene))
+        };
+        match opened {
+            Ok(()) => self.wizards.open = Some(which),
+            Err(reason) => self.in_force.tell(format!("Not opened: {reason}.")),
+        }
+    }
+
+    /// The same rig in another scene; the scene that was watched is kept for the way back.
+    pub(super) fn restart_in(&mut self, scene: Scene) -> Result<(), String> {
+        let watched = self.live.scene.clone();
+        self.restart(self.live.rig.clone(), scene)?;
+        self.watched.get_or_insert(watched);
+        Ok(())
+    }
+
+    /// Back to what was watched before; the wizards keep what they have.
+    pub(super) fn close_wizard(&mut self) {
+        self.wizards.open = None;
+        let Some(scene) = self.watched.take() else {
+            self.outbox.push(Command::Prompt(Prompt::Rest));
+            return;
+        };
+        if let Err(reason) = self.restart(self.live.rig.clone(), scene.clone()) {
+            self.watched = Some(scene);
+            self.in_force.tell(format!("Still in the experiment: {reason}."));
+        }
+    }
+
+    /// Keeps a calibration and puts it in force.
+    pub(super) fn save(&mut self, saving: Saving) {
+        let told = match self.in_force.save(saving) {
+            Ok(words) => match self.restart(self.live.rig.clone(), self.live.scene.clone()) {
+                Ok(()) => words,
+                Err(reason) => format!("{words} It comes into force with the next start: {reason}."),
+            },
+            Err(reason) => format!("Not saved: {reason}"),
+        };
+        self.wizards.tell_saved(told);
+    }
+
+    /// Asks the person at the arm for what the open wizard needs now.
+    pub(super) fn ask(&mut self) {
+        let wanted = self.wizards.prompt();
+        let asked = self.live.tick.is_some_and(|tick| tick.state == LoopState::Idle && tick.prompt != wanted);
+        if self.wizards.open.is_some() && asked {
+            self.outbox.push(Command::Prompt(wanted));
+        }
+    }
+
+    /// A technician's view: one wizard, what is in force, and the way back.
+    pub(super) fn wizard_layout(&mut self, ui: &mut Ui) {
+        let side = Frame::new().fill(theme::now().panel).inner_margin(Margin::same(8));
+        let mut wish = None;
+        Panel::left("calibrations").exact_size(316.0).resizable(false).frame(side).show(ui, |ui| {
+            wish = calibrations_ui(ui, &self.live, &self.in_force, self.wizards.open);
+        });
+        let binding = self.in_force.binding();
+        let mut saving = None;
+        CentralPanel::default().frame(Frame::new().inner_margin(Margin::symmetric(18, 14))).show(ui, |ui| {
+            ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+                ui.set_max_width(760.0);
+                saving = self.wizards.ui(ui, &binding);
+            });
+        });
+        if let Some(saving) = saving {
+            self.save(saving);
+        }
+        self.obey_calibrations(wish);
+    }
+
+    pub(super) fn obey_calibrations(&mut self, wish: Option<CalibrationWish>) {
+        match wish {
+            Some(CalibrationWish::Open(which)) => self.open_wizard(which),
+            Some(CalibrationWish::Close) => self.close_wizard(),
+            None => {}
+        }
+    }
+}

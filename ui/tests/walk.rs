@@ -1,0 +1,230 @@
+//! A walk over every view at three sizes, light and dark: no text is cut or lies on another, nothing leaves the window, no two
+//! controls overlap, every control has a name, and the stop is where a hand looks for it.
+
+#![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+mod screen;
+
+use egui::{Pos2, Rect, Shape, accesskit};
+use egui_kittest::{
+    Harness,
+    kittest::{NodeT as _, Queryable as _},
+};
+use nima::teleop::LoopState;
+use nima_console::console::{
+    ConsoleApp, Options,
+    roles::{Role, Tab},
+    settings::Kept,
+    wizards::Which,
+};
+use screen::{console_of, until};
+
+const SIZES: [[f32; 2]; 3] = [[1280.0, 720.0], [1920.0, 1080.0], [3840.0, 2160.0]];
+const VIEWS: [(Role, Tab); 4] = [
+    (Role::Surgeon, Tab::Traces),
+    (Role::Technician, Tab::Traces),
+    (Role::Technician, Tab::Safety),
+    (Role::Demo, Tab::Traces),
+];
+/// What rounding may cost, points.
+const SLACK: f32 = 1.5;
+
+/// A text on the screen: its words, its place, and where it is allowed to be seen.
+struct Text {
+    words: String,
+    place: Rect,
+    clip: Rect,
+    cut: bool,
+}
+
+fn texts(harness: &Harness<'_, ConsoleApp>) -> Vec<Text> {
+    fn add(shape: &Shape, clip: Rect, texts: &mut Vec<Text>) {
+        match shape {
+            Shape::Vec(shapes) => shapes.iter().for_each(|shape| add(shape, clip, texts)),
+            Shape::Text(text) if text.angle == 0.0 && !text.galley.text().trim().is_empty() => texts.push(Text {
+                words: text.galley.text().to_owned(),
+                place: text.galley.mesh_bounds.translate(text.pos.to_vec2()),
+                clip,
+                cut: text.galley.elided,
+            }),
+            _ => {}
+        }
+    }
+    let mut texts = Vec::new();
+    for clipped in &harness.output().shapes {
+        add(&clipped.shape, clipped.clip_rect, &mut texts);
+    }
+    texts
+}
+
+/// What is wrong with the texts of this picture; `field` is the operating field, where labels ride on moving things.
+fn faults_of_texts(texts: &[Text], window: Rect, field: Option<Rect>, scrolls: bool) -> Vec<String> {
+    let mut faults = Vec::new();
+    let seen = |text: &Text| text.place.intersect(text.clip).intersect(window).is_positive();
+    let on_field = |text: &Text| field.is_some_and(|field| text.clip == field);
+    let texts: Vec<&Text> = texts.iter().filter(|text| seen(text) && !on_field(text)).collect();
+    for text in &texts {
+        let room = text.clip.intersect(window).expand(SLACK);
+        let sideways = text.place.left() < room.left() || text.place.right() > room.right();
+        let up_or_down = text.place.top() < room.top() || text.place.bottom() > room.bottom();
+        // A long column is scrolled; what is half seen at its end is seen whole a moment later.
+        if text.cut || sideways || (up_or_down && !scrolls) {
+            faults.push(format!("cut: \"{}\" at {:?}", text.words, text.place));
+        }
+    }
+    for (i, one) in texts.iter().enumerate() {
+        for other in &texts[i + 1..] {
+            let shared = one.place.intersect(one.clip).intersect(other.place.intersect(other.clip)).shrink(SLACK);
+            if shared.is_positive() {
+                faults.push(format!("\"{}\" lies on \"{}\" at {:?}", one.words, other.words, shared.center()));
+            }
+        }
+    }
+    faults
+}
+
+/// Controls that overlap, or that leave the window sideways.
+fn faults_of_controls(harness: &Harness<'_, ConsoleApp>, window: Rect) -> Vec<String> {
+    let is_control = |role: accesskit::Role| {
+        use accesskit::Role;
+        matches!(role, Role::Button | Role::CheckBox | Role::SpinButton | Role::TextInput | Role::RadioButton)
+    };
+    let controls: Vec<(String, Rect)> = harness
+        .get_all_by(move |node| is_control(node.role()))
+        .map(|node| (node.accesskit_node().label().unwrap_or_default(), node.rect()))
+        .collect();
+    let mut faults = Vec::new();
+    for (i, (name, place)) in controls.iter().enumerate() {
+        if place.left() < -SLACK || place.right() > window.right() + SLACK {
+            faults.push(format!("\"{name}\" leaves the window: {place:?}"));
+        }
+        for (other, there) in &controls[i + 1..] {
+            if place.intersect(*there).shrink(SLACK).is_positive() {
+                faults.push(format!("\"{name}\" overlaps \"{other}\" at {place:?}"));
+            }
+        }
+    }
+    faults
+}
+
+/// Everything that is wrong on the screen now.
+fn faults(harness: &mut Harness<'_, ConsoleApp>, size: [f32; 2], scrolls: bool) -> Vec<String> {
+    harness.set_size(size.into());
+    // Sizes settle within some frames.
+    harness.run_steps(4);
+    harness.check_accessibility();
+    let window = Rect::from_min_size(Pos2::ZERO, size.into());
+    let stop = harness.get_by_role_and_label(accesskit::Role::Button, "Stop").rect();
+    assert!(stop.width() >= 48.0 && stop.height() >= 48.0 && window.contains_rect(stop), "{stop:?}");
+    let field = harness.query_by_label("Operating field").map(|field| field.rect());
+    let mut faults = faults_of_texts(&texts(harness), window, field, scrolls);
+    faults.extend(faults_of_controls(harness, window));
+    faults
+}
+
+fn walk(scene: &str) {
+    let mut harness = console_of(scene, SIZES[0], |app| app);
+    until(&mut harness, "a contact", |tick| tick.t_s > 1.5);
+    let mut all = Vec::new();
+    for (role, tab) in VIEWS {
+        for size in SIZES {
+            for light in [false, true] {
+                let settings = harness.state_mut().settings_mut();
+                (settings.role, settings.tab, settings.light) = (role, tab, light);
+                let faults = faults(&mut harness, size, role == Role::Technician);
+                all.extend(faults.into_iter().map(|fault| format!("{role:?} {tab:?} {size:?} light {light}: {fault}")));
+            }
+        }
+    }
+    assert!(all.is_empty(), "{} faults:\n{}", all.len(), all.join("\n"));
+}
+
+#[test]
+fn nothing_is_cut_or_overlaps_with_one_hand() {
+    walk("peg_transfer");
+}
+
+#[test]
+fn nothing_is_cut_or_overlaps_with_two_hands() {
+    walk("bimanual");
+}
+
+#[test]
+fn nothing_is_cut_or_overlaps_in_the_wizards() {
+    let mut all = Vec::new();
+    for which in Which::ALL {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().to_path_buf();
+        let options = Options { wizard: Some(which), ..Options::default() };
+        let mut harness = console_of(which.scene(), SIZES[0], move |app| app.with_store(&path).with_options(options));
+        until(&mut harness, "any tick", |_| true);
+        for size in SIZES {
+            let faults = faults(&mut harness, size, true);
+            all.extend(faults.into_iter().map(|fault| format!("{which:?} {size:?}: {fault}")));
+        }
+    }
+    assert!(all.is_empty(), "{} faults:\n{}", all.len(), all.join("\n"));
+}
+
+#[test]
+fn the_alarm_and_the_stopped_state_fit_too() {
+    let mut harness = console_of("bimanual", SIZES[0], |app| app);
+    until(&mut harness, "any tick", |_| true);
+    screen::press(&mut harness, "Stop");
+    let mut all = Vec::new();
+    for (role, tab) in VIEWS {
+        let settings = harness.state_mut().settings_mut();
+        (settings.role, settings.tab) = (role, tab);
+        let faults = faults(&mut harness, SIZES[0], role == Role::Technician);
+        all.extend(faults.into_iter().map(|fault| format!("{role:?} {tab:?}: {fault}")));
+    }
+    assert!(all.is_empty(), "{} faults:\n{}", all.len(), all.join("\n"));
+}
+
+#[test]
+fn a_scale_is_used_as_far_as_the_window_has_room() {
+    let mut harness = console_of("free_motion", SIZES[0], |app| app);
+    until(&mut harness, "any tick", |_| true);
+    for (size, factor) in [(SIZES[2], 2.0), (SIZES[0], 720.0 / 680.0)] {
+        harness.state_mut().settings_mut().scale_percent = 200;
+        for _ in 0..4 {
+            // A window's points are its pixels over the factor.
+            let points = egui::Vec2::from(size) / harness.ctx.zoom_factor();
+            harness.set_size(points);
+            harness.step();
+        }
+        let now = harness.ctx.zoom_factor();
+        assert!((now - factor).abs() < 0.01, "{now} at {size:?}");
+    }
+}
+
+#[test]
+fn tour_and_glossary_fit_and_leave_the_stop_alone() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().to_path_buf();
+    let begin = |path: std::path::PathBuf| {
+        console_of("peg_transfer", SIZES[0], move |app| app.with_settings(Kept::open(&path)))
+    };
+    let mut harness = begin(path.clone());
+    until(&mut harness, "any tick", |_| true);
+    for button in ["Next step", "Next step", "Step back", "Next step", "Next step"] {
+        assert!(harness.query_by_role_and_label(accesskit::Role::Button, "Stop").is_some());
+        screen::press(&mut harness, button);
+    }
+    screen::press(&mut harness, "Stop");
+    until(&mut harness, "stopped during the tour", |tick| tick.state == LoopState::Stopped);
+    screen::press(&mut harness, "Begin");
+    assert!(harness.query_by_label("Begin").is_none());
+    harness.key_press(egui::Key::F4);
+    harness.run_steps(3);
+    let entry = harness.get_by_label("Horizon").rect();
+    let stop = harness.get_by_role_and_label(accesskit::Role::Button, "Stop").rect();
+    assert!(entry.top() > stop.bottom());
+    harness.key_press(egui::Key::F4);
+    harness.run_steps(3);
+    assert!(harness.query_by_label("Horizon").is_none());
+    drop(harness);
+    let mut again = begin(path);
+    again.run_steps(3);
+    assert!(again.query_by_label("Next step").is_none(), "the tour is for the first time");
+}

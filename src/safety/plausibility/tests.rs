@@ -44,7 +44,7 @@ impl Bench {
 
 fn after(edit: impl FnMut(u32, &mut Observed)) -> Option<(u32, Implausible)> {
     let mut bench = Bench::new();
-    assert_eq!(bench.run(5000, |_, _| {}), None);
+    assert_eq!(bench.run(11_000, |_, _| {}), None);
     bench.run(500, edit)
 }
 
@@ -144,6 +144,14 @@ fn what_stands_while_its_cause_moves_is_stuck() {
         seen.hand_force_n = Vector3::x() * 0.6;
     });
     assert!(matches!(told, Some((100..=103, Implausible::HandleFrozen))), "{told:?}");
+    // A machine leads it for five seconds, and lets it stand under its force.
+    let mut bench = Bench::new();
+    let mut kept = Vector3::zeros();
+    let led = |k: u32, seen: &mut Observed| {
+        kept = if k < 5000 { seen.hand_m } else { kept };
+        (seen.hand_m, seen.hand_force_n) = (kept, Vector3::x());
+    };
+    assert_eq!(bench.run(6000, led), None);
     let mut kept = None;
     let told = after(|k, seen| {
         seen.hand_m = *kept.get_or_insert(seen.hand_m);

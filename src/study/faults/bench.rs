@@ -19,8 +19,8 @@ use crate::{
 const PERIOD_S: f64 = 1e-3;
 /// Longest search for a place in the task, ticks.
 const PATIENCE: u32 = 12_000;
-/// So long the machine runs before any fault, ticks: the watch on frozen numbers has then seen their noise.
-const WARM_UP: u32 = 3500;
+/// So long the machine runs before any fault, ticks: the watch on what stands has then seen noise and tremor.
+const WARM_UP: u32 = 10_500;
 /// Moments lie apart by this, ticks.
 const APART: u32 = 1300;
 /// Delay of the link in the simulated rig, ticks.
@@ -45,6 +45,7 @@ pub(super) struct Bench {
 
 /// One tick of both.
 #[derive(Clone, Copy, Debug)]
+#[expect(clippy::struct_excessive_bools, reason = "independent observations of one tick")]
 pub(super) struct Step {
     pub(super) machine: Tick,
     pub(super) twin: Tick,

@@ -159,8 +159,9 @@ fn what_stands_while_its_cause_moves_is_stuck() {
     });
     assert_eq!(told, None, "led from the screen");
     let mut kept = None;
+    // The command is slow at that moment: its half millimetre takes longer than the 15 ms.
     let told = after(|_, seen| seen.tip_m = *kept.get_or_insert(seen.tip_m));
-    assert!(matches!(told, Some((15..=20, Implausible::ArmAstray))), "{told:?}");
+    assert!(matches!(told, Some((15..=60, Implausible::ArmAstray))), "{told:?}");
     let told = after(|_, seen| seen.command_m = Some(seen.tip_m + Vector3::x() * 0.05));
     assert!(matches!(told, Some((1, Implausible::ArmAstray))), "{told:?}");
 }

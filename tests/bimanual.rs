@@ -137,13 +137,13 @@ fn the_clutch_frees_the_hand_and_coupling_again_never_moves_the_tip() {
     let mut bench = Bench::new();
     bench.obey(Command::Engage);
     bench.run(2000, AS_IT_IS);
-    let clutched = |_: Side, inputs: Inputs| {
-        // The hand goes elsewhere meanwhile, by 30 mm.
-        let mut inputs = inputs;
-        inputs.hand.position_m += Vector3::new(0.03, 0.0, 0.0);
-        Some(Inputs { switches: Switches { clutch: true, presence: None }, ..inputs })
-    };
-    bench.run(300, clutched);
+    for tick in 1..=300_u32 {
+        bench.step(|_, mut inputs| {
+            // The hand goes elsewhere meanwhile, by 30 mm in 0.1 s.
+            inputs.hand.position_m.x += 0.03 * f64::from(tick.min(100)) / 100.0;
+            Some(Inputs { switches: Switches { clutch: true, presence: None }, ..inputs })
+        });
+    }
     assert_eq!(bench.states(), [LoopState::Clutched; SIDES]);
     assert!(bench.outputs.iter().all(|o| o.drives && o.tip_command_m.is_none() && o.hand_force_n.norm() < 1e-15));
     let moved = |_: Side, inputs: Inputs| {

@@ -39,6 +39,9 @@ const STUCK_FORCE_N: f64 = 0.7;
 /// Or that stands so for [`UNMOVED_S`] under this force, N: a hand that grips trembles, one that is gone gives way.
 const UNMOVED_FORCE_N: f64 = 0.5;
 const UNMOVED_S: f64 = 0.1;
+/// That holds for a handle which has not stood for [`RESTFUL_S`] in this time, s: one that is led by a machine may stand.
+const TREMBLED_S: f64 = 10.0;
+const RESTFUL_S: f64 = 0.05;
 /// A tip that stands to the last bit while its command goes this far does not follow, m.
 const STUCK_COMMAND_M: f64 = 0.5e-3;
 /// Shortest time to call something stuck, s.
@@ -178,6 +181,8 @@ pub struct Plausibility {
     tip_stuck: Stuck,
     hand_before_m: Option<Vector3<f64>>,
     unmoved_since_s: f64,
+    /// Since when the handle has not stood for [`RESTFUL_S`], s.
+    trembles_since_s: f64,
     ways_m: [f64; WAY_TICKS],
     last_t_s: f64,
     /// When this watch began, s; not known before the first look.
@@ -202,6 +207,7 @@ impl Plausibility {
             tip_stuck: Stuck::default(),
             hand_before_m: None,
             unmoved_since_s: f64::INFINITY,
+            trembles_since_s: f64::INFINITY,
             ways_m: [0.0; WAY_TICKS],
             last_t_s: f64::NEG_INFINITY,
             began_s: None,
@@ -258,11 +264,17 @@ impl Plausibility {
     fn handle_is_stuck(&mut self, seen: &Observed) -> bool {
         let stuck = self.handle_stuck.look(&seen.hand_m, &seen.hand_force_n, STUCK_FORCE_N, seen.t_s);
         let pressed = !seen.guided && seen.hand_force_n.norm() >= UNMOVED_FORCE_N;
-        if !pressed || self.hand_before_m != Some(seen.hand_m) {
+        if self.hand_before_m != Some(seen.hand_m) {
             self.unmoved_since_s = seen.t_s;
         }
         self.hand_before_m = Some(seen.hand_m);
-        (stuck && !seen.guided) || seen.t_s - self.unmoved_since_s > UNMOVED_S
+        self.trembles_since_s = self.trembles_since_s.min(seen.t_s);
+        let stood_s = seen.t_s - self.unmoved_since_s;
+        let trembled = self.unmoved_since_s - self.trembles_since_s >= TREMBLED_S;
+        if stood_s > RESTFUL_S && !(trembled && pressed) {
+            self.trembles_since_s = seen.t_s;
+        }
+        (stuck && !seen.guided) || (trembled && pressed && stood_s > UNMOVED_S)
     }
 
     fn arm_is_astray(&mut self, seen: &Observed) -> bool {

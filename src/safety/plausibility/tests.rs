@@ -44,7 +44,7 @@ impl Bench {
 
 fn after(edit: impl FnMut(u32, &mut Observed)) -> Option<(u32, Implausible)> {
     let mut bench = Bench::new();
-    assert_eq!(bench.run(5000, |_, _| {}), None);
+    assert_eq!(bench.run(11_000, |_, _| {}), None);
     bench.run(500, edit)
 }
 
@@ -144,6 +144,14 @@ fn what_stands_while_its_cause_moves_is_stuck() {
         seen.hand_force_n = Vector3::x() * 0.6;
     });
     assert!(matches!(told, Some((100..=103, Implausible::HandleFrozen))), "{told:?}");
+    // A machine leads it for five seconds, and lets it stand under its force.
+    let mut bench = Bench::new();
+    let mut kept = Vector3::zeros();
+    let led = |k: u32, seen: &mut Observed| {
+        kept = if k < 5000 { seen.hand_m } else { kept };
+        (seen.hand_m, seen.hand_force_n) = (kept, Vector3::x());
+    };
+    assert_eq!(bench.run(6000, led), None);
     let mut kept = None;
     let told = after(|k, seen| {
         seen.hand_m = *kept.get_or_insert(seen.hand_m);
@@ -151,8 +159,9 @@ fn what_stands_while_its_cause_moves_is_stuck() {
     });
     assert_eq!(told, None, "led from the screen");
     let mut kept = None;
+    // The command is slow at that moment: its half millimetre takes longer than the 15 ms.
     let told = after(|_, seen| seen.tip_m = *kept.get_or_insert(seen.tip_m));
-    assert!(matches!(told, Some((15..=20, Implausible::ArmAstray))), "{told:?}");
+    assert!(matches!(told, Some((15..=60, Implausible::ArmAstray))), "{told:?}");
     let told = after(|_, seen| seen.command_m = Some(seen.tip_m + Vector3::x() * 0.05));
     assert!(matches!(told, Some((1, Implausible::ArmAstray))), "{told:?}");
 }

@@ -19,12 +19,14 @@ use crate::{
 const PERIOD_S: f64 = 1e-3;
 /// Longest search for a place in the task, ticks.
 const PATIENCE: u32 = 12_000;
-/// So long the machine runs before any fault, ticks: the watch on frozen numbers has then seen their noise.
-const WARM_UP: u32 = 3500;
+/// So long the machine runs before any fault, ticks: the watch on what stands has then seen noise and tremor.
+const WARM_UP: u32 = 10_500;
 /// Moments lie apart by this, ticks.
-const APART: u32 = 370;
+const APART: u32 = 1300;
 /// Delay of the link in the simulated rig, ticks.
 const LINK_TICKS: u32 = 50;
+/// A force that differs by more than this differs, N.
+const HINT_N: f64 = 0.05;
 /// Positions nearer than this are the same, m.
 const NEAR_M: f64 = 5e-4;
 
@@ -43,6 +45,7 @@ pub(super) struct Bench {
 
 /// One tick of both.
 #[derive(Clone, Copy, Debug)]
+#[expect(clippy::struct_excessive_bools, reason = "independent observations of one tick")]
 pub(super) struct Step {
     pub(super) machine: Tick,
     pub(super) twin: Tick,
@@ -56,6 +59,8 @@ pub(super) struct Step {
     pub(super) wanted: Outputs,
     /// What the loop was given or gave differs from the truth.
     pub(super) shows: bool,
+    /// The force that the loop is given differs at all.
+    pub(super) hints: bool,
     pub(super) raised: Option<Fault>,
     pub(super) refused: bool,
     pub(super) device_lost: bool,
@@ -192,6 +197,7 @@ impl Bench {
             applied,
             wanted,
             shows: self.is_elsewhere() || differs(given.as_ref(), truth.as_ref()) || altered(&wanted, &applied),
+            hints: force_apart_n(given.as_ref(), truth.as_ref()) > HINT_N,
             raised,
             refused: self.machine.events().any(|event| matches!(event, Event::CommandRefused { .. })),
             device_lost,
@@ -281,10 +287,16 @@ impl Bench {
     }
 }
 
+/// How far the force that the loop is given is from what was measured, N.
+fn force_apart_n(given: Option<&Inputs>, truth: Option<&Inputs>) -> f64 {
+    let apart = |(given, truth): (&Inputs, &Inputs)| (force_of(&given.sensed) - force_of(&truth.sensed)).norm();
+    given.zip(truth).map_or(0.0, apart)
+}
+
 /// What the loop is given is not what was measured.
 fn differs(given: Option<&Inputs>, truth: Option<&Inputs>) -> bool {
     let (Some(given), Some(truth)) = (given, truth) else { return given.is_some() != truth.is_some() };
-    let force_n = (force_of(&given.sensed) - force_of(&truth.sensed)).norm();
+    let force_n = force_apart_n(Some(given), Some(truth));
     let hand_m = (given.hand.position_m - truth.hand.position_m).norm();
     let tip_m = (given.tip_m - truth.tip_m).norm();
     let turned = match (&given.sensed, &truth.sensed) {

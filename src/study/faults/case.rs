@@ -44,11 +44,30 @@ impl Errors {
     }
 }
 
+/// A stretch of time in which something was seen without a [`PAUSE`].
+#[derive(Clone, Copy, Debug, Default)]
+struct Stretch {
+    began: Option<u32>,
+    last: u32,
+}
+
+impl Stretch {
+    fn look(&mut self, seen: bool, tick: u32) {
+        if !seen {
+            return;
+        }
+        if self.began.is_none() || tick > self.last + PAUSE {
+            self.began = Some(tick);
+        }
+        self.last = tick;
+    }
+}
+
 /// What was seen until now.
 #[derive(Debug)]
 struct Watch {
-    shows: Option<u32>,
-    last_shown: u32,
+    shows: Stretch,
+    hints: Stretch,
     /// The newest forces in the hand and of the twin, N, newest last.
     forces_n: VecDeque<[Vector3<f64>; 2]>,
     told: Option<(String, u32)>,
@@ -70,8 +89,8 @@ struct Watch {
 /// Lets the fault happen on a bench that is ready for it.
 pub(super) fn tried(mut bench: Bench, kind: Kind, sensor: SensorAt, mode: Mode, place: Place, moment: u32) -> Outcome {
     let mut watch = Watch {
-        shows: None,
-        last_shown: 0,
+        shows: Stretch::default(),
+        hints: Stretch::default(),
         forces_n: VecDeque::new(),
         told: None,
         zero: None,
@@ -96,11 +115,11 @@ pub(super) fn tried(mut bench: Bench, kind: Kind, sensor: SensorAt, mode: Mode, 
             bench.rig.situation.clutch = false;
         }
         let Some(step) = bench.step() else { break };
+        watch.look(tick, &step);
         // The twin may lose its way where the fault leads the arm elsewhere; then it is no measure any more.
         if step.twin.state.is_latched() && !begun_latched {
             break;
         }
-        watch.look(tick, &step);
         latched += u32::from(step.machine.state.is_latched() && !begun_latched);
         if latched > AFTER_LATCH {
             break;
@@ -111,11 +130,9 @@ pub(super) fn tried(mut bench: Bench, kind: Kind, sensor: SensorAt, mode: Mode, 
 
 impl Watch {
     fn look(&mut self, tick: u32, step: &Step) {
-        if step.shows && self.told.is_none() {
-            if self.shows.is_none() || tick > self.last_shown + PAUSE {
-                self.shows = Some(tick);
-            }
-            self.last_shown = tick;
+        if self.told.is_none() {
+            self.shows.look(step.shows, tick);
+            self.hints.look(step.hints, tick);
         }
         self.apart = if step.machine.state == step.twin.state { 0 } else { self.apart + 1 };
         if self.told.is_none() {
@@ -168,8 +185,9 @@ impl Watch {
 
     fn outcome(self, kind: Kind, sensor: SensorAt, mode: Mode, place: Place, moment: u32) -> Outcome {
         let told_at = self.told.as_ref().map(|(_, tick)| *tick);
-        // What was told before it showed is counted from the beginning.
-        let origin = self.shows.filter(|shows| told_at.is_none_or(|told| *shows <= told)).unwrap_or(0);
+        // What was told while nothing showed is counted from where the force began to differ at all, or from the beginning.
+        let on = |stretch: &Stretch| stretch.began.filter(|_| told_at.is_none_or(|told| told <= stretch.last + PAUSE));
+        let origin = on(&self.shows).or(on(&self.hints)).unwrap_or(0);
         let since_ms = |tick: u32| f64::from(tick - origin.min(tick)) + 1.0;
         let verdict = if told_at.is_some() {
             Verdict::Detected
@@ -181,6 +199,8 @@ impl Watch {
             Verdict::Bounded
         } else if self.is_no_worse() {
             Verdict::Harmless
+        } else if kind.passes_as_fresh().is_some() {
+            Verdict::Bounded
         } else {
             Verdict::Silent
         };

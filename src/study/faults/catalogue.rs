@@ -268,6 +268,16 @@ impl Kind {
         }
     }
 
+    /// Why it is not told by design, where that is so.
+    pub const fn passes_as_fresh(self) -> Option<&'static str> {
+        match self {
+            K::LinkJitter | K::LinkHalf | K::LinkSwaps | K::ForceDoubled | K::ForceReordered | K::ForceSpikes => Some(
+                "late by less than 5 ms: the age gate takes it as fresh; gates with a memory then differ for a while",
+            ),
+            _ => None,
+        }
+    }
+
     /// Why it cannot be told from an honest machine, where that is so; it must then be bounded.
     pub const fn untellable(self) -> Option<&'static str> {
         Some(match self {

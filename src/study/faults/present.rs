@@ -30,7 +30,7 @@ impl Report {
                     self.outcomes.iter().filter(|o| (o.kind, o.sensor, o.verdict) == (kind, sensor, Verdict::Bounded));
                 let largest_n =
                     of.map(|outcome| outcome.peak_error_n).fold(None, |most, n| Some(n.max(most.unwrap_or(0.0))));
-                if let (Some(n), Some(why)) = (largest_n, kind.untellable()) {
+                if let (Some(n), Some(why)) = (largest_n, kind.untellable().or(kind.passes_as_fresh())) {
                     writeln!(text, "| {} | {} | {n:.2} | {why} |", kind.words(), sensor.word()).ok();
                 }
             }

@@ -7,7 +7,7 @@ use crate::{
     device::{Inputs, Sensed, Switches},
     impedance::Sample,
     runtime::Fault,
-    safety::{CHANNELS, Implausible, Observed, Seen},
+    safety::{CHANNELS, Observed, Seen},
     teleop::LoopState,
 };
 
@@ -73,9 +73,7 @@ impl Pair {
         if coupled && inputs.is_some_and(|inputs| !inputs.powered) {
             self.fail(Fault::DrivesOff, now_s);
         }
-        // A handle that leads nothing may be anywhere.
-        let leads = self.state().permits().coupled;
-        if let Some(what) = self.plausibility.doubt().filter(|what| leads || *what != Implausible::HandleJumped) {
+        if let Some(what) = self.plausibility.doubt() {
             self.fail_if_driven(Fault::Implausible { what }, now_s);
         }
         let switches = self.last_inputs.map_or_else(Switches::default, |seen| seen.switches);

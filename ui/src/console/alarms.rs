@@ -33,6 +33,16 @@ impl Priority {
         if (time_s * hz).fract() < 0.5 { colour } else { colour.gamma_multiply(0.35) }
     }
 
+    /// Time until the colour changes next, s; `None` for a steady one.
+    pub fn until_change_s(self, time_s: f64) -> Option<f64> {
+        let half_s = match self {
+            Self::High => 0.5 / 2.0,
+            Self::Medium => 0.5 / 0.6,
+            Self::Low => return None,
+        };
+        Some(half_s - time_s.rem_euclid(half_s))
+    }
+
     /// The word for those who do not see the colour.
     pub const fn word(self) -> &'static str {
         match self {
@@ -181,5 +191,14 @@ mod tests {
             assert!(Priority::High.colour(time_s).a() > 0);
         }
         assert_ne!(Priority::High.colour(0.1), Priority::High.colour(0.3));
+        for priority in [Priority::High, Priority::Medium] {
+            for i in 0..100 {
+                let time_s = 0.013 + f64::from(i) * 0.07;
+                let change_s = time_s + priority.until_change_s(time_s).unwrap();
+                assert_eq!(priority.colour(time_s), priority.colour(change_s - 1e-6));
+                assert_ne!(priority.colour(time_s), priority.colour(change_s + 1e-6));
+            }
+        }
+        assert_eq!(Priority::Low.until_change_s(1.0), None);
     }
 }

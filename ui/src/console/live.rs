@@ -10,7 +10,7 @@ use nima::{
     config::{Rig, Scene},
     device::{Healths, Roster, SIDES, Side},
     impedance::Mode,
-    runtime::{Command, Event, Fault, Handle, Scheduling, Tick},
+    runtime::{Command, Event, Fault, Scheduling, Tick},
     safety::ChainSettings,
     statistics::{Percentiles, Quantiles},
     teleop::LoopState,
@@ -19,6 +19,7 @@ use nima::{
 use super::{
     alarms::Signs,
     cloud::Cloud,
+    door::{Door, News},
     history::{CHANNELS, History},
     readings::{Change, Figures, Gates},
     rolling::{DegreeShares, Fading},
@@ -148,16 +149,20 @@ impl Live {
     }
 
     /// Takes in all that waits at the loop's door; `each` sees every tick of the right arm pair.
-    pub fn take_in(&mut self, handle: &Handle, mut each: impl FnMut(&Tick)) {
+    pub fn take_in(&mut self, door: &Door, mut each: impl FnMut(&Tick)) {
+        let handle = door.handle();
         if self.roster.len() != handle.roster().len() {
             self.roster.clone_from(handle.roster());
         }
         if let Some(healths) = handle.healths() {
             self.healths = healths;
         }
-        handle.drain_events(|event| self.event(event));
         let mut came = false;
-        handle.drain_ticks(|tick| {
+        door.take(|news| {
+            let tick = match news {
+                News::Event(event) => return self.event(event),
+                News::Tick(tick) => tick,
+            };
             match tick.side {
                 Side::Right => {
                     self.tick(tick);
@@ -175,6 +180,11 @@ impl Live {
         }
         self.running = handle.is_running();
         self.refresh_figures();
+    }
+
+    /// What moves all the time is drawn anew at most this often, s: on a slow computer every second frame.
+    pub const fn least_step_s(&self) -> f64 {
+        if self.rough_edges { 1.0 / 15.0 } else { 0.0 }
     }
 
     /// Takes in how long the console's own frames take: from the last to this one, and its work (s).

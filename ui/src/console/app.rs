@@ -311,7 +311,9 @@ impl eframe::App for ConsoleApp {
         let ctx = ui.ctx().clone();
         self.measure(&ctx, frame);
         // Once given up they stay so: a view that changes its look by itself again and again would be worse.
-        self.live.rough_edges |= self.opened.elapsed() > WARM_UP && self.live.figures.frame_ms[0] > SLOW_MS;
+        let slow = self.opened.elapsed() > WARM_UP && self.live.figures.frame_ms[0] > SLOW_MS;
+        // Pictures for documents are taken with smooth edges, however long that takes.
+        self.live.rough_edges = self.photographer.is_none() && (self.live.rough_edges || slow);
         self.panels.scene.smooth = !self.live.rough_edges;
         menu::apply(&ctx, &mut self.settings.now);
         if keys::stop_pressed(&ctx) {

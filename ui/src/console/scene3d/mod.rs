@@ -140,7 +140,8 @@ pub fn scene_ui(ui: &mut Ui, live: &Live, view: &mut SceneView, outbox: &mut Out
         axes(&painter, rect, &camera);
     }
     hint(&painter, rect, view);
-    let pointed_at = response.hover_pos().filter(|_| !response.dragged());
+    // Nothing pops up in a surgeon's field.
+    let pointed_at = response.hover_pos().filter(|_| view.figures && !response.dragged());
     if let Some(words) = pointed_at.and_then(|pointer| pick::pick(pointer, rect, &camera, &live.scene, &arms)) {
         response.on_hover_text_at_pointer(words);
     }

@@ -14,12 +14,13 @@ use std::io;
 
 pub use arm_pair::{ArmPair, Obstacle};
 pub use jaws::JawsSettings;
-pub use settings::{ArmSet, DeskSettings, SensorPlace, Settings};
+pub use settings::{ArmSet, DeskSettings, EndoscopeSettings, SensorPlace, Settings};
 
 use super::{
     DEVICES_MAX, Device, DeviceEvent, Health, Healths, Inputs, Lever, Outputs, PedalReading, Rig, Roster, RosterEntry,
-    SIDES, Side, Slot, Stamped, Standing, Switches, Tracked, TrackerReading, bota, hid, hid::Held, ndi,
+    SIDES, Side, Slot, Stamped, Standing, Switches, Tracked, TrackerReading, View, bota, hid, hid::Held, ndi,
 };
+use crate::frames::from_roll_pitch_yaw_deg;
 pub use watch::Watch;
 
 /// A part older than this is not there, s.
@@ -32,6 +33,7 @@ pub struct DeviceRig {
     tissue: Option<Slot<bota::Driver>>,
     tissue_n: Option<Stamped<nalgebra::Vector3<f64>>>,
     tracker: Option<Slot<ndi::Driver>>,
+    endoscope: Option<EndoscopeSettings>,
     tracked: Option<Stamped<TrackerReading>>,
     pedal: Option<Pedal>,
     watch: Watch,
@@ -118,6 +120,7 @@ impl DeviceRig {
             tissue: tissue.transpose()?,
             tissue_n: None,
             tracker: tracker.transpose()?,
+            endoscope: settings.endoscope,
             tracked: None,
             pedal: pedal.transpose()?,
             watch: Watch::default(),
@@ -151,11 +154,15 @@ impl DeviceRig {
         let tissue_n =
             self.tissue_n.filter(|stamped| now_s - stamped.arrival_s <= OLDEST_S).map(|stamped| stamped.value);
         let tracked = self.tracked.filter(|stamped| now_s - stamped.arrival_s <= TRACKED_S);
-        let m_from_c = tracked.and_then(|stamped| match stamped.value.tools[side.index()] {
-            Tracked::Seen { c_from_tool, .. } => Some(c_from_tool.inverse()),
+        let c_from = |tool: usize| match tracked?.value.tools.get(tool)? {
+            Tracked::Seen { c_from_tool, .. } => Some(*c_from_tool),
             _ => None,
+        };
+        let c_from_view = self.endoscope.map_or(View::Fixed, |endoscope| {
+            let n_from_view = from_roll_pitch_yaw_deg(&endoscope.n_from_view_deg);
+            c_from(endoscope.tool).map_or(View::Unseen, |c_from_n| View::Seen(c_from_n * n_from_view))
         });
-        arm_pair::Shared { tissue_n, m_from_c }
+        arm_pair::Shared { tissue_n, m_from_c: c_from(side.index()).map(|c_from_m| c_from_m.inverse()), c_from_view }
     }
 
     fn each_health(&self, mut each: impl FnMut(&Health, [bool; SIDES])) {

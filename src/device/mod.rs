@@ -169,10 +169,19 @@ pub trait Device: Send {
 
 /// Leaders, followers and force sensors that belong together, a pair for each side. Owned by the real-time thread.
 pub trait Rig: Send {
-    /// Applies `outputs` and gives the newest measurements at loop time `now_s`; `None` when there are none.
+    /// Gives the newest measurements at loop time `now_s`; `None` when there are none. Applies `outputs`, unless
+    /// [`Rig::apply`] already did.
     ///
     /// Must not block and must not allocate.
     fn exchange(&mut self, now_s: f64, outputs: &[Outputs; SIDES]) -> [Option<Inputs>; SIDES];
+
+    /// Sends what the loop has just made on its way, so that a force does not wait for the next period. A simulated world
+    /// takes it with the next exchange, as if it had held since this tick.
+    ///
+    /// Must not block and must not allocate.
+    fn apply(&mut self, now_s: f64, outputs: &[Outputs; SIDES]) {
+        let _ = (now_s, outputs);
+    }
 
     /// A device that came or went since the last call; call until `None`. Rigs without devices have none.
     fn event(&mut self) -> Option<DeviceEvent> {

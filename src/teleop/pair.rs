@@ -38,6 +38,8 @@ pub struct Timing {
     pub wake_s: f64,
     /// How long the tick before worked, s.
     pub work_s: f64,
+    /// From the arrival of the oldest measurement of the tick before to when its force was given to the device, s; `None`: no measurement.
+    pub sample_to_force_s: Option<f64>,
     /// Periods missed just before this tick.
     pub missed_now: u64,
 }
@@ -426,6 +428,7 @@ impl Pair {
             identification: *self.identifier.report(),
             wake_s: timing.wake_s,
             work_s: timing.work_s,
+            sample_to_force_s: timing.sample_to_force_s,
             missed: self.missed,
             dropped: 0,
         }

@@ -37,6 +37,8 @@ pub struct DeviceRig {
     tracked: Option<Stamped<TrackerReading>>,
     pedal: Option<Pedal>,
     watch: Watch,
+    /// Sent since the last exchange.
+    applied: Option<[Outputs; SIDES]>,
 }
 
 struct Pedal {
@@ -124,8 +126,17 @@ impl DeviceRig {
             tracked: None,
             pedal: pedal.transpose()?,
             watch: Watch::default(),
+            applied: None,
         };
         Ok((rig, roster))
+    }
+
+    fn send(&mut self, now_s: f64, outputs: &[Outputs; SIDES]) {
+        for (pair, outputs) in self.pairs.iter_mut().zip(outputs) {
+            if let Some(pair) = pair {
+                pair.apply(now_s, outputs);
+            }
+        }
     }
 
     fn poll_shared(&mut self, now_s: f64) -> Switches {
@@ -185,12 +196,14 @@ impl DeviceRig {
 
 impl Rig for DeviceRig {
     fn exchange(&mut self, now_s: f64, outputs: &[Outputs; SIDES]) -> [Option<Inputs>; SIDES] {
+        if self.applied.take().is_none_or(|applied| applied != *outputs) {
+            self.send(now_s, outputs);
+        }
         let switches = self.poll_shared(now_s);
         let mut inputs = [None; SIDES];
         for side in Side::ALL {
             let shared = self.shared(side, now_s);
             if let Some(pair) = &mut self.pairs[side.index()] {
-                pair.apply(now_s, &outputs[side.index()]);
                 pair.poll(now_s);
                 inputs[side.index()] = pair.inputs(now_s, &shared).map(|inputs| Inputs { switches, ..inputs });
             }
@@ -203,6 +216,11 @@ impl Rig for DeviceRig {
         });
         self.watch = watch;
         inputs
+    }
+
+    fn apply(&mut self, now_s: f64, outputs: &[Outputs; SIDES]) {
+        self.send(now_s, outputs);
+        self.applied = Some(*outputs);
     }
 
     fn event(&mut self) -> Option<DeviceEvent> {

@@ -335,7 +335,6 @@ impl Live {
         }
         self.figures = Figures {
             horizon_n: self.horizon.map(Fading::get),
-            withheld_n: self.gates[Side::Right.index()].withheld_n.get(),
             wake_us: self.wake.quantiles(),
             work_us: self.work.quantiles(),
             rate_hz: self.ticks_counted as f64 / since.as_secs_f64(),

@@ -3,7 +3,9 @@
 use egui::{Button, Context, Ui, vec2};
 
 use super::{
+    desk::{Layout, Panel},
     help::Help,
+    roles::Role,
     settings::{SCALES, Settings},
 };
 
@@ -38,6 +40,10 @@ pub(super) fn menu_ui(ui: &mut Ui, settings: &mut Settings, help: &mut Help) {
         });
         ui.label(super::widgets::small("Never larger than this window has room for."));
         ui.add_space(6.0);
+        if settings.role == Role::Technician {
+            panels_ui(ui, &mut settings.layout);
+            ui.add_space(6.0);
+        }
         ui.horizontal(|ui| {
             if ui.add(Button::new("Glossary (F4)").min_size(vec2(110.0, 30.0))).clicked() {
                 help.glossary = true;
@@ -48,6 +54,28 @@ pub(super) fn menu_ui(ui: &mut Ui, settings: &mut Settings, help: &mut Help) {
         });
     });
     response.on_hover_text("Light or dark, how large; glossary and tour.");
+}
+
+/// Which panels are on the desk.
+fn panels_ui(ui: &mut Ui, layout: &mut Layout) {
+    ui.label("Panels").on_hover_text("Drag a panel's title to put it elsewhere, an edge to make it larger.");
+    for pair in Panel::ALL.chunks(2) {
+        ui.horizontal(|ui| {
+            for panel in pair {
+                let open = layout.is_open(*panel);
+                let button = Button::selectable(open, panel.title()).frame_when_inactive(true);
+                let response = ui.add(button.min_size(vec2(146.0, 26.0)));
+                let meaning = if open { "On the desk; closes it." } else { "Closed; puts it back where it was." };
+                if response.on_hover_text(format!("{}\n{meaning}", panel.meaning())).clicked() {
+                    layout.toggle(*panel);
+                }
+            }
+        });
+    }
+    let reset = ui.add(Button::new("Reset the layout").min_size(vec2(300.0, 26.0)));
+    if reset.on_hover_text("All panels open, where they lay at first.").clicked() {
+        *layout = Layout::default();
+    }
 }
 
 /// Puts the settings in force; call at the start of a frame.

@@ -47,8 +47,6 @@ pub struct Figures {
     pub rendered_n: [f64; SIDES],
     /// Error of each mode at the horizon, N, mean over the last seconds.
     pub horizon_n: [f64; 4],
-    /// Force withheld by the dead band, N.
-    pub withheld_n: f64,
     /// Lateness of wake-ups, us.
     pub wake_us: Quantiles,
     /// Work of a tick, us.

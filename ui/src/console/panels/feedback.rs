@@ -9,12 +9,7 @@ use egui::{Button, DragValue, RichText, Slider, SliderClamping, Ui, vec2};
 use nima::{impedance::Mode, runtime::Command};
 
 use super::{mode_meaning, mode_name, stable_gain::stable_gain_ui};
-use crate::console::{
-    live::Live,
-    outbox::Outbox,
-    theme,
-    widgets::{card, small},
-};
+use crate::console::{live::Live, outbox::Outbox, theme, widgets::small};
 
 /// How long a control shows what was asked before it falls back to what is in force, s: the gain ramps at 2 per second.
 const ASKED_SHOWN_S: f64 = 1.6;
@@ -52,16 +47,13 @@ pub struct FeedbackState {
 
 /// The panel.
 pub fn feedback_ui(ui: &mut Ui, live: &mut Live, state: &mut FeedbackState, outbox: &mut Outbox) {
-    let meaning = "How the force measured at the instrument becomes the force in the hand.";
-    card(ui, "Feedback", meaning, |ui| {
-        mode_ui(ui, live, outbox);
-        ui.add_space(8.0);
-        gain_ui(ui, live, state, outbox);
-        ui.add_space(8.0);
-        delay_ui(ui, live, state, outbox);
-        ui.add_space(8.0);
-        standstill_ui(ui, live, state, outbox);
-    });
+    mode_ui(ui, live, outbox);
+    ui.add_space(8.0);
+    gain_ui(ui, live, state, outbox);
+    ui.add_space(8.0);
+    delay_ui(ui, live, state, outbox);
+    ui.add_space(8.0);
+    standstill_ui(ui, live, state, outbox);
 }
 
 fn mode_ui(ui: &mut Ui, live: &Live, outbox: &mut Outbox) {

@@ -21,7 +21,7 @@ pub use devices::devices_ui;
 pub use feedback::{FeedbackState, calm_gain_ui, feedback_ui};
 pub use force_space::{ForceSpaceState, force_space_ui};
 pub use forces::{ForcesState, forces_ui, gauge};
-pub use gates::{gates_ui, why_no_force};
+pub use gates::{GatesState, gates_ui, why_no_force};
 pub use horizon::horizon_ui;
 pub use safety::safety_ui;
 pub use timing::timing_ui;

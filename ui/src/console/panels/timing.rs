@@ -7,52 +7,49 @@ use crate::console::{
     alarms::sentence,
     live::Live,
     theme,
-    widgets::{card, figure, small, weak},
+    widgets::{figure, small, weak},
 };
 
 /// The panel.
 pub fn timing_ui(ui: &mut Ui, live: &Live) {
-    let meaning = "The loop's own clock: how late it wakes for each period and how long it works in it, since the console opened.";
-    card(ui, "Timing", meaning, |ui| {
-        table_ui(ui, live);
-        ui.add_space(2.0);
-        let tick = live.tick.as_ref();
-        let rate = format!("{} at {:.0} Hz", grouped(tick.map_or(0, |tick| tick.index + 1)), live.figures.rate_hz);
-        figure(
-            ui,
-            "Ticks",
-            rate,
-            "Ticks executed since the loop began, and ticks that reached this screen in the last moment.",
-        );
-        let missed = grouped(tick.map_or(0, |tick| tick.missed));
-        figure(
-            ui,
-            "Missed",
-            missed,
-            "Periods in which the loop was not run in time. They are counted and skipped, never caught up.",
-        );
-        let dropped = grouped(tick.map_or(0, |tick| tick.dropped));
-        figure(
-            ui,
-            "Dropped",
-            dropped,
-            "Ticks that did not reach this screen because it was busy. The loop never waits for it.",
-        );
-        scheduling_ui(ui, live);
-        let [p50, p99] = live.figures.frame_ms;
-        let frame = format!("p50 {p50:.0}, p99 {p99:.0}, work {:.0} ms", live.figures.frame_work_ms);
-        figure(
-            ui,
-            "Console frame",
-            frame,
-            if live.rough_edges {
-                "Time from one picture of this window to the next since it opened (33 ms asked, 100 ms while idle), and the work in it now. Edges in 3-D are not smoothed, \
-                 because this computer draws too slowly with it."
-            } else {
-                "Time from one picture of this window to the next since it opened (33 ms asked, 100 ms while idle), and the work in it now."
-            },
-        );
-    });
+    table_ui(ui, live);
+    ui.add_space(2.0);
+    let tick = live.tick.as_ref();
+    let rate = format!("{} at {:.0} Hz", grouped(tick.map_or(0, |tick| tick.index + 1)), live.figures.rate_hz);
+    figure(
+        ui,
+        "Ticks",
+        rate,
+        "Ticks executed since the loop began, and ticks that reached this screen in the last moment.",
+    );
+    let missed = grouped(tick.map_or(0, |tick| tick.missed));
+    figure(
+        ui,
+        "Missed",
+        missed,
+        "Periods in which the loop was not run in time. They are counted and skipped, never caught up.",
+    );
+    let dropped = grouped(tick.map_or(0, |tick| tick.dropped));
+    figure(
+        ui,
+        "Dropped",
+        dropped,
+        "Ticks that did not reach this screen because it was busy. The loop never waits for it.",
+    );
+    scheduling_ui(ui, live);
+    let [p50, p99] = live.figures.frame_ms;
+    let frame = format!("p50 {p50:.0}, p99 {p99:.0}, work {:.0} ms", live.figures.frame_work_ms);
+    figure(
+        ui,
+        "Console frame",
+        frame,
+        if live.rough_edges {
+            "Time from one picture of this window to the next since it opened (33 ms asked, 100 ms while idle), and the work in it now. Edges in 3-D are not smoothed, \
+             because this computer draws too slowly with it."
+        } else {
+            "Time from one picture of this window to the next since it opened (33 ms asked, 100 ms while idle), and the work in it now."
+        },
+    );
 }
 
 fn table_ui(ui: &mut Ui, live: &Live) {

@@ -7,6 +7,7 @@
 pub mod alarms;
 pub mod app;
 pub mod cloud;
+pub mod deadlines;
 pub mod desk;
 pub mod help;
 pub mod history;

@@ -25,8 +25,8 @@ const TRACES: f32 = 560.0;
 /// Height of the desk from which calibrations and gates, or degrees and timing, lie under each other.
 const TALL_FROM: f32 = 860.0;
 /// Heights of panels that are not to be scrolled.
-const FEEDBACK: f32 = 434.0;
-const CALIBRATIONS: f32 = 218.0;
+const FEEDBACK: f32 = 430.0;
+const CALIBRATIONS: f32 = 212.0;
 const HORIZON: f32 = 288.0;
 const DEGREES: f32 = 312.0;
 

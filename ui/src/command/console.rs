@@ -37,6 +37,15 @@ pub(super) struct Arguments {
     /// Write the loop's figures (JSON) here when the window is closed
     #[arg(long, value_name = "FILE")]
     summary: Option<PathBuf>,
+    /// Write what the screen costs (JSON: time from picture to picture, processor, memory, start) here when the window is closed
+    #[arg(long, value_name = "FILE")]
+    frames: Option<PathBuf>,
+    /// Show this many seconds in the traces at first
+    #[arg(long, value_name = "S", value_parser = super::run::positive_seconds)]
+    traces: Option<f64>,
+    /// Do not engage by itself, as it otherwise does on a simulated or emulated rig
+    #[arg(long)]
+    at_rest: bool,
     /// Hold the window up for this many seconds, once: to see that the loop does not mind
     #[arg(long, value_name = "S", value_parser = super::run::positive_seconds)]
     stall: Option<f64>,
@@ -51,7 +60,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let mut plan = Plan { rig: rig.clone(), scene: scene.clone(), calibrations, left_calibrations, engage: false };
     // The simulated hand cannot be hurt: the demo runs at once.
     let by_itself = rig.devices.as_ref().is_none_or(|devices| devices.emulated);
-    plan.engage = by_itself && plan.may_engage();
+    plan.engage = by_itself && !arguments.at_rest && plan.may_engage();
     let handle = runtime::start(&plan)?;
     let options = Options {
         exit_after: arguments.exit_after.map(Duration::from_secs_f64),
@@ -60,6 +69,8 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         role: arguments.role,
         wizard: arguments.calibrate,
         summary: arguments.summary.clone(),
+        frames: arguments.frames.clone(),
+        traces_s: arguments.traces,
         stall: arguments.stall.map(Duration::from_secs_f64),
     };
     let album = options.pictures.clone();

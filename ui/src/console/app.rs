@@ -4,6 +4,7 @@ mod calibrating;
 
 use std::{
     path::Path,
+    sync::Arc,
     time::{Duration, Instant},
 };
 
@@ -18,6 +19,8 @@ use nima::{
 
 use super::{
     Options,
+    canvas::{Canvas, Surface, renderer_of},
+    frames::{Meter, Picture},
     help::Help,
     in_force::InForce,
     keys,
@@ -36,6 +39,8 @@ use super::{
 
 /// Thirty pictures a second while data flow.
 const FRAME: Duration = Duration::from_millis(33);
+/// Input is looked at between two pictures, however slow they are.
+const LEAST_REST: Duration = Duration::from_millis(1);
 /// Ten while nothing is engaged; the mouse and the keyboard are answered at once all the same.
 const FRAME_AT_REST: Duration = Duration::from_millis(100);
 /// Smooth edges in 3-D are given up when every second picture comes later than this after the one before (25 a second) ...
@@ -63,6 +68,10 @@ pub struct ConsoleApp {
     /// What was watched before a wizard took the rig over.
     watched: Option<Scene>,
     options: Options,
+    surface: Option<Arc<Surface>>,
+    /// What draws, in the driver's words.
+    renderer: String,
+    meter: Option<Meter>,
     opened: Instant,
     framed: Instant,
     pictured: bool,
@@ -75,7 +84,14 @@ impl ConsoleApp {
     pub fn new(cc: &eframe::CreationContext<'_>, handle: Handle, rig: Rig, scene: Scene) -> Self {
         theme::apply(&cc.egui_ctx);
         let now = Instant::now();
+        let surface = cc.gl.as_deref().and_then(Surface::where_it_pays);
+        if let Some(surface) = &surface {
+            cc.egui_ctx.add_plugin(Canvas::new(Arc::clone(surface), || theme::now().background));
+        }
         Self {
+            surface,
+            renderer: cc.gl.as_deref().map(renderer_of).unwrap_or_default(),
+            meter: None,
             handle: Some(handle),
             in_force: InForce::load(None, &scene),
             wizards: Wizards::default(),
@@ -99,6 +115,10 @@ impl ConsoleApp {
     #[must_use]
     pub fn with_options(mut self, options: Options) -> Self {
         self.options = options;
+        self.meter = self.options.frames.as_ref().map(|_| Meter::new(self.options.exit_after));
+        if let Some(seconds) = self.options.traces_s {
+            self.panels.forces.show_last(seconds);
+        }
         self.photographer = self.options.pictures.clone().map(Photographer::new);
         self.settings.now.role = self.options.role.unwrap_or(self.settings.now.role);
         if let Some(which) = self.options.wizard {
@@ -256,6 +276,32 @@ impl ConsoleApp {
         self.obey_calibrations(calibration);
     }
 
+    /// Takes in how long the picture before this one took.
+    fn measure(&mut self, ctx: &egui::Context, frame: &eframe::Frame) {
+        let before = std::mem::replace(&mut self.framed, Instant::now());
+        let work_s = frame.info().cpu_usage.map(f64::from);
+        let period = (!self.calm).then(|| self.framed.duration_since(before));
+        if let Some(period) = period {
+            self.live.frame(period.as_secs_f64(), work_s);
+        }
+        let Some(meter) = &mut self.meter else { return };
+        let drawn_share = self.surface.as_ref().map_or(1.0, |surface| surface.drawn_share());
+        if meter.begin(&Picture { period, work_s, drawn_share, live: self.live.tick.is_some() }) {
+            ctx.request_repaint();
+        }
+    }
+
+    /// Writes the figures of the loop and of the screen where they are wanted.
+    fn write_figures(&mut self) {
+        if let (Some(path), Some(meter)) = (&self.options.frames, &self.meter) {
+            write_json(path, &meter.figures(&self.renderer));
+        }
+        let summary = self.handle.take().and_then(Handle::stop_and_join);
+        if let (Some(path), Some(summary)) = (&self.options.summary, summary) {
+            write_json(path, &summary);
+        }
+    }
+
     fn obey_options(&mut self, ctx: &egui::Context) {
         let open = self.opened.elapsed();
         let Options { exit_after, screenshot, .. } = self.options.clone();
@@ -289,10 +335,7 @@ impl eframe::App for ConsoleApp {
 
     fn ui(&mut self, ui: &mut Ui, frame: &mut eframe::Frame) {
         let ctx = ui.ctx().clone();
-        let period = std::mem::replace(&mut self.framed, Instant::now());
-        if !self.calm {
-            self.live.frame(self.framed.duration_since(period).as_secs_f64(), frame.info().cpu_usage.map(f64::from));
-        }
+        self.measure(&ctx, frame);
         // Once given up they stay so: a view that changes its look by itself again and again would be worse.
         self.live.rough_edges |= self.opened.elapsed() > WARM_UP && self.live.figures.frame_ms[0] > SLOW_MS;
         self.panels.scene.smooth = !self.live.rough_edges;
@@ -310,7 +353,12 @@ impl eframe::App for ConsoleApp {
         self.obey_options(&ctx);
         let at_rest = self.live.state().is_latched() || self.live.state() == LoopState::Idle;
         self.calm = at_rest && self.wizards.open.is_none();
-        ctx.request_repaint_after(if self.calm { FRAME_AT_REST } else { FRAME });
+        let wanted = if self.calm { FRAME_AT_REST } else { FRAME };
+        // Counted from the beginning of this picture: what it took is no reason to wait longer.
+        ctx.request_repaint_after(wanted.saturating_sub(self.framed.elapsed()).max(LEAST_REST));
+        if let Some(meter) = &mut self.meter {
+            meter.end(self.framed.elapsed());
+        }
     }
 
     /// The ground of the whole window: clearing is far cheaper than painting panels over it.
@@ -323,14 +371,19 @@ impl eframe::App for ConsoleApp {
             self.panels.scene.destroy(gl);
         }
         self.panels.tradeoff.cancel();
-        let summary = self.handle.take().and_then(Handle::stop_and_join);
-        if let (Some(path), Some(summary)) = (&self.options.summary, summary) {
-            let written = serde_json::to_vec_pretty(&summary)
-                .map_err(std::io::Error::from)
-                .and_then(|text| write_atomically(path, |file| file.write_all(&text)));
-            if let Err(error) = written {
-                eprintln!("cannot write {}: {error}", path.display());
-            }
+        self.write_figures();
+        if let (Some(gl), Some(surface)) = (gl, &self.surface) {
+            surface.destroy(gl);
         }
+    }
+}
+
+/// Writes a value as JSON; the window has no one to tell of a failure but the terminal it was started from.
+fn write_json(path: &Path, value: &impl serde::Serialize) {
+    let written = serde_json::to_vec_pretty(value)
+        .map_err(std::io::Error::from)
+        .and_then(|text| write_atomically(path, |file| file.write_all(&text)));
+    if let Err(error) = written {
+        eprintln!("cannot write {}: {error}", path.display());
     }
 }

@@ -6,9 +6,11 @@
 
 pub mod alarms;
 pub mod app;
+pub mod canvas;
 pub mod cloud;
 pub mod deadlines;
 pub mod desk;
+pub mod frames;
 pub mod help;
 pub mod history;
 pub mod in_force;
@@ -54,6 +56,10 @@ pub struct Options {
     pub wizard: Option<wizards::Which>,
     /// Write the loop's figures here when the window is closed.
     pub summary: Option<PathBuf>,
+    /// Write what the screen costs here when the window is closed.
+    pub frames: Option<PathBuf>,
+    /// Length of the traces at first, s.
+    pub traces_s: Option<f64>,
     /// Hold the window up for so long, once.
     pub stall: Option<Duration>,
 }
@@ -69,6 +75,8 @@ pub fn run(handle: Handle, rig: Rig, scene: Scene, options: Options) -> anyhow::
         viewport,
         renderer: eframe::Renderer::Glow,
         depth_buffer: 24,
+        // For gradients, of which egui draws none here; in software it costs a part of every point.
+        dithering: false,
         centered: true,
         ..Default::default()
     };

@@ -61,6 +61,13 @@ impl Default for ForcesState {
 }
 
 impl ForcesState {
+    /// Shows the last so many seconds.
+    pub fn show_last(&mut self, seconds: f64) {
+        if seconds.is_finite() {
+            self.view_s = (-seconds.clamp(SHORTEST_S, LONGEST_S), 0.0);
+        }
+    }
+
     /// Whose forces are shown.
     pub const fn side(&self) -> Side {
         self.side

@@ -89,8 +89,8 @@ impl Renderer {
         }
     }
 
-    /// Draws one frame into egui's viewport (`into` is egui's framebuffer, `None` for the window's own).
-    pub fn paint(&self, gl: &glow::Context, into: Option<glow::Framebuffer>, place: &ViewportInPixels, frame: &Frame) {
+    /// Draws one frame into egui's viewport, in the framebuffer that is bound.
+    pub fn paint(&self, gl: &glow::Context, place: &ViewportInPixels, frame: &Frame) {
         let size = [place.width_px, place.height_px];
         if frame.mesh.indices.is_empty() || size.iter().any(|&x| x < 1) {
             return;
@@ -98,6 +98,7 @@ impl Renderer {
         let mut state = self.target.lock().unwrap_or_else(PoisonError::into_inner);
         // SAFETY: called inside egui's paint callback with its context current; egui restores its own state after it.
         unsafe {
+            let into = gl.get_parameter_framebuffer(glow::DRAW_FRAMEBUFFER_BINDING);
             if frame.smooth {
                 state.fit(gl, size);
             }

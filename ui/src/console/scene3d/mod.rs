@@ -177,7 +177,7 @@ fn triangles(rect: Rect, live: &Live, view: &SceneView, arms: &[Arm]) -> Option<
         smooth: view.smooth,
     };
     let paint = egui_glow::CallbackFn::new(move |info, painter| {
-        renderer.paint(painter.gl(), painter.intermediate_fbo(), &info.viewport_in_pixels(), &frame);
+        renderer.paint(painter.gl(), &info.viewport_in_pixels(), &frame);
     });
     Some(egui::PaintCallback { rect, callback: Arc::new(paint) })
 }

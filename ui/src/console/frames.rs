@@ -1,0 +1,286 @@
+//! What the screen costs: time from picture to picture, work in them, start to the first live picture, processor and memory. All of it
+//! is measured by the running program on itself, for `nima console --frames`.
+//!
+//! Times in ms or s as the names say, shares of one core, memory in MB. Figures of processor and memory come from `/proc` and are zero
+//! where there is none.
+
+use std::{
+    collections::BTreeMap,
+    fs,
+    time::{Duration, Instant},
+};
+
+use serde::Serialize;
+
+/// The window, its shaders and fonts have settled after this time.
+const WARM_UP: Duration = Duration::from_secs(4);
+/// Of a run whose end is known, only so much before it counts.
+const LAST: Duration = Duration::from_secs(30);
+/// Threads of the machine under the screen; every other thread is the window's.
+const MACHINE: [&str; 3] = ["realtime", "supervisor", "emulator"];
+/// Clock ticks of `/proc` per second: fixed at 100 for programs on Linux.
+const TICKS_PER_S: f64 = 100.0;
+
+/// Percentiles of durations, ms.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Spread {
+    /// The median.
+    pub p50: f64,
+    /// Nine in ten are below.
+    pub p90: f64,
+    /// Ninety-nine in a hundred are below.
+    pub p99: f64,
+    /// The longest.
+    pub max: f64,
+}
+
+impl Spread {
+    /// Percentiles of these durations (ms); zeros of none.
+    pub fn of(durations_ms: &[f64]) -> Self {
+        let mut sorted = durations_ms.to_vec();
+        sorted.sort_by(f64::total_cmp);
+        let at = |share: f64| {
+            let place = (share * sorted.len() as f64).ceil() as usize;
+            sorted.get(place.saturating_sub(1)).copied().unwrap_or(0.0)
+        };
+        Self { p50: at(0.5), p90: at(0.9), p99: at(0.99), max: at(1.0) }
+    }
+}
+
+/// Processor time as shares of one core.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Processor {
+    /// The whole process.
+    pub process: f64,
+    /// All threads but those of the machine: what the screen costs.
+    pub window: f64,
+    /// The loop and what belongs to it.
+    pub machine: f64,
+    /// Each thread by name; threads of the same name together.
+    pub threads: BTreeMap<String, f64>,
+}
+
+/// All figures of a run.
+#[derive(Clone, Debug, Serialize)]
+pub struct Figures {
+    /// What draws, in the driver's words.
+    pub renderer: String,
+    /// From the start of the process to the first picture that shows a tick, s.
+    pub first_live_picture_s: Option<f64>,
+    /// What was measured over, s.
+    pub seconds: f64,
+    /// Pictures in that time.
+    pub pictures: usize,
+    /// From one picture to the next, while something was engaged, ms.
+    pub period_ms: Spread,
+    /// Work on the window's own thread in a picture without showing it: layout, triangles, calls of the driver, ms.
+    pub work_ms: Spread,
+    /// Our own part of it: panels and plots, without triangles and driver, ms.
+    pub layout_ms: Spread,
+    /// Part of the window that was drawn anew, 0 to 1, mean over the pictures.
+    pub drawn_share: f64,
+    /// Processor time over the same stretch.
+    pub processor: Processor,
+    /// Load of the machine (mean number of running tasks in the last minute) at the end.
+    pub load: f64,
+    /// Memory of the process, minute by minute, MB.
+    pub resident_mb: Vec<f64>,
+}
+
+/// Takes the measurements.
+#[derive(Debug)]
+pub struct Meter {
+    opened: Instant,
+    /// Counting begins so long after the window opened.
+    from: Duration,
+    began: Option<(Instant, BTreeMap<String, f64>)>,
+    first_live_s: Option<f64>,
+    live_pending: bool,
+    periods_ms: Vec<f64>,
+    work_ms: Vec<f64>,
+    layout_ms: Vec<f64>,
+    drawn: Vec<f64>,
+    resident_mb: Vec<f64>,
+}
+
+/// One picture.
+#[derive(Clone, Copy, Debug)]
+pub struct Picture {
+    /// Since the one before, if that one asked for this one: not while nothing moves.
+    pub period: Option<Duration>,
+    /// Work of the one before, s.
+    pub work_s: Option<f64>,
+    /// Part of the window that the one before drew anew, 0 to 1.
+    pub drawn_share: f64,
+    /// There is a tick on it.
+    pub live: bool,
+}
+
+impl Meter {
+    /// Measures a window that opens now and closes after `exit_after`, if that is known.
+    pub fn new(exit_after: Option<Duration>) -> Self {
+        let from = exit_after.map_or(WARM_UP, |exit| exit.saturating_sub(LAST)).max(WARM_UP);
+        Self {
+            opened: Instant::now(),
+            from,
+            began: None,
+            first_live_s: None,
+            live_pending: false,
+            periods_ms: Vec::new(),
+            work_ms: Vec::new(),
+            layout_ms: Vec::new(),
+            drawn: Vec::new(),
+            resident_mb: Vec::new(),
+        }
+    }
+
+    /// Takes in the beginning of a picture. True when another is wanted at once, because only its beginning tells when this one stood
+    /// on the screen.
+    pub fn begin(&mut self, picture: &Picture) -> bool {
+        if std::mem::take(&mut self.live_pending) {
+            self.first_live_s = age_s().or_else(|| Some(self.opened.elapsed().as_secs_f64()));
+        } else if picture.live && self.first_live_s.is_none() {
+            self.live_pending = true;
+        }
+        let open = self.opened.elapsed();
+        if open.as_secs() / 60 >= self.resident_mb.len() as u64 {
+            self.resident_mb.push(resident_mb());
+        }
+        if open >= self.from {
+            if self.began.is_none() {
+                self.began = Some((Instant::now(), threads_s()));
+            }
+            self.periods_ms.extend(picture.period.map(|period| period.as_secs_f64() * 1e3));
+            self.work_ms.extend(picture.work_s.map(|work_s| work_s * 1e3));
+            self.drawn.push(picture.drawn_share);
+        }
+        self.live_pending
+    }
+
+    /// Takes in how long our own part of a picture took.
+    pub fn end(&mut self, layout: Duration) {
+        if self.began.is_some() {
+            self.layout_ms.push(layout.as_secs_f64() * 1e3);
+        }
+    }
+
+    /// What was measured; `renderer` in the driver's words.
+    pub fn figures(&self, renderer: &str) -> Figures {
+        let seconds = self.began.as_ref().map_or(0.0, |(began, _)| began.elapsed().as_secs_f64());
+        let before = self.began.as_ref().map(|(_, threads_s)| threads_s.clone()).unwrap_or_default();
+        Figures {
+            renderer: renderer.to_owned(),
+            first_live_picture_s: self.first_live_s,
+            seconds,
+            pictures: self.drawn.len(),
+            period_ms: Spread::of(&self.periods_ms),
+            work_ms: Spread::of(&self.work_ms),
+            layout_ms: Spread::of(&self.layout_ms),
+            drawn_share: self.drawn.iter().sum::<f64>() / self.drawn.len().max(1) as f64,
+            processor: Processor::between(&before, &threads_s(), seconds),
+            load: first_number("/proc/loadavg").unwrap_or(0.0),
+            resident_mb: self.resident_mb.iter().copied().chain([resident_mb()]).collect(),
+        }
+    }
+}
+
+impl Processor {
+    /// Shares of one core between two looks at the threads' times (s), so many seconds apart. A thread that began since counts from
+    /// nothing; one that has ended is not seen.
+    fn between(before: &BTreeMap<String, f64>, now: &BTreeMap<String, f64>, seconds: f64) -> Self {
+        let share = |(name, time_s): (&String, &f64)| {
+            let used_s = (time_s - before.get(name).copied().unwrap_or(0.0)).max(0.0);
+            (name.clone(), if seconds > 0.0 { used_s / seconds } else { 0.0 })
+        };
+        let threads: BTreeMap<String, f64> = now.iter().map(share).collect();
+        let process: f64 = threads.values().sum();
+        let machine: f64 = MACHINE.iter().filter_map(|name| threads.get(*name)).sum();
+        Self { process, window: process - machine, machine, threads }
+    }
+}
+
+/// Processor time of each thread since it began, s, by name.
+fn threads_s() -> BTreeMap<String, f64> {
+    let mut times_s = BTreeMap::new();
+    for task in fs::read_dir("/proc/self/task").into_iter().flatten().flatten() {
+        let Some((name, time_s)) = fs::read_to_string(task.path().join("stat")).ok().as_deref().and_then(thread_s)
+        else {
+            continue;
+        };
+        *times_s.entry(name).or_insert(0.0) += time_s;
+    }
+    times_s
+}
+
+/// Name and processor time (s) from a line of `stat`. The name may hold spaces and parentheses.
+fn thread_s(stat: &str) -> Option<(String, f64)> {
+    let (head, rest) = stat.rsplit_once(") ")?;
+    let name = head.split_once('(')?.1.to_owned();
+    let ticks = |place: usize| rest.split(' ').nth(place)?.parse::<f64>().ok();
+    // Fields 14 and 15; the third is the first after the name.
+    Some((name, (ticks(11)? + ticks(12)?) / TICKS_PER_S))
+}
+
+/// Age of this process, s, within two hundredths.
+fn age_s() -> Option<f64> {
+    let stat = fs::read_to_string("/proc/self/stat").ok()?;
+    let began_ticks: f64 = stat.rsplit_once(") ")?.1.split(' ').nth(19)?.parse().ok()?;
+    Some(first_number("/proc/uptime")? - began_ticks / TICKS_PER_S)
+}
+
+fn first_number(path: &str) -> Option<f64> {
+    fs::read_to_string(path).ok()?.split_whitespace().next()?.parse().ok()
+}
+
+/// Memory of this process that is in use, MB; zero where it cannot be told.
+fn resident_mb() -> f64 {
+    let status = fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let line = status.lines().find_map(|line| line.strip_prefix("VmRSS:"));
+    let kb = line.and_then(|rest| rest.split_whitespace().next()?.parse::<f64>().ok());
+    kb.unwrap_or(0.0) / 1024.0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn percentiles_are_members_of_what_was_measured() {
+        let durations: Vec<f64> = (1..=200).rev().map(f64::from).collect();
+        assert_eq!(Spread::of(&durations), Spread { p50: 100.0, p90: 180.0, p99: 198.0, max: 200.0 });
+        assert_eq!(Spread::of(&[]), Spread::default());
+    }
+
+    #[test]
+    fn a_threads_time_is_read_whatever_its_name() {
+        let line = "7 (a (b) c) S 1 2 3 4 5 6 7 8 9 10 250 50 13 14";
+        assert_eq!(thread_s(line), Some(("a (b) c".to_owned(), 3.0)));
+        assert_eq!(thread_s("7 (a) S 1"), None);
+    }
+
+    #[test]
+    fn the_windows_share_is_what_the_machine_leaves() {
+        let times = |main, realtime| BTreeMap::from([("nima".to_owned(), main), ("realtime".to_owned(), realtime)]);
+        let processor = Processor::between(&times(1.0, 5.0), &times(2.0, 6.5), 10.0);
+        assert!((processor.window - 0.1).abs() < 1e-12 && (processor.machine - 0.15).abs() < 1e-12);
+        assert!((Processor::between(&times(0.0, 0.0), &times(1.0, 1.0), 0.0).process).abs() < 1e-12);
+    }
+
+    #[test]
+    #[cfg(target_os = "linux")]
+    fn this_process_is_found() {
+        assert!(threads_s().values().all(|time_s| time_s.is_finite()) && !threads_s().is_empty());
+        assert!(resident_mb() > 1.0 && age_s().is_some_and(|age_s| (-0.1..1e5).contains(&age_s)));
+    }
+
+    #[test]
+    fn the_first_live_picture_is_told_when_it_stands() {
+        let mut meter = Meter::new(None);
+        let picture = |live| Picture { period: None, work_s: None, drawn_share: 1.0, live };
+        assert!(!meter.begin(&picture(false)));
+        assert!(meter.begin(&picture(true)), "its end is seen by the beginning of the next");
+        assert!(meter.figures("").first_live_picture_s.is_none());
+        assert!(!meter.begin(&picture(true)));
+        assert!(meter.figures("").first_live_picture_s.is_some());
+    }
+}

@@ -6,7 +6,11 @@ mod screen;
 
 use std::path::Path;
 
-use egui::{Rect, accesskit::Role, vec2};
+use egui::{
+    Rect,
+    accesskit::{Role, Toggled},
+    vec2,
+};
 use egui_kittest::{
     Harness,
     kittest::{NodeT as _, Queryable as _},
@@ -72,7 +76,7 @@ fn a_dragged_title_joins_other_tabs_and_stays_there_the_next_day() {
     drag(&mut harness, from.center(), to.center() + vec2(0.6 * to.width(), 0.0));
     let places = layout_of(&mut harness).places.unwrap();
     assert!(beside(&places, Panel::Timing).unwrap().contains(&Panel::Degrees), "{places:?}");
-    assert!(harness.query_by_label("Wake-up").is_some(), "what was dragged is in front");
+    assert!(harness.query_by_label_contains("Wake-up histogram: ").is_some(), "what was dragged is in front");
     drop(harness);
     let mut again = console(folder.path());
     assert_eq!(layout_of(&mut again).places, Some(places));
@@ -148,4 +152,42 @@ fn a_tab_is_brought_to_the_front_by_the_keyboard_and_the_default_still_goes_by_t
     harness.get_by_role_and_label(Role::Button, Panel::Safety.title());
     let (safety, space) = (tab(&harness, Panel::Safety), tab(&harness, Panel::ForceSpace));
     assert!((safety.center().y - space.center().y).abs() < 1.0, "no room beside the traces: a tab");
+}
+
+#[test]
+fn the_histograms_tell_the_deadline_and_a_bar_is_read_under_the_pointer() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut harness = console(folder.path());
+    until(&mut harness, "a second", |tick| tick.t_s > 1.0);
+    // The bars are counted anew four times a second.
+    harness.run_steps(12);
+    let bars = harness.get_by_label_contains("Work histogram: ").rect();
+    assert_eq!(harness.query_all_by_label_contains("later than the deadline of 1000 us").count(), 2);
+    harness.get_by_label_contains("Missed in the last 2 min: ");
+    // The first tenth of the histogram: up to 125 us.
+    harness.hover_at(bars.left_top() + vec2(0.06 * bars.width(), 20.0));
+    harness.run_steps(20);
+    assert!(harness.query_all_by_label_contains("Work: 75 to 100 us\n").next().is_some());
+}
+
+#[test]
+fn the_gates_are_told_of_the_hand_that_is_chosen() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().to_path_buf();
+    let mut harness = console_of("bimanual", SIZE, move |app| {
+        let mut kept = Kept::open(&path);
+        kept.now.toured = true;
+        app.with_settings(kept)
+    });
+    until(&mut harness, "engaged", |tick| tick.state == nima::teleop::LoopState::Engaged);
+    harness.run_steps(3);
+    for hand in ["Left hand", "Right hand"] {
+        press(&mut harness, hand);
+        let chosen = harness.get_by_role_and_label(Role::Button, hand).accesskit_node().toggled();
+        assert_eq!(chosen, Some(Toggled::True), "{hand}");
+    }
+    press(&mut harness, "Stop");
+    press(&mut harness, "Left hand");
+    harness.run_steps(10);
+    harness.get_by_label_contains("No force: stopped by the operator");
 }

@@ -5,7 +5,10 @@
 
 mod screen;
 
-use egui::{Pos2, Rect, Shape, accesskit};
+use std::time::Duration;
+
+use eframe::App as _;
+use egui::{Key, Pos2, Rect, Shape, accesskit};
 use egui_kittest::{
     Harness,
     kittest::{NodeT as _, Queryable as _},
@@ -20,7 +23,8 @@ use nima_console::console::{
 };
 use screen::{console_of, until};
 
-const SIZES: [[f32; 2]; 3] = [[1280.0, 720.0], [1920.0, 1080.0], [3840.0, 2160.0]];
+/// Points: the smallest window, the sizes of common screens, and with them those screens at a scale of 150 or 200 %.
+const SIZES: [[f32; 2]; 4] = [[1100.0, 680.0], [1280.0, 720.0], [1920.0, 1080.0], [3840.0, 2160.0]];
 /// A role, and the panels that are brought to the front: every panel is seen once.
 const VIEWS: [(Role, &[Panel]); 6] = [
     (Role::Surgeon, &[]),
@@ -62,7 +66,7 @@ fn texts(harness: &Harness<'_, ConsoleApp>) -> Vec<Text> {
 }
 
 /// What is wrong with the texts of this picture; `field` is the operating field, where labels ride on moving things.
-fn faults_of_texts(texts: &[Text], window: Rect, field: Option<Rect>, scrolls: bool) -> Vec<String> {
+fn faults_of_texts(texts: &[Text], window: Rect, field: Option<Rect>, scrolls: bool, overlaid: bool) -> Vec<String> {
     let mut faults = Vec::new();
     let seen = |text: &Text| text.place.intersect(text.clip).intersect(window).is_positive();
     let on_field = |text: &Text| {
@@ -80,7 +84,7 @@ fn faults_of_texts(texts: &[Text], window: Rect, field: Option<Rect>, scrolls: b
             faults.push(format!("cut: \"{}\" at {:?}", text.words, text.place));
         }
     }
-    for (i, one) in texts.iter().enumerate() {
+    for (i, one) in texts.iter().enumerate().filter(|_| !overlaid) {
         for other in &texts[i + 1..] {
             let shared = one.place.intersect(one.clip).intersect(other.place.intersect(other.clip)).shrink(SLACK);
             if shared.is_positive() {
@@ -123,6 +127,20 @@ fn faults_of_controls(harness: &Harness<'_, ConsoleApp>, texts: &[Text], window:
 
 /// Everything that is wrong on the screen now.
 fn faults(harness: &mut Harness<'_, ConsoleApp>, size: [f32; 2], scrolls: bool) -> Vec<String> {
+    let (texts, window, field) = seen(harness, size);
+    let mut faults = faults_of_texts(&texts, window, field, scrolls, false);
+    faults.extend(faults_of_controls(harness, &texts, window));
+    faults
+}
+
+/// The same where something lies over the rest on purpose.
+fn faults_overlaid(harness: &mut Harness<'_, ConsoleApp>, size: [f32; 2]) -> Vec<String> {
+    let (texts, window, field) = seen(harness, size);
+    faults_of_texts(&texts, window, field, true, true)
+}
+
+/// What is seen in a window of this size: its texts, the window, the operating field.
+fn seen(harness: &mut Harness<'_, ConsoleApp>, size: [f32; 2]) -> (Vec<Text>, Rect, Option<Rect>) {
     harness.set_size(size.into());
     // Sizes settle within some frames.
     harness.run_steps(4);
@@ -131,10 +149,7 @@ fn faults(harness: &mut Harness<'_, ConsoleApp>, size: [f32; 2], scrolls: bool) 
     let stop = harness.get_by_role_and_label(accesskit::Role::Button, "Stop").rect();
     assert!(stop.width() >= 48.0 && stop.height() >= 48.0 && window.contains_rect(stop), "{stop:?}");
     let field = harness.query_by_label("Operating field").map(|field| field.rect());
-    let texts = texts(harness);
-    let mut faults = faults_of_texts(&texts, window, field, scrolls);
-    faults.extend(faults_of_controls(harness, &texts, window));
-    faults
+    (texts(harness), window, field)
 }
 
 fn walk(scene: &str) {
@@ -190,13 +205,35 @@ fn the_alarm_and_the_stopped_state_fit_too() {
     until(&mut harness, "any tick", |_| true);
     screen::press(&mut harness, "Stop");
     let mut all = Vec::new();
-    for (role, front) in VIEWS {
-        let settings = harness.state_mut().settings_mut();
-        settings.role = role;
-        settings.layout = Layout { front: front.to_vec(), ..Layout::default() };
-        let faults = faults(&mut harness, SIZES[0], role == Role::Technician);
-        all.extend(faults.into_iter().map(|fault| format!("{role:?} {front:?}: {fault}")));
+    for dead in [false, true] {
+        if dead {
+            harness.state_mut().on_exit(None);
+            std::thread::sleep(Duration::from_millis(600));
+            screen::press(&mut harness, "Stop");
+            harness.run_steps(3);
+        }
+        for (role, front) in VIEWS {
+            for size in &SIZES[..2] {
+                let settings = harness.state_mut().settings_mut();
+                settings.role = role;
+                settings.layout = Layout { front: front.to_vec(), ..Layout::default() };
+                let faults = faults(&mut harness, *size, role == Role::Technician);
+                all.extend(faults.into_iter().map(|fault| format!("{role:?} {front:?} dead {dead}: {fault}")));
+            }
+        }
+        for key in [Key::F4, Key::F5] {
+            harness.key_press(key);
+            let faults = faults_overlaid(&mut harness, SIZES[0]);
+            all.extend(faults.into_iter().map(|fault| format!("{key:?} dead {dead}: {fault}")));
+            harness.key_press(key);
+            harness.run_steps(2);
+        }
+        screen::press(&mut harness, "View");
+        let faults = faults_overlaid(&mut harness, SIZES[0]);
+        all.extend(faults.into_iter().map(|fault| format!("menu dead {dead}: {fault}")));
+        screen::press(&mut harness, "View");
     }
+    assert!(harness.query_by_label_contains("sends nothing").is_some());
     assert!(all.is_empty(), "{} faults:\n{}", all.len(), all.join("\n"));
 }
 
@@ -204,7 +241,7 @@ fn the_alarm_and_the_stopped_state_fit_too() {
 fn a_scale_is_used_as_far_as_the_window_has_room() {
     let mut harness = console_of("free_motion", SIZES[0], |app| app);
     until(&mut harness, "any tick", |_| true);
-    for (size, factor) in [(SIZES[2], 2.0), (SIZES[0], 720.0 / 680.0)] {
+    for (size, factor) in [(SIZES[3], 2.0), (SIZES[1], 720.0 / 680.0)] {
         harness.state_mut().settings_mut().scale_percent = 200;
         for _ in 0..4 {
             // A window's points are its pixels over the factor.

@@ -19,6 +19,7 @@ use nima::{
 use super::{
     alarms::Signs,
     cloud::Cloud,
+    deadlines::Deadlines,
     history::{CHANNELS, History},
     readings::{Change, Figures, Gates},
     rolling::{DegreeShares, Fading},
@@ -74,6 +75,8 @@ pub struct Live {
     pub figures: Figures,
     /// Recent positions of each side's tip, m, oldest first.
     pub trails: [VecDeque<Vector3<f32>>; SIDES],
+    /// Periods that the loop missed, second by second.
+    pub deadlines: Deadlines,
     /// What the operating system granted.
     pub scheduling: Option<Scheduling>,
     /// The 3-D view gave up smooth edges, because this computer draws too slowly.
@@ -122,6 +125,7 @@ impl Live {
             stiffness: Default::default(),
             figures: Figures::default(),
             trails: Default::default(),
+            deadlines: Deadlines::default(),
             scheduling: None,
             rough_edges: false,
             bias_moved_n: None,
@@ -181,6 +185,16 @@ impl Live {
     pub fn frame(&mut self, period_s: f64, work_s: Option<f64>) {
         self.frames.record(period_s);
         self.frame_work.push(work_s.unwrap_or(0.0) * 1e3, period_s, 1.0);
+    }
+
+    /// Lateness of every wake-up of the loop since the window opened.
+    pub const fn wake(&self) -> &Percentiles {
+        &self.wake
+    }
+
+    /// Work of every tick since the window opened.
+    pub const fn work(&self) -> &Percentiles {
+        &self.work
     }
 
     /// Marks this moment.
@@ -285,6 +299,7 @@ impl Live {
         let before = self.tick.replace(*tick);
         let dt_s = before.map_or(0.0, |before| (tick.t_s - before.t_s).max(0.0));
         let missed = before.map_or(0, |before| tick.missed.saturating_sub(before.missed));
+        self.deadlines.push(tick.t_s, missed);
         self.missed_share.push(missed as f64 / (missed as f64 + 1.0), dt_s, 3.0);
         self.follow(tick, before.as_ref());
         self.degrees.push(tick.identification.degree);

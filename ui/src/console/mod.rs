@@ -8,6 +8,7 @@ pub mod alarms;
 pub mod app;
 pub mod canvas;
 pub mod cloud;
+pub mod deadlines;
 pub mod desk;
 pub mod frames;
 pub mod help;

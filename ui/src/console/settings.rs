@@ -24,6 +24,8 @@ pub struct Settings {
     pub role: Role,
     /// How a technician's panels lie.
     pub layout: Layout,
+    /// Alarms sound.
+    pub sound: bool,
     /// Dark on light.
     pub light: bool,
     /// The tour was seen, or skipped.
@@ -37,7 +39,14 @@ pub const SCALES: std::ops::RangeInclusive<u16> = 100..=200;
 
 impl Default for Settings {
     fn default() -> Self {
-        Self { role: Role::default(), layout: Layout::default(), light: false, toured: false, scale_percent: 100 }
+        Self {
+            role: Role::default(),
+            layout: Layout::default(),
+            sound: false,
+            light: false,
+            toured: false,
+            scale_percent: 100,
+        }
     }
 }
 

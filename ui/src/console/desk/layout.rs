@@ -20,11 +20,13 @@ const FIGURES: f32 = 348.0;
 /// Width of the force space beside the traces, and of what lies between the columns from which there is room for it.
 const FORCE_SPACE: f32 = 300.0;
 const FORCE_SPACE_FROM: f32 = 720.0;
+/// Width of the traces.
+const TRACES: f32 = 560.0;
 /// Height of the desk from which calibrations and gates, or degrees and timing, lie under each other.
 const TALL_FROM: f32 = 860.0;
 /// Heights of panels that are not to be scrolled.
-const FEEDBACK: f32 = 440.0;
-const CALIBRATIONS: f32 = 218.0;
+const FEEDBACK: f32 = 430.0;
+const CALIBRATIONS: f32 = 212.0;
 const HORIZON: f32 = 288.0;
 const DEGREES: f32 = 312.0;
 
@@ -214,6 +216,9 @@ fn default_for(size: Vec2) -> Node {
     let middle = (size.x - KNOBS - FIGURES).max(200.0);
     let height = size.y.max(200.0);
     let traces = (0.47 * height).clamp(250.0, 492.0);
+    if middle < TRACES {
+        return narrow(size.x.max(KNOBS + FIGURES + 200.0), height, traces);
+    }
     let [left, right] = if height >= TALL_FROM { tall_sides(height) } else { short_sides(height) };
     let under = if middle > FORCE_SPACE_FROM {
         row(vec![
@@ -225,6 +230,17 @@ fn default_for(size: Vec2) -> Node {
     };
     let between = column(vec![(height - traces, tabs(&[Panel::Field])), (traces, under)]);
     row(vec![(KNOBS, left), (middle, between), (FIGURES, right)])
+}
+
+/// Where the traces have no room between two columns: the figures stand beside the field, and the traces under both.
+fn narrow(width: f32, height: f32, traces: f32) -> Node {
+    let [left, _] = short_sides(height);
+    let above = row(vec![
+        (width - KNOBS - FIGURES, tabs(&[Panel::Field])),
+        (FIGURES, tabs(&[Panel::Horizon, Panel::Degrees, Panel::Timing, Panel::Tradeoff])),
+    ]);
+    let under = tabs(&[Panel::Traces, Panel::Safety, Panel::ForceSpace]);
+    row(vec![(KNOBS, left), (width - KNOBS, column(vec![(height - traces, above), (traces, under)]))])
 }
 
 fn tall_sides(height: f32) -> [Node; 2] {

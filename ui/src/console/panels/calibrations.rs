@@ -35,7 +35,9 @@ pub fn calibrations_ui(ui: &mut Ui, live: &Live, in_force: &InForce, open: Optio
     let free = matches!(live.state(), LoopState::Idle | LoopState::Engaged);
     for which in Which::ALL {
         let text = format!("Calibrate {}...", which.name().to_lowercase());
-        let button = Button::selectable(open == Some(which), text).min_size(vec2(ui.available_width(), 28.0));
+        let button = Button::selectable(open == Some(which), text)
+            .frame_when_inactive(true)
+            .min_size(vec2(ui.available_width(), 28.0));
         let response = ui.add_enabled(free && open != Some(which), button);
         let response = response.on_hover_text(format!("{} The loop is set to idle.", which.meaning()));
         if response.on_disabled_hover_text("Already open, or the loop has stopped: release it first.").clicked() {

@@ -11,6 +11,7 @@ pub mod horizon;
 pub mod safety;
 mod stable_gain;
 pub mod timing;
+mod timing_bars;
 pub mod top_bar;
 pub mod tradeoff;
 mod tradeoff_plot;
@@ -24,7 +25,7 @@ pub use forces::{ForcesState, forces_ui, gauge};
 pub use gates::{GatesState, gates_ui, why_no_force};
 pub use horizon::horizon_ui;
 pub use safety::safety_ui;
-pub use timing::timing_ui;
+pub use timing::{TimingState, timing_ui};
 pub use top_bar::{TopBarState, top_bar_ui};
 pub use tradeoff::{TradeoffState, tradeoff_ui};
 

@@ -15,6 +15,9 @@ use crate::console::{
     widgets::{bar, card, small},
 };
 
+/// With less height than this the force space is left out.
+const LEAST_SPACE: f32 = 190.0;
+
 /// One scene of the script.
 #[derive(Debug)]
 pub struct Step {
@@ -153,6 +156,9 @@ pub(super) fn demo_ui(ui: &mut Ui, live: &mut Live, panels: &mut Panels, outbox:
         card(ui, panel.title(), panel.meaning(), |ui| horizon_ui(ui, live));
         let Panels { forces, space, .. } = panels;
         let room = vec2(ui.available_width(), ui.available_height().min(380.0));
+        if room.y < LEAST_SPACE {
+            return;
+        }
         ui.allocate_ui(room, |ui| force_space_ui(ui, live, forces.side(), space, forces.cursor_at_s(live)));
     });
     CentralPanel::no_frame().show(ui, |ui| {

@@ -17,7 +17,7 @@ use super::{
     in_force::InForce,
     live::Live,
     outbox::Outbox,
-    panels::{CalibrationWish, FeedbackState, ForceSpaceState, ForcesState, GatesState, TradeoffState},
+    panels::{CalibrationWish, FeedbackState, ForceSpaceState, ForcesState, GatesState, TimingState, TradeoffState},
     scene3d::{Look, SceneView},
     settings::Settings,
 };
@@ -84,6 +84,8 @@ pub struct Panels {
     pub scene: SceneView,
     /// Whose gates are told.
     pub gates: GatesState,
+    /// Histograms of the loop's durations.
+    pub timing: TimingState,
     /// The technician's tiles.
     pub desk: Desk,
     /// Where the demonstration is.

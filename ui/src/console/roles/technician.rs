@@ -40,7 +40,7 @@ pub(super) fn technician_ui(
         Panel::Safety => safety_ui(ui, live),
         Panel::Horizon => horizon_ui(ui, live),
         Panel::Degrees => degrees_ui(ui, live),
-        Panel::Timing => timing_ui(ui, live),
+        Panel::Timing => timing_ui(ui, live, &mut panels.timing),
         Panel::Tradeoff => wishes.restart = tradeoff_ui(ui, live, &mut panels.tradeoff, outbox),
     });
     panels.desk = desk;

@@ -162,7 +162,7 @@ fn the_histograms_tell_the_deadline_and_a_bar_is_read_under_the_pointer() {
     // The bars are counted anew four times a second.
     harness.run_steps(12);
     let bars = harness.get_by_label_contains("Work histogram: ").rect();
-    assert_eq!(harness.query_all_by_label_contains("later than the deadline of 1000 us").count(), 2);
+    assert_eq!(harness.query_all_by_label_contains("later than the deadline of 1000 us").count(), 3);
     harness.get_by_label_contains("Missed in the last 2 min: ");
     // The first tenth of the histogram: up to 125 us.
     harness.hover_at(bars.left_top() + vec2(0.06 * bars.width(), 20.0));

@@ -10,7 +10,7 @@ use nima::{
     config::{Rig, Scene},
     device::{Healths, Roster, SIDES, Side},
     impedance::Mode,
-    runtime::{Command, Event, Fault, Handle, Scheduling, Tick},
+    runtime::{Command, Event, Fault, Scheduling, Tick},
     safety::ChainSettings,
     statistics::{Percentiles, Quantiles},
     teleop::LoopState,
@@ -20,6 +20,7 @@ use super::{
     alarms::Signs,
     cloud::Cloud,
     deadlines::Deadlines,
+    door::{Door, News},
     history::{CHANNELS, History},
     readings::{Change, Figures, Gates},
     rolling::{DegreeShares, Fading},
@@ -97,6 +98,7 @@ pub struct Live {
     frame_work: Fading,
     wake: Percentiles,
     work: Percentiles,
+    sample_to_force: Percentiles,
     trail_s: [f64; SIDES],
     ticks_counted: u64,
     figures_at: Instant,
@@ -142,6 +144,7 @@ impl Live {
             frame_work: Fading::default(),
             wake: Percentiles::new(),
             work: Percentiles::new(),
+            sample_to_force: Percentiles::new(),
             trail_s: [f64::NEG_INFINITY; SIDES],
             ticks_counted: 0,
             figures_at: now,
@@ -152,16 +155,20 @@ impl Live {
     }
 
     /// Takes in all that waits at the loop's door; `each` sees every tick of the right arm pair.
-    pub fn take_in(&mut self, handle: &Handle, mut each: impl FnMut(&Tick)) {
+    pub fn take_in(&mut self, door: &Door, mut each: impl FnMut(&Tick)) {
+        let handle = door.handle();
         if self.roster.len() != handle.roster().len() {
             self.roster.clone_from(handle.roster());
         }
         if let Some(healths) = handle.healths() {
             self.healths = healths;
         }
-        handle.drain_events(|event| self.event(event));
         let mut came = false;
-        handle.drain_ticks(|tick| {
+        door.take(|news| {
+            let tick = match news {
+                News::Event(event) => return self.event(event),
+                News::Tick(tick) => tick,
+            };
             match tick.side {
                 Side::Right => {
                     self.tick(tick);
@@ -181,6 +188,11 @@ impl Live {
         self.refresh_figures();
     }
 
+    /// What moves all the time is drawn anew at most this often, s: on a slow computer every second frame.
+    pub const fn least_step_s(&self) -> f64 {
+        if self.rough_edges { 1.0 / 15.0 } else { 0.0 }
+    }
+
     /// Takes in how long the console's own frames take: from the last to this one, and its work (s).
     pub fn frame(&mut self, period_s: f64, work_s: Option<f64>) {
         self.frames.record(period_s);
@@ -195,6 +207,11 @@ impl Live {
     /// Work of every tick since the window opened.
     pub const fn work(&self) -> &Percentiles {
         &self.work
+    }
+
+    /// From the arrival of a measurement to when the force made from it was given to the device.
+    pub const fn sample_to_force(&self) -> &Percentiles {
+        &self.sample_to_force
     }
 
     /// Marks this moment.
@@ -315,6 +332,9 @@ impl Live {
         }
         self.wake.record(tick.wake_s);
         self.work.record(tick.work_s);
+        if let Some(seconds) = tick.sample_to_force_s {
+            self.sample_to_force.record(seconds);
+        }
         self.ticks_counted += 1;
     }
 
@@ -352,6 +372,7 @@ impl Live {
             horizon_n: self.horizon.map(Fading::get),
             wake_us: self.wake.quantiles(),
             work_us: self.work.quantiles(),
+            sample_to_force_us: self.sample_to_force.quantiles(),
             rate_hz: self.ticks_counted as f64 / since.as_secs_f64(),
             frame_ms: {
                 let Quantiles { p50, p99, .. } = self.frames.quantiles();

@@ -39,6 +39,13 @@ fn timings(live: &Live) -> Vec<Timing<'_>> {
             durations: live.work(),
             deadline_us,
         },
+        Timing {
+            name: "Sample to force",
+            meaning: "From the arrival of the oldest measurement to when the force made from it was given to the handle (us).",
+            quantiles: live.figures.sample_to_force_us,
+            durations: live.sample_to_force(),
+            deadline_us,
+        },
     ]
 }
 

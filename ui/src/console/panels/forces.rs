@@ -64,6 +64,11 @@ impl Default for ForcesState {
 }
 
 impl ForcesState {
+    /// Shows this side's forces.
+    pub fn of(side: Side) -> Self {
+        Self { side, ..Self::default() }
+    }
+
     /// Shows the last so many seconds.
     pub fn show_last(&mut self, seconds: f64) {
         if seconds.is_finite() {

@@ -72,7 +72,9 @@ fn ours(runs: &mut Vec<Vec<f64>>) {
     let ctx = Context::default();
     theme::apply(&ctx);
     let mut states = Side::ALL.map(ForcesState::of);
-    states.iter_mut().for_each(|state| state.show_last(SECONDS));
+    for state in &mut states {
+        state.show_last(SECONDS);
+    }
     for _ in 0..RUNS {
         let run = (0..FRAMES).map(|number| {
             fill(&mut live, now_s, now_s + FRAME_S);

@@ -181,12 +181,16 @@ pub enum LeaderMount {
 impl Teleoperation {
     /// The mapping; the default one where the numbers are none ([`Rig::validate`] refuses them).
     pub fn mapping(&self) -> Mapping {
-        let kbf_from_view = from_roll_pitch_yaw_deg(&self.kbf_from_view_deg);
+        self.seen(&from_roll_pitch_yaw_deg(&self.kbf_from_view_deg), self.scale)
+    }
+
+    /// The mapping by an endoscope that looks so; the default one where the numbers are none.
+    pub fn seen(&self, kbf_from_view: &UnitQuaternion<f64>, scale: f64) -> Mapping {
         let view_from_leader = match self.leader {
             LeaderMount::Workspace => UnitQuaternion::identity(),
             LeaderMount::Omega => view_from_omega(),
         };
-        Mapping::new(&kbf_from_view, &view_from_leader, self.scale).unwrap_or_default()
+        Mapping::new(kbf_from_view, &view_from_leader, scale).unwrap_or_default()
     }
 }
 

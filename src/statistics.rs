@@ -25,6 +25,15 @@ pub struct Quantiles {
     pub max: f64,
 }
 
+/// One bar of a histogram.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Bar {
+    /// Where it ends, us.
+    pub to_us: f64,
+    /// How many there are in it.
+    pub count: u64,
+}
+
 impl Default for Percentiles {
     fn default() -> Self {
         Self::new()
@@ -57,6 +66,16 @@ impl Percentiles {
         Quantiles { p50: at(0.5), p99: at(0.99), p999: at(0.999), max: self.histogram.max() as f64 * 1e-3 }
     }
 
+    /// Counts in bars that double in length, from 1 us to the largest; none where nothing was recorded.
+    pub fn histogram(&self) -> Vec<Bar> {
+        let bars = self.histogram.iter_log(1000, 2.0);
+        let bars = bars.map(|bar| Bar {
+            to_us: (bar.value_iterated_to() + 1) as f64 * 1e-3,
+            count: bar.count_since_last_iteration(),
+        });
+        if self.count() == 0 { Vec::new() } else { bars.collect() }
+    }
+
     /// Counts in `buckets` equal steps of `step_us`, the last one holding all that is longer.
     pub fn bars(&self, step_us: f64, buckets: usize) -> Vec<u64> {
         let mut bars = vec![0; buckets.max(1)];
@@ -81,6 +100,12 @@ mod tests {
         let q = percentiles.quantiles();
         assert!((q.p50 - 500.0).abs() < 2.0 && (q.p99 - 990.0).abs() < 2.0 && (q.max - 1000.0).abs() < 2.0, "{q:?}");
         assert_eq!(percentiles.bars(100.0, 5).iter().sum::<u64>(), 1000);
+        let bars = percentiles.histogram();
+        assert_eq!(bars.iter().map(|bar| bar.count).sum::<u64>(), 1000);
+        // 1, 2, 4 ... us: what is longer than 511 and at most 1000 lies in the last but one or the last.
+        assert!(bars.windows(2).all(|two| (two[1].to_us / two[0].to_us - 2.0).abs() < 1e-9), "{bars:?}");
+        assert!(bars.last().is_some_and(|bar| bar.to_us >= 1000.0 && bar.count >= 450), "{bars:?}");
+        assert_eq!(Percentiles::new().histogram(), []);
     }
 
     #[test]

@@ -1,11 +1,14 @@
 //! Two arm pairs in one loop: independent and together, clutch and presence, agreement and ramp, shared faults.
 #![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
 
-use nalgebra::Vector3;
+use std::cell::Cell;
+
+use nalgebra::{UnitQuaternion, Vector3};
 use nima::{
     config::{Rig, Scene},
-    device::{DeviceEvent, Inputs, Loss, Outputs, Rig as _, SIDES, Side, Standing, Switches},
+    device::{DeviceEvent, Inputs, Loss, Outputs, Rig as _, SIDES, Side, Standing, Switches, View},
     runtime::{Command, Event, Fault, Plan, Tick, run_virtual},
+    safety::Why,
     sim::Worlds,
     teleop::{Calibrations, Loop, LoopState, Timing},
 };
@@ -25,8 +28,11 @@ fn stepped(control: &mut Loop, inputs: &[Option<Inputs>; SIDES], tick: u64) -> (
 
 impl Bench {
     fn new() -> Self {
-        let rig = Rig::load("simulated").unwrap();
-        let mut control = Loop::new(&rig, &[Some(Calibrations::default()), Some(Calibrations::default())]).unwrap();
+        Self::of(&Rig::load("simulated").unwrap())
+    }
+
+    fn of(rig: &Rig) -> Self {
+        let mut control = Loop::new(rig, &[Some(Calibrations::default()), Some(Calibrations::default())]).unwrap();
         let mut worlds = Worlds::new(&Scene::load("bimanual").unwrap(), rig.rate_hz);
         let outputs = [Outputs::SAFE; SIDES];
         let inputs = worlds.exchange(0.0, &outputs);
@@ -218,4 +224,80 @@ fn a_scale_changes_the_way_and_never_the_place() {
     assert!((bench.outputs[0].tip_command_m.unwrap() - before_m).norm() < 0.31e-3, "no faster than it may be");
     bench.obey(Command::SetScale(7.0));
     assert!(bench.control.events().any(|event| matches!(event, Event::CommandRefused { .. })));
+}
+
+#[test]
+fn an_endoscope_that_is_tracked_turns_the_mapping_and_one_that_is_not_seen_keeps_hand_and_tip_apart() {
+    let mut bench = Bench::new();
+    let kbf_from_view = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), 0.7);
+    let by_side = |side: Side, inputs: Inputs| {
+        let view = if side == Side::Right { View::Seen(kbf_from_view) } else { View::Unseen };
+        Some(Inputs { view, ..inputs })
+    };
+    bench.run(10, by_side);
+    bench.obey(Command::Engage);
+    bench.run(10, by_side);
+    assert_eq!(bench.states(), [LoopState::Engaged, LoopState::Ready]);
+    let mut moved_m = 0.0;
+    let mut before: Option<(Vector3<f64>, Vector3<f64>)> = None;
+    let hand_m = Cell::new(Vector3::zeros());
+    for _ in 0..1500 {
+        bench.step(|side, inputs| {
+            if side == Side::Right {
+                hand_m.set(inputs.hand.position_m);
+            }
+            by_side(side, inputs)
+        });
+        let leader_m = bench.ticks[0].leader_m;
+        if let Some((hand_before_m, leader_before_m)) = before {
+            let [hand_m, leader_m] = [hand_m.get() - hand_before_m, leader_m - leader_before_m];
+            assert!((leader_m - kbf_from_view * hand_m).norm() < 1e-9, "{hand_m} {leader_m}");
+            moved_m += hand_m.norm();
+        }
+        before = Some((hand_m.get(), leader_m));
+    }
+    assert!(moved_m > 0.01, "{moved_m}");
+    bench.run(1000, by_side);
+    assert_eq!(bench.states()[1], LoopState::Idle, "it was not joined in time");
+}
+
+#[test]
+fn a_handle_that_flies_off_is_an_absent_hand_and_nothing_resumes() {
+    let mut rig = Rig::load("simulated").unwrap();
+    rig.gates.handle_kg = 0.25;
+    rig.gates.static_hold = true;
+    let mut bench = Bench::of(&rig);
+    bench.obey(Command::SetGainAboveOne(2.0));
+    bench.obey(Command::Engage);
+    let mut pressed = 0;
+    while pressed < 30 {
+        bench.step(AS_IT_IS);
+        pressed = if bench.ticks[0].rendered_n.norm() > 2.5 { pressed + 1 } else { 0 };
+        assert!(bench.tick < 20_000, "the scene presses");
+    }
+    let (mut way_m, mut speed_m_s) = (Vector3::zeros(), Vector3::<f64>::zeros());
+    for after in 1..=15 {
+        speed_m_s += bench.outputs[0].hand_force_n * (1e-3 / rig.gates.handle_kg);
+        way_m += speed_m_s * 1e-3;
+        bench.control.clear_events();
+        bench.step(|side, mut inputs| {
+            if side == Side::Right {
+                inputs.hand.position_m += way_m;
+            }
+            Some(inputs)
+        });
+        let change = bench.control.events().find_map(|event| match *event {
+            Event::StateChanged { side: Side::Right, to, why, .. } => Some((to, why)),
+            _ => None,
+        });
+        if let Some(change) = change {
+            assert_eq!(change, (LoopState::Idle, Why::Absent), "after {after} ms");
+            assert!(after >= 5 && way_m.norm() < 1.5e-3, "after {after} ms, {way_m}");
+            assert_eq!(bench.outputs[0].hand_force_n.norm().to_bits(), 0);
+            bench.run(500, AS_IT_IS);
+            assert_eq!(bench.states(), [LoopState::Idle, LoopState::Engaged]);
+            return;
+        }
+    }
+    panic!("nobody noticed that the hand had gone");
 }

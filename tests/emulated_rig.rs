@@ -8,14 +8,18 @@ mod emulated;
 use std::time::{Duration, Instant};
 
 use emulated::{alone, elsewhere, started};
-use nalgebra::Vector3;
+use nalgebra::{UnitQuaternion, Vector3};
 use nima::{
     config::{Rig, Scene},
     device::{
-        Device, Side, Standing, Trouble, bota, dynamixel, force_dimension, hid, kinova, ndi,
-        rig::{ArmSet, Settings},
+        Device, Outputs, Rig as _, SIDES, Side, Standing, Trouble, View, bota, dynamixel,
+        emulation::EmulatedFault,
+        force_dimension, hid, kinova, ndi,
+        rig::{ArmSet, DeviceRig, Settings},
     },
+    frames::from_roll_pitch_yaw_deg,
     kinematics::{Arm, Inverse, Rcm, find},
+    signal::PidGains,
     sim::emulated::{EmulatedRig, HandFrame},
 };
 
@@ -141,7 +145,14 @@ fn pressed(rig: &EmulatedRig, set: &ArmSet) -> Option<[Vec<Vector3<f64>>; 2]> {
 fn the_sensor_feels_what_the_arm_presses() {
     let _alone = alone();
     let folder = tempfile::tempdir().unwrap();
-    let devices = Settings { left: None, tissue_sensor: None, tracker: None, pedal: None, ..elsewhere(folder.path()) };
+    let devices = Settings {
+        left: None,
+        tissue_sensor: None,
+        tracker: None,
+        endoscope: None,
+        pedal: None,
+        ..elsewhere(folder.path())
+    };
     let felt = (0..ATTEMPTS).find_map(|_| pressed(&started(&devices), devices.right.as_ref().unwrap()));
     let [pressing, after] = felt.expect("the devices were lost every time");
     let mean = |forces: &[Vector3<f64>]| forces.iter().sum::<Vector3<f64>>() / forces.len() as f64;
@@ -169,5 +180,102 @@ fn both_arms_of_the_embedded_rigs_reach_all_of_their_space() {
             assert!(ready.reached >= 1.0 && ready.limit_margin_rad > 0.5, "{name} {side:?}: {ready:?}");
             assert!(ready.dexterity > 0.1 && ready.clearance_m > 0.15, "{name} {side:?}: {ready:?}");
         }
+    }
+}
+
+#[test]
+fn the_tracker_tells_how_the_endoscope_looks_whatever_the_rig_file_has() {
+    let _alone = alone();
+    let folder = tempfile::tempdir().unwrap();
+    let devices = elsewhere(folder.path());
+    let emulated = started(&devices);
+    let truth = Rig::load("emulated").unwrap().teleoperation;
+    let kbf_from_view = from_roll_pitch_yaw_deg(&truth.kbf_from_view_deg);
+    let (mut rig, _) = DeviceRig::start(&devices, 1e-3, [false; SIDES]).unwrap();
+    let begin = Instant::now();
+    let mut seen = [None; SIDES];
+    while seen.iter().any(Option::is_none) && begin.elapsed() < Duration::from_secs(10) {
+        let inputs = rig.exchange(begin.elapsed().as_secs_f64(), &[Outputs::SAFE; SIDES]);
+        for side in Side::ALL {
+            if let Some(View::Seen(view)) = inputs[side.index()].map(|inputs| inputs.view) {
+                seen[side.index()] = Some(view.angle_to(&kbf_from_view).to_degrees());
+            }
+        }
+        std::thread::sleep(Duration::from_millis(1));
+    }
+    assert!(seen.iter().all(|apart_deg| apart_deg.is_some_and(|deg| deg < 0.5)), "{seen:?} degrees apart");
+    // The unit is blind: nobody guesses how the endoscope looks.
+    assert!(emulated.set_fault("tracker", EmulatedFault::Silence));
+    let blind = |rig: &mut DeviceRig| {
+        let inputs = rig.exchange(begin.elapsed().as_secs_f64(), &[Outputs::SAFE; SIDES]);
+        inputs.iter().flatten().count() == SIDES && inputs.iter().flatten().all(|inputs| inputs.view == View::Unseen)
+    };
+    let since = Instant::now();
+    while !blind(&mut rig) {
+        assert!(since.elapsed() < Duration::from_secs(3));
+        std::thread::sleep(Duration::from_millis(1));
+    }
+}
+
+/// How far the jaws are at each moment from where they are asked to be, root mean square, degrees, while they turn in all three ways
+/// against the pull of their cables; and how late they come, s. `None`: devices were away too long.
+fn jaws_in_motion(devices: &Settings) -> Option<(f64, f64)> {
+    let (mut rig, _) = DeviceRig::start(devices, 1e-3, [false; SIDES]).unwrap();
+    let begin = Instant::now();
+    let mut outputs = [Outputs::SAFE; SIDES];
+    let mut home = None;
+    let mut way: Vec<(UnitQuaternion<f64>, UnitQuaternion<f64>)> = Vec::new();
+    let mut since_s = 0.0;
+    while way.len() < 4000 {
+        let now_s = begin.elapsed().as_secs_f64();
+        let jaws = rig.exchange(now_s, &outputs)[0].and_then(|inputs| inputs.kbf_from_jaws);
+        if now_s > 15.0 {
+            return None;
+        }
+        if let Some(jaws) = jaws {
+            let home: UnitQuaternion<f64> = *home.get_or_insert_with(|| {
+                since_s = now_s;
+                jaws
+            });
+            let t_s = now_s - since_s;
+            let turn = Vector3::new(0.3 * (3.0 * t_s).sin(), 0.25 * (2.2 * t_s).sin(), 0.35 * (2.7 * t_s).sin());
+            let asked = home * UnitQuaternion::from_scaled_axis(turn);
+            outputs[0] = Outputs { drives: true, kbf_from_jaws: Some(asked), ..Outputs::SAFE };
+            way.push((asked, jaws));
+        }
+        std::thread::sleep(Duration::from_millis(1));
+    }
+    // The first second is for the integral to find the pull.
+    let rms_deg = |late: usize| {
+        let pairs = way[..way.len() - late].iter().zip(&way[late..]).skip(1000);
+        let (sum, count) = pairs.fold((0.0, 0.0), |(sum, count), ((asked, _), (_, jaws))| {
+            (sum + asked.angle_to(jaws).to_degrees().powi(2), count + 1.0)
+        });
+        f64::sqrt(sum / count)
+    };
+    let late = (0..150).min_by(|a, b| rms_deg(*a).total_cmp(&rms_deg(*b))).unwrap();
+    Some((rms_deg(0), late as f64 * (begin.elapsed().as_secs_f64() - since_s) / way.len() as f64))
+}
+
+#[test]
+fn the_pid_holds_the_jaws_in_motion_against_their_cables() {
+    let _alone = alone();
+    let folder = tempfile::tempdir().unwrap();
+    let all = elsewhere(folder.path());
+    let with_pid = Settings { left: None, tissue_sensor: None, tracker: None, endoscope: None, pedal: None, ..all };
+    let mut without = with_pid.clone();
+    let gains = &mut without.right.as_mut().unwrap().jaws.pid;
+    *gains = PidGains { proportional: 0.0, integral_per_s: 0.0, derivative_s: 0.0, integral_max: 0.0 };
+    let _emulated = started(&with_pid);
+    for attempt in 1..=ATTEMPTS {
+        let [with_pid, without] = [&with_pid, &without].map(jaws_in_motion);
+        println!("RMS error (degrees) and lateness (s) with PID {with_pid:?}, without {without:?}");
+        if let (Some((with_deg, _)), Some((without_deg, _))) = (with_pid, without)
+            && with_deg < 3.0
+            && with_deg < 0.8 * without_deg
+        {
+            return;
+        }
+        assert!(attempt < ATTEMPTS, "{with_pid:?} {without:?}");
     }
 }

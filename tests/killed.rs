@@ -62,7 +62,14 @@ impl Drop for Killed {
 fn a_killed_process_leaves_no_force_in_the_hand() {
     let _alone = alone();
     let folder = tempfile::tempdir().unwrap();
-    let devices = Settings { left: None, tissue_sensor: None, tracker: None, pedal: None, ..elsewhere(folder.path()) };
+    let devices = Settings {
+        left: None,
+        tissue_sensor: None,
+        tracker: None,
+        endoscope: None,
+        pedal: None,
+        ..elsewhere(folder.path())
+    };
     let rig = started(&devices);
     let truth = || rig.truth(Side::Right).unwrap();
     let loop_of_another_process = || {

@@ -179,7 +179,7 @@ fn silence_and_faults_of_every_device_are_told() {
 fn what_somebody_else_holds_and_what_waits_for_calibration_are_told() {
     let _alone = alone();
     let folder = tempfile::tempdir().unwrap();
-    let mut devices = Settings { left: None, tracker: None, pedal: None, ..elsewhere(folder.path()) };
+    let mut devices = Settings { left: None, tracker: None, endoscope: None, pedal: None, ..elsewhere(folder.path()) };
     let rig = started(&devices);
     let right = devices.right.as_ref().unwrap();
     let held = (bota::Driver::open(&right.sensor).unwrap(), force_dimension::open(&right.handle).unwrap());

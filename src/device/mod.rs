@@ -59,6 +59,18 @@ pub struct Switches {
     pub presence: Option<bool>,
 }
 
+/// How the endoscope looks, by which the hand's motion becomes the tip's.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum View {
+    /// As the rig file has it.
+    #[default]
+    Fixed,
+    /// A tracker should see it and does not: hand and tip cannot be joined.
+    Unseen,
+    /// `kbf_from_view` as a tracker sees it.
+    Seen(UnitQuaternion<f64>),
+}
+
 /// One exchange's worth of measurements of an arm pair.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Inputs {
@@ -74,6 +86,8 @@ pub struct Inputs {
     pub kbf_from_jaws: Option<UnitQuaternion<f64>>,
     /// What the force sensor says.
     pub sensed: Sensed,
+    /// How the endoscope looks.
+    pub view: View,
     /// Clutch and presence.
     pub switches: Switches,
     /// The drives obey: the arm follows commands, the handle's motors are on.
@@ -95,6 +109,7 @@ impl Inputs {
             && self.kbf_from_jaws.is_none_or(|q| q.coords.iter().all(|x| x.is_finite()))
             && self.gripper_rad.is_none_or(f64::is_finite)
             && self.grip_n.is_none_or(f64::is_finite)
+            && !matches!(self.view, View::Seen(q) if !q.coords.iter().all(|x| x.is_finite()))
             && self.age_s.is_finite()
     }
 }
@@ -154,10 +169,19 @@ pub trait Device: Send {
 
 /// Leaders, followers and force sensors that belong together, a pair for each side. Owned by the real-time thread.
 pub trait Rig: Send {
-    /// Applies `outputs` and gives the newest measurements at loop time `now_s`; `None` when there are none.
+    /// Gives the newest measurements at loop time `now_s`; `None` when there are none. Applies `outputs`, unless
+    /// [`Rig::apply`] already did.
     ///
     /// Must not block and must not allocate.
     fn exchange(&mut self, now_s: f64, outputs: &[Outputs; SIDES]) -> [Option<Inputs>; SIDES];
+
+    /// Sends what the loop has just made on its way, so that a force does not wait for the next period. A simulated world
+    /// takes it with the next exchange, as if it had held since this tick.
+    ///
+    /// Must not block and must not allocate.
+    fn apply(&mut self, now_s: f64, outputs: &[Outputs; SIDES]) {
+        let _ = (now_s, outputs);
+    }
 
     /// A device that came or went since the last call; call until `None`. Rigs without devices have none.
     fn event(&mut self) -> Option<DeviceEvent> {

@@ -30,14 +30,13 @@ pub fn view_from_omega() -> UnitQuaternion<f64> {
     UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix_unchecked(matrix))
 }
 
-/// `kbf_from_view` by the tracker `c`, which sees the marker `m` on the arm's instrument and another one, `n`, on the endoscope.
+/// `kbf_from_view` by the tracker `c`, which sees the marker `m` on the arm's instrument and another one on the endoscope.
 pub fn kbf_from_tracked_view(
     kbf_from_m: &UnitQuaternion<f64>,
-    c_from_m: &UnitQuaternion<f64>,
-    c_from_n: &UnitQuaternion<f64>,
-    n_from_view: &UnitQuaternion<f64>,
+    m_from_c: &UnitQuaternion<f64>,
+    c_from_view: &UnitQuaternion<f64>,
 ) -> UnitQuaternion<f64> {
-    kbf_from_m * c_from_m.inverse() * c_from_n * n_from_view
+    kbf_from_m * m_from_c * c_from_view
 }
 
 /// Which way and how far the tip goes when the hand moves.
@@ -248,7 +247,7 @@ mod tests {
             [turn(10.0, 40.0, -70.0), turn(-100.0, 5.0, 33.0), turn(0.0, 30.0, 4.0)];
         let c_from_m = kbf_from_c.inverse() * kbf_from_m;
         let c_from_n = kbf_from_c.inverse() * looking_down() * n_from_view.inverse();
-        let seen = kbf_from_tracked_view(&kbf_from_m, &c_from_m, &c_from_n, &n_from_view);
+        let seen = kbf_from_tracked_view(&kbf_from_m, &c_from_m.inverse(), &(c_from_n * n_from_view));
         assert!(seen.angle_to(&looking_down()) < 1e-12);
     }
 

@@ -102,6 +102,9 @@ pub struct Tick {
     pub wake_s: f64,
     /// How long the tick before this one worked, s.
     pub work_s: f64,
+    /// From the arrival of the oldest measurement of the tick before this one to when its force was given to the device, s;
+    /// `None`: it had no measurement, or the clock is virtual.
+    pub sample_to_force_s: Option<f64>,
     /// Periods missed so far.
     pub missed: u64,
     /// Ticks that did not reach the screen because its queue was full, so far.

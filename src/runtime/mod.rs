@@ -12,7 +12,7 @@ mod virtual_clock;
 
 pub use messages::{Command, Event, Fault, Tick};
 pub use os::Scheduling;
-pub use summary::{CpuShare, DeviceFigures, ModeError, Summary};
+pub use summary::{CpuShare, DeviceFigures, Histograms, ModeError, Summary};
 pub use supervisor::STALL_MAX_S;
 pub use thread::{Handle, StartError, start, start_on};
 pub use virtual_clock::run_virtual;

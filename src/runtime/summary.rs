@@ -6,7 +6,7 @@ use super::Scheduling;
 use crate::{
     device::{Health, Side},
     impedance::Mode,
-    statistics::{Percentiles, Quantiles},
+    statistics::{Bar, Percentiles, Quantiles},
     teleop::{Loop, Pair},
 };
 
@@ -46,6 +46,19 @@ pub struct DeviceFigures {
     pub health: Health,
 }
 
+/// Counts of durations; each bar holds those up to its end and above the end of the bar before.
+#[derive(Clone, Debug, Default, Serialize)]
+pub struct Histograms {
+    /// Lateness of wake-ups.
+    pub wake: Vec<Bar>,
+    /// Work of one tick.
+    pub work: Vec<Bar>,
+    /// Exchange with the rig.
+    pub rig: Vec<Bar>,
+    /// From measurement to force.
+    pub sample_to_force: Vec<Bar>,
+}
+
 /// Timing and error figures of a run.
 #[derive(Clone, Debug, Serialize)]
 pub struct Summary {
@@ -67,8 +80,11 @@ pub struct Summary {
     pub work_us: Quantiles,
     /// Exchange with the rig (devices or simulation), us.
     pub rig_us: Quantiles,
-    /// Time from the arrival of the oldest measurement to the force made from it, us; zero in a simulation but for the work.
+    /// Time from the arrival of the oldest measurement to when the force made from it was given to the device, us; in a simulation
+    /// the loop's own time alone.
     pub sample_to_force_us: Quantiles,
+    /// The same four as histograms.
+    pub histograms: Histograms,
     /// Processor time; zero on the virtual clock.
     pub cpu: CpuShare,
     /// What the operating system granted.
@@ -122,6 +138,12 @@ impl Meters {
             work_us: self.work.quantiles(),
             rig_us: self.rig.quantiles(),
             sample_to_force_us: self.sample_to_force.quantiles(),
+            histograms: Histograms {
+                wake: self.wake.histogram(),
+                work: self.work.histogram(),
+                rig: self.rig.histogram(),
+                sample_to_force: self.sample_to_force.histogram(),
+            },
             cpu: CpuShare::default(),
             devices: Vec::new(),
             scheduling,

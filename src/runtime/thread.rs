@@ -228,15 +228,20 @@ impl Realtime {
             self.control.obey(Command::Engage, timing.now_s);
         }
         let (next, ticks) = self.control.step(inputs, timing);
-        self.pulse.beat(os::monotonic_ns(), next.iter().any(|outputs| outputs.drives));
         let worked_ns = os::monotonic_ns();
+        self.rig.apply(timing.now_s, &next);
+        let applied_ns = os::monotonic_ns();
+        self.pulse.beat(applied_ns, next.iter().any(|outputs| outputs.drives));
         timing.work_s = (worked_ns - exchanged_ns) as f64 * 1e-9;
         self.meters.wake.record(timing.wake_s);
-        self.meters.rig.record((exchanged_ns - woke_ns) as f64 * 1e-9);
+        self.meters.rig.record((exchanged_ns - woke_ns + applied_ns - worked_ns) as f64 * 1e-9);
         self.meters.work.record(timing.work_s);
-        let age_s = inputs.iter().flatten().map(|inputs| inputs.age_s).fold(0.0, f64::max);
-        if inputs.iter().any(Option::is_some) {
-            self.meters.sample_to_force.record(age_s + (worked_ns - woke_ns) as f64 * 1e-9);
+        timing.sample_to_force_s = inputs.iter().any(Option::is_some).then(|| {
+            let age_s = inputs.iter().flatten().map(|inputs| inputs.age_s).fold(0.0, f64::max);
+            age_s + (applied_ns - woke_ns) as f64 * 1e-9
+        });
+        if let Some(seconds) = timing.sample_to_force_s {
+            self.meters.sample_to_force.record(seconds);
         }
         self.meters.ticks += 1;
         for event in self.control.events() {

@@ -142,7 +142,7 @@ impl<const D: usize> Chain<D> {
         report.note(Gate::Age, age);
         report.note(Gate::Gain, ramp);
         let aged_n = admitted.unwrap_or_else(|_| SVector::zeros()) * fresh;
-        let hand = self.release.step(request.hand_m, &self.slew.last_n(), &aged_n);
+        let hand = self.release.step(request.hand_m, &self.slew.last_n());
         report.note(Gate::Release, hand);
         let moving_n = self.past_dead_band(aged_n, request.speed_m_s, report);
         if !request.permitted {

@@ -53,7 +53,7 @@ pub struct ChainSettings {
     pub static_hold: bool,
     /// What the energy gate does.
     pub energy: EnergyMode,
-    /// Apparent mass of the handle alone, kg, by which an opened hand is told; 0: not known, then it is not.
+    /// Apparent mass of the handle alone, kg, by which an opened hand is told (the loop then rests); 0: not known, then it is not.
     pub handle_kg: f64,
 }
 

@@ -28,7 +28,7 @@ pub use worlds::Worlds;
 
 use crate::{
     config::{Follower, Leader, Scene},
-    device::{Inputs, Outputs, Prompt, Sensed, Switches},
+    device::{Inputs, Outputs, Prompt, Sensed, Switches, View},
     kinematics,
 };
 
@@ -230,6 +230,7 @@ impl World {
             tip_m: self.tip_m,
             kbf_from_jaws: None,
             sensed,
+            view: View::Fixed,
             switches: Switches::default(),
             powered: true,
             age_s: 0.0,

@@ -48,6 +48,8 @@ pub(super) struct Trial {
     pub(super) tissue: TissueConfig,
     /// Amplitude of the hand's tremor, m.
     pub(super) tremor_m: f64,
+    /// What the device's brakes add to the handle's own friction when the loop has found no hand and rests, N s/m.
+    pub(super) brake_n_s_m: f64,
     pub(super) seed: u64,
 }
 
@@ -179,8 +181,9 @@ impl Pair {
 
     fn move_handle(&mut self, intended_m: &Vector3<f64>) {
         let dt_s = 1.0 / (RATE_HZ * f64::from(SUBSTEPS));
-        let (mass_kg, grip_n_m, brake_n_s_m) =
+        let (mass_kg, grip_n_m, friction_n_s_m) =
             if self.gripped { (GRIP_KG, GRIP_N_M, GRIP_N_S_M) } else { (HANDLE_KG, 0.0, HANDLE_N_S_M) };
+        let brake_n_s_m = friction_n_s_m + if self.report.released { self.trial.brake_n_s_m } else { 0.0 };
         for _ in 0..SUBSTEPS {
             let hand_n = (intended_m - self.handle_m) * grip_n_m - self.handle_m_s * brake_n_s_m;
             self.handle_m_s += (hand_n + self.force_n) * (dt_s / mass_kg);

@@ -2,7 +2,8 @@
 //!
 //! Takes nothing; gives a [`Report`] for every mode and delay, in two situations (held for two seconds, and let go while still
 //! pressing), without gates, with the gates but the one that tells an opened hand, and with all of them. The path of the handle
-//! is compared with the one it would have gone without any force: what the hand's own swing did is no kick.
+//! is compared with the one it would have gone without any force: what the hand's own swing did is no kick. When a hand is found gone
+//! the loop rests and the device brakes; how strongly is told nowhere, so the way is given over the brakes' viscosity.
 
 mod present;
 
@@ -26,6 +27,8 @@ pub const SOON_S: f64 = 0.020;
 pub const AIM_N: f64 = 0.05;
 /// The handle's way that is aimed at, m.
 pub const AIM_M: f64 = 1e-3;
+/// Viscosity of the device's brakes that are tried, N s/m. None is known of a real one; 30 is the most that chai3d asks of an omega.7.
+pub const BRAKES_N_S_M: [f64; 5] = [0.0, 5.0, 15.0, 30.0, 60.0];
 /// Time looked at after the hand has opened, s.
 const AFTER_S: f64 = 1.0;
 /// Speed of pressing (m/s), height at the start (m), time of holding (s), patience (s).
@@ -34,6 +37,8 @@ const START_M: f64 = 0.005;
 const HOLD_S: f64 = 2.0;
 const PATIENCE_S: f64 = 20.0;
 const TREMOR_M: f64 = 8e-5;
+/// Modes that have a steady force in the hand, so that an opened hand can be told by the handle's flight.
+const STEADY: [Mode; 2] = [Mode::Dfr, Mode::Anchored];
 
 /// Why the study could not be made.
 #[derive(Debug, thiserror::Error)]
@@ -128,18 +133,31 @@ pub struct Outcome {
     pub energy_mj: f64,
 }
 
+/// A letting go with all gates before a device that brakes.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct Braked {
+    /// Viscosity of the brakes, N s/m.
+    pub brake_n_s_m: f64,
+    /// What came of it.
+    #[serde(flatten)]
+    pub outcome: Outcome,
+}
+
 /// The study's result.
 #[derive(Clone, Debug, Serialize)]
 pub struct Report {
-    /// Every letting go.
+    /// Every letting go, without brakes.
     pub outcomes: Vec<Outcome>,
+    /// With brakes, the two modes that have a steady force to let go.
+    pub braked: Vec<Braked>,
 }
 
 /// Makes the study; `progress` is told before each part how many of how many are done, and what comes.
 pub fn study(mut progress: impl FnMut(usize, usize, &str)) -> Result<Report, ReleaseError> {
     let tissue = Scene::load("peg_transfer")?.tissue.ok_or(ReleaseError::NoTissue)?;
     let mut outcomes = Vec::new();
-    let all = 2 * Gates::ALL.len() * Mode::ALL.len() * DELAYS_MS.len();
+    let alone = 2 * Gates::ALL.len() * Mode::ALL.len() * DELAYS_MS.len();
+    let all = alone + 2 * STEADY.len() * DELAYS_MS.len() * BRAKES_N_S_M.len();
     for situation in [Situation::Held, Situation::Pressing] {
         for gates in Gates::ALL {
             for mode in [Mode::Dfr, Mode::Linear, Mode::Literal, Mode::Anchored] {
@@ -150,17 +168,40 @@ pub fn study(mut progress: impl FnMut(usize, usize, &str)) -> Result<Report, Rel
             }
         }
     }
+    let mut braked = Vec::new();
+    for situation in [Situation::Held, Situation::Pressing] {
+        for mode in STEADY {
+            for delay_ms in DELAYS_MS {
+                for brake_n_s_m in BRAKES_N_S_M {
+                    progress(alone + braked.len(), all, "brakes");
+                    let outcome = tried(situation, Gates::All, mode, delay_ms, tissue, brake_n_s_m)?;
+                    braked.push(Braked { brake_n_s_m, outcome });
+                }
+            }
+        }
+    }
     progress(all, all, "done");
-    Ok(Report { outcomes })
+    Ok(Report { outcomes, braked })
 }
 
-/// One letting go.
+/// One letting go, of a handle without brakes.
 pub fn let_go(
     situation: Situation,
     gates: Gates,
     mode: Mode,
     delay_ms: f64,
     tissue: Tissue,
+) -> Result<Outcome, ReleaseError> {
+    tried(situation, gates, mode, delay_ms, tissue, 0.0)
+}
+
+fn tried(
+    situation: Situation,
+    gates: Gates,
+    mode: Mode,
+    delay_ms: f64,
+    tissue: Tissue,
+    brake_n_s_m: f64,
 ) -> Result<Outcome, ReleaseError> {
     let trial = Trial {
         mode,
@@ -169,6 +210,7 @@ pub fn let_go(
         gain: 1.0,
         tissue,
         tremor_m: TREMOR_M,
+        brake_n_s_m,
         seed: 1,
     };
     let mut intended_m = Vector3::new(0.0, 0.0, START_M);
@@ -199,12 +241,13 @@ pub fn let_go(
         late_n: 0.0,
         energy_mj: 0.0,
     };
-    Ok(watch(pair, &intended_m, start))
+    Ok(watch(pair, &intended_m, start, brake_n_s_m > 0.0))
 }
 
-/// Opens the hand and looks at the handle.
-fn watch(mut pair: Pair, intended_m: &Vector3<f64>, mut outcome: Outcome) -> Outcome {
-    let (from_m, from_m_s) = (pair.handle_m(), pair.handle_m_s());
+/// Opens the hand and looks at the handle. One that is braked does not swing on by itself: its way is from where it was let go.
+fn watch(mut pair: Pair, intended_m: &Vector3<f64>, mut outcome: Outcome, braked: bool) -> Outcome {
+    let (from_m, swing_m_s) = (pair.handle_m(), pair.handle_m_s());
+    let from_m_s = if braked { Vector3::zeros() } else { swing_m_s };
     let swing_s = HANDLE_KG / HANDLE_N_S_M;
     let mut energy_j = 0.0;
     pair.let_go();
@@ -244,6 +287,20 @@ mod tests {
         assert!(energy.energy_mj < 0.05 * bare.energy_mj, "{energy:?}");
         assert!(!all.closed_before && all.before_n > 3.5, "{all:?}");
         assert!(all.energy_mj < 0.1 * energy.energy_mj && all.travel_soon_mm < 0.7 * energy.travel_soon_mm, "{all:?}");
+    }
+
+    #[test]
+    fn a_hand_that_is_gone_gets_no_force_any_more_and_brakes_shorten_the_way() {
+        let tissue = Scene::load("peg_transfer").unwrap().tissue.unwrap();
+        for (situation, mode) in [(Situation::Held, Mode::Dfr), (Situation::Pressing, Mode::Anchored)] {
+            let [free, braked] =
+                [0.0, 60.0].map(|brake| tried(situation, Gates::All, mode, 100.0, tissue, brake).unwrap());
+            assert!(free.late_n < 1e-12 && braked.late_n < 1e-12, "{free:?}");
+            assert!(
+                !free.closed_before && free.before_n > 3.5 && braked.travel_mm < 0.1 * free.travel_mm,
+                "{braked:?}"
+            );
+        }
     }
 
     #[test]

@@ -6,8 +6,8 @@ use nalgebra::{UnitQuaternion, Vector1, Vector3};
 
 use super::{Accuracy, Calibrations, ForcePath, ForceReport, ForceSource, Link, LoopState, Tracking, Weather};
 use crate::{
-    config::Rig as RigConfig,
-    device::{DeviceEvent, GUIDE_MAX_M, Inputs, Outputs, Prompt, Sensed, Side, Standing, Switches},
+    config::{Rig as RigConfig, Teleoperation},
+    device::{DeviceEvent, GUIDE_MAX_M, Inputs, Outputs, Prompt, Sensed, Side, Standing, Switches, View},
     impedance::{Identifier, MAX_DELAY_S, Mode, Rendered, Renderer, Sample, SettingsError},
     kinematics::{Hand, HandEye, Target},
     runtime::{Command, Event, Fault, Tick},
@@ -38,6 +38,8 @@ pub struct Timing {
     pub wake_s: f64,
     /// How long the tick before worked, s.
     pub work_s: f64,
+    /// From the arrival of the oldest measurement of the tick before to when its force was given to the device, s; `None`: no measurement.
+    pub sample_to_force_s: Option<f64>,
     /// Periods missed just before this tick.
     pub missed_now: u64,
 }
@@ -47,6 +49,7 @@ pub struct Timing {
 pub struct Pair {
     side: Side,
     interlock: Interlock<Fault>,
+    teleoperation: Teleoperation,
     hand_eye: HandEye,
     engaged_s: f64,
     mode: Mode,
@@ -63,6 +66,8 @@ pub struct Pair {
     tracking: Tracking,
     plausibility: Plausibility,
     chain: Chain,
+    /// The gates found that nobody holds the handle: as good as a hand that is told absent.
+    hand_is_gone: bool,
     gripper_chain: GripperChain,
     last_inputs: Option<Inputs>,
     last_input_s: f64,
@@ -87,6 +92,7 @@ impl Pair {
         let mut this = Self {
             side,
             interlock: Interlock::default(),
+            teleoperation: rig.teleoperation,
             hand_eye: HandEye::new(rig.teleoperation.mapping(), at_rest),
             engaged_s: 0.0,
             mode: rig.mode,
@@ -103,6 +109,7 @@ impl Pair {
             tracking: Tracking::new(rig.rate_hz),
             plausibility: Plausibility::new(1.0 / rig.rate_hz),
             chain: Chain::new(rig.gates, 1.0 / rig.rate_hz),
+            hand_is_gone: false,
             gripper_chain: GripperChain::new(rig.gates, 1.0 / rig.rate_hz),
             last_inputs: None,
             last_input_s: 0.0,
@@ -168,6 +175,7 @@ impl Pair {
         self.tell(Event::StateChanged { t_s, side: self.side, from, to, why });
         self.chain.reset();
         self.gripper_chain.reset();
+        self.hand_is_gone = false;
         self.command_m = None;
         self.hand_eye.release();
         if !to.permits().drives || !from.permits().drives {
@@ -177,6 +185,11 @@ impl Pair {
             self.guide_m = None;
         }
         if let (LoopState::Engaged, Some(seen)) = (to, self.last_inputs) {
+            // Only here: an endoscope that turns while hand and tip are joined must not turn the motion under the hand.
+            if let View::Seen(kbf_from_view) = seen.view {
+                let mapping = self.teleoperation.seen(&kbf_from_view, self.hand_eye.mapping().scale());
+                self.hand_eye.set_mapping(mapping);
+            }
             // Hand and tip are joined where both are: the first command is where the tip is.
             let kbf_from_jaws = seen.kbf_from_jaws.unwrap_or_else(UnitQuaternion::identity);
             self.hand_eye.engage(Target { tip_m: seen.tip_m, kbf_from_jaws });
@@ -308,6 +321,7 @@ impl Pair {
             hand_m: self.hand_now_m(now_s),
             permitted,
         });
+        self.hand_is_gone |= gates.released;
         let gripper_n = self.grip(inputs.as_ref(), age_s, permitted);
         if inputs.is_some() {
             self.accuracy.add(&rendered, &self.force.tip_n);
@@ -414,6 +428,7 @@ impl Pair {
             identification: *self.identifier.report(),
             wake_s: timing.wake_s,
             work_s: timing.work_s,
+            sample_to_force_s: timing.sample_to_force_s,
             missed: self.missed,
             dropped: 0,
         }
@@ -431,6 +446,7 @@ const NOTHING_YET: Inputs = Inputs {
     tip_m: Vector3::new(0.0, 0.0, 0.0),
     kbf_from_jaws: None,
     sensed: Sensed::AtTip(Vector3::new(0.0, 0.0, 0.0)),
+    view: View::Fixed,
     switches: Switches { clutch: false, presence: None },
     powered: false,
     age_s: 0.0,

@@ -6,12 +6,12 @@ use super::{ArmSet, OLDEST_S, RigError, enrol, is_there, jaws::JawsControl};
 use crate::{
     device::{
         ArmReading, ClearFaults, ForceReading, HandleReading, Health, Inputs, Lever, Outputs, Roster, SERVOS, Sensed,
-        ServoReading, Side, Slot, Stamped, Switches, bota, dynamixel,
+        ServoReading, Side, Slot, Stamped, Switches, View, bota, dynamixel,
         force_dimension::{self, HandleEvent},
         kinova,
     },
     frames::{WristSample, from_roll_pitch_yaw_deg},
-    kinematics::{Arm, Hand, Inverse, Jaws, Joints, Pose, Rcm, StartError},
+    kinematics::{Arm, Hand, Inverse, Jaws, Joints, Pose, Rcm, StartError, kbf_from_tracked_view},
 };
 
 /// Why an arm that delivers cannot be engaged.
@@ -22,6 +22,8 @@ pub type Obstacle = StartError;
 pub(super) struct Shared {
     pub(super) tissue_n: Option<Vector3<f64>>,
     pub(super) m_from_c: Option<UnitQuaternion<f64>>,
+    /// How the endoscope looks, in the camera's frame: `c_from_view`.
+    pub(super) c_from_view: View,
 }
 
 /// Gives the device that was enrolled last its way to clear faults.
@@ -179,9 +181,17 @@ impl ArmPair {
             tip_m: pose.tip_m,
             kbf_from_jaws: jaws.map(|jaws| kbf_from_s1 * jaws.s1_from_jaws()),
             sensed: self.sensed(&force.value, pose, &kbf_from_s1, shared),
+            view: self.view(&kbf_from_s1, shared),
             switches: Switches::default(),
             powered: self.force_is_on && joints.value.servoing && self.obstacle.is_none(),
             age_s,
+        })
+    }
+
+    fn view(&self, kbf_from_s1: &UnitQuaternion<f64>, shared: &Shared) -> View {
+        let View::Seen(c_from_view) = shared.c_from_view else { return shared.c_from_view };
+        self.s1_from_m.zip(shared.m_from_c).map_or(View::Unseen, |(s1_from_m, m_from_c)| {
+            View::Seen(kbf_from_tracked_view(&(kbf_from_s1 * s1_from_m), &m_from_c, &c_from_view))
         })
     }
 

@@ -14,12 +14,13 @@ use std::io;
 
 pub use arm_pair::{ArmPair, Obstacle};
 pub use jaws::JawsSettings;
-pub use settings::{ArmSet, DeskSettings, SensorPlace, Settings};
+pub use settings::{ArmSet, DeskSettings, EndoscopeSettings, SensorPlace, Settings};
 
 use super::{
     DEVICES_MAX, Device, DeviceEvent, Health, Healths, Inputs, Lever, Outputs, PedalReading, Rig, Roster, RosterEntry,
-    SIDES, Side, Slot, Stamped, Standing, Switches, Tracked, TrackerReading, bota, hid, hid::Held, ndi,
+    SIDES, Side, Slot, Stamped, Standing, Switches, Tracked, TrackerReading, View, bota, hid, hid::Held, ndi,
 };
+use crate::frames::from_roll_pitch_yaw_deg;
 pub use watch::Watch;
 
 /// A part older than this is not there, s.
@@ -32,9 +33,12 @@ pub struct DeviceRig {
     tissue: Option<Slot<bota::Driver>>,
     tissue_n: Option<Stamped<nalgebra::Vector3<f64>>>,
     tracker: Option<Slot<ndi::Driver>>,
+    endoscope: Option<EndoscopeSettings>,
     tracked: Option<Stamped<TrackerReading>>,
     pedal: Option<Pedal>,
     watch: Watch,
+    /// Sent since the last exchange.
+    applied: Option<[Outputs; SIDES]>,
 }
 
 struct Pedal {
@@ -118,11 +122,21 @@ impl DeviceRig {
             tissue: tissue.transpose()?,
             tissue_n: None,
             tracker: tracker.transpose()?,
+            endoscope: settings.endoscope,
             tracked: None,
             pedal: pedal.transpose()?,
             watch: Watch::default(),
+            applied: None,
         };
         Ok((rig, roster))
+    }
+
+    fn send(&mut self, now_s: f64, outputs: &[Outputs; SIDES]) {
+        for (pair, outputs) in self.pairs.iter_mut().zip(outputs) {
+            if let Some(pair) = pair {
+                pair.apply(now_s, outputs);
+            }
+        }
     }
 
     fn poll_shared(&mut self, now_s: f64) -> Switches {
@@ -151,11 +165,15 @@ impl DeviceRig {
         let tissue_n =
             self.tissue_n.filter(|stamped| now_s - stamped.arrival_s <= OLDEST_S).map(|stamped| stamped.value);
         let tracked = self.tracked.filter(|stamped| now_s - stamped.arrival_s <= TRACKED_S);
-        let m_from_c = tracked.and_then(|stamped| match stamped.value.tools[side.index()] {
-            Tracked::Seen { c_from_tool, .. } => Some(c_from_tool.inverse()),
+        let c_from = |tool: usize| match tracked?.value.tools.get(tool)? {
+            Tracked::Seen { c_from_tool, .. } => Some(*c_from_tool),
             _ => None,
+        };
+        let c_from_view = self.endoscope.map_or(View::Fixed, |endoscope| {
+            let n_from_view = from_roll_pitch_yaw_deg(&endoscope.n_from_view_deg);
+            c_from(endoscope.tool).map_or(View::Unseen, |c_from_n| View::Seen(c_from_n * n_from_view))
         });
-        arm_pair::Shared { tissue_n, m_from_c }
+        arm_pair::Shared { tissue_n, m_from_c: c_from(side.index()).map(|c_from_m| c_from_m.inverse()), c_from_view }
     }
 
     fn each_health(&self, mut each: impl FnMut(&Health, [bool; SIDES])) {
@@ -178,12 +196,14 @@ impl DeviceRig {
 
 impl Rig for DeviceRig {
     fn exchange(&mut self, now_s: f64, outputs: &[Outputs; SIDES]) -> [Option<Inputs>; SIDES] {
+        if self.applied.take().is_none_or(|applied| applied != *outputs) {
+            self.send(now_s, outputs);
+        }
         let switches = self.poll_shared(now_s);
         let mut inputs = [None; SIDES];
         for side in Side::ALL {
             let shared = self.shared(side, now_s);
             if let Some(pair) = &mut self.pairs[side.index()] {
-                pair.apply(now_s, &outputs[side.index()]);
                 pair.poll(now_s);
                 inputs[side.index()] = pair.inputs(now_s, &shared).map(|inputs| Inputs { switches, ..inputs });
             }
@@ -196,6 +216,11 @@ impl Rig for DeviceRig {
         });
         self.watch = watch;
         inputs
+    }
+
+    fn apply(&mut self, now_s: f64, outputs: &[Outputs; SIDES]) {
+        self.send(now_s, outputs);
+        self.applied = Some(*outputs);
     }
 
     fn event(&mut self) -> Option<DeviceEvent> {

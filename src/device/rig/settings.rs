@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use super::JawsSettings;
 use crate::{
-    device::{Side, Trouble, bota, dynamixel, force_dimension, hid, kinova, ndi},
+    device::{SIDES, Side, TRACKED_TOOLS, Trouble, bota, dynamixel, force_dimension, hid, kinova, ndi},
     kinematics::{ArmSettings, RcmSettings},
 };
 
@@ -23,8 +23,20 @@ pub struct Settings {
     pub tissue_sensor: Option<bota::Settings>,
     /// The optical tracker.
     pub tracker: Option<ndi::Settings>,
+    /// The marker on the endoscope, which the tracker sees: hand and tip are joined by how it looks.
+    pub endoscope: Option<EndoscopeSettings>,
     /// The foot pedal: clutch and presence.
     pub pedal: Option<hid::PedalSettings>,
+}
+
+/// A marker of the tracker on the endoscope.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct EndoscopeSettings {
+    /// Which of the tracker's tools it is, counted from 0; those of the arms are 0 (right) and 1 (left).
+    pub tool: usize,
+    /// How the picture sits on the marker: roll, pitch, yaw of `n_from_view`, degrees.
+    pub n_from_view_deg: Vector3<f64>,
 }
 
 /// A handle, an arm and what it carries.
@@ -115,10 +127,41 @@ impl Settings {
             let allowed = "two handles are told apart by their serial numbers: give each its own".to_owned();
             return Err(Trouble::Setting { key: "devices.right.handle.serial".to_owned(), value, allowed });
         }
+        self.check_endoscope()?;
         let of = |part: &'static str| move |trouble| below(part, trouble);
         self.tissue_sensor.as_ref().map_or(Ok(()), bota::Settings::check).map_err(of("tissue_sensor"))?;
         self.tracker.as_ref().map_or(Ok(()), ndi::Settings::check).map_err(of("tracker"))?;
         self.pedal.as_ref().map_or(Ok(()), hid::PedalSettings::check).map_err(of("pedal"))
+    }
+}
+
+impl Settings {
+    fn check_endoscope(&self) -> Result<(), Trouble> {
+        let Some(endoscope) = &self.endoscope else { return Ok(()) };
+        let refuse = |key: &str, value: String, allowed: &str| Trouble::Setting {
+            key: format!("devices.{key}"),
+            value,
+            allowed: allowed.to_owned(),
+        };
+        if self.tracker.is_none() {
+            return Err(refuse("tracker", "not given".to_owned(), "the tracker that sees the endoscope's marker"));
+        }
+        if !(SIDES..TRACKED_TOOLS).contains(&endoscope.tool) {
+            let allowed = format!("a tool from {SIDES} to {}; those before are on the arms", TRACKED_TOOLS - 1);
+            return Err(refuse("endoscope.tool", endoscope.tool.to_string(), &allowed));
+        }
+        if !endoscope.n_from_view_deg.iter().all(|deg| deg.is_finite()) {
+            let value = format!("{:?}", endoscope.n_from_view_deg.as_slice());
+            return Err(refuse("endoscope.n_from_view_deg", value, "three finite angles, degrees"));
+        }
+        for side in Side::ALL {
+            if self.arm(side).is_some_and(|set| set.s1_from_m_deg.is_none()) {
+                let key = format!("{}.s1_from_m_deg", side.word());
+                let allowed = "how this arm's marker sits: without it nobody knows where the endoscope looks from it";
+                return Err(refuse(&key, "not given".to_owned(), allowed));
+            }
+        }
+        Ok(())
     }
 }
 

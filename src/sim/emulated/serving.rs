@@ -18,7 +18,7 @@ use crate::{
         ForceReading, PedalReading, SIDES, Side, Tracked, bota, dynamixel,
         emulation::{FaultSwitch, Serving},
         force_dimension, hid, kinova, ndi,
-        rig::{ArmSet, Settings},
+        rig::{ArmSet, EndoscopeSettings, Settings},
     },
     files,
     frames::{Wrench, from_roll_pitch_yaw_deg},
@@ -27,6 +27,9 @@ use crate::{
 type Sides = [Option<Shared>; SIDES];
 type Served = Result<EmulatedDevice, EmulatedRigError>;
 
+/// How the cables of the instrument pull at a servo, Nm/rad, and where they rest, rad: guesses of the right size.
+const CABLES_NM_PER_RAD: f64 = 0.3;
+const CABLES_REST_RAD: f64 = 0.3;
 /// Far from the workspace's middle the tracker's camera stands, m.
 const CAMERA_M: f64 = 1.5;
 /// Where it looks from where no scene says: level along the workspace's y (roll, pitch, yaw of `kbf_from_c`, degrees).
@@ -70,7 +73,7 @@ pub(super) fn all(
         devices.push(sensor("tissue sensor".to_owned(), chosen, Side::Right, under_the_tissue(sides))?);
     }
     if let Some(chosen) = &settings.tracker {
-        devices.push(tracker(chosen, scene, sides)?);
+        devices.push(tracker(chosen, settings.endoscope, scene, sides)?);
     }
     if let Some(chosen) = &settings.pedal {
         devices.push(pedal(chosen, pedal_switches)?);
@@ -161,15 +164,18 @@ fn servos(side: Side, chosen: &dynamixel::Settings) -> Served {
         fast: usual.fast,
     };
     let supply_v = if known.is_some_and(dynamixel::table::Model::is_small) { 5.0 } else { 12.0 };
-    // Nothing in this world loads the instrument's jaws.
-    let unloaded = dynamixel::Surroundings { load_nm: 0.0, supply_v, temperature_c: 31.0 };
-    let emulator = dynamixel::Emulator::new(&emulated, Some(Box::new(move |_, _, _| unloaded)));
+    // Tissue does not load the jaws in this world; the cables that move them do.
+    let body = move |_: f64, _: usize, shaft: &dynamixel::Shaft| {
+        let load_nm = CABLES_NM_PER_RAD * (CABLES_REST_RAD - shaft.angle_rad).clamp(-1.0, 1.0);
+        dynamixel::Surroundings { load_nm, supply_v, temperature_c: 31.0 }
+    };
+    let emulator = dynamixel::Emulator::new(&emulated, Some(Box::new(body)));
     let impossible = || std::io::Error::other("no servo has this model and line speed");
     let serving = emulator.ok_or_else(impossible).and_then(|emulator| emulator.serve_at(Some(Path::new(&chosen.port))));
     served(name, serving)
 }
 
-fn tracker(chosen: &ndi::Settings, scene: &Scene, sides: &Sides) -> Served {
+fn tracker(chosen: &ndi::Settings, endoscope: Option<EndoscopeSettings>, scene: &Scene, sides: &Sides) -> Served {
     let name = "tracker".to_owned();
     for tool in &chosen.tools {
         if let Err(source) = define(tool) {
@@ -178,9 +184,12 @@ fn tracker(chosen: &ndi::Settings, scene: &Scene, sides: &Sides) -> Served {
     }
     let worlds: Vec<Shared> = sides.iter().flatten().cloned().collect();
     let view = View::new(scene);
-    let body = move |_: f64, number: usize| match worlds.get(number) {
-        Some(world) => world.with(|side, now_s| view.of(side, now_s)),
-        None => Tracked::Missing { out_of_volume: false },
+    let body = move |_: f64, number: usize| match (worlds.get(number), endoscope, worlds.first()) {
+        (Some(world), ..) => world.with(|side, now_s| view.of(side, now_s)),
+        (None, Some(endoscope), Some(world)) if endoscope.tool == number => {
+            world.with(|side, _| view.endoscope(&side.kbf_from_view(), &endoscope))
+        }
+        _ => Tracked::Missing { out_of_volume: false },
     };
     let profile = ndi::emulator::Profile::default();
     let serving = match (&chosen.address, &chosen.port) {
@@ -218,6 +227,17 @@ impl View {
         Self {
             c_from_kbf: from_roll_pitch_yaw_deg(&camera_deg).inverse(),
             s1_from_m: from_roll_pitch_yaw_deg(&marker_deg),
+        }
+    }
+
+    /// The marker on the endoscope, which stands still.
+    fn endoscope(&self, kbf_from_view: &UnitQuaternion<f64>, endoscope: &EndoscopeSettings) -> Tracked {
+        let view_from_n = from_roll_pitch_yaw_deg(&endoscope.n_from_view_deg).inverse();
+        Tracked::Seen {
+            c_from_tool: self.c_from_kbf * kbf_from_view * view_from_n,
+            position_in_c_m: -Vector3::new(0.0, 0.0, CAMERA_M),
+            error_m: MARKER_ERROR_M,
+            at_the_edge: false,
         }
     }
 

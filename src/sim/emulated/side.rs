@@ -15,7 +15,7 @@ use crate::{
         rig::{ArmSet, SensorPlace},
     },
     frames::{GRAVITY_M_S2, Wrench, from_roll_pitch_yaw_deg},
-    kinematics::{Arm, Joints},
+    kinematics::{Arm, Joints, view_from_omega},
     sim::World,
 };
 
@@ -183,6 +183,11 @@ impl SideWorld {
             Sensed::AtWrist(sample) => sample.m_from_c.map(|m_from_c| m_from_c.inverse()),
             Sensed::AtTip(_) => None,
         }
+    }
+
+    /// How the endoscope looks: an Omega stands below its picture, and the hand goes the picture's ways.
+    pub(super) fn kbf_from_view(&self) -> UnitQuaternion<f64> {
+        (view_from_omega() * self.hand.leader_from_kbf).inverse()
     }
 
     /// What only a simulation knows.

@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use super::{AIM_M, AIM_N, DELAYS_MS, Gates, Outcome, Report, Situation};
+use super::{AIM_M, AIM_N, BRAKES_N_S_M, Braked, DELAYS_MS, Gates, Outcome, Report, STEADY, Situation};
 use crate::{
     impedance::Mode,
     study::picture::{Axis, Chart, Series, Style, svg},
@@ -25,7 +25,30 @@ impl Report {
             }
             text.push('\n');
         }
+        self.brakes(&mut text);
         text
+    }
+
+    /// The farthest way and the latest force over the brakes' viscosity, of all delays.
+    fn brakes(&self, text: &mut String) {
+        let worst = |wanted: &dyn Fn(&Braked) -> bool, of: fn(&Outcome) -> f64| {
+            self.braked.iter().filter(|braked| wanted(braked)).map(|braked| of(&braked.outcome)).fold(0.0, f64::max)
+        };
+        text.push_str("With all gates and brakes, the worst of all delays:\n\n| brakes (N s/m) | mode | held: travel in 1 s (mm) | after 20 ms (N) | pressing: travel in 1 s (mm) | after 20 ms (N) |\n|---|---|---|---|---|---|\n");
+        for brake_n_s_m in BRAKES_N_S_M {
+            for mode in STEADY {
+                write!(text, "| {brake_n_s_m:.0} | {mode} |").ok();
+                for situation in [Situation::Held, Situation::Pressing] {
+                    let wanted = |braked: &Braked| {
+                        (braked.brake_n_s_m - brake_n_s_m).abs() < 1e-9
+                            && (braked.outcome.mode, braked.outcome.situation) == (mode, situation)
+                    };
+                    let (travel_mm, late_n) = (worst(&wanted, |o| o.travel_mm), worst(&wanted, |o| o.late_n));
+                    write!(text, " {travel_mm:.2} | {late_n:.2} |").ok();
+                }
+                text.push('\n');
+            }
+        }
     }
 
     /// How many of the ways of letting go with a force in the hand reach both aims, by gates and mode: `(reached, of)`.

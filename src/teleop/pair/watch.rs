@@ -4,7 +4,7 @@ use nalgebra::UnitQuaternion;
 
 use super::{AT_REST_M, Pair, STALLED_AFTER_S, Timing};
 use crate::{
-    device::{Inputs, Sensed, Switches},
+    device::{Inputs, Sensed, Switches, View},
     impedance::Sample,
     runtime::Fault,
     safety::{CHANNELS, Observed, Seen},
@@ -80,8 +80,10 @@ impl Pair {
         let seen = Seen {
             connected,
             powered: inputs.is_some_and(|inputs| inputs.powered),
-            agreed: inputs.is_some() && self.force.source.is_usable() && moved_m <= AT_REST_M,
-            present: switches.presence.unwrap_or(true),
+            agreed: inputs.is_some_and(|inputs| inputs.view != View::Unseen)
+                && self.force.source.is_usable()
+                && moved_m <= AT_REST_M,
+            present: switches.presence.unwrap_or(true) && !self.hand_is_gone,
             clutch: switches.clutch,
         };
         if let Some(change) = self.interlock.step(&seen, now_s) {

@@ -255,12 +255,16 @@ impl ConsoleApp {
             let pressed = keys::role_pressed(ui.ctx()).filter(|_| !calibrating);
             self.settings.now.role = pressed.unwrap_or(self.role());
         });
+        let signs = self.live.signs(self.outbox.stop_is_stuck());
+        let loop_s = self.live.tick.map(|tick| tick.t_s);
+        self.top_bar.alarms.strip_ui(ui, &signs, loop_s, self.settings.now.sound);
         let room = ui.available_rect_before_wrap();
         if self.wizards.open.is_some() {
             self.wizard_layout(ui);
         } else {
             self.monitor_layout(ui);
         }
+        self.top_bar.alarms.list_ui(ui.ctx(), room);
         self.settings.now.toured |= self.help.ui(ui.ctx(), room);
     }
 
@@ -268,7 +272,7 @@ impl ConsoleApp {
         let Wishes { restart, calibration } =
             role_ui(ui, &mut self.settings.now, &mut self.live, &mut self.panels, &self.in_force, &mut self.outbox);
         // After everything was drawn of the loop as it was. A stop asked for in the same frame comes first.
-        if self.outbox.stop_is_stuck() {
+        if self.outbox.holds_stop() {
             return;
         }
         if let Some(rig) = restart {
@@ -325,9 +329,7 @@ impl eframe::App for ConsoleApp {
         }
         self.layout(ui);
         self.settings.save();
-        if let Some(door) = &self.door {
-            self.outbox.flush(door.handle());
-        }
+        self.outbox.flush(self.door.as_ref().map(Door::handle));
         self.obey_options(&ctx);
         self.rest(&ctx);
         if let Some(meter) = &mut self.meter {

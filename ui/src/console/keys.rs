@@ -33,6 +33,16 @@ pub(super) fn mark_pressed(ctx: &Context) -> bool {
     !ctx.text_edit_focused() && ctx.input(|input| input.key_pressed(Key::E))
 }
 
+/// Somebody has seen the alarms.
+pub(super) fn acknowledge_pressed(ctx: &Context) -> bool {
+    !ctx.text_edit_focused() && ctx.input(|input| input.modifiers.is_none() && input.key_pressed(Key::A))
+}
+
+/// The list of alarms shall be opened or closed.
+pub(super) fn alarms_pressed(ctx: &Context) -> bool {
+    ctx.input(|input| input.key_pressed(Key::F5))
+}
+
 /// The glossary shall be opened or closed.
 pub(super) fn glossary_pressed(ctx: &Context) -> bool {
     ctx.input(|input| input.key_pressed(Key::F4))

@@ -19,6 +19,7 @@ use nima::{
 use super::{
     alarms::Signs,
     cloud::Cloud,
+    deadlines::Deadlines,
     door::{Door, News},
     history::{CHANNELS, History},
     readings::{Change, Figures, Gates},
@@ -75,6 +76,8 @@ pub struct Live {
     pub figures: Figures,
     /// Recent positions of each side's tip, m, oldest first.
     pub trails: [VecDeque<Vector3<f32>>; SIDES],
+    /// Periods that the loop missed, second by second.
+    pub deadlines: Deadlines,
     /// What the operating system granted.
     pub scheduling: Option<Scheduling>,
     /// The 3-D view gave up smooth edges, because this computer draws too slowly.
@@ -95,6 +98,7 @@ pub struct Live {
     frame_work: Fading,
     wake: Percentiles,
     work: Percentiles,
+    sample_to_force: Percentiles,
     trail_s: [f64; SIDES],
     ticks_counted: u64,
     figures_at: Instant,
@@ -123,6 +127,7 @@ impl Live {
             stiffness: Default::default(),
             figures: Figures::default(),
             trails: Default::default(),
+            deadlines: Deadlines::default(),
             scheduling: None,
             rough_edges: false,
             bias_moved_n: None,
@@ -139,6 +144,7 @@ impl Live {
             frame_work: Fading::default(),
             wake: Percentiles::new(),
             work: Percentiles::new(),
+            sample_to_force: Percentiles::new(),
             trail_s: [f64::NEG_INFINITY; SIDES],
             ticks_counted: 0,
             figures_at: now,
@@ -191,6 +197,21 @@ impl Live {
     pub fn frame(&mut self, period_s: f64, work_s: Option<f64>) {
         self.frames.record(period_s);
         self.frame_work.push(work_s.unwrap_or(0.0) * 1e3, period_s, 1.0);
+    }
+
+    /// Lateness of every wake-up of the loop since the window opened.
+    pub const fn wake(&self) -> &Percentiles {
+        &self.wake
+    }
+
+    /// Work of every tick since the window opened.
+    pub const fn work(&self) -> &Percentiles {
+        &self.work
+    }
+
+    /// From the arrival of a measurement to when the force made from it was given to the device.
+    pub const fn sample_to_force(&self) -> &Percentiles {
+        &self.sample_to_force
     }
 
     /// Marks this moment.
@@ -295,6 +316,7 @@ impl Live {
         let before = self.tick.replace(*tick);
         let dt_s = before.map_or(0.0, |before| (tick.t_s - before.t_s).max(0.0));
         let missed = before.map_or(0, |before| tick.missed.saturating_sub(before.missed));
+        self.deadlines.push(tick.t_s, missed);
         self.missed_share.push(missed as f64 / (missed as f64 + 1.0), dt_s, 3.0);
         self.follow(tick, before.as_ref());
         self.degrees.push(tick.identification.degree);
@@ -310,6 +332,9 @@ impl Live {
         }
         self.wake.record(tick.wake_s);
         self.work.record(tick.work_s);
+        if let Some(seconds) = tick.sample_to_force_s {
+            self.sample_to_force.record(seconds);
+        }
         self.ticks_counted += 1;
     }
 
@@ -345,9 +370,9 @@ impl Live {
         }
         self.figures = Figures {
             horizon_n: self.horizon.map(Fading::get),
-            withheld_n: self.gates[Side::Right.index()].withheld_n.get(),
             wake_us: self.wake.quantiles(),
             work_us: self.work.quantiles(),
+            sample_to_force_us: self.sample_to_force.quantiles(),
             rate_hz: self.ticks_counted as f64 / since.as_secs_f64(),
             frame_ms: {
                 let Quantiles { p50, p99, .. } = self.frames.quantiles();

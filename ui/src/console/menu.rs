@@ -3,7 +3,10 @@
 use egui::{Button, Context, Ui, vec2};
 
 use super::{
+    alarms::strip::Alarms,
+    desk::{Layout, Panel},
     help::Help,
+    roles::Role,
     settings::{SCALES, Settings},
 };
 
@@ -12,11 +15,11 @@ const NEEDED: egui::Vec2 = vec2(1100.0, 680.0);
 const STEPS_PERCENT: [u16; 5] = [100, 125, 150, 175, 200];
 
 /// The menu in the top bar.
-pub(super) fn menu_ui(ui: &mut Ui, settings: &mut Settings, help: &mut Help) {
+pub(super) fn menu_ui(ui: &mut Ui, settings: &mut Settings, help: &mut Help, alarms: &mut Alarms) {
     let button = Button::new("View").min_size(vec2(52.0, 30.0));
     let menu = egui::containers::menu::MenuButton::from_button(button);
     let (response, _) = menu.ui(ui, |ui| {
-        ui.set_min_width(220.0);
+        ui.set_width(300.0);
         ui.label("Palette");
         ui.horizontal(|ui| {
             for (name, light) in [("Dark", false), ("Light", true)] {
@@ -38,7 +41,16 @@ pub(super) fn menu_ui(ui: &mut Ui, settings: &mut Settings, help: &mut Help) {
         });
         ui.label(super::widgets::small("Never larger than this window has room for."));
         ui.add_space(6.0);
+        if settings.role == Role::Technician {
+            panels_ui(ui, &mut settings.layout);
+            ui.add_space(6.0);
+        }
+        sound_ui(ui, settings, alarms);
+        ui.add_space(6.0);
         ui.horizontal(|ui| {
+            if ui.add(Button::new("Alarms (F5)").min_size(vec2(96.0, 30.0))).clicked() {
+                alarms.list = true;
+            }
             if ui.add(Button::new("Glossary (F4)").min_size(vec2(110.0, 30.0))).clicked() {
                 help.glossary = true;
             }
@@ -48,6 +60,38 @@ pub(super) fn menu_ui(ui: &mut Ui, settings: &mut Settings, help: &mut Help) {
         });
     });
     response.on_hover_text("Light or dark, how large; glossary and tour.");
+}
+
+/// Whether alarms sound, and what stands in the way.
+fn sound_ui(ui: &mut Ui, settings: &mut Settings, alarms: &mut Alarms) {
+    let meaning =
+        "A burst of ten pulses for an alarm, of three for a warning, again and again until it is acknowledged.";
+    ui.checkbox(&mut settings.sound, "Alarms sound").on_hover_text(meaning);
+    if let Some(trouble) = alarms.sound.trouble() {
+        ui.add(egui::Label::new(super::widgets::small(trouble)).wrap());
+    }
+}
+
+/// Which panels are on the desk.
+fn panels_ui(ui: &mut Ui, layout: &mut Layout) {
+    ui.label("Panels").on_hover_text("Drag a panel's title to put it elsewhere, an edge to make it larger.");
+    for pair in Panel::ALL.chunks(2) {
+        ui.horizontal(|ui| {
+            for panel in pair {
+                let open = layout.is_open(*panel);
+                let button = Button::selectable(open, panel.title()).frame_when_inactive(true);
+                let response = ui.add(button.min_size(vec2(146.0, 26.0)));
+                let meaning = if open { "On the desk; closes it." } else { "Closed; puts it back where it was." };
+                if response.on_hover_text(format!("{}\n{meaning}", panel.meaning())).clicked() {
+                    layout.toggle(*panel);
+                }
+            }
+        });
+    }
+    let reset = ui.add(Button::new("Reset the layout").min_size(vec2(300.0, 26.0)));
+    if reset.on_hover_text("All panels open, where they lay at first.").clicked() {
+        *layout = Layout::default();
+    }
 }
 
 /// Puts the settings in force; call at the start of a frame.

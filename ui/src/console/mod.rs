@@ -8,6 +8,8 @@ pub mod alarms;
 pub mod app;
 pub mod canvas;
 pub mod cloud;
+pub mod deadlines;
+pub mod desk;
 pub mod door;
 pub mod frames;
 pub mod help;

@@ -6,6 +6,8 @@ use nima::runtime::{Command, Handle};
 #[derive(Debug, Default)]
 pub struct Outbox {
     waiting: Vec<Command>,
+    /// A stop was offered to the loop and not taken.
+    stop_refused: bool,
 }
 
 impl Outbox {
@@ -19,19 +21,25 @@ impl Outbox {
         self.waiting.push(command);
     }
 
-    /// Hands over what the loop takes; the rest stays for the next frame.
-    pub fn flush(&mut self, handle: &Handle) {
-        self.flush_into(|command| handle.send(command));
+    /// Hands over what the loop takes; the rest stays for the next frame. Without a loop nothing is taken.
+    pub fn flush(&mut self, handle: Option<&Handle>) {
+        self.flush_into(|command| handle.is_some_and(|handle| handle.send(command)));
     }
 
     fn flush_into(&mut self, mut send: impl FnMut(Command) -> bool) {
         let sent = self.waiting.iter().take_while(|&&command| send(command)).count();
         self.waiting.drain(..sent);
+        self.stop_refused = self.holds_stop();
     }
 
-    /// The stop itself has not reached the loop: the operator must know.
-    pub fn stop_is_stuck(&self) -> bool {
+    /// A stop is on its way.
+    pub fn holds_stop(&self) -> bool {
         self.waiting.contains(&Command::Stop)
+    }
+
+    /// The stop itself was not taken by the loop: the operator must know. Not yet so in the frame in which it is asked for.
+    pub const fn stop_is_stuck(&self) -> bool {
+        self.stop_refused
     }
 }
 
@@ -54,6 +62,7 @@ mod tests {
         let mut outbox = Outbox::default();
         outbox.push(Command::Engage);
         outbox.push(Command::Stop);
+        assert!(outbox.holds_stop() && !outbox.stop_is_stuck(), "it has not been offered yet");
         outbox.flush_into(|_| false);
         assert!(outbox.stop_is_stuck());
         let mut sent = Vec::new();

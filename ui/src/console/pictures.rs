@@ -12,8 +12,9 @@ use std::{
 use nima::teleop::LoopState;
 
 use super::{
+    desk::{Layout, Panel},
     live::Live,
-    roles::{Role, Tab},
+    roles::Role,
     screenshot,
     settings::Settings,
 };
@@ -31,13 +32,13 @@ const GIVE_UP: Duration = Duration::from_secs(10);
 /// Time for the last picture to be taken.
 const LAST: Duration = Duration::from_millis(700);
 
-/// Name of the file, role, tab, light.
-const SHOTS: [(&str, Role, Tab, bool); 5] = [
-    ("console", Role::Technician, Tab::Traces, false),
-    ("safety", Role::Technician, Tab::Safety, false),
-    ("light", Role::Technician, Tab::Traces, true),
-    ("surgeon", Role::Surgeon, Tab::Traces, false),
-    ("demo", Role::Demo, Tab::Traces, false),
+/// Name of the file, role, the panel that is brought to the front, light.
+const SHOTS: [(&str, Role, Option<Panel>, bool); 5] = [
+    ("console", Role::Technician, None, false),
+    ("safety", Role::Technician, Some(Panel::Safety), false),
+    ("light", Role::Technician, None, true),
+    ("surgeon", Role::Surgeon, None, false),
+    ("demo", Role::Demo, None, false),
 ];
 
 /// Where the pictures go, and how many were saved.
@@ -76,8 +77,9 @@ impl Photographer {
     /// Sets the next view, takes its picture when it is ready; true when all are taken or
     /// the loop has stopped.
     pub(super) fn step(&mut self, ctx: &egui::Context, live: &Live, settings: &mut Settings) -> bool {
-        let Some((name, role, tab, light)) = SHOTS.get(self.next) else { return self.since.elapsed() > LAST };
-        (settings.role, settings.tab, settings.light) = (*role, *tab, *light);
+        let Some((name, role, front, light)) = SHOTS.get(self.next) else { return self.since.elapsed() > LAST };
+        (settings.role, settings.light) = (*role, *light);
+        settings.layout = Layout { front: front.iter().copied().collect(), ..Layout::default() };
         let least = if self.next == 0 { FILLED } else { SETTLED };
         let shown = self.since.elapsed();
         let engaged = live.state() == LoopState::Engaged;
@@ -119,7 +121,7 @@ mod tests {
         let live = Live::new(Rig::load("simulated").unwrap(), Scene::load("bimanual").unwrap());
         let mut settings = Settings { role: Role::Demo, light: true, ..Settings::default() };
         assert!(!photographer.step(&egui::Context::default(), &live, &mut settings));
-        assert_eq!((settings.role, settings.tab, settings.light), (SHOTS[0].1, SHOTS[0].2, SHOTS[0].3));
+        assert_eq!((settings.role, settings.light), (SHOTS[0].1, SHOTS[0].3));
         assert_eq!(photographer.next, 0);
         photographer.since = Instant::now().checked_sub(FILLED + GIVE_UP + SETTLED).unwrap();
         assert!(photographer.step(&egui::Context::default(), &live, &mut settings), "a loop at rest is given up");

@@ -47,12 +47,12 @@ pub struct Figures {
     pub rendered_n: [f64; SIDES],
     /// Error of each mode at the horizon, N, mean over the last seconds.
     pub horizon_n: [f64; 4],
-    /// Force withheld by the dead band, N.
-    pub withheld_n: f64,
     /// Lateness of wake-ups, us.
     pub wake_us: Quantiles,
     /// Work of a tick, us.
     pub work_us: Quantiles,
+    /// From measurement to force, us.
+    pub sample_to_force_us: Quantiles,
     /// Ticks that came per second.
     pub rate_hz: f64,
     /// Time from one frame of the console to the next, ms: the median and the 99th percentile.

@@ -11,19 +11,21 @@ use std::{
 use nima::{calibration::store::Store, files::write_atomically};
 use serde::{Deserialize, Serialize};
 
-use super::roles::{Role, Tab};
+use super::{desk::Layout, roles::Role};
 
 const FILE: &str = "console.json";
 const SET_ASIDE: &str = "console.corrupted.json";
 
 /// The settings.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(default)]
 pub struct Settings {
     /// Who sits before the screen.
     pub role: Role,
-    /// What a technician sees under the field.
-    pub tab: Tab,
+    /// How a technician's panels lie.
+    pub layout: Layout,
+    /// Alarms sound.
+    pub sound: bool,
     /// Dark on light.
     pub light: bool,
     /// The tour was seen, or skipped.
@@ -37,7 +39,14 @@ pub const SCALES: std::ops::RangeInclusive<u16> = 100..=200;
 
 impl Default for Settings {
     fn default() -> Self {
-        Self { role: Role::default(), tab: Tab::default(), light: false, toured: false, scale_percent: 100 }
+        Self {
+            role: Role::default(),
+            layout: Layout::default(),
+            sound: false,
+            light: false,
+            toured: false,
+            scale_percent: 100,
+        }
     }
 }
 
@@ -63,18 +72,15 @@ impl Kept {
         let (now, told) = match std::fs::read_to_string(folder.join(FILE)) {
             Err(error) if error.kind() == io::ErrorKind::NotFound => (Settings::default(), None),
             Err(error) => (Settings::default(), Some(format!("The settings cannot be read: {error}"))),
-            Ok(text) => match serde_json::from_str(&text) {
-                Ok(settings) => (settings, None),
-                Err(error) => (Settings::default(), Some(set_aside(folder, &error))),
-            },
+            Ok(text) => read(&text).unwrap_or_else(|error| (Settings::default(), Some(set_aside(folder, &error)))),
         };
-        Self { folder: Some(folder.to_path_buf()), now, saved: now, told }
+        Self { folder: Some(folder.to_path_buf()), saved: now.clone(), now, told }
     }
 
     /// Writes the settings if they have changed.
     pub fn save(&mut self) {
         let Some(folder) = self.folder.as_ref().filter(|_| self.now != self.saved) else { return };
-        self.saved = self.now;
+        self.saved = self.now.clone();
         let text = serde_json::to_vec_pretty(&self.now).map_err(io::Error::from);
         let written = std::fs::create_dir_all(folder)
             .and(text)
@@ -95,6 +101,24 @@ impl Kept {
     }
 }
 
+/// The settings in this text, and what is to be told of them: a layout that cannot be read costs the layout alone. Fields that a
+/// newer console wrote are passed over.
+fn read(text: &str) -> Result<(Settings, Option<String>), serde_json::Error> {
+    let mut value: serde_json::Value = serde_json::from_str(text)?;
+    let layout = value.as_object_mut().and_then(|fields| fields.remove("layout"));
+    let mut settings: Settings = serde_json::from_value(value)?;
+    let Some(layout) = layout else { return Ok((settings, None)) };
+    match serde_json::from_value(layout) {
+        Ok(layout) => {
+            settings.layout = layout;
+            Ok((settings, None))
+        }
+        Err(error) => Ok((settings, Some(format!("{LAYOUT_LOST} ({error})")))),
+    }
+}
+
+const LAYOUT_LOST: &str = "The layout of the panels cannot be read; the default is used";
+
 fn set_aside(folder: &Path, error: &serde_json::Error) -> String {
     match std::fs::rename(folder.join(FILE), folder.join(SET_ASIDE)) {
         Ok(()) => {
@@ -113,7 +137,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let folder = folder.path().join("new");
         let mut kept = Kept::open(&folder);
-        assert_eq!((kept.now, kept.told()), (Settings::default(), None));
+        assert_eq!((kept.now.clone(), kept.told()), (Settings::default(), None));
         kept.now.role = Role::Surgeon;
         kept.save();
         let again = Kept::open(&folder);
@@ -123,7 +147,7 @@ mod tests {
     #[test]
     fn a_damaged_file_is_set_aside_and_told() {
         let folder = tempfile::tempdir().unwrap();
-        for damage in ["{\"role\":", "", "{\"role\":\"king\"}", "{\"colour\":1}", "[]x"] {
+        for damage in ["{\"role\":", "", "{\"role\":\"king\"}", "{\"light\":1}", "[]x"] {
             std::fs::write(folder.path().join(FILE), damage).unwrap();
             let mut kept = Kept::open(folder.path());
             assert_eq!(kept.now, Settings::default());
@@ -132,6 +156,19 @@ mod tests {
             kept.now.role = Role::Demo;
             kept.save();
             assert_eq!(Kept::open(folder.path()).now.role, Role::Demo);
+        }
+    }
+
+    #[test]
+    fn a_layout_that_cannot_be_read_is_told_and_costs_nothing_else() {
+        let folder = tempfile::tempdir().unwrap();
+        for layout in ["1", "{\"places\":{\"spiral\":[]}}", "{\"closed\":[\"tea_kitchen\"]}"] {
+            let text = format!("{{\"role\":\"surgeon\",\"from_the_future\":1,\"layout\":{layout}}}");
+            std::fs::write(folder.path().join(FILE), text).unwrap();
+            let kept = Kept::open(folder.path());
+            assert_eq!((kept.now.role, &kept.now.layout), (Role::Surgeon, &Layout::default()));
+            assert!(kept.told().unwrap().starts_with(LAYOUT_LOST));
+            assert!(folder.path().join(FILE).exists());
         }
     }
 

@@ -5,8 +5,10 @@ use nima::{config::Scene, device::Prompt, runtime::Command, teleop::LoopState};
 
 use super::ConsoleApp;
 use crate::console::{
+    desk::Panel as Tile,
     panels::{CalibrationWish, calibrations_ui},
     theme,
+    widgets::card,
     wizards::{Saving, Which},
 };
 
@@ -71,7 +73,10 @@ impl ConsoleApp {
         let side = Frame::new().fill(theme::now().panel).inner_margin(Margin::same(8));
         let mut wish = None;
         Panel::left("calibrations").exact_size(316.0).resizable(false).frame(side).show(ui, |ui| {
-            wish = calibrations_ui(ui, &self.live, &self.in_force, self.wizards.open);
+            let panel = Tile::Calibrations;
+            wish = card(ui, panel.title(), panel.meaning(), |ui| {
+                calibrations_ui(ui, &self.live, &self.in_force, self.wizards.open)
+            });
         });
         let binding = self.in_force.binding();
         let mut saving = None;

@@ -8,7 +8,7 @@ use crate::console::{
     in_force::InForce,
     live::Live,
     theme,
-    widgets::{Sign, card, sign_ui, small},
+    widgets::{Sign, sign_ui, small},
     wizards::Which,
 };
 
@@ -21,35 +21,35 @@ pub enum CalibrationWish {
     Close,
 }
 
-/// The card; `open` is the wizard on the screen.
+/// The panel; `open` is the wizard on the screen.
 pub fn calibrations_ui(ui: &mut Ui, live: &Live, in_force: &InForce, open: Option<Which>) -> Option<CalibrationWish> {
     let mut wish = None;
-    card(ui, "Calibration in force", "Where the force at the tip comes from, and what was calibrated for it.", |ui| {
-        source_ui(ui, live);
-        for line in in_force.lines() {
-            ui.label(small(line));
+    source_ui(ui, live);
+    for line in in_force.lines() {
+        ui.label(small(line));
+    }
+    if let Some(told) = in_force.told() {
+        ui.label(told);
+    }
+    ui.add_space(4.0);
+    let free = matches!(live.state(), LoopState::Idle | LoopState::Engaged);
+    for which in Which::ALL {
+        let text = format!("Calibrate {}...", which.name().to_lowercase());
+        let button = Button::selectable(open == Some(which), text)
+            .frame_when_inactive(true)
+            .min_size(vec2(ui.available_width(), 28.0));
+        let response = ui.add_enabled(free && open != Some(which), button);
+        let response = response.on_hover_text(format!("{} The loop is set to idle.", which.meaning()));
+        if response.on_disabled_hover_text("Already open, or the loop has stopped: release it first.").clicked() {
+            wish = Some(CalibrationWish::Open(which));
         }
-        if let Some(told) = in_force.told() {
-            ui.label(told);
+    }
+    if open.is_some() {
+        let back = Button::new("Back to the monitor").min_size(vec2(ui.available_width(), 32.0));
+        if ui.add(back).on_hover_text("What the wizard has taken is kept for when it is opened again.").clicked() {
+            wish = Some(CalibrationWish::Close);
         }
-        ui.add_space(4.0);
-        let free = matches!(live.state(), LoopState::Idle | LoopState::Engaged);
-        for which in Which::ALL {
-            let text = format!("Calibrate {}...", which.name().to_lowercase());
-            let button = Button::selectable(open == Some(which), text).min_size(vec2(ui.available_width(), 28.0));
-            let response = ui.add_enabled(free && open != Some(which), button);
-            let response = response.on_hover_text(format!("{} The loop is set to idle.", which.meaning()));
-            if response.on_disabled_hover_text("Already open, or the loop has stopped: release it first.").clicked() {
-                wish = Some(CalibrationWish::Open(which));
-            }
-        }
-        if open.is_some() {
-            let back = Button::new("Back to the monitor").min_size(vec2(ui.available_width(), 32.0));
-            if ui.add(back).on_hover_text("What the wizard has taken is kept for when it is opened again.").clicked() {
-                wish = Some(CalibrationWish::Close);
-            }
-        }
-    });
+    }
     wish
 }
 

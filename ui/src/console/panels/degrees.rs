@@ -6,48 +6,44 @@ use crate::console::{
     live::{DEGREES_S, Live},
     rolling::DEGREES,
     theme,
-    widgets::{card, figure, small, three_digits},
+    widgets::{figure, small, three_digits},
 };
 
 const CHART_HEIGHT: f32 = 92.0;
 
 /// The panel.
 pub fn degrees_ui(ui: &mut Ui, live: &Live) {
-    let meaning =
-        "Degree N of the polynomial f = M X between motion and force, chosen anew each tick on the last 300 ms.";
-    card(ui, "Degrees", meaning, |ui| {
-        ui.horizontal(|ui| {
-            key_ui(
-                ui,
-                theme::now().rendered,
-                "this console",
-                "Chosen by the running error at the horizon; 0 means no correction.",
-            );
-            key_ui(
-                ui,
-                theme::now().reference,
-                "the paper's rule",
-                "Least error inside the window; 0 means the window is not full.",
-            );
-            ui.label(small(format!("last {:.0} min", DEGREES_S / 60.0)));
-        });
-        chart_ui(ui, live);
-        let share = |share: f64| format!("{:.0} %", 100.0 * share);
-        figure(
+    ui.horizontal(|ui| {
+        key_ui(
             ui,
-            "Nonlinear, this console",
-            share(live.degrees.nonlinear()),
-            "Share of ticks in which a degree of 2 or more paid off at the horizon.",
+            theme::now().rendered,
+            "this console",
+            "Chosen by the running error at the horizon; 0 means no correction.",
         );
-        figure(
+        key_ui(
             ui,
-            "Nonlinear, the paper's rule",
-            share(live.paper_degrees.nonlinear()),
-            "Share of ticks with degree 2 or more by the error inside the window. The models are nested, so this is near 100 % \
-             whatever the tissue: it is not evidence of nonlinearity.",
+            theme::now().reference,
+            "the paper's rule",
+            "Least error inside the window; 0 means the window is not full.",
         );
-        quality_ui(ui, live);
+        ui.label(small(format!("last {:.0} min", DEGREES_S / 60.0)));
     });
+    chart_ui(ui, live);
+    let share = |share: f64| format!("{:.0} %", 100.0 * share);
+    figure(
+        ui,
+        "Nonlinear, this console",
+        share(live.degrees.nonlinear()),
+        "Share of ticks in which a degree of 2 or more paid off at the horizon.",
+    );
+    figure(
+        ui,
+        "Nonlinear, the paper's rule",
+        share(live.paper_degrees.nonlinear()),
+        "Share of ticks with degree 2 or more by the error inside the window. The models are nested, so this is near 100 % \
+         whatever the tissue: it is not evidence of nonlinearity.",
+    );
+    quality_ui(ui, live);
 }
 
 fn quality_ui(ui: &mut Ui, live: &Live) {

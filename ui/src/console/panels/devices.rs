@@ -6,24 +6,23 @@ use nima::device::{Health, RosterEntry, Side, Standing, Trouble};
 use crate::console::{
     live::Live,
     theme,
-    widgets::{Sign, card, sign_ui, small},
+    widgets::{Sign, sign_ui, small, weak},
 };
 
-/// The card; nothing where everything is simulated.
+/// The panel; where everything is simulated it says so.
 pub fn devices_ui(ui: &mut Ui, live: &Live) {
     if live.roster.is_empty() {
+        ui.label(weak("Everything on this rig is simulated: there are no devices."));
         return;
     }
-    card(ui, "Devices", "What the rig is made of. Connected never means engaged.", |ui| {
-        for (entry, health) in live.roster.iter().zip(&live.healths.devices) {
-            device_ui(ui, entry, health);
+    for (entry, health) in live.roster.iter().zip(&live.healths.devices) {
+        device_ui(ui, entry, health);
+    }
+    for (side, obstacle) in Side::ALL.into_iter().zip(&live.healths.obstacles) {
+        if let Some(obstacle) = obstacle {
+            ui.add(Label::new(format!("The {} arm cannot be engaged: {obstacle}.", side.word())).wrap());
         }
-        for (side, obstacle) in Side::ALL.into_iter().zip(&live.healths.obstacles) {
-            if let Some(obstacle) = obstacle {
-                ui.add(Label::new(format!("The {} arm cannot be engaged: {obstacle}.", side.word())).wrap());
-            }
-        }
-    });
+    }
 }
 
 fn device_ui(ui: &mut Ui, entry: &RosterEntry, health: &Health) {

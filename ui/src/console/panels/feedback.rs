@@ -9,20 +9,23 @@ use egui::{Button, DragValue, RichText, Slider, SliderClamping, Ui, vec2};
 use nima::{impedance::Mode, runtime::Command};
 
 use super::{mode_meaning, mode_name, stable_gain::stable_gain_ui};
-use crate::console::{
-    live::Live,
-    outbox::Outbox,
-    theme,
-    widgets::{card, small},
-};
+use crate::console::{live::Live, outbox::Outbox, theme, widgets::small};
 
 /// How long a control shows what was asked before it falls back to what is in force, s: the gain ramps at 2 per second.
 const ASKED_SHOWN_S: f64 = 1.6;
 const DELAY_MS: RangeInclusive<f64> = 0.0..=500.0;
 const DEAD_BAND_MM_S: RangeInclusive<f64> = 0.0..=10.0;
 const GAIN_LIMIT: f64 = 3.0;
-const GAIN_MEANING: &str = "Factor between the force asked for by the mode and the force in the hand, without unit. 0 is no force, \
-                            1 is natural. Changes are ramped at 2 per second.";
+const GAIN_MEANING: &str = "Factor between the force asked for by the mode and the force in the hand, without unit: 0 to 1, or to 3 once \
+                            that is allowed. 0 is no force, 1 is natural. Changes are ramped at 2 per second. The strip below tells up \
+                            to which gain a gripping hand comes to rest.";
+const DELAY_MEANING: &str = "One-way delay from the follower to the hand, 0 to 500 ms, added to what the link has. The paper programs 300 \
+                             ms. Every mode gets its data this late and renders this far ahead. Taken over when the slider is let go.";
+const DEAD_BAND_MEANING: &str = "Speed of the hand, 0 to 10 mm/s, below which nothing is rendered: at standstill an impedance is unknown. \
+                                 The paper uses 1 mm/s; 0 is no dead band. The edge is smooth: force comes back in full at twice the \
+                                 speed. While force is kept at standstill, it does nothing.";
+const HOLD_MEANING: &str = "On: the force stays when the hand rests, so that a steady push is felt. Off: it fades in the dead band below, as \
+                            in the paper, and the panel of gates tells how much is not rendered (N).";
 
 /// A value that was asked for and when (s on the window's clock).
 #[derive(Clone, Copy, Debug, Default)]
@@ -52,16 +55,13 @@ pub struct FeedbackState {
 
 /// The panel.
 pub fn feedback_ui(ui: &mut Ui, live: &mut Live, state: &mut FeedbackState, outbox: &mut Outbox) {
-    let meaning = "How the force measured at the instrument becomes the force in the hand.";
-    card(ui, "Feedback", meaning, |ui| {
-        mode_ui(ui, live, outbox);
-        ui.add_space(8.0);
-        gain_ui(ui, live, state, outbox);
-        ui.add_space(8.0);
-        delay_ui(ui, live, state, outbox);
-        ui.add_space(8.0);
-        standstill_ui(ui, live, state, outbox);
-    });
+    mode_ui(ui, live, outbox);
+    ui.add_space(8.0);
+    gain_ui(ui, live, state, outbox);
+    ui.add_space(8.0);
+    delay_ui(ui, live, state, outbox);
+    ui.add_space(8.0);
+    standstill_ui(ui, live, state, outbox);
 }
 
 fn mode_ui(ui: &mut Ui, live: &Live, outbox: &mut Outbox) {
@@ -190,14 +190,7 @@ pub fn calm_gain_ui(ui: &mut Ui, live: &Live, state: &mut FeedbackState, outbox:
 }
 
 fn delay_ui(ui: &mut Ui, live: &Live, state: &mut FeedbackState, outbox: &mut Outbox) {
-    let setting = Setting {
-        name: "Link delay",
-        meaning: "One-way delay from the follower to the hand, ms, added to what the link has. The paper programs 300 ms. Taken \
-                  over when the slider is let go.",
-        suffix: " ms",
-        decimals: 0,
-        at_once: false,
-    };
+    let setting = Setting { name: "Link delay", meaning: DELAY_MEANING, suffix: " ms", decimals: 0, at_once: false };
     let in_force = live.delay_s() * 1e3;
     if let Some(delay_ms) = setting_ui(ui, &setting, DELAY_MS, in_force, &mut state.delay_ms).0 {
         outbox.push(Command::SetDelay(delay_ms * 1e-3));
@@ -205,21 +198,14 @@ fn delay_ui(ui: &mut Ui, live: &Live, state: &mut FeedbackState, outbox: &mut Ou
 }
 
 fn standstill_ui(ui: &mut Ui, live: &Live, state: &mut FeedbackState, outbox: &mut Outbox) {
-    let setting = Setting {
-        name: "Dead band",
-        meaning: "Speed of the hand, mm/s, below which nothing is rendered: at standstill an impedance is unknown. The paper uses \
-                  1 mm/s. The edge is smooth.",
-        suffix: " mm/s",
-        decimals: 1,
-        at_once: true,
-    };
+    let setting =
+        Setting { name: "Dead band", meaning: DEAD_BAND_MEANING, suffix: " mm/s", decimals: 1, at_once: true };
     let in_force = live.gate_settings().dead_band_m_s * 1e3;
     if let Some(mm_s) = setting_ui(ui, &setting, DEAD_BAND_MM_S, in_force, &mut state.dead_band_mm_s).0 {
         outbox.push(Command::SetDeadBand(mm_s * 1e-3));
     }
     let mut hold = live.gate_settings().static_hold;
-    let meaning = "Keeps the force when the hand rests, instead of fading it in the dead band as the paper does.";
-    if ui.checkbox(&mut hold, RichText::new("Keep force at standstill")).on_hover_text(meaning).changed() {
+    if ui.checkbox(&mut hold, RichText::new("Keep force at standstill")).on_hover_text(HOLD_MEANING).changed() {
         outbox.push(Command::SetStaticHold(hold));
     }
 }

@@ -1,8 +1,9 @@
 //! "Why is there no force?": the gates between model and hand, in their order, and what each does just now.
 
-use egui::{Color32, RichText, Ui};
+use egui::{Button, Color32, Label, RichText, Ui, vec2};
 use nima::{
     device::Side,
+    runtime::Fault,
     safety::{EnergyMode, Gate as Which, Reason},
     teleop::LoopState,
 };
@@ -10,59 +11,87 @@ use nima::{
 use crate::console::{
     live::Live,
     rolling::Fading,
+    scene3d::side_name,
     theme,
-    widgets::{Sign, card, sign_ui, small},
+    widgets::{Sign, sign_ui, small},
 };
 
-/// The panel tells of the right hand.
-const RIGHT: usize = Side::Right.index();
 /// Below this there is no contact worth rendering, N.
 const CONTACT_N: f64 = 0.1;
 
+/// Whose gates are told.
+#[derive(Clone, Copy, Debug)]
+pub struct GatesState {
+    side: Side,
+}
+
+impl Default for GatesState {
+    fn default() -> Self {
+        Self { side: Side::Right }
+    }
+}
+
 /// The panel.
-pub fn gates_ui(ui: &mut Ui, live: &Live) {
-    let meaning = "A force passes these gates in this order. A closed gate stops it, a limiting gate makes it smaller.";
-    card(ui, "Why is there no force?", meaning, |ui| {
-        ui.label(RichText::new(answer(live)).font(theme::strong(14.0)));
-        ui.add_space(4.0);
-        for gate in gates(live, Side::Right) {
-            gate_ui(ui, live, &gate);
-        }
-    });
+pub fn gates_ui(ui: &mut Ui, live: &Live, state: &mut GatesState) {
+    if live.is_bimanual() {
+        ui.horizontal(|ui| {
+            for side in [Side::Left, Side::Right] {
+                let name = format!("{} hand", side_name(side));
+                let button = Button::selectable(state.side == side, name).frame_when_inactive(true);
+                let meaning = format!("Tells why there is no force in the {} hand.", side.word());
+                if ui.add(button.min_size(vec2(104.0, 26.0))).on_hover_text(meaning).clicked() {
+                    state.side = side;
+                }
+            }
+        });
+    } else {
+        state.side = Side::Right;
+    }
+    ui.add(Label::new(RichText::new(answer(live, state.side)).font(theme::strong(14.0))).wrap());
+    ui.add_space(2.0);
+    // Nine rows that are to be seen at once.
+    ui.spacing_mut().item_spacing.y = 1.0;
+    ui.spacing_mut().interact_size.y = 20.0;
+    for gate in gates(live, state.side) {
+        gate_ui(ui, live, state.side, &gate);
+    }
 }
 
 /// The answer in one sentence: the first closed gate, or that nothing is wrong.
-fn answer(live: &Live) -> String {
-    why_no_force(live).unwrap_or_else(|| match live.figures {
-        figures if figures.measured_n[RIGHT] < CONTACT_N => "Free motion: no contact, nothing to render.".to_owned(),
-        figures => format!("There is: {:.1} N in the hand.", figures.rendered_n[RIGHT]),
+fn answer(live: &Live, side: Side) -> String {
+    why_no_force(live, side).unwrap_or_else(|| match live.figures {
+        figures if figures.measured_n[side.index()] < CONTACT_N => {
+            "Free motion: no contact, nothing to render.".to_owned()
+        }
+        figures => format!("There is: {:.1} N in the hand.", figures.rendered_n[side.index()]),
     })
 }
 
-/// Why the hand feels nothing, or less than it should; `None` where nothing is wrong.
-pub fn why_no_force(live: &Live) -> Option<String> {
-    let figures = &live.figures;
-    let words = match live.state() {
+/// Why this hand feels nothing, or less than it should; `None` where nothing is wrong.
+pub fn why_no_force(live: &Live, side: Side) -> Option<String> {
+    let (gates, hand) = (&live.gates[side.index()], side.index());
+    let (measured_n, rendered_n) = (live.figures.measured_n[hand], live.figures.rendered_n[hand]);
+    let withheld_n = gates.withheld_n.get();
+    let words = match live.tick_of(side).map_or(LoopState::Idle, |tick| tick.state) {
         LoopState::Disconnected => "No force: a device is missing (see the devices).",
         LoopState::Idle => "No force: the loop is idle. Press Engage.",
         LoopState::Ready => "No force yet: the drives are coming on.",
         LoopState::Clutched => "No force: the clutch is pressed, the hand moves freely.",
         LoopState::Stopped => "No force: stopped by the operator.",
+        LoopState::Faulted(Fault::OtherArm) => "No force: the other arm was stopped by a fault.",
         LoopState::Faulted(_) => "No force: stopped by a fault.",
-        LoopState::Engaged if closed(live.gates[RIGHT].released) => {
+        LoopState::Engaged if closed(gates.released) => {
             "No force: the hand has let go. It comes back when the contact has ended."
         }
-        LoopState::Engaged if closed(live.gates[RIGHT].invalid) => "No force: the mode has nothing valid to render.",
-        LoopState::Engaged if closed(live.gates[RIGHT].stale) => "No force: the data are too old.",
-        LoopState::Engaged if figures.measured_n[RIGHT] < CONTACT_N => return None,
-        LoopState::Engaged if closed(live.gates[RIGHT].dead_band) && figures.withheld_n > 0.05 => {
-            return Some(format!("{:.1} N not rendered (dead band)", figures.withheld_n));
+        LoopState::Engaged if closed(gates.invalid) => "No force: the mode has nothing valid to render.",
+        LoopState::Engaged if closed(gates.stale) => "No force: the data are too old.",
+        LoopState::Engaged if measured_n < CONTACT_N => return None,
+        LoopState::Engaged if closed(gates.dead_band) && withheld_n > 0.05 => {
+            return Some(format!("{withheld_n:.1} N not rendered (dead band)"));
         }
         LoopState::Engaged if live.gain() < 0.01 => "No force: the gain is zero.",
-        LoopState::Engaged if closed(live.gates[RIGHT].energy) => {
-            "Less force: the hand would get back more energy than it gave."
-        }
-        LoopState::Engaged if figures.rendered_n[RIGHT] < 0.05 => {
+        LoopState::Engaged if closed(gates.energy) => "Less force: the hand would get back more energy than it gave.",
+        LoopState::Engaged if rendered_n < 0.05 => {
             return Some(format!("On its way: the link is {:.0} ms late.", live.delay_s() * 1e3));
         }
         LoopState::Engaged => return None,
@@ -202,7 +231,7 @@ pub(super) fn history(live: &Live, side: Side, gate: Which) -> String {
     }
 }
 
-fn gate_ui(ui: &mut Ui, live: &Live, gate: &Gate) {
+fn gate_ui(ui: &mut Ui, live: &Live, side: Side, gate: &Gate) {
     let (what, word) = gate.standing();
     let acting = what != Sign::Disc;
     let colour = if acting { theme::now().text } else { theme::now().engaged.gamma_multiply(0.75) };
@@ -214,5 +243,5 @@ fn gate_ui(ui: &mut Ui, live: &Live, gate: &Gate) {
         ui.label(RichText::new(word).color(ink));
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| ui.label(small(&gate.note)));
     });
-    row.response.on_hover_text(format!("{} {}", gate.meaning, history(live, Side::Right, gate.which)));
+    row.response.on_hover_text(format!("{} {}", gate.meaning, history(live, side, gate.which)));
 }

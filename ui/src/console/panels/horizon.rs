@@ -7,7 +7,7 @@ use super::{mode_meaning, mode_name};
 use crate::console::{
     live::{Live, TREND_S},
     theme,
-    widgets::{Sign, bar, card, sign, small, three_digits},
+    widgets::{Sign, bar, sign, small, three_digits},
 };
 
 /// Bars end here, in errors of delayed direct reflection.
@@ -19,18 +19,13 @@ const LEAST_N: f64 = 1e-4;
 
 /// The panel.
 pub fn horizon_ui(ui: &mut Ui, live: &Live) {
-    let meaning = "Mean distance (N, 3-D) between the force each mode would render now and the force measured now, though it only \
-                   knows data as old as the link's delay. Mean over the last four seconds, before the gates. All four modes are \
-                   computed all the time.";
-    card(ui, "Error at the horizon", meaning, |ui| {
-        let dfr_n = live.figures.horizon_n[Mode::Dfr.index()];
-        ui.label(small(format!("{:.0} ms ahead, last seconds; the line is delayed DFR", live.delay_s() * 1e3)));
-        ui.add_space(2.0);
-        for mode in [Mode::Anchored, Mode::Dfr, Mode::Linear, Mode::Literal] {
-            mode_ui(ui, mode, live.figures.horizon_n[mode.index()], dfr_n, live.mode() == mode);
-        }
-        trend_ui(ui, live);
-    });
+    let dfr_n = live.figures.horizon_n[Mode::Dfr.index()];
+    ui.label(small(format!("{:.0} ms ahead, last seconds; the line is delayed DFR", live.delay_s() * 1e3)));
+    ui.add_space(2.0);
+    for mode in [Mode::Anchored, Mode::Dfr, Mode::Linear, Mode::Literal] {
+        mode_ui(ui, mode, live.figures.horizon_n[mode.index()], dfr_n, live.mode() == mode);
+    }
+    trend_ui(ui, live);
 }
 
 /// The active mode beside delayed reflection over the last minutes, one point a second.

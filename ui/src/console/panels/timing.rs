@@ -3,75 +3,115 @@
 use egui::{Grid, RichText, Ui};
 use nima::statistics::Quantiles;
 
+use super::timing_bars::{Timing, bars_ui, missed_ui};
 use crate::console::{
     alarms::sentence,
     live::Live,
     theme,
-    widgets::{card, figure, small, weak},
+    widgets::{figure, small, weak},
 };
 
-/// The panel.
-pub fn timing_ui(ui: &mut Ui, live: &Live) {
-    let meaning = "The loop's own clock: how late it wakes for each period and how long it works in it, since the console opened.";
-    card(ui, "Timing", meaning, |ui| {
-        table_ui(ui, live);
-        ui.add_space(2.0);
-        let tick = live.tick.as_ref();
-        let rate = format!("{} at {:.0} Hz", grouped(tick.map_or(0, |tick| tick.index + 1)), live.figures.rate_hz);
-        figure(
-            ui,
-            "Ticks",
-            rate,
-            "Ticks executed since the loop began, and ticks that reached this screen in the last moment.",
-        );
-        let missed = grouped(tick.map_or(0, |tick| tick.missed));
-        figure(
-            ui,
-            "Missed",
-            missed,
-            "Periods in which the loop was not run in time. They are counted and skipped, never caught up.",
-        );
-        let dropped = grouped(tick.map_or(0, |tick| tick.dropped));
-        figure(
-            ui,
-            "Dropped",
-            dropped,
-            "Ticks that did not reach this screen because it was busy. The loop never waits for it.",
-        );
-        scheduling_ui(ui, live);
-        let [p50, p99] = live.figures.frame_ms;
-        let frame = format!("p50 {p50:.0}, p99 {p99:.0}, work {:.0} ms", live.figures.frame_work_ms);
-        figure(
-            ui,
-            "Console frame",
-            frame,
-            if live.rough_edges {
-                "Time from one picture of this window to the next since it opened (32 ms asked; at rest not counted), and the work in it now. Edges in 3-D are not smoothed, \
-                 because this computer draws too slowly with it."
-            } else {
-                "Time from one picture of this window to the next since it opened (32 ms asked; at rest not counted), and the work in it now."
-            },
-        );
-    });
+/// Counting the histograms takes a moment: they are read, not watched.
+const BARS_EVERY_S: f64 = 0.25;
+
+/// Histograms as last counted.
+#[derive(Clone, Debug, Default)]
+pub struct TimingState {
+    bars: Vec<Vec<u64>>,
+    made_at_s: Option<f64>,
 }
 
-fn table_ui(ui: &mut Ui, live: &Live) {
+/// What is timed, in the order of a tick. A duration without a deadline of its own is held against the period.
+fn timings(live: &Live) -> Vec<Timing<'_>> {
+    let deadline_us = 1e6 / live.rig.rate_hz;
+    vec![
+        Timing {
+            name: "Wake-up",
+            meaning: "From the moment the loop should wake to when it does (us).",
+            quantiles: live.figures.wake_us,
+            durations: live.wake(),
+            deadline_us,
+        },
+        Timing {
+            name: "Work",
+            meaning: "One tick: gravity, identification, selection, rendering, gates (us).",
+            quantiles: live.figures.work_us,
+            durations: live.work(),
+            deadline_us,
+        },
+        Timing {
+            name: "Sample to force",
+            meaning: "From the arrival of the oldest measurement to when the force made from it was given to the handle (us).",
+            quantiles: live.figures.sample_to_force_us,
+            durations: live.sample_to_force(),
+            deadline_us,
+        },
+    ]
+}
+
+/// The panel.
+pub fn timing_ui(ui: &mut Ui, live: &Live, state: &mut TimingState) {
+    let timings = timings(live);
+    table_ui(ui, &timings);
+    ui.add_space(2.0);
+    let time_s = ui.input(|input| input.time);
+    if state.made_at_s.is_none_or(|at_s| time_s - at_s >= BARS_EVERY_S) {
+        state.made_at_s = Some(time_s);
+        state.bars = timings.iter().map(Timing::bars).collect();
+    }
+    for (timing, bars) in timings.iter().zip(&state.bars) {
+        bars_ui(ui, timing, bars);
+    }
+    missed_ui(ui, &live.deadlines);
+    ui.add_space(4.0);
+    let tick = live.tick.as_ref();
+    let rate = format!("{} at {:.0} Hz", grouped(tick.map_or(0, |tick| tick.index + 1)), live.figures.rate_hz);
+    figure(
+        ui,
+        "Ticks",
+        rate,
+        "Ticks executed since the loop began, and ticks that reached this screen in the last moment.",
+    );
+    let missed = grouped(tick.map_or(0, |tick| tick.missed));
+    figure(
+        ui,
+        "Missed",
+        missed,
+        "Periods in which the loop was not run in time. They are counted and skipped, never caught up.",
+    );
+    let dropped = grouped(tick.map_or(0, |tick| tick.dropped));
+    figure(
+        ui,
+        "Dropped",
+        dropped,
+        "Ticks that did not reach this screen because it was busy. The loop never waits for it.",
+    );
+    scheduling_ui(ui, live);
+    let [p50, p99] = live.figures.frame_ms;
+    let frame = format!("p50 {p50:.0}, p99 {p99:.0}, work {:.0} ms", live.figures.frame_work_ms);
+    figure(
+        ui,
+        "Console frame",
+        frame,
+        if live.rough_edges {
+            "Time from one picture of this window to the next since it opened (32 ms asked; at rest not counted), and the work in it now. Edges in 3-D are not smoothed, \
+             because this computer draws too slowly with it."
+        } else {
+            "Time from one picture of this window to the next since it opened (32 ms asked; at rest not counted), and the work in it now."
+        },
+    );
+}
+
+fn table_ui(ui: &mut Ui, timings: &[Timing<'_>]) {
     Grid::new("timing").num_columns(5).spacing([10.0, 3.0]).min_col_width(46.0).show(ui, |ui| {
         ui.label(small("µs"));
         for head in ["p50", "p99", "p99.9", "max"] {
             right(ui, small(head));
         }
         ui.end_row();
-        for (name, quantiles, meaning) in [
-            ("Wake-up", live.figures.wake_us, "Microseconds from the moment the loop should wake to when it does."),
-            (
-                "Work",
-                live.figures.work_us,
-                "Microseconds of one tick: gravity, identification, selection, rendering, gates.",
-            ),
-        ] {
-            ui.label(weak(name)).on_hover_text(meaning);
-            let Quantiles { p50, p99, p999, max } = quantiles;
+        for Timing { name, meaning, quantiles, .. } in timings {
+            ui.label(weak(*name)).on_hover_text(*meaning);
+            let Quantiles { p50, p99, p999, max } = *quantiles;
             for value in [p50, p99, p999, max] {
                 right(ui, RichText::new(format!("{value:.0}")).font(theme::strong(14.0)));
             }
@@ -97,7 +137,7 @@ fn scheduling_ui(ui: &mut Ui, live: &Live) {
 }
 
 /// Digits in groups of three.
-fn grouped(number: u64) -> String {
+pub(super) fn grouped(number: u64) -> String {
     let digits = number.to_string();
     let mut text = String::new();
     for (i, digit) in digits.chars().enumerate() {

@@ -21,7 +21,7 @@ use super::{mode_meaning, mode_name, tradeoff_plot::plot_ui};
 use crate::console::{
     live::Live,
     outbox::Outbox,
-    widgets::{card, small, three_digits},
+    widgets::{small, three_digits},
 };
 
 /// Length of the scene that is measured on, s.
@@ -119,24 +119,20 @@ impl Drop for TradeoffState {
 /// restarted with it.
 pub fn tradeoff_ui(ui: &mut Ui, live: &Live, state: &mut TradeoffState, outbox: &mut Outbox) -> Option<Rig> {
     state.take_in();
-    let meaning = "Time of one tick of identification (us, on this computer) against mean error at the horizon (N): every mode, \
-                   degree and window on this scene, recorded open-loop, at the rig's rate and the link's delay.";
-    card(ui, "Trade-off", meaning, |ui| {
-        measure_ui(ui, live, state);
-        if !state.message.is_empty() {
-            ui.label(small(state.message.clone()));
-        }
-        let Some(figures) = &state.measured else {
-            ui.label(small("Not measured yet. It takes some seconds; the loop goes on."));
-            return None;
-        };
-        if let Some(clicked) = plot_ui(ui, figures, state.selected) {
-            state.selected = Some(clicked);
-        }
-        front_ui(ui, figures, &mut state.selected);
-        let point = state.selected.and_then(|index| figures.points.get(index)).copied()?;
-        apply_ui(ui, live, &point, state, outbox)
-    })
+    measure_ui(ui, live, state);
+    if !state.message.is_empty() {
+        ui.label(small(state.message.clone()));
+    }
+    let Some(figures) = &state.measured else {
+        ui.label(small("Not measured yet. It takes some seconds; the loop goes on."));
+        return None;
+    };
+    if let Some(clicked) = plot_ui(ui, figures, state.selected) {
+        state.selected = Some(clicked);
+    }
+    front_ui(ui, figures, &mut state.selected);
+    let point = state.selected.and_then(|index| figures.points.get(index)).copied()?;
+    apply_ui(ui, live, &point, state, outbox)
 }
 
 fn measure_ui(ui: &mut Ui, live: &Live, state: &mut TradeoffState) {

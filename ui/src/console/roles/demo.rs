@@ -6,13 +6,17 @@ use nima::{impedance::Mode, runtime::Command, teleop::LoopState};
 
 use super::Panels;
 use crate::console::{
+    desk,
     live::Live,
     outbox::Outbox,
     panels::{force_space_ui, forces_ui, horizon_ui},
     scene3d::scene_ui,
     theme,
-    widgets::{bar, small},
+    widgets::{bar, card, small},
 };
+
+/// With less height than this the force space is left out.
+const LEAST_SPACE: f32 = 190.0;
 
 /// One scene of the script.
 #[derive(Debug)]
@@ -148,9 +152,13 @@ pub(super) fn demo_ui(ui: &mut Ui, live: &mut Live, panels: &mut Panels, outbox:
             caption_ui(ui, live, &mut panels.demo);
         });
     Panel::right("figures").exact_size(348.0).resizable(false).frame(side).show(ui, |ui| {
-        horizon_ui(ui, live);
+        let panel = desk::Panel::Horizon;
+        card(ui, panel.title(), panel.meaning(), |ui| horizon_ui(ui, live));
         let Panels { forces, space, .. } = panels;
         let room = vec2(ui.available_width(), ui.available_height().min(380.0));
+        if room.y < LEAST_SPACE {
+            return;
+        }
         ui.allocate_ui(room, |ui| force_space_ui(ui, live, forces.side(), space, forces.cursor_at_s(live)));
     });
     CentralPanel::no_frame().show(ui, |ui| {

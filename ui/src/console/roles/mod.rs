@@ -13,10 +13,11 @@ use serde::{Deserialize, Serialize};
 pub use demo::DemoState;
 
 use super::{
+    desk::Desk,
     in_force::InForce,
     live::Live,
     outbox::Outbox,
-    panels::{CalibrationWish, FeedbackState, ForceSpaceState, ForcesState, TradeoffState},
+    panels::{CalibrationWish, FeedbackState, ForceSpaceState, ForcesState, GatesState, TimingState, TradeoffState},
     scene3d::{Look, SceneView},
     settings::Settings,
 };
@@ -68,36 +69,6 @@ impl Role {
     }
 }
 
-/// What a technician sees under the field.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Tab {
-    /// Forces over time.
-    #[default]
-    Traces,
-    /// Interlock and gates.
-    Safety,
-}
-
-impl Tab {
-    /// All of them.
-    pub const ALL: [Self; 2] = [Self::Traces, Self::Safety];
-
-    const fn name(self) -> &'static str {
-        match self {
-            Self::Traces => "Traces",
-            Self::Safety => "Safety",
-        }
-    }
-
-    const fn meaning(self) -> &'static str {
-        match self {
-            Self::Traces => "Force over time along x, y and z, measured and rendered.",
-            Self::Safety => "What stands between a model and a hand: the interlock and the gates of each arm.",
-        }
-    }
-}
-
 /// What the panels of all roles remember between frames.
 #[derive(Debug, Default)]
 pub struct Panels {
@@ -111,6 +82,12 @@ pub struct Panels {
     pub tradeoff: TradeoffState,
     /// The operating field.
     pub scene: SceneView,
+    /// Whose gates are told.
+    pub gates: GatesState,
+    /// Histograms of the loop's durations.
+    pub timing: TimingState,
+    /// The technician's tiles.
+    pub desk: Desk,
     /// Where the demonstration is.
     pub demo: DemoState,
 }
@@ -144,7 +121,7 @@ pub fn role_ui(
             surgeon::surgeon_ui(ui, live, panels, outbox);
             Wishes::default()
         }
-        Role::Technician => technician::technician_ui(ui, &mut settings.tab, live, panels, in_force, outbox),
+        Role::Technician => technician::technician_ui(ui, &mut settings.layout, live, panels, in_force, outbox),
         Role::Demo => {
             demo::demo_ui(ui, live, panels, outbox);
             Wishes::default()

@@ -37,12 +37,23 @@ pub(super) fn surgeon_ui(ui: &mut Ui, live: &mut Live, panels: &mut Panels, outb
             theme::card().show(ui, |ui| {
                 ui.set_min_size(ui.available_size());
                 calm_gain_ui(ui, live, &mut panels.feedback, outbox);
-                let words = why_no_force(live).unwrap_or_else(|| mode_name(live.mode()).to_owned());
-                ui.add(egui::Label::new(small(words)).truncate());
+                ui.add(egui::Label::new(small(told(live))).wrap());
             });
         });
     });
     CentralPanel::no_frame().show(ui, |ui| scene_ui(ui, live, &mut panels.scene, outbox));
+}
+
+/// Why a hand feels less than it should, and which; else the mode.
+fn told(live: &Live) -> String {
+    let whys: Vec<(Side, String)> =
+        live.sides().filter_map(|side| why_no_force(live, side).map(|why| (side, why))).collect();
+    match whys.as_slice() {
+        [] => mode_name(live.mode()).to_owned(),
+        [(_, one), (_, other)] if one == other => one.clone(),
+        [(side, why), ..] if live.is_bimanual() => format!("{}: {why}", side_name(*side)),
+        [(_, why), ..] => why.clone(),
+    }
 }
 
 /// Where a second hand would be: what the colours mean.

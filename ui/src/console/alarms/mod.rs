@@ -1,5 +1,9 @@
 //! What is wrong, in order of urgency: cause first, then what to do. Worked out anew each frame from what came in, so an
-//! alarm ends when its cause ends and not before.
+//! alarm ends when its cause ends and not before; [`log`] remembers the last of them, [`strip`] shows them, [`sound`] sounds them.
+
+pub mod log;
+pub mod sound;
+pub mod strip;
 
 use std::time::Duration;
 
@@ -23,23 +27,30 @@ pub enum Priority {
 }
 
 impl Priority {
-    /// Colour at this time on the dark plate that alarms stand on; flashing dims it and never hides it.
-    pub fn colour(self, time_s: f64) -> Color32 {
-        let (colour, hz) = match self {
-            Self::High => (theme::DARK.alarm_high, 2.0),
-            Self::Medium => (theme::DARK.alarm_medium, 0.6),
-            Self::Low => return theme::DARK.alarm_low,
+    /// Colour at this time on the dark plate that alarms stand on; flashing dims it and never hides it. What is acknowledged does
+    /// not flash, and a low priority never does.
+    pub fn colour(self, time_s: f64, flashes: bool) -> Color32 {
+        let colour = match self {
+            Self::High => theme::DARK.alarm_high,
+            Self::Medium => theme::DARK.alarm_medium,
+            Self::Low => theme::DARK.alarm_low,
         };
-        if (time_s * hz).fract() < 0.5 { colour } else { colour.gamma_multiply(0.35) }
+        let dimmed = self.flash_hz().is_some_and(|hz| flashes && (time_s * hz).fract() >= 0.5);
+        if dimmed { colour.gamma_multiply(0.35) } else { colour }
+    }
+
+    /// How often it flashes, Hz; IEC 60601-1-8 allows 1.4 to 2.8 for high and 0.4 to 0.8 for medium priority.
+    pub const fn flash_hz(self) -> Option<f64> {
+        match self {
+            Self::High => Some(2.0),
+            Self::Medium => Some(0.6),
+            Self::Low => None,
+        }
     }
 
     /// Time until the colour changes next, s; `None` for a steady one.
     pub fn until_change_s(self, time_s: f64) -> Option<f64> {
-        let half_s = match self {
-            Self::High => 0.5 / 2.0,
-            Self::Medium => 0.5 / 0.6,
-            Self::Low => return None,
-        };
+        let half_s = 0.5 / self.flash_hz()?;
         Some(half_s - time_s.rem_euclid(half_s))
     }
 
@@ -53,9 +64,28 @@ impl Priority {
     }
 }
 
+/// What can be wrong: an alarm whose figures change stays the same alarm.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// A stop did not reach the loop.
+    StopStuck,
+    /// A fault stopped the loop.
+    Fault(Fault),
+    /// The loop sends nothing.
+    Silence,
+    /// Periods are missed.
+    Missed,
+    /// The wrist sensor's bias has moved.
+    BiasMoved,
+    /// The operating system refused something.
+    Scheduling,
+}
+
 /// One thing that is wrong.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Alarm {
+    /// Which.
+    pub kind: Kind,
     /// How urgent.
     pub priority: Priority,
     /// What happened, and when if it has a moment.
@@ -95,6 +125,7 @@ pub fn judge(signs: &Signs) -> Vec<Alarm> {
     let mut alarms = Vec::new();
     if signs.stop_is_stuck {
         alarms.push(Alarm {
+            kind: Kind::StopStuck,
             priority: Priority::High,
             cause: "The stop has not reached the loop".to_owned(),
             cure: "Cut the power of the arm with its own emergency stop".to_owned(),
@@ -102,6 +133,7 @@ pub fn judge(signs: &Signs) -> Vec<Alarm> {
     }
     if let (Some(LoopState::Faulted(_)), Some((t_s, fault))) = (signs.state, signs.first_fault) {
         alarms.push(Alarm {
+            kind: Kind::Fault(fault),
             priority: Priority::High,
             cause: format!("{} (at {t_s:.1} s)", fault.cause()),
             cure: fault.cure().to_owned(),
@@ -109,6 +141,7 @@ pub fn judge(signs: &Signs) -> Vec<Alarm> {
     }
     if !signs.running || (signs.state.is_some() && signs.silence > SILENCE_MAX) {
         alarms.push(Alarm {
+            kind: Kind::Silence,
             priority: Priority::High,
             cause: "The control loop sends nothing any more; the screen shows its last state".to_owned(),
             cure: "Stop the arm by its own emergency stop, then start the console again".to_owned(),
@@ -116,6 +149,7 @@ pub fn judge(signs: &Signs) -> Vec<Alarm> {
     }
     if signs.missed_share > MISSED_SHARE_MAX {
         alarms.push(Alarm {
+            kind: Kind::Missed,
             priority: Priority::Medium,
             cause: format!("The loop misses {:.1} % of its periods", 100.0 * signs.missed_share),
             cure: "Close other programs, or grant real-time priority (see timing)".to_owned(),
@@ -123,6 +157,7 @@ pub fn judge(signs: &Signs) -> Vec<Alarm> {
     }
     if let Some(by_n) = signs.bias_moved_n {
         alarms.push(Alarm {
+            kind: Kind::BiasMoved,
             priority: Priority::Medium,
             cause: format!("The wrist sensor reads {by_n:.2} N at rest: its bias has moved since the calibration"),
             cure: "Let nothing touch the tool; if this stays, calibrate gravity again".to_owned(),
@@ -130,7 +165,12 @@ pub fn judge(signs: &Signs) -> Vec<Alarm> {
     }
     if let Some(advice) = signs.scheduling.and_then(|scheduling| scheduling.advice()) {
         let (cause, cure) = advice.split_once(": ").or_else(|| advice.split_once("; ")).unwrap_or((advice, ""));
-        alarms.push(Alarm { priority: Priority::Low, cause: sentence(cause), cure: sentence(cure) });
+        alarms.push(Alarm {
+            kind: Kind::Scheduling,
+            priority: Priority::Low,
+            cause: sentence(cause),
+            cure: sentence(cure),
+        });
     }
     alarms
 }
@@ -187,16 +227,19 @@ mod tests {
     fn flashing_never_hides_and_low_is_steady() {
         for i in 0..100 {
             let time_s = f64::from(i) * 0.05;
-            assert_eq!(Priority::Low.colour(time_s), theme::DARK.alarm_low);
-            assert!(Priority::High.colour(time_s).a() > 0);
+            assert_eq!(Priority::Low.colour(time_s, true), theme::DARK.alarm_low);
+            assert!(Priority::High.colour(time_s, true).a() > 0);
+            assert_eq!(Priority::High.colour(time_s, false), theme::DARK.alarm_high, "acknowledged: steady");
         }
-        assert_ne!(Priority::High.colour(0.1), Priority::High.colour(0.3));
+        assert_ne!(Priority::High.colour(0.1, true), Priority::High.colour(0.3, true));
+        assert!((1.4..=2.8).contains(&Priority::High.flash_hz().unwrap()));
+        assert!((0.4..=0.8).contains(&Priority::Medium.flash_hz().unwrap()));
         for priority in [Priority::High, Priority::Medium] {
             for i in 0..100 {
                 let time_s = 0.013 + f64::from(i) * 0.07;
                 let change_s = time_s + priority.until_change_s(time_s).unwrap();
-                assert_eq!(priority.colour(time_s), priority.colour(change_s - 1e-6));
-                assert_ne!(priority.colour(time_s), priority.colour(change_s + 1e-6));
+                assert_eq!(priority.colour(time_s, true), priority.colour(change_s - 1e-6, true));
+                assert_ne!(priority.colour(time_s, true), priority.colour(change_s + 1e-6, true));
             }
         }
         assert_eq!(Priority::Low.until_change_s(1.0), None);

@@ -1,0 +1,214 @@
+//! The last alarms: which are live, which are acknowledged, which are gone and when.
+//!
+//! An acknowledgement silences flashing and sound and is marked; it never ends an alarm, its cause does. What comes anew with the same
+//! or a higher priority than what was acknowledged calls for attention again.
+
+use std::collections::VecDeque;
+
+use nima::calibration::store::utc_now;
+
+use super::{Alarm, Kind, Priority};
+
+/// Alarms kept.
+pub const KEPT: usize = 50;
+/// A cause that comes back within this time is the same alarm, not a new one, s on the window's clock.
+const SAME_S: f64 = 5.0;
+
+/// When something happened.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Moment {
+    /// Hours, minutes and seconds, UTC.
+    pub utc: String,
+    /// On the loop's clock, s; none before the loop sent anything.
+    pub loop_s: Option<f64>,
+    /// On the window's clock, s.
+    pub window_s: f64,
+}
+
+impl Moment {
+    /// Now.
+    pub fn now(loop_s: Option<f64>, window_s: f64) -> Self {
+        let utc = utc_now().get(11..19).unwrap_or_default().to_owned();
+        Self { utc, loop_s, window_s }
+    }
+}
+
+/// One alarm from its beginning.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Entry {
+    /// As it was last judged.
+    pub alarm: Alarm,
+    /// When its cause came.
+    pub began: Moment,
+    /// When its cause went; none while it lives.
+    pub ended: Option<Moment>,
+    /// Somebody has seen it.
+    pub acknowledged: bool,
+}
+
+/// The last alarms, oldest first.
+#[derive(Clone, Debug, Default)]
+pub struct AlarmLog {
+    entries: VecDeque<Entry>,
+}
+
+impl AlarmLog {
+    /// Takes in what is wrong now.
+    pub fn update(&mut self, alarms: &[Alarm], now: &Moment) {
+        let is_wrong = |kind: Kind| alarms.iter().find(|alarm| alarm.kind == kind);
+        for entry in self.entries.iter_mut().filter(|entry| entry.ended.is_none()) {
+            match is_wrong(entry.alarm.kind) {
+                Some(alarm) => entry.alarm.clone_from(alarm),
+                None => entry.ended = Some(now.clone()),
+            }
+        }
+        for alarm in alarms {
+            let last = self.entries.iter_mut().rev().find(|entry| entry.alarm.kind == alarm.kind);
+            match last {
+                Some(entry) if entry.ended.is_none() => {}
+                Some(entry) if entry.ended.as_ref().is_some_and(|end| now.window_s - end.window_s < SAME_S) => {
+                    entry.ended = None;
+                    entry.alarm.clone_from(alarm);
+                }
+                _ => {
+                    let (alarm, began) = (alarm.clone(), now.clone());
+                    self.entries.push_back(Entry { alarm, began, ended: None, acknowledged: false });
+                }
+            }
+        }
+        while self.entries.len() > KEPT {
+            // Never one that lives: there are fewer kinds than places.
+            let gone = self.entries.iter().position(|entry| entry.ended.is_some()).unwrap_or(0);
+            self.entries.remove(gone);
+        }
+    }
+
+    /// What is wrong now: the most urgent first, of one urgency the first that came.
+    pub fn live(&self) -> Vec<&Entry> {
+        let mut live: Vec<&Entry> = self.entries.iter().filter(|entry| entry.ended.is_none()).collect();
+        live.sort_by_key(|entry| entry.alarm.priority);
+        live
+    }
+
+    /// All that is kept, the newest first.
+    pub fn newest_first(&self) -> impl Iterator<Item = &Entry> {
+        self.entries.iter().rev()
+    }
+
+    /// Somebody has seen all that is wrong now.
+    pub fn acknowledge(&mut self) {
+        self.entries.iter_mut().filter(|entry| entry.ended.is_none()).for_each(|entry| entry.acknowledged = true);
+    }
+
+    /// There is something that nobody has acknowledged.
+    pub fn has_unseen(&self) -> bool {
+        self.live().iter().any(|entry| !entry.acknowledged)
+    }
+
+    /// The priority that calls for attention by flashing and by sound; none where all that is wrong was acknowledged, or is less
+    /// urgent than what was, or is low.
+    pub fn calls(&self) -> Option<Priority> {
+        let live = self.live();
+        let seen = live.iter().filter(|entry| entry.acknowledged).map(|entry| entry.alarm.priority).min();
+        let unseen = live.iter().filter(|entry| !entry.acknowledged).map(|entry| entry.alarm.priority).min();
+        unseen.filter(|unseen| *unseen < Priority::Low && seen.is_none_or(|seen| *unseen <= seen))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use nima::runtime::Fault;
+
+    use super::*;
+
+    fn alarm(kind: Kind, priority: Priority) -> Alarm {
+        Alarm { kind, priority, cause: format!("{kind:?}"), cure: "wait".to_owned() }
+    }
+
+    fn at(window_s: f64) -> Moment {
+        Moment { utc: "12:00:00".to_owned(), loop_s: Some(window_s), window_s }
+    }
+
+    fn fault() -> Alarm {
+        alarm(Kind::Fault(Fault::SourceSilent), Priority::High)
+    }
+
+    #[test]
+    fn the_first_fault_stays_first_and_a_more_urgent_one_goes_before_it() {
+        let (missed, bias) = (alarm(Kind::Missed, Priority::Medium), alarm(Kind::BiasMoved, Priority::Medium));
+        let mut log = AlarmLog::default();
+        log.update(std::slice::from_ref(&bias), &at(1.0));
+        log.update(&[missed.clone(), bias.clone()], &at(2.0));
+        let kinds = |log: &AlarmLog| log.live().iter().map(|entry| entry.alarm.kind).collect::<Vec<_>>();
+        assert_eq!(kinds(&log), [Kind::BiasMoved, Kind::Missed]);
+        log.update(&[fault(), missed, bias], &at(3.0));
+        assert_eq!(kinds(&log), [fault().kind, Kind::BiasMoved, Kind::Missed]);
+    }
+
+    #[test]
+    fn an_acknowledgement_silences_and_never_clears() {
+        let mut log = AlarmLog::default();
+        log.update(&[fault()], &at(1.0));
+        assert_eq!(log.calls(), Some(Priority::High));
+        log.acknowledge();
+        log.update(&[fault()], &at(2.0));
+        assert_eq!((log.calls(), log.live().len()), (None, 1));
+        assert!(log.live()[0].acknowledged);
+    }
+
+    #[test]
+    fn what_is_new_calls_again_only_when_it_is_as_urgent() {
+        let missed = alarm(Kind::Missed, Priority::Medium);
+        let mut log = AlarmLog::default();
+        log.update(std::slice::from_ref(&missed), &at(1.0));
+        log.acknowledge();
+        let bias = alarm(Kind::BiasMoved, Priority::Medium);
+        log.update(&[missed.clone(), bias.clone()], &at(2.0));
+        assert_eq!(log.calls(), Some(Priority::Medium), "the same priority");
+        log.acknowledge();
+        log.update(&[fault(), missed.clone(), bias.clone()], &at(3.0));
+        assert_eq!(log.calls(), Some(Priority::High), "a higher one");
+        let mut log = AlarmLog::default();
+        log.update(&[fault()], &at(1.0));
+        log.acknowledge();
+        log.update(&[fault(), missed], &at(2.0));
+        assert_eq!(log.calls(), None, "a lower one is folded under what was acknowledged");
+        assert!(log.has_unseen());
+    }
+
+    #[test]
+    fn a_low_priority_never_flashes_or_sounds() {
+        let mut log = AlarmLog::default();
+        log.update(&[alarm(Kind::Scheduling, Priority::Low)], &at(1.0));
+        assert_eq!(log.calls(), None);
+    }
+
+    #[test]
+    fn what_flickers_is_one_alarm_and_what_comes_back_later_a_new_one() {
+        let missed = alarm(Kind::Missed, Priority::Medium);
+        let mut log = AlarmLog::default();
+        log.update(std::slice::from_ref(&missed), &at(1.0));
+        log.acknowledge();
+        log.update(&[], &at(2.0));
+        assert!(log.live().is_empty() && log.newest_first().next().unwrap().ended == Some(at(2.0)));
+        log.update(std::slice::from_ref(&missed), &at(3.0));
+        assert_eq!((log.calls(), log.newest_first().count()), (None, 1));
+        log.update(&[], &at(4.0));
+        log.update(&[missed], &at(20.0));
+        assert_eq!((log.calls(), log.newest_first().count()), (Some(Priority::Medium), 2));
+    }
+
+    #[test]
+    fn the_log_keeps_the_last_and_never_loses_what_lives() {
+        let mut log = AlarmLog::default();
+        let missed = alarm(Kind::Missed, Priority::Medium);
+        log.update(&[fault()], &at(0.0));
+        for i in 1..200 {
+            let t_s = f64::from(i) * 20.0;
+            log.update(&[fault(), missed.clone()], &at(t_s));
+            log.update(&[fault()], &at(t_s + 1.0));
+        }
+        assert_eq!(log.newest_first().count(), KEPT);
+        assert_eq!(log.live()[0].began, at(0.0));
+    }
+}

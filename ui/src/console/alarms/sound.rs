@@ -1,0 +1,245 @@
+//! The sound of alarms, off until it is asked for: bursts of pulses by IEC 60601-1-8, ten for high priority, three for medium.
+//!
+//! Played by the player of the system that is there (`pw-play`, `paplay` or `aplay`), so that nothing more is needed to build; where
+//! there is none, or it fails, that is told in the menu. Nothing here waits: a burst is a child process that is looked after each frame.
+
+use std::{
+    f64::consts::TAU,
+    io,
+    path::{Path, PathBuf},
+    process::{Child, Command, Stdio},
+};
+
+use tempfile::TempDir;
+
+use super::Priority;
+
+/// Players that take a file's path as their only argument, the likeliest first.
+const PLAYERS: [&str; 3] = ["pw-play", "paplay", "aplay"];
+const RATE_HZ: u32 = 22_050;
+/// From the beginning of one burst to that of the next, s.
+const HIGH_EVERY_S: f64 = 6.0;
+const MEDIUM_EVERY_S: f64 = 12.0;
+
+/// The player and what it plays.
+#[derive(Debug, Default)]
+pub struct Sound {
+    player: Option<PathBuf>,
+    looked: bool,
+    bursts: Option<TempDir>,
+    playing: Option<Child>,
+    /// Which was played last, and when, s on the window's clock.
+    last: Option<(Priority, f64)>,
+    failure: Option<String>,
+}
+
+impl Sound {
+    /// With the players in these folders instead of those in the search path.
+    #[cfg(test)]
+    fn of(folders: &[&Path]) -> Self {
+        let mut sound = Self::default();
+        sound.player = find(folders.iter().map(|folder| folder.to_path_buf()));
+        sound.looked = true;
+        sound
+    }
+
+    /// What stands in the way of a sound, for the menu; none where nothing does.
+    pub fn trouble(&mut self) -> Option<String> {
+        self.look();
+        match (&self.player, &self.failure) {
+            (None, _) => Some(format!("No sound output: none of {} is installed.", PLAYERS.join(", "))),
+            (Some(_), Some(failure)) => Some(failure.clone()),
+            (Some(_), None) => None,
+        }
+    }
+
+    /// Plays a burst when one is due; call each frame with what calls for attention.
+    pub fn step(&mut self, calls: Option<Priority>, time_s: f64) {
+        if let Some(Ok(Some(status))) = self.playing.as_mut().map(Child::try_wait) {
+            self.playing = None;
+            self.failure = (!status.success()).then(|| format!("The sound could not be played ({status})."));
+        }
+        let Some(priority) = calls else {
+            self.last = None;
+            return;
+        };
+        let every_s = if priority == Priority::High { HIGH_EVERY_S } else { MEDIUM_EVERY_S };
+        let due = self.last.is_none_or(|(last, at_s)| last != priority || time_s - at_s >= every_s);
+        if !due || self.playing.is_some() {
+            return;
+        }
+        self.last = Some((priority, time_s));
+        self.look();
+        let Some(player) = self.player.clone() else { return };
+        match self.play(&player, priority) {
+            Ok(child) => self.playing = Some(child),
+            Err(error) => self.failure = Some(format!("The sound could not be played: {error}.")),
+        }
+    }
+
+    fn look(&mut self) {
+        if !self.looked {
+            self.looked = true;
+            self.player = find(std::env::var_os("PATH").iter().flat_map(std::env::split_paths));
+        }
+    }
+
+    fn play(&mut self, player: &Path, priority: Priority) -> io::Result<Child> {
+        let folder = match self.bursts.take() {
+            Some(folder) => folder,
+            None => bursts()?,
+        };
+        let file = self.bursts.insert(folder).path().join(file_of(priority));
+        Command::new(player).arg(file).stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null()).spawn()
+    }
+}
+
+impl Drop for Sound {
+    fn drop(&mut self) {
+        if let Some(child) = &mut self.playing {
+            // A burst is over by itself; its file must not go before it.
+            child.kill().ok();
+            child.wait().ok();
+        }
+    }
+}
+
+fn find(mut folders: impl Iterator<Item = PathBuf>) -> Option<PathBuf> {
+    folders.find_map(|folder| PLAYERS.iter().map(|player| folder.join(player)).find(|path| path.is_file()))
+}
+
+/// Both bursts as files.
+fn bursts() -> io::Result<TempDir> {
+    let folder = tempfile::tempdir()?;
+    for priority in [Priority::High, Priority::Medium] {
+        std::fs::write(folder.path().join(file_of(priority)), wav(&burst(priority)))?;
+    }
+    Ok(folder)
+}
+
+const fn file_of(priority: Priority) -> &'static str {
+    match priority {
+        Priority::High => "high.wav",
+        Priority::Medium | Priority::Low => "medium.wav",
+    }
+}
+
+/// When each pulse of a burst begins, and how long it lasts, s.
+fn pulses(priority: Priority) -> (Vec<f64>, f64) {
+    match priority {
+        Priority::High => {
+            let five = [0.0, 0.2, 0.4, 0.75, 0.95];
+            (five.iter().copied().chain(five.iter().map(|t_s| t_s + 1.75)).collect(), 0.12)
+        }
+        Priority::Medium | Priority::Low => (vec![0.0, 0.4, 0.8], 0.2),
+    }
+}
+
+/// The samples of a burst, -1 to 1: a tone with four harmonics, which is found by ear more easily than a pure one.
+fn burst(priority: Priority) -> Vec<f64> {
+    let tone_hz = if priority == Priority::High { 660.0 } else { 440.0 };
+    let (starts_s, length_s) = pulses(priority);
+    let ends_s = starts_s.last().copied().unwrap_or_default() + length_s + 0.05;
+    let samples = (ends_s * f64::from(RATE_HZ)) as usize;
+    let mut burst = vec![0.0; samples];
+    for start_s in starts_s {
+        let first = (start_s * f64::from(RATE_HZ)) as usize;
+        let count = (length_s * f64::from(RATE_HZ)) as usize;
+        for (i, sample) in burst.iter_mut().skip(first).take(count).enumerate() {
+            let (t_s, left_s) = (i as f64 / f64::from(RATE_HZ), (count - i) as f64 / f64::from(RATE_HZ));
+            // Soft edges: a step would click.
+            let loud = (t_s / 0.015).min(left_s / 0.015).min(1.0);
+            let tone: f64 = (1..=4).map(|k| (TAU * tone_hz * f64::from(k) * t_s).sin() / f64::from(k)).sum();
+            *sample = 0.35 * loud * tone;
+        }
+    }
+    burst
+}
+
+/// A file of 16-bit samples, one channel (RIFF WAVE).
+fn wav(samples: &[f64]) -> Vec<u8> {
+    let bytes = 2 * samples.len() as u32;
+    let mut file = Vec::with_capacity(44 + bytes as usize);
+    file.extend(b"RIFF");
+    file.extend((36 + bytes).to_le_bytes());
+    file.extend(b"WAVEfmt ");
+    file.extend(16_u32.to_le_bytes());
+    for half in [1_u16, 1] {
+        file.extend(half.to_le_bytes());
+    }
+    file.extend(RATE_HZ.to_le_bytes());
+    file.extend((2 * RATE_HZ).to_le_bytes());
+    for half in [2_u16, 16] {
+        file.extend(half.to_le_bytes());
+    }
+    file.extend(b"data");
+    file.extend(bytes.to_le_bytes());
+    file.extend(samples.iter().flat_map(|sample| ((sample * f64::from(i16::MAX)) as i16).to_le_bytes()));
+    file
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Pulses in a burst: runs of sound with silence of at least 30 ms between them.
+    fn pulses_heard(samples: &[f64]) -> usize {
+        let quiet = (0.03 * f64::from(RATE_HZ)) as usize;
+        let (mut heard, mut silent) = (0, quiet);
+        for sample in samples {
+            if sample.abs() > 0.05 {
+                heard += usize::from(silent >= quiet);
+                silent = 0;
+            } else {
+                silent += 1;
+            }
+        }
+        heard
+    }
+
+    #[test]
+    fn high_is_ten_pulses_and_medium_three_and_neither_is_clipped() {
+        for (priority, expected) in [(Priority::High, 10), (Priority::Medium, 3)] {
+            let samples = burst(priority);
+            assert_eq!(pulses_heard(&samples), expected, "{priority:?}");
+            let loudest = samples.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
+            assert!((0.3..1.0).contains(&loudest), "{loudest}");
+            assert_eq!(wav(&samples).len(), 44 + 2 * samples.len());
+        }
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_burst_is_played_when_due_and_silence_or_failure_is_told() {
+        use std::os::unix::fs::PermissionsExt as _;
+        let folder = tempfile::tempdir().unwrap();
+        let (player, told) = (folder.path().join("aplay"), folder.path().join("told"));
+        let set = |script: &str| {
+            std::fs::write(&player, script).unwrap();
+            std::fs::set_permissions(&player, std::fs::Permissions::from_mode(0o755)).unwrap();
+        };
+        set(&format!("#!/bin/sh\necho \"$(basename $1) $(wc -c < $1)\" >> {}\n", told.display()));
+        let mut sound = Sound::of(&[folder.path()]);
+        assert_eq!(sound.trouble(), None);
+        let finish = |sound: &mut Sound, calls, time_s| {
+            sound.step(calls, time_s);
+            sound.playing.iter_mut().for_each(|child| drop(child.wait()));
+            sound.step(calls, time_s);
+        };
+        for (calls, time_s) in
+            [(Priority::Medium, 0.0), (Priority::Medium, 1.0), (Priority::High, 2.0), (Priority::High, 8.5)]
+        {
+            finish(&mut sound, Some(calls), time_s);
+        }
+        let played = std::fs::read_to_string(&told).unwrap();
+        let names: Vec<&str> = played.lines().filter_map(|line| line.split(' ').next()).collect();
+        assert_eq!(names, ["medium.wav", "high.wav", "high.wav"], "not twice within a burst's period");
+        finish(&mut sound, None, 20.0);
+        assert_eq!(std::fs::read_to_string(&told).unwrap(), played, "acknowledged: silent");
+        set("#!/bin/sh\nexit 3\n");
+        finish(&mut sound, Some(Priority::High), 30.0);
+        assert!(sound.trouble().unwrap().contains("could not be played"));
+        let empty = tempfile::tempdir().unwrap();
+        assert!(Sound::of(&[empty.path()]).trouble().unwrap().contains("No sound output"));
+    }
+}

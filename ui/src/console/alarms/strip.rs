@@ -1,0 +1,143 @@
+//! Alarms on the screen: a strip over the whole width under the top bar while anything is wrong, and the list of the last ones.
+//!
+//! The strip pins the most urgent alarm, of several the first, with its time, cause and cure, and folds the others under it. It is as
+//! high as its words need: nothing in it is ever cut.
+
+use egui::{
+    Align, Button, Color32, Context, Frame, Label, Layout, Margin, Panel, Rect, RichText, ScrollArea, Sense, Stroke,
+    Ui, Window, vec2,
+};
+
+use super::{
+    Signs, judge,
+    log::{AlarmLog, Entry, Moment},
+    sound::Sound,
+};
+use crate::console::{
+    keys, theme,
+    widgets::{Sign, sign, small, weak},
+};
+
+/// Room for the strip's buttons.
+const BUTTONS: f32 = 270.0;
+const BUTTON: egui::Vec2 = vec2(124.0, 32.0);
+
+/// The log, and what is open of it.
+#[derive(Debug, Default)]
+pub struct Alarms {
+    /// The last alarms.
+    pub log: AlarmLog,
+    /// The list is open.
+    pub list: bool,
+    /// What sounds them.
+    pub sound: Sound,
+}
+
+impl Alarms {
+    /// Takes in what is wrong, sounds it if that is wanted, and shows the strip; `loop_s` is the loop's clock.
+    pub fn strip_ui(&mut self, ui: &mut Ui, signs: &Signs, loop_s: Option<f64>, sounds: bool) {
+        let time_s = ui.input(|input| input.time);
+        self.log.update(&judge(signs), &Moment::now(loop_s, time_s));
+        if keys::acknowledge_pressed(ui.ctx()) {
+            self.log.acknowledge();
+        }
+        self.list ^= keys::alarms_pressed(ui.ctx());
+        let calls = self.log.calls();
+        self.sound.step(calls.filter(|_| sounds), time_s);
+        let live = self.log.live();
+        let Some(&first) = live.first() else { return };
+        if let Some(hz) = calls.and_then(super::Priority::flash_hz) {
+            ui.ctx().request_repaint_after(std::time::Duration::from_secs_f64(0.25 / hz));
+        }
+        let colour = calls.unwrap_or(first.alarm.priority).colour(time_s, calls.is_some());
+        let unseen = self.log.has_unseen();
+        let (others, first) = (live.len() - 1, first.clone());
+        let frame = Frame::new()
+            .fill(theme::DARK.card)
+            .stroke(Stroke::new(2.0, colour))
+            .inner_margin(Margin::symmetric(14, 5))
+            .outer_margin(Margin { left: 1, right: 1, top: 0, bottom: 1 });
+        let (mut acknowledged, mut opened) = (false, false);
+        Panel::top("alarms").resizable(false).frame(frame).show(ui, |ui| {
+            ui.horizontal(|ui| {
+                opened |= words_ui(ui, &first, others, colour);
+                ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+                    let all = Button::new("All alarms (F5)").min_size(BUTTON);
+                    opened |= ui
+                        .add(all)
+                        .on_hover_text("The last alarms with their times, also those that are gone.")
+                        .clicked();
+                    let seen = ui.add_enabled(unseen, Button::new("Acknowledge (A)").min_size(BUTTON));
+                    let seen =
+                        seen.on_hover_text(ACKNOWLEDGE).on_disabled_hover_text("Acknowledged. The cause still lives.");
+                    acknowledged = seen.clicked();
+                });
+            });
+        });
+        if acknowledged {
+            self.log.acknowledge();
+        }
+        self.list |= opened;
+    }
+
+    /// The list, into `room`.
+    pub fn list_ui(&mut self, ctx: &Context, room: Rect) {
+        let window = Window::new("Alarms").open(&mut self.list).constrain_to(room).collapsible(false);
+        let size = vec2(560.0, (room.height() - 90.0).min(460.0));
+        window.default_pos(room.center_top() + vec2(-280.0, 16.0)).fixed_size(size).show(ctx, |ui| {
+            ui.label(small(
+                "The last 50, the newest first. Times are UTC; in brackets the loop's own clock, as in the traces.",
+            ));
+            ui.add_space(4.0);
+            ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+                if self.log.newest_first().next().is_none() {
+                    ui.label(weak("Nothing has been wrong so far."));
+                }
+                for entry in self.log.newest_first() {
+                    entry_ui(ui, entry);
+                }
+            });
+        });
+    }
+}
+
+const ACKNOWLEDGE: &str = "Stops flashing and sound. The alarm stays until its cause is gone; a new one of the same or a higher priority \
+                           flashes and sounds again.";
+
+/// The pinned alarm; true when it is clicked.
+fn words_ui(ui: &mut Ui, first: &Entry, others: usize, colour: Color32) -> bool {
+    let (rect, _) = ui.allocate_exact_size(vec2(24.0, 30.0), Sense::hover());
+    sign(ui.painter(), Sign::Triangle, rect.center(), 9.0, colour);
+    let width = (ui.available_width() - BUTTONS).max(240.0);
+    let words = ui.vertical(|ui| {
+        ui.set_width(width);
+        ui.spacing_mut().item_spacing.y = 1.0;
+        let more = if others > 0 { format!(" (+{others} more)") } else { String::new() };
+        let seen = if first.acknowledged { ", acknowledged" } else { "" };
+        let alarm = &first.alarm;
+        let cause = format!("{}: {} - since {} UTC{seen}{more}", alarm.priority.word(), alarm.cause, first.began.utc);
+        ui.add(Label::new(RichText::new(cause).font(theme::strong(14.0)).color(theme::DARK.text)).wrap());
+        ui.add(Label::new(RichText::new(&alarm.cure).font(theme::regular(13.0)).color(theme::DARK.text_weak)).wrap());
+    });
+    // Not a stop of the keyboard: the button beside it does the same.
+    ui.interact(words.response.rect, ui.scope_id().with("alarm"), Sense::CLICK).clicked()
+}
+
+/// One line of the list.
+fn entry_ui(ui: &mut Ui, entry: &Entry) {
+    let Entry { alarm, began, ended, acknowledged } = entry;
+    let ink = if ended.is_none() { theme::now().text } else { theme::now().text_weak };
+    let at = |moment: &Moment| {
+        moment.loop_s.map_or_else(|| moment.utc.clone(), |loop_s| format!("{} ({loop_s:.1} s)", moment.utc))
+    };
+    let until = ended.as_ref().map_or_else(|| "now".to_owned(), &at);
+    let mut standing = if ended.is_some() { "gone" } else { "live" }.to_owned();
+    if *acknowledged {
+        standing.push_str(", acknowledged");
+    }
+    let heading = format!("{} to {until}: {}, {standing}", at(began), alarm.priority.word());
+    ui.add(Label::new(small(heading)).wrap());
+    ui.add(Label::new(RichText::new(&alarm.cause).font(theme::strong(14.0)).color(ink)).wrap());
+    ui.add(Label::new(weak(&alarm.cure)).wrap());
+    ui.add_space(6.0);
+}

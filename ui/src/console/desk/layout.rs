@@ -1,0 +1,369 @@
+//! Where the panels lie, as it is kept from one day to the next, and the layout that a console begins with.
+//!
+//! The file's form is our own and small: rows, columns and tabs of panels, with shares of the room. Whatever a file says, every panel
+//! comes out exactly once: one that the file does not know is put in as a tab, one named twice stays where it was named first.
+
+use egui::{Id, Vec2};
+use egui_tiles::{Container, Linear, LinearDir, Tile, TileId, Tiles, Tree};
+use serde::{Deserialize, Serialize};
+
+use super::Panel;
+
+/// A whole, of which a [`Part`] has a share.
+const WHOLE: f32 = 10_000.0;
+/// No panel is made so small that its edge could not be caught any more, parts of [`WHOLE`].
+const LEAST_SHARE: f32 = 300.0;
+
+/// Width of the column of knobs and of the column of figures.
+const KNOBS: f32 = 316.0;
+const FIGURES: f32 = 348.0;
+/// Width of the force space beside the traces, and of what lies between the columns from which there is room for it.
+const FORCE_SPACE: f32 = 300.0;
+const FORCE_SPACE_FROM: f32 = 720.0;
+/// Width of the traces.
+const TRACES: f32 = 560.0;
+/// Height of the desk from which calibrations and gates, or degrees and timing, lie under each other.
+const TALL_FROM: f32 = 860.0;
+/// Heights of panels that are not to be scrolled.
+const FEEDBACK: f32 = 430.0;
+const CALIBRATIONS: f32 = 212.0;
+const HORIZON: f32 = 288.0;
+const DEGREES: f32 = 312.0;
+
+/// How the technician's panels lie.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Layout {
+    /// Rows, columns and tabs; none is the default, which goes by the size of the window.
+    pub places: Option<Node>,
+    /// Panels that were closed; they keep their places.
+    pub closed: Vec<Panel>,
+    /// Tabs that were brought to the front, the last first.
+    pub front: Vec<Panel>,
+}
+
+/// A panel, or several with their arrangement.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Node {
+    /// One panel.
+    Panel(Panel),
+    /// One behind the other.
+    Tabs(Vec<Node>),
+    /// Side by side.
+    Row(Vec<Part>),
+    /// One under the other.
+    Column(Vec<Part>),
+}
+
+/// A member of a row or a column.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Part {
+    /// Its share of the room; only the ratios matter.
+    pub share: u16,
+    /// What lies there.
+    pub of: Node,
+}
+
+impl Layout {
+    /// Whether this panel is on the desk.
+    pub fn is_open(&self, panel: Panel) -> bool {
+        !self.closed.contains(&panel)
+    }
+
+    /// Closes the panel, or opens it again where it was and brings it to the front.
+    pub fn toggle(&mut self, panel: Panel) {
+        if self.is_open(panel) {
+            self.closed.push(panel);
+            self.closed.sort_unstable();
+        } else {
+            self.closed.retain(|&closed| closed != panel);
+            self.front.retain(|&front| front != panel);
+            self.front.insert(0, panel);
+        }
+    }
+
+    /// The tiles of this layout on a desk of this size.
+    pub(super) fn tree(&self, size: Vec2) -> Tree<Panel> {
+        let mut tiles = Tiles::default();
+        let mut placed = Vec::new();
+        let fallback = self.places.is_none().then(|| default_for(size));
+        let root = self.places.as_ref().or(fallback.as_ref()).and_then(|node| insert(&mut tiles, node, &mut placed));
+        let missing: Vec<TileId> = Panel::ALL
+            .into_iter()
+            .filter(|panel| !placed.contains(panel))
+            .map(|panel| tiles.insert_pane(panel))
+            .collect();
+        let root = match root {
+            _ if missing.is_empty() => root,
+            Some(root) => Some(add_as_tabs(&mut tiles, root, missing)),
+            None => Some(tiles.insert_tab_tile(missing)),
+        };
+        let id = Id::unique("desk");
+        let mut tree = root.map_or_else(|| Tree::empty(id), |root| Tree::new(id, root, Tiles::default()));
+        tree.tiles = tiles;
+        for panel in &self.closed {
+            if let Some(tile) = tree.tiles.find_pane(panel) {
+                tree.set_visible(tile, false);
+            }
+        }
+        // The first named of a group of tabs is the one in front: it comes last.
+        for panel in self.front.iter().rev() {
+            tree.make_active(|_, tile| matches!(tile, Tile::Pane(pane) if pane == panel));
+        }
+        tree
+    }
+
+    /// The layout of these tiles, of which `seen` were in front before. The default's places stay the default's unless tiles were
+    /// `moved`.
+    pub(super) fn of(tree: &Tree<Panel>, moved: bool, seen: &[Panel], before: &Self) -> Self {
+        let places = if moved { tree.root.and_then(|root| node(&tree.tiles, root)) } else { before.places.clone() };
+        let mut front = in_front(tree);
+        front.retain(|panel| !seen.contains(panel));
+        front.extend(before.front.iter().filter(|panel| !front.contains(panel)).copied().collect::<Vec<_>>());
+        Self { places, closed: before.closed.clone(), front }
+    }
+}
+
+/// The panels that are seen on the desk.
+pub(super) fn in_front(tree: &Tree<Panel>) -> Vec<Panel> {
+    let mut panels: Vec<Panel> =
+        tree.active_tiles().into_iter().filter_map(|id| tree.tiles.get_pane(&id).copied()).collect();
+    panels.sort_unstable();
+    panels
+}
+
+/// Puts a node in; nothing when none of its panels is new.
+fn insert(tiles: &mut Tiles<Panel>, node: &Node, placed: &mut Vec<Panel>) -> Option<TileId> {
+    match node {
+        Node::Panel(panel) if placed.contains(panel) => None,
+        Node::Panel(panel) => {
+            placed.push(*panel);
+            Some(tiles.insert_pane(*panel))
+        }
+        Node::Tabs(of) => {
+            let children: Vec<TileId> = of.iter().filter_map(|node| insert(tiles, node, placed)).collect();
+            (!children.is_empty()).then(|| tiles.insert_tab_tile(children))
+        }
+        Node::Row(parts) => insert_parts(tiles, LinearDir::Horizontal, parts, placed),
+        Node::Column(parts) => insert_parts(tiles, LinearDir::Vertical, parts, placed),
+    }
+}
+
+fn insert_parts(tiles: &mut Tiles<Panel>, dir: LinearDir, parts: &[Part], placed: &mut Vec<Panel>) -> Option<TileId> {
+    let whole: f32 = parts.iter().map(|part| f32::from(part.share)).sum::<f32>().max(1.0);
+    let children: Vec<(TileId, f32)> = parts
+        .iter()
+        .filter_map(|part| {
+            let share = (f32::from(part.share) / whole).max(LEAST_SHARE / WHOLE);
+            insert(tiles, &part.of, placed).map(|tile| (tile, share))
+        })
+        .collect();
+    if children.is_empty() {
+        return None;
+    }
+    let mut linear = Linear::new(dir, children.iter().map(|(tile, _)| *tile).collect());
+    for (tile, share) in children {
+        linear.shares.set_share(tile, share);
+    }
+    Some(tiles.insert_container(linear))
+}
+
+/// Puts tiles as tabs behind those of the first group there is; gives the root, which is new where there was no group.
+fn add_as_tabs(tiles: &mut Tiles<Panel>, root: TileId, missing: Vec<TileId>) -> TileId {
+    let first = tiles
+        .iter()
+        .filter(|(_, tile)| matches!(tile, Tile::Container(Container::Tabs(_))))
+        .map(|(id, _)| *id)
+        .min_by_key(|id| id.0);
+    if let Some(Tile::Container(Container::Tabs(tabs))) = first.and_then(|id| tiles.get_mut(id)) {
+        tabs.children.extend(missing);
+        return root;
+    }
+    let mut all = vec![root];
+    all.extend(missing);
+    tiles.insert_tab_tile(all)
+}
+
+/// The form of this tile in the file.
+fn node(tiles: &Tiles<Panel>, id: TileId) -> Option<Node> {
+    let parts = |linear: &Linear| -> Vec<Part> {
+        let whole: f32 = linear.children.iter().map(|child| linear.shares[*child]).sum::<f32>().max(f32::EPSILON);
+        linear
+            .children
+            .iter()
+            .filter_map(|child| {
+                let share = (linear.shares[*child] / whole * WHOLE).round().clamp(0.0, WHOLE) as u16;
+                node(tiles, *child).map(|of| Part { share, of })
+            })
+            .collect()
+    };
+    match tiles.get(id)? {
+        Tile::Pane(panel) => Some(Node::Panel(*panel)),
+        Tile::Container(Container::Linear(linear)) => Some(match linear.dir {
+            LinearDir::Horizontal => Node::Row(parts(linear)),
+            LinearDir::Vertical => Node::Column(parts(linear)),
+        }),
+        // Nothing on the desk makes a grid; its members would lie one behind the other.
+        Tile::Container(container @ (Container::Tabs(_) | Container::Grid(_))) => {
+            Some(Node::Tabs(container.children().filter_map(|child| node(tiles, *child)).collect()))
+        }
+    }
+}
+
+/// Knobs on the left, figures on the right, the field over the traces between them; what has no room lies behind a tab.
+fn default_for(size: Vec2) -> Node {
+    let middle = (size.x - KNOBS - FIGURES).max(200.0);
+    let height = size.y.max(200.0);
+    let traces = (0.47 * height).clamp(250.0, 492.0);
+    if middle < TRACES {
+        return narrow(size.x.max(KNOBS + FIGURES + 200.0), height, traces);
+    }
+    let [left, right] = if height >= TALL_FROM { tall_sides(height) } else { short_sides(height) };
+    let under = if middle > FORCE_SPACE_FROM {
+        row(vec![
+            (middle - FORCE_SPACE, tabs(&[Panel::Traces, Panel::Safety])),
+            (FORCE_SPACE, tabs(&[Panel::ForceSpace])),
+        ])
+    } else {
+        tabs(&[Panel::Traces, Panel::Safety, Panel::ForceSpace])
+    };
+    let between = column(vec![(height - traces, tabs(&[Panel::Field])), (traces, under)]);
+    row(vec![(KNOBS, left), (middle, between), (FIGURES, right)])
+}
+
+/// Where the traces have no room between two columns: the figures stand beside the field, and the traces under both.
+fn narrow(width: f32, height: f32, traces: f32) -> Node {
+    let [left, _] = short_sides(height);
+    let above = row(vec![
+        (width - KNOBS - FIGURES, tabs(&[Panel::Field])),
+        (FIGURES, tabs(&[Panel::Horizon, Panel::Degrees, Panel::Timing, Panel::Tradeoff])),
+    ]);
+    let under = tabs(&[Panel::Traces, Panel::Safety, Panel::ForceSpace]);
+    row(vec![(KNOBS, left), (width - KNOBS, column(vec![(height - traces, above), (traces, under)]))])
+}
+
+fn tall_sides(height: f32) -> [Node; 2] {
+    [
+        column(vec![
+            (FEEDBACK, tabs(&[Panel::Feedback])),
+            (CALIBRATIONS, tabs(&[Panel::Calibrations, Panel::Devices])),
+            (height - FEEDBACK - CALIBRATIONS, tabs(&[Panel::Gates])),
+        ]),
+        column(vec![
+            (HORIZON, tabs(&[Panel::Horizon])),
+            (DEGREES, tabs(&[Panel::Degrees, Panel::Tradeoff])),
+            (height - HORIZON - DEGREES, tabs(&[Panel::Timing])),
+        ]),
+    ]
+}
+
+fn short_sides(height: f32) -> [Node; 2] {
+    let feedback = (height - 150.0).min(FEEDBACK);
+    let horizon = (height - 150.0).min(HORIZON);
+    [
+        column(vec![
+            (feedback, tabs(&[Panel::Feedback])),
+            (height - feedback, tabs(&[Panel::Gates, Panel::Calibrations, Panel::Devices])),
+        ]),
+        column(vec![
+            (horizon, tabs(&[Panel::Horizon])),
+            (height - horizon, tabs(&[Panel::Degrees, Panel::Timing, Panel::Tradeoff])),
+        ]),
+    ]
+}
+
+fn tabs(panels: &[Panel]) -> Node {
+    Node::Tabs(panels.iter().map(|panel| Node::Panel(*panel)).collect())
+}
+
+fn parts(of: Vec<(f32, Node)>) -> Vec<Part> {
+    let whole: f32 = of.iter().map(|(points, _)| points).sum();
+    of.into_iter().map(|(points, of)| Part { share: (points / whole * WHOLE).round() as u16, of }).collect()
+}
+
+fn row(of: Vec<(f32, Node)>) -> Node {
+    Node::Row(parts(of))
+}
+
+fn column(of: Vec<(f32, Node)>) -> Node {
+    Node::Column(parts(of))
+}
+
+#[cfg(test)]
+mod tests {
+    use egui::vec2;
+
+    use super::*;
+
+    const SIZES: [[f32; 2]; 5] =
+        [[1100.0, 608.0], [1280.0, 648.0], [1600.0, 928.0], [1920.0, 1008.0], [3840.0, 2088.0]];
+
+    fn panels_of(tree: &Tree<Panel>) -> Vec<Panel> {
+        fn walk(tree: &Tree<Panel>, id: TileId, panels: &mut Vec<Panel>) {
+            match tree.tiles.get(id) {
+                Some(Tile::Pane(panel)) => panels.push(*panel),
+                Some(Tile::Container(container)) => {
+                    container.children().for_each(|child| walk(tree, *child, panels));
+                }
+                None => {}
+            }
+        }
+        let mut panels = Vec::new();
+        tree.root.into_iter().for_each(|root| walk(tree, root, &mut panels));
+        panels.sort_unstable();
+        panels
+    }
+
+    fn all() -> Vec<Panel> {
+        let mut all = Panel::ALL.to_vec();
+        all.sort_unstable();
+        all
+    }
+
+    #[test]
+    fn every_size_of_the_default_holds_every_panel_once() {
+        for size in SIZES {
+            assert_eq!(panels_of(&Layout::default().tree(size.into())), all(), "{size:?}");
+        }
+    }
+
+    #[test]
+    fn what_is_written_is_read_again() {
+        let size = vec2(1600.0, 928.0);
+        let tree = Layout::default().tree(size);
+        let kept = Layout::of(&tree, true, &[], &Layout::default());
+        let text = serde_json::to_string(&kept).unwrap();
+        let read: Layout = serde_json::from_str(&text).unwrap();
+        assert_eq!(read, kept);
+        assert_eq!(Layout::of(&read.tree(vec2(300.0, 300.0)), true, &[], &read), kept, "{text}");
+    }
+
+    #[test]
+    fn a_layout_that_lacks_a_panel_or_names_one_twice_still_opens_with_all() {
+        for text in [
+            r#"{"places":{"panel":"field"}}"#,
+            r#"{"places":{"tabs":[]}}"#,
+            r#"{"places":{"row":[{"share":0,"of":{"tabs":[{"panel":"timing"},{"panel":"timing"}]}}]}}"#,
+            r#"{"places":{"column":[{"share":65535,"of":{"row":[]}},{"share":0,"of":{"panel":"traces"}}]}}"#,
+        ] {
+            let layout: Layout = serde_json::from_str(text).unwrap();
+            assert_eq!(panels_of(&layout.tree(vec2(1280.0, 648.0))), all(), "{text}");
+        }
+    }
+
+    #[test]
+    fn a_closed_panel_keeps_its_place_and_comes_back_in_front() {
+        let size = vec2(1280.0, 648.0);
+        let mut layout = Layout::default();
+        layout.toggle(Panel::Safety);
+        let tree = layout.tree(size);
+        let safety = tree.tiles.find_pane(&Panel::Safety).unwrap();
+        assert!(!tree.is_visible(safety) && !layout.is_open(Panel::Safety));
+        layout.toggle(Panel::Safety);
+        let tree = layout.tree(size);
+        let safety = tree.tiles.find_pane(&Panel::Safety).unwrap();
+        assert!(tree.active_tiles().contains(&safety));
+        assert!(layout.places.is_none(), "opening and closing moves nothing");
+    }
+}

@@ -1,0 +1,209 @@
+//! The technician's desk: every panel is a tile with a title that can be dragged into tabs, rows and columns, resized, closed and opened
+//! again. What lies where is kept in the settings ([`Layout`]); the tiles themselves live here between frames.
+//!
+//! The desk takes the room under the top bar and never more, so that stop, state and alarms stay above everything.
+
+mod layout;
+mod panel;
+
+use egui::{
+    Align, Button, Color32, Context, Frame, Layout as Flow, Margin, Response, RichText, ScrollArea, Stroke, Ui,
+    UiBuilder, Vec2, Visuals, WidgetInfo, WidgetText, vec2,
+};
+use egui_tiles::{
+    Behavior, EditAction, ResizeState, SimplificationOptions, TabState, Tabs, TileId, Tiles, Tree, UiResponse,
+};
+
+pub use layout::{Layout, Node, Part};
+pub use panel::Panel;
+
+use super::{theme, widgets::weak};
+
+const TAB_BAR: f32 = 28.0;
+const GAP: f32 = 6.0;
+/// Space between a panel's edge and its content.
+const PADDING: i8 = 10;
+const TITLE: f32 = 13.5;
+
+/// The tiles between frames.
+#[derive(Debug, Default)]
+pub struct Desk {
+    /// The tiles, and what they were made from: the layout, and the desk's size where it goes by that.
+    shown: Option<(Tree<Panel>, Layout, Option<Vec2>)>,
+    /// Tiles were dropped or resized, tabs brought to the front, since the layout was last kept.
+    moved: bool,
+    turned: bool,
+    /// The panels that were in front when the layout was last kept.
+    seen: Vec<Panel>,
+}
+
+impl Desk {
+    /// Shows the layout with these contents, and changes it as the operator does.
+    pub fn ui(&mut self, ui: &mut Ui, layout: &mut Layout, contents: &mut dyn FnMut(&mut Ui, Panel)) {
+        let size = layout.places.is_none().then(|| ui.available_size());
+        if !self.shown.as_ref().is_some_and(|(_, shown, at)| shown == layout && *at == size) {
+            let tree = layout.tree(ui.available_size());
+            self.seen = layout::in_front(&tree);
+            self.shown = Some((tree, layout.clone(), size));
+        }
+        let Some((tree, shown, at)) = &mut self.shown else { return };
+        if tree.active_tiles().is_empty() {
+            ui.centered_and_justified(|ui| ui.label(weak(ALL_CLOSED)));
+            return;
+        }
+        let mut tiles = Contents { draw: contents, closed: None, moved: &mut self.moved, turned: &mut self.turned };
+        tree.ui(&mut tiles, ui);
+        if let Some(panel) = tiles.closed {
+            layout.toggle(panel);
+            return;
+        }
+        // While a button is down the tiles are still on their way.
+        if (self.moved || self.turned) && !ui.input(|input| input.pointer.any_down()) {
+            *layout = Layout::of(tree, self.moved, &self.seen, layout);
+            self.seen = layout::in_front(tree);
+            shown.clone_from(layout);
+            if self.moved {
+                *at = None;
+            }
+            (self.moved, self.turned) = (false, false);
+        }
+    }
+}
+
+const ALL_CLOSED: &str = "All panels are closed. The View menu opens them again.";
+
+/// What the tiles ask for while they are drawn.
+struct Contents<'a> {
+    draw: &'a mut dyn FnMut(&mut Ui, Panel),
+    closed: Option<Panel>,
+    moved: &'a mut bool,
+    turned: &'a mut bool,
+}
+
+impl Behavior<Panel> for Contents<'_> {
+    fn pane_ui(&mut self, ui: &mut Ui, _tile: TileId, panel: &mut Panel) -> UiResponse {
+        let rect = ui.available_rect_before_wrap();
+        let least = panel.least();
+        if panel.fills() {
+            let roomy = rect.width() >= least.x && rect.height() >= least.y;
+            if roomy {
+                (self.draw)(ui, *panel);
+            } else {
+                scrolled(ui, rect.size().max(least), |ui| (self.draw)(ui, *panel));
+            }
+        } else {
+            ui.painter().rect_filled(rect, 0.0, theme::now().card);
+            let frame = Frame::new().inner_margin(Margin::same(PADDING));
+            let width = (rect.width() - 2.0 * f32::from(PADDING)).max(least.x);
+            ScrollArea::both().id_salt(*panel).auto_shrink(false).show(ui, |ui| {
+                frame.show(ui, |ui| {
+                    ui.set_width(width);
+                    ui.spacing_mut().item_spacing.y = 4.0;
+                    (self.draw)(ui, *panel);
+                });
+            });
+        }
+        UiResponse::None
+    }
+
+    fn tab_title_for_pane(&mut self, panel: &Panel) -> WidgetText {
+        RichText::new(panel.title()).font(theme::strong(TITLE)).into()
+    }
+
+    fn on_tab_button(&mut self, tiles: &mut Tiles<Panel>, tile: TileId, tab: Response) -> Response {
+        if tab.has_focus() {
+            focus_ring(&tab.ctx, &tab);
+        }
+        let Some(panel) = tiles.get_pane(&tile) else { return tab };
+        tab.on_hover_text(format!("{}\n{DRAG}", panel.meaning()))
+    }
+
+    fn top_bar_right_ui(&mut self, tiles: &Tiles<Panel>, ui: &mut Ui, _tile: TileId, tabs: &Tabs, _scroll: &mut f32) {
+        let Some(panel) = tabs.active.and_then(|active| tiles.get_pane(&active)) else { return };
+        let button = Button::new(RichText::new("\u{d7}").font(theme::regular(16.0))).frame_when_inactive(false);
+        let button = ui.add(button.min_size(vec2(22.0, 22.0)));
+        let name = format!("Close {}", panel.title());
+        button.widget_info(|| WidgetInfo::labeled(egui::Role::Button, true, &name));
+        if button.on_hover_text(format!("{name}; the View menu opens it again.")).clicked() {
+            self.closed = Some(*panel);
+        }
+    }
+
+    fn tab_bar_height(&self, _style: &egui::Style) -> f32 {
+        TAB_BAR
+    }
+
+    fn gap_width(&self, _style: &egui::Style) -> f32 {
+        GAP
+    }
+
+    fn min_size(&self) -> f32 {
+        60.0
+    }
+
+    fn resize_stroke(&self, _style: &egui::Style, state: ResizeState) -> Stroke {
+        match state {
+            ResizeState::Idle => Stroke::NONE,
+            ResizeState::Hovering => Stroke::new(2.0, theme::now().text_weak),
+            ResizeState::Dragging => Stroke::new(3.0, theme::now().text),
+        }
+    }
+
+    fn tab_bar_color(&self, _visuals: &Visuals) -> Color32 {
+        theme::now().panel
+    }
+
+    fn tab_bg_color(&self, _visuals: &Visuals, _tiles: &Tiles<Panel>, _tile: TileId, state: &TabState) -> Color32 {
+        if state.active { theme::now().card } else { Color32::TRANSPARENT }
+    }
+
+    fn tab_outline_stroke(
+        &self,
+        _visuals: &Visuals,
+        _tiles: &Tiles<Panel>,
+        _tile: TileId,
+        _state: &TabState,
+    ) -> Stroke {
+        Stroke::NONE
+    }
+
+    fn tab_text_color(&self, _visuals: &Visuals, _tiles: &Tiles<Panel>, _tile: TileId, state: &TabState) -> Color32 {
+        if state.active { theme::now().text } else { theme::now().text_weak }
+    }
+
+    fn drag_preview_stroke(&self, _visuals: &Visuals) -> Stroke {
+        Stroke::new(2.0, theme::now().text)
+    }
+
+    fn drag_preview_color(&self, _visuals: &Visuals) -> Color32 {
+        theme::now().selected.gamma_multiply(0.5)
+    }
+
+    fn simplification_options(&self) -> SimplificationOptions {
+        SimplificationOptions { all_panes_must_have_tabs: true, ..SimplificationOptions::default() }
+    }
+
+    fn on_edit(&mut self, action: EditAction) {
+        match action {
+            EditAction::TileResized | EditAction::TileDropped => *self.moved = true,
+            EditAction::TabSelected => *self.turned = true,
+            EditAction::TileDragged => {}
+        }
+    }
+}
+
+const DRAG: &str = "Drag the title to put the panel elsewhere.";
+
+/// A panel that needs more room than it has.
+fn scrolled(ui: &mut Ui, size: Vec2, content: impl FnOnce(&mut Ui)) {
+    ScrollArea::both().auto_shrink(false).show(ui, |ui| {
+        let (rect, _) = ui.allocate_exact_size(size, egui::Sense::hover());
+        ui.scope_builder(UiBuilder::new().max_rect(rect).layout(Flow::top_down(Align::Min)), content);
+    });
+}
+
+/// Shows which tab the keyboard is at.
+fn focus_ring(ctx: &Context, tab: &Response) {
+    let painter = ctx.layer_painter(tab.layer_id);
+    painter.rect_stroke(tab.rect.shrink(1.0), 2.0, Stroke::new(2.0, theme::now().text), egui::StrokeKind::Inside);
+}

@@ -1,0 +1,187 @@
+//! Histograms of the loop's durations with the deadline drawn in, counts on a logarithmic scale so that a single late tick is seen among
+//! millions; and the missed periods of the last two minutes as a strip.
+
+use egui::{Align2, Painter, Rect, Sense, Stroke, Ui, pos2, vec2};
+use nima::statistics::{Percentiles, Quantiles};
+
+use super::timing::grouped;
+use crate::console::{
+    deadlines::{Deadlines, SECONDS},
+    theme,
+    widgets::small,
+};
+
+/// Bars of a histogram; the last one holds all that is longer.
+const BARS: usize = 50;
+/// The bars end here, in deadlines.
+const REACH: f64 = 1.25;
+const HEIGHT: f32 = 58.0;
+const AXIS: f32 = 15.0;
+const STRIP: f32 = 26.0;
+
+/// A duration that is measured in every tick.
+pub(super) struct Timing<'a> {
+    pub(super) name: &'static str,
+    pub(super) meaning: &'static str,
+    pub(super) quantiles: Quantiles,
+    pub(super) durations: &'a Percentiles,
+    /// What it must stay below, us.
+    pub(super) deadline_us: f64,
+}
+
+impl Timing<'_> {
+    /// Counts, bar by bar.
+    pub(super) fn bars(&self) -> Vec<u64> {
+        self.durations.bars(self.step_us(), BARS)
+    }
+
+    fn step_us(&self) -> f64 {
+        REACH * self.deadline_us / BARS as f64
+    }
+
+    /// What one bar says.
+    fn words(&self, bars: &[u64], bar: usize) -> String {
+        let total = bars.iter().sum::<u64>().max(1);
+        let count = bars.get(bar).copied().unwrap_or_default();
+        let (from_us, to_us) = (bar as f64 * self.step_us(), (bar + 1) as f64 * self.step_us());
+        let range = if bar + 1 == BARS {
+            format!("{from_us:.0} us and more")
+        } else {
+            format!("{from_us:.0} to {to_us:.0} us")
+        };
+        format!("{}: {range}\n{} ticks, {}", self.name, grouped(count), percent(count as f64 / total as f64))
+    }
+}
+
+/// A share in percent, with as many digits as it takes to see that it is not zero.
+fn percent(share: f64) -> String {
+    match 100.0 * share {
+        x if x <= 0.0 => "0 %".to_owned(),
+        x if x >= 0.1 => format!("{x:.1} %"),
+        x => format!("{x:.5} %"),
+    }
+}
+
+/// Height of a bar, 0 to 1, on the logarithmic scale on which `most` is 1. One tick is seen.
+fn height(count: u64, most: u64) -> f32 {
+    if count == 0 { 0.0 } else { ((1.0 + count as f64).ln() / (1.0 + most.max(1) as f64).ln()) as f32 }
+}
+
+/// One histogram; the pointer reads a bar.
+pub(super) fn bars_ui(ui: &mut Ui, timing: &Timing<'_>, bars: &[u64]) {
+    ui.label(small(timing.name)).on_hover_text(timing.meaning);
+    let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), HEIGHT + AXIS), Sense::hover());
+    let ground = Rect::from_min_size(rect.min, vec2(rect.width(), HEIGHT));
+    let (total, late): (u64, u64) = (bars.iter().sum(), late(bars));
+    response.widget_info(|| {
+        let words = format!(
+            "{} histogram: {} of {} ticks later than the deadline of {:.0} us",
+            timing.name,
+            grouped(late),
+            grouped(total),
+            timing.deadline_us
+        );
+        egui::WidgetInfo::labeled(egui::Role::Label, true, words)
+    });
+    let pointed = response.hover_pos().map(|at| {
+        let along = ((at.x - ground.left()) / ground.width()).clamp(0.0, 1.0);
+        ((along * BARS as f32) as usize).min(BARS - 1)
+    });
+    let painter = ui.painter();
+    painter.rect_filled(ground, 3.0, theme::now().groove);
+    let most = bars.iter().copied().max().unwrap_or_default();
+    let width = ground.width() / BARS as f32;
+    for (bar, count) in bars.iter().enumerate().filter(|(_, count)| **count > 0) {
+        let left = ground.left() + width * bar as f32;
+        let top = ground.bottom() - (HEIGHT - 12.0) * height(*count, most).max(0.06);
+        let filled = Rect::from_min_max(pos2(left + 0.5, top), pos2(left + width - 0.5, ground.bottom()));
+        let colour = if pointed == Some(bar) { theme::now().text } else { theme::now().rendered };
+        painter.rect_filled(filled, 0.0, colour);
+    }
+    axis(painter, ground, timing.deadline_us, most);
+    if let Some(bar) = pointed {
+        response.on_hover_text_at_pointer(timing.words(bars, bar));
+    }
+}
+
+/// Ticks beyond the deadline: those of the bars that begin there or later.
+fn late(bars: &[u64]) -> u64 {
+    let first = (BARS as f64 / REACH).round() as usize;
+    bars.iter().skip(first).sum()
+}
+
+/// Marks under the histogram, the deadline in it, and what its height means.
+fn axis(painter: &Painter, ground: Rect, deadline_us: f64, most: u64) {
+    let (font, ink) = (theme::regular(11.0), theme::now().text_weak);
+    let x = |share: f64| ground.left() + ground.width() * (share / REACH) as f32;
+    painter.vline(x(1.0), ground.y_range(), Stroke::new(1.5, theme::now().text));
+    let under = ground.bottom() + 2.0;
+    painter.text(pos2(ground.left(), under), Align2::LEFT_TOP, "0", font.clone(), ink);
+    painter.text(pos2(x(0.5), under), Align2::CENTER_TOP, format!("{:.0}", 0.5 * deadline_us), font.clone(), ink);
+    let deadline = format!("deadline {deadline_us:.0} us");
+    painter.text(pos2(x(1.0) + 8.0, under), Align2::CENTER_TOP, deadline, font.clone(), ink);
+    let scale = format!("log scale, top {}", grouped(most));
+    painter.text(pos2(x(1.0) - 6.0, ground.top() + 1.0), Align2::RIGHT_TOP, scale, font, ink);
+}
+
+/// Missed periods over the last two minutes, a bar a second.
+pub(super) fn missed_ui(ui: &mut Ui, deadlines: &Deadlines) {
+    let total = deadlines.total();
+    let words = format!("Missed in the last {} min: {}", SECONDS / 60, grouped(total));
+    ui.label(small(&words)).on_hover_text(MISSED);
+    let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), STRIP), Sense::hover());
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, format!("{words} periods")));
+    let painter = ui.painter();
+    painter.rect_filled(rect, 3.0, theme::now().groove);
+    let width = rect.width() / SECONDS as f32;
+    let most = deadlines.newest_first().map(|(_, count)| count).max().unwrap_or_default();
+    for (age, count) in deadlines.newest_first().filter(|(_, count)| *count > 0) {
+        let right = rect.right() - width * age as f32;
+        let top = rect.bottom() - (STRIP - 2.0) * height(count, most).max(0.15);
+        painter.rect_filled(
+            Rect::from_min_max(pos2(right - width, top), pos2(right, rect.bottom())),
+            0.0,
+            theme::now().text,
+        );
+    }
+    if let Some(at) = response.hover_pos() {
+        let age = ((rect.right() - at.x) / width).max(0.0) as usize;
+        let count = deadlines.newest_first().nth(age).map_or(0, |(_, count)| count);
+        response.on_hover_text_at_pointer(format!("{age} s ago: {} periods missed", grouped(count)));
+    }
+}
+
+const MISSED: &str = "Periods in which the loop was not run in time, second by second, the newest on the right. They are counted and \
+                      skipped, never caught up. Logarithmic height.";
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn one_late_tick_among_millions_is_seen_and_read() {
+        let mut durations = Percentiles::new();
+        for _ in 0..99_999 {
+            durations.record(40e-6);
+        }
+        durations.record(1.03e-3);
+        let timing = Timing {
+            name: "Work",
+            meaning: "",
+            quantiles: Quantiles::default(),
+            durations: &durations,
+            deadline_us: 1000.0,
+        };
+        let bars = timing.bars();
+        assert_eq!((bars.iter().sum::<u64>(), late(&bars)), (100_000, 1));
+        assert!(height(bars[41], 99_999) > 0.05);
+        assert_eq!(timing.words(&bars, 41), "Work: 1025 to 1050 us\n1 ticks, 0.00100 %");
+        assert_eq!(timing.words(&bars, 1), "Work: 25 to 50 us\n99 999 ticks, 100.0 %");
+        assert!(timing.words(&bars, 49).contains("and more"));
+    }
+
+    #[test]
+    fn nothing_measured_is_no_bar() {
+        assert!(height(0, 0).abs() < f32::EPSILON && height(1, 0).is_finite());
+    }
+}

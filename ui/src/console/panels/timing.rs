@@ -94,10 +94,10 @@ pub fn timing_ui(ui: &mut Ui, live: &Live, state: &mut TimingState) {
         "Console frame",
         frame,
         if live.rough_edges {
-            "Time from one picture of this window to the next since it opened (33 ms asked, 100 ms while idle), and the work in it now. Edges in 3-D are not smoothed, \
+            "Time from one picture of this window to the next since it opened (32 ms asked; at rest not counted), and the work in it now. Edges in 3-D are not smoothed, \
              because this computer draws too slowly with it."
         } else {
-            "Time from one picture of this window to the next since it opened (33 ms asked, 100 ms while idle), and the work in it now."
+            "Time from one picture of this window to the next since it opened (32 ms asked; at rest not counted), and the work in it now."
         },
     );
 }

@@ -97,6 +97,7 @@ pub struct Live {
     frame_work: Fading,
     wake: Percentiles,
     work: Percentiles,
+    sample_to_force: Percentiles,
     trail_s: [f64; SIDES],
     ticks_counted: u64,
     figures_at: Instant,
@@ -142,6 +143,7 @@ impl Live {
             frame_work: Fading::default(),
             wake: Percentiles::new(),
             work: Percentiles::new(),
+            sample_to_force: Percentiles::new(),
             trail_s: [f64::NEG_INFINITY; SIDES],
             ticks_counted: 0,
             figures_at: now,
@@ -195,6 +197,11 @@ impl Live {
     /// Work of every tick since the window opened.
     pub const fn work(&self) -> &Percentiles {
         &self.work
+    }
+
+    /// Time from a measurement to the force that answers it, since the window opened.
+    pub const fn sample_to_force(&self) -> &Percentiles {
+        &self.sample_to_force
     }
 
     /// Marks this moment.
@@ -315,6 +322,9 @@ impl Live {
         }
         self.wake.record(tick.wake_s);
         self.work.record(tick.work_s);
+        if let Some(seconds) = tick.sample_to_force_s {
+            self.sample_to_force.record(seconds);
+        }
         self.ticks_counted += 1;
     }
 
@@ -352,6 +362,7 @@ impl Live {
             horizon_n: self.horizon.map(Fading::get),
             wake_us: self.wake.quantiles(),
             work_us: self.work.quantiles(),
+            sample_to_force_us: self.sample_to_force.quantiles(),
             rate_hz: self.ticks_counted as f64 / since.as_secs_f64(),
             frame_ms: {
                 let Quantiles { p50, p99, .. } = self.frames.quantiles();

@@ -51,6 +51,8 @@ pub struct Figures {
     pub wake_us: Quantiles,
     /// Work of a tick, us.
     pub work_us: Quantiles,
+    /// From a measurement to the force that answers it, us.
+    pub sample_to_force_us: Quantiles,
     /// Ticks that came per second.
     pub rate_hz: f64,
     /// Time from one frame of the console to the next, ms: the median and the 99th percentile.

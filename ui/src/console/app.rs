@@ -20,6 +20,7 @@ use nima::{
 use super::{
     Options,
     canvas::{Canvas, Surface, renderer_of},
+    diary::Diary,
     frames::{Meter, Picture},
     help::Help,
     in_force::InForce,
@@ -65,6 +66,7 @@ pub struct ConsoleApp {
     photographer: Option<Photographer>,
     wizards: Wizards,
     in_force: InForce,
+    diary: Diary,
     /// What was watched before a wizard took the rig over.
     watched: Option<Scene>,
     options: Options,
@@ -94,6 +96,7 @@ impl ConsoleApp {
             meter: None,
             handle: Some(handle),
             in_force: InForce::load(None, &scene),
+            diary: Diary::default(),
             wizards: Wizards::default(),
             watched: None,
             live: Live::new(rig, scene),
@@ -193,10 +196,11 @@ impl ConsoleApp {
     fn take_in(&mut self) {
         let Some(handle) = &self.handle else { return };
         let rate_hz = self.live.rig.rate_hz;
-        let (wizards, in_force) = (&mut self.wizards, &mut self.in_force);
+        let (wizards, in_force, diary) = (&mut self.wizards, &mut self.in_force, &mut self.diary);
         self.live.take_in(handle, |tick| {
             wizards.tick(tick, rate_hz);
             in_force.watch(tick);
+            diary.tick(tick);
         });
         self.live.bias_moved_n = self.in_force.bias_moved_n();
     }
@@ -298,7 +302,9 @@ impl ConsoleApp {
         }
         let summary = self.handle.take().and_then(Handle::stop_and_join);
         if let (Some(path), Some(summary)) = (&self.options.summary, summary) {
-            write_json(path, &summary);
+            self.diary.marks = self.live.marks_s.len();
+            self.diary.paused = self.panels.forces.is_paused();
+            write_json(path, &WithScreen { summary, screen: &self.diary });
         }
     }
 
@@ -376,6 +382,14 @@ impl eframe::App for ConsoleApp {
             surface.destroy(gl);
         }
     }
+}
+
+/// The loop's figures and what happened before the screen, in one object.
+#[derive(serde::Serialize)]
+struct WithScreen<'a> {
+    #[serde(flatten)]
+    summary: runtime::Summary,
+    screen: &'a Diary,
 }
 
 /// Writes a value as JSON; the window has no one to tell of a failure but the terminal it was started from.

@@ -18,7 +18,7 @@ use nima::{
     runtime::{Plan, start},
     teleop::{Calibrations, LoopState},
 };
-use nima_console::console::ConsoleApp;
+use nima_console::console::{ConsoleApp, desk::Panel};
 use serde_json::Value;
 
 const PATIENCE: Duration = Duration::from_mins(1);
@@ -132,6 +132,9 @@ fn console() -> Harness<'static, ConsoleApp> {
         .with_step_dt(1.0 / 30.0)
         .build_eframe(move |cc| ConsoleApp::new(cc, handle, rig, scene));
     until(&mut harness, "engaged", |app| app.tick().is_some_and(|tick| tick.state == LoopState::Engaged));
+    harness.run_steps(3);
+    // Its tile lies behind others.
+    press(&mut harness, Panel::Tradeoff.title());
     harness
 }
 

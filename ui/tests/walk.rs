@@ -5,7 +5,7 @@
 
 mod screen;
 
-use std::time::Duration;
+use std::{env, fmt::Write as _, fs, path::Path, time::Duration};
 
 use eframe::App as _;
 use egui::{Key, Pos2, Rect, Shape, accesskit};
@@ -283,4 +283,47 @@ fn tour_and_glossary_fit_and_leave_the_stop_alone() {
     let mut again = begin(path);
     again.run_steps(3);
     assert!(again.query_by_label("Next step").is_none(), "the tour is for the first time");
+}
+
+/// Kind and name of everything that can be operated, in the order of the keyboard. Digits are left out, because numbers move.
+fn controls(harness: &Harness<'_, ConsoleApp>) -> String {
+    let operated = |kind: accesskit::Role| {
+        matches!(
+            kind,
+            accesskit::Role::Button
+                | accesskit::Role::CheckBox
+                | accesskit::Role::RadioButton
+                | accesskit::Role::Slider
+        )
+    };
+    let mut text = String::new();
+    for node in harness.get_all_by(move |node| operated(node.role())) {
+        let node = node.accesskit_node();
+        let name: String = node.label().unwrap_or_default().chars().filter(|letter| !letter.is_ascii_digit()).collect();
+        // An alarm depends on the computer: one without the right to a real-time thread has one.
+        if !(name.starts_with("All alarms") || name.starts_with("Acknowledge")) {
+            writeln!(text, "{:?}: {}", node.role(), name.lines().next().unwrap_or_default()).unwrap();
+        }
+    }
+    text
+}
+
+/// A control that is lost, renamed or new is seen in a review. `UPDATE_SNAPSHOTS=1` writes the files anew.
+#[test]
+fn every_view_offers_what_was_agreed() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/snapshots");
+    for (role, name) in [(Role::Surgeon, "surgeon"), (Role::Technician, "technician"), (Role::Demo, "demo")] {
+        let mut harness = console_of("bimanual", [1600.0, 1000.0], move |app| {
+            app.with_options(Options { role: Some(role), ..Options::default() })
+        });
+        until(&mut harness, "engaged", |tick| tick.state == LoopState::Engaged);
+        harness.run_steps(5);
+        let (now, path) = (controls(&harness), folder.join(format!("{name}.txt")));
+        if env::var_os("UPDATE_SNAPSHOTS").is_some() {
+            fs::create_dir_all(&folder).unwrap();
+            fs::write(&path, &now).unwrap();
+        }
+        let agreed = fs::read_to_string(&path).unwrap_or_default();
+        assert_eq!(now, agreed, "{}: if this is meant, run with UPDATE_SNAPSHOTS=1", path.display());
+    }
 }

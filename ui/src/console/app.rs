@@ -19,8 +19,10 @@ use nima::{
 
 use super::{
     Options,
+    alarms::{Priority, judge},
     canvas::{Canvas, Surface, renderer_of},
-    diary::Diary,
+    diary::{Diary, WithScreen},
+    door::Door,
     frames::{Meter, Picture},
     help::Help,
     in_force::InForce,
@@ -39,11 +41,13 @@ use super::{
 };
 
 /// Thirty pictures a second while data flow.
-const FRAME: Duration = Duration::from_millis(33);
+const FRAME: Duration = Duration::from_millis(32);
 /// Input is looked at between two pictures, however slow they are.
 const LEAST_REST: Duration = Duration::from_millis(1);
-/// Ten while nothing is engaged; the mouse and the keyboard are answered at once all the same.
-const FRAME_AT_REST: Duration = Duration::from_millis(100);
+/// While nothing is engaged the clocks go on by this; a change, the mouse and the keyboard are answered at once all the same.
+const BEAT_AT_REST: Duration = Duration::from_secs(1);
+/// Once nothing is engaged, traces and figures come to rest in this time.
+const SETTLED: Duration = Duration::from_secs(2);
 /// Smooth edges in 3-D are given up when every second picture comes later than this after the one before (25 a second) ...
 const SLOW_MS: f64 = 38.0;
 /// ... though the window has had this time to warm up.
@@ -56,7 +60,9 @@ const SCREENSHOT_BEFORE_EXIT: Duration = Duration::from_millis(700);
 /// The console's state.
 #[derive(Debug)]
 pub struct ConsoleApp {
-    handle: Option<Handle>,
+    door: Option<Door>,
+    /// Wakes the window from another thread.
+    ctx: egui::Context,
     live: Live,
     outbox: Outbox,
     top_bar: TopBarState,
@@ -76,6 +82,8 @@ pub struct ConsoleApp {
     meter: Option<Meter>,
     opened: Instant,
     framed: Instant,
+    /// When something was last engaged, or a wizard was open.
+    moved: Instant,
     pictured: bool,
     /// Few pictures are drawn, because nothing is engaged.
     calm: bool,
@@ -90,16 +98,20 @@ impl ConsoleApp {
         if let Some(surface) = &surface {
             cc.egui_ctx.add_plugin(Canvas::new(Arc::clone(surface), || theme::now().background));
         }
+        let in_force = InForce::load(None, &scene);
+        let mut live = Live::new(rig, scene);
+        live.rough_edges = surface.is_some();
         Self {
-            surface,
             renderer: cc.gl.as_deref().map(renderer_of).unwrap_or_default(),
             meter: None,
-            handle: Some(handle),
-            in_force: InForce::load(None, &scene),
+            door: Some(door_of(handle, &cc.egui_ctx)),
+            ctx: cc.egui_ctx.clone(),
+            in_force,
             diary: Diary::default(),
             wizards: Wizards::default(),
             watched: None,
-            live: Live::new(rig, scene),
+            live,
+            surface,
             outbox: Outbox::default(),
             top_bar: TopBarState::default(),
             panels: Panels { scene: SceneView::new(cc.gl.as_deref()), ..Panels::default() },
@@ -109,6 +121,7 @@ impl ConsoleApp {
             options: Options::default(),
             opened: now,
             framed: now,
+            moved: now,
             pictured: false,
             calm: false,
         }
@@ -194,10 +207,10 @@ impl ConsoleApp {
 
     /// Takes in all that the loop has sent.
     fn take_in(&mut self) {
-        let Some(handle) = &self.handle else { return };
+        let Some(door) = &self.door else { return };
         let rate_hz = self.live.rig.rate_hz;
         let (wizards, in_force, diary) = (&mut self.wizards, &mut self.in_force, &mut self.diary);
-        self.live.take_in(handle, |tick| {
+        self.live.take_in(door, |tick| {
             wizards.tick(tick, rate_hz);
             in_force.watch(tick);
             diary.tick(tick);
@@ -213,7 +226,7 @@ impl ConsoleApp {
             return Err("the loop has stopped; release it first".to_owned());
         }
         // The old loop first: a rig has one master.
-        drop(self.handle.take());
+        drop(self.door.take());
         // Another scene may have another sensor or tool.
         self.in_force.bind(&scene);
         let calibrations = self.in_force.calibrations(&rig);
@@ -225,7 +238,7 @@ impl ConsoleApp {
         self.live.rough_edges = rough_edges;
         self.panels.forces = ForcesState::default();
         self.outbox = Outbox::default();
-        self.handle = Some(started?);
+        self.door = Some(door_of(started?, &self.ctx));
         Ok(())
     }
 
@@ -280,6 +293,44 @@ impl ConsoleApp {
         self.obey_calibrations(calibration);
     }
 
+    /// Asks for the next picture: soon while something moves, otherwise when something can change by itself. What comes from the loop
+    /// meanwhile wakes the window.
+    fn rest(&mut self, ctx: &egui::Context) {
+        let moves = !(self.live.state().is_latched() || self.live.state() == LoopState::Idle);
+        if moves || self.wizards.open.is_some() || self.live.tick.is_none() {
+            self.moved = Instant::now();
+        }
+        self.calm = self.moved.elapsed() > SETTLED;
+        if let Some(door) = &self.door {
+            door.rest(self.calm);
+        }
+        let next = if self.calm {
+            self.until_change(ctx)
+        } else {
+            // Counted from the beginning of this picture: what it took is no reason to wait longer.
+            FRAME.saturating_sub(self.framed.elapsed()).max(LEAST_REST)
+        };
+        ctx.request_repaint_after(next);
+    }
+
+    /// Time until something changes on a window at rest: a flashing alarm, the clocks, what was asked for from outside.
+    fn until_change(&self, ctx: &egui::Context) -> Duration {
+        let time_s = ctx.input(|input| input.time) + self.framed.elapsed().as_secs_f64();
+        let alarms = judge(&self.live.signs(self.outbox.stop_is_stuck()));
+        let flash = alarms.first().and_then(|alarm| Priority::until_change_s(alarm.priority, time_s));
+        let open = self.opened.elapsed();
+        let Options { exit_after, screenshot, .. } = &self.options;
+        let wanted = [screenshot.as_ref().filter(|_| !self.pictured).map(|_| self.picture_at()), *exit_after];
+        let wanted = wanted.into_iter().flatten().map(|at| at.saturating_sub(open));
+        let flash = flash.map(|flash_s| Duration::from_secs_f64(flash_s) + LEAST_REST);
+        wanted.chain(flash).fold(BEAT_AT_REST, Duration::min).max(LEAST_REST)
+    }
+
+    /// When the picture that was asked for is taken.
+    fn picture_at(&self) -> Duration {
+        self.options.exit_after.map_or(SCREENSHOT_AT, |exit| exit.saturating_sub(SCREENSHOT_BEFORE_EXIT))
+    }
+
     /// Takes in how long the picture before this one took.
     fn measure(&mut self, ctx: &egui::Context, frame: &eframe::Frame) {
         let before = std::mem::replace(&mut self.framed, Instant::now());
@@ -300,19 +351,18 @@ impl ConsoleApp {
         if let (Some(path), Some(meter)) = (&self.options.frames, &self.meter) {
             write_json(path, &meter.figures(&self.renderer));
         }
-        let summary = self.handle.take().and_then(Handle::stop_and_join);
+        let summary = self.door.take().and_then(Door::stop_and_join);
         if let (Some(path), Some(summary)) = (&self.options.summary, summary) {
             self.diary.marks = self.live.marks_s.len();
             self.diary.paused = self.panels.forces.is_paused();
-            write_json(path, &WithScreen { summary, screen: &self.diary });
+            write_json(path, &WithScreen { summary: &summary, screen: &self.diary });
         }
     }
 
     fn obey_options(&mut self, ctx: &egui::Context) {
         let open = self.opened.elapsed();
         let Options { exit_after, screenshot, .. } = self.options.clone();
-        let picture_at = exit_after.map_or(SCREENSHOT_AT, |exit| exit.saturating_sub(SCREENSHOT_BEFORE_EXIT));
-        if let Some(path) = screenshot.filter(|_| !self.pictured && open >= picture_at) {
+        if let Some(path) = screenshot.filter(|_| !self.pictured && open >= self.picture_at()) {
             self.pictured = true;
             ctx.request_screenshot(move |picture| {
                 // The window has no one to tell but the terminal it was started from.
@@ -355,13 +405,9 @@ impl eframe::App for ConsoleApp {
         }
         self.layout(ui);
         self.settings.save();
-        self.outbox.flush(self.handle.as_ref());
+        self.outbox.flush(self.door.as_ref().map(Door::handle));
         self.obey_options(&ctx);
-        let at_rest = self.live.state().is_latched() || self.live.state() == LoopState::Idle;
-        self.calm = at_rest && self.wizards.open.is_none();
-        let wanted = if self.calm { FRAME_AT_REST } else { FRAME };
-        // Counted from the beginning of this picture: what it took is no reason to wait longer.
-        ctx.request_repaint_after(wanted.saturating_sub(self.framed.elapsed()).max(LEAST_REST));
+        self.rest(&ctx);
         if let Some(meter) = &mut self.meter {
             meter.end(self.framed.elapsed());
         }
@@ -384,12 +430,10 @@ impl eframe::App for ConsoleApp {
     }
 }
 
-/// The loop's figures and what happened before the screen, in one object.
-#[derive(serde::Serialize)]
-struct WithScreen<'a> {
-    #[serde(flatten)]
-    summary: runtime::Summary,
-    screen: &'a Diary,
+/// The door to a loop, that wakes the window of this context.
+fn door_of(handle: Handle, ctx: &egui::Context) -> Door {
+    let ctx = ctx.clone();
+    Door::new(handle, move || ctx.request_repaint())
 }
 
 /// Writes a value as JSON; the window has no one to tell of a failure but the terminal it was started from.

@@ -1,7 +1,10 @@
 //! What happened in front of the screen, for the figures that are written when the window is closed: so that a session can be checked
 //! from outside by what the loop did, not by how it looked.
 
-use nima::{impedance::Mode, runtime::Tick};
+use nima::{
+    impedance::Mode,
+    runtime::{Summary, Tick},
+};
 use serde::Serialize;
 
 /// States and modes kept; a session has few.
@@ -22,6 +25,16 @@ pub struct Diary {
     pub marks: usize,
     /// The traces were held at the end.
     pub paused: bool,
+}
+
+/// The loop's figures and what happened before the screen, in one object.
+#[derive(Debug, Serialize)]
+pub struct WithScreen<'a> {
+    /// Of the last loop.
+    #[serde(flatten)]
+    pub summary: &'a Summary,
+    /// Of the whole session.
+    pub screen: &'a Diary,
 }
 
 impl Diary {

@@ -166,13 +166,18 @@ impl History {
         self.levels.iter().find(fits).unwrap_or(&self.levels[SPANS_S.len() - 1])
     }
 
-    /// Replaces `trace` by the signal between two times, two points a bucket, x counted from `origin_s`.
+    /// Replaces `trace` by the signal between two times, two points a bucket, x counted from `origin_s`. The newest bucket comes when it
+    /// is full.
     pub fn trace(&self, channel: usize, (from_s, to_s): (f64, f64), origin_s: f64, most: usize, trace: &mut Trace) {
         trace.points.clear();
         trace.breaks.clear();
         let level = self.level(from_s, to_s, most);
         let mut last_s = f64::INFINITY;
         for (begin_s, bucket) in level.between(from_s, to_s) {
+            // A bucket that is still being filled would change from frame to frame.
+            if begin_s + level.span_s > self.latest_s {
+                break;
+            }
             let Some((low, high)) = bucket.ends(channel) else { continue };
             if begin_s - last_s > GAP_S + level.span_s {
                 trace.breaks.push(trace.points.len());
@@ -264,6 +269,7 @@ mod tests {
         let mut history = History::default();
         history.push(0.000, &[1.0; CHANNELS]);
         history.push(0.001, &[-1.0; CHANNELS]);
+        history.push(0.004, &[-9.0; CHANNELS]);
         let mut line = Trace::default();
         history.trace(2, (0.0, 0.003), 0.0, 100, &mut line);
         let ys: Vec<f64> = one_run(&line).iter().map(|p| p.y).collect();

@@ -10,7 +10,7 @@ use nima::{
     config::{Rig, Scene},
     device::{Healths, Roster, SIDES, Side},
     impedance::Mode,
-    runtime::{Command, Event, Fault, Handle, Scheduling, Tick},
+    runtime::{Command, Event, Fault, Scheduling, Tick},
     safety::ChainSettings,
     statistics::{Percentiles, Quantiles},
     teleop::LoopState,
@@ -20,6 +20,7 @@ use super::{
     alarms::Signs,
     cloud::Cloud,
     deadlines::Deadlines,
+    door::{Door, News},
     history::{CHANNELS, History},
     readings::{Change, Figures, Gates},
     rolling::{DegreeShares, Fading},
@@ -154,16 +155,20 @@ impl Live {
     }
 
     /// Takes in all that waits at the loop's door; `each` sees every tick of the right arm pair.
-    pub fn take_in(&mut self, handle: &Handle, mut each: impl FnMut(&Tick)) {
+    pub fn take_in(&mut self, door: &Door, mut each: impl FnMut(&Tick)) {
+        let handle = door.handle();
         if self.roster.len() != handle.roster().len() {
             self.roster.clone_from(handle.roster());
         }
         if let Some(healths) = handle.healths() {
             self.healths = healths;
         }
-        handle.drain_events(|event| self.event(event));
         let mut came = false;
-        handle.drain_ticks(|tick| {
+        door.take(|news| {
+            let tick = match news {
+                News::Event(event) => return self.event(event),
+                News::Tick(tick) => tick,
+            };
             match tick.side {
                 Side::Right => {
                     self.tick(tick);
@@ -183,6 +188,11 @@ impl Live {
         self.refresh_figures();
     }
 
+    /// What moves all the time is drawn anew at most this often, s: on a slow computer every second frame.
+    pub const fn least_step_s(&self) -> f64 {
+        if self.rough_edges { 1.0 / 15.0 } else { 0.0 }
+    }
+
     /// Takes in how long the console's own frames take: from the last to this one, and its work (s).
     pub fn frame(&mut self, period_s: f64, work_s: Option<f64>) {
         self.frames.record(period_s);
@@ -199,7 +209,7 @@ impl Live {
         &self.work
     }
 
-    /// Time from a measurement to the force that answers it, since the window opened.
+    /// From the arrival of a measurement to when the force made from it was given to the device.
     pub const fn sample_to_force(&self) -> &Percentiles {
         &self.sample_to_force
     }

@@ -11,6 +11,7 @@ pub mod cloud;
 pub mod deadlines;
 pub mod desk;
 pub mod diary;
+pub mod door;
 pub mod frames;
 pub mod help;
 pub mod history;

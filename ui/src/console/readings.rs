@@ -51,7 +51,7 @@ pub struct Figures {
     pub wake_us: Quantiles,
     /// Work of a tick, us.
     pub work_us: Quantiles,
-    /// From a measurement to the force that answers it, us.
+    /// From measurement to force, us.
     pub sample_to_force_us: Quantiles,
     /// Ticks that came per second.
     pub rate_hz: f64,

@@ -48,6 +48,12 @@ impl Priority {
         }
     }
 
+    /// Time until the colour changes next, s; `None` for a steady one.
+    pub fn until_change_s(self, time_s: f64) -> Option<f64> {
+        let half_s = 0.5 / self.flash_hz()?;
+        Some(half_s - time_s.rem_euclid(half_s))
+    }
+
     /// The word for those who do not see the colour.
     pub const fn word(self) -> &'static str {
         match self {
@@ -228,5 +234,14 @@ mod tests {
         assert_ne!(Priority::High.colour(0.1, true), Priority::High.colour(0.3, true));
         assert!((1.4..=2.8).contains(&Priority::High.flash_hz().unwrap()));
         assert!((0.4..=0.8).contains(&Priority::Medium.flash_hz().unwrap()));
+        for priority in [Priority::High, Priority::Medium] {
+            for i in 0..100 {
+                let time_s = 0.013 + f64::from(i) * 0.07;
+                let change_s = time_s + priority.until_change_s(time_s).unwrap();
+                assert_eq!(priority.colour(time_s, true), priority.colour(change_s - 1e-6, true));
+                assert_ne!(priority.colour(time_s, true), priority.colour(change_s + 1e-6, true));
+            }
+        }
+        assert_eq!(Priority::Low.until_change_s(1.0), None);
     }
 }

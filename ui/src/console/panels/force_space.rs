@@ -7,6 +7,7 @@ use egui::{Align2, Color32, Painter, Pos2, Rect, Sense, Stroke, Ui, Vec2, pos2, 
 use nalgebra::Vector3;
 use nima::device::Side;
 
+use super::forces::stepped;
 use crate::console::{
     cloud::{Ellipsoid, SECONDS},
     live::Live,
@@ -25,11 +26,13 @@ pub struct ForceSpaceState {
     yaw: f32,
     pitch: f32,
     reach_n: f32,
+    /// The error's ellipsoid, and the time for which it was worked out, s.
+    ellipsoid: (f64, Option<Ellipsoid>),
 }
 
 impl Default for ForceSpaceState {
     fn default() -> Self {
-        Self { yaw: 0.6, pitch: 0.35, reach_n: LEAST_N }
+        Self { yaw: 0.6, pitch: 0.35, reach_n: LEAST_N, ellipsoid: (f64::NEG_INFINITY, None) }
     }
 }
 
@@ -54,7 +57,15 @@ impl View {
 pub fn force_space_ui(ui: &mut Ui, live: &Live, side: Side, state: &mut ForceSpaceState, cursor_s: Option<f64>) {
     let (rect, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
     let cloud = &live.clouds[side.index()];
-    let ellipsoid = cloud.ellipsoid();
+    let newest_s = cloud.pairs().next_back().map_or(0.0, |pair| pair.t_s);
+    let shown_s = stepped(newest_s, live.least_step_s());
+    if state.ellipsoid.0.total_cmp(&shown_s).is_ne() {
+        state.ellipsoid = (shown_s, cloud.ellipsoid());
+    }
+    let ellipsoid = state.ellipsoid.1;
+    // A little less than what is kept: the oldest go while nothing is drawn anew.
+    let shown = (shown_s - SECONDS + 2.0 * live.least_step_s())..=shown_s;
+    let pairs = || cloud.pairs().filter(|pair| shown.contains(&pair.t_s));
     let words = caption(ellipsoid.as_ref());
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Canvas, true, format!("Force space. {words}")));
     if response.dragged() {
@@ -67,7 +78,7 @@ pub fn force_space_ui(ui: &mut Ui, live: &Live, side: Side, state: &mut ForceSpa
     response.on_hover_text(MEANING);
     let painter = ui.painter_at(rect);
     painter.rect_filled(rect, theme::CORNER, theme::now().groove);
-    let most_n = cloud.pairs().map(|pair| pair.measured_n.amax().max(pair.rendered_n.amax())).fold(0.0, f64::max);
+    let most_n = pairs().map(|pair| pair.measured_n.amax().max(pair.rendered_n.amax())).fold(0.0, f64::max);
     state.reach_n = reach_n(most_n as f32, state.reach_n);
     let place = Rect::from_min_max(rect.min, rect.max - vec2(0.0, CAPTION));
     let view = view(state, place);
@@ -75,15 +86,15 @@ pub fn force_space_ui(ui: &mut Ui, live: &Live, side: Side, state: &mut ForceSpa
     ceiling(&painter.with_clip_rect(place), &view, live.gate_settings().ceiling_n as f32);
     for (colour, width, rendered) in [(theme::now().measured, 2.2, false), (theme::now().rendered, 1.6, true)] {
         let force_n = |pair: &crate::console::cloud::Pair| if rendered { pair.rendered_n } else { pair.measured_n };
-        let points: Vec<Pos2> = cloud.pairs().map(|pair| view.place(&force_n(pair).cast())).collect();
+        let points: Vec<Pos2> = pairs().map(|pair| view.place(&force_n(pair).cast())).collect();
         painter.line(points, Stroke::new(width, colour.gamma_multiply(0.75)));
         // The newest, or the one that a trace points at.
-        let shown = cursor_s.and_then(|at_s| cloud.pairs().find(|pair| pair.t_s >= at_s));
-        if let Some(pair) = shown.or_else(|| cloud.pairs().next_back()) {
+        let pointed_at = cursor_s.and_then(|at_s| cloud.pairs().find(|pair| pair.t_s >= at_s));
+        if let Some(pair) = pointed_at.or_else(|| pairs().next_back()) {
             painter.circle_filled(view.place(&force_n(pair).cast()), 4.5, colour);
         }
     }
-    if let (Some(ellipsoid), Some(pair)) = (ellipsoid, cloud.pairs().next_back()) {
+    if let (Some(ellipsoid), Some(pair)) = (ellipsoid, pairs().next_back()) {
         rings(&painter.with_clip_rect(place), &view, &pair.measured_n.cast(), &ellipsoid);
     }
     let at = pos2(rect.left() + 10.0, rect.bottom() - CAPTION + 4.0);

@@ -43,6 +43,8 @@ pub struct ForcesState {
     ranges_n: [(f64, f64); 3],
     lines: [Trace; CHANNELS],
     cursor_s: Option<f64>,
+    /// The picture moves in steps of this, s: nothing is drawn anew for less than a point of the screen.
+    step_s: f64,
     /// Whose forces are shown.
     side: Side,
 }
@@ -55,12 +57,18 @@ impl Default for ForcesState {
             ranges_n: [(-LEAST_RANGE_N, LEAST_RANGE_N); 3],
             lines: Default::default(),
             cursor_s: None,
+            step_s: 0.0,
             side: Side::Right,
         }
     }
 }
 
 impl ForcesState {
+    /// Shows this side's forces.
+    pub fn of(side: Side) -> Self {
+        Self { side, ..Self::default() }
+    }
+
     /// Shows the last so many seconds.
     pub fn show_last(&mut self, seconds: f64) {
         if seconds.is_finite() {
@@ -88,7 +96,7 @@ impl ForcesState {
     }
 
     fn now_s(&self, history: &History) -> f64 {
-        self.paused_at_s.unwrap_or(history.latest_s())
+        self.paused_at_s.unwrap_or(stepped(history.latest_s(), self.step_s))
     }
 
     fn pan(&mut self, by_s: f64) {
@@ -104,6 +112,11 @@ impl ForcesState {
         let to_s = (around_s + (1.0 - share) * width_s).min(0.0);
         self.view_s = (to_s - width_s, to_s);
     }
+}
+
+/// The last whole step before a time, both in s.
+pub(super) fn stepped(t_s: f64, step_s: f64) -> f64 {
+    if step_s > 0.0 { (t_s / step_s).floor() * step_s } else { t_s }
 }
 
 /// The panel, with these axes (0 is x) one under the other.
@@ -125,6 +138,10 @@ pub fn forces_ui(ui: &mut Ui, live: &mut Live, state: &mut ForcesState, axes: &[
         state.ranges_n[axis] = range_n(history.extent(&[axis, axis + 3], (from_s, to_s)), state.ranges_n[axis]);
         let height = if last { height + TIME_AXIS } else { height };
         let response = plot_ui(ui, live, state, (axis, last, axes.len() == 1), height, cursor_s);
+        if last {
+            let point_s = response.transform.dvalue_dpos()[0] / f64::from(ui.pixels_per_point());
+            state.step_s = if point_s.is_finite() { point_s.max(live.least_step_s()) } else { 0.0 };
+        }
         interact(ui, state, &response);
     }
 }
@@ -367,6 +384,12 @@ mod tests {
             state.zoom(0.5, -10.0);
         }
         assert!(state.view_s.1 <= 0.0 && state.view_s.1 - state.view_s.0 <= LONGEST_S + 1e-9);
+    }
+
+    #[test]
+    fn the_picture_moves_in_whole_steps() {
+        assert!((stepped(1.234, 0.1) - 1.2).abs() < 1e-9 && (stepped(1.29, 0.1) - 1.2).abs() < 1e-9);
+        assert!((stepped(1.234, 0.0) - 1.234).abs() < 1e-12);
     }
 
     #[test]

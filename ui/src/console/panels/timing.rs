@@ -41,7 +41,7 @@ fn timings(live: &Live) -> Vec<Timing<'_>> {
         },
         Timing {
             name: "Sample to force",
-            meaning: "From the arrival of a tick's oldest measurement to the moment its force was given to the device (us).",
+            meaning: "From the arrival of the oldest measurement to when the force made from it was given to the handle (us).",
             quantiles: live.figures.sample_to_force_us,
             durations: live.sample_to_force(),
             deadline_us,

@@ -11,7 +11,7 @@ use eframe::glow::{self, HasContext as _};
 use egui::{Color32, epaint::ViewportInPixels};
 use nalgebra::{Matrix4, Vector3};
 
-use super::mesh::Mesh;
+use super::mesh::{Material, Mesh};
 
 /// Everything one frame needs.
 #[derive(Debug)]
@@ -37,10 +37,16 @@ const SAMPLES: i32 = 4;
 const VERTEX_BYTES: i32 = 28;
 const ATTRIBUTES: [&str; 3] = ["a_position", "a_normal", "a_colour"];
 
-/// The program and its buffers on the GPU. Must be given back with [`Renderer::destroy`].
+/// The programs, as [`Material`] and number of shafts that throw shadows; the last is that of two.
+const PROGRAMS: [(Material, usize); 5] =
+    [(Material::Matte, 1), (Material::Tissue, 1), (Material::Metal, 1), (Material::Plain, 1), (Material::Tissue, 2)];
+/// What is drawn first to last: what lies in front first, so that what it hides is never shaded.
+const ORDER: [Material; 4] = [Material::Plain, Material::Metal, Material::Matte, Material::Tissue];
+
+/// The programs and their buffers on the GPU. Must be given back with [`Renderer::destroy`].
 #[derive(Debug)]
 pub struct Renderer {
-    program: glow::Program,
+    programs: Vec<glow::Program>,
     array: glow::VertexArray,
     vertices: glow::Buffer,
     indices: glow::Buffer,
@@ -66,11 +72,14 @@ struct Target {
 }
 
 impl Renderer {
-    /// Compiles the program. The error says what the driver disliked.
+    /// Compiles the programs. The error says what the driver disliked.
     pub fn new(gl: &glow::Context) -> Result<Self, String> {
         // SAFETY: called with eframe's current context; every object made here is destroyed in `destroy`.
         unsafe {
-            let program = program(gl)?;
+            let programs = PROGRAMS
+                .iter()
+                .map(|(material, shafts)| program(gl, *material, *shafts))
+                .collect::<Result<Vec<_>, _>>()?;
             let array = gl.create_vertex_array()?;
             let vertices = gl.create_buffer()?;
             let indices = gl.create_buffer()?;
@@ -85,7 +94,7 @@ impl Renderer {
                 gl.enable_vertex_attrib_array(slot);
             }
             gl.bind_vertex_array(None);
-            Ok(Self { program, array, vertices, indices, target: Mutex::new(TargetState::None) })
+            Ok(Self { programs, array, vertices, indices, target: Mutex::new(TargetState::None) })
         }
     }
 
@@ -126,29 +135,29 @@ impl Renderer {
     unsafe fn draw(&self, gl: &glow::Context, frame: &Frame) {
         unsafe {
             gl.disable(glow::BLEND);
-            gl.use_program(Some(self.program));
+            gl.enable(glow::DEPTH_TEST);
+            gl.depth_func(glow::LEQUAL);
             gl.bind_vertex_array(Some(self.array));
             gl.bind_buffer(glow::ARRAY_BUFFER, Some(self.vertices));
             gl.buffer_data_u8_slice(glow::ARRAY_BUFFER, bytes(&frame.mesh.vertices), glow::STREAM_DRAW);
+            let corners = frame.mesh.corners_by_material();
+            let shafts = frame.shafts_m.len().clamp(1, 2);
             gl.bind_buffer(glow::ELEMENT_ARRAY_BUFFER, Some(self.indices));
-            gl.buffer_data_u8_slice(glow::ELEMENT_ARRAY_BUFFER, bytes(&frame.mesh.indices), glow::STREAM_DRAW);
-            let place = |name| gl.get_uniform_location(self.program, name);
-            gl.uniform_3_f32(place("u_eye").as_ref(), frame.eye_m.x, frame.eye_m.y, frame.eye_m.z);
-            let shafts = &frame.shafts_m[..frame.shafts_m.len().min(2)];
-            let ends: Vec<f32> = shafts.iter().flatten().flat_map(|end| [end.x, end.y, end.z]).collect();
-            if !ends.is_empty() {
-                gl.uniform_3_f32_slice(place("u_shaft_ends").as_ref(), &ends);
+            for material in ORDER {
+                let corners = &corners[material as usize];
+                let two = material == Material::Tissue && shafts == 2;
+                let Some(program) = self.programs.get(if two { PROGRAMS.len() - 1 } else { material as usize }) else {
+                    continue;
+                };
+                if corners.is_empty() {
+                    continue;
+                }
+                gl.use_program(Some(*program));
+                uniforms(gl, *program, frame);
+                gl.buffer_data_u8_slice(glow::ELEMENT_ARRAY_BUFFER, bytes(corners), glow::STREAM_DRAW);
+                let count = i32::try_from(corners.len()).unwrap_or(0);
+                gl.draw_elements(glow::TRIANGLES, count, glow::UNSIGNED_INT, 0);
             }
-            gl.uniform_1_i32(place("u_shafts").as_ref(), 1 + i32::from(shafts.len() > 1));
-            gl.uniform_matrix_4_f32_slice(
-                place("u_clip_from_workspace").as_ref(),
-                false,
-                frame.clip_from_workspace.as_slice(),
-            );
-            gl.enable(glow::DEPTH_TEST);
-            gl.depth_func(glow::LEQUAL);
-            let corners = i32::try_from(frame.mesh.indices.len()).unwrap_or(0);
-            gl.draw_elements(glow::TRIANGLES, corners, glow::UNSIGNED_INT, 0);
             gl.bind_vertex_array(None);
             gl.disable(glow::DEPTH_TEST);
             gl.enable(glow::BLEND);
@@ -163,7 +172,9 @@ impl Renderer {
             if let TargetState::Made(target) = &*state {
                 target.destroy(gl);
             }
-            gl.delete_program(self.program);
+            for program in &self.programs {
+                gl.delete_program(*program);
+            }
             gl.delete_vertex_array(self.array);
             gl.delete_buffer(self.vertices);
             gl.delete_buffer(self.indices);
@@ -285,10 +296,28 @@ fn bytes<T: Copy>(slice: &[T]) -> &[u8] {
     unsafe { std::slice::from_raw_parts(slice.as_ptr().cast(), size_of_val(slice)) }
 }
 
+/// What a program must know of the frame; what it has no use for it does not take.
+///
+/// # Safety
+/// The context must be current, with the program in use.
+unsafe fn uniforms(gl: &glow::Context, program: glow::Program, frame: &Frame) {
+    unsafe {
+        let place = |name| gl.get_uniform_location(program, name);
+        gl.uniform_3_f32(place("u_eye").as_ref(), frame.eye_m.x, frame.eye_m.y, frame.eye_m.z);
+        let ends: Vec<f32> = frame.shafts_m.iter().take(2).flatten().flat_map(|end| [end.x, end.y, end.z]).collect();
+        if let (Some(place), false) = (place("u_shaft_ends"), ends.is_empty()) {
+            gl.uniform_3_f32_slice(Some(&place), &ends);
+        }
+        let clip = frame.clip_from_workspace.as_slice();
+        gl.uniform_matrix_4_f32_slice(place("u_clip_from_workspace").as_ref(), false, clip);
+    }
+}
+
 /// # Safety
 /// The context must be current.
-unsafe fn program(gl: &glow::Context) -> Result<glow::Program, String> {
+unsafe fn program(gl: &glow::Context, material: Material, shafts: usize) -> Result<glow::Program, String> {
     let head = if gl.version().is_embedded { "#version 300 es\nprecision highp float;\n" } else { "#version 140\n" };
+    let head = format!("{head}#define MATERIAL {}\n#define SHAFTS {shafts}\n", material as u8);
     unsafe {
         let program = gl.create_program()?;
         for (slot, name) in ATTRIBUTES.iter().enumerate() {

@@ -54,6 +54,18 @@ impl Mesh {
         self.vertices.len() as u32 - 1
     }
 
+    /// The corners of all triangles, three per triangle, by the number of their [`Material`], in the order in which they were added.
+    pub fn corners_by_material(&self) -> [Vec<u32>; 4] {
+        let mut corners: [Vec<u32>; 4] = Default::default();
+        for triangle in self.indices.chunks_exact(3) {
+            let material = self.vertices.get(triangle[0] as usize).map_or(0, |vertex| usize::from(vertex.colour[3]));
+            if let Some(corners) = corners.get_mut(material) {
+                corners.extend_from_slice(triangle);
+            }
+        }
+        corners
+    }
+
     /// Adds `rows` by `columns` cells over corners that were added row by row from `first`.
     pub fn sheet(&mut self, first: u32, rows: u32, columns: u32) {
         let stride = columns + 1;
@@ -229,6 +241,20 @@ mod tests {
         mesh.tube([Vector3::x(), Vector3::x()], [0.01, 0.01], 12, PAINT);
         mesh.ribbon(&[Vector3::x()], &Vector3::z(), |_| 0.01, PAINT);
         assert!(mesh.vertices.is_empty() && mesh.indices.is_empty());
+    }
+
+    #[test]
+    fn every_triangle_is_drawn_once_with_its_own_material() {
+        let mut mesh = Mesh::default();
+        for material in [Material::Tissue, Material::Plain, Material::Metal, Material::Matte, Material::Plain] {
+            mesh.sphere(Vector3::x(), 0.5, 4, Paint(Color32::WHITE, material));
+        }
+        let corners = mesh.corners_by_material();
+        let counts = corners.each_ref().map(Vec::len);
+        assert_eq!(counts.iter().sum::<usize>(), mesh.indices.len());
+        assert_eq!(counts[Material::Plain as usize], 2 * counts[Material::Metal as usize]);
+        let metal = &corners[Material::Metal as usize];
+        assert!(metal.iter().all(|&i| mesh.vertices[i as usize].colour[3] == Material::Metal as u8));
     }
 
     #[test]

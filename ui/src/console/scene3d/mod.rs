@@ -169,7 +169,7 @@ fn triangles(rect: Rect, live: &Live, view: &SceneView, arms: &[Arm]) -> Option<
     let camera = view.camera(&live.scene);
     let (eye_m, right) = (camera.eye_m(), camera.right());
     let frame = gl::Frame {
-        mesh: stage::build(&live.scene, arms, &eye_m, &right),
+        mesh: stage::build(&live.scene, arms, &eye_m, &right, view.smooth),
         clip_from_workspace: camera.clip_from_workspace(rect.aspect_ratio()),
         eye_m,
         shafts_m: arms.iter().map(|arm| [arm.pose.tip_m, arm.trocar_m]).collect(),

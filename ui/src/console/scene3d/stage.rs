@@ -21,7 +21,9 @@ pub const SHAFT_RADIUS_M: f32 = 0.0025;
 /// Width of the dent under a tip, m.
 const DENT_M: f32 = 0.0085;
 const SLAB_THICKNESS_M: f32 = 0.016;
+/// Cells of the tissue's surface along each side; fewer where a processor must draw them.
 const CELLS: u32 = 64;
+const CELLS_COARSE: u32 = 40;
 
 const TISSUE_DARK: Color32 = Color32::from_rgb(0xb9, 0x66, 0x62);
 const TISSUE_PALE: Color32 = Color32::from_rgb(0xcc, 0x7f, 0x77);
@@ -68,6 +70,10 @@ impl Dent {
     /// Height change at a place, m: down under the tip, a slight bulge around, as for a soft body that keeps its volume.
     pub fn lift_m(&self, x: f32, y: f32) -> f32 {
         let q = ((x - self.at_m[0]).powi(2) + (y - self.at_m[1]).powi(2)) / (DENT_M * DENT_M);
+        // Far away less than a thousandth of a millimetre is left.
+        if self.depth_m <= 0.0 || q > 18.0 {
+            return 0.0;
+        }
         -self.depth_m * (1.0 - 0.22 * q) * (-q / 1.5).exp()
     }
 }
@@ -106,8 +112,8 @@ pub struct Arm {
     pub trail_m: Vec<Vector3<f32>>,
 }
 
-/// Builds the whole stage as seen from `eye_m`, with `right` on the right of the screen.
-pub fn build(scene: &Scene, arms: &[Arm], eye_m: &Vector3<f32>, right: &Vector3<f32>) -> Mesh {
+/// Builds the whole stage as seen from `eye_m`, with `right` on the right of the screen, `fine` or with fewer triangles.
+pub fn build(scene: &Scene, arms: &[Arm], eye_m: &Vector3<f32>, right: &Vector3<f32>, fine: bool) -> Mesh {
     let mut mesh = Mesh { vertices: Vec::with_capacity(12_000), indices: Vec::with_capacity(60_000) };
     let mut dents = Dents([Dent::NONE; SIDES]);
     // What is in front comes first, so that what it hides is never shaded.
@@ -124,19 +130,19 @@ pub fn build(scene: &Scene, arms: &[Arm], eye_m: &Vector3<f32>, right: &Vector3<
         }
         mesh.ribbon(trail_m, eye_m, |i| 0.0011 * (i as f32 / trail_m.len() as f32), TRAIL);
     }
-    tissue(&mut mesh, scene, &dents);
+    tissue(&mut mesh, scene, &dents, if fine { CELLS } else { CELLS_COARSE });
     mesh
 }
 
-fn tissue(mesh: &mut Mesh, scene: &Scene, dents: &Dents) {
+fn tissue(mesh: &mut Mesh, scene: &Scene, dents: &Dents, cells: u32) {
     let Some(tissue) = scene.tissue else { return };
     let [x_m, y_m] = tissue.size_m.map(|x| 0.5 * x as f32);
     let top_m = tissue.surface_z_m as f32;
     let bottom_m = top_m - SLAB_THICKNESS_M;
-    let place = |i: u32, half_m: f32| half_m * (2.0 * i as f32 / CELLS as f32 - 1.0);
+    let place = |i: u32, half_m: f32| half_m * (2.0 * i as f32 / cells as f32 - 1.0);
     let first = mesh.vertices.len() as u32;
-    for row in 0..=CELLS {
-        for column in 0..=CELLS {
+    for row in 0..=cells {
+        for column in 0..=cells {
             let (x, y) = (place(column, x_m), place(row, y_m));
             let lift_m = dents.lift_m(x, y);
             // A hollow gets less light from the sky, and pressed tissue less blood.
@@ -146,18 +152,18 @@ fn tissue(mesh: &mut Mesh, scene: &Scene, dents: &Dents) {
             mesh.vertex(position, dents.normal(x, y), Paint(colour, Material::Tissue));
         }
     }
-    mesh.sheet(first, CELLS, CELLS);
+    mesh.sheet(first, cells, cells);
     for (sign, along_x) in [(-1.0, true), (1.0, true), (-1.0, false), (1.0, false)] {
         let first = mesh.vertices.len() as u32;
         let normal = if along_x { Vector3::new(0.0, sign, 0.0) } else { Vector3::new(sign, 0.0, 0.0) };
         for low in [false, true] {
-            for i in 0..=CELLS {
+            for i in 0..=cells {
                 let (x, y) = if along_x { (place(i, x_m), sign * y_m) } else { (sign * x_m, place(i, y_m)) };
                 let z = if low { bottom_m } else { top_m + dents.lift_m(x, y) };
                 mesh.vertex(Vector3::new(x, y, z), normal, TISSUE_SIDE);
             }
         }
-        mesh.sheet(first, 1, CELLS);
+        mesh.sheet(first, 1, cells);
     }
     mesh.cuboid(
         Vector3::new(-x_m - 0.012, -y_m - 0.012, bottom_m - 0.004),
@@ -261,7 +267,8 @@ mod tests {
         let scene = Scene::load("free_motion").unwrap();
         let one = arm(pose(0.01, Vector3::z()));
         let other = Arm { side: Side::Left, ..one.clone() };
-        let corners = |arms: &[Arm]| build(&scene, arms, &Vector3::new(0.0, -0.3, 0.2), &Vector3::x()).vertices.len();
+        let corners =
+            |arms: &[Arm]| build(&scene, arms, &Vector3::new(0.0, -0.3, 0.2), &Vector3::x(), true).vertices.len();
         assert_eq!(corners(&[one.clone(), other]), 2 * corners(&[one]));
     }
 
@@ -282,17 +289,20 @@ mod tests {
         let full = Scene::load("peg_transfer").unwrap();
         let bare = Scene::load("free_motion").unwrap();
         let size = |scene: &Scene, force_n| {
-            build(scene, &[arm(pose(0.01, force_n))], &Vector3::new(0.0, -0.3, 0.2), &Vector3::x()).vertices.len()
+            build(scene, &[arm(pose(0.01, force_n))], &Vector3::new(0.0, -0.3, 0.2), &Vector3::x(), true).vertices.len()
         };
         assert!(size(&full, Vector3::zeros()) > size(&bare, Vector3::zeros()) + 4000);
         assert!(size(&bare, Vector3::z()) > size(&bare, Vector3::z() * 0.01));
+        let coarse =
+            build(&full, &[arm(pose(0.01, Vector3::zeros()))], &Vector3::new(0.0, -0.3, 0.2), &Vector3::x(), false);
+        assert!(2 * coarse.vertices.len() < 2 * 1000 + size(&full, Vector3::zeros()));
     }
 
     #[test]
     fn what_is_not_finite_reaches_no_arrow() {
         let scene = Scene::load("free_motion").unwrap();
         let nowhere = arm(pose(0.01, Vector3::repeat(f32::NAN)));
-        let mesh = build(&scene, &[nowhere], &Vector3::new(0.0, -0.3, 0.2), &Vector3::x());
+        let mesh = build(&scene, &[nowhere], &Vector3::new(0.0, -0.3, 0.2), &Vector3::x(), true);
         assert!(mesh.vertices.iter().all(|v| v.position.iter().all(|x| x.is_finite())));
     }
 }

@@ -1,0 +1,152 @@
+//! What the traces cost the processor in a frame, without a window: 12 traces of 120 s at 2 kHz, our panel beside the same plots
+//! given every sample. Counted are layout, our own code and the making of triangles; drawing them is the graphics card's.
+//!
+//! Prints ms per frame as percentiles of each of several runs, and the ratio of the medians. Everything is measured on this
+//! computer; nothing is asserted.
+
+#![expect(clippy::unwrap_used, reason = "a benchmark that cannot begin has nothing to say")]
+
+use std::{hint::black_box, time::Instant};
+
+use egui::{Context, Pos2, RawInput, Rect, Ui, vec2};
+use egui_plot::{Line, Plot, PlotPoint, PlotPoints};
+use nima::{
+    config::{Rig, Scene},
+    device::Side,
+};
+use nima_console::console::{
+    history::CHANNELS,
+    live::Live,
+    panels::{ForcesState, forces_ui},
+    theme,
+};
+
+const RATE_HZ: f64 = 2000.0;
+const SECONDS: f64 = 120.0;
+const FRAME_S: f64 = 1.0 / 30.0;
+const RUNS: usize = 5;
+const FRAMES: usize = 60;
+const SIZE: egui::Vec2 = vec2(1600.0, 1000.0);
+
+/// Contacts of a second with a tremor and the noise of a sensor, N.
+fn force_n(t_s: f64, channel: usize) -> f64 {
+    let contact = (2.5 * (t_s * 1.3 + channel as f64).sin()).max(0.0);
+    let noise = ((t_s * 7919.0 + channel as f64 * 31.0).sin() * 43_758.547).fract();
+    contact + 0.05 * (t_s * 56.0).sin() + 0.06 * noise
+}
+
+/// Both hands' histories up to a time.
+fn fill(live: &mut Live, from_s: f64, to_s: f64) {
+    let (first, end) = ((from_s * RATE_HZ).round() as u64, (to_s * RATE_HZ).round() as u64);
+    for sample in first..end {
+        let t_s = sample as f64 / RATE_HZ;
+        for side in Side::ALL {
+            let values: [f32; CHANNELS] =
+                std::array::from_fn(|channel| force_n(t_s, channel + CHANNELS * side.index()) as f32);
+            live.history[side.index()].push(t_s, &values);
+        }
+    }
+}
+
+/// Time of one frame of this content, triangles included, ms.
+fn frame_ms(ctx: &Context, number: usize, content: &mut dyn FnMut(&mut Ui)) -> f64 {
+    let input = RawInput {
+        screen_rect: Some(Rect::from_min_size(Pos2::ZERO, SIZE)),
+        time: Some(number as f64 * FRAME_S),
+        ..RawInput::default()
+    };
+    let began = Instant::now();
+    let mut output = ctx.run_ui(input, |ui| content(ui));
+    let shapes = std::mem::take(&mut output.shapes);
+    black_box(ctx.tessellate(shapes, output.pixels_per_point));
+    let frame_ms = began.elapsed().as_secs_f64() * 1e3;
+    output.drop_without_applying_deltas();
+    frame_ms
+}
+
+/// Our panel, twice: three plots with two traces for each hand.
+fn ours(runs: &mut Vec<Vec<f64>>) {
+    let mut live = Live::new(Rig::load("simulated").unwrap(), Scene::load("bimanual").unwrap());
+    let mut now_s = SECONDS;
+    fill(&mut live, 0.0, now_s);
+    let ctx = Context::default();
+    theme::apply(&ctx);
+    let mut states = Side::ALL.map(ForcesState::of);
+    for state in &mut states {
+        state.show_last(SECONDS);
+    }
+    for _ in 0..RUNS {
+        let run = (0..FRAMES).map(|number| {
+            fill(&mut live, now_s, now_s + FRAME_S);
+            now_s += FRAME_S;
+            frame_ms(&ctx, number, &mut |ui| {
+                ui.columns(2, |columns| {
+                    for (ui, state) in columns.iter_mut().zip(&mut states) {
+                        ui.push_id(state.side().word(), |ui| forces_ui(ui, &mut live, state, &[0, 1, 2]));
+                    }
+                });
+            })
+        });
+        runs.push(run.collect());
+    }
+}
+
+/// The same twelve lines, every sample given to the plots.
+fn all_samples(runs: &mut Vec<Vec<f64>>) {
+    let count = (SECONDS * RATE_HZ) as u64;
+    let lines: Vec<Vec<PlotPoint>> = (0..2 * CHANNELS)
+        .map(|channel| {
+            let point = |sample| {
+                let t_s = sample as f64 / RATE_HZ;
+                PlotPoint::new(t_s - SECONDS, force_n(t_s, channel))
+            };
+            (0..count).map(point).collect()
+        })
+        .collect();
+    let ctx = Context::default();
+    theme::apply(&ctx);
+    for _ in 0..RUNS {
+        let run = (0..FRAMES / 4).map(|number| {
+            frame_ms(&ctx, number, &mut |ui| {
+                ui.columns(2, |columns| {
+                    for (side, ui) in columns.iter_mut().enumerate() {
+                        let height = ui.available_height() / 3.0 - 8.0;
+                        for axis in 0..3 {
+                            Plot::new((side, axis)).height(height).show(ui, |plot| {
+                                for channel in [axis, axis + 3] {
+                                    let points = &lines[channel + CHANNELS * side];
+                                    plot.line(Line::new(channel.to_string(), PlotPoints::Borrowed(points)));
+                                }
+                            });
+                        }
+                    }
+                });
+            })
+        });
+        runs.push(run.collect());
+    }
+}
+
+/// Prints the percentiles of each run; the median of all.
+fn told(name: &str, runs: &[Vec<f64>]) -> f64 {
+    let at = |sorted: &[f64], share: f64| sorted[((share * sorted.len() as f64) as usize).min(sorted.len() - 1)];
+    let mut all = Vec::new();
+    for (number, run) in runs.iter().enumerate() {
+        let mut sorted = run.clone();
+        sorted.sort_by(f64::total_cmp);
+        let [p10, p50, p90, p99] = [0.1, 0.5, 0.9, 0.99].map(|share| at(&sorted, share));
+        println!("{name}, run {}: p10 {p10:.2}, p50 {p50:.2}, p90 {p90:.2}, p99 {p99:.2} ms a frame", number + 1);
+        all.extend(sorted);
+    }
+    all.sort_by(f64::total_cmp);
+    at(&all, 0.5)
+}
+
+fn main() {
+    println!("12 traces of {SECONDS:.0} s at {RATE_HZ:.0} Hz, {RUNS} runs");
+    let (mut our_runs, mut their_runs) = (Vec::new(), Vec::new());
+    ours(&mut our_runs);
+    all_samples(&mut their_runs);
+    let (ours_ms, theirs_ms) = (told("this panel", &our_runs), told("every sample", &their_runs));
+    println!("medians: this panel {ours_ms:.2} ms, every sample {theirs_ms:.2} ms, ratio {:.1}", theirs_ms / ours_ms);
+}

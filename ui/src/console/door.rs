@@ -1,0 +1,330 @@
+//! Between the loop and a window that sleeps.
+//!
+//! While nothing moves, the window is drawn once in a while only. The loop goes on sending all the same, and what it sends must neither
+//! fill its queue nor be seen late. So a thread looks after the door: it keeps what came, and wakes the window when there is something
+//! to see. While the window is drawn all the time, the thread rests.
+
+use std::{
+    sync::{
+        Arc, Mutex, MutexGuard, PoisonError,
+        atomic::{AtomicBool, Ordering},
+    },
+    thread::{self, JoinHandle},
+    time::{Duration, Instant},
+};
+
+use nalgebra::Vector3;
+use nima::{
+    device::{SIDES, Side},
+    runtime::{Event, Handle, Summary, Tick},
+};
+
+/// How often the thread looks while the window sleeps: twice as often as the eye could tell.
+const LOOK: Duration = Duration::from_millis(50);
+/// Ticks kept at most; what comes beyond them waits in the loop's own queue, where it is counted if it is lost.
+const KEPT_MAX: usize = 8192;
+/// So long without a tick is something to see: an alarm.
+const SILENCE: Duration = Duration::from_millis(600);
+/// A force that has changed by this much (N) and a tip that has moved by this much (m) are something to see, as means over so many
+/// ticks: the noise of a sensor is not.
+const SEEN_N: f64 = 0.05;
+const SEEN_M: f64 = 2e-4;
+const MEAN_OVER: usize = 50;
+
+/// What comes from the loop.
+#[derive(Clone, Copy, Debug)]
+pub enum News<'a> {
+    /// Something that happened.
+    Event(&'a Event),
+    /// How everything was in one tick.
+    Tick(&'a Tick),
+}
+
+/// The window's end of the loop.
+#[derive(Debug)]
+pub struct Door {
+    shared: Arc<Shared>,
+    keeper: Option<JoinHandle<()>>,
+}
+
+#[derive(Debug)]
+struct Shared {
+    handle: Handle,
+    kept: Mutex<Kept>,
+    /// The window sleeps.
+    calm: AtomicBool,
+    end: AtomicBool,
+}
+
+#[derive(Debug)]
+struct Kept {
+    ticks: Vec<Tick>,
+    events: Vec<Event>,
+    /// What the window shows of each side.
+    shown: [Option<Glance>; SIDES],
+    /// When the last tick came.
+    came: Instant,
+    /// What was wrong at the last look: silent, ended.
+    wrong: [bool; 2],
+    /// The window was woken and has not come yet.
+    woken: bool,
+}
+
+impl Door {
+    /// A door to this loop; `wake` is called from another thread when there is something to see. Without a thread to look after it
+    /// the window would be late, never wrong: then `None` stands for the thread.
+    pub fn new(handle: Handle, wake: impl Fn() + Send + 'static) -> Self {
+        let kept = Kept {
+            ticks: Vec::new(),
+            events: Vec::new(),
+            shown: [None; SIDES],
+            came: Instant::now(),
+            wrong: [false; 2],
+            woken: false,
+        };
+        let (calm, end) = (AtomicBool::new(false), AtomicBool::new(false));
+        let shared = Arc::new(Shared { handle, kept: Mutex::new(kept), calm, end });
+        let keeper = {
+            let shared = Arc::clone(&shared);
+            thread::Builder::new().name("door".to_owned()).spawn(move || shared.look_after(&wake)).ok()
+        };
+        Self { shared, keeper }
+    }
+
+    /// The loop itself, for all but ticks and events.
+    pub fn handle(&self) -> &Handle {
+        &self.shared.handle
+    }
+
+    /// Hands over every event and then every tick that waits, oldest first.
+    pub fn take(&self, mut each: impl FnMut(News<'_>)) {
+        let mut kept = self.shared.lock();
+        self.shared.bring_in(&mut kept);
+        kept.events.iter().for_each(|event| each(News::Event(event)));
+        kept.events.clear();
+        kept.ticks.iter().for_each(|tick| each(News::Tick(tick)));
+        for side in Side::ALL {
+            kept.shown[side.index()] = Glance::of(&kept.ticks, side).or(kept.shown[side.index()]);
+        }
+        kept.ticks.clear();
+        kept.woken = false;
+    }
+
+    /// Tells whether the window sleeps from now on.
+    pub fn rest(&self, calm: bool) {
+        if self.shared.calm.swap(calm, Ordering::Relaxed) != calm
+            && let Some(keeper) = &self.keeper
+        {
+            keeper.thread().unpark();
+        }
+    }
+
+    /// Ends the loop and gives its figures; `None` if its thread died.
+    pub fn stop_and_join(mut self) -> Option<Summary> {
+        self.dismiss();
+        let unused = Arc::clone(&self.shared);
+        drop(self);
+        Arc::into_inner(unused)?.handle.stop_and_join()
+    }
+
+    /// Sends the thread away.
+    fn dismiss(&mut self) {
+        self.shared.end.store(true, Ordering::Relaxed);
+        if let Some(keeper) = self.keeper.take() {
+            keeper.thread().unpark();
+            keeper.join().ok();
+        }
+    }
+}
+
+impl Drop for Door {
+    fn drop(&mut self) {
+        self.dismiss();
+    }
+}
+
+impl Shared {
+    fn lock(&self) -> MutexGuard<'_, Kept> {
+        self.kept.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn look_after(&self, wake: &dyn Fn()) {
+        while !self.end.load(Ordering::Relaxed) {
+            if !self.calm.load(Ordering::Relaxed) {
+                thread::park();
+                continue;
+            }
+            thread::park_timeout(LOOK);
+            let mut kept = self.lock();
+            let seen = self.bring_in(&mut kept);
+            if seen && !std::mem::replace(&mut kept.woken, true) {
+                drop(kept);
+                wake();
+            }
+        }
+    }
+
+    /// Takes over what waits in the loop's queues; true when it changes what is to be seen.
+    fn bring_in(&self, kept: &mut Kept) -> bool {
+        let before = (kept.ticks.len(), kept.events.len());
+        self.handle.drain_events(|event| kept.events.push(*event));
+        if kept.ticks.len() < KEPT_MAX {
+            let ticks = &mut kept.ticks;
+            self.handle.drain_ticks(|tick| ticks.push(*tick));
+        }
+        if kept.ticks.len() > before.0 {
+            kept.came = Instant::now();
+        }
+        let wrong = [kept.came.elapsed() > SILENCE, !self.handle.is_running()];
+        let turned = std::mem::replace(&mut kept.wrong, wrong) != wrong;
+        let news = Side::ALL.into_iter().any(|side| {
+            let now = Glance::of(&kept.ticks[before.0..], side);
+            now.is_some_and(|now| kept.shown[side.index()].is_none_or(|shown| shown.differs(&now)))
+        });
+        turned || kept.events.len() > before.1 || news
+    }
+}
+
+/// What of some ticks can be seen.
+#[derive(Clone, Copy, Debug)]
+struct Glance {
+    last: Tick,
+    /// Gates that acted in most of them.
+    gates: [bool; 8],
+    measured_n: Vector3<f64>,
+    rendered_n: Vector3<f64>,
+    tip_m: Vector3<f64>,
+}
+
+impl Glance {
+    /// The last of these ticks on this side; `None` of none.
+    fn of(ticks: &[Tick], side: Side) -> Option<Self> {
+        let ticks = || ticks.iter().rev().filter(|tick| tick.side == side).take(MEAN_OVER);
+        let last = *ticks().next()?;
+        let count = ticks().count();
+        let mean = |of: fn(&Tick) -> Vector3<f64>| ticks().map(of).sum::<Vector3<f64>>() / count as f64;
+        let acted = |of: fn(&Tick) -> bool| 2 * ticks().filter(|tick| of(tick)).count() > count;
+        Some(Self {
+            last,
+            gates: [
+                acted(|tick| tick.gates.not_permitted),
+                acted(|tick| tick.gates.released),
+                acted(|tick| tick.gates.invalid),
+                acted(|tick| tick.gates.stale),
+                acted(|tick| tick.gates.dead_band),
+                acted(|tick| tick.gates.slew),
+                acted(|tick| tick.gates.energy),
+                acted(|tick| tick.gates.ceiling),
+            ],
+            measured_n: mean(|tick| tick.measured_n),
+            rendered_n: mean(|tick| tick.rendered_n),
+            tip_m: mean(|tick| tick.tip_m),
+        })
+    }
+
+    /// Somebody who sees the one would see another picture for the other.
+    fn differs(&self, now: &Self) -> bool {
+        // What is not finite differs only from what is.
+        let moved = |a: &Vector3<f64>, b: &Vector3<f64>, least: f64| {
+            let by = (a - b).norm();
+            by > least || (by.is_nan() && a.norm().is_nan() != b.norm().is_nan())
+        };
+        self.last.state != now.last.state
+            || self.last.mode != now.last.mode
+            || self.last.prompt != now.last.prompt
+            || self.gates != now.gates
+            || moved(&self.measured_n, &now.measured_n, SEEN_N)
+            || moved(&self.rendered_n, &now.rendered_n, SEEN_N)
+            || moved(&self.tip_m, &now.tip_m, SEEN_M)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::mpsc;
+
+    use nima::{
+        config::{Rig, Scene},
+        runtime::{Command, Plan, start},
+        teleop::{Calibrations, LoopState},
+    };
+
+    use super::*;
+
+    /// A loop at rest, its door, and what wakes the window.
+    fn at_rest() -> (Door, mpsc::Receiver<()>) {
+        let (rig, scene) = (Rig::load("simulated").unwrap(), Scene::load("peg_transfer").unwrap());
+        let (calibrations, left_calibrations) = (Calibrations::default(), Calibrations::default());
+        let handle = start(&Plan { rig, scene, calibrations, left_calibrations, engage: false }).unwrap();
+        let (woken, wakes) = mpsc::channel();
+        (Door::new(handle, move || woken.send(()).unwrap_or(())), wakes)
+    }
+
+    fn wait_for(door: &Door, good: impl Fn(&Tick) -> bool) -> Vec<Tick> {
+        let (began, mut ticks) = (Instant::now(), Vec::new());
+        while !ticks.last().is_some_and(&good) {
+            assert!(began.elapsed() < Duration::from_secs(20));
+            thread::sleep(Duration::from_millis(5));
+            door.take(|news| {
+                if let News::Tick(tick) = news {
+                    ticks.push(*tick);
+                }
+            });
+        }
+        ticks
+    }
+
+    #[test]
+    fn a_sleeping_window_misses_no_tick_and_is_woken_by_a_change_of_state() {
+        let (door, wakes) = at_rest();
+        wait_for(&door, |tick| tick.state == LoopState::Idle);
+        door.rest(true);
+        thread::sleep(Duration::from_millis(300));
+        let before = wait_for(&door, |tick| tick.state == LoopState::Idle);
+        while wakes.try_recv().is_ok() {}
+        assert!(door.handle().send(Command::Stop));
+        wakes.recv_timeout(Duration::from_secs(20)).unwrap();
+        let after = wait_for(&door, |tick| tick.state == LoopState::Stopped);
+        assert_eq!(after[0].index, before.last().unwrap().index + 1);
+        assert!(after.windows(2).all(|pair| pair[1].index == pair[0].index + 1), "in order and without a gap");
+    }
+
+    #[test]
+    fn the_end_of_the_loop_wakes_the_window() {
+        let (door, wakes) = at_rest();
+        wait_for(&door, |tick| tick.state == LoopState::Idle);
+        door.rest(true);
+        assert!(door.handle().send(Command::Shutdown));
+        // Woken once for whatever came first; and again, because it was there since.
+        wakes.recv_timeout(Duration::from_secs(20)).unwrap();
+        door.take(|_| {});
+        if door.handle().is_running() {
+            wakes.recv_timeout(Duration::from_secs(20)).unwrap();
+        }
+        assert!(door.stop_and_join().is_some());
+    }
+
+    #[test]
+    fn what_cannot_be_seen_is_no_news() {
+        let (door, _) = at_rest();
+        let tick = *wait_for(&door, |tick| tick.state == LoopState::Idle).last().unwrap();
+        let glance = |ticks: &[Tick]| Glance::of(ticks, tick.side).unwrap();
+        let shown = glance(&vec![tick; 20]);
+        let noisy: Vec<Tick> = (0..40)
+            .map(|i| Tick {
+                index: tick.index + i,
+                wake_s: 1e-3,
+                measured_n: tick.measured_n.add_scalar(if i % 2 == 0 { 0.2 } else { -0.2 }),
+                ..tick
+            })
+            .collect();
+        assert!(!shown.differs(&glance(&noisy)));
+        let unknown = glance(&[Tick { measured_n: Vector3::repeat(f64::NAN), ..tick }]);
+        assert!(shown.differs(&unknown) && !unknown.differs(&unknown));
+        let pushed = Tick { measured_n: tick.measured_n.add_scalar(0.1), ..tick };
+        let moved = Tick { tip_m: tick.tip_m.add_scalar(1e-3), ..tick };
+        let stopped = Tick { state: LoopState::Stopped, ..tick };
+        assert!([pushed, moved, stopped].iter().all(|now| shown.differs(&glance(&[*now]))));
+        assert!(Glance::of(&[], tick.side).is_none());
+    }
+}

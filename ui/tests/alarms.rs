@@ -112,9 +112,8 @@ fn open(harness: &mut Harness<'_, ConsoleApp>, overlay: &str) {
     harness.run_steps(3);
     if overlay == "glossary dragged to the stop" {
         // Its title bar lies above its first word.
-        let word = |harness: &Harness<'_, ConsoleApp>| {
-            harness.get_by_role_and_label(Role::Label, "Anchored").rect().left_top()
-        };
+        let word =
+            |harness: &Harness<'_, ConsoleApp>| harness.get_by_role_and_label(Role::Label, "Keys").rect().left_top();
         let before = word(harness);
         let from = before + vec2(150.0, -20.0);
         harness.drag_at(from);

@@ -20,6 +20,7 @@ use nima::{
 use super::{
     Options,
     canvas::{Canvas, Surface, renderer_of},
+    diary::Diary,
     door::Door,
     frames::Meter,
     help::Help,
@@ -58,6 +59,7 @@ pub struct ConsoleApp {
     photographer: Option<Photographer>,
     wizards: Wizards,
     in_force: InForce,
+    diary: Diary,
     /// What was watched before a wizard took the rig over.
     watched: Option<Scene>,
     options: Options,
@@ -92,6 +94,7 @@ impl ConsoleApp {
             door: Some(door_of(handle, &cc.egui_ctx)),
             ctx: cc.egui_ctx.clone(),
             in_force,
+            diary: Diary::default(),
             wizards: Wizards::default(),
             watched: None,
             live,
@@ -198,10 +201,11 @@ impl ConsoleApp {
     fn take_in(&mut self) {
         let Some(door) = &self.door else { return };
         let rate_hz = self.live.rig.rate_hz;
-        let (wizards, in_force) = (&mut self.wizards, &mut self.in_force);
+        let (wizards, in_force, diary) = (&mut self.wizards, &mut self.in_force, &mut self.diary);
         self.live.take_in(door, |tick| {
             wizards.tick(tick, rate_hz);
             in_force.watch(tick);
+            diary.tick(tick);
         });
         self.live.bias_moved_n = self.in_force.bias_moved_n();
     }

@@ -1,7 +1,7 @@
 //! For whoever sits down for the first time: a tour of four steps, and a glossary. Both stay under the top bar, so that the stop is
 //! never covered, and hold nothing up.
 
-use egui::{Align2, Button, Context, Rect, RichText, ScrollArea, Window, vec2};
+use egui::{Align, Align2, Button, Context, Label, Rect, RichText, ScrollArea, Window, vec2};
 
 use super::theme;
 
@@ -61,6 +61,26 @@ pub const GLOSSARY: [(&str, &str); 22] = [
     ("Wrench", "Force and torque together, as the wrist sensor reads them."),
 ];
 
+const KEYS_HEADING: &str = "Keys";
+const WORDS_HEADING: &str = "Words";
+
+/// Every key that does something, and what.
+pub const KEYS: [(&str, &str); 13] = [
+    ("Space, Escape", "Stop. From anywhere; while a name is written, Escape alone."),
+    ("F1, F2, F3", "Surgeon, Technician, Demo."),
+    ("F4", "Keys and words: this list."),
+    ("F5", "The last alarms."),
+    ("A", "Acknowledges the alarms."),
+    ("E", "Marks this moment in the traces."),
+    ("M", "Lets you lead the instrument, or lets it go."),
+    ("Arrow keys", "A small step of the instrument while you lead it."),
+    ("Page Up, Page Down", "Its height while you lead it."),
+    ("Ctrl +, Ctrl -", "Everything larger or smaller."),
+    ("Tab, Shift Tab", "To the next control, or back. It gets a frame."),
+    ("Enter", "Presses the control that has the frame."),
+    ("Ctrl Tab", "The next tab of the group under the pointer."),
+];
+
 /// What is open.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Help {
@@ -110,6 +130,18 @@ impl Help {
         let height = (room.height() - 90.0).min(560.0);
         window.default_pos(room.center_top() + vec2(-230.0, 16.0)).fixed_size(vec2(460.0, height)).show(ctx, |ui| {
             ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+                ui.label(RichText::new(KEYS_HEADING).font(theme::strong(16.0)));
+                for (key, meaning) in KEYS {
+                    ui.horizontal(|ui| {
+                        ui.add_sized(
+                            vec2(150.0, 18.0),
+                            Label::new(RichText::new(key).font(theme::strong(14.0))).halign(Align::Min),
+                        );
+                        ui.add(Label::new(super::widgets::weak(meaning)).wrap());
+                    });
+                }
+                ui.add_space(8.0);
+                ui.label(RichText::new(WORDS_HEADING).font(theme::strong(16.0)));
                 for (word, meaning) in GLOSSARY {
                     ui.label(RichText::new(word).font(theme::strong(14.0)));
                     ui.label(super::widgets::weak(meaning));

@@ -10,6 +10,7 @@ pub mod canvas;
 pub mod cloud;
 pub mod deadlines;
 pub mod desk;
+pub mod diary;
 pub mod door;
 pub mod frames;
 pub mod help;

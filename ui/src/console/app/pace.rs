@@ -11,6 +11,7 @@ use super::ConsoleApp;
 use crate::console::{
     Options,
     alarms::{Priority, judge},
+    diary::WithScreen,
     door::Door,
     frames::Picture,
 };
@@ -89,7 +90,9 @@ impl ConsoleApp {
         }
         let summary = self.door.take().and_then(Door::stop_and_join);
         if let (Some(path), Some(summary)) = (&self.options.summary, summary) {
-            write_json(path, &summary);
+            self.diary.marks = self.live.marks_s.len();
+            self.diary.paused = self.panels.forces.is_paused();
+            write_json(path, &WithScreen { summary: &summary, screen: &self.diary });
         }
     }
 }

@@ -80,6 +80,11 @@ impl ForcesState {
         self.side
     }
 
+    /// The picture is held.
+    pub const fn is_paused(&self) -> bool {
+        self.paused_at_s.is_some()
+    }
+
     /// The time that the pointer is at, s on the loop's clock.
     pub fn cursor_at_s(&self, live: &Live) -> Option<f64> {
         self.cursor_s.map(|cursor_s| self.now_s(self.history(live)) + cursor_s)

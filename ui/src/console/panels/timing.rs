@@ -103,7 +103,7 @@ pub fn timing_ui(ui: &mut Ui, live: &Live, state: &mut TimingState) {
 }
 
 fn table_ui(ui: &mut Ui, timings: &[Timing<'_>]) {
-    Grid::new("timing").num_columns(5).spacing([10.0, 3.0]).min_col_width(46.0).show(ui, |ui| {
+    Grid::new("timing").num_columns(5).spacing([10.0, 3.0]).min_col_width(40.0).show(ui, |ui| {
         ui.label(small("µs"));
         for head in ["p50", "p99", "p99.9", "max"] {
             right(ui, small(head));

@@ -181,6 +181,24 @@ mod tests {
     }
 
     #[test]
+    fn the_pointer_reads_a_bar() {
+        use egui_kittest::kittest::Queryable as _;
+        let mut durations = Percentiles::new();
+        (0..7).for_each(|_| durations.record(90e-6));
+        let mut harness = egui_kittest::Harness::builder().with_size([400.0, 300.0]).build_ui(|ui| {
+            theme::apply(ui.ctx());
+            let quantiles = durations.quantiles();
+            let timing = Timing { name: "Work", meaning: "", quantiles, durations: &durations, deadline_us: 1000.0 };
+            bars_ui(ui, &timing, &timing.bars());
+        });
+        let rect = harness.get_by_label_contains("Work histogram: 0 of 7 ticks").rect();
+        harness.hover_at(rect.left_top() + vec2(0.07 * rect.width(), 20.0));
+        harness.run_steps(40);
+        let read = harness.query_all_by_label_contains("75 to 100 us").count();
+        assert!(read > 0, "the hint stands beside the pointer");
+    }
+
+    #[test]
     fn nothing_measured_is_no_bar() {
         assert!(height(0, 0).abs() < f32::EPSILON && height(1, 0).is_finite());
     }

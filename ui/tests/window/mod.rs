@@ -1,0 +1,65 @@
+//! A real X server without a screen, for tests of the real window.
+
+use std::{
+    io::{BufRead as _, BufReader},
+    process::{Child, Command, Stdio},
+    thread,
+    time::{Duration, Instant},
+};
+
+/// An X server in memory that ends with its owner.
+pub(crate) struct Xvfb {
+    server: Child,
+    display: String,
+}
+
+impl Xvfb {
+    /// `None`, said aloud, where the tools are not installed - unless the environment demands them.
+    pub(crate) fn start() -> Option<Self> {
+        let found = ["Xvfb", "xdotool", "import"].into_iter().all(which);
+        if !found {
+            assert!(std::env::var_os("NIMA_REQUIRE_WINDOW").is_none(), "Xvfb, xdotool or ImageMagick is not installed");
+            eprintln!("left out: Xvfb, xdotool or ImageMagick is not installed");
+            return None;
+        }
+        let mut server = Command::new("Xvfb")
+            .args(["-displayfd", "1", "-screen", "0", "1600x1000x24", "-nolisten", "tcp"])
+            .stdout(Stdio::piped())
+            .stderr(Stdio::null())
+            .spawn()
+            .unwrap();
+        let mut number = String::new();
+        BufReader::new(server.stdout.take().unwrap()).read_line(&mut number).unwrap();
+        Some(Self { server, display: format!(":{}", number.trim()) })
+    }
+
+    pub(crate) fn command(&self, program: &str) -> Command {
+        let mut command = Command::new(program);
+        command.env("DISPLAY", &self.display).env_remove("WAYLAND_DISPLAY").env("LIBGL_ALWAYS_SOFTWARE", "1");
+        command
+    }
+
+    pub(crate) fn window_is_open(&self) -> bool {
+        let search = self.command("xdotool").args(["search", "--name", "NIMA Console"]).output().unwrap();
+        search.status.success() && !search.stdout.is_empty()
+    }
+}
+
+impl Drop for Xvfb {
+    fn drop(&mut self) {
+        self.server.kill().ok();
+        self.server.wait().ok();
+    }
+}
+
+fn which(tool: &str) -> bool {
+    std::env::var_os("PATH").is_some_and(|path| std::env::split_paths(&path).any(|folder| folder.join(tool).is_file()))
+}
+
+pub(crate) fn wait_until(what: &str, seconds: u64, good: impl Fn() -> bool) {
+    let end = Instant::now() + Duration::from_secs(seconds);
+    while !good() {
+        assert!(Instant::now() < end, "{what} did not happen within {seconds} s");
+        thread::sleep(Duration::from_millis(100));
+    }
+}

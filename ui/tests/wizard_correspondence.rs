@@ -66,7 +66,7 @@ fn is_ready(harness: &Harness<'_, ConsoleApp>, label: &str) -> bool {
 
 fn press(harness: &mut Harness<'_, ConsoleApp>, label: &str) {
     until(harness, label, |harness| is_ready(harness, label));
-    harness.get_by_role_and_label(Role::Button, label).click();
+    harness.get_by_role_and_label(Role::Button, label).click_accesskit();
     harness.step();
     harness.step();
 }

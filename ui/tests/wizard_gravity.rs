@@ -64,7 +64,7 @@ fn can_press(console: &Console, label: &str) -> bool {
 
 fn press(console: &mut Console, label: &str) {
     until(console, label, |console| can_press(console, label));
-    console.get_by_role_and_label(Role::Button, label).click();
+    console.get_by_role_and_label(Role::Button, label).click_accesskit();
     console.step();
     console.step();
 }

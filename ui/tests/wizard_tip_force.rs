@@ -124,7 +124,7 @@ impl Console {
             assert!(began.elapsed() < PATIENCE, "cannot press: {label}; there is: {:?}", texts(&self.window));
             self.step();
         }
-        self.window.get_by_role_and_label(Role::Button, label).click();
+        self.window.get_by_role_and_label(Role::Button, label).click_accesskit();
         self.step();
         self.step();
     }
@@ -200,7 +200,7 @@ fn until(window: &mut Harness<'_, ConsoleApp>, what: &str, good: impl Fn(&Harnes
 
 fn press(window: &mut Harness<'_, ConsoleApp>, label: &str) {
     until(window, label, |window| is_ready(window, label));
-    window.get_by_role_and_label(Role::Button, label).click();
+    window.get_by_role_and_label(Role::Button, label).click_accesskit();
     window.step();
     window.step();
 }

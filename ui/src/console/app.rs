@@ -1,6 +1,7 @@
 //! The window: takes in what the loop sent, lays out the panels, sends what the operator asked.
 
 mod calibrating;
+mod pace;
 
 use std::{
     path::Path,
@@ -12,18 +13,16 @@ use eframe::glow;
 use egui::{Frame, Margin, Panel, Ui};
 use nima::{
     config::{Rig, Scene},
-    files::write_atomically,
     runtime::{self, Command, Handle, Plan, Tick},
     teleop::LoopState,
 };
 
 use super::{
     Options,
-    alarms::{Priority, judge},
     canvas::{Canvas, Surface, renderer_of},
-    diary::{Diary, WithScreen},
+    diary::Diary,
     door::Door,
-    frames::{Meter, Picture},
+    frames::Meter,
     help::Help,
     in_force::InForce,
     keys,
@@ -33,29 +32,17 @@ use super::{
     panels::{ForcesState, TopBarState, TradeoffState, top_bar_ui},
     pictures::Photographer,
     roles::{Panels, Role, Wishes, role_ui},
-    scene3d::SceneView,
+    scene3d::{SceneView, extras::Extras},
     screenshot,
     settings::{Kept, Settings},
     theme,
     wizards::Wizards,
 };
 
-/// Thirty pictures a second while data flow.
-const FRAME: Duration = Duration::from_millis(32);
-/// Input is looked at between two pictures, however slow they are.
-const LEAST_REST: Duration = Duration::from_millis(1);
-/// While nothing is engaged the clocks go on by this; a change, the mouse and the keyboard are answered at once all the same.
-const BEAT_AT_REST: Duration = Duration::from_secs(1);
-/// Once nothing is engaged, traces and figures come to rest in this time.
-const SETTLED: Duration = Duration::from_secs(2);
 /// Smooth edges in 3-D are given up when every second picture comes later than this after the one before (25 a second) ...
 const SLOW_MS: f64 = 38.0;
 /// ... though the window has had this time to warm up.
 const WARM_UP: Duration = Duration::from_secs(4);
-/// When a picture was asked for but no end: the demo is in full swing by then.
-const SCREENSHOT_AT: Duration = Duration::from_secs(3);
-/// Room for the picture to be taken before the window closes.
-const SCREENSHOT_BEFORE_EXIT: Duration = Duration::from_millis(700);
 
 /// The console's state.
 #[derive(Debug)]
@@ -181,6 +168,11 @@ impl ConsoleApp {
         &self.panels.tradeoff
     }
 
+    /// What is drawn into the view on request.
+    pub const fn extras(&self) -> Extras {
+        self.panels.scene.extras
+    }
+
     /// Moments that were marked, s on the loop's clock.
     pub fn marks_s(&self) -> impl Iterator<Item = f64> {
         self.live.marks_s.iter().copied()
@@ -293,72 +285,6 @@ impl ConsoleApp {
         self.obey_calibrations(calibration);
     }
 
-    /// Asks for the next picture: soon while something moves, otherwise when something can change by itself. What comes from the loop
-    /// meanwhile wakes the window.
-    fn rest(&mut self, ctx: &egui::Context) {
-        let moves = !(self.live.state().is_latched() || self.live.state() == LoopState::Idle);
-        if moves || self.wizards.open.is_some() || self.live.tick.is_none() {
-            self.moved = Instant::now();
-        }
-        self.calm = self.moved.elapsed() > SETTLED;
-        if let Some(door) = &self.door {
-            door.rest(self.calm);
-        }
-        let next = if self.calm {
-            self.until_change(ctx)
-        } else {
-            // Counted from the beginning of this picture: what it took is no reason to wait longer.
-            FRAME.saturating_sub(self.framed.elapsed()).max(LEAST_REST)
-        };
-        ctx.request_repaint_after(next);
-    }
-
-    /// Time until something changes on a window at rest: a flashing alarm, the clocks, what was asked for from outside.
-    fn until_change(&self, ctx: &egui::Context) -> Duration {
-        let time_s = ctx.input(|input| input.time) + self.framed.elapsed().as_secs_f64();
-        let alarms = judge(&self.live.signs(self.outbox.stop_is_stuck()));
-        let flash = alarms.first().and_then(|alarm| Priority::until_change_s(alarm.priority, time_s));
-        let open = self.opened.elapsed();
-        let Options { exit_after, screenshot, .. } = &self.options;
-        let wanted = [screenshot.as_ref().filter(|_| !self.pictured).map(|_| self.picture_at()), *exit_after];
-        let wanted = wanted.into_iter().flatten().map(|at| at.saturating_sub(open));
-        let flash = flash.map(|flash_s| Duration::from_secs_f64(flash_s) + LEAST_REST);
-        wanted.chain(flash).fold(BEAT_AT_REST, Duration::min).max(LEAST_REST)
-    }
-
-    /// When the picture that was asked for is taken.
-    fn picture_at(&self) -> Duration {
-        self.options.exit_after.map_or(SCREENSHOT_AT, |exit| exit.saturating_sub(SCREENSHOT_BEFORE_EXIT))
-    }
-
-    /// Takes in how long the picture before this one took.
-    fn measure(&mut self, ctx: &egui::Context, frame: &eframe::Frame) {
-        let before = std::mem::replace(&mut self.framed, Instant::now());
-        let work_s = frame.info().cpu_usage.map(f64::from);
-        let period = (!self.calm).then(|| self.framed.duration_since(before));
-        if let Some(period) = period {
-            self.live.frame(period.as_secs_f64(), work_s);
-        }
-        let Some(meter) = &mut self.meter else { return };
-        let drawn_share = self.surface.as_ref().map_or(1.0, |surface| surface.drawn_share());
-        if meter.begin(&Picture { period, work_s, drawn_share, live: self.live.tick.is_some() }) {
-            ctx.request_repaint();
-        }
-    }
-
-    /// Writes the figures of the loop and of the screen where they are wanted.
-    fn write_figures(&mut self) {
-        if let (Some(path), Some(meter)) = (&self.options.frames, &self.meter) {
-            write_json(path, &meter.figures(&self.renderer));
-        }
-        let summary = self.door.take().and_then(Door::stop_and_join);
-        if let (Some(path), Some(summary)) = (&self.options.summary, summary) {
-            self.diary.marks = self.live.marks_s.len();
-            self.diary.paused = self.panels.forces.is_paused();
-            write_json(path, &WithScreen { summary: &summary, screen: &self.diary });
-        }
-    }
-
     fn obey_options(&mut self, ctx: &egui::Context) {
         let open = self.opened.elapsed();
         let Options { exit_after, screenshot, .. } = self.options.clone();
@@ -393,7 +319,9 @@ impl eframe::App for ConsoleApp {
         let ctx = ui.ctx().clone();
         self.measure(&ctx, frame);
         // Once given up they stay so: a view that changes its look by itself again and again would be worse.
-        self.live.rough_edges |= self.opened.elapsed() > WARM_UP && self.live.figures.frame_ms[0] > SLOW_MS;
+        let slow = self.opened.elapsed() > WARM_UP && self.live.figures.frame_ms[0] > SLOW_MS;
+        // Pictures for documents are taken with smooth edges, however long that takes.
+        self.live.rough_edges = self.photographer.is_none() && (self.live.rough_edges || slow);
         self.panels.scene.smooth = !self.live.rough_edges;
         menu::apply(&ctx, &mut self.settings.now);
         if keys::stop_pressed(&ctx) {
@@ -434,14 +362,4 @@ impl eframe::App for ConsoleApp {
 fn door_of(handle: Handle, ctx: &egui::Context) -> Door {
     let ctx = ctx.clone();
     Door::new(handle, move || ctx.request_repaint())
-}
-
-/// Writes a value as JSON; the window has no one to tell of a failure but the terminal it was started from.
-fn write_json(path: &Path, value: &impl serde::Serialize) {
-    let written = serde_json::to_vec_pretty(value)
-        .map_err(std::io::Error::from)
-        .and_then(|text| write_atomically(path, |file| file.write_all(&text)));
-    if let Err(error) = written {
-        eprintln!("cannot write {}: {error}", path.display());
-    }
 }

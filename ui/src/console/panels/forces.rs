@@ -3,15 +3,14 @@
 //! The view is a stretch of time counted back from now (or from the moment of the pause): it is panned by dragging, zoomed
 //! by the wheel and put back by a double click, also while data go on.
 
-use std::ops::RangeInclusive;
-
 use egui::{Align, Align2, Button, Color32, Layout, Rect, RichText, Sense, Ui, Vec2b, pos2, vec2};
 use egui_plot::{
-    AxisHints, GridInput, GridMark, HoverPosition, Line, LineStyle, Plot, PlotBounds, PlotPoint, PlotPoints,
-    PlotResponse, Text, VLine,
+    AxisHints, HoverPosition, Line, LineStyle, Plot, PlotBounds, PlotPoint, PlotPoints, PlotResponse, Text, VLine,
 };
 
 use nima::device::Side;
+
+use super::axis::{marks, near_end, plain, signed};
 
 use crate::console::{
     history::{CHANNELS, History, Trace},
@@ -133,6 +132,7 @@ pub fn forces_ui(ui: &mut Ui, live: &mut Live, state: &mut ForcesState, axes: &[
     ui.spacing_mut().item_spacing.y = 4.0;
     let height = ((ui.available_height() - TIME_AXIS - 4.0 * (axes.len() - 1) as f32) / axes.len() as f32).max(48.0);
     let cursor_s = state.cursor_s.take();
+    let history = &live.history[state.side.index()];
     for &axis in axes {
         let last = axes.last() == Some(&axis);
         state.ranges_n[axis] = range_n(history.extent(&[axis, axis + 3], (from_s, to_s)), state.ranges_n[axis]);
@@ -143,6 +143,32 @@ pub fn forces_ui(ui: &mut Ui, live: &mut Live, state: &mut ForcesState, axes: &[
             state.step_s = if point_s.is_finite() { point_s.max(live.least_step_s()) } else { 0.0 };
         }
         interact(ui, state, &response);
+        // The plot under the pointer tells its values there.
+        if let Some(at_s) = cursor_s.filter(|_| !response.response.hovered()) {
+            read_at(ui, history, axis, (now_s, at_s), response.response.rect);
+        }
+    }
+    // The cursor of one plot is drawn in all; those above it learn of it in the next frame.
+    if state.cursor_s != cursor_s {
+        ui.ctx().request_repaint();
+    }
+}
+
+/// Values at the cursor of another plot, in the corner of this one.
+fn read_at(ui: &Ui, history: &History, axis: usize, (now_s, at_s): (f64, f64), rect: Rect) {
+    let [measured, rendered] = [axis, axis + 3].map(|channel| history.value_at(channel, now_s + at_s));
+    let (Some(measured), Some(rendered)) = (measured, rendered) else { return };
+    let corner = rect.right_top() + vec2(-8.0, 4.0);
+    let told =
+        format!("At the cursor, {}: measured {} N, rendered {} N", AXES[axis], signed(measured), signed(rendered));
+    let place = Rect::from_min_max(corner - vec2(160.0, 0.0), corner + vec2(0.0, 16.0));
+    ui.interact(place, ui.scope_id().with(("cursor", axis)), Sense::hover())
+        .widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, &told));
+    let mut right = corner.x;
+    for (value_n, colour) in [(rendered, theme::now().rendered), (measured, theme::now().measured)] {
+        let words = format!("{} N", signed(value_n));
+        let place = ui.painter().text(pos2(right, corner.y), Align2::RIGHT_TOP, words, theme::strong(13.0), colour);
+        right = place.left() - 10.0;
     }
 }
 
@@ -265,7 +291,8 @@ fn readout(history: &History, axis: usize, now_s: f64, at_s: f64) -> Option<Stri
     let measured = history.value_at(axis, now_s + at_s)?;
     let rendered = history.value_at(axis + 3, now_s + at_s)?;
     let name = AXES[axis];
-    Some(format!("{:.2} s before now\nmeasured {name} {measured:+.2} N\nrendered {name} {rendered:+.2} N", -at_s))
+    let (measured, rendered) = (signed(measured), signed(rendered));
+    Some(format!("{:.2} s before now\nmeasured {name} {measured} N\nrendered {name} {rendered} N", -at_s))
 }
 
 fn interact(ui: &Ui, state: &mut ForcesState, plot: &PlotResponse<()>) {
@@ -307,35 +334,6 @@ fn round_up(value_n: f64) -> f64 {
         }
     }
     step
-}
-
-/// Round marks over the range of an axis, at least so many points apart: numbers to read by however small the plot is.
-fn marks(grid: &GridInput, apart: f64) -> Vec<GridMark> {
-    let (low, high) = grid.bounds;
-    // egui_plot's base step is 8 points long.
-    let least = (grid.base_step_size * apart / 8.0).max((high - low) / 12.0);
-    if !least.is_finite() || least <= 0.0 {
-        return Vec::new();
-    }
-    let decade = 10f64.powf(least.log10().floor());
-    let step_size = [1.0, 2.0, 5.0, 10.0].map(|x| x * decade).into_iter().find(|&step| step >= least).unwrap_or(least);
-    let first = (low / step_size).ceil() as i64;
-    (first..=first + 12)
-        .map(|i| GridMark { value: i as f64 * step_size, step_size })
-        .take_while(|mark| mark.value <= high)
-        .collect()
-}
-
-/// A number at the very end of an axis would run into the next plot.
-fn near_end(value: f64, shown: &RangeInclusive<f64>) -> bool {
-    let margin = 0.07 * (shown.end() - shown.start());
-    value < shown.start() + margin || value > shown.end() - margin
-}
-
-fn plain(value: f64) -> String {
-    let text = format!("{value:.2}");
-    let text = text.trim_end_matches('0').trim_end_matches('.');
-    if text == "-0" { "0".to_owned() } else { text.to_owned() }
 }
 
 /// A vertical gauge of both forces against the ceiling; `rect` is its place.
@@ -390,24 +388,5 @@ mod tests {
     fn the_picture_moves_in_whole_steps() {
         assert!((stepped(1.234, 0.1) - 1.2).abs() < 1e-9 && (stepped(1.29, 0.1) - 1.2).abs() < 1e-9);
         assert!((stepped(1.234, 0.0) - 1.234).abs() < 1e-12);
-    }
-
-    #[test]
-    fn every_axis_has_a_few_marks_far_enough_apart() {
-        for (low, high) in [(-0.25, 0.25), (-1.0, 0.5), (-0.25, 4.0), (-6.0, 1e3), (-10.0, 0.0)] {
-            for points in [64.0, 100.0, 800.0] {
-                let grid = GridInput { bounds: (low, high), base_step_size: 8.0 * (high - low) / points };
-                let marks = marks(&grid, 18.0);
-                assert!((1..=13).contains(&marks.len()), "{low} to {high}: {}", marks.len());
-                assert!(marks.iter().all(|mark| mark.step_size * points / (high - low) >= 17.9));
-            }
-        }
-        let nothing = GridInput { bounds: (0.0, f64::NAN), base_step_size: f64::NAN };
-        assert!(marks(&nothing, 18.0).is_empty());
-    }
-
-    #[test]
-    fn axis_numbers_are_plain() {
-        assert_eq!([0.0, -0.001, 2.5, -10.0, 0.25].map(plain), ["0", "0", "2.5", "-10", "0.25"]);
     }
 }

@@ -1,5 +1,6 @@
 //! One file per panel, each a function over what is known ([`super::live::Live`]) that puts what the operator asks into the outbox.
 
+mod axis;
 pub mod calibrations;
 pub mod degrees;
 pub mod devices;

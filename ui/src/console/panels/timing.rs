@@ -79,7 +79,7 @@ pub fn timing_ui(ui: &mut Ui, live: &Live, state: &mut TimingState) {
         ui,
         text::timing::CONSOLE_FRAME,
         frame,
-        if live.rough_edges { text::timing::TIME_FROM_ONE_PICTURE } else { text::timing::TIME_FROM_ONE_PICTURE_OF },
+        if live.rough_edges { text::timing::FRAME_ROUGH } else { text::timing::FRAME },
     );
 }
 

@@ -2,9 +2,11 @@
 //! egui's frame, with labels by egui's painter over it. Without a GPU (tests) everything but the triangles is there.
 
 pub mod camera;
+pub mod extras;
 pub mod gl;
 mod lead;
 pub mod mesh;
+mod pick;
 pub mod stage;
 
 use std::sync::Arc;
@@ -17,6 +19,7 @@ use nima::{config::Scene, device::Side};
 pub use camera::Camera;
 
 use self::{
+    extras::Extras,
     gl::Renderer,
     lead::Lead,
     stage::{Arm, Pose},
@@ -42,6 +45,8 @@ pub struct SceneView {
     pub look: Look,
     /// Figures in the view: forces in numbers, and their gauges.
     pub figures: bool,
+    /// What is drawn into it on request.
+    pub extras: Extras,
     camera: Camera,
     /// The scene that the cameras were set for.
     set_for: Option<String>,
@@ -56,6 +61,7 @@ impl Default for SceneView {
             smooth: true,
             look: Look::Free,
             figures: true,
+            extras: Extras::default(),
             camera: Camera::default(),
             set_for: None,
             lead: Lead::default(),
@@ -112,11 +118,17 @@ pub fn scene_ui(ui: &mut Ui, live: &Live, view: &mut SceneView, outbox: &mut Out
     if view.look == Look::Free {
         turn(ui, live, view, &response, leading);
     }
+    if view.figures {
+        view.extras.ui(ui, rect);
+    }
     let camera = view.camera(&live.scene);
     let arms: Vec<Arm> = live.sides().filter_map(|side| arm(live, side)).collect();
     let painter = ui.painter_at(rect);
     if let Some(callback) = triangles(rect, live, view, &arms) {
         painter.set(ground, callback);
+    }
+    if view.figures {
+        view.extras.paint(&painter, rect, &camera, &live.scene, &arms, live.gate_settings().ceiling_n);
     }
     for arm in &arms {
         labels(&painter, rect, live, &camera, arm, view.figures);
@@ -128,6 +140,11 @@ pub fn scene_ui(ui: &mut Ui, live: &Live, view: &mut SceneView, outbox: &mut Out
         axes(&painter, rect, &camera);
     }
     hint(&painter, rect, view);
+    // Nothing pops up in a surgeon's field.
+    let pointed_at = response.hover_pos().filter(|_| view.figures && !response.dragged());
+    if let Some(words) = pointed_at.and_then(|pointer| pick::pick(pointer, rect, &camera, &live.scene, &arms)) {
+        response.on_hover_text_at_pointer(words);
+    }
 }
 
 /// Mouse and wheel turn the free camera.

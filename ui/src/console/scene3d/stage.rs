@@ -208,6 +208,11 @@ fn size_and_direction(force_n: &Vector3<f32>) -> Option<(f32, Vector3<f32>)> {
     (size_n.is_finite() && size_n >= ARROW_LEAST_N).then(|| (size_n.min(ARROW_MOST_N), force_n / size_n))
 }
 
+/// The force is large enough to be shown.
+pub fn has_arrow(force_n: &Vector3<f32>) -> bool {
+    size_and_direction(force_n).is_some()
+}
+
 /// One smooth shaft, one cone.
 fn measured_arrow(mesh: &mut Mesh, base: Vector3<f32>, force_n: &Vector3<f32>) {
     let paint = Paint(theme::DARK.measured, Material::Plain);

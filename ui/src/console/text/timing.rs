@@ -18,10 +18,10 @@ pub(in crate::console) const DROPPED: &str = "Dropped";
 pub(in crate::console) const TICKS_THAT_DID_NOT: &str =
     "Ticks that did not reach this screen because it was busy. The loop never waits for it.";
 pub(in crate::console) const CONSOLE_FRAME: &str = "Console frame";
-pub(in crate::console) const TIME_FROM_ONE_PICTURE: &str = "Time from one picture of this window to the next since it opened (33 ms asked, 100 ms while idle), and the work in it now. Edges in 3-D are not smoothed, \
-             because this computer draws too slowly with it.";
-pub(in crate::console) const TIME_FROM_ONE_PICTURE_OF: &str = "Time from one picture of this window to the next since it opened (33 ms asked, 100 ms while idle), and the work in it now.";
 pub(in crate::console) const REAL_TIME_PRIORITY_KEEPS: &str =
     "Real-time priority keeps other programs from delaying the loop; locked memory keeps page faults away.";
 pub(in crate::console) const REAL_TIME_PRIORITY: &str = "Real-time priority";
 pub(in crate::console) const LOCKED_MEMORY: &str = "Locked memory";
+pub(in crate::console) const FRAME: &str = "Time from one picture of this window to the next since it opened (32 ms asked; at rest not counted), and the work in it now.";
+pub(in crate::console) const FRAME_ROUGH: &str = "Time from one picture of this window to the next since it opened (32 ms asked; at rest not counted), and the work in it now. Edges in 3-D are not smoothed, \
+                                                 because this computer draws too slowly with it.";

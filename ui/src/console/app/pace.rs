@@ -1,0 +1,108 @@
+//! When the next picture is drawn, and what the pictures cost.
+
+use std::{
+    path::Path,
+    time::{Duration, Instant},
+};
+
+use nima::{files::write_atomically, teleop::LoopState};
+
+use super::ConsoleApp;
+use crate::console::{
+    Options,
+    alarms::{Priority, judge},
+    diary::WithScreen,
+    door::Door,
+    frames::Picture,
+};
+
+/// Thirty pictures a second while data flow.
+const FRAME: Duration = Duration::from_millis(32);
+/// Input is looked at between two pictures, however slow they are.
+const LEAST_REST: Duration = Duration::from_millis(1);
+/// While nothing is engaged the clocks go on by this; a change, the mouse and the keyboard are answered at once all the same.
+const BEAT_AT_REST: Duration = Duration::from_secs(1);
+/// Once nothing is engaged, traces and figures come to rest in this time.
+const SETTLED: Duration = Duration::from_secs(2);
+/// When a picture was asked for but no end: the demo is in full swing by then.
+const SCREENSHOT_AT: Duration = Duration::from_secs(3);
+/// Room for the picture to be taken before the window closes.
+const SCREENSHOT_BEFORE_EXIT: Duration = Duration::from_millis(700);
+
+impl ConsoleApp {
+    /// Asks for the next picture: soon while something moves, otherwise when something can change by itself. What comes from the loop
+    /// meanwhile wakes the window.
+    pub(super) fn rest(&mut self, ctx: &egui::Context) {
+        let moves = !(self.live.state().is_latched() || self.live.state() == LoopState::Idle);
+        if moves || self.wizards.open.is_some() || self.live.tick.is_none() {
+            self.moved = Instant::now();
+        }
+        self.calm = self.moved.elapsed() > SETTLED;
+        if let Some(door) = &self.door {
+            door.rest(self.calm);
+        }
+        let next = if self.calm {
+            self.until_change(ctx)
+        } else {
+            // Counted from the beginning of this picture: what it took is no reason to wait longer.
+            FRAME.saturating_sub(self.framed.elapsed()).max(LEAST_REST)
+        };
+        ctx.request_repaint_after(next);
+    }
+
+    /// Time until something changes on a window at rest: a flashing alarm, the clocks, what was asked for from outside.
+    fn until_change(&self, ctx: &egui::Context) -> Duration {
+        let time_s = ctx.input(|input| input.time) + self.framed.elapsed().as_secs_f64();
+        let alarms = judge(&self.live.signs(self.outbox.stop_is_stuck()));
+        let flash = alarms.first().and_then(|alarm| Priority::until_change_s(alarm.priority, time_s));
+        let open = self.opened.elapsed();
+        let Options { exit_after, screenshot, .. } = &self.options;
+        let wanted = [screenshot.as_ref().filter(|_| !self.pictured).map(|_| self.picture_at()), *exit_after];
+        let wanted = wanted.into_iter().flatten().map(|at| at.saturating_sub(open));
+        let flash = flash.map(|flash_s| Duration::from_secs_f64(flash_s) + LEAST_REST);
+        wanted.chain(flash).fold(BEAT_AT_REST, Duration::min).max(LEAST_REST)
+    }
+
+    /// When the picture that was asked for is taken.
+    pub(super) fn picture_at(&self) -> Duration {
+        self.options.exit_after.map_or(SCREENSHOT_AT, |exit| exit.saturating_sub(SCREENSHOT_BEFORE_EXIT))
+    }
+
+    /// Takes in how long the picture before this one took.
+    pub(super) fn measure(&mut self, ctx: &egui::Context, frame: &eframe::Frame) {
+        let before = std::mem::replace(&mut self.framed, Instant::now());
+        let work_s = frame.info().cpu_usage.map(f64::from);
+        let period = (!self.calm).then(|| self.framed.duration_since(before));
+        if let Some(period) = period {
+            self.live.frame(period.as_secs_f64(), work_s);
+        }
+        let Some(meter) = &mut self.meter else { return };
+        let drawn_share = self.surface.as_ref().map_or(1.0, |surface| surface.drawn_share());
+        if meter.begin(&Picture { period, work_s, drawn_share, live: self.live.tick.is_some() }) {
+            ctx.request_repaint();
+        }
+    }
+
+    /// Writes the figures of the loop and of the screen where they are wanted.
+    pub(super) fn write_figures(&mut self) {
+        if let (Some(path), Some(meter)) = (&self.options.frames, &self.meter) {
+            write_json(path, &meter.figures(&self.renderer));
+        }
+        let summary = self.door.take().and_then(Door::stop_and_join);
+        if let (Some(path), Some(summary)) = (&self.options.summary, summary) {
+            self.diary.marks = self.live.marks_s.len();
+            self.diary.paused = self.panels.forces.is_paused();
+            write_json(path, &WithScreen { summary: &summary, screen: &self.diary });
+        }
+    }
+}
+
+/// Writes a value as JSON; the window has no one to tell of a failure but the terminal it was started from.
+fn write_json(path: &Path, value: &impl serde::Serialize) {
+    let written = serde_json::to_vec_pretty(value)
+        .map_err(std::io::Error::from)
+        .and_then(|text| write_atomically(path, |file| file.write_all(&text)));
+    if let Err(error) = written {
+        eprintln!("cannot write {}: {error}", path.display());
+    }
+}

@@ -1,0 +1,171 @@
+//! What is drawn into the view on request: the ceiling around each tip, and coordinate frames. By egui's painter, over the triangles.
+
+use egui::{
+    Align2, Button, Color32, Painter, PopupCloseBehavior, Rect, Shape, Stroke, Ui, UiBuilder,
+    containers::menu::{MenuButton, MenuConfig},
+    pos2, vec2,
+};
+use nalgebra::Vector3;
+use nima::config::Scene;
+
+use super::{Camera, label, side_name, stage, stage::Arm};
+use crate::console::theme;
+
+/// Length of a frame's axes, m.
+const AXIS_M: f32 = 0.016;
+const RING: u32 = 64;
+
+/// On its switch, with its meaning.
+pub const SHOW: &str = "Show";
+/// See [`SHOW`].
+pub const SHOW_MEANING: &str = "What else is drawn into the view.";
+/// The ceiling's switch.
+pub const CEILING: &str = "Ceiling around the tip";
+/// See [`CEILING`].
+pub const CEILING_MEANING: &str =
+    "The largest force that ever reaches the hand (N), as a sphere around each tip, to the scale of the arrows.";
+/// The frames' switch.
+pub const FRAMES: &str = "Coordinate frames";
+/// See [`FRAMES`].
+pub const FRAMES_MEANING: &str = "Base (kbf, the frame of all forces and places), trocar (axes of the base), tip (z along the shaft away from \
+                                  the tissue) and endoscope (z towards the viewer). Axes are 16 mm long.";
+
+/// What is switched on.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Extras {
+    /// The force ceiling as a sphere.
+    pub ceiling: bool,
+    /// Coordinate frames.
+    pub frames: bool,
+}
+
+/// Where a frame stands (m) and where its axes point, in the workspace.
+#[derive(Clone, Debug)]
+struct Axes {
+    name: String,
+    origin_m: Vector3<f32>,
+    ways: [Vector3<f32>; 3],
+}
+
+impl Extras {
+    /// The switches, beside the one that leads the instrument.
+    pub(super) fn ui(&mut self, ui: &mut Ui, rect: Rect) {
+        let place = Rect::from_min_size(rect.right_bottom() - vec2(330.0, 46.0), vec2(72.0, 34.0)).intersect(rect);
+        ui.scope_builder(UiBuilder::new().max_rect(place), |ui| {
+            let on = *self != Self::default();
+            let button = Button::selectable(on, SHOW).frame_when_inactive(true).min_size(place.size());
+            // Open until the pointer goes elsewhere: often both are wanted.
+            let config = MenuConfig::new().close_behavior(PopupCloseBehavior::CloseOnClickOutside);
+            let menu = MenuButton::from_button(button).config(config);
+            let (response, _) = menu.ui(ui, |ui| {
+                ui.set_min_width(200.0);
+                ui.checkbox(&mut self.ceiling, CEILING).on_hover_text(CEILING_MEANING);
+                ui.checkbox(&mut self.frames, FRAMES).on_hover_text(FRAMES_MEANING);
+            });
+            response.on_hover_text(SHOW_MEANING);
+        });
+    }
+
+    /// Draws what is switched on.
+    pub(super) fn paint(
+        self,
+        painter: &Painter,
+        rect: Rect,
+        camera: &Camera,
+        scene: &Scene,
+        arms: &[Arm],
+        ceiling_n: f64,
+    ) {
+        if self.ceiling {
+            for arm in arms {
+                ceiling(painter, rect, camera, arm, ceiling_n as f32);
+            }
+        }
+        if self.frames {
+            for frame in &frames(scene, arms) {
+                axes(painter, rect, camera, frame);
+            }
+        }
+    }
+}
+
+/// The outline of the sphere that no arrow from this tip leaves.
+fn ceiling(painter: &Painter, rect: Rect, camera: &Camera, arm: &Arm, ceiling_n: f32) {
+    let radius_m = ceiling_n * stage::ARROW_M_PER_N;
+    let outline = (0..=RING).filter_map(|i| {
+        let (sin, cos) = (std::f32::consts::TAU * i as f32 / RING as f32).sin_cos();
+        camera.project(&(arm.pose.tip_m + (camera.right() * cos + camera.up() * sin) * radius_m), rect)
+    });
+    let outline: Vec<_> = outline.collect();
+    let Some(top) = outline.iter().copied().min_by(|a, b| a.y.total_cmp(&b.y)) else { return };
+    painter.add(Shape::convex_polygon(outline.clone(), Color32::from_white_alpha(10), Stroke::NONE));
+    painter.add(Shape::Vec(Shape::dashed_line(&outline, Stroke::new(1.4, theme::DARK.text_weak), 7.0, 6.0)));
+    // Within the view, however large the sphere is.
+    let place = pos2(top.x, top.y.max(rect.top() + 24.0));
+    label(
+        painter,
+        place,
+        Align2::CENTER_BOTTOM,
+        &format!("ceiling {ceiling_n:.1} N"),
+        theme::regular(12.5),
+        theme::DARK.text,
+    );
+}
+
+/// All frames of a scene.
+fn frames(scene: &Scene, arms: &[Arm]) -> Vec<Axes> {
+    let base = [Vector3::x(), Vector3::y(), Vector3::z()];
+    let endoscope = Camera::endoscope(scene);
+    let mut frames = vec![
+        Axes { name: "Base (kbf)".to_owned(), origin_m: Vector3::zeros(), ways: base },
+        Axes {
+            name: "Endoscope".to_owned(),
+            origin_m: endoscope.eye_m(),
+            ways: [endoscope.right(), endoscope.up(), endoscope.right().cross(&endoscope.up())],
+        },
+    ];
+    for arm in arms {
+        let side = if arms.len() > 1 { format!(" {}", side_name(arm.side).to_lowercase()) } else { String::new() };
+        frames.push(Axes { name: format!("Trocar{side}"), origin_m: arm.trocar_m, ways: base });
+        let Some(z) = (arm.trocar_m - arm.pose.tip_m).try_normalize(1e-4) else { continue };
+        // x as near to the base's as it can be.
+        let x = (Vector3::x() - z * z.x).try_normalize(1e-3).unwrap_or_else(Vector3::y);
+        frames.push(Axes { name: format!("Tip{side}"), origin_m: arm.pose.tip_m, ways: [x, z.cross(&x), z] });
+    }
+    frames
+}
+
+fn axes(painter: &Painter, rect: Rect, camera: &Camera, frame: &Axes) {
+    let Some(origin) = camera.project(&frame.origin_m, rect).filter(|at| rect.contains(*at)) else { return };
+    for (name, axis) in ["x", "y", "z"].into_iter().zip(frame.ways) {
+        let Some(end) = camera.project(&(frame.origin_m + axis * AXIS_M), rect) else { continue };
+        painter.line_segment([origin, end], Stroke::new(2.0, theme::DARK.text));
+        label(painter, end, Align2::CENTER_CENTER, name, theme::strong(12.5), theme::DARK.text);
+    }
+    let place = origin + vec2(8.0, 12.0);
+    label(painter, place, Align2::LEFT_CENTER, &frame.name, theme::regular(12.5), theme::DARK.text_weak);
+}
+
+#[cfg(test)]
+mod tests {
+    use nima::device::Side;
+
+    use super::*;
+
+    #[test]
+    fn every_frame_is_right_handed_and_of_unit_length() {
+        let scene = Scene::load("bimanual").unwrap();
+        let pose = stage::Pose {
+            tip_m: Vector3::new(0.0, 0.02, 0.0),
+            measured_n: Vector3::zeros(),
+            rendered_n: Vector3::zeros(),
+        };
+        let arm =
+            |side, x| Arm { side, trocar_m: Vector3::new(x, -0.06, 0.14), targets_m: vec![], pose, trail_m: vec![] };
+        let frames = frames(&scene, &[arm(Side::Right, 0.05), arm(Side::Left, 0.0)]);
+        assert_eq!(frames.len(), 6);
+        for Axes { name, ways: [x, y, z], .. } in frames {
+            assert!((x.cross(&y) - z).norm() < 1e-5 && (x.norm() - 1.0).abs() < 1e-5, "{name}: {x} {y} {z}");
+        }
+    }
+}

@@ -1,0 +1,122 @@
+//! What the pointer is at in the view, in words with numbers, units and frame.
+
+use egui::{Pos2, Rect};
+use nalgebra::{Vector3, Vector4};
+use nima::config::Scene;
+
+use super::{Camera, side_name, stage, stage::Arm};
+
+/// As near as this a thing is meant, points.
+const REACH: f32 = 12.0;
+
+/// What is under the pointer, in front of all else that is; `None` where nothing is.
+pub(super) fn pick(pointer: Pos2, rect: Rect, camera: &Camera, scene: &Scene, arms: &[Arm]) -> Option<String> {
+    arms.iter().find_map(|arm| of_arm(pointer, rect, camera, scene, arm, arms.len() > 1)).or_else(|| {
+        let place_m = on_tissue(pointer, rect, camera, scene)?;
+        Some(format!("Tissue at {}", place(&place_m)))
+    })
+}
+
+fn of_arm(pointer: Pos2, rect: Rect, camera: &Camera, scene: &Scene, arm: &Arm, both: bool) -> Option<String> {
+    let at = |point_m: &Vector3<f32>| camera.project(point_m, rect);
+    let near = |point_m: &Vector3<f32>| at(point_m).is_some_and(|at| at.distance(pointer) < REACH);
+    let Arm { side, trocar_m, pose, targets_m, .. } = arm;
+    let whose = if both { format!(" of the {} hand", side_name(*side).to_lowercase()) } else { String::new() };
+    let [measured, rendered] = stage::arrow_bases_m(pose, trocar_m, &camera.right());
+    for (name, base_m, force_n) in
+        [("Force measured", measured, pose.measured_n), ("Force rendered", rendered, pose.rendered_n)]
+    {
+        let ends = [at(&base_m), at(&(base_m + force_n * stage::ARROW_M_PER_N))];
+        if let ([Some(from), Some(to)], true) = (ends, stage::has_arrow(&force_n))
+            && distance(pointer, from, to) < 0.6 * REACH
+        {
+            let [x, y, z] = force_n.into();
+            let size_n = force_n.norm();
+            return Some(format!("{name}{whose}: {size_n:.2} N\nx {x:+.2}, y {y:+.2}, z {z:+.2} N (kbf)"));
+        }
+    }
+    if near(&pose.tip_m) {
+        let depth_mm = scene.tissue.map_or(0.0, |tissue| (tissue.surface_z_m as f32 - pose.tip_m.z) * 1e3);
+        let deep = if depth_mm > 0.0 { format!("\n{depth_mm:.1} mm below the surface at rest") } else { String::new() };
+        return Some(format!("Tip{whose} at {}{deep}", place(&pose.tip_m)));
+    }
+    if let Some(number) = targets_m.iter().position(near) {
+        return Some(format!("Target {}{whose} at {}", number + 1, place(&targets_m[number])));
+    }
+    near(trocar_m).then(|| format!("Trocar{whose}, the remote centre of motion, at {}", place(trocar_m)))
+}
+
+/// A place in millimetres of the base's frame.
+fn place(at_m: &Vector3<f32>) -> String {
+    let [x, y, z] = (at_m * 1e3).into();
+    format!("x {x:.1}, y {y:.1}, z {z:.1} mm (kbf)")
+}
+
+/// From a point to a stretch between two others, points.
+fn distance(point: Pos2, from: Pos2, to: Pos2) -> f32 {
+    let way = to - from;
+    let along = if way.length_sq() > 1e-6 { ((point - from).dot(way) / way.length_sq()).clamp(0.0, 1.0) } else { 0.0 };
+    point.distance(from + way * along)
+}
+
+/// Where the ray through the pointer meets the tissue's surface at rest, m.
+fn on_tissue(pointer: Pos2, rect: Rect, camera: &Camera, scene: &Scene) -> Option<Vector3<f32>> {
+    let tissue = scene.tissue?;
+    let from_centre = pointer - rect.center();
+    let (x, y) = (2.0 * from_centre.x / rect.width(), -2.0 * from_centre.y / rect.height());
+    let workspace_from_clip = camera.clip_from_workspace(rect.aspect_ratio()).try_inverse()?;
+    let far = workspace_from_clip * Vector4::new(x, y, 1.0, 1.0);
+    let way = far.xyz() / far.w - camera.eye_m();
+    let steps = (tissue.surface_z_m as f32 - camera.eye_m().z) / way.z;
+    let place_m = camera.eye_m() + way * steps;
+    let [half_x, half_y] = tissue.size_m.map(|size_m| 0.5 * size_m as f32);
+    (steps > 0.0 && place_m.x.abs() <= half_x && place_m.y.abs() <= half_y).then_some(place_m)
+}
+
+#[cfg(test)]
+mod tests {
+    use egui::pos2;
+    use nima::device::Side;
+
+    use super::*;
+
+    fn view() -> Rect {
+        Rect::from_min_max(pos2(100.0, 50.0), pos2(1000.0, 650.0))
+    }
+
+    fn arm() -> Arm {
+        let pose = stage::Pose {
+            tip_m: Vector3::new(0.01, 0.018, -0.004),
+            measured_n: Vector3::new(0.5, 0.0, 2.0),
+            rendered_n: Vector3::zeros(),
+        };
+        let targets_m = vec![Vector3::new(-0.03, 0.02, 0.0)];
+        Arm { side: Side::Right, trocar_m: Vector3::new(0.0, -0.06, 0.14), targets_m, pose, trail_m: vec![] }
+    }
+
+    fn at(point_m: &Vector3<f32>) -> Option<String> {
+        let scene = Scene::load("peg_transfer").unwrap();
+        let camera = Camera::of(&scene);
+        pick(camera.project(point_m, view()).unwrap(), view(), &camera, &scene, &[arm()])
+    }
+
+    #[test]
+    fn everything_on_the_stage_tells_its_name_and_its_numbers_where_it_is() {
+        let arm = arm();
+        let tip = at(&arm.pose.tip_m).unwrap();
+        assert!(tip.contains("x 10.0, y 18.0, z -4.0 mm (kbf)") && tip.contains("4.0 mm below"), "{tip}");
+        assert!(at(&arm.targets_m[0]).unwrap().starts_with("Target 1"));
+        let scene = Scene::load("peg_transfer").unwrap();
+        let [base_m, _] = stage::arrow_bases_m(&arm.pose, &arm.trocar_m, &Camera::of(&scene).right());
+        let force = at(&(base_m + arm.pose.measured_n * 0.5 * stage::ARROW_M_PER_N)).unwrap();
+        assert!(force.contains("2.06 N") && force.contains("x +0.50"), "{force}");
+        assert!(at(&arm.trocar_m).unwrap().contains("remote centre"));
+    }
+
+    #[test]
+    fn the_tissue_is_found_where_it_is_pointed_at_and_nothing_beside_it() {
+        let place_m = Vector3::new(0.02, -0.03, 0.0);
+        assert_eq!(at(&place_m).unwrap(), "Tissue at x 20.0, y -30.0, z 0.0 mm (kbf)");
+        assert_eq!(at(&Vector3::new(0.3, 0.0, 0.0)), None);
+    }
+}

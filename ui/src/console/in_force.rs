@@ -1,5 +1,6 @@
 //! The calibrations in force for the scene's sensor and tool, as the screen tells them and as the loop gets them.
 
+use crate::console::text;
 use std::{
     path::{Path, PathBuf},
     time::SystemTime,
@@ -51,9 +52,9 @@ impl InForce {
             return;
         };
         let now = SystemTime::now();
-        self.gravity = usable("Gravity", store.load(sensor, tool, now), &mut self.told);
-        self.correspondence = usable("Correspondence", store.load(sensor, tool, now), &mut self.told);
-        self.tip_force = usable("Tip force", Model::kept(store, sensor, tool, now), &mut self.told);
+        self.gravity = usable(text::calibrations::GRAVITY, store.load(sensor, tool, now), &mut self.told);
+        self.correspondence = usable(text::calibrations::CORRESPONDENCE, store.load(sensor, tool, now), &mut self.told);
+        self.tip_force = usable(text::calibrations::TIP_FORCE, Model::kept(store, sensor, tool, now), &mut self.told);
         self.drift = self.gravity.as_ref().map(|Loaded { record, .. }| {
             (DriftCheck::new(record.model, record.drift_limit_n(), StillSettings::default()), String::new())
         });
@@ -93,7 +94,7 @@ impl InForce {
         let tip_force = model.map(|model| TipForce::new(model, rig.tip_force.fallback)).transpose();
         Calibrations {
             gravity: self.gravity.as_ref().map(|loaded| loaded.record.model),
-            tip_force: usable("Tip force", tip_force, &mut self.told),
+            tip_force: usable(text::calibrations::TIP_FORCE, tip_force, &mut self.told),
         }
     }
 
@@ -110,7 +111,7 @@ impl InForce {
 
     /// Keeps a record and takes it into force; words for the screen.
     pub fn save(&mut self, saving: Saving) -> Result<String, String> {
-        let store = self.store.as_ref().ok_or("no folder for calibrations is known; set NIMA_DATA_DIR")?;
+        let store = self.store.as_ref().ok_or(text::calibrations::NO_FOLDER_FOR_CALIBRATIONS)?;
         let path = match saving {
             Saving::Gravity(record) => kept(store, *record, &mut self.gravity)?,
             Saving::Correspondence(record) => kept(store, *record, &mut self.correspondence)?,
@@ -137,12 +138,16 @@ impl InForce {
     /// One line for each calibration that matters to this rig.
     pub fn lines(&self) -> Vec<String> {
         let Some((sensor, tool)) = &self.bound else {
-            return vec!["This scene measures at the tip; a wrist sensor needs calibrations.".to_owned()];
+            return vec![text::calibrations::THIS_SCENE_MEASURES_AT.to_owned()];
         };
-        let gravity = self.gravity.as_ref().map_or_else(|| "Gravity: none".to_owned(), line_of_gravity);
-        let correspondence =
-            self.correspondence.as_ref().map_or_else(|| "Correspondence: none".to_owned(), line_of_correspondence);
-        let tip_force = self.tip_force.as_ref().map_or_else(|| "Tip force: none".to_owned(), line_of_tip_force);
+        let gravity =
+            self.gravity.as_ref().map_or_else(|| text::calibrations::GRAVITY_NONE.to_owned(), line_of_gravity);
+        let correspondence = self
+            .correspondence
+            .as_ref()
+            .map_or_else(|| text::calibrations::CORRESPONDENCE_NONE.to_owned(), line_of_correspondence);
+        let tip_force =
+            self.tip_force.as_ref().map_or_else(|| text::calibrations::TIP_FORCE_NONE.to_owned(), line_of_tip_force);
         let mut lines = vec![format!("Sensor {sensor}, {tool}"), gravity];
         lines.extend(self.drift.as_ref().map(line_of_drift));
         lines.extend([correspondence, tip_force]);
@@ -191,7 +196,7 @@ fn line_of_correspondence(loaded: &Loaded<CorrespondenceRecord>) -> String {
 
 fn line_of_tip_force(loaded: &Loaded<Model>) -> String {
     let origin = &loaded.record.origin;
-    let Some(check) = &origin.check else { return "Tip force: never checked".to_owned() };
+    let Some(check) = &origin.check else { return text::calibrations::TIP_FORCE_NEVER_CHECKED.to_owned() };
     let error_n = check.mae_n.iter().sum::<f64>() / 3.0;
     let remarks = remarks(loaded.age, check.override_by.as_deref());
     format!("Tip force: {}, {} rows, error on new data {error_n:.3} N{remarks}", day_of(&origin.date), origin.rows)
@@ -210,7 +215,7 @@ fn remarks(age: Age, override_by: Option<&str>) -> String {
     let age = match age {
         Age::Fresh => String::new(),
         Age::Old { days } => format!("; {days} days old, repeat it"),
-        Age::Future => "; made in the future, check the clock".to_owned(),
+        Age::Future => text::calibrations::MADE_IN_THE_FUTURE.to_owned(),
     };
     let overridden = override_by.map_or_else(String::new, |name| format!("; NOT PROVEN, kept by {name}"));
     age + &overridden

@@ -1,5 +1,6 @@
 //! How the console looks: light or dark, and how large. Kept from one day to the next.
 
+use crate::console::text;
 use egui::{Button, Context, Ui, vec2};
 
 use super::{
@@ -16,13 +17,13 @@ const STEPS_PERCENT: [u16; 5] = [100, 125, 150, 175, 200];
 
 /// The menu in the top bar.
 pub(super) fn menu_ui(ui: &mut Ui, settings: &mut Settings, help: &mut Help, alarms: &mut Alarms) {
-    let button = Button::new("View").min_size(vec2(52.0, 30.0));
+    let button = Button::new(text::menu::VIEW).min_size(vec2(52.0, 30.0));
     let menu = egui::containers::menu::MenuButton::from_button(button);
     let (response, _) = menu.ui(ui, |ui| {
         ui.set_width(300.0);
-        ui.label("Palette");
+        ui.label(text::menu::PALETTE);
         ui.horizontal(|ui| {
-            for (name, light) in [("Dark", false), ("Light", true)] {
+            for (name, light) in [(text::menu::DARK, false), (text::menu::LIGHT, true)] {
                 let button = Button::selectable(settings.light == light, name).frame_when_inactive(true);
                 if ui.add(button.min_size(vec2(96.0, 30.0))).clicked() {
                     settings.light = light;
@@ -30,7 +31,7 @@ pub(super) fn menu_ui(ui: &mut Ui, settings: &mut Settings, help: &mut Help, ala
             }
         });
         ui.add_space(6.0);
-        ui.label("Size of everything (Ctrl + and Ctrl -)");
+        ui.label(text::menu::SIZE_OF_EVERYTHING_CTRL);
         ui.horizontal(|ui| {
             for percent in STEPS_PERCENT {
                 let chosen = settings.scale_percent == percent;
@@ -39,7 +40,7 @@ pub(super) fn menu_ui(ui: &mut Ui, settings: &mut Settings, help: &mut Help, ala
                 }
             }
         });
-        ui.label(super::widgets::small("Never larger than this window has room for."));
+        ui.label(super::widgets::small(text::menu::NEVER_LARGER_THAN_THIS));
         ui.add_space(6.0);
         if settings.role == Role::Technician {
             panels_ui(ui, &mut settings.layout);
@@ -48,25 +49,24 @@ pub(super) fn menu_ui(ui: &mut Ui, settings: &mut Settings, help: &mut Help, ala
         sound_ui(ui, settings, alarms);
         ui.add_space(6.0);
         ui.horizontal(|ui| {
-            if ui.add(Button::new("Alarms (F5)").min_size(vec2(96.0, 30.0))).clicked() {
+            if ui.add(Button::new(text::menu::ALARMS_F5).min_size(vec2(96.0, 30.0))).clicked() {
                 alarms.list = true;
             }
-            if ui.add(Button::new("Glossary (F4)").min_size(vec2(110.0, 30.0))).clicked() {
+            if ui.add(Button::new(text::menu::GLOSSARY_F4).min_size(vec2(110.0, 30.0))).clicked() {
                 help.glossary = true;
             }
-            if ui.add(Button::new("Tour").min_size(vec2(82.0, 30.0))).clicked() {
+            if ui.add(Button::new(text::menu::TOUR).min_size(vec2(82.0, 30.0))).clicked() {
                 help.begin_tour();
             }
         });
     });
-    response.on_hover_text("Light or dark, how large; glossary and tour.");
+    response.on_hover_text(text::menu::LIGHT_OR_DARK_HOW);
 }
 
 /// Whether alarms sound, and what stands in the way.
 fn sound_ui(ui: &mut Ui, settings: &mut Settings, alarms: &mut Alarms) {
-    let meaning =
-        "A burst of ten pulses for an alarm, of three for a warning, again and again until it is acknowledged.";
-    ui.checkbox(&mut settings.sound, "Alarms sound").on_hover_text(meaning);
+    let meaning = text::menu::A_BURST_OF_TEN;
+    ui.checkbox(&mut settings.sound, text::menu::ALARMS_SOUND).on_hover_text(meaning);
     if let Some(trouble) = alarms.sound.trouble() {
         ui.add(egui::Label::new(super::widgets::small(trouble)).wrap());
     }
@@ -74,22 +74,22 @@ fn sound_ui(ui: &mut Ui, settings: &mut Settings, alarms: &mut Alarms) {
 
 /// Which panels are on the desk.
 fn panels_ui(ui: &mut Ui, layout: &mut Layout) {
-    ui.label("Panels").on_hover_text("Drag a panel's title to put it elsewhere, an edge to make it larger.");
+    ui.label(text::menu::PANELS).on_hover_text(text::menu::DRAG_A_PANEL_S);
     for pair in Panel::ALL.chunks(2) {
         ui.horizontal(|ui| {
             for panel in pair {
                 let open = layout.is_open(*panel);
                 let button = Button::selectable(open, panel.title()).frame_when_inactive(true);
                 let response = ui.add(button.min_size(vec2(146.0, 26.0)));
-                let meaning = if open { "On the desk; closes it." } else { "Closed; puts it back where it was." };
+                let meaning = if open { text::menu::ON_THE_DESK_CLOSES } else { text::menu::CLOSED_PUTS_IT_BACK };
                 if response.on_hover_text(format!("{}\n{meaning}", panel.meaning())).clicked() {
                     layout.toggle(*panel);
                 }
             }
         });
     }
-    let reset = ui.add(Button::new("Reset the layout").min_size(vec2(300.0, 26.0)));
-    if reset.on_hover_text("All panels open, where they lay at first.").clicked() {
+    let reset = ui.add(Button::new(text::menu::RESET_THE_LAYOUT).min_size(vec2(300.0, 26.0)));
+    if reset.on_hover_text(text::menu::ALL_PANELS_OPEN_WHERE).clicked() {
         *layout = Layout::default();
     }
 }

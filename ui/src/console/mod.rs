@@ -29,6 +29,7 @@ pub mod scene3d;
 pub mod screenshot;
 pub mod settings;
 pub mod stiffness;
+pub mod text;
 pub mod theme;
 pub mod widgets;
 pub mod wizards;

@@ -3,6 +3,7 @@
 //!
 //! Kept as JSON beside the calibrations. A file that cannot be read is set aside under another name and told, never fatal.
 
+use crate::console::text;
 use std::{
     io,
     path::{Path, PathBuf},
@@ -113,11 +114,9 @@ fn read(text: &str) -> Result<(Settings, Option<String>), serde_json::Error> {
             settings.layout = layout;
             Ok((settings, None))
         }
-        Err(error) => Ok((settings, Some(format!("{LAYOUT_LOST} ({error})")))),
+        Err(error) => Ok((settings, Some(format!("{} ({error})", text::settings::LAYOUT_LOST)))),
     }
 }
-
-const LAYOUT_LOST: &str = "The layout of the panels cannot be read; the default is used";
 
 fn set_aside(folder: &Path, error: &serde_json::Error) -> String {
     match std::fs::rename(folder.join(FILE), folder.join(SET_ASIDE)) {
@@ -167,7 +166,7 @@ mod tests {
             std::fs::write(folder.path().join(FILE), text).unwrap();
             let kept = Kept::open(folder.path());
             assert_eq!((kept.now.role, &kept.now.layout), (Role::Surgeon, &Layout::default()));
-            assert!(kept.told().unwrap().starts_with(LAYOUT_LOST));
+            assert!(kept.told().unwrap().starts_with(text::settings::LAYOUT_LOST));
             assert!(folder.path().join(FILE).exists());
         }
     }

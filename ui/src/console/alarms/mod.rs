@@ -5,6 +5,7 @@ pub mod log;
 pub mod sound;
 pub mod strip;
 
+use crate::console::text;
 use std::time::Duration;
 
 use egui::Color32;
@@ -57,9 +58,9 @@ impl Priority {
     /// The word for those who do not see the colour.
     pub const fn word(self) -> &'static str {
         match self {
-            Self::High => "Alarm",
-            Self::Medium => "Warning",
-            Self::Low => "Note",
+            Self::High => text::alarms::ALARM,
+            Self::Medium => text::alarms::WARNING,
+            Self::Low => text::alarms::NOTE,
         }
     }
 }
@@ -127,8 +128,8 @@ pub fn judge(signs: &Signs) -> Vec<Alarm> {
         alarms.push(Alarm {
             kind: Kind::StopStuck,
             priority: Priority::High,
-            cause: "The stop has not reached the loop".to_owned(),
-            cure: "Cut the power of the arm with its own emergency stop".to_owned(),
+            cause: text::alarms::THE_STOP_HAS_NOT.to_owned(),
+            cure: text::alarms::CUT_THE_POWER_OF.to_owned(),
         });
     }
     if let (Some(LoopState::Faulted(_)), Some((t_s, fault))) = (signs.state, signs.first_fault) {
@@ -143,8 +144,8 @@ pub fn judge(signs: &Signs) -> Vec<Alarm> {
         alarms.push(Alarm {
             kind: Kind::Silence,
             priority: Priority::High,
-            cause: "The control loop sends nothing any more; the screen shows its last state".to_owned(),
-            cure: "Stop the arm by its own emergency stop, then start the console again".to_owned(),
+            cause: text::alarms::THE_CONTROL_LOOP_SENDS.to_owned(),
+            cure: text::alarms::STOP_THE_ARM_BY.to_owned(),
         });
     }
     if signs.missed_share > MISSED_SHARE_MAX {
@@ -152,7 +153,7 @@ pub fn judge(signs: &Signs) -> Vec<Alarm> {
             kind: Kind::Missed,
             priority: Priority::Medium,
             cause: format!("The loop misses {:.1} % of its periods", 100.0 * signs.missed_share),
-            cure: "Close other programs, or grant real-time priority (see timing)".to_owned(),
+            cure: text::alarms::CLOSE_OTHER_PROGRAMS_OR.to_owned(),
         });
     }
     if let Some(by_n) = signs.bias_moved_n {
@@ -160,7 +161,7 @@ pub fn judge(signs: &Signs) -> Vec<Alarm> {
             kind: Kind::BiasMoved,
             priority: Priority::Medium,
             cause: format!("The wrist sensor reads {by_n:.2} N at rest: its bias has moved since the calibration"),
-            cure: "Let nothing touch the tool; if this stays, calibrate gravity again".to_owned(),
+            cure: text::alarms::LET_NOTHING_TOUCH_THE.to_owned(),
         });
     }
     if let Some(advice) = signs.scheduling.and_then(|scheduling| scheduling.advice()) {

@@ -3,6 +3,7 @@
 //! The strip pins the most urgent alarm, of several the first, with its time, cause and cure, and folds the others under it. It is as
 //! high as its words need: nothing in it is ever cut.
 
+use crate::console::text;
 use egui::{
     Align, Button, Color32, Context, Frame, Label, Layout, Margin, Panel, Rect, RichText, ScrollArea, Sense, Stroke,
     Ui, Window, vec2,
@@ -62,14 +63,12 @@ impl Alarms {
             ui.horizontal(|ui| {
                 opened |= words_ui(ui, &first, others, colour);
                 ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-                    let all = Button::new("All alarms (F5)").min_size(BUTTON);
-                    opened |= ui
-                        .add(all)
-                        .on_hover_text("The last alarms with their times, also those that are gone.")
-                        .clicked();
-                    let seen = ui.add_enabled(unseen, Button::new("Acknowledge (A)").min_size(BUTTON));
-                    let seen =
-                        seen.on_hover_text(ACKNOWLEDGE).on_disabled_hover_text("Acknowledged. The cause still lives.");
+                    let all = Button::new(text::alarms::ALL_ALARMS_F5).min_size(BUTTON);
+                    opened |= ui.add(all).on_hover_text(text::alarms::THE_LAST_ALARMS_WITH).clicked();
+                    let seen = ui.add_enabled(unseen, Button::new(text::alarms::ACKNOWLEDGE_A).min_size(BUTTON));
+                    let seen = seen
+                        .on_hover_text(text::alarms::ACKNOWLEDGE)
+                        .on_disabled_hover_text(text::alarms::ACKNOWLEDGED_THE_CAUSE_STILL);
                     acknowledged = seen.clicked();
                 });
             });
@@ -85,13 +84,11 @@ impl Alarms {
         let window = Window::new("Alarms").open(&mut self.list).constrain_to(room).collapsible(false);
         let size = vec2(560.0, (room.height() - 90.0).min(460.0));
         window.default_pos(room.center_top() + vec2(-280.0, 16.0)).fixed_size(size).show(ctx, |ui| {
-            ui.label(small(
-                "The last 50, the newest first. Times are UTC; in brackets the loop's own clock, as in the traces.",
-            ));
+            ui.label(small(text::alarms::THE_LAST_50_THE));
             ui.add_space(4.0);
             ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
                 if self.log.newest_first().next().is_none() {
-                    ui.label(weak("Nothing has been wrong so far."));
+                    ui.label(weak(text::alarms::NOTHING_HAS_BEEN_WRONG));
                 }
                 for entry in self.log.newest_first() {
                     entry_ui(ui, entry);
@@ -100,9 +97,6 @@ impl Alarms {
         });
     }
 }
-
-const ACKNOWLEDGE: &str = "Stops flashing and sound. The alarm stays until its cause is gone; a new one of the same or a higher priority \
-                           flashes and sounds again.";
 
 /// The pinned alarm; true when it is clicked.
 fn words_ui(ui: &mut Ui, first: &Entry, others: usize, colour: Color32) -> bool {

@@ -6,6 +6,7 @@
 mod layout;
 mod panel;
 
+use crate::console::text;
 use egui::{
     Align, Button, Color32, Context, Frame, Layout as Flow, Margin, Response, RichText, ScrollArea, Stroke, Ui,
     UiBuilder, Vec2, Visuals, WidgetInfo, WidgetText, vec2,
@@ -48,7 +49,7 @@ impl Desk {
         }
         let Some((tree, shown, at)) = &mut self.shown else { return };
         if tree.active_tiles().is_empty() {
-            ui.centered_and_justified(|ui| ui.label(weak(ALL_CLOSED)));
+            ui.centered_and_justified(|ui| ui.label(weak(text::desk::ALL_CLOSED)));
             return;
         }
         let mut tiles = Contents { draw: contents, closed: None, moved: &mut self.moved, turned: &mut self.turned };
@@ -69,8 +70,6 @@ impl Desk {
         }
     }
 }
-
-const ALL_CLOSED: &str = "All panels are closed. The View menu opens them again.";
 
 /// What the tiles ask for while they are drawn.
 struct Contents<'a> {
@@ -115,7 +114,7 @@ impl Behavior<Panel> for Contents<'_> {
             focus_ring(&tab.ctx, &tab);
         }
         let Some(panel) = tiles.get_pane(&tile) else { return tab };
-        tab.on_hover_text(format!("{}\n{DRAG}", panel.meaning()))
+        tab.on_hover_text(format!("{}\n{}", panel.meaning(), text::desk::DRAG))
     }
 
     fn top_bar_right_ui(&mut self, tiles: &Tiles<Panel>, ui: &mut Ui, _tile: TileId, tabs: &Tabs, _scroll: &mut f32) {
@@ -191,8 +190,6 @@ impl Behavior<Panel> for Contents<'_> {
         }
     }
 }
-
-const DRAG: &str = "Drag the title to put the panel elsewhere.";
 
 /// A panel that needs more room than it has.
 fn scrolled(ui: &mut Ui, size: Vec2, content: impl FnOnce(&mut Ui)) {

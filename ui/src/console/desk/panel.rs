@@ -1,5 +1,6 @@
 //! The panels that a technician can lay out: their names, what they are for, and the least room that each needs.
 
+use crate::console::text;
 use egui::{Vec2, vec2};
 use serde::{Deserialize, Serialize};
 
@@ -53,50 +54,36 @@ impl Panel {
     /// On its tab and in the menu.
     pub const fn title(self) -> &'static str {
         match self {
-            Self::Field => "Field",
-            Self::Traces => "Traces",
-            Self::ForceSpace => "Force space",
-            Self::Feedback => "Feedback",
-            Self::Devices => "Devices",
-            Self::Calibrations => "Calibration",
-            Self::Gates => "Why no force?",
-            Self::Safety => "Safety",
-            Self::Horizon => "Error at the horizon",
-            Self::Degrees => "Degrees",
-            Self::Timing => "Timing",
-            Self::Tradeoff => "Trade-off",
+            Self::Field => text::desk::FIELD,
+            Self::Traces => text::desk::TRACES,
+            Self::ForceSpace => text::desk::FORCE_SPACE,
+            Self::Feedback => text::desk::FEEDBACK,
+            Self::Devices => text::desk::DEVICES,
+            Self::Calibrations => text::desk::CALIBRATION,
+            Self::Gates => text::desk::WHY_NO_FORCE,
+            Self::Safety => text::desk::SAFETY,
+            Self::Horizon => text::desk::ERROR_AT_THE_HORIZON,
+            Self::Degrees => text::desk::DEGREES,
+            Self::Timing => text::desk::TIMING,
+            Self::Tradeoff => text::desk::TRADE_OFF,
         }
     }
 
     /// What it is for, in a sentence or two.
     pub const fn meaning(self) -> &'static str {
         match self {
-            Self::Field => "The operating field in three dimensions, with the forces as arrows.",
-            Self::Traces => "Force over time along x, y and z, measured and rendered.",
-            Self::ForceSpace => "Measured against rendered force, the last seconds, seen in three dimensions.",
-            Self::Feedback => "How the force measured at the instrument becomes the force in the hand.",
-            Self::Devices => "What the rig is made of. Connected never means engaged.",
-            Self::Calibrations => "Where the force at the tip comes from, and what was calibrated for it.",
-            Self::Gates => {
-                "Why is there no force? A force passes these gates in this order. A closed gate stops it, a limiting gate makes it \
-                 smaller."
-            }
-            Self::Safety => "What stands between a model and a hand: the interlock and the gates of each arm.",
-            Self::Horizon => {
-                "Mean distance (N, 3-D) between the force each mode would render now and the force measured now, though it only \
-                 knows data as old as the link's delay. Mean over the last four seconds, before the gates. All four modes are \
-                 computed all the time."
-            }
-            Self::Degrees => {
-                "Degree N of the polynomial f = M X between motion and force, chosen anew each tick on the last 300 ms."
-            }
-            Self::Timing => {
-                "The loop's own clock: how late it wakes for each period and how long it works in it, since the console opened."
-            }
-            Self::Tradeoff => {
-                "Time of one tick of identification (us, on this computer) against mean error at the horizon (N): every mode, \
-                 degree and window on this scene, recorded open-loop, at the rig's rate and the link's delay."
-            }
+            Self::Field => text::desk::THE_OPERATING_FIELD_IN,
+            Self::Traces => text::desk::FORCE_OVER_TIME_ALONG,
+            Self::ForceSpace => text::desk::MEASURED_AGAINST_RENDERED_FORCE,
+            Self::Feedback => text::desk::HOW_THE_FORCE_MEASURED,
+            Self::Devices => text::desk::WHAT_THE_RIG_IS,
+            Self::Calibrations => text::desk::WHERE_THE_FORCE_AT,
+            Self::Gates => text::desk::WHY_IS_THERE_NO,
+            Self::Safety => text::desk::WHAT_STANDS_BETWEEN_A,
+            Self::Horizon => text::desk::MEAN_DISTANCE_N_3,
+            Self::Degrees => text::desk::DEGREE_N_OF_THE,
+            Self::Timing => text::desk::THE_LOOP_S_OWN,
+            Self::Tradeoff => text::desk::TIME_OF_ONE_TICK,
         }
     }
 

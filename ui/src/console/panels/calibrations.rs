@@ -1,5 +1,6 @@
 //! What is in force now between the wrist sensor and the tip force, on every view; and the way to the wizards.
 
+use crate::console::text;
 use egui::{Button, RichText, Ui, vec2};
 use nima::teleop::{ForceSource, LoopState};
 
@@ -40,13 +41,13 @@ pub fn calibrations_ui(ui: &mut Ui, live: &Live, in_force: &InForce, open: Optio
             .min_size(vec2(ui.available_width(), 28.0));
         let response = ui.add_enabled(free && open != Some(which), button);
         let response = response.on_hover_text(format!("{} The loop is set to idle.", which.meaning()));
-        if response.on_disabled_hover_text("Already open, or the loop has stopped: release it first.").clicked() {
+        if response.on_disabled_hover_text(text::calibrations::ALREADY_OPEN_OR_THE).clicked() {
             wish = Some(CalibrationWish::Open(which));
         }
     }
     if open.is_some() {
-        let back = Button::new("Back to the monitor").min_size(vec2(ui.available_width(), 32.0));
-        if ui.add(back).on_hover_text("What the wizard has taken is kept for when it is opened again.").clicked() {
+        let back = Button::new(text::calibrations::BACK_TO_THE_MONITOR).min_size(vec2(ui.available_width(), 32.0));
+        if ui.add(back).on_hover_text(text::calibrations::WHAT_THE_WIZARD_HAS).clicked() {
             wish = Some(CalibrationWish::Close);
         }
     }

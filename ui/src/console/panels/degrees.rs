@@ -1,5 +1,6 @@
 //! Which degree of impedance is identified, how often it is nonlinear, and how well the motion determines it.
 
+use crate::console::text;
 use egui::{Align2, Rect, Sense, Ui, vec2};
 
 use crate::console::{
@@ -14,34 +15,23 @@ const CHART_HEIGHT: f32 = 92.0;
 /// The panel.
 pub fn degrees_ui(ui: &mut Ui, live: &Live) {
     ui.horizontal(|ui| {
-        key_ui(
-            ui,
-            theme::now().rendered,
-            "this console",
-            "Chosen by the running error at the horizon; 0 means no correction.",
-        );
-        key_ui(
-            ui,
-            theme::now().reference,
-            "the paper's rule",
-            "Least error inside the window; 0 means the window is not full.",
-        );
+        key_ui(ui, theme::now().rendered, text::degrees::THIS_CONSOLE, text::degrees::CHOSEN_BY_THE_RUNNING);
+        key_ui(ui, theme::now().reference, text::degrees::THE_PAPER_S_RULE, text::degrees::LEAST_ERROR_INSIDE_THE);
         ui.label(small(format!("last {:.0} min", DEGREES_S / 60.0)));
     });
     chart_ui(ui, live);
     let share = |share: f64| format!("{:.0} %", 100.0 * share);
     figure(
         ui,
-        "Nonlinear, this console",
+        text::degrees::NONLINEAR_THIS_CONSOLE,
         share(live.degrees.nonlinear()),
-        "Share of ticks in which a degree of 2 or more paid off at the horizon.",
+        text::degrees::SHARE_OF_TICKS_IN,
     );
     figure(
         ui,
-        "Nonlinear, the paper's rule",
+        text::degrees::NONLINEAR_THE_PAPER_S,
         share(live.paper_degrees.nonlinear()),
-        "Share of ticks with degree 2 or more by the error inside the window. The models are nested, so this is near 100 % \
-         whatever the tissue: it is not evidence of nonlinearity.",
+        text::degrees::SHARE_OF_TICKS_WITH,
     );
     quality_ui(ui, live);
 }
@@ -49,27 +39,19 @@ pub fn degrees_ui(ui: &mut Ui, live: &Live) {
 fn quality_ui(ui: &mut Ui, live: &Live) {
     let Some(tick) = &live.tick else { return };
     let report = &tick.identification;
+    figure(ui, text::degrees::CONDITION, three_digits(report.condition), text::degrees::CONDITION_NUMBER_OF_THE);
     figure(
         ui,
-        "Condition",
-        three_digits(report.condition),
-        "Condition number of the chosen model's scaled columns, the worst axis, without unit: 1 is perfect, above 1e4 the columns \
-         are hard to tell apart.",
-    );
-    figure(
-        ui,
-        "Rank",
+        text::degrees::RANK,
         format!("{} of {}, {} used", report.rank, 3 * live.rig.identification.max_degree, report.columns),
-        "Motion columns with enough excitation in the window to carry information, of all (three per degree: position, velocity, \
-         acceleration); the others are left out: the ridge gives them no weight. Used: columns of the model chosen now.",
+        text::degrees::MOTION_COLUMNS_WITH_ENOUGH,
     );
     let excitation = &report.excitation;
     figure(
         ui,
-        "Excitation",
+        text::degrees::EXCITATION,
         format!("{:.1} mm   {:.0} mm/s", excitation.position_m.norm() * 1e3, excitation.velocity_m_s.norm() * 1e3),
-        "How much the motion varies within the window: standard deviation of position (mm) and velocity (mm/s), all axes. Without \
-         motion nothing can be identified.",
+        text::degrees::HOW_MUCH_THE_MOTION,
     );
 }
 

@@ -1,5 +1,6 @@
 //! The devices of the rig: where each is, how well it delivers, and for what fails the cause and the cure.
 
+use crate::console::text;
 use egui::{Button, Label, RichText, Ui, vec2};
 use nima::device::{Health, RosterEntry, Side, Standing, Trouble};
 
@@ -12,7 +13,7 @@ use crate::console::{
 /// The panel; where everything is simulated it says so.
 pub fn devices_ui(ui: &mut Ui, live: &Live) {
     if live.roster.is_empty() {
-        ui.label(weak("Everything on this rig is simulated: there are no devices."));
+        ui.label(weak(text::devices::EVERYTHING_ON_THIS_RIG));
         return;
     }
     for (entry, health) in live.roster.iter().zip(&live.healths.devices) {
@@ -32,13 +33,13 @@ fn device_ui(ui: &mut Ui, entry: &RosterEntry, health: &Health) {
         ui.label(RichText::new(&entry.name).font(theme::strong(14.0))).on_hover_text(&entry.driver);
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
             let wanted = !matches!(health.standing, Standing::Closed);
-            let text = if wanted { "Disconnect" } else { "Connect" };
+            let text = if wanted { text::devices::DISCONNECT } else { text::devices::CONNECT };
             let button = ui.add(Button::new(small(text)).min_size(vec2(84.0, 22.0)));
             button.widget_info(|| {
                 let name = format!("{text} {}", entry.name);
                 egui::WidgetInfo::labeled(egui::Role::Button, true, name)
             });
-            if button.on_hover_text("A lost device is opened again by itself until it is disconnected.").clicked() {
+            if button.on_hover_text(text::devices::A_LOST_DEVICE_IS).clicked() {
                 entry.view.want(!wanted);
             }
         });
@@ -52,11 +53,11 @@ fn device_ui(ui: &mut Ui, entry: &RosterEntry, health: &Health) {
         ui.add(Label::new(trouble.to_string()).wrap());
         ui.add(Label::new(small(trouble.cure())).wrap());
         if let (Trouble::DeviceFault { .. }, Some(clear)) = (&trouble, &entry.clear_faults) {
-            let button = ui.add(Button::new(small("Clear faults")).min_size(vec2(84.0, 22.0)));
+            let button = ui.add(Button::new(small(text::devices::CLEAR_FAULTS)).min_size(vec2(84.0, 22.0)));
             button.widget_info(|| {
                 egui::WidgetInfo::labeled(egui::Role::Button, true, format!("Clear faults of the {}", entry.name))
             });
-            if button.on_hover_text("Once nobody is near the arm and the cause is gone: it may move again.").clicked() {
+            if button.on_hover_text(text::devices::ONCE_NOBODY_IS_NEAR).clicked() {
                 clear.command();
             }
         }
@@ -71,7 +72,7 @@ fn standing_words(health: &Health) -> (Sign, egui::Color32, String) {
     };
     match health.standing {
         Standing::Connected => (Sign::Disc, theme::now().engaged, figures()),
-        Standing::Opening => (Sign::Ring, theme::now().text, "being opened".to_owned()),
+        Standing::Opening => (Sign::Ring, theme::now().text, text::devices::BEING_OPENED.to_owned()),
         Standing::Closed => (Sign::Ring, theme::now().text_weak, "disconnected".to_owned()),
         Standing::Lost(loss) => {
             (Sign::Triangle, theme::now().alarm_medium, format!("lost: {}; {}", loss.cause(), figures()))

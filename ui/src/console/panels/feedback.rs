@@ -3,6 +3,7 @@
 //! Controls show what is in force, as it came back from the loop; while a control is being moved, and for a moment after,
 //! it shows what was asked.
 
+use crate::console::text;
 use std::ops::RangeInclusive;
 
 use egui::{Button, DragValue, RichText, Slider, SliderClamping, Ui, vec2};
@@ -16,17 +17,6 @@ const ASKED_SHOWN_S: f64 = 1.6;
 const DELAY_MS: RangeInclusive<f64> = 0.0..=500.0;
 const DEAD_BAND_MM_S: RangeInclusive<f64> = 0.0..=10.0;
 const GAIN_LIMIT: f64 = 3.0;
-const GAIN_MEANING: &str = "Factor between the force asked for by the mode and the force in the hand, without unit: 0 to 1, or to 3 once \
-                            that is allowed. 0 is no force, 1 is natural. Changes are ramped at 2 per second. The strip below tells up \
-                            to which gain a gripping hand comes to rest.";
-const DELAY_MEANING: &str = "One-way delay from the follower to the hand, 0 to 500 ms, added to what the link has. The paper programs 300 \
-                             ms. Every mode gets its data this late and renders this far ahead. Taken over when the slider is let go.";
-const DEAD_BAND_MEANING: &str = "Speed of the hand, 0 to 10 mm/s, below which nothing is rendered: at standstill an impedance is unknown. \
-                                 The paper uses 1 mm/s; 0 is no dead band. The edge is smooth: force comes back in full at twice the \
-                                 speed. While force is kept at standstill, it does nothing.";
-const HOLD_MEANING: &str = "On: the force stays when the hand rests, so that a steady push is felt. Off: it fades in the dead band below, as \
-                            in the paper, and the panel of gates tells how much is not rendered (N).";
-
 /// A value that was asked for and when (s on the window's clock).
 #[derive(Clone, Copy, Debug, Default)]
 struct Asked(Option<(f64, f64)>);
@@ -133,7 +123,13 @@ fn setting_ui(
 }
 
 fn gain_ui(ui: &mut Ui, live: &Live, state: &mut FeedbackState, outbox: &mut Outbox) {
-    let setting = Setting { name: "Gain", meaning: GAIN_MEANING, suffix: "", decimals: 2, at_once: true };
+    let setting = Setting {
+        name: text::feedback::GAIN,
+        meaning: text::feedback::GAIN_MEANING,
+        suffix: "",
+        decimals: 2,
+        at_once: true,
+    };
     let limit = if state.allow_above_one { GAIN_LIMIT } else { 1.0 };
     let (wanted, rail) = setting_ui(ui, &setting, 0.0..=limit, live.gain(), &mut state.gain);
     stable_gain_ui(ui, live, rail, limit);
@@ -141,15 +137,14 @@ fn gain_ui(ui: &mut Ui, live: &Live, state: &mut FeedbackState, outbox: &mut Out
         outbox.push(if gain > 1.0 { Command::SetGainAboveOne(gain) } else { Command::SetGain(gain) });
     }
     ui.horizontal(|ui| {
-        let meaning = "Second, deliberate action: lets the gain go up to 3, so that soft tissue feels harder than it is. The force \
-                       ceiling stays. Taking the mark away brings the gain back to 1 at most.";
-        let unlock = ui.checkbox(&mut state.allow_above_one, "Allow above 1").on_hover_text(meaning);
+        let meaning = text::feedback::SECOND_DELIBERATE_ACTION_LETS;
+        let unlock = ui.checkbox(&mut state.allow_above_one, text::feedback::ALLOW_ABOVE_1).on_hover_text(meaning);
         if unlock.changed() && !state.allow_above_one && live.gain() > 1.0 {
             outbox.push(Command::SetGain(1.0));
             state.gain = Asked::default();
         }
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-            ui.label(small(format!("in force {:.2}", live.gain()))).on_hover_text("The gain the loop uses now, after its ramp.");
+            ui.label(small(format!("in force {:.2}", live.gain()))).on_hover_text(text::feedback::THE_GAIN_THE_LOOP);
         });
     });
 }
@@ -160,7 +155,8 @@ pub fn calm_gain_ui(ui: &mut Ui, live: &Live, state: &mut FeedbackState, outbox:
     let shown = state.gain.shown(live.gain(), time_s);
     let mut wanted = None;
     ui.horizontal(|ui| {
-        ui.label(RichText::new("Gain").font(theme::strong(17.0))).on_hover_text(GAIN_MEANING);
+        ui.label(RichText::new(text::feedback::GAIN).font(theme::strong(17.0)))
+            .on_hover_text(text::feedback::GAIN_MEANING);
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
             let mut step = |ui: &mut Ui, text: &str, name: &str, by: f64| {
                 let button =
@@ -170,17 +166,18 @@ pub fn calm_gain_ui(ui: &mut Ui, live: &Live, state: &mut FeedbackState, outbox:
                     wanted = Some(((shown + by) * 10.0).round() / 10.0);
                 }
             };
-            step(ui, "+", "Raise the gain", 0.1);
-            step(ui, "-", "Lower the gain", -0.1);
+            step(ui, "+", text::feedback::RAISE_THE_GAIN, 0.1);
+            step(ui, "-", text::feedback::LOWER_THE_GAIN, -0.1);
             ui.add_space(8.0);
-            ui.label(RichText::new(format!("{shown:.2}")).font(theme::strong(38.0))).on_hover_text(GAIN_MEANING);
+            ui.label(RichText::new(format!("{shown:.2}")).font(theme::strong(38.0)))
+                .on_hover_text(text::feedback::GAIN_MEANING);
         });
     });
     let mut value = shown.min(1.0);
     ui.spacing_mut().slider_width = ui.available_width();
     let slider = ui.add(Slider::new(&mut value, 0.0..=1.0).show_value(false).clamping(SliderClamping::Edits));
-    slider.widget_info(|| egui::WidgetInfo::slider(true, value, "Gain"));
-    if slider.on_hover_text(GAIN_MEANING).changed() {
+    slider.widget_info(|| egui::WidgetInfo::slider(true, value, text::feedback::GAIN));
+    if slider.on_hover_text(text::feedback::GAIN_MEANING).changed() {
         wanted = Some(value);
     }
     if let Some(gain) = wanted.map(|gain| gain.clamp(0.0, 1.0)) {
@@ -190,7 +187,13 @@ pub fn calm_gain_ui(ui: &mut Ui, live: &Live, state: &mut FeedbackState, outbox:
 }
 
 fn delay_ui(ui: &mut Ui, live: &Live, state: &mut FeedbackState, outbox: &mut Outbox) {
-    let setting = Setting { name: "Link delay", meaning: DELAY_MEANING, suffix: " ms", decimals: 0, at_once: false };
+    let setting = Setting {
+        name: text::feedback::LINK_DELAY,
+        meaning: text::feedback::DELAY_MEANING,
+        suffix: " ms",
+        decimals: 0,
+        at_once: false,
+    };
     let in_force = live.delay_s() * 1e3;
     if let Some(delay_ms) = setting_ui(ui, &setting, DELAY_MS, in_force, &mut state.delay_ms).0 {
         outbox.push(Command::SetDelay(delay_ms * 1e-3));
@@ -198,14 +201,23 @@ fn delay_ui(ui: &mut Ui, live: &Live, state: &mut FeedbackState, outbox: &mut Ou
 }
 
 fn standstill_ui(ui: &mut Ui, live: &Live, state: &mut FeedbackState, outbox: &mut Outbox) {
-    let setting =
-        Setting { name: "Dead band", meaning: DEAD_BAND_MEANING, suffix: " mm/s", decimals: 1, at_once: true };
+    let setting = Setting {
+        name: text::feedback::DEAD_BAND,
+        meaning: text::feedback::DEAD_BAND_MEANING,
+        suffix: " mm/s",
+        decimals: 1,
+        at_once: true,
+    };
     let in_force = live.gate_settings().dead_band_m_s * 1e3;
     if let Some(mm_s) = setting_ui(ui, &setting, DEAD_BAND_MM_S, in_force, &mut state.dead_band_mm_s).0 {
         outbox.push(Command::SetDeadBand(mm_s * 1e-3));
     }
     let mut hold = live.gate_settings().static_hold;
-    if ui.checkbox(&mut hold, RichText::new("Keep force at standstill")).on_hover_text(HOLD_MEANING).changed() {
+    if ui
+        .checkbox(&mut hold, RichText::new(text::feedback::KEEP_FORCE_AT_STANDSTILL))
+        .on_hover_text(text::feedback::HOLD_MEANING)
+        .changed()
+    {
         outbox.push(Command::SetStaticHold(hold));
     }
 }

@@ -1,5 +1,6 @@
 //! "Why is there no force?": the gates between model and hand, in their order, and what each does just now.
 
+use crate::console::text;
 use egui::{Button, Color32, Label, RichText, Ui, vec2};
 use nima::{
     device::Side,
@@ -60,9 +61,7 @@ pub fn gates_ui(ui: &mut Ui, live: &Live, state: &mut GatesState) {
 /// The answer in one sentence: the first closed gate, or that nothing is wrong.
 fn answer(live: &Live, side: Side) -> String {
     why_no_force(live, side).unwrap_or_else(|| match live.figures {
-        figures if figures.measured_n[side.index()] < CONTACT_N => {
-            "Free motion: no contact, nothing to render.".to_owned()
-        }
+        figures if figures.measured_n[side.index()] < CONTACT_N => text::gates::FREE_MOTION_NO_CONTACT.to_owned(),
         figures => format!("There is: {:.1} N in the hand.", figures.rendered_n[side.index()]),
     })
 }
@@ -73,24 +72,22 @@ pub fn why_no_force(live: &Live, side: Side) -> Option<String> {
     let (measured_n, rendered_n) = (live.figures.measured_n[hand], live.figures.rendered_n[hand]);
     let withheld_n = gates.withheld_n.get();
     let words = match live.tick_of(side).map_or(LoopState::Idle, |tick| tick.state) {
-        LoopState::Disconnected => "No force: a device is missing (see the devices).",
-        LoopState::Idle => "No force: the loop is idle. Press Engage.",
-        LoopState::Ready => "No force yet: the drives are coming on.",
-        LoopState::Clutched => "No force: the clutch is pressed, the hand moves freely.",
-        LoopState::Stopped => "No force: stopped by the operator.",
-        LoopState::Faulted(Fault::OtherArm) => "No force: the other arm was stopped by a fault.",
-        LoopState::Faulted(_) => "No force: stopped by a fault.",
-        LoopState::Engaged if closed(gates.released) => {
-            "No force: the hand has let go. It comes back when the contact has ended."
-        }
-        LoopState::Engaged if closed(gates.invalid) => "No force: the mode has nothing valid to render.",
-        LoopState::Engaged if closed(gates.stale) => "No force: the data are too old.",
+        LoopState::Disconnected => text::gates::NO_FORCE_A_DEVICE,
+        LoopState::Idle => text::gates::NO_FORCE_THE_LOOP,
+        LoopState::Ready => text::gates::NO_FORCE_YET_THE,
+        LoopState::Clutched => text::gates::NO_FORCE_THE_CLUTCH,
+        LoopState::Stopped => text::gates::NO_FORCE_STOPPED_BY,
+        LoopState::Faulted(Fault::OtherArm) => text::gates::NO_FORCE_THE_OTHER,
+        LoopState::Faulted(_) => text::gates::NO_FORCE_STOPPED_BY_A,
+        LoopState::Engaged if closed(gates.released) => text::gates::NO_FORCE_THE_HAND,
+        LoopState::Engaged if closed(gates.invalid) => text::gates::NO_FORCE_THE_MODE,
+        LoopState::Engaged if closed(gates.stale) => text::gates::NO_FORCE_THE_DATA,
         LoopState::Engaged if measured_n < CONTACT_N => return None,
         LoopState::Engaged if closed(gates.dead_band) && withheld_n > 0.05 => {
             return Some(format!("{withheld_n:.1} N not rendered (dead band)"));
         }
-        LoopState::Engaged if live.gain() < 0.01 => "No force: the gain is zero.",
-        LoopState::Engaged if closed(gates.energy) => "Less force: the hand would get back more energy than it gave.",
+        LoopState::Engaged if live.gain() < 0.01 => text::gates::NO_FORCE_THE_GAIN,
+        LoopState::Engaged if closed(gates.energy) => text::gates::LESS_FORCE_THE_HAND,
         LoopState::Engaged if rendered_n < 0.05 => {
             return Some(format!("On its way: the link is {:.0} ms late.", live.delay_s() * 1e3));
         }
@@ -138,14 +135,14 @@ pub(super) fn gates(live: &Live, side: Side) -> [Gate; 9] {
     };
     let mut dead_band = gate(
         Which::DeadBand,
-        "Dead band",
+        text::gates::DEAD_BAND,
         gates.dead_band,
         false,
         format!("{:.1} mm/s", live.gate_settings().dead_band_m_s * 1e3),
-        "Closed while the hand is slower than this. At standstill an impedance cannot be told from a constant force.",
+        text::gates::CLOSED_WHILE_THE_HAND,
     );
     if live.gate_settings().static_hold {
-        "off: force is kept".clone_into(&mut dead_band.note);
+        text::gates::OFF_FORCE_IS_KEPT.clone_into(&mut dead_band.note);
     } else if closed(gates.dead_band) && gates.withheld_n.get() > 0.05 {
         dead_band.note = format!("{:.1} N not rendered", gates.withheld_n.get());
     }
@@ -154,61 +151,68 @@ pub(super) fn gates(live: &Live, side: Side) -> [Gate; 9] {
     [
         gate(
             Which::Permission,
-            "Engaged",
+            text::gates::ENGAGED,
             gates.not_permitted,
             false,
             live.tick_of(side).map_or(LoopState::Idle, |tick| tick.state).word().to_lowercase(),
-            "Closed unless the loop is engaged. Stop closes it at once.",
+            text::gates::CLOSED_UNLESS_THE_LOOP,
         ),
         gate(
             Which::Release,
-            "Hand",
+            text::gates::HAND,
             gates.released,
             false,
-            if chain.handle_kg > 0.0 { String::new() } else { "off: handle's mass unknown".to_owned() },
-            "Closed when the handle flies off as it does without a hand, until the contact has ended or the loop is engaged anew.",
+            if chain.handle_kg > 0.0 { String::new() } else { text::gates::OFF_HANDLE_S_MASS.to_owned() },
+            text::gates::CLOSED_WHEN_THE_HANDLE,
         ),
         gate(
             Which::Validity,
-            "Valid",
+            text::gates::VALID,
             gates.invalid,
             false,
             String::new(),
-            "Closed when the mode asks for nothing, for something not finite, or for more than 1000 N.",
+            text::gates::CLOSED_WHEN_THE_MODE,
         ),
         gate(
             Which::Age,
-            "Age",
+            text::gates::AGE,
             gates.stale,
             false,
             format!("zero after {:.0} ms", chain.zero_after_s * 1e3),
-            "Fades the force when data are older than the link's own delay, to zero after this time.",
+            text::gates::FADES_THE_FORCE_WHEN,
         ),
         dead_band,
-        gate(Which::Gain, "Gain", gain, false, format!("{:.2}", live.gain()), "The operator's factor. Closed at zero."),
+        gate(
+            Which::Gain,
+            text::gates::GAIN,
+            gain,
+            false,
+            format!("{:.2}", live.gain()),
+            text::gates::THE_OPERATOR_S_FACTOR,
+        ),
         gate(
             Which::Slew,
-            "Slew",
+            text::gates::SLEW,
             gates.slew,
             true,
             format!("{:.0} N/s", chain.slew_n_per_s),
-            "Limits how fast the force may change, so that no step kicks the hand.",
+            text::gates::LIMITS_HOW_FAST_THE,
         ),
         gate(
             Which::Energy,
-            "Energy",
+            text::gates::ENERGY,
             gates.energy,
             true,
             stored(live, side),
-            "Lets the hand get back what it gave and a little more: takes the force along its motion away when that is used up.",
+            text::gates::LETS_THE_HAND_GET,
         ),
         gate(
             Which::Ceiling,
-            "Ceiling",
+            text::gates::CEILING,
             gates.ceiling,
             true,
             format!("{:.1} N", chain.ceiling_n.min(chain.device_limit_n)),
-            "The largest force that ever reaches the hand, never above what the device can give.",
+            text::gates::THE_LARGEST_FORCE_THAT,
         ),
     ]
 }
@@ -226,7 +230,7 @@ pub(super) fn history(live: &Live, side: Side, gate: Which) -> String {
     let Some(counts) = live.tick_of(side).map(|tick| tick.gates.counts) else { return String::new() };
     let (acted, share, last) = (counts.acted[gate.index()], counts.share(gate), counts.last[gate.index()]);
     match last {
-        Reason::Open => "It has not acted so far.".to_owned(),
+        Reason::Open => text::gates::IT_HAS_NOT_ACTED.to_owned(),
         last => format!("Acted on {acted} ticks ({:.1} %); the last time: {}.", 100.0 * share, last.words()),
     }
 }

@@ -1,5 +1,6 @@
 //! How far each mode's force is from the truth, at the true horizon: the delay of the link.
 
+use crate::console::text;
 use egui::{Align2, Rect, Sense, Ui, vec2};
 use nima::impedance::Mode;
 
@@ -65,7 +66,7 @@ fn trend_ui(ui: &mut Ui, live: &Live) {
         theme::regular(11.0),
         theme::now().text_weak,
     );
-    let note = "last 3 min";
+    let note = text::horizon::LAST_3_MIN;
     painter.text(
         rect.left_bottom() + vec2(4.0, -3.0),
         Align2::LEFT_BOTTOM,

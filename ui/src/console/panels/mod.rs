@@ -17,6 +17,7 @@ pub mod top_bar;
 pub mod tradeoff;
 mod tradeoff_plot;
 
+use crate::console::text;
 pub use calibrations::{CalibrationWish, calibrations_ui};
 pub use degrees::degrees_ui;
 pub use devices::devices_ui;
@@ -35,25 +36,19 @@ use nima::impedance::Mode;
 /// Name of a mode on a button.
 pub const fn mode_name(mode: Mode) -> &'static str {
     match mode {
-        Mode::Literal => "Literal (NIMA)",
-        Mode::Linear => "Linear (IMA)",
-        Mode::Dfr => "Direct (DFR)",
-        Mode::Anchored => "Anchored",
+        Mode::Literal => text::modes::LITERAL_NIMA,
+        Mode::Linear => text::modes::LINEAR_IMA,
+        Mode::Dfr => text::modes::DIRECT_DFR,
+        Mode::Anchored => text::modes::ANCHORED,
     }
 }
 
 /// What a mode does, in a sentence.
 pub const fn mode_meaning(mode: Mode) -> &'static str {
     match mode {
-        Mode::Literal => {
-            "The paper to the letter: renders M X from the hand's own motion, degree chosen by the error inside the window. \
-             Renders nothing at standstill."
-        }
-        Mode::Linear => "The paper's linear predecessor: the same with degree 1 only.",
-        Mode::Dfr => "Direct force reflection: the measured force, as late as the link delivers it.",
-        Mode::Anchored => {
-            "The last measured force, corrected by the identified impedance for what the hand did since. Falls back to \
-             direct reflection where a correction does not pay."
-        }
+        Mode::Literal => text::modes::THE_PAPER_TO_THE,
+        Mode::Linear => text::modes::THE_PAPER_S_LINEAR,
+        Mode::Dfr => text::modes::DIRECT_FORCE_REFLECTION_THE,
+        Mode::Anchored => text::modes::THE_LAST_MEASURED_FORCE,
     }
 }

@@ -1,6 +1,7 @@
 //! What stands between a model and a hand: the interlock of each arm pair as a diagram that lights up where it is, and the gates in
 //! the order in which a force passes them, with how often each acted and why.
 
+use crate::console::text;
 use egui::{Align2, Color32, Painter, Pos2, Rect, ScrollArea, Sense, Stroke, Ui, pos2, vec2};
 use nima::{device::Side, safety::Why, teleop::LoopState};
 
@@ -41,12 +42,12 @@ fn of_side(live: &Live, side: Side) -> String {
 /// States and where they stand, in parts of the diagram.
 const PLACES: [(&str, f32, f32); 7] = [
     ("No device", 0.10, 0.26),
-    ("Idle", 0.32, 0.26),
-    ("Ready", 0.52, 0.26),
-    ("Engaged", 0.72, 0.26),
-    ("Clutched", 0.90, 0.26),
-    ("Stopped", 0.32, 0.82),
-    ("Fault", 0.72, 0.82),
+    (text::safety::IDLE, 0.32, 0.26),
+    (text::safety::READY, 0.52, 0.26),
+    (text::safety::ENGAGED, 0.72, 0.26),
+    (text::safety::CLUTCHED, 0.90, 0.26),
+    (text::safety::STOPPED, 0.32, 0.82),
+    (text::safety::FAULT, 0.72, 0.82),
 ];
 /// Ways from one state to another; a stop and a fault come from everywhere and lead back to idle.
 const WAYS: [(usize, usize); 6] = [(0, 1), (1, 2), (2, 3), (3, 4), (5, 1), (6, 1)];
@@ -65,13 +66,13 @@ const fn place_of(state: LoopState) -> usize {
 
 const fn why_words(why: Why) -> &'static str {
     match why {
-        Why::Asked => "the operator asked for it",
-        Why::Connected => "the devices came",
-        Why::Disconnected => "a device went",
-        Why::Agreed => "drives obey, hand and tip agree",
-        Why::Clutch => "the clutch",
-        Why::Late => "the drives did not obey in time",
-        Why::Absent => "nobody holds the handle",
+        Why::Asked => text::safety::THE_OPERATOR_ASKED_FOR,
+        Why::Connected => text::safety::THE_DEVICES_CAME,
+        Why::Disconnected => text::safety::A_DEVICE_WENT,
+        Why::Agreed => text::safety::DRIVES_OBEY_HAND_AND,
+        Why::Clutch => text::safety::THE_CLUTCH,
+        Why::Late => text::safety::THE_DRIVES_DID_NOT,
+        Why::Absent => text::safety::NOBODY_HOLDS_THE_HANDLE,
         Why::Fault => "a fault",
     }
 }
@@ -81,15 +82,12 @@ fn interlock_ui(ui: &mut Ui, live: &Live, side: Side) {
     let state = live.tick_of(side).map_or(LoopState::Idle, |tick| tick.state);
     let change = live.changes[side.index()];
     let since = change.map_or_else(
-        || "since the loop began".to_owned(),
+        || text::safety::SINCE_THE_LOOP_BEGAN.to_owned(),
         |Change { t_s, why, .. }| format!("since {t_s:.1} s: {}", why_words(why)),
     );
     let title = format!("Interlock{}: {}", of_side(live, side), state.word().to_lowercase());
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, format!("{title}, {since}")));
-    response.on_hover_text(
-        "Force and motion exist in Engaged only. Stop and fault are latched: out of them it takes a release to Idle and a new \
-         engagement. What went away comes back as Idle. Nothing resumes by itself; only the clutch returns to Engaged.",
-    );
+    response.on_hover_text(text::safety::FORCE_AND_MOTION_EXIST);
     let painter = ui.painter_at(rect);
     painter.text(rect.left_top() + vec2(4.0, 2.0), Align2::LEFT_TOP, title, theme::strong(15.0), theme::now().text);
     painter.text(
@@ -115,7 +113,13 @@ fn interlock_ui(ui: &mut Ui, live: &Live, side: Side) {
     let stroke = Stroke::new(1.0, theme::now().text_weak);
     painter.add(egui::Shape::dashed_line(&[pos2(at(0).left(), rail), pos2(at(4).right(), rail)], stroke, 4.0, 4.0));
     let right = pos2(at(4).right(), rail - 2.0);
-    painter.text(right, Align2::RIGHT_BOTTOM, "from everywhere", theme::regular(11.0), theme::now().text_weak);
+    painter.text(
+        right,
+        Align2::RIGHT_BOTTOM,
+        text::safety::FROM_EVERYWHERE,
+        theme::regular(11.0),
+        theme::now().text_weak,
+    );
     for i in [5, 6] {
         let x = at(i).center().x + 16.0;
         arrow(&painter, pos2(x, rail), pos2(x, at(i).top()), stroke);
@@ -191,9 +195,7 @@ fn end_ui(ui: &mut Ui, width: f32, name: &str, force_n: f64) {
     let (rect, response) = ui.allocate_exact_size(vec2(width, GATE_HEIGHT), Sense::hover());
     let number = if force_n < 1e3 { format!("{force_n:.1} N") } else { "> 1 kN".to_owned() };
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, format!("{name}: {number}")));
-    response.on_hover_text(
-        "Size of the force that the mode asks for now, and of what reaches the hand after all gates (N).",
-    );
+    response.on_hover_text(text::safety::SIZE_OF_THE_FORCE);
     let painter = ui.painter_at(rect);
     painter.text(
         rect.center() - vec2(0.0, 10.0),

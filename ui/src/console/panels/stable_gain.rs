@@ -1,6 +1,7 @@
 //! Where the gain stands in the map of stability: a strip under its slider, whole where a gripping hand comes to rest, broken where
 //! it shakes, for the mode and delay in force and the stiffness of the contact now.
 
+use crate::console::text;
 use egui::{Rect, Sense, Stroke, Ui, pos2, vec2};
 use nima::study::stability_map::{StabilityMap, Verdict};
 
@@ -14,7 +15,7 @@ const PARTS: u32 = 60;
 pub(super) fn stable_gain_ui(ui: &mut Ui, live: &Live, rail: Rect, limit: f64) {
     let Some(map) = StabilityMap::committed() else { return };
     let Some(n_m) = live.stiffness_n_m() else {
-        ui.label(small("Stable up to: not known before a contact")).on_hover_text(MEANING);
+        ui.label(small(text::feedback::STABLE_UP_TO_NOT)).on_hover_text(text::feedback::MEANING);
         return;
     };
     let (mode, delay_s) = (live.mode(), live.delay_s());
@@ -43,11 +44,6 @@ pub(super) fn stable_gain_ui(ui: &mut Ui, live: &Live, rail: Rect, limit: f64) {
     let greatest = map.greatest_stable_gain(mode, delay_s, n_m);
     let now = map.at(mode, live.gain(), delay_s, n_m);
     let words = format!("Here {}; stable up to {greatest:.2} at {n_m:.0} N/m", now.words());
-    response.on_hover_text(MEANING);
-    ui.label(small(words)).on_hover_text(MEANING);
+    response.on_hover_text(text::feedback::MEANING);
+    ui.label(small(words)).on_hover_text(text::feedback::MEANING);
 }
-
-const MEANING: &str = "From the map of stability, made by simulation: a hand that grips is knocked aside and must come to rest, with \
-                       the force kept at standstill and without the energy gate, which is harder than the defaults. For the mode \
-                       and the delay in force and the stiffness of the contact now (N/m, slope of force over way, of the last contact \
-                       in between). Whole: stable. Thin: at the edge. Hatched: the hand shakes.";

@@ -1,5 +1,6 @@
 //! Whether the loop keeps its time, and what it was granted.
 
+use crate::console::text;
 use egui::{Grid, RichText, Ui};
 use nima::statistics::Quantiles;
 
@@ -26,22 +27,22 @@ fn timings(live: &Live) -> Vec<Timing<'_>> {
     let deadline_us = 1e6 / live.rig.rate_hz;
     vec![
         Timing {
-            name: "Wake-up",
-            meaning: "From the moment the loop should wake to when it does (us).",
+            name: text::timing::WAKE_UP,
+            meaning: text::timing::FROM_THE_MOMENT_THE,
             quantiles: live.figures.wake_us,
             durations: live.wake(),
             deadline_us,
         },
         Timing {
-            name: "Work",
-            meaning: "One tick: gravity, identification, selection, rendering, gates (us).",
+            name: text::timing::WORK,
+            meaning: text::timing::ONE_TICK_GRAVITY_IDENTIFICATION,
             quantiles: live.figures.work_us,
             durations: live.work(),
             deadline_us,
         },
         Timing {
-            name: "Sample to force",
-            meaning: "From the arrival of the oldest measurement to when the force made from it was given to the handle (us).",
+            name: text::timing::SAMPLE_TO_FORCE,
+            meaning: text::timing::FROM_THE_ARRIVAL_OF,
             quantiles: live.figures.sample_to_force_us,
             durations: live.sample_to_force(),
             deadline_us,
@@ -66,39 +67,19 @@ pub fn timing_ui(ui: &mut Ui, live: &Live, state: &mut TimingState) {
     ui.add_space(4.0);
     let tick = live.tick.as_ref();
     let rate = format!("{} at {:.0} Hz", grouped(tick.map_or(0, |tick| tick.index + 1)), live.figures.rate_hz);
-    figure(
-        ui,
-        "Ticks",
-        rate,
-        "Ticks executed since the loop began, and ticks that reached this screen in the last moment.",
-    );
+    figure(ui, text::timing::TICKS, rate, text::timing::TICKS_EXECUTED_SINCE_THE);
     let missed = grouped(tick.map_or(0, |tick| tick.missed));
-    figure(
-        ui,
-        "Missed",
-        missed,
-        "Periods in which the loop was not run in time. They are counted and skipped, never caught up.",
-    );
+    figure(ui, text::timing::MISSED, missed, text::timing::PERIODS_IN_WHICH_THE);
     let dropped = grouped(tick.map_or(0, |tick| tick.dropped));
-    figure(
-        ui,
-        "Dropped",
-        dropped,
-        "Ticks that did not reach this screen because it was busy. The loop never waits for it.",
-    );
+    figure(ui, text::timing::DROPPED, dropped, text::timing::TICKS_THAT_DID_NOT);
     scheduling_ui(ui, live);
     let [p50, p99] = live.figures.frame_ms;
     let frame = format!("p50 {p50:.0}, p99 {p99:.0}, work {:.0} ms", live.figures.frame_work_ms);
     figure(
         ui,
-        "Console frame",
+        text::timing::CONSOLE_FRAME,
         frame,
-        if live.rough_edges {
-            "Time from one picture of this window to the next since it opened (32 ms asked; at rest not counted), and the work in it now. Edges in 3-D are not smoothed, \
-             because this computer draws too slowly with it."
-        } else {
-            "Time from one picture of this window to the next since it opened (32 ms asked; at rest not counted), and the work in it now."
-        },
+        if live.rough_edges { text::timing::FRAME_ROUGH } else { text::timing::FRAME },
     );
 }
 
@@ -127,10 +108,9 @@ fn right(ui: &mut Ui, text: RichText) {
 fn scheduling_ui(ui: &mut Ui, live: &Live) {
     let Some(scheduling) = live.scheduling else { return };
     let yes_no = |granted| if granted { "granted" } else { "refused" };
-    let meaning =
-        "Real-time priority keeps other programs from delaying the loop; locked memory keeps page faults away.";
-    figure(ui, "Real-time priority", yes_no(scheduling.fifo), meaning);
-    figure(ui, "Locked memory", yes_no(scheduling.memory_locked), meaning);
+    let meaning = text::timing::REAL_TIME_PRIORITY_KEEPS;
+    figure(ui, text::timing::REAL_TIME_PRIORITY, yes_no(scheduling.fifo), meaning);
+    figure(ui, text::timing::LOCKED_MEMORY, yes_no(scheduling.memory_locked), meaning);
     if let Some(advice) = scheduling.advice() {
         ui.label(small(sentence(advice)));
     }

@@ -1,6 +1,7 @@
 //! Histograms of the loop's durations with the deadline drawn in, counts on a logarithmic scale so that a single late tick is seen among
 //! millions; and the missed periods of the last two minutes as a strip.
 
+use crate::console::text;
 use egui::{Align2, Painter, Rect, Sense, Stroke, Ui, pos2, vec2};
 use nima::statistics::{Percentiles, Quantiles};
 
@@ -128,7 +129,7 @@ fn axis(painter: &Painter, ground: Rect, deadline_us: f64, most: u64) {
 pub(super) fn missed_ui(ui: &mut Ui, deadlines: &Deadlines) {
     let total = deadlines.total();
     let words = format!("Missed in the last {} min: {}", SECONDS / 60, grouped(total));
-    ui.label(small(&words)).on_hover_text(MISSED);
+    ui.label(small(&words)).on_hover_text(text::timing::MISSED);
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), STRIP), Sense::hover());
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, format!("{words} periods")));
     let painter = ui.painter();
@@ -150,9 +151,6 @@ pub(super) fn missed_ui(ui: &mut Ui, deadlines: &Deadlines) {
         response.on_hover_text_at_pointer(format!("{age} s ago: {} periods missed", grouped(count)));
     }
 }
-
-const MISSED: &str = "Periods in which the loop was not run in time, second by second, the newest on the right. They are counted and \
-                      skipped, never caught up. Logarithmic height.";
 
 #[cfg(test)]
 mod tests {

@@ -1,5 +1,6 @@
 //! Always there: what this is, the state of the loop, what is wrong, and the way to stop.
 
+use crate::console::text;
 use egui::{Align, Align2, Area, Button, Id, Label, Layout, Order, RichText, Sense, Ui, vec2};
 use nima::{runtime::Command, teleop::LoopState};
 
@@ -81,8 +82,8 @@ fn identity_ui(
         ui.add_space(8.0);
         ui.spacing_mut().item_spacing.y = 4.0;
         ui.horizontal(|ui| {
-            ui.label(RichText::new("NIMA Console").font(theme::strong(19.0)));
-            ui.label(small("Research software, not for clinical use"));
+            ui.label(RichText::new(text::top_bar::NIMA_CONSOLE).font(theme::strong(19.0)));
+            ui.label(small(text::top_bar::RESEARCH_SOFTWARE_NOT_FOR));
         });
         ui.horizontal(|ui| {
             switch_ui(ui, &mut settings.role, !calibrating);
@@ -98,29 +99,13 @@ fn identity_ui(
 
 fn state_ui(ui: &mut Ui, state: LoopState) {
     let (what, colour, meaning) = match state {
-        LoopState::Disconnected => {
-            (Sign::Ring, theme::now().text_weak, "A device that force needs is missing; it is opened again by itself.")
-        }
-        LoopState::Ready => {
-            (Sign::Ring, theme::now().engaged, "Drives on, at rest, without force, until hand and tip agree.")
-        }
-        LoopState::Clutched => (
-            Sign::Ring,
-            theme::now().engaged,
-            "The clutch is pressed: the hand moves freely, the follower rests, no force.",
-        ),
-        LoopState::Idle => {
-            (Sign::Ring, theme::now().at_rest, "The loop measures. No force, no motion until it is engaged.")
-        }
-        LoopState::Engaged => {
-            (Sign::Disc, theme::now().engaged, "The follower moves with the hand and force is fed back.")
-        }
-        LoopState::Stopped => {
-            (Sign::Square, theme::now().stop, "Stopped by the operator: no force, no motion. Latched.")
-        }
-        LoopState::Faulted(_) => {
-            (Sign::Triangle, theme::now().alarm_high, "Stopped by a fault: no force, no motion. Latched.")
-        }
+        LoopState::Disconnected => (Sign::Ring, theme::now().text_weak, text::top_bar::A_DEVICE_THAT_FORCE),
+        LoopState::Ready => (Sign::Ring, theme::now().engaged, text::top_bar::DRIVES_ON_AT_REST),
+        LoopState::Clutched => (Sign::Ring, theme::now().engaged, text::top_bar::THE_CLUTCH_IS_PRESSED),
+        LoopState::Idle => (Sign::Ring, theme::now().at_rest, text::top_bar::THE_LOOP_MEASURES_NO),
+        LoopState::Engaged => (Sign::Disc, theme::now().engaged, text::top_bar::THE_FOLLOWER_MOVES_WITH),
+        LoopState::Stopped => (Sign::Square, theme::now().stop, text::top_bar::STOPPED_BY_THE_OPERATOR),
+        LoopState::Faulted(_) => (Sign::Triangle, theme::now().alarm_high, text::top_bar::STOPPED_BY_A_FAULT),
     };
     let (rect, response) = ui.allocate_exact_size(vec2(136.0, 44.0), Sense::hover());
     let response = response.on_hover_text(format!("State of the loop. {meaning}"));
@@ -152,26 +137,22 @@ fn stop_ui(ui: &mut Ui, state: LoopState, outbox: &mut Outbox) {
 
 fn stop_button(ui: &mut Ui, button: Button<'_>, ink: egui::Color32) -> egui::Response {
     let response = ui.add(button);
-    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, "Stop"));
-    let response = response.on_hover_text("Zero force and a resting follower at once. Space or Escape does the same.");
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, text::top_bar::STOP));
+    let response = response.on_hover_text(text::top_bar::ZERO_FORCE_AND_A);
     let middle = response.rect.center();
     sign(ui.painter(), Sign::Octagon, middle - vec2(34.0, 0.0), 11.0, ink);
-    ui.painter().text(middle - vec2(12.0, 0.0), Align2::LEFT_CENTER, "Stop", theme::strong(21.0), ink);
+    ui.painter().text(middle - vec2(12.0, 0.0), Align2::LEFT_CENTER, text::top_bar::STOP, theme::strong(21.0), ink);
     response
 }
 
 /// The one step that leads on from here, beside the stop and never under it.
 fn step_ui(ui: &mut Ui, state: LoopState, ready: bool, outbox: &mut Outbox) {
     let (name, command, meaning) = match state {
-        LoopState::Idle => ("Engage", Command::Engage, "Second step: motion and force feedback begin."),
-        LoopState::Stopped => {
-            ("Release stop", Command::ReleaseStop, "First of two steps: back to idle, still without force.")
+        LoopState::Idle => (text::top_bar::ENGAGE, Command::Engage, text::top_bar::SECOND_STEP_MOTION_AND),
+        LoopState::Stopped => (text::top_bar::RELEASE_STOP, Command::ReleaseStop, text::top_bar::FIRST_OF_TWO_STEPS),
+        LoopState::Faulted(_) => {
+            (text::top_bar::RELEASE_STOP, Command::ReleaseStop, text::top_bar::FIRST_OF_TWO_STEPS_BACK)
         }
-        LoopState::Faulted(_) => (
-            "Release stop",
-            Command::ReleaseStop,
-            "First of two steps: back to idle. Refused while the cause of the fault lives.",
-        ),
         LoopState::Engaged | LoopState::Ready | LoopState::Clutched | LoopState::Disconnected => {
             ui.add_space(theme::STOP_SIZE.x + 8.0);
             return;
@@ -188,9 +169,9 @@ fn step_ui(ui: &mut Ui, state: LoopState, ready: bool, outbox: &mut Outbox) {
 fn refusal_ui(ui: &mut Ui, live: &Live) {
     let Some(command) = live.refusal() else { return };
     let words = match command {
-        Command::Engage => "Engaging was refused: release the stop first",
-        Command::ReleaseStop => "The stop was not released: nothing is stopped, or the cause of the fault still lives",
-        _ => "The loop refused the last setting: it is outside its range",
+        Command::Engage => text::top_bar::ENGAGING_WAS_REFUSED_RELEASE,
+        Command::ReleaseStop => text::top_bar::THE_STOP_WAS_NOT,
+        _ => text::top_bar::THE_LOOP_REFUSED_THE,
     };
     ui.add(Label::new(small(words)).wrap());
 }

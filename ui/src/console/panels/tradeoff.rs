@@ -1,5 +1,6 @@
 //! What speed costs in accuracy on this computer: measured when asked, in the background, and applied when asked.
 
+use crate::console::text;
 use std::{
     sync::{
         Arc,
@@ -102,9 +103,9 @@ impl TradeoffState {
                 self.measured = Some(figures);
                 self.message.clear();
             }
-            Some(Err(SweepError::Cancelled)) => self.tell("Cancelled. Earlier figures were kept."),
+            Some(Err(SweepError::Cancelled)) => self.tell(text::tradeoff::CANCELLED_EARLIER_FIGURES_WERE),
             Some(Err(error)) => self.tell(error.to_string()),
-            Some(Ok(_)) | None => self.tell("The measurement broke off. Try again."),
+            Some(Ok(_)) | None => self.tell(text::tradeoff::THE_MEASUREMENT_BROKE_OFF),
         }
     }
 }
@@ -124,7 +125,7 @@ pub fn tradeoff_ui(ui: &mut Ui, live: &Live, state: &mut TradeoffState, outbox: 
         ui.label(small(state.message.clone()));
     }
     let Some(figures) = &state.measured else {
-        ui.label(small("Not measured yet. It takes some seconds; the loop goes on."));
+        ui.label(small(text::tradeoff::NOT_MEASURED_YET_IT));
         return None;
     };
     if let Some(clicked) = plot_ui(ui, figures, state.selected) {
@@ -137,9 +138,8 @@ pub fn tradeoff_ui(ui: &mut Ui, live: &Live, state: &mut TradeoffState, outbox: 
 
 fn measure_ui(ui: &mut Ui, live: &Live, state: &mut TradeoffState) {
     let Some(job) = &state.job else {
-        let meaning = "Runs every choice over six seconds of this scene on an ordinary background thread. Other work on this \
-                       computer makes the times longer and their p99 uncertain.";
-        let button = Button::new("Measure on this machine...").min_size(vec2(ui.available_width(), 30.0));
+        let meaning = text::tradeoff::RUNS_EVERY_CHOICE_OVER;
+        let button = Button::new(text::tradeoff::MEASURE_ON_THIS_MACHINE).min_size(vec2(ui.available_width(), 30.0));
         if ui.add(button).on_hover_text(meaning).clicked() {
             match Job::start(live) {
                 Ok(job) => state.job = Some(job),
@@ -156,8 +156,8 @@ fn measure_ui(ui: &mut Ui, live: &Live, state: &mut TradeoffState) {
             let words = format!("Trade-off measured: {:.0} %", 100.0 * share);
             egui::WidgetInfo::labeled(egui::Role::ProgressIndicator, true, words)
         });
-        let cancel = ui.add(Button::new("Cancel").min_size(BUTTON));
-        if cancel.on_hover_text("Stops measuring at once. Figures measured before are kept.").clicked() {
+        let cancel = ui.add(Button::new(text::tradeoff::CANCEL).min_size(BUTTON));
+        if cancel.on_hover_text(text::tradeoff::STOPS_MEASURING_AT_ONCE).clicked() {
             job.cancel.store(true, Ordering::Relaxed);
         }
     });
@@ -165,10 +165,7 @@ fn measure_ui(ui: &mut Ui, live: &Live, state: &mut TradeoffState) {
 
 /// The points that nothing beats, cheapest first, each a button.
 fn front_ui(ui: &mut Ui, figures: &SourceFigures, selected: &mut Option<usize>) {
-    ui.label(small("Nothing measured beats these in both (cheapest first):")).on_hover_text(
-        "The Pareto front: every other point costs more time or errs more. In anchored mode the window's model is one of \
-         several experts, so degree and window change the error by a few hundredths only.",
-    );
+    ui.label(small(text::tradeoff::NOTHING_MEASURED_BEATS_THESE)).on_hover_text(text::tradeoff::THE_PARETO_FRONT_EVERY);
     for index in front(figures) {
         let point = &figures.points[index];
         let row = Button::selectable(*selected == Some(index), format!("{}: {}", name(point), figures_of(point)));
@@ -184,17 +181,12 @@ fn apply_ui(ui: &mut Ui, live: &Live, point: &Point, state: &mut TradeoffState, 
     // A restart begins idle: it must never be a way out of a stop or a fault.
     let allowed = !restart || matches!(live.state(), LoopState::Idle | LoopState::Engaged);
     let size = vec2(ui.available_width(), 30.0);
-    let button = ui.add_enabled(allowed, Button::new("Apply").min_size(size));
-    let note = if restart {
-        "Degree or window differ from the loop's: the loop is restarted with them and comes back idle, without force. Engage \
-         it again when ready."
-    } else {
-        "Taken over by the running loop at once."
-    };
+    let button = ui.add_enabled(allowed, Button::new(text::tradeoff::APPLY).min_size(size));
+    let note = if restart { text::tradeoff::DEGREE_OR_WINDOW_DIFFER } else { text::tradeoff::TAKEN_OVER_BY_THE };
     ui.label(small(format!("{}. {note}", name(point))));
     let clicked = button
         .on_hover_text(format!("{}\n{}\n{note}", words(point), mode_meaning(mode)))
-        .on_disabled_hover_text("Release the stop or the fault first: a restart must not undo it.")
+        .on_disabled_hover_text(text::tradeoff::RELEASE_THE_STOP_OR)
         .clicked();
     if !clicked {
         return None;
@@ -263,7 +255,7 @@ fn figures_of(point: &Point) -> String {
 
 /// Everything about a point, for hovering.
 pub(super) fn words(point: &Point) -> String {
-    let front = if point.pareto { "\nNothing measured beats it in both." } else { "" };
+    let front = if point.pareto { text::tradeoff::NOTHING_MEASURED_BEATS_IT } else { "" };
     format!(
         "{}\none tick: median {} us, p99 {} us\nmean error at {:.0} ms: {} N, {} x DFR{front}",
         name(point),

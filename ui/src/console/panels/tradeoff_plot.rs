@@ -1,5 +1,6 @@
 //! Cost against error, both on logarithmic axes, with the points that nothing beats joined.
 
+use crate::console::text;
 use egui::{Color32, Ui, Vec2b, vec2};
 use egui_plot::{
     AxisHints, GridInput, GridMark, HoverPosition, Line, MarkerShape, Plot, PlotPoint, PlotPoints, Points,
@@ -24,7 +25,9 @@ pub(super) fn plot_ui(ui: &mut Ui, figures: &SourceFigures, selected: Option<usi
     let near = |at: PlotPoint| nearest(points, &shown, &range, at);
     let plot = Plot::new("trade-off")
         .height(HEIGHT)
-        .custom_x_axes(vec![AxisHints::new_x().label("One tick (us)").formatter(|mark, _| plain(mark.value))])
+        .custom_x_axes(vec![
+            AxisHints::new_x().label(text::tradeoff::ONE_TICK_US).formatter(|mark, _| plain(mark.value)),
+        ])
         .custom_y_axes(vec![
             AxisHints::new_y()
                 .label(format!("Mean error ({})", figures.unit))

@@ -1,6 +1,7 @@
 //! The demonstration: a script that goes through the modes at a long and a short delay, tells what is seen, and invites to take
 //! over. It plays on simulated and emulated rigs only; where it is left, mode and delay are put back as they were.
 
+use crate::console::text;
 use egui::{Button, CentralPanel, Frame, Label, Margin, Panel, RichText, Ui, vec2};
 use nima::{impedance::Mode, runtime::Command, teleop::LoopState};
 
@@ -36,49 +37,43 @@ pub struct Step {
 /// The script.
 pub const SCRIPT: [Step; 6] = [
     Step {
-        name: "What is seen",
-        words: "A hand carries an instrument from peg to peg and presses into soft tissue. The ivory arrow is the force measured at \
-                the instrument, the blue one the force that the hand feels. The link is 50 ms late.",
+        name: text::roles::WHAT_IS_SEEN,
+        words: text::roles::A_HAND_CARRIES_AN,
         mode: Mode::Anchored,
         delay_s: 0.05,
         seconds: 14.0,
     },
     Step {
-        name: "Direct, late",
-        words: "Now the link is 300 ms late, and the force is sent as it is: the blue arrow comes after the ivory one. The hand \
-                feels a contact that is over, and misses one that has begun.",
+        name: text::roles::DIRECT_LATE,
+        words: text::roles::NOW_THE_LINK_IS,
         mode: Mode::Dfr,
         delay_s: 0.3,
         seconds: 14.0,
     },
     Step {
-        name: "Linear impedance",
-        words: "Instead of the force, its law crosses the link: stiffness, damping and mass of the last 300 ms, rendered from the \
-                hand's own motion (IMA). It answers at once. But where the law has changed since, so has the force.",
+        name: text::roles::LINEAR_IMPEDANCE,
+        words: text::roles::INSTEAD_OF_THE_FORCE,
         mode: Mode::Linear,
         delay_s: 0.3,
         seconds: 14.0,
     },
     Step {
-        name: "Nonlinear, to the letter",
-        words: "The paper's recipe: a law of degree 1 to 5 (NIMA). It fits the past so closely that it foretells the future badly, \
-                and renders nothing where the hand rests. The gates keep its excesses from the hand.",
+        name: text::roles::NONLINEAR_TO_THE_LETTER,
+        words: text::roles::THE_PAPER_S_RECIPE,
         mode: Mode::Literal,
         delay_s: 0.3,
         seconds: 14.0,
     },
     Step {
-        name: "Anchored",
-        words: "Ours: the last measured force, corrected for what the hand did since, and only as far as such corrections have \
-                proven themselves. See the error on the right, beside direct reflection.",
+        name: text::roles::ANCHORED,
+        words: text::roles::OURS_THE_LAST_MEASURED,
         mode: Mode::Anchored,
         delay_s: 0.3,
         seconds: 14.0,
     },
     Step {
-        name: "Your turn",
-        words: "Press M, or the button in the view, and lead the instrument yourself: drag with the mouse, wheel for the height, arrow \
-                keys for small steps. Press into the tissue and watch the arrows.",
+        name: text::roles::YOUR_TURN,
+        words: text::roles::PRESS_M_OR_THE,
         mode: Mode::Anchored,
         delay_s: 0.05,
         seconds: 20.0,
@@ -184,9 +179,9 @@ fn caption_ui(ui: &mut Ui, live: &Live, demo: &mut DemoState) {
         }
         ui.add_space(10.0);
         let (name, meaning) = if demo.held {
-            ("Play", "The script goes on by itself.")
+            (text::roles::PLAY, text::roles::THE_SCRIPT_GOES_ON)
         } else {
-            ("Hold", "Stays in this chapter; the loop goes on.")
+            (text::roles::HOLD, text::roles::STAYS_IN_THIS_CHAPTER)
         };
         if ui.add_enabled(plays, Button::new(name).min_size(vec2(64.0, 30.0))).on_hover_text(meaning).clicked() {
             demo.held = !demo.held;
@@ -194,15 +189,11 @@ fn caption_ui(ui: &mut Ui, live: &Live, demo: &mut DemoState) {
     });
     ui.add_space(4.0);
     let words = match live.state() {
-        _ if !plays => {
-            "The demonstration plays on simulated rigs only: on a real one nothing changes mode or delay by itself."
-        }
+        _ if !plays => text::roles::THE_DEMONSTRATION_PLAYS_ON,
         LoopState::Engaged => SCRIPT[demo.step].words,
-        LoopState::Idle => "The loop is idle. Press Engage, and the demonstration goes on.",
-        LoopState::Stopped | LoopState::Faulted(_) => {
-            "Stopped: no force, no motion. Press Release stop, then Engage; these are two steps on purpose."
-        }
-        LoopState::Ready | LoopState::Clutched | LoopState::Disconnected => "The loop gets ready.",
+        LoopState::Idle => text::roles::THE_LOOP_IS_IDLE,
+        LoopState::Stopped | LoopState::Faulted(_) => text::roles::STOPPED_NO_FORCE_NO,
+        LoopState::Ready | LoopState::Clutched | LoopState::Disconnected => text::roles::THE_LOOP_GETS_READY,
     };
     ui.add(Label::new(RichText::new(words).font(theme::regular(18.0))).wrap());
     let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), 4.0), egui::Sense::hover());
@@ -210,7 +201,7 @@ fn caption_ui(ui: &mut Ui, live: &Live, demo: &mut DemoState) {
         bar(ui.painter(), rect, demo.shown_s / SCRIPT[demo.step].seconds, theme::now().reference);
     }
     if !plays {
-        ui.label(small("Choose a simulated rig to see it."));
+        ui.label(small(text::roles::CHOOSE_A_SIMULATED_RIG));
     }
 }
 

@@ -6,6 +6,7 @@ pub mod demo;
 mod surgeon;
 mod technician;
 
+use crate::console::text;
 use egui::{Button, Key, Ui, vec2};
 use nima::config::Rig;
 use serde::{Deserialize, Serialize};
@@ -42,9 +43,9 @@ impl Role {
     /// On its button.
     pub const fn name(self) -> &'static str {
         match self {
-            Self::Surgeon => "Surgeon",
-            Self::Technician => "Technician",
-            Self::Demo => "Demo",
+            Self::Surgeon => text::roles::SURGEON,
+            Self::Technician => text::roles::TECHNICIAN,
+            Self::Demo => text::roles::DEMO,
         }
     }
 
@@ -60,11 +61,9 @@ impl Role {
     /// What it shows.
     pub const fn meaning(self) -> &'static str {
         match self {
-            Self::Surgeon => "The field as the endoscope sees it, the forces against the ceiling, the gain, alarms.",
-            Self::Technician => {
-                "Every panel: feedback, devices, calibrations, gates, errors, degrees, timing, trade-off."
-            }
-            Self::Demo => "A demonstration that runs by itself and tells what is seen. On simulated rigs only.",
+            Self::Surgeon => text::roles::THE_FIELD_AS_THE,
+            Self::Technician => text::roles::EVERY_PANEL_FEEDBACK_DEVICES,
+            Self::Demo => text::roles::A_DEMONSTRATION_THAT_RUNS,
         }
     }
 }
@@ -136,7 +135,7 @@ pub fn switch_ui(ui: &mut Ui, now: &mut Role, allowed: bool) {
         let button = Button::selectable(*now == role, role.name()).frame_when_inactive(true).min_size(vec2(62.0, 30.0));
         let response = ui.add_enabled(allowed, button);
         let response = response.on_hover_text(format!("{} Key {}.", role.meaning(), role.key().name()));
-        if response.on_disabled_hover_text("Close the wizard first.").clicked() {
+        if response.on_disabled_hover_text(text::roles::CLOSE_THE_WIZARD_FIRST).clicked() {
             *now = role;
         }
     }

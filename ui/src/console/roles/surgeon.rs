@@ -1,6 +1,7 @@
 //! A calm monitor: the field as the endoscope sees it, and under it, where each hand is, its two forces against the ceiling
 //! with the gain between them. Six figures at most: two forces of each hand, the gain, the ceiling.
 
+use crate::console::text;
 use egui::{Align2, CentralPanel, Frame, Margin, Panel, Rect, Sense, Ui, pos2, vec2};
 use nima::device::Side;
 
@@ -63,7 +64,9 @@ fn told_ui(ui: &Ui, live: &Live, place: Rect) {
     let text = place.left_top() + vec2(16.0, 16.0);
     painter.text(text, Align2::LEFT_TOP, &live.scene.name, theme::strong(17.0), theme::now().text);
     for (i, (rendered, words)) in
-        [(false, "measured at the instrument"), (true, "rendered to the hand")].into_iter().enumerate()
+        [(false, text::roles::MEASURED_AT_THE_INSTRUMENT), (true, text::roles::RENDERED_TO_THE_HAND)]
+            .into_iter()
+            .enumerate()
     {
         let y = text.y + 52.0 + 34.0 * i as f32;
         force_sign(&painter, theme::now(), Rect::from_center_size(pos2(text.x + 18.0, y), vec2(36.0, 16.0)), rendered);
@@ -79,10 +82,7 @@ fn hand_ui(ui: &mut Ui, live: &Live, side: Side, place: Rect) {
     let name = format!("{} hand", side_name(side));
     let words = format!("{name}: measured {measured_n:.1} N, rendered {rendered_n:.1} N, ceiling {ceiling_n:.0} N");
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, &words));
-    response.on_hover_text(
-        "Size of the force measured at the instrument and of the force rendered to the hand (N). The mark is the ceiling: no \
-         larger force ever reaches the hand.",
-    );
+    response.on_hover_text(text::roles::SIZE_OF_THE_FORCE);
     let painter = ui.painter_at(place);
     painter.rect_filled(place, theme::CORNER, theme::now().card);
     let inner = place.shrink2(vec2(16.0, 12.0));

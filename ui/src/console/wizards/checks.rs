@@ -1,5 +1,6 @@
 //! Lines of what must be met before a wizard begins, and switches for how a rig is built.
 
+use crate::console::text;
 use egui::{Checkbox, Ui};
 use nima::calibration::gravity::{Check, CheckState};
 
@@ -38,7 +39,6 @@ fn line_ui(ui: &mut Ui, what: Sign, colour: egui::Color32, words: &str) {
 pub(super) fn switch_ui(ui: &mut Ui, free: bool, on: bool, name: &str, meaning: &str) -> Option<bool> {
     let mut wanted = on;
     let switch = ui.add_enabled(free, Checkbox::new(&mut wanted, name));
-    let switch =
-        switch.on_hover_text(meaning).on_disabled_hover_text("Start over to change this: it is in what was taken.");
+    let switch = switch.on_hover_text(meaning).on_disabled_hover_text(text::wizards::START_OVER_TO_CHANGE);
     switch.changed().then_some(wanted)
 }

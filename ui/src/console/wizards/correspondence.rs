@@ -1,5 +1,6 @@
 //! The correspondence wizard: check, pushes, result, save. Pushes are kept at every step back and on closing.
 
+use crate::console::text;
 use egui::{Button, Grid, RichText, Ui, vec2};
 use nalgebra::UnitVector3;
 use nima::{
@@ -32,13 +33,10 @@ const PUSHES_MIN: usize = 6;
 const PUSHES_ASKED: usize = TARGETS.len();
 /// Steps of this wizard.
 const STEPS: [Step; 4] = [
-    Step { name: "Check", meaning: "Is everything there, and do both sensors read nothing without contact?" },
-    Step {
-        name: "Pushes",
-        meaning: "The tool pushes the tissue in many directions; both sensors feel the same force.",
-    },
-    Step { name: "Result", meaning: "The rotation, judged on pushes it has not seen." },
-    Step { name: "Save", meaning: "Kept for this sensor and this tool, with its residuals." },
+    Step { name: text::correspondence::CHECK, meaning: text::correspondence::IS_EVERYTHING_THERE_AND },
+    Step { name: text::correspondence::PUSHES, meaning: text::correspondence::THE_TOOL_PUSHES_THE },
+    Step { name: text::correspondence::RESULT, meaning: text::correspondence::THE_ROTATION_JUDGED_ON },
+    Step { name: text::correspondence::SAVE, meaning: text::correspondence::KEPT_FOR_THIS_SENSOR },
 ];
 const CHECK: usize = 0;
 const PUSHES: usize = 1;
@@ -155,11 +153,11 @@ impl CorrespondenceWizard {
 
     /// All sources are there, and both sensors have rested.
     fn may_push(&self) -> Result<(), &'static str> {
-        let Some(sources) = self.sources else { return Err("The wrist sensor is silent: connect it.") };
+        let Some(sources) = self.sources else { return Err(text::correspondence::THE_WRIST_SENSOR_IS) };
         match self.session.phase() {
-            _ if !sources.gravity => Err("Gravity is not in force: calibrate it first."),
-            Phase::Missing(_) => Err("A check is not met yet."),
-            Phase::Resting { .. } => Err("Both sensors must rest without contact first."),
+            _ if !sources.gravity => Err(text::correspondence::GRAVITY_IS_NOT_IN),
+            Phase::Missing(_) => Err(text::correspondence::A_CHECK_IS_NOT),
+            Phase::Resting { .. } => Err(text::correspondence::BOTH_SENSORS_MUST_REST),
             _ => Ok(()),
         }
     }
@@ -169,10 +167,10 @@ impl CorrespondenceWizard {
         match self.step {
             CHECK => self.may_push(),
             PUSHES if self.session.pushes() >= PUSHES_MIN => Ok(()),
-            PUSHES => Err("At least six pushes are needed."),
+            PUSHES => Err(text::correspondence::AT_LEAST_SIX_PUSHES),
             RESULT if self.solution().is_some() => Ok(()),
-            RESULT => Err("There is no rotation to save: go back and push more."),
-            _ => Err("This is the last step."),
+            RESULT => Err(text::correspondence::THERE_IS_NO_ROTATION),
+            _ => Err(text::correspondence::THIS_IS_THE_LAST),
         }
     }
 
@@ -200,29 +198,31 @@ impl CorrespondenceWizard {
     }
 
     fn check_ui(&mut self, ui: &mut Ui) {
-        card(ui, "Before the first push", "All four must be met before pushes are taken.", |ui| {
-            ui.label(
-                "Lay the tissue on its sensor, without the body wall. Nothing may touch the tool or the tissue yet.",
-            );
+        card(ui, text::correspondence::BEFORE_THE_FIRST_PUSH, text::correspondence::ALL_FOUR_MUST_BE, |ui| {
+            ui.label(text::correspondence::LAY_THE_TISSUE_ON);
             ui.add_space(6.0);
             let Sources { gravity, tissue, chain } = self.sources.unwrap_or_default();
-            check_line(ui, "Force at the wrist", gravity, Missing::WristForce.words());
-            check_line(ui, "Force under the tissue", tissue, Missing::TissueForce.words());
-            let tracker = if self.session.settings().chain { "Arm and tracker" } else { "Arm and tracker (not used)" };
+            check_line(ui, text::correspondence::FORCE_AT_THE_WRIST, gravity, Missing::WristForce.words());
+            check_line(ui, text::correspondence::FORCE_UNDER_THE_TISSUE, tissue, Missing::TissueForce.words());
+            let tracker = if self.session.settings().chain {
+                text::correspondence::ARM_AND_TRACKER
+            } else {
+                text::correspondence::ARM_AND_TRACKER_NOT
+            };
             check_line(ui, tracker, chain || !self.session.settings().chain, Missing::Chain.words());
             let (_, words) = phase_words(&self.session.phase());
-            check_line(ui, "Rest", self.may_push().is_ok(), &words);
+            check_line(ui, text::correspondence::REST, self.may_push().is_ok(), &words);
         });
-        card(ui, "How this rig is built", "Leave both off unless you know, or a verdict says so.", |ui| {
+        card(ui, text::correspondence::HOW_THIS_RIG_IS, text::correspondence::LEAVE_BOTH_OFF_UNLESS, |ui| {
             let SessionSettings { chain, options, .. } = *self.session.settings();
-            let flip = "The sensor under the tissue tells what presses on it, not what the tissue does to the tool";
-            let meaning = "As scales do: both sensors then tell opposite forces. Pushes that were taken are kept.";
+            let flip = text::correspondence::THE_SENSOR_UNDER_THE;
+            let meaning = text::correspondence::AS_SCALES_DO_BOTH;
             if let Some(flip_s2) = switch_ui(ui, true, options.flip_s2, flip, meaning) {
                 self.session.set_flip_s2(flip_s2);
                 self.fit();
             }
-            let alone = "No tracker: the wrist is never turned between the pushes";
-            let meaning = "The rotation then holds for this one orientation of the wrist only.";
+            let alone = text::correspondence::NO_TRACKER_THE_WRIST;
+            let meaning = text::correspondence::THE_ROTATION_THEN_HOLDS;
             if let Some(alone) = switch_ui(ui, self.session.pushes() == 0, !chain, alone, meaning) {
                 self.start_over(SessionSettings { chain: !alone, ..*self.session.settings() });
             }
@@ -232,28 +232,34 @@ impl CorrespondenceWizard {
     fn pushes_ui(&mut self, ui: &mut Ui) {
         let count = self.session.pushes();
         let wanted = self.wanted();
-        card(
-            ui,
-            "Push this way",
-            "Push the tissue, hold half a second, let go. The push is taken when it ends.",
-            |ui| {
-                ui.label(RichText::new(sentence(wanted.name)).font(theme::strong(19.0)));
-                let (share, words) = if self.sources.is_some() {
-                    phase_words(&self.session.phase())
-                } else {
-                    (0.0, "the wrist sensor is silent; connect it".to_owned())
-                };
-                progress(ui, "Push", share, &words);
-                ui.add_space(6.0);
-                let directions = TARGETS.map(|target| target.push_in_kbf);
-                let taken = self.session.taken_in_kbf();
-                sphere_picture(ui, "Directions of pushes", &directions, &taken, Some(wanted.push_in_kbf));
-                let share = count as f64 / PUSHES_ASKED as f64;
-                progress(ui, "Pushes", share, &format!("{count} taken of {PUSHES_ASKED} or more"));
-            },
-        );
-        card(ui, "So far", "The fit is made anew after each push, from the sixth on.", |ui| {
-            figure(ui, "Taken", format!("{count} pushes"), "Pushes taken and kept.");
+        card(ui, text::correspondence::PUSH_THIS_WAY, text::correspondence::PUSH_THE_TISSUE_HOLD, |ui| {
+            ui.label(RichText::new(sentence(wanted.name)).font(theme::strong(19.0)));
+            let (share, words) = if self.sources.is_some() {
+                phase_words(&self.session.phase())
+            } else {
+                (0.0, text::correspondence::THE_WRIST_SENSOR_IS_SILENT.to_owned())
+            };
+            progress(ui, text::correspondence::PUSH, share, &words);
+            ui.add_space(6.0);
+            let directions = TARGETS.map(|target| target.push_in_kbf);
+            let taken = self.session.taken_in_kbf();
+            sphere_picture(
+                ui,
+                text::correspondence::DIRECTIONS_OF_PUSHES,
+                &directions,
+                &taken,
+                Some(wanted.push_in_kbf),
+            );
+            let share = count as f64 / PUSHES_ASKED as f64;
+            progress(ui, text::correspondence::PUSHES, share, &format!("{count} taken of {PUSHES_ASKED} or more"));
+        });
+        card(ui, "So far", text::correspondence::THE_FIT_IS_MADE, |ui| {
+            figure(
+                ui,
+                text::correspondence::TAKEN,
+                format!("{count} pushes"),
+                text::correspondence::PUSHES_TAKEN_AND_KEPT,
+            );
             match &self.report {
                 Some(Ok(report)) => {
                     let words = format!("{}: {}", report.verdict.words(), report.reason);
@@ -263,10 +269,10 @@ impl CorrespondenceWizard {
                     ui.label(error);
                 }
                 None => {
-                    ui.label(small("A first fit is shown from the sixth push on."));
+                    ui.label(small(text::correspondence::A_FIRST_FIT_IS));
                 }
             }
-            if ui.add_enabled(count > 0, Button::new("Remove the last push")).clicked() {
+            if ui.add_enabled(count > 0, Button::new(text::correspondence::REMOVE_THE_LAST_PUSH)).clicked() {
                 self.session.undo();
                 self.fit();
             }
@@ -282,17 +288,17 @@ impl CorrespondenceWizard {
                 }
             }
             Some(Err(error)) => {
-                card(ui, "No result", "The pushes could not be fitted.", |ui| ui.label(error));
+                card(ui, "No result", text::correspondence::THE_PUSHES_COULD_NOT, |ui| ui.label(error));
             }
             None => {
-                ui.label("There are too few pushes: go back and take some.");
+                ui.label(text::correspondence::THERE_ARE_TOO_FEW);
             }
         }
     }
 
     fn save_ui(&mut self, ui: &mut Ui, binding: &Binding) -> Option<CorrespondenceRecord> {
         let accepted = self.good_report().is_some_and(|report| report.verdict == Verdict::Accepted);
-        let proof = accepted.then_some("Accepted on pushes that were held out.");
+        let proof = accepted.then_some(text::correspondence::ACCEPTED_ON_PUSHES_THAT);
         let wanted = save_card(ui, binding, proof, [&mut self.name, &mut self.why], self.saved.as_deref());
         wanted.then(|| self.record(binding, accepted)).flatten()
     }
@@ -317,7 +323,7 @@ fn phase_words(phase: &Phase) -> (f64, String) {
                 format!("wrist {f1_n:.2} N, tissue {f2_n:.2} N; touch nothing, and zero what stays above 0.3 N");
             (*share, words)
         }
-        Phase::Ready => (0.0, "ready; push now".to_owned()),
+        Phase::Ready => (0.0, text::correspondence::READY_PUSH_NOW.to_owned()),
         Phase::Pushing { force_n, enough: false } => (0.5, format!("{force_n:.1} N; hold it still")),
         Phase::Pushing { force_n, enough: true } => (1.0, format!("{force_n:.1} N; enough, let go")),
         Phase::Recorded(index) => (1.0, format!("push {} taken", index + 1)),
@@ -326,30 +332,35 @@ fn phase_words(phase: &Phase) -> (f64, String) {
 }
 
 fn verdict_ui(ui: &mut Ui, report: &CorrespondenceReport) {
-    card(ui, report.verdict.words(), "Judged on pushes that the rotation has not seen.", |ui| {
+    card(ui, report.verdict.words(), text::correspondence::JUDGED_ON_PUSHES_THAT, |ui| {
         ui.label(&report.reason);
         ui.add_space(4.0);
         let (left_out, weak) = (report.outliers.len(), report.weak.len());
         let pushes = format!("{}, {left_out} contradicted, {weak} too weak", report.pairs);
-        figure(ui, "Pushes", pushes, "All that were taken, and those that were not used.");
+        figure(ui, text::correspondence::PUSHES, pushes, text::correspondence::ALL_THAT_WERE_TAKEN);
         let spread = format!("{:.2}, {:.2}", report.excitation.second, report.excitation.third);
-        figure(ui, "Spread", spread, "Second and third axis of the directions against the first; 1 is even.");
+        figure(ui, text::correspondence::SPREAD, spread, text::correspondence::SECOND_AND_THIRD_AXIS);
         let Some(solution) = &report.solution else { return };
         let [roll, pitch, yaw] = solution.roll_pitch_yaw_deg;
         let name = format!("Rotation {}", solution.target.name());
-        figure(ui, &name, format!("{roll:.2}, {pitch:.2}, {yaw:.2} deg"), "Roll, pitch, yaw (Rz Ry Rx).");
-        figure(ui, "Uncertainty", format!("{:.2} deg", solution.uncertainty_deg), "Expected angle of its error.");
+        figure(ui, &name, format!("{roll:.2}, {pitch:.2}, {yaw:.2} deg"), text::correspondence::ROLL_PITCH_YAW_RZ);
+        figure(
+            ui,
+            text::correspondence::UNCERTAINTY,
+            format!("{:.2} deg", solution.uncertainty_deg),
+            text::correspondence::EXPECTED_ANGLE_OF_ITS,
+        );
         let check = format!("{:.3} deg", solution.cross_check_deg);
-        figure(ui, "Euler cross-check", check, "Angle to what the paper's search over Euler angles finds.");
+        figure(ui, text::correspondence::EULER_CROSS_CHECK, check, text::correspondence::ANGLE_TO_WHAT_THE);
         if let Some(diagnosis) = &solution.diagnosis {
             let gain = format!("{:.3} +- {:.3}", diagnosis.gain, diagnosis.gain_se);
-            figure(ui, "Gain", gain, "Force of the wrist sensor over that of the tissue sensor; 1 is right.");
+            figure(ui, text::correspondence::GAIN, gain, text::correspondence::FORCE_OF_THE_WRIST);
             let offset = format!("{:.3} +- {:.3} N", diagnosis.offset_norm_n(), diagnosis.offset_se_n);
             figure(
                 ui,
-                "Offset",
+                text::correspondence::OFFSET,
                 format!("{offset} ({})", frame_words(diagnosis.offset_frame)),
-                "Constant between both.",
+                text::correspondence::CONSTANT_BETWEEN_BOTH,
             );
         }
     });
@@ -357,18 +368,26 @@ fn verdict_ui(ui: &mut Ui, report: &CorrespondenceReport) {
 
 const fn frame_words(frame: OffsetFrame) -> &'static str {
     match frame {
-        OffsetFrame::S1 => "of the wrist sensor",
-        OffsetFrame::S2 => "of the tissue sensor",
-        OffsetFrame::Unknown => "of either sensor",
+        OffsetFrame::S1 => text::correspondence::OF_THE_WRIST_SENSOR,
+        OffsetFrame::S2 => text::correspondence::OF_THE_TISSUE_SENSOR,
+        OffsetFrame::Unknown => text::correspondence::OF_EITHER_SENSOR,
     }
 }
 
 /// The paper's Validation I: how well the rotated force under the tissue tells that at the wrist.
 fn agreement_ui(ui: &mut Ui, agreement: &Agreement) {
-    let meaning = "Errors in N in the axes of the wrist sensor; held out: pushes that the rotation was not fitted on.";
-    card(ui, "Agreement per axis", meaning, |ui| {
+    let meaning = text::correspondence::ERRORS_IN_N_IN;
+    card(ui, text::correspondence::AGREEMENT_PER_AXIS, meaning, |ui| {
         Grid::new("agreement").num_columns(7).spacing(vec2(22.0, 6.0)).show(ui, |ui| {
-            for head in ["Axis", "fitted: MAE", "SD", "R2", "held out: MAE", "SD", "R2"] {
+            for head in [
+                text::correspondence::AXIS,
+                text::correspondence::FITTED_MAE,
+                "SD",
+                "R2",
+                text::correspondence::HELD_OUT_MAE,
+                "SD",
+                "R2",
+            ] {
                 ui.label(small(head));
             }
             ui.end_row();
@@ -387,6 +406,11 @@ fn agreement_ui(ui: &mut Ui, agreement: &Agreement) {
             }
         });
         let (fitted, held_out) = (agreement.r2_fitted_overall, agreement.r2_held_out_overall);
-        figure(ui, "R2 of all axes", format!("{fitted:.3} fitted, {held_out:.3} held out"), "The paper has 0.95.");
+        figure(
+            ui,
+            text::correspondence::R2_OF_ALL_AXES,
+            format!("{fitted:.3} fitted, {held_out:.3} held out"),
+            text::correspondence::THE_PAPER_HAS_0,
+        );
     });
 }

@@ -1,5 +1,6 @@
 //! The gravity wizard: check, twelve poses, result, free motion, save. What was good is kept at every step back and on closing.
 
+use crate::console::text;
 use egui::{Button, Grid, RichText, Ui, vec2};
 use nalgebra::{UnitQuaternion, Vector3};
 use nima::{
@@ -32,11 +33,11 @@ const FREE_MOTION_LIMIT_N: f64 = 0.25;
 const POSES_MIN: usize = 6;
 /// Steps of this wizard.
 const STEPS: [Step; 5] = [
-    Step { name: "Check", meaning: "Does the sensor deliver well, and is nothing touching the tool?" },
-    Step { name: "Poses", meaning: "Twelve orientations that show gravity from all sides." },
-    Step { name: "Result", meaning: "The fit, judged on poses it has not seen." },
-    Step { name: "Free motion", meaning: "The proof: a tool moved through the air must weigh nothing." },
-    Step { name: "Save", meaning: "Kept for this sensor and this tool, with its residuals." },
+    Step { name: text::gravity::CHECK, meaning: text::gravity::DOES_THE_SENSOR_DELIVER },
+    Step { name: text::gravity::POSES, meaning: text::gravity::TWELVE_ORIENTATIONS_THAT_SHOW },
+    Step { name: text::gravity::RESULT, meaning: text::gravity::THE_FIT_JUDGED_ON },
+    Step { name: text::gravity::FREE_MOTION, meaning: text::gravity::THE_PROOF_A_TOOL },
+    Step { name: text::gravity::SAVE, meaning: text::gravity::KEPT_FOR_THIS_SENSOR },
 ];
 const CHECK: usize = 0;
 const POSES: usize = 1;
@@ -145,14 +146,14 @@ impl GravityWizard {
     fn may_go_on(&self) -> Result<(), &'static str> {
         match self.step {
             CHECK if self.precheck.passed(self.rate_hz) => Ok(()),
-            CHECK => Err("A check is not met yet."),
+            CHECK => Err(text::gravity::A_CHECK_IS_NOT),
             POSES if self.session.poses().len() >= POSES_MIN => Ok(()),
-            POSES => Err("At least six poses are needed."),
+            POSES => Err(text::gravity::AT_LEAST_SIX_POSES),
             RESULT if self.good_report().is_some_and(|report| report.chosen_fit().is_some()) => Ok(()),
-            RESULT => Err("There is no model to prove: go back and take more poses."),
+            RESULT => Err(text::gravity::THERE_IS_NO_MODEL),
             FREE_MOTION if self.pass_result().is_some_and(|result| result.samples > 0) => Ok(()),
-            FREE_MOTION => Err("Nothing was measured in free motion yet."),
-            _ => Err("This is the last step."),
+            FREE_MOTION => Err(text::gravity::NOTHING_WAS_MEASURED_IN),
+            _ => Err(text::gravity::THIS_IS_THE_LAST),
         }
     }
 
@@ -193,23 +194,23 @@ impl GravityWizard {
     }
 
     fn check_ui(&mut self, ui: &mut Ui) {
-        card(ui, "Before the first pose", "All must be met before poses are taken.", |ui| {
-            ui.label("Take the instrument out of the trocar. Let go of it: nothing may touch the tool.");
+        card(ui, text::gravity::BEFORE_THE_FIRST_POSE, text::gravity::ALL_MUST_BE_MET, |ui| {
+            ui.label(text::gravity::TAKE_THE_INSTRUMENT_OUT);
             ui.add_space(6.0);
             for check in self.precheck.checks(self.rate_hz) {
                 check_ui(ui, &check);
             }
         });
-        card(ui, "How this rig is built", "Leave both off unless you know, or a verdict says so.", |ui| {
+        card(ui, text::gravity::HOW_THIS_RIG_IS, text::gravity::LEAVE_BOTH_OFF_UNLESS, |ui| {
             let SessionSettings { use_arm, fit, .. } = *self.session.settings();
             let none_taken = self.session.poses().is_empty();
-            let by_arm = "Take the orientation from the arm, not from the accelerometer";
-            let meaning = "For sensors without an accelerometer. The arm must tell how the sensor is turned.";
+            let by_arm = text::gravity::TAKE_THE_ORIENTATION_FROM;
+            let meaning = text::gravity::FOR_SENSORS_WITHOUT_AN;
             if let Some(use_arm) = switch_ui(ui, none_taken, use_arm, by_arm, meaning) {
                 *self = Self::of(SessionSettings { use_arm, ..*self.session.settings() });
             }
-            let flipped = "The accelerometer points to the ground at rest, not away from it";
-            let meaning = "Some drivers tell gravity and not the support. Poses that were taken are kept.";
+            let flipped = text::gravity::THE_ACCELEROMETER_POINTS_TO;
+            let meaning = text::gravity::SOME_DRIVERS_TELL_GRAVITY;
             if let Some(flip) = switch_ui(ui, !use_arm, fit.imu_sign < 0, flipped, meaning) {
                 self.session.set_imu_sign(if flip { -1 } else { 1 });
                 self.precheck = Precheck::new(*self.session.settings());
@@ -222,29 +223,34 @@ impl GravityWizard {
         let count = self.session.poses().len();
         let met = self.session.targets_met();
         let target = self.session.target();
-        card(ui, "Take this pose", "Turn the tool as the outline shows, let go, wait until the bar is full.", |ui| {
-            let name = target.map_or("All directions are taken: go on to the result", |target| target.name);
+        card(ui, text::gravity::TAKE_THIS_POSE, text::gravity::TURN_THE_TOOL_AS, |ui| {
+            let name = target.map_or(text::gravity::ALL_DIRECTIONS_ARE_TAKEN, |target| target.name);
             ui.label(RichText::new(crate::console::alarms::sentence(name)).font(theme::strong(19.0)));
             let (share, words) = phase_words(&self.phase);
-            progress(ui, "Pose", share, &words);
+            progress(ui, text::gravity::POSE, share, &words);
             ui.add_space(6.0);
             let directions: Vec<Vector3<f64>> = TARGETS.iter().map(|target| Vector3::from(target.down_s1)).collect();
             let taken = self.session.taken_down_s1();
             let down_now = self.held.map(|held| held.inverse() * -Vector3::z());
             ui.horizontal_wrapped(|ui| {
                 pose_picture(ui, target.map(|target| target.kbf_from_s1()).as_ref(), self.held.as_ref());
-                sphere_picture(ui, "Directions of gravity", &directions, &taken, down_now);
+                sphere_picture(ui, text::gravity::DIRECTIONS_OF_GRAVITY, &directions, &taken, down_now);
             });
-            progress(ui, "Directions", met as f64 / TARGETS.len() as f64, &format!("{met} of {} taken", TARGETS.len()));
+            progress(
+                ui,
+                text::gravity::DIRECTIONS,
+                met as f64 / TARGETS.len() as f64,
+                &format!("{met} of {} taken", TARGETS.len()),
+            );
         });
-        card(ui, "So far", "The fit is made anew after each pose, from the sixth on.", |ui| {
-            figure(ui, "Poses", count.to_string(), "Poses taken and kept.");
+        card(ui, "So far", text::gravity::THE_FIT_IS_MADE, |ui| {
+            figure(ui, text::gravity::POSES, count.to_string(), text::gravity::POSES_TAKEN_AND_KEPT);
             if let Some(report) = self.good_report() {
                 report_figures(ui, report);
             } else {
-                ui.label(small("A first fit is shown from the sixth pose on."));
+                ui.label(small(text::gravity::A_FIRST_FIT_IS));
             }
-            if ui.add_enabled(count > 0, Button::new("Remove the last pose")).clicked() {
+            if ui.add_enabled(count > 0, Button::new(text::gravity::REMOVE_THE_LAST_POSE)).clicked() {
                 self.session.undo();
                 self.fit();
             }
@@ -258,32 +264,37 @@ impl GravityWizard {
                 models_ui(ui, report);
             }
             Some(Err(error)) => {
-                card(ui, "No result", "The poses could not be fitted.", |ui| ui.label(error));
+                card(ui, "No result", text::gravity::THE_POSES_COULD_NOT, |ui| ui.label(error));
             }
             None => {
-                ui.label("There are no poses yet: go back and take some.");
+                ui.label(text::gravity::THERE_ARE_NO_POSES);
             }
         }
     }
 
     fn free_motion_ui(&mut self, ui: &mut Ui) {
-        card(ui, "Move the tool freely", "Nothing may touch it. What is left of the force should be near 0 N.", |ui| {
-            ui.label("Turn the tool slowly this way and that, touching nothing. Expected: near 0 N.");
+        card(ui, text::gravity::MOVE_THE_TOOL_FREELY, text::gravity::NOTHING_MAY_TOUCH_IT, |ui| {
+            ui.label(text::gravity::TURN_THE_TOOL_SLOWLY);
             ui.add_space(4.0);
             let left = self.left_n.map_or("no reading".to_owned(), |left_n| format!("{left_n:.2} N"));
             ui.label(RichText::new(left).font(theme::strong(34.0)));
             let Some(result) = self.pass_result() else { return };
-            figure(ui, "Mean", format!("{:.3} N", result.mean_n), "Mean size of what is left of the force.");
+            figure(ui, text::gravity::MEAN, format!("{:.3} N", result.mean_n), text::gravity::MEAN_SIZE_OF_WHAT);
             figure(
                 ui,
                 "95 % below",
                 format!("{:.2} N of {FREE_MOTION_LIMIT_N} N allowed", result.p95_n),
-                "The noise of single samples is in it.",
+                text::gravity::THE_NOISE_OF_SINGLE,
             );
-            figure(ui, "Tilt covered", format!("{:.0} deg", result.tilt_rad.to_degrees()), "At least 45 degrees.");
-            let words = if result.passed { "Passed" } else { "Not passed yet" };
+            figure(
+                ui,
+                text::gravity::TILT_COVERED,
+                format!("{:.0} deg", result.tilt_rad.to_degrees()),
+                text::gravity::AT_LEAST_45_DEGREES,
+            );
+            let words = if result.passed { text::gravity::PASSED } else { text::gravity::NOT_PASSED_YET };
             ui.label(RichText::new(format!("{words}: {}", result.reason)).font(theme::strong(15.0)));
-            if ui.button("Measure again").clicked() {
+            if ui.button(text::gravity::MEASURE_AGAIN).clicked() {
                 self.pass = None;
                 self.go_to(FREE_MOTION);
             }
@@ -298,7 +309,7 @@ impl GravityWizard {
 
     fn save_ui(&mut self, ui: &mut Ui, binding: &Binding) -> Option<GravityRecord> {
         let proven = self.is_proven();
-        let proof = proven.then_some("Accepted, and proven in free motion.");
+        let proof = proven.then_some(text::gravity::ACCEPTED_AND_PROVEN_IN);
         let wanted = save_card(ui, binding, proof, [&mut self.name, &mut self.why], self.saved.as_deref());
         wanted.then(|| self.record(binding, proven)).flatten()
     }
@@ -315,11 +326,11 @@ impl GravityWizard {
 
 fn phase_words(phase: &Phase) -> (f64, String) {
     match phase {
-        Phase::NoSample => (0.0, "no valid sample from the wrist sensor".to_owned()),
-        Phase::Moving => (0.0, "moving; hold the tool still in the pose".to_owned()),
-        Phase::Disturbed => (0.0, "the force is not still though the tool is: something touches it; let go".to_owned()),
-        Phase::TakenHere => (0.0, "taken here already; turn the tool to the pose shown".to_owned()),
-        Phase::Recording { share } => (*share, "still; being taken".to_owned()),
+        Phase::NoSample => (0.0, text::gravity::NO_VALID_SAMPLE_FROM.to_owned()),
+        Phase::Moving => (0.0, text::gravity::MOVING_HOLD_THE_TOOL.to_owned()),
+        Phase::Disturbed => (0.0, text::gravity::THE_FORCE_IS_NOT.to_owned()),
+        Phase::TakenHere => (0.0, text::gravity::TAKEN_HERE_ALREADY_TURN.to_owned()),
+        Phase::Recording { share } => (*share, text::gravity::STILL_BEING_TAKEN.to_owned()),
         Phase::Recorded { index } => (1.0, format!("pose {} taken", index + 1)),
         Phase::Touched { by_n } => (0.0, format!("{by_n:.1} N too much: something touches the tool; let go")),
     }
@@ -328,42 +339,44 @@ fn phase_words(phase: &Phase) -> (f64, String) {
 fn report_figures(ui: &mut Ui, report: &GravityReport) {
     let words = format!("{}: {}", report.verdict.words(), report.reason);
     ui.label(RichText::new(words).font(theme::strong(14.0)));
-    figure(ui, "Coverage", format!("{:.2}", report.coverage), "Share of all directions with a pose within 45 degrees.");
+    figure(ui, text::gravity::COVERAGE, format!("{:.2}", report.coverage), text::gravity::SHARE_OF_ALL_DIRECTIONS);
     if let Some(mass_kg) = report.mass_kg {
-        figure(ui, "Mass", format!("{mass_kg:.3} kg"), "Of what hangs on the sensor.");
+        figure(ui, text::gravity::MASS, format!("{mass_kg:.3} kg"), text::gravity::OF_WHAT_HANGS_ON);
     }
 }
 
 fn verdict_ui(ui: &mut Ui, report: &GravityReport) {
-    card(ui, report.verdict.words(), "Judged on poses that the model has not seen.", |ui| {
+    card(ui, report.verdict.words(), text::gravity::JUDGED_ON_POSES_THAT, |ui| {
         ui.label(&report.reason);
         ui.add_space(4.0);
-        figure(ui, "Poses", report.poses.to_string(), "Poses that were fitted and judged.");
-        figure(
-            ui,
-            "Coverage",
-            format!("{:.2}", report.coverage),
-            "Share of all directions with a pose within 45 degrees.",
-        );
+        figure(ui, text::gravity::POSES, report.poses.to_string(), text::gravity::POSES_THAT_WERE_FITTED);
+        figure(ui, text::gravity::COVERAGE, format!("{:.2}", report.coverage), text::gravity::SHARE_OF_ALL_DIRECTIONS);
         let condition = report.condition.map_or("undetermined".to_owned(), three_digits);
-        figure(ui, "Condition", condition, "How evenly the poses determine the model; 1 is best.");
+        figure(ui, text::gravity::CONDITION, condition, text::gravity::HOW_EVENLY_THE_POSES);
         if let (Some(mass_kg), Some(com_m)) = (report.mass_kg, report.com_m) {
-            figure(ui, "Mass", format!("{mass_kg:.3} kg"), "Of what hangs on the sensor.");
+            figure(ui, text::gravity::MASS, format!("{mass_kg:.3} kg"), text::gravity::OF_WHAT_HANGS_ON);
             let [x, y, z] = com_m.map(|m| m * 1e3);
-            figure(ui, "Centre of mass", format!("{x:.1}, {y:.1}, {z:.1} mm"), "In the sensor's frame (s1).");
+            figure(
+                ui,
+                text::gravity::CENTRE_OF_MASS,
+                format!("{x:.1}, {y:.1}, {z:.1} mm"),
+                text::gravity::IN_THE_SENSOR_S,
+            );
         }
         if !report.outliers.is_empty() {
             let list = report.outliers.iter().map(|i| (i + 1).to_string()).collect::<Vec<_>>().join(", ");
-            figure(ui, "Left out", format!("pose {list}"), "Far from what the other poses say: perhaps touched.");
+            figure(ui, text::gravity::LEFT_OUT, format!("pose {list}"), text::gravity::FAR_FROM_WHAT_THE);
         }
     });
 }
 
 /// The models side by side, on the poses of the fit and on those held out.
 fn models_ui(ui: &mut Ui, report: &GravityReport) {
-    card(ui, "Models side by side", "Force errors in N; held out: on poses that a model was not fitted on.", |ui| {
+    card(ui, text::gravity::MODELS_SIDE_BY_SIDE, text::gravity::FORCE_ERRORS_IN_N, |ui| {
         Grid::new("gravity models").num_columns(5).spacing(vec2(22.0, 6.0)).show(ui, |ui| {
-            for head in ["Model", "fitted: mean", "largest", "held out: mean", "largest"] {
+            for head in
+                [text::gravity::MODEL, text::gravity::FITTED_MEAN, "largest", text::gravity::HELD_OUT_MEAN, "largest"]
+            {
                 ui.label(small(head));
             }
             ui.end_row();

@@ -9,6 +9,7 @@ mod gravity;
 mod pictures;
 mod tip_force;
 
+use crate::console::text;
 use egui::{Button, RichText, TextEdit, Ui, vec2};
 use nima::{
     calibration::{
@@ -78,18 +79,18 @@ impl Which {
     /// On buttons.
     pub const fn name(self) -> &'static str {
         match self {
-            Self::Gravity => "Gravity",
-            Self::Correspondence => "Correspondence",
-            Self::TipForce => "Tip force",
+            Self::Gravity => text::wizards::GRAVITY,
+            Self::Correspondence => text::wizards::CORRESPONDENCE,
+            Self::TipForce => text::wizards::TIP_FORCE,
         }
     }
 
     /// What it is for.
     pub const fn meaning(self) -> &'static str {
         match self {
-            Self::Gravity => "Takes the tool's weight and the sensor's bias out of the wrist's force.",
-            Self::Correspondence => "Finds how the sensor under the tissue is turned against the one at the wrist.",
-            Self::TipForce => "Teaches a network to take the trocar's friction out of the wrist's force.",
+            Self::Gravity => text::wizards::TAKES_THE_TOOL_S,
+            Self::Correspondence => text::wizards::FINDS_HOW_THE_SENSOR,
+            Self::TipForce => text::wizards::TEACHES_A_NETWORK_TO,
         }
     }
 
@@ -209,11 +210,11 @@ fn steps_ui(ui: &mut Ui, steps: &[Step], now: usize, may_go_on: Result<(), &'sta
     ui.label(small(steps[now].meaning));
     ui.horizontal(|ui| {
         let size = vec2(96.0, 34.0);
-        if ui.add_enabled(now > 0, Button::new("Back").min_size(size)).clicked() {
+        if ui.add_enabled(now > 0, Button::new(text::wizards::BACK).min_size(size)).clicked() {
             wish = Some(Wish::GoTo(now - 1));
         }
         let last = now + 1 == steps.len();
-        let next = ui.add_enabled(!last && may_go_on.is_ok(), Button::new("Next").min_size(size));
+        let next = ui.add_enabled(!last && may_go_on.is_ok(), Button::new(text::wizards::NEXT).min_size(size));
         if next.clicked() {
             wish = Some(Wish::GoTo(now + 1));
         }
@@ -222,7 +223,7 @@ fn steps_ui(ui: &mut Ui, steps: &[Step], now: usize, may_go_on: Result<(), &'sta
             ui.label(small(reason));
         }
         ui.add_space(24.0);
-        if ui.button("Start over").on_hover_text("Throws away the data of this wizard.").clicked() {
+        if ui.button(text::wizards::START_OVER).on_hover_text(text::wizards::THROWS_AWAY_THE_DATA).clicked() {
             wish = Some(Wish::StartOver);
         }
     });
@@ -232,16 +233,14 @@ fn steps_ui(ui: &mut Ui, steps: &[Step], now: usize, may_go_on: Result<(), &'sta
 /// The last step of every wizard: what it will be bound to, and the button; true when it shall be saved. Without `proof` it takes
 /// a name and a reason.
 fn save_card(ui: &mut Ui, binding: &Binding, proof: Option<&str>, by: [&mut String; 2], saved: Option<&str>) -> bool {
-    card(ui, "Save", "Bound to this sensor and this tool; the file says how good it was.", |ui| {
-        figure(ui, "Sensor", &binding.sensor, "Serial number of the wrist sensor.");
-        figure(ui, "Tool", &binding.tool, "What hangs on it.");
+    card(ui, text::wizards::SAVE, text::wizards::BOUND_TO_THIS_SENSOR, |ui| {
+        figure(ui, text::wizards::SENSOR, &binding.sensor, text::wizards::SERIAL_NUMBER_OF_THE);
+        figure(ui, text::wizards::TOOL, &binding.tool, text::wizards::WHAT_HANGS_ON_IT);
         let wanted = if let Some(proof) = proof {
             ui.label(proof);
-            ui.add(Button::new("Save and use").min_size(vec2(180.0, 36.0))).clicked()
+            ui.add(Button::new(text::wizards::SAVE_AND_USE).min_size(vec2(180.0, 36.0))).clicked()
         } else {
-            ui.label(weak(
-                "This calibration is not proven. It can be kept only under somebody's name, which is written into the file.",
-            ));
+            ui.label(weak(text::wizards::THIS_CALIBRATION_IS_NOT));
             override_ui(ui, by)
         };
         if let Some(saved) = saved {
@@ -254,14 +253,14 @@ fn save_card(ui: &mut Ui, binding: &Binding, proof: Option<&str>, by: [&mut Stri
 /// Name and reason of whoever overrides a verdict; true when both are there and it shall be done.
 fn override_ui(ui: &mut Ui, by: [&mut String; 2]) -> bool {
     let mut named = true;
-    for (label, text) in ["Your name", "Reason"].into_iter().zip(by) {
+    for (label, text) in [text::wizards::YOUR_NAME, text::wizards::REASON].into_iter().zip(by) {
         ui.horizontal(|ui| {
             let label = ui.label(label);
             ui.add(TextEdit::singleline(text).desired_width(280.0).char_limit(120)).labelled_by(label.id);
         });
         named &= !text.trim().is_empty();
     }
-    ui.add_enabled(named, Button::new("Save in spite of the verdict").min_size(vec2(220.0, 36.0)))
-        .on_disabled_hover_text("Give a name and a reason first.")
+    ui.add_enabled(named, Button::new(text::wizards::SAVE_IN_SPITE_OF).min_size(vec2(220.0, 36.0)))
+        .on_disabled_hover_text(text::wizards::GIVE_A_NAME_AND)
         .clicked()
 }

@@ -1,6 +1,7 @@
 //! Small pictures that guide a hand: the tool in the orientation to take, a sphere that fills with directions, maps that fill with
 //! rows.
 
+use crate::console::text;
 use egui::{
     Align2, Color32, Painter, Pos2, Rect, Sense, Shape, Stroke, Ui, WidgetInfo, epaint::TextShape, lerp, pos2, vec2,
 };
@@ -23,7 +24,7 @@ fn on_paper(centre: Pos2, scale: f32, point: &Vector3<f64>) -> (Pos2, f64) {
 pub(super) fn pose_picture(ui: &mut Ui, target: Option<&UnitQuaternion<f64>>, held: Option<&UnitQuaternion<f64>>) {
     let size = vec2(ui.available_width().min(320.0), 250.0);
     let (rect, response) = ui.allocate_exact_size(size, Sense::hover());
-    response.widget_info(|| WidgetInfo::labeled(egui::Role::Label, true, "Picture of the orientation to take"));
+    response.widget_info(|| WidgetInfo::labeled(egui::Role::Label, true, text::wizards::PICTURE_OF_THE_ORIENTATION));
     let painter = ui.painter_at(rect);
     painter.rect_filled(rect, theme::CORNER, theme::now().groove);
     let (centre, scale) = (rect.center() - vec2(0.0, 22.0), rect.height() * 0.31);
@@ -39,8 +40,8 @@ pub(super) fn pose_picture(ui: &mut Ui, target: Option<&UnitQuaternion<f64>>, he
             let tilt = (target.inverse() * -Vector3::z()).angle(&(held.inverse() * -Vector3::z()));
             format!("outline: asked   solid: held   tilt {:.0} deg off", tilt.to_degrees())
         }
-        (None, Some(_)) => "solid: the tool as it is held".to_owned(),
-        _ => "the arm does not tell how the tool is held".to_owned(),
+        (None, Some(_)) => text::wizards::SOLID_THE_TOOL_AS.to_owned(),
+        _ => text::wizards::THE_ARM_DOES_NOT.to_owned(),
     };
     painter.text(
         rect.center_bottom() - vec2(0.0, 8.0),

@@ -10,6 +10,7 @@ mod record_ui;
 mod take;
 mod train_ui;
 
+use crate::console::text;
 use std::sync::Arc;
 
 use egui::Ui;
@@ -26,11 +27,11 @@ use job::{Checked, Job, Order, Shared, judge, look, train};
 use take::{Clock, Take};
 
 const STEPS: [Step; 5] = [
-    Step { name: "Ready", meaning: "Is everything there that a recording needs?" },
-    Step { name: "Record", meaning: "Work through the trocar while the sensor under the tissue tells the truth." },
-    Step { name: "Train", meaning: "The network learns from the recording; the window stays alive." },
-    Step { name: "Check", meaning: "A new, short recording that the network has never seen tells how good it is." },
-    Step { name: "Save", meaning: "Kept for this sensor and this tool, with its figures." },
+    Step { name: text::tip_force::READY, meaning: text::tip_force::IS_EVERYTHING_THERE_THAT },
+    Step { name: text::tip_force::RECORD, meaning: text::tip_force::WORK_THROUGH_THE_TROCAR },
+    Step { name: text::tip_force::TRAIN, meaning: text::tip_force::THE_NETWORK_LEARNS_FROM },
+    Step { name: text::tip_force::CHECK, meaning: text::tip_force::A_NEW_SHORT_RECORDING },
+    Step { name: text::tip_force::SAVE, meaning: text::tip_force::KEPT_FOR_THIS_SENSOR },
 ];
 const READY: usize = 0;
 const RECORD: usize = 1;
@@ -86,9 +87,9 @@ impl Size {
 
     const fn name(self) -> &'static str {
         match self {
-            Self::Small => "Small",
-            Self::Usual => "Usual",
-            Self::Large => "Large",
+            Self::Small => text::tip_force::SMALL,
+            Self::Usual => text::tip_force::USUAL,
+            Self::Large => text::tip_force::LARGE,
         }
     }
 
@@ -186,20 +187,20 @@ impl TipForceWizard {
 
     fn may_record(&self, binding: &Binding) -> Result<(), &'static str> {
         if binding.correspondence.is_none() {
-            return Err("The correspondence is not known: calibrate it first.");
+            return Err(text::tip_force::THE_CORRESPONDENCE_IS_NOT);
         }
-        if self.sources.iter().all(|there| *there) { Ok(()) } else { Err("A check is not met yet.") }
+        if self.sources.iter().all(|there| *there) { Ok(()) } else { Err(text::tip_force::A_CHECK_IS_NOT) }
     }
 
     /// Whether the step after this one may begin, or why not.
     fn may_go_on(&self, binding: &Binding) -> Result<(), &'static str> {
         match self.step {
             READY => self.may_record(binding),
-            RECORD if self.rows() == 0 => Err("Nothing is recorded yet."),
-            RECORD if self.lacking().is_some() => Err("Not all goals are met yet."),
-            TRAIN if self.is_training() => Err("Wait for the training, or cancel it."),
-            TRAIN if self.trained.is_none() => Err("No network is trained yet."),
-            CHECK if self.checked.is_none() => Err("The network is not checked yet."),
+            RECORD if self.rows() == 0 => Err(text::tip_force::NOTHING_IS_RECORDED_YET),
+            RECORD if self.lacking().is_some() => Err(text::tip_force::NOT_ALL_GOALS_ARE),
+            TRAIN if self.is_training() => Err(text::tip_force::WAIT_FOR_THE_TRAINING),
+            TRAIN if self.trained.is_none() => Err(text::tip_force::NO_NETWORK_IS_TRAINED),
+            CHECK if self.checked.is_none() => Err(text::tip_force::THE_NETWORK_IS_NOT),
             _ => Ok(()),
         }
     }
@@ -240,7 +241,7 @@ impl TipForceWizard {
     /// Results of the background, and a rig that has changed.
     fn take_in(&mut self, binding: &Binding) {
         if self.recorded_with.as_ref().is_some_and(|with| !with.fits(binding)) {
-            let told = "Sensor, tool or correspondence have changed: what was recorded with the others was put away.";
+            let told = text::tip_force::SENSOR_TOOL_OR_CORRESPONDENCE;
             *self = Self { clock: self.clock, told: Some(told.to_owned()), ..Self::default() };
         }
         if let Some((job, narrow)) = &mut self.training
@@ -267,7 +268,7 @@ impl TipForceWizard {
                 (self.trained, self.proof, self.checked) = (Some(Trained { model, narrow }), None, None);
                 (self.judging, self.saved, self.told) = (None, None, None);
             }
-            Err(_) if cancelled => self.told = Some("Cancelled. The recording is kept.".to_owned()),
+            Err(_) if cancelled => self.told = Some(text::tip_force::CANCELLED_THE_RECORDING_IS.to_owned()),
             Err(error) => self.told = Some(format!("Not trained: {error}. The recording is kept.")),
         }
     }
@@ -282,7 +283,7 @@ impl TipForceWizard {
 
     fn start_training(&mut self, binding: &Binding) {
         let (Some(take), Some(store)) = (&self.recording, &binding.store) else {
-            self.told = Some("No folder for the recording is known: set NIMA_DATA_DIR.".to_owned());
+            self.told = Some(text::tip_force::NO_FOLDER_FOR_THE.to_owned());
             return;
         };
         self.curves = Shared::default();
@@ -328,7 +329,7 @@ impl TipForceWizard {
 
     fn save_ui(&mut self, ui: &mut Ui, binding: &Binding) -> Option<Model> {
         let (Some(trained), Some(checked)) = (&self.trained, &self.checked) else {
-            ui.label("There is no checked network: go back.");
+            ui.label(text::tip_force::THERE_IS_NO_CHECKED);
             return None;
         };
         let accepted = checked.check.verdict == Verdict::Accepted;

@@ -1,5 +1,6 @@
 //! The check: a new recording by prompts, then the network's errors beside the paper's and beside simpler methods.
 
+use crate::console::text;
 use egui::{Button, Grid, RichText, Ui, vec2};
 use egui_plot::{AxisHints, Bar, BarChart, Corner, Legend, Line, LineStyle, MarkerShape, Plot, PlotPoints, Points};
 use nima::{
@@ -28,7 +29,7 @@ impl TipForceWizard {
     /// Gives the wish to go back and record more.
     pub(super) fn check_ui(&mut self, ui: &mut Ui, binding: &Binding) -> Option<Wish> {
         let mut wish = None;
-        card(ui, "A new recording", "Rows that the network has never seen: only they tell how good it is.", |ui| {
+        card(ui, text::tip_force::A_NEW_RECORDING, text::tip_force::ROWS_THAT_THE_NETWORK, |ui| {
             let (work_s, free_s) = (CHECK_WORK as f64 * ROW_EVERY_S, (CHECK_ROWS - CHECK_WORK) as f64 * ROW_EVERY_S);
             ui.label(RichText::new(self.task(work_s, free_s)).font(theme::strong(18.0)));
             if let Some(take) = &self.proof {
@@ -37,8 +38,8 @@ impl TipForceWizard {
             ui.horizontal(|ui| {
                 self.check_button_ui(ui, binding);
                 if ui
-                    .add(Button::new("Record more").min_size(vec2(130.0, 40.0)))
-                    .on_hover_text("Back to the recording; new rows are added to those that are there.")
+                    .add(Button::new(text::tip_force::RECORD_MORE).min_size(vec2(130.0, 40.0)))
+                    .on_hover_text(text::tip_force::BACK_TO_THE_RECORDING)
                     .clicked()
                 {
                     wish = Some(Wish::GoTo(RECORD));
@@ -47,7 +48,12 @@ impl TipForceWizard {
             let judged = self.judging.is_some() || self.checked.is_some();
             let none = if judged { CHECK_ROWS } else { 0 };
             let rows = self.proof.as_ref().map_or(none, |take| take.recorder.rows());
-            progress(ui, "Rows of the check", rows as f64 / CHECK_ROWS as f64, &format!("{rows} of {CHECK_ROWS}"));
+            progress(
+                ui,
+                text::tip_force::ROWS_OF_THE_CHECK,
+                rows as f64 / CHECK_ROWS as f64,
+                &format!("{rows} of {CHECK_ROWS}"),
+            );
         });
         if let Some(checked) = &self.checked {
             verdict_ui(ui, checked);
@@ -59,10 +65,10 @@ impl TipForceWizard {
 
     fn task(&self, work_s: f64, free_s: f64) -> String {
         match &self.proof {
-            _ if self.judging.is_some() => "The network is being judged".to_owned(),
+            _ if self.judging.is_some() => text::tip_force::THE_NETWORK_IS_BEING.to_owned(),
             Some(take) if take.running => words(take.prompt()).to_owned(),
-            Some(_) => "Paused: press \"Go on with the check\"".to_owned(),
-            None if self.checked.is_some() => "The check is done".to_owned(),
+            Some(_) => text::tip_force::PAUSED_PRESS_GO_ON.to_owned(),
+            None if self.checked.is_some() => text::tip_force::THE_CHECK_IS_DONE.to_owned(),
             None => format!("{work_s:.0} s of work on the tissue, then {free_s:.0} s without touching it"),
         }
     }
@@ -70,12 +76,13 @@ impl TipForceWizard {
     fn check_button_ui(&mut self, ui: &mut Ui, binding: &Binding) {
         let running = self.proof.as_ref().is_some_and(|take| take.running);
         let text = match &self.proof {
-            Some(_) if running => "Pause",
-            Some(_) => "Go on with the check",
-            None if self.checked.is_some() => "Check again",
-            None => "Start the check",
+            Some(_) if running => text::tip_force::PAUSE,
+            Some(_) => text::tip_force::GO_ON_WITH_THE,
+            None if self.checked.is_some() => text::tip_force::CHECK_AGAIN,
+            None => text::tip_force::START_THE_CHECK,
         };
-        let may = if self.judging.is_some() { Err("Wait for the verdict.") } else { self.may_record(binding) };
+        let may =
+            if self.judging.is_some() { Err(text::tip_force::WAIT_FOR_THE_VERDICT) } else { self.may_record(binding) };
         let button = Button::new(RichText::new(text).font(theme::strong(16.0))).min_size(vec2(220.0, 40.0));
         let response = ui.add_enabled(running || may.is_ok(), button);
         if response.on_disabled_hover_text(may.err().unwrap_or_default()).clicked() {
@@ -92,14 +99,14 @@ impl TipForceWizard {
 
 fn verdict_ui(ui: &mut Ui, checked: &Checked) {
     let check = &checked.check;
-    card(ui, check.verdict.words(), "By the paper's figures, on rows recorded after the training.", |ui| {
+    card(ui, check.verdict.words(), text::tip_force::BY_THE_PAPER_S, |ui| {
         let words = format!("Verdict: {}.", check.reason);
         ui.label(RichText::new(words).font(theme::strong(14.0)));
         if check.verdict != Verdict::Accepted {
-            ui.label(small("It can still be kept under somebody's name in the next step."));
+            ui.label(small(text::tip_force::IT_CAN_STILL_BE));
         }
         let doubt = format!("{:.1} % of {} rows", 100.0 * check.doubt_share, check.rows);
-        figure(ui, "In doubt", doubt, "Rows outside of what was trained: there the fallback answers. At most 10 %.");
+        figure(ui, "In doubt", doubt, text::tip_force::ROWS_OUTSIDE_OF_WHAT);
     });
 }
 
@@ -111,12 +118,22 @@ fn mae_of(part: &Part, method: &str, axis: usize) -> String {
 }
 
 fn figures_ui(ui: &mut Ui, checked: &Checked) {
-    let meaning = "All in N, in the axes of the wrist sensor (z along the shaft). MAE: mean absolute error. SD: standard deviation of the error.";
-    card(ui, "Errors in N, per axis of the wrist sensor", meaning, |ui| {
+    let meaning = text::tip_force::ALL_IN_N_IN;
+    card(ui, text::tip_force::ERRORS_IN_N_PER, meaning, |ui| {
         let check = &checked.check;
         Grid::new("tip_force_check").num_columns(9).spacing(vec2(20.0, 5.0)).show(ui, |ui| {
-            let heads = ["Axis", "MAE", "paper", "SD", "paper", "wrist force\nalone: MAE", "friction\nmodel: MAE"];
-            for head in heads.into_iter().chain(["no contact:\nmean (paper 0.02)", "no contact:\nSD (paper 0.03)"]) {
+            let heads = [
+                text::tip_force::AXIS,
+                "MAE",
+                "paper",
+                "SD",
+                "paper",
+                text::tip_force::WRIST_FORCE_ALONE_MAE,
+                text::tip_force::FRICTION_MODEL_MAE,
+            ];
+            for head in
+                heads.into_iter().chain([text::tip_force::NO_CONTACT_MEAN_PAPER, text::tip_force::NO_CONTACT_SD_PAPER])
+            {
                 ui.label(small(head));
             }
             ui.end_row();
@@ -139,10 +156,17 @@ fn figures_ui(ui: &mut Ui, checked: &Checked) {
 
 fn plots_ui(ui: &mut Ui, checked: &Checked) {
     ui.columns(2, |columns| {
-        card(&mut columns[0], "Measured against predicted", "A perfect network lies on the dashed line.", |ui| {
-            regression_ui(ui, checked);
+        card(
+            &mut columns[0],
+            text::tip_force::MEASURED_AGAINST_PREDICTED,
+            text::tip_force::A_PERFECT_NETWORK_LIES,
+            |ui| {
+                regression_ui(ui, checked);
+            },
+        );
+        card(&mut columns[1], text::tip_force::ANSWERS_WITHOUT_CONTACT, text::tip_force::ALL_OF_IT_SHOULD, |ui| {
+            free_ui(ui, checked);
         });
-        card(&mut columns[1], "Answers without contact", "All of it should stand at zero.", |ui| free_ui(ui, checked));
     });
 }
 
@@ -160,20 +184,21 @@ fn plot<'a>(name: &str, x: &str, y: &str) -> Plot<'a> {
 fn regression_ui(ui: &mut Ui, checked: &Checked) {
     let all = || checked.points.iter().flatten().flatten();
     let (low, high) = all().fold((-1.0_f64, 1.0_f64), |(low, high), value| (low.min(*value), high.max(*value)));
-    let response = plot("tip_force_regression", "Measured (N)", "Predicted (N)").show(ui, |plot| {
-        let ends = PlotPoints::from(vec![[low, low], [high, high]]);
-        plot.line(Line::new("perfect", ends).color(theme::now().reference).style(LineStyle::dashed_loose()));
-        for ((axis, points), colour) in AXES.iter().zip(&checked.points).zip(theme::now().series) {
-            let marks = Points::new(*axis, PlotPoints::from(points.clone())).shape(MarkerShape::Circle);
-            plot.points(marks.radius(1.6).color(colour));
-        }
-    });
-    let described = "Regression plot: measured against predicted force, three axes";
+    let response =
+        plot("tip_force_regression", text::tip_force::MEASURED_N, text::tip_force::PREDICTED_N).show(ui, |plot| {
+            let ends = PlotPoints::from(vec![[low, low], [high, high]]);
+            plot.line(Line::new("perfect", ends).color(theme::now().reference).style(LineStyle::dashed_loose()));
+            for ((axis, points), colour) in AXES.iter().zip(&checked.points).zip(theme::now().series) {
+                let marks = Points::new(*axis, PlotPoints::from(points.clone())).shape(MarkerShape::Circle);
+                plot.points(marks.radius(1.6).color(colour));
+            }
+        });
+    let described = text::tip_force::REGRESSION_PLOT_MEASURED_AGAINST;
     response.response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, described));
 }
 
 fn free_ui(ui: &mut Ui, checked: &Checked) {
-    let response = plot("tip_force_free", "Answer (N)", "Share of rows (%)").show(ui, |plot| {
+    let response = plot("tip_force_free", text::tip_force::ANSWER_N, text::tip_force::SHARE_OF_ROWS).show(ui, |plot| {
         for (k, ((axis, bins), colour)) in AXES.iter().zip(&checked.bins).zip(theme::now().series).enumerate() {
             // Three narrow bars side by side in each bin.
             let bar = |(i, share): (usize, &f64)| {
@@ -184,6 +209,6 @@ fn free_ui(ui: &mut Ui, checked: &Checked) {
             plot.bar_chart(BarChart::new(*axis, bars).color(colour));
         }
     });
-    let described = "Histogram of the answers without contact, three axes";
+    let described = text::tip_force::HISTOGRAM_OF_THE_ANSWERS;
     response.response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, described));
 }

@@ -1,5 +1,6 @@
 //! Work in the background of the wizard: training and judging. The window never waits for it.
 
+use crate::console::text;
 use std::{
     fs,
     path::{Path, PathBuf},
@@ -41,7 +42,7 @@ impl<T: Send + 'static> Job<T> {
     /// The result, once; `None` while it works.
     pub(super) fn take_result(&mut self) -> Option<Result<T, String>> {
         let thread = self.thread.take_if(|thread| thread.is_finished())?;
-        Some(thread.join().unwrap_or_else(|_| Err("It broke off. Try again.".to_owned())))
+        Some(thread.join().unwrap_or_else(|_| Err(text::tip_force::IT_BROKE_OFF_TRY.to_owned())))
     }
 }
 

@@ -1,5 +1,6 @@
 //! The first page: is everything there that a recording needs, and what to do where it is not.
 
+use crate::console::text;
 use egui::Ui;
 use nima::runtime::Tick;
 
@@ -14,11 +15,11 @@ pub(super) type Sources = [bool; SOURCES.len()];
 
 /// What a tick must bring: name, and what is wrong without it and what to do.
 const SOURCES: [(&str, &str); 5] = [
-    ("Wrist sensor", "silent; connect it"),
-    ("Gravity", "not in force; press \"Calibrate gravity...\" on the left"),
-    ("Sensor under the tissue", "silent; connect it"),
-    ("Arm and tracker", "the tracker does not see the marker, or the arm is silent; clear its sight"),
-    ("Depth through the trocar", "not told; mount the trocar and check the arm"),
+    (text::tip_force::WRIST_SENSOR, text::tip_force::SILENT_CONNECT_IT),
+    (text::tip_force::GRAVITY, text::tip_force::NOT_IN_FORCE_PRESS),
+    (text::tip_force::SENSOR_UNDER_THE_TISSUE, text::tip_force::SILENT_CONNECT_IT),
+    (text::tip_force::ARM_AND_TRACKER, text::tip_force::THE_TRACKER_DOES_NOT),
+    (text::tip_force::DEPTH_THROUGH_THE_TROCAR, text::tip_force::NOT_TOLD_MOUNT_THE),
 ];
 
 /// What this tick brought.
@@ -31,16 +32,14 @@ pub(super) fn sources(tick: &Tick) -> Sources {
 
 impl TipForceWizard {
     pub(super) fn ready_ui(&self, ui: &mut Ui, binding: &Binding) {
-        card(ui, "Before the recording", "All six must be met before rows are taken.", |ui| {
-            ui.label(
-                "Lay the tissue on its sensor, put the instrument through the trocar, and hold its tip above the tissue.",
-            );
+        card(ui, text::tip_force::BEFORE_THE_RECORDING, text::tip_force::ALL_SIX_MUST_BE, |ui| {
+            ui.label(text::tip_force::LAY_THE_TISSUE_ON);
             ui.add_space(6.0);
             for ((name, otherwise), there) in SOURCES.into_iter().zip(self.sources) {
                 check_line(ui, name, there, otherwise);
             }
             let known = binding.correspondence.is_some();
-            check_line(ui, "Correspondence", known, "not known; press \"Calibrate correspondence...\" on the left");
+            check_line(ui, text::tip_force::CORRESPONDENCE, known, text::tip_force::NOT_KNOWN_PRESS_CALIBRATE);
         });
     }
 }

@@ -1,5 +1,6 @@
 //! The recording: what to do now, how much there is, what it still lacks, and three maps that fill.
 
+use crate::console::text;
 use egui::{Align, Button, Layout, RichText, Ui, vec2};
 use nima::{
     device::Prompt,
@@ -27,8 +28,8 @@ impl TipForceWizard {
     pub(super) fn record_ui(&mut self, ui: &mut Ui, binding: &Binding) -> Option<Wish> {
         let (running, rows) = (self.recording.as_ref().is_some_and(|take| take.running), self.rows());
         let mut wish = None;
-        let meaning = "The person at the arm does what stands here. A pause keeps all rows.";
-        card(ui, "Do this now", meaning, |ui| {
+        let meaning = text::tip_force::THE_PERSON_AT_THE;
+        card(ui, text::tip_force::DO_THIS_NOW, meaning, |ui| {
             self.now_ui(ui);
             ui.add_space(4.0);
             ui.horizontal(|ui| {
@@ -37,11 +38,10 @@ impl TipForceWizard {
                 }
                 ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
                     let enough = rows >= MIN_ROWS && self.lacking().is_some();
-                    let anyway = ui.add_enabled(enough, Button::new("Train anyway").min_size(vec2(130.0, 34.0)));
-                    let anyway = anyway.on_hover_text(
-                        "Trains on what there is. Such a network is not proven: it can be kept only under a name.",
-                    );
-                    if anyway.on_disabled_hover_text("For a recording that is not complete.").clicked() {
+                    let anyway =
+                        ui.add_enabled(enough, Button::new(text::tip_force::TRAIN_ANYWAY).min_size(vec2(130.0, 34.0)));
+                    let anyway = anyway.on_hover_text(text::tip_force::TRAINS_ON_WHAT_THERE);
+                    if anyway.on_disabled_hover_text(text::tip_force::FOR_A_RECORDING_THAT).clicked() {
                         wish = Some(Wish::GoTo(TRAIN));
                     }
                 });
@@ -51,7 +51,7 @@ impl TipForceWizard {
                 "{rows}, {seconds:.0} s (the paper has {PAPER_ROWS}, {:.0} s)",
                 PAPER_ROWS as f64 * ROW_EVERY_S
             );
-            progress(ui, "Rows", rows as f64 / PAPER_ROWS as f64, &told);
+            progress(ui, text::tip_force::ROWS, rows as f64 / PAPER_ROWS as f64, &told);
         });
         let empty = Coverage::default();
         let coverage = self.recording.as_ref().map_or(&empty, |take| take.recorder.coverage());
@@ -64,17 +64,21 @@ impl TipForceWizard {
     fn now_ui(&self, ui: &mut Ui) {
         let Some(take) = &self.recording else {
             ui.label(RichText::new(words(self.prompt())).font(theme::strong(19.0)));
-            ui.label("Then press \"Start recording\": the zero of the sensor under the tissue is taken first.");
+            ui.label(text::tip_force::THEN_PRESS_START_RECORDING);
             return;
         };
         let task = match self.lacking() {
-            None => "All goals are met: go on to the training, or record more".to_owned(),
-            Some(_) if !take.running => "Paused: press \"Go on recording\"".to_owned(),
+            None => text::tip_force::ALL_GOALS_ARE_MET.to_owned(),
+            Some(_) if !take.running => text::tip_force::PAUSED_PRESS_GO_ON_RECORDING.to_owned(),
             Some(_) => words(take.prompt()).to_owned(),
         };
         ui.label(RichText::new(task).font(theme::strong(19.0)));
         if let (Some(goal), true) = (self.lacking(), take.running) {
-            let when = if take.prompt() == Prompt::WorkFree { "After that" } else { "Still to do" };
+            let when = if take.prompt() == Prompt::WorkFree {
+                text::tip_force::AFTER_THAT
+            } else {
+                text::tip_force::STILL_TO_DO
+            };
             let advice = format!("{when}: {} ({}).", goal.advice, goal.name.to_lowercase());
             ui.label(RichText::new(advice).font(theme::strong(16.0)));
         }
@@ -84,8 +88,8 @@ impl TipForceWizard {
     /// The big button; true when it is pressed.
     fn start_ui(&self, ui: &mut Ui, running: bool, rows: usize, binding: &Binding) -> bool {
         let text = match (running, rows) {
-            (true, _) => "Pause",
-            (false, 0) => "Start recording",
+            (true, _) => text::tip_force::PAUSE,
+            (false, 0) => text::tip_force::START_RECORDING,
             (false, _) => "Go on recording",
         };
         let may = self.may_record(binding);
@@ -107,7 +111,7 @@ impl TipForceWizard {
 }
 
 fn goals_ui(ui: &mut Ui, coverage: &Coverage) {
-    card(ui, "Goals", "What the network will meet must be in the recording, in all of these respects.", |ui| {
+    card(ui, text::tip_force::GOALS, text::tip_force::WHAT_THE_NETWORK_WILL, |ui| {
         ui.columns(2, |columns| {
             for (i, goal) in coverage.goals().iter().enumerate() {
                 // Never 100 before it is met.
@@ -119,19 +123,22 @@ fn goals_ui(ui: &mut Ui, coverage: &Coverage) {
 }
 
 fn maps_ui(ui: &mut Ui, coverage: &Coverage) {
-    let tilt: [AxisWords; 2] = [["-53 deg", "towards x", "53 deg"], ["-53", "towards y (deg)", "53"]];
-    let force: [AxisWords; 2] = [["0 N", "across the shaft", "5 N"], ["-5", "along the shaft (N)", "5"]];
-    let travel: [AxisWords; 2] =
-        [["0 mm", "depth through the trocar", "300 mm"], ["-80", "speed inwards (mm/s)", "80"]];
-    let meaning =
-        "Each field is brighter the more rows lie in it. The network may be trusted only where there are some.";
-    card(ui, "What the recording holds (brighter: more rows)", meaning, |ui| {
+    let tilt: [AxisWords; 2] =
+        [["-53 deg", text::tip_force::TOWARDS_X, "53 deg"], ["-53", text::tip_force::TOWARDS_Y_DEG, "53"]];
+    let force: [AxisWords; 2] =
+        [["0 N", text::tip_force::ACROSS_THE_SHAFT, "5 N"], ["-5", text::tip_force::ALONG_THE_SHAFT_N, "5"]];
+    let travel: [AxisWords; 2] = [
+        ["0 mm", text::tip_force::DEPTH_THROUGH_THE_TROCAR_2, "300 mm"],
+        ["-80", text::tip_force::SPEED_INWARDS_MM_S, "80"],
+    ];
+    let meaning = text::tip_force::EACH_FIELD_IS_BRIGHTER;
+    card(ui, text::tip_force::WHAT_THE_RECORDING_HOLDS, meaning, |ui| {
         let width = ((ui.available_width() - 2.0 * 10.0) / 3.0).min(238.0);
         ui.horizontal(|ui| {
             ui.spacing_mut().item_spacing.x = 10.0;
-            heat_map(ui, width, "Tilt of the shaft", &coverage.tilt, tilt);
-            heat_map(ui, width, "Force at the tip", &coverage.force, force);
-            heat_map(ui, width, "Motion through the trocar", &coverage.travel, travel);
+            heat_map(ui, width, text::tip_force::TILT_OF_THE_SHAFT, &coverage.tilt, tilt);
+            heat_map(ui, width, text::tip_force::FORCE_AT_THE_TIP, &coverage.force, force);
+            heat_map(ui, width, text::tip_force::MOTION_THROUGH_THE_TROCAR, &coverage.travel, travel);
         });
     });
 }

@@ -1,5 +1,6 @@
 //! A recording that can be paused, broken off and gone on with, on a clock of its own.
 
+use crate::console::text;
 use nima::{
     calibration::correspondence::Correspondence,
     device::Prompt,
@@ -77,16 +78,16 @@ impl Take {
     /// What the recording is doing, in words.
     pub(super) fn phase_words(&self) -> String {
         if self.recorder.rows() == MOST_ROWS {
-            return "the recording is full; go on to the training".to_owned();
+            return text::tip_force::THE_RECORDING_IS_FULL.to_owned();
         }
         match self.recorder.phase() {
             _ if !self.running => "paused".to_owned(),
-            _ if self.silent => "nothing is taken: the wrist sensor is silent; connect it".to_owned(),
+            _ if self.silent => text::tip_force::NOTHING_IS_TAKEN_THE.to_owned(),
             RecorderPhase::Lacks(lack) => format!("nothing is taken: {}", lack.words()),
             RecorderPhase::Resting { share } => {
                 format!("zero of the sensor under the tissue: {:.0} %", 100.0 * share)
             }
-            RecorderPhase::NotMoved => "waiting until the instrument has moved in or out by 2 mm".to_owned(),
+            RecorderPhase::NotMoved => text::tip_force::WAITING_UNTIL_THE_INSTRUMENT.to_owned(),
             RecorderPhase::Recording | RecorderPhase::Full => "recording".to_owned(),
         }
     }
@@ -95,9 +96,9 @@ impl Take {
 /// What the screen says to the person at the arm.
 pub(super) const fn words(prompt: Prompt) -> &'static str {
     match prompt {
-        Prompt::Work => "Work on the tissue: in and out, sideways, in contact and free",
-        Prompt::WorkFree => "Move in and out and sideways without touching the tissue",
-        _ => "Lift the tip off the tissue and hold it still",
+        Prompt::Work => text::tip_force::WORK_ON_THE_TISSUE,
+        Prompt::WorkFree => text::tip_force::MOVE_IN_AND_OUT,
+        _ => text::tip_force::LIFT_THE_TIP_OFF,
     }
 }
 

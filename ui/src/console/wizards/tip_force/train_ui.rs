@@ -1,5 +1,6 @@
 //! The training: size, start and cancel, how far it is, and the losses as they fall.
 
+use crate::console::text;
 use egui::{Button, Ui, vec2};
 use egui_plot::{AxisHints, Corner, GridInput, GridMark, Legend, Line, LineStyle, Plot, PlotPoints};
 use nima::tip_force::ROW_EVERY_S;
@@ -18,31 +19,31 @@ const HEIGHT: f32 = 330.0;
 
 impl TipForceWizard {
     pub(super) fn train_ui(&mut self, ui: &mut Ui, binding: &Binding) {
-        card(ui, "Train", "Four networks learn side by side, each judged by another part of the recording.", |ui| {
+        card(ui, text::tip_force::TRAIN, text::tip_force::FOUR_NETWORKS_LEARN_SIDE, |ui| {
             self.size_ui(ui);
             let rows = self.rows();
             let told = format!("{rows} rows, {:.0} s", rows as f64 * ROW_EVERY_S);
-            figure(ui, "Recording", told, "It is written to a file first, so that nothing is lost.");
+            figure(ui, text::tip_force::RECORDING, told, text::tip_force::IT_IS_WRITTEN_TO);
             let (share, elapsed_s) = self.progress();
             ui.horizontal(|ui| {
                 if self.is_training() {
-                    if ui.add(Button::new("Cancel training").min_size(vec2(180.0, 40.0))).clicked() {
+                    if ui.add(Button::new(text::tip_force::CANCEL_TRAINING).min_size(vec2(180.0, 40.0))).clicked() {
                         self.cancel_training();
                     }
                     return;
                 }
-                let text = if self.trained.is_some() { "Train again" } else { "Start training" };
+                let text =
+                    if self.trained.is_some() { text::tip_force::TRAIN_AGAIN } else { text::tip_force::START_TRAINING };
                 let button = ui.add_enabled(rows > 0, Button::new(text).min_size(vec2(180.0, 40.0)));
-                if button.on_disabled_hover_text("Record first.").clicked() {
+                if button.on_disabled_hover_text(text::tip_force::RECORD_FIRST).clicked() {
                     self.start_training(binding);
                 }
             });
-            progress(ui, "Training", share, &self.progress_words(share, elapsed_s));
+            progress(ui, text::tip_force::TRAINING, share, &self.progress_words(share, elapsed_s));
         });
         self.outcome_ui(ui);
-        let meaning = "Mean square error in squares of the forces' standard deviation: 1 is knowing nothing. What counts \
-                       is the held-out one, of rows that this network never learns from.";
-        card(ui, "Loss of each network, epoch by epoch", meaning, |ui| curves_ui(ui, &look(&self.curves)));
+        let meaning = text::tip_force::MEAN_SQUARE_ERROR_IN;
+        card(ui, text::tip_force::LOSS_OF_EACH_NETWORK, meaning, |ui| curves_ui(ui, &look(&self.curves)));
     }
 
     fn cancel_training(&self) {
@@ -54,13 +55,13 @@ impl TipForceWizard {
     fn size_ui(&mut self, ui: &mut Ui) {
         let training = self.is_training();
         ui.horizontal(|ui| {
-            ui.label("Size");
+            ui.label(text::tip_force::SIZE);
             for size in Size::ALL {
                 let hidden = size.settings().hidden.iter().map(usize::to_string).collect::<Vec<_>>().join("-");
                 let chosen = self.size == size;
                 let words = format!("{} ({hidden})", size.name());
                 let response = ui.add_enabled(!training, Button::selectable(chosen, words));
-                let meaning = "Neurons in the hidden layers. The usual size is the one that was measured.";
+                let meaning = text::tip_force::NEURONS_IN_THE_HIDDEN;
                 if response.on_hover_text(meaning).clicked() {
                     self.size = size;
                 }
@@ -71,25 +72,25 @@ impl TipForceWizard {
     fn progress_words(&self, share: f64, elapsed_s: f64) -> String {
         match &self.training {
             Some((job, _)) if job.is_cancelled() => "stopping".to_owned(),
-            Some(_) if share <= 0.0 => "writing the recording, then beginning".to_owned(),
+            Some(_) if share <= 0.0 => text::tip_force::WRITING_THE_RECORDING_THEN.to_owned(),
             Some(_) => {
                 let left_s = elapsed_s * (1.0 - share) / share;
                 format!("{:.0} %, {elapsed_s:.0} s, at most {left_s:.0} s to go", 100.0 * share)
             }
             None if self.trained.is_some() => "done".to_owned(),
-            None => "not begun".to_owned(),
+            None => text::tip_force::NOT_BEGUN.to_owned(),
         }
     }
 
     fn outcome_ui(&self, ui: &mut Ui) {
         let Some(trained) = &self.trained else { return };
-        card(ui, "Trained", "The network that goes on to the check.", |ui| {
+        card(ui, text::tip_force::TRAINED, text::tip_force::THE_NETWORK_THAT_GOES, |ui| {
             let origin = &trained.model.origin;
             let losses = origin.figures.iter().map(|member| member.validation_loss);
             let mean = losses.sum::<f64>() / origin.figures.len().max(1) as f64;
             let told = format!("{} networks on {} rows", origin.figures.len(), origin.rows);
-            figure(ui, "Ensemble", told, "Their mean is the answer; where they disagree it is in doubt.");
-            figure(ui, "Held-out loss", format!("{mean:.4}"), "Mean over the networks; 1 is knowing nothing.");
+            figure(ui, text::tip_force::ENSEMBLE, told, text::tip_force::THEIR_MEAN_IS_THE);
+            figure(ui, text::tip_force::HELD_OUT_LOSS, format!("{mean:.4}"), text::tip_force::MEAN_OVER_THE_NETWORKS);
             if let Some(goal) = trained.narrow {
                 ui.label(format!(
                     "Its recording was not complete ({}): it can be kept only under somebody's name.",
@@ -97,7 +98,7 @@ impl TipForceWizard {
                 ));
             }
             if origin.rows < self.rows() {
-                ui.label(small("The recording has grown since: train again to use all of it."));
+                ui.label(small(text::tip_force::THE_RECORDING_HAS_GROWN));
             }
         });
     }
@@ -107,10 +108,10 @@ fn curves_ui(ui: &mut Ui, curves: &Curves) {
     let decades = |mark: GridMark| power_of_ten(mark.value);
     let plot = Plot::new("losses")
         .height(HEIGHT)
-        .custom_x_axes(vec![AxisHints::new_x().label("Epoch")])
+        .custom_x_axes(vec![AxisHints::new_x().label(text::tip_force::EPOCH)])
         .custom_y_axes(vec![
             AxisHints::new_y()
-                .label("Mean square error (1: knows nothing)")
+                .label(text::tip_force::MEAN_SQUARE_ERROR_1)
                 .min_thickness(52.0)
                 .formatter(move |mark, _| decades(mark)),
         ])

@@ -1,0 +1,160 @@
+//! The console's words live in `ui/src/console/text/`: a translation has one place to work in. This test reads the sources and counts the
+//! literals with words everywhere else.
+
+#![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+use std::path::{Path, PathBuf};
+
+/// Words that have not moved yet, by file: sentences with figures (`format!`), and the traces and the field as a whole. A number may only fall; a file that is not named here has none.
+const LEFT: [(&str, usize); 43] = [
+    ("alarms/mod.rs", 2),
+    ("alarms/sound.rs", 3),
+    ("alarms/strip.rs", 2),
+    ("app/calibrating.rs", 4),
+    ("app.rs", 4),
+    ("app/pace.rs", 1),
+    ("canvas/surface.rs", 1),
+    ("desk/mod.rs", 2),
+    ("help.rs", 2),
+    ("in_force.rs", 10),
+    ("mod.rs", 2),
+    ("panels/calibrations.rs", 3),
+    ("panels/degrees.rs", 3),
+    ("panels/devices.rs", 3),
+    ("panels/force_space.rs", 4),
+    ("panels/forces.rs", 15),
+    ("panels/gates.rs", 7),
+    ("panels/horizon.rs", 5),
+    ("panels/safety.rs", 2),
+    ("panels/stable_gain.rs", 1),
+    ("panels/timing_bars.rs", 5),
+    ("panels/top_bar.rs", 3),
+    ("panels/tradeoff.rs", 4),
+    ("panels/tradeoff_plot.rs", 2),
+    ("roles/mod.rs", 1),
+    ("roles/surgeon.rs", 1),
+    ("scene3d/extras.rs", 10),
+    ("scene3d/gl.rs", 2),
+    ("scene3d/lead.rs", 2),
+    ("scene3d/pick.rs", 9),
+    ("scene3d/mod.rs", 10),
+    ("screenshot.rs", 1),
+    ("settings.rs", 4),
+    ("widgets.rs", 1),
+    ("wizards/correspondence.rs", 9),
+    ("wizards/gravity.rs", 3),
+    ("wizards/pictures.rs", 3),
+    ("wizards/tip_force/check_ui.rs", 3),
+    ("wizards/tip_force/job.rs", 3),
+    ("wizards/tip_force/record_ui.rs", 2),
+    ("wizards/tip_force/take.rs", 2),
+    ("wizards/tip_force/train_ui.rs", 4),
+    ("wizards/tip_force.rs", 2),
+];
+
+fn sources(folder: &Path, files: &mut Vec<PathBuf>) {
+    for entry in std::fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        if path.is_dir() {
+            if path.file_name().unwrap() != "text" {
+                sources(&path, files);
+            }
+        } else if path.extension().is_some_and(|extension| extension == "rs") {
+            files.push(path);
+        }
+    }
+}
+
+/// The string literals of a source, without its comments, its attributes and its tests.
+fn literals(source: &str) -> Vec<String> {
+    let source = source.split("#[cfg(test)]\nmod tests").next().unwrap_or_default();
+    let mut literals = Vec::new();
+    for line in joined(source) {
+        let mut parts = line.split('"');
+        // Code and literals take turns.
+        while let (Some(code), Some(literal)) = (parts.next(), parts.next()) {
+            if code.contains("//") {
+                break;
+            }
+            literals.push(literal.to_owned());
+        }
+    }
+    literals
+}
+
+/// Lines with continued literals in one, without attributes, comment lines, escaped quotes and quote characters.
+fn joined(source: &str) -> Vec<String> {
+    let plain = source.replace("'\"'", "").replace("\\\"", "");
+    let mut lines: Vec<String> = Vec::new();
+    let mut open = false;
+    for line in plain.lines().map(str::trim_start) {
+        if !open && (line.starts_with("//") || line.starts_with("#[") || line.starts_with("#![")) {
+            continue;
+        }
+        match lines.last_mut() {
+            Some(last) if open => last.push_str(line),
+            _ => lines.push(line.to_owned()),
+        }
+        open = lines.last().is_some_and(|line| line.matches('"').count() % 2 == 1);
+    }
+    lines
+}
+
+/// Two words, or one that begins a sentence: what stands between braces is no word.
+fn has_words(literal: &str) -> bool {
+    let mut depth = 0_i32;
+    let plain: String = literal
+        .chars()
+        .map(|letter| {
+            depth += i32::from(letter == '{') - i32::from(letter == '}');
+            if depth > 0 || letter == '}' { ' ' } else { letter }
+        })
+        .collect();
+    let words: Vec<&str> = plain
+        .split(|letter: char| letter.is_whitespace())
+        .filter(|word| word.chars().filter(char::is_ascii_alphabetic).count() >= 3)
+        .collect();
+    let begins = words.iter().any(|word| {
+        let mut letters = word.chars();
+        letters.next().is_some_and(char::is_uppercase) && letters.take(2).all(char::is_lowercase)
+    });
+    words.len() >= 2 || begins
+}
+
+#[test]
+fn a_new_sentence_goes_where_all_words_are() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/console");
+    let mut files = Vec::new();
+    sources(&root, &mut files);
+    files.sort();
+    let mut wrong = Vec::new();
+    for path in &files {
+        let name = path.strip_prefix(&root).unwrap().to_str().unwrap().replace('\\', "/");
+        let found: Vec<String> = literals(&std::fs::read_to_string(path).unwrap())
+            .into_iter()
+            .filter(|literal| has_words(literal))
+            .collect();
+        let allowed = LEFT.iter().find(|(file, _)| *file == name).map_or(0, |(_, left)| *left);
+        if found.len() != allowed {
+            wrong.push(format!("(\"{name}\", {}), // {allowed} allowed: {found:?}", found.len()));
+        }
+    }
+    assert!(
+        wrong.is_empty(),
+        "put new words into ui/src/console/text, and lower the number where some have moved:\n{}",
+        wrong.join("\n")
+    );
+}
+
+#[test]
+fn words_are_told_from_formats() {
+    for words in ["Stop", "press any key", "{} ticks of {total} late", "Acted on {acted}"] {
+        assert!(has_words(words), "{words}");
+    }
+    for format in ["{:.1} N", "{}: {}", "top_bar", "us", "{force_n:.1} N, {a} x", "alarms"] {
+        assert!(!has_words(format), "{format}");
+    }
+    let source =
+        "// \"No words\"\n#[doc = \"No words\"]\nlet a = (\"Some words\", \"more \\\n  of them\"); // \"none here\"\n";
+    assert_eq!(literals(source), ["Some words", "more \\of them"]);
+}

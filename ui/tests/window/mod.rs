@@ -22,8 +22,9 @@ impl Xvfb {
             eprintln!("left out: Xvfb, xdotool or ImageMagick is not installed");
             return None;
         }
+        // Without -noreset it begins anew when a window closes, and the next one may come in between.
         let mut server = Command::new("Xvfb")
-            .args(["-displayfd", "1", "-screen", "0", "1600x1000x24", "-nolisten", "tcp"])
+            .args(["-displayfd", "1", "-screen", "0", "1600x1000x24", "-nolisten", "tcp", "-noreset"])
             .stdout(Stdio::piped())
             .stderr(Stdio::null())
             .spawn()

@@ -16,6 +16,8 @@ use crate::console::{
 
 const NODE: egui::Vec2 = vec2(82.0, 28.0);
 const DIAGRAM_HEIGHT: f32 = 118.0;
+/// Narrower than this the states would lie on one another: then the diagrams stand one above the other.
+const DIAGRAM_WIDTH: f32 = 440.0;
 const GATE_HEIGHT: f32 = 82.0;
 
 /// The panel.
@@ -23,11 +25,17 @@ pub fn safety_ui(ui: &mut Ui, live: &Live) {
     ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
         let mut sides: Vec<Side> = live.sides().collect();
         sides.reverse();
-        ui.columns(sides.len(), |columns| {
-            for (ui, side) in columns.iter_mut().zip(&sides) {
+        if ui.available_width() < DIAGRAM_WIDTH * sides.len() as f32 {
+            for side in &sides {
                 interlock_ui(ui, live, *side);
             }
-        });
+        } else {
+            ui.columns(sides.len(), |columns| {
+                for (ui, side) in columns.iter_mut().zip(&sides) {
+                    interlock_ui(ui, live, *side);
+                }
+            });
+        }
         for side in sides {
             gates_row_ui(ui, live, side);
         }

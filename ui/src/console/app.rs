@@ -71,6 +71,8 @@ pub struct ConsoleApp {
     framed: Instant,
     /// When something was last engaged, or a wizard was open.
     moved: Instant,
+    /// When what waited was last taken in.
+    taken: Instant,
     pictured: bool,
     /// Few pictures are drawn, because nothing is engaged.
     calm: bool,
@@ -109,6 +111,7 @@ impl ConsoleApp {
             opened: now,
             framed: now,
             moved: now,
+            taken: now,
             pictured: false,
             calm: false,
         }
@@ -200,6 +203,7 @@ impl ConsoleApp {
     /// Takes in all that the loop has sent.
     fn take_in(&mut self) {
         let Some(door) = &self.door else { return };
+        self.taken = Instant::now();
         let rate_hz = self.live.rig.rate_hz;
         let (wizards, in_force, diary) = (&mut self.wizards, &mut self.in_force, &mut self.diary);
         self.live.take_in(door, |tick| {
@@ -309,7 +313,10 @@ impl ConsoleApp {
 }
 
 impl eframe::App for ConsoleApp {
-    fn logic(&mut self, _ctx: &egui::Context, _frame: &mut eframe::Frame) {
+    fn logic(&mut self, ctx: &egui::Context, _frame: &mut eframe::Frame) {
+        if self.only_flashes(ctx) {
+            return;
+        }
         // Also while the window is hidden, so that the queues stay empty and the history whole.
         self.take_in();
         self.ask();
@@ -361,5 +368,6 @@ impl eframe::App for ConsoleApp {
 /// The door to a loop, that wakes the window of this context.
 fn door_of(handle: Handle, ctx: &egui::Context) -> Door {
     let ctx = ctx.clone();
-    Door::new(handle, move || ctx.request_repaint())
+    // Once: without any delay egui draws two pictures.
+    Door::new(handle, move || ctx.request_repaint_after(Duration::from_millis(1)))
 }

@@ -110,6 +110,16 @@ impl Door {
         kept.woken = false;
     }
 
+    /// The window was woken and has not taken in why.
+    pub fn has_woken(&self) -> bool {
+        self.shared.lock().woken
+    }
+
+    /// When the last tick came, as far as it was looked for.
+    pub fn last_came(&self) -> Instant {
+        self.shared.lock().came
+    }
+
     /// Tells whether the window sleeps from now on.
     pub fn rest(&self, calm: bool) {
         if self.shared.calm.swap(calm, Ordering::Relaxed) != calm

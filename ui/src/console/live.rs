@@ -188,6 +188,11 @@ impl Live {
         self.refresh_figures();
     }
 
+    /// A tick came at this moment and waits to be taken in: the loop is not silent.
+    pub fn heard(&mut self, at: Instant) {
+        self.tick_at = self.tick_at.max(at);
+    }
+
     /// What moves all the time is drawn anew at most this often, s: on a slow computer every second frame.
     pub const fn least_step_s(&self) -> f64 {
         if self.rough_edges { 1.0 / 15.0 } else { 0.0 }

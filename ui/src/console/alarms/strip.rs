@@ -47,8 +47,9 @@ impl Alarms {
         self.sound.step(calls.filter(|_| sounds), time_s);
         let live = self.log.live();
         let Some(&first) = live.first() else { return };
-        if let Some(hz) = calls.and_then(super::Priority::flash_hz) {
-            ui.ctx().request_repaint_after(std::time::Duration::from_secs_f64(0.25 / hz));
+        if let Some(change_s) = calls.and_then(|priority| priority.until_change_s(time_s)) {
+            // A little later, so that it has changed.
+            ui.ctx().request_repaint_after(std::time::Duration::from_secs_f64(change_s + 2e-3));
         }
         let colour = calls.unwrap_or(first.alarm.priority).colour(time_s, calls.is_some());
         let unseen = self.log.has_unseen();

@@ -8,20 +8,14 @@ use std::{
 use nima::{files::write_atomically, teleop::LoopState};
 
 use super::ConsoleApp;
-use crate::console::{
-    Options,
-    alarms::{Priority, judge},
-    diary::WithScreen,
-    door::Door,
-    frames::Picture,
-};
+use crate::console::{Options, diary::WithScreen, door::Door, frames::Picture};
 
 /// Thirty pictures a second while data flow.
 const FRAME: Duration = Duration::from_millis(32);
 /// Input is looked at between two pictures, however slow they are.
 const LEAST_REST: Duration = Duration::from_millis(1);
 /// While nothing is engaged the clocks go on by this; a change, the mouse and the keyboard are answered at once all the same.
-const BEAT_AT_REST: Duration = Duration::from_secs(1);
+const BEAT_AT_REST: Duration = Duration::from_secs(2);
 /// Once nothing is engaged, traces and figures come to rest in this time.
 const SETTLED: Duration = Duration::from_secs(2);
 /// When a picture was asked for but no end: the demo is in full swing by then.
@@ -42,7 +36,7 @@ impl ConsoleApp {
             door.rest(self.calm);
         }
         let next = if self.calm {
-            self.until_change(ctx)
+            self.until_change()
         } else {
             // Counted from the beginning of this picture: what it took is no reason to wait longer.
             FRAME.saturating_sub(self.framed.elapsed()).max(LEAST_REST)
@@ -50,17 +44,24 @@ impl ConsoleApp {
         ctx.request_repaint_after(next);
     }
 
-    /// Time until something changes on a window at rest: a flashing alarm, the clocks, what was asked for from outside.
-    fn until_change(&self, ctx: &egui::Context) -> Duration {
-        let time_s = ctx.input(|input| input.time) + self.framed.elapsed().as_secs_f64();
-        let alarms = judge(&self.live.signs(self.outbox.stop_is_stuck()));
-        let flash = alarms.first().and_then(|alarm| Priority::until_change_s(alarm.priority, time_s));
+    /// This picture of a window at rest is for a flashing alarm alone: nothing else moves on, so that nothing else is drawn.
+    pub(super) fn only_flashes(&mut self, ctx: &egui::Context) -> bool {
+        let Some(door) = self.door.as_ref().filter(|_| self.calm) else { return false };
+        let wanted = door.has_woken() || ctx.input(|input| !input.events.is_empty() || input.pointer.any_down());
+        if wanted || self.taken.elapsed() + LEAST_REST >= BEAT_AT_REST {
+            return false;
+        }
+        self.live.heard(door.last_came());
+        true
+    }
+
+    /// Time until something changes on a window at rest: the clocks, what was asked for from outside. A flashing alarm asks for itself.
+    fn until_change(&self) -> Duration {
         let open = self.opened.elapsed();
         let Options { exit_after, screenshot, .. } = &self.options;
         let wanted = [screenshot.as_ref().filter(|_| !self.pictured).map(|_| self.picture_at()), *exit_after];
         let wanted = wanted.into_iter().flatten().map(|at| at.saturating_sub(open));
-        let flash = flash.map(|flash_s| Duration::from_secs_f64(flash_s) + LEAST_REST);
-        wanted.chain(flash).fold(BEAT_AT_REST, Duration::min).max(LEAST_REST)
+        wanted.fold(BEAT_AT_REST.saturating_sub(self.taken.elapsed()), Duration::min).max(LEAST_REST)
     }
 
     /// When the picture that was asked for is taken.

@@ -1,6 +1,6 @@
 //! A number for each shape: equal shapes have equal numbers, and different ones different numbers but for one case in 2^64.
 //!
-//! What a shape shares with others (text, callbacks) counts by its address. That is safe as long as the shapes compared are alive.
+//! What only a driver understands (callbacks) counts by its address. That is safe as long as the shapes compared are alive.
 
 use std::{
     hash::{DefaultHasher, Hash as _, Hasher as _},
@@ -8,7 +8,7 @@ use std::{
 };
 
 use egui::{
-    Mesh, Pos2, Rect, Shape, Stroke,
+    Galley, Mesh, Pos2, Rect, Shape, Stroke,
     epaint::{ClippedShape, ColorMode, PathStroke},
 };
 
@@ -58,7 +58,7 @@ fn add(hash: &mut DefaultHasher, shape: &Shape) {
         Shape::Text(text) => {
             points(hash, &[text.pos]);
             numbers(hash, &[text.opacity_factor, text.angle]);
-            Arc::as_ptr(&text.galley).hash(hash);
+            galley(hash, &text.galley);
             (text.underline, text.fallback_color, text.override_text_color).hash(hash);
         }
         Shape::Mesh(shape) => mesh(hash, shape),
@@ -88,6 +88,14 @@ fn rectangle(hash: &mut DefaultHasher, shape: &egui::epaint::RectShape) {
     if let Some(brush) = &shape.brush {
         brush.fill_texture_id.hash(hash);
         rect(hash, &brush.uv);
+    }
+}
+
+/// Text counts by its triangles: that of a disabled button is made anew in every frame and is the same.
+fn galley(hash: &mut DefaultHasher, galley: &Galley) {
+    for row in &galley.rows {
+        points(hash, &[row.pos]);
+        mesh(hash, &row.row.visuals.mesh);
     }
 }
 

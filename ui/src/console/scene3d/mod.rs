@@ -52,7 +52,19 @@ pub struct SceneView {
     set_for: Option<String>,
     lead: Lead,
     renderer: Option<Arc<Renderer>>,
+    /// What was drawn last; the same again needs no new triangles, and where a processor draws no drawing.
+    drawn: Option<(Drawn, egui::PaintCallback)>,
     problem: Option<String>,
+}
+
+/// All that the triangles depend on.
+#[derive(Clone, Debug, PartialEq)]
+struct Drawn {
+    rect: Rect,
+    scene: String,
+    camera: Camera,
+    smooth: bool,
+    arms: Vec<Arm>,
 }
 
 impl Default for SceneView {
@@ -66,6 +78,7 @@ impl Default for SceneView {
             set_for: None,
             lead: Lead::default(),
             renderer: None,
+            drawn: None,
             problem: None,
         }
     }
@@ -181,9 +194,13 @@ fn arm(live: &Live, side: Side) -> Option<Arm> {
     })
 }
 
-fn triangles(rect: Rect, live: &Live, view: &SceneView, arms: &[Arm]) -> Option<egui::PaintCallback> {
+fn triangles(rect: Rect, live: &Live, view: &mut SceneView, arms: &[Arm]) -> Option<egui::PaintCallback> {
     let renderer = view.renderer.clone()?;
     let camera = view.camera(&live.scene);
+    let wanted = Drawn { rect, scene: live.scene.name.clone(), camera, smooth: view.smooth, arms: arms.to_vec() };
+    if let Some((_, callback)) = view.drawn.as_ref().filter(|(drawn, _)| *drawn == wanted) {
+        return Some(callback.clone());
+    }
     let (eye_m, right) = (camera.eye_m(), camera.right());
     let frame = gl::Frame {
         mesh: stage::build(&live.scene, arms, &eye_m, &right, view.smooth),
@@ -196,7 +213,9 @@ fn triangles(rect: Rect, live: &Live, view: &SceneView, arms: &[Arm]) -> Option<
     let paint = egui_glow::CallbackFn::new(move |info, painter| {
         renderer.paint(painter.gl(), &info.viewport_in_pixels(), &frame);
     });
-    Some(egui::PaintCallback { rect, callback: Arc::new(paint) })
+    let callback = egui::PaintCallback { rect, callback: Arc::new(paint) };
+    view.drawn = Some((wanted, callback.clone()));
+    Some(callback)
 }
 
 /// Way up the shaft at which the name of a hand stands beside it, m: above the forces' numbers, and without them so low that the

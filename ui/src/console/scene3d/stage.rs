@@ -36,7 +36,7 @@ const SLEEVE: Paint = Paint(Color32::from_rgb(0x4a, 0x53, 0x5f), Material::Matte
 const TRAIL: Paint = Paint(Color32::from_rgb(0xc8, 0xcf, 0xd8), Material::Plain);
 
 /// What changes from frame to frame, in the workspace frame.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pose {
     /// Tip of the instrument, m.
     pub tip_m: Vector3<f32>,
@@ -98,7 +98,7 @@ impl Dents {
 }
 
 /// One arm pair's part of the stage.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Arm {
     /// Which.
     pub side: Side,

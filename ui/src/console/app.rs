@@ -3,6 +3,7 @@
 mod calibrating;
 mod pace;
 
+use crate::console::text;
 use std::{
     path::Path,
     sync::Arc,
@@ -219,7 +220,7 @@ impl ConsoleApp {
         rig.validate().and_then(|()| scene.validate()).map_err(|error| error.to_string())?;
         self.take_in();
         if !matches!(self.live.state(), LoopState::Idle | LoopState::Engaged) {
-            return Err("the loop has stopped; release it first".to_owned());
+            return Err(text::calibrations::LOOP_HAS_STOPPED.to_owned());
         }
         // The old loop first: a rig has one master.
         drop(self.door.take());
@@ -228,7 +229,7 @@ impl ConsoleApp {
         let calibrations = self.in_force.calibrations(&rig);
         let left_calibrations = calibrations.clone();
         let plan = Plan { rig: rig.clone(), scene: scene.clone(), calibrations, left_calibrations, engage: false };
-        let started = runtime::start(&plan).map_err(|error| format!("the loop could not be started again: {error}"));
+        let started = runtime::start(&plan).map_err(|error| text::calibrations::not_started_again(&error));
         let rough_edges = self.live.rough_edges;
         self.live = Live::new(rig, scene);
         self.live.rough_edges = rough_edges;
@@ -241,8 +242,8 @@ impl ConsoleApp {
     /// Takes over what the trade-off panel chose.
     fn apply_tradeoff(&mut self, rig: Rig) {
         let told = match self.restart(rig, self.live.scene.clone()) {
-            Ok(()) => "Applied. The loop was restarted and is idle: engage it when ready.".to_owned(),
-            Err(reason) => format!("Not applied: {reason}."),
+            Ok(()) => text::tradeoff::APPLIED_BY_RESTART.to_owned(),
+            Err(reason) => text::tradeoff::not_applied(&reason),
         };
         self.panels.tradeoff.tell(told);
     }

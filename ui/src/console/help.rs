@@ -5,7 +5,8 @@ use egui::{Align, Align2, Button, Context, Label, Rect, RichText, ScrollArea, Wi
 
 use super::{
     text::help::{
-        BEGIN, GLOSSARY, KEYS, KEYS_HEADING, NEXT_STEP, SKIP_THE_TOUR, STEP_BACK, TOUR, WORDS_HEADING, step_of,
+        BEGIN, GLOSSARY, GLOSSARY_WINDOW, KEYS, KEYS_HEADING, NEXT_STEP, SKIP_THE_TOUR, STEP_BACK, TOUR, TOUR_WINDOW,
+        WORDS_HEADING, step_of,
     },
     theme,
 };
@@ -30,7 +31,7 @@ impl Help {
         self.glossary_ui(ctx, room);
         let Some(step) = self.tour else { return false };
         let (heading, words) = TOUR[step];
-        let window = Window::new("Tour").title_bar(false).resizable(false).movable(false).constrain_to(room);
+        let window = Window::new(TOUR_WINDOW).title_bar(false).resizable(false).movable(false).constrain_to(room);
         let window = window.anchor(Align2::CENTER_TOP, vec2(0.0, room.top() + 12.0)).fixed_size(vec2(440.0, 0.0));
         window.show(ctx, |ui| {
             ui.label(RichText::new(heading).font(theme::strong(18.0)));
@@ -55,7 +56,7 @@ impl Help {
     }
 
     fn glossary_ui(&mut self, ctx: &Context, room: Rect) {
-        let window = Window::new("Glossary").open(&mut self.glossary).constrain_to(room).collapsible(false);
+        let window = Window::new(GLOSSARY_WINDOW).open(&mut self.glossary).constrain_to(room).collapsible(false);
         let height = (room.height() - 90.0).min(560.0);
         window.default_pos(room.center_top() + vec2(-230.0, 16.0)).fixed_size(vec2(460.0, height)).show(ctx, |ui| {
             ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {

@@ -122,7 +122,7 @@ impl InForce {
             }
         };
         self.told = None;
-        Ok(format!("Saved and in force: {}.", path.display()))
+        Ok(text::calibrations::saved(&path))
     }
 
     /// Something that went wrong, for the card.
@@ -148,7 +148,7 @@ impl InForce {
             .map_or_else(|| text::calibrations::CORRESPONDENCE_NONE.to_owned(), line_of_correspondence);
         let tip_force =
             self.tip_force.as_ref().map_or_else(|| text::calibrations::TIP_FORCE_NONE.to_owned(), line_of_tip_force);
-        let mut lines = vec![format!("Sensor {sensor}, {tool}"), gravity];
+        let mut lines = vec![text::calibrations::bound_to(sensor, tool), gravity];
         lines.extend(self.drift.as_ref().map(line_of_drift));
         lines.extend([correspondence, tip_force]);
         lines
@@ -158,7 +158,7 @@ impl InForce {
 /// What was loaded; a file that cannot be used is told.
 fn usable<R>(what: &str, loaded: Result<Option<R>, impl std::error::Error>, told: &mut Option<String>) -> Option<R> {
     loaded.unwrap_or_else(|error| {
-        *told = Some(format!("{what} is not in force: {}", in_one_line(&error)));
+        *told = Some(text::calibrations::not_in_force(what, &in_one_line(&error)));
         None
     })
 }
@@ -174,14 +174,14 @@ fn line_of_gravity(loaded: &Loaded<GravityRecord>) -> String {
     let GravityRecord { residuals, poses, override_by, .. } = &loaded.record;
     let (day, remarks) = (day(&loaded.record), remarks(loaded.age, override_by.as_deref()));
     let error_n = residuals.held_out.mean_mae();
-    format!("Gravity: {day}, {poses} poses, held-out error {error_n:.3} N{remarks}")
+    text::calibrations::gravity(day, *poses, error_n, &remarks)
 }
 
 fn line_of_drift((check, found_at): &(DriftCheck, String)) -> String {
     let words = check.drift().words();
     match check.drift() {
-        Drift::Fine { .. } | Drift::Moved { .. } => format!("Bias, checked {found_at} UTC: {words}"),
-        Drift::Waiting | Drift::NotChecked(_) => format!("Bias: {words}"),
+        Drift::Fine { .. } | Drift::Moved { .. } => text::calibrations::bias_checked(found_at, &words),
+        Drift::Waiting | Drift::NotChecked(_) => text::calibrations::bias(&words),
     }
 }
 
@@ -189,9 +189,7 @@ fn line_of_correspondence(loaded: &Loaded<CorrespondenceRecord>) -> String {
     let CorrespondenceRecord { agreement, pairs, uncertainty_deg, override_by, .. } = &loaded.record;
     let (day, remarks) = (day(&loaded.record), remarks(loaded.age, override_by.as_deref()));
     let error_n = agreement.residuals.held_out.mean_mae();
-    format!(
-        "Correspondence: {day}, {pairs} pushes, held-out error {error_n:.3} N, known to {uncertainty_deg:.2} deg{remarks}"
-    )
+    text::calibrations::correspondence(day, *pairs, error_n, *uncertainty_deg, &remarks)
 }
 
 fn line_of_tip_force(loaded: &Loaded<Model>) -> String {
@@ -199,7 +197,7 @@ fn line_of_tip_force(loaded: &Loaded<Model>) -> String {
     let Some(check) = &origin.check else { return text::calibrations::TIP_FORCE_NEVER_CHECKED.to_owned() };
     let error_n = check.mae_n.iter().sum::<f64>() / 3.0;
     let remarks = remarks(loaded.age, check.override_by.as_deref());
-    format!("Tip force: {}, {} rows, error on new data {error_n:.3} N{remarks}", day_of(&origin.date), origin.rows)
+    text::calibrations::tip_force(day_of(&origin.date), origin.rows, error_n, &remarks)
 }
 
 fn day(record: &impl Record) -> &str {
@@ -214,10 +212,10 @@ fn day_of(date: &str) -> &str {
 fn remarks(age: Age, override_by: Option<&str>) -> String {
     let age = match age {
         Age::Fresh => String::new(),
-        Age::Old { days } => format!("; {days} days old, repeat it"),
+        Age::Old { days } => text::calibrations::days_old(days),
         Age::Future => text::calibrations::MADE_IN_THE_FUTURE.to_owned(),
     };
-    let overridden = override_by.map_or_else(String::new, |name| format!("; NOT PROVEN, kept by {name}"));
+    let overridden = override_by.map_or_else(String::new, text::calibrations::not_proven);
     age + &overridden
 }
 

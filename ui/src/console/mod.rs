@@ -70,7 +70,7 @@ pub struct Options {
 /// Opens the console on a running loop; returns when the window is closed and the loop has ended.
 pub fn run(handle: Handle, rig: Rig, scene: Scene, options: Options) -> anyhow::Result<()> {
     let viewport = egui::ViewportBuilder::default()
-        .with_title("NIMA Console")
+        .with_title(text::top_bar::NIMA_CONSOLE)
         .with_app_id("nima-console")
         .with_inner_size([1600.0, 1000.0])
         .with_min_inner_size([1100.0, 680.0]);
@@ -84,7 +84,8 @@ pub fn run(handle: Handle, rig: Rig, scene: Scene, options: Options) -> anyhow::
         ..Default::default()
     };
     let create: eframe::AppCreator<'_> = Box::new(move |cc| Ok(Box::new(console(cc, handle, rig, scene, options))));
-    eframe::run_native("NIMA Console", native, create).map_err(|error| NoWindow::new(&error.to_string()).into())
+    eframe::run_native(text::top_bar::NIMA_CONSOLE, native, create)
+        .map_err(|error| NoWindow::new(&error.to_string()).into())
 }
 
 /// The console with the user's settings; pictures are taken with the defaults and leave the settings alone.

@@ -72,7 +72,7 @@ impl Kept {
     pub fn open(folder: &Path) -> Self {
         let (now, told) = match std::fs::read_to_string(folder.join(FILE)) {
             Err(error) if error.kind() == io::ErrorKind::NotFound => (Settings::default(), None),
-            Err(error) => (Settings::default(), Some(format!("The settings cannot be read: {error}"))),
+            Err(error) => (Settings::default(), Some(text::settings::not_read(&error))),
             Ok(text) => read(&text).unwrap_or_else(|error| (Settings::default(), Some(set_aside(folder, &error)))),
         };
         Self { folder: Some(folder.to_path_buf()), saved: now.clone(), now, told }
@@ -87,7 +87,7 @@ impl Kept {
             .and(text)
             .and_then(|text| write_atomically(&folder.join(FILE), |file| file.write_all(&text)));
         if let Err(error) = written {
-            self.told = Some(format!("The settings are not kept: {error}"));
+            self.told = Some(text::settings::not_kept(&error));
         }
     }
 
@@ -114,16 +114,14 @@ fn read(text: &str) -> Result<(Settings, Option<String>), serde_json::Error> {
             settings.layout = layout;
             Ok((settings, None))
         }
-        Err(error) => Ok((settings, Some(format!("{} ({error})", text::settings::LAYOUT_LOST)))),
+        Err(error) => Ok((settings, Some(text::settings::layout_lost(&error)))),
     }
 }
 
 fn set_aside(folder: &Path, error: &serde_json::Error) -> String {
     match std::fs::rename(folder.join(FILE), folder.join(SET_ASIDE)) {
-        Ok(()) => {
-            format!("The settings were damaged ({error}); they are set aside as {SET_ASIDE}, and the defaults are used")
-        }
-        Err(_) => format!("The settings are damaged ({error}); the defaults are used"),
+        Ok(()) => text::settings::set_aside(error, SET_ASIDE),
+        Err(_) => text::settings::damaged(error),
     }
 }
 

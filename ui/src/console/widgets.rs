@@ -1,5 +1,6 @@
 //! Small parts that several panels share.
 
+use crate::console::text;
 use egui::{Align, Color32, Layout, Painter, Pos2, Rect, Response, RichText, Sense, Stroke, Ui, Vec2, pos2, vec2};
 
 use super::theme;
@@ -121,7 +122,7 @@ pub fn bar(painter: &Painter, rect: Rect, share: f64, colour: Color32) {
 /// A number with about three digits, in the unit given; large ones in powers of ten.
 pub fn three_digits(value: f64) -> String {
     match value.abs() {
-        x if !x.is_finite() => "not finite".to_owned(),
+        x if !x.is_finite() => text::common::NOT_FINITE.to_owned(),
         x if x >= 1e5 => format!("{value:.1e}"),
         x if x >= 100.0 => format!("{value:.0}"),
         x if x >= 10.0 => format!("{value:.1}"),

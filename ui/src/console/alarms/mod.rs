@@ -136,7 +136,7 @@ pub fn judge(signs: &Signs) -> Vec<Alarm> {
         alarms.push(Alarm {
             kind: Kind::Fault(fault),
             priority: Priority::High,
-            cause: format!("{} (at {t_s:.1} s)", fault.cause()),
+            cause: text::alarms::fault(fault.cause(), t_s),
             cure: fault.cure().to_owned(),
         });
     }
@@ -152,7 +152,7 @@ pub fn judge(signs: &Signs) -> Vec<Alarm> {
         alarms.push(Alarm {
             kind: Kind::Missed,
             priority: Priority::Medium,
-            cause: format!("The loop misses {:.1} % of its periods", 100.0 * signs.missed_share),
+            cause: text::alarms::periods_missed(100.0 * signs.missed_share),
             cure: text::alarms::CLOSE_OTHER_PROGRAMS_OR.to_owned(),
         });
     }
@@ -160,7 +160,7 @@ pub fn judge(signs: &Signs) -> Vec<Alarm> {
         alarms.push(Alarm {
             kind: Kind::BiasMoved,
             priority: Priority::Medium,
-            cause: format!("The wrist sensor reads {by_n:.2} N at rest: its bias has moved since the calibration"),
+            cause: text::alarms::bias_moved(by_n),
             cure: text::alarms::LET_NOTHING_TOUCH_THE.to_owned(),
         });
     }

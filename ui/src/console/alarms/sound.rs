@@ -3,6 +3,7 @@
 //! Played by the player of the system that is there (`pw-play`, `paplay` or `aplay`), so that nothing more is needed to build; where
 //! there is none, or it fails, that is told in the menu. Nothing here waits: a burst is a child process that is looked after each frame.
 
+use crate::console::text;
 use std::{
     f64::consts::TAU,
     io,
@@ -47,7 +48,7 @@ impl Sound {
     pub fn trouble(&mut self) -> Option<String> {
         self.look();
         match (&self.player, &self.failure) {
-            (None, _) => Some(format!("No sound output: none of {} is installed.", PLAYERS.join(", "))),
+            (None, _) => Some(text::alarms::no_player(&PLAYERS.join(", "))),
             (Some(_), Some(failure)) => Some(failure.clone()),
             (Some(_), None) => None,
         }
@@ -57,7 +58,7 @@ impl Sound {
     pub fn step(&mut self, calls: Option<Priority>, time_s: f64) {
         if let Some(Ok(Some(status))) = self.playing.as_mut().map(Child::try_wait) {
             self.playing = None;
-            self.failure = (!status.success()).then(|| format!("The sound could not be played ({status})."));
+            self.failure = (!status.success()).then(|| text::alarms::player_failed(&status));
         }
         let Some(priority) = calls else {
             self.last = None;
@@ -73,7 +74,7 @@ impl Sound {
         let Some(player) = self.player.clone() else { return };
         match self.play(&player, priority) {
             Ok(child) => self.playing = Some(child),
-            Err(error) => self.failure = Some(format!("The sound could not be played: {error}.")),
+            Err(error) => self.failure = Some(text::alarms::player_not_started(&error)),
         }
     }
 

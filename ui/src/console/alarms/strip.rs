@@ -82,7 +82,7 @@ impl Alarms {
 
     /// The list, into `room`.
     pub fn list_ui(&mut self, ctx: &Context, room: Rect) {
-        let window = Window::new("Alarms").open(&mut self.list).constrain_to(room).collapsible(false);
+        let window = Window::new(text::alarms::LIST).open(&mut self.list).constrain_to(room).collapsible(false);
         let size = vec2(560.0, (room.height() - 90.0).min(460.0));
         window.default_pos(room.center_top() + vec2(-280.0, 16.0)).fixed_size(size).show(ctx, |ui| {
             ui.label(small(text::alarms::THE_LAST_50_THE));
@@ -107,10 +107,11 @@ fn words_ui(ui: &mut Ui, first: &Entry, others: usize, colour: Color32) -> bool 
     let words = ui.vertical(|ui| {
         ui.set_width(width);
         ui.spacing_mut().item_spacing.y = 1.0;
-        let more = if others > 0 { format!(" (+{others} more)") } else { String::new() };
-        let seen = if first.acknowledged { ", acknowledged" } else { "" };
+        let more = if others > 0 { text::alarms::others(others) } else { String::new() };
+        let seen = if first.acknowledged { text::alarms::SEEN } else { "" };
         let alarm = &first.alarm;
-        let cause = format!("{}: {} - since {} UTC{seen}{more}", alarm.priority.word(), alarm.cause, first.began.utc);
+        let cause =
+            text::alarms::pinned(alarm.priority.word(), &alarm.cause, &first.began.utc, &(seen.to_owned() + &more));
         ui.add(Label::new(RichText::new(cause).font(theme::strong(14.0)).color(theme::DARK.text)).wrap());
         ui.add(Label::new(RichText::new(&alarm.cure).font(theme::regular(13.0)).color(theme::DARK.text_weak)).wrap());
     });

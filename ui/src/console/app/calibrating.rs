@@ -1,5 +1,6 @@
 //! The console while a wizard is open: another scene on the same rig, what is kept of it, and the way back.
 
+use crate::console::text;
 use egui::{CentralPanel, Frame, Margin, Panel, ScrollArea, Ui};
 use nima::{config::Scene, device::Prompt, runtime::Command, teleop::LoopState};
 
@@ -22,7 +23,7 @@ impl ConsoleApp {
         };
         match opened {
             Ok(()) => self.wizards.open = Some(which),
-            Err(reason) => self.in_force.tell(format!("Not opened: {reason}.")),
+            Err(reason) => self.in_force.tell(text::calibrations::not_opened(&reason)),
         }
     }
 
@@ -43,7 +44,7 @@ impl ConsoleApp {
         };
         if let Err(reason) = self.restart(self.live.rig.clone(), scene.clone()) {
             self.watched = Some(scene);
-            self.in_force.tell(format!("Still in the experiment: {reason}."));
+            self.in_force.tell(text::calibrations::still_in_the_experiment(&reason));
         }
     }
 
@@ -52,9 +53,9 @@ impl ConsoleApp {
         let told = match self.in_force.save(saving) {
             Ok(words) => match self.restart(self.live.rig.clone(), self.live.scene.clone()) {
                 Ok(()) => words,
-                Err(reason) => format!("{words} It comes into force with the next start: {reason}."),
+                Err(reason) => text::calibrations::in_force_with_next_start(&words, &reason),
             },
-            Err(reason) => format!("Not saved: {reason}"),
+            Err(reason) => text::calibrations::not_saved(&reason),
         };
         self.wizards.tell_saved(told);
     }

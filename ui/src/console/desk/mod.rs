@@ -121,9 +121,9 @@ impl Behavior<Panel> for Contents<'_> {
         let Some(panel) = tabs.active.and_then(|active| tiles.get_pane(&active)) else { return };
         let button = Button::new(RichText::new("\u{d7}").font(theme::regular(16.0))).frame_when_inactive(false);
         let button = ui.add(button.min_size(vec2(22.0, 22.0)));
-        let name = format!("Close {}", panel.title());
+        let name = text::desk::close(panel.title());
         button.widget_info(|| WidgetInfo::labeled(egui::Role::Button, true, &name));
-        if button.on_hover_text(format!("{name}; the View menu opens it again.")).clicked() {
+        if button.on_hover_text(text::desk::close_meaning(&name)).clicked() {
             self.closed = Some(*panel);
         }
     }

@@ -35,12 +35,12 @@ pub fn calibrations_ui(ui: &mut Ui, live: &Live, in_force: &InForce, open: Optio
     ui.add_space(4.0);
     let free = matches!(live.state(), LoopState::Idle | LoopState::Engaged);
     for which in Which::ALL {
-        let text = format!("Calibrate {}...", which.name().to_lowercase());
+        let text = text::calibrations::calibrate(&which.name().to_lowercase());
         let button = Button::selectable(open == Some(which), text)
             .frame_when_inactive(true)
             .min_size(vec2(ui.available_width(), 28.0));
         let response = ui.add_enabled(free && open != Some(which), button);
-        let response = response.on_hover_text(format!("{} The loop is set to idle.", which.meaning()));
+        let response = response.on_hover_text(text::calibrations::opens(which.meaning()));
         if response.on_disabled_hover_text(text::calibrations::ALREADY_OPEN_OR_THE).clicked() {
             wish = Some(CalibrationWish::Open(which));
         }
@@ -60,7 +60,7 @@ fn source_ui(ui: &mut Ui, live: &Live) {
     let (what, colour) = if sure { (Sign::Disc, theme::now().engaged) } else { (Sign::Triangle, theme::now().text) };
     ui.horizontal(|ui| {
         sign_ui(ui, what, 5.0, colour);
-        let words = RichText::new(format!("Tip force: {}", source.words())).font(theme::strong(14.0));
+        let words = RichText::new(text::calibrations::source(source.words())).font(theme::strong(14.0));
         ui.add(egui::Label::new(words).wrap()).on_hover_text(sentence(source.words()));
     });
     if let Some(unsure) = source.doubt() {

@@ -17,7 +17,7 @@ pub fn degrees_ui(ui: &mut Ui, live: &Live) {
     ui.horizontal(|ui| {
         key_ui(ui, theme::now().rendered, text::degrees::THIS_CONSOLE, text::degrees::CHOSEN_BY_THE_RUNNING);
         key_ui(ui, theme::now().reference, text::degrees::THE_PAPER_S_RULE, text::degrees::LEAST_ERROR_INSIDE_THE);
-        ui.label(small(format!("last {:.0} min", DEGREES_S / 60.0)));
+        ui.label(small(text::degrees::last_minutes(DEGREES_S / 60.0)));
     });
     chart_ui(ui, live);
     let share = |share: f64| format!("{:.0} %", 100.0 * share);
@@ -43,7 +43,7 @@ fn quality_ui(ui: &mut Ui, live: &Live) {
     figure(
         ui,
         text::degrees::RANK,
-        format!("{} of {}, {} used", report.rank, 3 * live.rig.identification.max_degree, report.columns),
+        text::degrees::columns(report.rank, 3 * live.rig.identification.max_degree, report.columns),
         text::degrees::MOTION_COLUMNS_WITH_ENOUGH,
     );
     let excitation = &report.excitation;
@@ -73,10 +73,8 @@ fn chart_ui(ui: &mut Ui, live: &Live) {
             .collect::<Vec<_>>()
             .join("   ")
     };
-    response.widget_info(|| {
-        egui::WidgetInfo::labeled(egui::Role::Label, true, format!("Degrees chosen: {}", words(&ours)))
-    });
-    response.on_hover_text(format!("This console  {}\nPaper's rule  {}", words(&ours), words(&papers)));
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, text::degrees::chosen(&words(&ours))));
+    response.on_hover_text(text::degrees::both(&words(&ours), &words(&papers)));
     let painter = ui.painter();
     let ground = Rect::from_min_size(rect.min, vec2(rect.width(), CHART_HEIGHT));
     painter.rect_filled(ground, 3.0, theme::now().groove);

@@ -21,7 +21,7 @@ pub fn devices_ui(ui: &mut Ui, live: &Live) {
     }
     for (side, obstacle) in Side::ALL.into_iter().zip(&live.healths.obstacles) {
         if let Some(obstacle) = obstacle {
-            ui.add(Label::new(format!("The {} arm cannot be engaged: {obstacle}.", side.word())).wrap());
+            ui.add(Label::new(text::devices::not_to_be_engaged(side.word(), obstacle)).wrap());
         }
     }
 }
@@ -47,7 +47,7 @@ fn device_ui(ui: &mut Ui, entry: &RosterEntry, health: &Health) {
     ui.add(Label::new(small(words)).wrap());
     let report = entry.view.report();
     if let Some(identity) = report.identity.filter(|identity| !identity.product.is_empty()) {
-        ui.label(small(format!("{} {}, firmware {}", identity.product, identity.serial, identity.firmware)));
+        ui.label(small(text::devices::identity(&identity.product, &identity.serial, &identity.firmware)));
     }
     if let Some(trouble) = report.trouble {
         ui.add(Label::new(trouble.to_string()).wrap());
@@ -55,7 +55,7 @@ fn device_ui(ui: &mut Ui, entry: &RosterEntry, health: &Health) {
         if let (Trouble::DeviceFault { .. }, Some(clear)) = (&trouble, &entry.clear_faults) {
             let button = ui.add(Button::new(small(text::devices::CLEAR_FAULTS)).min_size(vec2(84.0, 22.0)));
             button.widget_info(|| {
-                egui::WidgetInfo::labeled(egui::Role::Button, true, format!("Clear faults of the {}", entry.name))
+                egui::WidgetInfo::labeled(egui::Role::Button, true, text::devices::clear_faults_of(&entry.name))
             });
             if button.on_hover_text(text::devices::ONCE_NOBODY_IS_NEAR).clicked() {
                 clear.command();
@@ -67,15 +67,15 @@ fn device_ui(ui: &mut Ui, entry: &RosterEntry, health: &Health) {
 
 fn standing_words(health: &Health) -> (Sign, egui::Color32, String) {
     let figures = || {
-        let Health { rate_hz, lost, damaged, refused, .. } = health;
-        format!("{rate_hz:.0} Hz; lost {lost}, damaged {damaged}, refused {refused}")
+        let Health { rate_hz, lost, damaged, refused, .. } = *health;
+        text::devices::delivery(rate_hz, lost, damaged, refused)
     };
     match health.standing {
         Standing::Connected => (Sign::Disc, theme::now().engaged, figures()),
         Standing::Opening => (Sign::Ring, theme::now().text, text::devices::BEING_OPENED.to_owned()),
-        Standing::Closed => (Sign::Ring, theme::now().text_weak, "disconnected".to_owned()),
+        Standing::Closed => (Sign::Ring, theme::now().text_weak, text::devices::DISCONNECTED.to_owned()),
         Standing::Lost(loss) => {
-            (Sign::Triangle, theme::now().alarm_medium, format!("lost: {}; {}", loss.cause(), figures()))
+            (Sign::Triangle, theme::now().alarm_medium, text::devices::lost(loss.cause(), &figures()))
         }
     }
 }

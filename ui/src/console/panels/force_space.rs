@@ -1,6 +1,7 @@
 //! Forces in force space: where the two were in the last seconds, the ceiling as a sphere, and the ellipsoid that holds 95 % of
 //! their difference. Turned by dragging; drawn by egui's painter, so that it is the same with and without a GPU.
 
+use crate::console::text;
 use std::f32::consts::TAU;
 
 use egui::{Align2, Color32, Painter, Pos2, Rect, Sense, Stroke, Ui, Vec2, pos2, vec2};
@@ -67,7 +68,7 @@ pub fn force_space_ui(ui: &mut Ui, live: &Live, side: Side, state: &mut ForceSpa
     let shown = (shown_s - SECONDS + 2.0 * live.least_step_s())..=shown_s;
     let pairs = || cloud.pairs().filter(|pair| shown.contains(&pair.t_s));
     let words = caption(ellipsoid.as_ref());
-    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Canvas, true, format!("Force space. {words}")));
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Canvas, true, text::force_space::canvas(&words)));
     if response.dragged() {
         state.yaw += response.drag_delta().x * 0.01;
         state.pitch = (state.pitch + response.drag_delta().y * 0.01).clamp(-1.5, 1.5);
@@ -75,7 +76,7 @@ pub fn force_space_ui(ui: &mut Ui, live: &Live, side: Side, state: &mut ForceSpa
     if response.double_clicked() {
         *state = ForceSpaceState::default();
     }
-    response.on_hover_text(MEANING);
+    response.on_hover_text(text::force_space::MEANING);
     let painter = ui.painter_at(rect);
     painter.rect_filled(rect, theme::CORNER, theme::now().groove);
     let most_n = pairs().map(|pair| pair.measured_n.amax().max(pair.rendered_n.amax())).fold(0.0, f64::max);
@@ -104,25 +105,13 @@ pub fn force_space_ui(ui: &mut Ui, live: &Live, side: Side, state: &mut ForceSpa
     }
 }
 
-const MEANING: &str = "Both forces of the last six seconds in force space (N, axes of the workspace): a line each, a dot where they are now or \
-                       where a trace points. The three rings are the ellipsoid that holds 95 % of the difference between rendered and \
-                       measured, if it were normal, around the force measured now; how much it really holds stands below. The dashed \
-                       circle is the ceiling. Drag to turn, double click to reset.";
-
 fn caption(ellipsoid: Option<&Ellipsoid>) -> String {
     ellipsoid.map_or_else(
-        || format!("Last {SECONDS:.0} s; the error's ellipsoid needs a second of data"),
+        || text::force_space::too_short(SECONDS),
         |Ellipsoid { mean_n, half_axes_n, holds }| {
-            let mut halves_n: Vec<f64> = half_axes_n.column_iter().map(|axis| axis.norm()).collect();
+            let mut halves_n = [0, 1, 2].map(|axis| half_axes_n.column(axis).norm());
             halves_n.sort_by(|a, b| b.total_cmp(a));
-            format!(
-                "Error, last {SECONDS:.0} s: mean {:.2} N, 95 % half axes; {:.2}, {:.2}, {:.2} N (holds {:.0} %)",
-                mean_n.norm(),
-                halves_n[0],
-                halves_n[1],
-                halves_n[2],
-                100.0 * holds
-            )
+            text::force_space::error(SECONDS, mean_n.norm(), halves_n, 100.0 * holds)
         },
     )
 }

@@ -3,6 +3,7 @@
 //! The view is a stretch of time counted back from now (or from the moment of the pause): it is panned by dragging, zoomed
 //! by the wheel and put back by a double click, also while data go on.
 
+use crate::console::text;
 use egui::{Align, Align2, Button, Color32, Layout, Rect, RichText, Sense, Ui, Vec2b, pos2, vec2};
 use egui_plot::{
     AxisHints, HoverPosition, Line, LineStyle, Plot, PlotBounds, PlotPoint, PlotPoints, PlotResponse, Text, VLine,
@@ -15,6 +16,7 @@ use super::axis::{marks, near_end, plain, signed};
 use crate::console::{
     history::{CHANNELS, History, Trace},
     live::Live,
+    scene3d::side_name,
     theme,
     widgets::{force_sign, small},
 };
@@ -30,8 +32,6 @@ const LEAST_RANGE_N: f64 = 0.25;
 
 /// Room from which the header has a heading.
 const HEADING_FROM: f32 = 800.0;
-const MEANING: &str = "Newtons in the workspace frame: x, y and z as drawn in the view, z up. Measured at the instrument now; rendered to the \
-                       hand after all gates. Drag to pan, wheel to zoom, double click for the last 10 s. E marks a moment.";
 
 /// What the panel remembers between frames.
 #[derive(Debug)]
@@ -159,8 +159,7 @@ fn read_at(ui: &Ui, history: &History, axis: usize, (now_s, at_s): (f64, f64), r
     let [measured, rendered] = [axis, axis + 3].map(|channel| history.value_at(channel, now_s + at_s));
     let (Some(measured), Some(rendered)) = (measured, rendered) else { return };
     let corner = rect.right_top() + vec2(-8.0, 4.0);
-    let told =
-        format!("At the cursor, {}: measured {} N, rendered {} N", AXES[axis], signed(measured), signed(rendered));
+    let told = text::forces::at_cursor(AXES[axis], &signed(measured), &signed(rendered));
     let place = Rect::from_min_max(corner - vec2(160.0, 0.0), corner + vec2(0.0, 16.0));
     ui.interact(place, ui.scope_id().with(("cursor", axis)), Sense::hover())
         .widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, &told));
@@ -175,42 +174,43 @@ fn read_at(ui: &Ui, history: &History, axis: usize, (now_s, at_s): (f64, f64), r
 fn header_ui(ui: &mut Ui, live: &mut Live, state: &mut ForcesState) {
     ui.horizontal(|ui| {
         if ui.available_width() > HEADING_FROM {
-            ui.label(RichText::new("Force at the tip and in the hand").text_style(egui::TextStyle::Heading))
-                .on_hover_text(MEANING);
+            ui.label(RichText::new(text::forces::HEADING).text_style(egui::TextStyle::Heading))
+                .on_hover_text(text::forces::MEANING);
             ui.add_space(12.0);
         }
-        for (name, rendered) in [("measured", false), ("rendered", true)] {
+        for (name, rendered) in [(text::forces::MEASURED, false), (text::forces::RENDERED, true)] {
             let (rect, _) = ui.allocate_exact_size(vec2(30.0, 14.0), Sense::hover());
             force_sign(ui.painter(), theme::now(), rect, rendered);
-            ui.label(small(name)).on_hover_text(MEANING);
+            ui.label(small(name)).on_hover_text(text::forces::MEANING);
             ui.add_space(6.0);
         }
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             let (name, meaning) = match state.paused_at_s {
-                None => ("Pause", "Holds the picture; data go on being kept, and the loop does not notice."),
-                Some(_) => ("Go on", "Shows what comes in again."),
+                None => (text::forces::PAUSE, text::forces::PAUSE_MEANING),
+                Some(_) => (text::forces::GO_ON, text::forces::GO_ON_MEANING),
             };
             let size = vec2(76.0, 26.0);
             let paused = state.paused_at_s.is_some();
             if ui.add(Button::new(name).selected(paused).min_size(size)).on_hover_text(meaning).clicked() {
                 state.paused_at_s = if paused { None } else { Some(state.history(live).latest_s()) };
             }
-            let mark = ui.add(Button::new("Mark (E)").min_size(size));
-            if mark.on_hover_text("Marks this moment in all traces, also while they are paused.").clicked() {
+            let mark = ui.add(Button::new(text::forces::MARK).min_size(size));
+            if mark.on_hover_text(text::forces::MARK_MEANING).clicked() {
                 live.mark();
             }
             if live.is_bimanual() {
                 for side in [Side::Right, Side::Left] {
-                    let name = if side == Side::Right { "Right" } else { "Left" };
-                    let button = Button::selectable(state.side == side, name).frame_when_inactive(true);
-                    let meaning = format!("Shows the forces of the {} hand.", side.word());
+                    let button = Button::selectable(state.side == side, side_name(side)).frame_when_inactive(true);
+                    let meaning = text::forces::forces_of(side.word());
                     if ui.add(button.min_size(vec2(52.0, 26.0))).on_hover_text(meaning).clicked() {
                         state.side = side;
                     }
                 }
                 ui.add_space(6.0);
             }
-            let reset = ui.add(Button::new("Last 10 s").min_size(size)).on_hover_text("Back to the last ten seconds.");
+            let reset = ui
+                .add(Button::new(text::forces::LAST_TEN_SECONDS).min_size(size))
+                .on_hover_text(text::forces::LAST_TEN_SECONDS_MEANING);
             if reset.clicked() {
                 state.view_s = DEFAULT_VIEW_S;
             }
@@ -228,8 +228,9 @@ fn plot_ui(
 ) -> PlotResponse<()> {
     let now_s = state.now_s(state.history(live));
     let history = state.history(live);
-    let seconds =
-        AxisHints::new_x().label(if last { "Time before now (s)" } else { "" }).formatter(|mark, _| plain(mark.value));
+    let seconds = AxisHints::new_x()
+        .label(if last { text::forces::TIME_AXIS } else { "" })
+        .formatter(|mark, _| plain(mark.value));
     let newtons = AxisHints::new_y()
         .label(format!("{} (N)", AXES[axis]))
         .min_thickness(56.0)
@@ -290,9 +291,7 @@ fn plot_ui(
 fn readout(history: &History, axis: usize, now_s: f64, at_s: f64) -> Option<String> {
     let measured = history.value_at(axis, now_s + at_s)?;
     let rendered = history.value_at(axis + 3, now_s + at_s)?;
-    let name = AXES[axis];
-    let (measured, rendered) = (signed(measured), signed(rendered));
-    Some(format!("{:.2} s before now\nmeasured {name} {measured} N\nrendered {name} {rendered} N", -at_s))
+    Some(text::forces::before_now(-at_s, AXES[axis], &signed(measured), &signed(rendered)))
 }
 
 fn interact(ui: &Ui, state: &mut ForcesState, plot: &PlotResponse<()>) {

@@ -37,9 +37,9 @@ pub fn gates_ui(ui: &mut Ui, live: &Live, state: &mut GatesState) {
     if live.is_bimanual() {
         ui.horizontal(|ui| {
             for side in [Side::Left, Side::Right] {
-                let name = format!("{} hand", side_name(side));
+                let name = text::common::hand(side_name(side));
                 let button = Button::selectable(state.side == side, name).frame_when_inactive(true);
-                let meaning = format!("Tells why there is no force in the {} hand.", side.word());
+                let meaning = text::gates::gates_of(side.word());
                 if ui.add(button.min_size(vec2(104.0, 26.0))).on_hover_text(meaning).clicked() {
                     state.side = side;
                 }
@@ -62,7 +62,7 @@ pub fn gates_ui(ui: &mut Ui, live: &Live, state: &mut GatesState) {
 fn answer(live: &Live, side: Side) -> String {
     why_no_force(live, side).unwrap_or_else(|| match live.figures {
         figures if figures.measured_n[side.index()] < CONTACT_N => text::gates::FREE_MOTION_NO_CONTACT.to_owned(),
-        figures => format!("There is: {:.1} N in the hand.", figures.rendered_n[side.index()]),
+        figures => text::gates::there_is(figures.rendered_n[side.index()]),
     })
 }
 
@@ -84,12 +84,12 @@ pub fn why_no_force(live: &Live, side: Side) -> Option<String> {
         LoopState::Engaged if closed(gates.stale) => text::gates::NO_FORCE_THE_DATA,
         LoopState::Engaged if measured_n < CONTACT_N => return None,
         LoopState::Engaged if closed(gates.dead_band) && withheld_n > 0.05 => {
-            return Some(format!("{withheld_n:.1} N not rendered (dead band)"));
+            return Some(text::gates::withheld_by_dead_band(withheld_n));
         }
         LoopState::Engaged if live.gain() < 0.01 => text::gates::NO_FORCE_THE_GAIN,
         LoopState::Engaged if closed(gates.energy) => text::gates::LESS_FORCE_THE_HAND,
         LoopState::Engaged if rendered_n < 0.05 => {
-            return Some(format!("On its way: the link is {:.0} ms late.", live.delay_s() * 1e3));
+            return Some(text::gates::on_its_way(live.delay_s() * 1e3));
         }
         LoopState::Engaged => return None,
     };
@@ -144,7 +144,7 @@ pub(super) fn gates(live: &Live, side: Side) -> [Gate; 9] {
     if live.gate_settings().static_hold {
         text::gates::OFF_FORCE_IS_KEPT.clone_into(&mut dead_band.note);
     } else if closed(gates.dead_band) && gates.withheld_n.get() > 0.05 {
-        dead_band.note = format!("{:.1} N not rendered", gates.withheld_n.get());
+        dead_band.note = text::gates::withheld(gates.withheld_n.get());
     }
     let mut gain = Fading::default();
     gain.push(f64::from(u8::from(live.gain() < 0.01)), 0.0, 1.0);
@@ -178,7 +178,7 @@ pub(super) fn gates(live: &Live, side: Side) -> [Gate; 9] {
             text::gates::AGE,
             gates.stale,
             false,
-            format!("zero after {:.0} ms", chain.zero_after_s * 1e3),
+            text::gates::zero_after(chain.zero_after_s * 1e3),
             text::gates::FADES_THE_FORCE_WHEN,
         ),
         dead_band,
@@ -222,7 +222,7 @@ fn stored(live: &Live, side: Side) -> String {
     if live.gate_settings().energy == EnergyMode::Off {
         return "off".to_owned();
     }
-    live.tick_of(side).map_or_else(String::new, |tick| format!("{:.0} mJ left", tick.gates.stored_j * 1e3))
+    live.tick_of(side).map_or_else(String::new, |tick| text::gates::energy_left(tick.gates.stored_j * 1e3))
 }
 
 /// How often the gate acted since the loop was made, and why it last did.
@@ -231,7 +231,7 @@ pub(super) fn history(live: &Live, side: Side, gate: Which) -> String {
     let (acted, share, last) = (counts.acted[gate.index()], counts.share(gate), counts.last[gate.index()]);
     match last {
         Reason::Open => text::gates::IT_HAS_NOT_ACTED.to_owned(),
-        last => format!("Acted on {acted} ticks ({:.1} %); the last time: {}.", 100.0 * share, last.words()),
+        last => text::gates::acted(acted, 100.0 * share, last.words()),
     }
 }
 

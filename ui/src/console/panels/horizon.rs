@@ -21,7 +21,7 @@ const LEAST_N: f64 = 1e-4;
 /// The panel.
 pub fn horizon_ui(ui: &mut Ui, live: &Live) {
     let dfr_n = live.figures.horizon_n[Mode::Dfr.index()];
-    ui.label(small(format!("{:.0} ms ahead, last seconds; the line is delayed DFR", live.delay_s() * 1e3)));
+    ui.label(small(text::horizon::ahead(live.delay_s() * 1e3)));
     ui.add_space(2.0);
     for mode in [Mode::Anchored, Mode::Dfr, Mode::Linear, Mode::Literal] {
         mode_ui(ui, mode, live.figures.horizon_n[mode.index()], dfr_n, live.mode() == mode);
@@ -36,17 +36,10 @@ fn trend_ui(ui: &mut Ui, live: &Live) {
         live.trend_n.iter().map(|errors_n| errors_n[mode.index()]).sum::<f64>() / live.trend_n.len().max(1) as f64
     };
     let (ours_n, dfr_n) = (mean(live.mode()), mean(Mode::Dfr));
-    let words = format!(
-        "Last {} s: {} {} N, delayed DFR {} N",
-        live.trend_n.len(),
-        mode_name(live.mode()),
-        three_digits(ours_n),
-        three_digits(dfr_n)
-    );
-    response.widget_info(|| {
-        egui::WidgetInfo::labeled(egui::Role::Label, true, format!("Error over the last minutes. {words}"))
-    });
-    response.on_hover_text(format!("{words}. Mean error at the horizon (N), second by second, up to three minutes."));
+    let words =
+        text::horizon::trend(live.trend_n.len(), mode_name(live.mode()), &three_digits(ours_n), &three_digits(dfr_n));
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, text::horizon::trend_name(&words)));
+    response.on_hover_text(text::horizon::trend_meaning(&words));
     let painter = ui.painter();
     painter.rect_filled(rect, 3.0, theme::now().groove);
     let highest_n = 1.1 * live.trend_n.iter().map(|errors_n| errors_n[Mode::Dfr.index()]).fold(LEAST_N, f64::max);
@@ -87,7 +80,7 @@ fn mode_ui(ui: &mut Ui, mode: Mode, error_n: f64, dfr_n: f64, active: bool) {
         String::new()
     };
     let words = format!("{}: {} N, {ratio_text}", mode_name(mode), three_digits(error_n));
-    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, format!("Error {words}")));
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, text::horizon::error(&words)));
     response.on_hover_text(format!("{words}{}\n{}", if active { " (in force)" } else { "" }, mode_meaning(mode)));
     let painter = ui.painter();
     let (top, ink) = (rect.top() + 10.0, if active { theme::now().text } else { theme::now().text_weak });

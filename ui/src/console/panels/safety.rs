@@ -44,12 +44,12 @@ pub fn safety_ui(ui: &mut Ui, live: &Live) {
 
 /// Of which hand, where there are two.
 fn of_side(live: &Live, side: Side) -> String {
-    if live.is_bimanual() { format!(", {} hand", side.word()) } else { String::new() }
+    if live.is_bimanual() { text::safety::of_hand(side.word()) } else { String::new() }
 }
 
 /// States and where they stand, in parts of the diagram.
 const PLACES: [(&str, f32, f32); 7] = [
-    ("No device", 0.10, 0.26),
+    (text::safety::NO_DEVICE, 0.10, 0.26),
     (text::safety::IDLE, 0.32, 0.26),
     (text::safety::READY, 0.52, 0.26),
     (text::safety::ENGAGED, 0.72, 0.26),
@@ -81,7 +81,7 @@ const fn why_words(why: Why) -> &'static str {
         Why::Clutch => text::safety::THE_CLUTCH,
         Why::Late => text::safety::THE_DRIVES_DID_NOT,
         Why::Absent => text::safety::NOBODY_HOLDS_THE_HANDLE,
-        Why::Fault => "a fault",
+        Why::Fault => text::safety::A_FAULT,
     }
 }
 
@@ -91,9 +91,9 @@ fn interlock_ui(ui: &mut Ui, live: &Live, side: Side) {
     let change = live.changes[side.index()];
     let since = change.map_or_else(
         || text::safety::SINCE_THE_LOOP_BEGAN.to_owned(),
-        |Change { t_s, why, .. }| format!("since {t_s:.1} s: {}", why_words(why)),
+        |Change { t_s, why, .. }| text::safety::since(t_s, why_words(why)),
     );
-    let title = format!("Interlock{}: {}", of_side(live, side), state.word().to_lowercase());
+    let title = text::safety::interlock(&of_side(live, side), &state.word().to_lowercase());
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, format!("{title}, {since}")));
     response.on_hover_text(text::safety::FORCE_AND_MOTION_EXIST);
     let painter = ui.painter_at(rect);
@@ -220,7 +220,7 @@ fn gate_ui(ui: &mut Ui, live: &Live, side: Side, gate: &Gate, width: f32) {
     let (rect, response) = ui.allocate_exact_size(vec2(width, GATE_HEIGHT), Sense::hover());
     let (what, word) = gate.standing();
     let acted = live.tick_of(side).map_or(0, |tick| tick.gates.counts.acted[gate.which.index()]);
-    let words = format!("Gate {}{}: {word}, acted on {acted} ticks", gate.name, of_side(live, side));
+    let words = text::safety::gate(gate.name, &of_side(live, side), word, acted);
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, &words));
     response.on_hover_text(format!("{}\n{}\n{}", gate.meaning, gate.note, history(live, side, gate.which)));
     let open = what == Sign::Disc;

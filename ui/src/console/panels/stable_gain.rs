@@ -43,7 +43,7 @@ pub(super) fn stable_gain_ui(ui: &mut Ui, live: &Live, rail: Rect, limit: f64) {
     }
     let greatest = map.greatest_stable_gain(mode, delay_s, n_m);
     let now = map.at(mode, live.gain(), delay_s, n_m);
-    let words = format!("Here {}; stable up to {greatest:.2} at {n_m:.0} N/m", now.words());
+    let words = text::feedback::stable_up_to(now.words(), greatest, n_m);
     response.on_hover_text(text::feedback::MEANING);
     ui.label(small(words)).on_hover_text(text::feedback::MEANING);
 }

@@ -45,12 +45,9 @@ impl Timing<'_> {
         let total = bars.iter().sum::<u64>().max(1);
         let count = bars.get(bar).copied().unwrap_or_default();
         let (from_us, to_us) = (bar as f64 * self.step_us(), (bar + 1) as f64 * self.step_us());
-        let range = if bar + 1 == BARS {
-            format!("{from_us:.0} us and more")
-        } else {
-            format!("{from_us:.0} to {to_us:.0} us")
-        };
-        format!("{}: {range}\n{} ticks, {}", self.name, grouped(count), percent(count as f64 / total as f64))
+        let range =
+            if bar + 1 == BARS { text::timing::and_more(from_us) } else { text::timing::from_to(from_us, to_us) };
+        text::timing::bar(self.name, &range, &grouped(count), &percent(count as f64 / total as f64))
     }
 }
 
@@ -75,13 +72,7 @@ pub(super) fn bars_ui(ui: &mut Ui, timing: &Timing<'_>, bars: &[u64]) {
     let ground = Rect::from_min_size(rect.min, vec2(rect.width(), HEIGHT));
     let (total, late): (u64, u64) = (bars.iter().sum(), late(bars));
     response.widget_info(|| {
-        let words = format!(
-            "{} histogram: {} of {} ticks later than the deadline of {:.0} us",
-            timing.name,
-            grouped(late),
-            grouped(total),
-            timing.deadline_us
-        );
+        let words = text::timing::histogram(timing.name, &grouped(late), &grouped(total), timing.deadline_us);
         egui::WidgetInfo::labeled(egui::Role::Label, true, words)
     });
     let pointed = response.hover_pos().map(|at| {
@@ -119,19 +110,19 @@ fn axis(painter: &Painter, ground: Rect, deadline_us: f64, most: u64) {
     let under = ground.bottom() + 2.0;
     painter.text(pos2(ground.left(), under), Align2::LEFT_TOP, "0", font.clone(), ink);
     painter.text(pos2(x(0.5), under), Align2::CENTER_TOP, format!("{:.0}", 0.5 * deadline_us), font.clone(), ink);
-    let deadline = format!("deadline {deadline_us:.0} us");
+    let deadline = text::timing::deadline(deadline_us);
     painter.text(pos2(x(1.0) + 8.0, under), Align2::CENTER_TOP, deadline, font.clone(), ink);
-    let scale = format!("log scale, top {}", grouped(most));
+    let scale = text::timing::log_scale(&grouped(most));
     painter.text(pos2(x(1.0) - 6.0, ground.top() + 1.0), Align2::RIGHT_TOP, scale, font, ink);
 }
 
 /// Missed periods over the last two minutes, a bar a second.
 pub(super) fn missed_ui(ui: &mut Ui, deadlines: &Deadlines) {
     let total = deadlines.total();
-    let words = format!("Missed in the last {} min: {}", SECONDS / 60, grouped(total));
+    let words = text::timing::missed(SECONDS / 60, &grouped(total));
     ui.label(small(&words)).on_hover_text(text::timing::MISSED);
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), STRIP), Sense::hover());
-    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, format!("{words} periods")));
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, text::timing::missed_periods(&words)));
     let painter = ui.painter();
     painter.rect_filled(rect, 3.0, theme::now().groove);
     let width = rect.width() / SECONDS as f32;
@@ -148,7 +139,7 @@ pub(super) fn missed_ui(ui: &mut Ui, deadlines: &Deadlines) {
     if let Some(at) = response.hover_pos() {
         let age = ((rect.right() - at.x) / width).max(0.0) as usize;
         let count = deadlines.newest_first().nth(age).map_or(0, |(_, count)| count);
-        response.on_hover_text_at_pointer(format!("{age} s ago: {} periods missed", grouped(count)));
+        response.on_hover_text_at_pointer(text::timing::missed_at(age, &grouped(count)));
     }
 }
 

@@ -91,7 +91,7 @@ fn identity_ui(
             if ui.ctx().content_rect().width() >= SCENE_FROM {
                 ui.add_space(4.0);
                 ui.label(weak(&live.scene.name))
-                    .on_hover_text(format!("Scene: {}\nRig: {}", live.scene.description, live.rig.name));
+                    .on_hover_text(text::top_bar::scene_and_rig(&live.scene.description, &live.rig.name));
             }
         });
     });
@@ -108,9 +108,8 @@ fn state_ui(ui: &mut Ui, state: LoopState) {
         LoopState::Faulted(_) => (Sign::Triangle, theme::now().alarm_high, text::top_bar::STOPPED_BY_A_FAULT),
     };
     let (rect, response) = ui.allocate_exact_size(vec2(136.0, 44.0), Sense::hover());
-    let response = response.on_hover_text(format!("State of the loop. {meaning}"));
-    response
-        .widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, format!("Loop state: {}", state.word())));
+    let response = response.on_hover_text(text::top_bar::state_meaning(meaning));
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, text::top_bar::state(state.word())));
     ui.painter().rect(rect, theme::CORNER, theme::now().card, egui::Stroke::new(1.5, colour), egui::StrokeKind::Inside);
     sign(ui.painter(), what, rect.left_center() + vec2(24.0, 0.0), 8.5, colour);
     let place = rect.left_center() + vec2(44.0, 0.0);

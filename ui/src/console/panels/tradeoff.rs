@@ -143,7 +143,7 @@ fn measure_ui(ui: &mut Ui, live: &Live, state: &mut TradeoffState) {
         if ui.add(button).on_hover_text(meaning).clicked() {
             match Job::start(live) {
                 Ok(job) => state.job = Some(job),
-                Err(error) => state.tell(format!("The measurement could not be started: {error}")),
+                Err(error) => state.tell(text::tradeoff::not_started(&error)),
             }
         }
         return;
@@ -153,7 +153,7 @@ fn measure_ui(ui: &mut Ui, live: &Live, state: &mut TradeoffState) {
         let width = (ui.available_width() - BUTTON.x - 8.0).max(60.0);
         let bar = ui.add(ProgressBar::new(share).desired_width(width).text(format!("{:.0} %", 100.0 * share)));
         bar.widget_info(|| {
-            let words = format!("Trade-off measured: {:.0} %", 100.0 * share);
+            let words = text::tradeoff::measured(100.0 * share);
             egui::WidgetInfo::labeled(egui::Role::ProgressIndicator, true, words)
         });
         let cancel = ui.add(Button::new(text::tradeoff::CANCEL).min_size(BUTTON));
@@ -196,7 +196,7 @@ fn apply_ui(ui: &mut Ui, live: &Live, point: &Point, state: &mut TradeoffState, 
     }
     outbox.push(Command::SetMode(mode));
     outbox.push(Command::SetDelay(point.choice.delay_ms * 1e-3));
-    state.tell(format!("Applied: {}.", name(point)));
+    state.tell(text::tradeoff::applied(&name(point)));
     None
 }
 
@@ -256,13 +256,8 @@ fn figures_of(point: &Point) -> String {
 /// Everything about a point, for hovering.
 pub(super) fn words(point: &Point) -> String {
     let front = if point.pareto { text::tradeoff::NOTHING_MEASURED_BEATS_IT } else { "" };
-    format!(
-        "{}\none tick: median {} us, p99 {} us\nmean error at {:.0} ms: {} N, {} x DFR{front}",
-        name(point),
-        three_digits(point.cost_us.p50),
-        three_digits(point.cost_us.p99),
-        point.choice.delay_ms,
-        three_digits(point.error),
-        three_digits(point.ratio),
-    )
+    let [median_us, p99_us, error_n, ratio] =
+        [point.cost_us.p50, point.cost_us.p99, point.error, point.ratio].map(three_digits);
+    let figures = text::tradeoff::point(&name(point), [&median_us, &p99_us], point.choice.delay_ms, [&error_n, &ratio]);
+    figures + front
 }

@@ -30,7 +30,7 @@ pub(super) fn plot_ui(ui: &mut Ui, figures: &SourceFigures, selected: Option<usi
         ])
         .custom_y_axes(vec![
             AxisHints::new_y()
-                .label(format!("Mean error ({})", figures.unit))
+                .label(text::tradeoff::error_axis(&figures.unit))
                 .min_thickness(48.0)
                 .formatter(|mark, _| plain(mark.value)),
         ])
@@ -71,8 +71,7 @@ pub(super) fn plot_ui(ui: &mut Ui, figures: &SourceFigures, selected: Option<usi
             );
         }
     });
-    let count = shown.len();
-    let described = format!("Trade-off plot: {count} points, time of a tick against error at the horizon");
+    let described = text::tradeoff::plot(shown.len());
     response.response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, described.clone()));
     let clicked = response.response.clicked().then(|| response.response.interact_pointer_pos()).flatten()?;
     near(response.transform.value_from_position(clicked))

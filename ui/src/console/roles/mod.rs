@@ -134,7 +134,7 @@ pub fn switch_ui(ui: &mut Ui, now: &mut Role, allowed: bool) {
     for role in Role::ALL {
         let button = Button::selectable(*now == role, role.name()).frame_when_inactive(true).min_size(vec2(62.0, 30.0));
         let response = ui.add_enabled(allowed, button);
-        let response = response.on_hover_text(format!("{} Key {}.", role.meaning(), role.key().name()));
+        let response = response.on_hover_text(text::roles::meaning_and_key(role.meaning(), role.key().name()));
         if response.on_disabled_hover_text(text::roles::CLOSE_THE_WIZARD_FIRST).clicked() {
             *now = role;
         }

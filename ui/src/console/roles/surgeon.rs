@@ -79,8 +79,8 @@ fn hand_ui(ui: &mut Ui, live: &Live, side: Side, place: Rect) {
     let ceiling_n = live.gate_settings().ceiling_n;
     let (measured_n, rendered_n) = (live.figures.measured_n[side.index()], live.figures.rendered_n[side.index()]);
     let response = ui.allocate_rect(place, Sense::hover());
-    let name = format!("{} hand", side_name(side));
-    let words = format!("{name}: measured {measured_n:.1} N, rendered {rendered_n:.1} N, ceiling {ceiling_n:.0} N");
+    let name = text::common::hand(side_name(side));
+    let words = text::roles::hand(&name, measured_n, rendered_n, ceiling_n);
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, &words));
     response.on_hover_text(text::roles::SIZE_OF_THE_FORCE);
     let painter = ui.painter_at(place);

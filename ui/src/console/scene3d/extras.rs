@@ -1,5 +1,6 @@
 //! What is drawn into the view on request: the ceiling around each tip, and coordinate frames. By egui's painter, over the triangles.
 
+use crate::console::text;
 use egui::{
     Align2, Button, Color32, Painter, PopupCloseBehavior, Rect, Shape, Stroke, Ui, UiBuilder,
     containers::menu::{MenuButton, MenuConfig},
@@ -16,19 +17,17 @@ const AXIS_M: f32 = 0.016;
 const RING: u32 = 64;
 
 /// On its switch, with its meaning.
-pub const SHOW: &str = "Show";
+pub const SHOW: &str = text::field::SHOW;
 /// See [`SHOW`].
-pub const SHOW_MEANING: &str = "What else is drawn into the view.";
+pub const SHOW_MEANING: &str = text::field::SHOW_MEANING;
 /// The ceiling's switch.
-pub const CEILING: &str = "Ceiling around the tip";
+pub const CEILING: &str = text::field::CEILING;
 /// See [`CEILING`].
-pub const CEILING_MEANING: &str =
-    "The largest force that ever reaches the hand (N), as a sphere around each tip, to the scale of the arrows.";
+pub const CEILING_MEANING: &str = text::field::CEILING_MEANING;
 /// The frames' switch.
-pub const FRAMES: &str = "Coordinate frames";
+pub const FRAMES: &str = text::field::FRAMES;
 /// See [`FRAMES`].
-pub const FRAMES_MEANING: &str = "Base (kbf, the frame of all forces and places), trocar (axes of the base), tip (z along the shaft away from \
-                                  the tissue) and endoscope (z towards the viewer). Axes are 16 mm long.";
+pub const FRAMES_MEANING: &str = text::field::FRAMES_MEANING;
 
 /// What is switched on.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -106,7 +105,7 @@ fn ceiling(painter: &Painter, rect: Rect, camera: &Camera, arm: &Arm, ceiling_n:
         painter,
         place,
         Align2::CENTER_BOTTOM,
-        &format!("ceiling {ceiling_n:.1} N"),
+        &text::field::ceiling_sphere(ceiling_n),
         theme::regular(12.5),
         theme::DARK.text,
     );
@@ -117,20 +116,24 @@ fn frames(scene: &Scene, arms: &[Arm]) -> Vec<Axes> {
     let base = [Vector3::x(), Vector3::y(), Vector3::z()];
     let endoscope = Camera::endoscope(scene);
     let mut frames = vec![
-        Axes { name: "Base (kbf)".to_owned(), origin_m: Vector3::zeros(), ways: base },
+        Axes { name: text::field::BASE_FRAME.to_owned(), origin_m: Vector3::zeros(), ways: base },
         Axes {
-            name: "Endoscope".to_owned(),
+            name: text::field::ENDOSCOPE.to_owned(),
             origin_m: endoscope.eye_m(),
             ways: [endoscope.right(), endoscope.up(), endoscope.right().cross(&endoscope.up())],
         },
     ];
     for arm in arms {
         let side = if arms.len() > 1 { format!(" {}", side_name(arm.side).to_lowercase()) } else { String::new() };
-        frames.push(Axes { name: format!("Trocar{side}"), origin_m: arm.trocar_m, ways: base });
+        frames.push(Axes { name: text::field::TROCAR.to_owned() + &side, origin_m: arm.trocar_m, ways: base });
         let Some(z) = (arm.trocar_m - arm.pose.tip_m).try_normalize(1e-4) else { continue };
         // x as near to the base's as it can be.
         let x = (Vector3::x() - z * z.x).try_normalize(1e-3).unwrap_or_else(Vector3::y);
-        frames.push(Axes { name: format!("Tip{side}"), origin_m: arm.pose.tip_m, ways: [x, z.cross(&x), z] });
+        frames.push(Axes {
+            name: text::field::TIP.to_owned() + &side,
+            origin_m: arm.pose.tip_m,
+            ways: [x, z.cross(&x), z],
+        });
     }
     frames
 }

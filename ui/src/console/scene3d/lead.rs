@@ -3,6 +3,7 @@
 //! The screen sends places (m, workspace); the hand that holds the handle goes there, and gives way under the force that is
 //! rendered. Nothing is led while the loop has stopped; a stop lets go.
 
+use crate::console::text;
 use egui::{Button, Key, Rect, Response, RichText, Ui, vec2};
 use nalgebra::Vector3;
 use nima::{runtime::Command, teleop::LoopState};
@@ -46,7 +47,7 @@ impl Lead {
             self.at_m = None;
         }
         let place = Rect::from_min_size(rect.right_bottom() - vec2(250.0, 46.0), vec2(150.0, 34.0));
-        let text = if self.is_on() { "Let it go (M)" } else { "Your turn (M)" };
+        let text = if self.is_on() { text::field::LET_IT_GO } else { text::field::YOUR_TURN };
         let button =
             Button::selectable(self.is_on(), RichText::new(text).font(theme::strong(14.0))).frame_when_inactive(true);
         let clicked = ui.add_enabled_ui(runs, |ui| ui.put(rect.intersect(place), button).clicked()).inner;

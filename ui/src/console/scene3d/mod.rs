@@ -9,6 +9,7 @@ pub mod mesh;
 mod pick;
 pub mod stage;
 
+use crate::console::text;
 use std::sync::Arc;
 
 use eframe::{egui_glow, glow};
@@ -122,7 +123,7 @@ pub fn scene_ui(ui: &mut Ui, live: &Live, view: &mut SceneView, outbox: &mut Out
         view.camera = Camera::of(&live.scene);
     }
     let (rect, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
-    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Canvas, true, "Operating field"));
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Canvas, true, text::field::OPERATING_FIELD));
     // The triangles lie under the button that is put into the view, though they are known only after it.
     let ground = ui.painter_at(rect).add(egui::Shape::Noop);
     let camera = view.camera(&live.scene);
@@ -233,7 +234,7 @@ fn labels(painter: &Painter, rect: Rect, live: &Live, camera: &Camera, arm: &Arm
             painter,
             place + vec2(18.0, 0.0),
             Align2::LEFT_CENTER,
-            "Trocar",
+            text::field::TROCAR,
             theme::regular(13.0),
             theme::DARK.text_weak,
         );
@@ -271,8 +272,8 @@ fn labels(painter: &Painter, rect: Rect, live: &Live, camera: &Camera, arm: &Arm
 /// Name of a hand.
 pub const fn side_name(side: Side) -> &'static str {
     match side {
-        Side::Right => "Right",
-        Side::Left => "Left",
+        Side::Right => text::common::RIGHT,
+        Side::Left => text::common::LEFT,
     }
 }
 
@@ -295,11 +296,11 @@ fn readings(painter: &Painter, rect: Rect, live: &Live) {
     let plate =
         Rect::from_min_max(rect.left_top() + vec2(8.0, 8.0), pos2(column(sides.len() - 1) + 12.0, corner.y + 72.0));
     painter.rect_filled(plate, theme::CORNER, Color32::from_black_alpha(150));
-    for (i, (name, forces_n, colour)) in
-        [("Measured", figures.measured_n, theme::DARK.measured), ("Rendered", figures.rendered_n, theme::DARK.rendered)]
-            .into_iter()
-            .enumerate()
-    {
+    let rows = [
+        (text::common::MEASURED, figures.measured_n, theme::DARK.measured),
+        (text::common::RENDERED, figures.rendered_n, theme::DARK.rendered),
+    ];
+    for (i, (name, forces_n, colour)) in rows.into_iter().enumerate() {
         let y = corner.y + 14.0 + 34.0 * i as f32;
         force_sign(painter, &theme::DARK, Rect::from_center_size(pos2(corner.x + 18.0, y), vec2(36.0, 16.0)), i == 1);
         painter.text(pos2(corner.x + 48.0, y), Align2::LEFT_CENTER, name, theme::regular(15.0), theme::DARK.text);
@@ -325,7 +326,7 @@ fn readings(painter: &Painter, rect: Rect, live: &Live) {
         }
     }
     let line_y = gauges.bottom() - gauges.height() / 1.25;
-    let words = format!("ceiling\n{ceiling_n:.0} N");
+    let words = text::field::ceiling_mark(ceiling_n);
     painter.text(pos2(first - 8.0, line_y), Align2::RIGHT_CENTER, words, theme::regular(12.5), theme::DARK.text_weak);
 }
 
@@ -345,14 +346,12 @@ fn axes(painter: &Painter, rect: Rect, camera: &Camera) {
 
 fn hint(painter: &Painter, rect: Rect, view: &SceneView) {
     let (words, colour) = match &view.problem {
-        Some(problem) => (format!("The 3-D view cannot be drawn by this graphics driver: {problem}"), theme::DARK.text),
-        None if view.lead.is_on() => (
-            "Drag to move the instrument, wheel or Page Up and Down for its height, arrow keys for small steps"
-                .to_owned(),
-            theme::DARK.text,
-        ),
-        None if view.look == Look::Endoscope => ("As the endoscope sees it".to_owned(), theme::DARK.text_weak),
-        None => ("Drag to turn, wheel to zoom, double click to reset".to_owned(), theme::DARK.text_weak),
+        Some(problem) => (text::field::not_drawn(problem), theme::DARK.text),
+        None if view.lead.is_on() => (text::field::HOW_TO_LEAD.to_owned(), theme::DARK.text),
+        None if view.look == Look::Endoscope => {
+            (text::field::AS_THE_ENDOSCOPE_SEES_IT.to_owned(), theme::DARK.text_weak)
+        }
+        None => (text::field::HOW_TO_TURN.to_owned(), theme::DARK.text_weak),
     };
     label(painter, rect.left_bottom() + vec2(16.0, -12.0), Align2::LEFT_BOTTOM, &words, theme::regular(12.5), colour);
 }

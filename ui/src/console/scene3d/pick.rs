@@ -1,5 +1,6 @@
 //! What the pointer is at in the view, in words with numbers, units and frame.
 
+use crate::console::text;
 use egui::{Pos2, Rect};
 use nalgebra::{Vector3, Vector4};
 use nima::config::Scene;
@@ -13,7 +14,7 @@ const REACH: f32 = 12.0;
 pub(super) fn pick(pointer: Pos2, rect: Rect, camera: &Camera, scene: &Scene, arms: &[Arm]) -> Option<String> {
     arms.iter().find_map(|arm| of_arm(pointer, rect, camera, scene, arm, arms.len() > 1)).or_else(|| {
         let place_m = on_tissue(pointer, rect, camera, scene)?;
-        Some(format!("Tissue at {}", place(&place_m)))
+        Some(text::field::tissue(&place(&place_m)))
     })
 }
 
@@ -21,35 +22,33 @@ fn of_arm(pointer: Pos2, rect: Rect, camera: &Camera, scene: &Scene, arm: &Arm, 
     let at = |point_m: &Vector3<f32>| camera.project(point_m, rect);
     let near = |point_m: &Vector3<f32>| at(point_m).is_some_and(|at| at.distance(pointer) < REACH);
     let Arm { side, trocar_m, pose, targets_m, .. } = arm;
-    let whose = if both { format!(" of the {} hand", side_name(*side).to_lowercase()) } else { String::new() };
+    let whose = if both { text::field::of_hand(&side_name(*side).to_lowercase()) } else { String::new() };
     let [measured, rendered] = stage::arrow_bases_m(pose, trocar_m, &camera.right());
-    for (name, base_m, force_n) in
-        [("Force measured", measured, pose.measured_n), ("Force rendered", rendered, pose.rendered_n)]
-    {
+    for (name, base_m, force_n) in [
+        (text::field::FORCE_MEASURED, measured, pose.measured_n),
+        (text::field::FORCE_RENDERED, rendered, pose.rendered_n),
+    ] {
         let ends = [at(&base_m), at(&(base_m + force_n * stage::ARROW_M_PER_N))];
         if let ([Some(from), Some(to)], true) = (ends, stage::has_arrow(&force_n))
             && distance(pointer, from, to) < 0.6 * REACH
         {
-            let [x, y, z] = force_n.into();
-            let size_n = force_n.norm();
-            return Some(format!("{name}{whose}: {size_n:.2} N\nx {x:+.2}, y {y:+.2}, z {z:+.2} N (kbf)"));
+            return Some(text::field::arrow(name, &whose, force_n.norm(), force_n.into()));
         }
     }
     if near(&pose.tip_m) {
         let depth_mm = scene.tissue.map_or(0.0, |tissue| (tissue.surface_z_m as f32 - pose.tip_m.z) * 1e3);
-        let deep = if depth_mm > 0.0 { format!("\n{depth_mm:.1} mm below the surface at rest") } else { String::new() };
-        return Some(format!("Tip{whose} at {}{deep}", place(&pose.tip_m)));
+        let deep = if depth_mm > 0.0 { text::field::depth(depth_mm) } else { String::new() };
+        return Some(text::field::tip(&whose, &place(&pose.tip_m), &deep));
     }
     if let Some(number) = targets_m.iter().position(near) {
-        return Some(format!("Target {}{whose} at {}", number + 1, place(&targets_m[number])));
+        return Some(text::field::target(number + 1, &whose, &place(&targets_m[number])));
     }
-    near(trocar_m).then(|| format!("Trocar{whose}, the remote centre of motion, at {}", place(trocar_m)))
+    near(trocar_m).then(|| text::field::trocar(&whose, &place(trocar_m)))
 }
 
 /// A place in millimetres of the base's frame.
 fn place(at_m: &Vector3<f32>) -> String {
-    let [x, y, z] = (at_m * 1e3).into();
-    format!("x {x:.1}, y {y:.1}, z {z:.1} mm (kbf)")
+    text::field::place((at_m * 1e3).into())
 }
 
 /// From a point to a stretch between two others, points.

@@ -22,3 +22,45 @@ pub(in crate::console) const THE_LAST_50_THE: &str =
 pub(in crate::console) const NOTHING_HAS_BEEN_WRONG: &str = "Nothing has been wrong so far.";
 pub(in crate::console) const ACKNOWLEDGE: &str = "Stops flashing and sound. The alarm stays until its cause is gone; a new one of the same or a higher priority \
                            flashes and sounds again.";
+pub(in crate::console) const LIST: &str = "Alarms";
+pub(in crate::console) const SEEN: &str = ", acknowledged";
+
+/// A fault, and when it was first told, s on the loop's clock.
+pub(in crate::console) fn fault(cause: &str, t_s: f64) -> String {
+    format!("{cause} (at {t_s:.1} s)")
+}
+
+/// The loop is late too often.
+pub(in crate::console) fn periods_missed(percent: f64) -> String {
+    format!("The loop misses {percent:.1} % of its periods")
+}
+
+/// Gravity is not what it was.
+pub(in crate::console) fn bias_moved(by_n: f64) -> String {
+    format!("The wrist sensor reads {by_n:.2} N at rest: its bias has moved since the calibration")
+}
+
+/// Nothing plays a sound.
+pub(in crate::console) fn no_player(players: &str) -> String {
+    format!("No sound output: none of {players} is installed.")
+}
+
+/// The player ended badly.
+pub(in crate::console) fn player_failed(status: &impl std::fmt::Display) -> String {
+    format!("The sound could not be played ({status}).")
+}
+
+/// The player did not begin.
+pub(in crate::console) fn player_not_started(error: &impl std::fmt::Display) -> String {
+    format!("The sound could not be played: {error}.")
+}
+
+/// The pinned alarm; `remarks` tell of others and of the acknowledgement.
+pub(in crate::console) fn pinned(priority: &str, cause: &str, began_utc: &str, remarks: &str) -> String {
+    format!("{priority}: {cause} - since {began_utc} UTC{remarks}")
+}
+
+/// A remark: others are folded under it.
+pub(in crate::console) fn others(count: usize) -> String {
+    format!(" (+{count} more)")
+}

@@ -76,3 +76,54 @@ pub(in crate::console) const FITTED_MAE: &str = "fitted: MAE";
 pub(in crate::console) const HELD_OUT_MAE: &str = "held out: MAE";
 pub(in crate::console) const R2_OF_ALL_AXES: &str = "R2 of all axes";
 pub(in crate::console) const THE_PAPER_HAS_0: &str = "The paper has 0.95.";
+pub(in crate::console) const SO_FAR: &str = "So far";
+
+/// How many pushes there are.
+pub(in crate::console) fn taken_of(count: usize, asked: usize) -> String {
+    format!("{count} taken of {asked} or more")
+}
+
+/// The same as a figure.
+pub(in crate::console) fn pushes(count: usize) -> String {
+    format!("{count} pushes")
+}
+
+/// What the sensors read at rest.
+pub(in crate::console) fn at_rest(wrist_n: f64, tissue_n: f64) -> String {
+    format!("wrist {wrist_n:.2} N, tissue {tissue_n:.2} N; touch nothing, and zero what stays above 0.3 N")
+}
+
+/// A push that goes on.
+pub(in crate::console) fn hold(force_n: f64) -> String {
+    format!("{force_n:.1} N; hold it still")
+}
+
+/// A push that may end.
+pub(in crate::console) fn let_go(force_n: f64) -> String {
+    format!("{force_n:.1} N; enough, let go")
+}
+
+/// A push that was taken.
+pub(in crate::console) fn push_taken(number: usize) -> String {
+    format!("push {number} taken")
+}
+
+/// A push that was not.
+pub(in crate::console) fn not_taken(why: &str) -> String {
+    format!("not taken: {why}")
+}
+
+/// Pushes of the fit, and those that it leaves out.
+pub(in crate::console) fn used(pairs: usize, left_out: usize, weak: usize) -> String {
+    format!("{pairs}, {left_out} contradicted, {weak} too weak")
+}
+
+/// From which frame to which.
+pub(in crate::console) fn rotation(name: &str) -> String {
+    format!("Rotation {name}")
+}
+
+/// Agreement of all axes.
+pub(in crate::console) fn agreement(fitted: f64, held_out: f64) -> String {
+    format!("{fitted:.3} fitted, {held_out:.3} held out")
+}

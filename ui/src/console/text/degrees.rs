@@ -21,3 +21,23 @@ pub(in crate::console) const MOTION_COLUMNS_WITH_ENOUGH: &str = "Motion columns 
 pub(in crate::console) const EXCITATION: &str = "Excitation";
 pub(in crate::console) const HOW_MUCH_THE_MOTION: &str = "How much the motion varies within the window: standard deviation of position (mm) and velocity (mm/s), all axes. Without \
          motion nothing can be identified.";
+
+/// How long the shares go back.
+pub(in crate::console) fn last_minutes(minutes: f64) -> String {
+    format!("last {minutes:.0} min")
+}
+
+/// Motion columns that carry information, and those in use.
+pub(in crate::console) fn columns(rank: u8, of: usize, used: u8) -> String {
+    format!("{rank} of {of}, {used} used")
+}
+
+/// The chart in one sentence.
+pub(in crate::console) fn chosen(shares: &str) -> String {
+    format!("Degrees chosen: {shares}")
+}
+
+/// Both rows of shares.
+pub(in crate::console) fn both(ours: &str, papers: &str) -> String {
+    format!("This console  {ours}\nPaper's rule  {papers}")
+}

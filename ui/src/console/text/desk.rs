@@ -37,3 +37,13 @@ pub(in crate::console) const TIME_OF_ONE_TICK: &str = "Time of one tick of ident
                  degree and window on this scene, recorded open-loop, at the rig's rate and the link's delay.";
 pub(in crate::console) const ALL_CLOSED: &str = "All panels are closed. The View menu opens them again.";
 pub(in crate::console) const DRAG: &str = "Drag the title to put the panel elsewhere.";
+
+/// The button of a panel that takes it off the desk.
+pub(in crate::console) fn close(panel: &str) -> String {
+    format!("Close {panel}")
+}
+
+/// What closing does; `close` as from [`close`].
+pub(in crate::console) fn close_meaning(close: &str) -> String {
+    format!("{close}; the View menu opens it again.")
+}

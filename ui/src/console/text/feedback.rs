@@ -25,3 +25,8 @@ pub(in crate::console) const MEANING: &str = "From the map of stability, made by
                        the force kept at standstill and without the energy gate, which is harder than the defaults. For the mode \
                        and the delay in force and the stiffness of the contact now (N/m, slope of force over way, of the last contact \
                        in between). Whole: stable. Thin: at the edge. Hatched: the hand shakes.";
+
+/// Where the gain stands in the map of stability.
+pub(in crate::console) fn stable_up_to(verdict: &str, greatest: f64, stiffness_n_m: f64) -> String {
+    format!("Here {verdict}; stable up to {greatest:.2} at {stiffness_n_m:.0} N/m")
+}

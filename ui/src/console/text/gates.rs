@@ -42,3 +42,43 @@ pub(in crate::console) const CEILING: &str = "Ceiling";
 pub(in crate::console) const THE_LARGEST_FORCE_THAT: &str =
     "The largest force that ever reaches the hand, never above what the device can give.";
 pub(in crate::console) const IT_HAS_NOT_ACTED: &str = "It has not acted so far.";
+
+/// Whose gates a switch tells.
+pub(in crate::console) fn gates_of(side: &str) -> String {
+    format!("Tells why there is no force in the {side} hand.")
+}
+
+/// There is force.
+pub(in crate::console) fn there_is(rendered_n: f64) -> String {
+    format!("There is: {rendered_n:.1} N in the hand.")
+}
+
+/// The dead band takes force away.
+pub(in crate::console) fn withheld_by_dead_band(withheld_n: f64) -> String {
+    format!("{withheld_n:.1} N not rendered (dead band)")
+}
+
+/// A gate takes force away.
+pub(in crate::console) fn withheld(withheld_n: f64) -> String {
+    format!("{withheld_n:.1} N not rendered")
+}
+
+/// The force has not come yet.
+pub(in crate::console) fn on_its_way(delay_ms: f64) -> String {
+    format!("On its way: the link is {delay_ms:.0} ms late.")
+}
+
+/// Age at which nothing is left of a force.
+pub(in crate::console) fn zero_after(age_ms: f64) -> String {
+    format!("zero after {age_ms:.0} ms")
+}
+
+/// What the hand may still get back.
+pub(in crate::console) fn energy_left(stored_mj: f64) -> String {
+    format!("{stored_mj:.0} mJ left")
+}
+
+/// How often a gate acted, and why it last did.
+pub(in crate::console) fn acted(ticks: u64, percent: f64, why: &str) -> String {
+    format!("Acted on {ticks} ticks ({percent:.1} %); the last time: {why}.")
+}

@@ -82,3 +82,18 @@ pub(in crate::console) const FORCE_ERRORS_IN_N: &str =
 pub(in crate::console) const MODEL: &str = "Model";
 pub(in crate::console) const FITTED_MEAN: &str = "fitted: mean";
 pub(in crate::console) const HELD_OUT_MEAN: &str = "held out: mean";
+
+/// A pose that was taken.
+pub(in crate::console) fn pose_taken(number: usize) -> String {
+    format!("pose {number} taken")
+}
+
+/// A pose that is disturbed.
+pub(in crate::console) fn touched(by_n: f64) -> String {
+    format!("{by_n:.1} N too much: something touches the tool; let go")
+}
+
+/// Poses that were left out.
+pub(in crate::console) fn left_out(numbers: &str) -> String {
+    format!("pose {numbers}")
+}

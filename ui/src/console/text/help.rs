@@ -85,3 +85,5 @@ pub(in crate::console) const KEYS: [(&str, &str); 13] = [
     ("Enter", "Presses the control that has the frame."),
     ("Ctrl Tab", "The next tab of the group under the pointer."),
 ];
+pub(in crate::console) const GLOSSARY_WINDOW: &str = "Glossary";
+pub(in crate::console) const TOUR_WINDOW: &str = "Tour";

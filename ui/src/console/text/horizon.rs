@@ -1,3 +1,28 @@
 //! Words of the room `horizon`.
 
 pub(in crate::console) const LAST_3_MIN: &str = "last 3 min";
+
+/// How far ahead, and what the line in the bars is.
+pub(in crate::console) fn ahead(delay_ms: f64) -> String {
+    format!("{delay_ms:.0} ms ahead, last seconds; the line is delayed DFR")
+}
+
+/// Both means of the trend (figures, N).
+pub(in crate::console) fn trend(seconds: usize, mode: &str, error_n: &str, dfr_n: &str) -> String {
+    format!("Last {seconds} s: {mode} {error_n} N, delayed DFR {dfr_n} N")
+}
+
+/// The name of the trend.
+pub(in crate::console) fn trend_name(trend: &str) -> String {
+    format!("Error over the last minutes. {trend}")
+}
+
+/// The meaning of the trend.
+pub(in crate::console) fn trend_meaning(trend: &str) -> String {
+    format!("{trend}. Mean error at the horizon (N), second by second, up to three minutes.")
+}
+
+/// The name of a bar.
+pub(in crate::console) fn error(words: &str) -> String {
+    format!("Error {words}")
+}

@@ -4,11 +4,15 @@
 
 pub(super) mod alarms;
 pub(super) mod calibrations;
+pub(super) mod common;
 pub(super) mod correspondence;
 pub(super) mod degrees;
 pub(super) mod desk;
 pub(super) mod devices;
 pub(super) mod feedback;
+pub(super) mod field;
+pub(super) mod force_space;
+pub(super) mod forces;
 pub(super) mod gates;
 pub(super) mod gravity;
 pub(super) mod help;

@@ -43,3 +43,13 @@ pub(in crate::console) const MEASURED_AT_THE_INSTRUMENT: &str = "measured at the
 pub(in crate::console) const RENDERED_TO_THE_HAND: &str = "rendered to the hand";
 pub(in crate::console) const SIZE_OF_THE_FORCE: &str = "Size of the force measured at the instrument and of the force rendered to the hand (N). The mark is the ceiling: no \
          larger force ever reaches the hand.";
+
+/// What a role shows, and its key.
+pub(in crate::console) fn meaning_and_key(meaning: &str, key: &str) -> String {
+    format!("{meaning} Key {key}.")
+}
+
+/// Both forces of a hand against the ceiling, N.
+pub(in crate::console) fn hand(name: &str, measured_n: f64, rendered_n: f64, ceiling_n: f64) -> String {
+    format!("{name}: measured {measured_n:.1} N, rendered {rendered_n:.1} N, ceiling {ceiling_n:.0} N")
+}

@@ -19,3 +19,25 @@ pub(in crate::console) const FORCE_AND_MOTION_EXIST: &str = "Force and motion ex
 pub(in crate::console) const FROM_EVERYWHERE: &str = "from everywhere";
 pub(in crate::console) const SIZE_OF_THE_FORCE: &str =
     "Size of the force that the mode asks for now, and of what reaches the hand after all gates (N).";
+pub(in crate::console) const NO_DEVICE: &str = "No device";
+pub(in crate::console) const A_FAULT: &str = "a fault";
+
+/// Of which hand, where there are two.
+pub(in crate::console) fn of_hand(side: &str) -> String {
+    format!(", {side} hand")
+}
+
+/// When the state began (s on the loop's clock), and why.
+pub(in crate::console) fn since(t_s: f64, why: &str) -> String {
+    format!("since {t_s:.1} s: {why}")
+}
+
+/// The diagram's title; `whose` as from [`of_hand`].
+pub(in crate::console) fn interlock(whose: &str, state: &str) -> String {
+    format!("Interlock{whose}: {state}")
+}
+
+/// A gate in one sentence; `whose` as from [`of_hand`].
+pub(in crate::console) fn gate(name: &str, whose: &str, standing: &str, ticks: u64) -> String {
+    format!("Gate {name}{whose}: {standing}, acted on {ticks} ticks")
+}

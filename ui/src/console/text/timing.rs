@@ -25,3 +25,48 @@ pub(in crate::console) const LOCKED_MEMORY: &str = "Locked memory";
 pub(in crate::console) const FRAME: &str = "Time from one picture of this window to the next since it opened (32 ms asked; at rest not counted), and the work in it now.";
 pub(in crate::console) const FRAME_ROUGH: &str = "Time from one picture of this window to the next since it opened (32 ms asked; at rest not counted), and the work in it now. Edges in 3-D are not smoothed, \
                                                  because this computer draws too slowly with it.";
+
+/// The last bar of a histogram.
+pub(in crate::console) fn and_more(from_us: f64) -> String {
+    format!("{from_us:.0} us and more")
+}
+
+/// Any other bar.
+pub(in crate::console) fn from_to(from_us: f64, to_us: f64) -> String {
+    format!("{from_us:.0} to {to_us:.0} us")
+}
+
+/// What a bar holds.
+pub(in crate::console) fn bar(name: &str, range: &str, ticks: &str, share: &str) -> String {
+    format!("{name}: {range}\n{ticks} ticks, {share}")
+}
+
+/// A histogram in one sentence.
+pub(in crate::console) fn histogram(name: &str, late: &str, total: &str, deadline_us: f64) -> String {
+    format!("{name} histogram: {late} of {total} ticks later than the deadline of {deadline_us:.0} us")
+}
+
+/// Under the line of the deadline.
+pub(in crate::console) fn deadline(deadline_us: f64) -> String {
+    format!("deadline {deadline_us:.0} us")
+}
+
+/// What the height of a histogram means.
+pub(in crate::console) fn log_scale(top: &str) -> String {
+    format!("log scale, top {top}")
+}
+
+/// Missed periods, over the strip.
+pub(in crate::console) fn missed(minutes: usize, count: &str) -> String {
+    format!("Missed in the last {minutes} min: {count}")
+}
+
+/// The name of the strip.
+pub(in crate::console) fn missed_periods(words: &str) -> String {
+    format!("{words} periods")
+}
+
+/// A bar of the strip.
+pub(in crate::console) fn missed_at(age_s: usize, count: &str) -> String {
+    format!("{age_s} s ago: {count} periods missed")
+}

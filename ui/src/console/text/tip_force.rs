@@ -147,3 +147,93 @@ pub(in crate::console) const WAITING_UNTIL_THE_INSTRUMENT: &str =
 pub(in crate::console) const WORK_ON_THE_TISSUE: &str = "Work on the tissue: in and out, sideways, in contact and free";
 pub(in crate::console) const MOVE_IN_AND_OUT: &str = "Move in and out and sideways without touching the tissue";
 pub(in crate::console) const LIFT_THE_TIP_OFF: &str = "Lift the tip off the tissue and hold it still";
+
+/// The check broke off.
+pub(in crate::console) fn not_judged(error: &str) -> String {
+    format!("The network could not be judged: {error}.")
+}
+
+/// The training broke off.
+pub(in crate::console) fn not_trained(error: &str) -> String {
+    format!("Not trained: {error}. The recording is kept.")
+}
+
+/// What a recording is doing.
+pub(in crate::console) fn state(phase: &str) -> String {
+    format!("State: {phase}.")
+}
+
+/// What the check asks for.
+pub(in crate::console) fn check_task(work_s: f64, free_s: f64) -> String {
+    format!("{work_s:.0} s of work on the tissue, then {free_s:.0} s without touching it")
+}
+
+/// What the check found.
+pub(in crate::console) fn verdict(reason: &str) -> String {
+    format!("Verdict: {reason}.")
+}
+
+/// How often the network was in doubt.
+pub(in crate::console) fn doubt(percent: f64, rows: usize) -> String {
+    format!("{percent:.1} % of {rows} rows")
+}
+
+/// There is nothing to work in the background.
+pub(in crate::console) fn no_thread(error: &impl std::fmt::Display) -> String {
+    format!("No thread could be started: {error}")
+}
+
+/// A recording was not kept.
+pub(in crate::console) fn not_written(path: &std::path::Path, error: &impl std::fmt::Display) -> String {
+    format!("The recording could not be written to {}: {error}", path.display())
+}
+
+/// Why good figures prove nothing.
+pub(in crate::console) fn trained_on_too_little(goal: &str) -> String {
+    format!("the recording it was trained on was not complete ({goal}); record more")
+}
+
+/// Length of the recording, beside the paper's.
+pub(in crate::console) fn rows_and_seconds(rows: usize, seconds: f64, paper_rows: usize, paper_s: f64) -> String {
+    format!("{rows}, {seconds:.0} s (the paper has {paper_rows}, {paper_s:.0} s)")
+}
+
+/// What is missing, and the goal that asks for it.
+pub(in crate::console) fn advice(when: &str, advice: &str, goal: &str) -> String {
+    format!("{when}: {advice} ({goal}).")
+}
+
+/// No rows come.
+pub(in crate::console) fn nothing_taken(why: &str) -> String {
+    format!("nothing is taken: {why}")
+}
+
+/// The zero is being taken.
+pub(in crate::console) fn taking_zero(percent: f64) -> String {
+    format!("zero of the sensor under the tissue: {percent:.0} %")
+}
+
+/// What was trained.
+pub(in crate::console) fn networks_on_rows(networks: usize, rows: usize) -> String {
+    format!("{networks} networks on {rows} rows")
+}
+
+/// The recording lacked something.
+pub(in crate::console) fn not_complete(goal: &str) -> String {
+    format!("Its recording was not complete ({goal}): it can be kept only under somebody's name.")
+}
+
+/// A line of the losses, by a network on rows that it has not seen.
+pub(in crate::console) fn held_out(network: usize) -> String {
+    format!("{network} held out")
+}
+
+/// A line of the losses, by a network on its own rows.
+pub(in crate::console) fn training(network: usize) -> String {
+    format!("{network} training")
+}
+
+/// The losses in one sentence.
+pub(in crate::console) fn losses(networks: usize, epochs: usize) -> String {
+    format!("Losses of {networks} networks over {epochs} epochs")
+}

@@ -24,3 +24,18 @@ pub(in crate::console) const ENGAGING_WAS_REFUSED_RELEASE: &str = "Engaging was 
 pub(in crate::console) const THE_STOP_WAS_NOT: &str =
     "The stop was not released: nothing is stopped, or the cause of the fault still lives";
 pub(in crate::console) const THE_LOOP_REFUSED_THE: &str = "The loop refused the last setting: it is outside its range";
+
+/// What runs.
+pub(in crate::console) fn scene_and_rig(scene: &str, rig: &str) -> String {
+    format!("Scene: {scene}\nRig: {rig}")
+}
+
+/// What the state means.
+pub(in crate::console) fn state_meaning(meaning: &str) -> String {
+    format!("State of the loop. {meaning}")
+}
+
+/// The name of the state's field.
+pub(in crate::console) fn state(state: &str) -> String {
+    format!("Loop state: {state}")
+}

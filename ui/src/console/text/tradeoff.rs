@@ -21,3 +21,47 @@ pub(in crate::console) const RELEASE_THE_STOP_OR: &str =
     "Release the stop or the fault first: a restart must not undo it.";
 pub(in crate::console) const NOTHING_MEASURED_BEATS_IT: &str = "\nNothing measured beats it in both.";
 pub(in crate::console) const ONE_TICK_US: &str = "One tick (us)";
+pub(in crate::console) const APPLIED_BY_RESTART: &str =
+    "Applied. The loop was restarted and is idle: engage it when ready.";
+
+/// There is no thread for it.
+pub(in crate::console) fn not_started(error: &impl std::fmt::Display) -> String {
+    format!("The measurement could not be started: {error}")
+}
+
+/// How far it is.
+pub(in crate::console) fn measured(percent: f32) -> String {
+    format!("Trade-off measured: {percent:.0} %")
+}
+
+/// The loop goes on with this choice.
+pub(in crate::console) fn applied(choice: &str) -> String {
+    format!("Applied: {choice}.")
+}
+
+/// The loop was restarted with it or not, by this reason.
+pub(in crate::console) fn not_applied(reason: &str) -> String {
+    format!("Not applied: {reason}.")
+}
+
+/// Everything about a point, in figures.
+pub(in crate::console) fn point(
+    name: &str,
+    [median_us, p99_us]: [&str; 2],
+    delay_ms: f64,
+    [error_n, ratio]: [&str; 2],
+) -> String {
+    format!(
+        "{name}\none tick: median {median_us} us, p99 {p99_us} us\nmean error at {delay_ms:.0} ms: {error_n} N, {ratio} x DFR"
+    )
+}
+
+/// The axis of errors.
+pub(in crate::console) fn error_axis(unit: &str) -> String {
+    format!("Mean error ({unit})")
+}
+
+/// The plot in one sentence.
+pub(in crate::console) fn plot(points: usize) -> String {
+    format!("Trade-off plot: {points} points, time of a tick against error at the horizon")
+}

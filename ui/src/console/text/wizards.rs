@@ -31,3 +31,18 @@ pub(in crate::console) const PICTURE_OF_THE_ORIENTATION: &str = "Picture of the 
 pub(in crate::console) const SOLID_THE_TOOL_AS: &str = "solid: the tool as it is held";
 pub(in crate::console) const THE_ARM_DOES_NOT: &str = "the arm does not tell how the tool is held";
 pub(in crate::console) const START_OVER_TO_CHANGE: &str = "Start over to change this: it is in what was taken.";
+
+/// Under the picture of a pose.
+pub(in crate::console) fn tilt_off(tilt_deg: f64) -> String {
+    format!("outline: asked   solid: held   tilt {tilt_deg:.0} deg off")
+}
+
+/// Under the picture of directions.
+pub(in crate::console) fn rings_and_discs(name: &str) -> String {
+    format!("{name} (rings: wanted, discs: taken)")
+}
+
+/// A map in one sentence.
+pub(in crate::console) fn fields_filled(title: &str, filled: usize, fields: usize) -> String {
+    format!("{title}: {filled} of {fields} fields filled")
+}

@@ -251,13 +251,13 @@ impl CorrespondenceWizard {
                 Some(wanted.push_in_kbf),
             );
             let share = count as f64 / PUSHES_ASKED as f64;
-            progress(ui, text::correspondence::PUSHES, share, &format!("{count} taken of {PUSHES_ASKED} or more"));
+            progress(ui, text::correspondence::PUSHES, share, &text::correspondence::taken_of(count, PUSHES_ASKED));
         });
-        card(ui, "So far", text::correspondence::THE_FIT_IS_MADE, |ui| {
+        card(ui, text::correspondence::SO_FAR, text::correspondence::THE_FIT_IS_MADE, |ui| {
             figure(
                 ui,
                 text::correspondence::TAKEN,
-                format!("{count} pushes"),
+                text::correspondence::pushes(count),
                 text::correspondence::PUSHES_TAKEN_AND_KEPT,
             );
             match &self.report {
@@ -318,16 +318,12 @@ impl CorrespondenceWizard {
 fn phase_words(phase: &Phase) -> (f64, String) {
     match phase {
         Phase::Missing(missing) => (0.0, missing.words().to_owned()),
-        Phase::Resting { share, f1_n, f2_n } => {
-            let words =
-                format!("wrist {f1_n:.2} N, tissue {f2_n:.2} N; touch nothing, and zero what stays above 0.3 N");
-            (*share, words)
-        }
+        Phase::Resting { share, f1_n, f2_n } => (*share, text::correspondence::at_rest(*f1_n, *f2_n)),
         Phase::Ready => (0.0, text::correspondence::READY_PUSH_NOW.to_owned()),
-        Phase::Pushing { force_n, enough: false } => (0.5, format!("{force_n:.1} N; hold it still")),
-        Phase::Pushing { force_n, enough: true } => (1.0, format!("{force_n:.1} N; enough, let go")),
-        Phase::Recorded(index) => (1.0, format!("push {} taken", index + 1)),
-        Phase::Refused(refusal) => (0.0, format!("not taken: {}", refusal.words())),
+        Phase::Pushing { force_n, enough: false } => (0.5, text::correspondence::hold(*force_n)),
+        Phase::Pushing { force_n, enough: true } => (1.0, text::correspondence::let_go(*force_n)),
+        Phase::Recorded(index) => (1.0, text::correspondence::push_taken(index + 1)),
+        Phase::Refused(refusal) => (0.0, text::correspondence::not_taken(&refusal.words())),
     }
 }
 
@@ -336,13 +332,13 @@ fn verdict_ui(ui: &mut Ui, report: &CorrespondenceReport) {
         ui.label(&report.reason);
         ui.add_space(4.0);
         let (left_out, weak) = (report.outliers.len(), report.weak.len());
-        let pushes = format!("{}, {left_out} contradicted, {weak} too weak", report.pairs);
+        let pushes = text::correspondence::used(report.pairs, left_out, weak);
         figure(ui, text::correspondence::PUSHES, pushes, text::correspondence::ALL_THAT_WERE_TAKEN);
         let spread = format!("{:.2}, {:.2}", report.excitation.second, report.excitation.third);
         figure(ui, text::correspondence::SPREAD, spread, text::correspondence::SECOND_AND_THIRD_AXIS);
         let Some(solution) = &report.solution else { return };
         let [roll, pitch, yaw] = solution.roll_pitch_yaw_deg;
-        let name = format!("Rotation {}", solution.target.name());
+        let name = text::correspondence::rotation(solution.target.name());
         figure(ui, &name, format!("{roll:.2}, {pitch:.2}, {yaw:.2} deg"), text::correspondence::ROLL_PITCH_YAW_RZ);
         figure(
             ui,
@@ -409,7 +405,7 @@ fn agreement_ui(ui: &mut Ui, agreement: &Agreement) {
         figure(
             ui,
             text::correspondence::R2_OF_ALL_AXES,
-            format!("{fitted:.3} fitted, {held_out:.3} held out"),
+            text::correspondence::agreement(fitted, held_out),
             text::correspondence::THE_PAPER_HAS_0,
         );
     });

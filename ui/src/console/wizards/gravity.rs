@@ -331,8 +331,8 @@ fn phase_words(phase: &Phase) -> (f64, String) {
         Phase::Disturbed => (0.0, text::gravity::THE_FORCE_IS_NOT.to_owned()),
         Phase::TakenHere => (0.0, text::gravity::TAKEN_HERE_ALREADY_TURN.to_owned()),
         Phase::Recording { share } => (*share, text::gravity::STILL_BEING_TAKEN.to_owned()),
-        Phase::Recorded { index } => (1.0, format!("pose {} taken", index + 1)),
-        Phase::Touched { by_n } => (0.0, format!("{by_n:.1} N too much: something touches the tool; let go")),
+        Phase::Recorded { index } => (1.0, text::gravity::pose_taken(index + 1)),
+        Phase::Touched { by_n } => (0.0, text::gravity::touched(*by_n)),
     }
 }
 
@@ -365,7 +365,7 @@ fn verdict_ui(ui: &mut Ui, report: &GravityReport) {
         }
         if !report.outliers.is_empty() {
             let list = report.outliers.iter().map(|i| (i + 1).to_string()).collect::<Vec<_>>().join(", ");
-            figure(ui, text::gravity::LEFT_OUT, format!("pose {list}"), text::gravity::FAR_FROM_WHAT_THE);
+            figure(ui, text::gravity::LEFT_OUT, text::gravity::left_out(&list), text::gravity::FAR_FROM_WHAT_THE);
         }
     });
 }
@@ -373,7 +373,7 @@ fn verdict_ui(ui: &mut Ui, report: &GravityReport) {
 /// The models side by side, on the poses of the fit and on those held out.
 fn models_ui(ui: &mut Ui, report: &GravityReport) {
     card(ui, text::gravity::MODELS_SIDE_BY_SIDE, text::gravity::FORCE_ERRORS_IN_N, |ui| {
-        Grid::new("gravity models").num_columns(5).spacing(vec2(22.0, 6.0)).show(ui, |ui| {
+        Grid::new("gravity_models").num_columns(5).spacing(vec2(22.0, 6.0)).show(ui, |ui| {
             for head in
                 [text::gravity::MODEL, text::gravity::FITTED_MEAN, "largest", text::gravity::HELD_OUT_MEAN, "largest"]
             {

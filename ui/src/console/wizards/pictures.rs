@@ -38,7 +38,7 @@ pub(super) fn pose_picture(ui: &mut Ui, target: Option<&UnitQuaternion<f64>>, he
     let caption = match (target, held) {
         (Some(target), Some(held)) => {
             let tilt = (target.inverse() * -Vector3::z()).angle(&(held.inverse() * -Vector3::z()));
-            format!("outline: asked   solid: held   tilt {:.0} deg off", tilt.to_degrees())
+            text::wizards::tilt_off(tilt.to_degrees())
         }
         (None, Some(_)) => text::wizards::SOLID_THE_TOOL_AS.to_owned(),
         _ => text::wizards::THE_ARM_DOES_NOT.to_owned(),
@@ -111,7 +111,7 @@ pub(super) fn sphere_picture(
     if let Some(direction) = now {
         dot(&painter, centre, scale, &direction, 3.5, Stroke::new(1.5, theme::now().measured), true);
     }
-    let caption = format!("{name} (rings: wanted, discs: taken)");
+    let caption = text::wizards::rings_and_discs(name);
     painter.text(
         rect.center_bottom() - vec2(0.0, 8.0),
         Align2::CENTER_BOTTOM,
@@ -180,7 +180,7 @@ pub(super) type AxisWords = [&'static str; 3];
 /// A map that fills with rows: dark where there are none, brighter with their number (logarithmic).
 pub(super) fn heat_map(ui: &mut Ui, width: f32, title: &str, map: &Map, [across, up]: [AxisWords; 2]) {
     let (rect, response) = ui.allocate_exact_size(vec2(width, width - LEFT + BELOW + 20.0), Sense::hover());
-    let words = format!("{title}: {} of {} fields filled", map.filled(), MAP * MAP);
+    let words = text::wizards::fields_filled(title, map.filled(), MAP * MAP);
     response.widget_info(|| WidgetInfo::labeled(egui::Role::Label, true, words.clone()));
     response.on_hover_text(words);
     let painter = ui.painter_at(rect);

@@ -255,7 +255,7 @@ impl TipForceWizard {
             self.judging = None;
             match result {
                 Ok(checked) => self.checked = Some(checked),
-                Err(error) => self.told = Some(format!("The network could not be judged: {error}.")),
+                Err(error) => self.told = Some(text::tip_force::not_judged(&error)),
             }
         }
         self.judge_when_done(binding);
@@ -269,7 +269,7 @@ impl TipForceWizard {
                 (self.judging, self.saved, self.told) = (None, None, None);
             }
             Err(_) if cancelled => self.told = Some(text::tip_force::CANCELLED_THE_RECORDING_IS.to_owned()),
-            Err(error) => self.told = Some(format!("Not trained: {error}. The recording is kept.")),
+            Err(error) => self.told = Some(text::tip_force::not_trained(&error)),
         }
     }
 

@@ -33,7 +33,7 @@ impl TipForceWizard {
             let (work_s, free_s) = (CHECK_WORK as f64 * ROW_EVERY_S, (CHECK_ROWS - CHECK_WORK) as f64 * ROW_EVERY_S);
             ui.label(RichText::new(self.task(work_s, free_s)).font(theme::strong(18.0)));
             if let Some(take) = &self.proof {
-                ui.label(format!("State: {}.", take.phase_words()));
+                ui.label(text::tip_force::state(&take.phase_words()));
             }
             ui.horizontal(|ui| {
                 self.check_button_ui(ui, binding);
@@ -69,7 +69,7 @@ impl TipForceWizard {
             Some(take) if take.running => words(take.prompt()).to_owned(),
             Some(_) => text::tip_force::PAUSED_PRESS_GO_ON.to_owned(),
             None if self.checked.is_some() => text::tip_force::THE_CHECK_IS_DONE.to_owned(),
-            None => format!("{work_s:.0} s of work on the tissue, then {free_s:.0} s without touching it"),
+            None => text::tip_force::check_task(work_s, free_s),
         }
     }
 
@@ -100,12 +100,12 @@ impl TipForceWizard {
 fn verdict_ui(ui: &mut Ui, checked: &Checked) {
     let check = &checked.check;
     card(ui, check.verdict.words(), text::tip_force::BY_THE_PAPER_S, |ui| {
-        let words = format!("Verdict: {}.", check.reason);
+        let words = text::tip_force::verdict(&check.reason);
         ui.label(RichText::new(words).font(theme::strong(14.0)));
         if check.verdict != Verdict::Accepted {
             ui.label(small(text::tip_force::IT_CAN_STILL_BE));
         }
-        let doubt = format!("{:.1} % of {} rows", 100.0 * check.doubt_share, check.rows);
+        let doubt = text::tip_force::doubt(100.0 * check.doubt_share, check.rows);
         figure(ui, "In doubt", doubt, text::tip_force::ROWS_OUTSIDE_OF_WHAT);
     });
 }

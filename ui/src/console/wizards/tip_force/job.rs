@@ -35,7 +35,7 @@ impl<T: Send + 'static> Job<T> {
         let cancel = Arc::new(AtomicBool::new(false));
         let stop = Arc::clone(&cancel);
         let thread = Builder::new().name(name.to_owned()).spawn(move || work(&stop));
-        let thread = thread.map_err(|error| format!("No thread could be started: {error}"))?;
+        let thread = thread.map_err(|error| text::tip_force::no_thread(&error))?;
         Ok(Self { cancel, thread: Some(thread) })
     }
 
@@ -129,7 +129,7 @@ pub(super) fn path_of(store: &Store, kind: &str, sensor: &str) -> Result<PathBuf
 }
 
 fn write(recorder: &Recorder, path: &Path, keeps: bool) -> Result<(), String> {
-    let failed = |error: std::io::Error| format!("The recording could not be written to {}: {error}", path.display());
+    let failed = |error: std::io::Error| text::tip_force::not_written(path, &error);
     path.parent().map_or(Ok(()), fs::create_dir_all).map_err(failed)?;
     if keeps {
         keep_previous(path).map_err(failed)?;
@@ -182,8 +182,7 @@ pub(super) fn judge(
     let (mut check, evaluation) = check(&mut estimator, &data).map_err(|error| error.to_string())?;
     if let (Some(goal), Verdict::Accepted) = (narrow, check.verdict) {
         check.verdict = Verdict::InsufficientMotion;
-        let goal = goal.to_lowercase();
-        check.reason = format!("the recording it was trained on was not complete ({goal}); record more");
+        check.reason = text::tip_force::trained_on_too_little(&goal.to_lowercase());
     }
     let (points, bins) = (points(&data, &evaluation), bins(&data, &evaluation));
     Ok(Checked { check, part: evaluation.overall, points, bins })

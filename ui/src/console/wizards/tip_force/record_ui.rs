@@ -47,10 +47,7 @@ impl TipForceWizard {
                 });
             });
             let seconds = rows as f64 * ROW_EVERY_S;
-            let told = format!(
-                "{rows}, {seconds:.0} s (the paper has {PAPER_ROWS}, {:.0} s)",
-                PAPER_ROWS as f64 * ROW_EVERY_S
-            );
+            let told = text::tip_force::rows_and_seconds(rows, seconds, PAPER_ROWS, PAPER_ROWS as f64 * ROW_EVERY_S);
             progress(ui, text::tip_force::ROWS, rows as f64 / PAPER_ROWS as f64, &told);
         });
         let empty = Coverage::default();
@@ -79,10 +76,10 @@ impl TipForceWizard {
             } else {
                 text::tip_force::STILL_TO_DO
             };
-            let advice = format!("{when}: {} ({}).", goal.advice, goal.name.to_lowercase());
+            let advice = text::tip_force::advice(when, goal.advice, &goal.name.to_lowercase());
             ui.label(RichText::new(advice).font(theme::strong(16.0)));
         }
-        ui.label(format!("State: {}.", take.phase_words()));
+        ui.label(text::tip_force::state(&take.phase_words()));
     }
 
     /// The big button; true when it is pressed.

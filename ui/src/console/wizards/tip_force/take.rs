@@ -83,10 +83,8 @@ impl Take {
         match self.recorder.phase() {
             _ if !self.running => "paused".to_owned(),
             _ if self.silent => text::tip_force::NOTHING_IS_TAKEN_THE.to_owned(),
-            RecorderPhase::Lacks(lack) => format!("nothing is taken: {}", lack.words()),
-            RecorderPhase::Resting { share } => {
-                format!("zero of the sensor under the tissue: {:.0} %", 100.0 * share)
-            }
+            RecorderPhase::Lacks(lack) => text::tip_force::nothing_taken(lack.words()),
+            RecorderPhase::Resting { share } => text::tip_force::taking_zero(100.0 * share),
             RecorderPhase::NotMoved => text::tip_force::WAITING_UNTIL_THE_INSTRUMENT.to_owned(),
             RecorderPhase::Recording | RecorderPhase::Full => "recording".to_owned(),
         }

@@ -88,14 +88,11 @@ impl TipForceWizard {
             let origin = &trained.model.origin;
             let losses = origin.figures.iter().map(|member| member.validation_loss);
             let mean = losses.sum::<f64>() / origin.figures.len().max(1) as f64;
-            let told = format!("{} networks on {} rows", origin.figures.len(), origin.rows);
+            let told = text::tip_force::networks_on_rows(origin.figures.len(), origin.rows);
             figure(ui, text::tip_force::ENSEMBLE, told, text::tip_force::THEIR_MEAN_IS_THE);
             figure(ui, text::tip_force::HELD_OUT_LOSS, format!("{mean:.4}"), text::tip_force::MEAN_OVER_THE_NETWORKS);
             if let Some(goal) = trained.narrow {
-                ui.label(format!(
-                    "Its recording was not complete ({}): it can be kept only under somebody's name.",
-                    goal.to_lowercase()
-                ));
+                ui.label(text::tip_force::not_complete(&goal.to_lowercase()));
             }
             if origin.rows < self.rows() {
                 ui.label(small(text::tip_force::THE_RECORDING_HAS_GROWN));
@@ -127,14 +124,14 @@ fn curves_ui(ui: &mut Ui, curves: &Curves) {
     let response = plot.show(ui, |plot| {
         for (i, member) in curves.members.iter().enumerate() {
             let colour = theme::now().series[i % theme::now().series.len()];
-            let held_out = Line::new(format!("{} held out", i + 1), PlotPoints::from(member.held_out.clone()));
+            let held_out = Line::new(text::tip_force::held_out(i + 1), PlotPoints::from(member.held_out.clone()));
             plot.line(held_out.color(colour).width(2.0));
-            let training = Line::new(format!("{} training", i + 1), PlotPoints::from(member.training.clone()));
+            let training = Line::new(text::tip_force::training(i + 1), PlotPoints::from(member.training.clone()));
             plot.line(training.color(colour.gamma_multiply(0.7)).width(1.0).style(LineStyle::dashed_dense()));
         }
     });
     let epochs = curves.members.iter().map(|member| member.training.len()).max().unwrap_or_default();
-    let described = format!("Losses of {} networks over {epochs} epochs", curves.members.len());
+    let described = text::tip_force::losses(curves.members.len(), epochs);
     response.response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, described.clone()));
 }
 

@@ -27,7 +27,7 @@ pub(in crate::console) const OURS_THE_LAST_MEASURED: &str = "Ours: the last meas
                 proven themselves. See the error on the right, beside direct reflection.";
 pub(in crate::console) const YOUR_TURN: &str = "Your turn";
 pub(in crate::console) const PRESS_M_OR_THE: &str = "Press M, or the button in the view, and lead the instrument yourself: drag with the mouse, wheel for the height, arrow \
-                keys for small steps. Press into the tissue and watch the arrows.";
+                keys for small steps. Press into the tissue and watch the arrows. With the rig \"desk\" a SpaceMouse leads it.";
 pub(in crate::console) const PLAY: &str = "Play";
 pub(in crate::console) const THE_SCRIPT_GOES_ON: &str = "The script goes on by itself.";
 pub(in crate::console) const HOLD: &str = "Hold";

@@ -11,7 +11,7 @@ use super::ConsoleApp;
 use crate::console::{Options, diary::WithScreen, door::Door, frames::Picture};
 
 /// Thirty pictures a second while data flow.
-const FRAME: Duration = Duration::from_millis(32);
+const FRAME: Duration = Duration::from_millis(31);
 /// Input is looked at between two pictures, however slow they are.
 const LEAST_REST: Duration = Duration::from_millis(1);
 /// While nothing is engaged the clocks go on by this; a change, the mouse and the keyboard are answered at once all the same.

@@ -22,8 +22,8 @@ pub(in crate::console) const REAL_TIME_PRIORITY_KEEPS: &str =
     "Real-time priority keeps other programs from delaying the loop; locked memory keeps page faults away.";
 pub(in crate::console) const REAL_TIME_PRIORITY: &str = "Real-time priority";
 pub(in crate::console) const LOCKED_MEMORY: &str = "Locked memory";
-pub(in crate::console) const FRAME: &str = "Time from one picture of this window to the next since it opened (32 ms asked; at rest not counted), and the work in it now.";
-pub(in crate::console) const FRAME_ROUGH: &str = "Time from one picture of this window to the next since it opened (32 ms asked; at rest not counted), and the work in it now. Edges in 3-D are not smoothed, \
+pub(in crate::console) const FRAME: &str = "Time from one picture of this window to the next since it opened (31 ms asked; at rest not counted), and the work in it now.";
+pub(in crate::console) const FRAME_ROUGH: &str = "Time from one picture of this window to the next since it opened (31 ms asked; at rest not counted), and the work in it now. Edges in 3-D are not smoothed, \
                                                  because this computer draws too slowly with it.";
 
 /// The last bar of a histogram.

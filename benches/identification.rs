@@ -8,8 +8,10 @@
 use std::{hint::black_box, time::Instant};
 
 use nalgebra::{DMatrix, DVector, Vector3};
-use nima::impedance::{Factor, Identifier, Mode, ModeSet, Sample, Settings, SlidingWindow, Solution};
-use nima::signal::Lanes;
+use nima_core::{
+    impedance::{Factor, Identifier, Mode, ModeSet, Sample, Settings, SlidingWindow, Solution},
+    signal::Lanes,
+};
 
 const RATE_HZ: f64 = 1000.0;
 const COLUMNS: usize = 16;

@@ -6,7 +6,7 @@
 use std::{hint::black_box, time::Instant};
 
 use nalgebra::Vector3;
-use nima::kinematics::{Arm, ArmSettings, Inverse, Joints, Rcm, RcmSettings, find};
+use nima_core::kinematics::{Arm, ArmSettings, Inverse, Joints, Rcm, RcmSettings, find};
 
 const STEPS: u32 = 200_000;
 

@@ -7,10 +7,8 @@
 use std::time::Instant;
 
 use candle_core::{Device, Tensor};
-use nima::{
-    study::validation::isolation::{ROWS, Reached, Sessions},
-    tip_force::{FeatureSettings, Settings},
-};
+use nima_core::tip_force::{FeatureSettings, TrainingSettings};
+use nima_study::validation::isolation::{ROWS, Reached, Sessions};
 
 const SIZES: [&[usize]; 7] = [&[8], &[16], &[32], &[16, 16], &[32, 32], &[64, 64], &[128, 128]];
 
@@ -21,7 +19,7 @@ fn main() {
         "hidden", "MAE x y z (N)", "free sd", "answer p50/p99 us", "training s"
     );
     for hidden in SIZES {
-        let settings = Settings { hidden: hidden.to_vec(), ..Settings::default() };
+        let settings = TrainingSettings { hidden: hidden.to_vec(), ..TrainingSettings::default() };
         let (_, Reached { truth, no_contact, inference_us, training_s, .. }) = sessions.train(None, &settings).unwrap();
         let mae: Vec<String> =
             truth.methods[0].outputs.iter().flatten().map(|stats| format!("{:.3}", stats.mae)).collect();
@@ -33,7 +31,7 @@ fn main() {
     for smoothing_s in [0.001, 0.002, 0.005, 0.010, 0.020] {
         let features = FeatureSettings { smoothing_s, ..FeatureSettings::default() };
         let sessions = Sessions::record(1, ROWS, features).unwrap();
-        let (_, Reached { truth, no_contact, .. }) = sessions.train(None, &Settings::default()).unwrap();
+        let (_, Reached { truth, no_contact, .. }) = sessions.train(None, &TrainingSettings::default()).unwrap();
         let mae = truth.methods[0].outputs.iter().flatten().map(|stats| stats.mae).fold(0.0, f64::max);
         let free = no_contact.iter().map(|free| free.sd).fold(0.0, f64::max);
         println!("{:>6.0} worst MAE {mae:.3} N, free sd {free:.3} N", 1e3 * smoothing_s);

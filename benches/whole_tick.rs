@@ -3,24 +3,24 @@
 //! `./dev bench`. The bimanual scene is recorded once with the loop's own outputs and replayed into loops of each mode.
 #![expect(clippy::unwrap_used, reason = "a benchmark fails by panicking")]
 
-#[path = "../tests/common/counting.rs"]
+#[path = "../tests/allocation/counting.rs"]
 mod counting;
 
 use std::{hint::black_box, time::Instant};
 
 use counting::calls;
-use nima::{
-    config::{Rig, Scene},
-    device::{Inputs, Outputs, Rig as _, SIDES},
-    impedance::Mode,
-    runtime::Command,
-    sim::Worlds,
-    teleop::{Calibrations, Loop, LoopState, Timing},
+use nima_core::impedance::Mode;
+use nima_machine::{
+    config::RigConfig,
+    messages::{Command, LoopState},
+    rig::{Inputs, Rig as _, SIDES},
+    teleop::{Calibrations, Loop, Timing},
 };
+use nima_world::{Worlds, scene::Scene};
 
 const TICKS: usize = 60_000;
 
-fn control(rig: &Rig) -> Loop {
+fn control(rig: &RigConfig) -> Loop {
     let mut control = Loop::new(rig, &[Some(Calibrations::default()), Some(Calibrations::default())]).unwrap();
     control.obey(Command::Engage, 0.0);
     control
@@ -30,13 +30,14 @@ fn timing(tick: usize) -> Timing {
     Timing { now_s: tick as f64 * 1e-3, ..Timing::default() }
 }
 
-fn recorded(rig: &Rig) -> Vec<[Option<Inputs>; SIDES]> {
+fn recorded(rig: &RigConfig) -> Vec<[Option<Inputs>; SIDES]> {
     let mut worlds = Worlds::new(&Scene::load("bimanual").unwrap(), rig.rate_hz);
-    let (mut control, mut outputs) = (control(rig), [Outputs::SAFE; SIDES]);
+    let mut control = control(rig);
     (0..TICKS)
         .map(|tick| {
-            let inputs = worlds.exchange(timing(tick).now_s, &outputs);
-            outputs = control.step(inputs, &timing(tick)).0;
+            let inputs = worlds.read(timing(tick).now_s);
+            let (outputs, _) = control.step(inputs, &timing(tick));
+            worlds.write(timing(tick).now_s, &outputs);
             inputs
         })
         .collect()
@@ -44,7 +45,7 @@ fn recorded(rig: &Rig) -> Vec<[Option<Inputs>; SIDES]> {
 
 fn main() {
     for mode in Mode::ALL {
-        let mut rig = Rig::load("simulated").unwrap();
+        let mut rig = RigConfig::load("simulated").unwrap();
         rig.mode = mode;
         let inputs = recorded(&rig);
         let mut control = control(&rig);

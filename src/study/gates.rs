@@ -7,22 +7,32 @@
 mod adversary;
 mod watch;
 
-use std::time::Instant;
+use std::{convert::Infallible, time::Instant};
 
 use fastrand::Rng;
 use nalgebra::SVector;
+use nima_core::safety::{Chain, GATES, Gate};
 use serde::Serialize;
+
+pub use watch::Breaches;
 
 use self::{
     adversary::{Adversary, Meddling, settings},
     watch::Watch,
 };
-use crate::safety::{Chain, GATES, Gate};
-
-pub use watch::Breaches;
+use crate::{Experiment, Findings};
 
 /// Requests to one chain.
 const PER_CHAIN: u64 = 2000;
+
+/// What to do.
+#[derive(Clone, Copy, Debug)]
+pub struct Options {
+    /// Requests to make.
+    pub requests: u64,
+    /// Seed of the adversary.
+    pub seed: u64,
+}
 
 /// How often a gate acted.
 #[derive(Clone, Debug, Serialize)]
@@ -154,6 +164,35 @@ impl Report {
             format!("  without permission, hand or valid request {uncalled}, energy's bound {energy}"),
         ];
         lines.into_iter().chain(gates).chain(breaches).collect::<Vec<_>>().join("\n")
+    }
+}
+
+impl Experiment for Options {
+    const NAME: &'static str = "gates";
+    const FILES: &'static [&'static str] = &[];
+    type Findings = Report;
+    type Error = Infallible;
+
+    fn run(&self, progress: &mut dyn FnMut(usize, usize, &str)) -> Result<Report, Infallible> {
+        Ok(study(self.requests, self.seed, progress))
+    }
+}
+
+impl Findings for Report {
+    fn text(&self) -> String {
+        Self::text(self)
+    }
+
+    fn files(&self) -> Vec<(String, String)> {
+        Vec::new()
+    }
+
+    fn judge(&self) -> Result<(), String> {
+        let breaches = self.breaches.total();
+        if breaches > 0 {
+            return Err(format!("{breaches} of {} requests broke a limit of the gates", self.requests));
+        }
+        Ok(())
     }
 }
 

@@ -8,14 +8,13 @@
 use std::f64::consts::TAU;
 
 use nalgebra::Vector3;
-
-use crate::{
-    config::Tissue as TissueConfig,
+use nima_core::{
     impedance::{Identifier, Mode, ModeSet, Renderer, Sample, Settings, SettingsError},
-    safety::{Chain, ChainSettings, GateReport, Request},
-    sim::{Noise, Tissue},
-    teleop::{Link, Tracking},
+    noise::Noise,
+    safety::{Chain, ChainSettings, Gate, GateReport, Request},
 };
+use nima_machine::teleop::{Link as _, ProgrammedLink, Tracking};
+use nima_world::{Tissue, scene::Tissue as TissueConfig};
 
 /// Ticks per second.
 pub(super) const RATE_HZ: f64 = 1000.0;
@@ -69,7 +68,7 @@ pub(super) struct Pair {
     tissue: Tissue,
     noise: Noise,
     identifier: Identifier,
-    link: Link,
+    link: ProgrammedLink,
     tracking: Tracking,
     renderer: Renderer,
     chain: Chain,
@@ -106,7 +105,7 @@ impl Pair {
             tissue: Tissue::new(trial.tissue),
             noise,
             identifier: Identifier::new(&settings)?,
-            link: Link::new(RATE_HZ, trial.delay_s),
+            link: ProgrammedLink::new(RATE_HZ, trial.delay_s),
             tracking: Tracking::new(RATE_HZ),
             renderer: Renderer::new(&settings)?,
             chain,
@@ -183,7 +182,7 @@ impl Pair {
         let dt_s = 1.0 / (RATE_HZ * f64::from(SUBSTEPS));
         let (mass_kg, grip_n_m, friction_n_s_m) =
             if self.gripped { (GRIP_KG, GRIP_N_M, GRIP_N_S_M) } else { (HANDLE_KG, 0.0, HANDLE_N_S_M) };
-        let brake_n_s_m = friction_n_s_m + if self.report.released { self.trial.brake_n_s_m } else { 0.0 };
+        let brake_n_s_m = friction_n_s_m + if self.report.acted(Gate::Release) { self.trial.brake_n_s_m } else { 0.0 };
         for _ in 0..SUBSTEPS {
             let hand_n = (intended_m - self.handle_m) * grip_n_m - self.handle_m_s * brake_n_s_m;
             self.handle_m_s += (hand_n + self.force_n) * (dt_s / mass_kg);

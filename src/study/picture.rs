@@ -44,7 +44,7 @@ pub struct Series {
     pub name: String,
     /// Index into [`COLOURS`] (and the marker's shape).
     pub colour: usize,
-    /// How it is drawn.
+    /// Markers, a line with markers, or a dashed line.
     pub style: Style,
     /// `(x, y)`.
     pub points: Vec<[f64; 2]>,
@@ -52,12 +52,10 @@ pub struct Series {
 
 /// One plot.
 #[derive(Clone, Debug)]
+#[expect(missing_docs, reason = "the names say it")]
 pub struct Chart {
-    /// Title.
     pub title: String,
-    /// Horizontal axis.
     pub x: Axis,
-    /// Vertical axis.
     pub y: Axis,
     /// Drawn in this order.
     pub series: Vec<Series>,

@@ -8,14 +8,15 @@
 mod present;
 
 use nalgebra::Vector3;
+use nima_core::{
+    impedance::{Mode, SettingsError},
+    safety::{ChainSettings, Gate},
+};
+use nima_machine::config::ConfigError;
+use nima_world::scene::{Scene, Tissue};
 use serde::Serialize;
 
 use super::pair::{HANDLE_KG, HANDLE_N_S_M, Pair, RATE_HZ, Trial};
-use crate::{
-    config::{ConfigError, Scene, Tissue},
-    impedance::{Mode, SettingsError},
-    safety::ChainSettings,
-};
 
 /// Delays of the link, ms.
 pub const DELAYS_MS: [f64; 6] = [0.0, 10.0, 50.0, 100.0, 200.0, 300.0];
@@ -143,6 +144,10 @@ pub struct Braked {
     pub outcome: Outcome,
 }
 
+/// What to do: there is nothing to choose.
+#[derive(Clone, Copy, Debug)]
+pub struct Options;
+
 /// The study's result.
 #[derive(Clone, Debug, Serialize)]
 pub struct Report {
@@ -234,7 +239,7 @@ fn tried(
         mode,
         delay_ms,
         before_n: pair.force_n().norm(),
-        closed_before: pair.report().released,
+        closed_before: pair.report().acted(Gate::Release),
         travel_mm: 0.0,
         travel_soon_mm: 0.0,
         peak_n: 0.0,

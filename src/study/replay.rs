@@ -7,19 +7,18 @@
 use std::time::Instant;
 
 use nalgebra::Vector3;
-use serde::Serialize;
-
-use crate::{
+use nima_core::{
     impedance::{Identifier, MAX_DEGREE, Mode, Report, Settings, SettingsError},
-    recording::Recording,
     safety::{Chain, ChainSettings, Request},
     statistics::Percentiles,
 };
+use nima_recording::csv::Recording;
+use serde::Serialize;
 
 /// Why a recording could not be replayed.
 #[derive(Debug, thiserror::Error)]
+#[expect(missing_docs, reason = "the messages say it")]
 pub enum ReplayError {
-    /// Settings out of range.
     #[error(transparent)]
     Settings(#[from] SettingsError),
     /// Not even one window and one delay long.
@@ -27,15 +26,10 @@ pub enum ReplayError {
         "recording {path} has {found} samples; a window of {window_ms} ms and a delay of {delay_ms} ms at {rate_hz} Hz need {needed}; record longer or shorten the window"
     )]
     TooShort {
-        /// Its path.
         path: String,
-        /// Samples found.
         found: usize,
-        /// Samples needed.
         needed: usize,
-        /// Window, ms.
         window_ms: f64,
-        /// Delay, ms.
         delay_ms: f64,
         /// Rate of the recording, Hz.
         rate_hz: f64,
@@ -83,36 +77,31 @@ pub struct Reconstructions {
 
 /// Median, 95th percentile and maximum.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[expect(missing_docs, reason = "the names say it")]
 pub struct Spread {
-    /// Median.
     pub p50: f64,
-    /// 95th percentile.
     pub p95: f64,
-    /// Largest.
     pub max: f64,
 }
 
 /// Time of one tick of identification, us.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[expect(missing_docs, reason = "the names say it")]
 pub struct TickTime {
-    /// Median.
     pub p50: f64,
-    /// 99th percentile.
     pub p99: f64,
-    /// Largest.
     pub max: f64,
 }
 
 /// All figures of a replay; the JSON of `nima identify`.
 #[derive(Clone, Debug, Serialize)]
+#[expect(missing_docs, reason = "the names say it")]
 pub struct Figures {
     /// Samples in the recording.
     pub samples: usize,
-    /// Rate, Hz.
     pub rate_hz: f64,
     /// Axes, by name.
     pub axes: Vec<&'static str>,
-    /// Mode that rendered.
     pub mode: Mode,
     /// Window in force, ms.
     pub window_ms: f64,
@@ -140,14 +129,12 @@ pub struct Figures {
 
 /// One row of the trace.
 #[derive(Clone, Copy, Debug)]
+#[expect(missing_docs, reason = "the names say it")]
 pub struct Row {
-    /// Time, s.
     pub t_s: f64,
-    /// Measured force.
     pub measured: Vector3<f64>,
     /// Rendered force, before the gates.
     pub rendered: Vector3<f64>,
-    /// Held force.
     pub held: Vector3<f64>,
     /// Degree used, 0 for none.
     pub degree: usize,
@@ -159,20 +146,20 @@ pub struct Row {
 
 /// How to replay.
 #[derive(Clone, Copy, Debug)]
+#[expect(missing_docs, reason = "the names say it")]
 pub struct Options {
-    /// Mode that renders.
     pub mode: Mode,
-    /// Window, s.
     pub window_s: f64,
-    /// Delay, s.
     pub delay_s: f64,
-    /// Highest degree.
     pub max_degree: usize,
     /// Learn the full `M` with cross-talk.
     pub cross_talk: bool,
 }
 
 /// Replays `recording`; `each` sees every row in order.
+///
+/// # Errors
+/// Settings outside of their ranges, or a recording that is shorter than the window and the delay.
 pub fn replay(recording: &Recording, options: &Options, mut each: impl FnMut(&Row)) -> Result<Figures, ReplayError> {
     let rate_hz = recording.rate_hz;
     let mut settings = Settings {
@@ -280,7 +267,7 @@ impl Tally {
         Figures {
             samples: recording.samples.len(),
             rate_hz: recording.rate_hz,
-            axes: recording.axes.iter().map(|&axis| crate::recording::AXIS_NAMES[axis]).collect(),
+            axes: recording.axes.iter().map(|&axis| nima_recording::csv::AXIS_NAMES[axis]).collect(),
             mode,
             window_ms: tidy_ms(settings.window_s),
             delay_ms: tidy_ms(settings.delay_s),

@@ -5,12 +5,11 @@
 //! without an answer or as a number that is wrong. Finding out which is what the studies are for.
 
 use nalgebra::{DMatrix, DVector, RealField};
-use serde::Serialize;
-
-use crate::{
+use nima_core::{
     impedance::{Factor, MAX_DEGREE, MOTION_COLUMNS, Scales, SlidingWindow, Solution, Summary},
     signal::{Lanes, Motion},
 };
+use serde::Serialize;
 
 /// Entries of a row of columns: the constant (if the solver has one) and the motion columns.
 pub const MAX_COLUMNS: usize = 1 + MOTION_COLUMNS;
@@ -89,7 +88,7 @@ impl Solver {
         columns
     }
 
-    /// Fits degrees `1..=max_degree` on `rows`, afresh. `ridge` (per row, see [`crate::impedance::Settings`]) is ours alone.
+    /// Fits degrees `1..=max_degree` on `rows`, afresh. `ridge` (per row, see [`nima_core::impedance::Settings`]) is ours alone.
     ///
     /// For [`Solver::Sliding`] this takes the rows into one factor; [`Sliding`] is the same kept from tick to tick.
     pub fn fit(self, rows: &[Row], max_degree: usize, scales: &Scales, ridge: f64) -> Fit {

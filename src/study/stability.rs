@@ -14,20 +14,20 @@ mod present;
 mod verdict;
 
 use nalgebra::{DMatrix, Vector3};
+use nima_core::{
+    impedance::{Identifier, MAX_DEGREE, Mode, Sample, Scales, Settings, SettingsError},
+    signal::{Differentiator, Lanes, Motion},
+};
 use serde::Serialize;
+
+pub use drift::Drift;
+pub use verdict::{Failures, Verdict};
 
 use self::cases::{Case, horizon, warm};
 use super::{
     reference::{PRECISION_BITS, Reference},
     solvers::{CUT_OFF, Fit, Row, Sliding, Solver},
 };
-use crate::{
-    impedance::{Identifier, MAX_DEGREE, Mode, Sample, Scales, Settings, SettingsError},
-    signal::{Differentiator, Lanes, Motion},
-};
-
-pub use drift::Drift;
-pub use verdict::{Failures, Verdict};
 
 /// Relative error that must hold wherever the condition is below [`ORDINARY_CONDITION`].
 pub const TARGET: f64 = 1e-9;
@@ -50,22 +50,19 @@ impl Options {
 
 /// Why the study could not be made.
 #[derive(Debug, thiserror::Error)]
+#[expect(missing_docs, reason = "the messages say it")]
 pub enum StabilityError {
     /// Number of ticks out of range.
     #[error("{ticks} ticks were asked for; it must be 10000 to 1000000000")]
-    Ticks {
-        /// As given.
-        ticks: u64,
-    },
-    /// Settings out of range.
+    Ticks { ticks: u64 },
     #[error(transparent)]
     Settings(#[from] SettingsError),
 }
 
 /// One solver and degree in one extreme; worst over its windows.
 #[derive(Clone, Debug, Serialize)]
+#[expect(missing_docs, reason = "the names say it")]
 pub struct Entry {
-    /// The solver.
     pub solver: Solver,
     /// Polynomial degree.
     pub degree: usize,
@@ -75,7 +72,6 @@ pub struct Entry {
     pub finite: usize,
     /// Worst relative error of the finite ones; `None` if there were none or the window itself is not finite.
     pub error: Option<f64>,
-    /// Unknowns.
     pub unknowns: usize,
     /// Least rank the solver worked with (pseudo-inverse: above its cut-off; ours: above the ridge; others: exact rank).
     pub rank: usize,
@@ -92,7 +88,7 @@ pub struct Entry {
 pub struct Extreme {
     /// Kind of extreme.
     pub group: &'static str,
-    /// Which one.
+    /// The extreme, as the table names it.
     pub name: String,
     /// Samples per second.
     pub rate_hz: f64,

@@ -11,13 +11,16 @@
 use std::{fmt::Write as _, sync::OnceLock};
 
 use nalgebra::Vector3;
-use serde::Serialize;
-
-use super::pair::{GRIP_N_M, Pair, RATE_HZ, Trial};
-use crate::{
-    config::Tissue,
+use nima_core::{
     impedance::{Mode, SettingsError},
     safety::{ChainSettings, EnergyMode},
+};
+use nima_world::scene::Tissue;
+use serde::{Serialize, Serializer};
+
+use crate::{
+    Experiment, Findings,
+    pair::{GRIP_N_M, Pair, RATE_HZ, Trial},
 };
 
 /// Gains of the map.
@@ -39,6 +42,10 @@ const APPROACH_S: f64 = 0.5;
 const JUDGED_S: f64 = 1.0;
 const KNOCK_S: [f64; 2] = [1.0, 1.1];
 const KNOCK_M: f64 = 3e-3;
+
+/// What to do: there is nothing to choose.
+#[derive(Clone, Copy, Debug)]
+pub struct Options;
 
 /// What the loop does at one point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
@@ -74,7 +81,7 @@ impl Verdict {
     pub const fn words(self) -> &'static str {
         match self {
             Self::Stable => "stable",
-            Self::Marginal => "at the edge",
+            Self::Marginal => "at the limit",
             Self::Unstable => "unstable",
         }
     }
@@ -204,12 +211,62 @@ impl StabilityMap {
     }
 }
 
-fn rows() -> impl Iterator<Item = String> {
+impl Experiment for Options {
+    const NAME: &'static str = "stability_map";
+    const FILES: &'static [&'static str] = &[".csv", ".md"];
+    type Findings = StabilityMap;
+    type Error = SettingsError;
+
+    fn run(&self, progress: &mut dyn FnMut(usize, usize, &str)) -> Result<StabilityMap, SettingsError> {
+        StabilityMap::simulate(progress)
+    }
+}
+
+impl Findings for StabilityMap {
+    fn text(&self) -> String {
+        self.markdown()
+    }
+
+    fn files(&self) -> Vec<(String, String)> {
+        vec![(".csv".to_owned(), self.csv()), (".md".to_owned(), self.markdown())]
+    }
+}
+
+impl Serialize for StabilityMap {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        #[derive(Serialize)]
+        struct Point {
+            mode: Mode,
+            delay_s: f64,
+            stiffness_n_m: f64,
+            /// In the order of the gains.
+            verdicts: [Verdict; GAINS.len()],
+        }
+        #[derive(Serialize)]
+        struct Map {
+            gains: [f64; GAINS.len()],
+            points: Vec<Point>,
+        }
+        let points = points().zip(self.verdicts.as_chunks().0);
+        let points = points.map(|((mode, delay_s, stiffness_n_m), verdicts)| Point {
+            mode,
+            delay_s,
+            stiffness_n_m,
+            verdicts: *verdicts,
+        });
+        Map { gains: GAINS, points: points.collect() }.serialize(serializer)
+    }
+}
+
+/// In the order of the verdicts: mode, delay (s), stiffness (N/m).
+fn points() -> impl Iterator<Item = (Mode, f64, f64)> {
     MODES.into_iter().flat_map(|mode| {
-        DELAYS_S.into_iter().flat_map(move |delay_s| {
-            STIFFNESSES_N_M.into_iter().map(move |n_m| format!("{mode},{:.0},{n_m:.0},", 1e3 * delay_s))
-        })
+        DELAYS_S.into_iter().flat_map(move |delay_s| STIFFNESSES_N_M.into_iter().map(move |n_m| (mode, delay_s, n_m)))
     })
+}
+
+fn rows() -> impl Iterator<Item = String> {
+    points().map(|(mode, delay_s, n_m)| format!("{mode},{:.0},{n_m:.0},", 1e3 * delay_s))
 }
 
 /// One trial: does a hand that grips come to rest?

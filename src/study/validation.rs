@@ -6,15 +6,15 @@ pub mod rendering;
 mod table;
 
 use nalgebra::Vector3;
+use nima_core::{calibration::AxisStats, impedance::SettingsError};
+use nima_machine::config::ConfigError;
+use nima_recording::tip_force::TipForceError;
+use rendering::Rendering;
 use serde::Serialize;
 
 pub use table::Row;
 
-use crate::{
-    calibration::AxisStats, config::ConfigError, impedance::SettingsError, study::validation::isolation::Isolation,
-    tip_force::TipForceError,
-};
-use rendering::Rendering;
+use crate::validation::isolation::Isolation;
 
 /// Why a validation could not be made.
 #[derive(Debug, thiserror::Error)]
@@ -75,7 +75,7 @@ pub struct Report {
 const PUSHES_S: f64 = 60.0;
 
 /// Makes the validations; `progress` is told the number of the one that begins, of three.
-pub fn study(options: &Options, progress: impl Fn(usize, usize, &str)) -> Result<Report, ValidationError> {
+pub fn study(options: &Options, mut progress: impl FnMut(usize, usize, &str)) -> Result<Report, ValidationError> {
     progress(0, 3, "correspondence");
     let gravity = experiment::gravity(options.seed)?;
     let correspondence = agreement(&experiment::correspondence(&gravity, options.seed, PUSHES_S)?.unseen_s1_n);

@@ -10,16 +10,14 @@ use std::{hint::black_box, time::Instant};
 
 use egui::{Context, Pos2, RawInput, Rect, Ui, vec2};
 use egui_plot::{Line, Plot, PlotPoint, PlotPoints};
-use nima::{
-    config::{Rig, Scene},
-    device::Side,
-};
 use nima_console::console::{
     history::CHANNELS,
     live::Live,
     panels::{ForcesState, forces_ui},
     theme,
 };
+use nima_machine::{config::RigConfig, rig::Side};
+use nima_world::scene::Scene;
 
 const RATE_HZ: f64 = 2000.0;
 const SECONDS: f64 = 120.0;
@@ -66,7 +64,7 @@ fn frame_ms(ctx: &Context, number: usize, content: &mut dyn FnMut(&mut Ui)) -> f
 
 /// Our panel, twice: three plots with two traces for each hand.
 fn ours(runs: &mut Vec<Vec<f64>>) {
-    let mut live = Live::new(Rig::load("simulated").unwrap(), Scene::load("bimanual").unwrap());
+    let mut live = Live::new(RigConfig::load("simulated").unwrap(), Scene::load("bimanual").unwrap());
     let mut now_s = SECONDS;
     fill(&mut live, 0.0, now_s);
     let ctx = Context::default();

@@ -3,24 +3,32 @@
 use std::{fs, path::Path, sync::atomic::AtomicBool, time::SystemTime};
 
 use nalgebra::Vector3;
+use nima_core::{
+    calibration::gravity::{GravityModel, GravityRecord, Parameters},
+    impedance::Mode,
+    tip_force::{FeatureSettings, TrainingSettings},
+};
+use nima_machine::{
+    config::RigConfig,
+    messages::{Command, LoopState},
+    rig::{Rig as _, Side},
+    teleop::{Calibrations, Loop, Timing},
+};
+use nima_recording::{
+    store::{Store, utc_now},
+    tip_force::{load_model, save_model},
+};
+use nima_training::train_model;
+use nima_world::{Worlds, scene::Scene};
 
 use super::{FaultsError, LiveError, SensorAt, Special, Verdict};
 use crate::{
-    calibration::{
-        gravity::{GravityModel, GravityRecord, Parameters},
-        store::{Store, utc_now},
+    release::{self, Gates, Situation},
+    validation::{
+        ValidationError,
+        experiment::{self, Experiment},
+        isolation,
     },
-    config::{Rig as RigConfig, Scene},
-    device::{Outputs, Rig as _, SIDES, Side},
-    impedance::Mode,
-    runtime::Command,
-    sim::Worlds,
-    study::{
-        release::{self, Gates, Situation},
-        validation::{ValidationError, experiment, experiment::Experiment, isolation},
-    },
-    teleop::{Calibrations, Loop, LoopState, Timing},
-    tip_force::{FeatureSettings, Model, Settings},
 };
 
 /// Every fault of a file or of what was loaded.
@@ -55,19 +63,19 @@ fn in_memory(what: &str, gravity: &GravityModel) -> Result<Special, FaultsError>
     let known = Calibrations { gravity: Some(*gravity), tip_force: None };
     let mut control = Loop::new(&config, &[Some(known), None])?;
     let mut worlds = Worlds::new(&Scene::load(SensorAt::Wrist.scene())?, config.rate_hz);
-    let mut outputs = [Outputs::SAFE; SIDES];
     let mut force = false;
     for tick in 0..500_u32 {
         let now_s = f64::from(tick) * 1e-3;
-        let inputs = worlds.exchange(now_s, &outputs);
+        let inputs = worlds.read(now_s);
         control.clear_events();
         if tick % 100 == 50 {
             control.obey(Command::Engage, now_s);
         }
-        outputs = control.step(inputs, &Timing { now_s, ..Timing::default() }).0;
+        let (outputs, _) = control.step(inputs, &Timing { now_s, ..Timing::default() });
+        worlds.write(now_s, &outputs);
         force |= outputs[0].hand_force_n != Vector3::zeros() || outputs[0].drives;
     }
-    let idle = control.pair(Side::Right).map(crate::teleop::Pair::state) == Some(LoopState::Idle);
+    let idle = control.pair(Side::Right).map(nima_machine::teleop::Pair::state) == Some(LoopState::Idle);
     Ok(Special {
         what: what.to_owned(),
         verdict: if idle && !force { Verdict::Detected } else { Verdict::Silent },
@@ -101,10 +109,10 @@ fn networks(folder: &Path) -> Result<Vec<Special>, FaultsError> {
     let known = isolation::Known::calibrate(1)?;
     let scene = Experiment::scene("isolation", 1)?;
     let data = isolation::record(&scene, &known, FeatureSettings::default(), 2000, 7.0)?.data(None)?;
-    let settings = Settings { members: 1, epochs: Some(1), ..Settings::default() };
-    let model = Model::train(&data, &settings, [None, None], &AtomicBool::new(false), &|_| {})?;
+    let settings = TrainingSettings { members: 1, epochs: Some(1), ..TrainingSettings::default() };
+    let model = train_model(&data, &settings, [None, None], &AtomicBool::new(false), &|_| {})?;
     let path = folder.join("network.safetensors");
-    model.save(&path)?;
+    save_model(&model, &path)?;
     let sound = fs::read(&path).map_err(LiveError::Scratch)?;
     let mut specials = Vec::new();
     // The weights are the last tensors of the file, f32 in little-endian order.
@@ -120,7 +128,7 @@ fn networks(folder: &Path) -> Result<Vec<Special>, FaultsError> {
     ];
     for (what, bytes) in cases {
         fs::write(&path, &bytes).map_err(LiveError::Scratch)?;
-        specials.push(refused(what, Model::load(&path).err().map(|error| error.to_string()), &path));
+        specials.push(refused(what, load_model(&path).err().map(|error| error.to_string()), &path));
     }
     Ok(specials)
 }

@@ -1,24 +1,25 @@
 //! The virtual bench: one world, the machine with the fault, and its twin that is given the truth of the same world.
 
 use nalgebra::Vector3;
+use nima_core::impedance::Mode;
+use nima_machine::{
+    config::RigConfig,
+    messages::{Command, Event, Fault, LoopState, Tick},
+    rig::{Inputs, Outputs, Rig as _, SIDES, Sensed, Side},
+    teleop::{Calibrations, Loop, Timing},
+};
+use nima_world::{Worlds, scene::Scene};
 
 use super::{
     FaultsError, HARMLESS_N, Kind, Part, Place, SensorAt,
+    impaired_link::{ImpairedLink, Impairment},
     inject::{FAULTY, Faulty, force_of},
 };
-use crate::{
-    config::{Rig as RigConfig, Scene},
-    device::{Inputs, Outputs, Rig as _, SIDES, Sensed, Side},
-    impedance::Mode,
-    runtime::{Command, Event, Fault, Tick},
-    sim::Worlds,
-    study::validation::experiment,
-    teleop::{Calibrations, Loop, LoopState, Timing, Weather},
-};
+use crate::validation::experiment;
 
 const PERIOD_S: f64 = 1e-3;
 /// Longest search for a place in the task, ticks.
-const PATIENCE: u32 = 12_000;
+const TIMEOUT: u32 = 12_000;
 /// So long the machine runs before any fault, ticks: the watch on what stands has then seen noise and tremor.
 const WARM_UP: u32 = 10_500;
 /// Moments lie apart by this, ticks.
@@ -34,8 +35,8 @@ const NEAR_M: f64 = 5e-4;
 #[derive(Clone, Debug)]
 pub(super) struct Bench {
     pub(super) rig: Faulty<Worlds>,
-    pub(super) machine: Loop,
-    pub(super) twin: Loop,
+    pub(super) machine: Loop<ImpairedLink>,
+    pub(super) twin: Loop<ImpairedLink>,
     outputs: [Outputs; SIDES],
     tick: u32,
     fault: Option<(Kind, u32)>,
@@ -49,7 +50,7 @@ pub(super) struct Bench {
 pub(super) struct Step {
     pub(super) machine: Tick,
     pub(super) twin: Tick,
-    /// What the twin commanded for this exchange, N.
+    /// What the twin commanded for this tick, N.
     pub(super) twin_before_n: Vector3<f64>,
     /// Force at the tip when it did, as the twin makes it of the truth, N.
     pub(super) tip_before_n: Vector3<f64>,
@@ -79,7 +80,7 @@ impl Bench {
             SensorAt::Wrist => Some(experiment::gravity(1)?),
         };
         let known = Calibrations { gravity, tip_force: None };
-        let machine = Loop::new(&config, &[Some(known), None])?;
+        let machine = Loop::over(&config, &[Some(known), None], ImpairedLink::new)?;
         let rig = Faulty::new(Worlds::new(&scene, config.rate_hz));
         let outputs = [Outputs::SAFE; SIDES];
         Ok(Self {
@@ -97,18 +98,20 @@ impl Bench {
     pub(super) fn begin(&mut self, fault: Kind) {
         self.rig.begin(fault);
         self.fault = Some((fault, self.tick));
-        let weather = match fault {
-            Kind::LinkSilent => Weather::Silent,
-            Kind::LinkHalf => Weather::LosesHalf,
-            Kind::LinkLate => Weather::Late(0.1),
-            Kind::LinkJitter => Weather::Late(0.003),
-            Kind::LinkSwaps => Weather::Swaps,
-            Kind::LinkDoubles => Weather::Doubles,
-            Kind::LinkPoisoned => Weather::Poisons,
-            Kind::LinkRepeats => Weather::Repeats,
-            _ => Weather::Fair,
+        let impairment = match fault {
+            Kind::LinkSilent => Impairment::LosesAll,
+            Kind::LinkHalf => Impairment::LosesHalf,
+            Kind::LinkLate => Impairment::Late(0.1),
+            Kind::LinkJitter => Impairment::Late(0.003),
+            Kind::LinkSwaps => Impairment::Swaps,
+            Kind::LinkDoubles => Impairment::Doubles,
+            Kind::LinkPoisoned => Impairment::Poisons,
+            Kind::LinkRepeats => Impairment::Repeats,
+            _ => Impairment::None,
         };
-        self.machine.disturb(Side::Right, weather);
+        if let Some(link) = self.machine.link_mut(Side::Right) {
+            link.impair(impairment);
+        }
     }
 
     /// A command for both.
@@ -167,7 +170,8 @@ impl Bench {
         let now_s = f64::from(self.tick) * PERIOD_S;
         let timing = self.timing(now_s);
         let wanted = self.outputs[FAULTY];
-        let inputs = self.rig.exchange(now_s, &self.outputs);
+        self.rig.write(now_s, &self.outputs);
+        let inputs = self.rig.read(now_s);
         let (truth, applied) = (self.rig.truth, self.rig.applied);
         let mut device_lost = false;
         self.machine.clear_events();
@@ -223,7 +227,7 @@ impl Bench {
         self.run(WARM_UP + moment * APART);
         if engaged {
             let free = place == Place::Free;
-            let mut patience = PATIENCE;
+            let mut patience = TIMEOUT;
             while !self.is_at(free) && patience > 0 {
                 self.run(1);
                 patience -= 1;
@@ -283,7 +287,7 @@ impl Bench {
 
     /// State of the machine.
     pub(super) fn state(&self) -> LoopState {
-        self.machine.pair(Side::Right).map_or(LoopState::Idle, crate::teleop::Pair::state)
+        self.machine.pair(Side::Right).map_or(LoopState::Idle, nima_machine::teleop::Pair::state)
     }
 }
 
@@ -301,7 +305,7 @@ fn differs(given: Option<&Inputs>, truth: Option<&Inputs>) -> bool {
     let tip_m = (given.tip_m - truth.tip_m).norm();
     let turned = match (&given.sensed, &truth.sensed) {
         (Sensed::AtWrist(given), Sensed::AtWrist(truth)) => {
-            given.kbf_from_s1 != truth.kbf_from_s1
+            given.world_from_s1 != truth.world_from_s1
                 || match (given.acceleration_m_s2, truth.acceleration_m_s2) {
                     (Some(given), Some(truth)) => (given - truth).norm() > 0.2 || given.sum().is_nan(),
                     (given, truth) => given.is_some() != truth.is_some(),

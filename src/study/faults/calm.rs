@@ -1,15 +1,16 @@
 //! Healthy machines at ordinary work, of which nothing may be told.
 
+use nima_core::impedance::Mode;
+use nima_machine::{
+    config::RigConfig,
+    messages::{Command, LoopState},
+    teleop::Calibrations,
+};
+use nima_world::{Plan, run_virtual, scene::Scene};
 use serde::Serialize;
 
 use super::FaultsError;
-use crate::{
-    config::{Rig as RigConfig, Scene},
-    impedance::Mode,
-    runtime::{Command, Plan, run_virtual},
-    study::validation::experiment,
-    teleop::{Calibrations, LoopState},
-};
+use crate::validation::experiment;
 
 const SCENES: [&str; 4] = ["peg_transfer", "palpation", "free_motion", "bimanual"];
 const DELAYS_S: [f64; 4] = [0.0, 0.01, 0.05, 0.3];
@@ -45,8 +46,8 @@ pub(super) fn runs(seconds: f64) -> Result<Calm, FaultsError> {
                 let scene = Scene::load(scene)?;
                 // Every run is another hand's tremor, noise and beginning.
                 let scene = Scene { seed: scene.seed + 1000 * calm.runs as u64, ..scene };
-                let (calibrations, left_calibrations) = (known, Calibrations::default());
-                let plan = Plan { rig, scene, calibrations, left_calibrations, engage: true };
+                let calibrations = [known, Calibrations::default()];
+                let plan = Plan { rig, scene, calibrations, engage: true };
                 let mut told = None;
                 let summary = run_virtual(&plan, seconds, |tick| match tick.state {
                     LoopState::Faulted(fault) => {

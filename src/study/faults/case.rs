@@ -3,15 +3,15 @@
 use std::collections::VecDeque;
 
 use nalgebra::Vector3;
+use nima_core::{
+    impedance::Mode,
+    safety::{Gate, Reason},
+};
+use nima_machine::messages::Fault;
 
 use super::{
     HARMLESS_N, Kind, Outcome, Place, SensorAt, Verdict,
     bench::{Bench, Step},
-};
-use crate::{
-    impedance::Mode,
-    runtime::Fault,
-    safety::{Gate, Reason},
 };
 
 /// Ticks until what a place waits for comes: drives, the clutch.

@@ -5,14 +5,13 @@ use serde::Serialize;
 /// Where a fault sits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
+#[expect(missing_docs, reason = "the names say it")]
 pub enum Part {
     /// The force sensor.
     Force,
     /// Orientation of the wrist: accelerometer or arm.
     Orientation,
-    /// The handle.
     Handle,
-    /// The arm.
     Arm,
     /// Pedal and presence.
     Switches,

@@ -3,12 +3,11 @@
 use std::collections::VecDeque;
 
 use nalgebra::{UnitQuaternion, Vector3};
+use nima_core::noise::Noise;
+use nima_devices::{Loss, Standing};
+use nima_machine::rig::{DeviceEvent, Inputs, Outputs, Rig, SIDES, Sensed};
 
 use super::Kind;
-use crate::{
-    device::{DeviceEvent, Inputs, Loss, Outputs, Rig, SIDES, Sensed, Standing},
-    sim::Noise,
-};
 
 /// The side whose devices fail.
 pub(super) const FAULTY: usize = 0;
@@ -29,16 +28,18 @@ pub struct Faulty<R> {
     pub(super) rig: R,
     pub(super) situation: Situation,
     fault: Option<Kind>,
-    /// Exchanges since the fault began.
+    /// Ticks since the fault began.
     age: u32,
     noise: Noise,
     first: Option<(Inputs, Outputs)>,
     before: Option<Inputs>,
     late: VecDeque<Inputs>,
     event: Option<DeviceEvent>,
-    /// What the rig measured in the last exchange, before the fault.
+    /// What the rig measured the last time, before the fault.
     pub(super) truth: [Option<Inputs>; SIDES],
-    /// What the rig was given in the last exchange.
+    /// What the loop wrote.
+    wanted: [Outputs; SIDES],
+    /// What the rig was given of it the last time.
     pub(super) applied: Outputs,
 }
 
@@ -56,11 +57,12 @@ impl<R: Rig> Faulty<R> {
             late: VecDeque::new(),
             event: None,
             truth: [None; SIDES],
+            wanted: [Outputs::SAFE; SIDES],
             applied: Outputs::SAFE,
         }
     }
 
-    /// From the next exchange on this fault acts.
+    /// From the next tick on this fault acts, also on what was written last.
     pub fn begin(&mut self, fault: Kind) {
         (self.fault, self.age, self.first, self.before) = (Some(fault), 0, None, None);
         self.late.clear();
@@ -111,7 +113,7 @@ impl<R: Rig> Faulty<R> {
         }
     }
 
-    /// The later of two neighbours first: what came one exchange ago, or the one before that again.
+    /// The later of two neighbours first: what came one tick ago, or the one before that again.
     fn reordered(&self, inputs: &Inputs, before: &Inputs) -> Sensed {
         let two_ago = self.late.iter().rev().nth(2).unwrap_or(before);
         match self.age % 2 {
@@ -177,11 +179,12 @@ impl<R: Rig> Faulty<R> {
 }
 
 impl<R: Rig> Rig for Faulty<R> {
-    fn exchange(&mut self, now_s: f64, outputs: &[Outputs; SIDES]) -> [Option<Inputs>; SIDES] {
-        let mut to_rig = *outputs;
-        to_rig[FAULTY] = self.for_rig(outputs[FAULTY]);
+    fn read(&mut self, now_s: f64) -> [Option<Inputs>; SIDES] {
+        let mut to_rig = self.wanted;
+        to_rig[FAULTY] = self.for_rig(self.wanted[FAULTY]);
         self.applied = to_rig[FAULTY];
-        let mut inputs = self.rig.exchange(now_s, &to_rig);
+        self.rig.write(now_s, &to_rig);
+        let mut inputs = self.rig.read(now_s);
         let Situation { connected, powered, clutch } = self.situation;
         if let Some(seen) = &mut inputs[FAULTY] {
             seen.powered &= powered;
@@ -198,6 +201,10 @@ impl<R: Rig> Rig for Faulty<R> {
             inputs[FAULTY] = None;
         }
         inputs
+    }
+
+    fn write(&mut self, _: f64, outputs: &[Outputs; SIDES]) {
+        self.wanted = *outputs;
     }
 
     fn event(&mut self) -> Option<DeviceEvent> {
@@ -239,5 +246,5 @@ fn turn_imu(fault: Kind, sensed: &mut Sensed, first: &Inputs) {
 fn turn_arm(fault: Kind, sensed: &mut Sensed) {
     let Sensed::AtWrist(sample) = sensed else { return };
     let quarter = UnitQuaternion::from_axis_angle(&Vector3::x_axis(), std::f64::consts::FRAC_PI_2);
-    sample.kbf_from_s1 = sample.kbf_from_s1.filter(|_| fault == Kind::OrientationJump).map(|turn| turn * quarter);
+    sample.world_from_s1 = sample.world_from_s1.filter(|_| fault == Kind::OrientationJump).map(|turn| turn * quarter);
 }

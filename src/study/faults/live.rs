@@ -11,18 +11,19 @@ use std::{
     time::{Duration, Instant},
 };
 
+use nima_core::impedance::Mode;
+use nima_devices::Lever;
+use nima_files::write_atomically;
+use nima_machine::{
+    config::{ConfigError, RigConfig},
+    messages::{Event, Fault, LoopState, Tick},
+    rig::{Inputs, Outputs, Rig, Roster, SIDES},
+    runtime::{Handle, StartError, Summary},
+};
+use nima_world::{Plan, Worlds, scene::Scene, start, start_on};
 use serde::Serialize;
 
 use super::Verdict;
-use crate::{
-    config::{ConfigError, Rig as RigConfig, Scene},
-    device::{Inputs, Lever, Outputs, Rig, Roster, SIDES},
-    files::write_atomically,
-    impedance::Mode,
-    runtime::{Event, Fault, Handle, Plan, StartError, Summary, Tick, start, start_on},
-    sim::Worlds,
-    teleop::{Calibrations, LoopState},
-};
 
 /// A fault that is not one of the virtual clock.
 #[derive(Clone, Debug, Serialize)]
@@ -71,12 +72,16 @@ struct Hanging {
 }
 
 impl Rig for Hanging {
-    fn exchange(&mut self, now_s: f64, outputs: &[Outputs; SIDES]) -> [Option<Inputs>; SIDES] {
+    fn read(&mut self, now_s: f64) -> [Option<Inputs>; SIDES] {
         if now_s >= self.at_s && self.began.load(Ordering::Relaxed) == 0 {
             self.began.store(nanoseconds(self.clock), Ordering::Relaxed);
             thread::sleep(self.length);
         }
-        self.rig.exchange(now_s, outputs)
+        self.rig.read(now_s)
+    }
+
+    fn write(&mut self, now_s: f64, outputs: &[Outputs; SIDES]) {
+        self.rig.write(now_s, outputs);
     }
 
     fn levers(&self) -> Vec<Lever> {
@@ -95,13 +100,7 @@ fn nanoseconds(clock: Instant) -> u64 {
 fn plan(rate_hz: f64) -> Result<Plan, LiveError> {
     let mut rig = RigConfig::load("simulated")?;
     (rig.mode, rig.rate_hz, rig.gates.static_hold) = (Mode::Dfr, rate_hz, true);
-    Ok(Plan {
-        rig,
-        scene: Scene::load("peg_transfer")?,
-        calibrations: Calibrations::default(),
-        left_calibrations: Calibrations::default(),
-        engage: true,
-    })
+    Ok(Plan { rig, scene: Scene::load("peg_transfer")?, calibrations: Default::default(), engage: true })
 }
 
 fn until(handle: &Handle, good: impl Fn(&Tick) -> bool) -> Result<(), LiveError> {

@@ -11,10 +11,14 @@ mod bench;
 mod calm;
 mod case;
 mod catalogue;
+mod impaired_link;
 mod inject;
 mod live;
 mod present;
 
+use nima_core::impedance::{Mode, SettingsError};
+use nima_machine::{config::ConfigError, messages::LoopState};
+use nima_recording::tip_force::TipForceError;
 use serde::Serialize;
 
 pub use calm::Calm;
@@ -23,39 +27,29 @@ pub use inject::Faulty;
 pub use live::{LiveError, Special};
 
 use self::bench::Bench;
-use crate::{
-    config::ConfigError, impedance::Mode, impedance::SettingsError, study::validation::ValidationError,
-    teleop::LoopState, tip_force::TipForceError,
-};
+use crate::validation::ValidationError;
 
 /// A force in the hand that differs from the twin's by no more than this is harmless, N: the deviation of the paper's own tip force.
 pub const HARMLESS_N: f64 = 0.2;
 
 /// Why the study cannot be made.
 #[derive(Debug, thiserror::Error)]
+#[expect(missing_docs, reason = "the messages say it")]
 pub enum FaultsError {
     /// A scene or rig is wrong.
     #[error(transparent)]
     Config(#[from] ConfigError),
-    /// Settings out of range.
     #[error(transparent)]
     Settings(#[from] SettingsError),
-    /// The simulated calibration failed.
     #[error(transparent)]
     Calibration(#[from] ValidationError),
-    /// The simulated network.
     #[error(transparent)]
     Network(#[from] TipForceError),
     /// The healthy machine did not come to where a fault was to be tried.
     #[error(
         "the healthy machine is {state} where it should be {place}: a false alarm, or this study's scenes have changed"
     )]
-    NotReached {
-        /// Where it should be.
-        place: &'static str,
-        /// Where it is.
-        state: String,
-    },
+    NotReached { place: &'static str, state: String },
     /// Faults on the real clock.
     #[error(transparent)]
     Live(#[from] LiveError),
@@ -185,20 +179,18 @@ pub enum Verdict {
 
 /// One case.
 #[derive(Clone, Debug, Serialize)]
+#[expect(missing_docs, reason = "the names say it")]
 pub struct Outcome {
-    /// What failed.
     pub kind: Kind,
     /// Where it sits.
     pub part: Part,
     /// Where the force is measured.
     pub sensor: SensorAt,
-    /// Mode that rendered.
     pub mode: Mode,
     /// Where the machine was.
     pub place: Place,
     /// Which moment there.
     pub moment: u32,
-    /// What became of it.
     pub verdict: Verdict,
     /// What was told first, if anything.
     pub told: Option<String>,
@@ -236,12 +228,13 @@ pub struct Report {
     pub specials: Vec<Special>,
     /// Healthy runs.
     pub calm: Calm,
-    /// Sums.
+    /// How many runs ended in each way.
     pub sums: Sums,
 }
 
 /// Counts and percentiles over a report.
 #[derive(Clone, Copy, Debug, Default, Serialize)]
+#[expect(missing_docs, reason = "the names say it")]
 pub struct Sums {
     /// Kinds of fault.
     pub kinds: usize,
@@ -249,13 +242,9 @@ pub struct Sums {
     pub cases: usize,
     /// Of these without force and motion.
     pub no_force: usize,
-    /// Harmless.
     pub harmless: usize,
-    /// Detected.
     pub detected: usize,
-    /// Bounded.
     pub bounded: usize,
-    /// Silent.
     pub silent: usize,
     /// Detected cases on the force path while engaged.
     pub on_force_path: usize,

@@ -2,7 +2,8 @@
 
 use std::fmt::Write as _;
 
-use super::{HARMLESS_N, Kind, Outcome, Place, Report, SensorAt, Special, Sums, Verdict};
+use super::{FaultsError, HARMLESS_N, Kind, Options, Outcome, Place, Report, SensorAt, Special, Sums, Verdict, study};
+use crate::{Experiment, Findings};
 
 impl Report {
     /// For a document and a terminal.
@@ -103,5 +104,37 @@ const fn word(verdict: Verdict) -> &'static str {
         Verdict::Detected => "detected",
         Verdict::Bounded => "bounded",
         Verdict::Silent => "SILENT",
+    }
+}
+
+impl Experiment for Options {
+    const NAME: &'static str = "faults";
+    const FILES: &'static [&'static str] = &[".md"];
+    type Findings = Report;
+    type Error = FaultsError;
+
+    fn run(&self, progress: &mut dyn FnMut(usize, usize, &str)) -> Result<Report, FaultsError> {
+        study(self, progress)
+    }
+}
+
+impl Findings for Report {
+    fn text(&self) -> String {
+        self.markdown()
+    }
+
+    fn files(&self) -> Vec<(String, String)> {
+        vec![(".md".to_owned(), self.markdown())]
+    }
+
+    fn judge(&self) -> Result<(), String> {
+        let (silent, false_alarms) = (self.sums.silent, self.calm.false_alarms.len());
+        if silent > 0 {
+            return Err(format!("{silent} faults were not detected: see the table"));
+        }
+        if false_alarms > 0 {
+            return Err(format!("{false_alarms} faults were reported in runs without a fault: see the table"));
+        }
+        Ok(())
     }
 }

@@ -2,8 +2,7 @@
 
 use fastrand::Rng;
 use nalgebra::SVector;
-
-use crate::safety::{ChainSettings, EnergyMode, Request};
+use nima_core::safety::{ChainSettings, EnergyMode, Request};
 
 /// How the force goes on for a while.
 #[derive(Clone, Copy, Debug)]

@@ -1,9 +1,8 @@
 //! Looks at everything that leaves a chain and counts what must not be. Knows the limits, not how the gates keep them.
 
 use nalgebra::SVector;
+use nima_core::safety::{Gate, GateReport, MAX_GAIN, MOST_J};
 use serde::Serialize;
-
-use crate::safety::{GateReport, MAX_GAIN, MOST_J};
 
 /// Rounding allowed in a limit, relative.
 const ROUNDING: f64 = 1e-9;
@@ -52,7 +51,7 @@ impl<const D: usize> Watch<D> {
     pub(super) fn look(&mut self, now_n: &SVector<f64, D>, report: &GateReport, chosen: f64, breaches: &mut Breaches) {
         let within = |value: f64, limit: f64| value <= limit * (1.0 + ROUNDING) + f64::MIN_POSITIVE;
         let finite = now_n.iter().all(|f| f.is_finite()) && report.gain.is_finite();
-        let let_go = report.not_permitted || report.invalid || report.released;
+        let let_go = [Gate::Permission, Gate::Validity, Gate::Release].iter().any(|gate| report.acted(*gate));
         let change_n = (now_n - self.last_n).norm();
         // The last digit of a gain near 3 is larger than a slow ramp's relative rounding.
         let gain_change = (report.gain - self.gain).abs() - 4.0 * f64::EPSILON;
@@ -72,6 +71,7 @@ impl<const D: usize> Watch<D> {
 #[cfg(test)]
 mod tests {
     use nalgebra::Vector3;
+    use nima_core::safety::Reason;
 
     use super::*;
 
@@ -100,7 +100,7 @@ mod tests {
         let fast = GateReport { gain: 0.99, ..good };
         assert_eq!(seen(near, fast, 0.5), Breaches { gain_rate: 1, ..Breaches::default() });
         assert_eq!(seen(near, good, 1.5), Breaches { gain_range: 1, ..Breaches::default() });
-        let forbidden = GateReport { not_permitted: true, ..good };
+        let forbidden = good.with(Gate::Permission, Reason::NotPermitted);
         assert_eq!(seen(near, forbidden, 1.0), Breaches { uncalled: 1, ..Breaches::default() });
         assert_eq!(
             seen(Vector3::zeros(), forbidden, 1.0),

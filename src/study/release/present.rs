@@ -2,10 +2,15 @@
 
 use std::fmt::Write as _;
 
-use super::{AIM_M, AIM_N, BRAKES_N_S_M, Braked, DELAYS_MS, Gates, Outcome, Report, STEADY, Situation};
+use nima_core::impedance::Mode;
+
+use super::{
+    AIM_M, AIM_N, BRAKES_N_S_M, Braked, DELAYS_MS, Gates, Options, Outcome, ReleaseError, Report, STEADY, Situation,
+    study,
+};
 use crate::{
-    impedance::Mode,
-    study::picture::{Axis, Chart, Series, Style, svg},
+    Experiment, Findings,
+    picture::{Axis, Chart, Series, Style, svg},
 };
 
 const MODES: [Mode; 4] = [Mode::Dfr, Mode::Linear, Mode::Literal, Mode::Anchored];
@@ -106,4 +111,25 @@ fn row(text: &mut String, outcome: &Outcome) {
         gates.words()
     )
     .ok();
+}
+
+impl Experiment for Options {
+    const NAME: &'static str = "release";
+    const FILES: &'static [&'static str] = &[".md", ".svg"];
+    type Findings = Report;
+    type Error = ReleaseError;
+
+    fn run(&self, progress: &mut dyn FnMut(usize, usize, &str)) -> Result<Report, ReleaseError> {
+        study(progress)
+    }
+}
+
+impl Findings for Report {
+    fn text(&self) -> String {
+        self.markdown()
+    }
+
+    fn files(&self) -> Vec<(String, String)> {
+        vec![(".md".to_owned(), self.markdown()), (".svg".to_owned(), self.svg())]
+    }
 }

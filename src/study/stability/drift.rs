@@ -1,13 +1,13 @@
 //! The long run: does an error stay behind when samples have left the window?
 
 use nalgebra::{DMatrix, DVector};
+use nima_core::impedance::{MAX_DEGREE, Scales, Settings};
 use serde::Serialize;
 
 use super::super::{
     reference::Reference,
     solvers::{MAX_COLUMNS, Row, Sliding, Solver},
 };
-use crate::impedance::{MAX_DEGREE, Scales, Settings};
 
 /// Rows of the motion that is run through again and again: a multiple of the block, so that windows recur exactly.
 const TABLE: usize = 3000;

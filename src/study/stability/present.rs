@@ -2,8 +2,11 @@
 
 use std::fmt::Write as _;
 
-use super::{Entry, Extreme, ORDINARY_CONDITION, Report, Solver, TARGET};
-use crate::study::picture::{Axis, Chart, Series, Style, svg};
+use super::{Entry, Extreme, ORDINARY_CONDITION, Options, Report, Solver, StabilityError, TARGET, study};
+use crate::{
+    Experiment, Findings,
+    picture::{Axis, Chart, Series, Style, svg},
+};
 
 impl Report {
     /// One row per extreme, solver and degree; empty where there is no figure.
@@ -166,4 +169,25 @@ fn condition(extreme: &Extreme) -> String {
     let ours = extreme.entries.iter().filter(|entry| entry.solver == Solver::Sliding);
     let condition = ours.filter_map(|entry| entry.condition).reduce(f64::max);
     condition.map_or_else(|| "-".into(), |condition| format!("{condition:.1e}"))
+}
+
+impl Experiment for Options {
+    const NAME: &'static str = "stability";
+    const FILES: &'static [&'static str] = &[".csv", ".svg"];
+    type Findings = Report;
+    type Error = StabilityError;
+
+    fn run(&self, progress: &mut dyn FnMut(usize, usize, &str)) -> Result<Report, StabilityError> {
+        study(self, progress)
+    }
+}
+
+impl Findings for Report {
+    fn text(&self) -> String {
+        self.table()
+    }
+
+    fn files(&self) -> Vec<(String, String)> {
+        vec![(".csv".to_owned(), self.csv()), (".svg".to_owned(), self.svg())]
+    }
 }

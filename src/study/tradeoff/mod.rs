@@ -16,7 +16,7 @@
 //! | `windows` | cost and error of the plain model of a window, by each solver |
 //! | `sweep` | all points of all sources, their curves and the front |
 //! | `chart`, `pictures` | the curves as SVG |
-//! | `table` | the figures as CSV |
+//! | `table`, `words` | the figures as CSV, and for a terminal |
 
 mod modes;
 mod pictures;
@@ -25,6 +25,7 @@ mod source;
 mod sweep;
 mod table;
 mod windows;
+mod words;
 
 #[cfg(test)]
 mod tests;

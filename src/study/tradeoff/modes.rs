@@ -5,13 +5,14 @@ use std::{
     time::Instant,
 };
 
+use nima_core::{
+    impedance::{Identifier, Mode, ModeSet, Sample, Settings},
+    statistics::Percentiles,
+};
+
 use super::{
     plan::Choice,
     sweep::{CostUs, SweepError},
-};
-use crate::{
-    impedance::{Identifier, Mode, ModeSet, Sample, Settings},
-    statistics::Percentiles,
 };
 
 /// How often a stop is looked for, in ticks.

@@ -1,12 +1,11 @@
 //! The curves as pictures.
 
+use nima_core::impedance::Mode;
+
 use super::{Knob, Method, Point, SourceFigures, Study};
 use crate::{
-    impedance::Mode,
-    study::{
-        picture::{Axis, Chart, Series, Style, svg},
-        solvers::Solver,
-    },
+    picture::{Axis, Chart, Series, Style, svg},
+    solvers::Solver,
 };
 
 impl Study {

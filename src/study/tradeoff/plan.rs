@@ -1,13 +1,13 @@
 //! The knobs, and which of their values are tried.
 
+use nima_core::{
+    impedance::{MAX_DEGREE, Mode, Settings},
+    signal::DifferentiatorKind,
+};
 use serde::Serialize;
 
 use super::source::Source;
-use crate::{
-    impedance::{MAX_DEGREE, Mode, Settings},
-    signal::DifferentiatorKind,
-    study::solvers::Solver,
-};
+use crate::solvers::Solver;
 
 /// What turns samples into a force.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -39,16 +39,13 @@ impl Method {
 
 /// One position of all knobs.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[expect(missing_docs, reason = "the names say it")]
 pub struct Choice {
     /// What renders.
     pub method: Method,
-    /// Highest degree.
     pub degree: usize,
-    /// Window, ms.
     pub window_ms: f64,
-    /// Rate, Hz.
     pub rate_hz: f64,
-    /// Delay, ms.
     pub delay_ms: f64,
     /// How velocity and acceleration are made.
     pub differentiator: DifferentiatorKind,
@@ -60,7 +57,7 @@ pub struct Choice {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Knob {
-    /// Highest degree.
+    /// The highest polynomial degree that may be chosen.
     Degree,
     /// Length of the window.
     Window,
@@ -94,7 +91,7 @@ impl Knob {
 /// Points along one knob.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Curve {
-    /// The knob.
+    /// The setting that changes along the curve.
     pub knob: Knob,
     /// What renders on the whole curve (of [`Knob::Mode`]: at the base).
     pub method: Method,
@@ -104,20 +101,17 @@ pub struct Curve {
 
 /// What is tried.
 #[derive(Clone, Debug)]
+#[expect(missing_docs, reason = "the names say it")]
 pub struct Plan {
     /// The base point, and what is not turned (scales, ridge). Rate and axes are those of the source.
     pub base: Settings,
     /// Modes on the grid and along every knob.
     pub modes: Vec<Mode>,
-    /// Degrees.
     pub degrees: Vec<usize>,
-    /// Windows, s.
     pub windows_s: Vec<f64>,
     /// Rates below that of the source, Hz.
     pub rates_hz: Vec<f64>,
-    /// Delays, s.
     pub delays_s: Vec<f64>,
-    /// Differentiators.
     pub differentiators: Vec<DifferentiatorKind>,
     /// Solvers of the plain model of a window, along degree and window.
     pub solvers: Vec<Solver>,

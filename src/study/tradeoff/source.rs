@@ -1,21 +1,17 @@
 //! Where motion and force come from.
 
-use crate::{
-    config::Scene,
-    device::{Outputs, Sensed},
-    impedance::{AXES, Sample},
-    recording::Recording,
-    sim::World,
-};
+use nima_core::impedance::{AXES, Sample};
+use nima_machine::rig::{Outputs, Sensed};
+use nima_recording::csv::Recording;
+use nima_world::{World, scene::Scene};
 
 /// Motion and force over time, and what to call them.
 #[derive(Clone, Debug)]
+#[expect(missing_docs, reason = "the names say it")]
 pub struct Source {
     /// Name in tables and pictures.
     pub name: String,
-    /// Unit of the force.
     pub unit: String,
-    /// The samples.
     pub recording: Recording,
 }
 

@@ -2,6 +2,10 @@
 
 use std::sync::atomic::AtomicBool;
 
+use nima_core::{
+    impedance::{Mode, Settings, SettingsError},
+    statistics::Quantiles,
+};
 use serde::Serialize;
 
 use super::{
@@ -10,44 +14,33 @@ use super::{
     source::Source,
     windows,
 };
-use crate::{
-    impedance::{Mode, Settings, SettingsError},
-    statistics::Quantiles,
-};
 
 /// Windows and delays longer than this share of a source leave too little to judge.
 const LONGEST_SHARE: f64 = 0.25;
 
 /// Why a sweep ended without figures.
 #[derive(Debug, thiserror::Error)]
+#[expect(missing_docs, reason = "the messages say it")]
 pub enum SweepError {
-    /// Somebody asked to stop.
     #[error("cancelled; nothing was kept")]
     Cancelled,
     /// Nothing could be measured on a source.
     #[error("{name}: no point of the plan can be measured on it ({reason}); record longer, or at a higher rate")]
     Nothing {
-        /// Name of the source.
         name: String,
         /// Why the first point was left out.
         reason: String,
     },
     /// A choice out of range that was not found out before.
     #[error("{choice:?}: {source}")]
-    Settings {
-        /// The choice.
-        choice: Box<Choice>,
-        /// Why.
-        source: SettingsError,
-    },
+    Settings { choice: Box<Choice>, source: SettingsError },
 }
 
 /// Time of one tick, us.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[expect(missing_docs, reason = "the names say it")]
 pub struct CostUs {
-    /// Median.
     pub p50: f64,
-    /// 99th percentile.
     pub p99: f64,
 }
 
@@ -63,8 +56,8 @@ impl CostUs {
 
 /// A choice and what it costs and gives.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[expect(missing_docs, reason = "the names say it")]
 pub struct Point {
-    /// The knobs.
     #[serde(flatten)]
     pub choice: Choice,
     /// Time of one tick, us; the quietest of the passes.
@@ -73,9 +66,7 @@ pub struct Point {
     pub load: f64,
     /// Mean error at the horizon, unit of the source.
     pub error: f64,
-    /// Its median.
     pub error_p50: f64,
-    /// Its 95th percentile.
     pub error_p95: f64,
     /// The same mean of delayed DFR on the same samples.
     pub dfr_error: f64,
@@ -91,34 +82,27 @@ pub struct Point {
 
 /// A choice that was left out, and why.
 #[derive(Clone, Debug, PartialEq, Serialize)]
+#[expect(missing_docs, reason = "the names say it")]
 pub struct Skipped {
-    /// The knobs.
     #[serde(flatten)]
     pub choice: Choice,
-    /// Why.
     pub reason: String,
 }
 
 /// Everything about one source.
 #[derive(Clone, Debug, Serialize)]
+#[expect(missing_docs, reason = "the names say it")]
 pub struct SourceFigures {
-    /// Its name.
     pub source: String,
-    /// Unit of its force.
     pub unit: String,
-    /// Rate, Hz.
     pub rate_hz: f64,
-    /// Samples.
     pub samples: usize,
-    /// Number of axes.
     pub axes: usize,
     /// Only samples later than this and the delay are judged, s: the longest window must be full.
     pub judged_from_s: f64,
-    /// All points.
     pub points: Vec<Point>,
     /// Points along each knob.
     pub curves: Vec<Curve>,
-    /// What was left out.
     pub skipped: Vec<Skipped>,
 }
 

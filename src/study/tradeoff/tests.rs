@@ -1,17 +1,17 @@
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use nalgebra::Vector3;
+use nima_core::{
+    impedance::{Mode, Sample, Settings},
+    signal::DifferentiatorKind,
+};
+use nima_recording::csv::{Mapping, Recording};
+use nima_world::scene::Scene;
 
 use super::{sweep::mark_front, *};
 use crate::{
-    config::Scene,
-    impedance::{Mode, Sample, Settings},
-    recording::{Mapping, Recording},
-    signal::DifferentiatorKind,
-    study::{
-        replay::{Options, replay},
-        solvers::Solver,
-    },
+    replay::{Options, replay},
+    solvers::Solver,
 };
 
 /// A hand that presses a soft spring twice a second.

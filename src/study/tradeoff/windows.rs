@@ -7,16 +7,17 @@
 
 use std::{hint::black_box, sync::atomic::AtomicBool, time::Instant};
 
+use nima_core::{
+    impedance::{MAX_DEGREE, Sample, Settings},
+    signal::{DelayLine, Differentiator, Lanes, Motion},
+    statistics::Percentiles,
+};
+
 use super::{
     modes::{Errors, Measured, look},
     sweep::{CostUs, SweepError},
 };
-use crate::{
-    impedance::{MAX_DEGREE, Sample, Settings},
-    signal::{DelayLine, Differentiator, Lanes, Motion},
-    statistics::Percentiles,
-    study::solvers::{Fit, Row, Sliding, Solver},
-};
+use crate::solvers::{Fit, Row, Sliding, Solver};
 
 /// Rows of a source for one window length, one list per axis.
 struct Rows {

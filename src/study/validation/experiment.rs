@@ -1,18 +1,17 @@
 //! The paper's experiments in the simulated rig, sample by sample, with the truth that only a simulation knows.
 
 use nalgebra::{UnitVector3, Vector3};
-
-use super::ValidationError;
-use crate::{
+use nima_core::{
     calibration::{
         correspondence::{self, Correspondence, CorrespondenceReport, CorrespondenceSession},
         gravity::{Compensator, DEFAULT_TIME_CONSTANT_S, GravityModel, GravityReport, GravitySession, SessionSettings},
     },
-    config::Scene,
-    device::{Outputs, Prompt, Sensed},
     frames::{Wrench, WristSample},
-    sim::World,
 };
+use nima_machine::rig::{Outputs, Prompt, Sensed};
+use nima_world::{World, scene::Scene};
+
+use super::ValidationError;
 
 /// Rate of the rig, Hz.
 pub const RATE_HZ: f64 = 1000.0;
@@ -59,7 +58,7 @@ impl Experiment {
 
     /// True force on the tip in that sample, N (`s1`).
     pub fn true_tip_s1_n(&self, sample: &WristSample) -> Vector3<f64> {
-        sample.kbf_from_s1.map_or_else(Vector3::zeros, |turn| turn.inverse() * self.world.true_tip_n())
+        sample.world_from_s1.map_or_else(Vector3::zeros, |turn| turn.inverse() * self.world.true_tip_n())
     }
 }
 
@@ -75,7 +74,7 @@ pub fn gravity_report(seed: u64) -> Result<GravityReport, ValidationError> {
     let mut experiment = Experiment::new(&Experiment::scene("gravity", seed)?);
     let mut session = GravitySession::new(SessionSettings::default());
     while let Some(target) = session.target() {
-        let sample = experiment.sample(Prompt::Hold { kbf_from_s1: target.kbf_from_s1() });
+        let sample = experiment.sample(Prompt::Hold { world_from_s1: target.world_from_s1() });
         if let Some(sample) = sample {
             session.step(&sample, experiment.t_s());
         }
@@ -132,7 +131,7 @@ pub fn known(report: &CorrespondenceReport) -> Result<Correspondence, Validation
 fn push(asked: Option<correspondence::PushTarget>, pushes: usize) -> Prompt {
     let all = correspondence::TARGETS;
     let target = asked.unwrap_or(all[pushes % all.len()]);
-    Prompt::Push { direction: UnitVector3::new_normalize(target.push_in_kbf) }
+    Prompt::Push { direction: UnitVector3::new_normalize(target.push_in_world) }
 }
 
 /// One sample and what it feels without weight and bias.

@@ -3,19 +3,19 @@
 use std::{sync::atomic::AtomicBool, time::Instant};
 
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
+use nima_core::{
+    calibration::{correspondence::Correspondence, gravity::GravityModel},
+    statistics::Quantiles,
+    tip_force::{Estimator, FeatureSettings, TrainingSettings},
+};
+use nima_machine::rig::Prompt;
+use nima_recording::tip_force::{DataSet, Recorder, Selection};
+use nima_training::{NoContact, Part, Progress, evaluate, train_model};
+use nima_world::scene::Scene;
 use serde::Serialize;
 
 use super::{ValidationError, experiment};
-use crate::{
-    calibration::{correspondence::Correspondence, gravity::GravityModel},
-    config::Scene,
-    device::Prompt,
-    statistics::Quantiles,
-    study::validation::experiment::{Experiment, felt},
-    tip_force::{
-        DataSet, Estimator, FeatureSettings, Model, NoContact, Part, Progress, Recorder, Selection, Settings, evaluate,
-    },
-};
+use crate::validation::experiment::{Experiment, felt};
 
 /// A recorded session: the data set as a technician gets it, and the truth beside every row.
 #[derive(Clone, Debug)]
@@ -117,7 +117,7 @@ pub struct Reached {
     pub no_contact: Vec<NoContact>,
     /// Share of unseen samples in doubt.
     pub false_alarms: f64,
-    /// Training, s.
+    /// Wall-clock time that the training took.
     pub training_s: f64,
     /// One answer, microseconds.
     pub inference_us: Quantiles,
@@ -172,9 +172,13 @@ impl Sessions {
     }
 
     /// Trains on the one, judges on the others.
-    pub fn train(&self, inputs: Option<&[&str]>, settings: &Settings) -> Result<(Estimator, Reached), ValidationError> {
+    pub fn train(
+        &self,
+        inputs: Option<&[&str]>,
+        settings: &TrainingSettings,
+    ) -> Result<(Estimator, Reached), ValidationError> {
         let start = Instant::now();
-        let model = Model::train(
+        let model = train_model(
             &self.training.data(inputs)?,
             settings,
             [None, None],
@@ -255,8 +259,8 @@ fn directions(data: &DataSet) -> Vec<Vector3<f64>> {
 /// Validation II with the default settings.
 pub fn study(seed: u64, rows: usize) -> Result<Isolation, ValidationError> {
     let sessions = Sessions::record(seed, rows, FeatureSettings::default())?;
-    let (_, paper_inputs) = sessions.train(Some(&PAPER_INPUTS), &Settings::default())?;
-    let (mut estimator, our_inputs) = sessions.train(None, &Settings::default())?;
+    let (_, paper_inputs) = sessions.train(Some(&PAPER_INPUTS), &TrainingSettings::default())?;
+    let (mut estimator, our_inputs) = sessions.train(None, &TrainingSettings::default())?;
     let foreign = sessions.foreign(&mut estimator)?;
     Ok(Isolation { paper_inputs, our_inputs, foreign })
 }

@@ -1,15 +1,12 @@
 //! Validation III: how well each mode renders the force, in the window that it was fitted on and at the horizon.
 
 use nalgebra::Vector3;
+use nima_core::impedance::Mode;
+use nima_machine::{config::RigConfig, teleop::ErrorStats};
+use nima_world::{Plan, run_virtual, scene::Scene};
 use serde::Serialize;
 
 use super::ValidationError;
-use crate::{
-    config::{Rig, Scene},
-    impedance::Mode,
-    runtime::{Plan, run_virtual},
-    teleop::{Calibrations, ErrorStats},
-};
 
 /// The scene that is rendered: the paper's task.
 const SCENE: &str = "peg_transfer";
@@ -28,10 +25,9 @@ pub struct Figures {
 
 /// Figures of one mode.
 #[derive(Clone, Copy, Debug, Serialize)]
+#[expect(missing_docs, reason = "the names say it")]
 pub struct ModeFigures {
-    /// The mode.
     pub mode: Mode,
-    /// Its error.
     pub error: Figures,
 }
 
@@ -70,14 +66,8 @@ impl Axes {
 /// Runs the task with this delay (s).
 pub fn study(seed: u64, delay_s: f64) -> Result<Rendering, ValidationError> {
     let scene = Scene { seed, ..Scene::load(SCENE)? };
-    let rig = Rig { delay_s, ..Rig::load("simulated")? };
-    let plan = Plan {
-        rig,
-        scene,
-        calibrations: Calibrations::default(),
-        left_calibrations: Calibrations::default(),
-        engage: true,
-    };
+    let rig = RigConfig { delay_s, ..RigConfig::load("simulated")? };
+    let plan = Plan { rig, scene, calibrations: Default::default(), engage: true };
     let (mut nonlinear, mut linear) = (Axes::default(), Axes::default());
     let mut at_horizon: [Axes; 4] = std::array::from_fn(|_| Axes::default());
     let (mut windows, mut above_one) = (0_u32, 0_u32);

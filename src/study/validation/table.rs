@@ -2,10 +2,12 @@
 
 use std::fmt::Write as _;
 
+use nima_core::impedance::Mode;
+use nima_training::Part;
 use serde::Serialize;
 
-use super::{Agreement, Isolation, Rendering, Report};
-use crate::{impedance::Mode, tip_force::Part};
+use super::{Agreement, Isolation, Options, Rendering, Report, ValidationError, study};
+use crate::{Experiment, Findings};
 
 /// One figure: the paper's, ours, and why they differ.
 #[derive(Clone, Debug, Serialize)]
@@ -49,7 +51,7 @@ pub(super) fn rows(one: &Agreement, two: &Isolation, three: &Rendering) -> Vec<R
     all
 }
 
-fn axes(part: &Part, method: usize, of: impl Fn(&crate::tip_force::Stats) -> f64) -> Vec<f64> {
+fn axes(part: &Part, method: usize, of: impl Fn(&nima_training::Stats) -> f64) -> Vec<f64> {
     part.methods[method].outputs.iter().flatten().map(of).collect()
 }
 
@@ -57,7 +59,7 @@ fn isolation(two: &Isolation) -> Vec<Row> {
     const CANNOT: &str = "force and orientation do not tell which way the friction pulls; the paper's sessions may have favoured one way";
     const MEMORY: &str = "the seal's memory is among the inputs";
     let (theirs, ours) = (&two.paper_inputs, &two.our_inputs);
-    let free = |reached: &super::isolation::Reached, of: &dyn Fn(&crate::tip_force::NoContact) -> f64| {
+    let free = |reached: &super::isolation::Reached, of: &dyn Fn(&nima_training::NoContact) -> f64| {
         reached.no_contact.iter().map(of).collect::<Vec<_>>()
     };
     let [mae, sd, mean_free, sd_free]: [&[f64]; 4] = [&[0.19, 0.16, 0.16], &[0.2; 3], &[0.02; 3], &[0.03; 3]];
@@ -152,4 +154,25 @@ impl Report {
 fn words(values: &[f64]) -> String {
     let one = |value: &f64| if value.abs() >= 100.0 { format!("{value:.1e}") } else { format!("{value:.3}") };
     if values.is_empty() { "-".to_owned() } else { values.iter().map(one).collect::<Vec<_>>().join(" ") }
+}
+
+impl Experiment for Options {
+    const NAME: &'static str = "validation";
+    const FILES: &'static [&'static str] = &[".md"];
+    type Findings = Report;
+    type Error = ValidationError;
+
+    fn run(&self, progress: &mut dyn FnMut(usize, usize, &str)) -> Result<Report, ValidationError> {
+        study(self, progress)
+    }
+}
+
+impl Findings for Report {
+    fn text(&self) -> String {
+        Self::text(self)
+    }
+
+    fn files(&self) -> Vec<(String, String)> {
+        vec![(".md".to_owned(), self.markdown())]
+    }
 }

@@ -1,67 +1,75 @@
 //! `nima console`: the window over a running loop.
 
-use std::{path::PathBuf, time::Duration};
+use std::{
+    path::{Path, PathBuf},
+    time::Duration,
+};
 
 use anyhow::Context as _;
 use clap::Args;
-use nima::{
-    config::SchedulingClass,
-    runtime::{self, Plan},
-};
+use nima_machine::config::SchedulingClass;
+use nima_world::Plan;
 
-use super::{emulators::Emulators, setup::Setup};
-use crate::console::{self, Options, in_force::InForce, pictures::Album, roles::Role, wizards::Which};
+use super::{emulators::Emulators, output, setup::Setup};
+use crate::{
+    console::{self, Options, in_force::InForce, pictures::Album, roles::Role, wizards::Which},
+    telling::tell,
+};
 
 #[derive(Debug, Default, Args)]
 pub(super) struct Arguments {
     #[command(flatten)]
     setup: Setup,
-    /// Begin in this role (otherwise the one of the last time)
+    /// Start in this view (default: the one used last)
     #[arg(long)]
     role: Option<Role>,
-    /// Begin with this calibration wizard
+    /// Open this calibration wizard at the start
     #[arg(long, value_name = "WIZARD")]
     calibrate: Option<Which>,
     /// Close after this many seconds
-    #[arg(long, value_name = "S", value_parser = super::run::positive_seconds)]
+    #[arg(long, visible_alias = "seconds", value_name = "S", value_parser = super::run::positive_seconds)]
     exit_after: Option<f64>,
-    /// Save a picture of the window (PNG) just before closing; needs --exit-after
+    /// Save a screenshot (PNG) just before closing; needs --exit-after
     #[arg(long, value_name = "FILE", requires = "exit_after")]
     screenshot: Option<PathBuf>,
-    /// What to ask of the operating system for the loop: ordinary, fifo or deadline (default: the rig's)
+    /// Scheduling class to request for the loop: ordinary, fifo or deadline (default: the rig's)
     #[arg(long, value_name = "CLASS")]
     scheduling: Option<SchedulingClass>,
-    /// Take pictures of every view (PNG) into this folder, then close
+    /// Save a screenshot of every view (PNG) in this folder, then close
     #[arg(long, value_name = "DIR", conflicts_with_all = ["exit_after", "calibrate", "role"])]
     pictures: Option<PathBuf>,
-    /// Write the loop's figures (JSON) here when the window is closed
+    /// Write the loop's timing and errors (JSON) to this file when the window closes
     #[arg(long, value_name = "FILE")]
     summary: Option<PathBuf>,
-    /// Write what the screen costs (JSON: time from picture to picture, processor, memory, start) here when the window is closed
+    /// Write the cost of the display (JSON: frame times, processor, memory, start-up) to this file when the window closes
     #[arg(long, value_name = "FILE")]
     frames: Option<PathBuf>,
-    /// Show this many seconds in the traces at first
+    /// Seconds shown in the traces at the start
     #[arg(long, value_name = "S", value_parser = super::run::positive_seconds)]
     traces: Option<f64>,
-    /// Do not engage by itself, as it otherwise does on a simulated or emulated rig
+    /// Start idle; without this, a simulated or emulated rig engages by itself
     #[arg(long)]
     at_rest: bool,
-    /// Hold the window up for this many seconds, once: to see that the loop does not mind
+    /// Block the window for this many seconds, once, to show that the loop is not affected
     #[arg(long, value_name = "S", value_parser = super::run::positive_seconds)]
     stall: Option<f64>,
 }
 
 pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
+    let outputs = [&arguments.screenshot, &arguments.summary, &arguments.frames];
+    for out in outputs.into_iter().flatten() {
+        output::check(out, &[arguments.setup.rig(), arguments.setup.scene()].map(Path::new))?;
+    }
     let (mut rig, scene) = arguments.setup.load()?;
     rig.scheduling = arguments.scheduling.unwrap_or(rig.scheduling);
+    let leave = arguments.setup.leave()?;
     let _emulators = Emulators::start(&arguments.setup, rig.devices.as_ref())?;
-    let calibrations = InForce::load(None, &scene).calibrations(&rig);
-    let left_calibrations = calibrations.clone();
-    let mut plan = Plan { rig: rig.clone(), scene: scene.clone(), calibrations, left_calibrations, engage: false };
+    let calibrations = InForce::load(None, &rig, &scene).calibrations(&rig);
+    let mut plan = Plan { rig: rig.clone(), scene: scene.clone(), calibrations, engage: false };
     // The simulated hand cannot be hurt: the demo runs at once.
     let by_itself = rig.devices.as_ref().is_none_or(|devices| devices.emulated);
     plan.engage = by_itself && !arguments.at_rest && plan.may_engage();
-    let handle = runtime::start(&plan)?;
+    let handle = nima_world::start(&plan)?;
     let options = Options {
         exit_after: arguments.exit_after.map(Duration::from_secs_f64),
         screenshot: arguments.screenshot.clone(),
@@ -72,16 +80,19 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         frames: arguments.frames.clone(),
         traces_s: arguments.traces,
         stall: arguments.stall.map(Duration::from_secs_f64),
+        leave: leave.clone(),
     };
     let album = options.pictures.clone();
     if let Some(folder) = &arguments.pictures {
-        std::fs::create_dir_all(folder)
-            .with_context(|| format!("the folder for pictures {} cannot be made", folder.display()))?;
+        std::fs::create_dir_all(folder).with_context(|| format!("cannot create the folder {}", folder.display()))?;
     }
     console::run(handle, rig, scene, options)?;
+    if leave.is_asked() {
+        tell("nima: ended as asked: force and drives are off");
+    }
     anyhow::ensure!(
         album.is_none_or(|album| album.is_complete()),
-        "not all pictures were taken: the loop stopped or the window was closed; try again on a machine at rest"
+        "some screenshots are missing: the loop stopped or the window was closed; try again on an idle computer"
     );
     Ok(())
 }

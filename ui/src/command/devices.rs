@@ -4,32 +4,28 @@ use std::fmt::Write as _;
 
 use anyhow::{Context as _, bail};
 use clap::Args;
-use nima::{
-    config::Rig,
-    device::{
-        Standing,
-        discovery::{
-            Diagnosis, Found, KINDS, Outcome, PATIENCE, Plugged, UsbIds, diagnose, probe_named, rig_probes, rules,
-        },
-    },
+use nima_devices::{
+    Standing,
+    discovery::{Diagnosis, Found, KINDS, Outcome, Plugged, TIMEOUT, UsbIds, diagnose, probe_named, rules},
 };
+use nima_machine::{config::RigConfig, rig::rig_probes};
 use serde::Serialize;
 
 use super::output;
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
-    /// A device to try, as often as there are some: `spacemouse`, `pedal`, `force-dimension`, `kinova`, `ndi`, `dynamixel`, `bota-gen0`,
+    /// A device to test; may be given several times: `spacemouse`, `pedal`, `force-dimension`, `kinova`, `ndi`, `dynamixel`, `bota-gen0`,
     /// `bota-gen-a`, `bota-socket`, each with `=PLACE`; `serial=PORT@BAUD[,HEADER][,quiet]`, `tcp=HOST:PORT`
     #[arg(long, value_name = "KIND[=PLACE]")]
     probe: Vec<String>,
-    /// Try every device of a rig, by name or file; end a console that uses them first
+    /// Test every device of a rig (name or file); close any console that uses them first
     #[arg(long, value_name = "RIG")]
     rig: Option<String>,
-    /// Print one JSON object
+    /// Print the results as one JSON object
     #[arg(long)]
     json: bool,
-    /// Print the one command that lets you use the devices without root
+    /// Print the command that gives you access to the devices without root
     #[arg(long, conflicts_with_all = ["json", "probe", "rig"])]
     udev: bool,
     /// Print the udev rules
@@ -48,7 +44,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         return output::line(rules::RULES.trim_end());
     }
     if arguments.udev {
-        let program = std::env::current_exe().context("this program does not know where it is")?;
+        let program = std::env::current_exe().context("cannot find the path of this program")?;
         return output::line(&rules::install_command(&program.to_string_lossy()));
     }
     let mut probes = Vec::new();
@@ -56,11 +52,11 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         probes.push(probe_named(text).map_err(|trouble| anyhow::anyhow!("{trouble}"))?);
     }
     if let Some(name) = &arguments.rig {
-        let rig = Rig::load(name)?;
-        let Some(devices) = &rig.devices else { bail!("rig \"{}\" has no devices: all of it is simulated", rig.name) };
+        let rig = RigConfig::load(name)?;
+        let Some(devices) = &rig.devices else { bail!("rig \"{}\" is simulated: it has no devices", rig.name) };
         probes.extend(rig_probes(devices));
     }
-    let report = Report { plugged: Plugged::list(), devices: diagnose(probes, PATIENCE) };
+    let report = Report { plugged: Plugged::list(), devices: diagnose(probes, TIMEOUT) };
     if arguments.json { output::json(&report) } else { output::line(in_words(&report).trim_end()) }
 }
 
@@ -92,21 +88,25 @@ fn in_words(report: &Report) -> String {
         rows.push(["library".to_owned(), "Force Dimension SDK".to_owned(), library.display().to_string()]);
     }
     if rows.is_empty() {
-        text.push_str("  nothing that this program could use\n");
+        text.push_str("  no device that this program can use\n");
     }
     table(&mut text, &rows);
-    text.push_str("\nTried\n");
+    text.push_str("\nTested\n");
     if devices.is_empty() {
         let kinds: Vec<_> = KINDS.iter().map(|kind| kind.name).collect();
-        writeln!(text, "  nothing; --rig RIG tries all of a rig, --probe KIND[=PLACE] one of {}", kinds.join(", "))
-            .ok();
+        writeln!(
+            text,
+            "  nothing; --rig RIG tests all devices of a rig, --probe KIND[=PLACE] one of: {}",
+            kinds.join(", ")
+        )
+        .ok();
     }
     let width = devices.iter().map(|device| device.name.chars().count()).max().unwrap_or(0);
     for Diagnosis { name, outcome, .. } in devices {
         match outcome {
             Outcome::Connected(found) => writeln!(text, "  {name:width$}  {}", told(found)).ok(),
             Outcome::Trouble { cause, cure, .. } => {
-                writeln!(text, "  {name:width$}  trouble: {cause}\n  {:width$}  {cure}", "").ok()
+                writeln!(text, "  {name:width$}  problem: {cause}\n  {:width$}  {cure}", "").ok()
             }
         };
     }

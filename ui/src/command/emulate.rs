@@ -1,7 +1,7 @@
 //! `nima emulate`: emulators on the real wire, for drivers, third-party clients and demos without hardware.
 //!
-//! Prints one JSON line per endpoint (`{"device": ..., "endpoint": ...}`), then serves until Ctrl-C or the end of its standard
-//! input. Lines on standard input set faults: `fault NAME` (see `--help`), `fault none` takes it back; with several devices
+//! Prints one JSON line per endpoint (`{"device": ..., "endpoint": ...}`), then serves until Ctrl-C, or until its standard input ends
+//! where that is a pipe or a terminal: whoever started it may have died without a word, and nobody else would end it. Lines on standard input set faults: `fault NAME` (see `--help`), `fault none` takes it back; with several devices
 //! `fault DEVICE NAME`, the name in quotes or with dashes where it has blanks. `nima emulate rig` emulates a whole rig around one
 //! simulated world; `pedal BITS` presses its pedal's switches.
 
@@ -17,35 +17,36 @@ mod ndi;
 mod rig;
 
 use std::{
-    io::BufRead as _,
-    sync::{
-        Arc,
-        atomic::{AtomicBool, Ordering},
-    },
+    io::{BufRead as _, IsTerminal as _},
+    sync::mpsc::RecvTimeoutError,
     time::Duration,
 };
 
 use anyhow::{Context as _, bail};
 use clap::Args;
-use nima::device::emulation::{EmulatedFault, Serving};
+use nima_world::emulators::{EmulatedFault, Serving};
 use serde::Serialize;
 
 use super::output;
+use crate::{leaving::Leave, telling::tell};
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
-    /// Which devices; or `rig`, all devices of a rig file
+    /// Devices to emulate; `rig` for all devices of a rig
     #[arg(required = true, value_name = "DEVICE")]
     devices: Vec<String>,
-    /// A setting of the emulated devices, as far as they have it
+    /// A setting of the emulated devices; devices that do not have it ignore it
     #[arg(long, value_name = "KEY=VALUE")]
     set: Vec<String>,
-    /// With `rig`: a rig by name, or its file
+    /// With `rig`: the rig, by name or TOML file
     #[arg(long, default_value = "emulated")]
     rig: String,
-    /// With `rig`: a scene by name, or its file
+    /// With `rig`: the scene, by name or TOML file
     #[arg(long, default_value = "peg_transfer")]
     scene: String,
+    /// End with standard input and without a word: whoever started this holds its other end
+    #[arg(long, hide = true)]
+    until_input_ends: bool,
 }
 
 /// Settings by name, as given with `--set`.
@@ -56,7 +57,7 @@ impl Settings {
     /// The value of `key`, if it was given; a value that does not read is an error.
     pub(super) fn get<T: std::str::FromStr>(&self, key: &str) -> anyhow::Result<Option<T>> {
         let Some((_, value)) = self.0.iter().find(|(known, _)| known == key) else { return Ok(None) };
-        value.parse().map(Some).map_err(|_| anyhow::anyhow!("--set {key}={value} is not a usable value"))
+        value.parse().map(Some).map_err(|_| anyhow::anyhow!("--set {key}={value}: this value cannot be used"))
     }
 }
 
@@ -107,7 +108,7 @@ struct Endpoint<'a> {
 pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     #[cfg(unix)]
     if arguments.devices == ["rig"] {
-        return rig::run(&arguments.rig, &arguments.scene);
+        return rig::run(&arguments.rig, &arguments.scene, arguments.until_input_ends);
     }
     let pair = |text: &String| {
         let (key, value) = text.split_once('=').with_context(|| format!("--set {text} is not KEY=VALUE"))?;
@@ -118,22 +119,20 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     for name in &arguments.devices {
         let Some((_, start)) = KNOWN.iter().find(|(known, _)| known == name) else {
             let known: Vec<_> = KNOWN.iter().map(|(known, _)| *known).collect();
-            bail!("there is no emulator \"{name}\"; there are {}", known.join(", "));
+            bail!("unknown emulator \"{name}\"; known: {}", known.join(", "));
         };
         emulated.extend(start(&settings).with_context(|| format!("cannot emulate {name}"))?);
     }
     let served: Vec<_> = emulated.iter().map(|one| (one.device.as_str(), &one.serving)).collect();
-    serve(&served, |_| false)
+    serve(&served, arguments.until_input_ends, |_| false)
 }
 
 /// Tells the endpoints and serves until somebody ends it. Lines on standard input that `other` knows are obeyed by it.
-fn serve(emulated: &[(&str, &Serving)], other: impl Fn(&str) -> bool) -> anyhow::Result<()> {
+fn serve(emulated: &[(&str, &Serving)], until_input_ends: bool, other: impl Fn(&str) -> bool) -> anyhow::Result<()> {
     for (device, serving) in emulated {
         output::line(&serde_json::to_string(&Endpoint { device, endpoint: &serving.endpoint })?)?;
     }
-    let stop = Arc::new(AtomicBool::new(false));
-    let flag = Arc::clone(&stop);
-    ctrlc::set_handler(move || flag.store(true, Ordering::Relaxed)).context("Ctrl-C cannot be caught")?;
+    let leave = Leave::on_signals()?;
     let (lines, told) = std::sync::mpsc::sync_channel(16);
     std::thread::spawn(move || {
         for line in std::io::stdin().lock().lines().map_while(Result::ok) {
@@ -142,16 +141,38 @@ fn serve(emulated: &[(&str, &Serving)], other: impl Fn(&str) -> bool) -> anyhow:
             }
         }
     });
-    while !stop.load(Ordering::Relaxed) && emulated.iter().all(|(_, serving)| serving.is_serving()) {
+    let held = until_input_ends || input_is_held();
+    while !leave.is_asked() && emulated.iter().all(|(_, serving)| serving.is_serving()) {
         match told.recv_timeout(Duration::from_millis(50)) {
             Ok(line) if other(&line) => {}
             Ok(line) => obey(&line, emulated),
-            Err(std::sync::mpsc::RecvTimeoutError::Timeout) => {}
-            // Whoever started it is gone.
-            Err(std::sync::mpsc::RecvTimeoutError::Disconnected) => return Ok(()),
+            Err(RecvTimeoutError::Timeout) => {}
+            Err(RecvTimeoutError::Disconnected) if held => {
+                if !until_input_ends {
+                    tell("nima: standard input has ended, and with it the emulators");
+                }
+                return Ok(());
+            }
+            // A file was read to its end, or there never was an input.
+            Err(RecvTimeoutError::Disconnected) => std::thread::sleep(Duration::from_millis(50)),
         }
     }
     Ok(())
+}
+
+/// Somebody holds the other end of standard input: a person at a terminal, or a process with a pipe.
+#[cfg(unix)]
+fn input_is_held() -> bool {
+    use std::os::{fd::AsFd as _, unix::fs::FileTypeExt as _};
+    let stdin = std::io::stdin();
+    let kind = stdin.as_fd().try_clone_to_owned().and_then(|input| std::fs::File::from(input).metadata());
+    stdin.is_terminal() || kind.is_ok_and(|kind| kind.file_type().is_fifo() || kind.file_type().is_socket())
+}
+
+/// Somebody holds the other end of standard input.
+#[cfg(not(unix))]
+fn input_is_held() -> bool {
+    true
 }
 
 /// A device's name, however its blanks are written.
@@ -166,19 +187,19 @@ fn obey(line: &str, emulated: &[(&str, &Serving)]) {
         ["fault", name] => (None, name),
         ["fault", ref device @ .., name] => (Some(plain(&device.join(" "))), name),
         _ => {
-            eprintln!("\"{line}\" is not understood: fault [DEVICE] NAME");
+            tell(format_args!("unknown command \"{line}\"; expected: fault [DEVICE] NAME"));
             return;
         }
     };
     let Some(fault) = EmulatedFault::named(name) else {
         let known: Vec<_> = EmulatedFault::ALL.iter().map(|fault| fault.name()).collect();
-        eprintln!("there is no fault \"{name}\": none, {}", known.join(", "));
+        tell(format_args!("unknown fault \"{name}\"; known: none, {}", known.join(", ")));
         return;
     };
     let meant = |known: &str| device.as_ref().is_none_or(|device| *device == plain(known));
     if !emulated.iter().any(|(known, _)| meant(known)) {
         let known: Vec<_> = emulated.iter().map(|(known, _)| *known).collect();
-        eprintln!("there is no device \"{}\": there are {}", device.as_deref().unwrap_or_default(), known.join(", "));
+        tell(format_args!("unknown device \"{}\"; known: {}", device.as_deref().unwrap_or_default(), known.join(", ")));
     }
     for (_, serving) in emulated.iter().filter(|(known, _)| meant(known)) {
         serving.faults.set(fault);

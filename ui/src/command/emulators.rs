@@ -7,7 +7,7 @@ use std::{
 };
 
 use anyhow::{Context as _, bail};
-use nima::device::{SIDES, Side, rig::Settings};
+use nima_machine::rig::{SIDES, Settings, Side};
 
 use super::setup::Setup;
 
@@ -24,13 +24,14 @@ impl Emulators {
     /// Starts them where the rig asks for it, and waits until they serve.
     pub(super) fn start(setup: &Setup, devices: Option<&Settings>) -> anyhow::Result<Option<Self>> {
         let Some(devices) = devices.filter(|devices| devices.emulated) else { return Ok(None) };
-        let program = std::env::current_exe().context("this program does not know where it is")?;
-        let child = Command::new(program)
-            .args(["emulate", "rig", "--rig", setup.rig(), "--scene", setup.scene()])
-            .stdin(Stdio::piped())
-            .stdout(Stdio::piped())
-            .spawn()
-            .context("the emulators cannot be started")?;
+        let program = std::env::current_exe().context("cannot find the path of this program")?;
+        let mut command = Command::new(program);
+        command.args(["emulate", "rig", "--rig", setup.rig(), "--scene", setup.scene(), "--until-input-ends"]);
+        // A Ctrl-C is for the loop, which leaves in order and then ends the emulators.
+        #[cfg(unix)]
+        std::os::unix::process::CommandExt::process_group(&mut command, 0);
+        let child =
+            command.stdin(Stdio::piped()).stdout(Stdio::piped()).spawn().context("cannot start the emulators")?;
         let mut this = Self { child };
         this.wait(count(devices))?;
         Ok(Some(this))
@@ -48,7 +49,9 @@ impl Emulators {
         });
         for served in 0..devices {
             if lines.recv_timeout(READY_WITHIN).is_err() {
-                bail!("{served} of {devices} emulators of this rig serve; see `nima emulate rig`");
+                bail!(
+                    "only {served} of {devices} emulators of this rig have started; run `nima emulate rig` to see why"
+                );
             }
         }
         Ok(())

@@ -2,41 +2,44 @@
 
 use std::{
     fmt::Write as _,
-    fs,
     path::{Path, PathBuf},
 };
 
-use anyhow::Context as _;
 use clap::{Args, Subcommand};
-use nima::{
-    files::write_atomically,
-    study::picture::{Axis, Chart, Series, Style, svg},
-    tip_force::{DataSet, Estimator, Evaluation, Model, Part, evaluate},
-};
+use nima_core::tip_force::Estimator;
+use nima_recording::tip_force::{DataSet, Selection, load_model};
+use nima_study::picture::{Axis, Chart, Series, Style, svg};
+use nima_training::{Evaluation, Part, evaluate};
 
 use super::output;
 
 #[derive(Debug, Subcommand)]
 pub(super) enum EvaluateCommand {
-    /// Judge a tip-force model beside simpler methods fitted on its training data
+    /// Compare a tip-force model with simpler methods fitted on its training data
     TipForce(TipForce),
 }
 
 #[derive(Debug, Args)]
 pub(super) struct TipForce {
-    /// The model, as `nima train tip-force` wrote it
+    /// Model file written by `nima train tip-force`
     model: PathBuf,
-    /// CSV files with the model's columns, not those it was trained on
+    /// CSV files with the model's columns; not the files used for training
     #[arg(required = true, value_name = "DATA.csv")]
     data: Vec<PathBuf>,
-    /// Write predictions.csv, regression.svg and, where `contact` is a column, no-contact.svg into this folder
+    /// Write predictions.csv, regression.svg and, where `contact` is a column, no-contact.svg into this folder (made if absent; replaces
+    /// files, whose mode stays; follows links; refuses inputs, devices and pipes)
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Print the figures as one JSON object
+    /// Print the results as one JSON object
     #[arg(long)]
     json: bool,
 }
 
+/// What is written.
+const FILES: [&str; 3] = [PREDICTIONS, REGRESSION, NO_CONTACT];
+const PREDICTIONS: &str = "predictions.csv";
+const REGRESSION: &str = "regression.svg";
+const NO_CONTACT: &str = "no-contact.svg";
 /// Points of a regression plot; more are thinned evenly.
 const POINTS: usize = 1500;
 /// Bars of the histogram.
@@ -44,26 +47,21 @@ const BARS: usize = 40;
 
 pub(super) fn run(command: &EvaluateCommand) -> anyhow::Result<()> {
     let EvaluateCommand::TipForce(arguments) = command;
-    let mut estimator = Estimator::new(Model::load(&arguments.model)?);
-    let data = DataSet::read(&arguments.data, &estimator.selection())?;
+    let mut estimator = Estimator::new(load_model(&arguments.model)?);
+    let data = DataSet::read(&arguments.data, &Selection::of(estimator.model()))?;
     if let Some(out) = &arguments.out {
-        fs::create_dir_all(out).with_context(|| format!("cannot make the folder {}", out.display()))?;
+        let inputs: Vec<&Path> = [&arguments.model].into_iter().chain(&arguments.data).map(PathBuf::as_path).collect();
+        output::folder(out, &FILES, &inputs)?;
     }
     let figures = evaluate(&mut estimator, &data)?;
     if let Some(out) = &arguments.out {
-        write(out, "predictions.csv", &predictions(&figures, &data))?;
-        write(out, "regression.svg", &regression(&figures, &data))?;
+        output::write(out, PREDICTIONS, &predictions(&figures, &data))?;
+        output::write(out, REGRESSION, &regression(&figures, &data))?;
         if let Some(contact) = &data.contact {
-            write(out, "no-contact.svg", &histogram(&figures, contact))?;
+            output::write(out, NO_CONTACT, &histogram(&figures, contact))?;
         }
     }
     if arguments.json { output::json(&figures) } else { output::line(in_words(&figures).trim_end()) }
-}
-
-fn write(folder: &Path, name: &str, text: &str) -> anyhow::Result<()> {
-    let path = folder.join(name);
-    write_atomically(&path, |file| file.write_all(text.as_bytes()))
-        .with_context(|| format!("cannot write {}", path.display()))
 }
 
 /// Writing into a String cannot fail, here and below.
@@ -145,13 +143,13 @@ fn histogram(figures: &Evaluation, contact: &[bool]) -> String {
 fn in_words(figures: &Evaluation) -> String {
     let mut text = String::new();
     if figures.trained_on_these {
-        text.push_str("THE MODEL WAS TRAINED ON THESE FILES: these figures say nothing about new data\n");
+        text.push_str("THE MODEL WAS TRAINED ON THESE FILES: these results say nothing about new data\n");
     }
     for part in figures.files.iter().chain([&figures.overall]) {
         part_in_words(part, &figures.outputs, &mut text);
     }
     let time = &figures.inference_us;
-    writeln!(text, "one answer: p50 {:.1} us, p99 {:.1} us, max {:.1} us", time.p50, time.p99, time.max).ok();
+    writeln!(text, "one prediction: p50 {:.1} us, p99 {:.1} us, max {:.1} us", time.p50, time.p99, time.max).ok();
     text.push_str("(units of the columns; baselines are fitted on the model's training data)");
     text
 }

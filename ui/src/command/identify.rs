@@ -6,14 +6,12 @@ use std::{
     path::PathBuf,
 };
 
-use anyhow::{Context as _, bail};
+use anyhow::Context as _;
 use clap::Args;
-use nima::{
-    files::write_atomically,
-    impedance::{MAX_DEGREE, Mode},
-    recording::{AXIS_NAMES, Mapping, Recording},
-    study::replay::{Figures, Options, Row, replay},
-};
+use nima_core::impedance::{MAX_DEGREE, Mode};
+use nima_files::write_atomically;
+use nima_recording::csv::{AXIS_NAMES, Mapping, Recording};
+use nima_study::replay::{Figures, Options, Row, replay};
 
 use super::output;
 
@@ -36,22 +34,23 @@ pub(super) struct Arguments {
     /// Highest polynomial degree
     #[arg(long, value_name = "N", default_value_t = MAX_DEGREE)]
     max_degree: usize,
-    /// Let every axis' force depend on every axis' motion (anchored mode; costs more)
+    /// Let the force on each axis depend on the motion of all axes (anchored mode; slower)
     #[arg(long)]
     cross_talk: bool,
     /// Write one row per sample to this CSV file
+    /// (replaces a file, whose mode stays; follows a link; refuses the input, a device or a pipe)
     #[arg(long, value_name = "TRACE.csv")]
     out: Option<PathBuf>,
-    /// Print the figures as one JSON object
+    /// Print the results as one JSON object
     #[arg(long)]
     json: bool,
 }
 
 pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
-    let recording = Recording::read(&arguments.recording, &Mapping::parse(&arguments.map)?)?;
-    if arguments.out.as_deref().is_some_and(|out| same_file(out, &arguments.recording)) {
-        bail!("--out {} is the recording itself; choose another file", arguments.recording.display());
+    if let Some(out) = &arguments.out {
+        output::check(out, &[&arguments.recording])?;
     }
+    let recording = Recording::read(&arguments.recording, &Mapping::parse(&arguments.map)?)?;
     let options = Options {
         mode: arguments.mode,
         window_s: arguments.window_ms * 1e-3,
@@ -71,10 +70,6 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         write_atomically(out, fill).with_context(|| format!("cannot write the trace {}", out.display()))?;
     }
     if arguments.json { output::json(&figures) } else { output::line(&in_words(&figures)) }
-}
-
-fn same_file(a: &std::path::Path, b: &std::path::Path) -> bool {
-    matches!((a.canonicalize(), b.canonicalize()), (Ok(a), Ok(b)) if a == b)
 }
 
 fn header(recording: &Recording) -> String {
@@ -112,7 +107,7 @@ fn in_words(figures: &Figures) -> String {
          degree chosen          N=1 {d1:.1} %   N=2 {d2:.1} %   N=3 {d3:.1} %   N=4 {d4:.1} %   N=5 {d5:.1} %   nonlinear {:.1} %\n\
          condition              p50 {:.3e}   p95 {:.3e}   max {:.3e};   rejected {}\n\
          one tick               p50 {:.1} us   p99 {:.1} us   max {:.1} us\n\
-         (units of the recording; in-window errors are not evidence of accuracy: they are fitted on the sample they are tested on)",
+         (units of the recording; in-window errors do not show accuracy: they are computed on the data used for the fit)",
         figures.error.mae,
         figures.error.sd,
         figures.error.p95,

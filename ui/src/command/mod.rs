@@ -5,19 +5,21 @@ mod console;
 mod devices;
 mod emulate;
 mod emulators;
+mod ending;
 mod evaluate;
 mod identify;
 mod output;
 mod run;
 mod setup;
 mod study;
-mod timing;
-mod tradeoff;
 mod train;
 
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
+use nima_files::shortened;
+
+use crate::telling::tell;
 
 /// Exit code for "no window can be opened" (`EX_UNAVAILABLE`): the start script falls back to `nima run` on it.
 const NO_WINDOW: u8 = 69;
@@ -34,24 +36,24 @@ struct Cli {
 enum Command {
     /// Open the console (also what plain `nima` does)
     Console(console::Arguments),
-    /// Run the same loop without a screen, then print timing and error figures
+    /// Run the same control loop without a window, then print its timing and errors
     Run(run::Arguments),
-    /// Identify impedance over a recording, causally, sample by sample
+    /// Identify impedance on a recording, sample by sample, from past data only
     Identify(identify::Arguments),
-    /// List what is plugged in, and try devices: cause and cure of what does not work
+    /// List connected devices and test them; for each failure, print its cause and what to do
     Devices(devices::Arguments),
-    /// Emulate devices on their real wire
+    /// Emulate devices on their real interfaces (serial port, network, HID)
     Emulate(emulate::Arguments),
-    /// Calibrate from a file: residuals on held-out data and a verdict
+    /// Calibrate from a file; prints errors on held-out data and a verdict
     #[command(subcommand, arg_required_else_help = false)]
     Calibrate(calibrate::CalibrateCommand),
-    /// Experiments that print figures
+    /// Run an experiment and print its results
     #[command(subcommand, arg_required_else_help = false)]
     Study(study::StudyCommand),
     /// Train models from data
     #[command(subcommand, arg_required_else_help = false)]
     Train(train::TrainCommand),
-    /// Judge models on data they were not trained on
+    /// Evaluate models on data that were not used for training
     #[command(subcommand, arg_required_else_help = false)]
     Evaluate(evaluate::EvaluateCommand),
 }
@@ -60,12 +62,16 @@ enum Command {
 fn usage(error: &clap::Error) -> ExitCode {
     let text = error.to_string();
     let complaint = text.lines().take_while(|line| !line.starts_with("Usage:")).collect::<Vec<_>>().join(" ");
-    let complaint = complaint.split_whitespace().collect::<Vec<_>>().join(" ");
-    eprintln!(
-        "nima: {}; see --help",
-        complaint.trim_start_matches("error: ").trim_end_matches(" For more information, try '--help'.")
-    );
+    let complaint = one_line(&complaint);
+    let complaint = complaint.trim_start_matches("error: ").trim_end_matches(" For more information, try '--help'.");
+    tell(format_args!("nima: {complaint}; see --help"));
     ExitCode::from(2)
+}
+
+/// In one line, folded and of bounded length, whatever text of files and devices is in it.
+fn one_line(text: &str) -> String {
+    const MOST: usize = 2000;
+    shortened(&text.split_whitespace().collect::<Vec<_>>().join(" "), MOST)
 }
 
 /// Runs the command line of this process.
@@ -76,6 +82,7 @@ pub fn main() -> ExitCode {
         // --help and --version.
         Err(error) => error.exit(),
     };
+    nima_world::emulated::provide_handles();
     let result = match command {
         Command::Console(arguments) => console::run(&arguments),
         Command::Run(arguments) => run::run(&arguments),
@@ -91,14 +98,14 @@ pub fn main() -> ExitCode {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
             // One line: causes joined, line breaks of other people's messages folded.
-            let line = format!("{error:#}").split_whitespace().collect::<Vec<_>>().join(" ");
+            let line = one_line(&format!("{error:#}"));
             if error.is::<crate::console::NoWindow>() {
-                eprintln!(
+                tell(format_args!(
                     "nima: no window can be opened ({line}); start it on a desktop, or use `nima run` in this terminal"
-                );
+                ));
                 return ExitCode::from(NO_WINDOW);
             }
-            eprintln!("nima: {line}");
+            tell(format_args!("nima: {line}"));
             ExitCode::FAILURE
         }
     }

@@ -2,33 +2,34 @@
 
 use std::{
     io::{self, IsTerminal as _, Write as _},
-    sync::{
-        Arc,
-        atomic::{AtomicBool, Ordering},
-    },
     thread,
     time::{Duration, Instant},
 };
 
 use anyhow::{Context as _, bail};
 use clap::Args;
-use nima::{
-    calibration::gravity::Drift,
+use nima_core::{calibration::gravity::Drift, impedance::Mode, statistics::Quantiles};
+use nima_devices::{Health, Standing, Trouble};
+use nima_machine::{
     config::SchedulingClass,
-    device::{Health, Standing, Trouble},
-    impedance::Mode,
-    runtime::{self, Command, DeviceFigures, Handle, Plan, Summary, Tick},
-    statistics::Quantiles,
+    messages::{Command, LoopState, Tick},
+    runtime::{ArmEnd, CauseAndCure, DeviceFigures, Handle, Summary},
 };
+use nima_world::Plan;
 
-use super::{emulators::Emulators, output, setup::Setup};
-use crate::console::in_force::InForce;
+use super::{emulators::Emulators, ending::Reasons, output, setup::Setup};
+use crate::{
+    console::in_force::InForce,
+    leaving::Leave,
+    telling::tell,
+    words::{self, Remedy as _},
+};
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
     #[command(flatten)]
     setup: Setup,
-    /// Loop time to run; without it, until Ctrl-C (real clock) or 60 s (virtual clock)
+    /// Seconds to run (default: until Ctrl-C; 60 with --virtual)
     #[arg(long, value_name = "S", value_parser = positive_seconds, allow_negative_numbers = true)]
     seconds: Option<f64>,
     /// Rendering mode: literal, linear, dfr or anchored (default: the rig's)
@@ -37,16 +38,16 @@ pub(super) struct Arguments {
     /// One-way delay of the link in ms (default: the rig's)
     #[arg(long, value_name = "D", allow_negative_numbers = true)]
     delay_ms: Option<f64>,
-    /// Let every axis' force depend on every axis' motion (anchored mode; costs more)
+    /// Let the force on each axis depend on the motion of all axes (anchored mode; slower)
     #[arg(long)]
     cross_talk: bool,
-    /// Run on the virtual clock, as fast as it goes
+    /// Run on a virtual clock, as fast as this computer can
     #[arg(long = "virtual")]
     virtual_clock: bool,
-    /// What to ask of the operating system for the loop: ordinary, fifo or deadline (default: the rig's)
+    /// Scheduling class to request for the loop: ordinary, fifo or deadline (default: the rig's)
     #[arg(long, value_name = "CLASS")]
     scheduling: Option<SchedulingClass>,
-    /// Print the figures as one JSON object
+    /// Print the results as one JSON object
     #[arg(long)]
     json: bool,
 }
@@ -67,65 +68,73 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     rig.scheduling = arguments.scheduling.unwrap_or(rig.scheduling);
     rig.validate()?;
     if arguments.virtual_clock && rig.devices.is_some() {
-        bail!("rig \"{}\" has devices, and they live on the real clock: leave --virtual out", rig.name);
+        bail!("rig \"{}\" has devices, which need the real clock: remove --virtual", rig.name);
     }
+    let leave = arguments.setup.leave()?;
     let emulators = Emulators::start(&arguments.setup, rig.devices.as_ref())?;
-    let mut in_force = InForce::load(None, &scene);
+    let mut in_force = InForce::load(None, &rig, &scene);
     let calibrations = in_force.calibrations(&rig);
     // With a calibrated wrist the bias is looked at before the tool may touch anything; and only what can hurt nobody engages by
     // itself.
     let by_itself = rig.devices.as_ref().is_none_or(|devices| devices.emulated);
-    let left_calibrations = calibrations.clone();
-    let engage = by_itself && in_force.drift().is_none();
-    let plan = Plan { rig, scene, calibrations, left_calibrations, engage };
-    let mut start = Start { in_force, engaged: plan.engage || !by_itself };
+    let engage = by_itself && in_force.drift().is_none() && !in_force.is_waiting();
+    let plan = Plan { rig, scene, calibrations, engage };
+    let mut start = Start { in_force, engaged: plan.engage || !by_itself, reasons: Reasons::default() };
     if !plan.may_engage() {
         bail!(
             "scene \"{}\" cannot be engaged: the force at its tip is not known; calibrate with `nima console --calibrate gravity`",
             plan.scene.name
         );
     }
-    let summary = if arguments.virtual_clock {
-        runtime::run_virtual(&plan, arguments.seconds.unwrap_or(60.0), |tick| start.watch(tick))?
+    let mut summary = if arguments.virtual_clock {
+        nima_world::run_virtual(&plan, arguments.seconds.unwrap_or(60.0), |tick| {
+            let command = start.watch(tick);
+            if leave.is_asked() { Some(Command::Shutdown) } else { command }
+        })?
     } else {
-        on_the_real_clock(&plan, &mut start, arguments.seconds, arguments.json)?
+        on_the_real_clock(&plan, &mut start, &leave, arguments)?
     };
     drop(emulators);
+    summary.explain(|fault| [fault.cause(), fault.cure()]);
     let drift = start.in_force.drift();
     if arguments.json {
         if let Some(drift @ Drift::Moved { .. }) = drift {
-            eprintln!("warning: {}", drift.words());
+            tell(format_args!("warning: the bias of the wrist sensor has {}", words::drift(drift)));
         }
-        return output::json(&summary);
+        output::json(&summary)?;
+    } else {
+        let bias =
+            drift.map_or_else(String::new, |drift| format!("\nbias of the wrist sensor: {}", words::drift(drift)));
+        output::line(&(in_words(&plan, &summary) + &bias))?;
     }
-    let bias = drift.map_or_else(String::new, |drift| format!("\nbias of the wrist sensor: {}", drift.words()));
-    output::line(&(in_words(&plan, &summary) + &bias))
+    start.reasons.of(&summary, by_itself).map_or(Ok(()), |why| Err(anyhow::anyhow!(why)))
 }
 
 /// Engages once it was looked whether the bias of the wrist sensor is where it was; whatever the answer.
 struct Start {
     in_force: InForce,
     engaged: bool,
+    reasons: Reasons,
 }
 
 impl Start {
     fn watch(&mut self, tick: &Tick) -> Option<Command> {
         self.in_force.watch(tick);
-        let go = !self.engaged && self.in_force.drift() != Some(Drift::Waiting);
+        self.reasons.watch(tick);
+        let go = !self.engaged && !self.in_force.is_waiting() && self.in_force.drift() != Some(Drift::Waiting);
         self.engaged |= go;
         go.then_some(Command::Engage)
     }
 }
 
-fn on_the_real_clock(plan: &Plan, start: &mut Start, seconds: Option<f64>, quiet: bool) -> anyhow::Result<Summary> {
-    let interrupted = Arc::new(AtomicBool::new(false));
-    let flag = Arc::clone(&interrupted);
-    ctrlc::set_handler(move || flag.store(true, Ordering::Relaxed)).context("Ctrl-C cannot be caught")?;
-    let handle = runtime::start(plan)?;
-    let mut status = StatusLine::new(!quiet);
+fn on_the_real_clock(plan: &Plan, start: &mut Start, leave: &Leave, arguments: &Arguments) -> anyhow::Result<Summary> {
+    let handle = nima_world::start(plan)?;
+    let ender = handle.ender();
+    leave.at_once(move || ender.end());
+    let mut status = StatusLine::new(!arguments.json);
     let mut troubles = Troubles::default();
-    let end = seconds.map(|seconds| Instant::now() + Duration::from_secs_f64(seconds));
-    while handle.is_running() && !interrupted.load(Ordering::Relaxed) && end.is_none_or(|end| Instant::now() < end) {
+    let end = arguments.seconds.map(|seconds| Instant::now() + Duration::from_secs_f64(seconds));
+    while handle.is_running() && !leave.is_asked() && end.is_none_or(|end| Instant::now() < end) {
         let rest = end.map_or(Duration::MAX, |end| end.saturating_duration_since(Instant::now()));
         thread::sleep(rest.min(Duration::from_millis(50)));
         let (mut newest, mut command) = (None, None);
@@ -133,39 +142,70 @@ fn on_the_real_clock(plan: &Plan, start: &mut Start, seconds: Option<f64>, quiet
             newest = Some(*tick);
             command = start.watch(tick).or(command);
         });
-        troubles.tell(&handle);
+        handle.drain_events(|event| {
+            if let Some(words) = start.reasons.take(event) {
+                status.tell(&words);
+            }
+        });
+        troubles.look(&handle, &status);
+        start.in_force.meet(&handle, &plan.rig);
+        if let Some(wrist) = start.in_force.uncalibrated() {
+            bail!(
+                "the loop cannot be engaged: wrist sensor {} with tool \"{}\" has no gravity calibration; \
+                 calibrate with `nima console --calibrate gravity`",
+                wrist.serial_number,
+                wrist.tool
+            );
+        }
         // The queue of commands holds nothing else: it takes this one.
         command.map(|command| handle.send(command));
         if let Some(tick) = newest {
-            status.show(&tick);
+            status.show(&tick, troubles.first().as_deref());
         }
     }
     status.end();
-    handle.stop_and_join().context("the real-time thread died; its figures are lost")
+    let summary = handle.stop_and_join().context("the real-time thread ended unexpectedly; its results are lost")?;
+    if leave.is_asked() {
+        tell("nima: ended as asked: force and drives are off");
+    }
+    Ok(summary)
 }
 
 /// Tells of each device that cannot be opened why, and what to do; again only when that changes.
 #[derive(Default)]
 struct Troubles {
     told: Vec<Option<Trouble>>,
+    first: Option<String>,
     looked: Option<Instant>,
 }
 
 impl Troubles {
-    fn tell(&mut self, handle: &Handle) {
+    fn look(&mut self, handle: &Handle, status: &StatusLine) {
         const LOOK_EVERY: Duration = Duration::from_millis(500);
         if self.looked.is_some_and(|looked| looked.elapsed() < LOOK_EVERY) {
             return;
         }
         self.looked = Some(Instant::now());
         self.told.resize(handle.roster().len(), None);
+        self.first = None;
         for (entry, told) in handle.roster().iter().zip(&mut self.told) {
             let trouble = entry.view.report().trouble;
-            if let Some(trouble) = trouble.as_ref().filter(|trouble| told.as_ref() != Some(trouble)) {
-                eprintln!("{}: {trouble}. {}", entry.name, trouble.cure());
+            if let Some(trouble) = &trouble {
+                let words = format!("{}: {trouble}. {}", entry.name, trouble.cure());
+                if told.as_ref() != Some(trouble) {
+                    status.tell(&words);
+                }
+                self.first.get_or_insert(words);
             }
             *told = trouble;
         }
+    }
+
+    /// The first device that is missing, with cause and cure.
+    fn first(&self) -> Option<String> {
+        let others = self.told.iter().flatten().count().saturating_sub(1);
+        let more = if others > 0 { format!(" (and {others} more)") } else { String::new() };
+        self.first.as_ref().map(|first| format!("{first}{more}"))
     }
 }
 
@@ -181,12 +221,16 @@ impl StatusLine {
         Self { wanted, terminal: io::stderr().is_terminal(), last: None }
     }
 
-    fn show(&mut self, tick: &Tick) {
+    /// Shows how the loop is; `missing`: the device that it waits for.
+    fn show(&mut self, tick: &Tick, missing: Option<&str>) {
         let pause = Duration::from_millis(if self.terminal { 100 } else { 1000 });
         if !self.wanted || self.last.is_some_and(|last| last.elapsed() < pause) {
             return;
         }
         self.last = Some(Instant::now());
+        if let (LoopState::Disconnected, Some(missing)) = (tick.state, missing) {
+            return self.write(&format!("{:8.1} s  {}: {missing}", tick.t_s, tick.state.word()));
+        }
         let text = format!(
             "{:8.1} s  {:8}  {:8}  measured {:5.2} N  rendered {:5.2} N  degree {}  missed {}",
             tick.t_s,
@@ -197,14 +241,29 @@ impl StatusLine {
             tick.identification.degree,
             tick.missed,
         );
+        self.write(&text);
+    }
+
+    fn write(&self, text: &str) {
         let mut err = io::stderr().lock();
-        let written = if self.terminal { write!(err, "\r{text}") } else { writeln!(err, "{text}") };
+        // A terminal cuts what is longer than its line and keeps nothing of the text before.
+        let written =
+            if self.terminal { write!(err, "\r\x1b[?7l{text}\x1b[K\x1b[?7h") } else { writeln!(err, "{text}") };
         written.and_then(|()| err.flush()).ok();
+    }
+
+    /// A line that stays, above the one that is rewritten.
+    fn tell(&self, line: &str) {
+        if self.wanted && self.terminal && self.last.is_some() {
+            tell(format_args!("\r\x1b[K{line}"));
+        } else {
+            tell(line);
+        }
     }
 
     fn end(&self) {
         if self.wanted && self.terminal && self.last.is_some() {
-            eprintln!();
+            tell("");
         }
     }
 }
@@ -219,7 +278,7 @@ fn in_words(plan: &Plan, summary: &Summary) -> String {
          work us     {}\n\
          rig us      {}\n\
          sample to force us {}\n\
-         processor   {:.1} % of a core in the loop's thread, {:.1} % in the whole program{}\n\
+         processor   {:.1} % of a core in the loop's thread, {:.1} % in the whole program{}{}\n\
          error of each mode before the gates, against the force at the tip at the same instant:",
         plan.scene.name,
         plan.rig.name,
@@ -237,6 +296,7 @@ fn in_words(plan: &Plan, summary: &Summary) -> String {
         summary.cpu.realtime * 100.0,
         summary.cpu.process * 100.0,
         devices_in_words(summary),
+        ends_in_words(summary),
     );
     for error in &summary.error {
         let fields = format!(
@@ -258,19 +318,37 @@ fn in_words(plan: &Plan, summary: &Summary) -> String {
 }
 
 fn devices_in_words(summary: &Summary) -> String {
-    let mut text = String::new();
-    for DeviceFigures { name, health } in &summary.devices {
-        let standing = match health.standing {
-            Standing::Connected => "connected".to_owned(),
-            Standing::Opening => "never came".to_owned(),
-            Standing::Closed => "disconnected".to_owned(),
-            Standing::Lost(loss) => format!("lost: {}", loss.cause()),
-        };
-        let Health { readings, rate_hz, lost, damaged, refused, .. } = health;
-        let line = format!(
-            "\n  {name:14}  {standing:12}  {readings:8} readings   {rate_hz:7.1} Hz   lost {lost}   damaged {damaged}   refused {refused}"
-        );
-        text.push_str(&line);
-    }
-    text
+    summary.devices.iter().map(device_in_words).collect()
+}
+
+fn device_in_words(DeviceFigures { name, health, trouble }: &DeviceFigures) -> String {
+    let standing = match health.standing {
+        Standing::Connected => "connected".to_owned(),
+        Standing::Opening => "never connected".to_owned(),
+        Standing::Closed => "disconnected".to_owned(),
+        Standing::Lost(loss) => format!("lost: {}", loss.cause()),
+    };
+    let Health { readings, rate_hz, lost, damaged, refused, outages, longest_outage_s, .. } = health;
+    let outages = match outages {
+        0 => String::new(),
+        _ => format!("   outages {outages}, the longest {longest_outage_s:.1} s"),
+    };
+    let trouble = match trouble {
+        Some(CauseAndCure { cause, cure, .. }) => format!("\n  {:14}  {cause}. {cure}", ""),
+        None => String::new(),
+    };
+    format!(
+        "\n  {name:14}  {standing:12}  {readings:8} readings   {rate_hz:7.1} Hz   lost {lost}   damaged {damaged}   refused {refused}{outages}{trouble}"
+    )
+}
+
+fn ends_in_words(summary: &Summary) -> String {
+    let end = |ArmEnd { side, final_state, fault, .. }: &ArmEnd| {
+        let fault = fault.as_ref().map_or_else(String::new, |CauseAndCure { device, cause, .. }| {
+            let device = device.as_ref().map_or_else(String::new, |device| format!(" ({device})"));
+            format!(": {cause}{device}")
+        });
+        format!("\n{:5} arm ended: {}{fault}", side.word(), final_state.word())
+    };
+    summary.arms.iter().map(end).collect()
 }

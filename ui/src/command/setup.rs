@@ -1,21 +1,27 @@
 //! What every command that runs the loop must be told: which rig, which scene.
 
 use clap::Args;
-use nima::config::{ConfigError, Rig, Scene};
+use nima_machine::config::{ConfigError, RigConfig};
+use nima_world::scene::Scene;
+
+use crate::leaving::Leave;
 
 #[derive(Debug, Args)]
 pub(super) struct Setup {
-    /// Rig: an embedded name or a TOML file
+    /// Rig: built-in name or TOML file
     #[arg(long, value_name = "RIG", default_value = "simulated")]
     rig: String,
-    /// Scene: an embedded name or a TOML file
+    /// Scene: built-in name or TOML file
     #[arg(long, value_name = "SCENE", default_value = "peg_transfer")]
     scene: String,
+    /// End with standard input: whoever started this holds its other end
+    #[arg(long, hide = true)]
+    until_input_ends: bool,
 }
 
 impl Default for Setup {
     fn default() -> Self {
-        Self { rig: "simulated".to_owned(), scene: "peg_transfer".to_owned() }
+        Self { rig: "simulated".to_owned(), scene: "peg_transfer".to_owned(), until_input_ends: false }
     }
 }
 
@@ -30,8 +36,17 @@ impl Setup {
         &self.scene
     }
 
+    /// What asks the run to end: signals, and the end of standard input where that was wished for.
+    pub(super) fn leave(&self) -> anyhow::Result<Leave> {
+        let leave = Leave::on_signals()?;
+        if self.until_input_ends {
+            leave.with_input();
+        }
+        Ok(leave)
+    }
+
     /// Reads and checks both.
-    pub(super) fn load(&self) -> Result<(Rig, Scene), ConfigError> {
-        Ok((Rig::load(&self.rig)?, Scene::load(&self.scene)?))
+    pub(super) fn load(&self) -> Result<(RigConfig, Scene), ConfigError> {
+        Ok((RigConfig::load(&self.rig)?, Scene::load(&self.scene)?))
     }
 }

@@ -4,36 +4,35 @@ use std::{
     fmt::Write as _,
     io::{self, IsTerminal as _},
     path::PathBuf,
-    sync::{
-        Arc,
-        atomic::{AtomicBool, Ordering},
-    },
 };
 
-use anyhow::{Context as _, bail};
 use clap::{Args, Subcommand};
 use indicatif::{ProgressBar, ProgressStyle};
-use nima::tip_force::{DataSet, Model, Progress, Selection, Settings};
+use nima_core::tip_force::{Model, TrainingSettings};
+use nima_recording::tip_force::{DataSet, Selection, save_model};
+use nima_training::{Progress, train_model};
 use serde::Serialize;
 
 use super::output;
+use crate::leaving::Leave;
 
 #[derive(Debug, Subcommand)]
 pub(super) enum TrainCommand {
-    /// Train the network that takes the trocar's friction out of the wrist force
+    /// Train the network that removes the trocar's friction from the wrist force
     TipForce(TipForce),
 }
 
 #[derive(Debug, Args)]
 pub(super) struct TipForce {
-    /// CSV files with named columns (see --inputs); rows of one `trajectory` number, else of one file, belong together
+    /// CSV files with named columns (see --inputs); rows with the same `trajectory` number, else all rows of a file, form one trajectory
     #[arg(required = true, value_name = "DATA.csv")]
     data: Vec<PathBuf>,
     /// Where to write the model
+    /// (replaces a file, whose mode stays; follows a link; refuses the input, a device or a pipe)
     #[arg(long, value_name = "MODEL.safetensors")]
     out: PathBuf,
-    /// Input columns, and inputs made of the history of columns: `presliding:POSITION:WIDTH` tells sliding from turning round,
-    /// `midline:LOAD:POSITION:WIDTH` is a load without the friction that reversals show [default: of `fx_n,fy_n,fz_n,tx_nm,ty_nm,tz_nm,qw,qx,qy,qz,insertion_m,insertion_speed_m_s,presliding_200um_m,presliding_600um_m,slip_m_s` what is there]
+    /// Input columns, and inputs computed from the history of columns: `presliding:POSITION:WIDTH` separates sliding from reversals,
+    /// `midline:LOAD:POSITION:WIDTH` is a load without the friction seen at reversals [default: all existing columns of `fx_n,fy_n,fz_n,tx_nm,ty_nm,tz_nm,qw,qx,qy,qz,insertion_m,insertion_speed_m_s,presliding_200um_m,presliding_600um_m,slip_m_s`]
     #[arg(long, value_name = "A,B,C", value_delimiter = ',')]
     inputs: Option<Vec<String>>,
     /// Output columns [default: `tip_fx_n,tip_fy_n,tip_fz_n`]
@@ -48,7 +47,7 @@ pub(super) struct TipForce {
     /// Widths of the hidden layers
     #[arg(long, value_name = "W,W", value_delimiter = ',', default_value = "32,32")]
     hidden: Vec<usize>,
-    /// Most passes over the data [default: about 5000 steps]
+    /// Maximum number of passes over the data [default: about 5000 steps]
     #[arg(long, value_name = "N")]
     epochs: Option<usize>,
     /// Serial number of the sensor, kept in the file
@@ -57,7 +56,7 @@ pub(super) struct TipForce {
     /// Name of the tool, kept in the file
     #[arg(long, value_name = "T")]
     tool: Option<String>,
-    /// Print the figures as one JSON object
+    /// Print the results as one JSON object
     #[arg(long)]
     json: bool,
 }
@@ -68,34 +67,29 @@ struct Report<'a> {
     inputs: &'a [String],
     outputs: &'a [String],
     seconds: f64,
-    origin: &'a nima::tip_force::Origin,
+    origin: &'a nima_core::tip_force::Origin,
 }
 
 pub(super) fn run(command: &TrainCommand) -> anyhow::Result<()> {
     let TrainCommand::TipForce(arguments) = command;
     let selection = Selection { inputs: arguments.inputs.clone(), outputs: arguments.outputs.clone() };
-    let same = |path: &PathBuf| matches!((path.canonicalize(), arguments.out.canonicalize()), (Ok(a), Ok(b)) if a == b);
-    if arguments.data.iter().any(same) {
-        bail!("--out {} is one of the data files; choose another file", arguments.out.display());
-    }
+    output::check(&arguments.out, &arguments.data.iter().map(PathBuf::as_path).collect::<Vec<_>>())?;
     let data = DataSet::read(&arguments.data, &selection)?;
-    let settings = Settings {
+    let settings = TrainingSettings {
         seed: arguments.seed,
         members: arguments.members,
         hidden: arguments.hidden.clone(),
         epochs: arguments.epochs,
-        ..Settings::default()
+        ..TrainingSettings::default()
     };
-    let cancel = Arc::new(AtomicBool::new(false));
-    let flag = Arc::clone(&cancel);
-    ctrlc::set_handler(move || flag.store(true, Ordering::Relaxed)).context("Ctrl-C cannot be caught")?;
+    let leave = Leave::on_signals()?;
     let bar = bar(arguments.json);
     let start = std::time::Instant::now();
     let names = [arguments.sensor.clone(), arguments.tool.clone()];
-    let model = Model::train(&data, &settings, names, &cancel, &|progress| show(&bar, progress));
+    let model = train_model(&data, &settings, names, leave.flag(), &|progress| show(&bar, progress));
     bar.finish_and_clear();
     let model = model?;
-    model.save(&arguments.out)?;
+    save_model(&model, &arguments.out)?;
     let seconds = start.elapsed().as_secs_f64();
     if arguments.json {
         let Model { inputs, outputs, origin, .. } = &model;
@@ -134,9 +128,9 @@ fn in_words(model: &Model, arguments: &TipForce, seconds: f64) -> String {
     );
     if !origin.constant.is_empty() {
         let list = origin.constant.join(", ");
-        writeln!(text, "never changing and therefore unused (any other value will be in doubt): {list}").ok();
+        writeln!(text, "constant and therefore not used (any other value will be in doubt): {list}").ok();
     }
     let out = arguments.out.display();
-    write!(text, "written to {out}; judge it on other data with `nima evaluate tip-force`").ok();
+    write!(text, "written to {out}; evaluate it on other data with `nima evaluate tip-force`").ok();
     text
 }

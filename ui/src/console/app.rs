@@ -3,7 +3,6 @@
 mod calibrating;
 mod pace;
 
-use crate::console::text;
 use std::{
     path::Path,
     sync::Arc,
@@ -12,11 +11,13 @@ use std::{
 
 use eframe::glow;
 use egui::{Frame, Margin, Panel, Ui};
-use nima::{
-    config::{Rig, Scene},
-    runtime::{self, Command, Handle, Plan, Tick},
-    teleop::LoopState,
+use nima_machine::{
+    config::RigConfig,
+    messages::{Command, LoopState, Tick},
+    rig::Side,
+    runtime::Handle,
 };
+use nima_world::{Plan, scene::Scene};
 
 use super::{
     Options,
@@ -39,6 +40,7 @@ use super::{
     theme,
     wizards::Wizards,
 };
+use crate::{console::text, telling::tell};
 
 /// Smooth edges in 3-D are given up when every second picture comes later than this after the one before (25 a second) ...
 const SLOW_MS: f64 = 38.0;
@@ -81,14 +83,14 @@ pub struct ConsoleApp {
 
 impl ConsoleApp {
     /// The console on a running loop. Sets fonts and style of the context; draws in 3-D if it has OpenGL.
-    pub fn new(cc: &eframe::CreationContext<'_>, handle: Handle, rig: Rig, scene: Scene) -> Self {
+    pub fn new(cc: &eframe::CreationContext<'_>, handle: Handle, rig: RigConfig, scene: Scene) -> Self {
         theme::apply(&cc.egui_ctx);
         let now = Instant::now();
         let surface = cc.gl.as_deref().and_then(Surface::where_it_pays);
         if let Some(surface) = &surface {
             cc.egui_ctx.add_plugin(Canvas::new(Arc::clone(surface), || theme::now().background));
         }
-        let in_force = InForce::load(None, &scene);
+        let in_force = InForce::load(None, &rig, &scene);
         let mut live = Live::new(rig, scene);
         live.rough_edges = surface.is_some();
         Self {
@@ -131,7 +133,19 @@ impl ConsoleApp {
         if let Some(which) = self.options.wizard {
             self.open_wizard(which);
         }
+        self.leave_when_asked();
         self
+    }
+
+    /// Asked from outside to end, the loop ends at once, whatever the window does, and then the window.
+    fn leave_when_asked(&self) {
+        let Some(door) = &self.door else { return };
+        let (ender, ctx) = (door.handle().ender(), self.ctx.clone());
+        self.options.leave.at_once(move || {
+            ender.end();
+            ctx.send_viewport_cmd(egui::ViewportCommand::Close);
+            ctx.request_repaint();
+        });
     }
 
     /// The same with what was chosen before; changes are kept.
@@ -159,11 +173,11 @@ impl ConsoleApp {
 
     /// The newest tick that reached the screen.
     pub fn tick(&self) -> Option<&Tick> {
-        self.live.tick.as_ref()
+        self.live.first_tick()
     }
 
     /// The rig that the loop runs on now.
-    pub fn rig(&self) -> &Rig {
+    pub fn rig(&self) -> &RigConfig {
         &self.live.rig
     }
 
@@ -187,10 +201,10 @@ impl ConsoleApp {
         &self.in_force
     }
 
-    /// Keeps calibrations in this store from now on, and uses what it holds for the scene's sensor and tool.
+    /// Keeps calibrations in this store from now on, and uses what it holds for the rig's sensors and tools.
     #[must_use]
     pub fn with_store(mut self, folder: &Path) -> Self {
-        self.in_force = InForce::load(Some(folder), &self.live.scene);
+        self.in_force = InForce::load(Some(folder), &self.live.rig, &self.live.scene);
         self
     }
 
@@ -207,40 +221,47 @@ impl ConsoleApp {
         self.taken = Instant::now();
         let rate_hz = self.live.rig.rate_hz;
         let (wizards, in_force, diary) = (&mut self.wizards, &mut self.in_force, &mut self.diary);
+        let calibrated = in_force.side();
         self.live.take_in(door, |tick| {
-            wizards.tick(tick, rate_hz);
+            if tick.side == calibrated {
+                wizards.tick(tick, rate_hz);
+            }
             in_force.watch(tick);
-            diary.tick(tick);
+            if tick.side == Side::Right {
+                diary.tick(tick);
+            }
         });
+        if in_force.meet(door.handle(), &self.live.rig)[calibrated.index()] {
+            self.forget_what_was_taken();
+        }
         self.live.bias_moved_n = self.in_force.bias_moved_n();
     }
 
     /// Ends the loop and starts it anew, idle: only the operator engages it again. Never a way out of a stop or a fault.
-    fn restart(&mut self, rig: Rig, scene: Scene) -> Result<(), String> {
+    fn restart(&mut self, rig: RigConfig, scene: Scene) -> Result<(), String> {
         rig.validate().and_then(|()| scene.validate()).map_err(|error| error.to_string())?;
         self.take_in();
         if !matches!(self.live.state(), LoopState::Idle | LoopState::Engaged) {
-            return Err(text::calibrations::LOOP_HAS_STOPPED.to_owned());
+            return Err(text::calibrations::LOOP_STOPPED.to_owned());
         }
         // The old loop first: a rig has one master.
         drop(self.door.take());
-        // Another scene may have another sensor or tool.
-        self.in_force.bind(&scene);
+        self.in_force.bind(&rig, &scene);
         let calibrations = self.in_force.calibrations(&rig);
-        let left_calibrations = calibrations.clone();
-        let plan = Plan { rig: rig.clone(), scene: scene.clone(), calibrations, left_calibrations, engage: false };
-        let started = runtime::start(&plan).map_err(|error| text::calibrations::not_started_again(&error));
+        let plan = Plan { rig: rig.clone(), scene: scene.clone(), calibrations, engage: false };
+        let started = nima_world::start(&plan).map_err(|error| text::calibrations::not_started_again(&error));
         let rough_edges = self.live.rough_edges;
         self.live = Live::new(rig, scene);
         self.live.rough_edges = rough_edges;
         self.panels.forces = ForcesState::default();
         self.outbox = Outbox::default();
         self.door = Some(door_of(started?, &self.ctx));
+        self.leave_when_asked();
         Ok(())
     }
 
     /// Takes over what the trade-off panel chose.
-    fn apply_tradeoff(&mut self, rig: Rig) {
+    fn apply_tradeoff(&mut self, rig: RigConfig) {
         let told = match self.restart(rig, self.live.scene.clone()) {
             Ok(()) => text::tradeoff::APPLIED_BY_RESTART.to_owned(),
             Err(reason) => text::tradeoff::not_applied(&reason),
@@ -265,7 +286,7 @@ impl ConsoleApp {
             self.settings.now.role = pressed.unwrap_or(self.role());
         });
         let signs = self.live.signs(self.outbox.stop_is_stuck());
-        let loop_s = self.live.tick.map(|tick| tick.t_s);
+        let loop_s = self.live.first_tick().map(|tick| tick.t_s);
         self.top_bar.alarms.strip_ui(ui, &signs, loop_s, self.settings.now.sound);
         let room = ui.available_rect_before_wrap();
         if self.wizards.open.is_some() {
@@ -298,7 +319,7 @@ impl ConsoleApp {
             ctx.request_screenshot(move |picture| {
                 // The window has no one to tell but the terminal it was started from.
                 if let Err(error) = screenshot::save(&path, &picture) {
-                    eprintln!("{error:#}");
+                    tell(format_args!("{error:#}"));
                 }
             });
         }

@@ -1,10 +1,8 @@
 //! What happened in front of the screen, for the figures that are written when the window is closed: so that a session can be checked
 //! from outside by what the loop did, not by how it looked.
 
-use nima::{
-    impedance::Mode,
-    runtime::{Summary, Tick},
-};
+use nima_core::impedance::Mode;
+use nima_machine::{messages::Tick, runtime::Summary};
 use serde::Serialize;
 
 /// States and modes kept; a session has few.

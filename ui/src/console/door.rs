@@ -14,9 +14,11 @@ use std::{
 };
 
 use nalgebra::Vector3;
-use nima::{
-    device::{SIDES, Side},
-    runtime::{Event, Handle, Summary, Tick},
+use nima_core::safety::{GATES, Gate};
+use nima_machine::{
+    messages::{Event, Tick},
+    rig::{SIDES, Side},
+    runtime::{Handle, Summary},
 };
 
 /// How often the thread looks while the window sleeps: twice as often as the eye could tell.
@@ -200,7 +202,7 @@ impl Shared {
 struct Glance {
     last: Tick,
     /// Gates that acted in most of them.
-    gates: [bool; 8],
+    gates: [bool; GATES],
     measured_n: Vector3<f64>,
     rendered_n: Vector3<f64>,
     tip_m: Vector3<f64>,
@@ -213,19 +215,9 @@ impl Glance {
         let last = *ticks().next()?;
         let count = ticks().count();
         let mean = |of: fn(&Tick) -> Vector3<f64>| ticks().map(of).sum::<Vector3<f64>>() / count as f64;
-        let acted = |of: fn(&Tick) -> bool| 2 * ticks().filter(|tick| of(tick)).count() > count;
         Some(Self {
             last,
-            gates: [
-                acted(|tick| tick.gates.not_permitted),
-                acted(|tick| tick.gates.released),
-                acted(|tick| tick.gates.invalid),
-                acted(|tick| tick.gates.stale),
-                acted(|tick| tick.gates.dead_band),
-                acted(|tick| tick.gates.slew),
-                acted(|tick| tick.gates.energy),
-                acted(|tick| tick.gates.ceiling),
-            ],
+            gates: Gate::ALL.map(|gate| 2 * ticks().filter(|tick| tick.gates.acted(gate)).count() > count),
             measured_n: mean(|tick| tick.measured_n),
             rendered_n: mean(|tick| tick.rendered_n),
             tip_m: mean(|tick| tick.tip_m),
@@ -253,19 +245,19 @@ impl Glance {
 mod tests {
     use std::sync::mpsc;
 
-    use nima::{
-        config::{Rig, Scene},
-        runtime::{Command, Plan, start},
-        teleop::{Calibrations, LoopState},
+    use nima_machine::{
+        config::RigConfig,
+        messages::{Command, LoopState},
     };
+    use nima_world::{Plan, scene::Scene, start};
 
     use super::*;
 
     /// A loop at rest, its door, and what wakes the window.
     fn at_rest() -> (Door, mpsc::Receiver<()>) {
-        let (rig, scene) = (Rig::load("simulated").unwrap(), Scene::load("peg_transfer").unwrap());
-        let (calibrations, left_calibrations) = (Calibrations::default(), Calibrations::default());
-        let handle = start(&Plan { rig, scene, calibrations, left_calibrations, engage: false }).unwrap();
+        let (rig, scene) = (RigConfig::load("simulated").unwrap(), Scene::load("peg_transfer").unwrap());
+        let calibrations = Default::default();
+        let handle = start(&Plan { rig, scene, calibrations, engage: false }).unwrap();
         let (woken, wakes) = mpsc::channel();
         (Door::new(handle, move || woken.send(()).unwrap_or(())), wakes)
     }
@@ -321,11 +313,11 @@ mod tests {
         let glance = |ticks: &[Tick]| Glance::of(ticks, tick.side).unwrap();
         let shown = glance(&vec![tick; 20]);
         let noisy: Vec<Tick> = (0..40)
-            .map(|i| Tick {
-                index: tick.index + i,
-                wake_s: 1e-3,
-                measured_n: tick.measured_n.add_scalar(if i % 2 == 0 { 0.2 } else { -0.2 }),
-                ..tick
+            .map(|i| {
+                let mut noisy = tick;
+                (noisy.index, noisy.wake_s) = (tick.index + i, 1e-3);
+                noisy.measured_n = tick.measured_n.add_scalar(if i % 2 == 0 { 0.2 } else { -0.2 });
+                noisy
             })
             .collect();
         assert!(!shown.differs(&glance(&noisy)));

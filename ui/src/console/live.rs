@@ -6,18 +6,21 @@ use std::{
 };
 
 use nalgebra::Vector3;
-use nima::{
-    config::{Rig, Scene},
-    device::{Healths, Roster, SIDES, Side},
-    impedance::Mode,
-    runtime::{Command, Event, Fault, Scheduling, Tick},
+use nima_core::{
+    impedance::{MODES, Mode},
     safety::ChainSettings,
     statistics::{Percentiles, Quantiles},
-    teleop::LoopState,
 };
+use nima_devices::Standing;
+use nima_machine::{
+    config::RigConfig,
+    messages::{Command, Event, Fault, LoopState, Refusal, Scheduling, Tick, attention},
+    rig::{Healths, Roster, SIDES, Side},
+};
+use nima_world::scene::Scene;
 
 use super::{
-    alarms::Signs,
+    alarms::{Missing, Signs},
     cloud::Cloud,
     deadlines::Deadlines,
     door::{Door, News},
@@ -25,6 +28,7 @@ use super::{
     readings::{Change, Figures, Gates},
     rolling::{DegreeShares, Fading},
     stiffness::ContactStiffness,
+    text,
 };
 
 /// Window of the degree histograms, s.
@@ -43,17 +47,26 @@ const READINGS_EVERY: Duration = Duration::from_millis(100);
 /// How long a refused command stays on the screen.
 const REFUSAL_SHOWN: Duration = Duration::from_secs(6);
 
+/// A command that was refused.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Refused {
+    /// By which arm pair.
+    pub side: Side,
+    /// Which.
+    pub command: Command,
+    /// Why.
+    pub why: Refusal,
+}
+
 /// The screen's knowledge.
 #[derive(Debug)]
 pub struct Live {
     /// The rig.
-    pub rig: Rig,
+    pub rig: RigConfig,
     /// The scene.
     pub scene: Scene,
-    /// Newest tick of the right arm pair, or the only one.
-    pub tick: Option<Tick>,
-    /// Newest tick of the left arm pair.
-    pub left: Option<Tick>,
+    /// Newest tick of each side.
+    pub ticks: [Option<Tick>; SIDES],
     /// Forces over time, of each side.
     pub history: [History; SIDES],
     /// Pairs of forces of the last seconds, of each side.
@@ -65,7 +78,7 @@ pub struct Live {
     /// Degrees the paper's in-window rule would choose.
     pub paper_degrees: DegreeShares,
     /// Error of each mode at the horizon, N, second by second, oldest first.
-    pub trend_n: VecDeque<[f64; 4]>,
+    pub trend_n: VecDeque<[f64; MODES]>,
     /// Gates of each side over the last moments.
     pub gates: [Gates; SIDES],
     /// The last change of each side's state.
@@ -89,8 +102,8 @@ pub struct Live {
     /// How they are, in the same order.
     pub healths: Healths,
     first_fault: Option<(f64, Fault)>,
-    refusal: Option<(Instant, Command)>,
-    horizon: [Fading; 4],
+    refusal: Option<(Instant, Refused)>,
+    horizon: [Fading; MODES],
     measured: [Fading; SIDES],
     rendered: [Fading; SIDES],
     missed_share: Fading,
@@ -109,14 +122,13 @@ pub struct Live {
 
 impl Live {
     /// Nothing known yet.
-    pub fn new(rig: Rig, scene: Scene) -> Self {
+    pub fn new(rig: RigConfig, scene: Scene) -> Self {
         let ticks = (DEGREES_S * rig.rate_hz) as usize;
         let now = Instant::now();
         Self {
             rig,
             scene,
-            tick: None,
-            left: None,
+            ticks: [None; SIDES],
             history: Default::default(),
             clouds: Default::default(),
             marks_s: VecDeque::new(),
@@ -154,7 +166,7 @@ impl Live {
         }
     }
 
-    /// Takes in all that waits at the loop's door; `each` sees every tick of the right arm pair.
+    /// Takes in all that waits at the loop's door; `each` sees every tick.
     pub fn take_in(&mut self, door: &Door, mut each: impl FnMut(&Tick)) {
         let handle = door.handle();
         if self.roster.len() != handle.roster().len() {
@@ -169,16 +181,8 @@ impl Live {
                 News::Event(event) => return self.event(event),
                 News::Tick(tick) => tick,
             };
-            match tick.side {
-                Side::Right => {
-                    self.tick(tick);
-                    each(tick);
-                }
-                Side::Left => {
-                    let before = self.left.replace(*tick);
-                    self.follow(tick, before.as_ref());
-                }
-            }
+            self.tick(tick);
+            each(tick);
             came = true;
         });
         if came {
@@ -221,8 +225,9 @@ impl Live {
 
     /// Marks this moment.
     pub fn mark(&mut self) {
-        let Some(tick) = &self.tick else { return };
-        self.marks_s.push_back(tick.t_s);
+        let Some(tick) = self.first_tick() else { return };
+        let t_s = tick.t_s;
+        self.marks_s.push_back(t_s);
         if self.marks_s.len() > MARKS {
             self.marks_s.pop_front();
         }
@@ -230,10 +235,12 @@ impl Live {
 
     /// Newest tick of this side.
     pub const fn tick_of(&self, side: Side) -> Option<&Tick> {
-        match side {
-            Side::Right => self.tick.as_ref(),
-            Side::Left => self.left.as_ref(),
-        }
+        self.ticks[side.index()].as_ref()
+    }
+
+    /// Newest tick of the right arm pair, or the only one: what is the same for both is read from it.
+    pub const fn first_tick(&self) -> Option<&Tick> {
+        self.tick_of(Side::Right)
     }
 
     /// The arm pairs that the loop runs; the right one is always there.
@@ -243,38 +250,38 @@ impl Live {
 
     /// There are two arm pairs.
     pub const fn is_bimanual(&self) -> bool {
-        self.scene.left.is_some() || self.left.is_some()
+        self.scene.left.is_some() || self.tick_of(Side::Left).is_some()
     }
 
     /// State of the loop as last seen, of two arm pairs the one that needs more attention; idle before anything came.
     pub fn state(&self) -> LoopState {
-        let states = self.tick.iter().chain(&self.left).map(|tick| tick.state);
+        let states = self.ticks.iter().flatten().map(|tick| tick.state);
         states.max_by_key(|state| attention(*state)).unwrap_or(LoopState::Idle)
     }
 
     /// Mode in force.
     pub fn mode(&self) -> Mode {
-        self.tick.map_or(self.rig.mode, |tick| tick.mode)
+        self.first_tick().map_or(self.rig.mode, |tick| tick.mode)
     }
 
     /// Gain in force.
     pub fn gain(&self) -> f64 {
-        self.tick.map_or(self.rig.gates.gain, |tick| tick.gates.gain)
+        self.first_tick().map_or(self.rig.gates.gain, |tick| tick.gates.gain)
     }
 
     /// Delay in force, s.
     pub fn delay_s(&self) -> f64 {
-        self.tick.map_or(self.rig.delay_s, |tick| tick.delay_s)
+        self.first_tick().map_or(self.rig.delay_s, |tick| tick.delay_s)
     }
 
     /// The last command that was refused, for a few seconds.
-    pub fn refusal(&self) -> Option<Command> {
-        self.refusal.filter(|(at, _)| at.elapsed() < REFUSAL_SHOWN).map(|(_, command)| command)
+    pub fn refusal(&self) -> Option<Refused> {
+        self.refusal.filter(|(at, _)| at.elapsed() < REFUSAL_SHOWN).map(|(_, refused)| refused)
     }
 
     /// Settings of the gates in force.
     pub fn gate_settings(&self) -> ChainSettings {
-        self.tick.map_or(self.rig.gates, |tick| tick.gate_settings)
+        self.first_tick().map_or(self.rig.gates, |tick| tick.gate_settings)
     }
 
     /// Stiffness of the stiffer contact that either hand has or had last, N/m: the gain is the same for both.
@@ -282,10 +289,29 @@ impl Live {
         self.stiffness.iter().filter_map(ContactStiffness::n_m).max_by(f64::total_cmp)
     }
 
+    /// The devices that are wanted and do not deliver, in the order of the roster.
+    pub fn missing(&self) -> impl Iterator<Item = Missing> {
+        self.roster.iter().zip(&self.healths.devices).enumerate().filter_map(|(place, (entry, health))| {
+            let was_there = match health.standing {
+                Standing::Connected | Standing::Closed => return None,
+                Standing::Opening => false,
+                Standing::Lost(_) => true,
+            };
+            let (cause, cure) = match (entry.view.report().trouble, health.standing) {
+                (Some(trouble), _) => (trouble.to_string(), trouble.cure()),
+                (None, Standing::Lost(loss)) => (loss.cause().to_owned(), text::alarms::DEVICE_MISSING_CURE.to_owned()),
+                // The first attempt to open it takes its time.
+                (None, _) => return None,
+            };
+            Some(Missing { place, name: entry.name.clone(), was_there, cause, cure })
+        })
+    }
+
     /// What alarms are judged from.
     pub fn signs(&self, stop_is_stuck: bool) -> Signs {
         Signs {
-            state: self.tick.map(|_| self.state()),
+            missing: self.missing().collect(),
+            state: self.first_tick().map(|_| self.state()),
             first_fault: self.first_fault,
             running: self.running,
             silence: self.tick_at.elapsed(),
@@ -307,7 +333,9 @@ impl Live {
                     self.first_fault = None;
                 }
             }
-            Event::CommandRefused { command, .. } => self.refusal = Some((Instant::now(), command)),
+            Event::CommandRefused { side, command, why, .. } => {
+                self.refusal = Some((Instant::now(), Refused { side, command, why }));
+            }
             Event::Scheduling(scheduling) => self.scheduling = Some(scheduling),
             Event::Device(event) => {
                 if let Some(health) = self.healths.devices.get_mut(usize::from(event.device)) {
@@ -318,12 +346,19 @@ impl Live {
     }
 
     fn tick(&mut self, tick: &Tick) {
-        let before = self.tick.replace(*tick);
+        let before = self.ticks[tick.side.index()].replace(*tick);
+        self.follow(tick, before.as_ref());
+        if tick.side == Side::Right {
+            self.follow_loop(tick, before.as_ref());
+        }
+    }
+
+    /// What is the same for both sides: the loop's time, and the identification of the first.
+    fn follow_loop(&mut self, tick: &Tick, before: Option<&Tick>) {
         let dt_s = before.map_or(0.0, |before| (tick.t_s - before.t_s).max(0.0));
         let missed = before.map_or(0, |before| tick.missed.saturating_sub(before.missed));
         self.deadlines.push(tick.t_s, missed);
         self.missed_share.push(missed as f64 / (missed as f64 + 1.0), dt_s, 3.0);
-        self.follow(tick, before.as_ref());
         self.degrees.push(tick.identification.degree);
         self.paper_degrees.push(tick.identification.paper_degree);
         if before.is_some_and(|before| before.t_s.floor() < tick.t_s.floor()) {
@@ -388,19 +423,5 @@ impl Live {
         };
         self.ticks_counted = 0;
         self.figures_at = Instant::now();
-    }
-}
-
-/// How much attention a state needs.
-const fn attention(state: LoopState) -> u8 {
-    match state {
-        LoopState::Engaged => 0,
-        LoopState::Clutched => 1,
-        LoopState::Ready => 2,
-        LoopState::Idle => 3,
-        LoopState::Disconnected => 4,
-        LoopState::Stopped => 5,
-        LoopState::Faulted(Fault::OtherArm) => 6,
-        LoopState::Faulted(_) => 7,
     }
 }

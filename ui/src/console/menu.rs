@@ -31,7 +31,7 @@ pub(super) fn menu_ui(ui: &mut Ui, settings: &mut Settings, help: &mut Help, ala
             }
         });
         ui.add_space(6.0);
-        ui.label(text::menu::SIZE_OF_EVERYTHING_CTRL);
+        ui.label(text::menu::SIZE);
         ui.horizontal(|ui| {
             for percent in STEPS_PERCENT {
                 let chosen = settings.scale_percent == percent;
@@ -40,7 +40,7 @@ pub(super) fn menu_ui(ui: &mut Ui, settings: &mut Settings, help: &mut Help, ala
                 }
             }
         });
-        ui.label(super::widgets::small(text::menu::NEVER_LARGER_THAN_THIS));
+        ui.label(super::widgets::small(text::menu::SIZE_NOTE));
         ui.add_space(6.0);
         if settings.role == Role::Technician {
             panels_ui(ui, &mut settings.layout);
@@ -49,10 +49,10 @@ pub(super) fn menu_ui(ui: &mut Ui, settings: &mut Settings, help: &mut Help, ala
         sound_ui(ui, settings, alarms);
         ui.add_space(6.0);
         ui.horizontal(|ui| {
-            if ui.add(Button::new(text::menu::ALARMS_F5).min_size(vec2(96.0, 30.0))).clicked() {
+            if ui.add(Button::new(text::menu::ALARMS).min_size(vec2(96.0, 30.0))).clicked() {
                 alarms.list = true;
             }
-            if ui.add(Button::new(text::menu::GLOSSARY_F4).min_size(vec2(110.0, 30.0))).clicked() {
+            if ui.add(Button::new(text::menu::GLOSSARY).min_size(vec2(110.0, 30.0))).clicked() {
                 help.glossary = true;
             }
             if ui.add(Button::new(text::menu::TOUR).min_size(vec2(82.0, 30.0))).clicked() {
@@ -60,13 +60,13 @@ pub(super) fn menu_ui(ui: &mut Ui, settings: &mut Settings, help: &mut Help, ala
             }
         });
     });
-    response.on_hover_text(text::menu::LIGHT_OR_DARK_HOW);
+    response.on_hover_text(text::menu::VIEW_HOVER);
 }
 
 /// Whether alarms sound, and what stands in the way.
 fn sound_ui(ui: &mut Ui, settings: &mut Settings, alarms: &mut Alarms) {
-    let meaning = text::menu::A_BURST_OF_TEN;
-    ui.checkbox(&mut settings.sound, text::menu::ALARMS_SOUND).on_hover_text(meaning);
+    let meaning = text::menu::SOUND_HOVER;
+    ui.checkbox(&mut settings.sound, text::menu::SOUND).on_hover_text(meaning);
     if let Some(trouble) = alarms.sound.trouble() {
         ui.add(egui::Label::new(super::widgets::small(trouble)).wrap());
     }
@@ -74,22 +74,22 @@ fn sound_ui(ui: &mut Ui, settings: &mut Settings, alarms: &mut Alarms) {
 
 /// Which panels are on the desk.
 fn panels_ui(ui: &mut Ui, layout: &mut Layout) {
-    ui.label(text::menu::PANELS).on_hover_text(text::menu::DRAG_A_PANEL_S);
+    ui.label(text::menu::PANELS).on_hover_text(text::menu::PANELS_HOVER);
     for pair in Panel::ALL.chunks(2) {
         ui.horizontal(|ui| {
             for panel in pair {
                 let open = layout.is_open(*panel);
                 let button = Button::selectable(open, panel.title()).frame_when_inactive(true);
                 let response = ui.add(button.min_size(vec2(146.0, 26.0)));
-                let meaning = if open { text::menu::ON_THE_DESK_CLOSES } else { text::menu::CLOSED_PUTS_IT_BACK };
+                let meaning = if open { text::menu::PANEL_OPEN_HOVER } else { text::menu::PANEL_CLOSED_HOVER };
                 if response.on_hover_text(format!("{}\n{meaning}", panel.meaning())).clicked() {
                     layout.toggle(*panel);
                 }
             }
         });
     }
-    let reset = ui.add(Button::new(text::menu::RESET_THE_LAYOUT).min_size(vec2(300.0, 26.0)));
-    if reset.on_hover_text(text::menu::ALL_PANELS_OPEN_WHERE).clicked() {
+    let reset = ui.add(Button::new(text::menu::RESET_LAYOUT).min_size(vec2(300.0, 26.0)));
+    if reset.on_hover_text(text::menu::RESET_LAYOUT_HOVER).clicked() {
         *layout = Layout::default();
     }
 }

@@ -36,13 +36,13 @@ pub mod wizards;
 
 use std::{path::PathBuf, time::Duration};
 
-use nima::{
-    config::{Rig, Scene},
-    runtime::Handle,
-};
+use nima_machine::{config::RigConfig, runtime::Handle};
+use nima_world::scene::Scene;
+use settings::Kept;
 
 pub use app::ConsoleApp;
-use settings::Kept;
+
+use crate::leaving::Leave;
 
 /// What may be asked of the window from outside, for pictures and tests. The default opens it until it is closed.
 #[derive(Clone, Debug, Default)]
@@ -65,10 +65,12 @@ pub struct Options {
     pub traces_s: Option<f64>,
     /// Hold the window up for so long, once.
     pub stall: Option<Duration>,
+    /// What asks the console to end from outside.
+    pub leave: Leave,
 }
 
 /// Opens the console on a running loop; returns when the window is closed and the loop has ended.
-pub fn run(handle: Handle, rig: Rig, scene: Scene, options: Options) -> anyhow::Result<()> {
+pub fn run(handle: Handle, rig: RigConfig, scene: Scene, options: Options) -> anyhow::Result<()> {
     let viewport = egui::ViewportBuilder::default()
         .with_title(text::top_bar::NIMA_CONSOLE)
         .with_app_id("nima-console")
@@ -89,7 +91,13 @@ pub fn run(handle: Handle, rig: Rig, scene: Scene, options: Options) -> anyhow::
 }
 
 /// The console with the user's settings; pictures are taken with the defaults and leave the settings alone.
-fn console(cc: &eframe::CreationContext<'_>, handle: Handle, rig: Rig, scene: Scene, options: Options) -> ConsoleApp {
+fn console(
+    cc: &eframe::CreationContext<'_>,
+    handle: Handle,
+    rig: RigConfig,
+    scene: Scene,
+    options: Options,
+) -> ConsoleApp {
     let settings = if options.pictures.is_some() { Kept::default() } else { Kept::of_user() };
     ConsoleApp::new(cc, handle, rig, scene).with_settings(settings).with_options(options)
 }

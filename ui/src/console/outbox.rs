@@ -1,6 +1,6 @@
 //! What the operator asked for and the loop has not taken yet.
 
-use nima::runtime::{Command, Handle};
+use nima_machine::{messages::Command, runtime::Handle};
 
 /// Commands on their way; a stop overtakes everything.
 #[derive(Debug, Default)]

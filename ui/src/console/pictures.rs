@@ -9,7 +9,7 @@ use std::{
     time::{Duration, Instant},
 };
 
-use nima::teleop::LoopState;
+use nima_machine::messages::LoopState;
 
 use super::{
     desk::{Layout, Panel},
@@ -18,13 +18,14 @@ use super::{
     screenshot,
     settings::Settings,
 };
+use crate::telling::tell;
 
 /// The traces are full of data after this time.
 const FILLED: Duration = Duration::from_secs(11);
 /// A view has settled after this time.
 const SETTLED: Duration = Duration::from_millis(1200);
 /// A contact is waited for so long.
-const PATIENCE: Duration = Duration::from_secs(6);
+const TIMEOUT: Duration = Duration::from_secs(6);
 /// A force worth a picture, N.
 const CONTACT_N: f64 = 1.5;
 /// A loop that is not engaged for so long gives no picture.
@@ -83,14 +84,15 @@ impl Photographer {
         let least = if self.next == 0 { FILLED } else { SETTLED };
         let shown = self.since.elapsed();
         let engaged = live.state() == LoopState::Engaged;
-        let touching = live.tick.is_some_and(|tick| tick.measured_n.norm().min(tick.rendered_n.norm()) > CONTACT_N);
+        let touching =
+            live.first_tick().is_some_and(|tick| tick.measured_n.norm().min(tick.rendered_n.norm()) > CONTACT_N);
         // At its beginning: the picture itself comes a frame or two later.
         let before = std::mem::replace(&mut self.touching, touching);
         let contact = touching && !before;
         if shown > least + GIVE_UP {
             return true;
         }
-        if !engaged || shown < least || (!contact && shown < least + PATIENCE) {
+        if !engaged || shown < least || (!contact && shown < least + TIMEOUT) {
             return false;
         }
         let path = self.album.folder.join(format!("{name}.png"));
@@ -99,7 +101,7 @@ impl Photographer {
             Ok(()) => {
                 saved.fetch_add(1, Ordering::Relaxed);
             }
-            Err(error) => eprintln!("{error:#}"),
+            Err(error) => tell(format_args!("{error:#}")),
         });
         self.next += 1;
         self.since = Instant::now();
@@ -109,7 +111,8 @@ impl Photographer {
 
 #[cfg(test)]
 mod tests {
-    use nima::config::{Rig, Scene};
+    use nima_machine::config::RigConfig;
+    use nima_world::scene::Scene;
 
     use super::*;
 
@@ -118,7 +121,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let album = Album::new(folder.path());
         let mut photographer = Photographer::new(album.clone());
-        let live = Live::new(Rig::load("simulated").unwrap(), Scene::load("bimanual").unwrap());
+        let live = Live::new(RigConfig::load("simulated").unwrap(), Scene::load("bimanual").unwrap());
         let mut settings = Settings { role: Role::Demo, light: true, ..Settings::default() };
         assert!(!photographer.step(&egui::Context::default(), &live, &mut settings));
         assert_eq!((settings.role, settings.light), (SHOTS[0].1, SHOTS[0].3));

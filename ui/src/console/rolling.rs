@@ -3,7 +3,7 @@
 use std::collections::VecDeque;
 
 /// Highest degree that can be chosen, plus one for "none".
-pub const DEGREES: usize = nima::impedance::MAX_DEGREE + 1;
+pub const DEGREES: usize = nima_core::impedance::MAX_DEGREE + 1;
 
 /// How often each degree was chosen in the last `capacity` ticks.
 #[derive(Clone, Debug)]

@@ -1,14 +1,20 @@
 //! Saves what the window shows as a PNG file.
 
-use std::path::Path;
+use std::{io, path::Path};
 
 use anyhow::Context as _;
 use egui::ColorImage;
+use image::{ExtendedColorType, ImageEncoder as _, codecs::png::PngEncoder};
+use nima_files::write_atomically;
 
 /// Writes the picture, opaque, as 8-bit RGBA.
 pub fn save(path: &Path, picture: &ColorImage) -> anyhow::Result<()> {
     let [width, height] = picture.size;
     let pixels: Vec<u8> = picture.pixels.iter().flat_map(|pixel| [pixel.r(), pixel.g(), pixel.b(), 255]).collect();
-    image::save_buffer(path, &pixels, width as u32, height as u32, image::ColorType::Rgba8)
-        .with_context(|| format!("the screenshot could not be saved to {}", path.display()))
+    write_atomically(path, |file| {
+        PngEncoder::new(file)
+            .write_image(&pixels, width as u32, height as u32, ExtendedColorType::Rgba8)
+            .map_err(io::Error::other)
+    })
+    .with_context(|| format!("the screenshot could not be saved to {}", path.display()))
 }

@@ -3,16 +3,17 @@
 //!
 //! Kept as JSON beside the calibrations. A file that cannot be read is set aside under another name and told, never fatal.
 
-use crate::console::text;
 use std::{
     io,
     path::{Path, PathBuf},
 };
 
-use nima::{calibration::store::Store, files::write_atomically};
+use nima_files::{PASSAGE, shortened, write_atomically};
+use nima_recording::store::Store;
 use serde::{Deserialize, Serialize};
 
 use super::{desk::Layout, roles::Role};
+use crate::console::text;
 
 const FILE: &str = "console.json";
 const SET_ASIDE: &str = "console.corrupted.json";
@@ -70,7 +71,7 @@ impl Kept {
 
     /// Those in this folder; the defaults where there are none or they cannot be read.
     pub fn open(folder: &Path) -> Self {
-        let (now, told) = match std::fs::read_to_string(folder.join(FILE)) {
+        let (now, told) = match nima_files::read_text(&folder.join(FILE), nima_files::CONFIG_MAX) {
             Err(error) if error.kind() == io::ErrorKind::NotFound => (Settings::default(), None),
             Err(error) => (Settings::default(), Some(text::settings::not_read(&error))),
             Ok(text) => read(&text).unwrap_or_else(|error| (Settings::default(), Some(set_aside(folder, &error)))),
@@ -114,11 +115,12 @@ fn read(text: &str) -> Result<(Settings, Option<String>), serde_json::Error> {
             settings.layout = layout;
             Ok((settings, None))
         }
-        Err(error) => Ok((settings, Some(text::settings::layout_lost(&error)))),
+        Err(error) => Ok((settings, Some(text::settings::layout_lost(&shortened(&error.to_string(), PASSAGE))))),
     }
 }
 
 fn set_aside(folder: &Path, error: &serde_json::Error) -> String {
+    let error = &shortened(&error.to_string(), PASSAGE);
     match std::fs::rename(folder.join(FILE), folder.join(SET_ASIDE)) {
         Ok(()) => text::settings::set_aside(error, SET_ASIDE),
         Err(_) => text::settings::damaged(error),

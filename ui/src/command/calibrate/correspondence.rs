@@ -4,23 +4,24 @@ use std::{fmt::Write as _, path::PathBuf};
 
 use anyhow::{Context as _, bail};
 use clap::Args;
-use nima::{
-    calibration::{
-        AxisStats, Verdict,
-        correspondence::{CorrespondenceRecord, CorrespondenceReport, Options, Solution, fit},
-        store,
-    },
-    recording::read_pairs,
+use nima_core::calibration::{
+    AxisStats, Verdict,
+    correspondence::{CorrespondenceRecord, CorrespondenceReport, Options, Solution, fit},
+};
+use nima_recording::{
+    csv::read_pairs,
+    store::{self, utc_now},
 };
 
-use crate::command::output;
+use crate::{command::output, words::Words as _};
 
 #[derive(Debug, Args)]
 pub(in crate::command) struct Arguments {
     /// CSV file with `f1x_n, f1y_n, f1z_n` (wrist, gravity-free), `f2x_n, f2y_n, f2z_n` (tissue) and, where the wrist turned
     /// between the pushes, `qw, qx, qy, qz` (`s1_from_c`)
     pairs: PathBuf,
-    /// Write the calibration to this file; the one before is kept as F.toml.previous
+    /// Write the calibration to this file; the previous one is kept as F.toml.previous
+    /// (replaces a file, whose mode stays; follows a link; refuses the input, a device or a pipe)
     #[arg(long, value_name = "F.toml")]
     out: Option<PathBuf>,
     /// Serial number of the wrist sensor, for the file
@@ -29,13 +30,13 @@ pub(in crate::command) struct Arguments {
     /// Name of the tool, for the file
     #[arg(long, value_name = "NAME", default_value = "unknown")]
     tool: String,
-    /// Sensor 2 tells the force on the tissue, not on the instrument: change its sign
+    /// Sensor 2 reports the force on the tissue, not on the tool: change its sign
     #[arg(long)]
     flip_s2: bool,
-    /// Write the file although the verdict refuses it; your name goes into it
+    /// Write the file even if the verdict rejects it; your name is written into it
     #[arg(long = "override", value_name = "NAME")]
     override_by: Option<String>,
-    /// Why it is written all the same
+    /// Reason for --override
     #[arg(long, value_name = "TEXT", requires = "override_by")]
     override_reason: Option<String>,
     /// Print the report as one JSON object
@@ -45,12 +46,12 @@ pub(in crate::command) struct Arguments {
 
 pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     if arguments.override_by.as_deref().is_some_and(|name| name.trim().is_empty()) {
-        bail!("--override needs the name of who decides");
+        bail!("--override needs the name of the person who decides");
+    }
+    if let Some(out) = &arguments.out {
+        super::check(out, &arguments.pairs)?;
     }
     let pairs = read_pairs(&arguments.pairs)?;
-    if arguments.out.as_deref().is_some_and(|out| is_input(out, &arguments.pairs)) {
-        bail!("--out {} is the file of pairs itself; choose another file", arguments.pairs.display());
-    }
     let options = Options { flip_s2: arguments.flip_s2, ..Options::default() };
     let report = fit(&pairs, &options).with_context(|| format!("cannot use {}", arguments.pairs.display()))?;
     if arguments.json { output::json(&report) } else { output::line(&in_words(&report)) }?;
@@ -58,11 +59,11 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     if let Some(out) = &arguments.out
         && (accepted || arguments.override_by.is_some())
     {
-        let record = CorrespondenceRecord::of(&report, &arguments.sensor, &arguments.tool, arguments.flip_s2);
+        let record =
+            CorrespondenceRecord::of(&report, [&arguments.sensor, &arguments.tool], arguments.flip_s2, &utc_now());
         let mut record = record.with_context(|| format!("{}: there is no rotation to write", report.reason))?;
-        if !accepted {
-            record.override_by.clone_from(&arguments.override_by);
-            record.override_reason.clone_from(&arguments.override_reason);
+        if let (false, Some(name)) = (accepted, &arguments.override_by) {
+            record.judgement.override_by(name, arguments.override_reason.as_deref());
         }
         store::write(out, &record)?;
     }
@@ -70,10 +71,6 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         bail!("{}: {}", report.verdict.words(), report.reason);
     }
     Ok(())
-}
-
-fn is_input(out: &std::path::Path, input: &std::path::Path) -> bool {
-    matches!((out.canonicalize(), input.canonicalize()), (Ok(a), Ok(b)) if a == b)
 }
 
 fn in_words(report: &CorrespondenceReport) -> String {

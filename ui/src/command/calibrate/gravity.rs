@@ -4,16 +4,13 @@ use std::{fmt::Write as _, path::PathBuf};
 
 use anyhow::{Context as _, bail};
 use clap::{Args, ValueEnum};
-use nima::{
-    calibration::{
-        Residuals, Verdict,
-        gravity::{GravityReport, ModelKind, Settings, fit},
-        store,
-    },
-    recording::read_poses,
+use nima_core::calibration::{
+    Residuals, Verdict,
+    gravity::{GravityReport, ModelKind, Settings, fit},
 };
+use nima_recording::{csv::read_poses, store};
 
-use crate::command::output;
+use crate::{command::output, words::Words as _};
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
 enum Model {
@@ -24,9 +21,10 @@ enum Model {
 
 #[derive(Debug, Args)]
 pub(in crate::command) struct Arguments {
-    /// CSV file, a still pose a row: `fx_n,fy_n,fz_n[,tx_nm,ty_nm,tz_nm]` with `ax,ay,az` (m/s^2) or `qw,qx,qy,qz` (base from sensor)
+    /// CSV file, one still pose per row: `fx_n,fy_n,fz_n[,tx_nm,ty_nm,tz_nm]` with `ax,ay,az` (m/s^2) or `qw,qx,qy,qz` (base from sensor)
     poses: PathBuf,
-    /// Write the calibration to this TOML file, when it is accepted
+    /// Write the calibration to this TOML file, when it is accepted; the one before is kept as F.toml.previous
+    /// (replaces a file, whose mode stays; follows a link; refuses the input, a device or a pipe)
     #[arg(long, value_name = "F.toml")]
     out: Option<PathBuf>,
     /// Serial number of the sensor
@@ -35,16 +33,16 @@ pub(in crate::command) struct Arguments {
     /// Name of the tool on the sensor
     #[arg(long, default_value = "unknown")]
     tool: String,
-    /// The accelerometer reads towards gravity at rest, not the support
+    /// The accelerometer's vector points down at rest, not up
     #[arg(long)]
     flip_imu: bool,
-    /// The model to keep; without it the physical one, or the gain where the poses clearly support it
+    /// Model to keep (default: physical, or gain if the poses clearly support it)
     #[arg(long)]
     model: Option<Model>,
-    /// Write a refused calibration all the same; the name goes into the file
+    /// Write the file even if the verdict rejects it; your name is written into it
     #[arg(long = "override", value_name = "NAME", requires = "out")]
     override_by: Option<String>,
-    /// Why the refused calibration is kept
+    /// Reason for --override
     #[arg(long, value_name = "TEXT", requires = "override_by")]
     override_reason: Option<String>,
     /// Print the report as one JSON object
@@ -53,6 +51,9 @@ pub(in crate::command) struct Arguments {
 }
 
 pub(in crate::command) fn run(arguments: &Arguments) -> anyhow::Result<()> {
+    if let Some(out) = &arguments.out {
+        super::check(out, &arguments.poses)?;
+    }
     let poses = read_poses(&arguments.poses)?;
     let model = arguments.model.map(|model| match model {
         Model::Physical => ModelKind::Physical,
@@ -81,9 +82,8 @@ fn save(arguments: &Arguments, report: &GravityReport) -> anyhow::Result<()> {
     let Some(mut record) = report.record(&arguments.sensor, &arguments.tool, &store::utc_now()) else {
         bail!("there is no model to write to {}: {}", out.display(), report.reason);
     };
-    if report.verdict != Verdict::Accepted {
-        record.override_by.clone_from(&arguments.override_by);
-        record.override_reason.clone_from(&arguments.override_reason);
+    if let (false, Some(name)) = (report.verdict == Verdict::Accepted, &arguments.override_by) {
+        record.judgement.override_by(name, arguments.override_reason.as_deref());
     }
     store::write(out, &record)?;
     Ok(())

@@ -3,13 +3,18 @@
 mod correspondence;
 mod gravity;
 
+use std::path::Path;
+
 use clap::Subcommand;
+use nima_recording::store;
+
+use super::output;
 
 #[derive(Debug, Subcommand)]
 pub(super) enum CalibrateCommand {
-    /// Take the tool's weight and the sensor's bias out, from still poses
+    /// Find the tool's weight and the sensor's bias from still poses
     Gravity(gravity::Arguments),
-    /// How the sensor under the tissue is turned against the one at the wrist, from pairs of forces
+    /// Find the rotation between the sensor under the tissue and the wrist sensor from pairs of forces
     Correspondence(correspondence::Arguments),
 }
 
@@ -18,4 +23,10 @@ pub(super) fn run(command: &CalibrateCommand) -> anyhow::Result<()> {
         CalibrateCommand::Gravity(arguments) => gravity::run(arguments),
         CalibrateCommand::Correspondence(arguments) => correspondence::run(arguments),
     }
+}
+
+/// Looks, before the work, whether a calibration can be written to `out` and the one before beside it.
+fn check(out: &Path, input: &Path) -> anyhow::Result<()> {
+    output::check(out, &[input])?;
+    if out.exists() { output::check(&store::previous(out), &[input]) } else { Ok(()) }
 }

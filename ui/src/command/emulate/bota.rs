@@ -6,7 +6,7 @@
 use std::net::{Ipv4Addr, SocketAddrV4};
 
 use anyhow::Context as _;
-use nima::device::bota::emulator::{Emulated as Sensor, slow_motion};
+use nima_world::emulators::bota::{Emulated as Sensor, slow_motion};
 
 use super::{Emulated, Settings};
 

@@ -1,7 +1,7 @@
 //! `nima emulate dynamixel`: four servos on a pseudo-terminal. Settings: `model`, `baud`, `fast`, `ids` (as `1,2,3,4`).
 
 use anyhow::Context as _;
-use nima::device::dynamixel::{Emulator, EmulatorSettings};
+use nima_world::emulators::dynamixel::{Emulator, EmulatorSettings};
 
 use super::{Emulated, Settings};
 
@@ -17,6 +17,6 @@ pub(super) fn start(settings: &Settings) -> anyhow::Result<Vec<Emulated>> {
         baud: settings.get("baud")?.unwrap_or(factory.baud),
         fast: settings.get("fast")?.unwrap_or(factory.fast),
     };
-    let emulator = Emulator::new(&wanted, None).context("no servo has this model number or line speed")?;
+    let emulator = Emulator::new(&wanted, None).context("unknown servo model number or baud rate")?;
     Ok(vec![Emulated::new("dynamixel", emulator.serve()?)])
 }

@@ -4,7 +4,8 @@
 //! `--set`: `serial`, `left_handed`, `motor_limit_n`, `reset`, `port`; of the hand that holds it `x_m`, `y_m`, `z_m`, `radius_m`, `yaw_rad`,
 //! `gripper_rad`, `stiffness_n_m`.
 
-use nima::device::force_dimension::{Emulator, Held, Kind, stand_in};
+use nima_devices::force_dimension::Kind;
+use nima_world::emulators::force_dimension::{Emulator, Held, stand_in};
 
 use super::{Emulated, Settings};
 
@@ -21,7 +22,7 @@ pub(super) fn start(settings: &Settings) -> anyhow::Result<Vec<Emulated>> {
     };
     let number = |key: &str, usual: f64| -> anyhow::Result<f64> {
         let value = settings.get(key)?.unwrap_or(usual);
-        anyhow::ensure!(f64::is_finite(value), "--set {key}={value} is not a usable value");
+        anyhow::ensure!(f64::is_finite(value), "--set {key}={value}: this value cannot be used");
         Ok(value)
     };
     let held = Held {

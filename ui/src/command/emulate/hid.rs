@@ -4,9 +4,9 @@
 use std::path::PathBuf;
 
 use anyhow::bail;
-use nima::device::{
-    CapReading, PedalReading,
-    hid::emulator::{CapBody, CapModel, PedalBody, PedalModel, Place, serve_cap, serve_pedal, serve_spacenavd},
+use nima_devices::{CapReading, PedalReading};
+use nima_world::emulators::hid::{
+    CapBody, CapModel, PedalBody, PedalModel, Place, serve_cap, serve_pedal, serve_spacenavd,
 };
 
 use super::{Emulated, Settings};
@@ -21,7 +21,7 @@ fn model<T: Default>(settings: &Settings, names: [(&str, T); 2]) -> anyhow::Resu
     let known = names.each_ref().map(|(known, _)| *known).join(" or ");
     match names.into_iter().find(|(known, _)| *known == name) {
         Some((_, model)) => Ok(model),
-        None => bail!("--set model={name}: there is {known}"),
+        None => bail!("--set model={name}: use {known}"),
     }
 }
 
@@ -32,7 +32,7 @@ fn cap_body(settings: &Settings) -> anyhow::Result<CapBody> {
     for (key, axis) in ["x", "y", "z", "rx", "ry", "rz"].into_iter().zip(translation.iter_mut().chain(rotation)) {
         if let Some(value) = settings.get::<f64>(key)? {
             if !(-1.0..=1.0).contains(&value) {
-                bail!("--set {key}={value} is not from -1 to 1");
+                bail!("--set {key}={value}: give a number from -1 to 1");
             }
             (*axis, held) = (value, true);
         }

@@ -1,14 +1,20 @@
-//! `nima emulate kinova`: a Gen3 on free ports. `--set watchdog_ms=50` sets the time without a command that is a fault.
+//! `nima emulate kinova`: a Gen3 on free ports, or on those that `--set tcp_port=10000 --set udp_port=10001` give.
+//! `--set watchdog_ms=50` sets the time without a command that is a fault.
 
-use nima::device::{
-    emulation::FaultSwitch,
-    kinova::emulator::{EmulatedArm, StandIn, emulate},
+use nima_world::emulators::{
+    FaultSwitch,
+    kinova::{EmulatedArm, StandIn, emulate},
 };
 
 use super::{Emulated, Settings};
 
 pub(super) fn start(settings: &Settings) -> anyhow::Result<Vec<Emulated>> {
-    let mut arm = EmulatedArm::default();
+    let usual = EmulatedArm::default();
+    let mut arm = EmulatedArm {
+        tcp_port: settings.get("tcp_port")?.unwrap_or(usual.tcp_port),
+        udp_port: settings.get("udp_port")?.unwrap_or(usual.udp_port),
+        ..usual
+    };
     if let Some(watchdog_ms) = settings.get("watchdog_ms")? {
         arm.watchdog_ms = watchdog_ms;
     }

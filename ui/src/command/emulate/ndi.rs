@@ -1,10 +1,8 @@
 //! `nima emulate ndi` (TCP) and `ndi-serial` (pseudo-terminal): the tracker. `--set firmware=TAG` makes hosts choose `TX` or `BX`,
 //! `--set missing=N` and `--set outside=N` hide one tool or put it out of the volume, `--set port=N` takes a fixed TCP port.
 
-use nima::device::{
-    Tracked,
-    ndi::emulator::{Profile, serve_line, serve_network, wandering},
-};
+use nima_devices::Tracked;
+use nima_world::emulators::ndi::{Profile, serve_line, serve_network, wandering};
 
 use super::{Emulated, Settings};
 

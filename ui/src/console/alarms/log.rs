@@ -5,7 +5,7 @@
 
 use std::collections::VecDeque;
 
-use nima::calibration::store::utc_now;
+use nima_recording::store::utc_now;
 
 use super::{Alarm, Kind, Priority};
 
@@ -117,7 +117,7 @@ impl AlarmLog {
 
 #[cfg(test)]
 mod tests {
-    use nima::runtime::Fault;
+    use nima_machine::messages::Fault;
 
     use super::*;
 

@@ -5,16 +5,13 @@ pub mod log;
 pub mod sound;
 pub mod strip;
 
-use crate::console::text;
 use std::time::Duration;
 
 use egui::Color32;
-use nima::{
-    runtime::{Fault, Scheduling},
-    teleop::LoopState,
-};
+use nima_machine::messages::{Fault, LoopState, Scheduling};
 
 use super::theme;
+use crate::{console::text, words::Remedy as _};
 
 /// Urgency by IEC 60601-1-8.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -74,6 +71,8 @@ pub enum Kind {
     Fault(Fault),
     /// The loop sends nothing.
     Silence,
+    /// A device at this place of the roster is missing.
+    Device(usize),
     /// Periods are missed.
     Missed,
     /// The wrist sensor's bias has moved.
@@ -95,9 +94,26 @@ pub struct Alarm {
     pub cure: String,
 }
 
+/// A device that is wanted and does not deliver.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Missing {
+    /// Its place in the roster.
+    pub place: usize,
+    /// Its name there.
+    pub name: String,
+    /// It delivered before.
+    pub was_there: bool,
+    /// Why.
+    pub cause: String,
+    /// What the operator can do.
+    pub cure: String,
+}
+
 /// What alarms are judged from.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub struct Signs {
+    /// Devices that are missing, in the order of the roster.
+    pub missing: Vec<Missing>,
     /// State of the loop as last seen.
     pub state: Option<LoopState>,
     /// The first fault since the last release, and when (s on the loop's clock).
@@ -128,15 +144,15 @@ pub fn judge(signs: &Signs) -> Vec<Alarm> {
         alarms.push(Alarm {
             kind: Kind::StopStuck,
             priority: Priority::High,
-            cause: text::alarms::THE_STOP_HAS_NOT.to_owned(),
-            cure: text::alarms::CUT_THE_POWER_OF.to_owned(),
+            cause: text::alarms::STOP_STUCK_CAUSE.to_owned(),
+            cure: text::alarms::STOP_STUCK_CURE.to_owned(),
         });
     }
     if let (Some(LoopState::Faulted(_)), Some((t_s, fault))) = (signs.state, signs.first_fault) {
         alarms.push(Alarm {
             kind: Kind::Fault(fault),
             priority: Priority::High,
-            cause: text::alarms::fault(fault.cause(), t_s),
+            cause: text::alarms::fault(&cause_of(fault, signs), t_s),
             cure: fault.cure().to_owned(),
         });
     }
@@ -144,16 +160,19 @@ pub fn judge(signs: &Signs) -> Vec<Alarm> {
         alarms.push(Alarm {
             kind: Kind::Silence,
             priority: Priority::High,
-            cause: text::alarms::THE_CONTROL_LOOP_SENDS.to_owned(),
-            cure: text::alarms::STOP_THE_ARM_BY.to_owned(),
+            cause: text::alarms::LOOP_SILENT_CAUSE.to_owned(),
+            cure: text::alarms::LOOP_SILENT_CURE.to_owned(),
         });
     }
+    alarms.extend(signs.missing.iter().map(missing));
     if signs.missed_share > MISSED_SHARE_MAX {
+        // Nobody feels them while nothing is driven: then they stand below what keeps the arm from being engaged.
+        let driven = signs.state.is_none_or(|state| state.permits().drives);
         alarms.push(Alarm {
             kind: Kind::Missed,
-            priority: Priority::Medium,
+            priority: if driven { Priority::Medium } else { Priority::Low },
             cause: text::alarms::periods_missed(100.0 * signs.missed_share),
-            cure: text::alarms::CLOSE_OTHER_PROGRAMS_OR.to_owned(),
+            cure: text::alarms::PERIODS_MISSED_CURE.to_owned(),
         });
     }
     if let Some(by_n) = signs.bias_moved_n {
@@ -161,7 +180,7 @@ pub fn judge(signs: &Signs) -> Vec<Alarm> {
             kind: Kind::BiasMoved,
             priority: Priority::Medium,
             cause: text::alarms::bias_moved(by_n),
-            cure: text::alarms::LET_NOTHING_TOUCH_THE.to_owned(),
+            cure: text::alarms::BIAS_MOVED_CURE.to_owned(),
         });
     }
     if let Some(advice) = signs.scheduling.and_then(|scheduling| scheduling.advice()) {
@@ -173,7 +192,25 @@ pub fn judge(signs: &Signs) -> Vec<Alarm> {
             cure: sentence(cure),
         });
     }
+    alarms.sort_by_key(|alarm| alarm.priority);
     alarms
+}
+
+fn missing(device: &Missing) -> Alarm {
+    let words = if device.was_there { text::alarms::device_lost } else { text::alarms::device };
+    Alarm {
+        kind: Kind::Device(device.place),
+        priority: Priority::Medium,
+        cause: words(&device.name, &device.cause),
+        cure: device.cure.clone(),
+    }
+}
+
+/// What happened, with the name of the device where it is one's.
+fn cause_of(fault: Fault, signs: &Signs) -> String {
+    let Fault::DeviceLost { device, .. } = fault else { return fault.cause().to_owned() };
+    let name = signs.missing.iter().find(|missing| missing.place == usize::from(device)).map(|missing| &missing.name);
+    name.map_or_else(|| fault.cause().to_owned(), |name| text::alarms::fault_of(name, fault.cause()))
 }
 
 /// The same words with a capital first letter.
@@ -211,6 +248,34 @@ mod tests {
         assert!(alarms.iter().all(|alarm| !alarm.cure.is_empty()), "{alarms:?}");
         assert!(alarms.iter().any(|alarm| alarm.priority == Priority::Medium && alarm.cause.contains("0.41 N")));
         assert_eq!(alarms.len(), 4);
+    }
+
+    #[test]
+    fn a_missing_device_stands_before_the_periods_that_its_absence_costs() {
+        let device = Missing {
+            place: 1,
+            name: "right arm".to_owned(),
+            was_there: false,
+            cause: "nobody listens at 127.0.0.1:47100".to_owned(),
+            cure: "Correct the port number in the rig file.".to_owned(),
+        };
+        let signs = Signs {
+            state: Some(LoopState::Disconnected),
+            missed_share: 0.05,
+            missing: vec![device],
+            scheduling: Some(Scheduling::default()),
+            ..healthy()
+        };
+        let mut log = log::AlarmLog::default();
+        // The periods were missed first.
+        log.update(&judge(&Signs { missing: Vec::new(), ..signs.clone() }), &log::Moment::now(None, 0.0));
+        log.update(&judge(&signs), &log::Moment::now(None, 1.0));
+        let pinned = &log.live()[0].alarm;
+        assert_eq!(pinned.kind, Kind::Device(1), "{pinned:?}");
+        assert!(pinned.cause.contains("right arm") && pinned.cause.contains("127.0.0.1:47100"), "{pinned:?}");
+        assert!(pinned.cure.contains("port number"), "{pinned:?}");
+        let engaged = judge(&Signs { state: Some(LoopState::Engaged), missing: Vec::new(), ..signs });
+        assert_eq!(engaged[0].priority, Priority::Medium, "an engaged hand feels missed periods");
     }
 
     #[test]

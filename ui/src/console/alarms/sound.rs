@@ -241,6 +241,6 @@ mod tests {
         finish(&mut sound, Some(Priority::High), 30.0);
         assert!(sound.trouble().unwrap().contains("could not be played"));
         let empty = tempfile::tempdir().unwrap();
-        assert!(Sound::of(&[empty.path()]).trouble().unwrap().contains("No sound output"));
+        assert!(Sound::of(&[empty.path()]).trouble().unwrap().contains("No alarm sound: none"));
     }
 }

@@ -64,12 +64,12 @@ impl Alarms {
             ui.horizontal(|ui| {
                 opened |= words_ui(ui, &first, others, colour);
                 ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-                    let all = Button::new(text::alarms::ALL_ALARMS_F5).min_size(BUTTON);
-                    opened |= ui.add(all).on_hover_text(text::alarms::THE_LAST_ALARMS_WITH).clicked();
-                    let seen = ui.add_enabled(unseen, Button::new(text::alarms::ACKNOWLEDGE_A).min_size(BUTTON));
+                    let all = Button::new(text::alarms::SHOW_ALL).min_size(BUTTON);
+                    opened |= ui.add(all).on_hover_text(text::alarms::SHOW_ALL_HOVER).clicked();
+                    let seen = ui.add_enabled(unseen, Button::new(text::alarms::ACKNOWLEDGE).min_size(BUTTON));
                     let seen = seen
-                        .on_hover_text(text::alarms::ACKNOWLEDGE)
-                        .on_disabled_hover_text(text::alarms::ACKNOWLEDGED_THE_CAUSE_STILL);
+                        .on_hover_text(text::alarms::ACKNOWLEDGE_HOVER)
+                        .on_disabled_hover_text(text::alarms::ACKNOWLEDGED_HOVER);
                     acknowledged = seen.clicked();
                 });
             });
@@ -82,14 +82,14 @@ impl Alarms {
 
     /// The list, into `room`.
     pub fn list_ui(&mut self, ctx: &Context, room: Rect) {
-        let window = Window::new(text::alarms::LIST).open(&mut self.list).constrain_to(room).collapsible(false);
+        let window = Window::new(text::alarms::LIST_TITLE).open(&mut self.list).constrain_to(room).collapsible(false);
         let size = vec2(560.0, (room.height() - 90.0).min(460.0));
         window.default_pos(room.center_top() + vec2(-280.0, 16.0)).fixed_size(size).show(ctx, |ui| {
-            ui.label(small(text::alarms::THE_LAST_50_THE));
+            ui.label(small(text::alarms::LIST_NOTE));
             ui.add_space(4.0);
             ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
                 if self.log.newest_first().next().is_none() {
-                    ui.label(weak(text::alarms::NOTHING_HAS_BEEN_WRONG));
+                    ui.label(weak(text::alarms::LIST_EMPTY));
                 }
                 for entry in self.log.newest_first() {
                     entry_ui(ui, entry);
@@ -108,7 +108,7 @@ fn words_ui(ui: &mut Ui, first: &Entry, others: usize, colour: Color32) -> bool 
         ui.set_width(width);
         ui.spacing_mut().item_spacing.y = 1.0;
         let more = if others > 0 { text::alarms::others(others) } else { String::new() };
-        let seen = if first.acknowledged { text::alarms::SEEN } else { "" };
+        let seen = if first.acknowledged { text::alarms::ACKNOWLEDGED_REMARK } else { "" };
         let alarm = &first.alarm;
         let cause =
             text::alarms::pinned(alarm.priority.word(), &alarm.cause, &first.began.utc, &(seen.to_owned() + &more));
@@ -126,12 +126,12 @@ fn entry_ui(ui: &mut Ui, entry: &Entry) {
     let at = |moment: &Moment| {
         moment.loop_s.map_or_else(|| moment.utc.clone(), |loop_s| format!("{} ({loop_s:.1} s)", moment.utc))
     };
-    let until = ended.as_ref().map_or_else(|| "now".to_owned(), &at);
-    let mut standing = if ended.is_some() { "gone" } else { "live" }.to_owned();
+    let until = ended.as_ref().map_or_else(|| text::alarms::NOW.to_owned(), &at);
+    let mut standing = if ended.is_some() { text::alarms::ENDED } else { text::alarms::PRESENT }.to_owned();
     if *acknowledged {
-        standing.push_str(", acknowledged");
+        standing.push_str(text::alarms::ACKNOWLEDGED_REMARK);
     }
-    let heading = format!("{} to {until}: {}, {standing}", at(began), alarm.priority.word());
+    let heading = text::alarms::entry(&at(began), &until, alarm.priority.word(), &standing);
     ui.add(Label::new(small(heading)).wrap());
     ui.add(Label::new(RichText::new(&alarm.cause).font(theme::strong(14.0)).color(ink)).wrap());
     ui.add(Label::new(weak(&alarm.cure)).wrap());

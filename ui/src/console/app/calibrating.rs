@@ -1,25 +1,32 @@
 //! The console while a wizard is open: another scene on the same rig, what is kept of it, and the way back.
 
-use crate::console::text;
 use egui::{CentralPanel, Frame, Margin, Panel, ScrollArea, Ui};
-use nima::{config::Scene, device::Prompt, runtime::Command, teleop::LoopState};
+use nima_machine::{
+    messages::{Command, LoopState},
+    rig::{Prompt, Side},
+};
+use nima_world::scene::Scene;
 
 use super::ConsoleApp;
 use crate::console::{
     desk::Panel as Tile,
     panels::{CalibrationWish, calibrations_ui},
-    theme,
+    text, theme,
     widgets::card,
-    wizards::{Saving, Which},
+    wizards::{Saving, Which, Wizards},
 };
 
 impl ConsoleApp {
     /// Opens a wizard: a simulated rig goes over to its experiment, where somebody guides the arm.
     pub(super) fn open_wizard(&mut self, which: Which) {
-        let opened = if which.suits(&self.live.scene) && self.wizards.open.is_none() {
+        let side = self.in_force.side();
+        let here = which.suits(&self.live.scene) && self.live.scene.has(&self.live.rig, side);
+        let opened = if here && self.wizards.open.is_none() {
             Ok(())
         } else {
-            Scene::load(which.scene()).map_err(|error| error.to_string()).and_then(|scene| self.restart_in(scene))
+            let scene = Scene::load(which.scene()).map_err(|error| error.to_string());
+            let scene = scene.map(|scene| if side == Side::Left { scene.with_left_hand() } else { scene });
+            scene.and_then(|scene| self.restart_in(scene))
         };
         match opened {
             Ok(()) => self.wizards.open = Some(which),
@@ -39,13 +46,28 @@ impl ConsoleApp {
     pub(super) fn close_wizard(&mut self) {
         self.wizards.open = None;
         let Some(scene) = self.watched.take() else {
-            self.outbox.push(Command::Prompt(Prompt::Rest));
+            self.outbox.push(Command::Prompt(self.in_force.side(), Prompt::Rest));
             return;
         };
         if let Err(reason) = self.restart(self.live.rig.clone(), scene.clone()) {
             self.watched = Some(scene);
             self.in_force.tell(text::calibrations::still_in_the_experiment(&reason));
         }
+    }
+
+    /// Goes over to the wrist sensor of the other arm: nothing taken from one belongs to the other.
+    fn choose_arm(&mut self, side: Side) {
+        self.outbox.push(Command::Prompt(self.in_force.side(), Prompt::Rest));
+        self.in_force.choose(side);
+        self.forget_what_was_taken();
+        if let Some(which) = self.wizards.open.take() {
+            self.open_wizard(which);
+        }
+    }
+
+    /// The wizards begin anew: what they have was taken from another sensor.
+    pub(super) fn forget_what_was_taken(&mut self) {
+        self.wizards = self.wizards.open.map_or_else(Wizards::default, Wizards::at);
     }
 
     /// Keeps a calibration and puts it in force.
@@ -63,9 +85,11 @@ impl ConsoleApp {
     /// Asks the person at the arm for what the open wizard needs now.
     pub(super) fn ask(&mut self) {
         let wanted = self.wizards.prompt();
-        let asked = self.live.tick.is_some_and(|tick| tick.state == LoopState::Idle && tick.prompt != wanted);
+        let side = self.in_force.side();
+        let tick = self.live.tick_of(side);
+        let asked = tick.is_some_and(|tick| tick.state == LoopState::Idle && tick.prompt != wanted);
         if self.wizards.open.is_some() && asked {
-            self.outbox.push(Command::Prompt(wanted));
+            self.outbox.push(Command::Prompt(side, wanted));
         }
     }
 
@@ -96,6 +120,7 @@ impl ConsoleApp {
     pub(super) fn obey_calibrations(&mut self, wish: Option<CalibrationWish>) {
         match wish {
             Some(CalibrationWish::Open(which)) => self.open_wizard(which),
+            Some(CalibrationWish::Choose(side)) => self.choose_arm(side),
             Some(CalibrationWish::Close) => self.close_wizard(),
             None => {}
         }

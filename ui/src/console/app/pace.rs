@@ -5,10 +5,14 @@ use std::{
     time::{Duration, Instant},
 };
 
-use nima::{files::write_atomically, teleop::LoopState};
+use nima_files::write_atomically;
+use nima_machine::messages::LoopState;
 
 use super::ConsoleApp;
-use crate::console::{Options, diary::WithScreen, door::Door, frames::Picture};
+use crate::{
+    console::{Options, diary::WithScreen, door::Door, frames::Picture},
+    telling::tell,
+};
 
 /// Thirty pictures a second while data flow.
 const FRAME: Duration = Duration::from_millis(31);
@@ -28,7 +32,7 @@ impl ConsoleApp {
     /// meanwhile wakes the window.
     pub(super) fn rest(&mut self, ctx: &egui::Context) {
         let moves = !(self.live.state().is_latched() || self.live.state() == LoopState::Idle);
-        if moves || self.wizards.open.is_some() || self.live.tick.is_none() {
+        if moves || self.wizards.open.is_some() || self.live.first_tick().is_none() {
             self.moved = Instant::now();
         }
         self.calm = self.moved.elapsed() > SETTLED;
@@ -79,7 +83,7 @@ impl ConsoleApp {
         }
         let Some(meter) = &mut self.meter else { return };
         let drawn_share = self.surface.as_ref().map_or(1.0, |surface| surface.drawn_share());
-        if meter.begin(&Picture { period, work_s, drawn_share, live: self.live.tick.is_some() }) {
+        if meter.begin(&Picture { period, work_s, drawn_share, live: self.live.first_tick().is_some() }) {
             ctx.request_repaint();
         }
     }
@@ -104,6 +108,6 @@ fn write_json(path: &Path, value: &impl serde::Serialize) {
         .map_err(std::io::Error::from)
         .and_then(|text| write_atomically(path, |file| file.write_all(&text)));
     if let Err(error) = written {
-        eprintln!("cannot write {}: {error}", path.display());
+        tell(format_args!("cannot write {}: {error}", path.display()));
     }
 }

@@ -2,7 +2,7 @@
 //!
 //! egui describes the whole window in every frame, and its painter draws all of it. In software that is most of a frame: 1.6 million
 //! points are shaded and blended to change a few numbers. Here the shapes of a frame are compared with those of the one before; what differs makes a
-//! few rectangles, and only the shapes that touch them are drawn, over the picture that stands in the window already ([`surface`]). The
+//! few rectangles, and only the shapes that touch them are drawn, over the picture that stands in the window already (`surface`). The
 //! result is the same picture, point for point. With a graphics card nothing of this is used.
 
 mod print;

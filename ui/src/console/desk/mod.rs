@@ -114,7 +114,7 @@ impl Behavior<Panel> for Contents<'_> {
             focus_ring(&tab.ctx, &tab);
         }
         let Some(panel) = tiles.get_pane(&tile) else { return tab };
-        tab.on_hover_text(format!("{}\n{}", panel.meaning(), text::desk::DRAG))
+        tab.on_hover_text(format!("{}\n{}", panel.meaning(), text::desk::DRAG_HOVER))
     }
 
     fn top_bar_right_ui(&mut self, tiles: &Tiles<Panel>, ui: &mut Ui, _tile: TileId, tabs: &Tabs, _scroll: &mut f32) {

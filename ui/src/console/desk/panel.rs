@@ -72,18 +72,18 @@ impl Panel {
     /// What it is for, in a sentence or two.
     pub const fn meaning(self) -> &'static str {
         match self {
-            Self::Field => text::desk::THE_OPERATING_FIELD_IN,
-            Self::Traces => text::desk::FORCE_OVER_TIME_ALONG,
-            Self::ForceSpace => text::desk::MEASURED_AGAINST_RENDERED_FORCE,
-            Self::Feedback => text::desk::HOW_THE_FORCE_MEASURED,
-            Self::Devices => text::desk::WHAT_THE_RIG_IS,
-            Self::Calibrations => text::desk::WHERE_THE_FORCE_AT,
-            Self::Gates => text::desk::WHY_IS_THERE_NO,
-            Self::Safety => text::desk::WHAT_STANDS_BETWEEN_A,
-            Self::Horizon => text::desk::MEAN_DISTANCE_N_3,
-            Self::Degrees => text::desk::DEGREE_N_OF_THE,
-            Self::Timing => text::desk::THE_LOOP_S_OWN,
-            Self::Tradeoff => text::desk::TIME_OF_ONE_TICK,
+            Self::Field => text::desk::FIELD_HOVER,
+            Self::Traces => text::desk::TRACES_HOVER,
+            Self::ForceSpace => text::desk::FORCE_SPACE_HOVER,
+            Self::Feedback => text::desk::FEEDBACK_HOVER,
+            Self::Devices => text::desk::DEVICES_HOVER,
+            Self::Calibrations => text::desk::CALIBRATION_HOVER,
+            Self::Gates => text::desk::WHY_NO_FORCE_HOVER,
+            Self::Safety => text::desk::SAFETY_HOVER,
+            Self::Horizon => text::desk::ERROR_AT_THE_HORIZON_HOVER,
+            Self::Degrees => text::desk::DEGREES_HOVER,
+            Self::Timing => text::desk::TIMING_HOVER,
+            Self::Tradeoff => text::desk::TRADE_OFF_HOVER,
         }
     }
 

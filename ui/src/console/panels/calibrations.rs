@@ -1,16 +1,22 @@
 //! What is in force now between the wrist sensor and the tip force, on every view; and the way to the wizards.
 
-use crate::console::text;
 use egui::{Button, RichText, Ui, vec2};
-use nima::teleop::{ForceSource, LoopState};
+use nima_machine::{
+    messages::{ForceSource, LoopState},
+    rig::Side,
+};
 
-use crate::console::{
-    alarms::sentence,
-    in_force::InForce,
-    live::Live,
-    theme,
-    widgets::{Sign, sign_ui, small},
-    wizards::Which,
+use crate::{
+    console::{
+        alarms::sentence,
+        in_force::InForce,
+        live::Live,
+        scene3d::side_name,
+        text, theme,
+        widgets::{Sign, sign_ui, small},
+        wizards::Which,
+    },
+    words::Words as _,
 };
 
 /// Where the technician wants to go.
@@ -18,6 +24,8 @@ use crate::console::{
 pub enum CalibrationWish {
     /// To this wizard.
     Open(Which),
+    /// To the wrist sensor of this arm.
+    Choose(Side),
     /// Back to the monitor.
     Close,
 }
@@ -29,11 +37,14 @@ pub fn calibrations_ui(ui: &mut Ui, live: &Live, in_force: &InForce, open: Optio
     for line in in_force.lines() {
         ui.label(small(line));
     }
-    if let Some(told) = in_force.told() {
+    for told in in_force.told() {
         ui.label(told);
     }
     ui.add_space(4.0);
     let free = matches!(live.state(), LoopState::Idle | LoopState::Engaged);
+    if live.is_bimanual() {
+        wish = side_ui(ui, in_force.side());
+    }
     for which in Which::ALL {
         let text = text::calibrations::calibrate(&which.name().to_lowercase());
         let button = Button::selectable(open == Some(which), text)
@@ -41,21 +52,37 @@ pub fn calibrations_ui(ui: &mut Ui, live: &Live, in_force: &InForce, open: Optio
             .min_size(vec2(ui.available_width(), 28.0));
         let response = ui.add_enabled(free && open != Some(which), button);
         let response = response.on_hover_text(text::calibrations::opens(which.meaning()));
-        if response.on_disabled_hover_text(text::calibrations::ALREADY_OPEN_OR_THE).clicked() {
+        if response.on_disabled_hover_text(text::calibrations::OPEN_DISABLED_HOVER).clicked() {
             wish = Some(CalibrationWish::Open(which));
         }
     }
     if open.is_some() {
-        let back = Button::new(text::calibrations::BACK_TO_THE_MONITOR).min_size(vec2(ui.available_width(), 32.0));
-        if ui.add(back).on_hover_text(text::calibrations::WHAT_THE_WIZARD_HAS).clicked() {
+        let back = Button::new(text::calibrations::CLOSE_WIZARD).min_size(vec2(ui.available_width(), 32.0));
+        if ui.add(back).on_hover_text(text::calibrations::CLOSE_WIZARD_HOVER).clicked() {
             wish = Some(CalibrationWish::Close);
         }
     }
     wish
 }
 
+/// Which arm is calibrated.
+fn side_ui(ui: &mut Ui, now: Side) -> Option<CalibrationWish> {
+    let mut wish = None;
+    ui.horizontal(|ui| {
+        for side in [Side::Left, Side::Right] {
+            let name = text::calibrations::arm(side_name(side));
+            let button = Button::selectable(now == side, name).frame_when_inactive(true).min_size(vec2(104.0, 26.0));
+            let chosen = ui.add(button).on_hover_text(text::calibrations::ARM_TO_CALIBRATE).clicked();
+            if chosen && now != side {
+                wish = Some(CalibrationWish::Choose(side));
+            }
+        }
+    });
+    wish
+}
+
 fn source_ui(ui: &mut Ui, live: &Live) {
-    let source = live.tick.map_or(ForceSource::AtTip, |tick| tick.force.source);
+    let source = live.first_tick().map_or(ForceSource::AtTip, |tick| tick.force.source);
     let sure = source.is_usable() && source.doubt().is_none();
     let (what, colour) = if sure { (Sign::Disc, theme::now().engaged) } else { (Sign::Triangle, theme::now().text) };
     ui.horizontal(|ui| {

@@ -15,43 +15,38 @@ const CHART_HEIGHT: f32 = 92.0;
 /// The panel.
 pub fn degrees_ui(ui: &mut Ui, live: &Live) {
     ui.horizontal(|ui| {
-        key_ui(ui, theme::now().rendered, text::degrees::THIS_CONSOLE, text::degrees::CHOSEN_BY_THE_RUNNING);
-        key_ui(ui, theme::now().reference, text::degrees::THE_PAPER_S_RULE, text::degrees::LEAST_ERROR_INSIDE_THE);
+        key_ui(ui, theme::now().rendered, text::degrees::KEY_OURS, text::degrees::KEY_OURS_HOVER);
+        key_ui(ui, theme::now().reference, text::degrees::KEY_PAPER, text::degrees::KEY_PAPER_HOVER);
         ui.label(small(text::degrees::last_minutes(DEGREES_S / 60.0)));
     });
     chart_ui(ui, live);
     let share = |share: f64| format!("{:.0} %", 100.0 * share);
+    figure(ui, text::degrees::NONLINEAR_OURS, share(live.degrees.nonlinear()), text::degrees::NONLINEAR_OURS_HOVER);
     figure(
         ui,
-        text::degrees::NONLINEAR_THIS_CONSOLE,
-        share(live.degrees.nonlinear()),
-        text::degrees::SHARE_OF_TICKS_IN,
-    );
-    figure(
-        ui,
-        text::degrees::NONLINEAR_THE_PAPER_S,
+        text::degrees::NONLINEAR_PAPER,
         share(live.paper_degrees.nonlinear()),
-        text::degrees::SHARE_OF_TICKS_WITH,
+        text::degrees::NONLINEAR_PAPER_HOVER,
     );
     quality_ui(ui, live);
 }
 
 fn quality_ui(ui: &mut Ui, live: &Live) {
-    let Some(tick) = &live.tick else { return };
+    let Some(tick) = live.first_tick() else { return };
     let report = &tick.identification;
-    figure(ui, text::degrees::CONDITION, three_digits(report.condition), text::degrees::CONDITION_NUMBER_OF_THE);
+    figure(ui, text::degrees::CONDITION, three_digits(report.condition), text::degrees::CONDITION_HOVER);
     figure(
         ui,
         text::degrees::RANK,
         text::degrees::columns(report.rank, 3 * live.rig.identification.max_degree, report.columns),
-        text::degrees::MOTION_COLUMNS_WITH_ENOUGH,
+        text::degrees::RANK_HOVER,
     );
     let excitation = &report.excitation;
     figure(
         ui,
         text::degrees::EXCITATION,
         format!("{:.1} mm   {:.0} mm/s", excitation.position_m.norm() * 1e3, excitation.velocity_m_s.norm() * 1e3),
-        text::degrees::HOW_MUCH_THE_MOTION,
+        text::degrees::EXCITATION_HOVER,
     );
 }
 
@@ -103,7 +98,7 @@ fn chart_ui(ui: &mut Ui, live: &Live) {
                 );
             }
         }
-        let name = if degree == 0 { "none".to_owned() } else { degree.to_string() };
+        let name = if degree == 0 { text::degrees::NONE.to_owned() } else { degree.to_string() };
         painter.text(
             egui::pos2(middle, ground.bottom() + 10.0),
             Align2::CENTER_CENTER,

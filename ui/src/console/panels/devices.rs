@@ -1,19 +1,19 @@
 //! The devices of the rig: where each is, how well it delivers, and for what fails the cause and the cure.
 
-use crate::console::text;
 use egui::{Button, Label, RichText, Ui, vec2};
-use nima::device::{Health, RosterEntry, Side, Standing, Trouble};
+use nima_devices::{Health, Standing, Trouble};
+use nima_machine::rig::{RosterEntry, Side};
 
 use crate::console::{
     live::Live,
-    theme,
+    text, theme,
     widgets::{Sign, sign_ui, small, weak},
 };
 
 /// The panel; where everything is simulated it says so.
 pub fn devices_ui(ui: &mut Ui, live: &Live) {
     if live.roster.is_empty() {
-        ui.label(weak(text::devices::EVERYTHING_ON_THIS_RIG));
+        ui.label(weak(text::devices::NONE));
         return;
     }
     for (entry, health) in live.roster.iter().zip(&live.healths.devices) {
@@ -39,7 +39,7 @@ fn device_ui(ui: &mut Ui, entry: &RosterEntry, health: &Health) {
                 let name = format!("{text} {}", entry.name);
                 egui::WidgetInfo::labeled(egui::Role::Button, true, name)
             });
-            if button.on_hover_text(text::devices::A_LOST_DEVICE_IS).clicked() {
+            if button.on_hover_text(text::devices::CONNECT_HOVER).clicked() {
                 entry.view.want(!wanted);
             }
         });
@@ -57,7 +57,7 @@ fn device_ui(ui: &mut Ui, entry: &RosterEntry, health: &Health) {
             button.widget_info(|| {
                 egui::WidgetInfo::labeled(egui::Role::Button, true, text::devices::clear_faults_of(&entry.name))
             });
-            if button.on_hover_text(text::devices::ONCE_NOBODY_IS_NEAR).clicked() {
+            if button.on_hover_text(text::devices::CLEAR_FAULTS_HOVER).clicked() {
                 clear.command();
             }
         }
@@ -67,12 +67,13 @@ fn device_ui(ui: &mut Ui, entry: &RosterEntry, health: &Health) {
 
 fn standing_words(health: &Health) -> (Sign, egui::Color32, String) {
     let figures = || {
-        let Health { rate_hz, lost, damaged, refused, .. } = *health;
-        text::devices::delivery(rate_hz, lost, damaged, refused)
+        let Health { rate_hz, lost, damaged, refused, outages, longest_outage_s, .. } = *health;
+        let delivery = text::devices::delivery(rate_hz, lost, damaged, refused);
+        if outages > 0 { delivery + &text::devices::outages(outages, longest_outage_s) } else { delivery }
     };
     match health.standing {
         Standing::Connected => (Sign::Disc, theme::now().engaged, figures()),
-        Standing::Opening => (Sign::Ring, theme::now().text, text::devices::BEING_OPENED.to_owned()),
+        Standing::Opening => (Sign::Ring, theme::now().text, text::devices::OPENING.to_owned()),
         Standing::Closed => (Sign::Ring, theme::now().text_weak, text::devices::DISCONNECTED.to_owned()),
         Standing::Lost(loss) => {
             (Sign::Triangle, theme::now().alarm_medium, text::devices::lost(loss.cause(), &figures()))

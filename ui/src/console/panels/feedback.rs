@@ -3,14 +3,14 @@
 //! Controls show what is in force, as it came back from the loop; while a control is being moved, and for a moment after,
 //! it shows what was asked.
 
-use crate::console::text;
 use std::ops::RangeInclusive;
 
 use egui::{Button, DragValue, RichText, Slider, SliderClamping, Ui, vec2};
-use nima::{impedance::Mode, runtime::Command};
+use nima_core::impedance::Mode;
+use nima_machine::messages::Command;
 
 use super::{mode_meaning, mode_name, stable_gain::stable_gain_ui};
-use crate::console::{live::Live, outbox::Outbox, theme, widgets::small};
+use crate::console::{live::Live, outbox::Outbox, text, theme, widgets::small};
 
 /// How long a control shows what was asked before it falls back to what is in force, s: the gain ramps at 2 per second.
 const ASKED_SHOWN_S: f64 = 1.6;
@@ -125,7 +125,7 @@ fn setting_ui(
 fn gain_ui(ui: &mut Ui, live: &Live, state: &mut FeedbackState, outbox: &mut Outbox) {
     let setting = Setting {
         name: text::feedback::GAIN,
-        meaning: text::feedback::GAIN_MEANING,
+        meaning: text::feedback::GAIN_HOVER,
         suffix: "",
         decimals: 2,
         at_once: true,
@@ -137,14 +137,14 @@ fn gain_ui(ui: &mut Ui, live: &Live, state: &mut FeedbackState, outbox: &mut Out
         outbox.push(if gain > 1.0 { Command::SetGainAboveOne(gain) } else { Command::SetGain(gain) });
     }
     ui.horizontal(|ui| {
-        let meaning = text::feedback::SECOND_DELIBERATE_ACTION_LETS;
+        let meaning = text::feedback::ALLOW_ABOVE_1_HOVER;
         let unlock = ui.checkbox(&mut state.allow_above_one, text::feedback::ALLOW_ABOVE_1).on_hover_text(meaning);
         if unlock.changed() && !state.allow_above_one && live.gain() > 1.0 {
             outbox.push(Command::SetGain(1.0));
             state.gain = Asked::default();
         }
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-            ui.label(small(format!("in force {:.2}", live.gain()))).on_hover_text(text::feedback::THE_GAIN_THE_LOOP);
+            ui.label(small(text::feedback::gain_in_use(live.gain()))).on_hover_text(text::feedback::GAIN_IN_USE_HOVER);
         });
     });
 }
@@ -156,28 +156,28 @@ pub fn calm_gain_ui(ui: &mut Ui, live: &Live, state: &mut FeedbackState, outbox:
     let mut wanted = None;
     ui.horizontal(|ui| {
         ui.label(RichText::new(text::feedback::GAIN).font(theme::strong(17.0)))
-            .on_hover_text(text::feedback::GAIN_MEANING);
+            .on_hover_text(text::feedback::GAIN_HOVER);
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
             let mut step = |ui: &mut Ui, text: &str, name: &str, by: f64| {
                 let button =
                     ui.add(Button::new(RichText::new(text).font(theme::strong(22.0))).min_size(vec2(48.0, 48.0)));
                 button.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, name));
-                if button.on_hover_text(format!("{name} by 0.1")).clicked() {
+                if button.on_hover_text(text::feedback::by_a_tenth(name)).clicked() {
                     wanted = Some(((shown + by) * 10.0).round() / 10.0);
                 }
             };
-            step(ui, "+", text::feedback::RAISE_THE_GAIN, 0.1);
-            step(ui, "-", text::feedback::LOWER_THE_GAIN, -0.1);
+            step(ui, "+", text::feedback::RAISE_GAIN, 0.1);
+            step(ui, "-", text::feedback::LOWER_GAIN, -0.1);
             ui.add_space(8.0);
             ui.label(RichText::new(format!("{shown:.2}")).font(theme::strong(38.0)))
-                .on_hover_text(text::feedback::GAIN_MEANING);
+                .on_hover_text(text::feedback::GAIN_HOVER);
         });
     });
     let mut value = shown.min(1.0);
     ui.spacing_mut().slider_width = ui.available_width();
     let slider = ui.add(Slider::new(&mut value, 0.0..=1.0).show_value(false).clamping(SliderClamping::Edits));
     slider.widget_info(|| egui::WidgetInfo::slider(true, value, text::feedback::GAIN));
-    if slider.on_hover_text(text::feedback::GAIN_MEANING).changed() {
+    if slider.on_hover_text(text::feedback::GAIN_HOVER).changed() {
         wanted = Some(value);
     }
     if let Some(gain) = wanted.map(|gain| gain.clamp(0.0, 1.0)) {
@@ -189,7 +189,7 @@ pub fn calm_gain_ui(ui: &mut Ui, live: &Live, state: &mut FeedbackState, outbox:
 fn delay_ui(ui: &mut Ui, live: &Live, state: &mut FeedbackState, outbox: &mut Outbox) {
     let setting = Setting {
         name: text::feedback::LINK_DELAY,
-        meaning: text::feedback::DELAY_MEANING,
+        meaning: text::feedback::DELAY_HOVER,
         suffix: " ms",
         decimals: 0,
         at_once: false,
@@ -203,7 +203,7 @@ fn delay_ui(ui: &mut Ui, live: &Live, state: &mut FeedbackState, outbox: &mut Ou
 fn standstill_ui(ui: &mut Ui, live: &Live, state: &mut FeedbackState, outbox: &mut Outbox) {
     let setting = Setting {
         name: text::feedback::DEAD_BAND,
-        meaning: text::feedback::DEAD_BAND_MEANING,
+        meaning: text::feedback::DEAD_BAND_HOVER,
         suffix: " mm/s",
         decimals: 1,
         at_once: true,
@@ -213,11 +213,7 @@ fn standstill_ui(ui: &mut Ui, live: &Live, state: &mut FeedbackState, outbox: &m
         outbox.push(Command::SetDeadBand(mm_s * 1e-3));
     }
     let mut hold = live.gate_settings().static_hold;
-    if ui
-        .checkbox(&mut hold, RichText::new(text::feedback::KEEP_FORCE_AT_STANDSTILL))
-        .on_hover_text(text::feedback::HOLD_MEANING)
-        .changed()
-    {
+    if ui.checkbox(&mut hold, RichText::new(text::feedback::HOLD)).on_hover_text(text::feedback::HOLD_HOVER).changed() {
         outbox.push(Command::SetStaticHold(hold));
     }
 }

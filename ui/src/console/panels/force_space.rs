@@ -1,18 +1,17 @@
 //! Forces in force space: where the two were in the last seconds, the ceiling as a sphere, and the ellipsoid that holds 95 % of
 //! their difference. Turned by dragging; drawn by egui's painter, so that it is the same with and without a GPU.
 
-use crate::console::text;
 use std::f32::consts::TAU;
 
 use egui::{Align2, Color32, Painter, Pos2, Rect, Sense, Stroke, Ui, Vec2, pos2, vec2};
 use nalgebra::Vector3;
-use nima::device::Side;
+use nima_machine::rig::Side;
 
 use super::forces::stepped;
 use crate::console::{
     cloud::{Ellipsoid, SECONDS},
     live::Live,
-    theme,
+    text, theme,
 };
 
 /// The caption's height.
@@ -76,7 +75,7 @@ pub fn force_space_ui(ui: &mut Ui, live: &Live, side: Side, state: &mut ForceSpa
     if response.double_clicked() {
         *state = ForceSpaceState::default();
     }
-    response.on_hover_text(text::force_space::MEANING);
+    response.on_hover_text(text::force_space::HOVER);
     let painter = ui.painter_at(rect);
     painter.rect_filled(rect, theme::CORNER, theme::now().groove);
     let most_n = pairs().map(|pair| pair.measured_n.amax().max(pair.rendered_n.amax())).fold(0.0, f64::max);

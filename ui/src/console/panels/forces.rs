@@ -3,21 +3,18 @@
 //! The view is a stretch of time counted back from now (or from the moment of the pause): it is panned by dragging, zoomed
 //! by the wheel and put back by a double click, also while data go on.
 
-use crate::console::text;
 use egui::{Align, Align2, Button, Color32, Layout, Rect, RichText, Sense, Ui, Vec2b, pos2, vec2};
 use egui_plot::{
     AxisHints, HoverPosition, Line, LineStyle, Plot, PlotBounds, PlotPoint, PlotPoints, PlotResponse, Text, VLine,
 };
-
-use nima::device::Side;
+use nima_machine::rig::Side;
 
 use super::axis::{marks, near_end, plain, signed};
-
 use crate::console::{
     history::{CHANNELS, History, Trace},
     live::Live,
     scene3d::side_name,
-    theme,
+    text, theme,
     widgets::{force_sign, small},
 };
 
@@ -175,19 +172,19 @@ fn header_ui(ui: &mut Ui, live: &mut Live, state: &mut ForcesState) {
     ui.horizontal(|ui| {
         if ui.available_width() > HEADING_FROM {
             ui.label(RichText::new(text::forces::HEADING).text_style(egui::TextStyle::Heading))
-                .on_hover_text(text::forces::MEANING);
+                .on_hover_text(text::forces::HOVER);
             ui.add_space(12.0);
         }
         for (name, rendered) in [(text::forces::MEASURED, false), (text::forces::RENDERED, true)] {
             let (rect, _) = ui.allocate_exact_size(vec2(30.0, 14.0), Sense::hover());
             force_sign(ui.painter(), theme::now(), rect, rendered);
-            ui.label(small(name)).on_hover_text(text::forces::MEANING);
+            ui.label(small(name)).on_hover_text(text::forces::HOVER);
             ui.add_space(6.0);
         }
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             let (name, meaning) = match state.paused_at_s {
-                None => (text::forces::PAUSE, text::forces::PAUSE_MEANING),
-                Some(_) => (text::forces::GO_ON, text::forces::GO_ON_MEANING),
+                None => (text::forces::PAUSE, text::forces::PAUSE_HOVER),
+                Some(_) => (text::forces::GO_ON, text::forces::GO_ON_HOVER),
             };
             let size = vec2(76.0, 26.0);
             let paused = state.paused_at_s.is_some();
@@ -195,7 +192,7 @@ fn header_ui(ui: &mut Ui, live: &mut Live, state: &mut ForcesState) {
                 state.paused_at_s = if paused { None } else { Some(state.history(live).latest_s()) };
             }
             let mark = ui.add(Button::new(text::forces::MARK).min_size(size));
-            if mark.on_hover_text(text::forces::MARK_MEANING).clicked() {
+            if mark.on_hover_text(text::forces::MARK_HOVER).clicked() {
                 live.mark();
             }
             if live.is_bimanual() {
@@ -210,7 +207,7 @@ fn header_ui(ui: &mut Ui, live: &mut Live, state: &mut ForcesState) {
             }
             let reset = ui
                 .add(Button::new(text::forces::LAST_TEN_SECONDS).min_size(size))
-                .on_hover_text(text::forces::LAST_TEN_SECONDS_MEANING);
+                .on_hover_text(text::forces::LAST_TEN_SECONDS_HOVER);
             if reset.clicked() {
                 state.view_s = DEFAULT_VIEW_S;
             }

@@ -1,20 +1,20 @@
 //! "Why is there no force?": the gates between model and hand, in their order, and what each does just now.
 
-use crate::console::text;
 use egui::{Button, Color32, Label, RichText, Ui, vec2};
-use nima::{
-    device::Side,
-    runtime::Fault,
-    safety::{EnergyMode, Gate as Which, Reason},
-    teleop::LoopState,
+use nima_core::safety::{EnergyMode, GATES, Gate as Which, Reason};
+use nima_machine::{
+    messages::{Fault, LoopState},
+    rig::Side,
 };
 
-use crate::console::{
-    live::Live,
-    rolling::Fading,
-    scene3d::side_name,
-    theme,
-    widgets::{Sign, sign_ui, small},
+use crate::{
+    console::{
+        live::Live,
+        scene3d::side_name,
+        text, theme,
+        widgets::{Sign, sign_ui, small},
+    },
+    words::Words as _,
 };
 
 /// Below this there is no contact worth rendering, N.
@@ -61,8 +61,8 @@ pub fn gates_ui(ui: &mut Ui, live: &Live, state: &mut GatesState) {
 /// The answer in one sentence: the first closed gate, or that nothing is wrong.
 fn answer(live: &Live, side: Side) -> String {
     why_no_force(live, side).unwrap_or_else(|| match live.figures {
-        figures if figures.measured_n[side.index()] < CONTACT_N => text::gates::FREE_MOTION_NO_CONTACT.to_owned(),
-        figures => text::gates::there_is(figures.rendered_n[side.index()]),
+        figures if figures.measured_n[side.index()] < CONTACT_N => text::gates::FREE_MOTION.to_owned(),
+        figures => text::gates::rendered(figures.rendered_n[side.index()]),
     })
 }
 
@@ -72,22 +72,22 @@ pub fn why_no_force(live: &Live, side: Side) -> Option<String> {
     let (measured_n, rendered_n) = (live.figures.measured_n[hand], live.figures.rendered_n[hand]);
     let withheld_n = gates.withheld_n.get();
     let words = match live.tick_of(side).map_or(LoopState::Idle, |tick| tick.state) {
-        LoopState::Disconnected => text::gates::NO_FORCE_A_DEVICE,
-        LoopState::Idle => text::gates::NO_FORCE_THE_LOOP,
-        LoopState::Ready => text::gates::NO_FORCE_YET_THE,
-        LoopState::Clutched => text::gates::NO_FORCE_THE_CLUTCH,
-        LoopState::Stopped => text::gates::NO_FORCE_STOPPED_BY,
-        LoopState::Faulted(Fault::OtherArm) => text::gates::NO_FORCE_THE_OTHER,
-        LoopState::Faulted(_) => text::gates::NO_FORCE_STOPPED_BY_A,
-        LoopState::Engaged if closed(gates.released) => text::gates::NO_FORCE_THE_HAND,
-        LoopState::Engaged if closed(gates.invalid) => text::gates::NO_FORCE_THE_MODE,
-        LoopState::Engaged if closed(gates.stale) => text::gates::NO_FORCE_THE_DATA,
+        LoopState::Disconnected => text::gates::NONE_DEVICE_MISSING,
+        LoopState::Idle => text::gates::NONE_IDLE,
+        LoopState::Ready => text::gates::NONE_GETTING_READY,
+        LoopState::Clutched => text::gates::NONE_CLUTCH,
+        LoopState::Stopped => text::gates::NONE_STOPPED,
+        LoopState::Faulted(Fault::OtherArm) => text::gates::NONE_OTHER_ARM,
+        LoopState::Faulted(_) => text::gates::NONE_FAULT,
+        LoopState::Engaged if gates.closed(Which::Release) => text::gates::NONE_RELEASED,
+        LoopState::Engaged if gates.closed(Which::Validity) => text::gates::NONE_INVALID,
+        LoopState::Engaged if gates.closed(Which::Age) => text::gates::NONE_STALE,
         LoopState::Engaged if measured_n < CONTACT_N => return None,
-        LoopState::Engaged if closed(gates.dead_band) && withheld_n > 0.05 => {
+        LoopState::Engaged if gates.closed(Which::DeadBand) && withheld_n > 0.05 => {
             return Some(text::gates::withheld_by_dead_band(withheld_n));
         }
-        LoopState::Engaged if live.gain() < 0.01 => text::gates::NO_FORCE_THE_GAIN,
-        LoopState::Engaged if closed(gates.energy) => text::gates::LESS_FORCE_THE_HAND,
+        LoopState::Engaged if live.gain() < 0.01 => text::gates::NONE_GAIN,
+        LoopState::Engaged if gates.closed(Which::Energy) => text::gates::LESS_ENERGY,
         LoopState::Engaged if rendered_n < 0.05 => {
             return Some(text::gates::on_its_way(live.delay_s() * 1e3));
         }
@@ -111,116 +111,53 @@ impl Gate {
     pub(super) fn standing(&self) -> (Sign, &'static str) {
         let acting = self.share > if self.limits { 0.05 } else { 0.5 };
         match (acting, self.limits) {
-            (false, _) => (Sign::Disc, "open"),
-            (true, false) => (Sign::Square, "closed"),
-            (true, true) => (Sign::Ring, "limiting"),
+            (false, _) => (Sign::Disc, text::gates::OPEN),
+            (true, false) => (Sign::Square, text::gates::CLOSED),
+            (true, true) => (Sign::Ring, text::gates::LIMITING),
         }
     }
 }
 
-fn closed(share: Fading) -> bool {
-    share.get() > 0.5
+/// All of them, in the order of the chain.
+pub(super) fn gates(live: &Live, side: Side) -> [Gate; GATES] {
+    let gates = &live.gates[side.index()];
+    Which::ALL.map(|which| {
+        let [name, meaning] = text::gates::of(which);
+        let share = match which {
+            // Its ramp is no closed gate; a gain of zero is.
+            Which::Gain => f64::from(u8::from(live.gain() < 0.01)),
+            _ => gates.share(which),
+        };
+        let limits = matches!(which, Which::Slew | Which::Energy | Which::Ceiling);
+        Gate { which, name, share, limits, note: note(live, side, which), meaning }
+    })
 }
 
-/// All of them, in the order of the chain.
-pub(super) fn gates(live: &Live, side: Side) -> [Gate; 9] {
+/// What stands beside a gate: its setting, or what it does now.
+fn note(live: &Live, side: Side, which: Which) -> String {
     let (gates, chain) = (&live.gates[side.index()], &live.rig.gates);
-    let gate = |which, name, share: Fading, limits, note, meaning| Gate {
-        which,
-        name,
-        share: share.get(),
-        limits,
-        note,
-        meaning,
-    };
-    let mut dead_band = gate(
-        Which::DeadBand,
-        text::gates::DEAD_BAND,
-        gates.dead_band,
-        false,
-        format!("{:.1} mm/s", live.gate_settings().dead_band_m_s * 1e3),
-        text::gates::CLOSED_WHILE_THE_HAND,
-    );
-    if live.gate_settings().static_hold {
-        text::gates::OFF_FORCE_IS_KEPT.clone_into(&mut dead_band.note);
-    } else if closed(gates.dead_band) && gates.withheld_n.get() > 0.05 {
-        dead_band.note = text::gates::withheld(gates.withheld_n.get());
+    match which {
+        Which::Permission => live.tick_of(side).map_or(LoopState::Idle, |tick| tick.state).word().to_lowercase(),
+        Which::Release if chain.handle_kg > 0.0 => String::new(),
+        Which::Release => text::gates::RELEASE_OFF.to_owned(),
+        Which::Validity => String::new(),
+        Which::Age => text::gates::zero_after(chain.zero_after_s * 1e3),
+        Which::DeadBand if live.gate_settings().static_hold => text::gates::DEAD_BAND_OFF.to_owned(),
+        Which::DeadBand if gates.closed(Which::DeadBand) && gates.withheld_n.get() > 0.05 => {
+            text::gates::withheld(gates.withheld_n.get())
+        }
+        Which::DeadBand => format!("{:.1} mm/s", live.gate_settings().dead_band_m_s * 1e3),
+        Which::Gain => format!("{:.2}", live.gain()),
+        Which::Slew => format!("{:.0} N/s", chain.slew_n_per_s),
+        Which::Energy => stored(live, side),
+        Which::Ceiling => format!("{:.1} N", chain.ceiling_n.min(chain.device_limit_n)),
     }
-    let mut gain = Fading::default();
-    gain.push(f64::from(u8::from(live.gain() < 0.01)), 0.0, 1.0);
-    [
-        gate(
-            Which::Permission,
-            text::gates::ENGAGED,
-            gates.not_permitted,
-            false,
-            live.tick_of(side).map_or(LoopState::Idle, |tick| tick.state).word().to_lowercase(),
-            text::gates::CLOSED_UNLESS_THE_LOOP,
-        ),
-        gate(
-            Which::Release,
-            text::gates::HAND,
-            gates.released,
-            false,
-            if chain.handle_kg > 0.0 { String::new() } else { text::gates::OFF_HANDLE_S_MASS.to_owned() },
-            text::gates::CLOSED_WHEN_THE_HANDLE,
-        ),
-        gate(
-            Which::Validity,
-            text::gates::VALID,
-            gates.invalid,
-            false,
-            String::new(),
-            text::gates::CLOSED_WHEN_THE_MODE,
-        ),
-        gate(
-            Which::Age,
-            text::gates::AGE,
-            gates.stale,
-            false,
-            text::gates::zero_after(chain.zero_after_s * 1e3),
-            text::gates::FADES_THE_FORCE_WHEN,
-        ),
-        dead_band,
-        gate(
-            Which::Gain,
-            text::gates::GAIN,
-            gain,
-            false,
-            format!("{:.2}", live.gain()),
-            text::gates::THE_OPERATOR_S_FACTOR,
-        ),
-        gate(
-            Which::Slew,
-            text::gates::SLEW,
-            gates.slew,
-            true,
-            format!("{:.0} N/s", chain.slew_n_per_s),
-            text::gates::LIMITS_HOW_FAST_THE,
-        ),
-        gate(
-            Which::Energy,
-            text::gates::ENERGY,
-            gates.energy,
-            true,
-            stored(live, side),
-            text::gates::LETS_THE_HAND_GET,
-        ),
-        gate(
-            Which::Ceiling,
-            text::gates::CEILING,
-            gates.ceiling,
-            true,
-            format!("{:.1} N", chain.ceiling_n.min(chain.device_limit_n)),
-            text::gates::THE_LARGEST_FORCE_THAT,
-        ),
-    ]
 }
 
 /// What the hand may still get back.
 fn stored(live: &Live, side: Side) -> String {
     if live.gate_settings().energy == EnergyMode::Off {
-        return "off".to_owned();
+        return text::gates::ENERGY_OFF.to_owned();
     }
     live.tick_of(side).map_or_else(String::new, |tick| text::gates::energy_left(tick.gates.stored_j * 1e3))
 }
@@ -230,7 +167,7 @@ pub(super) fn history(live: &Live, side: Side, gate: Which) -> String {
     let Some(counts) = live.tick_of(side).map(|tick| tick.gates.counts) else { return String::new() };
     let (acted, share, last) = (counts.acted[gate.index()], counts.share(gate), counts.last[gate.index()]);
     match last {
-        Reason::Open => text::gates::IT_HAS_NOT_ACTED.to_owned(),
+        Reason::Open => text::gates::NEVER_ACTED.to_owned(),
         last => text::gates::acted(acted, 100.0 * share, last.words()),
     }
 }
@@ -247,5 +184,5 @@ fn gate_ui(ui: &mut Ui, live: &Live, side: Side, gate: &Gate) {
         ui.label(RichText::new(word).color(ink));
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| ui.label(small(&gate.note)));
     });
-    row.response.on_hover_text(format!("{} {}", gate.meaning, history(live, side, gate.which)));
+    row.response.on_hover_text(format!("{}\n{}", gate.meaning, history(live, side, gate.which)));
 }

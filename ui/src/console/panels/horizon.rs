@@ -1,13 +1,12 @@
 //! How far each mode's force is from the truth, at the true horizon: the delay of the link.
 
-use crate::console::text;
 use egui::{Align2, Rect, Sense, Ui, vec2};
-use nima::impedance::Mode;
+use nima_core::impedance::Mode;
 
 use super::{mode_meaning, mode_name};
 use crate::console::{
     live::{Live, TREND_S},
-    theme,
+    text, theme,
     widgets::{Sign, bar, sign, small, three_digits},
 };
 
@@ -73,7 +72,7 @@ fn mode_ui(ui: &mut Ui, mode: Mode, error_n: f64, dfr_n: f64, active: bool) {
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), 38.0), Sense::hover());
     let ratio = if dfr_n > LEAST_N { error_n / dfr_n } else { f64::NAN };
     let ratio_text = if mode == Mode::Dfr {
-        "reference".to_owned()
+        text::horizon::REFERENCE.to_owned()
     } else if ratio.is_finite() {
         format!("{} x DFR", three_digits(ratio))
     } else {
@@ -81,7 +80,11 @@ fn mode_ui(ui: &mut Ui, mode: Mode, error_n: f64, dfr_n: f64, active: bool) {
     };
     let words = format!("{}: {} N, {ratio_text}", mode_name(mode), three_digits(error_n));
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, text::horizon::error(&words)));
-    response.on_hover_text(format!("{words}{}\n{}", if active { " (in force)" } else { "" }, mode_meaning(mode)));
+    response.on_hover_text(format!(
+        "{words}{}\n{}",
+        if active { text::horizon::IN_USE } else { "" },
+        mode_meaning(mode)
+    ));
     let painter = ui.painter();
     let (top, ink) = (rect.top() + 10.0, if active { theme::now().text } else { theme::now().text_weak });
     if active {

@@ -17,7 +17,8 @@ pub mod top_bar;
 pub mod tradeoff;
 mod tradeoff_plot;
 
-use crate::console::text;
+use nima_core::impedance::Mode;
+
 pub use calibrations::{CalibrationWish, calibrations_ui};
 pub use degrees::degrees_ui;
 pub use devices::devices_ui;
@@ -31,14 +32,14 @@ pub use timing::{TimingState, timing_ui};
 pub use top_bar::{TopBarState, top_bar_ui};
 pub use tradeoff::{TradeoffState, tradeoff_ui};
 
-use nima::impedance::Mode;
+use crate::console::text;
 
 /// Name of a mode on a button.
 pub const fn mode_name(mode: Mode) -> &'static str {
     match mode {
-        Mode::Literal => text::modes::LITERAL_NIMA,
-        Mode::Linear => text::modes::LINEAR_IMA,
-        Mode::Dfr => text::modes::DIRECT_DFR,
+        Mode::Literal => text::modes::LITERAL,
+        Mode::Linear => text::modes::LINEAR,
+        Mode::Dfr => text::modes::DFR,
         Mode::Anchored => text::modes::ANCHORED,
     }
 }
@@ -46,9 +47,9 @@ pub const fn mode_name(mode: Mode) -> &'static str {
 /// What a mode does, in a sentence.
 pub const fn mode_meaning(mode: Mode) -> &'static str {
     match mode {
-        Mode::Literal => text::modes::THE_PAPER_TO_THE,
-        Mode::Linear => text::modes::THE_PAPER_S_LINEAR,
-        Mode::Dfr => text::modes::DIRECT_FORCE_REFLECTION_THE,
-        Mode::Anchored => text::modes::THE_LAST_MEASURED_FORCE,
+        Mode::Literal => text::modes::LITERAL_HOVER,
+        Mode::Linear => text::modes::LINEAR_HOVER,
+        Mode::Dfr => text::modes::DFR_HOVER,
+        Mode::Anchored => text::modes::ANCHORED_HOVER,
     }
 }

@@ -1,16 +1,16 @@
 //! What stands between a model and a hand: the interlock of each arm pair as a diagram that lights up where it is, and the gates in
 //! the order in which a force passes them, with how often each acted and why.
 
-use crate::console::text;
 use egui::{Align2, Color32, Painter, Pos2, Rect, ScrollArea, Sense, Stroke, Ui, pos2, vec2};
-use nima::{device::Side, safety::Why, teleop::LoopState};
+use nima_core::safety::Why;
+use nima_machine::{messages::LoopState, rig::Side};
 
 use super::gates::{Gate, gates, history};
 use crate::console::{
     live::Live,
     readings::Change,
     scene3d::side_name,
-    theme,
+    text, theme,
     widgets::{Sign, sign},
 };
 
@@ -74,14 +74,14 @@ const fn place_of(state: LoopState) -> usize {
 
 const fn why_words(why: Why) -> &'static str {
     match why {
-        Why::Asked => text::safety::THE_OPERATOR_ASKED_FOR,
-        Why::Connected => text::safety::THE_DEVICES_CAME,
-        Why::Disconnected => text::safety::A_DEVICE_WENT,
-        Why::Agreed => text::safety::DRIVES_OBEY_HAND_AND,
-        Why::Clutch => text::safety::THE_CLUTCH,
-        Why::Late => text::safety::THE_DRIVES_DID_NOT,
-        Why::Absent => text::safety::NOBODY_HOLDS_THE_HANDLE,
-        Why::Fault => text::safety::A_FAULT,
+        Why::Asked => text::safety::WHY_ASKED,
+        Why::Connected => text::safety::WHY_CONNECTED,
+        Why::Disconnected => text::safety::WHY_DISCONNECTED,
+        Why::Agreed => text::safety::WHY_AGREED,
+        Why::Clutch => text::safety::WHY_CLUTCH,
+        Why::Late => text::safety::WHY_LATE,
+        Why::Absent => text::safety::WHY_ABSENT,
+        Why::Fault => text::safety::WHY_FAULT,
     }
 }
 
@@ -90,12 +90,12 @@ fn interlock_ui(ui: &mut Ui, live: &Live, side: Side) {
     let state = live.tick_of(side).map_or(LoopState::Idle, |tick| tick.state);
     let change = live.changes[side.index()];
     let since = change.map_or_else(
-        || text::safety::SINCE_THE_LOOP_BEGAN.to_owned(),
+        || text::safety::SINCE_START.to_owned(),
         |Change { t_s, why, .. }| text::safety::since(t_s, why_words(why)),
     );
     let title = text::safety::interlock(&of_side(live, side), &state.word().to_lowercase());
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, format!("{title}, {since}")));
-    response.on_hover_text(text::safety::FORCE_AND_MOTION_EXIST);
+    response.on_hover_text(text::safety::INTERLOCK_HOVER);
     let painter = ui.painter_at(rect);
     painter.text(rect.left_top() + vec2(4.0, 2.0), Align2::LEFT_TOP, title, theme::strong(15.0), theme::now().text);
     painter.text(
@@ -124,7 +124,7 @@ fn interlock_ui(ui: &mut Ui, live: &Live, side: Side) {
     painter.text(
         right,
         Align2::RIGHT_BOTTOM,
-        text::safety::FROM_EVERYWHERE,
+        text::safety::FROM_ANY_STATE,
         theme::regular(11.0),
         theme::now().text_weak,
     );
@@ -190,11 +190,11 @@ fn gates_row_ui(ui: &mut Ui, live: &Live, side: Side) {
         let ends = 66.0;
         let gates = gates(live, side);
         let width = ((ui.available_width() - 2.0 * ends) / gates.len() as f32 - 5.6).max(72.0);
-        end_ui(ui, ends, if live.is_bimanual() { side_name(side) } else { "asked" }, asked_n);
+        end_ui(ui, ends, if live.is_bimanual() { side_name(side) } else { text::safety::ASKED }, asked_n);
         for gate in &gates {
             gate_ui(ui, live, side, gate, width);
         }
-        end_ui(ui, ends, "hand", live.figures.rendered_n[side.index()]);
+        end_ui(ui, ends, text::safety::HAND, live.figures.rendered_n[side.index()]);
     });
 }
 
@@ -203,7 +203,7 @@ fn end_ui(ui: &mut Ui, width: f32, name: &str, force_n: f64) {
     let (rect, response) = ui.allocate_exact_size(vec2(width, GATE_HEIGHT), Sense::hover());
     let number = if force_n < 1e3 { format!("{force_n:.1} N") } else { "> 1 kN".to_owned() };
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, format!("{name}: {number}")));
-    response.on_hover_text(text::safety::SIZE_OF_THE_FORCE);
+    response.on_hover_text(text::safety::FORCE_HOVER);
     let painter = ui.painter_at(rect);
     painter.text(
         rect.center() - vec2(0.0, 10.0),
@@ -247,7 +247,7 @@ fn gate_ui(ui: &mut Ui, live: &Live, side: Side, gate: &Gate, width: f32) {
 /// A count that fits under a gate.
 fn compact(count: u64) -> String {
     match count {
-        0 => "never".to_owned(),
+        0 => text::safety::NEVER.to_owned(),
         1..=9999 => format!("{count} x"),
         10_000..=9_999_999 => format!("{} k x", count / 1000),
         _ => format!("{} M x", count / 1_000_000),

@@ -1,11 +1,10 @@
 //! Where the gain stands in the map of stability: a strip under its slider, whole where a gripping hand comes to rest, broken where
 //! it shakes, for the mode and delay in force and the stiffness of the contact now.
 
-use crate::console::text;
 use egui::{Rect, Sense, Stroke, Ui, pos2, vec2};
-use nima::study::stability_map::{StabilityMap, Verdict};
+use nima_study::stability_map::{StabilityMap, Verdict};
 
-use crate::console::{live::Live, theme, widgets::small};
+use crate::console::{live::Live, text, theme, widgets::small};
 
 const HEIGHT: f32 = 8.0;
 /// Parts of the strip.
@@ -15,7 +14,7 @@ const PARTS: u32 = 60;
 pub(super) fn stable_gain_ui(ui: &mut Ui, live: &Live, rail: Rect, limit: f64) {
     let Some(map) = StabilityMap::committed() else { return };
     let Some(n_m) = live.stiffness_n_m() else {
-        ui.label(small(text::feedback::STABLE_UP_TO_NOT)).on_hover_text(text::feedback::MEANING);
+        ui.label(small(text::feedback::STABLE_GAIN_UNKNOWN)).on_hover_text(text::feedback::STABLE_GAIN_HOVER);
         return;
     };
     let (mode, delay_s) = (live.mode(), live.delay_s());
@@ -44,6 +43,6 @@ pub(super) fn stable_gain_ui(ui: &mut Ui, live: &Live, rail: Rect, limit: f64) {
     let greatest = map.greatest_stable_gain(mode, delay_s, n_m);
     let now = map.at(mode, live.gain(), delay_s, n_m);
     let words = text::feedback::stable_up_to(now.words(), greatest, n_m);
-    response.on_hover_text(text::feedback::MEANING);
-    ui.label(small(words)).on_hover_text(text::feedback::MEANING);
+    response.on_hover_text(text::feedback::STABLE_GAIN_HOVER);
+    ui.label(small(words)).on_hover_text(text::feedback::STABLE_GAIN_HOVER);
 }

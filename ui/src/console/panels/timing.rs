@@ -1,14 +1,13 @@
 //! Whether the loop keeps its time, and what it was granted.
 
-use crate::console::text;
 use egui::{Grid, RichText, Ui};
-use nima::statistics::Quantiles;
+use nima_core::statistics::Quantiles;
 
 use super::timing_bars::{Timing, bars_ui, missed_ui};
 use crate::console::{
     alarms::sentence,
     live::Live,
-    theme,
+    text, theme,
     widgets::{figure, small, weak},
 };
 
@@ -28,21 +27,21 @@ fn timings(live: &Live) -> Vec<Timing<'_>> {
     vec![
         Timing {
             name: text::timing::WAKE_UP,
-            meaning: text::timing::FROM_THE_MOMENT_THE,
+            meaning: text::timing::WAKE_UP_HOVER,
             quantiles: live.figures.wake_us,
             durations: live.wake(),
             deadline_us,
         },
         Timing {
             name: text::timing::WORK,
-            meaning: text::timing::ONE_TICK_GRAVITY_IDENTIFICATION,
+            meaning: text::timing::WORK_HOVER,
             quantiles: live.figures.work_us,
             durations: live.work(),
             deadline_us,
         },
         Timing {
             name: text::timing::SAMPLE_TO_FORCE,
-            meaning: text::timing::FROM_THE_ARRIVAL_OF,
+            meaning: text::timing::SAMPLE_TO_FORCE_HOVER,
             quantiles: live.figures.sample_to_force_us,
             durations: live.sample_to_force(),
             deadline_us,
@@ -65,21 +64,21 @@ pub fn timing_ui(ui: &mut Ui, live: &Live, state: &mut TimingState) {
     }
     missed_ui(ui, &live.deadlines);
     ui.add_space(4.0);
-    let tick = live.tick.as_ref();
-    let rate = format!("{} at {:.0} Hz", grouped(tick.map_or(0, |tick| tick.index + 1)), live.figures.rate_hz);
-    figure(ui, text::timing::TICKS, rate, text::timing::TICKS_EXECUTED_SINCE_THE);
+    let tick = live.first_tick();
+    let rate = text::timing::ticks_at(&grouped(tick.map_or(0, |tick| tick.index + 1)), live.figures.rate_hz);
+    figure(ui, text::timing::TICKS, rate, text::timing::TICKS_HOVER);
     let missed = grouped(tick.map_or(0, |tick| tick.missed));
-    figure(ui, text::timing::MISSED, missed, text::timing::PERIODS_IN_WHICH_THE);
+    figure(ui, text::timing::MISSED, missed, text::timing::MISSED_HOVER);
     let dropped = grouped(tick.map_or(0, |tick| tick.dropped));
-    figure(ui, text::timing::DROPPED, dropped, text::timing::TICKS_THAT_DID_NOT);
+    figure(ui, text::timing::DROPPED, dropped, text::timing::DROPPED_HOVER);
     scheduling_ui(ui, live);
     let [p50, p99] = live.figures.frame_ms;
-    let frame = format!("p50 {p50:.0}, p99 {p99:.0}, work {:.0} ms", live.figures.frame_work_ms);
+    let frame = text::timing::frame([p50, p99], live.figures.frame_work_ms);
     figure(
         ui,
         text::timing::CONSOLE_FRAME,
         frame,
-        if live.rough_edges { text::timing::FRAME_ROUGH } else { text::timing::FRAME },
+        if live.rough_edges { text::timing::FRAME_HOVER_ROUGH } else { text::timing::FRAME_HOVER },
     );
 }
 
@@ -107,8 +106,8 @@ fn right(ui: &mut Ui, text: RichText) {
 
 fn scheduling_ui(ui: &mut Ui, live: &Live) {
     let Some(scheduling) = live.scheduling else { return };
-    let yes_no = |granted| if granted { "granted" } else { "refused" };
-    let meaning = text::timing::REAL_TIME_PRIORITY_KEEPS;
+    let yes_no = |granted| if granted { text::timing::GRANTED } else { text::timing::REFUSED };
+    let meaning = text::timing::SCHEDULING_HOVER;
     figure(ui, text::timing::REAL_TIME_PRIORITY, yes_no(scheduling.fifo), meaning);
     figure(ui, text::timing::LOCKED_MEMORY, yes_no(scheduling.memory_locked), meaning);
     if let Some(advice) = scheduling.advice() {

@@ -1,14 +1,13 @@
 //! Histograms of the loop's durations with the deadline drawn in, counts on a logarithmic scale so that a single late tick is seen among
 //! millions; and the missed periods of the last two minutes as a strip.
 
-use crate::console::text;
 use egui::{Align2, Painter, Rect, Sense, Stroke, Ui, pos2, vec2};
-use nima::statistics::{Percentiles, Quantiles};
+use nima_core::statistics::{Percentiles, Quantiles};
 
 use super::timing::grouped;
 use crate::console::{
     deadlines::{Deadlines, SECONDS},
-    theme,
+    text, theme,
     widgets::small,
 };
 
@@ -164,9 +163,9 @@ mod tests {
         let bars = timing.bars();
         assert_eq!((bars.iter().sum::<u64>(), late(&bars)), (100_000, 1));
         assert!(height(bars[41], 99_999) > 0.05);
-        assert_eq!(timing.words(&bars, 41), "Work: 1025 to 1050 us\n1 ticks, 0.00100 %");
-        assert_eq!(timing.words(&bars, 1), "Work: 25 to 50 us\n99 999 ticks, 100.0 %");
-        assert!(timing.words(&bars, 49).contains("and more"));
+        assert_eq!(timing.words(&bars, 41), "Work: 1025 to 1050 µs\n1 ticks, 0.00100 %");
+        assert_eq!(timing.words(&bars, 1), "Work: 25 to 50 µs\n99 999 ticks, 100.0 %");
+        assert!(timing.words(&bars, 49).contains("or more"));
     }
 
     #[test]
@@ -183,7 +182,7 @@ mod tests {
         let rect = harness.get_by_label_contains("Work histogram: 0 of 7 ticks").rect();
         harness.hover_at(rect.left_top() + vec2(0.07 * rect.width(), 20.0));
         harness.run_steps(40);
-        let read = harness.query_all_by_label_contains("75 to 100 us").count();
+        let read = harness.query_all_by_label_contains("75 to 100 µs").count();
         assert!(read > 0, "the hint stands beside the pointer");
     }
 

@@ -1,19 +1,21 @@
 //! Always there: what this is, the state of the loop, what is wrong, and the way to stop.
 
-use crate::console::text;
 use egui::{Align, Align2, Area, Button, Id, Label, Layout, Order, RichText, Sense, Ui, vec2};
-use nima::{runtime::Command, teleop::LoopState};
+use nima_machine::messages::{Command, LoopState, Refusal};
 
-use crate::console::{
-    alarms::strip::Alarms,
-    help::Help,
-    live::Live,
-    menu::menu_ui,
-    outbox::Outbox,
-    roles::switch_ui,
-    settings::Settings,
-    theme,
-    widgets::{Sign, sign, small, weak},
+use crate::{
+    console::{
+        alarms::{Missing, strip::Alarms},
+        help::Help,
+        live::{Live, Refused},
+        menu::menu_ui,
+        outbox::Outbox,
+        roles::switch_ui,
+        settings::Settings,
+        text, theme,
+        widgets::{Sign, sign, small, weak},
+    },
+    words::{cure_of_refusal, refused_because},
 };
 
 /// After a change of state the next step waits this long (s), so that a double click is never two steps.
@@ -83,7 +85,7 @@ fn identity_ui(
         ui.spacing_mut().item_spacing.y = 4.0;
         ui.horizontal(|ui| {
             ui.label(RichText::new(text::top_bar::NIMA_CONSOLE).font(theme::strong(19.0)));
-            ui.label(small(text::top_bar::RESEARCH_SOFTWARE_NOT_FOR));
+            ui.label(small(text::top_bar::RESEARCH_ONLY));
         });
         ui.horizontal(|ui| {
             switch_ui(ui, &mut settings.role, !calibrating);
@@ -99,13 +101,13 @@ fn identity_ui(
 
 fn state_ui(ui: &mut Ui, state: LoopState) {
     let (what, colour, meaning) = match state {
-        LoopState::Disconnected => (Sign::Ring, theme::now().text_weak, text::top_bar::A_DEVICE_THAT_FORCE),
-        LoopState::Ready => (Sign::Ring, theme::now().engaged, text::top_bar::DRIVES_ON_AT_REST),
-        LoopState::Clutched => (Sign::Ring, theme::now().engaged, text::top_bar::THE_CLUTCH_IS_PRESSED),
-        LoopState::Idle => (Sign::Ring, theme::now().at_rest, text::top_bar::THE_LOOP_MEASURES_NO),
-        LoopState::Engaged => (Sign::Disc, theme::now().engaged, text::top_bar::THE_FOLLOWER_MOVES_WITH),
-        LoopState::Stopped => (Sign::Square, theme::now().stop, text::top_bar::STOPPED_BY_THE_OPERATOR),
-        LoopState::Faulted(_) => (Sign::Triangle, theme::now().alarm_high, text::top_bar::STOPPED_BY_A_FAULT),
+        LoopState::Disconnected => (Sign::Ring, theme::now().text_weak, text::top_bar::DISCONNECTED_MEANING),
+        LoopState::Ready => (Sign::Ring, theme::now().engaged, text::top_bar::READY_MEANING),
+        LoopState::Clutched => (Sign::Ring, theme::now().engaged, text::top_bar::CLUTCHED_MEANING),
+        LoopState::Idle => (Sign::Ring, theme::now().at_rest, text::top_bar::IDLE_MEANING),
+        LoopState::Engaged => (Sign::Disc, theme::now().engaged, text::top_bar::ENGAGED_MEANING),
+        LoopState::Stopped => (Sign::Square, theme::now().stop, text::top_bar::STOPPED_MEANING),
+        LoopState::Faulted(_) => (Sign::Triangle, theme::now().alarm_high, text::top_bar::FAULT_MEANING),
     };
     let (rect, response) = ui.allocate_exact_size(vec2(136.0, 44.0), Sense::hover());
     let response = response.on_hover_text(text::top_bar::state_meaning(meaning));
@@ -137,7 +139,7 @@ fn stop_ui(ui: &mut Ui, state: LoopState, outbox: &mut Outbox) {
 fn stop_button(ui: &mut Ui, button: Button<'_>, ink: egui::Color32) -> egui::Response {
     let response = ui.add(button);
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, text::top_bar::STOP));
-    let response = response.on_hover_text(text::top_bar::ZERO_FORCE_AND_A);
+    let response = response.on_hover_text(text::top_bar::STOP_HOVER);
     let middle = response.rect.center();
     sign(ui.painter(), Sign::Octagon, middle - vec2(34.0, 0.0), 11.0, ink);
     ui.painter().text(middle - vec2(12.0, 0.0), Align2::LEFT_CENTER, text::top_bar::STOP, theme::strong(21.0), ink);
@@ -147,10 +149,10 @@ fn stop_button(ui: &mut Ui, button: Button<'_>, ink: egui::Color32) -> egui::Res
 /// The one step that leads on from here, beside the stop and never under it.
 fn step_ui(ui: &mut Ui, state: LoopState, ready: bool, outbox: &mut Outbox) {
     let (name, command, meaning) = match state {
-        LoopState::Idle => (text::top_bar::ENGAGE, Command::Engage, text::top_bar::SECOND_STEP_MOTION_AND),
-        LoopState::Stopped => (text::top_bar::RELEASE_STOP, Command::ReleaseStop, text::top_bar::FIRST_OF_TWO_STEPS),
+        LoopState::Idle => (text::top_bar::ENGAGE, Command::Engage, text::top_bar::ENGAGE_HOVER),
+        LoopState::Stopped => (text::top_bar::RELEASE_STOP, Command::ReleaseStop, text::top_bar::RELEASE_STOP_HOVER),
         LoopState::Faulted(_) => {
-            (text::top_bar::RELEASE_STOP, Command::ReleaseStop, text::top_bar::FIRST_OF_TWO_STEPS_BACK)
+            (text::top_bar::RELEASE_STOP, Command::ReleaseStop, text::top_bar::RELEASE_FAULT_HOVER)
         }
         LoopState::Engaged | LoopState::Ready | LoopState::Clutched | LoopState::Disconnected => {
             ui.add_space(theme::STOP_SIZE.x + 8.0);
@@ -166,11 +168,20 @@ fn step_ui(ui: &mut Ui, state: LoopState, ready: bool, outbox: &mut Outbox) {
 
 /// The last refusal, for a moment.
 fn refusal_ui(ui: &mut Ui, live: &Live) {
-    let Some(command) = live.refusal() else { return };
-    let words = match command {
-        Command::Engage => text::top_bar::ENGAGING_WAS_REFUSED_RELEASE,
-        Command::ReleaseStop => text::top_bar::THE_STOP_WAS_NOT,
-        _ => text::top_bar::THE_LOOP_REFUSED_THE,
+    let Some(Refused { side, command, why }) = live.refusal() else { return };
+    let what = match command {
+        Command::Engage | Command::EngageOne(_) => text::top_bar::NOT_ENGAGED,
+        Command::ReleaseStop => text::top_bar::NOT_RELEASED,
+        _ => text::top_bar::NOT_SET,
+    };
+    let arm = if live.is_bimanual() { side.word() } else { "" };
+    // Why an arm has no device is known where the devices are.
+    let missing = live.missing().next().filter(|_| why == Refusal::State(LoopState::Disconnected));
+    let words = match missing {
+        Some(Missing { name, cause, cure, .. }) => {
+            text::top_bar::refused(what, arm, &text::top_bar::device(&name, &cause), &cure)
+        }
+        None => text::top_bar::refused(what, arm, &refused_because(why), cure_of_refusal(why)),
     };
     ui.add(Label::new(small(words)).wrap());
 }

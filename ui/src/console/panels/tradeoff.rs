@@ -1,6 +1,5 @@
 //! What speed costs in accuracy on this computer: measured when asked, in the background, and applied when asked.
 
-use crate::console::text;
 use std::{
     sync::{
         Arc,
@@ -10,18 +9,18 @@ use std::{
 };
 
 use egui::{Button, ProgressBar, Ui, vec2};
-use nima::{
-    config::{Identification, Rig},
-    impedance::Mode,
-    runtime::Command,
-    study::tradeoff::{Choice, Method, Plan, Point, Source, SourceFigures, Study, SweepError, sweep},
-    teleop::LoopState,
+use nima_core::impedance::Mode;
+use nima_machine::{
+    config::{Identification, RigConfig},
+    messages::{Command, LoopState},
 };
+use nima_study::tradeoff::{Choice, Method, Plan, Point, Source, SourceFigures, Study, SweepError, sweep};
 
 use super::{mode_meaning, mode_name, tradeoff_plot::plot_ui};
 use crate::console::{
     live::Live,
     outbox::Outbox,
+    text,
     widgets::{small, three_digits},
 };
 
@@ -103,9 +102,9 @@ impl TradeoffState {
                 self.measured = Some(figures);
                 self.message.clear();
             }
-            Some(Err(SweepError::Cancelled)) => self.tell(text::tradeoff::CANCELLED_EARLIER_FIGURES_WERE),
+            Some(Err(SweepError::Cancelled)) => self.tell(text::tradeoff::CANCELLED),
             Some(Err(error)) => self.tell(error.to_string()),
-            Some(Ok(_)) | None => self.tell(text::tradeoff::THE_MEASUREMENT_BROKE_OFF),
+            Some(Ok(_)) | None => self.tell(text::tradeoff::FAILED),
         }
     }
 }
@@ -118,14 +117,14 @@ impl Drop for TradeoffState {
 
 /// The panel. Gives a rig when the operator applies a point that the running loop cannot take over: the loop must then be
 /// restarted with it.
-pub fn tradeoff_ui(ui: &mut Ui, live: &Live, state: &mut TradeoffState, outbox: &mut Outbox) -> Option<Rig> {
+pub fn tradeoff_ui(ui: &mut Ui, live: &Live, state: &mut TradeoffState, outbox: &mut Outbox) -> Option<RigConfig> {
     state.take_in();
     measure_ui(ui, live, state);
     if !state.message.is_empty() {
         ui.label(small(state.message.clone()));
     }
     let Some(figures) = &state.measured else {
-        ui.label(small(text::tradeoff::NOT_MEASURED_YET_IT));
+        ui.label(small(text::tradeoff::NOT_MEASURED));
         return None;
     };
     if let Some(clicked) = plot_ui(ui, figures, state.selected) {
@@ -138,8 +137,8 @@ pub fn tradeoff_ui(ui: &mut Ui, live: &Live, state: &mut TradeoffState, outbox: 
 
 fn measure_ui(ui: &mut Ui, live: &Live, state: &mut TradeoffState) {
     let Some(job) = &state.job else {
-        let meaning = text::tradeoff::RUNS_EVERY_CHOICE_OVER;
-        let button = Button::new(text::tradeoff::MEASURE_ON_THIS_MACHINE).min_size(vec2(ui.available_width(), 30.0));
+        let meaning = text::tradeoff::MEASURE_HOVER;
+        let button = Button::new(text::tradeoff::MEASURE).min_size(vec2(ui.available_width(), 30.0));
         if ui.add(button).on_hover_text(meaning).clicked() {
             match Job::start(live) {
                 Ok(job) => state.job = Some(job),
@@ -157,7 +156,7 @@ fn measure_ui(ui: &mut Ui, live: &Live, state: &mut TradeoffState) {
             egui::WidgetInfo::labeled(egui::Role::ProgressIndicator, true, words)
         });
         let cancel = ui.add(Button::new(text::tradeoff::CANCEL).min_size(BUTTON));
-        if cancel.on_hover_text(text::tradeoff::STOPS_MEASURING_AT_ONCE).clicked() {
+        if cancel.on_hover_text(text::tradeoff::CANCEL_HOVER).clicked() {
             job.cancel.store(true, Ordering::Relaxed);
         }
     });
@@ -165,7 +164,7 @@ fn measure_ui(ui: &mut Ui, live: &Live, state: &mut TradeoffState) {
 
 /// The points that nothing beats, cheapest first, each a button.
 fn front_ui(ui: &mut Ui, figures: &SourceFigures, selected: &mut Option<usize>) {
-    ui.label(small(text::tradeoff::NOTHING_MEASURED_BEATS_THESE)).on_hover_text(text::tradeoff::THE_PARETO_FRONT_EVERY);
+    ui.label(small(text::tradeoff::FRONT)).on_hover_text(text::tradeoff::FRONT_HOVER);
     for index in front(figures) {
         let point = &figures.points[index];
         let row = Button::selectable(*selected == Some(index), format!("{}: {}", name(point), figures_of(point)));
@@ -175,18 +174,24 @@ fn front_ui(ui: &mut Ui, figures: &SourceFigures, selected: &mut Option<usize>) 
     }
 }
 
-fn apply_ui(ui: &mut Ui, live: &Live, point: &Point, state: &mut TradeoffState, outbox: &mut Outbox) -> Option<Rig> {
+fn apply_ui(
+    ui: &mut Ui,
+    live: &Live,
+    point: &Point,
+    state: &mut TradeoffState,
+    outbox: &mut Outbox,
+) -> Option<RigConfig> {
     let mode = point.choice.method.mode()?;
     let restart = needs_restart(&live.rig.identification, &point.choice);
     // A restart begins idle: it must never be a way out of a stop or a fault.
     let allowed = !restart || matches!(live.state(), LoopState::Idle | LoopState::Engaged);
     let size = vec2(ui.available_width(), 30.0);
     let button = ui.add_enabled(allowed, Button::new(text::tradeoff::APPLY).min_size(size));
-    let note = if restart { text::tradeoff::DEGREE_OR_WINDOW_DIFFER } else { text::tradeoff::TAKEN_OVER_BY_THE };
+    let note = if restart { text::tradeoff::APPLY_BY_RESTART } else { text::tradeoff::APPLY_AT_ONCE };
     ui.label(small(format!("{}. {note}", name(point))));
     let clicked = button
         .on_hover_text(format!("{}\n{}\n{note}", words(point), mode_meaning(mode)))
-        .on_disabled_hover_text(text::tradeoff::RELEASE_THE_STOP_OR)
+        .on_disabled_hover_text(text::tradeoff::APPLY_DISABLED_HOVER)
         .clicked();
     if !clicked {
         return None;
@@ -212,7 +217,7 @@ fn needs_restart(now: &Identification, choice: &Choice) -> bool {
 }
 
 /// The rig with this choice and everything that the operator has set since it was started; a gain above 1 falls back to 1.
-fn rig_with(live: &Live, mode: Mode, choice: &Choice) -> Rig {
+fn rig_with(live: &Live, mode: Mode, choice: &Choice) -> RigConfig {
     let mut rig = live.rig.clone();
     rig.mode = mode;
     rig.delay_s = choice.delay_ms * 1e-3;
@@ -250,12 +255,12 @@ pub(super) fn name(point: &Point) -> String {
 }
 
 fn figures_of(point: &Point) -> String {
-    format!("{} us, {} N", three_digits(point.cost_us.p50), three_digits(point.error))
+    format!("{} µs, {} N", three_digits(point.cost_us.p50), three_digits(point.error))
 }
 
 /// Everything about a point, for hovering.
 pub(super) fn words(point: &Point) -> String {
-    let front = if point.pareto { text::tradeoff::NOTHING_MEASURED_BEATS_IT } else { "" };
+    let front = if point.pareto { text::tradeoff::ON_FRONT } else { "" };
     let [median_us, p99_us, error_n, ratio] =
         [point.cost_us.p50, point.cost_us.p99, point.error, point.ratio].map(three_digits);
     let figures = text::tradeoff::point(&name(point), [&median_us, &p99_us], point.choice.delay_ms, [&error_n, &ratio]);

@@ -1,17 +1,14 @@
 //! Cost against error, both on logarithmic axes, with the points that nothing beats joined.
 
-use crate::console::text;
 use egui::{Color32, Ui, Vec2b, vec2};
 use egui_plot::{
     AxisHints, GridInput, GridMark, HoverPosition, Line, MarkerShape, Plot, PlotPoint, PlotPoints, Points,
 };
-use nima::{
-    impedance::Mode,
-    study::tradeoff::{Point, SourceFigures},
-};
+use nima_core::impedance::Mode;
+use nima_study::tradeoff::{Point, SourceFigures};
 
 use super::{mode_name, tradeoff::words};
-use crate::console::{theme, widgets::three_digits};
+use crate::console::{text, theme, widgets::three_digits};
 
 const HEIGHT: f32 = 230.0;
 /// A point is meant when the pointer is nearer to it than this share of the plot.
@@ -25,9 +22,7 @@ pub(super) fn plot_ui(ui: &mut Ui, figures: &SourceFigures, selected: Option<usi
     let near = |at: PlotPoint| nearest(points, &shown, &range, at);
     let plot = Plot::new("trade-off")
         .height(HEIGHT)
-        .custom_x_axes(vec![
-            AxisHints::new_x().label(text::tradeoff::ONE_TICK_US).formatter(|mark, _| plain(mark.value)),
-        ])
+        .custom_x_axes(vec![AxisHints::new_x().label(text::tradeoff::TIME_AXIS).formatter(|mark, _| plain(mark.value))])
         .custom_y_axes(vec![
             AxisHints::new_y()
                 .label(text::tradeoff::error_axis(&figures.unit))

@@ -1,9 +1,9 @@
 //! The demonstration: a script that goes through the modes at a long and a short delay, tells what is seen, and invites to take
 //! over. It plays on simulated and emulated rigs only; where it is left, mode and delay are put back as they were.
 
-use crate::console::text;
 use egui::{Button, CentralPanel, Frame, Label, Margin, Panel, RichText, Ui, vec2};
-use nima::{impedance::Mode, runtime::Command, teleop::LoopState};
+use nima_core::impedance::Mode;
+use nima_machine::messages::{Command, LoopState};
 
 use super::Panels;
 use crate::console::{
@@ -12,7 +12,7 @@ use crate::console::{
     outbox::Outbox,
     panels::{force_space_ui, forces_ui, horizon_ui},
     scene3d::scene_ui,
-    theme,
+    text, theme,
     widgets::{bar, card, small},
 };
 
@@ -37,43 +37,43 @@ pub struct Step {
 /// The script.
 pub const SCRIPT: [Step; 6] = [
     Step {
-        name: text::roles::WHAT_IS_SEEN,
-        words: text::roles::A_HAND_CARRIES_AN,
+        name: text::roles::DEMO_START,
+        words: text::roles::DEMO_START_CAPTION,
         mode: Mode::Anchored,
         delay_s: 0.05,
         seconds: 14.0,
     },
     Step {
-        name: text::roles::DIRECT_LATE,
-        words: text::roles::NOW_THE_LINK_IS,
+        name: text::roles::DEMO_DIRECT,
+        words: text::roles::DEMO_DIRECT_CAPTION,
         mode: Mode::Dfr,
         delay_s: 0.3,
         seconds: 14.0,
     },
     Step {
-        name: text::roles::LINEAR_IMPEDANCE,
-        words: text::roles::INSTEAD_OF_THE_FORCE,
+        name: text::roles::DEMO_LINEAR,
+        words: text::roles::DEMO_LINEAR_CAPTION,
         mode: Mode::Linear,
         delay_s: 0.3,
         seconds: 14.0,
     },
     Step {
-        name: text::roles::NONLINEAR_TO_THE_LETTER,
-        words: text::roles::THE_PAPER_S_RECIPE,
+        name: text::roles::DEMO_LITERAL,
+        words: text::roles::DEMO_LITERAL_CAPTION,
         mode: Mode::Literal,
         delay_s: 0.3,
         seconds: 14.0,
     },
     Step {
-        name: text::roles::ANCHORED,
-        words: text::roles::OURS_THE_LAST_MEASURED,
+        name: text::roles::DEMO_ANCHORED,
+        words: text::roles::DEMO_ANCHORED_CAPTION,
         mode: Mode::Anchored,
         delay_s: 0.3,
         seconds: 14.0,
     },
     Step {
-        name: text::roles::YOUR_TURN,
-        words: text::roles::PRESS_M_OR_THE,
+        name: text::roles::DEMO_YOUR_TURN,
+        words: text::roles::DEMO_YOUR_TURN_CAPTION,
         mode: Mode::Anchored,
         delay_s: 0.05,
         seconds: 20.0,
@@ -104,7 +104,7 @@ impl DemoState {
 
     /// Goes on by `dt_s`; time stands while somebody leads, has paused it, or the loop does not run.
     fn play(&mut self, live: &Live, leading: bool, dt_s: f64, outbox: &mut Outbox) {
-        if live.tick.is_none() || live.state() != LoopState::Engaged {
+        if live.first_tick().is_none() || live.state() != LoopState::Engaged {
             return;
         }
         self.before.get_or_insert((live.mode(), live.delay_s()));
@@ -179,9 +179,9 @@ fn caption_ui(ui: &mut Ui, live: &Live, demo: &mut DemoState) {
         }
         ui.add_space(10.0);
         let (name, meaning) = if demo.held {
-            (text::roles::PLAY, text::roles::THE_SCRIPT_GOES_ON)
+            (text::roles::PLAY, text::roles::PLAY_HOVER)
         } else {
-            (text::roles::HOLD, text::roles::STAYS_IN_THIS_CHAPTER)
+            (text::roles::HOLD, text::roles::HOLD_HOVER)
         };
         if ui.add_enabled(plays, Button::new(name).min_size(vec2(64.0, 30.0))).on_hover_text(meaning).clicked() {
             demo.held = !demo.held;
@@ -189,11 +189,11 @@ fn caption_ui(ui: &mut Ui, live: &Live, demo: &mut DemoState) {
     });
     ui.add_space(4.0);
     let words = match live.state() {
-        _ if !plays => text::roles::THE_DEMONSTRATION_PLAYS_ON,
+        _ if !plays => text::roles::NOTE_REAL_RIG,
         LoopState::Engaged => SCRIPT[demo.step].words,
-        LoopState::Idle => text::roles::THE_LOOP_IS_IDLE,
-        LoopState::Stopped | LoopState::Faulted(_) => text::roles::STOPPED_NO_FORCE_NO,
-        LoopState::Ready | LoopState::Clutched | LoopState::Disconnected => text::roles::THE_LOOP_GETS_READY,
+        LoopState::Idle => text::roles::NOTE_IDLE,
+        LoopState::Stopped | LoopState::Faulted(_) => text::roles::NOTE_STOPPED,
+        LoopState::Ready | LoopState::Clutched | LoopState::Disconnected => text::roles::NOTE_NOT_ENGAGED,
     };
     ui.add(Label::new(RichText::new(words).font(theme::regular(18.0))).wrap());
     let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), 4.0), egui::Sense::hover());
@@ -201,7 +201,7 @@ fn caption_ui(ui: &mut Ui, live: &Live, demo: &mut DemoState) {
         bar(ui.painter(), rect, demo.shown_s / SCRIPT[demo.step].seconds, theme::now().reference);
     }
     if !plays {
-        ui.label(small(text::roles::CHOOSE_A_SIMULATED_RIG));
+        ui.label(small(text::roles::NOTE_CHOOSE_SIMULATED));
     }
 }
 

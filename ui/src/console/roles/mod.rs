@@ -6,9 +6,8 @@ pub mod demo;
 mod surgeon;
 mod technician;
 
-use crate::console::text;
 use egui::{Button, Key, Ui, vec2};
-use nima::config::Rig;
+use nima_machine::config::RigConfig;
 use serde::{Deserialize, Serialize};
 
 pub use demo::DemoState;
@@ -22,6 +21,7 @@ use super::{
     scene3d::{Look, SceneView},
     settings::Settings,
 };
+use crate::console::text;
 
 /// Who sits before the screen.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, clap::ValueEnum)]
@@ -61,9 +61,9 @@ impl Role {
     /// What it shows.
     pub const fn meaning(self) -> &'static str {
         match self {
-            Self::Surgeon => text::roles::THE_FIELD_AS_THE,
-            Self::Technician => text::roles::EVERY_PANEL_FEEDBACK_DEVICES,
-            Self::Demo => text::roles::A_DEMONSTRATION_THAT_RUNS,
+            Self::Surgeon => text::roles::SURGEON_HOVER,
+            Self::Technician => text::roles::TECHNICIAN_HOVER,
+            Self::Demo => text::roles::DEMO_HOVER,
         }
     }
 }
@@ -95,7 +95,7 @@ pub struct Panels {
 #[derive(Debug, Default)]
 pub struct Wishes {
     /// Another rig.
-    pub restart: Option<Rig>,
+    pub restart: Option<RigConfig>,
     /// A wizard.
     pub calibration: Option<CalibrationWish>,
 }
@@ -135,7 +135,7 @@ pub fn switch_ui(ui: &mut Ui, now: &mut Role, allowed: bool) {
         let button = Button::selectable(*now == role, role.name()).frame_when_inactive(true).min_size(vec2(62.0, 30.0));
         let response = ui.add_enabled(allowed, button);
         let response = response.on_hover_text(text::roles::meaning_and_key(role.meaning(), role.key().name()));
-        if response.on_disabled_hover_text(text::roles::CLOSE_THE_WIZARD_FIRST).clicked() {
+        if response.on_disabled_hover_text(text::roles::SWITCH_DISABLED_HOVER).clicked() {
             *now = role;
         }
     }

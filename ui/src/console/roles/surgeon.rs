@@ -1,9 +1,8 @@
 //! A calm monitor: the field as the endoscope sees it, and under it, where each hand is, its two forces against the ceiling
 //! with the gain between them. Six figures at most: two forces of each hand, the gain, the ceiling.
 
-use crate::console::text;
 use egui::{Align2, CentralPanel, Frame, Margin, Panel, Rect, Sense, Ui, pos2, vec2};
-use nima::device::Side;
+use nima_machine::rig::Side;
 
 use super::Panels;
 use crate::console::{
@@ -11,7 +10,7 @@ use crate::console::{
     outbox::Outbox,
     panels::{calm_gain_ui, mode_name, why_no_force},
     scene3d::{scene_ui, side_name},
-    theme,
+    text, theme,
     widgets::{bar, force_sign, small},
 };
 
@@ -64,9 +63,7 @@ fn told_ui(ui: &Ui, live: &Live, place: Rect) {
     let text = place.left_top() + vec2(16.0, 16.0);
     painter.text(text, Align2::LEFT_TOP, &live.scene.name, theme::strong(17.0), theme::now().text);
     for (i, (rendered, words)) in
-        [(false, text::roles::MEASURED_AT_THE_INSTRUMENT), (true, text::roles::RENDERED_TO_THE_HAND)]
-            .into_iter()
-            .enumerate()
+        [(false, text::roles::MEASURED), (true, text::roles::RENDERED)].into_iter().enumerate()
     {
         let y = text.y + 52.0 + 34.0 * i as f32;
         force_sign(&painter, theme::now(), Rect::from_center_size(pos2(text.x + 18.0, y), vec2(36.0, 16.0)), rendered);
@@ -82,7 +79,7 @@ fn hand_ui(ui: &mut Ui, live: &Live, side: Side, place: Rect) {
     let name = text::common::hand(side_name(side));
     let words = text::roles::hand(&name, measured_n, rendered_n, ceiling_n);
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, &words));
-    response.on_hover_text(text::roles::SIZE_OF_THE_FORCE);
+    response.on_hover_text(text::roles::BARS_HOVER);
     let painter = ui.painter_at(place);
     painter.rect_filled(place, theme::CORNER, theme::now().card);
     let inner = place.shrink2(vec2(16.0, 12.0));
@@ -105,7 +102,7 @@ fn hand_ui(ui: &mut Ui, live: &Live, side: Side, place: Rect) {
         bar(&painter, groove, force_n / (BEYOND_CEILING * ceiling_n), colour);
     }
     painter.vline(mark, bars.top()..=bars.bottom(), egui::Stroke::new(2.5, theme::now().text));
-    let words = format!("ceiling {ceiling_n:.0} N");
+    let words = text::roles::ceiling(ceiling_n);
     let at = pos2(mark, inner.top() + 2.0);
     painter.text(at, Align2::CENTER_TOP, words, theme::regular(14.0), theme::now().text_weak);
 }

@@ -2,7 +2,7 @@
 
 use egui::{Pos2, Rect, Vec2};
 use nalgebra::{Matrix4, Perspective3, Point3, Vector3, Vector4};
-use nima::config::Scene;
+use nima_world::scene::Scene;
 
 /// Vertical opening angle of the free view, rad.
 const FIELD_OF_VIEW: f32 = 0.62;

@@ -1,16 +1,18 @@
 //! What is drawn into the view on request: the ceiling around each tip, and coordinate frames. By egui's painter, over the triangles.
 
-use crate::console::text;
 use egui::{
     Align2, Button, Color32, Painter, PopupCloseBehavior, Rect, Shape, Stroke, Ui, UiBuilder,
     containers::menu::{MenuButton, MenuConfig},
     pos2, vec2,
 };
 use nalgebra::Vector3;
-use nima::config::Scene;
+use nima_world::scene::Scene;
 
-use super::{Camera, label, side_name, stage, stage::Arm};
-use crate::console::theme;
+use super::{
+    Camera, label, side_name,
+    stage::{self, Arm},
+};
+use crate::console::{text, theme};
 
 /// Length of a frame's axes, m.
 const AXIS_M: f32 = 0.016;
@@ -19,15 +21,15 @@ const RING: u32 = 64;
 /// On its switch, with its meaning.
 pub const SHOW: &str = text::field::SHOW;
 /// See [`SHOW`].
-pub const SHOW_MEANING: &str = text::field::SHOW_MEANING;
+pub const SHOW_MEANING: &str = text::field::SHOW_HOVER;
 /// The ceiling's switch.
 pub const CEILING: &str = text::field::CEILING;
 /// See [`CEILING`].
-pub const CEILING_MEANING: &str = text::field::CEILING_MEANING;
+pub const CEILING_MEANING: &str = text::field::CEILING_HOVER;
 /// The frames' switch.
 pub const FRAMES: &str = text::field::FRAMES;
 /// See [`FRAMES`].
-pub const FRAMES_MEANING: &str = text::field::FRAMES_MEANING;
+pub const FRAMES_MEANING: &str = text::field::FRAMES_HOVER;
 
 /// What is switched on.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -116,7 +118,7 @@ fn frames(scene: &Scene, arms: &[Arm]) -> Vec<Axes> {
     let base = [Vector3::x(), Vector3::y(), Vector3::z()];
     let endoscope = Camera::endoscope(scene);
     let mut frames = vec![
-        Axes { name: text::field::BASE_FRAME.to_owned(), origin_m: Vector3::zeros(), ways: base },
+        Axes { name: text::field::FRAME_WORLD.to_owned(), origin_m: Vector3::zeros(), ways: base },
         Axes {
             name: text::field::ENDOSCOPE.to_owned(),
             origin_m: endoscope.eye_m(),
@@ -151,7 +153,7 @@ fn axes(painter: &Painter, rect: Rect, camera: &Camera, frame: &Axes) {
 
 #[cfg(test)]
 mod tests {
-    use nima::device::Side;
+    use nima_machine::rig::Side;
 
     use super::*;
 

@@ -3,13 +3,12 @@
 //! The screen sends places (m, workspace); the hand that holds the handle goes there, and gives way under the force that is
 //! rendered. Nothing is led while the loop has stopped; a stop lets go.
 
-use crate::console::text;
 use egui::{Button, Key, Rect, Response, RichText, Ui, vec2};
 use nalgebra::Vector3;
-use nima::{runtime::Command, teleop::LoopState};
+use nima_machine::messages::{Command, LoopState};
 
 use super::{Camera, Live, Outbox};
-use crate::console::theme;
+use crate::console::{text, theme};
 
 /// One press of an arrow key, m.
 const STEP_M: f32 = 0.001;
@@ -47,7 +46,7 @@ impl Lead {
             self.at_m = None;
         }
         let place = Rect::from_min_size(rect.right_bottom() - vec2(250.0, 46.0), vec2(150.0, 34.0));
-        let text = if self.is_on() { text::field::LET_IT_GO } else { text::field::YOUR_TURN };
+        let text = if self.is_on() { text::field::LEAD_END } else { text::field::LEAD };
         let button =
             Button::selectable(self.is_on(), RichText::new(text).font(theme::strong(14.0))).frame_when_inactive(true);
         let clicked = ui.add_enabled_ui(runs, |ui| ui.put(rect.intersect(place), button).clicked()).inner;
@@ -55,7 +54,7 @@ impl Lead {
         if runs && (clicked || pressed) {
             self.at_m = match self.at_m {
                 Some(_) => None,
-                None => live.tick.map(|tick| tick.leader_m.cast()),
+                None => live.first_tick().map(|tick| tick.leader_m.cast()),
             };
             outbox.push(Command::Guide(self.at_m.map(Vector3::cast)));
         }

@@ -9,13 +9,13 @@ pub mod mesh;
 mod pick;
 pub mod stage;
 
-use crate::console::text;
 use std::sync::Arc;
 
 use eframe::{egui_glow, glow};
 use egui::{Align2, Color32, FontId, Painter, Pos2, Rect, Sense, Ui, pos2, vec2};
 use nalgebra::Vector3;
-use nima::{config::Scene, device::Side};
+use nima_machine::rig::Side;
+use nima_world::scene::Scene;
 
 pub use camera::Camera;
 
@@ -26,6 +26,7 @@ use self::{
     stage::{Arm, Pose},
 };
 use super::{live::Live, outbox::Outbox, panels::gauge, theme, widgets::force_sign};
+use crate::console::text;
 
 /// Two ways to look.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -347,11 +348,9 @@ fn axes(painter: &Painter, rect: Rect, camera: &Camera) {
 fn hint(painter: &Painter, rect: Rect, view: &SceneView) {
     let (words, colour) = match &view.problem {
         Some(problem) => (text::field::not_drawn(problem), theme::DARK.text),
-        None if view.lead.is_on() => (text::field::HOW_TO_LEAD.to_owned(), theme::DARK.text),
-        None if view.look == Look::Endoscope => {
-            (text::field::AS_THE_ENDOSCOPE_SEES_IT.to_owned(), theme::DARK.text_weak)
-        }
-        None => (text::field::HOW_TO_TURN.to_owned(), theme::DARK.text_weak),
+        None if view.lead.is_on() => (text::field::LEAD_HOVER.to_owned(), theme::DARK.text),
+        None if view.look == Look::Endoscope => (text::field::RESET_VIEW.to_owned(), theme::DARK.text_weak),
+        None => (text::field::VIEW_HOVER.to_owned(), theme::DARK.text_weak),
     };
     label(painter, rect.left_bottom() + vec2(16.0, -12.0), Align2::LEFT_BOTTOM, &words, theme::regular(12.5), colour);
 }

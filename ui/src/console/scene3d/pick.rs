@@ -1,11 +1,14 @@
 //! What the pointer is at in the view, in words with numbers, units and frame.
 
-use crate::console::text;
 use egui::{Pos2, Rect};
 use nalgebra::{Vector3, Vector4};
-use nima::config::Scene;
+use nima_world::scene::Scene;
 
-use super::{Camera, side_name, stage, stage::Arm};
+use super::{
+    Camera, side_name,
+    stage::{self, Arm},
+};
+use crate::console::text;
 
 /// As near as this a thing is meant, points.
 const REACH: f32 = 12.0;
@@ -25,8 +28,8 @@ fn of_arm(pointer: Pos2, rect: Rect, camera: &Camera, scene: &Scene, arm: &Arm, 
     let whose = if both { text::field::of_hand(&side_name(*side).to_lowercase()) } else { String::new() };
     let [measured, rendered] = stage::arrow_bases_m(pose, trocar_m, &camera.right());
     for (name, base_m, force_n) in [
-        (text::field::FORCE_MEASURED, measured, pose.measured_n),
-        (text::field::FORCE_RENDERED, rendered, pose.rendered_n),
+        (text::field::ARROW_MEASURED, measured, pose.measured_n),
+        (text::field::ARROW_RENDERED, rendered, pose.rendered_n),
     ] {
         let ends = [at(&base_m), at(&(base_m + force_n * stage::ARROW_M_PER_N))];
         if let ([Some(from), Some(to)], true) = (ends, stage::has_arrow(&force_n))
@@ -75,7 +78,7 @@ fn on_tissue(pointer: Pos2, rect: Rect, camera: &Camera, scene: &Scene) -> Optio
 #[cfg(test)]
 mod tests {
     use egui::pos2;
-    use nima::device::Side;
+    use nima_machine::rig::Side;
 
     use super::*;
 
@@ -103,7 +106,7 @@ mod tests {
     fn everything_on_the_stage_tells_its_name_and_its_numbers_where_it_is() {
         let arm = arm();
         let tip = at(&arm.pose.tip_m).unwrap();
-        assert!(tip.contains("x 10.0, y 18.0, z -4.0 mm (kbf)") && tip.contains("4.0 mm below"), "{tip}");
+        assert!(tip.contains("x 10.0, y 18.0, z -4.0 mm (world)") && tip.contains("4.0 mm below"), "{tip}");
         assert!(at(&arm.targets_m[0]).unwrap().starts_with("Target 1"));
         let scene = Scene::load("peg_transfer").unwrap();
         let [base_m, _] = stage::arrow_bases_m(&arm.pose, &arm.trocar_m, &Camera::of(&scene).right());
@@ -115,7 +118,7 @@ mod tests {
     #[test]
     fn the_tissue_is_found_where_it_is_pointed_at_and_nothing_beside_it() {
         let place_m = Vector3::new(0.02, -0.03, 0.0);
-        assert_eq!(at(&place_m).unwrap(), "Tissue at x 20.0, y -30.0, z 0.0 mm (kbf)");
+        assert_eq!(at(&place_m).unwrap(), "Tissue at x 20.0, y -30.0, z 0.0 mm (world)");
         assert_eq!(at(&Vector3::new(0.3, 0.0, 0.0)), None);
     }
 }

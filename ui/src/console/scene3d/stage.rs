@@ -2,10 +2,8 @@
 
 use egui::Color32;
 use nalgebra::Vector3;
-use nima::{
-    config::Scene,
-    device::{SIDES, Side},
-};
+use nima_machine::rig::{SIDES, Side};
+use nima_world::scene::Scene;
 
 use super::mesh::{Material, Mesh, Paint};
 use crate::console::theme;

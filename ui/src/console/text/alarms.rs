@@ -1,66 +1,90 @@
-//! Words of the room `alarms`.
+//! The alarms: cause and cure of each, the strip that pins the first, the list of the last.
 
 pub(in crate::console) const ALARM: &str = "Alarm";
 pub(in crate::console) const WARNING: &str = "Warning";
 pub(in crate::console) const NOTE: &str = "Note";
-pub(in crate::console) const THE_STOP_HAS_NOT: &str = "The stop has not reached the loop";
-pub(in crate::console) const CUT_THE_POWER_OF: &str = "Cut the power of the arm with its own emergency stop";
-pub(in crate::console) const THE_CONTROL_LOOP_SENDS: &str =
-    "The control loop sends nothing any more; the screen shows its last state";
-pub(in crate::console) const STOP_THE_ARM_BY: &str =
-    "Stop the arm by its own emergency stop, then start the console again";
-pub(in crate::console) const CLOSE_OTHER_PROGRAMS_OR: &str =
-    "Close other programs, or grant real-time priority (see timing)";
-pub(in crate::console) const LET_NOTHING_TOUCH_THE: &str =
-    "Let nothing touch the tool; if this stays, calibrate gravity again";
-pub(in crate::console) const ALL_ALARMS_F5: &str = "All alarms (F5)";
-pub(in crate::console) const THE_LAST_ALARMS_WITH: &str = "The last alarms with their times, also those that are gone.";
-pub(in crate::console) const ACKNOWLEDGE_A: &str = "Acknowledge (A)";
-pub(in crate::console) const ACKNOWLEDGED_THE_CAUSE_STILL: &str = "Acknowledged. The cause still lives.";
-pub(in crate::console) const THE_LAST_50_THE: &str =
-    "The last 50, the newest first. Times are UTC; in brackets the loop's own clock, as in the traces.";
-pub(in crate::console) const NOTHING_HAS_BEEN_WRONG: &str = "Nothing has been wrong so far.";
-pub(in crate::console) const ACKNOWLEDGE: &str = "Stops flashing and sound. The alarm stays until its cause is gone; a new one of the same or a higher priority \
-                           flashes and sounds again.";
-pub(in crate::console) const LIST: &str = "Alarms";
-pub(in crate::console) const SEEN: &str = ", acknowledged";
+pub(in crate::console) const STOP_STUCK_CAUSE: &str = "The stop has not reached the control loop";
+pub(in crate::console) const STOP_STUCK_CURE: &str = "Press the arm's own emergency stop to cut its power";
+pub(in crate::console) const LOOP_SILENT_CAUSE: &str =
+    "The control loop has stopped sending data; the screen shows its last state";
+pub(in crate::console) const LOOP_SILENT_CURE: &str = "Press the arm's own emergency stop, then restart the console";
+pub(in crate::console) const PERIODS_MISSED_CURE: &str =
+    "Close other programs, or grant real-time priority (see Timing)";
+pub(in crate::console) const BIAS_MOVED_CURE: &str =
+    "Make sure nothing touches the tool; if the alarm stays, calibrate gravity again";
+pub(in crate::console) const SHOW_ALL: &str = "All alarms (F5)";
+pub(in crate::console) const SHOW_ALL_HOVER: &str = "The last alarms with their times, including those that have ended";
+pub(in crate::console) const ACKNOWLEDGE: &str = "Acknowledge (A)";
+pub(in crate::console) const ACKNOWLEDGED_HOVER: &str = "Acknowledged; the cause is still present";
+pub(in crate::console) const LIST_NOTE: &str =
+    "The last 50 alarms, newest first. Times are UTC, with the loop's own clock in brackets, as in the traces.";
+pub(in crate::console) const LIST_EMPTY: &str = "No alarms so far";
+pub(in crate::console) const ACKNOWLEDGE_HOVER: &str = "Stops the flashing and the sound. The alarm stays until its cause is gone. A new alarm of the same \
+    or a higher priority flashes and sounds again.";
+pub(in crate::console) const LIST_TITLE: &str = "Alarms";
+pub(in crate::console) const ACKNOWLEDGED_REMARK: &str = ", acknowledged";
+pub(in crate::console) const NOW: &str = "now";
+pub(in crate::console) const ENDED: &str = "ended";
+pub(in crate::console) const PRESENT: &str = "still present";
+pub(in crate::console) const DEVICE_MISSING_CURE: &str =
+    "It is opened again automatically; check its cable and its power";
 
 /// A fault, and when it was first told, s on the loop's clock.
 pub(in crate::console) fn fault(cause: &str, t_s: f64) -> String {
     format!("{cause} (at {t_s:.1} s)")
 }
 
+/// A device that is missing.
+pub(in crate::console) fn device(name: &str, cause: &str) -> String {
+    format!("The {name} is missing: {cause}")
+}
+
+/// A device that is open and delivers nothing any more.
+pub(in crate::console) fn device_lost(name: &str, cause: &str) -> String {
+    format!("The {name} is lost: {cause}")
+}
+
+/// A fault of a device.
+pub(in crate::console) fn fault_of(name: &str, cause: &str) -> String {
+    format!("{cause} ({name})")
+}
+
 /// The loop is late too often.
 pub(in crate::console) fn periods_missed(percent: f64) -> String {
-    format!("The loop misses {percent:.1} % of its periods")
+    format!("The control loop misses {percent:.1} % of its periods")
 }
 
 /// Gravity is not what it was.
 pub(in crate::console) fn bias_moved(by_n: f64) -> String {
-    format!("The wrist sensor reads {by_n:.2} N at rest: its bias has moved since the calibration")
+    format!("The wrist sensor reads {by_n:.2} N without contact: its bias has drifted since the calibration")
 }
 
 /// Nothing plays a sound.
 pub(in crate::console) fn no_player(players: &str) -> String {
-    format!("No sound output: none of {players} is installed.")
+    format!("No alarm sound: none of these players is installed: {players}")
 }
 
 /// The player ended badly.
 pub(in crate::console) fn player_failed(status: &impl std::fmt::Display) -> String {
-    format!("The sound could not be played ({status}).")
+    format!("The alarm sound could not be played ({status})")
 }
 
 /// The player did not begin.
 pub(in crate::console) fn player_not_started(error: &impl std::fmt::Display) -> String {
-    format!("The sound could not be played: {error}.")
+    format!("The alarm sound could not be played: {error}")
 }
 
 /// The pinned alarm; `remarks` tell of others and of the acknowledgement.
 pub(in crate::console) fn pinned(priority: &str, cause: &str, began_utc: &str, remarks: &str) -> String {
-    format!("{priority}: {cause} - since {began_utc} UTC{remarks}")
+    format!("{priority}: {cause}, since {began_utc} UTC{remarks}")
 }
 
 /// A remark: others are folded under it.
 pub(in crate::console) fn others(count: usize) -> String {
     format!(" (+{count} more)")
+}
+
+/// An entry of the list.
+pub(in crate::console) fn entry(began: &str, until: &str, priority: &str, standing: &str) -> String {
+    format!("{began} to {until}: {priority}, {standing}")
 }

@@ -1,4 +1,4 @@
-//! Words of the room `common`.
+//! What several panels name alike.
 
 pub(in crate::console) const RIGHT: &str = "Right";
 pub(in crate::console) const LEFT: &str = "Left";

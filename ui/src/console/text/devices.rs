@@ -1,20 +1,19 @@
-//! Words of the room `devices`.
+//! The panel of devices: connection, data rate, faults.
 
-pub(in crate::console) const EVERYTHING_ON_THIS_RIG: &str =
-    "Everything on this rig is simulated: there are no devices.";
+pub(in crate::console) const NONE: &str = "This rig is simulated: it has no devices";
 pub(in crate::console) const DISCONNECT: &str = "Disconnect";
 pub(in crate::console) const CONNECT: &str = "Connect";
-pub(in crate::console) const A_LOST_DEVICE_IS: &str =
-    "A lost device is opened again by itself until it is disconnected.";
+pub(in crate::console) const CONNECT_HOVER: &str =
+    "A lost device is reconnected automatically until you press Disconnect";
 pub(in crate::console) const CLEAR_FAULTS: &str = "Clear faults";
-pub(in crate::console) const ONCE_NOBODY_IS_NEAR: &str =
-    "Once nobody is near the arm and the cause is gone: it may move again.";
-pub(in crate::console) const BEING_OPENED: &str = "being opened";
+pub(in crate::console) const CLEAR_FAULTS_HOVER: &str =
+    "Make sure that nobody is near the arm and the cause is gone: afterwards the arm may move again";
+pub(in crate::console) const OPENING: &str = "connecting";
 pub(in crate::console) const DISCONNECTED: &str = "disconnected";
 
 /// Why an arm stays disengaged.
 pub(in crate::console) fn not_to_be_engaged(side: &str, obstacle: &impl std::fmt::Display) -> String {
-    format!("The {side} arm cannot be engaged: {obstacle}.")
+    format!("The {side} arm cannot be engaged: {obstacle}")
 }
 
 /// What a device is.
@@ -30,6 +29,11 @@ pub(in crate::console) fn clear_faults_of(name: &str) -> String {
 /// How well a device delivers.
 pub(in crate::console) fn delivery(rate_hz: f64, lost: u64, damaged: u64, refused: u64) -> String {
     format!("{rate_hz:.0} Hz; lost {lost}, damaged {damaged}, refused {refused}")
+}
+
+/// How often a device was lost.
+pub(in crate::console) fn outages(count: u64, longest_s: f64) -> String {
+    format!("; lost {count} times since the start, at longest for {longest_s:.1} s")
 }
 
 /// A device that went.

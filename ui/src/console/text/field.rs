@@ -1,30 +1,30 @@
-//! Words of the room `field`.
+//! The 3-D view of the operating field.
 
 pub(in crate::console) const OPERATING_FIELD: &str = "Operating field";
 pub(in crate::console) const SHOW: &str = "Show";
-pub(in crate::console) const SHOW_MEANING: &str = "What else is drawn into the view.";
-pub(in crate::console) const CEILING: &str = "Ceiling around the tip";
-pub(in crate::console) const CEILING_MEANING: &str =
-    "The largest force that ever reaches the hand (N), as a sphere around each tip, to the scale of the arrows.";
+pub(in crate::console) const SHOW_HOVER: &str = "Choose what else is drawn in the view";
+pub(in crate::console) const CEILING: &str = "Force ceiling around the tip";
+pub(in crate::console) const CEILING_HOVER: &str =
+    "The largest force that can reach the hand (N), drawn as a sphere around each tip, at the scale of the arrows";
 pub(in crate::console) const FRAMES: &str = "Coordinate frames";
-pub(in crate::console) const FRAMES_MEANING: &str = "Base (kbf, the frame of all forces and places), trocar (axes of the base), tip (z along the shaft away from \
-                                  the tissue) and endoscope (z towards the viewer). Axes are 16 mm long.";
-pub(in crate::console) const BASE_FRAME: &str = "Base (kbf)";
+pub(in crate::console) const FRAMES_HOVER: &str = "World (the frame of all forces and positions), trocar (axes of the world), tip (z along the shaft, \
+    away from the tissue) and endoscope (z towards the viewer). Axes are drawn 16 mm long.";
+pub(in crate::console) const FRAME_WORLD: &str = "World";
 pub(in crate::console) const ENDOSCOPE: &str = "Endoscope";
 pub(in crate::console) const TROCAR: &str = "Trocar";
 pub(in crate::console) const TIP: &str = "Tip";
-pub(in crate::console) const YOUR_TURN: &str = "Your turn (M)";
-pub(in crate::console) const LET_IT_GO: &str = "Let it go (M)";
-pub(in crate::console) const FORCE_MEASURED: &str = "Force measured";
-pub(in crate::console) const FORCE_RENDERED: &str = "Force rendered";
-pub(in crate::console) const AS_THE_ENDOSCOPE_SEES_IT: &str = "As the endoscope sees it";
-pub(in crate::console) const HOW_TO_TURN: &str = "Drag to turn, wheel to zoom, double click to reset";
-pub(in crate::console) const HOW_TO_LEAD: &str =
-    "Drag to move the instrument, wheel or Page Up and Down for its height, arrow keys for small steps";
+pub(in crate::console) const LEAD: &str = "Drive by mouse (M)";
+pub(in crate::console) const LEAD_END: &str = "Let go (M)";
+pub(in crate::console) const ARROW_MEASURED: &str = "Measured force";
+pub(in crate::console) const ARROW_RENDERED: &str = "Rendered force";
+pub(in crate::console) const RESET_VIEW: &str = "Endoscope view";
+pub(in crate::console) const VIEW_HOVER: &str = "Drag to turn, wheel to zoom, double-click to reset";
+pub(in crate::console) const LEAD_HOVER: &str =
+    "Drag to move the instrument, wheel or Page Up and Page Down to change its height, arrow keys for small steps";
 
 /// The view stays empty.
 pub(in crate::console) fn not_drawn(problem: &str) -> String {
-    format!("The 3-D view cannot be drawn by this graphics driver: {problem}")
+    format!("This graphics driver cannot draw the 3-D view: {problem}")
 }
 
 /// At the sphere of the ceiling.
@@ -44,7 +44,7 @@ pub(in crate::console) fn of_hand(side: &str) -> String {
 
 /// A place in the base's frame, mm.
 pub(in crate::console) fn place([x, y, z]: [f32; 3]) -> String {
-    format!("x {x:.1}, y {y:.1}, z {z:.1} mm (kbf)")
+    format!("x {x:.1}, y {y:.1}, z {z:.1} mm (world)")
 }
 
 /// The tissue is pointed at.
@@ -54,7 +54,7 @@ pub(in crate::console) fn tissue(place: &str) -> String {
 
 /// An arrow is pointed at; the force in N, `whose` as from [`of_hand`].
 pub(in crate::console) fn arrow(name: &str, whose: &str, size_n: f32, [x, y, z]: [f32; 3]) -> String {
-    format!("{name}{whose}: {size_n:.2} N\nx {x:+.2}, y {y:+.2}, z {z:+.2} N (kbf)")
+    format!("{name}{whose}: {size_n:.2} N\nx {x:+.2}, y {y:+.2}, z {z:+.2} N (world)")
 }
 
 /// How deep the tip is in the tissue.

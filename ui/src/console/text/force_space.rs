@@ -1,9 +1,10 @@
-//! Words of the room `force_space`.
+//! The view of both forces in force space.
 
-pub(in crate::console) const MEANING: &str = "Both forces of the last six seconds in force space (N, axes of the workspace): a line each, a dot where they are now or \
-                       where a trace points. The three rings are the ellipsoid that holds 95 % of the difference between rendered and \
-                       measured, if it were normal, around the force measured now; how much it really holds stands below. The dashed \
-                       circle is the ceiling. Drag to turn, double click to reset.";
+pub(in crate::console) const HOVER: &str = "Measured and rendered force of the last six seconds in force space (N, world axes), one line each. \
+    The dot is the force now, or at the time under the pointer in a trace. The three rings are an \
+    ellipsoid around the force measured now; it contains 95 % of the errors (rendered minus measured) if \
+    they are normally distributed. The share that it really contains is written below. The dashed circle \
+    is the force ceiling. Drag to turn, double-click to reset.";
 
 /// What the canvas shows.
 pub(in crate::console) fn canvas(words: &str) -> String {
@@ -12,12 +13,12 @@ pub(in crate::console) fn canvas(words: &str) -> String {
 
 /// Before there is enough to work the ellipsoid out; two lines, parted by a semicolon.
 pub(in crate::console) fn too_short(seconds: f64) -> String {
-    format!("Last {seconds:.0} s; the error's ellipsoid needs a second of data")
+    format!("Last {seconds:.0} s; the error ellipsoid needs one second of data")
 }
 
 /// The ellipsoid (mean and half axes in N, share that it holds in percent); two lines, parted by a semicolon.
 pub(in crate::console) fn error(seconds: f64, mean_n: f64, [a, b, c]: [f64; 3], percent: f64) -> String {
     format!(
-        "Error, last {seconds:.0} s: mean {mean_n:.2} N, 95 % half axes; {a:.2}, {b:.2}, {c:.2} N (holds {percent:.0} %)"
+        "Error, last {seconds:.0} s: mean {mean_n:.2} N, 95 % half axes; {a:.2}, {b:.2}, {c:.2} N (contains {percent:.0} %)"
     )
 }

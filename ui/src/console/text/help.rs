@@ -14,76 +14,85 @@ pub(in crate::console) fn step_of(step: usize, steps: usize) -> String {
 pub(in crate::console) const TOUR: [(&str, &str); 4] = [
     (
         "Three views of one loop",
-        "Surgeon, Technician and Demo, by a click above or by F1, F2 and F3. They change what is shown, never what the loop does; \
-         only the demonstration switches modes, and only on simulated rigs.",
+        "Surgeon, Technician and Demo: click above, or press F1, F2 or F3. A view changes only what is shown, never what the control \
+         loop does. Only Demo changes the mode by itself, and only on simulated rigs.",
     ),
     (
         "The stop",
-        "Always above on the right, and Space or Escape from anywhere. It takes force and motion away at once and stays latched: out \
-         of it lead two steps, Release stop and Engage.",
+        "Stop is always at the top right, and on Space and Escape. It switches force and motion off at once and stays on. To start \
+         again, press Release stop, then Engage.",
     ),
     (
         "Two forces",
-        "Measured at the instrument: a line with one head. Rendered to the hand: a beaded line with two. Arrows in the view, bars \
-         against the ceiling, lines in the traces mean the same everywhere.",
+        "Measured at the instrument: a line with one arrowhead. Rendered to the hand: a beaded line with two arrowheads. Arrows, bars \
+         and traces use the same two styles.",
     ),
     (
-        "Ask the screen",
-        "Rest the pointer on any number: it tells its unit, its frame and its meaning. M lets you lead the instrument, E marks a \
-         moment in the traces, F4 opens the glossary.",
+        "Help on hover",
+        "Hold the pointer over any number to see its unit, its frame and its meaning. M: drive the instrument by mouse. E: mark a \
+         moment in the traces. F4: keys and glossary.",
     ),
 ];
 
-/// Words of the field.
-pub(in crate::console) const GLOSSARY: [(&str, &str); 22] = [
+/// Terms of the field and of this program.
+pub(in crate::console) const GLOSSARY: [(&str, &str); 25] = [
     (
         "Anchored",
-        "Our mode: the last measured force, corrected for what the hand did since, as far as such corrections have proven themselves.",
+        "Our mode: the last measured force, corrected for the hand's motion since then as far as earlier corrections reduced the error.",
     ),
-    ("Ceiling", "The largest force that ever reaches the hand, N."),
-    ("Clutch", "While it is pressed the hand moves freely and the follower rests."),
-    ("Condition", "How hard the columns of a model are to tell apart; 1 is perfect, above 10 000 hardly at all."),
-    ("Dead band", "Speed of the hand below which nothing is rendered: at standstill an impedance is unknown."),
+    ("Ceiling", "The largest force that can reach the hand, N."),
+    ("Clutch", "While it is pressed, the hand moves freely and the follower holds still."),
+    ("Condition", "How well the columns of a model can be told apart; 1 is perfect, above 10 000 hardly at all."),
+    ("Correspondence", "The rotation between the sensor under the tissue and the sensor at the wrist."),
+    (
+        "Dead band",
+        "Speed of the hand below which no force is rendered: at standstill an impedance cannot be identified.",
+    ),
     ("Degree", "N of the polynomial between motion and force; 0 means no correction."),
     ("Delay", "Time that a measurement takes from the follower to the hand, one way, ms."),
-    ("DFR", "Direct force reflection: the measured force, as late as it comes."),
+    ("DFR", "Direct force reflection: the measured force, delayed by the link."),
     ("Excitation", "How much the motion in the window varies. Without motion nothing can be identified."),
     ("Follower", "The robot arm with the instrument."),
-    ("Gain", "Factor between the force asked for and the force in the hand, without unit."),
-    ("Gate", "A stage between a model and the hand that may take force away, for a reason that it tells."),
-    ("Horizon", "The link's delay: how far ahead of its newest data the leader renders."),
-    ("IMA, NIMA", "(Nonlinear) impedance matching: the parameters of a law cross the link instead of forces."),
-    ("Interlock", "The state machine that alone permits force and motion."),
-    (
-        "kbf",
-        "The frame of the follower's base: z up, the tissue at rest at z = 0. Forces are the tissue's on the instrument.",
-    ),
+    ("Gain", "Ratio of the force in the hand to the force that the mode asks for, no unit."),
+    ("Gate", "A safety function between the model and the hand that can reduce or stop the force."),
+    ("Held out", "Data that were not used for a fit and therefore show its true error."),
+    ("Horizon", "The link's delay: how far ahead of its newest data the leader predicts the force."),
+    ("IMA, NIMA", "(Nonlinear) impedance matching: the link carries the tissue's impedance instead of the force."),
+    ("Interlock", "The state machine that permits force and motion; nothing else does."),
     ("Leader", "The haptic device in the hand."),
-    ("Measured", "The force at the tip of the instrument, now, N."),
-    ("Missed", "Periods in which the loop was not run in time; counted and skipped, never caught up."),
+    ("Measured", "The force at the tip of the instrument now, N."),
+    ("Missed", "Periods that the control loop missed because it was late; counted and skipped, never caught up."),
     ("Rendered", "The force commanded to the hand after all gates, N."),
-    ("Trocar", "Where the instrument goes through the wall; the remote centre of its motion."),
-    ("Wrench", "Force and torque together, as the wrist sensor reads them."),
+    (
+        "Tip force",
+        "The force at the tip, estimated from the wrist sensor without gravity and without the trocar's friction, N.",
+    ),
+    ("Trocar", "The port through which the instrument enters the body; the remote centre of its motion."),
+    (
+        "World",
+        "The frame of all forces and positions (kbf in the paper): z up, the tissue at rest at z = 0. Forces act on the instrument.",
+    ),
+    ("Wrench", "Force and torque together, as the wrist sensor measures them."),
 ];
 
 pub(in crate::console) const KEYS_HEADING: &str = "Keys";
-pub(in crate::console) const WORDS_HEADING: &str = "Words";
+pub(in crate::console) const WORDS_HEADING: &str = "Terms";
 
 /// Every key that does something, and what.
 pub(in crate::console) const KEYS: [(&str, &str); 13] = [
-    ("Space, Escape", "Stop. From anywhere; while a name is written, Escape alone."),
+    ("Space, Escape", "Stop, in every view. While you type a name, only Escape."),
     ("F1, F2, F3", "Surgeon, Technician, Demo."),
-    ("F4", "Keys and words: this list."),
-    ("F5", "The last alarms."),
-    ("A", "Acknowledges the alarms."),
-    ("E", "Marks this moment in the traces."),
-    ("M", "Lets you lead the instrument, or lets it go."),
-    ("Arrow keys", "A small step of the instrument while you lead it."),
-    ("Page Up, Page Down", "Its height while you lead it."),
-    ("Ctrl +, Ctrl -", "Everything larger or smaller."),
-    ("Tab, Shift Tab", "To the next control, or back. It gets a frame."),
-    ("Enter", "Presses the control that has the frame."),
-    ("Ctrl Tab", "The next tab of the group under the pointer."),
+    ("F4", "This list of keys and terms."),
+    ("F5", "The list of the last alarms."),
+    ("A", "Acknowledge the alarms."),
+    ("E", "Mark this moment in the traces."),
+    ("M", "Drive the instrument by mouse, or let it go."),
+    ("Arrow keys", "Move the instrument by a small step while you drive it."),
+    ("Page Up, Page Down", "Move the instrument up or down while you drive it."),
+    ("Ctrl +, Ctrl -", "Make everything larger or smaller."),
+    ("Tab, Shift Tab", "Select the next or the previous control; it gets a frame."),
+    ("Enter", "Press the selected control."),
+    ("Ctrl Tab", "Show the next tab of the group under the pointer."),
 ];
 pub(in crate::console) const GLOSSARY_WINDOW: &str = "Glossary";
 pub(in crate::console) const TOUR_WINDOW: &str = "Tour";

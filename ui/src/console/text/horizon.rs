@@ -1,10 +1,12 @@
-//! Words of the room `horizon`.
+//! The panel that compares the prediction errors of the modes.
 
 pub(in crate::console) const LAST_3_MIN: &str = "last 3 min";
+pub(in crate::console) const REFERENCE: &str = "reference";
+pub(in crate::console) const IN_USE: &str = " (in use)";
 
 /// How far ahead, and what the line in the bars is.
 pub(in crate::console) fn ahead(delay_ms: f64) -> String {
-    format!("{delay_ms:.0} ms ahead, last seconds; the line is delayed DFR")
+    format!("Mean error {delay_ms:.0} ms ahead, last seconds; line: delayed DFR")
 }
 
 /// Both means of the trend (figures, N).
@@ -19,7 +21,7 @@ pub(in crate::console) fn trend_name(trend: &str) -> String {
 
 /// The meaning of the trend.
 pub(in crate::console) fn trend_meaning(trend: &str) -> String {
-    format!("{trend}. Mean error at the horizon (N), second by second, up to three minutes.")
+    format!("{trend}\nMean prediction error (N) of each second, for up to three minutes")
 }
 
 /// The name of a bar.

@@ -1,13 +1,13 @@
-//! Words of the room `modes`.
+//! The rendering modes.
 
-pub(in crate::console) const LITERAL_NIMA: &str = "Literal (NIMA)";
-pub(in crate::console) const LINEAR_IMA: &str = "Linear (IMA)";
-pub(in crate::console) const DIRECT_DFR: &str = "Direct (DFR)";
+pub(in crate::console) const LITERAL: &str = "Literal (NIMA)";
+pub(in crate::console) const LINEAR: &str = "Linear (IMA)";
+pub(in crate::console) const DFR: &str = "Direct (DFR)";
 pub(in crate::console) const ANCHORED: &str = "Anchored";
-pub(in crate::console) const THE_PAPER_TO_THE: &str = "The paper to the letter: renders M X from the hand's own motion, degree chosen by the error inside the window. \
-             Renders nothing at standstill.";
-pub(in crate::console) const THE_PAPER_S_LINEAR: &str = "The paper's linear predecessor: the same with degree 1 only.";
-pub(in crate::console) const DIRECT_FORCE_REFLECTION_THE: &str =
-    "Direct force reflection: the measured force, as late as the link delivers it.";
-pub(in crate::console) const THE_LAST_MEASURED_FORCE: &str = "The last measured force, corrected by the identified impedance for what the hand did since. Falls back to \
-             direct reflection where a correction does not pay.";
+pub(in crate::console) const LITERAL_HOVER: &str = "Exactly as in the paper: renders M X from the hand's own motion, with the degree that has the \
+    smallest error inside the window. Renders no force at standstill.";
+pub(in crate::console) const LINEAR_HOVER: &str =
+    "The paper's linear predecessor: like Literal, but always with degree 1";
+pub(in crate::console) const DFR_HOVER: &str = "Direct force reflection: the measured force, delayed by the link";
+pub(in crate::console) const ANCHORED_HOVER: &str = "The last measured force, corrected by the identified impedance for the hand's motion since then. \
+    Where a correction does not reduce the error, it is plain direct reflection.";

@@ -1,4 +1,4 @@
-//! Words of the room `safety`.
+//! The safety panel: the interlock and the gates in a row.
 
 pub(in crate::console) const IDLE: &str = "Idle";
 pub(in crate::console) const READY: &str = "Ready";
@@ -6,21 +6,25 @@ pub(in crate::console) const ENGAGED: &str = "Engaged";
 pub(in crate::console) const CLUTCHED: &str = "Clutched";
 pub(in crate::console) const STOPPED: &str = "Stopped";
 pub(in crate::console) const FAULT: &str = "Fault";
-pub(in crate::console) const THE_OPERATOR_ASKED_FOR: &str = "the operator asked for it";
-pub(in crate::console) const THE_DEVICES_CAME: &str = "the devices came";
-pub(in crate::console) const A_DEVICE_WENT: &str = "a device went";
-pub(in crate::console) const DRIVES_OBEY_HAND_AND: &str = "drives obey, hand and tip agree";
-pub(in crate::console) const THE_CLUTCH: &str = "the clutch";
-pub(in crate::console) const THE_DRIVES_DID_NOT: &str = "the drives did not obey in time";
-pub(in crate::console) const NOBODY_HOLDS_THE_HANDLE: &str = "nobody holds the handle";
-pub(in crate::console) const SINCE_THE_LOOP_BEGAN: &str = "since the loop began";
-pub(in crate::console) const FORCE_AND_MOTION_EXIST: &str = "Force and motion exist in Engaged only. Stop and fault are latched: out of them it takes a release to Idle and a new \
-         engagement. What went away comes back as Idle. Nothing resumes by itself; only the clutch returns to Engaged.";
-pub(in crate::console) const FROM_EVERYWHERE: &str = "from everywhere";
-pub(in crate::console) const SIZE_OF_THE_FORCE: &str =
-    "Size of the force that the mode asks for now, and of what reaches the hand after all gates (N).";
+pub(in crate::console) const WHY_ASKED: &str = "requested by the operator";
+pub(in crate::console) const WHY_CONNECTED: &str = "the devices are connected";
+pub(in crate::console) const WHY_DISCONNECTED: &str = "a device was lost";
+pub(in crate::console) const WHY_AGREED: &str = "the drives are on, hand and tip are aligned";
+pub(in crate::console) const WHY_CLUTCH: &str = "the clutch";
+pub(in crate::console) const WHY_LATE: &str = "the drives did not switch on in time";
+pub(in crate::console) const WHY_ABSENT: &str = "nobody holds the handle";
+pub(in crate::console) const SINCE_START: &str = "since the loop started";
+pub(in crate::console) const INTERLOCK_HOVER: &str = "Force and motion are possible in Engaged only. Stop and fault are latched: press Release stop to \
+    return to Idle, then Engage. A device that reconnects returns to Idle. Nothing resumes by itself; \
+    only the clutch returns to Engaged.";
+pub(in crate::console) const FROM_ANY_STATE: &str = "from any state";
+pub(in crate::console) const FORCE_HOVER: &str =
+    "Size of the force that the mode asks for now, and of the force that reaches the hand after all gates (N)";
 pub(in crate::console) const NO_DEVICE: &str = "No device";
-pub(in crate::console) const A_FAULT: &str = "a fault";
+pub(in crate::console) const WHY_FAULT: &str = "a fault";
+pub(in crate::console) const ASKED: &str = "asked";
+pub(in crate::console) const HAND: &str = "hand";
+pub(in crate::console) const NEVER: &str = "never";
 
 /// Of which hand, where there are two.
 pub(in crate::console) fn of_hand(side: &str) -> String {
@@ -39,5 +43,5 @@ pub(in crate::console) fn interlock(whose: &str, state: &str) -> String {
 
 /// A gate in one sentence; `whose` as from [`of_hand`].
 pub(in crate::console) fn gate(name: &str, whose: &str, standing: &str, ticks: u64) -> String {
-    format!("Gate {name}{whose}: {standing}, acted on {ticks} ticks")
+    format!("Gate {name}{whose}: {standing}, acted in {ticks} ticks")
 }

@@ -1,6 +1,6 @@
-//! Words of the room `settings`.
+//! What can go wrong with the settings file.
 
-pub(in crate::console) const LAYOUT_LOST: &str = "The layout of the panels cannot be read; the default is used";
+pub(in crate::console) const LAYOUT_LOST: &str = "The panel layout cannot be read; the default layout is used";
 
 /// The file cannot be opened.
 pub(in crate::console) fn not_read(error: &impl std::fmt::Display) -> String {
@@ -9,7 +9,7 @@ pub(in crate::console) fn not_read(error: &impl std::fmt::Display) -> String {
 
 /// The file cannot be written.
 pub(in crate::console) fn not_kept(error: &impl std::fmt::Display) -> String {
-    format!("The settings are not kept: {error}")
+    format!("The settings cannot be saved: {error}")
 }
 
 /// The layout alone cannot be read.
@@ -19,10 +19,10 @@ pub(in crate::console) fn layout_lost(error: &impl std::fmt::Display) -> String 
 
 /// The file makes no sense and has another name now.
 pub(in crate::console) fn set_aside(error: &impl std::fmt::Display, name: &str) -> String {
-    format!("The settings were damaged ({error}); they are set aside as {name}, and the defaults are used")
+    format!("The settings file was damaged ({error}); it was renamed to {name}, and the defaults are used")
 }
 
 /// The file makes no sense.
 pub(in crate::console) fn damaged(error: &impl std::fmt::Display) -> String {
-    format!("The settings are damaged ({error}); the defaults are used")
+    format!("The settings file is damaged ({error}); the defaults are used")
 }

@@ -1,39 +1,43 @@
-//! Words of the room `timing`.
+//! The timing panel.
 
 pub(in crate::console) const WAKE_UP: &str = "Wake-up";
-pub(in crate::console) const FROM_THE_MOMENT_THE: &str = "From the moment the loop should wake to when it does (us).";
+pub(in crate::console) const WAKE_UP_HOVER: &str = "How late the loop wakes up after the start of its period (µs)";
 pub(in crate::console) const WORK: &str = "Work";
-pub(in crate::console) const ONE_TICK_GRAVITY_IDENTIFICATION: &str =
-    "One tick: gravity, identification, selection, rendering, gates (us).";
+pub(in crate::console) const WORK_HOVER: &str =
+    "Computing time of one tick: gravity, identification, selection, rendering and gates (µs)";
 pub(in crate::console) const SAMPLE_TO_FORCE: &str = "Sample to force";
-pub(in crate::console) const FROM_THE_ARRIVAL_OF: &str =
-    "From the arrival of the oldest measurement to when the force made from it was given to the handle (us).";
+pub(in crate::console) const SAMPLE_TO_FORCE_HOVER: &str =
+    "Time from the arrival of the oldest measurement until the force computed from it is sent to the handle (µs)";
 pub(in crate::console) const TICKS: &str = "Ticks";
-pub(in crate::console) const TICKS_EXECUTED_SINCE_THE: &str =
-    "Ticks executed since the loop began, and ticks that reached this screen in the last moment.";
+pub(in crate::console) const TICKS_HOVER: &str =
+    "Ticks since the loop started, and how many per second reach this screen";
 pub(in crate::console) const MISSED: &str = "Missed";
-pub(in crate::console) const PERIODS_IN_WHICH_THE: &str =
-    "Periods in which the loop was not run in time. They are counted and skipped, never caught up.";
+pub(in crate::console) const MISSED_HOVER: &str =
+    "Periods that the loop missed because it was late. They are counted and skipped, never caught up.";
 pub(in crate::console) const DROPPED: &str = "Dropped";
-pub(in crate::console) const TICKS_THAT_DID_NOT: &str =
-    "Ticks that did not reach this screen because it was busy. The loop never waits for it.";
+pub(in crate::console) const DROPPED_HOVER: &str =
+    "Ticks that this screen did not receive because it was busy. The loop never waits for the screen.";
 pub(in crate::console) const CONSOLE_FRAME: &str = "Console frame";
-pub(in crate::console) const REAL_TIME_PRIORITY_KEEPS: &str =
-    "Real-time priority keeps other programs from delaying the loop; locked memory keeps page faults away.";
+pub(in crate::console) const SCHEDULING_HOVER: &str =
+    "Real-time priority prevents other programs from delaying the loop; locked memory prevents page faults";
 pub(in crate::console) const REAL_TIME_PRIORITY: &str = "Real-time priority";
 pub(in crate::console) const LOCKED_MEMORY: &str = "Locked memory";
-pub(in crate::console) const FRAME: &str = "Time from one picture of this window to the next since it opened (31 ms asked; at rest not counted), and the work in it now.";
-pub(in crate::console) const FRAME_ROUGH: &str = "Time from one picture of this window to the next since it opened (31 ms asked; at rest not counted), and the work in it now. Edges in 3-D are not smoothed, \
-                                                 because this computer draws too slowly with it.";
+pub(in crate::console) const FRAME_HOVER: &str = "Time between two frames of this window since it opened (ms; target 31 ms, idle time not counted), \
+    and the work in the present frame";
+pub(in crate::console) const FRAME_HOVER_ROUGH: &str = "Time between two frames of this window since it opened (ms; target 31 ms, idle time not counted), \
+    and the work in the present frame. Edges in 3-D are not smoothed, because this computer would draw \
+    too slowly.";
+pub(in crate::console) const GRANTED: &str = "granted";
+pub(in crate::console) const REFUSED: &str = "refused";
 
 /// The last bar of a histogram.
 pub(in crate::console) fn and_more(from_us: f64) -> String {
-    format!("{from_us:.0} us and more")
+    format!("{from_us:.0} µs or more")
 }
 
 /// Any other bar.
 pub(in crate::console) fn from_to(from_us: f64, to_us: f64) -> String {
-    format!("{from_us:.0} to {to_us:.0} us")
+    format!("{from_us:.0} to {to_us:.0} µs")
 }
 
 /// What a bar holds.
@@ -43,17 +47,17 @@ pub(in crate::console) fn bar(name: &str, range: &str, ticks: &str, share: &str)
 
 /// A histogram in one sentence.
 pub(in crate::console) fn histogram(name: &str, late: &str, total: &str, deadline_us: f64) -> String {
-    format!("{name} histogram: {late} of {total} ticks later than the deadline of {deadline_us:.0} us")
+    format!("{name} histogram: {late} of {total} ticks exceeded the deadline of {deadline_us:.0} µs")
 }
 
 /// Under the line of the deadline.
 pub(in crate::console) fn deadline(deadline_us: f64) -> String {
-    format!("deadline {deadline_us:.0} us")
+    format!("deadline {deadline_us:.0} µs")
 }
 
 /// What the height of a histogram means.
 pub(in crate::console) fn log_scale(top: &str) -> String {
-    format!("log scale, top {top}")
+    format!("log scale, maximum {top}")
 }
 
 /// Missed periods, over the strip.
@@ -69,4 +73,14 @@ pub(in crate::console) fn missed_periods(words: &str) -> String {
 /// A bar of the strip.
 pub(in crate::console) fn missed_at(age_s: usize, count: &str) -> String {
     format!("{age_s} s ago: {count} periods missed")
+}
+
+/// Ticks so far, and their rate.
+pub(in crate::console) fn ticks_at(ticks: &str, rate_hz: f64) -> String {
+    format!("{ticks} at {rate_hz:.0} Hz")
+}
+
+/// Time between two frames (median and 99th percentile) and the work in one, ms.
+pub(in crate::console) fn frame([p50_ms, p99_ms]: [f64; 2], work_ms: f64) -> String {
+    format!("p50 {p50_ms:.0}, p99 {p99_ms:.0}, work {work_ms:.0} ms")
 }

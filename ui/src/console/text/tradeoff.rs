@@ -1,28 +1,29 @@
-//! Words of the room `tradeoff`.
+//! The panel that measures computing time against accuracy.
 
-pub(in crate::console) const CANCELLED_EARLIER_FIGURES_WERE: &str = "Cancelled. Earlier figures were kept.";
-pub(in crate::console) const THE_MEASUREMENT_BROKE_OFF: &str = "The measurement broke off. Try again.";
-pub(in crate::console) const NOT_MEASURED_YET_IT: &str = "Not measured yet. It takes some seconds; the loop goes on.";
-pub(in crate::console) const RUNS_EVERY_CHOICE_OVER: &str = "Runs every choice over six seconds of this scene on an ordinary background thread. Other work on this \
-                       computer makes the times longer and their p99 uncertain.";
-pub(in crate::console) const MEASURE_ON_THIS_MACHINE: &str = "Measure on this machine...";
+pub(in crate::console) const CANCELLED: &str = "Cancelled. The earlier results were kept.";
+pub(in crate::console) const FAILED: &str = "The measurement failed. Try again.";
+pub(in crate::console) const NOT_MEASURED: &str =
+    "Not measured yet. It takes a few seconds while the loop keeps running.";
+pub(in crate::console) const MEASURE_HOVER: &str = "Runs every combination of mode, degree and window on six seconds of this scene, in a background \
+    thread without real-time priority. Other work on this computer makes the times longer and their p99 \
+    uncertain.";
+pub(in crate::console) const MEASURE: &str = "Measure on this machine…";
 pub(in crate::console) const CANCEL: &str = "Cancel";
-pub(in crate::console) const STOPS_MEASURING_AT_ONCE: &str =
-    "Stops measuring at once. Figures measured before are kept.";
-pub(in crate::console) const NOTHING_MEASURED_BEATS_THESE: &str =
-    "Nothing measured beats these in both (cheapest first):";
-pub(in crate::console) const THE_PARETO_FRONT_EVERY: &str = "The Pareto front: every other point costs more time or errs more. In anchored mode the window's model is one of \
-         several experts, so degree and window change the error by a few hundredths only.";
+pub(in crate::console) const CANCEL_HOVER: &str = "Stops measuring at once; earlier results are kept";
+pub(in crate::console) const FRONT: &str = "Best choices, cheapest first:";
+pub(in crate::console) const FRONT_HOVER: &str = "The Pareto front: every other choice takes more time or has a larger error. In anchored mode the \
+    window's model is only one of several predictors, so degree and window change the error by a few \
+    hundredths only.";
 pub(in crate::console) const APPLY: &str = "Apply";
-pub(in crate::console) const DEGREE_OR_WINDOW_DIFFER: &str = "Degree or window differ from the loop's: the loop is restarted with them and comes back idle, without force. Engage \
-         it again when ready.";
-pub(in crate::console) const TAKEN_OVER_BY_THE: &str = "Taken over by the running loop at once.";
-pub(in crate::console) const RELEASE_THE_STOP_OR: &str =
-    "Release the stop or the fault first: a restart must not undo it.";
-pub(in crate::console) const NOTHING_MEASURED_BEATS_IT: &str = "\nNothing measured beats it in both.";
-pub(in crate::console) const ONE_TICK_US: &str = "One tick (us)";
+pub(in crate::console) const APPLY_BY_RESTART: &str = "Degree or window differ from those in use: the loop restarts and is then idle, without force. Press \
+    Engage when you are ready.";
+pub(in crate::console) const APPLY_AT_ONCE: &str = "Applied to the running loop at once";
+pub(in crate::console) const APPLY_DISABLED_HOVER: &str =
+    "Press Release stop first: a restart must not clear a stop or a fault";
+pub(in crate::console) const ON_FRONT: &str = "\nNo other choice is both faster and more accurate";
+pub(in crate::console) const TIME_AXIS: &str = "One tick (µs)";
 pub(in crate::console) const APPLIED_BY_RESTART: &str =
-    "Applied. The loop was restarted and is idle: engage it when ready.";
+    "Applied. The loop was restarted and is idle: press Engage when you are ready.";
 
 /// There is no thread for it.
 pub(in crate::console) fn not_started(error: &impl std::fmt::Display) -> String {
@@ -36,12 +37,12 @@ pub(in crate::console) fn measured(percent: f32) -> String {
 
 /// The loop goes on with this choice.
 pub(in crate::console) fn applied(choice: &str) -> String {
-    format!("Applied: {choice}.")
+    format!("Applied: {choice}")
 }
 
 /// The loop was restarted with it or not, by this reason.
 pub(in crate::console) fn not_applied(reason: &str) -> String {
-    format!("Not applied: {reason}.")
+    format!("Not applied: {reason}")
 }
 
 /// Everything about a point, in figures.
@@ -52,7 +53,7 @@ pub(in crate::console) fn point(
     [error_n, ratio]: [&str; 2],
 ) -> String {
     format!(
-        "{name}\none tick: median {median_us} us, p99 {p99_us} us\nmean error at {delay_ms:.0} ms: {error_n} N, {ratio} x DFR"
+        "{name}\none tick: median {median_us} µs, p99 {p99_us} µs\nmean error at {delay_ms:.0} ms: {error_n} N, {ratio} x delayed DFR"
     )
 }
 
@@ -63,5 +64,5 @@ pub(in crate::console) fn error_axis(unit: &str) -> String {
 
 /// The plot in one sentence.
 pub(in crate::console) fn plot(points: usize) -> String {
-    format!("Trade-off plot: {points} points, time of a tick against error at the horizon")
+    format!("Trade-off plot: {points} points, time of a tick against prediction error")
 }

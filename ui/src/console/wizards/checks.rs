@@ -1,21 +1,22 @@
 //! Lines of what must be met before a wizard begins, and switches for how a rig is built.
 
-use crate::console::text;
 use egui::{Checkbox, Ui};
-use nima::calibration::gravity::{Check, CheckState};
+use nima_core::calibration::gravity::{Check, CheckState};
 
 use crate::console::{
     alarms::sentence,
-    theme,
+    text, theme,
     widgets::{Sign, sign_ui},
 };
 
 /// One check with its figure, or with cause and cure.
 pub(super) fn check_ui(ui: &mut Ui, check: &Check) {
     let (what, colour, words) = match &check.state {
-        CheckState::Good if check.measured.is_empty() => (Sign::Disc, theme::now().engaged, "met".to_owned()),
-        CheckState::Good => (Sign::Disc, theme::now().engaged, format!("{}, met", check.measured)),
-        CheckState::Waiting => (Sign::Ring, theme::now().at_rest, "waiting".to_owned()),
+        CheckState::Good if check.measured.is_empty() => {
+            (Sign::Disc, theme::now().engaged, text::wizards::MET.to_owned())
+        }
+        CheckState::Good => (Sign::Disc, theme::now().engaged, text::wizards::met(&check.measured)),
+        CheckState::Waiting => (Sign::Ring, theme::now().at_rest, text::wizards::WAITING.to_owned()),
         CheckState::Bad { cause, cure } => (Sign::Triangle, theme::now().text, format!("{cause}; {cure}")),
     };
     line_ui(ui, what, colour, &format!("{}: {words}", sentence(check.name)));
@@ -23,8 +24,11 @@ pub(super) fn check_ui(ui: &mut Ui, check: &Check) {
 
 /// A check that is met or says what to do.
 pub(super) fn check_line(ui: &mut Ui, name: &str, met: bool, otherwise: &str) {
-    let (what, colour, words) =
-        if met { (Sign::Disc, theme::now().engaged, "met") } else { (Sign::Triangle, theme::now().text, otherwise) };
+    let (what, colour, words) = if met {
+        (Sign::Disc, theme::now().engaged, text::wizards::MET)
+    } else {
+        (Sign::Triangle, theme::now().text, otherwise)
+    };
     line_ui(ui, what, colour, &format!("{name}: {words}"));
 }
 
@@ -39,6 +43,6 @@ fn line_ui(ui: &mut Ui, what: Sign, colour: egui::Color32, words: &str) {
 pub(super) fn switch_ui(ui: &mut Ui, free: bool, on: bool, name: &str, meaning: &str) -> Option<bool> {
     let mut wanted = on;
     let switch = ui.add_enabled(free, Checkbox::new(&mut wanted, name));
-    let switch = switch.on_hover_text(meaning).on_disabled_hover_text(text::wizards::START_OVER_TO_CHANGE);
+    let switch = switch.on_hover_text(meaning).on_disabled_hover_text(text::wizards::SWITCH_DISABLED_HOVER);
     switch.changed().then_some(wanted)
 }

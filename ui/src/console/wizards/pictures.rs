@@ -1,16 +1,15 @@
 //! Small pictures that guide a hand: the tool in the orientation to take, a sphere that fills with directions, maps that fill with
 //! rows.
 
-use crate::console::text;
 use egui::{
     Align2, Color32, Painter, Pos2, Rect, Sense, Shape, Stroke, Ui, WidgetInfo, epaint::TextShape, lerp, pos2, vec2,
 };
 use nalgebra::{UnitQuaternion, Vector3};
-use nima::tip_force::{MAP, Map};
+use nima_core::tip_force::{MAP, Map};
 
-use crate::console::theme;
+use crate::console::{text, theme};
 
-/// The viewer stands in front of the base, a little to the right and above (`kbf`: x to the right, z up).
+/// The viewer stands in front of the base, a little to the right and above (`world`: x to the right, z up).
 fn on_paper(centre: Pos2, scale: f32, point: &Vector3<f64>) -> (Pos2, f64) {
     let (turn, raise) = (0.45_f64, 0.38_f64);
     let right = point.x * turn.cos() + point.y * turn.sin();
@@ -24,7 +23,7 @@ fn on_paper(centre: Pos2, scale: f32, point: &Vector3<f64>) -> (Pos2, f64) {
 pub(super) fn pose_picture(ui: &mut Ui, target: Option<&UnitQuaternion<f64>>, held: Option<&UnitQuaternion<f64>>) {
     let size = vec2(ui.available_width().min(320.0), 250.0);
     let (rect, response) = ui.allocate_exact_size(size, Sense::hover());
-    response.widget_info(|| WidgetInfo::labeled(egui::Role::Label, true, text::wizards::PICTURE_OF_THE_ORIENTATION));
+    response.widget_info(|| WidgetInfo::labeled(egui::Role::Label, true, text::wizards::POSE_PICTURE));
     let painter = ui.painter_at(rect);
     painter.rect_filled(rect, theme::CORNER, theme::now().groove);
     let (centre, scale) = (rect.center() - vec2(0.0, 22.0), rect.height() * 0.31);
@@ -40,16 +39,15 @@ pub(super) fn pose_picture(ui: &mut Ui, target: Option<&UnitQuaternion<f64>>, he
             let tilt = (target.inverse() * -Vector3::z()).angle(&(held.inverse() * -Vector3::z()));
             text::wizards::tilt_off(tilt.to_degrees())
         }
-        (None, Some(_)) => text::wizards::SOLID_THE_TOOL_AS.to_owned(),
-        _ => text::wizards::THE_ARM_DOES_NOT.to_owned(),
+        (None, Some(_)) => text::wizards::POSE_HELD.to_owned(),
+        _ => text::wizards::POSE_UNKNOWN.to_owned(),
     };
-    painter.text(
-        rect.center_bottom() - vec2(0.0, 8.0),
-        Align2::CENTER_BOTTOM,
-        caption,
-        theme::regular(12.5),
-        theme::now().text_weak,
-    );
+    caption_below(&painter, rect, caption);
+}
+
+fn caption_below(painter: &Painter, rect: Rect, words: String) {
+    let place = rect.center_bottom() - vec2(0.0, 8.0);
+    painter.text(place, Align2::CENTER_BOTTOM, words, theme::regular(12.5), theme::now().text_weak);
 }
 
 /// A square on the floor and the vertical, so that up is seen.
@@ -62,8 +60,8 @@ fn ground(painter: &Painter, centre: Pos2, scale: f32) {
 }
 
 /// Sensor (a disc with its x marked), shaft along z and a jaw at the end.
-fn tool(painter: &Painter, centre: Pos2, scale: f32, kbf_from_s1: &UnitQuaternion<f64>, solid: bool) {
-    let at = |x: f64, y: f64, z: f64| on_paper(centre, scale, &(kbf_from_s1 * Vector3::new(x, y, z))).0;
+fn tool(painter: &Painter, centre: Pos2, scale: f32, world_from_s1: &UnitQuaternion<f64>, solid: bool) {
+    let at = |x: f64, y: f64, z: f64| on_paper(centre, scale, &(world_from_s1 * Vector3::new(x, y, z))).0;
     let (colour, width) = if solid { (theme::now().measured, 3.0) } else { (theme::now().rendered, 1.5) };
     let stroke = Stroke::new(width, colour);
     let ring = (0..24).map(|i| {
@@ -95,7 +93,7 @@ pub(super) fn sphere_picture(
 ) {
     let size = vec2(ui.available_width().min(320.0), 250.0);
     let (rect, response) = ui.allocate_exact_size(size, Sense::hover());
-    let words = format!("{name}: {} taken", taken.len());
+    let words = text::wizards::recorded(name, taken.len());
     response.widget_info(|| WidgetInfo::labeled(egui::Role::Label, true, words.clone()));
     let painter = ui.painter_at(rect);
     painter.rect_filled(rect, theme::CORNER, theme::now().groove);
@@ -112,13 +110,7 @@ pub(super) fn sphere_picture(
         dot(&painter, centre, scale, &direction, 3.5, Stroke::new(1.5, theme::now().measured), true);
     }
     let caption = text::wizards::rings_and_discs(name);
-    painter.text(
-        rect.center_bottom() - vec2(0.0, 8.0),
-        Align2::CENTER_BOTTOM,
-        caption,
-        theme::regular(12.5),
-        theme::now().text_weak,
-    );
+    caption_below(&painter, rect, caption);
 }
 
 /// Equator and two meridians; the parts behind are left out.

@@ -10,28 +10,32 @@ mod record_ui;
 mod take;
 mod train_ui;
 
-use crate::console::text;
 use std::sync::Arc;
 
 use egui::Ui;
-use nima::{
-    calibration::{Verdict, correspondence::Correspondence},
-    device::Prompt,
-    runtime::Tick,
-    tip_force::{Model, Settings},
-};
-
-use super::{Binding, Step, Wish, save_card, steps_ui};
-use crate::console::theme;
 use job::{Checked, Job, Order, Shared, judge, look, train};
+use nima_core::{
+    calibration::{Verdict, correspondence::Correspondence},
+    tip_force::{Model, TrainingSettings},
+};
+use nima_machine::{messages::Tick, rig::Prompt};
 use take::{Clock, Take};
 
+use super::{
+    Binding, Saving,
+    frame::{Frame, Step, Wish, Wizard},
+};
+use crate::{
+    console::{text, theme},
+    words::Words as _,
+};
+
 const STEPS: [Step; 5] = [
-    Step { name: text::tip_force::READY, meaning: text::tip_force::IS_EVERYTHING_THERE_THAT },
-    Step { name: text::tip_force::RECORD, meaning: text::tip_force::WORK_THROUGH_THE_TROCAR },
-    Step { name: text::tip_force::TRAIN, meaning: text::tip_force::THE_NETWORK_LEARNS_FROM },
-    Step { name: text::tip_force::CHECK, meaning: text::tip_force::A_NEW_SHORT_RECORDING },
-    Step { name: text::tip_force::SAVE, meaning: text::tip_force::KEPT_FOR_THIS_SENSOR },
+    Step { name: text::tip_force::STEP_READY, meaning: text::tip_force::STEP_READY_HOVER },
+    Step { name: text::tip_force::STEP_RECORD, meaning: text::tip_force::STEP_RECORD_HOVER },
+    Step { name: text::tip_force::STEP_TRAIN, meaning: text::tip_force::STEP_TRAIN_HOVER },
+    Step { name: text::wizards::STEP_CHECK, meaning: text::tip_force::STEP_CHECK_HOVER },
+    Step { name: text::wizards::STEP_SAVE, meaning: text::wizards::STEP_SAVE_HOVER },
 ];
 const READY: usize = 0;
 const RECORD: usize = 1;
@@ -65,6 +69,12 @@ impl RecordedWith {
     }
 }
 
+impl Checked {
+    fn in_words(&self) -> String {
+        format!("{}: {}", self.check.judgement.verdict.words(), self.check.judgement.reason)
+    }
+}
+
 /// A network of this wizard.
 #[derive(Clone, Debug)]
 struct Trained {
@@ -87,18 +97,18 @@ impl Size {
 
     const fn name(self) -> &'static str {
         match self {
-            Self::Small => text::tip_force::SMALL,
-            Self::Usual => text::tip_force::USUAL,
-            Self::Large => text::tip_force::LARGE,
+            Self::Small => text::tip_force::SIZE_SMALL,
+            Self::Usual => text::tip_force::SIZE_USUAL,
+            Self::Large => text::tip_force::SIZE_LARGE,
         }
     }
 
-    fn settings(self) -> Settings {
-        let usual = Settings::default();
+    fn settings(self) -> TrainingSettings {
+        let usual = TrainingSettings::default();
         match self {
-            Self::Small => Settings { hidden: vec![16], ..usual },
+            Self::Small => TrainingSettings { hidden: vec![16], ..usual },
             Self::Usual => usual,
-            Self::Large => Settings { hidden: vec![64, 64], ..usual },
+            Self::Large => TrainingSettings { hidden: vec![64, 64], ..usual },
         }
     }
 }
@@ -106,7 +116,7 @@ impl Size {
 /// The wizard's memory.
 #[derive(Debug, Default)]
 pub struct TipForceWizard {
-    step: usize,
+    frame: Frame,
     clock: Clock,
     /// What the last tick brought.
     sources: ready_ui::Sources,
@@ -123,53 +133,9 @@ pub struct TipForceWizard {
     checked: Option<Checked>,
     /// What went wrong last, or what was put away.
     told: Option<String>,
-    by: [String; 2],
-    saved: Option<String>,
 }
 
 impl TipForceWizard {
-    /// Takes in one tick of the loop. Rows are taken in the two steps that record, and only while that was started.
-    pub fn tick(&mut self, tick: &Tick) {
-        let (now_s, broken) = self.clock.at(tick.t_s);
-        self.sources = ready_ui::sources(tick);
-        if broken {
-            [&mut self.recording, &mut self.proof].into_iter().flatten().for_each(Take::break_off);
-        }
-        match self.step {
-            RECORD => {
-                if let Some(take) = &mut self.recording {
-                    let free = take.recorder.rows() % SPELL_EVERY >= SPELL_EVERY - SPELL;
-                    take.step(now_s, tick, if free { Prompt::WorkFree } else { Prompt::Work });
-                }
-            }
-            CHECK => {
-                if let Some(take) = &mut self.proof {
-                    let contact = take.recorder.rows() < CHECK_WORK;
-                    take.step(now_s, tick, if contact { Prompt::Work } else { Prompt::WorkFree });
-                    if take.recorder.rows() >= CHECK_ROWS {
-                        take.running = false;
-                    }
-                }
-            }
-            _ => {}
-        }
-    }
-
-    /// What the person at the arm is to do now.
-    pub fn prompt(&self) -> Prompt {
-        let take = match self.step {
-            RECORD => self.recording.as_ref(),
-            CHECK => self.proof.as_ref(),
-            _ => None,
-        };
-        take.map_or(Prompt::Rest, Take::prompt)
-    }
-
-    /// Tells what became of the network that was handed out for saving.
-    pub fn tell_saved(&mut self, words: String) {
-        self.saved = Some(words);
-    }
-
     /// Rows recorded for the training.
     pub fn rows(&self) -> usize {
         self.recording.as_ref().map_or(0, |take| take.recorder.rows())
@@ -181,67 +147,21 @@ impl TipForceWizard {
     }
 
     /// The first goal that the recording has not met.
-    fn lacking(&self) -> Option<nima::tip_force::Goal> {
+    fn lacking(&self) -> Option<nima_core::tip_force::Goal> {
         self.recording.as_ref().and_then(|take| take.recorder.coverage().next())
     }
 
     fn may_record(&self, binding: &Binding) -> Result<(), &'static str> {
         if binding.correspondence.is_none() {
-            return Err(text::tip_force::THE_CORRESPONDENCE_IS_NOT);
+            return Err(text::tip_force::NEEDS_CORRESPONDENCE);
         }
-        if self.sources.iter().all(|there| *there) { Ok(()) } else { Err(text::tip_force::A_CHECK_IS_NOT) }
-    }
-
-    /// Whether the step after this one may begin, or why not.
-    fn may_go_on(&self, binding: &Binding) -> Result<(), &'static str> {
-        match self.step {
-            READY => self.may_record(binding),
-            RECORD if self.rows() == 0 => Err(text::tip_force::NOTHING_IS_RECORDED_YET),
-            RECORD if self.lacking().is_some() => Err(text::tip_force::NOT_ALL_GOALS_ARE),
-            TRAIN if self.is_training() => Err(text::tip_force::WAIT_FOR_THE_TRAINING),
-            TRAIN if self.trained.is_none() => Err(text::tip_force::NO_NETWORK_IS_TRAINED),
-            CHECK if self.checked.is_none() => Err(text::tip_force::THE_NETWORK_IS_NOT),
-            _ => Ok(()),
-        }
-    }
-
-    /// The wizard; gives a network that shall be saved.
-    pub fn ui(&mut self, ui: &mut Ui, binding: &Binding) -> Option<Model> {
-        self.take_in(binding);
-        let mut wish = steps_ui(ui, &STEPS, self.step, self.may_go_on(binding));
-        ui.add_space(theme::GAP);
-        if let Some(told) = &self.told {
-            ui.label(told);
-            ui.add_space(theme::GAP);
-        }
-        let mut save = None;
-        match self.step {
-            READY => self.ready_ui(ui, binding),
-            RECORD => wish = self.record_ui(ui, binding).or(wish),
-            TRAIN => self.train_ui(ui, binding),
-            CHECK => wish = self.check_ui(ui, binding).or(wish),
-            _ => save = self.save_ui(ui, binding),
-        }
-        match wish {
-            Some(Wish::GoTo(step)) => self.go_to(step),
-            Some(Wish::StartOver) => *self = Self { clock: self.clock, ..Self::default() },
-            None => {}
-        }
-        save
-    }
-
-    fn go_to(&mut self, step: usize) {
-        for take in [&mut self.recording, &mut self.proof].into_iter().flatten() {
-            take.running = false;
-        }
-        self.told = None;
-        self.step = step;
+        if self.sources.iter().all(|there| *there) { Ok(()) } else { Err(text::wizards::NEEDS_CHECKS) }
     }
 
     /// Results of the background, and a rig that has changed.
     fn take_in(&mut self, binding: &Binding) {
         if self.recorded_with.as_ref().is_some_and(|with| !with.fits(binding)) {
-            let told = text::tip_force::SENSOR_TOOL_OR_CORRESPONDENCE;
+            let told = text::tip_force::RECORDING_DISCARDED;
             *self = Self { clock: self.clock, told: Some(told.to_owned()), ..Self::default() };
         }
         if let Some((job, narrow)) = &mut self.training
@@ -266,9 +186,9 @@ impl TipForceWizard {
             Ok(model) => {
                 // What was found of the network before says nothing about this one.
                 (self.trained, self.proof, self.checked) = (Some(Trained { model, narrow }), None, None);
-                (self.judging, self.saved, self.told) = (None, None, None);
+                (self.judging, self.frame.saved, self.told) = (None, None, None);
             }
-            Err(_) if cancelled => self.told = Some(text::tip_force::CANCELLED_THE_RECORDING_IS.to_owned()),
+            Err(_) if cancelled => self.told = Some(text::tip_force::CANCELLED.to_owned()),
             Err(error) => self.told = Some(text::tip_force::not_trained(&error)),
         }
     }
@@ -283,7 +203,7 @@ impl TipForceWizard {
 
     fn start_training(&mut self, binding: &Binding) {
         let (Some(take), Some(store)) = (&self.recording, &binding.store) else {
-            self.told = Some(text::tip_force::NO_FOLDER_FOR_THE.to_owned());
+            self.told = Some(text::tip_force::NO_FOLDER.to_owned());
             return;
         };
         self.curves = Shared::default();
@@ -322,38 +242,132 @@ impl TipForceWizard {
         let Some(take) = self.proof.take() else { return };
         let sensor = binding.sensor.clone();
         match Job::start("tip-force-check", move |_| judge(&take.recorder, model, narrow, (&store, &sensor))) {
-            Ok(job) => (self.judging, self.saved) = (Some(job), None),
+            Ok(job) => (self.judging, self.frame.saved) = (Some(job), None),
             Err(error) => self.told = Some(error),
         }
-    }
-
-    fn save_ui(&mut self, ui: &mut Ui, binding: &Binding) -> Option<Model> {
-        let (Some(trained), Some(checked)) = (&self.trained, &self.checked) else {
-            ui.label(text::tip_force::THERE_IS_NO_CHECKED);
-            return None;
-        };
-        let accepted = checked.check.verdict == Verdict::Accepted;
-        let proof = format!("{}: {}.", checked.check.verdict.words(), checked.check.reason);
-        if !accepted {
-            ui.label(&proof);
-            ui.add_space(theme::GAP);
-        }
-        let [name, why] = &mut self.by;
-        let wanted = save_card(ui, binding, accepted.then_some(proof.as_str()), [name, why], self.saved.as_deref());
-        wanted.then(|| {
-            let (mut model, mut check) = (trained.model.clone(), checked.check.clone());
-            if !accepted {
-                check.override_by = Some(self.by[0].trim().to_owned());
-                check.override_reason = Some(self.by[1].trim().to_owned());
-            }
-            model.origin.check = Some(check);
-            model
-        })
     }
 
     /// Share of the training that is done, and how long it has taken, s.
     fn progress(&self) -> (f64, f64) {
         let curves = look(&self.curves);
         (curves.share(), curves.elapsed_s)
+    }
+}
+
+impl Wizard for TipForceWizard {
+    fn steps(&self) -> &'static [Step] {
+        &STEPS
+    }
+
+    fn frame(&self) -> &Frame {
+        &self.frame
+    }
+
+    fn frame_mut(&mut self) -> &mut Frame {
+        &mut self.frame
+    }
+
+    fn tick(&mut self, tick: &Tick, _: f64) {
+        let (now_s, broken) = self.clock.at(tick.t_s);
+        self.sources = ready_ui::sources(tick);
+        if broken {
+            [&mut self.recording, &mut self.proof].into_iter().flatten().for_each(Take::break_off);
+        }
+        match self.frame.step {
+            RECORD => {
+                if let Some(take) = &mut self.recording {
+                    let free = take.recorder.rows() % SPELL_EVERY >= SPELL_EVERY - SPELL;
+                    take.step(now_s, tick, if free { Prompt::WorkFree } else { Prompt::Work });
+                }
+            }
+            CHECK => {
+                if let Some(take) = &mut self.proof {
+                    let contact = take.recorder.rows() < CHECK_WORK;
+                    take.step(now_s, tick, if contact { Prompt::Work } else { Prompt::WorkFree });
+                    if take.recorder.rows() >= CHECK_ROWS {
+                        take.running = false;
+                    }
+                }
+            }
+            _ => {}
+        }
+    }
+
+    fn prompt(&self) -> Prompt {
+        let take = match self.frame.step {
+            RECORD => self.recording.as_ref(),
+            CHECK => self.proof.as_ref(),
+            _ => None,
+        };
+        take.map_or(Prompt::Rest, Take::prompt)
+    }
+
+    fn may_go_on(&self, binding: &Binding) -> Result<(), &'static str> {
+        match self.frame.step {
+            READY => self.may_record(binding),
+            RECORD if self.rows() == 0 => Err(text::tip_force::NEEDS_RECORDING),
+            RECORD if self.lacking().is_some() => Err(text::tip_force::NEEDS_GOALS),
+            TRAIN if self.is_training() => Err(text::tip_force::NEEDS_TRAINING_END),
+            TRAIN if self.trained.is_none() => Err(text::tip_force::NEEDS_NETWORK),
+            CHECK if self.checked.is_none() => Err(text::tip_force::NEEDS_CHECK),
+            _ => Ok(()),
+        }
+    }
+
+    fn refresh(&mut self, binding: &Binding) {
+        self.take_in(binding);
+    }
+
+    fn notice(&self) -> Option<&str> {
+        self.told.as_deref()
+    }
+
+    fn step_ui(&mut self, ui: &mut Ui, binding: &Binding) -> Option<Wish> {
+        match self.frame.step {
+            READY => self.ready_ui(ui, binding),
+            RECORD => return self.record_ui(ui, binding),
+            TRAIN => self.train_ui(ui, binding),
+            _ => return self.check_ui(ui, binding),
+        }
+        None
+    }
+
+    fn before_saving(&self, ui: &mut Ui) -> bool {
+        let (Some(_), Some(checked)) = (&self.trained, &self.checked) else {
+            ui.label(text::tip_force::NO_CHECKED_NETWORK);
+            return false;
+        };
+        if self.proof().is_none() {
+            ui.label(checked.in_words());
+            ui.add_space(theme::GAP);
+        }
+        true
+    }
+
+    fn proof(&self) -> Option<String> {
+        let checked = self.checked.as_ref()?;
+        (checked.check.judgement.verdict == Verdict::Accepted).then(|| checked.in_words())
+    }
+
+    fn made(&self, _: &Binding) -> Option<Saving> {
+        let mut model = self.trained.as_ref()?.model.clone();
+        let mut check = self.checked.as_ref()?.check.clone();
+        if self.proof().is_none() {
+            self.frame.override_in(&mut check.judgement);
+        }
+        model.origin.check = Some(check);
+        Some(Saving::TipForce(Box::new(model)))
+    }
+
+    fn go_to(&mut self, step: usize) {
+        for take in [&mut self.recording, &mut self.proof].into_iter().flatten() {
+            take.running = false;
+        }
+        self.told = None;
+        self.frame.step = step;
+    }
+
+    fn start_over(&mut self) {
+        *self = Self { clock: self.clock, ..Self::default() };
     }
 }

@@ -1,22 +1,23 @@
 //! The check: a new recording by prompts, then the network's errors beside the paper's and beside simpler methods.
 
-use crate::console::text;
 use egui::{Button, Grid, RichText, Ui, vec2};
 use egui_plot::{AxisHints, Bar, BarChart, Corner, Legend, Line, LineStyle, MarkerShape, Plot, PlotPoints, Points};
-use nima::{
-    calibration::Verdict,
-    tip_force::{Part, ROW_EVERY_S},
-};
+use nima_core::calibration::Verdict;
+use nima_recording::tip_force::ROW_EVERY_S;
+use nima_training::Part;
 
 use super::{
-    super::{Wish, pictures::progress},
+    super::{frame::Wish, pictures::progress},
     Binding, CHECK_ROWS, CHECK_WORK, RECORD, TipForceWizard,
     job::{BIN_N, BINS, Checked},
     take::words,
 };
-use crate::console::{
-    theme,
-    widgets::{card, figure, small},
+use crate::{
+    console::{
+        text, theme,
+        widgets::{card, figure, small},
+    },
+    words::Words as _,
 };
 
 const AXES: [&str; 3] = ["x", "y", "z"];
@@ -29,7 +30,7 @@ impl TipForceWizard {
     /// Gives the wish to go back and record more.
     pub(super) fn check_ui(&mut self, ui: &mut Ui, binding: &Binding) -> Option<Wish> {
         let mut wish = None;
-        card(ui, text::tip_force::A_NEW_RECORDING, text::tip_force::ROWS_THAT_THE_NETWORK, |ui| {
+        card(ui, text::tip_force::CHECK_TITLE, text::tip_force::CHECK_HOVER, |ui| {
             let (work_s, free_s) = (CHECK_WORK as f64 * ROW_EVERY_S, (CHECK_ROWS - CHECK_WORK) as f64 * ROW_EVERY_S);
             ui.label(RichText::new(self.task(work_s, free_s)).font(theme::strong(18.0)));
             if let Some(take) = &self.proof {
@@ -39,7 +40,7 @@ impl TipForceWizard {
                 self.check_button_ui(ui, binding);
                 if ui
                     .add(Button::new(text::tip_force::RECORD_MORE).min_size(vec2(130.0, 40.0)))
-                    .on_hover_text(text::tip_force::BACK_TO_THE_RECORDING)
+                    .on_hover_text(text::tip_force::RECORD_MORE_HOVER)
                     .clicked()
                 {
                     wish = Some(Wish::GoTo(RECORD));
@@ -50,9 +51,9 @@ impl TipForceWizard {
             let rows = self.proof.as_ref().map_or(none, |take| take.recorder.rows());
             progress(
                 ui,
-                text::tip_force::ROWS_OF_THE_CHECK,
+                text::tip_force::CHECK_PROGRESS,
                 rows as f64 / CHECK_ROWS as f64,
-                &format!("{rows} of {CHECK_ROWS}"),
+                &text::tip_force::rows_of(rows, CHECK_ROWS),
             );
         });
         if let Some(checked) = &self.checked {
@@ -65,10 +66,10 @@ impl TipForceWizard {
 
     fn task(&self, work_s: f64, free_s: f64) -> String {
         match &self.proof {
-            _ if self.judging.is_some() => text::tip_force::THE_NETWORK_IS_BEING.to_owned(),
+            _ if self.judging.is_some() => text::tip_force::CHECK_JUDGING.to_owned(),
             Some(take) if take.running => words(take.prompt()).to_owned(),
-            Some(_) => text::tip_force::PAUSED_PRESS_GO_ON.to_owned(),
-            None if self.checked.is_some() => text::tip_force::THE_CHECK_IS_DONE.to_owned(),
+            Some(_) => text::tip_force::CHECK_PAUSED.to_owned(),
+            None if self.checked.is_some() => text::tip_force::CHECK_DONE.to_owned(),
             None => text::tip_force::check_task(work_s, free_s),
         }
     }
@@ -77,12 +78,11 @@ impl TipForceWizard {
         let running = self.proof.as_ref().is_some_and(|take| take.running);
         let text = match &self.proof {
             Some(_) if running => text::tip_force::PAUSE,
-            Some(_) => text::tip_force::GO_ON_WITH_THE,
+            Some(_) => text::tip_force::CHECK_GO_ON,
             None if self.checked.is_some() => text::tip_force::CHECK_AGAIN,
-            None => text::tip_force::START_THE_CHECK,
+            None => text::tip_force::CHECK_START,
         };
-        let may =
-            if self.judging.is_some() { Err(text::tip_force::WAIT_FOR_THE_VERDICT) } else { self.may_record(binding) };
+        let may = if self.judging.is_some() { Err(text::tip_force::CHECK_WAIT) } else { self.may_record(binding) };
         let button = Button::new(RichText::new(text).font(theme::strong(16.0))).min_size(vec2(220.0, 40.0));
         let response = ui.add_enabled(running || may.is_ok(), button);
         if response.on_disabled_hover_text(may.err().unwrap_or_default()).clicked() {
@@ -99,14 +99,14 @@ impl TipForceWizard {
 
 fn verdict_ui(ui: &mut Ui, checked: &Checked) {
     let check = &checked.check;
-    card(ui, check.verdict.words(), text::tip_force::BY_THE_PAPER_S, |ui| {
-        let words = text::tip_force::verdict(&check.reason);
+    card(ui, check.judgement.verdict.words(), text::tip_force::VERDICT_HOVER, |ui| {
+        let words = text::tip_force::verdict(&check.judgement.reason);
         ui.label(RichText::new(words).font(theme::strong(14.0)));
-        if check.verdict != Verdict::Accepted {
-            ui.label(small(text::tip_force::IT_CAN_STILL_BE));
+        if check.judgement.verdict != Verdict::Accepted {
+            ui.label(small(text::tip_force::VERDICT_OVERRIDE));
         }
         let doubt = text::tip_force::doubt(100.0 * check.doubt_share, check.rows);
-        figure(ui, "In doubt", doubt, text::tip_force::ROWS_OUTSIDE_OF_WHAT);
+        figure(ui, text::tip_force::DOUBT, doubt, text::tip_force::DOUBT_HOVER);
     });
 }
 
@@ -118,8 +118,8 @@ fn mae_of(part: &Part, method: &str, axis: usize) -> String {
 }
 
 fn figures_ui(ui: &mut Ui, checked: &Checked) {
-    let meaning = text::tip_force::ALL_IN_N_IN;
-    card(ui, text::tip_force::ERRORS_IN_N_PER, meaning, |ui| {
+    let meaning = text::tip_force::ERRORS_HOVER;
+    card(ui, text::tip_force::ERRORS_TITLE, meaning, |ui| {
         let check = &checked.check;
         Grid::new("tip_force_check").num_columns(9).spacing(vec2(20.0, 5.0)).show(ui, |ui| {
             let heads = [
@@ -128,12 +128,10 @@ fn figures_ui(ui: &mut Ui, checked: &Checked) {
                 "paper",
                 "SD",
                 "paper",
-                text::tip_force::WRIST_FORCE_ALONE_MAE,
+                text::tip_force::WRIST_ALONE_MAE,
                 text::tip_force::FRICTION_MODEL_MAE,
             ];
-            for head in
-                heads.into_iter().chain([text::tip_force::NO_CONTACT_MEAN_PAPER, text::tip_force::NO_CONTACT_SD_PAPER])
-            {
+            for head in heads.into_iter().chain([text::tip_force::NO_CONTACT_MEAN, text::tip_force::NO_CONTACT_SD]) {
                 ui.label(small(head));
             }
             ui.end_row();
@@ -156,15 +154,10 @@ fn figures_ui(ui: &mut Ui, checked: &Checked) {
 
 fn plots_ui(ui: &mut Ui, checked: &Checked) {
     ui.columns(2, |columns| {
-        card(
-            &mut columns[0],
-            text::tip_force::MEASURED_AGAINST_PREDICTED,
-            text::tip_force::A_PERFECT_NETWORK_LIES,
-            |ui| {
-                regression_ui(ui, checked);
-            },
-        );
-        card(&mut columns[1], text::tip_force::ANSWERS_WITHOUT_CONTACT, text::tip_force::ALL_OF_IT_SHOULD, |ui| {
+        card(&mut columns[0], text::tip_force::REGRESSION_TITLE, text::tip_force::REGRESSION_HOVER, |ui| {
+            regression_ui(ui, checked);
+        });
+        card(&mut columns[1], text::tip_force::NO_CONTACT_TITLE, text::tip_force::NO_CONTACT_HOVER, |ui| {
             free_ui(ui, checked);
         });
     });
@@ -184,31 +177,34 @@ fn plot<'a>(name: &str, x: &str, y: &str) -> Plot<'a> {
 fn regression_ui(ui: &mut Ui, checked: &Checked) {
     let all = || checked.points.iter().flatten().flatten();
     let (low, high) = all().fold((-1.0_f64, 1.0_f64), |(low, high), value| (low.min(*value), high.max(*value)));
-    let response =
-        plot("tip_force_regression", text::tip_force::MEASURED_N, text::tip_force::PREDICTED_N).show(ui, |plot| {
+    let response = plot("tip_force_regression", text::tip_force::MEASURED_AXIS, text::tip_force::PREDICTED_AXIS).show(
+        ui,
+        |plot| {
             let ends = PlotPoints::from(vec![[low, low], [high, high]]);
             plot.line(Line::new("perfect", ends).color(theme::now().reference).style(LineStyle::dashed_loose()));
             for ((axis, points), colour) in AXES.iter().zip(&checked.points).zip(theme::now().series) {
                 let marks = Points::new(*axis, PlotPoints::from(points.clone())).shape(MarkerShape::Circle);
                 plot.points(marks.radius(1.6).color(colour));
             }
-        });
-    let described = text::tip_force::REGRESSION_PLOT_MEASURED_AGAINST;
+        },
+    );
+    let described = text::tip_force::REGRESSION_PLOT;
     response.response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, described));
 }
 
 fn free_ui(ui: &mut Ui, checked: &Checked) {
-    let response = plot("tip_force_free", text::tip_force::ANSWER_N, text::tip_force::SHARE_OF_ROWS).show(ui, |plot| {
-        for (k, ((axis, bins), colour)) in AXES.iter().zip(&checked.bins).zip(theme::now().series).enumerate() {
-            // Three narrow bars side by side in each bin.
-            let bar = |(i, share): (usize, &f64)| {
-                let middle_n = (i as f64 - (BINS / 2) as f64) * BIN_N;
-                Bar::new(middle_n + (k as f64 - 1.0) * BIN_N / 3.0, 100.0 * share).width(BIN_N / 3.0)
-            };
-            let bars = bins.iter().enumerate().filter(|(_, share)| **share > 0.0).map(bar).collect();
-            plot.bar_chart(BarChart::new(*axis, bars).color(colour));
-        }
-    });
-    let described = text::tip_force::HISTOGRAM_OF_THE_ANSWERS;
+    let response =
+        plot("tip_force_free", text::tip_force::NO_CONTACT_AXIS, text::tip_force::SHARE_AXIS).show(ui, |plot| {
+            for (k, ((axis, bins), colour)) in AXES.iter().zip(&checked.bins).zip(theme::now().series).enumerate() {
+                // Three narrow bars side by side in each bin.
+                let bar = |(i, share): (usize, &f64)| {
+                    let middle_n = (i as f64 - (BINS / 2) as f64) * BIN_N;
+                    Bar::new(middle_n + (k as f64 - 1.0) * BIN_N / 3.0, 100.0 * share).width(BIN_N / 3.0)
+                };
+                let bars = bins.iter().enumerate().filter(|(_, share)| **share > 0.0).map(bar).collect();
+                plot.bar_chart(BarChart::new(*axis, bars).color(colour));
+            }
+        });
+    let described = text::tip_force::NO_CONTACT_PLOT;
     response.response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, described));
 }

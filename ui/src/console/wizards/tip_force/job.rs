@@ -1,6 +1,5 @@
 //! Work in the background of the wizard: training and judging. The window never waits for it.
 
-use crate::console::text;
 use std::{
     fs,
     path::{Path, PathBuf},
@@ -11,13 +10,17 @@ use std::{
     thread::{Builder, JoinHandle},
 };
 
-use nima::{
-    calibration::{
-        Verdict,
-        store::{Store, keep_previous},
-    },
-    tip_force::{Check, DataSet, Estimator, Evaluation, Model, Part, Progress, Recorder, Selection, Settings, check},
+use nima_core::{
+    calibration::Verdict,
+    tip_force::{Check, Estimator, Model, TrainingSettings},
 };
+use nima_recording::{
+    store::{Store, keep_previous},
+    tip_force::{DataSet, Recorder, Selection},
+};
+use nima_training::{Evaluation, Part, Progress, check, train_model};
+
+use crate::console::text;
 
 /// A thread at work. Dropping it asks it to stop; it then ends by itself, and nobody hears of its result.
 #[derive(Debug)]
@@ -42,7 +45,7 @@ impl<T: Send + 'static> Job<T> {
     /// The result, once; `None` while it works.
     pub(super) fn take_result(&mut self) -> Option<Result<T, String>> {
         let thread = self.thread.take_if(|thread| thread.is_finished())?;
-        Some(thread.join().unwrap_or_else(|_| Err(text::tip_force::IT_BROKE_OFF_TRY.to_owned())))
+        Some(thread.join().unwrap_or_else(|_| Err(text::tip_force::JOB_FAILED.to_owned())))
     }
 }
 
@@ -116,7 +119,7 @@ pub(super) struct Order {
     /// An earlier data set of another recording is there and must be kept.
     pub(super) keep_previous: bool,
     /// How to train.
-    pub(super) settings: Settings,
+    pub(super) settings: TrainingSettings,
     /// Sensor and tool.
     pub(super) bound: [String; 2],
     /// Where.
@@ -145,7 +148,7 @@ pub(super) fn train(order: Order, curves: &Mutex<Curves>, cancel: &AtomicBool) -
     drop(recorder);
     let data = DataSet::read(&[path], &Selection::default()).map_err(|error| error.to_string())?;
     let told = |now: &Progress| look(curves).add(now);
-    Model::train(&data, &settings, [Some(sensor), Some(tool)], cancel, &told).map_err(|error| error.to_string())
+    train_model(&data, &settings, [Some(sensor), Some(tool)], cancel, &told).map_err(|error| error.to_string())
 }
 
 /// Bins of the histogram of answers without contact, and their width, N.
@@ -178,11 +181,11 @@ pub(super) fn judge(
     let path = path_of(store, "tip-force-check", sensor)?;
     write(recorder, &path, true)?;
     let mut estimator = Estimator::new(model);
-    let data = DataSet::read(&[path], &estimator.selection()).map_err(|error| error.to_string())?;
+    let data = DataSet::read(&[path], &Selection::of(estimator.model())).map_err(|error| error.to_string())?;
     let (mut check, evaluation) = check(&mut estimator, &data).map_err(|error| error.to_string())?;
-    if let (Some(goal), Verdict::Accepted) = (narrow, check.verdict) {
-        check.verdict = Verdict::InsufficientMotion;
-        check.reason = text::tip_force::trained_on_too_little(&goal.to_lowercase());
+    if let (Some(goal), Verdict::Accepted) = (narrow, check.judgement.verdict) {
+        check.judgement.verdict = Verdict::InsufficientMotion;
+        check.judgement.reason = text::tip_force::trained_on_too_little(&goal.to_lowercase());
     }
     let (points, bins) = (points(&data, &evaluation), bins(&data, &evaluation));
     Ok(Checked { check, part: evaluation.overall, points, bins })

@@ -1,12 +1,10 @@
 //! A recording that can be paused, broken off and gone on with, on a clock of its own.
 
-use crate::console::text;
-use nima::{
-    calibration::correspondence::Correspondence,
-    device::Prompt,
-    runtime::Tick,
-    tip_force::{MOST_ROWS, Recorder, RecorderPhase},
-};
+use nima_core::calibration::correspondence::Correspondence;
+use nima_machine::{messages::Tick, rig::Prompt};
+use nima_recording::tip_force::{MOST_ROWS, Recorder, RecorderPhase};
+
+use crate::{console::text, words::Words as _};
 
 /// A longer hole in the ticks, s, means that nobody has watched the rig meanwhile.
 const HOLE_S: f64 = 1.0;
@@ -78,15 +76,15 @@ impl Take {
     /// What the recording is doing, in words.
     pub(super) fn phase_words(&self) -> String {
         if self.recorder.rows() == MOST_ROWS {
-            return text::tip_force::THE_RECORDING_IS_FULL.to_owned();
+            return text::tip_force::PHASE_FULL.to_owned();
         }
         match self.recorder.phase() {
-            _ if !self.running => "paused".to_owned(),
-            _ if self.silent => text::tip_force::NOTHING_IS_TAKEN_THE.to_owned(),
+            _ if !self.running => text::tip_force::PHASE_PAUSED.to_owned(),
+            _ if self.silent => text::tip_force::PHASE_WRIST_SILENT.to_owned(),
             RecorderPhase::Lacks(lack) => text::tip_force::nothing_taken(lack.words()),
             RecorderPhase::Resting { share } => text::tip_force::taking_zero(100.0 * share),
-            RecorderPhase::NotMoved => text::tip_force::WAITING_UNTIL_THE_INSTRUMENT.to_owned(),
-            RecorderPhase::Recording | RecorderPhase::Full => "recording".to_owned(),
+            RecorderPhase::NotMoved => text::tip_force::PHASE_NOT_MOVED.to_owned(),
+            RecorderPhase::Recording | RecorderPhase::Full => text::tip_force::PHASE_RECORDING.to_owned(),
         }
     }
 }
@@ -94,9 +92,9 @@ impl Take {
 /// What the screen says to the person at the arm.
 pub(super) const fn words(prompt: Prompt) -> &'static str {
     match prompt {
-        Prompt::Work => text::tip_force::WORK_ON_THE_TISSUE,
-        Prompt::WorkFree => text::tip_force::MOVE_IN_AND_OUT,
-        _ => text::tip_force::LIFT_THE_TIP_OFF,
+        Prompt::Work => text::tip_force::TASK_WORK,
+        Prompt::WorkFree => text::tip_force::TASK_WORK_FREE,
+        _ => text::tip_force::TASK_REST,
     }
 }
 

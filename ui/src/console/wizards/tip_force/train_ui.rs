@@ -1,9 +1,8 @@
 //! The training: size, start and cancel, how far it is, and the losses as they fall.
 
-use crate::console::text;
 use egui::{Button, Ui, vec2};
 use egui_plot::{AxisHints, Corner, GridInput, GridMark, Legend, Line, LineStyle, Plot, PlotPoints};
-use nima::tip_force::ROW_EVERY_S;
+use nima_recording::tip_force::ROW_EVERY_S;
 
 use super::{
     super::pictures::progress,
@@ -11,7 +10,7 @@ use super::{
     job::{Curves, look},
 };
 use crate::console::{
-    theme,
+    text, theme,
     widgets::{card, figure, small},
 };
 
@@ -19,31 +18,31 @@ const HEIGHT: f32 = 330.0;
 
 impl TipForceWizard {
     pub(super) fn train_ui(&mut self, ui: &mut Ui, binding: &Binding) {
-        card(ui, text::tip_force::TRAIN, text::tip_force::FOUR_NETWORKS_LEARN_SIDE, |ui| {
+        card(ui, text::tip_force::STEP_TRAIN, text::tip_force::TRAIN_HOVER, |ui| {
             self.size_ui(ui);
             let rows = self.rows();
-            let told = format!("{rows} rows, {:.0} s", rows as f64 * ROW_EVERY_S);
-            figure(ui, text::tip_force::RECORDING, told, text::tip_force::IT_IS_WRITTEN_TO);
+            let told = text::tip_force::rows_and_time(rows, rows as f64 * ROW_EVERY_S);
+            figure(ui, text::tip_force::TRAIN_DATA, told, text::tip_force::TRAIN_DATA_HOVER);
             let (share, elapsed_s) = self.progress();
             ui.horizontal(|ui| {
                 if self.is_training() {
-                    if ui.add(Button::new(text::tip_force::CANCEL_TRAINING).min_size(vec2(180.0, 40.0))).clicked() {
+                    if ui.add(Button::new(text::tip_force::TRAIN_CANCEL).min_size(vec2(180.0, 40.0))).clicked() {
                         self.cancel_training();
                     }
                     return;
                 }
                 let text =
-                    if self.trained.is_some() { text::tip_force::TRAIN_AGAIN } else { text::tip_force::START_TRAINING };
+                    if self.trained.is_some() { text::tip_force::TRAIN_AGAIN } else { text::tip_force::TRAIN_START };
                 let button = ui.add_enabled(rows > 0, Button::new(text).min_size(vec2(180.0, 40.0)));
-                if button.on_disabled_hover_text(text::tip_force::RECORD_FIRST).clicked() {
+                if button.on_disabled_hover_text(text::tip_force::TRAIN_DISABLED_HOVER).clicked() {
                     self.start_training(binding);
                 }
             });
-            progress(ui, text::tip_force::TRAINING, share, &self.progress_words(share, elapsed_s));
+            progress(ui, text::tip_force::TRAIN_PROGRESS, share, &self.progress_words(share, elapsed_s));
         });
         self.outcome_ui(ui);
-        let meaning = text::tip_force::MEAN_SQUARE_ERROR_IN;
-        card(ui, text::tip_force::LOSS_OF_EACH_NETWORK, meaning, |ui| curves_ui(ui, &look(&self.curves)));
+        let meaning = text::tip_force::LOSS_HOVER;
+        card(ui, text::tip_force::LOSS_TITLE, meaning, |ui| curves_ui(ui, &look(&self.curves)));
     }
 
     fn cancel_training(&self) {
@@ -61,7 +60,7 @@ impl TipForceWizard {
                 let chosen = self.size == size;
                 let words = format!("{} ({hidden})", size.name());
                 let response = ui.add_enabled(!training, Button::selectable(chosen, words));
-                let meaning = text::tip_force::NEURONS_IN_THE_HIDDEN;
+                let meaning = text::tip_force::SIZE_HOVER;
                 if response.on_hover_text(meaning).clicked() {
                     self.size = size;
                 }
@@ -71,31 +70,31 @@ impl TipForceWizard {
 
     fn progress_words(&self, share: f64, elapsed_s: f64) -> String {
         match &self.training {
-            Some((job, _)) if job.is_cancelled() => "stopping".to_owned(),
-            Some(_) if share <= 0.0 => text::tip_force::WRITING_THE_RECORDING_THEN.to_owned(),
+            Some((job, _)) if job.is_cancelled() => text::tip_force::TRAIN_STOPPING.to_owned(),
+            Some(_) if share <= 0.0 => text::tip_force::TRAIN_STARTING.to_owned(),
             Some(_) => {
                 let left_s = elapsed_s * (1.0 - share) / share;
-                format!("{:.0} %, {elapsed_s:.0} s, at most {left_s:.0} s to go", 100.0 * share)
+                text::tip_force::time_left(100.0 * share, elapsed_s, left_s)
             }
-            None if self.trained.is_some() => "done".to_owned(),
-            None => text::tip_force::NOT_BEGUN.to_owned(),
+            None if self.trained.is_some() => text::tip_force::TRAIN_DONE.to_owned(),
+            None => text::tip_force::TRAIN_NOT_STARTED.to_owned(),
         }
     }
 
     fn outcome_ui(&self, ui: &mut Ui) {
         let Some(trained) = &self.trained else { return };
-        card(ui, text::tip_force::TRAINED, text::tip_force::THE_NETWORK_THAT_GOES, |ui| {
+        card(ui, text::tip_force::TRAINED_TITLE, text::tip_force::TRAINED_HOVER, |ui| {
             let origin = &trained.model.origin;
             let losses = origin.figures.iter().map(|member| member.validation_loss);
             let mean = losses.sum::<f64>() / origin.figures.len().max(1) as f64;
             let told = text::tip_force::networks_on_rows(origin.figures.len(), origin.rows);
-            figure(ui, text::tip_force::ENSEMBLE, told, text::tip_force::THEIR_MEAN_IS_THE);
-            figure(ui, text::tip_force::HELD_OUT_LOSS, format!("{mean:.4}"), text::tip_force::MEAN_OVER_THE_NETWORKS);
+            figure(ui, text::tip_force::ENSEMBLE, told, text::tip_force::ENSEMBLE_HOVER);
+            figure(ui, text::tip_force::HELD_OUT_LOSS, format!("{mean:.4}"), text::tip_force::HELD_OUT_LOSS_HOVER);
             if let Some(goal) = trained.narrow {
                 ui.label(text::tip_force::not_complete(&goal.to_lowercase()));
             }
             if origin.rows < self.rows() {
-                ui.label(small(text::tip_force::THE_RECORDING_HAS_GROWN));
+                ui.label(small(text::tip_force::TRAINED_STALE));
             }
         });
     }
@@ -105,10 +104,10 @@ fn curves_ui(ui: &mut Ui, curves: &Curves) {
     let decades = |mark: GridMark| power_of_ten(mark.value);
     let plot = Plot::new("losses")
         .height(HEIGHT)
-        .custom_x_axes(vec![AxisHints::new_x().label(text::tip_force::EPOCH)])
+        .custom_x_axes(vec![AxisHints::new_x().label(text::tip_force::EPOCH_AXIS)])
         .custom_y_axes(vec![
             AxisHints::new_y()
-                .label(text::tip_force::MEAN_SQUARE_ERROR_1)
+                .label(text::tip_force::LOSS_AXIS)
                 .min_thickness(52.0)
                 .formatter(move |mark, _| decades(mark)),
         ])

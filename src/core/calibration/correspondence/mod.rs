@@ -1,0 +1,153 @@
+//! Correspondence: how the sensor under the tissue (`s2`) is turned against the one at the wrist (`s1`).
+//!
+//! Takes pairs of forces (N) that both sensors felt at the same time, gravity-free, and the known part of the chain
+//! `s1_from_c` of each; finds `R = c_from_s2` that minimises `sum |s1_from_c_i R f2_i - f1_i|^2`. Without a chain
+//! (`s1_from_c` all identity) the result is `s1_from_s2`. Both sensors must tell the force on the instrument: for a sensor
+//! that tells the force on the tissue set [`Options::flip_s2`].
+//!
+//! The solver is Wahba's problem by singular values (Markley 1988) from a seeded consensus over pairs of pushes, so that a
+//! quarter of gross outliers does no harm; the paper's search over Euler angles runs beside it as a cross-check. The verdict
+//! rests on residuals of pushes that were held out, and on whether the pushes span all three directions at all: pushes along
+//! one line or in one plane are refused. Numbers that are not finite or not plausible are errors; data that are merely poor
+//! are a verdict with its reason.
+
+mod diagnosis;
+mod euler;
+mod excitation;
+mod fit;
+mod record;
+mod report;
+mod session;
+mod solver;
+mod stretch;
+#[cfg(test)]
+mod tests;
+
+use nalgebra::{UnitQuaternion, Vector3};
+use serde::{Deserialize, Serialize};
+
+use crate::frames::WristSample;
+
+pub use diagnosis::{Diagnosis, OffsetFrame};
+pub use excitation::Excitation;
+pub use fit::fit;
+pub use record::{CorrespondenceKind, CorrespondenceRecord};
+pub use report::{Agreement, CorrespondenceReport, Solution, Target};
+pub use session::{CorrespondenceSession, Missing, Phase, PushTarget, Refusal, SessionSettings, TARGETS};
+
+/// What both sensors felt in one push.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pair {
+    /// Gravity-free force at the wrist, N (`s1`).
+    pub f1_n: Vector3<f64>,
+    /// Force at the sensor under the tissue, N (`s2`).
+    pub f2_n: Vector3<f64>,
+    /// The known part of the chain; identity when there is none.
+    pub s1_from_c: UnitQuaternion<f64>,
+}
+
+impl Pair {
+    /// A pair without a chain: the rotation found is then `s1_from_s2`.
+    pub fn plain(f1_n: Vector3<f64>, f2_n: Vector3<f64>) -> Self {
+        Self { f1_n, f2_n, s1_from_c: UnitQuaternion::identity() }
+    }
+}
+
+/// A known correspondence at work: what the sensor under the tissue reads, told in the frame of the wrist sensor.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Correspondence {
+    /// Which rotation it is.
+    pub target: Target,
+    /// Takes readings of `s2` into the frame that `target` names.
+    pub rotation: UnitQuaternion<f64>,
+    /// The sensor under the tissue tells the force on the tissue, not on the instrument.
+    pub flip_s2: bool,
+}
+
+impl Correspondence {
+    /// Force on the tip, N (`s1`), of a reading of the sensor under the tissue, N (`s2`), taken with this sample; `None` where
+    /// the sample lacks a rotation of the chain.
+    pub fn tip_force_s1(&self, sample: &WristSample, tissue_n: &Vector3<f64>) -> Option<Vector3<f64>> {
+        let s1_from_s2 = match self.target {
+            Target::CFromS2 => sample.s1_from_c()? * self.rotation,
+            Target::S1FromS2 => self.rotation,
+        };
+        let on_tip_n = if self.flip_s2 { -tissue_n } else { *tissue_n };
+        Some(s1_from_s2 * on_tip_n)
+    }
+}
+
+/// How to fit.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Options {
+    /// Take the forces of `s2` with the opposite sign: it tells what presses on the tissue, not on the instrument.
+    pub flip_s2: bool,
+    /// When the result may be used.
+    pub limits: Limits,
+}
+
+/// What separates a calibration that may be used from one that may not.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Limits {
+    /// Fewest usable pushes.
+    pub least_pairs: usize,
+    /// Pushes weaker than this on either sensor are left out, N.
+    pub least_force_n: f64,
+    /// Least spread of the push directions along their weakest axis against their strongest, with any tenth of the pushes
+    /// left out. 1 is an even spread over all directions, 0 a plane; a cone of half angle 25 degrees has 0.22.
+    pub least_spread: f64,
+    /// Least force along the weakest axis, in multiples of the noise of the residuals: noise alone is no direction.
+    pub least_signal: f64,
+    /// Largest expected angle of error, degrees.
+    pub uncertainty_deg: f64,
+    /// Largest share of outliers.
+    pub outlier_share: f64,
+    /// Largest held-out mean absolute error of any axis, N (the paper's worst axis has 0.13).
+    pub held_out_mae_n: f64,
+    /// Least held-out coefficient of determination over all axes (the paper has 0.95).
+    pub least_r2: f64,
+    /// Largest departure of the ratio of both sensors' forces from one.
+    pub gain_error: f64,
+    /// Largest constant between both sensors, N.
+    pub offset_n: f64,
+    /// Largest angle between both solvers, degrees.
+    pub cross_check_deg: f64,
+}
+
+impl Default for Limits {
+    fn default() -> Self {
+        Self {
+            least_pairs: 6,
+            least_force_n: 0.5,
+            least_spread: 0.2,
+            least_signal: 3.0,
+            uncertainty_deg: 1.5,
+            outlier_share: 0.25,
+            held_out_mae_n: 0.15,
+            least_r2: 0.9,
+            gain_error: 0.1,
+            offset_n: 0.15,
+            cross_check_deg: 0.1,
+        }
+    }
+}
+
+/// Input that cannot be fitted: what, where, what to do.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[expect(missing_docs, reason = "the messages say it")]
+pub enum CorrespondenceError {
+    /// A number is missing or infinite.
+    #[error("pair {index}: a force or rotation is not finite; remove the pair")]
+    NotFinite {
+        /// Which pair, from 0.
+        index: usize,
+    },
+    /// A force that no push has.
+    #[error("pair {index}: {force_n:e} N is no force of a push; check the units (N)")]
+    NotPlausible {
+        /// Which pair, from 0.
+        index: usize,
+        force_n: f64,
+    },
+}

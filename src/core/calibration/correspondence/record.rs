@@ -1,0 +1,103 @@
+//! A correspondence as it is kept in a file.
+
+use nalgebra::UnitQuaternion;
+use serde::{Deserialize, Serialize};
+
+use super::{
+    Agreement, Correspondence, CorrespondenceReport, Diagnosis, Target,
+    report::{from_wxyz, parts},
+};
+use crate::calibration::{Judgement, Record, RecordHead};
+
+/// The only kind of this record: a file of another kind is refused on reading.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum CorrespondenceKind {
+    /// `kind = "correspondence"`.
+    #[default]
+    Correspondence,
+}
+
+/// A fitted correspondence with all that proves it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+#[expect(missing_docs, reason = "the names say it")]
+pub struct CorrespondenceRecord {
+    pub kind: CorrespondenceKind,
+    /// What it belongs to.
+    #[serde(flatten)]
+    pub head: RecordHead,
+    /// Whether it may be used.
+    #[serde(flatten)]
+    pub judgement: Judgement,
+    /// Which rotation it holds.
+    pub target: Target,
+    /// The sensor under the tissue told the force on the tissue: its sign was changed before the fit.
+    pub flip_s2: bool,
+    /// Pairs used.
+    pub pairs: usize,
+    /// The rotation (w, x, y, z).
+    pub rotation_wxyz: [f64; 4],
+    /// The same as roll, pitch, yaw, degrees; for the reader, not used on loading.
+    pub roll_pitch_yaw_deg: [f64; 3],
+    /// Expected angle of its error, degrees.
+    pub uncertainty_deg: f64,
+    /// Errors, fitted and held out, N.
+    pub agreement: Agreement,
+    /// Gain and constant between the sensors.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub diagnosis: Option<Diagnosis>,
+}
+
+impl CorrespondenceRecord {
+    /// The record of a report; `None` when the report has no rotation. `date` in ISO 8601, UTC.
+    pub fn of(report: &CorrespondenceReport, [sensor, tool]: [&str; 2], flip_s2: bool, date: &str) -> Option<Self> {
+        let solution = report.solution.as_ref()?;
+        Some(Self {
+            kind: CorrespondenceKind::Correspondence,
+            head: RecordHead::new(sensor, tool, date),
+            judgement: Judgement::new(report.verdict, report.reason.clone()),
+            target: solution.target,
+            flip_s2,
+            pairs: report.pairs - report.weak.len() - report.outliers.len(),
+            rotation_wxyz: solution.rotation_wxyz,
+            roll_pitch_yaw_deg: parts(&solution.rotation()).1,
+            uncertainty_deg: solution.uncertainty_deg,
+            agreement: solution.agreement,
+            diagnosis: solution.diagnosis,
+        })
+    }
+
+    /// For use.
+    pub fn correspondence(&self) -> Correspondence {
+        Correspondence { target: self.target, rotation: self.rotation(), flip_s2: self.flip_s2 }
+    }
+
+    /// The rotation.
+    pub fn rotation(&self) -> UnitQuaternion<f64> {
+        from_wxyz(&self.rotation_wxyz)
+    }
+}
+
+impl Record for CorrespondenceRecord {
+    const KIND: &'static str = "correspondence";
+
+    fn head(&self) -> &RecordHead {
+        &self.head
+    }
+
+    fn judgement(&self) -> &Judgement {
+        &self.judgement
+    }
+
+    fn fault(&self) -> Option<&'static str> {
+        let length = self.rotation_wxyz.iter().map(|part| part * part).sum::<f64>().sqrt();
+        // Written so that a NaN is a fault.
+        let unit = (length - 1.0).abs() < 1e-6;
+        if !unit {
+            return Some("rotation_wxyz is not a quaternion of length one");
+        }
+        let known = (0.0..=180.0).contains(&self.uncertainty_deg);
+        (!known).then_some("uncertainty_deg is no angle of 0 to 180")
+    }
+}

@@ -1,0 +1,130 @@
+//! What a fit of the correspondence says.
+
+use nalgebra::{UnitQuaternion, Vector3};
+use serde::{Deserialize, Serialize};
+
+use super::{Diagnosis, Excitation};
+use crate::{
+    calibration::{AxisStats, Residuals, Verdict},
+    frames,
+};
+
+/// Which rotation was found.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Target {
+    /// `c_from_s2`: the rest of the chain came with each push.
+    CFromS2,
+    /// `s1_from_s2`: no chain was given.
+    S1FromS2,
+}
+
+impl Target {
+    /// Its name.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::CFromS2 => "c_from_s2",
+            Self::S1FromS2 => "s1_from_s2",
+        }
+    }
+}
+
+/// How well the rotated force of `s2` tells that of `s1`, in the axes of `s1`, N; over the pushes that agree. Held out: each
+/// push (each tenth of them, in order, beyond 20) compared with a rotation fitted on the others.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Agreement {
+    /// Errors per axis, N.
+    pub residuals: Residuals,
+    /// Coefficient of determination per axis of the fit, `1 - sum e^2 / sum (f - mean)^2`.
+    pub r2_fitted: [f64; 3],
+    /// The same, held out.
+    pub r2_held_out: [f64; 3],
+    /// Of all axes together, of the fit.
+    pub r2_fitted_overall: f64,
+    /// Of all axes together, held out.
+    pub r2_held_out_overall: f64,
+}
+
+impl Agreement {
+    /// Of errors against the forces of `s1` (N), pair by pair.
+    pub(super) fn of(f1_n: &[Vector3<f64>], fitted_n: &[Vector3<f64>], held_out_n: &[Vector3<f64>]) -> Self {
+        let (r2_fitted, r2_fitted_overall) = determination(f1_n, fitted_n);
+        let (r2_held_out, r2_held_out_overall) = determination(f1_n, held_out_n);
+        let stats = |errors: &[Vector3<f64>]| AxisStats::of(errors.iter().copied());
+        let residuals = Residuals { fitted: stats(fitted_n), held_out: stats(held_out_n) };
+        Self { residuals, r2_fitted, r2_held_out, r2_fitted_overall, r2_held_out_overall }
+    }
+}
+
+/// Coefficient of determination per axis and overall; zero where the force did not vary.
+fn determination(force_n: &[Vector3<f64>], error_n: &[Vector3<f64>]) -> ([f64; 3], f64) {
+    let mean_n = force_n.iter().sum::<Vector3<f64>>() / force_n.len().max(1) as f64;
+    let squares = |vectors: &mut dyn Iterator<Item = Vector3<f64>>| {
+        vectors.fold(Vector3::zeros(), |sum: Vector3<f64>, v| sum + v.component_mul(&v))
+    };
+    let varied = squares(&mut force_n.iter().map(|force_n| force_n - mean_n));
+    let unexplained = squares(&mut error_n.iter().copied());
+    let share = |unexplained: f64, varied: f64| if varied > 0.0 { 1.0 - unexplained / varied } else { 0.0 };
+    (unexplained.zip_map(&varied, share).into(), share(unexplained.sum(), varied.sum()))
+}
+
+/// The rotation, and how much it is worth.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Solution {
+    /// Which rotation it is.
+    pub target: Target,
+    /// As a quaternion (w, x, y, z).
+    pub rotation_wxyz: [f64; 4],
+    /// As roll, pitch, yaw, degrees (`Rz Ry Rx`).
+    pub roll_pitch_yaw_deg: [f64; 3],
+    /// How well it explains the pushes.
+    pub agreement: Agreement,
+    /// Noise of both sensors together per axis, N: deviation of the residuals.
+    pub noise_n: f64,
+    /// Expected angle of its error (root mean square), degrees, for noise that differs from row to row.
+    pub uncertainty_deg: f64,
+    /// Angle to what the paper's search over Euler angles finds on the same pushes, degrees.
+    pub cross_check_deg: f64,
+    /// Gain and constant between the sensors; `None` when the pushes cannot tell.
+    pub diagnosis: Option<Diagnosis>,
+}
+
+impl Solution {
+    /// The rotation.
+    pub fn rotation(&self) -> UnitQuaternion<f64> {
+        from_wxyz(&self.rotation_wxyz)
+    }
+}
+
+/// A quaternion from its parts; normalised.
+pub(super) fn from_wxyz(wxyz: &[f64; 4]) -> UnitQuaternion<f64> {
+    let [w, x, y, z] = *wxyz;
+    UnitQuaternion::from_quaternion(nalgebra::Quaternion::new(w, x, y, z))
+}
+
+/// The parts of a rotation, `w` not negative, and its angles in degrees.
+pub(super) fn parts(rotation: &UnitQuaternion<f64>) -> ([f64; 4], [f64; 3]) {
+    let sign = if rotation.w < 0.0 { -1.0 } else { 1.0 };
+    let wxyz = [rotation.w, rotation.i, rotation.j, rotation.k].map(|part| part * sign);
+    (wxyz, frames::to_roll_pitch_yaw_deg(rotation).into())
+}
+
+/// All that a fit says.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct CorrespondenceReport {
+    /// Whether it may be used.
+    pub verdict: Verdict,
+    /// One sentence for the operator: what led to the verdict.
+    pub reason: String,
+    /// Pairs given.
+    pub pairs: usize,
+    /// Pairs too weak to use, by index from 0.
+    pub weak: Vec<usize>,
+    /// Pairs that the others contradict, by index from 0; not used.
+    pub outliers: Vec<usize>,
+    /// How the pushes are spread.
+    pub excitation: Excitation,
+    /// The rotation; `None` below three usable pushes. Only to be used with [`Verdict::Accepted`].
+    pub solution: Option<Solution>,
+}

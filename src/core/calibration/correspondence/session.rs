@@ -1,0 +1,323 @@
+//! Taking pushes live: a state machine fed with every sample, without a clock or a screen of its own.
+//!
+//! Takes the gravity-free force at the wrist (N, `s1`), the [`WristSample`] and the time (s); finds pushes by their force,
+//! keeps of each the mean over its stillest stretch near the peak, asks for the next direction and fits live. A push that is
+//! too short, moved, or felt by one sensor only is refused with its reason and can be repeated. Samples that are not finite
+//! or lack a source pause it. Memory is bounded and taken at the start.
+
+use nalgebra::{UnitQuaternion, Vector3};
+
+use super::{
+    CorrespondenceError, CorrespondenceReport, Options, Pair, fit,
+    stretch::{Reading, Stretch},
+};
+use crate::frames::WristSample;
+
+/// How pushes are taken.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SessionSettings {
+    /// A push begins above this force at the wrist, N.
+    pub begin_n: f64,
+    /// And ends below this one, N; also the most a sensor may read without contact.
+    pub end_n: f64,
+    /// Length of the stretch that is kept of a push, s; shorter pushes are refused.
+    pub stretch_s: f64,
+    /// Most the force may vary within that stretch (standard deviation of the worst axis of either sensor), N.
+    pub still_n: f64,
+    /// How long both sensors must rest before the first push, s.
+    pub rest_s: f64,
+    /// The chain comes from the tracker; without it the result is `s1_from_s2`, true for one orientation of the wrist only.
+    pub chain: bool,
+    /// How to fit.
+    pub options: Options,
+}
+
+impl Default for SessionSettings {
+    fn default() -> Self {
+        Self {
+            begin_n: 0.8,
+            end_n: 0.3,
+            stretch_s: 0.1,
+            still_n: 0.3,
+            rest_s: 0.5,
+            chain: true,
+            options: Options::default(),
+        }
+    }
+}
+
+/// What a sample lacks.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Missing {
+    /// The gravity-free force at the wrist: sensor silent or gravity not calibrated.
+    WristForce,
+    /// The sensor under the tissue.
+    TissueForce,
+    /// A rotation of the chain: arm or tracker.
+    Chain,
+    /// A finite number or a time that rises.
+    Sense,
+}
+
+/// Why a push was not kept.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Refusal {
+    /// It ended before a stretch was full.
+    TooShort,
+    /// The force did not stand still.
+    Moved {
+        /// Standard deviation of the stillest stretch, N.
+        by_n: f64,
+    },
+    /// The sensor under the tissue felt next to nothing.
+    MissedTissue,
+    /// As many pushes as a session holds.
+    Full,
+}
+
+/// Where the session is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Phase {
+    /// A source is missing; nothing is taken.
+    Missing(Missing),
+    /// Waiting for both sensors to rest without contact, before the first push.
+    Resting {
+        /// Share of the rest, 0 to 1.
+        share: f64,
+        /// What the wrist sensor reads, N; zero it when this stays above the limit.
+        f1_n: f64,
+        /// The same of the sensor under the tissue, N.
+        f2_n: f64,
+    },
+    /// Ready for the next push.
+    Ready,
+    /// The tool is being pushed; samples are taken.
+    Pushing {
+        /// Force at the wrist, N.
+        force_n: f64,
+        /// The kept stretch is long and still enough: the push may end.
+        enough: bool,
+    },
+    /// The push that just ended was kept, under this index.
+    Recorded(usize),
+    /// The push that just ended was not kept.
+    Refused(Refusal),
+}
+
+/// A push to ask for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PushTarget {
+    /// For the screen.
+    pub name: &'static str,
+    /// Which way the tool pushes, unit vector (`world`: x away from the base, y left, z up).
+    pub push_in_world: Vector3<f64>,
+}
+
+const S: f64 = std::f64::consts::FRAC_1_SQRT_2;
+
+const fn target(name: &'static str, x: f64, y: f64, z: f64) -> PushTarget {
+    PushTarget { name, push_in_world: Vector3::new(x, y, z) }
+}
+
+/// What is asked for, in this order: what a tool can do to tissue that lies under it.
+pub const TARGETS: [PushTarget; 9] = [
+    target("down", 0.0, 0.0, -1.0),
+    target("left", 0.0, 1.0, 0.0),
+    target("right", 0.0, -1.0, 0.0),
+    target("away from the base", 1.0, 0.0, 0.0),
+    target("towards the base", -1.0, 0.0, 0.0),
+    target("down and left", 0.0, S, -S),
+    target("down and right", 0.0, -S, -S),
+    target("down and away", S, 0.0, -S),
+    target("down and towards the base", -S, 0.0, -S),
+];
+
+/// A push counts for a target within 30 degrees (cosine).
+const NEAR_TARGET: f64 = 0.866;
+/// Pushes that a session holds.
+const MOST_PUSHES: usize = 64;
+
+#[derive(Clone, Copy, Debug)]
+struct Push {
+    pair: Pair,
+    /// Which way it went (unit, `world`); `None` without the arm's kinematics.
+    towards_in_world: Option<Vector3<f64>>,
+}
+
+/// The session. Nothing is allocated in [`step`](Self::step).
+#[derive(Clone, Debug)]
+pub struct CorrespondenceSession {
+    settings: SessionSettings,
+    pushes: Vec<Push>,
+    stretch: Stretch,
+    phase: Phase,
+    last_t_s: f64,
+    rested_s: f64,
+    world_from_s1: Option<UnitQuaternion<f64>>,
+}
+
+impl CorrespondenceSession {
+    /// A session without pushes.
+    pub fn new(settings: SessionSettings) -> Self {
+        Self {
+            settings,
+            pushes: Vec::with_capacity(MOST_PUSHES),
+            stretch: Stretch::new(settings.stretch_s),
+            phase: Phase::Resting { share: 0.0, f1_n: 0.0, f2_n: 0.0 },
+            last_t_s: f64::NEG_INFINITY,
+            rested_s: 0.0,
+            world_from_s1: None,
+        }
+    }
+
+    /// Takes one sample; gives where the session is. `Recorded` and `Refused` last until the next push begins.
+    pub fn step(&mut self, f1_n: Option<Vector3<f64>>, sample: &WristSample, t_s: f64) -> Phase {
+        let reading = match self.reading(f1_n, sample, t_s) {
+            Ok(reading) => reading,
+            Err(missing) => {
+                // What was on is lost: a push with a hole proves nothing.
+                self.stretch.clear();
+                self.phase = Phase::Missing(missing);
+                return self.phase;
+            }
+        };
+        let gap_s = t_s - self.last_t_s;
+        self.last_t_s = t_s;
+        self.phase = match self.phase {
+            Phase::Pushing { .. } => self.push_on(&reading, sample),
+            _ if self.rested_s < self.settings.rest_s => self.rest(&reading, gap_s),
+            Phase::Missing(_) | Phase::Resting { .. } if reading.f1_n.norm() > self.settings.end_n => {
+                // A push whose beginning was not seen is not taken.
+                Phase::Resting { share: 1.0, f1_n: reading.f1_n.norm(), f2_n: reading.f2_n.norm() }
+            }
+            Phase::Missing(_) | Phase::Resting { .. } => Phase::Ready,
+            _ if reading.f1_n.norm() >= self.settings.begin_n => {
+                self.stretch.clear();
+                self.push_on(&reading, sample)
+            }
+            phase => phase,
+        };
+        self.phase
+    }
+
+    fn reading(&self, f1_n: Option<Vector3<f64>>, sample: &WristSample, t_s: f64) -> Result<Reading, Missing> {
+        let f1_n = f1_n.ok_or(Missing::WristForce)?;
+        let f2_n = sample.tissue_n.ok_or(Missing::TissueForce)?;
+        let s1_from_c =
+            if self.settings.chain { sample.s1_from_c().ok_or(Missing::Chain)? } else { UnitQuaternion::identity() };
+        let sense = sample.is_finite() && f1_n.iter().all(|x| x.is_finite()) && t_s.is_finite() && t_s > self.last_t_s;
+        if sense { Ok(Reading { t_s, f1_n, f2_n, s1_from_c }) } else { Err(Missing::Sense) }
+    }
+
+    /// Both sensors must read about nothing for a while: one that was not zeroed is found before the first push.
+    fn rest(&mut self, reading: &Reading, gap_s: f64) -> Phase {
+        let (f1_n, f2_n) = (reading.f1_n.norm(), reading.f2_n.norm());
+        let resting = f1_n.max(f2_n) <= self.settings.end_n;
+        // A hole in the samples (or the first one, after no time at all) is not rest.
+        self.rested_s = if resting { self.rested_s + if gap_s < 0.1 { gap_s } else { 0.0 } } else { 0.0 };
+        if self.rested_s >= self.settings.rest_s {
+            return Phase::Ready;
+        }
+        Phase::Resting { share: self.rested_s / self.settings.rest_s, f1_n, f2_n }
+    }
+
+    fn push_on(&mut self, reading: &Reading, sample: &WristSample) -> Phase {
+        let force_n = reading.f1_n.norm();
+        if force_n < self.settings.end_n {
+            return self.finish();
+        }
+        if self.stretch.take(reading) {
+            self.world_from_s1 = sample.world_from_s1;
+        }
+        let enough = self.stretch.best().is_some_and(|best| best.deviation_n <= self.settings.still_n);
+        Phase::Pushing { force_n, enough }
+    }
+
+    fn finish(&mut self) -> Phase {
+        let Some(best) = self.stretch.best() else { return Phase::Refused(Refusal::TooShort) };
+        if best.deviation_n > self.settings.still_n {
+            return Phase::Refused(Refusal::Moved { by_n: best.deviation_n });
+        }
+        if best.pair.f2_n.norm() < self.settings.options.limits.least_force_n {
+            return Phase::Refused(Refusal::MissedTissue);
+        }
+        if self.pushes.len() == MOST_PUSHES {
+            return Phase::Refused(Refusal::Full);
+        }
+        // The wrist feels the reaction: the tool pushes the other way.
+        let towards_in_world = self.world_from_s1.and_then(|turn| (turn * -best.pair.f1_n).try_normalize(1e-9));
+        self.pushes.push(Push { pair: best.pair, towards_in_world });
+        Phase::Recorded(self.pushes.len() - 1)
+    }
+
+    /// Where the session is.
+    pub const fn phase(&self) -> Phase {
+        self.phase
+    }
+
+    /// The next push to ask for: the first direction that no push came near to. Without the arm's kinematics the directions
+    /// are asked for in turn. `None` when all are done; more pushes still help.
+    pub fn target(&self) -> Option<PushTarget> {
+        if self.pushes.iter().any(|push| push.towards_in_world.is_none()) {
+            return TARGETS.get(self.pushes.len()).copied();
+        }
+        let near = |target: &PushTarget| {
+            let mut towards = self.pushes.iter().filter_map(|push| push.towards_in_world);
+            towards.any(|towards| towards.dot(&target.push_in_world) >= NEAR_TARGET)
+        };
+        TARGETS.iter().find(|target| !near(target)).copied()
+    }
+
+    /// Directions in all.
+    pub const fn targets(&self) -> usize {
+        TARGETS.len()
+    }
+
+    /// Which ways the kept pushes went: unit vectors (`world`); those taken without the arm's kinematics are left out.
+    pub fn taken_in_world(&self) -> Vec<Vector3<f64>> {
+        self.pushes.iter().filter_map(|push| push.towards_in_world).collect()
+    }
+
+    /// How pushes are taken and fitted.
+    pub const fn settings(&self) -> &SessionSettings {
+        &self.settings
+    }
+
+    /// Fits with the forces under the tissue of the opposite sign from now on, or not; pushes taken before are kept.
+    pub const fn set_flip_s2(&mut self, flip_s2: bool) {
+        self.settings.options.flip_s2 = flip_s2;
+    }
+
+    /// How many pushes are kept.
+    pub const fn pushes(&self) -> usize {
+        self.pushes.len()
+    }
+
+    /// The pushes kept so far.
+    pub fn pairs(&self) -> Vec<Pair> {
+        self.pushes.iter().map(|push| push.pair).collect()
+    }
+
+    /// Removes one push; `false` when there is none of this index.
+    pub fn remove(&mut self, index: usize) -> bool {
+        let there = index < self.pushes.len();
+        if there {
+            self.pushes.remove(index);
+        }
+        there
+    }
+
+    /// Removes the newest push; `false` when there is none.
+    pub fn undo(&mut self) -> bool {
+        self.pushes.pop().is_some()
+    }
+
+    /// Fits what is there and judges it. Allocates; for the screen's thread.
+    pub fn report(&self) -> Result<CorrespondenceReport, CorrespondenceError> {
+        fit(&self.pairs(), &self.settings.options)
+    }
+}
+
+#[cfg(test)]
+#[path = "session_tests.rs"]
+mod tests;

@@ -1,0 +1,148 @@
+//! Gravity taken out sample by sample while the tool moves.
+//!
+//! An accelerometer beside the sensor reads gravity and motion together, and so does the sensor: what accelerates the tool is
+//! felt as `m a` on top of its weight. The models of gain and mass take off both at once as long as the reading is not delayed
+//! against the force, so a low-pass on the accelerometer may only be as slow as its noise needs. What remains is the turning of
+//! the tool about the accelerometer (`com x` angular acceleration, and the centripetal part). Measured in simulation (0.4 kg
+//! tool, centre of mass 60 mm off, tilting +-29 and +-11 degrees at 0.2 and 0.5 Hz, moving by 20 mm, 0.05 m/s^2 noise), mean
+//! error per axis: 0.025 N without filter, 0.021 N at 2 ms, 0.020 N at 5 ms, 0.031 N at 20 ms, 0.062 N at 50 ms; the same motion
+//! two and a half times as fast: 0.108, 0.108, 0.109, 0.129, 0.202 N. On the simulated
+//! rig (0.04 N noise of the force, no inertia) 0, 2, 5 and 20 ms leave 41.8, 40.4, 40.2 and 40.0 mN rms per axis at rest and 41.7,
+//! 40.5, 40.8 and 50.6 mN in motion. The default is 2 ms. Orientations by the arm have next to no noise and are not filtered.
+
+use nalgebra::Vector3;
+
+use super::{GravityModel, Source};
+use crate::frames::{Wrench, WristSample};
+
+/// Time constant within 2 % of the best measured, s.
+pub const DEFAULT_TIME_CONSTANT_S: f64 = 0.002;
+
+/// A model with a low-pass of first order on the field of gravity. Steps allocate nothing.
+#[derive(Clone, Debug)]
+pub struct Compensator {
+    model: GravityModel,
+    /// Share of a new reading that is taken, 0 to 1.
+    share: f64,
+    field_m_s2: Option<Vector3<f64>>,
+}
+
+impl Compensator {
+    /// For a loop of this period (s). A time constant (s) that is zero, negative or not finite means no filter.
+    pub fn new(model: GravityModel, time_constant_s: f64, period_s: f64) -> Self {
+        let share = -(-period_s / time_constant_s).exp_m1();
+        // The arm's orientation has next to no noise: a filter would only delay it.
+        let usable = model.source == Source::Imu
+            && time_constant_s > 0.0
+            && time_constant_s.is_finite()
+            && share > 0.0
+            && share <= 1.0;
+        Self { model, share: if usable { share } else { 1.0 }, field_m_s2: None }
+    }
+
+    /// The model in use.
+    pub const fn model(&self) -> &GravityModel {
+        &self.model
+    }
+
+    /// Forgets the filtered field; the next sample starts it anew.
+    pub const fn reset(&mut self) {
+        self.field_m_s2 = None;
+    }
+
+    /// The sample's wrench without gravity and bias (`s1`, N and Nm); `None`, and a fresh start, when the wrench is not finite
+    /// or the source of orientation is missing, not finite or dead.
+    pub fn step(&mut self, sample: &WristSample) -> Option<Wrench> {
+        let read = self.model.field_m_s2(sample).filter(|_| sample.raw.is_finite());
+        self.field_m_s2 = read.map(|read| self.field_m_s2.map_or(read, |old| old + (read - old) * self.share));
+        let gravity = self.model.predict(&self.field_m_s2?);
+        Some(Wrench {
+            force_n: sample.raw.force_n - gravity.force_n,
+            torque_nm: sample.raw.torque_nm - gravity.torque_nm,
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::{UnitQuaternion, Vector3};
+
+    use super::*;
+    use crate::{
+        calibration::{
+            AxisStats,
+            gravity::{ModelKind, Settings, fit, tests::Tool},
+        },
+        frames::GRAVITY_M_S2,
+    };
+
+    const STEP_S: f64 = 1e-3;
+
+    /// Orientation of the sensor and place of the accelerometer (m, world) of a hand that tilts and carries the tool.
+    fn motion(t_s: f64) -> (UnitQuaternion<f64>, Vector3<f64>) {
+        let wave = |hz: f64, phase: f64| (std::f64::consts::TAU * 0.4 * hz * t_s + phase).sin();
+        let world_from_s1 =
+            UnitQuaternion::from_euler_angles(0.5 * wave(0.5, 0.0), 0.2 * wave(1.3, 1.0), 0.3 * wave(0.3, 2.0));
+        (world_from_s1, Vector3::new(wave(0.7, 0.0), wave(1.1, 1.0), wave(0.9, 2.0)) * 0.02)
+    }
+
+    /// Second difference in time of a place.
+    fn acceleration_world(place: impl Fn(f64) -> Vector3<f64>, t_s: f64) -> Vector3<f64> {
+        (place(t_s + STEP_S) - place(t_s) * 2.0 + place(t_s - STEP_S)) / (STEP_S * STEP_S)
+    }
+
+    /// What sensor and accelerometer read in motion, inertia included.
+    fn moving_sample(tool: &mut Tool, t_s: f64) -> WristSample {
+        let (world_from_s1, _) = motion(t_s);
+        let mut sample = tool.sample(world_from_s1, 0.0, 0.0);
+        let gravity_world = Vector3::new(0.0, 0.0, -GRAVITY_M_S2);
+        let com_m = tool.com_m;
+        let centre_world = acceleration_world(|t| motion(t).1 + motion(t).0 * com_m, t_s);
+        let load_s1 = world_from_s1.inverse() * (gravity_world - centre_world) * tool.mass_kg;
+        sample.raw.force_n = load_s1 + tool.bias.force_n + tool.vector(0.01);
+        sample.raw.torque_nm = com_m.cross(&load_s1) + tool.bias.torque_nm;
+        let support_s1 = world_from_s1.inverse() * (acceleration_world(|t| motion(t).1, t_s) - gravity_world);
+        sample.acceleration_m_s2 = Some(tool.s1_from_imu.inverse() * support_s1 + tool.vector(0.05));
+        sample
+    }
+
+    fn error_n(time_constant_s: f64) -> f64 {
+        let mut tool = Tool::new(23, 0.4);
+        tool.com_m = Vector3::new(0.005, -0.004, 0.06);
+        let poses: Vec<_> = (0..12).map(|_| tool.imu_pose(0.005, 1e-3)).collect();
+        let report = fit(&poses, &Settings::default()).unwrap();
+        let mut compensator =
+            Compensator::new(report.fit_of(ModelKind::Physical).unwrap().model, time_constant_s, STEP_S);
+        let errors = (0..10_000).map(|i| compensator.step(&moving_sample(&mut tool, f64::from(i) * STEP_S)).unwrap());
+        AxisStats::of(errors.map(|wrench| wrench.force_n)).mean_mae()
+    }
+
+    #[test]
+    fn the_default_time_constant_is_as_good_as_the_best_in_motion() {
+        let errors = [0.0, 0.001, 0.002, 0.005, 0.010, 0.020, 0.050].map(|s| (s, error_n(s)));
+        println!("{errors:?}");
+        let default = error_n(DEFAULT_TIME_CONSTANT_S);
+        assert!(errors.iter().all(|(_, error)| default <= *error * 1.03), "{default}: {errors:?}");
+        assert!(error_n(0.020) > 1.2 * default, "{errors:?}");
+    }
+
+    #[test]
+    fn a_gap_starts_the_filter_anew() {
+        let mut tool = Tool::new(22, 0.4);
+        let poses: Vec<_> = (0..12).map(|_| tool.imu_pose(0.0, 0.0)).collect();
+        let model = fit(&poses, &Settings::default()).unwrap().chosen_fit().unwrap().model;
+        let mut compensator = Compensator::new(model, 1.0, STEP_S);
+        let upright = tool.sample(UnitQuaternion::identity(), 0.0, 0.0);
+        let tilted = tool.sample(UnitQuaternion::from_euler_angles(1.0, 0.0, 0.0), 0.0, 0.0);
+        assert!(compensator.step(&upright).unwrap().force_n.norm() < 1e-6);
+        // One slow second behind: most of the tilt is still missing.
+        assert!(compensator.step(&tilted).unwrap().force_n.norm() > 1.0);
+        assert!(compensator.step(&WristSample { acceleration_m_s2: None, ..tilted }).is_none());
+        assert!(compensator.step(&tilted).unwrap().force_n.norm() < 1e-6);
+        for unusable in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+            let mut direct = Compensator::new(model, unusable, STEP_S);
+            direct.step(&upright);
+            assert!(direct.step(&tilted).unwrap().force_n.norm() < 1e-6, "{unusable}");
+        }
+    }
+}

@@ -1,0 +1,310 @@
+//! The fit: which poses agree, the three models over them, their errors on poses held out, and the verdict.
+
+use nalgebra::Vector3;
+
+use super::{
+    GravityError, GravityModel, GravityReport, Limits, ModelFit, ModelKind, Parameters, Settings, Source,
+    consensus::agreeing,
+    coverage::{condition, coverage},
+    pose::{Pose, Reading, Row, checked, rows},
+    solve::solve,
+};
+use crate::{
+    calibration::{AxisStats, Residuals, Verdict},
+    frames::{GRAVITY_M_S2, Wrench},
+};
+
+/// Up to so many poses each is held out alone; beyond, every tenth together.
+const LEAVE_ONE_OUT: usize = 20;
+/// A free gain is chosen by itself only from so many poses on ...
+const GAIN_POSES: usize = 12;
+/// ... and only when its held-out error is below this share of the physical model's.
+const GAIN_SHARE: f64 = 0.75;
+/// Below this an error is rounding, which proves nothing, N.
+const ROUNDING_N: f64 = 1e-9;
+/// A mistaken reading of the orientation is named when it leaves less than this share of the error.
+const MISTAKE_SHARE: f64 = 0.5;
+
+/// What the poses are fitted with besides themselves.
+struct Frame {
+    source: Source,
+    imu_sign: i8,
+    has_torque: bool,
+    floor_n: f64,
+}
+
+impl Frame {
+    fn fit(&self, kind: ModelKind, rows: &[Row]) -> Option<GravityModel> {
+        let parameters = solve(kind, rows, self.has_torque)?;
+        Some(GravityModel { source: self.source, imu_sign: self.imu_sign, parameters })
+    }
+
+    /// Rows that agree with each other.
+    fn agreeing(&self, rows: &[Row]) -> Vec<Row> {
+        agreeing(rows, self.floor_n).into_iter().map(|i| rows[i]).collect()
+    }
+}
+
+/// The rows, which of them agree, and what each fold is fitted on.
+struct Data {
+    all: Vec<Row>,
+    inliers: Vec<usize>,
+    kept: Vec<Row>,
+    trainings: Vec<Vec<Row>>,
+}
+
+impl Data {
+    fn new(frame: &Frame, all: Vec<Row>) -> Self {
+        let inliers = agreeing(&all, frame.floor_n);
+        let kept = inliers.iter().map(|&i| all[i]).collect();
+        let folds = if all.len() <= LEAVE_ONE_OUT { all.len() } else { 10 };
+        let trainings = trainings(frame, &all, folds);
+        Self { all, inliers, kept, trainings }
+    }
+}
+
+/// Fits all models to still poses and judges the chosen one. An `Err` is a pose that no fit may see; poses that determine
+/// nothing or fit badly give a report with that verdict.
+///
+/// # Errors
+/// A pose with a number that is not finite, with another source of orientation than the first, or with a dead accelerometer; no pose at
+/// all; a sign that is neither 1 nor -1.
+///
+/// A tool of 0.25 kg, held still in eight orientations that the arm reports:
+///
+/// ```
+/// use nalgebra::{UnitQuaternion, Vector3};
+/// use nima_core::{
+///     calibration::gravity::{Orientation, Parameters, Pose, Settings, fit},
+///     frames::Wrench,
+/// };
+///
+/// let bias_n = Vector3::new(0.3, -0.1, 0.8);
+/// let pose = |i: u32| {
+///     let world_from_s1 = UnitQuaternion::from_euler_angles(f64::from(i), 0.7 * f64::from(i), 1.3 * f64::from(i));
+///     let weight_n = world_from_s1.inverse() * Vector3::new(0.0, 0.0, -0.25 * 9.81);
+///     let wrench = Wrench { force_n: weight_n + bias_n, torque_nm: Vector3::zeros() };
+///     Pose { wrench, has_torque: false, orientation: Orientation::Arm(world_from_s1) }
+/// };
+/// let poses: Vec<Pose> = (0..12).map(pose).collect();
+/// let report = fit(&poses, &Settings::default())?;
+/// let model = report.fits.iter().find(|fit| Some(fit.kind) == report.chosen).expect("a chosen model").model;
+/// let Parameters::Physical { mass_kg, .. } = model.parameters else { panic!("{:?}", model.kind()) };
+/// assert!((mass_kg - 0.25).abs() < 1e-3, "{mass_kg} kg");
+/// assert!(fit(&[], &Settings::default()).is_err());
+/// # Ok::<(), nima_core::calibration::gravity::GravityError>(())
+/// ```
+pub fn fit(poses: &[Pose], settings: &Settings) -> Result<GravityReport, GravityError> {
+    if !matches!(settings.imu_sign, -1 | 1) {
+        return Err(GravityError::BadSign { sign: settings.imu_sign });
+    }
+    let source = checked(poses)?;
+    let Settings { imu_sign, limits, .. } = *settings;
+    let has_torque = poses.iter().all(|pose| pose.has_torque);
+    let frame = Frame { source, imu_sign, has_torque, floor_n: limits.outlier_floor_n };
+    let data = Data::new(&frame, rows(poses, imu_sign, Reading::AsGiven));
+    let outliers: Vec<usize> = (0..poses.len()).filter(|i| data.inliers.binary_search(i).is_err()).collect();
+    let fits: Vec<ModelFit> = ModelKind::ALL.into_iter().filter_map(|kind| one_fit(kind, &frame, &data)).collect();
+    let (mass_kg, com_m) = weight(&fits);
+    let condition = condition(&data.kept);
+    let mut report = GravityReport {
+        verdict: Verdict::Accepted,
+        reason: String::new(),
+        chosen: None,
+        poses: poses.len(),
+        source,
+        outliers,
+        coverage: coverage(&data.kept),
+        condition: condition.is_finite().then_some(condition),
+        mass_kg,
+        com_m,
+        folds: data.trainings.len(),
+        fits,
+    };
+    report.chosen = chosen(&report, settings);
+    (report.verdict, report.reason) = judge(&report, poses, settings, &frame);
+    Ok(report)
+}
+
+/// One model over the agreeing rows, and its errors there and on rows held out.
+fn one_fit(kind: ModelKind, frame: &Frame, data: &Data) -> Option<ModelFit> {
+    let model = frame.fit(kind, &data.kept)?;
+    let fitted: Vec<_> = data.kept.iter().map(|row| errors(&model, row)).collect();
+    let held_out = held_out(kind, frame, data)?;
+    let stats = |pick: fn(&Wrench) -> Vector3<f64>| Residuals {
+        fitted: AxisStats::of(fitted.iter().map(pick)),
+        held_out: AxisStats::of(held_out.iter().map(pick)),
+    };
+    Some(ModelFit {
+        kind,
+        model,
+        force_n: stats(|e| e.force_n),
+        torque_nm: frame.has_torque.then(|| stats(|e| e.torque_nm)),
+    })
+}
+
+fn errors(model: &GravityModel, row: &Row) -> Wrench {
+    let predicted = model.predict(&row.field_m_s2);
+    Wrench { force_n: row.wrench.force_n - predicted.force_n, torque_nm: row.wrench.torque_nm - predicted.torque_nm }
+}
+
+/// What each fold is fitted on. The rows choose anew which of them agree, so that a row held out has no say in it.
+fn trainings(frame: &Frame, all: &[Row], folds: usize) -> Vec<Vec<Row>> {
+    let training = |fold| -> Vec<Row> { (0..all.len()).filter(|i| i % folds != fold).map(|i| all[i]).collect() };
+    (0..folds).map(|fold| frame.agreeing(&training(fold))).collect()
+}
+
+/// Errors on rows that the model was not fitted on; rows named as outliers of the whole are not scored.
+fn held_out(kind: ModelKind, frame: &Frame, data: &Data) -> Option<Vec<Wrench>> {
+    let mut result = Vec::with_capacity(data.inliers.len());
+    let folds = data.trainings.len();
+    for (fold, training) in data.trainings.iter().enumerate() {
+        let model = frame.fit(kind, training)?;
+        result.extend(data.inliers.iter().filter(|&&i| i % folds == fold).map(|&i| errors(&model, &data.all[i])));
+    }
+    Some(result)
+}
+
+fn weight(fits: &[ModelFit]) -> (Option<f64>, Option<[f64; 3]>) {
+    fits.iter()
+        .find_map(|fit| match fit.model.parameters {
+            Parameters::Physical { mass_kg, torque, .. } => Some((Some(mass_kg), torque.map(|torque| torque.com_m))),
+            _ => None,
+        })
+        .unwrap_or_default()
+}
+
+/// The model asked for; otherwise the physical one unless the gain is clearly better on poses it has not seen.
+fn chosen(report: &GravityReport, settings: &Settings) -> Option<ModelKind> {
+    if let Some(kind) = settings.model {
+        return report.fit_of(kind).map(|fit| fit.kind);
+    }
+    let error = |kind| report.fit_of(kind).map(|fit| fit.force_n.held_out.mean_mae());
+    let physical = error(ModelKind::Physical)?;
+    let enough = report.poses - report.outliers.len() >= GAIN_POSES;
+    let better = error(ModelKind::Gain).is_some_and(|gain| gain < GAIN_SHARE * physical);
+    Some(if enough && better { ModelKind::Gain } else { ModelKind::Physical })
+}
+
+fn judge(report: &GravityReport, poses: &[Pose], settings: &Settings, frame: &Frame) -> (Verdict, String) {
+    let limits = &settings.limits;
+    if let Some(mistake) = mistake(report, poses, settings, frame) {
+        return (Verdict::PoorData, mistake.to_owned());
+    }
+    if let Some(reason) = insufficient(report, limits) {
+        return (Verdict::InsufficientMotion, reason);
+    }
+    match report.chosen_fit() {
+        None => (Verdict::InsufficientMotion, "the poses determine no model; take more poses".to_owned()),
+        Some(fit) => match weightless(report, limits).or_else(|| poor(report, fit, limits)) {
+            Some(reason) => (Verdict::PoorData, reason),
+            None => (Verdict::Accepted, accepted(report, fit)),
+        },
+    }
+}
+
+fn insufficient(report: &GravityReport, limits: &Limits) -> Option<String> {
+    let kept = report.poses - report.outliers.len();
+    if kept < limits.least_poses {
+        return Some(format!("{kept} usable poses, at least {} are needed; take more poses", limits.least_poses));
+    }
+    if report.coverage < limits.least_coverage {
+        return Some(format!(
+            "the poses cover {:.2} of all directions of gravity, at least {:.2} is needed; tilt the tool further",
+            report.coverage, limits.least_coverage
+        ));
+    }
+    match report.condition {
+        Some(condition) if condition <= limits.most_condition => None,
+        condition => Some(format!(
+            "the poses lie in a narrow cone or in one plane (condition {}, limit {:.0}); tilt the tool to other sides",
+            condition.map_or_else(|| "infinite".to_owned(), |c| format!("{c:.0}")),
+            limits.most_condition
+        )),
+    }
+}
+
+/// The force must follow gravity by more than its noise. A sensor that repeats one reading fits every model, with a mass of zero.
+fn weightless(report: &GravityReport, limits: &Limits) -> Option<String> {
+    let fit = report.fit_of(ModelKind::Physical)?;
+    let weight_n = report.mass_kg? * GRAVITY_M_S2;
+    let noise_n = fit.force_n.fitted.sd.into_iter().fold(0.0, f64::max);
+    let least_n = limits.least_weight_n.max(limits.least_signal * noise_n);
+    // Written so that a NaN is refused.
+    let seen = weight_n >= least_n;
+    (!seen).then(|| {
+        format!(
+            "no weight is seen: the force follows gravity by {weight_n:.3} N, at least {least_n:.3} N is needed beside its noise; \
+             check that the sensor sends new readings in N and that the tool hangs on it"
+        )
+    })
+}
+
+fn poor(report: &GravityReport, fit: &ModelFit, limits: &Limits) -> Option<String> {
+    let weight_n = report.mass_kg.unwrap_or(0.0) * GRAVITY_M_S2;
+    let held_out = &fit.force_n.held_out;
+    let (mae_n, max_n) = (held_out.mean_mae(), held_out.largest());
+    let mae_limit = limits.mae_n.max(limits.mae_share * weight_n);
+    let max_limit = limits.max_n.max(limits.max_share * weight_n);
+    let share = report.outliers.len() as f64 / report.poses as f64;
+    if mae_n > mae_limit {
+        return Some(format!("the mean error on held-out poses is {mae_n:.3} N, the limit {mae_limit:.3} N"));
+    }
+    if max_n > max_limit {
+        return Some(format!("the largest error on a held-out pose is {max_n:.3} N, the limit {max_limit:.3} N"));
+    }
+    if share > limits.most_outliers {
+        return Some(format!(
+            "{} of {} poses do not agree with the others; was the tool touched?",
+            report.outliers.len(),
+            report.poses
+        ));
+    }
+    let torque_nm = fit.torque_nm.map_or(0.0, |torque| torque.held_out.mean_mae());
+    (torque_nm > limits.torque_mae_nm).then(|| {
+        let limit = limits.torque_mae_nm;
+        format!("the mean error of the torque on held-out poses is {torque_nm:.4} Nm, the limit {limit:.4} Nm")
+    })
+}
+
+fn accepted(report: &GravityReport, fit: &ModelFit) -> String {
+    let held_out = &fit.force_n.held_out;
+    format!(
+        "held-out poses agree within {:.3} N on average and {:.3} N at most, coverage {:.2}",
+        held_out.mean_mae(),
+        held_out.largest(),
+        report.coverage
+    )
+}
+
+/// The usual mistakes in how an orientation is read, named when one of them explains well-spread poses far better. A wrong
+/// sign makes the best fit a reflection, which no mounting can be.
+fn mistake(report: &GravityReport, poses: &[Pose], settings: &Settings, frame: &Frame) -> Option<&'static str> {
+    let limits = &settings.limits;
+    let given = report.fit_of(ModelKind::Physical)?.force_n.held_out.mean_mae();
+    if given < ROUNDING_N {
+        return None;
+    }
+    let candidates: &[(Reading, &str)] = match frame.source {
+        Source::Imu => &[(
+            Reading::Opposite,
+            "the accelerometer reads opposite to the chosen sign (or one of its axes is mirrored); flip the sign",
+        )],
+        Source::Arm => &[
+            (
+                Reading::InverseRotation,
+                "the inverse orientations fit: the file holds sensor from base, give base from sensor",
+            ),
+            (Reading::Opposite, "the forces point opposite to gravity; check the signs of the force columns"),
+        ],
+    };
+    candidates.iter().find_map(|&(reading, words)| {
+        let other = Data::new(frame, rows(poses, settings.imu_sign, reading));
+        let sound = other.kept.len() >= limits.least_poses
+            && coverage(&other.kept) >= limits.least_coverage
+            && condition(&other.kept) <= limits.most_condition;
+        let errors = held_out(ModelKind::Physical, frame, &other)?;
+        let error = AxisStats::of(errors.into_iter().map(|e| e.force_n)).mean_mae();
+        (sound && error < MISTAKE_SHARE * given).then_some(words)
+    })
+}

@@ -1,0 +1,72 @@
+//! Taking the tool's weight and the sensor's bias out of a wrist sensor's readings.
+//!
+//! At rest the tool pulls on the sensor with its weight: `f = m R u + f0` and `tau = com x (m R u) + tau0` in `s1`, with `u` the
+//! field of gravity (m/s^2, pointing down) in the frame of the orientation source. That source is either the accelerometer
+//! (`u = -a`, frame `imu`, `R = s1_from_imu`) or the arm (`u = s1_from_world * (0, 0, -g)`, frame `s1`, `R` near the identity).
+//! The accelerometer's reading is not normalised: its own constant bias then disappears in `f0`. The sensor's drift after the
+//! calibration does not; the drift check sees that.
+//!
+//! Three models are fitted to the same still poses and compared on poses they were not fitted on: the physical one above, one
+//! with a free 3x3 gain in place of `m R`, and the paper's, linear in sine and cosine of roll and pitch.
+
+mod compensator;
+mod consensus;
+mod coverage;
+mod drift;
+mod fit;
+mod model;
+mod pass;
+mod pose;
+mod precheck;
+mod record;
+mod report;
+mod rotation_mean;
+mod session;
+mod solve;
+mod still;
+mod targets;
+#[cfg(test)]
+mod tests;
+
+pub use compensator::{Compensator, DEFAULT_TIME_CONSTANT_S};
+pub use drift::{Drift, DriftCheck, NotChecked};
+pub use fit::fit;
+pub use model::{GravityModel, ModelKind, Parameters, Source, TorqueParameters};
+pub use pass::{CheckPass, PassResult};
+pub use pose::{Orientation, Pose};
+pub use precheck::{Check, CheckState, Precheck};
+pub use record::{GravityKind, GravityRecord};
+pub use report::{GravityReport, Limits, ModelFit, Settings};
+pub use session::{GravitySession, Phase, SessionSettings};
+pub use still::StillSettings;
+pub use targets::{PoseTarget, TARGETS};
+
+/// Why poses could not be fitted at all. Poses are counted from 1.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[expect(missing_docs, reason = "the messages say it")]
+pub enum GravityError {
+    #[error("there are no poses; record still poses of the tool first")]
+    NoPoses,
+    /// A number is missing or not finite.
+    #[error("pose {} holds a number that is not finite; remove or repeat it", index + 1)]
+    NotFinite {
+        /// Index of the pose, from 0.
+        index: usize,
+    },
+    /// Orientation from the accelerometer and from the arm in one set.
+    #[error("pose {} takes its orientation from another source than the first; use one source for all", index + 1)]
+    MixedSources {
+        /// Index of the pose, from 0.
+        index: usize,
+    },
+    #[error("pose {}: the accelerometer reads {norm_m_s2:.2} m/s^2 where gravity is 9.81; check it and its units", index + 1)]
+    DeadAccelerometer {
+        /// Index of the pose, from 0.
+        index: usize,
+        /// What it reads, m/s^2.
+        norm_m_s2: f64,
+    },
+    /// Only +1 and -1 are signs.
+    #[error("the accelerometer's sign is {sign}; give 1 or -1")]
+    BadSign { sign: i8 },
+}

@@ -1,0 +1,79 @@
+//! Proving a calibration: a pass in free motion after it.
+
+use super::Compensator;
+use crate::frames::WristSample;
+
+/// Width of a bin of the histogram of forces, N.
+const BIN_N: f64 = 0.01;
+const BINS: usize = 500;
+
+/// What a pass in free motion showed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PassResult {
+    /// Samples seen.
+    pub samples: u64,
+    /// Mean length of the gravity-free force, N; near zero when nothing is touched.
+    pub mean_n: f64,
+    /// 95 % of the samples are below this, N (to 0.01 N; 5 N stands for more).
+    pub p95_n: f64,
+    /// Angle between the direction of gravity at the start and the furthest seen, rad.
+    pub tilt_rad: f64,
+    /// Good enough, over enough tilt.
+    pub passed: bool,
+    /// Why, in a sentence.
+    pub reason: &'static str,
+}
+
+/// A pass with the tool moved freely through the air. Steps allocate nothing.
+#[derive(Clone, Debug)]
+pub struct CheckPass {
+    compensator: Compensator,
+    limit_n: f64,
+    first: Option<nalgebra::Vector3<f64>>,
+    tilt_rad: f64,
+    sum_n: f64,
+    samples: u64,
+    bins: Box<[u64; BINS]>,
+}
+
+impl CheckPass {
+    /// A pass whose 95 % must stay below `limit_n` (N).
+    pub fn new(compensator: Compensator, limit_n: f64) -> Self {
+        Self { compensator, limit_n, first: None, tilt_rad: 0.0, sum_n: 0.0, samples: 0, bins: Box::new([0; BINS]) }
+    }
+
+    /// Takes a sample; gives the length of its gravity-free force, N.
+    pub fn step(&mut self, sample: &WristSample) -> Option<f64> {
+        let force_n = self.compensator.step(sample)?.force_n.norm();
+        let field = self.compensator.model().field_m_s2(sample)?;
+        let first = *self.first.get_or_insert(field);
+        self.tilt_rad = self.tilt_rad.max(first.angle(&field));
+        self.sum_n += force_n;
+        self.samples += 1;
+        self.bins[((force_n / BIN_N) as usize).min(BINS - 1)] += 1;
+        Some(force_n)
+    }
+
+    /// What was seen so far; passed needs a second of samples and 45 degrees of tilt.
+    pub fn result(&self) -> PassResult {
+        let wanted = (self.samples as f64 * 0.95).ceil() as u64;
+        let mut seen = 0;
+        let below = |count: &u64| {
+            seen += count;
+            seen >= wanted
+        };
+        let p95_n = self.bins.iter().position(below).map_or(0.0, |bin| (bin + 1) as f64 * BIN_N);
+        let reason = if self.samples < 1000 {
+            "too few samples yet; keep moving"
+        } else if self.tilt_rad < 45_f64.to_radians() {
+            "tilt the tool by at least 45 degrees"
+        } else if p95_n > self.limit_n {
+            "force remains in free motion; repeat the calibration and touch nothing"
+        } else {
+            "free motion reads near zero"
+        };
+        let passed = self.samples >= 1000 && self.tilt_rad >= 45_f64.to_radians() && p95_n <= self.limit_n;
+        let mean_n = if self.samples > 0 { self.sum_n / self.samples as f64 } else { 0.0 };
+        PassResult { samples: self.samples, mean_n, p95_n, tilt_rad: self.tilt_rad, passed, reason }
+    }
+}

@@ -1,0 +1,87 @@
+//! Still poses of the tool, and what makes them unusable.
+
+use nalgebra::{UnitQuaternion, Vector3};
+
+use super::{GravityError, Source, model::arm_field_m_s2};
+use crate::frames::Wrench;
+
+/// How the sensor was oriented in a pose.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Orientation {
+    /// Mean reading of the accelerometer at rest (`imu`), m/s^2.
+    Imu(Vector3<f64>),
+    /// `world_from_s1` by the arm.
+    Arm(UnitQuaternion<f64>),
+}
+
+/// A still pose: means over the time the tool stood still.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pose {
+    /// Mean wrench as read (`s1`), N and Nm.
+    pub wrench: Wrench,
+    /// The torque was measured; otherwise it is ignored.
+    pub has_torque: bool,
+    /// How the sensor was oriented.
+    pub orientation: Orientation,
+}
+
+impl Pose {
+    /// Where its orientation comes from.
+    pub const fn source(&self) -> Source {
+        match self.orientation {
+            Orientation::Imu(_) => Source::Imu,
+            Orientation::Arm(_) => Source::Arm,
+        }
+    }
+}
+
+/// One equation: the field of gravity in the source's frame (m/s^2) and the wrench that was read under it (`s1`).
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Row {
+    pub(super) field_m_s2: Vector3<f64>,
+    pub(super) wrench: Wrench,
+}
+
+/// How an orientation is to be understood; all but `AsGiven` are the usual mistakes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Reading {
+    AsGiven,
+    Opposite,
+    InverseRotation,
+}
+
+/// The rows of these poses under this reading.
+pub(super) fn rows(poses: &[Pose], imu_sign: i8, reading: Reading) -> Vec<Row> {
+    let field = |pose: &Pose| match (pose.orientation, reading) {
+        (Orientation::Imu(acceleration), Reading::Opposite) => acceleration * f64::from(imu_sign),
+        (Orientation::Imu(acceleration), _) => acceleration * -f64::from(imu_sign),
+        (Orientation::Arm(world_from_s1), Reading::AsGiven) => arm_field_m_s2(&world_from_s1),
+        (Orientation::Arm(world_from_s1), Reading::Opposite) => -arm_field_m_s2(&world_from_s1),
+        (Orientation::Arm(world_from_s1), Reading::InverseRotation) => arm_field_m_s2(&world_from_s1.inverse()),
+    };
+    poses.iter().map(|pose| Row { field_m_s2: field(pose), wrench: pose.wrench }).collect()
+}
+
+/// Refuses poses that no fit may see; gives their common source.
+pub(super) fn checked(poses: &[Pose]) -> Result<Source, GravityError> {
+    let source = poses.first().ok_or(GravityError::NoPoses)?.source();
+    for (index, pose) in poses.iter().enumerate() {
+        if pose.source() != source {
+            return Err(GravityError::MixedSources { index });
+        }
+        let orientation_fits = match pose.orientation {
+            Orientation::Imu(acceleration) => acceleration.iter().all(|x| x.is_finite()),
+            Orientation::Arm(rotation) => rotation.coords.iter().all(|x| x.is_finite()),
+        };
+        let torque_fits = !pose.has_torque || pose.wrench.torque_nm.iter().all(|x| x.is_finite());
+        if !(orientation_fits && torque_fits && pose.wrench.force_n.iter().all(|x| x.is_finite())) {
+            return Err(GravityError::NotFinite { index });
+        }
+        if let Orientation::Imu(acceleration) = pose.orientation
+            && acceleration.norm() < super::model::LEAST_FIELD_M_S2
+        {
+            return Err(GravityError::DeadAccelerometer { index, norm_m_s2: acceleration.norm() });
+        }
+    }
+    Ok(source)
+}

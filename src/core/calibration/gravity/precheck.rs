@@ -1,0 +1,333 @@
+//! Before the first pose: does the sensor deliver, how fast, how noisy, and does it lie still? A state machine without a clock.
+//!
+//! Takes the newest sample of every tick with its time (s); what is told changes twice a second. A loop whose sensor is silent
+//! goes on with the sample it has, so a sample that equals the one before in every number is not counted as read anew. A rig
+//! tells no status of its sensor (throttled, over range); its effects on rate, noise and gravity are what is seen here.
+//! Memory is bounded; a sample that is not finite is counted and used for nothing.
+
+use nalgebra::Vector3;
+
+use super::{SessionSettings, session::field_of, still::Still};
+use crate::frames::{GRAVITY_M_S2, WristSample};
+
+/// Length of a stretch that is measured, s.
+const BLOCK_S: f64 = 0.5;
+/// Ticks further apart than this did not all reach the screen: no time that a sensor was silent in, s.
+const HOLE_S: f64 = 0.020;
+/// Least share of the loop's rate at which samples must come: slower ones are felt as steps and lag.
+const RATE_SHARE: f64 = 0.9;
+/// Most noise of a sample per axis at which a tool that lies still is seen as still: the mean of 20 ms at 1 kHz must stay
+/// within [`super::StillSettings::force_n`] (0.08 N) at 3.5 standard deviations. A good sensor has 0.01 to 0.05 N.
+const FORCE_NOISE_N: f64 = 0.10;
+/// The same for the accelerometer and [`super::StillSettings::field_m_s2`], m/s^2. A good one has 0.01 to 0.05.
+const ACCELERATION_NOISE_M_S2: f64 = 0.12;
+/// Largest departure of the accelerometer's reading at rest from gravity, as a share.
+const GRAVITY_SHARE: f64 = 0.05;
+/// Stillness is told in steps of 20 ms, and its first sample is a tick late: a rest may seem shorter than it was by this, s.
+const REST_ROUNDING_S: f64 = 0.045;
+/// A tool that swings is still for a moment at its turning points; this long it is not, s.
+const REST_S: f64 = 0.2;
+/// Fewest samples of a stretch from which noise is told.
+const SAMPLES_MIN: f64 = 20.0;
+
+/// State of one check before the first pose.
+#[derive(Clone, Debug, PartialEq)]
+pub enum CheckState {
+    /// Not enough samples yet, or something else comes first.
+    Waiting,
+    /// As it must be.
+    Good,
+    /// Wrong.
+    Bad {
+        /// What is wrong, with its figure.
+        cause: String,
+        /// What the operator can do about it.
+        cure: &'static str,
+    },
+}
+
+/// One check before the first pose.
+#[derive(Clone, Debug, PartialEq)]
+#[expect(missing_docs, reason = "the names say it")]
+pub struct Check {
+    pub name: &'static str,
+    /// What was measured, for the screen; empty where there is no figure.
+    pub measured: String,
+    pub state: CheckState,
+}
+
+impl Check {
+    fn of(name: &'static str, measured: String, state: CheckState) -> Self {
+        Self { name, measured, state }
+    }
+}
+
+fn bad(cause: impl Into<String>, cure: &'static str) -> CheckState {
+    CheckState::Bad { cause: cause.into(), cure }
+}
+
+/// What was measured, in words, and how it stands.
+type Finding = (String, CheckState);
+
+/// Spread of vectors about their mean, and from each to the next.
+#[derive(Clone, Copy, Debug, Default)]
+struct Spread {
+    first: Vector3<f64>,
+    last: Vector3<f64>,
+    count: f64,
+    sum: Vector3<f64>,
+    squares: Vector3<f64>,
+    steps: Vector3<f64>,
+}
+
+impl Spread {
+    fn add(&mut self, value: &Vector3<f64>) {
+        if self.count == 0.0 {
+            (self.first, self.last) = (*value, *value);
+        }
+        // About the first value: a large bias would eat the digits of a small noise.
+        let offset = value - self.first;
+        let step = value - self.last;
+        self.last = *value;
+        self.count += 1.0;
+        self.sum += offset;
+        self.squares += offset.component_mul(&offset);
+        self.steps += step.component_mul(&step);
+    }
+
+    fn mean(&self) -> Vector3<f64> {
+        self.first + self.sum / self.count.max(1.0)
+    }
+
+    /// Standard deviation per axis.
+    fn deviation(&self) -> Vector3<f64> {
+        let mean = self.sum / self.count.max(1.0);
+        (self.squares / self.count.max(1.0) - mean.component_mul(&mean)).map(|variance| variance.max(0.0).sqrt())
+    }
+
+    /// Standard deviation of white noise that would step so from sample to sample: slow motion is not in it.
+    fn roughness(&self) -> Vector3<f64> {
+        (self.steps / (2.0 * (self.count - 1.0).max(1.0))).map(f64::sqrt)
+    }
+}
+
+/// What came in over a stretch of time.
+#[derive(Clone, Copy, Debug, Default)]
+struct Block {
+    span_s: f64,
+    fresh: u32,
+    repeated: u32,
+    poisoned: u32,
+    oriented: u32,
+    /// The tool lay still all the time.
+    still: bool,
+    force_n: Spread,
+    acceleration_m_s2: Spread,
+}
+
+impl Block {
+    fn orientation(&self, use_arm: bool) -> Finding {
+        let state = if self.oriented == self.fresh {
+            CheckState::Good
+        } else if use_arm {
+            bad("the arm does not tell how the sensor is turned", "connect the arm, or take the accelerometer")
+        } else {
+            bad(
+                "the accelerometer sends no data",
+                "sensors of the first generation have none: take the orientation from the arm",
+            )
+        };
+        (String::new(), state)
+    }
+
+    fn gravity(&self) -> Finding {
+        if self.acceleration_m_s2.count < SAMPLES_MIN {
+            return (String::new(), CheckState::Waiting);
+        }
+        let norm_m_s2 = self.acceleration_m_s2.mean().norm();
+        let measured = format!("{norm_m_s2:.2} m/s^2");
+        let off = (norm_m_s2 / GRAVITY_M_S2 - 1.0).abs();
+        let state = if off < GRAVITY_SHARE {
+            CheckState::Good
+        } else {
+            bad(format!("{measured} where gravity is 9.81 m/s^2"), "hold it still; check its range and units")
+        };
+        (measured, state)
+    }
+
+    fn force_noise(&self) -> Finding {
+        let spread = &self.force_n;
+        if spread.count >= SAMPLES_MIN && spread.steps.min() == 0.0 {
+            let state = bad(
+                "one of its axes always reads the same value",
+                "that channel is defective or out of range: remove the load; if it stays, have the sensor repaired",
+            );
+            return (String::new(), state);
+        }
+        let cure = "check shield and earth of the cable, keep it away from motors, lower the sensor's filter frequency";
+        noise(spread, self.still, FORCE_NOISE_N, "N", cure)
+    }
+
+    fn acceleration_noise(&self) -> Finding {
+        let cure = "look for motors and fans that shake the arm; check the accelerometer's range and filter";
+        noise(&self.acceleration_m_s2, self.still, ACCELERATION_NOISE_M_S2, "m/s^2", cure)
+    }
+}
+
+/// The check: samples in, lines for the screen out.
+#[derive(Clone, Debug)]
+pub struct Precheck {
+    settings: SessionSettings,
+    still: Still,
+    /// How long the tool lies still by now, s; `None` while it moves or nothing is known.
+    rested_s: Option<f64>,
+    newest: Option<WristSample>,
+    last_s: f64,
+    block: Block,
+    measured: Option<Block>,
+}
+
+impl Precheck {
+    /// A check for a session of these settings.
+    pub fn new(settings: SessionSettings) -> Self {
+        let block = Block::default();
+        let still = Still::new(settings.still);
+        Self { settings, still, rested_s: None, newest: None, last_s: f64::NAN, block, measured: None }
+    }
+
+    /// Takes the sample of one tick, `None` where there is none, at time `t_s` (s, rising). Allocates nothing.
+    pub fn step(&mut self, sample: Option<&WristSample>, t_s: f64) {
+        let step_s = t_s - self.last_s;
+        self.last_s = t_s;
+        let counts = step_s > 0.0 && step_s <= HOLE_S;
+        if !counts {
+            self.newest = sample.copied();
+            return;
+        }
+        self.block.span_s += step_s;
+        match sample {
+            None => self.disturb(),
+            Some(sample) if !sample.is_finite() => {
+                self.block.poisoned += 1;
+                self.disturb();
+            }
+            Some(sample) if self.newest.as_ref() == Some(sample) => self.block.repeated += 1,
+            Some(sample) => self.take(sample, t_s),
+        }
+        self.newest = sample.copied();
+        // Sums of milliseconds fall short of the half second by their rounding.
+        if self.block.span_s >= BLOCK_S - 1e-9 {
+            self.block.still = self.rested_s.is_some_and(|rested_s| rested_s >= BLOCK_S - REST_ROUNDING_S);
+            self.measured = Some(std::mem::take(&mut self.block));
+        }
+    }
+
+    fn disturb(&mut self) {
+        self.still.reset();
+        self.rested_s = None;
+    }
+
+    fn take(&mut self, sample: &WristSample, t_s: f64) {
+        self.block.fresh += 1;
+        self.block.force_n.add(&sample.raw.force_n);
+        if let Some(acceleration_m_s2) = &sample.acceleration_m_s2 {
+            self.block.acceleration_m_s2.add(acceleration_m_s2);
+        }
+        if let Some(field) = field_of(&self.settings, sample) {
+            self.block.oriented += 1;
+            let share = self.still.step(sample, &field, t_s);
+            self.rested_s = share.map(|share| share * self.settings.still.time_s);
+        }
+    }
+
+    /// How all stands, for a loop of this rate (Hz). Allocates; for the screen's thread.
+    pub fn checks(&self, rate_hz: f64) -> Vec<Check> {
+        let block = self.measured.unwrap_or_default();
+        let told = |finding: Finding| if block.fresh == 0 { (String::new(), CheckState::Waiting) } else { finding };
+        let mut lines = vec![("sensor", self.delivery()), ("rate", self.rate(rate_hz))];
+        lines.push(("orientation", told(block.orientation(self.settings.use_arm))));
+        if !self.settings.use_arm {
+            lines.push(("gravity", told(block.gravity())));
+        }
+        lines.push(("force noise", told(block.force_noise())));
+        if !self.settings.use_arm {
+            lines.push(("accelerometer noise", told(block.acceleration_noise())));
+        }
+        lines.push(("stillness", told(self.stillness())));
+        lines.into_iter().map(|(name, (measured, state))| Check::of(name, measured, state)).collect()
+    }
+
+    /// Nothing is in the way of the first pose.
+    pub fn passed(&self, rate_hz: f64) -> bool {
+        self.checks(rate_hz).iter().all(|check| check.state == CheckState::Good)
+    }
+
+    fn delivery(&self) -> Finding {
+        let state = match self.measured {
+            None => CheckState::Waiting,
+            Some(Block { poisoned, fresh, repeated, .. }) if poisoned > 0 => {
+                let all = poisoned + fresh + repeated;
+                bad(
+                    format!("{poisoned} of {all} samples hold a number that is not finite"),
+                    "check the cable and the sensor's own status, then start its driver again",
+                )
+            }
+            Some(Block { fresh: 0, repeated: 0, .. }) => {
+                bad("no sample comes from it", "check its power, its cable and its address")
+            }
+            Some(Block { fresh: 0, .. }) => {
+                bad("it hangs: the same reading over and over", "switch it off and on, then start its driver again")
+            }
+            Some(_) => CheckState::Good,
+        };
+        (String::new(), state)
+    }
+
+    fn rate(&self, rate_hz: f64) -> Finding {
+        let Some(block) = self.measured else { return (String::new(), CheckState::Waiting) };
+        let measured_hz = f64::from(block.fresh) / block.span_s;
+        let measured = format!("{measured_hz:.0} Hz of the loop's {rate_hz:.0} Hz");
+        let state = if measured_hz >= RATE_SHARE * rate_hz {
+            CheckState::Good
+        } else {
+            bad(
+                measured.clone(),
+                "raise the sensor's output rate, relieve its bus, check it for lost packets, or lower rate_hz of the rig",
+            )
+        };
+        (measured, state)
+    }
+
+    fn stillness(&self) -> Finding {
+        let state = match (self.rested_s, self.still.is_still()) {
+            (Some(rested_s), _) if rested_s >= REST_S => CheckState::Good,
+            (Some(_), _) | (None, None) => CheckState::Waiting,
+            (None, Some(_)) => {
+                bad("force or orientation does not stand still", "let go of the tool and lay the arm to rest")
+            }
+        };
+        (String::new(), state)
+    }
+}
+
+/// Noise of the worst axis. While the tool moves, only what no motion explains is told, and only if it is too much already:
+/// a noise that looks like motion must not hide behind it.
+fn noise(spread: &Spread, still: bool, limit: f64, unit: &str, cure: &'static str) -> Finding {
+    let (deviation, roughness) = (spread.deviation().max(), spread.roughness().max());
+    let worst = if still { deviation } else { roughness };
+    let measured = format!("{worst:.3} {unit}");
+    let state = if spread.count < SAMPLES_MIN {
+        CheckState::Waiting
+    } else if worst > limit {
+        bad(format!("{measured} per sample and axis, more than the plausible {limit:.2} {unit}"), cure)
+    } else if still {
+        CheckState::Good
+    } else {
+        CheckState::Waiting
+    };
+    (measured, state)
+}
+
+#[cfg(test)]
+#[path = "precheck_tests.rs"]
+mod tests;

@@ -1,0 +1,360 @@
+//! Taking still poses, guided, from samples as they come: a state machine without a clock of its own.
+//!
+//! Every sample goes through [`GravitySession::step`]. It allocates nothing, except in the step that records a pose, which fits
+//! anew (a few ms): it belongs to the side of the screen, not into a tick of the loop. A pose is a
+//! stretch in which force and orientation stand still for as long as they must. When enough poses are there, a still pose far
+//! from what the others say is refused as touched, and can be taken again at once.
+
+use nalgebra::Vector3;
+
+use super::{
+    GravityError, GravityModel, GravityReport, Orientation, Pose, Settings, fit,
+    model::arm_field_m_s2,
+    still::{Still, StillSettings},
+    targets::{PoseTarget, TARGETS},
+};
+use crate::frames::WristSample;
+
+/// Poses from which a new one is compared with the others.
+const COMPARE_FROM: usize = 6;
+/// A pose counts for a target within this angle of the direction of gravity, rad.
+const REACH_RAD: f64 = 25.0 * std::f64::consts::PI / 180.0;
+
+/// How a session takes poses.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SessionSettings {
+    /// How the poses are fitted.
+    pub fit: Settings,
+    /// What standing still means.
+    pub still: StillSettings,
+    /// Take the orientation from the arm although an accelerometer is there.
+    pub use_arm: bool,
+    /// A still pose whose force is further than this from the other poses' model was touched, N.
+    pub touched_n: f64,
+    /// The tool must be turned by this between two poses, rad.
+    pub turn_rad: f64,
+}
+
+impl Default for SessionSettings {
+    fn default() -> Self {
+        Self {
+            fit: Settings::default(),
+            still: StillSettings::default(),
+            use_arm: false,
+            touched_n: 0.3,
+            turn_rad: 10_f64.to_radians(),
+        }
+    }
+}
+
+/// What the session is doing.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Phase {
+    /// The sample lacks what a pose needs, or holds a number that is not finite.
+    NoSample,
+    /// The tool moves, or is where the last pose was taken.
+    Moving,
+    /// Still for too short a time yet.
+    Recording {
+        /// Share of the still time, 0 to 1.
+        share: f64,
+    },
+    /// A pose was recorded just now.
+    Recorded {
+        /// Its index, from 0.
+        index: usize,
+    },
+    /// The tool does not turn, and yet the force is not still: something touches it.
+    Disturbed,
+    /// Still where the last pose was taken: turn the tool to the next.
+    TakenHere,
+    /// Still, and off from what the other poses say: let go of the tool and take the pose again.
+    Touched {
+        /// How far off, N.
+        by_n: f64,
+    },
+}
+
+/// Where a pose was taken, for the guide only; the fit uses what was measured.
+#[derive(Clone, Copy, Debug)]
+struct Place {
+    /// Index of the target that it counts for.
+    target: Option<usize>,
+    /// Direction of gravity in `s1` by the arm, where it tells.
+    down_s1: Option<Vector3<f64>>,
+}
+
+/// Field of gravity (m/s^2, source's frame) by the source that these settings name; `None` when it is missing or dead.
+pub(super) fn field_of(settings: &SessionSettings, sample: &WristSample) -> Option<Vector3<f64>> {
+    let field = if settings.use_arm {
+        arm_field_m_s2(&sample.world_from_s1?)
+    } else {
+        sample.acceleration_m_s2? * -f64::from(settings.fit.imu_sign)
+    };
+    (field.norm() >= super::model::LEAST_FIELD_M_S2).then_some(field)
+}
+
+/// A guided calibration.
+#[derive(Clone, Debug)]
+pub struct GravitySession {
+    settings: SessionSettings,
+    still: Still,
+    poses: Vec<Pose>,
+    places: Vec<Place>,
+    running: Option<GravityModel>,
+    last: Option<WristSample>,
+    refused: Option<f64>,
+}
+
+impl GravitySession {
+    /// A session without poses.
+    pub fn new(settings: SessionSettings) -> Self {
+        let still = Still::new(settings.still);
+        let (poses, places) = (Vec::with_capacity(64), Vec::with_capacity(64));
+        Self { settings, still, poses, places, running: None, last: None, refused: None }
+    }
+
+    /// How poses are taken.
+    pub const fn settings(&self) -> &SessionSettings {
+        &self.settings
+    }
+
+    /// Reads the accelerometer with this sign (+1 or -1) from now on, in the poses taken before too.
+    pub fn set_imu_sign(&mut self, imu_sign: i8) {
+        self.settings.fit.imu_sign = imu_sign;
+        self.still.reset();
+        self.refit();
+    }
+
+    /// Takes one sample at time `t_s` (s, rising); says what the session is doing.
+    pub fn step(&mut self, sample: &WristSample, t_s: f64) -> Phase {
+        let Some(field) = field_of(&self.settings, sample).filter(|_| sample.is_finite() && t_s.is_finite()) else {
+            self.still.reset();
+            self.last = None;
+            return Phase::NoSample;
+        };
+        self.last = Some(*sample);
+        let Some(progress) = self.still.step(sample, &field, t_s) else {
+            self.refused = None;
+            return if self.still.only_force_moved() { Phase::Disturbed } else { Phase::Moving };
+        };
+        if self.taken_here(&field) {
+            return Phase::TakenHere;
+        }
+        if let Some(by_n) = self.refused {
+            // Held like this it stays refused; a new try begins when the tool has moved or was let go.
+            if progress >= 1.0 {
+                self.still.reset();
+                self.refused = None;
+            }
+            return Phase::Touched { by_n };
+        }
+        if progress < 1.0 {
+            return Phase::Recording { share: progress };
+        }
+        self.record()
+    }
+
+    /// Keeps the still stretch as a pose, unless the others say that it was touched.
+    fn record(&mut self) -> Phase {
+        let Some((mean, field)) = self.still.mean() else { return Phase::Moving };
+        let world_from_s1 = self.still.mean_world_from_s1();
+        self.still.reset();
+        let by_n = self.running.map_or(0.0, |model| (mean.force_n - model.predict(&field).force_n).norm());
+        if by_n > self.settings.touched_n {
+            self.refused = Some(by_n);
+            return Phase::Touched { by_n };
+        }
+        let orientation = match (self.settings.use_arm, world_from_s1) {
+            (true, Some(world_from_s1)) => Orientation::Arm(world_from_s1),
+            (true, None) => return Phase::NoSample,
+            (false, _) => Orientation::Imu(field * -f64::from(self.settings.fit.imu_sign)),
+        };
+        let place = self.place();
+        self.poses.push(Pose { wrench: mean, has_torque: true, orientation });
+        self.places.push(place);
+        self.refit();
+        Phase::Recorded { index: self.poses.len() - 1 }
+    }
+
+    fn pose_field(&self, pose: &Pose) -> Vector3<f64> {
+        match pose.orientation {
+            Orientation::Imu(acceleration) => acceleration * -f64::from(self.settings.fit.imu_sign),
+            Orientation::Arm(world_from_s1) => arm_field_m_s2(&world_from_s1),
+        }
+    }
+
+    fn taken_here(&self, field: &Vector3<f64>) -> bool {
+        self.poses.last().is_some_and(|pose| self.pose_field(pose).angle(field) < self.settings.turn_rad)
+    }
+
+    fn refit(&mut self) {
+        let enough = self.poses.len() >= COMPARE_FROM;
+        let report = enough.then(|| self.report().ok()).flatten();
+        // Only a model that may be used can say that a new pose is off.
+        let usable = report.filter(|report| report.verdict == crate::calibration::Verdict::Accepted);
+        self.running = usable.and_then(|report| report.chosen_fit().map(|fit| fit.model));
+    }
+
+    /// The next orientation to take: the first that no pose counts for.
+    pub fn target(&self) -> Option<PoseTarget> {
+        self.next().map(|index| TARGETS[index])
+    }
+
+    fn next(&self) -> Option<usize> {
+        (0..TARGETS.len()).find(|&index| !self.is_met(index))
+    }
+
+    fn is_met(&self, index: usize) -> bool {
+        self.places.iter().any(|place| place.target == Some(index))
+    }
+
+    /// Targets that a pose was taken near.
+    pub fn targets_met(&self) -> usize {
+        (0..TARGETS.len()).filter(|&index| self.is_met(index)).count()
+    }
+
+    /// What a pose taken now counts for: the nearest target within reach by the arm's word. Without an arm the sensor's mounting
+    /// is not known yet, and what was asked for is believed; the fit's coverage judges in the end.
+    fn place(&self) -> Place {
+        let Some(down_s1) = self.down_s1() else { return Place { target: self.next(), down_s1: None } };
+        let angle = |index: &usize| Vector3::from(TARGETS[*index].down_s1).angle(&down_s1);
+        let nearest = (0..TARGETS.len()).min_by(|a, b| angle(a).total_cmp(&angle(b)));
+        Place { target: nearest.filter(|index| angle(index) < REACH_RAD), down_s1: Some(down_s1) }
+    }
+
+    /// Direction of gravity in `s1` now, by the arm.
+    fn down_s1(&self) -> Option<Vector3<f64>> {
+        arm_field_m_s2(&self.last?.world_from_s1?).try_normalize(1e-9)
+    }
+
+    /// Directions of gravity in `s1` of the poses taken, for a picture: by the arm, else those asked for.
+    pub fn taken_down_s1(&self) -> Vec<Vector3<f64>> {
+        let known = |place: &Place| place.down_s1.or_else(|| Some(Vector3::from(TARGETS[place.target?].down_s1)));
+        self.places.iter().filter_map(known).collect()
+    }
+
+    /// Poses taken so far.
+    pub fn poses(&self) -> &[Pose] {
+        &self.poses
+    }
+
+    /// Takes a pose back; `None` when there is no such pose.
+    pub fn remove(&mut self, index: usize) -> Option<Pose> {
+        let removed = (index < self.poses.len()).then(|| {
+            self.places.remove(index);
+            self.poses.remove(index)
+        });
+        self.refit();
+        removed
+    }
+
+    /// Takes the newest pose back.
+    pub fn undo(&mut self) -> Option<Pose> {
+        self.remove(self.poses.len().checked_sub(1)?)
+    }
+
+    /// Fit of the poses taken so far.
+    pub fn report(&self) -> Result<GravityReport, GravityError> {
+        fit(&self.poses, &self.settings.fit)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::UnitQuaternion;
+
+    use super::*;
+    use crate::calibration::{
+        Verdict,
+        gravity::{CheckPass, Compensator, tests::Tool},
+    };
+
+    /// Holds the tool still for 1.6 s with an extra force and noise of 0.02 N; gives the phases seen.
+    fn hold(
+        session: &mut GravitySession,
+        tool: &mut Tool,
+        target: &PoseTarget,
+        push_n: f64,
+        t_s: &mut f64,
+    ) -> Vec<Phase> {
+        let still = |tool: &mut Tool| {
+            let mut sample = tool.sample(target.world_from_s1(), 0.02, 1e-3);
+            sample.raw.force_n.x += push_n;
+            *t_s += 1e-3;
+            (sample, *t_s)
+        };
+        let mut still = still;
+        (0..1600)
+            .map(|_| {
+                let (sample, t_s) = still(tool);
+                session.step(&sample, t_s)
+            })
+            .collect()
+    }
+
+    #[test]
+    fn a_guided_session_ends_accepted_and_refuses_a_touched_pose() {
+        let mut tool = Tool::new(31, 0.4);
+        tool.s1_from_imu = UnitQuaternion::identity();
+        let mut session = GravitySession::new(SessionSettings::default());
+        let mut t_s = 0.0;
+        for count in 0..9 {
+            let target = session.target().unwrap();
+            let phases = hold(&mut session, &mut tool, &target, 0.0, &mut t_s);
+            assert!(phases.contains(&Phase::Recorded { index: count }), "{}", target.name);
+        }
+        let target = session.target().unwrap();
+        let touched = hold(&mut session, &mut tool, &target, 1.0, &mut t_s);
+        assert!(touched.iter().any(|phase| matches!(phase, Phase::Touched { .. })));
+        assert_eq!(session.poses().len(), 9);
+        while let Some(target) = session.target() {
+            hold(&mut session, &mut tool, &target, 0.0, &mut t_s);
+        }
+        let report = session.report().unwrap();
+        assert_eq!((report.verdict, session.targets_met()), (Verdict::Accepted, 12), "{}", report.reason);
+        assert!(session.undo().is_some() && session.remove(99).is_none());
+        assert!(session.target().is_some());
+
+        let model = report.chosen_fit().unwrap().model;
+        let mut pass = CheckPass::new(Compensator::new(model, 0.002, 1e-3), 0.2);
+        for i in 0..3000 {
+            let tilt = UnitQuaternion::from_euler_angles(f64::from(i) * 5e-4, 0.0, 0.0);
+            pass.step(&tool.sample(tilt, 0.02, 1e-3));
+        }
+        assert!(pass.result().passed, "{:?}", pass.result());
+    }
+
+    #[test]
+    fn a_moving_tool_and_a_poisoned_sample_record_nothing() {
+        let mut tool = Tool::new(32, 0.4);
+        let mut session = GravitySession::new(SessionSettings::default());
+        for i in 0..5000 {
+            let turning = UnitQuaternion::from_euler_angles(f64::from(i) * 1e-3, 0.0, 0.0);
+            session.step(&tool.sample(turning, 0.02, 1e-3), f64::from(i) * 1e-3);
+        }
+        let mut bad = tool.sample(UnitQuaternion::identity(), 0.0, 0.0);
+        bad.raw.force_n.x = f64::NAN;
+        assert_eq!(session.step(&bad, 6.0), Phase::NoSample);
+        assert!(session.poses().is_empty());
+    }
+
+    #[test]
+    fn a_pose_by_the_arm_is_the_mean_over_the_stretch_and_not_its_last_sample() {
+        let mut tool = Tool::new(33, 0.4);
+        let held = TARGETS[5].world_from_s1();
+        let mut session = GravitySession::new(SessionSettings { use_arm: true, ..SessionSettings::default() });
+        for tick in 0..1600 {
+            let mut sample = tool.sample(held, 0.02, 1e-3);
+            // Joint sensors that tremble by half a degree per axis.
+            let tremble = UnitQuaternion::from_scaled_axis(tool.vector(0.009));
+            sample.world_from_s1 = Some(held * tremble);
+            if matches!(session.step(&sample, f64::from(tick) * 1e-3), Phase::Recorded { .. }) {
+                break;
+            }
+        }
+        let Orientation::Arm(taken) = session.poses()[0].orientation else { panic!("not by the arm") };
+        let off_deg = taken.angle_to(&held).to_degrees();
+        assert!(off_deg < 0.1, "{off_deg} degrees");
+    }
+}

@@ -1,0 +1,152 @@
+//! Telling whether force and orientation stand still, with bounded memory: running means that start anew on any motion.
+
+use nalgebra::{UnitQuaternion, Vector3};
+
+use super::rotation_mean::RotationMean;
+use crate::frames::{Wrench, WristSample};
+
+/// What standing still means.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StillSettings {
+    /// How long, s.
+    pub time_s: f64,
+    /// Largest distance of a 20 ms mean of the force from the mean of the stretch, N.
+    pub force_n: f64,
+    /// Largest distance of a 20 ms mean of the field of gravity from the mean of the stretch, m/s^2.
+    pub field_m_s2: f64,
+    /// A gap in time longer than this starts anew, s.
+    pub gap_s: f64,
+}
+
+impl Default for StillSettings {
+    fn default() -> Self {
+        Self { time_s: 1.0, force_n: 0.08, field_m_s2: 0.10, gap_s: 0.05 }
+    }
+}
+
+/// Length of the short means, s.
+const SHORT_S: f64 = 0.020;
+
+#[derive(Clone, Copy, Debug, Default)]
+struct Sums {
+    count: f64,
+    wrench: Wrench,
+    field: Vector3<f64>,
+    /// Samples with an orientation by the arm, and those orientations.
+    turned: f64,
+    world_from_s1: RotationMean,
+}
+
+impl Sums {
+    fn add(&mut self, sample: &WristSample, field: &Vector3<f64>) {
+        self.count += 1.0;
+        self.wrench.force_n += sample.raw.force_n;
+        self.wrench.torque_nm += sample.raw.torque_nm;
+        self.field += field;
+        if let Some(world_from_s1) = &sample.world_from_s1 {
+            self.turned += 1.0;
+            self.world_from_s1.add(world_from_s1);
+        }
+    }
+
+    fn merge(&mut self, other: &Self) {
+        self.count += other.count;
+        self.wrench.force_n += other.wrench.force_n;
+        self.wrench.torque_nm += other.wrench.torque_nm;
+        self.field += other.field;
+        self.turned += other.turned;
+        self.world_from_s1.merge(&other.world_from_s1);
+    }
+
+    fn mean(&self) -> (Wrench, Vector3<f64>) {
+        let share = 1.0 / self.count.max(1.0);
+        let wrench = Wrench { force_n: self.wrench.force_n * share, torque_nm: self.wrench.torque_nm * share };
+        (wrench, self.field * share)
+    }
+}
+
+/// The stretch so far.
+#[derive(Clone, Debug)]
+pub(super) struct Still {
+    settings: StillSettings,
+    short: Sums,
+    short_since_s: f64,
+    whole: Sums,
+    since_s: f64,
+    last_s: Option<f64>,
+    moved: Option<bool>,
+    field_moved_s: f64,
+}
+
+impl Still {
+    pub(super) fn new(settings: StillSettings) -> Self {
+        let nothing = Sums::default();
+        Self {
+            settings,
+            short: nothing,
+            short_since_s: 0.0,
+            whole: nothing,
+            since_s: 0.0,
+            last_s: None,
+            moved: None,
+            field_moved_s: 0.0,
+        }
+    }
+
+    /// Forgets the stretch.
+    pub(super) fn reset(&mut self) {
+        (self.short, self.whole, self.last_s) = (Sums::default(), Sums::default(), None);
+    }
+
+    /// Whether the last short mean was still; `None` before the first.
+    pub(super) fn is_still(&self) -> Option<bool> {
+        self.moved.map(|moved| !moved)
+    }
+
+    /// It moves, and for half a second it was the force alone that did.
+    pub(super) fn only_force_moved(&self) -> bool {
+        self.moved == Some(true) && self.last_s.is_some_and(|last| last - self.field_moved_s > 0.5)
+    }
+
+    /// Mean of the stretch: wrench (`s1`) and field of gravity (m/s^2, source's frame).
+    pub(super) fn mean(&self) -> Option<(Wrench, Vector3<f64>)> {
+        (self.whole.count > 0.0).then(|| self.whole.mean())
+    }
+
+    /// Mean orientation over the stretch by the arm; `None` unless every sample of it had one.
+    pub(super) fn mean_world_from_s1(&self) -> Option<UnitQuaternion<f64>> {
+        self.whole.world_from_s1.mean().filter(|_| self.whole.turned >= self.whole.count)
+    }
+
+    /// Takes a sample; share of the still time so far (1 and more: enough), `None` while it moves.
+    pub(super) fn step(&mut self, sample: &WristSample, field: &Vector3<f64>, t_s: f64) -> Option<f64> {
+        if !self.last_s.is_some_and(|last| t_s > last && t_s - last <= self.settings.gap_s) {
+            self.reset();
+            (self.short_since_s, self.since_s, self.field_moved_s) = (t_s, t_s, t_s);
+        }
+        self.last_s = Some(t_s);
+        self.short.add(sample, field);
+        if t_s - self.short_since_s >= SHORT_S {
+            self.close_short(t_s);
+        }
+        (self.moved == Some(false)).then(|| (self.short_since_s - self.since_s) / self.settings.time_s)
+    }
+
+    fn close_short(&mut self, t_s: f64) {
+        let (wrench, field) = self.short.mean();
+        let far = self.whole.count > 0.0 && {
+            let (mean, mean_field) = self.whole.mean();
+            let turned = (field - mean_field).norm() > self.settings.field_m_s2;
+            if turned {
+                self.field_moved_s = t_s;
+            }
+            turned || (wrench.force_n - mean.force_n).norm() > self.settings.force_n
+        };
+        if far {
+            (self.whole, self.since_s) = (Sums::default(), t_s);
+        }
+        self.moved = Some(far);
+        self.whole.merge(&self.short);
+        (self.short, self.short_since_s) = (Sums::default(), t_s);
+    }
+}

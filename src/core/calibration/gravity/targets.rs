@@ -1,0 +1,42 @@
+//! Orientations that together show gravity from all sides.
+
+use nalgebra::{UnitQuaternion, Vector3};
+
+/// An orientation to bring the tool to. Gravity does not see a turn about the vertical, so tilt is all that counts.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PoseTarget {
+    /// Short name for a screen.
+    pub name: &'static str,
+    /// Direction of gravity in `s1` in this pose (z along the shaft towards the tip), not normalised.
+    pub down_s1: [f64; 3],
+}
+
+impl PoseTarget {
+    /// The orientation of the sensor with the least turn from the base's frame.
+    pub fn world_from_s1(&self) -> UnitQuaternion<f64> {
+        let (from, to) = (Vector3::from(self.down_s1), -Vector3::z());
+        // Straight opposite there is no shortest way: any half turn about a level axis does.
+        UnitQuaternion::rotation_between(&from, &to)
+            .unwrap_or_else(|| UnitQuaternion::from_axis_angle(&Vector3::x_axis(), std::f64::consts::PI))
+    }
+}
+
+const fn target(name: &'static str, down_s1: [f64; 3]) -> PoseTarget {
+    PoseTarget { name, down_s1 }
+}
+
+/// Twelve directions: along the axes, then between them. Easy ones first; every direction is within 45 degrees of one.
+pub const TARGETS: [PoseTarget; 12] = [
+    target("shaft down", [0.0, 0.0, 1.0]),
+    target("shaft level, +x side down", [1.0, 0.0, 0.0]),
+    target("shaft level, +y side down", [0.0, 1.0, 0.0]),
+    target("shaft level, -x side down", [-1.0, 0.0, 0.0]),
+    target("shaft level, -y side down", [0.0, -1.0, 0.0]),
+    target("half down, between +x and +y", [0.6, 0.6, 0.7]),
+    target("half down, between -x and +y", [-0.6, 0.6, 0.7]),
+    target("half down, between -x and -y", [-0.6, -0.6, 0.7]),
+    target("half down, between +x and -y", [0.6, -0.6, 0.7]),
+    target("half up, between +x and +y", [0.7, 0.7, -0.5]),
+    target("half up, between -x and -y", [-0.7, -0.7, -0.5]),
+    target("shaft up", [0.0, 0.0, -1.0]),
+];

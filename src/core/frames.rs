@@ -1,0 +1,143 @@
+//! Named frames and the rotations between them.
+//!
+//! | name | frame |
+//! |---|---|
+//! | `world` | base of the follower arm, z up: the workspace frame of this program |
+//! | `s1` | force-torque sensor at the wrist; its z axis runs along the instrument's shaft towards the tip |
+//! | `imu` | inertial unit inside the wrist sensor |
+//! | `m` | optical marker on the base of the instrument |
+//! | `c` | tracker camera |
+//! | `s2` | force sensor under the tissue |
+//!
+//! A rotation is named `target_from_source` and takes a vector of the source frame to the target frame, so that chains read
+//! off: `s1_from_s2 = s1_from_world * world_from_m * m_from_c * c_from_s2`.
+
+use nalgebra::{Rotation3, UnitQuaternion, Vector3};
+
+/// Standard gravity, m/s^2 (ISO 80000-3).
+pub const GRAVITY_M_S2: f64 = 9.806_65;
+
+/// Rotation by roll about x, then pitch about y, then yaw about z of the fixed frame (degrees): `Rz Ry Rx`, as in the paper.
+///
+/// ```
+/// use nalgebra::Vector3;
+/// use nima_core::frames::{from_roll_pitch_yaw_deg, to_roll_pitch_yaw_deg};
+///
+/// let turn = from_roll_pitch_yaw_deg(&Vector3::new(0.0, 0.0, 90.0));
+/// assert!((turn * Vector3::x() - Vector3::y()).norm() < 1e-12, "yaw turns x into y");
+/// assert!((to_roll_pitch_yaw_deg(&turn) - Vector3::new(0.0, 0.0, 90.0)).norm() < 1e-9);
+/// ```
+pub fn from_roll_pitch_yaw_deg(angles_deg: &Vector3<f64>) -> UnitQuaternion<f64> {
+    let [roll, pitch, yaw] = [angles_deg.x, angles_deg.y, angles_deg.z].map(f64::to_radians);
+    UnitQuaternion::from_euler_angles(roll, pitch, yaw)
+}
+
+/// Roll, pitch and yaw (degrees) of a rotation: the inverse of [`from_roll_pitch_yaw_deg`].
+pub fn to_roll_pitch_yaw_deg(rotation: &UnitQuaternion<f64>) -> Vector3<f64> {
+    let (roll, pitch, yaw) = Rotation3::from(*rotation).euler_angles();
+    Vector3::new(roll.to_degrees(), pitch.to_degrees(), yaw.to_degrees())
+}
+
+/// A wrench on a sensor, in that sensor's frame.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Wrench {
+    /// In the sensor's own frame unless the owner says otherwise.
+    pub force_n: Vector3<f64>,
+    /// Torque about the sensor's origin, Nm.
+    pub torque_nm: Vector3<f64>,
+}
+
+impl Wrench {
+    /// Every number in it is finite.
+    pub fn is_finite(&self) -> bool {
+        self.force_n.iter().chain(self.torque_nm.iter()).all(|x| x.is_finite())
+    }
+}
+
+/// All that is measured at the wrist of one follower in one exchange. What a rig does not have is `None`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct WristSample {
+    /// What the tool puts on the sensor, as read: gravity, contact, friction and bias together (`s1`).
+    pub raw: Wrench,
+    /// Reading of the sensor's accelerometer (`imu`), m/s^2. At rest it reads the support, opposite to gravity.
+    pub acceleration_m_s2: Option<Vector3<f64>>,
+    /// Orientation of the sensor by the arm's kinematics.
+    pub world_from_s1: Option<UnitQuaternion<f64>>,
+    /// Orientation of the optical marker by the arm's kinematics.
+    pub world_from_m: Option<UnitQuaternion<f64>>,
+    /// Orientation of the camera as the marker sees it, by the tracker.
+    pub m_from_c: Option<UnitQuaternion<f64>>,
+    /// How deep the instrument reaches through the trocar, m, by the arm's kinematics.
+    pub insertion_m: Option<f64>,
+    /// Force on the sensor under the tissue (`s2`), N; only there while calibrating.
+    pub tissue_n: Option<Vector3<f64>>,
+}
+
+impl WristSample {
+    /// A sample with a wrench and nothing else.
+    pub const fn of(raw: Wrench) -> Self {
+        Self {
+            raw,
+            acceleration_m_s2: None,
+            world_from_s1: None,
+            world_from_m: None,
+            m_from_c: None,
+            insertion_m: None,
+            tissue_n: None,
+        }
+    }
+
+    /// The known part of the correspondence chain, `s1_from_c = s1_from_world * world_from_m * m_from_c`.
+    pub fn s1_from_c(&self) -> Option<UnitQuaternion<f64>> {
+        Some(self.world_from_s1?.inverse() * self.world_from_m? * self.m_from_c?)
+    }
+
+    /// Every number in it is finite.
+    pub fn is_finite(&self) -> bool {
+        let vectors = [self.acceleration_m_s2, self.tissue_n];
+        let rotations = [self.world_from_s1, self.world_from_m, self.m_from_c];
+        self.raw.is_finite()
+            && vectors.iter().flatten().all(|v| v.iter().all(|x| x.is_finite()))
+            && rotations.iter().flatten().all(|q| q.coords.iter().all(|x| x.is_finite()))
+            && self.insertion_m.is_none_or(f64::is_finite)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn roll_pitch_yaw_is_the_papers_order_and_reads_back() {
+        let angles = Vector3::new(20.0, -35.0, 110.0);
+        let rotation = from_roll_pitch_yaw_deg(&angles);
+        let by_hand = Rotation3::from_axis_angle(&Vector3::z_axis(), 110_f64.to_radians())
+            * Rotation3::from_axis_angle(&Vector3::y_axis(), -35_f64.to_radians())
+            * Rotation3::from_axis_angle(&Vector3::x_axis(), 20_f64.to_radians());
+        assert!(rotation.angle_to(&by_hand.into()) < 1e-12);
+        assert!((to_roll_pitch_yaw_deg(&rotation) - angles).norm() < 1e-9);
+    }
+
+    #[test]
+    fn the_chain_cancels_what_lies_between() {
+        let [world_from_s1, world_from_m, world_from_c] =
+            [[10.0, 20.0, 30.0], [-40.0, 5.0, 60.0], [170.0, 0.0, -20.0]].map(|a| from_roll_pitch_yaw_deg(&a.into()));
+        let sample = WristSample {
+            world_from_s1: Some(world_from_s1),
+            world_from_m: Some(world_from_m),
+            m_from_c: Some(world_from_m.inverse() * world_from_c),
+            ..WristSample::of(Wrench::default())
+        };
+        let expected = world_from_s1.inverse() * world_from_c;
+        assert!(sample.s1_from_c().unwrap().angle_to(&expected) < 1e-12);
+        assert!(WristSample::of(Wrench::default()).s1_from_c().is_none());
+    }
+
+    #[test]
+    fn one_poisoned_number_is_seen() {
+        let mut sample = WristSample::of(Wrench::default());
+        assert!(sample.is_finite());
+        sample.insertion_m = Some(f64::NAN);
+        assert!(!sample.is_finite());
+    }
+}

@@ -1,0 +1,174 @@
+//! Anchored rendering against delayed reflection: real recordings, and what must never make it worse.
+
+use nalgebra::Vector3;
+
+use super::*;
+
+/// Samples of one recording of `../shared/data/tue_1dof` (x only), `None` where the folder is absent.
+fn recording(name: &str) -> Option<Vec<Sample>> {
+    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data/tue_1dof").join(name);
+    let text = std::fs::read_to_string(path).ok()?;
+    let parse = |line: &str| {
+        let mut fields = line.split(',').map(|field| field.parse::<f64>().ok());
+        let (t_s, x, f) = (fields.next()??, fields.nth(1)??, fields.nth(1)??);
+        Some(Sample { t_s, position_m: Vector3::new(x, 0.0, 0.0), force_n: Vector3::new(f, 0.0, 0.0) })
+    };
+    text.lines().skip(1).map(parse).collect()
+}
+
+/// Mean 3-D error (N) of every mode over a recording.
+fn mean_errors(samples: &[Sample], settings: &Settings) -> [f64; MODES] {
+    let mut identifier = Identifier::new(settings).unwrap();
+    let mut sums = [0.0; MODES];
+    let mut count = 0.0_f64;
+    for sample in samples {
+        identifier.step(sample);
+        let report = identifier.report();
+        if report.prediction_valid[Mode::Dfr.index()] {
+            count += 1.0;
+            for (sum, prediction) in sums.iter_mut().zip(&report.prediction_n) {
+                *sum += (prediction - sample.force_n).norm();
+            }
+        }
+    }
+    sums.map(|sum| sum / count.max(1.0))
+}
+
+#[test]
+fn real_recordings() {
+    eprintln!("anchored / delayed reflection, mean error; literal and linear beside it");
+    eprintln!(
+        "{:<16} {:>6} {:>9} {:>9} {:>9}  reflection (Nm)",
+        "recording", "D (ms)", "anchored", "literal", "linear"
+    );
+    for material in ["foam", "spring", "rigid", "free_motion"] {
+        for question in ["1a", "1b"] {
+            let name = format!("m1_question{question}_{material}.csv");
+            let Some(samples) = recording(&name) else {
+                eprintln!("../shared/data/tue_1dof is absent: recordings not tested");
+                return;
+            };
+            for delay_ms in [0, 10, 50, 100, 300] {
+                let settings = Settings { axes: 1, delay_s: f64::from(delay_ms) * 1e-3, ..Settings::default() };
+                let errors = mean_errors(&samples, &settings);
+                let dfr = errors[Mode::Dfr.index()];
+                let ratio = |mode: Mode| errors[mode.index()] / dfr;
+                let anchored = if delay_ms == 0 { 1.0 } else { ratio(Mode::Anchored) };
+                let (literal, linear) = (ratio(Mode::Literal), ratio(Mode::Linear));
+                eprintln!(
+                    "{question} {material:<13} {delay_ms:>6} {anchored:>9.3} {literal:>9.2} {linear:>9.2}  {dfr:.4}"
+                );
+                let limit = if matches!(material, "foam" | "spring") { 0.55 } else { 0.85 };
+                assert!(delay_ms == 0 || anchored < limit, "{name} at {delay_ms} ms: {anchored}");
+                assert!(
+                    delay_ms > 0 || errors[Mode::Anchored.index()] <= 0.0,
+                    "{name}: not the force itself at no delay"
+                );
+            }
+        }
+    }
+}
+
+/// Uneven numbers with the spread of a normal distribution of unit variance, the same every time.
+struct Noise(u64);
+
+impl Noise {
+    fn next(&mut self) -> f64 {
+        let uniform = |state: &mut u64| {
+            *state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (*state >> 11) as f64 / (1_u64 << 53) as f64
+        };
+        (0..12).map(|_| uniform(&mut self.0)).sum::<f64>() - 6.0
+    }
+}
+
+fn smooth_step(t: f64) -> f64 {
+    let t = t.clamp(0.0, 1.0);
+    t * t * t * (10.0 - 15.0 * t + 6.0 * t * t)
+}
+
+/// Depth of the tip in tissue (m) and the normal force (N) at a time, of one scenario.
+type Scenario = fn(f64) -> (f64, f64);
+
+/// Free for 1.5 s, then 5 N within 50 ms, held, and off again, every 3 s.
+fn sudden_contact(t: f64) -> (f64, f64) {
+    let (t, depth) = (t % 3.0, |z: f64| (-z).max(0.0));
+    let z = if t < 1.5 {
+        0.02 - 0.025 * smooth_step((t - 1.0) / 0.25)
+    } else {
+        -0.005 + 0.025 * smooth_step((t - 1.5) / 0.3)
+    };
+    (z, 1000.0 * depth(z))
+}
+
+/// Palpating; every 4 s the tissue is gone for 1.5 s.
+fn sudden_loss(t: f64) -> (f64, f64) {
+    let z = -0.004 - 0.002 * (5.0 * t).sin();
+    (z, if t % 4.0 < 2.5 { -600.0 * z } else { 0.0 })
+}
+
+/// A handle held still against a force that wanders.
+fn held(t: f64) -> (f64, f64) {
+    (-0.004, 2.0 + 0.3 * (1.1 * t).sin() + 0.2 * (2.7 * t + 1.0).sin())
+}
+
+/// Palpating for 3 s, standing still in contact for 6 s, palpating again.
+fn standstill(t: f64) -> (f64, f64) {
+    let z = if (3.0..9.0).contains(&t) { -0.004 } else { -0.004 - 0.002 * (6.0 * (t - 9.0)).sin() };
+    (z, -500.0 * z)
+}
+
+/// Tissue that becomes five times as stiff, and soft again.
+fn changing_stiffness(t: f64) -> (f64, f64) {
+    let z = -0.004 - 0.003 * (5.5 * t).sin();
+    (z, -z * if (t / 2.0) % 2.0 < 1.0 { 300.0 } else { 1500.0 })
+}
+
+#[test]
+fn what_is_sudden_or_still_is_never_rendered_worse_than_reflected() {
+    let scenarios: [(&str, Scenario); 5] = [
+        ("sudden contact", sudden_contact),
+        ("sudden loss of contact", sudden_loss),
+        ("held handle", held),
+        ("standstill", standstill),
+        ("changing stiffness", changing_stiffness),
+    ];
+    for (name, scenario) in scenarios {
+        for rate_hz in [66.0, 1000.0] {
+            let mut noise = Noise(1);
+            let samples: Vec<_> = (0..(12.0 * rate_hz) as usize)
+                .map(|k| {
+                    let t_s = k as f64 / rate_hz;
+                    let (z, f) = scenario(t_s);
+                    let counted = |x: f64| ((x + 2e-6 * noise.next()) / 5e-6).round() * 5e-6;
+                    let position_m = Vector3::new(0.0, 0.0, z).map(counted);
+                    let force_n = Vector3::new(0.1 * f, 0.0, f).map(|f| f + 0.02 * noise.next());
+                    Sample { t_s, position_m, force_n }
+                })
+                .collect();
+            for delay_s in [0.016, 0.05, 0.1, 0.3] {
+                let modes = ModeSet::only(Mode::Anchored);
+                let settings = Settings { rate_hz, delay_s, modes, ..Settings::default() };
+                let errors = mean_errors(&samples, &settings);
+                let ratio = errors[Mode::Anchored.index()] / errors[Mode::Dfr.index()];
+                eprintln!("{name:<24} {rate_hz:>5} Hz, {:>3.0} ms: {ratio:.3}", 1e3 * delay_s);
+                assert!(ratio <= 1.02, "{name} at {rate_hz} Hz, {delay_s} s: {ratio}");
+            }
+        }
+    }
+}
+
+#[test]
+fn what_comes_later_changes_nothing_before() {
+    let settings = Settings { delay_s: 0.04, ..Settings::default() };
+    let (mut plain, mut other) = (Identifier::new(&settings).unwrap(), Identifier::new(&settings).unwrap());
+    for k in 0..2000 {
+        let sample = super::tests::sample(k, 1000.0);
+        plain.step(&sample);
+        // From tick 1000 on another force: it must not be felt before tick 1040, the motion being the same.
+        let force_n = if k < 1000 { sample.force_n } else { Vector3::new(3.0, -2.0, 1.0) };
+        other.step(&Sample { force_n, ..sample });
+        let same = plain.report().prediction_n == other.report().prediction_n;
+        assert_eq!(same, k < 1040, "tick {k}");
+    }
+}

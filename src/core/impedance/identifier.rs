@@ -1,0 +1,308 @@
+//! The follower's end: from samples to a parcel, and a report of how good it would have been.
+
+use super::{
+    MAX_DEGREE, MODES, Mode, anchored,
+    factor::{Factor, MAX_ROW},
+    features::Features,
+    gram::Gram,
+    horizon::Horizon,
+    literal::{self, LiteralSolver},
+    messages::{Excitation, LiteralModel, Parcel, Posture, Report, Sample, active},
+    settings::{MAX_DELAY_S, Settings, SettingsError},
+    solution::Solution,
+    track::{Track, usable_force, usable_position},
+    window::{SlidingWindow, Summary as _},
+};
+use crate::signal::{DelayLine, Lanes, settled};
+
+/// Time constant of the report's running errors (s).
+const ERROR_MEMORY_S: f64 = 0.5;
+
+/// Identifies the impedance in a sliding window, one [`Sample`] per tick.
+///
+/// Each tick gives a [`Parcel`] for the link and a [`Report`] for the screen. Nothing is allocated after construction.
+///
+/// The follower feels a spring of 100 N/m. 50 ms later its parcel arrives at the leader, which renders the force for its own motion:
+///
+/// ```
+/// use nalgebra::Vector3;
+/// use nima_core::impedance::{Identifier, Mode, Parcel, Renderer, Sample, Settings};
+///
+/// let settings = Settings { rate_hz: 1000.0, delay_s: 0.05, ..Settings::default() };
+/// let (mut follower, mut leader) = (Identifier::new(&settings)?, Renderer::new(&settings)?);
+/// let mut link: Vec<Parcel> = Vec::new();
+/// let mut worst_n = 0.0_f64;
+/// for tick in 0..2000 {
+///     let t_s = f64::from(tick) * 1e-3;
+///     let position_m = Vector3::new(0.0, 0.0, 0.01 * (6.0 * t_s).sin());
+///     let force_n = position_m * -100.0;
+///     follower.step(&Sample { t_s, position_m, force_n });
+///     link.push(*follower.parcel());
+///     let arrived = link.len().checked_sub(51).map(|newest| &link[newest]);
+///     let rendered = leader.step(&position_m, arrived);
+///     if t_s > 1.0 {
+///         let force = rendered.force(Mode::Anchored).expect("a valid force after the first window");
+///         worst_n = worst_n.max((force - force_n).norm());
+///     }
+/// }
+/// // Holding the delayed force would be wrong by up to 0.3 N.
+/// assert!(worst_n < 0.1, "{worst_n} N");
+/// # Ok::<(), nima_core::impedance::SettingsError>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct Identifier {
+    settings: Settings,
+    delay_ticks: usize,
+    track: Track,
+    last_t_s: f64,
+    last_force_n: Lanes,
+    paper: Option<Paper>,
+    anchored: Option<Anchored>,
+    sent: DelayLine<(Parcel, Posture)>,
+    forget: f64,
+    parcel: Parcel,
+    report: Report,
+}
+
+#[derive(Clone, Debug)]
+struct Paper {
+    window: SlidingWindow<Gram>,
+    solver: LiteralSolver,
+}
+
+#[derive(Clone, Debug)]
+struct Anchored {
+    window: SlidingWindow<Factor>,
+    ridge: f64,
+    solution: Solution,
+    horizon: Horizon,
+    correction: anchored::Anchored,
+}
+
+impl Identifier {
+    /// Allocates everything, rings for [`MAX_DELAY_S`] included.
+    ///
+    /// # Errors
+    /// A setting outside of its range, by its name.
+    pub fn new(settings: &Settings) -> Result<Self, SettingsError> {
+        settings.validate()?;
+        let delay_ticks = settings.delay_ticks(settings.delay_s);
+        let block = settings.block();
+        let paper = (settings.modes.contains(Mode::Literal) || settings.modes.contains(Mode::Linear)).then(|| {
+            let degree = if settings.modes.contains(Mode::Literal) { settings.max_degree } else { 1 };
+            let empty = Gram::new(3 * degree);
+            Paper {
+                window: SlidingWindow::new(block, empty.clone(), empty),
+                solver: LiteralSolver::new(degree, settings.axes),
+            }
+        });
+        let anchored = settings.modes.contains(Mode::Anchored).then(|| {
+            let columns = 1 + 3 * settings.max_degree;
+            let ridge = settings.ridge * 2.0 * block as f64;
+            Anchored {
+                window: SlidingWindow::new(block, Factor::new(columns), Factor::with_ridge(columns, ridge)),
+                ridge,
+                solution: Solution::new(columns),
+                horizon: Horizon::new(settings, ridge, delay_ticks),
+                correction: anchored::Anchored::new(settings, delay_ticks),
+            }
+        });
+        let max_delay = (MAX_DELAY_S * settings.rate_hz).ceil() as usize;
+        Ok(Self {
+            delay_ticks,
+            track: Track::new(settings),
+            last_t_s: f64::NEG_INFINITY,
+            last_force_n: Lanes::ZERO,
+            paper,
+            anchored,
+            sent: DelayLine::new(max_delay, (Parcel::BLANK, Posture::BLANK)),
+            forget: 1.0 - (-1.0 / (ERROR_MEMORY_S * settings.rate_hz)).exp(),
+            parcel: Parcel::BLANK,
+            report: Report::BLANK,
+            settings: settings.clone(),
+        })
+    }
+
+    /// Takes one sample.
+    ///
+    /// A sample whose numbers are not finite or absurd, or whose time does not advance, is counted as rejected: it leaves no
+    /// trace in the window, its motion is bridged, its force is the last good one.
+    pub fn step(&mut self, sample: &Sample) {
+        let axes = self.settings.axes;
+        let advancing = sample.t_s.is_finite() && sample.t_s > self.last_t_s;
+        let position = usable_position(active(&sample.position_m, axes), &self.settings.scales).filter(|_| advancing);
+        let force = usable_force(active(&sample.force_n, axes), &self.settings.scales).filter(|_| advancing);
+        let good = position.is_some() && force.is_some();
+        if advancing {
+            self.last_t_s = sample.t_s;
+        }
+        self.last_force_n = force.unwrap_or(self.last_force_n);
+        self.report.t_s = self.last_t_s;
+        self.report.rejected += u64::from(!good);
+
+        let now = self.track.step(position);
+        let increments = self.track.increments();
+        let usable = good && self.track.settled();
+
+        self.parcel.t_s = self.last_t_s;
+        self.parcel.force_n = self.last_force_n.vector();
+        self.parcel.fresh = good;
+        self.step_paper(&increments, usable);
+        self.step_anchored(&now, good, usable);
+        self.sent.push((self.parcel, now));
+        self.predict(&now, &increments, good);
+    }
+
+    fn step_paper(&mut self, increments: &Features, usable: bool) {
+        let Some(Paper { window, solver }) = &mut self.paper else { return };
+        let mut row = window.current().row(increments, self.last_force_n);
+        if !usable {
+            row = Gram::BLANK_ROW;
+        }
+        window.push(&row);
+        if !window.is_full() {
+            return;
+        }
+        solver.solve(window.current(), window.len());
+        let choice = solver.choice();
+        self.parcel.linear = model(solver, 1);
+        self.parcel.literal = model(solver, choice);
+        self.report.paper_degree = choice as u8;
+        self.report.literal_failures = solver.failures();
+        for degree in 1..=MAX_DEGREE {
+            let rendered = literal::product(solver.coefficients(degree), increments, 3 * degree);
+            self.report.reconstruction_n[degree - 1] = (self.last_force_n - rendered).vector();
+        }
+    }
+
+    fn step_anchored(&mut self, now: &Posture, good: bool, usable: bool) {
+        let Some(Anchored { window, ridge, solution, horizon, correction }) = &mut self.anchored else { return };
+        let columns = solution.columns();
+        let mut row = [Lanes::ZERO; MAX_ROW];
+        if usable {
+            row[0] = active(&nalgebra::Vector3::repeat(1.0), self.settings.axes);
+            row[1..columns].copy_from_slice(&now.features[..columns - 1]);
+            row[columns] = self.last_force_n;
+        }
+        window.push(&row);
+        solution.solve(window.current());
+        let impedance = horizon.step(solution, &now.features, self.last_force_n, good, usable);
+        let model = correction.step(&now.stance, &now.features, self.last_force_n, &impedance, good);
+        self.parcel.anchored = model;
+        self.report.columns = impedance.columns;
+        self.report.coupled = impedance.coupled;
+        self.report.cross_talk_ratio = horizon.cross_talk_ratio();
+        self.report.degree = if model.gain > 0.0 { impedance.columns.div_ceil(3).max(1) } else { 0 };
+        self.report.gain = model.gain;
+        self.report.restarts = correction.restarts();
+        let condition = solution.condition(2.max(1 + usize::from(impedance.columns)));
+        self.report.condition = condition.0[..self.settings.axes].iter().fold(1.0, |worst, c| c.max(worst));
+        self.report.rank = rank(window.current(), *ridge, self.settings.axes);
+        self.report.excitation = excitation(window.current(), *ridge, &self.settings);
+    }
+
+    /// What every mode renders for this tick from the parcel one delay old, and its running error.
+    fn predict(&mut self, now: &Posture, increments: &Features, good: bool) {
+        let modes = self.settings.modes;
+        let forces = match self.sent.get(self.delay_ticks) {
+            Some((parcel, then)) if parcel.t_s.is_finite() => parcel.render(now, then, increments),
+            _ => [None; MODES],
+        };
+        for mode in Mode::ALL {
+            let force = forces[mode.index()].filter(|_| modes.contains(mode));
+            self.report.prediction_n[mode.index()] = force.unwrap_or_default().vector();
+            self.report.prediction_valid[mode.index()] = force.is_some();
+            // A mode that renders nothing errs by the whole force; before anything arrived nothing is judged.
+            if good && forces[Mode::Dfr.index()].is_some() && modes.contains(mode) {
+                let error_n = (self.last_force_n - force.unwrap_or_default()).norm();
+                let mean = &mut self.report.horizon_error_n[mode.index()];
+                *mean = settled(*mean + self.forget * (error_n - *mean));
+            }
+        }
+    }
+
+    /// The parcel made from the newest sample.
+    pub fn parcel(&self) -> &Parcel {
+        &self.parcel
+    }
+
+    /// The report of the newest sample.
+    pub fn report(&self) -> &Report {
+        &self.report
+    }
+
+    /// Every nested solution on the newest window, in scaled columns (N); `None` if anchored rendering is not computed.
+    pub fn solution(&self) -> Option<&Solution> {
+        self.anchored.as_ref().map(|anchored| &anchored.solution)
+    }
+
+    /// The paper's solutions of every degree on the newest window; `None` if neither literal nor linear is computed.
+    pub fn literal(&self) -> Option<&LiteralSolver> {
+        self.paper.as_ref().map(|paper| &paper.solver)
+    }
+
+    /// Changes the programmed delay, exact to one sample, at most [`MAX_DELAY_S`]. The judge of anchored rendering begins anew.
+    pub fn set_delay(&mut self, delay_s: f64) {
+        self.delay_ticks = self.settings.delay_ticks(delay_s);
+        if let Some(anchored) = &mut self.anchored {
+            anchored.horizon.set_delay(self.delay_ticks);
+            anchored.correction.set_delay(self.delay_ticks);
+        }
+    }
+
+    /// Forgets everything, counters included, without allocating.
+    pub fn reset(&mut self) {
+        self.track.reset();
+        self.last_t_s = f64::NEG_INFINITY;
+        self.last_force_n = Lanes::ZERO;
+        if let Some(paper) = &mut self.paper {
+            paper.window.reset();
+            paper.solver.reset();
+        }
+        if let Some(anchored) = &mut self.anchored {
+            anchored.window.reset();
+            anchored.horizon.reset();
+            anchored.correction.reset();
+        }
+        self.sent.clear();
+        self.parcel = Parcel::BLANK;
+        self.report = Report::BLANK;
+    }
+}
+
+fn model(solver: &LiteralSolver, degree: usize) -> LiteralModel {
+    if solver.is_solved(degree) {
+        LiteralModel { degree: degree as u8, coefficients: *solver.coefficients(degree) }
+    } else {
+        LiteralModel::NONE
+    }
+}
+
+/// Motion columns whose part orthogonal to the columns before them outweighs the ridge (and rounding), the fewest of the axes.
+fn rank(factor: &Factor, ridge: f64, axes: usize) -> u8 {
+    let mut ranks = [0_u8; 4];
+    for j in 1..factor.columns() {
+        let column = factor.column(j);
+        let total = column.iter().fold(Lanes::ZERO, |sum, r| sum + *r * *r);
+        for (lane, rank) in ranks.iter_mut().enumerate().take(axes) {
+            let own = column[j][lane] * column[j][lane] - ridge;
+            *rank += u8::from(own > ridge.max(1e-24 * total[lane]));
+        }
+    }
+    ranks[..axes].iter().copied().min().unwrap_or(0)
+}
+
+/// Standard deviations of x, v and a in the window, from the first columns of the factor without the constant's row.
+fn excitation(factor: &Factor, ridge: f64, settings: &Settings) -> Excitation {
+    let rows = factor.column(0)[0];
+    let deviation = |j: usize, scale: f64| {
+        let squares = factor.column(j)[1..].iter().fold(Lanes::ZERO, |sum, r| sum + *r * *r);
+        let variance = (squares - Lanes::splat(ridge)).map(|s| s.max(0.0));
+        (variance.sqrt() * rows.recip_or_zero().map(f64::abs) * scale).vector()
+    };
+    Excitation {
+        position_m: deviation(1, settings.scales.position_m),
+        velocity_m_s: deviation(2, settings.scales.velocity_m_s),
+        acceleration_m_s2: deviation(3, settings.scales.acceleration_m_s2),
+    }
+}

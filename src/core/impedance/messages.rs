@@ -1,0 +1,336 @@
+//! What goes in, what goes over the link, and what is shown.
+
+use nalgebra::Vector3;
+
+use super::{
+    MAX_DEGREE, MODES, Mode,
+    anchored::within,
+    features::{Features, MOTION_COLUMNS},
+    literal,
+    regressors::{Stance, motion_changes},
+};
+use crate::signal::{LANES, Lanes};
+
+/// One tick at the follower.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sample {
+    /// Time (s); must advance from sample to sample. The samples are taken to be evenly spaced at the settings' rate.
+    pub t_s: f64,
+    /// Tip position in the workspace frame (m); axes not in use are ignored.
+    pub position_m: Vector3<f64>,
+    /// Tip force in the same frame (N).
+    pub force_n: Vector3<f64>,
+}
+
+/// Parameters of the paper's model `f = M X`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LiteralModel {
+    /// Degree `N`; 0: none could be solved.
+    pub degree: u8,
+    /// `M`: the first `3 N` are in use, N per SI unit of the feature.
+    pub coefficients: [Lanes; MOTION_COLUMNS],
+}
+
+impl LiteralModel {
+    /// No model.
+    pub const NONE: Self = Self { degree: 0, coefficients: [Lanes::ZERO; MOTION_COLUMNS] };
+
+    /// `M X` (N), `X` the features of the increments over the window, in SI units; `None` without a model or where the
+    /// product is not finite.
+    pub(super) fn force(&self, increments: &Features) -> Option<Lanes> {
+        let force = literal::product(&self.coefficients, increments, 3 * usize::from(self.degree));
+        (self.degree > 0 && force.is_finite()).then_some(force)
+    }
+}
+
+/// An impedance between changes of motion and of force: `M (phi(t) - phi(t - D))`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Impedance {
+    /// Motion columns in use, from the first; 0: none.
+    pub columns: u8,
+    /// Whether axes are coupled.
+    pub coupled: bool,
+    /// `M` (N per scaled feature) from an axis' motion to its own force, zero beyond the columns in use.
+    pub coefficients: [Lanes; MOTION_COLUMNS],
+    /// The same from the motion of the next axis (y for x, z for y, x for z) and of the one after; used only if coupled.
+    pub cross: [[Lanes; MOTION_COLUMNS]; 2],
+}
+
+impl Impedance {
+    /// No impedance: no change of force.
+    pub const NONE: Self = Self {
+        columns: 0,
+        coupled: false,
+        coefficients: [Lanes::ZERO; MOTION_COLUMNS],
+        cross: [[Lanes::ZERO; MOTION_COLUMNS]; 2],
+    };
+
+    /// The change of force (N) from the features `then` to `now`.
+    #[inline]
+    pub(super) fn change(&self, now: &Features, then: &Features) -> Lanes {
+        let columns = usize::from(self.columns);
+        let terms = self.coefficients.iter().zip(now).zip(then).take(columns);
+        let own = terms.fold(Lanes::ZERO, |sum, ((m, now), then)| sum + *m * (*now - *then));
+        if !self.coupled {
+            return own;
+        }
+        let [next, last] = &self.cross;
+        let terms = next.iter().zip(last).zip(now).zip(then).take(columns);
+        terms.fold(own, |sum, (((next, last), now), then)| {
+            let [x, y, z, _] = (*now - *then).0;
+            sum + *next * Lanes([y, z, x, 0.0]) + *last * Lanes([z, x, y, 0.0])
+        })
+    }
+
+    /// This impedance times a factor.
+    pub(super) fn weighted(&self, factor: f64) -> Self {
+        let mut weighted = *self;
+        weighted.coefficients.iter_mut().for_each(|m| *m = *m * factor);
+        if self.coupled {
+            weighted.cross.as_flattened_mut().iter_mut().for_each(|m| *m = *m * factor);
+        }
+        weighted
+    }
+}
+
+impl Default for Impedance {
+    fn default() -> Self {
+        Self::NONE
+    }
+}
+
+/// Parameters of anchored rendering: `f^(t) = f(t - D) + clip(...)`, all experts folded into one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AnchoredModel {
+    /// The window's impedance, with its weight in the mixture.
+    pub impedance: Impedance,
+    /// The regressions' share: N per change of position (m), of its differences from four low-passes (m), of friction
+    /// (1), of square, cube and product of the position about the centre (m², m³, m²).
+    pub motion: [Lanes; 9],
+    /// What the follower alone knows: the change expected without any motion (N).
+    pub constant_n: Lanes,
+    /// Slow mean of the follower's position (m).
+    pub centre_m: Lanes,
+    /// Where friction saturates (m).
+    pub knee: Lanes,
+    /// Least force rendered (N): forces beyond those seen are not invented.
+    pub low_n: Lanes,
+    /// Greatest force rendered (N).
+    pub high_n: Lanes,
+    /// Largest correction (N, norm over the axes).
+    pub bound_n: f64,
+    /// How much of a full correction this is, 0 (plain reflection) to 1.
+    pub gain: f64,
+}
+
+impl AnchoredModel {
+    /// No correction.
+    pub const NONE: Self = Self {
+        impedance: Impedance::NONE,
+        motion: [Lanes::ZERO; 9],
+        constant_n: Lanes::ZERO,
+        centre_m: Lanes::ZERO,
+        knee: Lanes::ZERO,
+        low_n: Lanes::ZERO,
+        high_n: Lanes::ZERO,
+        bound_n: 0.0,
+        gain: 0.0,
+    };
+
+    /// The force (N) for the motion now, from the force and the motion at the anchor. The force as it came where nothing is
+    /// corrected or the correction is not finite.
+    pub(super) fn force(&self, measured: Lanes, now: &Posture, then: &Posture) -> Lanes {
+        if self.gain <= 0.0 {
+            return measured;
+        }
+        let changes = motion_changes(&now.stance, &then.stance, self.centre_m, self.knee);
+        let regressions = self.motion.iter().zip(changes).fold(self.constant_n, |sum, (k, change)| sum + *k * change);
+        let correction = regressions + self.impedance.change(&now.features, &then.features);
+        if correction.is_finite() {
+            within(measured + clip(correction, self.bound_n), self.low_n, self.high_n)
+        } else {
+            measured
+        }
+    }
+}
+
+/// One end's motion at one tick, as the models see it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Posture {
+    pub(super) features: Features,
+    pub(super) stance: Stance,
+}
+
+impl Posture {
+    pub(super) const BLANK: Self =
+        Self { features: [Lanes::ZERO; MOTION_COLUMNS], stance: Stance { x: Lanes::ZERO, u: [Lanes::ZERO; 4] } };
+}
+
+/// Shortens a force to `bound_n`; zero where it is not finite.
+#[inline]
+pub(super) fn clip(force: Lanes, bound_n: f64) -> Lanes {
+    let norm = force.norm();
+    if norm <= bound_n {
+        force
+    } else if norm.is_finite() {
+        force * (bound_n / norm)
+    } else {
+        Lanes::ZERO
+    }
+}
+
+/// What the follower sends over the link each tick: fixed size, plain numbers.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Parcel {
+    /// Time of the sample it was made from (s).
+    pub t_s: f64,
+    /// Tip force at that time (N); the last good one if that sample was rejected.
+    pub force_n: Vector3<f64>,
+    /// Whether that sample was good.
+    pub fresh: bool,
+    /// The paper's choice.
+    pub literal: LiteralModel,
+    /// The paper's linear model.
+    pub linear: LiteralModel,
+    /// Anchored rendering's choice.
+    pub anchored: AnchoredModel,
+}
+
+impl Parcel {
+    /// Nothing measured yet.
+    pub const BLANK: Self = Self {
+        t_s: f64::NEG_INFINITY,
+        force_n: Vector3::new(0.0, 0.0, 0.0),
+        fresh: false,
+        literal: LiteralModel::NONE,
+        linear: LiteralModel::NONE,
+        anchored: AnchoredModel::NONE,
+    };
+
+    /// The force of every mode for the motion now, by [`Mode::index`](super::Mode::index): `anchored` features now and at
+    /// the time of the parcel, `literal` increments now. Nothing is made of a force that is not finite: limits would turn it into
+    /// one of their edges.
+    pub(super) fn render(&self, now: &Posture, then: &Posture, increments: &Features) -> [Option<Lanes>; MODES] {
+        let measured = Lanes::from(self.force_n);
+        if !measured.is_finite() {
+            return [None; MODES];
+        }
+        [
+            self.literal.force(increments),
+            self.linear.force(increments),
+            Some(measured),
+            Some(self.anchored.force(measured, now, then)),
+        ]
+    }
+}
+
+/// Forces rendered at the leader, unclamped (the gates of `safety` come after).
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Rendered {
+    /// Force of every mode (N), by [`Mode::index`](super::Mode::index); zero where not valid.
+    pub force_n: [Vector3<f64>; MODES],
+    /// Whether that mode had something to render, and it was finite.
+    pub valid: [bool; MODES],
+}
+
+impl Rendered {
+    /// Force of `mode` (N); `None` where it has nothing valid.
+    pub fn force(&self, mode: Mode) -> Option<Vector3<f64>> {
+        self.valid[mode.index()].then(|| self.force_n[mode.index()])
+    }
+
+    pub(super) fn new(forces: [Option<Lanes>; MODES]) -> Self {
+        Self { force_n: forces.map(|force| force.unwrap_or_default().vector()), valid: forces.map(|f| f.is_some()) }
+    }
+}
+
+/// Standard deviation of the motion inside the window, per axis.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[expect(missing_docs, reason = "the names say it")]
+pub struct Excitation {
+    pub position_m: Vector3<f64>,
+    pub velocity_m_s: Vector3<f64>,
+    pub acceleration_m_s2: Vector3<f64>,
+}
+
+/// Everything the screen and the trace show of one tick.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Report {
+    /// Time of the newest sample (s).
+    pub t_s: f64,
+    /// For each mode the force (N) for this time made from data up to `t - D` and the follower's motion at `t`.
+    pub prediction_n: [Vector3<f64>; MODES],
+    /// Whether that prediction exists and is finite; it is zero otherwise.
+    pub prediction_valid: [bool; MODES],
+    /// Force minus `M X` (N) at the newest sample, for each literal degree fitted on the window that ends with it.
+    pub reconstruction_n: [Vector3<f64>; MAX_DEGREE],
+    /// The paper's in-window choice of the degree; 0 while the window is not full or nothing can be solved.
+    pub paper_degree: u8,
+    /// Degree of anchored rendering: that of the nested window impedance which foretells force best at the horizon; 1 where
+    /// none does better than reflection but the regressions do; 0: no correction.
+    pub degree: u8,
+    /// Motion columns of that window impedance, 0 (none) to 15: three per degree (x, v, a); the last degree may hold x or
+    /// x, v only.
+    pub columns: u8,
+    /// Whether that window impedance couples the axes.
+    pub coupled: bool,
+    /// Error at the horizon with cross-talk relative to that without (window impedances only); 1 where it is not computed.
+    pub cross_talk_ratio: f64,
+    /// How much of a full correction anchored rendering makes, 0 (plain reflection) to 1.
+    pub gain: f64,
+    /// Condition (scaled columns) of that choice, the worst of the axes; of the constant and `x` if nothing is chosen.
+    pub condition: f64,
+    /// Motion columns that carry more information than the ridge, the fewest of the axes.
+    pub rank: u8,
+    /// How much the motion in the window varies.
+    pub excitation: Excitation,
+    /// Samples rejected so far (not finite, absurd, or time not advancing).
+    pub rejected: u64,
+    /// How often anchored rendering had to begin learning anew because a number was not finite.
+    pub restarts: u64,
+    /// Literal solves (one per tick, axis and degree) that failed so far.
+    pub literal_failures: u64,
+    /// Running mean (about 0.5 s) of each mode's 3-D error at the horizon (N).
+    pub horizon_error_n: [f64; MODES],
+}
+
+impl Report {
+    /// What `mode` would render now (N) from data up to `t - D`; `None` where it has nothing valid.
+    pub fn prediction(&self, mode: Mode) -> Option<Vector3<f64>> {
+        self.prediction_valid[mode.index()].then(|| self.prediction_n[mode.index()])
+    }
+
+    /// Nothing measured yet.
+    pub const BLANK: Self = Self {
+        t_s: f64::NEG_INFINITY,
+        prediction_n: [Vector3::new(0.0, 0.0, 0.0); MODES],
+        prediction_valid: [false; MODES],
+        reconstruction_n: [Vector3::new(0.0, 0.0, 0.0); MAX_DEGREE],
+        paper_degree: 0,
+        degree: 0,
+        columns: 0,
+        coupled: false,
+        cross_talk_ratio: 1.0,
+        gain: 0.0,
+        condition: 1.0,
+        rank: 0,
+        excitation: Excitation {
+            position_m: Vector3::new(0.0, 0.0, 0.0),
+            velocity_m_s: Vector3::new(0.0, 0.0, 0.0),
+            acceleration_m_s2: Vector3::new(0.0, 0.0, 0.0),
+        },
+        rejected: 0,
+        restarts: 0,
+        literal_failures: 0,
+        horizon_error_n: [0.0; MODES],
+    };
+}
+
+/// Zeroes the lanes of axes not in use.
+pub(super) fn active(vector: &Vector3<f64>, axes: usize) -> Lanes {
+    let mut lanes = Lanes::from(*vector);
+    for lane in axes..LANES {
+        lanes[lane] = 0.0;
+    }
+    lanes
+}

@@ -1,0 +1,61 @@
+//! The heart: from motion and tip force to an impedance `f = M X`, and from `M` back to a force for the hand.
+//!
+//! Takes: tip positions (m, workspace frame) and tip forces (N, same frame), one [`Sample`] per tick at a fixed rate.
+//! Gives: a [`Parcel`] of parameters for the link (follower side, [`Identifier`]) and a force (N) rendered from the leader's
+//! own motion (leader side, [`Renderer`]). Pure and deterministic; nothing is allocated after construction; it knows no
+//! device, file or thread.
+//! Bad input (NaN, infinite, absurdly large, or a time stamp that does not advance) is counted, left out of the window, and
+//! bridged by a prediction of the motion; it never reaches a parameter. What is not handled here: dead band, gain, ceiling
+//! and age of the rendered force; those are the gates of `safety`.
+//!
+//! | file | holds |
+//! |---|---|
+//! | `track`, `features` | the motion of one end; its features `u, u', u'', ..., u^N, u'^N, u''^N` and their scales |
+//! | `window`, `factor`, `solution` | sliding window at a constant cost; triangular factor; all its nested solutions |
+//! | `gram`, `literal` | the paper's normal equations, all degrees, in-window choice |
+//! | `cross_factor`, `cross_talk` | the same with every axis' force from the motion of all axes, where a scene asks for it |
+//! | `horizon` | the nested solution that foretells force best at the true delay |
+//! | `anchored`, `regressors`, `regression`, `stack` | anchored rendering: experts, their trust, the guard |
+//! | `identifier`, `renderer`, `messages` | the two ends of the link, and what goes between them |
+
+mod anchored;
+mod cross_factor;
+mod cross_talk;
+mod factor;
+mod features;
+mod gram;
+mod horizon;
+mod identifier;
+mod literal;
+mod messages;
+mod mode;
+mod regression;
+mod regressors;
+mod renderer;
+mod settings;
+mod solution;
+mod stack;
+mod track;
+mod window;
+
+#[cfg(test)]
+mod comparison_tests;
+#[cfg(test)]
+mod tests;
+
+pub use factor::Factor;
+pub use features::{Features, MOTION_COLUMNS, Scales};
+pub use gram::Gram;
+pub use identifier::Identifier;
+pub use literal::LiteralSolver;
+pub use messages::{AnchoredModel, Excitation, Impedance, LiteralModel, Parcel, Rendered, Report, Sample};
+pub use mode::{MODES, Mode, ParseModeError};
+pub use renderer::Renderer;
+pub use settings::{MAX_DELAY_S, ModeSet, Settings, SettingsError};
+pub use solution::Solution;
+pub use window::{SlidingWindow, Summary};
+
+/// Axes handled in parallel: x, y, z of the workspace.
+pub const AXES: usize = 3;
+/// Highest polynomial degree `N` of the motion features (the paper's five).
+pub const MAX_DEGREE: usize = 5;

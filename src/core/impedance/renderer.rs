@@ -1,0 +1,104 @@
+//! The leader's end: a force from the newest parcel and the leader's own motion.
+
+use nalgebra::Vector3;
+
+use super::{
+    messages::{Parcel, Posture, Rendered, active},
+    settings::{MAX_DELAY_S, Settings, SettingsError},
+    track::{Track, usable_position},
+};
+use crate::signal::DelayLine;
+
+/// Renders a force from what came over the link and the leader's motion. Nothing is allocated after construction.
+///
+/// ```
+/// use nalgebra::Vector3;
+/// use nima_core::impedance::{Mode, Parcel, Renderer, Settings};
+///
+/// let mut renderer = Renderer::new(&Settings::default())?;
+/// let here = Vector3::zeros();
+/// assert_eq!(renderer.step(&here, None).force(Mode::Dfr), None, "no parcel, no force");
+///
+/// let parcel = Parcel { t_s: 0.0, force_n: Vector3::new(0.0, 0.0, 1.5), fresh: true, ..Parcel::BLANK };
+/// assert_eq!(renderer.step(&here, Some(&parcel)).force(Mode::Dfr), Some(parcel.force_n), "dfr reflects the force as it came");
+/// # Ok::<(), nima_core::impedance::SettingsError>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct Renderer {
+    settings: Settings,
+    delay_ticks: usize,
+    track: Track,
+    postures: DelayLine<Posture>,
+    parcel_t_s: f64,
+    /// Ticks since the newest parcel came.
+    waiting: usize,
+}
+
+impl Renderer {
+    /// Allocates everything, rings for [`MAX_DELAY_S`] included.
+    ///
+    /// # Errors
+    /// A setting outside of its range, by its name.
+    pub fn new(settings: &Settings) -> Result<Self, SettingsError> {
+        settings.validate()?;
+        let max_delay = (MAX_DELAY_S * settings.rate_hz).ceil() as usize;
+        Ok(Self {
+            delay_ticks: settings.delay_ticks(settings.delay_s),
+            track: Track::new(settings),
+            postures: DelayLine::new(2 * max_delay, Posture::BLANK),
+            parcel_t_s: f64::NEG_INFINITY,
+            waiting: 0,
+            settings: settings.clone(),
+        })
+    }
+
+    /// Takes one tick.
+    ///
+    /// `position_m`: the leader's motion mapped into the workspace frame (m); one that is not finite is bridged like a lost
+    /// sample. `parcel`: the newest that came over the link, one delay old when it comes. When no newer one comes (`None`,
+    /// or the same again, or an older one) the last is taken to have aged by the ticks since, and the correction goes on
+    /// from the same anchor.
+    pub fn step(&mut self, position_m: &Vector3<f64>, parcel: Option<&Parcel>) -> Rendered {
+        let position = usable_position(active(position_m, self.settings.axes), &self.settings.scales);
+        let now = self.track.step(position);
+        let increments = self.track.increments();
+        self.postures.push(now);
+
+        let Some(parcel) = parcel.filter(|parcel| parcel.t_s.is_finite()) else {
+            self.waiting = self.waiting.saturating_add(1);
+            return Rendered::default();
+        };
+        if parcel.t_s > self.parcel_t_s {
+            self.parcel_t_s = parcel.t_s;
+            self.waiting = 0;
+        } else {
+            self.waiting = self.waiting.saturating_add(1);
+        }
+        // Not that much motion yet: the anchor is now, i.e. no correction.
+        let age = self.delay_ticks.saturating_add(self.waiting);
+        let then = self.postures.get(age).unwrap_or(&now);
+        let mut forces = parcel.render(&now, then, &increments);
+        for mode in super::Mode::ALL {
+            if !self.settings.modes.contains(mode) {
+                forces[mode.index()] = None;
+            }
+        }
+        Rendered::new(forces)
+    }
+
+    /// Changes the programmed delay, exact to one sample, at most [`MAX_DELAY_S`].
+    pub fn set_delay(&mut self, delay_s: f64) {
+        self.delay_ticks = self.settings.delay_ticks(delay_s);
+        // Over a longer link older parcels come than before; they are new all the same.
+        self.parcel_t_s = f64::NEG_INFINITY;
+        self.waiting = 0;
+    }
+
+    /// Forgets all motion.
+    pub fn reset(&mut self) {
+        self.track.reset();
+        self.postures.clear();
+        self.parcel_t_s = f64::NEG_INFINITY;
+        self.waiting = 0;
+    }
+}

@@ -1,0 +1,193 @@
+//! What the identifier and the renderer are told at construction.
+
+use serde::{Deserialize, Serialize};
+
+use super::{AXES, MAX_DEGREE, MODES, Mode, features::Scales};
+use crate::signal::DifferentiatorKind;
+
+/// Longest programmed delay of the link (s); the rings are made for it.
+pub const MAX_DELAY_S: f64 = 1.0;
+
+/// Fewest and most samples in a window.
+const WINDOW_SAMPLES: std::ops::RangeInclusive<f64> = 10.0..=10_000.0;
+
+/// The modes to compute; what is not asked for costs nothing.
+///
+/// ```
+/// use nima_core::impedance::{Mode, ModeSet};
+///
+/// let set = ModeSet::only(Mode::Dfr).with(Mode::Anchored);
+/// assert!(set.contains(Mode::Anchored) && !set.contains(Mode::Literal));
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct ModeSet([bool; MODES]);
+
+impl ModeSet {
+    /// All four.
+    pub const ALL: Self = Self([true; MODES]);
+
+    /// One mode (delayed reflection comes with every one, for comparison).
+    pub const fn only(mode: Mode) -> Self {
+        let mut set = [false; MODES];
+        set[mode.index()] = true;
+        set[Mode::Dfr.index()] = true;
+        Self(set)
+    }
+
+    /// This set and one more mode.
+    #[must_use]
+    pub const fn with(mut self, mode: Mode) -> Self {
+        self.0[mode.index()] = true;
+        self
+    }
+
+    /// Whether `mode` is computed.
+    pub const fn contains(self, mode: Mode) -> bool {
+        self.0[mode.index()]
+    }
+}
+
+impl Default for ModeSet {
+    fn default() -> Self {
+        Self::ALL
+    }
+}
+
+/// Settings of an [`Identifier`](super::Identifier) and of the [`Renderer`](super::Renderer) at the other end of the link;
+/// both must be given the same.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Settings {
+    /// Samples per second, 20 to 10 000.
+    pub rate_hz: f64,
+    /// Length of the sliding window (s); 10 to 10 000 samples. The paper's 0.3.
+    pub window_s: f64,
+    /// Programmed delay of the link (s), 0 to [`MAX_DELAY_S`].
+    pub delay_s: f64,
+    /// Highest degree identified, 1 to 5.
+    pub max_degree: usize,
+    /// Axes in use, 1 to 3 (x; x, y; x, y, z).
+    pub axes: usize,
+    /// Physical scales of the columns.
+    pub scales: Scales,
+    /// The modes to compute.
+    pub modes: ModeSet,
+    /// Whether the force on each axis may depend on the motion of the others (the full `M`, 45 columns, in anchored
+    /// rendering). Costs 4 us a tick and 21 us more in every fifth at 1 kHz; gained 1 % at best on simulated reaches over
+    /// inclined tissue, nothing on palpation, so it is off unless asked for. The report shows the gain.
+    pub cross_talk: bool,
+    /// How velocity and acceleration are made.
+    pub differentiator: DifferentiatorKind,
+    /// Ridge of the anchored fit, per row of the window and in scaled columns: a coefficient costs as much as if each row had
+    /// been seen once more with this mean square and no force. 0 switches it off.
+    pub ridge: f64,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self {
+            rate_hz: 1000.0,
+            window_s: 0.3,
+            delay_s: 0.05,
+            max_degree: MAX_DEGREE,
+            axes: AXES,
+            scales: Scales::default(),
+            modes: ModeSet::ALL,
+            cross_talk: false,
+            differentiator: DifferentiatorKind::default(),
+            ridge: 1e-6,
+        }
+    }
+}
+
+impl Settings {
+    /// Checks every range.
+    ///
+    /// # Errors
+    /// The first setting that is outside of its range.
+    ///
+    /// ```
+    /// use nima_core::impedance::{Settings, SettingsError};
+    ///
+    /// assert!(Settings::default().validate().is_ok());
+    /// let endless = Settings { delay_s: f64::INFINITY, ..Settings::default() };
+    /// assert!(matches!(endless.validate(), Err(SettingsError::Delay { .. })));
+    /// ```
+    pub fn validate(&self) -> Result<(), SettingsError> {
+        use SettingsError as E;
+        if !(20.0..=10_000.0).contains(&self.rate_hz) {
+            return Err(E::Rate { rate_hz: self.rate_hz });
+        }
+        let samples = (self.window_s * self.rate_hz).round();
+        if !WINDOW_SAMPLES.contains(&samples) {
+            return Err(E::Window { window_s: self.window_s, samples });
+        }
+        if !(0.0..=MAX_DELAY_S).contains(&self.delay_s) {
+            return Err(E::Delay { delay_s: self.delay_s });
+        }
+        if !(1..=MAX_DEGREE).contains(&self.max_degree) {
+            return Err(E::Degree { degree: self.max_degree });
+        }
+        if !(1..=AXES).contains(&self.axes) {
+            return Err(E::Axes { axes: self.axes });
+        }
+        let Scales { position_m, velocity_m_s, acceleration_m_s2, force_n } = self.scales;
+        for (name, value) in [
+            ("position_m", position_m),
+            ("velocity_m_s", velocity_m_s),
+            ("acceleration_m_s2", acceleration_m_s2),
+            ("force_n", force_n),
+        ] {
+            if !(1e-9..=1e9).contains(&value) {
+                return Err(E::Scale { name, value });
+            }
+        }
+        if !(0.0..=1e6).contains(&self.ridge) {
+            return Err(E::Ridge { ridge: self.ridge });
+        }
+        Ok(())
+    }
+
+    /// Rows in half a window (a window is made of two blocks, so its length is even).
+    pub(super) fn block(&self) -> usize {
+        ((self.window_s * self.rate_hz / 2.0).round() as usize).max(5)
+    }
+
+    /// The programmed delay in samples, at most [`MAX_DELAY_S`].
+    pub fn delay_ticks(&self, delay_s: f64) -> usize {
+        let delay_s = if delay_s.is_finite() { delay_s.clamp(0.0, MAX_DELAY_S) } else { 0.0 };
+        (delay_s * self.rate_hz).round() as usize
+    }
+}
+
+/// A setting out of range.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[expect(missing_docs, reason = "the messages say it")]
+pub enum SettingsError {
+    /// Sampling rate out of range.
+    #[error("the sampling rate is {rate_hz} Hz; it must lie between 20 and 10000 Hz")]
+    Rate { rate_hz: f64 },
+    /// Window too short or too long.
+    #[error("a window of {window_s} s holds {samples} samples; it must hold 10 to 10000")]
+    Window {
+        window_s: f64,
+        /// Samples at the given rate.
+        samples: f64,
+    },
+    #[error("the delay is {delay_s} s; it must lie between 0 and 1 s")]
+    Delay { delay_s: f64 },
+    #[error("the highest degree is {degree}; it must lie between 1 and 5")]
+    Degree { degree: usize },
+    /// Number of axes out of range.
+    #[error("{axes} axes were asked for; it must be 1, 2 or 3")]
+    Axes { axes: usize },
+    /// A scale is not a positive ordinary number.
+    #[error("the scale {name} is {value}; it must lie between 1e-9 and 1e9")]
+    Scale {
+        /// Field of [`Scales`].
+        name: &'static str,
+        value: f64,
+    },
+    #[error("the ridge is {ridge}; it must lie between 0 and 1e6")]
+    Ridge { ridge: f64 },
+}

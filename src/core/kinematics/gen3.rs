@@ -1,0 +1,229 @@
+//! The chain of the Kinova Gen3 with seven joints and spherical wrist: constants, forward kinematics, Jacobian.
+//!
+//! Angles in rad, lengths in m, in the frame the base is mounted in. Constants from `ros2_kortex`
+//! (`kortex_description/arms/gen3/7dof/urdf/gen3_macro.xacro`, BSD-3-Clause), right angles exact where that file rounds them.
+//! Nothing is checked here: a joint angle that is not finite gives a pose that is not finite.
+
+use nalgebra::{IsometryMatrix3, Matrix3, Rotation3, SMatrix, SVector, Translation3, Vector3};
+
+/// Joints of the arm.
+pub const JOINTS: usize = 7;
+
+/// One number per joint, from the base to the flange.
+pub type Joints = SVector<f64, JOINTS>;
+
+/// Fastest motion of each joint, rad/s: 80 and 70 degrees per second (`gen3_macro.xacro`, `velocity`).
+pub const SPEED_RAD_S: [f64; JOINTS] = [1.3963, 1.3963, 1.3963, 1.3963, 1.2218, 1.2218, 1.2218];
+
+/// Highest acceleration of each joint, rad/s^2: the hard joint limits of `ros_kortex`.
+pub const ACCELERATION_RAD_S2: [f64; JOINTS] = [4.94, 4.94, 4.94, 4.94, 9.5, 9.5, 9.5];
+
+/// Furthest angle of each joint to both sides, rad (`gen3_macro.xacro`, `limit`); infinite where it turns without end.
+pub const LIMIT_RAD: [f64; JOINTS] = [f64::INFINITY, 2.24, f64::INFINITY, 2.57, f64::INFINITY, 2.09, f64::INFINITY];
+
+/// Place of the shoulder (joint 2) above the base, m, and how far the flange can be from it, m: links in a straight line.
+pub(super) const SHOULDER_M: f64 = 0.284_81;
+/// See [`SHOULDER_M`]; rounded up by the millimetres that the joints are beside the line.
+pub(super) const REACH_M: f64 = 0.420_76 + 0.314_36 + 0.167_455 + 0.002;
+
+/// A fixed turn about x between two links.
+#[derive(Clone, Copy)]
+enum Turn {
+    Half,
+    Quarter,
+    QuarterBack,
+}
+
+impl Turn {
+    /// `rotation * Rx(angle)`, exact: only columns change places and signs.
+    fn after(self, rotation: &Matrix3<f64>) -> Matrix3<f64> {
+        let [x, y, z] = [0, 1, 2].map(|i| rotation.column(i).into_owned());
+        match self {
+            Self::Half => Matrix3::from_columns(&[x, -y, -z]),
+            Self::Quarter => Matrix3::from_columns(&[x, z, -y]),
+            Self::QuarterBack => Matrix3::from_columns(&[x, -z, y]),
+        }
+    }
+}
+
+/// From one joint to the next: shift (m) in the frame of the one before, then the turn. The last is the flange.
+const LINKS: [([f64; 3], Turn); JOINTS + 1] = [
+    ([0.0, 0.0, 0.156_43], Turn::Half),
+    ([0.0, 0.005_375, -0.128_38], Turn::Quarter),
+    ([0.0, -0.210_38, -0.006_375], Turn::QuarterBack),
+    ([0.0, 0.006_375, -0.210_38], Turn::Quarter),
+    ([0.0, -0.208_43, -0.006_375], Turn::QuarterBack),
+    ([0.0, 0.000_175_05, -0.105_93], Turn::Quarter),
+    ([0.0, -0.105_93, -0.000_175_05], Turn::QuarterBack),
+    ([0.0, 0.0, -0.061_525], Turn::Half),
+];
+
+/// Where everything is for one set of joint angles, in the frame `world` that the base is mounted in.
+#[derive(Clone, Copy, Debug)]
+pub struct Chain {
+    /// A point on each joint's axis, m.
+    pub origin_m: [Vector3<f64>; JOINTS],
+    /// Each joint's axis, unit length; positive angles turn right-handed about it.
+    pub axis: [Vector3<f64>; JOINTS],
+    /// The flange (the tool frame of the maker); z points away from the arm.
+    pub world_from_flange: IsometryMatrix3<f64>,
+}
+
+impl Chain {
+    /// Forward kinematics of an arm whose base stands at `world_from_base`.
+    pub fn new(world_from_base: &IsometryMatrix3<f64>, joint_rad: &Joints) -> Self {
+        let mut rotation = *world_from_base.rotation.matrix();
+        let mut place_m = world_from_base.translation.vector;
+        let (mut origin_m, mut axis) = ([Vector3::zeros(); JOINTS], [Vector3::zeros(); JOINTS]);
+        for (i, (shift_m, turn)) in LINKS.iter().enumerate() {
+            place_m += rotation * Vector3::from(*shift_m);
+            rotation = turn.after(&rotation);
+            if i == JOINTS {
+                break;
+            }
+            (origin_m[i], axis[i]) = (place_m, rotation.column(2).into_owned());
+            rotation = turned_about_z(&rotation, joint_rad[i]);
+        }
+        let rotation = Rotation3::from_matrix_unchecked(rotation);
+        Self { origin_m, axis, world_from_flange: IsometryMatrix3::from_parts(Translation3::from(place_m), rotation) }
+    }
+
+    /// Velocity (m/s) of a point (m) that is fixed to the flange, per rad/s of one joint.
+    pub fn point_per_joint(&self, joint: usize, point_m: &Vector3<f64>) -> Vector3<f64> {
+        self.axis[joint].cross(&(point_m - self.origin_m[joint]))
+    }
+
+    /// Geometric Jacobian of a point (m) fixed to the flange: rows velocity (m/s) and angular velocity (rad/s), in `world`.
+    pub fn jacobian(&self, point_m: &Vector3<f64>) -> SMatrix<f64, 6, JOINTS> {
+        let mut jacobian = SMatrix::<f64, 6, JOINTS>::zeros();
+        for joint in 0..JOINTS {
+            jacobian.fixed_view_mut::<3, 1>(0, joint).copy_from(&self.point_per_joint(joint, point_m));
+            jacobian.fixed_view_mut::<3, 1>(3, joint).copy_from(&self.axis[joint]);
+        }
+        jacobian
+    }
+}
+
+/// `rotation * Rz(angle)`.
+fn turned_about_z(rotation: &Matrix3<f64>, angle_rad: f64) -> Matrix3<f64> {
+    let (sin, cos) = angle_rad.sin_cos();
+    let [x, y, z] = [0, 1, 2].map(|i| rotation.column(i).into_owned());
+    Matrix3::from_columns(&[x * cos + y * sin, y * cos - x * sin, z])
+}
+
+/// Least distance of a joint to its limit, rad; negative beyond it.
+///
+/// ```
+/// use nima_core::kinematics::{Joints, LIMIT_RAD, limit_margin_rad};
+///
+/// let mut joints = Joints::zeros();
+/// assert!(limit_margin_rad(&joints) > 0.0);
+/// joints[1] = LIMIT_RAD[1] + 0.1;
+/// assert!((limit_margin_rad(&joints) + 0.1).abs() < 1e-12, "negative beyond a limit");
+/// ```
+pub fn limit_margin_rad(joint_rad: &Joints) -> f64 {
+    joint_rad.iter().zip(LIMIT_RAD).map(|(q, limit)| limit - q.abs()).fold(f64::INFINITY, f64::min)
+}
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::{FRAC_PI_2, PI};
+
+    use nalgebra::Isometry3;
+
+    use super::*;
+
+    fn flange(joint_rad: &Joints) -> IsometryMatrix3<f64> {
+        Chain::new(&IsometryMatrix3::identity(), joint_rad).world_from_flange
+    }
+
+    fn random_joints() -> Joints {
+        Joints::from_fn(|_, _| (fastrand::f64() - 0.5) * 2.0 * PI)
+    }
+
+    #[test]
+    fn the_reference_poses_of_the_maker_are_met() {
+        let degrees = |angles: [f64; JOINTS]| Joints::from(angles).map(f64::to_radians);
+        let zero = flange(&Joints::zeros()).translation.vector;
+        assert!((zero - Vector3::new(0.0, -0.024_85, 1.187_385)).norm() < 1e-6, "{zero}");
+        let home = flange(&degrees([0.0, 15.0, 180.0, 230.0, 0.0, 55.0, 90.0]));
+        assert!((home.translation.vector - Vector3::new(0.456_665, 0.001_350, 0.433_724)).norm() < 1e-6);
+        let expected = Matrix3::new(0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0);
+        assert!((home.rotation.matrix() - expected).norm() < 1e-12);
+        let retract = flange(&degrees([0.0, 340.0, 180.0, 214.0, 0.0, 310.0, 90.0]));
+        assert!((retract.translation.vector - Vector3::new(0.122_095, 0.001_35, 0.328_372)).norm() < 1e-6);
+    }
+
+    #[test]
+    fn the_makers_table_of_denavit_and_hartenberg_gives_the_same_flange() {
+        // alpha, a, d, offset of theta; the first row is the base.
+        const ROWS: [[f64; 3]; JOINTS] = [
+            [FRAC_PI_2, -0.284_81, 0.0],
+            [FRAC_PI_2, -0.011_75, PI],
+            [FRAC_PI_2, -0.420_76, PI],
+            [FRAC_PI_2, -0.012_75, PI],
+            [FRAC_PI_2, -0.314_36, PI],
+            [FRAC_PI_2, -0.000_350_1, PI],
+            [PI, -0.167_455, PI],
+        ];
+        fastrand::seed(3);
+        for _ in 0..300 {
+            let joint_rad = random_joints();
+            let mut expected = Isometry3::rotation(Vector3::x() * PI);
+            for ([alpha, d, offset], q) in ROWS.iter().zip(joint_rad.iter()) {
+                expected *= Isometry3::rotation(Vector3::z() * (q + offset))
+                    * Isometry3::translation(0.0, 0.0, *d)
+                    * Isometry3::rotation(Vector3::x() * *alpha);
+            }
+            let ours = flange(&joint_rad);
+            assert!((ours.translation.vector - expected.translation.vector).norm() < 1e-12);
+            let rotation = expected.rotation.to_rotation_matrix();
+            assert!((ours.rotation.matrix() - rotation.matrix()).norm() < 1e-12);
+        }
+    }
+
+    #[test]
+    fn the_jacobian_is_the_slope_of_the_forward_kinematics() {
+        const H: f64 = 1e-6;
+        fastrand::seed(4);
+        let mount = IsometryMatrix3::new(Vector3::new(0.3, -0.2, 0.1), Vector3::new(0.4, 0.3, -1.0));
+        for _ in 0..50 {
+            let joint_rad = random_joints();
+            let chain = Chain::new(&mount, &joint_rad);
+            let on_flange_m = Vector3::new(0.02, -0.01, 0.4);
+            let point_m = chain.world_from_flange * nalgebra::Point3::from(on_flange_m);
+            let jacobian = chain.jacobian(&point_m.coords);
+            for joint in 0..JOINTS {
+                let at = |step: f64| {
+                    let mut moved = joint_rad;
+                    moved[joint] += step;
+                    Chain::new(&mount, &moved).world_from_flange
+                };
+                let (before, after) = (at(-H), at(H));
+                let place = (after * nalgebra::Point3::from(on_flange_m)
+                    - before * nalgebra::Point3::from(on_flange_m))
+                    / (2.0 * H);
+                let between = (after.rotation * before.rotation.inverse()).into_inner();
+                // Twice the sine of the angle, which is small.
+                let turn = Vector3::new(
+                    between[(2, 1)] - between[(1, 2)],
+                    between[(0, 2)] - between[(2, 0)],
+                    between[(1, 0)] - between[(0, 1)],
+                ) / (4.0 * H);
+                assert!((jacobian.fixed_view::<3, 1>(0, joint) - place).norm() < 1e-8);
+                assert!((jacobian.fixed_view::<3, 1>(3, joint) - turn).norm() < 1e-8);
+            }
+        }
+    }
+
+    #[test]
+    fn the_flange_never_leaves_its_reach() {
+        fastrand::seed(5);
+        let shoulder_m = Vector3::z() * SHOULDER_M;
+        let furthest = (0..20_000)
+            .map(|_| (flange(&random_joints()).translation.vector - shoulder_m).norm())
+            .chain([(flange(&Joints::zeros()).translation.vector - shoulder_m).norm()])
+            .fold(0.0, f64::max);
+        assert!(furthest <= REACH_M && furthest > REACH_M - 0.005, "{furthest}");
+    }
+}

@@ -1,0 +1,320 @@
+//! Hand-eye mapping: what the hand does in front of the picture, the tip does in the picture.
+//!
+//! Frames: `leader` (the haptic device), `view` (the endoscope's picture: x right, y down, z into the picture), `world`. Positions in m.
+//! The clutch joins hand and tip where both are: engaging, releasing and changing the mapping never move the tip by themselves.
+//! Input that is not finite gives no motion.
+
+use nalgebra::{Matrix3, Rotation3, UnitQuaternion, Vector3};
+use thiserror::Error;
+
+/// Least and greatest scale of the hand's motion.
+pub const SCALES: std::ops::RangeInclusive<f64> = 0.01..=5.0;
+
+/// Why a mapping is refused.
+#[derive(Clone, Copy, Debug, PartialEq, Error)]
+#[expect(missing_docs, reason = "the messages say it")]
+pub enum MappingError {
+    /// The rotation is not one.
+    #[error("the rotation from the leader to the arm's base is not finite: give the endoscope's pose again")]
+    Rotation,
+    /// The scale is out of range.
+    #[error("the motion scale is {scale}: it must be between 0.01 and 5")]
+    Scale { scale: f64 },
+}
+
+/// `view_from_leader` of an Omega whose base faces the user (x towards the user, y to the user's right, z up) below a screen.
+pub fn view_from_omega() -> UnitQuaternion<f64> {
+    let matrix = Matrix3::new(0.0, 1.0, 0.0, 0.0, 0.0, -1.0, -1.0, 0.0, 0.0);
+    UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix_unchecked(matrix))
+}
+
+/// `world_from_view` by the tracker `c`, which sees the marker `m` on the arm's instrument and another one on the endoscope.
+pub fn world_from_tracked_view(
+    world_from_m: &UnitQuaternion<f64>,
+    m_from_c: &UnitQuaternion<f64>,
+    c_from_view: &UnitQuaternion<f64>,
+) -> UnitQuaternion<f64> {
+    world_from_m * m_from_c * c_from_view
+}
+
+/// Which way and how far the tip goes when the hand moves.
+///
+/// ```
+/// use nalgebra::{UnitQuaternion, Vector3};
+/// use nima_core::kinematics::{Mapping, MappingError, view_from_omega};
+///
+/// let mapping = Mapping::new(&UnitQuaternion::identity(), &view_from_omega(), 0.5)?;
+/// let hand_m = Vector3::new(0.02, 0.0, 0.0);
+/// assert!((mapping.to_tip(&hand_m).norm() - 0.01).abs() < 1e-12, "half the way");
+/// let force_n = mapping.force_to_hand(&mapping.to_tip(&hand_m).normalize());
+/// assert!((force_n - Vector3::x()).norm() < 1e-12, "a force along the tip's way is felt along the hand's way");
+/// assert_eq!(mapping.scaled(100.0), Err(MappingError::Scale { scale: 100.0 }));
+/// # Ok::<(), MappingError>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Mapping {
+    world_from_leader: UnitQuaternion<f64>,
+    scale: f64,
+}
+
+impl Default for Mapping {
+    /// The leader's axes are the workspace's, one to one.
+    fn default() -> Self {
+        Self { world_from_leader: UnitQuaternion::identity(), scale: 1.0 }
+    }
+}
+
+impl Mapping {
+    /// A mapping by the chain `world_from_view * view_from_leader`; `scale` is the tip's way per way of the hand.
+    ///
+    /// # Errors
+    /// When a rotation is not finite or the scale is not within [`SCALES`].
+    pub fn new(
+        world_from_view: &UnitQuaternion<f64>,
+        view_from_leader: &UnitQuaternion<f64>,
+        scale: f64,
+    ) -> Result<Self, MappingError> {
+        let product = world_from_view.into_inner() * view_from_leader.into_inner();
+        let world_from_leader = UnitQuaternion::try_new(product, 1e-6).ok_or(MappingError::Rotation)?;
+        if !world_from_leader.coords.iter().all(|x| x.is_finite()) {
+            return Err(MappingError::Rotation);
+        }
+        if !SCALES.contains(&scale) {
+            return Err(MappingError::Scale { scale });
+        }
+        Ok(Self { world_from_leader, scale })
+    }
+
+    /// The same with another scale.
+    ///
+    /// # Errors
+    /// When the scale is not within [`SCALES`].
+    pub fn scaled(&self, scale: f64) -> Result<Self, MappingError> {
+        if SCALES.contains(&scale) { Ok(Self { scale, ..*self }) } else { Err(MappingError::Scale { scale }) }
+    }
+
+    /// The rotation that takes a vector of the leader to the arm's base.
+    pub const fn world_from_leader(&self) -> &UnitQuaternion<f64> {
+        &self.world_from_leader
+    }
+
+    /// The tip's way per way of the hand.
+    pub const fn scale(&self) -> f64 {
+        self.scale
+    }
+
+    /// The tip's way (m, `world`) for a way of the hand (m, `leader`).
+    pub fn to_tip(&self, hand_m: &Vector3<f64>) -> Vector3<f64> {
+        self.world_from_leader * hand_m * self.scale
+    }
+
+    /// A force at the tip (N, `world`) as the leader's axes have it. Forces are not scaled here: gain is the gates' business.
+    pub fn force_to_hand(&self, tip_n: &Vector3<f64>) -> Vector3<f64> {
+        self.world_from_leader.inverse() * tip_n
+    }
+}
+
+/// A hand: where its device says it is, in the leader's frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Hand {
+    /// In the handle's own frame.
+    pub position_m: Vector3<f64>,
+    /// Orientation; `None` where the device has no wrist.
+    pub orientation: Option<UnitQuaternion<f64>>,
+}
+
+impl Hand {
+    /// A hand on a device without a wrist.
+    pub const fn at(position_m: Vector3<f64>) -> Self {
+        Self { position_m, orientation: None }
+    }
+
+    /// Every number in it is finite.
+    pub fn is_finite(&self) -> bool {
+        self.position_m.iter().all(|x| x.is_finite())
+            && self.orientation.is_none_or(|q| q.coords.iter().all(|x| x.is_finite()))
+    }
+}
+
+/// Where the tip shall be, in `world`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Target {
+    /// Position, m.
+    pub tip_m: Vector3<f64>,
+    /// Orientation of the instrument's jaws.
+    pub world_from_jaws: UnitQuaternion<f64>,
+}
+
+/// The clutch and where hand and tip were joined.
+#[derive(Clone, Copy, Debug)]
+pub struct HandEye {
+    mapping: Mapping,
+    target: Target,
+    /// The hand as it was one step ago; `None` while released.
+    hand: Option<Hand>,
+    engaged: bool,
+}
+
+impl HandEye {
+    /// Released, with the tip where it is.
+    pub const fn new(mapping: Mapping, target: Target) -> Self {
+        Self { mapping, target, hand: None, engaged: false }
+    }
+
+    /// The mapping in force.
+    pub const fn mapping(&self) -> &Mapping {
+        &self.mapping
+    }
+
+    /// Takes another mapping (the endoscope moved, the scale changed); it holds for motion from now on.
+    pub const fn set_mapping(&mut self, mapping: Mapping) {
+        self.mapping = mapping;
+    }
+
+    /// Joins the hand to the tip from the next step on. `target` is where the tip is commanded to be now.
+    pub const fn engage(&mut self, target: Target) {
+        self.target = target;
+        self.hand = None;
+        self.engaged = true;
+    }
+
+    /// Lets the hand go; the target stays.
+    pub const fn release(&mut self) {
+        self.engaged = false;
+        self.hand = None;
+    }
+
+    /// Hand and tip are joined.
+    pub const fn is_engaged(&self) -> bool {
+        self.engaged
+    }
+
+    /// Takes the hand's pose in and gives where the tip shall be.
+    pub fn step(&mut self, hand: &Hand) -> Target {
+        if !self.engaged || !hand.is_finite() {
+            return self.target;
+        }
+        if let Some(before) = self.hand {
+            self.target.tip_m += self.mapping.to_tip(&(hand.position_m - before.position_m));
+            if let (Some(now), Some(then)) = (hand.orientation, before.orientation) {
+                let world_from_leader = self.mapping.world_from_leader;
+                let turn = world_from_leader * (now * then.inverse()) * world_from_leader.inverse();
+                // Many small turns: the length of the product would drift from one.
+                self.target.world_from_jaws =
+                    UnitQuaternion::new_normalize((turn * self.target.world_from_jaws).into_inner());
+            }
+        }
+        self.hand = Some(*hand);
+        self.target
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::frames::from_roll_pitch_yaw_deg;
+
+    fn hand(x: f64, y: f64, z: f64) -> Hand {
+        Hand { position_m: Vector3::new(x, y, z), orientation: None }
+    }
+
+    fn target() -> Target {
+        Target {
+            tip_m: Vector3::new(0.4, 0.0, -0.1),
+            world_from_jaws: from_roll_pitch_yaw_deg(&Vector3::new(180.0, 0.0, 20.0)),
+        }
+    }
+
+    /// The endoscope looks straight down, its picture's right is the base's -y.
+    fn looking_down() -> UnitQuaternion<f64> {
+        let columns = [-Vector3::y(), -Vector3::x(), -Vector3::z()];
+        UnitQuaternion::from_rotation_matrix(&Rotation3::from_basis_unchecked(&columns))
+    }
+
+    fn hand_eye(scale: f64) -> HandEye {
+        HandEye::new(Mapping::new(&looking_down(), &view_from_omega(), scale).unwrap(), target())
+    }
+
+    #[test]
+    fn the_hand_moves_the_tip_the_same_way_in_the_picture() {
+        let view = view_from_omega();
+        let right_up_away = [Vector3::y(), Vector3::z(), -Vector3::x()];
+        let in_the_picture = [Vector3::x(), -Vector3::y(), Vector3::z()];
+        for (hand, picture) in right_up_away.iter().zip(in_the_picture) {
+            assert!((view * hand - picture).norm() < 1e-12, "{hand}");
+        }
+        let mut hand_eye = hand_eye(0.5);
+        hand_eye.engage(target());
+        hand_eye.step(&hand(0.0, 0.0, 0.0));
+        let tip_m = hand_eye.step(&hand(-0.02, 0.04, 0.0)).tip_m;
+        // 40 mm to the right and 20 mm away, halved: the base's -y, and down into the picture.
+        assert!((tip_m - target().tip_m - Vector3::new(0.0, -0.02, -0.01)).norm() < 1e-12, "{tip_m}");
+    }
+
+    #[test]
+    fn the_tracker_gives_the_same_view_as_the_rig_file() {
+        let turn = |x, y, z| from_roll_pitch_yaw_deg(&Vector3::new(x, y, z));
+        let [world_from_m, world_from_c, n_from_view] =
+            [turn(10.0, 40.0, -70.0), turn(-100.0, 5.0, 33.0), turn(0.0, 30.0, 4.0)];
+        let c_from_m = world_from_c.inverse() * world_from_m;
+        let c_from_n = world_from_c.inverse() * looking_down() * n_from_view.inverse();
+        let seen = world_from_tracked_view(&world_from_m, &c_from_m.inverse(), &(c_from_n * n_from_view));
+        assert!(seen.angle_to(&looking_down()) < 1e-12);
+    }
+
+    #[test]
+    fn clutch_and_new_mappings_never_move_the_tip() {
+        let mut hand_eye = hand_eye(0.4);
+        assert_eq!(hand_eye.step(&hand(0.5, 0.5, 0.5)), target(), "released");
+        hand_eye.engage(target());
+        assert_eq!(hand_eye.step(&hand(0.03, -0.02, 0.05)), target(), "engaged wherever the hand is");
+        let moved = hand_eye.step(&hand(0.03, -0.01, 0.05));
+        assert!((moved.tip_m - target().tip_m).norm() > 3e-3);
+        hand_eye.set_mapping(Mapping::new(&UnitQuaternion::identity(), &view_from_omega(), 2.0).unwrap());
+        assert_eq!(hand_eye.step(&hand(0.03, -0.01, 0.05)), moved, "a new mapping at rest");
+        hand_eye.release();
+        assert_eq!(hand_eye.step(&hand(-0.2, 0.1, 0.0)), moved, "released again");
+        hand_eye.engage(moved);
+        assert_eq!(hand_eye.step(&hand(-0.2, 0.1, 0.0)), moved, "engaged elsewhere");
+    }
+
+    #[test]
+    fn a_turn_of_the_hand_is_the_same_turn_in_the_picture() {
+        let mut hand_eye = hand_eye(0.4);
+        hand_eye.engage(target());
+        let start = from_roll_pitch_yaw_deg(&Vector3::new(5.0, 10.0, 15.0));
+        let turned = UnitQuaternion::from_scaled_axis(-Vector3::x() * 0.3) * start;
+        let held = hand(0.0, 0.0, 0.0);
+        hand_eye.step(&Hand { orientation: Some(start), ..held });
+        let jaws = hand_eye.step(&Hand { orientation: Some(turned), ..held });
+        // About the line of sight (away from the user) becomes about the direction of the picture: the base's -z.
+        let expected = UnitQuaternion::from_scaled_axis(-Vector3::z() * 0.3) * target().world_from_jaws;
+        assert!(jaws.world_from_jaws.angle_to(&expected) < 1e-12);
+        assert_eq!(jaws.tip_m, target().tip_m);
+    }
+
+    #[test]
+    fn a_force_goes_back_the_way_the_motion_came() {
+        let hand_eye = hand_eye(0.4);
+        let motion = Vector3::new(0.01, -0.02, 0.03);
+        let tip_n = hand_eye.mapping().to_tip(&motion) * -50.0;
+        let hand_n = hand_eye.mapping().force_to_hand(&tip_n);
+        assert!(
+            (hand_n.normalize() + motion.normalize()).norm() < 1e-12 && (hand_n.norm() - tip_n.norm()).abs() < 1e-12
+        );
+    }
+
+    #[test]
+    fn what_is_not_finite_moves_nothing_and_makes_no_mapping() {
+        let mut hand_eye = hand_eye(1.0);
+        hand_eye.engage(target());
+        hand_eye.step(&hand(0.0, 0.0, 0.0));
+        assert_eq!(hand_eye.step(&hand(f64::NAN, 0.0, 0.0)), target());
+        let identity = UnitQuaternion::identity();
+        for scale in [0.0, -1.0, f64::NAN, f64::INFINITY, 6.0] {
+            assert!(matches!(Mapping::new(&identity, &identity, scale), Err(MappingError::Scale { .. })));
+        }
+        let broken = UnitQuaternion::new_unchecked(nalgebra::Quaternion::new(f64::NAN, 0.0, 0.0, 0.0));
+        assert_eq!(Mapping::new(&broken, &identity, 1.0), Err(MappingError::Rotation));
+    }
+}

@@ -1,0 +1,410 @@
+//! Inverse kinematics through the trocar, one step per tick, from where the arm is: continuous by construction.
+//!
+//! In: where the tip shall be (m, `world`), any time, however far. Out: joint angles (rad) within the [`JointLimits`] in force, off the
+//! ends of their ranges, with the shaft through the trocar. What cannot be reached in one period is reached later, on the way through
+//! the trocar that turns and slides in proportion: every limit slows down all joints by one factor. A target that is not finite
+//! brakes the arm. Nothing here allocates or waits.
+
+use nalgebra::{Vector2, Vector3};
+use thiserror::Error;
+
+use super::{
+    gen3::{JOINTS, Joints, LIMIT_RAD, limit_margin_rad},
+    instrument::{Arm, Pose},
+    limits::JointLimits,
+    pace, posture,
+    rcm::{Confined, Rcm, Shaft},
+    velocity::{LENGTH_M, Parts, Task, Wish, turn_towards},
+};
+
+/// Share of the joints' speed limits that is used; the maker's own planning limits (`ros_kortex`, hard joint limits) are 95 %. The rest
+/// is for keeping the trocar while braking.
+const SPEED_SHARE: f64 = 0.95;
+/// Fastest tip and fastest turn of the shaft: the maker's twist limits (`ros_kortex`, `twist_limits.yaml`), m/s and rad/s.
+pub(super) const TIP_SPEED_M_S: f64 = 0.5;
+/// See [`TIP_SPEED_M_S`].
+pub(super) const TURN_SPEED_RAD_S: f64 = 1.74;
+/// Joints stay this far from their limits, rad, so that a drive that overshoots does not fault.
+pub const KEEP_OFF_RAD: f64 = 0.02;
+/// Near a limit a joint approaches it at most at this rate, 1/s.
+const APPROACH_PER_S: f64 = 20.0;
+/// Share of the acceleration that is planned for stopping at a target or before the end of a range; the rest follows the path's bends.
+const BRAKING_SHARE: f64 = 0.5;
+/// Time over which the target's own motion is averaged, s: tremor and noise of the handle are no motion to follow.
+const TARGET_MOTION_S: f64 = 0.005;
+/// How fast the posture improves along its slope, rad/s, and which share of the joints' speed that may take.
+const POSTURE_PER_S: f64 = 1.0;
+const POSTURE_SHARE: f64 = 0.2;
+/// A start further from the trocar than this is not one with the instrument in it, m.
+pub const START_MISS_M: f64 = 5e-3;
+
+/// Why the arm cannot start from where it is.
+#[derive(Clone, Copy, Debug, PartialEq, Error)]
+#[expect(missing_docs, reason = "the messages say it")]
+pub enum StartError {
+    /// The loop's period makes no sense.
+    #[error("the period of the inverse kinematics is {period_s} s: it must be above 0 and at most 0.02 s")]
+    Period { period_s: f64 },
+    /// The instrument is shorter than the way it shall go.
+    #[error(
+        "the shaft of {shaft_m} m is too short for an insertion of {insertion_max_m} m: correct the one or the other"
+    )]
+    ShortShaft {
+        /// From the sensor to the tip, m.
+        shaft_m: f64,
+        /// Greatest insertion, m.
+        insertion_max_m: f64,
+    },
+    /// A joint angle is not finite.
+    #[error("joint {joint} of the arm reports no finite angle: check the arm's connection")]
+    NotFinite {
+        /// Counted from 1.
+        joint: usize,
+    },
+    /// A joint is at its limit.
+    #[error(
+        "joint {joint} is at {angle_deg:.1} degrees, its limit is {limit_deg:.1}: move the arm off the limit by hand"
+    )]
+    AtLimit {
+        /// Counted from 1.
+        joint: usize,
+        angle_deg: f64,
+        limit_deg: f64,
+    },
+    /// The shaft does not lead through the trocar.
+    #[error(
+        "the shaft's axis misses the trocar by {miss_m:.4} m, at most {most_m} m are allowed: move the arm to the ready pose"
+    )]
+    BesideTrocar {
+        /// Distance of the axis from the trocar, m.
+        miss_m: f64,
+        most_m: f64,
+    },
+    /// The tip is not in the body.
+    #[error("the tip is {insertion_m:.4} m behind the trocar: insert the instrument before starting")]
+    NotInserted {
+        /// Along the shaft, m; negative in front of the trocar.
+        insertion_m: f64,
+    },
+}
+
+/// How good the pose is after a step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Measures {
+    /// Distance of the shaft's axis from the trocar, m.
+    pub axis_miss_m: f64,
+    /// Distance of the tip from the permitted target, m; NaN when the target was not finite.
+    pub tip_miss_m: f64,
+    /// Least distance of a joint from its limit, rad.
+    pub limit_margin_rad: f64,
+    /// How well the joints can move the shaft in its worst direction, m/rad (a turn counts by 0.3 m); 0 is a singular pose.
+    pub dexterity: f64,
+    /// Share of the wished motion that the joints' speeds and limits allowed in this period, 0 to 1.
+    pub granted: f64,
+}
+
+/// One period's answer.
+#[derive(Clone, Copy, Debug)]
+pub struct Step {
+    /// Where the joints shall be, rad.
+    pub joint_rad: Joints,
+    /// The target was outside of the permitted space, and how.
+    pub confined: Confined,
+    /// How good the pose is.
+    pub measures: Measures,
+}
+
+/// The arm as it is commanded, and the way from one target to the next.
+///
+/// The tip is led 20 mm sideways; the shaft stays in the trocar on the whole way:
+///
+/// ```
+/// use nalgebra::Vector3;
+/// use nima_core::kinematics::{Arm, ArmSettings, Inverse, Rcm, RcmSettings, find};
+///
+/// let zero = Vector3::zeros();
+/// let arm = Arm::new(&ArmSettings { base_m: zero, base_deg: zero, sensor_m: zero, sensor_deg: zero, shaft_m: 0.4 })?;
+/// let rcm = Rcm::new(&RcmSettings {
+///     trocar_m: Vector3::new(0.45, 0.0, 0.12),
+///     inward: Vector3::new(0.0, 0.0, -1.0),
+///     cone_deg: 45.0,
+///     insertion_min_m: 0.02,
+///     insertion_max_m: 0.2,
+/// })?;
+/// let start_m = Vector3::new(0.45, 0.0, 0.02);
+/// let ready = find(&arm, &rcm, &start_m)?;
+/// let mut inverse = Inverse::new(arm, rcm, 1e-3, &ready.joint_rad)?;
+/// let goal_m = start_m + Vector3::new(0.02, 0.0, 0.0);
+/// for _ in 0..2000 {
+///     let step = inverse.step(&goal_m);
+///     assert!(step.measures.axis_miss_m < 1e-4, "{:?}", step.measures);
+/// }
+/// assert!((inverse.pose().tip_m - goal_m).norm() < 1e-3);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct Inverse {
+    arm: Arm,
+    rcm: Rcm,
+    period_s: f64,
+    limits: JointLimits,
+    /// By how much a joint's step may differ from the one before, rad.
+    change_rad: Joints,
+    joint_rad: Joints,
+    pose: Pose,
+    dexterity: f64,
+    /// The last step, rad.
+    moved_rad: Joints,
+    /// How far the command is ahead of the arm, rad.
+    ahead_rad: Joints,
+    /// The last target, and how it moves in one period: turns times [`LENGTH_M`] and sliding inwards, m.
+    last_goal: Option<Shaft>,
+    target_motion_m: Vector3<f64>,
+}
+
+impl Inverse {
+    /// Starts at these joint angles (rad), for a loop of this period (s).
+    ///
+    /// # Errors
+    /// When the arm cannot start from there.
+    pub fn new(arm: Arm, rcm: Rcm, period_s: f64, joint_rad: &Joints) -> Result<Self, StartError> {
+        // Written so that NaN is refused.
+        if !(period_s > 0.0 && period_s <= 0.02) {
+            return Err(StartError::Period { period_s });
+        }
+        let insertion_max_m = rcm.settings().insertion_max_m;
+        if arm.shaft_m() <= insertion_max_m {
+            return Err(StartError::ShortShaft { shaft_m: arm.shaft_m(), insertion_max_m });
+        }
+        check_joints(joint_rad)?;
+        let pose = arm.pose(joint_rad);
+        let trocar_m = rcm.settings().trocar_m;
+        let (miss_m, insertion_m) = (pose.axis_miss_m(&trocar_m).norm(), pose.insertion_m(&trocar_m));
+        if miss_m > START_MISS_M {
+            return Err(StartError::BesideTrocar { miss_m, most_m: START_MISS_M });
+        }
+        if insertion_m <= 0.0 {
+            return Err(StartError::NotInserted { insertion_m });
+        }
+        let inverse = Self {
+            arm,
+            rcm,
+            period_s,
+            limits: JointLimits::speed_only(),
+            change_rad: Joints::repeat(f64::INFINITY),
+            joint_rad: *joint_rad,
+            pose,
+            dexterity: 0.0,
+            moved_rad: Joints::zeros(),
+            ahead_rad: Joints::zeros(),
+            last_goal: None,
+            target_motion_m: Vector3::zeros(),
+        };
+        Ok(inverse)
+    }
+
+    /// With these limits in force instead of the arm's speeds alone.
+    #[must_use]
+    pub fn within(self, limits: JointLimits) -> Self {
+        Self { limits, change_rad: limits.acceleration_rad_s2 * self.period_s.powi(2), ..self }
+    }
+
+    /// Takes in where the joints are (rad, finite): a joint that is too far behind its command is not commanded further away.
+    pub fn observe(&mut self, measured_rad: &Joints) {
+        self.ahead_rad = self.joint_rad - measured_rad;
+    }
+
+    /// Nothing moves.
+    pub fn is_still(&self) -> bool {
+        self.moved_rad == Joints::zeros()
+    }
+
+    /// Where the joints are commanded to be, rad.
+    pub const fn joint_rad(&self) -> &Joints {
+        &self.joint_rad
+    }
+
+    /// Where everything is at those angles.
+    pub const fn pose(&self) -> &Pose {
+        &self.pose
+    }
+
+    /// The trocar.
+    pub const fn rcm(&self) -> &Rcm {
+        &self.rcm
+    }
+
+    /// Height of elbow and wrist above the trocar, m.
+    pub fn clearance_m(&self) -> f64 {
+        posture::clearance_m(&self.pose, &self.rcm)
+    }
+
+    /// Moves on by one period towards a tip (m, `world`).
+    pub fn step(&mut self, target_m: &Vector3<f64>) -> Step {
+        if !target_m.iter().all(|x| x.is_finite()) {
+            return self.brake();
+        }
+        let (goal, confined) = self.rcm.confine(target_m);
+        let wish = self.wish(&goal);
+        let granted = self.solve(&wish).map_or(0.0, |parts| self.take(&parts, &wish, goal.insertion_m));
+        self.answer(Some(&goal), confined, granted)
+    }
+
+    /// Slows down on the way through the trocar, and holds.
+    pub fn brake(&mut self) -> Step {
+        (self.last_goal, self.target_motion_m) = (None, Vector3::zeros());
+        if self.moved_rad.iter().zip(&self.change_rad).all(|(moved, change)| moved.abs() <= *change) {
+            self.moved_rad = Joints::zeros();
+        } else {
+            let wish = Wish { at_trocar_m: self.to_trocar_m(), moved_rad: self.moved_rad, ..Wish::default() };
+            if let Some(parts) = self.solve(&wish) {
+                let correction = parts.correction * self.correction_share(&parts, &self.bounds());
+                let coast = parts.coast + correction;
+                self.go(pace::towards(&self.moved_rad, &coast, &correction, &self.change_rad));
+            }
+        }
+        self.answer(None, Confined::default(), 0.0)
+    }
+
+    /// The step in its parts; where it is beyond computing the arm holds.
+    fn solve(&mut self, wish: &Wish) -> Option<Parts> {
+        let task = Task::new(&self.pose, &self.rcm.settings().trocar_m);
+        let parts = task.solve(wish, &posture::freedom(&self.joint_rad));
+        match &parts {
+            Some(parts) => self.dexterity = parts.dexterity,
+            None => self.moved_rad = Joints::zeros(),
+        }
+        parts
+    }
+
+    /// What the joints shall do in this period if they could.
+    fn wish(&mut self, goal: &Shaft) -> Wish {
+        let way_m = self.way_m(goal);
+        let moved_m = self.last_goal.map_or_else(Vector3::zeros, |last| way_m - self.way_m(&last));
+        self.last_goal = Some(*goal);
+        // A target that jumps is approached, one that moves is followed without lag.
+        let moved_m = moved_m * self.twist_share(&moved_m, goal.insertion_m);
+        self.target_motion_m += (moved_m - self.target_motion_m) * (self.period_s / TARGET_MOTION_S).min(1.0);
+        let relief =
+            posture::relief(&self.arm, &self.rcm, &self.pose, &self.joint_rad) * (POSTURE_PER_S * self.period_s);
+        let step_rad = self.limits.speed_rad_s * self.period_s;
+        let fastest = relief.iter().zip(&step_rad).map(|(r, v)| r.abs() / v).fold(0.0, f64::max);
+        Wish {
+            at_trocar_m: self.to_trocar_m(),
+            motion_m: way_m - self.target_motion_m,
+            carried_m: self.target_motion_m,
+            moved_rad: self.moved_rad,
+            posture_rad: relief * (POSTURE_SHARE / fastest.max(POSTURE_SHARE)),
+        }
+    }
+
+    /// Shift of the axis that brings it back to the trocar, along `Pose::across`, m.
+    fn to_trocar_m(&self) -> Vector2<f64> {
+        let miss_m = self.pose.axis_miss_m(&self.rcm.settings().trocar_m);
+        -Vector2::new(miss_m.dot(&self.pose.across[0]), miss_m.dot(&self.pose.across[1]))
+    }
+
+    /// From here to a shaft: turns along `Pose::across` times [`LENGTH_M`], and sliding inwards, m.
+    fn way_m(&self, goal: &Shaft) -> Vector3<f64> {
+        let turn = turn_towards(&self.pose, &goal.direction) * LENGTH_M;
+        Vector3::new(turn.x, turn.y, goal.insertion_m - self.pose.insertion_m(&self.rcm.settings().trocar_m))
+    }
+
+    /// How much of a motion (as [`Self::way_m`]) tip and shaft may make in one period, turning and sliding in proportion.
+    fn twist_share(&self, motion_m: &Vector3<f64>, insertion_m: f64) -> f64 {
+        let turn_rad = motion_m.xy().norm() / LENGTH_M;
+        let insertion_m = insertion_m.max(self.pose.insertion_m(&self.rcm.settings().trocar_m));
+        let tip = (TIP_SPEED_M_S * self.period_s) / (turn_rad * insertion_m).hypot(motion_m.z);
+        let shaft = (TURN_SPEED_RAD_S * self.period_s) / turn_rad;
+        tip.min(shaft).min(1.0)
+    }
+
+    /// How much of the correction may be made in this period: it begins and ends smoothly too.
+    fn correction_share(&self, parts: &Parts, [least, most]: &[Joints; 2]) -> f64 {
+        let braking = BRAKING_SHARE * pace::braking(&parts.correction, &self.change_rad);
+        let stopping = pace::stopping_step(1.0, braking).min((parts.returning + braking).max(0.0));
+        stopping * pace::share_within(&(parts.correction * stopping), least, most)
+    }
+
+    /// Moves the joints by as much of the parts as the limits allow, the trocar first; gives the share of the motion.
+    fn take(&mut self, parts: &Parts, wish: &Wish, insertion_m: f64) -> f64 {
+        let reserve_rad = self.change_rad * BRAKING_SHARE;
+        let approach = pace::stopping_step(1.0, pace::braking(&parts.motion, &reserve_rad));
+        let twist = self.twist_share(&(wish.carried_m + wish.motion_m * approach), insertion_m);
+        let motion = (parts.carried + parts.motion * approach) * twist;
+        let [least, most] = self.bounds();
+        let correction = parts.correction * self.correction_share(parts, &[least, most]);
+        let moving = pace::share_within(&motion, &(least - correction), &(most - correction));
+        let mut pushing = motion * moving;
+        let left = [least - correction - pushing, most - correction - pushing];
+        pushing += parts.posture * pace::share_within(&parts.posture, &left[0], &left[1]);
+        let room_rad = self.room_rad();
+        let ends = pace::stopping_step(pace::periods(&pushing, &room_rad), pace::braking(&pushing, &reserve_rad));
+        let wanted = correction + pushing * ends.min(1.0);
+        let coast = parts.coast + correction;
+        let mut step_rad = pace::towards(&self.moved_rad, &coast, &wanted, &self.change_rad);
+        if !pace::can_stop(&step_rad, &room_rad, &self.change_rad) {
+            step_rad = pace::towards(&self.moved_rad, &coast, &correction, &self.change_rad);
+        }
+        self.go(step_rad);
+        moving * ends.min(1.0)
+    }
+
+    fn go(&mut self, step_rad: Joints) {
+        self.joint_rad += step_rad;
+        self.moved_rad = step_rad;
+        self.pose = self.arm.pose(&self.joint_rad);
+    }
+
+    /// How far each joint is from both ends of what it may use, rad; below 0 beyond them.
+    fn room_rad(&self) -> [Joints; 2] {
+        let limit_rad = Joints::from(LIMIT_RAD).add_scalar(-KEEP_OFF_RAD);
+        [limit_rad + self.joint_rad, limit_rad - self.joint_rad]
+    }
+
+    /// Least and greatest change of each joint in this period, rad: its speed, slower towards the end of its range, and not further away
+    /// from an arm that is held.
+    fn bounds(&self) -> [Joints; 2] {
+        let (mut least, mut most) = (Joints::zeros(), Joints::zeros());
+        let approach = (APPROACH_PER_S * self.period_s).min(1.0);
+        let [below_rad, above_rad] = self.room_rad();
+        for joint in 0..JOINTS {
+            let fastest = SPEED_SHARE * self.limits.speed_rad_s[joint] * self.period_s;
+            let ahead_rad = self.ahead_rad[joint];
+            if ahead_rad < self.limits.lead_rad {
+                most[joint] = (approach * above_rad[joint]).clamp(0.0, fastest);
+            }
+            if ahead_rad > -self.limits.lead_rad {
+                least[joint] = -(approach * below_rad[joint]).clamp(0.0, fastest);
+            }
+        }
+        [least, most]
+    }
+
+    fn answer(&self, goal: Option<&Shaft>, confined: Confined, granted: f64) -> Step {
+        let measures = Measures {
+            axis_miss_m: self.pose.axis_miss_m(&self.rcm.settings().trocar_m).norm(),
+            tip_miss_m: goal.map_or(f64::NAN, |goal| (self.rcm.tip_m(goal) - self.pose.tip_m).norm()),
+            limit_margin_rad: limit_margin_rad(&self.joint_rad),
+            dexterity: self.dexterity,
+            granted,
+        };
+        Step { joint_rad: self.joint_rad, confined, measures }
+    }
+}
+
+fn check_joints(joint_rad: &Joints) -> Result<(), StartError> {
+    for (i, (angle, limit)) in joint_rad.iter().zip(LIMIT_RAD).enumerate() {
+        if !angle.is_finite() {
+            return Err(StartError::NotFinite { joint: i + 1 });
+        }
+        if angle.abs() >= limit {
+            return Err(StartError::AtLimit {
+                joint: i + 1,
+                angle_deg: angle.to_degrees(),
+                limit_deg: limit.to_degrees(),
+            });
+        }
+    }
+    Ok(())
+}

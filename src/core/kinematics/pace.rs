@@ -1,0 +1,62 @@
+//! How much of a step may be taken when joints cannot change their speed at will: one factor for all joints, so that the shaft stays in
+//! the trocar. Steps are rad per period.
+
+use super::gen3::{JOINTS, Joints};
+
+/// Greatest first step (in units of the way) on a way of length `way` after which there is room to stop, when each period may take
+/// `braking` off the step: `v^2 / 2a + v = way`. With boundless braking the whole way.
+pub(super) fn stopping_step(way: f64, braking: f64) -> f64 {
+    if way > 0.0 { 2.0 * way / (1.0 + (1.0 + 2.0 * way / braking).sqrt()) } else { 0.0 }
+}
+
+/// By how much a multiple of this step may change per period so that no joint changes its speed by more than `change`.
+pub(super) fn braking(step: &Joints, change: &Joints) -> f64 {
+    (0..JOINTS).map(|joint| change[joint] / step[joint].abs()).fold(f64::INFINITY, f64::min)
+}
+
+/// For how many periods a step can be repeated until a joint has used up its `room` (rad, below and above), at most a great many.
+pub(super) fn periods(step: &Joints, room: &[Joints; 2]) -> f64 {
+    let mut periods: f64 = 1e9;
+    for joint in 0..JOINTS {
+        let room = if step[joint] > 0.0 { room[1][joint] } else { room[0][joint] };
+        if step[joint] != 0.0 {
+            periods = periods.min(room.max(0.0) / step[joint].abs());
+        }
+    }
+    periods
+}
+
+/// From `coast` (go on as now) as far towards `wanted` as the change of speed since `moved` allows. Every step between the two keeps the
+/// trocar. Where not even coasting is allowed, because the path bends, the excess is as small as that line permits.
+pub(super) fn towards(moved: &Joints, coast: &Joints, wanted: &Joints, change: &Joints) -> Joints {
+    let (mut least, mut most) = (0.0_f64, 1.0_f64);
+    for joint in 0..JOINTS {
+        let (bend, way) = (coast[joint] - moved[joint], wanted[joint] - coast[joint]);
+        if way.abs() <= f64::EPSILON * change[joint] || change[joint].is_infinite() {
+            continue;
+        }
+        let ends = [(-change[joint] - bend) / way, (change[joint] - bend) / way];
+        least = least.max(ends[0].min(ends[1]));
+        most = most.min(ends[0].max(ends[1]));
+    }
+    let share = if least <= most { most } else { f64::midpoint(least, most).clamp(0.0, 1.0) };
+    if share < 1.0 { coast + (wanted - coast) * share } else { *wanted }
+}
+
+/// Whether all joints can come to rest from this step, slowing down with one factor, before one of them has used up its room.
+pub(super) fn can_stop(step: &Joints, room: &[Joints; 2], change: &Joints) -> bool {
+    0.5 / braking(step, change) <= periods(step, room)
+}
+
+/// Greatest share (0 to 1) of a step that stays within the bounds (`least <= 0 <= most` up to rounding).
+pub(super) fn share_within(step: &Joints, least: &Joints, most: &Joints) -> f64 {
+    let mut share: f64 = 1.0;
+    for joint in 0..JOINTS {
+        let bound = if step[joint] > 0.0 { most[joint] } else { least[joint] };
+        // A component of nothing never holds the others back.
+        if step[joint].abs() > bound.abs() {
+            share = share.min((bound / step[joint]).max(0.0));
+        }
+    }
+    share
+}

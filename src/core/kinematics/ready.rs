@@ -1,0 +1,268 @@
+//! A good pose to begin from: found from many random starts, tried out over the whole permitted space. Slow (a second or so), and
+//! away from the loop.
+//!
+//! In: arm, trocar, and where the tip shall be (m, `world`). Out: joint angles (rad) and how much of the permitted space the arm can
+//! reach from there without letting go; or why the place cannot be reached. The same input gives the same pose.
+
+use std::f64::consts::{PI, TAU};
+
+use nalgebra::{Point3, Vector3};
+use thiserror::Error;
+
+use super::{
+    gen3::{JOINTS, Joints, LIMIT_RAD, REACH_M, SHOULDER_M, limit_margin_rad},
+    instrument::Arm,
+    inverse::{Inverse, Measures, StartError},
+    posture,
+    rcm::{Rcm, RcmError, Shaft},
+    velocity::{Task, Wish, towards},
+};
+
+/// Random starts of the search.
+const STARTS: usize = 600;
+/// Steps to converge from each.
+const STEPS: usize = 80;
+/// Poses that are tried out.
+const CANDIDATES: usize = 8;
+/// Below these a pose is not worth trying: distance from a limit (rad), dexterity (m/rad).
+const LEAST_MARGIN_RAD: f64 = 0.1;
+/// See [`LEAST_MARGIN_RAD`].
+const LEAST_DEXTERITY: f64 = 0.05;
+/// Period of the tries, s: coarser than the loop's, still fine enough for the trocar.
+const TRY_PERIOD_S: f64 = 0.004;
+/// A tip this near to its goal has arrived, m.
+const ARRIVED_M: f64 = 1e-4;
+/// Longest way to one place of the trial, periods.
+const TRY_PERIODS: usize = 1500;
+/// Directions around the cone that are tried.
+const AROUND: usize = 8;
+
+/// A pose to begin from.
+#[derive(Clone, Copy, Debug)]
+pub struct Ready {
+    /// Joint angles, rad, each within half a turn of zero.
+    pub joint_rad: Joints,
+    /// Share of the tried places (rim of the cone at least and greatest insertion, its middle) that can be reached from here.
+    pub reached: f64,
+    /// Worst distance of a joint from its limit on these ways, rad.
+    pub limit_margin_rad: f64,
+    /// Worst dexterity on these ways, m/rad.
+    pub dexterity: f64,
+    /// Least height of elbow and wrist above the trocar on these ways, m.
+    pub clearance_m: f64,
+}
+
+/// Why a place has no pose.
+#[derive(Clone, Copy, Debug, PartialEq, Error)]
+#[expect(missing_docs, reason = "the messages say it")]
+pub enum ReadyError {
+    /// The tip is not in the permitted space.
+    #[error("the instrument cannot be there")]
+    Place(#[source] RcmError),
+    /// Arm and trocar do not fit together.
+    #[error("the ready pose cannot be a start")]
+    Start(#[source] StartError),
+    /// The sensor would have to be beyond the arm's reach.
+    #[error(
+        "the flange would have to be {needed_m:.3} m from the arm's shoulder, it reaches {reach_m:.3} m: move the arm nearer"
+    )]
+    TooFar {
+        /// Distance needed at least, m.
+        needed_m: f64,
+        /// What the arm has, m.
+        reach_m: f64,
+    },
+    /// No start of the search arrived.
+    #[error(
+        "no pose puts tip and shaft there (best miss {best_miss_m:.4} m in {starts} starts): the place is too near to the arm's base"
+    )]
+    NoPose {
+        /// Smallest miss of tip and direction, m.
+        best_miss_m: f64,
+        starts: usize,
+    },
+    /// Poses exist, but none is usable.
+    #[error(
+        "of {found} poses found {at_limits} are at a joint's limit, {singular} nearly singular, {low} with elbow or wrist too low: \
+         move the arm or the trocar"
+    )]
+    Unusable {
+        found: usize,
+        /// Too near to a limit.
+        at_limits: usize,
+        /// Cannot move the shaft freely.
+        singular: usize,
+        /// Elbow or wrist would touch the patient.
+        low: usize,
+    },
+}
+
+/// Finds a pose with the shaft through the trocar and the tip at `tip_m`.
+///
+/// # Errors
+/// When the place is not permitted, out of reach, or every pose is at a limit, singular or too low.
+pub fn find(arm: &Arm, rcm: &Rcm, tip_m: &Vector3<f64>) -> Result<Ready, ReadyError> {
+    let shaft = rcm.resolve(tip_m).map_err(ReadyError::Place)?;
+    check_reach(arm, tip_m, &shaft)?;
+    let candidates = candidates(arm, rcm, tip_m, &shaft)?;
+    let mut best: Option<Ready> = None;
+    for joint_rad in candidates {
+        let ready = tried(arm, rcm, tip_m, &joint_rad).map_err(ReadyError::Start)?;
+        if best.is_none_or(|best| worth(&ready) > worth(&best)) {
+            best = Some(ready);
+        }
+    }
+    best.ok_or(ReadyError::NoPose { best_miss_m: f64::INFINITY, starts: STARTS })
+}
+
+/// What can be reached counts first, then how easily.
+fn worth(ready: &Ready) -> f64 {
+    ready.reached + 0.1 * ease(ready.limit_margin_rad, ready.dexterity, ready.clearance_m)
+}
+
+/// 0 (useless) to 1 (more than enough of all).
+fn ease(limit_margin_rad: f64, dexterity: f64, clearance_m: f64) -> f64 {
+    let shares = [limit_margin_rad / 0.5, dexterity / 0.2, clearance_m / (2.0 * posture::CLEARANCE_M)];
+    shares.into_iter().fold(1.0, f64::min).max(0.0)
+}
+
+/// The flange lies on a circle about the shaft's axis (its turn is free): it must pass within the arm's reach.
+fn check_reach(arm: &Arm, tip_m: &Vector3<f64>, shaft: &Shaft) -> Result<(), ReadyError> {
+    let shoulder_m = (arm.world_from_base() * Point3::new(0.0, 0.0, SHOULDER_M)).coords;
+    let s1_from_flange = arm.flange_from_s1().inverse().translation.vector;
+    let centre_m = tip_m + shaft.direction * (s1_from_flange.z - arm.shaft_m());
+    let needed_m = (centre_m - shoulder_m).norm() - s1_from_flange.xy().norm();
+    if needed_m > REACH_M { Err(ReadyError::TooFar { needed_m, reach_m: REACH_M }) } else { Ok(()) }
+}
+
+/// The best few distinct poses, best first.
+fn candidates(arm: &Arm, rcm: &Rcm, tip_m: &Vector3<f64>, shaft: &Shaft) -> Result<Vec<Joints>, ReadyError> {
+    let mut random = fastrand::Rng::with_seed(0x6e33);
+    let mut good: Vec<(f64, Joints)> = Vec::new();
+    let (mut found, mut at_limits, mut singular, mut low) = (0, 0, 0, 0);
+    let mut best_miss_m = f64::INFINITY;
+    for _ in 0..STARTS {
+        let start = Joints::from_fn(|joint, _| (2.0 * random.f64() - 1.0) * LIMIT_RAD[joint].min(PI));
+        let (joint_rad, miss_m) = converged(arm, tip_m, shaft, start);
+        best_miss_m = best_miss_m.min(miss_m);
+        if miss_m > 1e-9 {
+            continue;
+        }
+        found += 1;
+        let pose = arm.pose(&joint_rad);
+        let margin_rad = limit_margin_rad(&joint_rad);
+        let clearance_m = posture::clearance_m(&pose, rcm);
+        let dexterity = dexterity(arm, rcm, &joint_rad);
+        if margin_rad < LEAST_MARGIN_RAD {
+            at_limits += 1;
+        } else if dexterity < LEAST_DEXTERITY {
+            singular += 1;
+        } else if clearance_m < posture::CLEARANCE_M {
+            low += 1;
+        } else {
+            good.push((ease(margin_rad, dexterity, clearance_m), joint_rad));
+        }
+    }
+    if found == 0 {
+        return Err(ReadyError::NoPose { best_miss_m, starts: STARTS });
+    }
+    if good.is_empty() {
+        return Err(ReadyError::Unusable { found, at_limits, singular, low });
+    }
+    good.sort_by(|a, b| b.0.total_cmp(&a.0));
+    let mut distinct: Vec<Joints> = Vec::new();
+    for (_, joint_rad) in good {
+        if distinct.len() < CANDIDATES && distinct.iter().all(|other| apart_rad(other, &joint_rad) > 0.5) {
+            distinct.push(joint_rad);
+        }
+    }
+    Ok(distinct)
+}
+
+/// Greatest difference of a joint on the shorter way round; the last joint, which mostly turns the shaft about itself, aside.
+fn apart_rad(a: &Joints, b: &Joints) -> f64 {
+    (a - b).iter().take(JOINTS - 1).map(|difference| wrapped(*difference).abs()).fold(0.0, f64::max)
+}
+
+fn wrapped(angle_rad: f64) -> f64 {
+    angle_rad - TAU * (angle_rad / TAU).round()
+}
+
+/// Newton's way from a random start; joint angles within half a turn, and the miss of tip and direction that is left, m.
+fn converged(arm: &Arm, tip_m: &Vector3<f64>, shaft: &Shaft, start_rad: Joints) -> (Joints, f64) {
+    let mut joint_rad = start_rad;
+    let mut left_m = f64::INFINITY;
+    for _ in 0..STEPS {
+        let (step_rad, miss_m) = towards(&arm.pose(&joint_rad), tip_m, &shaft.direction);
+        left_m = miss_m;
+        if left_m < 1e-12 {
+            break;
+        }
+        joint_rad += step_rad * (0.4 / step_rad.amax().max(0.4));
+    }
+    (joint_rad.map(wrapped), left_m)
+}
+
+fn dexterity(arm: &Arm, rcm: &Rcm, joint_rad: &Joints) -> f64 {
+    let task = Task::new(&arm.pose(joint_rad), &rcm.settings().trocar_m);
+    task.solve(&Wish::default(), &posture::freedom(joint_rad)).map_or(0.0, |parts| parts.dexterity)
+}
+
+/// Lets a pose settle, then goes from it to places all over the permitted space and back.
+fn tried(arm: &Arm, rcm: &Rcm, tip_m: &Vector3<f64>, joint_rad: &Joints) -> Result<Ready, StartError> {
+    let mut settled = Inverse::new(*arm, *rcm, TRY_PERIOD_S, joint_rad)?;
+    for _ in 0..TRY_PERIODS {
+        settled.step(tip_m);
+    }
+    let start_rad = settled.joint_rad().map(wrapped);
+    let mut ready = Ready {
+        joint_rad: start_rad,
+        reached: 0.0,
+        limit_margin_rad: f64::INFINITY,
+        dexterity: f64::INFINITY,
+        clearance_m: f64::INFINITY,
+    };
+    let places = trial_places(rcm);
+    let mut reached = 0;
+    for place_m in &places {
+        let mut inverse = Inverse::new(*arm, *rcm, TRY_PERIOD_S, &start_rad)?;
+        if went(&mut inverse, place_m, &mut ready) && went(&mut inverse, tip_m, &mut ready) {
+            reached += 1;
+        }
+    }
+    ready.reached = f64::from(reached) / places.len() as f64;
+    Ok(ready)
+}
+
+/// Goes to a place; keeps the worst of the way in `ready`. Whether it arrived.
+fn went(inverse: &mut Inverse, place_m: &Vector3<f64>, ready: &mut Ready) -> bool {
+    for _ in 0..TRY_PERIODS {
+        let Measures { tip_miss_m, limit_margin_rad, dexterity, .. } = inverse.step(place_m).measures;
+        ready.limit_margin_rad = ready.limit_margin_rad.min(limit_margin_rad);
+        ready.dexterity = ready.dexterity.min(dexterity);
+        ready.clearance_m = ready.clearance_m.min(inverse.clearance_m());
+        if tip_miss_m < ARRIVED_M {
+            return true;
+        }
+    }
+    false
+}
+
+/// The middle of the cone and its rim, each at least and greatest insertion, m.
+pub(super) fn trial_places(rcm: &Rcm) -> Vec<Vector3<f64>> {
+    let settings = rcm.settings();
+    let inward = *rcm.inward();
+    let other = if inward.x.abs() < 0.9 { Vector3::x() } else { Vector3::y() };
+    let side = inward.cross(&other).normalize();
+    let up = inward.cross(&side);
+    // A hair inside the rim, so that rounding does not put it outside.
+    let (sin, cos) = (settings.cone_deg.to_radians() * 0.999).sin_cos();
+    let rim = (0..AROUND).map(|i| {
+        let (s, c) = (TAU * i as f64 / AROUND as f64).sin_cos();
+        inward * cos + (side * c + up * s) * sin
+    });
+    let directions: Vec<Vector3<f64>> = std::iter::once(inward).chain(rim).collect();
+    let depths_m = [settings.insertion_min_m, settings.insertion_max_m];
+    let place_m = |direction: &Vector3<f64>, insertion_m| rcm.tip_m(&Shaft { direction: *direction, insertion_m });
+    directions.iter().flat_map(|direction| depths_m.map(|insertion_m| place_m(direction, insertion_m))).collect()
+}

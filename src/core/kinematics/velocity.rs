@@ -1,0 +1,182 @@
+//! Joint steps from shaft steps: three tasks, each within what the ones above leave free.
+//!
+//! - First, the shaft's axis goes through the trocar (2 rows).
+//! - Second, the shaft turns about the trocar and slides in it (3 rows; damped near singularities).
+//! - Third, a better posture (what remains: the elbow, the turn about the shaft).
+//!
+//! Because the second is solved in the null space of the first, damping and slowing it down cost speed, never the trocar.
+//! Projections after Siciliano and Slotine (1991), damping after Nakamura and Hanafusa (1986) but per singular direction, joints
+//! near a limit made stiff by weights as in Chan and Dubey (1995). All of it in `world`, m and rad, on the stack.
+
+use nalgebra::{Matrix2, SMatrix, SymmetricEigen, Vector2, Vector3};
+
+use super::{
+    gen3::{JOINTS, Joints},
+    instrument::Pose,
+};
+
+type Rows2 = SMatrix<f64, 2, JOINTS>;
+type Rows3 = SMatrix<f64, 3, JOINTS>;
+
+/// Makes turning comparable with sliding, m: about the length of shaft outside of the body.
+pub(super) const LENGTH_M: f64 = 0.3;
+
+/// Singular value below which a direction is damped, m/rad, and the damping where nothing is left of it.
+const DAMPED_BELOW: f64 = 0.05;
+const DAMPING: f64 = 0.02;
+/// Keeps divisions finite where nothing is left; far below anything that moves.
+const TINY: f64 = 1e-12;
+
+/// How joint speeds move the shaft.
+#[derive(Clone, Copy)]
+pub(super) struct Task {
+    /// Velocity of the shaft at the trocar along `Pose::across`, m/s per rad/s.
+    at_trocar: Rows2,
+    /// Turning of the shaft towards `Pose::across`, times [`LENGTH_M`], and sliding inwards, m/s per rad/s.
+    motion: Rows3,
+}
+
+/// A joint step in its three parts, rad.
+pub(super) struct Parts {
+    /// Brings the axis back to the trocar.
+    pub correction: Joints,
+    /// Moves the shaft all the way.
+    pub motion: Joints,
+    /// Moves the shaft as the target moves.
+    pub carried: Joints,
+    /// Goes on as in the last period, without moving the axis at the trocar.
+    pub coast: Joints,
+    /// How much of the correction the last period's step already makes.
+    pub returning: f64,
+    /// Improves the posture without moving either.
+    pub posture: Joints,
+    /// Smallest singular value of the shaft's motion with the axis held in the trocar, m/rad.
+    pub dexterity: f64,
+}
+
+/// What a step shall do.
+#[derive(Default)]
+pub(super) struct Wish {
+    /// Shift of the axis at the trocar along `Pose::across`, m.
+    pub at_trocar_m: Vector2<f64>,
+    /// Turns along `Pose::across` times [`LENGTH_M`], and sliding inwards, m.
+    pub motion_m: Vector3<f64>,
+    /// The same, by the motion of the target in this period.
+    pub carried_m: Vector3<f64>,
+    /// The joints' step in the last period, rad.
+    pub moved_rad: Joints,
+    /// Change of the joints for the posture's sake, rad.
+    pub posture_rad: Joints,
+}
+
+impl Task {
+    pub(super) fn new(pose: &Pose, trocar_m: &Vector3<f64>) -> Self {
+        let (mut at_trocar, mut motion) = (Rows2::zeros(), Rows3::zeros());
+        let on_axis_m = trocar_m + pose.axis_miss_m(trocar_m);
+        for joint in 0..JOINTS {
+            let shift = pose.chain.point_per_joint(joint, &on_axis_m);
+            let turn = pose.chain.axis[joint].cross(&pose.direction) * LENGTH_M;
+            for (row, across) in pose.across.iter().enumerate() {
+                at_trocar[(row, joint)] = shift.dot(across);
+                motion[(row, joint)] = turn.dot(across);
+            }
+            // Every point of the shaft slides along it equally fast.
+            motion[(2, joint)] = shift.dot(&pose.direction);
+        }
+        Self { at_trocar, motion }
+    }
+
+    /// Square of the product of the five singular values: Yoshikawa's manipulability (1985).
+    pub(super) fn manipulability_squared(&self) -> f64 {
+        let held = self.at_trocar * self.at_trocar.transpose();
+        let cross = self.motion * self.at_trocar.transpose();
+        let free = self.motion * self.motion.transpose() - cross * inverse2(&held) * cross.transpose();
+        held.determinant() * free.determinant()
+    }
+
+    /// Solves for the joint step; `weight` (0 to 1, above 0) says how freely each joint may be used. `None` when the numbers are
+    /// beyond computing.
+    pub(super) fn solve(&self, wish: &Wish, weight: &Joints) -> Option<Parts> {
+        let root = weight.map(f64::sqrt);
+        let mut trocar = self.at_trocar;
+        let mut motion = self.motion;
+        for joint in 0..JOINTS {
+            trocar.column_mut(joint).scale_mut(root[joint]);
+            motion.column_mut(joint).scale_mut(root[joint]);
+        }
+        let held = inverse2(&(trocar * trocar.transpose()));
+        let correction = trocar.transpose() * (held * wish.at_trocar_m);
+        let free = motion - (motion * trocar.transpose()) * held * trocar;
+        let eigen = SymmetricEigen::try_new(free * free.transpose(), f64::EPSILON, 60)?;
+        let through = |gain: &dyn Fn(f64) -> f64, v: Vector3<f64>| {
+            let along = eigen.eigenvectors.transpose() * v;
+            free.transpose() * (eigen.eigenvectors * along.zip_map(&eigen.eigenvalues, |v, square| v * gain(square)))
+        };
+        let moved = through(&damped_inverse, wish.motion_m - motion * correction);
+        let carried = through(&damped_inverse, wish.carried_m);
+        let drifting_m = self.at_trocar * wish.moved_rad;
+        let bend = trocar.transpose() * (held * drifting_m);
+        let mut posture = wish.posture_rad.component_div(&root);
+        posture -= trocar.transpose() * (held * (trocar * posture));
+        posture -= through(&|square| 1.0 / square.max(TINY), free * posture);
+        let parts = Parts {
+            correction: correction.component_mul(&root),
+            motion: moved.component_mul(&root),
+            carried: carried.component_mul(&root),
+            coast: wish.moved_rad - bend.component_mul(&root),
+            returning: drifting_m.dot(&wish.at_trocar_m) / (wish.at_trocar_m.norm_squared() + TINY * TINY),
+            posture: posture.component_mul(&root),
+            dexterity: eigen.eigenvalues.min().max(0.0).sqrt(),
+        };
+        let all = [&parts.correction, &parts.motion, &parts.carried, &parts.coast, &parts.posture];
+        let finite = all.iter().all(|v| v.iter().all(|x| x.is_finite()));
+        finite.then_some(parts)
+    }
+}
+
+/// `1 / (s^2 + l^2)` with the damping `l` growing from zero as the singular value `s` falls below [`DAMPED_BELOW`].
+fn damped_inverse(square: f64) -> f64 {
+    let share = (square.max(0.0) / (DAMPED_BELOW * DAMPED_BELOW)).min(1.0);
+    1.0 / (square.max(0.0) + DAMPING * DAMPING * (1.0 - share) + TINY)
+}
+
+/// Inverse of a symmetric positive 2 x 2 matrix, finite even where it is singular.
+fn inverse2(matrix: &Matrix2<f64>) -> Matrix2<f64> {
+    let [a, b, d] = [matrix[(0, 0)] + TINY, matrix[(0, 1)], matrix[(1, 1)] + TINY];
+    let determinant = (a * d - b * b).max(TINY * TINY);
+    Matrix2::new(d, -b, -b, a) / determinant
+}
+
+/// Joint step (rad) that brings tip and direction nearer to the wished ones by damped least squares, from anywhere; for the search
+/// of a pose, away from the loop.
+pub(super) fn towards(pose: &Pose, tip_m: &Vector3<f64>, direction: &Vector3<f64>) -> (Joints, f64) {
+    let mut rows = SMatrix::<f64, 5, JOINTS>::zeros();
+    let mut miss_m = SMatrix::<f64, 5, 1>::zeros();
+    let turn = turn_towards(pose, direction) * LENGTH_M;
+    miss_m.fixed_rows_mut::<3>(0).copy_from(&(tip_m - pose.tip_m));
+    miss_m.fixed_rows_mut::<2>(3).copy_from(&turn);
+    for joint in 0..JOINTS {
+        rows.fixed_view_mut::<3, 1>(0, joint).copy_from(&pose.chain.point_per_joint(joint, &pose.tip_m));
+        for (row, across) in pose.across.iter().enumerate() {
+            rows[(3 + row, joint)] = pose.chain.axis[joint].cross(&pose.direction).dot(across) * LENGTH_M;
+        }
+    }
+    // Far away the damping keeps the steps sane, near the goal it vanishes, so that the last steps are Newton's.
+    let damping = (0.01 * miss_m.norm_squared()).min(1e-3) + TINY;
+    let square = rows * rows.transpose() + SMatrix::<f64, 5, 5>::identity() * damping;
+    let step = square.cholesky().map_or_else(Joints::zeros, |c| rows.transpose() * c.solve(&miss_m));
+    (step, miss_m.norm())
+}
+
+/// The turn from the shaft's direction to another, along `Pose::across`, rad.
+pub(super) fn turn_towards(pose: &Pose, direction: &Vector3<f64>) -> Vector2<f64> {
+    let [x, y] = pose.across.map(|across| across.dot(direction));
+    let sideways = x.hypot(y);
+    let angle_rad = sideways.atan2(pose.direction.dot(direction));
+    if sideways > TINY {
+        Vector2::new(x, y) * (angle_rad / sideways)
+    } else {
+        // Straight ahead there is nothing to turn; straight behind every side is as good.
+        Vector2::new(angle_rad, 0.0)
+    }
+}

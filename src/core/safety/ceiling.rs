@@ -1,0 +1,65 @@
+//! Last gate: the largest force that ever reaches the hand, never above what the device can give.
+
+use nalgebra::SVector;
+
+use super::Reason;
+
+/// The two limits.
+///
+/// ```
+/// use nalgebra::Vector3;
+/// use nima_core::safety::{Ceiling, Reason};
+///
+/// let (force_n, reason) = Ceiling::new(4.0, 12.0).under(Vector3::new(0.0, 6.0, 8.0));
+/// assert!((force_n - Vector3::new(0.0, 2.4, 3.2)).norm() < 1e-12, "shortened to 4 N, same direction");
+/// assert_eq!(reason, Reason::AboveCeiling);
+/// ```
+#[derive(Clone, Copy, Debug)]
+pub struct Ceiling {
+    ceiling_n: f64,
+    device_limit_n: f64,
+}
+
+impl Ceiling {
+    /// At most the lesser of the two (N, norm of the vector).
+    pub const fn new(ceiling_n: f64, device_limit_n: f64) -> Self {
+        Self { ceiling_n, device_limit_n }
+    }
+
+    /// The limit in force, N.
+    pub const fn most_n(&self) -> f64 {
+        self.ceiling_n.min(self.device_limit_n)
+    }
+
+    /// `force_n` (N), shortened to the limit along its own direction, and why.
+    pub fn under<const D: usize>(&self, force_n: SVector<f64, D>) -> (SVector<f64, D>, Reason) {
+        let (norm, most_n) = (force_n.norm(), self.most_n());
+        if norm <= most_n {
+            return (force_n, Reason::Open);
+        }
+        let reason = if self.device_limit_n < self.ceiling_n { Reason::AboveDeviceLimit } else { Reason::AboveCeiling };
+        (force_n * (most_n / norm), reason)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::Vector3;
+    use proptest::prelude::*;
+
+    use super::*;
+
+    proptest! {
+        #[test]
+        fn nothing_larger_passes_and_no_direction_is_bent(
+            force in prop::array::uniform3(-1e3..1e3f64), ceiling_n in 0.0..20.0f64, device_n in 0.0..20.0f64,
+        ) {
+            let (force, ceiling) = (Vector3::from(force), Ceiling::new(ceiling_n, device_n));
+            let (passed, reason) = ceiling.under(force);
+            prop_assert!(passed.norm() <= ceiling_n.min(device_n) * (1.0 + 1e-12));
+            prop_assert!(passed.cross(&force).norm() <= 1e-9 * force.norm() * (1.0 + passed.norm()));
+            prop_assert!(passed.dot(&force) >= 0.0);
+            prop_assert_eq!(reason == Reason::Open, passed == force);
+        }
+    }
+}

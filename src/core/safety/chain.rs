@@ -1,0 +1,334 @@
+//! The gates in their fixed order: permission, hand, validity, age, dead band, gain, slew, energy, ceiling.
+//!
+//! One chain for a force in space, one for a torque, one for a gripper: the same gates, of as many axes as are asked for.
+
+use nalgebra::SVector;
+
+use super::{
+    Age, Ceiling, ChainSettings, DeadBand, Energy, EnergyMode, Gain, Gate, GateCounts, GateReport, Reason, Release,
+    Slew, admitted, settings::DEAD_BAND_MAX_M_S,
+};
+
+/// One force asking to reach the hand. [`Request::default`] is one that is not permitted.
+#[derive(Clone, Copy, Debug)]
+pub struct Request<const D: usize = 3> {
+    /// The force a mode asks for, N; `None` when the mode has nothing valid.
+    pub force_n: Option<SVector<f64, D>>,
+    /// Age of the newest data behind it beyond the link's own delay, s.
+    pub age_s: f64,
+    /// Speed of the hand, m/s.
+    pub speed_m_s: f64,
+    /// Where the handle is, m, on the axes of the force, as the device reads it (not scaled); `None`: not known, then the energy
+    /// gate sees no motion. A place and not a velocity, because force times way is the energy exactly.
+    pub hand_m: Option<SVector<f64, D>>,
+    /// The state machine allows force at all.
+    pub permitted: bool,
+}
+
+impl<const D: usize> Default for Request<D> {
+    fn default() -> Self {
+        Self { force_n: None, age_s: f64::INFINITY, speed_m_s: 0.0, hand_m: None, permitted: false }
+    }
+}
+
+/// The chain and its memory (gain ramp, last force, dead band, energy, counters).
+#[derive(Clone, Debug)]
+pub struct Chain<const D: usize = 3> {
+    settings: ChainSettings,
+    period_s: f64,
+    release: Release<D>,
+    age: Age,
+    dead_band: DeadBand,
+    gain: Gain,
+    slew: Slew<D>,
+    energy: Energy<D>,
+    ceiling: Ceiling,
+    counts: GateCounts,
+}
+
+/// The chain of a gripper's force.
+pub type GripperChain = Chain<1>;
+/// The chain of a torque.
+pub type TorqueChain = Chain<3>;
+
+impl<const D: usize> Chain<D> {
+    /// A chain for a loop of this period (s). Settings outside their ranges are pulled into them, the gain to 1 at most.
+    pub fn new(settings: ChainSettings, period_s: f64) -> Self {
+        let mut settings = settings.pulled_in();
+        let gain = Gain::new(settings.gain, settings.gain_rate_per_s);
+        settings.gain = gain.chosen();
+        Self {
+            settings,
+            period_s,
+            release: Release::new(settings.handle_kg, period_s),
+            age: Age::new(settings.fade_after_s, settings.zero_after_s),
+            dead_band: DeadBand::new(settings.dead_band_m_s),
+            gain,
+            slew: Slew::new(settings.slew_n_per_s, period_s),
+            energy: Energy::new(settings.energy, period_s),
+            ceiling: Ceiling::new(settings.ceiling_n, settings.device_limit_n),
+            counts: GateCounts::default(),
+        }
+    }
+
+    /// Settings in force.
+    pub const fn settings(&self) -> &ChainSettings {
+        &self.settings
+    }
+
+    /// Counters since construction.
+    pub const fn counts(&self) -> &GateCounts {
+        &self.counts
+    }
+
+    /// The largest force that can leave, N.
+    pub const fn most_n(&self) -> f64 {
+        self.ceiling.most_n()
+    }
+
+    /// Chooses the gain to ramp to, 0 to 1; more is pulled down to 1 unless [`Chain::set_gain_above_one`] came before and no
+    /// choice of 1 or less since. NaN is ignored.
+    pub const fn set_ordinary_gain(&mut self, gain: f64) {
+        self.gain.choose(gain);
+        self.settings.gain = self.gain.chosen();
+    }
+
+    /// The second, deliberate action: chooses a gain up to [`MAX_GAIN`](super::MAX_GAIN). NaN is ignored.
+    pub const fn set_gain_above_one(&mut self, gain: f64) {
+        self.gain.choose_above_one(gain);
+        self.settings.gain = self.gain.chosen();
+    }
+
+    /// Chooses the dead band, m/s, 0 to 0.1; anything else is pulled in, NaN is ignored.
+    pub fn set_dead_band(&mut self, threshold_m_s: f64) {
+        if !threshold_m_s.is_nan() {
+            self.settings.dead_band_m_s = threshold_m_s.clamp(0.0, DEAD_BAND_MAX_M_S);
+            self.dead_band.threshold_m_s = self.settings.dead_band_m_s;
+        }
+    }
+
+    /// Keeps the force at standstill (true) or fades it in the dead band (false).
+    pub const fn set_static_hold(&mut self, hold: bool) {
+        self.settings.static_hold = hold;
+    }
+
+    /// Forgets the last force, so that the next one starts from zero, and the hand's motion; the hand is taken to be there.
+    pub fn reset(&mut self) {
+        self.slew.left(SVector::zeros());
+        self.energy.reset();
+        self.release.reset();
+    }
+
+    /// Sends one request through all gates; gives the force for the hand (N) and what each gate did. Call once a period.
+    ///
+    /// ```
+    /// use nalgebra::Vector3;
+    /// use nima_core::safety::{Chain, ChainSettings, Gate, Reason, Request};
+    ///
+    /// let settings = ChainSettings { ceiling_n: 2.0, ..ChainSettings::default() };
+    /// let mut chain = Chain::new(settings, 1e-3);
+    /// let mut request = Request {
+    ///     force_n: Some(Vector3::new(0.0, 0.0, 50.0)),
+    ///     age_s: 0.0,
+    ///     speed_m_s: 0.1,
+    ///     hand_m: None,
+    ///     permitted: true,
+    /// };
+    /// for _ in 0..1000 {
+    ///     let (force_n, _) = chain.step(&request);
+    ///     assert!(force_n.norm() <= 2.0 + 1e-9, "the ceiling holds");
+    /// }
+    ///
+    /// // What is no number closes the chain and names the gate.
+    /// request.force_n = Some(Vector3::new(f64::NAN, 0.0, 0.0));
+    /// let (_, report) = chain.step(&request);
+    /// assert_eq!(report.first().map(|(gate, _)| gate), Some(Gate::Validity));
+    /// for _ in 0..1000 {
+    ///     chain.step(&request);
+    /// }
+    /// assert_eq!(chain.step(&request).0, Vector3::zeros());
+    /// ```
+    pub fn step(&mut self, request: &Request<D>) -> (SVector<f64, D>, GateReport) {
+        let mut report = GateReport::default();
+        if self.settings.energy != EnergyMode::Off {
+            self.energy.observe(request.hand_m, &self.slew.last_n());
+        }
+        let force_n = self.through(request, &mut report);
+        self.slew.left(force_n);
+        report.stored_j = self.energy.stored_j();
+        self.counts.add(&report.reasons);
+        report.counts = self.counts;
+        (force_n, report)
+    }
+
+    fn through(&mut self, request: &Request<D>, report: &mut GateReport) -> SVector<f64, D> {
+        let admitted = admitted(request.force_n);
+        let (fresh, age) = self.age.share(request.age_s);
+        let (gain, ramp) = self.gain.step(self.period_s);
+        report.gain = gain;
+        report.note(Gate::Validity, admitted.err().unwrap_or_default());
+        report.note(Gate::Age, age);
+        report.note(Gate::Gain, ramp);
+        let aged_n = admitted.unwrap_or_else(|_| SVector::zeros()) * fresh;
+        let hand = self.release.step(request.hand_m, &self.slew.last_n());
+        report.note(Gate::Release, hand);
+        let moving_n = self.past_dead_band(aged_n, request.speed_m_s, report);
+        if !request.permitted {
+            report.note(Gate::Permission, Reason::NotPermitted);
+            report.note(Gate::Release, Reason::Open);
+            self.reset();
+        }
+        if !request.permitted || report.acted(Gate::Validity) || report.acted(Gate::Release) {
+            // A stop is a stop: no ramp down, the slew limit does not apply to letting go.
+            return SVector::zeros();
+        }
+        let (slewed_n, slew) = self.slew.limited(moving_n * gain);
+        report.note(Gate::Slew, slew);
+        let (paid_n, energy) = self.energy.controlled(slewed_n);
+        report.note(Gate::Energy, energy);
+        // What the energy gate takes goes as fast as a force may change, no faster. The ceiling shortens towards a ball in which
+        // the last force lies, which brings no two forces further apart: the slew limit holds behind it.
+        let (force_n, ceiling) = self.ceiling.under(self.slew.limited(paid_n).0);
+        report.note(Gate::Ceiling, ceiling);
+        force_n
+    }
+
+    fn past_dead_band(&mut self, force_n: SVector<f64, D>, speed_m_s: f64, report: &mut GateReport) -> SVector<f64, D> {
+        let share = self.dead_band.step(speed_m_s);
+        if self.settings.static_hold || share >= 1.0 {
+            return force_n;
+        }
+        report.note(Gate::DeadBand, if speed_m_s.is_finite() { Reason::HandSlow } else { Reason::SpeedUnknown });
+        report.withheld_n = force_n.norm() * (1.0 - share);
+        force_n * share
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::{SVector, Vector3};
+    use proptest::prelude::*;
+
+    use super::*;
+
+    fn request(force_n: Vector3<f64>) -> Request {
+        Request { force_n: Some(force_n), age_s: 0.0, speed_m_s: 0.1, hand_m: None, permitted: true }
+    }
+
+    #[test]
+    fn a_modest_force_passes_untouched_once_the_slew_has_caught_up() {
+        let mut chain = Chain::new(ChainSettings::default(), 1e-3);
+        let asked = Vector3::new(1.0, -0.5, 2.0);
+        for _ in 0..100 {
+            chain.step(&request(asked));
+        }
+        let (force_n, report) = chain.step(&request(asked));
+        assert!((force_n - asked).norm() < 1e-12);
+        assert_eq!(report.first_closed(), "open");
+        assert_eq!(report.counts.ticks, 101);
+    }
+
+    #[test]
+    fn silence_fades_after_5_ms_and_is_zero_at_20_ms() {
+        let settings = ChainSettings { slew_n_per_s: 1e9, ..ChainSettings::default() };
+        let mut chain = Chain::new(settings, 1e-3);
+        let at = |chain: &mut Chain, age_s| chain.step(&Request { age_s, ..request(Vector3::z()) }).0.z;
+        assert!((at(&mut chain, 0.005) - 1.0).abs() < 1e-12);
+        let halfway = at(&mut chain, 0.0125);
+        assert!((halfway - 0.5).abs() < 1e-12, "{halfway}");
+        assert!(at(&mut chain, 0.020).abs() < 1e-12);
+        assert!(at(&mut chain, f64::NAN).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_stop_takes_the_force_away_at_once() {
+        let mut chain = Chain::new(ChainSettings::default(), 1e-3);
+        for _ in 0..100 {
+            chain.step(&request(Vector3::z() * 3.0));
+        }
+        let (force_n, report) = chain.step(&Request { permitted: false, ..request(Vector3::z() * 3.0) });
+        assert!(force_n.norm() < 1e-15);
+        assert_eq!(report.first(), Some((Gate::Permission, Reason::NotPermitted)));
+        assert_eq!(chain.counts().acted[Gate::Permission.index()], 1);
+    }
+
+    #[test]
+    fn the_dead_band_says_how_much_it_withholds() {
+        let mut chain = Chain::new(ChainSettings::default(), 1e-3);
+        let held = Request { speed_m_s: 0.0, ..request(Vector3::z() * 1.4) };
+        let (force_n, report) = chain.step(&held);
+        assert!(force_n.norm() < 1e-15 && (report.withheld_n - 1.4).abs() < 1e-12);
+        chain.set_static_hold(true);
+        for _ in 0..10 {
+            chain.step(&held);
+        }
+        assert!((chain.step(&held).0.z - 1.4).abs() < 1e-12);
+    }
+
+    #[test]
+    fn the_ceiling_is_never_above_what_the_device_can_give() {
+        let settings = ChainSettings { device_limit_n: 2.5, ..ChainSettings::default() };
+        let mut chain = Chain::new(settings, 1e-3);
+        let last = (0..100).map(|_| chain.step(&request(Vector3::z() * 30.0))).last().unwrap();
+        assert!((last.0.norm() - 2.5).abs() < 1e-12);
+        assert_eq!(last.1.reason(Gate::Ceiling), Reason::AboveDeviceLimit);
+    }
+
+    #[test]
+    fn a_gripper_and_a_torque_pass_gates_of_their_own() {
+        let mut gripper = GripperChain::new(ChainSettings::gripper(), 1e-3);
+        let squeeze = Request::<1> {
+            force_n: Some(SVector::from([1e2])),
+            age_s: 0.0,
+            speed_m_s: 0.0,
+            hand_m: None,
+            permitted: true,
+        };
+        let held = (0..100).map(|_| gripper.step(&squeeze).0.x).last().unwrap();
+        assert!((held - 4.0).abs() < 1e-12, "a held grip is felt, up to the ceiling: {held}");
+        let mut torque = TorqueChain::new(ChainSettings::torque(0.4), 1e-3);
+        let twist = (0..100).map(|_| torque.step(&request(Vector3::x())).0.norm()).last().unwrap();
+        assert!((twist - 0.1).abs() < 1e-12, "{twist} Nm");
+        let mut none = TorqueChain::new(ChainSettings::torque(0.0), 1e-3);
+        assert!(none.step(&request(Vector3::x())).0.norm() < 1e-15, "a device without torques is sent none");
+    }
+
+    #[test]
+    fn a_gain_above_one_takes_the_second_action() {
+        let settings = ChainSettings { gain: 2.0, gain_rate_per_s: 1e3, ..ChainSettings::default() };
+        let mut chain = Chain::new(settings, 1e-3);
+        assert!((chain.settings().gain - 1.0).abs() < 1e-12);
+        let felt = |chain: &mut Chain| (0..20).map(|_| chain.step(&request(Vector3::x())).0.x).last().unwrap();
+        chain.set_ordinary_gain(2.0);
+        assert!((felt(&mut chain) - 1.0).abs() < 1e-12);
+        chain.set_gain_above_one(2.0);
+        assert!((felt(&mut chain) - 2.0).abs() < 1e-12);
+    }
+
+    proptest! {
+        #[test]
+        fn no_sequence_of_requests_breaches_ceiling_or_slew(
+            requests in prop::collection::vec(
+                (prop::array::uniform3(prop_oneof![-20.0..20.0f64, prop::num::f64::ANY]), prop::num::f64::ANY, prop::num::f64::ANY, any::<bool>(), 0.0..5.0f64),
+                1..200,
+            ),
+        ) {
+            let settings = ChainSettings::default();
+            let mut chain = Chain::new(settings, 1e-3);
+            let (mut last, mut last_gain) = (Vector3::<f64>::zeros(), 1.0);
+            for (force, age_s, speed_m_s, permitted, gain) in requests {
+                chain.set_gain_above_one(gain);
+                let force = Vector3::from(force);
+                let asked = Request { force_n: Some(force), age_s, speed_m_s, hand_m: Some(force * 1e-4), permitted };
+                let (now, report) = chain.step(&asked);
+                prop_assert!(now.iter().all(|f| f.is_finite()));
+                prop_assert!(now.norm() <= settings.ceiling_n * (1.0 + 1e-12));
+                let let_go = [Gate::Permission, Gate::Validity, Gate::Release].iter().any(|gate| report.acted(*gate));
+                let change = (now - last).norm();
+                prop_assert!(if let_go { now.norm() == 0.0 } else { change <= 0.5 * (1.0 + 1e-9) }, "change {}", change);
+                prop_assert!((report.gain - last_gain).abs() <= 2e-3 * (1.0 + 1e-9));
+                (last, last_gain) = (now, report.gain);
+            }
+        }
+    }
+}

@@ -1,0 +1,389 @@
+//! The interlock: one explicit state machine per arm pair, which alone permits force and motion.
+//!
+//! In: what the operator wants ([`Wish`]), what is seen of the machine ([`Seen`]), faults. Out: the [`State`], what it permits
+//! ([`Permits`]) and every [`Change`] with its reason. Time (s) is handed in. Which states follow which is written in types: each state is a value
+//! with methods for its legal successors only, so that an illegal transition does not compile.
+//!
+//! ```text
+//! Disconnected ⇄ Idle → Ready → Engaged ⇄ Clutched        from everywhere: Stopped
+//!                  ↑______|________|__________|           from Idle on:    Faulted
+//!                  └── release ── Stopped, Faulted
+//! ```
+//! Nothing resumes by itself: a device that comes back leads to `Idle`, whatever was wanted before; out of a stop or a fault it
+//! takes a release and a new engagement. The clutch is the exception that the operator's own foot makes.
+
+/// How long drives may take to obey, s, before `Ready` gives up.
+pub const READY_WITHIN_S: f64 = 2.0;
+
+/// Where an arm pair is; `F` is the cause of a fault.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum State<F> {
+    /// A device of the force path is not there.
+    Disconnected,
+    /// Everything delivers. Drives off.
+    Idle,
+    /// Drives on, at rest and without force, until hand and tip agree.
+    Ready,
+    /// Following and rendering.
+    Engaged,
+    /// The hand moves freely, the follower rests, no force.
+    Clutched,
+    /// Stopped by the operator; latched.
+    Stopped,
+    /// Stopped by a fault; latched.
+    Faulted(F),
+}
+
+/// What a state permits.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Permits {
+    /// Drives and motors may be on.
+    pub drives: bool,
+    /// The follower may move, the hand may feel force.
+    pub coupled: bool,
+}
+
+impl<F: Copy> State<F> {
+    /// What is permitted here.
+    pub const fn permits(self) -> Permits {
+        Permits {
+            drives: matches!(self, Self::Ready | Self::Engaged | Self::Clutched),
+            coupled: matches!(self, Self::Engaged),
+        }
+    }
+
+    /// Nobody gets out of here without a release.
+    pub const fn is_latched(self) -> bool {
+        matches!(self, Self::Stopped | Self::Faulted(_))
+    }
+
+    /// One word for the screen.
+    pub const fn word(self) -> &'static str {
+        match self {
+            Self::Disconnected => "No device",
+            Self::Idle => "Idle",
+            Self::Ready => "Ready",
+            Self::Engaged => "Engaged",
+            Self::Clutched => "Clutched",
+            Self::Stopped => "Stopped",
+            Self::Faulted(_) => "Fault",
+        }
+    }
+}
+
+/// What is seen of the machine in a tick.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[expect(clippy::struct_excessive_bools, reason = "independent facts, each with its own reader")]
+#[expect(missing_docs, reason = "the names say it")]
+pub struct Seen {
+    /// Every device of the force path delivers.
+    pub connected: bool,
+    pub powered: bool,
+    /// Hand and tip agree, and the force at the tip is known.
+    pub agreed: bool,
+    /// Somebody holds the handle; true where nothing can tell.
+    pub present: bool,
+    pub clutch: bool,
+}
+
+/// What the operator wants.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Wish {
+    /// Motion and force.
+    Engage,
+    /// No more of them, without a latch.
+    Rest,
+    /// The safe state, latched.
+    Stop,
+    /// Out of the latch.
+    Release,
+}
+
+/// Why a state changed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Why {
+    /// The operator asked for it.
+    Asked,
+    /// The devices came.
+    Connected,
+    /// A device went.
+    Disconnected,
+    /// Drives obey, and hand and tip agree.
+    Agreed,
+    /// The clutch was pressed or released.
+    Clutch,
+    /// The drives did not obey in time.
+    Late,
+    /// Nobody holds the handle.
+    Absent,
+    /// A check or a device failed; the new state names the cause.
+    Fault,
+}
+
+/// One change of state.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[expect(missing_docs, reason = "the names say it")]
+pub struct Change<F> {
+    pub from: State<F>,
+    pub to: State<F>,
+    pub why: Why,
+}
+
+/// States as values with methods for their legal successors.
+mod legal {
+    /// A state and its legal successors.
+    macro_rules! state {
+        ($name:ident $(, $method:ident => $next:ident)*) => {
+            #[derive(Clone, Copy, Debug)]
+            pub(super) struct $name(());
+            impl $name {
+                $(pub(super) const fn $method(self) -> $next { $next(()) })*
+            }
+        };
+    }
+    state!(Disconnected, connect => Idle, stop => Stopped);
+    state!(Idle, disconnect => Disconnected, power => Ready, stop => Stopped, fail => Faulted);
+    state!(Ready, disconnect => Disconnected, rest => Idle, engage => Engaged, stop => Stopped, fail => Faulted);
+    state!(Engaged, rest => Idle, clutch => Clutched, stop => Stopped, fail => Faulted);
+    state!(Clutched, rest => Idle, unclutch => Engaged, stop => Stopped, fail => Faulted);
+    state!(Stopped, release => Idle);
+    state!(Faulted, release => Idle);
+
+    /// The only state that a machine begins in.
+    pub(super) const BEGIN: Idle = Idle(());
+}
+
+#[derive(Clone, Copy, Debug)]
+enum At<F> {
+    Disconnected(legal::Disconnected),
+    Idle(legal::Idle),
+    Ready(legal::Ready),
+    Engaged(legal::Engaged),
+    Clutched(legal::Clutched),
+    Stopped(legal::Stopped),
+    Faulted(legal::Faulted, F),
+}
+
+/// The machine.
+///
+/// ```
+/// use nima_core::safety::{Interlock, Seen, State, Wish};
+///
+/// let mut machine = Interlock::<&str>::default();
+/// let healthy = Seen { connected: true, powered: true, agreed: true, present: true, clutch: false };
+/// machine.ask(Wish::Engage, 0.0)?;
+/// machine.step(&healthy, 0.001);
+/// assert_eq!(machine.state(), State::Engaged);
+///
+/// machine.fail("the sensor is silent");
+/// machine.step(&healthy, 0.002);
+/// assert_eq!(machine.state(), State::Faulted("the sensor is silent"), "nothing resumes by itself");
+/// assert!(machine.ask(Wish::Engage, 0.003).is_err());
+/// machine.ask(Wish::Release, 0.004)?;
+/// assert_eq!(machine.state(), State::Idle);
+/// # Ok::<(), nima_core::safety::Refused>(())
+/// ```
+#[derive(Clone, Copy, Debug)]
+pub struct Interlock<F> {
+    at: At<F>,
+    ready_until_s: f64,
+}
+
+impl<F: Copy> Default for Interlock<F> {
+    fn default() -> Self {
+        Self { at: At::Idle(legal::BEGIN), ready_until_s: 0.0 }
+    }
+}
+
+impl<F: Copy> Interlock<F> {
+    /// Where it is.
+    pub const fn state(&self) -> State<F> {
+        match self.at {
+            At::Disconnected(_) => State::Disconnected,
+            At::Idle(_) => State::Idle,
+            At::Ready(_) => State::Ready,
+            At::Engaged(_) => State::Engaged,
+            At::Clutched(_) => State::Clutched,
+            At::Stopped(_) => State::Stopped,
+            At::Faulted(_, fault) => State::Faulted(fault),
+        }
+    }
+
+    const fn go(&mut self, at: At<F>, why: Why) -> Change<F> {
+        let from = self.state();
+        self.at = at;
+        Change { from, to: self.state(), why }
+    }
+
+    /// Does what the operator wants, as far as this state allows; `Err` when it does not.
+    ///
+    /// # Errors
+    /// [`Refused`] where the state does not allow the wish.
+    pub fn ask(&mut self, wish: Wish, now_s: f64) -> Result<Option<Change<F>>, Refused> {
+        let next = match (wish, self.at) {
+            // The safe state is reachable from everywhere; a fault stays visible under a stop's latch.
+            (Wish::Stop, At::Stopped(_) | At::Faulted(..)) => return Ok(None),
+            (Wish::Stop, At::Disconnected(at)) => At::Stopped(at.stop()),
+            (Wish::Stop, At::Idle(at)) => At::Stopped(at.stop()),
+            (Wish::Stop, At::Ready(at)) => At::Stopped(at.stop()),
+            (Wish::Stop, At::Engaged(at)) => At::Stopped(at.stop()),
+            (Wish::Stop, At::Clutched(at)) => At::Stopped(at.stop()),
+            (Wish::Engage, At::Idle(at)) => {
+                self.ready_until_s = now_s + READY_WITHIN_S;
+                At::Ready(at.power())
+            }
+            (Wish::Rest, At::Ready(at)) => At::Idle(at.rest()),
+            (Wish::Rest, At::Engaged(at)) => At::Idle(at.rest()),
+            (Wish::Rest, At::Clutched(at)) => At::Idle(at.rest()),
+            (Wish::Release, At::Stopped(at)) => At::Idle(at.release()),
+            (Wish::Release, At::Faulted(at, _)) => At::Idle(at.release()),
+            (Wish::Engage | Wish::Rest | Wish::Release, _) => return Err(Refused),
+        };
+        Ok(Some(self.go(next, Why::Asked)))
+    }
+
+    /// Takes a fault in. The first one is kept; a stop stays a stop.
+    pub const fn fail(&mut self, fault: F) -> Option<Change<F>> {
+        let next = match self.at {
+            At::Idle(at) => at.fail(),
+            At::Ready(at) => at.fail(),
+            At::Engaged(at) => at.fail(),
+            At::Clutched(at) => at.fail(),
+            At::Disconnected(_) | At::Stopped(_) | At::Faulted(..) => return None,
+        };
+        Some(self.go(At::Faulted(next, fault), Why::Fault))
+    }
+
+    /// Looks at the machine once a tick.
+    ///
+    /// A device that goes while engaged is a fault, which the caller raises with its cause by [`Interlock::fail`]; drives that no
+    /// longer obey too.
+    pub fn step(&mut self, seen: &Seen, now_s: f64) -> Option<Change<F>> {
+        let in_time = now_s <= self.ready_until_s;
+        let (next, why) = match self.at {
+            At::Disconnected(at) if seen.connected => (At::Idle(at.connect()), Why::Connected),
+            At::Idle(at) if !seen.connected => (At::Disconnected(at.disconnect()), Why::Disconnected),
+            At::Ready(at) if !seen.connected => (At::Disconnected(at.disconnect()), Why::Disconnected),
+            At::Ready(at) if seen.powered && seen.agreed && seen.present && !seen.clutch => {
+                (At::Engaged(at.engage()), Why::Agreed)
+            }
+            // A time that is no number is not in time.
+            At::Ready(at) if !in_time => (At::Idle(at.rest()), Why::Late),
+            At::Engaged(at) if !seen.present => (At::Idle(at.rest()), Why::Absent),
+            At::Engaged(at) if seen.clutch => (At::Clutched(at.clutch()), Why::Clutch),
+            At::Clutched(at) if !seen.present => (At::Idle(at.rest()), Why::Absent),
+            At::Clutched(at) if !seen.clutch && seen.agreed && seen.powered => {
+                (At::Engaged(at.unclutch()), Why::Clutch)
+            }
+            _ => return None,
+        };
+        Some(self.go(next, why))
+    }
+}
+
+/// The wish is not for this state.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Refused;
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    const ALL_WELL: Seen = Seen { connected: true, powered: true, agreed: true, present: true, clutch: false };
+
+    fn engaged() -> Interlock<u8> {
+        let mut interlock = Interlock::default();
+        interlock.ask(Wish::Engage, 0.0).unwrap();
+        interlock.step(&ALL_WELL, 0.0);
+        assert_eq!(interlock.state(), State::Engaged);
+        interlock
+    }
+
+    #[test]
+    fn the_way_back_from_a_latch_takes_a_release_and_a_new_engagement() {
+        for fault in [false, true] {
+            let mut interlock = engaged();
+            if fault {
+                interlock.fail(7);
+                assert_eq!(interlock.fail(8), None, "the first cause stays");
+                assert_eq!(interlock.ask(Wish::Stop, 0.0), Ok(None));
+                assert_eq!(interlock.state(), State::Faulted(7), "also under a stop");
+            } else {
+                interlock.ask(Wish::Stop, 0.0).unwrap();
+                assert_eq!(interlock.fail(7), None);
+            }
+            assert_eq!(interlock.ask(Wish::Engage, 0.0), Err(Refused));
+            for _ in 0..5000 {
+                assert_eq!(interlock.step(&ALL_WELL, 1.0), None);
+            }
+            interlock.ask(Wish::Release, 1.0).unwrap();
+            assert_eq!(interlock.step(&ALL_WELL, 1.0), None);
+            assert_eq!(interlock.state(), State::Idle);
+        }
+    }
+
+    #[test]
+    fn what_went_away_comes_back_as_idle() {
+        let mut interlock = Interlock::<u8>::default();
+        interlock.ask(Wish::Engage, 0.0).unwrap();
+        interlock.step(&Seen { connected: false, ..ALL_WELL }, 0.0);
+        assert_eq!(interlock.state(), State::Disconnected);
+        assert_eq!(interlock.ask(Wish::Engage, 0.0), Err(Refused));
+        interlock.step(&ALL_WELL, 0.1);
+        assert_eq!(interlock.step(&ALL_WELL, 0.2), None);
+        assert_eq!(interlock.state(), State::Idle);
+    }
+
+    #[test]
+    fn drives_that_do_not_obey_in_time_are_given_up() {
+        let mut interlock = Interlock::<u8>::default();
+        interlock.ask(Wish::Engage, 1.0).unwrap();
+        let asleep = Seen { powered: false, ..ALL_WELL };
+        assert_eq!(interlock.step(&asleep, 1.0 + READY_WITHIN_S), None);
+        let change = interlock.step(&asleep, 1.001 + READY_WITHIN_S).unwrap();
+        assert_eq!((change.to, change.why), (State::Idle, Why::Late));
+    }
+
+    #[test]
+    fn the_clutch_uncouples_and_couples_and_an_absent_hand_ends_it() {
+        let mut interlock = engaged();
+        let pressed = Seen { clutch: true, ..ALL_WELL };
+        interlock.step(&pressed, 0.0);
+        assert_eq!(interlock.state().permits(), Permits { drives: true, coupled: false });
+        interlock.step(&ALL_WELL, 0.0);
+        assert_eq!(interlock.state(), State::Engaged);
+        let change = interlock.step(&Seen { present: false, ..ALL_WELL }, 0.0).unwrap();
+        assert_eq!((change.to, change.why), (State::Idle, Why::Absent));
+    }
+
+    proptest! {
+        #[test]
+        fn force_and_motion_follow_an_engagement_only(steps in prop::collection::vec((0_u8..7, any::<[bool; 5]>()), 1..300)) {
+            let mut interlock = Interlock::<u8>::default();
+            // Whether an engagement was asked for since the last time that something ended one.
+            let mut wanted = false;
+            for (k, (what, seen)) in steps.into_iter().enumerate() {
+                let now_s = k as f64;
+                match what {
+                    0 => wanted |= interlock.ask(Wish::Engage, now_s).is_ok(),
+                    1 => { interlock.ask(Wish::Rest, now_s).ok(); }
+                    2 => { interlock.ask(Wish::Stop, now_s).ok(); }
+                    3 => { interlock.ask(Wish::Release, now_s).ok(); }
+                    4 => { interlock.fail(1); }
+                    _ => {
+                        let [connected, powered, agreed, present, clutch] = seen;
+                        interlock.step(&Seen { connected, powered, agreed, present, clutch }, now_s);
+                    }
+                }
+                let state = interlock.state();
+                wanted &= matches!(state, State::Ready | State::Engaged | State::Clutched);
+                prop_assert!(!state.permits().drives || wanted, "{state:?} without being asked");
+                if what == 2 {
+                    prop_assert!(state.is_latched());
+                }
+            }
+        }
+    }
+}

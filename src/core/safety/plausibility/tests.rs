@@ -1,0 +1,167 @@
+use super::*;
+
+/// One look at 1 kHz; noise of 0.02 N so that nothing is frozen.
+struct Bench {
+    plausibility: Plausibility,
+    noise: crate::noise::Noise,
+    tick: u32,
+}
+
+impl Bench {
+    fn new() -> Self {
+        Self { plausibility: Plausibility::new(1e-3), noise: crate::noise::Noise::new(5), tick: 0 }
+    }
+
+    fn seen(&mut self) -> Observed {
+        self.tick += 1;
+        let t_s = f64::from(self.tick) * 1e-3;
+        let force_n = Vector3::from_fn(|_, _| 0.02 * self.noise.gaussian());
+        let mut sensed = [f64::NAN; CHANNELS];
+        sensed[..3].copy_from_slice(force_n.as_slice());
+        let at_m = Vector3::new((3.0 * t_s).sin(), (2.0 * t_s).cos(), (5.0 * t_s).sin()) * 0.02;
+        Observed {
+            t_s,
+            sensed,
+            force_n,
+            world_from_s1: None,
+            tip_m: at_m,
+            hand_m: at_m,
+            command_m: Some(at_m),
+            hand_force_n: Vector3::zeros(),
+            guided: false,
+        }
+    }
+
+    fn run(&mut self, ticks: u32, mut edit: impl FnMut(u32, &mut Observed)) -> Option<(u32, Implausible)> {
+        (1..=ticks).find_map(|k| {
+            let mut seen = self.seen();
+            edit(k, &mut seen);
+            self.plausibility.step(&seen);
+            self.plausibility.doubt().map(|what| (k, what))
+        })
+    }
+}
+
+fn after(edit: impl FnMut(u32, &mut Observed)) -> Option<(u32, Implausible)> {
+    let mut bench = Bench::new();
+    assert_eq!(bench.run(11_000, |_, _| {}), None);
+    bench.run(500, edit)
+}
+
+#[test]
+fn a_frozen_sensor_is_told_within_16_ms_and_one_without_noise_never() {
+    let mut kept = None;
+    let told = after(|_, seen| seen.sensed = *kept.get_or_insert(seen.sensed));
+    assert!(matches!(told, Some((15..=17, Implausible::ForceFrozen))), "{told:?}");
+    let mut one = None;
+    let told = after(|_, seen| seen.sensed[1] = *one.get_or_insert(seen.sensed[1]));
+    assert!(matches!(told, Some((15..=17, Implausible::ForceFrozen))), "one axis: {told:?}");
+    let mut bench = Bench::new();
+    let ideal = |k: u32, seen: &mut Observed| {
+        let z = if k % 2000 < 900 { f64::from(k) * 1e-4 } else { 0.0 };
+        seen.sensed = [0.0, 0.0, z, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
+    };
+    assert_eq!(bench.run(10_000, ideal), None);
+}
+
+#[test]
+fn a_sensor_of_a_fifth_of_the_loops_rate_is_not_frozen() {
+    let mut bench = Bench::new();
+    let mut kept = None;
+    let slow = |k: u32, seen: &mut Observed| {
+        if k.is_multiple_of(5) || kept.is_none() {
+            kept = Some(seen.sensed);
+        }
+        seen.sensed = kept.unwrap();
+    };
+    assert_eq!(bench.run(10_000, slow), None);
+}
+
+#[test]
+fn a_step_is_told_in_three_ticks_and_a_spike_is_taken_out() {
+    let mut kept = None;
+    let told = after(|k, seen| {
+        seen.tip_m = *kept.get_or_insert(seen.tip_m);
+        seen.command_m = None;
+        seen.force_n.x += if k > 10 { 1.0 } else { 0.0 };
+    });
+    assert_eq!(told, Some((13, Implausible::ForceJumped)));
+    let mut bench = Bench::new();
+    bench.run(100, |_, _| {});
+    let mut seen = bench.seen();
+    seen.force_n.z = 50.0;
+    let admitted = bench.plausibility.step(&seen);
+    assert!(admitted.force_n.norm() < 0.2, "{}", admitted.force_n);
+    assert_eq!(bench.run(100, |_, _| {}), None);
+}
+
+#[test]
+fn a_stiff_contact_is_no_jump() {
+    // 5000 N/m at 60 mm/s: 0.3 N a tick.
+    let mut bench = Bench::new();
+    let press = |k: u32, seen: &mut Observed| {
+        let depth_m = f64::from(k.saturating_sub(200)) * 6e-5;
+        let at_m = Vector3::new(0.0, 0.0, 0.012 - 6e-5 * f64::from(k.min(200)) - depth_m);
+        (seen.tip_m, seen.command_m, seen.hand_m) = (at_m, Some(at_m), at_m);
+        seen.force_n += Vector3::z() * 5000.0 * depth_m;
+    };
+    assert_eq!(bench.run(500, press), None);
+}
+
+#[test]
+fn a_force_along_the_way_into_a_contact_is_told_and_a_puncture_is_not() {
+    let touch = |sign: f64, gives_way_n: f64| {
+        let mut bench = Bench::new();
+        bench.run(600, move |k, seen| {
+            let at_m = Vector3::new(0.0, 0.0, 0.010 - 5e-5 * f64::from(k));
+            (seen.tip_m, seen.command_m, seen.hand_m) = (at_m, Some(at_m), at_m);
+            let force = 400.0 * (-at_m.z).max(0.0);
+            seen.force_n += Vector3::z() * sign * if force > gives_way_n { 0.2 * gives_way_n } else { force };
+        })
+    };
+    let told = touch(-1.0, 9.0);
+    assert!(matches!(told, Some((201..=225, Implausible::ForceAlong))), "{told:?}");
+    assert_eq!(touch(1.0, 9.0), None);
+    assert_eq!(touch(1.0, 0.4), None);
+}
+
+#[test]
+fn what_stands_while_its_cause_moves_is_stuck() {
+    let told = after(|k, seen| {
+        seen.hand_m = Vector3::repeat(0.5);
+        seen.hand_force_n = Vector3::x() * 0.05 * f64::from(k);
+    });
+    assert!(matches!(told, Some((3, Implausible::HandleJumped))), "{told:?}");
+    let mut kept = None;
+    let told = after(|k, seen| {
+        seen.hand_m = *kept.get_or_insert(seen.hand_m);
+        seen.hand_force_n = Vector3::x() * 0.05 * f64::from(k);
+    });
+    assert!(matches!(told, Some((15..=20, Implausible::HandleFrozen))), "{told:?}");
+    let mut kept = None;
+    let told = after(|_, seen| {
+        seen.hand_m = *kept.get_or_insert(seen.hand_m);
+        seen.hand_force_n = Vector3::x() * 0.6;
+    });
+    assert!(matches!(told, Some((100..=103, Implausible::HandleFrozen))), "{told:?}");
+    // A machine leads it for five seconds, and lets it stand under its force.
+    let mut bench = Bench::new();
+    let mut kept = Vector3::zeros();
+    let led = |k: u32, seen: &mut Observed| {
+        kept = if k < 5000 { seen.hand_m } else { kept };
+        (seen.hand_m, seen.hand_force_n) = (kept, Vector3::x());
+    };
+    assert_eq!(bench.run(6000, led), None);
+    let mut kept = None;
+    let told = after(|k, seen| {
+        seen.hand_m = *kept.get_or_insert(seen.hand_m);
+        (seen.hand_force_n, seen.guided) = (Vector3::x() * 0.05 * f64::from(k), true);
+    });
+    assert_eq!(told, None, "led from the screen");
+    let mut kept = None;
+    // The command is slow at that moment: its half millimetre takes longer than the 15 ms.
+    let told = after(|_, seen| seen.tip_m = *kept.get_or_insert(seen.tip_m));
+    assert!(matches!(told, Some((15..=60, Implausible::ArmAstray))), "{told:?}");
+    let told = after(|_, seen| seen.command_m = Some(seen.tip_m + Vector3::x() * 0.05));
+    assert!(matches!(told, Some((1, Implausible::ArmAstray))), "{told:?}");
+}

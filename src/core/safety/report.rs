@@ -1,0 +1,201 @@
+//! What the gates say of themselves: which acted in a tick, why, and how often so far.
+
+/// The gates, in the order of the chain.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, serde::Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Gate {
+    /// Whether the state machine allows force at all.
+    Permission,
+    /// Whether a hand is on the handle.
+    Release,
+    /// Whether there is a force, finite and plausible.
+    Validity,
+    /// How old the data behind it are.
+    Age,
+    /// Whether the hand moves.
+    DeadBand,
+    /// The operator's factor.
+    Gain,
+    /// How fast the force changes.
+    Slew,
+    /// How much more energy the hand gets back than it gave.
+    Energy,
+    /// How large the force is.
+    Ceiling,
+}
+
+/// Number of gates.
+pub const GATES: usize = 9;
+
+impl Gate {
+    /// Every gate, in the order of the chain.
+    pub const ALL: [Self; GATES] = [
+        Self::Permission,
+        Self::Release,
+        Self::Validity,
+        Self::Age,
+        Self::DeadBand,
+        Self::Gain,
+        Self::Slew,
+        Self::Energy,
+        Self::Ceiling,
+    ];
+
+    /// Position in [`Gate::ALL`], for tables with one entry per gate.
+    pub const fn index(self) -> usize {
+        self as usize
+    }
+
+    /// Its name in a trace.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Permission => "not_permitted",
+            Self::Release => "release",
+            Self::Validity => "validity",
+            Self::Age => "age",
+            Self::DeadBand => "dead_band",
+            Self::Gain => "gain",
+            Self::Slew => "slew",
+            Self::Energy => "energy",
+            Self::Ceiling => "ceiling",
+        }
+    }
+}
+
+/// Why a gate took force away.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Reason {
+    /// It did not: the force passed.
+    #[default]
+    Open,
+    /// The loop is not engaged.
+    NotPermitted,
+    /// The handle flies off as it does without a hand.
+    HandGone,
+    /// The mode has nothing valid to render.
+    NothingAsked,
+    /// The request is no finite number.
+    NotFinite,
+    /// The request is larger than any contact.
+    Implausible,
+    /// The data are older than the link explains: the force fades.
+    Ageing,
+    /// The data are too old, or of unknown age.
+    TooOld,
+    /// The hand is slower than the dead band.
+    HandSlow,
+    /// The speed of the hand is not known.
+    SpeedUnknown,
+    /// The operator set the gain to zero.
+    GainZero,
+    /// The gain is on its way to the value that was chosen.
+    GainRamping,
+    /// The force would change too fast.
+    ChangeTooFast,
+    /// The hand would get back more energy than it gave.
+    EnergySpent,
+    /// The force is above the ceiling.
+    AboveCeiling,
+    /// The force is above what the device can give.
+    AboveDeviceLimit,
+}
+
+/// How often each gate acted since the chain was made, and why it last did.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
+pub struct GateCounts {
+    /// Counts every request, whether a gate acted or not.
+    pub ticks: u64,
+    /// Requests on which each gate acted, indexed by [`Gate::index`].
+    pub acted: [u64; GATES],
+    /// Why each gate last acted; [`Reason::Open`] if it never did.
+    pub last: [Reason; GATES],
+}
+
+impl GateCounts {
+    /// Share of all requests on which `gate` acted, 0 to 1.
+    pub fn share(&self, gate: Gate) -> f64 {
+        if self.ticks == 0 { 0.0 } else { self.acted[gate.index()] as f64 / self.ticks as f64 }
+    }
+
+    pub(super) fn add(&mut self, reasons: &[Reason; GATES]) {
+        self.ticks += 1;
+        for (gate, &reason) in reasons.iter().enumerate() {
+            if reason != Reason::Open {
+                self.acted[gate] += 1;
+                self.last[gate] = reason;
+            }
+        }
+    }
+}
+
+/// What each gate did in one tick. [`Reason::Open`] everywhere means the force passed untouched.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct GateReport {
+    /// Why each gate acted, indexed by [`Gate::index`].
+    pub reasons: [Reason; GATES],
+    /// How much force the dead band kept from the hand, N.
+    pub withheld_n: f64,
+    /// The gain in force in this tick.
+    pub gain: f64,
+    /// What the hand may still get back, J; below zero: what it got too much (seen unless the gate is off).
+    pub stored_j: f64,
+    /// Counters since the chain was made, this tick included.
+    pub counts: GateCounts,
+}
+
+impl GateReport {
+    /// Notes that `gate` acted for this reason; [`Reason::Open`] notes nothing.
+    pub(super) const fn note(&mut self, gate: Gate, reason: Reason) {
+        self.reasons[gate.index()] = reason;
+    }
+
+    /// The same with `gate` having acted for this reason: for tests of what reads a report.
+    #[must_use]
+    pub const fn with(mut self, gate: Gate, reason: Reason) -> Self {
+        self.note(gate, reason);
+        self
+    }
+
+    /// `gate` took force away in this tick, or held it back.
+    pub const fn acted(&self, gate: Gate) -> bool {
+        !matches!(self.reason(gate), Reason::Open)
+    }
+
+    /// Why `gate` acted in this tick.
+    pub const fn reason(&self, gate: Gate) -> Reason {
+        self.reasons[gate.index()]
+    }
+
+    /// The first gate that acted, if any. The gain's ramp is no closed gate; a gain of zero is.
+    pub fn first(&self) -> Option<(Gate, Reason)> {
+        let acted = |reason| !matches!(reason, Reason::Open | Reason::GainRamping);
+        Gate::ALL.into_iter().map(|gate| (gate, self.reason(gate))).find(|(_, reason)| acted(*reason))
+    }
+
+    /// The first closed gate in one word, for a trace; `open` when the force passed untouched.
+    pub fn first_closed(&self) -> &'static str {
+        self.first().map_or("open", |(gate, _)| gate.name())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_first_gate_in_the_chains_order_is_told_and_every_one_is_counted() {
+        let mut report = GateReport::default();
+        assert_eq!(report.first_closed(), "open");
+        report.note(Gate::Gain, Reason::GainRamping);
+        assert_eq!(report.first_closed(), "open", "a ramp takes nothing away");
+        report.note(Gate::Ceiling, Reason::AboveCeiling);
+        report.note(Gate::Age, Reason::Ageing);
+        assert_eq!(report.first(), Some((Gate::Age, Reason::Ageing)));
+        let mut counts = GateCounts::default();
+        counts.add(&report.reasons);
+        counts.add(&[Reason::Open; GATES]);
+        assert!((counts.share(Gate::Ceiling) - 0.5).abs() < f64::EPSILON && counts.share(Gate::Slew) == 0.0);
+        assert_eq!(counts.last[Gate::Age.index()], Reason::Ageing);
+    }
+}

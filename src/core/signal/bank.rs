@@ -1,0 +1,87 @@
+//! A bank of first-order low-pass filters over the time scales of contact.
+
+use super::Lanes;
+
+/// Filters in a [`LowPassBank`].
+pub const BANK: usize = 4;
+
+/// What a signal is above its own past, seen over four time constants.
+///
+/// `value - low_pass(value)` for time constants in geometric steps. The differences span velocity and acceleration at four
+/// bandwidths and the relaxation of tissue, need no differentiator, and work the same from 20 Hz to 10 kHz.
+///
+/// ```
+/// use nima_core::signal::{Lanes, LowPassBank};
+///
+/// let mut bank = LowPassBank::new(0.005, 0.32, 1000.0);
+/// bank.step(Lanes::ZERO);
+/// let [quick, .., slow] = bank.step(Lanes::splat(1.0));
+/// assert!(quick[0] < slow[0], "the quick filter follows a step sooner, so less of it is left");
+/// ```
+#[derive(Clone, Debug)]
+pub struct LowPassBank {
+    share: [f64; BANK],
+    low: [Lanes; BANK],
+    started: bool,
+}
+
+impl LowPassBank {
+    /// Time constants from `shortest_s` (at least one sample) to `longest_s`, in geometric steps.
+    pub fn new(shortest_s: f64, longest_s: f64, rate_hz: f64) -> Self {
+        let period_s = rate_hz.recip();
+        let shortest_s = shortest_s.max(period_s);
+        let step = (longest_s.max(4.0 * shortest_s) / shortest_s).cbrt();
+        let tau_s = [1.0, step, step * step, step * step * step].map(|factor| factor * shortest_s);
+        Self { share: tau_s.map(|tau_s| -(-period_s / tau_s).exp_m1()), low: [Lanes::ZERO; BANK], started: false }
+    }
+
+    /// Takes the newest value; returns its difference from each low-pass, the shortest time constant first. The first value
+    /// fills the filters.
+    pub fn step(&mut self, value: Lanes) -> [Lanes; BANK] {
+        if !self.started {
+            self.low = [value; BANK];
+            self.started = true;
+        }
+        let mut differences = [Lanes::ZERO; BANK];
+        for ((low, share), difference) in self.low.iter_mut().zip(self.share).zip(&mut differences) {
+            *low += (value - *low) * share;
+            *difference = (value - *low).settled();
+            *low = value - *difference;
+        }
+        differences
+    }
+
+    /// Forgets the past.
+    pub fn reset(&mut self) {
+        self.started = false;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_step_decays_with_each_time_constant() {
+        let mut bank = LowPassBank::new(0.005, 0.32, 1000.0);
+        bank.step(Lanes::ZERO);
+        let mut differences = [Lanes::ZERO; BANK];
+        for _ in 0..20 {
+            differences = bank.step(Lanes::splat(1.0));
+        }
+        for (difference, tau_s) in differences.iter().zip([0.005, 0.02, 0.08, 0.32]) {
+            assert!((difference[0] - (-0.02_f64 / tau_s).exp()).abs() < 1e-12);
+        }
+    }
+
+    #[test]
+    fn rest_leaves_exact_zeros() {
+        let mut bank = LowPassBank::new(0.005, 0.32, 1000.0);
+        bank.step(Lanes::splat(1.0));
+        let mut differences = [Lanes::ZERO; BANK];
+        for _ in 0..100_000 {
+            differences = bank.step(Lanes::ZERO);
+        }
+        assert_eq!(differences, [Lanes::ZERO; BANK]);
+    }
+}

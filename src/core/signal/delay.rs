@@ -1,0 +1,107 @@
+//! A ring that remembers the last values.
+
+/// Remembers the newest values and hands back the one that went in exactly `n` pushes ago.
+///
+/// Preallocated: [`DelayLine::push`] and [`DelayLine::get`] take constant time and allocate nothing.
+///
+/// ```
+/// use nima_core::signal::DelayLine;
+///
+/// let mut line = DelayLine::new(3, 0);
+/// for value in 1..=5 {
+///     line.push(value);
+/// }
+/// assert_eq!(line.get(0), Some(&5));
+/// assert_eq!(line.get(3), Some(&2), "exactly three ticks ago");
+/// assert_eq!(line.get(4), None, "older than the line is long");
+/// ```
+#[derive(Clone, Debug)]
+pub struct DelayLine<T> {
+    ring: Vec<T>,
+    newest: usize,
+    filled: usize,
+}
+
+impl<T: Copy> DelayLine<T> {
+    /// A line that can look back up to `max_delay` pushes; `blank` only fills the memory and is never handed out.
+    pub fn new(max_delay: usize, blank: T) -> Self {
+        Self { ring: vec![blank; max_delay + 1], newest: max_delay, filled: 0 }
+    }
+
+    /// Takes the newest value; the oldest one is forgotten when the line is full.
+    #[inline]
+    pub fn push(&mut self, value: T) {
+        *self.push_slot() = value;
+    }
+
+    /// Makes room for the newest value and returns its place, which still holds a forgotten one (for filling large values
+    /// where they lie).
+    #[inline]
+    pub fn push_slot(&mut self) -> &mut T {
+        self.newest = if self.newest + 1 >= self.ring.len() { 0 } else { self.newest + 1 };
+        self.filled = (self.filled + 1).min(self.ring.len());
+        &mut self.ring[self.newest]
+    }
+
+    /// The value pushed `delay` pushes before the newest (0: the newest itself); `None` when that long ago nothing was pushed
+    /// or the line is too short to remember.
+    #[inline]
+    pub fn get(&self, delay: usize) -> Option<&T> {
+        if delay >= self.filled {
+            return None;
+        }
+        let index = if delay <= self.newest { self.newest - delay } else { self.newest + self.ring.len() - delay };
+        self.ring.get(index)
+    }
+
+    /// The value pushed `delay` pushes ago, or the oldest remembered one; `None` only when nothing was pushed yet.
+    #[inline]
+    pub fn get_or_oldest(&self, delay: usize) -> Option<&T> {
+        self.get(delay.min(self.filled.checked_sub(1)?))
+    }
+
+    /// How many values are remembered.
+    pub fn len(&self) -> usize {
+        self.filled
+    }
+
+    /// Whether nothing was pushed since construction or [`DelayLine::clear`].
+    pub fn is_empty(&self) -> bool {
+        self.filled == 0
+    }
+
+    /// The largest delay this line can give.
+    pub fn max_delay(&self) -> usize {
+        self.ring.len() - 1
+    }
+
+    /// Forgets everything, in constant time.
+    pub fn clear(&mut self) {
+        self.filled = 0;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    proptest! {
+        #[test]
+        fn gives_back_exactly_what_went_in(max_delay in 0_usize..40, pushes in 0_usize..200) {
+            let mut line = DelayLine::new(max_delay, usize::MAX);
+            for value in 0..pushes {
+                line.push(value);
+                for delay in 0..max_delay + 3 {
+                    let expected = (delay <= max_delay && delay <= value).then(|| value - delay);
+                    prop_assert_eq!(line.get(delay).copied(), expected);
+                }
+                prop_assert_eq!(line.get_or_oldest(usize::MAX).copied(), Some(value.saturating_sub(max_delay)));
+            }
+            line.clear();
+            prop_assert_eq!(line.get(0), None);
+            prop_assert_eq!(line.get_or_oldest(0), None);
+        }
+    }
+}

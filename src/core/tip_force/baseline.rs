@@ -1,0 +1,97 @@
+//! What simpler methods, fitted on the same rows, make of the same inputs: the yardsticks of every network.
+
+use serde::{Deserialize, Serialize};
+
+use super::{Expansion, MAX_FEATURES, Normalisation, linear};
+
+/// Linear regression over columns: `y = constant + x W`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+struct Regression {
+    /// `inputs x outputs`, row by row.
+    weights: Vec<f32>,
+    constant: Vec<f32>,
+}
+
+/// The baselines of one model, kept in its file.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Baselines {
+    /// Per output: the input of like name (`fx_n` for `tip_fx_n`), which "no model" takes as it is.
+    like: Vec<Option<usize>>,
+    linear: Regression,
+    /// Linear in the inputs and in `v / sqrt(v^2 + v0^2)` of every speed: Coulomb and viscous friction, a free constant.
+    friction: Regression,
+    soft: Vec<f32>,
+}
+
+/// Names of the baselines, in the order of [`Baselines::predict`].
+pub const BASELINES: [&str; 3] = ["no model", "linear", "friction"];
+
+impl Baselines {
+    /// Fits them on rows of these input and output columns, row by row.
+    pub fn fit(inputs: &[String], outputs: &[String], x: &[f32], y: &[f32]) -> Self {
+        let soft = Expansion::fit(inputs, x).soft(inputs.len());
+        let like = |output: &String| {
+            let wrist = output.strip_prefix("tip_")?;
+            inputs.iter().position(|input| input == wrist)
+        };
+        let signs: Vec<f32> = x.chunks_exact(inputs.len().max(1)).flat_map(|row| with_signs(row, &soft)).collect();
+        Self {
+            like: outputs.iter().map(like).collect(),
+            linear: Regression::fit(x, y, outputs.len()),
+            friction: Regression::fit(&signs, y, outputs.len()),
+            soft,
+        }
+    }
+
+    /// They fit a model of so many inputs and outputs.
+    pub fn fits(&self, inputs: usize, outputs: usize) -> bool {
+        let signs = self.soft.iter().filter(|v0| **v0 > 0.0).count();
+        let one = |regression: &Regression, width: usize| {
+            regression.weights.len() == width * outputs && regression.constant.len() == outputs
+        };
+        let like = self.like.len() == outputs && self.like.iter().flatten().all(|column| *column < inputs);
+        like && self.soft.len() == inputs
+            && one(&self.linear, inputs)
+            && one(&self.friction, inputs + signs)
+            && inputs + signs <= 2 * MAX_FEATURES
+    }
+
+    /// What each of [`BASELINES`] says of one row of inputs; `None` where it has nothing to say of an output.
+    pub fn predict(&self, inputs: &[f32]) -> [Vec<Option<f32>>; 3] {
+        let none = self.like.iter().map(|column| column.map(|column| inputs[column])).collect();
+        let friction = self.friction.predict(&with_signs(inputs, &self.soft));
+        [none, self.linear.predict(inputs), friction]
+    }
+}
+
+/// The inputs followed by the soft signs of the directions among them.
+fn with_signs(inputs: &[f32], soft: &[f32]) -> Vec<f32> {
+    let sign = |(v, v0): (&f32, &f32)| (*v0 > 0.0).then(|| v / (v * v + v0 * v0).sqrt());
+    inputs.iter().copied().chain(inputs.iter().zip(soft).filter_map(sign)).collect()
+}
+
+impl Regression {
+    fn fit(x: &[f32], y: &[f32], outputs: usize) -> Self {
+        let rows = y.len() / outputs.max(1);
+        let width = x.len() / rows.max(1);
+        let (nx, ny) = (Normalisation::of(x, width, 0..rows), Normalisation::of(y, outputs, 0..rows));
+        let (mut x, mut y) = (x.to_vec(), y.to_vec());
+        x.chunks_mut(width).for_each(|row| nx.apply(row));
+        y.chunks_mut(outputs).for_each(|row| ny.apply(row));
+        let mut weights = linear::solve(&x, &y, (width, outputs), &(0..rows).collect::<Vec<_>>());
+        let mut constant = ny.mean.clone();
+        for (k, row) in weights.chunks_mut(outputs).enumerate() {
+            for (o, weight) in row.iter_mut().enumerate() {
+                *weight *= nx.inverse_sd[k] / ny.inverse_sd[o];
+                constant[o] -= *weight * nx.mean[k];
+            }
+        }
+        Self { weights, constant }
+    }
+
+    fn predict(&self, inputs: &[f32]) -> Vec<Option<f32>> {
+        let outputs = self.constant.len();
+        let dot = |o: usize| inputs.iter().enumerate().map(|(k, x)| x * self.weights[k * outputs + o]).sum::<f32>();
+        (0..outputs).map(|o| Some(self.constant[o] + dot(o))).collect()
+    }
+}

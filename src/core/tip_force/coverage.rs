@@ -1,0 +1,165 @@
+//! How well a recording fills what the network will meet: tilt, force, travel, friction both ways, contact and free.
+//!
+//! Takes rows of [`super::DEFAULT_INPUTS`] with the force at the tip (N, `s1`); gives maps to draw and what is still to do, in words.
+
+use nalgebra::{Quaternion, UnitQuaternion, Vector3};
+
+use super::LIVE_INPUTS;
+
+/// Fields of a map along each side.
+pub const MAP: usize = 16;
+
+/// Counts over two quantities.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Map {
+    /// Rows per field, `[vertical][horizontal]`, lowest values first.
+    pub counts: [[u32; MAP]; MAP],
+}
+
+impl Map {
+    const EMPTY: Self = Self { counts: [[0; MAP]; MAP] };
+
+    fn add(&mut self, [horizontal, vertical]: [f32; 2], ranges: [[f32; 2]; 2]) {
+        let place = |value: f32, [low, high]: [f32; 2]| {
+            let share = (value - low) / (high - low);
+            ((share * MAP as f32).max(0.0) as usize).min(MAP - 1)
+        };
+        self.counts[place(vertical, ranges[1])][place(horizontal, ranges[0])] += 1;
+    }
+
+    /// Fields with at least a few rows.
+    pub fn filled(&self) -> usize {
+        self.counts.iter().flatten().filter(|count| **count >= 3).count()
+    }
+}
+
+/// Least and largest value seen.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[expect(missing_docs, reason = "the names say it")]
+pub struct Span {
+    pub low: f32,
+    pub high: f32,
+}
+
+impl Span {
+    const NONE: Self = Self { low: f32::INFINITY, high: f32::NEG_INFINITY };
+
+    const fn add(&mut self, value: f32) {
+        (self.low, self.high) = (self.low.min(value), self.high.max(value));
+    }
+
+    /// How wide it is; zero before the first value.
+    pub const fn width(&self) -> f32 {
+        (self.high - self.low).max(0.0)
+    }
+}
+
+/// Tilt of the shaft from straight down that a map shows, as a sine, either way.
+pub const TILT: f32 = 0.8;
+/// Force that a map shows, N: across the shaft and along it, either way.
+pub const FORCE_N: f32 = 5.0;
+/// Travel that a map shows, m: depth and speed.
+pub const DEPTH_M: [f32; 2] = [0.0, 0.3];
+/// Speed that a map shows, m/s, either way.
+pub const SPEED_M_S: f32 = 0.08;
+
+/// What is asked of a recording before it may be trained on.
+const ROWS: usize = 6000;
+const TILT_SPAN: f32 = 0.25;
+const DEPTH_SPAN_M: f32 = 0.015;
+const ACROSS_SPAN_N: f32 = 0.6;
+const ALONG_SPAN_N: f32 = 1.5;
+const WAY_SHARE: f64 = 0.12;
+const CONTACT_SHARE: [f64; 2] = [0.15, 0.85];
+
+/// Which of the conditions are met.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Goal {
+    /// What it is about.
+    pub name: &'static str,
+    /// Share that is met, 0 to 1.
+    pub share: f64,
+    /// What to do while it is not met.
+    pub advice: &'static str,
+}
+
+/// The coverage so far.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Coverage {
+    /// Direction of the shaft (`world`), x to the right, y up, each from -[`TILT`] to [`TILT`].
+    pub tilt: Map,
+    /// Force at the tip: across the shaft to the right (0 to [`FORCE_N`]), along it up (-[`FORCE_N`] to [`FORCE_N`]).
+    pub force: Map,
+    /// Depth to the right ([`DEPTH_M`]), speed up (-[`SPEED_M_S`] to [`SPEED_M_S`]).
+    pub travel: Map,
+    tilt_span: [Span; 2],
+    force_span: [Span; 3],
+    depth_span: Span,
+    inwards: usize,
+    outwards: usize,
+    contact: usize,
+    rows: usize,
+}
+
+impl Default for Coverage {
+    fn default() -> Self {
+        Self {
+            tilt: Map::EMPTY,
+            force: Map::EMPTY,
+            travel: Map::EMPTY,
+            tilt_span: [Span::NONE; 2],
+            force_span: [Span::NONE; 3],
+            depth_span: Span::NONE,
+            inwards: 0,
+            outwards: 0,
+            contact: 0,
+            rows: 0,
+        }
+    }
+}
+
+impl Coverage {
+    /// Takes one row.
+    pub fn add(&mut self, inputs: &[f32; LIVE_INPUTS], tip_n: &[f32; 3], contact: bool) {
+        let [_, _, _, _, _, _, w, x, y, z, depth_m, speed_m_s, _, travel_m, _] = *inputs;
+        let shaft = UnitQuaternion::from_quaternion(Quaternion::new(w, x, y, z)) * Vector3::z();
+        self.tilt.add([shaft.x, shaft.y], [[-TILT, TILT]; 2]);
+        let across_n = tip_n[0].hypot(tip_n[1]);
+        self.force.add([across_n, tip_n[2]], [[0.0, FORCE_N], [-FORCE_N, FORCE_N]]);
+        self.travel.add([depth_m, speed_m_s], [DEPTH_M, [-SPEED_M_S, SPEED_M_S]]);
+        self.tilt_span.iter_mut().zip([shaft.x, shaft.y]).for_each(|(span, value)| span.add(value));
+        self.force_span.iter_mut().zip(tip_n).for_each(|(span, value)| span.add(*value));
+        self.depth_span.add(depth_m);
+        self.inwards += usize::from(travel_m > 0.0);
+        self.outwards += usize::from(travel_m < 0.0);
+        self.contact += usize::from(contact);
+        self.rows += 1;
+    }
+
+    /// All that is asked for, in the order in which to do it.
+    pub fn goals(&self) -> [Goal; 6] {
+        let rows = self.rows.max(1) as f64;
+        let part = |have: f32, want: f32| f64::from(have / want).clamp(0.0, 1.0);
+        let goal = |name, share: f64, advice| Goal { name, share, advice };
+        let tilt = self.tilt_span.iter().map(|span| part(span.width(), TILT_SPAN)).fold(1.0, f64::min);
+        let [x, y, z] = self.force_span.map(|span| span.width());
+        let force = part(x.min(y), ACROSS_SPAN_N).min(part(z, ALONG_SPAN_N));
+        let way = self.inwards.min(self.outwards) as f64 / rows;
+        let contact = self.contact as f64 / rows;
+        let [least, most] = CONTACT_SHARE;
+        let mixed = (contact / least).min((1.0 - contact) / (1.0 - most));
+        [
+            goal("Tilt of the shaft", tilt, "reach left, right, near and far"),
+            goal("Depth", part(self.depth_span.width(), DEPTH_SPAN_M), "move in and out by 2 cm"),
+            goal("In and out", (way / WAY_SHARE).min(1.0), "move as often outwards as inwards"),
+            goal("Force at the tip", force, "press into the tissue up to 3 N, and drag it sideways"),
+            goal("Contact and free", mixed.clamp(0.0, 1.0), "be in contact half of the time"),
+            goal("Rows", (self.rows as f64 / ROWS as f64).min(1.0), "go on"),
+        ]
+    }
+
+    /// The first thing that is still to do; `None` when the recording may be trained on.
+    pub fn next(&self) -> Option<Goal> {
+        self.goals().into_iter().find(|goal| goal.share < 1.0)
+    }
+}

@@ -1,0 +1,198 @@
+//! When not to believe a network: how far a sample lies from all that was trained on.
+//!
+//! Three scores, each 1 at its limit, the largest counts: the distance to the nearest of some centres of the training data
+//! in whitened features, the reach of any one feature beyond its range, and the disagreement of the ensemble. Limits of
+//! distance and range are calibrated on trajectories that the statistics were not made of (each fold in turn), so that at
+//! most about [`FALSE_ALARMS`] of unseen samples in the range of the others are flagged. Anything that is not finite has an endless score.
+
+use nalgebra::{DMatrix, DVector, SymmetricEigen};
+
+/// Share of samples of unseen trajectories that a limit may flag.
+pub const FALSE_ALARMS: f64 = 0.01;
+/// Room beyond the calibrated limits where the folds are pieces of one session: another session reaches further. In simulation
+/// the farthest hundredth of three unseen sessions lay 2 to 14 % beyond.
+const ROOM: f32 = 1.15;
+/// Centres of the training data.
+const CENTRES: usize = 96;
+/// Rounds of the search for centres.
+const ROUNDS: usize = 8;
+/// Variances below this share of a feature's own are not told from noise.
+const FLOOR: f64 = 0.02;
+/// Most rows the statistics are made of; more are thinned evenly.
+const ROWS: usize = 20_000;
+
+/// Centres, whitening, ranges and limits. All in normalised features, of which the first `width` count.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Doubt {
+    /// Features that count: the measured ones, not their products.
+    pub width: usize,
+    /// `width x width`, row by row: whitened = matrix times features.
+    pub whitening: Vec<f32>,
+    /// Whitened centres, `width` numbers each.
+    pub centres: Vec<f32>,
+    /// Least and largest value of every feature.
+    pub range: Vec<[f32; 2]>,
+    /// Distance at which doubt begins.
+    pub distance_limit: f32,
+    /// Reach from the middle of the range, in halves of it, at which doubt begins; at least 1.
+    pub range_limit: f32,
+    /// Disagreement of the ensemble, in standard deviations of an output, at which doubt begins.
+    pub spread_limit: f32,
+}
+
+impl Doubt {
+    /// Fits on all rows of `x` (normalised, `stride` numbers a row) with limits calibrated over the folds: pairs of rows to
+    /// fit on and rows to judge, which may be whole sessions. `spreads` are the ensemble's disagreements on rows that one member did not see.
+    pub fn fit(
+        x: &[f32],
+        stride: usize,
+        width: usize,
+        folds: &[(Vec<usize>, Vec<usize>)],
+        spreads: Vec<f32>,
+        whole_sessions: bool,
+        seed: u64,
+    ) -> Self {
+        let room = if whole_sessions { 1.0 } else { ROOM };
+        let rows: Vec<usize> = (0..x.len() / stride).collect();
+        let mut doubt = Self::geometry(x, stride, width, &rows, seed);
+        let (mut distances, mut reaches) = (Vec::new(), Vec::new());
+        let mut scratch = vec![0.0; width];
+        for (fit, judge) in folds {
+            let (mut fold_distances, mut fold_reaches) = (Vec::new(), Vec::new());
+            let fold = Self::geometry(x, stride, width, fit, seed);
+            for &row in &thinned(judge, ROWS / folds.len().max(1)) {
+                let features = &x[row * stride..row * stride + width];
+                fold_distances.push(fold.distance(features, &mut scratch));
+                fold_reaches.push(fold.reach(features));
+            }
+            distances.push(quantile(fold_distances));
+            reaches.push(quantile(fold_reaches));
+        }
+        doubt.distance_limit = room * median(distances).max(1e-3);
+        doubt.range_limit = room * median(reaches).max(1.0);
+        doubt.spread_limit = room * quantile(spreads).max(1e-6);
+        doubt
+    }
+
+    fn geometry(x: &[f32], stride: usize, width: usize, rows: &[usize], seed: u64) -> Self {
+        let rows = thinned(rows, ROWS);
+        let features = |row: usize| &x[row * stride..row * stride + width];
+        let whitening = whitening(width, rows.iter().map(|row| features(*row)));
+        let mut range = vec![[f32::INFINITY, f32::NEG_INFINITY]; width];
+        let mut white = Vec::with_capacity(rows.len() * width);
+        for &row in &rows {
+            for (range, value) in range.iter_mut().zip(features(row)) {
+                *range = [range[0].min(*value), range[1].max(*value)];
+            }
+            let start = white.len();
+            white.resize(start + width, 0.0);
+            whiten(&whitening, features(row), &mut white[start..]);
+        }
+        let centres = centres(&white, width, seed);
+        Self { width, whitening, centres, range, distance_limit: 1.0, range_limit: 1.0, spread_limit: 1.0 }
+    }
+
+    /// How far outside of the training data a row of normalised features lies. `scratch` has room for `width`. Allocates
+    /// nothing.
+    pub fn outside(&self, features: &[f32], scratch: &mut [f32]) -> f32 {
+        let distance = self.distance(features, scratch) / self.distance_limit;
+        let score = distance.max(self.reach(features) / self.range_limit);
+        let finite = features[..self.width].iter().all(|x| x.is_finite());
+        if finite && score.is_finite() { score } else { f32::INFINITY }
+    }
+
+    /// The score of the ensemble's spread, per output, in standard deviations of it.
+    pub fn disagreement(&self, spread: &[f32]) -> f32 {
+        let score = spread.iter().copied().fold(0.0, f32::max) / self.spread_limit;
+        if score.is_finite() { score } else { f32::INFINITY }
+    }
+
+    fn distance(&self, features: &[f32], scratch: &mut [f32]) -> f32 {
+        whiten(&self.whitening, features, scratch);
+        let square = |centre: &[f32]| centre.iter().zip(&*scratch).map(|(c, x)| (c - x) * (c - x)).sum::<f32>();
+        let nearest = self.centres.chunks_exact(self.width).map(square).fold(f32::INFINITY, f32::min);
+        nearest.sqrt()
+    }
+
+    /// Largest distance from the middle of a feature's range, in halves of it.
+    fn reach(&self, features: &[f32]) -> f32 {
+        let one = |([low, high], value): (&[f32; 2], &f32)| {
+            let half = (0.5 * (high - low)).max(1e-4);
+            (value - f32::midpoint(*low, *high)).abs() / half
+        };
+        self.range.iter().zip(features).map(one).fold(0.0, f32::max)
+    }
+}
+
+/// Evenly thinned to at most `most` rows.
+fn thinned(rows: &[usize], most: usize) -> Vec<usize> {
+    rows.iter().copied().step_by(rows.len().div_ceil(most.max(1)).max(1)).collect()
+}
+
+/// That of the typical fold: one that leaves out an end of the range is rightly in doubt and sets no limit.
+fn median(mut values: Vec<f32>) -> f32 {
+    values.sort_by(f32::total_cmp);
+    values.get(values.len().saturating_sub(1) / 2).copied().unwrap_or(0.0)
+}
+
+/// The limit that [`FALSE_ALARMS`] of these values pass.
+fn quantile(mut values: Vec<f32>) -> f32 {
+    if values.is_empty() {
+        return 0.0;
+    }
+    let place = (((values.len() - 1) as f64) * (1.0 - FALSE_ALARMS)).round() as usize;
+    *values.select_nth_unstable_by(place, f32::total_cmp).1
+}
+
+fn whiten(whitening: &[f32], features: &[f32], to: &mut [f32]) {
+    let width = to.len();
+    for (to, row) in to.iter_mut().zip(whitening.chunks_exact(width)) {
+        *to = row.iter().zip(features).map(|(w, x)| w * x).sum();
+    }
+}
+
+/// Rotates to principal axes and divides by their spread, with a floor under it.
+fn whitening<'a>(width: usize, rows: impl Iterator<Item = &'a [f32]>) -> Vec<f32> {
+    let mut covariance = DMatrix::<f64>::zeros(width, width);
+    let mut mean = DVector::<f64>::zeros(width);
+    let mut count = 0.0;
+    for row in rows {
+        let x = DVector::from_iterator(width, row.iter().map(|x| f64::from(*x)));
+        covariance.ger(1.0, &x, &x, 1.0);
+        mean += x;
+        count += 1.0;
+    }
+    if count > 0.0 {
+        mean /= count;
+        covariance /= count;
+        covariance.ger(-1.0, &mean, &mean, 1.0);
+    }
+    let SymmetricEigen { eigenvectors, eigenvalues } = covariance.symmetric_eigen();
+    let entry = |k: usize, i: usize| (eigenvectors[(i, k)] / eigenvalues[k].max(FLOOR).sqrt()) as f32;
+    (0..width).flat_map(|k| (0..width).map(move |i| (k, i))).map(|(k, i)| entry(k, i)).collect()
+}
+
+/// Centres of whitened rows by Lloyd's rounds, begun at rows chosen at random.
+fn centres(white: &[f32], width: usize, seed: u64) -> Vec<f32> {
+    let rows: Vec<&[f32]> = white.chunks_exact(width).step_by((white.len() / width).div_ceil(4000).max(1)).collect();
+    let mut generator = fastrand::Rng::with_seed(seed ^ 0xce27);
+    let mut centres: Vec<f32> =
+        generator.choose_multiple(rows.iter(), CENTRES).into_iter().flat_map(|row| row.iter().copied()).collect();
+    for _ in 0..ROUNDS {
+        let mut sums = vec![0.0_f32; centres.len()];
+        let mut counts = vec![0.0_f32; centres.len() / width];
+        for row in &rows {
+            let square = |c: &[f32]| c.iter().zip(*row).map(|(c, x)| (c - x) * (c - x)).sum::<f32>();
+            let nearest = centres.chunks_exact(width).map(square).enumerate().min_by(|a, b| a.1.total_cmp(&b.1));
+            let Some((k, _)) = nearest else { continue };
+            counts[k] += 1.0;
+            sums[k * width..(k + 1) * width].iter_mut().zip(*row).for_each(|(sum, x)| *sum += x);
+        }
+        for (k, count) in counts.iter().enumerate().filter(|(_, count)| **count > 0.0) {
+            for i in k * width..(k + 1) * width {
+                centres[i] = sums[i] / count;
+            }
+        }
+    }
+    centres
+}

@@ -1,0 +1,225 @@
+//! What a network reads, made of a stream of wrist samples: the same for recording a data set and in the live loop.
+//!
+//! Takes the gravity-free wrench (N, Nm, `s1`), the wrist's orientation and its depth through the trocar, at the time of
+//! each sample (s); gives one row of [`DEFAULT_INPUTS`]. Friction remembers which way the instrument moved last, so this
+//! part has a memory; until it is filled, and after any hole in the samples, there is no row. Allocates nothing.
+
+use super::DEFAULT_INPUTS;
+use crate::frames::{Wrench, WristSample};
+
+/// How many inputs a row has.
+pub const LIVE_INPUTS: usize = DEFAULT_INPUTS.len();
+
+/// Time constants and lengths. A network must be used with those that its data were recorded with: everything but the study
+/// that chose them uses the default.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FeatureSettings {
+    /// Time constant of the low-pass over wrench and depth, s: its delay buys less noise. One for both: a wrench that came later
+    /// than the motion it belongs to would look like friction the wrong way at every turn.
+    pub smoothing_s: f64,
+    /// Over which lengths a stuck seal stretches before it slides, m, shortest first (Dahl 1968): `dz = dx - |dx| z / length`.
+    pub presliding_m: [f64; 2],
+    /// Over which length of sliding the seal forgets how fast it slid, m (rate-and-state friction, Ruina 1983).
+    pub slip_m: f64,
+}
+
+impl Default for FeatureSettings {
+    fn default() -> Self {
+        Self { smoothing_s: 0.005, presliding_m: [2e-4, 6e-4], slip_m: 4e-4 }
+    }
+}
+
+/// Share of its longest length that a stretch must have reached once: from there on it hardly depends on where it began.
+const KNOWN_SHARE: f64 = 0.8;
+
+/// A hole between two samples that is longer than this, s, empties the memory.
+const HOLE_S: f64 = 0.020;
+
+/// Why there is no row.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum NoRow {
+    /// The sample lacks the wrist's orientation or its depth through the trocar, or is not finite.
+    Missing,
+    /// The instrument has not moved far enough to know which way the trocar's friction pulls.
+    NotMoved,
+}
+
+/// The memory. One per wrist sensor.
+#[derive(Clone, Debug)]
+pub struct Features {
+    settings: FeatureSettings,
+    last: Option<Last>,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Last {
+    t_s: f64,
+    wrench: Wrench,
+    insertion_m: f64,
+    speed_m_s: f64,
+    stretch_m: [f64; 2],
+    slip_m_s: f64,
+    known: bool,
+}
+
+impl Features {
+    /// An empty memory.
+    pub const fn new(settings: FeatureSettings) -> Self {
+        Self { settings, last: None }
+    }
+
+    /// Forgets everything.
+    pub const fn reset(&mut self) {
+        self.last = None;
+    }
+
+    /// The row of this sample. Call with every sample, in order.
+    pub fn step(&mut self, t_s: f64, gravity_free: &Wrench, sample: &WristSample) -> Result<[f32; LIVE_INPUTS], NoRow> {
+        let (Some(world_from_s1), Some(insertion_m)) = (sample.world_from_s1, sample.insertion_m) else {
+            self.last = None;
+            return Err(NoRow::Missing);
+        };
+        let finite = gravity_free.is_finite() && sample.is_finite() && t_s.is_finite();
+        if !finite {
+            self.last = None;
+            return Err(NoRow::Missing);
+        }
+        let now = match self.last {
+            Some(last) if t_s > last.t_s && t_s - last.t_s <= HOLE_S => {
+                self.advance(&last, t_s, gravity_free, insertion_m)
+            }
+            _ => Last {
+                t_s,
+                wrench: *gravity_free,
+                insertion_m,
+                speed_m_s: 0.0,
+                stretch_m: [0.0; 2],
+                slip_m_s: 0.0,
+                known: false,
+            },
+        };
+        self.last = Some(now);
+        if !now.known {
+            return Err(NoRow::NotMoved);
+        }
+        let (f, t, q) = (now.wrench.force_n, now.wrench.torque_nm, world_from_s1);
+        let row = [
+            f.x,
+            f.y,
+            f.z,
+            t.x,
+            t.y,
+            t.z,
+            q.w,
+            q.i,
+            q.j,
+            q.k,
+            now.insertion_m,
+            now.speed_m_s,
+            now.stretch_m[0],
+            now.stretch_m[1],
+            now.slip_m_s,
+        ];
+        Ok(row.map(|value| value as f32))
+    }
+
+    fn advance(&self, last: &Last, t_s: f64, wrench: &Wrench, insertion_m: f64) -> Last {
+        let FeatureSettings { smoothing_s, presliding_m, slip_m } = self.settings;
+        let dt_s = t_s - last.t_s;
+        // First order, exact for a value that stands still over the step.
+        let share = 1.0 - (-dt_s / smoothing_s).exp();
+        let way_m = (insertion_m - last.insertion_m) * share;
+        let length_m = way_m.abs();
+        // Semi-implicit, so that no step is too long.
+        let stretch_m: [f64; 2] =
+            std::array::from_fn(|k| (last.stretch_m[k] + way_m) / (1.0 + length_m / presliding_m[k]));
+        let slip = length_m / (length_m + slip_m);
+        Last {
+            t_s,
+            wrench: Wrench {
+                force_n: last.wrench.force_n + (wrench.force_n - last.wrench.force_n) * share,
+                torque_nm: last.wrench.torque_nm + (wrench.torque_nm - last.wrench.torque_nm) * share,
+            },
+            insertion_m: last.insertion_m + way_m,
+            speed_m_s: way_m / dt_s,
+            stretch_m,
+            slip_m_s: last.slip_m_s + (length_m / dt_s - last.slip_m_s) * slip,
+            known: last.known || stretch_m[1].abs() >= KNOWN_SHARE * presliding_m[1],
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::{UnitQuaternion, Vector3};
+
+    use super::*;
+
+    fn sample(insertion_m: f64) -> WristSample {
+        WristSample {
+            world_from_s1: Some(UnitQuaternion::identity()),
+            insertion_m: Some(insertion_m),
+            ..WristSample::of(Wrench::default())
+        }
+    }
+
+    fn column(name: &str) -> usize {
+        DEFAULT_INPUTS.iter().position(|column| *column == name).unwrap()
+    }
+
+    #[test]
+    fn the_last_way_and_its_speed_are_remembered() {
+        let mut features = Features::new(FeatureSettings::default());
+        let wrench = Wrench { force_n: Vector3::new(1.0, 2.0, 3.0), torque_nm: Vector3::zeros() };
+        let mut t_s = 0.0;
+        let mut go = |from_m: f64, to_m: f64| {
+            let mut row = Err(NoRow::Missing);
+            for i in 0..=100 {
+                t_s += 1e-3;
+                row = features.step(t_s, &wrench, &sample(from_m + (to_m - from_m) * f64::from(i) / 100.0));
+            }
+            row
+        };
+        assert_eq!(go(0.1, 0.1003), Err(NoRow::NotMoved), "half the length proves nothing");
+        let inwards = go(0.1003, 0.105).unwrap();
+        assert!(inwards[column("presliding_200um_m")] > 1.9e-4 && inwards[column("presliding_600um_m")] > 5.5e-4);
+        assert!((inwards[column("insertion_speed_m_s")] - 0.047).abs() < 1e-3);
+        assert!((inwards[column("slip_m_s")] - 0.047).abs() < 5e-3);
+        assert!((inwards[column("fy_n")] - 2.0).abs() < 1e-6);
+        let resting = go(0.105, 0.105).unwrap();
+        assert!(resting[column("insertion_speed_m_s")].abs() < 1e-6);
+        assert!(resting[column("slip_m_s")] > 0.02, "at rest it is known how fast it came");
+        assert!(resting[column("presliding_600um_m")] > 5.5e-4, "and from where");
+        let turning = go(0.105, 0.1047).unwrap();
+        let [short, long] = ["presliding_200um_m", "presliding_600um_m"].map(|name| turning[column(name)]);
+        assert!(short < 0.0 && long > 0.0, "the shorter one turns first: {short} {long}");
+        assert!(go(0.1047, 0.100).unwrap()[column("presliding_600um_m")] < -5.5e-4);
+    }
+
+    #[test]
+    fn holes_and_poison_empty_the_memory() {
+        let wrench = Wrench::default();
+        let mut t_s = 0.0;
+        let mut features = Features::new(FeatureSettings::default());
+        let mut moved = |features: &mut Features| {
+            let mut row = Err(NoRow::Missing);
+            for i in 0..60 {
+                t_s += 1e-3;
+                row = features.step(t_s, &wrench, &sample(0.1 + 1e-4 * f64::from(i)));
+            }
+            (row, t_s)
+        };
+        let (row, now_s) = moved(&mut features);
+        assert!(row.is_ok());
+        let mut after = features.clone();
+        assert_eq!(after.step(now_s + 0.04, &wrench, &sample(0.106)), Err(NoRow::NotMoved), "40 ms without a sample");
+        let mut after = features.clone();
+        assert_eq!(after.step(now_s + 1e-3, &wrench, &sample(f64::NAN)), Err(NoRow::Missing));
+        assert_eq!(after.step(now_s + 2e-3, &wrench, &sample(0.106)), Err(NoRow::NotMoved));
+        assert!(features.clone().step(now_s, &wrench, &sample(0.106)).is_err(), "time that does not rise");
+        let mut without = sample(0.106);
+        without.insertion_m = None;
+        assert_eq!(features.clone().step(now_s + 1e-3, &wrench, &without), Err(NoRow::Missing));
+        assert!(moved(&mut features).0.is_ok(), "a hole heals by moving");
+    }
+}

@@ -1,0 +1,223 @@
+//! Frames of the sensors, on a serial line and in datagrams alike: bytes in, checked frames out, and back.
+//!
+//! Little-endian; the header byte tells the length (reference `bota.md`, section 1.1). No input or output, no clock; nothing is
+//! allocated. A frame counts only with a right checksum; in a dirty stream the search goes on one byte behind whatever looked like
+//! a beginning and was none, so that no constant of the payload can be locked onto.
+
+/// Header of a frame with force and torque only.
+pub const HEADER_WRENCH: u8 = 0xAA;
+/// Header of a frame that also has the inertial unit.
+pub const HEADER_INERTIAL: u8 = 0xAB;
+/// Length of a frame with force and torque only, bytes.
+pub const WRENCH_BYTES: usize = 37;
+/// Length of a frame that also has the inertial unit, bytes.
+pub const INERTIAL_BYTES: usize = 61;
+/// Bits of the status word that mean something: throttled, overrange, invalid, raw.
+pub const STATUS_BITS: u16 = 0b1111;
+
+const CRC_BYTES: usize = 2;
+
+/// One frame as it is on the wire.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Frame {
+    /// Status word: bit 0 throttled, 1 overrange, 2 invalid, 3 raw; the others are reserved.
+    pub status: u16,
+    pub force_n: [f32; 3],
+    pub torque_nm: [f32; 3],
+    /// The sensor's clock, us; begins again after 2^32 us (71.6 min).
+    pub timestamp_us: u32,
+    pub temperature_c: f32,
+    /// Inertial unit, in frames that have it.
+    pub inertial: Option<Inertial>,
+}
+
+/// What the inertial unit reads.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Inertial {
+    /// Specific force, m/s^2.
+    pub acceleration_m_s2: [f32; 3],
+    pub angular_velocity_rad_s: [f32; 3],
+}
+
+/// Length of the frame that begins with this byte.
+pub const fn length_of(header: u8) -> Option<usize> {
+    match header {
+        HEADER_WRENCH => Some(WRENCH_BYTES),
+        HEADER_INERTIAL => Some(INERTIAL_BYTES),
+        _ => None,
+    }
+}
+
+const CRC_TABLE: [u16; 256] = {
+    let mut table = [0; 256];
+    let mut index = 0;
+    while index < 256 {
+        let mut remainder = index as u16;
+        let mut bit = 0;
+        while bit < 8 {
+            remainder = if remainder & 1 == 1 { (remainder >> 1) ^ 0x8408 } else { remainder >> 1 };
+            bit += 1;
+        }
+        table[index] = remainder;
+        index += 1;
+    }
+    table
+};
+
+/// CRC-16/X-25: polynomial 0x1021 reflected, begins and ends with all bits turned over.
+pub fn crc16_x25(bytes: &[u8]) -> u16 {
+    let step = |crc: u16, byte: &u8| CRC_TABLE[usize::from(crc.to_le_bytes()[0] ^ byte)] ^ (crc >> 8);
+    !bytes.iter().fold(0xFFFF, step)
+}
+
+/// Why bytes are no frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum NoFrame {
+    /// They do not begin with a header, or their number does not fit it.
+    Shape,
+    /// The checksum is wrong.
+    Checksum,
+}
+
+impl Frame {
+    /// Writes the frame with its checksum to the beginning of `buffer`; gives its length.
+    pub fn encode(&self, buffer: &mut [u8; INERTIAL_BYTES]) -> usize {
+        let length = if self.inertial.is_some() { INERTIAL_BYTES } else { WRENCH_BYTES };
+        buffer[0] = if self.inertial.is_some() { HEADER_INERTIAL } else { HEADER_WRENCH };
+        buffer[1..3].copy_from_slice(&self.status.to_le_bytes());
+        put(&mut buffer[3..15], &self.force_n);
+        put(&mut buffer[15..27], &self.torque_nm);
+        buffer[27..31].copy_from_slice(&self.timestamp_us.to_le_bytes());
+        put(&mut buffer[31..35], &[self.temperature_c]);
+        if let Some(inertial) = &self.inertial {
+            put(&mut buffer[35..47], &inertial.acceleration_m_s2);
+            put(&mut buffer[47..59], &inertial.angular_velocity_rad_s);
+        }
+        let crc = crc16_x25(&buffer[1..length - CRC_BYTES]);
+        buffer[length - CRC_BYTES..length].copy_from_slice(&crc.to_le_bytes());
+        length
+    }
+
+    /// Reads exactly one frame, as a datagram holds it.
+    pub fn decode(bytes: &[u8]) -> Result<Self, NoFrame> {
+        let header = *bytes.first().ok_or(NoFrame::Shape)?;
+        if length_of(header) != Some(bytes.len()) {
+            return Err(NoFrame::Shape);
+        }
+        let (body, crc) = bytes.split_at(bytes.len() - CRC_BYTES);
+        if crc16_x25(&body[1..]).to_le_bytes() != *crc {
+            return Err(NoFrame::Checksum);
+        }
+        let [temperature_c] = take(&body[31..35]);
+        let inertial = (header == HEADER_INERTIAL)
+            .then(|| Inertial { acceleration_m_s2: take(&body[35..47]), angular_velocity_rad_s: take(&body[47..59]) });
+        Ok(Self {
+            status: u16::from_le_bytes([body[1], body[2]]),
+            force_n: take(&body[3..15]),
+            torque_nm: take(&body[15..27]),
+            timestamp_us: u32::from_le_bytes([body[27], body[28], body[29], body[30]]),
+            temperature_c,
+            inertial,
+        })
+    }
+}
+
+fn put(to: &mut [u8], values: &[f32]) {
+    for (bytes, value) in to.chunks_exact_mut(4).zip(values) {
+        bytes.copy_from_slice(&value.to_le_bytes());
+    }
+}
+
+fn take<const N: usize>(from: &[u8]) -> [f32; N] {
+    let mut values = [0.0; N];
+    for (value, bytes) in values.iter_mut().zip(from.chunks_exact(4)) {
+        *value = f32::from_le_bytes([bytes[0], bytes[1], bytes[2], bytes[3]]);
+    }
+    values
+}
+
+/// Bytes that the decoder holds: more than 20 ms of the fastest serial line.
+const ROOM: usize = 2048;
+
+/// Finds frames in a stream of bytes. Fill [`room`](Self::room), tell [`filled`](Self::filled), take all of [`next`](Self::next).
+#[derive(Debug)]
+pub struct Decoder {
+    buffer: [u8; ROOM],
+    begin: usize,
+    end: usize,
+    /// Bytes skipped since the last frame that was refused or accepted: the rest of a refused one is not refused again.
+    since_refused: usize,
+    /// Frames refused since the beginning.
+    damaged: u64,
+    /// Bytes skipped since the beginning.
+    skipped: u64,
+}
+
+impl Default for Decoder {
+    fn default() -> Self {
+        Self { buffer: [0; ROOM], begin: 0, end: 0, since_refused: WRENCH_BYTES, damaged: 0, skipped: 0 }
+    }
+}
+
+impl Decoder {
+    /// Where new bytes go; never empty after all of [`next`](Self::next) was taken.
+    pub fn room(&mut self) -> &mut [u8] {
+        self.buffer.copy_within(self.begin..self.end, 0);
+        (self.begin, self.end) = (0, self.end - self.begin);
+        &mut self.buffer[self.end..]
+    }
+
+    /// So many bytes were put into the room.
+    pub fn filled(&mut self, count: usize) {
+        self.end = (self.end + count).min(ROOM);
+    }
+
+    /// The next whole frame; `None` when more bytes are needed. Each call moves on in the stream, so the work is bounded by what
+    /// was put in.
+    #[expect(clippy::should_implement_trait, reason = "an iterator would borrow the room")]
+    pub fn next(&mut self) -> Option<Frame> {
+        while self.begin < self.end {
+            let Some(length) = length_of(self.buffer[self.begin]) else {
+                self.skip();
+                continue;
+            };
+            let candidate = self.buffer[self.begin..self.end].get(..length)?;
+            if let Ok(frame) = Frame::decode(candidate) {
+                self.begin += length;
+                self.since_refused = WRENCH_BYTES;
+                return Some(frame);
+            }
+            if self.since_refused >= WRENCH_BYTES {
+                self.damaged += 1;
+                self.since_refused = 0;
+            }
+            self.skip();
+        }
+        None
+    }
+
+    const fn skip(&mut self) {
+        self.begin += 1;
+        self.skipped += 1;
+        self.since_refused = self.since_refused.saturating_add(1);
+    }
+
+    /// Frames refused by their checksum so far; what is skipped within the length of one is counted once.
+    pub const fn damaged(&self) -> u64 {
+        self.damaged
+    }
+
+    /// Bytes skipped so far.
+    pub const fn skipped(&self) -> u64 {
+        self.skipped
+    }
+
+    /// Forgets what it holds; the counters stay.
+    pub const fn clear(&mut self) {
+        (self.begin, self.end) = (0, 0);
+    }
+}
+
+#[cfg(test)]
+#[path = "codec_tests.rs"]
+mod tests;

@@ -1,0 +1,271 @@
+//! The running sensor: frames in, checked readings out, and the reason when there are none.
+
+use nalgebra::Vector3;
+use nima_core::frames::Wrench;
+
+use super::{
+    Settings,
+    clock::{Clock, Step},
+    codec::{Frame, STATUS_BITS},
+    link::Link,
+    opening::{self, Opened},
+    session::Timeouts,
+};
+use crate::{Device, ForceReading, ForceStatus, Health, Identity, Loss, Stamped, Standing, Trouble};
+
+/// A sensor is lost when nothing usable came for this long, s, at rates that give five readings in it.
+const SILENCE_S: f64 = 0.018;
+/// At lower rates: for so many readings.
+const SILENCE_READINGS: f64 = 5.0;
+/// More than any sensor of the family measures, N: beyond it a number is no force.
+const FORCE_MAX_N: f64 = 1e5;
+/// The same for torques, Nm.
+const TORQUE_MAX_NM: f64 = 1e4;
+
+/// Status bits as they are told to the rest of the program.
+pub const fn status_of(status: u16) -> ForceStatus {
+    ForceStatus {
+        throttled: status & 1 != 0,
+        overrange: status & 2 != 0,
+        invalid: status & 4 != 0,
+        raw: status & 8 != 0,
+    }
+}
+
+/// A frame as a reading.
+pub fn reading_of(frame: &Frame) -> ForceReading {
+    let vector = |values: [f32; 3]| Vector3::from(values.map(f64::from));
+    ForceReading {
+        wrench: Wrench { force_n: vector(frame.force_n), torque_nm: vector(frame.torque_nm) },
+        acceleration_m_s2: frame.inertial.map(|inertial| vector(inertial.acceleration_m_s2)),
+        angular_velocity_rad_s: frame.inertial.map(|inertial| vector(inertial.angular_velocity_rad_s)),
+        temperature_c: f64::from(frame.temperature_c),
+        status: status_of(frame.status),
+    }
+}
+
+/// All of it is finite, and within what such a sensor can measure.
+fn is_plausible(reading: &ForceReading) -> bool {
+    let finite = |vector: Option<Vector3<f64>>| vector.is_none_or(|vector| vector.iter().all(|x| x.is_finite()));
+    reading.wrench.force_n.iter().all(|x| x.abs() <= FORCE_MAX_N)
+        && reading.wrench.torque_nm.iter().all(|x| x.abs() <= TORQUE_MAX_NM)
+        && finite(reading.acceleration_m_s2)
+        && finite(reading.angular_velocity_rad_s)
+        && reading.temperature_c.is_finite()
+}
+
+/// An open sensor that measures. Dropping it stops the measurement.
+///
+/// Only readings that may be used are handed out: one that is overrange, invalid or raw, or has impossible numbers, is refused
+/// and counted; a throttled one is handed out with its flag. When nothing usable came for 18 ms (five readings, where
+/// those take longer) the sensor is lost, with the cause that its last words tell.
+pub struct Driver {
+    link: Link,
+    judge: Judge,
+    identity: Identity,
+    rate_hz: f64,
+    low_latency: bool,
+    silence_s: f64,
+    stop: &'static [u8],
+    /// Time of the first poll; what arrived before it is stale.
+    begun: bool,
+    /// Damage before the first reading is that of a stream joined in its middle.
+    base: (u64, u64),
+}
+
+impl std::fmt::Debug for Driver {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let health = &self.judge.health;
+        f.debug_struct("Driver").field("identity", &self.identity).field("health", health).finish_non_exhaustive()
+    }
+}
+
+impl Driver {
+    /// Opens, configures and starts the sensor (blocks: 4 s for the first generation, which starts anew when its port is opened).
+    pub fn open(settings: &Settings) -> Result<Self, Trouble> {
+        Self::open_within(settings, Timeouts::default())
+    }
+
+    /// Opens for a diagnosis: what does not answer is told soon, within a second where the sensor does not start anew.
+    pub(crate) fn try_open(settings: &Settings) -> Result<Self, Trouble> {
+        Self::open_within(settings, Timeouts::SHORT)
+    }
+
+    /// The same, waiting as long as told.
+    ///
+    /// # Errors
+    /// As [`Driver::open`].
+    pub fn open_within(settings: &Settings, timeouts: Timeouts) -> Result<Self, Trouble> {
+        opening::open(settings, timeouts).map(Self::of)
+    }
+
+    pub(super) fn of(opened: Opened) -> Self {
+        let Opened { link, identity, rate_hz, low_latency, stop } = opened;
+        let judge = Judge::new(1e6 / rate_hz);
+        let silence_s = SILENCE_S.max(SILENCE_READINGS / rate_hz);
+        Self { link, judge, identity, rate_hz, low_latency, silence_s, stop, begun: false, base: (0, 0) }
+    }
+
+    /// Readings per second that the sensor was set to, Hz.
+    pub const fn rate_hz(&self) -> f64 {
+        self.rate_hz
+    }
+
+    /// The port hands bytes on at once; where not, readings of an FTDI adapter arrive up to 16 ms late and in batches.
+    pub const fn has_low_latency(&self) -> bool {
+        self.low_latency
+    }
+
+    /// Status of the newest frame, also of a refused one.
+    pub const fn status(&self) -> ForceStatus {
+        status_of(self.judge.status)
+    }
+
+    /// Without a usable reading for longer than this it is lost, s.
+    pub const fn silence_limit_s(&self) -> f64 {
+        self.silence_s
+    }
+
+    /// Stops the measurement and closes the line.
+    pub fn close(self) {}
+
+    /// Takes in what has arrived; damage counts from the first reading on.
+    fn take_in(&mut self, now_s: f64) -> Result<Option<Stamped<ForceReading>>, Loss> {
+        let before = (self.link.damaged(), self.link.skipped());
+        let mut newest = None;
+        let judge = &mut self.judge;
+        let received = self.link.receive(|frame| {
+            if let Some(reading) = judge.take(&frame, now_s) {
+                newest = Some(reading);
+            }
+        });
+        let after = (self.link.damaged(), self.link.skipped());
+        if self.judge.clock_runs {
+            self.judge.health.damaged = after.0 - self.base.0;
+            self.judge.health.skipped_bytes = after.1 - self.base.1;
+        } else {
+            self.base = after;
+        }
+        if newest.is_none() && after != before {
+            self.judge.suspect = Loss::Corrupt;
+        }
+        received.map(|()| newest)
+    }
+}
+
+impl Device for Driver {
+    type Reading = ForceReading;
+
+    fn poll(&mut self, now_s: f64) -> Option<Stamped<ForceReading>> {
+        if matches!(self.judge.health.standing, Standing::Lost(_)) {
+            return None;
+        }
+        if !self.begun {
+            self.begun = true;
+            self.judge.usable_s = now_s;
+            if let Err(loss) = self.link.discard() {
+                self.judge.health.lose(loss);
+                return None;
+            }
+            self.base = (self.link.damaged(), self.link.skipped());
+        }
+        match self.take_in(now_s) {
+            Err(loss) => {
+                self.judge.health.lose(loss);
+                None
+            }
+            Ok(None) if now_s - self.judge.usable_s > self.silence_s => {
+                self.judge.health.lose(self.judge.suspect);
+                None
+            }
+            Ok(newest) => newest,
+        }
+    }
+
+    fn health(&self) -> &Health {
+        &self.judge.health
+    }
+
+    fn identity(&self) -> &Identity {
+        &self.identity
+    }
+}
+
+impl Drop for Driver {
+    fn drop(&mut self) {
+        // What is unread at the end of a connection would take this last command with it.
+        if self.link.discard().is_ok() {
+            self.link.send(self.stop).ok();
+        }
+    }
+}
+
+/// Decides which frames are readings.
+#[derive(Debug)]
+struct Judge {
+    clock: Clock,
+    clock_runs: bool,
+    health: Health,
+    status: u16,
+    /// Arrival of the newest usable reading, s.
+    usable_s: f64,
+    /// What it is lost for if nothing better comes.
+    suspect: Loss,
+}
+
+impl Judge {
+    fn new(period_us: f64) -> Self {
+        let health = Health::opening();
+        Self {
+            clock: Clock::new(period_us),
+            clock_runs: false,
+            health,
+            status: 0,
+            usable_s: 0.0,
+            suspect: Loss::Silent,
+        }
+    }
+
+    fn take(&mut self, frame: &Frame, now_s: f64) -> Option<Stamped<ForceReading>> {
+        self.clock_runs = true;
+        self.status = frame.status;
+        let device_s = match self.clock.step(frame.timestamp_us) {
+            Step::Newer { device_s, missing } => {
+                self.health.lost += missing;
+                device_s
+            }
+            Step::Late => {
+                self.health.lost = self.health.lost.saturating_sub(1);
+                return self.stale();
+            }
+            Step::Stale => return self.stale(),
+        };
+        let reading = reading_of(frame);
+        if !reading.status.is_usable() {
+            return self.refuse(Loss::Device { code: u32::from(frame.status & STATUS_BITS) });
+        }
+        if !is_plausible(&reading) {
+            return self.refuse(Loss::Implausible);
+        }
+        self.health.accept(now_s);
+        (self.usable_s, self.suspect) = (now_s, Loss::Silent);
+        Some(Stamped { device_s: Some(device_s), arrival_s: now_s, value: reading })
+    }
+
+    /// A clock that stands still or goes back is impossible.
+    const fn stale(&mut self) -> Option<Stamped<ForceReading>> {
+        self.health.out_of_order += 1;
+        self.suspect = Loss::Implausible;
+        None
+    }
+
+    const fn refuse(&mut self, loss: Loss) -> Option<Stamped<ForceReading>> {
+        self.health.refused += 1;
+        self.suspect = loss;
+        None
+    }
+}
+
+#[cfg(test)]
+#[path = "driver_tests.rs"]
+mod tests;

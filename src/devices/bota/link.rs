@@ -1,0 +1,90 @@
+//! The way readings come: within the serial line's bytes, or as datagrams beside a connection for commands.
+
+use super::codec::{Decoder, Frame, INERTIAL_BYTES};
+use crate::{
+    Loss,
+    transport::{Bytes, Datagrams},
+};
+
+/// An open sensor's lines. Receiving neither waits nor allocates.
+pub(super) struct Link {
+    control: Box<dyn Bytes>,
+    stream: Option<Box<dyn Datagrams>>,
+    decoder: Decoder,
+    /// Datagrams that were no frame.
+    damaged: u64,
+}
+
+/// Reads from a serial line in one go; each takes up to the decoder's room.
+const READS_MAX: usize = 16;
+/// Datagrams taken in one go: over 60 ms of the fastest sensor.
+const DATAGRAMS_MAX: usize = 256;
+/// One byte more than the longest frame, so that a datagram that is too long is seen to be.
+const DATAGRAM_BYTES: usize = INERTIAL_BYTES + 1;
+
+impl Link {
+    pub(super) fn new(control: Box<dyn Bytes>, stream: Option<Box<dyn Datagrams>>) -> Self {
+        Self { control, stream, decoder: Decoder::default(), damaged: 0 }
+    }
+
+    /// Hands every frame that has arrived to `give`.
+    pub(super) fn receive(&mut self, give: impl FnMut(Frame)) -> Result<(), Loss> {
+        if self.stream.is_some() { self.receive_datagrams(give) } else { self.receive_bytes(give) }
+    }
+
+    fn receive_bytes(&mut self, mut give: impl FnMut(Frame)) -> Result<(), Loss> {
+        for _ in 0..READS_MAX {
+            let count = self.control.receive(self.decoder.room())?;
+            if count == 0 {
+                break;
+            }
+            self.decoder.filled(count);
+            while let Some(frame) = self.decoder.next() {
+                give(frame);
+            }
+        }
+        Ok(())
+    }
+
+    fn receive_datagrams(&mut self, mut give: impl FnMut(Frame)) -> Result<(), Loss> {
+        // Nothing is asked on the connection while the sensor runs, but its end is the sensor's end.
+        self.control.receive(&mut [0; 64])?;
+        let Some(stream) = &mut self.stream else { return Ok(()) };
+        let mut buffer = [0; DATAGRAM_BYTES];
+        for _ in 0..DATAGRAMS_MAX {
+            let Some(count) = stream.receive(&mut buffer)? else { break };
+            match Frame::decode(&buffer[..count.min(DATAGRAM_BYTES)]) {
+                Ok(frame) => {
+                    stream.keep_to_sender();
+                    give(frame);
+                }
+                Err(_) => self.damaged += 1,
+            }
+        }
+        Ok(())
+    }
+
+    /// Throws away what has arrived.
+    pub(super) fn discard(&mut self) -> Result<(), Loss> {
+        self.receive(|_| {})?;
+        self.decoder.clear();
+        Ok(())
+    }
+
+    pub(super) const fn damaged(&self) -> u64 {
+        self.damaged + self.decoder.damaged()
+    }
+
+    pub(super) const fn skipped(&self) -> u64 {
+        self.decoder.skipped()
+    }
+
+    pub(super) fn send(&mut self, command: &[u8]) -> Result<(), Loss> {
+        self.control.send(command)
+    }
+
+    /// The line for commands, to ask again.
+    pub(super) fn into_lines(self) -> (Box<dyn Bytes>, Option<Box<dyn Datagrams>>) {
+        (self.control, self.stream)
+    }
+}

@@ -1,0 +1,352 @@
+//! From settings to a sensor that measures: the three ways of connection, each failure with its cause. Blocks.
+
+use std::{
+    net::{IpAddr, SocketAddr, ToSocketAddrs as _, UdpSocket},
+    time::{Duration, Instant},
+};
+
+use nima_files::quoted;
+
+use super::{
+    Settings, Transport,
+    codec::{Frame, STATUS_BITS},
+    gen_a, gen0,
+    link::Link,
+    session::{Session, Timeouts},
+};
+use crate::{
+    Identity, Trouble,
+    transport::{Datagrams, Serial, SerialSettings, Tcp, Udp},
+};
+
+/// A sensor that was opened and measures.
+pub(super) struct Opened {
+    pub(super) link: Link,
+    pub(super) identity: Identity,
+    /// Readings per second, Hz.
+    pub(super) rate_hz: f64,
+    /// The port hands bytes on at once (always so in the network).
+    pub(super) low_latency: bool,
+    /// Stops the measurement.
+    pub(super) stop: &'static [u8],
+}
+
+/// Port for commands of a sensor in the network.
+pub const TCP_PORT: u16 = 23;
+/// How often a first-generation sensor without its calibration is restarted.
+const RESTARTS: u32 = 5;
+const STOP_GEN_A: &[u8] = b"wh,1,2,1\n";
+const FIRST_GENERATION: &str = "first-generation Bota sensor";
+const SECOND_GENERATION: &str = "second-generation Bota sensor";
+
+pub(super) fn open(settings: &Settings, timeouts: Timeouts) -> Result<Opened, Trouble> {
+    settings.check()?;
+    match settings.transport {
+        Transport::Gen0 => open_gen0(settings, timeouts),
+        Transport::GenA => open_gen_a(settings, timeouts),
+        Transport::Socket => open_socket(settings, timeouts),
+    }
+}
+
+fn serial(settings: &Settings, timeouts: Timeouts) -> Result<(Session, bool), Trouble> {
+    let line = Serial::open(&SerialSettings { port: settings.port.clone(), baud: settings.baud })?;
+    let low_latency = line.has_low_latency();
+    Ok((Session::new(Box::new(line), &settings.port, timeouts), low_latency))
+}
+
+fn open_gen0(settings: &Settings, timeouts: Timeouts) -> Result<Opened, Trouble> {
+    let (mut session, low_latency) = serial(settings, timeouts)?;
+    let mut boot = gen0::BootText::default();
+    session.listen(timeouts.boot, |heard| {
+        boot = gen0::BootText::of(heard);
+        boot.firmware.is_some().then_some(())
+    })?;
+    enter_config_gen0(&mut session, settings)?;
+    let identity = identity_gen0(&mut session, boot)?;
+    check_serial(settings, &identity)?;
+    let rate_hz = settings.expected_hz();
+    for _ in 0..=RESTARTS {
+        configure_gen0(&mut session, settings)?;
+        let place = session.place.clone();
+        let mut link = Link::new(session.into_line(), None);
+        match first_readings(&mut link, &place, rate_hz, settings, timeouts) {
+            Err(Trouble::DeviceFault { words, .. }) if words == RAW => {
+                session = Session::new(link.into_lines().0, &place, timeouts);
+                restart_gen0(&mut session, settings)?;
+            }
+            Err(other) => return Err(other),
+            Ok(()) => return Ok(Opened { link, identity, rate_hz, low_latency, stop: gen0::CONFIG }),
+        }
+    }
+    Err(fault_of(&settings.port, RAW_BIT))
+}
+
+/// Stops the stream. What answers instead tells what is wrong.
+fn enter_config_gen0(session: &mut Session, settings: &Settings) -> Result<(), Trouble> {
+    for _ in 0..session.timeouts.tries {
+        match session.ask(gen0::CONFIG, |heard| gen0::acknowledged(heard, b'C'))? {
+            Some(0) => return session.flush(),
+            Some(code) => return Err(refused(session, "C", &format!("code {code}"))),
+            None => {}
+        }
+    }
+    if session.ask(gen_a::read(gen_a::SERIAL).as_bytes(), |heard| gen_a::answer(heard, b"rh"))?.is_some() {
+        return Err(wrong_generation(session, FIRST_GENERATION, SECOND_GENERATION));
+    }
+    Err(session.why_no_answer("C", Some(settings.baud)))
+}
+
+/// By the official driver's question, or by what it told when it started: not every firmware knows the question.
+fn identity_gen0(session: &mut Session, boot: gen0::BootText) -> Result<Identity, Trouble> {
+    let asked = session.ask(gen0::PRODUCT, |heard| {
+        gen0::acknowledged(heard, b'p').map(|code| (code == 0).then(|| gen0::product(heard)).flatten())
+    })?;
+    let (serial, product) = asked.flatten().unzip();
+    Ok(Identity {
+        product: product.or(boot.product).unwrap_or_default(),
+        serial: serial.or(boot.serial).unwrap_or_default(),
+        firmware: boot.firmware.unwrap_or_default(),
+    })
+}
+
+/// Line, filter and offset, then measures. Nothing is saved in the sensor: its memory wears, and it is configured each time.
+fn configure_gen0(session: &mut Session, settings: &Settings) -> Result<(), Trouble> {
+    let baud_index = gen0::BAUDS.iter().position(|baud| *baud == settings.baud).unwrap_or_default();
+    let communication = gen0::communication(baud_index);
+    let filter = gen0::filter(settings.sinc);
+    for command in [communication.as_bytes(), filter.as_bytes(), gen0::NO_OFFSET, gen0::RUN] {
+        let name = String::from_utf8_lossy(command);
+        match session.ask(command, |heard| gen0::acknowledged(heard, command[0]))? {
+            Some(0) => {}
+            Some(code) => return Err(refused(session, name.trim(), &format!("code {code}"))),
+            None => return Err(refused(session, name.trim(), "no answer")),
+        }
+    }
+    Ok(())
+}
+
+fn restart_gen0(session: &mut Session, settings: &Settings) -> Result<(), Trouble> {
+    session.ask(gen0::INIT, |heard| gen0::acknowledged(heard, b'I'))?;
+    session.listen(session.timeouts.init, |_| None::<()>)?;
+    enter_config_gen0(session, settings)
+}
+
+fn open_gen_a(settings: &Settings, timeouts: Timeouts) -> Result<Opened, Trouble> {
+    let (mut session, low_latency) = serial(settings, timeouts)?;
+    enter_config_gen_a(&mut session, Some(settings.baud))?;
+    let identity = identity_gen_a(&mut session)?;
+    check_serial(settings, &identity)?;
+    let rate_hz = configure_gen_a(&mut session, settings)?;
+    let mut link = Link::new(session.into_line(), None);
+    first_readings(&mut link, &settings.port, rate_hz, settings, timeouts)?;
+    Ok(Opened { link, identity, rate_hz, low_latency, stop: STOP_GEN_A })
+}
+
+fn open_socket(settings: &Settings, timeouts: Timeouts) -> Result<Opened, Trouble> {
+    let address = address_of(&settings.port)?;
+    let line = Tcp::open(&address.to_string(), timeouts.stream)?;
+    let here = line.local_ip();
+    let mut session = Session::new(Box::new(line), &address.to_string(), timeouts);
+    enter_config_gen_a(&mut session, None)?;
+    let mut destination = [0; 4];
+    for (part, byte) in (gen_a::DESTINATION.1..).zip(&mut destination) {
+        let value = number(&mut session, (gen_a::DESTINATION.0, part))?;
+        *byte = u8::try_from(value).map_err(|_| refused(&session, "rh,30", &format!("{value:x} is no byte")))?;
+    }
+    let port = number(&mut session, gen_a::DESTINATION_PORT)?;
+    let port = u16::try_from(port).map_err(|_| refused(&session, "rh,31,1", &format!("{port:x} is no port")))?;
+    let destination = SocketAddr::new(destination.into(), port);
+    let stream: Box<dyn Datagrams> = Box::new(readings(destination, here, address)?);
+    let identity = identity_gen_a(&mut session)?;
+    check_serial(settings, &identity)?;
+    let rate_hz = configure_gen_a(&mut session, settings)?;
+    let mut link = Link::new(session.into_line(), Some(stream));
+    match first_readings(&mut link, &address.to_string(), rate_hz, settings, timeouts) {
+        Err(Trouble::Silent { place }) => Err(sends_elsewhere(place, address, destination)),
+        Err(other) => Err(other),
+        Ok(()) => Ok(Opened { link, identity, rate_hz, low_latency: true, stop: STOP_GEN_A }),
+    }
+}
+
+/// The sensor's address: an IPv4 one, since it knows no other.
+fn address_of(port: &str) -> Result<SocketAddr, Trouble> {
+    let unreachable = || Trouble::Unreachable { place: port.to_owned() };
+    let resolved = match port.parse::<IpAddr>() {
+        Ok(ip) => Some(SocketAddr::new(ip, TCP_PORT)),
+        Err(_) if port.contains(':') => port.to_socket_addrs().map_err(|_| unreachable())?.find(SocketAddr::is_ipv4),
+        Err(_) => (port, TCP_PORT).to_socket_addrs().map_err(|_| unreachable())?.find(SocketAddr::is_ipv4),
+    };
+    resolved.ok_or_else(unreachable)
+}
+
+/// Where readings arrive: the address that the sensor sends to, where it is one of this computer's, else the one by which the sensor is
+/// reached. Never all of them: another network has no say in what the sensor measures.
+fn readings(destination: SocketAddr, here: Option<IpAddr>, sensor: SocketAddr) -> Result<Udp, Trouble> {
+    let at = Some(destination.ip()).filter(|ip| Udp::is_local(*ip)).or(here);
+    let at = at.ok_or_else(|| Trouble::Unreachable { place: sensor.to_string() })?;
+    Udp::listen(SocketAddr::new(at, destination.port()), sensor.ip())
+}
+
+/// No reading arrives: perhaps because they go to another computer.
+fn sends_elsewhere(place: String, sensor: SocketAddr, to: SocketAddr) -> Trouble {
+    let route = UdpSocket::bind(("0.0.0.0", 0)).and_then(|socket| {
+        socket.connect(sensor)?;
+        socket.local_addr()
+    });
+    match route {
+        Ok(here) if here.ip() != to.ip() => {
+            Trouble::SendsElsewhere { place, to: to.to_string(), here: here.ip().to_string() }
+        }
+        _ => Trouble::Silent { place },
+    }
+}
+
+fn enter_config_gen_a(session: &mut Session, baud: Option<u32>) -> Result<(), Trouble> {
+    let command = gen_a::write(gen_a::STATE, gen_a::CONFIG);
+    for _ in 0..session.timeouts.tries {
+        match session.ask(command.as_bytes(), |heard| gen_a::answer(heard, b"wh"))? {
+            Some(answer) if answer.status == 0 => return session.flush(),
+            Some(answer) => return Err(refused(session, command.trim(), gen_a::words(answer.status))),
+            None => {}
+        }
+    }
+    if baud.is_some() && session.ask(gen0::CONFIG, |heard| gen0::acknowledged(heard, b'C'))?.is_some() {
+        return Err(wrong_generation(session, SECOND_GENERATION, FIRST_GENERATION));
+    }
+    Err(session.why_no_answer(command.trim(), baud))
+}
+
+fn identity_gen_a(session: &mut Session) -> Result<Identity, Trouble> {
+    let mut text = |parameter| {
+        let command = gen_a::read(parameter);
+        let answer = good(session, &command)?;
+        answer.text().ok_or_else(|| refused(session, command.trim(), &format!("{} is no text", answer.value)))
+    };
+    Ok(Identity { product: text(gen_a::PRODUCT)?, serial: text(gen_a::SERIAL)?, firmware: text(gen_a::FIRMWARE)? })
+}
+
+/// Frames, rate and offset, then measures; gives the rate that the sensor itself tells, Hz.
+fn configure_gen_a(session: &mut Session, settings: &Settings) -> Result<f64, Trouble> {
+    let mut writes = vec![
+        (gen_a::MODE, u32::from(settings.mode)),
+        (gen_a::SUBMODE, settings.submode().unwrap_or_default()),
+        (gen_a::OUTPUT_RATE, 0),
+    ];
+    let zero = 0_f32.to_bits();
+    writes.extend((0..6).map(|part| ((gen_a::OFFSET.0, gen_a::OFFSET.1 + part), zero)));
+    for (parameter, value) in writes {
+        good(session, &gen_a::write(parameter, value))?;
+    }
+    let told_hz = number(session, gen_a::RATE)?;
+    if told_hz.abs_diff(settings.rate_hz) > 1 {
+        let command = format!("{} Hz", settings.rate_hz);
+        return Err(refused(session, &command, &format!("its rate is {told_hz} Hz")));
+    }
+    good(session, &gen_a::write(gen_a::STATE, gen_a::RUN))?;
+    Ok(f64::from(told_hz))
+}
+
+/// Asks, and takes nothing but a good answer.
+fn good(session: &mut Session, command: &str) -> Result<gen_a::Answer, Trouble> {
+    let letters = if command.starts_with("wh") { b"wh" } else { b"rh" };
+    match session.ask(command.as_bytes(), |heard| gen_a::answer(heard, letters))? {
+        Some(answer) if answer.status == 0 => Ok(answer),
+        Some(answer) => {
+            let words = format!("{} ({})", gen_a::words(answer.status), answer.status);
+            Err(refused(session, command.trim(), &words))
+        }
+        None => Err(refused(session, command.trim(), "no answer")),
+    }
+}
+
+fn number(session: &mut Session, parameter: gen_a::Parameter) -> Result<u32, Trouble> {
+    let command = gen_a::read(parameter);
+    let answer = good(session, &command)?;
+    answer.number().ok_or_else(|| refused(session, command.trim(), &format!("{} is no number", answer.value)))
+}
+
+fn refused(session: &Session, command: &str, answer: &str) -> Trouble {
+    Trouble::Refused { place: session.place.clone(), command: format!("\"{command}\""), answer: quoted(answer) }
+}
+
+fn wrong_generation(session: &Session, expected: &str, found: &str) -> Trouble {
+    Trouble::WrongProduct { place: session.place.clone(), expected: expected.to_owned(), found: found.to_owned() }
+}
+
+fn check_serial(settings: &Settings, identity: &Identity) -> Result<(), Trouble> {
+    if settings.accepts_serial(&identity.serial) {
+        return Ok(());
+    }
+    let expected = settings.serial_number.clone().unwrap_or_default();
+    let found = if identity.serial.is_empty() { "unknown" } else { &identity.serial };
+    Err(Trouble::WrongProduct {
+        place: settings.port.clone(),
+        expected: format!("sensor with serial number {expected}"),
+        found: format!("sensor with serial number {found}"),
+    })
+}
+
+/// Readings looked at before a sensor counts as open.
+const FIRST_READINGS: usize = 6;
+/// The measured rate may differ from the told one by this factor, because of jitter and rounding.
+const RATE_FACTOR: f64 = 1.2;
+const RAW: &str = "its calibration is not loaded (raw)";
+
+/// Waits for readings that can be used, come with the right rate, and are of the right kind.
+fn first_readings(
+    link: &mut Link,
+    place: &str,
+    rate_hz: f64,
+    settings: &Settings,
+    timeouts: Timeouts,
+) -> Result<(), Trouble> {
+    let wait = timeouts.stream + Duration::from_secs_f64((FIRST_READINGS + 2) as f64 / rate_hz);
+    let (begin, place) = (Instant::now(), place.to_owned());
+    let mut frames: Vec<Frame> = Vec::new();
+    while frames.len() < FIRST_READINGS {
+        link.receive(|frame| frames.push(frame))
+            .map_err(|_| Trouble::Other { place: place.clone(), reason: "the connection broke".to_owned() })?;
+        if begin.elapsed() > wait {
+            return Err(match settings.transport {
+                Transport::Gen0 | Transport::GenA if link.skipped() > 0 && frames.is_empty() => {
+                    Trouble::WrongBaud { place, baud: settings.baud }
+                }
+                _ => Trouble::Silent { place },
+            });
+        }
+        std::thread::sleep(Duration::from_millis(1));
+    }
+    let newest = frames[frames.len() - 1];
+    if newest.inertial.is_some() != settings.is_inertial() {
+        let command = format!("mode {}", settings.mode);
+        return Err(Trouble::Refused { place, command, answer: "frames of another kind".to_owned() });
+    }
+    if newest.status & STATUS_BITS & !THROTTLED_BIT != 0 {
+        return Err(fault_of(&place, newest.status));
+    }
+    let mut steps_us: Vec<u32> =
+        frames.windows(2).map(|pair| pair[1].timestamp_us.wrapping_sub(pair[0].timestamp_us)).collect();
+    steps_us.sort_unstable();
+    let measured_hz = 1e6 / f64::from(steps_us[steps_us.len() / 2].max(1));
+    if measured_hz > rate_hz * RATE_FACTOR || measured_hz < rate_hz / RATE_FACTOR {
+        let (command, answer) = (format!("{rate_hz:.0} Hz"), format!("it measures at {measured_hz:.0} Hz"));
+        return Err(Trouble::Refused { place, command, answer });
+    }
+    Ok(())
+}
+
+const THROTTLED_BIT: u16 = 1;
+const INVALID_BIT: u16 = 1 << 2;
+const RAW_BIT: u16 = 1 << 3;
+
+/// The fault that the status bits tell.
+fn fault_of(place: &str, status: u16) -> Trouble {
+    let (words, cure) = if status & RAW_BIT != 0 {
+        (RAW, "Switch the sensor off and on again.")
+    } else if status & INVALID_BIT != 0 {
+        ("saturated, shorted or open (invalid)", "Take every load off it; if it stays, the sensor may be damaged.")
+    } else {
+        ("more load than its range (overrange)", "Take the load off the sensor.")
+    };
+    Trouble::DeviceFault { place: place.to_owned(), words: words.to_owned(), cure: cure.to_owned() }
+}

@@ -1,0 +1,38 @@
+//! Who is on a bus of servos: asked, not configured.
+
+use std::time::{Duration, Instant};
+
+use super::{Found, Probe};
+use crate::{Identity, Standing, Trouble, dynamixel};
+
+/// A try of a bus.
+#[derive(Debug)]
+pub(super) struct BusProbe {
+    port: String,
+    baud: u32,
+}
+
+impl BusProbe {
+    pub(super) fn new(port: &str, baud: u32) -> Self {
+        Self { port: port.to_owned(), baud }
+    }
+}
+
+impl Probe for BusProbe {
+    fn name(&self) -> &str {
+        &self.port
+    }
+
+    fn probe(&mut self, _: Duration) -> Result<Found, Trouble> {
+        let begin = Instant::now();
+        let servos = dynamixel::who_is_there(&self.port, self.baud)?;
+        let list = |words: Vec<String>| words.join(" ");
+        let identity = Identity {
+            product: list(servos.iter().map(|(_, model)| (*model).to_owned()).collect()),
+            serial: format!("ids {}", list(servos.iter().map(|(id, _)| id.to_string()).collect())),
+            firmware: String::new(),
+        };
+        let latency_s = Some(begin.elapsed().as_secs_f64());
+        Ok(Found { identity, standing: Standing::Connected, latency_s, ..Found::default() })
+    }
+}

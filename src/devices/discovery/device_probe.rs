@@ -1,0 +1,102 @@
+//! Tries any driver: opens it as the console would, listens, closes.
+
+use std::time::{Duration, Instant};
+
+use super::{Found, Probe};
+use crate::{Device, Health, Loss, Standing, Trouble};
+
+/// When a device speaks.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Speaks {
+    /// At its own rate, always: silence is trouble.
+    Always,
+    /// When something changes: silence tells nothing.
+    OnChange,
+}
+
+/// A try of a driver.
+pub struct DeviceProbe<F> {
+    name: String,
+    place: String,
+    speaks: Speaks,
+    extra: Duration,
+    open: F,
+}
+
+/// Listened to for so long, unless there is less time.
+const LISTEN: Duration = Duration::from_millis(400);
+const NAP: Duration = Duration::from_micros(500);
+
+impl<F> DeviceProbe<F> {
+    /// Of what `open` opens at `place`.
+    pub fn new(name: impl Into<String>, place: impl Into<String>, speaks: Speaks, open: F) -> Self {
+        Self { name: name.into(), place: place.into(), speaks, extra: Duration::ZERO, open }
+    }
+
+    /// Of a device that needs so much longer than others, for instance because it starts anew.
+    #[must_use]
+    pub fn with_extra(self, extra: Duration) -> Self {
+        Self { extra, ..self }
+    }
+
+    fn verdict(&self, health: &Health) -> Result<(), Trouble> {
+        let place = self.place.clone();
+        let other = |reason: &str| Err(Trouble::Other { place: self.place.clone(), reason: reason.to_owned() });
+        match health.standing {
+            Standing::Lost(Loss::Disconnected) => Err(Trouble::Absent { place }),
+            Standing::Lost(Loss::Silent) => Err(Trouble::Silent { place }),
+            Standing::Lost(loss @ (Loss::Corrupt | Loss::Implausible)) => other(loss.cause()),
+            Standing::Lost(Loss::Device { code }) => Err(Trouble::DeviceFault {
+                place,
+                words: format!("code {code:#x}"),
+                cure: "Look the code up in the device's manual, remove the cause, then switch it off and on."
+                    .to_owned(),
+            }),
+            _ if self.speaks == Speaks::OnChange || health.readings > 0 => Ok(()),
+            _ if health.damaged > 0 => other(Loss::Corrupt.cause()),
+            _ if health.refused > 0 => other(Loss::Implausible.cause()),
+            _ => Err(Trouble::Silent { place }),
+        }
+    }
+}
+
+impl<F, D> Probe for DeviceProbe<F>
+where
+    F: FnMut() -> Result<D, Trouble> + Send,
+    D: Device,
+{
+    fn name(&self) -> &str {
+        &self.name
+    }
+
+    fn extra(&self) -> Duration {
+        self.extra
+    }
+
+    fn probe(&mut self, timeout: Duration) -> Result<Found, Trouble> {
+        let begin = Instant::now();
+        let mut device = (self.open)()?;
+        let end = Instant::now() + LISTEN.min(timeout.saturating_sub(begin.elapsed()));
+        let (mut first, mut last) = (None, None);
+        while Instant::now() < end && !matches!(device.health().standing, Standing::Lost(_)) {
+            if device.poll(begin.elapsed().as_secs_f64()).is_some() {
+                last = Some(Instant::now());
+                first = first.or(last);
+            }
+            std::thread::sleep(NAP);
+        }
+        let health = *device.health();
+        self.verdict(&health)?;
+        let span_s = first.zip(last).map(|(first, last)| (last - first).as_secs_f64()).filter(|span_s| *span_s > 0.0);
+        let rate = |span_s: f64| (health.readings.saturating_sub(1)) as f64 / span_s;
+        Ok(Found {
+            identity: device.identity().clone(),
+            standing: health.standing,
+            readings: health.readings,
+            rate_hz: span_s.map(rate).filter(|_| self.speaks == Speaks::Always),
+            lost: health.lost,
+            damaged: health.damaged + health.refused,
+            latency_s: first.map(|first| (first - begin).as_secs_f64()),
+        })
+    }
+}

@@ -1,0 +1,169 @@
+//! What can be tried, by its name. A driver takes part by one row.
+
+use std::time::Duration;
+
+use super::{DeviceProbe, Found, Probe, SerialProbe, Speaks, TcpProbe};
+use crate::{
+    Trouble,
+    bota::{self, Transport},
+    force_dimension,
+    hid::{CapDriver, CapSettings, PedalDriver, PedalSettings},
+    kinova, ndi,
+};
+
+/// A kind of device.
+pub struct ProbeKind {
+    /// As in `nima devices --probe NAME=PLACE`.
+    pub name: &'static str,
+    /// How its place is written.
+    pub usage: &'static str,
+    /// Makes a probe of a place; empty where none was given.
+    pub make: fn(&str) -> Result<Box<dyn Probe>, Trouble>,
+}
+
+/// All kinds.
+pub const KINDS: &[ProbeKind] = &[
+    ProbeKind { name: "spacemouse", usage: "spacemouse[=any|VVVV:PPPP|PATH|emulated:PATH|spacenavd]", make: cap },
+    ProbeKind { name: "pedal", usage: "pedal[=any|VVVV:PPPP|PATH|emulated:PATH]", make: pedal },
+    ProbeKind { name: "serial", usage: "serial=PORT@BAUD[,HEADER as hexadecimal digits][,quiet]", make: serial },
+    ProbeKind { name: "tcp", usage: "tcp=HOST:PORT", make: tcp },
+    ProbeKind { name: "bota-gen0", usage: "bota-gen0=PORT[@BAUD]", make: gen0 },
+    ProbeKind { name: "bota-gen-a", usage: "bota-gen-a=PORT[@BAUD]", make: gen_a },
+    ProbeKind { name: "bota-socket", usage: "bota-socket=HOST[:PORT]", make: socket },
+    ProbeKind { name: "dynamixel", usage: "dynamixel=PORT[@BAUD]", make: dynamixel },
+    ProbeKind { name: "ndi", usage: "ndi=HOST[:PORT]|DEVICE FILE[@BAUD]", make: ndi },
+    ProbeKind { name: "kinova", usage: "kinova[=HOST[ tcp=P][ udp=P]]", make: kinova },
+    ProbeKind {
+        name: "force-dimension",
+        usage: "force-dimension[=SERIAL|emulated:ADDRESS:PORT]",
+        make: force_dimension,
+    },
+];
+
+/// A setting of the command line that cannot be.
+fn wrong(kind: &str, place: &str, allowed: &str) -> Trouble {
+    Trouble::Setting { key: kind.to_owned(), value: place.to_owned(), allowed: allowed.to_owned() }
+}
+
+/// Port and line speed of `PORT[@BAUD]`.
+fn line<'a>(kind: &str, place: &'a str, usual: u32) -> Result<(&'a str, u32), Trouble> {
+    let (port, baud) = place.rsplit_once('@').unwrap_or((place, ""));
+    let baud = if baud.is_empty() { Some(usual) } else { baud.parse().ok() };
+    match baud.filter(|baud| *baud > 0 && !port.is_empty()) {
+        Some(baud) => Ok((port, baud)),
+        None => Err(wrong(kind, place, "PORT or PORT@BAUD")),
+    }
+}
+
+#[expect(clippy::unnecessary_wraps, reason = "every row of the table has one form")]
+fn cap(place: &str) -> Result<Box<dyn Probe>, Trouble> {
+    let mut settings = CapSettings::default();
+    if !place.is_empty() {
+        place.clone_into(&mut settings.source);
+    }
+    let place = settings.source.clone();
+    Ok(Box::new(DeviceProbe::new("spacemouse", place, Speaks::OnChange, move || CapDriver::open(&settings))))
+}
+
+#[expect(clippy::unnecessary_wraps, reason = "every row of the table has one form")]
+fn pedal(place: &str) -> Result<Box<dyn Probe>, Trouble> {
+    let mut settings = PedalSettings::default();
+    if !place.is_empty() {
+        place.clone_into(&mut settings.source);
+    }
+    let place = settings.source.clone();
+    Ok(Box::new(DeviceProbe::new("pedal", place, Speaks::OnChange, move || PedalDriver::open(&settings))))
+}
+
+fn serial(place: &str) -> Result<Box<dyn Probe>, Trouble> {
+    Ok(Box::new(place.parse::<SerialProbe>()?))
+}
+
+fn tcp(place: &str) -> Result<Box<dyn Probe>, Trouble> {
+    Ok(Box::new(TcpProbe::new(place)?))
+}
+
+fn gen0(place: &str) -> Result<Box<dyn Probe>, Trouble> {
+    bota("bota-gen0", Transport::Gen0, place)
+}
+
+fn gen_a(place: &str) -> Result<Box<dyn Probe>, Trouble> {
+    bota("bota-gen-a", Transport::GenA, place)
+}
+
+fn socket(place: &str) -> Result<Box<dyn Probe>, Trouble> {
+    bota("bota-socket", Transport::Socket, place)
+}
+
+fn bota(kind: &str, transport: Transport, place: &str) -> Result<Box<dyn Probe>, Trouble> {
+    let usual = bota::Settings::new(transport, place);
+    let (port, baud) =
+        if transport == Transport::Socket { (place, usual.baud) } else { line(kind, place, usual.baud)? };
+    let settings = bota::Settings { port: port.to_owned(), baud, ..usual };
+    settings.check()?;
+    Ok(super::probes::sensor(kind, settings))
+}
+
+/// Asks who is on the bus; nothing is configured, since nothing says how.
+fn dynamixel(place: &str) -> Result<Box<dyn Probe>, Trouble> {
+    let (port, baud) = line("dynamixel", place, 1_000_000)?;
+    Ok(Box::new(super::bus::BusProbe::new(port, baud)))
+}
+
+fn ndi(place: &str) -> Result<Box<dyn Probe>, Trouble> {
+    let mut settings = ndi::Settings { wired: true, ..ndi::Settings::default() };
+    if place.contains('/') || place.starts_with("COM") {
+        let (port, baud) = line("ndi", place, settings.baud)?;
+        (settings.port, settings.baud) = (Some(port.to_owned()), baud);
+    } else if place.is_empty() {
+        return Err(wrong("ndi", place, "the unit's address or its device file"));
+    } else {
+        settings.address = Some(place.to_owned());
+    }
+    settings.check()?;
+    Ok(super::probes::tracker("ndi", settings))
+}
+
+fn kinova(place: &str) -> Result<Box<dyn Probe>, Trouble> {
+    let usual = kinova::Settings::default();
+    let place = if place.is_empty() { &usual.host } else { place };
+    let settings = kinova::Settings::at(place);
+    let settings = settings.ok_or_else(|| wrong("kinova", place, "HOST, or HOST tcp=PORT udp=PORT"))?;
+    Ok(super::probes::arm("kinova", settings))
+}
+
+fn force_dimension(place: &str) -> Result<Box<dyn Probe>, Trouble> {
+    let refused = || wrong("force-dimension", place, "a serial number, or emulated:ADDRESS:PORT");
+    let mut settings = force_dimension::Settings::default();
+    match place.strip_prefix("emulated:") {
+        Some(address) => settings.emulator = Some(address.parse().map_err(|_| refused())?),
+        None if place.is_empty() => {}
+        None => settings.serial = Some(place.parse().map_err(|_| refused())?),
+    }
+    Ok(super::probes::handle("force-dimension", settings))
+}
+
+/// The probe of `KIND` or `KIND=PLACE`; its name is the whole text.
+pub fn probe_named(text: &str) -> Result<Box<dyn Probe>, Trouble> {
+    let (name, place) = text.split_once('=').unwrap_or((text, ""));
+    let Some(kind) = KINDS.iter().find(|kind| kind.name == name) else {
+        let usages: Vec<_> = KINDS.iter().map(|kind| kind.usage).collect();
+        return Err(Trouble::Setting { key: "--probe".to_owned(), value: text.to_owned(), allowed: usages.join(", ") });
+    };
+    Ok(Box::new(Named { name: text.to_owned(), probe: (kind.make)(place)? }))
+}
+
+struct Named {
+    name: String,
+    probe: Box<dyn Probe>,
+}
+
+impl Probe for Named {
+    fn name(&self) -> &str {
+        &self.name
+    }
+
+    fn probe(&mut self, timeout: Duration) -> Result<Found, Trouble> {
+        self.probe.probe(timeout)
+    }
+}

@@ -1,0 +1,51 @@
+//! Whether somebody listens at a network address.
+
+use std::{
+    net::ToSocketAddrs as _,
+    time::{Duration, Instant},
+};
+
+use super::{Found, Probe};
+use crate::{Identity, Standing, Trouble, transport::Tcp};
+
+/// A try of a TCP address; connects and hangs up.
+#[derive(Debug)]
+pub struct TcpProbe {
+    address: String,
+}
+
+impl TcpProbe {
+    /// Of `host:port`.
+    pub fn new(address: &str) -> Result<Self, Trouble> {
+        let has_port =
+            address.rsplit_once(':').is_some_and(|(host, port)| !host.is_empty() && port.parse::<u16>().is_ok());
+        if has_port { Ok(Self { address: address.to_owned() }) } else { Err(setting(address, "HOST:PORT")) }
+    }
+}
+
+fn setting(address: &str, allowed: &str) -> Trouble {
+    Trouble::Setting { key: "address".to_owned(), value: address.to_owned(), allowed: allowed.to_owned() }
+}
+
+impl Probe for TcpProbe {
+    fn name(&self) -> &str {
+        &self.address
+    }
+
+    fn probe(&mut self, timeout: Duration) -> Result<Found, Trouble> {
+        let unknown = |_| setting(&self.address, "a host that this network knows by that name");
+        let resolved = self.address.to_socket_addrs().map_err(unknown)?.next();
+        let resolved = resolved.ok_or_else(|| Trouble::Unreachable { place: self.address.clone() })?;
+        let begin = Instant::now();
+        // Named as it was given, not as it was resolved.
+        let of = |trouble| match trouble {
+            Trouble::Unreachable { .. } => Trouble::Unreachable { place: self.address.clone() },
+            Trouble::NobodyListens { .. } => Trouble::NobodyListens { place: self.address.clone() },
+            other => other,
+        };
+        drop(Tcp::open(&resolved.to_string(), timeout).map_err(of)?);
+        let identity = Identity { product: "somebody listens".to_owned(), ..Identity::default() };
+        let latency_s = Some(begin.elapsed().as_secs_f64());
+        Ok(Found { identity, standing: Standing::Connected, latency_s, ..Found::default() })
+    }
+}

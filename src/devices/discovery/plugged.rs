@@ -1,0 +1,162 @@
+//! What is plugged in, read from the kernel's file system without opening any device.
+
+use std::{
+    fs,
+    path::{Path, PathBuf},
+};
+
+use serde::Serialize;
+
+use crate::hid;
+
+/// Who a USB device says it is.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
+#[expect(missing_docs, reason = "the names say it")]
+pub struct UsbIds {
+    pub vendor: u16,
+    pub product: u16,
+    /// Product in its own words.
+    pub name: String,
+    pub serial: String,
+}
+
+/// A serial port.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[expect(missing_docs, reason = "the names say it")]
+pub struct SerialPort {
+    pub path: PathBuf,
+    pub usb: Option<UsbIds>,
+}
+
+/// A human interface device.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[expect(missing_docs, reason = "the names say it")]
+pub struct HidNode {
+    pub path: PathBuf,
+    pub usb: UsbIds,
+    /// What this program can use it as.
+    pub usable_as: Option<&'static str>,
+}
+
+/// A USB device of a known vendor that is neither of these.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct UsbDevice {
+    /// Vendor and product id.
+    pub usb: UsbIds,
+    /// What this program can use it as.
+    pub usable_as: &'static str,
+}
+
+/// All that was found.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct Plugged {
+    /// Includes ports that are not on USB.
+    pub serial: Vec<SerialPort>,
+    /// Human interface devices.
+    pub hid: Vec<HidNode>,
+    /// Others.
+    pub usb: Vec<UsbDevice>,
+    /// The library of Force Dimension, where it is found.
+    pub force_dimension_library: Option<PathBuf>,
+}
+
+/// Vendors of devices that are used through a library.
+const VENDORS: [(u16, &str); 1] = [(0x1451, "Force Dimension haptic device")];
+
+fn text(path: &Path) -> Option<String> {
+    fs::read_to_string(path).ok().map(|text| text.trim().to_owned())
+}
+
+fn hexadecimal(path: &Path) -> Option<u16> {
+    u16::from_str_radix(&text(path)?, 16).ok()
+}
+
+/// Entries of a folder, sorted by name with numbers in their order; none where there is no such folder.
+fn entries(folder: &Path) -> Vec<PathBuf> {
+    let mut entries: Vec<_> = fs::read_dir(folder).into_iter().flatten().flatten().map(|entry| entry.path()).collect();
+    entries.sort_by_key(|path| (path.as_os_str().len(), path.clone()));
+    entries
+}
+
+impl UsbIds {
+    /// Of a folder of the kernel's that describes a USB device.
+    fn of_folder(folder: &Path) -> Option<Self> {
+        Some(Self {
+            vendor: hexadecimal(&folder.join("idVendor"))?,
+            product: hexadecimal(&folder.join("idProduct"))?,
+            name: text(&folder.join("product")).unwrap_or_default(),
+            serial: text(&folder.join("serial")).unwrap_or_default(),
+        })
+    }
+
+    /// Of the USB device that a device belongs to: the nearest folder above it that describes one.
+    fn above(device: &Path) -> Option<Self> {
+        let real = device.canonicalize().ok()?;
+        real.ancestors().find_map(Self::of_folder)
+    }
+
+    /// Of a serial port, with the kernel's file system at `sys`.
+    pub fn of_port(sys: &Path, port: &Path) -> Option<Self> {
+        // A name given by udev is a link.
+        let real = port.canonicalize().unwrap_or_else(|_| port.to_owned());
+        Self::above(&sys.join("class/tty").join(real.file_name()?).join("device"))
+    }
+
+    /// In words.
+    pub fn words(&self) -> String {
+        let Self { vendor, product, name, serial } = self;
+        let mut words = format!("{vendor:04x}:{product:04x}");
+        for part in [name, serial].into_iter().filter(|part| !part.is_empty()) {
+            words.push(' ');
+            words.push_str(part);
+        }
+        words
+    }
+}
+
+impl Plugged {
+    /// On this computer.
+    pub fn list() -> Self {
+        let library = crate::force_dimension::installed_library();
+        Self { force_dimension_library: library, ..Self::under(Path::new("/sys")) }
+    }
+
+    /// With the kernel's file system at `sys`; looks for no library.
+    pub fn under(sys: &Path) -> Self {
+        let serial = entries(&sys.join("class/tty")).iter().filter_map(|entry| serial_port(entry)).collect();
+        let hid = entries(&sys.join("class/hidraw")).iter().filter_map(|entry| hid_node(entry)).collect();
+        let devices = entries(&sys.join("bus/usb/devices"));
+        let usb = devices.iter().filter_map(|folder| {
+            let usb = UsbIds::of_folder(folder)?;
+            let (_, usable_as) = VENDORS.into_iter().find(|(vendor, _)| *vendor == usb.vendor)?;
+            Some(UsbDevice { usb, usable_as })
+        });
+        Self { serial, hid, usb: usb.collect(), force_dimension_library: None }
+    }
+}
+
+/// A terminal with a device behind it; the kernel keeps names of ports that the board does not have, of type 0.
+fn serial_port(entry: &Path) -> Option<SerialPort> {
+    let device = entry.join("device");
+    if !device.exists() || text(&entry.join("type")).is_some_and(|kind| kind == "0") {
+        return None;
+    }
+    Some(SerialPort { path: Path::new("/dev").join(entry.file_name()?), usb: UsbIds::above(&device) })
+}
+
+fn hid_node(entry: &Path) -> Option<HidNode> {
+    let event = text(&entry.join("device/uevent"))?;
+    let value = |key: &str| event.lines().find_map(|line| line.strip_prefix(key)?.strip_prefix('='));
+    // Bus, vendor, product in hexadecimal digits.
+    let mut ids = value("HID_ID")?.split(':').skip(1).map(|part| u32::from_str_radix(part, 16).ok());
+    let mut id = || ids.next().flatten().and_then(|id| u16::try_from(id).ok());
+    let usb = UsbIds {
+        vendor: id()?,
+        product: id()?,
+        name: value("HID_NAME").unwrap_or_default().to_owned(),
+        serial: value("HID_UNIQ").unwrap_or_default().to_owned(),
+    };
+    let identity = hid::HidIdentity { vendor: usb.vendor, product: usb.product, ..hid::HidIdentity::default() };
+    let usable_as = identity.kind().map(hid::Kind::words);
+    Some(HidNode { path: Path::new("/dev").join(entry.file_name()?), usb, usable_as })
+}

@@ -1,0 +1,137 @@
+//! Tries a serial port without knowing what is on it: rights, other users, silence, line speed.
+
+use std::{
+    path::Path,
+    str::FromStr,
+    time::{Duration, Instant},
+};
+
+use super::{Found, Probe, plugged::UsbIds, rules};
+use crate::{
+    Identity, Standing, Trouble,
+    transport::{Bytes as _, Serial, SerialSettings},
+};
+
+/// A try of a port. From text: `PORT@BAUD[,HEADER][,quiet]`.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct SerialProbe {
+    settings: SerialSettings,
+    /// First bytes of every frame; empty where they are not known. Without them a wrong line speed is told only by the port's own
+    /// count of framing errors, which pseudo-terminals and native USB do not have.
+    header: Vec<u8>,
+    /// The device speaks only when asked: silence is no trouble.
+    quiet: bool,
+}
+
+/// Listened to for so long, unless there is less time.
+const LISTEN: Duration = Duration::from_millis(400);
+const NAP: Duration = Duration::from_millis(2);
+/// The longest frames whose headers are looked for.
+const PERIOD_MAX: usize = 512;
+/// Headers at a constant distance that are no accident.
+const REPEATS: usize = 6;
+/// Bytes after which a missing header is held against the line speed.
+const ENOUGH: usize = 64;
+
+impl FromStr for SerialProbe {
+    type Err = Trouble;
+
+    fn from_str(text: &str) -> Result<Self, Trouble> {
+        let wrong = || Trouble::Setting {
+            key: "serial".to_owned(),
+            value: text.to_owned(),
+            allowed: "PORT@BAUD[,HEADER as hexadecimal digits][,quiet]".to_owned(),
+        };
+        let mut parts = text.split(',');
+        let (port, baud) = parts.next().and_then(|line| line.rsplit_once('@')).ok_or_else(wrong)?;
+        let baud = baud.parse().ok().filter(|baud| *baud > 0).ok_or_else(wrong)?;
+        let settings = SerialSettings { port: port.to_owned(), baud };
+        let mut probe = Self { settings, header: Vec::new(), quiet: false };
+        for part in parts {
+            match part {
+                "quiet" => probe.quiet = true,
+                digits => probe.header = bytes_of(digits).ok_or_else(wrong)?,
+            }
+        }
+        Ok(probe)
+    }
+}
+
+fn bytes_of(digits: &str) -> Option<Vec<u8>> {
+    if digits.is_empty() || !digits.len().is_multiple_of(2) || !digits.is_ascii() {
+        return None;
+    }
+    (0..digits.len()).step_by(2).map(|i| u8::from_str_radix(&digits[i..i + 2], 16).ok()).collect()
+}
+
+/// Frames that begin with `header` at a constant distance: how many, if it is no accident.
+pub fn frames(bytes: &[u8], header: &[u8]) -> Option<usize> {
+    let first = bytes.windows(header.len()).take(PERIOD_MAX).position(|window| window == header)?;
+    // The first header may be an accident inside a frame; then the next one is tried.
+    let starts = (first..bytes.len().min(first + PERIOD_MAX)).filter(|&start| bytes[start..].starts_with(header));
+    let regular = |start: usize, period: usize| {
+        let mut count = (start..bytes.len().saturating_sub(header.len() - 1)).step_by(period);
+        let total = count.len();
+        (total >= REPEATS && count.all(|at| bytes[at..].starts_with(header))).then_some(total)
+    };
+    starts.take(8).find_map(|start| (header.len() + 1..=PERIOD_MAX).find_map(|period| regular(start, period)))
+}
+
+impl Probe for SerialProbe {
+    fn name(&self) -> &str {
+        &self.settings.port
+    }
+
+    fn probe(&mut self, timeout: Duration) -> Result<Found, Trouble> {
+        let SerialSettings { port, baud } = &self.settings;
+        let ids = UsbIds::of_port(Path::new("/sys"), Path::new(port));
+        let begin = Instant::now();
+        let mut line = Serial::open(&self.settings).map_err(|trouble| exact(trouble, ids.as_ref()))?;
+        let errors_before = line.line_errors();
+        let end = Instant::now() + LISTEN.min(timeout.saturating_sub(begin.elapsed()));
+        let (mut heard, mut first_s, mut buffer) = (Vec::new(), None, [0; 4096]);
+        while Instant::now() < end {
+            match line.receive(&mut buffer) {
+                Ok(0) => std::thread::sleep(NAP),
+                Ok(count) => {
+                    first_s.get_or_insert(begin.elapsed().as_secs_f64());
+                    heard.extend_from_slice(&buffer[..count]);
+                }
+                Err(_) => return Err(Trouble::Absent { place: port.clone() }),
+            }
+        }
+        let place = port.clone();
+        let wrong_baud = Err(Trouble::WrongBaud { place: place.clone(), baud: *baud });
+        // A break or a cut in the first byte makes one or two errors, a wrong speed makes them all the time.
+        let errors = line.line_errors().zip(errors_before).map_or(0, |(now, before)| now.wrapping_sub(before));
+        if errors as usize > 2 + heard.len() / 50 {
+            return wrong_baud;
+        }
+        if heard.is_empty() && !self.quiet {
+            return Err(Trouble::Silent { place });
+        }
+        let framed = if self.header.is_empty() { None } else { frames(&heard, &self.header) };
+        if !self.header.is_empty() && framed.is_none() && heard.len() >= ENOUGH {
+            return wrong_baud;
+        }
+        let listened_s = begin.elapsed().as_secs_f64() - first_s.unwrap_or(0.0);
+        let product = ids.map_or_else(|| "serial port".to_owned(), |ids| ids.words());
+        Ok(Found {
+            identity: Identity { product, ..Identity::default() },
+            standing: Standing::Connected,
+            readings: framed.unwrap_or(0) as u64,
+            rate_hz: framed.map(|count| count as f64 / listened_s),
+            damaged: u64::from(errors),
+            latency_s: first_s,
+            ..Found::default()
+        })
+    }
+}
+
+/// With the rule for just this device, where its ids are known.
+fn exact(trouble: Trouble, ids: Option<&UsbIds>) -> Trouble {
+    match trouble {
+        Trouble::Permission { place, .. } => Trouble::Permission { place, udev: rules::of_serial(ids) },
+        other => other,
+    }
+}

@@ -1,0 +1,286 @@
+//! Packets of DYNAMIXEL Protocol 2.0: checksum, byte stuffing, finding packets in a dirty stream (e-manual, "Protocol 2.0").
+//!
+//! `FF FF FD 00 ID LEN_L LEN_H INST P1..Pn CRC_L CRC_H`, LEN = n + 3; status packets have instruction 0x55 and the error byte as
+//! P1. After every `FF FF FD` within INST..Pn a sender puts one `FD` more, and LEN counts it. Answers to fast reads (status
+//! packets from the broadcast id) are not stuffed. Nothing here has a clock or allocates after it was made; the work per byte is
+//! bounded by the longest packet taken.
+
+const HEADER: [u8; 4] = [0xFF, 0xFF, 0xFD, 0x00];
+const MARK: [u8; 3] = [0xFF, 0xFF, 0xFD];
+const STUFFING: u8 = 0xFD;
+
+/// Address of all servos at once.
+pub const BROADCAST: u8 = 0xFE;
+/// Instruction byte of a status packet.
+pub const STATUS: u8 = 0x55;
+/// Bytes of a packet besides its parameters.
+pub const OVERHEAD: usize = 10;
+/// Header, id and length.
+const PREFIX: usize = 7;
+
+/// Polynomial of CRC-16/UMTS, not reflected.
+const POLYNOMIAL: u16 = 0x8005;
+
+const CRC_TABLE: [u16; 256] = {
+    let mut table = [0; 256];
+    let mut index = 0;
+    while index < 256 {
+        let mut value = (index as u16) << 8;
+        let mut bit = 0;
+        while bit < 8 {
+            value = if value & 0x8000 == 0 { value << 1 } else { (value << 1) ^ POLYNOMIAL };
+            bit += 1;
+        }
+        table[index] = value;
+        index += 1;
+    }
+    table
+};
+
+/// CRC-16/UMTS of `bytes`, going on from `before` (0 at the beginning).
+pub fn crc(before: u16, bytes: &[u8]) -> u16 {
+    bytes.iter().fold(before, |crc, byte| (crc << 8) ^ CRC_TABLE[usize::from((crc >> 8) as u8 ^ byte)])
+}
+
+/// A packet on its way out. The buffer is reused; it grows only beyond the room that it was made with.
+#[derive(Debug)]
+pub struct Outgoing {
+    bytes: Vec<u8>,
+    begin: usize,
+}
+
+impl Outgoing {
+    /// With room for `room` bytes.
+    pub fn new(room: usize) -> Self {
+        Self { bytes: Vec::with_capacity(room), begin: 0 }
+    }
+
+    /// All packets since [`Outgoing::clear`].
+    pub fn bytes(&self) -> &[u8] {
+        &self.bytes
+    }
+
+    /// Forgets them.
+    pub fn clear(&mut self) {
+        self.bytes.clear();
+    }
+
+    /// Begins a packet after those that are there.
+    pub fn begin(&mut self, id: u8, instruction: u8) -> &mut Self {
+        self.begin = self.bytes.len();
+        self.bytes.extend_from_slice(&HEADER);
+        self.bytes.extend_from_slice(&[id, 0, 0, instruction]);
+        self
+    }
+
+    /// Puts parameters, stuffed where needed.
+    pub fn put(&mut self, parameters: &[u8]) -> &mut Self {
+        for &byte in parameters {
+            self.bytes.push(byte);
+            // An `FD` that was stuffed cannot begin or end another mark: what follows it starts anew.
+            if self.bytes[self.begin + PREFIX..].ends_with(&MARK) {
+                self.bytes.push(STUFFING);
+            }
+        }
+        self
+    }
+
+    /// Puts a 16-bit number.
+    pub fn put_u16(&mut self, number: u16) -> &mut Self {
+        self.put(&number.to_le_bytes())
+    }
+
+    /// Ends the packet with its length and checksum.
+    pub fn end(&mut self) {
+        let length = (self.bytes.len() - self.begin - PREFIX + 2) as u16;
+        let [low, high] = length.to_le_bytes();
+        self.bytes[self.begin + 5] = low;
+        self.bytes[self.begin + 6] = high;
+        self.seal();
+    }
+
+    /// Begins the answer to a fast read, whose blocks are `block_bytes` long in total (errors, ids, data and checksums).
+    pub fn begin_fast(&mut self, block_bytes: usize) -> &mut Self {
+        self.begin(BROADCAST, STATUS);
+        let [low, high] = (block_bytes as u16 + 1).to_le_bytes();
+        self.bytes[self.begin + 5] = low;
+        self.bytes[self.begin + 6] = high;
+        self
+    }
+
+    /// Puts one servo's block of the answer to a fast read; its checksum covers all before it.
+    pub fn put_block(&mut self, error: u8, id: u8, data: &[u8]) -> &mut Self {
+        self.bytes.extend_from_slice(&[error, id]);
+        self.bytes.extend_from_slice(data);
+        self.seal();
+        self
+    }
+
+    fn seal(&mut self) {
+        let sum = crc(0, &self.bytes[self.begin..]);
+        self.bytes.extend_from_slice(&sum.to_le_bytes());
+    }
+}
+
+/// A whole packet with a good checksum.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Packet<'a> {
+    /// Servo it is for or from.
+    pub id: u8,
+    /// Instruction, or [`STATUS`].
+    pub instruction: u8,
+    /// Parameters, without stuffing; of a status packet the error byte first.
+    pub body: &'a [u8],
+    /// Its bytes on the line.
+    pub wire_bytes: usize,
+}
+
+/// What was refused on the way to packets, since it was made.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Refused {
+    /// Packets with a wrong checksum or an impossible length.
+    pub damaged: u64,
+    /// Bytes skipped to find a header again.
+    pub skipped: u64,
+}
+
+/// Finds packets in a stream.
+#[derive(Debug)]
+pub struct Incoming {
+    buffer: Vec<u8>,
+    begin: usize,
+    body: Vec<u8>,
+    longest: usize,
+    refused: Refused,
+}
+
+impl Incoming {
+    /// Takes packets of at most `longest` bytes; longer ones are taken for damage, so that a wrong length cannot swallow what
+    /// follows.
+    pub fn new(longest: usize) -> Self {
+        let longest = longest.max(OVERHEAD);
+        Self {
+            buffer: Vec::with_capacity(2 * longest),
+            begin: 0,
+            body: Vec::with_capacity(longest),
+            longest,
+            refused: Refused::default(),
+        }
+    }
+
+    /// What was refused so far.
+    pub const fn refused(&self) -> Refused {
+        self.refused
+    }
+
+    /// Some bytes of a packet wait for the rest.
+    pub const fn is_midway(&self) -> bool {
+        self.begin < self.buffer.len()
+    }
+
+    /// Forgets what is not yet a packet; gives the bytes forgotten, which count as skipped.
+    pub fn reset(&mut self) -> usize {
+        let rest = self.buffer.len() - self.begin;
+        self.refused.skipped += rest as u64;
+        self.buffer.clear();
+        self.begin = 0;
+        rest
+    }
+
+    /// Takes bytes, as many as there is room for: call [`next`](Self::next) until it gives nothing, then give the rest.
+    pub fn feed(&mut self, bytes: &[u8]) -> usize {
+        self.buffer.drain(..self.begin);
+        self.begin = 0;
+        let count = bytes.len().min(2 * self.longest - self.buffer.len());
+        self.buffer.extend_from_slice(&bytes[..count]);
+        count
+    }
+
+    /// The next packet, if it is complete.
+    #[expect(clippy::should_implement_trait, reason = "the packet borrows the buffer, which an iterator's item cannot")]
+    pub fn next(&mut self) -> Option<Packet<'_>> {
+        loop {
+            self.find_header();
+            let rest = &self.buffer[self.begin..];
+            if rest.len() < PREFIX {
+                return None;
+            }
+            let wire_bytes = PREFIX + usize::from(u16::from_le_bytes([rest[5], rest[6]]));
+            if wire_bytes < OVERHEAD || wire_bytes > self.longest || rest[4] == 0xFF {
+                self.refuse();
+                continue;
+            }
+            if rest.len() < wire_bytes {
+                return None;
+            }
+            let (covered, sum) = rest[..wire_bytes].split_at(wire_bytes - 2);
+            if crc(0, covered) != u16::from_le_bytes([sum[0], sum[1]]) {
+                self.refuse();
+                continue;
+            }
+            let (id, instruction) = (rest[4], rest[PREFIX]);
+            self.body.clear();
+            if (id, instruction) == (BROADCAST, STATUS) {
+                self.body.extend_from_slice(&covered[PREFIX + 1..]);
+            } else {
+                unstuff(&covered[PREFIX + 1..], &mut self.body);
+            }
+            self.begin += wire_bytes;
+            return Some(Packet { id, instruction, body: &self.body, wire_bytes });
+        }
+    }
+
+    /// Counts a damaged packet and looks for the next header within it.
+    const fn refuse(&mut self) {
+        self.refused.damaged += 1;
+        self.refused.skipped += 1;
+        self.begin += 1;
+    }
+
+    fn find_header(&mut self) {
+        let rest = &self.buffer[self.begin..];
+        let begins = |tail: &[u8]| tail.iter().zip(HEADER).all(|(byte, known)| *byte == known);
+        let skip = (0..rest.len()).find(|at| begins(&rest[*at..])).unwrap_or(rest.len());
+        self.refused.skipped += skip as u64;
+        self.begin += skip;
+    }
+}
+
+/// Copies `from` without the `FD` after each mark. A mark without it stays: some senders do not stuff.
+fn unstuff(from: &[u8], to: &mut Vec<u8>) {
+    let mut matched = 0;
+    for &byte in from {
+        if matched == MARK.len() {
+            matched = 0;
+            if byte == STUFFING {
+                continue;
+            }
+        }
+        matched = match byte {
+            0xFF => (matched + 1).min(2),
+            0xFD if matched == 2 => 3,
+            _ => 0,
+        };
+        to.push(byte);
+    }
+}
+
+/// One servo's block in the answer to a fast read.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Block<'a> {
+    /// Error byte.
+    pub error: u8,
+    /// Servo.
+    pub id: u8,
+    pub data: &'a [u8],
+}
+
+/// Splits the body of the answer to a fast read into blocks of `data_bytes` each. The packet's own checksum, which is the last
+/// block's, is off already and covers the ones between. `None` where the length does not fit.
+pub fn blocks(body: &[u8], data_bytes: usize) -> Option<impl Iterator<Item = Block<'_>>> {
+    let each = data_bytes + 4;
+    let fits = (body.len() + 2).is_multiple_of(each) && !body.is_empty();
+    fits.then(|| {
+        body.chunks(each).map(move |block| Block { error: block[0], id: block[1], data: &block[2..2 + data_bytes] })
+    })
+}

@@ -1,0 +1,354 @@
+//! Driver of four servos: one exchange in flight at a time, as fast as bus and caller allow, never waiting.
+//!
+//! An exchange is one `send`: a sync write of the goals (while the torque is on) and a sync read of clock, current, velocity
+//! and position of all four. Now and then one servo is asked for its condition instead (torque, hardware error, watchdog, voltage,
+//! temperature). What nobody answers within a few milliseconds is lost and asked anew. Lost for good: nothing new for
+//! `silence_s` (18 ms, more on slow lines: three exchanges), impossible numbers, a hardware error, an expired watchdog, a torque that
+//! went off by itself. Times in s on the caller's clock.
+
+mod exchange;
+
+use std::time::{Duration, Instant};
+
+use super::{
+    clock::DeviceClock,
+    codec::{Incoming, OVERHEAD, Outgoing},
+    opening::{Opened, Pace, REST_READS, Reboots, Session, Timeouts, Wall},
+    settings::Settings,
+    table::{BAUDS, EEPROM_BYTES, HardwareError, TEMPERATURE, ticks_from_rad},
+};
+use crate::{
+    Device, Health, Identity, SERVOS, ServoReading, Stamped, Standing, Trouble,
+    transport::{Bytes, Serial, SerialSettings},
+};
+
+/// Bytes read of each servo: from the clock to the position.
+pub(super) const MOTION_BYTES: usize = 16;
+/// First address and bytes of a servo's condition: the RAM up to the temperature.
+const CONDITION_FROM: u16 = EEPROM_BYTES;
+const CONDITION_BYTES: usize = (TEMPERATURE.address + 1 - CONDITION_FROM) as usize;
+/// Longest answer: a condition with as much stuffing as there can be.
+const LONGEST: usize = OVERHEAD + (CONDITION_BYTES + 1) * 4 / 3;
+/// Between two questions after a condition, s.
+const CONDITION_EVERY_S: f64 = 0.050;
+/// What adapter, operating system and servo may add to the time on the wire, of the time until silence: three attempts.
+const SLACK: f64 = 0.2;
+/// A reading this much later than the quickest ones is old, of the time until silence.
+const LATE: f64 = 0.75;
+/// Bytes of an ordinary exchange, goals and all.
+const WIRE_BYTES: f64 = 160.0;
+/// No servo turns faster, units of 0.229 rpm (98 rad/s).
+const VELOCITY_MAX: i32 = 4095;
+/// No servo turns further, ticks (256 turns and the largest homing offset).
+const POSITION_MAX: i32 = 2_100_000;
+/// No servo draws more, units.
+const CURRENT_MAX: i16 = 4095;
+
+/// What a servo says of itself besides its motion.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Condition {
+    /// The motor is driven.
+    pub torque_on: bool,
+    /// Its hardware errors, and the watchdog.
+    pub error: HardwareError,
+    /// Supply, V.
+    pub voltage_v: f64,
+    pub temperature_c: f64,
+}
+
+/// What became of commanded goals.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Taken {
+    /// They are the goals now.
+    AsAsked,
+    /// They are, brought back to the limits of the settings.
+    Limited,
+    /// They are not: the torque is off, or a number is not finite.
+    Refused,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Servo {
+    id: u8,
+    current_unit_a: f64,
+    limits_ticks: (f64, f64),
+    condition: Option<Condition>,
+    /// Torque was seen on since it was switched on.
+    driven: bool,
+}
+
+#[derive(Clone, Copy, Debug, Default)]
+struct Motion {
+    tick: u16,
+    current: i16,
+    velocity: i32,
+    position: i32,
+}
+
+#[derive(Clone, Copy, Debug)]
+enum Question {
+    Motion { next: usize },
+    Condition { index: usize },
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Exchange {
+    question: Question,
+    until_s: f64,
+}
+
+/// The open servos. Dropping it switches their torque off.
+#[derive(Debug)]
+pub struct Driver<T: Bytes = Serial> {
+    line: T,
+    health: Health,
+    identity: Identity,
+    reboots: Reboots,
+    servos: [Servo; SERVOS],
+    fast: bool,
+    byte_s: f64,
+    silence_s: f64,
+    watchdog: u8,
+    incoming: Incoming,
+    outgoing: Outgoing,
+    exchange: Option<Exchange>,
+    motions: [Motion; SERVOS],
+    clock: DeviceClock,
+    goals: Option<[i32; SERVOS]>,
+    torque: Torque,
+    condition_due_s: f64,
+    condition_next: usize,
+    alert: Option<usize>,
+    quiet: Quiet,
+    wrong: u64,
+}
+
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+enum Torque {
+    #[default]
+    Off,
+    /// To be switched on with the next exchange after a reading.
+    Wanted,
+    On,
+    /// To be switched off with the next exchange.
+    Ending,
+}
+
+/// How long nothing new has arrived. A caller that does not call is not the servos' silence.
+#[derive(Clone, Copy, Debug, Default)]
+struct Quiet {
+    polled_s: Option<f64>,
+    length_s: f64,
+    damaged_before: u64,
+    refused_before: u64,
+}
+
+/// Opens the line, finds the servos, configures them; the torque is off.
+pub fn open(settings: &Settings) -> Result<Driver, Trouble> {
+    open_with(settings, &Reboots::default())
+}
+
+/// The same, and restarts the servos that `reboots` asks for; the driver heeds it as well.
+pub fn open_with(settings: &Settings, reboots: &Reboots) -> Result<Driver, Trouble> {
+    open_within(settings, reboots, Timeouts::USUAL)
+}
+
+/// Opens for a diagnosis: what does not answer is told within a second.
+pub fn try_open(settings: &Settings) -> Result<Driver, Trouble> {
+    open_within(settings, &Reboots::default(), Timeouts::SHORT)
+}
+
+/// Ids of the servos that answer on a line, and what they are; nothing is written.
+pub fn who_is_there(port: &str, baud: u32) -> Result<Vec<(u8, &'static str)>, Trouble> {
+    if !BAUDS.contains(&baud) {
+        let allowed = format!("servos can have {BAUDS:?}");
+        return Err(Trouble::Setting { key: "baud".to_owned(), value: baud.to_string(), allowed });
+    }
+    let mut line = Serial::open(&SerialSettings { port: port.to_owned(), baud })?;
+    let mut pace = Wall(Instant::now());
+    let mut session = Session::new(&mut line, &mut pace, port, Timeouts::SHORT);
+    let servos = session.everybody()?;
+    if !servos.is_empty() {
+        return Ok(servos);
+    }
+    let heard = session.heard_anything();
+    Err(why_silent(&mut line, &mut pace, port, baud, heard, Timeouts::SHORT)?)
+}
+
+/// Servos that do not answer are at another speed, or not there.
+fn why_silent(
+    line: &mut Serial,
+    pace: &mut Wall,
+    port: &str,
+    baud: u32,
+    heard: bool,
+    timeouts: Timeouts,
+) -> Result<Trouble, Trouble> {
+    let wrong = Trouble::WrongBaud { place: port.to_owned(), baud };
+    if heard {
+        return Ok(wrong);
+    }
+    for other in BAUDS.into_iter().filter(|other| *other != baud) {
+        // A speed that the adapter does not have cannot be the servos', either.
+        if line.set_baud(other).is_ok() && Session::new(line, pace, port, timeouts).anybody()? {
+            return Ok(wrong);
+        }
+    }
+    Ok(Trouble::Silent { place: port.to_owned() })
+}
+
+fn open_within(settings: &Settings, reboots: &Reboots, timeouts: Timeouts) -> Result<Driver, Trouble> {
+    settings.check()?;
+    let mut line = Serial::open(&SerialSettings { port: settings.port.clone(), baud: settings.baud })?;
+    let mut pace = Wall(Instant::now());
+    let mut session = Session::new(&mut line, &mut pace, &settings.port, timeouts);
+    match session.configure(settings, reboots) {
+        Ok(opened) => return Ok(Driver::new(line, settings, opened, reboots.clone())),
+        Err(Trouble::Silent { .. }) => {}
+        Err(other) => return Err(other),
+    }
+    let heard = session.heard_anything();
+    Err(why_silent(&mut line, &mut pace, &settings.port, settings.baud, heard, timeouts)?)
+}
+
+/// Opens over a line that is open already, with a time of its own: how emulated servos are driven without a wall clock.
+pub fn open_over<T: Bytes>(
+    mut line: T,
+    pace: &mut impl Pace,
+    settings: &Settings,
+    reboots: &Reboots,
+) -> Result<Driver<T>, Trouble> {
+    settings.check()?;
+    let opened = Session::new(&mut line, pace, &settings.port, Timeouts::USUAL).configure(settings, reboots)?;
+    Ok(Driver::new(line, settings, opened, reboots.clone()))
+}
+
+impl<T: Bytes> Driver<T> {
+    fn new(line: T, settings: &Settings, opened: Opened, reboots: Reboots) -> Self {
+        let servos = std::array::from_fn(|index| {
+            let servo = &settings.servos[index];
+            let current_unit_a = opened.models[index].current_unit_a;
+            let limits_ticks = servo.limits_ticks();
+            Servo { id: servo.id, current_unit_a, limits_ticks, condition: None, driven: false }
+        });
+        let byte_s = 10.0 / f64::from(settings.baud);
+        // A slow line needs longer for three exchanges.
+        let silence_s = settings.silence_s.max(3.0 * WIRE_BYTES / (1.0 - 3.0 * SLACK) * byte_s);
+        Self {
+            line,
+            health: Health::opening(),
+            identity: opened.identity,
+            reboots,
+            servos,
+            fast: opened.fast,
+            byte_s,
+            silence_s,
+            watchdog: settings.watchdog_units(),
+            incoming: Incoming::new(LONGEST),
+            outgoing: Outgoing::new(512),
+            exchange: None,
+            motions: [Motion::default(); SERVOS],
+            clock: DeviceClock::new(LATE * silence_s),
+            goals: None,
+            torque: Torque::Off,
+            condition_due_s: 0.0,
+            condition_next: 0,
+            alert: None,
+            quiet: Quiet::default(),
+            wrong: 0,
+        }
+    }
+
+    /// Switches the torque on, held at the present angles, or off. Happens with the next exchange.
+    pub fn set_torque(&mut self, on: bool) {
+        self.torque = match (on, self.torque) {
+            (true, Torque::On) => Torque::On,
+            (true, _) => Torque::Wanted,
+            (false, Torque::Off) => Torque::Off,
+            (false, _) => Torque::Ending,
+        };
+    }
+
+    /// The torque was switched on.
+    pub fn is_torque_on(&self) -> bool {
+        self.torque == Torque::On
+    }
+
+    /// Sets the goals, rad, as often as wanted; they go out with every exchange.
+    pub fn set_goals(&mut self, goal_rad: &[f64; SERVOS]) -> Taken {
+        if self.torque != Torque::On || !goal_rad.iter().all(|goal| goal.is_finite()) {
+            return Taken::Refused;
+        }
+        let mut taken = Taken::AsAsked;
+        self.goals = Some(std::array::from_fn(|index| {
+            let (low, high) = self.servos[index].limits_ticks;
+            let ticks = ticks_from_rad(goal_rad[index]).round();
+            if !(low..=high).contains(&ticks) {
+                taken = Taken::Limited;
+            }
+            ticks.clamp(low, high) as i32
+        }));
+        taken
+    }
+
+    /// Restarts the servo at this place: the torque of all goes off, the driver counts as lost, and the next opening with the
+    /// same [`Reboots`] does it.
+    pub fn reboot(&self, index: usize) {
+        self.reboots.ask(index);
+    }
+
+    /// What each servo last said of itself; about five times a second.
+    pub fn conditions(&self) -> [Option<Condition>; SERVOS] {
+        self.servos.map(|servo| servo.condition)
+    }
+
+    /// One packet answers for all four.
+    pub const fn uses_fast_sync_read(&self) -> bool {
+        self.fast
+    }
+}
+
+impl<T: Bytes> Device for Driver<T> {
+    type Reading = ServoReading;
+
+    fn poll(&mut self, now_s: f64) -> Option<Stamped<ServoReading>> {
+        if matches!(self.health.standing, Standing::Lost(_)) {
+            return None;
+        }
+        match self.turn(now_s) {
+            Ok(reading) => reading,
+            Err(loss) => {
+                self.health.lose(loss);
+                None
+            }
+        }
+    }
+
+    fn health(&self) -> &Health {
+        &self.health
+    }
+
+    fn identity(&self) -> &Identity {
+        &self.identity
+    }
+}
+
+impl<T: Bytes> Drop for Driver<T> {
+    /// Switches the torque off, three times, each after the line fell quiet: what is on its way would collide with it.
+    fn drop(&mut self) {
+        self.outgoing.clear();
+        self.put_torque_off();
+        for _ in 0..3 {
+            let mut buffer = [0; 256];
+            std::thread::sleep(Duration::from_secs_f64((400.0 * self.byte_s + 0.002).min(0.5)));
+            for _ in 0..REST_READS {
+                if !self.line.receive(&mut buffer).is_ok_and(|count| count > 0) {
+                    break;
+                }
+            }
+            if self.line.send(self.outgoing.bytes()).is_err() {
+                return;
+            }
+        }
+    }
+}

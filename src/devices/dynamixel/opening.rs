@@ -1,0 +1,379 @@
+//! From an open line to four configured servos with the torque off. Blocks and allocates; runs on the opening thread.
+//!
+//! Every answer is awaited for 0.1 s, three times; for a diagnosis less. What the EEPROM holds is compared first, and written only where it
+//! differs (it wears out). All that is written is read back.
+
+use std::{
+    sync::{
+        Arc,
+        atomic::{AtomicU32, Ordering},
+    },
+    time::{Duration, Instant},
+};
+
+use super::{
+    codec::{self, BROADCAST, Incoming, Outgoing, Packet, STATUS},
+    driver::MOTION_BYTES,
+    message::{Instruction, Refusal},
+    settings::{ServoSettings, Settings, Wanted},
+    table::{self, Fault, HardwareError, Model, Register},
+};
+use crate::{Identity, SERVOS, Trouble, transport::Bytes};
+
+/// How long to wait for answers, and how often to ask.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Timeouts {
+    answer_s: f64,
+    tries: usize,
+}
+
+impl Timeouts {
+    /// Far more than a servo takes, for machines under load.
+    pub(super) const USUAL: Self = Self { answer_s: 0.1, tries: 3 };
+    /// Enough for an adapter that holds bytes back for 16 ms; all line speeds are tried within the second of a diagnosis.
+    pub(super) const SHORT: Self = Self { answer_s: 0.04, tries: 2 };
+}
+
+/// Reads at most to throw away what is left from before.
+pub(super) const REST_READS: usize = 64;
+/// For a servo to come back after a reboot, s.
+const REBOOT_S: f64 = 2.0;
+/// Longest packet while opening: the whole EEPROM, stuffed.
+const LONGEST: usize = 256;
+
+/// Servos that somebody wants restarted: the only way out of a shutdown. Asked from any thread; done by the next opening.
+/// A running driver that sees it switches the torque off and counts as lost, so that the opening follows.
+#[derive(Clone, Debug, Default)]
+pub struct Reboots(Arc<AtomicU32>);
+
+impl Reboots {
+    /// Asks for a restart of the servo at this place (0 to 3) of the settings.
+    pub fn ask(&self, index: usize) {
+        self.0.fetch_or(1 << index.min(SERVOS - 1), Ordering::AcqRel);
+    }
+
+    /// Some were asked for and not yet done.
+    pub fn is_any(&self) -> bool {
+        self.0.load(Ordering::Acquire) != 0
+    }
+
+    fn take(&self, index: usize) -> bool {
+        self.0.fetch_and(!(1 << index), Ordering::AcqRel) & 1 << index != 0
+    }
+}
+
+/// Time while waiting for answers: the machine's, or a test's.
+pub trait Pace {
+    /// Seconds since some moment.
+    fn now_s(&self) -> f64;
+    /// Lets a little of it pass.
+    fn nap(&mut self);
+}
+
+/// The machine's own time.
+#[derive(Debug)]
+pub(super) struct Wall(pub(super) Instant);
+
+impl Pace for Wall {
+    fn now_s(&self) -> f64 {
+        self.0.elapsed().as_secs_f64()
+    }
+
+    fn nap(&mut self) {
+        std::thread::sleep(Duration::from_micros(100));
+    }
+}
+
+/// What the driver needs to know of the servos.
+#[derive(Debug)]
+pub(super) struct Opened {
+    pub(super) models: [&'static Model; SERVOS],
+    pub(super) identity: Identity,
+    pub(super) fast: bool,
+}
+
+/// A line while opening.
+pub(super) struct Session<'a, T, P> {
+    line: &'a mut T,
+    pace: &'a mut P,
+    place: &'a str,
+    incoming: Incoming,
+    outgoing: Outgoing,
+    heard: usize,
+    timeouts: Timeouts,
+}
+
+struct Answer {
+    error: u8,
+    data: Vec<u8>,
+}
+
+impl<'a, T: Bytes, P: Pace> Session<'a, T, P> {
+    pub(super) fn new(line: &'a mut T, pace: &'a mut P, place: &'a str, timeouts: Timeouts) -> Self {
+        let (incoming, outgoing) = (Incoming::new(LONGEST), Outgoing::new(LONGEST));
+        Self { line, pace, place, incoming, outgoing, heard: 0, timeouts }
+    }
+
+    /// Some bytes arrived, whatever they were.
+    pub(super) const fn heard_anything(&self) -> bool {
+        self.heard > 0
+    }
+
+    /// Finds the servos and makes them what `settings` say.
+    pub(super) fn configure(&mut self, settings: &Settings, reboots: &Reboots) -> Result<Opened, Trouble> {
+        let firmware = self.find(settings)?;
+        let mut models = [&table::MODELS[0]; SERVOS];
+        for (index, servo) in settings.servos.iter().enumerate() {
+            if reboots.take(index) {
+                self.reboot(servo.id)?;
+            }
+            models[index] = self.model_of(servo)?;
+            self.check_fault(servo.id)?;
+            self.prepare(servo, models[index])?;
+        }
+        let fast = settings.fast_sync_read && self.answers_fast(settings)?;
+        let list = |words: Vec<String>| words.join(" ");
+        let identity = Identity {
+            product: list(models.iter().map(|model| model.name.to_owned()).collect()),
+            serial: format!("ids {}", list(settings.servos.iter().map(|servo| servo.id.to_string()).collect())),
+            firmware: list(firmware.iter().map(u8::to_string).collect()),
+        };
+        Ok(Opened { models, identity, fast })
+    }
+
+    /// Pings everyone; firmware of each.
+    fn find(&mut self, settings: &Settings) -> Result<[u8; SERVOS], Trouble> {
+        let mut firmware = [None; SERVOS];
+        for (servo, version) in settings.servos.iter().zip(&mut firmware) {
+            *version = self.ask(servo.id, &Instruction::Ping)?.and_then(|answer| answer.data.get(2).copied());
+        }
+        if firmware == [None; SERVOS] {
+            return Err(Trouble::Silent { place: self.place.to_owned() });
+        }
+        let missing = firmware.iter().position(Option::is_none);
+        if let Some(index) = missing {
+            return Err(Trouble::Absent { place: self.name(settings.servos[index].id) });
+        }
+        Ok(firmware.map(Option::unwrap_or_default))
+    }
+
+    fn model_of(&mut self, servo: &ServoSettings) -> Result<&'static Model, Trouble> {
+        let number = self.read(servo.id, table::MODEL)? as u16;
+        let wrong = |expected: &str, found: String| Trouble::WrongProduct {
+            place: self.name(servo.id),
+            expected: expected.to_owned(),
+            found,
+        };
+        let Some(model) = Model::numbered(number) else {
+            return Err(wrong("servo that measures its current", format!("servo with model number {number}")));
+        };
+        match &servo.model {
+            Some(name) if name != model.name => return Err(wrong(name, model.name.to_owned())),
+            _ => {}
+        }
+        if servo.current_limit_a > f64::from(model.current_max) * model.current_unit_a {
+            return Err(Trouble::Setting {
+                key: "current_limit_a".to_owned(),
+                value: servo.current_limit_a.to_string(),
+                allowed: format!(
+                    "a {} takes at most {:.3} A",
+                    model.name,
+                    f64::from(model.current_max) * model.current_unit_a
+                ),
+            });
+        }
+        Ok(model)
+    }
+
+    fn check_fault(&mut self, id: u8) -> Result<(), Trouble> {
+        let error = HardwareError(self.read(id, table::HARDWARE_ERROR)? as u8);
+        if !error.is_any() {
+            return Ok(());
+        }
+        Err(Trouble::DeviceFault {
+            place: self.place.to_owned(),
+            words: Fault { id, error }.to_string(),
+            cure: format!("Remove the cause, then give the command to restart servo {id}."),
+        })
+    }
+
+    /// Torque and watchdog off, then everything that the settings say.
+    fn prepare(&mut self, servo: &ServoSettings, model: &Model) -> Result<(), Trouble> {
+        let id = servo.id;
+        // A servo that answers less than everything does not answer to this, either.
+        let level = [2];
+        self.ask(id, &Instruction::Write { address: table::STATUS_RETURN_LEVEL.address, data: &level })?;
+        self.write(id, (table::TORQUE_ENABLE, 0))?;
+        self.write(id, (table::BUS_WATCHDOG, 0))?;
+        let drive_mode = self.read(id, table::DRIVE_MODE)? as u8;
+        for wanted in servo.eeprom(model, drive_mode) {
+            if self.read(id, wanted.0)? != wanted.1 {
+                self.write(id, wanted)?;
+            }
+        }
+        for wanted in servo.ram(model) {
+            self.write(id, wanted)?;
+        }
+        Ok(())
+    }
+
+    /// Sends the restart and waits until the servo answers again.
+    fn reboot(&mut self, id: u8) -> Result<(), Trouble> {
+        self.send(id, &Instruction::Reboot)?;
+        let begin_s = self.pace.now_s();
+        while self.pace.now_s() - begin_s < REBOOT_S {
+            self.wait(self.timeouts.answer_s);
+            if self.once(id, &Instruction::Ping)?.is_some() {
+                return Ok(());
+            }
+        }
+        Err(Trouble::Absent { place: self.name(id) })
+    }
+
+    /// The firmware of all of them knows the fast sync read.
+    fn answers_fast(&mut self, settings: &Settings) -> Result<bool, Trouble> {
+        let ids = settings.servos.each_ref().map(|servo| servo.id);
+        let (address, count) = (table::TICK.address, MOTION_BYTES as u16);
+        for _ in 0..self.timeouts.tries {
+            self.send(BROADCAST, &Instruction::SyncRead { address, count, ids: &ids, fast: true })?;
+            let whole = |packet: &Packet<'_>| packet.id == BROADCAST && packet.instruction == STATUS;
+            let answer = self.receive(whole)?;
+            let all = answer.is_some_and(|answer| {
+                let body: Vec<u8> = std::iter::once(answer.error).chain(answer.data).collect();
+                codec::blocks(&body, MOTION_BYTES).is_some_and(|blocks| blocks.map(|block| block.id).eq(ids))
+            });
+            if all {
+                return Ok(true);
+            }
+        }
+        Ok(false)
+    }
+
+    fn read(&mut self, id: u8, register: Register) -> Result<u32, Trouble> {
+        let Register { address, bytes } = register;
+        let command = || format!("reading register {address}");
+        let answer = self.ask(id, &Instruction::Read { address, count: bytes })?;
+        let answer = answer.ok_or_else(|| self.refused(id, command(), "no answer".to_owned()))?;
+        self.accept(id, &answer, command)?;
+        if answer.data.len() != usize::from(bytes) {
+            return Err(self.refused(id, command(), format!("{} bytes", answer.data.len())));
+        }
+        Ok(answer.data.iter().rev().fold(0, |value, byte| value << 8 | u32::from(*byte)))
+    }
+
+    fn write(&mut self, id: u8, (register, value): Wanted) -> Result<(), Trouble> {
+        let command = || format!("{value} in register {}", register.address);
+        let bytes = value.to_le_bytes();
+        let write = Instruction::Write { address: register.address, data: &bytes[..usize::from(register.bytes)] };
+        let answer = self.ask(id, &write)?.ok_or_else(|| self.refused(id, command(), "no answer".to_owned()))?;
+        self.accept(id, &answer, command)?;
+        let kept = self.read(id, register)?;
+        if kept == value { Ok(()) } else { Err(self.refused(id, command(), format!("it keeps {kept}"))) }
+    }
+
+    fn accept(&self, id: u8, answer: &Answer, command: impl Fn() -> String) -> Result<(), Trouble> {
+        match Refusal::of(answer.error) {
+            Ok(None) => Ok(()),
+            Ok(Some(refusal)) => Err(self.refused(id, command(), refusal.words().to_owned())),
+            Err(code) => Err(self.refused(id, command(), format!("error {code:#04x}"))),
+        }
+    }
+
+    fn refused(&self, id: u8, command: String, answer: String) -> Trouble {
+        Trouble::Refused { place: self.name(id), command, answer }
+    }
+
+    fn name(&self, id: u8) -> String {
+        format!("servo {id} on {}", self.place)
+    }
+
+    /// Asks until it answers, a few times.
+    fn ask(&mut self, id: u8, instruction: &Instruction<'_>) -> Result<Option<Answer>, Trouble> {
+        for _ in 0..self.timeouts.tries {
+            let answer = self.once(id, instruction)?;
+            if answer.is_some() {
+                return Ok(answer);
+            }
+        }
+        Ok(None)
+    }
+
+    fn once(&mut self, id: u8, instruction: &Instruction<'_>) -> Result<Option<Answer>, Trouble> {
+        self.send(id, instruction)?;
+        self.receive(|packet| packet.instruction == STATUS && (packet.id == id || id == BROADCAST))
+    }
+
+    /// Somebody answers to a ping of everyone.
+    pub(super) fn anybody(&mut self) -> Result<bool, Trouble> {
+        Ok(self.once(BROADCAST, &Instruction::Ping)?.is_some())
+    }
+
+    /// Everyone who answers to a ping of all, one after the other: id and model.
+    pub(super) fn everybody(&mut self) -> Result<Vec<(u8, &'static str)>, Trouble> {
+        let mut servos: Vec<(u8, &'static str)> = Vec::new();
+        self.send(BROADCAST, &Instruction::Ping)?;
+        loop {
+            let mut id = 0;
+            let answer = self.receive(|packet| {
+                id = packet.id;
+                packet.instruction == STATUS
+            })?;
+            let Some(answer) = answer else { return Ok(servos) };
+            let number = answer.data.first_chunk().map_or(0, |bytes| u16::from_le_bytes(*bytes));
+            let model = Model::numbered(number).map_or("unknown servo", |model| model.name);
+            if servos.len() > usize::from(BROADCAST) {
+                return Ok(servos);
+            }
+            servos.push((id, model));
+        }
+    }
+
+    fn send(&mut self, id: u8, instruction: &Instruction<'_>) -> Result<(), Trouble> {
+        // Whatever is still there answers to something else.
+        let mut rest = [0; LONGEST];
+        for _ in 0..REST_READS {
+            if self.line.receive(&mut rest).map_err(|_| self.gone())? == 0 {
+                break;
+            }
+        }
+        self.incoming.reset();
+        self.outgoing.clear();
+        instruction.encode(id, &mut self.outgoing);
+        self.line.send(self.outgoing.bytes()).map_err(|_| self.gone())
+    }
+
+    fn receive(&mut self, mut fits: impl FnMut(&Packet<'_>) -> bool) -> Result<Option<Answer>, Trouble> {
+        let begin_s = self.pace.now_s();
+        let mut buffer = [0; LONGEST];
+        loop {
+            let count = self.line.receive(&mut buffer).map_err(|_| self.gone())?;
+            self.heard += count;
+            let mut taken = 0;
+            while taken < count {
+                taken += self.incoming.feed(&buffer[taken..count]);
+                while let Some(packet) = self.incoming.next() {
+                    if let Some((error, data)) = packet.body.split_first().filter(|_| fits(&packet)) {
+                        return Ok(Some(Answer { error: *error, data: data.to_vec() }));
+                    }
+                }
+            }
+            if self.pace.now_s() - begin_s > self.timeouts.answer_s {
+                return Ok(None);
+            }
+            if count == 0 {
+                self.pace.nap();
+            }
+        }
+    }
+
+    fn wait(&mut self, length_s: f64) {
+        let begin_s = self.pace.now_s();
+        while self.pace.now_s() - begin_s < length_s {
+            self.pace.nap();
+        }
+    }
+
+    fn gone(&self) -> Trouble {
+        Trouble::Other { place: self.place.to_owned(), reason: "the connection is gone".to_owned() }
+    }
+}

@@ -1,0 +1,268 @@
+//! Settings of the four servos, checked before anything is opened, and the registers that follow from them.
+
+use std::f64::consts::FRAC_PI_2;
+
+use serde::{Deserialize, Serialize};
+
+use super::table::{
+    self, ACCELERATION_UNIT_RAD_S2, BAUDS, Model, Register, TICKS_PER_TURN, VELOCITY_UNIT_RAD_S, WATCHDOG_UNIT_S,
+    ticks_from_rad,
+};
+use crate::{SERVOS, Trouble};
+
+/// What a servo makes of its goal.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum OperatingMode {
+    /// Within one turn; the servo itself refuses goals beyond its limits.
+    #[default]
+    Position = 3,
+    /// Over many turns.
+    ExtendedPosition = 4,
+    /// Over many turns, with no more current than `goal_current_a`.
+    CurrentBasedPosition = 5,
+}
+
+/// Gains of the servo's own loops, in the units of its registers; the defaults are the factory's of the XM430.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Gains {
+    /// Position, proportional (128 is one PWM step per tick).
+    pub position_p: u16,
+    /// Position, integral.
+    pub position_i: u16,
+    /// Position, differential.
+    pub position_d: u16,
+    /// Velocity, proportional.
+    pub velocity_p: u16,
+    /// Velocity, integral.
+    pub velocity_i: u16,
+    /// Feed-forward of velocity.
+    pub feedforward_1: u16,
+    /// Feed-forward of acceleration.
+    pub feedforward_2: u16,
+}
+
+impl Default for Gains {
+    fn default() -> Self {
+        Self {
+            position_p: 800,
+            position_i: 0,
+            position_d: 0,
+            velocity_p: 100,
+            velocity_i: 1920,
+            feedforward_1: 0,
+            feedforward_2: 0,
+        }
+    }
+}
+
+/// One servo. All angles are of its shaft, zero in the middle of its range (tick 2048), after offset and sign.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ServoSettings {
+    /// Id on the bus, 0 to 252.
+    pub id: u8,
+    /// Name of the model, such as `XM430-W350`; any known one when left out.
+    #[serde(default)]
+    pub model: Option<String>,
+    /// Turns the other way (drive mode, bit 0; kept in the servo).
+    #[serde(default)]
+    pub reverse: bool,
+    /// Added to the angle of the encoder, rad (homing offset; kept in the servo). At most a quarter turn in position mode.
+    #[serde(default)]
+    pub homing_offset_rad: f64,
+    /// Operating mode (kept in the servo).
+    #[serde(default)]
+    pub operating_mode: OperatingMode,
+    /// Lowest goal, rad.
+    pub position_min_rad: f64,
+    /// Highest goal, rad.
+    pub position_max_rad: f64,
+    /// Current limit, A (kept in the servo).
+    pub current_limit_a: f64,
+    /// Current with which the goal is held in current-based position mode, A; the limit when left out.
+    #[serde(default)]
+    pub goal_current_a: Option<f64>,
+    /// Fastest speed of a move, rad/s; 0 sets no limit.
+    #[serde(default)]
+    pub profile_velocity_rad_s: f64,
+    /// Fastest acceleration of a move, rad/s^2; 0 sets no limit.
+    #[serde(default)]
+    pub profile_acceleration_rad_s2: f64,
+    #[serde(default)]
+    pub gains: Gains,
+}
+
+/// Four servos on one line.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Settings {
+    /// Device file of the adapter, or `COM3`.
+    pub port: String,
+    /// Line speed, bit/s; one of the servos' own.
+    pub baud: u32,
+    /// The servos, in the order of the readings.
+    pub servos: [ServoSettings; SERVOS],
+    /// Ask for one answer of all servos; where a firmware refuses it, each answers for itself.
+    #[serde(default = "yes")]
+    pub fast_sync_read: bool,
+    /// While the torque is on, a servo that hears nothing for this long stops by itself, s; 0.02 to 2.54.
+    #[serde(default = "watchdog_s")]
+    pub bus_watchdog_s: f64,
+    /// Without a reading for this long the servos count as lost, s; 0.005 to 1.
+    #[serde(default = "silence_s")]
+    pub silence_s: f64,
+}
+
+const fn yes() -> bool {
+    true
+}
+
+const fn watchdog_s() -> f64 {
+    0.1
+}
+
+const fn silence_s() -> f64 {
+    0.018
+}
+
+/// Highest id.
+const ID_MAX: u8 = 252;
+/// Highest profile velocity and acceleration, units.
+const PROFILE_MAX: f64 = 32_767.0;
+/// Highest gain.
+const GAIN_MAX: u16 = 16_383;
+/// Turns that an extended position may reach either way.
+const TURNS_MAX: f64 = 255.0;
+
+/// A register and the value that it shall have.
+pub(super) type Wanted = (Register, u32);
+
+impl Settings {
+    /// Everything in it is possible; else which key is not, and what is.
+    pub fn check(&self) -> Result<(), Trouble> {
+        let in_range = |key: &str, value: f64, low: f64, high: f64| {
+            let allowed = format!("it is {low} to {high}");
+            if (low..=high).contains(&value) { Ok(()) } else { Err(impossible(key, &value, allowed)) }
+        };
+        if !BAUDS.contains(&self.baud) {
+            return Err(impossible("baud", &self.baud, format!("servos can have {BAUDS:?}")));
+        }
+        in_range("bus_watchdog_s", self.bus_watchdog_s, WATCHDOG_UNIT_S, 127.0 * WATCHDOG_UNIT_S)?;
+        in_range("silence_s", self.silence_s, 0.005, 1.0)?;
+        for (index, servo) in self.servos.iter().enumerate() {
+            servo.check(index)?;
+            if self.servos[..index].iter().any(|other| other.id == servo.id) {
+                return Err(impossible(&format!("servos[{index}].id"), &servo.id, "each needs its own".to_owned()));
+            }
+        }
+        Ok(())
+    }
+
+    /// The watchdog's time in its units.
+    pub(super) fn watchdog_units(&self) -> u8 {
+        (self.bus_watchdog_s / WATCHDOG_UNIT_S).round().clamp(1.0, 127.0) as u8
+    }
+}
+
+fn impossible(key: &str, value: &dyn std::fmt::Display, allowed: String) -> Trouble {
+    Trouble::Setting { key: key.to_owned(), value: value.to_string(), allowed }
+}
+
+impl ServoSettings {
+    fn check(&self, index: usize) -> Result<(), Trouble> {
+        let key = |name: &str| format!("servos[{index}].{name}");
+        if self.id > ID_MAX {
+            return Err(impossible(&key("id"), &self.id, format!("it is 0 to {ID_MAX}")));
+        }
+        if let Some(name) = &self.model
+            && !table::MODELS.iter().any(|model| model.name == name)
+        {
+            let known: Vec<_> = table::MODELS.iter().map(|model| model.name).collect();
+            return Err(impossible(&key("model"), name, format!("known are {}", known.join(", "))));
+        }
+        let single_turn = self.operating_mode == OperatingMode::Position;
+        let turns = std::f64::consts::TAU * TURNS_MAX;
+        let (homing, low, high) = if single_turn {
+            (FRAC_PI_2, table::rad_from_ticks(0.0), table::rad_from_ticks(TICKS_PER_TURN - 1.0))
+        } else {
+            (turns, -turns, turns)
+        };
+        let current_max = 2.69e-3 * 2047.0;
+        let ranges = [
+            ("homing_offset_rad", self.homing_offset_rad, -homing, homing),
+            ("position_min_rad", self.position_min_rad, low - 1e-3, self.position_max_rad),
+            ("position_max_rad", self.position_max_rad, self.position_min_rad, high + 1e-3),
+            ("current_limit_a", self.current_limit_a, 0.0, current_max),
+            ("goal_current_a", self.goal_current_a.unwrap_or(0.0), 0.0, self.current_limit_a),
+            ("profile_velocity_rad_s", self.profile_velocity_rad_s, 0.0, PROFILE_MAX * VELOCITY_UNIT_RAD_S),
+            (
+                "profile_acceleration_rad_s2",
+                self.profile_acceleration_rad_s2,
+                0.0,
+                PROFILE_MAX * ACCELERATION_UNIT_RAD_S2,
+            ),
+        ];
+        for (name, value, low, high) in ranges {
+            if !(low..=high).contains(&value) {
+                return Err(impossible(&key(name), &value, format!("it is {low:.4} to {high:.4}")));
+            }
+        }
+        let gains = &self.gains;
+        let largest = [gains.position_p, gains.position_i, gains.position_d, gains.velocity_p, gains.velocity_i];
+        match largest.into_iter().chain([gains.feedforward_1, gains.feedforward_2]).find(|gain| *gain > GAIN_MAX) {
+            Some(gain) => Err(impossible(&key("gains"), &gain, format!("each is 0 to {GAIN_MAX}"))),
+            None => Ok(()),
+        }
+    }
+
+    /// Lowest and highest goal, ticks.
+    pub(super) fn limits_ticks(&self) -> (f64, f64) {
+        let (low, high) = (ticks_from_rad(self.position_min_rad).ceil(), ticks_from_rad(self.position_max_rad).floor());
+        if self.operating_mode == OperatingMode::Position {
+            (low.clamp(0.0, TICKS_PER_TURN - 1.0), high.clamp(0.0, TICKS_PER_TURN - 1.0))
+        } else {
+            (low, high)
+        }
+    }
+
+    /// What shall stand in the EEPROM, kept without power; `drive_mode` is what stands there now.
+    pub(super) fn eeprom(&self, model: &Model, drive_mode: u8) -> Vec<Wanted> {
+        // Profiles count in velocities, and no goal switches the torque on: bits 2 and 3 off.
+        let drive_mode = u32::from(drive_mode & !0b1101) | u32::from(self.reverse);
+        let homing = (self.homing_offset_rad / std::f64::consts::TAU * TICKS_PER_TURN).round() as i32;
+        let mut wanted = vec![
+            (table::RETURN_DELAY, 0),
+            (table::DRIVE_MODE, drive_mode),
+            (table::OPERATING_MODE, self.operating_mode as u32),
+            (table::HOMING_OFFSET, homing.cast_unsigned()),
+            (table::CURRENT_LIMIT, (self.current_limit_a / model.current_unit_a).round() as u32),
+        ];
+        if self.operating_mode == OperatingMode::Position {
+            let (low, high) = self.limits_ticks();
+            wanted.extend([(table::POSITION_MIN, low as u32), (table::POSITION_MAX, high as u32)]);
+        }
+        wanted
+    }
+
+    /// What shall stand in the RAM, lost at every restart.
+    pub(super) fn ram(&self, model: &Model) -> Vec<Wanted> {
+        let gains = &self.gains;
+        // Anything but "no limit" must not round down to it.
+        let profile = |value: f64, unit: f64| if value > 0.0 { (value / unit).round().max(1.0) as u32 } else { 0 };
+        let goal_a = self.goal_current_a.unwrap_or(self.current_limit_a);
+        vec![
+            (table::VELOCITY_I, gains.velocity_i.into()),
+            (table::VELOCITY_P, gains.velocity_p.into()),
+            (table::POSITION_D, gains.position_d.into()),
+            (table::POSITION_I, gains.position_i.into()),
+            (table::POSITION_P, gains.position_p.into()),
+            (table::FEEDFORWARD_2, gains.feedforward_2.into()),
+            (table::FEEDFORWARD_1, gains.feedforward_1.into()),
+            (table::GOAL_CURRENT, (goal_a / model.current_unit_a).round() as u32),
+            (table::PROFILE_ACCELERATION, profile(self.profile_acceleration_rad_s2, ACCELERATION_UNIT_RAD_S2)),
+            (table::PROFILE_VELOCITY, profile(self.profile_velocity_rad_s, VELOCITY_UNIT_RAD_S)),
+        ]
+    }
+}

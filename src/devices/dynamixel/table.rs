@@ -1,0 +1,248 @@
+//! Control table of the X series as far as both sides use it: addresses, units, models, hardware errors (e-manual, X series).
+
+use std::f64::consts::TAU;
+
+/// A register: address and length in bytes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Register {
+    /// First address.
+    pub address: u16,
+    /// Bytes, 1, 2 or 4.
+    pub bytes: u16,
+}
+
+const fn register(address: u16, bytes: u16) -> Register {
+    Register { address, bytes }
+}
+
+/// Model number (2 bytes from here; 4 more of information, then the firmware).
+pub const MODEL: Register = register(0, 2);
+/// Version of the firmware.
+pub const FIRMWARE: Register = register(6, 1);
+/// Id on the bus.
+pub const ID: Register = register(7, 1);
+/// Code of the line speed, see [`BAUDS`].
+pub const BAUD: Register = register(8, 1);
+/// Pause before an answer, 2 us each.
+pub const RETURN_DELAY: Register = register(9, 1);
+/// Bit 0 reverses, bit 2 counts profiles in time, bit 3 switches the torque on with a goal.
+pub const DRIVE_MODE: Register = register(10, 1);
+/// See [`super::OperatingMode`].
+pub const OPERATING_MODE: Register = register(11, 1);
+/// Second id, under which writes are obeyed silently.
+pub const SHADOW_ID: Register = register(12, 1);
+/// Added to the encoder's position, ticks.
+pub const HOMING_OFFSET: Register = register(20, 4);
+/// Speed above which it counts as moving.
+pub const MOVING_THRESHOLD: Register = register(24, 4);
+/// Degrees Celsius.
+pub const TEMPERATURE_LIMIT: Register = register(31, 1);
+/// 0.1 V.
+pub const VOLTAGE_MAX: Register = register(32, 2);
+/// 0.1 V.
+pub const VOLTAGE_MIN: Register = register(34, 2);
+/// 885 is all there is.
+pub const PWM_LIMIT: Register = register(36, 2);
+/// The model's unit, see [`Model::current_unit_a`].
+pub const CURRENT_LIMIT: Register = register(38, 2);
+/// 0.229 rpm.
+pub const VELOCITY_LIMIT: Register = register(44, 4);
+/// Ticks; in position mode only.
+pub const POSITION_MAX: Register = register(48, 4);
+/// Ticks; in position mode only.
+pub const POSITION_MIN: Register = register(52, 4);
+/// Hardware errors that switch the torque off.
+pub const SHUTDOWN: Register = register(63, 1);
+/// Bytes of the EEPROM.
+pub const EEPROM_BYTES: u16 = 64;
+/// 1: the motor is driven.
+pub const TORQUE_ENABLE: Register = register(64, 1);
+/// 0 answers to pings only, 1 to reads too, 2 to all.
+pub const STATUS_RETURN_LEVEL: Register = register(68, 1);
+/// Something waits for the action instruction.
+pub const REGISTERED: Register = register(69, 1);
+/// See [`HardwareError`].
+pub const HARDWARE_ERROR: Register = register(70, 1);
+/// Gains of the velocity loop.
+pub const VELOCITY_I: Register = register(76, 2);
+/// Gains of the velocity loop.
+pub const VELOCITY_P: Register = register(78, 2);
+/// Gains of the position loop.
+pub const POSITION_D: Register = register(80, 2);
+/// Gains of the position loop.
+pub const POSITION_I: Register = register(82, 2);
+/// Gains of the position loop.
+pub const POSITION_P: Register = register(84, 2);
+/// Feed-forward of acceleration.
+pub const FEEDFORWARD_2: Register = register(88, 2);
+/// Feed-forward of velocity.
+pub const FEEDFORWARD_1: Register = register(90, 2);
+/// 20 ms each; 0 off, -1 expired.
+pub const BUS_WATCHDOG: Register = register(98, 1);
+/// Goal in PWM mode.
+pub const GOAL_PWM: Register = register(100, 2);
+/// Goal in current mode, limit in current-based position mode.
+pub const GOAL_CURRENT: Register = register(102, 2);
+/// Goal in velocity mode.
+pub const GOAL_VELOCITY: Register = register(104, 4);
+/// 214.577 rev/min^2; 0 is as fast as it can.
+pub const PROFILE_ACCELERATION: Register = register(108, 4);
+/// 0.229 rpm; 0 is as fast as it can.
+pub const PROFILE_VELOCITY: Register = register(112, 4);
+/// Ticks.
+pub const GOAL_POSITION: Register = register(116, 4);
+/// Milliseconds, 0 to 32767.
+pub const TICK: Register = register(120, 2);
+/// It moves.
+pub const MOVING: Register = register(122, 1);
+/// Bit 0 in position, bit 1 a profile runs, bit 3 it does not follow.
+pub const MOVING_STATUS: Register = register(123, 1);
+/// Drive of the motor.
+pub const PRESENT_PWM: Register = register(124, 2);
+/// The model's unit.
+pub const PRESENT_CURRENT: Register = register(126, 2);
+/// 0.229 rpm.
+pub const PRESENT_VELOCITY: Register = register(128, 4);
+/// Ticks.
+pub const PRESENT_POSITION: Register = register(132, 4);
+/// Of the profile, 0.229 rpm.
+pub const VELOCITY_TRAJECTORY: Register = register(136, 4);
+/// Of the profile, ticks.
+pub const POSITION_TRAJECTORY: Register = register(140, 4);
+/// 0.1 V.
+pub const VOLTAGE: Register = register(144, 2);
+/// Degrees Celsius.
+pub const TEMPERATURE: Register = register(146, 1);
+
+/// Wrap of [`TICK`], ms.
+pub const TICK_WRAP: i32 = 32_768;
+/// Encoder steps of one turn.
+pub const TICKS_PER_TURN: f64 = 4096.0;
+/// Ticks of zero radians: the middle of the range.
+pub const TICKS_AT_ZERO: f64 = 2048.0;
+/// rad/s of one unit of velocity, 0.229 rpm.
+pub const VELOCITY_UNIT_RAD_S: f64 = 0.229 * TAU / 60.0;
+/// rad/s^2 of one unit of acceleration, 214.577 rev/min^2.
+pub const ACCELERATION_UNIT_RAD_S2: f64 = 214.577 * TAU / 3600.0;
+/// One unit of the bus watchdog, s.
+pub const WATCHDOG_UNIT_S: f64 = 0.020;
+/// Value of the bus watchdog once it has expired.
+pub const WATCHDOG_EXPIRED: u8 = 0xFF;
+
+/// Line speeds by their code in [`BAUD`].
+pub const BAUDS: [u32; 8] = [9600, 57_600, 115_200, 1_000_000, 2_000_000, 3_000_000, 4_000_000, 4_500_000];
+
+/// Ticks of an angle of the shaft.
+pub fn ticks_from_rad(angle_rad: f64) -> f64 {
+    angle_rad / TAU * TICKS_PER_TURN + TICKS_AT_ZERO
+}
+
+/// Angle of the shaft at `ticks`.
+pub fn rad_from_ticks(ticks: f64) -> f64 {
+    (ticks - TICKS_AT_ZERO) / TICKS_PER_TURN * TAU
+}
+
+/// A model that measures its motor's current.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Model {
+    /// As it answers to a ping.
+    pub number: u16,
+    pub name: &'static str,
+    /// A of one unit of current.
+    pub current_unit_a: f64,
+    /// Highest current limit, units.
+    pub current_max: u16,
+}
+
+const fn model(number: u16, name: &'static str, current_unit_a: f64, current_max: u16) -> Model {
+    Model { number, name, current_unit_a, current_max }
+}
+
+/// Models that the driver takes.
+pub const MODELS: [Model; 8] = [
+    model(1000, "XH430-W350", 2.69e-3, 648),
+    model(1010, "XH430-W210", 2.69e-3, 648),
+    model(1020, "XM430-W350", 2.69e-3, 1193),
+    model(1030, "XM430-W210", 2.69e-3, 1193),
+    model(1120, "XM540-W270", 2.69e-3, 2047),
+    model(1130, "XM540-W150", 2.69e-3, 2047),
+    model(1190, "XL330-M077", 1e-3, 1750),
+    model(1200, "XL330-M288", 1e-3, 1750),
+];
+
+impl Model {
+    /// By its number.
+    pub fn numbered(number: u16) -> Option<&'static Self> {
+        MODELS.iter().find(|model| model.number == number)
+    }
+
+    /// Its factory values are those of the small series at 5 V.
+    pub const fn is_small(&self) -> bool {
+        matches!(self.number, 1190 | 1200)
+    }
+}
+
+/// Hardware error status (register 70), and the bus watchdog in the bit above.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct HardwareError(pub u8);
+
+impl HardwareError {
+    /// Bits in words, lowest first.
+    pub const WORDS: [(u8, &'static str); 7] = [
+        (0x01, "input voltage out of its limits"),
+        (0x04, "overheated"),
+        (0x08, "motor encoder failed"),
+        (0x10, "electrical shock or too little power"),
+        (0x20, "overload"),
+        (Self::TORQUE_GONE, "its torque went off by itself"),
+        (Self::WATCHDOG, "its bus watchdog expired"),
+    ];
+    /// Not a bit of register 70: the bus watchdog has expired.
+    pub const WATCHDOG: u8 = 0x80;
+    /// Not a bit of register 70: the torque is off though it was on and nobody switched it off, as after a restart.
+    pub const TORQUE_GONE: u8 = 0x40;
+    /// Overload.
+    pub const OVERLOAD: u8 = 0x20;
+
+    /// There is one.
+    pub const fn is_any(self) -> bool {
+        self.0 != 0
+    }
+}
+
+impl std::fmt::Display for HardwareError {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let known = Self::WORDS.iter().filter(|(bit, _)| self.0 & bit != 0);
+        let mut empty = true;
+        for (_, words) in known {
+            write!(f, "{}{words}", if empty { "" } else { ", " })?;
+            empty = false;
+        }
+        if empty { write!(f, "hardware error {:#04x}", self.0) } else { Ok(()) }
+    }
+}
+
+/// A servo's fault, as it travels in [`Loss::Device`](crate::Loss::Device).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Fault {
+    pub id: u8,
+    pub error: HardwareError,
+}
+
+impl Fault {
+    /// The code in a loss: the id above the error bits.
+    pub const fn code(self) -> u32 {
+        (self.id as u32) << 8 | self.error.0 as u32
+    }
+
+    /// Of such a code.
+    pub const fn of_code(code: u32) -> Self {
+        Self { id: (code >> 8) as u8, error: HardwareError(code as u8) }
+    }
+}
+
+impl std::fmt::Display for Fault {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "servo {}: {}", self.id, self.error)
+    }
+}

@@ -1,0 +1,4 @@
+//! The wire against golden frames and arbitrary bytes.
+
+mod messages;
+mod packets;

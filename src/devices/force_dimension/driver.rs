@@ -1,0 +1,394 @@
+//! Opening an omega.7 and taking part in it from the real-time loop.
+//!
+//! The loop's side neither waits nor allocates: readings, events and force commands go through bounded queues to and from the thread
+//! that holds the device ([`super::worker`]).
+
+use std::{
+    net::SocketAddr,
+    path::PathBuf,
+    sync::{Arc, atomic::Ordering},
+    thread::{Builder, JoinHandle},
+    time::{Duration, Instant},
+};
+
+use crossbeam_channel::{Receiver, Sender, bounded};
+use nalgebra::Vector3;
+use serde::{Deserialize, Serialize};
+
+use super::{
+    status::{ForceOffCause, Kind, Status},
+    worker::{Ends, ForceCommand, Report, Shared, Worker},
+};
+use crate::{Device, HandleReading, Health, Identity, Loss, Stamped, Trouble};
+
+/// Greatest force of an omega.7, N.
+pub const FORCE_MAX_N: f64 = 12.0;
+/// Greatest force of its gripper, N.
+pub const GRIPPER_MAX_N: f64 = 8.0;
+/// Without a reading for so long the device is lost, s.
+pub const SILENCE_S: f64 = 0.020;
+/// Reports and commands under way at most.
+pub(super) const QUEUE: usize = 64;
+const EVENTS: usize = 32;
+/// How long opening waits for the first reading.
+const FIRST_READING_MAX: Duration = Duration::from_secs(1);
+/// How long dropping waits for the thread before it leaves it alone (with a library that hangs).
+const JOIN_MAX: Duration = Duration::from_secs(2);
+
+/// What the handle does while no force is wanted.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum IdleMode {
+    /// The motors brake: it stays where it is.
+    #[default]
+    Brake,
+    /// No current: it moves freely, and sinks.
+    Free,
+}
+
+/// Settings of one omega.7.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Settings {
+    /// File of the library; without it, the manufacturer's is looked for where the SDK puts it, and an emulated handle is reached by
+    /// the stand-in within this program.
+    pub library: Option<PathBuf>,
+    /// Serial number of the device; without it, any that is free. Two devices need theirs.
+    pub serial: Option<u16>,
+    /// Readings a second, Hz: 100 to 2000.
+    pub rate_hz: f64,
+    /// Time without a force command after which the device switches its force off by itself, ms: 1 to 31.
+    pub watchdog_ms: f64,
+    /// Greatest force, N: up to 12.
+    pub force_max_n: f64,
+    /// Greatest force of the gripper, N: up to 8.
+    pub gripper_max_n: f64,
+    /// The library holds the handle's own weight while force is on.
+    pub gravity_compensation: bool,
+    /// The closed gripper counts as button 0.
+    pub gripper_is_a_button: bool,
+    /// What the handle does while no force is wanted.
+    pub idle: IdleMode,
+    /// Address of an emulated handle, which no manufacturer's library reaches; a real one has none.
+    pub emulator: Option<SocketAddr>,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self {
+            library: None,
+            serial: None,
+            rate_hz: 1000.0,
+            watchdog_ms: 20.0,
+            force_max_n: FORCE_MAX_N,
+            gripper_max_n: GRIPPER_MAX_N,
+            gravity_compensation: true,
+            gripper_is_a_button: true,
+            idle: IdleMode::Brake,
+            emulator: None,
+        }
+    }
+}
+
+impl Settings {
+    /// Checks ranges.
+    pub fn check(&self) -> Result<(), Trouble> {
+        let ranges = [
+            ("rate_hz", self.rate_hz, 100.0, 2000.0),
+            ("watchdog_ms", self.watchdog_ms, 1.0, 31.0),
+            ("force_max_n", self.force_max_n, 0.0, FORCE_MAX_N),
+            ("gripper_max_n", self.gripper_max_n, 0.0, GRIPPER_MAX_N),
+        ];
+        match ranges.into_iter().find(|(_, value, least, most)| !(*least..=*most).contains(value)) {
+            None => Ok(()),
+            Some((key, value, least, most)) => Err(Trouble::Setting {
+                key: key.to_owned(),
+                value: value.to_string(),
+                allowed: format!("{key} is from {least} to {most}"),
+            }),
+        }
+    }
+
+    /// The watchdog in the device's steps of 125 us.
+    pub fn watchdog_steps(&self) -> u8 {
+        (self.watchdog_ms / 0.125).round().clamp(1.0, 255.0) as u8
+    }
+}
+
+/// What the device did by itself, or did at last.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case", tag = "handle")]
+pub enum HandleEvent {
+    /// Force is on, as was asked.
+    ForceOn,
+    /// Force is off; [`ForceOffCause::Software`] when it was asked for here. It stays off until it is enabled again.
+    ForceOff { cause: ForceOffCause },
+    /// Force was asked for and did not come on.
+    ForceRefused {
+        /// What the device says.
+        cause: ForceOffCause,
+    },
+}
+
+/// Counters of the driver since it was opened.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct Counters {
+    /// Calls of the SDK that failed.
+    pub failed_calls: u64,
+    /// Readings that were the last one again.
+    pub time_guarded: u64,
+    /// Readings with impossible numbers.
+    pub implausible: u64,
+    /// Forces that the device scaled down to what its motors can.
+    pub saturated: u64,
+    /// Cycles in which the newest force command was too old, so that zero was applied.
+    pub stale_commands: u64,
+    /// Cycles that began too late.
+    pub late_cycles: u64,
+    /// How often the device took force away by itself.
+    pub force_cut: u64,
+}
+
+/// What became of a force command.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ForceAnswer {
+    Taken,
+    /// Made smaller, to the limits.
+    Clamped,
+    /// Not finite: zero was taken.
+    NotFinite,
+    /// The queue is full, because the device's thread hangs; its force ends by age and by watchdog.
+    Full,
+}
+
+/// An open omega.7.
+#[derive(Debug)]
+pub struct Driver {
+    identity: Identity,
+    health: Health,
+    status: Status,
+    counters: Counters,
+    velocity_threshold: Option<u32>,
+    limits_n: (f64, f64),
+    cycle: Option<u64>,
+    first_poll_s: Option<f64>,
+    failing: Option<Loss>,
+    reports: Receiver<Report>,
+    events: Receiver<HandleEvent>,
+    commands: Sender<ForceCommand>,
+    shared: Arc<Shared>,
+    thread: Option<JoinHandle<()>>,
+}
+
+/// What the thread says once it has opened the device.
+struct Opened {
+    identity: Identity,
+    velocity_threshold: Option<u32>,
+}
+
+/// Opens a device: loads the library, opens and configures it on the thread that will hold it, waits for its first reading. The
+/// device has its brakes on (or is free, as set); no force.
+pub fn open(settings: &Settings) -> Result<Driver, Trouble> {
+    settings.check()?;
+    let sdk = super::library::of(settings)?;
+    let (give_reports, reports) = bounded(QUEUE);
+    let (give_events, events) = bounded(EVENTS);
+    let (commands, take_commands) = bounded(QUEUE);
+    let (answer, answered) = bounded(1);
+    let shared = Arc::new(Shared::default());
+    let ends =
+        Ends { reports: give_reports, events: give_events, commands: take_commands, shared: Arc::clone(&shared) };
+    let of_thread = settings.clone();
+    let work = move || {
+        super::sdk::prepare_thread();
+        match super::opening::open(sdk, &of_thread) {
+            Ok(super::opening::Opened { device, identity, left_handed, velocity_threshold }) => {
+                let period = Duration::from_secs_f64(1.0 / of_thread.rate_hz);
+                answer.send(Ok(Opened { identity, velocity_threshold })).ok();
+                Worker::new(device, ends, left_handed, of_thread.idle, period).run();
+            }
+            Err(trouble) => drop(answer.send(Err(trouble))),
+        }
+    };
+    let place = super::opening::place(settings);
+    let failed = |reason: String| Trouble::Other { place: place.clone(), reason };
+    let thread = Builder::new().name("handle".to_owned()).spawn(work).map_err(|error| failed(error.to_string()))?;
+    let opened = match answered.recv() {
+        Ok(opened) => opened?,
+        Err(_) => return Err(failed("the SDK's thread ended while opening".to_owned())),
+    };
+    let driver = Driver {
+        identity: opened.identity,
+        health: Health::opening(),
+        status: Status::default(),
+        counters: Counters::default(),
+        velocity_threshold: opened.velocity_threshold,
+        limits_n: (settings.force_max_n, settings.gripper_max_n),
+        cycle: None,
+        first_poll_s: None,
+        failing: None,
+        reports,
+        events,
+        commands,
+        shared,
+        thread: Some(thread),
+    };
+    driver.wait_for_first_reading(&place)?;
+    Ok(driver)
+}
+
+impl Driver {
+    fn wait_for_first_reading(&self, place: &str) -> Result<(), Trouble> {
+        let begin = Instant::now();
+        while begin.elapsed() < FIRST_READING_MAX {
+            match self.reports.recv_timeout(FIRST_READING_MAX) {
+                Ok(Report { reading: Some(_), .. }) => return Ok(()),
+                Ok(Report { loss: Some(loss), .. }) => return Err(super::opening::lost_at_once(place, loss)),
+                Ok(_) => {}
+                Err(_) => break,
+            }
+        }
+        Err(Trouble::Silent { place: place.to_owned() })
+    }
+
+    /// Asks for force; [`HandleEvent::ForceOn`] tells when it is on. Until a force is set it is zero.
+    pub fn enable_force(&self) {
+        self.shared.force_wanted.store(true, Ordering::Release);
+    }
+
+    /// Force off and brakes on (or free, as set), within a cycle.
+    pub fn disable_force(&self) {
+        self.shared.force_wanted.store(false, Ordering::Release);
+    }
+
+    /// What another thread may do in an emergency: force off and brakes on within a cycle of the device's own thread.
+    pub fn lever(&self) -> impl FnMut() + Send + 'static {
+        let shared = Arc::clone(&self.shared);
+        move || shared.force_wanted.store(false, Ordering::Release)
+    }
+
+    /// Force is wanted; false again once the device took it away.
+    pub fn is_force_wanted(&self) -> bool {
+        self.shared.force_wanted.load(Ordering::Acquire)
+    }
+
+    /// Sets the force on the hand and the gripper's, N, in the device's frame. It holds for 10 ms; say it again every tick. Does
+    /// nothing while force is off.
+    pub fn set_force(&mut self, force_n: Vector3<f64>, gripper_n: f64) -> ForceAnswer {
+        let (force_max_n, gripper_max_n) = self.limits_n;
+        let mut answer = ForceAnswer::Taken;
+        let (mut force_n, mut gripper_n) = (force_n, gripper_n);
+        if !force_n.iter().chain([&gripper_n]).all(|x| x.is_finite()) {
+            (force_n, gripper_n, answer) = (Vector3::zeros(), 0.0, ForceAnswer::NotFinite);
+        }
+        // Axis by axis first, so that squares of huge numbers stay finite.
+        let cut_n = force_n.map(|axis| axis.clamp(-force_max_n, force_max_n));
+        let size_n = cut_n.norm();
+        let bounded_n = if size_n > force_max_n { cut_n * (force_max_n / size_n) } else { cut_n };
+        let bounded_gripper_n = gripper_n.clamp(-gripper_max_n, gripper_max_n);
+        if bounded_n != force_n || bounded_gripper_n.to_bits() != gripper_n.to_bits() {
+            answer = ForceAnswer::Clamped;
+        }
+        let command = ForceCommand { force_n: bounded_n.into(), gripper_n: bounded_gripper_n, given: Instant::now() };
+        if self.commands.try_send(command).is_err() { ForceAnswer::Full } else { answer }
+    }
+
+    /// The next thing that happened, oldest first.
+    pub fn take_event(&self) -> Option<HandleEvent> {
+        self.events.try_recv().ok()
+    }
+
+    /// The status with the newest report.
+    pub const fn status(&self) -> &Status {
+        &self.status
+    }
+
+    /// Counters with the newest report.
+    pub const fn counters(&self) -> &Counters {
+        &self.counters
+    }
+
+    /// The velocity threshold that the device has (its own unit), which is never changed here; `None` where it does not tell.
+    pub const fn velocity_threshold(&self) -> Option<u32> {
+        self.velocity_threshold
+    }
+
+    fn take(&mut self, report: &Report, now_s: f64) -> Option<HandleReading> {
+        let missing = self.cycle.map_or(0, |last| report.cycle.saturating_sub(last + 1));
+        self.health.lost += missing;
+        self.cycle = Some(report.cycle);
+        (self.status, self.counters) = (report.status, report.counters);
+        self.health.damaged = report.counters.failed_calls;
+        self.health.refused = report.counters.implausible;
+        self.failing = report.failing;
+        if let Some(loss) = report.loss {
+            self.health.lose(loss);
+            return None;
+        }
+        if report.reading.is_some() {
+            self.health.accept(now_s);
+        }
+        report.reading
+    }
+}
+
+impl Device for Driver {
+    type Reading = HandleReading;
+
+    fn poll(&mut self, now_s: f64) -> Option<Stamped<HandleReading>> {
+        let first_s = *self.first_poll_s.get_or_insert(now_s);
+        let mut newest = None;
+        for _ in 0..QUEUE {
+            match self.reports.try_recv() {
+                Ok(report) => newest = self.take(&report, now_s).or(newest),
+                Err(crossbeam_channel::TryRecvError::Empty) => break,
+                Err(crossbeam_channel::TryRecvError::Disconnected) => {
+                    self.health.lose(Loss::Disconnected);
+                    break;
+                }
+            }
+        }
+        if now_s - self.health.newest_s.unwrap_or(first_s) > SILENCE_S {
+            self.health.lose(self.failing.unwrap_or(Loss::Silent));
+        }
+        if matches!(self.health.standing, crate::Standing::Lost(_)) {
+            return None;
+        }
+        newest.map(|value| Stamped { device_s: None, arrival_s: now_s, value })
+    }
+
+    fn health(&self) -> &Health {
+        &self.health
+    }
+
+    fn identity(&self) -> &Identity {
+        &self.identity
+    }
+}
+
+impl Drop for Driver {
+    fn drop(&mut self) {
+        self.shared.stop.store(true, Ordering::Release);
+        let Some(thread) = self.thread.take() else { return };
+        let begin = Instant::now();
+        while !thread.is_finished() {
+            if begin.elapsed() > JOIN_MAX {
+                // The library hangs; the device's watchdog has switched force off.
+                return;
+            }
+            std::thread::sleep(Duration::from_millis(1));
+        }
+        thread.join().ok();
+    }
+}
+
+impl Identity {
+    /// Of an omega.7.
+    pub(super) fn of_handle(kind: Kind, name: Option<String>, serial: Option<u16>, firmware: Option<f64>) -> Self {
+        Self {
+            product: name.unwrap_or_else(|| kind.name()),
+            serial: serial.map(|serial| serial.to_string()).unwrap_or_default(),
+            firmware: firmware.map(|version| version.to_string()).unwrap_or_default(),
+        }
+    }
+}

@@ -1,0 +1,25 @@
+//! The handle as a rig asks for it.
+
+use nalgebra::Vector3;
+
+use super::{Driver, HandleEvent};
+use crate::{Leader, Lever};
+
+impl Leader for Driver {
+    fn switch_force(&mut self, on: bool) {
+        if on { self.enable_force() } else { self.disable_force() }
+    }
+
+    fn set_force(&mut self, force_n: Vector3<f64>, gripper_n: f64) {
+        // What is cut or not taken shows in the counters; the next tick says it again.
+        Self::set_force(self, force_n, gripper_n);
+    }
+
+    fn force_change(&mut self) -> Option<bool> {
+        std::iter::from_fn(|| self.take_event()).last().map(|event| event == HandleEvent::ForceOn)
+    }
+
+    fn attach(&self, lever: &Lever) {
+        lever.attach(self.lever());
+    }
+}

@@ -1,0 +1,113 @@
+//! From a loaded library to a configured device, with every failure named.
+
+use super::{
+    driver::Settings,
+    sdk::{OpenDevice, Sdk},
+    status::{Kind, SdkError, Status, fault_words},
+};
+use crate::{Identity, Loss, Trouble};
+
+/// Rule that lets everybody at the machine use devices of this make on USB.
+pub(super) const UDEV: &str = r#"SUBSYSTEM=="usb", ATTR{idVendor}=="1451", MODE="0666""#;
+
+/// A device that is open and set up, not yet read.
+pub(super) struct Opened {
+    pub(super) device: OpenDevice,
+    pub(super) identity: Identity,
+    pub(super) left_handed: bool,
+    pub(super) velocity_threshold: Option<u32>,
+}
+
+/// How messages call it.
+pub(super) fn place(settings: &Settings) -> String {
+    match settings.serial {
+        Some(serial) => format!("omega.7 with serial number {serial}"),
+        None => "omega.7".to_owned(),
+    }
+}
+
+/// Opens, checks and sets up.
+pub(super) fn open(sdk: &'static Sdk, settings: &Settings) -> Result<Opened, Trouble> {
+    let place = place(settings);
+    let device = sdk.open(settings.serial).map_err(|error| not_opened(sdk, &place, error))?;
+    let refused = |command: &str, error: SdkError| Trouble::Refused {
+        place: place.clone(),
+        command: command.to_owned(),
+        answer: error.words().to_owned(),
+    };
+    let kind = Kind::of(device.kind().map_err(|error| refused("to tell its type", error))?);
+    let Kind::Omega7 { left_handed } = kind else {
+        return Err(Trouble::WrongProduct { place, expected: "omega.7".to_owned(), found: kind.name() });
+    };
+    let serial = device.serial().map_err(|error| refused("to tell its serial number", error))?;
+    if settings.serial.is_some_and(|wanted| wanted != serial) {
+        let found = format!("omega.7 with serial number {serial}");
+        return Err(Trouble::WrongProduct { expected: place.clone(), place, found });
+    }
+    check(&place, &device.status().map_err(|error| refused("to tell its status", error))?)?;
+    // Brakes first: nothing is configured on a handle that pushes.
+    device.stop().map_err(|error| refused("to stop", error))?;
+    device.set_watchdog(settings.watchdog_steps()).map_err(|error| refused("the watchdog", error))?;
+    let optional = |command: &str, outcome: Result<_, SdkError>| match outcome {
+        Err(error) if !error.is_missing_feature() => Err(refused(command, error)),
+        _ => Ok(()),
+    };
+    optional("the greatest force", device.set_force_max(settings.force_max_n))?;
+    optional("gravity compensation", device.set_gravity_compensation(settings.gravity_compensation))?;
+    optional("the gripper as a button", device.emulate_button(settings.gripper_is_a_button))?;
+    let identity = Identity::of_handle(kind, device.name(), Some(serial), device.firmware().ok());
+    let velocity_threshold = device.velocity_threshold().ok();
+    Ok(Opened { device, identity, left_handed, velocity_threshold })
+}
+
+/// Whether its status lets it be used.
+fn check(place: &str, status: &Status) -> Result<(), Trouble> {
+    if status.reset {
+        let (place, mode) = (place.to_owned(), "reset (calibration)".to_owned());
+        let cure = "Put the handle to its rest position and press the button on the base, then wait.".to_owned();
+        return Err(Trouble::NotReady { place, mode, cure });
+    }
+    status.loss().map_or(Ok(()), |loss| Err(lost_at_once(place, loss)))
+}
+
+/// A device that was lost before its first reading.
+pub(super) fn lost_at_once(place: &str, loss: Loss) -> Trouble {
+    let place = place.to_owned();
+    match loss {
+        Loss::Disconnected => Trouble::Absent { place },
+        Loss::Silent => Trouble::Silent { place },
+        Loss::Corrupt => Trouble::Other { place, reason: "exchanges over USB fail".to_owned() },
+        Loss::Implausible => Trouble::DeviceFault {
+            place,
+            words: "it tells impossible positions".to_owned(),
+            cure: "Switch it off and on, and calibrate it with the manufacturer's program.".to_owned(),
+        },
+        Loss::Device { code } => Trouble::DeviceFault {
+            place,
+            words: format!("{} (code {code})", fault_words(code)),
+            cure: "Switch it off and on; if it stays, calibrate it with the manufacturer's program.".to_owned(),
+        },
+    }
+}
+
+fn not_opened(sdk: &Sdk, place: &str, error: SdkError) -> Trouble {
+    let place = place.to_owned();
+    match error {
+        SdkError::IN_USE => Trouble::Busy { place },
+        SdkError::NO_DEVICE | SdkError::NO_DRIVER if is_on_usb() && sdk.device_count() <= 0 => {
+            Trouble::Permission { place, udev: UDEV.to_owned() }
+        }
+        SdkError::NO_DEVICE | SdkError::NO_DRIVER => {
+            Trouble::Absent { place: format!("{place} ({} attached)", sdk.device_count().max(0)) }
+        }
+        SdkError::TIMED_OUT => Trouble::Silent { place },
+        error => Trouble::Other { place, reason: format!("{} (error {} of {})", error.words(), error.0, sdk.path()) },
+    }
+}
+
+/// A device of this make is on USB: Linux lists all, also those that this user may not open. False on other systems.
+fn is_on_usb() -> bool {
+    let Ok(devices) = std::fs::read_dir("/sys/bus/usb/devices") else { return false };
+    let vendor = |entry: std::fs::DirEntry| std::fs::read_to_string(entry.path().join("idVendor"));
+    devices.flatten().filter_map(|entry| vendor(entry).ok()).any(|vendor| vendor.trim() == "1451")
+}

@@ -1,0 +1,433 @@
+//! The manufacturer's library: loading it and calling it. The only unsafe code of this driver.
+//!
+//! All calls go through one table of functions ([`SdkFunctions`]). It is filled from a library that is loaded while running, or, for
+//! emulated handles, by functions with the same declarations that are linked into the program ([`Sdk::linked`]).
+//! A library that is once loaded stays so until the program ends: its threads may still run. Every call takes the device's number;
+//! nothing here uses the library's "default device". Errors are the library's own, which it keeps for each thread, so a call and the
+//! question why it failed are made on the same thread.
+#![expect(unsafe_code, reason = "a C library that is loaded while running")]
+
+use std::{
+    borrow::Cow,
+    ffi::{CStr, CString, c_char, c_int, c_uchar, c_uint, c_ushort},
+    path::{Path, PathBuf},
+    sync::{
+        Mutex, PoisonError,
+        atomic::{AtomicBool, AtomicUsize, Ordering},
+    },
+    time::{Duration, Instant},
+};
+
+use libloading::Library;
+use nima_files::quoted;
+
+use super::status::{ENTRIES, SdkError, Status, Success};
+use crate::Trouble;
+
+/// Its name for a person.
+pub(super) const NAME: &str = "Force Dimension SDK (libdrd or libdhd, 3.16 or newer)";
+/// The oldest version whose status array has the entries that are decoded here.
+const VERSION_MIN: (c_int, c_int) = (3, 16);
+
+macro_rules! library {
+    ($($field:ident = $symbol:literal: fn($($argument:ty),*) $(-> $result:ty)?;)*) => {
+        /// The SDK's functions that are used here, with the types of its C header.
+        #[derive(Clone, Copy, Debug)]
+        pub struct SdkFunctions {
+            $(
+                #[doc = concat!("`", $symbol, "`")]
+                pub $field: unsafe extern "C" fn($($argument),*) $(-> $result)?,
+            )*
+            /// Adds an emulated handle by its address; stand-ins alone have it.
+            pub emulate_handle: Option<EmulateHandle>,
+        }
+
+        impl SdkFunctions {
+            /// Takes all of them from a library, or gives the name of the one that is missing.
+            fn of(library: &Library) -> Result<Self, &'static str> {
+                Ok(Self {
+                    $(
+                        // SAFETY: the type is that of the symbol's declaration in the SDK's header; the library is never
+                        // unloaded, so the pointer stays valid.
+                        $field: unsafe { *library.get($symbol).map_err(|_| $symbol)? },
+                    )*
+                    emulate_handle: emulate_handle_of(library),
+                })
+            }
+        }
+    };
+}
+
+library! {
+    sdk_version = "dhdGetSDKVersion": fn(*mut c_int, *mut c_int, *mut c_int, *mut c_int);
+    last_error = "dhdErrorGetLast": fn() -> c_int;
+    device_count = "dhdGetDeviceCount": fn() -> c_int;
+    open_any = "dhdOpen": fn() -> c_int;
+    open_serial = "dhdOpenSerial": fn(c_int) -> c_int;
+    close = "dhdClose": fn(c_char) -> c_int;
+    stop = "dhdStop": fn(c_char) -> c_int;
+    serial = "dhdGetSerialNumber": fn(*mut c_ushort, c_char) -> c_int;
+    kind = "dhdGetSystemType": fn(c_char) -> c_int;
+    name = "dhdGetSystemName": fn(c_char) -> *const c_char;
+    firmware = "dhdGetVersion": fn(*mut f64, c_char) -> c_int;
+    status = "dhdGetStatus": fn(*mut c_int, c_char) -> c_int;
+    enable_force = "dhdEnableForce": fn(c_uchar, c_char) -> c_int;
+    brakes = "dhdSetBrakes": fn(c_int, c_char) -> c_int;
+    gravity = "dhdSetGravityCompensation": fn(c_int, c_char) -> c_int;
+    watchdog = "dhdSetWatchdog": fn(c_uchar, c_char) -> c_int;
+    force_max = "dhdSetMaxForce": fn(f64, c_char) -> c_int;
+    velocity_threshold = "dhdGetVelocityThreshold": fn(*mut c_uint, c_char) -> c_int;
+    pose = "dhdGetPositionAndOrientationFrame": fn(*mut f64, *mut f64, *mut f64, *mut f64, c_char) -> c_int;
+    gripper = "dhdGetGripperAngleRad": fn(*mut f64, c_char) -> c_int;
+    velocity = "dhdGetLinearVelocity": fn(*mut f64, *mut f64, *mut f64, c_char) -> c_int;
+    buttons = "dhdGetButtonMask": fn(c_char) -> c_uint;
+    emulate_button = "dhdEmulateButton": fn(c_uchar, c_char) -> c_int;
+    force = "dhdSetForceAndTorqueAndGripperForce": fn(f64, f64, f64, f64, f64, f64, f64, c_char) -> c_int;
+}
+
+/// Only a stand-in exports it.
+pub(super) const STAND_IN_SYMBOL: &str = "nimaEmulateHandle";
+
+/// `nimaEmulateHandle`: takes an address ("127.0.0.1:PORT") and gives 0, or -1 when that is no address.
+pub type EmulateHandle = unsafe extern "C" fn(*const c_char) -> c_int;
+
+fn emulate_handle_of(library: &Library) -> Option<EmulateHandle> {
+    // SAFETY: the type is that of the stand-in's own symbol; a library from which it is kept is never unloaded.
+    unsafe { library.get::<EmulateHandle>(STAND_IN_SYMBOL).ok().map(|symbol| *symbol) }
+}
+
+/// This library is no manufacturer's: it emulates.
+pub(super) fn is_stand_in(library: &Library) -> bool {
+    emulate_handle_of(library).is_some()
+}
+
+/// The SDK: a loaded library, or functions that are linked into the program.
+#[derive(Debug)]
+pub struct Sdk {
+    path: Cow<'static, str>,
+    functions: SdkFunctions,
+    /// Opening goes through lists that the library shares between devices: one at a time.
+    opening: Mutex<()>,
+}
+
+/// Libraries that are loaded, by path.
+static LOADED: Mutex<Vec<(PathBuf, &'static Sdk)>> = Mutex::new(Vec::new());
+
+/// A position (m) and a rotation matrix by rows.
+pub(super) type Pose = ([f64; 3], [f64; 9]);
+
+/// The library is there and does not fit.
+pub(super) fn unusable(path: &str, reason: String) -> Trouble {
+    Trouble::SdkUnusable { name: NAME.to_owned(), path: path.to_owned(), reason }
+}
+
+/// Opens a library; an error in the system's words.
+pub(super) fn open_library(path: &Path) -> Result<Library, String> {
+    // SAFETY: loading runs the library's own beginning. It is the manufacturer's, named by the person at the rig or found
+    // where it is installed.
+    unsafe { Library::new(path) }.map_err(|error| {
+        let mut words = error.to_string();
+        if let Some(source) = std::error::Error::source(&error) {
+            words = source.to_string();
+        }
+        words
+    })
+}
+
+/// Checks a library and keeps it for ever.
+pub(super) fn keep(path: &Path, library: Library) -> Result<&'static Sdk, Trouble> {
+    let mut loaded = LOADED.lock().unwrap_or_else(PoisonError::into_inner);
+    if let Some((_, sdk)) = loaded.iter().find(|(known, _)| known == path) {
+        return Ok(sdk);
+    }
+    let place = path.display().to_string();
+    let functions = SdkFunctions::of(&library);
+    let functions = functions.map_err(|symbol| unusable(&place, format!("it has no symbol {symbol}")))?;
+    let sdk = Sdk { path: place.clone().into(), functions, opening: Mutex::new(()) };
+    // A library that does not fit may be put away again: nothing of it runs. One that fits stays for ever.
+    std::mem::forget(library);
+    let [major, minor, release, revision] = sdk.version();
+    if (major, minor) < VERSION_MIN {
+        return Err(unusable(&place, format!("its version {major}.{minor}.{release}.{revision} is older than 3.16")));
+    }
+    let sdk: &'static Sdk = Box::leak(Box::new(sdk));
+    loaded.push((path.to_owned(), sdk));
+    Ok(sdk)
+}
+
+impl Sdk {
+    /// Functions that are linked into this program; `name` stands for the library's file in messages.
+    pub const fn linked(name: &'static str, functions: SdkFunctions) -> Self {
+        Self { path: Cow::Borrowed(name), functions, opening: Mutex::new(()) }
+    }
+
+    /// Where it was loaded from.
+    pub(super) fn path(&self) -> &str {
+        &self.path
+    }
+
+    /// It is no manufacturer's: it emulates.
+    pub(super) const fn is_stand_in(&self) -> bool {
+        self.functions.emulate_handle.is_some()
+    }
+
+    fn last_error(&self) -> SdkError {
+        // SAFETY: no arguments; the library is loaded for ever.
+        SdkError(unsafe { (self.functions.last_error)() })
+    }
+
+    fn checked(&self, code: c_int) -> Result<Success, SdkError> {
+        Success::of(code).ok_or_else(|| self.last_error())
+    }
+
+    /// Version of the SDK.
+    pub(super) fn version(&self) -> [c_int; 4] {
+        let mut numbers = [0; 4];
+        let [major, minor, release, revision] = &mut numbers;
+        // SAFETY: four ints that live through the call.
+        unsafe { (self.functions.sdk_version)(major, minor, release, revision) };
+        numbers
+    }
+
+    /// Adds an emulated handle (stand-in library only).
+    pub(super) fn emulate(&self, address: &str) -> Result<(), Trouble> {
+        let refuse = |reason: &str| unusable(&self.path, reason.to_owned());
+        let function = self
+            .functions
+            .emulate_handle
+            .ok_or_else(|| refuse("it is not the stand-in that an emulated handle needs"))?;
+        let text = CString::new(address).map_err(|_| refuse("the emulated handle's address has a zero in it"))?;
+        // SAFETY: a C string that lives through the call.
+        if unsafe { function(text.as_ptr()) } == 0 {
+            Ok(())
+        } else {
+            Err(refuse("it does not understand the emulated handle's address"))
+        }
+    }
+
+    /// Devices that are attached.
+    pub(super) fn device_count(&self) -> i32 {
+        // SAFETY: no arguments.
+        unsafe { (self.functions.device_count)() }
+    }
+
+    /// Opens a device by serial number, or any that is free.
+    pub(super) fn open(&'static self, serial: Option<u16>) -> Result<OpenDevice, SdkError> {
+        call_before_exit();
+        let _one_at_a_time = self.opening.lock().unwrap_or_else(PoisonError::into_inner);
+        // SAFETY: no pointers.
+        let id = unsafe {
+            match serial {
+                Some(serial) => (self.functions.open_serial)(c_int::from(serial)),
+                None => (self.functions.open_any)(),
+            }
+        };
+        // A device's number fits C's char, signed or not.
+        match i8::try_from(id).ok().filter(|id| *id >= 0).and_then(|id| c_char::try_from(id).ok()) {
+            Some(id) => {
+                OPEN_DEVICES.fetch_add(1, Ordering::AcqRel);
+                Ok(OpenDevice { sdk: self, id })
+            }
+            None => Err(self.last_error()),
+        }
+    }
+}
+
+/// An open device. Dropping it, also while panicking, engages the brakes and closes it.
+pub(super) struct OpenDevice {
+    sdk: &'static Sdk,
+    id: c_char,
+}
+
+impl Drop for OpenDevice {
+    fn drop(&mut self) {
+        self.stop().ok();
+        // SAFETY: no pointers; nothing uses the number after this.
+        unsafe { (self.sdk.functions.close)(self.id) };
+        OPEN_DEVICES.fetch_sub(1, Ordering::AcqRel);
+    }
+}
+
+impl OpenDevice {
+    fn checked(&self, code: c_int) -> Result<Success, SdkError> {
+        self.sdk.checked(code)
+    }
+
+    /// Serial number.
+    pub(super) fn serial(&self) -> Result<u16, SdkError> {
+        let mut serial = 0;
+        // SAFETY: one unsigned short that lives through the call.
+        self.checked(unsafe { (self.sdk.functions.serial)(&raw mut serial, self.id) })?;
+        Ok(serial)
+    }
+
+    /// Number of its kind.
+    pub(super) fn kind(&self) -> Result<i32, SdkError> {
+        // SAFETY: no pointers.
+        let kind = unsafe { (self.sdk.functions.kind)(self.id) };
+        if kind < 0 { Err(self.sdk.last_error()) } else { Ok(kind) }
+    }
+
+    /// Its name.
+    pub(super) fn name(&self) -> Option<String> {
+        // SAFETY: no pointers go in.
+        let name = unsafe { (self.sdk.functions.name)(self.id) };
+        // SAFETY: not null: the library's own C string, which it does not change; copied at once.
+        (!name.is_null()).then(|| quoted(&unsafe { CStr::from_ptr(name) }.to_string_lossy()))
+    }
+
+    /// Firmware version.
+    pub(super) fn firmware(&self) -> Result<f64, SdkError> {
+        let mut version = 0.0;
+        // SAFETY: one double that lives through the call.
+        self.checked(unsafe { (self.sdk.functions.firmware)(&raw mut version, self.id) })?;
+        Ok(version)
+    }
+
+    /// Status.
+    pub(super) fn status(&self) -> Result<Status, SdkError> {
+        // Longer than any version of the SDK fills.
+        let mut entries = [0; 4 * ENTRIES];
+        // SAFETY: an array of ints, longer than what the library writes, that lives through the call.
+        self.checked(unsafe { (self.sdk.functions.status)(entries.as_mut_ptr(), self.id) })?;
+        Ok(entries.first_chunk().map(Status::decode).unwrap_or_default())
+    }
+
+    /// Force on or off.
+    pub(super) fn enable_force(&self, on: bool) -> Result<Success, SdkError> {
+        // SAFETY: no pointers.
+        self.checked(unsafe { (self.sdk.functions.enable_force)(c_uchar::from(on), self.id) })
+    }
+
+    /// Force off and brakes on.
+    pub(super) fn stop(&self) -> Result<Success, SdkError> {
+        // SAFETY: no pointers.
+        self.checked(unsafe { (self.sdk.functions.stop)(self.id) })
+    }
+
+    /// Brakes on, or off: no current in the motors.
+    pub(super) fn set_brakes(&self, on: bool) -> Result<Success, SdkError> {
+        // SAFETY: no pointers.
+        self.checked(unsafe { (self.sdk.functions.brakes)(c_int::from(on), self.id) })
+    }
+
+    /// Gravity compensation on or off.
+    pub(super) fn set_gravity_compensation(&self, on: bool) -> Result<Success, SdkError> {
+        // SAFETY: no pointers.
+        self.checked(unsafe { (self.sdk.functions.gravity)(c_int::from(on), self.id) })
+    }
+
+    /// Time without a force command after which the device gives up, in 125 us.
+    pub(super) fn set_watchdog(&self, steps: u8) -> Result<Success, SdkError> {
+        // SAFETY: no pointers.
+        self.checked(unsafe { (self.sdk.functions.watchdog)(steps, self.id) })
+    }
+
+    /// Greatest force that the library lets through, N.
+    pub(super) fn set_force_max(&self, force_n: f64) -> Result<Success, SdkError> {
+        // SAFETY: no pointers.
+        self.checked(unsafe { (self.sdk.functions.force_max)(force_n, self.id) })
+    }
+
+    /// Velocity threshold, in the device's own unit.
+    pub(super) fn velocity_threshold(&self) -> Result<u32, SdkError> {
+        let mut threshold = 0;
+        // SAFETY: one unsigned int that lives through the call.
+        self.checked(unsafe { (self.sdk.functions.velocity_threshold)(&raw mut threshold, self.id) })?;
+        Ok(threshold)
+    }
+
+    /// Position and orientation: one exchange with the device.
+    pub(super) fn pose(&self) -> Result<(Pose, Success), SdkError> {
+        let ([mut x, mut y, mut z], mut frame) = ([0.0; 3], [0.0; 9]);
+        let places = (&raw mut x, &raw mut y, &raw mut z, frame.as_mut_ptr());
+        // SAFETY: three doubles and an array of three by three that live through the call.
+        let code = unsafe { (self.sdk.functions.pose)(places.0, places.1, places.2, places.3, self.id) };
+        self.checked(code).map(|success| (([x, y, z], frame), success))
+    }
+
+    /// Angle of the gripper, rad.
+    pub(super) fn gripper_rad(&self) -> Result<f64, SdkError> {
+        let mut angle = 0.0;
+        // SAFETY: one double that lives through the call.
+        self.checked(unsafe { (self.sdk.functions.gripper)(&raw mut angle, self.id) })?;
+        Ok(angle)
+    }
+
+    /// Velocity, m/s; an error until two positions were read within its window.
+    pub(super) fn velocity_m_s(&self) -> Result<[f64; 3], SdkError> {
+        let [mut x, mut y, mut z] = [0.0; 3];
+        // SAFETY: three doubles that live through the call.
+        let code = unsafe { (self.sdk.functions.velocity)(&raw mut x, &raw mut y, &raw mut z, self.id) };
+        self.checked(code)?;
+        Ok([x, y, z])
+    }
+
+    /// Buttons, first in the lowest bit.
+    pub(super) fn buttons(&self) -> u32 {
+        // SAFETY: no pointers.
+        unsafe { (self.sdk.functions.buttons)(self.id) }
+    }
+
+    /// The closed gripper counts as a button.
+    pub(super) fn emulate_button(&self, on: bool) -> Result<Success, SdkError> {
+        // SAFETY: no pointers.
+        self.checked(unsafe { (self.sdk.functions.emulate_button)(c_uchar::from(on), self.id) })
+    }
+
+    /// Force and gripper force, N; the wrist is passive.
+    pub(super) fn set_force(&self, force_n: [f64; 3], gripper_n: f64) -> Result<Success, SdkError> {
+        let [x, y, z] = force_n;
+        // SAFETY: no pointers.
+        self.checked(unsafe { (self.sdk.functions.force)(x, y, z, 0.0, 0.0, 0.0, gripper_n, self.id) })
+    }
+}
+
+/// Devices that are open in this program.
+static OPEN_DEVICES: AtomicUsize = AtomicUsize::new(0);
+/// The program ends: threads that hold a device let go of it.
+static ENDING: AtomicBool = AtomicBool::new(false);
+/// How long the end of the program waits for that.
+const END_MAX: Duration = Duration::from_millis(300);
+
+/// The program ends.
+pub(super) fn is_ending() -> bool {
+    ENDING.load(Ordering::Acquire)
+}
+
+/// Has brakes engaged also when the program ends without dropping its devices (`exit` somewhere). The threads that hold them do it
+/// themselves; the end only waits for them.
+fn call_before_exit() {
+    extern "C" fn release_all() {
+        ENDING.store(true, Ordering::Release);
+        let begin = Instant::now();
+        while OPEN_DEVICES.load(Ordering::Acquire) > 0 && begin.elapsed() < END_MAX {
+            std::thread::sleep(Duration::from_millis(1));
+        }
+    }
+    #[cfg(unix)]
+    {
+        static ONCE: std::sync::Once = std::sync::Once::new();
+        // SAFETY: a function that lives for ever, does not unwind and touches statics without destructors only.
+        ONCE.call_once(|| unsafe {
+            libc::atexit(release_all);
+        });
+    }
+    #[cfg(not(unix))]
+    let _ = release_all;
+}
+
+/// Above the loop (80), which must not keep a device waiting.
+#[cfg(target_os = "linux")]
+const PRIORITY: c_int = 82;
+
+/// Asks for real-time scheduling of the calling thread; where it is refused the thread goes on as it is.
+pub fn prepare_thread() {
+    #[cfg(target_os = "linux")]
+    // SAFETY: plain system calls on the calling thread with valid, initialised arguments.
+    unsafe {
+        libc::prctl(libc::PR_SET_TIMERSLACK, 1_usize);
+        let parameter = libc::sched_param { sched_priority: PRIORITY };
+        libc::pthread_setschedparam(libc::pthread_self(), libc::SCHED_FIFO, &raw const parameter);
+    }
+}

@@ -1,0 +1,362 @@
+//! What the SDK's numbers mean: errors, kinds of devices, the status array, why force is off. No calls here, no clock.
+//!
+//! Source: headers of SDK 3.17.5 (`DHD_STATUS_*`, `DHD_ERROR_*`, `DHD_DEVICE_*`), read as facts.
+
+use serde::Serialize;
+
+use crate::Loss;
+
+/// An error of the SDK, by its number.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct SdkError(pub i32);
+
+impl SdkError {
+    /// Something in the exchange over USB was wrong.
+    pub const COMMUNICATION: Self = Self(2);
+    /// The operating system has no driver for it.
+    pub const NO_DRIVER: Self = Self(4);
+    /// No device there (any more).
+    pub const NO_DEVICE: Self = Self(5);
+    /// The device did not answer in time.
+    pub const TIMED_OUT: Self = Self(7);
+    /// An encoder and its twin disagree.
+    pub const REDUNDANT_ENCODER: Self = Self(18);
+    /// Another program has it.
+    pub const IN_USE: Self = Self(20);
+
+    /// In the SDK's words.
+    pub const fn words(self) -> &'static str {
+        match self.0 {
+            0 => "no error",
+            1 => "undocumented error",
+            2 => "communication error",
+            3 => "device controller busy",
+            4 => "no driver found",
+            5 => "no device found",
+            6 => "operation not available",
+            7 => "operation timed out",
+            8 => "geometric error",
+            9 => "expert mode disabled",
+            10 => "feature not implemented",
+            11 => "out of memory",
+            12 => "device not ready",
+            13 => "file not found",
+            14 => "device configuration failed",
+            15 => "index outside valid range",
+            16 => "feature or device no longer supported",
+            17 => "argument is null or invalid",
+            18 => "redundant encoder integrity test failed",
+            19 => "feature is not enabled",
+            20 => "device is in use",
+            21 => "invalid parameter",
+            22 => "robotic regulation is not running",
+            _ => "invalid error code",
+        }
+    }
+
+    /// The device has no such feature, which is no fault.
+    pub const fn is_missing_feature(self) -> bool {
+        matches!(self.0, 6 | 10 | 16 | 19)
+    }
+
+    /// What a device is lost to when calls go on failing with this error.
+    pub const fn loss(self) -> Loss {
+        match self {
+            Self::NO_DEVICE | Self::NO_DRIVER => Loss::Disconnected,
+            Self::COMMUNICATION => Loss::Corrupt,
+            Self::TIMED_OUT => Loss::Silent,
+            Self(code) => Loss::Device { code: code.cast_unsigned() },
+        }
+    }
+
+    /// It does not pass: the device is lost at once.
+    pub const fn is_final(self) -> bool {
+        matches!(self, Self::NO_DEVICE | Self::REDUNDANT_ENCODER)
+    }
+}
+
+/// What a call that succeeded says besides (`DHD_TIMEGUARD`, `DHD_MOTOR_SATURATED`).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Success {
+    /// All as asked.
+    Plain,
+    /// Nothing newer was to be had: the last data, still valid.
+    TimeGuard,
+    /// The force was scaled down to what the motors can.
+    Saturated,
+}
+
+impl Success {
+    /// Of the value that a call returned; `None` where it failed.
+    pub const fn of(code: i32) -> Option<Self> {
+        match code {
+            0 | 3.. => Some(Self::Plain),
+            1 => Some(Self::TimeGuard),
+            2 => Some(Self::Saturated),
+            _ => None,
+        }
+    }
+}
+
+/// A kind of device (`DHD_DEVICE_*`).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// omega.7 for the right or the left hand.
+    Omega7 {
+        /// For the left one.
+        left_handed: bool,
+    },
+    /// Anything else, which this driver does not drive.
+    Other(i32),
+}
+
+impl Kind {
+    /// Of the number that `dhdGetSystemType` gives.
+    pub const fn of(number: i32) -> Self {
+        match number {
+            35 => Self::Omega7 { left_handed: false },
+            37 => Self::Omega7 { left_handed: true },
+            other => Self::Other(other),
+        }
+    }
+
+    /// Its number.
+    pub const fn number(self) -> i32 {
+        match self {
+            Self::Omega7 { left_handed: false } => 35,
+            Self::Omega7 { left_handed: true } => 37,
+            Self::Other(number) => number,
+        }
+    }
+
+    /// Its name.
+    pub fn name(self) -> String {
+        match self {
+            Self::Omega7 { left_handed } => format!("omega.7 ({} hand)", if left_handed { "left" } else { "right" }),
+            Self::Other(33) => "omega.3".to_owned(),
+            Self::Other(34 | 36) => "omega.6".to_owned(),
+            Self::Other(60) => "Falcon".to_owned(),
+            Self::Other(81 | 82) => "controller".to_owned(),
+            Self::Other(104 | 105) => "sigma.7".to_owned(),
+            Self::Other(108 | 109) => "lambda.7".to_owned(),
+            Self::Other(number) => format!("device of type {number}"),
+        }
+    }
+}
+
+/// Why the device switched its force off by itself.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ForceOffCause {
+    /// It did not say.
+    #[default]
+    None,
+    /// The force button on its base.
+    Button,
+    /// The hand was faster than the velocity threshold.
+    Velocity,
+    /// No force command arrived within the watchdog's time.
+    Watchdog,
+    /// A program asked for it.
+    Software,
+    /// Trouble on USB.
+    Usb,
+    /// Nobody holds the handle.
+    DeadMan,
+    /// A number that this program does not know.
+    Unknown,
+}
+
+impl ForceOffCause {
+    const fn of(number: i32) -> Self {
+        match number {
+            0 => Self::None,
+            1 => Self::Button,
+            2 => Self::Velocity,
+            3 => Self::Watchdog,
+            4 => Self::Software,
+            5 => Self::Usb,
+            6 => Self::DeadMan,
+            _ => Self::Unknown,
+        }
+    }
+
+    /// The device itself took force away, for a cause that it knows.
+    const fn is_by_the_device(self) -> bool {
+        !matches!(self, Self::None | Self::Software | Self::Unknown)
+    }
+
+    /// What happened and what to do, for a screen.
+    pub const fn words(self) -> &'static str {
+        match self {
+            Self::None => "the device does not say why",
+            Self::Button => "the force button on its base was pressed; press it again",
+            Self::Velocity => "the hand was too fast; hold the handle and enable force again",
+            Self::Watchdog => "no force command reached it in time; enable force again",
+            Self::Software => "another program switched it off",
+            Self::Usb => "its USB connection was disturbed; check the cable",
+            Self::DeadMan => "nobody holds the handle; take it",
+            Self::Unknown => "for a cause that this program does not know",
+        }
+    }
+}
+
+/// Entries of the status array.
+pub const ENTRIES: usize = 17;
+
+/// [`Loss::Device`] codes from here on are an entry of the status array plus this; below, an error number of the SDK.
+pub const STATUS_CODE: u32 = 100;
+
+/// The status array, decoded.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[expect(clippy::struct_excessive_bools, reason = "each is an entry of the device's own status")]
+pub struct Status {
+    pub power: bool,
+    pub connected: bool,
+    /// It runs.
+    pub started: bool,
+    /// It waits for its calibration: the handle must be put to its rest position.
+    pub reset: bool,
+    /// No current in the motors.
+    pub idle: bool,
+    /// Force is on.
+    pub force: bool,
+    /// The brakes are on: the motors damp every motion.
+    pub brake: bool,
+    /// Torque is on (active wrists only).
+    pub torque: bool,
+    /// A wrist is there.
+    pub wrist: bool,
+    /// Its own error indicator.
+    pub error: bool,
+    /// Gravity compensation is on.
+    pub gravity: bool,
+    pub time_guard: bool,
+    /// The wrist is initialised.
+    pub wrist_ready: bool,
+    /// Redundant encoders are checked and agree.
+    pub redundancy: bool,
+    /// Why force is off.
+    pub force_off: ForceOffCause,
+    /// Locks are closed (-1 in the array, unknown, is no).
+    pub locks: bool,
+    /// The axes are checked.
+    pub axis_checked: bool,
+}
+
+impl Status {
+    /// Of the array that `dhdGetStatus` fills.
+    pub const fn decode(of: &[i32; ENTRIES]) -> Self {
+        Self {
+            power: of[0] != 0,
+            connected: of[1] != 0,
+            started: of[2] != 0,
+            reset: of[3] != 0,
+            idle: of[4] != 0,
+            force: of[5] != 0,
+            brake: of[6] != 0,
+            torque: of[7] != 0,
+            wrist: of[8] != 0,
+            error: of[9] != 0,
+            gravity: of[10] != 0,
+            time_guard: of[11] != 0,
+            wrist_ready: of[12] != 0,
+            redundancy: of[13] != 0,
+            force_off: ForceOffCause::of(of[14]),
+            locks: of[15] == 1,
+            axis_checked: of[16] != 0,
+        }
+    }
+
+    /// What the device is lost to, if its status says so. An error indicator while force is off for a cause of the device's own tells
+    /// of that cause alone; the device still delivers. (The cause is that of the last time, also when force is on again.)
+    pub const fn loss(&self) -> Option<Loss> {
+        if !self.connected {
+            return Some(Loss::Disconnected);
+        }
+        let entry = match self {
+            Self { power: false, .. } => 0,
+            Self { reset: true, .. } => 3,
+            Self { error: true, force, force_off, .. } if *force || !force_off.is_by_the_device() => 9,
+            _ => return None,
+        };
+        Some(Loss::Device { code: STATUS_CODE + entry })
+    }
+}
+
+/// What a [`Loss::Device`] code of this driver means.
+pub fn fault_words(code: u32) -> &'static str {
+    match code {
+        STATUS_CODE => "it has no power",
+        103 => "it waits for its calibration: put the handle to its rest position",
+        109 => "its error indicator is on",
+        _ => SdkError(code.cast_signed()).words(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_entry_of_the_status_array_is_decoded_at_its_place() {
+        let at = |index: usize| {
+            let mut entries = [0; ENTRIES];
+            entries[index] = 1;
+            Status::decode(&entries)
+        };
+        let flags: [fn(&Status) -> bool; ENTRIES] = [
+            |s| s.power,
+            |s| s.connected,
+            |s| s.started,
+            |s| s.reset,
+            |s| s.idle,
+            |s| s.force,
+            |s| s.brake,
+            |s| s.torque,
+            |s| s.wrist,
+            |s| s.error,
+            |s| s.gravity,
+            |s| s.time_guard,
+            |s| s.wrist_ready,
+            |s| s.redundancy,
+            |s| s.force_off == ForceOffCause::Button,
+            |s| s.locks,
+            |s| s.axis_checked,
+        ];
+        for set in 0..ENTRIES {
+            for (flag, read) in flags.iter().enumerate() {
+                assert_eq!(read(&at(set)), flag == set, "entry {set}, flag {flag}");
+            }
+        }
+    }
+
+    #[test]
+    fn causes_losses_and_codes_are_those_of_the_sdk() {
+        use ForceOffCause as C;
+        let causes = [C::None, C::Button, C::Velocity, C::Watchdog, C::Software, C::Usb, C::DeadMan, C::Unknown];
+        for (number, cause) in (0..).zip(causes) {
+            assert_eq!(ForceOffCause::of(number), cause);
+        }
+        assert_eq!(ForceOffCause::of(-1), C::Unknown);
+        let good = Status { power: true, connected: true, started: true, ..Status::default() };
+        assert_eq!(good.loss(), None);
+        assert_eq!(Status { error: true, ..good }.loss(), Some(Loss::Device { code: 109 }));
+        assert_eq!(Status { error: true, force_off: C::Velocity, ..good }.loss(), None);
+        let on = Status { error: true, force: true, force_off: C::Velocity, ..good };
+        assert_eq!(on.loss(), Some(Loss::Device { code: 109 }));
+        assert_eq!(Status { reset: true, ..good }.loss(), Some(Loss::Device { code: 103 }));
+        assert_eq!(Status { connected: false, ..good }.loss(), Some(Loss::Disconnected));
+        assert_eq!(Status { power: false, ..good }.loss(), Some(Loss::Device { code: 100 }));
+        assert_eq!(Success::of(-1), None);
+        assert_eq!(
+            [0, 1, 2].map(Success::of),
+            [Some(Success::Plain), Some(Success::TimeGuard), Some(Success::Saturated)]
+        );
+        for number in -5..200 {
+            assert_eq!(Kind::of(number).number(), number);
+        }
+        assert_eq!(SdkError(23).words(), "invalid error code");
+        assert_eq!(fault_words(18), "redundant encoder integrity test failed");
+    }
+}

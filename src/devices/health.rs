@@ -1,0 +1,180 @@
+//! How a device is: what every driver counts in the same way, without allocation.
+
+use serde::Serialize;
+
+/// Why a running device is no longer to be believed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case", tag = "loss")]
+pub enum Loss {
+    /// The port or the connection is gone.
+    Disconnected,
+    /// Nothing valid arrived for too long.
+    Silent,
+    /// What arrives makes no sense: too many damaged frames in a row.
+    Corrupt,
+    /// Numbers that are not finite, or not possible.
+    Implausible,
+    /// The device itself reports a fault; the code is the device's own.
+    Device {
+        /// As the manufacturer numbers it.
+        code: u32,
+    },
+}
+
+impl Loss {
+    /// What happened, for a screen.
+    pub const fn cause(self) -> &'static str {
+        match self {
+            Self::Disconnected => "the connection is gone",
+            Self::Silent => "it sends no data",
+            Self::Corrupt => "its data are damaged",
+            Self::Implausible => "it sends impossible values",
+            Self::Device { .. } => "it reports a fault",
+        }
+    }
+}
+
+/// Where a device is in its life.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Standing {
+    /// Not opened.
+    #[default]
+    Closed,
+    /// Being opened and configured, on another thread.
+    Opening,
+    /// Delivers. Connected never means engaged.
+    Connected,
+    /// Delivered once, and does not now.
+    Lost(Loss),
+}
+
+/// Counters of a device since it was opened. A reading is a whole, checked frame.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Health {
+    /// Whether it delivers now.
+    pub standing: Standing,
+    /// Readings accepted.
+    pub readings: u64,
+    /// Readings that never arrived, by the device's counter or clock.
+    pub lost: u64,
+    /// Frames refused by their checksum or shape.
+    pub damaged: u64,
+    /// Bytes skipped to find the beginning of a frame again.
+    pub skipped_bytes: u64,
+    /// Readings that came too late, twice, or in the wrong order.
+    pub out_of_order: u64,
+    /// Readings refused because of their status bits or numbers.
+    pub refused: u64,
+    /// Arrival of the newest reading, s on the loop's clock.
+    pub newest_s: Option<f64>,
+    /// Rate over the last half second, Hz.
+    pub rate_hz: f64,
+    /// How often it was lost since the loop began, however often it was opened again.
+    pub outages: u64,
+    /// The longest of these outages, s: from its last reading to the first one after, or until now.
+    pub longest_outage_s: f64,
+    #[serde(skip)]
+    window_s: Option<f64>,
+    #[serde(skip)]
+    in_window: u32,
+}
+
+/// Time over which the rate is counted, s.
+const RATE_WINDOW_S: f64 = 0.5;
+
+impl Health {
+    /// Of a device that is being opened.
+    pub fn opening() -> Self {
+        Self { standing: Standing::Opening, ..Self::default() }
+    }
+
+    /// Counts an accepted reading that arrived at `now_s`.
+    pub fn accept(&mut self, now_s: f64) {
+        let begin_s = *self.window_s.get_or_insert(now_s);
+        if now_s - begin_s >= RATE_WINDOW_S {
+            self.rate_hz = f64::from(self.in_window) / (now_s - begin_s);
+            (self.window_s, self.in_window) = (Some(now_s), 0);
+        }
+        self.in_window += 1;
+        self.newest_s = Some(now_s);
+        self.readings += 1;
+        self.standing = Standing::Connected;
+    }
+
+    /// Marks it lost; the first cause stays. True when it was not lost before.
+    pub const fn lose(&mut self, loss: Loss) -> bool {
+        let newly = !matches!(self.standing, Standing::Lost(_));
+        if newly {
+            self.standing = Standing::Lost(loss);
+        }
+        newly
+    }
+
+    /// Seconds since the newest reading; endless before the first.
+    pub fn age_s(&self, now_s: f64) -> f64 {
+        self.newest_s.map_or(f64::INFINITY, |newest_s| now_s - newest_s)
+    }
+}
+
+/// The outages of a place, which outlive the devices that were opened there.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Outages {
+    count: u64,
+    longest_s: f64,
+    since_s: Option<f64>,
+}
+
+impl Outages {
+    /// Takes in how the place is now, and enters its outages there.
+    pub(super) fn follow(&mut self, health: &mut Health, now_s: f64) {
+        if matches!(health.standing, Standing::Lost(_)) && self.since_s.is_none() {
+            self.count += 1;
+            self.since_s = Some(health.newest_s.unwrap_or(now_s));
+        }
+        if let Some(since_s) = self.since_s {
+            self.longest_s = self.longest_s.max(now_s - since_s);
+        }
+        // What a person disconnects is no outage any more.
+        if matches!(health.standing, Standing::Connected | Standing::Closed) {
+            self.since_s = None;
+        }
+        (health.outages, health.longest_outage_s) = (self.count, self.longest_s);
+    }
+}
+
+/// Who a device says it is.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
+#[expect(missing_docs, reason = "the names say it")]
+pub struct Identity {
+    pub product: String,
+    pub serial: String,
+    pub firmware: String,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_rate_is_found_one_by_one_and_in_batches() {
+        for batch in [1, 4] {
+            let mut health = Health::default();
+            for k in 0..8000_u32 {
+                health.accept(f64::from(k / batch * batch) * 1e-3);
+            }
+            assert!((health.rate_hz - 1000.0).abs() < 50.0, "batches of {batch}: {} Hz", health.rate_hz);
+        }
+    }
+
+    #[test]
+    fn the_first_cause_of_a_loss_stays_until_it_delivers_again() {
+        let mut health = Health::default();
+        assert!(health.age_s(3.0).is_infinite());
+        health.accept(1.0);
+        assert!(health.lose(Loss::Silent) && !health.lose(Loss::Disconnected));
+        assert_eq!(health.standing, Standing::Lost(Loss::Silent));
+        health.accept(2.0);
+        assert_eq!(health.standing, Standing::Connected);
+    }
+}

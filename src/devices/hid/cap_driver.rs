@@ -1,0 +1,155 @@
+//! The driver of a six-axis cap.
+
+use serde::{Deserialize, Serialize};
+
+use super::{
+    cap_codec::{CapReport, CapState, light},
+    driver::Line,
+    models::Kind,
+    source::{HidIdentity, Source},
+    spacenavd,
+};
+use crate::{CapReading, Device, Health, Identity, Stamped, Trouble, transport::Datagrams};
+
+/// Cap part of a rig file.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct CapSettings {
+    /// Where its reports come from; see [`Source`].
+    pub source: String,
+    /// Axes to turn the other way: x, y, z, turns about x, y, z (some models differ in the signs of the turns).
+    pub invert: [bool; 6],
+    /// Its light is on while it is connected.
+    pub light: bool,
+}
+
+impl Default for CapSettings {
+    fn default() -> Self {
+        Self { source: "any".to_owned(), invert: [false; 6], light: true }
+    }
+}
+
+/// How the bytes are to be read.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Wire {
+    Reports,
+    Spacenavd,
+}
+
+/// An open cap. Lost when its source is gone or what it sends is damaged or impossible eight times in a row. Silence at rest is
+/// normal; silence while deflected lets go after [`RELEASE_AFTER_S`](super::RELEASE_AFTER_S) and counts as lost reports.
+pub struct CapDriver {
+    line: Line,
+    wire: Wire,
+    state: CapState,
+    battery_percent: Option<u8>,
+    invert: [bool; 6],
+    light: bool,
+}
+
+impl CapDriver {
+    /// Opens it; may take some 100 ms.
+    pub fn open(settings: &CapSettings) -> Result<Self, Trouble> {
+        let source: Source = settings.source.parse()?;
+        let (datagrams, identity, wire) = match &source {
+            #[cfg(unix)]
+            Source::Spacenavd(path) => {
+                let socket = spacenavd::Spacenavd::open(path)?;
+                let identity = Identity { product: "spacenavd".to_owned(), ..Identity::default() };
+                (Box::new(socket) as Box<dyn Datagrams>, identity, Wire::Spacenavd)
+            }
+            _ => {
+                let (datagrams, identity) = source.open(&[Kind::Cap])?;
+                (datagrams, identity.identity(), Wire::Reports)
+            }
+        };
+        Ok(Self::on(datagrams, identity, wire, settings))
+    }
+
+    /// On an open source of reports.
+    pub fn over(datagrams: Box<dyn Datagrams>, identity: &HidIdentity, settings: &CapSettings) -> Self {
+        Self::on(datagrams, identity.identity(), Wire::Reports, settings)
+    }
+
+    fn on(datagrams: Box<dyn Datagrams>, identity: Identity, wire: Wire, settings: &CapSettings) -> Self {
+        let mut driver = Self {
+            line: Line::of(datagrams, identity),
+            wire,
+            state: CapState::default(),
+            battery_percent: None,
+            invert: settings.invert,
+            light: settings.light,
+        };
+        driver.show(true);
+        driver
+    }
+
+    /// Charge of a wireless model, percent, once it has told it.
+    pub const fn battery_percent(&self) -> Option<u8> {
+        self.battery_percent
+    }
+
+    /// Switches the light, where it has one that this program is to use.
+    fn show(&mut self, on: bool) {
+        if self.light && self.wire == Wire::Reports {
+            // Models without a light refuse it.
+            self.line.source.send(&light(on)).ok();
+        }
+    }
+
+    fn reading(&self) -> CapReading {
+        let mut reading = self.state.reading();
+        let CapReading { translation, rotation, .. } = &mut reading;
+        for (axis, _) in translation.iter_mut().chain(rotation).zip(self.invert).filter(|(_, invert)| *invert) {
+            *axis = -*axis;
+        }
+        reading
+    }
+}
+
+impl Device for CapDriver {
+    type Reading = CapReading;
+
+    fn poll(&mut self, now_s: f64) -> Option<Stamped<CapReading>> {
+        let Self { line, wire, state, battery_percent, .. } = self;
+        let was_lost = line.is_lost();
+        let news = line.receive(now_s, |bytes| match wire {
+            Wire::Reports => {
+                let report = CapReport::decode(bytes)?;
+                if let CapReport::Battery { percent, .. } = report {
+                    *battery_percent = Some(percent);
+                }
+                Ok(state.take(&report, now_s))
+            }
+            Wire::Spacenavd => {
+                spacenavd::Event::decode(bytes)?.apply(state, now_s);
+                Ok(true)
+            }
+        });
+        let newly_lost = line.is_lost() && !was_lost;
+        if line.is_lost() {
+            *state = CapState::default();
+        }
+        let released = state.release_stale(now_s);
+        line.health.lost += released;
+        (news || newly_lost || released > 0).then(|| Stamped {
+            device_s: None,
+            arrival_s: now_s,
+            value: self.reading(),
+        })
+    }
+
+    fn health(&self) -> &Health {
+        &self.line.health
+    }
+
+    fn identity(&self) -> &Identity {
+        &self.line.identity
+    }
+}
+
+impl Drop for CapDriver {
+    fn drop(&mut self) {
+        self.show(false);
+    }
+}

@@ -1,0 +1,97 @@
+//! What both drivers share: taking in reports with bounded work, and when damage is too much.
+
+use super::cap_codec::BadReport;
+use crate::{Health, Identity, Loss, Stamped, Standing, transport::Datagrams};
+
+/// Reports taken in one poll; a device that floods is cut into pieces.
+const REPORTS_MAX: usize = 64;
+/// So many bad reports in a row, 64 ms of a wired cap, and the device is lost.
+const BAD_MAX: u32 = 8;
+/// Longest report of a full-speed device, with its id.
+const BUFFER: usize = 65;
+
+/// An open source with its counters.
+pub(super) struct Line {
+    pub(super) source: Box<dyn Datagrams>,
+    pub(super) health: Health,
+    pub(super) identity: Identity,
+    bad_in_a_row: u32,
+}
+
+impl Line {
+    /// Connected at once: a device at rest says nothing.
+    pub(super) fn of(source: Box<dyn Datagrams>, identity: Identity) -> Self {
+        let mut health = Health::opening();
+        health.standing = Standing::Connected;
+        Self { source, health, identity, bad_in_a_row: 0 }
+    }
+
+    /// Gives every report that has arrived to `take`, whose answer tells whether it was good.
+    pub(super) fn receive(&mut self, now_s: f64, mut take: impl FnMut(&[u8]) -> Result<bool, BadReport>) -> bool {
+        let mut buffer = [0; BUFFER];
+        let mut news = false;
+        for _ in 0..REPORTS_MAX {
+            if self.is_lost() {
+                break;
+            }
+            match self.source.receive(&mut buffer) {
+                Ok(Some(count)) => match take(&buffer[..count.min(BUFFER)]) {
+                    Ok(is_news) => {
+                        self.bad_in_a_row = 0;
+                        if is_news {
+                            self.health.accept(now_s);
+                            news = true;
+                        }
+                    }
+                    Err(bad) => self.count(bad),
+                },
+                Ok(None) => break,
+                Err(loss) => {
+                    self.health.lose(loss);
+                }
+            }
+        }
+        news
+    }
+
+    fn count(&mut self, bad: BadReport) {
+        self.bad_in_a_row += 1;
+        let loss = match bad {
+            BadReport::Shape => {
+                self.health.damaged += 1;
+                Loss::Corrupt
+            }
+            BadReport::Content => {
+                self.health.refused += 1;
+                Loss::Implausible
+            }
+        };
+        if self.bad_in_a_row >= BAD_MAX {
+            self.health.lose(loss);
+        }
+    }
+
+    pub(super) const fn is_lost(&self) -> bool {
+        matches!(self.health.standing, Standing::Lost(_))
+    }
+}
+
+/// The value of a device that speaks only when something changes: kept between its readings, at rest whenever it is not
+/// connected and until it has spoken again.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Held<T> {
+    value: T,
+}
+
+impl<T: Copy + Default> Held<T> {
+    /// Takes what this tick's poll gave, and gives what counts now.
+    pub fn update(&mut self, reading: Option<Stamped<T>>, health: &Health) -> T {
+        if let Some(reading) = reading {
+            self.value = reading.value;
+        }
+        if health.standing != Standing::Connected {
+            self.value = T::default();
+        }
+        self.value
+    }
+}

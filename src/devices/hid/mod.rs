@@ -1,0 +1,31 @@
+//! Human interface devices on the table and under it: six-axis caps (`SpaceMouse`) and foot pedals.
+//!
+//! Reports come from one of four sources behind [`Datagrams`](super::transport::Datagrams): a hidraw node (found by its ids or
+//! opened by its path), the socket of our emulator, the socket of `spacenavd`, or a pair in memory (tests). Nothing here can tell
+//! a device at rest from one that is dead: both are silent. Therefore only what arrives presses a switch; whatever cannot be
+//! read, is damaged, lost or too old counts as released and as zero ([`Held`], [`RELEASE_AFTER_S`]).
+//!
+//! A pedal that is a keyboard also types into the focused window unless the udev rules of `nima devices --udev` are installed. A
+//! pedal must never be the only emergency stop.
+
+pub mod cap_codec;
+mod cap_driver;
+mod driver;
+mod models;
+pub mod pedal_codec;
+mod pedal_driver;
+mod raw;
+#[cfg(target_os = "linux")]
+pub mod seqpacket;
+pub mod source;
+pub mod spacenavd;
+
+#[cfg(test)]
+mod tests;
+
+pub use cap_codec::RELEASE_AFTER_S;
+pub use cap_driver::{CapDriver, CapSettings};
+pub use driver::Held;
+pub use models::{Kind, MODELS, Model, known};
+pub use pedal_driver::{PedalDriver, PedalRoles, PedalSettings};
+pub use source::{HidIdentity, Source};

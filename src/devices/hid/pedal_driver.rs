@@ -1,0 +1,151 @@
+//! The driver of foot pedals.
+
+use serde::{Deserialize, Serialize};
+
+use super::{
+    driver::Line,
+    models::Kind,
+    pedal_codec::{KEYS_MAX, Layout},
+    source::{HidIdentity, Source},
+};
+use crate::{Device, Health, Identity, PedalReading, Stamped, Trouble, transport::Datagrams};
+
+/// Pedal part of a rig file.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct PedalSettings {
+    /// Where its reports come from; see [`Source`].
+    pub source: String,
+    /// Of a pedal that is a keyboard: the key code (HID usage page 7) of every switch, first switch first. Single pedals leave the
+    /// factory with `b` (5), triple ones with `a`, `b`, `c` (4, 5, 6): by default switch 0 is `b`, 1 is `a`, 2 is `c`.
+    pub keys: Vec<u8>,
+    /// The switch, from 0, that couples the follower to the hand.
+    pub clutch: u32,
+    /// The switch that says that somebody is there; none where there is no such switch.
+    pub presence: Option<u32>,
+}
+
+impl Default for PedalSettings {
+    fn default() -> Self {
+        Self { source: "any".to_owned(), keys: vec![5, 4, 6], clutch: 0, presence: None }
+    }
+}
+
+/// What the switches mean.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct PedalRoles {
+    clutch: u32,
+    presence: Option<u32>,
+}
+
+impl PedalRoles {
+    /// The clutch is pressed.
+    pub const fn clutch(self, reading: PedalReading) -> bool {
+        reading.pressed >> self.clutch & 1 == 1
+    }
+
+    /// Somebody is there; `None` where no switch tells.
+    pub fn presence(self, reading: PedalReading) -> Option<bool> {
+        self.presence.map(|switch| reading.pressed >> switch & 1 == 1)
+    }
+}
+
+impl PedalSettings {
+    /// Checks the numbers and gives the meaning of the switches.
+    pub fn roles(&self) -> Result<PedalRoles, Trouble> {
+        let setting = |key: &str, value: String, allowed: &str| Trouble::Setting {
+            key: key.to_owned(),
+            value,
+            allowed: allowed.to_owned(),
+        };
+        if self.keys.is_empty() || self.keys.len() > KEYS_MAX || self.keys.iter().any(|key| *key < 4) {
+            return Err(setting("keys", format!("{:?}", self.keys), "one to eight key codes from 4"));
+        }
+        for (key, switch) in [("clutch", Some(self.clutch)), ("presence", self.presence)] {
+            if let Some(switch) = switch.filter(|switch| *switch >= KEYS_MAX as u32) {
+                return Err(setting(key, switch.to_string(), "a switch from 0 to 7"));
+            }
+        }
+        if self.presence == Some(self.clutch) {
+            return Err(setting("presence", self.clutch.to_string(), "another switch than the clutch"));
+        }
+        Ok(PedalRoles { clutch: self.clutch, presence: self.presence })
+    }
+
+    /// Refuses switches, keys and sources that cannot be.
+    pub fn check(&self) -> Result<(), Trouble> {
+        self.roles()?;
+        self.source.parse::<Source>().map(drop)
+    }
+
+    fn layout(&self, kind: Kind) -> Layout {
+        if kind == Kind::SwitchPedal {
+            return Layout::Switches;
+        }
+        let mut keys = [0; KEYS_MAX];
+        keys.iter_mut().zip(&self.keys).for_each(|(to, from)| *to = *from);
+        Layout::Keyboard { keys }
+    }
+}
+
+/// An open pedal; everything is released until it reports. Reports come on change, and a change that is not understood releases everything.
+/// Its silence cannot be told from a foot that does not move.
+pub struct PedalDriver {
+    line: Line,
+    layout: Layout,
+    roles: PedalRoles,
+    pressed: u32,
+}
+
+impl PedalDriver {
+    /// Opens it; may take some 100 ms.
+    pub fn open(settings: &PedalSettings) -> Result<Self, Trouble> {
+        settings.roles()?;
+        let source: Source = settings.source.parse()?;
+        let (datagrams, identity) = source.open(&[Kind::KeyboardPedal, Kind::SwitchPedal])?;
+        Self::over(datagrams, &identity, settings)
+    }
+
+    /// On an open source of reports. A pedal with unknown ids is taken for a keyboard.
+    pub fn over(
+        datagrams: Box<dyn Datagrams>,
+        identity: &HidIdentity,
+        settings: &PedalSettings,
+    ) -> Result<Self, Trouble> {
+        let layout = settings.layout(identity.kind().unwrap_or(Kind::KeyboardPedal));
+        let line = Line::of(datagrams, identity.identity());
+        Ok(Self { line, layout, roles: settings.roles()?, pressed: 0 })
+    }
+
+    /// What the switches mean.
+    pub const fn roles(&self) -> PedalRoles {
+        self.roles
+    }
+}
+
+impl Device for PedalDriver {
+    type Reading = PedalReading;
+
+    fn poll(&mut self, now_s: f64) -> Option<Stamped<PedalReading>> {
+        let Self { line, layout, pressed, .. } = self;
+        let before = (*pressed, line.is_lost());
+        let mut news = line.receive(now_s, |bytes| {
+            let switches = layout.decode(bytes);
+            *pressed = switches.unwrap_or(0);
+            switches.map(|_| true)
+        });
+        if line.is_lost() {
+            *pressed = 0;
+        }
+        news |= before != (*pressed, line.is_lost());
+        news.then_some(Stamped { device_s: None, arrival_s: now_s, value: PedalReading { pressed: *pressed } })
+    }
+
+    fn health(&self) -> &Health {
+        &self.line.health
+    }
+
+    fn identity(&self) -> &Identity {
+        &self.line.identity
+    }
+}

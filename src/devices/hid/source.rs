@@ -1,0 +1,191 @@
+//! Where reports come from, as written in a rig file.
+
+use std::{fmt, path::PathBuf, str::FromStr};
+
+use nima_files::quoted;
+
+use super::{
+    models::{Kind, known},
+    raw,
+};
+use crate::{Identity, Trouble, transport::Datagrams};
+
+/// Where reports come from. In a rig file: `any`, `046d:c626`, `046d:c626:SERIAL`, a path such as `/dev/hidraw0`, `emulated:PATH` (the
+/// socket of `nima emulate`), `spacenavd` or `spacenavd:PATH` (caps only).
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Source {
+    /// The first known device of the kind.
+    Any,
+    /// By USB ids.
+    Ids {
+        vendor: u16,
+        product: u16,
+        /// Serial number, where there are several of them.
+        serial: Option<String>,
+    },
+    /// A device file.
+    Path(PathBuf),
+    /// Our emulator.
+    Emulated(PathBuf),
+    /// The daemon.
+    Spacenavd(PathBuf),
+}
+
+/// Who a human interface device says it is.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct HidIdentity {
+    pub vendor: u16,
+    pub product: u16,
+    /// Serial number, often empty.
+    pub serial: String,
+    /// Product in its own words.
+    pub name: String,
+}
+
+/// First word of the first packet of an emulator: what the file system of the kernel tells of a real device.
+const HELLO: &str = "nima-hid";
+
+impl HidIdentity {
+    /// The emulator's first packet.
+    pub fn hello(&self) -> String {
+        let serial = if self.serial.is_empty() { "-" } else { &self.serial };
+        format!("{HELLO} {:04x}:{:04x} {serial} {}", self.vendor, self.product, self.name)
+    }
+
+    pub(super) fn of_hello(packet: &[u8]) -> Option<Self> {
+        let text = std::str::from_utf8(packet).ok()?;
+        let mut words = text.splitn(4, ' ');
+        let (Some(HELLO), Some(ids), Some(serial), Some(name)) =
+            (words.next(), words.next(), words.next(), words.next())
+        else {
+            return None;
+        };
+        let (vendor, product) = ids.split_once(':')?;
+        let id = |text| u16::from_str_radix(text, 16).ok();
+        let serial = if serial == "-" { String::new() } else { serial.to_owned() };
+        Some(Self { vendor: id(vendor)?, product: id(product)?, serial, name: name.to_owned() })
+    }
+
+    /// How it reports; `None` of an unknown one. Everything newer of 3Dconnexion is a cap.
+    pub fn kind(&self) -> Option<Kind> {
+        match known(self.vendor, self.product) {
+            Some(model) => Some(model.kind),
+            None if self.vendor == 0x256f => Some(Kind::Cap),
+            None => None,
+        }
+    }
+
+    /// In words.
+    pub fn words(&self) -> String {
+        let Self { vendor, product, name, .. } = self;
+        let name = if name.is_empty() { known(*vendor, *product).map_or("device", |model| model.name) } else { name };
+        format!("{} ({vendor:04x}:{product:04x})", quoted(name))
+    }
+
+    pub(super) fn identity(&self) -> Identity {
+        Identity { product: self.words(), serial: self.serial.clone(), firmware: String::new() }
+    }
+}
+
+impl FromStr for Source {
+    type Err = Trouble;
+
+    fn from_str(text: &str) -> Result<Self, Trouble> {
+        let wrong = || Trouble::Setting {
+            key: "source".to_owned(),
+            value: format!("\"{text}\""),
+            allowed: "any, VENDOR:PRODUCT[:SERIAL] in hexadecimal digits, a path, emulated:PATH or spacenavd[:PATH]"
+                .to_owned(),
+        };
+        match text.split_once(':') {
+            Some(("emulated", path)) if !path.is_empty() => return Ok(Self::Emulated(path.into())),
+            Some(("spacenavd", path)) if !path.is_empty() => return Ok(Self::Spacenavd(path.into())),
+            None if text == "any" => return Ok(Self::Any),
+            None if text == "spacenavd" => {
+                let path = std::env::var_os("SPNAV_SOCKET").unwrap_or_else(|| super::spacenavd::SOCKET.into());
+                return Ok(Self::Spacenavd(path.into()));
+            }
+            _ if text.contains('/') => return Ok(Self::Path(text.into())),
+            _ => {}
+        }
+        let mut parts = text.splitn(3, ':');
+        let mut id = || parts.next().filter(|part| part.len() == 4).and_then(|part| u16::from_str_radix(part, 16).ok());
+        let (Some(vendor), Some(product)) = (id(), id()) else { return Err(wrong()) };
+        Ok(Self::Ids { vendor, product, serial: parts.next().map(str::to_owned) })
+    }
+}
+
+impl fmt::Display for Source {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Any => f.write_str("any"),
+            Self::Ids { vendor, product, serial: None } => write!(f, "{vendor:04x}:{product:04x}"),
+            Self::Ids { vendor, product, serial: Some(serial) } => write!(f, "{vendor:04x}:{product:04x}:{serial}"),
+            Self::Path(path) => path.display().fmt(f),
+            Self::Emulated(path) => write!(f, "emulated:{}", path.display()),
+            Self::Spacenavd(path) => write!(f, "spacenavd:{}", path.display()),
+        }
+    }
+}
+
+impl Source {
+    /// Opens it, and checks that what is there is one of `kinds`; ids that were given are believed.
+    pub(super) fn open(&self, kinds: &[Kind]) -> Result<(Box<dyn Datagrams>, HidIdentity), Trouble> {
+        let what = kinds.first().map_or("device", |kind| kind.words());
+        let fits = |identity: &HidIdentity| identity.kind().is_some_and(|kind| kinds.contains(&kind));
+        let opened = match self {
+            Self::Any => raw::open_first(&format!("any {what}"), fits),
+            Self::Ids { vendor, product, serial } => {
+                return raw::open_first(&format!("{what} {self}"), |identity| {
+                    (identity.vendor, identity.product) == (*vendor, *product)
+                        && serial.as_ref().is_none_or(|serial| *serial == identity.serial)
+                });
+            }
+            Self::Path(path) => raw::open_path(path),
+            Self::Emulated(path) => emulated(path),
+            Self::Spacenavd(_) => Err(Trouble::Setting {
+                key: "source".to_owned(),
+                value: self.to_string(),
+                allowed: "spacenavd gives caps only".to_owned(),
+            }),
+        }?;
+        if fits(&opened.1) {
+            return Ok(opened);
+        }
+        Err(Trouble::WrongProduct { place: self.to_string(), expected: what.to_owned(), found: opened.1.words() })
+    }
+}
+
+#[cfg(target_os = "linux")]
+fn emulated(path: &std::path::Path) -> Result<(Box<dyn Datagrams>, HidIdentity), Trouble> {
+    use std::time::{Duration, Instant};
+    /// An emulator says who it is within this.
+    const TIMEOUT: Duration = Duration::from_millis(300);
+    let place = format!("emulated:{}", path.display());
+    let mut packets = super::seqpacket::connect(path).map_err(|error| match error.kind() {
+        std::io::ErrorKind::ConnectionRefused => Trouble::NobodyListens { place: place.clone() },
+        _ => Trouble::of_port(path, &error, "the socket of an emulator belongs to who started it"),
+    })?;
+    let (begin, mut buffer) = (Instant::now(), [0; 256]);
+    while begin.elapsed() < TIMEOUT {
+        match packets.receive(&mut buffer) {
+            Ok(Some(count)) => {
+                let wrong = || Trouble::WrongProduct {
+                    place: place.clone(),
+                    expected: "emulated human interface device".to_owned(),
+                    found: "socket of another program".to_owned(),
+                };
+                let identity = HidIdentity::of_hello(&buffer[..count]).ok_or_else(wrong)?;
+                return Ok((Box::new(packets), identity));
+            }
+            Ok(None) => std::thread::sleep(Duration::from_millis(1)),
+            Err(_) => return Err(Trouble::Absent { place }),
+        }
+    }
+    Err(Trouble::Silent { place })
+}
+
+#[cfg(not(target_os = "linux"))]
+fn emulated(path: &std::path::Path) -> Result<(Box<dyn Datagrams>, HidIdentity), Trouble> {
+    Err(Trouble::Other { place: path.display().to_string(), reason: "emulated devices need Linux".to_owned() })
+}

@@ -1,0 +1,133 @@
+//! The socket of `spacenavd` (protocol 0): a source for caps without rights on the device itself.
+//!
+//! A UNIX stream of events of eight native 32-bit integers: `[0, x, y, z, rx, ry, rz, period]` for motion, `[1, button, ...]` for press,
+//! `[2, button, ...]` for release. The daemon's axes are x right, y up, z away from the user (its default map), full deflection about 350
+//! at sensitivity 1. The events arrive only while something changes.
+
+use std::{
+    io::{ErrorKind, Read as _, Write as _},
+    path::Path,
+};
+
+use nalgebra::Vector3;
+
+use super::cap_codec::{BadReport, CapState, FULL};
+use crate::{Loss, Trouble, transport::Datagrams};
+
+/// Where the daemon listens unless told otherwise.
+pub const SOCKET: &str = "/var/run/spnav.sock";
+/// Bytes of an event.
+pub const EVENT_LENGTH: usize = 32;
+const MOTION: i32 = 0;
+const PRESS: i32 = 1;
+const RELEASE: i32 = 2;
+/// Counts above which an axis is not possible, whatever the sensitivity.
+const POSSIBLE: u32 = 100_000;
+
+/// One event of the daemon.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Event {
+    /// x, y, z, rx, ry, rz in the daemon's axes, counts.
+    Motion([i32; 6]),
+    /// A button, from 0.
+    Button {
+        number: u32,
+        /// Down.
+        pressed: bool,
+    },
+}
+
+impl Event {
+    /// Reads one event.
+    pub fn decode(bytes: &[u8]) -> Result<Self, BadReport> {
+        let bytes: &[u8; EVENT_LENGTH] = bytes.try_into().map_err(|_| BadReport::Shape)?;
+        let mut words = [0_i32; 8];
+        words.iter_mut().zip(bytes.as_chunks::<4>().0).for_each(|(word, four)| *word = i32::from_ne_bytes(*four));
+        match words {
+            [MOTION, axes @ .., _] if axes.iter().all(|axis| axis.unsigned_abs() < POSSIBLE) => Ok(Self::Motion(axes)),
+            [MOTION, ..] => Err(BadReport::Content),
+            [kind @ (PRESS | RELEASE), number, ..] => match u32::try_from(number) {
+                Ok(number) => Ok(Self::Button { number, pressed: kind == PRESS }),
+                Err(_) => Err(BadReport::Content),
+            },
+            _ => Err(BadReport::Shape),
+        }
+    }
+
+    /// Writes it; `period_ms` since the last motion.
+    pub fn encode(&self, period_ms: i32) -> [u8; EVENT_LENGTH] {
+        let mut words = [0_i32; 8];
+        match self {
+            Self::Motion(axes) => {
+                words[1..7].copy_from_slice(axes);
+                words[7] = period_ms;
+            }
+            Self::Button { number, pressed } => {
+                words[..2].copy_from_slice(&[if *pressed { PRESS } else { RELEASE }, number.cast_signed()]);
+            }
+        }
+        let mut bytes = [0; EVENT_LENGTH];
+        bytes.as_chunks_mut::<4>().0.iter_mut().zip(words).for_each(|(four, word)| *four = word.to_ne_bytes());
+        bytes
+    }
+
+    /// Takes it into a cap's state; the daemon's y and z change places.
+    pub fn apply(&self, state: &mut CapState, now_s: f64) {
+        match self {
+            Self::Motion([x, y, z, rx, ry, rz]) => {
+                let axes = |x: &i32, y: &i32, z: &i32| {
+                    Vector3::new(*x, *y, *z).map(|count| (f64::from(count) / FULL).clamp(-1.0, 1.0))
+                };
+                state.set(axes(x, z, y), axes(rx, rz, ry), now_s);
+            }
+            Self::Button { number, pressed } => state.set_button(*number, *pressed),
+        }
+    }
+}
+
+/// A connection to the daemon that gives whole events.
+#[cfg(unix)]
+#[derive(Debug)]
+pub struct Spacenavd {
+    stream: std::os::unix::net::UnixStream,
+    partial: [u8; EVENT_LENGTH],
+    filled: usize,
+}
+
+#[cfg(unix)]
+impl Spacenavd {
+    /// Connects to the daemon's socket.
+    pub fn open(path: &Path) -> Result<Self, Trouble> {
+        let stream = std::os::unix::net::UnixStream::connect(path).and_then(|stream| {
+            stream.set_nonblocking(true)?;
+            Ok(stream)
+        });
+        let stream = stream.map_err(|error| match error.kind() {
+            ErrorKind::ConnectionRefused => Trouble::NobodyListens { place: path.display().to_string() },
+            _ => Trouble::of_port(path, &error, "the socket of spacenavd needs no rule; set its mode to 0666"),
+        })?;
+        Ok(Self { stream, partial: [0; EVENT_LENGTH], filled: 0 })
+    }
+}
+
+#[cfg(unix)]
+impl Datagrams for Spacenavd {
+    fn receive(&mut self, buffer: &mut [u8]) -> Result<Option<usize>, Loss> {
+        match self.stream.read(&mut self.partial[self.filled..]) {
+            Ok(0) => return Err(Loss::Disconnected),
+            Ok(count) => self.filled += count,
+            Err(error) if matches!(error.kind(), ErrorKind::WouldBlock | ErrorKind::Interrupted) => return Ok(None),
+            Err(_) => return Err(Loss::Disconnected),
+        }
+        if self.filled < EVENT_LENGTH || buffer.len() < EVENT_LENGTH {
+            return Ok(None);
+        }
+        self.filled = 0;
+        buffer[..EVENT_LENGTH].copy_from_slice(&self.partial);
+        Ok(Some(EVENT_LENGTH))
+    }
+
+    fn send(&mut self, bytes: &[u8]) -> Result<(), Loss> {
+        self.stream.write_all(bytes).map_err(|_| Loss::Disconnected)
+    }
+}

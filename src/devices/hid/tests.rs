@@ -1,0 +1,3 @@
+//! Codecs against golden vectors and noise.
+
+mod codecs;

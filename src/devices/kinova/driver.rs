@@ -1,0 +1,279 @@
+//! The running arm: one cyclic exchange a tick, calls that are never waited for, commands behind a guard.
+//!
+//! Lost after 18 ms without a good reading, 10 damaged or 5 impossible frames in a row, half a second without an answer to a call,
+//! the first fault, or a broken connection. Waiting is measured from the request on, so a tick that comes late loses nothing.
+
+use nalgebra::{UnitQuaternion, Vector3};
+
+use super::{
+    cycle::Cycle,
+    feedback::Feedback,
+    limits::{Guard, unwrapped, wire_degrees},
+    messages::{ActuatorCommand, Command, Number, Rpc, SERVO_ENABLE, ServoingMode, Twist, TwistCommand},
+    session::Lines,
+    settings::Settings,
+};
+use crate::{
+    ARM_JOINTS, ArmReading, Device, Health, Identity, Loss, Stamped, Standing,
+    transport::{Bytes as _, Datagrams as _},
+};
+
+mod commands;
+mod leaving;
+mod taking;
+
+pub use commands::{Refusal, ToolTwist, TwistFrame};
+pub(super) use leaving::close_sessions;
+
+/// Longest wait for a cyclic answer, s.
+const SILENT_S: f64 = 0.018;
+/// Longest wait for the answer to a call, s.
+const CALL_SILENT_S: f64 = 0.5;
+/// Between two signs of life on each connection, s (the manufacturer's client has the same).
+const KEEP_ALIVE_S: f64 = 0.150;
+/// Longest wait for a change of mode, s.
+const MODE_S: f64 = 1.0;
+/// Requests are at least so far apart, s.
+const SPACING_S: f64 = 0.5e-3;
+
+/// Who moves the arm, and what is on its way to change that.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Mode {
+    Single,
+    /// Asked for low level.
+    Entering {
+        number: u16,
+        since_s: f64,
+    },
+    Low,
+    /// Comes to rest before it leaves low level.
+    Braking,
+    /// Asked for single level; holds until that is granted.
+    Leaving {
+        number: u16,
+        since_s: f64,
+    },
+}
+
+/// How a call that nobody waited for was refused.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Answer {
+    /// What was called.
+    pub rpc: Rpc,
+    pub error: u8,
+    /// Error in it; see [`words`](super::messages::sub::words).
+    pub sub_error: u16,
+}
+
+/// Where the arm's own model sees its tool, in its base frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ToolReading {
+    /// Place, m.
+    pub position_m: Vector3<f64>,
+    /// Orientation, under the convention of [`theta_rad`](super::kinematics::theta_rad).
+    pub orientation: UnitQuaternion<f64>,
+    pub velocity_m_s: Vector3<f64>,
+    pub angular_rad_s: Vector3<f64>,
+    /// Force on the tool, estimated by the arm, N.
+    pub force_n: Vector3<f64>,
+    pub torque_nm: Vector3<f64>,
+}
+
+/// An open arm.
+#[derive(Debug)]
+pub struct Driver {
+    settings: Settings,
+    lines: Lines,
+    health: Health,
+    identity: Identity,
+    guard: Guard,
+    mode: Mode,
+    cycle: Cycle,
+    feedback: Feedback,
+    joint_rad: [f64; ARM_JOINTS],
+    command: Command,
+    frame_id: u16,
+    now_s: f64,
+    sent_s: Option<f64>,
+    unanswered_s: Option<f64>,
+    call_unanswered_s: Option<f64>,
+    alive_s: Option<f64>,
+    damaged_in_row: u32,
+    impossible_in_row: u32,
+    seen: (u64, u64),
+    twist: commands::Jog,
+    answer: Option<Answer>,
+    ousted: u32,
+}
+
+impl Driver {
+    /// Over open sessions; `feedback` is the first.
+    pub(super) fn new(settings: &Settings, lines: Lines, identity: Identity, feedback: &Feedback) -> Self {
+        let seen = (lines.packets.skipped, lines.packets.damaged);
+        Self {
+            settings: settings.clone(),
+            lines,
+            health: Health::opening(),
+            identity,
+            guard: Guard::new(settings.joint_limits()),
+            mode: Mode::Single,
+            cycle: Cycle::default(),
+            feedback: *feedback,
+            joint_rad: feedback.actuators.map(|a| unwrapped(a.position_deg, 0.0)),
+            command: Command { frame_id: 0, actuators: vec![ActuatorCommand::default(); ARM_JOINTS] },
+            frame_id: 0,
+            now_s: 0.0,
+            sent_s: None,
+            unanswered_s: None,
+            call_unanswered_s: None,
+            alive_s: None,
+            damaged_in_row: 0,
+            impossible_in_row: 0,
+            seen,
+            twist: commands::Jog::default(),
+            answer: None,
+            ousted: 0,
+        }
+    }
+
+    const fn is_lost(&self) -> bool {
+        matches!(self.health.standing, Standing::Lost(_))
+    }
+
+    /// Sends a call without waiting; its number.
+    fn call(&mut self, rpc: Rpc, question: &impl prost::Message) -> u16 {
+        let (number, bytes) = self.lines.calls.request(rpc, question);
+        if let Err(loss) = self.lines.tcp.send(bytes) {
+            self.health.lose(loss);
+        }
+        self.call_unanswered_s.get_or_insert(self.now_s);
+        number
+    }
+
+    fn ask_single_level(&mut self, now_s: f64) {
+        let number = self.call(Rpc::SET_SERVOING_MODE, &Number { value: ServoingMode::Single as u32 });
+        self.mode = Mode::Leaving { number, since_s: now_s };
+    }
+
+    /// What has waited for too long.
+    fn watch(&mut self, now_s: f64) {
+        let over = |since_s: Option<f64>, limit_s: f64| since_s.is_some_and(|since_s| now_s - since_s > limit_s);
+        if over(self.unanswered_s, SILENT_S) || over(self.call_unanswered_s, CALL_SILENT_S) {
+            self.health.lose(Loss::Silent);
+        }
+        match self.mode {
+            Mode::Entering { since_s, .. } | Mode::Leaving { since_s, .. } if now_s - since_s > MODE_S => {
+                self.ask_single_level(now_s);
+            }
+            Mode::Braking if self.guard.is_still() => self.ask_single_level(now_s),
+            _ => {}
+        }
+    }
+
+    /// A sign of life on both connections.
+    fn keep_alive(&mut self, now_s: f64) {
+        if self.alive_s.is_some_and(|alive_s| now_s - alive_s < KEEP_ALIVE_S) {
+            return;
+        }
+        self.alive_s = Some(now_s);
+        self.call(Rpc::KEEP_ALIVE, &());
+        let (_, bytes) = self.lines.cyclic.request(Rpc::KEEP_ALIVE, &());
+        if let Err(loss) = self.lines.udp.send(bytes) {
+            self.health.lose(loss);
+        }
+    }
+
+    /// One request of the cycle: with positions in low level, without any in single level.
+    fn send_cycle(&mut self, now_s: f64) {
+        let elapsed_s = self.sent_s.map_or(SPACING_S, |sent_s| now_s - sent_s);
+        if elapsed_s < SPACING_S {
+            return;
+        }
+        self.sent_s = Some(now_s);
+        let (number, bytes) = if matches!(self.mode, Mode::Single | Mode::Entering { .. }) {
+            self.lines.cyclic.request(Rpc::REFRESH_FEEDBACK, &())
+        } else {
+            self.fill_command(elapsed_s);
+            self.lines.cyclic.request(Rpc::REFRESH, &self.command)
+        };
+        if let Err(loss) = self.lines.udp.send(bytes) {
+            self.health.lose(loss);
+        }
+        self.cycle.asked(number, &mut self.health);
+        self.unanswered_s.get_or_insert(now_s);
+    }
+
+    /// The next positions. Every actuator's command has the number of the frame, or it is thrown away as out of time.
+    fn fill_command(&mut self, elapsed_s: f64) {
+        self.frame_id = self.frame_id.wrapping_add(1);
+        self.command.frame_id = u32::from(self.frame_id);
+        let positions = self.guard.step(elapsed_s);
+        for (command, position_rad) in self.command.actuators.iter_mut().zip(positions) {
+            command.command_id = u32::from(self.frame_id);
+            command.flags = SERVO_ENABLE;
+            command.position_deg = wire_degrees(*position_rad);
+        }
+    }
+}
+
+impl Device for Driver {
+    type Reading = ArmReading;
+
+    fn poll(&mut self, now_s: f64) -> Option<Stamped<ArmReading>> {
+        if self.is_lost() || !now_s.is_finite() {
+            return None;
+        }
+        self.now_s = now_s;
+        let reading = self.take_cycle(now_s);
+        self.take_answers(now_s);
+        self.watch(now_s);
+        if !self.is_lost() {
+            self.keep_alive(now_s);
+            self.send_twist(now_s);
+            self.send_cycle(now_s);
+        }
+        if self.is_lost() {
+            if self.mode != Mode::Single {
+                // Without waiting; closing makes sure of it.
+                self.ask_single_level(now_s);
+            }
+            return None;
+        }
+        reading
+    }
+
+    fn health(&self) -> &Health {
+        &self.health
+    }
+
+    fn identity(&self) -> &Identity {
+        &self.identity
+    }
+}
+
+impl Drop for Driver {
+    fn drop(&mut self) {
+        self.leave();
+    }
+}
+
+/// For [`ToolReading`]: three numbers of the wire.
+fn vector(numbers: &[f32], scale: f64) -> Vector3<f64> {
+    Vector3::new(f64::from(numbers[0]), f64::from(numbers[1]), f64::from(numbers[2])) * scale
+}
+
+fn twist_message(twist: &ToolTwist) -> TwistCommand {
+    let (linear, angular) = (twist.linear_m_s.cast::<f32>(), twist.angular_rad_s.map(f64::to_degrees).cast::<f32>());
+    TwistCommand {
+        reference_frame: twist.frame as u32,
+        twist: Some(Twist {
+            linear_x: linear.x,
+            linear_y: linear.y,
+            linear_z: linear.z,
+            angular_x: angular.x,
+            angular_y: angular.y,
+            angular_z: angular.z,
+        }),
+        duration: 0,
+    }
+}

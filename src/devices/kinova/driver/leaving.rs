@@ -1,0 +1,50 @@
+//! The end of a connection: whatever happened before, the arm is left at rest, in single level, without sessions of ours.
+//!
+//! Waits, at most about two seconds; for a thread that may.
+
+use std::{
+    thread::sleep,
+    time::{Duration, Instant},
+};
+
+use super::{Driver, Mode};
+use crate::{
+    Device as _,
+    kinova::{
+        messages::{Number, Rpc, ServoingMode},
+        session::Lines,
+    },
+    transport::Datagrams as _,
+};
+
+/// Longest time to come to rest and leave low level; at full speed braking takes 0.3 s.
+const LEAVE: Duration = Duration::from_millis(800);
+const ANSWER: Duration = Duration::from_millis(200);
+const TICK: Duration = Duration::from_millis(1);
+
+impl Driver {
+    pub(super) fn leave(&mut self) {
+        if self.twist.active {
+            self.release_twist();
+        }
+        self.leave_low_level();
+        let (begin, begin_s) = (Instant::now(), self.now_s);
+        while self.mode != Mode::Single && !self.is_lost() && begin.elapsed() < LEAVE {
+            sleep(TICK);
+            self.poll(begin_s + begin.elapsed().as_secs_f64());
+        }
+        if self.mode != Mode::Single {
+            // The cycle is broken: at least say it, and stop.
+            let single = Number { value: ServoingMode::Single as u32 };
+            self.lines.ask_within(Rpc::SET_SERVOING_MODE, &single, ANSWER).ok();
+        }
+        close_sessions(&mut self.lines);
+    }
+}
+
+/// Closes both sessions, as far as somebody listens.
+pub(in crate::kinova) fn close_sessions(lines: &mut Lines) {
+    let (_, bytes) = lines.cyclic.request(Rpc::CLOSE_SESSION, &());
+    lines.udp.send(bytes).ok();
+    lines.ask_within(Rpc::CLOSE_SESSION, &(), ANSWER).ok();
+}

@@ -1,0 +1,191 @@
+//! What arrives: answers of the cycle and to calls, checked and counted.
+
+use super::{Answer, Driver, Mode};
+use crate::{
+    ARM_JOINTS, ArmReading, Loss, Stamped,
+    kinova::{
+        faults::Faults,
+        feedback::Feedback,
+        frame::{Frame, Header, NOTIFICATION, RESPONSE},
+        limits::unwrapped,
+        messages::{ArmState, Rpc, sub},
+    },
+    transport::{Bytes as _, Datagrams as _},
+};
+
+const DAMAGED_MAX: u32 = 10;
+const IMPOSSIBLE_MAX: u32 = 5;
+/// Datagrams taken in one poll.
+const DATAGRAMS: usize = 64;
+/// Reads of the stream in one poll.
+const READS: usize = 4;
+/// Faster than this no joint turns, rad/s; with [`JUMP_RAD`] for old readings.
+const JUMP_RAD_S: f64 = 10.0;
+const JUMP_RAD: f64 = 0.2;
+
+impl Driver {
+    /// Takes in the answers of the cycle; the newest good one is the reading.
+    pub(super) fn take_cycle(&mut self, now_s: f64) -> Option<Stamped<ArmReading>> {
+        let mut newest = None;
+        for _ in 0..DATAGRAMS {
+            let count = match self.lines.udp.receive(&mut self.lines.datagram) {
+                Ok(Some(count)) => count,
+                Ok(None) => break,
+                Err(loss) => {
+                    self.health.lose(loss);
+                    break;
+                }
+            };
+            let told = Frame::decode(&self.lines.datagram[..count]).map(|frame| {
+                let feedback = Feedback::decode(frame.payload).ok().filter(|told| told.count == ARM_JOINTS);
+                (frame.header, feedback)
+            });
+            let good = match told {
+                Ok((header, feedback)) => self.take_datagram(&header, feedback.as_ref(), now_s),
+                Err(_) => self.damaged(),
+            };
+            if good {
+                newest = Some(Stamped { device_s: None, arrival_s: now_s, value: self.reading() });
+            }
+        }
+        newest
+    }
+
+    /// Counts a frame with a shape that cannot be.
+    fn damaged(&mut self) -> bool {
+        self.health.damaged += 1;
+        self.damaged_in_row += 1;
+        if self.damaged_in_row >= DAMAGED_MAX {
+            self.health.lose(Loss::Corrupt);
+        }
+        false
+    }
+
+    /// True when it is a new and good reading.
+    fn take_datagram(&mut self, header: &Header, feedback: Option<&Feedback>, now_s: f64) -> bool {
+        let cyclic = matches!(header.rpc(), Rpc::REFRESH | Rpc::REFRESH_FEEDBACK);
+        match header.kind {
+            RESPONSE if header.error != 0 => {
+                self.refused(header);
+                return false;
+            }
+            RESPONSE if cyclic => {}
+            RESPONSE if header.service == Rpc::KEEP_ALIVE.service => return false,
+            NOTIFICATION => return false,
+            _ => return self.damaged(),
+        }
+        let Some(feedback) = feedback else { return self.damaged() };
+        self.damaged_in_row = 0;
+        if !self.cycle.answered(header.message, &mut self.health) {
+            return false;
+        }
+        let faults = Faults::of(feedback);
+        if faults.any() {
+            self.feedback = *feedback;
+            self.health.refused += 1;
+            self.health.lose(Loss::Device { code: faults.code() });
+            return false;
+        }
+        let joint_rad = std::array::from_fn(|j| unwrapped(feedback.actuators[j].position_deg, self.joint_rad[j]));
+        if !self.is_possible(feedback, &joint_rad, now_s) {
+            self.health.refused += 1;
+            self.impossible_in_row += 1;
+            if self.impossible_in_row >= IMPOSSIBLE_MAX {
+                self.health.lose(Loss::Implausible);
+            }
+            return false;
+        }
+        (self.impossible_in_row, self.unanswered_s) = (0, None);
+        (self.feedback, self.joint_rad) = (*feedback, joint_rad);
+        self.health.accept(now_s);
+        true
+    }
+
+    /// The numbers are finite, within the arm's abilities, and no jump of the last ones.
+    fn is_possible(&self, feedback: &Feedback, joint_rad: &[f64; ARM_JOINTS], now_s: f64) -> bool {
+        // Before the first reading a jump means nothing.
+        let reach_rad = JUMP_RAD_S.mul_add(self.health.age_s(now_s), JUMP_RAD);
+        feedback.is_finite()
+            && feedback.actuators.iter().all(|a| a.position_deg.abs() <= 720.0 && a.velocity_deg_s.abs() <= 1000.0)
+            && joint_rad.iter().zip(&self.joint_rad).all(|(now, last)| (now - last).abs() <= reach_rad)
+    }
+
+    /// An error instead of an answer, on either connection.
+    fn refused(&mut self, header: &Header) {
+        let answer = Answer { rpc: header.rpc(), error: header.error, sub_error: header.sub_error };
+        let cyclic = matches!(answer.rpc, Rpc::REFRESH | Rpc::REFRESH_FEEDBACK);
+        if cyclic {
+            self.cycle.answered(header.message, &mut self.health);
+            self.health.refused += 1;
+        }
+        match header.sub_error {
+            sub::INVALID_SESSION => {
+                self.health.lose(Loss::Disconnected);
+            }
+            sub::WRONG_SERVOING_MODE if cyclic => {
+                self.unanswered_s = None;
+                // Somebody else took the arm back to the single level.
+                if matches!(self.mode, Mode::Low | Mode::Braking) {
+                    self.mode = Mode::Single;
+                    self.ousted += 1;
+                    self.answer = Some(answer);
+                }
+            }
+            code if cyclic => {
+                self.health.lose(Loss::Device { code: u32::from(code) });
+            }
+            _ => self.answer = Some(answer),
+        }
+    }
+
+    fn reading(&self) -> ArmReading {
+        let actuators = &self.feedback.actuators;
+        ArmReading {
+            joint_rad: self.joint_rad,
+            joint_rad_s: std::array::from_fn(|j| f64::from(actuators[j].velocity_deg_s).to_radians()),
+            // The arm tells torques with the sign opposite to that of torque commands.
+            joint_nm: std::array::from_fn(|j| -f64::from(actuators[j].torque_nm)),
+            servoing: self.mode == Mode::Low && self.feedback.state == ArmState::SERVOING_LOW_LEVEL,
+        }
+    }
+
+    /// Takes in the answers to calls.
+    pub(super) fn take_answers(&mut self, now_s: f64) {
+        for _ in 0..READS {
+            match self.lines.tcp.receive(self.lines.packets.room()) {
+                Ok(0) => break,
+                Ok(count) => self.lines.packets.took(count),
+                Err(loss) => {
+                    self.health.lose(loss);
+                    return;
+                }
+            }
+            while let Some(header) = self.lines.packets.next_frame().map(|frame| frame.header) {
+                if header.kind == RESPONSE {
+                    self.call_unanswered_s = None;
+                    self.take_answer(&header, now_s);
+                }
+            }
+        }
+        let packets = &self.lines.packets;
+        self.health.skipped_bytes += packets.skipped - self.seen.0;
+        self.health.damaged += packets.damaged - self.seen.1;
+        self.seen = (packets.skipped, packets.damaged);
+    }
+
+    fn take_answer(&mut self, header: &Header, now_s: f64) {
+        let good = header.error == 0;
+        if !good {
+            self.refused(header);
+        }
+        match self.mode {
+            Mode::Entering { number, .. } if number == header.message => {
+                self.mode = if good { Mode::Low } else { Mode::Single };
+                self.guard.seed(&self.joint_rad);
+            }
+            Mode::Leaving { number, .. } if number == header.message && good => self.mode = Mode::Single,
+            Mode::Leaving { number, .. } if number == header.message => self.ask_single_level(now_s),
+            _ => {}
+        }
+    }
+}

@@ -1,0 +1,145 @@
+//! What the arm answers to a refresh, read in place into fixed memory.
+//!
+//! `BaseCyclic.Feedback { fixed32 frame_id = 1; BaseFeedback base = 2; repeated ActuatorFeedback actuators = 3 }`; field
+//! numbers as in `BaseCyclic.proto`. Units as on the wire: degrees, metres, newtons.
+
+use super::{
+    messages::ArmState,
+    wire::{Damaged, Fields, Value},
+};
+use crate::ARM_JOINTS;
+
+/// Fault and warning bits of the base or of an actuator.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Banks {
+    pub fault: [u32; 2],
+    pub warning: [u32; 2],
+}
+
+impl Banks {
+    /// It has a fault.
+    pub const fn is_faulty(&self) -> bool {
+        self.fault[0] | self.fault[1] != 0
+    }
+
+    /// Takes the field `k` of the four that follow each other: fault A, B, warning A, B.
+    fn take(&mut self, k: u32, value: Value<'_>) -> Result<(), Damaged> {
+        let bank = if k < 2 { &mut self.fault } else { &mut self.warning };
+        bank[(k & 1) as usize] = value.fixed32()?;
+        Ok(())
+    }
+}
+
+/// What one actuator tells.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Actuator {
+    /// Number of the command that it took last.
+    pub command_id: u32,
+    pub status: u32,
+    /// Angle, degrees in [0, 360).
+    pub position_deg: f32,
+    /// Speed, degrees/s.
+    pub velocity_deg_s: f32,
+    /// Torque, Nm, with the sign opposite to that of commands.
+    pub torque_nm: f32,
+    pub current_a: f32,
+    /// Faults.
+    pub banks: Banks,
+}
+
+/// What the arm tells.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Feedback {
+    /// Number of the cycle.
+    pub frame_id: u32,
+    pub state: ArmState,
+    /// Place of the tool, m, and its angles theta x, y, z, degrees.
+    pub tool_pose: [f32; 6],
+    /// Velocity of the tool, m/s and degrees/s.
+    pub tool_twist: [f32; 6],
+    /// Force and torque on the tool as the base estimates them, N and Nm.
+    pub tool_wrench: [f32; 6],
+    /// Faults of the base.
+    pub banks: Banks,
+    /// The actuators, from the base on.
+    pub actuators: [Actuator; ARM_JOINTS],
+    /// How many actuators told something; more than seven are counted and not kept.
+    pub count: usize,
+}
+
+impl Default for Feedback {
+    fn default() -> Self {
+        Self {
+            frame_id: 0,
+            state: ArmState(0),
+            tool_pose: [0.0; 6],
+            tool_twist: [0.0; 6],
+            tool_wrench: [0.0; 6],
+            banks: Banks::default(),
+            actuators: [Actuator::default(); ARM_JOINTS],
+            count: 0,
+        }
+    }
+}
+
+impl Feedback {
+    /// Of the payload of an answer to `Refresh` or `RefreshFeedback`.
+    pub fn decode(payload: &[u8]) -> Result<Self, Damaged> {
+        let mut feedback = Self::default();
+        for field in Fields::of(payload) {
+            match field? {
+                (1, value) => feedback.frame_id = value.fixed32()?,
+                (2, value) => feedback.take_base(value.bytes()?)?,
+                (3, value) => {
+                    let actuator = actuator(value.bytes()?)?;
+                    if let Some(place) = feedback.actuators.get_mut(feedback.count) {
+                        *place = actuator;
+                    }
+                    feedback.count += 1;
+                }
+                _ => {}
+            }
+        }
+        Ok(feedback)
+    }
+
+    fn take_base(&mut self, bytes: &[u8]) -> Result<(), Damaged> {
+        for field in Fields::of(bytes) {
+            let (number, value) = field?;
+            match number {
+                2 => self.state = ArmState(value.uint32()?),
+                13..19 => self.tool_pose[number as usize - 13] = value.float()?,
+                19..25 => self.tool_twist[number as usize - 19] = value.float()?,
+                25..31 => self.tool_wrench[number as usize - 25] = value.float()?,
+                31..35 => self.banks.take(number - 31, value)?,
+                _ => {}
+            }
+        }
+        Ok(())
+    }
+
+    /// Every number that is used is finite.
+    pub fn is_finite(&self) -> bool {
+        let tool = self.tool_pose.iter().chain(&self.tool_twist).chain(&self.tool_wrench);
+        tool.chain(self.actuators.iter().flat_map(|a| [&a.position_deg, &a.velocity_deg_s, &a.torque_nm]))
+            .all(|x| x.is_finite())
+    }
+}
+
+fn actuator(bytes: &[u8]) -> Result<Actuator, Damaged> {
+    let mut told = Actuator::default();
+    for field in Fields::of(bytes) {
+        let (number, value) = field?;
+        match number {
+            1 => told.command_id = value.fixed32()?,
+            2 => told.status = value.fixed32()?,
+            4 => told.position_deg = value.float()?,
+            5 => told.velocity_deg_s = value.float()?,
+            6 => told.torque_nm = value.float()?,
+            7 => told.current_a = value.float()?,
+            11..15 => told.banks.take(number - 11, value)?,
+            _ => {}
+        }
+    }
+    Ok(told)
+}

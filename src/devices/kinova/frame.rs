@@ -1,0 +1,255 @@
+//! Frames of the Kortex router: one protobuf `Frame` per datagram; on TCP behind a mark and a length.
+//!
+//! ```text
+//! Frame { Header header = 1; bytes payload = 2 }, Header of four fixed32:
+//! frame_info   31:28 version (1) | 27:24 type | 23:16 device | 15:12 error | 11:0 sub error
+//! message_info 31:16 session | 15:0 message
+//! service_info 31:28 version (1) | 27:16 service | 15:0 function
+//! payload_info 23:0 length of the payload
+//! ```
+//! On TCP: `07 78 45 74 52 6F 4B 07`, length as u32 big-endian, frame. There is no checksum; what can be checked is the shape,
+//! the versions and the length of the payload. Source: the manufacturer's Python client as described in its documentation.
+
+use prost::{
+    Message,
+    encoding::{WireType, encode_key, encode_varint, message},
+};
+
+use super::{
+    messages::Rpc,
+    wire::{Damaged, Fields},
+};
+
+/// Begins every packet on TCP.
+pub const MARK: [u8; 8] = *b"\x07xEtRoK\x07";
+const LENGTH_BYTES: usize = 4;
+const VERSION: u32 = 1;
+
+/// Kinds of frames that are used.
+pub const REQUEST: u8 = 1;
+/// An answer, with or without an error.
+pub const RESPONSE: u8 = 3;
+/// Sent by the base on its own.
+pub const NOTIFICATION: u8 = 5;
+
+/// What stands before every payload.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Header {
+    /// [`REQUEST`], [`RESPONSE`], [`NOTIFICATION`].
+    pub kind: u8,
+    /// 0 the base, 1 to 7 an actuator.
+    pub device: u8,
+    /// Error class, 0 none.
+    pub error: u8,
+    pub sub_error: u16,
+    /// Session, 0 before there is one.
+    pub session: u16,
+    /// Number of the message; an answer has that of its request.
+    pub message: u16,
+    pub service: u16,
+    pub function: u16,
+}
+
+/// The header as it is on the wire.
+#[derive(Clone, Copy, PartialEq, Message)]
+struct RawHeader {
+    #[prost(fixed32, tag = "1")]
+    frame: u32,
+    #[prost(fixed32, tag = "2")]
+    message: u32,
+    #[prost(fixed32, tag = "3")]
+    service: u32,
+    #[prost(fixed32, tag = "4")]
+    payload: u32,
+}
+
+impl Header {
+    /// What is called.
+    pub const fn rpc(&self) -> Rpc {
+        Rpc { service: self.service, function: self.function }
+    }
+
+    fn raw(&self, payload: usize) -> RawHeader {
+        let bits = |value: u32, width: u32, shift: u32| (value & ((1 << width) - 1)) << shift;
+        RawHeader {
+            frame: bits(VERSION, 4, 28)
+                | bits(u32::from(self.kind), 4, 24)
+                | bits(u32::from(self.device), 8, 16)
+                | bits(u32::from(self.error), 4, 12)
+                | bits(u32::from(self.sub_error), 12, 0),
+            message: bits(u32::from(self.session), 16, 16) | bits(u32::from(self.message), 16, 0),
+            service: bits(VERSION, 4, 28)
+                | bits(u32::from(self.service), 12, 16)
+                | bits(u32::from(self.function), 16, 0),
+            payload: bits(payload as u32, 24, 0),
+        }
+    }
+
+    fn of(raw: &RawHeader) -> Result<Self, Damaged> {
+        let bits = |value: u32, width: u32, shift: u32| (value >> shift) & ((1 << width) - 1);
+        if bits(raw.frame, 4, 28) != VERSION || bits(raw.service, 4, 28) != VERSION {
+            return Err(Damaged);
+        }
+        Ok(Self {
+            kind: bits(raw.frame, 4, 24) as u8,
+            device: bits(raw.frame, 8, 16) as u8,
+            error: bits(raw.frame, 4, 12) as u8,
+            sub_error: bits(raw.frame, 12, 0) as u16,
+            session: bits(raw.message, 16, 16) as u16,
+            message: bits(raw.message, 16, 0) as u16,
+            service: bits(raw.service, 12, 16) as u16,
+            function: bits(raw.service, 16, 0) as u16,
+        })
+    }
+}
+
+/// A frame that arrived.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Frame<'a> {
+    pub header: Header,
+    /// Its payload, a message that the function decides.
+    pub payload: &'a [u8],
+}
+
+impl<'a> Frame<'a> {
+    /// Of the bytes of one datagram or packet.
+    pub fn decode(bytes: &'a [u8]) -> Result<Self, Damaged> {
+        let (mut raw, mut payload) = (None, [].as_slice());
+        for field in Fields::of(bytes) {
+            match field? {
+                (1, value) => raw = Some(raw_header(value.bytes()?)?),
+                (2, value) => payload = value.bytes()?,
+                _ => {}
+            }
+        }
+        let raw = raw.ok_or(Damaged)?;
+        if (raw.payload & 0xff_ffff) as usize != payload.len() {
+            return Err(Damaged);
+        }
+        Ok(Self { header: Header::of(&raw)?, payload })
+    }
+}
+
+fn raw_header(bytes: &[u8]) -> Result<RawHeader, Damaged> {
+    let mut raw = RawHeader::default();
+    for field in Fields::of(bytes) {
+        match field? {
+            (1, value) => raw.frame = value.fixed32()?,
+            (2, value) => raw.message = value.fixed32()?,
+            (3, value) => raw.service = value.fixed32()?,
+            (4, value) => raw.payload = value.fixed32()?,
+            _ => {}
+        }
+    }
+    Ok(raw)
+}
+
+/// Appends a frame; allocates nothing while `out` has room.
+pub fn encode(header: &Header, payload: &impl Message, out: &mut Vec<u8>) {
+    let length = payload.encoded_len();
+    message::encode(1, &header.raw(length), out);
+    if length > 0 {
+        message::encode(2, payload, out);
+    }
+}
+
+/// Appends a frame with a payload that is already written.
+pub fn encode_written(header: &Header, payload: &[u8], out: &mut Vec<u8>) {
+    message::encode(1, &header.raw(payload.len()), out);
+    if !payload.is_empty() {
+        encode_key(2, WireType::LengthDelimited, out);
+        encode_varint(payload.len() as u64, out);
+        out.extend_from_slice(payload);
+    }
+}
+
+/// Appends a packet for TCP; allocates nothing while `out` has room.
+pub fn encode_packet(header: &Header, payload: &impl Message, out: &mut Vec<u8>) {
+    packed(out, |out| encode(header, payload, out));
+}
+
+/// Appends a packet around a frame.
+pub fn packed(out: &mut Vec<u8>, frame: impl FnOnce(&mut Vec<u8>)) {
+    out.extend_from_slice(&MARK);
+    let length_at = out.len();
+    out.extend_from_slice(&[0; LENGTH_BYTES]);
+    frame(out);
+    let length = (out.len() - length_at - LENGTH_BYTES) as u32;
+    out[length_at..length_at + LENGTH_BYTES].copy_from_slice(&length.to_be_bytes());
+}
+
+/// Longest packet taken; the largest used here has some hundred bytes. A longer one is skipped as damage.
+pub const PACKET_MAX: usize = 16 * 1024;
+
+/// Finds packets in a stream of bytes that may be dirty. Fixed memory; every byte is looked at a bounded number of times.
+#[derive(Debug)]
+pub struct PacketReader {
+    buffer: Box<[u8]>,
+    begin: usize,
+    end: usize,
+    /// Bytes thrown away to find a mark.
+    pub skipped: u64,
+    /// Packets with a shape that cannot be.
+    pub damaged: u64,
+}
+
+impl Default for PacketReader {
+    fn default() -> Self {
+        Self { buffer: vec![0; 2 * PACKET_MAX].into_boxed_slice(), begin: 0, end: 0, skipped: 0, damaged: 0 }
+    }
+}
+
+impl PacketReader {
+    /// Where new bytes go; tell with [`took`](Self::took) how many came. Never empty once all packets are taken out.
+    pub fn room(&mut self) -> &mut [u8] {
+        if self.begin > 0 {
+            self.buffer.copy_within(self.begin..self.end, 0);
+            (self.begin, self.end) = (0, self.end - self.begin);
+        }
+        &mut self.buffer[self.end..]
+    }
+
+    /// `count` bytes were put into the room.
+    pub fn took(&mut self, count: usize) {
+        self.end = (self.end + count).min(self.buffer.len());
+    }
+
+    /// The next whole frame; `None` until more bytes come.
+    pub fn next_frame(&mut self) -> Option<Frame<'_>> {
+        let (from, to) = self.find()?;
+        self.begin = to;
+        Frame::decode(&self.buffer[from..to]).ok()
+    }
+
+    fn find(&mut self) -> Option<(usize, usize)> {
+        loop {
+            self.seek();
+            let waiting = &self.buffer[self.begin..self.end];
+            let length = waiting.get(MARK.len()..MARK.len() + LENGTH_BYTES)?;
+            let length = u32::from_be_bytes(length.try_into().ok()?) as usize;
+            let from = self.begin + MARK.len() + LENGTH_BYTES;
+            if length <= PACKET_MAX - MARK.len() - LENGTH_BYTES {
+                let frame = self.buffer[..self.end].get(from..from + length)?;
+                if Frame::decode(frame).is_ok() {
+                    return Some((from, from + length));
+                }
+            }
+            // The length may be what is damaged: search on right behind this mark.
+            self.damaged += 1;
+            self.begin += MARK.len();
+        }
+    }
+
+    /// Moves on to the next place where a mark begins, whole or cut off by the end.
+    fn seek(&mut self) {
+        let waiting = &self.buffer[self.begin..self.end];
+        let begins = |at: &usize| {
+            let tail = &waiting[*at..];
+            let length = tail.len().min(MARK.len());
+            tail[..length] == MARK[..length]
+        };
+        let skip = (0..waiting.len()).find(begins).unwrap_or(waiting.len());
+        self.skipped += skip as u64;
+        self.begin += skip;
+    }
+}

@@ -1,0 +1,126 @@
+//! From an address to a driver: log in, ask who it is and how it is. Blocks; for a thread of its own.
+
+use std::{
+    sync::{
+        Arc,
+        atomic::{AtomicBool, Ordering},
+    },
+    thread::sleep,
+    time::Duration,
+};
+
+use prost::Message;
+
+use super::{
+    driver::Driver,
+    faults::Faults,
+    feedback::Feedback,
+    messages::{ArmState, Number, Rpc, ServoingMode, Text, sub},
+    session::{Failure, Lines},
+    settings::Settings,
+};
+use crate::{ARM_JOINTS, Identity, Trouble};
+
+/// A person's command to clear the faults of an arm, kept until it is opened the next time: an arm in fault is never connected.
+#[derive(Clone, Debug, Default)]
+pub struct FaultClearing(Arc<AtomicBool>);
+
+impl FaultClearing {
+    /// The next opening clears the faults, once.
+    pub fn command(&self) {
+        self.0.store(true, Ordering::Release);
+    }
+}
+
+/// After clearing, the arm needs a moment.
+const CLEARED: Duration = Duration::from_millis(100);
+
+/// Opens the arm; faults are told and left alone.
+pub fn open(settings: &Settings) -> Result<Driver, Trouble> {
+    open_clearing(settings, &FaultClearing::default())
+}
+
+/// Opens the arm, and clears its faults before if that was commanded.
+pub fn open_clearing(settings: &Settings, clearing: &FaultClearing) -> Result<Driver, Trouble> {
+    settings.check()?;
+    let mut lines = Lines::connect(settings)?;
+    lines.log_in(settings)?;
+    let opened = prepare(&mut lines, clearing);
+    match opened {
+        Ok((identity, feedback)) => Ok(Driver::new(settings, lines, identity, &feedback)),
+        Err(trouble) => {
+            // Leaves no session behind.
+            super::driver::close_sessions(&mut lines);
+            Err(trouble)
+        }
+    }
+}
+
+fn prepare(lines: &mut Lines, clearing: &FaultClearing) -> Result<(Identity, Feedback), Trouble> {
+    let joints: Number = ask(lines, Rpc::ACTUATOR_COUNT)?;
+    if joints.value as usize != ARM_JOINTS {
+        let (expected, found) = (format!("arm with {ARM_JOINTS} joints"), format!("arm with {} joints", joints.value));
+        return Err(Trouble::WrongProduct { place: lines.place.clone(), expected, found });
+    }
+    let identity = identity(lines)?;
+    let mode: Number = ask(lines, Rpc::GET_SERVOING_MODE)?;
+    if mode.value != ServoingMode::Single as u32 {
+        // Left over from somebody who did not come back.
+        call(lines, Rpc::SET_SERVOING_MODE, &Number { value: ServoingMode::Single as u32 })?;
+    }
+    if clearing.0.swap(false, Ordering::AcqRel) {
+        call(lines, Rpc::CLEAR_FAULTS, &())?;
+        sleep(CLEARED);
+    }
+    let state: Number = ask(lines, Rpc::ARM_STATE)?;
+    let state = ArmState(state.value);
+    if state.is_unready() {
+        let cure = "Wait until the arm has started, or end what it is doing in its web page.".to_owned();
+        return Err(Trouble::NotReady { place: lines.place.clone(), mode: state.words().to_owned(), cure });
+    }
+    let feedback = first_feedback(lines)?;
+    let faults = Faults { in_fault: state == ArmState::IN_FAULT, ..Faults::of(&feedback) };
+    if faults.any() {
+        return Err(Trouble::DeviceFault {
+            place: lines.place.clone(),
+            words: faults.to_string(),
+            cure: "Remove the cause, make sure that the arm may move, then command it to clear its faults.".to_owned(),
+        });
+    }
+    Ok((identity, feedback))
+}
+
+fn first_feedback(lines: &mut Lines) -> Result<Feedback, Trouble> {
+    let answer = lines.ask_cyclic(Rpc::REFRESH_FEEDBACK, &());
+    let payload = answer.map_err(|failure| failure.trouble(&lines.place, Rpc::REFRESH_FEEDBACK))?;
+    let feedback = Feedback::decode(&payload).ok().filter(|told| told.is_finite() && told.count == ARM_JOINTS);
+    feedback.ok_or_else(|| Failure::Nonsense.trouble(&lines.place, Rpc::REFRESH_FEEDBACK))
+}
+
+/// Who it is; what the firmware does not tell stays empty.
+fn identity(lines: &mut Lines) -> Result<Identity, Trouble> {
+    let known = |answer: Result<Vec<u8>, Failure>, place: &str, rpc| match answer {
+        Ok(payload) => Ok(payload),
+        Err(Failure::Refused(_, sub::UNSUPPORTED_METHOD | sub::UNSUPPORTED_SERVICE | 2)) => Ok(Vec::new()),
+        Err(failure) => Err(failure.trouble(place, rpc)),
+    };
+    let mut told = [Rpc::MODEL_NUMBER, Rpc::SERIAL_NUMBER].map(|rpc| (rpc, String::new()));
+    for (rpc, text) in &mut told {
+        let payload = known(lines.ask(*rpc, &()), &lines.place, *rpc)?;
+        *text = Text::decode(payload.as_slice()).unwrap_or_default().value;
+    }
+    let payload = known(lines.ask(Rpc::FIRMWARE_VERSION, &()), &lines.place, Rpc::FIRMWARE_VERSION)?;
+    let firmware = Number::decode(payload.as_slice()).unwrap_or_default().value;
+    let [(_, model), (_, serial)] = told;
+    let product = format!("Kinova Gen3 {model}").trim_end().to_owned();
+    Ok(Identity { product, serial, firmware: format!("{firmware:#010x}") })
+}
+
+fn call(lines: &mut Lines, rpc: Rpc, question: &impl Message) -> Result<Vec<u8>, Trouble> {
+    lines.ask(rpc, question).map_err(|failure| failure.trouble(&lines.place, rpc))
+}
+
+fn ask<T: Message + Default>(lines: &mut Lines, rpc: Rpc) -> Result<T, Trouble> {
+    let payload = call(lines, rpc, &())?;
+    T::decode(payload.as_slice()).map_err(|_| Failure::Nonsense.trouble(&lines.place, rpc))
+}

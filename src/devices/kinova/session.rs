@@ -1,0 +1,224 @@
+//! The two connections to an arm: numbers of messages and sessions, calls that wait (for opening and closing) and that do not.
+
+use std::{
+    net::ToSocketAddrs as _,
+    thread::sleep,
+    time::{Duration, Instant},
+};
+
+use prost::Message;
+
+use super::{
+    frame::{self, Frame, Header, PacketReader, REQUEST, RESPONSE},
+    messages::{CreateSessionInfo, Rpc},
+    settings::Settings,
+};
+use crate::{
+    Loss, Trouble,
+    transport::{Bytes as _, Datagrams as _, Tcp, Udp},
+};
+
+/// The largest datagram there can be.
+pub const DATAGRAM_MAX: usize = 65_507;
+
+/// A session that hears nothing for so long is closed by the arm, ms.
+const SESSION_INACTIVITY_MS: u32 = 10_000;
+/// Motion of the high level stops when its session is silent for so long, ms; the shortest that the manufacturer's examples use.
+const CONNECTION_INACTIVITY_MS: u32 = 2_000;
+/// A datagram may be lost: while opening it is sent again after this time.
+const AGAIN: Duration = Duration::from_millis(200);
+const NAP: Duration = Duration::from_micros(200);
+
+/// Numbers requests and writes them into a buffer that is made once.
+#[derive(Debug)]
+pub(super) struct Caller {
+    session: u16,
+    message: u16,
+    out: Vec<u8>,
+    packets: bool,
+}
+
+impl Caller {
+    fn new(packets: bool) -> Self {
+        Self { session: 0, message: 0, out: Vec::with_capacity(4096), packets }
+    }
+
+    /// The bytes of a request and its number. Numbers begin with 1 and wrap.
+    pub(super) fn request(&mut self, rpc: Rpc, payload: &impl Message) -> (u16, &[u8]) {
+        self.message = self.message.wrapping_add(1);
+        let Rpc { service, function } = rpc;
+        let header = Header {
+            kind: REQUEST,
+            session: self.session,
+            message: self.message,
+            service,
+            function,
+            ..Header::default()
+        };
+        self.out.clear();
+        if self.packets {
+            frame::encode_packet(&header, payload, &mut self.out);
+        } else {
+            frame::encode(&header, payload, &mut self.out);
+        }
+        (self.message, &self.out)
+    }
+}
+
+/// An answer that is an error, as the header tells it, or none at all.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Failure {
+    /// Refused with this error and sub error.
+    Refused(u8, u16),
+    /// Nothing came in time.
+    Silent,
+    /// What came was no frame.
+    Nonsense,
+    /// The connection broke.
+    Lost,
+}
+
+pub(super) type Answered<T> = Result<T, Failure>;
+
+/// Both connections.
+#[derive(Debug)]
+pub struct Lines {
+    pub(super) tcp: Tcp,
+    pub(super) packets: PacketReader,
+    pub(super) calls: Caller,
+    pub(super) udp: Udp,
+    pub(super) cyclic: Caller,
+    pub(super) datagram: Box<[u8]>,
+    pub(super) place: String,
+    timeout: Duration,
+}
+
+impl Lines {
+    /// Connects, without sessions yet.
+    pub fn connect(settings: &Settings) -> Result<Self, Trouble> {
+        let place = format!("{}:{}", settings.host, settings.tcp_port);
+        let timeout = Duration::from_secs_f64(settings.timeout_s);
+        let tcp = Tcp::open(&place, timeout)?;
+        let to = (settings.host.as_str(), settings.udp_port).to_socket_addrs();
+        let to = to.map_err(|error| Trouble::of_address(&place, &error))?.next();
+        let udp = Udp::connect(to.ok_or_else(|| Trouble::Unreachable { place: place.clone() })?)?;
+        let datagram = vec![0; DATAGRAM_MAX].into_boxed_slice();
+        let packets = PacketReader::default();
+        Ok(Self { tcp, packets, calls: Caller::new(true), udp, cyclic: Caller::new(false), datagram, place, timeout })
+    }
+
+    /// Another end of the calls' connection with a request that is written already, for an emergency.
+    pub(super) fn last_words(&self, rpc: Rpc, question: &impl Message) -> std::io::Result<(Tcp, Vec<u8>)> {
+        // A number of its own: ordinary calls count up from 1.
+        let mut caller = Caller { session: self.calls.session, message: u16::MAX - 1, out: Vec::new(), packets: true };
+        caller.request(rpc, question);
+        Ok((self.tcp.duplicate()?, caller.out))
+    }
+
+    /// Makes a session on each connection.
+    pub fn log_in(&mut self, settings: &Settings) -> Result<(), Trouble> {
+        let login = CreateSessionInfo {
+            username: settings.user.clone(),
+            session_inactivity_ms: SESSION_INACTIVITY_MS,
+            password: settings.password.clone(),
+            connection_inactivity_ms: CONNECTION_INACTIVITY_MS,
+        };
+        let trouble = |failure: Failure, place: &str| match failure {
+            Failure::Refused(_, super::messages::sub::INVALID_PASSWORD | super::messages::sub::USER_NOT_FOUND) => {
+                Trouble::RefusedLogin { place: place.to_owned(), user: settings.user.clone() }
+            }
+            other => other.trouble(place, Rpc::CREATE_SESSION),
+        };
+        self.ask(Rpc::CREATE_SESSION, &login).map_err(|failure| trouble(failure, &self.place))?;
+        let place = format!("{} UDP port {}", settings.host, settings.udp_port);
+        self.ask_cyclic(Rpc::CREATE_SESSION, &login).map_err(|failure| match failure {
+            Failure::Lost => Trouble::NobodyListens { place },
+            other => trouble(other, &place),
+        })?;
+        Ok(())
+    }
+
+    /// Calls and waits for the answer's payload (TCP).
+    pub fn ask(&mut self, rpc: Rpc, question: &impl Message) -> Answered<Vec<u8>> {
+        self.ask_within(rpc, question, self.timeout)
+    }
+
+    /// The same with another timeout.
+    pub(super) fn ask_within(&mut self, rpc: Rpc, question: &impl Message, timeout: Duration) -> Answered<Vec<u8>> {
+        let (number, bytes) = self.calls.request(rpc, question);
+        self.tcp.send(bytes).map_err(|_| Failure::Lost)?;
+        let before = (self.packets.skipped, self.packets.damaged);
+        let end = Instant::now() + timeout;
+        while Instant::now() < end {
+            let count = self.tcp.receive(self.packets.room()).map_err(|loss| self.broken(loss, before.0))?;
+            self.packets.took(count);
+            while let Some(frame) = self.packets.next_frame() {
+                if frame.header.kind == RESPONSE && frame.header.message == number {
+                    self.calls.session = frame.header.session;
+                    return payload(&frame);
+                }
+            }
+            sleep(NAP);
+        }
+        let dirty = (self.packets.skipped, self.packets.damaged) != before;
+        Err(if dirty { Failure::Nonsense } else { Failure::Silent })
+    }
+
+    /// Somebody who speaks another protocol answers nonsense and hangs up.
+    const fn broken(&self, _: Loss, skipped: u64) -> Failure {
+        if self.packets.skipped > skipped { Failure::Nonsense } else { Failure::Lost }
+    }
+
+    /// Calls on the cyclic connection and waits for the answer's payload; asks again while nothing comes.
+    pub fn ask_cyclic(&mut self, rpc: Rpc, question: &impl Message) -> Answered<Vec<u8>> {
+        let end = Instant::now() + self.timeout;
+        let mut dirty = false;
+        while Instant::now() < end {
+            let (number, bytes) = self.cyclic.request(rpc, question);
+            self.udp.send(bytes).map_err(|_| Failure::Lost)?;
+            let again = (Instant::now() + AGAIN).min(end);
+            while Instant::now() < again {
+                let Some(count) = self.udp.receive(&mut self.datagram).map_err(|_| Failure::Lost)? else {
+                    sleep(NAP);
+                    continue;
+                };
+                let Ok(frame) = Frame::decode(&self.datagram[..count]) else {
+                    dirty = true;
+                    continue;
+                };
+                if frame.header.kind == RESPONSE && frame.header.message == number {
+                    self.cyclic.session = frame.header.session;
+                    return payload(&frame);
+                }
+            }
+        }
+        Err(if dirty { Failure::Nonsense } else { Failure::Silent })
+    }
+}
+
+fn payload(frame: &Frame<'_>) -> Answered<Vec<u8>> {
+    match frame.header.error {
+        0 => Ok(frame.payload.to_vec()),
+        error => Err(Failure::Refused(error, frame.header.sub_error)),
+    }
+}
+
+impl Failure {
+    /// In the words of the person who opens the arm.
+    pub(super) fn trouble(self, place: &str, rpc: Rpc) -> Trouble {
+        let place = place.to_owned();
+        match self {
+            Self::Refused(error, code) => {
+                let answer = format!("{} (error {error}/{code})", super::messages::sub::words(code));
+                Trouble::Refused { place, command: rpc.name().to_owned(), answer }
+            }
+            Self::Silent => Trouble::Silent { place },
+            Self::Nonsense => Trouble::WrongProduct {
+                place,
+                expected: "Kinova Gen3 (Kortex API 2)".to_owned(),
+                found: "device that speaks another protocol".to_owned(),
+            },
+            Self::Lost => Trouble::Other { place, reason: "the connection was closed while opening".to_owned() },
+        }
+    }
+}

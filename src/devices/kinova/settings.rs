@@ -1,0 +1,87 @@
+//! What the rig file says of the arm.
+
+use nima_core::kinematics::JointLimits;
+use serde::{Deserialize, Serialize};
+
+use super::limits::TWIST_MAX;
+use crate::Trouble;
+
+/// Settings of the arm.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Settings {
+    /// Its address or name.
+    pub host: String,
+    /// Port of the calls (TCP).
+    pub tcp_port: u16,
+    /// Port of the cycle (UDP).
+    pub udp_port: u16,
+    pub user: String,
+    pub password: String,
+    /// Share of the arm's joint speeds that commands may use, above 0 to 1.
+    pub speed_fraction: f64,
+    /// The most that a commanded angle may be ahead of the measured one, rad, above 0 to 0.2.
+    pub lead_rad: f64,
+    /// Fastest linear twist, m/s, up to 0.5.
+    pub twist_m_s: f64,
+    /// Fastest angular twist, rad/s, up to 1.74.
+    pub twist_rad_s: f64,
+    /// How long to wait for an answer while opening, s, 0.05 to 30.
+    pub timeout_s: f64,
+}
+
+impl Default for Settings {
+    /// The arm as it is delivered.
+    fn default() -> Self {
+        Self {
+            host: "192.168.1.10".to_owned(),
+            tcp_port: 10_000,
+            udp_port: 10_001,
+            user: "admin".to_owned(),
+            password: "admin".to_owned(),
+            speed_fraction: 0.5,
+            lead_rad: 0.05,
+            twist_m_s: 0.1,
+            twist_rad_s: 0.5,
+            timeout_s: 2.0,
+        }
+    }
+}
+
+impl Settings {
+    /// The arm at an endpoint `HOST tcp=PORT udp=PORT`, as an emulator tells it.
+    pub fn at(endpoint: &str) -> Option<Self> {
+        let mut words = endpoint.split_whitespace();
+        let host = words.next()?.to_owned();
+        let mut settings = Self { host, ..Self::default() };
+        for word in words {
+            match word.split_once('=')? {
+                ("tcp", port) => settings.tcp_port = port.parse().ok()?,
+                ("udp", port) => settings.udp_port = port.parse().ok()?,
+                _ => return None,
+            }
+        }
+        Some(settings)
+    }
+
+    /// How its joints may be moved: whoever plans a path keeps to them, the driver checks them.
+    pub fn joint_limits(&self) -> JointLimits {
+        JointLimits::of_arm(self.speed_fraction, self.lead_rad)
+    }
+
+    /// Every number is possible.
+    pub fn check(&self) -> Result<(), Trouble> {
+        let within = |key: &str, value: f64, low: f64, high: f64| {
+            if value > low && value <= high {
+                return Ok(());
+            }
+            let allowed = format!("{key} is above {low} and at most {high}");
+            Err(Trouble::Setting { key: key.to_owned(), value: value.to_string(), allowed })
+        };
+        within("speed_fraction", self.speed_fraction, 0.0, 1.0)?;
+        within("lead_rad", self.lead_rad, 0.0, 0.2)?;
+        within("twist_m_s", self.twist_m_s, 0.0, TWIST_MAX.0)?;
+        within("twist_rad_s", self.twist_rad_s, 0.0, TWIST_MAX.1)?;
+        within("timeout_s", self.timeout_s, 0.05, 30.0)
+    }
+}

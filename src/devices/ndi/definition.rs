@@ -1,0 +1,65 @@
+//! Tool definitions: `.rom` files, written to the unit in pieces (reference 1.3, 752 bytes seen, 1024 always sent).
+
+use std::path::Path;
+
+use super::command::CHUNK;
+use crate::Trouble;
+
+/// Bytes of a definition as sent, zero-padded.
+pub const DEFINITION: usize = 1024;
+/// What a definition begins with.
+const BEGIN: &[u8] = b"NDI\0";
+
+/// A tool definition as it is sent.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Definition(Box<[u8; DEFINITION]>);
+
+impl Definition {
+    /// Reads the file that the rig file names under `key`.
+    pub fn load(key: &str, path: &Path) -> Result<Self, Trouble> {
+        let refuse =
+            |allowed: String| Trouble::Setting { key: key.to_owned(), value: path.display().to_string(), allowed };
+        let file = nima_files::read(path, DEFINITION as u64)
+            .map_err(|error| refuse(format!("a tool definition of NDI (.rom) that can be read ({error})")))?;
+        if !file.starts_with(BEGIN) {
+            return Err(refuse("a tool definition of NDI (.rom), at most 1024 bytes".to_owned()));
+        }
+        let mut bytes = Box::new([0; DEFINITION]);
+        bytes[..file.len()].copy_from_slice(&file);
+        Ok(Self(bytes))
+    }
+
+    /// The pieces, each with its address.
+    pub fn chunks(&self) -> impl Iterator<Item = (u16, [u8; CHUNK])> + '_ {
+        let (chunks, _) = self.0.as_chunks::<CHUNK>();
+        chunks.iter().enumerate().map(|(k, data)| ((k * CHUNK) as u16, *data))
+    }
+}
+
+#[cfg(all(test, unix))]
+mod tests {
+    use std::{fs, process::Command, sync::mpsc, thread, time::Duration};
+
+    use super::*;
+
+    #[test]
+    fn what_is_no_definition_is_refused_without_waiting_for_it_or_reading_it_whole() {
+        let folder = tempfile::tempdir().unwrap();
+        let place = |name: &str| folder.path().join(name);
+        assert!(Command::new("mkfifo").arg(place("pipe.rom")).status().unwrap().success());
+        // A terabyte without a byte on the disk: nobody has the memory to read it whole.
+        fs::File::create(place("large.rom")).unwrap().set_len(1 << 40).unwrap();
+        let cases = [
+            (place("pipe.rom"), "it is a pipe"),
+            (place("large.rom"), "it is larger than 1024 bytes"),
+            ("/dev/zero".into(), "it is a device"),
+            (folder.path().to_owned(), "it is a folder"),
+        ];
+        for (path, words) in cases {
+            let (sender, receiver) = mpsc::channel();
+            thread::spawn(move || sender.send(Definition::load("tools[0]", &path)));
+            let trouble = receiver.recv_timeout(Duration::from_mins(1)).expect("it hangs").unwrap_err();
+            assert!(trouble.to_string().contains(words) && trouble.cure().contains(words), "{trouble}");
+        }
+    }
+}

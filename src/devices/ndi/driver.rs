@@ -1,0 +1,379 @@
+//! The driver: asks for a frame as soon as the last reply is in, one command in flight, never waiting.
+//!
+//! Readings in m, camera frame `c`, orientation `c_from_tool`. A reading is new by its frame number.
+//! Losses: [`Loss::Silent`] where no new frame came for [`SILENT_S`] and nothing at all for the command in flight,
+//! [`Loss::Corrupt`] where only bytes came that make no reply, or [`DAMAGED_MAX`] damaged replies in a row, [`Loss::Implausible`]
+//! for numbers that are none or impossible, [`Loss::Device`] for fault bits of the unit (`0x10000 +` system status), its errors
+//! (their code) and a restart ([`RESTARTED`]). Dropping it stops tracking and sets the line back to its first speed.
+
+use std::time::Duration;
+
+use nalgebra::{Quaternion, UnitQuaternion, Vector3};
+
+use super::{
+    command::{Command, Form},
+    crc::read_hex,
+    opening::{self, FIRST_BAUD, OPTIONS, Opened},
+    reply::{Arrival, Expected},
+    session::{Session, Wire},
+    settings::Settings,
+    tracking::{Frames, HandleFrame, Sight, Transform},
+    words::{PortStatus, SystemStatus},
+};
+use crate::{
+    Device, Health, Identity, Loss, Stamped, Standing, TRACKED_TOOLS, Tracked, TrackerReading, Trouble,
+    transport::Bytes as _,
+};
+
+/// A new frame, and the reply to a command, must come within this time, s: six frames at 60 Hz.
+pub const SILENT_S: f64 = 0.100;
+/// Damaged replies in a row that end the belief in the line.
+pub const DAMAGED_MAX: u32 = 5;
+/// The code of [`Loss::Device`] for a unit that was switched off and on while it tracked.
+pub const RESTARTED: u32 = 0x2_0000;
+/// The code of [`Loss::Device`] for fault bits of the unit, which stand below it.
+pub const SYSTEM_FAULT: u32 = 0x1_0000;
+/// Between two commands, s: a quarter of the frame of the fastest unit is enough.
+const PACE_S: f64 = 0.002;
+/// Quiet after a damaged reply before the next command, s: the rest of it may still be on the way.
+const QUIET_S: f64 = 0.010;
+/// Pieces taken in one poll.
+const READS_MAX: usize = 16;
+/// Farthest plausible place, mm; the largest volume ends at 3 m.
+const FARTHEST_MM: f64 = 6_000.0;
+/// Largest plausible departure of a quaternion's norm from 1; four decimals make 0.0002.
+const NORM_WITHIN: f64 = 0.01;
+
+/// What is in flight.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Flight {
+    /// Nothing; the next command may go at this time, s.
+    Idle(f64),
+    /// A command that was sent at this time, s.
+    Asked { at_s: f64, beep: bool },
+}
+
+/// A tracker that is open and tracks.
+#[derive(Debug)]
+pub struct Driver {
+    session: Session,
+    identity: Identity,
+    health: Health,
+    form: Form,
+    handles: [Option<u8>; TRACKED_TOOLS],
+    frame_hz: f64,
+    serial: bool,
+    flight: Flight,
+    /// When the last byte for the command in flight came, s; `None` until then.
+    heard_s: Option<f64>,
+    damaged_in_a_row: u32,
+    /// A damaged reply came for the command in flight.
+    spoilt: bool,
+    fresh_s: Option<f64>,
+    frame: Option<u32>,
+    frames_since_open: u64,
+    beeps: u8,
+    /// The last command was a beep.
+    beeped: bool,
+    system: SystemStatus,
+    status: [PortStatus; TRACKED_TOOLS],
+}
+
+/// What one arrival means; made before anything of the driver changes.
+#[expect(clippy::large_enum_variant, reason = "made and used within one poll, where a box would be an allocation")]
+enum Event {
+    Frames(Frames),
+    Answered,
+    Damaged,
+    Fault(u32),
+}
+
+impl Driver {
+    /// Opens, configures and starts the unit; may take some seconds.
+    pub fn open(settings: &Settings) -> Result<Self, Trouble> {
+        Self::open_within(settings, opening::Timeouts::USUAL)
+    }
+
+    /// Opens for a diagnosis: what does not answer is told within a second.
+    pub(crate) fn try_open(settings: &Settings) -> Result<Self, Trouble> {
+        Self::open_within(settings, opening::Timeouts::SHORT)
+    }
+
+    fn open_within(settings: &Settings, timeouts: opening::Timeouts) -> Result<Self, Trouble> {
+        let Opened { session, identity, form, handles } = opening::open(settings, timeouts)?;
+        let mut health = Health::opening();
+        health.standing = Standing::Connected;
+        Ok(Self {
+            session,
+            identity,
+            health,
+            form,
+            handles,
+            frame_hz: settings.frame_hz,
+            serial: settings.port.is_some(),
+            flight: Flight::Idle(f64::NEG_INFINITY),
+            heard_s: None,
+            damaged_in_a_row: 0,
+            spoilt: false,
+            fresh_s: None,
+            frame: None,
+            frames_since_open: 0,
+            beeps: 0,
+            beeped: false,
+            system: SystemStatus::default(),
+            status: [PortStatus::default(); TRACKED_TOOLS],
+        })
+    }
+
+    /// The form of tracking replies in use.
+    pub const fn form(&self) -> Form {
+        self.form
+    }
+
+    /// Status of the unit in the newest reply.
+    pub const fn system_status(&self) -> SystemStatus {
+        self.system
+    }
+
+    /// Status of each tool in the newest reply; 0 where there is none.
+    pub const fn port_status(&self) -> [PortStatus; TRACKED_TOOLS] {
+        self.status
+    }
+
+    /// Lets the unit beep, 1 to 9 times, as soon as no other command is in flight; between two beeps it is asked for a frame.
+    pub fn beep(&mut self, times: u8) {
+        self.beeps = times.min(9);
+    }
+
+    /// What is expected for the command in flight.
+    fn expected(&self) -> Expected {
+        match (self.flight, self.form) {
+            (Flight::Asked { beep: false, .. } | Flight::Idle(_), Form::Binary) => Expected::Block,
+            _ => Expected::Line,
+        }
+    }
+
+    fn event_of(arrival: Arrival<'_>, beep: bool) -> Event {
+        let frames = match arrival {
+            Arrival::Damaged => return Event::Damaged,
+            Arrival::Line(line) if line == b"RESET" => return Event::Fault(RESTARTED),
+            Arrival::Line(line) if line.starts_with(b"ERROR") => {
+                return read_hex(&line[5..]).map_or(Event::Damaged, Event::Fault);
+            }
+            Arrival::Line(_) if beep => return Event::Answered,
+            Arrival::Line(line) => Frames::of_text(line, OPTIONS),
+            Arrival::Block(body) => Frames::of_block(body, OPTIONS),
+        };
+        frames.map_or(Event::Damaged, Event::Frames)
+    }
+
+    /// Takes in what has arrived.
+    fn receive(&mut self, now_s: f64) -> Result<Option<TrackerReading>, Loss> {
+        let mut newest = None;
+        for _ in 0..READS_MAX {
+            let count = self.session.wire.receive(self.session.inbox.room())?;
+            if count == 0 {
+                break;
+            }
+            self.session.inbox.filled(count);
+            self.heard_s = Some(now_s);
+            while let Some(arrival) = self.session.inbox.next(self.expected()) {
+                let Flight::Asked { at_s, beep } = self.flight else {
+                    // Nobody asked.
+                    self.health.out_of_order += 1;
+                    continue;
+                };
+                match Self::event_of(arrival, beep) {
+                    Event::Frames(frames) => {
+                        self.answered(at_s);
+                        newest = self.take(&frames, now_s)?.or(newest);
+                    }
+                    Event::Answered => self.answered(at_s),
+                    Event::Damaged => self.damaged()?,
+                    Event::Fault(code) => return Err(Loss::Device { code }),
+                }
+            }
+            self.health.skipped_bytes += self.session.inbox.take_skipped();
+        }
+        Ok(newest)
+    }
+
+    fn answered(&mut self, asked_s: f64) {
+        self.flight = Flight::Idle(asked_s + PACE_S);
+        self.damaged_in_a_row = 0;
+        self.spoilt = false;
+    }
+
+    fn damaged(&mut self) -> Result<(), Loss> {
+        self.health.damaged += 1;
+        self.spoilt = true;
+        self.damaged_in_a_row += 1;
+        if self.damaged_in_a_row >= DAMAGED_MAX { Err(Loss::Corrupt) } else { Ok(()) }
+    }
+
+    /// A whole reply: status, faults, and a reading if its frame is new.
+    fn take(&mut self, frames: &Frames, now_s: f64) -> Result<Option<TrackerReading>, Loss> {
+        self.system = frames.system;
+        let faults = frames.system.faults();
+        if faults != 0 {
+            self.health.refused += 1;
+            return Err(Loss::Device { code: SYSTEM_FAULT + u32::from(faults) });
+        }
+        let mut reading = TrackerReading::default();
+        let mut newest: Option<u32> = None;
+        for (k, handle) in self.handles.iter().enumerate() {
+            let Some(handle) = handle else { continue };
+            let told = frames.handles().iter().find(|told| told.handle == *handle);
+            self.status[k] = told.map_or(PortStatus(0), |told| told.status);
+            reading.tools[k] = match told {
+                None => Tracked::Disabled,
+                Some(told) => tracked(told).ok_or_else(|| {
+                    self.health.refused += 1;
+                    Loss::Implausible
+                })?,
+            };
+            if let Some(told) = told.filter(|told| told.sight != Sight::Disabled) {
+                let later = newest.is_none_or(|frame| told.frame.wrapping_sub(frame).cast_signed() > 0);
+                newest = if later { Some(told.frame) } else { newest };
+            }
+        }
+        let Some(frame) = newest.filter(|frame| self.is_new(*frame, now_s)) else { return Ok(None) };
+        reading.frame = frame;
+        Ok(Some(reading))
+    }
+
+    /// Counts a frame; true where it is later than the last.
+    fn is_new(&mut self, frame: u32, now_s: f64) -> bool {
+        let ahead = self.frame.map_or(1, |last| frame.wrapping_sub(last).cast_signed());
+        if ahead <= 0 {
+            self.health.out_of_order += u64::from(ahead < 0);
+            return false;
+        }
+        let since = if self.frame.is_some() { u64::from(ahead.unsigned_abs()) } else { u64::from(frame) };
+        self.frames_since_open += since;
+        self.health.lost += u64::from(ahead.unsigned_abs()) - 1;
+        self.frame = Some(frame);
+        self.fresh_s = Some(now_s);
+        self.health.accept(now_s);
+        true
+    }
+
+    /// What has not come in time.
+    fn watch(&mut self, now_s: f64) -> Result<(), Loss> {
+        if let Flight::Asked { at_s, .. } = self.flight {
+            if now_s - at_s >= SILENT_S {
+                return Err(if self.heard_s.is_some() { Loss::Corrupt } else { Loss::Silent });
+            }
+            if self.spoilt && self.heard_s.is_none_or(|heard_s| now_s - heard_s >= QUIET_S) {
+                self.session.inbox.clear();
+                self.spoilt = false;
+                self.flight = Flight::Idle(now_s);
+            }
+        }
+        if now_s - *self.fresh_s.get_or_insert(now_s) >= SILENT_S { Err(Loss::Silent) } else { Ok(()) }
+    }
+
+    fn ask(&mut self, now_s: f64) -> Result<(), Loss> {
+        let Flight::Idle(due_s) = self.flight else { return Ok(()) };
+        if now_s < due_s {
+            return Ok(());
+        }
+        let beep = self.beeps > 0 && !self.beeped;
+        self.beeped = beep;
+        let command = if beep { Command::Beep(self.beeps) } else { Command::Track(self.form, OPTIONS) };
+        if beep {
+            self.beeps = 0;
+        }
+        self.session.inbox.clear();
+        self.heard_s = None;
+        self.session.wire.send(command.encode().as_bytes())?;
+        self.flight = Flight::Asked { at_s: now_s, beep };
+        Ok(())
+    }
+}
+
+impl Device for Driver {
+    type Reading = TrackerReading;
+
+    fn poll(&mut self, now_s: f64) -> Option<Stamped<TrackerReading>> {
+        if matches!(self.health.standing, Standing::Lost(_)) {
+            return None;
+        }
+        let taken = self.receive(now_s).and_then(|reading| {
+            self.watch(now_s)?;
+            self.ask(now_s)?;
+            Ok(reading)
+        });
+        match taken {
+            Ok(reading) => reading.map(|value| Stamped {
+                device_s: Some(self.frames_since_open as f64 / self.frame_hz),
+                arrival_s: now_s,
+                value,
+            }),
+            Err(loss) => {
+                // A serial line that was pulled out reads as one with nothing on it.
+                let gone = loss == Loss::Silent && self.session.wire.is_gone();
+                self.health.lose(if gone { Loss::Disconnected } else { loss });
+                None
+            }
+        }
+    }
+
+    fn health(&self) -> &Health {
+        &self.health
+    }
+
+    fn identity(&self) -> &Identity {
+        &self.identity
+    }
+}
+
+impl Drop for Driver {
+    /// Lets the reply in flight pass, stops tracking, and sets the line back to its first speed for whoever comes next.
+    fn drop(&mut self) {
+        const TIMEOUT: Duration = Duration::from_millis(100);
+        if self.health.standing == Standing::Lost(Loss::Disconnected) {
+            return;
+        }
+        if matches!(self.flight, Flight::Asked { .. }) {
+            self.session.let_pass(TIMEOUT / 2);
+        }
+        // A unit that does not answer any more gets the command all the same.
+        self.session.ask(&Command::Stop, TIMEOUT).ok();
+        let first = Command::Comm { baud: FIRST_BAUD };
+        if self.serial
+            && self.session.ask(&first, TIMEOUT).is_ok()
+            && let Wire::Serial(serial) = &mut self.session.wire
+        {
+            serial.set_baud(FIRST_BAUD).ok();
+        }
+    }
+}
+
+/// A handle in the product's units; `None` for numbers that cannot be.
+fn tracked(told: &HandleFrame) -> Option<Tracked> {
+    let out_of_volume = told.status.has(PortStatus::OUT_OF_VOLUME);
+    match told.sight {
+        Sight::Missing => Some(Tracked::Missing { out_of_volume }),
+        Sight::Disabled => Some(Tracked::Disabled),
+        Sight::Valid(at) => {
+            let seen = seen(&at, told.status.has(PortStatus::PARTLY_OUT))?;
+            // Beyond the volume the numbers are not characterised: they are not handed on.
+            Some(if out_of_volume { Tracked::Missing { out_of_volume } } else { seen })
+        }
+    }
+}
+
+fn seen(at: &Transform, at_the_edge: bool) -> Option<Tracked> {
+    let [w, i, j, k] = at.quaternion;
+    let quaternion = Quaternion::new(w, i, j, k);
+    let norm_off = (quaternion.norm() - 1.0).abs();
+    let position_mm = Vector3::from(at.translation_mm);
+    let plausible = norm_off <= NORM_WITHIN && position_mm.norm() <= FARTHEST_MM && at.error_mm.is_finite();
+    plausible.then(|| Tracked::Seen {
+        c_from_tool: UnitQuaternion::new_normalize(quaternion),
+        position_in_c_m: position_mm * 1e-3,
+        error_m: at.error_mm * 1e-3,
+        at_the_edge,
+    })
+}

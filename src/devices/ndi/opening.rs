@@ -1,0 +1,265 @@
+//! The way from nothing to a unit that tracks: line, reset, old handles, tool definitions, start (reference 1.3).
+
+use std::time::Duration;
+
+use super::{
+    command::{Command, Filter, Form, OUTSIDE_TOO, Priority, TRANSFORMS, WIRELESS},
+    crc::read_hex,
+    definition::Definition,
+    session::{Failure, Session, Wire},
+    settings::{Replies, Settings},
+    tracking::Frames,
+    version::{form_of, identity_of},
+    words::PortStatus,
+};
+use crate::{
+    Identity, TRACKED_TOOLS, Trouble,
+    transport::{Serial, SerialSettings, Tcp},
+};
+
+/// Reply options of every tracking command.
+pub(super) const OPTIONS: u16 = TRANSFORMS | OUTSIDE_TOO;
+/// Speed of the line after switching on and after a reset.
+pub(super) const FIRST_BAUD: u32 = 9600;
+/// How long to wait for the unit.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Timeouts {
+    /// For commands that it answers at once.
+    quick: Duration,
+    /// For those for which it does something.
+    slow: Duration,
+}
+
+impl Timeouts {
+    /// As the guide has it.
+    pub(super) const USUAL: Self = Self { quick: Duration::from_millis(500), slow: Duration::from_secs(5) };
+    /// For a diagnosis, which tells within a second.
+    pub(super) const SHORT: Self = Self { quick: Duration::from_millis(200), slow: Duration::from_millis(400) };
+}
+
+/// After `INIT` and after a change of speed, as the guide asks.
+const SETTLE: Duration = Duration::from_millis(100);
+/// For a connection to be made.
+const CONNECT: Duration = Duration::from_secs(2);
+const BREAK: Duration = Duration::from_millis(250);
+
+/// A unit that tracks.
+#[derive(Debug)]
+pub(super) struct Opened {
+    pub(super) session: Session,
+    pub(super) identity: Identity,
+    pub(super) form: Form,
+    pub(super) handles: [Option<u8>; TRACKED_TOOLS],
+}
+
+/// Opens, configures and starts the unit.
+pub(super) fn open(settings: &Settings, timeouts: Timeouts) -> Result<Opened, Trouble> {
+    settings.check()?;
+    let key = |k: usize| format!("tools[{k}]");
+    let load = |(k, path): (usize, &std::path::PathBuf)| Definition::load(&key(k), path);
+    let definitions = settings.tools.iter().enumerate().map(load).collect::<Result<Vec<_>, _>>()?;
+    let place = settings.place();
+    let baud = settings.port.is_some().then_some(settings.baud);
+    let session = match baud {
+        None => over_network(&place, timeouts),
+        Some(baud) => over_line(&place, baud, timeouts),
+    }?;
+    Opening { session, place, baud, timeouts }.start(settings, &definitions)
+}
+
+fn over_network(place: &str, timeouts: Timeouts) -> Result<Session, Trouble> {
+    let mut session = Session::new(Wire::Tcp(Tcp::open(place, timeouts.slow.min(CONNECT))?));
+    session.ask(&Command::Init, timeouts.slow).map_err(|failure| trouble(place, None, "INIT", failure))?;
+    std::thread::sleep(SETTLE);
+    Ok(session)
+}
+
+/// Finds the speed of the line: as the last console left it, as after switching on, or after a reset by a break.
+fn over_line(place: &str, baud: u32, timeouts: Timeouts) -> Result<Session, Trouble> {
+    let line = Serial::open(&SerialSettings { port: place.to_owned(), baud })?;
+    let mut session = Session::new(Wire::Serial(line));
+    let told = |command, failure| trouble(place, Some(baud), command, failure);
+    // What the line still holds may be half a command or a reply to the last console: the first attempt may fail.
+    let mut found = false;
+    for speed in [baud, FIRST_BAUD] {
+        set_baud(&mut session, speed).map_err(|failure| told("INIT", failure))?;
+        let mut answered = session.ask_again(&Command::Init, timeouts.quick / 2);
+        if answered.as_deref() == Ok("RESET") {
+            // What is slow for a unit at a higher speed is a break to it.
+            std::thread::sleep(SETTLE);
+            answered = session.ask_again(&Command::Init, timeouts.slow);
+        }
+        if answered == Err(Failure::Gone) {
+            return Err(told("INIT", Failure::Gone));
+        }
+        if answered.is_ok_and(|answer| answer == "OKAY") {
+            found = true;
+            break;
+        }
+    }
+    if !found {
+        reset(&mut session, timeouts).map_err(|failure| told("a reset", failure))?;
+        session.ask_again(&Command::Init, timeouts.slow).map_err(|failure| told("INIT", failure))?;
+    }
+    std::thread::sleep(SETTLE);
+    session.ask(&Command::Comm { baud }, timeouts.quick).map_err(|failure| told("COMM", failure))?;
+    std::thread::sleep(SETTLE);
+    set_baud(&mut session, baud).map_err(|failure| told("COMM", failure))?;
+    Ok(session)
+}
+
+fn set_baud(session: &mut Session, baud: u32) -> Result<(), Failure> {
+    match &mut session.wire {
+        Wire::Serial(serial) => serial.set_baud(baud).map_err(|_| Failure::Gone),
+        Wire::Tcp(_) => Ok(()),
+    }
+}
+
+/// A break on the line at the first speed; the unit says `RESET`.
+fn reset(session: &mut Session, timeouts: Timeouts) -> Result<(), Failure> {
+    set_baud(session, FIRST_BAUD)?;
+    session.drain()?;
+    if let Wire::Serial(serial) = &mut session.wire {
+        serial.send_break(BREAK).map_err(|_| Failure::Gone)?;
+    }
+    session.wait(timeouts.slow)?;
+    std::thread::sleep(SETTLE);
+    Ok(())
+}
+
+/// What a failure means to the person at the machine.
+fn trouble(place: &str, baud: Option<u32>, command: &str, failure: Failure) -> Trouble {
+    let place = place.to_owned();
+    match (failure, baud) {
+        (Failure::Silent, _) => Trouble::Silent { place },
+        (Failure::Garbled, Some(baud)) => Trouble::WrongBaud { place, baud },
+        (Failure::Garbled, None) => Trouble::WrongProduct {
+            place,
+            expected: "tracker with NDI's Combined API".to_owned(),
+            found: "device that answers in another way".to_owned(),
+        },
+        (Failure::Gone, _) => Trouble::Other { place, reason: "it closed the connection".to_owned() },
+        (Failure::Refused(code), _) => {
+            Trouble::Refused { place, command: command.to_owned(), answer: code.to_string() }
+        }
+    }
+}
+
+struct Opening {
+    session: Session,
+    place: String,
+    baud: Option<u32>,
+    timeouts: Timeouts,
+}
+
+impl Opening {
+    fn start(mut self, settings: &Settings, definitions: &[Definition]) -> Result<Opened, Trouble> {
+        let identity = identity_of(&self.quick(&Command::Version(0))?);
+        let form = match settings.replies {
+            Replies::Auto => form_of(&identity.firmware),
+            Replies::Text => Form::Text,
+            Replies::Binary => Form::Binary,
+        };
+        for (handle, _) in self.handles(Filter::ToFree)? {
+            self.quick(&Command::Free(handle))?;
+        }
+        let mut handles = [None; TRACKED_TOOLS];
+        for (place, (definition, path)) in handles.iter_mut().zip(definitions.iter().zip(&settings.tools)) {
+            let name = path.display().to_string();
+            *place = Some(self.define(definition, &name)?);
+        }
+        if settings.wired {
+            self.plugged(&mut handles)?;
+        }
+        for handle in handles.iter().flatten() {
+            self.slow(&Command::Enable(*handle, Priority::Dynamic), "PENA")?;
+        }
+        self.slow(&Command::Start { anew: false }, "TSTART")?;
+        self.look()?;
+        Ok(Opened { session: self.session, identity, form, handles })
+    }
+
+    /// Looks at the unit's status once, so that a fault is told as such and not as a loss after every opening.
+    fn look(&mut self) -> Result<(), Trouble> {
+        let answer = self.quick(&Command::Track(Form::Text, OPTIONS))?;
+        let frames = Frames::of_text(answer.as_bytes(), OPTIONS).map_err(|_| self.trouble("TX", Failure::Garbled))?;
+        if frames.system.faults() == 0 {
+            return Ok(());
+        }
+        self.session.ask(&Command::Stop, self.timeouts.quick).ok();
+        Err(Trouble::DeviceFault {
+            place: self.place.clone(),
+            words: format!("{} (system status {:04X})", frames.system.words(), frames.system.0),
+            cure: "Let the camera reach its temperature and check its cables; if it stays, restart it.".to_owned(),
+        })
+    }
+
+    /// Gives one tool a handle and its definition.
+    fn define(&mut self, definition: &Definition, name: &str) -> Result<u8, Trouble> {
+        let answer = self.slow(&Command::Request(WIRELESS), "PHRQ")?;
+        let handle = read_hex(answer.as_bytes()).filter(|_| answer.len() == 2);
+        let handle = handle.ok_or_else(|| self.trouble("PHRQ", Failure::Garbled))? as u8;
+        for (address, data) in definition.chunks() {
+            self.quick(&Command::Write { handle, address, data })?;
+        }
+        self.slow(&Command::Initialise(handle), &format!("PINIT for {name}"))?;
+        Ok(handle)
+    }
+
+    /// Initialises what is plugged in; a tool can bring others, so the unit is asked twice.
+    fn plugged(&mut self, handles: &mut [Option<u8>; TRACKED_TOOLS]) -> Result<(), Trouble> {
+        for _ in 0..2 {
+            for (handle, _) in self.handles(Filter::ToInitialise)? {
+                self.slow(&Command::Initialise(handle), "PINIT")?;
+                if let Some(free) = handles.iter_mut().find(|place| place.is_none()) {
+                    *free = Some(handle);
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Handles with their status.
+    fn handles(&mut self, filter: Filter) -> Result<Vec<(u8, PortStatus)>, Trouble> {
+        let answer = self.quick(&Command::Handles(filter))?;
+        handles_of(answer.as_bytes()).ok_or_else(|| self.trouble("PHSR", Failure::Garbled))
+    }
+
+    fn quick(&mut self, command: &Command<'_>) -> Result<String, Trouble> {
+        self.session.ask_again(command, self.timeouts.quick).map_err(|failure| self.trouble(command.name(), failure))
+    }
+
+    fn slow(&mut self, command: &Command<'_>, name: &str) -> Result<String, Trouble> {
+        self.session.ask(command, self.timeouts.slow).map_err(|failure| self.trouble(name, failure))
+    }
+
+    fn trouble(&self, command: &str, failure: Failure) -> Trouble {
+        trouble(&self.place, self.baud, command, failure)
+    }
+}
+
+/// Reads `PHSR`: a count, then for every handle two digits and its status in three.
+pub(super) fn handles_of(text: &[u8]) -> Option<Vec<(u8, PortStatus)>> {
+    let (count, rest) = text.split_at_checked(2)?;
+    let count = read_hex(count)? as usize;
+    if rest.len() != count * 5 {
+        return None;
+    }
+    let one = |entry: &[u8]| Some((read_hex(&entry[..2])? as u8, PortStatus(read_hex(&entry[2..])?)));
+    rest.chunks(5).map(one).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn handles_and_their_status_are_read() {
+        let handles = handles_of(b"020A0310B031").unwrap();
+        assert_eq!(handles, [(0x0A, PortStatus(0x31)), (0x0B, PortStatus(0x31))]);
+        assert_eq!(handles_of(b"00"), Some(Vec::new()));
+        for bad in [&b""[..], b"0", b"01", b"010A03", b"010A0311", b"010AxYz"] {
+            assert_eq!(handles_of(bad), None);
+        }
+    }
+}

@@ -1,0 +1,152 @@
+//! One command, one reply, waiting for it: for opening and closing, never for the real-time thread.
+
+use std::time::{Duration, Instant};
+
+use super::{
+    command::{COMMAND_MAX, Command},
+    crc::read_hex,
+    reply::{Arrival, Expected, Inbox},
+    words::ErrorCode,
+};
+use crate::{
+    Loss,
+    transport::{Bytes, Serial, Tcp},
+};
+
+/// The two ways to a unit.
+#[derive(Debug)]
+pub(super) enum Wire {
+    /// Network.
+    Tcp(Tcp),
+    /// Serial line.
+    Serial(Serial),
+}
+
+impl Wire {
+    /// The line does not exist any more. A connection tells that by itself when it is read.
+    pub(super) fn is_gone(&mut self) -> bool {
+        match self {
+            Self::Tcp(_) => false,
+            Self::Serial(serial) => serial.clear().is_err(),
+        }
+    }
+}
+
+impl Bytes for Wire {
+    fn receive(&mut self, buffer: &mut [u8]) -> Result<usize, Loss> {
+        match self {
+            Self::Tcp(tcp) => tcp.receive(buffer),
+            Self::Serial(serial) => serial.receive(buffer),
+        }
+    }
+
+    fn send(&mut self, bytes: &[u8]) -> Result<(), Loss> {
+        match self {
+            Self::Tcp(tcp) => tcp.send(bytes),
+            Self::Serial(serial) => serial.send(bytes),
+        }
+    }
+}
+
+/// Why a command was not answered as it should be.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) enum Failure {
+    /// Nothing came.
+    Silent,
+    /// Bytes that make no reply came.
+    Garbled,
+    /// The connection is gone.
+    Gone,
+    /// The unit refuses.
+    Refused(ErrorCode),
+}
+
+/// Time of quiet after which a reply that is damaged is over.
+const QUIET: Duration = Duration::from_millis(50);
+const NAP: Duration = Duration::from_micros(500);
+
+/// A wire and what came over it.
+#[derive(Debug)]
+pub(super) struct Session {
+    pub(super) wire: Wire,
+    pub(super) inbox: Inbox,
+}
+
+impl Session {
+    pub(super) fn new(wire: Wire) -> Self {
+        Self { wire, inbox: Inbox::new() }
+    }
+
+    /// Sends a command and waits for its reply; the text of the reply.
+    pub(super) fn ask(&mut self, command: &Command<'_>, timeout: Duration) -> Result<String, Failure> {
+        self.drain()?;
+        self.wire.send(command.encode().as_bytes()).map_err(|_| Failure::Gone)?;
+        self.wait(timeout)
+    }
+
+    /// The same for a command that may be repeated without harm, when its reply does not come or is damaged.
+    pub(super) fn ask_again(&mut self, command: &Command<'_>, timeout: Duration) -> Result<String, Failure> {
+        match self.ask(command, timeout) {
+            Err(Failure::Silent | Failure::Garbled) => self.ask(command, timeout),
+            answered => answered,
+        }
+    }
+
+    /// Waits for a line.
+    pub(super) fn wait(&mut self, timeout: Duration) -> Result<String, Failure> {
+        let begin = Instant::now();
+        let (mut heard, mut damaged) = (begin, false);
+        let mut any = false;
+        while begin.elapsed() < timeout {
+            let count = self.wire.receive(self.inbox.room()).map_err(|_| Failure::Gone)?;
+            if count > 0 {
+                (heard, any) = (Instant::now(), true);
+                self.inbox.filled(count);
+                while let Some(arrival) = self.inbox.next(Expected::Line) {
+                    match arrival {
+                        Arrival::Line(line) => return answer(line),
+                        Arrival::Block(_) | Arrival::Damaged => damaged = true,
+                    }
+                }
+            } else {
+                std::thread::sleep(NAP);
+            }
+            if damaged && heard.elapsed() > QUIET {
+                return Err(Failure::Garbled);
+            }
+        }
+        Err(if any { Failure::Garbled } else { Failure::Silent })
+    }
+
+    /// Waits until something has come and the line is quiet again, or until timeout ends.
+    pub(super) fn let_pass(&mut self, timeout: Duration) {
+        let begin = Instant::now();
+        let mut heard: Option<Instant> = None;
+        while begin.elapsed() < timeout && heard.is_none_or(|heard| heard.elapsed() < QUIET / 10) {
+            match self.wire.receive(self.inbox.room()) {
+                Ok(0) => std::thread::sleep(NAP),
+                Ok(_) => heard = Some(Instant::now()),
+                Err(_) => return,
+            }
+        }
+    }
+
+    /// Throws away what has arrived.
+    pub(super) fn drain(&mut self) -> Result<(), Failure> {
+        let mut old = [0; COMMAND_MAX];
+        for _ in 0..64 {
+            if self.wire.receive(&mut old).map_err(|_| Failure::Gone)? == 0 {
+                break;
+            }
+        }
+        self.inbox.clear();
+        Ok(())
+    }
+}
+
+fn answer(line: &[u8]) -> Result<String, Failure> {
+    match line.strip_prefix(b"ERROR") {
+        Some(code) => Err(read_hex(code).map_or(Failure::Garbled, |code| Failure::Refused(ErrorCode(code as u8)))),
+        None => Ok(String::from_utf8_lossy(line).into_owned()),
+    }
+}

@@ -1,0 +1,286 @@
+//! What a tracking reply says: `BX` bodies and `TX` texts, both ways (reference 1.4, 1.5).
+//!
+//! Units of the wire: quaternions without a unit, scalar first, tool in the camera's frame; translations and errors in mm. Reply
+//! options understood are 0001 (transforms), 0800 (outside too), 1000 (strays, which are skipped and never sent). Parsing allocates nothing
+//! and takes any bytes; numbers are handed on as they are, also those that are not finite.
+
+use super::{
+    command::STRAYS,
+    crc::{read_hex, write_hex},
+    words::{PortStatus, SystemStatus},
+};
+
+/// Handles in one reply.
+pub const HANDLES_MAX: usize = 24;
+
+/// Where a tool is, in the units of the wire.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Transform {
+    /// Orientation of the tool in the camera's frame, scalar first.
+    pub quaternion: [f64; 4],
+    /// Its origin there, mm.
+    pub translation_mm: [f64; 3],
+    /// Root mean square error of the markers, mm.
+    pub error_mm: f64,
+}
+
+/// What the unit says of one handle.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Sight {
+    /// Seen.
+    Valid(Transform),
+    /// Not seen.
+    #[default]
+    Missing,
+    /// Not enabled.
+    Disabled,
+}
+
+/// One handle in a tracking reply.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct HandleFrame {
+    pub handle: u8,
+    /// Whether and where it is seen.
+    pub sight: Sight,
+    /// Its status; 0 where it is disabled.
+    pub status: PortStatus,
+    /// Number of the frame; 0 where it is disabled.
+    pub frame: u32,
+}
+
+/// A tracking reply.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Frames {
+    handles: [HandleFrame; HANDLES_MAX],
+    count: usize,
+    /// Status of the unit.
+    pub system: SystemStatus,
+}
+
+/// The reply has a right checksum and another shape than it should.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("a tracking reply of an unknown shape")]
+pub struct Malformed;
+
+impl Frames {
+    /// Of these handles; no more than [`HANDLES_MAX`] are taken.
+    pub fn new(handles: &[HandleFrame], system: SystemStatus) -> Self {
+        let mut frames = Self { system, ..Self::default() };
+        for one in handles {
+            frames.push(*one).ok();
+        }
+        frames
+    }
+
+    /// The handles.
+    pub fn handles(&self) -> &[HandleFrame] {
+        &self.handles[..self.count]
+    }
+
+    fn push(&mut self, one: HandleFrame) -> Result<(), Malformed> {
+        *self.handles.get_mut(self.count).ok_or(Malformed)? = one;
+        self.count += 1;
+        Ok(())
+    }
+
+    /// Reads the body of a `BX` reply that was asked for with `options`.
+    pub fn of_block(body: &[u8], options: u16) -> Result<Self, Malformed> {
+        let mut cursor = Cursor(body);
+        let mut frames = Self::default();
+        for _ in 0..cursor.byte()? {
+            let (handle, sight) = (cursor.byte()?, cursor.byte()?);
+            let sight = match sight {
+                1 => Sight::Valid(cursor.transform()?),
+                2 => Sight::Missing,
+                4 => Sight::Disabled,
+                _ => return Err(Malformed),
+            };
+            let (status, frame) = match sight {
+                Sight::Disabled => (0, 0),
+                _ => (cursor.word()?, cursor.word()?),
+            };
+            frames.push(HandleFrame { handle, sight, status: PortStatus(status), frame })?;
+        }
+        if options & STRAYS != 0 {
+            let strays = usize::from(cursor.byte()?);
+            cursor.take(strays.div_ceil(8) + strays * 12)?;
+        }
+        frames.system = SystemStatus(u16::from_le_bytes(cursor.array()?));
+        cursor.end()?;
+        Ok(frames)
+    }
+
+    /// Writes the body of a `BX` reply to `options`.
+    pub fn write_block(&self, options: u16, body: &mut Vec<u8>) {
+        body.push(self.count as u8);
+        for HandleFrame { handle, sight, status, frame } in self.handles() {
+            body.push(*handle);
+            match sight {
+                Sight::Valid(at) => {
+                    body.push(1);
+                    let numbers = at.quaternion.iter().chain(&at.translation_mm).chain([&at.error_mm]);
+                    numbers.for_each(|number| body.extend_from_slice(&(*number as f32).to_le_bytes()));
+                }
+                Sight::Missing => body.push(2),
+                Sight::Disabled => {
+                    body.push(4);
+                    continue;
+                }
+            }
+            body.extend_from_slice(&status.0.to_le_bytes());
+            body.extend_from_slice(&frame.to_le_bytes());
+        }
+        if options & STRAYS != 0 {
+            body.push(0);
+        }
+        body.extend_from_slice(&self.system.0.to_le_bytes());
+    }
+
+    /// Reads a `TX` reply that was asked for with `options`.
+    pub fn of_text(text: &[u8], options: u16) -> Result<Self, Malformed> {
+        let mut cursor = Cursor(text);
+        let mut frames = Self::default();
+        for _ in 0..cursor.hex(2)? {
+            let handle = cursor.hex(2)? as u8;
+            if cursor.skip_word(b"UNOCCUPIED") {
+                cursor.rest_of_line()?;
+                continue;
+            }
+            let sight = if cursor.skip_word(b"MISSING") {
+                Sight::Missing
+            } else if cursor.skip_word(b"DISABLED") {
+                Sight::Disabled
+            } else {
+                Sight::Valid(cursor.text_transform()?)
+            };
+            let (mut status, mut frame) = (0, 0);
+            if sight != Sight::Disabled {
+                (status, frame) = (cursor.hex(8)?, cursor.hex(8)?);
+            }
+            cursor.rest_of_line()?;
+            frames.push(HandleFrame { handle, sight, status: PortStatus(status), frame })?;
+        }
+        if options & STRAYS != 0 {
+            let strays = cursor.hex(2)? as usize;
+            cursor.take(strays.div_ceil(4) + strays * 21)?;
+        }
+        frames.system = SystemStatus(cursor.hex(4)? as u16);
+        cursor.end()?;
+        Ok(frames)
+    }
+
+    /// Writes a `TX` reply to `options`. Numbers that do not fit their digits are cut to the largest that do, those
+    /// that are none to 0.
+    pub fn write_text(&self, options: u16, text: &mut Vec<u8>) {
+        hex_to(text, 2, self.count as u32);
+        for HandleFrame { handle, sight, status, frame } in self.handles() {
+            hex_to(text, 2, u32::from(*handle));
+            match sight {
+                Sight::Valid(at) => {
+                    at.quaternion.iter().for_each(|part| decimal_to(text, 5, part * 1e4));
+                    at.translation_mm.iter().for_each(|part| decimal_to(text, 6, part * 1e2));
+                    decimal_to(text, 5, at.error_mm * 1e4);
+                }
+                Sight::Missing => text.extend_from_slice(b"MISSING"),
+                Sight::Disabled => text.extend_from_slice(b"DISABLED"),
+            }
+            hex_to(text, 8, status.0);
+            hex_to(text, 8, *frame);
+            text.push(b'\n');
+        }
+        if options & STRAYS != 0 {
+            text.extend_from_slice(b"00");
+        }
+        hex_to(text, 4, u32::from(self.system.0));
+    }
+}
+
+fn hex_to(text: &mut Vec<u8>, digits: usize, number: u32) {
+    let mut room = [0; 8];
+    write_hex(&mut room[..digits], u64::from(number));
+    text.extend_from_slice(&room[..digits]);
+}
+
+/// A sign and so many decimal digits.
+fn decimal_to(text: &mut Vec<u8>, digits: u32, number: f64) {
+    let largest = f64::from(10_u32.pow(digits)) - 1.0;
+    let whole = number.round().clamp(-largest, largest) as i64;
+    text.extend_from_slice(format!("{whole:+0width$}", width = digits as usize + 1).as_bytes());
+}
+
+/// The unread part of a reply.
+struct Cursor<'a>(&'a [u8]);
+
+impl<'a> Cursor<'a> {
+    fn take(&mut self, count: usize) -> Result<&'a [u8], Malformed> {
+        let (head, tail) = self.0.split_at_checked(count).ok_or(Malformed)?;
+        self.0 = tail;
+        Ok(head)
+    }
+
+    fn array<const N: usize>(&mut self) -> Result<[u8; N], Malformed> {
+        self.take(N)?.try_into().map_err(|_| Malformed)
+    }
+
+    fn byte(&mut self) -> Result<u8, Malformed> {
+        Ok(self.array::<1>()?[0])
+    }
+
+    fn word(&mut self) -> Result<u32, Malformed> {
+        Ok(u32::from_le_bytes(self.array()?))
+    }
+
+    fn float(&mut self) -> Result<f64, Malformed> {
+        Ok(f64::from(f32::from_le_bytes(self.array()?)))
+    }
+
+    fn transform(&mut self) -> Result<Transform, Malformed> {
+        Ok(Transform {
+            quaternion: [self.float()?, self.float()?, self.float()?, self.float()?],
+            translation_mm: [self.float()?, self.float()?, self.float()?],
+            error_mm: self.float()?,
+        })
+    }
+
+    fn hex(&mut self, digits: usize) -> Result<u32, Malformed> {
+        read_hex(self.take(digits)?).ok_or(Malformed)
+    }
+
+    /// A sign and digits, times `scale`.
+    fn decimal(&mut self, digits: usize, scale: f64) -> Result<f64, Malformed> {
+        let (sign, digits) = (self.byte()?, self.take(digits)?);
+        let whole = digits.iter().try_fold(0.0, |whole, digit| {
+            if digit.is_ascii_digit() { Ok(whole * 10.0 + f64::from(digit - b'0')) } else { Err(Malformed) }
+        })?;
+        match sign {
+            b'+' => Ok(whole / scale),
+            b'-' => Ok(-whole / scale),
+            _ => Err(Malformed),
+        }
+    }
+
+    fn text_transform(&mut self) -> Result<Transform, Malformed> {
+        let mut part = |digits, scale| self.decimal(digits, scale);
+        Ok(Transform {
+            quaternion: [part(5, 1e4)?, part(5, 1e4)?, part(5, 1e4)?, part(5, 1e4)?],
+            translation_mm: [part(6, 1e2)?, part(6, 1e2)?, part(6, 1e2)?],
+            error_mm: part(5, 1e4)?,
+        })
+    }
+
+    fn skip_word(&mut self, word: &[u8]) -> bool {
+        let rest = self.0.strip_prefix(word);
+        self.0 = rest.unwrap_or(self.0);
+        rest.is_some()
+    }
+
+    /// Skips to the next line: further information may stand here, after `DISABLED` also the status.
+    fn rest_of_line(&mut self) -> Result<(), Malformed> {
+        let end = self.0.iter().position(|byte| *byte == b'\n').ok_or(Malformed)?;
+        self.take(end + 1).map(|_| ())
+    }
+
+    const fn end(&self) -> Result<(), Malformed> {
+        if self.0.is_empty() { Ok(()) } else { Err(Malformed) }
+    }
+}

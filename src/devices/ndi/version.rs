@@ -1,0 +1,44 @@
+//! Who the unit says it is: the reply to `VER:0`, and which form of tracking its firmware can give (reference 1.3).
+
+use nima_files::quoted;
+
+use super::command::Form;
+use crate::Identity;
+
+/// Firmwares whose `BX` is not to be relied on; `TX` is used with them.
+const TEXT_ONLY: [&str; 5] =
+    ["AURORA Rev 007", "AURORA Rev 008", "Polaris Vega 008", "Polaris Spectra Rev 006", "Polaris Spectra Rev 007"];
+
+/// Reads the lines of `VER:0`. What is not there stays empty.
+pub fn identity_of(text: &str) -> Identity {
+    let after = |keys: &[&str]| {
+        let found = text.lines().find_map(|line| keys.iter().find_map(|key| line.trim().strip_prefix(key)));
+        found.map(|value| quoted(value.trim_start_matches([' ', ':']).trim())).unwrap_or_default()
+    };
+    let product = text.lines().next().unwrap_or_default().trim();
+    Identity {
+        product: quoted(product.strip_suffix("Control Firmware").unwrap_or(product).trim()),
+        serial: after(&["NDI S/N", "NDI Serial Number"]),
+        firmware: after(&["Freeze Tag"]),
+    }
+}
+
+/// The form of tracking replies for this firmware.
+pub fn form_of(firmware: &str) -> Form {
+    if TEXT_ONLY.contains(&firmware) { Form::Text } else { Form::Binary }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_unit_is_known_by_its_version_text() {
+        let text = "Polaris Vega Control Firmware\nNDI S/N: P9-00042\nFreeze Tag: Polaris Vega 008\nFreeze Date: 1\n";
+        let identity = identity_of(text);
+        assert_eq!(identity.product, "Polaris Vega");
+        assert_eq!((identity.serial.as_str(), identity.firmware.as_str()), ("P9-00042", "Polaris Vega 008"));
+        assert_eq!(form_of(&identity.firmware), Form::Text);
+        assert_eq!((identity_of(""), form_of("Polaris Vega 014")), (Identity::default(), Form::Binary));
+    }
+}

@@ -1,0 +1,181 @@
+//! The folder in which the emulators of this user serve, and what folders they accept.
+//!
+//! Whoever may write in such a folder could put another device there, or a link that leads the emulators' files elsewhere. So
+//! a folder is made for this user alone, and one that another user owns or may write in is refused.
+
+use std::path::PathBuf;
+
+/// Where emulated devices are whose place in the rig file is no whole path: in the user's runtime folder, or, where the system has none, in
+/// a folder of this user among the temporary ones. Neither made nor checked here ([`prepare`]).
+pub fn runtime_folder() -> PathBuf {
+    let given = std::env::var_os("XDG_RUNTIME_DIR").map(PathBuf::from);
+    match given.filter(|folder| folder.is_absolute() && is_own(folder)) {
+        Some(folder) => folder.join("nima-emulated"),
+        None => std::env::temp_dir().join(fallback_name()),
+    }
+}
+
+#[cfg(unix)]
+pub use unix::lock_file;
+#[cfg(unix)]
+pub use unix::prepare;
+#[cfg(unix)]
+use unix::{fallback_name, is_own};
+
+#[cfg(unix)]
+mod unix {
+    use std::{
+        fs::{self, DirBuilder, File, Metadata, OpenOptions},
+        io::{Error, ErrorKind, Result},
+        os::unix::fs::{DirBuilderExt as _, MetadataExt as _, OpenOptionsExt as _},
+        path::Path,
+    };
+
+    use crate::os::user_id;
+
+    /// What a group and everybody may do there.
+    const FOR_OTHERS: u32 = 0o077;
+    /// Everybody may write there, and anybody may remove what others put there.
+    const WORLD_WRITABLE: u32 = 0o002;
+    const STICKY: u32 = 0o1000;
+
+    pub(super) fn fallback_name() -> String {
+        format!("nima-emulated-{}", user_id())
+    }
+
+    /// A folder of this user that nobody else may enter, as a runtime folder is.
+    pub(super) fn is_own(folder: &Path) -> bool {
+        fs::symlink_metadata(folder)
+            .is_ok_and(|there| there.is_dir() && there.uid() == user_id() && there.mode() & FOR_OTHERS == 0)
+    }
+
+    /// Makes a folder that only this user may enter, with those above it. One that is there is accepted when it belongs to this user or
+    /// to the system, and nobody else may put something in place of what is made in it.
+    ///
+    /// # Errors
+    /// Of the system; when another user could interfere, [`ErrorKind::PermissionDenied`] with the reason and what to do.
+    pub fn prepare(folder: &Path) -> Result<()> {
+        let told = |error: Error| Error::new(error.kind(), format!("folder {}: {error}", folder.display()));
+        DirBuilder::new().recursive(true).mode(0o700).create(folder).map_err(told)?;
+        // A link must be as trustworthy as the folder it leads to.
+        let foreign = |there: &Metadata| ![0, user_id()].contains(&there.uid());
+        let (link, there) = (fs::symlink_metadata(folder).map_err(told)?, fs::metadata(folder).map_err(told)?);
+        let reason = if foreign(&link) || foreign(&there) {
+            "belongs to another user"
+        } else if there.mode() & (WORLD_WRITABLE | STICKY) == WORLD_WRITABLE {
+            "may be written by every user"
+        } else {
+            return Ok(());
+        };
+        let told =
+            format!("folder {} {reason}: remove it, or give the emulated devices another place", folder.display());
+        Err(Error::new(ErrorKind::PermissionDenied, told))
+    }
+
+    /// A file to be locked: made where it is not there, never followed elsewhere, never emptied.
+    pub fn lock_file(path: &Path) -> Result<File> {
+        let refuse = |reason: &str| {
+            let told = format!("{} {reason}: remove it, or take another place", path.display());
+            Error::new(ErrorKind::AlreadyExists, told)
+        };
+        let mut options = OpenOptions::new();
+        options.read(true).write(true).create(true).truncate(false).mode(0o600);
+        // Not blocking: a pipe of this name would otherwise wait for somebody.
+        let file = options.custom_flags(libc::O_NOFOLLOW | libc::O_NONBLOCK).open(path);
+        let file = file.map_err(|error| match error.raw_os_error() {
+            Some(libc::ELOOP) => refuse("is a link"),
+            _ => Error::new(error.kind(), format!("{}: {error}", path.display())),
+        })?;
+        let there = file.metadata()?;
+        if there.is_file() && there.uid() == user_id() { Ok(file) } else { Err(refuse("is no emulator's")) }
+    }
+}
+
+/// Makes a folder, with those above it.
+///
+/// # Errors
+/// Of the system.
+#[cfg(not(unix))]
+pub fn prepare(folder: &std::path::Path) -> std::io::Result<()> {
+    std::fs::create_dir_all(folder)
+}
+
+#[cfg(not(unix))]
+fn fallback_name() -> String {
+    "nima-emulated".to_owned()
+}
+
+/// Other systems have no such variable.
+#[cfg(not(unix))]
+fn is_own(_: &std::path::Path) -> bool {
+    false
+}
+
+#[cfg(all(test, unix))]
+mod tests {
+    use std::{
+        fs::{self, Permissions},
+        io::ErrorKind,
+        os::unix::fs::{MetadataExt as _, PermissionsExt as _, symlink},
+        path::Path,
+    };
+
+    use super::*;
+    use crate::os::user_id;
+
+    #[test]
+    fn a_folder_is_made_for_this_user_alone_and_its_own_is_accepted() {
+        let folder = tempfile::tempdir().unwrap();
+        let new = folder.path().join("one/two");
+        prepare(&new).unwrap();
+        for made in [&new, &folder.path().join("one")] {
+            assert_eq!(fs::metadata(made).unwrap().mode() & 0o777, 0o700, "{}", made.display());
+        }
+        prepare(&new).unwrap();
+        // Where everybody may write and nobody may touch what is another's.
+        fs::set_permissions(&new, Permissions::from_mode(0o1777)).unwrap();
+        prepare(&new).unwrap();
+    }
+
+    #[test]
+    fn a_folder_in_which_others_may_interfere_is_refused_with_its_name() {
+        let folder = tempfile::tempdir().unwrap();
+        let refused = |at: &Path, reason: &str| {
+            let error = prepare(at).unwrap_err();
+            assert_eq!(error.kind(), ErrorKind::PermissionDenied);
+            let told = error.to_string();
+            assert!(told.contains(reason) && told.contains(&at.display().to_string()), "{told}");
+        };
+        let open = folder.path().join("open");
+        prepare(&open).unwrap();
+        fs::set_permissions(&open, Permissions::from_mode(0o777)).unwrap();
+        refused(&open, "every user");
+        // Only the system may give folders away; without that right there is none of another user to try with.
+        let foreign = folder.path().join("foreign");
+        prepare(&foreign).unwrap();
+        if std::os::unix::fs::chown(&foreign, Some(user_id() + 12345), None).is_ok() {
+            refused(&foreign, "another user");
+            let link = folder.path().join("link");
+            symlink(&foreign, &link).unwrap();
+            refused(&link, "another user");
+        }
+    }
+
+    #[test]
+    fn a_planted_lock_is_neither_followed_nor_emptied() {
+        let folder = tempfile::tempdir().unwrap();
+        let (victim, lock) = (folder.path().join("victim"), folder.path().join(".tty.lock"));
+        fs::write(&victim, "kept").unwrap();
+        symlink(&victim, &lock).unwrap();
+        let told = lock_file(&lock).unwrap_err().to_string();
+        assert!(told.contains("is a link") && told.contains(".tty.lock"), "{told}");
+        assert_eq!(fs::read_to_string(&victim).unwrap(), "kept");
+        fs::remove_file(&lock).unwrap();
+        fs::hard_link(&victim, &lock).unwrap();
+        lock_file(&lock).unwrap();
+        assert_eq!(fs::read_to_string(&victim).unwrap(), "kept");
+        fs::remove_file(&lock).unwrap();
+        assert!(std::process::Command::new("mkfifo").arg(&lock).status().unwrap().success());
+        assert!(lock_file(&lock).unwrap_err().to_string().contains("no emulator's"));
+    }
+}

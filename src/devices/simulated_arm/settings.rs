@@ -1,0 +1,77 @@
+//! What the rig file says of it.
+
+use std::f64::consts::TAU;
+
+use nima_core::kinematics::{JointLimits, Joints, limit_margin_rad};
+use serde::{Deserialize, Serialize};
+
+use crate::{ARM_JOINTS, Trouble};
+
+/// Settings of the simulated arm.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, tag = "make", rename = "simulated")]
+pub struct Settings {
+    /// Where its joints are at first, rad: the instrument must be in its trocar there.
+    pub start_rad: [f64; ARM_JOINTS],
+    /// How fast its joints follow, Hz, above 0 to 100.
+    #[serde(default = "Settings::usual_bandwidth_hz")]
+    pub bandwidth_hz: f64,
+    /// Share of the arm's joint speeds that commands may use, above 0 to 1.
+    #[serde(default = "Settings::usual_speed_fraction")]
+    pub speed_fraction: f64,
+    /// The most that a commanded angle may be ahead of the measured one, rad, above 0 to 0.2.
+    #[serde(default = "Settings::usual_lead_rad")]
+    pub lead_rad: f64,
+}
+
+impl Settings {
+    const fn usual_bandwidth_hz() -> f64 {
+        10.0
+    }
+
+    const fn usual_speed_fraction() -> f64 {
+        0.5
+    }
+
+    const fn usual_lead_rad() -> f64 {
+        0.05
+    }
+
+    /// An arm that begins there.
+    pub const fn at(start_rad: [f64; ARM_JOINTS]) -> Self {
+        Self {
+            start_rad,
+            bandwidth_hz: Self::usual_bandwidth_hz(),
+            speed_fraction: Self::usual_speed_fraction(),
+            lead_rad: Self::usual_lead_rad(),
+        }
+    }
+
+    /// How its joints may be moved: whoever plans a path keeps to them, the driver checks them.
+    pub fn joint_limits(&self) -> JointLimits {
+        JointLimits::of_arm(self.speed_fraction, self.lead_rad)
+    }
+
+    /// Angular frequency with which the joints follow, rad/s.
+    pub(super) fn omega_rad_s(&self) -> f64 {
+        TAU * self.bandwidth_hz
+    }
+
+    /// Every number is possible.
+    pub fn check(&self) -> Result<(), Trouble> {
+        let refuse =
+            |key: &str, value: String, allowed: String| Trouble::Setting { key: key.to_owned(), value, allowed };
+        let margin_rad = limit_margin_rad(&Joints::from(self.start_rad));
+        if !self.start_rad.iter().all(|rad| rad.is_finite()) || margin_rad <= 0.0 {
+            let allowed = "seven angles within the ranges of the arm's joints, rad".to_owned();
+            return Err(refuse("start_rad", format!("{:?}", self.start_rad), allowed));
+        }
+        let within = |key: &str, value: f64, high: f64| {
+            let allowed = format!("{key} is above 0 and at most {high}");
+            if value > 0.0 && value <= high { Ok(()) } else { Err(refuse(key, value.to_string(), allowed)) }
+        };
+        within("bandwidth_hz", self.bandwidth_hz, 100.0)?;
+        within("speed_fraction", self.speed_fraction, 1.0)?;
+        within("lead_rad", self.lead_rad, 0.2)
+    }
+}

@@ -1,0 +1,282 @@
+//! A place for one device: opened on a thread of its own, used by the real-time thread, opened again when it is lost.
+//!
+//! The real-time thread never waits for it: an opened device arrives through a queue, and a lost one leaves through another, so that
+//! closing happens elsewhere too. A device that comes back is *connected*, never engaged: what it is used for is decided
+//! above.
+
+use std::{
+    sync::{
+        Arc, Mutex, PoisonError,
+        atomic::{AtomicBool, Ordering},
+    },
+    thread::{Builder, JoinHandle},
+    time::Duration,
+};
+
+use crossbeam_channel::{Receiver, Sender, bounded};
+
+use super::{Device, Health, Identity, Stamped, Standing, Trouble, health::Outages};
+
+/// What is known of a slot from any thread but the real-time one.
+#[derive(Clone, Debug, Default)]
+pub struct SlotReport {
+    /// Who the device said it is, once it was opened.
+    pub identity: Option<Identity>,
+    /// Why it could not be opened the last time; `None` once it is open.
+    pub trouble: Option<Trouble>,
+    /// How often it was opened.
+    pub opened: u64,
+}
+
+/// Between two attempts to open.
+const RETRY: Duration = Duration::from_millis(500);
+const NAP: Duration = Duration::from_millis(5);
+
+/// The place. Dropping it closes the device and ends its thread.
+pub struct Slot<D: Device> {
+    device: Option<D>,
+    health: Health,
+    outages: Outages,
+    opened: Receiver<D>,
+    lost: Sender<D>,
+    shared: Shared,
+    thread: Option<JoinHandle<()>>,
+}
+
+impl<D: Device + 'static> Slot<D> {
+    /// A place for what `open` opens, which is called on a thread of its own, again and again while it is wanted and not there.
+    pub fn start(name: &str, open: impl FnMut() -> Result<D, Trouble> + Send + 'static) -> std::io::Result<Self> {
+        let (give, opened) = bounded(1);
+        let (lost, take) = bounded(1);
+        let shared = Shared::default();
+        shared.wanted.store(true, Ordering::Release);
+        let keeper = Keeper { give, take, shared: shared.clone() };
+        let thread = Builder::new().name(format!("open {name}")).spawn(move || keeper.run(open))?;
+        let health = Health::opening();
+        Ok(Self { device: None, health, outages: Outages::default(), opened, lost, shared, thread: Some(thread) })
+    }
+
+    /// Polls the device, if it is there; takes in one that was opened, and puts away one that was lost or is not wanted.
+    pub fn poll(&mut self, now_s: f64) -> Option<Stamped<D::Reading>> {
+        let reading = self.poll_device(now_s);
+        self.outages.follow(&mut self.health, now_s);
+        reading
+    }
+
+    fn poll_device(&mut self, now_s: f64) -> Option<Stamped<D::Reading>> {
+        if self.device.is_none() {
+            self.device = self.opened.try_recv().ok();
+        }
+        let wanted = self.shared.wanted.load(Ordering::Acquire);
+        let Some(device) = self.device.as_mut() else {
+            // What is not there can be disconnected and connected too.
+            match (wanted, self.health.standing) {
+                (false, _) => self.health.standing = Standing::Closed,
+                (true, Standing::Closed) => self.health.standing = Standing::Opening,
+                (true, _) => {}
+            }
+            return None;
+        };
+        let reading = device.poll(now_s);
+        self.health = *device.health();
+        if !wanted || matches!(self.health.standing, Standing::Lost(_)) {
+            if let Some(Err(full)) = self.device.take().map(|device| self.lost.try_send(device)) {
+                // The keeper has not yet put away the one before; next time.
+                self.device = Some(full.into_inner());
+            }
+            if !wanted {
+                self.health.standing = Standing::Closed;
+            }
+            return None;
+        }
+        reading
+    }
+
+    /// The device while it is connected, to give it commands.
+    pub const fn device(&mut self) -> Option<&mut D> {
+        self.device.as_mut()
+    }
+
+    /// How it is; of the last device while there is none.
+    pub const fn health(&self) -> &Health {
+        &self.health
+    }
+
+    /// Connect or disconnect.
+    pub fn want(&self, connected: bool) {
+        self.shared.wanted.store(connected, Ordering::Release);
+    }
+
+    /// A view of it for other threads.
+    pub fn view(&self) -> SlotView {
+        SlotView { shared: self.shared.clone() }
+    }
+}
+
+impl<D: Device> std::fmt::Debug for Slot<D> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Slot").field("health", &self.health).finish_non_exhaustive()
+    }
+}
+
+impl<D: Device> Drop for Slot<D> {
+    fn drop(&mut self) {
+        self.shared.stop.store(true, Ordering::Release);
+        if let Some(thread) = self.thread.take() {
+            thread.join().ok();
+        }
+    }
+}
+
+#[derive(Clone, Debug, Default)]
+struct Shared {
+    report: Arc<Mutex<SlotReport>>,
+    wanted: Arc<AtomicBool>,
+    stop: Arc<AtomicBool>,
+}
+
+/// What a screen sees of a slot and may ask of it.
+#[derive(Clone, Debug)]
+pub struct SlotView {
+    shared: Shared,
+}
+
+impl SlotView {
+    /// What is known of it.
+    pub fn report(&self) -> SlotReport {
+        self.shared.report.lock().unwrap_or_else(PoisonError::into_inner).clone()
+    }
+
+    /// Connect or disconnect.
+    pub fn want(&self, connected: bool) {
+        self.shared.wanted.store(connected, Ordering::Release);
+    }
+}
+
+/// The thread that opens and closes.
+struct Keeper<D> {
+    give: Sender<D>,
+    take: Receiver<D>,
+    shared: Shared,
+}
+
+impl<D: Device> Keeper<D> {
+    fn run(self, mut open: impl FnMut() -> Result<D, Trouble>) {
+        let mut out = false;
+        while !self.shared.stop.load(Ordering::Acquire) {
+            if let Ok(lost) = self.take.try_recv() {
+                drop(lost);
+                out = false;
+                std::thread::sleep(NAP);
+            }
+            if out || !self.shared.wanted.load(Ordering::Acquire) {
+                std::thread::sleep(NAP);
+                continue;
+            }
+            match open() {
+                Ok(device) => {
+                    self.tell(|report| {
+                        report.identity = Some(device.identity().clone());
+                        report.trouble = None;
+                        report.opened += 1;
+                    });
+                    out = self.give.try_send(device).is_ok();
+                }
+                Err(trouble) => {
+                    self.tell(|report| report.trouble = Some(trouble));
+                    self.wait(RETRY);
+                }
+            }
+        }
+    }
+
+    fn tell(&self, change: impl FnOnce(&mut SlotReport)) {
+        change(&mut self.shared.report.lock().unwrap_or_else(PoisonError::into_inner));
+    }
+
+    /// Sleeps in small pieces, so that stopping is quick.
+    fn wait(&self, length: Duration) {
+        let pieces = length.as_millis() / NAP.as_millis();
+        for _ in 0..pieces {
+            if self.shared.stop.load(Ordering::Acquire) {
+                return;
+            }
+            std::thread::sleep(NAP);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::{sync::atomic::AtomicU64, time::Instant};
+
+    use super::*;
+    use crate::Loss;
+
+    struct Flaky {
+        health: Health,
+        identity: Identity,
+        left: u32,
+    }
+
+    impl Device for Flaky {
+        type Reading = u32;
+
+        fn poll(&mut self, now_s: f64) -> Option<Stamped<u32>> {
+            if self.left == 0 {
+                self.health.lose(Loss::Silent);
+                return None;
+            }
+            self.left -= 1;
+            self.health.accept(now_s);
+            Some(Stamped { device_s: None, arrival_s: now_s, value: self.left })
+        }
+
+        fn health(&self) -> &Health {
+            &self.health
+        }
+
+        fn identity(&self) -> &Identity {
+            &self.identity
+        }
+    }
+
+    fn until(slot: &mut Slot<Flaky>, good: impl Fn(&Slot<Flaky>, Option<Stamped<u32>>) -> bool) -> bool {
+        let begin = Instant::now();
+        while begin.elapsed() < Duration::from_secs(5) {
+            let reading = slot.poll(begin.elapsed().as_secs_f64());
+            if good(slot, reading) {
+                return true;
+            }
+            std::thread::sleep(Duration::from_millis(1));
+        }
+        false
+    }
+
+    #[test]
+    fn a_lost_device_comes_back_and_trouble_is_told() {
+        let attempts = Arc::new(AtomicU64::new(0));
+        let count = Arc::clone(&attempts);
+        let mut slot = Slot::start("flaky", move || match count.fetch_add(1, Ordering::Relaxed) {
+            0 => Err(Trouble::Absent { place: "/dev/ttyX".to_owned() }),
+            _ => Ok(Flaky { health: Health::default(), identity: Identity::default(), left: 3 }),
+        })
+        .unwrap();
+        let view = slot.view();
+        assert_eq!(slot.health().standing, Standing::Opening);
+        assert!(until(&mut slot, |_, reading| reading.is_some()));
+        assert!(until(&mut slot, |slot, _| slot.health().standing == Standing::Lost(Loss::Silent)));
+        assert!(until(&mut slot, |_, _| view.report().opened >= 2), "it is opened again");
+        assert!(until(&mut slot, |_, reading| reading.is_some()), "and delivers");
+        assert!(view.report().trouble.is_none());
+        assert!(slot.health().outages >= 1 && slot.health().longest_outage_s > 0.0, "an outage is not forgotten");
+        let outages = slot.health().outages;
+        assert!(until(&mut slot, |slot, _| slot.health().outages > outages), "the next one is counted");
+        // It is away just now; disconnected it counts as closed, not as lost.
+        view.want(false);
+        assert!(until(&mut slot, |slot, _| slot.health().standing == Standing::Closed));
+        let opened = view.report().opened;
+        std::thread::sleep(Duration::from_millis(50));
+        assert_eq!(view.report().opened, opened, "not wanted, not opened");
+    }
+}

@@ -1,0 +1,111 @@
+//! Transports within one process, for tests of drivers against emulators without the operating system between them.
+
+use std::{
+    collections::VecDeque,
+    sync::{Arc, Mutex, PoisonError},
+};
+
+use super::{Bytes, Datagrams};
+use crate::Loss;
+
+#[derive(Debug, Default)]
+struct Line<T> {
+    queue: VecDeque<T>,
+    cut: bool,
+}
+
+type Shared<T> = Arc<Mutex<Line<T>>>;
+
+/// One end of a pair of byte streams.
+#[derive(Clone, Debug)]
+pub struct MemoryBytes {
+    incoming: Shared<u8>,
+    outgoing: Shared<u8>,
+}
+
+/// One end of a pair of datagram sockets.
+#[derive(Clone, Debug)]
+pub struct MemoryDatagrams {
+    incoming: Shared<Vec<u8>>,
+    outgoing: Shared<Vec<u8>>,
+}
+
+fn with<T, R>(line: &Shared<T>, work: impl FnOnce(&mut Line<T>) -> R) -> R {
+    work(&mut line.lock().unwrap_or_else(PoisonError::into_inner))
+}
+
+impl MemoryBytes {
+    /// Two ends that are joined.
+    pub fn pair() -> [Self; 2] {
+        let [one, other]: [Shared<u8>; 2] = Default::default();
+        [Self { incoming: Arc::clone(&one), outgoing: Arc::clone(&other) }, Self { incoming: other, outgoing: one }]
+    }
+
+    /// Cuts the line: both ends see it.
+    pub fn cut(&self) {
+        with(&self.incoming, |line| line.cut = true);
+        with(&self.outgoing, |line| line.cut = true);
+    }
+}
+
+impl MemoryDatagrams {
+    /// Two ends that are joined.
+    pub fn pair() -> [Self; 2] {
+        let [one, other]: [Shared<Vec<u8>>; 2] = Default::default();
+        [Self { incoming: Arc::clone(&one), outgoing: Arc::clone(&other) }, Self { incoming: other, outgoing: one }]
+    }
+
+    /// Cuts the line: both ends see it.
+    pub fn cut(&self) {
+        with(&self.incoming, |line| line.cut = true);
+        with(&self.outgoing, |line| line.cut = true);
+    }
+}
+
+impl Bytes for MemoryBytes {
+    fn receive(&mut self, buffer: &mut [u8]) -> Result<usize, Loss> {
+        with(&self.incoming, |line| {
+            let count = line.queue.len().min(buffer.len());
+            if count == 0 && line.cut {
+                return Err(Loss::Disconnected);
+            }
+            buffer.iter_mut().zip(line.queue.drain(..count)).for_each(|(to, byte)| *to = byte);
+            Ok(count)
+        })
+    }
+
+    fn send(&mut self, bytes: &[u8]) -> Result<(), Loss> {
+        with(&self.outgoing, |line| {
+            if line.cut {
+                return Err(Loss::Disconnected);
+            }
+            line.queue.extend(bytes);
+            Ok(())
+        })
+    }
+}
+
+impl Datagrams for MemoryDatagrams {
+    fn receive(&mut self, buffer: &mut [u8]) -> Result<Option<usize>, Loss> {
+        with(&self.incoming, |line| match line.queue.pop_front() {
+            Some(datagram) => {
+                // As the operating system does: what does not fit is cut off.
+                let count = datagram.len().min(buffer.len());
+                buffer[..count].copy_from_slice(&datagram[..count]);
+                Ok(Some(count))
+            }
+            None if line.cut => Err(Loss::Disconnected),
+            None => Ok(None),
+        })
+    }
+
+    fn send(&mut self, bytes: &[u8]) -> Result<(), Loss> {
+        with(&self.outgoing, |line| {
+            if line.cut {
+                return Err(Loss::Disconnected);
+            }
+            line.queue.push_back(bytes.to_vec());
+            Ok(())
+        })
+    }
+}

@@ -1,0 +1,152 @@
+//! A serial line that never waits, with the low-latency flag where the port has it.
+
+use std::{
+    io::{ErrorKind, Read as _, Write as _},
+    path::Path,
+    time::Duration,
+};
+
+use serde::{Deserialize, Serialize};
+
+use serialport::SerialPort as _;
+
+use super::Bytes;
+#[cfg(unix)]
+use crate::os;
+use crate::{Loss, Trouble};
+
+/// How a line is set; always 8 bits, no parity, one stop bit, no handshake.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SerialSettings {
+    /// Its device file, or `COM3`.
+    pub port: String,
+    /// Line speed, bit/s.
+    pub baud: u32,
+}
+
+/// An open line, held exclusively.
+pub struct Serial {
+    /// Settings of the line.
+    port: Port,
+    /// Its bytes. The port's own `read` makes an error with an allocation whenever there is nothing.
+    #[cfg(unix)]
+    bytes: std::fs::File,
+    low_latency: bool,
+}
+
+#[cfg(unix)]
+type Port = serialport::TTYPort;
+#[cfg(not(unix))]
+type Port = Box<dyn serialport::SerialPort>;
+
+impl std::fmt::Debug for Serial {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Serial").field("port", &self.port.name()).finish_non_exhaustive()
+    }
+}
+
+/// Lets members of `plugdev` use any USB serial adapter.
+const UDEV: &str = r#"SUBSYSTEM=="tty", SUBSYSTEMS=="usb", GROUP="plugdev", MODE="0660", TAG+="uaccess""#;
+
+impl Serial {
+    /// Opens the line. On some sensors this alone restarts them (DTR).
+    pub fn open(settings: &SerialSettings) -> Result<Self, Trouble> {
+        let SerialSettings { port, baud } = settings;
+        let builder = serialport::new(port, *baud).timeout(Duration::from_millis(1));
+        #[cfg(unix)]
+        {
+            let native = builder.open_native().map_err(|error| Self::trouble(port, &error))?;
+            let other = |error: std::io::Error| Trouble::Other { place: port.clone(), reason: error.to_string() };
+            let bytes = os::bytes_of(&native).map_err(other)?;
+            let low_latency = os::ask_low_latency(&native);
+            Ok(Self { port: native, bytes, low_latency })
+        }
+        #[cfg(not(unix))]
+        {
+            Ok(Self { port: builder.open().map_err(|error| Self::trouble(port, &error))?, low_latency: false })
+        }
+    }
+
+    /// The driver of the port sends bytes on at once instead of collecting them for up to 16 ms.
+    pub const fn has_low_latency(&self) -> bool {
+        self.low_latency
+    }
+
+    /// Errors that the port's hardware has counted (framing, parity, overrun, break); `None` where it does not count.
+    #[cfg_attr(not(unix), expect(clippy::unused_self, reason = "only other systems count"))]
+    pub fn line_errors(&self) -> Option<u32> {
+        #[cfg(unix)]
+        {
+            os::line_errors(&self.port)
+        }
+        #[cfg(not(unix))]
+        {
+            None
+        }
+    }
+
+    /// Another speed on an open line.
+    pub fn set_baud(&mut self, baud: u32) -> Result<(), Loss> {
+        self.port.set_baud_rate(baud).map_err(|_| Loss::Disconnected)
+    }
+
+    /// Holds the line in the break condition for a while (blocks: for opening only).
+    pub fn send_break(&mut self, length: Duration) -> Result<(), Loss> {
+        self.port.set_break().map_err(|_| Loss::Disconnected)?;
+        std::thread::sleep(length);
+        self.port.clear_break().map_err(|_| Loss::Disconnected)
+    }
+
+    /// Throws away what has arrived.
+    pub fn clear(&mut self) -> Result<(), Loss> {
+        self.port.clear(serialport::ClearBuffer::Input).map_err(|_| Loss::Disconnected)
+    }
+
+    fn trouble(port: &str, error: &serialport::Error) -> Trouble {
+        let place = port.to_owned();
+        match error.kind() {
+            serialport::ErrorKind::NoDevice if Path::new(port).exists() => Trouble::Busy { place },
+            serialport::ErrorKind::NoDevice => Trouble::Absent { place },
+            serialport::ErrorKind::Io(kind) => {
+                Trouble::of_port(Path::new(port), &std::io::Error::new(kind, error.description.clone()), UDEV)
+            }
+            _ => Trouble::Other { place, reason: error.description.clone() },
+        }
+    }
+}
+
+impl Serial {
+    #[cfg(unix)]
+    const fn stream(&mut self) -> &mut std::fs::File {
+        &mut self.bytes
+    }
+
+    #[cfg(not(unix))]
+    const fn stream(&mut self) -> &mut Port {
+        &mut self.port
+    }
+}
+
+impl Bytes for Serial {
+    fn receive(&mut self, buffer: &mut [u8]) -> Result<usize, Loss> {
+        match self.stream().read(buffer) {
+            // Where nothing is there, reading is an error (raw mode waits for one byte at least); an end is a line hung up.
+            Ok(0) if !buffer.is_empty() => Err(Loss::Disconnected),
+            Ok(count) => Ok(count),
+            Err(error)
+                if matches!(error.kind(), ErrorKind::TimedOut | ErrorKind::WouldBlock | ErrorKind::Interrupted) =>
+            {
+                Ok(0)
+            }
+            Err(_) => Err(Loss::Disconnected),
+        }
+    }
+
+    fn send(&mut self, bytes: &[u8]) -> Result<(), Loss> {
+        match self.stream().write(bytes) {
+            Ok(count) if count == bytes.len() => Ok(()),
+            _ => Err(Loss::Disconnected),
+        }
+    }
+}

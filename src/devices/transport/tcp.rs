@@ -1,0 +1,62 @@
+//! A TCP connection that never waits.
+
+use std::{
+    io::{ErrorKind, Read as _, Write as _},
+    net::{IpAddr, TcpStream, ToSocketAddrs as _},
+    time::Duration,
+};
+
+use super::Bytes;
+use crate::{Loss, Trouble};
+
+/// An open connection.
+#[derive(Debug)]
+pub struct Tcp {
+    stream: TcpStream,
+}
+
+impl Tcp {
+    /// Connects to `host:port`; waits at most `timeout`.
+    pub fn open(address: &str, timeout: Duration) -> Result<Self, Trouble> {
+        let trouble = |error| Trouble::of_address(address, &error);
+        let resolved = address.to_socket_addrs().map_err(trouble)?.next();
+        let resolved = resolved.ok_or_else(|| Trouble::Unreachable { place: address.to_owned() })?;
+        let stream = TcpStream::connect_timeout(&resolved, timeout).map_err(trouble)?;
+        stream.set_nodelay(true).map_err(trouble)?;
+        Self::of(stream).map_err(trouble)
+    }
+
+    /// This computer's address on the way to the other end.
+    pub fn local_ip(&self) -> Option<IpAddr> {
+        self.stream.local_addr().ok().map(|address| address.ip())
+    }
+
+    /// Another end of the same connection, for an emergency.
+    pub fn duplicate(&self) -> std::io::Result<Self> {
+        Ok(Self { stream: self.stream.try_clone()? })
+    }
+
+    /// Of an accepted connection.
+    pub fn of(stream: TcpStream) -> std::io::Result<Self> {
+        stream.set_nonblocking(true)?;
+        Ok(Self { stream })
+    }
+}
+
+impl Bytes for Tcp {
+    fn receive(&mut self, buffer: &mut [u8]) -> Result<usize, Loss> {
+        match self.stream.read(buffer) {
+            Ok(0) if !buffer.is_empty() => Err(Loss::Disconnected),
+            Ok(count) => Ok(count),
+            Err(error) if matches!(error.kind(), ErrorKind::WouldBlock | ErrorKind::Interrupted) => Ok(0),
+            Err(_) => Err(Loss::Disconnected),
+        }
+    }
+
+    fn send(&mut self, bytes: &[u8]) -> Result<(), Loss> {
+        match self.stream.write(bytes) {
+            Ok(count) if count == bytes.len() => Ok(()),
+            _ => Err(Loss::Disconnected),
+        }
+    }
+}

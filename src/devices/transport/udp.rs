@@ -1,0 +1,157 @@
+//! A UDP socket that talks to one peer and never waits.
+
+use std::{
+    io::ErrorKind,
+    net::{IpAddr, SocketAddr, UdpSocket},
+};
+
+use super::Datagrams;
+use crate::{Loss, Trouble};
+
+/// An open socket.
+#[derive(Debug)]
+pub struct Udp {
+    socket: UdpSocket,
+    /// Whose datagrams are taken; others are dropped.
+    from: IpAddr,
+    /// From which port, once that is known.
+    sender: Option<SocketAddr>,
+    kept: bool,
+}
+
+impl Udp {
+    /// Listens at one address of this computer (port 0: any free one) for datagrams of one sender.
+    pub fn listen(at: SocketAddr, from: IpAddr) -> Result<Self, Trouble> {
+        let trouble = |error| Trouble::of_address(&format!("UDP port {} of {}", at.port(), at.ip()), &error);
+        let socket = UdpSocket::bind(at).map_err(trouble)?;
+        Self::of(socket, from).map_err(trouble)
+    }
+
+    /// This computer can listen at this address, which is one address and not all of them.
+    pub fn is_local(ip: IpAddr) -> bool {
+        !ip.is_unspecified() && UdpSocket::bind((ip, 0)).is_ok()
+    }
+
+    /// Talks to one address.
+    pub fn connect(to: SocketAddr) -> Result<Self, Trouble> {
+        let trouble = |error| Trouble::of_address(&to.to_string(), &error);
+        let socket = UdpSocket::bind(("0.0.0.0", 0)).map_err(trouble)?;
+        socket.connect(to).map_err(trouble)?;
+        Self::of(socket, to.ip()).map_err(trouble)
+    }
+
+    fn of(socket: UdpSocket, from: IpAddr) -> std::io::Result<Self> {
+        socket.set_nonblocking(true)?;
+        Ok(Self { socket, from, sender: None, kept: false })
+    }
+
+    /// Where it listens.
+    pub fn local_address(&self) -> Option<SocketAddr> {
+        self.socket.local_addr().ok()
+    }
+}
+
+impl Udp {
+    fn is_heard(&self, sender: SocketAddr) -> bool {
+        if self.kept { self.sender == Some(sender) } else { sender.ip() == self.from }
+    }
+}
+
+/// Strangers' datagrams skipped in one call.
+const STRANGERS_MAX: usize = 16;
+
+impl Datagrams for Udp {
+    fn receive(&mut self, buffer: &mut [u8]) -> Result<Option<usize>, Loss> {
+        for _ in 0..STRANGERS_MAX {
+            match self.socket.recv_from(buffer) {
+                Ok((count, sender)) if self.is_heard(sender) => {
+                    self.sender = Some(sender);
+                    return Ok(Some(count));
+                }
+                Ok(_) => {}
+                Err(error) if matches!(error.kind(), ErrorKind::WouldBlock | ErrorKind::Interrupted) => {
+                    return Ok(None);
+                }
+                // The peer's port is closed (an ICMP answer to what was sent).
+                Err(_) => return Err(Loss::Disconnected),
+            }
+        }
+        Ok(None)
+    }
+
+    fn send(&mut self, bytes: &[u8]) -> Result<(), Loss> {
+        match self.socket.send(bytes) {
+            Ok(_) => Ok(()),
+            // A full queue loses a datagram, as the network may.
+            Err(error) if error.kind() == ErrorKind::WouldBlock => Ok(()),
+            Err(_) => Err(Loss::Disconnected),
+        }
+    }
+
+    fn keep_to_sender(&mut self) {
+        let Some(sender) = self.sender.filter(|_| !self.kept) else { return };
+        // From here on the system drops strangers' datagrams before they take room; those that wait already are sorted out here.
+        self.kept = self.socket.connect(sender).is_ok();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::{
+        net::Ipv4Addr,
+        time::{Duration, Instant},
+    };
+
+    use super::*;
+
+    const HOME: IpAddr = IpAddr::V4(Ipv4Addr::LOCALHOST);
+
+    /// The next datagram; waits long, for machines that are busy.
+    fn next(udp: &mut Udp) -> Vec<u8> {
+        let (begin, mut buffer) = (Instant::now(), [0; 8]);
+        while begin.elapsed() < Duration::from_secs(20) {
+            if let Some(count) = udp.receive(&mut buffer).unwrap() {
+                return buffer[..count].to_vec();
+            }
+            std::thread::sleep(Duration::from_micros(200));
+        }
+        panic!("no datagram")
+    }
+
+    #[test]
+    fn it_listens_at_one_address_only() {
+        let udp = Udp::listen(SocketAddr::new(HOME, 0), HOME).unwrap();
+        let port = udp.local_address().unwrap().port();
+        assert_eq!(udp.local_address().unwrap().ip(), HOME);
+        // A socket that listened at every address would leave no room for this one.
+        #[cfg(target_os = "linux")]
+        UdpSocket::bind(("127.0.0.2", port)).unwrap();
+        assert!(matches!(Udp::listen(SocketAddr::new(HOME, port), HOME), Err(Trouble::Busy { .. })));
+        assert!(Udp::is_local(HOME));
+        assert!(!Udp::is_local(Ipv4Addr::UNSPECIFIED.into()) && !Udp::is_local([192, 0, 2, 1].into()));
+    }
+
+    #[test]
+    fn once_the_sender_is_known_nobody_else_is_heard() {
+        let mut udp = Udp::listen(SocketAddr::new(HOME, 0), HOME).unwrap();
+        let to = udp.local_address().unwrap();
+        let [sensor, stranger] = [(), ()].map(|()| UdpSocket::bind((HOME, 0)).unwrap());
+        udp.keep_to_sender();
+        stranger.send_to(b"early", to).unwrap();
+        assert_eq!(next(&mut udp), b"early", "whoever has its address may be the one");
+        sensor.send_to(b"good", to).unwrap();
+        assert_eq!(next(&mut udp), b"good");
+        // One arrives before the choice is made, the others after it.
+        stranger.send_to(b"between", to).unwrap();
+        udp.keep_to_sender();
+        for count in 0..1000 {
+            stranger.send_to(b"late", to).ok();
+            if count % 100 == 0 {
+                sensor.send_to(b"more", to).unwrap();
+                assert_eq!(next(&mut udp), b"more");
+            }
+        }
+        sensor.send_to(b"last", to).unwrap();
+        assert_eq!(next(&mut udp), b"last");
+    }
+}

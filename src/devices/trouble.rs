@@ -1,0 +1,155 @@
+//! Why a device could not be opened: each cause with its cure. Made off the real-time thread; allocates.
+
+use std::{io, path::Path};
+
+/// What went wrong on the way to a device.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error, serde::Serialize)]
+#[serde(rename_all = "snake_case", tag = "trouble")]
+#[expect(missing_docs, reason = "the messages say it")]
+pub enum Trouble {
+    #[error("{place} is not there")]
+    Absent {
+        /// Port, path or identity looked for.
+        place: String,
+    },
+    /// The operating system does not let this user in.
+    #[error("{place} may not be opened by this user")]
+    Permission {
+        place: String,
+        /// The line for the udev rules that grants it.
+        udev: String,
+    },
+    #[error("{place} is used by another program")]
+    Busy {
+        /// Port, path or address.
+        place: String,
+    },
+    /// Somebody answers, but another device.
+    #[error("{place} is a {found}, not a {expected}")]
+    WrongProduct { place: String, expected: String, found: String },
+    /// Bytes arrive that make no frame: as with a wrong line speed.
+    #[error("{place} sends bytes that make no sense at {baud} baud")]
+    WrongBaud { place: String, baud: u32 },
+    /// Opened, and no byte arrives.
+    #[error("{place} is open but sends nothing")]
+    Silent { place: String },
+    /// No way to the address.
+    #[error("{place} cannot be reached")]
+    Unreachable { place: String },
+    /// The machine answers, but nobody listens on the port.
+    #[error("nobody listens at {place}")]
+    NobodyListens {
+        /// Address with port.
+        place: String,
+    },
+    /// It sends what it reads to another address than this computer's.
+    #[error("{place} sends its readings to {to}, and this computer is {here}")]
+    SendsElsewhere {
+        place: String,
+        /// Address and port it sends to.
+        to: String,
+        /// This computer's address as the device sees it.
+        here: String,
+    },
+    /// User or password is wrong.
+    #[error("{place} refuses user \"{user}\"")]
+    RefusedLogin { place: String, user: String },
+    /// A library of the manufacturer is needed and not installed.
+    #[error("the {name} is not installed")]
+    SdkMissing {
+        name: String,
+        /// Where it was looked for.
+        searched: String,
+    },
+    /// The library is there and does not fit.
+    #[error("the {name} at {path} cannot be used: {reason}")]
+    SdkUnusable { name: String, path: String, reason: String },
+    /// The device is in calibration, reset or boot mode.
+    #[error("{place} is in {mode} mode")]
+    NotReady { place: String, mode: String, cure: String },
+    /// The device reports a fault of its own.
+    #[error("{place} reports a fault: {words}")]
+    DeviceFault {
+        place: String,
+        /// In words, with the device's code.
+        words: String,
+        cure: String,
+    },
+    /// It refused a command or setting.
+    #[error("{place} refused {command}: {answer}")]
+    Refused { place: String, command: String, answer: String },
+    /// A setting in the rig file is impossible.
+    #[error("{key} = {value} is not possible: {allowed}")]
+    Setting {
+        /// Key in the rig file.
+        key: String,
+        value: String,
+        allowed: String,
+    },
+    /// Anything else the operating system said.
+    #[error("{place}: {reason}")]
+    Other { place: String, reason: String },
+}
+
+impl Trouble {
+    /// What to do about it, one sentence.
+    pub fn cure(&self) -> String {
+        match self {
+            Self::Absent { .. } => "Plug it in and switch it on, or correct its port in the rig file.".to_owned(),
+            Self::Permission { udev, .. } => format!(
+                "Add this line to /etc/udev/rules.d/70-nima.rules, run `sudo udevadm control --reload`, plug it in again: {udev}"
+            ),
+            Self::Busy { .. } => "Close the other program, or the other console.".to_owned(),
+            Self::WrongProduct { .. } => "Correct the port or the driver in the rig file.".to_owned(),
+            Self::WrongBaud { .. } => "Set the device's own speed as `baud` in the rig file.".to_owned(),
+            Self::Silent { .. } => "Switch the device on, check its cable, and that it is set to send.".to_owned(),
+            Self::Unreachable { .. } => {
+                "Check the cable and that this computer has an address in the device's network.".to_owned()
+            }
+            Self::NobodyListens { .. } => {
+                "Correct the port number in the rig file, or wait until the device has started.".to_owned()
+            }
+            Self::SendsElsewhere { to, .. } => {
+                format!(
+                    "Give this computer the address that the device sends to ({to}), or set the device to send here."
+                )
+            }
+            Self::RefusedLogin { .. } => "Correct user and password in the rig file.".to_owned(),
+            Self::SdkMissing { searched, .. } => {
+                format!("Install the manufacturer's package, or set its folder; looked for in {searched}.")
+            }
+            Self::SdkUnusable { .. } => "Install the version that the documentation names.".to_owned(),
+            Self::NotReady { cure, .. } | Self::DeviceFault { cure, .. } => cure.clone(),
+            Self::Refused { .. } => "Check that the firmware fits, then connect again.".to_owned(),
+            Self::Setting { allowed, .. } => format!("Correct the rig file: {allowed}."),
+            Self::Other { .. } => "Connect again; if it stays, restart the device.".to_owned(),
+        }
+    }
+
+    /// Of an error while opening a device file; `udev` is the rule that would let everybody at the machine in.
+    pub fn of_port(path: &Path, error: &io::Error, udev: &str) -> Self {
+        let place = path.display().to_string();
+        match error.kind() {
+            io::ErrorKind::NotFound => Self::Absent { place },
+            io::ErrorKind::PermissionDenied => Self::Permission { place, udev: udev.to_owned() },
+            io::ErrorKind::ResourceBusy | io::ErrorKind::WouldBlock => Self::Busy { place },
+            _ => Self::Other { place, reason: error.to_string() },
+        }
+    }
+
+    /// Of an error while reaching a network address.
+    pub fn of_address(address: &str, error: &io::Error) -> Self {
+        let place = address.to_owned();
+        match error.kind() {
+            io::ErrorKind::ConnectionRefused => Self::NobodyListens { place },
+            io::ErrorKind::TimedOut
+            | io::ErrorKind::WouldBlock
+            | io::ErrorKind::HostUnreachable
+            | io::ErrorKind::NetworkUnreachable
+            | io::ErrorKind::NetworkDown => Self::Unreachable { place },
+            io::ErrorKind::PermissionDenied => Self::Other { place, reason: "not permitted (a firewall?)".to_owned() },
+            io::ErrorKind::AddrInUse => Self::Busy { place },
+            _ => Self::Other { place, reason: error.to_string() },
+        }
+    }
+}

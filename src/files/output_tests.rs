@@ -1,0 +1,108 @@
+use super::*;
+
+fn write(path: &Path, text: &str) -> io::Result<()> {
+    write_atomically(path, |out| out.write_all(text.as_bytes()))
+}
+
+#[test]
+fn a_failure_leaves_the_old_file_and_nothing_else() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("out.csv");
+    write(&path, "old").unwrap();
+    let failed = write_atomically(&path, |out| out.write_all(b"new").and_then(|()| Err(io::Error::other("full"))));
+    assert!(failed.is_err());
+    assert_eq!(fs::read(&path).unwrap(), b"old");
+    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
+}
+
+#[cfg(unix)]
+mod unix {
+    use std::{
+        os::unix::{
+            fs::{FileTypeExt as _, MetadataExt as _, PermissionsExt as _, symlink},
+            net::UnixListener,
+        },
+        process::Command,
+    };
+
+    use super::*;
+
+    #[test]
+    fn what_is_no_plain_file_is_refused_and_stays() {
+        let folder = tempfile::tempdir().unwrap();
+        let place = |name: &str| folder.path().join(name);
+        let run = |program: &str, arguments: &[&str]| Command::new(program).args(arguments).status().unwrap().success();
+        assert!(run("mkfifo", &[place("pipe").to_str().unwrap()]));
+        let _socket = UnixListener::bind(place("socket")).unwrap();
+        fs::create_dir(place("folder")).unwrap();
+        symlink(place("none"), place("to nothing")).unwrap();
+        symlink(place("pipe"), place("to a pipe")).unwrap();
+        let mut cases = vec!["pipe", "socket", "folder", "to nothing", "to a pipe"];
+        // Only root can make a device: a copy of /dev/null, so that the real one is never at stake.
+        if run("sh", &["-c", &format!("mknod '{}' c 1 3 2>/dev/null", place("device").display())]) {
+            cases.push("device");
+        }
+        let look = |name: &str| fs::symlink_metadata(place(name)).map(|there| (there.ino(), there.mode())).unwrap();
+        let before: Vec<_> = cases.iter().map(|name| look(name)).collect();
+        for name in &cases {
+            for error in [write(&place(name), "x"), check_output(&place(name), &[])].map(Result::unwrap_err) {
+                let words = error.to_string();
+                assert!(
+                    words.contains("left as it is") || words.contains("a link to a file that is not there"),
+                    "{words}"
+                );
+            }
+        }
+        assert_eq!(cases.iter().map(|name| look(name)).collect::<Vec<_>>(), before);
+        assert!(fs::symlink_metadata(place("pipe")).unwrap().file_type().is_fifo() && !place("none").exists());
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), cases.len(), "something was left behind");
+    }
+
+    #[test]
+    fn the_mode_of_a_file_stays_and_a_new_one_goes_by_the_umask() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("out.csv");
+        let mode = |path: &Path| fs::metadata(path).unwrap().mode() & 0o7777;
+        write(&path, "1").unwrap();
+        let usual = folder.path().join("usual");
+        fs::write(&usual, "").unwrap();
+        assert_eq!(mode(&path), mode(&usual));
+        for kept in [0o600, 0o664, 0o400] {
+            fs::set_permissions(&path, fs::Permissions::from_mode(kept)).unwrap();
+            write(&path, "2").unwrap();
+            assert_eq!(mode(&path), kept, "{kept:o}");
+        }
+    }
+
+    #[test]
+    fn a_link_stays_and_its_file_is_replaced_beside_itself() {
+        let (here, there) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
+        let (link, file) = (here.path().join("link"), there.path().join("file"));
+        fs::write(&file, "old").unwrap();
+        symlink(&file, &link).unwrap();
+        write(&link, "new").unwrap();
+        assert!(fs::symlink_metadata(&link).unwrap().is_symlink());
+        assert_eq!(fs::read_to_string(&file).unwrap(), "new");
+        assert_eq!([&here, &there].map(|folder| fs::read_dir(folder.path()).unwrap().count()), [1, 1]);
+    }
+
+    #[test]
+    fn an_output_that_is_an_input_is_found_by_any_name() {
+        let folder = tempfile::tempdir().unwrap();
+        let place = |name: &str| folder.path().join(name);
+        let [input, other] = ["input", "other"].map(place);
+        fs::write(&input, "x").unwrap();
+        fs::write(&other, "x").unwrap();
+        symlink(&input, place("link")).unwrap();
+        fs::hard_link(&input, place("hard link")).unwrap();
+        for name in ["input", "link", "hard link"] {
+            let error = check_output(&place(name), &[&other, &input]).unwrap_err().to_string();
+            assert!(error.contains("is the input") && error.contains("itself"), "{name}: {error}");
+            // And the other way round: the input is named by a link.
+            check_output(&input, &[&other, &place(name)]).unwrap_err();
+        }
+        check_output(&other, &[&input]).unwrap();
+        check_output(&place("new"), &[&input]).unwrap();
+        check_output(&place("no/such/folder/new"), &[&input]).unwrap_err();
+    }
+}

@@ -1,0 +1,44 @@
+//! Other people's text inside our messages.
+
+use std::fmt::Write as _;
+
+/// Most characters of a file, a name or a device's answer that a message repeats.
+pub const QUOTE: usize = 80;
+/// Most characters of what is longer by nature: a list of columns, a parser's complaint.
+pub const PASSAGE: usize = 300;
+
+/// A text as a message may repeat it: [`QUOTE`] characters at most, control characters escaped.
+pub fn quoted(text: &str) -> String {
+    shortened(text, QUOTE)
+}
+
+/// The same with another limit. What is cut off is replaced by `...` and the size of the whole.
+pub fn shortened(text: &str, most: usize) -> String {
+    let mut short = String::new();
+    // Looks at no more than `most` characters: the text may be a whole file.
+    for character in text.chars().take(most) {
+        match character {
+            '"' | '\'' | '\\' => short.push(character),
+            // What a terminal would obey (colours, line breaks, a change of direction) is told, not done.
+            _ => short.extend(character.escape_debug()),
+        }
+    }
+    if text.chars().nth(most).is_some() {
+        // Writing into a String cannot fail.
+        write!(short, "... ({} bytes)", text.len()).ok();
+    }
+    short
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_fits_is_left_as_it_is_and_what_does_not_is_cut() {
+        assert_eq!(quoted("fx_n \"Kraft\" größer 力 \\"), "fx_n \"Kraft\" größer 力 \\");
+        assert_eq!(quoted("a\nb\u{1b}[31m\0\u{202e}"), "a\\nb\\u{1b}[31m\\0\\u{202e}");
+        assert_eq!(quoted(&"x".repeat(QUOTE)), "x".repeat(QUOTE));
+        assert_eq!(quoted(&"x".repeat(15_000_000)), format!("{}... (15000000 bytes)", "x".repeat(QUOTE)));
+    }
+}

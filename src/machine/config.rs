@@ -1,0 +1,407 @@
+//! Rig files (TOML), and how files of settings are read. An unknown key is an error.
+
+mod mounted;
+
+use std::path::{Path, PathBuf};
+
+use nalgebra::{UnitQuaternion, Vector3};
+use nima_core::{
+    frames::from_roll_pitch_yaw_deg,
+    impedance::{MAX_DEGREE, MAX_DELAY_S, Mode, Scales, Settings},
+    kinematics::{Mapping, SCALES, view_from_omega},
+    safety::ChainSettings,
+    tip_force::Fallback,
+};
+use nima_devices::Trouble;
+use nima_files::{PASSAGE, shortened};
+use serde::{Deserialize, Serialize};
+
+pub use mounted::SimulatedWrists;
+
+use crate::rig;
+
+/// A file that could not be used: what, where, what to do.
+#[derive(Debug, thiserror::Error)]
+#[expect(missing_docs, reason = "the messages say it")]
+pub enum ConfigError {
+    /// The name is neither an embedded one nor a file.
+    #[error("there is no {kind} \"{name}\": give one of {known} or the path of a TOML file")]
+    Unknown {
+        /// `rig` or `scene`.
+        kind: &'static str,
+        name: String,
+        known: String,
+    },
+    /// The file could not be read.
+    #[error("cannot read {kind} file {path}")]
+    Read {
+        /// `rig` or `scene`.
+        kind: &'static str,
+        path: PathBuf,
+        source: std::io::Error,
+    },
+    /// The file is not valid TOML for its kind.
+    #[error("{kind} file {path}: {message}")]
+    Parse {
+        /// `rig` or `scene`.
+        kind: &'static str,
+        /// Its path or embedded name.
+        path: PathBuf,
+        /// Line, column and key.
+        message: String,
+    },
+    /// A device of the rig has a setting that it cannot have.
+    #[error("rig \"{name}\"")]
+    Device { name: String, source: Trouble },
+    /// A value is outside its range.
+    #[error("{kind} \"{name}\": {key} is {value}, must be {range}")]
+    Range {
+        /// `rig` or `scene`.
+        kind: &'static str,
+        name: String,
+        key: &'static str,
+        value: f64,
+        range: &'static str,
+    },
+}
+
+/// What the loop runs on and how.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct RigConfig {
+    /// Name shown on the screen.
+    pub name: String,
+    /// Rate of the loop, Hz.
+    pub rate_hz: f64,
+    /// Mode to start with.
+    pub mode: Mode,
+    /// One-way delay from follower to leader, s.
+    pub delay_s: f64,
+    /// Fastest command to the follower, m/s.
+    pub follower_speed_max_m_s: f64,
+    /// Identification window and scales.
+    #[serde(default)]
+    pub identification: Identification,
+    /// Gates between model and hand.
+    #[serde(default)]
+    pub gates: ChainSettings,
+    /// The network against the trocar's friction.
+    #[serde(default)]
+    pub tip_force: TipForcePart,
+    /// What to ask of the operating system for the loop's thread; what it refuses is told.
+    #[serde(default)]
+    pub scheduling: SchedulingClass,
+    /// From the hand's motion to the tip's.
+    #[serde(default)]
+    pub teleoperation: Teleoperation,
+    /// A cap and pedals before a simulated rig.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub desk: Option<rig::DeskSettings>,
+    /// What hangs on the simulated arms, where there are no devices.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub simulated: Option<SimulatedWrists>,
+    /// The devices; without them everything is simulated.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub devices: Option<rig::Settings>,
+}
+
+/// How the operating system shall treat the loop's thread (Linux).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum SchedulingClass {
+    /// As any other thread.
+    Ordinary,
+    /// `SCHED_FIFO` and locked memory.
+    #[default]
+    Fifo,
+    /// `SCHED_DEADLINE` and locked memory: before the share that newer kernels keep for ordinary threads; a runaway loop is
+    /// held back by the kernel. Needs root.
+    Deadline,
+}
+
+impl SchedulingClass {
+    /// All, most modest first.
+    pub const ALL: [Self; 3] = [Self::Ordinary, Self::Fifo, Self::Deadline];
+
+    /// Its name in files and on the command line.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Ordinary => "ordinary",
+            Self::Fifo => "fifo",
+            Self::Deadline => "deadline",
+        }
+    }
+}
+
+impl std::str::FromStr for SchedulingClass {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let known = || Self::ALL.map(Self::name).join(", ");
+        Self::ALL.into_iter().find(|class| class.name() == text).ok_or_else(|| format!("give one of {}", known()))
+    }
+}
+
+/// From the hand's motion to the tip's: `world_from_view * view_from_leader`, and the scale.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Teleoperation {
+    /// The tip's way per way of the hand.
+    pub scale: f64,
+    /// How the endoscope looks: roll, pitch, yaw of `world_from_view`, degrees (picture: x right, y down, z into it).
+    pub world_from_view_deg: Vector3<f64>,
+    /// How the leader stands before the picture.
+    pub leader: LeaderMount,
+}
+
+impl Default for Teleoperation {
+    fn default() -> Self {
+        Self { scale: 1.0, world_from_view_deg: Vector3::zeros(), leader: LeaderMount::Workspace }
+    }
+}
+
+/// How a leader stands before the picture.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum LeaderMount {
+    /// Its axes are those of the picture.
+    #[default]
+    Workspace,
+    /// An Omega whose base faces the user below the screen.
+    Omega,
+}
+
+impl Teleoperation {
+    /// The mapping; the default one where the numbers are none ([`RigConfig::validate`] refuses them).
+    pub fn mapping(&self) -> Mapping {
+        self.seen(&from_roll_pitch_yaw_deg(&self.world_from_view_deg), self.scale)
+    }
+
+    /// The mapping by an endoscope that looks so; the default one where the numbers are none.
+    pub fn seen(&self, world_from_view: &UnitQuaternion<f64>, scale: f64) -> Mapping {
+        let view_from_leader = match self.leader {
+            LeaderMount::Workspace => UnitQuaternion::identity(),
+            LeaderMount::Omega => view_from_omega(),
+        };
+        Mapping::new(world_from_view, &view_from_leader, scale).unwrap_or_default()
+    }
+}
+
+/// Tip-force part of a rig file.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct TipForcePart {
+    /// What is felt while the network is in doubt.
+    pub fallback: Fallback,
+}
+
+/// Identification part of a rig file.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Identification {
+    /// Length of the rolling window, s (the paper's 0.3 s).
+    pub window_s: f64,
+    /// Highest degree identified, 1 to 5.
+    pub max_degree: usize,
+    /// Learn the full `M` with cross-talk between the axes too; costs as much again.
+    pub cross_talk: bool,
+    /// Fixed physical scales of the columns, from the rig's workspace.
+    pub scales: Scales,
+}
+
+impl Default for Identification {
+    fn default() -> Self {
+        Self { window_s: 0.3, max_degree: MAX_DEGREE, cross_talk: false, scales: Scales::default() }
+    }
+}
+
+const RIGS: [(&str, &str); 4] = [
+    ("simulated", include_str!("../../config/rigs/simulated.toml")),
+    ("desk", include_str!("../../config/rigs/desk.toml")),
+    ("emulated", include_str!("../../config/rigs/emulated.toml")),
+    ("paper", include_str!("../../config/rigs/paper.toml")),
+];
+/// The text of a file or an embedded name, and where it came from.
+///
+/// # Errors
+/// [`ConfigError::Unknown`], [`ConfigError::Read`].
+pub fn text(kind: &'static str, name: &str, embedded: &[(&str, &str)]) -> Result<(PathBuf, String), ConfigError> {
+    if let Some((known, text)) = embedded.iter().find(|(known, _)| *known == name) {
+        return Ok((PathBuf::from(known), (*text).to_owned()));
+    }
+    let path = Path::new(name);
+    if !path.exists() {
+        let known = embedded.iter().map(|(known, _)| *known).collect::<Vec<_>>().join(", ");
+        return Err(ConfigError::Unknown { kind, name: name.to_owned(), known });
+    }
+    match nima_files::read_text(path, nima_files::CONFIG_MAX) {
+        Ok(text) => Ok((path.to_owned(), text)),
+        Err(source) => Err(ConfigError::Read { kind, path: path.to_owned(), source }),
+    }
+}
+
+/// Reads one file of settings.
+///
+/// # Errors
+/// [`ConfigError::Parse`] with its line.
+pub fn parse<T: for<'de> Deserialize<'de>>(kind: &'static str, path: &Path, text: &str) -> Result<T, ConfigError> {
+    let refused = |message: String| ConfigError::Parse { kind, path: path.to_owned(), message };
+    let wrong = |error: toml::de::Error| {
+        let line = error.span().map_or(1, |span| text[..span.start.min(text.len())].matches('\n').count() + 1);
+        let words = error.message().lines().collect::<Vec<_>>().join(" ");
+        refused(format!("line {line}: {}", shortened(&words, PASSAGE)))
+    };
+    let parsed = toml::from_str(text).map_err(wrong)?;
+    match crate::texts::fault(&toml::from_str(text).map_err(wrong)?) {
+        None => Ok(parsed),
+        Some(fault) => Err(refused(fault)),
+    }
+}
+
+/// Collects range checks so that each reads as one line.
+pub struct Ranges<'a> {
+    /// `rig` or `scene`.
+    pub kind: &'static str,
+    /// The file, as the user named it.
+    pub name: &'a str,
+}
+
+impl Ranges<'_> {
+    /// Refuses a value that is not good, by its key.
+    pub fn check(&self, key: &'static str, value: f64, good: bool, range: &'static str) -> Result<(), ConfigError> {
+        if good && value.is_finite() {
+            return Ok(());
+        }
+        Err(ConfigError::Range { kind: self.kind, name: self.name.to_owned(), key, value, range })
+    }
+
+    /// Every entry on its own: a sum would hide infinities that cancel.
+    pub fn finite(&self, key: &'static str, vector: &Vector3<f64>) -> Result<(), ConfigError> {
+        vector.iter().try_for_each(|entry| self.check(key, *entry, true, "finite numbers"))
+    }
+
+    /// A number above 0.
+    pub fn positive(&self, key: &'static str, value: f64) -> Result<(), ConfigError> {
+        self.check(key, value, value > 0.0, "a number above 0")
+    }
+
+    /// 0 or above.
+    pub fn not_negative(&self, key: &'static str, value: f64) -> Result<(), ConfigError> {
+        self.check(key, value, value >= 0.0, "0 or above")
+    }
+}
+
+impl RigConfig {
+    /// The rig of this embedded name or TOML file.
+    ///
+    /// # Errors
+    /// A name that is neither embedded nor a file, a file that cannot be read or has another form, or a value outside of its range.
+    pub fn load(name: &str) -> Result<Self, ConfigError> {
+        let (path, text) = text("rig", name, &RIGS)?;
+        let mut rig: Self = parse("rig", &path, &text)?;
+        rig.devices = rig.devices.map(|devices| devices.emulated_in(&nima_devices::own_folder::runtime_folder()));
+        rig.validate()?;
+        Ok(rig)
+    }
+
+    /// Settings of the identification for this rig.
+    pub fn settings(&self) -> Settings {
+        let Identification { window_s, max_degree, cross_talk, scales } = self.identification;
+        Settings {
+            rate_hz: self.rate_hz,
+            window_s,
+            max_degree,
+            cross_talk,
+            scales,
+            delay_s: self.delay_s,
+            ..Settings::default()
+        }
+    }
+
+    /// Checks every value's range.
+    ///
+    /// # Errors
+    /// The first value that is outside of its range, by its key.
+    pub fn validate(&self) -> Result<(), ConfigError> {
+        let ranges = Ranges { kind: "rig", name: &self.name };
+        ranges.check("rate_hz", self.rate_hz, (20.0..=10_000.0).contains(&self.rate_hz), "20 to 10000 Hz")?;
+        ranges.check("delay_s", self.delay_s, (0.0..=MAX_DELAY_S).contains(&self.delay_s), "0 to 1 s")?;
+        ranges.positive("follower_speed_max_m_s", self.follower_speed_max_m_s)?;
+        if let Some(desk) = &self.desk {
+            let speed = desk.speed_m_s;
+            ranges.check("desk.speed_m_s", speed, speed > 0.0 && speed <= 0.15, "above 0, at most 0.15 m/s")?;
+            let simulated = if self.devices.is_none() { 1.0 } else { 0.0 };
+            ranges.check(
+                "desk beside [devices]",
+                simulated,
+                self.devices.is_none(),
+                "left out: a rig has one or the other",
+            )?;
+        }
+        let scale = self.teleoperation.scale;
+        ranges.check("teleoperation.scale", scale, SCALES.contains(&scale), "0.01 to 5")?;
+        ranges.finite("teleoperation.world_from_view_deg", &self.teleoperation.world_from_view_deg)?;
+        let window_s = self.identification.window_s;
+        let samples = window_s * self.rate_hz;
+        ranges.check(
+            "identification.window_s",
+            window_s,
+            (10.0..=10_000.0).contains(&samples),
+            "10 to 10000 samples long",
+        )?;
+        let degree = self.identification.max_degree;
+        ranges.check("identification.max_degree", degree as f64, (1..=MAX_DEGREE).contains(&degree), "1 to 5")?;
+        let gates = &self.gates;
+        ranges.check(
+            "gates.gain",
+            gates.gain,
+            (0.0..=1.0).contains(&gates.gain),
+            "0 to 1 (more needs the operator)",
+        )?;
+        ranges.check(
+            "gates.ceiling_n",
+            gates.ceiling_n,
+            gates.ceiling_n > 0.0 && gates.ceiling_n <= 12.0,
+            "above 0, at most 12 N",
+        )?;
+        ranges.positive("gates.slew_n_per_s", gates.slew_n_per_s)?;
+        ranges.positive("gates.gain_rate_per_s", gates.gain_rate_per_s)?;
+        ranges.not_negative("gates.dead_band_m_s", gates.dead_band_m_s)?;
+        let ages = gates.fade_after_s >= 0.0 && gates.zero_after_s > gates.fade_after_s;
+        ranges.check("gates.zero_after_s", gates.zero_after_s, ages, "later than fade_after_s")?;
+        let devices = self.devices.as_ref().map_or(Ok(()), rig::Settings::check);
+        devices
+            .and_then(|()| self.check_simulated_wrists())
+            .map_err(|source| ConfigError::Device { name: self.name.clone(), source })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_embedded_rig_is_valid() {
+        for (name, _) in RIGS {
+            RigConfig::load(name).expect(name);
+        }
+    }
+
+    #[test]
+    fn an_unknown_key_is_named_with_its_line() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("rig.toml");
+        std::fs::write(&path, RIGS[0].1.replace("rate_hz", "rate_khz")).unwrap();
+        let message = RigConfig::load(path.to_str().unwrap()).unwrap_err().to_string();
+        assert!(message.contains("rate_khz") && message.contains("line "), "{message}");
+    }
+
+    #[test]
+    fn a_value_out_of_range_is_named_with_its_range() {
+        let mut rig = RigConfig::load("simulated").unwrap();
+        rig.gates.ceiling_n = 40.0;
+        assert!(rig.validate().unwrap_err().to_string().contains("gates.ceiling_n is 40"));
+        rig.gates.ceiling_n = f64::NAN;
+        assert!(rig.validate().is_err());
+    }
+}

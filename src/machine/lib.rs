@@ -1,0 +1,17 @@
+//! The rig, the loop and its thread, and the messages between the loop and the screen.
+//!
+//! | module | holds |
+//! |---|---|
+//! | `config` | rig files, and how files of settings are read |
+//! | `rig` | what the loop asks of hardware, and the drivers of a rig file composed into it |
+//! | `messages` | commands in; ticks and events out |
+//! | `teleop` | one tick of the whole loop for both arm pairs |
+//! | `runtime` | the real-time thread, its supervisor, the virtual clock |
+#![warn(missing_docs)]
+
+pub mod config;
+pub mod messages;
+pub mod rig;
+pub mod runtime;
+pub mod teleop;
+mod texts;

@@ -1,0 +1,327 @@
+//! One side's devices: handle, arm, force sensor, servos; and the kinematics between the loop's metres and their joints.
+
+use nalgebra::{UnitQuaternion, Vector3};
+use nima_core::{
+    frames::{WristSample, from_roll_pitch_yaw_deg},
+    kinematics::{Arm, Hand, Inverse, Jaws, JointLimits, Joints, Pose, Rcm, StartError, world_from_tracked_view},
+};
+use nima_devices::{
+    ArmReading, ClearFaults, Device, Follower, ForceReading, ForceSensor, HandleReading, Health, Leader, Lever, SERVOS,
+    ServoReading, Slot, Stamped, dynamixel,
+};
+
+use super::{
+    ArmSet, RigError,
+    devices::{OLDEST_S, enrol, is_there},
+    jaws::JawsControl,
+    makes::Opener,
+};
+use crate::rig::{Inputs, Outputs, Roster, Sensed, Side, Switches, View};
+
+/// Why an arm that delivers cannot be engaged.
+pub type Obstacle = StartError;
+
+/// What both sides share.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Shared {
+    pub(super) tissue_n: Option<Vector3<f64>>,
+    pub(super) m_from_c: Option<UnitQuaternion<f64>>,
+    /// How the endoscope looks, in the camera's frame: `c_from_view`.
+    pub(super) c_from_view: View,
+}
+
+/// Begins to open a part of this name and enters it into the list; what is opened is given to `attach` first.
+fn start<P>(
+    name: &str,
+    opener: Opener<P>,
+    roster: &mut Roster,
+    attach: impl Fn(&P) + Send + 'static,
+) -> std::io::Result<Slot<P>>
+where
+    P: Device + 'static,
+{
+    let Opener { driver, mut open, clear_faults } = opener;
+    let slot = Slot::start(name, move || open().inspect(&attach))?;
+    enrol(roster, name, driver, &slot);
+    if let Some(entry) = roster.last_mut() {
+        entry.clear_faults = clear_faults;
+    }
+    Ok(slot)
+}
+
+fn servos_opener(settings: dynamixel::Settings) -> Opener<dynamixel::Driver> {
+    let driver = format!("DYNAMIXEL servos, {}", settings.port);
+    let reboots = dynamixel::Reboots::default();
+    let of_opening = reboots.clone();
+    Opener {
+        driver,
+        open: Box::new(move || dynamixel::open_with(&settings, &of_opening)),
+        clear_faults: Some(ClearFaults::by(move || (0..SERVOS).for_each(|servo| reboots.ask(servo)))),
+    }
+}
+
+/// The devices of one side.
+#[derive(Debug)]
+pub struct ArmPair {
+    levers: [Lever; 2],
+    handle: Slot<Box<dyn Leader>>,
+    arm: Slot<Box<dyn Follower>>,
+    sensor: Slot<Box<dyn ForceSensor>>,
+    servos: Option<(Slot<dynamixel::Driver>, JawsControl)>,
+    hand: Option<Stamped<HandleReading>>,
+    joints: Option<Stamped<ArmReading>>,
+    force: Option<Stamped<ForceReading>>,
+    turned: Option<Stamped<ServoReading>>,
+    mount: Arm,
+    rcm: Rcm,
+    limits: JointLimits,
+    s1_from_m: Option<UnitQuaternion<f64>>,
+    at_wrist: bool,
+    period_s: f64,
+    /// Where the arm is by its joints.
+    pose: Option<Pose>,
+    inverse: Option<Inverse>,
+    obstacle: Option<Obstacle>,
+    /// Drives were permitted in the last tick.
+    driven: bool,
+    force_is_on: bool,
+}
+
+impl ArmPair {
+    pub(super) fn start(
+        side: Side,
+        set: &ArmSet,
+        period_s: f64,
+        at_wrist: bool,
+        roster: &mut Roster,
+    ) -> Result<Self, RigError> {
+        let word = side.word();
+        let mount = Arm::new(&set.mount).map_err(|source| RigError::Mount { side: word, source })?;
+        let rcm = Rcm::new(&set.rcm).map_err(|source| RigError::Rcm { side: word, source })?;
+        let levers = [Lever::default(), Lever::default()];
+        let [of_handle, of_arm] = levers.clone();
+        let name = |part: &str| format!("{word} {part}");
+        let handle = start(&name("handle"), set.handle.opener(), roster, move |handle| handle.attach(&of_handle))?;
+        let arm = start(&name("arm"), set.arm.opener(), roster, move |arm| arm.attach(&of_arm))?;
+        let sensor = start(&name("sensor"), set.sensor.opener(), roster, |_| ())?;
+        if let Some(entry) = roster.last_mut() {
+            entry.force_sensor_of = Some(side);
+        }
+        let servos = set.servos.clone().map(|settings| {
+            let slot = start(&name("servos"), servos_opener(settings), roster, |_| ())?;
+            Ok::<_, std::io::Error>((slot, JawsControl::new(set.jaws, period_s)))
+        });
+        Ok(Self {
+            levers,
+            handle,
+            arm,
+            sensor,
+            servos: servos.transpose()?,
+            hand: None,
+            joints: None,
+            force: None,
+            turned: None,
+            mount,
+            rcm,
+            limits: set.arm.joint_limits(),
+            s1_from_m: set.s1_from_m_deg.as_ref().map(from_roll_pitch_yaw_deg),
+            at_wrist,
+            period_s,
+            pose: None,
+            inverse: None,
+            obstacle: None,
+            driven: false,
+            force_is_on: false,
+        })
+    }
+
+    /// Takes in what has arrived.
+    pub(super) fn poll(&mut self, now_s: f64) {
+        if let Some(reading) = self.handle.poll(now_s) {
+            self.hand = Some(reading);
+        }
+        if let Some(reading) = self.arm.poll(now_s) {
+            self.pose = Some(self.mount.pose(&Joints::from(reading.value.joint_rad)));
+            self.joints = Some(reading);
+        }
+        if let Some(reading) = self.sensor.poll(now_s) {
+            self.force = Some(reading).filter(|reading| reading.value.status.is_usable());
+        }
+        if let Some((slot, _)) = &mut self.servos
+            && let Some(reading) = slot.poll(now_s)
+        {
+            self.turned = Some(reading);
+        }
+        let mut on = self.force_is_on && is_there(&self.handle);
+        if let Some(changed) = self.handle.device().and_then(|handle| handle.force_change()) {
+            on = changed;
+        }
+        self.force_is_on = on;
+        if !self.driven {
+            self.obstacle = self.joints.and_then(|joints| self.begin(&joints.value.joint_rad.into()).err());
+        }
+    }
+
+    /// The inverse kinematics from these joint angles (rad).
+    fn begin(&self, joint_rad: &Joints) -> Result<Inverse, StartError> {
+        Inverse::new(self.mount, self.rcm, self.period_s, joint_rad).map(|inverse| inverse.within(self.limits))
+    }
+
+    /// The measurements, if every device of the force path delivers and none of them is too old.
+    pub(super) fn inputs(&self, now_s: f64, shared: &Shared) -> Option<Inputs> {
+        let (hand, joints, force) = (self.hand?, self.joints?, self.force?);
+        let pose = self.pose.as_ref()?;
+        let age_s = [hand.arrival_s, joints.arrival_s, force.arrival_s].map(|at_s| now_s - at_s);
+        let age_s = age_s.into_iter().fold(0.0, f64::max);
+        let there = is_there(&self.handle) && is_there(&self.arm) && is_there(&self.sensor);
+        if !there || age_s > OLDEST_S {
+            return None;
+        }
+        let HandleReading { position_m, orientation, gripper_rad, .. } = hand.value;
+        let world_from_s1 = pose.orientation();
+        let jaws = self.measured_jaws();
+        Some(Inputs {
+            hand: Hand { position_m, orientation },
+            gripper_rad,
+            grip_n: self.servos.as_ref().zip(self.turned).and_then(|((_, jaws), turned)| jaws.grip_n(&turned.value)),
+            tip_m: pose.tip_m,
+            world_from_jaws: jaws.map(|jaws| world_from_s1 * jaws.s1_from_jaws()),
+            sensed: self.sensed(&force.value, pose, &world_from_s1, shared),
+            view: self.view(&world_from_s1, shared),
+            switches: Switches::default(),
+            powered: self.force_is_on && joints.value.servoing && self.obstacle.is_none(),
+            obstacle: self.obstacle,
+            age_s,
+        })
+    }
+
+    fn view(&self, world_from_s1: &UnitQuaternion<f64>, shared: &Shared) -> View {
+        let View::Seen(c_from_view) = shared.c_from_view else { return shared.c_from_view };
+        self.s1_from_m.zip(shared.m_from_c).map_or(View::Unseen, |(s1_from_m, m_from_c)| {
+            View::Seen(world_from_tracked_view(&(world_from_s1 * s1_from_m), &m_from_c, &c_from_view))
+        })
+    }
+
+    fn measured_jaws(&self) -> Option<Jaws> {
+        let ((slot, control), turned) = (self.servos.as_ref()?, self.turned.as_ref()?);
+        is_there(slot).then(|| control.measured(&turned.value))
+    }
+
+    fn sensed(
+        &self,
+        force: &ForceReading,
+        pose: &Pose,
+        world_from_s1: &UnitQuaternion<f64>,
+        shared: &Shared,
+    ) -> Sensed {
+        if !self.at_wrist {
+            return Sensed::AtTip(world_from_s1 * force.wrench.force_n);
+        }
+        Sensed::AtWrist(WristSample {
+            raw: force.wrench,
+            acceleration_m_s2: force.acceleration_m_s2,
+            world_from_s1: Some(*world_from_s1),
+            world_from_m: self.s1_from_m.map(|s1_from_m| world_from_s1 * s1_from_m),
+            m_from_c: shared.m_from_c,
+            insertion_m: Some(pose.insertion_m(&self.rcm.settings().trocar_m)),
+            tissue_n: shared.tissue_n,
+        })
+    }
+
+    /// Carries out what the loop commands.
+    pub(super) fn write(&mut self, now_s: f64, outputs: &Outputs) {
+        if outputs.drives != self.driven {
+            self.driven = outputs.drives;
+            self.switch_drives(outputs.drives);
+        }
+        if outputs.drives
+            && let Some(handle) = self.handle.device()
+        {
+            handle.set_force(outputs.hand_force_n, outputs.gripper_n);
+        }
+        self.lead(outputs.tip_command_m.filter(|_| outputs.drives));
+        self.turn(now_s, outputs.world_from_jaws);
+    }
+
+    /// On once, by command: what switches itself off stays off until the next engagement.
+    fn switch_drives(&mut self, on: bool) {
+        // Off, the arm leaves servoing once it has come to rest.
+        if let (true, Some(arm)) = (on, self.arm.device()) {
+            arm.enter_servoing();
+        }
+        if let Some(handle) = self.handle.device() {
+            handle.switch_force(on);
+        }
+        if let Some((slot, control)) = &mut self.servos {
+            control.reset();
+            if let Some(servos) = slot.device() {
+                servos.set_torque(on);
+            }
+        }
+    }
+
+    /// One step of the joints: towards the tip's target, or to rest on the way through the trocar.
+    fn lead(&mut self, tip_command_m: Option<Vector3<f64>>) {
+        let (Some(arm), Some(joints)) = (self.arm.device(), self.joints) else {
+            self.inverse = None;
+            return;
+        };
+        let measured_rad = Joints::from(joints.value.joint_rad);
+        if self.inverse.is_none() && tip_command_m.is_some() {
+            // Where the arm is commanded to be, so that the first command is no step.
+            let from_rad = if joints.value.servoing { Joints::from(arm.command_rad()) } else { measured_rad };
+            match self.begin(&from_rad) {
+                Ok(inverse) => self.inverse = Some(inverse),
+                Err(obstacle) => self.obstacle = Some(obstacle),
+            }
+        }
+        let Some(arm) = self.arm.device() else { return };
+        if let Some(inverse) = &mut self.inverse {
+            inverse.observe(&measured_rad);
+            let step = match tip_command_m {
+                Some(target_m) => inverse.step(&target_m),
+                None => inverse.brake(),
+            };
+            let at_rest = tip_command_m.is_none() && inverse.is_still();
+            // After a refusal the arm is not where the plan has it: a new one begins where it is.
+            if !arm.aim(step.joint_rad.as_ref()) || at_rest {
+                self.inverse = None;
+            }
+        }
+        if !self.driven && self.inverse.is_none() {
+            arm.leave_servoing();
+        }
+    }
+
+    fn turn(&mut self, now_s: f64, world_from_jaws: Option<UnitQuaternion<f64>>) {
+        let (Some(world_from_jaws), Some(pose)) = (world_from_jaws, &self.pose) else { return };
+        let Some(turned) = self.turned.filter(|turned| now_s - turned.arrival_s <= OLDEST_S) else { return };
+        let gripper_rad = self.hand.and_then(|hand| hand.value.gripper_rad);
+        let Some((slot, control)) = &mut self.servos else { return };
+        let s1_from_jaws = pose.orientation().inverse() * world_from_jaws;
+        let goals = control.goals(&s1_from_jaws, gripper_rad, &turned.value);
+        if let Some(servos) = slot.device() {
+            servos.set_goals(&goals);
+        }
+    }
+
+    /// Of the handle and the arm.
+    pub(super) const fn levers(&self) -> &[Lever; 2] {
+        &self.levers
+    }
+
+    /// Why the arm cannot be engaged from where it is.
+    pub(super) const fn obstacle(&self) -> Option<Obstacle> {
+        self.obstacle
+    }
+
+    /// The devices in the order of the roster, and whether force depends on each.
+    pub(super) fn healths(&self) -> [Option<(&Health, bool)>; 4] {
+        [
+            Some((self.handle.health(), true)),
+            Some((self.arm.health(), true)),
+            Some((self.sensor.health(), true)),
+            self.servos.as_ref().map(|(slot, _)| (slot.health(), false)),
+        ]
+    }
+}

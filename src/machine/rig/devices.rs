@@ -1,0 +1,245 @@
+//! The devices of a rig, composed into what the loop asks for: one [`ArmPair`] for each side, and what both share.
+//!
+//! In: the loop's outputs (m, N). Out: measurements in the workspace frame, with the age of their oldest part (s): devices tick by their
+//! own clocks. Every device has a [`Slot`]: it comes and goes at any time, and comes back as connected, never as engaged. Neither
+//! reading nor writing waits or allocates. What no device can give (lost, refused, older than 20 ms) is `None`, never an old value as a
+//! new one.
+
+use std::io;
+
+use nima_core::frames::from_roll_pitch_yaw_deg;
+use nima_devices::{
+    Device, ForceSensor, Health, Lever, PedalReading, Slot, Stamped, Standing, Switch, Tracked, Tracker,
+    TrackerReading, Trouble,
+    hid::{self, Held},
+    ndi,
+};
+
+use super::{
+    ArmPair, DEVICES_MAX, DeviceEvent, EndoscopeSettings, Healths, Inputs, Outputs, Rig, Roster, RosterEntry, SIDES,
+    Settings, Side, Switches, View, Watch, arm_pair::Shared, makes::Opener,
+};
+
+/// A part older than this is not there, s.
+pub(super) const OLDEST_S: f64 = 0.020;
+
+/// All devices of a rig. Owned by the real-time thread.
+#[derive(Debug)]
+pub struct DeviceRig {
+    pairs: [Option<Box<ArmPair>>; SIDES],
+    tissue: Option<Slot<Box<dyn ForceSensor>>>,
+    tissue_n: Option<Stamped<nalgebra::Vector3<f64>>>,
+    tracker: Option<Slot<Box<dyn Tracker>>>,
+    endoscope: Option<EndoscopeSettings>,
+    tracked: Option<Stamped<TrackerReading>>,
+    pedal: Option<Pedal>,
+    watch: Watch,
+}
+
+struct Pedal {
+    slot: Slot<Box<dyn Switch>>,
+    held: Held<PedalReading>,
+    roles: hid::PedalRoles,
+}
+
+impl std::fmt::Debug for Pedal {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Pedal").field("held", &self.held).finish_non_exhaustive()
+    }
+}
+
+/// Why a rig of devices cannot be made.
+#[derive(Debug, thiserror::Error)]
+pub enum RigError {
+    /// The operating system gave no thread.
+    #[error("no thread can be started for a device")]
+    Thread(#[from] io::Error),
+    /// A setting is impossible.
+    #[error("rig file, {device}: {trouble}")]
+    Setting {
+        /// Of which device.
+        device: String,
+        /// Which.
+        trouble: Trouble,
+    },
+    /// The arm's mount makes no sense.
+    #[error("rig file, {side} mount")]
+    Mount {
+        /// Of which side.
+        side: &'static str,
+        /// Why.
+        source: nima_core::kinematics::ArmError,
+    },
+    /// The trocar makes no sense.
+    #[error("rig file, {side} rcm")]
+    Rcm {
+        /// Of which side.
+        side: &'static str,
+        /// Why.
+        source: nima_core::kinematics::RcmError,
+    },
+}
+
+impl DeviceRig {
+    /// Begins to open every device of these settings, for a loop of this period (s). `at_wrist` says for each side whether its sensor
+    /// feels at the wrist.
+    pub fn start(settings: &Settings, period_s: f64, at_wrist: [bool; SIDES]) -> Result<(Self, Roster), RigError> {
+        let mut roster = Roster::new();
+        let mut pairs = [None, None];
+        for side in Side::ALL {
+            if let Some(set) = settings.arm(side) {
+                let pair = ArmPair::start(side, set, period_s, at_wrist[side.index()], &mut roster)?;
+                pairs[side.index()] = Some(Box::new(pair));
+            }
+        }
+        let tissue = settings.tissue_sensor.as_ref().map(|sensor| {
+            let Opener { driver, open, .. } = sensor.opener();
+            let slot = Slot::start("tissue sensor", open)?;
+            enrol(&mut roster, "tissue sensor", driver, &slot);
+            Ok::<_, io::Error>(slot)
+        });
+        let tracker = settings.tracker.clone().map(|tracker| {
+            let place = tracker.place();
+            let open = move || ndi::Driver::open(&tracker).map(|driver| Box::new(driver) as Box<dyn Tracker>);
+            let slot = Slot::start("tracker", open)?;
+            enrol(&mut roster, "tracker", format!("NDI tracker, {place}"), &slot);
+            Ok::<_, io::Error>(slot)
+        });
+        let pedal = settings.pedal.clone().map(|pedal| {
+            let setting = |trouble| RigError::Setting { device: "pedal".to_owned(), trouble };
+            let roles = pedal.roles().map_err(setting)?;
+            let place = pedal.source.clone();
+            let open = move || hid::PedalDriver::open(&pedal).map(|driver| Box::new(driver) as Box<dyn Switch>);
+            let slot = Slot::start("pedal", open)?;
+            enrol(&mut roster, "pedal", format!("foot pedal, {place}"), &slot);
+            Ok::<_, RigError>(Pedal { slot, held: Held::default(), roles })
+        });
+        let rig = Self {
+            pairs,
+            tissue: tissue.transpose()?,
+            tissue_n: None,
+            tracker: tracker.transpose()?,
+            endoscope: settings.endoscope,
+            tracked: None,
+            pedal: pedal.transpose()?,
+            watch: Watch::default(),
+        };
+        Ok((rig, roster))
+    }
+
+    fn poll_shared(&mut self, now_s: f64) -> Switches {
+        if let Some(reading) = self.tissue.as_mut().and_then(|slot| slot.poll(now_s)) {
+            let usable = reading.value.status.is_usable();
+            self.tissue_n = usable.then_some(Stamped {
+                device_s: reading.device_s,
+                arrival_s: reading.arrival_s,
+                value: reading.value.wrench.force_n,
+            });
+        }
+        if let Some(reading) = self.tracker.as_mut().and_then(|slot| slot.poll(now_s)) {
+            self.tracked = Some(reading);
+        }
+        let Some(pedal) = &mut self.pedal else { return Switches::default() };
+        let reading = pedal.slot.poll(now_s);
+        let pressed = pedal.held.update(reading, pedal.slot.health());
+        // A pedal that is not there holds nobody present.
+        Switches { clutch: pedal.roles.clutch(pressed), presence: pedal.roles.presence(pressed) }
+    }
+
+    /// What both sides share, as one side sees it.
+    fn shared(&self, side: Side, now_s: f64) -> Shared {
+        /// Frames of the tracker come 60 times a second.
+        const TRACKED_S: f64 = 0.1;
+        let tissue_n =
+            self.tissue_n.filter(|stamped| now_s - stamped.arrival_s <= OLDEST_S).map(|stamped| stamped.value);
+        let tracked = self.tracked.filter(|stamped| now_s - stamped.arrival_s <= TRACKED_S);
+        let c_from = |tool: usize| match tracked?.value.tools.get(tool)? {
+            Tracked::Seen { c_from_tool, .. } => Some(*c_from_tool),
+            _ => None,
+        };
+        let c_from_view = self.endoscope.map_or(View::Fixed, |endoscope| {
+            let n_from_view = from_roll_pitch_yaw_deg(&endoscope.n_from_view_deg);
+            c_from(endoscope.tool).map_or(View::Unseen, |c_from_n| View::Seen(c_from_n * n_from_view))
+        });
+        Shared { tissue_n, m_from_c: c_from(side.index()).map(|c_from_m| c_from_m.inverse()), c_from_view }
+    }
+
+    fn each_health(&self, mut each: impl FnMut(&Health, [bool; SIDES])) {
+        for side in Side::ALL {
+            if let Some(pair) = &self.pairs[side.index()] {
+                let of_side = Side::ALL.map(|other| other == side);
+                for (health, on_force_path) in pair.healths().into_iter().flatten() {
+                    each(health, of_side.map(|of| of && on_force_path));
+                }
+            }
+        }
+        let shared = [
+            self.tissue.as_ref().map(Slot::health),
+            self.tracker.as_ref().map(Slot::health),
+            self.pedal.as_ref().map(|pedal| pedal.slot.health()),
+        ];
+        shared.into_iter().flatten().for_each(|health| each(health, [false; SIDES]));
+    }
+}
+
+impl Rig for DeviceRig {
+    fn read(&mut self, now_s: f64) -> [Option<Inputs>; SIDES] {
+        let switches = self.poll_shared(now_s);
+        let mut inputs = [None; SIDES];
+        for side in Side::ALL {
+            let shared = self.shared(side, now_s);
+            if let Some(pair) = &mut self.pairs[side.index()] {
+                pair.poll(now_s);
+                inputs[side.index()] = pair.inputs(now_s, &shared).map(|inputs| Inputs { switches, ..inputs });
+            }
+        }
+        let mut watch = std::mem::take(&mut self.watch);
+        let mut device = 0;
+        self.each_health(|health, of_side| {
+            watch.look(now_s, device, health.standing, of_side);
+            device += 1;
+        });
+        self.watch = watch;
+        inputs
+    }
+
+    fn write(&mut self, now_s: f64, outputs: &[Outputs; SIDES]) {
+        for (pair, outputs) in self.pairs.iter_mut().zip(outputs) {
+            if let Some(pair) = pair {
+                pair.write(now_s, outputs);
+            }
+        }
+    }
+
+    fn event(&mut self) -> Option<DeviceEvent> {
+        self.watch.take()
+    }
+
+    fn levers(&self) -> Vec<Lever> {
+        self.pairs.iter().flatten().flat_map(|pair| pair.levers().clone()).collect()
+    }
+
+    fn health(&self) -> Healths {
+        let mut healths = Healths::default();
+        let mut place = 0;
+        self.each_health(|health, _| {
+            if let Some(entry) = healths.devices.get_mut(place) {
+                *entry = *health;
+            }
+            place += 1;
+        });
+        healths.obstacles = self.pairs.each_ref().map(|pair| pair.as_ref().and_then(|pair| pair.obstacle()));
+        healths
+    }
+}
+
+/// Enters a device into the list.
+pub(super) fn enrol<D: Device + 'static>(roster: &mut Roster, name: &str, driver: String, slot: &Slot<D>) {
+    debug_assert!(roster.len() < DEVICES_MAX, "more devices than places");
+    roster.push(RosterEntry::new(name, driver, slot.view()));
+}
+
+/// It delivers now.
+pub(super) fn is_there<D: Device + 'static>(slot: &Slot<D>) -> bool {
+    slot.health().standing == Standing::Connected
+}

@@ -1,0 +1,88 @@
+//! The servos of an instrument: from the orientation of its jaws to servo angles and back, with a PID around each servo.
+
+use nalgebra::UnitQuaternion;
+use nima_core::{
+    kinematics::Jaws,
+    signal::{Pid, PidGains},
+};
+use nima_devices::{SERVOS, ServoReading};
+use serde::{Deserialize, Serialize};
+
+/// How the servos move the instrument's wrist. Order: roll, pitch, yaw, grip.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct JawsSettings {
+    /// Servo angle per angle of the wrist.
+    pub ratio: [f64; SERVOS],
+    /// Opening of the jaws per opening of the gripper.
+    pub grip_per_gripper: f64,
+    /// Force at the finger per current of the servo that closes the jaws, N/A; zero: the gripper feels nothing.
+    pub grip_n_per_a: f64,
+    /// Around each servo's own loops; takes out what load and slack leave.
+    pub pid: PidGains,
+}
+
+impl Default for JawsSettings {
+    fn default() -> Self {
+        let pid = PidGains { proportional: 0.15, integral_per_s: 4.0, derivative_s: 0.002, integral_max: 0.15 };
+        Self { ratio: [1.0; SERVOS], grip_per_gripper: 1.0, grip_n_per_a: 0.0, pid }
+    }
+}
+
+/// The controller of one instrument's servos.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct JawsControl {
+    settings: JawsSettings,
+    pids: [Pid; SERVOS],
+    /// Last orientation asked for, as angles: keeps turns.
+    asked: Option<Jaws>,
+    period_s: f64,
+}
+
+impl JawsControl {
+    pub(super) const fn new(settings: JawsSettings, period_s: f64) -> Self {
+        Self { settings, pids: [Pid::new(settings.pid); SERVOS], asked: None, period_s }
+    }
+
+    /// Where the jaws are by the servos.
+    pub(super) fn measured(&self, reading: &ServoReading) -> Jaws {
+        let [roll_rad, pitch_rad, yaw_rad, _] = self.angles(reading);
+        Jaws { roll_rad, pitch_rad, yaw_rad }
+    }
+
+    /// Force that opens the jaws, N at the finger: what the closing servo holds against.
+    pub(super) fn grip_n(&self, reading: &ServoReading) -> Option<f64> {
+        let Self { settings: JawsSettings { grip_n_per_a, ratio, .. }, .. } = self;
+        let closing_a = -reading.current_a[SERVOS - 1] * ratio[SERVOS - 1].signum();
+        (*grip_n_per_a > 0.0).then(|| (closing_a * grip_n_per_a).max(0.0))
+    }
+
+    fn angles(&self, reading: &ServoReading) -> [f64; SERVOS] {
+        std::array::from_fn(|i| reading.position_rad[i] / self.settings.ratio[i])
+    }
+
+    /// Goals of the servos, rad, for this orientation and opening of the gripper (rad).
+    pub(super) fn goals(
+        &mut self,
+        s1_from_jaws: &UnitQuaternion<f64>,
+        gripper_rad: Option<f64>,
+        reading: &ServoReading,
+    ) -> [f64; SERVOS] {
+        let near = self.asked.unwrap_or_else(|| self.measured(reading));
+        let jaws = Jaws::of(s1_from_jaws, &near);
+        self.asked = Some(jaws);
+        let measured = self.angles(reading);
+        let grip_rad = gripper_rad.map_or(measured[SERVOS - 1], |rad| rad * self.settings.grip_per_gripper);
+        let wanted = [jaws.roll_rad, jaws.pitch_rad, jaws.yaw_rad, grip_rad];
+        std::array::from_fn(|i| {
+            let trim = self.pids[i].step(wanted[i], measured[i], self.period_s);
+            (wanted[i] + trim) * self.settings.ratio[i]
+        })
+    }
+
+    /// Forgets what was asked.
+    pub(super) fn reset(&mut self) {
+        self.asked = None;
+        self.pids.iter_mut().for_each(Pid::reset);
+    }
+}

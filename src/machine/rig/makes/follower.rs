@@ -1,0 +1,109 @@
+//! Arms.
+
+use nima_core::kinematics::JointLimits;
+use nima_devices::{
+    ClearFaults, Follower, Trouble,
+    discovery::{DeviceProbe, Probe, Speaks, probes},
+    kinova, simulated_arm,
+};
+use serde::{Deserialize, Deserializer, Serialize};
+
+use super::{Chosen, Opener};
+
+/// The arm of a rig file. Both have the joints of a Gen3.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(untagged)]
+pub enum FollowerSettings {
+    /// `make = "kinova"`, the usual one: Gen3 with seven joints.
+    Kinova(kinova::Settings),
+    /// `make = "simulated"`: no hardware.
+    Simulated(simulated_arm::Settings),
+}
+
+impl<'de> Deserialize<'de> for FollowerSettings {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let chosen = Chosen::read(deserializer, &["kinova", "simulated"])?;
+        match chosen.make {
+            0 => chosen.settings().map(Self::Kinova),
+            _ => chosen.settings().map(Self::Simulated),
+        }
+    }
+}
+
+impl FollowerSettings {
+    /// Of an arm by Kinova.
+    pub const fn kinova(&self) -> Option<&kinova::Settings> {
+        match self {
+            Self::Kinova(settings) => Some(settings),
+            Self::Simulated(_) => None,
+        }
+    }
+
+    /// Of an arm by Kinova.
+    pub const fn kinova_mut(&mut self) -> Option<&mut kinova::Settings> {
+        match self {
+            Self::Kinova(settings) => Some(settings),
+            Self::Simulated(_) => None,
+        }
+    }
+
+    /// Every setting is possible.
+    ///
+    /// # Errors
+    /// [`Trouble::Setting`].
+    pub fn check(&self) -> Result<(), Trouble> {
+        match self {
+            Self::Kinova(settings) => settings.check(),
+            Self::Simulated(settings) => settings.check(),
+        }
+    }
+
+    /// In an emulated rig the handle and the sensor belong to a world that an emulated arm moves; a simulated arm has none.
+    pub(in crate::rig) fn check_emulated(&self, rig_is_emulated: bool) -> Result<(), Trouble> {
+        match self {
+            Self::Simulated(_) if rig_is_emulated => Err(Trouble::Setting {
+                key: "make".to_owned(),
+                value: "simulated".to_owned(),
+                allowed: "an emulated rig (emulated = true) emulates its arm: leave `make` out".to_owned(),
+            }),
+            _ => Ok(()),
+        }
+    }
+
+    /// How its joints may be moved.
+    pub(in crate::rig) fn joint_limits(&self) -> JointLimits {
+        match self {
+            Self::Kinova(settings) => settings.joint_limits(),
+            Self::Simulated(settings) => settings.joint_limits(),
+        }
+    }
+
+    pub(in crate::rig) fn opener(&self) -> Opener<Box<dyn Follower>> {
+        match self.clone() {
+            Self::Kinova(settings) => {
+                let clearing = kinova::FaultClearing::default();
+                let of_opening = clearing.clone();
+                Opener {
+                    driver: format!("Kinova Gen3, {}", settings.host),
+                    open: Box::new(move || Ok(Box::new(kinova::open_clearing(&settings, &of_opening)?))),
+                    clear_faults: Some(ClearFaults::by(move || clearing.command())),
+                }
+            }
+            Self::Simulated(settings) => Opener {
+                driver: "simulated arm".to_owned(),
+                open: Box::new(move || Ok(Box::new(simulated_arm::Driver::open(&settings)?))),
+                clear_faults: None,
+            },
+        }
+    }
+
+    pub(in crate::rig) fn probe(&self, name: &str) -> Box<dyn Probe> {
+        match self.clone() {
+            Self::Kinova(settings) => probes::arm(name, settings),
+            Self::Simulated(settings) => {
+                let open = move || simulated_arm::Driver::open(&settings);
+                Box::new(DeviceProbe::new(name, "this program".to_owned(), Speaks::Always, open))
+            }
+        }
+    }
+}

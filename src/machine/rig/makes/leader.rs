@@ -1,0 +1,90 @@
+//! Handles.
+
+use nima_devices::{
+    Leader, Trouble,
+    discovery::{Probe, probes},
+    force_dimension,
+};
+use serde::{Deserialize, Deserializer, Serialize};
+
+use super::{Chosen, Opener};
+
+/// The handle of a rig file.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(untagged)]
+pub enum LeaderSettings {
+    /// `make = "force_dimension"`, the usual one: omega.7.
+    ForceDimension(force_dimension::Settings),
+}
+
+impl<'de> Deserialize<'de> for LeaderSettings {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        Chosen::read(deserializer, &["force_dimension"])?.settings().map(Self::ForceDimension)
+    }
+}
+
+impl LeaderSettings {
+    /// Of a handle by Force Dimension.
+    pub const fn force_dimension(&self) -> Option<&force_dimension::Settings> {
+        let Self::ForceDimension(settings) = self;
+        Some(settings)
+    }
+
+    /// Of a handle by Force Dimension.
+    pub const fn force_dimension_mut(&mut self) -> Option<&mut force_dimension::Settings> {
+        let Self::ForceDimension(settings) = self;
+        Some(settings)
+    }
+
+    /// Every setting is possible.
+    ///
+    /// # Errors
+    /// [`Trouble::Setting`].
+    pub fn check(&self) -> Result<(), Trouble> {
+        match self {
+            Self::ForceDimension(settings) => settings.check(),
+        }
+    }
+
+    /// A rig emulates its handles or none: a real one never gets a stand-in, and what engages by itself never a real one.
+    pub(in crate::rig) fn check_emulated(&self, rig_is_emulated: bool) -> Result<(), Trouble> {
+        let Self::ForceDimension(settings) = self;
+        if settings.emulator.is_some() == rig_is_emulated {
+            return Ok(());
+        }
+        let value = settings.emulator.map_or_else(|| "not given".to_owned(), |address| address.to_string());
+        let allowed =
+            "an emulated rig (emulated = true) gives each handle its 127.0.0.1:PORT, and no other rig does".to_owned();
+        Err(Trouble::Setting { key: "emulator".to_owned(), value, allowed })
+    }
+
+    /// It cannot be taken for the other one.
+    pub(in crate::rig) fn check_beside(&self, other: &Self) -> Result<(), Trouble> {
+        let (Self::ForceDimension(one), Self::ForceDimension(other)) = (self, other);
+        if one.serial.is_some() && one.serial != other.serial {
+            return Ok(());
+        }
+        let value = one.serial.map_or_else(|| "not given".to_owned(), |serial| serial.to_string());
+        let allowed = "two handles are told apart by their serial numbers: give each its own".to_owned();
+        Err(Trouble::Setting { key: "serial".to_owned(), value, allowed })
+    }
+
+    pub(in crate::rig) fn opener(&self) -> Opener<Box<dyn Leader>> {
+        match self.clone() {
+            Self::ForceDimension(settings) => {
+                let which = settings.serial.map_or_else(|| "any".to_owned(), |serial| serial.to_string());
+                Opener {
+                    driver: format!("Force Dimension omega.7, {which}"),
+                    open: Box::new(move || Ok(Box::new(force_dimension::open(&settings)?))),
+                    clear_faults: None,
+                }
+            }
+        }
+    }
+
+    pub(in crate::rig) fn probe(&self, name: &str) -> Box<dyn Probe> {
+        match self.clone() {
+            Self::ForceDimension(settings) => probes::handle(name, settings),
+        }
+    }
+}

@@ -1,0 +1,72 @@
+//! Force-torque sensors.
+
+use nima_devices::{
+    ForceSensor, Trouble, bota,
+    discovery::{Probe, probes},
+};
+use serde::{Deserialize, Deserializer, Serialize};
+
+use super::{Chosen, Opener};
+
+/// A force-torque sensor of a rig file.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(untagged)]
+pub enum SensorSettings {
+    /// `make = "bota"`, the usual one.
+    Bota(bota::Settings),
+}
+
+impl<'de> Deserialize<'de> for SensorSettings {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        Chosen::read(deserializer, &["bota"])?.settings().map(Self::Bota)
+    }
+}
+
+impl SensorSettings {
+    /// Of a sensor by Bota.
+    pub const fn bota(&self) -> Option<&bota::Settings> {
+        let Self::Bota(settings) = self;
+        Some(settings)
+    }
+
+    /// Of a sensor by Bota.
+    pub const fn bota_mut(&mut self) -> Option<&mut bota::Settings> {
+        let Self::Bota(settings) = self;
+        Some(settings)
+    }
+
+    /// Every setting is possible.
+    ///
+    /// # Errors
+    /// [`Trouble::Setting`].
+    pub fn check(&self) -> Result<(), Trouble> {
+        match self {
+            Self::Bota(settings) => settings.check(),
+        }
+    }
+
+    /// The file by which the system gives access to it, where it has one.
+    pub(in crate::rig) const fn device_file(&mut self) -> Option<&mut String> {
+        let Self::Bota(settings) = self;
+        match settings.transport {
+            bota::Transport::Socket => None,
+            bota::Transport::Gen0 | bota::Transport::GenA => Some(&mut settings.port),
+        }
+    }
+
+    pub(in crate::rig) fn opener(&self) -> Opener<Box<dyn ForceSensor>> {
+        match self.clone() {
+            Self::Bota(settings) => Opener {
+                driver: format!("Bota sensor, {}", settings.port),
+                open: Box::new(move || Ok(Box::new(bota::Driver::open(&settings)?))),
+                clear_faults: None,
+            },
+        }
+    }
+
+    pub(in crate::rig) fn probe(&self, name: &str) -> Box<dyn Probe> {
+        match self.clone() {
+            Self::Bota(settings) => probes::sensor(name, settings),
+        }
+    }
+}

@@ -1,0 +1,26 @@
+//! Tries the devices that a rig file names.
+
+use nima_devices::discovery::{
+    Probe,
+    probes::{pedal, servos, tracker},
+};
+
+use super::{Settings, Side};
+
+/// A probe of every device, by its name in the rig: `right handle`, `right arm`, `right sensor`, `right servos`, the same of the left side,
+/// `tissue sensor`, `tracker`, `pedal`.
+pub fn rig_probes(settings: &Settings) -> Vec<Box<dyn Probe>> {
+    let mut probes = Vec::new();
+    for side in Side::ALL {
+        let Some(set) = settings.arm(side) else { continue };
+        let name = |part: &str| format!("{} {part}", side.word());
+        probes.push(set.handle.probe(&name("handle")));
+        probes.push(set.arm.probe(&name("arm")));
+        probes.push(set.sensor.probe(&name("sensor")));
+        probes.extend(set.servos.clone().map(|chosen| servos(&name("servos"), chosen)));
+    }
+    probes.extend(settings.tissue_sensor.as_ref().map(|chosen| chosen.probe("tissue sensor")));
+    probes.extend(settings.tracker.clone().map(|chosen| tracker("tracker", chosen)));
+    probes.extend(settings.pedal.clone().map(|chosen| pedal("pedal", chosen)));
+    probes
+}

@@ -1,0 +1,260 @@
+//! What the rig file says of the devices: which there are, where, and what hangs on them.
+
+use std::path::Path;
+
+use nalgebra::Vector3;
+use nima_core::kinematics::{ArmSettings, RcmSettings};
+use nima_devices::{TRACKED_TOOLS, Trouble, dynamixel, hid, ndi};
+use serde::{Deserialize, Serialize};
+
+use super::{FollowerSettings, JawsSettings, LeaderSettings, SensorSettings};
+use crate::rig::{SIDES, Side};
+
+/// The devices of a rig. Each is there or not; an arm pair is there as a whole.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Settings {
+    /// The devices are emulated on this computer, at the places that stand here: the console starts them itself. Paths that do not begin
+    /// at the root are within the user's [`runtime_folder`](nima_devices::own_folder::runtime_folder).
+    pub emulated: bool,
+    /// The right arm pair, or the only one.
+    pub right: Option<ArmSet>,
+    /// The left arm pair.
+    pub left: Option<ArmSet>,
+    /// The sensor under the tissue, for calibration.
+    pub tissue_sensor: Option<SensorSettings>,
+    /// The optical tracker.
+    pub tracker: Option<ndi::Settings>,
+    /// The marker on the endoscope, which the tracker sees: hand and tip are joined by how it looks.
+    pub endoscope: Option<EndoscopeSettings>,
+    /// The foot pedal: clutch and presence.
+    pub pedal: Option<hid::PedalSettings>,
+}
+
+/// A marker of the tracker on the endoscope.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct EndoscopeSettings {
+    /// Which of the tracker's tools it is, counted from 0; those of the arms are 0 (right) and 1 (left).
+    pub tool: usize,
+    /// How the picture sits on the marker: roll, pitch, yaw of `n_from_view`, degrees.
+    pub n_from_view_deg: Vector3<f64>,
+}
+
+/// A handle, an arm and what it carries.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ArmSet {
+    /// Name of the tool: calibrations are bound to it.
+    pub tool: String,
+    /// Where the sensor feels: at the wrist, with the tool's weight and the trocar's friction, or at the tip itself.
+    #[serde(default)]
+    pub sensor_at: SensorPlace,
+    /// The haptic handle.
+    pub handle: LeaderSettings,
+    /// The arm.
+    pub arm: FollowerSettings,
+    /// How the arm is mounted, and the instrument.
+    pub mount: ArmSettings,
+    /// Where the instrument enters the body.
+    pub rcm: RcmSettings,
+    /// The force sensor between arm and instrument.
+    pub sensor: SensorSettings,
+    /// How the tracker's marker sits on the instrument: roll, pitch, yaw of `s1_from_m`, degrees; where there is one.
+    #[serde(default)]
+    pub s1_from_m_deg: Option<Vector3<f64>>,
+    /// The servos of the instrument.
+    #[serde(default)]
+    pub servos: Option<dynamixel::Settings>,
+    /// How the servos move its wrist.
+    #[serde(default)]
+    pub jaws: JawsSettings,
+}
+
+/// The desk part of a rig file: what leads a simulated rig.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct DeskSettings {
+    /// The cap.
+    pub cap: Option<hid::CapSettings>,
+    /// The pedals.
+    pub pedal: Option<hid::PedalSettings>,
+    /// Speed of the hand at a full push, m/s, above 0 to 0.15.
+    pub speed_m_s: f64,
+}
+
+impl Default for DeskSettings {
+    fn default() -> Self {
+        Self { cap: Some(hid::CapSettings::default()), pedal: None, speed_m_s: 0.06 }
+    }
+}
+
+/// Where a force sensor feels.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum SensorPlace {
+    /// Between arm and instrument.
+    #[default]
+    Wrist,
+    /// At the tip, beyond the trocar: what it reads is the tissue's force.
+    Tip,
+}
+
+impl Settings {
+    /// The arm pair of this side.
+    pub const fn arm(&self, side: Side) -> Option<&ArmSet> {
+        match side {
+            Side::Right => self.right.as_ref(),
+            Side::Left => self.left.as_ref(),
+        }
+    }
+
+    /// The same with every path of an emulated device within `folder`, unless it begins at the root; real devices stay where they are.
+    #[must_use]
+    pub fn emulated_in(mut self, folder: &Path) -> Self {
+        if !self.emulated {
+            return self;
+        }
+        let place = |path: &mut String| {
+            if !path.trim().is_empty() {
+                *path = folder.join(&*path).display().to_string();
+            }
+        };
+        let on_a_line = |sensor: &mut SensorSettings| sensor.device_file().into_iter().for_each(place);
+        for set in [&mut self.right, &mut self.left].into_iter().flatten() {
+            on_a_line(&mut set.sensor);
+            set.servos.iter_mut().for_each(|servos| place(&mut servos.port));
+        }
+        self.tissue_sensor.iter_mut().for_each(on_a_line);
+        if let Some(tracker) = &mut self.tracker {
+            tracker.port.iter_mut().for_each(place);
+            tracker.tools.iter_mut().for_each(|tool| *tool = folder.join(&*tool));
+        }
+        if let Some(pedal) = &mut self.pedal
+            && let Some(path) = pedal.source.strip_prefix("emulated:").filter(|path| !path.is_empty())
+        {
+            pedal.source = format!("emulated:{}", folder.join(path).display());
+        }
+        self
+    }
+
+    /// Tells the first setting that no device can have, by its whole key; nothing is opened.
+    ///
+    /// # Errors
+    /// [`Trouble::Setting`].
+    pub fn check(&self) -> Result<(), Trouble> {
+        for side in Side::ALL {
+            let Some(set) = self.arm(side) else { continue };
+            let of = |part: &'static str| move |trouble| below(&format!("{}.{part}", side.word()), trouble);
+            set.handle.check().map_err(of("handle"))?;
+            set.handle.check_emulated(self.emulated).map_err(of("handle"))?;
+            set.arm.check().map_err(of("arm"))?;
+            set.arm.check_emulated(self.emulated).map_err(of("arm"))?;
+            set.sensor.check().map_err(of("sensor"))?;
+            set.servos.as_ref().map_or(Ok(()), dynamixel::Settings::check).map_err(of("servos"))?;
+        }
+        if let (Some(right), Some(left)) = (&self.right, &self.left) {
+            right.handle.check_beside(&left.handle).map_err(|trouble| below("right.handle", trouble))?;
+        }
+        self.check_endoscope()?;
+        let of = |part: &'static str| move |trouble| below(part, trouble);
+        self.tissue_sensor.as_ref().map_or(Ok(()), SensorSettings::check).map_err(of("tissue_sensor"))?;
+        self.tracker.as_ref().map_or(Ok(()), ndi::Settings::check).map_err(of("tracker"))?;
+        self.pedal.as_ref().map_or(Ok(()), hid::PedalSettings::check).map_err(of("pedal"))
+    }
+}
+
+impl Settings {
+    fn check_endoscope(&self) -> Result<(), Trouble> {
+        let Some(endoscope) = &self.endoscope else { return Ok(()) };
+        let refuse = |key: &str, value: String, allowed: &str| Trouble::Setting {
+            key: format!("devices.{key}"),
+            value,
+            allowed: allowed.to_owned(),
+        };
+        if self.tracker.is_none() {
+            return Err(refuse("tracker", "not given".to_owned(), "the tracker that sees the endoscope's marker"));
+        }
+        if !(SIDES..TRACKED_TOOLS).contains(&endoscope.tool) {
+            let allowed = format!("a tool from {SIDES} to {}; those before are on the arms", TRACKED_TOOLS - 1);
+            return Err(refuse("endoscope.tool", endoscope.tool.to_string(), &allowed));
+        }
+        if !endoscope.n_from_view_deg.iter().all(|deg| deg.is_finite()) {
+            let value = format!("{:?}", endoscope.n_from_view_deg.as_slice());
+            return Err(refuse("endoscope.n_from_view_deg", value, "three finite angles, degrees"));
+        }
+        for side in Side::ALL {
+            if self.arm(side).is_some_and(|set| set.s1_from_m_deg.is_none()) {
+                let key = format!("{}.s1_from_m_deg", side.word());
+                let allowed = "how this arm's marker sits: without it nobody knows where the endoscope looks from it";
+                return Err(refuse(&key, "not given".to_owned(), allowed));
+            }
+        }
+        Ok(())
+    }
+}
+
+/// A trouble with its key as it stands in the rig file.
+fn below(part: &str, trouble: Trouble) -> Trouble {
+    match trouble {
+        Trouble::Setting { key, value, allowed } => {
+            Trouble::Setting { key: format!("devices.{part}.{key}"), value, allowed }
+        }
+        other => other,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use nima_devices::force_dimension;
+
+    use super::ArmSet;
+    use crate::config::RigConfig;
+
+    #[test]
+    fn emulated_devices_are_placed_in_a_folder_and_real_ones_and_whole_paths_stay() {
+        let rig = RigConfig::load("emulated").unwrap().devices.unwrap();
+        let own = nima_devices::own_folder::runtime_folder();
+        let right = rig.right.as_ref().unwrap();
+        assert_eq!(right.sensor.bota().unwrap().port, own.join("ttyACM-right-sensor").display().to_string());
+        assert_eq!(right.servos.as_ref().unwrap().port, own.join("ttyUSB-right-servos").display().to_string());
+        assert_eq!(rig.left.as_ref().unwrap().sensor.bota().unwrap().port, "127.0.0.1:47140");
+        assert_eq!(
+            rig.tissue_sensor.as_ref().unwrap().bota().unwrap().port,
+            own.join("ttyUSB-tissue-sensor").display().to_string()
+        );
+        assert_eq!(rig.tracker.as_ref().unwrap().tools[2], own.join("endoscope.rom"));
+        assert_eq!(rig.pedal.as_ref().unwrap().source, format!("emulated:{}", own.join("pedal").display()));
+        assert_eq!(rig.clone().emulated_in("/elsewhere".as_ref()), rig);
+        let real = RigConfig::load("paper").unwrap().devices.unwrap();
+        assert_eq!(real.clone().emulated_in("/elsewhere".as_ref()), real);
+    }
+
+    fn handle_of(set: &mut Option<ArmSet>) -> &mut force_dimension::Settings {
+        set.as_mut().unwrap().handle.force_dimension_mut().unwrap()
+    }
+
+    #[test]
+    fn an_impossible_setting_is_told_by_its_whole_key() {
+        let good = RigConfig::load("paper").unwrap().devices.unwrap();
+        assert_eq!(good.check(), Ok(()));
+        let told = |change: fn(&mut super::Settings)| {
+            let mut settings = good.clone();
+            change(&mut settings);
+            settings.check().unwrap_err().to_string()
+        };
+        let same = told(|settings| handle_of(&mut settings.left).serial = Some(1));
+        assert!(same.contains("devices.right.handle.serial") && same.contains("serial numbers"), "{same}");
+        let emulator = told(|settings| handle_of(&mut settings.left).emulator = Some(([127, 0, 0, 1], 1).into()));
+        assert!(emulator.contains("devices.left.handle.emulator = 127.0.0.1:1"), "{emulator}");
+        let real = told(|settings| settings.emulated = true);
+        assert!(real.contains("devices.right.handle.emulator = not given"), "{real}");
+        let speed =
+            told(|settings| settings.left.as_mut().unwrap().arm.kinova_mut().unwrap().speed_fraction = f64::NAN);
+        assert!(speed.contains("devices.left.arm.speed_fraction"), "{speed}");
+        let baud = told(|settings| settings.right.as_mut().unwrap().servos.as_mut().unwrap().baud = 1);
+        assert!(baud.contains("devices.right.servos.baud"), "{baud}");
+        let pedal = told(|settings| settings.pedal.as_mut().unwrap().source = "nothing".to_owned());
+        assert!(pedal.contains("devices.pedal.source"), "{pedal}");
+    }
+}

@@ -1,0 +1,73 @@
+//! Notices devices that come and go.
+
+use nima_devices::Standing;
+
+use crate::rig::{DEVICES_MAX, DeviceEvent, SIDES};
+
+/// Events that wait at most; more are dropped, the healths tell the rest.
+const WAITING: usize = 32;
+
+/// Where every device was, and what is still to be told.
+#[derive(Debug)]
+pub struct Watch {
+    before: [Standing; DEVICES_MAX],
+    events: [Option<DeviceEvent>; WAITING],
+    first: usize,
+    count: usize,
+}
+
+impl Default for Watch {
+    fn default() -> Self {
+        Self { before: [Standing::Opening; DEVICES_MAX], events: [None; WAITING], first: 0, count: 0 }
+    }
+}
+
+impl Watch {
+    /// Takes in where a device is now.
+    pub fn look(&mut self, t_s: f64, device: usize, standing: Standing, of_side: [bool; SIDES]) {
+        let Some(before) = self.before.get_mut(device) else { return };
+        if *before == standing {
+            return;
+        }
+        *before = standing;
+        if self.count < WAITING {
+            let event = DeviceEvent { t_s, device: device as u8, standing, of_side };
+            self.events[(self.first + self.count) % WAITING] = Some(event);
+            self.count += 1;
+        }
+    }
+
+    /// The oldest event that was not told yet.
+    pub const fn take(&mut self) -> Option<DeviceEvent> {
+        if self.count == 0 {
+            return None;
+        }
+        let event = self.events[self.first].take();
+        self.first = (self.first + 1) % WAITING;
+        self.count -= 1;
+        event
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use nima_devices::Loss;
+
+    use super::*;
+
+    #[test]
+    fn each_change_is_told_once_and_in_order() {
+        let mut watch = Watch::default();
+        for round in 0..100 {
+            let t_s = f64::from(round);
+            watch.look(t_s, 3, Standing::Connected, [true, false]);
+            watch.look(t_s, 3, Standing::Connected, [true, false]);
+            watch.look(t_s, 3, Standing::Lost(Loss::Silent), [true, false]);
+            assert_eq!(watch.take().map(|event| event.standing), Some(Standing::Connected));
+            assert_eq!(watch.take().map(|event| event.standing), Some(Standing::Lost(Loss::Silent)));
+            assert_eq!(watch.take(), None);
+        }
+        watch.look(0.0, DEVICES_MAX, Standing::Connected, [true, true]);
+        assert_eq!(watch.take(), None, "there is no such device");
+    }
+}

@@ -1,0 +1,155 @@
+//! What the operating system grants a real-time thread: the one place with system calls.
+#![expect(unsafe_code, reason = "scheduling, memory locking and absolute sleep have no safe interface in std")]
+
+use crate::{config::SchedulingClass, messages::Scheduling};
+
+/// Processor time used so far, s: by this thread, and by the whole process. Zeros where it cannot be told.
+#[cfg(target_os = "linux")]
+pub(super) fn cpu_s() -> [f64; 2] {
+    [libc::CLOCK_THREAD_CPUTIME_ID, libc::CLOCK_PROCESS_CPUTIME_ID].map(|clock| {
+        let mut time = libc::timespec { tv_sec: 0, tv_nsec: 0 };
+        // SAFETY: a plain system call with a valid place for its answer.
+        let told = unsafe { libc::clock_gettime(clock, &raw mut time) } == 0;
+        if told { time.tv_sec as f64 + time.tv_nsec as f64 * 1e-9 } else { 0.0 }
+    })
+}
+
+/// Processor time used so far, s: by this thread, and by the whole process. Zeros where it cannot be told.
+#[cfg(not(target_os = "linux"))]
+pub(super) fn cpu_s() -> [f64; 2] {
+    [0.0; 2]
+}
+
+/// Priority of the loop: above ordinary audio (70), below the kernel's own threads (99).
+#[cfg(target_os = "linux")]
+const PRIORITY: i32 = 80;
+/// Stack touched in advance, bytes.
+const STACK_TOUCHED: usize = 128 * 1024;
+
+/// Asks for what a thread of this class and period wants. Call it on that thread. Refusals are told, never fatal.
+pub(super) fn prepare_thread(class: SchedulingClass, period_ns: u64) -> Scheduling {
+    touch_stack();
+    match class {
+        SchedulingClass::Ordinary => Scheduling::default(),
+        SchedulingClass::Fifo => granted(None),
+        SchedulingClass::Deadline => granted(Some(period_ns)),
+    }
+}
+
+#[inline(never)]
+#[expect(clippy::large_stack_arrays, reason = "its only purpose is to touch the stack")]
+fn touch_stack() {
+    let mut stack = [0_u8; STACK_TOUCHED];
+    for page in stack.chunks_mut(4096) {
+        page[0] = 1;
+    }
+    std::hint::black_box(&stack);
+}
+
+/// A place above the loop for the thread that watches it, where that is granted.
+pub(super) fn prepare_supervisor() {
+    #[cfg(target_os = "linux")]
+    // SAFETY: a plain system call on the calling thread with a valid, initialised argument.
+    unsafe {
+        let parameter = libc::sched_param { sched_priority: PRIORITY + 5 };
+        libc::pthread_setschedparam(libc::pthread_self(), libc::SCHED_FIFO, &raw const parameter);
+    }
+}
+
+/// Share of a period that the loop may run before the kernel holds it back until the next one (`SCHED_DEADLINE`).
+#[cfg(target_os = "linux")]
+const BUDGET: f64 = 0.8;
+
+/// `sched_setattr(2)`: the kernel's structure, of which the C library has no name everywhere.
+#[cfg(target_os = "linux")]
+#[repr(C)]
+struct SchedulingAttributes {
+    size: u32,
+    policy: u32,
+    flags: u64,
+    nice: i32,
+    priority: u32,
+    runtime_ns: u64,
+    deadline_ns: u64,
+    period_ns: u64,
+}
+
+/// Asks for a budget in every period. The kernel refuses it where not all of the processors are open to the thread, or booked.
+#[cfg(target_os = "linux")]
+fn deadline_granted(period_ns: u64) -> bool {
+    const SCHED_DEADLINE: u32 = 6;
+    let attributes = SchedulingAttributes {
+        size: size_of::<SchedulingAttributes>() as u32,
+        policy: SCHED_DEADLINE,
+        flags: 0,
+        nice: 0,
+        priority: 0,
+        runtime_ns: (BUDGET * period_ns as f64) as u64,
+        deadline_ns: period_ns,
+        period_ns,
+    };
+    // SAFETY: a plain system call on the calling thread with a valid, initialised structure of the size that it says.
+    unsafe { libc::syscall(libc::SYS_sched_setattr, 0, &raw const attributes, 0) == 0 }
+}
+
+/// First come: a budget in every period where one is given and granted, else a fixed priority.
+#[cfg(target_os = "linux")]
+fn granted(period_ns: Option<u64>) -> Scheduling {
+    let deadline = period_ns.is_some_and(deadline_granted);
+    // SAFETY: plain system calls on the calling thread with valid, initialised arguments.
+    unsafe {
+        libc::prctl(libc::PR_SET_TIMERSLACK, 1_usize);
+        let parameter = libc::sched_param { sched_priority: PRIORITY };
+        let fifo =
+            !deadline && libc::pthread_setschedparam(libc::pthread_self(), libc::SCHED_FIFO, &raw const parameter) == 0;
+        // With a finite limit a locked process soon fails to map memory, so lock only without one.
+        let mut limit = libc::rlimit { rlim_cur: 0, rlim_max: 0 };
+        let unlimited = libc::geteuid() == 0
+            || (libc::getrlimit(libc::RLIMIT_MEMLOCK, &raw mut limit) == 0 && limit.rlim_cur == libc::RLIM_INFINITY);
+        // On fault: pages are locked once they are touched, so untouched reserves of other threads cost nothing.
+        let flags = libc::MCL_CURRENT | libc::MCL_FUTURE | libc::MCL_ONFAULT;
+        Scheduling { fifo, deadline, memory_locked: unlimited && libc::mlockall(flags) == 0 }
+    }
+}
+
+#[cfg(not(target_os = "linux"))]
+fn granted(_: Option<u64>) -> Scheduling {
+    Scheduling::default()
+}
+
+/// Nanoseconds on the monotonic clock.
+#[cfg(target_os = "linux")]
+pub(super) fn monotonic_ns() -> u64 {
+    let mut now = libc::timespec { tv_sec: 0, tv_nsec: 0 };
+    // SAFETY: `now` is valid for the call; the monotonic clock always exists.
+    unsafe { libc::clock_gettime(libc::CLOCK_MONOTONIC, &raw mut now) };
+    now.tv_sec as u64 * 1_000_000_000 + now.tv_nsec as u64
+}
+
+/// Nanoseconds on the monotonic clock.
+#[cfg(not(target_os = "linux"))]
+pub(super) fn monotonic_ns() -> u64 {
+    use std::{sync::OnceLock, time::Instant};
+    static START: OnceLock<Instant> = OnceLock::new();
+    START.get_or_init(Instant::now).elapsed().as_nanos() as u64
+}
+
+/// Sleeps until this instant of the monotonic clock, ns.
+#[cfg(target_os = "linux")]
+pub(super) fn sleep_until_ns(deadline_ns: u64) {
+    let deadline = libc::timespec {
+        tv_sec: (deadline_ns / 1_000_000_000).cast_signed(),
+        tv_nsec: (deadline_ns % 1_000_000_000).cast_signed(),
+    };
+    // SAFETY: `deadline` is valid for the call; an early return by a signal is repeated.
+    while unsafe {
+        libc::clock_nanosleep(libc::CLOCK_MONOTONIC, libc::TIMER_ABSTIME, &raw const deadline, std::ptr::null_mut())
+    } == libc::EINTR
+    {}
+}
+
+/// Sleeps until this instant of the monotonic clock, ns.
+#[cfg(not(target_os = "linux"))]
+pub(super) fn sleep_until_ns(deadline_ns: u64) {
+    std::thread::sleep(std::time::Duration::from_nanos(deadline_ns.saturating_sub(monotonic_ns())));
+}

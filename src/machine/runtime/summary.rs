@@ -1,0 +1,252 @@
+//! What a run tells at its end.
+
+use nima_core::{
+    impedance::Mode,
+    statistics::{Bar, Percentiles, Quantiles},
+};
+use nima_devices::{Health, Standing};
+use serde::Serialize;
+
+use crate::{
+    messages::{Fault, LoopState, Scheduling, attention},
+    rig::{Roster, Side},
+    teleop::{Loop, Pair},
+};
+
+/// Error of one mode over a run, against the force at the follower at the same instant.
+#[derive(Clone, Copy, Debug, Serialize)]
+#[expect(missing_docs, reason = "the names say it")]
+pub struct ModeError {
+    pub side: Side,
+    pub mode: Mode,
+    /// Mean 3-D error, N.
+    pub mae_n: f64,
+    /// Standard deviation of the 3-D error, N.
+    pub sd_n: f64,
+    /// Largest 3-D error, N.
+    pub max_n: f64,
+    /// Ticks in which the mode had nothing valid.
+    pub invalid: u64,
+}
+
+/// Processor time per wall time, in shares of one core.
+#[derive(Clone, Copy, Debug, Default, Serialize)]
+pub struct CpuShare {
+    /// The real-time thread.
+    pub realtime: f64,
+    /// The whole process.
+    pub process: f64,
+}
+
+/// How one device was at the end of a run.
+#[derive(Clone, Debug, Serialize)]
+pub struct DeviceFigures {
+    /// Its name in the rig.
+    pub name: String,
+    /// All that was counted since it was opened.
+    #[serde(flatten)]
+    pub health: Health,
+    /// Why it is not connected, where that is known.
+    pub trouble: Option<CauseAndCure>,
+}
+
+/// What went wrong, and what to do about it.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct CauseAndCure {
+    /// The device concerned, where it is one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub device: Option<String>,
+    /// What happened, as the screen would show it.
+    pub cause: String,
+    /// What the operator can do.
+    pub cure: String,
+}
+
+/// How one arm pair stood at the end of a run.
+#[derive(Clone, Debug, Serialize)]
+pub struct ArmEnd {
+    /// The arm pair whose end this is.
+    pub side: Side,
+    /// Its state in the last tick, before it was left at rest.
+    #[serde(serialize_with = "by_key")]
+    pub final_state: LoopState,
+    /// Its fault, where that state is one, once [`Summary::explain`] gave it words.
+    pub fault: Option<CauseAndCure>,
+    /// The device that a fault is about.
+    #[serde(skip)]
+    device: Option<String>,
+}
+
+impl ArmEnd {
+    fn of(pair: &Pair) -> Self {
+        Self { side: pair.side(), final_state: pair.state(), fault: None, device: None }
+    }
+}
+
+/// One word for a script.
+fn by_key<S: serde::Serializer>(state: &LoopState, serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.serialize_str(match state {
+        LoopState::Disconnected => "disconnected",
+        LoopState::Idle => "idle",
+        LoopState::Ready => "ready",
+        LoopState::Engaged => "engaged",
+        LoopState::Clutched => "clutched",
+        LoopState::Stopped => "stopped",
+        LoopState::Faulted(_) => "fault",
+    })
+}
+
+/// Counts of durations; each bar holds those up to its end and above the end of the bar before.
+#[derive(Clone, Debug, Default, Serialize)]
+pub struct Histograms {
+    /// Lateness of wake-ups.
+    pub wake: Vec<Bar>,
+    /// Work of one tick.
+    pub work: Vec<Bar>,
+    /// Exchange with the rig.
+    pub rig: Vec<Bar>,
+    /// From measurement to force.
+    pub sample_to_force: Vec<Bar>,
+}
+
+/// Timing and error figures of a run.
+#[derive(Clone, Debug, Serialize)]
+pub struct Summary {
+    /// `real` or `virtual`.
+    pub clock: &'static str,
+    /// Periods in which the loop ran.
+    pub ticks: u64,
+    /// Periods missed and skipped.
+    pub missed: u64,
+    /// Ticks that did not fit into the screen's queue.
+    pub dropped: u64,
+    /// Loop time at the end, s.
+    pub seconds: f64,
+    /// Wall time per loop time: above 1 is faster than real time.
+    pub speed: f64,
+    /// Lateness of wake-ups, us (zero on the virtual clock).
+    pub wake_us: Quantiles,
+    /// Work of one tick of the loop, without rig and queues, us.
+    pub work_us: Quantiles,
+    /// Exchange with the rig (devices or simulation), us.
+    pub rig_us: Quantiles,
+    /// Time from the arrival of the oldest measurement to when the force made from it was given to the device, us; in a simulation
+    /// the loop's own time alone.
+    pub sample_to_force_us: Quantiles,
+    /// The same four as histograms.
+    pub histograms: Histograms,
+    /// Processor time; zero on the virtual clock.
+    pub cpu: CpuShare,
+    /// What the operating system granted.
+    pub scheduling: Scheduling,
+    /// State at the end; of two arm pairs that of the one that needs more attention.
+    #[serde(serialize_with = "by_key")]
+    pub final_state: LoopState,
+    /// The fault of the same arm pair.
+    pub fault: Option<CauseAndCure>,
+    /// The same for each arm pair, the right one first.
+    pub arms: Vec<ArmEnd>,
+    /// The devices, where there are some.
+    pub devices: Vec<DeviceFigures>,
+    /// Errors per arm pair and mode, the right one's first, before the gates.
+    pub error: Vec<ModeError>,
+}
+
+impl Summary {
+    /// Adds what the opening threads know of the devices: their names in faults, and why one is not connected.
+    pub(super) fn tell_devices(&mut self, roster: &Roster) {
+        for (device, entry) in self.devices.iter_mut().zip(roster) {
+            if device.health.standing != Standing::Connected {
+                let trouble = entry.view.report().trouble;
+                device.trouble = trouble.map(|trouble| CauseAndCure {
+                    device: None,
+                    cause: trouble.to_string(),
+                    cure: trouble.cure(),
+                });
+            }
+        }
+        let name = |state| match state {
+            LoopState::Faulted(Fault::DeviceLost { device, .. }) => {
+                roster.get(usize::from(device)).map(|entry| entry.name.clone())
+            }
+            _ => None,
+        };
+        for arm in &mut self.arms {
+            arm.device = name(arm.final_state);
+        }
+    }
+
+    /// Gives the faults at the end their words, which are not the machine's: `words` tells the cause and the cure of one.
+    pub fn explain(&mut self, words: impl Fn(Fault) -> [&'static str; 2]) {
+        for arm in &mut self.arms {
+            if let LoopState::Faulted(fault) = arm.final_state {
+                let [cause, cure] = words(fault).map(str::to_owned);
+                arm.fault = Some(CauseAndCure { device: arm.device.clone(), cause, cure });
+            }
+        }
+        let of_all = self.arms.iter().find(|arm| arm.final_state == self.final_state);
+        self.fault = of_all.and_then(|arm| arm.fault.clone());
+    }
+}
+
+/// Meters of a run, filled by both clocks.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Meters {
+    pub(super) wake: Percentiles,
+    pub(super) work: Percentiles,
+    pub(super) rig: Percentiles,
+    pub(super) sample_to_force: Percentiles,
+    pub(super) ticks: u64,
+    pub(super) dropped: u64,
+}
+
+impl Meters {
+    pub(super) fn summary(
+        &self,
+        clock: &'static str,
+        of: &Loop,
+        seconds: f64,
+        wall_s: f64,
+        scheduling: Scheduling,
+    ) -> Summary {
+        let of_mode = |pair: &Pair, mode| {
+            let stats = pair.accuracy().of(mode);
+            ModeError {
+                side: pair.side(),
+                mode,
+                mae_n: stats.mae_n,
+                sd_n: stats.sd_n(),
+                max_n: stats.max_n,
+                invalid: pair.accuracy().invalid(mode),
+            }
+        };
+        let arms: Vec<ArmEnd> = of.pairs().map(ArmEnd::of).collect();
+        let worst = arms.iter().max_by_key(|arm| attention(arm.final_state));
+        let error = of.pairs().flat_map(|pair| Mode::ALL.map(|mode| of_mode(pair, mode)));
+        Summary {
+            clock,
+            ticks: self.ticks,
+            missed: of.pairs().map(Pair::missed).max().unwrap_or_default(),
+            dropped: self.dropped,
+            seconds,
+            speed: seconds / wall_s.max(1e-9),
+            wake_us: self.wake.quantiles(),
+            work_us: self.work.quantiles(),
+            rig_us: self.rig.quantiles(),
+            sample_to_force_us: self.sample_to_force.quantiles(),
+            histograms: Histograms {
+                wake: self.wake.histogram(),
+                work: self.work.histogram(),
+                rig: self.rig.histogram(),
+                sample_to_force: self.sample_to_force.histogram(),
+            },
+            cpu: CpuShare::default(),
+            final_state: worst.map_or(LoopState::Idle, |arm| arm.final_state),
+            fault: worst.and_then(|arm| arm.fault.clone()),
+            arms,
+            devices: Vec::new(),
+            scheduling,
+            error: error.collect(),
+        }
+    }
+}

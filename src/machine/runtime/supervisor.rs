@@ -1,0 +1,114 @@
+//! Watches the loop from a thread of its own: a loop that is held up while drives are on loses them, whatever holds it up.
+//!
+//! The loop beats once a tick; the supervisor looks every 2 ms and, after [`STALL_MAX_S`] without a beat, pulls the levers of all devices
+//! (handle: force off, brakes on; arm: out of cyclic servoing) and marks the pulse. The loop sees the mark in its next tick and
+//! goes to a latched fault: nothing resumes by itself.
+
+use std::{
+    sync::{
+        Arc,
+        atomic::{AtomicBool, AtomicU64, Ordering},
+    },
+    thread::{Builder, JoinHandle},
+    time::Duration,
+};
+
+use nima_devices::Lever;
+
+use super::os;
+
+/// Longest time without a beat while drives are on, s.
+pub const STALL_MAX_S: f64 = 0.020;
+const LOOK_EVERY: Duration = Duration::from_millis(2);
+
+/// What loop and supervisor share.
+#[derive(Debug, Default)]
+pub(super) struct Pulse {
+    beat_ns: AtomicU64,
+    driven: AtomicBool,
+    /// How long the loop had been silent when the levers were pulled, ns; zero: they were not.
+    pulled_ns: AtomicU64,
+}
+
+impl Pulse {
+    /// The loop is alive; `driven`: drives are on.
+    pub(super) fn beat(&self, now_ns: u64, driven: bool) {
+        self.driven.store(driven, Ordering::Relaxed);
+        self.beat_ns.store(now_ns, Ordering::Release);
+    }
+
+    /// The levers were pulled since the last call: after how long a silence, s.
+    pub(super) fn take_pulled(&self) -> Option<f64> {
+        match self.pulled_ns.swap(0, Ordering::AcqRel) {
+            0 => None,
+            ns => Some(ns as f64 * 1e-9),
+        }
+    }
+}
+
+/// The thread. Dropping it ends it.
+#[derive(Debug)]
+pub(super) struct Supervisor {
+    stop: Arc<AtomicBool>,
+    thread: Option<JoinHandle<()>>,
+}
+
+impl Supervisor {
+    pub(super) fn start(pulse: Arc<Pulse>, levers: Vec<Lever>, real_time: bool) -> std::io::Result<Self> {
+        let stop = Arc::new(AtomicBool::new(false));
+        let flag = Arc::clone(&stop);
+        let thread = Builder::new().name("supervisor".to_owned()).spawn(move || {
+            if real_time {
+                os::prepare_supervisor();
+            }
+            let limit_ns = (STALL_MAX_S * 1e9) as u64;
+            let mut pulled = false;
+            while !flag.load(Ordering::Acquire) {
+                std::thread::sleep(LOOK_EVERY);
+                let silent_ns = os::monotonic_ns().saturating_sub(pulse.beat_ns.load(Ordering::Acquire));
+                let stalled = pulse.driven.load(Ordering::Relaxed) && silent_ns > limit_ns;
+                if stalled && !pulled {
+                    levers.iter().for_each(Lever::pull);
+                    pulse.pulled_ns.store(silent_ns, Ordering::Release);
+                }
+                pulled = stalled;
+            }
+        })?;
+        Ok(Self { stop, thread: Some(thread) })
+    }
+}
+
+impl Drop for Supervisor {
+    fn drop(&mut self) {
+        self.stop.store(true, Ordering::Release);
+        if let Some(thread) = self.thread.take() {
+            thread.join().ok();
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_loop_that_stands_still_loses_its_drives_once_and_one_without_drives_may_stand() {
+        let pulse = Arc::new(Pulse::default());
+        let (lever, count) = (Lever::default(), Arc::new(AtomicU64::new(0)));
+        let counted = Arc::clone(&count);
+        lever.attach(move || {
+            counted.fetch_add(1, Ordering::Relaxed);
+        });
+        let supervisor = Supervisor::start(Arc::clone(&pulse), vec![lever], true).unwrap();
+        pulse.beat(os::monotonic_ns(), false);
+        std::thread::sleep(Duration::from_millis(80));
+        assert_eq!((count.load(Ordering::Relaxed), pulse.take_pulled()), (0, None), "nothing is driven");
+        pulse.beat(os::monotonic_ns(), true);
+        std::thread::sleep(Duration::from_millis(150));
+        assert_eq!(count.load(Ordering::Relaxed), 1);
+        let after_s = pulse.take_pulled().unwrap();
+        println!("levers pulled after {:.1} ms", after_s * 1e3);
+        assert!(after_s > STALL_MAX_S);
+        drop(supervisor);
+    }
+}

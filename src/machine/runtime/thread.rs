@@ -1,0 +1,304 @@
+//! The loop on the real clock: a thread named `realtime` with absolute deadlines.
+
+use std::{
+    io,
+    sync::Arc,
+    thread::{Builder, JoinHandle},
+};
+
+use crossbeam_channel::{Receiver, Sender, TryRecvError, bounded};
+use nima_core::impedance::SettingsError;
+use nima_devices::Identity;
+
+use super::{
+    Assembly, Summary, os,
+    summary::{CpuShare, DeviceFigures, Meters},
+    supervisor::{Pulse, Supervisor},
+    wrists::{self, WristChange, WristDoor, Wrists},
+};
+use crate::{
+    config::SchedulingClass,
+    messages::{Command, Event, Tick},
+    rig::{Healths, Outputs, Rig, RigError, Roster, SIDES, Side},
+    teleop::{Calibrations, Loop, Timing},
+};
+
+/// Ticks that wait for the screen before new ones are dropped: 8 s at 1 kHz.
+pub const TICKS_WAITING_MAX: usize = 8192;
+/// Commands that wait for the loop.
+const COMMANDS_WAITING_MAX: usize = 64;
+/// Events that wait for the screen.
+const EVENTS_WAITING_MAX: usize = 256;
+/// Ticks between two looks at the health of the devices.
+const HEALTH_EVERY: u64 = 100;
+/// Devices that may come or go in one tick.
+const DEVICE_EVENTS_PER_TICK_MAX: usize = 4;
+/// Commands obeyed in one tick; the rest wait for the next.
+const COMMANDS_PER_TICK_MAX: usize = 2;
+
+/// Why a loop could not be started.
+#[derive(Debug, thiserror::Error)]
+pub enum StartError {
+    /// The rig's settings are not usable.
+    #[error(transparent)]
+    Settings(#[from] SettingsError),
+    /// The rig's devices cannot be set up.
+    #[error(transparent)]
+    Rig(#[from] RigError),
+    /// The operating system gave no thread.
+    #[error("the real-time thread could not be started")]
+    Thread(#[from] io::Error),
+}
+
+/// One running loop. Dropping it ends the loop.
+#[derive(Debug)]
+pub struct Handle {
+    commands: Sender<Command>,
+    ticks: Receiver<Tick>,
+    events: Receiver<Event>,
+    healths: Receiver<Healths>,
+    roster: Roster,
+    wrists: WristDoor,
+    thread: Option<JoinHandle<Summary>>,
+    /// Outlives the loop: fields are dropped after [`Drop`] has joined its thread.
+    _supervisor: Supervisor,
+}
+
+/// Starts the loop in its own thread.
+///
+/// # Errors
+/// [`StartError::Thread`] where the operating system gives none.
+pub fn start(assembly: Assembly) -> Result<Handle, StartError> {
+    let Assembly { control, rig, roster, rate_hz, scheduling, engage } = assembly;
+    let (pulse, levers) = (Arc::new(Pulse::default()), rig.levers());
+    let (commands, commands_in) = bounded(COMMANDS_WAITING_MAX);
+    let (ticks_out, ticks) = bounded(TICKS_WAITING_MAX);
+    let (events_out, events) = bounded(EVENTS_WAITING_MAX);
+    let (healths_out, healths) = bounded(1);
+    let (wrists, wrist_door) = wrists::ends(&roster, 1.0 / rate_hz);
+    let realtime = Realtime {
+        control,
+        rig,
+        wrists,
+        engage,
+        scheduling,
+        names: roster.iter().map(|entry| entry.name.clone()).collect(),
+        period_ns: (1e9 / rate_hz).round() as u64,
+        commands: commands_in,
+        ticks: ticks_out,
+        events: events_out,
+        healths: healths_out,
+        meters: Meters::default(),
+        pulse: Arc::clone(&pulse),
+    };
+    let supervisor = Supervisor::start(pulse, levers, scheduling != SchedulingClass::Ordinary)?;
+    let thread = Builder::new().name("realtime".to_owned()).spawn(move || realtime.run())?;
+    let wrists = wrist_door;
+    Ok(Handle { commands, ticks, events, healths, roster, wrists, thread: Some(thread), _supervisor: supervisor })
+}
+
+impl Handle {
+    /// Sends a command; false when the queue is full or the loop has ended.
+    pub fn send(&self, command: Command) -> bool {
+        self.commands.try_send(command).is_ok()
+    }
+
+    /// Hands over every waiting tick, oldest first, without blocking.
+    pub fn drain_ticks(&self, mut each: impl FnMut(&Tick)) {
+        // Bounded, so that a slow screen cannot be kept here by a fast loop.
+        self.ticks.try_iter().take(TICKS_WAITING_MAX).for_each(|tick| each(&tick));
+    }
+
+    /// Hands over every waiting event, oldest first, without blocking.
+    pub fn drain_events(&self, mut each: impl FnMut(&Event)) {
+        self.events.try_iter().take(EVENTS_WAITING_MAX).for_each(|event| each(&event));
+    }
+
+    /// The devices of the rig; empty where everything is simulated.
+    pub fn roster(&self) -> &Roster {
+        &self.roster
+    }
+
+    /// When the force sensor of this side came or went last. Look at this first and at [`Handle::force_sensor`] after it: then
+    /// [`Handle::put_in_force`] is refused if the sensor is another one by now.
+    pub fn wrist_change(&self, side: Side) -> WristChange {
+        self.wrists.change(side)
+    }
+
+    /// Who the force sensor of this side said it is; `None` before it was opened.
+    pub fn force_sensor(&self, side: Side) -> Option<Identity> {
+        self.roster.iter().find(|entry| entry.force_sensor_of == Some(side))?.view.report().identity
+    }
+
+    /// Puts the calibrations of a force sensor in force, unless the sensor has come or gone since `change`; false where the loop takes
+    /// nothing now.
+    pub fn put_in_force(&self, change: WristChange, calibrations: &Calibrations) -> bool {
+        self.wrists.put_in_force(change, calibrations)
+    }
+
+    /// How the devices are, if that is newer than the last time.
+    pub fn healths(&self) -> Option<Healths> {
+        self.healths.try_recv().ok()
+    }
+
+    /// What ends this loop from any thread.
+    pub fn ender(&self) -> Ender {
+        Ender(self.commands.clone())
+    }
+
+    /// The loop's thread is alive.
+    pub fn is_running(&self) -> bool {
+        self.thread.as_ref().is_some_and(|thread| !thread.is_finished())
+    }
+
+    /// Ends the loop and gives its figures; `None` if its thread died.
+    pub fn stop_and_join(mut self) -> Option<Summary> {
+        self.end()
+    }
+
+    fn end(&mut self) -> Option<Summary> {
+        let thread = self.thread.take()?;
+        // A full queue must not keep a loop alive: wait for room.
+        self.commands.send(Command::Shutdown).ok();
+        let mut summary = thread.join().ok()?;
+        summary.tell_devices(&self.roster);
+        Some(summary)
+    }
+}
+
+/// Ends a loop from any thread: no force, drives off, the arm at rest. Its figures wait in the [`Handle`].
+#[derive(Clone, Debug)]
+pub struct Ender(Sender<Command>);
+
+impl Ender {
+    /// Ends it within a few ticks.
+    pub fn end(&self) {
+        // A full queue is emptied by the loop; where there is no loop any more, nothing is left to be ended.
+        self.0.send(Command::Shutdown).ok();
+    }
+}
+
+impl Drop for Handle {
+    fn drop(&mut self) {
+        self.end();
+    }
+}
+
+struct Realtime {
+    control: Loop,
+    rig: Box<dyn Rig>,
+    wrists: Wrists,
+    scheduling: SchedulingClass,
+    /// Names of the devices.
+    names: Vec<String>,
+    /// Engage once, as soon as everything delivers.
+    engage: bool,
+    period_ns: u64,
+    commands: Receiver<Command>,
+    ticks: Sender<Tick>,
+    events: Sender<Event>,
+    healths: Sender<Healths>,
+    meters: Meters,
+    pulse: Arc<Pulse>,
+}
+
+impl Realtime {
+    fn run(mut self) -> Summary {
+        let scheduling = os::prepare_thread(self.scheduling, self.period_ns);
+        self.events.try_send(Event::Scheduling(scheduling)).ok();
+        let cpu_s = os::cpu_s();
+        let start_ns = os::monotonic_ns();
+        let mut deadline_ns = start_ns;
+        let mut timing = Timing::default();
+        while self.obey_commands(timing.now_s) {
+            deadline_ns += self.period_ns;
+            os::sleep_until_ns(deadline_ns);
+            let woke_ns = os::monotonic_ns();
+            let late_ns = woke_ns.saturating_sub(deadline_ns);
+            // Whole periods that passed are counted and skipped, never caught up in a burst.
+            timing.missed_now = late_ns / self.period_ns;
+            deadline_ns += timing.missed_now * self.period_ns;
+            timing.now_s = (deadline_ns - start_ns) as f64 * 1e-9;
+            timing.wake_s = late_ns as f64 * 1e-9;
+            self.tick(&mut timing, woke_ns);
+        }
+        // Whatever ends the loop, the hand is left without force and the follower at rest.
+        self.rig.write(timing.now_s, &[Outputs::SAFE; SIDES]);
+        self.pulse.beat(os::monotonic_ns(), false);
+        let wall_s = (os::monotonic_ns() - start_ns) as f64 * 1e-9;
+        let [realtime, process] = {
+            let used_s = os::cpu_s();
+            std::array::from_fn(|i| (used_s[i] - cpu_s[i]) / wall_s.max(1e-9))
+        };
+        let healths = self.rig.health();
+        let devices = self.names.iter().zip(healths.devices);
+        Summary {
+            cpu: CpuShare { realtime, process },
+            devices: devices
+                .map(|(name, health)| DeviceFigures { name: name.clone(), health, trouble: None })
+                .collect(),
+            ..self.meters.summary("real", &self.control, timing.now_s, wall_s, scheduling)
+        }
+    }
+
+    /// False when the loop shall end.
+    fn obey_commands(&mut self, now_s: f64) -> bool {
+        self.control.clear_events();
+        for _ in 0..COMMANDS_PER_TICK_MAX {
+            match self.commands.try_recv() {
+                Ok(Command::Shutdown) | Err(TryRecvError::Disconnected) => return false,
+                Ok(command) => self.control.obey(command, now_s),
+                Err(TryRecvError::Empty) => break,
+            }
+        }
+        true
+    }
+
+    fn tick(&mut self, timing: &mut Timing, woke_ns: u64) {
+        let inputs = self.rig.read(timing.now_s);
+        let read_ns = os::monotonic_ns();
+        if let Some(silent_s) = self.pulse.take_pulled() {
+            self.control.notice_stall(silent_s, timing.now_s);
+        }
+        for _ in 0..DEVICE_EVENTS_PER_TICK_MAX {
+            let Some(event) = self.rig.event() else { break };
+            self.control.notice(&event);
+            self.wrists.notice(&event, &mut self.control);
+            self.events.try_send(Event::Device(event)).ok();
+        }
+        self.wrists.put_in_force(&mut self.control);
+        if self.engage && self.control.is_idle_with(&inputs) {
+            self.engage = false;
+            self.control.obey(Command::Engage, timing.now_s);
+        }
+        let (outputs, ticks) = self.control.step(inputs, timing);
+        let worked_ns = os::monotonic_ns();
+        self.rig.write(timing.now_s, &outputs);
+        let written_ns = os::monotonic_ns();
+        self.pulse.beat(written_ns, outputs.iter().any(|outputs| outputs.drives));
+        timing.work_s = (worked_ns - read_ns) as f64 * 1e-9;
+        self.meters.wake.record(timing.wake_s);
+        self.meters.rig.record((read_ns - woke_ns + written_ns - worked_ns) as f64 * 1e-9);
+        self.meters.work.record(timing.work_s);
+        timing.sample_to_force_s = inputs.iter().any(Option::is_some).then(|| {
+            let age_s = inputs.iter().flatten().map(|inputs| inputs.age_s).fold(0.0, f64::max);
+            age_s + (written_ns - woke_ns) as f64 * 1e-9
+        });
+        if let Some(seconds) = timing.sample_to_force_s {
+            self.meters.sample_to_force.record(seconds);
+        }
+        self.meters.ticks += 1;
+        for event in self.control.events() {
+            self.events.try_send(*event).ok();
+        }
+        if self.meters.ticks.is_multiple_of(HEALTH_EVERY) {
+            self.healths.try_send(self.rig.health()).ok();
+        }
+        for mut tick in ticks.into_iter().flatten() {
+            tick.dropped = self.meters.dropped;
+            if self.ticks.try_send(tick).is_err() {
+                self.meters.dropped += 1;
+            }
+        }
+    }
+}

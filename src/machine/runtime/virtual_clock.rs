@@ -1,0 +1,40 @@
+//! The loop on the virtual clock: the same code, no waiting, deterministic.
+
+use std::time::Instant;
+
+use super::{Assembly, Summary, summary::Meters};
+use crate::messages::{Command, Scheduling, Tick};
+use crate::teleop::Timing;
+
+/// Runs it for `seconds` of loop time; `each` sees every tick of every side, may give a command for the next and ends the run with
+/// [`Command::Shutdown`].
+pub fn run_virtual(assembly: Assembly, seconds: f64, mut each: impl FnMut(&Tick) -> Option<Command>) -> Summary {
+    let Assembly { mut control, mut rig, rate_hz, engage, .. } = assembly;
+    let period_s = 1.0 / rate_hz;
+    let ticks = (seconds * rate_hz).round() as u64;
+    let mut meters = Meters::default();
+    let mut command = engage.then_some(Command::Engage);
+    let mut work_s = 0.0;
+    let start = Instant::now();
+    while meters.ticks < ticks && command != Some(Command::Shutdown) {
+        let now_s = meters.ticks as f64 * period_s;
+        let before = Instant::now();
+        let inputs = rig.read(now_s);
+        let read = Instant::now();
+        control.clear_events();
+        if let Some(command) = command.take() {
+            control.obey(command, now_s);
+        }
+        let (outputs, ticks) = control.step(inputs, &Timing { now_s, work_s, ..Timing::default() });
+        work_s = read.elapsed().as_secs_f64();
+        rig.write(now_s, &outputs);
+        meters.rig.record((read - before).as_secs_f64());
+        meters.work.record(work_s);
+        meters.ticks += 1;
+        for tick in ticks.iter().flatten() {
+            command = each(tick).or(command);
+        }
+    }
+    let loop_s = meters.ticks as f64 * period_s;
+    meters.summary("virtual", &control, loop_s, start.elapsed().as_secs_f64(), Scheduling::default())
+}

@@ -1,0 +1,82 @@
+//! How far each mode's force is from the force it should have been, running, without memory of samples.
+
+use nalgebra::Vector3;
+use nima_core::impedance::{MODES, Mode, Rendered};
+
+/// Mean size and spread of a vector error, and its worst.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ErrorStats {
+    /// How many were taken in.
+    pub count: u64,
+    /// Mean of the error's norm, N.
+    pub mae_n: f64,
+    /// Largest norm, N.
+    pub max_n: f64,
+    mean_n: Vector3<f64>,
+    squares_n2: f64,
+}
+
+impl ErrorStats {
+    /// Takes in one error (N). One that is not finite must be counted elsewhere; it is ignored here.
+    pub fn add(&mut self, error_n: &Vector3<f64>) {
+        let norm_n = error_n.norm();
+        if !norm_n.is_finite() {
+            return;
+        }
+        // Welford's update: exact for long runs.
+        self.count += 1;
+        let count = self.count as f64;
+        self.mae_n += (norm_n - self.mae_n) / count;
+        self.max_n = self.max_n.max(norm_n);
+        let before = error_n - self.mean_n;
+        self.mean_n += before / count;
+        self.squares_n2 += before.dot(&(error_n - self.mean_n));
+    }
+
+    /// Standard deviation of the error vector about its mean, N (for one axis: of the signed error).
+    pub fn sd_n(&self) -> f64 {
+        if self.count == 0 { 0.0 } else { (self.squares_n2 / self.count as f64).max(0.0).sqrt() }
+    }
+}
+
+/// Errors of every mode, as asked before the gates, against the force at the follower at the same instant.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Accuracy {
+    by_mode: [ErrorStats; MODES],
+    invalid: [u64; MODES],
+}
+
+impl Accuracy {
+    /// Takes in one tick. A mode without a valid force renders none: its error is the whole force.
+    pub fn add(&mut self, rendered: &Rendered, truth_n: &Vector3<f64>) {
+        for mode in Mode::ALL {
+            let force_n = rendered.force(mode);
+            self.invalid[mode.index()] += u64::from(force_n.is_none());
+            self.by_mode[mode.index()].add(&(force_n.unwrap_or_else(Vector3::zeros) - truth_n));
+        }
+    }
+
+    /// Errors of `mode`.
+    pub const fn of(&self, mode: Mode) -> &ErrorStats {
+        &self.by_mode[mode.index()]
+    }
+
+    /// Ticks in which `mode` had nothing valid to ask for.
+    pub const fn invalid(&self, mode: Mode) -> u64 {
+        self.invalid[mode.index()]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn mean_deviation_and_worst_of_signed_errors() {
+        let mut stats = ErrorStats::default();
+        for error in [1.0, -3.0, f64::NAN] {
+            stats.add(&Vector3::new(error, 0.0, 0.0));
+        }
+        assert_eq!((stats.count, stats.mae_n, stats.sd_n(), stats.max_n), (2, 2.0, 2.0, 3.0));
+    }
+}

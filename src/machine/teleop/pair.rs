@@ -1,0 +1,494 @@
+//! One arm pair: handle, arm, force sensor, and the loop between them.
+
+mod objections;
+mod watch;
+
+use nalgebra::{UnitQuaternion, Vector1, Vector3};
+use nima_core::{
+    impedance::{
+        Identifier, MAX_DELAY_S, Mode, Rendered, Renderer, Sample, Settings as IdentifierSettings, SettingsError,
+    },
+    kinematics::{Hand, HandEye, Target},
+    safety::{Chain, Change, Gate, GripperChain, Interlock, Plausibility, Request, Wish},
+};
+use nima_devices::Standing;
+
+use super::{Accuracy, Calibrations, ForcePath, Link, ProgrammedLink, Tracking};
+use crate::{
+    config::{RigConfig, Teleoperation},
+    messages::{Command, Event, Fault, ForceReport, ForceSource, LoopState, Refusal, Tick},
+    rig::{DeviceEvent, GUIDE_MAX_M, Inputs, Outputs, Prompt, Sensed, Side, Switches, View},
+};
+
+/// Rig silent for longer than this, s: fault.
+const SILENT_AFTER_S: f64 = 0.020;
+/// Nothing newer over the link for longer than this, beyond its delay, s: fault. The force is gone long before.
+const LINK_SILENT_AFTER_S: f64 = 0.1;
+/// Missed periods in a row that make a fault, as time, s.
+const STALLED_AFTER_S: f64 = 0.050;
+/// Most events told in one tick; more in one tick is not possible.
+pub const EVENTS_PER_TICK_MAX: usize = 6;
+/// From the gripper's hinge to the finger, m (omega.7).
+const GRIPPER_ARM_M: f64 = 0.048;
+/// After each engagement the force rises to its full size within this time, s.
+const RAMP_S: f64 = 0.2;
+/// A tip that moved more than this within a tick does not rest: nothing is engaged then, m.
+const AT_REST_M: f64 = 0.2e-3;
+
+/// When a tick ran: handed in, never asked for.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Timing {
+    /// Loop time of this tick, s.
+    pub now_s: f64,
+    /// How late the tick woke after its deadline, s.
+    pub wake_s: f64,
+    /// How long the tick before worked, s.
+    pub work_s: f64,
+    /// From the arrival of the oldest measurement of the tick before to when its force was given to the device, s; `None`: no measurement.
+    pub sample_to_force_s: Option<f64>,
+    /// Periods missed just before this tick.
+    pub missed_now: u64,
+}
+
+/// The pair's whole memory.
+#[derive(Clone, Debug)]
+pub struct Pair<L: Link = ProgrammedLink> {
+    side: Side,
+    interlock: Interlock<Fault>,
+    teleoperation: Teleoperation,
+    hand_eye: HandEye,
+    engaged_s: f64,
+    mode: Mode,
+    delay_s: f64,
+    rate_hz: f64,
+    /// Of the identification: the one conversion of a delay to ticks is there.
+    settings: IdentifierSettings,
+    follower_step_max_m: f64,
+    identifier: Identifier,
+    renderer: Renderer,
+    force_path: ForcePath,
+    force: ForceReport,
+    prompt: Prompt,
+    guide_m: Option<Vector3<f64>>,
+    link: L,
+    tracking: Tracking,
+    plausibility: Plausibility,
+    chain: Chain,
+    /// The gates found that nobody holds the handle: as good as a hand that is told absent.
+    hand_is_gone: bool,
+    gripper_chain: GripperChain,
+    last_inputs: Option<Inputs>,
+    last_input_s: f64,
+    last_now_s: Option<f64>,
+    /// How often samples were missing lately, and whether the last one was there.
+    gaps: f64,
+    was_there: bool,
+    hand_force_n: Vector3<f64>,
+    command_m: Option<Vector3<f64>>,
+    hand_speed_m_s: f64,
+    accuracy: Accuracy,
+    ticks: u64,
+    missed: u64,
+    events: [Option<Event>; EVENTS_PER_TICK_MAX],
+}
+
+impl Pair {
+    /// The pair of this side, idle, both ends in this process. Everything is allocated here.
+    ///
+    /// # Errors
+    /// [`SettingsError`] for an identification that cannot be.
+    pub fn new(rig: &RigConfig, side: Side, calibrations: &Calibrations) -> Result<Self, SettingsError> {
+        Self::over(rig, side, calibrations, ProgrammedLink::new(rig.rate_hz, rig.delay_s))
+    }
+}
+
+impl<L: Link> Pair<L> {
+    /// The same over this link.
+    ///
+    /// # Errors
+    /// As [`Pair::new`].
+    pub fn over(rig: &RigConfig, side: Side, calibrations: &Calibrations, link: L) -> Result<Self, SettingsError> {
+        let settings = rig.settings();
+        let at_rest = Target { tip_m: Vector3::zeros(), world_from_jaws: UnitQuaternion::identity() };
+        let mut this = Self {
+            side,
+            interlock: Interlock::default(),
+            teleoperation: rig.teleoperation,
+            hand_eye: HandEye::new(rig.teleoperation.mapping(), at_rest),
+            engaged_s: 0.0,
+            mode: rig.mode,
+            delay_s: rig.delay_s,
+            rate_hz: rig.rate_hz,
+            follower_step_max_m: rig.follower_speed_max_m_s / rig.rate_hz,
+            identifier: Identifier::new(&settings)?,
+            renderer: Renderer::new(&settings)?,
+            settings,
+            force_path: ForcePath::new(calibrations, 1.0 / rig.rate_hz),
+            force: NO_FORCE_YET,
+            prompt: Prompt::Rest,
+            guide_m: None,
+            link,
+            tracking: Tracking::new(rig.rate_hz),
+            plausibility: Plausibility::new(1.0 / rig.rate_hz),
+            chain: Chain::new(rig.gates, 1.0 / rig.rate_hz),
+            hand_is_gone: false,
+            gripper_chain: GripperChain::new(rig.gates, 1.0 / rig.rate_hz),
+            last_inputs: None,
+            last_input_s: 0.0,
+            last_now_s: None,
+            gaps: 0.0,
+            was_there: false,
+            hand_force_n: Vector3::zeros(),
+            command_m: None,
+            hand_speed_m_s: 0.0,
+            accuracy: Accuracy::default(),
+            ticks: 0,
+            missed: 0,
+            events: [None; EVENTS_PER_TICK_MAX],
+        };
+        this.set_delay(rig.delay_s);
+        Ok(this)
+    }
+
+    /// Which pair.
+    pub const fn side(&self) -> Side {
+        self.side
+    }
+
+    pub(super) const fn force_path(&self) -> &ForcePath {
+        &self.force_path
+    }
+
+    /// Ticks per second.
+    pub(super) const fn rate_hz(&self) -> f64 {
+        self.rate_hz
+    }
+
+    /// State now.
+    pub const fn state(&self) -> LoopState {
+        self.interlock.state()
+    }
+
+    /// Errors per mode since construction.
+    pub const fn accuracy(&self) -> &Accuracy {
+        &self.accuracy
+    }
+
+    /// Periods missed since construction.
+    pub const fn missed(&self) -> u64 {
+        self.missed
+    }
+
+    /// What happened since [`Pair::clear_events`], oldest first.
+    pub fn events(&self) -> impl Iterator<Item = &Event> {
+        self.events.iter().flatten()
+    }
+
+    /// Forgets the events; call before handling commands of the next tick.
+    pub fn clear_events(&mut self) {
+        self.events = [None; EVENTS_PER_TICK_MAX];
+    }
+
+    fn tell(&mut self, event: Event) {
+        if let Some(free) = self.events.iter_mut().find(|slot| slot.is_none()) {
+            *free = Some(event);
+        }
+    }
+
+    /// What entering a state does: everything begins from no force and a resting follower.
+    fn enter(&mut self, change: Change<Fault>, t_s: f64) {
+        let Change { from, to, why } = change;
+        self.tell(Event::StateChanged { t_s, side: self.side, from, to, why });
+        self.chain.reset();
+        self.gripper_chain.reset();
+        self.hand_is_gone = false;
+        self.command_m = None;
+        self.hand_eye.release();
+        if !to.permits().drives || !from.permits().drives {
+            self.prompt = Prompt::Rest;
+        }
+        if to.is_latched() {
+            self.guide_m = None;
+        }
+        if let (LoopState::Engaged, Some(seen)) = (to, self.last_inputs) {
+            // Only here: an endoscope that turns while hand and tip are joined must not turn the motion under the hand.
+            if let View::Seen(world_from_view) = seen.view {
+                let mapping = self.teleoperation.seen(&world_from_view, self.hand_eye.mapping().scale());
+                self.hand_eye.set_mapping(mapping);
+            }
+            // Hand and tip are joined where both are: the first command is where the tip is.
+            let world_from_jaws = seen.world_from_jaws.unwrap_or_else(UnitQuaternion::identity);
+            self.hand_eye.engage(Target { tip_m: seen.tip_m, world_from_jaws });
+            self.engaged_s = t_s;
+            self.plausibility.engage();
+        }
+    }
+
+    fn set_delay(&mut self, delay_s: f64) {
+        // The delay is exact to one sample, and the screen shows what is in force.
+        self.delay_s = self.settings.delay_ticks(delay_s) as f64 / self.rate_hz;
+        self.link.set_delay(self.delay_s);
+        self.identifier.set_delay(self.delay_s);
+        self.renderer.set_delay(self.delay_s);
+    }
+
+    fn ask(&mut self, wish: Wish, t_s: f64) -> Result<(), Refusal> {
+        let change = self.interlock.ask(wish, t_s).map_err(|_| Refusal::State(self.state()))?;
+        if let Some(change) = change {
+            self.enter(change, t_s);
+        }
+        Ok(())
+    }
+
+    /// Carries out one command, or gives why not. [`Command::Shutdown`] is the runtime's.
+    pub fn obey(&mut self, command: Command, t_s: f64) -> Result<(), Refusal> {
+        match command {
+            Command::SetMode(mode) => self.mode = mode,
+            Command::SetGain(gain) if (0.0..=1.0).contains(&gain) => self.chain.set_ordinary_gain(gain),
+            Command::SetGainAboveOne(gain) if (0.0..=nima_core::safety::MAX_GAIN).contains(&gain) => {
+                self.chain.set_gain_above_one(gain);
+            }
+            Command::SetDelay(delay_s) if (0.0..=MAX_DELAY_S).contains(&delay_s) => self.set_delay(delay_s),
+            Command::SetDeadBand(speed_m_s) if (0.0..=0.1).contains(&speed_m_s) => self.chain.set_dead_band(speed_m_s),
+            Command::SetStaticHold(hold) => self.chain.set_static_hold(hold),
+            Command::SetScale(scale) => match self.hand_eye.mapping().scaled(scale) {
+                Ok(mapping) => self.hand_eye.set_mapping(mapping),
+                Err(_) => return Err(Refusal::OutOfRange),
+            },
+            // Whoever is asked to handle the arm must be safe from it.
+            Command::Prompt(_, prompt) if self.state() == LoopState::Idle && prompt.is_finite() => self.prompt = prompt,
+            Command::Guide(guide_m)
+                if !self.state().is_latched()
+                    && guide_m.is_none_or(|at_m| at_m.iter().all(|x| x.abs() <= GUIDE_MAX_M)) =>
+            {
+                self.guide_m = guide_m;
+            }
+            Command::Prompt(_, prompt) if prompt.is_finite() => return Err(Refusal::State(self.state())),
+            Command::Guide(_) if self.state().is_latched() => return Err(Refusal::State(self.state())),
+            Command::Engage | Command::EngageOne(_) => {
+                self.may_engage()?;
+                return self.ask(Wish::Engage, t_s);
+            }
+            Command::Rest => return self.ask(Wish::Rest, t_s),
+            Command::Stop => return self.ask(Wish::Stop, t_s),
+            Command::ReleaseStop => {
+                self.may_release(t_s)?;
+                return self.ask(Wish::Release, t_s);
+            }
+            Command::Shutdown => {}
+            _ => return Err(Refusal::OutOfRange),
+        }
+        Ok(())
+    }
+
+    fn fail(&mut self, fault: Fault, t_s: f64) {
+        if let Some(change) = self.interlock.fail(fault) {
+            self.tell(Event::FaultRaised { t_s, side: self.side, fault });
+            self.enter(change, t_s);
+        }
+    }
+
+    /// A fault that matters only while drives are on.
+    pub(super) fn fail_if_driven(&mut self, fault: Fault, t_s: f64) {
+        if self.state().permits().drives {
+            self.fail(fault, t_s);
+        }
+    }
+
+    /// The wrist sensor came, went or changed.
+    pub(super) const fn suspend_calibrations(&mut self) {
+        self.force_path.suspend();
+    }
+
+    /// Changes places with this path; refused while drives are on.
+    pub(super) fn exchange_force_path(&mut self, path: &mut ForcePath) -> bool {
+        let rests = !self.state().permits().drives;
+        if rests {
+            std::mem::swap(&mut self.force_path, path);
+        }
+        rests
+    }
+
+    /// A device of this pair came or went.
+    pub(super) fn notice(&mut self, event: &DeviceEvent) {
+        if let Standing::Lost(loss) = event.standing {
+            self.fail_if_driven(Fault::DeviceLost { device: event.device, loss }, event.t_s);
+        }
+    }
+
+    /// One tick: measurements in, commands out, everything about it in the [`Tick`].
+    pub fn step(&mut self, inputs: Option<Inputs>, timing: &Timing) -> (Outputs, Tick) {
+        let now_s = timing.now_s;
+        self.missed += timing.missed_now;
+        self.check_clock(timing);
+        let inputs = inputs.filter(Inputs::is_finite);
+        let moved_m = inputs.zip(self.last_inputs).map_or(0.0, |(now, last)| (now.tip_m - last.tip_m).norm());
+        let inputs = inputs.map(|inputs| self.take_in(inputs, now_s));
+        if inputs.is_none() {
+            // Identification goes by even samples: a missing one is bridged, and nothing is sent of it.
+            self.identifier.step(&Sample { t_s: now_s, position_m: NOWHERE, force_n: NOWHERE });
+        }
+        self.watch(inputs.as_ref(), moved_m, timing);
+        // Nothing new: the link keeps delivering what is on its way, ever older; the age gate takes the force away.
+        let seen = self.last_inputs.unwrap_or(NOTHING_YET);
+        let target = self.hand_eye.step(&seen.hand);
+        let tip_command_m = self.follow(&seen, &target);
+        let motion_m = self.motion_at_leader(&seen, tip_command_m);
+        let parcel = self.link.receive(now_s);
+        if let Some(parcel) = parcel {
+            self.plausibility.delivered(&parcel.force_n, parcel.t_s);
+        }
+        // Before the first one the link is only filling.
+        let parcel_is_there = parcel.is_some();
+        let rendered = self.renderer.step(&motion_m, parcel);
+        let delayed_n = parcel.map_or_else(Vector3::zeros, |parcel| parcel.force_n);
+        let age_s = parcel.map_or(f64::INFINITY, |parcel| now_s - parcel.t_s - self.delay_s + seen.age_s);
+        if parcel_is_there && age_s > LINK_SILENT_AFTER_S {
+            self.fail_if_driven(Fault::LinkSilent, now_s);
+        }
+        let permits = self.state().permits();
+        let permitted = permits.coupled && self.force.source.is_usable();
+        let ramp = ((now_s - self.engaged_s) / RAMP_S).clamp(0.0, 1.0);
+        let (rendered_n, gates) = self.chain.step(&Request {
+            force_n: rendered.force(self.mode).map(|force_n| force_n * ramp),
+            age_s,
+            speed_m_s: self.hand_speed_m_s,
+            // On the axes of the force; the way of the hand itself, whatever the scale makes of it. A lost sample hides no way: the
+            // next one shows it.
+            hand_m: self.hand_now_m(now_s),
+            permitted,
+        });
+        self.hand_is_gone |= gates.acted(Gate::Release);
+        let gripper_n = self.grip(inputs.as_ref(), age_s, permitted);
+        if inputs.is_some() {
+            self.accuracy.add(&rendered, &self.force.tip_n);
+        }
+        let outputs = Outputs {
+            drives: permits.drives,
+            tip_command_m,
+            world_from_jaws: tip_command_m.and(seen.world_from_jaws).map(|_| target.world_from_jaws),
+            hand_force_n: self.hand_eye.mapping().force_to_hand(&rendered_n),
+            gripper_n,
+            prompt: self.prompt,
+            guide_m: self.guide_m,
+        };
+        self.hand_force_n = outputs.hand_force_n;
+        let leader_m = if tip_command_m.is_some() { target.tip_m } else { seen.tip_m };
+        let tick = self.tick(&seen, leader_m, &rendered, delayed_n, rendered_n, gates, timing);
+        self.ticks += 1;
+        (outputs, tick)
+    }
+
+    /// Where the hand was last seen, m (`world`), while that is not long ago.
+    fn hand_now_m(&self, now_s: f64) -> Option<Vector3<f64>> {
+        let seen = self.last_inputs.filter(|_| !self.is_silent(now_s))?;
+        Some(self.hand_eye.mapping().world_from_leader() * seen.hand.position_m)
+    }
+
+    /// The gripper feels what its jaws hold, through gates of its own.
+    fn grip(&mut self, inputs: Option<&Inputs>, age_s: f64, permitted: bool) -> f64 {
+        let (opening_rad, grip_n) = (inputs.and_then(|i| i.gripper_rad), inputs.and_then(|i| i.grip_n));
+        let (force_n, _) = self.gripper_chain.step(&Request {
+            force_n: grip_n.map(Vector1::new),
+            age_s,
+            // A gripper that rests on what it holds goes on feeling it.
+            speed_m_s: 1.0,
+            hand_m: opening_rad.map(|rad| Vector1::new(rad * GRIPPER_ARM_M)),
+            permitted: permitted && grip_n.is_some(),
+        });
+        force_n.x
+    }
+
+    /// What carries parcels.
+    pub(super) const fn link_mut(&mut self) -> &mut L {
+        &mut self.link
+    }
+
+    fn is_silent(&self, now_s: f64) -> bool {
+        now_s - self.last_input_s > SILENT_AFTER_S - 0.5 / self.rate_hz
+    }
+
+    /// The follower goes where the hand leads it, never faster than its speed limit; only while engaged.
+    fn follow(&mut self, seen: &Inputs, target: &Target) -> Option<Vector3<f64>> {
+        if !self.hand_eye.is_engaged() {
+            return None;
+        }
+        let from = self.command_m.unwrap_or(seen.tip_m);
+        let way = target.tip_m - from;
+        let share = if way.norm() > self.follower_step_max_m { self.follower_step_max_m / way.norm() } else { 1.0 };
+        self.command_m = Some(from + way * share);
+        self.command_m
+    }
+
+    /// The follower's motion now as the leader can know it: its command, as late as the follower is observed to be.
+    fn motion_at_leader(&mut self, seen: &Inputs, tip_command_m: Option<Vector3<f64>>) -> Vector3<f64> {
+        if let Some(command_m) = tip_command_m {
+            return self.tracking.step(&command_m, &seen.tip_m);
+        }
+        self.tracking.interrupt();
+        seen.tip_m
+    }
+
+    #[expect(clippy::too_many_arguments, reason = "all that one tick tells")]
+    fn tick(
+        &self,
+        seen: &Inputs,
+        leader_m: Vector3<f64>,
+        rendered: &Rendered,
+        delayed_n: Vector3<f64>,
+        rendered_n: Vector3<f64>,
+        gates: nima_core::safety::GateReport,
+        timing: &Timing,
+    ) -> Tick {
+        Tick {
+            index: self.ticks,
+            t_s: timing.now_s,
+            side: self.side,
+            state: self.state(),
+            mode: self.mode,
+            delay_s: self.delay_s,
+            leader_m,
+            tip_m: seen.tip_m,
+            measured_n: self.force.tip_n,
+            force: self.force,
+            wrist: match seen.sensed {
+                Sensed::AtTip(_) => None,
+                Sensed::AtWrist(sample) => Some(sample),
+            },
+            prompt: self.prompt,
+            guide_m: self.guide_m,
+            delayed_n,
+            asked_n: Mode::ALL.map(|mode| rendered.force(mode).unwrap_or_else(Vector3::zeros)),
+            rendered_n,
+            gates,
+            gate_settings: *self.chain.settings(),
+            identification: *self.identifier.report(),
+            wake_s: timing.wake_s,
+            work_s: timing.work_s,
+            sample_to_force_s: timing.sample_to_force_s,
+            missed: self.missed,
+            dropped: 0,
+        }
+    }
+}
+
+/// What was not measured.
+const NOWHERE: Vector3<f64> = Vector3::new(f64::NAN, f64::NAN, f64::NAN);
+
+/// Shown until the rig has delivered its first sample.
+const NOTHING_YET: Inputs = Inputs {
+    hand: Hand::at(Vector3::new(0.0, 0.0, 0.0)),
+    gripper_rad: None,
+    grip_n: None,
+    tip_m: Vector3::new(0.0, 0.0, 0.0),
+    world_from_jaws: None,
+    sensed: Sensed::AtTip(Vector3::new(0.0, 0.0, 0.0)),
+    view: View::Fixed,
+    switches: Switches { clutch: false, presence: None },
+    powered: false,
+    obstacle: None,
+    age_s: 0.0,
+};
+
+/// Until the first sample: an absent force is no usable force, and a rig that measures at the tip shows so at once.
+const NO_FORCE_YET: ForceReport = ForceReport::none(ForceSource::AtTip, None);

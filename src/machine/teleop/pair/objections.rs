@@ -1,0 +1,58 @@
+//! What stands against an engagement or a release, told to whoever asked for it.
+
+use nima_core::safety::Seen;
+
+use super::Pair;
+use crate::{
+    messages::{Fault, LoopState, Refusal},
+    rig::{Inputs, View},
+    teleop::Link,
+};
+
+impl<L: Link> Pair<L> {
+    /// Nothing that is known now stands against engaging; the interlock judges the state.
+    pub(super) fn may_engage(&self) -> Result<(), Refusal> {
+        if self.state() != LoopState::Idle {
+            return Ok(());
+        }
+        // A force that is mostly weight and bias must never reach a hand.
+        if !self.force.source.is_usable() {
+            return Err(Refusal::ForceUnknown);
+        }
+        if let Some(what) = self.plausibility.doubt() {
+            return Err(Refusal::Implausible(what));
+        }
+        match self.last_inputs.and_then(|seen| seen.obstacle) {
+            Some(obstacle) => Err(Refusal::Obstacle(obstacle)),
+            None => Ok(()),
+        }
+    }
+
+    /// A stop and a fault are not released while a cause of a fault is present.
+    pub(super) fn may_release(&self, t_s: f64) -> Result<(), Refusal> {
+        if !self.state().is_latched() {
+            return Ok(());
+        }
+        if self.is_silent(t_s) {
+            return Err(Refusal::StillPresent(Fault::SourceSilent));
+        }
+        self.plausibility.doubt().map_or(Ok(()), |what| Err(Refusal::StillPresent(Fault::Implausible { what })))
+    }
+
+    /// What an engagement that has begun still waits for.
+    pub(super) fn waits_for(&self, seen: Seen, inputs: Option<&Inputs>) -> Refusal {
+        if !seen.powered {
+            Refusal::DrivesOff
+        } else if inputs.is_none_or(|inputs| inputs.view == View::Unseen) {
+            Refusal::EndoscopeUnseen
+        } else if !self.force.source.is_usable() {
+            Refusal::ForceUnknown
+        } else if !seen.present {
+            Refusal::HandAbsent
+        } else if seen.clutch {
+            Refusal::ClutchPressed
+        } else {
+            Refusal::Moving
+        }
+    }
+}

@@ -1,0 +1,150 @@
+//! What a pair makes of its measurements and of the time before it uses them: what leaps is bridged, what cannot be true is a fault.
+
+use nalgebra::UnitQuaternion;
+use nima_core::{
+    impedance::Sample,
+    safety::{CHANNELS, Observed, Seen, Why},
+};
+
+use super::{AT_REST_M, Pair, STALLED_AFTER_S, Timing};
+use crate::{
+    messages::{Command, Event, Fault},
+    rig::{Inputs, Sensed, Switches, View},
+    teleop::{Link, LoopState},
+};
+
+impl<L: Link> Pair<L> {
+    /// Takes a sample in; what leaps where nothing can is bridged in what is given back.
+    pub(super) fn take_in(&mut self, mut inputs: Inputs, now_s: f64) -> Inputs {
+        self.force = self.force_path.step(now_s, &inputs.sensed);
+        let admitted = self.plausibility.step(&Observed {
+            t_s: now_s,
+            sensed: numbers(&inputs.sensed),
+            force_n: self.force.tip_n,
+            world_from_s1: orientation(&inputs.sensed),
+            tip_m: inputs.tip_m,
+            hand_m: inputs.hand.position_m,
+            command_m: self.command_m,
+            hand_force_n: self.hand_force_n,
+            guided: self.guide_m.is_some(),
+        });
+        (self.force.tip_n, inputs.tip_m, inputs.hand.position_m) = (admitted.force_n, admitted.tip_m, admitted.hand_m);
+        self.measure_speed(&inputs, now_s);
+        self.identifier.step(&Sample { t_s: now_s, position_m: inputs.tip_m, force_n: self.force.tip_n });
+        self.link.send(self.identifier.parcel());
+        self.last_inputs = Some(inputs);
+        self.last_input_s = now_s - inputs.age_s;
+        inputs
+    }
+
+    /// Time goes on by whole periods, as many as were missed and one. A clock that does not is a fault, and what was learnt by it is
+    /// forgotten: parcels from the future would never grow old.
+    pub(super) fn check_clock(&mut self, timing: &Timing) {
+        let period_s = 1.0 / self.rate_hz;
+        let Some(last_s) = self.last_now_s.replace(timing.now_s) else { return };
+        let surplus_s = timing.now_s - last_s - period_s * (1 + timing.missed_now) as f64;
+        if surplus_s.abs() <= 0.5 * period_s {
+            return;
+        }
+        self.fail_if_driven(Fault::ClockJumped, timing.now_s);
+        if timing.now_s.is_nan() || timing.now_s <= last_s {
+            self.identifier.reset();
+            self.renderer.reset();
+            self.link.clear();
+            self.last_input_s = timing.now_s;
+        }
+    }
+
+    /// Faults first, then the interlock's look at the machine.
+    pub(super) fn watch(&mut self, inputs: Option<&Inputs>, moved_m: f64, timing: &Timing) {
+        let now_s = timing.now_s;
+        if timing.missed_now as f64 / self.rate_hz > STALLED_AFTER_S {
+            self.fail(Fault::LoopStalled { periods: timing.missed_now }, now_s);
+        }
+        let connected = !self.is_silent(now_s);
+        if !connected {
+            self.fail_if_driven(Fault::SourceSilent, now_s);
+        }
+        let coupled = matches!(self.state(), LoopState::Engaged | LoopState::Clutched);
+        if self.loses_samples(inputs.is_some()) {
+            self.fail_if_driven(Fault::SamplesLost, now_s);
+        }
+        if coupled && !self.force.source.is_usable() {
+            self.fail(Fault::ForceUnknown, now_s);
+        }
+        if coupled && inputs.is_some_and(|inputs| !inputs.powered) {
+            self.fail(Fault::DrivesOff, now_s);
+        }
+        if let Some(what) = self.plausibility.doubt() {
+            self.fail_if_driven(Fault::Implausible { what }, now_s);
+        }
+        let switches = self.last_inputs.map_or_else(Switches::default, |seen| seen.switches);
+        let seen = Seen {
+            connected,
+            powered: inputs.is_some_and(|inputs| inputs.powered),
+            agreed: inputs.is_some_and(|inputs| inputs.view != View::Unseen)
+                && self.force.source.is_usable()
+                && moved_m <= AT_REST_M,
+            present: switches.presence.unwrap_or(true) && !self.hand_is_gone,
+            clutch: switches.clutch,
+        };
+        if let Some(change) = self.interlock.step(&seen, now_s) {
+            self.enter(change, now_s);
+            if change.why == Why::Late {
+                let why = self.waits_for(seen, inputs);
+                self.tell(Event::CommandRefused { t_s: now_s, side: self.side, command: Command::Engage, why });
+            }
+        }
+    }
+
+    /// Gaps come so often that identification learns from what is not there: more than one sample in six, within 20 ms where it is
+    /// every second one. A silence is one gap.
+    fn loses_samples(&mut self, there: bool) -> bool {
+        const TOO_MANY: f64 = 8.0;
+        const FORGIVEN: f64 = 0.2;
+        match (there, self.was_there) {
+            (true, _) => self.gaps = (self.gaps - FORGIVEN).max(0.0),
+            (false, true) => self.gaps += 1.0,
+            (false, false) => {}
+        }
+        self.was_there = there;
+        self.gaps >= TOO_MANY
+    }
+
+    /// Hand speed for the dead band, from differences: it rises within 5 ms, so one step of the encoder does not open the gate,
+    /// and falls within 40 ms, so a trembling hand does not switch its force on and off twenty times a second.
+    fn measure_speed(&mut self, inputs: &Inputs, now_s: f64) {
+        const RISE_S: f64 = 0.005;
+        const FALL_S: f64 = 0.040;
+        if let Some(last) = self.last_inputs {
+            let dt_s = (now_s - self.last_input_s).max(0.5 / self.rate_hz);
+            let speed = (inputs.hand.position_m - last.hand.position_m).norm() / dt_s;
+            let smoothing_s = if speed > self.hand_speed_m_s { RISE_S } else { FALL_S };
+            self.hand_speed_m_s += (speed - self.hand_speed_m_s) * (dt_s / (smoothing_s + dt_s));
+        }
+    }
+}
+
+/// Orientation of a wrist sensor by the arm.
+fn orientation(sensed: &Sensed) -> Option<UnitQuaternion<f64>> {
+    match sensed {
+        Sensed::AtTip(_) => None,
+        Sensed::AtWrist(sample) => sample.world_from_s1,
+    }
+}
+
+/// The numbers of a force sensor as they were read; NaN where it has none.
+fn numbers(sensed: &Sensed) -> [f64; CHANNELS] {
+    let mut all = [f64::NAN; CHANNELS];
+    match sensed {
+        Sensed::AtTip(force_n) => all[..3].copy_from_slice(force_n.as_slice()),
+        Sensed::AtWrist(sample) => {
+            all[..3].copy_from_slice(sample.raw.force_n.as_slice());
+            all[3..6].copy_from_slice(sample.raw.torque_nm.as_slice());
+            if let Some(acceleration_m_s2) = &sample.acceleration_m_s2 {
+                all[6..].copy_from_slice(acceleration_m_s2.as_slice());
+            }
+        }
+    }
+    all
+}

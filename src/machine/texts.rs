@@ -1,0 +1,52 @@
+//! Texts of a rig or scene file reach messages and the screen as they are: they must be short and plain.
+
+use nima_files::quoted;
+use toml::{Table, Value};
+
+/// Most characters of a text: names, addresses, ports, paths.
+const MOST: usize = 512;
+
+/// Key and fault of the first text that cannot be shown.
+pub(crate) fn fault(table: &Table) -> Option<String> {
+    table
+        .iter()
+        .find_map(|(key, value)| of_value(value).map(|(place, fault)| format!("{}{place} {fault}", quoted(key))))
+}
+
+/// The place below this value, and what is wrong there.
+fn of_value(value: &Value) -> Option<(String, String)> {
+    match value {
+        Value::String(text) => of_text(text).map(|fault| (String::new(), fault)),
+        Value::Array(values) => values
+            .iter()
+            .enumerate()
+            .find_map(|(k, value)| of_value(value).map(|(place, fault)| (format!("[{k}]{place}"), fault))),
+        Value::Table(table) => table
+            .iter()
+            .find_map(|(key, value)| of_value(value).map(|(place, fault)| (format!(".{}{place}", quoted(key)), fault))),
+        _ => None,
+    }
+}
+
+fn of_text(text: &str) -> Option<String> {
+    if text.chars().any(char::is_control) {
+        return Some(format!("= \"{}\" has a control character; write it in plain letters", quoted(text)));
+    }
+    let long = text.chars().nth(MOST).is_some();
+    long.then(|| format!("= \"{}\" is too long; at most {MOST} characters are possible", quoted(text)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_text_that_cannot_be_shown_is_told_by_its_key() {
+        let fault = |text: &str| fault(&toml::from_str(text).unwrap());
+        assert_eq!(fault("name = \"x\"\nn = 1\n[a]\nports = [\"/dev/ttyUSB0\"]\n"), None);
+        let coloured = fault("[a]\nports = [\"x\", \"\\u001b[31m\"]\n").unwrap();
+        assert!(coloured.starts_with("a.ports[1] = \"\\u{1b}[31m\" has a control character"), "{coloured}");
+        let long = fault(&format!("name = \"{}\"\n", "x".repeat(1 << 20))).unwrap();
+        assert!(long.starts_with("name = \"xxx") && long.contains("at most 512") && long.len() < 300, "{long}");
+    }
+}

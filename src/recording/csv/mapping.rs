@@ -1,0 +1,142 @@
+//! Which column of a file is which quantity: `--map x=px_mm*0.001`.
+
+use std::collections::BTreeMap;
+
+/// A mapping that cannot be understood.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[expect(missing_docs, reason = "the messages say it")]
+pub enum MappingError {
+    /// Not of the form `NAME=COLUMN` or `NAME=COLUMN*SCALE`.
+    #[error("--map {text}: write NAME=COLUMN or NAME=COLUMN*SCALE, for example x=px_mm*0.001")]
+    Form { text: String },
+    /// The quantity is not one of ours.
+    #[error("--map {text}: there is no quantity \"{name}\"; use t, x, y, z, fx, fy or fz")]
+    Name {
+        text: String,
+        /// Its left side.
+        name: String,
+    },
+    /// The scale is no finite number, or zero.
+    #[error("--map {text}: the scale \"{scale}\" is not a number other than zero")]
+    Scale {
+        text: String,
+        /// The part after `*`.
+        scale: String,
+    },
+    /// The quantity was mapped before.
+    #[error("--map {text}: \"{name}\" is mapped twice")]
+    Twice {
+        text: String,
+        /// Its left side.
+        name: String,
+    },
+}
+
+/// A column and the factor that turns its numbers into SI units.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Source {
+    column: String,
+    scale: f64,
+}
+
+impl Source {
+    /// Name of the column.
+    pub fn column(&self) -> &str {
+        &self.column
+    }
+
+    /// Factor to SI units.
+    pub const fn scale(&self) -> f64 {
+        self.scale
+    }
+}
+
+/// Quantities (`x_m`, `fx_n`, `t_s`, ...) to columns; what is not named is looked for under its own name.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Mapping {
+    sources: BTreeMap<&'static str, Source>,
+}
+
+/// Short and full name of every quantity.
+const QUANTITIES: [(&str, &str); 7] =
+    [("t", "t_s"), ("x", "x_m"), ("y", "y_m"), ("z", "z_m"), ("fx", "fx_n"), ("fy", "fy_n"), ("fz", "fz_n")];
+
+impl Mapping {
+    /// Reads `NAME=COLUMN[*SCALE]`, any number of them.
+    ///
+    /// # Errors
+    /// A text that has another form, a quantity that does not exist or is named twice, or a scale that is not finite.
+    ///
+    /// ```
+    /// use nima_recording::csv::Mapping;
+    ///
+    /// let mapping = Mapping::parse(&["x=angle", "fx=torque*-1"])?;
+    /// assert_eq!(mapping.source("x_m").column(), "angle");
+    /// assert_eq!(mapping.source("t_s").column(), "t_s", "what is not mapped keeps its name");
+    /// assert!(Mapping::parse(&["height=z"]).is_err());
+    /// # Ok::<(), nima_recording::csv::MappingError>(())
+    /// ```
+    pub fn parse(texts: &[impl AsRef<str>]) -> Result<Self, MappingError> {
+        let mut sources = BTreeMap::new();
+        for text in texts.iter().map(AsRef::as_ref) {
+            let owned = || text.to_owned();
+            let (name, source) = text.split_once('=').ok_or_else(|| MappingError::Form { text: owned() })?;
+            let (name, source) = (name.trim(), source.trim());
+            let Some(&(_, full)) = QUANTITIES.iter().find(|(short, full)| *short == name || *full == name) else {
+                return Err(MappingError::Name { text: owned(), name: name.to_owned() });
+            };
+            let (column, scale) = match source.rsplit_once('*') {
+                None => (source, 1.0),
+                Some((column, factor)) => {
+                    let wrong = || MappingError::Scale { text: owned(), scale: factor.to_owned() };
+                    let scale: f64 = factor.trim().parse().map_err(|_| wrong())?;
+                    if !scale.is_finite() || scale == 0.0 {
+                        return Err(wrong());
+                    }
+                    (column.trim(), scale)
+                }
+            };
+            if column.is_empty() {
+                return Err(MappingError::Form { text: owned() });
+            }
+            if sources.insert(full, Source { column: column.to_owned(), scale }).is_some() {
+                return Err(MappingError::Twice { text: owned(), name: name.to_owned() });
+            }
+        }
+        Ok(Self { sources })
+    }
+
+    /// The quantity was named by the user.
+    pub fn names(&self, quantity: &str) -> bool {
+        self.sources.contains_key(quantity)
+    }
+
+    /// Where a quantity comes from.
+    pub fn source(&self, quantity: &str) -> Source {
+        self.sources.get(quantity).cloned().unwrap_or_else(|| Source { column: quantity.to_owned(), scale: 1.0 })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn forms() {
+        let mapping = Mapping::parse(&["x=pos_follower_rad", "fx_n = Fe * -2.5", "t=time"]).unwrap();
+        assert_eq!(mapping.source("x_m"), Source { column: "pos_follower_rad".into(), scale: 1.0 });
+        assert_eq!(mapping.source("fx_n"), Source { column: "Fe".into(), scale: -2.5 });
+        assert_eq!(mapping.source("z_m").column(), "z_m");
+    }
+
+    #[test]
+    fn nonsense_is_told_apart() {
+        let error = |text: &str| Mapping::parse(&[text]).unwrap_err();
+        assert!(matches!(error("x"), MappingError::Form { .. }));
+        assert!(matches!(error("x="), MappingError::Form { .. }));
+        assert!(matches!(error("w=a"), MappingError::Name { .. }));
+        assert!(matches!(error("x=a*zero"), MappingError::Scale { .. }));
+        assert!(matches!(error("x=a*0"), MappingError::Scale { .. }));
+        assert!(matches!(Mapping::parse(&["x=a", "x_m=b"]).unwrap_err(), MappingError::Twice { .. }));
+    }
+}

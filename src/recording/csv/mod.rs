@@ -1,0 +1,219 @@
+//! Reading recordings of motion and force (CSV).
+//!
+//! Columns: `t_s`; `x_m, y_m, z_m` with `fx_n, fy_n, fz_n`, one to three axes. Other names are mapped onto these. SI units,
+//! or any consistent ones (rad and Nm of a lever). A missing column, a value that is no number and a clock that does not
+//! rise are refused with their place; nothing is guessed. A file is read as a stream, which may come through a pipe, up to
+//! [`nima_files::TABLE_MAX`] bytes.
+
+mod mapping;
+mod pairs;
+mod poses;
+mod table;
+
+use std::path::{Path, PathBuf};
+
+use nalgebra::Vector3;
+use nima_core::impedance::{AXES, Sample};
+use table::Table;
+
+pub use mapping::{Mapping, MappingError};
+pub use pairs::read_pairs;
+pub use poses::read_poses;
+
+/// Names of the axes.
+pub const AXIS_NAMES: [&str; AXES] = ["x", "y", "z"];
+
+/// Why a recording could not be used: what, where, what to do.
+#[derive(Debug, thiserror::Error)]
+#[expect(missing_docs, reason = "the messages say it")]
+pub enum RecordingError {
+    /// The file could not be opened.
+    #[error("cannot read recording {path}: {reason}")]
+    Open {
+        path: PathBuf,
+        /// Why, in the reader's words (which name their own source already).
+        reason: String,
+    },
+    /// A row could not be read.
+    #[error("recording {path}: {message}")]
+    Row { path: PathBuf, message: String },
+    /// A needed column is not there.
+    #[error("recording {path} has no column \"{column}\" for {purpose}; its columns are {available}; {cure}")]
+    NoColumn {
+        path: PathBuf,
+        column: String,
+        purpose: &'static str,
+        available: String,
+        /// What to do: some files may have their columns mapped, in others the names are fixed.
+        cure: String,
+    },
+    /// A quaternion is far from length one.
+    #[error(
+        "recording {path}, line {line}: the quaternion has length {length:.3} instead of 1; remove or repair the row"
+    )]
+    NotARotation {
+        path: PathBuf,
+        /// Line of the file, from 1.
+        line: u64,
+        length: f64,
+    },
+    /// A field is no finite number.
+    #[error(
+        "recording {path}, line {line}, column \"{column}\": \"{field}\" is not a finite number; remove or repair the row"
+    )]
+    NotANumber {
+        path: PathBuf,
+        /// Line of the file, from 1.
+        line: u64,
+        column: String,
+        field: String,
+    },
+    /// Time does not rise.
+    #[error(
+        "recording {path}, line {line}: time does not rise ({before_s} s, then {now_s} s); sort the rows and remove duplicates"
+    )]
+    Clock {
+        path: PathBuf,
+        /// Line of the file, from 1.
+        line: u64,
+        /// Time of the row before, s.
+        before_s: f64,
+        /// Time of this row, s.
+        now_s: f64,
+    },
+    #[error("recording {path} has {found} samples, {needed} are needed; record longer or choose a shorter window")]
+    TooShort { path: PathBuf, found: usize, needed: usize },
+}
+
+/// Motion and force over time at a nearly constant rate.
+#[derive(Clone, Debug)]
+pub struct Recording {
+    /// As the user gave it.
+    pub path: PathBuf,
+    /// Which axes it holds, as indices into [`AXIS_NAMES`]; a sample's lane `i` is axis `axes[i]`.
+    pub axes: Vec<usize>,
+    /// Rate, Hz: one over the median time step.
+    pub rate_hz: f64,
+    /// The samples; lanes beyond `axes.len()` are zero.
+    pub samples: Vec<Sample>,
+}
+
+impl Recording {
+    /// Reads a CSV file under this mapping.
+    ///
+    /// # Errors
+    /// A file that cannot be read, a column that is missing, a row with what is no number, a clock that does not rise, or fewer than three
+    /// samples, each with its place.
+    ///
+    /// ```
+    /// use nima_recording::csv::{Mapping, Recording};
+    ///
+    /// let folder = tempfile::tempdir()?;
+    /// let path = folder.path().join("recording.csv");
+    /// std::fs::write(&path, "time_ms,x_m,fx_n\n0,0.00,0.0\n1,0.01,0.5\n2,0.02,1.0\n")?;
+    ///
+    /// assert!(Recording::read(&path, &Mapping::default()).is_err(), "there is no column t_s");
+    /// let recording = Recording::read(&path, &Mapping::parse(&["t=time_ms*0.001"])?)?;
+    /// assert_eq!(recording.rate_hz, 1000.0);
+    /// assert_eq!(recording.samples[2].force_n.x, 1.0);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn read(path: &Path, mapping: &Mapping) -> Result<Self, RecordingError> {
+        let mut table = Table::open(path)?;
+        let time = table.column(&mapping.source("t_s"), "time", &cure("t"))?;
+        let axes = axes(&table, mapping);
+        let mut columns = Vec::with_capacity(axes.len());
+        for &axis in &axes {
+            let name = AXIS_NAMES[axis];
+            let position = table.column(&mapping.source(&format!("{name}_m")), "position", &cure(name))?;
+            let force_key = format!("f{name}");
+            let force = table.column(&mapping.source(&format!("{force_key}_n")), "force", &cure(&force_key))?;
+            columns.push((position, force));
+        }
+        let mut samples = Vec::new();
+        while table.advance()? {
+            let t_s = table.number(&time)?;
+            if let Some(&Sample { t_s: before_s, .. }) = samples.last()
+                && t_s <= before_s
+            {
+                return Err(RecordingError::Clock { path: path.to_owned(), line: table.line(), before_s, now_s: t_s });
+            }
+            let (mut position_m, mut force_n) = (Vector3::zeros(), Vector3::zeros());
+            for (lane, (position, force)) in columns.iter().enumerate() {
+                position_m[lane] = table.number(position)?;
+                force_n[lane] = table.number(force)?;
+            }
+            samples.push(Sample { t_s, position_m, force_n });
+        }
+        let too_short = |found| RecordingError::TooShort { path: path.to_owned(), found, needed: 3 };
+        let rate_hz = rate_hz(&samples).ok_or_else(|| too_short(samples.len()))?;
+        Ok(Self { path: path.to_owned(), axes, rate_hz, samples })
+    }
+}
+
+/// What to do about a column that may be mapped.
+fn cure(key: &str) -> String {
+    format!("name another with --map {key}=COLUMN")
+}
+
+/// The axes of which position or force is there; of a lone half the other is then found missing.
+fn axes(table: &Table, mapping: &Mapping) -> Vec<usize> {
+    let has = |name: &str| mapping.names(name) || table.has(mapping.source(name).column());
+    let found: Vec<usize> = (0..AXES)
+        .filter(|&axis| has(&format!("{}_m", AXIS_NAMES[axis])) || has(&format!("f{}_n", AXIS_NAMES[axis])))
+        .collect();
+    // With nothing at all, ask for x: the error then names the columns there are.
+    if found.is_empty() { vec![0] } else { found }
+}
+
+/// One over the median time step, to eight digits so that 0.001 s steps give 1000 Hz.
+fn rate_hz(samples: &[Sample]) -> Option<f64> {
+    let mut steps: Vec<f64> = samples.windows(2).map(|pair| pair[1].t_s - pair[0].t_s).collect();
+    if steps.len() < 2 {
+        return None;
+    }
+    let middle = steps.len() / 2;
+    let (_, median, _) = steps.select_nth_unstable_by(middle, f64::total_cmp);
+    format!("{:.7e}", 1.0 / *median).parse().ok()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn read(text: &str, maps: &[&str]) -> Result<Recording, RecordingError> {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("r.csv");
+        std::fs::write(&path, text).unwrap();
+        Recording::read(&path, &Mapping::parse(maps).unwrap())
+    }
+
+    #[test]
+    fn default_columns_in_any_order_and_number() {
+        let recording = read("fz_n,t_s,z_m,x_m,fx_n,note\n1,0,2,3,4,a\n1,0.01,2,3,4,b\n1,0.02,2,3,5,c\n", &[]).unwrap();
+        assert_eq!(recording.axes, [0, 2]);
+        assert!((recording.rate_hz - 100.0).abs() < f64::EPSILON);
+        assert_eq!(recording.samples[2].position_m, Vector3::new(3.0, 2.0, 0.0));
+        assert_eq!(recording.samples[2].force_n, Vector3::new(5.0, 1.0, 0.0));
+    }
+
+    #[test]
+    fn mapped_columns_with_a_scale() {
+        let recording = read("t_s,px_mm,torque\n0,1,2\n1,2,3\n2,3,4\n", &["x=px_mm*0.001", "fx=torque*-1"]).unwrap();
+        assert!((recording.samples[1].position_m.x - 0.002).abs() < 1e-15);
+        assert!((recording.samples[1].force_n.x + 3.0).abs() < 1e-15);
+    }
+
+    #[test]
+    fn every_bad_input_names_its_place() {
+        let message = |text: &str, maps: &[&str]| read(text, maps).unwrap_err().to_string();
+        assert!(message("t_s,x_m\n0,1\n", &[]).contains("no column \"fx_n\""));
+        assert!(message("t_s,a,b\n0,1,2\n", &["x=a", "fx=c"]).contains("its columns are t_s, a, b"));
+        assert!(message("t_s,x_m,fx_n\n0,1,2\n1,nan,2\n", &[]).contains("line 3, column \"x_m\""));
+        assert!(message("t_s,x_m,fx_n\n0,1,2\n1,,2\n", &[]).contains("line 3"));
+        assert!(message("t_s,x_m,fx_n\n0,1,2\n1,1,2\n1,1,2\n", &[]).contains("line 4: time does not rise"));
+        assert!(message("t_s,x_m,fx_n\n0,1,2\n1,1\n", &[]).contains("line"));
+        assert!(message("t_s,x_m,fx_n\n0,1,2\n", &[]).contains("1 samples"));
+        assert!(message("", &[]).contains("t_s"));
+    }
+}

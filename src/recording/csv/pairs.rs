@@ -1,0 +1,79 @@
+//! Reading pairs of forces for the correspondence.
+
+use std::path::Path;
+
+use nima_core::calibration::correspondence::Pair;
+
+use super::{RecordingError, table::Table};
+
+/// What to do about a missing column.
+const CURE: &str = "name the column so";
+
+/// Reads `f1x_n, f1y_n, f1z_n, f2x_n, f2y_n, f2z_n` (N) and, where the columns are there, `qw, qx, qy, qz` (`s1_from_c`, which
+/// is normalised; one further than 1 % from unit length is refused). Other columns are ignored. Pairs in the order of the rows.
+///
+/// # Errors
+/// A file that cannot be read, a column that is missing, or a row with what is no number or no rotation.
+///
+/// ```
+/// use nima_recording::csv::read_pairs;
+///
+/// let folder = tempfile::tempdir()?;
+/// let path = folder.path().join("pushes.csv");
+/// std::fs::write(&path, "f1x_n,f1y_n,f1z_n,f2x_n,f2y_n,f2z_n\n1,0,0,0,1,0\n")?;
+/// assert_eq!(read_pairs(&path)?[0].f2_n.y, 1.0);
+///
+/// std::fs::write(&path, "f1x_n,f1y_n,f1z_n,f2x_n,f2y_n,f2z_n\n1,0,0,0,one,0\n")?;
+/// assert!(read_pairs(&path).is_err());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn read_pairs(path: &Path) -> Result<Vec<Pair>, RecordingError> {
+    let mut table = Table::open(path)?;
+    let f1 = table.columns(["f1x_n", "f1y_n", "f1z_n"], "force", CURE)?;
+    let f2 = table.columns(["f2x_n", "f2y_n", "f2z_n"], "force", CURE)?;
+    let parts = ["qw", "qx", "qy", "qz"];
+    let turned = parts.iter().any(|name| table.has(name));
+    let rotation = if turned { Some(table.columns(parts, "rotation s1_from_c", CURE)?) } else { None };
+    table.rows(|row| {
+        let mut pair = Pair::plain(row.vector(&f1)?, row.vector(&f2)?);
+        if let Some(rotation) = &rotation {
+            pair.s1_from_c = row.rotation(rotation)?;
+        }
+        Ok(pair)
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::Vector3;
+
+    use super::*;
+
+    fn read(text: &str) -> Result<Vec<Pair>, RecordingError> {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("pairs.csv");
+        std::fs::write(&path, text).unwrap();
+        read_pairs(&path)
+    }
+
+    #[test]
+    fn columns_in_any_order_with_and_without_a_chain() {
+        let pairs = read("f2x_n,f2y_n,f2z_n,note,f1x_n,f1y_n,f1z_n\n1,2,3,a,4,5,6\n").unwrap();
+        assert_eq!(pairs, [Pair::plain(Vector3::new(4.0, 5.0, 6.0), Vector3::new(1.0, 2.0, 3.0))]);
+        let pairs = read("f1x_n,f1y_n,f1z_n,f2x_n,f2y_n,f2z_n,qw,qx,qy,qz\n4,5,6,1,2,3,0.708,0,0,0.708\n").unwrap();
+        let turned = pairs[0].s1_from_c * Vector3::x();
+        assert!((turned - Vector3::y()).norm() < 1e-9, "{turned}");
+    }
+
+    #[test]
+    fn what_is_missing_or_wrong_is_named_with_its_place() {
+        let message = |text: &str| read(text).unwrap_err().to_string();
+        let missing = message("f1x_n,f1y_n,f1z_n,f2x_n,f2y_n\n");
+        assert!(missing.contains("no column \"f2z_n\"") && !missing.contains("--map"), "{missing}");
+        let head = "f1x_n,f1y_n,f1z_n,f2x_n,f2y_n,f2z_n";
+        assert!(message(&format!("{head},qw,qx\n")).contains("no column \"qy\""));
+        assert!(message(&format!("{head}\n1,2,3,4,5,6\n1,2,3,4,inf,6\n")).contains("line 3, column \"f2y_n\""));
+        let turned = message(&format!("{head},qw,qx,qy,qz\n1,2,3,4,5,6,0.5,0,0,0\n"));
+        assert!(turned.contains("line 2") && turned.contains("length 0.5"), "{turned}");
+    }
+}

@@ -1,0 +1,66 @@
+//! Reading still poses of a tool (CSV) for the calibration of gravity.
+//!
+//! Columns `fx_n, fy_n, fz_n`, optionally `tx_nm, ty_nm, tz_nm` (`s1`), and either `ax, ay, az` (m/s^2, `imu`) or
+//! `qw, qx, qy, qz` (`world_from_s1`, base from sensor). With both, the accelerometer is taken. A quaternion is normalised; one
+//! further than 1 % from unit length is refused with its line.
+
+use std::path::Path;
+
+use nalgebra::Vector3;
+use nima_core::{
+    calibration::gravity::{Orientation, Pose},
+    frames::Wrench,
+};
+
+use super::{
+    RecordingError,
+    table::{Column, Table},
+};
+
+/// What to do about a missing column.
+const CURE: &str = "give fx_n,fy_n,fz_n, optionally tx_nm,ty_nm,tz_nm, and ax,ay,az or qw,qx,qy,qz";
+
+/// Reads still poses in the order of their rows.
+///
+/// # Errors
+/// A file that cannot be read, a column that is missing, or a row with what is no number or no rotation.
+///
+/// ```
+/// use nima_recording::csv::read_poses;
+///
+/// let folder = tempfile::tempdir()?;
+/// let path = folder.path().join("poses.csv");
+/// std::fs::write(&path, "fx_n,fy_n,fz_n,ax,ay,az\n0,0,-2.5,0,0,9.81\n")?;
+/// let poses = read_poses(&path)?;
+/// assert_eq!((poses.len(), poses[0].wrench.force_n.z, poses[0].has_torque), (1, -2.5, false));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn read_poses(path: &Path) -> Result<Vec<Pose>, RecordingError> {
+    let mut table = Table::open(path)?;
+    let has = |names: &[&str]| names.iter().any(|name| table.has(name));
+    let force = table.columns(["fx_n", "fy_n", "fz_n"], "force", CURE)?;
+    let [torque, acceleration] = [["tx_nm", "ty_nm", "tz_nm"], ["ax", "ay", "az"]];
+    let quaternion = ["qw", "qx", "qy", "qz"];
+    let torque = if has(&torque) { Some(table.columns(torque, "torque", CURE)?) } else { None };
+    let by_arm = has(&quaternion) && !has(&acceleration);
+    let columns = if by_arm {
+        Columns::Arm(table.columns(quaternion, "orientation", CURE)?)
+    } else {
+        Columns::Imu(table.columns(acceleration, "orientation", CURE)?)
+    };
+    table.rows(|row| {
+        let force_n = row.vector(&force)?;
+        let torque_nm = torque.as_ref().map_or(Ok(Vector3::zeros()), |columns| row.vector(columns))?;
+        let orientation = match &columns {
+            Columns::Arm(columns) => Orientation::Arm(row.rotation(columns)?),
+            Columns::Imu(columns) => Orientation::Imu(row.vector(columns)?),
+        };
+        Ok(Pose { wrench: Wrench { force_n, torque_nm }, has_torque: torque.is_some(), orientation })
+    })
+}
+
+/// Where the orientation stands in a row.
+enum Columns {
+    Arm([Column; 4]),
+    Imu([Column; 3]),
+}

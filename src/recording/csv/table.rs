@@ -1,0 +1,120 @@
+//! A CSV file, row by row, with every complaint naming its place.
+
+use std::path::{Path, PathBuf};
+
+use csv::{Reader, ReaderBuilder, StringRecord, Trim};
+use nalgebra::{Quaternion, UnitQuaternion, Vector3};
+use nima_files::{self, Input, PASSAGE, quoted, shortened};
+
+use super::{Mapping, RecordingError, mapping::Source};
+
+/// A quaternion may depart from length one by this much: rounding in a file, not an error.
+const UNIT_TOLERANCE: f64 = 0.01;
+
+/// A file that is being read; columns are found before its rows come.
+pub(super) struct Table {
+    path: PathBuf,
+    header: StringRecord,
+    reader: Reader<Input>,
+    row: StringRecord,
+}
+
+/// A column found in a table.
+pub(super) struct Column {
+    index: usize,
+    name: String,
+    scale: f64,
+}
+
+impl Table {
+    pub(super) fn open(path: &Path) -> Result<Self, RecordingError> {
+        let refused = |reason: String| RecordingError::Open { path: path.to_owned(), reason };
+        let input = nima_files::open_table(path).map_err(|error| refused(error.to_string()))?;
+        let mut reader = ReaderBuilder::new().trim(Trim::All).comment(Some(b'#')).from_reader(input);
+        let header = reader.headers().map_err(|error| refused(error.to_string()))?.clone();
+        Ok(Self { path: path.to_owned(), header, reader, row: StringRecord::new() })
+    }
+
+    /// Goes on to the next row; `false` at the end.
+    pub(super) fn advance(&mut self) -> Result<bool, RecordingError> {
+        let wrong = |error: csv::Error| RecordingError::Row { path: self.path.clone(), message: error.to_string() };
+        self.reader.read_record(&mut self.row).map_err(wrong)
+    }
+
+    /// What `take` makes of each row.
+    pub(super) fn rows<T>(
+        &mut self,
+        take: impl Fn(&Self) -> Result<T, RecordingError>,
+    ) -> Result<Vec<T>, RecordingError> {
+        let mut all = Vec::new();
+        while self.advance()? {
+            all.push(take(self)?);
+        }
+        Ok(all)
+    }
+
+    pub(super) fn line(&self) -> u64 {
+        self.row.position().map_or(0, csv::Position::line)
+    }
+
+    pub(super) fn has(&self, column: &str) -> bool {
+        self.header.iter().any(|name| name == column)
+    }
+
+    /// The column that a mapping names; `cure` says what to do where it is missing.
+    pub(super) fn column(&self, source: &Source, purpose: &'static str, cure: &str) -> Result<Column, RecordingError> {
+        let name = source.column().to_owned();
+        match self.header.iter().position(|found| found == name) {
+            Some(index) => Ok(Column { index, name, scale: source.scale() }),
+            None => Err(RecordingError::NoColumn {
+                path: self.path.clone(),
+                column: quoted(&name),
+                purpose,
+                available: shortened(&self.header.iter().collect::<Vec<_>>().join(", "), PASSAGE),
+                cure: cure.to_owned(),
+            }),
+        }
+    }
+
+    /// Columns of fixed names.
+    pub(super) fn columns<const N: usize>(
+        &self,
+        names: [&str; N],
+        purpose: &'static str,
+        cure: &str,
+    ) -> Result<[Column; N], RecordingError> {
+        let mapping = Mapping::default();
+        let found: Result<Vec<Column>, _> =
+            names.iter().map(|name| self.column(&mapping.source(name), purpose, cure)).collect();
+        found?.try_into().map_err(|_| unreachable!("as many columns as names"))
+    }
+
+    /// A vector of three columns.
+    pub(super) fn vector(&self, [x, y, z]: &[Column; 3]) -> Result<Vector3<f64>, RecordingError> {
+        Ok(Vector3::new(self.number(x)?, self.number(y)?, self.number(z)?))
+    }
+
+    /// A rotation of four columns `w, x, y, z`, normalised; one further than 1 % from unit length is refused.
+    pub(super) fn rotation(&self, [w, x, y, z]: &[Column; 4]) -> Result<UnitQuaternion<f64>, RecordingError> {
+        let number = |column| self.number(column);
+        let quaternion = Quaternion::new(number(w)?, number(x)?, number(y)?, number(z)?);
+        let length = quaternion.norm();
+        if (length - 1.0).abs() > UNIT_TOLERANCE {
+            return Err(RecordingError::NotARotation { path: self.path.clone(), line: self.line(), length });
+        }
+        Ok(UnitQuaternion::from_quaternion(quaternion))
+    }
+
+    pub(super) fn number(&self, column: &Column) -> Result<f64, RecordingError> {
+        let field = self.row.get(column.index).unwrap_or_default();
+        match field.parse::<f64>() {
+            Ok(value) if (value * column.scale).is_finite() => Ok(value * column.scale),
+            _ => Err(RecordingError::NotANumber {
+                path: self.path.clone(),
+                line: self.line(),
+                column: quoted(&column.name),
+                field: quoted(field),
+            }),
+        }
+    }
+}

@@ -1,0 +1,333 @@
+//! Calibration files: TOML, one per kind and sensor, in the user's data folder.
+//!
+//! A file is bound to its sensor and tool: for another one it is refused, not used with a guess. What was refused by its
+//! verdict is written only with the name of who overrides it. Writing is atomic, and what was there before is kept beside it
+//! as `.previous`. Dates are UTC, ISO 8601.
+
+mod date;
+
+use std::{
+    fs, io,
+    path::{Path, PathBuf},
+    time::{SystemTime, UNIX_EPOCH},
+};
+
+use nima_core::calibration::Record;
+use nima_files::{PASSAGE, copy_atomically, quoted, shortened, write_atomically};
+use serde::{Deserialize, Serialize};
+
+/// What calibrations belong to: one wrist sensor, with one tool on it.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct WristId {
+    /// Serial number of the sensor, as it tells it itself.
+    pub serial_number: String,
+    /// As the rig file names it; another tool needs a calibration of its own.
+    pub tool: String,
+}
+
+/// A calibration file that could not be used or written: what, where, what to do.
+#[derive(Debug, thiserror::Error)]
+#[expect(missing_docs, reason = "the messages say it")]
+pub enum StoreError {
+    /// No folder for the user's data is known.
+    #[error("no folder for calibrations is known; set NIMA_DATA_DIR to one")]
+    NoFolder,
+    /// A serial or tool that cannot be a file's name.
+    #[error("\"{name}\" cannot name a calibration; use letters, digits, '-', '_' and '.', at most 64, not first a '.'")]
+    Name { name: String },
+    /// The file could not be read.
+    #[error("cannot read calibration {path}")]
+    Read { path: PathBuf, source: io::Error },
+    /// The file could not be written.
+    #[error("cannot write calibration {path}")]
+    Write { path: PathBuf, source: io::Error },
+    /// The file is not TOML of its kind.
+    #[error("calibration {path} is damaged: {message}; repair it or calibrate again")]
+    Damaged {
+        path: PathBuf,
+        /// Line, column and key.
+        message: String,
+    },
+    #[error("calibration {path} is for {what} \"{found}\", not \"{wanted}\"; calibrate this one")]
+    Other {
+        path: PathBuf,
+        /// `kind`, `sensor` or `tool`.
+        what: &'static str,
+        found: String,
+        wanted: String,
+    },
+    /// The verdict does not allow it to be used and nobody overrode it.
+    #[error("the {kind} calibration was refused ({reason}); repeat it, or name who overrides the verdict")]
+    Refused { kind: &'static str, reason: String },
+    /// A record that cannot be told in TOML.
+    #[error("the {kind} calibration cannot be written: {message}; calibrate again")]
+    Unwritable { kind: &'static str, message: String },
+}
+
+/// How old a calibration is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Age {
+    /// Young enough.
+    Fresh,
+    /// Too old: it should be repeated.
+    Old {
+        /// Whole days.
+        days: u64,
+    },
+    /// Made after now: a clock is wrong.
+    Future,
+}
+
+/// A record that was loaded, and how old it is.
+#[derive(Clone, Debug, PartialEq)]
+#[expect(missing_docs, reason = "the names say it")]
+pub struct Loaded<R> {
+    pub record: R,
+    /// Its age; warn when it is not fresh.
+    pub age: Age,
+    pub path: PathBuf,
+}
+
+/// Days after which a calibration is old.
+pub const DEFAULT_MAX_AGE_DAYS: u64 = 30;
+const DAY_S: u64 = 86_400;
+
+/// The folder of calibrations.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Store {
+    folder: PathBuf,
+    max_age_days: u64,
+}
+
+impl Store {
+    /// The store in this folder; it is made by the first save.
+    pub fn open(folder: impl Into<PathBuf>) -> Self {
+        Self { folder: folder.into(), max_age_days: DEFAULT_MAX_AGE_DAYS }
+    }
+
+    /// The user's own: `$NIMA_DATA_DIR/calibrations`, else `nima-console/calibrations` in the platform's data folder.
+    ///
+    /// # Errors
+    /// Where neither the variable is set nor the platform names a data folder.
+    pub fn of_user() -> Result<Self, StoreError> {
+        let get = |name: &str| std::env::var_os(name).filter(|value| !value.is_empty()).map(PathBuf::from);
+        user_folder(&get).map(Self::open).ok_or(StoreError::NoFolder)
+    }
+
+    /// Calls calibrations old after this many days.
+    #[must_use]
+    pub const fn with_max_age_days(mut self, days: u64) -> Self {
+        self.max_age_days = days;
+        self
+    }
+
+    /// Its folder.
+    pub fn folder(&self) -> &Path {
+        &self.folder
+    }
+
+    /// Where the record of this kind for this sensor is.
+    pub fn path<R: Record>(&self, sensor: &str) -> Result<PathBuf, StoreError> {
+        Ok(self.folder.join(format!("{}-{}.toml", R::KIND, checked(sensor)?)))
+    }
+
+    /// Other sensors that have a record of this kind for the same tool. Files that cannot be read are passed over.
+    pub fn other_sensors<R: Record>(&self, wrist: &WristId) -> Vec<String> {
+        let of_kind = format!("{}-", R::KIND);
+        let entries = fs::read_dir(&self.folder).into_iter().flatten().flatten();
+        let files = entries.filter(|entry| {
+            entry.file_name().to_str().is_some_and(|name| {
+                name.starts_with(&of_kind) && name.rsplit_once('.').is_some_and(|(_, ending)| ending == "toml")
+            })
+        });
+        let records = files.filter_map(|entry| read::<R>(&entry.path()).ok().flatten());
+        let others = records.filter(|record| {
+            let head = record.head();
+            head.tool == wrist.tool && head.sensor != wrist.serial_number
+        });
+        let mut sensors: Vec<_> = others.map(|record| record.head().sensor.clone()).collect();
+        sensors.sort();
+        sensors
+    }
+
+    /// Where another file of this kind for this sensor belongs, `KIND-SENSOR.ENDING`: networks and their data sets.
+    ///
+    /// # Errors
+    /// A kind or sensor whose name cannot be part of a file's name.
+    ///
+    /// ```
+    /// use nima_recording::store::Store;
+    ///
+    /// let store = Store::open("calibrations");
+    /// assert!(store.path_of("tip_force", "SN-0042", "safetensors")?.ends_with("tip_force-SN-0042.safetensors"));
+    /// assert!(store.path_of("tip_force", "../../etc", "safetensors").is_err(), "no name leads out of the folder");
+    /// # Ok::<(), nima_recording::store::StoreError>(())
+    /// ```
+    pub fn path_of(&self, kind: &str, sensor: &str, ending: &str) -> Result<PathBuf, StoreError> {
+        Ok(self.folder.join(format!("{}-{}.{ending}", checked(kind)?, checked(sensor)?)))
+    }
+
+    /// How old something of this date (UTC, ISO 8601) is; `None` for what is no date.
+    pub fn age_of(&self, date: &str, now: SystemTime) -> Option<Age> {
+        date::parse(date).map(|made_s| self.age(made_s, seconds(now)))
+    }
+
+    /// Saves a record under its sensor; the one before stays as `.previous`. Gives the path.
+    ///
+    /// # Errors
+    /// A record that was refused and has no reason for an override; a folder or file that cannot be written.
+    pub fn save<R: Record>(&self, record: &R) -> Result<PathBuf, StoreError> {
+        let path = self.path::<R>(&record.head().sensor)?;
+        fs::create_dir_all(&self.folder).map_err(|source| StoreError::Write { path: path.clone(), source })?;
+        write(&path, record)?;
+        Ok(path)
+    }
+
+    /// Loads the record for this sensor and tool; `None` when there is none. Refuses what belongs elsewhere.
+    ///
+    /// # Errors
+    /// A file that cannot be read, is no record of this kind, belongs to another sensor or tool, or was refused.
+    pub fn load<R: Record>(&self, sensor: &str, tool: &str, now: SystemTime) -> Result<Option<Loaded<R>>, StoreError> {
+        let path = self.path::<R>(sensor)?;
+        let Some(record) = read::<R>(&path)? else { return Ok(None) };
+        for (what, found, wanted) in [("sensor", &record.head().sensor, sensor), ("tool", &record.head().tool, tool)] {
+            if found != wanted {
+                let (found, wanted) = (quoted(found), quoted(wanted));
+                return Err(StoreError::Other { path, what, found, wanted });
+            }
+        }
+        let Some(age) = self.age_of(&record.head().date, now) else {
+            let message = format!("date = \"{}\" is not like 2026-08-21T10:20:30Z", quoted(&record.head().date));
+            return Err(StoreError::Damaged { path, message });
+        };
+        Ok(Some(Loaded { record, age, path }))
+    }
+
+    const fn age(&self, made_s: u64, now_s: u64) -> Age {
+        // Clocks of two computers differ by minutes; more than a day is an error.
+        if made_s > now_s + DAY_S {
+            return Age::Future;
+        }
+        let days = now_s.saturating_sub(made_s) / DAY_S;
+        if days > self.max_age_days { Age::Old { days } } else { Age::Fresh }
+    }
+}
+
+/// Writes one record to a file of any name, under the rules of the store: verdict or override, atomic, the file before kept
+/// as `.previous` (of the same name with that ending).
+///
+/// # Errors
+/// As [`Store::save`].
+pub fn write<R: Record>(path: &Path, record: &R) -> Result<(), StoreError> {
+    if !record.judgement().allows() {
+        return Err(StoreError::Refused { kind: R::KIND, reason: record.judgement().reason.clone() });
+    }
+    let unwritable = |message: String| StoreError::Unwritable { kind: R::KIND, message };
+    if let Some(fault) = record.fault() {
+        return Err(unwritable(fault.to_owned()));
+    }
+    let text = toml::to_string(record).map_err(|error| unwritable(error.to_string()))?;
+    let failed = |source| StoreError::Write { path: path.to_owned(), source };
+    // A copy, then the rename of the new file: at no moment is there no calibration.
+    keep_previous(path).map_err(failed)?;
+    write_atomically(path, |file| file.write_all(text.as_bytes())).map_err(failed)
+}
+
+/// Copies what is at `path`, if anything, to the same name with the ending `.previous`.
+pub fn keep_previous(path: &Path) -> io::Result<()> {
+    match copy_atomically(path, &previous(path)) {
+        Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(()),
+        done => done,
+    }
+}
+
+/// Reads one record; `None` when there is no file. Checks the kind and the verdict's rule, not sensor and tool.
+///
+/// # Errors
+/// A file that cannot be read, is no record of this kind, or was refused.
+pub fn read<R: Record>(path: &Path) -> Result<Option<R>, StoreError> {
+    let text = match nima_files::read_text(path, nima_files::CONFIG_MAX) {
+        Ok(text) => text,
+        Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(None),
+        Err(source) => return Err(StoreError::Read { path: path.to_owned(), source }),
+    };
+    let damaged = |message: String| StoreError::Damaged { path: path.to_owned(), message };
+    let in_words = |error: toml::de::Error| damaged(shortened(&one_line(&error.to_string()), PASSAGE));
+    // The kind first: keys of another kind would only be called unknown.
+    let head: toml::Table = toml::from_str(&text).map_err(in_words)?;
+    if let Some(found) = head.get("kind").and_then(toml::Value::as_str)
+        && found != R::KIND
+    {
+        let (found, wanted) = (quoted(found), R::KIND.to_owned());
+        return Err(StoreError::Other { path: path.to_owned(), what: "kind", found, wanted });
+    }
+    let record: R = toml::from_str(&text).map_err(in_words)?;
+    if let Some(fault) = record.fault() {
+        return Err(damaged(fault.to_owned()));
+    }
+    if !record.judgement().allows() {
+        return Err(StoreError::Refused { kind: R::KIND, reason: shortened(&record.judgement().reason, PASSAGE) });
+    }
+    Ok(Some(record))
+}
+
+/// Now, UTC, ISO 8601 to the second: the date of a record.
+pub fn utc_now() -> String {
+    date::format(seconds(SystemTime::now()))
+}
+
+/// Seconds since 1970; zero before.
+fn seconds(time: SystemTime) -> u64 {
+    time.duration_since(UNIX_EPOCH).map_or(0, |since| since.as_secs())
+}
+
+/// Where what was at `path` before is kept.
+pub fn previous(path: &Path) -> PathBuf {
+    let mut name = path.as_os_str().to_owned();
+    name.push(".previous");
+    name.into()
+}
+
+fn one_line(text: &str) -> String {
+    // The reader draws the line with a mark under it; its place and its complaint are enough.
+    let kept = text.lines().filter(|line| !line.trim_start().starts_with('|') && !line.contains(" | "));
+    kept.map(str::trim).filter(|line| !line.is_empty()).collect::<Vec<_>>().join(": ")
+}
+
+/// Letters, digits and a few signs: no name leads out of the folder.
+///
+/// ```
+/// use nima_recording::store::can_name_a_file;
+///
+/// assert!(can_name_a_file("SN-0042") && !can_name_a_file("../other") && !can_name_a_file(""));
+/// ```
+pub fn can_name_a_file(name: &str) -> bool {
+    let plain = |c: char| c.is_ascii_alphanumeric() || matches!(c, '-' | '_' | '.');
+    !name.is_empty() && name.len() <= 64 && !name.starts_with('.') && name.chars().all(plain)
+}
+
+fn checked(name: &str) -> Result<&str, StoreError> {
+    if can_name_a_file(name) { Ok(name) } else { Err(StoreError::Name { name: quoted(name) }) }
+}
+
+/// By the environment `get` (empty counts as unset).
+fn user_folder(get: &dyn Fn(&str) -> Option<PathBuf>) -> Option<PathBuf> {
+    if let Some(folder) = get("NIMA_DATA_DIR") {
+        return Some(folder.join("calibrations"));
+    }
+    let data = if cfg!(windows) {
+        get("APPDATA")
+    } else if cfg!(target_os = "macos") {
+        get("HOME").map(|home| home.join("Library/Application Support"))
+    } else {
+        // The XDG base directory specification: a relative path is invalid and ignored.
+        get("XDG_DATA_HOME")
+            .filter(|path| path.is_absolute())
+            .or_else(|| get("HOME").map(|home| home.join(".local/share")))
+    };
+    data.map(|data| data.join("nima-console").join("calibrations"))
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,80 @@
+//! Why a tip-force model could not be trained, stored, loaded or used.
+
+use std::path::PathBuf;
+
+use crate::store::StoreError;
+
+/// What happened, where, and what to do about it, in one line.
+#[derive(Debug, thiserror::Error)]
+#[expect(missing_docs, reason = "the messages say it")]
+pub enum TipForceError {
+    /// A file could not be opened or read.
+    #[error("cannot read {path}: {reason}")]
+    Open {
+        path: PathBuf,
+        /// Why, in the reader's words.
+        reason: String,
+    },
+    /// A needed column is not there.
+    #[error(
+        "data set {path} has no column \"{column}\"; its columns are {available}; name others with --inputs and --outputs"
+    )]
+    NoColumn { path: PathBuf, column: String, available: String },
+    /// A field is no finite number.
+    #[error(
+        "data set {path}, line {line}, column \"{column}\": \"{field}\" is not a finite number; remove or repair the row"
+    )]
+    NotANumber {
+        path: PathBuf,
+        /// Line of the file, from 1.
+        line: u64,
+        column: String,
+        field: String,
+    },
+    /// Too few rows to learn from, or to judge by.
+    #[error("the data set has {found} rows, at least {needed} are needed; record longer")]
+    TooFewRows { found: usize, needed: usize },
+    /// An output never changes.
+    #[error(
+        "output column \"{column}\" is constant over the whole data set: there is nothing to learn; record with contact or leave it out"
+    )]
+    ConstantOutput { column: String },
+    /// The choice of columns makes no model.
+    #[error("the choice of columns is not usable: {reason}")]
+    Columns { reason: String },
+    /// A setting is out of its range.
+    #[error("{name} is {value}, it must be {allowed}")]
+    Setting { name: &'static str, value: String, allowed: &'static str },
+    /// Somebody asked to stop; nothing was kept.
+    #[error("training was cancelled; nothing was written")]
+    Cancelled,
+    /// Weights ran away.
+    #[error(
+        "training of member {member} ran away to numbers that are not finite; lower the learning rate or look for outliers in the data"
+    )]
+    Diverged {
+        /// Which member, from 1.
+        member: usize,
+    },
+    #[error("training failed inside the tensor library: {reason}")]
+    Tensor { reason: String },
+    /// A file is no model of ours, or one that does not fit together.
+    #[error("{path} is not a usable tip-force model: {reason}; train it again with `nima train tip-force`")]
+    Model {
+        path: PathBuf,
+        /// What is wrong or absent.
+        reason: String,
+    },
+    /// The model cannot work in the loop.
+    #[error(transparent)]
+    NotLive(#[from] nima_core::tip_force::NotLive),
+    /// Nobody may feel what is not proven.
+    #[error("the tip-force model may not be used: {reason}; check it on a new recording")]
+    NotProven { reason: String },
+    /// The store of calibrations refused.
+    #[error(transparent)]
+    Store(#[from] StoreError),
+    /// The file could not be written.
+    #[error("cannot write the model {path}: {reason}")]
+    Write { path: PathBuf, reason: String },
+}

@@ -1,0 +1,11 @@
+//! Files around the force at the tip: data sets (CSV), their recording, and trained networks (safetensors).
+
+mod data_set;
+mod error;
+mod model;
+mod recorder;
+
+pub use data_set::{DataSet, Selection, Trajectory};
+pub use error::TipForceError;
+pub use model::{keep_model, kept_model, load_model, save_model};
+pub use recorder::{Lack, MOST_ROWS, ROW_EVERY_S, Recorder, RecorderPhase};

@@ -1,0 +1,234 @@
+//! Recording a data set: a state machine fed with every sample, without a clock or a screen of its own.
+//!
+//! Takes the gravity-free wrench (N, Nm, `s1`), the [`WristSample`] with the sensor under the tissue, and the time (s). Keeps
+//! a row in every few samples: the network's inputs ([`DEFAULT_INPUTS`]) and the force at the tip as the sensor under the tissue tells it,
+//! turned into the wrist's frame by the calibrated correspondence. Memory is bounded and taken at the start.
+
+use std::{io, path::Path};
+
+use nalgebra::Vector3;
+use nima_core::{
+    calibration::correspondence::Correspondence,
+    frames::{Wrench, WristSample},
+    tip_force::{Coverage, DEFAULT_INPUTS, DEFAULT_OUTPUTS, FeatureSettings, Features, LIVE_INPUTS, NoRow},
+};
+use nima_files::write_atomically;
+
+/// Rows that a recording holds at most: four of the paper's data sets.
+pub const MOST_ROWS: usize = 120_000;
+/// Rows are this far apart, s: the paper's 30000 rows are two and a half minutes.
+pub const ROW_EVERY_S: f64 = 0.005;
+/// Rows belong to one trajectory for this long, s: the pieces that are held out when a network is judged.
+const TRAJECTORY_S: f64 = 5.0;
+/// How long the sensor under the tissue must rest at the start, s, and the most it may vary meanwhile, N (standard deviation).
+const REST_S: f64 = 0.5;
+const REST_SD_N: f64 = 0.15;
+/// The tip touches something above this force, N, smoothed over this time, s.
+const CONTACT_N: f64 = 0.10;
+const CONTACT_S: f64 = 0.020;
+
+/// What a sample lacks.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Lack {
+    /// Gravity is not calibrated, or the wrist sensor is silent.
+    WristForce,
+    /// The sensor under the tissue is silent.
+    TissueForce,
+    /// A rotation of the chain: arm or tracker.
+    Chain,
+    /// The depth through the trocar or the wrist's orientation, or a number is not finite.
+    Pose,
+}
+
+/// Where the recording is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum RecorderPhase {
+    /// A source is missing; nothing is taken.
+    Lacks(Lack),
+    /// The tip is free and still: what the sensor under the tissue reads now is zero.
+    Resting {
+        /// Share of the rest, 0 to 1.
+        share: f64,
+    },
+    /// Waiting until the instrument has moved enough to know the friction's direction.
+    NotMoved,
+    /// Rows are taken.
+    Recording,
+    /// No room is left.
+    Full,
+}
+
+/// The recording.
+#[derive(Clone, Debug)]
+pub struct Recorder {
+    correspondence: Correspondence,
+    features: Features,
+    phase: RecorderPhase,
+    rest: Rest,
+    tissue_zero_n: Option<Vector3<f64>>,
+    smooth_tip_n: Vector3<f64>,
+    last_t_s: Option<f64>,
+    next_row_s: f64,
+    trajectory: u32,
+    trajectory_ends_s: f64,
+    rows: Vec<Row>,
+    coverage: Coverage,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Row {
+    t_s: f64,
+    trajectory: u32,
+    contact: bool,
+    inputs: [f32; LIVE_INPUTS],
+    tip_n: [f32; 3],
+}
+
+/// Mean and spread of what the sensor under the tissue reads at rest.
+#[derive(Clone, Copy, Debug, Default)]
+struct Rest {
+    since_s: f64,
+    count: f64,
+    sum: Vector3<f64>,
+    squares: f64,
+}
+
+impl Recorder {
+    /// An empty recording; takes its memory here.
+    pub fn new(correspondence: Correspondence) -> Self {
+        Self {
+            correspondence,
+            features: Features::new(FeatureSettings::default()),
+            phase: RecorderPhase::Resting { share: 0.0 },
+            rest: Rest::default(),
+            tissue_zero_n: None,
+            smooth_tip_n: Vector3::zeros(),
+            last_t_s: None,
+            next_row_s: f64::NEG_INFINITY,
+            trajectory: 0,
+            trajectory_ends_s: f64::NEG_INFINITY,
+            rows: Vec::with_capacity(MOST_ROWS),
+            coverage: Coverage::default(),
+        }
+    }
+
+    /// With other features than those of the live loop: for the study of their settings.
+    #[must_use]
+    pub const fn with_features(mut self, settings: FeatureSettings) -> Self {
+        self.features = Features::new(settings);
+        self
+    }
+
+    /// Takes one sample; gives where the recording is.
+    pub fn step(&mut self, t_s: f64, gravity_free: Option<&Wrench>, sample: &WristSample) -> RecorderPhase {
+        self.phase = match self.tip_n(gravity_free, sample) {
+            Ok((wrench, tip_n)) => self.take(t_s, &wrench, sample, tip_n),
+            Err(lack) => {
+                self.rest.count = 0.0;
+                self.features.reset();
+                RecorderPhase::Lacks(lack)
+            }
+        };
+        self.last_t_s = Some(t_s);
+        self.phase
+    }
+
+    /// The wrench at the wrist, and the force on the tip by the sensor under the tissue, N (`s1`), not yet zeroed.
+    fn tip_n(&self, gravity_free: Option<&Wrench>, sample: &WristSample) -> Result<(Wrench, Vector3<f64>), Lack> {
+        let wrench = gravity_free.filter(|wrench| wrench.is_finite()).ok_or(Lack::WristForce)?;
+        let tissue_n = sample.tissue_n.ok_or(Lack::TissueForce)?;
+        if !sample.is_finite() {
+            return Err(Lack::Pose);
+        }
+        let zero_n = self.tissue_zero_n.unwrap_or_else(Vector3::zeros);
+        let tip_n = self.correspondence.tip_force_s1(sample, &(tissue_n - zero_n)).ok_or(Lack::Chain)?;
+        Ok((*wrench, tip_n))
+    }
+
+    fn take(&mut self, t_s: f64, wrench: &Wrench, sample: &WristSample, tip_n: Vector3<f64>) -> RecorderPhase {
+        if self.tissue_zero_n.is_none() {
+            return self.zero(t_s, sample);
+        }
+        let dt_s = self.last_t_s.map_or(0.0, |last| (t_s - last).max(0.0));
+        self.smooth_tip_n += (tip_n - self.smooth_tip_n) * (1.0 - (-dt_s / CONTACT_S).exp());
+        let inputs = match self.features.step(t_s, wrench, sample) {
+            Ok(inputs) => inputs,
+            Err(NoRow::Missing) => return RecorderPhase::Lacks(Lack::Pose),
+            Err(NoRow::NotMoved) => return RecorderPhase::NotMoved,
+        };
+        if self.rows.len() == MOST_ROWS {
+            return RecorderPhase::Full;
+        }
+        if t_s >= self.next_row_s {
+            self.next_row_s = t_s + ROW_EVERY_S;
+            if t_s >= self.trajectory_ends_s {
+                self.trajectory_ends_s = t_s + TRAJECTORY_S;
+                self.trajectory += 1;
+            }
+            let contact = self.smooth_tip_n.norm() > CONTACT_N;
+            let tip_n: [f32; 3] = [tip_n.x as f32, tip_n.y as f32, tip_n.z as f32];
+            self.coverage.add(&inputs, &tip_n, contact);
+            self.rows.push(Row { t_s, trajectory: self.trajectory, contact, inputs, tip_n });
+        }
+        RecorderPhase::Recording
+    }
+
+    fn zero(&mut self, t_s: f64, sample: &WristSample) -> RecorderPhase {
+        let Some(now_n) = sample.tissue_n else { return RecorderPhase::Lacks(Lack::TissueForce) };
+        if self.rest.count == 0.0 {
+            self.rest = Rest { since_s: t_s, ..Rest::default() };
+        }
+        let rest = &mut self.rest;
+        rest.count += 1.0;
+        rest.sum += now_n;
+        rest.squares += now_n.norm_squared();
+        let mean = rest.sum / rest.count;
+        let variance = (rest.squares / rest.count - mean.norm_squared()).max(0.0);
+        if rest.count > 20.0 && variance > 3.0 * REST_SD_N * REST_SD_N {
+            rest.count = 0.0;
+            return RecorderPhase::Resting { share: 0.0 };
+        }
+        let share = ((t_s - rest.since_s) / REST_S).min(1.0);
+        if share >= 1.0 && rest.count > 20.0 {
+            self.tissue_zero_n = Some(mean);
+        }
+        RecorderPhase::Resting { share }
+    }
+
+    /// Where the recording is.
+    pub const fn phase(&self) -> RecorderPhase {
+        self.phase
+    }
+
+    /// Begins another trajectory with the next row, and rests anew: after somebody else touched the rig.
+    pub fn interrupt(&mut self) {
+        self.features.reset();
+        self.trajectory_ends_s = f64::NEG_INFINITY;
+        (self.tissue_zero_n, self.rest.count) = (None, 0.0);
+    }
+
+    /// Rows so far.
+    pub const fn rows(&self) -> usize {
+        self.rows.len()
+    }
+
+    /// How the rows fill what the network will meet.
+    pub const fn coverage(&self) -> &Coverage {
+        &self.coverage
+    }
+
+    /// Writes the data set as CSV; on any error the old file (or none) stays.
+    pub fn save(&self, path: &Path) -> io::Result<()> {
+        write_atomically(path, |file| self.write(file))
+    }
+
+    /// The data set as CSV.
+    pub fn write(&self, to: &mut dyn io::Write) -> io::Result<()> {
+        writeln!(to, "t_s,trajectory,contact,{},{}", DEFAULT_INPUTS.join(","), DEFAULT_OUTPUTS.join(","))?;
+        for row in &self.rows {
+            let numbers = row.inputs.iter().chain(&row.tip_n).map(f32::to_string).collect::<Vec<_>>().join(",");
+            writeln!(to, "{:.4},{},{},{numbers}", row.t_s, row.trajectory, u8::from(row.contact))?;
+        }
+        Ok(())
+    }
+}

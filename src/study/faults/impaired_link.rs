@@ -1,0 +1,98 @@
+//! A link that loses, delays, exchanges, doubles, spoils or repeats parcels: around the loop's own, which knows nothing of it.
+
+use nima_core::impedance::Parcel;
+use nima_machine::teleop::{Link, ProgrammedLink};
+
+/// What a link does to parcels.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) enum Impairment {
+    /// Nothing.
+    #[default]
+    None,
+    /// Loses all.
+    LosesAll,
+    /// Loses every second one.
+    LosesHalf,
+    /// Delivers all so much later than it should, s.
+    Late(f64),
+    /// Exchanges neighbours.
+    Swaps,
+    /// Delivers everything twice.
+    Doubles,
+    /// Makes numbers of the force that are none.
+    Poisons,
+    /// Repeats one parcel under new time stamps.
+    Repeats,
+}
+
+/// The loop's link with an impairment.
+#[derive(Clone, Debug)]
+pub(super) struct ImpairedLink {
+    line: ProgrammedLink,
+    impairment: Impairment,
+    /// Parcels that were to be sent since the impairment changed, and one that is kept back.
+    offered: usize,
+    kept: Parcel,
+}
+
+impl ImpairedLink {
+    pub(super) fn new(rate_hz: f64, delay_s: f64) -> Self {
+        let line = ProgrammedLink::new(rate_hz, delay_s);
+        Self { line, impairment: Impairment::None, offered: 0, kept: Parcel::BLANK }
+    }
+
+    /// Impairs the link from now on.
+    pub(super) const fn impair(&mut self, impairment: Impairment) {
+        (self.impairment, self.offered) = (impairment, 0);
+    }
+}
+
+impl Link for ImpairedLink {
+    fn set_delay(&mut self, delay_s: f64) {
+        self.line.set_delay(delay_s);
+    }
+
+    fn clear(&mut self) {
+        self.line.clear();
+    }
+
+    fn send(&mut self, parcel: &Parcel) {
+        let first_of_two = self.offered.is_multiple_of(2);
+        let first = self.offered == 0;
+        self.offered += 1;
+        match self.impairment {
+            Impairment::None | Impairment::Late(_) => self.line.send(parcel),
+            Impairment::LosesAll => {}
+            Impairment::LosesHalf => {
+                if first_of_two {
+                    self.line.send(parcel);
+                }
+            }
+            Impairment::Swaps if first_of_two => self.kept = *parcel,
+            Impairment::Swaps => {
+                self.line.send(parcel);
+                self.line.send(&self.kept);
+            }
+            Impairment::Doubles => {
+                self.line.send(parcel);
+                self.line.send(parcel);
+            }
+            Impairment::Poisons => {
+                let mut poisoned = *parcel;
+                poisoned.force_n.fill(f64::NAN);
+                self.line.send(&poisoned);
+            }
+            Impairment::Repeats => {
+                if first {
+                    self.kept = *parcel;
+                }
+                self.line.send(&Parcel { t_s: parcel.t_s, ..self.kept });
+            }
+        }
+    }
+
+    fn receive(&mut self, now_s: f64) -> Option<&Parcel> {
+        let late_s = if let Impairment::Late(by_s) = self.impairment { by_s } else { 0.0 };
+        self.line.receive(now_s - late_s)
+    }
+}

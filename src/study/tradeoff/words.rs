@@ -1,0 +1,83 @@
+//! Figures in words, for a terminal.
+
+use std::fmt::Write as _;
+
+use nima_core::impedance::Mode;
+
+use super::{Choice, Knob, Method, Point, SourceFigures, Study};
+use crate::Findings;
+
+impl Findings for Study {
+    fn text(&self) -> String {
+        let mut text = String::new();
+        for figures in &self.sources {
+            source_in_words(figures, &mut text);
+        }
+        text.push_str(
+            "cost: time of one tick of identification on this computer, the quietest pass; error: mean 3-D distance between the \
+             force rendered for t from data up to t - D and the force measured at t; ratio: to delayed DFR; *: no other choice is both faster and more accurate",
+        );
+        text
+    }
+
+    fn files(&self) -> Vec<(String, String)> {
+        let pictures = self.pictures().into_iter().map(|(name, svg)| (format!("-{name}.svg"), svg));
+        [(".csv".to_owned(), self.csv())].into_iter().chain(pictures).collect()
+    }
+}
+
+/// Writing into a String cannot fail: its results are dropped.
+fn source_in_words(figures: &SourceFigures, text: &mut String) {
+    let SourceFigures { source, unit, rate_hz, samples, axes, judged_from_s, .. } = figures;
+    writeln!(
+        text,
+        "{source}: {samples} samples at {rate_hz:.0} Hz, {axes} axes, force in {unit}, evaluated from {judged_from_s:.1} s + delay"
+    )
+    .ok();
+    for curve in figures.curves.iter().filter(|curve| curve.knob != Knob::Grid) {
+        writeln!(text, "  {} ({})", curve.knob.name(), curve.method.name()).ok();
+        for &index in &curve.points {
+            row(&figures.points[index], &value(curve.knob, &figures.points[index].choice), text);
+        }
+    }
+    let mut front: Vec<&Point> = figures.points.iter().filter(|p| p.pareto && p.choice.every == 1).collect();
+    front.sort_by(|a, b| a.choice.delay_ms.total_cmp(&b.choice.delay_ms).then(a.cost_us.p50.total_cmp(&b.cost_us.p50)));
+    writeln!(text, "  front (delay, mode, degree, window)").ok();
+    for point in front {
+        let Choice { method, degree, window_ms, delay_ms, .. } = point.choice;
+        let knobs = match method {
+            Method::Mode(Mode::Dfr) => String::new(),
+            Method::Mode(Mode::Linear) => format!(" {window_ms:.0} ms"),
+            _ => format!(" N={degree} {window_ms:.0} ms"),
+        };
+        row(point, &format!("{delay_ms:.0} ms {}{knobs}", method.name()), text);
+    }
+    if let Some(first) = figures.skipped.first() {
+        writeln!(text, "  {} points skipped; the first: {}", figures.skipped.len(), first.reason).ok();
+    }
+    text.push('\n');
+}
+
+fn row(point: &Point, name: &str, text: &mut String) {
+    let mark = if point.pareto { '*' } else { ' ' };
+    writeln!(
+        text,
+        "  {mark} {name:<34} p50 {:>9.2} us   p99 {:>9.2} us   error {:<11.4e} ratio {:.3e}",
+        point.cost_us.p50, point.cost_us.p99, point.error, point.ratio
+    )
+    .ok();
+}
+
+fn value(knob: Knob, choice: &Choice) -> String {
+    match knob {
+        Knob::Degree => format!("N = {}", choice.degree),
+        Knob::Window => format!("{:.0} ms", choice.window_ms),
+        Knob::Rate => format!("{:.1} Hz", choice.rate_hz),
+        Knob::Delay => format!("{:.0} ms", choice.delay_ms),
+        Knob::Differentiator => choice.differentiator.name().to_owned(),
+        Knob::Mode | Knob::Grid => match choice.method {
+            Method::Mode(mode) => mode.name().to_owned(),
+            Method::Solver(solver) => solver.name().to_owned(),
+        },
+    }
+}

@@ -1,0 +1,19 @@
+//! Random loops that go on for as long as somebody lets them: `./dev fuzz`.
+
+use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
+
+/// Calls `round` with one seed after the other until `NIMA_FUZZ_SECONDS` are over, and at least once. The first seed is
+/// `NIMA_FUZZ_SEED`, so that a failure can be repeated, or taken from the clock.
+pub fn rounds(round: impl Fn(u64)) {
+    let told = |name| std::env::var(name).ok().and_then(|text| text.parse::<u64>().ok());
+    let length = Duration::from_secs(told("NIMA_FUZZ_SECONDS").unwrap_or(0));
+    let clock = SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |since| since.as_secs());
+    let begin = Instant::now();
+    for seed in told("NIMA_FUZZ_SEED").unwrap_or(clock).. {
+        println!("NIMA_FUZZ_SEED={seed}");
+        round(seed);
+        if begin.elapsed() >= length {
+            return;
+        }
+    }
+}

@@ -1,0 +1,119 @@
+//! Tests on the real clock: a machine that is busy with other work must not make them fail.
+
+use std::{
+    panic::{AssertUnwindSafe, catch_unwind, panic_any, resume_unwind},
+    sync::{
+        Arc, Mutex, MutexGuard, PoisonError,
+        atomic::{AtomicBool, Ordering::Relaxed},
+    },
+    thread::{JoinHandle, sleep, spawn},
+    time::{Duration, Instant},
+};
+
+const ATTEMPTS: usize = 5;
+/// Failures on a machine that was not busy. One may be chance: the machine can hold up the emulators' threads alone.
+const FAILURES_MAX: usize = 2;
+const NAP: Duration = Duration::from_millis(1);
+/// A quiet machine wakes a sleeping thread within this time, and never later than `PAUSE`.
+const LATE: Duration = Duration::from_millis(3);
+const PAUSE: Duration = Duration::from_millis(20);
+
+/// Held by one test of a program at a time: devices in real time look silent beside other work that takes every core.
+pub fn alone() -> MutexGuard<'static, ()> {
+    static ALONE: Mutex<()> = Mutex::new(());
+    ALONE.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+struct TooBusy;
+
+/// Ends an attempt within `judged` that has found by itself that it was held up.
+pub fn too_busy() -> ! {
+    panic_any(TooBusy)
+}
+
+/// Runs a test in real time. A failure on a busy machine is not judged, and the test is tried again; two failures on a quiet one fail it.
+pub fn judged(test: impl Fn()) {
+    judged_on(test, || {
+        let watch = Watch::start();
+        move || watch.was_busy()
+    });
+}
+
+/// `watch` starts to watch the machine, and what it gives tells at the end of an attempt whether the machine was busy.
+fn judged_on<Busy: FnOnce() -> bool>(test: impl Fn(), watch: impl Fn() -> Busy) {
+    let mut failures = 0;
+    for _ in 0..ATTEMPTS {
+        let was_busy = watch();
+        let Err(cause) = catch_unwind(AssertUnwindSafe(&test)) else { return };
+        failures += usize::from(!was_busy() && !cause.is::<TooBusy>());
+        if failures == FAILURES_MAX {
+            resume_unwind(cause);
+        }
+    }
+    println!("too busy to judge");
+}
+
+/// A thread that sleeps a millisecond at a time and counts how often it is woken late.
+struct Watch {
+    end: Arc<AtomicBool>,
+    thread: JoinHandle<bool>,
+}
+
+impl Watch {
+    fn start() -> Self {
+        let end = Arc::new(AtomicBool::new(false));
+        let ends = Arc::clone(&end);
+        let thread = spawn(move || {
+            let (mut naps, mut late, mut longest) = (0_u32, 0_u32, Duration::ZERO);
+            while !ends.load(Relaxed) {
+                let begin = Instant::now();
+                sleep(NAP);
+                let over = begin.elapsed().saturating_sub(NAP);
+                naps += 1;
+                late += u32::from(over > LATE);
+                longest = longest.max(over);
+            }
+            longest > PAUSE || late * 100 > naps
+        });
+        Self { end, thread }
+    }
+
+    fn was_busy(self) -> bool {
+        self.end.store(true, Relaxed);
+        self.thread.join().unwrap_or(true)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::cell::Cell;
+
+    use super::*;
+
+    /// Attempts that are made of a test which fails until attempt `good`, on a machine that is busy or not; `None` if it failed.
+    fn attempts(good: usize, busy: bool) -> Option<usize> {
+        let made = Cell::new(0);
+        let test = || {
+            made.set(made.get() + 1);
+            assert!(made.get() >= good, "attempt {}", made.get());
+        };
+        catch_unwind(AssertUnwindSafe(|| judged_on(test, || move || busy))).is_ok().then_some(made.get())
+    }
+
+    #[test]
+    fn an_attempt_that_was_held_up_is_no_failure() {
+        let made = Cell::new(0);
+        let held_up = || {
+            made.set(made.get() + 1);
+            too_busy();
+        };
+        judged_on(held_up, || || false);
+        assert_eq!(made.get(), ATTEMPTS);
+    }
+
+    #[test]
+    fn two_failures_on_a_quiet_machine_fail_and_none_on_a_busy_one_does() {
+        assert_eq!([1, 2, 3].map(|good| attempts(good, false)), [Some(1), Some(2), None]);
+        assert_eq!([1, 3, 9].map(|good| attempts(good, true)), [Some(1), Some(3), Some(ATTEMPTS)]);
+    }
+}

@@ -1,0 +1,246 @@
+//! Training of the ensemble (on candle, on the CPU): `AdamW`, mini-batches, falling learning rate, early stopping.
+//!
+//! Every member is stopped by trajectories it never saw: the folds are whole trajectories, or, where there are too few of
+//! them, contiguous blocks with a gap towards the training part. Each member leaves out another fold, so that together they
+//! use all data. A seed repeats exactly: weights and orders come from our own generator. Takes seconds to minutes: call it
+//! on a background thread; members are trained side by side on the cores there are.
+
+use std::{
+    sync::{
+        Mutex,
+        atomic::{AtomicBool, AtomicUsize, Ordering},
+    },
+    thread,
+    time::Instant,
+};
+
+use nima_core::tip_force::{
+    Baselines, DEFAULT_INPUTS, Doubt, Expansion, Member, MemberFigures, Model, Network, Normalisation, Origin,
+    TrainingSettings, linear,
+};
+use nima_recording::{
+    store::utc_now,
+    tip_force::{DataSet, TipForceError},
+};
+
+use super::{fit::Fit, folds::Folds};
+
+/// Fewest rows to learn from.
+pub const MIN_ROWS: usize = 200;
+
+fn checked(settings: &TrainingSettings) -> Result<(), TipForceError> {
+    let wrong = |name, value: String, allowed| Err(TipForceError::Setting { name, value, allowed });
+    if !(1..=16).contains(&settings.members) {
+        return wrong("members", settings.members.to_string(), "1 to 16");
+    }
+    if !(1..=4).contains(&settings.hidden.len()) || settings.hidden.iter().any(|width| !(1..=256).contains(width)) {
+        return wrong("hidden", format!("{:?}", settings.hidden), "one to four widths of 1 to 256");
+    }
+    if settings.epochs.is_some_and(|epochs| !(1..=100_000).contains(&epochs)) {
+        return wrong("epochs", settings.epochs.unwrap_or(0).to_string(), "1 to 100000");
+    }
+    if !(8..=65_536).contains(&settings.batch) {
+        return wrong("batch", settings.batch.to_string(), "8 to 65536");
+    }
+    if !(1e-6..=1.0).contains(&settings.learning_rate) {
+        return wrong("learning rate", settings.learning_rate.to_string(), "0.000001 to 1");
+    }
+    if !(0.0..=1.0).contains(&settings.weight_decay) {
+        return wrong("weight decay", settings.weight_decay.to_string(), "0 to 1");
+    }
+    Ok(())
+}
+
+/// One epoch of one member.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
+pub struct Progress {
+    /// Which member, from 0.
+    pub member: usize,
+    /// How many members there are.
+    pub members: usize,
+    /// Epoch, from 1.
+    pub epoch: usize,
+    /// Most epochs there can be.
+    pub epochs_max: usize,
+    /// Mean square error on the training part, in squares of the outputs' standard deviation.
+    pub training_loss: f64,
+    /// The same on the part that stops the training.
+    pub validation_loss: f64,
+    /// Least validation loss so far.
+    pub best: f64,
+    /// Time since the training began, s.
+    pub elapsed_s: f64,
+    /// This was the member's last epoch.
+    pub finished: bool,
+}
+
+/// A trained ensemble and all that belongs to it.
+#[derive(Clone, Debug)]
+#[expect(missing_docs, reason = "the names say it")]
+pub struct Trained {
+    pub members: Vec<Member>,
+    pub figures: Vec<MemberFigures>,
+    /// How inputs become features.
+    pub expansion: Expansion,
+    pub features: Normalisation,
+    pub outputs: Normalisation,
+    /// Features that never change in the data and are neutral in the model, by name.
+    pub constant: Vec<String>,
+    /// Rows that a fold learns from, and rows it is judged by.
+    pub(super) folds: Vec<(Vec<usize>, Vec<usize>)>,
+    /// How long it took, s.
+    pub elapsed_s: f64,
+}
+
+/// Normalised features of all rows, row by row.
+pub(super) fn features_of(data: &DataSet, expansion: &Expansion) -> Vec<f32> {
+    let width = expansion.width();
+    let mut features = vec![0.0; data.rows() * width];
+    for (row, to) in features.chunks_mut(width).enumerate() {
+        expansion.expand(data.input(row), to);
+    }
+    features
+}
+
+/// Trains an ensemble. `cancel` stops it within one mini-batch; `progress` is called after every epoch, from the thread
+/// that ran it, never from two at once.
+pub fn train(
+    data: &DataSet,
+    settings: &TrainingSettings,
+    cancel: &AtomicBool,
+    progress: &(dyn Fn(&Progress) + Sync),
+) -> Result<Trained, TipForceError> {
+    checked(settings)?;
+    if data.rows() < MIN_ROWS {
+        return Err(TipForceError::TooFewRows { found: data.rows(), needed: MIN_ROWS });
+    }
+    let start = Instant::now();
+    let expansion = Expansion::fit(&data.inputs, &data.x);
+    let mut x = features_of(data, &expansion);
+    if let Some(row) = x.chunks(expansion.width()).position(|row| row.iter().any(|value| !value.is_finite())) {
+        let reason = format!("row {} of the data has a quaternion of length zero", row + 1);
+        return Err(TipForceError::Columns { reason });
+    }
+    let features = Normalisation::of(&x, expansion.width(), 0..data.rows());
+    let outputs = Normalisation::of(&data.y, data.outputs.len(), 0..data.rows());
+    if let Some(column) = outputs.constant().next() {
+        return Err(TipForceError::ConstantOutput { column: data.outputs[column].clone() });
+    }
+    let constant: Vec<String> = features.constant().map(|feature| expansion.name(feature, &data.inputs)).collect();
+    if let Some(reason) = nothing_to_learn_from(&data.inputs, &constant, expansion.width()) {
+        return Err(TipForceError::Columns { reason });
+    }
+    let mut y = data.y.clone();
+    x.chunks_mut(expansion.width()).for_each(|row| features.apply(row));
+    y.chunks_mut(data.outputs.len()).for_each(|row| outputs.apply(row));
+    let folds = Folds::of(data, settings.members, settings.seed);
+    let alone = Mutex::new(());
+    let report = |now: &Progress| {
+        let _one_at_a_time = alone.lock();
+        progress(&Progress { elapsed_s: start.elapsed().as_secs_f64(), ..*now });
+    };
+    let shape = (expansion.width(), data.outputs.len());
+    let skip = linear::solve(&x, &y, shape, &(0..data.rows()).collect::<Vec<_>>());
+    let fit = Fit { x: &x, y: &y, shape, skip: &skip, settings, cancel, progress: &report };
+    let (members, figures) = all_members(&fit, &folds)?.into_iter().unzip();
+    let folds = (0..folds.count()).map(|fold| folds.split(fold)).collect();
+    Ok(Trained {
+        members,
+        figures,
+        expansion,
+        features,
+        outputs,
+        constant,
+        folds,
+        elapsed_s: start.elapsed().as_secs_f64(),
+    })
+}
+
+/// A sensor that hangs gives a network that knows the pose and no force: it would be trained and then be wrong with confidence.
+fn nothing_to_learn_from(inputs: &[String], constant: &[String], width: usize) -> Option<String> {
+    let cure = "check that the sensors send new readings, and record again";
+    let mut forces = inputs.iter().filter(|name| DEFAULT_INPUTS[..3].contains(&name.as_str())).peekable();
+    if forces.peek().is_some() && forces.all(|name| constant.contains(name)) {
+        return Some(format!("no force at the wrist changes over the whole data set; {cure}"));
+    }
+    (constant.len() == width).then(|| format!("no input changes over the whole data set; {cure}"))
+}
+
+/// Trains the members on as many threads as there are cores; the first failure ends all.
+fn all_members(fit: &Fit<'_>, folds: &Folds) -> Result<Vec<(Member, MemberFigures)>, TipForceError> {
+    let count = fit.settings.members;
+    let workers = thread::available_parallelism().map_or(1, usize::from).min(count);
+    let next = AtomicUsize::new(0);
+    let results = Mutex::new(Vec::with_capacity(count));
+    thread::scope(|scope| {
+        for _ in 0..workers {
+            scope.spawn(|| {
+                loop {
+                    let member = next.fetch_add(1, Ordering::Relaxed);
+                    if member >= count {
+                        return;
+                    }
+                    let (training, validation) = folds.split(member);
+                    let result = fit.member(member, &training, &validation).map_err(|failure| failure.0);
+                    if result.is_err() {
+                        next.store(count, Ordering::Relaxed);
+                    }
+                    results.lock().unwrap_or_else(std::sync::PoisonError::into_inner).push((member, result));
+                }
+            });
+        }
+    });
+    let mut results = results.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner);
+    results.sort_by_key(|(member, _)| *member);
+    results.into_iter().map(|(_, result)| result).collect()
+}
+
+/// Trains a model (see [`train`]), fits its baselines and calibrates its doubt on the same data.
+pub fn train_model(
+    data: &DataSet,
+    settings: &TrainingSettings,
+    [sensor, tool]: [Option<String>; 2],
+    cancel: &AtomicBool,
+    progress: &(dyn Fn(&Progress) + Sync),
+) -> Result<Model, TipForceError> {
+    let trained = train(data, settings, cancel, progress)?;
+    let absent = || TipForceError::Tensor { reason: "members do not fit together".into() };
+    let mut network = Network::new(trained.members).ok_or_else(absent)?;
+    let width = trained.expansion.width();
+    let mut x = features_of(data, &trained.expansion);
+    x.chunks_mut(width).for_each(|row| trained.features.apply(row));
+    let mut spreads = Vec::new();
+    for (_, judge) in trained.folds.iter().take(settings.members) {
+        for row in judge {
+            let spread = network.answer(&x[row * width..(row + 1) * width], 1.0).spread;
+            spreads.push(spread.iter().copied().fold(0.0, f32::max));
+        }
+    }
+    let measured = trained.expansion.measured();
+    // Every trajectory a file of its own: what is left out is another session.
+    let whole_sessions = data.files.len() > 1 && data.trajectories.len() == data.files.len();
+    let doubt = Doubt::fit(&x, width, measured, &trained.folds, spreads, whole_sessions, settings.seed);
+    let origin = Origin {
+        sensor,
+        tool,
+        date: utc_now(),
+        software: env!("CARGO_PKG_VERSION").to_owned(),
+        data_hash: data.hash.clone(),
+        rows: data.rows(),
+        settings: settings.clone(),
+        figures: trained.figures,
+        constant: trained.constant,
+        check: None,
+    };
+    Ok(Model {
+        inputs: data.inputs.clone(),
+        outputs: data.outputs.clone(),
+        baselines: Baselines::fit(&data.inputs, &data.outputs, &data.x, &data.y),
+        expansion: trained.expansion,
+        features: trained.features,
+        scale: trained.outputs,
+        network,
+        doubt,
+        origin,
+    })
+}

@@ -1,0 +1,165 @@
+//! How good a model is on data it was not trained on, beside simpler methods fitted on its training data.
+
+use std::time::Instant;
+
+use nima_core::{
+    statistics::{Percentiles, Quantiles},
+    tip_force::{BASELINES, Estimator},
+};
+use nima_recording::tip_force::{DataSet, TipForceError};
+use serde::Serialize;
+
+/// Errors of one output, in its unit.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Stats {
+    /// Mean absolute error.
+    pub mae: f64,
+    /// Standard deviation of the error about its mean.
+    pub sd: f64,
+    /// Half width of the band about zero that holds 95 % of the errors.
+    pub band95: f64,
+    /// Share of the output's variance that is explained; 0 where the output never changes.
+    pub r2: f64,
+    /// Number of rows.
+    pub n: usize,
+}
+
+/// One method's errors.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct MethodFigures {
+    /// `network`, or one of [`BASELINES`].
+    pub method: &'static str,
+    /// Per output, in the model's order; `None` where the method says nothing of it.
+    pub outputs: Vec<Option<Stats>>,
+}
+
+/// Mean and spread of what a model says where nothing touches the tip.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[expect(missing_docs, reason = "the names say it")]
+pub struct NoContact {
+    pub mean: f64,
+    /// Standard deviation of the predictions.
+    pub sd: f64,
+    pub n: usize,
+}
+
+/// Figures of some rows.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Part {
+    /// The file, or `all`.
+    pub name: String,
+    /// The network first, then [`BASELINES`].
+    pub methods: Vec<MethodFigures>,
+    /// Share of rows in doubt.
+    pub doubt_share: f64,
+    /// Per output, of rows without contact; empty where the data do not say.
+    pub no_contact: Vec<NoContact>,
+}
+
+/// All figures of a model on a data set.
+#[derive(Clone, Debug, Serialize)]
+#[expect(missing_docs, reason = "the names say it")]
+pub struct Evaluation {
+    /// Names of the outputs; units by the names.
+    pub outputs: Vec<String>,
+    pub files: Vec<Part>,
+    pub overall: Part,
+    /// These very files are what the model was trained on: the figures say nothing about new data.
+    pub trained_on_these: bool,
+    /// Time of one answer, microseconds.
+    pub inference_us: Quantiles,
+    /// Predictions, row by row.
+    #[serde(skip)]
+    pub predictions: Vec<f32>,
+    /// Rows in doubt.
+    #[serde(skip)]
+    pub in_doubt: Vec<bool>,
+}
+
+/// Judges a model on these rows. Refuses data with other columns than the model's ([`Selection::of`](nima_recording::tip_force::Selection::of)).
+pub fn evaluate(estimator: &mut Estimator, data: &DataSet) -> Result<Evaluation, TipForceError> {
+    if data.inputs != estimator.model().inputs || data.outputs != estimator.model().outputs {
+        return Err(TipForceError::Columns { reason: "the data were read with other columns than the model's".into() });
+    }
+    let outputs = data.outputs.len();
+    let mut times = Percentiles::new();
+    let mut methods: Vec<Vec<Vec<Option<f32>>>> = vec![Vec::with_capacity(data.rows()); 1 + BASELINES.len()];
+    let mut in_doubt = Vec::with_capacity(data.rows());
+    for row in 0..data.rows() {
+        let start = Instant::now();
+        let estimate = estimator.estimate(data.input(row));
+        times.record(start.elapsed().as_secs_f64());
+        in_doubt.push(estimate.in_doubt);
+        methods[0].push(estimate.output[..outputs].iter().copied().map(Some).collect());
+        for (method, predicted) in methods[1..].iter_mut().zip(estimator.model().baselines.predict(data.input(row))) {
+            method.push(predicted);
+        }
+    }
+    let part = |name: String, rows: &[usize]| Part {
+        name,
+        methods: method_names()
+            .zip(&methods)
+            .map(|(method, predicted)| MethodFigures {
+                method,
+                outputs: (0..outputs).map(|o| stats(data, predicted, rows, o)).collect(),
+            })
+            .collect(),
+        doubt_share: rows.iter().filter(|row| in_doubt[**row]).count() as f64 / rows.len().max(1) as f64,
+        no_contact: no_contact(data, &methods[0], rows),
+    };
+    let all: Vec<usize> = (0..data.rows()).collect();
+    let of_file = |file: usize| -> Vec<usize> {
+        data.trajectories.iter().filter(|t| t.file == file).flat_map(|t| t.rows.clone()).collect()
+    };
+    let files = data.files.iter().enumerate().map(|(k, path)| part(path.display().to_string(), &of_file(k))).collect();
+    Ok(Evaluation {
+        outputs: data.outputs.clone(),
+        files,
+        overall: part("all".into(), &all),
+        trained_on_these: data.hash == estimator.model().origin.data_hash,
+        inference_us: times.quantiles(),
+        predictions: methods[0].iter().flatten().map(|value| value.unwrap_or_default()).collect(),
+        in_doubt,
+    })
+}
+
+fn method_names() -> impl Iterator<Item = &'static str> {
+    ["network"].into_iter().chain(BASELINES)
+}
+
+fn stats(data: &DataSet, predicted: &[Vec<Option<f32>>], rows: &[usize], output: usize) -> Option<Stats> {
+    let pairs: Vec<(f64, f64)> = rows
+        .iter()
+        .map(|&row| Some((f64::from(predicted[row][output]?), f64::from(data.output(row)[output]))))
+        .collect::<Option<_>>()?;
+    let n = pairs.len();
+    if n == 0 {
+        return None;
+    }
+    let mean = |of: &dyn Fn(&(f64, f64)) -> f64| pairs.iter().map(of).sum::<f64>() / n as f64;
+    let (bias, truth) = (mean(&|(p, y)| p - y), mean(&|(_, y)| *y));
+    let variance = mean(&|(_, y)| (y - truth).powi(2));
+    let mut absolute: Vec<f64> = pairs.iter().map(|(p, y)| (p - y).abs()).collect();
+    let place = ((n as f64 * 0.95).ceil() as usize).clamp(1, n) - 1;
+    let band95 = *absolute.select_nth_unstable_by(place, f64::total_cmp).1;
+    Some(Stats {
+        mae: mean(&|(p, y)| (p - y).abs()),
+        sd: mean(&|(p, y)| (p - y - bias).powi(2)).sqrt(),
+        band95,
+        r2: if variance > 0.0 { 1.0 - mean(&|(p, y)| (p - y).powi(2)) / variance } else { 0.0 },
+        n,
+    })
+}
+
+fn no_contact(data: &DataSet, predicted: &[Vec<Option<f32>>], rows: &[usize]) -> Vec<NoContact> {
+    let Some(contact) = &data.contact else { return Vec::new() };
+    let free: Vec<usize> = rows.iter().copied().filter(|row| !contact[*row]).collect();
+    let n = free.len();
+    let one = |output: usize| {
+        let values = || free.iter().filter_map(|row| predicted[*row][output]).map(f64::from);
+        let mean = values().sum::<f64>() / n.max(1) as f64;
+        let variance = values().map(|value| (value - mean).powi(2)).sum::<f64>() / n.max(1) as f64;
+        NoContact { mean, sd: variance.sqrt(), n }
+    };
+    (0..data.outputs.len()).map(one).collect()
+}

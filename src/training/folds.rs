@@ -1,0 +1,69 @@
+//! What a member learns from and what stops it: never a shuffle of samples.
+
+use std::ops::Range;
+
+use nima_recording::tip_force::DataSet;
+
+/// Rows left out between a validation block and its neighbours where a trajectory had to be cut.
+const GAP: usize = 50;
+
+/// With fewer trajectories than this, trajectories are cut into blocks. Whole ones are better judges: a network that is
+/// stopped by them is rewarded for what holds beyond the loads it saw.
+const FEW: usize = 3;
+
+/// Blocks dealt to folds.
+#[derive(Clone, Debug)]
+pub(super) struct Folds {
+    blocks: Vec<Range<usize>>,
+    /// Fold of every block.
+    fold: Vec<usize>,
+    gap: usize,
+}
+
+impl Folds {
+    /// Five folds or one per member, of whole trajectories (not more folds than those), or of blocks where there are few
+    /// trajectories.
+    pub(super) fn of(data: &DataSet, members: usize, seed: u64) -> Self {
+        let count = members.max(5);
+        let whole: Vec<Range<usize>> = data.trajectories.iter().map(|trajectory| trajectory.rows.clone()).collect();
+        let (blocks, gap) = if whole.len() >= FEW {
+            (whole, 0)
+        } else {
+            let pieces = (2 * count).div_ceil(whole.len()).max(2);
+            (whole.iter().flat_map(|rows| cut(rows, pieces)).collect(), GAP)
+        };
+        let count = count.min(blocks.len());
+        let mut order: Vec<usize> = (0..blocks.len()).collect();
+        fastrand::Rng::with_seed(seed ^ 0xf01d).shuffle(&mut order);
+        let mut fold = vec![0; blocks.len()];
+        for (place, block) in order.into_iter().enumerate() {
+            fold[block] = place % count;
+        }
+        Self { blocks, fold, gap }
+    }
+
+    /// How many folds there are.
+    pub(super) fn count(&self) -> usize {
+        self.fold.iter().max().map_or(0, |last| last + 1)
+    }
+
+    /// Rows of training and of validation for a member.
+    pub(super) fn split(&self, member: usize) -> (Vec<usize>, Vec<usize>) {
+        let (mut training, mut validation) = (Vec::new(), Vec::new());
+        for (block, fold) in self.blocks.iter().zip(&self.fold) {
+            if *fold == member % self.count() {
+                // A short block gives up no more than half of itself to the gaps.
+                let gap = self.gap.min(block.len() / 4);
+                validation.extend(block.start + gap..block.end - gap);
+            } else {
+                training.extend(block.clone());
+            }
+        }
+        (training, validation)
+    }
+}
+
+fn cut(rows: &Range<usize>, pieces: usize) -> impl Iterator<Item = Range<usize>> {
+    let (start, length) = (rows.start, rows.len());
+    (0..pieces).map(move |k| start + k * length / pieces..start + (k + 1) * length / pieces)
+}

@@ -1,0 +1,199 @@
+//! A desk-top leader before a simulated rig: a cap such as a `SpaceMouse` leads the right hand, pedals are clutch and presence.
+//!
+//! The cap gives a speed: its push (-1 to 1) times [`DeskSettings::speed_m_s`], in the workspace (x right, y away, z up). Until it is
+//! touched the simulated hand does its task; from then on the hand is where the cap has led it, until button 0 lets it go.
+//! A cap that is gone or silent counts as released: the hand stays where it is. The screen's own lead goes first.
+
+use nalgebra::Vector3;
+use nima_devices::{
+    CapReading, Health, PedalReading, Slot,
+    hid::{CapDriver, Held, PedalDriver, PedalRoles},
+};
+use nima_machine::rig::{
+    DeskSettings, DeviceEvent, GUIDE_MAX_M, Healths, Inputs, Outputs, Rig, RigError, Roster, RosterEntry, SIDES, Side,
+    Switches, Watch,
+};
+
+use super::Worlds;
+
+/// Pushes below this are no push.
+const TOUCH: f64 = 0.05;
+/// Longest step of time that a push counts for, s.
+const STEP_MAX_S: f64 = 0.01;
+
+/// The simulated rig with a cap and pedals.
+pub struct Desk {
+    worlds: Worlds,
+    cap: Option<(Slot<CapDriver>, Held<CapReading>)>,
+    pedal: Option<(Slot<PedalDriver>, Held<PedalReading>, PedalRoles)>,
+    speed_m_s: f64,
+    /// Where the cap leads the hand, m; none until it is touched.
+    at_m: Option<Vector3<f64>>,
+    hand_m: Vector3<f64>,
+    last_s: Option<f64>,
+    watch: Watch,
+    outputs: [Outputs; SIDES],
+}
+
+impl Desk {
+    /// Begins to open what is there.
+    pub fn start(settings: &DeskSettings, worlds: Worlds) -> Result<(Self, Roster), RigError> {
+        let mut roster = Roster::new();
+        let cap = settings.cap.clone().map(|cap| {
+            let driver = format!("cap, {}", cap.source);
+            let slot = Slot::start("cap", move || CapDriver::open(&cap))?;
+            let view = slot.view();
+            roster.push(RosterEntry::new("cap", driver, view));
+            Ok::<_, RigError>((slot, Held::default()))
+        });
+        let cap = cap.transpose()?;
+        let pedal = settings.pedal.clone().map(|pedal| {
+            let setting = |trouble| RigError::Setting { device: "pedal".to_owned(), trouble };
+            let roles = pedal.roles().map_err(setting)?;
+            let driver = format!("foot pedal, {}", pedal.source);
+            let slot = Slot::start("pedal", move || PedalDriver::open(&pedal))?;
+            let view = slot.view();
+            roster.push(RosterEntry::new("pedal", driver, view));
+            Ok::<_, RigError>((slot, Held::default(), roles))
+        });
+        let pedal = pedal.transpose()?;
+        let desk = Self {
+            worlds,
+            cap,
+            pedal,
+            speed_m_s: settings.speed_m_s,
+            at_m: None,
+            hand_m: Vector3::zeros(),
+            last_s: None,
+            watch: Watch::default(),
+            outputs: [Outputs::SAFE; SIDES],
+        };
+        Ok((desk, roster))
+    }
+
+    /// Where the cap leads the hand now.
+    fn lead(&mut self, now_s: f64) -> Option<Vector3<f64>> {
+        let dt_s = self.last_s.replace(now_s).map_or(0.0, |last_s| (now_s - last_s).clamp(0.0, STEP_MAX_S));
+        let (slot, held) = self.cap.as_mut()?;
+        let reading = slot.poll(now_s);
+        let cap = held.update(reading, slot.health());
+        if cap.buttons & 1 == 1 {
+            self.at_m = None;
+        } else if cap.translation.norm() > TOUCH {
+            let at_m = self.at_m.unwrap_or(self.hand_m) + cap.translation * (self.speed_m_s * dt_s);
+            self.at_m = Some(at_m.map(|x| x.clamp(-GUIDE_MAX_M, GUIDE_MAX_M)));
+        }
+        self.at_m
+    }
+
+    fn switches(&mut self, now_s: f64) -> Switches {
+        let Some((slot, held, roles)) = &mut self.pedal else { return Switches::default() };
+        let reading = slot.poll(now_s);
+        let pressed = held.update(reading, slot.health());
+        Switches { clutch: roles.clutch(pressed), presence: roles.presence(pressed) }
+    }
+
+    fn standings(&self) -> impl Iterator<Item = &Health> {
+        let cap = self.cap.as_ref().map(|(slot, _)| slot.health());
+        cap.into_iter().chain(self.pedal.as_ref().map(|(slot, ..)| slot.health()))
+    }
+}
+
+impl Rig for Desk {
+    fn read(&mut self, now_s: f64) -> [Option<Inputs>; SIDES] {
+        let (led_m, switches) = (self.lead(now_s), self.switches(now_s));
+        let mut outputs = self.outputs;
+        let right = &mut outputs[Side::Right.index()];
+        right.guide_m = right.guide_m.or(led_m);
+        let mut watch = std::mem::take(&mut self.watch);
+        for (device, health) in self.standings().enumerate() {
+            watch.look(now_s, device, health.standing, [false; SIDES]);
+        }
+        self.watch = watch;
+        self.worlds.write(now_s, &outputs);
+        let mut inputs = self.worlds.read(now_s);
+        for input in inputs.iter_mut().flatten() {
+            input.switches = switches;
+        }
+        if let Some(right) = &inputs[Side::Right.index()] {
+            self.hand_m = right.hand.position_m;
+        }
+        inputs
+    }
+
+    fn write(&mut self, _: f64, outputs: &[Outputs; SIDES]) {
+        self.outputs = *outputs;
+    }
+
+    fn event(&mut self) -> Option<DeviceEvent> {
+        self.watch.take()
+    }
+
+    fn health(&self) -> Healths {
+        let mut healths = Healths::default();
+        for (entry, health) in healths.devices.iter_mut().zip(self.standings()) {
+            *entry = *health;
+        }
+        healths
+    }
+}
+
+#[cfg(all(test, target_os = "linux"))]
+mod tests {
+    use std::time::{Duration, Instant};
+
+    use nima_devices::hid::{CapSettings, PedalSettings};
+
+    use super::*;
+    use crate::{
+        emulators::hid::{CapBody, CapModel, PedalBody, PedalModel, Place, serve_cap, serve_pedal},
+        scene::Scene,
+    };
+
+    #[test]
+    fn a_cap_leads_the_hand_and_a_pedal_is_the_clutch() {
+        let push = CapReading { translation: Vector3::new(0.5, 0.0, 0.0), ..CapReading::default() };
+        // At rest for a while, then pushed to the right.
+        let cap = serve_cap(
+            Place::Temporary,
+            CapModel::default(),
+            CapBody::moved_by(move |t_s| if t_s > 1.0 { push } else { CapReading::default() }),
+        )
+        .unwrap();
+        let pedal = serve_pedal(
+            Place::Temporary,
+            PedalModel::default(),
+            PedalBody::pressed_by(|t_s| PedalReading { pressed: u32::from(t_s > 1.0) }),
+        )
+        .unwrap();
+        let source = |endpoint: &str| {
+            if endpoint.starts_with("emulated:") { endpoint.to_owned() } else { format!("emulated:{endpoint}") }
+        };
+        let settings = DeskSettings {
+            cap: Some(CapSettings { source: source(&cap.endpoint), ..CapSettings::default() }),
+            pedal: Some(PedalSettings { source: source(&pedal.endpoint), ..PedalSettings::default() }),
+            speed_m_s: 0.06,
+        };
+        let worlds = Worlds::new(&Scene::load("free_motion").unwrap(), 1000.0);
+        let (mut desk, roster) = Desk::start(&settings, worlds).unwrap();
+        assert_eq!(roster.len(), 2);
+        let begin = Instant::now();
+        let (mut first_m, mut led_s, mut clutched) = (None, 0.0, false);
+        while begin.elapsed() < Duration::from_secs(6) && led_s < 0.8 {
+            let now_s = begin.elapsed().as_secs_f64();
+            let outputs = Outputs { tip_command_m: Some(desk.hand_m), ..Outputs::SAFE };
+            desk.write(now_s, &[outputs; SIDES]);
+            let inputs = desk.read(now_s);
+            clutched |= inputs[0].is_some_and(|inputs| inputs.switches.clutch);
+            if let Some(at_m) = desk.at_m {
+                let (from_s, from_m): (f64, Vector3<f64>) = *first_m.get_or_insert((now_s, at_m));
+                led_s = now_s - from_s;
+                // Half a push: 30 mm/s to the right, and nowhere else.
+                let way_m = at_m - from_m;
+                assert!(way_m.y.abs() < 1e-9 && (way_m.x - 0.03 * led_s).abs() < 6e-3, "{way_m} after {led_s} s");
+            }
+            std::thread::sleep(Duration::from_millis(1));
+        }
+        assert!(led_s >= 0.8 && clutched, "led for {led_s} s, clutch {clutched}");
+    }
+}

@@ -1,0 +1,273 @@
+//! Starts the emulators, each fed by the world of its side.
+
+use std::{
+    net::{Ipv4Addr, SocketAddrV4},
+    path::{Path, PathBuf},
+    sync::{
+        Arc,
+        atomic::{AtomicU32, Ordering},
+    },
+};
+
+use nalgebra::{UnitQuaternion, Vector3};
+use nima_core::frames::{Wrench, from_roll_pitch_yaw_deg};
+use nima_devices::{ForceReading, PedalReading, Tracked, bota, dynamixel, force_dimension, hid, kinova, ndi};
+use nima_machine::rig::{ArmSet, EndoscopeSettings, SIDES, SensorSettings, Settings, Side};
+
+use super::{EmulatedDevice, EmulatedRigError, Shared, SideWorld, places};
+use crate::{
+    emulators::{self, FaultSwitch, Serving},
+    scene::Scene,
+};
+
+type Sides = [Option<Shared>; SIDES];
+type Served = Result<EmulatedDevice, EmulatedRigError>;
+
+/// How the cables of the instrument pull at a servo, Nm/rad, and where they rest, rad: guesses of the right size.
+const CABLES_NM_PER_RAD: f64 = 0.3;
+const CABLES_REST_RAD: f64 = 0.3;
+/// Far from the workspace's middle the tracker's camera stands, m.
+const CAMERA_M: f64 = 1.5;
+/// Where it looks from where no scene says: level along the workspace's y (roll, pitch, yaw of `world_from_c`, degrees).
+const CAMERA_DEG: Vector3<f64> = Vector3::new(90.0, 0.0, 0.0);
+/// The marker sits so far down the shaft from the wrist sensor, m.
+const MARKER_M: f64 = 0.08;
+/// Residual of a marker that is well seen, m.
+const MARKER_ERROR_M: f64 = 0.000_15;
+/// A first-generation sensor needs so long to start, s: as short as leaves all of its steps visible.
+const BOOT_S: f64 = 0.2;
+/// The sensor under the tissue is at room temperature, degrees Celsius.
+const ROOM_C: f64 = 24.0;
+
+fn served(device: String, serving: std::io::Result<Serving>) -> Served {
+    match serving {
+        Ok(serving) => Ok(EmulatedDevice { name: device, serving }),
+        Err(source) => Err(EmulatedRigError::Serve { device, source }),
+    }
+}
+
+/// Every device of the rig.
+pub(super) fn all(
+    settings: &Settings,
+    scene: &Scene,
+    sides: &Sides,
+    pedal_switches: &Arc<AtomicU32>,
+) -> Result<Vec<EmulatedDevice>, EmulatedRigError> {
+    settings.check()?;
+    let mut devices = Vec::new();
+    for (side, shared) in Side::ALL.into_iter().zip(sides) {
+        let (Some(set), Some(shared)) = (settings.arm(side), shared) else { continue };
+        devices.push(handle(side, set, shared)?);
+        devices.push(arm(side, set, shared)?);
+        let (world, name) = (shared.clone(), format!("{} sensor", side.word()));
+        devices.push(sensor(name, &set.sensor, side, Box::new(move |_| world.with(SideWorld::feel)))?);
+        if let Some(chosen) = &set.servos {
+            devices.push(servos(side, chosen)?);
+        }
+    }
+    if let Some(chosen) = &settings.tissue_sensor {
+        devices.push(sensor("tissue sensor".to_owned(), chosen, Side::Right, under_the_tissue(sides))?);
+    }
+    if let Some(chosen) = &settings.tracker {
+        devices.push(tracker(chosen, settings.endoscope, scene, sides)?);
+    }
+    if let Some(chosen) = &settings.pedal {
+        devices.push(pedal(chosen, pedal_switches)?);
+    }
+    Ok(devices)
+}
+
+fn handle(side: Side, set: &ArmSet, shared: &Shared) -> Served {
+    let name = format!("{} handle", side.word());
+    let chosen = set.handle.force_dimension();
+    let Some((chosen, address)) = chosen.and_then(|chosen| Some((chosen, chosen.emulator?))) else {
+        let wanted = "give the handle of an emulated rig emulator = \"127.0.0.1:PORT\"";
+        return Err(EmulatedRigError::Place { device: name, place: "no address".to_owned(), wanted });
+    };
+    places::local(&name, &address.ip().to_string())?;
+    let usual = emulators::force_dimension::Emulator::default();
+    let emulator = emulators::force_dimension::Emulator {
+        serial: chosen.serial.unwrap_or(usual.serial + side.index() as u16),
+        kind: force_dimension::Kind::Omega7 { left_handed: side == Side::Left },
+        port: address.port(),
+        ..usual
+    };
+    let world = shared.clone();
+    served(name, emulator.serve(move |_: f64, applied: &_| world.with(|side, now_s| side.hold(now_s, applied))))
+}
+
+fn arm(side: Side, set: &ArmSet, shared: &Shared) -> Served {
+    let name = format!("{} arm", side.word());
+    let Some(chosen) = set.arm.kinova() else {
+        return Err(EmulatedRigError::Make { device: name });
+    };
+    let kinova::Settings { host, tcp_port, udp_port, user, password, .. } = chosen.clone();
+    places::local(&name, &host)?;
+    let emulated = emulators::kinova::EmulatedArm {
+        user,
+        password,
+        tcp_port,
+        udp_port,
+        ..emulators::kinova::EmulatedArm::default()
+    };
+    let world = shared.clone();
+    let body = move |_: f64, asked: &_| world.with(|side, now_s| side.ask(now_s, asked));
+    served(name, emulators::kinova::emulate(emulated, body, FaultSwitch::default()))
+}
+
+fn sensor(name: String, chosen: &SensorSettings, side: Side, body: emulators::bota::Body) -> Served {
+    let Some(chosen) = chosen.bota() else { return Err(EmulatedRigError::Make { device: name }) };
+    let usual = emulators::bota::Emulated::default();
+    let digits = |serial: &String| serial.trim().trim_start_matches("SN").to_owned();
+    let usual_serial = format!("{}", 901 + side.index() + usize::from(name.starts_with("tissue")) * SIDES);
+    let mut emulated = emulators::bota::Emulated {
+        serial: chosen.serial_number.as_ref().map_or(usual_serial, digits),
+        baud: Some(chosen.baud).filter(|_| !chosen.is_usb()),
+        boot_s: BOOT_S,
+        link: Some(PathBuf::from(&chosen.port)),
+        ..usual
+    };
+    let serving = match chosen.transport {
+        bota::Transport::Gen0 => emulated.serve_gen0(body),
+        bota::Transport::GenA => emulated.serve_gen_a(body),
+        bota::Transport::Socket => {
+            emulated.tcp_port = places::port(&name, &chosen.port, bota::TCP_PORT)?;
+            // Readings go to the datagram port of the same number: two sensors never share one.
+            emulated.destination = SocketAddrV4::new(Ipv4Addr::LOCALHOST, emulated.tcp_port);
+            emulated.serve_socket(body)
+        }
+    };
+    served(name, serving)
+}
+
+/// Both tips press on the same tissue.
+fn under_the_tissue(sides: &Sides) -> emulators::bota::Body {
+    let worlds: Vec<Shared> = sides.iter().flatten().cloned().collect();
+    Box::new(move |_| {
+        let force_n = worlds.iter().map(|world| world.with(SideWorld::press)).sum();
+        ForceReading {
+            wrench: Wrench { force_n, torque_nm: Vector3::zeros() },
+            temperature_c: ROOM_C,
+            ..ForceReading::default()
+        }
+    })
+}
+
+fn servos(side: Side, chosen: &dynamixel::Settings) -> Served {
+    let name = format!("{} servos", side.word());
+    let usual = emulators::dynamixel::EmulatorSettings::default();
+    let model = chosen.servos[0].model.as_ref();
+    let known = model.and_then(|model| dynamixel::table::MODELS.iter().find(|known| known.name == model));
+    let emulated = emulators::dynamixel::EmulatorSettings {
+        ids: chosen.servos.iter().map(|servo| servo.id).collect(),
+        model: known.map_or(usual.model, |model| model.number),
+        baud: chosen.baud,
+        fast: usual.fast,
+    };
+    let supply_v = if known.is_some_and(dynamixel::table::Model::is_small) { 5.0 } else { 12.0 };
+    // Tissue does not load the jaws in this world; the cables that move them do.
+    let body = move |_: f64, _: usize, shaft: &emulators::dynamixel::Shaft| {
+        let load_nm = CABLES_NM_PER_RAD * (CABLES_REST_RAD - shaft.angle_rad).clamp(-1.0, 1.0);
+        emulators::dynamixel::Surroundings { load_nm, supply_v, temperature_c: 31.0 }
+    };
+    let emulator = emulators::dynamixel::Emulator::new(&emulated, Some(Box::new(body)));
+    let impossible = || std::io::Error::other("no servo has this model and line speed");
+    let serving = emulator.ok_or_else(impossible).and_then(|emulator| emulator.serve_at(Some(Path::new(&chosen.port))));
+    served(name, serving)
+}
+
+fn tracker(chosen: &ndi::Settings, endoscope: Option<EndoscopeSettings>, scene: &Scene, sides: &Sides) -> Served {
+    let name = "tracker".to_owned();
+    for tool in &chosen.tools {
+        if let Err(source) = define(tool) {
+            return Err(EmulatedRigError::Serve { device: name, source });
+        }
+    }
+    let worlds: Vec<Shared> = sides.iter().flatten().cloned().collect();
+    let view = View::new(scene);
+    let body = move |_: f64, number: usize| match (worlds.get(number), endoscope, worlds.first()) {
+        (Some(world), ..) => world.with(|side, now_s| view.of(side, now_s)),
+        (None, Some(endoscope), Some(world)) if endoscope.tool == number => {
+            world.with(|side, _| view.endoscope(&side.world_from_view(), &endoscope))
+        }
+        _ => Tracked::Missing { out_of_volume: false },
+    };
+    let profile = emulators::ndi::Profile::default();
+    let serving = match (&chosen.address, &chosen.port) {
+        (Some(_), _) => emulators::ndi::serve_network(places::port(&name, &chosen.place(), ndi::PORT)?, profile, body),
+        (None, port) => emulators::ndi::serve_line(port.as_ref().map(Path::new), profile, body),
+    };
+    served(name, serving)
+}
+
+/// The emulated unit takes any definition; where the rig names one that is not there, this is it.
+fn define(path: &Path) -> std::io::Result<()> {
+    if path.exists() {
+        return Ok(());
+    }
+    if let Some(folder) = path.parent().filter(|folder| !folder.as_os_str().is_empty()) {
+        nima_devices::own_folder::prepare(folder)?;
+    }
+    let mut definition = b"NDI\0emulated instrument".to_vec();
+    definition.resize(ndi::DEFINITION, 0);
+    nima_files::write_atomically(path, |file| file.write_all(&definition))
+}
+
+/// Where the tracker's camera is and how the marker sits on the instrument.
+#[derive(Clone, Copy, Debug)]
+struct View {
+    c_from_world: UnitQuaternion<f64>,
+    s1_from_m: UnitQuaternion<f64>,
+}
+
+impl View {
+    fn new(scene: &Scene) -> Self {
+        let (camera_deg, marker_deg) = scene
+            .tissue_sensor
+            .map_or((CAMERA_DEG, Vector3::zeros()), |sensor| (sensor.world_from_c_deg, sensor.s1_from_m_deg));
+        Self {
+            c_from_world: from_roll_pitch_yaw_deg(&camera_deg).inverse(),
+            s1_from_m: from_roll_pitch_yaw_deg(&marker_deg),
+        }
+    }
+
+    /// The marker on the endoscope, which stands still.
+    fn endoscope(&self, world_from_view: &UnitQuaternion<f64>, endoscope: &EndoscopeSettings) -> Tracked {
+        let view_from_n = from_roll_pitch_yaw_deg(&endoscope.n_from_view_deg).inverse();
+        Tracked::Seen {
+            c_from_tool: self.c_from_world * world_from_view * view_from_n,
+            position_in_c_m: -Vector3::new(0.0, 0.0, CAMERA_M),
+            error_m: MARKER_ERROR_M,
+            at_the_edge: false,
+        }
+    }
+
+    /// The marker of a side, in the camera's frame, which looks along its own -z.
+    fn of(&self, side: &mut SideWorld, now_s: f64) -> Tracked {
+        let noisy = side.seen(now_s);
+        let truth = side.truth(now_s);
+        let marker_m = side.sensor_m() + truth.world_from_s1 * Vector3::new(0.0, 0.0, MARKER_M);
+        Tracked::Seen {
+            c_from_tool: noisy.unwrap_or(self.c_from_world * truth.world_from_s1 * self.s1_from_m),
+            position_in_c_m: self.c_from_world * marker_m - Vector3::new(0.0, 0.0, CAMERA_M),
+            error_m: MARKER_ERROR_M,
+            at_the_edge: false,
+        }
+    }
+}
+
+#[cfg(target_os = "linux")]
+fn pedal(chosen: &hid::PedalSettings, switches: &Arc<AtomicU32>) -> Served {
+    let name = "pedal".to_owned();
+    let place = emulators::hid::Place::Path(PathBuf::from(places::pedal(&name, &chosen.source)?));
+    let switches = Arc::clone(switches);
+    let body =
+        emulators::hid::PedalBody::pressed_by(move |_| PedalReading { pressed: switches.load(Ordering::Acquire) });
+    served(name, emulators::hid::serve_pedal(place, emulators::hid::PedalModel::Switches, body))
+}
+
+#[cfg(not(target_os = "linux"))]
+fn pedal(chosen: &hid::PedalSettings, _: &Arc<AtomicU32>) -> Served {
+    let device = "pedal".to_owned();
+    Err(EmulatedRigError::Place { device, place: chosen.source.clone(), wanted: "emulated pedals need Linux" })
+}

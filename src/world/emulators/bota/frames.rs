@@ -1,0 +1,91 @@
+//! Frames of an emulated sensor at its own pace, with the faults that concern their meaning.
+
+use nalgebra::Vector3;
+use nima_devices::bota::codec::{Frame, INERTIAL_BYTES, Inertial};
+
+use super::{Body, Wire};
+use crate::emulators::{EmulatedFault, FaultyLine};
+
+/// A thread that was held up makes up for at most this much, s; what is older is lost.
+const BACKLOG_S: f64 = 0.5;
+const INVALID: u16 = 1 << 2;
+
+/// Makes the frames that are due.
+pub(super) struct Frames {
+    body: Body,
+    zero_us: u32,
+    status: u16,
+    next_s: Option<f64>,
+    line: FaultyLine,
+    frozen: Option<Frame>,
+    made: u64,
+}
+
+impl Frames {
+    pub(super) fn new(body: Body, zero_us: u32, status: u16) -> Self {
+        Self { body, zero_us, status, next_s: None, line: FaultyLine::default(), frozen: None, made: 0 }
+    }
+
+    /// Hands every frame that is due until `now_s` to `send`, as far as the fault lets it.
+    pub(super) fn due(&mut self, now_s: f64, wire: &dyn Wire, fault: EmulatedFault, send: &mut dyn FnMut(&[u8])) {
+        self.line.pass(now_s, &[], fault, send);
+        let Some(period_s) = wire.period_s() else {
+            self.next_s = None;
+            return;
+        };
+        let mut next_s = self.next_s.unwrap_or(now_s + period_s).max(now_s - BACKLOG_S);
+        while next_s <= now_s {
+            let frame = self.frame(next_s, wire, fault);
+            let mut bytes = [0; INERTIAL_BYTES];
+            let length = frame.encode(&mut bytes);
+            let length = self.spoil(&mut bytes, length, fault);
+            self.line.pass(now_s, &bytes[..length], fault, send);
+            next_s += period_s;
+        }
+        self.next_s = Some(next_s);
+    }
+
+    fn frame(&mut self, t_s: f64, wire: &dyn Wire, fault: EmulatedFault) -> Frame {
+        if fault == EmulatedFault::Freeze
+            && let Some(frozen) = self.frozen
+        {
+            return frozen;
+        }
+        let felt = (self.body)(t_s);
+        let array = |vector: Vector3<f64>| <[f64; 3]>::from(vector).map(|x| x as f32);
+        let inertial = wire.is_inertial().then(|| Inertial {
+            acceleration_m_s2: array(felt.acceleration_m_s2.unwrap_or_default()),
+            angular_velocity_rad_s: array(felt.angular_velocity_rad_s.unwrap_or_default()),
+        });
+        let bits = [felt.status.throttled, felt.status.overrange, felt.status.invalid, felt.status.raw];
+        let told = bits.iter().enumerate().fold(0, |sum, (bit, set)| sum | (u16::from(*set) << bit));
+        let mut frame = Frame {
+            status: self.status | told,
+            force_n: array(felt.wrench.force_n),
+            torque_nm: array(felt.wrench.torque_nm),
+            timestamp_us: self.zero_us.wrapping_add((t_s * 1e6).round() as u64 as u32),
+            temperature_c: felt.temperature_c as f32,
+            inertial,
+        };
+        wire.finish(&mut frame);
+        match fault {
+            EmulatedFault::DeviceFault => frame.status |= INVALID,
+            EmulatedFault::NotANumber => frame.force_n[0] = f32::NAN,
+            _ => {}
+        }
+        self.frozen = Some(frame);
+        frame
+    }
+
+    /// Faults of the bytes that only the emulator can make; gives the length that remains.
+    fn spoil(&mut self, bytes: &mut [u8; INERTIAL_BYTES], length: usize, fault: EmulatedFault) -> usize {
+        self.made += 1;
+        match fault {
+            EmulatedFault::BadChecksum => bytes[length - 1] ^= 0x55,
+            EmulatedFault::WrongFrame if self.made.is_multiple_of(2) => return length - 3,
+            EmulatedFault::WrongFrame => bytes[0] = 0xAC,
+            _ => {}
+        }
+        length
+    }
+}

@@ -1,0 +1,202 @@
+//! The first generation's firmware as far as its line shows it: start, modes, one-letter commands.
+//!
+//! Not known of the real one, and chosen here: every command in a wrong mode and every value out of range is answered with code 1.
+
+use nima_devices::bota::{
+    codec::Frame,
+    gen0::{COMMAND_BYTES, SINC, rate_hz},
+};
+
+use super::{Emulated, Wire};
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Mode {
+    /// Starting; deaf until then, s.
+    Booting(f64),
+    Init,
+    Config,
+    Run,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Config {
+    sinc: u16,
+    offset: [f32; 6],
+}
+
+#[derive(Debug)]
+pub(super) struct Gen0 {
+    mode: Mode,
+    config: Config,
+    saved: Config,
+    pending: Vec<u8>,
+    heard_s: f64,
+    boot_s: f64,
+    raw_starts: u32,
+    raw: bool,
+    product: String,
+    serial: String,
+    firmware: String,
+}
+
+/// A command with parameters has no end of its own; it is whole when nothing follows for so long, s.
+const IDLE_S: f64 = 0.020;
+/// What a gauge shows per newton without the calibration, about.
+const RAW_PER_UNIT: f32 = 4321.0;
+
+impl Gen0 {
+    pub(super) fn new(emulated: &Emulated) -> Self {
+        let config = Config { sinc: 512, offset: [0.0; 6] };
+        Self {
+            mode: Mode::Init,
+            config,
+            saved: config,
+            pending: Vec::new(),
+            heard_s: 0.0,
+            boot_s: emulated.boot_s,
+            raw_starts: emulated.raw_starts,
+            raw: false,
+            product: emulated.product.clone(),
+            serial: emulated.serial.clone(),
+            firmware: emulated.firmware.clone(),
+        }
+    }
+
+    fn start(&mut self) {
+        self.config = self.saved;
+        self.raw = self.raw_starts > 0;
+        self.raw_starts = self.raw_starts.saturating_sub(1);
+    }
+
+    fn letter(&mut self, letter: u8, now_s: f64, answer: &mut Vec<u8>) {
+        let good = match letter {
+            b'C' => {
+                self.mode = Mode::Config;
+                true
+            }
+            b'R' => {
+                self.mode = Mode::Run;
+                true
+            }
+            b'I' => {
+                self.start();
+                self.mode = Mode::Init;
+                true
+            }
+            b'#' => {
+                self.opened(now_s);
+                return;
+            }
+            b's' if self.mode == Mode::Config => {
+                self.saved = self.config;
+                true
+            }
+            b'l' if self.mode == Mode::Config => {
+                self.config = self.saved;
+                true
+            }
+            _ => false,
+        };
+        acknowledge(letter, good, answer);
+    }
+
+    /// A command with parameters.
+    fn command(&mut self, answer: &mut Vec<u8>) {
+        let line = String::from_utf8_lossy(&self.pending).into_owned();
+        self.pending.clear();
+        let Some(letter) = line.bytes().next() else { return };
+        if line == "p?" {
+            // The two fields between are not known.
+            answer.extend(format!("p,0,{},0,0,{}\r\n", self.serial, self.product).bytes());
+            acknowledge(b'p', self.mode == Mode::Config, answer);
+            return;
+        }
+        let values: Option<Vec<f32>> = line.split(',').skip(1).map(|field| field.parse().ok()).collect();
+        let good = self.mode == Mode::Config && values.is_some_and(|values| self.set(letter, &values));
+        acknowledge(letter, good, answer);
+    }
+
+    fn set(&mut self, letter: u8, values: &[f32]) -> bool {
+        match (letter, values) {
+            (b'f', [sinc, _, _, _]) if sinc.fract() == 0.0 && SINC.contains(&(*sinc as u16)) => {
+                self.config.sinc = *sinc as u16;
+                true
+            }
+            (b'b', offset) if offset.iter().all(|x| x.is_finite()) => match offset.try_into() {
+                Ok(offset) => {
+                    self.config.offset = offset;
+                    true
+                }
+                Err(_) => false,
+            },
+            // Binary frames with the calibration applied are all that it can do.
+            (b'c', [_, calibrated, format, index]) => {
+                *calibrated > 0.5 && format.abs() < 0.5 && (0.0..=5.0).contains(index)
+            }
+            (b'm', [_, _, _, _, _, _]) => true,
+            _ => false,
+        }
+    }
+}
+
+fn acknowledge(letter: u8, good: bool, answer: &mut Vec<u8>) {
+    answer.extend(format!("r,0,{},{}\r\n", char::from(letter), u8::from(!good)).bytes());
+}
+
+impl Wire for Gen0 {
+    fn opened(&mut self, now_s: f64) {
+        self.mode = Mode::Booting(now_s + self.boot_s);
+        self.pending.clear();
+    }
+
+    fn hear(&mut self, bytes: &[u8], now_s: f64, answer: &mut Vec<u8>) {
+        if matches!(self.mode, Mode::Booting(_)) {
+            return;
+        }
+        for byte in bytes {
+            match byte {
+                b'\r' | b'\n' => self.command(answer),
+                b'C' | b'R' | b'I' | b'#' | b's' | b'l' | b'w' if self.pending.is_empty() => {
+                    self.letter(*byte, now_s, answer);
+                }
+                b'c' | b'f' | b'b' | b'm' | b'p' if self.pending.is_empty() => self.pending.push(*byte),
+                _ if self.pending.is_empty() => {}
+                _ if self.pending.len() >= COMMAND_BYTES => self.pending.clear(),
+                _ => self.pending.push(*byte),
+            }
+        }
+        self.heard_s = now_s;
+    }
+
+    fn tick(&mut self, now_s: f64, answer: &mut Vec<u8>) {
+        match self.mode {
+            Mode::Booting(until_s) if now_s >= until_s => {
+                self.start();
+                self.mode = Mode::Run;
+                let (name, serial, firmware) = (&self.product, &self.serial, &self.firmware);
+                answer
+                    .extend(format!("App Init\r\nname: {name}\r\nS/N: {serial}\r\nFW version: {firmware}\r\n").bytes());
+            }
+            _ if !self.pending.is_empty() && now_s - self.heard_s > IDLE_S => self.command(answer),
+            _ => {}
+        }
+    }
+
+    fn period_s(&self) -> Option<f64> {
+        (self.mode == Mode::Run).then(|| 1.0 / rate_hz(self.config.sinc))
+    }
+
+    fn is_inertial(&self) -> bool {
+        false
+    }
+
+    fn finish(&self, frame: &mut Frame) {
+        let values = frame.force_n.iter_mut().chain(&mut frame.torque_nm);
+        for (value, offset) in values.zip(self.config.offset) {
+            *value = if self.raw { *value * RAW_PER_UNIT } else { *value + offset };
+        }
+        if self.raw {
+            frame.status |= 1 << 3;
+        }
+    }
+}

@@ -1,0 +1,392 @@
+//! Emulated servos on one bus: every instruction of Protocol 2.0, at the pace of the line.
+//!
+//! Sans-IO: [`Emulator::receive`] takes what a client sent, [`Emulator::send`] gives what leaves by now. [`Emulator::serve`] puts it on
+//! a pseudo-terminal. What the world does to the shafts comes from a closure, [`Body`], called at every instruction and every
+//! millisecond between them; what commands do to them is told to it with the same call.
+//!
+//! Inferred, because the e-manual is silent: servos after a missing one do not answer a sync read; a failed part of a fast
+//! read answers zeros with its error.
+
+mod motor;
+mod registers;
+#[cfg(unix)]
+mod serving;
+mod servo;
+#[cfg(test)]
+mod tests;
+
+use std::collections::VecDeque;
+
+use nima_devices::dynamixel::{
+    codec::{BROADCAST, Incoming, Outgoing, STATUS},
+    message::{self, Instruction, Keep, Refusal},
+    table::{self, BAUDS, HardwareError, Model},
+};
+use servo::Servo;
+
+use crate::emulators::{EmulatedFault, FaultyLine};
+
+/// Longest instruction that an emulated servo takes.
+const LONGEST: usize = 2048;
+/// Between two looks at the world while no instruction comes, s.
+const ADVANCE_S: f64 = 0.001;
+/// A packet that pauses for longer is given up, s.
+const PAUSE_S: f64 = 0.050;
+
+/// A servo's shaft, as the world sees it: before offset and sign.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Shaft {
+    /// Angle, rad.
+    pub angle_rad: f64,
+    /// Speed, rad/s.
+    pub velocity_rad_s: f64,
+    /// The motor is driven; else it is turned by the load alone.
+    pub torque_on: bool,
+}
+
+/// What the world does to a servo.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Surroundings {
+    /// Torque on the shaft, Nm.
+    pub load_nm: f64,
+    /// Supply, V.
+    pub supply_v: f64,
+    /// Temperature of the housing, degrees Celsius.
+    pub temperature_c: f64,
+}
+
+/// The world: called with the time, s, which servo, and its shaft.
+pub type Body = Box<dyn FnMut(f64, usize, &Shaft) -> Surroundings + Send>;
+
+/// How emulated servos are.
+#[derive(Clone, Debug)]
+pub struct EmulatorSettings {
+    /// Ids on the bus.
+    pub ids: Vec<u8>,
+    /// Model number of all of them.
+    pub model: u16,
+    /// Line speed, bit/s.
+    pub baud: u32,
+    /// The firmware knows the fast reads.
+    pub fast: bool,
+}
+
+impl Default for EmulatorSettings {
+    fn default() -> Self {
+        Self { ids: vec![1, 2, 3, 4], model: 1020, baud: 1_000_000, fast: true }
+    }
+}
+
+/// The bus.
+pub struct Emulator {
+    servos: Vec<Servo>,
+    body: Body,
+    fast: bool,
+    incoming: Incoming,
+    out: Outgoing,
+    queue: VecDeque<(f64, Vec<u8>)>,
+    line: FaultyLine,
+    heard_s: f64,
+    advanced_s: f64,
+    free_s: f64,
+    fault: EmulatedFault,
+}
+
+impl std::fmt::Debug for Emulator {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Emulator").field("servos", &self.servos.len()).finish_non_exhaustive()
+    }
+}
+
+/// The servos without a world: a soft hand sways their shafts slowly, which they hold against once the torque is on.
+pub fn swaying(supply_v: f64) -> Body {
+    Box::new(move |now_s, index, shaft| {
+        let there_rad = 0.4 * (0.6 * now_s + index as f64).sin();
+        let load_nm = if shaft.torque_on { 0.05 } else { 0.5 } * (there_rad - shaft.angle_rad).clamp(-1.0, 1.0);
+        Surroundings { load_nm, supply_v, temperature_c: 31.0 }
+    })
+}
+
+impl Emulator {
+    /// New from the factory, but for ids and line speed; `None` where model or speed is none that there is. Without a
+    /// body the shafts sway slowly.
+    pub fn new(settings: &EmulatorSettings, body: Option<Body>) -> Option<Self> {
+        let model = Model::numbered(settings.model)?;
+        let baud = BAUDS.iter().position(|baud| *baud == settings.baud)? as u8;
+        let supply_v = if model.is_small() { 5.0 } else { 12.0 };
+        Some(Self {
+            servos: settings.ids.iter().map(|id| Servo::new(model, *id, baud)).collect(),
+            body: body.unwrap_or_else(|| swaying(supply_v)),
+            fast: settings.fast,
+            incoming: Incoming::new(LONGEST),
+            out: Outgoing::new(LONGEST),
+            queue: VecDeque::new(),
+            line: FaultyLine::default(),
+            heard_s: 0.0,
+            advanced_s: f64::NEG_INFINITY,
+            free_s: 0.0,
+            fault: EmulatedFault::None,
+        })
+    }
+
+    /// Line speed that the servos have now, bit/s.
+    pub fn baud(&self) -> u32 {
+        let code = self.servos.first().map_or(1, |servo| servo.get(table::BAUD));
+        BAUDS[code as usize % BAUDS.len()]
+    }
+
+    /// Latches a hardware error of a servo, as a fault in the world would.
+    pub fn fail(&mut self, index: usize, error: HardwareError) {
+        if let Some(servo) = self.servos.get_mut(index) {
+            servo.fail(error);
+        }
+    }
+
+    /// The shaft of a servo.
+    pub fn shaft(&self, index: usize) -> Option<Shaft> {
+        self.servos.get(index).map(Servo::shaft)
+    }
+
+    /// Cuts a servo's power for a moment: it starts again by itself.
+    pub fn interrupt(&mut self, index: usize, now_s: f64) {
+        if let Some(servo) = self.servos.get_mut(index) {
+            servo.reboot(now_s);
+        }
+    }
+
+    /// Takes what a client sent at `now_s`.
+    pub fn receive(&mut self, now_s: f64, bytes: &[u8]) {
+        if self.incoming.is_midway() && now_s - self.heard_s > PAUSE_S {
+            self.incoming.reset();
+        }
+        self.heard_s = now_s;
+        let mut taken = 0;
+        while taken < bytes.len() {
+            taken += self.incoming.feed(&bytes[taken..]);
+            while let Some(packet) = self.incoming.next() {
+                if packet.instruction == STATUS {
+                    continue;
+                }
+                let (id, instruction, wire_bytes) = (packet.id, packet.instruction, packet.wire_bytes);
+                let body = packet.body.to_vec();
+                self.advance(now_s);
+                // The answer begins when the question is over, and after what is still on the line.
+                self.free_s = self.free_s.max(now_s) + wire_bytes as f64 * 10.0 / f64::from(self.baud());
+                self.obey(id, instruction, &body, now_s);
+            }
+        }
+    }
+
+    /// Gives what leaves by `now_s`, as far as `fault` lets it.
+    pub fn send(&mut self, now_s: f64, fault: EmulatedFault, send: &mut dyn FnMut(&[u8])) {
+        if fault == EmulatedFault::DeviceFault && self.fault != fault {
+            self.fail(0, HardwareError(HardwareError::OVERLOAD));
+        }
+        self.fault = fault;
+        for servo in &mut self.servos {
+            servo.frozen = fault == EmulatedFault::Freeze;
+            servo.impossible = fault == EmulatedFault::NotANumber;
+        }
+        if now_s - self.advanced_s >= ADVANCE_S {
+            self.advance(now_s);
+        }
+        while self.queue.front().is_some_and(|(due_s, _)| *due_s <= now_s) {
+            let Some((_, mut frame)) = self.queue.pop_front() else { break };
+            match fault {
+                EmulatedFault::BadChecksum => frame.iter_mut().rev().take(1).for_each(|byte| *byte ^= 0x55),
+                EmulatedFault::WrongFrame => {
+                    self.out.clear();
+                    message::encode_status(frame[4], 0, &[1, 2, 3], &mut self.out);
+                    frame = self.out.bytes().to_vec();
+                }
+                _ => {}
+            }
+            self.line.pass(now_s, &frame, fault, send);
+        }
+        self.line.pass(now_s, &[], fault, send);
+    }
+
+    /// When the next answer is due, s.
+    pub fn due_s(&self) -> Option<f64> {
+        self.queue.front().map(|(due_s, _)| *due_s)
+    }
+
+    /// Pseudo-terminals exist on Unix alone.
+    #[cfg(not(unix))]
+    pub fn serve(self) -> std::io::Result<crate::emulators::Serving> {
+        self.serve_at(None)
+    }
+
+    /// Pseudo-terminals exist on Unix alone.
+    #[cfg(not(unix))]
+    pub fn serve_at(self, _: Option<&std::path::Path>) -> std::io::Result<crate::emulators::Serving> {
+        Err(std::io::ErrorKind::Unsupported.into())
+    }
+
+    fn advance(&mut self, now_s: f64) {
+        self.advanced_s = now_s;
+        for (index, servo) in self.servos.iter_mut().enumerate() {
+            let around = (self.body)(now_s, index, &servo.shaft());
+            servo.advance(now_s, &around);
+        }
+    }
+
+    fn obey(&mut self, id: u8, instruction: u8, body: &[u8], now_s: f64) {
+        for servo in &mut self.servos {
+            servo.hear(now_s);
+        }
+        let instruction = Instruction::decode(instruction, body);
+        match instruction {
+            Ok(Instruction::SyncRead { fast: true, .. } | Instruction::BulkRead { fast: true, .. }) if !self.fast => {}
+            Ok(Instruction::SyncRead { address, count, ids, fast }) => {
+                let asked: Vec<_> = ids.iter().map(|id| (*id, address, count)).collect();
+                self.read_many(&asked, fast, now_s);
+            }
+            Ok(Instruction::BulkRead { items, fast }) => {
+                let asked: Vec<_> = message::bulk_reads(items).collect();
+                self.read_many(&asked, fast, now_s);
+            }
+            Ok(Instruction::SyncWrite { address, count, items }) => {
+                for (id, data) in message::sync_items(items, count) {
+                    self.write_silently(id, address, data, now_s);
+                }
+            }
+            Ok(Instruction::BulkWrite { items }) => {
+                for (id, address, data) in message::bulk_writes(items) {
+                    self.write_silently(id, address, data, now_s);
+                }
+            }
+            Ok(instruction) => self.obey_one(id, &instruction, now_s),
+            Err(refusal) => {
+                if let Some(index) = self.index_of(id, now_s) {
+                    self.answer(index, 2, Err(refusal), &[]);
+                }
+            }
+        }
+    }
+
+    fn index_of(&self, id: u8, now_s: f64) -> Option<usize> {
+        self.servos.iter().position(|servo| servo.id() == id && servo.is_up(now_s))
+    }
+
+    fn write_silently(&mut self, id: u8, address: u16, data: &[u8], now_s: f64) {
+        let meant = |servo: &&mut Servo| (servo.id() == id || servo.is_shadow_of(id)) && servo.is_up(now_s);
+        for servo in self.servos.iter_mut().filter(meant) {
+            // Nobody is told, as on the real bus.
+            let _silent: Result<(), Refusal> = servo.write(address, data, now_s);
+        }
+    }
+
+    /// An instruction for one servo, or for all that are there.
+    fn obey_one(&mut self, id: u8, instruction: &Instruction<'_>, now_s: f64) {
+        let all = id == BROADCAST;
+        for index in 0..self.servos.len() {
+            let servo = &mut self.servos[index];
+            if !servo.is_up(now_s) {
+                continue;
+            }
+            let own = servo.id() == id;
+            if !own && !all {
+                if servo.is_shadow_of(id)
+                    && let Instruction::Write { address, data } = *instruction
+                {
+                    self.write_silently(id, address, data, now_s);
+                }
+                continue;
+            }
+            let mut data = Vec::new();
+            let (level, result) = Self::one(servo, instruction, all, now_s, &mut data);
+            // Everyone answers to a ping of all; nobody to anything else.
+            if own || *instruction == Instruction::Ping {
+                self.answer(index, level, result, &data);
+            }
+        }
+    }
+
+    /// What a servo does with an instruction: from which status return level on it answers, and what.
+    fn one(
+        servo: &mut Servo,
+        instruction: &Instruction<'_>,
+        all: bool,
+        now_s: f64,
+        data: &mut Vec<u8>,
+    ) -> (i64, Result<(), Refusal>) {
+        let result = match *instruction {
+            Instruction::Ping => {
+                let firmware = servo.get(table::FIRMWARE) as u8;
+                data.extend(servo.model.number.to_le_bytes());
+                data.push(firmware);
+                return (0, Ok(()));
+            }
+            Instruction::Read { address, count } => return (1, servo.read(address, count, data)),
+            Instruction::Write { address, data } => servo.write(address, data, now_s),
+            Instruction::RegWrite { address, data } => servo.register(address, data),
+            Instruction::Action => servo.act(now_s),
+            Instruction::FactoryReset { keep: Keep::Nothing } if all => Err(Refusal::Range),
+            Instruction::FactoryReset { keep } => {
+                servo.factory_reset(keep, now_s);
+                Ok(())
+            }
+            Instruction::Reboot => {
+                servo.reboot(now_s);
+                Ok(())
+            }
+            Instruction::ClearTurns => {
+                servo.clear_turns();
+                Ok(())
+            }
+            Instruction::Backup { restore } => servo.back_up(restore, now_s),
+            Instruction::SyncRead { .. }
+            | Instruction::SyncWrite { .. }
+            | Instruction::BulkRead { .. }
+            | Instruction::BulkWrite { .. } => Err(Refusal::Instruction),
+        };
+        (2, result)
+    }
+
+    fn answer(&mut self, index: usize, level: i64, result: Result<(), Refusal>, data: &[u8]) {
+        let servo = &self.servos[index];
+        if servo.get(table::STATUS_RETURN_LEVEL) < level {
+            return;
+        }
+        let error = servo.alert() | result.err().map_or(0, |refusal| refusal as u8);
+        self.out.clear();
+        message::encode_status(servo.id(), error, data, &mut self.out);
+        self.enqueue(index);
+    }
+
+    /// Several servos answer one after the other, or with blocks of one packet.
+    fn read_many(&mut self, asked: &[(u8, u16, u16)], fast: bool, now_s: f64) {
+        self.out.clear();
+        if fast {
+            let block_bytes = asked.iter().map(|(_, _, count)| usize::from(*count) + 4).sum();
+            self.out.begin_fast(block_bytes);
+        }
+        let mut last = None;
+        for (id, address, count) in asked {
+            // Each waits for the one before; after a missing one nobody answers.
+            let Some(index) = self.index_of(*id, now_s) else { break };
+            let mut data = Vec::new();
+            let result = self.servos[index].read(*address, *count, &mut data);
+            if fast {
+                data.resize(usize::from(*count), 0);
+                let error = self.servos[index].alert() | result.err().map_or(0, |refusal| refusal as u8);
+                self.out.put_block(error, *id, &data);
+                last = Some(index);
+            } else {
+                self.answer(index, 1, result, &data);
+            }
+        }
+        if let Some(index) = last {
+            self.enqueue(index);
+        }
+    }
+
+    /// Puts the packet in `out` on the line when its time has come.
+    fn enqueue(&mut self, index: usize) {
+        let delay_s = self.servos[index].get(table::RETURN_DELAY) as f64 * 2e-6;
+        let wire_s = self.out.bytes().len() as f64 * 10.0 / f64::from(self.baud());
+        self.free_s += delay_s + wire_s;
+        self.queue.push_back((self.free_s, self.out.bytes().to_vec()));
+    }
+}

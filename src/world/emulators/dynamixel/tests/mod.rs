@@ -1,0 +1,8 @@
+//! The driver against the emulator, over pipes in memory and over pseudo-terminals.
+
+mod faults;
+mod opening;
+mod servos;
+#[cfg(unix)]
+mod terminal;
+mod world;

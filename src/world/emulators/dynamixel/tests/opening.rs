@@ -1,0 +1,188 @@
+//! Opening: what is set in the servos, and every cause why it cannot be.
+
+use nima_devices::{
+    Device as _, Loss, Standing, Trouble,
+    dynamixel::{
+        HardwareError, OperatingMode, Pace as _, Settings,
+        codec::{BROADCAST, Incoming, Outgoing},
+        message::Instruction,
+        open_over,
+    },
+    transport::{Bytes, MemoryBytes},
+};
+
+use super::{
+    super::{Emulator, EmulatorSettings},
+    world::{Bench, emulated, settings},
+};
+use crate::emulators::EmulatedFault;
+
+/// Reads registers of a servo behind the driver's back.
+fn peek(bench: &Bench, id: u8, address: u16, count: u16) -> Vec<u8> {
+    let mut out = Outgoing::new(64);
+    Instruction::Read { address, count }.encode(id, &mut out);
+    let mut world = bench.world.borrow_mut();
+    let (mut incoming, mut body) = (Incoming::new(512), Vec::new());
+    let now_s = world.now_s;
+    world.emulator.receive(now_s, out.bytes());
+    world.emulator.send(now_s + 1.0, EmulatedFault::None, &mut |bytes| {
+        incoming.feed(bytes);
+        body = incoming.next().unwrap().body[1..].to_vec();
+    });
+    body
+}
+
+fn number(bytes: &[u8]) -> i32 {
+    let sign = if bytes.last().is_some_and(|byte| byte & 0x80 != 0) { 0xFF } else { 0 };
+    let mut all = [sign; 4];
+    all[..bytes.len()].copy_from_slice(bytes);
+    i32::from_le_bytes(all)
+}
+
+#[test]
+fn the_servos_become_what_the_settings_say() {
+    let mut wanted = settings();
+    let servo = &mut wanted.servos[2];
+    servo.reverse = true;
+    servo.homing_offset_rad = 0.5;
+    servo.operating_mode = OperatingMode::CurrentBasedPosition;
+    servo.goal_current_a = Some(0.269);
+    servo.gains.position_d = 77;
+    servo.profile_acceleration_rad_s2 = 0.01;
+    let mut bench = Bench::new(Emulator::new(&emulated(), None).unwrap(), wanted);
+    let driver = bench.open().unwrap();
+    assert_eq!(driver.identity().product, "XM430-W350 XM430-W350 XM430-W350 XM430-W350");
+    assert_eq!((driver.identity().serial.as_str(), driver.health().standing), ("ids 1 2 3 4", Standing::Opening));
+    assert!(driver.uses_fast_sync_read());
+    for (id, address, count, value) in [
+        (1, 9, 1, 0),
+        (1, 10, 1, 0),
+        (1, 11, 1, 3),
+        // 1.5 rad are 977.8 ticks.
+        (1, 48, 4, 2048 + 977),
+        (1, 52, 4, 2048 - 977),
+        (1, 38, 2, 743),
+        (1, 84, 2, 800),
+        (1, 112, 4, 167),
+        (3, 10, 1, 1),
+        (3, 11, 1, 5),
+        (3, 20, 4, 326),
+        (3, 80, 2, 77),
+        (3, 102, 2, 100),
+        // Less than one step is still a limit.
+        (3, 108, 4, 1),
+        (3, 64, 1, 0),
+    ] {
+        assert_eq!(number(&peek(&bench, id, address, count)), value, "servo {id}, register {address}");
+    }
+}
+
+#[test]
+fn an_old_firmware_is_asked_one_by_one() {
+    let settings_of = EmulatorSettings { fast: false, ..emulated() };
+    let mut bench = Bench::new(Emulator::new(&settings_of, None).unwrap(), settings());
+    let mut driver = bench.open().unwrap();
+    assert!(!driver.uses_fast_sync_read());
+    assert!(bench.run(&mut driver, 1.0).is_some());
+    assert_eq!((driver.health().lost, driver.health().out_of_order), (0, 0));
+    assert!(driver.health().readings > 450, "{:?}", driver.health());
+}
+
+#[test]
+fn servos_that_answer_to_reads_alone_are_told_to_answer() {
+    let mut bench = Bench::usual();
+    drop(bench.open().unwrap());
+    let mut out = Outgoing::new(64);
+    Instruction::Write { address: 68, data: &[1] }.encode(2, &mut out);
+    let now_s = bench.now_s();
+    bench.world.borrow_mut().emulator.receive(now_s, out.bytes());
+    assert!(bench.open().is_ok());
+}
+
+#[test]
+fn what_is_missing_or_another_is_named() {
+    let opened = |emulator: EmulatorSettings, settings: Settings| {
+        Bench::new(Emulator::new(&emulator, None).unwrap(), settings).open().err()
+    };
+    let missing = opened(EmulatorSettings { ids: vec![1, 2, 4], ..emulated() }, settings());
+    assert_eq!(missing, Some(Trouble::Absent { place: "servo 3 on test".to_owned() }));
+    let nobody = opened(EmulatorSettings { ids: vec![], ..emulated() }, settings());
+    assert_eq!(nobody, Some(Trouble::Silent { place: "test".to_owned() }));
+    let mut wanted = settings();
+    wanted.servos[1].model = Some("XM540-W270".to_owned());
+    let other = opened(emulated(), wanted);
+    let found = ("servo 2 on test".to_owned(), "XM540-W270".to_owned(), "XM430-W350".to_owned());
+    assert_eq!(other, Some(Trouble::WrongProduct { place: found.0, expected: found.1, found: found.2 }));
+    let mut weak = settings();
+    weak.servos.iter_mut().for_each(|servo| servo.current_limit_a = 1.8);
+    let small = opened(EmulatorSettings { model: 1200, ..emulated() }, weak);
+    assert!(matches!(&small, Some(Trouble::Setting { key, .. }) if key == "current_limit_a"), "{small:?}");
+}
+
+#[test]
+fn impossible_settings_are_refused_by_key() {
+    type Change = fn(&mut Settings);
+    let changes: [(&str, Change); 10] = [
+        ("baud", |s| s.baud = 123),
+        ("bus_watchdog_s", |s| s.bus_watchdog_s = 3.0),
+        ("silence_s", |s| s.silence_s = f64::NAN),
+        ("servos[1].id", |s| s.servos[1].id = 1),
+        ("servos[0].id", |s| s.servos[0].id = 253),
+        ("servos[3].model", |s| s.servos[3].model = Some("AX-12".to_owned())),
+        ("servos[2].homing_offset_rad", |s| s.servos[2].homing_offset_rad = 2.0),
+        ("servos[0].position_min_rad", |s| s.servos[0].position_min_rad = 2.0),
+        ("servos[0].goal_current_a", |s| s.servos[0].goal_current_a = Some(2.1)),
+        ("servos[0].gains", |s| s.servos[0].gains.position_p = 20_000),
+    ];
+    assert_eq!(settings().check(), Ok(()));
+    for (key, change) in changes {
+        let mut changed = settings();
+        change(&mut changed);
+        assert!(matches!(changed.check(), Err(Trouble::Setting { key: told, .. }) if told == key), "{key}");
+    }
+    let text = "port = \"x\"\nbaud = 57600\nspeed = 1\nservos = []";
+    assert!(toml::from_str::<Settings>(text).is_err(), "unknown keys are refused");
+    let written = toml::to_string(&settings()).unwrap();
+    assert_eq!(toml::from_str::<Settings>(&written).unwrap(), settings());
+}
+
+#[test]
+fn a_servo_that_shut_down_opens_after_a_restart_by_command_only() {
+    let mut bench = Bench::usual();
+    bench.world.borrow_mut().emulator.fail(1, HardwareError(0x24));
+    let told = bench.open().err();
+    let words = "servo 2: overheated, overload".to_owned();
+    assert!(matches!(&told, Some(Trouble::DeviceFault { words: told, .. }) if *told == words), "{told:?}");
+    assert!(told.unwrap().cure().contains("servo 2"));
+    bench.reboots.ask(1);
+    let mut driver = bench.open().unwrap();
+    assert!(bench.run(&mut driver, 0.1).is_some() && !bench.reboots.is_any());
+}
+
+/// A line on which somebody else switches the torque of servo 1 on again and again.
+struct Meddler(MemoryBytes);
+
+impl Bytes for Meddler {
+    fn receive(&mut self, buffer: &mut [u8]) -> Result<usize, Loss> {
+        self.0.receive(buffer)
+    }
+
+    fn send(&mut self, bytes: &[u8]) -> Result<(), Loss> {
+        let mut out = Outgoing::new(64);
+        Instruction::SyncWrite { address: 64, count: 1, items: &[1, 1] }.encode(BROADCAST, &mut out);
+        self.0.send(out.bytes())?;
+        self.0.send(bytes)
+    }
+}
+
+#[test]
+fn a_servo_that_does_not_keep_what_is_written_is_told() {
+    let mut bench = Bench::usual();
+    let [ours, theirs] = MemoryBytes::pair();
+    bench.world.borrow_mut().end = theirs;
+    let (wanted, reboots) = (bench.settings.clone(), bench.reboots.clone());
+    let told = open_over(Meddler(ours), &mut bench, &wanted, &reboots).err();
+    let Some(Trouble::Refused { place, command, answer }) = told else { panic!("{told:?}") };
+    assert_eq!((place.as_str(), command.as_str()), ("servo 1 on test", "0 in register 64"));
+    assert_eq!(answer, "it keeps 1");
+}

@@ -1,0 +1,121 @@
+//! Driver and emulator over a pseudo-terminal.
+
+use std::time::{Duration, Instant};
+
+use nima_devices::{
+    Device as _, Loss, Slot, Standing, Trouble,
+    dynamixel::{Driver, Reboots, Settings, open, open_with},
+};
+
+use super::{
+    super::{Emulator, EmulatorSettings},
+    world::{emulated, settings},
+};
+use crate::emulators::{EmulatedFault, Serving};
+
+fn serving(settings_of: &EmulatorSettings) -> (Serving, Settings) {
+    let serving = Emulator::new(settings_of, None).unwrap().serve().unwrap();
+    let mut settings = Settings { port: serving.endpoint.clone(), baud: settings_of.baud, ..settings() };
+    // Other programs of this machine may keep either side waiting.
+    settings.silence_s = 0.5;
+    (serving, settings)
+}
+
+#[test]
+fn it_delivers_over_the_terminal_without_a_loss() {
+    let (_serving, settings) = serving(&emulated());
+    let mut driver = open(&settings).unwrap();
+    assert!(driver.uses_fast_sync_read());
+    let begin = Instant::now();
+    let mut last = None;
+    while begin.elapsed() < Duration::from_millis(800) {
+        let now_s = begin.elapsed().as_secs_f64();
+        if let Some(reading) = driver.poll(now_s) {
+            assert!(last.is_none_or(|last_s| reading.device_s.unwrap() >= last_s));
+            last = reading.device_s;
+        }
+        std::thread::sleep(Duration::from_micros(50));
+    }
+    let health = driver.health();
+    assert!(health.readings > 50, "{health:?}");
+    assert_eq!((health.damaged, health.refused, health.skipped_bytes), (0, 0, 0));
+    // A pause of this machine can make an answer late; more than a few are ours.
+    assert!(health.lost + health.out_of_order <= 4, "{health:?}");
+}
+
+/// Not a test of anything but this machine: the figures that the documentation gives.
+#[test]
+#[ignore = "measures; takes 20 s"]
+fn measure_rate_and_losses() {
+    for baud in [1_000_000, 4_000_000] {
+        for fast in [true, false] {
+            let (_serving, settings) = serving(&EmulatorSettings { baud, fast, ..emulated() });
+            let mut driver = open(&settings).unwrap();
+            let begin = Instant::now();
+            let (mut polls, mut longest) = (0_u64, Duration::ZERO);
+            while begin.elapsed() < Duration::from_secs(5) {
+                let before = Instant::now();
+                driver.poll(begin.elapsed().as_secs_f64());
+                longest = longest.max(before.elapsed());
+                polls += 1;
+                std::thread::yield_now();
+            }
+            let rate_hz = driver.health().readings as f64 / begin.elapsed().as_secs_f64();
+            println!("{baud} fast {fast}: {rate_hz:.0} Hz, {polls} polls, longest {longest:?}, {:?}", driver.health());
+        }
+    }
+}
+
+fn until(slot: &mut Slot<Driver>, begin: Instant, good: impl Fn(&Slot<Driver>) -> bool) -> bool {
+    let limit = Instant::now() + Duration::from_secs(10);
+    while Instant::now() < limit {
+        slot.poll(begin.elapsed().as_secs_f64());
+        if good(slot) {
+            return true;
+        }
+        std::thread::sleep(Duration::from_micros(300));
+    }
+    false
+}
+
+#[test]
+fn a_slot_brings_it_back_after_faults_and_a_cut_line() {
+    let (serving, mut settings) = serving(&emulated());
+    settings.silence_s = 0.1;
+    let reboots = Reboots::default();
+    let (wanted, asked) = (settings, reboots.clone());
+    let mut slot = Slot::start("servos", move || open_with(&wanted, &asked)).unwrap();
+    let begin = Instant::now();
+    let connected = |slot: &Slot<Driver>| slot.health().standing == Standing::Connected;
+    assert!(until(&mut slot, begin, connected));
+    for fault in [EmulatedFault::Disconnect, EmulatedFault::BadChecksum, EmulatedFault::DeviceFault] {
+        serving.faults.set(fault);
+        assert!(until(&mut slot, begin, |slot| matches!(slot.health().standing, Standing::Lost(_))), "{fault:?}");
+        let Standing::Lost(loss) = slot.health().standing else { unreachable!() };
+        match fault {
+            EmulatedFault::Disconnect => assert_eq!(loss, Loss::Disconnected),
+            EmulatedFault::BadChecksum => assert_eq!(loss, Loss::Corrupt),
+            _ => assert!(matches!(loss, Loss::Device { .. })),
+        }
+        serving.faults.set(EmulatedFault::None);
+        if fault == EmulatedFault::DeviceFault {
+            reboots.ask(0);
+        }
+        assert!(until(&mut slot, begin, connected), "{fault:?}: {:?}", slot.view().report().trouble);
+    }
+    assert!(slot.view().report().opened >= 4);
+}
+
+#[test]
+fn why_it_cannot_be_opened_is_told() {
+    let (serving, settings) = serving(&emulated());
+    let wrong = Settings { baud: 57_600, ..settings.clone() };
+    assert_eq!(open(&wrong).err(), Some(Trouble::WrongBaud { place: settings.port.clone(), baud: 57_600 }));
+    let driver = open(&settings).unwrap();
+    assert!(matches!(open(&settings).err(), Some(Trouble::Busy { .. })));
+    drop(driver);
+    serving.faults.set(EmulatedFault::Silence);
+    assert!(matches!(open(&settings).err(), Some(Trouble::Silent { .. })));
+    drop(serving);
+    assert_eq!(open(&settings).err(), Some(Trouble::Absent { place: settings.port.clone() }));
+}

@@ -1,0 +1,199 @@
+//! The emulated device's own rules: modes, watchdog, velocity threshold, saturation. No input, no output, time is handed in.
+//!
+//! As the SDK tells them: force on brings FORCE; stop and too much speed bring BRAKE with a cause; a watchdog that runs out too;
+//! brakes off bring IDLE. Force is applied in FORCE only.
+
+use drd::wire::Order;
+use nalgebra::Vector3;
+use nima_devices::force_dimension::status::{ENTRIES, ForceOffCause};
+
+/// Mode of the motors.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Mode {
+    /// No current.
+    Idle,
+    /// Force is applied.
+    Force,
+    /// Braking.
+    #[default]
+    Brake,
+}
+
+/// What the motors do to the hand.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Applied {
+    /// Mode.
+    pub mode: Mode,
+    /// Force on the hand, N; zero outside of [`Mode::Force`].
+    pub force_n: Vector3<f64>,
+    /// Force of the gripper, N.
+    pub gripper_n: f64,
+    /// Why the force was last switched off.
+    pub cause: ForceOffCause,
+}
+
+/// A device that has just been switched on: velocity threshold 2 m/s, no watchdog.
+#[derive(Clone, Debug)]
+pub(super) struct Firmware {
+    applied: Applied,
+    commanded_s: f64,
+    motor_limit_n: f64,
+    pub(super) watchdog_steps: u32,
+    pub(super) threshold_mm_s: u32,
+    past: Option<(f64, Vector3<f64>)>,
+    pub(super) gripper_button: bool,
+}
+
+/// Velocity threshold after power-up, mm/s.
+const THRESHOLD_MM_S: u32 = 2000;
+/// Between two positions from which the hand's speed is found, s.
+const SPEED_OVER_S: f64 = 0.004;
+/// Speed within the positions of a hand that jumped is no speed, m/s: a world that begins anew.
+const JUMP_M_S: f64 = 50.0;
+const STEP_S: f64 = 125e-6;
+
+impl Firmware {
+    /// With motors that can do so much, N.
+    pub(super) fn new(motor_limit_n: f64) -> Self {
+        Self {
+            applied: Applied::default(),
+            commanded_s: 0.0,
+            motor_limit_n,
+            watchdog_steps: 0,
+            threshold_mm_s: THRESHOLD_MM_S,
+            past: None,
+            gripper_button: false,
+        }
+    }
+
+    /// What the motors do.
+    pub(super) const fn applied(&self) -> &Applied {
+        &self.applied
+    }
+
+    /// Takes force away.
+    pub(super) const fn cut(&mut self, cause: ForceOffCause) {
+        self.applied = Applied { mode: Mode::Brake, force_n: Vector3::new(0.0, 0.0, 0.0), gripper_n: 0.0, cause };
+    }
+
+    /// Lets time pass with the hand at `position_m`.
+    pub(super) fn pass(&mut self, now_s: f64, position_m: &Vector3<f64>) {
+        let silent_s = now_s - self.commanded_s;
+        if self.applied.mode == Mode::Force
+            && self.watchdog_steps > 0
+            && silent_s > f64::from(self.watchdog_steps) * STEP_S
+        {
+            self.cut(ForceOffCause::Watchdog);
+        }
+        let (past_s, past_m) = *self.past.get_or_insert((now_s, *position_m));
+        if now_s - past_s < SPEED_OVER_S {
+            return;
+        }
+        self.past = Some((now_s, *position_m));
+        let speed_m_s = (position_m - past_m).norm() / (now_s - past_s);
+        let too_fast = speed_m_s * 1e3 > f64::from(self.threshold_mm_s) && speed_m_s < JUMP_M_S;
+        if self.applied.mode == Mode::Force && self.threshold_mm_s > 0 && too_fast {
+            self.cut(ForceOffCause::Velocity);
+        }
+    }
+
+    /// Obeys an order; true when the motors were saturated.
+    pub(super) fn obey(&mut self, now_s: f64, order: Order, argument: u32, values: [f64; 4]) -> bool {
+        match order {
+            Order::Force => return self.force(now_s, values),
+            Order::EnableForce if argument == 0 => {
+                self.cut(ForceOffCause::Software);
+                self.applied.mode = Mode::Idle;
+            }
+            Order::EnableForce => {
+                // The cause of the last end of force stays to be read.
+                self.applied = Applied { mode: Mode::Force, cause: self.applied.cause, ..Applied::default() };
+                self.commanded_s = now_s;
+            }
+            Order::Brakes => {
+                self.cut(ForceOffCause::Software);
+                self.applied.mode = if argument == 0 { Mode::Idle } else { Mode::Brake };
+            }
+            Order::Watchdog => (self.watchdog_steps, self.commanded_s) = (argument, now_s),
+            Order::VelocityThreshold => self.threshold_mm_s = argument,
+            Order::Button => self.gripper_button = argument != 0,
+            Order::Close => self.cut(ForceOffCause::Software),
+            Order::Hello | Order::Open | Order::Read => {}
+        }
+        false
+    }
+
+    fn force(&mut self, now_s: f64, [x, y, z, gripper_n]: [f64; 4]) -> bool {
+        let asked_n = Vector3::new(x, y, z);
+        if self.applied.mode != Mode::Force || !asked_n.iter().chain([&gripper_n]).all(|value| value.is_finite()) {
+            return false;
+        }
+        self.commanded_s = now_s;
+        let saturated = asked_n.norm() > self.motor_limit_n;
+        self.applied.force_n = if saturated { asked_n * (self.motor_limit_n / asked_n.norm()) } else { asked_n };
+        self.applied.gripper_n = gripper_n;
+        saturated
+    }
+
+    /// The status array.
+    pub(super) fn status(&self, fault: bool, reset: bool) -> [u32; ENTRIES] {
+        let mode = self.applied.mode;
+        let off = self.applied.cause as u32;
+        let on = u32::from;
+        let modes = [on(mode == Mode::Idle), on(mode == Mode::Force), on(mode == Mode::Brake)];
+        let [idle, force, brake] = modes;
+        [1, 1, 1, on(reset), idle, force, brake, 0, 1, on(fault), 0, 0, 1, 0, off, 0, 1]
+    }
+}
+
+#[cfg(test)]
+#[expect(clippy::float_cmp, reason = "a force is handed on as it is, and none is exactly zero")]
+mod tests {
+    use super::*;
+
+    fn on_with_watchdog(steps: u32) -> Firmware {
+        let mut firmware = Firmware::new(12.0);
+        firmware.obey(0.0, Order::Watchdog, steps, [0.0; 4]);
+        firmware.obey(0.0, Order::EnableForce, 1, [0.0; 4]);
+        firmware.obey(0.0, Order::Force, 0, [3.0, 0.0, 0.0, 1.0]);
+        firmware
+    }
+
+    #[test]
+    fn the_watchdog_cuts_force_after_its_time_and_not_before() {
+        let mut firmware = on_with_watchdog(160);
+        firmware.pass(0.0199, &Vector3::zeros());
+        assert_eq!(firmware.applied().force_n.x, 3.0);
+        firmware.pass(0.0201, &Vector3::zeros());
+        assert_eq!(
+            firmware.applied(),
+            &Applied { cause: ForceOffCause::Watchdog, ..Applied::default() },
+            "brakes, no force"
+        );
+        firmware.obey(0.03, Order::Force, 0, [3.0, 0.0, 0.0, 0.0]);
+        assert_eq!(firmware.applied().force_n.norm(), 0.0, "a force command alone does not bring it back");
+    }
+
+    #[test]
+    fn a_hand_that_is_too_fast_loses_force() {
+        let mut firmware = on_with_watchdog(0);
+        let at = |speed_m_s: f64, k: u32| Vector3::new(speed_m_s * f64::from(k) * 1e-3, 0.0, 0.0);
+        for k in 0..100 {
+            firmware.pass(f64::from(k) * 1e-3, &at(1.9, k));
+        }
+        assert_eq!(firmware.applied().mode, Mode::Force);
+        for k in 100..120 {
+            firmware.pass(f64::from(k) * 1e-3, &at(2.1, k));
+        }
+        assert_eq!((firmware.applied().mode, firmware.applied().cause), (Mode::Brake, ForceOffCause::Velocity));
+    }
+
+    #[test]
+    fn motors_saturate_and_refuse_what_is_no_number() {
+        let mut firmware = on_with_watchdog(0);
+        assert!(firmware.obey(0.0, Order::Force, 0, [0.0, 30.0, 40.0, 0.0]));
+        assert!((firmware.applied().force_n - Vector3::new(0.0, 7.2, 9.6)).norm() < 1e-12);
+        firmware.obey(0.0, Order::Force, 0, [f64::NAN, 0.0, 0.0, 0.0]);
+        assert!((firmware.applied().force_n.norm() - 12.0).abs() < 1e-12);
+    }
+}

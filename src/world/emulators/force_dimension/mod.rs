@@ -1,0 +1,333 @@
+//! The emulated omega.7 at the other end of the stand-in library's socket.
+//!
+//! A program that loads the stand-in library (our driver, or a third-party client) asks here, one datagram for one USB exchange. The
+//! hand that holds the handle is a [`Body`]: it is told what the motors do and says where the handle is.
+
+mod firmware;
+#[cfg(test)]
+#[expect(clippy::float_cmp, reason = "forces and positions arrive as they were sent, to the last bit")]
+mod tests;
+
+use std::{
+    io,
+    net::{SocketAddr, UdpSocket},
+    sync::atomic::Ordering,
+    time::{Duration, Instant},
+};
+
+use drd::wire::{FRESH, Order, Reply, Request, SATURATED, TAKEN};
+use firmware::Firmware;
+use nalgebra::{UnitQuaternion, Vector3};
+use nima_devices::force_dimension::status::{ForceOffCause, Kind, SdkError};
+
+pub use firmware::{Applied, Mode};
+
+use crate::emulators::{EmulatedFault, FaultSwitch, FaultyLine, Serving, places};
+
+/// Where the handle is, in the device's frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct HandState {
+    /// Position, m.
+    pub position_m: Vector3<f64>,
+    /// Orientation.
+    pub orientation: UnitQuaternion<f64>,
+    /// Opening of the gripper, rad.
+    pub gripper_rad: f64,
+    /// Buttons, first in the lowest bit.
+    pub buttons: u32,
+    /// The force button on the base is being pressed.
+    pub force_button: bool,
+}
+
+impl Default for HandState {
+    fn default() -> Self {
+        Self {
+            position_m: Vector3::zeros(),
+            orientation: UnitQuaternion::identity(),
+            gripper_rad: 0.0,
+            buttons: 0,
+            force_button: false,
+        }
+    }
+}
+
+/// The hand: called with the time since the start (s) and what the motors do, about once a millisecond.
+pub trait Body: FnMut(f64, &Applied) -> HandState + Send + 'static {}
+
+impl<T: FnMut(f64, &Applied) -> HandState + Send + 'static> Body for T {}
+
+/// A hand that follows its own slow way and gives way to force like a spring.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Held {
+    /// Where it rests, m.
+    pub rest_m: Vector3<f64>,
+    /// Radius of its way around there, m; one turn takes four seconds.
+    pub radius_m: f64,
+    /// Turn about the device's z, rad.
+    pub yaw_rad: f64,
+    /// Opening of the gripper, rad.
+    pub gripper_rad: f64,
+    /// Stiffness with which it holds, N/m.
+    pub stiffness_n_m: f64,
+}
+
+impl Default for Held {
+    fn default() -> Self {
+        Self {
+            rest_m: Vector3::new(0.0, 0.0, 0.02),
+            radius_m: 0.02,
+            yaw_rad: 0.0,
+            gripper_rad: 0.2,
+            stiffness_n_m: 500.0,
+        }
+    }
+}
+
+/// How fast a held handle gives way, s.
+const GIVE_S: f64 = 0.010;
+
+impl Held {
+    /// As a body.
+    pub fn body(self) -> impl Body {
+        let (mut last_s, mut given_m) = (0.0, Vector3::zeros());
+        move |now_s: f64, applied: &Applied| {
+            let share = ((now_s - last_s) / GIVE_S).clamp(0.0, 1.0);
+            last_s = now_s;
+            given_m += (applied.force_n / self.stiffness_n_m - given_m) * share;
+            let angle = now_s * std::f64::consts::FRAC_PI_2;
+            let way_m = Vector3::new(angle.cos(), angle.sin(), 0.5 * (2.0 * angle).sin()) * self.radius_m;
+            // Yaw and gripper move with the hand, by an amount that vanishes with the radius.
+            let wave = (angle * 0.5).sin() * (self.radius_m / 0.02).min(1.0);
+            HandState {
+                position_m: self.rest_m + way_m + given_m,
+                orientation: UnitQuaternion::from_euler_angles(0.0, 0.0, self.yaw_rad + 0.3 * wave),
+                gripper_rad: self.gripper_rad + 0.1 * wave,
+                ..HandState::default()
+            }
+        }
+    }
+}
+
+/// An emulated omega.7.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Emulator {
+    /// Serial number.
+    pub serial: u16,
+    /// Right or left hand; anything else is a device that our driver refuses.
+    pub kind: Kind,
+    /// Force beyond which the motors are saturated, N.
+    pub motor_limit_n: f64,
+    /// It waits for its calibration.
+    pub reset: bool,
+    /// UDP port; 0: any.
+    pub port: u16,
+}
+
+impl Default for Emulator {
+    fn default() -> Self {
+        let kind = Kind::Omega7 { left_handed: false };
+        Self { serial: 1234, kind, motor_limit_n: nima_devices::force_dimension::FORCE_MAX_N, reset: false, port: 0 }
+    }
+}
+
+/// The world goes on at least so often.
+const TICK: Duration = Duration::from_millis(1);
+/// A client that says nothing for so long no longer has the device, s.
+const SESSION_S: f64 = 1.0;
+/// Requests answered at once at most.
+const BATCH: usize = 64;
+const FIRMWARE: f64 = 3.2;
+/// The gripper counts as pressed below this, rad.
+const GRIPPER_CLOSED_RAD: f64 = 0.02;
+
+impl Emulator {
+    /// Serves on the loopback interface; the endpoint is the address for `NIMA_EMULATED_HANDLE`.
+    pub fn serve(self, body: impl Body) -> io::Result<Serving> {
+        let mut socket = Some(places::taken(self.port, "UDP", UdpSocket::bind(("127.0.0.1", self.port)))?);
+        let address = socket.as_ref().map(UdpSocket::local_addr).transpose()?;
+        let address = address.ok_or_else(|| io::Error::other("no address"))?;
+        let faults = FaultSwitch::default();
+        let switch = faults.clone();
+        Serving::start(address.to_string(), faults, move |stop| {
+            // A real device has a processor of its own.
+            nima_devices::force_dimension::prepare_thread();
+            let mut machine = Machine::new(self, Box::new(body));
+            while !stop.load(Ordering::Acquire) {
+                let fault = switch.get();
+                if fault == EmulatedFault::Disconnect {
+                    // A closed port answers as a cable that was pulled.
+                    socket = None;
+                    machine.lose_client();
+                } else if socket.is_none() {
+                    socket = open(address);
+                }
+                machine.tick(fault);
+                match &socket {
+                    Some(socket) => machine.answer_all(socket, fault),
+                    None => std::thread::sleep(TICK),
+                }
+            }
+        })
+    }
+}
+
+fn open(address: SocketAddr) -> Option<UdpSocket> {
+    UdpSocket::bind(address).ok()
+}
+
+/// The device that serves.
+struct Machine {
+    of: Emulator,
+    begin: Instant,
+    body: Box<dyn Body>,
+    firmware: Firmware,
+    state: HandState,
+    /// What clients see while it is frozen.
+    frozen: Option<HandState>,
+    client: Option<(u64, f64)>,
+    line: FaultyLine,
+    /// To whom a late datagram goes.
+    peer: Option<SocketAddr>,
+    pressed: bool,
+}
+
+impl Machine {
+    fn new(of: Emulator, mut body: Box<dyn Body>) -> Self {
+        let firmware = Firmware::new(of.motor_limit_n);
+        let state = body(0.0, firmware.applied());
+        Self {
+            of,
+            begin: Instant::now(),
+            body,
+            firmware,
+            state,
+            frozen: None,
+            client: None,
+            line: FaultyLine::default(),
+            peer: None,
+            pressed: false,
+        }
+    }
+
+    fn now_s(&self) -> f64 {
+        self.begin.elapsed().as_secs_f64()
+    }
+
+    /// Lets the world go on.
+    fn tick(&mut self, fault: EmulatedFault) {
+        let now_s = self.now_s();
+        self.state = (self.body)(now_s, self.firmware.applied());
+        self.firmware.pass(now_s, &self.state.position_m);
+        // The button on the base takes force away and gives it back.
+        if self.state.force_button && !self.pressed && self.firmware.applied().mode == Mode::Force {
+            self.firmware.cut(ForceOffCause::Button);
+        }
+        self.pressed = self.state.force_button;
+        self.frozen = (fault == EmulatedFault::Freeze).then(|| self.frozen.unwrap_or(self.state));
+        if self.client.is_some_and(|(_, heard_s)| now_s - heard_s > SESSION_S) {
+            self.lose_client();
+        }
+    }
+
+    const fn lose_client(&mut self) {
+        if self.client.is_some() {
+            self.client = None;
+            self.firmware.cut(ForceOffCause::Usb);
+        }
+    }
+
+    fn answer_all(&mut self, socket: &UdpSocket, fault: EmulatedFault) {
+        let mut buffer = [0; 512];
+        socket.set_read_timeout(Some(TICK)).ok();
+        if let Ok((count, from)) = socket.recv_from(&mut buffer) {
+            self.answer(socket, &buffer[..count], from, fault);
+        }
+        socket.set_nonblocking(true).ok();
+        for _ in 0..BATCH {
+            let Ok((count, from)) = socket.recv_from(&mut buffer) else { break };
+            self.answer(socket, &buffer[..count], from, fault);
+        }
+        socket.set_nonblocking(false).ok();
+        let now_s = self.now_s();
+        if let Some(peer) = self.peer {
+            self.line.pass(now_s, &[], fault, &mut |late| drop(socket.send_to(late, peer)));
+        }
+    }
+
+    fn answer(&mut self, socket: &UdpSocket, bytes: &[u8], from: SocketAddr, fault: EmulatedFault) {
+        let Some(request) = Request::decode(bytes) else { return };
+        self.tick(fault);
+        let reply = self.reply(&request, fault);
+        let mut frame = reply.encode().to_vec();
+        match fault {
+            EmulatedFault::BadChecksum => frame.iter_mut().rev().take(1).for_each(|byte| *byte ^= 0x5a),
+            EmulatedFault::WrongFrame => frame.truncate(frame.len() / 2),
+            _ => {}
+        }
+        self.peer = Some(from);
+        let now_s = self.now_s();
+        self.line.pass(now_s, &frame, fault, &mut |sent| drop(socket.send_to(sent, from)));
+    }
+
+    fn reply(&mut self, request: &Request, fault: EmulatedFault) -> Reply {
+        let now_s = self.now_s();
+        let taken = self.client.is_some_and(|(client, _)| client != request.client);
+        let mut flags = if taken { TAKEN } else { 0 };
+        let refused = match request.order {
+            Order::Hello => None,
+            _ if taken => Some(SdkError::IN_USE),
+            Order::Open => {
+                self.client = Some((request.client, now_s));
+                None
+            }
+            _ if self.client.is_none() => Some(SdkError::NO_DEVICE),
+            order => {
+                self.client = Some((request.client, now_s)).filter(|_| order != Order::Close);
+                if self.firmware.obey(now_s, order, request.argument, request.values) {
+                    flags |= SATURATED;
+                }
+                None
+            }
+        };
+        if self.frozen.is_none() {
+            flags |= FRESH;
+        }
+        self.state_of(request, refused.map_or(0, |error| error.0.cast_unsigned()), flags, fault)
+    }
+
+    fn state_of(&self, request: &Request, error: u32, flags: u32, fault: EmulatedFault) -> Reply {
+        let state = self.frozen.as_ref().unwrap_or(&self.state);
+        let mut position_m: [f64; 3] = state.position_m.into();
+        if fault == EmulatedFault::NotANumber {
+            position_m[1] = f64::NAN;
+        }
+        let rotation = state.orientation.to_rotation_matrix();
+        let frame = std::array::from_fn(|index| rotation.matrix()[(index / 3, index % 3)]);
+        let left = self.of.kind == Kind::Omega7 { left_handed: true };
+        let pressed = self.firmware.gripper_button && state.gripper_rad < GRIPPER_CLOSED_RAD;
+        Reply {
+            client: request.client,
+            sequence: request.sequence,
+            error,
+            flags,
+            serial: u32::from(self.of.serial),
+            kind: self.of.kind.number().cast_unsigned(),
+            buttons: state.buttons | u32::from(pressed),
+            velocity_threshold: self.firmware.threshold_mm_s,
+            watchdog: self.firmware.watchdog_steps,
+            status: self.firmware.status(fault == EmulatedFault::DeviceFault, self.of.reset),
+            firmware: FIRMWARE,
+            position_m,
+            frame,
+            gripper_rad: if left { -state.gripper_rad } else { state.gripper_rad },
+        }
+    }
+}
+
+/// The stand-in library beside the running program, or one folder up, where cargo puts it.
+pub fn stand_in() -> Option<std::path::PathBuf> {
+    let name = format!("{}drd{}", std::env::consts::DLL_PREFIX, std::env::consts::DLL_SUFFIX);
+    let program = std::env::current_exe().ok()?;
+    let folders = program.ancestors().skip(1).take(2);
+    folders.flat_map(|folder| [folder.join(&name), folder.join("deps").join(&name)]).find(|path| path.is_file())
+}

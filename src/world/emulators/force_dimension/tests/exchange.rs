@@ -1,0 +1,99 @@
+//! The exchange's datagrams: round trips, and nothing but whole ones is taken.
+
+use drd::wire::{FRESH, Order, REPLY_BYTES, REQUEST_BYTES, Reply, Request, SATURATED};
+
+fn request(random: &mut fastrand::Rng) -> Request {
+    let orders = [Order::Hello, Order::Open, Order::Read, Order::Force, Order::EnableForce, Order::Brakes];
+    let others = [Order::Watchdog, Order::VelocityThreshold, Order::Button, Order::Close];
+    Request {
+        client: random.u64(..),
+        sequence: random.u32(..),
+        order: *[&orders[..], &others[..]].concat().get(random.usize(..10)).unwrap(),
+        argument: random.u32(..),
+        values: std::array::from_fn(|_| (random.f64() - 0.5) * 1e3),
+    }
+}
+
+fn reply(random: &mut fastrand::Rng) -> Reply {
+    Reply {
+        client: random.u64(..),
+        sequence: random.u32(..),
+        error: random.u32(..23),
+        flags: FRESH | SATURATED,
+        serial: random.u32(..),
+        kind: 35,
+        buttons: random.u32(..),
+        velocity_threshold: random.u32(..),
+        watchdog: random.u32(..256),
+        status: std::array::from_fn(|_| random.u32(..7)),
+        firmware: random.f64(),
+        position_m: std::array::from_fn(|_| random.f64()),
+        frame: std::array::from_fn(|_| random.f64()),
+        gripper_rad: random.f64(),
+    }
+}
+
+#[test]
+fn the_bytes_of_a_request_are_those_of_the_contract() {
+    let values = [1.0, -2.0, 0.5, 0.25];
+    let bytes = Request { client: 2, sequence: 3, order: Order::Force, argument: 4, values }.encode();
+    assert_eq!(&bytes[..24], b"NIMQ\x02\0\0\0\0\0\0\0\x03\0\0\0\x03\0\0\0\x04\0\0\0");
+    assert_eq!(&bytes[24..32], &1.0_f64.to_le_bytes());
+    assert_eq!(&bytes[48..56], &0.25_f64.to_le_bytes());
+    // FNV-1a over all before it.
+    let mut sum = 2_166_136_261_u64;
+    for byte in &bytes[..56] {
+        sum = ((sum ^ u64::from(*byte)) * 16_777_619) & 0xffff_ffff;
+    }
+    assert_eq!(u64::from(u32::from_le_bytes(bytes[56..60].try_into().unwrap())), sum);
+}
+
+#[test]
+fn datagrams_come_back_as_they_went_in() {
+    let mut random = fastrand::Rng::with_seed(1);
+    for _ in 0..1000 {
+        let (request, reply) = (request(&mut random), reply(&mut random));
+        assert_eq!(Request::decode(&request.encode()), Some(request));
+        assert_eq!(Reply::decode(&reply.encode()), Some(reply));
+    }
+}
+
+/// Random and mutated datagrams; the number of those that were taken although they had been changed.
+fn fuzz(rounds: u32, seed: u64) -> u32 {
+    let mut random = fastrand::Rng::with_seed(seed);
+    let mut wrong = 0;
+    let mut bytes = [0_u8; 300];
+    for round in 0..rounds {
+        let length = if round % 2 == 0 {
+            let length = random.usize(..bytes.len());
+            bytes[..length].fill_with(|| random.u8(..));
+            length
+        } else {
+            let length = if round % 4 == 1 {
+                bytes[..REQUEST_BYTES].copy_from_slice(&request(&mut random).encode());
+                REQUEST_BYTES
+            } else {
+                bytes[..REPLY_BYTES].copy_from_slice(&reply(&mut random).encode());
+                REPLY_BYTES
+            };
+            for _ in 0..random.usize(1..4) {
+                bytes[random.usize(..length)] ^= random.u8(1..);
+            }
+            if random.u8(..) < 32 { random.usize(..length) } else { length }
+        };
+        wrong += u32::from(Request::decode(&bytes[..length]).is_some() || Reply::decode(&bytes[..length]).is_some());
+    }
+    wrong
+}
+
+#[test]
+fn damaged_datagrams_are_refused() {
+    // A change of the same byte back and forth may leave it whole, very rarely.
+    assert!(fuzz(200_000, 2) < 20);
+}
+
+#[test]
+#[ignore = "`./dev fuzz` runs it for as long as told"]
+fn fuzz_datagrams() {
+    nima_testing::fuzz::rounds(|seed| assert!(fuzz(1_000_000, seed) < 100));
+}

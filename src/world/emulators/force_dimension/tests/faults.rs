@@ -1,0 +1,118 @@
+//! Every emulated fault: what the driver makes of it, and that it comes back through its slot without a restart.
+
+use nima_devices::{Loss, Slot};
+
+use super::*;
+use crate::emulators::EmulatedFault;
+
+/// What a fault leads to.
+enum Expected {
+    Lost(Loss),
+    /// Goes on, with failed calls counted.
+    Disturbed,
+}
+
+fn expected(fault: EmulatedFault) -> Expected {
+    match fault {
+        EmulatedFault::Delay | EmulatedFault::Freeze | EmulatedFault::Silence => Expected::Lost(Loss::Silent),
+        EmulatedFault::BadChecksum | EmulatedFault::WrongFrame => Expected::Lost(Loss::Corrupt),
+        EmulatedFault::Disconnect => Expected::Lost(Loss::Disconnected),
+        EmulatedFault::DeviceFault => Expected::Lost(Loss::Device { code: 109 }),
+        EmulatedFault::NotANumber => Expected::Lost(Loss::Implausible),
+        _ => Expected::Disturbed,
+    }
+}
+
+fn wait(slot: &mut Slot<Driver>, good: impl Fn(&Slot<Driver>, bool) -> bool) -> bool {
+    let begin = Instant::now();
+    while begin.elapsed() < Duration::from_secs(8) {
+        let reading = slot.poll(now_s()).is_some();
+        if good(slot, reading) {
+            return true;
+        }
+        std::thread::sleep(Duration::from_millis(1));
+    }
+    false
+}
+
+/// Times that a fault is tried: without real-time scheduling a busy machine makes a device silent by itself now and then.
+const ATTEMPTS: u32 = 6;
+
+fn goes_through(faults: &[EmulatedFault]) {
+    let (serving, hand, settings) = rig(Emulator::default());
+    let mut slot = Slot::start("handle", move || open(&settings)).unwrap();
+    for fault in faults {
+        let mut seen = Vec::new();
+        let found = (0..ATTEMPTS).any(|_| {
+            let found = shows(&mut slot, &hand, &serving, *fault, &mut seen);
+            serving.faults.set(EmulatedFault::None);
+            found
+        });
+        assert!(found, "{fault:?} was never seen as it should be: {seen:?}");
+    }
+    assert!(wait(&mut slot, |_, reading| reading), "delivers again: {:?}", slot.view().report().trouble);
+}
+
+/// Sets one fault on a handle that pushes; whether it shows as expected.
+fn shows(
+    slot: &mut Slot<Driver>,
+    hand: &Hand,
+    serving: &Serving,
+    fault: EmulatedFault,
+    seen: &mut Vec<Standing>,
+) -> bool {
+    let lost = |slot: &Slot<Driver>| matches!(slot.health().standing, Standing::Lost(_));
+    assert!(wait(slot, |_, reading| reading), "delivers before {fault:?}: {:?}", slot.view().report().trouble);
+    // A loss must also end the force.
+    slot.device().unwrap().enable_force();
+    assert!(wait(slot, |slot, _| hand.applied().mode == Mode::Force || lost(slot)));
+    if lost(slot) {
+        seen.push(slot.health().standing);
+        return false;
+    }
+    let (begin_s, failed) = (now_s(), slot.health().damaged);
+    serving.faults.set(fault);
+    match expected(fault) {
+        Expected::Lost(loss) => {
+            assert!(wait(slot, |slot, _| lost(slot)), "{fault:?} leads to no loss: {:?}", slot.health());
+            let (after_ms, silent_ms) = ((now_s() - begin_s) * 1e3, slot.health().age_s(now_s()) * 1e3);
+            println!(
+                "{fault:?}: {:?} after {after_ms:.1} ms, {silent_ms:.1} ms without a reading",
+                slot.health().standing
+            );
+            seen.push(slot.health().standing);
+            assert!(wait(slot, |_, _| hand.applied().mode == Mode::Brake), "{fault:?}: brakes are on");
+            slot.health().standing == Standing::Lost(loss)
+        }
+        Expected::Disturbed => {
+            assert!(wait(slot, |slot, _| slot.health().damaged > failed + 3 || lost(slot)));
+            seen.push(slot.health().standing);
+            slot.health().standing == Standing::Connected
+        }
+    }
+}
+
+#[test]
+fn silence_is_noticed_and_overcome() {
+    goes_through(&[EmulatedFault::Silence, EmulatedFault::Freeze]);
+}
+
+#[test]
+fn lateness_and_damage_are_noticed_and_overcome() {
+    goes_through(&[EmulatedFault::Delay, EmulatedFault::BadChecksum]);
+}
+
+#[test]
+fn wrong_frames_and_a_pulled_cable_are_noticed_and_overcome() {
+    goes_through(&[EmulatedFault::WrongFrame, EmulatedFault::Disconnect]);
+}
+
+#[test]
+fn faults_and_impossible_numbers_are_noticed_and_overcome() {
+    goes_through(&[EmulatedFault::DeviceFault, EmulatedFault::NotANumber]);
+}
+
+#[test]
+fn single_losses_are_counted_and_lived_with() {
+    goes_through(&[EmulatedFault::Loss, EmulatedFault::Reorder, EmulatedFault::Garbage]);
+}

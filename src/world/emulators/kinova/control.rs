@@ -1,0 +1,157 @@
+//! `ControlConfig`: what the base is told of gravity, load and tool, and the limits of its own motion. Kept and told; the emulated
+//! motion does not depend on it.
+
+use nima_core::kinematics::ACCELERATION_RAD_S2;
+use nima_devices::kinova::{
+    limits::{GEN3, TWIST_MAX},
+    messages::{Number, Pose},
+};
+use prost::Message;
+
+use super::{
+    forms::{
+        AllKinematicLimits, DesiredSpeeds, JointsLimit, KinematicLimits, Payload, Real, Reals, Tool, TwistLimit, Vector,
+    },
+    interface::{ABOVE_MAXIMUM, Answered, INVALID_PARAM, JOINT_COUNT, Refused, UNSUPPORTED_METHOD, read},
+    setting::Setting,
+};
+
+/// Control modes with limits of their own: joystick and trajectory, each angular and Cartesian, and Cartesian waypoints.
+const LIMITED_MODES: [u32; 5] = [1, 2, 4, 5, 12];
+
+pub(super) struct Control {
+    /// Each with the event that its change is (`ControlConfigurationEvent`).
+    settings: Vec<(Setting, u32)>,
+    soft: Vec<KinematicLimits>,
+    desired: DesiredSpeeds,
+}
+
+impl Control {
+    pub(super) fn new() -> Self {
+        let gravity = Vector { z: -9.81, ..Vector::default() };
+        let within = |vector: &Vector| [vector.x, vector.y, vector.z].iter().all(|x| x.is_finite() && x.abs() <= 20.0);
+        let payload = |load: &Payload| is_mass(load.mass_kg) && load.centre.as_ref().is_none_or(is_place);
+        let tool = |tool: &Tool| {
+            is_mass(tool.mass_kg)
+                && tool.centre.as_ref().is_none_or(is_place)
+                && tool.transform.as_ref().is_none_or(is_finite)
+        };
+        let frame = |frame: &Number| (1..=3).contains(&frame.value);
+        Self {
+            settings: vec![
+                (Setting::new(2, 1, &gravity, within).with_reset(25), 2),
+                (Setting::new(4, 3, &Payload::default(), payload).with_reset(26), 12),
+                (Setting::new(6, 5, &Tool::default(), tool).with_reset(27), 11),
+                (Setting::new(10, 9, &Number { value: 1 }, frame), 13),
+            ],
+            soft: LIMITED_MODES.map(hard).to_vec(),
+            desired: DesiredSpeeds { linear_m_s: 0.1, angular_deg_s: 25.0, joint_deg_s: vec![25.0; GEN3.len()] },
+        }
+    }
+
+    /// The answer, and the event that the call is.
+    pub(super) fn answer(&mut self, function: u16, payload: &[u8]) -> Result<(Vec<u8>, Option<u32>), Refused> {
+        for (setting, event) in &mut self.settings {
+            if let Some(answered) = setting.answer(function, payload) {
+                return answered.map(|answer| (answer, setting.is_changed_by(function).then_some(*event)));
+            }
+        }
+        match function {
+            14 => self.set_joints(payload, |limits| &mut limits.joint_deg_s).map(|answer| (answer, Some(16))),
+            15 => self.set_twist(payload, |limits| &mut limits.linear_m_s).map(|answer| (answer, Some(17))),
+            16 => self.set_twist(payload, |limits| &mut limits.angular_deg_s).map(|answer| (answer, Some(18))),
+            17 => self.set_joints(payload, |limits| &mut limits.joint_deg_s2).map(|answer| (answer, Some(19))),
+            18 => Ok((hard(0).encode_to_vec(), None)),
+            19 => Ok((self.soft(read::<Number>(payload)?.value)?.encode_to_vec(), None)),
+            20 => Ok((AllKinematicLimits { limits: self.soft.clone() }.encode_to_vec(), None)),
+            21..=24 => self.joystick(function, payload),
+            28 => self.reset_joints(payload, |limits| &mut limits.joint_deg_s).map(|answer| (answer, Some(16))),
+            29 => self.reset_twist(payload, |limits| &mut limits.linear_m_s).map(|answer| (answer, Some(17))),
+            30 => self.reset_twist(payload, |limits| &mut limits.angular_deg_s).map(|answer| (answer, Some(18))),
+            31 => self.reset_joints(payload, |limits| &mut limits.joint_deg_s2).map(|answer| (answer, Some(19))),
+            _ => Err(UNSUPPORTED_METHOD),
+        }
+    }
+
+    /// Speeds of a joystick, which there is none of.
+    fn joystick(&mut self, function: u16, payload: &[u8]) -> Result<(Vec<u8>, Option<u32>), Refused> {
+        let most = hard(0);
+        match function {
+            21 => self.desired.linear_m_s = within(read::<Real>(payload)?.value, most.linear_m_s)?,
+            22 => self.desired.angular_deg_s = within(read::<Real>(payload)?.value, most.angular_deg_s)?,
+            23 => self.desired.joint_deg_s = all_within(read::<Reals>(payload)?.values, &most.joint_deg_s)?,
+            _ => return Ok((self.desired.encode_to_vec(), None)),
+        }
+        Ok((Vec::new(), Some(u32::from(function) - 1)))
+    }
+
+    fn soft(&mut self, mode: u32) -> Result<&mut KinematicLimits, Refused> {
+        self.soft.iter_mut().find(|limits| limits.mode == mode).ok_or(INVALID_PARAM)
+    }
+
+    fn set_twist(&mut self, payload: &[u8], pick: fn(&mut KinematicLimits) -> &mut f32) -> Answered {
+        let asked = read::<TwistLimit>(payload)?;
+        let value = within(asked.value, *pick(&mut hard(0)))?;
+        *pick(self.soft(asked.mode)?) = value;
+        Ok(Vec::new())
+    }
+
+    fn set_joints(&mut self, payload: &[u8], pick: fn(&mut KinematicLimits) -> &mut Vec<f32>) -> Answered {
+        let asked = read::<JointsLimit>(payload)?;
+        let values = all_within(asked.values, pick(&mut hard(0)))?;
+        *pick(self.soft(asked.mode)?) = values;
+        Ok(Vec::new())
+    }
+
+    fn reset_twist(&mut self, payload: &[u8], pick: fn(&mut KinematicLimits) -> &mut f32) -> Answered {
+        let mode = read::<Number>(payload)?.value;
+        let value = *pick(&mut hard(mode));
+        *pick(self.soft(mode)?) = value;
+        Ok(TwistLimit { mode, value }.encode_to_vec())
+    }
+
+    fn reset_joints(&mut self, payload: &[u8], pick: fn(&mut KinematicLimits) -> &mut Vec<f32>) -> Answered {
+        let mode = read::<Number>(payload)?.value;
+        let values = pick(&mut hard(mode)).clone();
+        pick(self.soft(mode)?).clone_from(&values);
+        Ok(JointsLimit { mode, values }.encode_to_vec())
+    }
+}
+
+/// What no limit may exceed: the arm's own.
+fn hard(mode: u32) -> KinematicLimits {
+    KinematicLimits {
+        mode,
+        linear_m_s: TWIST_MAX.0 as f32,
+        angular_deg_s: TWIST_MAX.1.to_degrees() as f32,
+        joint_deg_s: GEN3.iter().map(|joint| joint.speed_rad_s.to_degrees() as f32).collect(),
+        joint_deg_s2: ACCELERATION_RAD_S2.iter().map(|limit| limit.to_degrees() as f32).collect(),
+    }
+}
+
+fn within(value: f32, most: f32) -> Result<f32, Refused> {
+    match value {
+        value if value > most => Err(ABOVE_MAXIMUM),
+        value if value >= 0.0 => Ok(value),
+        _ => Err(INVALID_PARAM),
+    }
+}
+
+fn all_within(values: Vec<f32>, most: &[f32]) -> Result<Vec<f32>, Refused> {
+    if values.len() != most.len() {
+        return Err(JOINT_COUNT);
+    }
+    values.into_iter().zip(most).map(|(value, most)| within(value, *most)).collect()
+}
+
+fn is_mass(mass_kg: f32) -> bool {
+    (0.0..=100.0).contains(&mass_kg)
+}
+
+fn is_place(place: &Vector) -> bool {
+    [place.x, place.y, place.z].iter().all(|x| x.is_finite())
+}
+
+fn is_finite(pose: &Pose) -> bool {
+    [pose.x, pose.y, pose.z, pose.theta_x, pose.theta_y, pose.theta_z].iter().all(|x| x.is_finite())
+}

@@ -1,0 +1,135 @@
+//! The devices within the arm, reached by the device id of a request: base, actuators, interconnect.
+//!
+//! Ids of the actuators: 1 to 7, as in the manufacturer's examples. The id of the interconnect is assumed to be the next one; clients
+//! take it from `ReadAllDevices`. There is no gripper and no vision module.
+
+use nima_devices::kinova::messages::{Number, Rpc, Text};
+use prost::Message;
+
+use super::{
+    forms::{Bits, DeviceHandle, DeviceHandles, MacAddress, Numbers, Offsets, Real},
+    interconnect::Interconnect,
+    interface::{
+        ALL_DEVICES, AXIS_OFFSETS, Answered, BOOTLOADER_VERSION, DEVICE_DISCONNECTED, DEVICE_TYPE, MAC_ADDRESS,
+        PART_NUMBER, PART_REVISION, RUN_MODE, Refused, UNSUPPORTED_METHOD, UNSUPPORTED_SERVICE,
+    },
+    setting::Setting,
+};
+
+/// Firmware that every device tells: 2.5.2 in the manufacturer's way.
+const FIRMWARE: u32 = 0x0205_0002;
+/// Actuators up to this one are the large ones.
+const LARGE_ACTUATORS: u8 = 4;
+/// `ControlLoopSelection`: joint position, motor position, motor velocity and motor current.
+const POSITION_LOOPS: u32 = 0x1 | 0x2 | 0x8 | 0x20;
+
+/// `DeviceTypes`.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Kind {
+    Base = 1,
+    Large = 3,
+    Small = 4,
+    Interconnect = 5,
+}
+
+pub(super) struct Devices {
+    joints: u8,
+    actuators: Vec<Vec<Setting>>,
+    interconnect: Interconnect,
+}
+
+impl Devices {
+    pub(super) fn new(joints: u32) -> Self {
+        let joints = joints.min(32) as u8;
+        Self { joints, actuators: (0..joints).map(|_| actuator()).collect(), interconnect: Interconnect::new() }
+    }
+
+    fn kind(&self, device: u8) -> Result<Kind, Refused> {
+        match device {
+            0 => Ok(Kind::Base),
+            id if id <= self.joints.min(LARGE_ACTUATORS) => Ok(Kind::Large),
+            id if id <= self.joints => Ok(Kind::Small),
+            id if id == self.joints + 1 => Ok(Kind::Interconnect),
+            _ => Err(DEVICE_DISCONNECTED),
+        }
+    }
+
+    /// Refuses a service of the base that was asked of another device.
+    pub(super) fn check_base(&self, device: u8) -> Result<(), Refused> {
+        if self.kind(device)? == Kind::Base { Ok(()) } else { Err(UNSUPPORTED_SERVICE) }
+    }
+
+    /// `DeviceManager`.
+    pub(super) fn manager(&self, rpc: Rpc) -> Answered {
+        if rpc != ALL_DEVICES {
+            return Err(UNSUPPORTED_METHOD);
+        }
+        let handle = |id: u8| {
+            let kind = self.kind(id).ok()?;
+            Some(DeviceHandle { kind: kind as u32, identifier: u32::from(id), order: u32::from(id) })
+        };
+        Ok(DeviceHandles { devices: (0..=self.joints + 1).filter_map(handle).collect() }.encode_to_vec())
+    }
+
+    /// `DeviceConfig` of any device.
+    pub(super) fn config(&self, rpc: Rpc, device: u8) -> Answered {
+        let kind = self.kind(device)?;
+        let number = |value: u32| Ok(Number { value }.encode_to_vec());
+        let text = |value: String| Ok(Text { value }.encode_to_vec());
+        match rpc {
+            RUN_MODE => number(0),
+            DEVICE_TYPE => number(kind as u32),
+            Rpc::FIRMWARE_VERSION | BOOTLOADER_VERSION => number(FIRMWARE),
+            Rpc::MODEL_NUMBER => text("emulated".to_owned()),
+            PART_NUMBER => text(format!("emulated-{}", kind as u32)),
+            PART_REVISION => text("1".to_owned()),
+            Rpc::SERIAL_NUMBER if kind == Kind::Base => text("EMULATED-1".to_owned()),
+            Rpc::SERIAL_NUMBER => text(format!("EMULATED-1-{device}")),
+            // Administered locally: no manufacturer's.
+            MAC_ADDRESS => Ok(MacAddress { bytes: vec![2, 0, 0, 0, 0, device] }.encode_to_vec()),
+            _ => Err(UNSUPPORTED_METHOD),
+        }
+    }
+
+    /// `ActuatorConfig`, but for the faults, which are the robot's.
+    pub(super) fn actuator(&mut self, rpc: Rpc, device: u8, payload: &[u8]) -> Answered {
+        self.actuator_index(device)?;
+        if rpc == AXIS_OFFSETS {
+            return Ok(Offsets::default().encode_to_vec());
+        }
+        let settings = &mut self.actuators[usize::from(device) - 1];
+        let answered = settings.iter_mut().find_map(|setting| setting.answer(rpc.function, payload));
+        answered.unwrap_or(Err(UNSUPPORTED_METHOD))
+    }
+
+    /// Which joint the device moves.
+    pub(super) fn actuator_index(&self, device: u8) -> Result<usize, Refused> {
+        match self.kind(device)? {
+            Kind::Large | Kind::Small => Ok(usize::from(device) - 1),
+            Kind::Base | Kind::Interconnect => Err(UNSUPPORTED_SERVICE),
+        }
+    }
+
+    /// `InterconnectConfig`.
+    pub(super) fn interconnect(&mut self, rpc: Rpc, device: u8, payload: &[u8]) -> Answered {
+        match self.kind(device)? {
+            Kind::Interconnect => self.interconnect.answer(rpc.function, payload),
+            _ => Err(UNSUPPORTED_SERVICE),
+        }
+    }
+}
+
+/// What an actuator lets be set. The emulated joints follow positions in every control mode; in the manufacturer's example of
+/// torque control these are the measured ones.
+fn actuator() -> Vec<Setting> {
+    let number = |value| Number { value };
+    vec![
+        Setting::new(6, 7, &number(1), |mode: &Number| (1..=6).contains(&mode.value)),
+        Setting::new(8, 9, &Bits { value: POSITION_LOOPS }, |loops| loops.value <= 0x7f),
+        Setting::new(23, 22, &Numbers::default(), |channels: &Numbers| channels.values.len() <= 16),
+        Setting::new(28, 24, &number(0), |mode: &Number| mode.value <= 5),
+        Setting::new(29, 26, &number(1), |on: &Number| on.value <= 1),
+        Setting::new(30, 5, &Real::default(), |offset: &Real| offset.value.is_finite()),
+        Setting::new(32, 31, &number(0), |mode: &Number| mode.value <= 2),
+    ]
+}

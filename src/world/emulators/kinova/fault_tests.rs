@@ -1,0 +1,107 @@
+//! Every emulated fault: noticed in time, and over when it is taken back. Figures of the cycle.
+
+use std::{
+    thread::sleep,
+    time::{Duration, Instant},
+};
+
+use nima_devices::{
+    Device as _, Health, Loss, Slot, Standing,
+    kinova::{Driver, Settings, faults, open},
+};
+
+use super::driver_tests::{Ticking, patient, started};
+use crate::emulators::EmulatedFault;
+
+/// What each fault must lead to.
+fn is_noticed(fault: EmulatedFault, health: &Health, before: &Health) -> bool {
+    let lost_by = |loss: Loss| health.standing == Standing::Lost(loss);
+    match fault {
+        EmulatedFault::Loss => health.lost > before.lost,
+        EmulatedFault::Reorder => health.out_of_order > before.out_of_order,
+        EmulatedFault::Garbage => health.damaged > before.damaged,
+        EmulatedFault::Delay | EmulatedFault::Silence => lost_by(Loss::Silent),
+        EmulatedFault::Freeze => lost_by(Loss::Silent) && health.out_of_order > before.out_of_order,
+        EmulatedFault::BadChecksum | EmulatedFault::WrongFrame => lost_by(Loss::Corrupt),
+        EmulatedFault::Disconnect => lost_by(Loss::Disconnected),
+        EmulatedFault::DeviceFault => lost_by(Loss::Device { code: faults::MAXIMUM_TORQUE }),
+        EmulatedFault::NotANumber => lost_by(Loss::Implausible),
+        EmulatedFault::None => true,
+    }
+}
+
+#[test]
+fn every_loss_is_told_within_twenty_milliseconds_of_loop_time() {
+    for fault in EmulatedFault::ALL {
+        if matches!(fault, EmulatedFault::Loss | EmulatedFault::Garbage) {
+            // By chance: in the test below.
+            continue;
+        }
+        let (serving, settings) = started(patient());
+        let mut ticking = Ticking::open(&settings);
+        assert!(ticking.until(500, |ticking| ticking.driver.health().readings > 10));
+        let before = *ticking.driver.health();
+        serving.faults.set(fault);
+        let noticed = ticking.until(1000, |ticking| is_noticed(fault, ticking.driver.health(), &before));
+        assert!(noticed, "{fault:?}: {:?}", ticking.driver.health());
+        // From the last good reading on: the emulator may send one or two more before the fault shows. One tick is the poll
+        // that sees the limit passed.
+        let age_s = ticking.driver.health().age_s(ticking.now_s);
+        assert!(age_s < 0.0215, "{fault:?} took {age_s} s");
+    }
+}
+
+/// Runs a slot until it is so.
+fn until(slot: &mut Slot<Driver>, begin: Instant, good: impl Fn(&mut Slot<Driver>) -> bool) -> bool {
+    let end = Instant::now() + Duration::from_secs(5);
+    while Instant::now() < end {
+        slot.poll(begin.elapsed().as_secs_f64());
+        if good(slot) {
+            return true;
+        }
+        sleep(Duration::from_millis(1));
+    }
+    false
+}
+
+#[test]
+fn every_fault_is_noticed_and_passes_without_a_restart() {
+    let (serving, settings) = started(patient());
+    let settings = Settings { timeout_s: 0.4, ..settings };
+    let mut slot = Slot::start("kinova", move || open(&settings)).unwrap();
+    let begin = Instant::now();
+    let connected = |slot: &mut Slot<Driver>| slot.health().standing == Standing::Connected;
+    for fault in EmulatedFault::ALL {
+        assert!(until(&mut slot, begin, connected), "before {fault:?}: {:?}", slot.view().report());
+        let before = *slot.health();
+        serving.faults.set(fault);
+        let noticed = |slot: &mut Slot<Driver>| is_noticed(fault, slot.health(), &before);
+        assert!(until(&mut slot, begin, noticed), "{fault:?}: {:?}", slot.health());
+        serving.faults.set(EmulatedFault::None);
+    }
+    assert!(until(&mut slot, begin, connected), "after all");
+}
+
+#[test]
+#[ignore = "prints figures; takes ten seconds"]
+fn figures_of_the_cycle() {
+    let (_serving, settings) = started(patient());
+    let mut driver = open(&settings).unwrap();
+    let begin = Instant::now();
+    let (mut longest, mut total, mut polls) = (Duration::ZERO, Duration::ZERO, 0_u32);
+    let mut next = Duration::ZERO;
+    while begin.elapsed() < Duration::from_secs(10) {
+        let from = Instant::now();
+        driver.poll(begin.elapsed().as_secs_f64());
+        let took = from.elapsed();
+        (longest, total, polls) = (longest.max(took), total + took, polls + 1);
+        if polls == 100 {
+            driver.enter_low_level().unwrap();
+        }
+        next += Duration::from_millis(1);
+        sleep(next.saturating_sub(begin.elapsed()));
+    }
+    let health = driver.health();
+    println!("{polls} polls, mean {:?}, longest {longest:?}; {health:?}", total / polls);
+    assert_eq!(health.standing, Standing::Connected);
+}

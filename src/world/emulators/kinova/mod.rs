@@ -1,0 +1,89 @@
+//! An emulated Gen3: sessions, calls and the cycle on the real wire, and a body that follows commands.
+//!
+//! It answers what the manufacturer's examples for an arm with 7 joints call: `Session`, `Base` (servoing, twists, joint speeds,
+//! actions, waypoints, sequences, kinematics, users, protection zones, notifications), `BaseCyclic`, and through the device id of a
+//! request `DeviceManager`, `DeviceConfig`, `ActuatorConfig`, `InterconnectConfig` and `ControlConfig`. Everything else is refused
+//! with the base's error frame.
+//!
+//! Not known of the real arm, and assumed here: the time of the watchdog and the distance that trips a following error. Both are
+//! in [`EmulatedArm`].
+
+mod actions;
+mod base_calls;
+mod body;
+mod calls;
+mod control;
+mod devices;
+#[cfg(test)]
+mod driver_tests;
+mod entities;
+#[cfg(test)]
+mod fault_tests;
+mod forms;
+mod interconnect;
+mod interface;
+mod motion;
+mod moves;
+mod robot;
+#[cfg(test)]
+mod route_tests;
+mod server;
+mod setting;
+mod shelf;
+mod told;
+mod topics;
+
+use std::net::{Ipv4Addr, TcpListener, UdpSocket};
+
+use nima_devices::ARM_JOINTS;
+
+pub use body::{Asked, Body, BodyState, StandIn};
+
+use crate::emulators::{FaultSwitch, Serving, places};
+
+/// How the emulated arm is.
+#[derive(Clone, Debug, PartialEq)]
+pub struct EmulatedArm {
+    /// User that may log in.
+    pub user: String,
+    /// The user's password.
+    pub password: String,
+    /// How many joints it says it has.
+    pub joints: u32,
+    /// State that it tells while it is not in fault: 7 ready, 3 initialisation, 5 maintenance.
+    pub idle_state: u32,
+    /// Low level without a command for so long is a fault, ms. An assumption: the manufacturer tells only that "a fair amount of
+    /// jitter" is tolerated (kortex issue 211).
+    pub watchdog_ms: f64,
+    /// A command so far from the measured angle is a fault, degrees. An assumption.
+    pub following_error_deg: f64,
+    /// Port of the calls (TCP); 0 takes a free one.
+    pub tcp_port: u16,
+    /// Port of the cycle (UDP); 0 takes a free one.
+    pub udp_port: u16,
+}
+
+impl Default for EmulatedArm {
+    fn default() -> Self {
+        Self {
+            user: "admin".to_owned(),
+            password: "admin".to_owned(),
+            joints: ARM_JOINTS as u32,
+            idle_state: 7,
+            watchdog_ms: 50.0,
+            following_error_deg: 5.0,
+            tcp_port: 0,
+            udp_port: 0,
+        }
+    }
+}
+
+/// Starts an emulated arm on ports of this machine; its endpoint is `127.0.0.1 tcp=PORT udp=PORT`, for
+/// [`Settings::at`](nima_devices::kinova::Settings::at).
+pub fn emulate(arm: EmulatedArm, body: impl Body + 'static, faults: FaultSwitch) -> std::io::Result<Serving> {
+    let listener = places::taken(arm.tcp_port, "TCP", TcpListener::bind((Ipv4Addr::LOCALHOST, arm.tcp_port)))?;
+    let socket = places::taken(arm.udp_port, "UDP", UdpSocket::bind((Ipv4Addr::LOCALHOST, arm.udp_port)))?;
+    let endpoint = format!("127.0.0.1 tcp={} udp={}", listener.local_addr()?.port(), socket.local_addr()?.port());
+    let server = server::Server::new(listener, socket, arm, Box::new(body), faults.clone())?;
+    Serving::start(endpoint, faults, move |stop| server.serve(stop))
+}

@@ -1,0 +1,381 @@
+//! The base and its actuators: servoing modes, cyclic commands, faults that stay until they are cleared.
+
+use nalgebra::Vector3;
+use nima_devices::{
+    ARM_JOINTS,
+    kinova::{
+        TwistFrame,
+        faults::{
+            COMMUNICATION_TICK_LOST, EMERGENCY_STOP, FOLLOWING_ERROR, JOINT_FAULT, JOINT_LIMIT_HIGH, JOINT_LIMIT_LOW,
+            MAXIMUM_TORQUE,
+        },
+        kinematics::{jacobian, theta_rad, tool},
+        limits::{GEN3, unwrapped, wire_degrees},
+        messages::{ArmState, Command, ERROR_DEVICE, ServoingMode, TwistCommand, sub},
+    },
+};
+
+use super::{
+    Asked, Body, BodyState, EmulatedArm,
+    interface::{LARGE_SPEED, MANUAL_STOP, MOVEMENT_IN_PROGRESS, Refused},
+    motion::{Joints, Leg, Motion},
+    told::{ActuatorFeedback, BaseFeedback, Feedback},
+};
+use crate::emulators::EmulatedFault;
+
+/// Beyond the range that may be commanded the hardware has a little more, rad.
+const HARDWARE_MARGIN_RAD: f64 = 0.1;
+/// The longest step of the body, s.
+const STEP_S: f64 = 1e-3;
+/// Steps in one call; a longer pause of this process is not caught up.
+const STEPS: usize = 100;
+/// Status bits of a working actuator: indexed, servoing.
+const STATUS_SERVOING: u32 = 0x20 | 0x800;
+/// The same, with a fault.
+const STATUS_FAULT: u32 = 0x20 | 0x400 | 0x1000;
+
+pub(super) struct Robot {
+    arm: EmulatedArm,
+    body: Box<dyn Body>,
+    state: BodyState,
+    asked: Asked,
+    motion: Option<Motion>,
+    /// How the last path ended, until it is taken: at its end, or stopped for this sub error.
+    ended: Option<Obeyed>,
+    mode: ServoingMode,
+    base_fault: u32,
+    actuator_faults: [u32; ARM_JOINTS],
+    emulated_fault: bool,
+    command_ids: [u32; ARM_JOINTS],
+    frame_id: u32,
+    stepped_s: f64,
+    commanded_s: Option<f64>,
+    random: fastrand::Rng,
+}
+
+/// A refusal: the sub error of `ERROR_DEVICE`.
+pub(super) type Obeyed = Result<(), u16>;
+
+impl Robot {
+    pub(super) fn new(arm: EmulatedArm, mut body: Box<dyn Body>) -> Self {
+        let state = body.step(0.0, &Asked::Rest);
+        Self {
+            arm,
+            body,
+            state,
+            asked: Asked::Rest,
+            motion: None,
+            ended: None,
+            mode: ServoingMode::Single,
+            base_fault: 0,
+            actuator_faults: [0; ARM_JOINTS],
+            emulated_fault: false,
+            command_ids: [0; ARM_JOINTS],
+            frame_id: 0,
+            stepped_s: 0.0,
+            commanded_s: None,
+            random: fastrand::Rng::with_seed(3),
+        }
+    }
+
+    /// Lets time go on until `now_s`.
+    pub(super) fn advance(&mut self, now_s: f64, fault: EmulatedFault) {
+        let unheard = self.commanded_s.is_some_and(|heard_s| now_s - heard_s > self.arm.watchdog_ms * 1e-3);
+        if self.mode == ServoingMode::Low && unheard && !self.is_faulty() {
+            self.trip([COMMUNICATION_TICK_LOST; ARM_JOINTS]);
+        }
+        self.emulated_fault = fault == EmulatedFault::DeviceFault;
+        if self.emulated_fault {
+            self.rest(sub::IN_FAULT);
+        }
+        for _ in 0..STEPS {
+            let elapsed_s = (now_s - self.stepped_s).min(STEP_S);
+            if elapsed_s <= 0.0 {
+                break;
+            }
+            self.go_on(elapsed_s);
+            self.state = self.body.step(elapsed_s, &self.asked);
+            self.stepped_s += elapsed_s;
+        }
+        self.stepped_s = now_s;
+    }
+
+    fn go_on(&mut self, elapsed_s: f64) {
+        let Some(motion) = &mut self.motion else { return };
+        if let Some(asked) = motion.step(elapsed_s) {
+            self.asked = asked;
+        } else {
+            (self.motion, self.asked, self.ended) = (None, Asked::Rest, Some(Ok(())));
+        }
+    }
+
+    /// Ends every motion for this sub error.
+    fn rest(&mut self, why: u16) {
+        self.asked = Asked::Rest;
+        if self.motion.take().is_some_and(|motion| motion.is_path()) {
+            self.ended = Some(Err(why));
+        }
+    }
+
+    /// How the last path ended; told once.
+    pub(super) const fn take_end(&mut self) -> Option<Obeyed> {
+        self.ended.take()
+    }
+
+    const fn is_faulty(&self) -> bool {
+        self.base_fault != 0 || self.emulated_fault
+    }
+
+    /// Bank A of the base and of a joint; the emulated fault is a torque that joint 3 tells while it is in force.
+    const fn banks(&self, j: usize) -> (u32, u32) {
+        let (base, joint) = (self.base_fault, self.actuator_faults[j]);
+        match (self.emulated_fault, j) {
+            (true, 2) => (base | JOINT_FAULT, joint | MAXIMUM_TORQUE),
+            (true, _) => (base | JOINT_FAULT, joint),
+            (false, _) => (base, joint),
+        }
+    }
+
+    fn trip(&mut self, actuators: [u32; ARM_JOINTS]) {
+        self.base_fault |= JOINT_FAULT;
+        for (bank, bits) in self.actuator_faults.iter_mut().zip(actuators) {
+            *bank |= bits;
+        }
+        self.rest(sub::IN_FAULT);
+    }
+
+    /// State as `GetArmState` tells it.
+    pub(super) fn state(&self) -> u32 {
+        if self.is_faulty() {
+            ArmState::IN_FAULT.0
+        } else if self.mode == ServoingMode::Low {
+            ArmState::SERVOING_LOW_LEVEL.0
+        } else {
+            self.arm.idle_state
+        }
+    }
+
+    pub(super) const fn mode(&self) -> ServoingMode {
+        self.mode
+    }
+
+    pub(super) fn set_mode(&mut self, mode: u32) -> Obeyed {
+        match mode {
+            2 => self.mode = ServoingMode::Single,
+            3 if self.is_faulty() => return Err(sub::IN_FAULT),
+            3 => self.mode = ServoingMode::Low,
+            _ => return Err(3),
+        }
+        self.rest(sub::WRONG_SERVOING_MODE);
+        self.commanded_s = None;
+        Ok(())
+    }
+
+    /// Faults whose cause is gone are forgotten.
+    pub(super) const fn clear_faults(&mut self) {
+        self.base_fault = 0;
+        self.actuator_faults = [0; ARM_JOINTS];
+        self.commanded_s = None;
+    }
+
+    /// Forgets the faults of one actuator.
+    pub(super) fn clear_actuator(&mut self, j: usize) {
+        self.actuator_faults[j] = 0;
+        if self.base_fault == JOINT_FAULT && self.actuator_faults == [0; ARM_JOINTS] {
+            self.clear_faults();
+        }
+    }
+
+    /// No motion of the high level any more.
+    pub(super) fn stop(&mut self) {
+        self.rest(MANUAL_STOP);
+    }
+
+    /// The emergency stop, until faults are cleared.
+    pub(super) fn emergency_stop(&mut self) {
+        self.base_fault |= EMERGENCY_STOP;
+        self.rest(sub::EMERGENCY_STOP);
+    }
+
+    /// Whether the base may begin a motion.
+    fn ready(&self) -> Obeyed {
+        match &self.motion {
+            _ if self.mode == ServoingMode::Low => Err(sub::WRONG_SERVOING_MODE),
+            _ if self.is_faulty() => Err(sub::IN_FAULT),
+            Some(motion) if motion.is_path() => Err(MOVEMENT_IN_PROGRESS),
+            _ => Ok(()),
+        }
+    }
+
+    /// Begins a path from where the arm is.
+    pub(super) fn follow(&mut self, legs: Vec<Leg>) -> Result<(), Refused> {
+        self.ready().map_err(|code| (ERROR_DEVICE, code))?;
+        self.motion = Some(Motion::path(self.state.joint_rad, legs));
+        Ok(())
+    }
+
+    /// Moves the joints with these speeds, rad/s, until told otherwise.
+    pub(super) fn move_joints(&mut self, rad_s: Joints) -> Result<(), Refused> {
+        self.ready().map_err(|code| (ERROR_DEVICE, code))?;
+        // The speed of a joint's limit itself is taken, whatever the wire's degrees make of it.
+        if !rad_s.iter().zip(&GEN3).all(|(speed, joint)| speed.abs() <= joint.speed_rad_s * 1.001) {
+            return Err(LARGE_SPEED);
+        }
+        if rad_s.iter().all(|speed| *speed == 0.0) {
+            self.rest(MANUAL_STOP);
+        } else {
+            self.motion = Some(Motion::speeds(self.state.joint_rad, rad_s));
+        }
+        Ok(())
+    }
+
+    /// What moves the arm (`ControlMode`).
+    pub(super) const fn control_mode(&self) -> u32 {
+        match (&self.motion, &self.asked) {
+            (Some(Motion::Path { .. }), _) => 4,
+            (Some(Motion::Speeds { .. }), _) => 1,
+            (None, Asked::Twist { .. }) => 2,
+            (None, _) => 13,
+        }
+    }
+
+    pub(super) fn twist(&mut self, command: &TwistCommand) -> Obeyed {
+        self.ready()?;
+        let frame = match command.reference_frame {
+            1 => TwistFrame::Mixed,
+            2 => TwistFrame::Tool,
+            3 => TwistFrame::Base,
+            _ => return Err(3),
+        };
+        let twist = command.twist.unwrap_or_default();
+        let linear_m_s = Vector3::new(twist.linear_x, twist.linear_y, twist.linear_z).cast::<f64>();
+        let angular_deg_s = Vector3::new(twist.angular_x, twist.angular_y, twist.angular_z).cast::<f64>();
+        let angular_rad_s = angular_deg_s.map(f64::to_radians);
+        if !linear_m_s.iter().chain(&angular_rad_s).all(|x| x.is_finite()) {
+            return Err(3);
+        }
+        self.motion = None;
+        let still = linear_m_s == Vector3::zeros() && angular_rad_s == Vector3::zeros();
+        self.asked = if still { Asked::Rest } else { Asked::Twist { frame, linear_m_s, angular_rad_s } };
+        Ok(())
+    }
+
+    /// A cyclic command. Refused outside of low level; without effect in fault.
+    pub(super) fn command(&mut self, now_s: f64, command: &Command) -> Obeyed {
+        if self.mode != ServoingMode::Low {
+            return Err(sub::WRONG_SERVOING_MODE);
+        }
+        self.frame_id = command.frame_id;
+        self.commanded_s = Some(now_s);
+        if self.is_faulty() {
+            return Ok(());
+        }
+        let mut wanted = if let Asked::Joints(angles) = self.asked { angles } else { self.state.joint_rad };
+        let mut faults = [0; ARM_JOINTS];
+        for (j, actuator) in command.actuators.iter().take(ARM_JOINTS).enumerate() {
+            // Commands out of their time are thrown away.
+            if actuator.command_id != command.frame_id || actuator.flags & 0x40 != 0 {
+                continue;
+            }
+            self.command_ids[j] = actuator.command_id;
+            let angle = unwrapped(actuator.position_deg, self.state.joint_rad[j]);
+            faults[j] = self.faults_of(j, angle);
+            wanted[j] = angle;
+        }
+        if faults == [0; ARM_JOINTS] {
+            self.asked = Asked::Joints(wanted);
+        } else {
+            self.trip(faults);
+        }
+        Ok(())
+    }
+
+    fn faults_of(&self, j: usize, angle: f64) -> u32 {
+        let far = (angle - self.state.joint_rad[j]).abs() > self.arm.following_error_deg.to_radians();
+        let limit = &GEN3[j];
+        let mut faults = if far || !angle.is_finite() { FOLLOWING_ERROR } else { 0 };
+        if angle > limit.high_rad + HARDWARE_MARGIN_RAD {
+            faults |= JOINT_LIMIT_HIGH;
+        }
+        if angle < limit.low_rad - HARDWARE_MARGIN_RAD {
+            faults |= JOINT_LIMIT_LOW;
+        }
+        faults
+    }
+
+    /// How the body is.
+    pub(super) const fn body(&self) -> &BodyState {
+        &self.state
+    }
+
+    /// What a refresh answers.
+    pub(super) fn told(&mut self, fault: EmulatedFault) -> Feedback {
+        let mut actuators: Vec<_> = (0..ARM_JOINTS.min(self.arm.joints as usize)).map(|j| self.actuator(j)).collect();
+        if fault == EmulatedFault::NotANumber {
+            for actuator in &mut actuators {
+                actuator.position_deg = f32::NAN;
+            }
+        }
+        Feedback { frame_id: self.frame_id, base: Some(self.base()), actuators }
+    }
+
+    fn noise(&mut self, size: f32) -> f32 {
+        (self.random.f32() - 0.5) * size
+    }
+
+    fn actuator(&mut self, j: usize) -> ActuatorFeedback {
+        let (_, fault_a) = self.banks(j);
+        ActuatorFeedback {
+            command_id: self.command_ids[j],
+            status_flags: if fault_a == 0 { STATUS_SERVOING } else { STATUS_FAULT },
+            jitter_us: self.random.u32(..80),
+            position_deg: wire_degrees(self.state.joint_rad[j]),
+            velocity_deg_s: self.state.joint_rad_s[j].to_degrees() as f32 + self.noise(0.01),
+            torque_nm: -self.state.joint_nm[j] as f32 + self.noise(0.02),
+            current_a: self.noise(0.02),
+            voltage: 24.0 + self.noise(0.1),
+            temperature_motor: 35.0,
+            temperature_core: 40.0,
+            fault_a,
+            ..ActuatorFeedback::default()
+        }
+    }
+
+    fn base(&self) -> BaseFeedback {
+        let pose = tool(&self.state.joint_rad);
+        let place = pose.translation.vector.cast::<f32>();
+        let theta = theta_rad(&pose.rotation).map(|angle| angle.to_degrees() as f32);
+        let twist = jacobian(&self.state.joint_rad) * nalgebra::SVector::from(self.state.joint_rad_s);
+        let linear = twist.fixed_rows::<3>(0).map(|x| x as f32);
+        let angular = twist.fixed_rows::<3>(3).map(|x| x.to_degrees() as f32);
+        let (force, torque) = (self.state.tool_force_n.cast::<f32>(), self.state.tool_torque_nm.cast::<f32>());
+        BaseFeedback {
+            state: self.state(),
+            arm_voltage: 24.0,
+            arm_current: 1.2,
+            temperature_cpu: 55.0,
+            temperature_ambient: 35.0,
+            imu_acceleration_z: 9.81,
+            pose_x: place.x,
+            pose_y: place.y,
+            pose_z: place.z,
+            theta_x: theta[0],
+            theta_y: theta[1],
+            theta_z: theta[2],
+            linear_x: linear.x,
+            linear_y: linear.y,
+            linear_z: linear.z,
+            angular_x: angular.x,
+            angular_y: angular.y,
+            angular_z: angular.z,
+            force_x: force.x,
+            force_y: force.y,
+            force_z: force.z,
+            torque_x: torque.x,
+            torque_y: torque.y,
+            torque_z: torque.z,
+            fault_a: self.banks(0).0,
+            ..BaseFeedback::default()
+        }
+    }
+}

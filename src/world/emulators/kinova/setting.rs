@@ -1,0 +1,58 @@
+//! A value that clients read, set and set back; kept as the bytes of its message.
+
+use prost::Message;
+
+use super::interface::{Answered, INVALID_PARAM, read};
+
+pub(super) struct Setting {
+    get: u16,
+    set: u16,
+    reset: Option<u16>,
+    initial: Vec<u8>,
+    value: Vec<u8>,
+    checked: Check,
+}
+
+/// Tells what an offered value becomes, or why it is refused.
+type Check = Box<dyn Fn(&[u8]) -> Answered + Send>;
+
+impl Setting {
+    /// Read and set by these functions of its service; `fits` tells which values are taken.
+    pub(super) fn new<M>(get: u16, set: u16, initial: &M, fits: fn(&M) -> bool) -> Self
+    where
+        M: Message + Default + 'static,
+    {
+        let checked = move |payload: &[u8]| {
+            let message = read::<M>(payload)?;
+            if fits(&message) { Ok(message.encode_to_vec()) } else { Err(INVALID_PARAM) }
+        };
+        let initial = initial.encode_to_vec();
+        Self { get, set, reset: None, value: initial.clone(), initial, checked: Box::new(checked) }
+    }
+
+    /// The same, set back by this function.
+    pub(super) fn with_reset(self, reset: u16) -> Self {
+        Self { reset: Some(reset), ..self }
+    }
+
+    /// Whether the function changes it.
+    pub(super) fn is_changed_by(&self, function: u16) -> bool {
+        function == self.set || Some(function) == self.reset
+    }
+
+    /// The answer, if the function is one of this value's.
+    pub(super) fn answer(&mut self, function: u16, payload: &[u8]) -> Option<Answered> {
+        if function == self.set {
+            return Some((self.checked)(payload).map(|value| {
+                self.value = value;
+                Vec::new()
+            }));
+        }
+        if Some(function) == self.reset {
+            self.value.clone_from(&self.initial);
+        } else if function != self.get {
+            return None;
+        }
+        Some(Ok(self.value.clone()))
+    }
+}

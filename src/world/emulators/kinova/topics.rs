@@ -1,0 +1,79 @@
+//! What the base tells on its own to those who asked for it.
+
+use nima_devices::kinova::{
+    frame::{Header, NOTIFICATION},
+    messages::Rpc,
+};
+use prost::Message;
+
+use super::{
+    interface::{ENTITY_NOT_FOUND, NO_MORE_STORAGE, Refused},
+    server::Link,
+};
+
+const SUBSCRIPTIONS: usize = 64;
+
+struct Subscription {
+    identifier: u16,
+    topic: Rpc,
+    session: u16,
+    link: Link,
+}
+
+/// One notification on its way.
+pub(super) struct Notice {
+    pub(super) link: Link,
+    pub(super) header: Header,
+    pub(super) payload: Vec<u8>,
+}
+
+#[derive(Default)]
+pub(super) struct Topics {
+    given: u16,
+    subscriptions: Vec<Subscription>,
+    waiting: Vec<Notice>,
+}
+
+impl Topics {
+    /// The number that notifications of this subscription bear.
+    pub(super) fn subscribe(&mut self, topic: Rpc, session: u16, link: Link) -> Result<u16, Refused> {
+        if self.subscriptions.len() >= SUBSCRIPTIONS {
+            return Err(NO_MORE_STORAGE);
+        }
+        self.given = self.given.checked_add(1).unwrap_or(1);
+        self.subscriptions.push(Subscription { identifier: self.given, topic, session, link });
+        Ok(self.given)
+    }
+
+    /// Only by the session that subscribed.
+    pub(super) fn unsubscribe(&mut self, identifier: u32, session: u16) -> Result<(), Refused> {
+        let own = |one: &Subscription| u32::from(one.identifier) == identifier && one.session == session;
+        let at = self.subscriptions.iter().position(own).ok_or(ENTITY_NOT_FOUND)?;
+        self.subscriptions.remove(at);
+        Ok(())
+    }
+
+    /// Forgets the subscriptions of sessions that are gone.
+    pub(super) fn keep(&mut self, is_open: impl Fn(u16) -> bool) {
+        self.subscriptions.retain(|one| is_open(one.session));
+    }
+
+    pub(super) fn tell(&mut self, topic: Rpc, message: &impl Message) {
+        for one in self.subscriptions.iter().filter(|one| one.topic == topic) {
+            let Rpc { service, function } = topic;
+            let header = Header {
+                kind: NOTIFICATION,
+                session: one.session,
+                message: one.identifier,
+                service,
+                function,
+                ..Header::default()
+            };
+            self.waiting.push(Notice { link: one.link, header, payload: message.encode_to_vec() });
+        }
+    }
+
+    pub(super) fn take(&mut self) -> Vec<Notice> {
+        std::mem::take(&mut self.waiting)
+    }
+}

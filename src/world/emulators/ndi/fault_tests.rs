@@ -1,0 +1,127 @@
+//! Every emulated fault, on the driver in its slot: what it does, and that the tracker comes back without a restart.
+#![cfg(unix)]
+
+use std::time::Instant;
+
+use nima_devices::{Loss, Slot, Stamped, Standing, TrackerReading, ndi::*};
+
+use super::driver_tests::{BLOCK_FIRMWARE, TEXT_FIRMWARE, definitions, line, network, profile, until};
+use crate::emulators::{
+    EmulatedFault, Serving,
+    ndi::{serve_line, serve_network, wandering},
+};
+
+/// What a fault does to the driver.
+#[derive(Debug)]
+enum Outcome {
+    Lost(&'static [Loss]),
+    Lags,
+    Disorder,
+}
+
+fn outcome(fault: EmulatedFault) -> Outcome {
+    use Outcome::{Disorder, Lags, Lost};
+    match fault {
+        EmulatedFault::None | EmulatedFault::Delay => Lags,
+        EmulatedFault::Reorder => Disorder,
+        EmulatedFault::Loss | EmulatedFault::Freeze | EmulatedFault::Silence => Lost(&[Loss::Silent]),
+        EmulatedFault::Garbage | EmulatedFault::BadChecksum => Lost(&[Loss::Corrupt, Loss::Silent]),
+        EmulatedFault::WrongFrame => Lost(&[Loss::Corrupt]),
+        EmulatedFault::Disconnect => Lost(&[Loss::Disconnected]),
+        EmulatedFault::DeviceFault => Lost(&[Loss::Device { code: SYSTEM_FAULT + (1 << 3) }]),
+        EmulatedFault::NotANumber => Lost(&[Loss::Implausible]),
+    }
+}
+
+/// Sets one fault on a slot that delivers, sees what it does, takes it back, and sees it deliver again.
+fn survives(fault: EmulatedFault, form: Form, served: &Serving, slot: &mut Slot<Driver>, begin: Instant) {
+    let delivering = |slot: &mut Slot<Driver>| until(begin, 5.0, |now_s| slot.poll(now_s), |reading| reading.is_some());
+    assert!(delivering(slot), "before {fault:?}");
+    let before = *slot.health();
+    let set = Instant::now();
+    served.faults.set(fault);
+    let outcome = outcome(fault);
+    let shown = std::cell::Cell::new(false);
+    // In noise a good reply comes now and then; the loss needs its time.
+    until(
+        begin,
+        4.0,
+        |now_s| {
+            slot.poll(now_s);
+            let health = slot.health();
+            shown.set(match (&outcome, health.standing) {
+                (Outcome::Lost(losses), Standing::Lost(loss)) => losses.contains(&loss),
+                (Outcome::Lags, _) => health.lost >= before.lost + 4,
+                (Outcome::Disorder, _) => health.out_of_order >= before.out_of_order + 4,
+                _ => false,
+            });
+            None
+        },
+        |_: Option<Stamped<TrackerReading>>| shown.get(),
+    );
+    assert!(shown.get(), "{fault:?} over {form:?} gave {:?}, not {outcome:?}", slot.health());
+    println!("{fault:?} {form:?}: {outcome:?} after {} ms", set.elapsed().as_millis());
+    served.faults.set(EmulatedFault::None);
+    assert!(delivering(slot), "after {fault:?}: {:?}, {:?}", slot.health(), slot.view().report().trouble);
+}
+
+fn survives_all(served: &Serving, settings: Settings, form: Form, faults: &[EmulatedFault]) {
+    let mut slot = Slot::start("tracker", move || Driver::open(&settings)).unwrap();
+    let begin = Instant::now();
+    for fault in faults {
+        survives(*fault, form, served, &mut slot, begin);
+    }
+}
+
+fn survives_over_a_network(firmware: &str, form: Form, faults: &[EmulatedFault]) {
+    let (_folder, tools) = definitions(1);
+    let served = serve_network(0, profile(firmware), wandering).unwrap();
+    survives_all(&served, network(&served, tools), form, faults);
+}
+
+#[test]
+fn it_survives_a_network_that_loses_and_goes() {
+    use EmulatedFault::{Disconnect, Freeze, Loss, Silence};
+    survives_over_a_network(BLOCK_FIRMWARE, Form::Binary, &[Loss, Freeze, Silence, Disconnect]);
+}
+
+#[test]
+fn it_survives_a_network_that_is_late() {
+    survives_over_a_network(BLOCK_FIRMWARE, Form::Binary, &[EmulatedFault::Delay]);
+}
+
+#[test]
+fn it_survives_damaged_blocks() {
+    use EmulatedFault::{BadChecksum, Garbage, WrongFrame};
+    survives_over_a_network(BLOCK_FIRMWARE, Form::Binary, &[Garbage, BadChecksum, WrongFrame]);
+}
+
+#[test]
+fn it_survives_damaged_text() {
+    use EmulatedFault::{BadChecksum, Garbage, Silence, WrongFrame};
+    survives_over_a_network(TEXT_FIRMWARE, Form::Text, &[Silence, Garbage, BadChecksum, WrongFrame]);
+}
+
+#[test]
+fn it_survives_a_unit_that_is_wrong() {
+    use EmulatedFault::{DeviceFault, NotANumber, Reorder};
+    for (firmware, form) in [(BLOCK_FIRMWARE, Form::Binary), (TEXT_FIRMWARE, Form::Text)] {
+        survives_over_a_network(firmware, form, &[Reorder, DeviceFault, NotANumber]);
+    }
+}
+
+fn survives_over_a_line(faults: &[EmulatedFault]) {
+    let (_folder, tools) = definitions(1);
+    let served = serve_line(None, profile(BLOCK_FIRMWARE), wandering).unwrap();
+    survives_all(&served, line(&served, tools), Form::Binary, faults);
+}
+
+#[test]
+fn it_survives_a_line_that_is_pulled_out_or_silent() {
+    survives_over_a_line(&[EmulatedFault::Disconnect, EmulatedFault::Silence]);
+}
+
+#[test]
+fn it_survives_noise_on_a_line() {
+    survives_over_a_line(&[EmulatedFault::Garbage, EmulatedFault::BadChecksum]);
+}

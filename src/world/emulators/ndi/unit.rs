@@ -1,0 +1,380 @@
+//! The unit itself, without input and output: a command line in, a reply out.
+
+use nima_devices::{
+    Tracked,
+    ndi::{
+        command::{COMMAND_MAX, Command, Filter, Form, OUTSIDE_TOO, STRAYS, TRANSFORMS},
+        definition::DEFINITION,
+        reply::{block_of, finish_line},
+        tracking::{Frames, HandleFrame, Sight, Transform},
+        words::{ErrorCode, PortStatus, SystemStatus},
+    },
+};
+
+use super::{
+    Body, FRAME_HZ, Profile,
+    port::{Port, information},
+};
+use crate::emulators::EmulatedFault;
+
+/// Handle of the first wireless tool.
+const FIRST_HANDLE: u8 = 0x0A;
+/// Tools that can be defined at once.
+const HANDLES: usize = 12;
+/// Speed after switching on.
+pub(super) const FIRST_BAUD: u32 = 9600;
+/// As real units say it; hosts that look for a unit want at least 84 bytes.
+const FIRMWARE_INFO: &str = "Features.Firmware.Version=007.000.012;3;1;0;12;;Current firmware revision number";
+/// User parameters that can be read.
+const PARAMETERS: [(&str, &str); 4] = [
+    ("Features.Firmware.Version", "007.000.012"),
+    ("Info.Timeout.INIT", "5"),
+    ("Info.Timeout.PINIT", "5"),
+    ("Info.Timeout.TSTART", "5"),
+];
+
+/// A reply, and what follows it.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Answer {
+    /// The reply as it goes over the wire.
+    pub bytes: Vec<u8>,
+    /// The speed of the line after the reply, bit/s.
+    pub then_baud: Option<u32>,
+}
+
+/// The modes of a unit and what it knows.
+#[derive(Debug)]
+pub struct Unit {
+    profile: Profile,
+    network: bool,
+    ports: Vec<Port>,
+    initialised: bool,
+    tracking: bool,
+    /// Time of the unit at which the frame counter was 0, s.
+    zero_s: f64,
+    frozen_s: Option<f64>,
+    asked: u32,
+}
+
+enum Reply {
+    Line(String),
+    Okay,
+    Bytes(Vec<u8>),
+    Switch(u32),
+    Reset,
+}
+
+impl Unit {
+    /// A unit just switched on; `network` where it has no serial line.
+    pub fn new(profile: Profile, network: bool) -> Self {
+        let ports = Vec::new();
+        Self { profile, network, ports, initialised: false, tracking: false, zero_s: 0.0, frozen_s: None, asked: 0 }
+    }
+
+    /// It tracks.
+    pub const fn is_tracking(&self) -> bool {
+        self.tracking
+    }
+
+    /// Bytes written as the definition of this tool, by its number.
+    pub fn definition(&self, number: usize) -> Option<&[u8]> {
+        self.ports.iter().find(|port| port.number == number && port.written).map(|port| &port.definition[..])
+    }
+
+    /// What it says after a reset.
+    pub fn reset(&mut self) -> Answer {
+        *self = Self { zero_s: self.zero_s, ..Self::new(self.profile.clone(), self.network) };
+        Answer { bytes: line("RESET"), then_baud: Some(FIRST_BAUD) }
+    }
+
+    /// Answers a line (without its CR) at `unit_s`, time of the unit in s. What fails is answered by an error; of the faults, those of
+    /// meaning are obeyed.
+    pub fn answer(&mut self, unit_s: f64, text: &[u8], fault: EmulatedFault, body: &mut dyn Body) -> Answer {
+        let command = if text.len() < COMMAND_MAX { Command::parse(text) } else { Err(ErrorCode::TOO_LONG) };
+        let mut then_baud = None;
+        let mut bytes = match command.and_then(|command| self.obey(&command, unit_s, fault, body)) {
+            Ok(Reply::Okay) => line("OKAY"),
+            Ok(Reply::Line(text)) => line(&text),
+            Ok(Reply::Bytes(bytes)) => bytes,
+            Ok(Reply::Switch(baud)) => {
+                then_baud = Some(baud);
+                line("OKAY")
+            }
+            Ok(Reply::Reset) => {
+                let answer = self.reset();
+                then_baud = answer.then_baud;
+                answer.bytes
+            }
+            Err(ErrorCode(code)) => line(&format!("ERROR{code:02X}")),
+        };
+        self.spoil(&mut bytes, fault);
+        Answer { bytes, then_baud }
+    }
+
+    fn spoil(&self, bytes: &mut Vec<u8>, fault: EmulatedFault) {
+        match fault {
+            EmulatedFault::BadChecksum => {
+                // The last byte of a line is its CR, before it stands the checksum.
+                let place = if bytes.ends_with(b"\r") { bytes.len() - 2 } else { bytes.len() - 1 };
+                bytes[place] = if bytes[place] == b'0' { b'1' } else { b'0' };
+            }
+            // Right by its checksum, and no reply to anything.
+            EmulatedFault::WrongFrame if self.tracking && bytes.starts_with(&[0xC4]) => {
+                *bytes = block_of(b"\x01\x0A\x01");
+            }
+            EmulatedFault::WrongFrame if self.tracking => *bytes = line("010A+1000"),
+            _ => {}
+        }
+    }
+
+    fn obey(
+        &mut self,
+        command: &Command<'_>,
+        unit_s: f64,
+        fault: EmulatedFault,
+        body: &mut dyn Body,
+    ) -> Result<Reply, ErrorCode> {
+        self.permitted(command)?;
+        match *command {
+            Command::Init => {
+                self.ports.clear();
+                (self.initialised, self.tracking) = (true, false);
+                Ok(Reply::Okay)
+            }
+            Command::Reset => Ok(Reply::Reset),
+            Command::ApiRevision => Ok(Reply::Line("G.003.004".to_owned())),
+            Command::Comm { .. } if self.network => Err(ErrorCode::COMM_PARAMETERS),
+            Command::Comm { baud } => Ok(Reply::Switch(baud)),
+            Command::Version(number) => self.version(number),
+            Command::GetInfo(name) => Self::parameter_info(name),
+            Command::Get(name) => Self::parameter(name),
+            Command::Set(pair) => {
+                let name = pair.split('=').next().unwrap_or_default();
+                Err(if known(name).is_some() { ErrorCode::READ_ONLY } else { ErrorCode::NO_SUCH_PARAMETER })
+            }
+            Command::Echo(text) => Ok(Reply::Line(text.to_owned())),
+            Command::Beep(times) => {
+                body.beep(times);
+                Ok(Reply::Line("1".to_owned()))
+            }
+            Command::Start { anew } => {
+                self.tracking = true;
+                if anew {
+                    self.zero_s = unit_s;
+                }
+                Ok(Reply::Okay)
+            }
+            Command::Stop => {
+                self.tracking = false;
+                Ok(Reply::Okay)
+            }
+            Command::Track(form, options) => self.track(form, options, unit_s, fault, body),
+            _ => self.obey_port(command),
+        }
+    }
+
+    /// The modes in which a command is possible.
+    const fn permitted(&self, command: &Command<'_>) -> Result<(), ErrorCode> {
+        let anytime = matches!(
+            command,
+            Command::Init
+                | Command::Reset
+                | Command::ApiRevision
+                | Command::Get(_)
+                | Command::GetInfo(_)
+                | Command::Echo(_)
+                | Command::Beep(_)
+        );
+        let before = matches!(command, Command::Comm { .. } | Command::Version(_));
+        let during = matches!(command, Command::Track(..) | Command::Stop | Command::Handles(_));
+        let only_during = matches!(command, Command::Track(..) | Command::Stop);
+        if anytime || (before && !self.tracking) {
+            Ok(())
+        } else if !self.initialised {
+            Err(ErrorCode::SYSTEM_NOT_INITIALISED)
+        } else if (self.tracking && !during) || (!self.tracking && only_during) {
+            Err(ErrorCode::INVALID_MODE)
+        } else {
+            Ok(())
+        }
+    }
+
+    fn version(&self, number: u8) -> Result<Reply, ErrorCode> {
+        let Profile { product, serial, firmware } = &self.profile;
+        match number {
+            0 => Ok(Reply::Line(format!(
+                "{product} Control Firmware\nNDI S/N: {serial}\nCharacterization Date: 01/01/26\n\
+                 Freeze Tag: {firmware}\nFreeze Date: 01/01/26\n(emulated)\n"
+            ))),
+            3 | 4 | 5 | 7 | 8 => Ok(Reply::Line(format!("{product} part {number}\nFreeze Tag: {firmware}\n"))),
+            _ => Err(ErrorCode::OUT_OF_RANGE),
+        }
+    }
+
+    fn parameter_info(name: &str) -> Result<Reply, ErrorCode> {
+        match known(name) {
+            Some(_) if name == PARAMETERS[0].0 => Ok(Reply::Line(FIRMWARE_INFO.to_owned())),
+            Some(value) => Ok(Reply::Line(format!("{name}={value};1;1;0;60;;Longest time of the command, s"))),
+            None => Err(ErrorCode::NO_SUCH_PARAMETER),
+        }
+    }
+
+    fn parameter(name: &str) -> Result<Reply, ErrorCode> {
+        let value = known(name).ok_or(ErrorCode::NO_SUCH_PARAMETER)?;
+        Ok(Reply::Line(format!("{name}={value}\n")))
+    }
+
+    fn port(&mut self, handle: u8) -> Result<&mut Port, ErrorCode> {
+        self.ports.iter_mut().find(|port| port.handle == handle).ok_or(ErrorCode::INVALID_HANDLE)
+    }
+
+    /// The commands that concern handles.
+    fn obey_port(&mut self, command: &Command<'_>) -> Result<Reply, ErrorCode> {
+        match *command {
+            Command::Handles(filter) => Ok(Reply::Line(self.list(filter))),
+            Command::Request(_) => self.request().map(Reply::Line),
+            Command::Write { handle, address, data } => {
+                let port = self.port(handle)?;
+                let place = usize::from(address)..usize::from(address) + data.len();
+                port.definition.get_mut(place).ok_or(ErrorCode::OUT_OF_RANGE)?.copy_from_slice(&data);
+                port.written = true;
+                Ok(Reply::Okay)
+            }
+            Command::Initialise(handle) => {
+                let port = self.port(handle)?;
+                port.initialised = port.written;
+                if port.written { Ok(Reply::Okay) } else { Err(ErrorCode::NO_TOOL) }
+            }
+            Command::Enable(handle, _) => {
+                let port = self.port(handle)?;
+                port.enabled = port.initialised;
+                if port.initialised { Ok(Reply::Okay) } else { Err(ErrorCode::NOT_INITIALISED) }
+            }
+            Command::Disable(handle) => {
+                let port = self.port(handle)?;
+                if std::mem::take(&mut port.enabled) { Ok(Reply::Okay) } else { Err(ErrorCode::NOT_ENABLED) }
+            }
+            Command::Free(handle) => {
+                self.port(handle)?;
+                self.ports.retain(|port| port.handle != handle);
+                Ok(Reply::Okay)
+            }
+            Command::Information { handle, options } => {
+                let port = self.port(handle)?;
+                Ok(Reply::Line(if port.written { information(port, options) } else { "UNOCCUPIED".to_owned() }))
+            }
+            _ => Err(ErrorCode::INVALID_COMMAND),
+        }
+    }
+
+    fn list(&self, filter: Filter) -> String {
+        let wanted = |port: &&Port| match filter {
+            Filter::All => true,
+            Filter::ToFree => false,
+            Filter::ToInitialise => port.written && !port.initialised,
+            Filter::ToEnable => port.initialised && !port.enabled,
+            Filter::Enabled => port.enabled,
+        };
+        let ports: Vec<&Port> = self.ports.iter().filter(wanted).collect();
+        let entries = ports.iter().map(|port| format!("{:02X}{:03X}", port.handle, port.status()));
+        format!("{:02X}{}", ports.len(), entries.collect::<String>())
+    }
+
+    fn request(&mut self) -> Result<String, ErrorCode> {
+        let free = |number: &usize| self.ports.iter().all(|port| port.number != *number);
+        let number = (0..HANDLES).find(free).ok_or(ErrorCode::NO_HANDLES_LEFT)?;
+        let handle = FIRST_HANDLE + number as u8;
+        let definition = Box::new([0; DEFINITION]);
+        self.ports.push(Port { handle, number, definition, written: false, initialised: false, enabled: false });
+        self.ports.sort_by_key(|port| port.handle);
+        Ok(format!("{handle:02X}"))
+    }
+
+    fn track(
+        &mut self,
+        form: Form,
+        options: u16,
+        unit_s: f64,
+        fault: EmulatedFault,
+        body: &mut dyn Body,
+    ) -> Result<Reply, ErrorCode> {
+        if options & !(TRANSFORMS | OUTSIDE_TOO | STRAYS) != 0 || options & TRANSFORMS == 0 {
+            return Err(ErrorCode::OUT_OF_RANGE);
+        }
+        let frame = self.frame_at(unit_s, fault);
+        let frames = self.frames(frame, fault, body);
+        Ok(match form {
+            Form::Binary => {
+                let mut reply = Vec::with_capacity(512);
+                frames.write_block(options, &mut reply);
+                Reply::Bytes(block_of(&reply))
+            }
+            Form::Text => {
+                let mut reply = Vec::with_capacity(1024);
+                frames.write_text(options, &mut reply);
+                finish_line(&mut reply);
+                Reply::Bytes(reply)
+            }
+        })
+    }
+
+    /// Number of the frame at this time.
+    fn frame_at(&mut self, unit_s: f64, fault: EmulatedFault) -> u64 {
+        self.asked = self.asked.wrapping_add(1);
+        let now_s = if fault == EmulatedFault::Freeze { *self.frozen_s.get_or_insert(unit_s) } else { unit_s };
+        if fault != EmulatedFault::Freeze {
+            self.frozen_s = None;
+        }
+        let frame = ((now_s - self.zero_s) * FRAME_HZ).max(0.0) as u64;
+        // Every other reply tells of a frame before the last.
+        if fault == EmulatedFault::Reorder && self.asked % 2 == 1 { frame.saturating_sub(2) } else { frame }
+    }
+
+    /// The tools at the time of a frame, so that the same frame always tells the same.
+    fn frames(&self, frame: u64, fault: EmulatedFault, body: &mut dyn Body) -> Frames {
+        let at_s = self.zero_s + frame as f64 / FRAME_HZ;
+        let mut system = body.system();
+        if fault == EmulatedFault::DeviceFault {
+            system.0 |= SystemStatus::EXCEPTION;
+        }
+        let mut frames = Vec::with_capacity(self.ports.len());
+        for port in self.ports.iter().filter(|port| port.initialised) {
+            let tracked = if port.enabled { body.tool(at_s, port.number) } else { Tracked::Disabled };
+            let Some((sight, bits)) = sight_of(&tracked, fault) else { continue };
+            let status = PortStatus(port.status() | bits);
+            frames.push(HandleFrame { handle: port.handle, sight, status, frame: frame as u32 });
+        }
+        Frames::new(&frames, system)
+    }
+}
+
+/// On the wire, with the status bits that belong to it; `None` for a tool that is not there.
+fn sight_of(tracked: &Tracked, fault: EmulatedFault) -> Option<(Sight, u32)> {
+    match tracked {
+        Tracked::Absent => None,
+        Tracked::Disabled => Some((Sight::Disabled, 0)),
+        Tracked::Missing { out_of_volume } => {
+            Some((Sight::Missing, if *out_of_volume { PortStatus::OUT_OF_VOLUME } else { 0 }))
+        }
+        Tracked::Seen { c_from_tool, position_in_c_m, error_m, at_the_edge } => {
+            let q = c_from_tool.quaternion();
+            let bad = fault == EmulatedFault::NotANumber;
+            // In ASCII there is no such number; a quaternion of zeros is as impossible.
+            let quaternion = if bad { [f64::NAN; 4] } else { [q.w, q.i, q.j, q.k] };
+            let translation_mm = (position_in_c_m * 1e3).into();
+            let transform = Transform { quaternion, translation_mm, error_mm: error_m * 1e3 };
+            Some((Sight::Valid(transform), if *at_the_edge { PortStatus::PARTLY_OUT } else { 0 }))
+        }
+    }
+}
+
+fn known(name: &str) -> Option<&'static str> {
+    PARAMETERS.iter().find(|(known, _)| *known == name).map(|(_, value)| *value)
+}
+
+/// An ASCII reply.
+fn line(text: &str) -> Vec<u8> {
+    let mut reply = text.as_bytes().to_vec();
+    finish_line(&mut reply);
+    reply
+}

@@ -1,0 +1,171 @@
+//! Where emulators serve: ports of this computer and names of pseudo-terminals, each claimed by one process at a time.
+//!
+//! A name is a link to the terminal. What a dead process left is replaced; what a living one serves, and whatever was not made by an
+//! emulator (a real device, a file), is left alone and told in one line. Folders are those that [`own_folder`](nima_devices::own_folder)
+//! accepts.
+
+use std::io::{Error, ErrorKind, Result};
+
+/// A port that was asked for: when another program has it, the error says so and what to do.
+pub(crate) fn taken<T>(port: u16, protocol: &str, bound: Result<T>) -> Result<T> {
+    bound.map_err(|error| {
+        let reason = match error.kind() {
+            ErrorKind::AddrInUse => {
+                "is used by another program, perhaps by another emulated rig: end it, or change the port"
+            }
+            ErrorKind::PermissionDenied => "needs more rights (as all below 1024): take another port",
+            _ => return error,
+        };
+        Error::new(error.kind(), format!("{protocol} port {port} of this computer {reason}"))
+    })
+}
+
+#[cfg(unix)]
+pub(crate) use terminal::TerminalName;
+
+#[cfg(unix)]
+mod terminal {
+    use std::{
+        fs::{self, File, TryLockError},
+        io::{Error, ErrorKind, Result},
+        os::unix::fs::symlink,
+        path::{Path, PathBuf},
+    };
+
+    use nima_devices::own_folder::{lock_file, prepare};
+    use serialport::{SerialPort as _, TTYPort};
+
+    /// Where the system makes pseudo-terminals: only links to there are replaced.
+    const TERMINALS: &str = "/dev/pts/";
+
+    /// The name of a pseudo-terminal, held as long as this lives; it leads somewhere while a line is connected.
+    #[derive(Debug)]
+    pub(crate) struct TerminalName {
+        path: PathBuf,
+        /// Locked by this process: the system unlocks it when the process ends, however it does.
+        _claim: File,
+        /// The folder of its own, where no place was asked for.
+        _folder: Option<tempfile::TempDir>,
+    }
+
+    impl TerminalName {
+        /// Claims `link`; without one, `name` in a folder of its own. Folders above it are made.
+        pub(crate) fn claim(link: Option<&Path>, name: &str) -> Result<Self> {
+            let (path, folder) = if let Some(link) = link {
+                (link.to_owned(), None)
+            } else {
+                let folder = tempfile::Builder::new().prefix("nima-").tempdir()?;
+                (folder.path().join(name), Some(folder))
+            };
+            if let Some(parent) = path.parent().filter(|parent| !parent.as_os_str().is_empty()) {
+                prepare(parent)?;
+            }
+            let claim = lock_file(&hidden(&path, "lock"))?;
+            match claim.try_lock() {
+                Ok(()) => {}
+                Err(TryLockError::Error(error)) => return Err(error),
+                Err(TryLockError::WouldBlock) => {
+                    let told = "is served by another emulator: end it, or take another place";
+                    return Err(Error::new(ErrorKind::AddrInUse, format!("{} {told}", path.display())));
+                }
+            }
+            if !may_be_replaced(&path) {
+                let told = "is no emulator's: take another place, or remove it";
+                return Err(Error::new(ErrorKind::AlreadyExists, format!("{} {told}", path.display())));
+            }
+            Ok(Self { path, _claim: claim, _folder: folder })
+        }
+
+        /// As a client opens it.
+        pub(crate) fn path(&self) -> String {
+            self.path.display().to_string()
+        }
+
+        /// Leads to this terminal from now on.
+        pub(crate) fn lead_to(&self, terminal: &TTYPort) -> Result<()> {
+            let target = terminal.name().ok_or_else(|| Error::other("a pseudo-terminal without a name"))?;
+            let fresh = hidden(&self.path, "new");
+            fs::remove_file(&fresh).ok();
+            symlink(target, &fresh)?;
+            fs::rename(&fresh, &self.path)
+        }
+
+        /// Leads nowhere, as when the cable is pulled.
+        pub(crate) fn cut(&self) {
+            fs::remove_file(&self.path).ok();
+        }
+    }
+
+    impl Drop for TerminalName {
+        fn drop(&mut self) {
+            self.cut();
+        }
+    }
+
+    /// A file beside `path` that no listing of devices shows.
+    fn hidden(path: &Path, kind: &str) -> PathBuf {
+        let name = path.file_name().unwrap_or_default().to_string_lossy();
+        path.with_file_name(format!(".{name}.{kind}"))
+    }
+
+    /// Nothing is there, or a link that an emulator left.
+    fn may_be_replaced(path: &Path) -> bool {
+        match fs::symlink_metadata(path) {
+            Err(_) => true,
+            Ok(_) => fs::read_link(path).is_ok_and(|target| target.starts_with(TERMINALS)),
+        }
+    }
+
+    #[cfg(test)]
+    mod tests {
+        use super::*;
+
+        #[test]
+        fn a_name_has_one_owner_and_what_a_dead_one_left_is_replaced() {
+            let folder = tempfile::tempdir().unwrap();
+            let link = folder.path().join("new/folder/ttyACM0");
+            let (_near, far) = TTYPort::pair().unwrap();
+            let first = TerminalName::claim(Some(&link), "tty").unwrap();
+            first.lead_to(&far).unwrap();
+            assert_eq!(fs::read_link(&link).unwrap().to_str(), far.name().as_deref());
+            let second = TerminalName::claim(Some(&link), "tty").unwrap_err();
+            assert!(second.kind() == ErrorKind::AddrInUse && second.to_string().contains("ttyACM0"), "{second}");
+            drop(first);
+            assert!(fs::symlink_metadata(&link).is_err(), "the name goes with its owner");
+            symlink("/dev/pts/9999", &link).unwrap();
+            let third = TerminalName::claim(Some(&link), "tty").unwrap();
+            third.lead_to(&far).unwrap();
+            assert_eq!(fs::read_link(&link).unwrap().to_str(), far.name().as_deref());
+        }
+
+        #[test]
+        fn a_real_device_or_a_file_is_left_alone() {
+            let folder = tempfile::tempdir().unwrap();
+            let (file, device) = (folder.path().join("file"), folder.path().join("by-id"));
+            fs::write(&file, "kept").unwrap();
+            symlink("/dev/null", &device).unwrap();
+            for path in [&file, &device] {
+                let refused = TerminalName::claim(Some(path), "tty").unwrap_err();
+                assert_eq!(refused.kind(), ErrorKind::AlreadyExists, "{refused}");
+            }
+            assert_eq!(fs::read_to_string(&file).unwrap(), "kept");
+            assert_eq!(fs::read_link(&device).unwrap(), Path::new("/dev/null"));
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::net::TcpListener;
+
+    use super::*;
+
+    #[test]
+    fn a_port_in_use_is_told_with_its_number() {
+        let listener = TcpListener::bind(("127.0.0.1", 0)).unwrap();
+        let port = listener.local_addr().unwrap().port();
+        let error = taken(port, "TCP", TcpListener::bind(("127.0.0.1", port))).unwrap_err();
+        assert_eq!(error.kind(), ErrorKind::AddrInUse);
+        assert!(error.to_string().contains(&format!("TCP port {port}")), "{error}");
+    }
+}

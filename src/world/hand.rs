@@ -1,0 +1,221 @@
+//! The simulated surgeon: minimum-jerk intentions, tremor, and a grip that gives way under force.
+
+use std::f64::consts::TAU;
+
+use nalgebra::Vector3;
+use nima_core::noise::Noise;
+
+use crate::scene::{Hand as HandConfig, Scene};
+
+/// Height at which the hand carries from target to target, above the targets, m.
+const CARRY_HEIGHT_M: f64 = 0.015;
+/// Physiological tremor, Hz.
+const TREMOR_HZ: [f64; 3] = [8.3, 9.7, 11.6];
+
+/// Fastest way of a handle that is led from the screen, m/s.
+const GUIDE_M_S: f64 = 0.15;
+/// So near to the task's own way a hand that was let go takes it up again, m.
+const CAUGHT_UP_M: f64 = 5e-4;
+
+/// One part of the task: minimum-jerk from one point to another within a time.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Move {
+    pub(super) from_m: Vector3<f64>,
+    pub(super) to_m: Vector3<f64>,
+    pub(super) seconds: f64,
+}
+
+impl Move {
+    /// Intended position (m) and velocity (m/s) after `t_s` of the move (Flash and Hogan 1985).
+    pub(super) fn at(&self, t_s: f64) -> (Vector3<f64>, Vector3<f64>) {
+        if self.seconds <= 0.0 {
+            return (self.to_m, Vector3::zeros());
+        }
+        let s = (t_s / self.seconds).clamp(0.0, 1.0);
+        let way = self.to_m - self.from_m;
+        let share = s * s * s * (10.0 + s * (-15.0 + 6.0 * s));
+        let speed = 30.0 * s * s * (1.0 - s) * (1.0 - s) / self.seconds;
+        (self.from_m + way * share, way * speed)
+    }
+}
+
+/// Hand and handle as one mass on a spring and damper that pull it to where the surgeon intends.
+#[derive(Clone, Debug)]
+pub struct Hand {
+    config: HandConfig,
+    moves: Vec<Move>,
+    current: usize,
+    in_move_s: f64,
+    time_s: f64,
+    tremor_phase: [[f64; 3]; 3],
+    position_m: Vector3<f64>,
+    velocity_m_s: Vector3<f64>,
+    guide_m: Option<Vector3<f64>>,
+    /// Where it waits, while it does not work.
+    waits_m: Option<Vector3<f64>>,
+    /// Where the hand is meant to be while it is led, and on its way back to the task.
+    led_m: Option<Vector3<f64>>,
+}
+
+impl Hand {
+    /// The hand of `scene`, resting above its first target.
+    pub fn new(scene: &Scene) -> Self {
+        let mut noise = Noise::new(scene.seed);
+        let tremor_phase = std::array::from_fn(|_| std::array::from_fn(|_| TAU * noise.uniform()));
+        let moves = task(&scene.hand, &scene.targets_m);
+        let position_m = moves.first().map_or_else(Vector3::zeros, |first| first.from_m);
+        Self {
+            config: scene.hand,
+            moves,
+            current: 0,
+            in_move_s: 0.0,
+            time_s: 0.0,
+            tremor_phase,
+            position_m,
+            velocity_m_s: Vector3::zeros(),
+            guide_m: None,
+            waits_m: None,
+            led_m: None,
+        }
+    }
+
+    /// Leads the hand to this place instead of its task; `None` lets it go on. Neither way is a jump.
+    pub fn guide(&mut self, guide_m: Option<Vector3<f64>>) {
+        self.guide_m = guide_m.filter(|at_m| at_m.iter().all(|x| x.is_finite()));
+        if self.guide_m.is_some() {
+            self.led_m.get_or_insert(self.position_m);
+        }
+    }
+
+    /// Lets the hand wait at this place instead of its task; `None` lets it work. Neither way is a jump.
+    pub(super) fn wait(&mut self, waits_m: Option<Vector3<f64>>) {
+        self.waits_m = waits_m;
+        if waits_m.is_some() {
+            self.led_m.get_or_insert(self.position_m);
+        }
+    }
+
+    /// Where it is led, or waits; a lead goes first.
+    fn aside_m(&self) -> Option<Vector3<f64>> {
+        self.guide_m.or(self.waits_m)
+    }
+
+    /// Where it is meant to be, m, and how fast, m/s: on its task's way, or led.
+    fn intended(&mut self, dt_s: f64) -> (Vector3<f64>, Vector3<f64>) {
+        let (task_m, task_m_s) = self.moves[self.current].at(self.in_move_s);
+        let aside_m = self.aside_m();
+        let Some(led_m) = &mut self.led_m else { return (task_m + self.tremor_m(), task_m_s) };
+        let way_m = aside_m.unwrap_or(task_m) - *led_m;
+        let step_m = GUIDE_M_S * dt_s;
+        let share = if way_m.norm() > step_m { step_m / way_m.norm() } else { 1.0 };
+        *led_m += way_m * share;
+        let intended = (*led_m, way_m * (share / dt_s));
+        if aside_m.is_none() && way_m.norm() < CAUGHT_UP_M {
+            self.led_m = None;
+        }
+        intended
+    }
+
+    /// Where hand and handle are, m.
+    pub const fn position_m(&self) -> Vector3<f64> {
+        self.position_m
+    }
+
+    /// Advances by `dt_s` under this force (N) from the handle.
+    pub fn advance(&mut self, dt_s: f64, force_n: &Vector3<f64>) {
+        self.time_s += dt_s;
+        if self.aside_m().is_none() {
+            self.in_move_s += dt_s;
+        }
+        if self.in_move_s >= self.moves[self.current].seconds {
+            self.in_move_s = 0.0;
+            self.current = (self.current + 1) % self.moves.len();
+        }
+        let (intended_m, intended_m_s) = self.intended(dt_s);
+        let HandConfig { mass_kg, grip_stiffness_n_m, grip_damping_n_s_m, .. } = self.config;
+        let grip_n = (intended_m - self.position_m) * grip_stiffness_n_m
+            + (intended_m_s - self.velocity_m_s) * grip_damping_n_s_m;
+        // Semi-implicit Euler: stable for these stiffnesses at 1 ms.
+        self.velocity_m_s += (grip_n + force_n) * (dt_s / mass_kg);
+        self.position_m += self.velocity_m_s * dt_s;
+    }
+
+    fn tremor_m(&self) -> Vector3<f64> {
+        if self.config.tremor_m == 0.0 {
+            return Vector3::zeros();
+        }
+        let amplitude_m = self.config.tremor_m / (TREMOR_HZ.len() as f64).sqrt();
+        Vector3::from_fn(|axis, _| {
+            let waves = TREMOR_HZ.iter().zip(&self.tremor_phase[axis]);
+            amplitude_m * waves.map(|(hz, phase)| (TAU * hz * self.time_s + phase).sin()).sum::<f64>()
+        })
+    }
+}
+
+/// The endless task: over each target go down, press, drag a little, hold, lift, and carry on to the next.
+fn task(hand: &HandConfig, targets_m: &[Vector3<f64>]) -> Vec<Move> {
+    let lift = Vector3::new(0.0, 0.0, CARRY_HEIGHT_M);
+    let press = Vector3::new(0.0, 0.0, -hand.press_depth_m);
+    let drag = Vector3::new(hand.drag_m, -0.5 * hand.drag_m, 0.0);
+    let mut moves = Vec::with_capacity(targets_m.len() * 5);
+    for (i, &target) in targets_m.iter().enumerate() {
+        let next = targets_m[(i + 1) % targets_m.len()];
+        let stations =
+            [target + lift, target + press, target + press + drag, target + press + drag, target + lift, next + lift];
+        let seconds = [hand.press_s, hand.hold_s, hand.hold_s, hand.press_s, hand.reach_s];
+        moves.extend(stations.windows(2).zip(seconds).map(|(pair, seconds)| Move {
+            from_m: pair[0],
+            to_m: pair[1],
+            seconds,
+        }));
+    }
+    moves
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_minimum_jerk_move_starts_and_ends_at_rest() {
+        let way = Move { from_m: Vector3::zeros(), to_m: Vector3::x(), seconds: 2.0 };
+        assert_eq!(way.at(0.0), (Vector3::zeros(), Vector3::zeros()));
+        let (end, speed) = way.at(2.0);
+        assert!((end - Vector3::x()).norm() < 1e-12 && speed.norm() < 1e-12);
+        let (middle, peak) = way.at(1.0);
+        assert!(
+            (middle.x - 0.5).abs() < 1e-12 && (peak.x - 1.875 / 2.0).abs() < 1e-12,
+            "peak speed is 1.875 of the mean"
+        );
+    }
+
+    #[test]
+    fn a_led_hand_goes_where_it_is_led_and_back_to_its_task_without_a_jump() {
+        let mut hand = Hand::new(&Scene::load("free_motion").unwrap());
+        let (mut last_m, mut fastest_m_s, aim_m) = (hand.position_m(), 0.0_f64, Vector3::new(0.04, -0.03, 0.01));
+        for tick in 0..6000 {
+            hand.guide((1000..3000).contains(&tick).then_some(aim_m));
+            hand.advance(1e-3, &Vector3::zeros());
+            fastest_m_s = fastest_m_s.max((hand.position_m() - last_m).norm() / 1e-3);
+            last_m = hand.position_m();
+            assert!(tick != 2999 || (last_m - aim_m).norm() < 1e-3, "{last_m}");
+        }
+        assert!(fastest_m_s < 0.4, "{fastest_m_s} m/s");
+        assert!(hand.led_m.is_none(), "it has taken up its task");
+    }
+
+    #[test]
+    fn the_grip_gives_way_by_force_over_stiffness() {
+        let mut scene = Scene::load("free_motion").unwrap();
+        scene.hand.tremor_m = 0.0;
+        scene.hand.press_s = 100.0;
+        scene.hand.press_depth_m = -CARRY_HEIGHT_M;
+        let mut hand = Hand::new(&scene);
+        let start = hand.position_m();
+        for _ in 0..3000 {
+            hand.advance(1e-3, &Vector3::new(0.0, 0.0, 3.0));
+        }
+        let given_m = hand.position_m().z - start.z;
+        assert!((given_m - 3.0 / scene.hand.grip_stiffness_n_m).abs() < 1e-5, "{given_m}");
+    }
+}

@@ -1,0 +1,198 @@
+//! What to run: a rig, and the simulated scene around it.
+
+use nima_core::impedance::SettingsError;
+use nima_machine::{
+    config::RigConfig,
+    messages::{Command, Tick},
+    rig::{DeviceRig, Rig, RigError, Roster, SIDES, Side},
+    runtime::{self, Assembly, Handle, StartError, Summary},
+    teleop::{Calibrations, Loop},
+};
+
+#[cfg(unix)]
+use crate::Desk;
+use crate::{Worlds, scene::Scene};
+
+/// What to run.
+#[derive(Clone, Debug)]
+pub struct Plan {
+    /// The rig.
+    pub rig: RigConfig,
+    /// The simulated world.
+    pub scene: Scene,
+    /// What is known of the wrist sensor and the tool of each side; nothing need be where the force is measured at the tip. On a rig
+    /// with devices none of it is in force: that comes with [`Handle::put_in_force`], once a sensor has told who it is.
+    pub calibrations: [Calibrations; SIDES],
+    /// Engage as soon as everything is there: for simulated and emulated rigs only, where nobody can be hurt.
+    pub engage: bool,
+}
+
+impl Plan {
+    /// There is an arm pair of this side.
+    pub fn has(&self, side: Side) -> bool {
+        self.scene.has(&self.rig, side)
+    }
+
+    /// The force at the tip is measured at the wrist on this side.
+    pub fn is_at_wrist(&self, side: Side) -> bool {
+        self.scene.measures_at_wrist(&self.rig, side)
+    }
+
+    /// The force at every tip will be known, or may come to be known with the devices, and the followers will obey: without that
+    /// nothing may be engaged by itself.
+    pub fn may_engage(&self) -> bool {
+        let knowable = |side: Side| self.rig.devices.is_some() || self.calibrations[side.index()].gravity.is_some();
+        self.scene.person.is_none() && Side::ALL.into_iter().all(|side| !self.is_at_wrist(side) || knowable(side))
+    }
+
+    /// The loop for this plan.
+    ///
+    /// # Errors
+    /// [`SettingsError`] for an identification that cannot be.
+    pub fn control(&self) -> Result<Loop, SettingsError> {
+        // What the scene requires is identified; what it does not is left out.
+        let mut rig = self.rig.clone();
+        rig.identification.cross_talk |= self.scene.cross_talk;
+        let known = Side::ALL.map(|side| self.has(side).then(|| self.calibrations[side.index()].clone()));
+        let mut control = Loop::new(&rig, &known)?;
+        if self.rig.devices.is_some() {
+            for side in Side::ALL {
+                control.suspend_calibrations(side);
+            }
+        }
+        Ok(control)
+    }
+
+    /// The rig, and the devices in it.
+    fn rig(&self) -> Result<(Box<dyn Rig>, Roster), RigError> {
+        #[cfg(unix)]
+        if let Some(desk) = &self.rig.desk {
+            let (desk, roster) = Desk::start(desk, self.worlds())?;
+            return Ok((Box::new(desk), roster));
+        }
+        let Some(devices) = &self.rig.devices else { return Ok((Box::new(self.worlds()), Roster::new())) };
+        let at_wrist = Side::ALL.map(|side| self.is_at_wrist(side));
+        let (rig, roster) = DeviceRig::start(devices, 1.0 / self.rig.rate_hz, at_wrist)?;
+        Ok((Box::new(rig), roster))
+    }
+
+    fn worlds(&self) -> Worlds {
+        Worlds::new(&self.scene, self.rig.rate_hz)
+    }
+
+    /// The loop of this plan on a rig that the caller made.
+    fn on(&self, rig: Box<dyn Rig>, roster: Roster) -> Result<Assembly, SettingsError> {
+        let (rate_hz, scheduling, engage) = (self.rig.rate_hz, self.rig.scheduling, self.engage);
+        Ok(Assembly { control: self.control()?, rig, roster, rate_hz, scheduling, engage })
+    }
+}
+
+/// Starts the loop of this plan in its own thread.
+///
+/// # Errors
+/// [`StartError`] for settings or devices that cannot be, or where no thread is to be had.
+pub fn start(plan: &Plan) -> Result<Handle, StartError> {
+    let (rig, roster) = plan.rig()?;
+    start_on(plan, rig, roster)
+}
+
+/// The same on a rig that the caller made: one with faults in it.
+///
+/// # Errors
+/// As [`start`].
+pub fn start_on(plan: &Plan, rig: Box<dyn Rig>, roster: Roster) -> Result<Handle, StartError> {
+    runtime::start(plan.on(rig, roster)?)
+}
+
+/// Runs the simulated world of this plan for `seconds` of loop time; `each` sees every tick of every side, may give a command for the
+/// next and ends the run with [`Command::Shutdown`].
+///
+/// # Errors
+/// [`SettingsError`] for an identification that cannot be.
+pub fn run_virtual(
+    plan: &Plan,
+    seconds: f64,
+    each: impl FnMut(&Tick) -> Option<Command>,
+) -> Result<Summary, SettingsError> {
+    Ok(runtime::run_virtual(plan.on(Box::new(plan.worlds()), Roster::new())?, seconds, each))
+}
+
+#[cfg(test)]
+mod tests {
+    use std::time::{Duration, Instant};
+
+    use nima_core::impedance::Mode;
+    use nima_machine::{
+        messages::{Event, LoopState, Refusal},
+        runtime::TICKS_WAITING_MAX,
+    };
+    use nima_testing::real_time::judged;
+
+    use super::*;
+
+    fn plan() -> Plan {
+        Plan {
+            rig: RigConfig::load("simulated").unwrap(),
+            scene: Scene::load("peg_transfer").unwrap(),
+            calibrations: Default::default(),
+            engage: true,
+        }
+    }
+
+    /// Waits until a tick satisfies `good`; gives it.
+    fn wait_for(handle: &Handle, good: impl Fn(&Tick) -> bool) -> Option<Tick> {
+        let until = Instant::now() + Duration::from_secs(10);
+        let mut found = None;
+        while found.is_none() && Instant::now() < until {
+            handle.drain_ticks(|tick| {
+                if found.is_none() && good(tick) {
+                    found = Some(*tick);
+                }
+            });
+            std::thread::sleep(Duration::from_millis(2));
+        }
+        found
+    }
+
+    #[test]
+    fn the_loop_runs_obeys_and_ends() {
+        let handle = start(&plan()).unwrap();
+        assert!(wait_for(&handle, |tick| tick.state == LoopState::Engaged).is_some());
+        assert!(handle.send(Command::SetMode(Mode::Dfr)));
+        assert!(wait_for(&handle, |tick| tick.mode == Mode::Dfr).is_some());
+        assert!(handle.send(Command::Stop));
+        let stopped = wait_for(&handle, |tick| tick.state == LoopState::Stopped).unwrap();
+        assert!(stopped.rendered_n.norm() < f64::EPSILON);
+        assert!(handle.send(Command::Engage));
+        assert!(handle.send(Command::ReleaseStop));
+        assert!(wait_for(&handle, |tick| tick.state == LoopState::Idle).is_some(), "engaging out of a stop is refused");
+        let mut refused = None;
+        handle.drain_events(|event| {
+            if let Event::CommandRefused { command: Command::Engage, why, .. } = *event {
+                refused = Some(why);
+            }
+        });
+        assert_eq!(refused, Some(Refusal::State(LoopState::Stopped)));
+        let summary = handle.stop_and_join().unwrap();
+        assert!(summary.ticks > 0);
+        let periods = summary.seconds * 1000.0;
+        assert!(
+            (periods - (summary.ticks + summary.missed) as f64).abs() < 1.5,
+            "every period is a tick or counted as missed"
+        );
+    }
+
+    #[test]
+    fn a_full_screen_queue_is_counted_and_never_waited_for() {
+        // At 4 kHz it is full after two seconds.
+        let mut plan = plan();
+        plan.rig.rate_hz = 4000.0;
+        judged(|| {
+            let handle = start(&plan).unwrap();
+            std::thread::sleep(Duration::from_millis(2500));
+            let summary = handle.stop_and_join().unwrap();
+            assert_eq!(summary.dropped, summary.ticks.saturating_sub(TICKS_WAITING_MAX as u64));
+            assert!(summary.dropped > 0);
+        });
+    }
+}

@@ -1,0 +1,255 @@
+//! Scene files (TOML): what a simulation contains. What a scene does not list is not computed.
+
+mod mounted;
+mod wrist;
+
+use nalgebra::Vector3;
+use nima_machine::{
+    config::{ConfigError, Ranges, parse, text},
+    rig::Side,
+};
+use serde::{Deserialize, Serialize};
+
+pub use wrist::{Flaw, Imu, Person, TissueSensor, Trocar, Wrist};
+
+/// A simulated world: what is in it. An effect that is not listed costs nothing.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Scene {
+    /// Name shown on the screen.
+    pub name: String,
+    /// One sentence for the presenter.
+    pub description: String,
+    /// Seed of every random sequence of the scene.
+    pub seed: u64,
+    /// The surgeon's hand and its task.
+    pub hand: Hand,
+    /// Pegs to reach (tops, m, workspace frame); the hand visits them in turn.
+    pub targets_m: Vec<Vector3<f64>>,
+    /// Where the instrument enters the body, m; drawn, and the pivot of the shaft.
+    pub trocar_m: Vector3<f64>,
+    /// What the left hand does, where the scene has two.
+    pub left: Option<LeftHand>,
+    /// Axes of force depend on motion along other axes: identify the full `M`.
+    #[serde(default)]
+    pub cross_talk: bool,
+    /// Soft tissue under the pegs.
+    pub tissue: Option<Tissue>,
+    /// The leader device.
+    pub leader: Option<Leader>,
+    /// Tracking lag of the follower; without it the tip is where it is commanded.
+    pub follower: Option<Follower>,
+    /// Noise of the force sensor at the tip. Left out where a wrist sensor measures instead.
+    pub sensor: Option<Sensor>,
+    /// Wrist sensor and tool; without it the force at the tip is measured there.
+    pub wrist: Option<Wrist>,
+    /// Friction where the instrument passes the body wall.
+    pub trocar: Option<Trocar>,
+    /// The sensor under the tissue.
+    pub tissue_sensor: Option<TissueSensor>,
+    /// Somebody at the arm, for calibration: then the loop's commands do not move it.
+    pub person: Option<Person>,
+}
+
+/// The left hand's part of a scene; everything else is the same for both.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct LeftHand {
+    /// Its pegs, m.
+    pub targets_m: Vec<Vector3<f64>>,
+    /// Its trocar, m.
+    pub trocar_m: Vector3<f64>,
+}
+
+/// The simulated surgeon's hand.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Hand {
+    /// Time of one minimum-jerk reach from target to target, s.
+    pub reach_s: f64,
+    /// Time of pressing down, and again of lifting, s.
+    pub press_s: f64,
+    /// Time held at the bottom of a press, s.
+    pub hold_s: f64,
+    /// How far below the target the hand intends to press, m.
+    pub press_depth_m: f64,
+    /// Sideways drag while pressed, m.
+    pub drag_m: f64,
+    /// Amplitude of physiological tremor, m (8-12 Hz).
+    pub tremor_m: f64,
+    /// Effective mass of hand and handle, kg.
+    pub mass_kg: f64,
+    /// Stiffness with which the grip holds to its intention, N/m.
+    pub grip_stiffness_n_m: f64,
+    /// Damping of the grip, N s/m.
+    pub grip_damping_n_s_m: f64,
+}
+
+/// Soft tissue with a flat surface at rest (Hunt and Crossley 1975: `f = k d^n (1 + c d')`), Coulomb friction sideways.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Tissue {
+    /// Height of the surface at rest, m.
+    pub surface_z_m: f64,
+    /// Extent of the pad in x and y, m, centred on the origin.
+    pub size_m: [f64; 2],
+    /// `k`, N/m^n.
+    pub stiffness: f64,
+    /// `n`, 1 to 3.
+    pub exponent: f64,
+    /// `c`, s/m.
+    pub damping_s_m: f64,
+    /// Coulomb friction coefficient; zero for none.
+    pub friction: f64,
+    /// Stiffness with which the surface sticks to the tip before it slips, N/m.
+    pub shear_stiffness_n_m: f64,
+}
+
+/// The leader device's measurable limits.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Leader {
+    /// Step of the position reading, m (Omega.7: 0.01 mm).
+    pub resolution_m: f64,
+    /// Largest force it can give, N (Omega.7: 12 N).
+    pub force_max_n: f64,
+}
+
+/// The follower's tracking behaviour.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Follower {
+    /// Natural frequency of its critically damped response, Hz.
+    pub bandwidth_hz: f64,
+}
+
+/// The force sensor's imperfections.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Sensor {
+    /// Standard deviation of white noise per sample and axis, N.
+    pub noise_n: f64,
+}
+
+const SCENES: [(&str, &str); 8] = [
+    ("peg_transfer", include_str!("../../config/scenes/peg_transfer.toml")),
+    ("bimanual", include_str!("../../config/scenes/bimanual.toml")),
+    ("free_motion", include_str!("../../config/scenes/free_motion.toml")),
+    ("palpation", include_str!("../../config/scenes/palpation.toml")),
+    ("gravity", include_str!("../../config/scenes/gravity.toml")),
+    ("correspondence", include_str!("../../config/scenes/correspondence.toml")),
+    ("isolation", include_str!("../../config/scenes/isolation.toml")),
+    ("no_contact", include_str!("../../config/scenes/no_contact.toml")),
+];
+
+impl Scene {
+    /// The scene as one hand has it; `None` for a left hand that is not in it.
+    pub fn of_side(&self, side: Side) -> Option<Self> {
+        let scene = Self { left: None, ..self.clone() };
+        match side {
+            Side::Right => Some(scene),
+            Side::Left => self.left.clone().map(|LeftHand { targets_m, trocar_m }| {
+                // Another tremor and other noise than the right hand's.
+                Self { targets_m, trocar_m, seed: scene.seed.wrapping_add(1), ..scene }
+            }),
+        }
+    }
+
+    /// The same with a left hand, which does what the right one does in a mirror, where the scene has none.
+    #[must_use]
+    pub fn with_left_hand(mut self) -> Self {
+        let mirrored = |at_m: &Vector3<f64>| Vector3::new(-at_m.x, at_m.y, at_m.z);
+        let mirror = || LeftHand {
+            targets_m: self.targets_m.iter().map(mirrored).collect(),
+            trocar_m: mirrored(&self.trocar_m),
+        };
+        self.left = Some(self.left.clone().unwrap_or_else(mirror));
+        self
+    }
+
+    /// The scene of this embedded name or TOML file.
+    ///
+    /// # Errors
+    /// A name that is neither embedded nor a file, a file that cannot be read or has another form, or a value outside of its range.
+    pub fn load(name: &str) -> Result<Self, ConfigError> {
+        let (path, text) = text("scene", name, &SCENES)?;
+        let scene: Self = parse("scene", &path, &text).map_err(mounted::moved_to_the_rig)?;
+        scene.validate()?;
+        Ok(scene)
+    }
+
+    /// Checks every value's range.
+    ///
+    /// # Errors
+    /// The first value that is outside of its range, by its key.
+    pub fn validate(&self) -> Result<(), ConfigError> {
+        let ranges = Ranges { kind: "scene", name: &self.name };
+        ranges.check(
+            "targets_m (count)",
+            self.targets_m.len() as f64,
+            !self.targets_m.is_empty(),
+            "at least one target",
+        )?;
+        let left = self.left.iter().flat_map(|left| left.targets_m.iter().chain([&left.trocar_m]));
+        let left_count = self.left.as_ref().map_or(1, |left| left.targets_m.len());
+        ranges.check("left.targets_m (count)", left_count as f64, left_count > 0, "at least one target")?;
+        for target in self.targets_m.iter().chain([&self.trocar_m]).chain(left) {
+            for entry in target {
+                ranges.check("targets_m, trocar_m", *entry, entry.abs() <= 1.0, "within 1 m of the origin")?;
+            }
+        }
+        let hand = &self.hand;
+        ranges.positive("hand.reach_s", hand.reach_s)?;
+        ranges.positive("hand.press_s", hand.press_s)?;
+        ranges.not_negative("hand.hold_s", hand.hold_s)?;
+        ranges.not_negative("hand.press_depth_m", hand.press_depth_m)?;
+        ranges.not_negative("hand.drag_m", hand.drag_m)?;
+        ranges.not_negative("hand.tremor_m", hand.tremor_m)?;
+        ranges.positive("hand.mass_kg", hand.mass_kg)?;
+        ranges.positive("hand.grip_stiffness_n_m", hand.grip_stiffness_n_m)?;
+        ranges.not_negative("hand.grip_damping_n_s_m", hand.grip_damping_n_s_m)?;
+        if let Some(tissue) = &self.tissue {
+            ranges.check("tissue.surface_z_m", tissue.surface_z_m, tissue.surface_z_m.abs() <= 1.0, "within 1 m")?;
+            ranges.positive("tissue.size_m", tissue.size_m[0])?;
+            ranges.positive("tissue.size_m", tissue.size_m[1])?;
+            ranges.not_negative("tissue.stiffness", tissue.stiffness)?;
+            ranges.check("tissue.exponent", tissue.exponent, (1.0..=3.0).contains(&tissue.exponent), "1 to 3")?;
+            ranges.not_negative("tissue.damping_s_m", tissue.damping_s_m)?;
+            ranges.not_negative("tissue.friction", tissue.friction)?;
+            ranges.not_negative("tissue.shear_stiffness_n_m", tissue.shear_stiffness_n_m)?;
+        }
+        if let Some(leader) = &self.leader {
+            ranges.positive("leader.resolution_m", leader.resolution_m)?;
+            ranges.positive("leader.force_max_n", leader.force_max_n)?;
+        }
+        if let Some(follower) = &self.follower {
+            ranges.positive("follower.bandwidth_hz", follower.bandwidth_hz)?;
+        }
+        self.sensor.as_ref().map_or(Ok(()), |sensor| ranges.not_negative("sensor.noise_n", sensor.noise_n))?;
+        self.wrist.as_ref().map_or(Ok(()), |wrist| wrist.validate(&ranges))?;
+        self.trocar.as_ref().map_or(Ok(()), |trocar| trocar.validate(&ranges))?;
+        self.tissue_sensor.as_ref().map_or(Ok(()), |sensor| sensor.validate(&ranges))?;
+        // What hangs on the wrist is felt there and nowhere else.
+        let needs_wrist = self.trocar.is_some() || self.tissue_sensor.is_some() || self.person.is_some();
+        let wrists = if self.wrist.is_some() { 1.0 } else { 0.0 };
+        ranges.check("number of [wrist] parts", wrists, self.wrist.is_some() || !needs_wrist, "1 with these parts")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_embedded_scene_is_valid() {
+        for (name, _) in SCENES {
+            Scene::load(name).expect(name);
+        }
+    }
+
+    #[test]
+    fn an_unknown_scene_names_the_known_ones() {
+        let message = Scene::load("no_such_scene").unwrap_err().to_string();
+        assert!(message.contains("peg_transfer") && message.contains("no_such_scene"), "{message}");
+    }
+}

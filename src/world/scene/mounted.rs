@@ -1,0 +1,67 @@
+//! Which arms a rig has in a scene, and where their forces are measured. Sensors and tools are the rig's.
+
+use nima_machine::{
+    config::{ConfigError, RigConfig},
+    rig::{SensorPlace, Side},
+};
+
+use super::Scene;
+
+impl Scene {
+    /// There is an arm pair of this side on this rig.
+    pub fn has(&self, rig: &RigConfig, side: Side) -> bool {
+        match &rig.devices {
+            Some(devices) => devices.arm(side).is_some(),
+            None => side == Side::Right || self.left.is_some(),
+        }
+    }
+
+    /// There is one, and its force is measured at the wrist.
+    pub fn measures_at_wrist(&self, rig: &RigConfig, side: Side) -> bool {
+        match &rig.devices {
+            // What an emulated sensor feels is what the scene has.
+            Some(devices) if !devices.emulated => {
+                devices.arm(side).is_some_and(|arm| arm.sensor_at == SensorPlace::Wrist)
+            }
+            _ => self.has(rig, side) && self.wrist.is_some(),
+        }
+    }
+}
+
+/// Scene files named sensor and tool once: tells where these belong now.
+pub(super) fn moved_to_the_rig(error: ConfigError) -> ConfigError {
+    let ConfigError::Parse { kind, path, message } = error else { return error };
+    let moved = ["serial", "tool"].into_iter().find(|key| {
+        // Of the keys of [wrist] only: the expected ones are listed behind.
+        message.contains(&format!("unknown field `{key}`")) && message.contains("`tool_mass_kg`")
+    });
+    let message = match (moved, message.split_once(": ")) {
+        (Some(key), Some((line, _))) => format!(
+            "{line}: wrist.{key} belongs to the rig now: delete the lines \"serial\" and \"tool\" here; a simulated rig has them in \
+             [simulated.right]"
+        ),
+        _ => message,
+    };
+    ConfigError::Parse { kind, path, message }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_scene_that_names_its_sensor_is_told_where_that_belongs() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("old.toml");
+        let text = include_str!("../../../config/scenes/palpation.toml");
+        for key in ["serial", "tool"] {
+            std::fs::write(&path, text.replace("[wrist]\n", &format!("[wrist]\n{key} = \"SIM-S1-0001\"\n"))).unwrap();
+            let message = Scene::load(path.to_str().unwrap()).unwrap_err().to_string();
+            let told = message.contains("line 36") && message.contains("[simulated.right]");
+            assert!(told && message.contains(&format!("wrist.{key}")) && message.lines().count() == 1, "{message}");
+        }
+        std::fs::write(&path, text.replace("[hand]\n", "[hand]\ntool = \"SIM\"\n")).unwrap();
+        let message = Scene::load(path.to_str().unwrap()).unwrap_err().to_string();
+        assert!(!message.contains("[simulated.right]"), "{message}");
+    }
+}

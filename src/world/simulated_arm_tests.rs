@@ -1,0 +1,112 @@
+//! A rig with a second make of arm: the handle and the sensor are on their wires, the arm's joints are simulated.
+
+use std::time::{Duration, Instant};
+
+use nalgebra::Vector3;
+use nima_core::kinematics::{Arm, Rcm, find};
+use nima_devices::{ForceReading, Standing, bota};
+use nima_machine::{
+    config::RigConfig,
+    rig::{DeviceRig, FollowerSettings, Inputs, Outputs, Rig as _, SIDES, SensorSettings, Settings},
+};
+
+use crate::{
+    emulated::provide_handles,
+    emulators::{
+        Serving,
+        bota::Emulated,
+        force_dimension::{Emulator, Held},
+    },
+};
+
+/// Where the tip is led from where it is, m, and how fast, m/s.
+const WAY_M: Vector3<f64> = Vector3::new(0.005, 0.003, 0.004);
+const SPEED_M_S: f64 = 0.02;
+
+/// Handle, sensor, and the rig file of the emulated rig with a simulated arm.
+fn devices(folder: &std::path::Path) -> (Settings, [Serving; 2]) {
+    provide_handles();
+    let port = folder.join("sensor");
+    let sensor = Emulated { baud: None, boot_s: 0.0, link: Some(port.clone()), ..Emulated::default() };
+    let serving = [
+        Emulator { serial: 5151, ..Emulator::default() }.serve(Held::default().body()).unwrap(),
+        sensor.serve_gen_a(Box::new(|_| ForceReading::default())).unwrap(),
+    ];
+    let whole = RigConfig::load("emulated").unwrap().devices.unwrap();
+    let mut right = whole.right.unwrap();
+    let (arm, rcm) = (Arm::new(&right.mount).unwrap(), Rcm::new(&right.rcm).unwrap());
+    let tip_m = right.rcm.trocar_m + right.rcm.inward.normalize() * 0.12;
+    let start_rad: [f64; 7] = find(&arm, &rcm, &tip_m).unwrap().joint_rad.into();
+    // As a rig file has it.
+    let chosen = format!("make = \"simulated\"\nstart_rad = {start_rad:?}\n");
+    right.arm = toml::from_str::<FollowerSettings>(&chosen).unwrap();
+    right.servos = None;
+    right.sensor = SensorSettings::Bota(bota::Settings::new(bota::Transport::GenA, port.display().to_string()));
+    let handle = right.handle.force_dimension_mut().unwrap();
+    (handle.serial, handle.emulator) = (Some(5151), Some(serving[0].endpoint.parse().unwrap()));
+    (Settings { right: Some(right), ..Settings::default() }, serving)
+}
+
+/// One tick after the other until `good`, at most for 20 s; true if it came.
+fn until(
+    rig: &mut DeviceRig,
+    begin: Instant,
+    mut led: impl FnMut(&Inputs) -> Outputs,
+    good: impl Fn(&Inputs) -> bool,
+) -> bool {
+    let since = Instant::now();
+    let mut outputs = Outputs::SAFE;
+    while since.elapsed() < Duration::from_secs(20) {
+        let now_s = begin.elapsed().as_secs_f64();
+        let inputs = rig.read(now_s)[0];
+        if let Some(inputs) = &inputs {
+            if good(inputs) {
+                return true;
+            }
+            outputs = led(inputs);
+        }
+        rig.write(now_s, &[outputs, Outputs::SAFE]);
+        std::thread::sleep(Duration::from_millis(1));
+    }
+    false
+}
+
+#[test]
+fn a_rig_leads_an_arm_of_another_make_that_its_file_names() {
+    let folder = tempfile::tempdir().unwrap();
+    let (settings, _serving) = devices(folder.path());
+    let (mut rig, roster) = DeviceRig::start(&settings, 1e-3, [false; SIDES]).unwrap();
+    let drivers: Vec<_> = roster.iter().map(|entry| (entry.name.as_str(), entry.driver.as_str())).collect();
+    assert_eq!(drivers[1], ("right arm", "simulated arm"));
+    assert!(drivers[0].1.starts_with("Force Dimension omega.7") && drivers[2].1.starts_with("Bota sensor"));
+    let begin = Instant::now();
+    let mut home_m = None;
+    let mut target_m = Vector3::zeros();
+    let led = |inputs: &Inputs| {
+        let home_m: Vector3<f64> = *home_m.get_or_insert_with(|| {
+            target_m = inputs.tip_m;
+            inputs.tip_m
+        });
+        assert_eq!(inputs.obstacle, None);
+        // Drives on first; then by small steps to where the way ends.
+        if inputs.powered {
+            target_m += (home_m + WAY_M - target_m).cap_magnitude(SPEED_M_S * 1e-3);
+        }
+        Outputs { drives: true, tip_command_m: inputs.powered.then_some(target_m), ..Outputs::SAFE }
+    };
+    let tip_m = settings.right.as_ref().unwrap().rcm.trocar_m
+        + settings.right.as_ref().unwrap().rcm.inward.normalize() * 0.12
+        + WAY_M;
+    assert!(
+        until(&mut rig, begin, led, |inputs| inputs.powered && (inputs.tip_m - tip_m).norm() < 5e-4),
+        "not led there"
+    );
+    // Drives off: the arm brakes and obeys no longer.
+    assert!(until(&mut rig, begin, |_| Outputs::SAFE, |inputs| !inputs.powered), "drives stay on");
+    let still = |inputs: &Inputs| (inputs.tip_m - tip_m).norm() < 1e-3;
+    assert!(until(&mut rig, begin, |_| Outputs::SAFE, still), "does not rest");
+    // Its lever is among those that the supervisor pulls, and its health at its place.
+    assert_eq!(rig.levers().len(), 2);
+    let arm = rig.health().devices[1];
+    assert!(arm.standing == Standing::Connected && arm.refused == 0, "{arm:?}");
+}

@@ -1,0 +1,297 @@
+//! The simulated world of one arm pair: a hand, a leader device, a follower with lag, tissue, a noisy sensor.
+//!
+//! Takes the loop's outputs (N on the hand, commanded tip position in m) and gives what a rig would measure, all in the
+//! workspace frame (z up). Deterministic for a seed. Parts that the scene does not list are absent and cost nothing.
+//! Bad input: a command that is not finite is ignored, a force that is not finite counts as zero.
+
+use nalgebra::{UnitQuaternion, Vector3};
+use nima_core::{kinematics, noise::Noise};
+use nima_machine::rig::{Inputs, Outputs, Prompt, Sensed, Switches, View};
+
+use crate::{
+    Hand, Tissue, Trocar,
+    person::Person,
+    scene::{Follower, Leader, Scene},
+    trocar,
+    wrist::{Loads, Wrist, along_shaft},
+};
+
+/// The simulated world of one arm pair: one hand, one leader, one follower, one sensor.
+#[derive(Clone, Debug)]
+pub struct World {
+    period_s: f64,
+    time_s: f64,
+    hand: Hand,
+    leader: Option<Leader>,
+    follower: Option<Follower>,
+    tissue: Option<Tissue>,
+    sensor_noise_n: Option<(f64, Noise)>,
+    wrist: Option<Wrist>,
+    trocar: Option<Trocar>,
+    trocar_m: Vector3<f64>,
+    person: Option<Person>,
+    prompt: Prompt,
+    true_tip_n: Vector3<f64>,
+    tip_m: Vector3<f64>,
+    tip_velocity_m_s: Vector3<f64>,
+    command_m: Vector3<f64>,
+    hand_force_n: Vector3<f64>,
+    /// Orientation of the wrist where an arm outside of this world carries it.
+    carried: Option<UnitQuaternion<f64>>,
+}
+
+/// Longest stretch simulated in one exchange, in periods: after a longer stall the world skips ahead.
+const CATCH_UP_PERIODS_MAX: u32 = 20;
+/// Longest step of the hand's equation of motion, s: keeps slow loops stable.
+const HAND_STEP_MAX_S: f64 = 1e-3;
+
+impl World {
+    /// The world of `scene`, stepping `rate_hz` times a second. The scene must have been validated.
+    pub fn new(scene: &Scene, rate_hz: f64) -> Self {
+        let hand = Hand::new(scene);
+        let start_m = hand.position_m();
+        Self {
+            period_s: 1.0 / rate_hz,
+            time_s: 0.0,
+            leader: scene.leader,
+            follower: scene.follower,
+            tissue: scene.tissue.map(Tissue::new),
+            sensor_noise_n: scene.sensor.map(|sensor| (sensor.noise_n, Noise::new(scene.seed ^ 0x5e_50))),
+            wrist: scene.wrist.as_ref().map(|wrist| Wrist::new(wrist, scene.tissue_sensor, scene.seed ^ 0x77_51)),
+            trocar: scene.trocar.map(|trocar| Trocar::new(trocar, scene.trocar_m)),
+            trocar_m: scene.trocar_m,
+            person: scene.person.map(|person| Person::new(person, scene)),
+            prompt: Prompt::Rest,
+            true_tip_n: Vector3::zeros(),
+            tip_m: start_m,
+            tip_velocity_m_s: Vector3::zeros(),
+            command_m: start_m,
+            hand_force_n: Vector3::zeros(),
+            carried: None,
+            hand,
+        }
+    }
+
+    /// The hand, for what only a simulation knows.
+    pub const fn hand(&self) -> &Hand {
+        &self.hand
+    }
+
+    /// Force on the tip in the last measurement without any sensor's error, N (`world`): what only a simulation knows.
+    pub const fn true_tip_n(&self) -> Vector3<f64> {
+        self.true_tip_n
+    }
+
+    /// Hands the wrist to an arm outside of this world: its orientation from now on (`world_from_s1`). Its place is commanded.
+    pub const fn carry(&mut self, world_from_s1: UnitQuaternion<f64>) {
+        self.carried = Some(world_from_s1);
+    }
+
+    /// The hand's task stands still and the hand keeps to the tip (true), or it works (false).
+    pub fn wait(&mut self, waits: bool) {
+        self.hand.wait(waits.then_some(self.tip_m));
+    }
+
+    /// Applies the loop's outputs and gives what a rig would measure at loop time `now_s`. Until the follower is commanded the hand
+    /// waits at the tip.
+    pub fn exchange(&mut self, now_s: f64, outputs: &Outputs) -> Option<Inputs> {
+        self.wait(outputs.tip_command_m.is_none());
+        Some(self.advance_to(now_s, outputs))
+    }
+
+    /// The same, with a hand that waits only where it was told to ([`World::wait`]).
+    pub fn advance_to(&mut self, now_s: f64, outputs: &Outputs) -> Inputs {
+        self.accept(outputs);
+        let behind = ((now_s - self.time_s) / self.period_s).round();
+        if behind > f64::from(CATCH_UP_PERIODS_MAX) {
+            self.time_s = now_s - f64::from(CATCH_UP_PERIODS_MAX) * self.period_s;
+        }
+        let steps = (behind.max(0.0) as u32).min(CATCH_UP_PERIODS_MAX);
+        for _ in 0..steps {
+            self.advance(self.period_s);
+        }
+        self.measure()
+    }
+
+    fn accept(&mut self, outputs: &Outputs) {
+        // A real leader gives no more than its motors can, whatever it is asked.
+        let most_n = self.leader.map_or(f64::INFINITY, |leader| leader.force_max_n);
+        let asked = outputs.hand_force_n;
+        let norm = asked.norm();
+        self.hand_force_n = if !norm.is_finite() {
+            Vector3::zeros()
+        } else if norm > most_n {
+            asked * (most_n / norm)
+        } else {
+            asked
+        };
+        self.command_m = match outputs.tip_command_m {
+            Some(command) if command.iter().all(|x| x.is_finite()) => command,
+            _ => self.tip_m,
+        };
+        self.hand.guide(outputs.guide_m);
+        self.prompt = if outputs.prompt.is_finite() { outputs.prompt } else { Prompt::Rest };
+    }
+
+    fn advance(&mut self, dt_s: f64) {
+        let substeps = (dt_s / HAND_STEP_MAX_S).ceil().max(1.0);
+        for _ in 0..substeps as u32 {
+            self.hand.advance(dt_s / substeps, &self.hand_force_n);
+        }
+        self.time_s += dt_s;
+        match &mut self.person {
+            Some(person) => {
+                person.advance(&self.prompt, dt_s);
+                (self.tip_m, self.tip_velocity_m_s) = person.tip();
+            }
+            None => self.follow(dt_s),
+        }
+        if let Some(trocar) = &mut self.trocar {
+            trocar.advance(&self.tip_m, dt_s);
+        }
+    }
+
+    fn follow(&mut self, dt_s: f64) {
+        let Some(Follower { bandwidth_hz }) = self.follower else {
+            self.tip_velocity_m_s = (self.command_m - self.tip_m) / dt_s;
+            self.tip_m = self.command_m;
+            return;
+        };
+        // Critically damped second order, exact over the step for a constant command.
+        let omega = std::f64::consts::TAU * bandwidth_hz;
+        let (offset, velocity) = (self.tip_m - self.command_m, self.tip_velocity_m_s);
+        let decay = (-omega * dt_s).exp();
+        let slope = velocity + offset * omega;
+        self.tip_m = self.command_m + (offset + slope * dt_s) * decay;
+        self.tip_velocity_m_s = (velocity - slope * (omega * dt_s)) * decay;
+    }
+
+    /// Force of the tissue, or of whoever pushes, on the tip, N; call once a step.
+    fn contact_n(&mut self) -> Vector3<f64> {
+        let tissue_n = match &mut self.tissue {
+            Some(tissue) => tissue.contact_n(&self.tip_m, &self.tip_velocity_m_s),
+            None => Vector3::zeros(),
+        };
+        tissue_n + self.person.as_ref().map_or_else(Vector3::zeros, Person::push_n)
+    }
+
+    fn world_from_s1(&self) -> UnitQuaternion<f64> {
+        match (&self.carried, &self.person) {
+            (Some(carried), _) => *carried,
+            (None, Some(person)) => person.world_from_s1(),
+            (None, None) => along_shaft(&trocar::shaft(&self.trocar_m, &self.tip_m).0),
+        }
+    }
+
+    fn sense(&mut self) -> Sensed {
+        let tip_n = self.contact_n();
+        self.true_tip_n = tip_n;
+        let world_from_s1 = self.world_from_s1();
+        if let Some(wrist) = &mut self.wrist {
+            let wall = self.trocar.as_ref().map(|trocar| (trocar.force_n(), trocar.shaft(&self.tip_m).1));
+            let person = self.person.as_ref();
+            let touch_n = person.map_or_else(Vector3::zeros, Person::touch_n);
+            let stand_n = person.map_or_else(Vector3::zeros, Person::stand_n);
+            return Sensed::AtWrist(wrist.measure(&world_from_s1, &Loads { tip_n, wall, touch_n, stand_n }));
+        }
+        let noise_n = match &mut self.sensor_noise_n {
+            Some((sigma_n, noise)) => Vector3::from_fn(|_, _| *sigma_n * noise.gaussian()),
+            None => Vector3::zeros(),
+        };
+        Sensed::AtTip(tip_n + noise_n)
+    }
+
+    fn measure(&mut self) -> Inputs {
+        let sensed = self.sense();
+        let hand_m = self.hand.position_m();
+        let leader_m = self
+            .leader
+            .map_or(hand_m, |Leader { resolution_m, .. }| hand_m.map(|x| (x / resolution_m).round() * resolution_m));
+        Inputs {
+            hand: kinematics::Hand::at(leader_m),
+            gripper_rad: None,
+            grip_n: None,
+            tip_m: self.tip_m,
+            world_from_jaws: None,
+            sensed,
+            view: View::Fixed,
+            switches: Switches::default(),
+            powered: true,
+            obstacle: None,
+            age_s: 0.0,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn force_n(inputs: &Inputs) -> Vector3<f64> {
+        match inputs.sensed {
+            Sensed::AtTip(force_n) => force_n,
+            Sensed::AtWrist(sample) => panic!("a wrist in a scene without one: {sample:?}"),
+        }
+    }
+
+    fn run(scene: &Scene, seconds: f64) -> Vec<Inputs> {
+        let mut world = World::new(scene, 1000.0);
+        let mut outputs = Outputs::SAFE;
+        (0..(seconds * 1000.0) as usize)
+            .filter_map(|i| {
+                let inputs = world.exchange(i as f64 * 1e-3, &outputs);
+                outputs.tip_command_m = inputs.map(|inputs| inputs.hand.position_m);
+                inputs
+            })
+            .collect()
+    }
+
+    #[test]
+    fn peg_transfer_presses_with_a_few_newtons_and_lets_go() {
+        let inputs = run(&Scene::load("peg_transfer").unwrap(), 20.0);
+        let peak_n = inputs.iter().map(|i| force_n(i).z).fold(0.0, f64::max);
+        assert!((1.0..6.0).contains(&peak_n), "peak {peak_n} N");
+        let free = inputs.iter().filter(|i| force_n(i).norm() < 0.1).count();
+        assert!(free * 4 > inputs.len(), "a good part of the task is in free space: {free}");
+        let travel_m = inputs.iter().map(|i| i.tip_m.x).fold(0.0, f64::max);
+        assert!(travel_m > 0.025, "it reaches the far pegs: {travel_m}");
+    }
+
+    #[test]
+    fn a_seed_repeats_exactly() {
+        let scene = Scene::load("peg_transfer").unwrap();
+        assert_eq!(run(&scene, 2.0), run(&scene, 2.0));
+    }
+
+    #[test]
+    fn free_motion_measures_noise_only() {
+        let inputs = run(&Scene::load("free_motion").unwrap(), 10.0);
+        let mean = inputs.iter().map(force_n).sum::<Vector3<f64>>() / inputs.len() as f64;
+        assert!(mean.norm() < 0.002, "{mean}");
+    }
+
+    #[test]
+    fn without_a_listed_part_the_part_is_ideal() {
+        let mut scene = Scene::load("peg_transfer").unwrap();
+        (scene.tissue, scene.leader, scene.follower, scene.sensor) = (None, None, None, None);
+        let inputs = run(&scene, 5.0);
+        assert!(inputs.iter().all(|i| force_n(i) == Vector3::zeros()));
+        assert!(inputs.windows(2).all(|pair| pair[1].tip_m == pair[0].hand.position_m));
+    }
+
+    #[test]
+    fn a_force_on_the_hand_moves_it_and_a_poisoned_one_does_not() {
+        let scene = Scene::load("free_motion").unwrap();
+        let pushed = |force_n| {
+            let mut world = World::new(&scene, 1000.0);
+            for i in 0..500 {
+                world.exchange(f64::from(i) * 1e-3, &Outputs { hand_force_n: force_n, ..Outputs::SAFE });
+            }
+            world.hand().position_m()
+        };
+        let (still, up, poisoned) =
+            (pushed(Vector3::zeros()), pushed(Vector3::z() * 4.0), pushed(Vector3::z() * f64::NAN));
+        assert!((up.z - still.z) > 0.003, "{}", up.z - still.z);
+        assert_eq!(poisoned, still);
+    }
+}

@@ -1,0 +1,169 @@
+//! The wrist sensor, its inertial unit, the tracker and the sensor under the tissue: what they read of a known world.
+
+use nalgebra::{Rotation3, UnitQuaternion, Vector3};
+use nima_core::{
+    frames::{GRAVITY_M_S2, Wrench, WristSample, from_roll_pitch_yaw_deg},
+    noise::Noise,
+};
+
+use crate::scene::{TissueSensor, Wrist as WristConfig};
+
+/// What acts on the instrument, N in `world`, each at its own place.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Loads {
+    /// Tissue, at the tip.
+    pub(super) tip_n: Vector3<f64>,
+    /// Body wall, and how deep the tip is behind it, m.
+    pub(super) wall: Option<(Vector3<f64>, f64)>,
+    /// Somebody's hand, at the tool's centre of mass.
+    pub(super) touch_n: Vector3<f64>,
+    /// Somebody leaning on the stand of the tissue: felt below it only.
+    pub(super) stand_n: Vector3<f64>,
+}
+
+/// All sensors of one follower.
+#[derive(Clone, Debug)]
+pub(super) struct Wrist {
+    config: WristConfig,
+    tissue_sensor: Option<TissueSensor>,
+    noise: Noise,
+}
+
+impl Wrist {
+    pub(super) fn new(config: &WristConfig, tissue_sensor: Option<TissueSensor>, seed: u64) -> Self {
+        Self { config: config.clone(), tissue_sensor, noise: Noise::new(seed) }
+    }
+
+    fn white(&mut self, sigma: f64) -> Vector3<f64> {
+        Vector3::from_fn(|_, _| sigma * self.noise.gaussian())
+    }
+
+    /// One reading of everything.
+    pub(super) fn measure(&mut self, world_from_s1: &UnitQuaternion<f64>, loads: &Loads) -> WristSample {
+        let mut sample = WristSample::of(self.wrench(world_from_s1, loads));
+        sample.world_from_s1 = Some(*world_from_s1);
+        sample.insertion_m = loads.wall.map(|(_, depth_m)| depth_m);
+        sample.acceleration_m_s2 = self.config.imu.map(|imu| {
+            let up = if imu.reads_gravity { -GRAVITY_M_S2 } else { GRAVITY_M_S2 };
+            let imu_from_s1 = from_roll_pitch_yaw_deg(&imu.s1_from_imu_deg).inverse();
+            let support = imu_from_s1 * (world_from_s1.inverse() * Vector3::new(0.0, 0.0, up));
+            support + imu.bias_m_s2 + self.white(imu.noise_m_s2)
+        });
+        if let Some(sensor) = self.tissue_sensor {
+            self.add_experiment(&mut sample, world_from_s1, loads, &sensor);
+        }
+        sample
+    }
+
+    fn wrench(&mut self, world_from_s1: &UnitQuaternion<f64>, loads: &Loads) -> Wrench {
+        let s1_from_world = world_from_s1.inverse();
+        let weight_n = s1_from_world * Vector3::new(0.0, 0.0, -GRAVITY_M_S2 * self.config.tool_mass_kg);
+        let at_com_n = weight_n + s1_from_world * loads.touch_n;
+        let tip_n = s1_from_world * loads.tip_n;
+        let (wall_n, depth_m) = loads.wall.map_or((Vector3::zeros(), 0.0), |(n, depth)| (s1_from_world * n, depth));
+        let along = |m: f64| Vector3::new(0.0, 0.0, m);
+        let force_n = at_com_n + tip_n + wall_n;
+        let torque_nm = self.config.com_m.cross(&at_com_n)
+            + along(self.config.shaft_m).cross(&tip_n)
+            + along(self.config.shaft_m - depth_m).cross(&wall_n);
+        let WristConfig { gain, force_bias_n, torque_bias_nm, force_noise_n, torque_noise_nm, .. } = self.config;
+        Wrench {
+            force_n: force_n.component_mul(&gain) + force_bias_n + self.white(force_noise_n),
+            torque_nm: torque_nm + torque_bias_nm + self.white(torque_noise_nm),
+        }
+    }
+
+    /// Marker, camera and the sensor under the tissue.
+    fn add_experiment(
+        &mut self,
+        sample: &mut WristSample,
+        world_from_s1: &UnitQuaternion<f64>,
+        loads: &Loads,
+        sensor: &TissueSensor,
+    ) {
+        let world_from_m = world_from_s1 * from_roll_pitch_yaw_deg(&sensor.s1_from_m_deg);
+        let wobble = UnitQuaternion::from_scaled_axis(self.white(sensor.tracker_noise_deg.to_radians()));
+        sample.world_from_m = Some(world_from_m);
+        sample.m_from_c = Some(wobble * world_from_m.inverse() * from_roll_pitch_yaw_deg(&sensor.world_from_c_deg));
+        let s2_from_world = from_roll_pitch_yaw_deg(&sensor.world_from_s2_deg).inverse();
+        let sign = if sensor.reads_tissue { -1.0 } else { 1.0 };
+        sample.tissue_n = Some(s2_from_world * (loads.tip_n + loads.stand_n) * sign + self.white(sensor.noise_n));
+    }
+}
+
+/// Orientation of the wrist for a shaft in this direction (`world`, unit length): z along it, x as near to the base's x as can be.
+pub(super) fn along_shaft(direction: &Vector3<f64>) -> UnitQuaternion<f64> {
+    let side = if direction.x.abs() < 0.99 { Vector3::x() } else { Vector3::y() };
+    let x = (side - direction * side.dot(direction)).normalize();
+    let y = direction.cross(&x);
+    UnitQuaternion::from_rotation_matrix(&Rotation3::from_basis_unchecked(&[x, y, *direction]))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::Scene;
+
+    fn quiet(scene: &str) -> (Wrist, WristConfig, Option<TissueSensor>) {
+        let scene = Scene::load(scene).unwrap();
+        let mut config = scene.wrist.unwrap();
+        (config.force_noise_n, config.torque_noise_nm, config.gain) = (0.0, 0.0, Vector3::repeat(1.0));
+        (config.force_bias_n, config.torque_bias_nm) = (Vector3::zeros(), Vector3::zeros());
+        if let Some(imu) = &mut config.imu {
+            (imu.noise_m_s2, imu.bias_m_s2) = (0.0, Vector3::zeros());
+        }
+        let mut tissue_sensor = scene.tissue_sensor;
+        if let Some(sensor) = &mut tissue_sensor {
+            (sensor.noise_n, sensor.tracker_noise_deg) = (0.0, 0.0);
+        }
+        (Wrist::new(&config, tissue_sensor, 1), config, tissue_sensor)
+    }
+
+    #[test]
+    fn weight_is_read_down_and_the_accelerometer_up() {
+        let (mut wrist, config, _) = quiet("gravity");
+        let sample = wrist.measure(&UnitQuaternion::identity(), &Loads::default());
+        let weight_n = GRAVITY_M_S2 * config.tool_mass_kg;
+        assert!((sample.raw.force_n - Vector3::new(0.0, 0.0, -weight_n)).norm() < 1e-12);
+        let by_hand = config.com_m.cross(&Vector3::new(0.0, 0.0, -weight_n));
+        assert!((sample.raw.torque_nm - by_hand).norm() < 1e-12);
+        let s1_from_imu = from_roll_pitch_yaw_deg(&config.imu.unwrap().s1_from_imu_deg);
+        let up = s1_from_imu * sample.acceleration_m_s2.unwrap();
+        assert!((up - Vector3::new(0.0, 0.0, GRAVITY_M_S2)).norm() < 1e-12);
+    }
+
+    #[test]
+    fn both_sensors_feel_the_same_push_and_the_chain_joins_them() {
+        let (mut wrist, config, sensor) = quiet("correspondence");
+        let world_from_s1 = along_shaft(&Vector3::new(0.2, -0.3, -0.9).normalize());
+        let push = Vector3::new(0.5, -1.0, 2.0);
+        let loads = Loads { tip_n: push, ..Loads::default() };
+        let sample = wrist.measure(&world_from_s1, &loads);
+        let weight_n = world_from_s1.inverse() * Vector3::new(0.0, 0.0, -GRAVITY_M_S2 * config.tool_mass_kg);
+        let at_wrist_n = sample.raw.force_n - weight_n;
+        let sensor = sensor.unwrap();
+        let c_from_s2 = from_roll_pitch_yaw_deg(&sensor.world_from_c_deg).inverse()
+            * from_roll_pitch_yaw_deg(&sensor.world_from_s2_deg);
+        let at_tissue_n = sample.s1_from_c().unwrap() * (c_from_s2 * sample.tissue_n.unwrap());
+        assert!((at_wrist_n - at_tissue_n).norm() < 1e-12, "{at_wrist_n} {at_tissue_n}");
+    }
+
+    #[test]
+    fn a_force_at_the_tip_and_one_at_the_wall_differ_in_torque() {
+        let (mut wrist, config, _) = quiet("isolation");
+        let side = Vector3::new(1.0, 0.0, 0.0);
+        let mut torque = |loads: &Loads| wrist.measure(&UnitQuaternion::identity(), loads).raw.torque_nm.y;
+        let none = torque(&Loads::default());
+        let tip = torque(&Loads { tip_n: side, ..Loads::default() }) - none;
+        let wall = torque(&Loads { wall: Some((side, 0.15)), ..Loads::default() }) - none;
+        assert!((tip - config.shaft_m).abs() < 1e-12 && (wall - (config.shaft_m - 0.15)).abs() < 1e-12);
+    }
+
+    #[test]
+    fn the_wrist_looks_along_the_shaft() {
+        for direction in [-Vector3::z(), Vector3::new(0.3, 0.4, -0.8).normalize(), Vector3::x()] {
+            let world_from_s1 = along_shaft(&direction);
+            assert!((world_from_s1 * Vector3::z() - direction).norm() < 1e-12);
+        }
+    }
+}

@@ -1,0 +1,56 @@
+//! Polling a cap or a pedal allocates nothing, whatever arrives and also when it is lost.
+#![cfg(target_os = "linux")]
+
+use std::time::{Duration, Instant};
+
+use nima_devices::{
+    CapReading, Device, Loss, PedalReading, Standing,
+    hid::{CapDriver, CapSettings, PedalDriver, PedalSettings},
+};
+use nima_testing::real_time::alone;
+use nima_world::emulators::{
+    EmulatedFault,
+    hid::{CapBody, CapModel, PedalBody, PedalModel, Place, serve_cap, serve_pedal},
+};
+
+use crate::counting::calls;
+
+/// Polls for a while; what this thread allocated, and the readings that came.
+fn polled(device: &mut impl Device, length: Duration) -> (u64, u32) {
+    let (before, begin, mut readings) = (calls(), Instant::now(), 0);
+    while begin.elapsed() < length {
+        readings += u32::from(device.poll(begin.elapsed().as_secs_f64()).is_some());
+        std::thread::sleep(Duration::from_millis(1));
+    }
+    (calls() - before, readings)
+}
+
+#[test]
+fn polling_allocates_nothing_while_good_damaged_and_lost() {
+    let _alone = alone();
+    let moving = |now_s: f64| CapReading { buttons: (now_s * 20.0) as u32 & 1, ..CapReading::default() };
+    let cap = serve_cap(Place::Temporary, CapModel::Split, CapBody::moved_by(moving)).unwrap();
+    let stepping = |now_s: f64| PedalReading { pressed: (now_s * 20.0) as u32 & 1 };
+    let pedal = serve_pedal(Place::Temporary, PedalModel::Keyboard, PedalBody::pressed_by(stepping)).unwrap();
+    let mut cap_driver =
+        CapDriver::open(&CapSettings { source: cap.endpoint.clone(), ..CapSettings::default() }).unwrap();
+    let settings = PedalSettings { source: pedal.endpoint.clone(), ..PedalSettings::default() };
+    let mut pedal_driver = PedalDriver::open(&settings).unwrap();
+    for (fault, speaks) in
+        [(EmulatedFault::None, true), (EmulatedFault::Garbage, true), (EmulatedFault::Disconnect, false)]
+    {
+        cap.faults.set(fault);
+        pedal.faults.set(fault);
+        std::thread::sleep(Duration::from_millis(30));
+        let (allocated, readings) = polled(&mut cap_driver, Duration::from_millis(400));
+        assert_eq!(allocated, 0, "cap, {fault:?}");
+        assert!(readings > 0 || !speaks);
+        let (allocated, readings) = polled(&mut pedal_driver, Duration::from_millis(400));
+        assert_eq!(allocated, 0, "pedal, {fault:?}");
+        assert!(readings > 0 || !speaks);
+    }
+    assert_eq!(cap_driver.health().standing, Standing::Lost(Loss::Disconnected));
+    let before = calls();
+    drop(std::hint::black_box(vec![1_u8; 10]));
+    assert_eq!(calls() - before, 2, "the counter counts");
+}

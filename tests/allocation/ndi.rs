@@ -1,0 +1,48 @@
+//! Nothing is allocated when the tracker is polled: binary over TCP, text over TCP, binary over a line.
+#![cfg(unix)]
+use std::time::{Duration, Instant};
+
+use nima_devices::{
+    Device as _,
+    ndi::{Driver, Settings},
+};
+use nima_testing::real_time::alone;
+use nima_world::emulators::ndi::{Profile, serve_line, serve_network, wandering};
+
+use crate::counting::calls;
+
+/// Polls until 20 readings are there; allocations of this thread meanwhile.
+#[expect(clippy::unwrap_used, reason = "a test fails by panicking")]
+fn allocations(settings: &Settings) -> u64 {
+    let mut driver = Driver::open(settings).unwrap();
+    let begin = Instant::now();
+    let before = calls();
+    let mut readings = 0;
+    while readings < 20 && begin.elapsed() < Duration::from_secs(5) {
+        readings += u32::from(driver.poll(begin.elapsed().as_secs_f64()).is_some());
+        if readings == 10 {
+            driver.beep(1);
+        }
+        std::thread::sleep(Duration::from_millis(1));
+    }
+    let after = calls();
+    assert_eq!(readings, 20, "{:?}", driver.health());
+    after - before
+}
+
+#[test]
+fn polling_allocates_nothing() {
+    let _alone = alone();
+    let folder = tempfile::tempdir().unwrap();
+    let tool = folder.path().join("tool.rom");
+    std::fs::write(&tool, [&b"NDI\0"[..], &[0; 748]].concat()).unwrap();
+    let settings = Settings { tools: vec![tool], ..Settings::default() };
+    for firmware in ["Polaris Vega 014", "Polaris Vega 008"] {
+        let profile = Profile { firmware: firmware.to_owned(), ..Profile::default() };
+        let served = serve_network(0, profile, wandering).unwrap();
+        let settings = Settings { address: Some(served.endpoint.clone()), ..settings.clone() };
+        assert_eq!(allocations(&settings), 0, "{firmware}");
+    }
+    let served = serve_line(None, Profile::default(), wandering).unwrap();
+    assert_eq!(allocations(&Settings { port: Some(served.endpoint.clone()), ..settings }), 0, "line");
+}

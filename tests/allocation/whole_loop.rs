@@ -1,0 +1,88 @@
+//! Nothing is allocated in a tick: of identification and rendering, of the whole loop, of the simulation.
+
+use nalgebra::Vector3;
+use nima_core::{
+    impedance::{Identifier, Mode, ModeSet, Renderer, Sample, Settings},
+    signal::DifferentiatorKind,
+};
+use nima_machine::{
+    config::RigConfig,
+    messages::Command,
+    rig::Rig as _,
+    teleop::{Calibrations, Loop, Timing},
+};
+use nima_testing::real_time::alone;
+use nima_world::{Worlds, scene::Scene};
+
+use crate::counting::calls;
+
+fn sample(k: u32) -> Sample {
+    let t = f64::from(k) * 1e-3;
+    let position_m = Vector3::new((5.0 * t).sin(), (4.0 * t).cos(), (3.0 * t).sin()) * 0.02;
+    let mut sample = Sample { t_s: t, position_m, force_n: position_m * 80.0 };
+    match k % 500 {
+        100 => sample.position_m.y = f64::NAN,
+        200 => sample.force_n.z = f64::INFINITY,
+        300 => sample.t_s = -1.0,
+        _ => {}
+    }
+    sample
+}
+
+#[test]
+fn identification_and_rendering_allocate_nothing() {
+    let _alone = alone();
+    for differentiator in DifferentiatorKind::ALL {
+        for cross_talk in [false, true] {
+            let settings =
+                Settings { differentiator, cross_talk, modes: ModeSet::ALL, delay_s: 0.05, ..Settings::default() };
+            let mut identifier = Identifier::new(&settings).unwrap();
+            let mut renderer = Renderer::new(&settings).unwrap();
+            let before = calls();
+            for k in 0..3000 {
+                let sample = sample(k);
+                identifier.step(&sample);
+                renderer.step(&sample.position_m, Some(identifier.parcel()));
+                if k == 1000 {
+                    identifier.set_delay(0.3);
+                    renderer.set_delay(0.3);
+                }
+                if k == 2000 {
+                    identifier.reset();
+                    renderer.reset();
+                }
+            }
+            assert_eq!(calls() - before, 0, "{differentiator:?}, cross-talk {cross_talk}");
+        }
+    }
+    let before = calls();
+    drop(std::hint::black_box(vec![1_u8; 10]));
+    assert_eq!(calls() - before, 2, "the counter counts");
+}
+
+#[test]
+fn a_tick_of_the_whole_loop_and_of_the_simulation_allocates_nothing() {
+    let _alone = alone();
+    let rig = RigConfig::load("simulated").unwrap();
+    let mut control = Loop::new(&rig, &[Some(Calibrations::default()), Some(Calibrations::default())]).unwrap();
+    let mut world = Worlds::new(&Scene::load("bimanual").unwrap(), rig.rate_hz);
+    control.obey(Command::Engage, 0.0);
+    let before = calls();
+    for k in 0..10_000_u32 {
+        let now_s = f64::from(k) * 1e-3;
+        control.clear_events();
+        match k {
+            3000 => control.obey(Command::SetDelay(0.3), now_s),
+            4000 => control.obey(Command::SetMode(Mode::Literal), now_s),
+            5000 => control.obey(Command::Stop, now_s),
+            5500 => control.obey(Command::ReleaseStop, now_s),
+            6000 => control.obey(Command::Engage, now_s),
+            _ => {}
+        }
+        // A silent rig now and then, long enough for a fault at last.
+        let inputs = world.read(now_s).map(|inputs| inputs.filter(|_| k % 1000 > 5 && k < 9000));
+        let (outputs, _) = control.step(inputs, &Timing { now_s, ..Timing::default() });
+        world.write(now_s, &outputs);
+    }
+    assert_eq!(calls() - before, 0);
+}

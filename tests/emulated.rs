@@ -1,0 +1,72 @@
+//! The embedded emulated rig away from its fixed places, so that tests disturb nobody.
+
+use std::{
+    net::{TcpListener, UdpSocket},
+    path::Path,
+};
+
+use nima_devices::bota;
+use nima_machine::{
+    config::RigConfig,
+    rig::{SensorSettings, Settings},
+};
+use nima_world::{
+    emulated::{EmulatedRig, HandFrame, provide_handles},
+    scene::Scene,
+};
+
+/// A port that is free for TCP and UDP.
+fn free_port() -> u16 {
+    loop {
+        let listener = TcpListener::bind("127.0.0.1:0").unwrap();
+        let port = listener.local_addr().unwrap().port();
+        if UdpSocket::bind(("127.0.0.1", port)).is_ok() {
+            return port;
+        }
+    }
+}
+
+/// The embedded rig on free ports and in a folder of its own.
+pub fn elsewhere(folder: &Path) -> Settings {
+    provide_handles();
+    let mut devices = RigConfig::load("emulated").unwrap().devices.unwrap();
+    let within = |port: &str| folder.join(Path::new(port).file_name().unwrap()).display().to_string();
+    for set in [&mut devices.right, &mut devices.left].into_iter().flatten() {
+        set.handle.force_dimension_mut().unwrap().emulator =
+            Some(format!("127.0.0.1:{}", free_port()).parse().unwrap());
+        let arm = set.arm.kinova_mut().unwrap();
+        (arm.tcp_port, arm.udp_port) = (free_port(), free_port());
+        let sensor = set.sensor.bota_mut().unwrap();
+        sensor.port = match sensor.transport {
+            bota::Transport::Socket => format!("127.0.0.1:{}", free_port()),
+            _ => within(&sensor.port),
+        };
+        if let Some(servos) = &mut set.servos {
+            servos.port = within(&servos.port);
+        }
+    }
+    if let Some(sensor) = devices.tissue_sensor.as_mut().and_then(SensorSettings::bota_mut) {
+        sensor.port = within(&sensor.port);
+    }
+    if let Some(tracker) = &mut devices.tracker {
+        tracker.address = Some(format!("127.0.0.1:{}", free_port()));
+        tracker.tools.iter_mut().for_each(|tool| *tool = folder.join(tool.file_name().unwrap()));
+    }
+    devices.pedal.as_mut().unwrap().source = format!("emulated:{}", folder.join("pedal").display());
+    devices
+}
+
+/// The right arm of it alone: handle, arm, sensor and servos.
+pub fn right_arm(folder: &Path) -> Settings {
+    Settings { left: None, tissue_sensor: None, tracker: None, endoscope: None, pedal: None, ..elsewhere(folder) }
+}
+
+/// The emulated devices of that rig, begun in the peg-transfer scene.
+pub fn started(devices: &Settings) -> EmulatedRig {
+    EmulatedRig::start(
+        devices,
+        &Scene::load("peg_transfer").unwrap(),
+        &[HandFrame::of(&RigConfig::load("emulated").unwrap().teleoperation.mapping()); 2],
+    )
+    .unwrap()
+}

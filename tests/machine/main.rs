@@ -1,0 +1,9 @@
+//! The machine on the virtual clock: whole scenes, calibrations and training, as fast as the processor can.
+#![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+mod bimanual;
+mod davinci;
+mod simulated_calibration;
+mod simulated_experiments;
+mod tip_force_loop;
+mod virtual_loop;

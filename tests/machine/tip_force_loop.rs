@@ -1,0 +1,125 @@
+//! The network in the loop: it takes the trocar's friction out, and hands over without a push when it is in doubt.
+use std::sync::{OnceLock, atomic::AtomicBool};
+
+use nalgebra::Vector3;
+use nima_core::tip_force::{Fallback, FeatureSettings, Model, TipForce, TrainingSettings, Unsure};
+use nima_machine::{
+    messages::{ForceReport, ForceSource},
+    rig::{Outputs, Prompt},
+    teleop::{Calibrations, ForcePath},
+};
+use nima_study::validation::{
+    experiment::Experiment,
+    isolation::{Known, record},
+};
+use nima_training::train_model;
+use nima_world::{World, scene::Scene};
+
+/// Calibrated and trained once for all tests here.
+fn trained() -> &'static (Known, Model) {
+    static TRAINED: OnceLock<(Known, Model)> = OnceLock::new();
+    TRAINED.get_or_init(|| {
+        let known = Known::calibrate(3).unwrap();
+        let scene = Experiment::scene("isolation", 3).unwrap();
+        let data = record(&scene, &known, FeatureSettings::default(), 12_000, 7.0).unwrap().data(None).unwrap();
+        let settings = TrainingSettings { members: 2, epochs: Some(20), ..TrainingSettings::default() };
+        let model = train_model(&data, &settings, [None, None], &AtomicBool::new(false), &|_| {}).unwrap();
+        (known, model)
+    })
+}
+
+fn path(fallback: Option<Fallback>) -> ForcePath {
+    let (known, model) = trained();
+    let tip_force = fallback.map(|fallback| TipForce::new(model.clone(), fallback).unwrap());
+    ForcePath::new(&Calibrations { gravity: Some(known.gravity), tip_force }, 1e-3)
+}
+
+/// What a path says of each sample, and the truth, N (`world`), while somebody works on the tissue.
+fn work(mut path: ForcePath, scene: &Scene, seconds: f64) -> Vec<(ForceReport, Vector3<f64>)> {
+    let mut world = World::new(scene, 1000.0);
+    let outputs = Outputs { prompt: Prompt::Work, ..Outputs::SAFE };
+    (1..=(seconds * 1e3) as u32)
+        .map(|tick| {
+            let t_s = f64::from(tick) * 1e-3;
+            let sensed = world.exchange(t_s, &outputs).unwrap().sensed;
+            (path.step(t_s, &sensed), world.true_tip_n())
+        })
+        .collect()
+}
+
+fn scene(seed: u64) -> Scene {
+    Experiment::scene("isolation", seed).unwrap()
+}
+
+/// Another tool, of which the network knows nothing.
+fn heavier(seed: u64) -> Scene {
+    let mut scene = scene(seed);
+    scene.wrist.as_mut().unwrap().tool_mass_kg += 0.3;
+    scene
+}
+
+fn mean_error_n(all: &[(ForceReport, Vector3<f64>)]) -> f64 {
+    all.iter().map(|(report, true_n)| (report.tip_n - true_n).norm()).sum::<f64>() / all.len() as f64
+}
+
+#[test]
+fn the_network_takes_the_friction_out_of_the_wrist_force() {
+    let all = work(path(Some(Fallback::WristForce)), &scene(11), 20.0);
+    let sure = all.iter().filter(|(report, _)| report.source == ForceSource::Network).count();
+    assert!(sure as f64 > 0.85 * all.len() as f64, "{sure} of {}", all.len());
+    let [with, without] = [mean_error_n(&all), mean_error_n(&work(path(None), &scene(11), 20.0))];
+    assert!(with < 0.2 * without, "{with:.3} N against {without:.3} N");
+}
+
+#[test]
+fn until_it_has_moved_the_fallback_answers_and_says_why() {
+    let all = work(path(Some(Fallback::WristForce)), &scene(11), 3.0);
+    let not_moved = ForceSource::InDoubt { unsure: Unsure::NotMoved, fallback: Fallback::WristForce };
+    assert_eq!(all[0].0.source, not_moved);
+    assert!(all.iter().any(|(report, _)| report.source == ForceSource::Network));
+}
+
+#[test]
+fn with_another_tool_it_is_in_doubt_and_falls_back_as_it_was_told() {
+    let doubtful = |fallback| {
+        let all = work(path(Some(fallback)), &heavier(11), 10.0);
+        let doubt = ForceSource::InDoubt { unsure: Unsure::OutsideTraining, fallback };
+        let late = all[3000..].to_vec();
+        let share = late.iter().filter(|(report, _)| report.source == doubt).count() as f64 / late.len() as f64;
+        assert!(share > 0.95, "{share}");
+        late
+    };
+    let wrist = doubtful(Fallback::WristForce);
+    let without = work(path(None), &heavier(11), 10.0);
+    let same = wrist.iter().zip(&without[3000..]).filter(|(a, b)| (a.0.tip_n - b.0.tip_n).norm() < 1e-9).count();
+    assert!(same as f64 > 0.9 * wrist.len() as f64, "the wrist force as it is: {same} of {}", wrist.len());
+    let faded = doubtful(Fallback::HoldAndFade);
+    let silent = faded.iter().filter(|(report, _)| report.tip_n.norm() < 1e-9).count();
+    assert!(silent as f64 > 0.9 * faded.len() as f64, "nothing is felt: {silent} of {}", faded.len());
+}
+
+#[test]
+fn a_handover_is_no_push() {
+    for fallback in [Fallback::WristForce, Fallback::HoldAndFade] {
+        let mut path = path(Some(fallback));
+        let (mut good, mut foreign) = (World::new(&scene(11), 1000.0), World::new(&heavier(11), 1000.0));
+        let outputs = Outputs { prompt: Prompt::WorkFree, ..Outputs::SAFE };
+        let (mut last_n, mut largest_n, mut handovers) = (None::<ForceReport>, 0.0_f64, 0);
+        for tick in 1..=20_000_u32 {
+            let t_s = f64::from(tick) * 1e-3;
+            let [mine, other] = [&mut good, &mut foreign].map(|world| world.exchange(t_s, &outputs).unwrap().sensed);
+            // Every two seconds the tool is another one, of 3 N more weight.
+            let report = path.step(t_s, if tick / 2000 % 2 == 0 { &mine } else { &other });
+            // When the tool itself is exchanged, even the wrist force steps.
+            if let Some(last) = last_n.filter(|_| tick % 2000 > 1) {
+                handovers += u32::from(last.source.doubt().is_some() != report.source.doubt().is_some());
+                if last.source.doubt().is_none() || report.source.doubt().is_none() {
+                    largest_n = largest_n.max((report.tip_n - last.tip_n).norm());
+                }
+            }
+            last_n = Some(report);
+        }
+        assert!(handovers >= 8, "{handovers}");
+        assert!(largest_n < 0.5, "{fallback:?}: a step of {largest_n:.2} N in a millisecond");
+    }
+}

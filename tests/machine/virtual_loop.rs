@@ -1,0 +1,172 @@
+//! The whole loop on the virtual clock: what it does over whole scenes, faults included.
+use nalgebra::Vector3;
+use nima_core::impedance::Mode;
+use nima_machine::{
+    config::RigConfig,
+    messages::{Command, Fault, LoopState, Refusal, Tick},
+    rig::{Inputs, Outputs, Sensed, Side},
+    runtime::Summary,
+    teleop::{Calibrations, Pair, Timing},
+};
+use nima_world::{Plan, World, run_virtual, scene::Scene};
+
+fn plan(scene: &str) -> Plan {
+    Plan {
+        rig: RigConfig::load("simulated").unwrap(),
+        scene: Scene::load(scene).unwrap(),
+        calibrations: Default::default(),
+        engage: true,
+    }
+}
+
+fn error_of(summary: &Summary, mode: Mode) -> f64 {
+    summary.error[mode.index()].mae_n
+}
+
+#[test]
+fn anchored_is_nearer_to_the_truth_than_delayed_reflection_at_every_delay() {
+    for delay_s in [0.01, 0.05, 0.1, 0.3] {
+        let mut plan = plan("peg_transfer");
+        plan.rig.delay_s = delay_s;
+        let summary = run_virtual(&plan, 30.0, |_| None).unwrap();
+        let (anchored, dfr) = (error_of(&summary, Mode::Anchored), error_of(&summary, Mode::Dfr));
+        println!("delay {delay_s} s: {:?}", summary.error);
+        assert!(anchored < dfr, "delay {delay_s} s: anchored {anchored} N, delayed reflection {dfr} N");
+    }
+}
+
+#[test]
+fn without_delay_the_reflected_force_is_the_measured_one() {
+    let mut plan = plan("peg_transfer");
+    plan.rig.delay_s = 0.0;
+    let summary = run_virtual(&plan, 5.0, |_| None).unwrap();
+    assert!(error_of(&summary, Mode::Dfr) < 1e-12);
+}
+
+#[test]
+fn the_same_plan_gives_the_same_run() {
+    let run = || {
+        let mut forces = Vec::new();
+        run_virtual(&plan("peg_transfer"), 3.0, |tick| {
+            forces.push(tick.rendered_n);
+            None
+        })
+        .unwrap();
+        forces
+    };
+    assert_eq!(run(), run());
+}
+
+#[test]
+fn the_hand_never_feels_more_than_the_ceiling_and_nothing_when_stopped() {
+    let mut plan = plan("peg_transfer");
+    plan.rig.mode = Mode::Dfr;
+    let mut felt = 0.0_f64;
+    run_virtual(&plan, 20.0, |tick: &Tick| {
+        assert!(tick.rendered_n.norm() <= 4.0 + 1e-9);
+        felt = felt.max(tick.rendered_n.norm());
+        match tick.index {
+            15_000 => Some(Command::Stop),
+            15_001.. => {
+                assert_eq!(tick.state, LoopState::Stopped);
+                assert!(tick.rendered_n.norm() < f64::EPSILON);
+                Some(Command::Engage)
+            }
+            _ => None,
+        }
+    })
+    .unwrap();
+    assert!(felt > 0.5, "the hand feels the tissue: {felt} N");
+}
+
+#[test]
+fn a_command_out_of_range_is_refused_and_changes_nothing() {
+    let mut control = Pair::new(&RigConfig::load("simulated").unwrap(), Side::Right, &Calibrations::default()).unwrap();
+    let bad = [
+        Command::SetGain(1.5),
+        Command::SetGain(f64::NAN),
+        Command::SetGainAboveOne(3.5),
+        Command::SetDelay(-0.1),
+        Command::SetDelay(f64::NAN),
+        Command::SetDeadBand(-1.0),
+        Command::ReleaseStop,
+    ];
+    for command in bad {
+        assert!(control.obey(command, 0.0).is_err(), "{command:?}");
+    }
+}
+
+/// Drives a loop over a world by hand, so that samples can be taken away or poisoned.
+struct Bench {
+    world: World,
+    control: Pair,
+    outputs: Outputs,
+    tick: u64,
+}
+
+impl Bench {
+    fn engaged(mode: Mode) -> Self {
+        let Plan { mut rig, scene, .. } = plan("peg_transfer");
+        rig.mode = mode;
+        let mut control = Pair::new(&rig, Side::Right, &Calibrations::default()).unwrap();
+        control.obey(Command::Engage, 0.0).unwrap();
+        Self { world: World::new(&scene, rig.rate_hz), control, outputs: Outputs::SAFE, tick: 0 }
+    }
+
+    fn step(&mut self, edit: impl Fn(Inputs) -> Option<Inputs>) -> Tick {
+        let now_s = self.tick as f64 * 1e-3;
+        let inputs = self.world.exchange(now_s, &self.outputs).and_then(edit);
+        let (outputs, tick) = self.control.step(inputs, &Timing { now_s, ..Timing::default() });
+        self.outputs = outputs;
+        self.tick += 1;
+        tick
+    }
+
+    /// Runs until at least 1 N is rendered.
+    fn until_contact(mode: Mode) -> Self {
+        let mut bench = Self::engaged(mode);
+        for _ in 0..20_000 {
+            if bench.step(Some).rendered_n.norm() > 1.0 {
+                return bench;
+            }
+        }
+        panic!("{mode}: no contact in 20 s");
+    }
+}
+
+#[test]
+fn a_silent_or_poisoned_source_takes_the_force_away_within_20_ms_and_latches() {
+    let poison = |inputs: Inputs| Some(Inputs { sensed: Sensed::AtTip(Vector3::repeat(f64::NAN)), ..inputs });
+    for edit in [&poison as &dyn Fn(Inputs) -> Option<Inputs>, &|_| None] {
+        for mode in Mode::ALL {
+            let mut bench = Bench::until_contact(mode);
+            let after: Vec<Tick> = (0..40).map(|_| bench.step(edit)).collect();
+            assert!(
+                after[20].rendered_n.norm() < f64::EPSILON,
+                "{mode}: {} N after 20 ms",
+                after[20].rendered_n.norm()
+            );
+            assert_eq!(after[39].state, LoopState::Faulted(Fault::SourceSilent));
+            assert_eq!(
+                bench.control.obey(Command::ReleaseStop, 1e-3 * bench.tick as f64),
+                Err(Refusal::StillPresent(Fault::SourceSilent)),
+                "released in silence"
+            );
+            let again: Vec<Tick> = (0..1000).map(|_| bench.step(Some)).collect();
+            assert!(
+                again.iter().all(|tick| tick.rendered_n.norm() < f64::EPSILON),
+                "{mode}: force came back by itself"
+            );
+        }
+    }
+}
+
+#[test]
+fn a_stall_is_a_fault_with_zero_force() {
+    let mut bench = Bench::until_contact(Mode::Dfr);
+    let inputs = bench.world.exchange(bench.tick as f64 * 1e-3, &bench.outputs);
+    let timing = Timing { now_s: bench.tick as f64 * 1e-3 + 0.1, missed_now: 100, ..Timing::default() };
+    let (outputs, tick) = bench.control.step(inputs, &timing);
+    assert_eq!(tick.state, LoopState::Faulted(Fault::LoopStalled { periods: 100 }));
+    assert_eq!(outputs, Outputs::SAFE);
+}

@@ -1,0 +1,243 @@
+//! Every fault of every emulated device in the running loop: what is told, how soon, what becomes of the force, and whether it comes
+//! back. Writes the table that `docs/devices.md` shows. Takes some minutes in real time: `./dev test` runs it alone.
+#![cfg(target_os = "linux")]
+use std::{
+    fmt::Write as _,
+    time::{Duration, Instant},
+};
+
+use nima_core::impedance::Mode;
+use nima_devices::{Health, Loss, Standing, Trouble};
+use nima_machine::{
+    config::RigConfig,
+    messages::{Command, Event, LoopState, Tick},
+    rig::Settings,
+    runtime::Handle,
+};
+use nima_testing::real_time::alone;
+use nima_tests::emulated::{elsewhere, started};
+use nima_world::{Plan, emulated::EmulatedRig, emulators::EmulatedFault, scene::Scene};
+
+/// A typed event of a device comes within this time; a tracker has 60 frames a second.
+const TOLD_MS: f64 = 20.0;
+const TRACKER_TOLD_MS: f64 = 100.0;
+/// What the test's own polling and a shared computer may add.
+const SLACK_MS: f64 = 15.0;
+/// A device is back within this time after its fault has gone.
+const BACK_WITHIN: Duration = Duration::from_secs(6);
+
+struct Bench {
+    rig: EmulatedRig,
+    handle: Handle,
+    newest: Option<Tick>,
+    healths: [Health; 16],
+    lost: Vec<(Instant, usize, Loss)>,
+}
+
+impl Bench {
+    fn new(devices: &Settings) -> Self {
+        let rig = started(devices);
+        let mut config = RigConfig::load("emulated").unwrap();
+        config.devices = Some(devices.clone());
+        config.mode = Mode::Dfr;
+        config.gates.static_hold = true;
+        let plan = Plan {
+            rig: config,
+            scene: Scene::load("peg_transfer").unwrap(),
+            calibrations: Default::default(),
+            engage: true,
+        };
+        let handle = nima_world::start(&plan).unwrap();
+        let healths = [Health::default(); 16];
+        Self { rig, handle, newest: None, healths, lost: Vec::new() }
+    }
+
+    fn look(&mut self) {
+        std::thread::sleep(Duration::from_micros(300));
+        let now = Instant::now();
+        let (newest, lost) = (&mut self.newest, &mut self.lost);
+        self.handle.drain_ticks(|tick| *newest = Some(*tick));
+        self.handle.drain_events(|event| {
+            if let Event::Device(event) = event
+                && let Standing::Lost(loss) = event.standing
+            {
+                lost.push((now, usize::from(event.device), loss));
+            }
+        });
+        if let Some(healths) = self.handle.healths() {
+            self.healths = healths.devices;
+        }
+    }
+
+    fn until(&mut self, within: Duration, mut good: impl FnMut(&Self) -> bool) -> Option<Duration> {
+        let begin = Instant::now();
+        while begin.elapsed() < within {
+            self.look();
+            if good(self) {
+                return Some(begin.elapsed());
+            }
+        }
+        None
+    }
+
+    fn state(&self) -> LoopState {
+        self.newest.map_or(LoopState::Idle, |tick| tick.state)
+    }
+
+    fn rendered_n(&self) -> f64 {
+        self.newest.map_or(0.0, |tick| tick.rendered_n.norm())
+    }
+
+    fn place(&self, name: &str) -> usize {
+        self.handle.roster().iter().position(|entry| entry.name == name).unwrap()
+    }
+
+    /// Out of a latch if there is one, engaged, and pressing.
+    fn pressing(&mut self) {
+        for _ in 0..5 {
+            if self.until(Duration::from_secs(8), |bench| bench.rendered_n() > 0.4).is_some() {
+                return;
+            }
+            self.again();
+        }
+        panic!(
+            "no force: {:?}, {:?}",
+            self.state(),
+            self.handle.roster().iter().map(|e| e.view.report()).collect::<Vec<_>>()
+        );
+    }
+
+    fn again(&mut self) {
+        if self.state().is_latched() {
+            self.handle.send(Command::ReleaseStop);
+        }
+        self.until(Duration::from_secs(2), |bench| bench.state() == LoopState::Idle);
+        self.handle.send(Command::Engage);
+        self.until(Duration::from_secs(3), |bench| bench.state() == LoopState::Engaged);
+    }
+}
+
+/// What came of one fault.
+struct Row {
+    device: &'static str,
+    fault: &'static str,
+    told: String,
+    told_ms: Option<f64>,
+    zero_ms: Option<f64>,
+    state: &'static str,
+    back_s: Option<f64>,
+    by_itself: bool,
+}
+
+fn counted(before: &Health, after: &Health) -> String {
+    let counters = [
+        ("lost", after.lost.saturating_sub(before.lost)),
+        ("damaged", after.damaged.saturating_sub(before.damaged)),
+        ("out of order", after.out_of_order.saturating_sub(before.out_of_order)),
+        ("refused", after.refused.saturating_sub(before.refused)),
+    ];
+    let told: Vec<_> = counters.iter().filter(|(_, n)| *n > 0).map(|(name, n)| format!("{n} {name}")).collect();
+    if told.is_empty() { String::new() } else { format!("counted: {}", told.join(", ")) }
+}
+
+fn try_out(bench: &mut Bench, device: &'static str, fault: EmulatedFault) -> Row {
+    bench.pressing();
+    let place = bench.place(device);
+    bench.until(Duration::from_millis(250), |_| false);
+    bench.pressing();
+    bench.lost.clear();
+    let before = bench.healths[place];
+    assert!(bench.rig.set_fault(device, fault));
+    let begin = Instant::now();
+    let (mut zero, mut loss) = (None, None);
+    while begin.elapsed() < Duration::from_millis(450) {
+        bench.look();
+        loss = loss.or_else(|| bench.lost.iter().find(|(_, at, _)| *at == place).copied());
+        if zero.is_none() && bench.rendered_n() < 1e-9 {
+            zero = Some(begin.elapsed());
+        }
+        // Without a fault of the loop the force comes and goes with the task.
+        if bench.state() == LoopState::Engaged {
+            zero = None;
+        }
+    }
+    let told = match loss {
+        Some((_, _, loss)) => loss.cause().to_owned(),
+        None => counted(&before, &bench.healths[place]),
+    };
+    let state = bench.state().word();
+    bench.rig.set_fault(device, EmulatedFault::None);
+    // A fault of the device's own is cleared by a person's command, as the console's button gives it.
+    let back = bench.until(BACK_WITHIN, |bench| {
+        let entry = &bench.handle.roster()[place];
+        if let (Some(Trouble::DeviceFault { .. }), Some(clear)) = (entry.view.report().trouble, &entry.clear_faults) {
+            clear.command();
+        }
+        bench.healths[place].standing == Standing::Connected
+    });
+    bench.until(Duration::from_millis(300), |_| false);
+    let by_itself = state != "Engaged" && bench.state() == LoopState::Engaged;
+    if bench.state() != LoopState::Engaged {
+        bench.again();
+    }
+    let told_ms = loss.map(|(at, _, _)| (at - begin).as_secs_f64() * 1e3);
+    Row {
+        device,
+        fault: fault.name(),
+        told,
+        told_ms,
+        zero_ms: zero.map(|zero| zero.as_secs_f64() * 1e3),
+        state,
+        back_s: back.map(|back| back.as_secs_f64()),
+        by_itself,
+    }
+}
+
+fn table(rows: &[Row]) -> String {
+    let ms = |value: Option<f64>| value.map_or_else(|| "-".to_owned(), |ms| format!("{ms:.0}"));
+    let mut out = String::from(
+        "| device | fault | told | event after ms | zero force after ms | loop | back after s |\n|---|---|---|---|---|---|---|\n",
+    );
+    for Row { device, fault, told, told_ms, zero_ms, state, back_s, .. } in rows {
+        let told = if told.is_empty() { "nothing: harmless" } else { told };
+        let back = back_s.map_or_else(|| "not".to_owned(), |s| format!("{s:.1}"));
+        writeln!(out, "| {device} | {fault} | {told} | {} | {} | {state} | {back} |", ms(*told_ms), ms(*zero_ms))
+            .unwrap();
+    }
+    out
+}
+
+#[test]
+#[ignore = "minutes in real time: `./dev test` runs it alone"]
+fn every_fault_of_every_device_is_told_takes_the_force_away_and_passes() {
+    let _alone = alone();
+    let folder = tempfile::tempdir().unwrap();
+    let devices = Settings { left: None, ..elsewhere(folder.path()) };
+    let mut bench = Bench::new(&devices);
+    bench.pressing();
+    let mut rows = Vec::new();
+    for device in ["right handle", "right arm", "right sensor", "right servos", "tissue sensor", "tracker", "pedal"] {
+        for fault in EmulatedFault::ALL {
+            rows.push(try_out(&mut bench, device, fault));
+        }
+    }
+    let table = table(&rows);
+    println!("{table}");
+    let target = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../target/device-faults.md");
+    std::fs::write(target, &table).unwrap();
+    assert!(bench.handle.is_running());
+    for row in &rows {
+        let Row { device, fault, told_ms, zero_ms, back_s, by_itself, .. } = row;
+        let limit_ms = SLACK_MS + if *device == "tracker" { TRACKER_TOLD_MS } else { TOLD_MS };
+        let slow = ["pedal", "right servos", "tissue sensor"].contains(device);
+        // Chance decides which frames these spoil: as long as good ones come in time they are counted, and the device is lost when too
+        // many in a row are spoiled, however late that happens.
+        let by_chance = ["loss", "garbage", "reorder"].contains(fault);
+        let late = |ms: f64| ms > limit_ms && !by_chance;
+        assert!(slow || !told_ms.is_some_and(late), "{device}, {fault}: told after {told_ms:?} ms");
+        let limit_ms = if by_chance { told_ms.unwrap_or(limit_ms).max(limit_ms) } else { limit_ms };
+        assert!(zero_ms.is_none_or(|ms| ms <= limit_ms + 5.0), "{device}, {fault}: force until {zero_ms:?} ms");
+        assert!(back_s.is_some(), "{device}, {fault}: it did not come back");
+        assert!(!by_itself, "{device}, {fault}: engaged by itself");
+    }
+}

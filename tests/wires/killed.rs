@@ -1,0 +1,95 @@
+//! The loop's process is killed in the middle of a contact: the devices' own watchdogs take the force from the hand and hold the arm.
+#![cfg(target_os = "linux")]
+use std::{
+    process::{Child, Command, Stdio},
+    time::{Duration, Instant},
+};
+
+use nima_core::impedance::Mode;
+use nima_machine::{
+    config::RigConfig,
+    rig::{Settings, Side},
+};
+use nima_testing::real_time::{alone, judged};
+use nima_tests::emulated::{right_arm, started};
+use nima_world::{
+    Plan,
+    emulated::{Truth, provide_handles},
+    emulators::force_dimension::Mode as Motors,
+    scene::Scene,
+};
+
+const DEVICES: &str = "NIMA_TEST_DEVICES";
+/// Watchdog of the handle as the rig file has it, s.
+const WATCHDOG_S: f64 = 0.020;
+/// Of the emulated arm, s.
+const ARM_WATCHDOG_S: f64 = 0.050;
+/// What a shared computer may add, s.
+const SLACK_S: f64 = 0.030;
+
+/// The process that is killed; the test below starts it.
+#[test]
+#[ignore = "run by the other test, which kills it"]
+fn the_loop_of_another_process() {
+    let Ok(devices) = std::env::var(DEVICES) else { return };
+    provide_handles();
+    let mut rig = RigConfig::load("emulated").unwrap();
+    rig.devices = Some(toml::from_str::<Settings>(&devices).unwrap());
+    rig.mode = Mode::Dfr;
+    rig.gates.static_hold = true;
+    let plan =
+        Plan { rig, scene: Scene::load("peg_transfer").unwrap(), calibrations: Default::default(), engage: true };
+    let _handle = nima_world::start(&plan).unwrap();
+    std::thread::sleep(Duration::from_mins(1));
+}
+
+struct Killed(Child);
+
+impl Drop for Killed {
+    fn drop(&mut self) {
+        self.0.kill().ok();
+        self.0.wait().ok();
+    }
+}
+
+#[test]
+#[ignore = "real lines in real time: `./dev test` runs it alone"]
+fn a_killed_process_leaves_no_force_in_the_hand() {
+    let _alone = alone();
+    judged(|| {
+        let folder = tempfile::tempdir().unwrap();
+        let devices = right_arm(folder.path());
+        let rig = started(&devices);
+        let truth = || rig.truth(Side::Right).unwrap();
+        let loop_of_another_process = || {
+            let child = Command::new(std::env::current_exe().unwrap())
+                .args(["killed::the_loop_of_another_process", "--exact", "--ignored"])
+                .env(DEVICES, toml::to_string(&devices).unwrap())
+                .stdout(Stdio::null())
+                .stderr(Stdio::null())
+                .spawn();
+            Killed(child.unwrap())
+        };
+        let until = |within: Duration, good: &dyn Fn(&Truth) -> bool| {
+            let begin = Instant::now();
+            while begin.elapsed() < within {
+                if good(&truth()) {
+                    return Some(begin.elapsed().as_secs_f64());
+                }
+                std::thread::sleep(Duration::from_micros(200));
+            }
+            None
+        };
+        // A busy machine may hold a loop up before it has touched anything: then it has stopped, and another one is tried.
+        let feels = |child: Killed| {
+            until(Duration::from_secs(8), &|truth| truth.applied.force_n.norm() > 0.5 && truth.servoing).map(|_| child)
+        };
+        let mut child = (0..4).find_map(|_| feels(loop_of_another_process())).expect("the hand feels something");
+        child.0.kill().unwrap();
+        let free_s = until(Duration::from_secs(1), &|truth| truth.applied.mode != Motors::Force).expect("no force");
+        let held_s = free_s + until(Duration::from_secs(1), &|truth| !truth.servoing).expect("the arm holds");
+        println!("killed: no force after {:.1} ms, the arm holds after {:.1} ms", free_s * 1e3, held_s * 1e3);
+        assert!(truth().applied.force_n.norm() < 1e-12);
+        assert!(free_s < WATCHDOG_S + SLACK_S && held_s < ARM_WATCHDOG_S + 2.0 * SLACK_S, "{free_s} s, {held_s} s");
+    });
+}

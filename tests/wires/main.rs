@@ -1,0 +1,8 @@
+//! The rig with its real drivers, on emulated devices and real wires, in real time.
+#![cfg(target_os = "linux")]
+#![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+mod device_faults;
+mod emulated_rig;
+mod killed;
+mod rig_diagnosis;

@@ -1,0 +1,98 @@
+//! Whether a run did what it was started for, and if not, why.
+
+use nima_core::safety::Why;
+use nima_devices::Standing;
+use nima_machine::{
+    messages::{Command, Event, Fault, LoopState, Refusal, Tick},
+    rig::{SIDES, Side},
+    runtime::{ArmEnd, CauseAndCure, Summary},
+};
+
+use crate::words::{cure_of_refusal, refused_because};
+
+/// Why arms were not engaged, as far as the loop told.
+#[derive(Debug, Default)]
+pub(super) struct Reasons {
+    refusals: [Option<Refusal>; SIDES],
+    was_engaged: [bool; SIDES],
+}
+
+impl Reasons {
+    /// Takes a tick in.
+    pub(super) fn watch(&mut self, tick: &Tick) {
+        self.was_engaged[tick.side.index()] |= tick.state == LoopState::Engaged;
+    }
+
+    /// Takes an event in; gives what is worth telling at once.
+    pub(super) fn take(&mut self, event: &Event) -> Option<String> {
+        match *event {
+            Event::CommandRefused { side, command: Command::Engage | Command::EngageOne(_), why, .. } => {
+                let before = self.refusals[side.index()].replace(why);
+                let told = || {
+                    format!(
+                        "the {} arm was not engaged: {}; {}",
+                        side.word(),
+                        refused_because(why),
+                        cure_of_refusal(why)
+                    )
+                };
+                (before != Some(why)).then(told)
+            }
+            Event::StateChanged { side, why: Why::Absent, .. } => {
+                self.refusals[side.index()] = Some(Refusal::HandAbsent);
+                None
+            }
+            Event::StateChanged { side, to: LoopState::Engaged, .. } => {
+                self.refusals[side.index()] = None;
+                None
+            }
+            _ => None,
+        }
+    }
+
+    /// Why the run did not do what it was started for; `None` where it did. `engages`: the rig was to engage by itself.
+    pub(super) fn of(&self, summary: &Summary, engages: bool) -> Option<String> {
+        summary.arms.iter().find_map(|arm| self.of_arm(arm, summary, engages))
+    }
+
+    fn of_arm(&self, arm: &ArmEnd, summary: &Summary, engages: bool) -> Option<String> {
+        let side = arm.side.word();
+        match arm.final_state {
+            LoopState::Engaged | LoopState::Clutched => None,
+            LoopState::Faulted(Fault::OtherArm) if summary.arms.len() > 1 => None,
+            LoopState::Faulted(_) => {
+                let CauseAndCure { device, cause, cure } = arm.fault.as_ref()?;
+                let device = device.as_ref().map(|device| format!(" ({device})")).unwrap_or_default();
+                Some(format!("the {side} arm ended in a fault: {cause}{device}. {cure}"))
+            }
+            LoopState::Disconnected => {
+                Some(format!("the {side} arm ended without a device: {}", missing(arm.side, summary)))
+            }
+            LoopState::Stopped => Some(format!("the {side} arm was stopped")),
+            LoopState::Idle | LoopState::Ready if !engages => None,
+            LoopState::Idle | LoopState::Ready => Some(match self.refusals[arm.side.index()] {
+                Some(why) => format!(
+                    "the {side} arm ended without being engaged: {}; {}",
+                    refused_because(why),
+                    cure_of_refusal(why)
+                ),
+                None if self.was_engaged[arm.side.index()] => {
+                    format!("the {side} arm was no longer engaged when the run ended")
+                }
+                None => format!("the {side} arm was not yet engaged when the run ended: give it more --seconds"),
+            }),
+        }
+    }
+}
+
+/// The first device that this arm misses, why, and what to do.
+fn missing(side: Side, summary: &Summary) -> String {
+    let absent = || summary.devices.iter().filter(|device| device.health.standing != Standing::Connected);
+    let first = absent().find(|device| device.name.starts_with(side.word())).or_else(|| absent().next());
+    let Some(device) = first else { return "its devices send nothing new; see them with `nima devices`".to_owned() };
+    match (&device.trouble, device.health.standing) {
+        (Some(trouble), _) => format!("{}: {}. {}", device.name, trouble.cause, trouble.cure),
+        (None, Standing::Lost(loss)) => format!("{}: {}; it is opened again by itself", device.name, loss.cause()),
+        (None, _) => format!("{} was still being opened; give it more --seconds", device.name),
+    }
+}

@@ -1,0 +1,17 @@
+//! `nima study stability-map` has no arguments of its own.
+
+use clap::Args;
+use nima_study::stability_map::Options;
+
+use super::Asked;
+
+#[derive(Debug, Args)]
+pub(in crate::command) struct StabilityMap;
+
+impl Asked for StabilityMap {
+    type Experiment = Options;
+
+    fn experiment(&self) -> anyhow::Result<Options> {
+        Ok(Options)
+    }
+}

@@ -1,0 +1,243 @@
+//! The calibrations in force on one side: of one wrist sensor with one tool.
+
+use std::{path::PathBuf, time::SystemTime};
+
+use nima_core::{
+    calibration::{
+        Record,
+        correspondence::CorrespondenceRecord,
+        gravity::{Drift, DriftCheck, GravityRecord, StillSettings},
+    },
+    tip_force::{Fallback, Model, TipForce},
+};
+use nima_machine::{
+    messages::{LoopState, Tick},
+    rig::Prompt,
+    runtime::WristChange,
+    teleop::Calibrations,
+};
+use nima_recording::{
+    store::{Age, Loaded, Store, WristId, utc_now},
+    tip_force::{keep_model, kept_model},
+};
+
+use crate::console::{text, wizards::Saving};
+
+/// Whose calibrations count on a side.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub(super) enum Bound {
+    /// Nobody's: the force is measured at the tip, or there is no such arm.
+    #[default]
+    Nothing,
+    /// The sensor has not told yet who it is.
+    Waiting,
+    /// It never will: why, and what to do.
+    Nameless(&'static str),
+    /// This sensor's, with this tool.
+    To(WristId),
+}
+
+/// What is in force on a side, and what stood in the way.
+#[derive(Debug, Default)]
+pub(super) struct OfSide {
+    pub(super) bound: Bound,
+    /// The change of the loop's sensor that this takes into account.
+    pub(super) since: Option<WristChange>,
+    /// Sensor and tool as they were known last.
+    pub(super) last: Option<WristId>,
+    pub(super) correspondence: Option<Loaded<CorrespondenceRecord>>,
+    told: Option<String>,
+    /// Other sensors that are calibrated with the same tool.
+    others: Vec<String>,
+    gravity: Option<Loaded<GravityRecord>>,
+    tip_force: Option<Loaded<Model>>,
+    /// How gravity stands since the loop began, and when that was found.
+    drift: Option<(DriftCheck, String)>,
+}
+
+impl OfSide {
+    /// What the store holds for this sensor and tool; `last` were known before them.
+    pub(super) fn load(store: Option<&Store>, bound: Bound, last: Option<WristId>) -> Self {
+        let mut this = Self { bound, ..Self::default() };
+        this.last = this.wrist().cloned().or(last);
+        let (Some(store), Bound::To(wrist)) = (store, &this.bound) else { return this };
+        let WristId { serial_number, tool } = wrist;
+        let (now, told) = (SystemTime::now(), &mut this.told);
+        this.tip_force = usable(text::calibrations::TIP_FORCE, kept_model(store, serial_number, tool, now), told);
+        this.correspondence = usable(text::calibrations::CORRESPONDENCE, store.load(serial_number, tool, now), told);
+        this.gravity = usable(text::calibrations::GRAVITY, store.load(serial_number, tool, now), told);
+        this.drift = this.gravity.as_ref().map(|Loaded { record, .. }| {
+            (DriftCheck::new(record.model, record.drift_limit_n(), StillSettings::default()), String::new())
+        });
+        this.others = store.other_sensors::<GravityRecord>(wrist);
+        this
+    }
+
+    /// Sensor and tool, once they are known.
+    pub(super) const fn wrist(&self) -> Option<&WristId> {
+        match &self.bound {
+            Bound::To(wrist) => Some(wrist),
+            _ => None,
+        }
+    }
+
+    /// Sensor and tool, if they are known and no gravity is.
+    pub(super) fn without_gravity(&self) -> Option<&WristId> {
+        self.wrist().filter(|_| self.gravity.is_none())
+    }
+
+    /// What is wrong, and what can be done; `across` is on the other arm.
+    pub(super) fn told(&self, across: Option<&WristId>) -> Option<String> {
+        let elsewhere = |sensor: &&str| across.is_none_or(|across| across.serial_number != *sensor);
+        let others: Vec<_> = self.others.iter().map(String::as_str).filter(elsewhere).collect();
+        let swapped = self.without_gravity().filter(|_| !others.is_empty());
+        self.told.clone().or_else(|| {
+            swapped.map(|wrist| {
+                text::calibrations::other_sensors_are_calibrated(&wrist.serial_number, &wrist.tool, &others.join(", "))
+            })
+        })
+    }
+
+    /// Takes in one tick of this side: in the first seconds, idle and still, it shows whether the bias is where it was.
+    pub(super) fn watch(&mut self, tick: &Tick) {
+        let Some((check, found_at)) = &mut self.drift else { return };
+        let idle = match tick.state {
+            LoopState::Idle if tick.prompt == Prompt::Rest => true,
+            LoopState::Engaged => false,
+            // Somebody guides the arm, or what is shown is not new.
+            _ => return,
+        };
+        let before = check.drift();
+        if check.step(tick.wrist.as_ref(), idle, tick.t_s) != before {
+            utc_now().get(11..16).unwrap_or_default().clone_into(found_at);
+        }
+    }
+
+    /// How gravity stands since the loop began; none where nothing is to be checked.
+    pub(super) fn drift(&self) -> Option<Drift> {
+        self.drift.as_ref().map(|(check, _)| check.drift())
+    }
+
+    /// For the loop.
+    pub(super) fn calibrations(&mut self, fallback: Fallback) -> Calibrations {
+        let model = self.tip_force.as_ref().map(|loaded| loaded.record.clone());
+        let tip_force = model.map(|model| TipForce::new(model, fallback)).transpose();
+        Calibrations {
+            gravity: self.gravity.as_ref().map(|loaded| loaded.record.model),
+            tip_force: usable(text::calibrations::TIP_FORCE, tip_force, &mut self.told),
+        }
+    }
+
+    /// Keeps a record and takes it into force; gives its path.
+    pub(super) fn save(&mut self, store: &Store, saving: Saving) -> Result<PathBuf, String> {
+        let path = match saving {
+            Saving::Gravity(record) => kept(store, *record, &mut self.gravity)?,
+            Saving::Correspondence(record) => kept(store, *record, &mut self.correspondence)?,
+            Saving::TipForce(model) => {
+                let path = keep_model(&model, store).map_err(|error| in_one_line(&error))?;
+                self.tip_force = Some(Loaded { record: *model, age: Age::Fresh, path: path.clone() });
+                path
+            }
+        };
+        self.told = None;
+        Ok(path)
+    }
+
+    /// One line for each calibration that matters on this side, which is named where there are two.
+    pub(super) fn lines(&self, side: Option<&str>) -> Vec<String> {
+        let of_side = |words: String| side.map_or_else(|| words.clone(), |side| format!("{side}: {words}"));
+        let wrist = match &self.bound {
+            Bound::Nothing => return Vec::new(),
+            Bound::Waiting => return vec![of_side(text::calibrations::SENSOR_NOT_CONNECTED.to_owned())],
+            Bound::Nameless(why) => return vec![of_side((*why).to_owned())],
+            Bound::To(wrist) => wrist,
+        };
+        let gravity =
+            self.gravity.as_ref().map_or_else(|| text::calibrations::GRAVITY_NONE.to_owned(), line_of_gravity);
+        let correspondence = self
+            .correspondence
+            .as_ref()
+            .map_or_else(|| text::calibrations::CORRESPONDENCE_NONE.to_owned(), line_of_correspondence);
+        let tip_force =
+            self.tip_force.as_ref().map_or_else(|| text::calibrations::TIP_FORCE_NONE.to_owned(), line_of_tip_force);
+        let bound_to = text::calibrations::bound_to(&wrist.serial_number, &wrist.tool);
+        let mut lines = vec![of_side(bound_to), gravity];
+        lines.extend(self.drift.as_ref().map(line_of_drift));
+        lines.extend([correspondence, tip_force]);
+        lines
+    }
+}
+
+/// What was loaded; a file that cannot be used is told.
+fn usable<R>(what: &str, loaded: Result<Option<R>, impl std::error::Error>, told: &mut Option<String>) -> Option<R> {
+    loaded.unwrap_or_else(|error| {
+        *told = Some(text::calibrations::not_in_force(what, &in_one_line(&error)));
+        None
+    })
+}
+
+/// Saves and takes into force; gives the path.
+fn kept<R: Record>(store: &Store, record: R, in_force: &mut Option<Loaded<R>>) -> Result<PathBuf, String> {
+    let path = store.save(&record).map_err(|error| in_one_line(&error))?;
+    *in_force = Some(Loaded { record, age: Age::Fresh, path: path.clone() });
+    Ok(path)
+}
+
+fn line_of_gravity(loaded: &Loaded<GravityRecord>) -> String {
+    let GravityRecord { residuals, poses, judgement, .. } = &loaded.record;
+    let (day, remarks) = (day(&loaded.record), remarks(loaded.age, judgement.override_by.as_deref()));
+    let error_n = residuals.held_out.mean_mae();
+    text::calibrations::gravity(day, *poses, error_n, &remarks)
+}
+
+fn line_of_drift((check, found_at): &(DriftCheck, String)) -> String {
+    let words = crate::words::drift(check.drift());
+    match check.drift() {
+        Drift::Fine { .. } | Drift::Moved { .. } => text::calibrations::bias_checked(found_at, &words),
+        Drift::Waiting | Drift::NotChecked(_) => text::calibrations::bias(&words),
+    }
+}
+
+fn line_of_correspondence(loaded: &Loaded<CorrespondenceRecord>) -> String {
+    let CorrespondenceRecord { agreement, pairs, uncertainty_deg, judgement, .. } = &loaded.record;
+    let (day, remarks) = (day(&loaded.record), remarks(loaded.age, judgement.override_by.as_deref()));
+    let error_n = agreement.residuals.held_out.mean_mae();
+    text::calibrations::correspondence(day, *pairs, error_n, *uncertainty_deg, &remarks)
+}
+
+fn line_of_tip_force(loaded: &Loaded<Model>) -> String {
+    let origin = &loaded.record.origin;
+    let Some(check) = &origin.check else { return text::calibrations::TIP_FORCE_UNCHECKED.to_owned() };
+    let error_n = check.mae_n.iter().sum::<f64>() / 3.0;
+    let remarks = remarks(loaded.age, check.judgement.override_by.as_deref());
+    text::calibrations::tip_force(day_of(&origin.date), origin.rows, error_n, &remarks)
+}
+
+fn day(record: &impl Record) -> &str {
+    day_of(&record.head().date)
+}
+
+fn day_of(date: &str) -> &str {
+    date.split('T').next().unwrap_or_default()
+}
+
+/// What to know of a record before it is trusted; empty when there is nothing.
+fn remarks(age: Age, override_by: Option<&str>) -> String {
+    let age = match age {
+        Age::Fresh => String::new(),
+        Age::Old { days } => text::calibrations::days_old(days),
+        Age::Future => text::calibrations::REMARK_FUTURE_DATE.to_owned(),
+    };
+    let overridden = override_by.map_or_else(String::new, text::calibrations::not_proven);
+    age + &overridden
+}
+
+fn in_one_line(error: &dyn std::error::Error) -> String {
+    let mut words = error.to_string();
+    let mut source = error.source();
+    while let Some(cause) = source {
+        words = format!("{words}: {cause}");
+        source = cause.source();
+    }
+    words
+}

@@ -1,0 +1,199 @@
+//! Whose calibrations are in force: the rig's sensors and tools decide, never the scene.
+
+use std::{
+    path::Path,
+    time::{Duration, Instant},
+};
+
+use nima_core::calibration::{RecordHead, gravity::GravityRecord};
+use nima_devices::{ForceReading, Lever, Slot, bota};
+use nima_machine::{
+    messages::ForceSource,
+    rig::{DeviceEvent, Inputs, Outputs, Rig, Roster, RosterEntry, Watch},
+};
+use nima_tests::gravity;
+use nima_world::{
+    Plan, Worlds,
+    emulators::{Serving, bota as emulated},
+    start_on,
+};
+
+use super::*;
+
+/// The simulated gravity calibration, as if it had been made with this sensor and tool.
+fn record(sensor: &str, tool: &str) -> GravityRecord {
+    static MADE: std::sync::OnceLock<GravityRecord> = std::sync::OnceLock::new();
+    let made = MADE.get_or_init(gravity::gravity).clone();
+    GravityRecord { head: RecordHead::new(sensor, tool, &made.head.date), ..made }
+}
+
+fn has_gravity(in_force: &mut InForce, rig: &RigConfig) -> [bool; SIDES] {
+    in_force.calibrations(rig).each_ref().map(|calibrations| calibrations.gravity.is_some())
+}
+
+#[test]
+fn a_simulated_calibration_is_not_in_force_on_a_rig_with_devices() {
+    let folder = tempfile::tempdir().unwrap();
+    let (simulated, real) = (RigConfig::load("simulated").unwrap(), RigConfig::load("paper").unwrap());
+    let scene = Scene::load("palpation").unwrap();
+    let wrist = simulated.simulated_wrist(Side::Right).unwrap();
+    Store::open(folder.path()).save(&record(&wrist.serial_number, &wrist.tool)).unwrap();
+    let mut at_home = InForce::load(Some(folder.path()), &simulated, &scene);
+    assert_eq!(has_gravity(&mut at_home, &simulated), [true, false]);
+    let mut in_force = InForce::load(Some(folder.path()), &real, &scene);
+    assert_eq!(has_gravity(&mut in_force, &real), [false; SIDES]);
+    assert!(in_force.is_waiting() && in_force.binding().sensor.is_empty());
+    let lines = in_force.lines();
+    assert!(lines.len() == 2 && lines[1].starts_with("Left: The wrist sensor is not connected"), "{lines:?}");
+}
+
+#[test]
+fn each_arm_has_the_calibration_of_its_own_sensor() {
+    let folder = tempfile::tempdir().unwrap();
+    let (rig, scene) = (RigConfig::load("simulated").unwrap(), Scene::load("palpation").unwrap().with_left_hand());
+    let store = Store::open(folder.path());
+    store.save(&record("SIM-S1-0001", "Simulated grasper")).unwrap();
+    let mut in_force = InForce::load(Some(folder.path()), &rig, &scene);
+    assert_eq!(has_gravity(&mut in_force, &rig), [true, false], "the right arm's is not the left one's");
+    assert_eq!(in_force.uncalibrated().map(|wrist| wrist.serial_number.as_str()), Some("SIM-S1-0002"));
+    assert_eq!(in_force.told(), [""; 0], "the sensor on the other arm is where it belongs");
+    let mut left = record("SIM-S1-0002", "Simulated grasper");
+    left.model.imu_sign = -left.model.imu_sign;
+    store.save(&left).unwrap();
+    in_force.bind(&rig, &scene);
+    let [right, left_one] = in_force.calibrations(&rig);
+    assert_eq!(left_one.gravity, Some(left.model));
+    assert_ne!(right.gravity, left_one.gravity);
+    in_force.choose(Side::Left);
+    assert_eq!(in_force.binding().sensor, "SIM-S1-0002");
+}
+
+#[test]
+fn a_simulated_rig_that_names_no_sensor_tells_what_to_write() {
+    let (mut rig, scene) = (RigConfig::load("simulated").unwrap(), Scene::load("palpation").unwrap());
+    rig.simulated = None;
+    let folder = tempfile::tempdir().unwrap();
+    let mut in_force = InForce::load(Some(folder.path()), &rig, &scene);
+    assert!(in_force.lines()[0].contains("[simulated]"), "{:?}", in_force.lines());
+    let refused = in_force.save(Saving::Gravity(Box::new(record("any", "any")))).unwrap_err();
+    assert!(refused.contains("serial number"), "{refused}");
+    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
+}
+
+/// The simulated world of one arm, whose force sensor comes and goes on a real line with the real driver.
+struct OneSensor {
+    worlds: Worlds,
+    slot: Slot<bota::Driver>,
+    watch: Watch,
+}
+
+impl Rig for OneSensor {
+    fn read(&mut self, now_s: f64) -> [Option<Inputs>; SIDES] {
+        self.slot.poll(now_s);
+        self.watch.look(now_s, 0, self.slot.health().standing, [false; SIDES]);
+        self.worlds.read(now_s)
+    }
+
+    fn write(&mut self, now_s: f64, outputs: &[Outputs; SIDES]) {
+        self.worlds.write(now_s, outputs);
+    }
+
+    fn event(&mut self) -> Option<DeviceEvent> {
+        self.watch.take()
+    }
+
+    fn levers(&self) -> Vec<Lever> {
+        Vec::new()
+    }
+}
+
+fn sensor(serial: &str, port: &std::path::Path) -> Serving {
+    let sensor = emulated::Emulated {
+        serial: serial.to_owned(),
+        baud: None,
+        link: Some(port.to_owned()),
+        ..emulated::Emulated::default()
+    };
+    sensor.serve_gen_a(Box::new(|_| ForceReading::default())).unwrap()
+}
+
+/// A loop on a rig with devices, and what the console makes of its sensor.
+struct Bench {
+    handle: Handle,
+    in_force: InForce,
+    rig: RigConfig,
+    source: Option<ForceSource>,
+}
+
+impl Bench {
+    fn new(store: &Path, port: &Path) -> Self {
+        let mut rig = RigConfig::load("paper").unwrap();
+        rig.devices.as_mut().unwrap().left = None;
+        // What is watched by default measures at the tip: that says nothing of a rig with devices.
+        let scene = Scene::load("peg_transfer").unwrap();
+        let settings = bota::Settings::new(bota::Transport::GenA, port.display().to_string());
+        let slot = Slot::start("sensor", move || bota::Driver::open(&settings)).unwrap();
+        let entry =
+            RosterEntry { force_sensor_of: Some(Side::Right), ..RosterEntry::new("right sensor", "", slot.view()) };
+        let worlds = Worlds::new(&Scene::load("palpation").unwrap(), rig.rate_hz);
+        let one = OneSensor { worlds, slot, watch: Watch::default() };
+        let in_force = InForce::load(Some(store), &rig, &scene);
+        let plan = Plan { rig: rig.clone(), scene, calibrations: Default::default(), engage: false };
+        let handle = start_on(&plan, Box::new(one), Roster::from([entry])).unwrap();
+        Self { handle, in_force, rig, source: None }
+    }
+
+    fn until(&mut self, what: &str, good: impl Fn(&Self) -> bool) {
+        let began = Instant::now();
+        while !good(self) {
+            assert!(began.elapsed() < Duration::from_secs(30), "never: {what}; {:?}", self.in_force.lines());
+            std::thread::sleep(Duration::from_millis(2));
+            self.handle.drain_ticks(|tick| self.source = Some(tick.force.source));
+            self.in_force.meet(&self.handle, &self.rig);
+        }
+    }
+
+    fn is_bound_to(&self, sensor: &str) -> bool {
+        self.in_force.binding().sensor == sensor
+    }
+}
+
+#[test]
+fn a_calibration_comes_into_force_with_its_sensor_and_leaves_with_it() {
+    let (folder, store) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
+    let port = folder.path().join("ttyACM-sensor");
+    let mut bench = Bench::new(store.path(), &port);
+    assert!(bench.in_force.is_waiting());
+    // A rig with devices can be calibrated whatever the scene measures.
+    let first = sensor("4242", &port);
+    bench.until("the sensor is known", |bench| bench.is_bound_to("SN004242"));
+    assert_eq!(bench.in_force.binding().tool, "Right grasper");
+    bench.until("a first tick", |bench| bench.source == Some(ForceSource::Uncalibrated));
+    bench.in_force.save(Saving::Gravity(Box::new(record("SN004242", "Right grasper")))).unwrap();
+    drop(bench);
+    let mut bench = Bench::new(store.path(), &port);
+    bench.until("the calibration is in force", |bench| bench.source == Some(ForceSource::Wrist));
+    assert_eq!(bench.in_force.uncalibrated(), None);
+    // Another sensor in the same place.
+    drop(first);
+    bench.until("it is out of force", |bench| bench.source == Some(ForceSource::Uncalibrated));
+    let second = sensor("4243", &port);
+    bench.until("the other one is known", |bench| bench.is_bound_to("SN004243"));
+    let told = bench.in_force.told();
+    assert!(told[0].contains("SN004243") && told[0].contains("SN004242 has one: connect that sensor"), "{told:?}");
+    std::thread::sleep(Duration::from_millis(50));
+    bench.handle.drain_ticks(|tick| bench.source = Some(tick.force.source));
+    assert_eq!(bench.source, Some(ForceSource::Uncalibrated), "the calibration of another sensor");
+    // And the first one again.
+    drop(second);
+    let _again = sensor("4242", &port);
+    bench.until("it is in force again", |bench| bench.source == Some(ForceSource::Wrist));
+    // Another tool on it.
+    drop(bench);
+    let mut bench = Bench::new(store.path(), &port);
+    bench.rig.devices.as_mut().unwrap().right.as_mut().unwrap().tool = "Scissors".to_owned();
+    bench.until("the tool is refused", |bench| {
+        bench.in_force.told().iter().any(|told| told.contains("not \"Scissors\""))
+    });
+    assert_eq!(bench.in_force.calibrations(&bench.rig)[0].gravity, None);
+}

@@ -1,0 +1,181 @@
+//! What all wizards share: steps, the ways back, on and over, and the last step, which saves.
+
+use egui::{Button, RichText, TextEdit, Ui, vec2};
+use nima_core::calibration::Judgement;
+use nima_machine::{messages::Tick, rig::Prompt};
+
+use super::{Binding, Saving};
+use crate::console::{
+    text, theme,
+    widgets::{card, figure, small, weak},
+};
+
+/// One step of a wizard.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Step {
+    pub(super) name: &'static str,
+    pub(super) meaning: &'static str,
+}
+
+/// Where the technician wants to go.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Wish {
+    GoTo(usize),
+    StartOver,
+}
+
+/// Where a wizard is, and what was entered and told in its last step.
+#[derive(Debug, Default)]
+pub(super) struct Frame {
+    pub(super) step: usize,
+    /// Who saves in spite of the verdict.
+    name: String,
+    /// And why.
+    why: String,
+    /// What became of the record that was handed out for saving.
+    pub(super) saved: Option<String>,
+}
+
+impl Frame {
+    /// Writes the name and the reason that were entered into what is saved.
+    pub(super) fn override_in(&self, judgement: &mut Judgement) {
+        judgement.override_by(&self.name, Some(&self.why));
+    }
+}
+
+/// A wizard around a session. It draws its own steps; the last one, saving, is the same for all.
+pub(super) trait Wizard {
+    /// Its steps; the last one saves.
+    fn steps(&self) -> &'static [Step];
+    fn frame(&self) -> &Frame;
+    fn frame_mut(&mut self) -> &mut Frame;
+
+    /// Takes in one tick of a loop of this rate (Hz).
+    fn tick(&mut self, tick: &Tick, rate_hz: f64);
+    /// What the person at the arm is to do now.
+    fn prompt(&self) -> Prompt;
+    /// Whether the step after this one may begin, or why not.
+    fn may_go_on(&self, binding: &Binding) -> Result<(), &'static str>;
+    /// Draws a step before the last.
+    fn step_ui(&mut self, ui: &mut Ui, binding: &Binding) -> Option<Wish>;
+    /// What proves the result, in words; nothing where only a person's name can.
+    fn proof(&self) -> Option<String>;
+    /// What shall be saved, if there is anything.
+    fn made(&self, binding: &Binding) -> Option<Saving>;
+    /// Forgets what was taken, not how the rig is built.
+    fn start_over(&mut self);
+
+    /// Before anything is drawn.
+    fn refresh(&mut self, _binding: &Binding) {}
+    /// What is shown in every step, below the row of steps.
+    fn notice(&self) -> Option<&str> {
+        None
+    }
+    /// Above the last step; false where there is nothing to save yet.
+    fn before_saving(&self, _ui: &mut Ui) -> bool {
+        true
+    }
+    fn go_to(&mut self, step: usize) {
+        self.frame_mut().step = step;
+    }
+}
+
+/// A wizard on the screen; gives what shall be saved.
+pub(super) fn wizard_ui(wizard: &mut dyn Wizard, ui: &mut Ui, binding: &Binding) -> Option<Saving> {
+    wizard.refresh(binding);
+    let (steps, now) = (wizard.steps(), wizard.frame().step);
+    let mut wish = steps_ui(ui, steps, now, wizard.may_go_on(binding));
+    ui.add_space(theme::GAP);
+    if let Some(notice) = wizard.notice() {
+        ui.label(notice);
+        ui.add_space(theme::GAP);
+    }
+    let mut saving = None;
+    if now + 1 < steps.len() {
+        wish = wizard.step_ui(ui, binding).or(wish);
+    } else if wizard.before_saving(ui) {
+        let proof = wizard.proof();
+        let wanted = save_card(ui, binding, proof.as_deref(), wizard.frame_mut());
+        saving = wanted.then(|| wizard.made(binding)).flatten();
+    }
+    match wish {
+        Some(Wish::GoTo(step)) => wizard.go_to(step),
+        Some(Wish::StartOver) => wizard.start_over(),
+        None => {}
+    }
+    saving
+}
+
+/// The row of steps with the ways back, on and over. Nothing good is lost by going back.
+fn steps_ui(ui: &mut Ui, steps: &[Step], now: usize, may_go_on: Result<(), &'static str>) -> Option<Wish> {
+    let mut wish = None;
+    ui.horizontal_wrapped(|ui| {
+        for (i, step) in steps.iter().enumerate() {
+            let (font, colour) = if i == now {
+                (theme::strong(15.0), theme::now().text)
+            } else {
+                (theme::regular(14.0), theme::now().text_weak)
+            };
+            let mark = if i < now { text::wizards::DONE } else { "" };
+            let words = format!("{}. {} {mark}", i + 1, step.name);
+            ui.label(RichText::new(words.trim_end()).font(font).color(colour)).on_hover_text(step.meaning);
+            ui.add_space(10.0);
+        }
+    });
+    ui.label(small(steps[now].meaning));
+    ui.horizontal(|ui| {
+        let size = vec2(96.0, 34.0);
+        if ui.add_enabled(now > 0, Button::new(text::wizards::BACK).min_size(size)).clicked() {
+            wish = Some(Wish::GoTo(now - 1));
+        }
+        let last = now + 1 == steps.len();
+        let next = ui.add_enabled(!last && may_go_on.is_ok(), Button::new(text::wizards::NEXT).min_size(size));
+        if next.clicked() {
+            wish = Some(Wish::GoTo(now + 1));
+        }
+        if let (Err(reason), false) = (may_go_on, last) {
+            next.on_disabled_hover_text(reason);
+            ui.label(small(reason));
+        }
+        ui.add_space(24.0);
+        if ui.button(text::wizards::START_OVER).on_hover_text(text::wizards::START_OVER_HOVER).clicked() {
+            wish = Some(Wish::StartOver);
+        }
+    });
+    wish
+}
+
+/// The last step of every wizard: what it will be bound to, and the button; true when it shall be saved. Without `proof` it takes
+/// a name and a reason.
+fn save_card(ui: &mut Ui, binding: &Binding, proof: Option<&str>, frame: &mut Frame) -> bool {
+    card(ui, text::wizards::STEP_SAVE, text::wizards::SAVE_HOVER, |ui| {
+        figure(ui, text::wizards::SENSOR, &binding.sensor, text::wizards::SENSOR_HOVER);
+        figure(ui, text::wizards::TOOL, &binding.tool, text::wizards::TOOL_HOVER);
+        let wanted = if let Some(proof) = proof {
+            ui.label(proof);
+            ui.add(Button::new(text::wizards::SAVE_AND_USE).min_size(vec2(180.0, 36.0))).clicked()
+        } else {
+            ui.label(weak(text::wizards::NOT_PROVEN));
+            override_ui(ui, [&mut frame.name, &mut frame.why])
+        };
+        if let Some(saved) = &frame.saved {
+            ui.label(saved);
+        }
+        wanted
+    })
+}
+
+/// Name and reason of whoever overrides a verdict; true when both are there and it shall be done.
+fn override_ui(ui: &mut Ui, by: [&mut String; 2]) -> bool {
+    let mut named = true;
+    for (label, text) in [text::wizards::YOUR_NAME, text::wizards::REASON].into_iter().zip(by) {
+        ui.horizontal(|ui| {
+            let label = ui.label(label);
+            ui.add(TextEdit::singleline(text).desired_width(280.0).char_limit(120)).labelled_by(label.id);
+        });
+        named &= !text.trim().is_empty();
+    }
+    ui.add_enabled(named, Button::new(text::wizards::SAVE_ANYWAY).min_size(vec2(220.0, 36.0)))
+        .on_disabled_hover_text(text::wizards::SAVE_ANYWAY_DISABLED_HOVER)
+        .clicked()
+}

@@ -1,0 +1,94 @@
+//! Refused commands: why, and what the operator can do.
+
+use nima_machine::messages::{LoopState, Refusal};
+
+use super::Remedy as _;
+
+/// What stands against it, a clause without a full stop.
+pub(crate) fn refused_because(why: Refusal) -> String {
+    match why {
+        Refusal::State(state) => in_state(state).to_owned(),
+        Refusal::StillPresent(fault) => format!("the cause of a fault is still present: {}", lower(fault.cause())),
+        Refusal::ForceUnknown => "the force at the tip is not known".to_owned(),
+        Refusal::Implausible(what) => format!("a measurement is not plausible: {}", lower(what.cause())),
+        Refusal::Obstacle(obstacle) => format!("the arm cannot start from where it is: {obstacle}"),
+        Refusal::EndoscopeUnseen => "the tracker does not see the endoscope".to_owned(),
+        Refusal::DrivesOff => "the drives did not obey in time".to_owned(),
+        Refusal::Moving => "the arm was not at rest".to_owned(),
+        Refusal::HandAbsent => "nobody holds the handle".to_owned(),
+        Refusal::ClutchPressed => "the clutch is pressed".to_owned(),
+        Refusal::OutOfRange => "the value is outside its range".to_owned(),
+        Refusal::NoSuchArm => "this rig has no arm on that side".to_owned(),
+    }
+}
+
+/// What the operator can do, a clause without a full stop.
+pub(crate) const fn cure_of_refusal(why: Refusal) -> &'static str {
+    match why {
+        Refusal::State(LoopState::Stopped) => "release the stop first",
+        Refusal::State(LoopState::Faulted(_)) => "remove its cause, then release the stop",
+        Refusal::State(LoopState::Disconnected) => "see the devices for what is missing and why",
+        Refusal::State(_) => "see the state of the loop",
+        Refusal::StillPresent(_) => "remove the cause first",
+        Refusal::ForceUnknown => "calibrate gravity for this sensor and tool",
+        Refusal::Implausible(_) => "see the sensor and its cable",
+        Refusal::Obstacle(_) => "move the arm, then engage again",
+        Refusal::EndoscopeUnseen => "clear the tracker's view of the endoscope and of the arm, then engage again",
+        Refusal::DrivesOff => "look at the arm's and the handle's own lamps and buttons, then engage again",
+        Refusal::Moving => "let the arm come to rest, then engage again",
+        Refusal::HandAbsent => "hold the handle, then engage again",
+        Refusal::ClutchPressed => "release the clutch, then engage again",
+        Refusal::OutOfRange => "choose a value within the range",
+        Refusal::NoSuchArm => "choose another arm",
+    }
+}
+
+const fn in_state(state: LoopState) -> &'static str {
+    match state {
+        LoopState::Disconnected => "a device is missing",
+        LoopState::Idle => "nothing is engaged or stopped",
+        LoopState::Ready => "an engagement has already begun",
+        LoopState::Engaged | LoopState::Clutched => "it is already engaged",
+        LoopState::Stopped => "the stop is latched",
+        LoopState::Faulted(_) => "a fault is latched",
+    }
+}
+
+/// The same words with a small first letter, to go on in a sentence.
+fn lower(words: &str) -> String {
+    let mut letters = words.chars();
+    letters.next().map_or_else(String::new, |first| first.to_lowercase().chain(letters).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use nima_machine::messages::Fault;
+
+    use super::*;
+
+    #[test]
+    fn no_two_refusals_say_the_same() {
+        let fault = Fault::SourceSilent;
+        let all = [
+            Refusal::State(LoopState::Stopped),
+            Refusal::State(LoopState::Faulted(fault)),
+            Refusal::State(LoopState::Disconnected),
+            Refusal::State(LoopState::Engaged),
+            Refusal::StillPresent(fault),
+            Refusal::ForceUnknown,
+            Refusal::Obstacle(nima_machine::rig::Obstacle::NotFinite { joint: 3 }),
+            Refusal::EndoscopeUnseen,
+            Refusal::DrivesOff,
+            Refusal::Moving,
+            Refusal::HandAbsent,
+            Refusal::ClutchPressed,
+            Refusal::OutOfRange,
+            Refusal::NoSuchArm,
+        ];
+        let mut told: Vec<_> = all.iter().map(|why| (refused_because(*why), cure_of_refusal(*why))).collect();
+        told.sort();
+        told.dedup();
+        assert_eq!(told.len(), all.len(), "{told:?}");
+        assert!(told.iter().all(|(cause, cure)| !cause.ends_with('.') && !cure.ends_with('.')), "{told:?}");
+    }
+}

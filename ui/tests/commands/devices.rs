@@ -1,0 +1,42 @@
+//! `nima devices`, as a user would type it.
+use std::process::{Command, Output};
+
+use serde_json::Value;
+
+fn nima(arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_nima")).arg("devices").args(arguments).output().unwrap()
+}
+
+fn text(arguments: &[&str]) -> String {
+    let output = nima(arguments);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    String::from_utf8(output.stdout).unwrap()
+}
+
+#[test]
+fn a_port_that_is_not_there_and_a_port_where_nobody_listens_are_told_with_their_cures() {
+    let told = text(&["--probe", "serial=/dev/no-such-port@460800", "--probe", "tcp=127.0.0.1:1"]);
+    for words in ["Plugged in", "/dev/no-such-port is not there", "Plug it in", "nobody listens at 127.0.0.1:1"] {
+        assert!(told.contains(words), "\"{words}\" is not in:\n{told}");
+    }
+    let json: Value = serde_json::from_str(&text(&["--json", "--probe", "serial=/dev/no-such-port@460800"])).unwrap();
+    let device = &json["devices"][0];
+    assert_eq!(device["name"], "serial=/dev/no-such-port@460800");
+    assert_eq!((&device["state"], &device["trouble"]), (&"trouble".into(), &"absent".into()));
+    assert!(device["cure"].is_string() && device["took_s"].is_f64() && json["plugged"]["serial"].is_array(), "{json}");
+}
+
+#[test]
+fn the_rules_and_the_command_that_installs_them_are_printed() {
+    assert!(text(&["--udev-rules"]).contains("1451"));
+    let command = text(&["--udev"]);
+    assert_eq!(command.lines().count(), 1, "{command}");
+    assert!(command.contains("devices --udev-rules | sudo tee /etc/udev/rules.d/70-nima.rules"), "{command}");
+}
+
+#[test]
+fn an_unknown_kind_names_the_known_ones_in_one_line() {
+    let output = nima(&["--probe", "thing"]);
+    let told = String::from_utf8(output.stderr).unwrap();
+    assert!(!output.status.success() && told.lines().count() == 1 && told.contains("serial=PORT@BAUD"), "{told}");
+}

@@ -1,0 +1,149 @@
+//! The pages for users and contributors against the program: links lead somewhere, commands and flags exist, files that are named are there, and
+//! the glossary has every gate, mode and state.
+
+use std::{
+    collections::HashMap,
+    path::{Path, PathBuf},
+    process::Command,
+};
+
+use nima_core::{impedance::Mode, safety::Gate};
+use nima_machine::messages::{Fault, LoopState};
+
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap().to_path_buf()
+}
+
+/// Path and text of every page.
+fn pages() -> Vec<(PathBuf, String)> {
+    let mut paths: Vec<PathBuf> = ["README.md", "CONTRIBUTING.md"].map(|name| root().join(name)).to_vec();
+    let docs = std::fs::read_dir(root().join("docs")).unwrap().map(|entry| entry.unwrap().path());
+    paths.extend(docs.filter(|path| path.extension().is_some_and(|extension| extension == "md")));
+    paths.sort();
+    paths.into_iter().map(|path| (path.clone(), std::fs::read_to_string(path).unwrap())).collect()
+}
+
+/// The anchor that a heading gets.
+fn anchor(heading: &str) -> String {
+    let kept = heading.trim_start_matches('#').trim().chars().filter(|c| c.is_alphanumeric() || " -_".contains(*c));
+    kept.collect::<String>().to_lowercase().replace(' ', "-")
+}
+
+/// The parts between `open` and `close` on one line.
+fn between<'a>(text: &'a str, open: &str, close: char) -> Vec<&'a str> {
+    text.split(open).skip(1).filter_map(|rest| rest.split_once(close)).map(|(inside, _)| inside).collect()
+}
+
+#[test]
+fn every_link_leads_to_a_file_and_a_heading() {
+    let mut wrong = Vec::new();
+    for (page, text) in pages() {
+        for link in between(&text, "](", ')').into_iter().filter(|link| !link.contains("://")) {
+            let (file, heading) = link.split_once('#').unwrap_or((link, ""));
+            let target = if file.is_empty() { page.clone() } else { page.parent().unwrap().join(file) };
+            let found = target.exists()
+                && (heading.is_empty()
+                    || std::fs::read_to_string(&target)
+                        .unwrap()
+                        .lines()
+                        .any(|line| line.starts_with('#') && anchor(line) == heading));
+            if !found {
+                wrong.push(format!("{}: {link}", page.display()));
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "links to nowhere:\n{}", wrong.join("\n"));
+}
+
+/// Commands in the pages: lines of code blocks and pieces of code in a sentence that begin with `nima`.
+fn commands(text: &str) -> Vec<String> {
+    let plain = text.replace("\\\n", " ");
+    let lines = plain.lines().map(|line| line.split(" #").next().unwrap_or_default().trim());
+    let blocks = lines.filter(|line| line.starts_with("nima ")).map(str::to_owned);
+    let inline = plain.split('`').skip(1).step_by(2).filter(|code| code.starts_with("nima ")).map(str::to_owned);
+    blocks.chain(inline).collect()
+}
+
+#[test]
+fn every_command_and_flag_in_the_pages_exists() {
+    let mut helps: HashMap<Vec<String>, Option<String>> = HashMap::new();
+    let mut help = |words: &[String]| {
+        let run = || {
+            let output = Command::new(env!("CARGO_BIN_EXE_nima")).args(words).arg("--help").output().unwrap();
+            output.status.success().then(|| String::from_utf8(output.stdout).unwrap())
+        };
+        helps.entry(words.to_vec()).or_insert_with(run).clone()
+    };
+    let (mut wrong, mut seen) = (Vec::new(), 0);
+    for (page, text) in pages() {
+        for command in commands(&text) {
+            let words: Vec<String> = command.split_whitespace().skip(1).map(str::to_owned).collect();
+            // Some commands have a second word of their own: `nima study faults`.
+            let depth = if ["study", "train", "evaluate", "calibrate"].contains(&words[0].as_str()) { 2 } else { 1 };
+            let named: Vec<String> =
+                words.iter().take(depth).take_while(|word| !word.starts_with('-')).cloned().collect();
+            if named.iter().any(|word| word.chars().any(char::is_uppercase)) {
+                continue;
+            }
+            seen += 1;
+            let Some(known) = help(&named) else {
+                wrong.push(format!("{}: no command `{command}`", page.display()));
+                continue;
+            };
+            for word in words {
+                let flag: String =
+                    word.trim_start_matches('[').chars().take_while(|c| c.is_alphanumeric() || *c == '-').collect();
+                if flag.starts_with("--")
+                    && flag != "--help"
+                    && !known.contains(&format!("{flag} "))
+                    && !known.contains(&format!("{flag}\n"))
+                {
+                    wrong.push(format!("{}: `{command}` has no {flag}", page.display()));
+                }
+            }
+        }
+    }
+    assert!(seen > 40, "only {seen} commands were found in the pages");
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+#[test]
+fn every_file_that_the_pages_name_is_there() {
+    let mut wrong = Vec::new();
+    for (page, text) in pages() {
+        let pieces: Vec<&str> = text.split('`').collect();
+        for (before, code) in pieces.iter().zip(&pieces[1..]).step_by(2) {
+            let ours = ["src/", "ui/", "tests/", "benches/", "config/", "assets/", "docs/"]
+                .iter()
+                .any(|top| code.starts_with(top));
+            // A recipe names what is to be written, and places for names are in capitals or starred.
+            let example = ["Write ", "folder ", "add ", "Add "].iter().any(|verb| before.ends_with(verb))
+                || code.contains(['*', '<', ' '])
+                || code.contains("NAME");
+            if ours && !example && !root().join(code).exists() {
+                wrong.push(format!("{}: {code}", page.display()));
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "named and not there:\n{}", wrong.join("\n"));
+}
+
+#[test]
+fn the_glossary_has_every_gate_mode_and_state() {
+    let glossary = std::fs::read_to_string(root().join("docs/glossary.md")).unwrap();
+    let states = [
+        LoopState::Disconnected,
+        LoopState::Idle,
+        LoopState::Ready,
+        LoopState::Engaged,
+        LoopState::Clutched,
+        LoopState::Stopped,
+        LoopState::Faulted(Fault::OtherArm),
+    ];
+    let gates = Gate::ALL.into_iter().map(|gate| format!("| `{}` |", gate.name()));
+    let modes = Mode::ALL.into_iter().map(|mode| format!("| `{}` |", mode.name()));
+    let states = states.into_iter().map(|state| format!("| {} |", state.word()));
+    let missing: Vec<String> =
+        gates.chain(modes).chain(states).filter(|row| !glossary.contains(row.as_str())).collect();
+    assert!(missing.is_empty(), "not in docs/glossary.md: {missing:?}");
+}

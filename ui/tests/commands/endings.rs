@@ -1,0 +1,363 @@
+//! How commands end: exit code, figures and words, whatever ends them.
+#![cfg(target_os = "linux")]
+use std::{
+    fs,
+    io::{BufRead as _, BufReader, Read as _},
+    path::{Path, PathBuf},
+    process::{Child, Command, Output, Stdio},
+    thread::sleep,
+    time::{Duration, Instant},
+};
+
+use nima_console::leaving::Leave;
+use nima_core::impedance::Mode;
+use nima_machine::{
+    config::RigConfig,
+    rig::{Settings, Side},
+};
+use nima_testing::real_time;
+use nima_tests::emulated;
+use nima_world::{Plan, emulated::Truth, emulators::force_dimension::Mode as Motors, scene::Scene, start};
+use serde_json::Value;
+
+const TIMEOUT: Duration = Duration::from_mins(1);
+/// A run on a busy machine may be held up, which is a fault of its own: then another one is tried.
+const ATTEMPTS: usize = 5;
+
+fn nima(arguments: &[&str]) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_nima"));
+    command
+        .args(arguments)
+        .env_remove("DISPLAY")
+        .env_remove("WAYLAND_DISPLAY")
+        // No calibrations of whoever runs the tests.
+        .env("NIMA_DATA_DIR", "no/such/folder")
+        .stdin(Stdio::null())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped());
+    command
+}
+
+/// A process that ends with the test.
+struct Running(Child);
+
+impl Running {
+    fn signal(&self, name: &str) {
+        assert!(Command::new("kill").args([name, &self.0.id().to_string()]).status().unwrap().success());
+    }
+
+    fn ended(&mut self) -> std::process::ExitStatus {
+        let began = Instant::now();
+        loop {
+            if let Some(status) = self.0.try_wait().unwrap() {
+                return status;
+            }
+            assert!(began.elapsed() < TIMEOUT, "it does not end");
+            sleep(Duration::from_millis(5));
+        }
+    }
+}
+
+impl Drop for Running {
+    fn drop(&mut self) {
+        self.0.kill().ok();
+        self.0.wait().ok();
+    }
+}
+
+fn until(what: &str, good: impl Fn() -> bool) {
+    let began = Instant::now();
+    while !good() {
+        assert!(began.elapsed() < TIMEOUT, "never: {what}");
+        sleep(Duration::from_millis(5));
+    }
+}
+
+/// The process has a handler for this signal.
+fn catches(pid: u32, signal: u32) -> bool {
+    let status = fs::read_to_string(format!("/proc/{pid}/status")).unwrap_or_default();
+    let caught = status.lines().find_map(|line| line.strip_prefix("SigCgt:"));
+    caught.is_some_and(|mask| u64::from_str_radix(mask.trim(), 16).unwrap() >> (signal - 1) & 1 == 1)
+}
+
+/// The embedded emulated rig as one of real devices, none of which is there.
+fn absent_rig(folder: &Path) -> PathBuf {
+    let text = include_str!("../../../config/rigs/emulated.toml")
+        .replace("emulated = true", "emulated = false")
+        .replace("emulator = \"127.0.0.1:47130\"\n", "")
+        .replace("emulator = \"127.0.0.1:47131\"\n", "")
+        .replace("= 471", "= 529")
+        .replace(":471", ":529")
+        .replace("/tmp/nima-emulated", &folder.display().to_string());
+    let path = folder.join("absent.toml");
+    fs::write(&path, text).unwrap();
+    path
+}
+
+#[test]
+fn the_figures_tell_how_each_arm_ended() {
+    let output = nima(&["run", "--virtual", "--seconds", "1", "--scene", "bimanual", "--json"]).output().unwrap();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let summary: Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!((&summary["final_state"], &summary["fault"]), (&"engaged".into(), &Value::Null));
+    for (arm, side) in [(0, "right"), (1, "left")] {
+        let arm = &summary["arms"][arm];
+        assert_eq!((&arm["side"], &arm["final_state"]), (&side.into(), &"engaged".into()), "{arm}");
+        assert!(arm.as_object().unwrap().contains_key("fault"));
+    }
+}
+
+#[test]
+fn a_run_whose_devices_never_came_fails_and_says_why_all_the_time() {
+    let folder = tempfile::tempdir().unwrap();
+    let rig = absent_rig(folder.path());
+    let run = |more: &[&str]| {
+        let output = nima(&["run", "--seconds", "4", "--rig", rig.to_str().unwrap()]).args(more).output().unwrap();
+        assert_eq!(output.status.code(), Some(1));
+        let told = String::from_utf8(output.stderr).unwrap();
+        let last = told.lines().last().unwrap().to_owned();
+        assert!(last.starts_with("nima: the right arm ended without a device: right handle: "), "{told}");
+        (String::from_utf8(output.stdout).unwrap(), told)
+    };
+    let (figures, told) = run(&[]);
+    let status: Vec<_> = told.lines().filter(|line| line.contains("No device")).collect();
+    assert!(status.len() >= 2 && status[1..].iter().all(|line| line.contains("No device: right ")), "{told}");
+    assert!(figures.contains("right arm ended: No device") && figures.contains("never connected"), "{figures}");
+    let (json, _) = run(&["--json"]);
+    let summary: Value = serde_json::from_str(&json).unwrap();
+    assert_eq!(summary["final_state"], "disconnected");
+    let arm = summary["devices"].as_array().unwrap().iter().find(|device| device["name"] == "right arm").unwrap();
+    assert_eq!(arm["trouble"]["cause"], "nobody listens at 127.0.0.1:52900", "{arm}");
+    assert!(arm["trouble"]["cure"].is_string() && arm["outages"] == 0, "{arm}");
+}
+
+#[test]
+fn a_closed_stderr_is_no_reason_to_panic() {
+    let folder = tempfile::tempdir().unwrap();
+    let rig = absent_rig(folder.path());
+    let cases: [&[&str]; 6] = [
+        &["fly"],
+        &["run", "--rig", "no/such/rig"],
+        &["run", "--seconds", "1"],
+        &["run", "--seconds", "2", "--rig", rig.to_str().unwrap()],
+        &["emulate", "no-such-device"],
+        &["console"],
+    ];
+    for arguments in cases {
+        let (reader, writer) = std::io::pipe().unwrap();
+        drop(reader);
+        let status = nima(arguments).stdout(Stdio::null()).stderr(writer).status().unwrap();
+        assert!(status.code().is_some_and(|code| code != 101), "{arguments:?}: {status}");
+    }
+}
+
+/// Ends a run by this signal once its arm is engaged; `None`: it was held up.
+fn ended_by(signal: &str) -> Option<Output> {
+    let mut run = Running(nima(&["run", "--scene", "free_motion"]).spawn().unwrap());
+    let mut told = BufReader::new(run.0.stderr.take().unwrap());
+    let mut line = String::new();
+    while !line.contains("Engaged") {
+        line.clear();
+        assert!(told.read_line(&mut line).unwrap() > 0, "it ended before it was engaged");
+        if line.contains("Fault") {
+            return None;
+        }
+    }
+    run.signal(signal);
+    let status = run.ended();
+    let (mut stdout, mut stderr) = (Vec::new(), Vec::new());
+    run.0.stdout.take().unwrap().read_to_end(&mut stdout).unwrap();
+    told.read_to_end(&mut stderr).unwrap();
+    Some(Output { status, stdout, stderr })
+        .filter(|output| !String::from_utf8_lossy(&output.stdout).contains("held up"))
+}
+
+#[test]
+fn whatever_signal_ends_a_run_its_figures_are_printed() {
+    for signal in ["-TERM", "-HUP", "-INT"] {
+        let Some(output) = (0..ATTEMPTS).find_map(|_| ended_by(signal)) else {
+            println!("too busy to judge");
+            return;
+        };
+        let (figures, told) = (String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr));
+        assert!(output.status.success(), "{signal}: {} {told}", output.status);
+        assert!(figures.contains("right arm ended: Engaged") && figures.contains("work us"), "{signal}: {figures}");
+        assert!(told.contains("nima: ended as asked: force and drives are off"), "{signal}: {told}");
+    }
+}
+
+#[test]
+fn a_run_on_the_virtual_clock_ends_with_its_figures_too() {
+    let mut run = Running(nima(&["run", "--virtual", "--seconds", "1e7", "--json"]).spawn().unwrap());
+    until("it catches SIGTERM", || catches(run.0.id(), 15));
+    sleep(Duration::from_millis(300));
+    run.signal("-TERM");
+    assert!(run.ended().success());
+    let summary: Value = serde_json::from_reader(run.0.stdout.take().unwrap()).unwrap();
+    assert_eq!(summary["final_state"], "engaged");
+}
+
+#[test]
+fn emulators_say_that_their_input_has_ended_and_serve_on_without_one() {
+    let served = |run: &mut Running| {
+        let mut line = String::new();
+        BufReader::new(run.0.stdout.take().unwrap()).read_line(&mut line).unwrap();
+        assert!(line.contains("endpoint"), "{line}");
+    };
+    let mut piped = Running(nima(&["emulate", "ndi"]).stdin(Stdio::piped()).spawn().unwrap());
+    served(&mut piped);
+    drop(piped.0.stdin.take());
+    assert!(piped.ended().success());
+    let mut told = String::new();
+    piped.0.stderr.take().unwrap().read_to_string(&mut told).unwrap();
+    assert!(told.contains("standard input has ended"), "{told}");
+    let mut alone = Running(nima(&["emulate", "ndi"]).spawn().unwrap());
+    served(&mut alone);
+    sleep(Duration::from_millis(500));
+    assert!(alone.0.try_wait().unwrap().is_none(), "it serves without an input");
+    alone.signal("-TERM");
+    assert!(alone.ended().success());
+}
+
+/// Processes that this one started.
+fn children(pid: u32) -> Vec<u32> {
+    let told = fs::read_to_string(format!("/proc/{pid}/task/{pid}/children")).unwrap_or_default();
+    told.split_whitespace().filter_map(|pid| pid.parse().ok()).collect()
+}
+
+fn is_alive(pid: u32) -> bool {
+    let stat = fs::read_to_string(format!("/proc/{pid}/stat")).unwrap_or_default();
+    stat.rsplit_once(") ").is_some_and(|(_, rest)| !rest.starts_with('Z'))
+}
+
+#[test]
+fn a_timing_study_that_is_killed_leaves_no_loop_behind() {
+    let mut study = Running(nima(&["study", "timing", "--seconds", "50"]).spawn().unwrap());
+    let pid = study.0.id();
+    until("a loop of its own", || children(pid).first().is_some_and(|child| catches(*child, 15)));
+    let child = children(pid)[0];
+    study.0.kill().unwrap();
+    study.ended();
+    let killed = Instant::now();
+    until("its loop ends", || !is_alive(child));
+    assert!(killed.elapsed() < Duration::from_secs(30), "it ran to its own end");
+}
+
+/// Programs that do nothing, so that the start script can be tried without a build and without a package.
+fn stand_in(path: &Path, text: &str) {
+    use std::os::unix::fs::PermissionsExt as _;
+    fs::write(path, format!("#!/bin/sh\n{text}\n")).unwrap();
+    fs::set_permissions(path, fs::Permissions::from_mode(0o755)).unwrap();
+}
+
+#[test]
+fn options_without_a_subcommand_reach_the_console_or_the_run_that_stands_for_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let (bin, release) = (folder.path().join("bin"), folder.path().join("target/release"));
+    fs::create_dir_all(&bin).unwrap();
+    fs::create_dir_all(&release).unwrap();
+    for (name, text) in [("cargo", ""), ("dpkg-query", "echo installed"), ("apt-get", "exit 1"), ("sudo", "exit 1")] {
+        stand_in(&bin.join(name), text);
+    }
+    stand_in(&release.join("nima"), "echo nima \"$@\"");
+    let dev = |display: &str, arguments: &[&str]| {
+        let output = Command::new(Path::new(env!("CARGO_MANIFEST_DIR")).join("../dev"))
+            .arg("run")
+            .args(arguments)
+            .env("PATH", format!("{}:{}", bin.display(), std::env::var("PATH").unwrap()))
+            .env("CARGO_TARGET_DIR", folder.path().join("target"))
+            .env_remove("WAYLAND_DISPLAY")
+            .env("DISPLAY", display)
+            .output()
+            .unwrap();
+        String::from_utf8(output.stdout).unwrap().trim().to_owned()
+    };
+    assert_eq!(dev("", &["--seconds", "5"]), "nima run --seconds 5");
+    assert_eq!(dev(":7", &["--seconds", "5"]), "nima console --seconds 5");
+    assert_eq!(dev("", &["--rig", "emulated"]), "nima run --rig emulated");
+    assert_eq!(dev("", &["console", "--rig", "emulated"]), "nima run --rig emulated");
+    assert_eq!(dev("", &["devices", "--json"]), "nima devices --json");
+    assert_eq!(dev("", &["--help"]), "nima --help");
+    assert_eq!(dev("", &[]), "nima run");
+}
+
+const DEVICES: &str = "NIMA_TEST_DEVICES";
+const SUMMARY: &str = "NIMA_TEST_SUMMARY";
+
+/// The process that the test below asks to end; it starts it.
+#[test]
+#[ignore = "run by the other test, which ends it"]
+fn the_loop_of_another_process() {
+    let Ok(devices) = std::env::var(DEVICES) else { return };
+    let leave = Leave::on_signals().unwrap();
+    let mut rig = RigConfig::load("emulated").unwrap();
+    rig.devices = Some(serde_json::from_str::<Settings>(&devices).unwrap());
+    rig.mode = Mode::Dfr;
+    rig.gates.static_hold = true;
+    let plan =
+        Plan { rig, scene: Scene::load("peg_transfer").unwrap(), calibrations: Default::default(), engage: true };
+    let handle = start(&plan).unwrap();
+    let ender = handle.ender();
+    leave.at_once(move || ender.end());
+    while !leave.is_asked() {
+        handle.drain_ticks(|_| {});
+        handle.drain_events(|_| {});
+        sleep(Duration::from_millis(5));
+    }
+    let summary = handle.stop_and_join().unwrap();
+    fs::write(std::env::var(SUMMARY).unwrap(), serde_json::to_vec(&summary).unwrap()).unwrap();
+}
+
+/// Waits until the emulated devices are like that.
+fn come(truth: &dyn Fn() -> Truth, within: Duration, good: impl Fn(&Truth) -> bool) -> bool {
+    let began = Instant::now();
+    while began.elapsed() < within {
+        if good(&truth()) {
+            return true;
+        }
+        sleep(Duration::from_millis(1));
+    }
+    false
+}
+
+#[test]
+#[ignore = "real lines in real time: `./dev test` runs it alone"]
+fn an_engaged_arm_is_braked_and_left_by_every_signal() {
+    let _alone = real_time::alone();
+    let folder = tempfile::tempdir().unwrap();
+    let devices = emulated::right_arm(folder.path());
+    let rig = emulated::started(&devices);
+    let truth = || rig.truth(Side::Right).unwrap();
+    let figures = folder.path().join("summary.json");
+    let another_process = || {
+        let child = Command::new(std::env::current_exe().unwrap())
+            .args(["endings::the_loop_of_another_process", "--exact", "--ignored"])
+            .env(DEVICES, serde_json::to_string(&devices).unwrap())
+            .env(SUMMARY, &figures)
+            .stdout(Stdio::null())
+            .stderr(Stdio::null())
+            .spawn();
+        Running(child.unwrap())
+    };
+    for signal in ["-TERM", "-HUP", "-INT"] {
+        let ended = || {
+            let mut child = another_process();
+            let feels = |truth: &Truth| truth.applied.force_n.norm() > 0.5 && truth.servoing;
+            if !come(&truth, Duration::from_secs(10), feels) {
+                return None;
+            }
+            child.signal(signal);
+            assert!(child.ended().success(), "{signal}: it was ended, and did not leave");
+            let summary: Value = serde_json::from_slice(&fs::read(&figures).unwrap()).unwrap();
+            Some(summary).filter(|summary| summary["final_state"] == "engaged")
+        };
+        let Some(summary) = (0..ATTEMPTS).find_map(|_| ended()) else {
+            println!("too busy to judge");
+            return;
+        };
+        assert_eq!(summary["fault"], Value::Null, "{signal}");
+        let left = truth();
+        assert!(left.applied.mode == Motors::Brake && left.applied.force_n.norm() < 1e-12, "{signal}: {left:?}");
+        assert!(!left.servoing, "{signal}: the arm is out of cyclic servoing");
+    }
+}

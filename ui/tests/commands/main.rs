@@ -1,0 +1,13 @@
+//! The command line as a user types it, and the pages and sources that must agree with it.
+#![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+mod calibrate_correspondence;
+mod calibrate_gravity;
+mod devices;
+mod docs;
+mod endings;
+mod every_command;
+mod hostile_files;
+mod installed;
+mod study;
+mod words;

@@ -1,0 +1,73 @@
+//! `nima study` as a user would type it.
+use std::process::{Command, Output};
+
+use serde_json::Value;
+
+fn nima(arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_nima")).args(arguments).output().unwrap()
+}
+
+fn refused(arguments: &[&str], word: &str) {
+    let output = nima(arguments);
+    let text = String::from_utf8(output.stderr).unwrap();
+    assert!(!output.status.success() && output.stdout.is_empty(), "{arguments:?}");
+    assert_eq!(text.lines().count(), 1, "{text}");
+    assert!(text.contains(word) && !text.contains("panicked"), "\"{word}\" is not in: {text}");
+}
+
+#[test]
+fn stability_prints_json_and_writes_three_files() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("made/if/absent");
+    let output = nima(&["study", "stability", "--quick", "--ticks", "10000", "--json", "--out", out.to_str().unwrap()]);
+    assert!(output.status.success() && output.stderr.is_empty(), "{}", String::from_utf8_lossy(&output.stderr));
+    let report: Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(report["verdict"]["reached"], true, "{}", report["verdict"]);
+    assert_eq!(report["verdict"]["ours_finite_share"], 1.0);
+    assert!(report["verdict"]["ours_worst_error"].as_f64().unwrap() <= 1e-9);
+    assert!(report["drift"]["ticks"].as_u64().unwrap() <= 10_000);
+    let extremes = report["extremes"].as_array().unwrap();
+    for extreme in extremes {
+        assert_eq!(extreme["entries"].as_array().unwrap().len(), 25, "{}", extreme["name"]);
+    }
+    let read = |name: &str| std::fs::read_to_string(out.join(name)).unwrap();
+    assert_eq!(serde_json::from_str::<Value>(&read("stability.json")).unwrap(), report);
+    assert_eq!(read("stability.csv").lines().count(), 1 + 25 * extremes.len());
+    let columns = read("stability.csv").lines().map(|line| line.split(',').count()).collect::<Vec<_>>();
+    assert!(columns.iter().all(|count| *count == columns[0]));
+    assert!(read("stability.svg").starts_with("<svg"));
+    assert_eq!(std::fs::read_dir(&out).unwrap().count(), 3);
+}
+
+#[test]
+fn stability_prints_a_table() {
+    let output = nima(&["study", "stability", "--quick", "--ticks", "10000"]);
+    let text = String::from_utf8(output.stdout).unwrap();
+    assert!(output.status.success());
+    for word in ["standstill", "NaN", "literal-f32", "sliding", "targets reached"] {
+        assert!(text.contains(word), "\"{word}\" is not in: {text}");
+    }
+}
+
+#[test]
+fn bad_input_is_one_line() {
+    refused(&["study"], "study");
+    refused(&["study", "nonsense"], "nonsense");
+    refused(&["study", "stability", "--ticks", "9"], "10000");
+    refused(&["study", "stability", "--ticks", "many"], "many");
+    let file = tempfile::NamedTempFile::new().unwrap();
+    refused(&["study", "stability", "--out", file.path().to_str().unwrap()], "folder");
+}
+
+#[test]
+fn the_gates_hold_against_a_short_attack_and_a_wrong_number_is_refused() {
+    let output = nima(&["study", "gates", "--requests", "2e4", "--json"]);
+    assert!(output.status.success() && output.stderr.is_empty(), "{}", String::from_utf8_lossy(&output.stderr));
+    let report: Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(report["requests"], 20_000);
+    assert!(report["breaches"].as_object().unwrap().values().all(|count| *count == 0), "{}", report["breaches"]);
+    assert_eq!(report["acted"].as_array().unwrap().len(), 9);
+    for wrong in ["0", "1.5", "-3", "many", "1e13", "nan"] {
+        refused(&["study", "gates", &format!("--requests={wrong}")], "whole number");
+    }
+}

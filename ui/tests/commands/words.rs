@@ -1,0 +1,159 @@
+//! The console's words live in `ui/src/console/text/`: a translation has one place to work in. This test reads the sources and counts the
+//! literals with words everywhere else.
+
+use std::path::{Path, PathBuf};
+
+/// Literals with words that are none of the screen's, by file: errors told on the terminal (`app/pace.rs`, `screenshot.rs`), a driver's
+/// name (`canvas/surface.rs`) and shader source (`scene3d/gl.rs`). A file that is not named here has none.
+const LEFT: [(&str, usize); 4] =
+    [("app/pace.rs", 1), ("canvas/surface.rs", 1), ("scene3d/gl.rs", 2), ("screenshot.rs", 1)];
+
+fn sources(folder: &Path, files: &mut Vec<PathBuf>) {
+    for entry in std::fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        if path.is_dir() {
+            if path.file_name().unwrap() != "text" {
+                sources(&path, files);
+            }
+        } else if path.extension().is_some_and(|extension| extension == "rs") && path.file_name().unwrap() != "tests.rs"
+        {
+            files.push(path);
+        }
+    }
+}
+
+/// The string literals of a source, without its comments, its attributes and its tests.
+fn literals(source: &str) -> Vec<String> {
+    let source = source.split("#[cfg(test)]\nmod tests").next().unwrap_or_default();
+    let mut literals = Vec::new();
+    for line in joined(source) {
+        let mut parts = line.split('"');
+        // Code and literals take turns.
+        while let (Some(code), Some(literal)) = (parts.next(), parts.next()) {
+            if code.contains("//") {
+                break;
+            }
+            literals.push(literal.to_owned());
+        }
+    }
+    literals
+}
+
+/// Lines with continued literals in one, without attributes, comment lines, escaped quotes and quote characters.
+fn joined(source: &str) -> Vec<String> {
+    let plain = source.replace("'\"'", "").replace("\\\"", "");
+    let mut lines: Vec<String> = Vec::new();
+    let mut open = false;
+    for line in plain.lines().map(str::trim_start) {
+        if !open && (line.starts_with("//") || line.starts_with("#[") || line.starts_with("#![")) {
+            continue;
+        }
+        match lines.last_mut() {
+            Some(last) if open => last.push_str(line),
+            _ => lines.push(line.to_owned()),
+        }
+        open = lines.last().is_some_and(|line| line.matches('"').count() % 2 == 1);
+    }
+    lines
+}
+
+/// Two words, or one that begins a sentence: what stands between braces is no word.
+fn has_words(literal: &str) -> bool {
+    let mut depth = 0_i32;
+    let plain: String = literal
+        .chars()
+        .map(|letter| {
+            depth += i32::from(letter == '{') - i32::from(letter == '}');
+            if depth > 0 || letter == '}' { ' ' } else { letter }
+        })
+        .collect();
+    let words: Vec<&str> = plain
+        .split(|letter: char| letter.is_whitespace())
+        .filter(|word| word.chars().filter(char::is_ascii_alphabetic).count() >= 3)
+        .collect();
+    let begins = words.iter().any(|word| {
+        let mut letters = word.chars();
+        letters.next().is_some_and(char::is_uppercase) && letters.take(2).all(char::is_lowercase)
+    });
+    words.len() >= 2 || begins
+}
+
+#[test]
+fn a_new_sentence_goes_where_all_words_are() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/console");
+    let mut files = Vec::new();
+    sources(&root, &mut files);
+    files.sort();
+    let mut wrong = Vec::new();
+    for path in &files {
+        let name = path.strip_prefix(&root).unwrap().to_str().unwrap().replace('\\', "/");
+        let found: Vec<String> = literals(&std::fs::read_to_string(path).unwrap())
+            .into_iter()
+            .filter(|literal| has_words(literal))
+            .collect();
+        let allowed = LEFT.iter().find(|(file, _)| *file == name).map_or(0, |(_, left)| *left);
+        if found.len() != allowed {
+            wrong.push(format!("(\"{name}\", {}), // {allowed} allowed: {found:?}", found.len()));
+        }
+    }
+    assert!(
+        wrong.is_empty(),
+        "put new words into ui/src/console/text, and lower the number where some have moved:\n{}",
+        wrong.join("\n")
+    );
+}
+
+/// Name and words of every constant in `text/`.
+fn constants() -> Vec<(String, String)> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/console/text");
+    let mut constants = Vec::new();
+    for entry in std::fs::read_dir(folder).unwrap() {
+        let source = std::fs::read_to_string(entry.unwrap().path()).unwrap();
+        for part in source.split("const ").skip(1) {
+            let Some((name, rest)) = part.split_once(": &str =") else { continue };
+            let literal = rest.trim_start().trim_start_matches('"').replace("\\\"", "'");
+            let words: Vec<&str> =
+                literal.split('"').next().unwrap().split_whitespace().filter(|word| *word != "\\").collect();
+            constants.push((name.to_owned(), words.join(" ")));
+        }
+    }
+    assert!(constants.len() > 400, "{} found", constants.len());
+    constants
+}
+
+/// `ALARM_STALE_CAUSE`, not `THE_DATA_ARE`: a name survives when its sentence is written anew.
+#[test]
+fn a_constant_is_named_by_its_role() {
+    let first_words = |name: &str, words: &str| {
+        let words = words.to_uppercase();
+        let words: Vec<&str> =
+            words.split(|letter: char| !letter.is_alphanumeric()).filter(|word| !word.is_empty()).collect();
+        let parts: Vec<&str> = name.split('_').collect();
+        parts.len() >= 3 && words.len() > parts.len() && words.starts_with(&parts)
+    };
+    let wrong: Vec<_> = constants().into_iter().filter(|(name, words)| first_words(name, words)).collect();
+    assert!(wrong.is_empty(), "{} named by their first words: {wrong:#?}", wrong.len());
+}
+
+#[test]
+fn one_sentence_has_no_full_stop_and_more_is_an_ellipsis() {
+    let several = |words: &str| [". ", "! ", "? ", ".) "].iter().any(|end| words.contains(end));
+    let wrong: Vec<_> = constants()
+        .into_iter()
+        .filter(|(_, words)| words.contains("...") || (words.ends_with('.') && !several(words)))
+        .collect();
+    assert!(wrong.is_empty(), "{wrong:#?}");
+}
+
+#[test]
+fn words_are_distinguished_from_formats() {
+    for words in ["Stop", "press any key", "{} ticks of {total} late", "Acted on {acted}"] {
+        assert!(has_words(words), "{words}");
+    }
+    for format in ["{:.1} N", "{}: {}", "top_bar", "us", "{force_n:.1} N, {a} x", "alarms"] {
+        assert!(!has_words(format), "{format}");
+    }
+    let source =
+        "// \"No words\"\n#[doc = \"No words\"]\nlet a = (\"Some words\", \"more \\\n  of them\"); // \"none here\"\n";
+    assert_eq!(literals(source), ["Some words", "more \\of them"]);
+}

@@ -1,0 +1,101 @@
+//! The check of a saved calibration at the start of the console, of a sensor whose bias has moved and of one whose has not.
+
+use std::{
+    path::Path,
+    process::Command,
+    time::{Duration, Instant},
+};
+
+use egui::accesskit::Role;
+use egui_kittest::{
+    Harness,
+    kittest::{NodeT as _, Queryable as _},
+};
+use nima_console::console::ConsoleApp;
+use nima_machine::{config::RigConfig, teleop::Calibrations};
+use nima_recording::store::Store;
+use nima_tests::gravity::gravity;
+use nima_world::{Plan, scene::Scene};
+
+use crate::bench::shown;
+
+const TIMEOUT: Duration = Duration::from_secs(30);
+
+/// A wrist that nobody guides and no trocar touches, with its bias off by `step_n` along x.
+fn free_scene(step_n: f64) -> Scene {
+    let mut scene = Scene::load("palpation").unwrap();
+    scene.trocar = None;
+    scene.wrist.as_mut().unwrap().force_bias_n.x += step_n;
+    scene
+}
+
+fn console(store: &Path, step_n: f64) -> Harness<'static, ConsoleApp> {
+    let record = gravity();
+    Store::open(store).save(&record).unwrap();
+    let (rig, scene) = (RigConfig::load("simulated").unwrap(), free_scene(step_n));
+    let calibrations = Calibrations { gravity: Some(record.model), tip_force: None };
+    let calibrations = [calibrations, Calibrations::default()];
+    let store = store.to_owned();
+    shown(&Plan { rig, scene, calibrations, engage: false }, [1600.0, 1000.0], move |app| app.with_store(&store))
+}
+
+fn until(console: &mut Harness<'_, ConsoleApp>, words: &str) {
+    let began = Instant::now();
+    while console.query_all_by_label_contains(words).next().is_none() {
+        assert!(began.elapsed() < TIMEOUT, "never came: {words}; {:?}", console.state().in_force().lines());
+        std::thread::sleep(Duration::from_millis(10));
+        console.step();
+    }
+}
+
+fn can_engage(console: &Harness<'_, ConsoleApp>) -> bool {
+    let engage = console.query_by_role_and_label(Role::Button, "Engage");
+    engage.is_some_and(|button| !button.accesskit_node().is_disabled())
+}
+
+#[test]
+fn a_bias_that_moved_warns_with_its_figure_and_blocks_nothing() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut console = console(folder.path(), 0.4);
+    until(&mut console, "do not touch the tool");
+    until(&mut console, "drifted by 0.4");
+    until(&mut console, "its bias has drifted since the calibration");
+    assert!(can_engage(&console));
+}
+
+#[test]
+fn a_bias_that_did_not_move_is_fine_with_the_time_of_the_check() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut console = console(folder.path(), 0.0);
+    until(&mut console, "N without contact, good");
+    let lines = console.state().in_force().lines();
+    assert!(lines.iter().any(|line| line.starts_with("Bias, checked at ") && line.contains(" UTC: 0.0")), "{lines:?}");
+    assert!(console.query_all_by_label_contains("its bias has drifted").next().is_none());
+    assert!(can_engage(&console));
+}
+
+/// What `nima run` prints of the bias, with calibrations in this folder.
+fn run(store: &Path, step_n: f64) -> String {
+    Store::open(store.join("calibrations")).save(&gravity()).unwrap();
+    let (scene, _) = include_str!("../../../config/scenes/palpation.toml").split_once("[trocar]").unwrap();
+    let moved = format!("force_bias_n = [{},", 1.8 + step_n);
+    assert!(scene.contains("force_bias_n = [1.8,"));
+    let file = store.join("free.toml");
+    std::fs::write(&file, scene.replace("force_bias_n = [1.8,", &moved)).unwrap();
+    let output = Command::new(env!("CARGO_BIN_EXE_nima"))
+        .args(["run", "--virtual", "--seconds", "8", "--scene", file.to_str().unwrap()])
+        .env("NIMA_DATA_DIR", store)
+        .output()
+        .unwrap();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    String::from_utf8(output.stdout).unwrap()
+}
+
+#[test]
+fn a_run_without_a_screen_prints_how_the_bias_stands() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = run(folder.path(), 0.0);
+    assert!(text.contains("bias of the wrist sensor: 0.0") && text.contains("good"), "{text}");
+    let text = run(folder.path(), -0.5);
+    assert!(text.contains("bias of the wrist sensor: drifted by 0.5"), "{text}");
+}

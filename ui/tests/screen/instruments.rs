@@ -1,0 +1,60 @@
+//! The technician's instruments on a running loop: interlock and gates light up, the gain knows where it is stable, moments are marked.
+
+use egui::{Key, accesskit};
+use egui_kittest::kittest::{NodeT as _, Queryable as _};
+use nima_machine::messages::LoopState;
+
+use crate::bench::{console_of, press, until};
+
+const SIZE: [f32; 2] = [1600.0, 1000.0];
+
+#[test]
+fn the_interlock_of_each_hand_lights_up_where_it_is_and_says_why() {
+    let mut harness = console_of("bimanual", SIZE, |app| app);
+    until(&mut harness, "engaged", |tick| tick.state == LoopState::Engaged);
+    press(&mut harness, "Safety");
+    for side in ["left", "right"] {
+        harness.get_by_label_contains(&format!("Interlock, {side} hand: engaged, since"));
+    }
+    press(&mut harness, "Stop");
+    until(&mut harness, "stopped", |tick| tick.state == LoopState::Stopped);
+    let stopped_s = harness.state().tick().unwrap().t_s;
+    // A lamp follows its gate within some tenths of a second, so that it can be read.
+    until(&mut harness, "a moment later", |tick| tick.t_s > stopped_s + 0.5);
+    harness.step();
+    for side in ["left", "right"] {
+        let begins = format!("Interlock, {side} hand: stopped, since");
+        let told = harness.get_by_label_contains(&begins);
+        assert!(told.accesskit_node().value().unwrap().ends_with("requested by the operator"));
+        harness.get_by_label_contains(&format!("Gate Engaged, {side} hand: closed"));
+    }
+}
+
+#[test]
+fn the_gain_tells_where_it_is_stable_once_there_was_a_contact() {
+    let mut harness = console_of("peg_transfer", SIZE, |app| app);
+    harness.step();
+    harness.get_by_label("Highest stable gain: known after the first contact");
+    until(&mut harness, "a contact that lasts", |tick| tick.t_s > 3.5);
+    harness.step();
+    let told = harness.get_by_label_contains("stable up to").accesskit_node().value().unwrap();
+    // The scene's phantom: 300 to 500 N/m where it is pressed.
+    let n_m: f64 = told.split("at ").last().unwrap().trim_end_matches(" N/m").parse().unwrap();
+    assert!((150.0..800.0).contains(&n_m), "{told}");
+}
+
+#[test]
+fn one_key_marks_a_moment_also_while_the_traces_are_paused() {
+    let mut harness = console_of("peg_transfer", SIZE, |app| app);
+    until(&mut harness, "any tick", |_| true);
+    harness.key_press(Key::E);
+    harness.step();
+    press(&mut harness, "Pause");
+    until(&mut harness, "later", |tick| tick.t_s > 0.5);
+    press(&mut harness, "Mark (E)");
+    let marks_s: Vec<f64> = harness.state().marks_s().collect();
+    assert_eq!(marks_s.len(), 2);
+    assert!(marks_s[1] >= 0.5 && marks_s[0] < marks_s[1], "{marks_s:?}");
+    harness.get_by_role_and_label(accesskit::Role::Button, "Go on");
+    harness.get_by_label_contains("Force space.");
+}

@@ -1,0 +1,17 @@
+//! The console, driven by the names on its screen.
+#![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+mod alarms;
+mod bench;
+mod console;
+mod desk;
+mod drift;
+mod instruments;
+mod roles;
+mod tradeoff;
+mod view;
+mod virtual_rig;
+mod walk;
+mod wizard_correspondence;
+mod wizard_gravity;
+mod wizard_tip_force;

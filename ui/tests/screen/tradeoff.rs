@@ -1,0 +1,214 @@
+//! The trade-off study as a command and as a panel: measured, cancelled and applied by accessible names.
+use std::{
+    fmt::Write as _,
+    path::{Path, PathBuf},
+    process::{Command, Output},
+    time::{Duration, Instant},
+};
+
+use egui::accesskit::Role;
+use egui_kittest::{
+    Harness,
+    kittest::{NodeT as _, Queryable as _},
+};
+use nima_console::console::{ConsoleApp, desk::Panel};
+use nima_machine::{config::RigConfig, messages::LoopState};
+use nima_world::{Plan, scene::Scene, start};
+use serde_json::Value;
+
+const TIMEOUT: Duration = Duration::from_mins(1);
+
+fn nima(arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_nima")).args(["study", "tradeoff"]).args(arguments).output().unwrap()
+}
+
+/// A recording of a hand that presses a soft spring twice a second, at 500 Hz, as a lever would give it.
+fn recording(folder: &Path, rows: usize) -> PathBuf {
+    let mut text = String::from("t_s,angle,torque\n");
+    for i in 0..rows {
+        let t = i as f64 * 2e-3;
+        let x = 0.01 * (std::f64::consts::TAU * 2.0 * t).sin() + 0.002 * (41.0 * t).sin();
+        let f = if x > 0.0 { 300.0 * x.powf(1.3) } else { 0.0 };
+        writeln!(text, "{t},{x},{f}").unwrap();
+    }
+    let path = folder.join("press, soft.csv");
+    std::fs::write(&path, text).unwrap();
+    path
+}
+
+#[test]
+fn the_command_prints_json_and_writes_every_file() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = recording(folder.path(), 3000);
+    let out = folder.path().join("new/figures");
+    let arguments = ["--recording", path.to_str().unwrap(), "--map", "x=angle", "--map", "fx=torque", "--quick"];
+    let arguments =
+        [&arguments[..], &["--delay-ms", "20", "--delay-ms", "50", "--json", "--out", out.to_str().unwrap()]];
+    let output = nima(&arguments.concat());
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let study: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let source = &study["sources"][0];
+    assert_eq!((source["source"].as_str(), source["unit"].as_str()), (Some("press, soft"), Some("recorded unit")));
+    let points = source["points"].as_array().unwrap();
+    for point in points {
+        assert!(point["cost_us"]["p50"].is_f64() && point["error"].is_f64() && point["ratio"].is_f64(), "{point}");
+    }
+    for delay in [20.0, 50.0] {
+        let front = |point: &&Value| point["pareto"] == true && point["delay_ms"] == delay;
+        assert!(points.iter().any(|point| front(&point) && point["method"] == "dfr"), "DFR is the cheapest");
+        assert!(points.iter().filter(front).count() >= 2);
+    }
+    let files: Vec<String> =
+        std::fs::read_dir(&out).unwrap().map(|file| file.unwrap().file_name().into_string().unwrap()).collect();
+    for name in ["tradeoff.json", "tradeoff.csv", "tradeoff-press-soft.svg"] {
+        assert!(files.iter().any(|file| file == name), "{name} is not in {files:?}");
+    }
+    let csv = std::fs::read_to_string(out.join("tradeoff.csv")).unwrap();
+    assert_eq!(csv.lines().count(), points.len() + 1);
+    assert!(csv.lines().nth(1).unwrap().starts_with("\"press, soft\",recorded unit,anchored,"), "{csv}");
+    for file in files.iter().filter(|file| Path::new(file).extension().is_some_and(|kind| kind == "svg")) {
+        let svg = std::fs::read_to_string(out.join(file)).unwrap();
+        assert!(svg.trim_start().starts_with("<svg") || svg.trim_start().starts_with("<?xml"), "{file}");
+        assert!(!svg.contains("NaN") && !svg.contains("inf"), "{file}");
+    }
+}
+
+#[test]
+fn without_json_it_prints_a_table() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = recording(folder.path(), 3000);
+    let output = nima(&["--recording", path.to_str().unwrap(), "--map", "x=angle", "--map", "fx=torque", "--quick"]);
+    let text = String::from_utf8(output.stdout).unwrap();
+    for words in ["press, soft: 3000 samples at 500 Hz", "degree (literal)", "front", "ratio"] {
+        assert!(text.contains(words), "\"{words}\" is not in {text}");
+    }
+}
+
+#[test]
+fn bad_input_is_refused_in_one_line() {
+    let folder = tempfile::tempdir().unwrap();
+    let short = recording(folder.path(), 60);
+    let short = ["--recording", short.to_str().unwrap(), "--map", "x=angle", "--map", "fx=torque", "--quick"];
+    let file = folder.path().join("file");
+    std::fs::write(&file, "").unwrap();
+    let blocked = file.join("figures");
+    let cases: [(&[&str], &str); 8] = [
+        (&["--recording", "nowhere.csv"], "nowhere.csv"),
+        (&["--recording", "nowhere.csv", "--map", "x"], "NAME=COLUMN"),
+        (&["--map", "x=angle"], "--recording"),
+        (&["--scene", "no_such_scene"], "peg_transfer"),
+        (&["--delay-ms", "-5"], "between 0 and 1000"),
+        (&["--delay-ms", "soon"], "soon"),
+        (&short, "no point of the plan"),
+        (&["--quick", "--out", blocked.to_str().unwrap()], "cannot create the folder"),
+    ];
+    for (arguments, words) in cases {
+        let output = nima(arguments);
+        let text = String::from_utf8(output.stderr).unwrap();
+        assert!(!output.status.success() && output.stdout.is_empty(), "{arguments:?}");
+        assert_eq!(text.lines().count(), 1, "{text}");
+        assert!(text.contains(words) && !text.contains("panicked"), "\"{words}\" is not in: {text}");
+    }
+}
+
+fn console() -> Harness<'static, ConsoleApp> {
+    let rig = RigConfig::load("simulated").unwrap();
+    let scene = Scene::load("peg_transfer").unwrap();
+    let handle =
+        start(&Plan { rig: rig.clone(), scene: scene.clone(), calibrations: Default::default(), engage: true })
+            .unwrap();
+    let mut harness = Harness::builder()
+        .with_size([1600.0, 2400.0])
+        .with_step_dt(1.0 / 30.0)
+        .build_eframe(move |cc| ConsoleApp::new(cc, handle, rig, scene));
+    until(&mut harness, "engaged", |app| app.tick().is_some_and(|tick| tick.state == LoopState::Engaged));
+    harness.run_steps(3);
+    // Its tile lies behind others.
+    press(&mut harness, Panel::Tradeoff.title());
+    harness
+}
+
+fn until(harness: &mut Harness<'_, ConsoleApp>, what: &str, good: impl Fn(&ConsoleApp) -> bool) {
+    let began = Instant::now();
+    while !good(harness.state()) {
+        assert!(began.elapsed() < TIMEOUT, "never: {what}");
+        std::thread::sleep(Duration::from_millis(5));
+        harness.step();
+    }
+}
+
+fn press(harness: &mut Harness<'_, ConsoleApp>, label: &str) {
+    harness.get_by_role_and_label(Role::Button, label).click_accesskit();
+    harness.step();
+    harness.step();
+}
+
+#[test]
+fn a_measurement_can_be_cancelled() {
+    let mut harness = console();
+    assert!(harness.query_by_role_and_label(Role::Button, "Cancel").is_none());
+    press(&mut harness, "Measure on this machine…");
+    assert!(harness.query_by_label_contains("Trade-off measured:").is_some());
+    press(&mut harness, "Cancel");
+    let began = Instant::now();
+    while harness.query_by_label_contains("Cancelled").is_none() {
+        assert!(began.elapsed() < Duration::from_secs(10), "it did not stop");
+        std::thread::sleep(Duration::from_millis(5));
+        harness.step();
+    }
+    assert!(harness.state().tradeoff().figures().is_none());
+    harness.get_by_role_and_label(Role::Button, "Measure on this machine…");
+    assert_eq!(harness.state().tick().unwrap().state, LoopState::Engaged, "the loop went on");
+}
+
+#[test]
+fn a_measured_point_is_applied_and_a_restart_comes_back_idle() {
+    let mut harness = console();
+    press(&mut harness, "Measure on this machine…");
+    until(&mut harness, "measured", |app| app.tradeoff().figures().is_some());
+    harness.step();
+    harness.check_accessibility();
+    harness.get_by_label_contains("Trade-off plot:");
+    // The cheapest of all is direct reflection: the running loop takes it over.
+    harness
+        .get_by(|node| node.role() == Role::Button && node.label().is_some_and(|l| l.starts_with("Direct (DFR): ")))
+        .click_accesskit();
+    harness.step();
+    press(&mut harness, "Apply");
+    until(&mut harness, "direct", |app| app.tick().is_some_and(|tick| tick.mode == nima_core::impedance::Mode::Dfr));
+    assert_eq!(harness.state().tick().unwrap().state, LoopState::Engaged);
+    // Of anchored points the cheapest has degree 1: the loop is built anew and waits for the operator.
+    let anchored = harness.get_all_by_label_contains("Anchored, N = 1").next().unwrap();
+    anchored.click_accesskit();
+    harness.step();
+    press(&mut harness, "Apply");
+    assert_eq!(harness.state().rig().identification.max_degree, 1);
+    until(&mut harness, "idle", |app| app.tick().is_some_and(|tick| tick.state == LoopState::Idle));
+    assert_eq!(harness.state().tick().unwrap().mode, nima_core::impedance::Mode::Anchored);
+    harness.get_by_label_contains("is idle: press Engage");
+    let waiting = |harness: &Harness<'_, ConsoleApp>| {
+        harness.get_by_role_and_label(Role::Button, "Engage").accesskit_node().is_disabled()
+    };
+    while waiting(&harness) {
+        std::thread::sleep(Duration::from_millis(5));
+        harness.step();
+    }
+    press(&mut harness, "Engage");
+    until(&mut harness, "engaged", |app| app.tick().is_some_and(|tick| tick.state == LoopState::Engaged));
+}
+
+#[test]
+fn a_restart_is_no_way_out_of_a_stop() {
+    let mut harness = console();
+    press(&mut harness, "Measure on this machine…");
+    until(&mut harness, "measured", |app| app.tradeoff().figures().is_some());
+    harness.step();
+    let anchored = harness.get_all_by_label_contains("Anchored, N = 1").next().unwrap();
+    anchored.click_accesskit();
+    harness.step();
+    press(&mut harness, "Stop");
+    until(&mut harness, "stopped", |app| app.tick().is_some_and(|tick| tick.state == LoopState::Stopped));
+    harness.step();
+    let apply = harness.get_by_role_and_label(Role::Button, "Apply");
+    assert!(apply.accesskit_node().is_disabled());
+}

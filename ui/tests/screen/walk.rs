@@ -1,0 +1,326 @@
+//! A walk over every view at three sizes, light and dark: no text is cut or lies on another, nothing leaves the window, no two
+//! controls overlap, every control has a name, and the stop is where a hand looks for it.
+
+use std::{env, fmt::Write as _, fs, path::Path, time::Duration};
+
+use eframe::App as _;
+use egui::{Key, Pos2, Rect, Shape, accesskit};
+use egui_kittest::{
+    Harness,
+    kittest::{NodeT as _, Queryable as _},
+};
+use nima_console::console::{
+    ConsoleApp, Options,
+    desk::{Layout, Panel},
+    roles::Role,
+    settings::Kept,
+    wizards::Which,
+};
+use nima_machine::messages::LoopState;
+
+use crate::bench::{self, console_of, until};
+
+/// Points: the smallest window, the sizes of common screens, and with them those screens at a scale of 150 or 200 %.
+const SIZES: [[f32; 2]; 4] = [[1100.0, 680.0], [1280.0, 720.0], [1920.0, 1080.0], [3840.0, 2160.0]];
+/// A role, and the panels that are brought to the front: every panel is seen once.
+const VIEWS: [(Role, &[Panel]); 6] = [
+    (Role::Surgeon, &[]),
+    (Role::Technician, &[]),
+    (Role::Technician, &[Panel::Safety, Panel::Calibrations, Panel::Timing]),
+    (Role::Technician, &[Panel::ForceSpace, Panel::Devices, Panel::Tradeoff]),
+    (Role::Technician, &[Panel::Gates, Panel::Degrees]),
+    (Role::Demo, &[]),
+];
+/// What rounding may cost, points.
+const SLACK: f32 = 1.5;
+
+/// A text on the screen: its words, its place, and where it is allowed to be seen.
+struct Text {
+    words: String,
+    place: Rect,
+    clip: Rect,
+    cut: bool,
+}
+
+fn texts(harness: &Harness<'_, ConsoleApp>) -> Vec<Text> {
+    fn add(shape: &Shape, clip: Rect, texts: &mut Vec<Text>) {
+        match shape {
+            Shape::Vec(shapes) => shapes.iter().for_each(|shape| add(shape, clip, texts)),
+            Shape::Text(text) if text.angle == 0.0 && !text.galley.text().trim().is_empty() => texts.push(Text {
+                words: text.galley.text().to_owned(),
+                place: text.galley.mesh_bounds.translate(text.pos.to_vec2()),
+                clip,
+                cut: text.galley.elided,
+            }),
+            _ => {}
+        }
+    }
+    let mut texts = Vec::new();
+    for clipped in &harness.output().shapes {
+        add(&clipped.shape, clipped.clip_rect, &mut texts);
+    }
+    texts
+}
+
+/// What is wrong with the texts of this picture; `field` is the operating field, where labels ride on moving things.
+fn faults_of_texts(texts: &[Text], window: Rect, field: Option<Rect>, scrolls: bool, overlaid: bool) -> Vec<String> {
+    let mut faults = Vec::new();
+    let seen = |text: &Text| text.place.intersect(text.clip).intersect(window).is_positive();
+    let on_field = |text: &Text| {
+        field.is_some_and(|field| {
+            (text.clip.min - field.min).length() < SLACK && (text.clip.max - field.max).length() < SLACK
+        })
+    };
+    let texts: Vec<&Text> = texts.iter().filter(|text| seen(text) && !on_field(text)).collect();
+    for text in &texts {
+        let room = text.clip.intersect(window).expand(SLACK);
+        let sideways = text.place.left() < room.left() || text.place.right() > room.right();
+        let up_or_down = text.place.top() < room.top() || text.place.bottom() > room.bottom();
+        // A long column is scrolled; what is half seen at its end is seen whole a moment later.
+        if text.cut || sideways || (up_or_down && !scrolls) {
+            faults.push(format!("cut: \"{}\" at {:?}", text.words, text.place));
+        }
+    }
+    for (i, one) in texts.iter().enumerate().filter(|_| !overlaid) {
+        for other in &texts[i + 1..] {
+            let shared = one.place.intersect(one.clip).intersect(other.place.intersect(other.clip)).shrink(SLACK);
+            if shared.is_positive() {
+                faults.push(format!("\"{}\" lies on \"{}\" at {:?}", one.words, other.words, shared.center()));
+            }
+        }
+    }
+    faults
+}
+
+/// Controls that overlap, or that leave the window sideways. A control that is scrolled away is known by its words.
+fn faults_of_controls(harness: &Harness<'_, ConsoleApp>, texts: &[Text], window: Rect) -> Vec<String> {
+    let seen = |name: &str, place: Rect| {
+        let words = texts.iter().find(|text| text.words.trim() == name && place.contains(text.place.center()));
+        words.map_or(place, |words| place.intersect(words.clip))
+    };
+    let is_control = |role: accesskit::Role| {
+        use accesskit::Role;
+        matches!(role, Role::Button | Role::CheckBox | Role::SpinButton | Role::TextInput | Role::RadioButton)
+    };
+    let controls: Vec<(String, Rect)> = harness
+        .get_all_by(move |node| is_control(node.role()))
+        .map(|node| (node.accesskit_node().label().unwrap_or_default(), node.rect()))
+        .map(|(name, place)| (name.clone(), seen(&name, place)))
+        .filter(|(_, place)| place.is_positive())
+        .collect();
+    let mut faults = Vec::new();
+    for (i, (name, place)) in controls.iter().enumerate() {
+        if place.left() < -SLACK || place.right() > window.right() + SLACK {
+            faults.push(format!("\"{name}\" leaves the window: {place:?}"));
+        }
+        for (other, there) in &controls[i + 1..] {
+            if place.intersect(*there).shrink(SLACK).is_positive() {
+                faults.push(format!("\"{name}\" overlaps \"{other}\" at {place:?}"));
+            }
+        }
+    }
+    faults
+}
+
+/// Everything that is wrong on the screen now.
+fn faults(harness: &mut Harness<'_, ConsoleApp>, size: [f32; 2], scrolls: bool) -> Vec<String> {
+    let (texts, window, field) = seen(harness, size);
+    let mut faults = faults_of_texts(&texts, window, field, scrolls, false);
+    faults.extend(faults_of_controls(harness, &texts, window));
+    faults
+}
+
+/// The same where something lies over the rest on purpose.
+fn faults_overlaid(harness: &mut Harness<'_, ConsoleApp>, size: [f32; 2]) -> Vec<String> {
+    let (texts, window, field) = seen(harness, size);
+    faults_of_texts(&texts, window, field, true, true)
+}
+
+/// What is seen in a window of this size: its texts, the window, the operating field.
+fn seen(harness: &mut Harness<'_, ConsoleApp>, size: [f32; 2]) -> (Vec<Text>, Rect, Option<Rect>) {
+    harness.set_size(size.into());
+    // Sizes settle within some frames.
+    harness.run_steps(4);
+    harness.check_accessibility();
+    let window = Rect::from_min_size(Pos2::ZERO, size.into());
+    let stop = harness.get_by_role_and_label(accesskit::Role::Button, "Stop").rect();
+    assert!(stop.width() >= 48.0 && stop.height() >= 48.0 && window.contains_rect(stop), "{stop:?}");
+    let field = harness.query_by_label("Operating field").map(|field| field.rect());
+    (texts(harness), window, field)
+}
+
+fn walk(scene: &str) {
+    let mut harness = console_of(scene, SIZES[0], |app| app);
+    until(&mut harness, "a contact", |tick| tick.t_s > 1.5);
+    let mut all = Vec::new();
+    for (role, front) in VIEWS {
+        for size in SIZES {
+            for light in [false, true] {
+                let settings = harness.state_mut().settings_mut();
+                (settings.role, settings.light) = (role, light);
+                settings.layout = Layout { front: front.to_vec(), ..Layout::default() };
+                let faults = faults(&mut harness, size, role == Role::Technician);
+                all.extend(
+                    faults.into_iter().map(|fault| format!("{role:?} {front:?} {size:?} light {light}: {fault}")),
+                );
+            }
+        }
+    }
+    assert!(all.is_empty(), "{} faults:\n{}", all.len(), all.join("\n"));
+}
+
+#[test]
+fn nothing_is_cut_or_overlaps_with_one_hand() {
+    walk("peg_transfer");
+}
+
+#[test]
+fn nothing_is_cut_or_overlaps_with_two_hands() {
+    walk("bimanual");
+}
+
+#[test]
+fn nothing_is_cut_or_overlaps_in_the_wizards() {
+    let mut all = Vec::new();
+    for which in Which::ALL {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().to_path_buf();
+        let options = Options { wizard: Some(which), ..Options::default() };
+        let mut harness = console_of(which.scene(), SIZES[0], move |app| app.with_store(&path).with_options(options));
+        until(&mut harness, "any tick", |_| true);
+        for size in SIZES {
+            let faults = faults(&mut harness, size, true);
+            all.extend(faults.into_iter().map(|fault| format!("{which:?} {size:?}: {fault}")));
+        }
+    }
+    assert!(all.is_empty(), "{} faults:\n{}", all.len(), all.join("\n"));
+}
+
+#[test]
+fn the_alarm_and_the_stopped_state_fit_too() {
+    let mut harness = console_of("bimanual", SIZES[0], |app| app);
+    until(&mut harness, "any tick", |_| true);
+    bench::press(&mut harness, "Stop");
+    let mut all = Vec::new();
+    for dead in [false, true] {
+        if dead {
+            harness.state_mut().on_exit(None);
+            std::thread::sleep(Duration::from_millis(600));
+            bench::press(&mut harness, "Stop");
+            harness.run_steps(3);
+        }
+        for (role, front) in VIEWS {
+            for size in &SIZES[..2] {
+                let settings = harness.state_mut().settings_mut();
+                settings.role = role;
+                settings.layout = Layout { front: front.to_vec(), ..Layout::default() };
+                let faults = faults(&mut harness, *size, role == Role::Technician);
+                all.extend(faults.into_iter().map(|fault| format!("{role:?} {front:?} dead {dead}: {fault}")));
+            }
+        }
+        for key in [Key::F4, Key::F5] {
+            harness.key_press(key);
+            let faults = faults_overlaid(&mut harness, SIZES[0]);
+            all.extend(faults.into_iter().map(|fault| format!("{key:?} dead {dead}: {fault}")));
+            harness.key_press(key);
+            harness.run_steps(2);
+        }
+        bench::press(&mut harness, "View");
+        let faults = faults_overlaid(&mut harness, SIZES[0]);
+        all.extend(faults.into_iter().map(|fault| format!("menu dead {dead}: {fault}")));
+        bench::press(&mut harness, "View");
+    }
+    assert!(harness.query_by_label_contains("has stopped sending data").is_some());
+    assert!(all.is_empty(), "{} faults:\n{}", all.len(), all.join("\n"));
+}
+
+#[test]
+fn a_scale_is_used_as_far_as_the_window_has_room() {
+    let mut harness = console_of("free_motion", SIZES[0], |app| app);
+    until(&mut harness, "any tick", |_| true);
+    for (size, factor) in [(SIZES[3], 2.0), (SIZES[1], 720.0 / 680.0)] {
+        harness.state_mut().settings_mut().scale_percent = 200;
+        for _ in 0..4 {
+            // A window's points are its pixels over the factor.
+            let points = egui::Vec2::from(size) / harness.ctx.zoom_factor();
+            harness.set_size(points);
+            harness.step();
+        }
+        let now = harness.ctx.zoom_factor();
+        assert!((now - factor).abs() < 0.01, "{now} at {size:?}");
+    }
+}
+
+#[test]
+fn tour_and_glossary_fit_and_leave_the_stop_alone() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().to_path_buf();
+    let begin = |path: std::path::PathBuf| {
+        console_of("peg_transfer", SIZES[0], move |app| app.with_settings(Kept::open(&path)))
+    };
+    let mut harness = begin(path.clone());
+    until(&mut harness, "any tick", |_| true);
+    for button in ["Next step", "Next step", "Step back", "Next step", "Next step"] {
+        assert!(harness.query_by_role_and_label(accesskit::Role::Button, "Stop").is_some());
+        bench::press(&mut harness, button);
+    }
+    bench::press(&mut harness, "Stop");
+    until(&mut harness, "stopped during the tour", |tick| tick.state == LoopState::Stopped);
+    bench::press(&mut harness, "Begin");
+    assert!(harness.query_by_label("Begin").is_none());
+    harness.key_press(egui::Key::F4);
+    harness.run_steps(3);
+    let entry = harness.get_by_label("Horizon").rect();
+    let stop = harness.get_by_role_and_label(accesskit::Role::Button, "Stop").rect();
+    assert!(entry.top() > stop.bottom());
+    harness.key_press(egui::Key::F4);
+    harness.run_steps(3);
+    assert!(harness.query_by_label("Horizon").is_none());
+    drop(harness);
+    let mut again = begin(path);
+    again.run_steps(3);
+    assert!(again.query_by_label("Next step").is_none(), "the tour is for the first time");
+}
+
+/// Kind and name of everything that can be operated, in the order of the keyboard. Digits are left out, because numbers move.
+fn controls(harness: &Harness<'_, ConsoleApp>) -> String {
+    let operated = |kind: accesskit::Role| {
+        matches!(
+            kind,
+            accesskit::Role::Button
+                | accesskit::Role::CheckBox
+                | accesskit::Role::RadioButton
+                | accesskit::Role::Slider
+        )
+    };
+    let mut text = String::new();
+    for node in harness.get_all_by(move |node| operated(node.role())) {
+        let node = node.accesskit_node();
+        let name: String = node.label().unwrap_or_default().chars().filter(|letter| !letter.is_ascii_digit()).collect();
+        // An alarm depends on the computer: one without the right to a real-time thread has one.
+        if !(name.starts_with("All alarms") || name.starts_with("Acknowledge")) {
+            writeln!(text, "{:?}: {}", node.role(), name.lines().next().unwrap_or_default()).unwrap();
+        }
+    }
+    text
+}
+
+/// A control that is lost, renamed or new is seen in a review. `UPDATE_SNAPSHOTS=1` writes the files anew.
+#[test]
+fn every_view_offers_what_was_agreed() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/snapshots");
+    for (role, name) in [(Role::Surgeon, "surgeon"), (Role::Technician, "technician"), (Role::Demo, "demo")] {
+        let mut harness = console_of("bimanual", [1600.0, 1000.0], move |app| {
+            app.with_options(Options { role: Some(role), ..Options::default() })
+        });
+        until(&mut harness, "engaged", |tick| tick.state == LoopState::Engaged);
+        harness.run_steps(5);
+        let (now, path) = (controls(&harness), folder.join(format!("{name}.txt")));
+        if env::var_os("UPDATE_SNAPSHOTS").is_some() {
+            fs::create_dir_all(&folder).unwrap();
+            fs::write(&path, &now).unwrap();
+        }
+        let agreed = fs::read_to_string(&path).unwrap_or_default();
+        assert_eq!(now, agreed, "{}: if this is meant, run with UPDATE_SNAPSHOTS=1", path.display());
+    }
+}

@@ -1,0 +1,203 @@
+//! The correspondence wizard walked by accessible names on a real running loop, with a simulated person who pushes.
+
+use std::{
+    path::Path,
+    time::{Duration, Instant, SystemTime},
+};
+
+use egui::accesskit::Role;
+use egui_kittest::{
+    Harness,
+    kittest::{NodeT as _, Queryable as _},
+};
+use nima_console::console::ConsoleApp;
+use nima_core::{
+    calibration::{Verdict, correspondence::CorrespondenceRecord},
+    frames::from_roll_pitch_yaw_deg,
+};
+use nima_machine::{
+    config::RigConfig,
+    rig::{Prompt, Side},
+    teleop::Calibrations,
+};
+use nima_recording::store::Store;
+use nima_tests::gravity::gravity;
+use nima_world::{
+    Plan,
+    scene::{Flaw, Scene},
+    start,
+};
+
+const TIMEOUT: Duration = Duration::from_secs(40);
+
+fn console(scene: Scene, store: &Path, calibrations: Calibrations) -> Harness<'static, ConsoleApp> {
+    let rig = RigConfig::load("simulated").unwrap();
+    let plan = Plan {
+        rig: rig.clone(),
+        scene: scene.clone(),
+        calibrations: [calibrations, Calibrations::default()],
+        engage: false,
+    };
+    let handle = start(&plan).unwrap();
+    let store = store.to_owned();
+    Harness::builder()
+        .with_size([1600.0, 1500.0])
+        .with_step_dt(1.0 / 30.0)
+        .build_eframe(move |cc| ConsoleApp::new(cc, handle, rig, scene).with_store(&store))
+}
+
+/// Steps the window until it is as wanted. The window never settles, so `run` is of no use.
+fn until(harness: &mut Harness<'_, ConsoleApp>, what: &str, good: impl Fn(&Harness<'_, ConsoleApp>) -> bool) {
+    let began = Instant::now();
+    while !good(harness) {
+        assert!(began.elapsed() < TIMEOUT, "never: {what}");
+        std::thread::sleep(Duration::from_millis(5));
+        harness.step();
+    }
+}
+
+fn read(harness: &mut Harness<'_, ConsoleApp>, words: &str) {
+    until(harness, words, |harness| harness.query_all_by_label_contains(words).next().is_some());
+}
+
+fn is_ready(harness: &Harness<'_, ConsoleApp>, label: &str) -> bool {
+    let button = harness.query_by_role_and_label(Role::Button, label);
+    button.is_some_and(|button| !button.accesskit_node().is_disabled())
+}
+
+fn press(harness: &mut Harness<'_, ConsoleApp>, label: &str) {
+    until(harness, label, |harness| is_ready(harness, label));
+    harness.get_by_role_and_label(Role::Button, label).click_accesskit();
+    harness.step();
+    harness.step();
+}
+
+fn saved(store: &Store) -> Option<CorrespondenceRecord> {
+    let rig = RigConfig::load("simulated").unwrap();
+    let wrist = rig.simulated_wrist(Side::Right).unwrap();
+    store.load(&wrist.serial_number, &wrist.tool, SystemTime::now()).unwrap().map(|loaded| loaded.record)
+}
+
+#[test]
+fn nine_pushes_as_asked_end_in_a_saved_correspondence_and_more_may_follow() {
+    let folder = tempfile::tempdir().unwrap();
+    let store = Store::open(folder.path());
+    store.save(&gravity()).unwrap();
+    let scene = Scene::load("correspondence").unwrap();
+    let mut harness = console(Scene::load("peg_transfer").unwrap(), folder.path(), Calibrations::default());
+    press(&mut harness, "Calibrate correspondence…");
+    press(&mut harness, "Next");
+    read(&mut harness, "Pushes: 2 recorded of 9");
+    press(&mut harness, "Remove the last push");
+    read(&mut harness, "Pushes: 1 recorded of 9");
+    assert!(!is_ready(&harness, "Next"), "one push is no calibration");
+    read(&mut harness, "Pushes: 9 recorded of 9");
+    press(&mut harness, "Next");
+    read(&mut harness, "Euler cross-check");
+    read(&mut harness, "held out: MAE");
+    harness.check_accessibility();
+    press(&mut harness, "Next");
+    assert!(saved(&store).is_none(), "nothing is kept without being asked");
+    press(&mut harness, "Save and use");
+    read(&mut harness, "Saved and in use");
+    let record = saved(&store).unwrap();
+    assert_eq!((record.judgement.verdict, record.judgement.override_by.as_deref()), (Verdict::Accepted, None));
+    let sensor = scene.tissue_sensor.unwrap();
+    let c_from_s2 = from_roll_pitch_yaw_deg(&sensor.world_from_c_deg).inverse()
+        * from_roll_pitch_yaw_deg(&sensor.world_from_s2_deg);
+    let off_deg = record.rotation().angle_to(&c_from_s2).to_degrees();
+    assert!(off_deg < 0.5, "{off_deg} degrees off");
+    let lines = harness.state().in_force().lines();
+    assert!(lines.iter().any(|line| line.starts_with("Correspondence: 2") && line.contains("pushes")), "{lines:?}");
+    // Saving started the loop, and with it its clock, anew: the pushes go on where they were.
+    press(&mut harness, "Back");
+    press(&mut harness, "Back");
+    read(&mut harness, &format!("Pushes: {} recorded of 9", record.pairs + 1));
+}
+
+#[test]
+fn without_gravity_no_push_is_asked_for() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut harness = console(Scene::load("peg_transfer").unwrap(), folder.path(), Calibrations::default());
+    press(&mut harness, "Calibrate correspondence…");
+    read(&mut harness, "Gravity is not calibrated: calibrate it first");
+    read(&mut harness, "Force under the tissue: met");
+    let from = Instant::now();
+    while from.elapsed() < Duration::from_secs(1) {
+        harness.step();
+        assert!(!is_ready(&harness, "Next"));
+    }
+    assert_eq!(harness.state().tick().map(|tick| tick.prompt), Some(Prompt::Rest));
+}
+
+#[test]
+fn pushes_along_one_line_are_kept_only_under_a_name() {
+    let folder = tempfile::tempdir().unwrap();
+    let store = Store::open(folder.path());
+    let record = gravity();
+    store.save(&record).unwrap();
+    let mut scene = Scene::load("correspondence").unwrap();
+    scene.person.as_mut().unwrap().flaw = Some(Flaw::PushesOneLine);
+    let mut harness =
+        console(scene.clone(), folder.path(), Calibrations { gravity: Some(record.model), tip_force: None });
+    press(&mut harness, "Calibrate correspondence…");
+    press(&mut harness, "Next");
+    press(&mut harness, "Next");
+    read(&mut harness, "Insufficient motion");
+    read(&mut harness, "along one line");
+    press(&mut harness, "Next");
+    let button = "Save in spite of the verdict";
+    assert!(!is_ready(&harness, button) && harness.query_by_label("Save and use").is_none());
+    for (label, text) in [("Your name", "A. Technician"), ("Reason", "practice")] {
+        let field = harness.get_by_role_and_label(Role::TextInput, label);
+        field.focus();
+        field.type_text(text);
+        harness.step();
+        harness.step();
+    }
+    press(&mut harness, button);
+    read(&mut harness, "Saved and in use");
+    let record = saved(&store).unwrap();
+    assert_eq!(record.judgement.verdict, Verdict::InsufficientMotion);
+    assert_eq!(record.judgement.override_by.as_deref(), Some("A. Technician"));
+    let lines = harness.state().in_force().lines();
+    assert!(lines.iter().any(|line| line.contains("NOT PROVEN, kept by A. Technician")), "{lines:?}");
+}
+
+#[test]
+fn a_sensor_of_the_opposite_sign_is_named_and_the_switch_cures_it_without_new_pushes() {
+    let folder = tempfile::tempdir().unwrap();
+    let store = Store::open(folder.path());
+    let record = gravity();
+    store.save(&record).unwrap();
+    let mut scene = Scene::load("correspondence").unwrap();
+    scene.tissue_sensor.as_mut().unwrap().reads_tissue = true;
+    let mut harness =
+        console(scene.clone(), folder.path(), Calibrations { gravity: Some(record.model), tip_force: None });
+    press(&mut harness, "Calibrate correspondence…");
+    press(&mut harness, "Next");
+    read(&mut harness, "Pushes: 9 recorded of 9");
+    press(&mut harness, "Next");
+    read(&mut harness, "opposite forces");
+    press(&mut harness, "Back");
+    press(&mut harness, "Back");
+    let switch = |harness: &mut Harness<'_, ConsoleApp>, words: &str| {
+        harness.query_all_by_label_contains(words).next().unwrap().click();
+        harness.step();
+        harness.step();
+    };
+    let tracker = harness.query_all_by_label_contains("No tracker").next().unwrap();
+    assert!(tracker.accesskit_node().is_disabled(), "what is in the pushes cannot be changed");
+    switch(&mut harness, "reports the force on the tissue");
+    press(&mut harness, "Next");
+    press(&mut harness, "Next");
+    read(&mut harness, "Accepted");
+    press(&mut harness, "Next");
+    press(&mut harness, "Save and use");
+    read(&mut harness, "Saved and in use");
+    let record = saved(&store).unwrap();
+    assert!(record.flip_s2 && record.judgement.verdict == Verdict::Accepted, "{}", record.judgement.reason);
+    press(&mut harness, "Start over");
+    switch(&mut harness, "No tracker");
+    read(&mut harness, "Arm and tracker (not used): met");
+}

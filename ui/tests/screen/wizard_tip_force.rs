@@ -1,0 +1,384 @@
+//! The tip-force wizard walked by accessible names, fed by a simulated rig on the virtual clock: minutes of work take seconds.
+
+use std::{
+    path::{Path, PathBuf},
+    thread,
+    time::{Duration, Instant, SystemTime},
+};
+
+use egui::{ScrollArea, accesskit::Role};
+use egui_kittest::{
+    Harness,
+    kittest::{NodeT as _, Queryable as _},
+};
+use nima_console::console::{
+    ConsoleApp,
+    in_force::InForce,
+    theme,
+    wizards::{Binding, Saving, Which, Wizards},
+};
+use nima_core::calibration::Verdict;
+use nima_machine::{
+    config::RigConfig,
+    messages::{Command, ForceSource},
+    rig::{Prompt, Side},
+    teleop::Calibrations,
+};
+use nima_recording::{
+    store::{Store, utc_now},
+    tip_force::{DataSet, Selection, kept_model},
+};
+use nima_world::{
+    Plan, run_virtual,
+    scene::{Flaw, Scene},
+    start,
+};
+
+use crate::virtual_rig::{VirtualRig, records};
+
+const TIMEOUT: Duration = Duration::from_mins(3);
+/// Ticks of the virtual clock between two pictures of the window.
+const TICKS: usize = 250;
+
+/// A window with nothing but the wizard.
+struct Bench {
+    wizards: Wizards,
+    binding: Binding,
+    saving: Option<Saving>,
+}
+
+impl eframe::App for Bench {
+    fn ui(&mut self, ui: &mut egui::Ui, _frame: &mut eframe::Frame) {
+        ScrollArea::vertical().show(ui, |ui| {
+            ui.set_max_width(760.0);
+            let wanted = self.wizards.ui(ui, &self.binding);
+            self.saving = self.saving.take().or(wanted);
+        });
+    }
+}
+
+struct Console {
+    rig: VirtualRig,
+    window: Harness<'static, Bench>,
+}
+
+impl Console {
+    fn new(flaw: Option<Flaw>, folder: &Path) -> Self {
+        let (gravity, correspondence) = records();
+        let mut scene = Scene::load("isolation").unwrap();
+        scene.person.as_mut().unwrap().flaw = flaw;
+        let calibrations = Calibrations { gravity: Some(gravity.model), tip_force: None };
+        let bench = Bench {
+            wizards: Wizards::at(Which::TipForce),
+            binding: Binding {
+                sensor: gravity.head.sensor.clone(),
+                tool: gravity.head.tool.clone(),
+                date: utc_now(),
+                correspondence: Some(correspondence.correspondence()),
+                store: Some(Store::open(folder)),
+            },
+            saving: None,
+        };
+        let window = Harness::builder().with_size([800.0, 1500.0]).with_step_dt(1.0 / 30.0).build_eframe(|cc| {
+            theme::apply(&cc.egui_ctx);
+            bench
+        });
+        Self { rig: VirtualRig::start(scene, calibrations), window }
+    }
+
+    /// The rig works on for a moment, then the window is drawn.
+    fn step(&mut self) {
+        let wizards = &mut self.window.state_mut().wizards;
+        let ticks = self.rig.go_on(TICKS, wizards.prompt());
+        for tick in &ticks {
+            wizards.tick(tick, 1000.0);
+        }
+        self.window.step();
+    }
+
+    /// Two seconds pass with the wizard closed.
+    fn look_away(&mut self) {
+        self.rig.go_on(2000, Prompt::Rest);
+        self.rig.go_on(1, Prompt::Rest);
+        self.step();
+        self.step();
+    }
+
+    fn shows(&self, words: &str) -> bool {
+        self.window.query_all_by_label_contains(words).next().is_some()
+    }
+
+    fn read(&mut self, words: &str) {
+        let began = Instant::now();
+        while !self.shows(words) {
+            assert!(began.elapsed() < TIMEOUT, "never came: {words}; there is: {:?}", texts(&self.window));
+            self.step();
+        }
+    }
+
+    fn is_ready(&self, label: &str) -> bool {
+        is_ready(&self.window, label)
+    }
+
+    fn press(&mut self, label: &str) {
+        let began = Instant::now();
+        while !self.is_ready(label) {
+            assert!(began.elapsed() < TIMEOUT, "cannot press: {label}; there is: {:?}", texts(&self.window));
+            self.step();
+        }
+        self.window.get_by_role_and_label(Role::Button, label).click_accesskit();
+        self.step();
+        self.step();
+    }
+
+    /// As the label of the bar says.
+    fn rows(&self) -> usize {
+        let label = self.window.get_by_label_contains(" s (paper: ").accesskit_node().label().unwrap();
+        label.trim_start_matches("Rows: ").split(',').next().unwrap().parse().unwrap()
+    }
+
+    fn record(&mut self, rows: usize) {
+        let began = Instant::now();
+        while self.rows() < rows {
+            assert!(began.elapsed() < TIMEOUT, "no rows; there is: {:?}", texts(&self.window));
+            self.step();
+        }
+    }
+
+    fn train(&mut self, size: &str) {
+        self.press(size);
+        self.press("Start training");
+        self.read("networks on");
+    }
+}
+
+fn is_ready<A>(window: &Harness<'_, A>, label: &str) -> bool {
+    let button = window.query_by_role_and_label(Role::Button, label);
+    button.is_some_and(|button| !button.accesskit_node().is_disabled())
+}
+
+/// All that can be read, for the words of a failure.
+fn texts<A>(window: &Harness<'_, A>) -> Vec<String> {
+    let words = |node: egui_kittest::Node<'_>| node.accesskit_node().value().or_else(|| node.accesskit_node().label());
+    window.query_all_by_label_contains("").filter_map(words).collect()
+}
+
+fn rows_of(folder: &Path, kind: &str) -> Option<usize> {
+    let path = Store::open(folder).path_of(kind, &records().0.head.sensor, "csv").unwrap();
+    path.exists().then(|| DataSet::read(&[path], &Selection::default()).unwrap().rows())
+}
+
+fn model_path(folder: &Path) -> PathBuf {
+    Store::open(folder).path_of("tip-force", &records().0.head.sensor, "safetensors").unwrap()
+}
+
+/// The real console, on the real clock, with what the wizard has.
+fn real_console(wizards: Wizards, folder: &Path) -> Harness<'static, ConsoleApp> {
+    let (rig, scene) = (RigConfig::load("simulated").unwrap(), Scene::load("isolation").unwrap());
+    let calibrations = InForce::load(Some(folder), &rig, &scene).calibrations(&rig);
+    let handle = start(&Plan { rig: rig.clone(), scene: scene.clone(), calibrations, engage: false }).unwrap();
+    let folder = folder.to_owned();
+    Harness::builder()
+        .with_size([1600.0, 1500.0])
+        .with_step_dt(1.0 / 30.0)
+        .build_eframe(move |cc| ConsoleApp::new(cc, handle, rig, scene).with_store(&folder).with_wizards(wizards))
+}
+
+fn until(window: &mut Harness<'_, ConsoleApp>, what: &str, good: impl Fn(&Harness<'_, ConsoleApp>) -> bool) {
+    let began = Instant::now();
+    while !good(window) {
+        assert!(began.elapsed() < TIMEOUT, "never: {what}; there is: {:?}", texts(window));
+        thread::sleep(Duration::from_millis(5));
+        window.step();
+    }
+}
+
+fn press(window: &mut Harness<'_, ConsoleApp>, label: &str) {
+    until(window, label, |window| is_ready(window, label));
+    window.get_by_role_and_label(Role::Button, label).click_accesskit();
+    window.step();
+    window.step();
+}
+
+#[test]
+fn from_an_empty_recording_to_a_network_that_answers_in_the_loop() {
+    let folder = tempfile::tempdir().unwrap();
+    let store = Store::open(folder.path());
+    store.save(&records().0).unwrap();
+    store.save(&records().1).unwrap();
+    let mut console = Console::new(None, folder.path());
+    console.press("Next");
+    console.press("Start recording");
+    console.record(12_000);
+    console.read("All goals are met");
+    console.press("Next");
+    console.press("Small (16)");
+    console.press("Start training");
+    // Looking elsewhere does not end it.
+    console.press("Back");
+    assert!(console.shows("All goals are met"));
+    console.press("Next");
+    console.read("networks on");
+    assert!(rows_of(folder.path(), "tip-force-data").unwrap() >= 6000, "the data set is on disk for the command line");
+    console.press("Next");
+    console.press("Start the check");
+    console.read("without touching the tissue");
+    console.read("Verdict: ");
+    console.read("Accepted");
+    assert!(console.shows("Regression plot") && console.shows("Histogram of the predicted force without contact"));
+    console.window.check_accessibility();
+    console.press("Next");
+    assert!(!model_path(folder.path()).exists(), "nothing is kept without being asked");
+    let wizards = std::mem::take(&mut console.window.state_mut().wizards);
+    let mut real = real_console(wizards, folder.path());
+    press(&mut real, "Save and use");
+    until(&mut real, "saved", |window| window.query_all_by_label_contains("Saved and in use").next().is_some());
+    let lines = real.state().in_force().lines();
+    assert!(
+        lines.iter().any(|line| line.starts_with("Tip force: 2") && line.contains("error on new data")),
+        "{lines:?}"
+    );
+    until(&mut real, "the network at work", |window| {
+        window.state().tick().is_some_and(|tick| tick.force.tip_force.is_some())
+    });
+    drop(real);
+    answers_in_the_loop(folder.path());
+}
+
+/// On the virtual clock the network that was kept answers, and errs less than the wrist force does.
+fn answers_in_the_loop(folder: &Path) {
+    let (rig, mut scene) = (RigConfig::load("simulated").unwrap(), Scene::load("isolation").unwrap());
+    scene.seed += 1;
+    let calibrations = InForce::load(Some(folder), &rig, &scene).calibrations(&rig);
+    let plan = Plan { rig, scene, calibrations, engage: false };
+    let [mut by_network, mut by_wrist, mut answered] = [0.0; 3];
+    let correspondence = records().1.correspondence();
+    run_virtual(&plan, 15.0, |tick| {
+        if tick.force.source == ForceSource::Network {
+            let sample = tick.wrist.unwrap();
+            let true_n = correspondence.tip_force_s1(&sample, &sample.tissue_n.unwrap()).unwrap();
+            by_network += (tick.force.tip_force.unwrap().force_s1_n - true_n).norm();
+            by_wrist += (tick.force.gravity_free.unwrap().force_n - true_n).norm();
+            answered += 1.0;
+        }
+        (tick.index == 10).then_some(Command::Prompt(Side::Right, Prompt::Work))
+    })
+    .unwrap();
+    assert!(answered > 10_000.0, "{answered} of 15000 ticks");
+    assert!(by_network < 0.5 * by_wrist, "{} against {} N", by_network / answered, by_wrist / answered);
+}
+
+#[test]
+fn without_a_correspondence_nothing_can_be_recorded() {
+    let folder = tempfile::tempdir().unwrap();
+    Store::open(folder.path()).save(&records().0).unwrap();
+    let mut real = real_console(Wizards::default(), folder.path());
+    press(&mut real, "Calibrate tip force…");
+    until(&mut real, "the reason", |window| {
+        window.query_by_label_contains("The correspondence is not known: calibrate it first").is_some()
+            && window.query_by_label_contains("Correspondence: not known; press").is_some()
+            && window.query_by_label_contains("Gravity: met").is_some()
+    });
+    for _ in 0..20 {
+        real.step();
+        assert!(!is_ready(&real, "Next"));
+    }
+}
+
+#[test]
+fn work_in_one_place_never_meets_the_goals_and_its_network_needs_a_name() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut console = Console::new(Some(Flaw::WorksInOnePlace), folder.path());
+    console.press("Next");
+    console.press("Start recording");
+    console.read("Still to do: reach left, right, near and far (tilt of the shaft)");
+    console.record(6500);
+    assert!(
+        console.shows("Still to do: reach left") && !console.is_ready("Next"),
+        "all rows, and not enough of the space"
+    );
+    console.press("Train anyway");
+    console.train("Small (16)");
+    assert!(console.shows("The recording is incomplete (tilt of the shaft)"));
+    console.press("Next");
+    console.press("Start the check");
+    console.read("Verdict: ");
+    assert!(!console.shows("Accepted"));
+    console.press("Next");
+    assert!(!console.is_ready("Save in spite of the verdict") && !console.shows("Save and use"));
+}
+
+#[test]
+fn sensors_that_do_not_agree_are_refused_and_an_override_is_written_into_the_file() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut console = Console::new(Some(Flaw::LeansOnTheStand), folder.path());
+    console.press("Next");
+    console.press("Start recording");
+    console.read("All goals are met");
+    console.press("Next");
+    console.train("Small (16)");
+    console.press("Next");
+    console.press("Start the check");
+    console.read("Verdict: ");
+    assert!(console.shows("Poor data"), "{:?}", texts(&console.window));
+    console.press("Next");
+    assert!(!console.is_ready("Save in spite of the verdict"), "a name and a reason come first");
+    for (label, text) in [("Your name", "A. Technician"), ("Reason", "practice")] {
+        let field = console.window.get_by_role_and_label(Role::TextInput, label);
+        field.focus();
+        field.type_text(text);
+        console.step();
+        console.step();
+    }
+    console.press("Save in spite of the verdict");
+    let saving = console.window.state_mut().saving.take().unwrap();
+    let (rig, scene) = (RigConfig::load("simulated").unwrap(), Scene::load("isolation").unwrap());
+    let mut in_force = InForce::load(Some(folder.path()), &rig, &scene);
+    in_force.save(saving).unwrap();
+    let lines = in_force.lines();
+    assert!(lines.iter().any(|line| line.contains("NOT PROVEN, kept by A. Technician")), "{lines:?}");
+    let wrist = rig.simulated_wrist(Side::Right).unwrap();
+    let store = Store::open(folder.path());
+    let kept = kept_model(&store, &wrist.serial_number, &wrist.tool, SystemTime::now()).unwrap().unwrap();
+    let check = kept.record.origin.check.unwrap();
+    assert_eq!(
+        (check.judgement.verdict, check.judgement.override_by.as_deref()),
+        (Verdict::PoorData, Some("A. Technician"))
+    );
+    assert_eq!(check.judgement.override_reason.as_deref(), Some("practice"));
+}
+
+#[test]
+fn a_cancelled_training_and_steps_back_keep_the_recording() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut console = Console::new(None, folder.path());
+    console.press("Next");
+    console.press("Start recording");
+    console.record(1000);
+    console.press("Pause");
+    let rows = console.rows();
+    console.press("Back");
+    console.press("Next");
+    assert_eq!(console.rows(), rows, "a step back costs no row, and nothing is taken meanwhile");
+    console.press("Train anyway");
+    console.press("Start training");
+    console.press("Cancel training");
+    console.read("Cancelled. The recording is kept.");
+    assert!(console.is_ready("Start training") && !console.is_ready("Next"), "nothing was trained");
+    console.press("Back");
+    assert_eq!(console.rows(), rows);
+    assert_eq!(rows_of(folder.path(), "tip-force-data"), Some(rows), "it is on disk too");
+    console.press("Go on recording");
+    console.record(rows + 300);
+    let rows = console.rows();
+    console.look_away();
+    assert_eq!(console.rows(), rows, "nobody watched, and nothing is lost");
+    assert!(console.shows("Paused: press"), "what happened meanwhile is not known: it goes on when asked to");
+    console.press("Go on recording");
+    console.read("setting the sensor under the tissue to zero");
+    console.record(rows + 300);
+    console.press("Start over");
+    assert!(console.shows("Put the tissue on its sensor"));
+    console.press("Next");
+    assert_eq!(console.rows(), 0, "started over");
+}

@@ -1,0 +1,6 @@
+//! The real window on an X server without a screen.
+#![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+mod real_window;
+mod server;
+mod sessions;

@@ -25,7 +25,7 @@ mod wrist;
 #[cfg(unix)]
 pub use desk::Desk;
 pub use hand::Hand;
-pub use plan::{Plan, run_virtual, start, start_on};
+pub use plan::{Plan, run_virtual, start, start_on, start_simulated};
 pub use tissue::Tissue;
 pub use trocar::Trocar;
 pub use world::World;

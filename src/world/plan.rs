@@ -2,10 +2,10 @@
 
 use nima_core::impedance::SettingsError;
 use nima_machine::{
-    config::RigConfig,
+    config::{RigConfig, SchedulingClass},
     messages::{Command, Tick},
     rig::{DeviceRig, Rig, RigError, Roster, SIDES, Side},
-    runtime::{self, Assembly, Handle, StartError, Summary},
+    runtime::{self, Assembly, Clock, Handle, StartError, Summary},
     teleop::{Calibrations, Loop},
 };
 
@@ -83,7 +83,7 @@ impl Plan {
     /// The loop of this plan on a rig that the caller made.
     fn on(&self, rig: Box<dyn Rig>, roster: Roster) -> Result<Assembly, SettingsError> {
         let (rate_hz, scheduling, engage) = (self.rig.rate_hz, self.rig.scheduling, self.engage);
-        Ok(Assembly { control: self.control()?, rig, roster, rate_hz, scheduling, engage })
+        Ok(Assembly { control: self.control()?, rig, roster, rate_hz, clock: Clock::Real, scheduling, engage })
     }
 }
 
@@ -102,6 +102,17 @@ pub fn start(plan: &Plan) -> Result<Handle, StartError> {
 /// As [`start`].
 pub fn start_on(plan: &Plan, rig: Box<dyn Rig>, roster: Roster) -> Result<Handle, StartError> {
     runtime::start(plan.on(rig, roster)?)
+}
+
+/// Starts the loop of this plan in its own thread, on its simulated world and in simulated time, at most `speed` times as fast as real
+/// time: a busy machine makes it slower and nothing else. The devices of its rig are left out.
+///
+/// # Errors
+/// As [`start`].
+pub fn start_simulated(plan: &Plan, speed: f64) -> Result<Handle, StartError> {
+    let assembly = plan.on(Box::new(plan.worlds()), Roster::new())?;
+    let scheduling = SchedulingClass::Ordinary;
+    runtime::start(Assembly { clock: Clock::Simulated { speed }, scheduling, ..assembly })
 }
 
 /// Runs the simulated world of this plan for `seconds` of loop time; `each` sees every tick of every side, may give a command for the
@@ -124,6 +135,7 @@ mod tests {
     use nima_core::impedance::Mode;
     use nima_machine::{
         messages::{Event, LoopState, Refusal},
+        rig::{Inputs, Outputs},
         runtime::TICKS_WAITING_MAX,
     };
     use nima_testing::real_time::judged;
@@ -180,6 +192,33 @@ mod tests {
             (periods - (summary.ticks + summary.missed) as f64).abs() < 1.5,
             "every period is a tick or counted as missed"
         );
+    }
+
+    /// A world that is held up once, far longer than a stall may be.
+    struct HeldUp(Worlds);
+
+    impl Rig for HeldUp {
+        fn read(&mut self, now_s: f64) -> [Option<Inputs>; SIDES] {
+            if (now_s - 1.0).abs() < 1e-4 {
+                std::thread::sleep(Duration::from_millis(150));
+            }
+            self.0.read(now_s)
+        }
+
+        fn write(&mut self, now_s: f64, outputs: &[Outputs; SIDES]) {
+            self.0.write(now_s, outputs);
+        }
+    }
+
+    #[test]
+    fn in_simulated_time_a_loop_that_was_held_up_is_later_and_nothing_else() {
+        let plan = plan();
+        let assembly = plan.on(Box::new(HeldUp(plan.worlds())), Roster::new()).unwrap();
+        let handle = runtime::start(Assembly { clock: Clock::Simulated { speed: 20.0 }, ..assembly }).unwrap();
+        let tick = wait_for(&handle, |tick| tick.t_s > 1.5).unwrap();
+        assert_eq!(tick.state, LoopState::Engaged);
+        let summary = handle.stop_and_join().unwrap();
+        assert_eq!((summary.missed, (summary.seconds * 1e3).round() as u64), (0, summary.ticks));
     }
 
     #[test]

@@ -170,3 +170,13 @@ fn a_stall_is_a_fault_with_zero_force() {
     assert_eq!(tick.state, LoopState::Faulted(Fault::LoopStalled { periods: 100 }));
     assert_eq!(outputs, Outputs::SAFE);
 }
+
+#[test]
+fn a_stall_while_no_drives_are_on_harms_nobody_and_is_no_fault() {
+    let Plan { rig, scene, .. } = plan("peg_transfer");
+    let mut control = Pair::new(&rig, Side::Right, &Calibrations::default()).unwrap();
+    let inputs = World::new(&scene, rig.rate_hz).exchange(0.1, &Outputs::SAFE);
+    let (outputs, tick) = control.step(inputs, &Timing { now_s: 0.1, missed_now: 100, ..Timing::default() });
+    assert_eq!((tick.state, outputs), (LoopState::Idle, Outputs::SAFE));
+    assert_eq!(tick.missed, 100, "it is counted");
+}

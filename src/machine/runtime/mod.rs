@@ -1,4 +1,4 @@
-//! Time and threads: runs the loop on the real clock in its own thread, or on the virtual clock as fast as it goes.
+//! Time and threads: runs the loop in its own thread, on the real clock or at the pace of it, or on the virtual clock as fast as it goes.
 //!
 //! Takes an [`Assembly`]; gives a [`Handle`] (commands in; ticks and events out, over bounded queues) or a [`Summary`].
 //! The real-time thread owns the rig and the loop. It never waits for a receiver: what does not fit is dropped and counted.
@@ -22,6 +22,19 @@ use crate::{
     teleop::Loop,
 };
 
+/// What the loop takes as its time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Clock {
+    /// The monotonic clock: every period has a deadline, what is late is counted, and a stall switches the drives off.
+    Real,
+    /// Simulated time, at most so many times as fast as real time. A loop that was held up goes on where it was, and nothing is late: for
+    /// simulated rigs, where nobody is at the other end.
+    Simulated {
+        /// Simulated seconds in a real one.
+        speed: f64,
+    },
+}
+
 /// A loop and the rig that it runs on, ready to start.
 pub struct Assembly {
     /// The loop.
@@ -32,6 +45,8 @@ pub struct Assembly {
     pub roster: Roster,
     /// Ticks per second.
     pub rate_hz: f64,
+    /// The loop's time, where it runs in a thread of its own.
+    pub clock: Clock,
     /// What to ask of the operating system.
     pub scheduling: SchedulingClass,
     /// Engage as soon as everything is there.

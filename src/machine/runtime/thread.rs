@@ -11,7 +11,7 @@ use nima_core::impedance::SettingsError;
 use nima_devices::Identity;
 
 use super::{
-    Assembly, Summary, os,
+    Assembly, Clock, Summary, os,
     summary::{CpuShare, DeviceFigures, Meters},
     supervisor::{Pulse, Supervisor},
     wrists::{self, WristChange, WristDoor, Wrists},
@@ -69,7 +69,7 @@ pub struct Handle {
 /// # Errors
 /// [`StartError::Thread`] where the operating system gives none.
 pub fn start(assembly: Assembly) -> Result<Handle, StartError> {
-    let Assembly { control, rig, roster, rate_hz, scheduling, engage } = assembly;
+    let Assembly { control, rig, roster, rate_hz, clock, scheduling, engage } = assembly;
     let (pulse, levers) = (Arc::new(Pulse::default()), rig.levers());
     let (commands, commands_in) = bounded(COMMANDS_WAITING_MAX);
     let (ticks_out, ticks) = bounded(TICKS_WAITING_MAX);
@@ -84,6 +84,7 @@ pub fn start(assembly: Assembly) -> Result<Handle, StartError> {
         scheduling,
         names: roster.iter().map(|entry| entry.name.clone()).collect(),
         period_ns: (1e9 / rate_hz).round() as u64,
+        clock,
         commands: commands_in,
         ticks: ticks_out,
         events: events_out,
@@ -194,6 +195,7 @@ struct Realtime {
     /// Engage once, as soon as everything delivers.
     engage: bool,
     period_ns: u64,
+    clock: Clock,
     commands: Receiver<Command>,
     ticks: Sender<Tick>,
     events: Sender<Event>,
@@ -208,19 +210,10 @@ impl Realtime {
         self.events.try_send(Event::Scheduling(scheduling)).ok();
         let cpu_s = os::cpu_s();
         let start_ns = os::monotonic_ns();
-        let mut deadline_ns = start_ns;
         let mut timing = Timing::default();
-        while self.obey_commands(timing.now_s) {
-            deadline_ns += self.period_ns;
-            os::sleep_until_ns(deadline_ns);
-            let woke_ns = os::monotonic_ns();
-            let late_ns = woke_ns.saturating_sub(deadline_ns);
-            // Whole periods that passed are counted and skipped, never caught up in a burst.
-            timing.missed_now = late_ns / self.period_ns;
-            deadline_ns += timing.missed_now * self.period_ns;
-            timing.now_s = (deadline_ns - start_ns) as f64 * 1e-9;
-            timing.wake_s = late_ns as f64 * 1e-9;
-            self.tick(&mut timing, woke_ns);
+        match self.clock {
+            Clock::Real => self.run_in_real_time(start_ns, &mut timing),
+            Clock::Simulated { speed } => self.run_in_simulated_time(start_ns, speed, &mut timing),
         }
         // Whatever ends the loop, the hand is left without force and the follower at rest.
         self.rig.write(timing.now_s, &[Outputs::SAFE; SIDES]);
@@ -238,6 +231,36 @@ impl Realtime {
                 .map(|(name, health)| DeviceFigures { name: name.clone(), health, trouble: None })
                 .collect(),
             ..self.meters.summary("real", &self.control, timing.now_s, wall_s, scheduling)
+        }
+    }
+
+    fn run_in_real_time(&mut self, start_ns: u64, timing: &mut Timing) {
+        let mut deadline_ns = start_ns;
+        while self.obey_commands(timing.now_s) {
+            deadline_ns += self.period_ns;
+            os::sleep_until_ns(deadline_ns);
+            let woke_ns = os::monotonic_ns();
+            let late_ns = woke_ns.saturating_sub(deadline_ns);
+            // Whole periods that passed are counted and skipped, never caught up in a burst.
+            timing.missed_now = late_ns / self.period_ns;
+            deadline_ns += timing.missed_now * self.period_ns;
+            timing.now_s = (deadline_ns - start_ns) as f64 * 1e-9;
+            timing.wake_s = late_ns as f64 * 1e-9;
+            self.tick(timing, woke_ns);
+        }
+    }
+
+    fn run_in_simulated_time(&mut self, start_ns: u64, speed: f64, timing: &mut Timing) {
+        let pace_ns = (self.period_ns as f64 / speed).round() as u64;
+        let mut due_ns = start_ns;
+        while self.obey_commands(timing.now_s) {
+            due_ns += pace_ns;
+            os::sleep_until_ns(due_ns);
+            let woke_ns = os::monotonic_ns();
+            // Time that was lost is not made up for: it would be a burst.
+            due_ns = due_ns.max(woke_ns.saturating_sub(pace_ns));
+            timing.now_s += self.period_ns as f64 * 1e-9;
+            self.tick(timing, woke_ns);
         }
     }
 
@@ -275,7 +298,8 @@ impl Realtime {
         let worked_ns = os::monotonic_ns();
         self.rig.write(timing.now_s, &outputs);
         let written_ns = os::monotonic_ns();
-        self.pulse.beat(written_ns, outputs.iter().any(|outputs| outputs.drives));
+        let stalls = self.clock == Clock::Real;
+        self.pulse.beat(written_ns, stalls && outputs.iter().any(|outputs| outputs.drives));
         timing.work_s = (worked_ns - read_ns) as f64 * 1e-9;
         self.meters.wake.record(timing.wake_s);
         self.meters.rig.record((read_ns - woke_ns + written_ns - worked_ns) as f64 * 1e-9);

@@ -24,7 +24,7 @@ use crate::{
 const SILENT_AFTER_S: f64 = 0.020;
 /// Nothing newer over the link for longer than this, beyond its delay, s: fault. The force is gone long before.
 const LINK_SILENT_AFTER_S: f64 = 0.1;
-/// Missed periods in a row that make a fault, as time, s.
+/// Missed periods in a row that make a fault while drives are on, as time, s.
 const STALLED_AFTER_S: f64 = 0.050;
 /// Most events told in one tick; more in one tick is not possible.
 pub const EVENTS_PER_TICK_MAX: usize = 6;

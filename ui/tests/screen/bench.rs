@@ -9,9 +9,12 @@ use egui_kittest::{
 };
 use nima_console::console::ConsoleApp;
 use nima_machine::{config::RigConfig, messages::Tick};
-use nima_world::{Plan, scene::Scene, start};
+use nima_world::{Plan, scene::Scene, start_simulated};
 
-const TIMEOUT: Duration = Duration::from_secs(20);
+/// Far longer than anything takes, also on a busy machine.
+pub(crate) const TIMEOUT: Duration = Duration::from_mins(3);
+/// How much faster than real time a simulated person works in a wizard.
+pub(crate) const WIZARD_SPEED: f64 = 4.0;
 
 /// The console on the simulated rig in this scene, made ready by `prepare`; both hands of a scene that has two.
 pub(crate) fn console_of(
@@ -24,13 +27,23 @@ pub(crate) fn console_of(
     shown(&Plan { rig, scene, calibrations: Default::default(), engage: true }, size, prepare)
 }
 
-/// The console on a loop that is started by this plan, made ready by `prepare`.
+/// The console on a loop that is started by this plan, made ready by `prepare`. In simulated time: a busy machine faults no loop.
 pub(crate) fn shown(
     plan: &Plan,
     size: [f32; 2],
     prepare: impl FnOnce(ConsoleApp) -> ConsoleApp + 'static,
 ) -> Harness<'static, ConsoleApp> {
-    let handle = start(plan).unwrap();
+    shown_at(1.0, plan, size, prepare)
+}
+
+/// The same with a loop that is `speed` times as fast, for what takes minutes.
+pub(crate) fn shown_at(
+    speed: f64,
+    plan: &Plan,
+    size: [f32; 2],
+    prepare: impl FnOnce(ConsoleApp) -> ConsoleApp + 'static,
+) -> Harness<'static, ConsoleApp> {
+    let handle = start_simulated(plan, speed).unwrap();
     let (rig, scene) = (plan.rig.clone(), plan.scene.clone());
     Harness::builder()
         .with_size(size)

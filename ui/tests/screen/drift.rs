@@ -17,9 +17,7 @@ use nima_recording::store::Store;
 use nima_tests::gravity::gravity;
 use nima_world::{Plan, scene::Scene};
 
-use crate::bench::shown;
-
-const TIMEOUT: Duration = Duration::from_secs(30);
+use crate::bench::{TIMEOUT, shown};
 
 /// A wrist that nobody guides and no trocar touches, with its bias off by `step_n` along x.
 fn free_scene(step_n: f64) -> Scene {

@@ -13,10 +13,10 @@ use egui_kittest::{
 };
 use nima_console::console::{ConsoleApp, desk::Panel};
 use nima_machine::{config::RigConfig, messages::LoopState};
-use nima_world::{Plan, scene::Scene, start};
+use nima_world::{Plan, scene::Scene};
 use serde_json::Value;
 
-const TIMEOUT: Duration = Duration::from_mins(1);
+use crate::bench::{TIMEOUT, shown};
 
 fn nima(arguments: &[&str]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_nima")).args(["study", "tradeoff"]).args(arguments).output().unwrap()
@@ -114,13 +114,8 @@ fn bad_input_is_refused_in_one_line() {
 fn console() -> Harness<'static, ConsoleApp> {
     let rig = RigConfig::load("simulated").unwrap();
     let scene = Scene::load("peg_transfer").unwrap();
-    let handle =
-        start(&Plan { rig: rig.clone(), scene: scene.clone(), calibrations: Default::default(), engage: true })
-            .unwrap();
-    let mut harness = Harness::builder()
-        .with_size([1600.0, 2400.0])
-        .with_step_dt(1.0 / 30.0)
-        .build_eframe(move |cc| ConsoleApp::new(cc, handle, rig, scene));
+    let plan = Plan { rig, scene, calibrations: Default::default(), engage: true };
+    let mut harness = shown(&plan, [1600.0, 2400.0], |app| app);
     until(&mut harness, "engaged", |app| app.tick().is_some_and(|tick| tick.state == LoopState::Engaged));
     harness.run_steps(3);
     // Its tile lies behind others.

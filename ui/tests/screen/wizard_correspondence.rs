@@ -25,25 +25,15 @@ use nima_tests::gravity::gravity;
 use nima_world::{
     Plan,
     scene::{Flaw, Scene},
-    start,
 };
 
-const TIMEOUT: Duration = Duration::from_secs(40);
+use crate::bench::{TIMEOUT, WIZARD_SPEED, shown_at};
 
 fn console(scene: Scene, store: &Path, calibrations: Calibrations) -> Harness<'static, ConsoleApp> {
     let rig = RigConfig::load("simulated").unwrap();
-    let plan = Plan {
-        rig: rig.clone(),
-        scene: scene.clone(),
-        calibrations: [calibrations, Calibrations::default()],
-        engage: false,
-    };
-    let handle = start(&plan).unwrap();
+    let plan = Plan { rig, scene, calibrations: [calibrations, Calibrations::default()], engage: false };
     let store = store.to_owned();
-    Harness::builder()
-        .with_size([1600.0, 1500.0])
-        .with_step_dt(1.0 / 30.0)
-        .build_eframe(move |cc| ConsoleApp::new(cc, handle, rig, scene).with_store(&store))
+    shown_at(WIZARD_SPEED, &plan, [1600.0, 1500.0], move |app| app.with_store(&store))
 }
 
 /// Steps the window until it is as wanted. The window never settles, so `run` is of no use.

@@ -17,10 +17,7 @@ use nima_world::{
     scene::{Flaw, Scene},
 };
 
-use crate::bench::shown;
-
-/// Twelve poses of a simulated person take about half a minute; a busy machine takes longer.
-const TIMEOUT: Duration = Duration::from_mins(2);
+use crate::bench::{TIMEOUT, WIZARD_SPEED, shown_at};
 
 type Console = Harness<'static, ConsoleApp>;
 
@@ -28,7 +25,7 @@ fn console(scene: Scene, store: &Path) -> Console {
     let rig = RigConfig::load("simulated").unwrap();
     let store = store.to_owned();
     let plan = Plan { rig, scene, calibrations: Default::default(), engage: false };
-    shown(&plan, [1600.0, 1000.0], move |app| app.with_store(&store))
+    shown_at(WIZARD_SPEED, &plan, [1600.0, 1000.0], move |app| app.with_store(&store))
 }
 
 fn gravity_scene(flaw: Option<Flaw>) -> Scene {

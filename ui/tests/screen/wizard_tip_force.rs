@@ -31,12 +31,13 @@ use nima_recording::{
 use nima_world::{
     Plan, run_virtual,
     scene::{Flaw, Scene},
-    start,
 };
 
-use crate::virtual_rig::{VirtualRig, records};
+use crate::{
+    bench::{TIMEOUT, shown},
+    virtual_rig::{VirtualRig, records},
+};
 
-const TIMEOUT: Duration = Duration::from_mins(3);
 /// Ticks of the virtual clock between two pictures of the window.
 const TICKS: usize = 250;
 
@@ -172,16 +173,13 @@ fn model_path(folder: &Path) -> PathBuf {
     Store::open(folder).path_of("tip-force", &records().0.head.sensor, "safetensors").unwrap()
 }
 
-/// The real console, on the real clock, with what the wizard has.
+/// The real console on a running loop, with what the wizard has.
 fn real_console(wizards: Wizards, folder: &Path) -> Harness<'static, ConsoleApp> {
     let (rig, scene) = (RigConfig::load("simulated").unwrap(), Scene::load("isolation").unwrap());
     let calibrations = InForce::load(Some(folder), &rig, &scene).calibrations(&rig);
-    let handle = start(&Plan { rig: rig.clone(), scene: scene.clone(), calibrations, engage: false }).unwrap();
+    let plan = Plan { rig, scene, calibrations, engage: false };
     let folder = folder.to_owned();
-    Harness::builder()
-        .with_size([1600.0, 1500.0])
-        .with_step_dt(1.0 / 30.0)
-        .build_eframe(move |cc| ConsoleApp::new(cc, handle, rig, scene).with_store(&folder).with_wizards(wizards))
+    shown(&plan, [1600.0, 1500.0], move |app| app.with_store(&folder).with_wizards(wizards))
 }
 
 fn until(window: &mut Harness<'_, ConsoleApp>, what: &str, good: impl Fn(&Harness<'_, ConsoleApp>) -> bool) {

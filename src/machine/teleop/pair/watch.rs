@@ -59,7 +59,7 @@ impl<L: Link> Pair<L> {
     pub(super) fn watch(&mut self, inputs: Option<&Inputs>, moved_m: f64, timing: &Timing) {
         let now_s = timing.now_s;
         if timing.missed_now as f64 / self.rate_hz > STALLED_AFTER_S {
-            self.fail(Fault::LoopStalled { periods: timing.missed_now }, now_s);
+            self.fail_if_driven(Fault::LoopStalled { periods: timing.missed_now }, now_s);
         }
         let connected = !self.is_silent(now_s);
         if !connected {

@@ -207,7 +207,9 @@ struct Realtime {
 impl Realtime {
     fn run(mut self) -> Summary {
         let scheduling = os::prepare_thread(self.scheduling, self.period_ns);
-        self.events.try_send(Event::Scheduling(scheduling)).ok();
+        if self.clock == Clock::Real {
+            self.events.try_send(Event::Scheduling(scheduling)).ok();
+        }
         let cpu_s = os::cpu_s();
         let start_ns = os::monotonic_ns();
         let mut timing = Timing::default();

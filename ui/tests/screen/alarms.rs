@@ -12,7 +12,7 @@ use nima_console::console::{ConsoleApp, Options, settings::Kept, wizards::Which}
 use nima_machine::{config::RigConfig, messages::LoopState};
 use nima_world::{Plan, scene::Scene, start};
 
-use crate::bench::{console_of, press, until};
+use crate::bench::{TIMEOUT, console_of, press, until};
 
 const SIZE: [f32; 2] = [1100.0, 680.0];
 const SILENT: &str = "The control loop has stopped sending data";
@@ -22,7 +22,7 @@ const STUCK: &str = "The stop has not reached the control loop";
 fn read(harness: &mut Harness<'_, ConsoleApp>, words: &str) {
     let began = Instant::now();
     while harness.query_all_by_label_contains(words).next().is_none() {
-        assert!(began.elapsed() < Duration::from_secs(10), "never came: {words}");
+        assert!(began.elapsed() < TIMEOUT, "never came: {words}");
         std::thread::sleep(Duration::from_millis(20));
         harness.step();
     }

@@ -182,20 +182,23 @@ fn table(window: usize) -> f64 {
 fn ratios(window: usize) {
     let rows = rows(3 * window);
     let (mut slide, mut solution) = sliding(window / 2);
-    rows.iter().for_each(|row| slide.push(row));
+    for row in &rows {
+        slide.push(row);
+    }
     let mut next = rows.iter().cycle();
     let mut ours = || {
         next.next().into_iter().for_each(|row| slide.push(row));
         solution.solve(slide.current());
         black_box(&solution);
     };
-    let theirs: [(&str, fn(&[[Lanes; ROW]]) -> f64); 3] =
-        [("svd", svd), ("normal_equations", normal_equations), ("fresh_qr", fresh_qr)];
-    for (name, work) in theirs {
+    let mut tell = |name: &str, theirs: fn(&[[Lanes; ROW]]) -> f64| {
         ratio::tell(&format!("identification_{window}_{name}"), &mut ours, || {
-            black_box(work(&rows[..window]));
+            black_box(theirs(&rows[..window]));
         });
-    }
+    };
+    tell("svd", svd);
+    tell("normal_equations", normal_equations);
+    tell("fresh_qr", fresh_qr);
 }
 
 fn main() {

@@ -1,9 +1,11 @@
 //! Identification of all five degrees on three axes: ours beside what it replaces, in one run.
 //!
-//! First a table with p50 and p99 per tick and the ratios (written to be read by `./dev bench`), then the same routines
-//! under divan. `cargo bench -p nima --bench identification`.
+//! First a table with p50 and p99 per tick and the ratios, then the same routines under divan; with `--ratios` only the ratios that
+//! `./dev bench` keeps.
 
 #![expect(clippy::expect_used, reason = "a benchmark may stop at a setting out of range")]
+
+mod ratio;
 
 use std::{hint::black_box, time::Instant};
 
@@ -176,7 +178,34 @@ fn table(window: usize) -> f64 {
     ours
 }
 
+/// What is done without us, as multiples of ours.
+fn ratios(window: usize) {
+    let rows = rows(3 * window);
+    let (mut slide, mut solution) = sliding(window / 2);
+    for row in &rows {
+        slide.push(row);
+    }
+    let mut next = rows.iter().cycle();
+    let mut ours = || {
+        next.next().into_iter().for_each(|row| slide.push(row));
+        solution.solve(slide.current());
+        black_box(&solution);
+    };
+    let mut tell = |name: &str, theirs: fn(&[[Lanes; ROW]]) -> f64| {
+        ratio::tell(&format!("identification_{window}_{name}"), &mut ours, || {
+            black_box(theirs(&rows[..window]));
+        });
+    };
+    tell("svd", svd);
+    tell("normal_equations", normal_equations);
+    tell("fresh_qr", fresh_qr);
+}
+
 fn main() {
+    if ratio::alone() {
+        [300, 3000].into_iter().for_each(ratios);
+        return;
+    }
     println!("{:>6}  {:<44} {:>10} {:>10} {:>10}", "rows", "per tick, 3 axes, N = 1..5", "p50 us", "p99 us", "max us");
     let short = table(300);
     let long = table(3000);

@@ -1,10 +1,13 @@
 //! The tip-force network's size against accuracy and time, on sessions it never saw; and beside what a user would use instead.
 //!
 //! `./dev bench` prints one row per size: errors against the truth of the simulated trocar, answers without contact, time of one
-//! answer, time of training 30000 rows. Below it the same network evaluated by the tensor library that trained it.
+//! answer, time of training 30000 rows. Below it the same network evaluated by the tensor library that trained it. With `--ratios`
+//! only the ratio of the two, which `./dev bench` keeps.
 #![expect(clippy::unwrap_used, reason = "a benchmark fails by panicking")]
 
-use std::time::Instant;
+mod ratio;
+
+use std::{hint::black_box, time::Instant};
 
 use candle_core::{Device, Tensor};
 use nima_core::tip_force::{FeatureSettings, TrainingSettings};
@@ -12,7 +15,22 @@ use nima_study::validation::isolation::{ROWS, Reached, Sessions};
 
 const SIZES: [&[usize]; 7] = [&[8], &[16], &[32], &[16, 16], &[32, 32], &[64, 64], &[128, 128]];
 
+/// The tensor library's answer as a multiple of ours, which tells its doubt too.
+fn ratios() {
+    let sessions = Sessions::record(1, ROWS, FeatureSettings::default()).unwrap();
+    let settings = TrainingSettings { epochs: Some(1), ..TrainingSettings::default() };
+    let (mut estimator, _) = sessions.train(None, &settings).unwrap();
+    let input = vec![0.1; estimator.model().inputs.len()];
+    let ours = || {
+        black_box(estimator.estimate(black_box(&input)));
+    };
+    ratio::tell("tip_force_tensors", ours, tensors());
+}
+
 fn main() {
+    if ratio::alone() {
+        return ratios();
+    }
     let sessions = Sessions::record(1, ROWS, FeatureSettings::default()).unwrap();
     println!(
         "{:>10} {:>24} {:>8} {:>18} {:>10}",
@@ -39,19 +57,27 @@ fn main() {
     println!("\nfour networks of 36-32-32-3 for one row in the tensor library: {:.1} us median", tensors_us());
 }
 
-/// Median time of the same arithmetic as separate tensor operations, microseconds.
-fn tensors_us() -> f64 {
+/// The same arithmetic as separate tensor operations.
+fn tensors() -> impl FnMut() {
     let device = Device::Cpu;
     let random = |rows: usize, columns: usize| Tensor::randn(0.0_f32, 1.0, (rows, columns), &device).unwrap();
     let layers: Vec<[Tensor; 3]> = (0..4).map(|_| [random(36, 32), random(32, 32), random(32, 3)]).collect();
     let input = random(1, 36);
+    move || {
+        for [first, second, last] in &layers {
+            let hidden = input.matmul(first).unwrap().tanh().unwrap().matmul(second).unwrap().tanh().unwrap();
+            black_box(hidden.matmul(last).unwrap());
+        }
+    }
+}
+
+/// Their median time, microseconds.
+fn tensors_us() -> f64 {
+    let mut work = tensors();
     let mut times: Vec<f64> = (0..2000)
         .map(|_| {
             let start = Instant::now();
-            for [first, second, last] in &layers {
-                let hidden = input.matmul(first).unwrap().tanh().unwrap().matmul(second).unwrap().tanh().unwrap();
-                std::hint::black_box(hidden.matmul(last).unwrap());
-            }
+            work();
             1e6 * start.elapsed().as_secs_f64()
         })
         .collect();

@@ -51,11 +51,18 @@ pub trait Device: Send {
     /// lost, damaged or refused is counted in [`Device::health`]; a device that is lost stays so until it is opened again.
     fn poll(&mut self, now_s: f64) -> Option<Stamped<Self::Reading>>;
 
+    /// How it is, and who it is.
+    fn about(&self) -> (&Health, &Identity);
+
     /// How it is.
-    fn health(&self) -> &Health;
+    fn health(&self) -> &Health {
+        self.about().0
+    }
 
     /// Who it is.
-    fn identity(&self) -> &Identity;
+    fn identity(&self) -> &Identity {
+        self.about().1
+    }
 }
 
 /// A person's command to a device in fault.

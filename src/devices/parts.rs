@@ -66,11 +66,7 @@ impl<D: Device + ?Sized> Device for Box<D> {
         (**self).poll(now_s)
     }
 
-    fn health(&self) -> &Health {
-        (**self).health()
-    }
-
-    fn identity(&self) -> &Identity {
-        (**self).identity()
+    fn about(&self) -> (&Health, &Identity) {
+        (**self).about()
     }
 }

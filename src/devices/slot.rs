@@ -232,12 +232,8 @@ mod tests {
             Some(Stamped { device_s: None, arrival_s: now_s, value: self.left })
         }
 
-        fn health(&self) -> &Health {
-            &self.health
-        }
-
-        fn identity(&self) -> &Identity {
-            &self.identity
+        fn about(&self) -> (&Health, &Identity) {
+            (&self.health, &self.identity)
         }
     }
 

@@ -116,6 +116,8 @@ fn a_wrong_file_is_refused_in_one_line_and_never_read_as_a_model() {
     assert!(refused(&swapped("nima tip force 1", "nima tip force 9")).contains("this version reads"));
     assert!(refused(&swapped("doubt.centres", "doubt.central")).contains("doubt.centres is absent"));
     assert!(refused(&swapped("\"nima\"", "\"nina\"")).contains("metadata"));
+    // A key that may be left out is not taken for one that is.
+    assert!(refused(&swapped("epochs", "epocks")).contains("unknown field `epocks`"));
     let mut poisoned = good.clone();
     let end = poisoned.len();
     poisoned[end - 4..].copy_from_slice(&f32::NAN.to_le_bytes());

@@ -4,7 +4,7 @@ use std::time::{Duration, Instant};
 
 use nalgebra::Vector3;
 use nima_core::kinematics::{Arm, Rcm, find};
-use nima_devices::{ForceReading, Standing, bota};
+use nima_devices::{ForceReading, Standing, bota, simulated_arm};
 use nima_machine::{
     config::RigConfig,
     rig::{DeviceRig, FollowerSettings, Inputs, Outputs, Rig as _, SIDES, SensorSettings, Settings},
@@ -37,9 +37,7 @@ fn devices(folder: &std::path::Path) -> (Settings, [Serving; 2]) {
     let (arm, rcm) = (Arm::new(&right.mount).unwrap(), Rcm::new(&right.rcm).unwrap());
     let tip_m = right.rcm.trocar_m + right.rcm.inward.normalize() * 0.12;
     let start_rad: [f64; 7] = find(&arm, &rcm, &tip_m).unwrap().joint_rad.into();
-    // As a rig file has it.
-    let chosen = format!("make = \"simulated\"\nstart_rad = {start_rad:?}\n");
-    right.arm = toml::from_str::<FollowerSettings>(&chosen).unwrap();
+    right.arm = FollowerSettings::Simulated(simulated_arm::Settings::at(start_rad));
     right.servos = None;
     right.sensor = SensorSettings::Bota(bota::Settings::new(bota::Transport::GenA, port.display().to_string()));
     let handle = right.handle.force_dimension_mut().unwrap();

@@ -18,6 +18,7 @@ pub enum Verdict {
 /// Errors per axis (x, y, z): mean of the absolute error, standard deviation of the error, largest absolute error. In the
 /// unit of what was compared (N or Nm).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct AxisStats {
     /// Mean absolute error.
     pub mae: [f64; 3],
@@ -60,6 +61,7 @@ impl AxisStats {
 
 /// Errors on the data that a model was fitted on, and on data it was not.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Residuals {
     /// On the data of the fit.
     pub fitted: AxisStats,

@@ -16,6 +16,7 @@ mod pace;
 mod posture;
 mod rcm;
 mod ready;
+mod start;
 #[cfg(test)]
 mod tests;
 mod velocity;
@@ -24,8 +25,9 @@ mod wrist;
 pub use gen3::{ACCELERATION_RAD_S2, Chain, JOINTS, Joints, LIMIT_RAD, SPEED_RAD_S, limit_margin_rad};
 pub use hand_eye::{Hand, HandEye, Mapping, MappingError, SCALES, Target, view_from_omega, world_from_tracked_view};
 pub use instrument::{Arm, ArmError, ArmSettings, Pose};
-pub use inverse::{Inverse, KEEP_OFF_RAD, Measures, START_MISS_M, StartError, Step};
+pub use inverse::{Inverse, KEEP_OFF_RAD, Measures, START_MISS_M, Step};
 pub use limits::JointLimits;
 pub use rcm::{Confined, Rcm, RcmError, RcmSettings, Shaft};
 pub use ready::{Ready, ReadyError, find};
+pub use start::StartError;
 pub use wrist::{Jaws, PITCH_MAX_RAD};

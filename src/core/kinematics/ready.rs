@@ -12,9 +12,10 @@ use thiserror::Error;
 use super::{
     gen3::{JOINTS, Joints, LIMIT_RAD, REACH_M, SHOULDER_M, limit_margin_rad},
     instrument::Arm,
-    inverse::{Inverse, Measures, StartError},
+    inverse::{Inverse, Measures},
     posture,
     rcm::{Rcm, RcmError, Shaft},
+    start::StartError,
     velocity::{Task, Wish, towards},
 };
 

@@ -1,9 +1,12 @@
 //! The whole way from target to joints, on an arm with a usual instrument.
 
+mod usual_arm;
+
 use std::{f64::consts::TAU, time::Instant};
 
 use nalgebra::Vector3;
 
+use self::usual_arm::{READY_RAD, TROCAR_M, arm, arm_settings, middle_m, rcm};
 use super::{
     inverse::{TIP_SPEED_M_S, TURN_SPEED_RAD_S},
     ready::trial_places,
@@ -11,39 +14,6 @@ use super::{
 };
 
 const PERIOD_S: f64 = 1e-3;
-/// The trocar beside the arm's foot.
-const TROCAR_M: Vector3<f64> = Vector3::new(0.4, 0.0, -0.1);
-/// Ready pose of [`find`] there, so that not every test has to search.
-const READY_RAD: [f64; JOINTS] = [2.38, -1.34, -1.37, 1.91, -1.28, 1.68, 0.92];
-
-fn arm_settings() -> ArmSettings {
-    ArmSettings {
-        base_m: Vector3::zeros(),
-        base_deg: Vector3::zeros(),
-        sensor_m: Vector3::new(0.0, 0.0, 0.06),
-        sensor_deg: Vector3::zeros(),
-        shaft_m: 0.42,
-    }
-}
-
-fn arm() -> Arm {
-    Arm::new(&arm_settings()).unwrap()
-}
-
-fn rcm(cone_deg: f64) -> Rcm {
-    let settings = RcmSettings {
-        trocar_m: TROCAR_M,
-        inward: -Vector3::z(),
-        cone_deg,
-        insertion_min_m: 0.03,
-        insertion_max_m: 0.25,
-    };
-    Rcm::new(&settings).unwrap()
-}
-
-fn middle_m() -> Vector3<f64> {
-    TROCAR_M - Vector3::z() * 0.12
-}
 
 /// An arm at rest with its tip in the middle of the permitted space.
 fn started(cone_deg: f64) -> Inverse {

@@ -6,6 +6,7 @@ use super::{Expansion, MAX_FEATURES, Normalisation, linear};
 
 /// Linear regression over columns: `y = constant + x W`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 struct Regression {
     /// `inputs x outputs`, row by row.
     weights: Vec<f32>,
@@ -14,6 +15,7 @@ struct Regression {
 
 /// The baselines of one model, kept in its file.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Baselines {
     /// Per output: the input of like name (`fx_n` for `tip_fx_n`), which "no model" takes as it is.
     like: Vec<Option<usize>>,

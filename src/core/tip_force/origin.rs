@@ -6,6 +6,7 @@ use crate::calibration::Judgement;
 
 /// How to train.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct TrainingSettings {
     /// Seed of weights, folds and orders.
     pub seed: u64,
@@ -49,6 +50,7 @@ impl TrainingSettings {
 
 /// What one member reached.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct MemberFigures {
     /// Epoch whose weights were kept, from 1; 0 where the linear path alone was best.
     pub epoch: usize,
@@ -85,6 +87,7 @@ pub struct Check {
 
 /// Where a model came from.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Origin {
     /// Serial number of the sensor, as the caller gave it.
     pub sensor: Option<String>,

@@ -182,12 +182,8 @@ impl Device for Driver {
         }
     }
 
-    fn health(&self) -> &Health {
-        &self.judge.health
-    }
-
-    fn identity(&self) -> &Identity {
-        &self.identity
+    fn about(&self) -> (&Health, &Identity) {
+        (&self.judge.health, &self.identity)
     }
 }
 

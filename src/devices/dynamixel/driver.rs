@@ -324,12 +324,8 @@ impl<T: Bytes> Device for Driver<T> {
         }
     }
 
-    fn health(&self) -> &Health {
-        &self.health
-    }
-
-    fn identity(&self) -> &Identity {
-        &self.identity
+    fn about(&self) -> (&Health, &Identity) {
+        (&self.health, &self.identity)
     }
 }
 

@@ -357,12 +357,8 @@ impl Device for Driver {
         newest.map(|value| Stamped { device_s: None, arrival_s: now_s, value })
     }
 
-    fn health(&self) -> &Health {
-        &self.health
-    }
-
-    fn identity(&self) -> &Identity {
-        &self.identity
+    fn about(&self) -> (&Health, &Identity) {
+        (&self.health, &self.identity)
     }
 }
 

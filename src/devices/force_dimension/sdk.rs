@@ -7,17 +7,16 @@
 //! question why it failed are made on the same thread.
 #![expect(unsafe_code, reason = "a C library that is loaded while running")]
 
+mod ending;
+
 use std::{
     borrow::Cow,
     ffi::{CStr, CString, c_char, c_int, c_uchar, c_uint, c_ushort},
     path::{Path, PathBuf},
-    sync::{
-        Mutex, PoisonError,
-        atomic::{AtomicBool, AtomicUsize, Ordering},
-    },
-    time::{Duration, Instant},
+    sync::{Mutex, PoisonError},
 };
 
+pub(super) use ending::is_ending;
 use libloading::Library;
 use nima_files::quoted;
 
@@ -213,7 +212,7 @@ impl Sdk {
 
     /// Opens a device by serial number, or any that is free.
     pub(super) fn open(&'static self, serial: Option<u16>) -> Result<OpenDevice, SdkError> {
-        call_before_exit();
+        ending::call_before_exit();
         let _one_at_a_time = self.opening.lock().unwrap_or_else(PoisonError::into_inner);
         // SAFETY: no pointers.
         let id = unsafe {
@@ -225,7 +224,7 @@ impl Sdk {
         // A device's number fits C's char, signed or not.
         match i8::try_from(id).ok().filter(|id| *id >= 0).and_then(|id| c_char::try_from(id).ok()) {
             Some(id) => {
-                OPEN_DEVICES.fetch_add(1, Ordering::AcqRel);
+                ending::opened();
                 Ok(OpenDevice { sdk: self, id })
             }
             None => Err(self.last_error()),
@@ -244,7 +243,7 @@ impl Drop for OpenDevice {
         self.stop().ok();
         // SAFETY: no pointers; nothing uses the number after this.
         unsafe { (self.sdk.functions.close)(self.id) };
-        OPEN_DEVICES.fetch_sub(1, Ordering::AcqRel);
+        ending::closed();
     }
 }
 
@@ -381,40 +380,6 @@ impl OpenDevice {
         // SAFETY: no pointers.
         self.checked(unsafe { (self.sdk.functions.force)(x, y, z, 0.0, 0.0, 0.0, gripper_n, self.id) })
     }
-}
-
-/// Devices that are open in this program.
-static OPEN_DEVICES: AtomicUsize = AtomicUsize::new(0);
-/// The program ends: threads that hold a device let go of it.
-static ENDING: AtomicBool = AtomicBool::new(false);
-/// How long the end of the program waits for that.
-const END_MAX: Duration = Duration::from_millis(300);
-
-/// The program ends.
-pub(super) fn is_ending() -> bool {
-    ENDING.load(Ordering::Acquire)
-}
-
-/// Has brakes engaged also when the program ends without dropping its devices (`exit` somewhere). The threads that hold them do it
-/// themselves; the end only waits for them.
-fn call_before_exit() {
-    extern "C" fn release_all() {
-        ENDING.store(true, Ordering::Release);
-        let begin = Instant::now();
-        while OPEN_DEVICES.load(Ordering::Acquire) > 0 && begin.elapsed() < END_MAX {
-            std::thread::sleep(Duration::from_millis(1));
-        }
-    }
-    #[cfg(unix)]
-    {
-        static ONCE: std::sync::Once = std::sync::Once::new();
-        // SAFETY: a function that lives for ever, does not unwind and touches statics without destructors only.
-        ONCE.call_once(|| unsafe {
-            libc::atexit(release_all);
-        });
-    }
-    #[cfg(not(unix))]
-    let _ = release_all;
 }
 
 /// Above the loop (80), which must not keep a device waiting.

@@ -139,12 +139,8 @@ impl Device for CapDriver {
         })
     }
 
-    fn health(&self) -> &Health {
-        &self.line.health
-    }
-
-    fn identity(&self) -> &Identity {
-        &self.line.identity
+    fn about(&self) -> (&Health, &Identity) {
+        (&self.line.health, &self.line.identity)
     }
 }
 

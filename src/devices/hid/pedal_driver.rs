@@ -141,11 +141,7 @@ impl Device for PedalDriver {
         news.then_some(Stamped { device_s: None, arrival_s: now_s, value: PedalReading { pressed: *pressed } })
     }
 
-    fn health(&self) -> &Health {
-        &self.line.health
-    }
-
-    fn identity(&self) -> &Identity {
-        &self.line.identity
+    fn about(&self) -> (&Health, &Identity) {
+        (&self.line.health, &self.line.identity)
     }
 }

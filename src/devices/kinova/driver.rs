@@ -242,12 +242,8 @@ impl Device for Driver {
         reading
     }
 
-    fn health(&self) -> &Health {
-        &self.health
-    }
-
-    fn identity(&self) -> &Identity {
-        &self.identity
+    fn about(&self) -> (&Health, &Identity) {
+        (&self.health, &self.identity)
     }
 }
 
@@ -263,17 +259,8 @@ fn vector(numbers: &[f32], scale: f64) -> Vector3<f64> {
 }
 
 fn twist_message(twist: &ToolTwist) -> TwistCommand {
-    let (linear, angular) = (twist.linear_m_s.cast::<f32>(), twist.angular_rad_s.map(f64::to_degrees).cast::<f32>());
-    TwistCommand {
-        reference_frame: twist.frame as u32,
-        twist: Some(Twist {
-            linear_x: linear.x,
-            linear_y: linear.y,
-            linear_z: linear.z,
-            angular_x: angular.x,
-            angular_y: angular.y,
-            angular_z: angular.z,
-        }),
-        duration: 0,
-    }
+    let [linear_x, linear_y, linear_z] = twist.linear_m_s.cast::<f32>().into();
+    let [angular_x, angular_y, angular_z] = twist.angular_rad_s.map(|rate| rate.to_degrees() as f32).into();
+    let twist_deg = Twist { linear_x, linear_y, linear_z, angular_x, angular_y, angular_z };
+    TwistCommand { reference_frame: twist.frame as u32, twist: Some(twist_deg), duration: 0 }
 }

@@ -319,12 +319,8 @@ impl Device for Driver {
         }
     }
 
-    fn health(&self) -> &Health {
-        &self.health
-    }
-
-    fn identity(&self) -> &Identity {
-        &self.identity
+    fn about(&self) -> (&Health, &Identity) {
+        (&self.health, &self.identity)
     }
 }
 

@@ -96,12 +96,8 @@ impl Device for Driver {
         Some(Stamped { device_s: Some(now_s), arrival_s: now_s, value })
     }
 
-    fn health(&self) -> &Health {
-        &self.health
-    }
-
-    fn identity(&self) -> &Identity {
-        &self.identity
+    fn about(&self) -> (&Health, &Identity) {
+        (&self.health, &self.identity)
     }
 }
 

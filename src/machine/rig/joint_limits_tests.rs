@@ -1,38 +1,18 @@
 //! Fast commands through the inverse kinematics and what the arm's driver makes of them, at several shares of the arm's speed.
 
+#[path = "../../core/kinematics/tests/usual_arm.rs"]
+mod usual_arm;
+
 use nalgebra::Vector3;
 use nima_core::kinematics::{
     Arm, ArmSettings, Inverse, JOINTS, JointLimits, Joints, Rcm, RcmSettings, limit_margin_rad,
 };
 use nima_devices::kinova::limits::Guard;
 
+use self::usual_arm::{READY_RAD, TROCAR_M, arm, middle_m, rcm};
+
 const PERIOD_S: f64 = 1e-3;
-const TROCAR_M: Vector3<f64> = Vector3::new(0.4, 0.0, -0.1);
-const READY_RAD: [f64; 7] = [2.38, -1.34, -1.37, 1.91, -1.28, 1.68, 0.92];
 const STEPS: usize = 20_000;
-
-fn arm() -> Arm {
-    let settings = ArmSettings {
-        base_m: Vector3::zeros(),
-        base_deg: Vector3::zeros(),
-        sensor_m: Vector3::new(0.0, 0.0, 0.06),
-        sensor_deg: Vector3::zeros(),
-        shaft_m: 0.42,
-    };
-    Arm::new(&settings).unwrap()
-}
-
-/// A cone of 20 degrees can be served everywhere; at the rim of one of 50 joints come to their limits.
-fn rcm(cone_deg: f64) -> Rcm {
-    let settings = RcmSettings {
-        trocar_m: TROCAR_M,
-        inward: -Vector3::z(),
-        cone_deg,
-        insertion_min_m: 0.03,
-        insertion_max_m: 0.25,
-    };
-    Rcm::new(&settings).unwrap()
-}
 
 /// A hand in a hurry: at 0.3 m/s (the fastest follower of the rig files) to random places, turned back at random, with a jump now and then.
 struct Hand {
@@ -43,8 +23,7 @@ struct Hand {
 
 impl Hand {
     fn new(seed: u64) -> Self {
-        let middle_m = TROCAR_M - Vector3::z() * 0.12;
-        Self { random: fastrand::Rng::with_seed(seed), goal_m: middle_m, target_m: middle_m }
+        Self { random: fastrand::Rng::with_seed(seed), goal_m: middle_m(), target_m: middle_m() }
     }
 
     fn next(&mut self) -> Vector3<f64> {
@@ -78,6 +57,8 @@ struct Shown {
     behind_m: Vec<f64>,
 }
 
+/// A cone of 20 degrees can be served everywhere; at the rim of one of 50 joints come to their limits.
+///
 /// As the rig leads an arm: a plan within the arm's limits, the driver's check, and now and then a clutch, which brakes and begins anew.
 fn drive(fraction: f64, cone_deg: f64, seed: u64, shown: &mut Shown) {
     let (arm, rcm) = (arm(), rcm(cone_deg));

@@ -23,6 +23,7 @@ pub use arm_pair::{ArmPair, Obstacle};
 pub use devices::{DeviceRig, RigError};
 pub use jaws::JawsSettings;
 pub use makes::{FollowerSettings, LeaderSettings, SensorSettings};
+pub(crate) use makes::{Misread, take_out_makes};
 pub use probes::rig_probes;
 pub use prompt::Prompt;
 pub use settings::{ArmSet, DeskSettings, EndoscopeSettings, SensorPlace, Settings};

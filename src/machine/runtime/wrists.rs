@@ -143,12 +143,8 @@ mod tests {
             None
         }
 
-        fn health(&self) -> &Health {
-            &self.0
-        }
-
-        fn identity(&self) -> &Identity {
-            &self.1
+        fn about(&self) -> (&Health, &Identity) {
+            (&self.0, &self.1)
         }
     }
 

@@ -1,23 +1,24 @@
 //! One arm pair: handle, arm, force sensor, and the loop between them.
 
+mod commands;
 mod objections;
+mod told;
 mod watch;
 
 use nalgebra::{UnitQuaternion, Vector1, Vector3};
 use nima_core::{
-    impedance::{
-        Identifier, MAX_DELAY_S, Mode, Rendered, Renderer, Sample, Settings as IdentifierSettings, SettingsError,
-    },
-    kinematics::{Hand, HandEye, Target},
-    safety::{Chain, Change, Gate, GripperChain, Interlock, Plausibility, Request, Wish},
+    impedance::{Identifier, Mode, Renderer, Sample, Settings as IdentifierSettings, SettingsError},
+    kinematics::{HandEye, Target},
+    safety::{Chain, Gate, GripperChain, Interlock, Plausibility, Request},
 };
 use nima_devices::Standing;
 
+use self::told::{NO_FORCE_YET, NOTHING_YET, NOWHERE};
 use super::{Accuracy, Calibrations, ForcePath, Link, ProgrammedLink, Tracking};
 use crate::{
     config::{RigConfig, Teleoperation},
-    messages::{Command, Event, Fault, ForceReport, ForceSource, LoopState, Refusal, Tick},
-    rig::{DeviceEvent, GUIDE_MAX_M, Inputs, Outputs, Prompt, Sensed, Side, Switches, View},
+    messages::{Event, Fault, ForceReport, LoopState, Tick},
+    rig::{DeviceEvent, Inputs, Outputs, Prompt, Side},
 };
 
 /// Rig silent for longer than this, s: fault.
@@ -195,106 +196,6 @@ impl<L: Link> Pair<L> {
         }
     }
 
-    /// What entering a state does: everything begins from no force and a resting follower.
-    fn enter(&mut self, change: Change<Fault>, t_s: f64) {
-        let Change { from, to, why } = change;
-        self.tell(Event::StateChanged { t_s, side: self.side, from, to, why });
-        self.chain.reset();
-        self.gripper_chain.reset();
-        self.hand_is_gone = false;
-        self.command_m = None;
-        self.hand_eye.release();
-        if !to.permits().drives || !from.permits().drives {
-            self.prompt = Prompt::Rest;
-        }
-        if to.is_latched() {
-            self.guide_m = None;
-        }
-        if let (LoopState::Engaged, Some(seen)) = (to, self.last_inputs) {
-            // Only here: an endoscope that turns while hand and tip are joined must not turn the motion under the hand.
-            if let View::Seen(world_from_view) = seen.view {
-                let mapping = self.teleoperation.seen(&world_from_view, self.hand_eye.mapping().scale());
-                self.hand_eye.set_mapping(mapping);
-            }
-            // Hand and tip are joined where both are: the first command is where the tip is.
-            let world_from_jaws = seen.world_from_jaws.unwrap_or_else(UnitQuaternion::identity);
-            self.hand_eye.engage(Target { tip_m: seen.tip_m, world_from_jaws });
-            self.engaged_s = t_s;
-            self.plausibility.engage();
-        }
-    }
-
-    fn set_delay(&mut self, delay_s: f64) {
-        // The delay is exact to one sample, and the screen shows what is in force.
-        self.delay_s = self.settings.delay_ticks(delay_s) as f64 / self.rate_hz;
-        self.link.set_delay(self.delay_s);
-        self.identifier.set_delay(self.delay_s);
-        self.renderer.set_delay(self.delay_s);
-    }
-
-    fn ask(&mut self, wish: Wish, t_s: f64) -> Result<(), Refusal> {
-        let change = self.interlock.ask(wish, t_s).map_err(|_| Refusal::State(self.state()))?;
-        if let Some(change) = change {
-            self.enter(change, t_s);
-        }
-        Ok(())
-    }
-
-    /// Carries out one command, or gives why not. [`Command::Shutdown`] is the runtime's.
-    pub fn obey(&mut self, command: Command, t_s: f64) -> Result<(), Refusal> {
-        match command {
-            Command::SetMode(mode) => self.mode = mode,
-            Command::SetGain(gain) if (0.0..=1.0).contains(&gain) => self.chain.set_ordinary_gain(gain),
-            Command::SetGainAboveOne(gain) if (0.0..=nima_core::safety::MAX_GAIN).contains(&gain) => {
-                self.chain.set_gain_above_one(gain);
-            }
-            Command::SetDelay(delay_s) if (0.0..=MAX_DELAY_S).contains(&delay_s) => self.set_delay(delay_s),
-            Command::SetDeadBand(speed_m_s) if (0.0..=0.1).contains(&speed_m_s) => self.chain.set_dead_band(speed_m_s),
-            Command::SetStaticHold(hold) => self.chain.set_static_hold(hold),
-            Command::SetScale(scale) => match self.hand_eye.mapping().scaled(scale) {
-                Ok(mapping) => self.hand_eye.set_mapping(mapping),
-                Err(_) => return Err(Refusal::OutOfRange),
-            },
-            // Whoever is asked to handle the arm must be safe from it.
-            Command::Prompt(_, prompt) if self.state() == LoopState::Idle && prompt.is_finite() => self.prompt = prompt,
-            Command::Guide(guide_m)
-                if !self.state().is_latched()
-                    && guide_m.is_none_or(|at_m| at_m.iter().all(|x| x.abs() <= GUIDE_MAX_M)) =>
-            {
-                self.guide_m = guide_m;
-            }
-            Command::Prompt(_, prompt) if prompt.is_finite() => return Err(Refusal::State(self.state())),
-            Command::Guide(_) if self.state().is_latched() => return Err(Refusal::State(self.state())),
-            Command::Engage | Command::EngageOne(_) => {
-                self.may_engage()?;
-                return self.ask(Wish::Engage, t_s);
-            }
-            Command::Rest => return self.ask(Wish::Rest, t_s),
-            Command::Stop => return self.ask(Wish::Stop, t_s),
-            Command::ReleaseStop => {
-                self.may_release(t_s)?;
-                return self.ask(Wish::Release, t_s);
-            }
-            Command::Shutdown => {}
-            _ => return Err(Refusal::OutOfRange),
-        }
-        Ok(())
-    }
-
-    fn fail(&mut self, fault: Fault, t_s: f64) {
-        if let Some(change) = self.interlock.fail(fault) {
-            self.tell(Event::FaultRaised { t_s, side: self.side, fault });
-            self.enter(change, t_s);
-        }
-    }
-
-    /// A fault that matters only while drives are on.
-    pub(super) fn fail_if_driven(&mut self, fault: Fault, t_s: f64) {
-        if self.state().permits().drives {
-            self.fail(fault, t_s);
-        }
-    }
-
     /// The wrist sensor came, went or changed.
     pub(super) const fn suspend_calibrations(&mut self) {
         self.force_path.suspend();
@@ -428,67 +329,4 @@ impl<L: Link> Pair<L> {
         self.tracking.interrupt();
         seen.tip_m
     }
-
-    #[expect(clippy::too_many_arguments, reason = "all that one tick tells")]
-    fn tick(
-        &self,
-        seen: &Inputs,
-        leader_m: Vector3<f64>,
-        rendered: &Rendered,
-        delayed_n: Vector3<f64>,
-        rendered_n: Vector3<f64>,
-        gates: nima_core::safety::GateReport,
-        timing: &Timing,
-    ) -> Tick {
-        Tick {
-            index: self.ticks,
-            t_s: timing.now_s,
-            side: self.side,
-            state: self.state(),
-            mode: self.mode,
-            delay_s: self.delay_s,
-            leader_m,
-            tip_m: seen.tip_m,
-            measured_n: self.force.tip_n,
-            force: self.force,
-            wrist: match seen.sensed {
-                Sensed::AtTip(_) => None,
-                Sensed::AtWrist(sample) => Some(sample),
-            },
-            prompt: self.prompt,
-            guide_m: self.guide_m,
-            delayed_n,
-            asked_n: Mode::ALL.map(|mode| rendered.force(mode).unwrap_or_else(Vector3::zeros)),
-            rendered_n,
-            gates,
-            gate_settings: *self.chain.settings(),
-            identification: *self.identifier.report(),
-            wake_s: timing.wake_s,
-            work_s: timing.work_s,
-            sample_to_force_s: timing.sample_to_force_s,
-            missed: self.missed,
-            dropped: 0,
-        }
-    }
 }
-
-/// What was not measured.
-const NOWHERE: Vector3<f64> = Vector3::new(f64::NAN, f64::NAN, f64::NAN);
-
-/// Shown until the rig has delivered its first sample.
-const NOTHING_YET: Inputs = Inputs {
-    hand: Hand::at(Vector3::new(0.0, 0.0, 0.0)),
-    gripper_rad: None,
-    grip_n: None,
-    tip_m: Vector3::new(0.0, 0.0, 0.0),
-    world_from_jaws: None,
-    sensed: Sensed::AtTip(Vector3::new(0.0, 0.0, 0.0)),
-    view: View::Fixed,
-    switches: Switches { clutch: false, presence: None },
-    powered: false,
-    obstacle: None,
-    age_s: 0.0,
-};
-
-/// Until the first sample: an absent force is no usable force, and a rig that measures at the tip shows so at once.
-const NO_FORCE_YET: ForceReport = ForceReport::none(ForceSource::AtTip, None);

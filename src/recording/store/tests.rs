@@ -160,6 +160,45 @@ fn every_damage_names_the_file_and_the_place() {
     assert!(damaged(&of_the_date).contains("is not like 2026-08-21T10:20:30Z"));
 }
 
+/// Reads this text once with a key too many in each of its tables, and with each of its keys misspelled.
+fn no_key_passes_unknown<R: Record + std::fmt::Debug>(good: &str) {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("edited.toml");
+    let told = |lines: &[String]| {
+        std::fs::write(&path, lines.join("\n")).unwrap();
+        let message = read::<R>(&path).map(|_| "read").unwrap_err().to_string();
+        assert!(message.contains("edited.toml") && message.lines().count() == 1, "{message}");
+        message
+    };
+    let lines: Vec<_> = good.lines().map(str::to_owned).collect();
+    let tables = lines.iter().enumerate().filter(|(_, line)| line.starts_with('[')).map(|(k, _)| k + 1);
+    for at in tables.chain([0]) {
+        let mut edited = lines.clone();
+        edited.insert(at, "colour = 3".to_owned());
+        let message = told(&edited);
+        assert!(message.contains("colour"), "below line {at}: {message}");
+    }
+    for at in 0..lines.len() {
+        let Some((key, value)) = lines[at].split_once(" = ") else { continue };
+        let mut edited = lines.clone();
+        edited[at] = format!("{key}x = {value}");
+        let message = told(&edited);
+        assert!(message.contains(key), "{key}: {message}");
+    }
+}
+
+#[test]
+fn an_unknown_or_misspelled_key_is_told_in_every_table() {
+    let mut whole = record("A1");
+    whole.judgement.override_by("A. Technician", Some("practice"));
+    assert!(whole.diagnosis.is_some());
+    no_key_passes_unknown::<CorrespondenceRecord>(&toml::to_string(&whole).unwrap());
+    let torque = "\n[model.parameters.physical.torque]\ncom_m = [0.0, 0.0, 0.0]\nbias_nm = [0.0, 0.0, 0.0]\n";
+    let residuals = BEFORE[BEFORE.find("[residuals").unwrap()..].replace("[residuals", "[torque_residuals");
+    no_key_passes_unknown::<GravityRecord>(BEFORE);
+    no_key_passes_unknown::<GravityRecord>(&format!("{BEFORE}{torque}\n{residuals}"));
+}
+
 #[test]
 fn names_never_lead_out_of_the_folder() {
     let store = Store::open("/calibrations");

@@ -22,6 +22,7 @@ const KEY: &str = "nima";
 
 /// The part of the file that is text.
 #[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 struct Header {
     format: String,
     inputs: Vec<String>,

@@ -1,5 +1,7 @@
 //! What the screen knows of the loop: made from ticks and events, read by every panel, changed by none.
 
+mod intake;
+
 use std::{
     collections::VecDeque,
     time::{Duration, Instant},
@@ -9,12 +11,12 @@ use nalgebra::Vector3;
 use nima_core::{
     impedance::{MODES, Mode},
     safety::ChainSettings,
-    statistics::{Percentiles, Quantiles},
+    statistics::Percentiles,
 };
 use nima_devices::Standing;
 use nima_machine::{
     config::RigConfig,
-    messages::{Command, Event, Fault, LoopState, Refusal, Scheduling, Tick, attention},
+    messages::{Command, Fault, LoopState, Refusal, Scheduling, Tick, attention},
     rig::{Healths, Roster, SIDES, Side},
 };
 use nima_world::scene::Scene;
@@ -23,8 +25,7 @@ use super::{
     alarms::{Missing, Signs},
     cloud::Cloud,
     deadlines::Deadlines,
-    door::{Door, News},
-    history::{CHANNELS, History},
+    history::History,
     readings::{Change, Figures, Gates},
     rolling::{DegreeShares, Fading},
     stiffness::ContactStiffness,
@@ -166,32 +167,6 @@ impl Live {
         }
     }
 
-    /// Takes in all that waits at the loop's door; `each` sees every tick.
-    pub fn take_in(&mut self, door: &Door, mut each: impl FnMut(&Tick)) {
-        let handle = door.handle();
-        if self.roster.len() != handle.roster().len() {
-            self.roster.clone_from(handle.roster());
-        }
-        if let Some(healths) = handle.healths() {
-            self.healths = healths;
-        }
-        let mut came = false;
-        door.take(|news| {
-            let tick = match news {
-                News::Event(event) => return self.event(event),
-                News::Tick(tick) => tick,
-            };
-            self.tick(tick);
-            each(tick);
-            came = true;
-        });
-        if came {
-            self.tick_at = Instant::now();
-        }
-        self.running = handle.is_running();
-        self.refresh_figures();
-    }
-
     /// A tick came at this moment and waits to be taken in: the loop is not silent.
     pub fn heard(&mut self, at: Instant) {
         self.tick_at = self.tick_at.max(at);
@@ -320,108 +295,5 @@ impl Live {
             stop_is_stuck,
             bias_moved_n: self.bias_moved_n,
         }
-    }
-
-    fn event(&mut self, event: &Event) {
-        match *event {
-            Event::FaultRaised { t_s, fault, .. } => {
-                self.first_fault.get_or_insert((t_s, fault));
-            }
-            Event::StateChanged { t_s, side, from, to, why } => {
-                self.changes[side.index()] = Some(Change { t_s, from, why });
-                if !matches!(to, LoopState::Faulted(_)) {
-                    self.first_fault = None;
-                }
-            }
-            Event::CommandRefused { side, command, why, .. } => {
-                self.refusal = Some((Instant::now(), Refused { side, command, why }));
-            }
-            Event::Scheduling(scheduling) => self.scheduling = Some(scheduling),
-            Event::Device(event) => {
-                if let Some(health) = self.healths.devices.get_mut(usize::from(event.device)) {
-                    health.standing = event.standing;
-                }
-            }
-        }
-    }
-
-    fn tick(&mut self, tick: &Tick) {
-        let before = self.ticks[tick.side.index()].replace(*tick);
-        self.follow(tick, before.as_ref());
-        if tick.side == Side::Right {
-            self.follow_loop(tick, before.as_ref());
-        }
-    }
-
-    /// What is the same for both sides: the loop's time, and the identification of the first.
-    fn follow_loop(&mut self, tick: &Tick, before: Option<&Tick>) {
-        let dt_s = before.map_or(0.0, |before| (tick.t_s - before.t_s).max(0.0));
-        let missed = before.map_or(0, |before| tick.missed.saturating_sub(before.missed));
-        self.deadlines.push(tick.t_s, missed);
-        self.missed_share.push(missed as f64 / (missed as f64 + 1.0), dt_s, 3.0);
-        self.degrees.push(tick.identification.degree);
-        self.paper_degrees.push(tick.identification.paper_degree);
-        if before.is_some_and(|before| before.t_s.floor() < tick.t_s.floor()) {
-            self.trend_n.push_back(tick.identification.horizon_error_n);
-            if self.trend_n.len() > TREND_S {
-                self.trend_n.pop_front();
-            }
-        }
-        for (mean, error_n) in self.horizon.iter_mut().zip(tick.identification.horizon_error_n) {
-            mean.push(error_n, dt_s, 4.0);
-        }
-        self.wake.record(tick.wake_s);
-        self.work.record(tick.work_s);
-        if let Some(seconds) = tick.sample_to_force_s {
-            self.sample_to_force.record(seconds);
-        }
-        self.ticks_counted += 1;
-    }
-
-    /// What is kept of both sides alike: forces and the way of the tip.
-    fn follow(&mut self, tick: &Tick, before: Option<&Tick>) {
-        let (side, dt_s) = (tick.side.index(), before.map_or(0.0, |before| (tick.t_s - before.t_s).max(0.0)));
-        let (m, r) = (tick.measured_n, tick.rendered_n);
-        let values: [f32; CHANNELS] = [m.x, m.y, m.z, r.x, r.y, r.z].map(|x| x as f32);
-        self.history[side].push(tick.t_s, &values);
-        self.measured[side].push(m.norm(), dt_s, 0.05);
-        self.rendered[side].push(r.norm(), dt_s, 0.05);
-        self.gates[side].push(tick, dt_s);
-        self.clouds[side].push(tick.t_s, m, r);
-        self.stiffness[side].push(tick.t_s, &tick.tip_m, &m);
-        if tick.t_s - self.trail_s[side] >= TRAIL_STEP_S && tick.tip_m.iter().all(|x| x.is_finite()) {
-            self.trail_s[side] = tick.t_s;
-            self.trails[side].push_back(tick.tip_m.cast());
-            if self.trails[side].len() > (TRAIL_S / TRAIL_STEP_S) as usize {
-                self.trails[side].pop_front();
-            }
-        }
-    }
-
-    fn refresh_figures(&mut self) {
-        if self.readings_at.elapsed() >= READINGS_EVERY {
-            self.figures.measured_n = self.measured.map(Fading::get);
-            self.figures.rendered_n = self.rendered.map(Fading::get);
-            self.readings_at = Instant::now();
-        }
-        let since = self.figures_at.elapsed();
-        if since < FIGURES_EVERY {
-            return;
-        }
-        self.figures = Figures {
-            horizon_n: self.horizon.map(Fading::get),
-            wake_us: self.wake.quantiles(),
-            work_us: self.work.quantiles(),
-            sample_to_force_us: self.sample_to_force.quantiles(),
-            rate_hz: self.ticks_counted as f64 / since.as_secs_f64(),
-            frame_ms: {
-                let Quantiles { p50, p99, .. } = self.frames.quantiles();
-                [p50 * 1e-3, p99 * 1e-3]
-            },
-            frame_work_ms: self.frame_work.get(),
-            ..self.figures
-        };
-        self.ticks_counted = 0;
-        self.figures_at = Instant::now();
     }
 }

@@ -6,13 +6,13 @@ use nima_devices::{
     discovery::{DeviceProbe, Probe, Speaks, probes},
     kinova, simulated_arm,
 };
-use serde::{Deserialize, Deserializer, Serialize};
+use serde::{Deserialize, Serialize, Serializer};
 
-use super::{Chosen, Opener};
+use super::Opener;
 
 /// The arm of a rig file. Both have the joints of a Gen3.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-#[serde(untagged)]
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum FollowerSettings {
     /// `make = "kinova"`, the usual one: Gen3 with seven joints.
     Kinova(kinova::Settings),
@@ -20,17 +20,20 @@ pub enum FollowerSettings {
     Simulated(simulated_arm::Settings),
 }
 
-impl<'de> Deserialize<'de> for FollowerSettings {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        let chosen = Chosen::read(deserializer, &["kinova", "simulated"])?;
-        match chosen.make {
-            0 => chosen.settings().map(Self::Kinova),
-            _ => chosen.settings().map(Self::Simulated),
+impl Serialize for FollowerSettings {
+    /// As a rig file has it: the settings alone.
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        match self {
+            Self::Kinova(settings) => settings.serialize(serializer),
+            Self::Simulated(settings) => settings.serialize(serializer),
         }
     }
 }
 
 impl FollowerSettings {
+    /// Its makes as a rig file names them, the usual one first.
+    pub(super) const MAKES: &[&str] = &["kinova", "simulated"];
+
     /// Of an arm by Kinova.
     pub const fn kinova(&self) -> Option<&kinova::Settings> {
         match self {

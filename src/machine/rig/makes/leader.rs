@@ -5,25 +5,31 @@ use nima_devices::{
     discovery::{Probe, probes},
     force_dimension,
 };
-use serde::{Deserialize, Deserializer, Serialize};
+use serde::{Deserialize, Serialize, Serializer};
 
-use super::{Chosen, Opener};
+use super::Opener;
 
 /// The handle of a rig file.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-#[serde(untagged)]
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum LeaderSettings {
     /// `make = "force_dimension"`, the usual one: omega.7.
     ForceDimension(force_dimension::Settings),
 }
 
-impl<'de> Deserialize<'de> for LeaderSettings {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        Chosen::read(deserializer, &["force_dimension"])?.settings().map(Self::ForceDimension)
+impl Serialize for LeaderSettings {
+    /// As a rig file has it: the settings alone.
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        match self {
+            Self::ForceDimension(settings) => settings.serialize(serializer),
+        }
     }
 }
 
 impl LeaderSettings {
+    /// Its makes as a rig file names them, the usual one first.
+    pub(super) const MAKES: &[&str] = &["force_dimension"];
+
     /// Of a handle by Force Dimension.
     pub const fn force_dimension(&self) -> Option<&force_dimension::Settings> {
         let Self::ForceDimension(settings) = self;

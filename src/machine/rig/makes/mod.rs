@@ -6,11 +6,18 @@ mod follower;
 mod leader;
 mod sensor;
 
+use std::ops::Range;
+
 pub use follower::FollowerSettings;
 pub use leader::LeaderSettings;
 use nima_devices::{ClearFaults, Trouble};
 pub use sensor::SensorSettings;
-use serde::{Deserialize, Deserializer, de::Error};
+use toml::{
+    Spanned,
+    de::{DeTable, DeValue},
+};
+
+use crate::rig::Side;
 
 /// How a part is opened; `P` is `Box<dyn Leader>` and so on.
 pub(super) struct Opener<P> {
@@ -21,63 +28,100 @@ pub(super) struct Opener<P> {
     pub(super) clear_faults: Option<ClearFaults>,
 }
 
-/// The part of a rig file that describes a part, its make taken out of it.
-struct Chosen {
-    /// Place of the make among those that are known.
-    make: usize,
-    table: toml::Table,
+/// Where a rig file cannot be read, as bytes of its text, and why.
+pub(crate) type Misread = (Range<usize>, String);
+
+/// Writes every part of a rig file with its make taken out, `arm = { kinova = { ... } }`: the form that serde reads as an enum. Each
+/// value keeps its place in the text, so that what is wrong below a make is told with its line.
+pub(crate) fn take_out_makes(rig: &mut DeTable<'_>) -> Result<(), Misread> {
+    let Some(devices) = below(rig, "devices") else { return Ok(()) };
+    for side in Side::ALL {
+        let Some(set) = below(devices, side.word()) else { continue };
+        for (part, known) in
+            [("handle", LeaderSettings::MAKES), ("arm", FollowerSettings::MAKES), ("sensor", SensorSettings::MAKES)]
+        {
+            choose(set, part, known)?;
+        }
+    }
+    choose(devices, "tissue_sensor", SensorSettings::MAKES)
 }
 
-impl Chosen {
-    fn read<'de, D: Deserializer<'de>>(deserializer: D, known: &[&str]) -> Result<Self, D::Error> {
-        let mut table = toml::Table::deserialize(deserializer)?;
-        let make = match table.remove("make") {
-            None => Some(0),
-            Some(make) => known.iter().position(|name| make.as_str() == Some(name)),
-        };
-        let make = make.ok_or_else(|| D::Error::custom(format!("make is one of: {}", known.join(", "))))?;
-        Ok(Self { make, table })
+fn below<'a, 'i>(table: &'a mut DeTable<'i>, key: &str) -> Option<&'a mut DeTable<'i>> {
+    match table.get_mut(key)?.get_mut() {
+        DeValue::Table(table) => Some(table),
+        _ => None,
     }
+}
 
-    fn settings<T: for<'de> Deserialize<'de>, E: Error>(self) -> Result<T, E> {
-        T::deserialize(self.table).map_err(|error| E::custom(error.message()))
+/// The make of one part, the first of these where it says nothing.
+fn choose(table: &mut DeTable<'_>, part: &str, known: &[&'static str]) -> Result<(), Misread> {
+    let Some(settings) = below(table, part) else { return Ok(()) };
+    let make = match settings.remove("make") {
+        None => known[0],
+        Some(make) => {
+            let named = known.iter().find(|name| make.get_ref().as_str() == Some(name));
+            named.ok_or_else(|| (make.span(), format!("make is one of: {}", known.join(", "))))?
+        }
+    };
+    let settings = std::mem::take(settings);
+    if let Some(part) = table.get_mut(part) {
+        let span = part.span();
+        let of_make = (Spanned::new(span.clone(), make.into()), Spanned::new(span, DeValue::Table(settings)));
+        *part.get_mut() = DeValue::Table(DeTable::from_iter([of_make]));
     }
+    Ok(())
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
+    use crate::config::{RigConfig, parse_with};
+
     const SIMULATED: &str = "make = \"simulated\"\nstart_rad = [2.38, -1.34, -1.37, 1.91, -1.28, 1.68, 0.92]\n";
 
-    #[test]
-    fn the_usual_make_needs_no_name_and_another_one_has_its_own_settings() {
-        let unnamed: FollowerSettings = toml::from_str("host = \"10.0.0.1\"\nspeed_fraction = 1").unwrap();
-        let named: FollowerSettings =
-            toml::from_str("host = \"10.0.0.1\"\nmake = \"kinova\"\nspeed_fraction = 1").unwrap();
-        assert_eq!(unnamed, named);
-        assert_eq!(unnamed.kinova().unwrap().host, "10.0.0.1");
-        let simulated: FollowerSettings = toml::from_str(SIMULATED).unwrap();
-        assert!(matches!(simulated, FollowerSettings::Simulated(_)), "{simulated:?}");
-        for arm in [unnamed, simulated] {
-            let written = toml::to_string(&arm).unwrap();
-            assert_eq!(toml::from_str::<FollowerSettings>(&written).unwrap(), arm, "{written}");
-        }
-        let handle: LeaderSettings = toml::from_str("make = \"force_dimension\"\nserial = 7").unwrap();
-        assert_eq!(handle.force_dimension().unwrap().serial, Some(7));
+    /// What this text says of an arm, as the arm of a rig file.
+    fn arm(text: &str) -> Result<FollowerSettings, String> {
+        let paper = toml::to_string(&RigConfig::load("paper").unwrap()).unwrap();
+        let (before, rest) = paper.split_once("[devices.right.arm]\n").unwrap();
+        let after = &rest[rest.find("\n[").unwrap()..];
+        let whole = format!("{before}[devices.right.arm]\n{text}\n{after}");
+        let read = parse_with::<RigConfig>("rig", "paper.toml".as_ref(), &whole, take_out_makes);
+        let begin = before.lines().count() + 1;
+        read.map(|rig| rig.devices.unwrap().right.unwrap().arm).map_err(|error| {
+            let words = error.to_string();
+            let (line, words) = words.strip_prefix("rig file paper.toml: line ").unwrap().split_once(": ").unwrap();
+            format!("{}: {words}", line.parse::<usize>().unwrap() - begin)
+        })
     }
 
     #[test]
-    fn an_unknown_make_and_a_setting_of_another_make_are_told() {
-        let told = |text: &str| toml::from_str::<FollowerSettings>(text).unwrap_err().message().to_owned();
-        for wrong in ["make = \"acme\"", "make = 1"] {
-            assert_eq!(told(wrong), "make is one of: kinova, simulated");
+    fn the_usual_make_needs_no_name_and_another_one_has_its_own_settings() {
+        let unnamed = arm("host = \"10.0.0.1\"\nspeed_fraction = 1").unwrap();
+        let named = arm("host = \"10.0.0.1\"\nmake = \"kinova\"\nspeed_fraction = 1").unwrap();
+        assert_eq!(unnamed, named);
+        assert_eq!(unnamed.kinova().unwrap().host, "10.0.0.1");
+        let simulated = arm(SIMULATED).unwrap();
+        assert!(matches!(simulated, FollowerSettings::Simulated(_)), "{simulated:?}");
+        for chosen in [unnamed, simulated] {
+            let written = toml::to_string(&chosen).unwrap();
+            assert_eq!(arm(&written).unwrap(), chosen, "{written}");
+        }
+    }
+
+    #[test]
+    fn what_is_wrong_below_a_make_is_told_with_its_line() {
+        let told = |text: &str| arm(text).unwrap_err();
+        for wrong in ["host = \"10.0.0.1\"\nmake = \"acme\"", "host = \"10.0.0.1\"\nmake = 1"] {
+            assert_eq!(told(wrong), "2: make is one of: kinova, simulated");
         }
         let other = told(&format!("{SIMULATED}host = \"10.0.0.1\""));
-        assert!(other.contains("unknown field `host`"), "{other}");
+        assert!(other.starts_with("3: unknown field `host`"), "{other}");
         let missing = told("make = \"simulated\"");
         assert!(missing.contains("missing field `start_rad`"), "{missing}");
-        let key = told("hosts = \"10.0.0.1\"");
-        assert!(key.contains("unknown field `hosts`"), "{key}");
+        let key = told("# the arm\n\nhosts = \"10.0.0.1\"");
+        assert!(key.starts_with("3: unknown field `hosts`"), "{key}");
+        let value = told("host = \"10.0.0.1\"\nspeed_fraction = \"half\"");
+        assert!(value.starts_with("2: invalid type: string"), "{value}");
     }
 }

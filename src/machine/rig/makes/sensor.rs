@@ -4,25 +4,31 @@ use nima_devices::{
     ForceSensor, Trouble, bota,
     discovery::{Probe, probes},
 };
-use serde::{Deserialize, Deserializer, Serialize};
+use serde::{Deserialize, Serialize, Serializer};
 
-use super::{Chosen, Opener};
+use super::Opener;
 
 /// A force-torque sensor of a rig file.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-#[serde(untagged)]
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum SensorSettings {
     /// `make = "bota"`, the usual one.
     Bota(bota::Settings),
 }
 
-impl<'de> Deserialize<'de> for SensorSettings {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        Chosen::read(deserializer, &["bota"])?.settings().map(Self::Bota)
+impl Serialize for SensorSettings {
+    /// As a rig file has it: the settings alone.
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        match self {
+            Self::Bota(settings) => settings.serialize(serializer),
+        }
     }
 }
 
 impl SensorSettings {
+    /// Its makes as a rig file names them, the usual one first.
+    pub(super) const MAKES: &[&str] = &["bota"];
+
     /// Of a sensor by Bota.
     pub const fn bota(&self) -> Option<&bota::Settings> {
         let Self::Bota(settings) = self;

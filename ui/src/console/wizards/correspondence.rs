@@ -16,6 +16,7 @@ use super::{
     checks::{check_line, switch_ui},
     frame::{Frame, Step, Wish, Wizard},
     pictures::{progress, sphere_picture},
+    report::{Report, result_ui, verdict_line},
 };
 use crate::{
     console::{
@@ -58,7 +59,7 @@ pub struct CorrespondenceWizard {
     sources: Option<Sources>,
     /// The loop's clock begins anew with every start of it; the session's goes on.
     clock_s: (f64, f64),
-    report: Option<Result<CorrespondenceReport, String>>,
+    report: Report<CorrespondenceReport>,
 }
 
 impl Default for CorrespondenceWizard {
@@ -182,10 +183,7 @@ impl CorrespondenceWizard {
                 text::correspondence::RECORDED_HOVER,
             );
             match &self.report {
-                Some(Ok(report)) => {
-                    let words = format!("{}: {}", report.verdict.words(), report.reason);
-                    ui.label(RichText::new(words).font(theme::strong(14.0)));
-                }
+                Some(Ok(report)) => verdict_line(ui, report.verdict, &report.reason),
                 Some(Err(error)) => {
                     ui.label(error);
                 }
@@ -201,30 +199,19 @@ impl CorrespondenceWizard {
     }
 
     fn result_ui(&self, ui: &mut Ui) {
-        match &self.report {
-            Some(Ok(report)) => {
-                verdict_ui(ui, report);
-                if let Some(solution) = &report.solution {
-                    agreement_ui(ui, &solution.agreement);
-                }
+        let otherwise = [text::correspondence::NO_RESULT_HOVER, text::correspondence::TOO_FEW];
+        result_ui(ui, self.report.as_ref(), otherwise, |ui, report| {
+            verdict_ui(ui, report);
+            if let Some(solution) = &report.solution {
+                agreement_ui(ui, &solution.agreement);
             }
-            Some(Err(error)) => {
-                card(ui, text::wizards::NO_RESULT, text::correspondence::NO_RESULT_HOVER, |ui| ui.label(error));
-            }
-            None => {
-                ui.label(text::correspondence::TOO_FEW);
-            }
-        }
+        });
     }
 }
 
 impl Wizard for CorrespondenceWizard {
     fn steps(&self) -> &'static [Step] {
         &STEPS
-    }
-
-    fn frame(&self) -> &Frame {
-        &self.frame
     }
 
     fn frame_mut(&mut self) -> &mut Frame {
@@ -297,11 +284,8 @@ impl Wizard for CorrespondenceWizard {
 
     fn made(&self, binding: &Binding) -> Option<Saving> {
         let flip_s2 = self.session.settings().options.flip_s2;
-        let mut record =
+        let record =
             CorrespondenceRecord::of(self.good_report()?, [&binding.sensor, &binding.tool], flip_s2, &binding.date)?;
-        if self.proof().is_none() {
-            self.frame.override_in(&mut record.judgement);
-        }
         Some(Saving::Correspondence(Box::new(record)))
     }
 

@@ -38,7 +38,7 @@ pub(super) struct Frame {
 
 impl Frame {
     /// Writes the name and the reason that were entered into what is saved.
-    pub(super) fn override_in(&self, judgement: &mut Judgement) {
+    fn override_in(&self, judgement: &mut Judgement) {
         judgement.override_by(&self.name, Some(&self.why));
     }
 }
@@ -47,7 +47,6 @@ impl Frame {
 pub(super) trait Wizard {
     /// Its steps; the last one saves.
     fn steps(&self) -> &'static [Step];
-    fn frame(&self) -> &Frame;
     fn frame_mut(&mut self) -> &mut Frame;
 
     /// Takes in one tick of a loop of this rate (Hz).
@@ -60,7 +59,7 @@ pub(super) trait Wizard {
     fn step_ui(&mut self, ui: &mut Ui, binding: &Binding) -> Option<Wish>;
     /// What proves the result, in words; nothing where only a person's name can.
     fn proof(&self) -> Option<String>;
-    /// What shall be saved, if there is anything.
+    /// What shall be saved, if there is anything, with the verdict as it was found.
     fn made(&self, binding: &Binding) -> Option<Saving>;
     /// Forgets what was taken, not how the rig is built.
     fn start_over(&mut self);
@@ -83,7 +82,7 @@ pub(super) trait Wizard {
 /// A wizard on the screen; gives what shall be saved.
 pub(super) fn wizard_ui(wizard: &mut dyn Wizard, ui: &mut Ui, binding: &Binding) -> Option<Saving> {
     wizard.refresh(binding);
-    let (steps, now) = (wizard.steps(), wizard.frame().step);
+    let (steps, now) = (wizard.steps(), wizard.frame_mut().step);
     let mut wish = steps_ui(ui, steps, now, wizard.may_go_on(binding));
     ui.add_space(theme::GAP);
     if let Some(notice) = wizard.notice() {
@@ -95,8 +94,12 @@ pub(super) fn wizard_ui(wizard: &mut dyn Wizard, ui: &mut Ui, binding: &Binding)
         wish = wizard.step_ui(ui, binding).or(wish);
     } else if wizard.before_saving(ui) {
         let proof = wizard.proof();
-        let wanted = save_card(ui, binding, proof.as_deref(), wizard.frame_mut());
-        saving = wanted.then(|| wizard.made(binding)).flatten();
+        if save_card(ui, binding, proof.as_deref(), wizard.frame_mut()) {
+            saving = wizard.made(binding);
+        }
+        if let (None, Some(judgement)) = (proof, saving.as_mut().and_then(Saving::judgement_mut)) {
+            wizard.frame_mut().override_in(judgement);
+        }
     }
     match wish {
         Some(Wish::GoTo(step)) => wizard.go_to(step),

@@ -19,6 +19,7 @@ use super::{
     checks::{check_ui, switch_ui},
     frame::{Frame, Step, Wish, Wizard},
     pictures::{pose_picture, progress, sphere_picture},
+    report::{Report, result_ui, verdict_line},
 };
 use crate::{
     console::{
@@ -54,7 +55,7 @@ pub struct GravityWizard {
     frame: Frame,
     phase: Phase,
     held: Option<UnitQuaternion<f64>>,
-    report: Option<Result<GravityReport, String>>,
+    report: Report<GravityReport>,
     pass: Option<CheckPass>,
     left_n: Option<f64>,
 }
@@ -170,18 +171,11 @@ impl GravityWizard {
     }
 
     fn result_ui(&self, ui: &mut Ui) {
-        match &self.report {
-            Some(Ok(report)) => {
-                verdict_ui(ui, report);
-                models_ui(ui, report);
-            }
-            Some(Err(error)) => {
-                card(ui, text::wizards::NO_RESULT, text::gravity::NO_RESULT_HOVER, |ui| ui.label(error));
-            }
-            None => {
-                ui.label(text::gravity::NO_POSES);
-            }
-        }
+        let otherwise = [text::gravity::NO_RESULT_HOVER, text::gravity::NO_POSES];
+        result_ui(ui, self.report.as_ref(), otherwise, |ui, report| {
+            verdict_ui(ui, report);
+            models_ui(ui, report);
+        });
     }
 
     fn free_motion_ui(&mut self, ui: &mut Ui) {
@@ -223,10 +217,6 @@ impl GravityWizard {
 impl Wizard for GravityWizard {
     fn steps(&self) -> &'static [Step] {
         &STEPS
-    }
-
-    fn frame(&self) -> &Frame {
-        &self.frame
     }
 
     fn frame_mut(&mut self) -> &mut Frame {
@@ -287,10 +277,7 @@ impl Wizard for GravityWizard {
     }
 
     fn made(&self, binding: &Binding) -> Option<Saving> {
-        let mut record = self.good_report()?.record(&binding.sensor, &binding.tool, &binding.date)?;
-        if !self.is_proven() {
-            self.frame.override_in(&mut record.judgement);
-        }
+        let record = self.good_report()?.record(&binding.sensor, &binding.tool, &binding.date)?;
         Some(Saving::Gravity(Box::new(record)))
     }
 
@@ -328,8 +315,7 @@ fn phase_words(phase: &Phase) -> (f64, String) {
 }
 
 fn report_figures(ui: &mut Ui, report: &GravityReport) {
-    let words = format!("{}: {}", report.verdict.words(), report.reason);
-    ui.label(RichText::new(words).font(theme::strong(14.0)));
+    verdict_line(ui, report.verdict, &report.reason);
     figure(ui, text::gravity::COVERAGE, format!("{:.2}", report.coverage), text::gravity::COVERAGE_HOVER);
     if let Some(mass_kg) = report.mass_kg {
         figure(ui, text::gravity::MASS, format!("{mass_kg:.3} kg"), text::gravity::MASS_HOVER);

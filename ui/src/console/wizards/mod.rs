@@ -8,11 +8,13 @@ mod correspondence;
 mod frame;
 mod gravity;
 mod pictures;
+mod report;
 mod tip_force;
 
 use egui::{RichText, Ui};
 use nima_core::{
     calibration::{
+        Judgement,
         correspondence::{Correspondence, CorrespondenceRecord},
         gravity::GravityRecord,
     },
@@ -107,6 +109,17 @@ pub enum Saving {
     Correspondence(Box<CorrespondenceRecord>),
     /// A network with its check.
     TipForce(Box<Model>),
+}
+
+impl Saving {
+    /// What was judged of it; a network without a check has no judgement.
+    fn judgement_mut(&mut self) -> Option<&mut Judgement> {
+        match self {
+            Self::Gravity(record) => Some(&mut record.judgement),
+            Self::Correspondence(record) => Some(&mut record.judgement),
+            Self::TipForce(model) => model.origin.check.as_mut().map(|check| &mut check.judgement),
+        }
+    }
 }
 
 /// All wizards; each keeps what it has until it is started over.

@@ -24,11 +24,9 @@ use take::{Clock, Take};
 use super::{
     Binding, Saving,
     frame::{Frame, Step, Wish, Wizard},
+    report::verdict_words,
 };
-use crate::{
-    console::{text, theme},
-    words::Words as _,
-};
+use crate::console::{text, theme};
 
 const STEPS: [Step; 5] = [
     Step { name: text::tip_force::STEP_READY, meaning: text::tip_force::STEP_READY_HOVER },
@@ -71,7 +69,7 @@ impl RecordedWith {
 
 impl Checked {
     fn in_words(&self) -> String {
-        format!("{}: {}", self.check.judgement.verdict.words(), self.check.judgement.reason)
+        verdict_words(self.check.judgement.verdict, &self.check.judgement.reason)
     }
 }
 
@@ -259,10 +257,6 @@ impl Wizard for TipForceWizard {
         &STEPS
     }
 
-    fn frame(&self) -> &Frame {
-        &self.frame
-    }
-
     fn frame_mut(&mut self) -> &mut Frame {
         &mut self.frame
     }
@@ -351,11 +345,7 @@ impl Wizard for TipForceWizard {
 
     fn made(&self, _: &Binding) -> Option<Saving> {
         let mut model = self.trained.as_ref()?.model.clone();
-        let mut check = self.checked.as_ref()?.check.clone();
-        if self.proof().is_none() {
-            self.frame.override_in(&mut check.judgement);
-        }
-        model.origin.check = Some(check);
+        model.origin.check = Some(self.checked.as_ref()?.check.clone());
         Some(Saving::TipForce(Box::new(model)))
     }
 

@@ -1,0 +1,72 @@
+//! Why the inverse kinematics cannot start from where the arm is.
+
+use thiserror::Error;
+
+use super::gen3::{Joints, LIMIT_RAD};
+
+/// Why the arm cannot start from where it is.
+#[derive(Clone, Copy, Debug, PartialEq, Error)]
+#[expect(missing_docs, reason = "the messages say it")]
+pub enum StartError {
+    /// The loop's period makes no sense.
+    #[error("the period of the inverse kinematics is {period_s} s: it must be above 0 and at most 0.02 s")]
+    Period { period_s: f64 },
+    /// The instrument is shorter than the way it shall go.
+    #[error(
+        "the shaft of {shaft_m} m is too short for an insertion of {insertion_max_m} m: correct the one or the other"
+    )]
+    ShortShaft {
+        /// From the sensor to the tip, m.
+        shaft_m: f64,
+        /// Greatest insertion, m.
+        insertion_max_m: f64,
+    },
+    /// A joint angle is not finite.
+    #[error("joint {joint} of the arm reports no finite angle: check the arm's connection")]
+    NotFinite {
+        /// Counted from 1.
+        joint: usize,
+    },
+    /// A joint is at its limit.
+    #[error(
+        "joint {joint} is at {angle_deg:.1} degrees, its limit is {limit_deg:.1}: move the arm off the limit by hand"
+    )]
+    AtLimit {
+        /// Counted from 1.
+        joint: usize,
+        angle_deg: f64,
+        limit_deg: f64,
+    },
+    /// The shaft does not lead through the trocar.
+    #[error(
+        "the shaft's axis misses the trocar by {miss_m:.4} m, at most {most_m} m are allowed: move the arm to the ready pose"
+    )]
+    BesideTrocar {
+        /// Distance of the axis from the trocar, m.
+        miss_m: f64,
+        most_m: f64,
+    },
+    /// The tip is not in the body.
+    #[error("the tip is {insertion_m:.4} m behind the trocar: insert the instrument before starting")]
+    NotInserted {
+        /// Along the shaft, m; negative in front of the trocar.
+        insertion_m: f64,
+    },
+}
+
+/// Every angle is a number within its range.
+pub(super) fn check_joints(joint_rad: &Joints) -> Result<(), StartError> {
+    for (i, (angle, limit)) in joint_rad.iter().zip(LIMIT_RAD).enumerate() {
+        if !angle.is_finite() {
+            return Err(StartError::NotFinite { joint: i + 1 });
+        }
+        if angle.abs() >= limit {
+            return Err(StartError::AtLimit {
+                joint: i + 1,
+                angle_deg: angle.to_degrees(),
+                limit_deg: limit.to_degrees(),
+            });
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,80 @@
+//! What a pair tells of a tick, and what it shows before there was a sample.
+
+use nalgebra::Vector3;
+use nima_core::{
+    impedance::{Mode, Rendered},
+    kinematics::Hand,
+    safety::GateReport,
+};
+
+use super::{Pair, Timing};
+use crate::{
+    messages::{ForceReport, ForceSource, Tick},
+    rig::{Inputs, Sensed, Switches, View},
+    teleop::Link,
+};
+
+/// What was not measured.
+pub(super) const NOWHERE: Vector3<f64> = Vector3::new(f64::NAN, f64::NAN, f64::NAN);
+
+/// Shown until the rig has delivered its first sample.
+pub(super) const NOTHING_YET: Inputs = Inputs {
+    hand: Hand::at(Vector3::new(0.0, 0.0, 0.0)),
+    gripper_rad: None,
+    grip_n: None,
+    tip_m: Vector3::new(0.0, 0.0, 0.0),
+    world_from_jaws: None,
+    sensed: Sensed::AtTip(Vector3::new(0.0, 0.0, 0.0)),
+    view: View::Fixed,
+    switches: Switches { clutch: false, presence: None },
+    powered: false,
+    obstacle: None,
+    age_s: 0.0,
+};
+
+/// Until the first sample: an absent force is no usable force, and a rig that measures at the tip shows so at once.
+pub(super) const NO_FORCE_YET: ForceReport = ForceReport::none(ForceSource::AtTip, None);
+
+impl<L: Link> Pair<L> {
+    #[expect(clippy::too_many_arguments, reason = "all that one tick tells")]
+    pub(super) fn tick(
+        &self,
+        seen: &Inputs,
+        leader_m: Vector3<f64>,
+        rendered: &Rendered,
+        delayed_n: Vector3<f64>,
+        rendered_n: Vector3<f64>,
+        gates: GateReport,
+        timing: &Timing,
+    ) -> Tick {
+        Tick {
+            index: self.ticks,
+            t_s: timing.now_s,
+            side: self.side,
+            state: self.state(),
+            mode: self.mode,
+            delay_s: self.delay_s,
+            leader_m,
+            tip_m: seen.tip_m,
+            measured_n: self.force.tip_n,
+            force: self.force,
+            wrist: match seen.sensed {
+                Sensed::AtTip(_) => None,
+                Sensed::AtWrist(sample) => Some(sample),
+            },
+            prompt: self.prompt,
+            guide_m: self.guide_m,
+            delayed_n,
+            asked_n: Mode::ALL.map(|mode| rendered.force(mode).unwrap_or_else(Vector3::zeros)),
+            rendered_n,
+            gates,
+            gate_settings: *self.chain.settings(),
+            identification: *self.identifier.report(),
+            wake_s: timing.wake_s,
+            work_s: timing.work_s,
+            sample_to_force_s: timing.sample_to_force_s,
+            missed: self.missed,
+            dropped: 0,
+        }
+    }
+}

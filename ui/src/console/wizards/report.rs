@@ -1,0 +1,40 @@
+//! A session's report on the screen, or why there is none.
+
+use egui::{RichText, Ui};
+use nima_core::calibration::Verdict;
+
+use crate::{
+    console::{text, theme, widgets::card},
+    words::Words as _,
+};
+
+/// What a session concludes, or why it cannot; `None` while too little was taken.
+pub(super) type Report<R> = Option<Result<R, String>>;
+
+/// A verdict and its reason.
+pub(super) fn verdict_words(verdict: Verdict, reason: &str) -> String {
+    format!("{}: {reason}", verdict.words())
+}
+
+/// The same as a line of a card.
+pub(super) fn verdict_line(ui: &mut Ui, verdict: Verdict, reason: &str) {
+    ui.label(RichText::new(verdict_words(verdict, reason)).font(theme::strong(14.0)));
+}
+
+/// The step that shows the result: the report, why it failed, or that too little was taken.
+pub(super) fn result_ui<R>(
+    ui: &mut Ui,
+    report: Option<&Result<R, String>>,
+    [no_result_hover, too_few]: [&str; 2],
+    show: impl FnOnce(&mut Ui, &R),
+) {
+    match report {
+        Some(Ok(report)) => show(ui, report),
+        Some(Err(error)) => {
+            card(ui, text::wizards::NO_RESULT, no_result_hover, |ui| ui.label(error));
+        }
+        None => {
+            ui.label(too_few);
+        }
+    }
+}

@@ -3,116 +3,89 @@
 //! A client holds the line once a command of its was answered. Until then the next one takes its place, and one that sends much and
 //! asks nothing is cut off: whatever else knocks at the port keeps no client waiting.
 
-use std::{
-    io,
-    net::{Ipv4Addr, SocketAddrV4, TcpListener, UdpSocket},
-    sync::atomic::Ordering,
-    time::{Duration, Instant},
-};
-
-use nima_devices::transport::{Bytes as _, Tcp};
+use std::io;
 
 use super::{Body, Emulated, Wire as _, frames::Frames, gen_a::GenA};
-use crate::emulators::{EmulatedFault, FaultSwitch, Serving, places};
+use crate::emulators::{
+    EmulatedFault, Emulator, End, Peer, Turn,
+    wires::{tcp, udp},
+};
 
-const NAP: Duration = Duration::from_micros(300);
-/// Taken from a client in one turn, bytes.
-const TURN_BYTES: usize = 4096;
 /// Without a command among so many bytes what a client sends is garbage.
 const GARBAGE_BYTES: usize = 4096;
 
-pub(super) fn serve(emulated: &Emulated, faults: FaultSwitch, body: Body) -> io::Result<Serving> {
-    let listener = listen(SocketAddrV4::new(Ipv4Addr::LOCALHOST, emulated.tcp_port))?;
-    let address = listener.local_addr()?;
-    let stream = UdpSocket::bind((Ipv4Addr::LOCALHOST, 0))?;
-    stream.set_nonblocking(true)?;
-    let mut sensor = Sensor {
-        wire: GenA::new(emulated),
-        frames: Frames::new(body, emulated.first_timestamp_us, emulated.status),
-        stream,
-        destination: emulated.destination,
-        client: None,
-        begin: Instant::now(),
-    };
-    let switch = faults.clone();
-    Serving::start(address.to_string(), faults, move |stop| {
-        let mut listener = Some(listener);
-        while !stop.load(Ordering::Acquire) {
-            let fault = switch.get();
-            if fault == EmulatedFault::Disconnect {
-                (listener, sensor.client) = (None, None);
-            } else if let Some(listener) = &listener {
-                sensor.exchange(listener, fault);
-            } else if let std::net::SocketAddr::V4(address) = address {
-                listener = listen(address).ok();
-            }
-            std::thread::sleep(NAP);
-        }
-    })
-}
-
-fn listen(address: SocketAddrV4) -> io::Result<TcpListener> {
-    let listener = places::taken(address.port(), "TCP", TcpListener::bind(address))?;
-    listener.set_nonblocking(true)?;
-    Ok(listener)
-}
-
 /// Who asks.
 struct Client {
-    tcp: Tcp,
+    peer: Peer,
     /// A command of its was answered.
     known: bool,
     /// Bytes since the last one that was.
     unanswered: usize,
 }
 
-struct Sensor {
+pub(super) struct Sensor {
     wire: GenA,
     frames: Frames,
-    stream: UdpSocket,
-    destination: SocketAddrV4,
+    emulated: Emulated,
     client: Option<Client>,
-    begin: Instant,
 }
 
 impl Sensor {
-    fn exchange(&mut self, listener: &TcpListener, fault: EmulatedFault) {
-        let now_s = self.begin.elapsed().as_secs_f64();
-        if self.client.as_ref().is_none_or(|client| !client.known)
-            && let Ok((stream, _)) = listener.accept()
-        {
-            self.client = Tcp::of(stream).ok().map(|tcp| Client { tcp, known: false, unanswered: 0 });
-            self.wire.opened(now_s);
+    pub(super) fn new(emulated: Emulated, body: Body) -> Self {
+        let frames = Frames::new(body, emulated.first_timestamp_us, emulated.status);
+        Self { wire: GenA::new(&emulated), frames, emulated, client: None }
+    }
+
+    fn answer(&mut self, answer: &[u8], turn: &mut Turn<'_>) {
+        let Some(client) = self.client.as_mut().filter(|_| !answer.is_empty()) else { return };
+        (client.known, client.unanswered) = (true, 0);
+        if turn.fault != EmulatedFault::Silence {
+            turn.send_unspoilt(client.peer, answer);
         }
+    }
+}
+
+impl Emulator for Sensor {
+    fn wires(&self) -> io::Result<Vec<Box<dyn End>>> {
+        Ok(vec![tcp(self.emulated.tcp_port), udp(0)])
+    }
+
+    fn admits(&self) -> bool {
+        self.client.as_ref().is_none_or(|client| !client.known)
+    }
+
+    fn meet(&mut self, peer: Peer, turn: &mut Turn<'_>) {
+        if let Some(client) = self.client.replace(Client { peer, known: false, unanswered: 0 }) {
+            turn.hang_up(client.peer);
+        }
+        self.wire.opened(turn.now_s);
+    }
+
+    fn hear(&mut self, from: Peer, bytes: &[u8], turn: &mut Turn<'_>) {
         let mut answer = Vec::new();
-        let mut alive = true;
+        self.wire.hear(bytes, turn.now_s, &mut answer);
         if let Some(client) = &mut self.client {
-            let mut buffer = [0; TURN_BYTES];
-            match client.tcp.receive(&mut buffer) {
-                Ok(count) => {
-                    self.wire.hear(&buffer[..count], now_s, &mut answer);
-                    client.unanswered += count;
-                }
-                Err(_) => alive = false,
-            }
+            client.unanswered += bytes.len();
         }
-        self.wire.tick(now_s, &mut answer);
-        if let Some(client) = &mut self.client {
-            if !answer.is_empty() {
-                (client.known, client.unanswered) = (true, 0);
-                // One that does not take its answers is gone, or asks for the asking's sake.
-                alive &= fault == EmulatedFault::Silence || client.tcp.send(&answer).is_ok();
-            }
-            alive &= client.unanswered < GARBAGE_BYTES;
+        self.answer(&answer, turn);
+        if self.client.take_if(|client| client.unanswered >= GARBAGE_BYTES).is_some() {
+            turn.hang_up(from);
         }
-        if !alive {
-            self.client = None;
-        }
-        // A closed port of the client answers with an error that concerns nobody here.
-        let (stream, destination) = (&self.stream, self.destination);
-        self.frames.due(now_s, &self.wire, fault, &mut |bytes| {
-            stream.send_to(bytes, destination).ok();
-        });
+    }
+
+    fn pass(&mut self, turn: &mut Turn<'_>) {
+        let mut answer = Vec::new();
+        self.wire.tick(turn.now_s, &mut answer);
+        self.answer(&answer, turn);
+        self.frames.due(turn, &self.wire, Peer::Address(self.emulated.destination.into()), |_| {});
+    }
+
+    fn due_s(&self) -> Option<f64> {
+        self.frames.next_s()
+    }
+
+    fn lose(&mut self, _: Peer) {
+        self.client = None;
     }
 }
 
@@ -121,17 +94,20 @@ mod tests {
     use std::{
         io::{ErrorKind, Read as _, Write as _},
         net::TcpStream,
+        time::Duration,
     };
 
+    use nima_devices::bota::Transport;
+
     use super::*;
-    use crate::emulators::bota::slow_motion;
+    use crate::emulators::{Serving, bota::slow_motion};
 
     /// Whoever is served gets its answer within milliseconds; this is for machines that are busy with others.
     const LONG: Duration = Duration::from_secs(20);
 
     fn sensor() -> Serving {
-        let emulated = Emulated { tcp_port: 0, ..Emulated::default() };
-        serve(&emulated, FaultSwitch::default(), slow_motion()).unwrap()
+        let emulated = Emulated { transport: Transport::Socket, tcp_port: 0, ..Emulated::default() };
+        emulated.with(slow_motion()).serve().unwrap()
     }
 
     fn client(serving: &Serving) -> TcpStream {

@@ -5,6 +5,8 @@ use std::{
     str::FromStr,
 };
 
+use nima_devices::bota::Transport;
+
 use super::Emulator;
 
 /// Settings `KEY=VALUE`; devices that do not have one ignore it.
@@ -54,18 +56,13 @@ pub(super) type Alone = fn(&Settings) -> Result<Box<dyn Emulator>>;
 
 /// All that can be emulated, by name.
 pub const ALONE: &[(&str, Alone)] = &[
-    #[cfg(unix)]
-    ("bota-gen0", super::bota::alone::gen0),
-    #[cfg(unix)]
-    ("bota-gen-a", super::bota::alone::gen_a),
-    ("bota-socket", super::bota::alone::socket),
-    #[cfg(unix)]
+    ("bota-gen0", |settings| super::bota::alone::sensor(Transport::Gen0, settings)),
+    ("bota-gen-a", |settings| super::bota::alone::sensor(Transport::GenA, settings)),
+    ("bota-socket", |settings| super::bota::alone::sensor(Transport::Socket, settings)),
     ("dynamixel", super::dynamixel::alone::bus),
     ("force-dimension", super::force_dimension::alone::handle),
     ("kinova", super::kinova::alone::arm),
-    #[cfg(unix)]
     ("ndi", super::ndi::alone::network),
-    #[cfg(unix)]
     ("ndi-serial", super::ndi::alone::line),
     #[cfg(target_os = "linux")]
     ("pedal", super::hid::alone::pedal),

@@ -1,9 +1,9 @@
 //! An emulator for every device, on its real wire.
 //!
 //! An [`Emulator`] is what a device does, without input and output: it is told the time, what clients send, and the fault in force, and says
-//! what leaves. A simulated world or a test feeds it with what the device would measure. [`serve`](trait.Emulator.html#method.serve) is the
-//! body that all of them have: a thread with the wires, which ends when its [`Serving`] is dropped. Faults are set at any time; what
-//! concerns bytes is done by the body, what concerns meaning (checksum, status bits, numbers) by the emulator itself.
+//! what leaves. A simulated world or a test feeds it with what the device would measure. Its `serve` is the body that all of them have: a
+//! thread with the wires, which ends when its [`Serving`] is dropped. Faults are set at any time; what concerns bytes is done by the body,
+//! what concerns meaning (checksum, status bits, numbers) by the emulator itself.
 
 mod alone;
 pub mod bota;
@@ -13,7 +13,6 @@ pub mod force_dimension;
 #[cfg(target_os = "linux")]
 pub mod hid;
 pub mod kinova;
-#[cfg(unix)]
 pub mod ndi;
 mod places;
 mod serving;
@@ -53,7 +52,7 @@ pub trait Emulator: Send {
     /// A client connected, or opened the line.
     fn meet(&mut self, _: Peer, _: &mut Turn<'_>) {}
 
-    /// A client sent this.
+    /// A client sent this; nothing at first, where it only connected.
     fn hear(&mut self, from: Peer, bytes: &[u8], turn: &mut Turn<'_>);
 
     /// Time has passed, a millisecond at most and not beyond [`due_s`](Self::due_s); also while the line is cut.

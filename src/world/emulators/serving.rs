@@ -13,7 +13,7 @@ use std::{
 use super::{
     EmulatedFault, Emulator, FaultSwitch,
     faults::FaultyLine,
-    wires::{Arrival, End, Peer, Wires},
+    wires::{ARRIVALS, Arrival, End, Peer, wait},
 };
 
 /// Time passes for an emulator at least so often.
@@ -74,29 +74,34 @@ pub struct Turn<'a> {
     /// The speed that the client of a serial line has set, bit/s.
     pub baud: Option<u32>,
     line: &'a mut FaultyLine,
-    wires: &'a mut Wires,
+    ends: &'a mut [Box<dyn End>],
 }
 
 impl Turn<'_> {
     /// Sends a frame, as far as the fault in force lets it.
     pub fn send(&mut self, to: Peer, frame: &[u8]) {
-        self.line.pass(self.now_s, to, frame, self.fault, &mut |to, bytes| self.wires.send(to, bytes));
+        let ends = &mut *self.ends;
+        self.line.pass(self.now_s, to, frame, self.fault, &mut |to, bytes| send(ends, to, bytes));
     }
 
     /// Sends what no fault of the line concerns.
     pub fn send_unspoilt(&mut self, to: Peer, bytes: &[u8]) {
-        self.wires.send(to, bytes);
+        send(self.ends, to, bytes);
     }
 
-    /// Ends a connection.
-    pub fn hang_up(&mut self, peer: Peer) {
-        self.wires.hang_up(peer);
+    /// Ends all connections.
+    pub fn hang_up(&mut self) {
+        self.ends.iter_mut().for_each(|end| end.hang_up());
     }
+}
+
+fn send(ends: &mut [Box<dyn End>], to: Peer, bytes: &[u8]) {
+    ends.iter_mut().for_each(|end| end.send(to, bytes));
 }
 
 struct Host {
     emulator: Box<dyn Emulator>,
-    wires: Wires,
+    ends: Vec<Box<dyn End>>,
     line: FaultyLine,
     faults: FaultSwitch,
     begin: Instant,
@@ -107,7 +112,7 @@ impl Host {
     fn new(emulator: Box<dyn Emulator>, ends: Vec<Box<dyn End>>, faults: FaultSwitch) -> Self {
         Self {
             emulator,
-            wires: Wires::new(ends),
+            ends,
             line: FaultyLine::default(),
             faults,
             begin: Instant::now(),
@@ -119,40 +124,45 @@ impl Host {
         self.emulator.begin();
         while !stop.load(Ordering::Acquire) {
             if self.faults.get() != EmulatedFault::Disconnect {
-                self.wires.open();
-            } else if self.wires.cut() {
+                // What cannot be opened now is tried again in the next turn.
+                self.ends.iter_mut().for_each(|end| drop(end.open()));
+            } else if self.cut() {
                 self.line.cut();
                 self.emulator.lose(Peer::Everyone);
             }
-            self.hear();
+            for number in 0..self.ends.len() {
+                self.hear(number);
+            }
             self.turn(|emulator, turn, _| {
-                turn.line.let_late_ones_go(turn.now_s, &mut |to, bytes| turn.wires.send(to, bytes));
+                turn.line.let_late_ones_go(turn.now_s, &mut |to, bytes| send(turn.ends, to, bytes));
                 emulator.pass(turn);
             });
             let rest_s =
                 self.emulator.due_s().map_or(f64::INFINITY, |due_s| due_s - self.begin.elapsed().as_secs_f64());
             let rest = Duration::from_secs_f64(rest_s.clamp(0.0, TICK.as_secs_f64()));
-            self.wires.wait(rest, self.emulator.admits());
+            wait(&self.ends, rest, self.emulator.admits());
         }
-        self.wires.cut();
+        self.cut();
     }
 
-    /// Hands on what has arrived.
-    fn hear(&mut self) {
-        self.wires.begin_turn();
-        while let Some(arrival) = self.wires.next(&mut self.buffer, self.emulator.admits()) {
-            match arrival {
-                Arrival::Came(peer, count) => self.turn(|emulator, turn, buffer| {
+    /// True if anything was open.
+    fn cut(&mut self) -> bool {
+        self.ends.iter_mut().fold(false, |any, end| end.cut() | any)
+    }
+
+    /// Hands on what has arrived at an end.
+    fn hear(&mut self, number: usize) {
+        for _ in 0..ARRIVALS {
+            let admits = self.emulator.admits();
+            let Some(arrival) = self.ends[number].next(&mut self.buffer, admits) else { return };
+            self.turn(|emulator, turn, buffer| match arrival {
+                Arrival::Came(peer, count) => {
                     emulator.meet(peer, turn);
-                    if count > 0 {
-                        emulator.hear(peer, &buffer[..count], turn);
-                    }
-                }),
-                Arrival::Heard(peer, count) => {
-                    self.turn(|emulator, turn, buffer| emulator.hear(peer, &buffer[..count], turn));
+                    emulator.hear(peer, &buffer[..count], turn);
                 }
-                Arrival::Gone(peer) => self.emulator.lose(peer),
-            }
+                Arrival::Heard(peer, count) => emulator.hear(peer, &buffer[..count], turn),
+                Arrival::Gone(peer) => emulator.lose(peer),
+            });
         }
     }
 
@@ -160,9 +170,9 @@ impl Host {
         let mut turn = Turn {
             now_s: self.begin.elapsed().as_secs_f64(),
             fault: self.faults.get(),
-            baud: self.wires.baud(),
+            baud: self.ends.iter().find_map(|end| end.baud()),
             line: &mut self.line,
-            wires: &mut self.wires,
+            ends: &mut self.ends,
         };
         work(&mut *self.emulator, &mut turn, &self.buffer);
     }

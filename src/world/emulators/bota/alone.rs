@@ -13,7 +13,7 @@ use nima_devices::bota::Transport;
 use super::{Emulated, slow_motion};
 use crate::emulators::{Emulator, Settings};
 
-fn sensor(transport: Transport, settings: &Settings) -> Result<Box<dyn Emulator>> {
+pub(in crate::emulators) fn sensor(transport: Transport, settings: &Settings) -> Result<Box<dyn Emulator>> {
     let usual = Emulated::default();
     let baud = match settings.get("baud")? {
         Some(0) => None,
@@ -32,18 +32,4 @@ fn sensor(transport: Transport, settings: &Settings) -> Result<Box<dyn Emulator>
         ..usual
     };
     Ok(sensor.with(slow_motion()))
-}
-
-#[cfg(unix)]
-pub(in crate::emulators) fn gen0(settings: &Settings) -> Result<Box<dyn Emulator>> {
-    sensor(Transport::Gen0, settings)
-}
-
-#[cfg(unix)]
-pub(in crate::emulators) fn gen_a(settings: &Settings) -> Result<Box<dyn Emulator>> {
-    sensor(Transport::GenA, settings)
-}
-
-pub(in crate::emulators) fn socket(settings: &Settings) -> Result<Box<dyn Emulator>> {
-    sensor(Transport::Socket, settings)
 }

@@ -7,11 +7,8 @@ pub(super) mod alone;
 mod frames;
 mod gen0;
 mod gen_a;
-#[cfg(unix)]
-mod line;
-mod network;
+mod sensor;
 #[cfg(test)]
-#[cfg(unix)]
 mod wire_tests;
 
 use std::f64::consts::TAU;
@@ -79,13 +76,11 @@ impl Default for Emulated {
 impl Emulated {
     /// With what it feels.
     pub fn with(self, body: Body) -> Box<dyn Emulator> {
-        match self.transport {
-            #[cfg(unix)]
-            Transport::Gen0 => Box::new(line::Sensor::new(gen0::Gen0::new(&self), "bota-gen0", self, body)),
-            #[cfg(unix)]
-            Transport::GenA => Box::new(line::Sensor::new(gen_a::GenA::new(&self), "bota-gen-a", self, body)),
-            _ => Box::new(network::Sensor::new(self, body)),
-        }
+        let wire: Box<dyn Wire> = match self.transport {
+            Transport::Gen0 => Box::new(gen0::Gen0::new(&self)),
+            Transport::GenA | Transport::Socket => Box::new(gen_a::GenA::new(&self)),
+        };
+        Box::new(sensor::Sensor::new(wire, self, body))
     }
 }
 

@@ -6,14 +6,12 @@
 //! Inferred, because the e-manual is silent: servos after a missing one do not answer a sync read; a failed part of a fast
 //! read answers zeros with its error.
 
-#[cfg(unix)]
 pub(super) mod alone;
 mod motor;
 mod registers;
 mod servo;
 #[cfg(test)]
 mod tests;
-#[cfg(unix)]
 mod wire;
 
 use std::{collections::VecDeque, io, path::PathBuf};
@@ -85,11 +83,8 @@ impl Emulated {
     ///
     /// # Errors
     /// When model or line speed is none that there is.
-    #[cfg(unix)]
     pub fn with(&self, body: Option<Body>) -> io::Result<Box<dyn Emulator>> {
-        let impossible =
-            || io::Error::new(io::ErrorKind::InvalidInput, "no servo has this model number and line speed");
-        Ok(Box::new(Bus::new(self, body).ok_or_else(impossible)?))
+        Ok(Box::new(Bus::new(self, body)?))
     }
 }
 
@@ -124,14 +119,18 @@ pub fn swaying(supply_v: f64) -> Body {
 }
 
 impl Bus {
-    /// New from the factory, but for ids and line speed; `None` where model or speed is none that there is. Without a
-    /// body the shafts sway slowly.
-    pub fn new(settings: &Emulated, body: Option<Body>) -> Option<Self> {
-        let model = Model::numbered(settings.model)?;
-        let baud = BAUDS.iter().position(|baud| *baud == settings.baud)? as u8;
+    /// New from the factory, but for ids and line speed. Without a body the shafts sway slowly.
+    ///
+    /// # Errors
+    /// When model or line speed is none that there is.
+    pub fn new(settings: &Emulated, body: Option<Body>) -> io::Result<Self> {
+        let baud = BAUDS.iter().position(|baud| *baud == settings.baud);
+        let (Some(model), Some(baud)) = (Model::numbered(settings.model), baud) else {
+            return Err(io::Error::new(io::ErrorKind::InvalidInput, "no servo has this model number and line speed"));
+        };
         let supply_v = if model.is_small() { 5.0 } else { 12.0 };
-        Some(Self {
-            servos: settings.ids.iter().map(|id| Servo::new(model, *id, baud)).collect(),
+        Ok(Self {
+            servos: settings.ids.iter().map(|id| Servo::new(model, *id, baud as u8)).collect(),
             body: body.unwrap_or_else(|| swaying(supply_v)),
             fast: settings.fast,
             incoming: Incoming::new(LONGEST),

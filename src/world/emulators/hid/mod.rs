@@ -4,7 +4,12 @@
 //! node; what it sends are output reports. Faults that a human interface device cannot have (checksums, status bits) do
 //! nothing; "not a number" is an axis far beyond its range, or a keyboard that cannot tell its keys.
 
-use std::{io, path::PathBuf, time::Duration};
+use std::{
+    io,
+    os::unix::net::UnixListener,
+    path::{Path, PathBuf},
+    time::Duration,
+};
 
 use nalgebra::Vector3;
 use nima_devices::{
@@ -12,15 +17,13 @@ use nima_devices::{
     hid::{
         cap_codec::{self, CapReport, counts_of},
         pedal_codec::{self, Layout},
+        seqpacket,
         source::HidIdentity,
         spacenavd::Event,
     },
 };
 
-use crate::emulators::{
-    EmulatedFault, Emulator, End, Peer, Turn,
-    wires::{packets, stream},
-};
+use crate::emulators::{EmulatedFault, Emulator, End, Peer, Turn, wires::socket};
 
 pub(super) mod alone;
 mod models;
@@ -67,8 +70,9 @@ struct Periodic<S> {
 
 impl<S: Side> Emulator for Periodic<S> {
     fn wires(&self) -> io::Result<Vec<Box<dyn End>>> {
-        let listen = if self.side.hello().is_some() { packets } else { stream };
-        Ok(vec![listen(self.path.as_deref(), S::NAME)?])
+        let listen =
+            if self.side.hello().is_some() { seqpacket::listen } else { |path: &Path| UnixListener::bind(path) };
+        Ok(vec![socket(self.path.as_deref(), S::NAME, listen)?])
     }
 
     fn endpoint(&self, places: &[String]) -> String {

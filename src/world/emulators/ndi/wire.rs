@@ -7,7 +7,7 @@ use nima_devices::ndi::command::COMMAND_MAX;
 use super::{Answer, Body, Profile, Unit, unit::FIRST_BAUD};
 use crate::emulators::{
     EmulatedFault, Emulator, End, Peer, Turn,
-    wires::{tcp, terminal},
+    wires::{tcp_for_one, terminal},
 };
 
 /// From the speed being set to 9600, which stands for a break, to the unit's answer, s: hosts flush in between.
@@ -19,7 +19,7 @@ impl Profile {
     /// Such a unit on TCP; `port` 0 takes a free one. The newest connection is the one that is answered.
     pub fn on_network(self, port: u16, body: impl Body + 'static) -> Box<dyn Emulator> {
         let hearing = Hearing::new(self, true, Box::new(body));
-        Box::new(Network { port, hearing, client: None })
+        Box::new(Network { port, hearing })
     }
 
     /// Such a unit on a pseudo-terminal: `link`, or one in a folder of its own.
@@ -68,18 +68,14 @@ fn say(reply: &[u8], turn: &mut Turn<'_>) {
 struct Network {
     port: u16,
     hearing: Hearing,
-    client: Option<Peer>,
 }
 
 impl Emulator for Network {
     fn wires(&self) -> io::Result<Vec<Box<dyn End>>> {
-        Ok(vec![tcp(self.port)])
+        Ok(vec![tcp_for_one(self.port)])
     }
 
-    fn meet(&mut self, peer: Peer, turn: &mut Turn<'_>) {
-        if let Some(last) = self.client.replace(peer) {
-            turn.hang_up(last);
-        }
+    fn meet(&mut self, _: Peer, _: &mut Turn<'_>) {
         self.hearing.command.clear();
     }
 

@@ -3,6 +3,7 @@
 use std::{
     io,
     net::{Ipv4Addr, SocketAddr, UdpSocket},
+    os::fd::{AsRawFd as _, RawFd},
 };
 
 use super::{Arrival, End, Peer};
@@ -49,9 +50,7 @@ impl End for Datagrams {
         }
     }
 
-    #[cfg(target_os = "linux")]
-    fn watch(&self, _: bool, watched: &mut Vec<std::os::fd::RawFd>) {
-        use std::os::fd::AsRawFd as _;
+    fn watch(&self, _: bool, watched: &mut Vec<RawFd>) {
         watched.extend(self.socket.iter().map(UdpSocket::as_raw_fd));
     }
 }

@@ -3,6 +3,7 @@
 use std::{
     fs::File,
     io::{self, ErrorKind, Read as _, Write as _},
+    os::fd::{AsRawFd as _, RawFd},
     path::Path,
     time::{Duration, Instant},
 };
@@ -119,9 +120,7 @@ impl End for Terminal {
         self.line.as_ref()?.near.baud_rate().ok()
     }
 
-    #[cfg(target_os = "linux")]
-    fn watch(&self, _: bool, watched: &mut Vec<std::os::fd::RawFd>) {
-        use std::os::fd::AsRawFd as _;
+    fn watch(&self, _: bool, watched: &mut Vec<RawFd>) {
         watched.extend(self.line.iter().filter(|line| line.present).map(|line| line.bytes.as_raw_fd()));
     }
 }

@@ -1,83 +1,103 @@
-//! An emulated sensor in the network: commands over TCP from one client at a time, readings as datagrams to a fixed address.
+//! An emulated sensor on its wire: a pseudo-terminal, or commands over TCP and readings as datagrams to a fixed address.
 //!
-//! A client holds the line once a command of its was answered. Until then the next one takes its place, and one that sends much and
-//! asks nothing is cut off: whatever else knocks at the port keeps no client waiting.
+//! A client in the network holds the line once a command of its was answered. Until then the next one takes its place, and one that sends
+//! much and asks nothing is cut off: whatever else knocks at the port keeps no client waiting.
 
 use std::io;
 
-use super::{Body, Emulated, Wire as _, frames::Frames, gen_a::GenA};
+use nima_devices::bota::Transport;
+
+use super::{Body, Emulated, Wire, frames::Frames};
 use crate::emulators::{
     EmulatedFault, Emulator, End, Peer, Turn,
-    wires::{tcp, udp},
+    wires::{tcp_for_one, terminal, udp},
 };
 
 /// Without a command among so many bytes what a client sends is garbage.
 const GARBAGE_BYTES: usize = 4096;
 
-/// Who asks.
-struct Client {
-    peer: Peer,
-    /// A command of its was answered.
+pub(super) struct Sensor {
+    wire: Box<dyn Wire>,
+    frames: Frames,
+    of: Emulated,
+    /// A command of the client was answered.
     known: bool,
-    /// Bytes since the last one that was.
+    /// Bytes of the client since the last one that was.
     unanswered: usize,
 }
 
-pub(super) struct Sensor {
-    wire: GenA,
-    frames: Frames,
-    emulated: Emulated,
-    client: Option<Client>,
-}
-
 impl Sensor {
-    pub(super) fn new(emulated: Emulated, body: Body) -> Self {
-        let frames = Frames::new(body, emulated.first_timestamp_us, emulated.status);
-        Self { wire: GenA::new(&emulated), frames, emulated, client: None }
+    pub(super) fn new(wire: Box<dyn Wire>, of: Emulated, body: Body) -> Self {
+        let frames = Frames::new(body, of.first_timestamp_us, of.status);
+        Self { wire, frames, of, known: false, unanswered: 0 }
     }
 
-    fn answer(&mut self, answer: &[u8], turn: &mut Turn<'_>) {
-        let Some(client) = self.client.as_mut().filter(|_| !answer.is_empty()) else { return };
-        (client.known, client.unanswered) = (true, 0);
-        if turn.fault != EmulatedFault::Silence {
-            turn.send_unspoilt(client.peer, answer);
+    /// Another speed turns bytes into others.
+    fn understands(&self, turn: &Turn<'_>) -> bool {
+        turn.baud.is_none() || self.of.baud.is_none() || turn.baud == self.of.baud
+    }
+
+    /// Sends an answer, which only silence keeps back.
+    fn answer(&mut self, mut answer: Vec<u8>, turn: &mut Turn<'_>) {
+        if answer.is_empty() {
+            return;
         }
+        (self.known, self.unanswered) = (true, 0);
+        if turn.fault != EmulatedFault::Silence {
+            garble(&mut answer, self.understands(turn));
+            turn.send_unspoilt(Peer::Everyone, &answer);
+        }
+    }
+}
+
+fn garble(bytes: &mut [u8], understood: bool) {
+    if !understood {
+        bytes.iter_mut().for_each(|byte| *byte = byte.rotate_left(3) ^ 0x5A);
     }
 }
 
 impl Emulator for Sensor {
     fn wires(&self) -> io::Result<Vec<Box<dyn End>>> {
-        Ok(vec![tcp(self.emulated.tcp_port), udp(0)])
+        let line = |name| terminal(self.of.link.as_deref(), name, None);
+        Ok(match self.of.transport {
+            Transport::Gen0 => vec![line("bota-gen0")?],
+            Transport::GenA => vec![line("bota-gen-a")?],
+            Transport::Socket => vec![tcp_for_one(self.of.tcp_port), udp(0)],
+        })
     }
 
     fn admits(&self) -> bool {
-        self.client.as_ref().is_none_or(|client| !client.known)
+        !self.known
     }
 
-    fn meet(&mut self, peer: Peer, turn: &mut Turn<'_>) {
-        if let Some(client) = self.client.replace(Client { peer, known: false, unanswered: 0 }) {
-            turn.hang_up(client.peer);
-        }
+    fn meet(&mut self, _: Peer, turn: &mut Turn<'_>) {
+        (self.known, self.unanswered) = (false, 0);
         self.wire.opened(turn.now_s);
     }
 
-    fn hear(&mut self, from: Peer, bytes: &[u8], turn: &mut Turn<'_>) {
+    fn hear(&mut self, _: Peer, bytes: &[u8], turn: &mut Turn<'_>) {
+        if !self.understands(turn) {
+            return;
+        }
         let mut answer = Vec::new();
         self.wire.hear(bytes, turn.now_s, &mut answer);
-        if let Some(client) = &mut self.client {
-            client.unanswered += bytes.len();
-        }
-        self.answer(&answer, turn);
-        if self.client.take_if(|client| client.unanswered >= GARBAGE_BYTES).is_some() {
-            turn.hang_up(from);
+        self.unanswered += bytes.len();
+        self.answer(answer, turn);
+        if self.unanswered >= GARBAGE_BYTES {
+            turn.hang_up();
         }
     }
 
     fn pass(&mut self, turn: &mut Turn<'_>) {
         let mut answer = Vec::new();
         self.wire.tick(turn.now_s, &mut answer);
-        self.answer(&answer, turn);
-        self.frames.due(turn, &self.wire, Peer::Address(self.emulated.destination.into()), |_| {});
+        self.answer(answer, turn);
+        let to = match self.of.transport {
+            Transport::Socket => Peer::Address(self.of.destination.into()),
+            Transport::Gen0 | Transport::GenA => Peer::Everyone,
+        };
+        let understood = self.understands(turn);
+        self.frames.due(turn, &*self.wire, to, |bytes| garble(bytes, understood));
     }
 
     fn due_s(&self) -> Option<f64> {
@@ -85,7 +105,7 @@ impl Emulator for Sensor {
     }
 
     fn lose(&mut self, _: Peer) {
-        self.client = None;
+        self.known = false;
     }
 }
 
@@ -96,8 +116,6 @@ mod tests {
         net::TcpStream,
         time::Duration,
     };
-
-    use nima_devices::bota::Transport;
 
     use super::*;
     use crate::emulators::{Serving, bota::slow_motion};

@@ -146,7 +146,7 @@ mod tests {
 
     use super::*;
     use crate::{
-        emulators::hid::{CapBody, CapModel, PedalBody, PedalModel, Place, serve_cap, serve_pedal},
+        emulators::hid::{CapBody, CapModel, PedalBody, PedalModel, cap, pedal},
         scene::Scene,
     };
 
@@ -154,17 +154,19 @@ mod tests {
     fn a_cap_leads_the_hand_and_a_pedal_is_the_clutch() {
         let push = CapReading { translation: Vector3::new(0.5, 0.0, 0.0), ..CapReading::default() };
         // At rest for a while, then pushed to the right.
-        let cap = serve_cap(
-            Place::Temporary,
+        let cap = cap(
+            None,
             CapModel::default(),
             CapBody::moved_by(move |t_s| if t_s > 1.0 { push } else { CapReading::default() }),
         )
+        .serve()
         .unwrap();
-        let pedal = serve_pedal(
-            Place::Temporary,
+        let pedal = pedal(
+            None,
             PedalModel::default(),
             PedalBody::pressed_by(|t_s| PedalReading { pressed: u32::from(t_s > 1.0) }),
         )
+        .serve()
         .unwrap();
         let source = |endpoint: &str| {
             if endpoint.starts_with("emulated:") { endpoint.to_owned() } else { format!("emulated:{endpoint}") }

@@ -15,7 +15,7 @@ use crate::{
     emulators::{
         Serving,
         bota::Emulated,
-        force_dimension::{Emulator, Held},
+        force_dimension::{Emulated as Handle, Held},
     },
 };
 
@@ -29,8 +29,8 @@ fn devices(folder: &std::path::Path) -> (Settings, [Serving; 2]) {
     let port = folder.join("sensor");
     let sensor = Emulated { baud: None, boot_s: 0.0, link: Some(port.clone()), ..Emulated::default() };
     let serving = [
-        Emulator { serial: 5151, ..Emulator::default() }.serve(Held::default().body()).unwrap(),
-        sensor.serve_gen_a(Box::new(|_| ForceReading::default())).unwrap(),
+        Handle { serial: 5151, ..Handle::default() }.with(Held::default().body()).serve().unwrap(),
+        sensor.with(Box::new(|_| ForceReading::default())).serve().unwrap(),
     ];
     let whole = RigConfig::load("emulated").unwrap().devices.unwrap();
     let mut right = whole.right.unwrap();

@@ -18,7 +18,7 @@ use crate::counting::calls;
 #[test]
 fn polling_allocates_nothing_also_in_a_damaged_stream_and_when_the_sensor_is_lost() {
     let _alone = alone();
-    let serving = Emulated::default().serve_gen_a(slow_motion()).unwrap();
+    let serving = Emulated::default().with(slow_motion()).serve().unwrap();
     let mut driver = Driver::open(&Settings::new(Transport::GenA, serving.endpoint.clone())).unwrap();
     let begin = Instant::now();
     for fault in [EmulatedFault::None, EmulatedFault::Garbage, EmulatedFault::Reorder, EmulatedFault::BadChecksum] {

@@ -8,7 +8,7 @@ use nima_devices::{
     dynamixel::{Settings, Taken, open},
 };
 use nima_testing::real_time::alone;
-use nima_world::emulators::dynamixel::{Emulator, EmulatorSettings};
+use nima_world::emulators::dynamixel::Emulated;
 
 use crate::counting::calls;
 
@@ -17,8 +17,8 @@ const SERVO: &str = "position_min_rad = -1.0\nposition_max_rad = 1.0\ncurrent_li
 #[test]
 fn running_servos_allocates_nothing() {
     let _alone = alone();
-    let emulated = EmulatorSettings { baud: 4_000_000, ..EmulatorSettings::default() };
-    let serving = Emulator::new(&emulated, None).unwrap().serve().unwrap();
+    let emulated = Emulated { baud: 4_000_000, ..Emulated::default() };
+    let serving = emulated.with(None).unwrap().serve().unwrap();
     let servos = [1, 2, 3, 4].map(|id| format!("[[servos]]\nid = {id}\n{SERVO}")).concat();
     let text = format!("port = \"{}\"\nbaud = 4000000\nsilence_s = 0.5\n{servos}", serving.endpoint);
     let settings: Settings = toml::from_str(&text).unwrap();

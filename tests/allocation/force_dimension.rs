@@ -8,14 +8,14 @@ use nima_devices::{
     force_dimension::{Settings, open},
 };
 use nima_testing::real_time::alone;
-use nima_world::emulators::force_dimension::{Emulator, Held, stand_in};
+use nima_world::emulators::force_dimension::{Emulated, Held, stand_in};
 
 use crate::counting::calls;
 
 #[test]
 fn a_tick_with_the_handle_allocates_nothing() {
     let _alone = alone();
-    let serving = Emulator::default().serve(Held::default().body()).unwrap();
+    let serving = Emulated::default().with(Held::default().body()).serve().unwrap();
     let emulator = Some(serving.endpoint.parse().unwrap());
     let library = stand_in();
     assert!(library.is_some(), "cargo builds the stand-in library before the tests");

@@ -10,7 +10,7 @@ use nima_devices::{
 use nima_testing::real_time::alone;
 use nima_world::emulators::{
     EmulatedFault,
-    hid::{CapBody, CapModel, PedalBody, PedalModel, Place, serve_cap, serve_pedal},
+    hid::{CapBody, CapModel, PedalBody, PedalModel, cap, pedal},
 };
 
 use crate::counting::calls;
@@ -29,9 +29,9 @@ fn polled(device: &mut impl Device, length: Duration) -> (u64, u32) {
 fn polling_allocates_nothing_while_good_damaged_and_lost() {
     let _alone = alone();
     let moving = |now_s: f64| CapReading { buttons: (now_s * 20.0) as u32 & 1, ..CapReading::default() };
-    let cap = serve_cap(Place::Temporary, CapModel::Split, CapBody::moved_by(moving)).unwrap();
+    let cap = cap(None, CapModel::Split, CapBody::moved_by(moving)).serve().unwrap();
     let stepping = |now_s: f64| PedalReading { pressed: (now_s * 20.0) as u32 & 1 };
-    let pedal = serve_pedal(Place::Temporary, PedalModel::Keyboard, PedalBody::pressed_by(stepping)).unwrap();
+    let pedal = pedal(None, PedalModel::Keyboard, PedalBody::pressed_by(stepping)).serve().unwrap();
     let mut cap_driver =
         CapDriver::open(&CapSettings { source: cap.endpoint.clone(), ..CapSettings::default() }).unwrap();
     let settings = PedalSettings { source: pedal.endpoint.clone(), ..PedalSettings::default() };

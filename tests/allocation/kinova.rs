@@ -9,8 +9,8 @@ use nima_devices::{
 };
 use nima_testing::real_time::alone;
 use nima_world::emulators::{
-    EmulatedFault, FaultSwitch,
-    kinova::{EmulatedArm, StandIn, emulate},
+    EmulatedFault,
+    kinova::{Emulated, StandIn},
 };
 
 use crate::counting::calls;
@@ -32,8 +32,8 @@ fn allocations(driver: &mut Driver, now_s: &mut f64, ticks: u32, mut command: im
 #[test]
 fn a_tick_of_the_arm_allocates_nothing() {
     let _alone = alone();
-    let arm = EmulatedArm { watchdog_ms: 5_000.0, ..EmulatedArm::default() };
-    let serving = emulate(arm, StandIn::swaying(), FaultSwitch::default()).unwrap();
+    let arm = Emulated { watchdog_ms: 5_000.0, ..Emulated::default() };
+    let serving = arm.with(StandIn::swaying()).serve().unwrap();
     let mut driver = open(&Settings::at(&serving.endpoint).unwrap()).unwrap();
     let mut now_s = 0.0;
     // More than one sign of life, which go over both connections.

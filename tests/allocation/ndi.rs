@@ -7,7 +7,7 @@ use nima_devices::{
     ndi::{Driver, Settings},
 };
 use nima_testing::real_time::alone;
-use nima_world::emulators::ndi::{Profile, serve_line, serve_network, wandering};
+use nima_world::emulators::ndi::{Profile, wandering};
 
 use crate::counting::calls;
 
@@ -39,10 +39,10 @@ fn polling_allocates_nothing() {
     let settings = Settings { tools: vec![tool], ..Settings::default() };
     for firmware in ["Polaris Vega 014", "Polaris Vega 008"] {
         let profile = Profile { firmware: firmware.to_owned(), ..Profile::default() };
-        let served = serve_network(0, profile, wandering).unwrap();
+        let served = profile.on_network(0, wandering).serve().unwrap();
         let settings = Settings { address: Some(served.endpoint.clone()), ..settings.clone() };
         assert_eq!(allocations(&settings), 0, "{firmware}");
     }
-    let served = serve_line(None, Profile::default(), wandering).unwrap();
+    let served = Profile::default().on_line(None, wandering).serve().unwrap();
     assert_eq!(allocations(&Settings { port: Some(served.endpoint.clone()), ..settings }), 0, "line");
 }

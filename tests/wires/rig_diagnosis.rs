@@ -185,12 +185,12 @@ fn what_somebody_else_holds_and_what_waits_for_calibration_are_told() {
         "right handle" => Trouble::Busy { .. },
     );
     drop((held, rig));
-    let waiting = nima_world::emulators::force_dimension::Emulator {
+    let waiting = nima_world::emulators::force_dimension::Emulated {
         serial: 77,
         reset: true,
-        ..nima_world::emulators::force_dimension::Emulator::default()
+        ..nima_world::emulators::force_dimension::Emulated::default()
     };
-    let serving = waiting.serve(Held::default().body()).unwrap();
+    let serving = waiting.with(Held::default().body()).serve().unwrap();
     let handle = devices.right.as_mut().unwrap().handle.force_dimension_mut().unwrap();
     (handle.serial, handle.emulator) = (Some(77), Some(serving.endpoint.parse().unwrap()));
     assert_told!(tried(&devices), "right handle" => Trouble::NotReady { .. });

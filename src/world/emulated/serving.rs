@@ -16,7 +16,7 @@ use nima_machine::rig::{ArmSet, EndoscopeSettings, SIDES, SensorSettings, Settin
 
 use super::{EmulatedDevice, EmulatedRigError, Shared, SideWorld, places};
 use crate::{
-    emulators::{self, FaultSwitch, Serving},
+    emulators::{self, Emulator},
     scene::Scene,
 };
 
@@ -39,8 +39,8 @@ const BOOT_S: f64 = 0.2;
 /// The sensor under the tissue is at room temperature, degrees Celsius.
 const ROOM_C: f64 = 24.0;
 
-fn served(device: String, serving: std::io::Result<Serving>) -> Served {
-    match serving {
+fn served(device: String, emulator: Box<dyn Emulator>) -> Served {
+    match emulator.serve() {
         Ok(serving) => Ok(EmulatedDevice { name: device, serving }),
         Err(source) => Err(EmulatedRigError::Serve { device, source }),
     }
@@ -85,15 +85,15 @@ fn handle(side: Side, set: &ArmSet, shared: &Shared) -> Served {
         return Err(EmulatedRigError::Place { device: name, place: "no address".to_owned(), wanted });
     };
     places::local(&name, &address.ip().to_string())?;
-    let usual = emulators::force_dimension::Emulator::default();
-    let emulator = emulators::force_dimension::Emulator {
+    let usual = emulators::force_dimension::Emulated::default();
+    let emulated = emulators::force_dimension::Emulated {
         serial: chosen.serial.unwrap_or(usual.serial + side.index() as u16),
         kind: force_dimension::Kind::Omega7 { left_handed: side == Side::Left },
         port: address.port(),
         ..usual
     };
     let world = shared.clone();
-    served(name, emulator.serve(move |_: f64, applied: &_| world.with(|side, now_s| side.hold(now_s, applied))))
+    served(name, emulated.with(move |_: f64, applied: &_| world.with(|side, now_s| side.hold(now_s, applied))))
 }
 
 fn arm(side: Side, set: &ArmSet, shared: &Shared) -> Served {
@@ -103,16 +103,11 @@ fn arm(side: Side, set: &ArmSet, shared: &Shared) -> Served {
     };
     let kinova::Settings { host, tcp_port, udp_port, user, password, .. } = chosen.clone();
     places::local(&name, &host)?;
-    let emulated = emulators::kinova::EmulatedArm {
-        user,
-        password,
-        tcp_port,
-        udp_port,
-        ..emulators::kinova::EmulatedArm::default()
-    };
+    let usual = emulators::kinova::Emulated::default();
+    let emulated = emulators::kinova::Emulated { user, password, tcp_port, udp_port, ..usual };
     let world = shared.clone();
     let body = move |_: f64, asked: &_| world.with(|side, now_s| side.ask(now_s, asked));
-    served(name, emulators::kinova::emulate(emulated, body, FaultSwitch::default()))
+    served(name, emulated.with(body))
 }
 
 fn sensor(name: String, chosen: &SensorSettings, side: Side, body: emulators::bota::Body) -> Served {
@@ -121,23 +116,19 @@ fn sensor(name: String, chosen: &SensorSettings, side: Side, body: emulators::bo
     let digits = |serial: &String| serial.trim().trim_start_matches("SN").to_owned();
     let usual_serial = format!("{}", 901 + side.index() + usize::from(name.starts_with("tissue")) * SIDES);
     let mut emulated = emulators::bota::Emulated {
+        transport: chosen.transport,
         serial: chosen.serial_number.as_ref().map_or(usual_serial, digits),
         baud: Some(chosen.baud).filter(|_| !chosen.is_usb()),
         boot_s: BOOT_S,
         link: Some(PathBuf::from(&chosen.port)),
         ..usual
     };
-    let serving = match chosen.transport {
-        bota::Transport::Gen0 => emulated.serve_gen0(body),
-        bota::Transport::GenA => emulated.serve_gen_a(body),
-        bota::Transport::Socket => {
-            emulated.tcp_port = places::port(&name, &chosen.port, bota::TCP_PORT)?;
-            // Readings go to the datagram port of the same number: two sensors never share one.
-            emulated.destination = SocketAddrV4::new(Ipv4Addr::LOCALHOST, emulated.tcp_port);
-            emulated.serve_socket(body)
-        }
-    };
-    served(name, serving)
+    if chosen.transport == bota::Transport::Socket {
+        emulated.tcp_port = places::port(&name, &chosen.port, bota::TCP_PORT)?;
+        // Readings go to the datagram port of the same number: two sensors never share one.
+        emulated.destination = SocketAddrV4::new(Ipv4Addr::LOCALHOST, emulated.tcp_port);
+    }
+    served(name, emulated.with(body))
 }
 
 /// Both tips press on the same tissue.
@@ -155,14 +146,15 @@ fn under_the_tissue(sides: &Sides) -> emulators::bota::Body {
 
 fn servos(side: Side, chosen: &dynamixel::Settings) -> Served {
     let name = format!("{} servos", side.word());
-    let usual = emulators::dynamixel::EmulatorSettings::default();
+    let usual = emulators::dynamixel::Emulated::default();
     let model = chosen.servos[0].model.as_ref();
     let known = model.and_then(|model| dynamixel::table::MODELS.iter().find(|known| known.name == model));
-    let emulated = emulators::dynamixel::EmulatorSettings {
+    let emulated = emulators::dynamixel::Emulated {
         ids: chosen.servos.iter().map(|servo| servo.id).collect(),
         model: known.map_or(usual.model, |model| model.number),
         baud: chosen.baud,
         fast: usual.fast,
+        link: Some(PathBuf::from(&chosen.port)),
     };
     let supply_v = if known.is_some_and(dynamixel::table::Model::is_small) { 5.0 } else { 12.0 };
     // Tissue does not load the jaws in this world; the cables that move them do.
@@ -170,10 +162,10 @@ fn servos(side: Side, chosen: &dynamixel::Settings) -> Served {
         let load_nm = CABLES_NM_PER_RAD * (CABLES_REST_RAD - shaft.angle_rad).clamp(-1.0, 1.0);
         emulators::dynamixel::Surroundings { load_nm, supply_v, temperature_c: 31.0 }
     };
-    let emulator = emulators::dynamixel::Emulator::new(&emulated, Some(Box::new(body)));
-    let impossible = || std::io::Error::other("no servo has this model and line speed");
-    let serving = emulator.ok_or_else(impossible).and_then(|emulator| emulator.serve_at(Some(Path::new(&chosen.port))));
-    served(name, serving)
+    match emulated.with(Some(Box::new(body))) {
+        Ok(emulator) => served(name, emulator),
+        Err(source) => Err(EmulatedRigError::Serve { device: name, source }),
+    }
 }
 
 fn tracker(chosen: &ndi::Settings, endoscope: Option<EndoscopeSettings>, scene: &Scene, sides: &Sides) -> Served {
@@ -193,11 +185,11 @@ fn tracker(chosen: &ndi::Settings, endoscope: Option<EndoscopeSettings>, scene: 
         _ => Tracked::Missing { out_of_volume: false },
     };
     let profile = emulators::ndi::Profile::default();
-    let serving = match (&chosen.address, &chosen.port) {
-        (Some(_), _) => emulators::ndi::serve_network(places::port(&name, &chosen.place(), ndi::PORT)?, profile, body),
-        (None, port) => emulators::ndi::serve_line(port.as_ref().map(Path::new), profile, body),
+    let emulator = match chosen.address {
+        Some(_) => profile.on_network(places::port(&name, &chosen.place(), ndi::PORT)?, body),
+        None => profile.on_line(chosen.port.as_ref().map(PathBuf::from), body),
     };
-    served(name, serving)
+    served(name, emulator)
 }
 
 /// The emulated unit takes any definition; where the rig names one that is not there, this is it.
@@ -259,11 +251,11 @@ impl View {
 #[cfg(target_os = "linux")]
 fn pedal(chosen: &hid::PedalSettings, switches: &Arc<AtomicU32>) -> Served {
     let name = "pedal".to_owned();
-    let place = emulators::hid::Place::Path(PathBuf::from(places::pedal(&name, &chosen.source)?));
+    let path = PathBuf::from(places::pedal(&name, &chosen.source)?);
     let switches = Arc::clone(switches);
     let body =
         emulators::hid::PedalBody::pressed_by(move |_| PedalReading { pressed: switches.load(Ordering::Acquire) });
-    served(name, emulators::hid::serve_pedal(place, emulators::hid::PedalModel::Switches, body))
+    served(name, emulators::hid::pedal(Some(path), emulators::hid::PedalModel::Switches, body))
 }
 
 #[cfg(not(target_os = "linux"))]

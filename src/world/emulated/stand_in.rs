@@ -50,13 +50,13 @@ mod tests {
     use nima_devices::{Device as _, force_dimension::Settings};
 
     use super::*;
-    use crate::emulators::force_dimension::{Emulator, Held};
+    use crate::emulators::force_dimension::{Emulated, Held};
 
     #[test]
     fn an_emulated_handle_is_reached_without_a_library_file() {
         provide_handles();
         let held = Held { radius_m: 0.0, rest_m: Vector3::new(0.03, 0.0, 0.0), ..Held::default() };
-        let serving = Emulator { serial: 4321, ..Emulator::default() }.serve(held.body()).unwrap();
+        let serving = Emulated { serial: 4321, ..Emulated::default() }.with(held.body()).serve().unwrap();
         let emulator = Some(serving.endpoint.parse().unwrap());
         let mut driver =
             force_dimension::open(&Settings { serial: Some(4321), emulator, ..Settings::default() }).unwrap();

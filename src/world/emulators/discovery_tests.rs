@@ -359,9 +359,9 @@ fn what_is_plugged_in_is_read_from_the_kernels_files() {
 #[cfg(target_os = "linux")]
 #[test]
 fn an_emulated_cap_and_pedal_are_diagnosed_over_their_sockets() {
-    use crate::emulators::hid::{CapBody, CapModel, PedalBody, PedalModel, Place, serve_cap, serve_pedal};
-    let cap = serve_cap(Place::Temporary, CapModel::Split, CapBody::alone()).unwrap();
-    let pedal = serve_pedal(Place::Temporary, PedalModel::Switches, PedalBody::alone()).unwrap();
+    use crate::emulators::hid::{CapBody, CapModel, PedalBody, PedalModel, cap, pedal};
+    let cap = cap(None, CapModel::Split, CapBody::alone()).serve().unwrap();
+    let pedal = pedal(None, PedalModel::Switches, PedalBody::alone()).serve().unwrap();
     let named = |kind: &str, place: &str| probe_named(&format!("{kind}={place}")).unwrap();
     let found = one(named("spacemouse", &cap.endpoint)).unwrap();
     assert!(found.identity.product.contains("046d:c626") && found.damaged == 0, "{found:?}");

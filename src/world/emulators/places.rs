@@ -1,13 +1,14 @@
-//! Where emulators serve: ports of this computer and names of pseudo-terminals, each claimed by one process at a time.
+//! Where emulators serve: ports of this computer, names of pseudo-terminals and paths of sockets, each claimed by one process at a time.
 //!
 //! A name is a link to the terminal. What a dead process left is replaced; what a living one serves, and whatever was not made by an
 //! emulator (a real device, a file), is left alone and told in one line. Folders are those that [`own_folder`](nima_devices::own_folder)
 //! accepts.
 
 use std::io::{Error, ErrorKind, Result};
+use std::path::{Path, PathBuf};
 
 /// A port that was asked for: when another program has it, the error says so and what to do.
-pub(crate) fn taken<T>(port: u16, protocol: &str, bound: Result<T>) -> Result<T> {
+pub(super) fn taken<T>(port: u16, protocol: &str, bound: Result<T>) -> Result<T> {
     bound.map_err(|error| {
         let reason = match error.kind() {
             ErrorKind::AddrInUse => {
@@ -20,27 +21,65 @@ pub(crate) fn taken<T>(port: u16, protocol: &str, bound: Result<T>) -> Result<T>
     })
 }
 
-#[cfg(unix)]
-pub(crate) use terminal::TerminalName;
+/// `path`, its folder made; without one, `name` in a folder of its own, which goes with the second value.
+fn path_of(path: Option<&Path>, name: &str) -> Result<(PathBuf, Option<tempfile::TempDir>)> {
+    let Some(path) = path else {
+        let folder = tempfile::Builder::new().prefix("nima-").tempdir()?;
+        return Ok((folder.path().join(name), Some(folder)));
+    };
+    if let Some(parent) = path.parent().filter(|parent| !parent.as_os_str().is_empty()) {
+        nima_devices::own_folder::prepare(parent)?;
+    }
+    Ok((path.to_owned(), None))
+}
 
-#[cfg(unix)]
+fn foreign(path: &Path) -> Error {
+    let told = format!("{} is no emulator's: take another place, or remove it", path.display());
+    Error::new(ErrorKind::AlreadyExists, told)
+}
+
+fn served(path: &Path) -> Error {
+    let told = format!("{} is served by another emulator: end it, or take another place", path.display());
+    Error::new(ErrorKind::AddrInUse, told)
+}
+
+/// A path for a socket, as [`path_of`]: free, or freed of one that nobody serves any more.
+#[cfg(target_os = "linux")]
+pub(super) fn socket_path(path: Option<&Path>, name: &str) -> Result<(PathBuf, Option<tempfile::TempDir>)> {
+    use std::os::unix::fs::FileTypeExt as _;
+    let (path, folder) = path_of(path, name)?;
+    match std::fs::symlink_metadata(&path) {
+        Err(_) => {}
+        Ok(there) if !there.file_type().is_socket() => return Err(foreign(&path)),
+        Ok(_) => match nima_devices::hid::seqpacket::connect(&path) {
+            Err(error) if error.kind() == ErrorKind::ConnectionRefused => std::fs::remove_file(&path)?,
+            _ => return Err(served(&path)),
+        },
+    }
+    Ok((path, folder))
+}
+
+pub(super) use terminal::TerminalName;
+
 mod terminal {
     use std::{
         fs::{self, File, TryLockError},
-        io::{Error, ErrorKind, Result},
+        io::{Error, Result},
         os::unix::fs::symlink,
         path::{Path, PathBuf},
     };
 
-    use nima_devices::own_folder::{lock_file, prepare};
+    use nima_devices::own_folder::lock_file;
     use serialport::{SerialPort as _, TTYPort};
+
+    use super::{foreign, path_of, served};
 
     /// Where the system makes pseudo-terminals: only links to there are replaced.
     const TERMINALS: &str = "/dev/pts/";
 
     /// The name of a pseudo-terminal, held as long as this lives; it leads somewhere while a line is connected.
     #[derive(Debug)]
-    pub(crate) struct TerminalName {
+    pub(in crate::emulators) struct TerminalName {
         path: PathBuf,
         /// Locked by this process: the system unlocks it when the process ends, however it does.
         _claim: File,
@@ -50,39 +89,27 @@ mod terminal {
 
     impl TerminalName {
         /// Claims `link`; without one, `name` in a folder of its own. Folders above it are made.
-        pub(crate) fn claim(link: Option<&Path>, name: &str) -> Result<Self> {
-            let (path, folder) = if let Some(link) = link {
-                (link.to_owned(), None)
-            } else {
-                let folder = tempfile::Builder::new().prefix("nima-").tempdir()?;
-                (folder.path().join(name), Some(folder))
-            };
-            if let Some(parent) = path.parent().filter(|parent| !parent.as_os_str().is_empty()) {
-                prepare(parent)?;
-            }
+        pub(in crate::emulators) fn claim(link: Option<&Path>, name: &str) -> Result<Self> {
+            let (path, folder) = path_of(link, name)?;
             let claim = lock_file(&hidden(&path, "lock"))?;
             match claim.try_lock() {
                 Ok(()) => {}
                 Err(TryLockError::Error(error)) => return Err(error),
-                Err(TryLockError::WouldBlock) => {
-                    let told = "is served by another emulator: end it, or take another place";
-                    return Err(Error::new(ErrorKind::AddrInUse, format!("{} {told}", path.display())));
-                }
+                Err(TryLockError::WouldBlock) => return Err(served(&path)),
             }
             if !may_be_replaced(&path) {
-                let told = "is no emulator's: take another place, or remove it";
-                return Err(Error::new(ErrorKind::AlreadyExists, format!("{} {told}", path.display())));
+                return Err(foreign(&path));
             }
             Ok(Self { path, _claim: claim, _folder: folder })
         }
 
         /// As a client opens it.
-        pub(crate) fn path(&self) -> String {
+        pub(in crate::emulators) fn path(&self) -> String {
             self.path.display().to_string()
         }
 
         /// Leads to this terminal from now on.
-        pub(crate) fn lead_to(&self, terminal: &TTYPort) -> Result<()> {
+        pub(in crate::emulators) fn lead_to(&self, terminal: &TTYPort) -> Result<()> {
             let target = terminal.name().ok_or_else(|| Error::other("a pseudo-terminal without a name"))?;
             let fresh = hidden(&self.path, "new");
             fs::remove_file(&fresh).ok();
@@ -91,7 +118,7 @@ mod terminal {
         }
 
         /// Leads nowhere, as when the cable is pulled.
-        pub(crate) fn cut(&self) {
+        pub(in crate::emulators) fn cut(&self) {
             fs::remove_file(&self.path).ok();
         }
     }
@@ -118,6 +145,8 @@ mod terminal {
 
     #[cfg(test)]
     mod tests {
+        use std::io::ErrorKind;
+
         use super::*;
 
         #[test]

@@ -5,14 +5,6 @@
 //! `fault DEVICE NAME`, the name in quotes or with dashes where it has blanks. `nima emulate rig` emulates a whole rig around one
 //! simulated world; `pedal BITS` presses its pedal's switches.
 
-mod bota;
-mod dynamixel;
-mod force_dimension;
-#[cfg(target_os = "linux")]
-mod hid;
-mod kinova;
-#[cfg(unix)]
-mod ndi;
 #[cfg(unix)]
 mod rig;
 
@@ -24,7 +16,7 @@ use std::{
 
 use anyhow::{Context as _, bail};
 use clap::Args;
-use nima_world::emulators::{EmulatedFault, Serving};
+use nima_world::emulators::{ALONE, EmulatedFault, Serving, Settings};
 use serde::Serialize;
 
 use super::output;
@@ -49,56 +41,6 @@ pub(super) struct Arguments {
     until_input_ends: bool,
 }
 
-/// Settings by name, as given with `--set`.
-#[derive(Debug, Default)]
-pub(super) struct Settings(Vec<(String, String)>);
-
-impl Settings {
-    /// The value of `key`, if it was given; a value that does not read is an error.
-    pub(super) fn get<T: std::str::FromStr>(&self, key: &str) -> anyhow::Result<Option<T>> {
-        let Some((_, value)) = self.0.iter().find(|(known, _)| known == key) else { return Ok(None) };
-        value.parse().map(Some).map_err(|_| anyhow::anyhow!("--set {key}={value}: this value cannot be used"))
-    }
-}
-
-/// One device that serves.
-pub(super) struct Emulated {
-    device: String,
-    serving: Serving,
-}
-
-impl Emulated {
-    /// Under this name.
-    pub(super) fn new(device: impl Into<String>, serving: Serving) -> Self {
-        Self { device: device.into(), serving }
-    }
-}
-
-/// A name on the command line and what starts it; one name may start several devices.
-type Known = (&'static str, fn(&Settings) -> anyhow::Result<Vec<Emulated>>);
-
-/// All that can be emulated.
-const KNOWN: &[Known] = &[
-    #[cfg(unix)]
-    ("bota-gen0", bota::gen0),
-    #[cfg(unix)]
-    ("bota-gen-a", bota::gen_a),
-    ("bota-socket", bota::socket),
-    ("dynamixel", dynamixel::start),
-    (force_dimension::NAME, force_dimension::start),
-    ("kinova", kinova::start),
-    #[cfg(unix)]
-    ("ndi", ndi::network),
-    #[cfg(unix)]
-    ("ndi-serial", ndi::line),
-    #[cfg(target_os = "linux")]
-    ("pedal", hid::pedal),
-    #[cfg(target_os = "linux")]
-    ("spacemouse", hid::cap),
-    #[cfg(target_os = "linux")]
-    ("spacenavd", hid::spacenavd),
-];
-
 #[derive(Serialize)]
 struct Endpoint<'a> {
     device: &'a str,
@@ -110,20 +52,17 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     if arguments.devices == ["rig"] {
         return rig::run(&arguments.rig, &arguments.scene, arguments.until_input_ends);
     }
-    let pair = |text: &String| {
-        let (key, value) = text.split_once('=').with_context(|| format!("--set {text} is not KEY=VALUE"))?;
-        Ok((key.to_owned(), value.to_owned()))
-    };
-    let settings = Settings(arguments.set.iter().map(pair).collect::<anyhow::Result<_>>()?);
+    let settings = Settings::new(&arguments.set)?;
     let mut emulated = Vec::new();
     for name in &arguments.devices {
-        let Some((_, start)) = KNOWN.iter().find(|(known, _)| known == name) else {
-            let known: Vec<_> = KNOWN.iter().map(|(known, _)| *known).collect();
+        let Some((known, emulator)) = ALONE.iter().find(|(known, _)| known == name) else {
+            let known: Vec<_> = ALONE.iter().map(|(known, _)| *known).collect();
             bail!("unknown emulator \"{name}\"; known: {}", known.join(", "));
         };
-        emulated.extend(start(&settings).with_context(|| format!("cannot emulate {name}"))?);
+        let serving = emulator(&settings).and_then(|emulator| emulator.serve());
+        emulated.push((*known, serving.with_context(|| format!("cannot emulate {name}"))?));
     }
-    let served: Vec<_> = emulated.iter().map(|one| (one.device.as_str(), &one.serving)).collect();
+    let served: Vec<_> = emulated.iter().map(|(device, serving)| (*device, serving)).collect();
     serve(&served, arguments.until_input_ends, |_| false)
 }
 

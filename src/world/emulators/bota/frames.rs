@@ -4,7 +4,7 @@ use nalgebra::Vector3;
 use nima_devices::bota::codec::{Frame, INERTIAL_BYTES, Inertial};
 
 use super::{Body, Wire};
-use crate::emulators::{EmulatedFault, FaultyLine};
+use crate::emulators::{EmulatedFault, Peer, Turn};
 
 /// A thread that was held up makes up for at most this much, s; what is older is lost.
 const BACKLOG_S: f64 = 0.5;
@@ -16,33 +16,37 @@ pub(super) struct Frames {
     zero_us: u32,
     status: u16,
     next_s: Option<f64>,
-    line: FaultyLine,
     frozen: Option<Frame>,
     made: u64,
 }
 
 impl Frames {
     pub(super) fn new(body: Body, zero_us: u32, status: u16) -> Self {
-        Self { body, zero_us, status, next_s: None, line: FaultyLine::default(), frozen: None, made: 0 }
+        Self { body, zero_us, status, next_s: None, frozen: None, made: 0 }
     }
 
-    /// Hands every frame that is due until `now_s` to `send`, as far as the fault lets it.
-    pub(super) fn due(&mut self, now_s: f64, wire: &dyn Wire, fault: EmulatedFault, send: &mut dyn FnMut(&[u8])) {
-        self.line.pass(now_s, &[], fault, send);
+    /// Sends every frame that is due, its bytes as `finish` makes them.
+    pub(super) fn due(&mut self, turn: &mut Turn<'_>, wire: &dyn Wire, to: Peer, finish: impl Fn(&mut [u8])) {
         let Some(period_s) = wire.period_s() else {
             self.next_s = None;
             return;
         };
-        let mut next_s = self.next_s.unwrap_or(now_s + period_s).max(now_s - BACKLOG_S);
-        while next_s <= now_s {
-            let frame = self.frame(next_s, wire, fault);
+        let mut next_s = self.next_s.unwrap_or(turn.now_s + period_s).max(turn.now_s - BACKLOG_S);
+        while next_s <= turn.now_s {
+            let frame = self.frame(next_s, wire, turn.fault);
             let mut bytes = [0; INERTIAL_BYTES];
             let length = frame.encode(&mut bytes);
-            let length = self.spoil(&mut bytes, length, fault);
-            self.line.pass(now_s, &bytes[..length], fault, send);
+            let length = self.spoil(&mut bytes, length, turn.fault);
+            finish(&mut bytes[..length]);
+            turn.send(to, &bytes[..length]);
             next_s += period_s;
         }
         self.next_s = Some(next_s);
+    }
+
+    /// When the next frame is due, s.
+    pub(super) const fn next_s(&self) -> Option<f64> {
+        self.next_s
     }
 
     fn frame(&mut self, t_s: f64, wire: &dyn Wire, fault: EmulatedFault) -> Frame {

@@ -3,23 +3,24 @@
 //! What a sensor feels comes from its [`Body`], a closure of the emulator's time. Opening the line of a first-generation sensor
 //! restarts it, as it does in reality. Line speeds are obeyed: a client with a wrong one reads garbage and is not understood.
 
+pub(super) mod alone;
 mod frames;
 mod gen0;
 mod gen_a;
-#[cfg(unix)]
-mod serial;
-mod socket;
+mod sensor;
 #[cfg(test)]
-#[cfg(unix)]
 mod wire_tests;
 
-use std::{f64::consts::TAU, io};
+use std::f64::consts::TAU;
 
 use nalgebra::Vector3;
 use nima_core::frames::Wrench;
-use nima_devices::{ForceReading, bota::codec::Frame};
+use nima_devices::{
+    ForceReading,
+    bota::{Transport, codec::Frame},
+};
 
-use crate::emulators::{FaultSwitch, Serving};
+use crate::emulators::Emulator;
 
 /// What the sensor feels at a time, s since the emulator began; readings of the inertial unit are used where frames have it.
 pub type Body = Box<dyn FnMut(f64) -> ForceReading + Send>;
@@ -27,6 +28,8 @@ pub type Body = Box<dyn FnMut(f64) -> ForceReading + Send>;
 /// How an emulated sensor is.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Emulated {
+    /// Which generation, on which wire: a pseudo-terminal, or the network of this computer.
+    pub transport: Transport,
     /// Product.
     pub product: String,
     /// Serial number, digits.
@@ -54,6 +57,7 @@ pub struct Emulated {
 impl Default for Emulated {
     fn default() -> Self {
         Self {
+            transport: Transport::GenA,
             product: "BFT-SENS-SER-M8".to_owned(),
             serial: "853".to_owned(),
             firmware: "1.0.9".to_owned(),
@@ -70,28 +74,18 @@ impl Default for Emulated {
 }
 
 impl Emulated {
-    /// Serves a first-generation sensor on a pseudo-terminal; the endpoint is its path.
-    #[cfg(unix)]
-    pub fn serve_gen0(self, body: Body) -> io::Result<Serving> {
-        let wire = gen0::Gen0::new(&self);
-        serial::serve("bota-gen0", wire, &self, body)
-    }
-
-    /// Serves a second-generation sensor on a pseudo-terminal; the endpoint is its path.
-    #[cfg(unix)]
-    pub fn serve_gen_a(self, body: Body) -> io::Result<Serving> {
-        let wire = gen_a::GenA::new(&self);
-        serial::serve("bota-gen-a", wire, &self, body)
-    }
-
-    /// Serves a second-generation sensor in the network of this computer; the endpoint is `127.0.0.1:<port>`.
-    pub fn serve_socket(self, body: Body) -> io::Result<Serving> {
-        socket::serve(&self, FaultSwitch::default(), body)
+    /// With what it feels.
+    pub fn with(self, body: Body) -> Box<dyn Emulator> {
+        let wire: Box<dyn Wire> = match self.transport {
+            Transport::Gen0 => Box::new(gen0::Gen0::new(&self)),
+            Transport::GenA | Transport::Socket => Box::new(gen_a::GenA::new(&self)),
+        };
+        Box::new(sensor::Sensor::new(wire, self, body))
     }
 }
 
 /// What a generation of sensors makes of the bytes that it hears.
-trait Wire: Send + 'static {
+trait Wire: Send {
     /// Somebody opened the line.
     fn opened(&mut self, now_s: f64);
     /// Takes in bytes; what it answers is added to `answer`.

@@ -38,12 +38,7 @@ fn emulated() -> Emulated {
 }
 
 fn serve(transport: Transport, emulated: Emulated) -> (Serving, Settings) {
-    let serving = match transport {
-        Transport::Gen0 => emulated.serve_gen0(slow_motion()),
-        Transport::GenA => emulated.serve_gen_a(slow_motion()),
-        Transport::Socket => emulated.serve_socket(slow_motion()),
-    }
-    .unwrap();
+    let serving = Emulated { transport, ..emulated }.with(slow_motion()).serve().unwrap();
     let settings = Settings::new(transport, serving.endpoint.clone());
     (serving, settings)
 }

@@ -1,21 +1,20 @@
 //! Emulated servos on one bus: every instruction of Protocol 2.0, at the pace of the line.
 //!
-//! Sans-IO: [`Emulator::receive`] takes what a client sent, [`Emulator::send`] gives what leaves by now. [`Emulator::serve`] puts it on
-//! a pseudo-terminal. What the world does to the shafts comes from a closure, [`Body`], called at every instruction and every
+//! [`Bus::receive`] takes what a client sent, [`Bus::send`] gives what leaves by now. What the world does to the shafts comes from a closure, [`Body`], called at every instruction and every
 //! millisecond between them; what commands do to them is told to it with the same call.
 //!
 //! Inferred, because the e-manual is silent: servos after a missing one do not answer a sync read; a failed part of a fast
 //! read answers zeros with its error.
 
+pub(super) mod alone;
 mod motor;
 mod registers;
-#[cfg(unix)]
-mod serving;
 mod servo;
 #[cfg(test)]
 mod tests;
+mod wire;
 
-use std::collections::VecDeque;
+use std::{collections::VecDeque, io, path::PathBuf};
 
 use nima_devices::dynamixel::{
     codec::{BROADCAST, Incoming, Outgoing, STATUS},
@@ -24,7 +23,7 @@ use nima_devices::dynamixel::{
 };
 use servo::Servo;
 
-use crate::emulators::{EmulatedFault, FaultyLine};
+use crate::emulators::{EmulatedFault, Emulator};
 
 /// Longest instruction that an emulated servo takes.
 const LONGEST: usize = 2048;
@@ -60,7 +59,7 @@ pub type Body = Box<dyn FnMut(f64, usize, &Shaft) -> Surroundings + Send>;
 
 /// How emulated servos are.
 #[derive(Clone, Debug)]
-pub struct EmulatorSettings {
+pub struct Emulated {
     /// Ids on the bus.
     pub ids: Vec<u8>,
     /// Model number of all of them.
@@ -69,32 +68,44 @@ pub struct EmulatorSettings {
     pub baud: u32,
     /// The firmware knows the fast reads.
     pub fast: bool,
+    /// The name of its line; a folder of its own where none is given.
+    pub link: Option<PathBuf>,
 }
 
-impl Default for EmulatorSettings {
+impl Default for Emulated {
     fn default() -> Self {
-        Self { ids: vec![1, 2, 3, 4], model: 1020, baud: 1_000_000, fast: true }
+        Self { ids: vec![1, 2, 3, 4], model: 1020, baud: 1_000_000, fast: true, link: None }
+    }
+}
+
+impl Emulated {
+    /// On a bus; without a body the shafts sway slowly.
+    ///
+    /// # Errors
+    /// When model or line speed is none that there is.
+    pub fn with(&self, body: Option<Body>) -> io::Result<Box<dyn Emulator>> {
+        Ok(Box::new(Bus::new(self, body)?))
     }
 }
 
 /// The bus.
-pub struct Emulator {
+pub struct Bus {
     servos: Vec<Servo>,
     body: Body,
     fast: bool,
     incoming: Incoming,
     out: Outgoing,
     queue: VecDeque<(f64, Vec<u8>)>,
-    line: FaultyLine,
+    link: Option<PathBuf>,
     heard_s: f64,
     advanced_s: f64,
     free_s: f64,
     fault: EmulatedFault,
 }
 
-impl std::fmt::Debug for Emulator {
+impl std::fmt::Debug for Bus {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Emulator").field("servos", &self.servos.len()).finish_non_exhaustive()
+        f.debug_struct("Bus").field("servos", &self.servos.len()).finish_non_exhaustive()
     }
 }
 
@@ -107,21 +118,25 @@ pub fn swaying(supply_v: f64) -> Body {
     })
 }
 
-impl Emulator {
-    /// New from the factory, but for ids and line speed; `None` where model or speed is none that there is. Without a
-    /// body the shafts sway slowly.
-    pub fn new(settings: &EmulatorSettings, body: Option<Body>) -> Option<Self> {
-        let model = Model::numbered(settings.model)?;
-        let baud = BAUDS.iter().position(|baud| *baud == settings.baud)? as u8;
+impl Bus {
+    /// New from the factory, but for ids and line speed. Without a body the shafts sway slowly.
+    ///
+    /// # Errors
+    /// When model or line speed is none that there is.
+    pub fn new(settings: &Emulated, body: Option<Body>) -> io::Result<Self> {
+        let baud = BAUDS.iter().position(|baud| *baud == settings.baud);
+        let (Some(model), Some(baud)) = (Model::numbered(settings.model), baud) else {
+            return Err(io::Error::new(io::ErrorKind::InvalidInput, "no servo has this model number and line speed"));
+        };
         let supply_v = if model.is_small() { 5.0 } else { 12.0 };
-        Some(Self {
-            servos: settings.ids.iter().map(|id| Servo::new(model, *id, baud)).collect(),
+        Ok(Self {
+            servos: settings.ids.iter().map(|id| Servo::new(model, *id, baud as u8)).collect(),
             body: body.unwrap_or_else(|| swaying(supply_v)),
             fast: settings.fast,
             incoming: Incoming::new(LONGEST),
             out: Outgoing::new(LONGEST),
             queue: VecDeque::new(),
-            line: FaultyLine::default(),
+            link: settings.link.clone(),
             heard_s: 0.0,
             advanced_s: f64::NEG_INFINITY,
             free_s: 0.0,
@@ -177,7 +192,7 @@ impl Emulator {
         }
     }
 
-    /// Gives what leaves by `now_s`, as far as `fault` lets it.
+    /// Gives what leaves by `now_s`; of the faults, those of meaning are obeyed.
     pub fn send(&mut self, now_s: f64, fault: EmulatedFault, send: &mut dyn FnMut(&[u8])) {
         if fault == EmulatedFault::DeviceFault && self.fault != fault {
             self.fail(0, HardwareError(HardwareError::OVERLOAD));
@@ -201,26 +216,13 @@ impl Emulator {
                 }
                 _ => {}
             }
-            self.line.pass(now_s, &frame, fault, send);
+            send(&frame);
         }
-        self.line.pass(now_s, &[], fault, send);
     }
 
     /// When the next answer is due, s.
-    pub fn due_s(&self) -> Option<f64> {
+    pub fn next_s(&self) -> Option<f64> {
         self.queue.front().map(|(due_s, _)| *due_s)
-    }
-
-    /// Pseudo-terminals exist on Unix alone.
-    #[cfg(not(unix))]
-    pub fn serve(self) -> std::io::Result<crate::emulators::Serving> {
-        self.serve_at(None)
-    }
-
-    /// Pseudo-terminals exist on Unix alone.
-    #[cfg(not(unix))]
-    pub fn serve_at(self, _: Option<&std::path::Path>) -> std::io::Result<crate::emulators::Serving> {
-        Err(std::io::ErrorKind::Unsupported.into())
     }
 
     fn advance(&mut self, now_s: f64) {

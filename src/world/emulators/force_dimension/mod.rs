@@ -3,17 +3,13 @@
 //! A program that loads the stand-in library (our driver, or a third-party client) asks here, one datagram for one USB exchange. The
 //! hand that holds the handle is a [`Body`]: it is told what the motors do and says where the handle is.
 
+pub(super) mod alone;
 mod firmware;
 #[cfg(test)]
 #[expect(clippy::float_cmp, reason = "forces and positions arrive as they were sent, to the last bit")]
 mod tests;
 
-use std::{
-    io,
-    net::{SocketAddr, UdpSocket},
-    sync::atomic::Ordering,
-    time::{Duration, Instant},
-};
+use std::{io, path::PathBuf};
 
 use drd::wire::{FRESH, Order, Reply, Request, SATURATED, TAKEN};
 use firmware::Firmware;
@@ -22,7 +18,7 @@ use nima_devices::force_dimension::status::{ForceOffCause, Kind, SdkError};
 
 pub use firmware::{Applied, Mode};
 
-use crate::emulators::{EmulatedFault, FaultSwitch, FaultyLine, Serving, places};
+use crate::emulators::{EmulatedFault, Emulator, End, Peer, Turn, wires::udp};
 
 /// Where the handle is, in the device's frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -110,7 +106,7 @@ impl Held {
 
 /// An emulated omega.7.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Emulator {
+pub struct Emulated {
     /// Serial number.
     pub serial: u16,
     /// Right or left hand; anything else is a device that our driver refuses.
@@ -123,99 +119,49 @@ pub struct Emulator {
     pub port: u16,
 }
 
-impl Default for Emulator {
+impl Default for Emulated {
     fn default() -> Self {
         let kind = Kind::Omega7 { left_handed: false };
         Self { serial: 1234, kind, motor_limit_n: nima_devices::force_dimension::FORCE_MAX_N, reset: false, port: 0 }
     }
 }
 
-/// The world goes on at least so often.
-const TICK: Duration = Duration::from_millis(1);
 /// A client that says nothing for so long no longer has the device, s.
 const SESSION_S: f64 = 1.0;
-/// Requests answered at once at most.
-const BATCH: usize = 64;
 const FIRMWARE: f64 = 3.2;
 /// The gripper counts as pressed below this, rad.
 const GRIPPER_CLOSED_RAD: f64 = 0.02;
 
-impl Emulator {
-    /// Serves on the loopback interface; the endpoint is the address for `NIMA_EMULATED_HANDLE`.
-    pub fn serve(self, body: impl Body) -> io::Result<Serving> {
-        let mut socket = Some(places::taken(self.port, "UDP", UdpSocket::bind(("127.0.0.1", self.port)))?);
-        let address = socket.as_ref().map(UdpSocket::local_addr).transpose()?;
-        let address = address.ok_or_else(|| io::Error::other("no address"))?;
-        let faults = FaultSwitch::default();
-        let switch = faults.clone();
-        Serving::start(address.to_string(), faults, move |stop| {
-            // A real device has a processor of its own.
-            nima_devices::force_dimension::prepare_thread();
-            let mut machine = Machine::new(self, Box::new(body));
-            while !stop.load(Ordering::Acquire) {
-                let fault = switch.get();
-                if fault == EmulatedFault::Disconnect {
-                    // A closed port answers as a cable that was pulled.
-                    socket = None;
-                    machine.lose_client();
-                } else if socket.is_none() {
-                    socket = open(address);
-                }
-                machine.tick(fault);
-                match &socket {
-                    Some(socket) => machine.answer_all(socket, fault),
-                    None => std::thread::sleep(TICK),
-                }
-            }
-        })
+impl Emulated {
+    /// In this hand. The endpoint is the address for `NIMA_EMULATED_HANDLE`.
+    pub fn with(self, body: impl Body) -> Box<dyn Emulator> {
+        Box::new(Machine::new(self, Box::new(body), None))
     }
-}
-
-fn open(address: SocketAddr) -> Option<UdpSocket> {
-    UdpSocket::bind(address).ok()
 }
 
 /// The device that serves.
 struct Machine {
-    of: Emulator,
-    begin: Instant,
+    of: Emulated,
     body: Box<dyn Body>,
+    /// The stand-in library, told with the endpoint.
+    library: Option<PathBuf>,
     firmware: Firmware,
     state: HandState,
     /// What clients see while it is frozen.
     frozen: Option<HandState>,
     client: Option<(u64, f64)>,
-    line: FaultyLine,
-    /// To whom a late datagram goes.
-    peer: Option<SocketAddr>,
     pressed: bool,
 }
 
 impl Machine {
-    fn new(of: Emulator, mut body: Box<dyn Body>) -> Self {
+    fn new(of: Emulated, mut body: Box<dyn Body>, library: Option<PathBuf>) -> Self {
         let firmware = Firmware::new(of.motor_limit_n);
         let state = body(0.0, firmware.applied());
-        Self {
-            of,
-            begin: Instant::now(),
-            body,
-            firmware,
-            state,
-            frozen: None,
-            client: None,
-            line: FaultyLine::default(),
-            peer: None,
-            pressed: false,
-        }
-    }
-
-    fn now_s(&self) -> f64 {
-        self.begin.elapsed().as_secs_f64()
+        Self { of, body, library, firmware, state, frozen: None, client: None, pressed: false }
     }
 
     /// Lets the world go on.
-    fn tick(&mut self, fault: EmulatedFault) {
-        let now_s = self.now_s();
+    fn tick(&mut self, now_s: f64, fault: EmulatedFault) {
         self.state = (self.body)(now_s, self.firmware.applied());
         self.firmware.pass(now_s, &self.state.position_m);
         // The button on the base takes force away and gives it back.
@@ -236,41 +182,7 @@ impl Machine {
         }
     }
 
-    fn answer_all(&mut self, socket: &UdpSocket, fault: EmulatedFault) {
-        let mut buffer = [0; 512];
-        socket.set_read_timeout(Some(TICK)).ok();
-        if let Ok((count, from)) = socket.recv_from(&mut buffer) {
-            self.answer(socket, &buffer[..count], from, fault);
-        }
-        socket.set_nonblocking(true).ok();
-        for _ in 0..BATCH {
-            let Ok((count, from)) = socket.recv_from(&mut buffer) else { break };
-            self.answer(socket, &buffer[..count], from, fault);
-        }
-        socket.set_nonblocking(false).ok();
-        let now_s = self.now_s();
-        if let Some(peer) = self.peer {
-            self.line.pass(now_s, &[], fault, &mut |late| drop(socket.send_to(late, peer)));
-        }
-    }
-
-    fn answer(&mut self, socket: &UdpSocket, bytes: &[u8], from: SocketAddr, fault: EmulatedFault) {
-        let Some(request) = Request::decode(bytes) else { return };
-        self.tick(fault);
-        let reply = self.reply(&request, fault);
-        let mut frame = reply.encode().to_vec();
-        match fault {
-            EmulatedFault::BadChecksum => frame.iter_mut().rev().take(1).for_each(|byte| *byte ^= 0x5a),
-            EmulatedFault::WrongFrame => frame.truncate(frame.len() / 2),
-            _ => {}
-        }
-        self.peer = Some(from);
-        let now_s = self.now_s();
-        self.line.pass(now_s, &frame, fault, &mut |sent| drop(socket.send_to(sent, from)));
-    }
-
-    fn reply(&mut self, request: &Request, fault: EmulatedFault) -> Reply {
-        let now_s = self.now_s();
+    fn reply(&mut self, now_s: f64, request: &Request, fault: EmulatedFault) -> Reply {
         let taken = self.client.is_some_and(|(client, _)| client != request.client);
         let mut flags = if taken { TAKEN } else { 0 };
         let refused = match request.order {
@@ -321,6 +233,44 @@ impl Machine {
             frame,
             gripper_rad: if left { -state.gripper_rad } else { state.gripper_rad },
         }
+    }
+}
+
+impl Emulator for Machine {
+    fn wires(&self) -> io::Result<Vec<Box<dyn End>>> {
+        Ok(vec![udp(self.of.port)])
+    }
+
+    fn endpoint(&self, places: &[String]) -> String {
+        match &self.library {
+            Some(library) => format!("{} library={}", places[0], library.display()),
+            None => places[0].clone(),
+        }
+    }
+
+    /// A real device has a processor of its own.
+    fn begin(&mut self) {
+        nima_devices::force_dimension::prepare_thread();
+    }
+
+    fn hear(&mut self, from: Peer, bytes: &[u8], turn: &mut Turn<'_>) {
+        let Some(request) = Request::decode(bytes) else { return };
+        self.tick(turn.now_s, turn.fault);
+        let mut frame = self.reply(turn.now_s, &request, turn.fault).encode().to_vec();
+        match turn.fault {
+            EmulatedFault::BadChecksum => frame.iter_mut().rev().take(1).for_each(|byte| *byte ^= 0x5a),
+            EmulatedFault::WrongFrame => frame.truncate(frame.len() / 2),
+            _ => {}
+        }
+        turn.send(from, &frame);
+    }
+
+    fn pass(&mut self, turn: &mut Turn<'_>) {
+        self.tick(turn.now_s, turn.fault);
+    }
+
+    fn lose(&mut self, _: Peer) {
+        self.lose_client();
     }
 }
 

@@ -66,9 +66,9 @@ impl Hand {
 }
 
 /// An emulated device with a hand, and settings that reach it.
-pub(super) fn rig(emulator: Emulator) -> (Serving, Hand, Settings) {
+pub(super) fn rig(emulator: Emulated) -> (Serving, Hand, Settings) {
     let hand = Hand::default();
-    let serving = emulator.serve(hand.body()).unwrap();
+    let serving = emulator.with(hand.body()).serve().unwrap();
     let settings =
         Settings { library: Some(library()), emulator: Some(serving.endpoint.parse().unwrap()), ..Settings::default() };
     (serving, hand, settings)
@@ -111,7 +111,7 @@ fn push(driver: &mut Driver, hand: &Hand) {
 
 #[test]
 fn it_connects_and_reads_what_the_hand_does_without_a_gap() {
-    let (_serving, hand, settings) = rig(Emulator { serial: 4711, ..Emulator::default() });
+    let (_serving, hand, settings) = rig(Emulated { serial: 4711, ..Emulated::default() });
     let turn = UnitQuaternion::from_euler_angles(0.3, -0.2, 0.5);
     hand.set(|state| {
         state.position_m = Vector3::new(0.01, -0.02, 0.03);
@@ -142,12 +142,12 @@ fn it_connects_and_reads_what_the_hand_does_without_a_gap() {
 
 #[test]
 fn velocity_is_that_of_the_hand() {
-    let emulator = Emulator::default();
+    let emulator = Emulated::default();
     let moving = |now_s: f64, _: &Applied| HandState {
         position_m: Vector3::new(0.3 * (now_s % 0.4 - 0.2), 0.0, 0.0),
         ..HandState::default()
     };
-    let serving = emulator.serve(moving).unwrap();
+    let serving = emulator.with(moving).serve().unwrap();
     let emulator = Some(serving.endpoint.parse().unwrap());
     let mut driver = open(&Settings { library: Some(library()), emulator, ..Settings::default() }).unwrap();
     let mut speeds = Vec::new();
@@ -162,7 +162,7 @@ fn velocity_is_that_of_the_hand() {
 
 #[test]
 fn a_left_handed_gripper_opens_in_the_positive_sense_too() {
-    let (_serving, hand, settings) = rig(Emulator { kind: Kind::Omega7 { left_handed: true }, ..Emulator::default() });
+    let (_serving, hand, settings) = rig(Emulated { kind: Kind::Omega7 { left_handed: true }, ..Emulated::default() });
     hand.set(|state| state.gripper_rad = 0.25);
     let mut driver = open(&settings).unwrap();
     assert!(until(&mut driver, |_, reading| {
@@ -172,7 +172,7 @@ fn a_left_handed_gripper_opens_in_the_positive_sense_too() {
 
 #[test]
 fn force_reaches_the_hand_only_while_it_is_enabled_and_never_beyond_the_limits() {
-    let (_serving, hand, settings) = rig(Emulator::default());
+    let (_serving, hand, settings) = rig(Emulated::default());
     let mut driver = open(&settings).unwrap();
     let pushed = Vector3::new(1.0, -2.0, 0.5);
     for _ in 0..30 {
@@ -209,7 +209,7 @@ fn force_reaches_the_hand_only_while_it_is_enabled_and_never_beyond_the_limits()
 
 #[test]
 fn a_force_that_is_not_said_again_ends() {
-    let (_serving, hand, settings) = rig(Emulator::default());
+    let (_serving, hand, settings) = rig(Emulated::default());
     let mut driver = open(&settings).unwrap();
     push(&mut driver, &hand);
     assert!(until(&mut driver, |_, _| hand.applied().force_n.norm() == 0.0));
@@ -219,7 +219,7 @@ fn a_force_that_is_not_said_again_ends() {
 
 #[test]
 fn saturated_motors_are_counted_and_are_no_failure() {
-    let (_serving, hand, settings) = rig(Emulator { motor_limit_n: 5.0, ..Emulator::default() });
+    let (_serving, hand, settings) = rig(Emulated { motor_limit_n: 5.0, ..Emulated::default() });
     let mut driver = open(&settings).unwrap();
     turn_on(&mut driver);
     assert!(until(&mut driver, |driver, _| {
@@ -232,7 +232,7 @@ fn saturated_motors_are_counted_and_are_no_failure() {
 
 #[test]
 fn the_device_takes_force_away_and_says_why_and_only_a_command_brings_it_back() {
-    let (_serving, hand, settings) = rig(Emulator::default());
+    let (_serving, hand, settings) = rig(Emulated::default());
     let mut driver = open(&settings).unwrap();
     turn_on(&mut driver);
     hand.set(|state| state.force_button = true);
@@ -254,9 +254,9 @@ fn the_device_takes_force_away_and_says_why_and_only_a_command_brings_it_back() 
 
 #[test]
 fn two_devices_are_told_apart_by_their_serial_numbers() {
-    let (_one, one_hand, settings) = rig(Emulator { serial: 1, ..Emulator::default() });
+    let (_one, one_hand, settings) = rig(Emulated { serial: 1, ..Emulated::default() });
     let two_hand = Hand::default();
-    let two = Emulator { serial: 2, ..Emulator::default() }.serve(two_hand.body()).unwrap();
+    let two = Emulated { serial: 2, ..Emulated::default() }.with(two_hand.body()).serve().unwrap();
     let mut first = open(&Settings { serial: Some(1), ..settings.clone() }).unwrap();
     let emulator = Some(two.endpoint.parse().unwrap());
     let mut second = open(&Settings { serial: Some(2), emulator, ..settings }).unwrap();

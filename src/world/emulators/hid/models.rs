@@ -1,10 +1,8 @@
 //! The emulated devices themselves: what they send and when.
 
-use std::path::Path;
-
 use super::{
-    CapReading, CapReport, Duration, EmulatedFault, Event, HidIdentity, Layout, PedalReading, Side, UnixListener,
-    Vector3, cap_codec, counts_of, io, pedal_codec, seqpacket,
+    CapReading, CapReport, Duration, EmulatedFault, Event, HidIdentity, Layout, PedalReading, Side, Vector3, cap_codec,
+    counts_of, pedal_codec,
 };
 
 /// Zero reports before a cap falls silent at rest.
@@ -111,6 +109,8 @@ impl CapSide {
 }
 
 impl Side for CapSide {
+    const NAME: &'static str = "spacemouse.sock";
+
     fn period(&self) -> Duration {
         Duration::from_millis(match self.model {
             CapModel::Split => 8,
@@ -124,10 +124,6 @@ impl Side for CapSide {
             CapModel::Combined => (0x256f, 0xc62e, "SpaceMouse Wireless"),
         };
         Some(HidIdentity { vendor, product, serial: "EMULATED".to_owned(), name: name.to_owned() }.hello())
-    }
-
-    fn listen(&self, path: &Path) -> io::Result<UnixListener> {
-        seqpacket::listen(path)
     }
 
     fn step(&mut self, now_s: f64, fault: EmulatedFault, send: &mut dyn FnMut(&[u8])) {
@@ -174,18 +170,14 @@ impl SpacenavdSide {
 const SPACENAVD_MS: u8 = 16;
 
 impl Side for SpacenavdSide {
+    const NAME: &'static str = "spnav.sock";
+
     fn period(&self) -> Duration {
         Duration::from_millis(u64::from(SPACENAVD_MS))
     }
 
     fn hello(&self) -> Option<String> {
         None
-    }
-
-    fn listen(&self, path: &Path) -> io::Result<UnixListener> {
-        let listener = UnixListener::bind(path)?;
-        listener.set_nonblocking(true)?;
-        Ok(listener)
     }
 
     fn step(&mut self, now_s: f64, fault: EmulatedFault, send: &mut dyn FnMut(&[u8])) {
@@ -265,6 +257,8 @@ impl PedalSide {
 }
 
 impl Side for PedalSide {
+    const NAME: &'static str = "pedal.sock";
+
     fn period(&self) -> Duration {
         Duration::from_millis(8)
     }
@@ -275,10 +269,6 @@ impl Side for PedalSide {
             PedalModel::Switches => (0x05f3, 0x00ff, "VEC USB Footpedal"),
         };
         Some(HidIdentity { vendor, product, serial: String::new(), name: name.to_owned() }.hello())
-    }
-
-    fn listen(&self, path: &Path) -> io::Result<UnixListener> {
-        seqpacket::listen(path)
     }
 
     fn step(&mut self, now_s: f64, fault: EmulatedFault, send: &mut dyn FnMut(&[u8])) {

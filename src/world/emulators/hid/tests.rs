@@ -15,7 +15,7 @@ use nima_devices::{
 
 use crate::emulators::{
     EmulatedFault, Serving,
-    hid::{CapBody, CapModel, PedalBody, PedalModel, Place, serve_cap, serve_pedal, serve_spacenavd},
+    hid::{self, CapBody, CapModel, PedalBody, PedalModel, cap, spacenavd},
 };
 
 fn deflected() -> CapReading {
@@ -30,7 +30,7 @@ fn same(one: &CapReading, other: &CapReading) -> bool {
 }
 
 fn still_cap(model: CapModel) -> Serving {
-    serve_cap(Place::Temporary, model, CapBody::moved_by(|_| deflected())).unwrap()
+    cap(None, model, CapBody::moved_by(|_| deflected())).serve().unwrap()
 }
 
 fn cap_settings(serving: &Serving) -> CapSettings {
@@ -125,7 +125,7 @@ fn a_cap_that_falls_silent_while_deflected_lets_go_within_the_watchdogs_time() {
 #[test]
 fn a_cap_at_rest_says_zero_and_then_nothing_and_the_watchdog_stays_quiet() {
     let body = |now_s: f64| if now_s < 0.3 { deflected() } else { CapReading::default() };
-    let serving = serve_cap(Place::Temporary, CapModel::Combined, CapBody::moved_by(body)).unwrap();
+    let serving = cap(None, CapModel::Combined, CapBody::moved_by(body)).serve().unwrap();
     let mut driver = CapDriver::open(&cap_settings(&serving)).unwrap();
     let mut newest = CapReading::default();
     let mut readings = 0;
@@ -150,7 +150,7 @@ fn the_light_is_on_while_connected() {
         now: Box::new(|_| deflected()),
         light: Box::new(move |on| seen.store(u32::from(on), Ordering::Release)),
     };
-    let serving = serve_cap(Place::Temporary, CapModel::Split, body).unwrap();
+    let serving = cap(None, CapModel::Split, body).serve().unwrap();
     let mut driver = CapDriver::open(&cap_settings(&serving)).unwrap();
     assert!(until(&mut driver, |_, _| light.load(Ordering::Acquire) == 1).is_some());
     drop(driver);
@@ -215,10 +215,11 @@ fn late_lost_and_reordered_reports_leave_a_cap_connected_with_its_values() {
 
 #[test]
 fn the_daemon_gives_the_same_values_as_the_cap_itself() {
-    let serving = serve_spacenavd(
-        Place::Temporary,
+    let serving = spacenavd(
+        None,
         CapBody::moved_by(|now_s| if now_s < 0.4 { CapReading { buttons: 0, ..deflected() } } else { deflected() }),
     )
+    .serve()
     .unwrap();
     let mut driver = CapDriver::open(&cap_settings(&serving)).unwrap();
     assert!(
@@ -233,7 +234,7 @@ fn pedal(model: PedalModel) -> (Serving, Arc<AtomicU32>) {
     let pressed = Arc::new(AtomicU32::new(0));
     let foot = Arc::clone(&pressed);
     let body = PedalBody::pressed_by(move |_| PedalReading { pressed: foot.load(Ordering::Acquire) });
-    (serve_pedal(Place::Temporary, model, body).unwrap(), pressed)
+    (hid::pedal(None, model, body).serve().unwrap(), pressed)
 }
 
 #[test]

@@ -7,7 +7,7 @@ use nima_devices::kinova::{
 use prost::Message;
 
 use super::{
-    Body, EmulatedArm,
+    Body, Emulated,
     actions::Player,
     control::Control,
     devices::Devices,
@@ -18,14 +18,13 @@ use super::{
         UNSUPPORTED_SERVICE, read,
     },
     robot::Robot,
-    server::Link,
     topics::{Notice, Topics},
 };
-use crate::emulators::EmulatedFault;
+use crate::emulators::{EmulatedFault, Peer};
 
 struct Session {
     number: u16,
-    link: Link,
+    link: Peer,
     heard_s: f64,
     /// Silent for so long it is closed, s.
     closes_s: f64,
@@ -40,12 +39,12 @@ pub(super) struct Call<'a> {
     device: u8,
     pub(super) payload: &'a [u8],
     pub(super) session: u16,
-    link: Link,
+    link: Peer,
 }
 
 /// The base: who is logged in, who drives, the devices within the arm, and the robot behind it.
 pub(super) struct Base {
-    pub(super) arm: EmulatedArm,
+    pub(super) arm: Emulated,
     pub(super) robot: Robot,
     pub(super) devices: Devices,
     pub(super) control: Control,
@@ -61,7 +60,7 @@ pub(super) struct Base {
 }
 
 impl Base {
-    pub(super) fn new(arm: EmulatedArm, body: Box<dyn Body>) -> Self {
+    pub(super) fn new(arm: Emulated, body: Box<dyn Body>) -> Self {
         let robot = Robot::new(arm.clone(), body);
         Self {
             devices: Devices::new(arm.joints),
@@ -110,7 +109,7 @@ impl Base {
     }
 
     /// Sessions of links that are gone.
-    pub(super) fn forget(&mut self, gone: impl Fn(Link) -> bool) {
+    pub(super) fn forget(&mut self, gone: impl Fn(Peer) -> bool) {
         if self.sessions.iter().any(|session| Some(session.number) == self.driving && gone(session.link)) {
             self.release();
         }
@@ -139,7 +138,7 @@ impl Base {
     /// The number of the session and the payload of the answer.
     pub(super) fn answer(
         &mut self,
-        link: Link,
+        link: Peer,
         asked: &Frame<'_>,
         now_s: f64,
         fault: EmulatedFault,
@@ -159,7 +158,7 @@ impl Base {
     fn serve(&mut self, call: &Call<'_>, now_s: f64, fault: EmulatedFault) -> Answered {
         let Call { rpc, device, payload, .. } = *call;
         // The cyclic connection carries the cycle and its session only.
-        if matches!(call.link, Link::Udp(_)) && !matches!(rpc.service, 1 | 3) {
+        if matches!(call.link, Peer::Address(_)) && !matches!(rpc.service, 1 | 3) {
             return Err(UNSUPPORTED_SERVICE);
         }
         match rpc.service {
@@ -190,7 +189,7 @@ impl Base {
         }
     }
 
-    fn log_in(&mut self, link: Link, login: &CreateSessionInfo, now_s: f64) -> Result<u16, Refused> {
+    fn log_in(&mut self, link: Peer, login: &CreateSessionInfo, now_s: f64) -> Result<u16, Refused> {
         if login.username != self.arm.user {
             return Err((ERROR_DEVICE, sub::USER_NOT_FOUND));
         }

@@ -22,24 +22,24 @@ use nima_devices::{
 };
 
 use crate::emulators::{
-    EmulatedFault, FaultSwitch, Serving,
-    kinova::{Asked, Body, EmulatedArm, StandIn, emulate},
+    EmulatedFault, Serving,
+    kinova::{Asked, Body, Emulated, StandIn},
 };
 
 const TICK_S: f64 = 1e-3;
 const HOME_RAD: [f64; ARM_JOINTS] = [0.0, 0.26, 3.12, -2.27, 0.0, 0.96, 1.57];
 
 /// An arm that does not mind pauses of a busy machine.
-pub(super) fn patient() -> EmulatedArm {
-    EmulatedArm { watchdog_ms: 5_000.0, ..EmulatedArm::default() }
+pub(super) fn patient() -> Emulated {
+    Emulated { watchdog_ms: 5_000.0, ..Emulated::default() }
 }
 
-pub(super) fn started(arm: EmulatedArm) -> (Serving, Settings) {
+pub(super) fn started(arm: Emulated) -> (Serving, Settings) {
     started_with(arm, StandIn::at(HOME_RAD))
 }
 
-fn started_with(arm: EmulatedArm, body: impl Body + 'static) -> (Serving, Settings) {
-    let serving = emulate(arm, body, FaultSwitch::default()).unwrap();
+fn started_with(arm: Emulated, body: impl Body + 'static) -> (Serving, Settings) {
+    let serving = arm.with(body).serve().unwrap();
     let settings = Settings::at(&serving.endpoint).unwrap();
     (serving, Settings { speed_fraction: 1.0, lead_rad: 0.2, ..settings })
 }
@@ -304,7 +304,7 @@ fn the_emulator_refuses_what_the_arm_refuses() {
 
 #[test]
 fn a_missed_cycle_is_a_fault_that_only_a_command_clears() {
-    let (_serving, settings) = started(EmulatedArm { watchdog_ms: 200.0, ..EmulatedArm::default() });
+    let (_serving, settings) = started(Emulated { watchdog_ms: 200.0, ..Emulated::default() });
     let mut ticking = Ticking::open(&settings);
     ticking.enter_low_level();
     sleep(Duration::from_millis(400));
@@ -326,7 +326,7 @@ fn a_missed_cycle_is_a_fault_that_only_a_command_clears() {
 
 #[test]
 fn every_trouble_while_opening_has_its_cause() {
-    let trouble = |arm: EmulatedArm, change: fn(&mut Settings)| {
+    let trouble = |arm: Emulated, change: fn(&mut Settings)| {
         let (serving, mut settings) = started(arm);
         settings.timeout_s = 0.5;
         change(&mut settings);
@@ -339,9 +339,9 @@ fn every_trouble_while_opening_has_its_cause() {
     assert!(matches!(refused, Trouble::RefusedLogin { user, .. } if user == "admin"));
     let refused = trouble(patient(), |settings| settings.user = "nobody".to_owned());
     assert!(matches!(refused, Trouble::RefusedLogin { user, .. } if user == "nobody"));
-    let other = trouble(EmulatedArm { joints: 6, ..patient() }, same);
+    let other = trouble(Emulated { joints: 6, ..patient() }, same);
     assert!(matches!(other, Trouble::WrongProduct { found, .. } if found == "arm with 6 joints"));
-    let starting = trouble(EmulatedArm { idle_state: 3, ..patient() }, same);
+    let starting = trouble(Emulated { idle_state: 3, ..patient() }, same);
     assert!(matches!(starting, Trouble::NotReady { mode, .. } if mode == "initialisation"));
     let nobody = |change: fn(&mut Settings)| matches!(trouble(patient(), change), Trouble::NobodyListens { .. });
     assert!(nobody(|settings| settings.tcp_port = 1) && nobody(|settings| settings.udp_port = 1));

@@ -6,9 +6,10 @@
 //! with the base's error frame.
 //!
 //! Not known of the real arm, and assumed here: the time of the watchdog and the distance that trips a following error. Both are
-//! in [`EmulatedArm`].
+//! in [`Emulated`].
 
 mod actions;
+pub(super) mod alone;
 mod base_calls;
 mod body;
 mod calls;
@@ -27,23 +28,21 @@ mod moves;
 mod robot;
 #[cfg(test)]
 mod route_tests;
-mod server;
 mod setting;
 mod shelf;
 mod told;
 mod topics;
-
-use std::net::{Ipv4Addr, TcpListener, UdpSocket};
+mod wire;
 
 use nima_devices::ARM_JOINTS;
 
 pub use body::{Asked, Body, BodyState, StandIn};
 
-use crate::emulators::{FaultSwitch, Serving, places};
+use crate::emulators::Emulator;
 
 /// How the emulated arm is.
 #[derive(Clone, Debug, PartialEq)]
-pub struct EmulatedArm {
+pub struct Emulated {
     /// User that may log in.
     pub user: String,
     /// The user's password.
@@ -63,7 +62,7 @@ pub struct EmulatedArm {
     pub udp_port: u16,
 }
 
-impl Default for EmulatedArm {
+impl Default for Emulated {
     fn default() -> Self {
         Self {
             user: "admin".to_owned(),
@@ -78,12 +77,9 @@ impl Default for EmulatedArm {
     }
 }
 
-/// Starts an emulated arm on ports of this machine; its endpoint is `127.0.0.1 tcp=PORT udp=PORT`, for
-/// [`Settings::at`](nima_devices::kinova::Settings::at).
-pub fn emulate(arm: EmulatedArm, body: impl Body + 'static, faults: FaultSwitch) -> std::io::Result<Serving> {
-    let listener = places::taken(arm.tcp_port, "TCP", TcpListener::bind((Ipv4Addr::LOCALHOST, arm.tcp_port)))?;
-    let socket = places::taken(arm.udp_port, "UDP", UdpSocket::bind((Ipv4Addr::LOCALHOST, arm.udp_port)))?;
-    let endpoint = format!("127.0.0.1 tcp={} udp={}", listener.local_addr()?.port(), socket.local_addr()?.port());
-    let server = server::Server::new(listener, socket, arm, Box::new(body), faults.clone())?;
-    Serving::start(endpoint, faults, move |stop| server.serve(stop))
+impl Emulated {
+    /// With what moves. The endpoint is `127.0.0.1 tcp=PORT udp=PORT`, for [`Settings::at`](nima_devices::kinova::Settings::at).
+    pub fn with(self, body: impl Body + 'static) -> Box<dyn Emulator> {
+        Box::new(wire::Server::new(self, Box::new(body)))
+    }
 }

@@ -16,7 +16,7 @@ use nima_devices::{
 };
 
 use super::{
-    Asked, Body, BodyState, EmulatedArm,
+    Asked, Body, BodyState, Emulated,
     interface::{LARGE_SPEED, MANUAL_STOP, MOVEMENT_IN_PROGRESS, Refused},
     motion::{Joints, Leg, Motion},
     told::{ActuatorFeedback, BaseFeedback, Feedback},
@@ -35,7 +35,7 @@ const STATUS_SERVOING: u32 = 0x20 | 0x800;
 const STATUS_FAULT: u32 = 0x20 | 0x400 | 0x1000;
 
 pub(super) struct Robot {
-    arm: EmulatedArm,
+    arm: Emulated,
     body: Box<dyn Body>,
     state: BodyState,
     asked: Asked,
@@ -57,7 +57,7 @@ pub(super) struct Robot {
 pub(super) type Obeyed = Result<(), u16>;
 
 impl Robot {
-    pub(super) fn new(arm: EmulatedArm, mut body: Box<dyn Body>) -> Self {
+    pub(super) fn new(arm: Emulated, mut body: Box<dyn Body>) -> Self {
         let state = body.step(0.0, &Asked::Rest);
         Self {
             arm,

@@ -17,11 +17,11 @@ use nima_devices::kinova::{
 use prost::Message;
 
 use super::{
-    EmulatedArm, StandIn, emulate,
+    Emulated, StandIn,
     forms::{JointsLimit, KinematicLimits, TwistLimit},
     interface::{ABOVE_MAXIMUM, INVALID_PARAM, JOINT_COUNT, Refused},
 };
-use crate::emulators::{FaultSwitch, Serving};
+use crate::emulators::Serving;
 
 const HOME_DEG: [f64; 7] = [0.0, 15.0, 180.0, -130.0, 0.0, 55.0, 90.0];
 /// Longest wait for an answer or a notification.
@@ -126,7 +126,7 @@ impl Client {
 }
 
 fn arm(degrees: [f64; 7]) -> Serving {
-    emulate(EmulatedArm::default(), StandIn::at(degrees.map(f64::to_radians)), FaultSwitch::default()).unwrap()
+    Emulated::default().with(StandIn::at(degrees.map(f64::to_radians))).serve().unwrap()
 }
 
 const fn of(service: u16, function: u16) -> Rpc {

@@ -6,10 +6,8 @@ use nima_devices::kinova::{
 };
 use prost::Message;
 
-use super::{
-    interface::{ENTITY_NOT_FOUND, NO_MORE_STORAGE, Refused},
-    server::Link,
-};
+use super::interface::{ENTITY_NOT_FOUND, NO_MORE_STORAGE, Refused};
+use crate::emulators::Peer;
 
 const SUBSCRIPTIONS: usize = 64;
 
@@ -17,12 +15,12 @@ struct Subscription {
     identifier: u16,
     topic: Rpc,
     session: u16,
-    link: Link,
+    link: Peer,
 }
 
 /// One notification on its way.
 pub(super) struct Notice {
-    pub(super) link: Link,
+    pub(super) link: Peer,
     pub(super) header: Header,
     pub(super) payload: Vec<u8>,
 }
@@ -36,7 +34,7 @@ pub(super) struct Topics {
 
 impl Topics {
     /// The number that notifications of this subscription bear.
-    pub(super) fn subscribe(&mut self, topic: Rpc, session: u16, link: Link) -> Result<u16, Refused> {
+    pub(super) fn subscribe(&mut self, topic: Rpc, session: u16, link: Peer) -> Result<u16, Refused> {
         if self.subscriptions.len() >= SUBSCRIPTIONS {
             return Err(NO_MORE_STORAGE);
         }

@@ -18,7 +18,7 @@ use nima_testing::real_time::judged;
 
 use crate::emulators::{
     Serving,
-    ndi::{Body, FRAME_HZ, Profile, serve_line, serve_network, wandering},
+    ndi::{Body, FRAME_HZ, Profile, wandering},
 };
 
 /// Tool definitions as files.
@@ -124,7 +124,7 @@ fn over_a_network_every_frame_arrives_in_both_forms() {
     judged(|| {
         let (_folder, tools) = definitions(2);
         for (firmware, form, within_m) in [(BLOCK_FIRMWARE, Form::Binary, 1e-6), (TEXT_FIRMWARE, Form::Text, 1e-5)] {
-            let served = serve_network(0, profile(firmware), wandering).unwrap();
+            let served = profile(firmware).on_network(0, wandering).serve().unwrap();
             follows(&network(&served, tools.clone()), form, within_m);
         }
     });
@@ -135,7 +135,7 @@ fn over_a_network_every_frame_arrives_in_both_forms() {
 fn over_a_line_every_frame_arrives_in_binary() {
     judged(|| {
         let (_folder, tools) = definitions(2);
-        let served = serve_line(None, profile(BLOCK_FIRMWARE), wandering).unwrap();
+        let served = profile(BLOCK_FIRMWARE).on_line(None, wandering).serve().unwrap();
         follows(&line(&served, tools), Form::Binary, 1e-6);
     });
 }
@@ -145,7 +145,7 @@ fn over_a_line_every_frame_arrives_in_binary() {
 fn over_a_line_text_arrives_as_often_as_the_line_carries_it() {
     judged(|| {
         let (_folder, tools) = definitions(1);
-        let served = serve_line(None, profile(TEXT_FIRMWARE), wandering).unwrap();
+        let served = profile(TEXT_FIRMWARE).on_line(None, wandering).serve().unwrap();
         let settings = Settings { baud: 230_400, ..line(&served, tools) };
         follows(&settings, Form::Text, 1e-5);
     });
@@ -171,7 +171,7 @@ fn say(endpoint: &str, baud: u32, command: &Command<'_>) -> String {
 fn a_line_left_at_another_speed_is_found_or_reset() {
     judged(|| {
         let (_folder, tools) = definitions(1);
-        let served = serve_line(None, profile(BLOCK_FIRMWARE), wandering).unwrap();
+        let served = profile(BLOCK_FIRMWARE).on_line(None, wandering).serve().unwrap();
         let settings = line(&served, tools);
         for left_at in [115_200, 38_400] {
             assert_eq!(say(&served.endpoint, 9600, &Command::Comm { baud: left_at }), "OKAYA896\r");
@@ -231,7 +231,7 @@ fn what_happens_to_a_tool_is_told() {
         let (_folder, tools) = definitions(2);
         for firmware in [BLOCK_FIRMWARE, TEXT_FIRMWARE] {
             let world = World::default();
-            let served = serve_network(0, profile(firmware), world.clone()).unwrap();
+            let served = profile(firmware).on_network(0, world.clone()).serve().unwrap();
             let mut driver = Driver::open(&network(&served, tools.clone())).unwrap();
             let begin = Instant::now();
             for mode in 0..6 {
@@ -284,7 +284,7 @@ fn what_happens_to_a_tool_is_told() {
 fn dropping_it_stops_tracking() {
     judged(|| {
         let (_folder, tools) = definitions(1);
-        let served = serve_network(0, Profile::default(), wandering).unwrap();
+        let served = Profile::default().on_network(0, wandering).serve().unwrap();
         let mut driver = Driver::open(&network(&served, tools)).unwrap();
         let begin = Instant::now();
         assert!(until(begin, 1.0, |now_s| driver.poll(now_s), |reading| reading.is_some()));
@@ -343,7 +343,7 @@ fn a_unit_with_a_fault_is_told_while_opening() {
         let (_folder, tools) = definitions(1);
         let world = World::default();
         world.system.store(1 << 9, Ordering::Relaxed);
-        let served = serve_network(0, Profile::default(), world).unwrap();
+        let served = Profile::default().on_network(0, world).serve().unwrap();
         let trouble = Driver::open(&network(&served, tools)).unwrap_err();
         assert!(matches!(&trouble, Trouble::DeviceFault { words, .. } if words.contains("temperature")), "{trouble}");
     });

@@ -6,10 +6,7 @@ use std::time::Instant;
 use nima_devices::{Loss, Slot, Stamped, Standing, TrackerReading, ndi::*};
 
 use super::driver_tests::{BLOCK_FIRMWARE, TEXT_FIRMWARE, definitions, line, network, profile, until};
-use crate::emulators::{
-    EmulatedFault, Serving,
-    ndi::{serve_line, serve_network, wandering},
-};
+use crate::emulators::{EmulatedFault, Serving, ndi::wandering};
 
 /// What a fault does to the driver.
 #[derive(Debug)]
@@ -75,7 +72,7 @@ fn survives_all(served: &Serving, settings: Settings, form: Form, faults: &[Emul
 
 fn survives_over_a_network(firmware: &str, form: Form, faults: &[EmulatedFault]) {
     let (_folder, tools) = definitions(1);
-    let served = serve_network(0, profile(firmware), wandering).unwrap();
+    let served = profile(firmware).on_network(0, wandering).serve().unwrap();
     survives_all(&served, network(&served, tools), form, faults);
 }
 
@@ -112,7 +109,7 @@ fn it_survives_a_unit_that_is_wrong() {
 
 fn survives_over_a_line(faults: &[EmulatedFault]) {
     let (_folder, tools) = definitions(1);
-    let served = serve_line(None, profile(BLOCK_FIRMWARE), wandering).unwrap();
+    let served = profile(BLOCK_FIRMWARE).on_line(None, wandering).serve().unwrap();
     survives_all(&served, line(&served, tools), Form::Binary, faults);
 }
 

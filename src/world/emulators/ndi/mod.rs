@@ -5,18 +5,18 @@
 //! than its own is not understood, and commands and replies take the line for as long as their bytes need. A pseudo-terminal carries
 //! no break; setting its speed to 9600 while the unit has another stands for one.
 
+pub(super) mod alone;
 #[cfg(test)]
 mod driver_tests;
 #[cfg(test)]
 mod fault_tests;
 mod port;
-mod serve;
 mod unit;
+mod wire;
 
 use nalgebra::{UnitQuaternion, Vector3};
 use nima_devices::{Tracked, ndi::words::SystemStatus};
 
-pub use serve::{serve_line, serve_network};
 pub use unit::{Answer, Unit};
 
 /// Frames of the emulated unit, Hz.

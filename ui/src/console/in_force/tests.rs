@@ -114,7 +114,7 @@ fn sensor(serial: &str, port: &std::path::Path) -> Serving {
         link: Some(port.to_owned()),
         ..emulated::Emulated::default()
     };
-    sensor.serve_gen_a(Box::new(|_| ForceReading::default())).unwrap()
+    sensor.with(Box::new(|_| ForceReading::default())).serve().unwrap()
 }
 
 /// A loop on a rig with devices, and what the console makes of its sensor.

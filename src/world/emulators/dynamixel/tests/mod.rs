@@ -3,6 +3,5 @@
 mod faults;
 mod opening;
 mod servos;
-#[cfg(unix)]
 mod terminal;
 mod world;

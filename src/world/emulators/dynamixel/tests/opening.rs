@@ -12,7 +12,7 @@ use nima_devices::{
 };
 
 use super::{
-    super::{Emulator, EmulatorSettings},
+    super::{Bus, Emulated},
     world::{Bench, emulated, settings},
 };
 use crate::emulators::EmulatedFault;
@@ -49,7 +49,7 @@ fn the_servos_become_what_the_settings_say() {
     servo.goal_current_a = Some(0.269);
     servo.gains.position_d = 77;
     servo.profile_acceleration_rad_s2 = 0.01;
-    let mut bench = Bench::new(Emulator::new(&emulated(), None).unwrap(), wanted);
+    let mut bench = Bench::new(Bus::new(&emulated(), None).unwrap(), wanted);
     let driver = bench.open().unwrap();
     assert_eq!(driver.identity().product, "XM430-W350 XM430-W350 XM430-W350 XM430-W350");
     assert_eq!((driver.identity().serial.as_str(), driver.health().standing), ("ids 1 2 3 4", Standing::Opening));
@@ -79,8 +79,8 @@ fn the_servos_become_what_the_settings_say() {
 
 #[test]
 fn an_old_firmware_is_asked_one_by_one() {
-    let settings_of = EmulatorSettings { fast: false, ..emulated() };
-    let mut bench = Bench::new(Emulator::new(&settings_of, None).unwrap(), settings());
+    let settings_of = Emulated { fast: false, ..emulated() };
+    let mut bench = Bench::new(Bus::new(&settings_of, None).unwrap(), settings());
     let mut driver = bench.open().unwrap();
     assert!(!driver.uses_fast_sync_read());
     assert!(bench.run(&mut driver, 1.0).is_some());
@@ -101,12 +101,11 @@ fn servos_that_answer_to_reads_alone_are_told_to_answer() {
 
 #[test]
 fn what_is_missing_or_another_is_named() {
-    let opened = |emulator: EmulatorSettings, settings: Settings| {
-        Bench::new(Emulator::new(&emulator, None).unwrap(), settings).open().err()
-    };
-    let missing = opened(EmulatorSettings { ids: vec![1, 2, 4], ..emulated() }, settings());
+    let opened =
+        |emulator: Emulated, settings: Settings| Bench::new(Bus::new(&emulator, None).unwrap(), settings).open().err();
+    let missing = opened(Emulated { ids: vec![1, 2, 4], ..emulated() }, settings());
     assert_eq!(missing, Some(Trouble::Absent { place: "servo 3 on test".to_owned() }));
-    let nobody = opened(EmulatorSettings { ids: vec![], ..emulated() }, settings());
+    let nobody = opened(Emulated { ids: vec![], ..emulated() }, settings());
     assert_eq!(nobody, Some(Trouble::Silent { place: "test".to_owned() }));
     let mut wanted = settings();
     wanted.servos[1].model = Some("XM540-W270".to_owned());
@@ -115,7 +114,7 @@ fn what_is_missing_or_another_is_named() {
     assert_eq!(other, Some(Trouble::WrongProduct { place: found.0, expected: found.1, found: found.2 }));
     let mut weak = settings();
     weak.servos.iter_mut().for_each(|servo| servo.current_limit_a = 1.8);
-    let small = opened(EmulatorSettings { model: 1200, ..emulated() }, weak);
+    let small = opened(Emulated { model: 1200, ..emulated() }, weak);
     assert!(matches!(&small, Some(Trouble::Setting { key, .. }) if key == "current_limit_a"), "{small:?}");
 }
 

@@ -11,22 +11,22 @@ use nima_devices::{
 };
 
 use super::{
-    super::{Emulator, EmulatorSettings, Surroundings},
+    super::{Bus, Emulated, Surroundings},
     world::{Bench, emulated, settings},
 };
 use crate::emulators::EmulatedFault;
 
 /// A client without a driver.
 struct Client {
-    emulator: Emulator,
+    emulator: Bus,
     now_s: f64,
 }
 
 impl Client {
     fn new() -> Self {
         let still = |_: f64, _: usize, _: &_| Surroundings { load_nm: 0.0, supply_v: 12.0, temperature_c: 30.0 };
-        let settings = EmulatorSettings { ids: vec![1, 2], ..EmulatorSettings::default() };
-        Self { emulator: Emulator::new(&settings, Some(Box::new(still))).unwrap(), now_s: 0.0 }
+        let settings = Emulated { ids: vec![1, 2], ..Emulated::default() };
+        Self { emulator: Bus::new(&settings, Some(Box::new(still))).unwrap(), now_s: 0.0 }
     }
 
     /// Everything that comes back within 10 ms: id, error, parameters.
@@ -155,7 +155,7 @@ fn a_blocked_servo_shuts_down_until_it_restarts() {
         supply_v: 12.0,
         temperature_c: 30.0,
     };
-    client.emulator = Emulator::new(&EmulatorSettings::default(), Some(Box::new(blocked))).unwrap();
+    client.emulator = Bus::new(&Emulated::default(), Some(Box::new(blocked))).unwrap();
     assert_eq!((client.write(64, &[1]), client.write(116, &4000_i32.to_le_bytes())), (0, 0));
     client.wait(3.0);
     let answer = client.ask(1, &I::Ping);
@@ -222,7 +222,7 @@ fn a_position_that_is_off_under_load_comes_home_with_the_integral() {
     let sag = |gain: i32| {
         let mut client = Client::new();
         let loaded = |_: f64, _: usize, _: &_| Surroundings { load_nm: -0.5, supply_v: 12.0, temperature_c: 30.0 };
-        client.emulator = Emulator::new(&EmulatorSettings::default(), Some(Box::new(loaded))).unwrap();
+        client.emulator = Bus::new(&Emulated::default(), Some(Box::new(loaded))).unwrap();
         client.write(82, &gain.to_le_bytes()[..2]);
         client.write(64, &[1]);
         client.write(116, &2048_i32.to_le_bytes());
@@ -275,7 +275,7 @@ fn goals_are_reached_in_radians_with_sign_and_offset() {
 #[test]
 fn the_current_of_a_load_is_read_in_ampere() {
     let loaded = |_: f64, _: usize, _: &_| Surroundings { load_nm: -1.0, supply_v: 12.0, temperature_c: 30.0 };
-    let emulator = Emulator::new(&emulated(), Some(Box::new(loaded))).unwrap();
+    let emulator = Bus::new(&emulated(), Some(Box::new(loaded))).unwrap();
     let mut bench = Bench::new(emulator, settings());
     let mut driver = held(&mut bench);
     let reading = bench.run(&mut driver, 1.0).unwrap();

@@ -8,13 +8,13 @@ use nima_devices::{
 };
 
 use super::{
-    super::{Emulator, EmulatorSettings},
+    super::Emulated,
     world::{emulated, settings},
 };
 use crate::emulators::{EmulatedFault, Serving};
 
-fn serving(settings_of: &EmulatorSettings) -> (Serving, Settings) {
-    let serving = Emulator::new(settings_of, None).unwrap().serve().unwrap();
+fn serving(settings_of: &Emulated) -> (Serving, Settings) {
+    let serving = settings_of.with(None).unwrap().serve().unwrap();
     let mut settings = Settings { port: serving.endpoint.clone(), baud: settings_of.baud, ..settings() };
     // Other programs of this machine may keep either side waiting.
     settings.silence_s = 0.5;
@@ -49,7 +49,7 @@ fn it_delivers_over_the_terminal_without_a_loss() {
 fn measure_rate_and_losses() {
     for baud in [1_000_000, 4_000_000] {
         for fast in [true, false] {
-            let (_serving, settings) = serving(&EmulatorSettings { baud, fast, ..emulated() });
+            let (_serving, settings) = serving(&Emulated { baud, fast, ..emulated() });
             let mut driver = open(&settings).unwrap();
             let begin = Instant::now();
             let (mut polls, mut longest) = (0_u64, Duration::ZERO);

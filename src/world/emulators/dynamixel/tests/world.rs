@@ -8,8 +8,8 @@ use nima_devices::{
     transport::{Bytes as _, MemoryBytes},
 };
 
-use super::super::{Emulator, EmulatorSettings};
-use crate::emulators::EmulatedFault;
+use super::super::{Bus, Emulated};
+use crate::emulators::{EmulatedFault, Peer, faults::FaultyLine};
 
 pub(super) fn settings() -> Settings {
     let servo = |id| ServoSettings {
@@ -36,15 +36,16 @@ pub(super) fn settings() -> Settings {
     }
 }
 
-pub(super) fn emulated() -> EmulatorSettings {
-    EmulatorSettings { baud: 4_000_000, ..EmulatorSettings::default() }
+pub(super) fn emulated() -> Emulated {
+    Emulated { baud: 4_000_000, ..Emulated::default() }
 }
 
 pub(super) struct World {
-    pub(super) emulator: Emulator,
+    pub(super) emulator: Bus,
     pub(super) end: MemoryBytes,
     pub(super) now_s: f64,
     pub(super) fault: EmulatedFault,
+    line: FaultyLine,
 }
 
 impl World {
@@ -56,10 +57,10 @@ impl World {
         {
             self.emulator.receive(self.now_s, &buffer[..count]);
         }
-        let end = &mut self.end;
-        self.emulator.send(self.now_s, self.fault, &mut |bytes| {
-            end.send(bytes).ok();
-        });
+        let Self { emulator, end, now_s, fault, line } = self;
+        let mut out = |_, bytes: &[u8]| end.send(bytes).unwrap_or_default();
+        line.let_late_ones_go(*now_s, &mut out);
+        emulator.send(*now_s, *fault, &mut |frame| line.pass(*now_s, Peer::Everyone, frame, *fault, &mut out));
     }
 }
 
@@ -82,14 +83,14 @@ impl Pace for Bench {
 }
 
 impl Bench {
-    pub(super) fn new(emulator: Emulator, settings: Settings) -> Self {
+    pub(super) fn new(emulator: Bus, settings: Settings) -> Self {
         let end = MemoryBytes::pair()[0].clone();
-        let world = World { emulator, end, now_s: 0.0, fault: EmulatedFault::None };
+        let world = World { emulator, end, now_s: 0.0, fault: EmulatedFault::None, line: FaultyLine::default() };
         Self { world: Rc::new(RefCell::new(world)), reboots: Reboots::default(), settings }
     }
 
     pub(super) fn usual() -> Self {
-        Self::new(Emulator::new(&emulated(), None).unwrap(), settings())
+        Self::new(Bus::new(&emulated(), None).unwrap(), settings())
     }
 
     /// Plugs a new cable in and opens.

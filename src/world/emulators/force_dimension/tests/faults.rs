@@ -39,7 +39,7 @@ fn wait(slot: &mut Slot<Driver>, good: impl Fn(&Slot<Driver>, bool) -> bool) -> 
 const ATTEMPTS: u32 = 6;
 
 fn goes_through(faults: &[EmulatedFault]) {
-    let (serving, hand, settings) = rig(Emulator::default());
+    let (serving, hand, settings) = rig(Emulated::default());
     let mut slot = Slot::start("handle", move || open(&settings)).unwrap();
     for fault in faults {
         let mut seen = Vec::new();

@@ -54,7 +54,7 @@ fn a_library_that_does_not_fit_is_told_with_the_reason() {
 
 #[test]
 fn devices_that_are_absent_taken_or_others_are_told_apart() {
-    let (_serving, _hand, settings) = rig(Emulator { serial: 7, ..Emulator::default() });
+    let (_serving, _hand, settings) = rig(Emulated { serial: 7, ..Emulated::default() });
     let Trouble::Absent { place } = trouble(&Settings { serial: Some(8), ..settings.clone() }) else { panic!() };
     assert_eq!(place, "omega.7 with serial number 8 (1 attached)");
     let nobody = std::net::UdpSocket::bind("127.0.0.1:0").unwrap().local_addr().unwrap();
@@ -66,15 +66,15 @@ fn devices_that_are_absent_taken_or_others_are_told_apart() {
     assert_eq!(trouble(&other), Trouble::Busy { place: "omega.7 with serial number 7".to_owned() });
     drop(first);
     drop(open(&other).unwrap());
-    let (_sigma, _hand, settings) = rig(Emulator { kind: Kind::Other(104), ..Emulator::default() });
+    let (_sigma, _hand, settings) = rig(Emulated { kind: Kind::Other(104), ..Emulated::default() });
     assert!(matches!(trouble(&settings), Trouble::WrongProduct { found, .. } if found == "sigma.7"));
 }
 
 #[test]
 fn devices_that_are_not_ready_or_broken_are_told_apart() {
-    let (_serving, _hand, settings) = rig(Emulator { reset: true, ..Emulator::default() });
+    let (_serving, _hand, settings) = rig(Emulated { reset: true, ..Emulated::default() });
     assert!(matches!(trouble(&settings), Trouble::NotReady { mode, .. } if mode.starts_with("reset")));
-    let (serving, _hand, settings) = rig(Emulator::default());
+    let (serving, _hand, settings) = rig(Emulated::default());
     serving.faults.set(EmulatedFault::DeviceFault);
     assert!(matches!(trouble(&settings), Trouble::DeviceFault { words, .. } if words.contains("code 109")));
     serving.faults.set(EmulatedFault::NotANumber);
@@ -140,7 +140,7 @@ fn every_way_out_of_the_program_leaves_the_brakes_on() {
     for (end, cause) in
         [("exit", ForceOffCause::Software), ("panic", ForceOffCause::Software), ("abort", ForceOffCause::Watchdog)]
     {
-        let (_serving, hand, settings) = rig(Emulator::default());
+        let (_serving, hand, settings) = rig(Emulated::default());
         let mut child = child("pushes_and_leaves", &settings, ("NIMA_TEST_END", end));
         let begin = Instant::now();
         let wait = |good: &dyn Fn(Applied) -> bool| {
@@ -172,7 +172,7 @@ fn a_library_that_is_too_old_is_refused() {
 
 #[test]
 fn dropping_the_driver_brakes_the_hand() {
-    let (_serving, hand, settings) = rig(Emulator::default());
+    let (_serving, hand, settings) = rig(Emulated::default());
     let mut driver = open(&settings).unwrap();
     push(&mut driver, &hand);
     drop(driver);

@@ -1,0 +1,73 @@
+//! Every emulator by its name, alone: without a rig, fed by a stand-in for the world, with settings by name (`nima emulate`).
+
+use std::{
+    io::{Error, ErrorKind, Result},
+    str::FromStr,
+};
+
+use nima_devices::bota::Transport;
+
+use super::Emulator;
+
+/// Settings `KEY=VALUE`; devices that do not have one ignore it.
+#[derive(Debug, Default)]
+pub struct Settings(Vec<(String, String)>);
+
+impl Settings {
+    /// Of texts `KEY=VALUE`.
+    ///
+    /// # Errors
+    /// When one is not of this form.
+    pub fn new(texts: &[String]) -> Result<Self> {
+        let pair = |text: &String| match text.split_once('=') {
+            Some((key, value)) => Ok((key.to_owned(), value.to_owned())),
+            None => Err(Error::new(ErrorKind::InvalidInput, format!("--set {text} is not KEY=VALUE"))),
+        };
+        texts.iter().map(pair).collect::<Result<_>>().map(Self)
+    }
+
+    /// The value of `key`, if it was given; a value that does not read is an error.
+    pub(super) fn get<T: FromStr>(&self, key: &str) -> Result<Option<T>> {
+        let Some((_, value)) = self.0.iter().find(|(known, _)| known == key) else { return Ok(None) };
+        value.parse().map(Some).map_err(|_| unusable(key, value, "this value cannot be used"))
+    }
+
+    /// The value of `key`, or the usual one.
+    pub(super) fn get_or<T: FromStr>(&self, key: &str, usual: T) -> Result<T> {
+        Ok(self.get(key)?.unwrap_or(usual))
+    }
+
+    /// One of two models by its name; the first without one.
+    pub(super) fn model<T: Default>(&self, names: [(&str, T); 2]) -> Result<T> {
+        let Some(name) = self.get::<String>("model")? else { return Ok(T::default()) };
+        let known = names.each_ref().map(|(known, _)| *known).join(" or ");
+        let model = names.into_iter().find(|(known, _)| *known == name);
+        model.map(|(_, model)| model).ok_or_else(|| unusable("model", &name, &format!("use {known}")))
+    }
+}
+
+/// A value that cannot be used, and why.
+pub(super) fn unusable(key: &str, value: impl std::fmt::Display, why: &str) -> Error {
+    Error::new(ErrorKind::InvalidInput, format!("--set {key}={value}: {why}"))
+}
+
+/// Makes an emulator with settings.
+pub(super) type Alone = fn(&Settings) -> Result<Box<dyn Emulator>>;
+
+/// All that can be emulated, by name.
+pub const ALONE: &[(&str, Alone)] = &[
+    ("bota-gen0", |settings| super::bota::alone::sensor(Transport::Gen0, settings)),
+    ("bota-gen-a", |settings| super::bota::alone::sensor(Transport::GenA, settings)),
+    ("bota-socket", |settings| super::bota::alone::sensor(Transport::Socket, settings)),
+    ("dynamixel", super::dynamixel::alone::bus),
+    ("force-dimension", super::force_dimension::alone::handle),
+    ("kinova", super::kinova::alone::arm),
+    ("ndi", super::ndi::alone::network),
+    ("ndi-serial", super::ndi::alone::line),
+    #[cfg(target_os = "linux")]
+    ("pedal", super::hid::alone::pedal),
+    #[cfg(target_os = "linux")]
+    ("spacemouse", super::hid::alone::cap),
+    #[cfg(target_os = "linux")]
+    ("spacenavd", super::hid::alone::spacenavd),
+];

@@ -1,0 +1,194 @@
+//! An emulated sensor on its wire: a pseudo-terminal, or commands over TCP and readings as datagrams to a fixed address.
+//!
+//! A client in the network holds the line once a command of its was answered. Until then the next one takes its place, and one that sends
+//! much and asks nothing is cut off: whatever else knocks at the port keeps no client waiting.
+
+use std::io;
+
+use nima_devices::bota::Transport;
+
+use super::{Body, Emulated, Wire, frames::Frames};
+use crate::emulators::{
+    EmulatedFault, Emulator, End, Peer, Turn,
+    wires::{tcp_for_one, terminal, udp},
+};
+
+/// Without a command among so many bytes what a client sends is garbage.
+const GARBAGE_BYTES: usize = 4096;
+
+pub(super) struct Sensor {
+    wire: Box<dyn Wire>,
+    frames: Frames,
+    of: Emulated,
+    /// A command of the client was answered.
+    known: bool,
+    /// Bytes of the client since the last one that was.
+    unanswered: usize,
+}
+
+impl Sensor {
+    pub(super) fn new(wire: Box<dyn Wire>, of: Emulated, body: Body) -> Self {
+        let frames = Frames::new(body, of.first_timestamp_us, of.status);
+        Self { wire, frames, of, known: false, unanswered: 0 }
+    }
+
+    /// Another speed turns bytes into others.
+    fn understands(&self, turn: &Turn<'_>) -> bool {
+        turn.baud.is_none() || self.of.baud.is_none() || turn.baud == self.of.baud
+    }
+
+    /// Sends an answer, which only silence keeps back.
+    fn answer(&mut self, mut answer: Vec<u8>, turn: &mut Turn<'_>) {
+        if answer.is_empty() {
+            return;
+        }
+        (self.known, self.unanswered) = (true, 0);
+        if turn.fault != EmulatedFault::Silence {
+            garble(&mut answer, self.understands(turn));
+            turn.send_unspoilt(Peer::Everyone, &answer);
+        }
+    }
+}
+
+fn garble(bytes: &mut [u8], understood: bool) {
+    if !understood {
+        bytes.iter_mut().for_each(|byte| *byte = byte.rotate_left(3) ^ 0x5A);
+    }
+}
+
+impl Emulator for Sensor {
+    fn wires(&self) -> io::Result<Vec<Box<dyn End>>> {
+        let line = |name| terminal(self.of.link.as_deref(), name, None);
+        Ok(match self.of.transport {
+            Transport::Gen0 => vec![line("bota-gen0")?],
+            Transport::GenA => vec![line("bota-gen-a")?],
+            Transport::Socket => vec![tcp_for_one(self.of.tcp_port), udp(0)],
+        })
+    }
+
+    fn admits(&self) -> bool {
+        !self.known
+    }
+
+    fn meet(&mut self, _: Peer, turn: &mut Turn<'_>) {
+        (self.known, self.unanswered) = (false, 0);
+        self.wire.opened(turn.now_s);
+    }
+
+    fn hear(&mut self, _: Peer, bytes: &[u8], turn: &mut Turn<'_>) {
+        if !self.understands(turn) {
+            return;
+        }
+        let mut answer = Vec::new();
+        self.wire.hear(bytes, turn.now_s, &mut answer);
+        self.unanswered += bytes.len();
+        self.answer(answer, turn);
+        if self.unanswered >= GARBAGE_BYTES {
+            turn.hang_up();
+        }
+    }
+
+    fn pass(&mut self, turn: &mut Turn<'_>) {
+        let mut answer = Vec::new();
+        self.wire.tick(turn.now_s, &mut answer);
+        self.answer(answer, turn);
+        let to = match self.of.transport {
+            Transport::Socket => Peer::Address(self.of.destination.into()),
+            Transport::Gen0 | Transport::GenA => Peer::Everyone,
+        };
+        let understood = self.understands(turn);
+        self.frames.due(turn, &*self.wire, to, |bytes| garble(bytes, understood));
+    }
+
+    fn due_s(&self) -> Option<f64> {
+        self.frames.next_s()
+    }
+
+    fn lose(&mut self, _: Peer) {
+        self.known = false;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::{
+        io::{ErrorKind, Read as _, Write as _},
+        net::TcpStream,
+        time::Duration,
+    };
+
+    use super::*;
+    use crate::emulators::{Serving, bota::slow_motion};
+
+    /// Whoever is served gets its answer within milliseconds; this is for machines that are busy with others.
+    const LONG: Duration = Duration::from_secs(20);
+
+    fn sensor() -> Serving {
+        let emulated = Emulated { transport: Transport::Socket, tcp_port: 0, ..Emulated::default() };
+        emulated.with(slow_motion()).serve().unwrap()
+    }
+
+    fn client(serving: &Serving) -> TcpStream {
+        let stream = TcpStream::connect(&serving.endpoint).unwrap();
+        stream.set_read_timeout(Some(LONG)).unwrap();
+        stream
+    }
+
+    /// Asks for the state, and waits for the answer.
+    fn ask(client: &mut TcpStream) -> std::io::Result<String> {
+        client.write_all(b"rh,1,2,\n")?;
+        let mut buffer = [0; 64];
+        let count = client.read(&mut buffer)?;
+        Ok(String::from_utf8_lossy(&buffer[..count]).into_owned())
+    }
+
+    #[test]
+    fn neither_garbage_nor_silence_keeps_the_next_client_waiting() {
+        let serving = sensor();
+        let mut garbage = client(&serving);
+        garbage.set_nonblocking(true).unwrap();
+        let mut random = fastrand::Rng::with_seed(3);
+        let noise: Vec<u8> = (0..65536).map(|_| random.u8(..)).collect();
+        // As much as the connection takes, and it stays open.
+        let mut sent = 0;
+        let stopped = loop {
+            match garbage.write(&noise) {
+                Ok(count) if sent < 64 << 20 => sent += count,
+                Ok(_) => panic!("the emulator takes in everything"),
+                Err(error) => break error.kind(),
+            }
+        };
+        println!("{sent} bytes of garbage, then {stopped:?}");
+        assert_eq!(ask(&mut client(&serving)).unwrap(), "rh,0,0\n");
+        let silent = client(&serving);
+        assert_eq!(ask(&mut client(&serving)).unwrap(), "rh,0,0\n");
+        drop(silent);
+    }
+
+    #[test]
+    fn a_client_that_was_answered_is_not_pushed_aside() {
+        let serving = sensor();
+        let mut first = client(&serving);
+        assert_eq!(ask(&mut first).unwrap(), "rh,0,0\n");
+        let mut second = client(&serving);
+        second.write_all(b"rh,1,2,\n").unwrap();
+        for _ in 0..20 {
+            assert_eq!(ask(&mut first).unwrap(), "rh,0,0\n");
+        }
+        drop(first);
+        let mut buffer = [0; 64];
+        let count = second.read(&mut buffer).unwrap();
+        assert_eq!(&buffer[..count], b"rh,0,0\n", "it is the next one's turn");
+    }
+
+    #[test]
+    fn a_client_that_takes_no_answers_is_cut_off() {
+        let serving = sensor();
+        let mut deaf = client(&serving);
+        deaf.set_write_timeout(Some(LONG)).unwrap();
+        let questions = b"rh,24,1,\n".repeat(1000);
+        let cut = std::iter::repeat_with(|| deaf.write(&questions)).take(7000).find_map(Result::err);
+        let kind = cut.map(|error| error.kind());
+        assert!(matches!(kind, Some(ErrorKind::ConnectionReset | ErrorKind::BrokenPipe)), "{kind:?}");
+    }
+}

@@ -1,0 +1,30 @@
+//! The emulated bus on a pseudo-terminal.
+
+use std::io;
+
+use super::Bus;
+use crate::emulators::{Emulator, End, Peer, Turn, wires::terminal};
+
+/// A waiting thread wakes so much late, s; an answer is punctual.
+const WAKE_S: f64 = 50e-6;
+
+impl Emulator for Bus {
+    fn wires(&self) -> io::Result<Vec<Box<dyn End>>> {
+        Ok(vec![terminal(self.link.as_deref(), "bus", Some(self.baud()))?])
+    }
+
+    /// Clients whose line speed is not the servos' are not understood.
+    fn hear(&mut self, _: Peer, bytes: &[u8], turn: &mut Turn<'_>) {
+        if turn.baud == Some(self.baud()) {
+            self.receive(turn.now_s, bytes);
+        }
+    }
+
+    fn pass(&mut self, turn: &mut Turn<'_>) {
+        self.send(turn.now_s, turn.fault, &mut |frame| turn.send(Peer::Everyone, frame));
+    }
+
+    fn due_s(&self) -> Option<f64> {
+        self.next_s().map(|due_s| due_s - WAKE_S)
+    }
+}

@@ -1,0 +1,18 @@
+//! `nima emulate kinova`: a Gen3 on free ports, or on those that `tcp_port` and `udp_port` give. `watchdog_ms` sets the time without a
+//! command that is a fault.
+
+use std::io::Result;
+
+use super::{Emulated, StandIn};
+use crate::emulators::{Emulator, Settings};
+
+pub(in crate::emulators) fn arm(settings: &Settings) -> Result<Box<dyn Emulator>> {
+    let usual = Emulated::default();
+    let arm = Emulated {
+        tcp_port: settings.get_or("tcp_port", usual.tcp_port)?,
+        udp_port: settings.get_or("udp_port", usual.udp_port)?,
+        watchdog_ms: settings.get_or("watchdog_ms", usual.watchdog_ms)?,
+        ..usual
+    };
+    Ok(arm.with(StandIn::swaying()))
+}

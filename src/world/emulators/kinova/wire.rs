@@ -1,0 +1,134 @@
+//! The emulated base on its wires: calls over TCP, the cycle over UDP.
+
+use std::io;
+
+use nima_devices::kinova::{
+    frame::{self, Frame, Header, PacketReader, REQUEST, RESPONSE},
+    messages::{ERROR_SERVER, ErrorInfo, Rpc, sub},
+};
+use prost::Message as _;
+
+use super::{Body, Emulated, calls::Base};
+use crate::emulators::{
+    EmulatedFault, Emulator, End, Peer, Turn,
+    wires::{tcp, udp},
+};
+
+pub(super) struct Server {
+    base: Base,
+    /// What has arrived from each connection.
+    packets: Vec<(Peer, PacketReader)>,
+    frozen: Option<Vec<u8>>,
+}
+
+impl Server {
+    pub(super) fn new(arm: Emulated, body: Box<dyn Body>) -> Self {
+        Self { base: Base::new(arm, body), packets: Vec::new(), frozen: None }
+    }
+
+    fn calls(&mut self, from: Peer, mut bytes: &[u8], turn: &mut Turn<'_>) {
+        let Some((_, packets)) = self.packets.iter_mut().find(|(peer, _)| *peer == from) else { return };
+        while !bytes.is_empty() {
+            let room = packets.room();
+            let (now, later) = bytes.split_at(bytes.len().min(room.len()));
+            room[..now.len()].copy_from_slice(now);
+            packets.took(now.len());
+            bytes = later;
+            while let Some(asked) = packets.next_frame() {
+                let (header, payload) = answer(&mut self.base, from, &asked, turn.now_s, turn.fault);
+                send_packed(from, &header, &payload, turn);
+            }
+        }
+    }
+
+    /// The answer on the cyclic connection, spoilt as the fault has it.
+    fn datagram(&mut self, from: Peer, asked: &Frame<'_>, turn: &Turn<'_>) -> Vec<u8> {
+        let (mut header, payload) = answer(&mut self.base, from, asked, turn.now_s, turn.fault);
+        let cyclic = header.service == Rpc::REFRESH.service && header.error == 0;
+        if cyclic && turn.fault == EmulatedFault::WrongFrame {
+            header.kind = 7;
+        }
+        let mut out = Vec::new();
+        frame::encode_written(&header, &payload, &mut out);
+        if !cyclic {
+            return out;
+        }
+        match turn.fault {
+            // There is no checksum; a datagram cut short is the nearest.
+            EmulatedFault::BadChecksum => out.truncate(out.len() - 1),
+            EmulatedFault::Freeze => return self.frozen.get_or_insert(out).clone(),
+            _ => self.frozen = None,
+        }
+        out
+    }
+}
+
+/// Over TCP, where bytes are neither lost nor late.
+fn send_packed(to: Peer, header: &Header, payload: &[u8], turn: &mut Turn<'_>) {
+    if turn.fault != EmulatedFault::Silence {
+        let mut out = Vec::new();
+        frame::packed(&mut out, |out| frame::encode_written(header, payload, out));
+        turn.send_unspoilt(to, &out);
+    }
+}
+
+impl Emulator for Server {
+    fn wires(&self) -> io::Result<Vec<Box<dyn End>>> {
+        Ok(vec![tcp(self.base.arm.tcp_port), udp(self.base.arm.udp_port)])
+    }
+
+    fn endpoint(&self, places: &[String]) -> String {
+        let ports: Vec<&str> = places.iter().filter_map(|place| place.rsplit(':').next()).collect();
+        format!("127.0.0.1 tcp={} udp={}", ports[0], ports[1])
+    }
+
+    fn meet(&mut self, peer: Peer, _: &mut Turn<'_>) {
+        self.packets.push((peer, PacketReader::default()));
+    }
+
+    fn hear(&mut self, from: Peer, bytes: &[u8], turn: &mut Turn<'_>) {
+        self.base.advance(turn.now_s, turn.fault);
+        if !matches!(from, Peer::Address(_)) {
+            self.calls(from, bytes, turn);
+        } else if let Ok(asked) = Frame::decode(bytes) {
+            let out = self.datagram(from, &asked, turn);
+            turn.send(from, &out);
+        }
+    }
+
+    fn pass(&mut self, turn: &mut Turn<'_>) {
+        self.base.advance(turn.now_s, turn.fault);
+        // What calls have begun is told behind their answers.
+        for notice in self.base.notices() {
+            send_packed(notice.link, &notice.header, &notice.payload, turn);
+        }
+    }
+
+    fn lose(&mut self, peer: Peer) {
+        let gone = |link| peer == Peer::Everyone || peer == link;
+        self.packets.retain(|(link, _)| !gone(*link));
+        self.base.forget(gone);
+    }
+}
+
+/// Header and payload of the answer to a frame.
+fn answer(base: &mut Base, link: Peer, asked: &Frame<'_>, now_s: f64, fault: EmulatedFault) -> (Header, Vec<u8>) {
+    let answered = if asked.header.kind == REQUEST {
+        base.answer(link, asked, now_s, fault)
+    } else {
+        Err((ERROR_SERVER, sub::UNSUPPORTED_FRAME))
+    };
+    let mut header = Header { kind: RESPONSE, ..asked.header };
+    match answered {
+        Ok((session, payload)) => {
+            header.session = session;
+            (header, payload)
+        }
+        Err((error, code)) => {
+            (header.error, header.sub_error) = (error, code);
+            let text = sub::words(code).to_owned();
+            let told = ErrorInfo { code: u32::from(error), sub_code: u32::from(code), text };
+            (header, told.encode_to_vec())
+        }
+    }
+}

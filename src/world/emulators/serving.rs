@@ -1,0 +1,179 @@
+//! The body of every emulator: a thread that opens the wires, hears clients, lets time pass, obeys faults, and ends when it is told to.
+
+use std::{
+    io,
+    sync::{
+        Arc,
+        atomic::{AtomicBool, Ordering},
+    },
+    thread::{Builder, JoinHandle},
+    time::{Duration, Instant},
+};
+
+use super::{
+    EmulatedFault, Emulator, FaultSwitch,
+    faults::FaultyLine,
+    wires::{ARRIVALS, Arrival, End, Peer, wait},
+};
+
+/// Time passes for an emulator at least so often.
+const TICK: Duration = Duration::from_millis(1);
+/// What is taken from a wire at once: the longest datagram.
+const BUFFER_BYTES: usize = 65_507;
+
+/// A thread that serves an emulated device. Dropping it stops the thread.
+#[derive(Debug)]
+pub struct Serving {
+    /// Where clients find it: a port, an address, a path.
+    pub endpoint: String,
+    /// Its faults.
+    pub faults: FaultSwitch,
+    stop: Arc<AtomicBool>,
+    thread: Option<JoinHandle<()>>,
+}
+
+impl Serving {
+    /// It still serves.
+    pub fn is_serving(&self) -> bool {
+        self.thread.as_ref().is_some_and(|thread| !thread.is_finished())
+    }
+}
+
+impl Drop for Serving {
+    fn drop(&mut self) {
+        self.stop.store(true, Ordering::Release);
+        if let Some(thread) = self.thread.take() {
+            thread.join().ok();
+        }
+    }
+}
+
+impl dyn Emulator {
+    /// Opens its wires and serves them on a thread of its own, until the result is dropped.
+    ///
+    /// # Errors
+    /// When a place is taken, is not an emulator's, or cannot be opened.
+    pub fn serve(self: Box<Self>) -> io::Result<Serving> {
+        let mut ends = self.wires()?;
+        ends.iter_mut().try_for_each(|end| end.open())?;
+        let endpoint = self.endpoint(&ends.iter().map(|end| end.endpoint()).collect::<Vec<_>>());
+        let (faults, stop) = (FaultSwitch::default(), Arc::new(AtomicBool::new(false)));
+        let (switch, flag) = (faults.clone(), Arc::clone(&stop));
+        let thread =
+            Builder::new().name("emulator".to_owned()).spawn(move || Host::new(self, ends, switch).run(&flag))?;
+        Ok(Serving { endpoint, faults, stop, thread: Some(thread) })
+    }
+}
+
+/// What an emulator is told in a call, and its way out.
+pub struct Turn<'a> {
+    /// Since it began to serve, s.
+    pub now_s: f64,
+    /// The fault in force.
+    pub fault: EmulatedFault,
+    /// The speed that the client of a serial line has set, bit/s.
+    pub baud: Option<u32>,
+    line: &'a mut FaultyLine,
+    ends: &'a mut [Box<dyn End>],
+}
+
+impl Turn<'_> {
+    /// Sends a frame, as far as the fault in force lets it.
+    pub fn send(&mut self, to: Peer, frame: &[u8]) {
+        let ends = &mut *self.ends;
+        self.line.pass(self.now_s, to, frame, self.fault, &mut |to, bytes| send(ends, to, bytes));
+    }
+
+    /// Sends what no fault of the line concerns.
+    pub fn send_unspoilt(&mut self, to: Peer, bytes: &[u8]) {
+        send(self.ends, to, bytes);
+    }
+
+    /// Ends all connections.
+    pub fn hang_up(&mut self) {
+        self.ends.iter_mut().for_each(|end| end.hang_up());
+    }
+}
+
+fn send(ends: &mut [Box<dyn End>], to: Peer, bytes: &[u8]) {
+    ends.iter_mut().for_each(|end| end.send(to, bytes));
+}
+
+struct Host {
+    emulator: Box<dyn Emulator>,
+    ends: Vec<Box<dyn End>>,
+    line: FaultyLine,
+    faults: FaultSwitch,
+    begin: Instant,
+    buffer: Vec<u8>,
+}
+
+impl Host {
+    fn new(emulator: Box<dyn Emulator>, ends: Vec<Box<dyn End>>, faults: FaultSwitch) -> Self {
+        Self {
+            emulator,
+            ends,
+            line: FaultyLine::default(),
+            faults,
+            begin: Instant::now(),
+            buffer: vec![0; BUFFER_BYTES],
+        }
+    }
+
+    fn run(mut self, stop: &AtomicBool) {
+        self.emulator.begin();
+        while !stop.load(Ordering::Acquire) {
+            if self.faults.get() != EmulatedFault::Disconnect {
+                // What cannot be opened now is tried again in the next turn.
+                self.ends.iter_mut().for_each(|end| drop(end.open()));
+            } else if self.cut() {
+                self.line.cut();
+                self.emulator.lose(Peer::Everyone);
+            }
+            for number in 0..self.ends.len() {
+                self.hear(number);
+            }
+            self.turn(|emulator, turn, _| {
+                turn.line.let_late_ones_go(turn.now_s, &mut |to, bytes| send(turn.ends, to, bytes));
+                emulator.pass(turn);
+            });
+            let rest_s =
+                self.emulator.due_s().map_or(f64::INFINITY, |due_s| due_s - self.begin.elapsed().as_secs_f64());
+            let rest = Duration::from_secs_f64(rest_s.clamp(0.0, TICK.as_secs_f64()));
+            wait(&self.ends, rest, self.emulator.admits());
+        }
+        self.cut();
+    }
+
+    /// True if anything was open.
+    fn cut(&mut self) -> bool {
+        self.ends.iter_mut().fold(false, |any, end| end.cut() | any)
+    }
+
+    /// Hands on what has arrived at an end.
+    fn hear(&mut self, number: usize) {
+        for _ in 0..ARRIVALS {
+            let admits = self.emulator.admits();
+            let Some(arrival) = self.ends[number].next(&mut self.buffer, admits) else { return };
+            self.turn(|emulator, turn, buffer| match arrival {
+                Arrival::Came(peer, count) => {
+                    emulator.meet(peer, turn);
+                    emulator.hear(peer, &buffer[..count], turn);
+                }
+                Arrival::Heard(peer, count) => emulator.hear(peer, &buffer[..count], turn),
+                Arrival::Gone(peer) => emulator.lose(peer),
+            });
+        }
+    }
+
+    fn turn(&mut self, work: impl FnOnce(&mut dyn Emulator, &mut Turn<'_>, &[u8])) {
+        let mut turn = Turn {
+            now_s: self.begin.elapsed().as_secs_f64(),
+            fault: self.faults.get(),
+            baud: self.ends.iter().find_map(|end| end.baud()),
+            line: &mut self.line,
+            ends: &mut self.ends,
+        };
+        work(&mut *self.emulator, &mut turn, &self.buffer);
+    }
+}

@@ -1,0 +1,83 @@
+//! Our ends of the wires on which clients reach an emulator: pseudo-terminals, connections, datagrams.
+
+mod connections;
+mod datagrams;
+#[cfg(target_os = "linux")]
+mod paths;
+mod terminal;
+
+use std::{io, net::SocketAddr, os::fd::RawFd, time::Duration};
+
+pub(super) use connections::{tcp, tcp_for_one};
+pub(super) use datagrams::udp;
+#[cfg(target_os = "linux")]
+pub(super) use paths::socket;
+pub(super) use terminal::terminal;
+
+/// Who is at the other end.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Peer {
+    /// Whoever has the terminal open; all that are connected.
+    Everyone,
+    /// One connection, by its number.
+    Connection(u64),
+    /// Who sent a datagram from there.
+    Address(SocketAddr),
+}
+
+/// What happened at an end; the bytes, so many, are in the buffer.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Arrival {
+    /// Somebody new, and the first bytes.
+    Came(Peer, usize),
+    /// Bytes.
+    Heard(Peer, usize),
+    /// Somebody is there no longer.
+    Gone(Peer),
+}
+
+/// One end of a wire, at a place that is its own for as long as it lives. It never waits.
+pub trait End: Send {
+    /// Where clients find it; known once it was open.
+    fn endpoint(&self) -> String;
+    /// Opens it, if it is not.
+    fn open(&mut self) -> io::Result<()>;
+    /// Closes it, as when the cable is pulled; true if it was open.
+    fn cut(&mut self) -> bool;
+    /// What has arrived and was not told yet. New clients are taken only where the emulator `admits` them.
+    fn next(&mut self, buffer: &mut [u8], admits: bool) -> Option<Arrival>;
+    /// Sends to those who are meant and here.
+    fn send(&mut self, to: Peer, bytes: &[u8]);
+    /// Ends all connections.
+    fn hang_up(&mut self) {}
+    /// The speed that the client of a serial line has set, bit/s.
+    fn baud(&self) -> Option<u32> {
+        None
+    }
+    /// Adds what is readable when something arrives.
+    fn watch(&self, admits: bool, watched: &mut Vec<RawFd>);
+}
+
+/// Taken from one end in one turn at most, so that the others, the time and the faults are never far away.
+pub(super) const ARRIVALS: usize = 64;
+
+/// Waits until something arrives at one of the ends, at most this long.
+#[expect(unsafe_code, reason = "std waits for one descriptor only")]
+pub(super) fn wait(ends: &[Box<dyn End>], longest: Duration, admits: bool) {
+    let mut watched = Vec::new();
+    ends.iter().for_each(|end| end.watch(admits, &mut watched));
+    let of = |fd| libc::pollfd { fd, events: libc::POLLIN, revents: 0 };
+    let mut watched: Vec<libc::pollfd> = watched.into_iter().map(of).collect();
+    let (first, count) = (watched.as_mut_ptr(), watched.len() as libc::nfds_t);
+    // SAFETY: the pointers are valid for the call, and the count is that of the vector.
+    #[cfg(target_os = "linux")]
+    unsafe {
+        let longest = libc::timespec { tv_sec: 0, tv_nsec: longest.subsec_nanos().into() };
+        libc::ppoll(first, count, &raw const longest, std::ptr::null());
+    }
+    // SAFETY: as above. Elsewhere there are whole milliseconds only.
+    #[cfg(not(target_os = "linux"))]
+    unsafe {
+        libc::poll(first, count, longest.as_millis() as libc::c_int);
+    }
+}

@@ -1,0 +1,142 @@
+//! Connections, wherever they come from; TCP on this computer's network.
+
+use std::{
+    io::{self, ErrorKind, Read, Write},
+    net::{Ipv4Addr, SocketAddr, TcpListener, TcpStream},
+    os::fd::{AsRawFd, RawFd},
+};
+
+use super::{Arrival, End, Peer};
+use crate::emulators::places::taken;
+
+/// A TCP port of this computer; 0 takes a free one. A client that does not take what it is sent is cut off.
+pub(in crate::emulators) fn tcp(port: u16) -> Box<dyn End> {
+    Box::new(Connections::new(Port((Ipv4Addr::LOCALHOST, port).into()), false))
+}
+
+/// The same for one client at a time: the next one takes its place.
+pub(in crate::emulators) fn tcp_for_one(port: u16) -> Box<dyn End> {
+    Box::new(Connections::new(Port((Ipv4Addr::LOCALHOST, port).into()), true))
+}
+
+/// Where connections come from.
+pub(super) trait Place: Send {
+    type Listener: Send + AsRawFd;
+    type Stream: Send + AsRawFd + Read + Write;
+    /// What a client does not take is lost; else the client is.
+    const LOSES: bool;
+
+    fn endpoint(&self) -> String;
+    fn listen(&mut self) -> io::Result<Self::Listener>;
+    fn accept(listener: &Self::Listener) -> io::Result<Self::Stream>;
+    /// Nobody listens there any more.
+    fn leave(&self) {}
+}
+
+pub(super) struct Connections<P: Place> {
+    place: P,
+    for_one: bool,
+    listener: Option<P::Listener>,
+    connections: Vec<Connection<P::Stream>>,
+    accepted: u64,
+    /// Which connection is asked next.
+    next: usize,
+}
+
+struct Connection<S> {
+    peer: Peer,
+    stream: S,
+    alive: bool,
+}
+
+impl<P: Place> Connections<P> {
+    pub(super) const fn new(place: P, for_one: bool) -> Self {
+        Self { place, for_one, listener: None, connections: Vec::new(), accepted: 0, next: 0 }
+    }
+}
+
+impl<P: Place> End for Connections<P> {
+    fn endpoint(&self) -> String {
+        self.place.endpoint()
+    }
+
+    fn open(&mut self) -> io::Result<()> {
+        if self.listener.is_none() {
+            self.listener = Some(self.place.listen()?);
+        }
+        Ok(())
+    }
+
+    fn cut(&mut self) -> bool {
+        self.connections.clear();
+        self.listener.take().map(|_| self.place.leave()).is_some()
+    }
+
+    fn next(&mut self, buffer: &mut [u8], admits: bool) -> Option<Arrival> {
+        if admits && let Ok(stream) = P::accept(self.listener.as_ref()?) {
+            if self.for_one {
+                self.connections.clear();
+            }
+            self.accepted += 1;
+            let peer = Peer::Connection(self.accepted);
+            self.connections.push(Connection { peer, stream, alive: true });
+            return Some(Arrival::Came(peer, 0));
+        }
+        // Each in its turn: one that sends much keeps no other waiting.
+        for _ in 0..self.connections.len() {
+            let at = self.next % self.connections.len();
+            self.next = at + 1;
+            let Connection { peer, stream, alive } = &mut self.connections[at];
+            match stream.read(buffer) {
+                Ok(count) if *alive && count > 0 => return Some(Arrival::Heard(*peer, count)),
+                Err(error) if *alive && matches!(error.kind(), ErrorKind::WouldBlock | ErrorKind::Interrupted) => {}
+                _ => return Some(Arrival::Gone(self.connections.remove(at).peer)),
+            }
+        }
+        None
+    }
+
+    fn send(&mut self, to: Peer, bytes: &[u8]) {
+        for Connection { peer, stream, alive } in &mut self.connections {
+            if to == Peer::Everyone || to == *peer {
+                let whole = stream.write(bytes).is_ok_and(|count| count == bytes.len());
+                *alive &= whole || P::LOSES;
+            }
+        }
+    }
+
+    fn hang_up(&mut self) {
+        self.connections.iter_mut().for_each(|connection| connection.alive = false);
+    }
+
+    fn watch(&self, admits: bool, watched: &mut Vec<RawFd>) {
+        watched.extend(self.listener.iter().filter(|_| admits).map(P::Listener::as_raw_fd));
+        watched.extend(self.connections.iter().map(|connection| connection.stream.as_raw_fd()));
+    }
+}
+
+struct Port(SocketAddr);
+
+impl Place for Port {
+    type Listener = TcpListener;
+    type Stream = TcpStream;
+    const LOSES: bool = false;
+
+    fn endpoint(&self) -> String {
+        self.0.to_string()
+    }
+
+    fn listen(&mut self) -> io::Result<TcpListener> {
+        let listener = taken(self.0.port(), "TCP", TcpListener::bind(self.0))?;
+        listener.set_nonblocking(true)?;
+        self.0 = listener.local_addr()?;
+        Ok(listener)
+    }
+
+    fn accept(listener: &TcpListener) -> io::Result<TcpStream> {
+        let (stream, _) = listener.accept()?;
+        stream.set_nodelay(true)?;
+        stream.set_nonblocking(true)?;
+        Ok(stream)
+    }
+}

@@ -1,0 +1,54 @@
+//! Connections at a path of this computer.
+
+use std::{
+    fs, io,
+    os::unix::net::{UnixListener, UnixStream},
+    path::{Path, PathBuf},
+};
+
+use super::{
+    End,
+    connections::{Connections, Place},
+};
+use crate::emulators::places::socket_path;
+
+type Listen = fn(&Path) -> io::Result<UnixListener>;
+
+/// A socket at `path`, made by `listen`; without a path, at `name` in a folder of its own. What a client does not read is lost.
+pub(in crate::emulators) fn socket(path: Option<&Path>, name: &str, listen: Listen) -> io::Result<Box<dyn End>> {
+    let (path, _folder) = socket_path(path, name)?;
+    Ok(Box::new(Connections::new(SocketPath { path, _folder, listen }, false)))
+}
+
+struct SocketPath {
+    path: PathBuf,
+    /// The folder of its own, where no place was asked for.
+    _folder: Option<tempfile::TempDir>,
+    listen: Listen,
+}
+
+impl Place for SocketPath {
+    type Listener = UnixListener;
+    type Stream = UnixStream;
+    const LOSES: bool = true;
+
+    fn endpoint(&self) -> String {
+        self.path.display().to_string()
+    }
+
+    fn listen(&mut self) -> io::Result<UnixListener> {
+        let listener = (self.listen)(&self.path)?;
+        listener.set_nonblocking(true)?;
+        Ok(listener)
+    }
+
+    fn accept(listener: &UnixListener) -> io::Result<UnixStream> {
+        let (stream, _) = listener.accept()?;
+        stream.set_nonblocking(true)?;
+        Ok(stream)
+    }
+
+    fn leave(&self) {
+        fs::remove_file(&self.path).ok();
+    }
+}

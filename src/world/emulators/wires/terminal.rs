@@ -1,0 +1,126 @@
+//! A pseudo-terminal behind a name that stays when the line is cut and comes back.
+
+use std::{
+    fs::File,
+    io::{self, ErrorKind, Read as _, Write as _},
+    os::fd::{AsRawFd as _, RawFd},
+    path::Path,
+    time::{Duration, Instant},
+};
+
+use nima_devices::os;
+use serialport::{SerialPort as _, TTYPort};
+
+use super::{Arrival, End, Peer};
+use crate::emulators::places::TerminalName;
+
+/// Between two looks at what clients left set on a line.
+const TIDY: Duration = Duration::from_millis(250);
+
+/// A terminal at `link`; without one, at `name` in a folder of its own. With a speed (bit/s) the line is set to it and outlives its
+/// clients; without one every client that opens it is told of.
+pub(in crate::emulators) fn terminal(link: Option<&Path>, name: &str, baud: Option<u32>) -> io::Result<Box<dyn End>> {
+    Ok(Box::new(Terminal { name: TerminalName::claim(link, name)?, baud, line: None }))
+}
+
+struct Terminal {
+    name: TerminalName,
+    baud: Option<u32>,
+    line: Option<Line>,
+}
+
+struct Line {
+    near: TTYPort,
+    bytes: File,
+    far: Option<Far>,
+    /// A client has the line open, or we hold it open for all.
+    present: bool,
+}
+
+/// The clients' end, held open.
+struct Far {
+    port: TTYPort,
+    lock: File,
+    tidied: Instant,
+}
+
+impl Far {
+    /// A client that took the terminal for itself alone and is gone leaves it so. Freeing it takes a shared lock, which would keep the
+    /// next client out.
+    fn tidy(&mut self) {
+        if self.tidied.elapsed() > TIDY {
+            self.port.set_exclusive(false).ok();
+            self.lock.unlock().ok();
+            self.tidied = Instant::now();
+        }
+    }
+}
+
+impl Terminal {
+    fn line(&self) -> io::Result<Line> {
+        let (near, mut port) = TTYPort::pair()?;
+        let bytes = os::bytes_of(&near)?;
+        if let Some(baud) = self.baud {
+            port.set_baud_rate(baud)?;
+        }
+        self.name.lead_to(&port)?;
+        if self.baud.is_none() {
+            return Ok(Line { near, bytes, far: None, present: false });
+        }
+        let lock = os::bytes_of(&port)?;
+        Ok(Line { near, bytes, far: Some(Far { port, lock, tidied: Instant::now() }), present: true })
+    }
+}
+
+impl End for Terminal {
+    fn endpoint(&self) -> String {
+        self.name.path()
+    }
+
+    fn open(&mut self) -> io::Result<()> {
+        if self.line.is_none() {
+            self.line = Some(self.line()?);
+        }
+        Ok(())
+    }
+
+    fn cut(&mut self) -> bool {
+        self.name.cut();
+        self.line.take().is_some()
+    }
+
+    fn next(&mut self, buffer: &mut [u8], _: bool) -> Option<Arrival> {
+        let line = self.line.as_mut()?;
+        if let Some(far) = &mut line.far {
+            far.tidy();
+        }
+        let read = match line.bytes.read(buffer) {
+            Ok(count) => Some(count),
+            Err(error) if matches!(error.kind(), ErrorKind::WouldBlock | ErrorKind::Interrupted) => Some(0),
+            // Nobody has the other end open.
+            Err(_) => None,
+        };
+        let before = std::mem::replace(&mut line.present, read.is_some());
+        match read {
+            Some(count) if !before => Some(Arrival::Came(Peer::Everyone, count)),
+            Some(count) if count > 0 => Some(Arrival::Heard(Peer::Everyone, count)),
+            None if before => Some(Arrival::Gone(Peer::Everyone)),
+            _ => None,
+        }
+    }
+
+    fn send(&mut self, to: Peer, bytes: &[u8]) {
+        if let Some(line) = self.line.as_mut().filter(|line| line.present && to == Peer::Everyone) {
+            // What does not fit is lost, as on a real line that nobody reads.
+            line.bytes.write(bytes).ok();
+        }
+    }
+
+    fn baud(&self) -> Option<u32> {
+        self.line.as_ref()?.near.baud_rate().ok()
+    }
+
+    fn watch(&self, _: bool, watched: &mut Vec<RawFd>) {
+        watched.extend(self.line.iter().filter(|line| line.present).map(|line| line.bytes.as_raw_fd()));
+    }
+}

@@ -1,4 +1,4 @@
-//! Rig files (TOML), and how files of settings are read. An unknown key is an error.
+//! Rig files (TOML), and the reading of settings files in general. An unknown key is an error.
 
 mod mounted;
 
@@ -20,7 +20,7 @@ pub use mounted::SimulatedWrists;
 
 use crate::rig;
 
-/// A file that could not be used: what, where, what to do.
+/// Why a settings file cannot be used; the message says what, where, and what to do.
 #[derive(Debug, thiserror::Error)]
 #[expect(missing_docs, reason = "the messages say it")]
 pub enum ConfigError {
@@ -50,7 +50,7 @@ pub enum ConfigError {
         /// Line, column and key.
         message: String,
     },
-    /// A device of the rig has a setting that it cannot have.
+    /// A setting of a device is invalid.
     #[error("rig \"{name}\"")]
     Device { name: String, source: Trouble },
     /// A value is outside its range.
@@ -65,7 +65,7 @@ pub enum ConfigError {
     },
 }
 
-/// What the loop runs on and how.
+/// The settings of a rig: its loop, and its devices if it has any.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct RigConfig {
@@ -77,50 +77,50 @@ pub struct RigConfig {
     pub mode: Mode,
     /// One-way delay from follower to leader, s.
     pub delay_s: f64,
-    /// Fastest command to the follower, m/s.
+    /// Speed limit of commands to the follower, m/s.
     pub follower_speed_max_m_s: f64,
     /// Identification window and scales.
     #[serde(default)]
     pub identification: Identification,
-    /// Gates between model and hand.
+    /// Settings of the gates between the model and the hand.
     #[serde(default)]
     pub gates: ChainSettings,
-    /// The network against the trocar's friction.
+    /// Settings of the network that removes the trocar's friction.
     #[serde(default)]
     pub tip_force: TipForcePart,
-    /// What to ask of the operating system for the loop's thread; what it refuses is told.
+    /// Scheduling to request for the loop's thread; if refused, this is reported.
     #[serde(default)]
     pub scheduling: SchedulingClass,
-    /// From the hand's motion to the tip's.
+    /// Mapping from the hand's motion to the tip's.
     #[serde(default)]
     pub teleoperation: Teleoperation,
-    /// A cap and pedals before a simulated rig.
+    /// A six-axis cap and pedals that lead a simulated rig.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub desk: Option<rig::DeskSettings>,
-    /// What hangs on the simulated arms, where there are no devices.
+    /// Sensors and tools on the simulated arms of a rig without devices.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub simulated: Option<SimulatedWrists>,
-    /// The devices; without them everything is simulated.
+    /// The devices; if absent, everything is simulated.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub devices: Option<rig::Settings>,
 }
 
-/// How the operating system shall treat the loop's thread (Linux).
+/// Scheduling of the loop's thread (Linux).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum SchedulingClass {
-    /// As any other thread.
+    /// Scheduled like any other thread.
     Ordinary,
     /// `SCHED_FIFO` and locked memory.
     #[default]
     Fifo,
-    /// `SCHED_DEADLINE` and locked memory: before the share that newer kernels keep for ordinary threads; a runaway loop is
-    /// held back by the kernel. Needs root.
+    /// `SCHED_DEADLINE` and locked memory. Takes precedence over the share of processor time that newer kernels reserve
+    /// for ordinary threads; a runaway loop is suspended by the kernel. Needs root.
     Deadline,
 }
 
 impl SchedulingClass {
-    /// All, most modest first.
+    /// All classes, in rising order of privilege.
     pub const ALL: [Self; 3] = [Self::Ordinary, Self::Fifo, Self::Deadline];
 
     /// Its name in files and on the command line.
@@ -142,15 +142,16 @@ impl std::str::FromStr for SchedulingClass {
     }
 }
 
-/// From the hand's motion to the tip's: `world_from_view * view_from_leader`, and the scale.
+/// Mapping from the hand's motion to the tip's: `world_from_view * view_from_leader`, and the scale.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Teleoperation {
-    /// The tip's way per way of the hand.
+    /// Distance of the tip per distance of the hand.
     pub scale: f64,
-    /// How the endoscope looks: roll, pitch, yaw of `world_from_view`, degrees (picture: x right, y down, z into it).
+    /// Orientation of the endoscope: roll, pitch, yaw of `world_from_view`, degrees (picture: x right, y down, z into
+    /// it).
     pub world_from_view_deg: Vector3<f64>,
-    /// How the leader stands before the picture.
+    /// Orientation of the leader relative to the picture.
     pub leader: LeaderMount,
 }
 
@@ -160,24 +161,24 @@ impl Default for Teleoperation {
     }
 }
 
-/// How a leader stands before the picture.
+/// Orientation of a leader relative to the picture.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum LeaderMount {
-    /// Its axes are those of the picture.
+    /// The leader's axes are those of the picture.
     #[default]
     Workspace,
-    /// An Omega whose base faces the user below the screen.
+    /// An Omega below the screen, with its base towards the user.
     Omega,
 }
 
 impl Teleoperation {
-    /// The mapping; the default one where the numbers are none ([`RigConfig::validate`] refuses them).
+    /// The mapping; the default one if the numbers are not finite (which [`RigConfig::validate`] refuses).
     pub fn mapping(&self) -> Mapping {
         self.seen(&from_roll_pitch_yaw_deg(&self.world_from_view_deg), self.scale)
     }
 
-    /// The mapping by an endoscope that looks so; the default one where the numbers are none.
+    /// The mapping for an endoscope of this orientation; the default one if the numbers are not finite.
     pub fn seen(&self, world_from_view: &UnitQuaternion<f64>, scale: f64) -> Mapping {
         let view_from_leader = match self.leader {
             LeaderMount::Workspace => UnitQuaternion::identity(),
@@ -191,7 +192,7 @@ impl Teleoperation {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct TipForcePart {
-    /// What is felt while the network is in doubt.
+    /// Force to render while the network is uncertain.
     pub fallback: Fallback,
 }
 
@@ -203,9 +204,9 @@ pub struct Identification {
     pub window_s: f64,
     /// Highest degree identified, 1 to 5.
     pub max_degree: usize,
-    /// Learn the full `M` with cross-talk between the axes too; costs as much again.
+    /// Learn the full matrix `M` with cross-talk between the axes; this doubles the cost.
     pub cross_talk: bool,
-    /// Fixed physical scales of the columns, from the rig's workspace.
+    /// Fixed physical scales of the regressor's columns, from the rig's workspace.
     pub scales: Scales,
 }
 
@@ -221,10 +222,10 @@ const RIGS: [(&str, &str); 4] = [
     ("emulated", include_str!("../../config/rigs/emulated.toml")),
     ("paper", include_str!("../../config/rigs/paper.toml")),
 ];
-/// The text of a file or an embedded name, and where it came from.
+/// Text of a file or of an embedded one of this name, and its path.
 ///
 /// # Errors
-/// [`ConfigError::Unknown`], [`ConfigError::Read`].
+/// [`ConfigError::Unknown`] if there is no such name or file; [`ConfigError::Read`] if the file cannot be read.
 pub fn text(kind: &'static str, name: &str, embedded: &[(&str, &str)]) -> Result<(PathBuf, String), ConfigError> {
     if let Some((known, text)) = embedded.iter().find(|(known, _)| *known == name) {
         return Ok((PathBuf::from(known), (*text).to_owned()));
@@ -243,7 +244,7 @@ pub fn text(kind: &'static str, name: &str, embedded: &[(&str, &str)]) -> Result
 /// Reads one file of settings.
 ///
 /// # Errors
-/// [`ConfigError::Parse`] with its line.
+/// [`ConfigError::Parse`] with the line of the error.
 pub fn parse<T: for<'de> Deserialize<'de>>(kind: &'static str, path: &Path, text: &str) -> Result<T, ConfigError> {
     let refused = |message: String| ConfigError::Parse { kind, path: path.to_owned(), message };
     let wrong = |error: toml::de::Error| {
@@ -258,7 +259,7 @@ pub fn parse<T: for<'de> Deserialize<'de>>(kind: &'static str, path: &Path, text
     }
 }
 
-/// Collects range checks so that each reads as one line.
+/// Range checks with a message of one line each.
 pub struct Ranges<'a> {
     /// `rig` or `scene`.
     pub kind: &'static str,
@@ -267,7 +268,10 @@ pub struct Ranges<'a> {
 }
 
 impl Ranges<'_> {
-    /// Refuses a value that is not good, by its key.
+    /// Refuses the value of `key` unless `good`.
+    ///
+    /// # Errors
+    /// [`ConfigError::Range`].
     pub fn check(&self, key: &'static str, value: f64, good: bool, range: &'static str) -> Result<(), ConfigError> {
         if good && value.is_finite() {
             return Ok(());
@@ -275,27 +279,36 @@ impl Ranges<'_> {
         Err(ConfigError::Range { kind: self.kind, name: self.name.to_owned(), key, value, range })
     }
 
-    /// Every entry on its own: a sum would hide infinities that cancel.
+    /// Refuses a vector that is not finite. Each entry is checked on its own, because infinities can cancel in a sum.
+    ///
+    /// # Errors
+    /// [`ConfigError::Range`].
     pub fn finite(&self, key: &'static str, vector: &Vector3<f64>) -> Result<(), ConfigError> {
         vector.iter().try_for_each(|entry| self.check(key, *entry, true, "finite numbers"))
     }
 
-    /// A number above 0.
+    /// Refuses a value that is not above 0.
+    ///
+    /// # Errors
+    /// [`ConfigError::Range`].
     pub fn positive(&self, key: &'static str, value: f64) -> Result<(), ConfigError> {
         self.check(key, value, value > 0.0, "a number above 0")
     }
 
-    /// 0 or above.
+    /// Refuses a value below 0.
+    ///
+    /// # Errors
+    /// [`ConfigError::Range`].
     pub fn not_negative(&self, key: &'static str, value: f64) -> Result<(), ConfigError> {
         self.check(key, value, value >= 0.0, "0 or above")
     }
 }
 
 impl RigConfig {
-    /// The rig of this embedded name or TOML file.
+    /// Loads the embedded rig of this name, or a TOML file.
     ///
     /// # Errors
-    /// A name that is neither embedded nor a file, a file that cannot be read or has another form, or a value outside of its range.
+    /// A name that is neither embedded nor a file, a file that cannot be read or parsed, or a value outside its range.
     pub fn load(name: &str) -> Result<Self, ConfigError> {
         let (path, text) = text("rig", name, &RIGS)?;
         let mut rig: Self = parse("rig", &path, &text)?;
@@ -321,7 +334,7 @@ impl RigConfig {
     /// Checks every value's range.
     ///
     /// # Errors
-    /// The first value that is outside of its range, by its key.
+    /// [`ConfigError`] for the first value outside its range, with its key.
     pub fn validate(&self) -> Result<(), ConfigError> {
         let ranges = Ranges { kind: "rig", name: &self.name };
         ranges.check("rate_hz", self.rate_hz, (20.0..=10_000.0).contains(&self.rate_hz), "20 to 10000 Hz")?;

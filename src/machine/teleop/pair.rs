@@ -20,37 +20,39 @@ use crate::{
     rig::{DeviceEvent, GUIDE_MAX_M, Inputs, Outputs, Prompt, Sensed, Side, Switches, View},
 };
 
-/// Rig silent for longer than this, s: fault.
+/// No sample from the rig for longer than this, s, is a fault.
 const SILENT_AFTER_S: f64 = 0.020;
-/// Nothing newer over the link for longer than this, beyond its delay, s: fault. The force is gone long before.
+/// No new parcel from the link for longer than this beyond its delay, s, is a fault. The age gate has removed the force
+/// long before.
 const LINK_SILENT_AFTER_S: f64 = 0.1;
-/// Missed periods in a row that make a fault while drives are on, as time, s.
+/// Consecutive missed periods that make a fault while drives are on, as time, s.
 const STALLED_AFTER_S: f64 = 0.050;
-/// Most events told in one tick; more in one tick is not possible.
+/// Most events of one tick; no more are possible.
 pub const EVENTS_PER_TICK_MAX: usize = 6;
-/// From the gripper's hinge to the finger, m (omega.7).
+/// Distance from the gripper's hinge to the finger, m (omega.7).
 const GRIPPER_ARM_M: f64 = 0.048;
-/// After each engagement the force rises to its full size within this time, s.
+/// Duration of the force ramp after each engagement, s.
 const RAMP_S: f64 = 0.2;
-/// A tip that moved more than this within a tick does not rest: nothing is engaged then, m.
+/// A tip that moved more than this within a tick is not at rest, and the pair is not engaged, m.
 const AT_REST_M: f64 = 0.2e-3;
 
-/// When a tick ran: handed in, never asked for.
+/// Times measured by the caller: the pair never reads a clock.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Timing {
     /// Loop time of this tick, s.
     pub now_s: f64,
     /// How late the tick woke after its deadline, s.
     pub wake_s: f64,
-    /// How long the tick before worked, s.
+    /// Duration of the work of the previous tick, s.
     pub work_s: f64,
-    /// From the arrival of the oldest measurement of the tick before to when its force was given to the device, s; `None`: no measurement.
+    /// Time from the arrival of the oldest measurement of the previous tick until its force was given to the device, s;
+    /// `None` without a measurement.
     pub sample_to_force_s: Option<f64>,
     /// Periods missed just before this tick.
     pub missed_now: u64,
 }
 
-/// The pair's whole memory.
+/// The state of an arm pair.
 #[derive(Clone, Debug)]
 pub struct Pair<L: Link = ProgrammedLink> {
     side: Side,
@@ -61,7 +63,7 @@ pub struct Pair<L: Link = ProgrammedLink> {
     mode: Mode,
     delay_s: f64,
     rate_hz: f64,
-    /// Of the identification: the one conversion of a delay to ticks is there.
+    /// Settings of the identification; the conversion of a delay to ticks is defined there only.
     settings: IdentifierSettings,
     follower_step_max_m: f64,
     identifier: Identifier,
@@ -74,13 +76,13 @@ pub struct Pair<L: Link = ProgrammedLink> {
     tracking: Tracking,
     plausibility: Plausibility,
     chain: Chain,
-    /// The gates found that nobody holds the handle: as good as a hand that is told absent.
+    /// The force limits found that nobody holds the handle; treated like an absent hand.
     hand_is_gone: bool,
     gripper_chain: GripperChain,
     last_inputs: Option<Inputs>,
     last_input_s: f64,
     last_now_s: Option<f64>,
-    /// How often samples were missing lately, and whether the last one was there.
+    /// Share of samples missing lately, and whether the last one was present.
     gaps: f64,
     was_there: bool,
     hand_force_n: Vector3<f64>,
@@ -93,17 +95,17 @@ pub struct Pair<L: Link = ProgrammedLink> {
 }
 
 impl Pair {
-    /// The pair of this side, idle, both ends in this process. Everything is allocated here.
+    /// The pair of this side, idle, with leader and follower in this process. All memory is allocated here.
     ///
     /// # Errors
-    /// [`SettingsError`] for an identification that cannot be.
+    /// [`SettingsError`] if the settings of the identification are invalid.
     pub fn new(rig: &RigConfig, side: Side, calibrations: &Calibrations) -> Result<Self, SettingsError> {
         Self::over(rig, side, calibrations, ProgrammedLink::new(rig.rate_hz, rig.delay_s))
     }
 }
 
 impl<L: Link> Pair<L> {
-    /// The same over this link.
+    /// The same with this link.
     ///
     /// # Errors
     /// As [`Pair::new`].
@@ -150,7 +152,7 @@ impl<L: Link> Pair<L> {
         Ok(this)
     }
 
-    /// Which pair.
+    /// Its side.
     pub const fn side(&self) -> Side {
         self.side
     }
@@ -164,7 +166,7 @@ impl<L: Link> Pair<L> {
         self.rate_hz
     }
 
-    /// State now.
+    /// Present state.
     pub const fn state(&self) -> LoopState {
         self.interlock.state()
     }
@@ -179,12 +181,12 @@ impl<L: Link> Pair<L> {
         self.missed
     }
 
-    /// What happened since [`Pair::clear_events`], oldest first.
+    /// Events since [`Pair::clear_events`], oldest first.
     pub fn events(&self) -> impl Iterator<Item = &Event> {
         self.events.iter().flatten()
     }
 
-    /// Forgets the events; call before handling commands of the next tick.
+    /// Removes all events; call before the commands of the next tick are handled.
     pub fn clear_events(&mut self) {
         self.events = [None; EVENTS_PER_TICK_MAX];
     }
@@ -195,7 +197,7 @@ impl<L: Link> Pair<L> {
         }
     }
 
-    /// What entering a state does: everything begins from no force and a resting follower.
+    /// Actions on entering a state: everything starts from zero force and a follower at rest.
     fn enter(&mut self, change: Change<Fault>, t_s: f64) {
         let Change { from, to, why } = change;
         self.tell(Event::StateChanged { t_s, side: self.side, from, to, why });
@@ -211,12 +213,14 @@ impl<L: Link> Pair<L> {
             self.guide_m = None;
         }
         if let (LoopState::Engaged, Some(seen)) = (to, self.last_inputs) {
-            // Only here: an endoscope that turns while hand and tip are joined must not turn the motion under the hand.
+            // Only here: if the endoscope turns while engaged, the mapping must not turn the motion under the
+            // operator's hand.
             if let View::Seen(world_from_view) = seen.view {
                 let mapping = self.teleoperation.seen(&world_from_view, self.hand_eye.mapping().scale());
                 self.hand_eye.set_mapping(mapping);
             }
-            // Hand and tip are joined where both are: the first command is where the tip is.
+            // The mapping starts at the present positions of hand and tip, so the first command is the present tip
+            // position.
             let world_from_jaws = seen.world_from_jaws.unwrap_or_else(UnitQuaternion::identity);
             self.hand_eye.engage(Target { tip_m: seen.tip_m, world_from_jaws });
             self.engaged_s = t_s;
@@ -225,7 +229,7 @@ impl<L: Link> Pair<L> {
     }
 
     fn set_delay(&mut self, delay_s: f64) {
-        // The delay is exact to one sample, and the screen shows what is in force.
+        // The delay is a whole number of samples; this is the delay that is shown on the screen.
         self.delay_s = self.settings.delay_ticks(delay_s) as f64 / self.rate_hz;
         self.link.set_delay(self.delay_s);
         self.identifier.set_delay(self.delay_s);
@@ -240,7 +244,10 @@ impl<L: Link> Pair<L> {
         Ok(())
     }
 
-    /// Carries out one command, or gives why not. [`Command::Shutdown`] is the runtime's.
+    /// Carries out one command, or returns why it cannot. [`Command::Shutdown`] is handled by the runtime.
+    ///
+    /// # Errors
+    /// [`Refusal`] if the command is not allowed in this state, its value is out of range, or a measurement forbids it.
     pub fn obey(&mut self, command: Command, t_s: f64) -> Result<(), Refusal> {
         match command {
             Command::SetMode(mode) => self.mode = mode,
@@ -255,7 +262,7 @@ impl<L: Link> Pair<L> {
                 Ok(mapping) => self.hand_eye.set_mapping(mapping),
                 Err(_) => return Err(Refusal::OutOfRange),
             },
-            // Whoever is asked to handle the arm must be safe from it.
+            // In idle only: a person who handles the arm must be safe from its motion.
             Command::Prompt(_, prompt) if self.state() == LoopState::Idle && prompt.is_finite() => self.prompt = prompt,
             Command::Guide(guide_m)
                 if !self.state().is_latched()
@@ -288,19 +295,19 @@ impl<L: Link> Pair<L> {
         }
     }
 
-    /// A fault that matters only while drives are on.
+    /// Raises a fault that matters only while drives are on.
     pub(super) fn fail_if_driven(&mut self, fault: Fault, t_s: f64) {
         if self.state().permits().drives {
             self.fail(fault, t_s);
         }
     }
 
-    /// The wrist sensor came, went or changed.
+    /// The wrist sensor was connected, lost or exchanged.
     pub(super) const fn suspend_calibrations(&mut self) {
         self.force_path.suspend();
     }
 
-    /// Changes places with this path; refused while drives are on.
+    /// Exchanges the force path with `path`; refused while drives are on.
     pub(super) fn exchange_force_path(&mut self, path: &mut ForcePath) -> bool {
         let rests = !self.state().permits().drives;
         if rests {
@@ -309,14 +316,14 @@ impl<L: Link> Pair<L> {
         rests
     }
 
-    /// A device of this pair came or went.
+    /// Handles the connection or loss of a device of this pair.
     pub(super) fn notice(&mut self, event: &DeviceEvent) {
         if let Standing::Lost(loss) = event.standing {
             self.fail_if_driven(Fault::DeviceLost { device: event.device, loss }, event.t_s);
         }
     }
 
-    /// One tick: measurements in, commands out, everything about it in the [`Tick`].
+    /// Executes one tick: measurements in, commands out, and everything to display or record in the [`Tick`].
     pub fn step(&mut self, inputs: Option<Inputs>, timing: &Timing) -> (Outputs, Tick) {
         let now_s = timing.now_s;
         self.missed += timing.missed_now;
@@ -325,11 +332,13 @@ impl<L: Link> Pair<L> {
         let moved_m = inputs.zip(self.last_inputs).map_or(0.0, |(now, last)| (now.tip_m - last.tip_m).norm());
         let inputs = inputs.map(|inputs| self.take_in(inputs, now_s));
         if inputs.is_none() {
-            // Identification goes by even samples: a missing one is bridged, and nothing is sent of it.
+            // The identification needs evenly spaced samples: it interpolates a missing one, and no parcel is sent for
+            // it.
             self.identifier.step(&Sample { t_s: now_s, position_m: NOWHERE, force_n: NOWHERE });
         }
         self.watch(inputs.as_ref(), moved_m, timing);
-        // Nothing new: the link keeps delivering what is on its way, ever older; the age gate takes the force away.
+        // No new sample: the link keeps delivering what is under way, which grows older, and the age gate removes the
+        // force.
         let seen = self.last_inputs.unwrap_or(NOTHING_YET);
         let target = self.hand_eye.step(&seen.hand);
         let tip_command_m = self.follow(&seen, &target);
@@ -338,7 +347,7 @@ impl<L: Link> Pair<L> {
         if let Some(parcel) = parcel {
             self.plausibility.delivered(&parcel.force_n, parcel.t_s);
         }
-        // Before the first one the link is only filling.
+        // Until the first parcel arrives, the delay line is still filling.
         let parcel_is_there = parcel.is_some();
         let rendered = self.renderer.step(&motion_m, parcel);
         let delayed_n = parcel.map_or_else(Vector3::zeros, |parcel| parcel.force_n);
@@ -353,8 +362,8 @@ impl<L: Link> Pair<L> {
             force_n: rendered.force(self.mode).map(|force_n| force_n * ramp),
             age_s,
             speed_m_s: self.hand_speed_m_s,
-            // On the axes of the force; the way of the hand itself, whatever the scale makes of it. A lost sample hides no way: the
-            // next one shows it.
+            // On the axes of the force. The travel of the hand itself, before scaling. A missing sample hides no
+            // travel: the next one contains it.
             hand_m: self.hand_now_m(now_s),
             permitted,
         });
@@ -379,19 +388,19 @@ impl<L: Link> Pair<L> {
         (outputs, tick)
     }
 
-    /// Where the hand was last seen, m (`world`), while that is not long ago.
+    /// Last measured position of the hand, m (`world`), if it is recent.
     fn hand_now_m(&self, now_s: f64) -> Option<Vector3<f64>> {
         let seen = self.last_inputs.filter(|_| !self.is_silent(now_s))?;
         Some(self.hand_eye.mapping().world_from_leader() * seen.hand.position_m)
     }
 
-    /// The gripper feels what its jaws hold, through gates of its own.
+    /// Force on the gripper from the force on the jaws, through gates of its own.
     fn grip(&mut self, inputs: Option<&Inputs>, age_s: f64, permitted: bool) -> f64 {
         let (opening_rad, grip_n) = (inputs.and_then(|i| i.gripper_rad), inputs.and_then(|i| i.grip_n));
         let (force_n, _) = self.gripper_chain.step(&Request {
             force_n: grip_n.map(Vector1::new),
             age_s,
-            // A gripper that rests on what it holds goes on feeling it.
+            // Above the dead band: a gripper that holds something still must keep its force.
             speed_m_s: 1.0,
             hand_m: opening_rad.map(|rad| Vector1::new(rad * GRIPPER_ARM_M)),
             permitted: permitted && grip_n.is_some(),
@@ -399,7 +408,7 @@ impl<L: Link> Pair<L> {
         force_n.x
     }
 
-    /// What carries parcels.
+    /// The link.
     pub(super) const fn link_mut(&mut self) -> &mut L {
         &mut self.link
     }
@@ -408,7 +417,7 @@ impl<L: Link> Pair<L> {
         now_s - self.last_input_s > SILENT_AFTER_S - 0.5 / self.rate_hz
     }
 
-    /// The follower goes where the hand leads it, never faster than its speed limit; only while engaged.
+    /// Command to the follower: the hand's position, limited to the follower's maximum speed; only while engaged.
     fn follow(&mut self, seen: &Inputs, target: &Target) -> Option<Vector3<f64>> {
         if !self.hand_eye.is_engaged() {
             return None;
@@ -420,7 +429,7 @@ impl<L: Link> Pair<L> {
         self.command_m
     }
 
-    /// The follower's motion now as the leader can know it: its command, as late as the follower is observed to be.
+    /// The follower's present motion as the leader can know it: the command, delayed by the observed lag.
     fn motion_at_leader(&mut self, seen: &Inputs, tip_command_m: Option<Vector3<f64>>) -> Vector3<f64> {
         if let Some(command_m) = tip_command_m {
             return self.tracking.step(&command_m, &seen.tip_m);
@@ -472,10 +481,10 @@ impl<L: Link> Pair<L> {
     }
 }
 
-/// What was not measured.
+/// Marks a sample that was not measured.
 const NOWHERE: Vector3<f64> = Vector3::new(f64::NAN, f64::NAN, f64::NAN);
 
-/// Shown until the rig has delivered its first sample.
+/// Displayed until the rig has delivered its first sample.
 const NOTHING_YET: Inputs = Inputs {
     hand: Hand::at(Vector3::new(0.0, 0.0, 0.0)),
     gripper_rad: None,
@@ -490,5 +499,6 @@ const NOTHING_YET: Inputs = Inputs {
     age_s: 0.0,
 };
 
-/// Until the first sample: an absent force is no usable force, and a rig that measures at the tip shows so at once.
+/// Used until the first sample. The source `AtTip` with no force is not usable, and shows a rig that measures at the
+/// tip correctly from the start.
 const NO_FORCE_YET: ForceReport = ForceReport::none(ForceSource::AtTip, None);

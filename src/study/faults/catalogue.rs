@@ -1,30 +1,30 @@
-//! Every kind of fault on the virtual clock: what it is, where it sits, and why it cannot be told where nothing can.
+//! Every kind of fault on the virtual clock: its description, its location, and, where it cannot be detected, why not.
 
 use serde::Serialize;
 
-/// Where a fault sits.
+/// Where a fault is located.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 #[expect(missing_docs, reason = "the names say it")]
 pub enum Part {
     /// The force sensor.
     Force,
-    /// Orientation of the wrist: accelerometer or arm.
+    /// Orientation of the wrist, from accelerometer or arm.
     Orientation,
     Handle,
     Arm,
-    /// Pedal and presence.
+    /// Pedal and presence detection.
     Switches,
     /// The loop's clock.
     Clock,
     /// The link between follower and leader.
     Link,
-    /// Commands of the screen.
+    /// Commands from the screen.
     Commands,
 }
 
 impl Part {
-    /// A number that becomes a force in the hand passes here.
+    /// Whether the force to the hand is computed from data of this part.
     pub const fn is_on_force_path(self) -> bool {
         matches!(self, Self::Force | Self::Orientation | Self::Clock | Self::Link)
     }
@@ -131,7 +131,7 @@ impl Kind {
         K::CommandsPoisoned, K::CommandsDoubled, K::SliderShakes,
     ];
 
-    /// Where it sits.
+    /// Where it is located.
     pub const fn part(self) -> Part {
         match self {
             K::ImuStops
@@ -182,12 +182,12 @@ impl Kind {
         }
     }
 
-    /// It needs a sensor at the wrist.
+    /// Whether it needs a sensor at the wrist.
     pub const fn needs_wrist(self) -> bool {
         matches!(self.part(), Part::Orientation)
     }
 
-    /// What happens.
+    /// Description of the fault.
     #[rustfmt::skip]
     pub const fn words(self) -> &'static str {
         match self {
@@ -267,7 +267,7 @@ impl Kind {
         }
     }
 
-    /// Why it is not told by design, where that is so.
+    /// If it is accepted as fresh data by design: why.
     pub const fn passes_as_fresh(self) -> Option<&'static str> {
         match self {
             K::LinkJitter | K::LinkHalf | K::LinkSwaps | K::ForceDoubled | K::ForceReordered | K::ForceSpikes => Some(
@@ -277,7 +277,7 @@ impl Kind {
         }
     }
 
-    /// Why it cannot be told from an honest machine, where that is so; it must then be bounded.
+    /// If it cannot be distinguished from normal operation: why. The error must then be bounded.
     pub const fn untellable(self) -> Option<&'static str> {
         Some(match self {
             K::ForceSmallStep => "a small step is within what a contact does in a tick",

@@ -1,4 +1,5 @@
-//! The study of faults as Markdown: sums, one row for each fault and sensor, the faults outside of the virtual clock, the bounded ones.
+//! The study of faults as Markdown: summary, one row per fault and sensor, the faults outside the virtual clock, and
+//! the bounded ones.
 
 use std::fmt::Write as _;
 
@@ -6,7 +7,7 @@ use super::{FaultsError, HARMLESS_N, Kind, Options, Outcome, Place, Report, Sens
 use crate::{Experiment, Findings};
 
 impl Report {
-    /// For a document and a terminal.
+    /// Markdown for a document or a terminal.
     pub fn markdown(&self) -> String {
         let mut text = self.sums_text();
         // Writing into a String cannot fail, here and below.
@@ -78,7 +79,7 @@ impl Report {
     }
 }
 
-/// The worst of some cases: verdict, slowest detection / force gone (ms), largest error (N).
+/// The worst of some cases: outcome, slowest detection / removal of the force (ms), largest error (N).
 fn cell(cases: &[&Outcome]) -> String {
     let Some(worst) = cases.iter().map(|outcome| outcome.verdict).max() else { return "-".to_owned() };
     let most = |of: fn(&Outcome) -> Option<f64>| cases.iter().filter_map(|outcome| of(outcome)).reduce(f64::max);

@@ -9,7 +9,7 @@ use crate::{
 };
 
 impl Report {
-    /// One row per extreme, solver and degree; empty where there is no figure.
+    /// CSV with one row per case, solver and degree; a figure that does not exist is empty.
     pub fn csv(&self) -> String {
         let mut out = String::from(
             "group,name,rate_hz,window,solver,degree,asked,finite,error,unknowns,rank,deficient,condition,unit_difference\n",
@@ -34,7 +34,8 @@ impl Report {
         out
     }
 
-    /// The worst relative error of every solver over degrees 1 to 5 in every extreme, then the verdict.
+    /// Table of every solver's worst relative error over degrees 1 to 5 in every case, then the comparison with the
+    /// targets.
     pub fn table(&self) -> String {
         let mut out = format!("{:<10} {:<37}", "extreme", "");
         for solver in Solver::ALL {
@@ -96,7 +97,7 @@ impl Report {
         out
     }
 
-    /// Error over condition for every extreme and degree, and error over amplitude at degree 5.
+    /// Plots of error over condition for every case and degree, and of error over amplitude at degree 5.
     pub fn svg(&self) -> String {
         svg(&[self.by_condition(), self.by_amplitude()])
     }
@@ -149,7 +150,7 @@ impl Report {
     }
 }
 
-/// The error to draw: the upper edge where an answer is missing.
+/// Vertical position of an error; the upper edge if there is no answer.
 fn height(entry: &Entry) -> f64 {
     if entry.finite < entry.asked { f64::MAX } else { entry.error.unwrap_or(f64::MAX) }
 }

@@ -1,4 +1,4 @@
-//! Figures in words, for a terminal.
+//! The figures as text for a terminal.
 
 use std::fmt::Write as _;
 
@@ -26,7 +26,7 @@ impl Findings for Study {
     }
 }
 
-/// Writing into a String cannot fail: its results are dropped.
+/// Writing to a String cannot fail, so its results are ignored.
 fn source_in_words(figures: &SourceFigures, text: &mut String) {
     let SourceFigures { source, unit, rate_hz, samples, axes, judged_from_s, .. } = figures;
     writeln!(

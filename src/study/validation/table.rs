@@ -1,4 +1,4 @@
-//! The paper's figures beside ours, with the reason for the difference.
+//! The paper's figures and those of this project, with the reasons for differences.
 
 use std::fmt::Write as _;
 
@@ -9,16 +9,16 @@ use serde::Serialize;
 use super::{Agreement, Isolation, Options, Rendering, Report, ValidationError, study};
 use crate::{Experiment, Findings};
 
-/// One figure: the paper's, ours, and why they differ.
+/// One figure: the paper's value, this project's, and why they differ.
 #[derive(Clone, Debug, Serialize)]
 pub struct Row {
     /// `I`, `II` or `III`.
     pub validation: &'static str,
     /// What is compared, with its unit.
     pub what: String,
-    /// The paper's value or values (x, y, z); none where the paper has no such figure.
+    /// The paper's value, or values for x, y, z; empty if the paper has no such figure.
     pub paper: Vec<f64>,
-    /// Ours.
+    /// This project's value or values.
     pub ours: Vec<f64>,
     /// Why they differ.
     pub why: &'static str,
@@ -130,7 +130,7 @@ fn rendering(three: &Rendering) -> Vec<Row> {
 }
 
 impl Report {
-    /// For a terminal.
+    /// Text for a terminal.
     pub fn text(&self) -> String {
         let mut out = format!("{:<4} {:<78} {:>17}  {:>23}\n", "", "", "paper", "ours");
         for row in &self.table {
@@ -141,7 +141,7 @@ impl Report {
         out
     }
 
-    /// For the documentation: a Markdown table.
+    /// Markdown table for the documentation.
     pub fn markdown(&self) -> String {
         let mut out = String::from("| | | paper | ours | why they differ |\n|---|---|---|---|---|\n");
         for Row { validation, what, paper, ours, why } in &self.table {

@@ -10,11 +10,11 @@ use serde::{Deserialize, Deserializer, Serialize};
 
 use super::{Chosen, Opener};
 
-/// The arm of a rig file. Both have the joints of a Gen3.
+/// The arm of a rig file. Both makes have the joints of a Gen3.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(untagged)]
 pub enum FollowerSettings {
-    /// `make = "kinova"`, the usual one: Gen3 with seven joints.
+    /// `make = "kinova"`, the default: Gen3 with seven joints.
     Kinova(kinova::Settings),
     /// `make = "simulated"`: no hardware.
     Simulated(simulated_arm::Settings),
@@ -31,7 +31,7 @@ impl<'de> Deserialize<'de> for FollowerSettings {
 }
 
 impl FollowerSettings {
-    /// Of an arm by Kinova.
+    /// The settings, if it is an arm by Kinova.
     pub const fn kinova(&self) -> Option<&kinova::Settings> {
         match self {
             Self::Kinova(settings) => Some(settings),
@@ -39,7 +39,7 @@ impl FollowerSettings {
         }
     }
 
-    /// Of an arm by Kinova.
+    /// The settings, if it is an arm by Kinova.
     pub const fn kinova_mut(&mut self) -> Option<&mut kinova::Settings> {
         match self {
             Self::Kinova(settings) => Some(settings),
@@ -47,10 +47,10 @@ impl FollowerSettings {
         }
     }
 
-    /// Every setting is possible.
+    /// Checks every setting.
     ///
     /// # Errors
-    /// [`Trouble::Setting`].
+    /// [`Trouble::Setting`] for the first invalid one.
     pub fn check(&self) -> Result<(), Trouble> {
         match self {
             Self::Kinova(settings) => settings.check(),
@@ -58,7 +58,8 @@ impl FollowerSettings {
         }
     }
 
-    /// In an emulated rig the handle and the sensor belong to a world that an emulated arm moves; a simulated arm has none.
+    /// Checks that an emulated rig has an emulated arm: handle and sensor of an emulated rig belong to a world that
+    /// this arm moves, and a simulated arm has no such world.
     pub(in crate::rig) fn check_emulated(&self, rig_is_emulated: bool) -> Result<(), Trouble> {
         match self {
             Self::Simulated(_) if rig_is_emulated => Err(Trouble::Setting {
@@ -70,7 +71,7 @@ impl FollowerSettings {
         }
     }
 
-    /// How its joints may be moved.
+    /// Limits of position, speed and acceleration of its joints.
     pub(in crate::rig) fn joint_limits(&self) -> JointLimits {
         match self {
             Self::Kinova(settings) => settings.joint_limits(),

@@ -12,7 +12,7 @@ use super::{Chosen, Opener};
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(untagged)]
 pub enum SensorSettings {
-    /// `make = "bota"`, the usual one.
+    /// `make = "bota"`, the default.
     Bota(bota::Settings),
 }
 
@@ -23,29 +23,29 @@ impl<'de> Deserialize<'de> for SensorSettings {
 }
 
 impl SensorSettings {
-    /// Of a sensor by Bota.
+    /// The settings, if it is a sensor by Bota.
     pub const fn bota(&self) -> Option<&bota::Settings> {
         let Self::Bota(settings) = self;
         Some(settings)
     }
 
-    /// Of a sensor by Bota.
+    /// The settings, if it is a sensor by Bota.
     pub const fn bota_mut(&mut self) -> Option<&mut bota::Settings> {
         let Self::Bota(settings) = self;
         Some(settings)
     }
 
-    /// Every setting is possible.
+    /// Checks every setting.
     ///
     /// # Errors
-    /// [`Trouble::Setting`].
+    /// [`Trouble::Setting`] for the first invalid one.
     pub fn check(&self) -> Result<(), Trouble> {
         match self {
             Self::Bota(settings) => settings.check(),
         }
     }
 
-    /// The file by which the system gives access to it, where it has one.
+    /// The device file through which it is reached, if it has one.
     pub(in crate::rig) const fn device_file(&mut self) -> Option<&mut String> {
         let Self::Bota(settings) = self;
         match settings.transport {

@@ -1,4 +1,5 @@
-//! Every device of an emulated rig is found well; then each is made to fail, and the right cause and a cure come out in time.
+//! Every device of an emulated rig is found in order; then each is made to fail, and the right cause and cure must be
+//! reported in time.
 #![cfg(target_os = "linux")]
 use std::time::{Duration, Instant};
 
@@ -19,7 +20,7 @@ fn tried(devices: &Settings) -> Vec<Diagnosis> {
     let found = diagnose(rig_probes(devices), TIMEOUT);
     assert!(begin.elapsed() < Duration::from_secs(2), "{:?}", begin.elapsed());
     for one in &found {
-        // A first-generation sensor starts anew when it is opened.
+        // A first-generation sensor restarts when it is opened.
         let starts_anew = one.name == "tissue sensor" || one.name == "right sensor" && right_is_first_generation;
         let most_s = if starts_anew { 2.0 } else { 1.0 };
         assert!(one.took_s < most_s, "{one:?}");
@@ -48,7 +49,7 @@ fn trouble<'a>(found: &'a [Diagnosis], name: &str) -> &'a Trouble {
     }
 }
 
-/// The troubles of the devices, each by its kind.
+/// Asserts the kind of trouble of each device.
 macro_rules! assert_told {
     ($found:expr, $($name:literal => $kind:pat),+ $(,)?) => {{
         let found = &$found;
@@ -56,12 +57,12 @@ macro_rules! assert_told {
     }};
 }
 
-/// Whether all are connected; their rates as they should be.
+/// Whether all are connected at their expected rates.
 fn all_well(found: &[Diagnosis]) -> bool {
     found.iter().all(|one| match &one.outcome {
         Outcome::Trouble { .. } => false,
         Outcome::Connected(connected) => {
-            // Those that are asked, or speak on a change, have no rate of their own.
+            // Devices that are polled, or report changes only, have no rate of their own.
             let usual_hz = match one.name.as_str() {
                 "tracker" => Some(60.0),
                 "tissue sensor" => Some(800.0),
@@ -80,7 +81,7 @@ fn a_rig_that_runs_is_found_whole() {
     let folder = tempfile::tempdir().unwrap();
     let devices = elsewhere(folder.path());
     let rig = started(&devices);
-    // A machine under load lets a device in real time look silent now and then.
+    // On a busy computer a device may seem silent at times.
     let tries: Vec<_> = (0..5).map(|_| tried(&devices)).take_while(|found| !all_well(found)).collect();
     assert!(tries.len() < 5, "{:#?}", tries.last());
     let served: Vec<_> = rig.servings().iter().map(|device| device.name.clone()).collect();
@@ -146,7 +147,7 @@ fn silence_and_faults_of_every_device_are_told() {
     let rig = started(&devices);
     let all = |fault| {
         rig.servings().iter().for_each(|device| device.serving.faults.set(fault));
-        // An emulator that waits for its client looks at its switch once a millisecond.
+        // An emulator that waits for its client checks its fault switch once a millisecond.
         std::thread::sleep(Duration::from_millis(20));
     };
     all(EmulatedFault::Silence);

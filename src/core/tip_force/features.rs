@@ -80,7 +80,7 @@ impl Features {
     /// The row for this sample. Must be called with every sample, in order.
     ///
     /// # Errors
-    /// [`NoFeatures`] if the sample is incomplete or the state is not known yet.
+    /// [`NoRow`] if the sample is incomplete or the state is not known yet.
     pub fn step(&mut self, t_s: f64, gravity_free: &Wrench, sample: &WristSample) -> Result<[f32; LIVE_INPUTS], NoRow> {
         let (Some(world_from_s1), Some(insertion_m)) = (sample.world_from_s1, sample.insertion_m) else {
             self.last = None;

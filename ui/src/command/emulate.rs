@@ -1,9 +1,10 @@
-//! `nima emulate`: emulators on the real wire, for drivers, third-party clients and demos without hardware.
+//! `nima emulate`: emulators on the real interfaces, for drivers, third-party clients and demos without hardware.
 //!
-//! Prints one JSON line per endpoint (`{"device": ..., "endpoint": ...}`), then serves until Ctrl-C, or until its standard input ends
-//! where that is a pipe or a terminal: whoever started it may have died without a word, and nobody else would end it. Lines on standard input set faults: `fault NAME` (see `--help`), `fault none` takes it back; with several devices
-//! `fault DEVICE NAME`, the name in quotes or with dashes where it has blanks. `nima emulate rig` emulates a whole rig around one
-//! simulated world; `pedal BITS` presses its pedal's switches.
+//! Prints one JSON line per endpoint (`{"device": ..., "endpoint": ...}`), then serves until Ctrl-C, or until its
+//! standard input ends if that is a pipe or a terminal, so that it does not outlive the process that started it. Lines
+//! on standard input set faults: `fault NAME` (see `--help`), `fault none` removes it; with several devices `fault
+//! DEVICE NAME`, with a name that contains blanks in quotes or with dashes. `nima emulate rig` emulates a whole rig
+//! with one simulated world; `pedal BITS` presses its pedal's switches.
 
 mod bota;
 mod dynamixel;
@@ -54,30 +55,30 @@ pub(super) struct Arguments {
 pub(super) struct Settings(Vec<(String, String)>);
 
 impl Settings {
-    /// The value of `key`, if it was given; a value that does not read is an error.
+    /// The value of `key`, if it was given; a value that cannot be parsed is an error.
     pub(super) fn get<T: std::str::FromStr>(&self, key: &str) -> anyhow::Result<Option<T>> {
         let Some((_, value)) = self.0.iter().find(|(known, _)| known == key) else { return Ok(None) };
         value.parse().map(Some).map_err(|_| anyhow::anyhow!("--set {key}={value}: this value cannot be used"))
     }
 }
 
-/// One device that serves.
+/// One emulated device.
 pub(super) struct Emulated {
     device: String,
     serving: Serving,
 }
 
 impl Emulated {
-    /// Under this name.
+    /// An emulated device with this name.
     pub(super) fn new(device: impl Into<String>, serving: Serving) -> Self {
         Self { device: device.into(), serving }
     }
 }
 
-/// A name on the command line and what starts it; one name may start several devices.
+/// A name on the command line and the function that starts its devices.
 type Known = (&'static str, fn(&Settings) -> anyhow::Result<Vec<Emulated>>);
 
-/// All that can be emulated.
+/// All devices that can be emulated.
 const KNOWN: &[Known] = &[
     #[cfg(unix)]
     ("bota-gen0", bota::gen0),
@@ -127,7 +128,8 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     serve(&served, arguments.until_input_ends, |_| false)
 }
 
-/// Tells the endpoints and serves until somebody ends it. Lines on standard input that `other` knows are obeyed by it.
+/// Prints the endpoints and serves until the end is requested. Lines on standard input that are not about faults are
+/// passed to `other`, which returns whether it knows them.
 fn serve(emulated: &[(&str, &Serving)], until_input_ends: bool, other: impl Fn(&str) -> bool) -> anyhow::Result<()> {
     for (device, serving) in emulated {
         output::line(&serde_json::to_string(&Endpoint { device, endpoint: &serving.endpoint })?)?;
@@ -153,14 +155,14 @@ fn serve(emulated: &[(&str, &Serving)], until_input_ends: bool, other: impl Fn(&
                 }
                 return Ok(());
             }
-            // A file was read to its end, or there never was an input.
+            // Standard input was a file that has been read completely, or there was none.
             Err(RecvTimeoutError::Disconnected) => std::thread::sleep(Duration::from_millis(50)),
         }
     }
     Ok(())
 }
 
-/// Somebody holds the other end of standard input: a person at a terminal, or a process with a pipe.
+/// Whether another process or a person at a terminal holds the other end of standard input.
 #[cfg(unix)]
 fn input_is_held() -> bool {
     use std::os::{fd::AsFd as _, unix::fs::FileTypeExt as _};
@@ -169,13 +171,13 @@ fn input_is_held() -> bool {
     stdin.is_terminal() || kind.is_ok_and(|kind| kind.file_type().is_fifo() || kind.file_type().is_socket())
 }
 
-/// Somebody holds the other end of standard input.
+/// Whether another process or a person at a terminal holds the other end of standard input.
 #[cfg(not(unix))]
 fn input_is_held() -> bool {
     true
 }
 
-/// A device's name, however its blanks are written.
+/// A device's name in normal form, whichever way its blanks were written.
 fn plain(name: &str) -> String {
     name.trim_matches(['"', '\'']).replace('-', " ")
 }

@@ -1,7 +1,8 @@
-//! Bota force-torque sensors: `bota-gen0` and `bota-gen-a` on pseudo-terminals, `bota-socket` on this computer's network.
+//! Emulates Bota force-torque sensors: `bota-gen0` and `bota-gen-a` on pseudo-terminals, `bota-socket` on the loopback
+//! network.
 //!
-//! Settings: `serial` (digits), `baud` (0 takes any), `boot_s`, `tcp_port`, `udp_port`, `timestamp_us` (clock at the beginning),
-//! `status` (bits that are always set).
+//! Settings: `serial` (digits), `baud` (0 accepts any), `boot_s`, `tcp_port`, `udp_port`, `timestamp_us` (initial value
+//! of the clock), `status` (bits that are always set).
 
 use std::net::{Ipv4Addr, SocketAddrV4};
 

@@ -1,5 +1,6 @@
-//! Emulated caps and pedals. Settings: `path=PATH` of the socket (else a folder of its own), `model=split|combined` of a cap,
-//! `model=keyboard|switches` of a pedal; `x, y, z, rx, ry, rz` (-1 to 1) and `buttons` hold a cap still, `pressed` (bits) a pedal.
+//! Emulates caps and pedals. Settings: `path=PATH` of the socket (by default in a folder of its own),
+//! `model=split|combined` for a cap, `model=keyboard|switches` for a pedal; `x, y, z, rx, ry, rz` (-1 to 1) and
+//! `buttons` set a constant state of a cap, `pressed` (bits) of a pedal.
 
 use std::path::PathBuf;
 
@@ -15,7 +16,7 @@ fn place(settings: &Settings) -> anyhow::Result<Place> {
     Ok(settings.get::<PathBuf>("path")?.map_or(Place::Temporary, Place::Path))
 }
 
-/// One of two models by name; the first without one.
+/// One of two models by name; the first one by default.
 fn model<T: Default>(settings: &Settings, names: [(&str, T); 2]) -> anyhow::Result<T> {
     let Some(name) = settings.get::<String>("model")? else { return Ok(T::default()) };
     let known = names.each_ref().map(|(known, _)| *known).join(" or ");

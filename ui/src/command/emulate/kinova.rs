@@ -1,5 +1,5 @@
-//! `nima emulate kinova`: a Gen3 on free ports, or on those that `--set tcp_port=10000 --set udp_port=10001` give.
-//! `--set watchdog_ms=50` sets the time without a command that is a fault.
+//! `nima emulate kinova`: a Gen3 on free ports, or on those given with `--set tcp_port=10000 --set udp_port=10001`.
+//! `--set watchdog_ms=50` sets the time without a command after which the arm goes into a fault.
 
 use nima_world::emulators::{
     FaultSwitch,

@@ -1,5 +1,6 @@
-//! `nima emulate ndi` (TCP) and `ndi-serial` (pseudo-terminal): the tracker. `--set firmware=TAG` makes hosts choose `TX` or `BX`,
-//! `--set missing=N` and `--set outside=N` hide one tool or put it out of the volume, `--set port=N` takes a fixed TCP port.
+//! `nima emulate ndi` (TCP) and `ndi-serial` (pseudo-terminal): the tracker. `--set firmware=TAG` determines whether
+//! hosts choose `TX` or `BX`, `--set missing=N` and `--set outside=N` hide a tool or move it out of the volume, `--set
+//! port=N` uses a fixed TCP port.
 
 use nima_devices::Tracked;
 use nima_world::emulators::ndi::{Profile, serve_line, serve_network, wandering};

@@ -8,6 +8,9 @@ use std::{
 };
 
 /// A second descriptor of an open line, whose reads and writes never wait.
+///
+/// # Errors
+/// If the descriptor cannot be duplicated.
 pub fn bytes_of(port: &impl AsRawFd) -> io::Result<File> {
     // SAFETY: the descriptor is open for as long as `port` is borrowed; the duplicate has one owner, the file returned.
     unsafe {

@@ -74,6 +74,9 @@ mod unix {
     }
 
     /// Opens a file for locking: creates it if necessary, does not follow links, does not truncate.
+    ///
+    /// # Errors
+    /// I/O errors, for instance if the path is a link.
     pub fn lock_file(path: &Path) -> Result<File> {
         let refuse = |reason: &str| {
             let told = format!("{} {reason}: remove it, or take another place", path.display());

@@ -46,6 +46,9 @@ pub struct Slot<D: Device> {
 
 impl<D: Device + 'static> Slot<D> {
     /// Creates a slot. `open` is called on a thread of its own, repeatedly while the device is wanted and not open.
+    ///
+    /// # Errors
+    /// If the operating system cannot create the thread.
     pub fn start(name: &str, open: impl FnMut() -> Result<D, Trouble> + Send + 'static) -> std::io::Result<Self> {
         let (give, opened) = bounded(1);
         let (lost, take) = bounded(1);

@@ -245,6 +245,15 @@ pub fn text(kind: &'static str, name: &str, embedded: &[(&str, &str)]) -> Result
 ///
 /// # Errors
 /// [`ConfigError::Parse`] with the line of the error.
+///
+/// ```
+/// use std::path::Path;
+///
+/// use nima_machine::config::{RigConfig, parse};
+///
+/// let error = parse::<RigConfig>("rig", Path::new("mine.toml"), "rate = 1000").expect_err("no such key");
+/// assert!(error.to_string().contains("mine.toml") && error.to_string().contains("rate"), "{error}");
+/// ```
 pub fn parse<T: for<'de> Deserialize<'de>>(kind: &'static str, path: &Path, text: &str) -> Result<T, ConfigError> {
     let refused = |message: String| ConfigError::Parse { kind, path: path.to_owned(), message };
     let wrong = |error: toml::de::Error| {
@@ -309,6 +318,18 @@ impl RigConfig {
     ///
     /// # Errors
     /// A name that is neither embedded nor a file, a file that cannot be read or parsed, or a value outside its range.
+    ///
+    /// ```
+    /// use nima_machine::config::{ConfigError, RigConfig};
+    ///
+    /// let rig = RigConfig::load("simulated")?;
+    /// assert!(rig.devices.is_none(), "everything is simulated");
+    /// assert!(matches!(RigConfig::load("no such rig"), Err(ConfigError::Unknown { .. })));
+    ///
+    /// let wrong = RigConfig { rate_hz: f64::NAN, ..rig };
+    /// assert!(wrong.validate().is_err());
+    /// # Ok::<(), ConfigError>(())
+    /// ```
     pub fn load(name: &str) -> Result<Self, ConfigError> {
         let (path, text) = text("rig", name, &RIGS)?;
         let mut rig: Self = parse("rig", &path, &text)?;

@@ -66,6 +66,12 @@ pub struct Report {
 
 /// Runs `requests` requests; `progress` is called from time to time with the number done and the total, both in
 /// thousands.
+///
+/// ```
+/// let report = nima_study::gates::study(20_000, 1, |_, _, _| {});
+/// assert_eq!(report.breaches.total(), 0);
+/// assert!(report.forces > 0, "some forces passed");
+/// ```
 pub fn study(requests: u64, seed: u64, mut progress: impl FnMut(usize, usize, &str)) -> Report {
     let start = Instant::now();
     let mut rng = Rng::with_seed(seed);
@@ -155,16 +161,16 @@ impl Report {
                 "{} requests to {} chains in {:.1} s (seed {})",
                 self.requests, self.chains, self.seconds, self.seed
             ),
-            format!("{} left as a force other than zero", self.forces),
+            format!("{} resulted in a force other than zero", self.forces),
             "gate            acted on".to_owned(),
         ];
         let gates = self.acted.iter().map(|acted| format!("{:14} {:9}", acted.gate.name(), acted.requests));
         let breaches = [
             format!("breaches        {}", self.breaches.total()),
             format!(
-                "  not finite {not_finite}, ceiling {ceiling}, slew {slew}, gain's rate {gain_rate}, gain's range {gain_range}"
+                "  not finite {not_finite}, ceiling {ceiling}, slew {slew}, gain rate {gain_rate}, gain range {gain_range}"
             ),
-            format!("  without permission, hand or valid request {uncalled}, energy's bound {energy}"),
+            format!("  without permission, hand or valid request {uncalled}, stored energy {energy}"),
         ];
         lines.into_iter().chain(gates).chain(breaches).collect::<Vec<_>>().join("\n")
     }

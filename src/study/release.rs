@@ -96,8 +96,8 @@ impl Gates {
     pub const fn words(self) -> &'static str {
         match self {
             Self::None => "no gates",
-            Self::WithoutRelease => "gates",
-            Self::All => "gates and the hand's",
+            Self::WithoutRelease => "without release gate",
+            Self::All => "all gates",
         }
     }
 

@@ -162,6 +162,28 @@ pub struct Options {
 ///
 /// # Errors
 /// [`ReplayError`] if a setting is out of range or the recording is shorter than window and delay together.
+///
+/// ```
+/// use nima_core::impedance::Mode;
+/// use nima_recording::csv::{Mapping, Recording};
+/// use nima_study::replay::{Options, replay};
+///
+/// // Two seconds of a spring of 200 N/m, read from a file.
+/// let row = |k: u32| {
+///     let t = 1e-3 * f64::from(k);
+///     let x = 0.02 * (9.0 * t).sin();
+///     format!("{t},{x},{}\n", -200.0 * x)
+/// };
+/// let folder = tempfile::tempdir()?;
+/// let path = folder.path().join("spring.csv");
+/// std::fs::write(&path, format!("t_s,x_m,fx_n\n{}", (0..2000).map(row).collect::<String>()))?;
+///
+/// let recording = Recording::read(&path, &Mapping::default())?;
+/// let options = Options { mode: Mode::Anchored, window_s: 0.3, delay_s: 0.05, max_degree: 2, cross_talk: false };
+/// let figures = replay(&recording, &options, |_| {})?;
+/// assert!(figures.error.mae < 0.5 * figures.hold.mae, "better than the delayed force");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn replay(recording: &Recording, options: &Options, mut each: impl FnMut(&Row)) -> Result<Figures, ReplayError> {
     let rate_hz = recording.rate_hz;
     let mut settings = Settings {

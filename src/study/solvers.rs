@@ -96,6 +96,23 @@ impl Solver {
     /// [`nima_core::impedance::Settings`]).
     ///
     /// [`Solver::Sliding`] adds the rows to a new factor here; [`Sliding`] keeps its factor from tick to tick.
+    ///
+    /// ```
+    /// use nima_core::impedance::Scales;
+    /// use nima_study::solvers::{Row, Solver};
+    ///
+    /// // A spring of 200 N/m with an offset of 3 N.
+    /// let row = |k: u32| {
+    ///     let t = 0.01 * f64::from(k);
+    ///     let position = [0.02 * (3.0 * t).sin(), 0.06 * (5.0 * t).cos(), 0.3 * (7.0 * t).sin()];
+    ///     Row { position, increment: position, force_n: 3.0 - 200.0 * position[0] }
+    /// };
+    /// let rows: Vec<Row> = (0..300).map(row).collect();
+    /// let fit = Solver::FreshQr.fit(&rows, 1, &Scales::default(), 0.0);
+    /// let later = row(310);
+    /// let predicted_n = fit.predict(&later)[0].expect("the rows determine degree 1");
+    /// assert!((predicted_n - later.force_n).abs() < 1e-9);
+    /// ```
     pub fn fit(self, rows: &[Row], max_degree: usize, scales: &Scales, ridge: f64) -> Fit {
         let max_degree = max_degree.clamp(1, MAX_DEGREE);
         let mut fit = Fit::none(self, *scales);

@@ -93,7 +93,7 @@ impl Verdict {
 /// A file that is not a valid map.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error(
-    "line {line} of the stability map is not \"{expected}\" and eight letters S, M or U; make the map anew with nima study stability-map"
+    "line {line} of the stability map is not \"{expected}\" and eight letters S, M or U; create it again with nima study stability-map"
 )]
 pub struct MapError {
     /// Line, from 1.
@@ -196,6 +196,16 @@ impl StabilityMap {
 
     /// The largest gain of the grid up to which all gains are stable at this delay (s) and stiffness (N/m); 0 if there
     /// is none.
+    ///
+    /// ```
+    /// use nima_core::impedance::Mode;
+    /// use nima_study::stability_map::{StabilityMap, Verdict};
+    ///
+    /// let map = StabilityMap::committed().expect("the map is part of the program");
+    /// let greatest = |delay_s: f64| map.greatest_stable_gain(Mode::Anchored, delay_s, 200.0);
+    /// assert!(greatest(0.3) <= greatest(0.0), "a delay never helps");
+    /// assert_eq!(map.at(Mode::Anchored, greatest(0.0), 0.0, 200.0), Verdict::Stable);
+    /// ```
     pub fn greatest_stable_gain(&self, mode: Mode, delay_s: f64, stiffness_n_m: f64) -> f64 {
         let stable = |gain: &&f64| self.at(mode, **gain, delay_s, stiffness_n_m) == Verdict::Stable;
         GAINS.iter().take_while(stable).last().copied().unwrap_or(0.0)

@@ -32,7 +32,7 @@ pub enum ValidationError {
     #[error(transparent)]
     TipForce(#[from] TipForceError),
     /// Writing to memory failed.
-    #[error("the simulated session could not be written down")]
+    #[error("the simulated session could not be stored")]
     Scratch(#[source] std::io::Error),
 }
 

@@ -108,6 +108,19 @@ pub(super) fn features_of(data: &DataSet, expansion: &Expansion) -> Vec<f32> {
 ///
 /// # Errors
 /// [`TipForceError`] if the settings or data are unusable, the loss diverges, or the training is cancelled.
+///
+/// ```
+/// use std::{path::PathBuf, sync::atomic::AtomicBool};
+///
+/// use nima_core::tip_force::TrainingSettings;
+/// use nima_recording::tip_force::{DataSet, Selection, TipForceError};
+///
+/// let columns = Selection { inputs: Some(vec!["fx_n".into()]), outputs: Some(vec!["tip_fx_n".into()]) };
+/// let data = DataSet::parse(&[(PathBuf::from("short.csv"), b"fx_n,tip_fx_n\n1,1\n2,2\n".to_vec())], &columns)?;
+/// let refused = nima_training::train(&data, &TrainingSettings::default(), &AtomicBool::new(false), &|_| {});
+/// assert!(matches!(refused, Err(TipForceError::TooFewRows { found: 2, .. })));
+/// # Ok::<(), TipForceError>(())
+/// ```
 pub fn train(
     data: &DataSet,
     settings: &TrainingSettings,
@@ -203,6 +216,35 @@ fn all_members(fit: &Fit<'_>, folds: &Folds) -> Result<Vec<(Member, MemberFigure
 ///
 /// # Errors
 /// As [`train`].
+///
+/// ```
+/// use std::{fmt::Write, path::PathBuf, sync::atomic::AtomicBool};
+///
+/// use nima_core::tip_force::{Estimator, TrainingSettings};
+/// use nima_recording::tip_force::{DataSet, Selection};
+/// use nima_training::{evaluate, train_model};
+///
+/// // The wrist measures the force at the tip plus a friction against the motion.
+/// let mut text = String::from("fz_n,insertion_speed_m_s,tip_fz_n,trajectory\n");
+/// for row in 0..800 {
+///     let t = 0.01 * f64::from(row);
+///     let (speed, tip) = (0.03 * (5.0 * t).sin(), 2.0 * (4.1 * t).sin());
+///     writeln!(text, "{},{speed},{tip},{}", tip + speed.signum(), row / 200)?;
+/// }
+/// let columns = Selection {
+///     inputs: Some(vec!["fz_n".into(), "insertion_speed_m_s".into()]),
+///     outputs: Some(vec!["tip_fz_n".into()]),
+/// };
+/// let data = DataSet::parse(&[(PathBuf::from("made.csv"), text.into_bytes())], &columns)?;
+///
+/// let settings = TrainingSettings { hidden: vec![8], members: 1, epochs: Some(5), ..TrainingSettings::default() };
+/// let model = train_model(&data, &settings, [None, None], &AtomicBool::new(false), &|_| {})?;
+/// let figures = evaluate(&mut Estimator::new(model), &data)?;
+/// let mae = |method: usize| figures.overall.methods[method].outputs[0].expect("both predict it").mae;
+/// assert!(mae(0) < 0.5 * mae(1), "network {} N, without a model {} N", mae(0), mae(1));
+/// assert!(figures.trained_on_these, "these errors say nothing about new data");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn train_model(
     data: &DataSet,
     settings: &TrainingSettings,

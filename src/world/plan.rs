@@ -121,6 +121,26 @@ pub fn start_simulated(plan: &Plan, speed: f64) -> Result<Handle, StartError> {
 ///
 /// # Errors
 /// [`SettingsError`] if the settings of the identification are invalid.
+///
+/// ```
+/// use nima_machine::{config::RigConfig, messages::LoopState};
+/// use nima_world::{Plan, run_virtual, scene::Scene};
+///
+/// let plan = Plan {
+///     rig: RigConfig::load("simulated")?,
+///     scene: Scene::load("peg_transfer")?,
+///     calibrations: Default::default(),
+///     engage: true,
+/// };
+/// let mut largest_n = 0.0_f64;
+/// let summary = run_virtual(&plan, 4.0, |tick| {
+///     largest_n = largest_n.max(tick.rendered_n.norm());
+///     None
+/// })?;
+/// assert_eq!((summary.state, summary.missed), (LoopState::Engaged, 0));
+/// assert!(largest_n > 0.5 && largest_n <= plan.rig.gates.ceiling_n, "{largest_n} N");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn run_virtual(
     plan: &Plan,
     seconds: f64,

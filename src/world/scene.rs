@@ -172,6 +172,16 @@ impl Scene {
     ///
     /// # Errors
     /// A name that is neither built in nor a file, a file that cannot be read or parsed, or a value outside its range.
+    ///
+    /// ```
+    /// use nima_machine::config::ConfigError;
+    /// use nima_world::scene::Scene;
+    ///
+    /// let scene = Scene::load("peg_transfer")?;
+    /// assert!(scene.tissue.is_some() && scene.wrist.is_none(), "the force is measured at the tip");
+    /// assert!(matches!(Scene::load("no such scene"), Err(ConfigError::Unknown { .. })));
+    /// # Ok::<(), ConfigError>(())
+    /// ```
     pub fn load(name: &str) -> Result<Self, ConfigError> {
         let (path, text) = text("scene", name, &SCENES)?;
         let scene: Self = parse("scene", &path, &text).map_err(mounted::moved_to_the_rig)?;

@@ -118,7 +118,7 @@ fn an_accelerometer_that_reads_the_other_way_is_named() {
 }
 
 #[test]
-fn without_an_accelerometer_the_arm_serves() {
+fn without_an_accelerometer_the_arm_gives_the_orientation() {
     let mut scene = Scene::load("gravity").unwrap();
     scene.wrist.as_mut().unwrap().imu = None;
     let mut session = GravitySession::new(SessionSettings { use_arm: true, ..SessionSettings::default() });

@@ -72,7 +72,7 @@ fn the_network_takes_the_friction_out_of_the_wrist_force() {
 }
 
 #[test]
-fn until_it_has_moved_the_fallback_answers_and_says_why() {
+fn the_fallback_is_used_with_its_reason_until_the_instrument_has_moved() {
     let all = work(path(Some(Fallback::WristForce)), &scene(11), 3.0);
     let not_moved = ForceSource::InDoubt { unsure: Unsure::NotMoved, fallback: Fallback::WristForce };
     assert_eq!(all[0].0.source, not_moved);
@@ -80,7 +80,7 @@ fn until_it_has_moved_the_fallback_answers_and_says_why() {
 }
 
 #[test]
-fn with_another_tool_it_is_in_doubt_and_falls_back_as_it_was_told() {
+fn another_tool_is_flagged_and_the_chosen_fallback_is_used() {
     let doubtful = |fallback| {
         let all = work(path(Some(fallback)), &heavier(11), 10.0);
         let doubt = ForceSource::InDoubt { unsure: Unsure::OutsideTraining, fallback };
@@ -99,7 +99,7 @@ fn with_another_tool_it_is_in_doubt_and_falls_back_as_it_was_told() {
 }
 
 #[test]
-fn a_handover_is_no_push() {
+fn a_handover_causes_no_force_step() {
     for fallback in [Fallback::WristForce, Fallback::HoldAndFade] {
         let mut path = path(Some(fallback));
         let (mut good, mut foreign) = (World::new(&scene(11), 1000.0), World::new(&heavier(11), 1000.0));

@@ -76,7 +76,7 @@ fn all_well(found: &[Diagnosis]) -> bool {
 }
 
 #[test]
-fn a_rig_that_runs_is_found_whole() {
+fn a_running_rig_is_reported_without_trouble() {
     let _alone = alone();
     let folder = tempfile::tempdir().unwrap();
     let devices = elsewhere(folder.path());
@@ -90,7 +90,7 @@ fn a_rig_that_runs_is_found_whole() {
 }
 
 #[test]
-fn a_rig_that_does_not_run_is_told_device_by_device() {
+fn a_rig_that_does_not_run_is_reported_device_by_device() {
     let _alone = alone();
     let folder = tempfile::tempdir().unwrap();
     let found = tried(&elsewhere(folder.path()));
@@ -107,7 +107,7 @@ fn a_rig_that_does_not_run_is_told_device_by_device() {
 }
 
 #[test]
-fn settings_that_do_not_fit_are_told_by_what_answers() {
+fn wrong_settings_are_reported_with_the_device_that_answers() {
     let _alone = alone();
     let folder = tempfile::tempdir().unwrap();
     let devices = elsewhere(folder.path());
@@ -140,7 +140,7 @@ fn settings_that_do_not_fit_are_told_by_what_answers() {
 }
 
 #[test]
-fn silence_and_faults_of_every_device_are_told() {
+fn silence_and_faults_of_every_device_are_reported() {
     let _alone = alone();
     let folder = tempfile::tempdir().unwrap();
     let devices = elsewhere(folder.path());
@@ -173,7 +173,7 @@ fn silence_and_faults_of_every_device_are_told() {
 }
 
 #[test]
-fn what_somebody_else_holds_and_what_waits_for_calibration_are_told() {
+fn a_device_in_use_and_one_that_waits_for_calibration_are_reported() {
     let _alone = alone();
     let folder = tempfile::tempdir().unwrap();
     let mut devices = Settings { left: None, tracker: None, endoscope: None, pedal: None, ..elsewhere(folder.path()) };

@@ -99,6 +99,21 @@ impl Frame {
     }
 
     /// Decodes exactly one frame, as in a datagram.
+    ///
+    /// # Errors
+    /// [`NoFrame`] if the header, the length or the checksum is wrong.
+    ///
+    /// ```
+    /// use nima_devices::bota::codec::{Frame, INERTIAL_BYTES, NoFrame};
+    ///
+    /// let frame = Frame { force_n: [1.0, -2.0, 0.5], timestamp_us: 1000, ..Frame::default() };
+    /// let mut wire = [0; INERTIAL_BYTES];
+    /// let length = frame.encode(&mut wire);
+    /// assert_eq!(Frame::decode(&wire[..length]), Ok(frame));
+    ///
+    /// wire[5] ^= 1;
+    /// assert_eq!(Frame::decode(&wire[..length]), Err(NoFrame::Checksum));
+    /// ```
     pub fn decode(bytes: &[u8]) -> Result<Self, NoFrame> {
         let header = *bytes.first().ok_or(NoFrame::Shape)?;
         if length_of(header) != Some(bytes.len()) {

@@ -83,6 +83,9 @@ impl std::fmt::Debug for Driver {
 impl Driver {
     /// Opens, configures and starts the sensor (blocks: 4 s for the first generation, which restarts when its port is
     /// opened).
+    ///
+    /// # Errors
+    /// [`Trouble`] if a setting is invalid, the sensor cannot be reached or configured, or its readings are not usable.
     pub fn open(settings: &Settings) -> Result<Self, Trouble> {
         Self::open_within(settings, Timeouts::default())
     }

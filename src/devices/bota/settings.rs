@@ -91,6 +91,9 @@ impl Settings {
     }
 
     /// Refuses settings that no sensor supports.
+    ///
+    /// # Errors
+    /// [`Trouble::Setting`] for the first invalid setting.
     pub fn check(&self) -> Result<(), Trouble> {
         let refuse = |key: &str, value: String, allowed: &str| {
             Err(Trouble::Setting { key: key.to_owned(), value, allowed: allowed.to_owned() })

@@ -144,6 +144,9 @@ fn force_dimension(place: &str) -> Result<Box<dyn Probe>, Trouble> {
 }
 
 /// The probe for `KIND` or `KIND=PLACE`; it is named after the whole text.
+///
+/// # Errors
+/// [`Trouble::Setting`] if the kind is unknown or its address invalid.
 pub fn probe_named(text: &str) -> Result<Box<dyn Probe>, Trouble> {
     let (name, place) = text.split_once('=').unwrap_or((text, ""));
     let Some(kind) = KINDS.iter().find(|kind| kind.name == name) else {

@@ -16,6 +16,9 @@ pub struct TcpProbe {
 
 impl TcpProbe {
     /// For an address `host:port`.
+    ///
+    /// # Errors
+    /// [`Trouble::Setting`] if the text is not an address with a port.
     pub fn new(address: &str) -> Result<Self, Trouble> {
         let has_port =
             address.rsplit_once(':').is_some_and(|(host, port)| !host.is_empty() && port.parse::<u16>().is_ok());

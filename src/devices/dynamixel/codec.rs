@@ -61,7 +61,7 @@ impl Outgoing {
         &self.bytes
     }
 
-    /// Removes them.
+    /// Removes all packets.
     pub fn clear(&mut self) {
         self.bytes.clear();
     }

@@ -146,21 +146,33 @@ struct Quiet {
 }
 
 /// Opens the line, finds the servos and configures them; the torque is off.
+///
+/// # Errors
+/// [`Trouble`] if the port cannot be opened, or a servo is missing, cannot be configured or reports a fault.
 pub fn open(settings: &Settings) -> Result<Driver, Trouble> {
     open_with(settings, &Reboots::default())
 }
 
 /// The same, and restarts the servos requested in `reboots`; the driver obeys later requests as well.
+///
+/// # Errors
+/// As [`open`].
 pub fn open_with(settings: &Settings, reboots: &Reboots) -> Result<Driver, Trouble> {
     open_within(settings, reboots, Timeouts::USUAL)
 }
 
 /// Opens for a diagnosis: a servo that does not answer is reported within a second.
+///
+/// # Errors
+/// As [`open`].
 pub fn try_open(settings: &Settings) -> Result<Driver, Trouble> {
     open_within(settings, &Reboots::default(), Timeouts::SHORT)
 }
 
 /// Ids and models of the servos that answer on a line; writes nothing.
+///
+/// # Errors
+/// [`Trouble`] if the port cannot be opened or closes during the search.
 pub fn who_is_there(port: &str, baud: u32) -> Result<Vec<(u8, &'static str)>, Trouble> {
     if !BAUDS.contains(&baud) {
         let allowed = format!("servos can have {BAUDS:?}");
@@ -214,6 +226,9 @@ fn open_within(settings: &Settings, reboots: &Reboots, timeouts: Timeouts) -> Re
 }
 
 /// Opens over an existing line with a clock of the caller: runs emulated servos in simulated time.
+///
+/// # Errors
+/// As [`open`], except for opening the port.
 pub fn open_over<T: Bytes>(
     mut line: T,
     pace: &mut impl Pace,

@@ -3,6 +3,23 @@
 use super::codec::{Outgoing, STATUS};
 
 /// An instruction packet. Lists are kept as bytes of the wire; [`Instruction::decode`] has checked their lengths.
+///
+/// ```
+/// use nima_devices::dynamixel::{
+///     codec::{Incoming, Outgoing},
+///     message::Instruction,
+/// };
+///
+/// let mut out = Outgoing::new(32);
+/// Instruction::Ping.encode(1, &mut out);
+/// assert_eq!(out.bytes(), [0xFF, 0xFF, 0xFD, 0, 1, 3, 0, 1, 0x19, 0x4E], "the example of the e-manual");
+///
+/// let mut incoming = Incoming::new(64);
+/// incoming.feed(&[0x55, 0xFF]);
+/// incoming.feed(out.bytes());
+/// let packet = incoming.next().expect("a packet behind two bytes of noise");
+/// assert_eq!((packet.id, Instruction::decode(packet.instruction, packet.body)), (1, Ok(Instruction::Ping)));
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Instruction<'a> {
     /// Ask for model and firmware.
@@ -103,6 +120,9 @@ pub enum Refusal {
 
 impl Refusal {
     /// Decodes an error byte: `Ok(None)` without an error, `Err` with the byte if the error is unknown.
+    ///
+    /// # Errors
+    /// The byte itself if it is not a known error.
     pub const fn of(error: u8) -> Result<Option<Self>, u8> {
         Ok(Some(match error & !ALERT {
             0 => return Ok(None),
@@ -146,6 +166,9 @@ fn pair(body: &[u8]) -> Option<(u16, u16, &[u8])> {
 
 impl<'a> Instruction<'a> {
     /// Decodes the instruction and body of a packet.
+    ///
+    /// # Errors
+    /// [`Refusal`] with which a servo answers: unknown instruction, wrong length or wrong key.
     pub fn decode(instruction: u8, body: &'a [u8]) -> Result<Self, Refusal> {
         let bare = |it: Self| if body.is_empty() { Ok(it) } else { Err(Refusal::Length) };
         match instruction {

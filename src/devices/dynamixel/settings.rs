@@ -143,6 +143,9 @@ pub(super) type Wanted = (Register, u32);
 
 impl Settings {
     /// Checks every setting; the error names the key and the allowed values.
+    ///
+    /// # Errors
+    /// [`Trouble::Setting`] for the first invalid setting.
     pub fn check(&self) -> Result<(), Trouble> {
         let in_range = |key: &str, value: f64, low: f64, high: f64| {
             let allowed = format!("it is {low} to {high}");

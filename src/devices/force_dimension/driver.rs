@@ -92,6 +92,9 @@ impl Default for Settings {
 
 impl Settings {
     /// Checks every setting.
+    ///
+    /// # Errors
+    /// [`Trouble::Setting`] for the first value outside its range.
     pub fn check(&self) -> Result<(), Trouble> {
         let ranges = [
             ("rate_hz", self.rate_hz, 100.0, 2000.0),
@@ -190,6 +193,10 @@ struct Opened {
 
 /// Opens a device: loads the library, opens and configures the device on the thread that will own it, and waits for the
 /// first reading. Afterwards its brakes are on (or it is free, depending on the settings), without force.
+///
+/// # Errors
+/// [`Trouble`] if a setting is invalid, the library is missing or unusable, or the device is missing, in use or not
+/// ready.
 pub fn open(settings: &Settings) -> Result<Driver, Trouble> {
     settings.check()?;
     let sdk = super::library::of(settings)?;

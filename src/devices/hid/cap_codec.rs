@@ -73,6 +73,21 @@ fn axes<const N: usize>(bytes: &[u8]) -> Result<[i16; N], BadReport> {
 
 impl CapReport {
     /// Decodes one report.
+    ///
+    /// # Errors
+    /// [`BadReport`] if the id or length is not that of a report, or a value is impossible.
+    ///
+    /// ```
+    /// use nima_devices::hid::cap_codec::{CapReport, CapState};
+    ///
+    /// let report = CapReport::decode(&[1, 0x5E, 0x01, 0, 0, 0, 0]);
+    /// assert_eq!(report, Ok(CapReport::Translation([350, 0, 0])));
+    ///
+    /// let mut cap = CapState::default();
+    /// cap.take(&CapReport::Translation([350, 175, 0]), 0.0);
+    /// let push = cap.reading().translation;
+    /// assert_eq!((push.x, push.y), (1.0, -0.5), "raw y points towards the user, the reading's y away");
+    /// ```
     pub fn decode(bytes: &[u8]) -> Result<Self, BadReport> {
         match bytes {
             [TRANSLATION, rest @ ..] if rest.len() == 6 => axes(rest).map(Self::Translation),

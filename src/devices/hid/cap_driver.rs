@@ -50,6 +50,9 @@ pub struct CapDriver {
 
 impl CapDriver {
     /// Opens it; may take some 100 ms.
+    ///
+    /// # Errors
+    /// [`Trouble`] if the source is invalid, or the device is missing, cannot be opened or is not a cap.
     pub fn open(settings: &CapSettings) -> Result<Self, Trouble> {
         let source: Source = settings.source.parse()?;
         let (datagrams, identity, wire) = match &source {

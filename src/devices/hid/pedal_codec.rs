@@ -31,6 +31,9 @@ const FIRST_KEY: u8 = 4;
 
 impl Layout {
     /// The pressed switches in a report, one per bit, the first switch in the lowest bit.
+    ///
+    /// # Errors
+    /// [`BadReport`] if the length or the content is not that of a pedal's report.
     pub fn decode(&self, report: &[u8]) -> Result<u32, BadReport> {
         match self {
             Self::Keyboard { keys } => {

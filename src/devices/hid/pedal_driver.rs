@@ -53,6 +53,9 @@ impl PedalRoles {
 
 impl PedalSettings {
     /// Checks the indices and returns the functions of the switches.
+    ///
+    /// # Errors
+    /// [`Trouble::Setting`] for an index that the pedal does not have, or that is used twice.
     pub fn roles(&self) -> Result<PedalRoles, Trouble> {
         let setting = |key: &str, value: String, allowed: &str| Trouble::Setting {
             key: key.to_owned(),
@@ -74,6 +77,9 @@ impl PedalSettings {
     }
 
     /// Refuses invalid switches, keys and sources.
+    ///
+    /// # Errors
+    /// [`Trouble::Setting`] for the first invalid setting.
     pub fn check(&self) -> Result<(), Trouble> {
         self.roles()?;
         self.source.parse::<Source>().map(drop)
@@ -100,6 +106,9 @@ pub struct PedalDriver {
 
 impl PedalDriver {
     /// Opens it; may take some 100 ms.
+    ///
+    /// # Errors
+    /// [`Trouble`] if a setting is invalid, or the device is missing, cannot be opened or is not a pedal.
     pub fn open(settings: &PedalSettings) -> Result<Self, Trouble> {
         settings.roles()?;
         let source: Source = settings.source.parse()?;
@@ -108,6 +117,9 @@ impl PedalDriver {
     }
 
     /// Uses an open source of reports. A pedal with unknown ids is treated as a keyboard.
+    ///
+    /// # Errors
+    /// [`Trouble::Setting`] if a setting is invalid.
     pub fn over(
         datagrams: Box<dyn Datagrams>,
         identity: &HidIdentity,

@@ -49,6 +49,9 @@ fn succeeded(code: libc::c_int) -> io::Result<()> {
 }
 
 /// Listens for connections at a path that does not exist yet.
+///
+/// # Errors
+/// I/O errors, for instance if the path exists or is too long.
 pub fn listen(path: &Path) -> io::Result<UnixListener> {
     let socket = socket()?;
     let (address, length) = address(path)?;
@@ -60,6 +63,9 @@ pub fn listen(path: &Path) -> io::Result<UnixListener> {
 }
 
 /// Connects to a listener.
+///
+/// # Errors
+/// I/O errors, for instance if nothing listens at the path.
 pub fn connect(path: &Path) -> io::Result<Packets> {
     let socket = socket()?;
     let (address, length) = address(path)?;

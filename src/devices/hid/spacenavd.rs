@@ -39,6 +39,9 @@ pub enum Event {
 
 impl Event {
     /// Decodes one event.
+    ///
+    /// # Errors
+    /// [`BadReport`] if the length, the type or a value is not that of an event.
     pub fn decode(bytes: &[u8]) -> Result<Self, BadReport> {
         let bytes: &[u8; EVENT_LENGTH] = bytes.try_into().map_err(|_| BadReport::Shape)?;
         let mut words = [0_i32; 8];
@@ -97,6 +100,9 @@ pub struct Spacenavd {
 #[cfg(unix)]
 impl Spacenavd {
     /// Connects to the daemon's socket.
+    ///
+    /// # Errors
+    /// [`Trouble`] if the socket cannot be connected to.
     pub fn open(path: &Path) -> Result<Self, Trouble> {
         let stream = std::os::unix::net::UnixStream::connect(path).and_then(|stream| {
             stream.set_nonblocking(true)?;

@@ -84,6 +84,9 @@ impl Default for Feedback {
 
 impl Feedback {
     /// Decodes the payload of an answer to `Refresh` or `RefreshFeedback`.
+    ///
+    /// # Errors
+    /// [`Damaged`] if the bytes are not a valid message.
     pub fn decode(payload: &[u8]) -> Result<Self, Damaged> {
         let mut feedback = Self::default();
         for field in Fields::of(payload) {

@@ -113,6 +113,9 @@ pub struct Frame<'a> {
 
 impl<'a> Frame<'a> {
     /// Decodes the bytes of one datagram or packet.
+    ///
+    /// # Errors
+    /// [`Damaged`] if structure, version or length are not those of a frame.
     pub fn decode(bytes: &'a [u8]) -> Result<Self, Damaged> {
         let (mut raw, mut payload) = (None, [].as_slice());
         for field in Fields::of(bytes) {

@@ -38,11 +38,18 @@ impl FaultClearing {
 const CLEARED: Duration = Duration::from_millis(100);
 
 /// Opens the arm. Faults are reported, not cleared.
+///
+/// # Errors
+/// [`Trouble`] if the arm cannot be reached, refuses the user, or is in a fault or another state in which it cannot be
+/// used.
 pub fn open(settings: &Settings) -> Result<Driver, Trouble> {
     open_clearing(settings, &FaultClearing::default())
 }
 
 /// Opens the arm, after clearing its faults if that was requested.
+///
+/// # Errors
+/// As [`open`].
 pub fn open_clearing(settings: &Settings, clearing: &FaultClearing) -> Result<Driver, Trouble> {
     settings.check()?;
     let mut lines = Lines::connect(settings)?;

@@ -97,6 +97,9 @@ pub struct Lines {
 
 impl Lines {
     /// Connects, without opening sessions.
+    ///
+    /// # Errors
+    /// [`Trouble`] if the address cannot be reached.
     pub fn connect(settings: &Settings) -> Result<Self, Trouble> {
         let place = format!("{}:{}", settings.host, settings.tcp_port);
         let timeout = Duration::from_secs_f64(settings.timeout_s);
@@ -118,6 +121,9 @@ impl Lines {
     }
 
     /// Opens a session on each connection.
+    ///
+    /// # Errors
+    /// [`Trouble`] if the arm refuses the user or does not answer.
     pub fn log_in(&mut self, settings: &Settings) -> Result<(), Trouble> {
         let login = CreateSessionInfo {
             username: settings.user.clone(),

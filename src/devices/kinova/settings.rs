@@ -50,6 +50,15 @@ impl Default for Settings {
 
 impl Settings {
     /// Settings for an endpoint `HOST tcp=PORT udp=PORT`, the format in which an emulator prints it.
+    ///
+    /// ```
+    /// use nima_devices::kinova::Settings;
+    ///
+    /// let settings = Settings::at("127.0.0.1 tcp=10000 udp=10001").expect("a complete endpoint");
+    /// assert_eq!((settings.host.as_str(), settings.tcp_port, settings.udp_port), ("127.0.0.1", 10_000, 10_001));
+    /// assert!(settings.check().is_ok());
+    /// assert!(Settings::at("127.0.0.1").is_none(), "the ports are missing");
+    /// ```
     pub fn at(endpoint: &str) -> Option<Self> {
         let mut words = endpoint.split_whitespace();
         let host = words.next()?.to_owned();
@@ -70,6 +79,9 @@ impl Settings {
     }
 
     /// Checks every value.
+    ///
+    /// # Errors
+    /// [`Trouble::Setting`] for the first value outside its range.
     pub fn check(&self) -> Result<(), Trouble> {
         let within = |key: &str, value: f64, low: f64, high: f64| {
             if value > low && value <= high {

@@ -251,6 +251,19 @@ impl<'a> Command<'a> {
     }
 
     /// Parses a line (without its CR) as the unit does; an error is what the unit would answer.
+    ///
+    /// # Errors
+    /// [`ErrorCode`] that the unit would answer.
+    ///
+    /// ```
+    /// use nima_devices::ndi::{Command, ErrorCode};
+    ///
+    /// let line = Command::Beep(2).encode();
+    /// let (cr, text) = line.as_bytes().split_last().expect("a command is never empty");
+    /// assert!(text.starts_with(b"BEEP:2") && *cr == b'\r');
+    /// assert_eq!(Command::parse(text), Ok(Command::Beep(2)));
+    /// assert_eq!(Command::parse(b"BEEP:20000"), Err(ErrorCode::BAD_CRC));
+    /// ```
     pub fn parse(line: &'a [u8]) -> Result<Self, ErrorCode> {
         let is_name = |byte: &u8| byte.is_ascii_uppercase() || byte.is_ascii_digit();
         let end = line.iter().position(|byte| !is_name(byte)).unwrap_or(line.len());

@@ -17,6 +17,9 @@ pub struct Definition(Box<[u8; DEFINITION]>);
 
 impl Definition {
     /// Reads the file named under `key` in the rig file.
+    ///
+    /// # Errors
+    /// [`Trouble::Setting`] if the file cannot be read, is too long, or is not a tool definition.
     pub fn load(key: &str, path: &Path) -> Result<Self, Trouble> {
         let refuse =
             |allowed: String| Trouble::Setting { key: key.to_owned(), value: path.display().to_string(), allowed };

@@ -91,6 +91,10 @@ enum Event {
 
 impl Driver {
     /// Opens, configures and starts the unit; may take some seconds.
+    ///
+    /// # Errors
+    /// [`Trouble`] if a setting is invalid, the unit cannot be reached or reports a fault, or a tool definition is not
+    /// accepted.
     pub fn open(settings: &Settings) -> Result<Self, Trouble> {
         Self::open_within(settings, opening::Timeouts::USUAL)
     }

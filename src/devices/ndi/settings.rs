@@ -64,6 +64,9 @@ fn refuse(key: &str, value: impl Into<String>, allowed: &str) -> Trouble {
 
 impl Settings {
     /// Checks every setting.
+    ///
+    /// # Errors
+    /// [`Trouble::Setting`] for the first invalid setting.
     pub fn check(&self) -> Result<(), Trouble> {
         if self.address.is_some() == self.port.is_some() {
             let value = self.address.as_deref().unwrap_or("nothing");

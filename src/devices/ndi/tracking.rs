@@ -84,6 +84,9 @@ impl Frames {
     }
 
     /// Decodes the body of a `BX` reply to a request with `options`.
+    ///
+    /// # Errors
+    /// [`Malformed`] if the body does not have the structure that `options` require.
     pub fn of_block(body: &[u8], options: u16) -> Result<Self, Malformed> {
         let mut cursor = Cursor(body);
         let mut frames = Self::default();
@@ -137,6 +140,9 @@ impl Frames {
     }
 
     /// Decodes a `TX` reply to a request with `options`.
+    ///
+    /// # Errors
+    /// [`Malformed`] if the text does not have the structure that `options` require.
     pub fn of_text(text: &[u8], options: u16) -> Result<Self, Malformed> {
         let mut cursor = Cursor(text);
         let mut frames = Self::default();

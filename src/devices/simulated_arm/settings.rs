@@ -58,6 +58,9 @@ impl Settings {
     }
 
     /// Checks every value.
+    ///
+    /// # Errors
+    /// [`Trouble::Setting`] for the first value outside its range.
     pub fn check(&self) -> Result<(), Trouble> {
         let refuse =
             |key: &str, value: String, allowed: String| Trouble::Setting { key: key.to_owned(), value, allowed };

@@ -17,6 +17,21 @@ struct Line<T> {
 type Shared<T> = Arc<Mutex<Line<T>>>;
 
 /// One end of a pair of byte streams.
+///
+/// ```
+/// use nima_devices::{
+///     Loss,
+///     transport::{Bytes, MemoryBytes},
+/// };
+///
+/// let [mut here, mut there] = MemoryBytes::pair();
+/// let mut buffer = [0; 8];
+/// assert_eq!(there.receive(&mut buffer), Ok(0), "nothing has arrived yet");
+/// here.send(b"abc").expect("both ends are connected");
+/// assert_eq!((there.receive(&mut buffer).expect("three bytes"), &buffer[..3]), (3, &b"abc"[..]));
+/// here.cut();
+/// assert_eq!(there.receive(&mut buffer), Err(Loss::Disconnected));
+/// ```
 #[derive(Clone, Debug)]
 pub struct MemoryBytes {
     incoming: Shared<u8>,

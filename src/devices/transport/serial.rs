@@ -51,6 +51,9 @@ const UDEV: &str = r#"SUBSYSTEM=="tty", SUBSYSTEMS=="usb", GROUP="plugdev", MODE
 
 impl Serial {
     /// Opens the line. Some sensors restart when their line is opened (DTR).
+    ///
+    /// # Errors
+    /// [`Trouble`] if the port is missing, in use, not permitted, or does not support the settings.
     pub fn open(settings: &SerialSettings) -> Result<Self, Trouble> {
         let SerialSettings { port, baud } = settings;
         let builder = serialport::new(port, *baud).timeout(Duration::from_millis(1));
@@ -87,11 +90,17 @@ impl Serial {
     }
 
     /// Changes the speed of the open line.
+    ///
+    /// # Errors
+    /// [`Loss::Disconnected`] if the port refuses the speed or is gone.
     pub fn set_baud(&mut self, baud: u32) -> Result<(), Loss> {
         self.port.set_baud_rate(baud).map_err(|_| Loss::Disconnected)
     }
 
     /// Sends a break of this length (blocks, so for opening only).
+    ///
+    /// # Errors
+    /// [`Loss::Disconnected`] if the port refuses or is gone.
     pub fn send_break(&mut self, length: Duration) -> Result<(), Loss> {
         self.port.set_break().map_err(|_| Loss::Disconnected)?;
         std::thread::sleep(length);
@@ -99,6 +108,9 @@ impl Serial {
     }
 
     /// Discards what has arrived.
+    ///
+    /// # Errors
+    /// [`Loss::Disconnected`] if the port is gone.
     pub fn clear(&mut self) -> Result<(), Loss> {
         self.port.clear(serialport::ClearBuffer::Input).map_err(|_| Loss::Disconnected)
     }

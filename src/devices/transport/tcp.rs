@@ -17,6 +17,9 @@ pub struct Tcp {
 
 impl Tcp {
     /// Connects to `host:port` within `timeout`.
+    ///
+    /// # Errors
+    /// [`Trouble`] if the address cannot be resolved or connected to in time.
     pub fn open(address: &str, timeout: Duration) -> Result<Self, Trouble> {
         let trouble = |error| Trouble::of_address(address, &error);
         let resolved = address.to_socket_addrs().map_err(trouble)?.next();
@@ -32,11 +35,17 @@ impl Tcp {
     }
 
     /// A second handle of the same connection, for emergencies.
+    ///
+    /// # Errors
+    /// If the operating system cannot duplicate the connection.
     pub fn duplicate(&self) -> std::io::Result<Self> {
         Ok(Self { stream: self.stream.try_clone()? })
     }
 
     /// Wraps an accepted connection.
+    ///
+    /// # Errors
+    /// If the connection cannot be configured.
     pub fn of(stream: TcpStream) -> std::io::Result<Self> {
         stream.set_nonblocking(true)?;
         Ok(Self { stream })

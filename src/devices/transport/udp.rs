@@ -21,6 +21,9 @@ pub struct Udp {
 
 impl Udp {
     /// Listens at one address of this computer (port 0: any free one) for datagrams of one peer.
+    ///
+    /// # Errors
+    /// [`Trouble`] if this computer cannot listen at the address.
     pub fn listen(at: SocketAddr, from: IpAddr) -> Result<Self, Trouble> {
         let trouble = |error| Trouble::of_address(&format!("UDP port {} of {}", at.port(), at.ip()), &error);
         let socket = UdpSocket::bind(at).map_err(trouble)?;
@@ -33,6 +36,9 @@ impl Udp {
     }
 
     /// Communicates with one address.
+    ///
+    /// # Errors
+    /// [`Trouble`] if the socket cannot be created or connected.
     pub fn connect(to: SocketAddr) -> Result<Self, Trouble> {
         let trouble = |error| Trouble::of_address(&to.to_string(), &error);
         let socket = UdpSocket::bind(("0.0.0.0", 0)).map_err(trouble)?;

@@ -153,6 +153,21 @@ impl<L: Link> Loop<L> {
     }
 
     /// Executes one tick of each pair. A side without a pair gets [`Outputs::SAFE`] and no tick.
+    ///
+    /// ```
+    /// use nima_machine::{
+    ///     config::RigConfig,
+    ///     rig::{Outputs, SIDES},
+    ///     teleop::{Calibrations, Loop, Timing},
+    /// };
+    ///
+    /// let rig = RigConfig::load("simulated")?;
+    /// let mut control = Loop::new(&rig, &[Some(Calibrations::default()), None])?;
+    /// let (outputs, ticks) = control.step([None; SIDES], &Timing::default());
+    /// assert_eq!(outputs, [Outputs::SAFE; SIDES], "no measurement, so no force and no motion");
+    /// assert!(ticks[0].is_some() && ticks[1].is_none(), "this loop has the right arm pair only");
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn step(
         &mut self,
         inputs: [Option<Inputs>; SIDES],

@@ -76,7 +76,7 @@ pub struct Pair<L: Link = ProgrammedLink> {
     tracking: Tracking,
     plausibility: Plausibility,
     chain: Chain,
-    /// The force limits found that nobody holds the handle; treated like an absent hand.
+    /// The release gate has found that nobody holds the handle; treated like an absent hand.
     hand_is_gone: bool,
     gripper_chain: GripperChain,
     last_inputs: Option<Inputs>,

@@ -94,7 +94,7 @@ fn let_go() -> Result<Special, FaultsError> {
     let outcome = release::let_go(Situation::Held, Gates::WithoutRelease, Mode::Anchored, 50.0, tissue)
         .map_err(|error| wrong(error.to_string()))?;
     Ok(Special {
-        what: "the hand lets go, nothing tells".to_owned(),
+        what: "the hand opens, no presence detection".to_owned(),
         verdict: Verdict::Bounded,
         told: format!(
             "energy gate: {:.0} mJ, peak {:.1} N (no presence switch; docs/release.md)",

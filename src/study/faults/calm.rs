@@ -29,7 +29,7 @@ pub struct Calm {
 impl Calm {
     pub(super) fn line(&self) -> String {
         let told = if self.false_alarms.is_empty() { "none".to_owned() } else { self.false_alarms.join("; ") };
-        format!("- false alarms in {} healthy runs of {:.0} minutes together: {told}", self.runs, self.seconds / 60.0)
+        format!("- false alarms in {} fault-free runs, {:.0} minutes in total: {told}", self.runs, self.seconds / 60.0)
     }
 }
 

@@ -204,10 +204,10 @@ impl Kind {
             K::ForceAxes => "axes of the force are exchanged",
             K::ForceSpike => "one sample is 10 N off",
             K::ForceSpikes => "every 50th sample is 10 N off",
-            K::ForceSaturated => "range of the force ends 1 N from here",
+            K::ForceSaturated => "force saturates 1 N above its present value",
             K::ForceNoise => "noise of 0.4 N",
-            K::ForceLate => "force comes 50 ms late, untold",
-            K::ForceLateTold => "samples are 15 ms old, told",
+            K::ForceLate => "force is 50 ms late, without time stamps",
+            K::ForceLateTold => "samples are 15 ms old, with time stamps",
             K::ForceDoubled => "every sample comes twice, every second is lost",
             K::ForceReordered => "neighbouring samples are exchanged",
             K::ForceNan => "force is NaN",
@@ -245,11 +245,11 @@ impl Kind {
             K::PedalDown => "pedal is stuck down",
             K::PedalUp => "pedal is stuck up",
             K::PedalBounces => "pedal bounces every 20 ms",
-            K::HandAbsent => "hand lets go, the handle tells",
+            K::HandAbsent => "hand opens, detected by the handle",
             K::ClockForward => "clock jumps 1 s ahead",
             K::ClockBackward => "clock jumps 1 s back",
             K::ClockStops => "clock stands still",
-            K::ClockSlow => "clock goes at half its rate",
+            K::ClockSlow => "clock runs at half its rate",
             K::ClockNan => "time is NaN",
             K::PeriodsMissed => "100 periods are missed",
             K::FewPeriodsMissed => "10 periods are missed",
@@ -263,16 +263,16 @@ impl Kind {
             K::LinkRepeats => "link repeats one parcel under new times",
             K::CommandsPoisoned => "commands with NaN and out of range",
             K::CommandsDoubled => "every command comes twice",
-            K::SliderShakes => "gain is commanded to and fro each tick",
+            K::SliderShakes => "gain is commanded up and down in each tick",
         }
     }
 
     /// If it is accepted as fresh data by design: why.
     pub const fn passes_as_fresh(self) -> Option<&'static str> {
         match self {
-            K::LinkJitter | K::LinkHalf | K::LinkSwaps | K::ForceDoubled | K::ForceReordered | K::ForceSpikes => Some(
-                "late by less than 5 ms: the age gate takes it as fresh; gates with a memory then differ for a while",
-            ),
+            K::LinkJitter | K::LinkHalf | K::LinkSwaps | K::ForceDoubled | K::ForceReordered | K::ForceSpikes => {
+                Some("late by less than 5 ms, which the age gate accepts; gates with a memory then differ for a while")
+            }
             _ => None,
         }
     }
@@ -282,17 +282,17 @@ impl Kind {
         Some(match self {
             K::ForceSmallStep => "a small step is within what a contact does in a tick",
             K::ForceDrift | K::ForceSlowDrift => "a slow bias looks like a slow contact",
-            K::ForceAxes => "before a contact: a slanting surface gives the same",
-            K::ForceGain => "before a contact: a stiffer tissue gives the same",
-            K::ForceLate => "without time stamps of the sensor: a lagging arm gives the same",
-            K::ForceDead => "in the air: an ideal sensor gives the same",
+            K::ForceAxes => "before a contact, an inclined surface would look the same",
+            K::ForceGain => "before a contact, stiffer tissue would look the same",
+            K::ForceLate => "without time stamps of the sensor, a lagging arm would look the same",
+            K::ForceDead => "without contact, an ideal sensor would look the same",
             K::HandleWithoutForce | K::HandleInverted | K::HandleKeepsForce => {
                 "nothing measures the force in the handle"
             }
             K::HandDrift | K::HandLate | K::HandNoise | K::HandSign | K::HandAxes => {
-                "another motion of a hand gives the same"
+                "a different motion of the hand would look the same"
             }
-            K::TipDrift => "another place gives the same",
+            K::TipDrift => "a different position would look the same",
             _ => return None,
         })
     }

@@ -51,13 +51,13 @@ pub enum LiveError {
     #[error(transparent)]
     Start(#[from] StartError),
     /// The loop was not engaged within 5 s.
-    #[error("the loop on the real clock did not engage within 5 s: too much runs beside it")]
+    #[error("the loop on the real clock did not engage within 5 s: other programs use too much processor time")]
     NotEngaged,
     /// The loop's thread panicked.
-    #[error("the loop's thread died: start the study again and report this")]
+    #[error("the loop's thread panicked: start the study again and report this")]
     Died,
     /// The temporary folder could not be made.
-    #[error("no scratch folder can be made")]
+    #[error("the temporary folder cannot be created")]
     Scratch(#[source] io::Error),
 }
 
@@ -136,7 +136,7 @@ pub(super) fn all() -> Result<Vec<Special>, LiveError> {
                 }
             });
         })?,
-        beside("a disk that is written through all the time while summaries are kept", |stop| {
+        beside("continuous synchronised disk writes while summaries are saved", |stop| {
             slow_disk(stop, folder.path());
         })?,
         full_disk(folder.path())?,
@@ -176,9 +176,9 @@ fn screen_hangs() -> Result<Special, LiveError> {
     let summary = handle.stop_and_join().ok_or(LiveError::Died)?;
     let counted = summary.dropped > 0 && running;
     Ok(Special {
-        what: "the screen hangs: nobody takes ticks".to_owned(),
+        what: "the screen hangs and reads no ticks".to_owned(),
         verdict: if counted { Verdict::Detected } else { Verdict::Silent },
-        told: format!("{} ticks counted as dropped; the loop went on, {}", summary.dropped, timing(&summary)),
+        told: format!("{} ticks counted as dropped; the loop continued, {}", summary.dropped, timing(&summary)),
         detection_ms: None,
         zero_ms: None,
     })
@@ -244,6 +244,6 @@ fn full_disk(folder: &Path) -> Result<Special, LiveError> {
     });
     let kept = fs::read(&path).is_ok_and(|bytes| bytes == b"the result before");
     let verdict = if told.is_err() && kept { Verdict::Detected } else { Verdict::Silent };
-    let told = told.err().map_or_else(String::new, |error| format!("{error}; the file before is kept"));
+    let told = told.err().map_or_else(String::new, |error| format!("{error}; the previous file is kept"));
     Ok(Special { what: "the disk is full".to_owned(), verdict, told, detection_ms: None, zero_ms: None })
 }

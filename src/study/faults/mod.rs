@@ -50,7 +50,7 @@ pub enum FaultsError {
     Network(#[from] TipForceError),
     /// The fault-free machine did not reach the situation in which a fault was to be tried.
     #[error(
-        "the healthy machine is {state} where it should be {place}: a false alarm, or this study's scenes have changed"
+        "the fault-free machine is {state} where it should be {place}: a false alarm, or this study's scenes have changed"
     )]
     NotReached { place: &'static str, state: String },
     /// A fault on the real clock could not be tried.
@@ -330,7 +330,7 @@ pub fn study(options: &Options, mut progress: impl FnMut(usize, usize, &str)) ->
         specials.extend(at_rest::all()?);
         specials.extend(live::all()?);
     }
-    progress(all - 1, all, "healthy runs");
+    progress(all - 1, all, "fault-free runs");
     let calm = calm::runs(options.calm_s)?;
     progress(all, all, "done");
     let sums = Sums::of(&outcomes, &specials);

@@ -19,13 +19,13 @@ impl Report {
                 self.row(&mut text, kind, sensor);
             }
         }
-        text.push_str("\nOn the real clock, and of files:\n\n| fault | verdict | detection (ms) | force gone (ms) | what is told |\n|---|---|---|---|---|\n");
+        text.push_str("\nFaults on the real clock and of files:\n\n| fault | verdict | detection (ms) | force gone (ms) | report |\n|---|---|---|---|---|\n");
         for Special { what, verdict, told, detection_ms, zero_ms } in &self.specials {
             let number = |ms: &Option<f64>| ms.map_or_else(|| "-".to_owned(), |ms| format!("{ms:.1}"));
             let [detection, zero] = [detection_ms, zero_ms].map(number);
             writeln!(text, "| {what} | {} | {detection} | {zero} | {told} |", word(*verdict)).ok();
         }
-        text.push_str("\nBounded, not detected:\n\n| fault | sensor at | largest error (N) | why it cannot be told |\n|---|---|---|---|\n");
+        text.push_str("\nBounded, not detected:\n\n| fault | sensor at | largest error (N) | why it cannot be detected |\n|---|---|---|---|\n");
         for kind in Kind::ALL {
             for sensor in SensorAt::ALL {
                 let of =
@@ -45,10 +45,10 @@ impl Report {
         let Sums { detection_p50_ms, detection_p99_ms, detection_max_ms, bounded_error_n, most_n, step_n, .. } =
             self.sums;
         let lines = [
-            format!("{kinds} kinds of fault; {cases} cases on the virtual clock, {} beside it.", self.specials.len()),
+            format!("{kinds} kinds of fault; {cases} cases on the virtual clock, {} others.", self.specials.len()),
             format!("- no force and no motion: {no_force}"),
             format!(
-                "- harmless (at most {HARMLESS_N} N from the twin within 5 ms, or no farther from the truth than the twin): {harmless}"
+                "- harmless (at most {HARMLESS_N} N from the twin within 5 ms, or no further from the true force than the twin): {harmless}"
             ),
             format!("- detected: {detected}"),
             format!("- bounded, not detected: {bounded} (largest error {bounded_error_n:.2} N)"),

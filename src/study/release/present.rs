@@ -73,8 +73,8 @@ impl Report {
             y: Axis::log(unit, low, high),
             series: [
                 (Gates::None, Style::Dashed, "no gates"),
-                (Gates::WithoutRelease, Style::Line, "gates"),
-                (Gates::All, Style::Points, "and the hand's"),
+                (Gates::WithoutRelease, Style::Line, "without release gate"),
+                (Gates::All, Style::Points, "all gates"),
             ]
             .into_iter()
             .flat_map(|(gates, style, word)| {
@@ -89,7 +89,7 @@ impl Report {
             .collect(),
         };
         svg(&[
-            chart("Handle travel within 1 s of letting go", "travel (mm)", 1.0, 1e4, |outcome| outcome.travel_mm),
+            chart("Handle travel within 1 s of release", "travel (mm)", 1.0, 1e4, |outcome| outcome.travel_mm),
             chart("Energy given to the handle", "energy (mJ)", 0.1, 1e5, |outcome| outcome.energy_mj),
         ])
     }

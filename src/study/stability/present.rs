@@ -57,13 +57,13 @@ impl Report {
         let (verdict, drift) = (&self.verdict, &self.drift);
         let mut out = String::from(
             "\nWorst relative error of the predicted force, degrees 1 to 5, against an exact solution of the same problem;\n\
-             k/30: so many of 30 predictions were finite numbers; *: the rows do not determine the solution;\n\
+             k/30: k of 30 predictions were finite; *: the rows do not determine the solution;\n\
              condition: of the scaled columns with the ridge (ours).\n\n",
         );
         for failures in &verdict.failures {
             writeln!(
                 out,
-                "{:<15} of {} extremes and degrees: {} not finite, {} off by more than 1 %",
+                "{:<15} of {} cases and degrees: {} not finite, {} off by more than 1 %",
                 failures.solver.name(),
                 failures.tried,
                 failures.not_finite,
@@ -82,14 +82,14 @@ impl Report {
         .ok();
         writeln!(
             out,
-            "metres or mm    ours {:.1e}, pseudo-inverse {:.1e}",
+            "m against mm     ours {:.1e}, pseudo-inverse {:.1e}",
             verdict.ours_unit_difference, verdict.pseudo_inverse_unit_difference
         )
         .ok();
         let late = drift.running_sums_late.map_or_else(|| "none".into(), |late| format!("{late:.1e}"));
         writeln!(
             out,
-            "{} ticks  ours {:.1e} early, {:.1e} late; sums with rows subtracted {:.1e} early, {late} late",
+            "{} ticks  ours {:.1e} early, {:.1e} late; running sums {:.1e} early, {late} late",
             drift.ticks, drift.ours_early, drift.ours_late, drift.running_sums_early
         )
         .ok();
@@ -118,13 +118,13 @@ impl Report {
             .collect();
         let target = vec![[1.0, TARGET], [ORDINARY_CONDITION, TARGET], [ORDINARY_CONDITION, 1e-17]];
         series.push(Series {
-            name: "target: stay left of and below, or right of it".into(),
+            name: "target: below the line, or to the right of it".into(),
             colour: 6,
             style: Style::Dashed,
             points: target,
         });
         Chart {
-            title: "Every extreme and degree (upper edge: no finite answer)".into(),
+            title: "Every case and degree (upper edge: no finite answer)".into(),
             x: Axis::log("condition of the solver's own columns (right edge: infinite)", 1.0, 1e18),
             y: Axis::log("worst relative error of the force", 1e-17, 1e6),
             series,

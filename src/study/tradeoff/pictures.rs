@@ -21,7 +21,7 @@ impl Study {
         }
         let knobs = [
             (Knob::Delay, Mode::Anchored, "Delay of the link (ms)"),
-            (Knob::Rate, Mode::Anchored, "Samples a second (Hz)"),
+            (Knob::Rate, Mode::Anchored, "Sampling rate (Hz)"),
             (Knob::Degree, Mode::Literal, "Highest degree N"),
             (Knob::Window, Mode::Literal, "Window (ms)"),
         ];
@@ -48,7 +48,7 @@ impl Study {
             Some((figures.source.clone(), places))
         };
         let lines: Vec<_> = self.sources.iter().filter_map(line).collect();
-        let title = format!("{} along the {}: error by delayed DFR's", capital(mode.name()), knob.name());
+        let title = format!("{}, {}: error relative to delayed DFR", capital(mode.name()), knob.name());
         let mut chart =
             chart(title, [label, "Mean error / that of delayed DFR"], lines, Style::Line, knob != Knob::Degree);
         // Always show the ratio 1, the error of delayed DFR.
@@ -81,12 +81,7 @@ fn cost_against_error(figures: &SourceFigures) -> Chart {
     let title = format!("{}: cost against error at {base_ms:.0} ms (force in {})", figures.source, figures.unit);
     let mut chart =
         chart(title, ["Median time of one tick (us)", "Mean error at the horizon"], modes, Style::Points, true);
-    chart.series.push(Series {
-        name: "nothing beats these".to_owned(),
-        colour: 6,
-        style: Style::Dashed,
-        points: front,
-    });
+    chart.series.push(Series { name: "Pareto front".to_owned(), colour: 6, style: Style::Dashed, points: front });
     chart
 }
 

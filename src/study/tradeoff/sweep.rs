@@ -22,7 +22,7 @@ const LONGEST_SHARE: f64 = 0.25;
 #[derive(Debug, thiserror::Error)]
 #[expect(missing_docs, reason = "the messages say it")]
 pub enum SweepError {
-    #[error("cancelled; nothing was kept")]
+    #[error("cancelled; nothing was saved")]
     Cancelled,
     /// Nothing could be measured on a source.
     #[error("{name}: no point of the plan can be measured on it ({reason}); record longer, or at a higher rate")]

@@ -42,7 +42,7 @@ fn source_in_words(figures: &SourceFigures, text: &mut String) {
     }
     let mut front: Vec<&Point> = figures.points.iter().filter(|p| p.pareto && p.choice.every == 1).collect();
     front.sort_by(|a, b| a.choice.delay_ms.total_cmp(&b.choice.delay_ms).then(a.cost_us.p50.total_cmp(&b.cost_us.p50)));
-    writeln!(text, "  front (delay, mode, degree, window)").ok();
+    writeln!(text, "  Pareto front (delay, mode, degree, window)").ok();
     for point in front {
         let Choice { method, degree, window_ms, delay_ms, .. } = point.choice;
         let knobs = match method {

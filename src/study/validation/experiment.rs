@@ -38,6 +38,9 @@ impl Experiment {
     }
 
     /// The embedded scene of this name with another seed.
+    ///
+    /// # Errors
+    /// [`ValidationError`] if there is no such scene.
     pub fn scene(name: &str, seed: u64) -> Result<Scene, ValidationError> {
         Ok(Scene { seed, ..Scene::load(name)? })
     }
@@ -133,6 +136,9 @@ pub fn correspondence(gravity: &GravityModel, seed: u64, seconds: f64) -> Result
 }
 
 /// The correspondence of a report, for further use.
+///
+/// # Errors
+/// [`ValidationError`] if the report has no rotation.
 pub fn known(report: &CorrespondenceReport) -> Result<Correspondence, ValidationError> {
     let found = report.solution.as_ref().ok_or_else(|| ValidationError::Calibration(report.reason.clone()))?;
     Ok(Correspondence { target: found.target, rotation: found.rotation(), flip_s2: false })

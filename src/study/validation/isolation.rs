@@ -37,6 +37,9 @@ pub struct Known {
 
 impl Known {
     /// Calibrates both, each in its own scene.
+    ///
+    /// # Errors
+    /// [`ValidationError`] if a scene is invalid or a calibration fails.
     pub fn calibrate(seed: u64) -> Result<Self, ValidationError> {
         let gravity = experiment::gravity(seed)?;
         let report = experiment::correspondence(&gravity, seed, 0.0)?.report;
@@ -46,6 +49,9 @@ impl Known {
 
 /// Records `rows` rows of a scene. Of every ten seconds `contact_s` are spent in contact, the remaining time above the
 /// tissue.
+///
+/// # Errors
+/// [`ValidationError`] if the recording cannot be written.
 pub fn record(
     scene: &Scene,
     known: &Known,
@@ -72,7 +78,7 @@ pub fn record(
             }
         }
         if t_s > 30.0 + rows as f64 * 0.02 {
-            let reason = format!("the recording stands still: {:?}", recorder.phase());
+            let reason = format!("the recording makes no progress: {:?}", recorder.phase());
             return Err(ValidationError::Calibration(reason));
         }
     }
@@ -83,6 +89,9 @@ pub fn record(
 
 impl Session {
     /// The data set with these inputs; `None` for the default inputs.
+    ///
+    /// # Errors
+    /// [`ValidationError`] if the data set lacks a column.
     pub fn data(&self, inputs: Option<&[&str]>) -> Result<DataSet, ValidationError> {
         let inputs = inputs.map(|names| names.iter().map(|name| (*name).to_owned()).collect());
         let texts = [("simulated session".into(), self.text.clone())];
@@ -90,6 +99,9 @@ impl Session {
     }
 
     /// The same with the true force at the tip in place of the measurement under the tissue.
+    ///
+    /// # Errors
+    /// [`ValidationError`] if the data set lacks a column.
     pub fn true_data(&self, inputs: Option<&[&str]>) -> Result<DataSet, ValidationError> {
         let mut data = self.data(inputs)?;
         data.y = self.truth_n.iter().flat_map(|n| [n.x as f32, n.y as f32, n.z as f32]).collect();
@@ -158,6 +170,9 @@ pub struct Sessions {
 
 impl Sessions {
     /// Records the sessions; `rows` for training.
+    ///
+    /// # Errors
+    /// [`ValidationError`] if a scene is invalid or a calibration fails.
     pub fn record(seed: u64, rows: usize, features: FeatureSettings) -> Result<Self, ValidationError> {
         let known = Known::calibrate(seed)?;
         let session = |scene: &str, seed: u64, rows: usize, contact_s: f64| {
@@ -173,6 +188,9 @@ impl Sessions {
     }
 
     /// Trains on the first session, judges on the others.
+    ///
+    /// # Errors
+    /// [`ValidationError`] if the training fails.
     pub fn train(
         &self,
         inputs: Option<&[&str]>,
@@ -203,6 +221,9 @@ impl Sessions {
     }
 
     /// Share of flagged samples for several kinds of samples outside the training data.
+    ///
+    /// # Errors
+    /// [`ValidationError`] if a scene is invalid or cannot be recorded.
     pub fn foreign(&self, estimator: &mut Estimator) -> Result<Vec<Foreign>, ValidationError> {
         let strongest_n = self.training.truth_n.iter().map(Vector3::norm).fold(0.0, f64::max);
         let directions = directions(&self.training.data(None)?);
@@ -220,13 +241,15 @@ impl Sessions {
             Ok::<(), ValidationError>(())
         };
         one(
-            "force at the tip a quarter above all trained",
+            "tip force 25 % above the training range",
             &|scene| scene.tissue.iter_mut().for_each(|tissue| tissue.stiffness *= 3.0),
             &|_, _, truth_n| truth_n.norm() > 1.25 * strongest_n,
         )?;
-        one("shaft more than 5 degrees from all trained", &|scene| scene.trocar_m.x += 0.08, &|data, row, _| {
-            directions.iter().all(|known| known.angle(&direction(data, row)) > 5_f64.to_radians())
-        })?;
+        one(
+            "shaft more than 5 degrees outside the training range",
+            &|scene| scene.trocar_m.x += 0.08,
+            &|data, row, _| directions.iter().all(|known| known.angle(&direction(data, row)) > 5_f64.to_radians()),
+        )?;
         one(
             "another seal, three times the friction, while it slides",
             &|scene| {
@@ -258,6 +281,9 @@ fn directions(data: &DataSet) -> Vec<Vector3<f64>> {
 }
 
 /// Validation II with the default settings.
+///
+/// # Errors
+/// [`ValidationError`] if a scene is invalid, a calibration fails, or the network cannot be trained.
 pub fn study(seed: u64, rows: usize) -> Result<Isolation, ValidationError> {
     let sessions = Sessions::record(seed, rows, FeatureSettings::default())?;
     let (_, paper_inputs) = sessions.train(Some(&PAPER_INPUTS), &TrainingSettings::default())?;

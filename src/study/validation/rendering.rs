@@ -64,6 +64,9 @@ impl Axes {
 }
 
 /// Runs the task with this delay (s).
+///
+/// # Errors
+/// [`ValidationError`] if the scene or a setting is invalid.
 pub fn study(seed: u64, delay_s: f64) -> Result<Rendering, ValidationError> {
     let scene = Scene { seed, ..Scene::load(SCENE)? };
     let rig = RigConfig { delay_s, ..RigConfig::load("simulated")? };

@@ -40,11 +40,17 @@ impl Line {
 
 impl Emulator {
     /// Serves on a new pseudo-terminal until the result is dropped. Clients whose line speed is not the servos' are not understood.
+    ///
+    /// # Errors
+    /// I/O errors while creating the pseudo-terminal or the thread.
     pub fn serve(self) -> std::io::Result<Serving> {
         self.serve_at(None)
     }
 
     /// The same under this name, if one is given.
+    ///
+    /// # Errors
+    /// I/O errors while creating the pseudo-terminal, the link or the thread.
     pub fn serve_at(mut self, link: Option<&Path>) -> std::io::Result<Serving> {
         let name = TerminalName::claim(link, "bus")?;
         let mut line = Some(Line::open(&name, self.baud())?);

@@ -28,6 +28,9 @@ const RESET_S: f64 = 0.300;
 const BITS: f64 = 10.0;
 
 /// Serves on TCP; `port` 0 takes a free one. The newest connection is the one that is answered.
+///
+/// # Errors
+/// I/O errors while listening or creating the thread.
 pub fn serve_network(port: u16, profile: Profile, body: impl Body + 'static) -> io::Result<Serving> {
     let listener = places::taken(port, "TCP", TcpListener::bind(("127.0.0.1", port)))?;
     listener.set_nonblocking(true)?;
@@ -59,6 +62,9 @@ fn welcome(stream: TcpStream) -> Option<Tcp> {
 }
 
 /// Serves on a pseudo-terminal; the endpoint is a link to it that stays the same after a disconnection: `link` where one is given.
+///
+/// # Errors
+/// I/O errors while creating the pseudo-terminal, the link or the thread.
 pub fn serve_line(link: Option<&Path>, profile: Profile, body: impl Body + 'static) -> io::Result<Serving> {
     let name = TerminalName::claim(link, "tty")?;
     let first = Line::new(&name)?;

@@ -17,7 +17,7 @@ use crate::leaving::Leave;
 
 /// Scenes that are measured by default.
 const SCENES: [&str; 2] = ["peg_transfer", "free_motion"];
-/// Duration of a scene, s, and with `--quick`.
+/// Duration of a scene, s; the second constant is for `--quick`.
 const SCENE_S: f64 = 10.0;
 const QUICK_SCENE_S: f64 = 6.0;
 const RATE_HZ: f64 = 1000.0;

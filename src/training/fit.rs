@@ -148,9 +148,9 @@ impl Fit<'_> {
 }
 
 impl Weights {
-    /// Uniform initial weights with unit variance at the outputs. The last layer starts at zero, so that the initial
-    /// model is the linear path. The linear path itself is not trained, because outside the training data only it
-    /// remains.
+    /// Uniform initial weights of variance one over the number of inputs. The last layer starts at zero, so that the
+    /// initial model is the linear path. The linear path itself is not trained, because outside the training data only
+    /// it remains.
     fn new(
         (inputs, outputs): (usize, usize),
         hidden: &[usize],

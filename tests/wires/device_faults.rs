@@ -132,14 +132,14 @@ struct Row {
 }
 
 impl Row {
-    /// What is wrong with it.
+    /// What is wrong with the result, if anything.
     fn verdict(&self) -> Result<(), String> {
         let Self { device, fault, told_ms, zero_ms, back_s, by_itself, .. } = self;
         let wrong = |what: String| Err(format!("{device}, {fault}: {what}"));
         let limit_ms = SLACK_MS + if *device == "tracker" { TRACKER_TOLD_MS } else { TOLD_MS };
         let slow = ["pedal", "right servos", "tissue sensor"].contains(device);
-        // Chance decides which frames these spoil: as long as good ones come in time they are counted, and the device is lost when too
-        // many in a row are spoiled, however late that happens.
+        // Frames are affected at random: while enough good ones arrive they are only counted, and the device is lost when
+        // too many in a row are bad, which may happen at any time.
         let by_chance = ["loss", "garbage", "reorder"].contains(fault);
         if !slow && !by_chance && told_ms.is_some_and(|ms| ms > limit_ms) {
             return wrong(format!("told after {told_ms:?} ms"));

@@ -57,7 +57,7 @@ impl Settings {
     /// let settings = Settings::at("127.0.0.1 tcp=10000 udp=10001").expect("a complete endpoint");
     /// assert_eq!((settings.host.as_str(), settings.tcp_port, settings.udp_port), ("127.0.0.1", 10_000, 10_001));
     /// assert!(settings.check().is_ok());
-    /// assert!(Settings::at("127.0.0.1").is_none(), "the ports are missing");
+    /// assert!(Settings::at("127.0.0.1 tcp=many").is_none(), "not a port");
     /// ```
     pub fn at(endpoint: &str) -> Option<Self> {
         let mut words = endpoint.split_whitespace();

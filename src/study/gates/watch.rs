@@ -14,7 +14,7 @@ pub struct Breaches {
     pub not_finite: u64,
     /// A force above the ceiling, or above the device's maximum.
     pub ceiling: u64,
-    /// A change between consecutive forces above the slew limit, other than to zero by the release gate.
+    /// A change between consecutive forces above the slew limit, unless a gate has withdrawn the force.
     pub slew: u64,
     /// A gain that changed faster than its rate.
     pub gain_rate: u64,

@@ -1,4 +1,5 @@
-//! The embedded emulated rig away from its fixed places, so that tests disturb nobody.
+//! The built-in emulated rig with other addresses, so that tests do not interfere with each other or with a running
+//! console.
 
 use std::{
     net::{TcpListener, UdpSocket},
@@ -26,7 +27,7 @@ fn free_port() -> u16 {
     }
 }
 
-/// The embedded rig on free ports and in a folder of its own.
+/// The built-in rig on free ports and in a folder of its own.
 pub fn elsewhere(folder: &Path) -> Settings {
     provide_handles();
     let mut devices = RigConfig::load("emulated").unwrap().devices.unwrap();
@@ -56,12 +57,12 @@ pub fn elsewhere(folder: &Path) -> Settings {
     devices
 }
 
-/// The right arm of it alone: handle, arm, sensor and servos.
+/// Only its right arm: handle, arm, sensor and servos.
 pub fn right_arm(folder: &Path) -> Settings {
     Settings { left: None, tissue_sensor: None, tracker: None, endoscope: None, pedal: None, ..elsewhere(folder) }
 }
 
-/// The emulated devices of that rig, begun in the peg-transfer scene.
+/// Starts the emulated devices of that rig, in the peg-transfer scene.
 pub fn started(devices: &Settings) -> EmulatedRig {
     EmulatedRig::start(
         devices,

@@ -1,4 +1,4 @@
-//! A gravity calibration for tests that need one, taken as a technician would.
+//! A gravity calibration for tests, recorded as a technician would.
 
 use nima_core::calibration::gravity::{GravityRecord, GravitySession, SessionSettings};
 use nima_machine::{
@@ -8,7 +8,7 @@ use nima_machine::{
 use nima_recording::store::utc_now;
 use nima_world::{World, scene::Scene};
 
-/// A gravity calibration taken sample by sample on its own scene.
+/// A gravity calibration recorded sample by sample in its own scene.
 pub fn gravity() -> GravityRecord {
     let scene = Scene::load("gravity").unwrap();
     let (mut world, mut session) = (World::new(&scene, 1000.0), GravitySession::new(SessionSettings::default()));

@@ -1,6 +1,6 @@
-//! What tests across crates share: an emulated rig away from its fixed places, and a gravity calibration.
+//! Shared by tests across crates: an emulated rig with other addresses, and a gravity calibration.
 //!
-//! The tests themselves are three programs beside this file: `machine` on the virtual clock, `wires` in real time with emulated devices, and
+//! The tests are three programs: `machine` on the virtual clock, `wires` in real time with emulated devices, and
 //! `allocation`, which counts allocations.
 #![expect(clippy::unwrap_used, clippy::missing_panics_doc, reason = "a test fails by panicking")]
 

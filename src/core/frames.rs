@@ -9,8 +9,8 @@
 //! | `c` | tracker camera |
 //! | `s2` | force sensor under the tissue |
 //!
-//! A rotation is named `target_from_source` and takes a vector of the source frame to the target frame, so that chains read
-//! off: `s1_from_s2 = s1_from_world * world_from_m * m_from_c * c_from_s2`.
+//! A rotation named `target_from_source` transforms a vector from the source frame to the target frame, so that
+//! adjacent names match in a chain: `s1_from_s2 = s1_from_world * world_from_m * m_from_c * c_from_s2`.
 
 use nalgebra::{Rotation3, UnitQuaternion, Vector3};
 
@@ -41,40 +41,40 @@ pub fn to_roll_pitch_yaw_deg(rotation: &UnitQuaternion<f64>) -> Vector3<f64> {
 /// A wrench on a sensor, in that sensor's frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Wrench {
-    /// In the sensor's own frame unless the owner says otherwise.
+    /// Force, N; in the sensor's own frame unless stated otherwise.
     pub force_n: Vector3<f64>,
     /// Torque about the sensor's origin, Nm.
     pub torque_nm: Vector3<f64>,
 }
 
 impl Wrench {
-    /// Every number in it is finite.
+    /// Whether every number in it is finite.
     pub fn is_finite(&self) -> bool {
         self.force_n.iter().chain(self.torque_nm.iter()).all(|x| x.is_finite())
     }
 }
 
-/// All that is measured at the wrist of one follower in one exchange. What a rig does not have is `None`.
+/// Measurements at the wrist of one follower in one tick. Quantities that a rig does not measure are `None`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WristSample {
-    /// What the tool puts on the sensor, as read: gravity, contact, friction and bias together (`s1`).
+    /// Wrench on the sensor as read: gravity, contact, friction and bias together (`s1`).
     pub raw: Wrench,
-    /// Reading of the sensor's accelerometer (`imu`), m/s^2. At rest it reads the support, opposite to gravity.
+    /// Reading of the sensor's accelerometer (`imu`), m/s^2. At rest it points away from the ground (+g upwards).
     pub acceleration_m_s2: Option<Vector3<f64>>,
-    /// Orientation of the sensor by the arm's kinematics.
+    /// Orientation of the sensor, from the arm's kinematics.
     pub world_from_s1: Option<UnitQuaternion<f64>>,
-    /// Orientation of the optical marker by the arm's kinematics.
+    /// Orientation of the optical marker, from the arm's kinematics.
     pub world_from_m: Option<UnitQuaternion<f64>>,
-    /// Orientation of the camera as the marker sees it, by the tracker.
+    /// Orientation of the camera relative to the marker, from the tracker.
     pub m_from_c: Option<UnitQuaternion<f64>>,
-    /// How deep the instrument reaches through the trocar, m, by the arm's kinematics.
+    /// Insertion depth of the instrument through the trocar, m, from the arm's kinematics.
     pub insertion_m: Option<f64>,
-    /// Force on the sensor under the tissue (`s2`), N; only there while calibrating.
+    /// Force on the sensor under the tissue (`s2`), N; only during calibration.
     pub tissue_n: Option<Vector3<f64>>,
 }
 
 impl WristSample {
-    /// A sample with a wrench and nothing else.
+    /// A sample that contains only a wrench.
     pub const fn of(raw: Wrench) -> Self {
         Self {
             raw,
@@ -92,7 +92,7 @@ impl WristSample {
         Some(self.world_from_s1?.inverse() * self.world_from_m? * self.m_from_c?)
     }
 
-    /// Every number in it is finite.
+    /// Whether every number in it is finite.
     pub fn is_finite(&self) -> bool {
         let vectors = [self.acceleration_m_s2, self.tissue_n];
         let rotations = [self.world_from_s1, self.world_from_m, self.m_from_c];

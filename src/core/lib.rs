@@ -1,8 +1,8 @@
-//! Everything between a measurement and a force.
+//! Computation of forces from measurements: identification, rendering, safety, calibration, kinematics.
 //!
-//! Takes samples of motion (m) and force (N) and the time (s); gives forces, models and verdicts. It knows no file, no device, no
-//! thread and no clock, and nothing in a tick allocates. SI units inside (m, s, N, rad); a name carries its unit and frame where the
-//! type does not.
+//! Takes samples of motion (m) and force (N) and the time (s); returns forces, models and verdicts. This crate uses no
+//! files, devices, threads or clocks, and nothing in a tick allocates. SI units (m, s, N, rad); a name contains its
+//! unit and frame if the type does not.
 #![warn(missing_docs)]
 
 pub mod calibration;

@@ -1,9 +1,9 @@
-//! Percentiles of durations, constant in memory and without allocation while recording.
+//! Percentiles of durations, with constant memory and without allocation while recording.
 
 use hdrhistogram::Histogram;
 use serde::Serialize;
 
-/// Longest duration told apart, ns (10 s); longer ones count as this.
+/// Longest duration that is distinguished, ns (10 s); longer ones count as this.
 const LONGEST_NS: u64 = 10_000_000_000;
 
 /// A histogram of durations with three significant digits.
@@ -23,7 +23,7 @@ pub struct Percentiles {
     histogram: Histogram<u64>,
 }
 
-/// What is told of a histogram, microseconds.
+/// Summary of a histogram, microseconds.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 #[expect(missing_docs, reason = "the names say it")]
 pub struct Quantiles {
@@ -36,9 +36,9 @@ pub struct Quantiles {
 /// One bar of a histogram.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Bar {
-    /// Where it ends, us.
+    /// Its upper limit, us.
     pub to_us: f64,
-    /// How many there are in it.
+    /// Number of durations in it.
     pub count: u64,
 }
 
@@ -49,32 +49,32 @@ impl Default for Percentiles {
 }
 
 impl Percentiles {
-    /// An empty histogram; allocates all it will ever need.
+    /// An empty histogram; allocates everything that it needs.
     pub fn new() -> Self {
-        // The bounds are constants that the constructor accepts; the fallback only keeps the signature free of errors.
+        // The constants are valid bounds; the fallback only avoids an error type in the signature.
         let histogram = Histogram::new_with_bounds(1, LONGEST_NS, 3)
             .or_else(|_| Histogram::new_with_max(LONGEST_NS, 2))
             .unwrap_or_else(|_| unreachable!("constant bounds"));
         Self { histogram }
     }
 
-    /// Takes in one duration, s. Negative or not finite counts as zero.
+    /// Records one duration, s. A negative or non-finite one counts as zero.
     pub fn record(&mut self, seconds: f64) {
         self.histogram.saturating_record((seconds * 1e9).max(0.0) as u64);
     }
 
-    /// How many were recorded.
+    /// Number of durations recorded.
     pub fn count(&self) -> u64 {
         self.histogram.len()
     }
 
-    /// The quantiles now, microseconds.
+    /// The quantiles of all durations so far, microseconds.
     pub fn quantiles(&self) -> Quantiles {
         let at = |q| self.histogram.value_at_quantile(q) as f64 * 1e-3;
         Quantiles { p50: at(0.5), p99: at(0.99), p999: at(0.999), max: self.histogram.max() as f64 * 1e-3 }
     }
 
-    /// Counts in bars that double in length, from 1 us to the largest; none where nothing was recorded.
+    /// Counts in bars that double in width, from 1 us to the largest duration; empty if nothing was recorded.
     pub fn histogram(&self) -> Vec<Bar> {
         let bars = self.histogram.iter_log(1000, 2.0);
         let bars = bars.map(|bar| Bar {
@@ -84,7 +84,7 @@ impl Percentiles {
         if self.count() == 0 { Vec::new() } else { bars.collect() }
     }
 
-    /// Counts in `buckets` equal steps of `step_us`, the last one holding all that is longer.
+    /// Counts in `buckets` equal steps of `step_us`; the last one includes everything longer.
     pub fn bars(&self, step_us: f64, buckets: usize) -> Vec<u64> {
         let mut bars = vec![0; buckets.max(1)];
         for value in self.histogram.iter_recorded() {
@@ -110,7 +110,7 @@ mod tests {
         assert_eq!(percentiles.bars(100.0, 5).iter().sum::<u64>(), 1000);
         let bars = percentiles.histogram();
         assert_eq!(bars.iter().map(|bar| bar.count).sum::<u64>(), 1000);
-        // 1, 2, 4 ... us: what is longer than 511 and at most 1000 lies in the last but one or the last.
+        // 1, 2, 4 ... us: durations from 511 to 1000 us are in the last two bars.
         assert!(bars.windows(2).all(|two| (two[1].to_us / two[0].to_us - 2.0).abs() < 1e-9), "{bars:?}");
         assert!(bars.last().is_some_and(|bar| bar.to_us >= 1000.0 && bar.count >= 450), "{bars:?}");
         assert_eq!(Percentiles::new().histogram(), []);

@@ -1,28 +1,28 @@
-//! How a device is: what every driver counts in the same way, without allocation.
+//! State and counters that every driver keeps in the same way, without allocation.
 
 use serde::Serialize;
 
-/// Why a running device is no longer to be believed.
+/// Why readings of a running device can no longer be trusted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case", tag = "loss")]
 pub enum Loss {
-    /// The port or the connection is gone.
+    /// The port or the connection was closed.
     Disconnected,
     /// Nothing valid arrived for too long.
     Silent,
-    /// What arrives makes no sense: too many damaged frames in a row.
+    /// Too many damaged frames in a row.
     Corrupt,
-    /// Numbers that are not finite, or not possible.
+    /// Numbers that are not finite or not possible.
     Implausible,
-    /// The device itself reports a fault; the code is the device's own.
+    /// The device itself reports a fault.
     Device {
-        /// As the manufacturer numbers it.
+        /// The manufacturer's code.
         code: u32,
     },
 }
 
 impl Loss {
-    /// What happened, for a screen.
+    /// The cause, for a screen.
     pub const fn cause(self) -> &'static str {
         match self {
             Self::Disconnected => "the connection is gone",
@@ -34,7 +34,7 @@ impl Loss {
     }
 }
 
-/// Where a device is in its life.
+/// State of the connection to a device.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Standing {
@@ -43,26 +43,26 @@ pub enum Standing {
     Closed,
     /// Being opened and configured, on another thread.
     Opening,
-    /// Delivers. Connected never means engaged.
+    /// Delivers readings. Connected does not mean engaged.
     Connected,
-    /// Delivered once, and does not now.
+    /// Has delivered readings, and does not now.
     Lost(Loss),
 }
 
-/// Counters of a device since it was opened. A reading is a whole, checked frame.
+/// State and counters of a device since it was opened. A reading is a complete, checked frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Health {
-    /// Whether it delivers now.
+    /// State of the connection.
     pub standing: Standing,
     /// Readings accepted.
     pub readings: u64,
-    /// Readings that never arrived, by the device's counter or clock.
+    /// Readings that never arrived, found by the device's counter or clock.
     pub lost: u64,
-    /// Frames refused by their checksum or shape.
+    /// Frames refused because of their checksum or structure.
     pub damaged: u64,
     /// Bytes skipped to find the beginning of a frame again.
     pub skipped_bytes: u64,
-    /// Readings that came too late, twice, or in the wrong order.
+    /// Readings that arrived too late, twice, or in the wrong order.
     pub out_of_order: u64,
     /// Readings refused because of their status bits or numbers.
     pub refused: u64,
@@ -70,9 +70,9 @@ pub struct Health {
     pub newest_s: Option<f64>,
     /// Rate over the last half second, Hz.
     pub rate_hz: f64,
-    /// How often it was lost since the loop began, however often it was opened again.
+    /// Number of outages since the loop began; reopening does not reset it.
     pub outages: u64,
-    /// The longest of these outages, s: from its last reading to the first one after, or until now.
+    /// Duration of the longest outage, s: from the last reading before it to the first one after it, or until now.
     pub longest_outage_s: f64,
     #[serde(skip)]
     window_s: Option<f64>,
@@ -80,11 +80,11 @@ pub struct Health {
     in_window: u32,
 }
 
-/// Time over which the rate is counted, s.
+/// Averaging time of the rate, s.
 const RATE_WINDOW_S: f64 = 0.5;
 
 impl Health {
-    /// Of a device that is being opened.
+    /// The health of a device that is being opened.
     pub fn opening() -> Self {
         Self { standing: Standing::Opening, ..Self::default() }
     }
@@ -102,7 +102,7 @@ impl Health {
         self.standing = Standing::Connected;
     }
 
-    /// Marks it lost; the first cause stays. True when it was not lost before.
+    /// Marks the device as lost; the first cause is kept. Returns true if it was not lost before.
     pub const fn lose(&mut self, loss: Loss) -> bool {
         let newly = !matches!(self.standing, Standing::Lost(_));
         if newly {
@@ -111,13 +111,13 @@ impl Health {
         newly
     }
 
-    /// Seconds since the newest reading; endless before the first.
+    /// Seconds since the newest reading; infinite before the first.
     pub fn age_s(&self, now_s: f64) -> f64 {
         self.newest_s.map_or(f64::INFINITY, |newest_s| now_s - newest_s)
     }
 }
 
-/// The outages of a place, which outlive the devices that were opened there.
+/// Outages of a slot; they are kept when the device is opened again.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Outages {
     count: u64,
@@ -126,7 +126,7 @@ pub(super) struct Outages {
 }
 
 impl Outages {
-    /// Takes in how the place is now, and enters its outages there.
+    /// Updates the outages from the present state of the device, and copies them into `health`.
     pub(super) fn follow(&mut self, health: &mut Health, now_s: f64) {
         if matches!(health.standing, Standing::Lost(_)) && self.since_s.is_none() {
             self.count += 1;
@@ -135,7 +135,7 @@ impl Outages {
         if let Some(since_s) = self.since_s {
             self.longest_s = self.longest_s.max(now_s - since_s);
         }
-        // What a person disconnects is no outage any more.
+        // A device that a person disconnects is not in an outage.
         if matches!(health.standing, Standing::Connected | Standing::Closed) {
             self.since_s = None;
         }
@@ -143,7 +143,7 @@ impl Outages {
     }
 }
 
-/// Who a device says it is.
+/// Identity that a device reports.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
 #[expect(missing_docs, reason = "the names say it")]
 pub struct Identity {

@@ -1,4 +1,4 @@
-//! The emergency lever of a device: what another thread may do to it when the loop no longer runs.
+//! The emergency lever of a device: makes it safe from another thread when the loop no longer runs.
 
 use std::{
     fmt,
@@ -7,17 +7,18 @@ use std::{
 
 type Pull = Box<dyn FnMut() + Send>;
 
-/// A lever, shared by the thread that opens the device and the one that may have to pull it. The loop never touches it.
+/// A lever, shared by the thread that opens the device and the supervisor, which may pull it. The loop never uses it.
 #[derive(Clone, Default)]
 pub struct Lever(Arc<Mutex<Option<Pull>>>);
 
 impl Lever {
-    /// Attaches it to a device that was opened; it replaces the one before.
+    /// Connects it to a device that was opened, replacing the previous one.
     pub fn attach(&self, pull: impl FnMut() + Send + 'static) {
         *self.0.lock().unwrap_or_else(PoisonError::into_inner) = Some(Box::new(pull));
     }
 
-    /// Force off, brakes on: as far as the device lets another thread do it. Does nothing where none is open.
+    /// Switches the force off and the brakes on, as far as the device allows this from another thread. Does nothing if
+    /// no device is open.
     pub fn pull(&self) {
         if let Some(pull) = &mut *self.0.lock().unwrap_or_else(PoisonError::into_inner) {
             pull();

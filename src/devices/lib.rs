@@ -1,8 +1,8 @@
-//! Transports, drivers, slots and discovery: bytes to readings.
+//! Drivers of the devices: from the bytes on the wire to readings in SI units.
 //!
-//! A driver lives in a folder of its own: a codec without input and output, and a driver over a [`transport`] that neither waits nor
-//! allocates. Readings are in SI units in the device's own frame, with the time of their arrival. No crate knows here which rig a device
-//! belongs to.
+//! Each driver has a folder of its own, with a codec without input and output, and a driver over a [`transport`] that
+//! neither waits nor allocates. Readings are in SI units in the device's own frame, with their time of arrival. This
+//! crate knows nothing of the rig to which a device belongs.
 #![warn(missing_docs)]
 
 #[expect(missing_docs, reason = "the names are the manufacturer's")]
@@ -40,15 +40,16 @@ pub use reading::{
 pub use slot::{Slot, SlotReport, SlotView};
 pub use trouble::Trouble;
 
-/// A device that is open and delivers.
+/// An open device.
 ///
 /// The real-time thread owns it: [`poll`](Self::poll) must neither wait nor allocate.
 pub trait Device: Send {
-    /// What it reads.
+    /// Type of its readings.
     type Reading: Copy + Send;
 
-    /// Takes in all that has arrived until `now_s` (loop time) and gives the newest reading since the last call, if any. What is
-    /// lost, damaged or refused is counted in [`Device::health`]; a device that is lost stays so until it is opened again.
+    /// Handles everything that has arrived until `now_s` (loop time) and returns the newest reading since the last
+    /// call, if there is one. What is lost, damaged or refused is counted in [`Device::health`]; a device that is lost
+    /// stays lost until it is opened again.
     fn poll(&mut self, now_s: f64) -> Option<Stamped<Self::Reading>>;
 
     /// How it is, and who it is.
@@ -65,17 +66,17 @@ pub trait Device: Send {
     }
 }
 
-/// A person's command to a device in fault.
+/// A request, made by a person, that a device in fault clears its faults.
 #[derive(Clone)]
 pub struct ClearFaults(std::sync::Arc<dyn Fn() + Send + Sync>);
 
 impl ClearFaults {
-    /// By this means.
+    /// Carried out by calling this function.
     pub fn by(command: impl Fn() + Send + Sync + 'static) -> Self {
         Self(std::sync::Arc::new(command))
     }
 
-    /// Gives the command.
+    /// Makes the request.
     pub fn command(&self) {
         (self.0)();
     }

@@ -1,4 +1,4 @@
-//! What drivers need of the operating system and no safe interface gives.
+//! System calls that the drivers need and that have no safe interface.
 #![expect(unsafe_code, reason = "file descriptors and one ioctl have no safe interface in std")]
 
 use std::{
@@ -7,7 +7,10 @@ use std::{
     os::fd::{AsRawFd, FromRawFd as _},
 };
 
-/// A second descriptor of an open line that never waits.
+/// A second descriptor of an open line, whose reads and writes never wait.
+///
+/// # Errors
+/// If the descriptor cannot be duplicated.
 pub fn bytes_of(port: &impl AsRawFd) -> io::Result<File> {
     // SAFETY: the descriptor is open for as long as `port` is borrowed; the duplicate has one owner, the file returned.
     unsafe {
@@ -24,13 +27,13 @@ pub fn bytes_of(port: &impl AsRawFd) -> io::Result<File> {
     }
 }
 
-/// As whom this program acts.
+/// Effective user id of this process.
 pub fn user_id() -> u32 {
     // SAFETY: no arguments, and it cannot fail.
     unsafe { libc::geteuid() }
 }
 
-/// Asks the port's driver to hand bytes on at once; false where it cannot (a pseudo-terminal, another system).
+/// Asks the port's driver to deliver bytes without delay; false if it cannot (a pseudo-terminal, another system).
 #[cfg(target_os = "linux")]
 pub(super) fn ask_low_latency(port: &impl AsRawFd) -> bool {
     /// `struct serial_struct` of <linux/serial.h> is 72 bytes on 64-bit systems; its flags are the fifth 32-bit word.
@@ -50,13 +53,13 @@ pub(super) fn ask_low_latency(port: &impl AsRawFd) -> bool {
     }
 }
 
-/// Asks the port's driver to hand bytes on at once; other systems have no such flag.
+/// Asks the port's driver to deliver bytes without delay; other systems have no such flag.
 #[cfg(not(target_os = "linux"))]
 pub(super) fn ask_low_latency(_: &impl AsRawFd) -> bool {
     false
 }
 
-/// Errors that the port's hardware has counted (framing, parity, overrun, break); `None` where it does not count.
+/// Errors counted by the port's hardware (framing, parity, overrun, break); `None` if it does not count them.
 #[cfg(target_os = "linux")]
 pub(super) fn line_errors(port: &impl AsRawFd) -> Option<u32> {
     /// `struct serial_icounter_struct` of <linux/serial.h>: twenty 32-bit integers; after cts, dsr, rng, dcd, rx and tx come frame, overrun,
@@ -69,7 +72,7 @@ pub(super) fn line_errors(port: &impl AsRawFd) -> Option<u32> {
     answered.then(|| counts[6..10].iter().fold(0, |sum, count| u32::wrapping_add(sum, *count)))
 }
 
-/// Errors that the port's hardware has counted; other systems do not tell.
+/// Errors counted by the port's hardware; not available on other systems.
 #[cfg(not(target_os = "linux"))]
 pub(super) fn line_errors(_: &impl AsRawFd) -> Option<u32> {
     None

@@ -1,12 +1,13 @@
-//! The folder in which the emulators of this user serve, and what folders they accept.
+//! The folder in which this user's emulators create their sockets and terminals, and the permissions that it must have.
 //!
-//! Whoever may write in such a folder could put another device there, or a link that leads the emulators' files elsewhere. So
-//! a folder is made for this user alone, and one that another user owns or may write in is refused.
+//! Whoever may write in such a folder could replace a device, or redirect the emulators' files with a link. So the
+//! folder is created for this user alone, and one that another user owns or may write in is refused.
 
 use std::path::PathBuf;
 
-/// Where emulated devices are whose place in the rig file is no whole path: in the user's runtime folder, or, where the system has none, in
-/// a folder of this user among the temporary ones. Neither made nor checked here ([`prepare`]).
+/// Folder of emulated devices whose path in the rig file is relative: in the user's runtime folder or, if the system
+/// has none, a folder of this user among the temporary ones. This function neither creates nor checks it ([`prepare`]
+/// does).
 pub fn runtime_folder() -> PathBuf {
     let given = std::env::var_os("XDG_RUNTIME_DIR").map(PathBuf::from);
     match given.filter(|folder| folder.is_absolute() && is_own(folder)) {
@@ -33,9 +34,9 @@ mod unix {
 
     use crate::os::user_id;
 
-    /// What a group and everybody may do there.
+    /// Permission bits of group and others.
     const FOR_OTHERS: u32 = 0o077;
-    /// Everybody may write there, and anybody may remove what others put there.
+    /// Permission bit for writing by others; with the sticky bit they cannot remove each other's files.
     const WORLD_WRITABLE: u32 = 0o002;
     const STICKY: u32 = 0o1000;
 
@@ -43,21 +44,21 @@ mod unix {
         format!("nima-emulated-{}", user_id())
     }
 
-    /// A folder of this user that nobody else may enter, as a runtime folder is.
+    /// Whether this user owns the folder and nobody else may enter it, as with a runtime folder.
     pub(super) fn is_own(folder: &Path) -> bool {
         fs::symlink_metadata(folder)
             .is_ok_and(|there| there.is_dir() && there.uid() == user_id() && there.mode() & FOR_OTHERS == 0)
     }
 
-    /// Makes a folder that only this user may enter, with those above it. One that is there is accepted when it belongs to this user or
-    /// to the system, and nobody else may put something in place of what is made in it.
+    /// Creates a folder that only this user may enter, and its parents. An existing folder is accepted if it belongs to
+    /// this user or to the system and no other user can replace what is created in it.
     ///
     /// # Errors
-    /// Of the system; when another user could interfere, [`ErrorKind::PermissionDenied`] with the reason and what to do.
+    /// I/O errors; [`ErrorKind::PermissionDenied`], with the reason and what to do, if another user could interfere.
     pub fn prepare(folder: &Path) -> Result<()> {
         let told = |error: Error| Error::new(error.kind(), format!("folder {}: {error}", folder.display()));
         DirBuilder::new().recursive(true).mode(0o700).create(folder).map_err(told)?;
-        // A link must be as trustworthy as the folder it leads to.
+        // A link must be as trustworthy as the folder that it points to.
         let foreign = |there: &Metadata| ![0, user_id()].contains(&there.uid());
         let (link, there) = (fs::symlink_metadata(folder).map_err(told)?, fs::metadata(folder).map_err(told)?);
         let reason = if foreign(&link) || foreign(&there) {
@@ -72,7 +73,10 @@ mod unix {
         Err(Error::new(ErrorKind::PermissionDenied, told))
     }
 
-    /// A file to be locked: made where it is not there, never followed elsewhere, never emptied.
+    /// Opens a file for locking: creates it if necessary, does not follow links, does not truncate.
+    ///
+    /// # Errors
+    /// I/O errors, for instance if the path is a link.
     pub fn lock_file(path: &Path) -> Result<File> {
         let refuse = |reason: &str| {
             let told = format!("{} {reason}: remove it, or take another place", path.display());
@@ -80,7 +84,7 @@ mod unix {
         };
         let mut options = OpenOptions::new();
         options.read(true).write(true).create(true).truncate(false).mode(0o600);
-        // Not blocking: a pipe of this name would otherwise wait for somebody.
+        // Non-blocking, because opening a pipe of this name would otherwise wait for a writer.
         let file = options.custom_flags(libc::O_NOFOLLOW | libc::O_NONBLOCK).open(path);
         let file = file.map_err(|error| match error.raw_os_error() {
             Some(libc::ELOOP) => refuse("is a link"),
@@ -91,10 +95,10 @@ mod unix {
     }
 }
 
-/// Makes a folder, with those above it.
+/// Creates a folder and its parents.
 ///
 /// # Errors
-/// Of the system.
+/// I/O errors.
 #[cfg(not(unix))]
 pub fn prepare(folder: &std::path::Path) -> std::io::Result<()> {
     std::fs::create_dir_all(folder)
@@ -132,7 +136,7 @@ mod tests {
             assert_eq!(fs::metadata(made).unwrap().mode() & 0o777, 0o700, "{}", made.display());
         }
         prepare(&new).unwrap();
-        // Where everybody may write and nobody may touch what is another's.
+        // World-writable with the sticky bit, like /tmp.
         fs::set_permissions(&new, Permissions::from_mode(0o1777)).unwrap();
         prepare(&new).unwrap();
     }
@@ -150,7 +154,7 @@ mod tests {
         prepare(&open).unwrap();
         fs::set_permissions(&open, Permissions::from_mode(0o777)).unwrap();
         refused(&open, "every user");
-        // Only the system may give folders away; without that right there is none of another user to try with.
+        // Only root may change the owner of a folder; without that right this part cannot be tested.
         let foreign = folder.path().join("foreign");
         prepare(&foreign).unwrap();
         if std::os::unix::fs::chown(&foreign, Some(user_id() + 12345), None).is_ok() {

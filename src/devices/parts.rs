@@ -1,7 +1,9 @@
-//! What a rig asks of its parts, whoever made them. A driver implements the trait of its part in its own folder.
+//! The interfaces that a rig expects of its devices, independent of the manufacturer. A driver implements the trait of
+//! its kind in its own folder.
 //!
-//! Every part is a [`Device`] with a fixed kind of reading; force sensors, trackers and switches need nothing beyond it. Commands neither
-//! wait nor allocate. A rig keeps parts as `Slot<Box<dyn Leader>>` and so on: a call through the table costs some nanoseconds.
+//! Every part is a [`Device`] with a fixed type of reading; force sensors, trackers and switches need nothing else.
+//! Commands neither wait nor allocate. A rig stores parts as `Slot<Box<dyn Leader>>` and so on; a virtual call costs a
+//! few nanoseconds.
 
 use nalgebra::Vector3;
 
@@ -10,37 +12,39 @@ use crate::{
     TrackerReading,
 };
 
-/// The handle in the operator's hand.
+/// A haptic handle.
 pub trait Leader: Device<Reading = HandleReading> {
-    /// Asks for force, or takes it away. Until a force is set it is zero.
+    /// Switches the force on or off. After switching on, the force is zero until it is set.
     fn switch_force(&mut self, on: bool);
 
-    /// Force on the hand and on the gripper, N, in the handle's own frame. Does nothing while force is off.
+    /// Sets the force on the hand and on the gripper, N, in the handle's own frame. Has no effect while the force is
+    /// off.
     fn set_force(&mut self, force_n: Vector3<f64>, gripper_n: f64);
 
-    /// Whether force is on, by the newest word of the device; `None` where it said nothing since the last call.
+    /// Whether the force is on, if the device has reported this since the last call.
     fn force_change(&mut self) -> Option<bool>;
 
-    /// Attaches what takes the force away from another thread.
+    /// Connects `lever`, which switches the force off from another thread.
     fn attach(&self, lever: &Lever);
 }
 
 /// The arm that carries the instrument.
 pub trait Follower: Device<Reading = ArmReading> {
-    /// Asks the arm to obey [`Follower::aim`]; [`ArmReading::servoing`] tells when it does.
+    /// Requests servoing, in which the arm follows [`Follower::aim`]; [`ArmReading::servoing`] becomes true when the
+    /// arm has changed to it.
     fn enter_servoing(&mut self);
 
-    /// Brakes, then obeys no longer.
+    /// Brakes the arm, then ends servoing.
     fn leave_servoing(&mut self);
 
-    /// Where the joints are commanded to be, rad; has a meaning while servoing.
+    /// Commanded joint angles, rad; valid only while servoing.
     fn command_rad(&self) -> [f64; ARM_JOINTS];
 
-    /// Where the joints shall be now, rad: one step of a path that keeps to the arm's limits. False where it is refused: the arm is then
-    /// not where the path has it.
+    /// Commands joint angles, rad: the next point of a path within the arm's limits. Returns false if they are refused;
+    /// the arm is then not where the path assumes it.
     fn aim(&mut self, target_rad: &[f64; ARM_JOINTS]) -> bool;
 
-    /// Attaches what takes the arm out of servoing from another thread.
+    /// Connects `lever`, which ends servoing from another thread.
     fn attach(&self, lever: &Lever);
 }
 

@@ -1,4 +1,4 @@
-//! What devices read, each with the time at the device and the time of arrival.
+//! Readings of the devices, each with the time at the device and the time of arrival.
 
 use nalgebra::{UnitQuaternion, Vector3};
 use nima_core::frames::Wrench;
@@ -6,11 +6,11 @@ use nima_core::frames::Wrench;
 /// A reading with its times.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stamped<T> {
-    /// Time on the device's own clock, s, without jumps where the counter wraps; `None` where the device tells none.
+    /// Time on the device's own clock, s, unwrapped where its counter overflows; `None` if the device sends no time.
     pub device_s: Option<f64>,
     /// When it arrived, on the loop's clock, s.
     pub arrival_s: f64,
-    /// The reading as the driver decoded it.
+    /// The decoded reading.
     pub value: T,
 }
 
@@ -24,12 +24,12 @@ pub struct ForceStatus {
     pub overrange: bool,
     /// Saturated, shorted or open: possibly damaged.
     pub invalid: bool,
-    /// Calibration is not applied: the numbers are no newtons.
+    /// Calibration is not applied: the numbers are not in newtons.
     pub raw: bool,
 }
 
 impl ForceStatus {
-    /// The reading may be used.
+    /// Whether the reading may be used for control.
     pub const fn is_usable(self) -> bool {
         !self.invalid && !self.raw && !self.overrange
     }
@@ -40,32 +40,32 @@ impl ForceStatus {
 pub struct ForceReading {
     /// Force and torque.
     pub wrench: Wrench,
-    /// Accelerometer, m/s^2; at rest it reads the support, opposite to gravity.
+    /// Accelerometer, m/s^2; at rest it points away from the ground (+g upwards).
     pub acceleration_m_s2: Option<Vector3<f64>>,
     /// Gyroscope, rad/s.
     pub angular_velocity_rad_s: Option<Vector3<f64>>,
-    /// Of the sensor's electronics, in degrees Celsius.
+    /// Temperature of the sensor's electronics, degrees Celsius.
     pub temperature_c: f64,
-    /// Whether it may be used.
+    /// Reasons why it must not be used.
     pub status: ForceStatus,
 }
 
-/// Joints of the follower arm.
+/// Number of joints of the follower arm.
 pub const ARM_JOINTS: usize = 7;
 
 /// One reading of an arm.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[expect(missing_docs, reason = "the names say it")]
 pub struct ArmReading {
-    /// Joint angles, rad, unwrapped to the nearest of the last ones.
+    /// Joint angles, rad, unwrapped: continuous from reading to reading.
     pub joint_rad: [f64; ARM_JOINTS],
     pub joint_rad_s: [f64; ARM_JOINTS],
     pub joint_nm: [f64; ARM_JOINTS],
-    /// It obeys cyclic commands now.
+    /// Whether it follows cyclic commands now.
     pub servoing: bool,
 }
 
-/// Servos of one instrument.
+/// Number of servos of one instrument.
 pub const SERVOS: usize = 4;
 
 /// One reading of the instrument's servos.
@@ -82,70 +82,70 @@ pub struct ServoReading {
 /// One reading of a haptic handle, in the device's own frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HandleReading {
-    /// In the handle's own frame.
+    /// Position in the handle's own frame, m.
     pub position_m: Vector3<f64>,
-    /// Orientation of the handle; `None` where the device has no wrist.
+    /// Orientation of the handle; `None` if the device has no wrist.
     pub orientation: Option<UnitQuaternion<f64>>,
-    /// Opening of the gripper, rad; `None` where there is none.
+    /// Opening of the gripper, rad; `None` if there is no gripper.
     pub gripper_rad: Option<f64>,
-    /// Velocity, m/s; `None` until it is known.
+    /// Velocity, m/s; `None` until two positions are known.
     pub velocity_m_s: Option<Vector3<f64>>,
-    /// Buttons, first in the lowest bit.
+    /// Pressed buttons, one per bit, the first button in the lowest bit.
     pub buttons: u32,
 }
 
-/// Tools that a tracker can follow at once.
+/// Number of tools that a tracker can follow at once.
 pub const TRACKED_TOOLS: usize = 4;
 
-/// Where a tracked tool is.
+/// State of a tracked tool.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Tracked {
-    /// No tool has this place.
+    /// No tool is assigned to this index.
     #[default]
     Absent,
     /// The tracker sees the tool.
     Seen {
         /// Orientation of the tool in the camera's frame.
         c_from_tool: UnitQuaternion<f64>,
-        /// Its place there, m.
+        /// Its position in the camera's frame, m.
         position_in_c_m: Vector3<f64>,
-        /// Root mean square error of the markers, m.
+        /// Root mean square error of the fit to the markers, m.
         error_m: f64,
-        /// Only part of it is within the volume.
+        /// Whether it is only partly within the measurement volume.
         at_the_edge: bool,
     },
     /// Defined, but not seen.
     Missing {
-        /// It is outside of the volume, not hidden.
+        /// Whether it is outside the measurement volume; otherwise it is hidden.
         out_of_volume: bool,
     },
-    /// Switched off.
+    /// Tracking of the tool is switched off.
     Disabled,
 }
 
 /// One frame of a tracker.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct TrackerReading {
-    /// Number of the frame on the device.
+    /// The device's frame number.
     pub frame: u32,
     /// The tools, in the order of their definition.
     pub tools: [Tracked; TRACKED_TOOLS],
 }
 
-/// Foot pedals and other switches; whatever cannot be read counts as released.
+/// State of a foot pedal or of other switches; a switch that cannot be read counts as released.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct PedalReading {
-    /// Pressed switches, first in the lowest bit.
+    /// Pressed switches, one per bit, the first switch in the lowest bit.
     pub pressed: u32,
 }
 
-/// Six axes of a desk-top leader such as a `SpaceMouse`, each -1 to 1, right-handed: x right, y away from the user, z up.
+/// Six axes of a 3-D mouse such as a `SpaceMouse`, each -1 to 1, right-handed: x right, y away from the user, z up.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct CapReading {
-    /// Push.
+    /// Displacement of the cap.
     pub translation: Vector3<f64>,
-    /// Turn.
+    /// Rotation of the cap.
     pub rotation: Vector3<f64>,
-    /// Buttons, first in the lowest bit.
+    /// Pressed buttons, one per bit, the first button in the lowest bit.
     pub buttons: u32,
 }

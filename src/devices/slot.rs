@@ -1,8 +1,9 @@
-//! A place for one device: opened on a thread of its own, used by the real-time thread, opened again when it is lost.
+//! Holds one device: opens it on a thread of its own, gives it to the real-time thread, and opens it again when it is
+//! lost.
 //!
-//! The real-time thread never waits for it: an opened device arrives through a queue, and a lost one leaves through another, so that
-//! closing happens elsewhere too. A device that comes back is *connected*, never engaged: what it is used for is decided
-//! above.
+//! The real-time thread never waits: an opened device arrives through a queue, and a lost one leaves through another,
+//! so that closing too happens on the slot's thread. A device that comes back is *connected*, never engaged; engaging
+//! is decided by the loop.
 
 use std::{
     sync::{
@@ -17,22 +18,22 @@ use crossbeam_channel::{Receiver, Sender, bounded};
 
 use super::{Device, Health, Identity, Stamped, Standing, Trouble, health::Outages};
 
-/// What is known of a slot from any thread but the real-time one.
+/// State of a slot as other threads than the real-time one see it.
 #[derive(Clone, Debug, Default)]
 pub struct SlotReport {
-    /// Who the device said it is, once it was opened.
+    /// Identity that the device reported when it was opened.
     pub identity: Option<Identity>,
-    /// Why it could not be opened the last time; `None` once it is open.
+    /// Why the last attempt to open it failed; `None` once it is open.
     pub trouble: Option<Trouble>,
-    /// How often it was opened.
+    /// How many times it has been opened.
     pub opened: u64,
 }
 
-/// Between two attempts to open.
+/// Time between two attempts to open.
 const RETRY: Duration = Duration::from_millis(500);
 const NAP: Duration = Duration::from_millis(5);
 
-/// The place. Dropping it closes the device and ends its thread.
+/// The slot of one device. Dropping it closes the device and ends its thread.
 pub struct Slot<D: Device> {
     device: Option<D>,
     health: Health,
@@ -44,7 +45,10 @@ pub struct Slot<D: Device> {
 }
 
 impl<D: Device + 'static> Slot<D> {
-    /// A place for what `open` opens, which is called on a thread of its own, again and again while it is wanted and not there.
+    /// Creates a slot. `open` is called on a thread of its own, repeatedly while the device is wanted and not open.
+    ///
+    /// # Errors
+    /// If the operating system cannot create the thread.
     pub fn start(name: &str, open: impl FnMut() -> Result<D, Trouble> + Send + 'static) -> std::io::Result<Self> {
         let (give, opened) = bounded(1);
         let (lost, take) = bounded(1);
@@ -56,7 +60,8 @@ impl<D: Device + 'static> Slot<D> {
         Ok(Self { device: None, health, outages: Outages::default(), opened, lost, shared, thread: Some(thread) })
     }
 
-    /// Polls the device, if it is there; takes in one that was opened, and puts away one that was lost or is not wanted.
+    /// Polls the device if it is open. Also accepts a device that was just opened, and hands back one that was lost or
+    /// is not wanted.
     pub fn poll(&mut self, now_s: f64) -> Option<Stamped<D::Reading>> {
         let reading = self.poll_device(now_s);
         self.outages.follow(&mut self.health, now_s);
@@ -69,7 +74,7 @@ impl<D: Device + 'static> Slot<D> {
         }
         let wanted = self.shared.wanted.load(Ordering::Acquire);
         let Some(device) = self.device.as_mut() else {
-            // What is not there can be disconnected and connected too.
+            // A device that is not open can be disconnected and connected, too.
             match (wanted, self.health.standing) {
                 (false, _) => self.health.standing = Standing::Closed,
                 (true, Standing::Closed) => self.health.standing = Standing::Opening,
@@ -81,7 +86,7 @@ impl<D: Device + 'static> Slot<D> {
         self.health = *device.health();
         if !wanted || matches!(self.health.standing, Standing::Lost(_)) {
             if let Some(Err(full)) = self.device.take().map(|device| self.lost.try_send(device)) {
-                // The keeper has not yet put away the one before; next time.
+                // The thread has not yet taken the previous device; try again in the next poll.
                 self.device = Some(full.into_inner());
             }
             if !wanted {
@@ -92,22 +97,22 @@ impl<D: Device + 'static> Slot<D> {
         reading
     }
 
-    /// The device while it is connected, to give it commands.
+    /// The device while it is connected, for commands.
     pub const fn device(&mut self) -> Option<&mut D> {
         self.device.as_mut()
     }
 
-    /// How it is; of the last device while there is none.
+    /// Its health; that of the last device while there is none.
     pub const fn health(&self) -> &Health {
         &self.health
     }
 
-    /// Connect or disconnect.
+    /// Connects or disconnects the device.
     pub fn want(&self, connected: bool) {
         self.shared.wanted.store(connected, Ordering::Release);
     }
 
-    /// A view of it for other threads.
+    /// A view for other threads.
     pub fn view(&self) -> SlotView {
         SlotView { shared: self.shared.clone() }
     }
@@ -135,25 +140,25 @@ struct Shared {
     stop: Arc<AtomicBool>,
 }
 
-/// What a screen sees of a slot and may ask of it.
+/// Reads the state of a slot, and connects or disconnects it, from other threads.
 #[derive(Clone, Debug)]
 pub struct SlotView {
     shared: Shared,
 }
 
 impl SlotView {
-    /// What is known of it.
+    /// The present state.
     pub fn report(&self) -> SlotReport {
         self.shared.report.lock().unwrap_or_else(PoisonError::into_inner).clone()
     }
 
-    /// Connect or disconnect.
+    /// Connects or disconnects the device.
     pub fn want(&self, connected: bool) {
         self.shared.wanted.store(connected, Ordering::Release);
     }
 }
 
-/// The thread that opens and closes.
+/// The thread that opens and closes the device.
 struct Keeper<D> {
     give: Sender<D>,
     take: Receiver<D>,
@@ -194,7 +199,7 @@ impl<D: Device> Keeper<D> {
         change(&mut self.shared.report.lock().unwrap_or_else(PoisonError::into_inner));
     }
 
-    /// Sleeps in small pieces, so that stopping is quick.
+    /// Sleeps in short steps, so that the thread can be stopped quickly.
     fn wait(&self, length: Duration) {
         let pieces = length.as_millis() / NAP.as_millis();
         for _ in 0..pieces {
@@ -268,7 +273,7 @@ mod tests {
         assert!(slot.health().outages >= 1 && slot.health().longest_outage_s > 0.0, "an outage is not forgotten");
         let outages = slot.health().outages;
         assert!(until(&mut slot, |slot, _| slot.health().outages > outages), "the next one is counted");
-        // It is away just now; disconnected it counts as closed, not as lost.
+        // The device is not there at this moment; disconnecting it makes it closed, not lost.
         view.want(false);
         assert!(until(&mut slot, |slot, _| slot.health().standing == Standing::Closed));
         let opened = view.report().opened;

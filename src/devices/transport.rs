@@ -1,7 +1,8 @@
-//! Bytes and datagrams to and from a device, never waiting: the only part of a driver that touches the operating system.
+//! Bytes and datagrams to and from a device, without waiting: the only part of a driver that calls the operating
+//! system.
 //!
-//! A read gives what is there (`Ok(0)` when nothing is); an error means the connection is gone. Opening may block and belongs
-//! on another thread; reading and writing allocate nothing.
+//! Reading returns what is there (`Ok(0)` if nothing is); an error means that the connection is closed. Opening may
+//! block and must be done on another thread; reading and writing allocate nothing.
 
 mod memory;
 mod serial;
@@ -17,19 +18,32 @@ use super::Loss;
 
 /// A stream of bytes: a serial line or a TCP connection.
 pub trait Bytes: Send {
-    /// Takes what has arrived into `buffer`; 0 when there is nothing now.
+    /// Reads what has arrived into `buffer`; returns 0 if there is nothing now.
+    ///
+    /// # Errors
+    /// [`Loss::Disconnected`] if the connection is closed.
     fn receive(&mut self, buffer: &mut [u8]) -> Result<usize, Loss>;
-    /// Sends all or nothing of a short message; [`Loss::Disconnected`] where it cannot be taken at once.
+    /// Sends a short message completely or not at all.
+    ///
+    /// # Errors
+    /// [`Loss::Disconnected`] if it cannot be sent at once.
     fn send(&mut self, bytes: &[u8]) -> Result<(), Loss>;
 }
 
 /// Datagrams to and from one peer.
 pub trait Datagrams: Send {
-    /// Takes the next datagram; `None` when there is none now.
+    /// Reads the next datagram; `None` if there is none now.
+    ///
+    /// # Errors
+    /// [`Loss::Disconnected`] if the peer is gone.
     fn receive(&mut self, buffer: &mut [u8]) -> Result<Option<usize>, Loss>;
-    /// Sends one.
+    /// Sends one datagram.
+    ///
+    /// # Errors
+    /// [`Loss::Disconnected`] if the peer is gone.
     fn send(&mut self, bytes: &[u8]) -> Result<(), Loss>;
-    /// Hears from now on only who sent the newest one; nothing where there is only one to be heard.
+    /// From now on accepts only datagrams of the sender of the newest one. Has no effect if there is only one possible
+    /// sender.
     fn keep_to_sender(&mut self) {}
 }
 

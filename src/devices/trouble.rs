@@ -1,22 +1,22 @@
-//! Why a device could not be opened: each cause with its cure. Made off the real-time thread; allocates.
+//! Why a device could not be opened, each cause with its cure. Not for the real-time thread: it allocates.
 
 use std::{io, path::Path};
 
-/// What went wrong on the way to a device.
+/// Why a device could not be opened.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error, serde::Serialize)]
 #[serde(rename_all = "snake_case", tag = "trouble")]
 #[expect(missing_docs, reason = "the messages say it")]
 pub enum Trouble {
     #[error("{place} is not there")]
     Absent {
-        /// Port, path or identity looked for.
+        /// Port, path or identity searched for.
         place: String,
     },
-    /// The operating system does not let this user in.
+    /// The user has no permission for the device.
     #[error("{place} may not be opened by this user")]
     Permission {
         place: String,
-        /// The line for the udev rules that grants it.
+        /// The udev rule that grants the permission.
         udev: String,
     },
     #[error("{place} is used by another program")]
@@ -24,44 +24,44 @@ pub enum Trouble {
         /// Port, path or address.
         place: String,
     },
-    /// Somebody answers, but another device.
+    /// Another device answers at this address.
     #[error("{place} is a {found}, not a {expected}")]
     WrongProduct { place: String, expected: String, found: String },
-    /// Bytes arrive that make no frame: as with a wrong line speed.
+    /// Bytes arrive that are not valid frames, as with a wrong line speed.
     #[error("{place} sends bytes that make no sense at {baud} baud")]
     WrongBaud { place: String, baud: u32 },
-    /// Opened, and no byte arrives.
+    /// The port is open, but no byte arrives.
     #[error("{place} is open but sends nothing")]
     Silent { place: String },
-    /// No way to the address.
+    /// There is no route to the address.
     #[error("{place} cannot be reached")]
     Unreachable { place: String },
-    /// The machine answers, but nobody listens on the port.
+    /// The computer at the address answers, but nothing listens on the port.
     #[error("nobody listens at {place}")]
     NobodyListens {
         /// Address with port.
         place: String,
     },
-    /// It sends what it reads to another address than this computer's.
+    /// It sends its readings to another address than this computer's.
     #[error("{place} sends its readings to {to}, and this computer is {here}")]
     SendsElsewhere {
         place: String,
-        /// Address and port it sends to.
+        /// Address and port to which it sends.
         to: String,
-        /// This computer's address as the device sees it.
+        /// This computer's address as seen by the device.
         here: String,
     },
-    /// User or password is wrong.
+    /// User name or password is wrong.
     #[error("{place} refuses user \"{user}\"")]
     RefusedLogin { place: String, user: String },
-    /// A library of the manufacturer is needed and not installed.
+    /// A library of the manufacturer is required and not installed.
     #[error("the {name} is not installed")]
     SdkMissing {
         name: String,
-        /// Where it was looked for.
+        /// Where it was searched for.
         searched: String,
     },
-    /// The library is there and does not fit.
+    /// The library is installed but not usable.
     #[error("the {name} at {path} cannot be used: {reason}")]
     SdkUnusable { name: String, path: String, reason: String },
     /// The device is in calibration, reset or boot mode.
@@ -71,14 +71,14 @@ pub enum Trouble {
     #[error("{place} reports a fault: {words}")]
     DeviceFault {
         place: String,
-        /// In words, with the device's code.
+        /// Text, with the device's code.
         words: String,
         cure: String,
     },
-    /// It refused a command or setting.
+    /// The device refused a command or setting.
     #[error("{place} refused {command}: {answer}")]
     Refused { place: String, command: String, answer: String },
-    /// A setting in the rig file is impossible.
+    /// A setting in the rig file is invalid.
     #[error("{key} = {value} is not possible: {allowed}")]
     Setting {
         /// Key in the rig file.
@@ -86,13 +86,13 @@ pub enum Trouble {
         value: String,
         allowed: String,
     },
-    /// Anything else the operating system said.
+    /// Any other error of the operating system.
     #[error("{place}: {reason}")]
     Other { place: String, reason: String },
 }
 
 impl Trouble {
-    /// What to do about it, one sentence.
+    /// What to do about it, in one sentence.
     pub fn cure(&self) -> String {
         match self {
             Self::Absent { .. } => "Plug it in and switch it on, or correct its port in the rig file.".to_owned(),
@@ -126,7 +126,7 @@ impl Trouble {
         }
     }
 
-    /// Of an error while opening a device file; `udev` is the rule that would let everybody at the machine in.
+    /// From an error while opening a device file; `udev` is the rule that would grant the permission.
     pub fn of_port(path: &Path, error: &io::Error, udev: &str) -> Self {
         let place = path.display().to_string();
         match error.kind() {
@@ -137,7 +137,7 @@ impl Trouble {
         }
     }
 
-    /// Of an error while reaching a network address.
+    /// From an error while connecting to a network address.
     pub fn of_address(address: &str, error: &io::Error) -> Self {
         let place = address.to_owned();
         match error.kind() {

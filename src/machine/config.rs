@@ -31,50 +31,50 @@ pub struct RigConfig {
     pub mode: Mode,
     /// One-way delay from follower to leader, s.
     pub delay_s: f64,
-    /// Fastest command to the follower, m/s.
+    /// Speed limit of commands to the follower, m/s.
     pub follower_speed_max_m_s: f64,
     /// Identification window and scales.
     #[serde(default)]
     pub identification: Identification,
-    /// Gates between model and hand.
+    /// Settings of the gates between the model and the hand.
     #[serde(default)]
     pub gates: ChainSettings,
-    /// The network against the trocar's friction.
+    /// Settings of the network that removes the trocar's friction.
     #[serde(default)]
     pub tip_force: TipForcePart,
-    /// What to ask of the operating system for the loop's thread; what it refuses is told.
+    /// Scheduling to request for the loop's thread; if refused, this is reported.
     #[serde(default)]
     pub scheduling: SchedulingClass,
-    /// From the hand's motion to the tip's.
+    /// Mapping from the hand's motion to the tip's.
     #[serde(default)]
     pub teleoperation: Teleoperation,
-    /// A cap and pedals before a simulated rig.
+    /// A six-axis cap and pedals that lead a simulated rig.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub desk: Option<rig::DeskSettings>,
-    /// What hangs on the simulated arms, where there are no devices.
+    /// Sensors and tools on the simulated arms of a rig without devices.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub simulated: Option<SimulatedWrists>,
-    /// The devices; without them everything is simulated.
+    /// The devices; if absent, everything is simulated.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub devices: Option<rig::Settings>,
 }
 
-/// How the operating system shall treat the loop's thread (Linux).
+/// Scheduling of the loop's thread (Linux).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum SchedulingClass {
-    /// As any other thread.
+    /// Scheduled like any other thread.
     Ordinary,
     /// `SCHED_FIFO` and locked memory.
     #[default]
     Fifo,
-    /// `SCHED_DEADLINE` and locked memory: before the share that newer kernels keep for ordinary threads; a runaway loop is
-    /// held back by the kernel. Needs root.
+    /// `SCHED_DEADLINE` and locked memory. Takes precedence over the share of processor time that newer kernels reserve
+    /// for ordinary threads; a runaway loop is suspended by the kernel. Needs root.
     Deadline,
 }
 
 impl SchedulingClass {
-    /// All, most modest first.
+    /// All classes, in rising order of privilege.
     pub const ALL: [Self; 3] = [Self::Ordinary, Self::Fifo, Self::Deadline];
 
     /// Its name in files and on the command line.
@@ -96,15 +96,16 @@ impl std::str::FromStr for SchedulingClass {
     }
 }
 
-/// From the hand's motion to the tip's: `world_from_view * view_from_leader`, and the scale.
+/// Mapping from the hand's motion to the tip's: `world_from_view * view_from_leader`, and the scale.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Teleoperation {
-    /// The tip's way per way of the hand.
+    /// Distance of the tip per distance of the hand.
     pub scale: f64,
-    /// How the endoscope looks: roll, pitch, yaw of `world_from_view`, degrees (picture: x right, y down, z into it).
+    /// Orientation of the endoscope: roll, pitch, yaw of `world_from_view`, degrees (picture: x right, y down, z into
+    /// it).
     pub world_from_view_deg: Vector3<f64>,
-    /// How the leader stands before the picture.
+    /// Orientation of the leader relative to the picture.
     pub leader: LeaderMount,
 }
 
@@ -114,24 +115,24 @@ impl Default for Teleoperation {
     }
 }
 
-/// How a leader stands before the picture.
+/// Orientation of a leader relative to the picture.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum LeaderMount {
-    /// Its axes are those of the picture.
+    /// The leader's axes are those of the picture.
     #[default]
     Workspace,
-    /// An Omega whose base faces the user below the screen.
+    /// An Omega below the screen, with its base towards the user.
     Omega,
 }
 
 impl Teleoperation {
-    /// The mapping; the default one where the numbers are none ([`RigConfig::validate`] refuses them).
+    /// The mapping; the default one if the numbers are not finite (which [`RigConfig::validate`] refuses).
     pub fn mapping(&self) -> Mapping {
         self.seen(&from_roll_pitch_yaw_deg(&self.world_from_view_deg), self.scale)
     }
 
-    /// The mapping by an endoscope that looks so; the default one where the numbers are none.
+    /// The mapping for an endoscope of this orientation; the default one if the numbers are not finite.
     pub fn seen(&self, world_from_view: &UnitQuaternion<f64>, scale: f64) -> Mapping {
         let view_from_leader = match self.leader {
             LeaderMount::Workspace => UnitQuaternion::identity(),
@@ -145,7 +146,7 @@ impl Teleoperation {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct TipForcePart {
-    /// What is felt while the network is in doubt.
+    /// Force to render while the network is uncertain.
     pub fallback: Fallback,
 }
 
@@ -157,9 +158,9 @@ pub struct Identification {
     pub window_s: f64,
     /// Highest degree identified, 1 to 5.
     pub max_degree: usize,
-    /// Learn the full `M` with cross-talk between the axes too; costs as much again.
+    /// Learn the full matrix `M` with cross-talk between the axes; this doubles the cost.
     pub cross_talk: bool,
-    /// Fixed physical scales of the columns, from the rig's workspace.
+    /// Fixed physical scales of the regressor's columns, from the rig's workspace.
     pub scales: Scales,
 }
 
@@ -177,10 +178,22 @@ const RIGS: [(&str, &str); 4] = [
 ];
 
 impl RigConfig {
-    /// The rig of this embedded name or TOML file.
+    /// Loads the embedded rig of this name, or a TOML file.
     ///
     /// # Errors
-    /// A name that is neither embedded nor a file, a file that cannot be read or has another form, or a value outside of its range.
+    /// A name that is neither embedded nor a file, a file that cannot be read or parsed, or a value outside its range.
+    ///
+    /// ```
+    /// use nima_machine::config::{ConfigError, RigConfig};
+    ///
+    /// let rig = RigConfig::load("simulated")?;
+    /// assert!(rig.devices.is_none(), "everything is simulated");
+    /// assert!(matches!(RigConfig::load("no such rig"), Err(ConfigError::Unknown { .. })));
+    ///
+    /// let wrong = RigConfig { rate_hz: f64::NAN, ..rig };
+    /// assert!(wrong.validate().is_err());
+    /// # Ok::<(), ConfigError>(())
+    /// ```
     pub fn load(name: &str) -> Result<Self, ConfigError> {
         let (path, text) = text("rig", name, &RIGS)?;
         let mut rig: Self = parse_with("rig", &path, &text, rig::take_out_makes)?;
@@ -206,7 +219,7 @@ impl RigConfig {
     /// Checks every value's range.
     ///
     /// # Errors
-    /// The first value that is outside of its range, by its key.
+    /// [`ConfigError`] for the first value outside its range, with its key.
     pub fn validate(&self) -> Result<(), ConfigError> {
         let ranges = Ranges { kind: "rig", name: &self.name };
         ranges.check("rate_hz", self.rate_hz, (20.0..=10_000.0).contains(&self.rate_hz), "20 to 10000 Hz")?;

@@ -1,9 +1,9 @@
-//! The rig, the loop and its thread, and the messages between the loop and the screen.
+//! The control loop: its hardware interface, its real-time thread, and the messages between the loop and the screen.
 //!
 //! | module | holds |
 //! |---|---|
 //! | `config` | rig files, and how files of settings are read |
-//! | `rig` | what the loop asks of hardware, and the drivers of a rig file composed into it |
+//! | `rig` | the hardware interface of the loop, and its implementation with the devices of a rig file |
 //! | `messages` | commands in; ticks and events out |
 //! | `teleop` | one tick of the whole loop for both arm pairs |
 //! | `runtime` | the real-time thread, its supervisor, the virtual clock |

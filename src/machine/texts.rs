@@ -1,19 +1,20 @@
-//! Texts of a rig or scene file reach messages and the screen as they are: they must be short and plain.
+//! Checks the texts of rig and scene files. They are shown on the screen and in messages as they are, so they must be
+//! short and printable.
 
 use nima_files::quoted;
 use toml::{Table, Value};
 
-/// Most characters of a text: names, addresses, ports, paths.
+/// Longest text, characters: names, addresses, ports, paths.
 const MOST: usize = 512;
 
-/// Key and fault of the first text that cannot be shown.
+/// Key and fault of the first text that cannot be displayed.
 pub(crate) fn fault(table: &Table) -> Option<String> {
     table
         .iter()
         .find_map(|(key, value)| of_value(value).map(|(place, fault)| format!("{}{place} {fault}", quoted(key))))
 }
 
-/// The place below this value, and what is wrong there.
+/// Key below this value, and what is wrong with its text.
 fn of_value(value: &Value) -> Option<(String, String)> {
     match value {
         Value::String(text) => of_text(text).map(|fault| (String::new(), fault)),

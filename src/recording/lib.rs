@@ -1,7 +1,7 @@
-//! What is kept in files: recordings of motion and force, data sets, trained networks, calibrations.
+//! Files: recordings of motion and force, data sets, trained networks, calibrations.
 //!
-//! Takes and gives the types of `nima-core`; bytes on one side, checked values on the other. Every reader refuses what it does not
-//! understand with its place; every writer writes a temporary file first and renames it.
+//! Converts between bytes and the checked types of `nima-core`. Every reader refuses what it does not understand and
+//! reports the position; every writer writes a temporary file first and renames it.
 #![warn(missing_docs)]
 
 pub mod csv;

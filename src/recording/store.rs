@@ -1,8 +1,8 @@
 //! Calibration files: TOML, one per kind and sensor, in the user's data folder.
 //!
-//! A file is bound to its sensor and tool: for another one it is refused, not used with a guess. What was refused by its
-//! verdict is written only with the name of who overrides it. Writing is atomic, and what was there before is kept beside it
-//! as `.previous`. Dates are UTC, ISO 8601.
+//! A file is bound to its sensor and tool and refused for any other. A calibration rejected by its verdict is saved
+//! only with the name of the person who overrides it. Writing is atomic, and the previous file is kept as `.previous`.
+//! Dates are UTC, ISO 8601.
 
 mod date;
 
@@ -16,24 +16,24 @@ use nima_core::calibration::Record;
 use nima_files::{PASSAGE, copy_atomically, quoted, shortened, write_atomically};
 use serde::{Deserialize, Serialize};
 
-/// What calibrations belong to: one wrist sensor, with one tool on it.
+/// What a calibration is bound to: one wrist sensor with one tool.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct WristId {
-    /// Serial number of the sensor, as it tells it itself.
+    /// Serial number that the sensor reports.
     pub serial_number: String,
-    /// As the rig file names it; another tool needs a calibration of its own.
+    /// Name of the tool in the rig file; another tool needs a calibration of its own.
     pub tool: String,
 }
 
-/// A calibration file that could not be used or written: what, where, what to do.
+/// Why a calibration file could not be used or written: what, where, and what to do.
 #[derive(Debug, thiserror::Error)]
 #[expect(missing_docs, reason = "the messages say it")]
 pub enum StoreError {
-    /// No folder for the user's data is known.
+    /// The folder for the user's data is not known.
     #[error("no folder for calibrations is known; set NIMA_DATA_DIR to one")]
     NoFolder,
-    /// A serial or tool that cannot be a file's name.
+    /// The serial number or tool cannot be part of a file name.
     #[error("\"{name}\" cannot name a calibration; use letters, digits, '-', '_' and '.', at most 64, not first a '.'")]
     Name { name: String },
     /// The file could not be read.
@@ -42,7 +42,7 @@ pub enum StoreError {
     /// The file could not be written.
     #[error("cannot write calibration {path}")]
     Write { path: PathBuf, source: io::Error },
-    /// The file is not TOML of its kind.
+    /// The file is not valid TOML of its kind.
     #[error("calibration {path} is damaged: {message}; repair it or calibrate again")]
     Damaged {
         path: PathBuf,
@@ -57,43 +57,43 @@ pub enum StoreError {
         found: String,
         wanted: String,
     },
-    /// The verdict does not allow it to be used and nobody overrode it.
+    /// The verdict does not allow its use, and nobody has overridden it.
     #[error("the {kind} calibration was refused ({reason}); repeat it, or name who overrides the verdict")]
     Refused { kind: &'static str, reason: String },
-    /// A record that cannot be told in TOML.
+    /// The record cannot be written as TOML.
     #[error("the {kind} calibration cannot be written: {message}; calibrate again")]
     Unwritable { kind: &'static str, message: String },
 }
 
-/// How old a calibration is.
+/// Age of a calibration.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Age {
-    /// Young enough.
+    /// Recent enough.
     Fresh,
-    /// Too old: it should be repeated.
+    /// It should be repeated.
     Old {
-        /// Whole days.
+        /// Age in whole days.
         days: u64,
     },
-    /// Made after now: a clock is wrong.
+    /// Its date is in the future: a clock is wrong.
     Future,
 }
 
-/// A record that was loaded, and how old it is.
+/// A loaded record and its age.
 #[derive(Clone, Debug, PartialEq)]
 #[expect(missing_docs, reason = "the names say it")]
 pub struct Loaded<R> {
     pub record: R,
-    /// Its age; warn when it is not fresh.
+    /// Its age; warn if it is not `Fresh`.
     pub age: Age,
     pub path: PathBuf,
 }
 
-/// Days after which a calibration is old.
+/// Age in days from which a calibration is old.
 pub const DEFAULT_MAX_AGE_DAYS: u64 = 30;
 const DAY_S: u64 = 86_400;
 
-/// The folder of calibrations.
+/// A folder of calibrations.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Store {
     folder: PathBuf,
@@ -101,21 +101,21 @@ pub struct Store {
 }
 
 impl Store {
-    /// The store in this folder; it is made by the first save.
+    /// The store in this folder, which is created when the first record is saved.
     pub fn open(folder: impl Into<PathBuf>) -> Self {
         Self { folder: folder.into(), max_age_days: DEFAULT_MAX_AGE_DAYS }
     }
 
-    /// The user's own: `$NIMA_DATA_DIR/calibrations`, else `nima-console/calibrations` in the platform's data folder.
+    /// The user's store: `$NIMA_DATA_DIR/calibrations`, else `nima-console/calibrations` in the platform's data folder.
     ///
     /// # Errors
-    /// Where neither the variable is set nor the platform names a data folder.
+    /// [`StoreError`] if the variable is not set and the platform has no data folder.
     pub fn of_user() -> Result<Self, StoreError> {
         let get = |name: &str| std::env::var_os(name).filter(|value| !value.is_empty()).map(PathBuf::from);
         user_folder(&get).map(Self::open).ok_or(StoreError::NoFolder)
     }
 
-    /// Calls calibrations old after this many days.
+    /// Sets the age in days from which a calibration is old.
     #[must_use]
     pub const fn with_max_age_days(mut self, days: u64) -> Self {
         self.max_age_days = days;
@@ -127,12 +127,15 @@ impl Store {
         &self.folder
     }
 
-    /// Where the record of this kind for this sensor is.
+    /// Path of the record of this kind for this sensor.
+    ///
+    /// # Errors
+    /// [`StoreError`] if the sensor's name cannot be part of a file name.
     pub fn path<R: Record>(&self, sensor: &str) -> Result<PathBuf, StoreError> {
         Ok(self.folder.join(format!("{}-{}.toml", R::KIND, checked(sensor)?)))
     }
 
-    /// Other sensors that have a record of this kind for the same tool. Files that cannot be read are passed over.
+    /// Other sensors with a record of this kind for the same tool. Unreadable files are skipped.
     pub fn other_sensors<R: Record>(&self, wrist: &WristId) -> Vec<String> {
         let of_kind = format!("{}-", R::KIND);
         let entries = fs::read_dir(&self.folder).into_iter().flatten().flatten();
@@ -151,10 +154,10 @@ impl Store {
         sensors
     }
 
-    /// Where another file of this kind for this sensor belongs, `KIND-SENSOR.ENDING`: networks and their data sets.
+    /// Path of another file of this kind for this sensor, `KIND-SENSOR.ENDING`: for networks and their data sets.
     ///
     /// # Errors
-    /// A kind or sensor whose name cannot be part of a file's name.
+    /// [`StoreError`] if kind or sensor cannot be part of a file name.
     ///
     /// ```
     /// use nima_recording::store::Store;
@@ -168,15 +171,15 @@ impl Store {
         Ok(self.folder.join(format!("{}-{}.{ending}", checked(kind)?, checked(sensor)?)))
     }
 
-    /// How old something of this date (UTC, ISO 8601) is; `None` for what is no date.
+    /// Age at `now` of something with this date (UTC, ISO 8601); `None` if it is not a valid date.
     pub fn age_of(&self, date: &str, now: SystemTime) -> Option<Age> {
         date::parse(date).map(|made_s| self.age(made_s, seconds(now)))
     }
 
-    /// Saves a record under its sensor; the one before stays as `.previous`. Gives the path.
+    /// Saves a record under its sensor's name and returns the path; the previous one is kept as `.previous`.
     ///
     /// # Errors
-    /// A record that was refused and has no reason for an override; a folder or file that cannot be written.
+    /// [`StoreError`] for a record that was rejected without an override, or a folder or file that cannot be written.
     pub fn save<R: Record>(&self, record: &R) -> Result<PathBuf, StoreError> {
         let path = self.path::<R>(&record.head().sensor)?;
         fs::create_dir_all(&self.folder).map_err(|source| StoreError::Write { path: path.clone(), source })?;
@@ -184,10 +187,11 @@ impl Store {
         Ok(path)
     }
 
-    /// Loads the record for this sensor and tool; `None` when there is none. Refuses what belongs elsewhere.
+    /// Loads the record for this sensor and tool; `None` if there is none.
     ///
     /// # Errors
-    /// A file that cannot be read, is no record of this kind, belongs to another sensor or tool, or was refused.
+    /// [`StoreError`] for a file that cannot be read, is not a record of this kind, belongs to another sensor or tool,
+    /// or was rejected.
     pub fn load<R: Record>(&self, sensor: &str, tool: &str, now: SystemTime) -> Result<Option<Loaded<R>>, StoreError> {
         let path = self.path::<R>(sensor)?;
         let Some(record) = read::<R>(&path)? else { return Ok(None) };
@@ -205,7 +209,7 @@ impl Store {
     }
 
     const fn age(&self, made_s: u64, now_s: u64) -> Age {
-        // Clocks of two computers differ by minutes; more than a day is an error.
+        // Clocks of two computers may differ by minutes; more than a day is an error.
         if made_s > now_s + DAY_S {
             return Age::Future;
         }
@@ -214,8 +218,8 @@ impl Store {
     }
 }
 
-/// Writes one record to a file of any name, under the rules of the store: verdict or override, atomic, the file before kept
-/// as `.previous` (of the same name with that ending).
+/// Writes one record to any path with the rules of the store: verdict or override, atomic, the previous file kept as
+/// `.previous` (same name with that ending).
 ///
 /// # Errors
 /// As [`Store::save`].
@@ -229,12 +233,15 @@ pub fn write<R: Record>(path: &Path, record: &R) -> Result<(), StoreError> {
     }
     let text = toml::to_string(record).map_err(|error| unwritable(error.to_string()))?;
     let failed = |source| StoreError::Write { path: path.to_owned(), source };
-    // A copy, then the rename of the new file: at no moment is there no calibration.
+    // Copied and then replaced by renaming the new file: there is a calibration at every moment.
     keep_previous(path).map_err(failed)?;
     write_atomically(path, |file| file.write_all(text.as_bytes())).map_err(failed)
 }
 
-/// Copies what is at `path`, if anything, to the same name with the ending `.previous`.
+/// Copies the file at `path`, if it exists, to the same name with the ending `.previous`.
+///
+/// # Errors
+/// I/O errors.
 pub fn keep_previous(path: &Path) -> io::Result<()> {
     match copy_atomically(path, &previous(path)) {
         Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(()),
@@ -242,10 +249,10 @@ pub fn keep_previous(path: &Path) -> io::Result<()> {
     }
 }
 
-/// Reads one record; `None` when there is no file. Checks the kind and the verdict's rule, not sensor and tool.
+/// Reads one record; `None` if there is no file. Checks kind and verdict, but not sensor and tool.
 ///
 /// # Errors
-/// A file that cannot be read, is no record of this kind, or was refused.
+/// [`StoreError`] for a file that cannot be read, is not a record of this kind, or was rejected.
 pub fn read<R: Record>(path: &Path) -> Result<Option<R>, StoreError> {
     let text = match nima_files::read_text(path, nima_files::CONFIG_MAX) {
         Ok(text) => text,
@@ -254,7 +261,7 @@ pub fn read<R: Record>(path: &Path) -> Result<Option<R>, StoreError> {
     };
     let damaged = |message: String| StoreError::Damaged { path: path.to_owned(), message };
     let in_words = |error: toml::de::Error| damaged(shortened(&one_line(&error.to_string()), PASSAGE));
-    // The kind first: keys of another kind would only be called unknown.
+    // Check the kind first: keys of another kind would only be reported as unknown.
     let head: toml::Table = toml::from_str(&text).map_err(in_words)?;
     if let Some(found) = head.get("kind").and_then(toml::Value::as_str)
         && found != R::KIND
@@ -272,17 +279,17 @@ pub fn read<R: Record>(path: &Path) -> Result<Option<R>, StoreError> {
     Ok(Some(record))
 }
 
-/// Now, UTC, ISO 8601 to the second: the date of a record.
+/// The present time, UTC, ISO 8601 to the second: the date of a record.
 pub fn utc_now() -> String {
     date::format(seconds(SystemTime::now()))
 }
 
-/// Seconds since 1970; zero before.
+/// Seconds since 1970; zero for earlier times.
 fn seconds(time: SystemTime) -> u64 {
     time.duration_since(UNIX_EPOCH).map_or(0, |since| since.as_secs())
 }
 
-/// Where what was at `path` before is kept.
+/// Path of the previous version of the file at `path`.
 pub fn previous(path: &Path) -> PathBuf {
     let mut name = path.as_os_str().to_owned();
     name.push(".previous");
@@ -290,12 +297,12 @@ pub fn previous(path: &Path) -> PathBuf {
 }
 
 fn one_line(text: &str) -> String {
-    // The reader draws the line with a mark under it; its place and its complaint are enough.
+    // Without the lines in which the parser quotes the file; position and message are enough.
     let kept = text.lines().filter(|line| !line.trim_start().starts_with('|') && !line.contains(" | "));
     kept.map(str::trim).filter(|line| !line.is_empty()).collect::<Vec<_>>().join(": ")
 }
 
-/// Letters, digits and a few signs: no name leads out of the folder.
+/// Whether a name can be part of a file name: only letters, digits and a few symbols, so that it cannot contain a path.
 ///
 /// ```
 /// use nima_recording::store::can_name_a_file;
@@ -311,7 +318,7 @@ fn checked(name: &str) -> Result<&str, StoreError> {
     if can_name_a_file(name) { Ok(name) } else { Err(StoreError::Name { name: quoted(name) }) }
 }
 
-/// By the environment `get` (empty counts as unset).
+/// From environment variables, read with `get` (an empty one counts as unset).
 fn user_folder(get: &dyn Fn(&str) -> Option<PathBuf>) -> Option<PathBuf> {
     if let Some(folder) = get("NIMA_DATA_DIR") {
         return Some(folder.join("calibrations"));

@@ -1,8 +1,10 @@
-//! The gates against an adversary: millions of requests that no honest mode would make, and everything that leaves is judged.
+//! Tests the gates with random requests, most of which no real mode would make; every force that leaves the chain is
+//! checked.
 //!
-//! Takes a number of requests and a seed; gives counted [`Breaches`] (0 is the promise) and how often each gate acted, which
-//! shows that the adversary found it. Every 2000 requests meet a new chain with other settings (all that can be chosen, and some that
-//! cannot), of one axis or of three, at another rate; in between gains, dead band and permission are meddled with.
+//! Takes a number of requests and a seed; returns the number of [`Breaches`] (must be 0) and how often each gate acted,
+//! which shows that the requests reach every gate. After every 2000 requests a new chain is made with other settings
+//! (valid and invalid ones), one or three axes and another rate; in between, gain, dead band and permission are changed
+//! at random.
 
 mod adversary;
 mod watch;
@@ -25,44 +27,51 @@ use crate::{Experiment, Findings};
 /// Requests to one chain.
 const PER_CHAIN: u64 = 2000;
 
-/// What to do.
+/// Options of this study.
 #[derive(Clone, Copy, Debug)]
 pub struct Options {
-    /// Requests to make.
+    /// Number of requests.
     pub requests: u64,
-    /// Seed of the adversary.
+    /// Seed of the random requests.
     pub seed: u64,
 }
 
 /// How often a gate acted.
 #[derive(Clone, Debug, Serialize)]
 pub struct Acted {
-    /// Which.
+    /// Which gate.
     pub gate: Gate,
-    /// Requests.
+    /// Number of requests that it changed.
     pub requests: u64,
 }
 
-/// The study's result.
+/// Result of this study.
 #[derive(Clone, Debug, Serialize)]
 pub struct Report {
-    /// Requests made.
+    /// Number of requests.
     pub requests: u64,
-    /// Chains they were made to.
+    /// Number of chains.
     pub chains: u64,
-    /// Seed of the adversary.
+    /// Seed of the random requests.
     pub seed: u64,
-    /// What must not be.
+    /// Violated limits; all must be 0.
     pub breaches: Breaches,
-    /// Every gate, in its order.
+    /// How often each gate acted, in the order of the gates.
     pub acted: Vec<Acted>,
-    /// Forces other than zero that left.
+    /// Number of forces other than zero that left a chain.
     pub forces: u64,
-    /// Time it took, s.
+    /// Duration of the study, s.
     pub seconds: f64,
 }
 
-/// Makes `requests` requests; `progress` is told now and then how many of how many thousand are done.
+/// Runs `requests` requests; `progress` is called from time to time with the number done and the total, both in
+/// thousands.
+///
+/// ```
+/// let report = nima_study::gates::study(20_000, 1, |_, _, _| {});
+/// assert_eq!(report.breaches.total(), 0);
+/// assert!(report.forces > 0, "some forces passed");
+/// ```
 pub fn study(requests: u64, seed: u64, mut progress: impl FnMut(usize, usize, &str)) -> Report {
     let start = Instant::now();
     let mut rng = Rng::with_seed(seed);
@@ -144,7 +153,7 @@ fn meddle<const D: usize>(chain: &mut Chain<D>, watch: &mut Watch<D>, meddling: 
 }
 
 impl Report {
-    /// For a terminal.
+    /// Text for a terminal.
     pub fn text(&self) -> String {
         let Breaches { not_finite, ceiling, slew, gain_rate, gain_range, uncalled, energy } = self.breaches;
         let lines = [
@@ -152,16 +161,16 @@ impl Report {
                 "{} requests to {} chains in {:.1} s (seed {})",
                 self.requests, self.chains, self.seconds, self.seed
             ),
-            format!("{} left as a force other than zero", self.forces),
+            format!("{} resulted in a force other than zero", self.forces),
             "gate            acted on".to_owned(),
         ];
         let gates = self.acted.iter().map(|acted| format!("{:14} {:9}", acted.gate.name(), acted.requests));
         let breaches = [
             format!("breaches        {}", self.breaches.total()),
             format!(
-                "  not finite {not_finite}, ceiling {ceiling}, slew {slew}, gain's rate {gain_rate}, gain's range {gain_range}"
+                "  not finite {not_finite}, ceiling {ceiling}, slew {slew}, gain rate {gain_rate}, gain range {gain_range}"
             ),
-            format!("  without permission, hand or valid request {uncalled}, energy's bound {energy}"),
+            format!("  without permission, hand or valid request {uncalled}, stored energy {energy}"),
         ];
         lines.into_iter().chain(gates).chain(breaches).collect::<Vec<_>>().join("\n")
     }
@@ -204,7 +213,7 @@ mod tests {
     fn half_a_million_adversarial_requests_breach_nothing_and_find_every_gate() {
         let report = study(500_000, 3, |_, _, _| {});
         assert_eq!(report.breaches, Breaches::default());
-        // A chain that gave nothing would breach nothing either.
+        // Otherwise a chain that never gives a force would pass.
         assert!(report.forces > 50_000, "{}", report.forces);
         for acted in &report.acted {
             assert!(acted.requests > 100, "{acted:?}");

@@ -1,7 +1,7 @@
-//! Experiments that print figures.
+//! Experiments that measure the system and report figures.
 //!
-//! Each is an [`Experiment`]: its options are the value, and what it finds are [`Findings`], which one writer turns into files
-//! and into words on a terminal.
+//! Each is an [`Experiment`], a struct of its options; its result implements [`Findings`]. One writer in the console
+//! turns findings into files and into text on a terminal.
 #![warn(missing_docs)]
 
 pub mod faults;
@@ -21,41 +21,43 @@ use std::{error::Error, path::PathBuf};
 
 use serde::Serialize;
 
-/// Something to measure, with its options.
+/// A measurement with its options.
 pub trait Experiment {
-    /// Its files begin so: `release` makes `release.json` and `release.md`.
+    /// Start of the names of its files: `release` gives `release.json` and `release.md`.
     const NAME: &'static str;
-    /// How the files end that it writes in any case beside the JSON: `.md`. It is tried before the work whether they can be written.
+    /// Endings of the files that it always writes besides the JSON, such as `.md`. Before the experiment runs, the
+    /// writer checks that these files can be written.
     const FILES: &'static [&'static str];
-    /// What it finds.
+    /// Type of the result.
     type Findings: Findings;
-    /// Why it cannot be made.
+    /// Why it could not be run.
     type Error: Error + Send + Sync + 'static;
 
-    /// Files that it reads, which no result may replace.
+    /// Files that it reads; results must not overwrite them.
     fn inputs(&self) -> Vec<PathBuf> {
         Vec::new()
     }
 
-    /// Makes it. `progress` is told before each step how many are done, of how many, and what comes next.
+    /// Runs the experiment. Before each step `progress` is called with the number of steps done, their total, and the
+    /// name of the next step.
     ///
     /// # Errors
-    /// A setting is out of range, or what is to be measured cannot be had.
+    /// An option is out of range, or something that is needed for the measurement is missing.
     fn run(&self, progress: &mut dyn FnMut(usize, usize, &str)) -> Result<Self::Findings, Self::Error>;
 }
 
 /// The result of an [`Experiment`], serialised as its JSON.
 pub trait Findings: Serialize {
-    /// For a terminal.
+    /// Text for a terminal.
     fn text(&self) -> String;
 
-    /// The files beside the JSON: how their names end (`.md`, `-errors.svg`), and what they hold.
+    /// The files besides the JSON: the ending of each name (`.md`, `-errors.svg`), and its contents.
     fn files(&self) -> Vec<(String, String)>;
 
-    /// Why the result is bad, where it can be.
+    /// Whether the result meets its targets.
     ///
     /// # Errors
-    /// What was found, in a sentence for the user.
+    /// A sentence for the user that says which target was missed.
     fn judge(&self) -> Result<(), String> {
         Ok(())
     }

@@ -1,9 +1,9 @@
-//! One hand, one handle, one follower in tissue, and the loop between them: the bench of the studies of letting go and of
-//! stability.
+//! One hand, one handle, one follower in tissue, and the loop between them: the test bench of the studies `release` and
+//! `stability_map`.
 //!
-//! The parts of the loop are the real ones (identifier, link, tracking, renderer, gates); hand, handle and follower are models.
-//! SI units, workspace frame (z up, tissue at rest at z = 0), 1 kHz. Deterministic for a seed. Unlike the simulated world of the
-//! scenes, the hand here can open: then the handle is alone.
+//! The parts of the loop are the real ones (identifier, link, tracking, renderer, gates); hand, handle and follower are
+//! models. SI units, workspace frame (z up, tissue at rest at z = 0), 1 kHz. Deterministic for a seed. Unlike in the
+//! simulated world of the scenes, the hand can open here and leave the handle free.
 
 use std::f64::consts::TAU;
 
@@ -18,48 +18,49 @@ use nima_world::{Tissue, scene::Tissue as TissueConfig};
 
 /// Ticks per second.
 pub(super) const RATE_HZ: f64 = 1000.0;
-/// Steps of the equation of motion in a tick.
+/// Integration steps of the equation of motion per tick.
 const SUBSTEPS: u32 = 4;
-/// The hand that grips, as in the scenes: with the handle, kg, N/m, N s/m.
+/// The gripping hand with the handle, as in the scenes: kg, N/m, N s/m.
 pub(super) const GRIP_KG: f64 = 0.35;
 pub(super) const GRIP_N_M: f64 = 900.0;
 const GRIP_N_S_M: f64 = 18.0;
-/// The handle alone: apparent mass of an omega.7 at its grip, kg, and what its bearings and cables brake, N s/m.
+/// The free handle: apparent mass of an omega.7 at its grip, kg, and friction of its bearings and cables, N s/m.
 pub(super) const HANDLE_KG: f64 = 0.25;
 pub(super) const HANDLE_N_S_M: f64 = 0.5;
-/// What the device gives at most whatever it is asked, N.
+/// Largest force of the device, N.
 pub(super) const DEVICE_N: f64 = 12.0;
-/// As in the scenes: noise of the force sensor (N), step of the handle's reading (m), the follower's natural frequency (Hz) and
-/// fastest command (m/s).
+/// As in the scenes: noise of the force sensor (N), resolution of the handle's position (m), natural frequency (Hz) and
+/// maximum speed (m/s) of the follower.
 const NOISE_N: f64 = 0.02;
 const RESOLUTION_M: f64 = 1e-5;
 const FOLLOWER_HZ: f64 = 12.0;
 const FOLLOWER_M_S: f64 = 0.3;
 
-/// What is to be tried.
+/// Parameters of a trial.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Trial {
     pub(super) mode: Mode,
     pub(super) delay_s: f64,
-    /// `None`: what the mode asks for goes to the device as it is.
+    /// `None`: the mode's force goes to the device unchanged.
     pub(super) gates: Option<ChainSettings>,
     pub(super) gain: f64,
     pub(super) tissue: TissueConfig,
     /// Amplitude of the hand's tremor, m.
     pub(super) tremor_m: f64,
-    /// What the device's brakes add to the handle's own friction when the loop has found no hand and rests, N s/m.
+    /// Viscosity that the device's brakes add to the handle's own friction once the loop has found that the hand is
+    /// gone, N s/m.
     pub(super) brake_n_s_m: f64,
     pub(super) seed: u64,
 }
 
-/// The bench at work.
+/// The state of the bench.
 #[derive(Debug)]
 pub(super) struct Pair {
     trial: Trial,
     tick: u64,
     handle_m: Vector3<f64>,
     handle_m_s: Vector3<f64>,
-    /// A hand is there.
+    /// Whether the hand grips the handle.
     gripped: bool,
     tremor_phase: [[f64; 3]; 3],
     tip_m: Vector3<f64>,
@@ -80,7 +81,7 @@ pub(super) struct Pair {
 }
 
 impl Pair {
-    /// At rest at this place (m).
+    /// At rest at this position (m).
     pub(super) fn new(trial: &Trial, at_m: Vector3<f64>) -> Result<Self, SettingsError> {
         let settings = Settings {
             rate_hz: RATE_HZ,
@@ -135,17 +136,17 @@ impl Pair {
         self.tip_n
     }
 
-    /// What the gates did in the last tick.
+    /// Effect of the gates in the last tick.
     pub(super) const fn report(&self) -> &GateReport {
         &self.report
     }
 
-    /// The hand opens: neither stiffness nor damping nor the hand's mass is left.
+    /// Opens the hand: its stiffness, damping and mass no longer act on the handle.
     pub(super) const fn let_go(&mut self) {
         self.gripped = false;
     }
 
-    /// One tick, the hand meaning to be at this place (m).
+    /// One tick; the hand's intended position (m) is given.
     pub(super) fn step(&mut self, intended_m: &Vector3<f64>) {
         self.tick += 1;
         let now_s = self.tick as f64 / RATE_HZ;
@@ -190,7 +191,7 @@ impl Pair {
         }
     }
 
-    /// The follower: critically damped, exact over the tick for a constant command.
+    /// The follower: critically damped second order, exact over the tick for a constant command.
     fn follow(&mut self) {
         let (omega, dt_s) = (TAU * FOLLOWER_HZ, 1.0 / RATE_HZ);
         let (offset_m, decay) = (self.tip_m - self.command_m, (-omega * dt_s).exp());
@@ -204,7 +205,7 @@ impl Pair {
         self.command_m += way_m * (most_m / way_m.norm().max(most_m));
     }
 
-    /// As the loop measures it for the dead band: fast up, slow down.
+    /// Speed as the loop measures it for the dead band: rises fast, falls slowly.
     fn measure_speed(&mut self, read_m: &Vector3<f64>) {
         let dt_s = 1.0 / RATE_HZ;
         let speed_m_s = (read_m - self.read_m).norm() / dt_s;

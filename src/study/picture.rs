@@ -1,7 +1,8 @@
-//! Small plots as SVG, shared by the studies: points and lines over linear or logarithmic axes, with a legend.
+//! Plots as SVG, shared by the studies: points and lines over linear or logarithmic axes, with a legend.
 //!
-//! Written here, not by a plotting library: one text file, the reader's own sans-serif font, no dependency. Bad input: a value
-//! that is not finite (or not positive on a logarithmic axis) is left out; one beyond the axis is drawn at its edge.
+//! Written here instead of using a plotting library: the result is one text file that uses the reader's own sans-serif
+//! font. A value that is not finite (or not positive on a logarithmic axis) is left out; one beyond the axis is drawn
+//! at its edge.
 
 use std::fmt::Write as _;
 
@@ -12,7 +13,7 @@ const RIGHT: f64 = 16.0;
 const TOP: f64 = 40.0;
 const BOTTOM: f64 = 56.0;
 const LEGEND_LINE: f64 = 18.0;
-/// Colours that differ for most colour-blind readers (Okabe and Ito); shapes differ too.
+/// Colours that most colour-blind readers can distinguish (Okabe and Ito); the markers differ too.
 pub const COLOURS: [&str; 7] = ["#d55e00", "#e69f00", "#cc79a7", "#009e73", "#0072b2", "#56b4e9", "#000000"];
 
 /// One axis: what it shows, with its unit, and its range.
@@ -20,9 +21,9 @@ pub const COLOURS: [&str; 7] = ["#d55e00", "#e69f00", "#cc79a7", "#009e73", "#00
 pub struct Axis {
     /// Name and unit, e.g. `delay (ms)`.
     pub title: String,
-    /// Least and largest value shown.
+    /// Smallest and largest value shown.
     pub range: [f64; 2],
-    /// Whether powers of ten are evenly spaced; then the range must be positive.
+    /// Whether the scale is logarithmic; then the range must be positive.
     pub logarithmic: bool,
 }
 
@@ -40,7 +41,7 @@ pub enum Style {
 /// Points of one kind.
 #[derive(Clone, Debug)]
 pub struct Series {
-    /// Its line in the legend; none if empty.
+    /// Text in the legend; no entry if empty.
     pub name: String,
     /// Index into [`COLOURS`] (and the marker's shape).
     pub colour: usize,
@@ -57,7 +58,7 @@ pub struct Chart {
     pub title: String,
     pub x: Axis,
     pub y: Axis,
-    /// Drawn in this order.
+    /// Drawn in this order, later ones on top.
     pub series: Vec<Series>,
 }
 
@@ -72,7 +73,7 @@ impl Axis {
         Self { title: title.into(), range: [from, to], logarithmic: false }
     }
 
-    /// An axis around all `values` that have a place on it, with a little room on both sides.
+    /// An axis that covers all `values` that can be shown on it, with a small margin.
     pub fn around(title: &str, values: impl Iterator<Item = f64>, logarithmic: bool) -> Self {
         let map = |value: f64| if logarithmic { value.log10() } else { value };
         let mapped = values.map(map).filter(|value| value.is_finite());
@@ -83,16 +84,16 @@ impl Axis {
         Self { title: title.into(), range: [back(low - room), back(high + room)], logarithmic }
     }
 
-    /// Where `value` lies on the axis, 0 to 1; `None` if it has no place.
+    /// Position of `value` on the axis, 0 to 1; `None` if it cannot be shown.
     fn place(&self, value: f64) -> Option<f64> {
         let map = |value: f64| if self.logarithmic { value.log10() } else { value };
         let [from, to] = self.range.map(map);
         let place = (map(value) - from) / (to - from);
-        // The logarithm of zero is minus infinity: it belongs at the lower edge. NaN has no place.
+        // The logarithm of zero is minus infinity, which is drawn at the lower edge. NaN cannot be drawn.
         (!place.is_nan() && (place.is_finite() || value == 0.0)).then(|| place.clamp(0.0, 1.0))
     }
 
-    /// Values to write on the axis.
+    /// Values to label on the axis.
     fn ticks(&self) -> Vec<(f64, String)> {
         let [from, to] = self.range;
         if self.logarithmic {
@@ -217,7 +218,7 @@ fn draw(out: &mut String, chart: &Chart, series: &Series) {
     }
 }
 
-/// A circle, square, triangle, diamond or cross, by the series' colour.
+/// A circle, square, triangle, diamond or cross, depending on the series' colour index.
 fn marker(out: &mut String, series: &Series, x: f64, y: f64) {
     let path = match series.colour % 5 {
         0 => "m-3 -3l6 6m0 -6l-6 6",
@@ -242,7 +243,7 @@ fn legend_lines(chart: &Chart) -> usize {
     named(chart).count().div_ceil(2)
 }
 
-/// Two columns below the plot.
+/// The legend, in two columns below the plot.
 fn legend_of(out: &mut String, chart: &Chart) {
     for (i, series) in named(chart).enumerate() {
         let x = LEFT + (i % 2) as f64 * (WIDTH - LEFT - RIGHT) / 2.0;

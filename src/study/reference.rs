@@ -1,7 +1,7 @@
-//! Least squares in arbitrary precision: what a solver's answer is measured against.
+//! Least squares in arbitrary precision, the exact answer to which the solvers are compared.
 //!
-//! Takes: exact copies of the f64 rows a solver was given. Gives: the force (N) of the exact minimiser, of least norm where
-//! the rows do not determine it, rounded to f64 once at the end.
+//! Takes exact copies of the f64 rows that a solver was given; returns the force (N) of the exact minimiser, of least
+//! norm if the rows do not determine it, rounded to f64 once at the end.
 
 use dashu_float::{Context, FBig, Repr, ops::Abs as _, round::mode::HalfEven};
 
@@ -9,20 +9,22 @@ type Big = FBig<HalfEven, 2>;
 
 /// Significant bits of every step. A product of two f64 has 106; sums of them over columns between 1e-40 and 1e40 are exact.
 pub const PRECISION_BITS: usize = 768;
-/// A pivot below `2^-DEPENDENT_BITS` of its column is an exact dependence; rounded data leave at least about `2^-110`.
+/// A pivot below `2^-DEPENDENT_BITS` of its column means an exact dependence; rounded data leave at least about
+/// `2^-110`.
 const DEPENDENT_BITS: isize = 400;
 
-/// The normal equations of a window, factorised as `L D L'`: at this precision squaring the condition costs nothing.
+/// The normal equations of a window, factorised as `L D L'`. They square the condition number, which does no harm at
+/// this precision.
 pub struct Reference {
     lower: Vec<Vec<Big>>,
     pivots: Vec<Option<Big>>,
-    /// `D^-1 L^-1 X f`, zero where the pivot is.
+    /// `D^-1 L^-1 X f`; zero where the pivot is zero.
     right: Vec<Big>,
 }
 
 impl Reference {
-    /// From rows of `unknowns` columns, the force behind them. `ridge_root` is the root of the ridge on every unknown but the
-    /// first (0: none). `None` if an entry is not finite.
+    /// From rows of `unknowns` columns with the force as a further column. `ridge_root` is the square root of the ridge
+    /// on every unknown but the first (0: none). `None` if an entry is not finite.
     pub fn new(rows: &[Vec<f64>], unknowns: usize, ridge_root: f64) -> Option<Self> {
         let mut gram = vec![vec![zero(); unknowns + 1]; unknowns + 1];
         for row in rows {
@@ -44,7 +46,7 @@ impl Reference {
         let mut lower = vec![vec![zero(); unknowns]; unknowns + 1];
         let mut pivots: Vec<Option<Big>> = Vec::with_capacity(unknowns);
         for j in 0..=unknowns {
-            // Row j of L D first, then of L.
+            // First row j of L D, then of L.
             let mut scaled: Vec<Big> = Vec::with_capacity(j);
             for k in 0..j.min(unknowns) {
                 let known = (0..k).fold(zero(), |sum, i| sum + &scaled[i] * &lower[k][i]);
@@ -64,7 +66,7 @@ impl Reference {
         Self { lower, pivots, right }
     }
 
-    /// How many of the first `prefix` columns do not depend on those before them.
+    /// Number of the first `prefix` columns that depend linearly on those before them.
     pub fn rank(&self, prefix: usize) -> usize {
         self.pivots.iter().take(prefix).flatten().count()
     }
@@ -72,7 +74,7 @@ impl Reference {
     /// The exact solution with the first `prefix` columns, of least norm if there are several.
     fn solution(&self, prefix: usize) -> Vec<Big> {
         let independent: Vec<usize> = (0..prefix).filter(|&k| self.pivots[k].is_some()).collect();
-        // The rows of R = L' that carry something: R m = right. With W = R R' : m = R' W^-1 right.
+        // The rows of R = L' with a nonzero pivot: R m = right. With W = R R' : m = R' W^-1 right.
         let row = |k: usize| (0..prefix).map(move |j| if j == k { big_one() } else { self.lower[j][k].clone() });
         if independent.len() == prefix {
             let mut m = self.right[..prefix].to_vec();
@@ -100,7 +102,8 @@ impl Reference {
         (0..prefix).map(|j| (0..n).fold(zero(), |sum, i| sum + &r[i][j] * &weights[i])).collect()
     }
 
-    /// The force (N) at each of `at` (rows of columns) with the first `prefix` columns; `None` for a row that is not finite.
+    /// Force (N) at each of `at` (rows of columns), using the first `prefix` columns; `None` for a row that is not
+    /// finite.
     pub fn predict(&self, prefix: usize, at: &[Vec<f64>]) -> Vec<Option<f64>> {
         let m = self.solution(prefix);
         let force = |row: &Vec<f64>| {
@@ -119,7 +122,7 @@ fn big(value: f64) -> Option<Big> {
     if !value.is_finite() {
         return None;
     }
-    // The sign of a zero is of no use here.
+    // Zero is positive here; its sign does not matter.
     let repr = Repr::try_from(if value == 0.0 { 0.0 } else { value }).ok()?;
     Some(Big::from_repr(repr, Context::new(PRECISION_BITS)))
 }
@@ -152,7 +155,7 @@ mod tests {
             let rows = rows(40, duplicate);
             let reference = Reference::new(&rows, 4, 0.0).unwrap();
             assert_eq!(reference.rank(4), if duplicate { 3 } else { 4 });
-            // Outside of the rows' span too: the solution of least norm is one only.
+            // Also outside the span of the rows: the solution of least norm is unique.
             let at = vec![vec![1.0, 0.3, -0.4, 0.7], vec![0.0, 1.0, 0.0, 0.0]];
             for prefix in 1..=4 {
                 let x = DMatrix::from_fn(40, prefix, |i, j| rows[i][j]);
@@ -168,7 +171,8 @@ mod tests {
 
     #[test]
     fn knows_the_exact_answer_of_a_hilbert_problem() {
-        // Powers of i/64, exact in f64, and a force that is an exact polynomial: it must come back to the last digit.
+        // Powers of i/64 are exact in f64, and the force is an exact polynomial: it must be recovered to the last
+        // digit.
         let rows: Vec<Vec<f64>> = (0..64)
             .map(|i| {
                 let x = f64::from(i) / 64.0;

@@ -1,9 +1,11 @@
-//! Letting go: a hand presses with 5 N, opens, and the handle is alone with the force that the link still delivers.
+//! A released handle: a hand presses with 5 N, opens, and the handle moves alone under the force that the link still
+//! delivers.
 //!
-//! Takes nothing; gives a [`Report`] for every mode and delay, in two situations (held for two seconds, and let go while still
-//! pressing), without gates, with the gates but the one that tells an opened hand, and with all of them. The path of the handle
-//! is compared with the one it would have gone without any force: what the hand's own swing did is no kick. When a hand is found gone
-//! the loop rests and the device brakes; how strongly is told nowhere, so the way is given over the brakes' viscosity.
+//! Takes no options. Returns a [`Report`] for every mode and delay, in two situations (after holding for two seconds,
+//! and while still pressing): without gates, with all gates but the release gate, and with all gates. The travel of the
+//! handle is measured from the path that it would have taken without any force, so that its own momentum does not
+//! count. When the release gate finds that the hand is gone, the loop rests and the device brakes. The strength of its
+//! brakes is not published, so the travel is given for several viscosities of the brakes.
 
 mod present;
 
@@ -20,66 +22,67 @@ use super::pair::{HANDLE_KG, HANDLE_N_S_M, Pair, RATE_HZ, Trial};
 
 /// Delays of the link, ms.
 pub const DELAYS_MS: [f64; 6] = [0.0, 10.0, 50.0, 100.0, 200.0, 300.0];
-/// Force of the contact that is let go, N.
+/// Contact force at which the hand opens, N.
 pub const CONTACT_N: f64 = 5.0;
-/// After this long there should be no force, s.
+/// Target: the force must be gone after this time, s.
 pub const SOON_S: f64 = 0.020;
-/// What is left of a force that is gone, N, and how far a handle may go, m: the aims.
+/// Target: a force below this counts as gone, N.
 pub const AIM_N: f64 = 0.05;
-/// The handle's way that is aimed at, m.
+/// Target: longest travel of the handle, m.
 pub const AIM_M: f64 = 1e-3;
-/// Viscosity of the device's brakes that are tried, N s/m. None is known of a real one; 30 is the most that chai3d asks of an omega.7.
+/// Viscosities of the brakes that are tried, N s/m. That of the real device is unknown; 30 is the most that chai3d
+/// commands to an omega.7.
 pub const BRAKES_N_S_M: [f64; 5] = [0.0, 5.0, 15.0, 30.0, 60.0];
-/// Time looked at after the hand has opened, s.
+/// Duration of the observation after the hand has opened, s.
 const AFTER_S: f64 = 1.0;
-/// Speed of pressing (m/s), height at the start (m), time of holding (s), patience (s).
+/// Speed of pressing (m/s), initial height (m), time of holding (s), time limit for reaching the force (s).
 const PRESS_M_S: f64 = 0.020;
 const START_M: f64 = 0.005;
 const HOLD_S: f64 = 2.0;
 const PATIENCE_S: f64 = 20.0;
 const TREMOR_M: f64 = 8e-5;
-/// Modes that have a steady force in the hand, so that an opened hand can be told by the handle's flight.
+/// Modes with a steady force in the hand: only then can the handle's acceleration show that the hand has opened.
 const STEADY: [Mode; 2] = [Mode::Dfr, Mode::Anchored];
 
 /// Why the study could not be made.
 #[derive(Debug, thiserror::Error)]
 pub enum ReleaseError {
-    /// The scene whose tissue is pressed cannot be had.
+    /// The scene with the tissue cannot be loaded.
     #[error(transparent)]
     Scene(#[from] ConfigError),
-    /// Settings out of range.
+    /// A setting is out of range.
     #[error(transparent)]
     Settings(#[from] SettingsError),
     /// The scene has no tissue.
     #[error("the scene peg_transfer has no [tissue]: there is nothing to press")]
     NoTissue,
-    /// Five newtons were never reached.
+    /// The contact force was never reached.
     #[error("{mode} at {delay_ms} ms: the hand did not reach {CONTACT_N} N within {PATIENCE_S} s")]
     NoContact {
-        /// Mode that rendered.
+        /// Mode under test.
         mode: Mode,
         /// Delay, ms.
         delay_ms: f64,
     },
 }
 
-/// When the hand opens.
+/// Situation in which the hand opens.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Situation {
-    /// After two seconds at about 5 N, with the hand's tremor.
+    /// After two seconds at about 5 N, with physiological tremor.
     Held,
-    /// The moment 5 N are reached, at 20 mm/s.
+    /// At the moment when 5 N are reached, while pressing at 20 mm/s.
     Pressing,
 }
 
-/// Which gates were in the way.
+/// Which gates are active.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Gates {
-    /// None: the force goes to the device as it is asked for.
+    /// None: the requested force goes to the device unchanged.
     None,
-    /// As they come: all but the one that tells an opened hand.
+    /// All but the release gate.
     WithoutRelease,
     /// All.
     All,
@@ -89,12 +92,12 @@ impl Gates {
     /// Every choice.
     pub const ALL: [Self; 3] = [Self::None, Self::WithoutRelease, Self::All];
 
-    /// In words.
+    /// Text for tables.
     pub const fn words(self) -> &'static str {
         match self {
             Self::None => "no gates",
-            Self::WithoutRelease => "gates",
-            Self::All => "gates and the hand's",
+            Self::WithoutRelease => "without release gate",
+            Self::All => "all gates",
         }
     }
 
@@ -107,57 +110,61 @@ impl Gates {
     }
 }
 
-/// One letting go.
+/// Result of one release.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Outcome {
-    /// When the hand opened.
+    /// Situation in which the hand opened.
     pub situation: Situation,
-    /// Which gates.
+    /// Active gates.
     pub gates: Gates,
-    /// Mode that rendered.
+    /// Mode under test.
     pub mode: Mode,
     /// Delay of the link, ms.
     pub delay_ms: f64,
     /// Force on the handle when the hand opened, N.
     pub before_n: f64,
-    /// Whether the gate had already taken the force away for good, wrongly: the hand was still there.
+    /// Whether the release gate had removed the force before, wrongly, while the hand was still there.
     pub closed_before: bool,
-    /// Farthest from where the handle would have been without force, mm.
+    /// Largest distance from where the handle would have been without force, mm.
     pub travel_mm: f64,
-    /// The same, of the first 20 ms, mm.
+    /// The same within the first 20 ms, mm.
     pub travel_soon_mm: f64,
     /// Largest force on the handle, N.
     pub peak_n: f64,
     /// Largest force later than 20 ms, N.
     pub late_n: f64,
-    /// Most energy that the handle had been given, mJ.
+    /// Largest energy given to the handle, mJ.
     pub energy_mj: f64,
 }
 
-/// A letting go with all gates before a device that brakes.
+/// A release with all gates and a device that brakes.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Braked {
     /// Viscosity of the brakes, N s/m.
     pub brake_n_s_m: f64,
-    /// What came of it.
+    /// Result.
     #[serde(flatten)]
     pub outcome: Outcome,
 }
 
-/// What to do: there is nothing to choose.
+/// Options of this study: none.
 #[derive(Clone, Copy, Debug)]
 pub struct Options;
 
-/// The study's result.
+/// Result of this study.
 #[derive(Clone, Debug, Serialize)]
 pub struct Report {
-    /// Every letting go, without brakes.
+    /// All releases without brakes.
     pub outcomes: Vec<Outcome>,
-    /// With brakes, the two modes that have a steady force to let go.
+    /// Releases with brakes, for the two modes with a steady force.
     pub braked: Vec<Braked>,
 }
 
-/// Makes the study; `progress` is told before each part how many of how many are done, and what comes.
+/// Runs the study; before each part `progress` is called with the number of parts done, their total, and the name of
+/// the next.
+///
+/// # Errors
+/// [`ReleaseError`] if the scene cannot be used or the contact force is not reached.
 pub fn study(mut progress: impl FnMut(usize, usize, &str)) -> Result<Report, ReleaseError> {
     let tissue = Scene::load("peg_transfer")?.tissue.ok_or(ReleaseError::NoTissue)?;
     let mut outcomes = Vec::new();
@@ -189,7 +196,10 @@ pub fn study(mut progress: impl FnMut(usize, usize, &str)) -> Result<Report, Rel
     Ok(Report { outcomes, braked })
 }
 
-/// One letting go, of a handle without brakes.
+/// Simulates one release of a handle without brakes.
+///
+/// # Errors
+/// [`ReleaseError`] if the scene cannot be used or the contact force is not reached.
 pub fn let_go(
     situation: Situation,
     gates: Gates,
@@ -228,7 +238,7 @@ fn tried(
     }
     if situation == Situation::Held {
         for _ in 0..(HOLD_S * RATE_HZ) as u32 {
-            // Whoever holds 5 N corrects slowly, 2 mm/s for a newton that is missing.
+            // A person who holds 5 N corrects slowly: 2 mm/s per newton of error.
             intended_m.z += 0.002 / RATE_HZ * (pair.tip_n().z - CONTACT_N).clamp(-1.0, 1.0);
             pair.step(&intended_m);
         }
@@ -249,7 +259,8 @@ fn tried(
     Ok(watch(pair, &intended_m, start, brake_n_s_m > 0.0))
 }
 
-/// Opens the hand and looks at the handle. One that is braked does not swing on by itself: its way is from where it was let go.
+/// Opens the hand and observes the handle. A braked handle loses its momentum, so its travel is measured from where it
+/// was released.
 fn watch(mut pair: Pair, intended_m: &Vector3<f64>, mut outcome: Outcome, braked: bool) -> Outcome {
     let (from_m, swing_m_s) = (pair.handle_m(), pair.handle_m_s());
     let from_m_s = if braked { Vector3::zeros() } else { swing_m_s };

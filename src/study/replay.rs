@@ -1,8 +1,9 @@
-//! Identification over a recording: causal, sample by sample, with the figures of `nima identify`.
+//! Replays a recording through the identification, causally and sample by sample, and computes the figures of `nima
+//! identify`.
 //!
-//! For every sample at time t the force is rendered from data up to t - D and the motion at t, exactly as a leader behind a
-//! link of delay D would, and compared with the force measured at t and with the held force f(t - D) (delayed DFR).
-//! Units are the recording's own (N and m, or Nm and rad).
+//! For every sample at time t the force is rendered from data up to t - D and the motion at t, exactly as a leader
+//! behind a link of delay D would do, and compared with the force measured at t and with the delayed force f(t - D)
+//! (delayed DFR). Units are those of the recording (N and m, or Nm and rad).
 
 use std::time::Instant;
 
@@ -21,7 +22,7 @@ use serde::Serialize;
 pub enum ReplayError {
     #[error(transparent)]
     Settings(#[from] SettingsError),
-    /// Not even one window and one delay long.
+    /// Shorter than one window and one delay.
     #[error(
         "recording {path} has {found} samples; a window of {window_ms} ms and a delay of {delay_ms} ms at {rate_hz} Hz need {needed}; record longer or shorten the window"
     )]
@@ -36,7 +37,7 @@ pub enum ReplayError {
     },
 }
 
-/// Size and spread of an error.
+/// Mean, standard deviation, percentile and maximum of an error.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct ErrorFigures {
     /// Mean norm of the error.
@@ -58,7 +59,8 @@ pub struct Reconstruction {
     pub sd: f64,
 }
 
-/// In-window errors of the paper's recipe: the parameters fitted on a window, tested on the newest sample of that same window.
+/// In-window errors of the paper's method: the parameters fitted to a window, tested on the newest sample of that same
+/// window.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Reconstructions {
     /// N = 1.
@@ -93,7 +95,7 @@ pub struct TickTime {
     pub max: f64,
 }
 
-/// All figures of a replay; the JSON of `nima identify`.
+/// All results of a replay; the JSON of `nima identify`.
 #[derive(Clone, Debug, Serialize)]
 #[expect(missing_docs, reason = "the names say it")]
 pub struct Figures {
@@ -103,27 +105,27 @@ pub struct Figures {
     /// Axes, by name.
     pub axes: Vec<&'static str>,
     pub mode: Mode,
-    /// Window in force, ms.
+    /// Window used, ms.
     pub window_ms: f64,
-    /// Delay in force, ms: the asked one rounded to whole samples.
+    /// Delay used, ms: the requested one rounded to whole samples.
     pub delay_ms: f64,
-    /// Samples compared: all from the first that has a delayed force.
+    /// Number of samples compared: all from the first one with a delayed force.
     pub compared: usize,
-    /// Rendered against measured.
+    /// Rendered force against measured force.
     pub error: ErrorFigures,
-    /// Held force against measured: delayed DFR.
+    /// Delayed force against measured force: delayed DFR.
     pub hold: ErrorFigures,
-    /// In-window errors of the paper's recipe.
+    /// In-window errors of the paper's method.
     pub reconstruction: Reconstructions,
-    /// Share of compared samples with degree 1 to 5; the rest to 1 rendered without a correction.
+    /// Share of compared samples with degree 1 to 5; the remaining ones were rendered without a correction.
     pub degree_share: [f64; MAX_DEGREE],
     /// Share of compared samples with a degree above 1.
     pub nonlinear_share: f64,
-    /// Condition of the scaled regression; 0 while there is none.
+    /// Condition number of the scaled regression; 0 while there is no regression.
     pub condition: Spread,
-    /// Compared samples for which the mode had no valid force (it rendered none).
+    /// Compared samples for which the mode had no valid force and rendered zero.
     pub rejected: u64,
-    /// Time of one tick of identification.
+    /// Computing time of one tick of identification.
     pub tick_us: TickTime,
 }
 
@@ -140,7 +142,7 @@ pub struct Row {
     pub degree: usize,
     /// Condition of the scaled regression.
     pub condition: f64,
-    /// First gate that would act on this force on its way to a hand.
+    /// The first gate that would change this force.
     pub gate: &'static str,
 }
 
@@ -152,14 +154,36 @@ pub struct Options {
     pub window_s: f64,
     pub delay_s: f64,
     pub max_degree: usize,
-    /// Learn the full `M` with cross-talk.
+    /// Learn the full matrix `M`, with cross-talk.
     pub cross_talk: bool,
 }
 
-/// Replays `recording`; `each` sees every row in order.
+/// Replays `recording`; `each` is called with every row in order.
 ///
 /// # Errors
-/// Settings outside of their ranges, or a recording that is shorter than the window and the delay.
+/// [`ReplayError`] if a setting is out of range or the recording is shorter than window and delay together.
+///
+/// ```
+/// use nima_core::impedance::Mode;
+/// use nima_recording::csv::{Mapping, Recording};
+/// use nima_study::replay::{Options, replay};
+///
+/// // Two seconds of a spring of 200 N/m, read from a file.
+/// let row = |k: u32| {
+///     let t = 1e-3 * f64::from(k);
+///     let x = 0.02 * (9.0 * t).sin();
+///     format!("{t},{x},{}\n", -200.0 * x)
+/// };
+/// let folder = tempfile::tempdir()?;
+/// let path = folder.path().join("spring.csv");
+/// std::fs::write(&path, format!("t_s,x_m,fx_n\n{}", (0..2000).map(row).collect::<String>()))?;
+///
+/// let recording = Recording::read(&path, &Mapping::default())?;
+/// let options = Options { mode: Mode::Anchored, window_s: 0.3, delay_s: 0.05, max_degree: 2, cross_talk: false };
+/// let figures = replay(&recording, &options, |_| {})?;
+/// assert!(figures.error.mae < 0.5 * figures.hold.mae, "better than the delayed force");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn replay(recording: &Recording, options: &Options, mut each: impl FnMut(&Row)) -> Result<Figures, ReplayError> {
     let rate_hz = recording.rate_hz;
     let mut settings = Settings {
@@ -224,7 +248,7 @@ fn degree(report: &Report, mode: Mode) -> usize {
     }
 }
 
-/// Everything summed up on the way.
+/// Sums over the replay.
 #[derive(Default)]
 struct Tally {
     error: Errors,
@@ -295,12 +319,12 @@ impl Tally {
     }
 }
 
-/// Seconds as milliseconds without the last digits of the division.
+/// Seconds to milliseconds, rounded to remove the error of the division.
 fn tidy_ms(seconds: f64) -> f64 {
     (seconds * 1e9).round() * 1e-6
 }
 
-/// Errors kept for their percentiles.
+/// Errors stored to compute percentiles.
 #[derive(Default)]
 struct Errors {
     norms: Vec<f64>,
@@ -329,7 +353,7 @@ impl Errors {
     }
 }
 
-/// Quantile of sorted values (nearest rank); 0 of none.
+/// Quantile of sorted values (nearest rank); 0 if there are none.
 fn quantile(sorted: &[f64], q: f64) -> f64 {
     let rank = (q * sorted.len() as f64).ceil() as usize;
     sorted.get(rank.clamp(1, sorted.len().max(1)) - 1).copied().unwrap_or(0.0)

@@ -1,8 +1,8 @@
 //! The solvers that studies compare: one axis, degrees 1 to 5, one window of rows.
 //!
-//! Takes: [`Row`]s (motion in m, m/s, m/s²; force in N). Gives: a [`Fit`] that predicts a force (N) at any row.
-//! Nothing is guarded here: a row that is not finite, or a window that does not determine the unknowns, shows as a degree
-//! without an answer or as a number that is wrong. Finding out which is what the studies are for.
+//! Takes [`Row`]s (motion in m, m/s, m/s²; force in N); returns a [`Fit`] that predicts a force (N) at any row. Nothing
+//! is checked here: for a row that is not finite, or a window that does not determine the unknowns, a degree has no
+//! answer or its number is wrong. Finding such cases is the purpose of the studies.
 
 use nalgebra::{DMatrix, DVector, RealField};
 use nima_core::{
@@ -11,7 +11,7 @@ use nima_core::{
 };
 use serde::Serialize;
 
-/// Entries of a row of columns: the constant (if the solver has one) and the motion columns.
+/// Most entries in a row of the regression matrix: the constant (if the solver has one) and the motion columns.
 pub const MAX_COLUMNS: usize = 1 + MOTION_COLUMNS;
 
 /// One sample of one axis, in SI units (or all lengths in another unit, with [`Scales`] in the same one).
@@ -19,13 +19,13 @@ pub const MAX_COLUMNS: usize = 1 + MOTION_COLUMNS;
 pub struct Row {
     /// Position, velocity, acceleration in the workspace, counted from its fixed origin.
     pub position: [f64; 3],
-    /// The paper's `u`: their change since one window ago.
+    /// The paper's `u`: the change of each quantity over one window length.
     pub increment: [f64; 3],
     /// Force (N).
     pub force_n: f64,
 }
 
-/// What solves the least-squares problem.
+/// Methods that solve the least-squares problem.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Solver {
@@ -35,22 +35,25 @@ pub enum Solver {
     /// The same in f64.
     #[serde(rename = "literal-f64")]
     LiteralF64,
-    /// `M = F X^+` on the paper's columns by singular values, those below [`CUT_OFF`] of the largest dropped.
+    /// `M = F X^+` on the paper's columns, by singular value decomposition; singular values below [`CUT_OFF`] of the
+    /// largest are dropped.
     PseudoInverse,
-    /// A fresh QR of the scaled columns with a constant, without a ridge.
+    /// A new QR factorisation of the scaled columns with a constant, without a ridge.
     FreshQr,
-    /// Ours: scaled columns, a constant and a ridge, from a sliding triangular factor.
+    /// The solver of this project: scaled columns, a constant and a ridge, from a triangular factor that is updated
+    /// while the window moves.
     Sliding,
 }
 
-/// Relative cut-off of the pseudo-inverse: rows times the rounding unit is the textbook's (numpy, Matlab); this is it at 300 rows.
+/// Relative cut-off of the pseudo-inverse. The textbook choice (numpy, Matlab) is the number of rows times the rounding
+/// unit, here for 300 rows.
 pub const CUT_OFF: f64 = 300.0 * f64::EPSILON;
 
 impl Solver {
     /// Every solver, the paper's first.
     pub const ALL: [Self; 5] = [Self::LiteralF32, Self::LiteralF64, Self::PseudoInverse, Self::FreshQr, Self::Sliding];
 
-    /// The name in tables and files.
+    /// Name in tables and files.
     pub const fn name(self) -> &'static str {
         match self {
             Self::LiteralF32 => "literal-f32",
@@ -61,17 +64,18 @@ impl Solver {
         }
     }
 
-    /// Whether the columns are the paper's (increments in SI units, no constant) or ours (positions, scaled, a constant).
+    /// Whether the columns are the paper's (increments in SI units, no constant) or this project's (positions, scaled,
+    /// a constant).
     pub const fn is_paper(self) -> bool {
         matches!(self, Self::LiteralF32 | Self::LiteralF64 | Self::PseudoInverse)
     }
 
-    /// Unknowns of `degree`.
+    /// Number of unknowns of `degree`.
     pub const fn unknowns(self, degree: usize) -> usize {
         if self.is_paper() { 3 * degree } else { 1 + 3 * degree }
     }
 
-    /// The columns of `row` up to `degree`; those beyond are zero.
+    /// The columns of `row` for `degree`; the unused entries are zero.
     pub fn columns(self, row: &Row, degree: usize, scales: &Scales) -> [f64; MAX_COLUMNS] {
         const SI: Scales = Scales { position_m: 1.0, velocity_m_s: 1.0, acceleration_m_s2: 1.0, force_n: 1.0 };
         let [x, v, a] = if self.is_paper() { row.increment } else { row.position }.map(Lanes::splat);
@@ -88,9 +92,27 @@ impl Solver {
         columns
     }
 
-    /// Fits degrees `1..=max_degree` on `rows`, afresh. `ridge` (per row, see [`nima_core::impedance::Settings`]) is ours alone.
+    /// Fits degrees `1..=max_degree` to `rows`. Only [`Solver::Sliding`] uses `ridge` (per row, see
+    /// [`nima_core::impedance::Settings`]).
     ///
-    /// For [`Solver::Sliding`] this takes the rows into one factor; [`Sliding`] is the same kept from tick to tick.
+    /// [`Solver::Sliding`] adds the rows to a new factor here; [`Sliding`] keeps its factor from tick to tick.
+    ///
+    /// ```
+    /// use nima_core::impedance::Scales;
+    /// use nima_study::solvers::{Row, Solver};
+    ///
+    /// // A spring of 200 N/m with an offset of 3 N.
+    /// let row = |k: u32| {
+    ///     let t = 0.01 * f64::from(k);
+    ///     let position = [0.02 * (3.0 * t).sin(), 0.06 * (5.0 * t).cos(), 0.3 * (7.0 * t).sin()];
+    ///     Row { position, increment: position, force_n: 3.0 - 200.0 * position[0] }
+    /// };
+    /// let rows: Vec<Row> = (0..300).map(row).collect();
+    /// let fit = Solver::FreshQr.fit(&rows, 1, &Scales::default(), 0.0);
+    /// let later = row(310);
+    /// let predicted_n = fit.predict(&later)[0].expect("the rows determine degree 1");
+    /// assert!((predicted_n - later.force_n).abs() < 1e-9);
+    /// ```
     pub fn fit(self, rows: &[Row], max_degree: usize, scales: &Scales, ridge: f64) -> Fit {
         let max_degree = max_degree.clamp(1, MAX_DEGREE);
         let mut fit = Fit::none(self, *scales);
@@ -126,7 +148,7 @@ impl Solver {
     }
 }
 
-/// Coefficients of every degree on one window.
+/// Coefficients of every degree fitted to one window.
 #[derive(Clone, Debug)]
 pub struct Fit {
     solver: Solver,
@@ -147,12 +169,12 @@ impl Fit {
         }
     }
 
-    /// Coefficients of `degree` in the solver's own columns; `None` where the solver gave no answer.
+    /// Coefficients of `degree` in the solver's own columns; `None` if the solver found no solution.
     pub fn coefficients(&self, degree: usize) -> Option<&[f64]> {
         self.coefficients.get(degree.wrapping_sub(1))?.as_deref()
     }
 
-    /// The force (N) every degree predicts at `at`: `None` without an answer or where it is not finite.
+    /// Force (N) predicted at `at` by every degree: `None` without a solution or if the prediction is not finite.
     pub fn predict(&self, at: &Row) -> [Option<f64>; MAX_DEGREE] {
         let columns = self.solver.columns(at, MAX_DEGREE, &self.scales);
         std::array::from_fn(|i| {
@@ -167,7 +189,7 @@ impl Fit {
     }
 }
 
-/// Our solver as the loop runs it: one row per tick, cost independent of the window's length.
+/// This project's solver as the loop runs it: one row per tick, at a cost independent of the window's length.
 #[derive(Clone, Debug)]
 pub struct Sliding {
     window: SlidingWindow<Factor>,
@@ -186,7 +208,8 @@ impl Sliding {
         Self { window, solution: Solution::new(columns), max_degree, scales }
     }
 
-    /// Takes the newest row and solves; `None` stands for a rejected sample, which takes its place and changes nothing.
+    /// Adds the newest row and solves; `None` for a rejected sample, which takes up its time in the window without
+    /// data.
     pub fn push(&mut self, row: Option<&Row>) {
         let row = row.map_or(Factor::BLANK_ROW, |row| sliding_row(row, self.max_degree, &self.scales));
         self.window.push(&row);
@@ -205,7 +228,8 @@ impl Sliding {
         self.solution.condition(Solver::Sliding.unknowns(degree))[0]
     }
 
-    /// Columns of `degree` whose part orthogonal to those before them outweighs the ridge, the constant included.
+    /// Numerical rank of `degree`: columns, including the constant, whose part orthogonal to the previous columns is
+    /// larger than the ridge.
     pub fn rank(&self, degree: usize, ridge: f64) -> usize {
         let ridge = ridge * self.window.len() as f64;
         let factor = self.window.current();
@@ -225,13 +249,14 @@ fn sliding_row(row: &Row, degree: usize, scales: &Scales) -> <Factor as Summary>
     entries
 }
 
-/// `(X X^T)^-1 X f` with `X^T = x`, as printed; `None` where the inverse does not exist in floating point.
+/// `(X X^T)^-1 X f` with `X^T = x`, as printed in the paper; `None` if the matrix cannot be inverted in floating point.
 fn explicit_inverse<T: RealField>(x: &DMatrix<T>, f: &DVector<T>) -> Option<DVector<T>> {
     let inverse = x.tr_mul(x).try_inverse()?;
     Some(inverse * x.tr_mul(f))
 }
 
-/// `x^+ f`, singular values below the cut-off dropped; `None` where a number is not finite (the iteration would not end).
+/// `x^+ f` without the singular values below the cut-off; `None` if a number is not finite, for which the iteration
+/// would not end.
 fn pseudo_inverse(x: DMatrix<f64>, f: &DVector<f64>) -> Option<Vec<f64>> {
     if !x.iter().chain(f.iter()).all(|entry| entry.is_finite()) {
         return None;
@@ -241,7 +266,7 @@ fn pseudo_inverse(x: DMatrix<f64>, f: &DVector<f64>) -> Option<Vec<f64>> {
     Some(svd.solve(f, cut_off).ok()?.as_slice().to_vec())
 }
 
-/// All degrees from one Householder factorisation; fewer rows than unknowns, or a zero on the diagonal, give no answer.
+/// All degrees from one Householder factorisation; `None` with fewer rows than unknowns or a zero on the diagonal.
 fn fresh_qr(x: DMatrix<f64>, f: &DVector<f64>, max_degree: usize) -> [Option<Vec<f64>>; MAX_DEGREE] {
     let (rows, unknowns) = x.shape();
     let mut right = f.clone();
@@ -263,7 +288,7 @@ fn fresh_qr(x: DMatrix<f64>, f: &DVector<f64>, max_degree: usize) -> [Option<Vec
 mod tests {
     use super::*;
 
-    /// A lively motion: every column carries something.
+    /// A motion that excites every column.
     fn rows(count: usize) -> Vec<Row> {
         (0..count)
             .map(|k| {

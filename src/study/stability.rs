@@ -1,12 +1,15 @@
-//! Numerical stability at the extremes: every solver beside the exact answer of the problem it claims to solve.
+//! Numerical stability in extreme cases: every solver compared with the exact answer of the problem that it is meant to
+//! solve.
 //!
-//! Takes: nothing but a number of ticks; the extremes are made here. Gives: a [`Report`] as table, CSV, JSON and picture.
+//! Takes the number of ticks of the long run; the cases are generated here. Returns a [`Report`] with table, CSV, JSON
+//! and plots.
 //!
-//! The paper's solvers and the fresh QR see the samples as they come; ours sees them through the identifier's checks (a
-//! sample that is not finite, absurd, or whose time does not advance takes its place and changes nothing). Each is compared
-//! with the arbitrary-precision solution of its own problem: same rows, same constant, same ridge, least norm where the rows
-//! do not determine the answer. The error is that of the predicted force, at the newest sample and 50 ms later, relative to
-//! the force or to its root mean square in the window, whichever is larger.
+//! The paper's solvers and the plain QR are given the samples unchanged. This project's solver is given them through
+//! the identifier's checks (a sample that is not finite, out of range, or whose time does not advance takes up its time
+//! in the window without data). Each is compared with the arbitrary-precision solution of its own problem: same rows,
+//! same constant, same ridge, least norm if the rows do not determine the answer. The error is that of the predicted
+//! force, at the newest sample and 50 ms later, relative to the force or to its root mean square in the window,
+//! whichever is larger.
 
 mod cases;
 mod drift;
@@ -29,22 +32,22 @@ use super::{
     solvers::{CUT_OFF, Fit, Row, Sliding, Solver},
 };
 
-/// Relative error that must hold wherever the condition is below [`ORDINARY_CONDITION`].
+/// Relative error that must be reached wherever the condition number is below [`ORDINARY_CONDITION`].
 pub const TARGET: f64 = 1e-9;
-/// Scaled condition up to which [`TARGET`] is promised.
+/// Scaled condition number up to which [`TARGET`] must be reached.
 pub const ORDINARY_CONDITION: f64 = 1e6;
 
-/// What to study.
+/// Options of this study.
 #[derive(Clone, Debug)]
 pub struct Options {
-    /// Ticks of the run that looks for drift, [`Options::TICKS`].
+    /// Ticks of the long run, within [`Options::TICKS`].
     pub ticks: u64,
     /// Leave out windows longer than 300 samples (for tests).
     pub quick: bool,
 }
 
 impl Options {
-    /// Ticks that can be asked for.
+    /// Allowed number of ticks.
     pub const TICKS: std::ops::RangeInclusive<u64> = 10_000..=1_000_000_000;
 }
 
@@ -52,68 +55,73 @@ impl Options {
 #[derive(Debug, thiserror::Error)]
 #[expect(missing_docs, reason = "the messages say it")]
 pub enum StabilityError {
-    /// Number of ticks out of range.
+    /// The number of ticks is out of range.
     #[error("{ticks} ticks were asked for; it must be 10000 to 1000000000")]
     Ticks { ticks: u64 },
     #[error(transparent)]
     Settings(#[from] SettingsError),
 }
 
-/// One solver and degree in one extreme; worst over its windows.
+/// One solver and degree in one case; the worst of its windows.
 #[derive(Clone, Debug, Serialize)]
 #[expect(missing_docs, reason = "the names say it")]
 pub struct Entry {
     pub solver: Solver,
     /// Polynomial degree.
     pub degree: usize,
-    /// Predictions asked for.
+    /// Number of predictions.
     pub asked: usize,
-    /// Predictions that were finite numbers.
+    /// Number of predictions that were finite.
     pub finite: usize,
     /// Worst relative error of the finite ones; `None` if there were none or the window itself is not finite.
     pub error: Option<f64>,
     pub unknowns: usize,
-    /// Least rank the solver worked with (pseudo-inverse: above its cut-off; ours: above the ridge; others: exact rank).
+    /// Lowest rank that the solver worked with (pseudo-inverse: above its cut-off; sliding: above the ridge; others:
+    /// exact rank).
     pub rank: usize,
-    /// Whether the rows do not determine the solution (exactly): then predictions only are comparable.
+    /// Whether the rows do not determine the solution exactly; then only predictions can be compared.
     pub deficient: bool,
-    /// Largest condition number of the solver's own columns (ours with the ridge); `None` if infinite or not defined.
+    /// Largest condition number of the solver's own columns (sliding: with the ridge); `None` if infinite or undefined.
     pub condition: Option<f64>,
-    /// Largest relative difference between working in metres and in millimetres (pseudo-inverse and ours).
+    /// Largest relative difference between working in metres and in millimetres (pseudo-inverse and sliding).
     pub unit_difference: Option<f64>,
 }
 
-/// One extreme.
+/// One extreme case.
 #[derive(Clone, Debug, Serialize)]
 pub struct Extreme {
-    /// Kind of extreme.
+    /// Group of cases.
     pub group: &'static str,
-    /// The extreme, as the table names it.
+    /// Name in the table.
     pub name: String,
     /// Samples per second.
     pub rate_hz: f64,
     /// Samples in the window.
     pub window: usize,
-    /// Whether the whole identifier, all four modes, gave finite numbers at every tick.
+    /// Whether the whole identifier, with all four modes, gave finite numbers at every tick.
     pub identifier_finite: bool,
     /// Every solver and degree.
     pub entries: Vec<Entry>,
 }
 
-/// The study's result.
+/// Result of this study.
 #[derive(Clone, Debug, Serialize)]
 pub struct Report {
-    /// Bits of the reference.
+    /// Precision of the reference, bits.
     pub reference_bits: usize,
-    /// What the targets come to.
+    /// Comparison with the targets.
     pub verdict: Verdict,
     /// The long run.
     pub drift: Drift,
-    /// Every extreme.
+    /// Every case.
     pub extremes: Vec<Extreme>,
 }
 
-/// Makes the study; `progress` is told before each part how many of how many are done, and what comes.
+/// Runs the study; before each part `progress` is called with the number of parts done, their total, and the name of
+/// the next.
+///
+/// # Errors
+/// [`StabilityError`] if the number of ticks is out of range or a setting is invalid.
 pub fn study(options: &Options, mut progress: impl FnMut(usize, usize, &str)) -> Result<Report, StabilityError> {
     if !Options::TICKS.contains(&options.ticks) {
         return Err(StabilityError::Ticks { ticks: options.ticks });
@@ -131,13 +139,13 @@ pub fn study(options: &Options, mut progress: impl FnMut(usize, usize, &str)) ->
     Ok(Report { reference_bits: PRECISION_BITS, verdict: Verdict::of(&extremes, &drift), drift, extremes })
 }
 
-/// Rows of a case, and which of them the window takes.
+/// Rows of a case, and which of them are used in the window.
 struct Stream {
     rows: Vec<Row>,
     used: Vec<bool>,
 }
 
-/// Motion of a case as a loop makes it; lengths times `unit`. `guard`: with the identifier's checks.
+/// Motion of a case as the loop computes it, lengths multiplied by `unit`; with `guard`, after the identifier's checks.
 fn stream(case: &Case, unit: f64, guard: bool) -> Stream {
     let settings = Settings::default();
     let mut differentiator = Differentiator::new(settings.differentiator, case.rate_hz);
@@ -165,7 +173,7 @@ fn stream(case: &Case, unit: f64, guard: bool) -> Stream {
     Stream { rows, used }
 }
 
-/// The scales, lengths times `unit`.
+/// The scales, lengths multiplied by `unit`.
 fn scales(unit: f64) -> Scales {
     let Scales { position_m, velocity_m_s, acceleration_m_s2, force_n } = Scales::default();
     Scales {
@@ -176,7 +184,7 @@ fn scales(unit: f64) -> Scales {
     }
 }
 
-/// Fits of one solver at every instant of a case, and what our window knew of itself.
+/// Fits of one solver at every instant of a case, and the state of the sliding window.
 fn fits(case: &Case, solver: Solver, stream: &Stream, unit: f64) -> Vec<(Fit, Option<Sliding>)> {
     let (scales, ridge) = (scales(unit), Settings::default().ridge);
     if solver != Solver::Sliding {
@@ -194,13 +202,13 @@ fn fits(case: &Case, solver: Solver, stream: &Stream, unit: f64) -> Vec<(Fit, Op
     found
 }
 
-/// Ticks at which the window is looked at.
+/// Ticks at which the window is evaluated.
 fn instants(case: &Case) -> impl Iterator<Item = usize> {
     let (first, window) = (warm(case.rate_hz, case.window), case.window);
     [0, window / 2, window].into_iter().map(move |later| first + later)
 }
 
-/// Rows of columns with the force behind them, as the reference takes them.
+/// Rows of columns with the force as last column, the format of the reference.
 fn columns_of(solver: Solver, stream: &Stream, window: std::ops::RangeInclusive<usize>, force: bool) -> Vec<Vec<f64>> {
     let unknowns = solver.unknowns(MAX_DEGREE);
     let row = |row: &Row| {
@@ -258,7 +266,7 @@ impl Window {
         let ridge = if solver == Solver::Sliding { Settings::default().ridge } else { 0.0 };
         let reference = Reference::new(&rows, unknowns, (ridge * case.window as f64).sqrt());
         let at = [k, k + horizon(case.rate_hz, case.window)];
-        // The motion at those two instants counts even where the sample was rejected.
+        // The motion at those two instants is used even if the sample was rejected.
         let seen = Stream { rows: at.map(|k| stream.rows[k]).to_vec(), used: vec![true; 2] };
         let places = columns_of(solver, &seen, 0..=1, false);
         let prefix = |degree| solver.unknowns(degree);
@@ -348,7 +356,7 @@ fn worse(a: Option<f64>, b: Option<f64>) -> Option<f64> {
     a.into_iter().chain(b).reduce(f64::max)
 }
 
-/// Runs the identifier as the loop does, all modes, over the samples of a case.
+/// Runs the identifier with all modes, as the loop does, over the samples of a case.
 fn identifier_finite(case: &Case) -> Result<bool, StabilityError> {
     let settings =
         Settings { rate_hz: case.rate_hz, window_s: case.window as f64 / case.rate_hz, axes: 1, ..Settings::default() };

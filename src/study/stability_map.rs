@@ -1,12 +1,14 @@
-//! Where in gain, delay and stiffness a gripping hand and the loop are stable together: made by simulation, kept in a file, asked by
-//! the gain's slider.
+//! For which gains, delays and tissue stiffnesses the loop is stable together with a gripping hand: simulated once,
+//! stored in a file, and looked up to mark the range of the gain slider.
 //!
-//! One trial: a hand presses on elastic tissue until about 1.2 N, is knocked 3 mm aside for a moment, and holds still. Five seconds
-//! later it must have come to rest. The force is kept at standstill and the energy gate is off, which is harder than the
-//! defaults: what is stable here is stable with them. Slew and ceiling (4 N) act, so that an unstable loop is a limit cycle.
+//! One trial: a hand presses on elastic tissue until about 1.2 N, is displaced 3 mm sideways for a moment, and then
+//! holds still. Five seconds later it must be at rest. The force is kept at standstill and the energy gate is off,
+//! which is less stable than the default settings, so the map is on the safe side. Slew limit and ceiling (4 N) act, so
+//! an unstable loop shows as a limit cycle.
 //!
 //! [`StabilityMap::committed`] reads `assets/stability_map.csv` (`mode,delay_ms,stiffness_n_m` and one letter for each gain: S, M, U).
-//! Between the grid's points the worst of the neighbours answers; beyond its ends the last one does.
+//! Between grid points the result is the worst of the neighbouring points; outside the grid it is that of the nearest
+//! edge.
 
 use std::{fmt::Write as _, sync::OnceLock};
 
@@ -27,35 +29,36 @@ use crate::{
 pub const GAINS: [f64; 8] = [0.25, 0.5, 0.75, 1.0, 1.5, 2.0, 2.5, 3.0];
 /// Delays of the map, s.
 pub const DELAYS_S: [f64; 8] = [0.0, 0.01, 0.02, 0.05, 0.1, 0.15, 0.2, 0.3];
-/// Stiffnesses of the map, N/m: from fat to a stiff wall.
+/// Tissue stiffnesses of the map, N/m: from fat to a stiff wall.
 pub const STIFFNESSES_N_M: [f64; 8] = [12.0, 50.0, 100.0, 200.0, 400.0, 800.0, 2000.0, 6000.0];
 const MODES: [Mode; 4] = Mode::ALL;
 const POINTS: usize = MODES.len() * DELAYS_S.len() * STIFFNESSES_N_M.len() * GAINS.len();
-/// Force of the contact, N, without what the loop adds.
+/// Contact force, N, without the force rendered by the loop.
 const CONTACT_N: f64 = 1.2;
-/// A hand at rest moves less than this from end to end, m; one that moves more than that is unstable.
+/// A hand whose motion is smaller than this, peak to peak, is at rest, m.
 const STILL_M: f64 = 1e-4;
 const SHAKING_M: f64 = 5e-4;
-/// Length of a trial, of its approach, and of the end that is judged, s; when and how far it is knocked aside.
+/// Duration of a trial, of its approach and of the final part that is judged, s; time and distance of the sideways
+/// displacement.
 const TRIAL_S: f64 = 6.5;
 const APPROACH_S: f64 = 0.5;
 const JUDGED_S: f64 = 1.0;
 const KNOCK_S: [f64; 2] = [1.0, 1.1];
 const KNOCK_M: f64 = 3e-3;
 
-/// What to do: there is nothing to choose.
+/// Options of this study: none.
 #[derive(Clone, Copy, Debug)]
 pub struct Options;
 
-/// What the loop does at one point.
+/// Behaviour of the loop at one point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Verdict {
     /// Comes to rest.
     Stable,
-    /// Keeps moving by 0.1 to 0.5 mm.
+    /// A motion of 0.1 to 0.5 mm remains.
     Marginal,
-    /// Shakes the hand by more than 0.5 mm.
+    /// A motion of more than 0.5 mm remains.
     Unstable,
 }
 
@@ -77,7 +80,7 @@ impl Verdict {
         }
     }
 
-    /// In words, for the screen.
+    /// Text for the screen.
     pub const fn words(self) -> &'static str {
         match self {
             Self::Stable => "stable",
@@ -87,19 +90,19 @@ impl Verdict {
     }
 }
 
-/// A file that is no map: what, where.
+/// A file that is not a valid map.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error(
-    "line {line} of the stability map is not \"{expected}\" and eight letters S, M or U; make the map anew with nima study stability-map"
+    "line {line} of the stability map is not \"{expected}\" and eight letters S, M or U; create it again with nima study stability-map"
 )]
 pub struct MapError {
     /// Line, from 1.
     pub line: usize,
-    /// How the line should begin.
+    /// Expected beginning of the line.
     pub expected: String,
 }
 
-/// Verdicts over mode, delay, stiffness and gain.
+/// Verdicts by mode, delay, stiffness and gain.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct StabilityMap {
     verdicts: Vec<Verdict>,
@@ -109,7 +112,8 @@ const fn index(mode: usize, delay: usize, stiffness: usize, gain: usize) -> usiz
     ((mode * DELAYS_S.len() + delay) * STIFFNESSES_N_M.len() + stiffness) * GAINS.len() + gain
 }
 
-/// The places in `grid` (rising) between which `value` lies; the last one beyond its ends and for NaN.
+/// Indices of the points of `grid` (rising) on both sides of `value`; the last index twice if `value` is beyond the end
+/// or NaN.
 fn around(grid: &[f64], value: f64) -> [usize; 2] {
     let last = grid.len() - 1;
     let above = grid.iter().position(|point| value <= point * (1.0 + 1e-9)).unwrap_or(last);
@@ -118,13 +122,16 @@ fn around(grid: &[f64], value: f64) -> [usize; 2] {
 }
 
 impl StabilityMap {
-    /// The map that came with the program; `None` if the file was spoilt when the program was made (a test looks).
+    /// The map built into the program; `None` if its file is damaged (a test checks it).
     pub fn committed() -> Option<&'static Self> {
         static MAP: OnceLock<Option<StabilityMap>> = OnceLock::new();
         MAP.get_or_init(|| Self::parse(include_str!("../../assets/stability_map.csv")).ok()).as_ref()
     }
 
-    /// Reads what [`StabilityMap::csv`] writes.
+    /// Parses the format that [`StabilityMap::csv`] writes.
+    ///
+    /// # Errors
+    /// [`MapError`] with the first line that does not have the expected form.
     pub fn parse(text: &str) -> Result<Self, MapError> {
         let mut lines = text.lines().enumerate().skip(1);
         let mut verdicts = Vec::with_capacity(POINTS);
@@ -138,7 +145,7 @@ impl StabilityMap {
         Ok(Self { verdicts })
     }
 
-    /// The file.
+    /// The map as CSV, the format of `assets/stability_map.csv`.
     pub fn csv(&self) -> String {
         let mut text = "mode,delay_ms,stiffness_n_m,gain 0.25 0.5 0.75 1 1.5 2 2.5 3\n".to_owned();
         for (row, verdicts) in rows().zip(self.verdicts.chunks(GAINS.len())) {
@@ -149,7 +156,10 @@ impl StabilityMap {
         text
     }
 
-    /// Makes the map, which takes minutes; `progress` is told how many of how many are done.
+    /// Simulates the map, which takes minutes; `progress` is called with the number of points done and their total.
+    ///
+    /// # Errors
+    /// [`SettingsError`] if the loop's settings are invalid.
     pub fn simulate(mut progress: impl FnMut(usize, usize, &str)) -> Result<Self, SettingsError> {
         let mut verdicts = Vec::with_capacity(POINTS);
         for mode in MODES {
@@ -166,7 +176,8 @@ impl StabilityMap {
         Ok(Self { verdicts })
     }
 
-    /// The worst verdict of the neighbours of this point. A gain of zero is stable; a value beyond the grid counts as its last, NaN too.
+    /// The worst verdict of the grid points around this point. A gain of zero is stable; a value beyond the grid, or
+    /// NaN, counts as the grid's last.
     pub fn at(&self, mode: Mode, gain: f64, delay_s: f64, stiffness_n_m: f64) -> Verdict {
         if gain <= 0.0 {
             return Verdict::Stable;
@@ -183,13 +194,24 @@ impl StabilityMap {
         worst
     }
 
-    /// The greatest gain of the grid up to which every one is stable at this delay (s) and stiffness (N/m); 0 if none is.
+    /// The largest gain of the grid up to which all gains are stable at this delay (s) and stiffness (N/m); 0 if there
+    /// is none.
+    ///
+    /// ```
+    /// use nima_core::impedance::Mode;
+    /// use nima_study::stability_map::{StabilityMap, Verdict};
+    ///
+    /// let map = StabilityMap::committed().expect("the map is part of the program");
+    /// let greatest = |delay_s: f64| map.greatest_stable_gain(Mode::Anchored, delay_s, 200.0);
+    /// assert!(greatest(0.3) <= greatest(0.0), "a delay never helps");
+    /// assert_eq!(map.at(Mode::Anchored, greatest(0.0), 0.0, 200.0), Verdict::Stable);
+    /// ```
     pub fn greatest_stable_gain(&self, mode: Mode, delay_s: f64, stiffness_n_m: f64) -> f64 {
         let stable = |gain: &&f64| self.at(mode, **gain, delay_s, stiffness_n_m) == Verdict::Stable;
         GAINS.iter().take_while(stable).last().copied().unwrap_or(0.0)
     }
 
-    /// For a terminal and a document: the greatest stable gain over delay and stiffness, for every mode.
+    /// Markdown table of the largest stable gain by delay and stiffness, for every mode.
     pub fn markdown(&self) -> String {
         let mut text = String::new();
         for mode in [Mode::Dfr, Mode::Anchored, Mode::Linear, Mode::Literal] {
@@ -269,7 +291,10 @@ fn rows() -> impl Iterator<Item = String> {
     points().map(|(mode, delay_s, n_m)| format!("{mode},{:.0},{n_m:.0},", 1e3 * delay_s))
 }
 
-/// One trial: does a hand that grips come to rest?
+/// Simulates one trial and judges whether the gripping hand comes to rest.
+///
+/// # Errors
+/// [`SettingsError`] if the loop's settings are invalid.
 pub fn trial(mode: Mode, gain: f64, delay_s: f64, stiffness_n_m: f64) -> Result<Verdict, SettingsError> {
     let tissue = Tissue {
         surface_z_m: 0.0,
@@ -284,7 +309,7 @@ pub fn trial(mode: Mode, gain: f64, delay_s: f64, stiffness_n_m: f64) -> Result<
         ChainSettings { static_hold: true, energy: EnergyMode::Off, gain_rate_per_s: 1e3, ..ChainSettings::default() };
     let seed = 1;
     let above_m = Vector3::new(0.0, 0.0, 2e-3);
-    // Where the hand must mean to be so that tissue and feedback together leave it at the contact force.
+    // The intended position of the hand at which tissue and feedback together balance it at the contact force.
     let deep_m = Vector3::new(0.0, 0.0, -CONTACT_N / stiffness_n_m - gain.min(4.0 / CONTACT_N) * CONTACT_N / GRIP_N_M);
     let mut pair = Pair::new(
         &Trial { mode, delay_s, gates: Some(gates), gain, tissue, tremor_m: 0.0, brake_n_s_m: 0.0, seed },
@@ -353,8 +378,8 @@ mod tests {
 
     #[test]
     fn late_reflection_is_stable_where_theory_says() {
-        // Whatever the delay, a loop is stable while gain times stiffness stays below the least dynamic stiffness of the hand:
-        // k 2 z sqrt(1 - z^2), z = 0.507 its damping ratio: 787 N/m. After a long delay it is unstable above.
+        // At any delay a loop is stable while gain times stiffness is below the smallest dynamic stiffness of the hand,
+        // k 2 z sqrt(1 - z^2) with z = 0.507 its damping ratio: 787 N/m. With a long delay it is unstable above.
         let map = StabilityMap::committed().unwrap();
         for n_m in STIFFNESSES_N_M {
             for gain in GAINS.into_iter().filter(|gain| (gain * n_m / 787.0 - 1.0).abs() > 0.01) {

@@ -1,4 +1,4 @@
-//! The paper's three validations, in simulation: its figures, ours, and why they differ.
+//! The paper's three validations, in simulation: the paper's figures, those of this project, and why they differ.
 
 pub mod experiment;
 pub mod isolation;
@@ -19,46 +19,46 @@ use crate::validation::isolation::Isolation;
 /// Why a validation could not be made.
 #[derive(Debug, thiserror::Error)]
 pub enum ValidationError {
-    /// A scene is wrong.
+    /// A scene is invalid.
     #[error(transparent)]
     Config(#[from] ConfigError),
-    /// A setting of the loop is wrong.
+    /// A setting of the loop is invalid.
     #[error(transparent)]
     Settings(#[from] SettingsError),
-    /// A calibration on the simulated rig gave nothing to go on with.
+    /// A calibration on the simulated rig failed.
     #[error("the simulated calibration failed: {0}; try another --seed")]
     Calibration(String),
-    /// The network.
+    /// The network could not be trained or used.
     #[error(transparent)]
     TipForce(#[from] TipForceError),
-    /// Writing in memory failed.
-    #[error("the simulated session could not be written down")]
+    /// Writing to memory failed.
+    #[error("the simulated session could not be stored")]
     Scratch(#[source] std::io::Error),
 }
 
-/// What to do.
+/// Options of this study.
 #[derive(Clone, Copy, Debug)]
 pub struct Options {
     /// Seed of every scene and of the training.
     pub seed: u64,
-    /// Rows to train on.
+    /// Rows of the training session.
     pub rows: usize,
     /// Delay of the link in Validation III, s.
     pub delay_s: f64,
 }
 
-/// Validation I: do the two sensors agree after the correspondence, on pushes that the fit never saw?
+/// Validation I: how well the two sensors agree after the correspondence, on pushes that were not used for the fit.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Agreement {
     /// Error per axis, sample by sample, N (`s1`).
     pub error_n: AxisStats,
     /// Coefficient of determination of all axes together.
     pub r2: f64,
-    /// Samples.
+    /// Number of samples.
     pub samples: usize,
 }
 
-/// All three.
+/// Results of all three validations.
 #[derive(Clone, Debug, Serialize)]
 pub struct Report {
     /// Validation I.
@@ -67,14 +67,17 @@ pub struct Report {
     pub isolation: Isolation,
     /// Validation III.
     pub rendering: Rendering,
-    /// The paper's figures beside ours.
+    /// The paper's figures and those of this project.
     pub table: Vec<Row>,
 }
 
-/// Seconds of pushes that Validation I is judged by.
+/// Duration of the pushes by which Validation I is judged, s.
 const PUSHES_S: f64 = 60.0;
 
-/// Makes the validations; `progress` is told the number of the one that begins, of three.
+/// Runs the validations; `progress` is called with the number of the one that begins, of three.
+///
+/// # Errors
+/// [`ValidationError`] if a scene or setting is invalid, a calibration fails, or the network cannot be trained.
 pub fn study(options: &Options, mut progress: impl FnMut(usize, usize, &str)) -> Result<Report, ValidationError> {
     progress(0, 3, "correspondence");
     let gravity = experiment::gravity(options.seed)?;

@@ -1,7 +1,8 @@
-//! May a trained network be used? Judged on a recording of its own, made after the training.
+//! Decides whether a trained network may be used, from a recording made after the training.
 //!
-//! Takes a model and a data set that it was not trained on; gives a verdict with its reason. The limits are the paper's
-//! figures: mean absolute error per axis (0.19 N at most, here 0.20), next to nothing where nothing is touched.
+//! Takes a model and a data set that it was not trained on; returns a verdict with its reason. The limits follow the
+//! paper's errors: mean absolute error per axis (at most 0.19 N in the paper, 0.20 N here), and a prediction near zero
+//! without contact.
 
 use nima_core::{
     calibration::{Judgement, Verdict},
@@ -16,15 +17,19 @@ use super::{Evaluation, evaluate};
 
 /// Largest mean absolute error of an axis, N.
 const MAE_N: f64 = 0.20;
-/// Largest mean of the answers where nothing is touched, N.
+/// Largest mean prediction without contact, N.
 const FREE_MEAN_N: f64 = 0.05;
-/// Largest share of samples in doubt.
+/// Largest share of samples flagged as uncertain.
 const DOUBT: f64 = 0.10;
-/// Fewest rows, and fewest of them in contact and free.
+/// Fewest rows, and fewest of them with and without contact.
 const ROWS: usize = 1000;
 const OF_EACH: usize = 150;
 
-/// Judges a model by these data; gives the check to keep in [`nima_core::tip_force::Origin::check`], and all figures.
+/// Judges a model by these data; returns the check to be stored in [`nima_core::tip_force::Origin::check`], and all
+/// errors.
+///
+/// # Errors
+/// [`TipForceError`] if the columns are not those of the model.
 pub fn check(estimator: &mut Estimator, data: &DataSet) -> Result<(Check, Evaluation), TipForceError> {
     if data.outputs.len() != 3 || data.contact.is_none() {
         let reason = "a check needs the three forces at the tip and the column \"contact\"".to_owned();

@@ -1,9 +1,10 @@
-//! Training of the ensemble (on candle, on the CPU): `AdamW`, mini-batches, falling learning rate, early stopping.
+//! Training of the ensemble (with candle, on the CPU): `AdamW`, mini-batches, decreasing learning rate, early stopping.
 //!
-//! Every member is stopped by trajectories it never saw: the folds are whole trajectories, or, where there are too few of
-//! them, contiguous blocks with a gap towards the training part. Each member leaves out another fold, so that together they
-//! use all data. A seed repeats exactly: weights and orders come from our own generator. Takes seconds to minutes: call it
-//! on a background thread; members are trained side by side on the cores there are.
+//! Early stopping of every member uses held-out data: the folds are whole trajectories or, if there are too few,
+//! contiguous blocks with a gap to the training rows. Each member holds out another fold, so that together they use all
+//! data. The same seed gives the same result: initial weights and the order of rows come from our own generator.
+//! Training takes seconds to minutes, so call it on a background thread; members are trained in parallel on the
+//! available cores.
 
 use std::{
     sync::{
@@ -25,7 +26,7 @@ use nima_recording::{
 
 use super::{fit::Fit, folds::Folds};
 
-/// Fewest rows to learn from.
+/// Fewest rows for a training.
 pub const MIN_ROWS: usize = 200;
 
 fn checked(settings: &TrainingSettings) -> Result<(), TipForceError> {
@@ -51,44 +52,44 @@ fn checked(settings: &TrainingSettings) -> Result<(), TipForceError> {
     Ok(())
 }
 
-/// One epoch of one member.
+/// Progress: one epoch of one member.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
 pub struct Progress {
-    /// Which member, from 0.
+    /// Index of the member, from 0.
     pub member: usize,
-    /// How many members there are.
+    /// Number of members.
     pub members: usize,
-    /// Epoch, from 1.
+    /// Number of the epoch, from 1.
     pub epoch: usize,
-    /// Most epochs there can be.
+    /// Maximum number of epochs.
     pub epochs_max: usize,
-    /// Mean square error on the training part, in squares of the outputs' standard deviation.
+    /// Mean square error on the training rows, in units of the outputs' variance.
     pub training_loss: f64,
-    /// The same on the part that stops the training.
+    /// The same on the held-out rows, used for early stopping.
     pub validation_loss: f64,
-    /// Least validation loss so far.
+    /// Lowest validation loss so far.
     pub best: f64,
-    /// Time since the training began, s.
+    /// Time since the training started, s.
     pub elapsed_s: f64,
-    /// This was the member's last epoch.
+    /// Whether this was the member's last epoch.
     pub finished: bool,
 }
 
-/// A trained ensemble and all that belongs to it.
+/// A trained ensemble and everything needed to use it.
 #[derive(Clone, Debug)]
 #[expect(missing_docs, reason = "the names say it")]
 pub struct Trained {
     pub members: Vec<Member>,
     pub figures: Vec<MemberFigures>,
-    /// How inputs become features.
+    /// Conversion of inputs to features.
     pub expansion: Expansion,
     pub features: Normalisation,
     pub outputs: Normalisation,
-    /// Features that never change in the data and are neutral in the model, by name.
+    /// Names of features that are constant in the data and therefore have no effect in the model.
     pub constant: Vec<String>,
-    /// Rows that a fold learns from, and rows it is judged by.
+    /// Training rows and held-out rows of each fold.
     pub(super) folds: Vec<(Vec<usize>, Vec<usize>)>,
-    /// How long it took, s.
+    /// Duration of the training, s.
     pub elapsed_s: f64,
 }
 
@@ -102,8 +103,24 @@ pub(super) fn features_of(data: &DataSet, expansion: &Expansion) -> Vec<f32> {
     features
 }
 
-/// Trains an ensemble. `cancel` stops it within one mini-batch; `progress` is called after every epoch, from the thread
-/// that ran it, never from two at once.
+/// Trains an ensemble. Setting `cancel` stops it within one mini-batch; `progress` is called after every epoch, from
+/// the thread that ran it, never from two threads at once.
+///
+/// # Errors
+/// [`TipForceError`] if the settings or data are unusable, the loss diverges, or the training is cancelled.
+///
+/// ```
+/// use std::{path::PathBuf, sync::atomic::AtomicBool};
+///
+/// use nima_core::tip_force::TrainingSettings;
+/// use nima_recording::tip_force::{DataSet, Selection, TipForceError};
+///
+/// let columns = Selection { inputs: Some(vec!["fx_n".into()]), outputs: Some(vec!["tip_fx_n".into()]) };
+/// let data = DataSet::parse(&[(PathBuf::from("short.csv"), b"fx_n,tip_fx_n\n1,1\n2,2\n".to_vec())], &columns)?;
+/// let refused = nima_training::train(&data, &TrainingSettings::default(), &AtomicBool::new(false), &|_| {});
+/// assert!(matches!(refused, Err(TipForceError::TooFewRows { found: 2, .. })));
+/// # Ok::<(), TipForceError>(())
+/// ```
 pub fn train(
     data: &DataSet,
     settings: &TrainingSettings,
@@ -156,7 +173,7 @@ pub fn train(
     })
 }
 
-/// A sensor that hangs gives a network that knows the pose and no force: it would be trained and then be wrong with confidence.
+/// With a frozen sensor the network would see only the pose and no force, and its wrong predictions would look certain.
 fn nothing_to_learn_from(inputs: &[String], constant: &[String], width: usize) -> Option<String> {
     let cure = "check that the sensors send new readings, and record again";
     let mut forces = inputs.iter().filter(|name| DEFAULT_INPUTS[..3].contains(&name.as_str())).peekable();
@@ -166,7 +183,7 @@ fn nothing_to_learn_from(inputs: &[String], constant: &[String], width: usize) -
     (constant.len() == width).then(|| format!("no input changes over the whole data set; {cure}"))
 }
 
-/// Trains the members on as many threads as there are cores; the first failure ends all.
+/// Trains the members on as many threads as there are cores; the first error ends all of them.
 fn all_members(fit: &Fit<'_>, folds: &Folds) -> Result<Vec<(Member, MemberFigures)>, TipForceError> {
     let count = fit.settings.members;
     let workers = thread::available_parallelism().map_or(1, usize::from).min(count);
@@ -195,7 +212,39 @@ fn all_members(fit: &Fit<'_>, folds: &Folds) -> Result<Vec<(Member, MemberFigure
     results.into_iter().map(|(_, result)| result).collect()
 }
 
-/// Trains a model (see [`train`]), fits its baselines and calibrates its doubt on the same data.
+/// Trains a model (see [`train`]), fits its baselines and calibrates its limits of uncertainty on the same data.
+///
+/// # Errors
+/// As [`train`].
+///
+/// ```
+/// use std::{fmt::Write, path::PathBuf, sync::atomic::AtomicBool};
+///
+/// use nima_core::tip_force::{Estimator, TrainingSettings};
+/// use nima_recording::tip_force::{DataSet, Selection};
+/// use nima_training::{evaluate, train_model};
+///
+/// // The wrist measures the force at the tip plus a friction against the motion.
+/// let mut text = String::from("fz_n,insertion_speed_m_s,tip_fz_n,trajectory\n");
+/// for row in 0..800 {
+///     let t = 0.01 * f64::from(row);
+///     let (speed, tip) = (0.03 * (5.0 * t).sin(), 2.0 * (4.1 * t).sin());
+///     writeln!(text, "{},{speed},{tip},{}", tip + speed.signum(), row / 200)?;
+/// }
+/// let columns = Selection {
+///     inputs: Some(vec!["fz_n".into(), "insertion_speed_m_s".into()]),
+///     outputs: Some(vec!["tip_fz_n".into()]),
+/// };
+/// let data = DataSet::parse(&[(PathBuf::from("made.csv"), text.into_bytes())], &columns)?;
+///
+/// let settings = TrainingSettings { hidden: vec![8], members: 1, epochs: Some(5), ..TrainingSettings::default() };
+/// let model = train_model(&data, &settings, [None, None], &AtomicBool::new(false), &|_| {})?;
+/// let figures = evaluate(&mut Estimator::new(model), &data)?;
+/// let mae = |method: usize| figures.overall.methods[method].outputs[0].expect("both predict it").mae;
+/// assert!(mae(0) < 0.5 * mae(1), "network {} N, without a model {} N", mae(0), mae(1));
+/// assert!(figures.trained_on_these, "these errors say nothing about new data");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn train_model(
     data: &DataSet,
     settings: &TrainingSettings,
@@ -217,7 +266,7 @@ pub fn train_model(
         }
     }
     let measured = trained.expansion.measured();
-    // Every trajectory a file of its own: what is left out is another session.
+    // If every trajectory is a file of its own, each held-out fold is a different session.
     let whole_sessions = data.files.len() > 1 && data.trajectories.len() == data.files.len();
     let doubt = Doubt::fit(&x, width, measured, &trained.folds, spreads, whole_sessions, settings.seed);
     let origin = Origin {

@@ -1,4 +1,4 @@
-//! How good a model is on data it was not trained on, beside simpler methods fitted on its training data.
+//! Errors of a model on data it was not trained on, compared with simpler methods fitted on its training data.
 
 use std::time::Instant;
 
@@ -16,24 +16,24 @@ pub struct Stats {
     pub mae: f64,
     /// Standard deviation of the error about its mean.
     pub sd: f64,
-    /// Half width of the band about zero that holds 95 % of the errors.
+    /// Half width of the interval around zero that contains 95 % of the errors.
     pub band95: f64,
-    /// Share of the output's variance that is explained; 0 where the output never changes.
+    /// Coefficient of determination; 0 if the output is constant.
     pub r2: f64,
     /// Number of rows.
     pub n: usize,
 }
 
-/// One method's errors.
+/// Errors of one method.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct MethodFigures {
     /// `network`, or one of [`BASELINES`].
     pub method: &'static str,
-    /// Per output, in the model's order; `None` where the method says nothing of it.
+    /// Per output, in the model's order; `None` if the method does not predict it.
     pub outputs: Vec<Option<Stats>>,
 }
 
-/// Mean and spread of what a model says where nothing touches the tip.
+/// Mean and standard deviation of a model's predictions without contact.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 #[expect(missing_docs, reason = "the names say it")]
 pub struct NoContact {
@@ -43,40 +43,44 @@ pub struct NoContact {
     pub n: usize,
 }
 
-/// Figures of some rows.
+/// Errors on some of the rows.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Part {
     /// The file, or `all`.
     pub name: String,
     /// The network first, then [`BASELINES`].
     pub methods: Vec<MethodFigures>,
-    /// Share of rows in doubt.
+    /// Share of rows flagged as uncertain.
     pub doubt_share: f64,
-    /// Per output, of rows without contact; empty where the data do not say.
+    /// Per output, for rows without contact; empty if the data have no column `contact`.
     pub no_contact: Vec<NoContact>,
 }
 
-/// All figures of a model on a data set.
+/// All errors of a model on a data set.
 #[derive(Clone, Debug, Serialize)]
 #[expect(missing_docs, reason = "the names say it")]
 pub struct Evaluation {
-    /// Names of the outputs; units by the names.
+    /// Names of the outputs, which contain the unit.
     pub outputs: Vec<String>,
     pub files: Vec<Part>,
     pub overall: Part,
-    /// These very files are what the model was trained on: the figures say nothing about new data.
+    /// Whether the model was trained on these files, so that the errors say nothing about new data.
     pub trained_on_these: bool,
-    /// Time of one answer, microseconds.
+    /// Time of one prediction, microseconds.
     pub inference_us: Quantiles,
     /// Predictions, row by row.
     #[serde(skip)]
     pub predictions: Vec<f32>,
-    /// Rows in doubt.
+    /// Rows flagged as uncertain.
     #[serde(skip)]
     pub in_doubt: Vec<bool>,
 }
 
-/// Judges a model on these rows. Refuses data with other columns than the model's ([`Selection::of`](nima_recording::tip_force::Selection::of)).
+/// Evaluates a model on these rows.
+///
+/// # Errors
+/// [`TipForceError`] if the columns are not those of the model (see
+/// [`Selection::of`](nima_recording::tip_force::Selection::of)).
 pub fn evaluate(estimator: &mut Estimator, data: &DataSet) -> Result<Evaluation, TipForceError> {
     if data.inputs != estimator.model().inputs || data.outputs != estimator.model().outputs {
         return Err(TipForceError::Columns { reason: "the data were read with other columns than the model's".into() });

@@ -1,4 +1,4 @@
-//! One member's training.
+//! Training of one member.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -9,12 +9,12 @@ use nima_recording::tip_force::TipForceError;
 
 use super::Progress;
 
-/// Share of the epochs without a better validation loss after which a member stops.
+/// A member stops after this share of the maximum epochs without a lower validation loss.
 const PATIENCE: f64 = 0.25;
-/// Rows of a validation pass at once.
+/// Number of rows evaluated at once in a validation pass.
 const CHUNK: usize = 8192;
 
-/// Why a member could not be trained; the tensor library's own errors come in by `?`.
+/// Why a member could not be trained; includes errors of the tensor library.
 #[derive(Debug)]
 pub(super) struct Failure(pub(super) TipForceError);
 
@@ -24,26 +24,26 @@ impl From<candle_core::Error> for Failure {
     }
 }
 
-/// What all members share: normalised features and outputs, row by row, and their widths.
+/// Data common to all members: normalised features and outputs, row by row, and their numbers of columns.
 pub(super) struct Fit<'a> {
     pub(super) x: &'a [f32],
     pub(super) y: &'a [f32],
     pub(super) shape: (usize, usize),
-    /// The linear path, solved over all rows: it has too few numbers to learn them by heart.
+    /// The linear path, solved over all rows: with so few parameters it cannot overfit.
     pub(super) skip: &'a [f32],
     pub(super) settings: &'a TrainingSettings,
     pub(super) cancel: &'a AtomicBool,
     pub(super) progress: &'a (dyn Fn(&Progress) + Sync),
 }
 
-/// Weights under training.
+/// Weights during training.
 struct Weights {
     layers: Vec<(Var, Var)>,
     skip: Tensor,
 }
 
 impl Fit<'_> {
-    /// Trains one member on these rows, stopped by those.
+    /// Trains one member on the training rows, with early stopping on the held-out rows.
     pub(super) fn member(
         &self,
         member: usize,
@@ -62,7 +62,7 @@ impl Fit<'_> {
         let epochs_max = self.settings.epochs_for(training.len());
         let patience = ((epochs_max as f64 * PATIENCE).ceil() as usize).max(5);
         let mut order = training.to_vec();
-        // A network that makes unseen trajectories no better is left out: then the linear path stands alone.
+        // A network that does not improve the held-out rows is dropped, and the linear path is used alone.
         let (training_loss, validation_loss) = (self.loss(&weights, training)?, self.loss(&weights, validation)?);
         let mut figures = MemberFigures { epoch: 0, epochs: 0, training_loss, validation_loss };
         let mut best = weights.member()?;
@@ -98,7 +98,8 @@ impl Fit<'_> {
         Ok((best, figures))
     }
 
-    /// One pass over the rows in this order; gives the mean loss. `[from, length]` is the part of the whole training.
+    /// One epoch over the rows in this order; returns the mean loss. `[from, length]` is its position within the whole
+    /// training.
     fn epoch(
         &self,
         weights: &Weights,
@@ -147,8 +148,9 @@ impl Fit<'_> {
 }
 
 impl Weights {
-    /// Uniform weights of variance one over the inputs; the last layer starts at zero, so that the start is the linear path,
-    /// which stays as it was solved: what is linear is never unlearned, and beyond the data it is what is left.
+    /// Uniform initial weights of variance one over the number of inputs. The last layer starts at zero, so that the
+    /// initial model is the linear path. The linear path itself is not trained, because outside the training data only
+    /// it remains.
     fn new(
         (inputs, outputs): (usize, usize),
         hidden: &[usize],
@@ -186,7 +188,7 @@ impl Weights {
         now + x.matmul(&self.skip)?
     }
 
-    /// The weights as they are now, for inference.
+    /// The present weights in the form used for inference.
     fn member(&self) -> Result<Member, Failure> {
         let flat = |var: &Tensor| var.flatten_all().and_then(|flat| flat.to_vec1::<f32>());
         let layer = |matrix: &Tensor, bias: Vec<f32>| {

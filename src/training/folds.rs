@@ -1,17 +1,18 @@
-//! What a member learns from and what stops it: never a shuffle of samples.
+//! Training rows and held-out rows of each member. Rows are never shuffled individually, because neighbouring rows are
+//! similar.
 
 use std::ops::Range;
 
 use nima_recording::tip_force::DataSet;
 
-/// Rows left out between a validation block and its neighbours where a trajectory had to be cut.
+/// Rows left out between a held-out block and its neighbours if a trajectory had to be divided.
 const GAP: usize = 50;
 
-/// With fewer trajectories than this, trajectories are cut into blocks. Whole ones are better judges: a network that is
-/// stopped by them is rewarded for what holds beyond the loads it saw.
+/// With fewer trajectories than this, they are divided into blocks. Whole trajectories are preferable: early stopping
+/// on them rewards a network that generalises beyond the loads of its training rows.
 const FEW: usize = 3;
 
-/// Blocks dealt to folds.
+/// Assignment of blocks to folds.
 #[derive(Clone, Debug)]
 pub(super) struct Folds {
     blocks: Vec<Range<usize>>,
@@ -21,8 +22,8 @@ pub(super) struct Folds {
 }
 
 impl Folds {
-    /// Five folds or one per member, of whole trajectories (not more folds than those), or of blocks where there are few
-    /// trajectories.
+    /// Five folds, or one per member if there are more members: of whole trajectories (at most as many folds as these),
+    /// or of blocks if there are few trajectories.
     pub(super) fn of(data: &DataSet, members: usize, seed: u64) -> Self {
         let count = members.max(5);
         let whole: Vec<Range<usize>> = data.trajectories.iter().map(|trajectory| trajectory.rows.clone()).collect();
@@ -42,17 +43,17 @@ impl Folds {
         Self { blocks, fold, gap }
     }
 
-    /// How many folds there are.
+    /// Number of folds.
     pub(super) fn count(&self) -> usize {
         self.fold.iter().max().map_or(0, |last| last + 1)
     }
 
-    /// Rows of training and of validation for a member.
+    /// Training rows and held-out rows for a member.
     pub(super) fn split(&self, member: usize) -> (Vec<usize>, Vec<usize>) {
         let (mut training, mut validation) = (Vec::new(), Vec::new());
         for (block, fold) in self.blocks.iter().zip(&self.fold) {
             if *fold == member % self.count() {
-                // A short block gives up no more than half of itself to the gaps.
+                // In a short block the gaps take at most half of the rows.
                 let gap = self.gap.min(block.len() / 4);
                 validation.extend(block.start + gap..block.end - gap);
             } else {

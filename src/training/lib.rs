@@ -1,7 +1,7 @@
-//! Training and judging the network that gives the force at the tip.
+//! Training and evaluation of the network that estimates the force at the tip.
 //!
-//! Takes a data set; gives a [`Model`](nima_core::tip_force::Model) and its figures on rows that it was not trained on. The one crate
-//! that needs a tensor library. Belongs on a background thread; nothing here runs in the loop.
+//! Takes a data set; returns a [`Model`](nima_core::tip_force::Model) and its errors on held-out rows. This is the only
+//! crate that needs a tensor library. For a background thread; nothing here runs in the loop.
 #![warn(missing_docs)]
 
 mod check;

@@ -1,4 +1,4 @@
-//! The whole way from data to answers, on a made world: force through a trocar with Coulomb friction that grows with the load.
+//! From data to predictions, on simulated data: force through a trocar with Coulomb friction that grows with the load.
 
 use std::{path::PathBuf, sync::atomic::AtomicBool};
 
@@ -7,7 +7,7 @@ use nima_recording::tip_force::{DataSet, Trajectory, load_model, save_model};
 
 use super::*;
 
-/// Trajectories of an instrument that goes in and out under a side load, 200 rows each.
+/// Trajectories of an instrument that moves in and out under a lateral load, 200 rows each.
 fn world(trajectories: usize, seed: u64) -> DataSet {
     let mut generator = fastrand::Rng::with_seed(seed);
     let names = |list: &[&str]| list.iter().map(|name| (*name).to_owned()).collect::<Vec<_>>();
@@ -81,7 +81,7 @@ fn a_model_comes_back_from_its_file_bit_by_bit_and_a_seed_repeats_it() {
     let mut estimators = [model, trained(&data), load_model(&path).unwrap()].map(Estimator::new);
     let [before, after] = [0, 2].map(|k| estimators[k].model().origin.clone());
     for (a, b) in before.figures.iter().zip(&after.figures) {
-        // JSON may cost the last bit of an f64.
+        // JSON may change the last bit of an f64.
         assert!((a.validation_loss - b.validation_loss).abs() < 1e-12 && a.epoch == b.epoch);
     }
     assert_eq!(before, Origin { figures: before.figures.clone(), ..after });
@@ -179,7 +179,7 @@ fn inputs_that_never_change_are_refused() {
     assert!(refusal(&|x| x.fill(0.0)).is_some_and(|told| told.contains(words)));
     assert!(refusal(&|x| (x[0], x[1]) = (1.3, -2.1)).is_some_and(|told| told.contains(words)), "both forces hang");
     assert_eq!(refusal(&|x| x[0] = 0.0), None, "one axis may be unused");
-    // Columns by other names are not known to be forces; but something must change.
+    // Columns with other names are not known to be forces; but something must change in the data.
     let mut data = world(12, 5);
     data.inputs = ["a", "b", "c"].map(str::to_owned).to_vec();
     data.x.fill(1.0);

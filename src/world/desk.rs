@@ -1,8 +1,10 @@
-//! A desk-top leader before a simulated rig: a cap such as a `SpaceMouse` leads the right hand, pedals are clutch and presence.
+//! Desk devices that lead a simulated rig: a six-axis cap such as a `SpaceMouse` leads the right hand; pedals are
+//! clutch and presence switch.
 //!
-//! The cap gives a speed: its push (-1 to 1) times [`DeskSettings::speed_m_s`], in the workspace (x right, y away, z up). Until it is
-//! touched the simulated hand does its task; from then on the hand is where the cap has led it, until button 0 lets it go.
-//! A cap that is gone or silent counts as released: the hand stays where it is. The screen's own lead goes first.
+//! The cap commands a velocity: its deflection (-1 to 1) times [`DeskSettings::speed_m_s`], in the workspace (x right,
+//! y away, z up). Until it is touched, the simulated hand performs its task; from then on the hand is led by the cap,
+//! until button 0 ends this. A cap that is lost or silent counts as released, and the hand stays where it is. Leading
+//! from the screen takes precedence.
 
 use nalgebra::Vector3;
 use nima_devices::{
@@ -16,18 +18,18 @@ use nima_machine::rig::{
 
 use super::Worlds;
 
-/// Pushes below this are no push.
+/// Smaller deflections count as zero.
 const TOUCH: f64 = 0.05;
-/// Longest step of time that a push counts for, s.
+/// Longest time step in which a deflection is integrated, s.
 const STEP_MAX_S: f64 = 0.01;
 
-/// The simulated rig with a cap and pedals.
+/// A simulated rig with a cap and pedals.
 pub struct Desk {
     worlds: Worlds,
     cap: Option<(Slot<CapDriver>, Held<CapReading>)>,
     pedal: Option<(Slot<PedalDriver>, Held<PedalReading>, PedalRoles)>,
     speed_m_s: f64,
-    /// Where the cap leads the hand, m; none until it is touched.
+    /// Position to which the cap leads the hand, m; `None` until it is touched.
     at_m: Option<Vector3<f64>>,
     hand_m: Vector3<f64>,
     last_s: Option<f64>,
@@ -36,7 +38,10 @@ pub struct Desk {
 }
 
 impl Desk {
-    /// Begins to open what is there.
+    /// Starts opening the devices in the settings.
+    ///
+    /// # Errors
+    /// [`RigError`] if a setting is invalid or a thread cannot be created.
     pub fn start(settings: &DeskSettings, worlds: Worlds) -> Result<(Self, Roster), RigError> {
         let mut roster = Roster::new();
         let cap = settings.cap.clone().map(|cap| {
@@ -71,7 +76,7 @@ impl Desk {
         Ok((desk, roster))
     }
 
-    /// Where the cap leads the hand now.
+    /// Present position to which the cap leads the hand.
     fn lead(&mut self, now_s: f64) -> Option<Vector3<f64>> {
         let dt_s = self.last_s.replace(now_s).map_or(0.0, |last_s| (now_s - last_s).clamp(0.0, STEP_MAX_S));
         let (slot, held) = self.cap.as_mut()?;
@@ -190,7 +195,7 @@ mod tests {
             if let Some(at_m) = desk.at_m {
                 let (from_s, from_m): (f64, Vector3<f64>) = *first_m.get_or_insert((now_s, at_m));
                 led_s = now_s - from_s;
-                // Half a push: 30 mm/s to the right, and nowhere else.
+                // Half deflection: 30 mm/s to the right, no motion along the other axes.
                 let way_m = at_m - from_m;
                 assert!(way_m.y.abs() < 1e-9 && (way_m.x - 0.03 * led_s).abs() < 6e-3, "{way_m} after {led_s} s");
             }

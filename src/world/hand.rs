@@ -1,4 +1,4 @@
-//! The simulated surgeon: minimum-jerk intentions, tremor, and a grip that gives way under force.
+//! The simulated hand of the surgeon: minimum-jerk movements, tremor, and an elastic grip.
 
 use std::f64::consts::TAU;
 
@@ -7,17 +7,17 @@ use nima_core::noise::Noise;
 
 use crate::scene::{Hand as HandConfig, Scene};
 
-/// Height at which the hand carries from target to target, above the targets, m.
+/// Height above the targets at which the hand moves from one to the next, m.
 const CARRY_HEIGHT_M: f64 = 0.015;
-/// Physiological tremor, Hz.
+/// Frequencies of physiological tremor, Hz.
 const TREMOR_HZ: [f64; 3] = [8.3, 9.7, 11.6];
 
-/// Fastest way of a handle that is led from the screen, m/s.
+/// Maximum speed of a handle that is led from the screen, m/s.
 const GUIDE_M_S: f64 = 0.15;
-/// So near to the task's own way a hand that was let go takes it up again, m.
+/// Distance from the task's path at which a released hand resumes the task, m.
 const CAUGHT_UP_M: f64 = 5e-4;
 
-/// One part of the task: minimum-jerk from one point to another within a time.
+/// One movement of the task: minimum jerk from one point to another in a given time.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Move {
     pub(super) from_m: Vector3<f64>,
@@ -39,7 +39,7 @@ impl Move {
     }
 }
 
-/// Hand and handle as one mass on a spring and damper that pull it to where the surgeon intends.
+/// Hand and handle as one mass, connected by a spring and damper to the intended position.
 #[derive(Clone, Debug)]
 pub struct Hand {
     config: HandConfig,
@@ -51,14 +51,14 @@ pub struct Hand {
     position_m: Vector3<f64>,
     velocity_m_s: Vector3<f64>,
     guide_m: Option<Vector3<f64>>,
-    /// Where it waits, while it does not work.
+    /// Position at which it waits, while the task is paused.
     waits_m: Option<Vector3<f64>>,
-    /// Where the hand is meant to be while it is led, and on its way back to the task.
+    /// Intended position while the hand is led, and on its way back to the task.
     led_m: Option<Vector3<f64>>,
 }
 
 impl Hand {
-    /// The hand of `scene`, resting above its first target.
+    /// The hand of `scene`, at rest above its first target.
     pub fn new(scene: &Scene) -> Self {
         let mut noise = Noise::new(scene.seed);
         let tremor_phase = std::array::from_fn(|_| std::array::from_fn(|_| TAU * noise.uniform()));
@@ -79,7 +79,8 @@ impl Hand {
         }
     }
 
-    /// Leads the hand to this place instead of its task; `None` lets it go on. Neither way is a jump.
+    /// Leads the hand to this position instead of its task; `None` resumes the task. The intended position is
+    /// continuous in both cases.
     pub fn guide(&mut self, guide_m: Option<Vector3<f64>>) {
         self.guide_m = guide_m.filter(|at_m| at_m.iter().all(|x| x.is_finite()));
         if self.guide_m.is_some() {
@@ -87,7 +88,8 @@ impl Hand {
         }
     }
 
-    /// Lets the hand wait at this place instead of its task; `None` lets it work. Neither way is a jump.
+    /// Lets the hand wait at this position instead of its task; `None` resumes the task. The intended position is
+    /// continuous in both cases.
     pub(super) fn wait(&mut self, waits_m: Option<Vector3<f64>>) {
         self.waits_m = waits_m;
         if waits_m.is_some() {
@@ -95,12 +97,12 @@ impl Hand {
         }
     }
 
-    /// Where it is led, or waits; a lead goes first.
+    /// The position to which it is led, or at which it waits; leading takes precedence.
     fn aside_m(&self) -> Option<Vector3<f64>> {
         self.guide_m.or(self.waits_m)
     }
 
-    /// Where it is meant to be, m, and how fast, m/s: on its task's way, or led.
+    /// Intended position, m, and velocity, m/s: of the task, or while led.
     fn intended(&mut self, dt_s: f64) -> (Vector3<f64>, Vector3<f64>) {
         let (task_m, task_m_s) = self.moves[self.current].at(self.in_move_s);
         let aside_m = self.aside_m();
@@ -116,12 +118,12 @@ impl Hand {
         intended
     }
 
-    /// Where hand and handle are, m.
+    /// Position of hand and handle, m.
     pub const fn position_m(&self) -> Vector3<f64> {
         self.position_m
     }
 
-    /// Advances by `dt_s` under this force (N) from the handle.
+    /// Advances by `dt_s` with this force (N) of the handle on the hand.
     pub fn advance(&mut self, dt_s: f64, force_n: &Vector3<f64>) {
         self.time_s += dt_s;
         if self.aside_m().is_none() {
@@ -152,7 +154,7 @@ impl Hand {
     }
 }
 
-/// The endless task: over each target go down, press, drag a little, hold, lift, and carry on to the next.
+/// The repeated task: above each target move down, press, drag a little, hold, lift, and move on to the next.
 fn task(hand: &HandConfig, targets_m: &[Vector3<f64>]) -> Vec<Move> {
     let lift = Vector3::new(0.0, 0.0, CARRY_HEIGHT_M);
     let press = Vector3::new(0.0, 0.0, -hand.press_depth_m);

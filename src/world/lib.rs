@@ -1,8 +1,8 @@
-//! Everything simulated: hand, tissue, arm, the person at it, and an emulator for every device on its real wire.
+//! Simulation: hand, tissue, arm, a person at the arm, and an emulator for every device on its real interface.
 //!
-//! Takes the loop's outputs and gives what a rig would measure (m, N, workspace frame). A scene lists what a simulation contains; what it
-//! does not list is not computed. [`emulated`] puts an emulator for every device of a rig file around such worlds. Bad input: what is not
-//! finite is ignored.
+//! Takes the loop's outputs and returns what a rig would measure (m, N, workspace frame). A scene lists what a
+//! simulation contains; what it does not list is not computed. [`emulated`] connects emulators for every device of a
+//! rig file to such worlds. Values that are not finite are ignored.
 #![warn(missing_docs)]
 
 #[cfg(unix)]

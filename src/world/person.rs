@@ -1,4 +1,5 @@
-//! Somebody at the arm who does what the screen asks while calibrating, well or, on purpose, badly.
+//! A simulated person at the arm who follows the instructions of a calibration, correctly or, on purpose, with a
+//! mistake.
 
 use std::f64::consts::TAU;
 
@@ -9,26 +10,26 @@ use nima_machine::rig::Prompt;
 use super::{hand::Move, trocar::shaft, wrist::along_shaft};
 use crate::scene::{Flaw, Person as PersonConfig, Scene};
 
-/// How fast the tool is turned, rad/s, and the least time for a turn, s.
+/// Speed at which the tool is rotated, rad/s, and shortest duration of a rotation, s.
 const TURN_RAD_S: f64 = 1.2;
 const TURN_MIN_S: f64 = 0.5;
-/// One push: rise, hold, fall and pause, s.
+/// One push: durations of rise, hold, fall and pause, s.
 const PUSH_S: [f64; 4] = [0.45, 0.5, 0.35, 0.4];
-/// Peak of a push, N: between these.
+/// Range of the peak force of a push, N.
 const PUSH_N: [f64; 2] = [2.0, 4.0];
-/// How far a push misses the direction asked for, rad (standard deviation).
+/// Error of a push's direction, rad (standard deviation).
 const PUSH_MISSES_RAD: f64 = 0.08;
-/// Working space of the tip around the middle of the pad: half widths, m.
+/// Working space of the tip around the middle of the tissue: half widths, m.
 const WORK_M: [f64; 2] = [0.035, 0.030];
-/// How high the tip is carried, and how deep it presses, m.
+/// Height at which the tip is moved, and depth to which it presses, m.
 const CARRY_M: [f64; 2] = [0.004, 0.025];
 const PRESS_M: [f64; 2] = [0.002, 0.010];
-/// Time of one reach while working, s: slow enough that inertia does not matter.
+/// Range of the duration of one movement while working, s: slow enough that inertia can be neglected.
 const REACH_S: [f64; 2] = [0.5, 1.6];
-/// Time in which the tip is lifted off the tissue for a rest, s.
+/// Time in which the tip is lifted off the tissue when work ends, s.
 const LIFT_S: f64 = 0.8;
 
-/// The person's hands and what they are doing.
+/// State of the person.
 #[derive(Clone, Debug)]
 pub(super) struct Person {
     flaw: Option<Flaw>,
@@ -52,7 +53,7 @@ pub(super) struct Person {
 }
 
 impl Person {
-    /// Somebody at the arm of `scene`, holding the tip over the middle of the pad.
+    /// A person at the arm of `scene`, holding the tip above the middle of the tissue.
     pub(super) fn new(config: PersonConfig, scene: &Scene) -> Self {
         let mut noise = Noise::new(scene.seed ^ 0x9e_12);
         let surface_z_m = scene.tissue.map_or(0.0, |tissue| tissue.surface_z_m);
@@ -87,12 +88,12 @@ impl Person {
         self.world_from_s1
     }
 
-    /// Place (m) and speed (m/s) of the tip.
+    /// Position (m) and velocity (m/s) of the tip.
     pub(super) const fn tip(&self) -> (Vector3<f64>, Vector3<f64>) {
         (self.tip_m, self.velocity_m_s)
     }
 
-    /// Force that the tip gets by pushing, N (`world`).
+    /// Force on the tip from pushing, N (`world`).
     pub(super) fn push_n(&self) -> Vector3<f64> {
         self.push * pulse(self.in_push_s)
     }
@@ -108,13 +109,13 @@ impl Person {
     pub(super) fn touch_n(&self) -> Vector3<f64> {
         let holds = matches!(self.prompt, Prompt::Hold { .. } | Prompt::Wave);
         if self.flaw == Some(Flaw::Touches) && holds {
-            // A hand that rests on the tool is never quite the same twice.
+            // The force of a resting hand varies.
             return self.touch_n * (1.2 + 0.5 * (0.9 * self.time_s).sin());
         }
         Vector3::zeros()
     }
 
-    /// Goes on for `dt_s` with what is asked.
+    /// Advances by `dt_s`, following the instruction.
     pub(super) fn advance(&mut self, prompt: &Prompt, dt_s: f64) {
         self.time_s += dt_s;
         if *prompt != self.prompt {
@@ -142,13 +143,13 @@ impl Person {
             && self.flaw != Some(Flaw::KeepsOneOrientation)
             && self.wall_m.is_none()
         {
-            // Nobody turns a tool into a pose exactly.
+            // A person does not reach an orientation exactly.
             let miss = Vector3::from_fn(|_, _| 0.05 * self.noise.gaussian());
             self.turn_to(world_from_s1 * UnitQuaternion::from_scaled_axis(miss));
         }
     }
 
-    /// Nobody rests with the tip in the tissue.
+    /// Lifts the tip off the tissue, because a person does not rest with the tip in it.
     fn lift_off(&mut self) {
         let clear_z_m = self.surface_z_m + CARRY_M[0];
         let to_m = Vector3::new(self.tip_m.x, self.tip_m.y, self.tip_m.z.max(clear_z_m));
@@ -167,7 +168,7 @@ impl Person {
         let s = if self.turn_s > 0.0 { self.in_turn_s / self.turn_s } else { 1.0 };
         let share = s * s * s * (10.0 + s * (-15.0 + 6.0 * s));
         let (from, to) = self.turn;
-        // Half a turn has no shortest way; any will do.
+        // For half a turn the shortest rotation is undefined; any will do.
         self.world_from_s1 = from.try_slerp(&to, share, 1e-9).unwrap_or(to);
         if self.flaw == Some(Flaw::Trembles) && matches!(self.prompt, Prompt::Hold { .. }) {
             let shake = Vector3::new((TAU * 2.3 * self.time_s).sin(), (TAU * 3.1 * self.time_s).cos(), 0.0) * 0.06;
@@ -175,12 +176,12 @@ impl Person {
         }
     }
 
-    /// Slow figures that pass through many tilts.
+    /// Slow periodic motion through many tilts.
     fn wave(&mut self) {
         let t = self.time_s;
         let tilt = Vector3::new(1.1 * (0.9 * t).sin(), 1.0 * (0.67 * t + 0.4).sin(), 0.8 * (0.41 * t).sin());
         let target = along_shaft(&-Vector3::z()) * UnitQuaternion::from_scaled_axis(tilt);
-        // From wherever the tool is, without a jump.
+        // Approaches the target from the present orientation without a jump.
         self.world_from_s1 = self.world_from_s1.try_slerp(&target, 0.004, 1e-9).unwrap_or(target);
         self.turn = (self.world_from_s1, self.world_from_s1);
     }
@@ -199,26 +200,26 @@ impl Person {
             if self.flaw == Some(Flaw::PushesOnePlane) {
                 miss.y *= 0.1;
             }
-            // Asked to push out of the plane, it pushes somewhere within it.
+            // If asked to push out of the plane, it pushes in some direction within it.
             let asked = if asked.norm() < 0.1 { self.somewhere_down() } else { asked.normalize() };
             self.push = -(asked + miss).normalize() * self.between(PUSH_N);
             if self.flaw == Some(Flaw::LeansOnTheStand) {
                 self.lean();
             }
-            // Each push with the tool held a little differently.
+            // The tool is held a little differently in each push.
             let tilt = Vector3::from_fn(|_, _| 0.25 * self.noise.gaussian());
             self.turn_to(along_shaft(&-Vector3::z()) * UnitQuaternion::from_scaled_axis(tilt));
         }
         self.turn(dt_s);
     }
 
-    /// Every other time or so; those between are good.
+    /// Applies to about every other push; those in between are correct.
     fn lean(&mut self) {
         let leans_n = if self.noise.uniform() < 0.5 { 1.2 } else { 0.0 };
         self.stand = Vector3::from_fn(|_, _| leans_n * self.noise.gaussian());
     }
 
-    /// A direction of the lower half of the plane of x and z.
+    /// A random direction in the lower half of the x-z plane.
     fn somewhere_down(&mut self) -> Vector3<f64> {
         let angle = self.between([0.0, std::f64::consts::PI]);
         Vector3::new(angle.cos(), 0.0, -angle.sin())
@@ -228,7 +229,7 @@ impl Person {
         from + (to - from) * self.noise.uniform()
     }
 
-    /// Reaches from place to place; with contact, more than half of them are in the tissue.
+    /// Moves from place to place; with contact, more than half of them are in the tissue.
     fn work(&mut self, contact: bool, dt_s: f64) {
         self.in_reach_s += dt_s;
         if self.in_reach_s >= self.reach.seconds {
@@ -238,7 +239,7 @@ impl Person {
                 self.lean();
             }
             let [x_m, y_m] = WORK_M.map(|half_m| half_m * (2.0 * self.noise.uniform() - 1.0));
-            // Now and then held still: what is stuck in the seal then stays.
+            // Sometimes pauses, so that static friction of the seal is recorded too.
             let stay = self.noise.uniform() < 0.2;
             let reach = if self.flaw == Some(Flaw::WorksInOnePlace) { 0.1 } else { 1.0 };
             let [x_m, y_m] = [x_m * reach, y_m * reach];
@@ -249,7 +250,7 @@ impl Person {
         self.reach_on(0.0);
     }
 
-    /// Goes on with the reach that was begun; the shaft always points through the wall.
+    /// Continues the present movement; the shaft always points through the trocar.
     fn reach_on(&mut self, dt_s: f64) {
         self.in_reach_s += dt_s;
         (self.tip_m, self.velocity_m_s) = self.reach.at(self.in_reach_s);
@@ -259,7 +260,7 @@ impl Person {
     }
 }
 
-/// Shape of a push over its time: 0 to 1 to 0 (raised cosines).
+/// Force of a push over its duration: 0 to 1 to 0 (raised cosines).
 fn pulse(t_s: f64) -> f64 {
     let [rise_s, hold_s, fall_s, _] = PUSH_S;
     let smooth = |s: f64| 0.5 - 0.5 * (std::f64::consts::PI * s).cos();

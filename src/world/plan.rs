@@ -1,4 +1,4 @@
-//! What to run: a rig, and the simulated scene around it.
+//! A run: a rig, and the simulated scene for it.
 
 use nima_core::impedance::SettingsError;
 use nima_machine::{
@@ -13,44 +13,45 @@ use nima_machine::{
 use crate::Desk;
 use crate::{Worlds, scene::Scene};
 
-/// What to run.
+/// Description of a run.
 #[derive(Clone, Debug)]
 pub struct Plan {
     /// The rig.
     pub rig: RigConfig,
     /// The simulated world.
     pub scene: Scene,
-    /// What is known of the wrist sensor and the tool of each side; nothing need be where the force is measured at the tip. On a rig
-    /// with devices none of it is in force: that comes with [`Handle::put_in_force`], once a sensor has told who it is.
+    /// Calibrations of the wrist sensor and tool of each side; may be empty if the force is measured at the tip. They
+    /// are not used on a rig with devices, where [`Handle::put_in_force`] sets them once a sensor has reported its
+    /// identity.
     pub calibrations: [Calibrations; SIDES],
-    /// Engage as soon as everything is there: for simulated and emulated rigs only, where nobody can be hurt.
+    /// Engage as soon as every device delivers; only for simulated and emulated rigs, which cannot hurt anybody.
     pub engage: bool,
 }
 
 impl Plan {
-    /// There is an arm pair of this side.
+    /// Whether there is an arm pair on this side.
     pub fn has(&self, side: Side) -> bool {
         self.scene.has(&self.rig, side)
     }
 
-    /// The force at the tip is measured at the wrist on this side.
+    /// Whether the force of this side is measured at the wrist.
     pub fn is_at_wrist(&self, side: Side) -> bool {
         self.scene.measures_at_wrist(&self.rig, side)
     }
 
-    /// The force at every tip will be known, or may come to be known with the devices, and the followers will obey: without that
-    /// nothing may be engaged by itself.
+    /// Whether the rig may be engaged automatically: the force at every tip is known, or may become known with the
+    /// devices, and the followers will follow.
     pub fn may_engage(&self) -> bool {
         let knowable = |side: Side| self.rig.devices.is_some() || self.calibrations[side.index()].gravity.is_some();
         self.scene.person.is_none() && Side::ALL.into_iter().all(|side| !self.is_at_wrist(side) || knowable(side))
     }
 
-    /// The loop for this plan.
+    /// Creates the loop for this plan.
     ///
     /// # Errors
-    /// [`SettingsError`] for an identification that cannot be.
+    /// [`SettingsError`] if the settings of the identification are invalid.
     pub fn control(&self) -> Result<Loop, SettingsError> {
-        // What the scene requires is identified; what it does not is left out.
+        // Cross-talk is identified only if the scene contains it.
         let mut rig = self.rig.clone();
         rig.identification.cross_talk |= self.scene.cross_talk;
         let known = Side::ALL.map(|side| self.has(side).then(|| self.calibrations[side.index()].clone()));
@@ -63,7 +64,7 @@ impl Plan {
         Ok(control)
     }
 
-    /// The rig, and the devices in it.
+    /// Creates the rig and the list of its devices.
     fn rig(&self) -> Result<(Box<dyn Rig>, Roster), RigError> {
         #[cfg(unix)]
         if let Some(desk) = &self.rig.desk {
@@ -80,7 +81,7 @@ impl Plan {
         Worlds::new(&self.scene, self.rig.rate_hz)
     }
 
-    /// The loop of this plan on a rig that the caller made.
+    /// Combines the loop of this plan with a given rig.
     fn on(&self, rig: Box<dyn Rig>, roster: Roster) -> Result<Assembly, SettingsError> {
         let (rate_hz, scheduling, engage) = (self.rig.rate_hz, self.rig.scheduling, self.engage);
         Ok(Assembly { control: self.control()?, rig, roster, rate_hz, clock: Clock::Real, scheduling, engage })
@@ -90,13 +91,13 @@ impl Plan {
 /// Starts the loop of this plan in its own thread.
 ///
 /// # Errors
-/// [`StartError`] for settings or devices that cannot be, or where no thread is to be had.
+/// [`StartError`] if settings or devices are invalid, or a thread cannot be created.
 pub fn start(plan: &Plan) -> Result<Handle, StartError> {
     let (rig, roster) = plan.rig()?;
     start_on(plan, rig, roster)
 }
 
-/// The same on a rig that the caller made: one with faults in it.
+/// The same with a given rig, for instance one with injected faults.
 ///
 /// # Errors
 /// As [`start`].
@@ -104,8 +105,8 @@ pub fn start_on(plan: &Plan, rig: Box<dyn Rig>, roster: Roster) -> Result<Handle
     runtime::start(plan.on(rig, roster)?)
 }
 
-/// Starts the loop of this plan in its own thread, on its simulated world and in simulated time, at most `speed` times as fast as real
-/// time: a busy machine makes it slower and nothing else. The devices of its rig are left out.
+/// Starts the loop of this plan in its own thread, with its simulated world and in simulated time, at most `speed`
+/// times as fast as real time: a busy computer only makes it slower. The devices of the rig are not used.
 ///
 /// # Errors
 /// As [`start`].
@@ -115,11 +116,31 @@ pub fn start_simulated(plan: &Plan, speed: f64) -> Result<Handle, StartError> {
     runtime::start(Assembly { clock: Clock::Simulated { speed }, scheduling, ..assembly })
 }
 
-/// Runs the simulated world of this plan for `seconds` of loop time; `each` sees every tick of every side, may give a command for the
-/// next and ends the run with [`Command::Shutdown`].
+/// Runs the simulated world of this plan for `seconds` of loop time. `each` is called with every tick of every side; it
+/// may return a command for the next tick, and ends the run by returning [`Command::Shutdown`].
 ///
 /// # Errors
-/// [`SettingsError`] for an identification that cannot be.
+/// [`SettingsError`] if the settings of the identification are invalid.
+///
+/// ```
+/// use nima_machine::{config::RigConfig, messages::LoopState};
+/// use nima_world::{Plan, run_virtual, scene::Scene};
+///
+/// let plan = Plan {
+///     rig: RigConfig::load("simulated")?,
+///     scene: Scene::load("peg_transfer")?,
+///     calibrations: Default::default(),
+///     engage: true,
+/// };
+/// let mut largest_n = 0.0_f64;
+/// let summary = run_virtual(&plan, 4.0, |tick| {
+///     largest_n = largest_n.max(tick.rendered_n.norm());
+///     None
+/// })?;
+/// assert_eq!((summary.state, summary.missed), (LoopState::Engaged, 0));
+/// assert!(largest_n > 0.5 && largest_n <= plan.rig.gates.ceiling_n, "{largest_n} N");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn run_virtual(
     plan: &Plan,
     seconds: f64,
@@ -151,7 +172,7 @@ mod tests {
         }
     }
 
-    /// Waits until a tick satisfies `good`; gives it.
+    /// Waits until a tick satisfies `good`; returns that tick.
     fn wait_for(handle: &Handle, good: impl Fn(&Tick) -> bool) -> Option<Tick> {
         let until = Instant::now() + Duration::from_secs(10);
         let mut found = None;
@@ -194,7 +215,7 @@ mod tests {
         );
     }
 
-    /// A world that is held up once, far longer than a stall may be.
+    /// A world that is delayed once, much longer than a stall may last.
     struct HeldUp(Worlds);
 
     impl Rig for HeldUp {
@@ -223,7 +244,7 @@ mod tests {
 
     #[test]
     fn a_full_screen_queue_is_counted_and_never_waited_for() {
-        // At 4 kHz it is full after two seconds.
+        // At 4 kHz the queue is full after two seconds.
         let mut plan = plan();
         plan.rig.rate_hz = 4000.0;
         judged(|| {

@@ -1,4 +1,4 @@
-//! Scene files (TOML): what a simulation contains. What a scene does not list is not computed.
+//! Scene files (TOML): the content of a simulation. What a scene does not list is not computed.
 
 mod mounted;
 mod wrist;
@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 
 pub use wrist::{Flaw, Imu, Person, TissueSensor, Trocar, Wrist};
 
-/// A simulated world: what is in it. An effect that is not listed costs nothing.
+/// A simulated world. Parts that are not listed cost nothing.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Scene {
@@ -20,42 +20,42 @@ pub struct Scene {
     pub name: String,
     /// One sentence for the presenter.
     pub description: String,
-    /// Seed of every random sequence of the scene.
+    /// Seed of all random sequences of the scene.
     pub seed: u64,
     /// The surgeon's hand and its task.
     pub hand: Hand,
-    /// Pegs to reach (tops, m, workspace frame); the hand visits them in turn.
+    /// Targets of the task (tops of pegs, m, workspace frame), visited by the hand in turn.
     pub targets_m: Vec<Vector3<f64>>,
-    /// Where the instrument enters the body, m; drawn, and the pivot of the shaft.
+    /// Position of the trocar, m; also the pivot of the shaft.
     pub trocar_m: Vector3<f64>,
-    /// What the left hand does, where the scene has two.
+    /// The left hand's part, in scenes with two hands.
     pub left: Option<LeftHand>,
-    /// Axes of force depend on motion along other axes: identify the full `M`.
+    /// The force on an axis depends on motion along other axes, so the full matrix `M` must be identified.
     #[serde(default)]
     pub cross_talk: bool,
     /// Soft tissue under the pegs.
     pub tissue: Option<Tissue>,
     /// The leader device.
     pub leader: Option<Leader>,
-    /// Tracking lag of the follower; without it the tip is where it is commanded.
+    /// Tracking lag of the follower; without it the tip is at its commanded position.
     pub follower: Option<Follower>,
-    /// Noise of the force sensor at the tip. Left out where a wrist sensor measures instead.
+    /// Noise of the force sensor at the tip. Omitted if a wrist sensor measures instead.
     pub sensor: Option<Sensor>,
-    /// Wrist sensor and tool; without it the force at the tip is measured there.
+    /// Wrist sensor and tool; without it the force is measured at the tip.
     pub wrist: Option<Wrist>,
     /// Friction where the instrument passes the body wall.
     pub trocar: Option<Trocar>,
     /// The sensor under the tissue.
     pub tissue_sensor: Option<TissueSensor>,
-    /// Somebody at the arm, for calibration: then the loop's commands do not move it.
+    /// A person at the arm, for calibration; the loop's commands then do not move the arm.
     pub person: Option<Person>,
 }
 
-/// The left hand's part of a scene; everything else is the same for both.
+/// The left hand's part of a scene; everything else is common to both hands.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct LeftHand {
-    /// Its pegs, m.
+    /// Its targets, m.
     pub targets_m: Vec<Vector3<f64>>,
     /// Its trocar, m.
     pub trocar_m: Vector3<f64>,
@@ -65,27 +65,28 @@ pub struct LeftHand {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Hand {
-    /// Time of one minimum-jerk reach from target to target, s.
+    /// Duration of one minimum-jerk movement from target to target, s.
     pub reach_s: f64,
-    /// Time of pressing down, and again of lifting, s.
+    /// Duration of pressing down, and of lifting, s.
     pub press_s: f64,
-    /// Time held at the bottom of a press, s.
+    /// Duration of holding at the bottom of a press, s.
     pub hold_s: f64,
-    /// How far below the target the hand intends to press, m.
+    /// Intended depth of a press below the target, m.
     pub press_depth_m: f64,
-    /// Sideways drag while pressed, m.
+    /// Lateral displacement while pressed, m.
     pub drag_m: f64,
     /// Amplitude of physiological tremor, m (8-12 Hz).
     pub tremor_m: f64,
     /// Effective mass of hand and handle, kg.
     pub mass_kg: f64,
-    /// Stiffness with which the grip holds to its intention, N/m.
+    /// Stiffness of the grip towards the intended position, N/m.
     pub grip_stiffness_n_m: f64,
     /// Damping of the grip, N s/m.
     pub grip_damping_n_s_m: f64,
 }
 
-/// Soft tissue with a flat surface at rest (Hunt and Crossley 1975: `f = k d^n (1 + c d')`), Coulomb friction sideways.
+/// Soft tissue with a flat surface at rest (Hunt and Crossley 1975: `f = k d^n (1 + c d')`), with Coulomb friction
+/// tangentially.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Tissue {
@@ -101,7 +102,7 @@ pub struct Tissue {
     pub damping_s_m: f64,
     /// Coulomb friction coefficient; zero for none.
     pub friction: f64,
-    /// Stiffness with which the surface sticks to the tip before it slips, N/m.
+    /// Tangential stiffness before the tip slides, N/m.
     pub shear_stiffness_n_m: f64,
 }
 
@@ -109,9 +110,9 @@ pub struct Tissue {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Leader {
-    /// Step of the position reading, m (Omega.7: 0.01 mm).
+    /// Resolution of the position reading, m (Omega.7: 0.01 mm).
     pub resolution_m: f64,
-    /// Largest force it can give, N (Omega.7: 12 N).
+    /// Largest force, N (Omega.7: 12 N).
     pub force_max_n: f64,
 }
 
@@ -143,19 +144,19 @@ const SCENES: [(&str, &str); 8] = [
 ];
 
 impl Scene {
-    /// The scene as one hand has it; `None` for a left hand that is not in it.
+    /// The scene as seen by one hand; `None` for a left hand that the scene does not have.
     pub fn of_side(&self, side: Side) -> Option<Self> {
         let scene = Self { left: None, ..self.clone() };
         match side {
             Side::Right => Some(scene),
             Side::Left => self.left.clone().map(|LeftHand { targets_m, trocar_m }| {
-                // Another tremor and other noise than the right hand's.
+                // A different seed, so that tremor and noise differ from the right hand's.
                 Self { targets_m, trocar_m, seed: scene.seed.wrapping_add(1), ..scene }
             }),
         }
     }
 
-    /// The same with a left hand, which does what the right one does in a mirror, where the scene has none.
+    /// Adds a left hand, which mirrors the right one, if the scene has none.
     #[must_use]
     pub fn with_left_hand(mut self) -> Self {
         let mirrored = |at_m: &Vector3<f64>| Vector3::new(-at_m.x, at_m.y, at_m.z);
@@ -167,10 +168,20 @@ impl Scene {
         self
     }
 
-    /// The scene of this embedded name or TOML file.
+    /// Loads the built-in scene of this name, or a TOML file.
     ///
     /// # Errors
-    /// A name that is neither embedded nor a file, a file that cannot be read or has another form, or a value outside of its range.
+    /// A name that is neither built in nor a file, a file that cannot be read or parsed, or a value outside its range.
+    ///
+    /// ```
+    /// use nima_machine::config::ConfigError;
+    /// use nima_world::scene::Scene;
+    ///
+    /// let scene = Scene::load("peg_transfer")?;
+    /// assert!(scene.tissue.is_some() && scene.wrist.is_none(), "the force is measured at the tip");
+    /// assert!(matches!(Scene::load("no such scene"), Err(ConfigError::Unknown { .. })));
+    /// # Ok::<(), ConfigError>(())
+    /// ```
     pub fn load(name: &str) -> Result<Self, ConfigError> {
         let (path, text) = text("scene", name, &SCENES)?;
         let scene: Self = parse("scene", &path, &text).map_err(mounted::moved_to_the_rig)?;
@@ -181,7 +192,7 @@ impl Scene {
     /// Checks every value's range.
     ///
     /// # Errors
-    /// The first value that is outside of its range, by its key.
+    /// [`ConfigError`] for the first value outside its range, with its key.
     pub fn validate(&self) -> Result<(), ConfigError> {
         let ranges = Ranges { kind: "scene", name: &self.name };
         ranges.check(
@@ -229,7 +240,7 @@ impl Scene {
         self.wrist.as_ref().map_or(Ok(()), |wrist| wrist.validate(&ranges))?;
         self.trocar.as_ref().map_or(Ok(()), |trocar| trocar.validate(&ranges))?;
         self.tissue_sensor.as_ref().map_or(Ok(()), |sensor| sensor.validate(&ranges))?;
-        // What hangs on the wrist is felt there and nowhere else.
+        // These parts only affect the wrist sensor's readings.
         let needs_wrist = self.trocar.is_some() || self.tissue_sensor.is_some() || self.person.is_some();
         let wrists = if self.wrist.is_some() { 1.0 } else { 0.0 };
         ranges.check("number of [wrist] parts", wrists, self.wrist.is_some() || !needs_wrist, "1 with these parts")

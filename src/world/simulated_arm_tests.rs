@@ -1,4 +1,5 @@
-//! A rig with a second make of arm: the handle and the sensor are on their wires, the arm's joints are simulated.
+//! A rig with the second make of arm: handle and sensor are emulated on real connections, the arm's joints are
+//! simulated.
 
 use std::time::{Duration, Instant};
 
@@ -19,7 +20,7 @@ use crate::{
     },
 };
 
-/// Where the tip is led from where it is, m, and how fast, m/s.
+/// Displacement of the commanded tip position, m, and its speed, m/s.
 const WAY_M: Vector3<f64> = Vector3::new(0.005, 0.003, 0.004);
 const SPEED_M_S: f64 = 0.02;
 
@@ -45,7 +46,7 @@ fn devices(folder: &std::path::Path) -> (Settings, [Serving; 2]) {
     (Settings { right: Some(right), ..Settings::default() }, serving)
 }
 
-/// One tick after the other until `good`, at most for 20 s; true if it came.
+/// Runs ticks until `good`, for at most 20 s; returns whether that happened.
 fn until(
     rig: &mut DeviceRig,
     begin: Instant,
@@ -86,7 +87,7 @@ fn a_rig_leads_an_arm_of_another_make_that_its_file_names() {
             inputs.tip_m
         });
         assert_eq!(inputs.obstacle, None);
-        // Drives on first; then by small steps to where the way ends.
+        // Drives on first; then small steps to the end of the path.
         if inputs.powered {
             target_m += (home_m + WAY_M - target_m).cap_magnitude(SPEED_M_S * 1e-3);
         }
@@ -99,11 +100,11 @@ fn a_rig_leads_an_arm_of_another_make_that_its_file_names() {
         until(&mut rig, begin, led, |inputs| inputs.powered && (inputs.tip_m - tip_m).norm() < 5e-4),
         "not led there"
     );
-    // Drives off: the arm brakes and obeys no longer.
+    // Drives off: the arm brakes and no longer follows.
     assert!(until(&mut rig, begin, |_| Outputs::SAFE, |inputs| !inputs.powered), "drives stay on");
     let still = |inputs: &Inputs| (inputs.tip_m - tip_m).norm() < 1e-3;
     assert!(until(&mut rig, begin, |_| Outputs::SAFE, still), "does not rest");
-    // Its lever is among those that the supervisor pulls, and its health at its place.
+    // Its lever is among those that the supervisor pulls, and its health is reported at its index.
     assert_eq!(rig.levers().len(), 2);
     let arm = rig.health().devices[1];
     assert!(arm.standing == Standing::Connected && arm.refused == 0, "{arm:?}");

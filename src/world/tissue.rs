@@ -4,11 +4,11 @@ use nalgebra::Vector3;
 
 use crate::scene::Tissue as TissueConfig;
 
-/// Soft tissue and the one thing it remembers: how far the tip has dragged its surface along.
+/// Soft tissue. Its only state is how far the tip has dragged its surface sideways.
 #[derive(Clone, Debug)]
 pub struct Tissue {
     config: TissueConfig,
-    /// Where the surface point under the tip would go back to if it were let go, m (horizontal).
+    /// Rest position of the surface point under the tip, m (horizontal).
     anchor_m: Option<Vector3<f64>>,
 }
 
@@ -18,10 +18,24 @@ impl Tissue {
         Self { config, anchor_m: None }
     }
 
-    /// Force on the tip (N) at this position (m) and velocity (m/s); call once a step.
+    /// Force on the tip (N) at this position (m) and velocity (m/s); call once per step.
     ///
-    /// Along the surface normal Hunt and Crossley's `k d^n (1 + c d')`, never pulling. Across it elastic stick up to the
-    /// Coulomb limit, then slip (Dahl's model without hysteresis exponent): the surface follows the tip until it slides.
+    /// Normal force after Hunt and Crossley, `k d^n (1 + c d')`, never negative. Tangential force elastic up to the
+    /// Coulomb limit, then sliding (Dahl's model without the hysteresis exponent).
+    ///
+    /// ```
+    /// use nalgebra::Vector3;
+    /// use nima_world::{Tissue, scene::Scene};
+    ///
+    /// let config = Scene::load("peg_transfer")?.tissue.expect("this scene has tissue");
+    /// let mut tissue = Tissue::new(config);
+    /// let at_rest = Vector3::zeros();
+    /// let above_m = Vector3::new(0.0, 0.0, config.surface_z_m + 0.001);
+    /// assert_eq!(tissue.contact_n(&above_m, &at_rest), Vector3::zeros());
+    /// let inside_m = Vector3::new(0.0, 0.0, config.surface_z_m - 0.005);
+    /// assert!(tissue.contact_n(&inside_m, &at_rest).z > 0.0, "the tissue pushes the tip upwards");
+    /// # Ok::<(), nima_machine::config::ConfigError>(())
+    /// ```
     pub fn contact_n(&mut self, tip_m: &Vector3<f64>, velocity_m_s: &Vector3<f64>) -> Vector3<f64> {
         let TissueConfig { surface_z_m, size_m, stiffness, exponent, damping_s_m, friction, shear_stiffness_n_m } =
             self.config;

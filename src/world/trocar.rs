@@ -4,23 +4,23 @@ use nalgebra::Vector3;
 
 use crate::scene::Trocar as TrocarConfig;
 
-/// The seal and what it remembers: how far it is stretched along and across the shaft.
+/// Seal of the trocar. Its state is its elastic deformation along and across the shaft.
 #[derive(Clone, Debug)]
 pub struct Trocar {
     config: TrocarConfig,
     position_m: Vector3<f64>,
-    /// Shaft through the wall and where its tip is: direction and depth, one step ago.
+    /// Direction of the shaft and depth of the tip, one step ago.
     last: Option<(Vector3<f64>, f64)>,
     stretch_along_m: f64,
     stretch_across_m: Vector3<f64>,
     force_n: Vector3<f64>,
 }
 
-/// Elastic stiffness against turning within the seal, N per m of wall movement across the shaft.
+/// Elastic stiffness against rotation of the shaft in the seal, N per m of displacement at the wall.
 const ACROSS_STIFFNESS_N_M: f64 = 400.0;
 
 impl Trocar {
-    /// A relaxed seal at this place, m (`world`).
+    /// An undeformed seal at this position, m (`world`).
     pub fn new(config: TrocarConfig, position_m: Vector3<f64>) -> Self {
         Self {
             config,
@@ -32,7 +32,7 @@ impl Trocar {
         }
     }
 
-    /// Direction of the shaft (towards the tip) and depth of the tip behind the wall, m.
+    /// Direction of the shaft (towards the tip) and depth of the tip beyond the wall, m.
     pub fn shaft(&self, tip_m: &Vector3<f64>) -> (Vector3<f64>, f64) {
         shaft(&self.position_m, tip_m)
     }
@@ -42,7 +42,7 @@ impl Trocar {
         self.force_n
     }
 
-    /// Moves the instrument so that its tip is at `tip_m` after `dt_s`.
+    /// Moves the tip of the instrument to `tip_m` within `dt_s`.
     pub fn advance(&mut self, tip_m: &Vector3<f64>, dt_s: f64) {
         let (direction, depth_m) = self.shaft(tip_m);
         let (last_direction, last_depth_m) = self.last.unwrap_or((direction, depth_m));
@@ -51,7 +51,8 @@ impl Trocar {
         self.force_n = wall_n - direction * self.along_n(depth_m - last_depth_m, wall_n.norm(), dt_s);
     }
 
-    /// Friction along the shaft (N, against motion inwards): the `LuGre` model, semi-implicit so that no step is too long.
+    /// Friction along the shaft (N, against inward motion): the `LuGre` model, integrated semi-implicitly so that it is
+    /// stable for any step.
     fn along_n(&mut self, way_m: f64, load_n: f64, dt_s: f64) -> f64 {
         let TrocarConfig { coulomb_n, static_n, stribeck_m_s, viscous_n_s_m, presliding_m, friction_per_load, .. } =
             self.config;
@@ -67,12 +68,12 @@ impl Trocar {
         sliding_n / presliding_m * self.stretch_along_m + viscous_n_s_m * speed_m_s
     }
 
-    /// Force across the shaft, N: the wall straightens a tilted shaft, and rubs against its turning.
+    /// Force across the shaft, N: the wall straightens a tilted shaft, and friction opposes its rotation.
     fn across_n(&mut self, direction: &Vector3<f64>, turn: &Vector3<f64>, depth_m: f64) -> Vector3<f64> {
         let down = -Vector3::z();
         let tilt = direction - down * direction.dot(&down);
         let straighten_n = -(tilt - direction * tilt.dot(direction)) * self.config.wall_n;
-        // The shaft rubs by as much as its tip would sweep, seen at the wall.
+        // Friction is computed from the displacement of the tip, transferred to the wall.
         let limit_m = self.config.across_n / ACROSS_STIFFNESS_N_M;
         let stretched = self.stretch_across_m + turn * depth_m;
         let across = stretched - direction * stretched.dot(direction);
@@ -82,7 +83,7 @@ impl Trocar {
     }
 }
 
-/// Direction from the wall to the tip, and how far that is, m. Straight down for a tip in the wall itself.
+/// Direction from the wall to the tip, and its distance, m. Straight down if the tip is in the wall itself.
 pub(super) fn shaft(wall_m: &Vector3<f64>, tip_m: &Vector3<f64>) -> (Vector3<f64>, f64) {
     let way_m = tip_m - wall_m;
     let depth_m = way_m.norm();
@@ -99,7 +100,7 @@ mod tests {
         (Trocar::new(config, Vector3::new(0.0, 0.0, 0.14)), config)
     }
 
-    /// Pushes the tip straight down at this speed; gives the force along z at each step.
+    /// Moves the tip straight down at this speed; returns the force along z in each step.
     fn plunge(trocar: &mut Trocar, from_z_m: f64, speed_m_s: f64, steps: u32) -> Vec<f64> {
         (1..=steps)
             .map(|i| {

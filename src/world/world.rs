@@ -1,8 +1,8 @@
 //! The simulated world of one arm pair: a hand, a leader device, a follower with lag, tissue, a noisy sensor.
 //!
-//! Takes the loop's outputs (N on the hand, commanded tip position in m) and gives what a rig would measure, all in the
-//! workspace frame (z up). Deterministic for a seed. Parts that the scene does not list are absent and cost nothing.
-//! Bad input: a command that is not finite is ignored, a force that is not finite counts as zero.
+//! Takes the loop's outputs (N on the hand, commanded tip position in m) and returns what a rig would measure, all in
+//! the workspace frame (z up). Deterministic for a seed. Parts that the scene does not list are absent and cost
+//! nothing. A command that is not finite is ignored; a force that is not finite counts as zero.
 
 use nalgebra::{UnitQuaternion, Vector3};
 use nima_core::{kinematics, noise::Noise};
@@ -36,17 +36,17 @@ pub struct World {
     tip_velocity_m_s: Vector3<f64>,
     command_m: Vector3<f64>,
     hand_force_n: Vector3<f64>,
-    /// Orientation of the wrist where an arm outside of this world carries it.
+    /// Orientation of the wrist, if an arm outside this world determines it.
     carried: Option<UnitQuaternion<f64>>,
 }
 
-/// Longest stretch simulated in one exchange, in periods: after a longer stall the world skips ahead.
+/// Longest time simulated in one exchange, in periods; after a longer stall the remainder is skipped.
 const CATCH_UP_PERIODS_MAX: u32 = 20;
-/// Longest step of the hand's equation of motion, s: keeps slow loops stable.
+/// Longest integration step of the hand's motion, s; keeps it stable in slow loops.
 const HAND_STEP_MAX_S: f64 = 1e-3;
 
 impl World {
-    /// The world of `scene`, stepping `rate_hz` times a second. The scene must have been validated.
+    /// The world of `scene` with `rate_hz` steps a second. The scene must have been validated.
     pub fn new(scene: &Scene, rate_hz: f64) -> Self {
         let hand = Hand::new(scene);
         let start_m = hand.position_m();
@@ -72,34 +72,35 @@ impl World {
         }
     }
 
-    /// The hand, for what only a simulation knows.
+    /// The simulated hand, for tests and displays.
     pub const fn hand(&self) -> &Hand {
         &self.hand
     }
 
-    /// Force on the tip in the last measurement without any sensor's error, N (`world`): what only a simulation knows.
+    /// True force on the tip at the last measurement, without sensor errors, N (`world`); known only in a simulation.
     pub const fn true_tip_n(&self) -> Vector3<f64> {
         self.true_tip_n
     }
 
-    /// Hands the wrist to an arm outside of this world: its orientation from now on (`world_from_s1`). Its place is commanded.
+    /// From now on the orientation of the wrist (`world_from_s1`) is set by an arm outside this world. The tip position
+    /// is still commanded.
     pub const fn carry(&mut self, world_from_s1: UnitQuaternion<f64>) {
         self.carried = Some(world_from_s1);
     }
 
-    /// The hand's task stands still and the hand keeps to the tip (true), or it works (false).
+    /// Pauses the hand's task; the hand then follows the tip (true). Or continues it (false).
     pub fn wait(&mut self, waits: bool) {
         self.hand.wait(waits.then_some(self.tip_m));
     }
 
-    /// Applies the loop's outputs and gives what a rig would measure at loop time `now_s`. Until the follower is commanded the hand
-    /// waits at the tip.
+    /// Applies the loop's outputs and returns what a rig would measure at loop time `now_s`. Until the follower is
+    /// commanded, the hand waits at the tip.
     pub fn exchange(&mut self, now_s: f64, outputs: &Outputs) -> Option<Inputs> {
         self.wait(outputs.tip_command_m.is_none());
         Some(self.advance_to(now_s, outputs))
     }
 
-    /// The same, with a hand that waits only where it was told to ([`World::wait`]).
+    /// The same, but the hand waits only if [`World::wait`] says so.
     pub fn advance_to(&mut self, now_s: f64, outputs: &Outputs) -> Inputs {
         self.accept(outputs);
         let behind = ((now_s - self.time_s) / self.period_s).round();
@@ -114,7 +115,7 @@ impl World {
     }
 
     fn accept(&mut self, outputs: &Outputs) {
-        // A real leader gives no more than its motors can, whatever it is asked.
+        // The force is limited by the leader's motors.
         let most_n = self.leader.map_or(f64::INFINITY, |leader| leader.force_max_n);
         let asked = outputs.hand_force_n;
         let norm = asked.norm();
@@ -166,7 +167,7 @@ impl World {
         self.tip_velocity_m_s = (velocity - slope * (omega * dt_s)) * decay;
     }
 
-    /// Force of the tissue, or of whoever pushes, on the tip, N; call once a step.
+    /// Force on the tip by the tissue or a person, N; call once per step.
     fn contact_n(&mut self) -> Vector3<f64> {
         let tissue_n = match &mut self.tissue {
             Some(tissue) => tissue.contact_n(&self.tip_m, &self.tip_velocity_m_s),

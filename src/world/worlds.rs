@@ -1,6 +1,7 @@
 //! The simulated rig: a world for each arm pair.
 //!
-//! The pads of two worlds are one pad: contact is local to a tip, so two tips share it as long as they do not touch each other.
+//! The tissue of two worlds is the same: contact is local to a tip, so two tips can share it as long as they do not
+//! touch each other.
 
 use nima_machine::rig::{Inputs, Outputs, Rig, SIDES, Side};
 
@@ -11,12 +12,12 @@ use crate::scene::Scene;
 #[derive(Clone, Debug)]
 pub struct Worlds {
     worlds: [Option<World>; SIDES],
-    /// Hold since they were written.
+    /// Applied until the next write.
     outputs: [Outputs; SIDES],
 }
 
 impl Worlds {
-    /// Of a scene, stepping `rate_hz` times a second. The scene must have been validated.
+    /// The worlds of a scene with `rate_hz` steps a second. The scene must have been validated.
     pub fn new(scene: &Scene, rate_hz: f64) -> Self {
         let world = |side| scene.of_side(side).map(|scene| World::new(&scene, rate_hz));
         Self { worlds: Side::ALL.map(world), outputs: [Outputs::SAFE; SIDES] }

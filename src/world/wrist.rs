@@ -1,4 +1,4 @@
-//! The wrist sensor, its inertial unit, the tracker and the sensor under the tissue: what they read of a known world.
+//! Simulated readings of the wrist sensor, its inertial unit, the tracker and the sensor under the tissue.
 
 use nalgebra::{Rotation3, UnitQuaternion, Vector3};
 use nima_core::{
@@ -8,16 +8,16 @@ use nima_core::{
 
 use crate::scene::{TissueSensor, Wrist as WristConfig};
 
-/// What acts on the instrument, N in `world`, each at its own place.
+/// Forces on the instrument, N (`world`), by where they act.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Loads {
-    /// Tissue, at the tip.
+    /// Tissue on the tip.
     pub(super) tip_n: Vector3<f64>,
-    /// Body wall, and how deep the tip is behind it, m.
+    /// Body wall on the shaft, and the depth of the tip beyond the wall, m.
     pub(super) wall: Option<(Vector3<f64>, f64)>,
-    /// Somebody's hand, at the tool's centre of mass.
+    /// A person's hand, at the tool's centre of mass.
     pub(super) touch_n: Vector3<f64>,
-    /// Somebody leaning on the stand of the tissue: felt below it only.
+    /// A person leaning on the stand of the tissue; only the sensor under the tissue measures this.
     pub(super) stand_n: Vector3<f64>,
 }
 
@@ -38,7 +38,7 @@ impl Wrist {
         Vector3::from_fn(|_, _| sigma * self.noise.gaussian())
     }
 
-    /// One reading of everything.
+    /// Readings of all sensors.
     pub(super) fn measure(&mut self, world_from_s1: &UnitQuaternion<f64>, loads: &Loads) -> WristSample {
         let mut sample = WristSample::of(self.wrench(world_from_s1, loads));
         sample.world_from_s1 = Some(*world_from_s1);
@@ -73,7 +73,7 @@ impl Wrist {
         }
     }
 
-    /// Marker, camera and the sensor under the tissue.
+    /// Adds marker, camera and the sensor under the tissue.
     fn add_experiment(
         &mut self,
         sample: &mut WristSample,
@@ -91,7 +91,8 @@ impl Wrist {
     }
 }
 
-/// Orientation of the wrist for a shaft in this direction (`world`, unit length): z along it, x as near to the base's x as can be.
+/// Orientation of the wrist for a shaft in this direction (`world`, unit length): z along it, x as close to the base's
+/// x as possible.
 pub(super) fn along_shaft(direction: &Vector3<f64>) -> UnitQuaternion<f64> {
     let side = if direction.x.abs() < 0.99 { Vector3::x() } else { Vector3::y() };
     let x = (side - direction * side.dot(direction)).normalize();

@@ -1,4 +1,4 @@
-//! A force-torque sensor on a real wire is read without an allocation.
+//! Reading a force-torque sensor from a real serial line allocates nothing.
 #![cfg(unix)]
 
 use std::time::{Duration, Instant};

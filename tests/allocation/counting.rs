@@ -1,4 +1,4 @@
-//! An allocator that counts what the calling thread allocates and frees, for tests of code that must do neither.
+//! An allocator that counts the allocations and releases of the calling thread.
 
 #![expect(unsafe_code, reason = "counting what is allocated takes a global allocator, whose trait is unsafe")]
 
@@ -14,11 +14,11 @@ thread_local! {
 }
 
 fn count() {
-    // A thread that is ending has no counter any more, and nothing of ours to count.
+    // A thread that is ending has no counter any more; its allocations do not matter.
     let _ = CALLS.try_with(|calls| calls.set(calls.get() + 1));
 }
 
-// SAFETY: every call is handed on to the system's allocator unchanged.
+// SAFETY: every call is passed to the system's allocator unchanged.
 unsafe impl GlobalAlloc for Counting {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
         count();
@@ -42,7 +42,7 @@ unsafe impl GlobalAlloc for Counting {
 #[global_allocator]
 static ALLOCATOR: Counting = Counting;
 
-/// Allocations, releases and changes of size by this thread so far.
+/// Number of allocations, releases and changes of size by this thread so far.
 pub(crate) fn calls() -> u64 {
     CALLS.get()
 }

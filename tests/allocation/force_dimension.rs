@@ -1,4 +1,4 @@
-//! Polling a haptic handle and giving it forces allocates nothing on the loop's thread.
+//! Polling a haptic handle and setting forces allocates nothing on the loop's thread.
 
 use std::time::{Duration, Instant};
 

@@ -1,4 +1,4 @@
-//! Polling a cap or a pedal allocates nothing, whatever arrives and also when it is lost.
+//! Polling a cap or a pedal allocates nothing, whatever arrives, and also when the device is lost.
 #![cfg(target_os = "linux")]
 
 use std::time::{Duration, Instant};
@@ -15,7 +15,7 @@ use nima_world::emulators::{
 
 use crate::counting::calls;
 
-/// Polls for a while; what this thread allocated, and the readings that came.
+/// Polls for some time; returns the allocations of this thread and the number of readings.
 fn polled(device: &mut impl Device, length: Duration) -> (u64, u32) {
     let (before, begin, mut readings) = (calls(), Instant::now(), 0);
     while begin.elapsed() < length {

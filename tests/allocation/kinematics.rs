@@ -1,4 +1,4 @@
-//! Nothing is allocated between the hand and the arm's joints.
+//! The computation from the hand's pose to the arm's joint angles allocates nothing.
 
 use nalgebra::{UnitQuaternion, Vector3};
 use nima_core::kinematics::{

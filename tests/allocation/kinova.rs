@@ -1,4 +1,5 @@
-//! The arm's driver allocates nothing in a tick: reading, servoing, moving with a twist, and while what arrives is damaged.
+//! The driver of the arm allocates nothing in a tick: reading, servoing, moving with a twist, and receiving damaged
+//! data.
 
 use std::{thread::sleep, time::Duration};
 
@@ -15,7 +16,7 @@ use nima_world::emulators::{
 
 use crate::counting::calls;
 
-/// Polls once a millisecond; allocations in all of it.
+/// Polls once a millisecond; returns the number of allocations.
 fn allocations(driver: &mut Driver, now_s: &mut f64, ticks: u32, mut command: impl FnMut(&mut Driver)) -> u64 {
     let mut count = 0;
     for _ in 0..ticks {
@@ -36,7 +37,7 @@ fn a_tick_of_the_arm_allocates_nothing() {
     let serving = arm.with(StandIn::swaying()).serve().unwrap();
     let mut driver = open(&Settings::at(&serving.endpoint).unwrap()).unwrap();
     let mut now_s = 0.0;
-    // More than one sign of life, which go over both connections.
+    // Long enough for several keep-alive messages on both connections.
     assert_eq!(allocations(&mut driver, &mut now_s, 400, |_| {}), 0, "reading");
     let twist = ToolTwist { linear_m_s: Vector3::new(0.0, 0.02, 0.0), ..ToolTwist::default() };
     let moving = |driver: &mut Driver| driver.twist(&twist).unwrap();

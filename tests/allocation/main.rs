@@ -1,6 +1,7 @@
 //! Code that runs in a tick allocates nothing.
 //!
-//! The counter counts for the thread that asks, but tests on wires must not wait for a core: each test holds `alone`.
+//! The counter counts per thread, but tests with real connections must not wait for a processor core, so each test
+//! holds `alone`.
 
 mod bota;
 mod counting;

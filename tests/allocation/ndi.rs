@@ -1,4 +1,4 @@
-//! Nothing is allocated when the tracker is polled: binary over TCP, text over TCP, binary over a line.
+//! Polling the tracker allocates nothing: binary over TCP, text over TCP, binary over a serial line.
 #![cfg(unix)]
 use std::time::{Duration, Instant};
 
@@ -11,7 +11,7 @@ use nima_world::emulators::ndi::{Profile, wandering};
 
 use crate::counting::calls;
 
-/// Polls until 20 readings are there; allocations of this thread meanwhile.
+/// Polls until there are 20 readings; returns the allocations of this thread.
 #[expect(clippy::unwrap_used, reason = "a test fails by panicking")]
 fn allocations(settings: &Settings) -> u64 {
     let mut driver = Driver::open(settings).unwrap();

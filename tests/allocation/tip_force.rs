@@ -1,4 +1,4 @@
-//! An answer of a tip-force model allocates nothing, whatever its inputs; nor does the loop with a network in it.
+//! The tip-force model allocates nothing, whatever its inputs, nor does the loop that contains it.
 
 use std::sync::atomic::AtomicBool;
 
@@ -70,7 +70,7 @@ fn the_loop_with_a_network_in_it_allocates_nothing() {
         if k == 100 {
             control.obey(Command::Engage, now_s).unwrap();
         }
-        // A silent rig now and then: a hole in the network's memory.
+        // Missing samples at intervals, which reset the features' state.
         let inputs = world.exchange(now_s, &outputs).filter(|_| k % 3000 > 15);
         let (next, tick) = control.step(inputs, &Timing { now_s, ..Timing::default() });
         outputs = next;

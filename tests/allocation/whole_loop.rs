@@ -1,4 +1,4 @@
-//! Nothing is allocated in a tick: of identification and rendering, of the whole loop, of the simulation.
+//! A tick allocates nothing: identification and rendering, the whole loop, the simulation.
 
 use nalgebra::Vector3;
 use nima_core::{
@@ -79,7 +79,7 @@ fn a_tick_of_the_whole_loop_and_of_the_simulation_allocates_nothing() {
             6000 => control.obey(Command::Engage, now_s),
             _ => {}
         }
-        // A silent rig now and then, long enough for a fault at last.
+        // Missing samples at intervals, and at the end for long enough to cause a fault.
         let inputs = world.read(now_s).map(|inputs| inputs.filter(|_| k % 1000 > 5 && k < 9000));
         let (outputs, _) = control.step(inputs, &Timing { now_s, ..Timing::default() });
         world.write(now_s, &outputs);

@@ -1,4 +1,5 @@
-//! Two arm pairs in one loop: independent and together, clutch and presence, agreement and ramp, shared faults.
+//! Two arm pairs in one loop: independence and interaction, clutch and presence, agreement and force ramp, shared
+//! faults.
 use std::cell::Cell;
 
 use nalgebra::{UnitQuaternion, Vector3};
@@ -63,7 +64,7 @@ impl Bench {
         }
     }
 
-    /// What was refused since the last command, and why.
+    /// Refusals since the last command, with their reasons.
     fn refusals(&self) -> Vec<(Side, Refusal)> {
         let refused = |event: &Event| match *event {
             Event::CommandRefused { side, why, .. } => Some((side, why)),
@@ -145,7 +146,7 @@ fn a_refused_engagement_says_why_and_one_arm_that_obeys_does_not_hide_the_other(
     assert_eq!(bench.refusals(), [(Side::Left, Refusal::State(LoopState::Disconnected))]);
 }
 
-/// What becomes of the inputs of a side.
+/// Changes the inputs of a side.
 type Edit = fn(Side, Inputs) -> Option<Inputs>;
 
 #[test]
@@ -204,7 +205,7 @@ fn the_clutch_frees_the_hand_and_coupling_again_never_moves_the_tip() {
     bench.run(2000, AS_IT_IS);
     for tick in 1..=300_u32 {
         bench.step(|_, mut inputs| {
-            // The hand goes elsewhere meanwhile, by 30 mm in 0.1 s.
+            // Meanwhile the hand moves by 30 mm in 0.1 s.
             inputs.hand.position_m.x += 0.03 * f64::from(tick.min(100)) / 100.0;
             Some(Inputs { switches: Switches { clutch: true, presence: None }, ..inputs })
         });
@@ -216,7 +217,7 @@ fn the_clutch_frees_the_hand_and_coupling_again_never_moves_the_tip() {
         inputs.hand.position_m += Vector3::new(0.03, 0.0, 0.0);
         Some(inputs)
     };
-    // The first command is where the tip is; the next ones follow at the follower's speed.
+    // The first command is the tip's position; the following ones advance at the follower's speed limit.
     let mut last_m = bench.ticks.each_ref().map(|tick| tick.tip_m);
     for _ in 0..50 {
         bench.step(moved);
@@ -233,7 +234,7 @@ fn the_clutch_frees_the_hand_and_coupling_again_never_moves_the_tip() {
 #[test]
 fn engaging_begins_where_the_tip_is_and_the_force_rises_over_a_fifth_of_a_second() {
     let mut bench = Bench::new();
-    // Held against the tissue while idle: the tip is pressed in, the hand elsewhere.
+    // Pressed against the tissue while idle: the tip is in the tissue, the hand elsewhere.
     bench.obey(Command::SetStaticHold(true));
     bench.obey(Command::SetMode(nima_core::impedance::Mode::Dfr));
     let pressed = |_: Side, inputs: Inputs| {

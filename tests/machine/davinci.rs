@@ -1,6 +1,8 @@
-//! The tip-force machinery on real recordings: jaw torque of a da Vinci Maryland instrument from its spindle's side.
+//! The tip-force network on real recordings: jaw torque of a da Vinci Maryland instrument, estimated from its spindle
+//! side.
 //!
-//! The recordings lie in `../shared/data/mrd_davinci` (file XY: drive frequency X, load Y); without them nothing is tested.
+//! The recordings are in `../shared/data/mrd_davinci` (file XY: drive frequency X, load Y); without them nothing is
+//! tested.
 
 use std::{
     path::{Path, PathBuf},
@@ -19,14 +21,14 @@ const INPUTS: [&str; 5] = [
     "presliding:spindle_angle_rad:0.1",
     "midline:spindle_torque_nm:spindle_angle_rad:0.1",
 ];
-/// The goal on every held-out file.
+/// Largest mean absolute error on each held-out file, Nm.
 const GOAL_NM: f64 = 2.5e-3;
 
 fn path(file: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../shared/data/mrd_davinci/maryland_r5_{file}.csv"))
 }
 
-/// Trained on the four other files, judged on these two.
+/// Trained on the other four files, evaluated on these two.
 fn held_out(held: [&str; 2], settings: &TrainingSettings) -> Evaluation {
     let names = |list: &[&str]| Some(list.iter().map(|name| (*name).to_owned()).collect());
     let selection = Selection { inputs: names(&INPUTS), outputs: names(&["jaw_torque_nm"]) };
@@ -38,7 +40,7 @@ fn held_out(held: [&str; 2], settings: &TrainingSettings) -> Evaluation {
     evaluate(&mut estimator, &data).unwrap()
 }
 
-/// Mean absolute error (Nm) of the network and of linear regression, and share in doubt, per file.
+/// Mean absolute error (Nm) of the network and of linear regression, and share of uncertain samples, per file.
 fn figures(evaluation: &Evaluation) -> Vec<[f64; 3]> {
     let mae = |file: &nima_training::Part, method: usize| file.methods[method].outputs[0].unwrap().mae;
     evaluation.files.iter().map(|file| [mae(file, 0), mae(file, 2), file.doubt_share]).collect()

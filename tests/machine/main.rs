@@ -1,4 +1,4 @@
-//! The machine on the virtual clock: whole scenes, calibrations and training, as fast as the processor can.
+//! The loop on the virtual clock: whole scenes, calibrations and training, as fast as the processor allows.
 #![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 mod bimanual;

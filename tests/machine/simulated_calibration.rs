@@ -1,4 +1,4 @@
-//! Calibrations taken from the simulated experiments, sample by sample, as a technician would take them.
+//! Calibrations from the simulated experiments, sample by sample, as a technician would record them.
 use nalgebra::{UnitVector3, Vector3};
 use nima_core::{
     calibration::{
@@ -37,7 +37,7 @@ impl Bench {
     }
 }
 
-/// Follows the session's targets for at most `seconds`; tells the phases that were seen.
+/// Follows the session's targets for at most `seconds`; returns the phases that occurred.
 fn follow(bench: &mut Bench, session: &mut GravitySession, seconds: f64) -> Vec<Phase> {
     let mut seen: Vec<Phase> = Vec::new();
     for _ in 0..(seconds * 1e3) as u32 {
@@ -118,7 +118,7 @@ fn an_accelerometer_that_reads_the_other_way_is_named() {
 }
 
 #[test]
-fn without_an_accelerometer_the_arm_serves() {
+fn without_an_accelerometer_the_arm_gives_the_orientation() {
     let mut scene = Scene::load("gravity").unwrap();
     scene.wrist.as_mut().unwrap().imu = None;
     let mut session = GravitySession::new(SessionSettings { use_arm: true, ..SessionSettings::default() });
@@ -126,7 +126,7 @@ fn without_an_accelerometer_the_arm_serves() {
     assert_eq!(session.report().unwrap().verdict, Verdict::Accepted, "{}", session.report().unwrap().reason);
 }
 
-/// What the check at the start says after `seconds` in this scene, asked for this, idle or not.
+/// Result of the drift check after `seconds` in this scene, with this instruction, idle or not.
 fn drift(session: &GravitySession, scene: &Scene, prompt: Prompt, idle: bool, seconds: f64) -> Drift {
     let record = session.report().unwrap().record("S", "T", "2026-01-31T12:00:00Z").unwrap();
     let mut bench = Bench::new(scene);
@@ -196,7 +196,7 @@ fn a_hand_taken_off_the_tool_takes_the_bad_verdict_back() {
     assert!(matches!(run(0.6, false, 4.0), Drift::Fine { .. }), "one good verdict is enough for a start");
 }
 
-/// Root of the mean square per axis of what is left of the force while nothing is touched, N.
+/// Root mean square per axis of the remaining force without contact, N.
 fn left_n(model: GravityModel, time_constant_s: f64, samples: &[WristSample]) -> f64 {
     let mut compensator = Compensator::new(model, time_constant_s, 1e-3);
     let squares: f64 = samples.iter().map(|s| compensator.step(s).unwrap().force_n.norm_squared()).sum();
@@ -237,7 +237,8 @@ fn the_simulated_sensor_passes_the_check_before_the_first_pose_and_worse_ones_do
     assert!(!checked(|scene| scene.wrist.as_mut().unwrap().imu = None).passed(1000.0));
 }
 
-/// Pushes as the session asks for, until `pushes` are kept or `seconds` are over; gravity as calibrated on its own scene.
+/// Pushes as the session requests until `pushes` are recorded or `seconds` are over; gravity is calibrated in its own
+/// scene.
 fn push(flaw: Option<Flaw>, pushes: usize, seconds: f64) -> CorrespondenceSession {
     let gravity = model_of(&calibrate(&Scene::load("gravity").unwrap()).1);
     let mut gravity = Compensator::new(gravity, DEFAULT_TIME_CONSTANT_S, 1e-3);

@@ -1,4 +1,4 @@
-//! The simulated experiments: what the sensors read of them must follow from what was done.
+//! The simulated experiments: the sensors' readings must correspond to what was done.
 use nalgebra::{UnitQuaternion, Vector3};
 use nima_core::frames::{GRAVITY_M_S2, WristSample, from_roll_pitch_yaw_deg};
 use nima_machine::{
@@ -11,7 +11,7 @@ use nima_world::{
     scene::{Flaw, Scene},
 };
 
-/// Samples of `scene` under this prompt for some seconds at 1 kHz, with the true force on the tip.
+/// Samples of `scene` with this instruction for some seconds at 1 kHz, with the true force on the tip.
 fn samples(world: &mut World, from_s: f64, seconds: f64, prompt: Prompt) -> Vec<(WristSample, Vector3<f64>)> {
     let outputs = Outputs { prompt, ..Outputs::SAFE };
     (1..=(seconds * 1e3) as u32)

@@ -1,4 +1,4 @@
-//! The network in the loop: it takes the trocar's friction out, and hands over without a push when it is in doubt.
+//! The network in the loop removes the trocar's friction, and the change to the fallback causes no force step.
 use std::sync::{OnceLock, atomic::AtomicBool};
 
 use nalgebra::Vector3;
@@ -15,7 +15,7 @@ use nima_study::validation::{
 use nima_training::train_model;
 use nima_world::{World, scene::Scene};
 
-/// Calibrated and trained once for all tests here.
+/// Calibrated and trained once for all tests in this file.
 fn trained() -> &'static (Known, Model) {
     static TRAINED: OnceLock<(Known, Model)> = OnceLock::new();
     TRAINED.get_or_init(|| {
@@ -34,7 +34,7 @@ fn path(fallback: Option<Fallback>) -> ForcePath {
     ForcePath::new(&Calibrations { gravity: Some(known.gravity), tip_force }, 1e-3)
 }
 
-/// What a path says of each sample, and the truth, N (`world`), while somebody works on the tissue.
+/// The result of a path for each sample, and the true force, N (`world`), during work on the tissue.
 fn work(mut path: ForcePath, scene: &Scene, seconds: f64) -> Vec<(ForceReport, Vector3<f64>)> {
     let mut world = World::new(scene, 1000.0);
     let outputs = Outputs { prompt: Prompt::Work, ..Outputs::SAFE };
@@ -51,7 +51,7 @@ fn scene(seed: u64) -> Scene {
     Experiment::scene("isolation", seed).unwrap()
 }
 
-/// Another tool, of which the network knows nothing.
+/// Another tool, which the network was not trained for.
 fn heavier(seed: u64) -> Scene {
     let mut scene = scene(seed);
     scene.wrist.as_mut().unwrap().tool_mass_kg += 0.3;
@@ -72,7 +72,7 @@ fn the_network_takes_the_friction_out_of_the_wrist_force() {
 }
 
 #[test]
-fn until_it_has_moved_the_fallback_answers_and_says_why() {
+fn the_fallback_is_used_with_its_reason_until_the_instrument_has_moved() {
     let all = work(path(Some(Fallback::WristForce)), &scene(11), 3.0);
     let not_moved = ForceSource::InDoubt { unsure: Unsure::NotMoved, fallback: Fallback::WristForce };
     assert_eq!(all[0].0.source, not_moved);
@@ -80,7 +80,7 @@ fn until_it_has_moved_the_fallback_answers_and_says_why() {
 }
 
 #[test]
-fn with_another_tool_it_is_in_doubt_and_falls_back_as_it_was_told() {
+fn another_tool_is_flagged_and_the_chosen_fallback_is_used() {
     let doubtful = |fallback| {
         let all = work(path(Some(fallback)), &heavier(11), 10.0);
         let doubt = ForceSource::InDoubt { unsure: Unsure::OutsideTraining, fallback };
@@ -99,7 +99,7 @@ fn with_another_tool_it_is_in_doubt_and_falls_back_as_it_was_told() {
 }
 
 #[test]
-fn a_handover_is_no_push() {
+fn a_handover_causes_no_force_step() {
     for fallback in [Fallback::WristForce, Fallback::HoldAndFade] {
         let mut path = path(Some(fallback));
         let (mut good, mut foreign) = (World::new(&scene(11), 1000.0), World::new(&heavier(11), 1000.0));
@@ -108,9 +108,9 @@ fn a_handover_is_no_push() {
         for tick in 1..=20_000_u32 {
             let t_s = f64::from(tick) * 1e-3;
             let [mine, other] = [&mut good, &mut foreign].map(|world| world.exchange(t_s, &outputs).unwrap().sensed);
-            // Every two seconds the tool is another one, of 3 N more weight.
+            // Every two seconds the tool changes to one that is 3 N heavier, and back.
             let report = path.step(t_s, if tick / 2000 % 2 == 0 { &mine } else { &other });
-            // When the tool itself is exchanged, even the wrist force steps.
+            // At the moment of the change even the wrist force is discontinuous.
             if let Some(last) = last_n.filter(|_| tick % 2000 > 1) {
                 handovers += u32::from(last.source.doubt().is_some() != report.source.doubt().is_some());
                 if last.source.doubt().is_none() || report.source.doubt().is_none() {

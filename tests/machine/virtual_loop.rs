@@ -1,4 +1,4 @@
-//! The whole loop on the virtual clock: what it does over whole scenes, faults included.
+//! The whole loop on the virtual clock, over whole scenes, including faults.
 use nalgebra::Vector3;
 use nima_core::impedance::Mode;
 use nima_machine::{
@@ -96,7 +96,7 @@ fn a_command_out_of_range_is_refused_and_changes_nothing() {
     }
 }
 
-/// Drives a loop over a world by hand, so that samples can be taken away or poisoned.
+/// Steps a loop and a world by hand, so that samples can be removed or corrupted.
 struct Bench {
     world: World,
     control: Pair,

@@ -1,4 +1,4 @@
-"""What every peer check shares: an emulator as a process of its own, and counted checks."""
+"""Shared by all peer checks: an emulator as a separate process, and counted checks."""
 
 import json
 import subprocess
@@ -28,7 +28,7 @@ class Emulator:
         self.endpoints[told["device"]] = told["endpoint"]
 
     def more(self, count):
-        """Reads `count` endpoints more."""
+        """Reads `count` more endpoints."""
         for _ in range(count):
             self._take(self.process.stdout.readline())
 
@@ -47,7 +47,7 @@ class Emulator:
             self.process.wait(5)
         except subprocess.TimeoutExpired:
             self.process.kill()
-            raise SystemExit("the emulator does not end when its input does")
+            raise SystemExit("the emulator does not end when its standard input is closed")
 
 
 class Peer:

@@ -20,7 +20,7 @@ FRAMES = 200
 
 @contextlib.contextmanager
 def quiet():
-    """The client writes a line for every frame that it drops, from outside of Python."""
+    """Suppresses the line that the client's native code writes for every frame that it drops."""
     kept = [os.dup(stream) for stream in (1, 2)]
     with open(os.devnull, "w") as nowhere:
         for stream in (1, 2):
@@ -93,10 +93,10 @@ def check_stream(peer, driver, emulator, hz, inertial):
     steps = sorted(b - a for a, b in zip(times, times[1:]))
     # Its reader keeps the newest frame only, so a busy computer may skip some; most follow one another.
     peer.near("time between frames", steps[len(steps) // 2], 1e6 / hz, 2.0)
-    peer.near("its own idea of it", driver.get_expected_timestep_us(), 1e6 / hz, 2.0)
+    peer.near("time between frames that the client expects", driver.get_expected_timestep_us(), 1e6 / hz, 2.0)
     emulator.fault("device-fault")
     flags = [driver.read_frame_blocking().status for _ in range(50)][-1]
-    peer.check("invalid is seen", flags.invalid and not flags.raw, flags.val)
+    peer.check("the invalid flag is reported", flags.invalid and not flags.raw, flags.val)
     emulator.fault("bad-checksum")
     emulator.fault("none")
     for _ in range(20):

@@ -17,14 +17,14 @@ def singles(peer, port, packet):
     peer.check("ping", (model, result, error) == (1020, OK, 0), (model, result, error))
     found, result = packet.broadcastPing(port)
     peer.check("broadcast ping", result == OK and sorted(found) == [1, 2, 3, 4], found)
-    peer.check("its models", all(found[k][0] == 1020 and found[k][1] == 48 for k in found), found)
+    peer.check("models and firmware versions", all(found[k][0] == 1020 and found[k][1] == 48 for k in found), found)
     _, result, _ = packet.ping(port, 9)
-    peer.check("nobody there", result == sdk.COMM_RX_TIMEOUT, result)
+    peer.check("no answer from an unused id", result == sdk.COMM_RX_TIMEOUT, result)
     value, result, error = packet.read2ByteTxRx(port, 2, 144)
     peer.check("voltage", (value, result, error) == (120, OK, 0), value)
     result, error = packet.write1ByteTxRx(port, 2, 65, 1)
     peer.check("write", (result, error) == (OK, 0), (result, error))
-    peer.check("what was written", packet.read1ByteTxRx(port, 2, 65)[0] == 1)
+    peer.check("the written value is read back", packet.read1ByteTxRx(port, 2, 65)[0] == 1)
     first = packet.read2ByteTxRx(port, 1, 120)[0]
     time.sleep(0.1)
     later = packet.read2ByteTxRx(port, 1, 120)[0]
@@ -32,7 +32,7 @@ def singles(peer, port, packet):
     result, error = packet.regWriteTxRx(port, 3, 65, 1, [1])
     peer.check("reg write", (result, error) == (OK, 0), (result, error))
     peer.check("registered", packet.read1ByteTxRx(port, 3, 69)[0] == 1)
-    peer.check("not yet done", packet.read1ByteTxRx(port, 3, 65)[0] == 0)
+    peer.check("not carried out before the action", packet.read1ByteTxRx(port, 3, 65)[0] == 0)
     packet.action(port, sdk.BROADCAST_ID)
     peer.check("done", packet.read1ByteTxRx(port, 3, 65)[0] == 1)
 
@@ -40,9 +40,9 @@ def singles(peer, port, packet):
 def refusals(peer, port, packet):
     for what, address, size, value, expected in [
         ("read-only", 132, 4, 0, 7),
-        ("no such mode", 11, 1, 2, 4),
+        ("unknown mode", 11, 1, 2, 4),
         ("beyond the limits", 116, 4, 5000, 6),
-        ("no register", 14, 1, 0, 7),
+        ("read-only or no register", 14, 1, 0, 7),
     ]:
         result, error = getattr(packet, f"write{size}ByteTxRx")(port, 1, address, value)
         peer.check(what, (result, error) == (OK, expected), (result, error))
@@ -86,7 +86,7 @@ def motion(peer, port, packet):
     before = packet.read4ByteTxRx(port, 4, 132)[0]
     time.sleep(1.0)
     swayed = packet.read4ByteTxRx(port, 4, 132)[0]
-    peer.check("the shaft sways without torque", before != swayed, (before, swayed))
+    peer.check("the shaft moves without torque", before != swayed, (before, swayed))
     for goal, p in [(2600, 800), (1500, 800)]:
         packet.write2ByteTxRx(port, 4, 84, p)
         packet.write1ByteTxRx(port, 4, 64, 1)
@@ -111,7 +111,7 @@ def faults(peer, port, packet, emulator):
     peer.check("reboot", packet.reboot(port, 1)[0] == OK)
     time.sleep(0.5)
     _, result, error = packet.ping(port, 1)
-    peer.check("after the reboot", (result, error) == (OK, 0), (result, error))
+    peer.check("torque after the reboot", (result, error) == (OK, 0), (result, error))
     packet.write1ByteTxRx(port, 1, 98, 5)
     packet.write1ByteTxRx(port, 1, 64, 1)
     time.sleep(0.5)
@@ -126,10 +126,10 @@ def faults(peer, port, packet, emulator):
     emulator.fault("silence")
     peer.check("silence", packet.ping(port, 2)[1] == sdk.COMM_RX_TIMEOUT)
     emulator.fault("none")
-    peer.check("speaks again", packet.ping(port, 2)[1] == OK)
+    peer.check("answers again", packet.ping(port, 2)[1] == OK)
     peer.check("factory reset", packet.factoryReset(port, 3, 0x02)[0] == OK)
     time.sleep(0.5)
-    peer.check("its delay is the factory's", packet.read1ByteTxRx(port, 3, 9)[0] == 250)
+    peer.check("the return delay has its factory value", packet.read1ByteTxRx(port, 3, 9)[0] == 250)
 
 
 def official(nima):
@@ -155,8 +155,8 @@ def easy_sdk(nima):
         motors = bus.createAllMotors()
         peer.check("all motors", [motor.id for motor in motors] == [1, 2, 3, 4])
         motor = bus.createMotor(2)
-        peer.check("its model", motor.model_number == 1200, motor.model_number)
-        peer.check("its current limit", motor.getCurrentLimit() == 1750, motor.getCurrentLimit())
+        peer.check("model number", motor.model_number == 1200, motor.model_number)
+        peer.check("current limit", motor.getCurrentLimit() == 1750, motor.getCurrentLimit())
         motor.setOperatingMode(easy_mode().EXTENDED_POSITION)
         motor.setPositionPGain(500)
         motor.enableTorque()

@@ -30,7 +30,7 @@ def library_beside(nima):
 
 
 def sdk_with(library, folder):
-    """An SDK's folders with the stand-in where the binding looks for it."""
+    """Folders of an SDK, with the replacement library where the binding searches for it."""
     within = pathlib.Path(folder, "lib", "release", f"lin-{platform.machine()}-gcc")
     within.mkdir(parents=True)
     (within / "libdrd.so.3").symlink_to(library)
@@ -55,7 +55,7 @@ def run(nima):
     peer = Peer(NAME)
     library = library_beside(nima)
     if sys.platform != "linux":
-        peer.skip("its library is looked for elsewhere on this system")
+        peer.skip("the binding searches for the library elsewhere on this system")
         return [peer]
     if library is None:
         sys.exit(f"peer {NAME}: no libdrd beside {nima}: cargo build --workspace makes it")
@@ -65,7 +65,7 @@ def run(nima):
         still = [f"--set={key}={value}" for key, value in SETTINGS.items()]
         with Emulator(nima, "force-dimension", *still) as emulator:
             address, _, path = emulator.endpoint.partition(" library=")
-            peer.check("the endpoint tells the library", pathlib.Path(path).is_file(), emulator.endpoint)
+            peer.check("the endpoint contains the library's path", pathlib.Path(path).is_file(), emulator.endpoint)
             told += case("still_hand", sdk, address)
             told += case("watchdog", sdk, address)
             emulator.fault("device-fault")
@@ -97,7 +97,7 @@ def near(what, got, expected, within):
 
 def status_of(fd):
     status = fd.containers.Status()
-    equal("status is told", fd.dhd.getStatus(status), 0)
+    equal("status can be read", fd.dhd.getStatus(status), 0)
     return status
 
 
@@ -115,7 +115,7 @@ def no_device():
     equal("no frequency", fd.dhd.getComFreq(), -1.0)
     equal("no device chosen", fd.dhd.getDeviceID(), -1)
     equal("no limit", fd.dhd.getMaxForce(), -1.0)
-    equal("the error in words", fd.dhd.errorGetStr(5), "no device found")
+    equal("text of the error", fd.dhd.errorGetStr(5), "no device found")
 
 
 def still_hand():
@@ -126,20 +126,20 @@ def still_hand():
     equal("one device", (dhd.getDeviceCount(), dhd.getAvailableCount()), (1, 1))
     equal("a wrong serial number", dhd.openSerial(1), -1)
     equal("open by serial number", dhd.openSerial(4711), 0)
-    equal("taken now", (dhd.getDeviceCount(), dhd.getAvailableCount()), (1, 0))
+    equal("the device is in use", (dhd.getDeviceCount(), dhd.getAvailableCount()), (1, 0))
     equal("serial number", dhd.getSerialNumber(), 4711)
     equal("type", int(dhd.getSystemType()), 35)
     equal("name", dhd.getSystemName(), "omega.7")
     parts = (dhd.hasBase(), dhd.hasWrist(), dhd.hasActiveWrist(), dhd.hasGripper(), dhd.hasActiveGripper())
-    equal("what it has", parts, (True, True, False, True, True))
-    equal("a right hand's", dhd.isLeftHanded(), False)
+    equal("features of the device", parts, (True, True, False, True, True))
+    equal("for the right hand", dhd.isLeftHanded(), False)
     check("firmware", dhd.getVersion() >= 3.0, dhd.getVersion())
     reading(fd)
     force(fd)
-    equal("an unknown symbol refuses", dhd.setVibration(10.0, 1.0), -1)
+    equal("a function that is not emulated fails", dhd.setVibration(10.0, 1.0), -1)
     equal("as not implemented", int(dhd.errorGetLast()), 10)
     equal("close", dhd.close(), 0)
-    equal("free again", dhd.getAvailableCount(), 1)
+    equal("the device is free again", dhd.getAvailableCount(), 1)
     equal("a closed device does not read", dhd.getPosition([0.0] * 3), -1)
 
 
@@ -150,10 +150,10 @@ def reading(fd):
     equal("position", dhd.getPosition(position), 0)
     near("position of the hand", position, [0.01, -0.02, 0.03], 1e-6)
     # A busy machine may put a pause between two calls.
-    check("a second one at once is guarded", any(int(dhd.getPosition(position)) == 1 for _ in range(50)))
+    check("an immediate second reading is marked as repeated", any(int(dhd.getPosition(position)) == 1 for _ in range(50)))
     check("frame", dhd.getOrientationFrame(matrix) in (0, 1))
     c, s = math.cos(0.5), math.sin(0.5)
-    near("a turn about z, row by row", sum(map(list, matrix), []), [c, -s, 0, s, c, 0, 0, 0, 1], 1e-9)
+    near("rotation matrix about z, row by row", sum(map(list, matrix), []), [c, -s, 0, s, c, 0, 0, 0, 1], 1e-9)
     angles = [0.0] * 3
     check("angles", dhd.getOrientationRad(angles) in (0, 1))
     near("angles of the wrist", angles, [0.0, 0.0, 0.5], 1e-9)
@@ -170,7 +170,7 @@ def reading(fd):
 
 
 def push(fd, force, seconds):
-    """The last answer to a force said again and again, and where the hand is then."""
+    """Sets a force repeatedly; returns the last answer and the position of the hand after it."""
     answer, position, end = None, [0.0] * 3, time.monotonic() + seconds
     while time.monotonic() < end:
         answer = fd.dhd.setForceAndTorqueAndGripperForce(force, [0.0] * 3, 1.0)
@@ -189,16 +189,16 @@ def force(fd):
     status = status_of(fd)
     equal("force is on", (status.brake, status.force, status.idle), (0, 1, 0))
     answer, position = push(fd, [2.0, 0.0, -1.0], 0.3)
-    equal("force is taken", answer, 0)
-    near("the hand gives way", position, [0.014, -0.02, 0.028], 1e-4)
-    check("calls a millisecond", 0.05 < dhd.getComFreq() < 4.0, dhd.getComFreq())
+    equal("the force is accepted", answer, 0)
+    near("the hand yields to the force", position, [0.014, -0.02, 0.028], 1e-4)
+    check("calls per millisecond", 0.05 < dhd.getComFreq() < 4.0, dhd.getComFreq())
     answer, position = push(fd, [0.0, 20.0, 0.0], 0.3)
     equal("motors saturate", answer, 2)
-    near("at ten newtons", position, [0.01, 0.0, 0.03], 1e-4)
-    equal("a limit", (dhd.setMaxForce(5.0), dhd.getMaxForce()), (0, 5.0))
+    near("position at ten newtons", position, [0.01, 0.0, 0.03], 1e-4)
+    equal("the force limit is set", (dhd.setMaxForce(5.0), dhd.getMaxForce()), (0, 5.0))
     answer, position = push(fd, [0.0, 20.0, 0.0], 0.3)
     equal("within the limit nothing saturates", answer, 0)
-    near("five newtons", position, [0.01, -0.01, 0.03], 1e-4)
+    near("position at five newtons", position, [0.01, -0.01, 0.03], 1e-4)
     equal("stop", dhd.stop(), 0)
     status = status_of(fd)
     equal("brakes after stop", (status.brake, status.force), (1, 0))
@@ -212,13 +212,13 @@ def watchdog():
 
     equal("drd opens too", fd.drd.open(), 0)
     equal("initialised", fd.drd.isInitialized(), True)
-    equal("regulation is not there", (fd.drd.start(), int(fd.dhd.errorGetLast())), (-1, 10))
+    equal("regulation is not emulated", (fd.drd.start(), int(fd.dhd.errorGetLast())), (-1, 10))
     equal("watchdog of 20 ms", fd.dhd.expert.setWatchdog(160), 0)
     equal("enable", fd.dhd.enableForce(True), 0)
-    equal("force is taken", push(fd, [1.0, 0.0, 0.0], 0.1)[0], 0)
+    equal("the force is accepted", push(fd, [1.0, 0.0, 0.0], 0.1)[0], 0)
     time.sleep(0.06)
     status = status_of(fd)
-    equal("the watchdog took it away", (status.force, status.brake, status.forceoffcause), (0, 1, 3))
+    equal("the watchdog has switched the force off", (status.force, status.brake, status.forceoffcause), (0, 1, 3))
     equal("close", fd.drd.close(), 0)
 
 
@@ -226,7 +226,7 @@ def device_fault():
     import forcedimension_core as fd
 
     equal("open", fd.dhd.open(), 0)
-    equal("the error is told", status_of(fd).error, 1)
+    equal("the error is reported", status_of(fd).error, 1)
     equal("close", fd.dhd.close(), 0)
 
 
@@ -235,7 +235,7 @@ def moving_left_hand():
 
     dhd = fd.dhd
     equal("open", dhd.open(), 0)
-    equal("a left hand's", (dhd.isLeftHanded(), int(dhd.getSystemType())), (True, 37))
+    equal("for the left hand", (dhd.isLeftHanded(), int(dhd.getSystemType())), (True, 37))
     opening, velocity, position = ctypes.c_double(), [0.0] * 3, [0.0] * 3
     track, end = [], time.monotonic() + 0.5
     while time.monotonic() < end:
@@ -246,9 +246,9 @@ def moving_left_hand():
     check("velocity", dhd.getLinearVelocity(velocity) in (0, 1))
     slope = [(b - a) / (end_s - begin_s) for a, b in zip(first, last)]
     near("velocity is the slope of the position", velocity, slope, 5e-3)
-    check("it moves", max(map(abs, velocity)) > 0.01, velocity)
+    check("the hand moves", max(map(abs, velocity)) > 0.01, velocity)
     check("gripper", dhd.getGripperAngleRad(opening) in (0, 1))
-    check("negative on the left", opening.value < 0.0, opening.value)
+    check("the angle is negative for the left hand", opening.value < 0.0, opening.value)
     equal("close", dhd.close(), 0)
 
 

@@ -18,7 +18,7 @@ def settings(**more):
 
 
 class Node:
-    """What pyspacemouse takes for an open device: reports from the emulator's socket."""
+    """An open device for pyspacemouse that reads reports from the emulator's socket."""
 
     product_string, manufacturer_string, release_number, serial_number = "emulated", "", 0, ""
 
@@ -52,7 +52,7 @@ def pyspacemouse_peer(nima, model, spec_name, ids, lengths):
 
     peer = Peer(f"pyspacemouse 2.1.0 ({model})")
     spec = get_device_specs()[spec_name]
-    peer.check("the ids are those of its table", f"{spec.vendor_id:04x}:{spec.product_id:04x}" == ids, ids)
+    peer.check("the ids are in the client's table", f"{spec.vendor_id:04x}:{spec.product_id:04x}" == ids, ids)
     with Emulator(nima, "spacemouse", "--set", f"model={model}", *settings()) as emulator:
         node = Node(emulator.endpoint)
         peer.check("the greeting names the ids", ids in node.hello, node.hello)
@@ -83,7 +83,7 @@ def pyspacemouse_peer(nima, model, spec_name, ids, lengths):
 
 
 def buttons_peer(nima):
-    """Without held axes the first button blinks; the press at the start of a cycle is seen by who is there in time."""
+    """Without fixed axes the first button is pressed at the start of every cycle; a client that connects in time sees it."""
     from pyspacemouse.device import SpaceMouseDevice
     from pyspacemouse.loader import get_device_specs
 
@@ -100,7 +100,7 @@ def buttons_peer(nima):
                 continue
             seen.add(tuple(state.buttons))
             xs.add(round(state.x, 3))
-        peer.check("it sees the press and the release", (1, 0) in seen and (0, 0) in seen, seen)
+        peer.check("press and release are reported", (1, 0) in seen and (0, 0) in seen, seen)
         peer.check("the cap moves", len(xs) > 10, xs)
         device.close()
     return peer
@@ -126,7 +126,7 @@ def libspnav_peer(nima):
     spnav = ctypes.CDLL(library)
     with Emulator(nima, "spacenavd", *settings()) as emulator:
         os.environ["SPNAV_SOCKET"] = emulator.endpoint.removeprefix("spacenavd:")
-        peer.check("it connects", spnav.spnav_open() != -1)
+        peer.check("the client connects", spnav.spnav_open() != -1)
         event, count = Event(), 0
         end = time.monotonic() + 2
         while time.monotonic() < end and count < 20:

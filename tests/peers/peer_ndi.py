@@ -56,7 +56,7 @@ def check_pose(peer, what, got, frame, number):
 
 
 def track(ndicapy, peer, device, form, handles):
-    """Frames until one has a number that can be read; tool 0 is seen, tool 1 missing, tool 2 was never enabled."""
+    """Reads frames with valid numbers; tool 0 is seen, tool 1 is missing, tool 2 was never enabled."""
     get = {name: getattr(ndicapy, f"ndiGet{form}{name}") for name in ("Transform", "Frame", "PortStatus", "SystemStatus")}
     frames = []
     end = time.time() + 5
@@ -85,7 +85,7 @@ def set_up(ndicapy, peer, device, roms):
         command("PHRQ:*********1****")
         handle = ndicapy.ndiGetPHRQHandle(device)
         ndicapy.ndiPVWRFromFile(device, handle, rom)
-        peer.check("definition taken", ndicapy.ndiGetError(device) == ndicapy.NDI_OKAY)
+        peer.check("the definition is accepted", ndicapy.ndiGetError(device) == ndicapy.NDI_OKAY)
         command(f"PINIT:{handle:02X}")
         handles.append(handle)
     for handle in handles[:2]:
@@ -133,7 +133,7 @@ def run_ndicapi(nima, roms):
         device = ndicapy.ndiOpenNetwork(host, int(port))
         converse(ndicapy, network, device, roms)
         ndicapy.ndiCloseNetwork(device)
-    line = Peer("ndicapi over a line")
+    line = Peer("ndicapi over a serial line")
     with Emulator(nima, "ndi-serial", *settings) as emulator:
         line.check("ndiProbe", ndicapy.ndiProbe(emulator.endpoint) == ndicapy.NDI_OKAY)
         device = ndicapy.ndiOpen(emulator.endpoint)
@@ -162,7 +162,7 @@ def run_scikit(nima, folder, roms, device, firmware):
         else:
             where = {"tracker type": "polaris", "serial port": emulator.endpoint}
         tracker = NDITracker({**where, "romfiles": roms, "use quaternions": True})
-        peer.check("the form fits the firmware", tracker._capture_string[:2] == ("TX" if firmware == TEXT_FIRMWARE else "BX"))
+        peer.check("the reply format fits the firmware", tracker._capture_string[:2] == ("TX" if firmware == TEXT_FIRMWARE else "BX"))
         tracker.start_tracking()
         checked, end = 0, time.time() + 5
         while checked < 5 and time.time() < end:

@@ -1,5 +1,6 @@
-//! Every fault of every emulated device in the running loop: what is told, how soon, what becomes of the force, and whether it comes
-//! back. Writes the table that `docs/devices.md` shows. Takes some minutes in real time: `./dev test` runs it alone.
+//! Every fault of every emulated device in the running loop: what is reported, how soon, how the force changes, and
+//! whether the device recovers. Writes the table in `docs/devices.md`. Takes some minutes in real time: `./dev test`
+//! runs it alone.
 #![cfg(target_os = "linux")]
 use std::{
     cell::{Cell, RefCell},
@@ -19,12 +20,12 @@ use nima_testing::real_time::{alone, judged};
 use nima_tests::emulated::{elsewhere, started};
 use nima_world::{Plan, emulated::EmulatedRig, emulators::EmulatedFault, scene::Scene};
 
-/// A typed event of a device comes within this time; a tracker has 60 frames a second.
+/// Time limit for the event of a device; a tracker sends 60 frames a second.
 const TOLD_MS: f64 = 20.0;
 const TRACKER_TOLD_MS: f64 = 100.0;
-/// What the test's own polling and a shared computer may add.
+/// Allowance for the test's polling and for a shared computer.
 const SLACK_MS: f64 = 15.0;
-/// A device is back within this time after its fault has gone.
+/// Time limit for a device to recover after the end of its fault.
 const BACK_WITHIN: Duration = Duration::from_secs(6);
 
 struct Bench {
@@ -93,7 +94,7 @@ impl Bench {
         self.handle.roster().iter().position(|entry| entry.name == name).unwrap()
     }
 
-    /// Out of a latch if there is one, engaged, and pressing.
+    /// Releases a latched state if necessary, engages, and waits until the tip presses on the tissue.
     fn pressing(&mut self) {
         for _ in 0..5 {
             if self.until(Duration::from_secs(8), |bench| bench.rendered_n() > 0.4).is_some() {
@@ -118,7 +119,7 @@ impl Bench {
     }
 }
 
-/// What came of one fault.
+/// Result of one fault.
 struct Row {
     device: &'static str,
     fault: &'static str,
@@ -131,14 +132,14 @@ struct Row {
 }
 
 impl Row {
-    /// What is wrong with it.
+    /// What is wrong with the result, if anything.
     fn verdict(&self) -> Result<(), String> {
         let Self { device, fault, told_ms, zero_ms, back_s, by_itself, .. } = self;
         let wrong = |what: String| Err(format!("{device}, {fault}: {what}"));
         let limit_ms = SLACK_MS + if *device == "tracker" { TRACKER_TOLD_MS } else { TOLD_MS };
         let slow = ["pedal", "right servos", "tissue sensor"].contains(device);
-        // Chance decides which frames these spoil: as long as good ones come in time they are counted, and the device is lost when too
-        // many in a row are spoiled, however late that happens.
+        // Frames are affected at random: while enough good ones arrive they are only counted, and the device is lost when
+        // too many in a row are bad, which may happen at any time.
         let by_chance = ["loss", "garbage", "reorder"].contains(fault);
         if !slow && !by_chance && told_ms.is_some_and(|ms| ms > limit_ms) {
             return wrong(format!("told after {told_ms:?} ms"));
@@ -184,7 +185,7 @@ fn try_out(bench: &mut Bench, device: &'static str, fault: EmulatedFault) -> Row
         if zero.is_none() && bench.rendered_n() < 1e-9 {
             zero = Some(begin.elapsed());
         }
-        // Without a fault of the loop the force comes and goes with the task.
+        // Without a fault of the loop the force varies with the task.
         if bench.state() == LoopState::Engaged {
             zero = None;
         }
@@ -195,7 +196,7 @@ fn try_out(bench: &mut Bench, device: &'static str, fault: EmulatedFault) -> Row
     };
     let state = bench.state().word();
     bench.rig.set_fault(device, EmulatedFault::None);
-    // A fault of the device's own is cleared by a person's command, as the console's button gives it.
+    // A fault of the device itself is cleared by a command, as from the console's button.
     let back = bench.until(BACK_WITHIN, |bench| {
         let entry = &bench.handle.roster()[place];
         if let (Some(Trouble::DeviceFault { .. }), Some(clear)) = (entry.view.report().trouble, &entry.clear_faults) {

@@ -1,4 +1,5 @@
-//! The emulated rig with the real drivers: every device delivers at its place, and what the arm does the sensor feels.
+//! The emulated rig with the real drivers: every device delivers at its address, and the sensor measures the effects of
+//! the arm's motion.
 #![cfg(target_os = "linux")]
 use std::time::{Duration, Instant};
 
@@ -21,7 +22,7 @@ use nima_world::{
     scene::Scene,
 };
 
-/// Polls once a millisecond until something is so.
+/// Polls once a millisecond until the condition is true.
 fn until<D: Device>(device: &mut D, what: &str, mut good: impl FnMut(&mut D, Option<D::Reading>) -> bool) {
     let begin = Instant::now();
     while begin.elapsed() < Duration::from_secs(3) {
@@ -99,12 +100,13 @@ fn a_second_rig_at_the_same_places_is_refused_and_a_new_one_comes_after_the_firs
     assert!(told.contains("person"), "{told}");
 }
 
-/// How deep the tip presses, m.
+/// Depth to which the tip presses, m.
 const DEPTH_M: f64 = 0.005;
-/// A machine under load lets devices in real time look lost; then it is tried again.
+/// On a busy computer devices may seem lost; then the test is repeated.
 const ATTEMPTS: usize = 5;
 
-/// What the sensor feels (N, `world`) while the tip presses and after it has gone up again; `None` where a device was lost on the way.
+/// Sensor readings (N, `world`) while the tip presses and after it has been raised; `None` if a device was lost
+/// meanwhile.
 fn pressed(rig: &EmulatedRig, set: &ArmSet) -> Option<[Vec<Vector3<f64>>; 2]> {
     let mut arm = kinova::open(set.arm.kinova().unwrap()).unwrap();
     let mut sensor = bota::Driver::open(set.sensor.bota().unwrap()).unwrap();
@@ -116,14 +118,14 @@ fn pressed(rig: &EmulatedRig, set: &ArmSet) -> Option<[Vec<Vector3<f64>>; 2]> {
     let (mut ticked_s, mut servoing) = (0.0, false);
     arm.poll(0.0);
     arm.enter_low_level().unwrap();
-    // Down within a second, a moment there, and up again.
+    // Down within a second, a pause, and up again.
     while tick < 3500 {
         let t_s = begin.elapsed().as_secs_f64();
         if let Some(reading) = arm.poll(t_s) {
             servoing = reading.value.servoing;
         }
         let newest = sensor.poll(t_s).map(|stamped| stamped.value);
-        // After a pause of a busy machine the way goes on, it does not jump.
+        // After a delay of a busy computer the motion continues without a jump.
         while servoing && ticked_s < t_s {
             let share = (f64::from(tick) * 1e-3).min(1.0) - (f64::from(tick) * 1e-3 - 2.0).clamp(0.0, 1.0);
             inverse.step(&(truth.tip_m + way_m * share));
@@ -174,7 +176,7 @@ fn both_arms_of_the_embedded_rigs_reach_all_of_their_space() {
         for side in Side::ALL {
             let set = devices.arm(side).unwrap();
             let (arm, rcm) = (Arm::new(&set.mount).unwrap(), Rcm::new(&set.rcm).unwrap());
-            // Where the hand of the scene begins, as far from the trocar.
+            // The start position of the scene's hand, at the same distance from the trocar.
             let start_m =
                 set.rcm.trocar_m + Vector3::new(if side == Side::Right { -0.03 } else { 0.03 }, 0.042, -0.123);
             let ready = find(&arm, &rcm, &start_m).unwrap();
@@ -206,14 +208,14 @@ fn the_tracker_tells_how_the_endoscope_looks_whatever_the_rig_file_has() {
         std::thread::sleep(Duration::from_millis(1));
     }
     assert!(seen.iter().all(|apart_deg| apart_deg.is_some_and(|deg| deg < 0.5)), "{seen:?} degrees apart");
-    // Calibrations belong to the sensors by the numbers that these tell on their wires.
+    // Calibrations are bound to the serial numbers that the sensors report.
     for (side, number) in [(Side::Right, "SN000901"), (Side::Left, "SN000902")] {
         let of_side: Vec<_> = roster.iter().filter(|entry| entry.force_sensor_of == Some(side)).collect();
         assert_eq!(of_side.len(), 1);
         assert_eq!(of_side[0].name, format!("{} sensor", side.word()));
         assert_eq!(of_side[0].view.report().identity.unwrap().serial, number);
     }
-    // The unit is blind: nobody guesses how the endoscope looks.
+    // The tracker sends nothing: the orientation of the endoscope must not be assumed.
     assert!(emulated.set_fault("tracker", EmulatedFault::Silence));
     let blind = |rig: &mut DeviceRig| {
         let inputs = rig.read(begin.elapsed().as_secs_f64());
@@ -226,27 +228,27 @@ fn the_tracker_tells_how_the_endoscope_looks_whatever_the_rig_file_has() {
     }
 }
 
-/// What the jaws showed in motion.
+/// Motion of the jaws.
 #[derive(Clone, Copy, Debug)]
 struct JawsShown {
-    /// How far they are at each moment from where they are asked to be, root mean square, degrees; infinite where devices were away too
-    /// long.
+    /// Distance from the commanded orientation over time, root mean square, degrees; infinite if devices were missing
+    /// too long.
     rms_deg: f64,
-    /// How late they come, s: printed with a failure.
+    /// Delay, s: printed with a failure.
     #[expect(dead_code, reason = "read by its Debug form, in the message of a failure")]
     late_s: f64,
-    /// 99th percentile of the time from one reading to the next, s; a quiet machine has 1 to 2 ms.
+    /// 99th percentile of the time between readings, s; 1 to 2 ms on an idle computer.
     period_p99_s: f64,
 }
 
 impl JawsShown {
-    /// The readings came in time, so that the figures are of the PID and not of the machine.
+    /// Whether the readings were timely, so that the figures show the PID and not the load of the computer.
     fn is_quiet(&self) -> bool {
         self.period_p99_s < 0.004
     }
 }
 
-/// The jaws turn in all three ways against the pull of their cables.
+/// The jaws rotate about all three axes against the load of their cables.
 fn jaws_in_motion(devices: &Settings) -> JawsShown {
     let (mut rig, _) = DeviceRig::start(devices, 1e-3, [false; SIDES]).unwrap();
     let begin = Instant::now();
@@ -278,7 +280,7 @@ fn jaws_in_motion(devices: &Settings) -> JawsShown {
     if way.len() < 4000 {
         return JawsShown { rms_deg: f64::INFINITY, late_s: f64::INFINITY, period_p99_s };
     }
-    // The first second is for the integral to find the pull.
+    // The first second is for the integral part to settle.
     let rms_deg = |late: usize| {
         let pairs = way[..way.len() - late].iter().zip(&way[late..]).skip(1000);
         let (sum, count) = pairs.fold((0.0, 0.0), |(sum, count), ((asked, _), (_, jaws))| {
@@ -291,7 +293,8 @@ fn jaws_in_motion(devices: &Settings) -> JawsShown {
     JawsShown { rms_deg: rms_deg(0), late_s, period_p99_s }
 }
 
-/// In real time, over the real wires: a machine that keeps the exchanges waiting cannot judge, and is no reason to fail.
+/// In real time with real connections: on a computer too busy for timely exchanges the result cannot be judged, which
+/// is not a failure.
 #[test]
 fn the_pid_holds_the_jaws_in_motion_against_their_cables() {
     let _alone = alone();

@@ -1,4 +1,4 @@
-//! The loop's process is killed in the middle of a contact: the devices' own watchdogs take the force from the hand and hold the arm.
+//! The loop's process is killed during a contact: the watchdogs of the devices must remove the force and hold the arm.
 #![cfg(target_os = "linux")]
 use std::{
     process::{Child, Command, Stdio},
@@ -20,14 +20,14 @@ use nima_world::{
 };
 
 const DEVICES: &str = "NIMA_TEST_DEVICES";
-/// Watchdog of the handle as the rig file has it, s.
+/// Watchdog of the handle in the rig file, s.
 const WATCHDOG_S: f64 = 0.020;
-/// Of the emulated arm, s.
+/// Watchdog of the emulated arm, s.
 const ARM_WATCHDOG_S: f64 = 0.050;
-/// What a shared computer may add, s.
+/// Allowance for a shared computer, s.
 const SLACK_S: f64 = 0.030;
 
-/// The process that is killed; the test below starts it.
+/// The process that is killed; started by the test below.
 #[test]
 #[ignore = "run by the other test, which kills it"]
 fn the_loop_of_another_process() {
@@ -80,7 +80,8 @@ fn a_killed_process_leaves_no_force_in_the_hand() {
             }
             None
         };
-        // A busy machine may hold a loop up before it has touched anything: then it has stopped, and another one is tried.
+        // A busy computer may stall the loop before there is a contact: then it has stopped, and the test starts
+        // another one.
         let feels = |child: Killed| {
             until(Duration::from_secs(8), &|truth| truth.applied.force_n.norm() > 0.5 && truth.servoing).map(|_| child)
         };

@@ -1,4 +1,5 @@
-//! Every device of an emulated rig is found well; then each is made to fail, and the right cause and a cure come out in time.
+//! Every device of an emulated rig is found in order; then each is made to fail, and the right cause and cure must be
+//! reported in time.
 #![cfg(target_os = "linux")]
 use std::time::{Duration, Instant};
 
@@ -19,7 +20,7 @@ fn tried(devices: &Settings) -> Vec<Diagnosis> {
     let found = diagnose(rig_probes(devices), TIMEOUT);
     assert!(begin.elapsed() < Duration::from_secs(2), "{:?}", begin.elapsed());
     for one in &found {
-        // A first-generation sensor starts anew when it is opened.
+        // A first-generation sensor restarts when it is opened.
         let starts_anew = one.name == "tissue sensor" || one.name == "right sensor" && right_is_first_generation;
         let most_s = if starts_anew { 2.0 } else { 1.0 };
         assert!(one.took_s < most_s, "{one:?}");
@@ -48,7 +49,7 @@ fn trouble<'a>(found: &'a [Diagnosis], name: &str) -> &'a Trouble {
     }
 }
 
-/// The troubles of the devices, each by its kind.
+/// Asserts the kind of trouble of each device.
 macro_rules! assert_told {
     ($found:expr, $($name:literal => $kind:pat),+ $(,)?) => {{
         let found = &$found;
@@ -56,12 +57,12 @@ macro_rules! assert_told {
     }};
 }
 
-/// Whether all are connected; their rates as they should be.
+/// Whether all are connected at their expected rates.
 fn all_well(found: &[Diagnosis]) -> bool {
     found.iter().all(|one| match &one.outcome {
         Outcome::Trouble { .. } => false,
         Outcome::Connected(connected) => {
-            // Those that are asked, or speak on a change, have no rate of their own.
+            // Devices that are polled, or report changes only, have no rate of their own.
             let usual_hz = match one.name.as_str() {
                 "tracker" => Some(60.0),
                 "tissue sensor" => Some(800.0),
@@ -75,12 +76,12 @@ fn all_well(found: &[Diagnosis]) -> bool {
 }
 
 #[test]
-fn a_rig_that_runs_is_found_whole() {
+fn a_running_rig_is_reported_without_trouble() {
     let _alone = alone();
     let folder = tempfile::tempdir().unwrap();
     let devices = elsewhere(folder.path());
     let rig = started(&devices);
-    // A machine under load lets a device in real time look silent now and then.
+    // On a busy computer a device may seem silent at times.
     let tries: Vec<_> = (0..5).map(|_| tried(&devices)).take_while(|found| !all_well(found)).collect();
     assert!(tries.len() < 5, "{:#?}", tries.last());
     let served: Vec<_> = rig.servings().iter().map(|device| device.name.clone()).collect();
@@ -89,7 +90,7 @@ fn a_rig_that_runs_is_found_whole() {
 }
 
 #[test]
-fn a_rig_that_does_not_run_is_told_device_by_device() {
+fn a_rig_that_does_not_run_is_reported_device_by_device() {
     let _alone = alone();
     let folder = tempfile::tempdir().unwrap();
     let found = tried(&elsewhere(folder.path()));
@@ -106,7 +107,7 @@ fn a_rig_that_does_not_run_is_told_device_by_device() {
 }
 
 #[test]
-fn settings_that_do_not_fit_are_told_by_what_answers() {
+fn wrong_settings_are_reported_with_the_device_that_answers() {
     let _alone = alone();
     let folder = tempfile::tempdir().unwrap();
     let devices = elsewhere(folder.path());
@@ -139,14 +140,14 @@ fn settings_that_do_not_fit_are_told_by_what_answers() {
 }
 
 #[test]
-fn silence_and_faults_of_every_device_are_told() {
+fn silence_and_faults_of_every_device_are_reported() {
     let _alone = alone();
     let folder = tempfile::tempdir().unwrap();
     let devices = elsewhere(folder.path());
     let rig = started(&devices);
     let all = |fault| {
         rig.servings().iter().for_each(|device| device.serving.faults.set(fault));
-        // An emulator that waits for its client looks at its switch once a millisecond.
+        // An emulator that waits for its client checks its fault switch once a millisecond.
         std::thread::sleep(Duration::from_millis(20));
     };
     all(EmulatedFault::Silence);
@@ -172,7 +173,7 @@ fn silence_and_faults_of_every_device_are_told() {
 }
 
 #[test]
-fn what_somebody_else_holds_and_what_waits_for_calibration_are_told() {
+fn a_device_in_use_and_one_that_waits_for_calibration_are_reported() {
     let _alone = alone();
     let folder = tempfile::tempdir().unwrap();
     let mut devices = Settings { left: None, tracker: None, endoscope: None, pedal: None, ..elsewhere(folder.path()) };

@@ -1,7 +1,7 @@
-//! Leaving in order: Ctrl-C, SIGTERM, SIGHUP, or the end of an input that a parent process holds.
+//! Orderly end of the program on Ctrl-C, SIGTERM, SIGHUP, or when a parent process closes standard input.
 //!
-//! Whoever runs something looks at [`Leave::is_asked`] and ends it; what must not wait for that, such as an arm that is engaged, is
-//! ended at once by [`Leave::at_once`].
+//! Long-running code checks [`Leave::is_asked`] and ends. What must not wait for that, such as an engaged arm, is ended
+//! immediately through [`Leave::at_once`].
 
 use std::{
     io,
@@ -14,7 +14,7 @@ use std::{
 
 use anyhow::Context as _;
 
-/// Whether this process was asked to end. Copies are of one and the same.
+/// Whether this process has been asked to end. Clones share the same state.
 #[derive(Clone, Default)]
 pub struct Leave(Arc<Asked>);
 
@@ -25,10 +25,10 @@ struct Asked {
 }
 
 impl Leave {
-    /// Asked by Ctrl-C, SIGTERM and SIGHUP; for one time in a process.
+    /// Reacts to Ctrl-C, SIGTERM and SIGHUP; may be called once in a process.
     ///
     /// # Errors
-    /// The operating system does not let them be caught.
+    /// If the operating system does not allow a signal handler.
     pub fn on_signals() -> anyhow::Result<Self> {
         let leave = Self::default();
         let asked = leave.clone();
@@ -36,7 +36,8 @@ impl Leave {
         Ok(leave)
     }
 
-    /// Asked also by the end of standard input. A parent holds its other end and never writes: it ends with the parent, however that ends.
+    /// Reacts also to the end of standard input. A parent process holds its other end without writing; it closes when
+    /// the parent ends for whatever reason.
     pub fn with_input(&self) {
         let asked = self.clone();
         thread::spawn(move || {
@@ -45,23 +46,24 @@ impl Leave {
         });
     }
 
-    /// Asks.
+    /// Asks the process to end.
     pub fn ask(&self) {
         self.0.flag.store(true, Ordering::Release);
         self.act();
     }
 
-    /// It was asked.
+    /// Whether the process has been asked to end.
     pub fn is_asked(&self) -> bool {
         self.0.flag.load(Ordering::Acquire)
     }
 
-    /// The same as a flag.
+    /// The same state as a flag.
     pub fn flag(&self) -> &AtomicBool {
         &self.0.flag
     }
 
-    /// What is done as soon as it is asked, on another thread; it replaces what was given before.
+    /// Sets a function that is called on another thread as soon as the process is asked to end; it replaces the
+    /// previous one.
     pub fn at_once(&self, act: impl Fn() + Send + 'static) {
         *self.lock() = Some(Box::new(act));
         if self.is_asked() {

@@ -1,5 +1,5 @@
-//! The faces of NIMA Console: the command line and the window.
-// A closed stderr or stdout makes these macros panic: see `telling` and `command::output`.
+//! The user interfaces of NIMA Console: command line and window.
+// These macros panic if stderr or stdout is closed: use `telling` and `command::output`.
 #![cfg_attr(not(test), deny(clippy::print_stderr, clippy::print_stdout))]
 
 pub mod command;

@@ -1,11 +1,11 @@
-//! What the program says on stderr. Nobody may be there to read it any more: that is no reason to panic.
+//! Messages on stderr. If stderr is closed they are lost; that must not cause a panic.
 
 use std::{
     fmt::Display,
     io::{self, Write as _},
 };
 
-/// Writes one line on stderr; a stderr that is closed swallows it.
+/// Writes one line to stderr; errors are ignored.
 pub fn tell(line: impl Display) {
     writeln!(io::stderr().lock(), "{line}").ok();
 }

@@ -1,8 +1,8 @@
-//! Calibrations that prove themselves: each gives a verdict with its reason and its residuals on data it was not fitted on.
+//! Calibrations: each returns a verdict with its reason, and the residuals on data that were not used for the fit.
 //!
-//! `gravity` takes the tool's weight and the sensor's bias out of a wrist sensor's readings; `correspondence` finds how the
-//! sensor under the tissue is turned against the one at the wrist. A [`Record`] of each is bound to sensor, tool and date.
-//! SI units; frames as in [`crate::frames`].
+//! `gravity` removes the tool's weight and the sensor's bias from a wrist sensor's readings; `correspondence` finds the
+//! rotation between the sensor under the tissue and the one at the wrist. A [`Record`] of each is bound to sensor, tool
+//! and date. SI units; frames as in [`crate::frames`].
 
 pub mod correspondence;
 pub mod gravity;

@@ -1,4 +1,4 @@
-//! What every calibration says of itself.
+//! Verdicts and error statistics, common to all calibrations.
 
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
@@ -7,16 +7,16 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Verdict {
-    /// Good on data it was not fitted on.
+    /// Accurate on data that were not used for the fit.
     Accepted,
-    /// The data do not determine the answer: too few, or too alike.
+    /// The data do not determine the result: too few, or too similar.
     InsufficientMotion,
-    /// The data determine an answer, and the answer does not explain them.
+    /// The data determine a result, but it does not explain them.
     PoorData,
 }
 
-/// Errors per axis (x, y, z): mean of the absolute error, standard deviation of the error, largest absolute error. In the
-/// unit of what was compared (N or Nm).
+/// Errors per axis (x, y, z): mean absolute error, standard deviation, and largest absolute error, in the unit of the
+/// compared quantity (N or Nm).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct AxisStats {
@@ -29,7 +29,7 @@ pub struct AxisStats {
 }
 
 impl AxisStats {
-    /// Statistics of these errors; zeros for none.
+    /// Statistics of these errors; zeros if there are none.
     pub fn of(errors: impl IntoIterator<Item = Vector3<f64>>) -> Self {
         let mut count = 0.0;
         let [mut sum, mut squares, mut absolute, mut max] = [Vector3::<f64>::zeros(); 4];
@@ -59,13 +59,13 @@ impl AxisStats {
     }
 }
 
-/// Errors on the data that a model was fitted on, and on data it was not.
+/// Errors on the data used for a fit, and on held-out data.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Residuals {
-    /// On the data of the fit.
+    /// On the data used for the fit.
     pub fitted: AxisStats,
-    /// Out of sample.
+    /// On held-out data.
     pub held_out: AxisStats,
 }
 

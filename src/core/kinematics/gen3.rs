@@ -12,21 +12,23 @@ pub const JOINTS: usize = 7;
 /// One number per joint, from the base to the flange.
 pub type Joints = SVector<f64, JOINTS>;
 
-/// Fastest motion of each joint, rad/s: 80 and 70 degrees per second (`gen3_macro.xacro`, `velocity`).
+/// Largest speed of each joint, rad/s: 80 and 70 degrees per second (`gen3_macro.xacro`, `velocity`).
 pub const SPEED_RAD_S: [f64; JOINTS] = [1.3963, 1.3963, 1.3963, 1.3963, 1.2218, 1.2218, 1.2218];
 
-/// Highest acceleration of each joint, rad/s^2: the hard joint limits of `ros_kortex`.
+/// Largest acceleration of each joint, rad/s^2: the hard joint limits of `ros_kortex`.
 pub const ACCELERATION_RAD_S2: [f64; JOINTS] = [4.94, 4.94, 4.94, 4.94, 9.5, 9.5, 9.5];
 
-/// Furthest angle of each joint to both sides, rad (`gen3_macro.xacro`, `limit`); infinite where it turns without end.
+/// Largest angle of each joint in both directions, rad (`gen3_macro.xacro`, `limit`); infinite for a joint that turns
+/// without end.
 pub const LIMIT_RAD: [f64; JOINTS] = [f64::INFINITY, 2.24, f64::INFINITY, 2.57, f64::INFINITY, 2.09, f64::INFINITY];
 
-/// Place of the shoulder (joint 2) above the base, m, and how far the flange can be from it, m: links in a straight line.
+/// Height of the shoulder (joint 2) above the base, m, and largest distance of the flange from it, m: all links in a
+/// straight line.
 pub(super) const SHOULDER_M: f64 = 0.284_81;
-/// See [`SHOULDER_M`]; rounded up by the millimetres that the joints are beside the line.
+/// See [`SHOULDER_M`]; includes some millimetres because the joints are not exactly on one line.
 pub(super) const REACH_M: f64 = 0.420_76 + 0.314_36 + 0.167_455 + 0.002;
 
-/// A fixed turn about x between two links.
+/// A fixed rotation about x between two links.
 #[derive(Clone, Copy)]
 enum Turn {
     Half,
@@ -35,7 +37,7 @@ enum Turn {
 }
 
 impl Turn {
-    /// `rotation * Rx(angle)`, exact: only columns change places and signs.
+    /// `rotation * Rx(angle)`, exact: only columns and signs are exchanged.
     fn after(self, rotation: &Matrix3<f64>) -> Matrix3<f64> {
         let [x, y, z] = [0, 1, 2].map(|i| rotation.column(i).into_owned());
         match self {
@@ -46,7 +48,8 @@ impl Turn {
     }
 }
 
-/// From one joint to the next: shift (m) in the frame of the one before, then the turn. The last is the flange.
+/// From each joint to the next: translation (m) in the frame of the previous one, then rotation. The last one is the
+/// flange.
 const LINKS: [([f64; 3], Turn); JOINTS + 1] = [
     ([0.0, 0.0, 0.156_43], Turn::Half),
     ([0.0, 0.005_375, -0.128_38], Turn::Quarter),
@@ -58,19 +61,19 @@ const LINKS: [([f64; 3], Turn); JOINTS + 1] = [
     ([0.0, 0.0, -0.061_525], Turn::Half),
 ];
 
-/// Where everything is for one set of joint angles, in the frame `world` that the base is mounted in.
+/// Positions and axes of all joints for one set of joint angles, in the frame `world` in which the base is mounted.
 #[derive(Clone, Copy, Debug)]
 pub struct Chain {
     /// A point on each joint's axis, m.
     pub origin_m: [Vector3<f64>; JOINTS],
-    /// Each joint's axis, unit length; positive angles turn right-handed about it.
+    /// Each joint's axis, unit length; positive angles are right-handed about it.
     pub axis: [Vector3<f64>; JOINTS],
-    /// The flange (the tool frame of the maker); z points away from the arm.
+    /// The flange (the manufacturer's tool frame); z points away from the arm.
     pub world_from_flange: IsometryMatrix3<f64>,
 }
 
 impl Chain {
-    /// Forward kinematics of an arm whose base stands at `world_from_base`.
+    /// Forward kinematics of an arm with its base at `world_from_base`.
     pub fn new(world_from_base: &IsometryMatrix3<f64>, joint_rad: &Joints) -> Self {
         let mut rotation = *world_from_base.rotation.matrix();
         let mut place_m = world_from_base.translation.vector;
@@ -111,7 +114,7 @@ fn turned_about_z(rotation: &Matrix3<f64>, angle_rad: f64) -> Matrix3<f64> {
     Matrix3::from_columns(&[x * cos + y * sin, y * cos - x * sin, z])
 }
 
-/// Least distance of a joint to its limit, rad; negative beyond it.
+/// Smallest distance of a joint from its limit, rad; negative beyond it.
 ///
 /// ```
 /// use nima_core::kinematics::{Joints, LIMIT_RAD, limit_margin_rad};
@@ -204,7 +207,7 @@ mod tests {
                     - before * nalgebra::Point3::from(on_flange_m))
                     / (2.0 * H);
                 let between = (after.rotation * before.rotation.inverse()).into_inner();
-                // Twice the sine of the angle, which is small.
+                // Twice the sine of the small angle.
                 let turn = Vector3::new(
                     between[(2, 1)] - between[(1, 2)],
                     between[(0, 2)] - between[(2, 0)],

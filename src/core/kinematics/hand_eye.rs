@@ -1,20 +1,20 @@
-//! Hand-eye mapping: what the hand does in front of the picture, the tip does in the picture.
+//! Hand-eye mapping: the tip moves in the endoscope's picture as the hand moves in front of it.
 //!
-//! Frames: `leader` (the haptic device), `view` (the endoscope's picture: x right, y down, z into the picture), `world`. Positions in m.
-//! The clutch joins hand and tip where both are: engaging, releasing and changing the mapping never move the tip by themselves.
-//! Input that is not finite gives no motion.
+//! Frames: `leader` (the haptic device), `view` (the endoscope's picture: x right, y down, z into the picture),
+//! `world`. Positions in m. When the clutch is released, the hand is coupled to the tip at their present positions:
+//! engaging, releasing and changing the mapping never move the tip. Input that is not finite gives no motion.
 
 use nalgebra::{Matrix3, Rotation3, UnitQuaternion, Vector3};
 use thiserror::Error;
 
-/// Least and greatest scale of the hand's motion.
+/// Smallest and largest scale of the hand's motion.
 pub const SCALES: std::ops::RangeInclusive<f64> = 0.01..=5.0;
 
 /// Why a mapping is refused.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 #[expect(missing_docs, reason = "the messages say it")]
 pub enum MappingError {
-    /// The rotation is not one.
+    /// The rotation is not finite.
     #[error("the rotation from the leader to the arm's base is not finite: give the endoscope's pose again")]
     Rotation,
     /// The scale is out of range.
@@ -22,13 +22,15 @@ pub enum MappingError {
     Scale { scale: f64 },
 }
 
-/// `view_from_leader` of an Omega whose base faces the user (x towards the user, y to the user's right, z up) below a screen.
+/// `view_from_leader` of an Omega below a screen whose base faces the user (x towards the user, y to the user's right,
+/// z up).
 pub fn view_from_omega() -> UnitQuaternion<f64> {
     let matrix = Matrix3::new(0.0, 1.0, 0.0, 0.0, 0.0, -1.0, -1.0, 0.0, 0.0);
     UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix_unchecked(matrix))
 }
 
-/// `world_from_view` by the tracker `c`, which sees the marker `m` on the arm's instrument and another one on the endoscope.
+/// `world_from_view` measured by the tracker `c`, which sees the marker `m` on the instrument and another one on the
+/// endoscope.
 pub fn world_from_tracked_view(
     world_from_m: &UnitQuaternion<f64>,
     m_from_c: &UnitQuaternion<f64>,
@@ -37,7 +39,7 @@ pub fn world_from_tracked_view(
     world_from_m * m_from_c * c_from_view
 }
 
-/// Which way and how far the tip goes when the hand moves.
+/// Direction and distance of the tip's motion for a motion of the hand.
 ///
 /// ```
 /// use nalgebra::{UnitQuaternion, Vector3};
@@ -58,17 +60,17 @@ pub struct Mapping {
 }
 
 impl Default for Mapping {
-    /// The leader's axes are the workspace's, one to one.
+    /// The leader's axes are those of the workspace, scale 1.
     fn default() -> Self {
         Self { world_from_leader: UnitQuaternion::identity(), scale: 1.0 }
     }
 }
 
 impl Mapping {
-    /// A mapping by the chain `world_from_view * view_from_leader`; `scale` is the tip's way per way of the hand.
+    /// The mapping `world_from_view * view_from_leader`; `scale` is the tip's distance per distance of the hand.
     ///
     /// # Errors
-    /// When a rotation is not finite or the scale is not within [`SCALES`].
+    /// [`MappingError`] if a rotation is not finite or the scale is not within [`SCALES`].
     pub fn new(
         world_from_view: &UnitQuaternion<f64>,
         view_from_leader: &UnitQuaternion<f64>,
@@ -88,38 +90,39 @@ impl Mapping {
     /// The same with another scale.
     ///
     /// # Errors
-    /// When the scale is not within [`SCALES`].
+    /// [`MappingError`] if the scale is not within [`SCALES`].
     pub fn scaled(&self, scale: f64) -> Result<Self, MappingError> {
         if SCALES.contains(&scale) { Ok(Self { scale, ..*self }) } else { Err(MappingError::Scale { scale }) }
     }
 
-    /// The rotation that takes a vector of the leader to the arm's base.
+    /// Rotation from the leader's frame to `world`.
     pub const fn world_from_leader(&self) -> &UnitQuaternion<f64> {
         &self.world_from_leader
     }
 
-    /// The tip's way per way of the hand.
+    /// The tip's distance per distance of the hand.
     pub const fn scale(&self) -> f64 {
         self.scale
     }
 
-    /// The tip's way (m, `world`) for a way of the hand (m, `leader`).
+    /// Displacement of the tip (m, `world`) for a displacement of the hand (m, `leader`).
     pub fn to_tip(&self, hand_m: &Vector3<f64>) -> Vector3<f64> {
         self.world_from_leader * hand_m * self.scale
     }
 
-    /// A force at the tip (N, `world`) as the leader's axes have it. Forces are not scaled here: gain is the gates' business.
+    /// A force at the tip (N, `world`) in the leader's frame. Forces are not scaled here; the gain belongs to the
+    /// gates.
     pub fn force_to_hand(&self, tip_n: &Vector3<f64>) -> Vector3<f64> {
         self.world_from_leader.inverse() * tip_n
     }
 }
 
-/// A hand: where its device says it is, in the leader's frame.
+/// The hand's pose measured by its device, in the leader's frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hand {
-    /// In the handle's own frame.
+    /// Position in the leader's frame, m.
     pub position_m: Vector3<f64>,
-    /// Orientation; `None` where the device has no wrist.
+    /// Orientation; `None` if the device has no wrist.
     pub orientation: Option<UnitQuaternion<f64>>,
 }
 
@@ -129,14 +132,14 @@ impl Hand {
         Self { position_m, orientation: None }
     }
 
-    /// Every number in it is finite.
+    /// Whether every number in it is finite.
     pub fn is_finite(&self) -> bool {
         self.position_m.iter().all(|x| x.is_finite())
             && self.orientation.is_none_or(|q| q.coords.iter().all(|x| x.is_finite()))
     }
 }
 
-/// Where the tip shall be, in `world`.
+/// Commanded pose of the tip, in `world`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Target {
     /// Position, m.
@@ -145,51 +148,51 @@ pub struct Target {
     pub world_from_jaws: UnitQuaternion<f64>,
 }
 
-/// The clutch and where hand and tip were joined.
+/// State of the coupling between hand and tip.
 #[derive(Clone, Copy, Debug)]
 pub struct HandEye {
     mapping: Mapping,
     target: Target,
-    /// The hand as it was one step ago; `None` while released.
+    /// The hand's pose in the previous step; `None` while not coupled.
     hand: Option<Hand>,
     engaged: bool,
 }
 
 impl HandEye {
-    /// Released, with the tip where it is.
+    /// Not coupled; the tip holds `target`.
     pub const fn new(mapping: Mapping, target: Target) -> Self {
         Self { mapping, target, hand: None, engaged: false }
     }
 
-    /// The mapping in force.
+    /// The present mapping.
     pub const fn mapping(&self) -> &Mapping {
         &self.mapping
     }
 
-    /// Takes another mapping (the endoscope moved, the scale changed); it holds for motion from now on.
+    /// Changes the mapping (the endoscope moved, the scale changed); it applies to motion from now on.
     pub const fn set_mapping(&mut self, mapping: Mapping) {
         self.mapping = mapping;
     }
 
-    /// Joins the hand to the tip from the next step on. `target` is where the tip is commanded to be now.
+    /// Couples the hand to the tip from the next step on. `target` is the present command to the tip.
     pub const fn engage(&mut self, target: Target) {
         self.target = target;
         self.hand = None;
         self.engaged = true;
     }
 
-    /// Lets the hand go; the target stays.
+    /// Ends the coupling; the target stays.
     pub const fn release(&mut self) {
         self.engaged = false;
         self.hand = None;
     }
 
-    /// Hand and tip are joined.
+    /// Whether hand and tip are coupled.
     pub const fn is_engaged(&self) -> bool {
         self.engaged
     }
 
-    /// Takes the hand's pose in and gives where the tip shall be.
+    /// Updates the hand's pose; returns the command to the tip.
     pub fn step(&mut self, hand: &Hand) -> Target {
         if !self.engaged || !hand.is_finite() {
             return self.target;
@@ -199,7 +202,7 @@ impl HandEye {
             if let (Some(now), Some(then)) = (hand.orientation, before.orientation) {
                 let world_from_leader = self.mapping.world_from_leader;
                 let turn = world_from_leader * (now * then.inverse()) * world_from_leader.inverse();
-                // Many small turns: the length of the product would drift from one.
+                // Renormalised, because rounding of many small rotations accumulates.
                 self.target.world_from_jaws =
                     UnitQuaternion::new_normalize((turn * self.target.world_from_jaws).into_inner());
             }
@@ -225,7 +228,7 @@ mod tests {
         }
     }
 
-    /// The endoscope looks straight down, its picture's right is the base's -y.
+    /// The endoscope looks straight down; the right of its picture is the base's -y.
     fn looking_down() -> UnitQuaternion<f64> {
         let columns = [-Vector3::y(), -Vector3::x(), -Vector3::z()];
         UnitQuaternion::from_rotation_matrix(&Rotation3::from_basis_unchecked(&columns))
@@ -287,7 +290,7 @@ mod tests {
         let held = hand(0.0, 0.0, 0.0);
         hand_eye.step(&Hand { orientation: Some(start), ..held });
         let jaws = hand_eye.step(&Hand { orientation: Some(turned), ..held });
-        // About the line of sight (away from the user) becomes about the direction of the picture: the base's -z.
+        // A rotation about the line of sight (away from the user) becomes one about the picture's z: the base's -z.
         let expected = UnitQuaternion::from_scaled_axis(-Vector3::z() * 0.3) * target().world_from_jaws;
         assert!(jaws.world_from_jaws.angle_to(&expected) < 1e-12);
         assert_eq!(jaws.tip_m, target().tip_m);

@@ -1,6 +1,7 @@
-//! What hangs on the flange, where the base stands, and the pose of both together.
+//! The instrument on the flange, the mounting of the base, and the pose of arm and instrument.
 //!
-//! `flange_from_s1` is the place of the wrist sensor; its z axis runs along the shaft, `shaft_m` from the sensor's origin to the tip.
+//! `flange_from_s1` is the pose of the wrist sensor; its z axis runs along the shaft, and `shaft_m` is the distance
+//! from the sensor's origin to the tip.
 
 use nalgebra::{IsometryMatrix3, Rotation3, Translation3, UnitQuaternion, Vector3};
 use serde::{Deserialize, Serialize};
@@ -9,32 +10,32 @@ use thiserror::Error;
 use super::gen3::{Chain, Joints};
 use crate::frames::from_roll_pitch_yaw_deg;
 
-/// How the arm is mounted and what it carries. All of it is measured on the rig: there is no default.
+/// Mounting of the arm and geometry of its instrument. Everything is measured on the rig, so there are no defaults.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ArmSettings {
-    /// Place of the arm's base in the workspace frame, m; zero where the workspace frame is that base.
+    /// Position of the arm's base in the workspace frame, m; zero if the workspace frame is that of the base.
     #[serde(default)]
     pub base_m: Vector3<f64>,
     /// Roll, pitch, yaw of `world_from_base`, degrees.
     #[serde(default)]
     pub base_deg: Vector3<f64>,
-    /// Origin of the wrist sensor as seen from the flange, m.
+    /// Origin of the wrist sensor in the frame of the flange, m.
     pub sensor_m: Vector3<f64>,
     /// Roll, pitch, yaw of `flange_from_s1`, degrees.
     pub sensor_deg: Vector3<f64>,
-    /// From the sensor's origin along its z axis to the tip, m.
+    /// Distance from the sensor's origin along its z axis to the tip, m.
     pub shaft_m: f64,
 }
 
-/// Why an arm cannot be made.
+/// Why the settings of an arm are invalid.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 #[expect(missing_docs, reason = "the messages say it")]
 pub enum ArmError {
     /// A length or angle is not finite.
     #[error("the arm's {field} is not a finite number: measure it and write it into the rig file")]
     NotFinite { field: &'static str },
-    /// A shaft without length, or longer than any instrument.
+    /// The shaft's length is zero, or longer than any instrument.
     #[error("the shaft's length is {shaft_m} m: it must be above 0 and at most 1 m, from the sensor to the tip")]
     ShaftLength { shaft_m: f64 },
 }
@@ -61,10 +62,10 @@ pub struct Arm {
 }
 
 impl Arm {
-    /// Takes the settings in.
+    /// Checks the settings.
     ///
     /// # Errors
-    /// When a number is not finite or the shaft's length is not in (0, 1] m.
+    /// [`ArmError`] if a number is not finite or the shaft's length is not in (0, 1] m.
     pub fn new(settings: &ArmSettings) -> Result<Self, ArmError> {
         let ArmSettings { base_m, base_deg, sensor_m, sensor_deg, shaft_m } = settings;
         let vectors = [("base_m", base_m), ("base_deg", base_deg), ("sensor_m", sensor_m), ("sensor_deg", sensor_deg)];
@@ -73,7 +74,7 @@ impl Arm {
                 return Err(ArmError::NotFinite { field });
             }
         }
-        // Written so that NaN is refused too.
+        // Written so that NaN is refused as well.
         if !(*shaft_m > 0.0 && *shaft_m <= 1.0) {
             return Err(ArmError::ShaftLength { shaft_m: *shaft_m });
         }
@@ -84,22 +85,22 @@ impl Arm {
         })
     }
 
-    /// From the sensor to the tip, m.
+    /// Distance from the sensor to the tip, m.
     pub const fn shaft_m(&self) -> f64 {
         self.shaft_m
     }
 
-    /// Where the base stands.
+    /// Pose of the base.
     pub const fn world_from_base(&self) -> &IsometryMatrix3<f64> {
         &self.world_from_base
     }
 
-    /// Where the wrist sensor sits.
+    /// Pose of the wrist sensor on the flange.
     pub const fn flange_from_s1(&self) -> &IsometryMatrix3<f64> {
         &self.flange_from_s1
     }
 
-    /// Where everything is at these joint angles (rad).
+    /// Pose of arm and instrument for these joint angles (rad).
     pub fn pose(&self, joint_rad: &Joints) -> Pose {
         let chain = Chain::new(&self.world_from_base, joint_rad);
         let world_from_s1 = chain.world_from_flange * self.flange_from_s1;
@@ -115,33 +116,34 @@ fn isometry(place_m: &Vector3<f64>, angles_deg: &Vector3<f64>) -> IsometryMatrix
     IsometryMatrix3::from_parts(Translation3::from(*place_m), rotation)
 }
 
-/// Arm and instrument at one set of joint angles, all in `world`.
+/// Arm and instrument for one set of joint angles, all in `world`.
 #[derive(Clone, Copy, Debug)]
 pub struct Pose {
     /// The joints.
     pub chain: Chain,
-    /// The wrist sensor.
+    /// Pose of the wrist sensor.
     pub world_from_s1: IsometryMatrix3<f64>,
     /// Directions of the sensor's x and y, across the shaft.
     pub across: [Vector3<f64>; 2],
     /// Direction of the shaft towards the tip, unit length.
     pub direction: Vector3<f64>,
-    /// Workspace frame.
+    /// Position of the tip, m.
     pub tip_m: Vector3<f64>,
 }
 
 impl Pose {
-    /// Orientation of the wrist sensor, as [`crate::frames::WristSample`] carries it.
+    /// Orientation of the wrist sensor, in the form of [`crate::frames::WristSample`].
     pub fn orientation(&self) -> UnitQuaternion<f64> {
         UnitQuaternion::from_rotation_matrix(&self.world_from_s1.rotation)
     }
 
-    /// How far the tip is beyond a point (m) along the shaft, m.
+    /// Distance of the tip beyond a point (m) along the shaft, m.
     pub fn insertion_m(&self, trocar_m: &Vector3<f64>) -> f64 {
         (self.tip_m - trocar_m).dot(&self.direction)
     }
 
-    /// From a point to the nearest place on the shaft's axis, m; its norm is how far the axis misses the point.
+    /// Vector from a point to the nearest point of the shaft's axis, m; its length is the distance between axis and
+    /// point.
     pub fn axis_miss_m(&self, trocar_m: &Vector3<f64>) -> Vector3<f64> {
         let way_m = self.tip_m - trocar_m;
         way_m - self.direction * way_m.dot(&self.direction)
@@ -165,7 +167,7 @@ mod tests {
     #[test]
     fn the_tip_is_where_chain_adapter_and_shaft_put_it() {
         let arm = Arm::new(&settings()).unwrap();
-        // Stretched upwards: the flange looks up, so the tip is the adapter and the shaft above it.
+        // With the arm stretched upwards the flange points up, so the tip is above it by adapter and shaft.
         let pose = arm.pose(&Joints::zeros());
         assert!((pose.direction - Vector3::z()).norm() < 1e-12);
         assert!((pose.tip_m.z - (1.187_385 + 0.06 + 0.42)).abs() < 1e-9);

@@ -1,9 +1,9 @@
-//! Inverse kinematics through the trocar, one step per tick, from where the arm is: continuous by construction.
+//! Inverse kinematics through the trocar, one step per tick from the present joint angles; the result is continuous.
 //!
-//! In: where the tip shall be (m, `world`), any time, however far. Out: joint angles (rad) within the [`JointLimits`] in force, off the
-//! ends of their ranges, with the shaft through the trocar. What cannot be reached in one period is reached later, on the way through
-//! the trocar that turns and slides in proportion: every limit slows down all joints by one factor. A target that is not finite
-//! brakes the arm. Nothing here allocates or waits.
+//! Takes the target of the tip (m, `world`), at any time and any distance. Returns joint angles (rad) within the active
+//! [`JointLimits`], clear of the ends of their ranges, with the shaft through the trocar. What cannot be reached in one
+//! period is reached later: the shaft rotates and slides in proportion along a path through the trocar, and every limit
+//! slows all joints by a common factor. A target that is not finite brakes the arm. Nothing here allocates or waits.
 
 use nalgebra::{Vector2, Vector3};
 
@@ -17,25 +17,27 @@ use super::{
     velocity::{LENGTH_M, Parts, Task, Wish, turn_towards},
 };
 
-/// Share of the joints' speed limits that is used; the maker's own planning limits (`ros_kortex`, hard joint limits) are 95 %. The rest
-/// is for keeping the trocar while braking.
+/// Share of the joints' speed limits that is used for motion; the manufacturer's planning limits (`ros_kortex`, hard
+/// joint limits) are 95 %. The remainder is reserved for keeping the shaft in the trocar while braking.
 const SPEED_SHARE: f64 = 0.95;
-/// Fastest tip and fastest turn of the shaft: the maker's twist limits (`ros_kortex`, `twist_limits.yaml`), m/s and rad/s.
+/// Largest speed of the tip and of the shaft's rotation: the manufacturer's twist limits (`ros_kortex`,
+/// `twist_limits.yaml`), m/s and rad/s.
 pub(super) const TIP_SPEED_M_S: f64 = 0.5;
 /// See [`TIP_SPEED_M_S`].
 pub(super) const TURN_SPEED_RAD_S: f64 = 1.74;
-/// Joints stay this far from their limits, rad, so that a drive that overshoots does not fault.
+/// Distance that joints keep from their limits, rad, so that a drive that overshoots does not fault.
 pub const KEEP_OFF_RAD: f64 = 0.02;
-/// Near a limit a joint approaches it at most at this rate, 1/s.
+/// Near a limit, a joint's speed is at most this factor times the distance, 1/s.
 const APPROACH_PER_S: f64 = 20.0;
-/// Share of the acceleration that is planned for stopping at a target or before the end of a range; the rest follows the path's bends.
+/// Share of the acceleration used for stopping at a target or a joint limit; the remainder is for the curvature of the
+/// path.
 const BRAKING_SHARE: f64 = 0.5;
-/// Time over which the target's own motion is averaged, s: tremor and noise of the handle are no motion to follow.
+/// Averaging time of the target's own motion, s, so that tremor and noise of the handle are not followed.
 const TARGET_MOTION_S: f64 = 0.005;
-/// How fast the posture improves along its slope, rad/s, and which share of the joints' speed that may take.
+/// Speed of the posture's optimisation along the gradient, rad/s, and the share of the joints' speed that it may use.
 const POSTURE_PER_S: f64 = 1.0;
 const POSTURE_SHARE: f64 = 0.2;
-/// A start further from the trocar than this is not one with the instrument in it, m.
+/// If the shaft misses the trocar by more than this at the start, the instrument is not in it, m.
 pub const START_MISS_M: f64 = 5e-3;
 
 /// How good the pose is after a step.
@@ -43,30 +45,31 @@ pub const START_MISS_M: f64 = 5e-3;
 pub struct Measures {
     /// Distance of the shaft's axis from the trocar, m.
     pub axis_miss_m: f64,
-    /// Distance of the tip from the permitted target, m; NaN when the target was not finite.
+    /// Distance of the tip from the permitted target, m; NaN if the target was not finite.
     pub tip_miss_m: f64,
-    /// Least distance of a joint from its limit, rad.
+    /// Smallest distance of a joint from its limit, rad.
     pub limit_margin_rad: f64,
-    /// How well the joints can move the shaft in its worst direction, m/rad (a turn counts by 0.3 m); 0 is a singular pose.
+    /// How well the joints can move the shaft in its worst direction, m/rad (rotation is weighted with 0.3 m); 0 is a
+    /// singular pose.
     pub dexterity: f64,
-    /// Share of the wished motion that the joints' speeds and limits allowed in this period, 0 to 1.
+    /// Share of the planned motion that the limits allowed in this period, 0 to 1.
     pub granted: f64,
 }
 
-/// One period's answer.
+/// Result of one period.
 #[derive(Clone, Copy, Debug)]
 pub struct Step {
-    /// Where the joints shall be, rad.
+    /// Commanded joint angles, rad.
     pub joint_rad: Joints,
-    /// The target was outside of the permitted space, and how.
+    /// How the target was outside the permitted space.
     pub confined: Confined,
-    /// How good the pose is.
+    /// Quality of the pose.
     pub measures: Measures,
 }
 
-/// The arm as it is commanded, and the way from one target to the next.
+/// The commanded state of the arm; plans the motion from one target to the next.
 ///
-/// The tip is led 20 mm sideways; the shaft stays in the trocar on the whole way:
+/// The tip is moved 20 mm sideways; the shaft stays in the trocar all the time:
 ///
 /// ```
 /// use nalgebra::Vector3;
@@ -98,16 +101,16 @@ pub struct Inverse {
     rcm: Rcm,
     period_s: f64,
     limits: JointLimits,
-    /// By how much a joint's step may differ from the one before, rad.
+    /// Largest change of each joint's step from one period to the next, rad.
     change_rad: Joints,
     joint_rad: Joints,
     pose: Pose,
     dexterity: f64,
     /// The last step, rad.
     moved_rad: Joints,
-    /// How far the command is ahead of the arm, rad.
+    /// Difference between command and measured angle, rad.
     ahead_rad: Joints,
-    /// The last target, and how it moves in one period: turns times [`LENGTH_M`] and sliding inwards, m.
+    /// The last target, and its motion per period: rotation times [`LENGTH_M`] and sliding inwards, m.
     last_goal: Option<Shaft>,
     target_motion_m: Vector3<f64>,
 }
@@ -116,9 +119,9 @@ impl Inverse {
     /// Starts at these joint angles (rad), for a loop of this period (s).
     ///
     /// # Errors
-    /// When the arm cannot start from there.
+    /// [`StartError`] if the arm cannot start from there.
     pub fn new(arm: Arm, rcm: Rcm, period_s: f64, joint_rad: &Joints) -> Result<Self, StartError> {
-        // Written so that NaN is refused.
+        // Written so that NaN is refused as well.
         if !(period_s > 0.0 && period_s <= 0.02) {
             return Err(StartError::Period { period_s });
         }
@@ -153,28 +156,29 @@ impl Inverse {
         Ok(inverse)
     }
 
-    /// With these limits in force instead of the arm's speeds alone.
+    /// Uses these limits instead of the arm's speed limits alone.
     #[must_use]
     pub fn within(self, limits: JointLimits) -> Self {
         Self { limits, change_rad: limits.acceleration_rad_s2 * self.period_s.powi(2), ..self }
     }
 
-    /// Takes in where the joints are (rad, finite): a joint that is too far behind its command is not commanded further away.
+    /// Updates the measured joint angles (rad, finite): a joint too far behind its command is not commanded further
+    /// away.
     pub fn observe(&mut self, measured_rad: &Joints) {
         self.ahead_rad = self.joint_rad - measured_rad;
     }
 
-    /// Nothing moves.
+    /// Whether all joints are at rest.
     pub fn is_still(&self) -> bool {
         self.moved_rad == Joints::zeros()
     }
 
-    /// Where the joints are commanded to be, rad.
+    /// Commanded joint angles, rad.
     pub const fn joint_rad(&self) -> &Joints {
         &self.joint_rad
     }
 
-    /// Where everything is at those angles.
+    /// Pose at those angles.
     pub const fn pose(&self) -> &Pose {
         &self.pose
     }
@@ -189,7 +193,7 @@ impl Inverse {
         posture::clearance_m(&self.pose, &self.rcm)
     }
 
-    /// Moves on by one period towards a tip (m, `world`).
+    /// Advances by one period towards a tip position (m, `world`).
     pub fn step(&mut self, target_m: &Vector3<f64>) -> Step {
         if !target_m.iter().all(|x| x.is_finite()) {
             return self.brake();
@@ -200,7 +204,7 @@ impl Inverse {
         self.answer(Some(&goal), confined, granted)
     }
 
-    /// Slows down on the way through the trocar, and holds.
+    /// Slows down along a path through the trocar, then holds.
     pub fn brake(&mut self) -> Step {
         (self.last_goal, self.target_motion_m) = (None, Vector3::zeros());
         if self.moved_rad.iter().zip(&self.change_rad).all(|(moved, change)| moved.abs() <= *change) {
@@ -216,7 +220,7 @@ impl Inverse {
         self.answer(None, Confined::default(), 0.0)
     }
 
-    /// The step in its parts; where it is beyond computing the arm holds.
+    /// The components of the step; `None` if they cannot be computed, in which case the arm holds.
     fn solve(&mut self, wish: &Wish) -> Option<Parts> {
         let task = Task::new(&self.pose, &self.rcm.settings().trocar_m);
         let parts = task.solve(wish, &posture::freedom(&self.joint_rad));
@@ -227,12 +231,12 @@ impl Inverse {
         parts
     }
 
-    /// What the joints shall do in this period if they could.
+    /// The motion wanted in this period, before limits.
     fn wish(&mut self, goal: &Shaft) -> Wish {
         let way_m = self.way_m(goal);
         let moved_m = self.last_goal.map_or_else(Vector3::zeros, |last| way_m - self.way_m(&last));
         self.last_goal = Some(*goal);
-        // A target that jumps is approached, one that moves is followed without lag.
+        // The distance to the target is limited in speed; the motion of the target itself is followed without lag.
         let moved_m = moved_m * self.twist_share(&moved_m, goal.insertion_m);
         self.target_motion_m += (moved_m - self.target_motion_m) * (self.period_s / TARGET_MOTION_S).min(1.0);
         let relief =
@@ -248,19 +252,20 @@ impl Inverse {
         }
     }
 
-    /// Shift of the axis that brings it back to the trocar, along `Pose::across`, m.
+    /// Displacement that brings the axis back to the trocar, along `Pose::across`, m.
     fn to_trocar_m(&self) -> Vector2<f64> {
         let miss_m = self.pose.axis_miss_m(&self.rcm.settings().trocar_m);
         -Vector2::new(miss_m.dot(&self.pose.across[0]), miss_m.dot(&self.pose.across[1]))
     }
 
-    /// From here to a shaft: turns along `Pose::across` times [`LENGTH_M`], and sliding inwards, m.
+    /// Displacement to a shaft: rotation along `Pose::across` times [`LENGTH_M`], and sliding inwards, m.
     fn way_m(&self, goal: &Shaft) -> Vector3<f64> {
         let turn = turn_towards(&self.pose, &goal.direction) * LENGTH_M;
         Vector3::new(turn.x, turn.y, goal.insertion_m - self.pose.insertion_m(&self.rcm.settings().trocar_m))
     }
 
-    /// How much of a motion (as [`Self::way_m`]) tip and shaft may make in one period, turning and sliding in proportion.
+    /// Share of a motion (as in [`Self::way_m`]) that tip and shaft may make in one period, rotating and sliding in
+    /// proportion.
     fn twist_share(&self, motion_m: &Vector3<f64>, insertion_m: f64) -> f64 {
         let turn_rad = motion_m.xy().norm() / LENGTH_M;
         let insertion_m = insertion_m.max(self.pose.insertion_m(&self.rcm.settings().trocar_m));
@@ -269,14 +274,15 @@ impl Inverse {
         tip.min(shaft).min(1.0)
     }
 
-    /// How much of the correction may be made in this period: it begins and ends smoothly too.
+    /// Share of the correction that may be made in this period; limited in acceleration too.
     fn correction_share(&self, parts: &Parts, [least, most]: &[Joints; 2]) -> f64 {
         let braking = BRAKING_SHARE * pace::braking(&parts.correction, &self.change_rad);
         let stopping = pace::stopping_step(1.0, braking).min((parts.returning + braking).max(0.0));
         stopping * pace::share_within(&(parts.correction * stopping), least, most)
     }
 
-    /// Moves the joints by as much of the parts as the limits allow, the trocar first; gives the share of the motion.
+    /// Moves the joints by as much of the components as the limits allow, the correction at the trocar first; returns
+    /// the share of the motion.
     fn take(&mut self, parts: &Parts, wish: &Wish, insertion_m: f64) -> f64 {
         let reserve_rad = self.change_rad * BRAKING_SHARE;
         let approach = pace::stopping_step(1.0, pace::braking(&parts.motion, &reserve_rad));
@@ -306,14 +312,14 @@ impl Inverse {
         self.pose = self.arm.pose(&self.joint_rad);
     }
 
-    /// How far each joint is from both ends of what it may use, rad; below 0 beyond them.
+    /// Distance of each joint from both ends of its usable range, rad; negative beyond them.
     fn room_rad(&self) -> [Joints; 2] {
         let limit_rad = Joints::from(LIMIT_RAD).add_scalar(-KEEP_OFF_RAD);
         [limit_rad + self.joint_rad, limit_rad - self.joint_rad]
     }
 
-    /// Least and greatest change of each joint in this period, rad: its speed, slower towards the end of its range, and not further away
-    /// from an arm that is held.
+    /// Smallest and largest change of each joint in this period, rad: limited by its speed, by the distance to the end
+    /// of its range, and, if the arm is blocked, by its distance from the measured angle.
     fn bounds(&self) -> [Joints; 2] {
         let (mut least, mut most) = (Joints::zeros(), Joints::zeros());
         let approach = (APPROACH_PER_S * self.period_s).min(1.0);

@@ -1,7 +1,8 @@
-//! How fast the joints may move. [`Inverse`](super::Inverse) plans within these limits; a driver checks them and changes nothing.
+//! Speed and acceleration limits of the joints. [`Inverse`](super::Inverse) plans within them; a driver checks them and
+//! changes nothing.
 //!
-//! One owner, because a joint that is slowed down alone takes the shaft out of the trocar: whoever slows a joint down must slow down
-//! all of them along the same path, and only the inverse kinematics knows that path.
+//! Only the inverse kinematics may slow the joints down. Slowing a single joint would take the shaft out of the trocar:
+//! all joints must be slowed along the same path, which only the inverse kinematics knows.
 
 use super::gen3::{ACCELERATION_RAD_S2, JOINTS, Joints, SPEED_RAD_S};
 
@@ -15,16 +16,16 @@ use super::gen3::{ACCELERATION_RAD_S2, JOINTS, Joints, SPEED_RAD_S};
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct JointLimits {
-    /// Highest speed, rad/s.
+    /// Largest speed, rad/s.
     pub speed_rad_s: Joints,
-    /// Highest acceleration, rad/s^2; infinite where only the path counts.
+    /// Largest acceleration, rad/s^2; infinite if only the path matters.
     pub acceleration_rad_s2: Joints,
-    /// The most that a command may be ahead of the measured angle, rad: something holds an arm that is further behind.
+    /// Largest difference between commanded and measured angle, rad; an arm that is further behind is blocked.
     pub lead_rad: f64,
 }
 
 impl JointLimits {
-    /// The arm's speeds alone: for a search of poses, where time does not count.
+    /// The arm's speed limits only, for the search of poses.
     pub fn speed_only() -> Self {
         Self {
             speed_rad_s: Joints::from(SPEED_RAD_S),
@@ -33,7 +34,7 @@ impl JointLimits {
         }
     }
 
-    /// An arm that may use a share of its speeds, above 0 to 1.
+    /// Limits of an arm that may use this share of its speed, above 0 to 1.
     pub fn of_arm(speed_fraction: f64, lead_rad: f64) -> Self {
         Self {
             speed_rad_s: Joints::from(SPEED_RAD_S) * speed_fraction.clamp(0.0, 1.0),
@@ -42,7 +43,7 @@ impl JointLimits {
         }
     }
 
-    /// Longest time to brake from full speed with one factor for all joints, s.
+    /// Longest time to brake from full speed with one common factor for all joints, s.
     pub fn braking_s(&self) -> f64 {
         (0..JOINTS).map(|joint| self.speed_rad_s[joint] / self.acceleration_rad_s2[joint]).fold(0.0, f64::max)
     }

@@ -1,11 +1,13 @@
 //! From the hand to the arm's joints: hand-eye mapping, remote centre of motion, Kinova Gen3.
 //!
-//! In: the hand's pose (m, in the leader's frame) and where the arm's joints are (rad). Out: where the joints shall be (rad), one
-//! step per tick, with the shaft through the trocar. Lengths in m, angles in rad, everything in the workspace frame `world` unless
-//! the name says another. What cannot be is refused when things are set up, with the reason; in a tick there is always an
-//! answer: the nearest permitted place, or standing still. Nothing in a tick allocates, waits or loops without bound.
+//! Takes the hand's pose (m, in the leader's frame) and the measured joint angles (rad); returns commanded joint angles
+//! (rad), one step per tick, with the shaft through the trocar. Lengths in m, angles in rad, everything in the
+//! workspace frame `world` unless the name says otherwise. Invalid settings are refused at construction, with the
+//! reason. A tick always has a result: the nearest permitted position, or standing still. Nothing in a tick allocates,
+//! waits or loops without bound.
 //!
-//! `HandEye::step` → target of the tip → `Inverse::step` → joint angles. The start: [`find`] a ready pose, move there, `Inverse::new`.
+//! `HandEye::step` → target of the tip → `Inverse::step` → joint angles. To start: search a pose with [`find`], move
+//! there, `Inverse::new`.
 
 mod gen3;
 mod hand_eye;

@@ -1,40 +1,41 @@
-//! The remote centre of motion (RCM): a tip and the trocar point give the shaft's direction and insertion, and back.
+//! The remote centre of motion (RCM): converts between the tip position and the shaft's direction and insertion.
 //!
-//! Places in m, angles in rad, in `world`. The permitted space is a cone about a direction into the body, between a least and a
-//! greatest insertion. [`Rcm::resolve`] refuses what lies outside; [`Rcm::confine`] gives the nearest permitted shaft instead and
-//! says what it changed, for the loop, which must always have an answer.
+//! Positions in m, angles in rad, in `world`. The permitted space is a cone about a direction into the body, between a
+//! smallest and a largest insertion. [`Rcm::resolve`] refuses a tip outside it; [`Rcm::confine`] returns the nearest
+//! permitted shaft instead and says what it changed, for the loop, which must always have a result.
 
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
-/// The trocar and the space behind it.
+/// The trocar and the permitted space beyond it.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct RcmSettings {
-    /// The point that does not move, m (`world`).
+    /// Trocar point, which does not move, m (`world`).
     pub trocar_m: Vector3<f64>,
-    /// Middle of the cone, pointing into the body (`world`); any length but zero.
+    /// Axis of the cone, pointing into the body (`world`); any length but zero.
     pub inward: Vector3<f64>,
-    /// Half opening of the cone, degrees, above 0 and at most 80.
+    /// Half opening angle of the cone, degrees, above 0 and at most 80.
     pub cone_deg: f64,
-    /// Least insertion of the tip behind the trocar, m, at least 0.005: nearer, a millimetre of the hand turns the shaft without bound.
+    /// Smallest insertion of the tip beyond the trocar, m, at least 0.005: closer to the trocar, small motions of the
+    /// hand would need unbounded rotations of the shaft.
     pub insertion_min_m: f64,
-    /// Greatest insertion, m.
+    /// Largest insertion, m.
     pub insertion_max_m: f64,
 }
 
-/// Why a place or the settings are refused.
+/// Why a position or the settings are refused.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 #[expect(missing_docs, reason = "the messages say it")]
 pub enum RcmError {
     /// A number is not finite.
     #[error("{what} is not a finite number: give it in metres in the frame of the arm's base")]
     NotFinite { what: &'static str },
-    /// Settings that leave no space.
+    /// Invalid settings.
     #[error("the trocar's {setting} is {value}: {wanted}")]
     Setting { setting: &'static str, value: f64, wanted: &'static str },
-    /// The tip is in the trocar, or before it.
+    /// The tip is too close to the trocar, or outside the body.
     #[error("the tip is {insertion_m:.4} m behind the trocar, at least {least_m} m are needed: push the instrument in")]
     TooNear {
         /// Distance of the tip from the trocar, m.
@@ -50,12 +51,12 @@ pub enum RcmError {
         insertion_m: f64,
         most_m: f64,
     },
-    /// The shaft is tilted out of the cone.
+    /// The shaft is tilted outside the cone.
     #[error("the shaft is tilted by {tilt_deg:.1} degrees, {cone_deg} are allowed: straighten it or widen the cone")]
     OutsideCone {
-        /// Angle from the middle of the cone, degrees.
+        /// Angle from the axis of the cone, degrees.
         tilt_deg: f64,
-        /// Half opening of the cone, degrees.
+        /// Half opening angle of the cone, degrees.
         cone_deg: f64,
     },
 }
@@ -63,25 +64,25 @@ pub enum RcmError {
 /// A shaft through the trocar.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Shaft {
-    /// From the trocar to the tip, unit length.
+    /// Direction from the trocar to the tip, unit length.
     pub direction: Vector3<f64>,
-    /// How far the tip is behind the trocar, m.
+    /// Distance of the tip beyond the trocar, m.
     pub insertion_m: f64,
 }
 
-/// What [`Rcm::confine`] changed of a place.
+/// What [`Rcm::confine`] changed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Confined {
-    /// It was too near to the trocar.
+    /// The target was too close to the trocar.
     pub too_near: bool,
-    /// The target was deeper than the greatest insertion.
+    /// The target was beyond the largest insertion.
     pub too_deep: bool,
-    /// It was outside of the cone.
+    /// The target was outside the cone.
     pub outside_cone: bool,
 }
 
 impl Confined {
-    /// The place was permitted as it was.
+    /// Whether nothing was changed.
     pub const fn is_untouched(self) -> bool {
         !self.too_near && !self.too_deep && !self.outside_cone
     }
@@ -116,14 +117,14 @@ pub struct Rcm {
     cone_rad: f64,
 }
 
-/// A place nearer to the trocar than this has no direction, m.
+/// A position closer to the trocar than this defines no direction, m.
 const POINT_M: f64 = 1e-9;
 
 impl Rcm {
-    /// Takes the settings in.
+    /// Checks the settings.
     ///
     /// # Errors
-    /// When a number is not finite or they leave no space.
+    /// [`RcmError`] if a number is not finite or no space is left.
     pub fn new(settings: &RcmSettings) -> Result<Self, RcmError> {
         let RcmSettings { trocar_m, inward, cone_deg, insertion_min_m, insertion_max_m } = *settings;
         for (what, vector) in [("the trocar's place", trocar_m), ("the direction into the body", inward)] {
@@ -135,7 +136,7 @@ impl Rcm {
         if inward.norm() < POINT_M {
             return refuse("inward", inward.norm(), "its length must not be zero");
         }
-        // All written so that NaN is refused.
+        // Written so that NaN is refused.
         if !(cone_deg > 0.0 && cone_deg <= 80.0) {
             return refuse("cone_deg", cone_deg, "it must be above 0 and at most 80 degrees");
         }
@@ -153,12 +154,12 @@ impl Rcm {
         &self.settings
     }
 
-    /// Middle of the cone, unit length.
+    /// Axis of the cone, unit length.
     pub const fn inward(&self) -> &Vector3<f64> {
         &self.inward
     }
 
-    /// The tip of a shaft, m.
+    /// Position of the tip of a shaft, m.
     pub fn tip_m(&self, shaft: &Shaft) -> Vector3<f64> {
         self.settings.trocar_m + shaft.direction * shaft.insertion_m
     }
@@ -166,7 +167,7 @@ impl Rcm {
     /// The shaft that leads through the trocar to this tip (m).
     ///
     /// # Errors
-    /// When the tip is not finite, too near, too deep, or outside of the cone.
+    /// [`RcmError`] if the tip is not finite, too close, too deep, or outside the cone.
     pub fn resolve(&self, tip_m: &Vector3<f64>) -> Result<Shaft, RcmError> {
         if !tip_m.iter().all(|x| x.is_finite()) {
             return Err(RcmError::NotFinite { what: "the tip's place" });
@@ -198,7 +199,7 @@ impl Rcm {
             (self.inward, 0.0)
         } else if tilt_rad > self.cone_rad {
             confined.outside_cone = true;
-            // The foot of the perpendicular on the cone, so that the tip slides along it; behind the foot there is only its point.
+            // Project onto the cone, so that the tip slides along it; behind its apex the projection is the apex.
             let excess_rad = tilt_rad - self.cone_rad;
             (self.on_the_cone(&way_m), length_m * excess_rad.cos().max(0.0))
         } else {
@@ -209,13 +210,13 @@ impl Rcm {
         (Shaft { direction, insertion_m: wanted_m.clamp(insertion_min_m, insertion_max_m) }, confined)
     }
 
-    /// The direction on the cone's mantle on the same side as `way_m`, unit length.
+    /// The direction on the cone's surface on the same side as `way_m`, unit length.
     fn on_the_cone(&self, way_m: &Vector3<f64>) -> Vector3<f64> {
         let sideways = way_m - self.inward * way_m.dot(&self.inward);
         let side = if sideways.norm() > POINT_M {
             sideways.normalize()
         } else {
-            // Exactly opposite to the cone every side is as good.
+            // If it points exactly opposite to the cone, any side will do.
             let other = if self.inward.x.abs() < 0.9 { Vector3::x() } else { Vector3::y() };
             self.inward.cross(&other).normalize()
         };
@@ -224,7 +225,7 @@ impl Rcm {
     }
 }
 
-/// Angle between two directions of any length, rad; exact for small angles too.
+/// Angle between two directions of any length, rad; accurate for small angles.
 pub(super) fn angle_rad(a: &Vector3<f64>, b: &Vector3<f64>) -> f64 {
     a.cross(b).norm().atan2(a.dot(b))
 }
@@ -299,7 +300,7 @@ mod tests {
             prop_assert!((shaft.direction.norm() - 1.0).abs() < 1e-12);
             prop_assert!(angle_rad(&rcm.inward, &shaft.direction) <= rcm.cone_rad + 1e-12);
             prop_assert!((0.02..=0.25).contains(&shaft.insertion_m));
-            // Any other permitted place is no nearer, as long as the least insertion does not come in between.
+            // No other permitted position is closer, unless the smallest insertion is the active limit.
             if !confined.too_near {
                 let miss_m = (rcm.tip_m(&shaft) - tip_m).norm();
                 let mut random = fastrand::Rng::with_seed(x.to_bits() ^ z.to_bits());

@@ -1,8 +1,9 @@
-//! A good pose to begin from: found from many random starts, tried out over the whole permitted space. Slow (a second or so), and
-//! away from the loop.
+//! Searches a good starting pose: from many random starts, tested over the whole permitted space. Slow (a second or
+//! so), so not for the loop.
 //!
-//! In: arm, trocar, and where the tip shall be (m, `world`). Out: joint angles (rad) and how much of the permitted space the arm can
-//! reach from there without letting go; or why the place cannot be reached. The same input gives the same pose.
+//! Takes the arm, the trocar, and the position of the tip (m, `world`). Returns joint angles (rad) and the share of the
+//! permitted space that the arm can reach from there while engaged; or why the position cannot be reached.
+//! Deterministic.
 
 use std::f64::consts::{PI, TAU};
 
@@ -21,64 +22,65 @@ use super::{
 
 /// Random starts of the search.
 const STARTS: usize = 600;
-/// Steps to converge from each.
+/// Newton steps from each start.
 const STEPS: usize = 80;
-/// Poses that are tried out.
+/// Number of poses that are tested.
 const CANDIDATES: usize = 8;
-/// Below these a pose is not worth trying: distance from a limit (rad), dexterity (m/rad).
+/// A pose below these values is not tested: distance from a joint limit (rad), dexterity (m/rad).
 const LEAST_MARGIN_RAD: f64 = 0.1;
 /// See [`LEAST_MARGIN_RAD`].
 const LEAST_DEXTERITY: f64 = 0.05;
-/// Period of the tries, s: coarser than the loop's, still fine enough for the trocar.
+/// Period of the test drives, s: longer than the loop's, still short enough to keep the shaft in the trocar.
 const TRY_PERIOD_S: f64 = 0.004;
-/// A tip this near to its goal has arrived, m.
+/// Distance from the goal at which the tip has arrived, m.
 const ARRIVED_M: f64 = 1e-4;
-/// Longest way to one place of the trial, periods.
+/// Time limit for one goal of the test, periods.
 const TRY_PERIODS: usize = 1500;
-/// Directions around the cone that are tried.
+/// Number of directions around the cone that are tested.
 const AROUND: usize = 8;
 
-/// A pose to begin from.
+/// A starting pose.
 #[derive(Clone, Copy, Debug)]
 pub struct Ready {
     /// Joint angles, rad, each within half a turn of zero.
     pub joint_rad: Joints,
-    /// Share of the tried places (rim of the cone at least and greatest insertion, its middle) that can be reached from here.
+    /// Share of the tested goals (edge and middle of the cone, at smallest and largest insertion) that can be reached
+    /// from here.
     pub reached: f64,
-    /// Worst distance of a joint from its limit on these ways, rad.
+    /// Smallest distance of a joint from its limit during the test, rad.
     pub limit_margin_rad: f64,
-    /// Worst dexterity on these ways, m/rad.
+    /// Smallest dexterity during the test, m/rad.
     pub dexterity: f64,
-    /// Least height of elbow and wrist above the trocar on these ways, m.
+    /// Smallest height of elbow and wrist above the trocar during the test, m.
     pub clearance_m: f64,
 }
 
-/// Why a place has no pose.
+/// Why there is no pose for a position.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 #[expect(missing_docs, reason = "the messages say it")]
 pub enum ReadyError {
-    /// The tip is not in the permitted space.
+    /// The tip is outside the permitted space.
     #[error("the instrument cannot be there")]
     Place(#[source] RcmError),
     /// Arm and trocar do not fit together.
     #[error("the ready pose cannot be a start")]
     Start(#[source] StartError),
-    /// The sensor would have to be beyond the arm's reach.
+    /// The sensor would be beyond the arm's reach.
     #[error(
         "the flange would have to be {needed_m:.3} m from the arm's shoulder, it reaches {reach_m:.3} m: move the arm nearer"
     )]
     TooFar {
-        /// Distance needed at least, m.
+        /// Required reach, m.
         needed_m: f64,
-        /// What the arm has, m.
+        /// Reach of the arm, m.
         reach_m: f64,
     },
-    /// No start of the search arrived.
+    /// The search did not converge from any start.
     #[error(
         "no pose puts tip and shaft there (best miss {best_miss_m:.4} m in {starts} starts): the place is too near to the arm's base"
     )]
     NoPose {
-        /// Smallest miss of tip and direction, m.
+        /// Smallest remaining error of tip and direction, m.
         best_miss_m: f64,
         starts: usize,
     },
@@ -89,19 +91,19 @@ pub enum ReadyError {
     )]
     Unusable {
         found: usize,
-        /// Too near to a limit.
+        /// Number of poses too close to a joint limit.
         at_limits: usize,
-        /// Cannot move the shaft freely.
+        /// Number of poses in which the arm cannot move the shaft freely.
         singular: usize,
-        /// Elbow or wrist would touch the patient.
+        /// Number of poses in which elbow or wrist would touch the patient.
         low: usize,
     },
 }
 
-/// Finds a pose with the shaft through the trocar and the tip at `tip_m`.
+/// Searches a pose with the shaft through the trocar and the tip at `tip_m`.
 ///
 /// # Errors
-/// When the place is not permitted, out of reach, or every pose is at a limit, singular or too low.
+/// [`ReadyError`] if the position is not permitted or out of reach, or every pose is at a limit, singular or too low.
 pub fn find(arm: &Arm, rcm: &Rcm, tip_m: &Vector3<f64>) -> Result<Ready, ReadyError> {
     let shaft = rcm.resolve(tip_m).map_err(ReadyError::Place)?;
     check_reach(arm, tip_m, &shaft)?;
@@ -116,18 +118,18 @@ pub fn find(arm: &Arm, rcm: &Rcm, tip_m: &Vector3<f64>) -> Result<Ready, ReadyEr
     best.ok_or(ReadyError::NoPose { best_miss_m: f64::INFINITY, starts: STARTS })
 }
 
-/// What can be reached counts first, then how easily.
+/// The reachable share counts first, then how easily it is reached.
 fn worth(ready: &Ready) -> f64 {
     ready.reached + 0.1 * ease(ready.limit_margin_rad, ready.dexterity, ready.clearance_m)
 }
 
-/// 0 (useless) to 1 (more than enough of all).
+/// How easily, 0 (not usable) to 1 (ample margins).
 fn ease(limit_margin_rad: f64, dexterity: f64, clearance_m: f64) -> f64 {
     let shares = [limit_margin_rad / 0.5, dexterity / 0.2, clearance_m / (2.0 * posture::CLEARANCE_M)];
     shares.into_iter().fold(1.0, f64::min).max(0.0)
 }
 
-/// The flange lies on a circle about the shaft's axis (its turn is free): it must pass within the arm's reach.
+/// The flange lies on a circle about the shaft's axis (its rotation is free), which must come within the arm's reach.
 fn check_reach(arm: &Arm, tip_m: &Vector3<f64>, shaft: &Shaft) -> Result<(), ReadyError> {
     let shoulder_m = (arm.world_from_base() * Point3::new(0.0, 0.0, SHOULDER_M)).coords;
     let s1_from_flange = arm.flange_from_s1().inverse().translation.vector;
@@ -180,7 +182,8 @@ fn candidates(arm: &Arm, rcm: &Rcm, tip_m: &Vector3<f64>, shaft: &Shaft) -> Resu
     Ok(distinct)
 }
 
-/// Greatest difference of a joint on the shorter way round; the last joint, which mostly turns the shaft about itself, aside.
+/// Largest difference of a joint, taken on the shorter way round; without the last joint, which mainly rotates the
+/// shaft about its own axis.
 fn apart_rad(a: &Joints, b: &Joints) -> f64 {
     (a - b).iter().take(JOINTS - 1).map(|difference| wrapped(*difference).abs()).fold(0.0, f64::max)
 }
@@ -189,7 +192,8 @@ fn wrapped(angle_rad: f64) -> f64 {
     angle_rad - TAU * (angle_rad / TAU).round()
 }
 
-/// Newton's way from a random start; joint angles within half a turn, and the miss of tip and direction that is left, m.
+/// Newton's method from a random start; returns joint angles within half a turn of zero, and the remaining error of tip
+/// and direction, m.
 fn converged(arm: &Arm, tip_m: &Vector3<f64>, shaft: &Shaft, start_rad: Joints) -> (Joints, f64) {
     let mut joint_rad = start_rad;
     let mut left_m = f64::INFINITY;
@@ -209,7 +213,7 @@ fn dexterity(arm: &Arm, rcm: &Rcm, joint_rad: &Joints) -> f64 {
     task.solve(&Wish::default(), &posture::freedom(joint_rad)).map_or(0.0, |parts| parts.dexterity)
 }
 
-/// Lets a pose settle, then goes from it to places all over the permitted space and back.
+/// Lets a pose settle, then drives from it to goals all over the permitted space and back.
 fn tried(arm: &Arm, rcm: &Rcm, tip_m: &Vector3<f64>, joint_rad: &Joints) -> Result<Ready, StartError> {
     let mut settled = Inverse::new(*arm, *rcm, TRY_PERIOD_S, joint_rad)?;
     for _ in 0..TRY_PERIODS {
@@ -235,7 +239,7 @@ fn tried(arm: &Arm, rcm: &Rcm, tip_m: &Vector3<f64>, joint_rad: &Joints) -> Resu
     Ok(ready)
 }
 
-/// Goes to a place; keeps the worst of the way in `ready`. Whether it arrived.
+/// Drives to a goal; stores the worst values in `ready`. Returns whether it arrived.
 fn went(inverse: &mut Inverse, place_m: &Vector3<f64>, ready: &mut Ready) -> bool {
     for _ in 0..TRY_PERIODS {
         let Measures { tip_miss_m, limit_margin_rad, dexterity, .. } = inverse.step(place_m).measures;
@@ -249,14 +253,14 @@ fn went(inverse: &mut Inverse, place_m: &Vector3<f64>, ready: &mut Ready) -> boo
     false
 }
 
-/// The middle of the cone and its rim, each at least and greatest insertion, m.
+/// Middle and edge of the cone, each at smallest and largest insertion, m.
 pub(super) fn trial_places(rcm: &Rcm) -> Vec<Vector3<f64>> {
     let settings = rcm.settings();
     let inward = *rcm.inward();
     let other = if inward.x.abs() < 0.9 { Vector3::x() } else { Vector3::y() };
     let side = inward.cross(&other).normalize();
     let up = inward.cross(&side);
-    // A hair inside the rim, so that rounding does not put it outside.
+    // Slightly inside the edge, so that rounding does not put it outside.
     let (sin, cos) = (settings.cone_deg.to_radians() * 0.999).sin_cos();
     let rim = (0..AROUND).map(|i| {
         let (s, c) = (TAU * i as f64 / AROUND as f64).sin_cos();

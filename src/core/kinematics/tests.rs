@@ -1,4 +1,4 @@
-//! The whole way from target to joints, on an arm with a usual instrument.
+//! The complete path from target to joints, on an arm with a typical instrument.
 
 mod usual_arm;
 
@@ -18,7 +18,7 @@ const PERIOD_S: f64 = 1e-3;
 /// An arm at rest with its tip in the middle of the permitted space.
 fn started(cone_deg: f64) -> Inverse {
     let mut joint_rad = Joints::from(READY_RAD);
-    // The rounded angles miss by millimetres; the search's own last steps take that away.
+    // The stored angles are rounded; a few Newton steps remove the error of some millimetres.
     for _ in 0..20 {
         joint_rad += velocity::towards(&arm().pose(&joint_rad), &middle_m(), &-Vector3::z()).0;
     }
@@ -29,7 +29,7 @@ fn started(cone_deg: f64) -> Inverse {
     inverse
 }
 
-/// What a random drive showed.
+/// Results of a random drive.
 #[derive(Debug)]
 struct Drive {
     axis_miss_m: f64,
@@ -42,7 +42,7 @@ struct Drive {
     step_us: [f64; 2],
 }
 
-/// Drives for so many periods: like a hand, with jumps over the whole space, targets outside of it, and broken ones.
+/// Drives for `steps` periods like a hand, with jumps over the whole space, targets outside it, and NaN.
 fn drive(cone_deg: f64, steps: usize, seed: u64) -> Drive {
     let mut random = fastrand::Rng::with_seed(seed);
     let mut inverse = started(cone_deg);
@@ -103,7 +103,7 @@ fn check(drive: &Drive) {
 
 #[test]
 fn random_targets_never_tear_the_shaft_out_of_the_trocar_nor_a_joint_beyond_its_speed() {
-    // A cone that the arm can serve, and one whose rim it cannot reach.
+    // A cone that the arm can reach everywhere, and one whose edge it cannot reach.
     for cone_deg in [20.0, 50.0] {
         check(&drive(cone_deg, 20_000, 1));
     }
@@ -141,7 +141,7 @@ fn a_hands_motion_is_followed_without_lag() {
     for k in 0..5000 {
         let t_s = f64::from(k) * PERIOD_S;
         let share = t_s.min(1.0);
-        // Smoothly in, then 10 to 20 mm about once a second: up to 0.09 m/s.
+        // Fades in, then moves 10 to 20 mm about once a second: up to 0.09 m/s.
         let way_m = Vector3::new((6.0 * t_s).sin(), 1.0 - (5.0 * t_s).cos(), (4.0 * t_s).sin())
             * 0.01
             * (share * share * (3.0 - 2.0 * share));

@@ -1,12 +1,14 @@
-//! Joint steps from shaft steps: three tasks, each within what the ones above leave free.
+//! Converts a motion of the shaft to a step of the joints: three tasks in order of priority, each in the null space of
+//! the previous ones.
 //!
-//! - First, the shaft's axis goes through the trocar (2 rows).
-//! - Second, the shaft turns about the trocar and slides in it (3 rows; damped near singularities).
-//! - Third, a better posture (what remains: the elbow, the turn about the shaft).
+//! - First, the shaft's axis passes through the trocar (2 rows).
+//! - Second, the shaft rotates about the trocar and slides in it (3 rows; damped near singularities).
+//! - Third, the posture is improved (in the remaining freedom: the elbow, the rotation about the shaft).
 //!
-//! Because the second is solved in the null space of the first, damping and slowing it down cost speed, never the trocar.
-//! Projections after Siciliano and Slotine (1991), damping after Nakamura and Hanafusa (1986) but per singular direction, joints
-//! near a limit made stiff by weights as in Chan and Dubey (1995). All of it in `world`, m and rad, on the stack.
+//! Because the second task is solved in the null space of the first, damping or slowing it reduces speed but never
+//! moves the shaft out of the trocar. Null-space projection after Siciliano and Slotine (1991); damping after Nakamura
+//! and Hanafusa (1986), but per singular direction; joints near a limit are weighted less, as in Chan and Dubey (1995).
+//! Everything in `world`, m and rad, without allocation.
 
 use nalgebra::{Matrix2, SMatrix, SymmetricEigen, Vector2, Vector3};
 
@@ -18,54 +20,54 @@ use super::{
 type Rows2 = SMatrix<f64, 2, JOINTS>;
 type Rows3 = SMatrix<f64, 3, JOINTS>;
 
-/// Makes turning comparable with sliding, m: about the length of shaft outside of the body.
+/// Length that makes rotation comparable with sliding, m: about the length of the shaft outside the body.
 pub(super) const LENGTH_M: f64 = 0.3;
 
-/// Singular value below which a direction is damped, m/rad, and the damping where nothing is left of it.
+/// Singular value below which a direction is damped, m/rad; also the damping at a singular value of zero.
 const DAMPED_BELOW: f64 = 0.05;
 const DAMPING: f64 = 0.02;
-/// Keeps divisions finite where nothing is left; far below anything that moves.
+/// Added to denominators to keep divisions finite; negligible otherwise.
 const TINY: f64 = 1e-12;
 
-/// How joint speeds move the shaft.
+/// Effect of the joint speeds on the shaft.
 #[derive(Clone, Copy)]
 pub(super) struct Task {
     /// Velocity of the shaft at the trocar along `Pose::across`, m/s per rad/s.
     at_trocar: Rows2,
-    /// Turning of the shaft towards `Pose::across`, times [`LENGTH_M`], and sliding inwards, m/s per rad/s.
+    /// Rotation of the shaft towards `Pose::across`, times [`LENGTH_M`], and sliding inwards, m/s per rad/s.
     motion: Rows3,
 }
 
-/// A joint step in its three parts, rad.
+/// Components of a joint step, rad.
 pub(super) struct Parts {
     /// Brings the axis back to the trocar.
     pub correction: Joints,
-    /// Moves the shaft all the way.
+    /// The complete motion to the target.
     pub motion: Joints,
-    /// Moves the shaft as the target moves.
+    /// The part of the motion that follows the target's own motion.
     pub carried: Joints,
-    /// Goes on as in the last period, without moving the axis at the trocar.
+    /// Continues as in the last period, without moving the axis at the trocar.
     pub coast: Joints,
-    /// How much of the correction the last period's step already makes.
+    /// Share of the correction that the last period's step already makes.
     pub returning: f64,
-    /// Improves the posture without moving either.
+    /// Improves the posture without affecting the other tasks.
     pub posture: Joints,
     /// Smallest singular value of the shaft's motion with the axis held in the trocar, m/rad.
     pub dexterity: f64,
 }
 
-/// What a step shall do.
+/// The motion wanted in a step.
 #[derive(Default)]
 pub(super) struct Wish {
-    /// Shift of the axis at the trocar along `Pose::across`, m.
+    /// Displacement of the axis at the trocar along `Pose::across`, m.
     pub at_trocar_m: Vector2<f64>,
-    /// Turns along `Pose::across` times [`LENGTH_M`], and sliding inwards, m.
+    /// Rotation along `Pose::across` times [`LENGTH_M`], and sliding inwards, m.
     pub motion_m: Vector3<f64>,
-    /// The same, by the motion of the target in this period.
+    /// The same for the target's own motion in this period.
     pub carried_m: Vector3<f64>,
     /// The joints' step in the last period, rad.
     pub moved_rad: Joints,
-    /// Change of the joints for the posture's sake, rad.
+    /// Change of the joints that improves the posture, rad.
     pub posture_rad: Joints,
 }
 
@@ -80,7 +82,7 @@ impl Task {
                 at_trocar[(row, joint)] = shift.dot(across);
                 motion[(row, joint)] = turn.dot(across);
             }
-            // Every point of the shaft slides along it equally fast.
+            // All points of the shaft slide along it at the same speed.
             motion[(2, joint)] = shift.dot(&pose.direction);
         }
         Self { at_trocar, motion }
@@ -94,8 +96,8 @@ impl Task {
         held.determinant() * free.determinant()
     }
 
-    /// Solves for the joint step; `weight` (0 to 1, above 0) says how freely each joint may be used. `None` when the numbers are
-    /// beyond computing.
+    /// Solves for the joint step; `weight` (above 0, at most 1) says how freely each joint may be used. `None` if the
+    /// result cannot be computed.
     pub(super) fn solve(&self, wish: &Wish, weight: &Joints) -> Option<Parts> {
         let root = weight.map(f64::sqrt);
         let mut trocar = self.at_trocar;
@@ -140,15 +142,15 @@ fn damped_inverse(square: f64) -> f64 {
     1.0 / (square.max(0.0) + DAMPING * DAMPING * (1.0 - share) + TINY)
 }
 
-/// Inverse of a symmetric positive 2 x 2 matrix, finite even where it is singular.
+/// Inverse of a symmetric positive 2 x 2 matrix, finite even if it is singular.
 fn inverse2(matrix: &Matrix2<f64>) -> Matrix2<f64> {
     let [a, b, d] = [matrix[(0, 0)] + TINY, matrix[(0, 1)], matrix[(1, 1)] + TINY];
     let determinant = (a * d - b * b).max(TINY * TINY);
     Matrix2::new(d, -b, -b, a) / determinant
 }
 
-/// Joint step (rad) that brings tip and direction nearer to the wished ones by damped least squares, from anywhere; for the search
-/// of a pose, away from the loop.
+/// Joint step (rad) towards a tip position and shaft direction by damped least squares, from any start; for the search
+/// of a pose, not for the loop.
 pub(super) fn towards(pose: &Pose, tip_m: &Vector3<f64>, direction: &Vector3<f64>) -> (Joints, f64) {
     let mut rows = SMatrix::<f64, 5, JOINTS>::zeros();
     let mut miss_m = SMatrix::<f64, 5, 1>::zeros();
@@ -161,14 +163,15 @@ pub(super) fn towards(pose: &Pose, tip_m: &Vector3<f64>, direction: &Vector3<f64
             rows[(3 + row, joint)] = pose.chain.axis[joint].cross(&pose.direction).dot(across) * LENGTH_M;
         }
     }
-    // Far away the damping keeps the steps sane, near the goal it vanishes, so that the last steps are Newton's.
+    // Far from the goal the damping limits the step; near the goal it vanishes, so that the last steps are Newton
+    // steps.
     let damping = (0.01 * miss_m.norm_squared()).min(1e-3) + TINY;
     let square = rows * rows.transpose() + SMatrix::<f64, 5, 5>::identity() * damping;
     let step = square.cholesky().map_or_else(Joints::zeros, |c| rows.transpose() * c.solve(&miss_m));
     (step, miss_m.norm())
 }
 
-/// The turn from the shaft's direction to another, along `Pose::across`, rad.
+/// Rotation from the shaft's direction to another one, along `Pose::across`, rad.
 pub(super) fn turn_towards(pose: &Pose, direction: &Vector3<f64>) -> Vector2<f64> {
     let [x, y] = pose.across.map(|across| across.dot(direction));
     let sideways = x.hypot(y);
@@ -176,7 +179,7 @@ pub(super) fn turn_towards(pose: &Pose, direction: &Vector3<f64>) -> Vector2<f64
     if sideways > TINY {
         Vector2::new(x, y) * (angle_rad / sideways)
     } else {
-        // Straight ahead there is nothing to turn; straight behind every side is as good.
+        // In the same direction there is no rotation; in the opposite direction any axis will do.
         Vector2::new(angle_rad, 0.0)
     }
 }

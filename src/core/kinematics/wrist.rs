@@ -2,17 +2,17 @@
 
 use nalgebra::{Rotation3, UnitQuaternion, Vector3};
 
-/// Farthest pitch, rad: at a quarter turn roll and yaw are the same.
+/// Largest pitch, rad: at a quarter turn roll and yaw would coincide.
 pub const PITCH_MAX_RAD: f64 = 1.3;
 
 /// Angles of the instrument's wrist, rad.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Jaws {
-    /// About the shaft.
+    /// Rotation about the shaft.
     pub roll_rad: f64,
-    /// Across it.
+    /// Rotation across the shaft.
     pub pitch_rad: f64,
-    /// Across both.
+    /// Rotation across both axes.
     pub yaw_rad: f64,
 }
 
@@ -24,7 +24,8 @@ impl Jaws {
             * UnitQuaternion::from_axis_angle(&Vector3::y_axis(), self.yaw_rad)
     }
 
-    /// The angles for an orientation, each within half a turn of `near`'s, pitch cut to [`PITCH_MAX_RAD`].
+    /// The angles for an orientation, each within half a turn of those of `near`, with pitch limited to
+    /// [`PITCH_MAX_RAD`].
     pub fn of(s1_from_jaws: &UnitQuaternion<f64>, near: &Self) -> Self {
         let r: Rotation3<f64> = s1_from_jaws.to_rotation_matrix();
         let pitch_rad = r[(2, 1)].clamp(-1.0, 1.0).asin();
@@ -38,7 +39,7 @@ impl Jaws {
     }
 }
 
-/// The same angle in the turn that is nearest to another.
+/// The equivalent angle that is nearest to `near_rad`.
 fn nearest(angle_rad: f64, near_rad: f64) -> f64 {
     angle_rad + std::f64::consts::TAU * ((near_rad - angle_rad) / std::f64::consts::TAU).round()
 }

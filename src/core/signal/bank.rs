@@ -1,14 +1,14 @@
-//! A bank of first-order low-pass filters over the time scales of contact.
+//! A bank of first-order low-pass filters with time constants like those of tissue contact.
 
 use super::Lanes;
 
-/// Filters in a [`LowPassBank`].
+/// Number of filters in a [`LowPassBank`].
 pub const BANK: usize = 4;
 
-/// What a signal is above its own past, seen over four time constants.
+/// The difference between a signal and its low-pass filtered past, for four time constants.
 ///
-/// `value - low_pass(value)` for time constants in geometric steps. The differences span velocity and acceleration at four
-/// bandwidths and the relaxation of tissue, need no differentiator, and work the same from 20 Hz to 10 kHz.
+/// `value - low_pass(value)` for time constants in geometric steps. The differences cover velocity and acceleration at
+/// four bandwidths and the relaxation of tissue, need no differentiator, and work the same from 20 Hz to 10 kHz.
 ///
 /// ```
 /// use nima_core::signal::{Lanes, LowPassBank};
@@ -35,8 +35,8 @@ impl LowPassBank {
         Self { share: tau_s.map(|tau_s| -(-period_s / tau_s).exp_m1()), low: [Lanes::ZERO; BANK], started: false }
     }
 
-    /// Takes the newest value; returns its difference from each low-pass, the shortest time constant first. The first value
-    /// fills the filters.
+    /// Adds the newest value; returns its difference from each low-pass, the shortest time constant first. The first
+    /// value initialises the filters.
     pub fn step(&mut self, value: Lanes) -> [Lanes; BANK] {
         if !self.started {
             self.low = [value; BANK];
@@ -51,7 +51,7 @@ impl LowPassBank {
         differences
     }
 
-    /// Forgets the past.
+    /// Resets the filters.
     pub fn reset(&mut self) {
         self.started = false;
     }

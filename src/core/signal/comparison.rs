@@ -11,7 +11,7 @@ fn quantised(x: f64) -> f64 {
     (x / COUNT_M).round() * COUNT_M
 }
 
-/// Uneven numbers in -0.5 to 0.5.
+/// Pseudo-random numbers from -0.5 to 0.5.
 fn jitter(k: usize) -> f64 {
     (k as f64 * 0.754_877_666_246_692_8).fract() - 0.5
 }
@@ -38,7 +38,7 @@ fn deviation(kind: DifferentiatorKind, truth: impl Fn(f64, usize) -> [f64; 3]) -
     sums.map(|sum| (sum / count).sqrt())
 }
 
-/// How late (v, a) of a sinusoid of `hz` come (ms), by their phase.
+/// Lag of (v, a) of a sinusoid of `hz` (ms), from their phase.
 fn lag_ms(kind: DifferentiatorKind, hz: f64) -> [f64; 2] {
     let mut differentiator = Differentiator::new(kind, RATE_HZ);
     let mut parts = [[0.0; 2]; 2];
@@ -57,7 +57,7 @@ fn lag_ms(kind: DifferentiatorKind, hz: f64) -> [f64; 2] {
     [v[1].atan2(v[0]) * ms, a[0].atan2(-a[1]) * ms]
 }
 
-/// A hand: reaches of 40 mm at 0.5 Hz with a tremor of 0.1 mm at 9 Hz.
+/// Motion of a hand: reaches of 40 mm at 0.5 Hz with a tremor of 0.1 mm at 9 Hz.
 fn hand(t: f64) -> [f64; 3] {
     let wave = |amplitude: f64, hz: f64| {
         let w = TAU * hz;

@@ -1,6 +1,6 @@
-//! A ring that remembers the last values.
+//! A ring buffer of the latest values.
 
-/// Remembers the newest values and hands back the one that went in exactly `n` pushes ago.
+/// Stores the latest values and returns the one that was pushed exactly `n` pushes ago.
 ///
 /// Preallocated: [`DelayLine::push`] and [`DelayLine::get`] take constant time and allocate nothing.
 ///
@@ -23,19 +23,19 @@ pub struct DelayLine<T> {
 }
 
 impl<T: Copy> DelayLine<T> {
-    /// A line that can look back up to `max_delay` pushes; `blank` only fills the memory and is never handed out.
+    /// A line that can look back up to `max_delay` pushes; `blank` only initialises the memory and is never returned.
     pub fn new(max_delay: usize, blank: T) -> Self {
         Self { ring: vec![blank; max_delay + 1], newest: max_delay, filled: 0 }
     }
 
-    /// Takes the newest value; the oldest one is forgotten when the line is full.
+    /// Adds the newest value; if the line is full, the oldest one is overwritten.
     #[inline]
     pub fn push(&mut self, value: T) {
         *self.push_slot() = value;
     }
 
-    /// Makes room for the newest value and returns its place, which still holds a forgotten one (for filling large values
-    /// where they lie).
+    /// Makes room for the newest value and returns a reference to it; it still contains an overwritten value (for
+    /// writing large values in place).
     #[inline]
     pub fn push_slot(&mut self) -> &mut T {
         self.newest = if self.newest + 1 >= self.ring.len() { 0 } else { self.newest + 1 };
@@ -43,8 +43,8 @@ impl<T: Copy> DelayLine<T> {
         &mut self.ring[self.newest]
     }
 
-    /// The value pushed `delay` pushes before the newest (0: the newest itself); `None` when that long ago nothing was pushed
-    /// or the line is too short to remember.
+    /// The value that was pushed `delay` pushes before the newest (0: the newest itself); `None` if fewer values were
+    /// pushed or the line is too short.
     #[inline]
     pub fn get(&self, delay: usize) -> Option<&T> {
         if delay >= self.filled {
@@ -54,13 +54,13 @@ impl<T: Copy> DelayLine<T> {
         self.ring.get(index)
     }
 
-    /// The value pushed `delay` pushes ago, or the oldest remembered one; `None` only when nothing was pushed yet.
+    /// The value pushed `delay` pushes ago, or the oldest one stored; `None` only if nothing was pushed yet.
     #[inline]
     pub fn get_or_oldest(&self, delay: usize) -> Option<&T> {
         self.get(delay.min(self.filled.checked_sub(1)?))
     }
 
-    /// How many values are remembered.
+    /// Number of values stored.
     pub fn len(&self) -> usize {
         self.filled
     }
@@ -70,12 +70,12 @@ impl<T: Copy> DelayLine<T> {
         self.filled == 0
     }
 
-    /// The largest delay this line can give.
+    /// The largest delay that this line supports.
     pub fn max_delay(&self) -> usize {
         self.ring.len() - 1
     }
 
-    /// Forgets everything, in constant time.
+    /// Removes all values, in constant time.
     pub fn clear(&mut self) {
         self.filled = 0;
     }

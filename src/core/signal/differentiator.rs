@@ -1,10 +1,10 @@
-//! One face for the differentiators.
+//! A common interface for the differentiators.
 
 use serde::{Deserialize, Serialize};
 
 use super::{Lanes, Motion, foaw::Foaw, kalman::Kalman, savitzky_golay::SavitzkyGolay};
 
-/// Which differentiator makes velocity and acceleration.
+/// Method by which velocity and acceleration are computed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum DifferentiatorKind {
@@ -13,7 +13,7 @@ pub enum DifferentiatorKind {
     SavitzkyGolay,
     /// Steady-state Kalman filter with a constant-jerk model, 25 Hz.
     Kalman,
-    /// First-order adaptive windows up to 20 ms: quiet at rest, quick in motion.
+    /// First-order adaptive windows up to 20 ms: little noise at rest, little lag in motion.
     Foaw,
 }
 
@@ -33,14 +33,14 @@ impl DifferentiatorKind {
 
 /// Length of the finite windows (s).
 const SPAN_S: f64 = 0.02;
-/// Fewest samples in a finite window, for low rates.
+/// Fewest samples in a finite window, used at low rates.
 const MIN_SAMPLES: usize = 5;
-/// Longest adaptive window: its cost grows with the square.
+/// Longest adaptive window: its cost increases with the square of its length.
 const MAX_FOAW_SAMPLES: usize = 32;
 /// Bandwidth of the Kalman filter (Hz).
 const KALMAN_BANDWIDTH_HZ: f64 = 25.0;
-/// Half width of the position noise for adaptive windows (m): one count of a 0.01 mm encoder. Below 1 kHz the windows hold
-/// few samples and the band hardly matters.
+/// Half width of the position noise for adaptive windows (m): one count of a 0.01 mm encoder. Below 1 kHz the windows
+/// contain few samples and the band has little effect.
 const FOAW_BAND_M: f64 = 1e-5;
 
 /// Turns positions at a fixed rate into [`Motion`]; nothing is allocated after construction.
@@ -79,7 +79,7 @@ impl Differentiator {
         })
     }
 
-    /// Takes the position of this tick (m, finite) and returns the motion of this tick.
+    /// Adds the position of this tick (m, finite) and returns the motion of this tick.
     pub fn step(&mut self, position: Lanes) -> Motion {
         match &mut self.0 {
             Inner::SavitzkyGolay(filter) => filter.step(position),
@@ -88,7 +88,7 @@ impl Differentiator {
         }
     }
 
-    /// Whether enough samples are in for the derivatives to mean something.
+    /// Whether enough samples have been added for valid derivatives.
     pub fn settled(&self) -> bool {
         match &self.0 {
             Inner::SavitzkyGolay(filter) => filter.settled(),
@@ -97,7 +97,7 @@ impl Differentiator {
         }
     }
 
-    /// Forgets all samples.
+    /// Resets the filter.
     pub fn reset(&mut self) {
         match &mut self.0 {
             Inner::SavitzkyGolay(filter) => filter.reset(),

@@ -2,10 +2,10 @@
 
 use super::{DelayLine, LANES, Lanes, Motion};
 
-/// The slope of the longest straight line that passes all its samples within a noise band.
+/// The slope of the longest straight line that passes all its samples within a noise band, per axis.
 ///
-/// Velocity from positions, acceleration from those velocities by the same rule. Short windows in fast motion, long ones at
-/// rest; a step of one encoder count at standstill gives no velocity spike.
+/// Velocity is computed from positions, acceleration from those velocities in the same way. Windows are short in fast
+/// motion and long at rest, so a step of one encoder count at standstill gives no velocity spike.
 #[derive(Clone, Debug)]
 pub(super) struct Foaw {
     position: AdaptiveSlope,
@@ -16,7 +16,8 @@ impl Foaw {
     /// Windows of up to `n` samples at `rate_hz`; `band_m` is the half width of the position noise.
     pub(super) fn new(n: usize, rate_hz: f64, band_m: f64) -> Self {
         let n = n.max(3);
-        // A line over the full window with noise `band` has this slope uncertainty; the second stage takes it for its noise.
+        // The slope uncertainty of a line over the full window with noise `band`; it is the noise band of the second
+        // stage.
         let velocity_band = 4.0 * band_m * rate_hz / n as f64;
         Self {
             position: AdaptiveSlope::new(n, rate_hz, band_m),
@@ -24,7 +25,7 @@ impl Foaw {
         }
     }
 
-    /// Takes the newest position, which is handed through.
+    /// Adds the newest position, which is returned unchanged.
     pub(super) fn step(&mut self, position: Lanes) -> Motion {
         let v = self.position.step(position);
         let a = self.velocity.step(v);
@@ -78,7 +79,7 @@ impl AdaptiveSlope {
             sum += oldest - newest;
             weighted += (oldest - newest) * length as f64;
             let n = (length + 1) as f64;
-            // Slope over k = 0..length against age; ages run backwards, hence the sign.
+            // Slope over k = 0..length against age. Age increases backwards in time, hence the sign.
             let mean_age = (n - 1.0) / 2.0;
             slope_per_tick = -(weighted - mean_age * sum) / (n * (n * n - 1.0) / 12.0);
         }

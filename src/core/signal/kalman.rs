@@ -6,7 +6,8 @@ use nalgebra::{Matrix4, Vector4};
 
 use super::{Lanes, Motion};
 
-/// Position, velocity, acceleration and jerk, the jerk driven by white noise; only the position is measured.
+/// Estimates position, velocity, acceleration and jerk of a motion whose jerk is driven by white noise; only the
+/// position is measured.
 ///
 /// The gain is the fixed point of the Riccati equation, found once at construction. Its only parameter is a bandwidth: for
 /// spectral density `q` of the noise and `r` of the measurement the closed-loop poles are those of a fourth-order
@@ -25,7 +26,8 @@ impl Kalman {
     pub(super) fn new(bandwidth_hz: f64, rate_hz: f64) -> Self {
         let bandwidth_hz = bandwidth_hz.min(0.1 * rate_hz);
         let period_s = 1.0 / rate_hz;
-        // Time in units of one period: the transition holds only factorials and the numbers stay near one.
+        // Time in units of one period: the transition matrix then contains only factorials, and all numbers are near
+        // one.
         let step = TAU * bandwidth_hz * period_s;
         let (a, q) = (transition(1.0), process_noise(step.powi(8)));
         let mut p = Matrix4::identity();
@@ -46,7 +48,7 @@ impl Kalman {
         Self { gain, period_s, state: [Lanes::ZERO; 4], ticks: 0, settling_ticks }
     }
 
-    /// Takes the newest position.
+    /// Adds the newest position.
     pub(super) fn step(&mut self, position: Lanes) -> Motion {
         if self.ticks == 0 {
             self.state = [position, Lanes::ZERO, Lanes::ZERO, Lanes::ZERO];
@@ -76,7 +78,7 @@ fn transition(t: f64) -> Matrix4<f64> {
     Matrix4::new(1.0, t, t2, t3, 0.0, 1.0, t, t2, 0.0, 0.0, 1.0, t, 0.0, 0.0, 0.0, 1.0)
 }
 
-/// Covariance gathered in one period by white noise of density `q` on the jerk's derivative.
+/// Process covariance of one period for white noise of density `q` on the derivative of the jerk.
 fn process_noise(q: f64) -> Matrix4<f64> {
     let factorial = [6.0, 2.0, 1.0, 1.0];
     Matrix4::from_fn(|i, j| q / (factorial[i] * factorial[j] * (7 - i - j) as f64))

@@ -10,10 +10,10 @@ use std::ops::{Add, AddAssign, Div, Index, IndexMut, Mul, MulAssign, Neg, Sub, S
 use nalgebra::Vector3;
 use wide::f64x4;
 
-/// What is closer to zero than this is zero.
+/// A number closer to zero than this is treated as zero.
 ///
-/// Means that forget decay for ever while nothing happens; after some minutes they would be subnormal numbers, a hundred
-/// times slower to compute with, whose reciprocals are infinite.
+/// Exponentially weighted means decay for ever while nothing happens. After some minutes they would be subnormal
+/// numbers, which take a hundred times longer to compute with and whose reciprocals are infinite.
 pub const NOTHING: f64 = 1e-100;
 
 /// `value`, or 0 if it is closer to zero than [`NOTHING`].
@@ -27,9 +27,9 @@ pub const LANES: usize = 4;
 
 /// The same quantity of every axis: x, y, z, and a spare lane that stays zero.
 ///
-/// Stored as a plain array, computed as one vector: left to itself the compiler vectorises across the loop instead of across
-/// the lanes, and shuffles (a Cholesky factorisation took twice as long). Products and sums are never fused, so every machine
-/// computes the same bits.
+/// Stored as an array and computed as one vector. Without this type the compiler vectorises across the loop instead of
+/// across the lanes, and shuffles (a Cholesky factorisation took twice as long). Products and sums are never fused, so
+/// the results are the same on every computer.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[repr(align(32))]
 pub struct Lanes(pub [f64; LANES]);

@@ -1,12 +1,13 @@
-//! Signals at a fixed rate: derivatives of a sampled position, a bank of low-passes, and an exact delay line.
+//! Signals at a fixed rate: derivatives of a sampled position, a bank of low-pass filters, and an exact delay line.
 //!
-//! Takes: one position per tick (m, up to three axes, in [`Lanes`]) at a rate fixed at construction.
-//! Gives: position, velocity (m/s) and acceleration (m/s²) of the same instant ([`Motion`]), causal: only the present and
-//! past samples are used. [`DelayLine`] hands back what went in exactly `n` ticks ago.
+//! Takes one position per tick (m, up to three axes, in [`Lanes`]) at a rate fixed at construction. Returns position,
+//! velocity (m/s) and acceleration (m/s²) of the same instant ([`Motion`]); causal: only the present and past samples
+//! are used. [`DelayLine`] returns the value of exactly `n` ticks ago.
 //!
-//! Which differentiator? Measured at 1 kHz on positions quantised to 0.01 mm (test `figures_of_every_differentiator`): noise of
-//! a resting hand that toggles one count, lag at 5 Hz by phase, and RMS error on a hand reaching 40 mm at 0.5 Hz with a tremor
-//! of 0.1 mm at 9 Hz; ratio is anchored rendering's mean error relative to reflection over 18 groups of recordings.
+//! Comparison of the differentiators at 1 kHz on positions quantised to 0.01 mm (test
+//! `figures_of_every_differentiator`): noise for a resting hand that toggles one count, lag at 5 Hz by phase, and RMS
+//! error for a hand that reaches 40 mm at 0.5 Hz with a tremor of 0.1 mm at 9 Hz. "Ratio" is the mean error of the mode
+//! `anchored` relative to reflection over 18 groups of recordings.
 //!
 //! | | noise v (mm/s), a (m/s²) | lag v, a (ms) | error v (mm/s), a (m/s²) | ratio |
 //! |---|---|---|---|---|
@@ -16,12 +17,12 @@
 //! | the same at 15 Hz | 0.11, 0.008 | -2.0, 5.2 | 2.16, 0.268 | |
 //! | FOAW up to 20 ms, band one count | 0.10, 0.003 | 1.1, 2.0 | 1.48, 0.260 | 0.478 |
 //!
-//! Savitzky-Golay and Kalman are equally good for velocity; Kalman's acceleration is less late, FOAW is quietest at rest and
-//! coarsest in motion. The default is Savitzky-Golay: it forgets a bad sample after exactly 20 ms and has nothing to tune;
-//! for rendering the choice does not matter.
+//! Savitzky-Golay and Kalman are equally good for velocity; Kalman's acceleration has less lag; FOAW has the least
+//! noise at rest and the largest error in motion. The default is Savitzky-Golay: a bad sample has no effect after
+//! exactly 20 ms, and there is nothing to tune. For rendering the choice makes no difference.
 //!
-//! Everything is allocated at construction. Bad input: callers hand in finite numbers only (the identifier fills gaps with
-//! a prediction before they get here); a non-finite sample would otherwise live in a filter until it leaves the window.
+//! Everything is allocated at construction. Callers must pass finite numbers (the identifier replaces missing samples
+//! with a prediction before); a sample that is not finite would corrupt a filter until it leaves the window.
 
 mod bank;
 #[cfg(test)]

@@ -1,8 +1,9 @@
-//! A PID controller with a bounded integral; the derivative acts on the measurement, so that a jump of the goal does not kick.
+//! A PID controller with a limited integral. The derivative acts on the measurement, so that a step of the goal does
+//! not cause a spike.
 
 use serde::{Deserialize, Serialize};
 
-/// Gains, and the most that the integral may add.
+/// Gains, and the limit of the integral.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PidGains {
@@ -10,13 +11,13 @@ pub struct PidGains {
     pub proportional: f64,
     /// Output per unit of error and second.
     pub integral_per_s: f64,
-    /// Output per unit of error's change in a second.
+    /// Output per rate of change of the measurement.
     pub derivative_s: f64,
-    /// The integral's share of the output stays within this, either way.
+    /// Largest contribution of the integral to the output, in both directions.
     pub integral_max: f64,
 }
 
-/// The controller's memory.
+/// The controller's state.
 ///
 /// ```
 /// use nima_core::signal::{Pid, PidGains};
@@ -39,12 +40,13 @@ impl Pid {
         Self { gains, integral: 0.0, last: None }
     }
 
-    /// Forgets everything.
+    /// Resets the state.
     pub const fn reset(&mut self) {
         (self.integral, self.last) = (0.0, None);
     }
 
-    /// The output for this goal and measurement, `dt_s` after the last. Input that is not finite gives zero and changes nothing.
+    /// The output for this goal and measurement, `dt_s` after the last step. Input that is not finite gives zero and
+    /// changes nothing.
     pub fn step(&mut self, goal: f64, measured: f64, dt_s: f64) -> f64 {
         if !(goal.is_finite() && measured.is_finite() && dt_s > 0.0) {
             return 0.0;
@@ -67,7 +69,7 @@ mod tests {
 
     #[test]
     fn a_constant_load_leaves_no_error_at_last() {
-        // A servo that sags by 0.05 rad and follows its goal within 10 ms.
+        // A servo with a steady error of 0.05 rad that follows its goal within 10 ms.
         let (mut pid, mut angle, goal) = (Pid::new(GAINS), 0.0, 0.4);
         for _ in 0..2000 {
             let commanded = goal + pid.step(goal, angle, 1e-3);

@@ -1,4 +1,4 @@
-//! Causal Savitzky-Golay: a parabola through the last samples, read off at its newest end.
+//! Causal Savitzky-Golay filter: a parabola through the last samples, evaluated at the newest one.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -18,7 +18,8 @@ impl SavitzkyGolay {
     /// A parabola over `n >= 3` samples at `rate_hz`.
     pub(super) fn new(n: usize, rate_hz: f64) -> Self {
         let n = n.max(3);
-        // Time in units of the window, newest sample at 0: the Vandermonde matrix stays well conditioned at every rate.
+        // Time in units of the window, newest sample at 0: the Vandermonde matrix is then well conditioned at every
+        // rate.
         let span = (n - 1) as f64;
         let vandermonde = DMatrix::from_fn(n, 3, |k, power| {
             let age = -(k as f64) / span;
@@ -41,14 +42,14 @@ impl SavitzkyGolay {
         Self { samples: DelayLine::new(n - 1, Lanes::ZERO), weights }
     }
 
-    /// Takes the newest position. Until `n` samples are in, the position is handed through with zero derivatives.
+    /// Adds the newest position. Until `n` samples have been added, returns the position with zero derivatives.
     pub(super) fn step(&mut self, position: Lanes) -> Motion {
         self.samples.push(position);
         if !self.settled() {
             return Motion { x: position, ..Motion::default() };
         }
         let mut motion = Motion { x: position, ..Motion::default() };
-        // Differences from the newest sample: a large constant offset costs no digits.
+        // Uses differences from the newest sample, so that a large constant offset does not reduce the precision.
         for (k, [wx, wv, wa]) in self.weights.iter().enumerate() {
             let Some(sample) = self.samples.get(k) else { break };
             let step = *sample - position;

@@ -1,4 +1,4 @@
-//! What simpler methods, fitted on the same rows, make of the same inputs: the yardsticks of every network.
+//! Simpler methods, fitted on the same rows and inputs, with which every network is compared.
 
 use serde::{Deserialize, Serialize};
 
@@ -13,14 +13,15 @@ struct Regression {
     constant: Vec<f32>,
 }
 
-/// The baselines of one model, kept in its file.
+/// The baselines of one model, stored in its file.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Baselines {
-    /// Per output: the input of like name (`fx_n` for `tip_fx_n`), which "no model" takes as it is.
+    /// Per output: index of the input of like name (`fx_n` for `tip_fx_n`), which the baseline "no model" returns
+    /// unchanged.
     like: Vec<Option<usize>>,
     linear: Regression,
-    /// Linear in the inputs and in `v / sqrt(v^2 + v0^2)` of every speed: Coulomb and viscous friction, a free constant.
+    /// Linear in the inputs and in `v / sqrt(v^2 + v0^2)` of every speed: Coulomb and viscous friction, and a constant.
     friction: Regression,
     soft: Vec<f32>,
 }
@@ -29,7 +30,7 @@ pub struct Baselines {
 pub const BASELINES: [&str; 3] = ["no model", "linear", "friction"];
 
 impl Baselines {
-    /// Fits them on rows of these input and output columns, row by row.
+    /// Fits the baselines on rows of these input and output columns, row by row.
     pub fn fit(inputs: &[String], outputs: &[String], x: &[f32], y: &[f32]) -> Self {
         let soft = Expansion::fit(inputs, x).soft(inputs.len());
         let like = |output: &String| {
@@ -45,7 +46,7 @@ impl Baselines {
         }
     }
 
-    /// They fit a model of so many inputs and outputs.
+    /// Whether they belong to a model with these numbers of inputs and outputs.
     pub fn fits(&self, inputs: usize, outputs: usize) -> bool {
         let signs = self.soft.iter().filter(|v0| **v0 > 0.0).count();
         let one = |regression: &Regression, width: usize| {
@@ -58,7 +59,7 @@ impl Baselines {
             && inputs + signs <= 2 * MAX_FEATURES
     }
 
-    /// What each of [`BASELINES`] says of one row of inputs; `None` where it has nothing to say of an output.
+    /// Predictions of each of [`BASELINES`] for one row of inputs; `None` for an output that a method does not predict.
     pub fn predict(&self, inputs: &[f32]) -> [Vec<Option<f32>>; 3] {
         let none = self.like.iter().map(|column| column.map(|column| inputs[column])).collect();
         let friction = self.friction.predict(&with_signs(inputs, &self.soft));
@@ -66,7 +67,7 @@ impl Baselines {
     }
 }
 
-/// The inputs followed by the soft signs of the directions among them.
+/// The inputs followed by the soft signs of those that are directions of motion.
 fn with_signs(inputs: &[f32], soft: &[f32]) -> Vec<f32> {
     let sign = |(v, v0): (&f32, &f32)| (*v0 > 0.0).then(|| v / (v * v + v0 * v0).sqrt());
     inputs.iter().copied().chain(inputs.iter().zip(soft).filter_map(sign)).collect()

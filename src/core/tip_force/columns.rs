@@ -1,12 +1,13 @@
-//! The columns of a data set, and how they become the numbers that a network reads.
+//! The columns of a data set, and their conversion to the features of a network.
 //!
-//! An orientation is given as a quaternion (`qw, qx, qy, qz`, `world_from_s1`), of which q and -q are the same rotation. The
-//! network therefore reads the nine entries of the rotation matrix, in which every component appears as a product of two:
-//! both signs give the same bits. A quaternion of length zero gives numbers that are not finite, which the estimator refuses.
+//! An orientation is given as a quaternion (`qw, qx, qy, qz`, `world_from_s1`); q and -q are the same rotation. The
+//! network therefore uses the nine entries of the rotation matrix, which are products of two components and so
+//! identical for both signs. A quaternion of length zero gives numbers that are not finite, which the estimator
+//! refuses.
 
-/// Inputs taken by default, as far as a data set has them: gravity-free wrench at the wrist (`s1`; N, Nm), orientation
-/// (`world_from_s1`), depth through the trocar (m), its speed (m/s), and what the seal remembers: how it is stretched (m) and how
-/// fast it slid (m/s); see [`super::Features`].
+/// Default inputs, as far as a data set contains them: gravity-free wrench at the wrist (`s1`; N, Nm), orientation
+/// (`world_from_s1`), depth through the trocar (m), its speed (m/s), and the state of the seal: its stretch (m) and its
+/// past sliding speed (m/s); see [`super::Features`].
 pub const DEFAULT_INPUTS: [&str; 15] = [
     "fx_n",
     "fy_n",
@@ -25,23 +26,24 @@ pub const DEFAULT_INPUTS: [&str; 15] = [
     "slip_m_s",
 ];
 
-/// Outputs taken by default: the force of the tissue on the tip (`s1`, N).
+/// Default outputs: the force of the tissue on the tip (`s1`, N).
 pub const DEFAULT_OUTPUTS: [&str; 3] = ["tip_fx_n", "tip_fy_n", "tip_fz_n"];
 
-/// Most outputs a model can have.
+/// Most outputs of a model.
 pub const MAX_OUTPUTS: usize = 6;
 
-/// Most numbers a network can read (after quaternions have become matrices).
+/// Most features of a network (after quaternions have become matrices).
 pub const MAX_FEATURES: usize = 64;
 
 const QUATERNION: [&str; 4] = ["qw", "qx", "qy", "qz"];
 
-/// How input columns become features, in this order: plain columns as they are; the nine entries of the rotation matrix; per
-/// direction of motion its soft sign `s = v / sqrt(v^2 + v0^2)`; and the products of that sign with every plain column that is
-/// no direction itself.
+/// Conversion of input columns to features, in this order: plain columns unchanged; the nine entries of the rotation
+/// matrix; for each direction of motion its soft sign `s = v / sqrt(v^2 + v0^2)`; and the products of that sign with
+/// every plain column that is not a direction of motion itself.
 ///
-/// A direction is a column whose name holds `speed` or `presliding`. Coulomb friction is a sign times a load: with signs and
-/// products among the features the linear path of a network extrapolates it beyond the loads it was trained on.
+/// A direction of motion is a column whose name contains `speed` or `presliding`. Coulomb friction is a sign times a
+/// load: with these products as features, the linear path of a network extrapolates it beyond the loads of the training
+/// data.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Expansion {
     plain: Vec<usize>,
@@ -50,12 +52,12 @@ pub struct Expansion {
     loads: Vec<usize>,
 }
 
-/// `v0` as a share of the root mean square of a speed or travel.
+/// `v0` as a share of the root mean square of the column.
 const SOFT_SHARE: f32 = 0.1;
 
 impl Expansion {
-    /// The expansion of these input columns; `soft[i]` is the `v0` of column `i` where that is a direction. `None` where such
-    /// a number is absent or not positive.
+    /// The conversion for these input columns; `soft[i]` is the `v0` of column `i` if that is a direction of motion.
+    /// `None` if such a number is missing or not positive.
     pub fn new(inputs: &[String], soft: &[f32]) -> Option<Self> {
         let at = |name: &str| inputs.iter().position(|input| input == name);
         let quaternion = match QUATERNION.map(at) {
@@ -69,7 +71,7 @@ impl Expansion {
         positive.then_some(Self { plain, quaternion, directions: softened, loads })
     }
 
-    /// The expansion for these data: every `v0` is a tenth of the column's root mean square.
+    /// The conversion fitted to these data: every `v0` is a tenth of the column's root mean square.
     pub fn fit(inputs: &[String], x: &[f32]) -> Self {
         let rows = (x.len() / inputs.len().max(1)).max(1) as f64;
         let mut square = vec![0.0_f64; inputs.len()];
@@ -85,25 +87,25 @@ impl Expansion {
         })
     }
 
-    /// `v0` of every input column, 0 where it is no direction: what [`Self::new`] takes.
+    /// `v0` of every input column, 0 for columns that are not directions of motion; the argument of [`Self::new`].
     pub fn soft(&self, inputs: usize) -> Vec<f32> {
         let mut soft = vec![0.0; inputs];
         self.directions.iter().for_each(|(column, v0)| soft[*column] = *v0);
         soft
     }
 
-    /// How many features there are.
+    /// Number of features.
     pub fn width(&self) -> usize {
         let rotation = if self.quaternion.is_some() { 9 } else { 0 };
         self.plain.len() + rotation + self.directions.len() * (1 + self.loads.len())
     }
 
-    /// How many of them, from the first, are measured quantities and not signs or products.
+    /// Number of measured features, which come first; signs and products follow.
     pub fn measured(&self) -> usize {
         self.plain.len() + if self.quaternion.is_some() { 9 } else { 0 }
     }
 
-    /// What a feature is made of, for messages.
+    /// Name of a feature, for messages.
     pub fn name(&self, feature: usize, inputs: &[String]) -> String {
         match self.plain.get(feature) {
             Some(&column) => inputs[column].clone(),
@@ -117,7 +119,7 @@ impl Expansion {
         }
     }
 
-    /// Fills `features` (of [`Self::width`]) from one row of inputs.
+    /// Computes `features` (length [`Self::width`]) from one row of inputs.
     pub fn expand(&self, inputs: &[f32], features: &mut [f32]) {
         for (feature, &column) in features.iter_mut().zip(&self.plain) {
             *feature = inputs[column];

@@ -1,18 +1,20 @@
-//! How well a recording fills what the network will meet: tilt, force, travel, friction both ways, contact and free.
+//! How well a recording covers the conditions of use: tilt, force, travel, friction in both directions, with and
+//! without contact.
 //!
-//! Takes rows of [`super::DEFAULT_INPUTS`] with the force at the tip (N, `s1`); gives maps to draw and what is still to do, in words.
+//! Takes rows of [`super::DEFAULT_INPUTS`] with the force at the tip (N, `s1`); returns maps to draw and, as text, what
+//! is still missing.
 
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 
 use super::LIVE_INPUTS;
 
-/// Fields of a map along each side.
+/// Number of cells along each side of a map.
 pub const MAP: usize = 16;
 
-/// Counts over two quantities.
+/// Two-dimensional histogram.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Map {
-    /// Rows per field, `[vertical][horizontal]`, lowest values first.
+    /// Number of rows in each cell, `[vertical][horizontal]`, lowest values first.
     pub counts: [[u32; MAP]; MAP],
 }
 
@@ -27,13 +29,13 @@ impl Map {
         self.counts[place(vertical, ranges[1])][place(horizontal, ranges[0])] += 1;
     }
 
-    /// Fields with at least a few rows.
+    /// Number of cells with at least a few rows.
     pub fn filled(&self) -> usize {
         self.counts.iter().flatten().filter(|count| **count >= 3).count()
     }
 }
 
-/// Least and largest value seen.
+/// Smallest and largest value so far.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[expect(missing_docs, reason = "the names say it")]
 pub struct Span {
@@ -48,22 +50,22 @@ impl Span {
         (self.low, self.high) = (self.low.min(value), self.high.max(value));
     }
 
-    /// How wide it is; zero before the first value.
+    /// Width of the range; zero before the first value.
     pub const fn width(&self) -> f32 {
         (self.high - self.low).max(0.0)
     }
 }
 
-/// Tilt of the shaft from straight down that a map shows, as a sine, either way.
+/// Largest tilt of the shaft from straight down on a map, as a sine, in both directions.
 pub const TILT: f32 = 0.8;
-/// Force that a map shows, N: across the shaft and along it, either way.
+/// Largest force on a map, N: across the shaft and along it, in both directions.
 pub const FORCE_N: f32 = 5.0;
-/// Travel that a map shows, m: depth and speed.
+/// Range of depth on a map, m.
 pub const DEPTH_M: [f32; 2] = [0.0, 0.3];
-/// Speed that a map shows, m/s, either way.
+/// Largest speed on a map, m/s, in both directions.
 pub const SPEED_M_S: f32 = 0.08;
 
-/// What is asked of a recording before it may be trained on.
+/// Requirements for a recording before it may be used for training.
 const ROWS: usize = 6000;
 const TILT_SPAN: f32 = 0.25;
 const DEPTH_SPAN_M: f32 = 0.015;
@@ -72,25 +74,26 @@ const ALONG_SPAN_N: f32 = 1.5;
 const WAY_SHARE: f64 = 0.12;
 const CONTACT_SHARE: [f64; 2] = [0.15, 0.85];
 
-/// Which of the conditions are met.
+/// One requirement and how far it is met.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Goal {
-    /// What it is about.
+    /// Its name.
     pub name: &'static str,
-    /// Share that is met, 0 to 1.
+    /// How far it is met, 0 to 1.
     pub share: f64,
-    /// What to do while it is not met.
+    /// What to do until it is met.
     pub advice: &'static str,
 }
 
-/// The coverage so far.
+/// The coverage of a recording so far.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Coverage {
-    /// Direction of the shaft (`world`), x to the right, y up, each from -[`TILT`] to [`TILT`].
+    /// Direction of the shaft (`world`), x horizontal, y vertical, each from -[`TILT`] to [`TILT`].
     pub tilt: Map,
-    /// Force at the tip: across the shaft to the right (0 to [`FORCE_N`]), along it up (-[`FORCE_N`] to [`FORCE_N`]).
+    /// Force at the tip: across the shaft horizontal (0 to [`FORCE_N`]), along it vertical (-[`FORCE_N`] to
+    /// [`FORCE_N`]).
     pub force: Map,
-    /// Depth to the right ([`DEPTH_M`]), speed up (-[`SPEED_M_S`] to [`SPEED_M_S`]).
+    /// Depth horizontal ([`DEPTH_M`]), speed vertical (-[`SPEED_M_S`] to [`SPEED_M_S`]).
     pub travel: Map,
     tilt_span: [Span; 2],
     force_span: [Span; 3],
@@ -119,7 +122,7 @@ impl Default for Coverage {
 }
 
 impl Coverage {
-    /// Takes one row.
+    /// Adds one row.
     pub fn add(&mut self, inputs: &[f32; LIVE_INPUTS], tip_n: &[f32; 3], contact: bool) {
         let [_, _, _, _, _, _, w, x, y, z, depth_m, speed_m_s, _, travel_m, _] = *inputs;
         let shaft = UnitQuaternion::from_quaternion(Quaternion::new(w, x, y, z)) * Vector3::z();
@@ -136,7 +139,7 @@ impl Coverage {
         self.rows += 1;
     }
 
-    /// All that is asked for, in the order in which to do it.
+    /// All requirements, in the order in which to meet them.
     pub fn goals(&self) -> [Goal; 6] {
         let rows = self.rows.max(1) as f64;
         let part = |have: f32, want: f32| f64::from(have / want).clamp(0.0, 1.0);
@@ -158,7 +161,7 @@ impl Coverage {
         ]
     }
 
-    /// The first thing that is still to do; `None` when the recording may be trained on.
+    /// The first requirement that is not met; `None` if the recording may be used for training.
     pub fn next(&self) -> Option<Goal> {
         self.goals().into_iter().find(|goal| goal.share < 1.0)
     }

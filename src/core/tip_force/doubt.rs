@@ -1,48 +1,51 @@
-//! When not to believe a network: how far a sample lies from all that was trained on.
+//! Detects samples for which a network is unreliable, by their distance from the training data.
 //!
-//! Three scores, each 1 at its limit, the largest counts: the distance to the nearest of some centres of the training data
-//! in whitened features, the reach of any one feature beyond its range, and the disagreement of the ensemble. Limits of
-//! distance and range are calibrated on trajectories that the statistics were not made of (each fold in turn), so that at
+//! Three scores are computed, each 1 at its limit, and the largest one counts: the distance to the nearest of some
+//! cluster centres of the training data in whitened features; the distance of any single feature outside its range; and
+//! the disagreement of the ensemble. The limits of distance and range are calibrated by cross-validation (each fold in
+//! turn), so that at most about [`FALSE_ALARMS`] of unseen samples from the range of the others are flagged. A value
+//! that is not finite has an infinite score.
 //! most about [`FALSE_ALARMS`] of unseen samples in the range of the others are flagged. Anything that is not finite has an endless score.
 
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
 /// Share of samples of unseen trajectories that a limit may flag.
 pub const FALSE_ALARMS: f64 = 0.01;
-/// Room beyond the calibrated limits where the folds are pieces of one session: another session reaches further. In simulation
-/// the farthest hundredth of three unseen sessions lay 2 to 14 % beyond.
+/// Margin beyond the calibrated limits if the folds are parts of one session, because another session goes further: in
+/// simulation, the 99th percentile of three unseen sessions was 2 to 14 % beyond the limits.
 const ROOM: f32 = 1.15;
-/// Centres of the training data.
+/// Number of cluster centres.
 const CENTRES: usize = 96;
-/// Rounds of the search for centres.
+/// Iterations of the clustering.
 const ROUNDS: usize = 8;
-/// Variances below this share of a feature's own are not told from noise.
+/// Smallest variance in the whitening, as a share of the feature's variance: below it the direction is only noise.
 const FLOOR: f64 = 0.02;
-/// Most rows the statistics are made of; more are thinned evenly.
+/// Most rows used for the statistics; larger data sets are thinned evenly.
 const ROWS: usize = 20_000;
 
-/// Centres, whitening, ranges and limits. All in normalised features, of which the first `width` count.
+/// Cluster centres, whitening, ranges and limits, for normalised features; only the first `width` features are used.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Doubt {
-    /// Features that count: the measured ones, not their products.
+    /// Number of features used: the measured ones, not their products.
     pub width: usize,
-    /// `width x width`, row by row: whitened = matrix times features.
+    /// Whitening matrix, `width x width`, row by row: whitened = matrix times features.
     pub whitening: Vec<f32>,
     /// Whitened centres, `width` numbers each.
     pub centres: Vec<f32>,
-    /// Least and largest value of every feature.
+    /// Smallest and largest value of every feature.
     pub range: Vec<[f32; 2]>,
-    /// Distance at which doubt begins.
+    /// Limit of the distance to the nearest centre.
     pub distance_limit: f32,
-    /// Reach from the middle of the range, in halves of it, at which doubt begins; at least 1.
+    /// Limit of the distance from the middle of the range, in halves of the range; at least 1.
     pub range_limit: f32,
-    /// Disagreement of the ensemble, in standard deviations of an output, at which doubt begins.
+    /// Limit of the ensemble's disagreement, in standard deviations of an output.
     pub spread_limit: f32,
 }
 
 impl Doubt {
-    /// Fits on all rows of `x` (normalised, `stride` numbers a row) with limits calibrated over the folds: pairs of rows to
-    /// fit on and rows to judge, which may be whole sessions. `spreads` are the ensemble's disagreements on rows that one member did not see.
+    /// Fits on all rows of `x` (normalised, `stride` numbers a row), with limits calibrated over the folds, which are
+    /// pairs of rows to fit on and rows to judge (possibly whole sessions). `spreads` are the ensemble's disagreements
+    /// on rows that one member was not trained on.
     pub fn fit(
         x: &[f32],
         stride: usize,
@@ -92,7 +95,7 @@ impl Doubt {
         Self { width, whitening, centres, range, distance_limit: 1.0, range_limit: 1.0, spread_limit: 1.0 }
     }
 
-    /// How far outside of the training data a row of normalised features lies. `scratch` has room for `width`. Allocates
+    /// Score of the distance and range of a row of normalised features. `scratch` must have length `width`. Allocates
     /// nothing.
     pub fn outside(&self, features: &[f32], scratch: &mut [f32]) -> f32 {
         let distance = self.distance(features, scratch) / self.distance_limit;
@@ -114,7 +117,7 @@ impl Doubt {
         nearest.sqrt()
     }
 
-    /// Largest distance from the middle of a feature's range, in halves of it.
+    /// Largest distance from the middle of a feature's range, in halves of the range.
     fn reach(&self, features: &[f32]) -> f32 {
         let one = |([low, high], value): (&[f32; 2], &f32)| {
             let half = (0.5 * (high - low)).max(1e-4);
@@ -129,13 +132,14 @@ fn thinned(rows: &[usize], most: usize) -> Vec<usize> {
     rows.iter().copied().step_by(rows.len().div_ceil(most.max(1)).max(1)).collect()
 }
 
-/// That of the typical fold: one that leaves out an end of the range is rightly in doubt and sets no limit.
+/// The median over the folds: a fold that leaves out an end of the range is rightly flagged and should not set the
+/// limit.
 fn median(mut values: Vec<f32>) -> f32 {
     values.sort_by(f32::total_cmp);
     values.get(values.len().saturating_sub(1) / 2).copied().unwrap_or(0.0)
 }
 
-/// The limit that [`FALSE_ALARMS`] of these values pass.
+/// The limit that a share of [`FALSE_ALARMS`] of these values exceeds.
 fn quantile(mut values: Vec<f32>) -> f32 {
     if values.is_empty() {
         return 0.0;
@@ -151,7 +155,7 @@ fn whiten(whitening: &[f32], features: &[f32], to: &mut [f32]) {
     }
 }
 
-/// Rotates to principal axes and divides by their spread, with a floor under it.
+/// Rotates to principal axes and divides by their standard deviation, which is limited from below.
 fn whitening<'a>(width: usize, rows: impl Iterator<Item = &'a [f32]>) -> Vec<f32> {
     let mut covariance = DMatrix::<f64>::zeros(width, width);
     let mut mean = DVector::<f64>::zeros(width);
@@ -172,7 +176,7 @@ fn whitening<'a>(width: usize, rows: impl Iterator<Item = &'a [f32]>) -> Vec<f32
     (0..width).flat_map(|k| (0..width).map(move |i| (k, i))).map(|(k, i)| entry(k, i)).collect()
 }
 
-/// Centres of whitened rows by Lloyd's rounds, begun at rows chosen at random.
+/// Centres of whitened rows by Lloyd's algorithm, starting from randomly chosen rows.
 fn centres(white: &[f32], width: usize, seed: u64) -> Vec<f32> {
     let rows: Vec<&[f32]> = white.chunks_exact(width).step_by((white.len() / width).div_ceil(4000).max(1)).collect();
     let mut generator = fastrand::Rng::with_seed(seed ^ 0xce27);

@@ -1,21 +1,22 @@
-//! One answer per row of inputs, with its doubt. Allocates nothing after construction; f32 inside.
+//! Predicts the outputs for one row of inputs, and whether the prediction is reliable. Allocates nothing after
+//! construction; computes in f32.
 
 use super::{MAX_OUTPUTS, Model};
 
-/// What a model says of one row.
+/// Output of a model for one row.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Estimate {
-    /// The outputs in their own units, in the model's order; beyond its outputs zeros.
+    /// The outputs in their own units, in the model's order; unused entries are zero.
     pub output: [f32; MAX_OUTPUTS],
-    /// Largest disagreement of a member with the mean, per output, in the output's unit.
+    /// Largest deviation of a member from the mean, per output, in the output's unit.
     pub spread: [f32; MAX_OUTPUTS],
-    /// How far from the training data: 1 is the limit; endless for inputs that are not finite.
+    /// Distance from the training data: 1 is the limit; infinite for inputs that are not finite.
     pub doubt: f32,
-    /// The answer is not to be believed.
+    /// Whether the prediction is unreliable.
     pub in_doubt: bool,
 }
 
-/// A model ready to answer.
+/// A model with its work buffers.
 #[derive(Clone, Debug)]
 pub struct Estimator {
     model: Model,
@@ -24,7 +25,7 @@ pub struct Estimator {
 }
 
 impl Estimator {
-    /// Makes a model ready; allocates all it will ever need.
+    /// Prepares a model; allocates everything that it needs.
     pub fn new(model: Model) -> Self {
         let (features, scratch) = (vec![0.0; model.expansion.width()], vec![0.0; model.doubt.width]);
         Self { model, features, scratch }
@@ -35,8 +36,8 @@ impl Estimator {
         &self.model
     }
 
-    /// Answers one row of inputs, in the order of [`Model::inputs`]. A wrong number of inputs, or one that is not finite,
-    /// gives zeros in doubt.
+    /// Predicts for one row of inputs, in the order of [`Model::inputs`]. A wrong number of inputs, or one that is not
+    /// finite, gives zeros with `in_doubt`.
     pub fn estimate(&mut self, inputs: &[f32]) -> Estimate {
         let refused = Estimate { doubt: f32::INFINITY, in_doubt: true, ..Estimate::default() };
         let Self { model, features, scratch } = self;
@@ -44,7 +45,7 @@ impl Estimator {
             return refused;
         }
         model.expansion.expand(inputs, features);
-        // Ranges are judged before a constant feature is made neutral.
+        // Constant features must be checked before the normalisation sets them to zero.
         let moved = moved(features, &model.features.mean, &model.features.inverse_sd);
         model.features.apply(features);
         if !features.iter().all(|x| x.is_finite()) {
@@ -68,12 +69,12 @@ impl Estimator {
     }
 }
 
-/// How much of the network counts: all within the training data, nothing from a quarter beyond the limit of doubt on.
+/// Weight of the nonlinear part: 1 within the training data, falling to 0 at 1.25 times the limit of doubt.
 fn trust(outside: f32) -> f32 {
     (5.0 - 4.0 * outside).clamp(0.0, 1.0)
 }
 
-/// Endless where a feature that was constant in training is anything else, beyond rounding; else zero.
+/// Infinite if a feature that was constant in training differs, beyond rounding, from its value; else zero.
 fn moved(features: &[f32], mean: &[f32], inverse_sd: &[f32]) -> f32 {
     let differs =
         |((x, mean), inverse): ((&f32, &f32), &f32)| *inverse == 0.0 && (x - mean).abs() > 1e-3 * mean.abs() + 1e-5;

@@ -1,25 +1,28 @@
-//! What a network reads, made of a stream of wrist samples: the same for recording a data set and in the live loop.
+//! Computes the inputs of the network from a stream of wrist samples, in the same way for recording a data set and in
+//! the live loop.
 //!
-//! Takes the gravity-free wrench (N, Nm, `s1`), the wrist's orientation and its depth through the trocar, at the time of
-//! each sample (s); gives one row of [`DEFAULT_INPUTS`]. Friction remembers which way the instrument moved last, so this
-//! part has a memory; until it is filled, and after any hole in the samples, there is no row. Allocates nothing.
+//! Takes the gravity-free wrench (N, Nm, `s1`), the wrist's orientation and its depth through the trocar, at the time
+//! of each sample (s); returns one row of [`DEFAULT_INPUTS`]. Friction depends on the direction of the last motion, so
+//! the computation has a state; until that is known, and after a gap in the samples, there is no row. Allocates
+//! nothing.
 
 use super::DEFAULT_INPUTS;
 use crate::frames::{Wrench, WristSample};
 
-/// How many inputs a row has.
+/// Number of inputs in a row.
 pub const LIVE_INPUTS: usize = DEFAULT_INPUTS.len();
 
-/// Time constants and lengths. A network must be used with those that its data were recorded with: everything but the study
-/// that chose them uses the default.
+/// Time constants and lengths. A network must be used with the settings with which its data were recorded; only the
+/// study that chose them uses others than the default.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FeatureSettings {
-    /// Time constant of the low-pass over wrench and depth, s: its delay buys less noise. One for both: a wrench that came later
-    /// than the motion it belongs to would look like friction the wrong way at every turn.
+    /// Time constant of the low-pass on wrench and depth, s: less noise for some delay. It is the same for both,
+    /// because a wrench delayed against its motion would look like friction of the wrong sign at every reversal.
     pub smoothing_s: f64,
-    /// Over which lengths a stuck seal stretches before it slides, m, shortest first (Dahl 1968): `dz = dx - |dx| z / length`.
+    /// Lengths over which a stuck seal stretches before it slides, m, shortest first (Dahl 1968): `dz = dx - |dx| z /
+    /// length`.
     pub presliding_m: [f64; 2],
-    /// Over which length of sliding the seal forgets how fast it slid, m (rate-and-state friction, Ruina 1983).
+    /// Length of sliding after which the past sliding speed no longer matters, m (rate-and-state friction, Ruina 1983).
     pub slip_m: f64,
 }
 
@@ -29,10 +32,11 @@ impl Default for FeatureSettings {
     }
 }
 
-/// Share of its longest length that a stretch must have reached once: from there on it hardly depends on where it began.
+/// A stretch counts as known once it has reached this share of its longest length, because from then on it hardly
+/// depends on its initial value.
 const KNOWN_SHARE: f64 = 0.8;
 
-/// A hole between two samples that is longer than this, s, empties the memory.
+/// A gap between two samples longer than this, s, resets the state.
 const HOLE_S: f64 = 0.020;
 
 /// Why there is no row.
@@ -40,11 +44,11 @@ const HOLE_S: f64 = 0.020;
 pub enum NoRow {
     /// The sample lacks the wrist's orientation or its depth through the trocar, or is not finite.
     Missing,
-    /// The instrument has not moved far enough to know which way the trocar's friction pulls.
+    /// The instrument has not moved far enough for the direction of the trocar's friction to be known.
     NotMoved,
 }
 
-/// The memory. One per wrist sensor.
+/// The state; one per wrist sensor.
 #[derive(Clone, Debug)]
 pub struct Features {
     settings: FeatureSettings,
@@ -63,17 +67,20 @@ struct Last {
 }
 
 impl Features {
-    /// An empty memory.
+    /// The initial state.
     pub const fn new(settings: FeatureSettings) -> Self {
         Self { settings, last: None }
     }
 
-    /// Forgets everything.
+    /// Resets the state.
     pub const fn reset(&mut self) {
         self.last = None;
     }
 
-    /// The row of this sample. Call with every sample, in order.
+    /// The row for this sample. Must be called with every sample, in order.
+    ///
+    /// # Errors
+    /// [`NoRow`] if the sample is incomplete or the state is not known yet.
     pub fn step(&mut self, t_s: f64, gravity_free: &Wrench, sample: &WristSample) -> Result<[f32; LIVE_INPUTS], NoRow> {
         let (Some(world_from_s1), Some(insertion_m)) = (sample.world_from_s1, sample.insertion_m) else {
             self.last = None;
@@ -126,11 +133,11 @@ impl Features {
     fn advance(&self, last: &Last, t_s: f64, wrench: &Wrench, insertion_m: f64) -> Last {
         let FeatureSettings { smoothing_s, presliding_m, slip_m } = self.settings;
         let dt_s = t_s - last.t_s;
-        // First order, exact for a value that stands still over the step.
+        // First-order low-pass, exact for an input that is constant over the step.
         let share = 1.0 - (-dt_s / smoothing_s).exp();
         let way_m = (insertion_m - last.insertion_m) * share;
         let length_m = way_m.abs();
-        // Semi-implicit, so that no step is too long.
+        // Semi-implicit, so that it is stable for steps of any length.
         let stretch_m: [f64; 2] =
             std::array::from_fn(|k| (last.stretch_m[k] + way_m) / (1.0 + length_m / presliding_m[k]));
         let slip = length_m / (length_m + slip_m);

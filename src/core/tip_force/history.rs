@@ -1,18 +1,18 @@
-//! Inputs made from the history of other columns, because friction remembers: a cable or a seal carries another load before
-//! and after it turned round, and nobody can tell from one row alone.
+//! Inputs computed from the history of other columns. Friction has a memory: a cable or seal carries different loads
+//! before and after a reversal, which a single row does not show.
 //!
-//! They are named like columns, with colons: `presliding:POSITION:WIDTH` and `midline:LOAD:POSITION:WIDTH`; WIDTH is in the
-//! unit of the position. Both depend on the path alone, not on speed or sample rate, and look back only. Their state starts
-//! anew with every trajectory.
+//! They are named like columns, with colons: `presliding:POSITION:WIDTH` and `midline:LOAD:POSITION:WIDTH`; WIDTH is in
+//! the unit of the position. Both depend only on the path, not on speed or sample rate, and are causal. Their state is
+//! reset with every trajectory.
 //!
-//! `presliding` is the stop operator of the position over its width, -1 to 1: +1 slides forwards, -1 backwards, between is
-//! turning round. `midline` is the load without its friction: the difference between the loads of the two directions (the
-//! swing) is measured at every reversal, while the far side stays where it is, and half of it is taken off. Until the first
-//! reversal the swing is not known; the mean one of the training data stands for it, as a second number in the name. The
-//! midline is smoothed over four widths of travel and stands still while the instrument turns: it follows a slow load; give
-//! the load itself beside it for what is quick.
+//! `presliding` is the stop operator of the position over its width, -1 to 1: +1 slides forwards, -1 backwards, in
+//! between is reversing. `midline` is the load without its friction: the difference between the loads of the two
+//! directions (the swing) is measured at every reversal, assuming that the load at the far end is constant meanwhile,
+//! and half of it is subtracted. Until the first reversal the mean swing of the training data is used, which is a
+//! second number in the name. The midline is smoothed over four widths of travel and is held during a reversal. It
+//! follows a slow load; use the load itself as another input for fast changes.
 
-/// An input made from others.
+/// An input computed from other columns.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Derived {
     /// The load column; `None` for `presliding`.
@@ -22,21 +22,22 @@ pub struct Derived {
     swing: Option<f32>,
 }
 
-/// What a derived input remembers. Steps allocate nothing.
+/// State of a derived input. Steps allocate nothing.
 #[derive(Clone, Debug)]
 pub struct Memory {
     width: f32,
-    /// Where the position was last, and how far it has gone since it turned, within the width.
+    /// The last position, and the distance travelled since the last reversal, limited to the width.
     last: Option<f32>,
     travel: f32,
-    /// The side that last slid (1, -1, or 0 before the first), and its load, smoothed over twice the travel of turning round.
+    /// The direction of the last sliding (1, -1, or 0 before the first), and its load, smoothed over twice the travel
+    /// of a reversal.
     side: f32,
     load: f32,
     swing: f32,
 }
 
 impl Derived {
-    /// Reads a name. `None` for a plain column (no colon); an error says what is wrong with it.
+    /// Parses a name. `None` for a plain column (no colon); the error says what is wrong with the name.
     pub fn parse(name: &str) -> Option<Result<Self, String>> {
         if !name.contains(':') {
             return None;
@@ -66,30 +67,31 @@ impl Derived {
         Some(made.map(build).ok_or_else(refusal))
     }
 
-    /// The columns it is made of: position and load (the position again where there is no load).
+    /// The columns that it is computed from: position and load (the position twice if there is no load).
     pub fn columns(&self) -> [&str; 2] {
         [&self.position, self.load.as_ref().unwrap_or(&self.position)]
     }
 
-    /// Whether its swing has still to be found in the training data.
+    /// Whether its swing must still be determined from the training data.
     pub const fn is_open(&self) -> bool {
         self.load.is_some() && self.swing.is_none()
     }
 
-    /// A memory for the start of a trajectory. A swing that is known (in the unit of the load) goes before that of the name.
+    /// The state at the start of a trajectory. A known swing (in the unit of the load) takes precedence over that in
+    /// the name.
     pub fn memory(&self, swing: Option<f32>) -> Memory {
         let swing = swing.or(self.swing).unwrap_or(0.0);
         Memory { width: self.width, last: None, travel: 0.0, side: 0.0, load: 0.0, swing }
     }
 
-    /// The value for one row more, and whether the swing has just been measured.
+    /// The value for the next row, and whether the swing has just been measured.
     pub fn step(&self, memory: &mut Memory, [position, load]: [f32; 2]) -> (f32, bool) {
         let measured = memory.step(position, load);
         let value = if self.load.is_some() { memory.midline(load) } else { memory.travel / memory.width };
         (value, measured)
     }
 
-    /// All swings of a trajectory, in its order: load forwards less load backwards at each reversal.
+    /// All swings of a trajectory in order: load forwards minus load backwards at each reversal.
     pub fn swings(&self, rows: &[[f32; 2]]) -> Vec<f32> {
         let mut memory = self.memory(None);
         rows.iter().filter_map(|row| self.step(&mut memory, *row).1.then_some(memory.swing)).collect()
@@ -146,7 +148,7 @@ mod tests {
         for k in 0..4000_u16 {
             let x = (f32::from(k) * 0.01).sin();
             let sign = stop.step(&mut friction, [x, x]).0;
-            // A load that grows while friction is 0.8: the swing is 1.6 but for what the load grew meanwhile.
+            // A growing load with friction 0.8: the swing is 1.6 plus or minus the growth during the reversal.
             let load = 2.0 + 0.0005 * f32::from(k);
             let (midline, _) = derived.step(&mut memory, [x, load + 0.8 * sign]);
             if k > 700 {

@@ -1,8 +1,9 @@
-//! Linear least squares over normalised columns, with a little ridge.
+//! Linear least squares over normalised columns, with a small ridge.
 
 use nalgebra::{DMatrix, DVector};
 
-/// Ridge as a share of the rows: columns have variance one, so directions that hold less than this of it are shrunk.
+/// Ridge as a share of the number of rows: columns have variance one, so directions with less variance than this are
+/// shrunk.
 const RIDGE: f64 = 1e-3;
 
 /// Weights `W` (`inputs x outputs`, row by row) that minimise `|y - x W|^2 + ridge |W|^2` over these rows of normalised data.
@@ -28,7 +29,7 @@ pub fn solve(x: &[f32], y: &[f32], (inputs, outputs): (usize, usize), rows: &[us
     for k in 0..inputs {
         gram[(k, k)] += RIDGE * rows.len().max(1) as f64;
     }
-    // With the ridge the matrix is positive definite; without an answer the linear path is simply absent.
+    // With the ridge the matrix is positive definite; if the factorisation fails anyway, the linear path is zero.
     let solved = gram.cholesky().map_or_else(|| DMatrix::zeros(inputs, outputs), |factor| factor.solve(&right));
     solved.transpose().iter().map(|w| *w as f32).collect()
 }

@@ -1,8 +1,9 @@
-//! The tip force in the loop: a network while it is sure of itself, and a chosen fallback while it is not.
+//! The tip force in the loop: from the network while it is reliable, else from a selectable fallback.
 //!
-//! Takes the gravity-free wrench (N, Nm, `s1`), the wrist sample and its time (s); gives the force at the tip (N, `s1`) and
-//! says who answered. Three doubtful samples of the last five hand over to the fallback; the network comes back after 50 ms
-//! without doubt. Between the two the answer is faded over 50 ms, so that no handover is felt as a push. Allocates nothing.
+//! Takes the gravity-free wrench (N, Nm, `s1`), the wrist sample and its time (s); returns the force at the tip (N,
+//! `s1`) and its source. If three of the last five samples are flagged as uncertain, the fallback takes over; the
+//! network returns after 50 ms without such a sample. The force is cross-faded over 50 ms, so that the change cannot be
+//! felt. Allocates nothing.
 
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
@@ -10,68 +11,68 @@ use serde::{Deserialize, Serialize};
 use super::{DEFAULT_INPUTS, DEFAULT_OUTPUTS, Estimator, FeatureSettings, Features, Model, NoRow};
 use crate::frames::{Wrench, WristSample};
 
-/// A good model whose columns a live wrist does not deliver.
+/// A valid model with input columns that are not available in the loop.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("the model works with {found}, which the live loop does not know; train one on the default columns")]
 pub struct NotLive {
-    /// What the loop does not know.
+    /// The unavailable columns.
     pub found: String,
 }
 
-/// What answers while the network is in doubt.
+/// Force to use while the network is uncertain.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Fallback {
-    /// The gravity-free force at the wrist: the trocar's friction is felt again.
+    /// The gravity-free force at the wrist, which includes the trocar's friction.
     #[default]
     WristForce,
-    /// The last sure answer, fading to nothing over 0.3 s: what is not known is not felt.
+    /// The last reliable force, fading to zero over 0.3 s.
     HoldAndFade,
 }
 
-/// Why the network does not answer.
+/// Why the network is not used.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Unsure {
-    /// The sample lies outside of what the network was trained on.
+    /// The sample is outside the training data.
     OutsideTraining,
-    /// The instrument has not moved yet, or samples were missing: the friction's direction is not known.
+    /// The instrument has not moved yet, or samples were missing: the direction of friction is not known.
     NotMoved,
     /// The sample lacks the orientation or the depth through the trocar.
     Missing,
 }
 
-/// The answer to one sample.
+/// Result for one sample.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TipForceReport {
     /// Force of the tissue on the tip, N (`s1`).
     pub force_s1_n: Vector3<f64>,
-    /// Share of the network in it, 0 to 1; the rest is the fallback's.
+    /// Share of the network in the force, 0 to 1; the remainder is the fallback.
     pub network_share: f64,
-    /// Who answers from here on: `None` is the network.
+    /// Why the fallback is taking over; `None` while the network is used.
     pub unsure: Option<Unsure>,
-    /// How far this sample lies from the training data, 1 at the limit; endless where there is no row.
+    /// Distance of this sample from the training data, 1 at the limit; infinite if there is no row of inputs.
     pub doubt: f32,
 }
 
-/// Doubtful samples of the last five that hand over to the fallback.
+/// Number of uncertain samples among the last five at which the fallback takes over.
 const DOUBTFUL_OF_FIVE: u32 = 3;
-/// Time without doubt after which the network answers again, s.
+/// Time without an uncertain sample after which the network is used again, s.
 const SURE_AFTER_S: f64 = 0.050;
-/// Time in which one answer is faded into the other, s.
+/// Duration of the cross-fade, s.
 const HANDOVER_S: f64 = 0.050;
-/// Time in which a held answer fades to nothing, s.
+/// Time in which a held force fades to zero, s.
 const HOLD_S: f64 = 0.300;
 
-/// A network at work.
+/// A network in the loop.
 #[derive(Clone, Debug)]
 pub struct TipForce {
     estimator: Estimator,
-    /// Which live columns the model reads, and room for them.
+    /// Indices of the live columns that the model uses, and a buffer for them.
     columns: Vec<usize>,
     inputs: Vec<f32>,
     features: Features,
     fallback: Fallback,
-    /// Doubt of the last five samples, newest in the lowest bit.
+    /// Flags of the last five samples, newest in the lowest bit.
     doubtful: u32,
     sure_s: f64,
     unsure: Option<Unsure>,
@@ -82,7 +83,10 @@ pub struct TipForce {
 }
 
 impl TipForce {
-    /// Takes a model into the loop; refuses one whose columns a live wrist does not deliver.
+    /// Prepares a model for the loop.
+    ///
+    /// # Errors
+    /// [`NotLive`] if the model needs a column that is not available in the loop.
     pub fn new(model: Model, fallback: Fallback) -> Result<Self, NotLive> {
         let live = |name: &String| {
             let place = DEFAULT_INPUTS.iter().position(|column| column == name);
@@ -113,12 +117,12 @@ impl TipForce {
         self.estimator.model()
     }
 
-    /// What answers while the network is in doubt.
+    /// Force to use while the network is uncertain.
     pub const fn fallback(&self) -> Fallback {
         self.fallback
     }
 
-    /// The answer to this sample. Call with every sample, in order.
+    /// The force for this sample. Must be called with every sample, in order.
     pub fn step(&mut self, t_s: f64, gravity_free: &Wrench, sample: &WristSample) -> TipForceReport {
         let dt_s = self.last_t_s.map_or(0.0, |last| (t_s - last).clamp(0.0, HANDOVER_S));
         self.last_t_s = Some(t_s);
@@ -140,7 +144,7 @@ impl TipForce {
         }
         let target = if self.unsure.is_none() { 1.0 } else { 0.0 };
         self.share += (target - self.share).clamp(-dt_s / HANDOVER_S, dt_s / HANDOVER_S);
-        // A single doubtful answer is not given: the last sure one stands for it.
+        // A single uncertain prediction is replaced by the last reliable one.
         let force_s1_n = self.held_n * self.share + self.fallback_n(gravity_free) * (1.0 - self.share);
         TipForceReport { force_s1_n, network_share: self.share, unsure: self.unsure, doubt }
     }

@@ -1,9 +1,9 @@
-//! The force at the tip from what the wrist feels: a small network that takes the trocar's friction out.
+//! Estimates the force at the tip from the wrist sensor: a small network removes the friction in the trocar.
 //!
-//! Takes named columns (wrist force in N, torque in Nm, orientation, motion through the trocar); gives the force at the tip in
-//! the frame of the wrist sensor (`s1`, N), and says when it is out of its depth. The same machinery learns any other
-//! instrument's named columns. [`Estimator`] allocates nothing; training
-//! lives in a crate of its own.
+//! Takes named columns (wrist force in N, torque in Nm, orientation, motion through the trocar); returns the force at
+//! the tip in the frame of the wrist sensor (`s1`, N), and flags inputs outside the training data. The same code can
+//! learn other named columns, for other instruments. [`Estimator`] allocates nothing; training is in the crate
+//! `nima-training`.
 
 mod baseline;
 mod columns;

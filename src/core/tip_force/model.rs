@@ -1,8 +1,8 @@
-//! A trained network with all that belongs to it.
+//! A trained network with everything that is needed to use it.
 
 use super::{Baselines, Doubt, Expansion, Network, Normalisation, Origin};
 
-/// A trained model with all that belongs to it.
+/// A trained network with everything that is needed to use it.
 #[derive(Clone, Debug)]
 #[expect(missing_docs, reason = "the names say it")]
 pub struct Model {
@@ -14,9 +14,9 @@ pub struct Model {
     /// Normalisation of the outputs.
     pub scale: Normalisation,
     pub network: Network,
-    /// When it must not be believed.
+    /// Detects inputs outside the training data.
     pub doubt: Doubt,
-    /// What simpler methods fitted on the same data say.
+    /// Simpler methods fitted on the same data, for comparison.
     pub baselines: Baselines,
     pub origin: Origin,
 }

@@ -1,13 +1,14 @@
-//! Our own inference: an ensemble of small networks, in f32, without allocation.
+//! Inference of the network: an ensemble of small networks, in f32, without allocation.
 //!
-//! Member: `y = S x + W_k a(... a(W_1 x + b_1) ...) + b_k` with the activation `a(z) = z / sqrt(1 + z^2)`, smooth, bounded, and
-//! made of operations that a vector unit has, so that training and inference compute the very same function. The linear path
-//! `S` carries what is linear; the rest learns what is not, and fades out beyond the training data. The ensemble's answer is the mean of its members. Inputs and
-//! outputs are normalised numbers (see [`Normalisation`](super::Normalisation)); NaN in gives NaN out.
+//! A member computes `y = S x + W_k a(... a(W_1 x + b_1) ...) + b_k` with the activation `a(z) = z / sqrt(1 + z^2)`:
+//! smooth, bounded, and made of operations that a vector unit has, so that training and inference compute the same
+//! function. The linear path `S` represents the linear part; the layers learn the nonlinear part, which is faded out
+//! beyond the training data. The ensemble returns the mean of its members. Inputs and outputs are normalised (see
+//! [`Normalisation`](super::Normalisation)); NaN in the input gives NaN.
 
 use super::MAX_OUTPUTS;
 
-/// Numbers handled at once; rows of weights are padded to multiples of it with zeros.
+/// Numbers processed at once; rows of weights are padded with zeros to a multiple of it.
 const LANE: usize = 8;
 
 /// A matrix with a bias: `outputs = inputs W + b`.
@@ -24,13 +25,14 @@ pub struct Layer {
     inputs: usize,
     outputs: usize,
     padded: usize,
-    /// Row `i` holds what input `i` gives to every output.
+    /// Row `i` contains the weights from input `i` to every output.
     weights: Vec<f32>,
     bias: Vec<f32>,
 }
 
 impl Layer {
-    /// A layer of weights stored input by input (`inputs x outputs`) and a bias of `outputs`; `None` if the sizes disagree.
+    /// A layer with weights stored input by input (`inputs x outputs`) and a bias of length `outputs`; `None` if the
+    /// sizes disagree.
     pub fn new(inputs: usize, outputs: usize, weights: &[f32], bias: &[f32]) -> Option<Self> {
         if inputs == 0 || outputs == 0 || weights.len() != inputs * outputs || bias.len() != outputs {
             return None;
@@ -44,7 +46,7 @@ impl Layer {
         Some(layer)
     }
 
-    /// Inputs and outputs.
+    /// Numbers of inputs and outputs.
     pub const fn shape(&self) -> (usize, usize) {
         (self.inputs, self.outputs)
     }
@@ -59,7 +61,7 @@ impl Layer {
         &self.bias[..self.outputs]
     }
 
-    /// Adds `inputs W` to `to`, which is padded.
+    /// Adds `inputs W` to `to`, which must be padded.
     fn accumulate(&self, inputs: &[f32], to: &mut [f32]) {
         for (input, row) in inputs[..self.inputs].iter().zip(self.weights.chunks_exact(self.padded)) {
             for (to, weight) in to.chunks_exact_mut(LANE).zip(row.chunks_exact(LANE)) {
@@ -79,7 +81,7 @@ pub struct Member {
 }
 
 impl Member {
-    /// A network of these layers beside the linear path; `None` if sizes do not follow one another.
+    /// A network with these layers and the linear path; `None` if the sizes do not match.
     pub fn new(layers: Vec<Layer>, skip: Layer) -> Option<Self> {
         let (first, last) = (layers.first()?, layers.last()?);
         let chained = layers.windows(2).all(|pair| pair[0].outputs == pair[1].inputs);
@@ -97,7 +99,7 @@ impl Member {
         &self.skip
     }
 
-    /// Inputs and outputs.
+    /// Numbers of inputs and outputs.
     pub const fn shape(&self) -> (usize, usize) {
         self.skip.shape()
     }
@@ -126,7 +128,7 @@ impl Member {
     }
 }
 
-/// What an ensemble says of one row of normalised inputs.
+/// Output of an ensemble for one row of normalised inputs.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Answer {
     /// Mean of the members.
@@ -135,7 +137,7 @@ pub struct Answer {
     pub spread: [f32; MAX_OUTPUTS],
 }
 
-/// An ensemble with the buffers it works in.
+/// An ensemble with its work buffers.
 #[derive(Clone, Debug)]
 pub struct Network {
     members: Vec<Member>,
@@ -143,7 +145,7 @@ pub struct Network {
 }
 
 impl Network {
-    /// An ensemble of members of one shape; `None` for no members or different shapes.
+    /// An ensemble of members of the same shape; `None` if there are no members or their shapes differ.
     pub fn new(members: Vec<Member>) -> Option<Self> {
         let shape = members.first()?.shape();
         let widest = members.iter().flat_map(|member| &member.layers).map(|layer| layer.padded).max()?;
@@ -159,13 +161,13 @@ impl Network {
         &self.members
     }
 
-    /// Inputs and outputs.
+    /// Numbers of inputs and outputs.
     pub fn shape(&self) -> (usize, usize) {
         self.members[0].shape()
     }
 
-    /// Runs all members on normalised inputs. `trust` (0 to 1) is the share of what is not linear: beyond the training data
-    /// a network knows nothing, and the linear path alone is the better guess. Allocates nothing.
+    /// Evaluates all members on normalised inputs. `trust` (0 to 1) scales the nonlinear part: beyond the training data
+    /// it is unreliable, and the linear path alone is the better estimate. Allocates nothing.
     pub fn answer(&mut self, inputs: &[f32], trust: f32) -> Answer {
         let count = self.members.len() as f32;
         let (mut mean, mut low, mut high) =
@@ -197,7 +199,7 @@ mod tests {
         Member::new(layers, skip).unwrap()
     }
 
-    /// The same function, written plainly in f64.
+    /// The same function, written in the simplest way in f64.
     fn reference(member: &Member, inputs: &[f64]) -> Vec<f64> {
         let times = |layer: &Layer, inputs: &[f64]| -> Vec<f64> {
             let (n, m) = layer.shape();

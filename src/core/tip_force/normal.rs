@@ -1,6 +1,6 @@
-//! Mean and spread of columns, from the training data alone.
+//! Mean and standard deviation of columns, computed from the training data alone.
 
-/// Per column: what to take off and what to multiply by.
+/// Per column: the mean to subtract and the factor to multiply with.
 ///
 /// ```
 /// use nima_core::tip_force::Normalisation;
@@ -17,12 +17,12 @@
 pub struct Normalisation {
     /// One mean for each column.
     pub mean: Vec<f32>,
-    /// One over the standard deviation; zero for a constant column, which is thereby neutral.
+    /// One over the standard deviation; zero for a constant column, which therefore has no effect.
     pub inverse_sd: Vec<f32>,
 }
 
 impl Normalisation {
-    /// That of `rows` of a matrix with `width` columns, stored row by row.
+    /// The normalisation of `rows` of a matrix with `width` columns, stored row by row.
     pub fn of(values: &[f32], width: usize, rows: impl Iterator<Item = usize> + Clone) -> Self {
         let count = rows.clone().count().max(1) as f64;
         let (mut mean, mut variance) = (vec![0.0_f64; width], vec![0.0_f64; width]);
@@ -37,7 +37,7 @@ impl Normalisation {
             }
         }
         let inverse = |(variance, mean): (&f64, &f64)| {
-            // Below the last digits of an f32 there is nothing but rounding.
+            // A standard deviation below the precision of f32 is only rounding.
             let sd = variance.sqrt();
             if sd > 1e-6 * mean.abs() && sd > 1e-30 { (1.0 / sd) as f32 } else { 0.0 }
         };
@@ -57,7 +57,7 @@ impl Normalisation {
         }
     }
 
-    /// Takes normalised values back, in place; a constant column becomes its mean.
+    /// Reverts the normalisation in place; a constant column becomes its mean.
     pub fn undo(&self, row: &mut [f32]) {
         for ((value, mean), inverse) in row.iter_mut().zip(&self.mean).zip(&self.inverse_sd) {
             *value = if *inverse > 0.0 { *value / inverse } else { 0.0 } + mean;

@@ -1,14 +1,14 @@
-//! Where a trained network came from, and what it showed when it was judged: kept with the network.
+//! The origin of a trained network and the result of its check, stored with the network.
 
 use serde::{Deserialize, Serialize};
 
 use crate::calibration::Judgement;
 
-/// How to train.
+/// Settings of a training.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct TrainingSettings {
-    /// Seed of weights, folds and orders.
+    /// Seed of the initial weights, the folds and the order of rows.
     pub seed: u64,
     /// Networks in the ensemble, 1 to 16.
     pub members: usize,
@@ -38,7 +38,7 @@ impl Default for TrainingSettings {
     }
 }
 
-/// Steps of the optimiser that a member gets where the caller names no epochs.
+/// Optimiser steps of a member if the caller gives no number of epochs.
 const STEPS: usize = 5000;
 
 impl TrainingSettings {
@@ -48,44 +48,44 @@ impl TrainingSettings {
     }
 }
 
-/// What one member reached.
+/// Result of training one member.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct MemberFigures {
-    /// Epoch whose weights were kept, from 1; 0 where the linear path alone was best.
+    /// Epoch whose weights were kept, from 1; 0 if the linear path alone was best.
     pub epoch: usize,
     /// Epochs run.
     pub epochs: usize,
-    /// Mean square error on the training part in that epoch, in squares of the outputs' standard deviation.
+    /// Mean square error on the training rows in that epoch, in units of the outputs' variance.
     pub training_loss: f64,
-    /// The same on the rows that stopped the training.
+    /// The same on the validation rows, which decide when the training stops.
     pub validation_loss: f64,
 }
 
-/// What a check found. Kept inside the model's file.
+/// Result of a check; stored in the model's file.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Check {
-    /// May it be used?
+    /// Whether the model may be used.
     #[serde(flatten)]
     pub judgement: Judgement,
-    /// When, UTC, ISO 8601.
+    /// Date of the check, UTC, ISO 8601.
     pub date: String,
-    /// Rows it was judged by.
+    /// Number of rows of the check.
     pub rows: usize,
     /// Mean absolute error per axis, N (`s1`).
     pub mae_n: [f64; 3],
     /// Standard deviation of the error per axis, N.
     pub sd_n: [f64; 3],
-    /// Mean answer per axis where nothing is touched, N.
+    /// Mean prediction per axis without contact, N.
     pub free_mean_n: [f64; 3],
-    /// Standard deviation of the answer there, N.
+    /// Standard deviation of the prediction without contact, N.
     pub free_sd_n: [f64; 3],
-    /// Share of samples in doubt.
+    /// Share of samples flagged as uncertain.
     pub doubt_share: f64,
 }
 
-/// Where a model came from.
+/// Origin of a model.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Origin {
@@ -101,13 +101,13 @@ pub struct Origin {
     pub data_hash: String,
     /// Rows trained on.
     pub rows: usize,
-    /// Enough to repeat the training.
+    /// Settings of the training, sufficient to repeat it.
     pub settings: TrainingSettings,
-    /// What the members reached.
+    /// Results of the members.
     pub figures: Vec<MemberFigures>,
-    /// Features that never changed in the training data; any other value of them is in doubt.
+    /// Features that were constant in the training data; a sample in which they differ is flagged as uncertain.
     pub constant: Vec<String>,
-    /// What it showed on data recorded after the training.
+    /// Result of a check on data recorded after the training.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub check: Option<Check>,
 }

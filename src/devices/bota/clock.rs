@@ -1,38 +1,39 @@
-//! The sensor's clock made endless, and what its steps tell: readings that never came, came twice, or in the wrong order.
+//! Unwraps the sensor's clock and uses it to detect readings that are missing, duplicated or out of order.
 
-/// Follows the 32-bit microseconds of a sensor that measures with a fixed period.
+/// Follows the 32-bit microsecond clock of a sensor with a fixed period.
 #[derive(Clone, Debug)]
 pub struct Clock {
     period_us: f64,
     newest: Option<u32>,
     total_us: u64,
-    /// The newest gap, while a late reading may still fill it: the last time before it, and how many are missing.
+    /// The newest gap, while a late reading may still fill it: the time before the gap, and the number of missing
+    /// readings.
     gap: Option<(u32, u64)>,
 }
 
-/// What the clock says of a reading.
+/// Order of a reading by its time stamp.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Step {
-    /// It is newer than all before; so many are missing between.
+    /// Newer than all previous ones.
     Newer {
-        /// Time since the clock's zero, without jumps, s.
+        /// Time since the clock's zero, unwrapped, s.
         device_s: f64,
-        /// Readings missing between this one and the one before.
+        /// Readings missing between this one and the previous one.
         missing: u64,
     },
-    /// It is one of those that were counted as missing.
+    /// One of those that were counted as missing.
     Late,
-    /// It is not newer: sent twice, or the clock stands still, or has begun anew.
+    /// Not newer: a duplicate, or the clock stands still or was reset.
     Stale,
 }
 
 impl Clock {
-    /// Of a sensor with this period, us (a positive number).
+    /// For a sensor with this period, us (must be positive).
     pub const fn new(period_us: f64) -> Self {
         Self { period_us, newest: None, total_us: 0, gap: None }
     }
 
-    /// Takes the time of the next reading.
+    /// Adds the time stamp of the next reading.
     pub fn step(&mut self, timestamp_us: u32) -> Step {
         let Some(newest) = self.newest else {
             self.newest = Some(timestamp_us);
@@ -40,7 +41,7 @@ impl Clock {
             return Step::Newer { device_s: self.total_us as f64 * 1e-6, missing: 0 };
         };
         let ahead_us = timestamp_us.wrapping_sub(newest);
-        // More than half the range ahead is behind.
+        // More than half the range ahead means that it is behind.
         if ahead_us == 0 || ahead_us > u32::MAX / 2 {
             return self.behind(timestamp_us, newest);
         }

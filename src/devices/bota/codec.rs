@@ -1,8 +1,8 @@
-//! Frames of the sensors, on a serial line and in datagrams alike: bytes in, checked frames out, and back.
+//! Frames of the sensors, the same on a serial line and in datagrams: decoding with checks, and encoding.
 //!
-//! Little-endian; the header byte tells the length (reference `bota.md`, section 1.1). No input or output, no clock; nothing is
-//! allocated. A frame counts only with a right checksum; in a dirty stream the search goes on one byte behind whatever looked like
-//! a beginning and was none, so that no constant of the payload can be locked onto.
+//! Little-endian; the header byte determines the length (reference `bota.md`, section 1.1). No input or output, no
+//! clock, no allocation. A frame is accepted only with a correct checksum. After a false header the search continues
+//! one byte later, so that the decoder cannot lock onto a constant value in the payload.
 
 /// Header of a frame with force and torque only.
 pub const HEADER_WRENCH: u8 = 0xAA;
@@ -12,34 +12,34 @@ pub const HEADER_INERTIAL: u8 = 0xAB;
 pub const WRENCH_BYTES: usize = 37;
 /// Length of a frame that also has the inertial unit, bytes.
 pub const INERTIAL_BYTES: usize = 61;
-/// Bits of the status word that mean something: throttled, overrange, invalid, raw.
+/// Bits of the status word with a meaning: throttled, overrange, invalid, raw.
 pub const STATUS_BITS: u16 = 0b1111;
 
 const CRC_BYTES: usize = 2;
 
-/// One frame as it is on the wire.
+/// One frame on the wire.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Frame {
     /// Status word: bit 0 throttled, 1 overrange, 2 invalid, 3 raw; the others are reserved.
     pub status: u16,
     pub force_n: [f32; 3],
     pub torque_nm: [f32; 3],
-    /// The sensor's clock, us; begins again after 2^32 us (71.6 min).
+    /// The sensor's clock, us; overflows after 2^32 us (71.6 min).
     pub timestamp_us: u32,
     pub temperature_c: f32,
-    /// Inertial unit, in frames that have it.
+    /// Inertial unit, in frames that contain it.
     pub inertial: Option<Inertial>,
 }
 
-/// What the inertial unit reads.
+/// Reading of the inertial unit.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Inertial {
-    /// Specific force, m/s^2.
+    /// Specific force, m/s^2 (at rest +g upwards).
     pub acceleration_m_s2: [f32; 3],
     pub angular_velocity_rad_s: [f32; 3],
 }
 
-/// Length of the frame that begins with this byte.
+/// Length of a frame with this header byte; `None` if it is not a header.
 pub const fn length_of(header: u8) -> Option<usize> {
     match header {
         HEADER_WRENCH => Some(WRENCH_BYTES),
@@ -64,23 +64,23 @@ const CRC_TABLE: [u16; 256] = {
     table
 };
 
-/// CRC-16/X-25: polynomial 0x1021 reflected, begins and ends with all bits turned over.
+/// CRC-16/X-25: polynomial 0x1021 reflected, initial value and output inverted.
 pub fn crc16_x25(bytes: &[u8]) -> u16 {
     let step = |crc: u16, byte: &u8| CRC_TABLE[usize::from(crc.to_le_bytes()[0] ^ byte)] ^ (crc >> 8);
     !bytes.iter().fold(0xFFFF, step)
 }
 
-/// Why bytes are no frame.
+/// Why bytes are not a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum NoFrame {
-    /// They do not begin with a header, or their number does not fit it.
+    /// The first byte is not a header, or the length does not match it.
     Shape,
     /// The checksum is wrong.
     Checksum,
 }
 
 impl Frame {
-    /// Writes the frame with its checksum to the beginning of `buffer`; gives its length.
+    /// Encodes the frame with its checksum at the start of `buffer`; returns its length.
     pub fn encode(&self, buffer: &mut [u8; INERTIAL_BYTES]) -> usize {
         let length = if self.inertial.is_some() { INERTIAL_BYTES } else { WRENCH_BYTES };
         buffer[0] = if self.inertial.is_some() { HEADER_INERTIAL } else { HEADER_WRENCH };
@@ -98,7 +98,22 @@ impl Frame {
         length
     }
 
-    /// Reads exactly one frame, as a datagram holds it.
+    /// Decodes exactly one frame, as in a datagram.
+    ///
+    /// # Errors
+    /// [`NoFrame`] if the header, the length or the checksum is wrong.
+    ///
+    /// ```
+    /// use nima_devices::bota::codec::{Frame, INERTIAL_BYTES, NoFrame};
+    ///
+    /// let frame = Frame { force_n: [1.0, -2.0, 0.5], timestamp_us: 1000, ..Frame::default() };
+    /// let mut wire = [0; INERTIAL_BYTES];
+    /// let length = frame.encode(&mut wire);
+    /// assert_eq!(Frame::decode(&wire[..length]), Ok(frame));
+    ///
+    /// wire[5] ^= 1;
+    /// assert_eq!(Frame::decode(&wire[..length]), Err(NoFrame::Checksum));
+    /// ```
     pub fn decode(bytes: &[u8]) -> Result<Self, NoFrame> {
         let header = *bytes.first().ok_or(NoFrame::Shape)?;
         if length_of(header) != Some(bytes.len()) {
@@ -136,20 +151,22 @@ fn take<const N: usize>(from: &[u8]) -> [f32; N] {
     values
 }
 
-/// Bytes that the decoder holds: more than 20 ms of the fastest serial line.
+/// Size of the decoder's buffer: more than 20 ms of the fastest serial line.
 const ROOM: usize = 2048;
 
-/// Finds frames in a stream of bytes. Fill [`room`](Self::room), tell [`filled`](Self::filled), take all of [`next`](Self::next).
+/// Finds frames in a stream of bytes. Write into [`room`](Self::room), report the number with [`filled`](Self::filled),
+/// then call [`next`](Self::next) until it returns `None`.
 #[derive(Debug)]
 pub struct Decoder {
     buffer: [u8; ROOM],
     begin: usize,
     end: usize,
-    /// Bytes skipped since the last frame that was refused or accepted: the rest of a refused one is not refused again.
+    /// Bytes skipped since the last frame that was refused or accepted, so that the remainder of a refused frame is not
+    /// counted as another one.
     since_refused: usize,
-    /// Frames refused since the beginning.
+    /// Number of frames refused.
     damaged: u64,
-    /// Bytes skipped since the beginning.
+    /// Number of bytes skipped.
     skipped: u64,
 }
 
@@ -160,20 +177,20 @@ impl Default for Decoder {
 }
 
 impl Decoder {
-    /// Where new bytes go; never empty after all of [`next`](Self::next) was taken.
+    /// Buffer for new bytes; not empty once [`next`](Self::next) has returned `None`.
     pub fn room(&mut self) -> &mut [u8] {
         self.buffer.copy_within(self.begin..self.end, 0);
         (self.begin, self.end) = (0, self.end - self.begin);
         &mut self.buffer[self.end..]
     }
 
-    /// So many bytes were put into the room.
+    /// Reports that `count` bytes were written into the buffer.
     pub fn filled(&mut self, count: usize) {
         self.end = (self.end + count).min(ROOM);
     }
 
-    /// The next whole frame; `None` when more bytes are needed. Each call moves on in the stream, so the work is bounded by what
-    /// was put in.
+    /// The next complete frame; `None` when more bytes are needed. Each call advances in the stream, so the work is
+    /// bounded by the bytes received.
     #[expect(clippy::should_implement_trait, reason = "an iterator would borrow the room")]
     pub fn next(&mut self) -> Option<Frame> {
         while self.begin < self.end {
@@ -202,17 +219,17 @@ impl Decoder {
         self.since_refused = self.since_refused.saturating_add(1);
     }
 
-    /// Frames refused by their checksum so far; what is skipped within the length of one is counted once.
+    /// Frames refused because of their checksum; bytes skipped within the length of one frame count once.
     pub const fn damaged(&self) -> u64 {
         self.damaged
     }
 
-    /// Bytes skipped so far.
+    /// Bytes skipped.
     pub const fn skipped(&self) -> u64 {
         self.skipped
     }
 
-    /// Forgets what it holds; the counters stay.
+    /// Discards the buffer's content; the counters are kept.
     pub const fn clear(&mut self) {
         (self.begin, self.end) = (0, 0);
     }

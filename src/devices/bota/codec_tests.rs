@@ -5,7 +5,7 @@ fn bytes_of(hex: &str) -> Vec<u8> {
     digits.chunks(2).map(|pair| u8::from_str_radix(std::str::from_utf8(pair).unwrap(), 16).unwrap()).collect()
 }
 
-/// The vectors of the reference, section 1.1.
+/// The examples of the reference, section 1.1.
 fn golden() -> [(Frame, Vec<u8>); 2] {
     let wrench = Frame {
         status: 0,
@@ -49,7 +49,7 @@ fn encoded(frame: &Frame) -> Vec<u8> {
     buffer[..length].to_vec()
 }
 
-/// All frames of a stream that comes in pieces of random length.
+/// Decodes a stream that arrives in pieces of random length.
 fn decoded(decoder: &mut Decoder, mut stream: &[u8], random: &mut fastrand::Rng) -> Vec<Frame> {
     let mut frames = Vec::new();
     while !stream.is_empty() {
@@ -121,7 +121,7 @@ fn damaged_frames_are_counted_one_by_one_and_the_others_kept() {
         }
         stream.extend(bytes);
     }
-    // The end of the stream may still be waited for behind a false beginning.
+    // A false header near the end makes the decoder wait for more bytes.
     let last = Frame::default();
     stream.extend([encoded(&last), encoded(&last), encoded(&last)].concat());
     let mut decoder = Decoder::default();
@@ -143,7 +143,7 @@ fn a_payload_full_of_headers_is_not_locked_onto() {
     }
 }
 
-/// Random bytes, mutated frames, and good ones between: no panic, bounded, and no frame that was not sent.
+/// Random bytes, damaged frames, and good ones in between: no panic, bounded work, and no frame that was not sent.
 fn fuzz(rounds: u64, seed: u64) {
     let mut random = fastrand::Rng::with_seed(seed);
     let mut decoder = Decoder::default();
@@ -178,7 +178,7 @@ fn fuzz(rounds: u64, seed: u64) {
         }
     }
     assert!(decoder.skipped() <= fed);
-    // A 16-bit checksum lets one false beginning in 65536 pass, which may hide a frame or be one.
+    // With a 16-bit checksum one false header in 65536 passes; it may hide a frame or look like one.
     let off = found.abs_diff(sent) as f64 / sent as f64;
     assert!(off < 2e-3, "{found} frames found of {sent} sent among {fed} bytes");
 }

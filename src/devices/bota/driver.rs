@@ -1,4 +1,4 @@
-//! The running sensor: frames in, checked readings out, and the reason when there are none.
+//! The running sensor: reads frames, returns checked readings, and reports why there are none.
 
 use nalgebra::Vector3;
 use nima_core::frames::Wrench;
@@ -13,16 +13,16 @@ use super::{
 };
 use crate::{Device, ForceReading, ForceStatus, Health, Identity, Loss, Stamped, Standing, Trouble};
 
-/// A sensor is lost when nothing usable came for this long, s, at rates that give five readings in it.
+/// The sensor is lost if nothing usable has arrived for this time, s, at rates that give at least five readings in it.
 const SILENCE_S: f64 = 0.018;
-/// At lower rates: for so many readings.
+/// At lower rates it is lost after this many periods.
 const SILENCE_READINGS: f64 = 5.0;
-/// More than any sensor of the family measures, N: beyond it a number is no force.
+/// Larger than the range of any sensor of the family, N: a larger number is not a force.
 const FORCE_MAX_N: f64 = 1e5;
 /// The same for torques, Nm.
 const TORQUE_MAX_NM: f64 = 1e4;
 
-/// Status bits as they are told to the rest of the program.
+/// Translates status bits of the wire.
 pub const fn status_of(status: u16) -> ForceStatus {
     ForceStatus {
         throttled: status & 1 != 0,
@@ -32,7 +32,7 @@ pub const fn status_of(status: u16) -> ForceStatus {
     }
 }
 
-/// A frame as a reading.
+/// Converts a frame to a reading.
 pub fn reading_of(frame: &Frame) -> ForceReading {
     let vector = |values: [f32; 3]| Vector3::from(values.map(f64::from));
     ForceReading {
@@ -44,7 +44,7 @@ pub fn reading_of(frame: &Frame) -> ForceReading {
     }
 }
 
-/// All of it is finite, and within what such a sensor can measure.
+/// Whether all numbers are finite and within the range of such a sensor.
 fn is_plausible(reading: &ForceReading) -> bool {
     let finite = |vector: Option<Vector3<f64>>| vector.is_none_or(|vector| vector.iter().all(|x| x.is_finite()));
     reading.wrench.force_n.iter().all(|x| x.abs() <= FORCE_MAX_N)
@@ -54,11 +54,11 @@ fn is_plausible(reading: &ForceReading) -> bool {
         && reading.temperature_c.is_finite()
 }
 
-/// An open sensor that measures. Dropping it stops the measurement.
+/// An open, measuring sensor. Dropping it stops the measurement.
 ///
-/// Only readings that may be used are handed out: one that is overrange, invalid or raw, or has impossible numbers, is refused
-/// and counted; a throttled one is handed out with its flag. When nothing usable came for 18 ms (five readings, where
-/// those take longer) the sensor is lost, with the cause that its last words tell.
+/// Only usable readings are returned: one that is overrange, invalid or raw, or has impossible numbers, is refused and
+/// counted; a throttled one is returned with its flag. If nothing usable arrives for 18 ms (or five periods, if that is
+/// longer) the sensor is lost; the last data received decide the cause.
 pub struct Driver {
     link: Link,
     judge: Judge,
@@ -67,9 +67,9 @@ pub struct Driver {
     low_latency: bool,
     silence_s: f64,
     stop: &'static [u8],
-    /// Time of the first poll; what arrived before it is stale.
+    /// Whether it has been polled; what arrived before the first poll is stale.
     begun: bool,
-    /// Damage before the first reading is that of a stream joined in its middle.
+    /// Damage and skipped bytes before the first reading do not count: the stream was joined in the middle of a frame.
     base: (u64, u64),
 }
 
@@ -81,17 +81,21 @@ impl std::fmt::Debug for Driver {
 }
 
 impl Driver {
-    /// Opens, configures and starts the sensor (blocks: 4 s for the first generation, which starts anew when its port is opened).
+    /// Opens, configures and starts the sensor (blocks: 4 s for the first generation, which restarts when its port is
+    /// opened).
+    ///
+    /// # Errors
+    /// [`Trouble`] if a setting is invalid, the sensor cannot be reached or configured, or its readings are not usable.
     pub fn open(settings: &Settings) -> Result<Self, Trouble> {
         Self::open_within(settings, Timeouts::default())
     }
 
-    /// Opens for a diagnosis: what does not answer is told soon, within a second where the sensor does not start anew.
+    /// Opens for a diagnosis: a failure is reported within a second, unless the sensor restarts.
     pub(crate) fn try_open(settings: &Settings) -> Result<Self, Trouble> {
         Self::open_within(settings, Timeouts::SHORT)
     }
 
-    /// The same, waiting as long as told.
+    /// The same with these timeouts.
     ///
     /// # Errors
     /// As [`Driver::open`].
@@ -106,22 +110,23 @@ impl Driver {
         Self { link, judge, identity, rate_hz, low_latency, silence_s, stop, begun: false, base: (0, 0) }
     }
 
-    /// Readings per second that the sensor was set to, Hz.
+    /// The configured rate of the readings, Hz.
     pub const fn rate_hz(&self) -> f64 {
         self.rate_hz
     }
 
-    /// The port hands bytes on at once; where not, readings of an FTDI adapter arrive up to 16 ms late and in batches.
+    /// Whether the port delivers bytes without delay; if not, readings through an FTDI adapter arrive up to 16 ms late
+    /// and in batches.
     pub const fn has_low_latency(&self) -> bool {
         self.low_latency
     }
 
-    /// Status of the newest frame, also of a refused one.
+    /// Status of the newest frame, even if it was refused.
     pub const fn status(&self) -> ForceStatus {
         status_of(self.judge.status)
     }
 
-    /// Without a usable reading for longer than this it is lost, s.
+    /// Time without a usable reading after which the sensor is lost, s.
     pub const fn silence_limit_s(&self) -> f64 {
         self.silence_s
     }
@@ -129,7 +134,7 @@ impl Driver {
     /// Stops the measurement and closes the line.
     pub fn close(self) {}
 
-    /// Takes in what has arrived; damage counts from the first reading on.
+    /// Handles what has arrived; damage is counted from the first reading on.
     fn take_in(&mut self, now_s: f64) -> Result<Option<Stamped<ForceReading>>, Loss> {
         let before = (self.link.damaged(), self.link.skipped());
         let mut newest = None;
@@ -189,23 +194,23 @@ impl Device for Driver {
 
 impl Drop for Driver {
     fn drop(&mut self) {
-        // What is unread at the end of a connection would take this last command with it.
+        // Unread data when a connection is closed would make the system discard this last command.
         if self.link.discard().is_ok() {
             self.link.send(self.stop).ok();
         }
     }
 }
 
-/// Decides which frames are readings.
+/// Decides which frames become readings.
 #[derive(Debug)]
 struct Judge {
     clock: Clock,
     clock_runs: bool,
     health: Health,
     status: u16,
-    /// Arrival of the newest usable reading, s.
+    /// Arrival time of the newest usable reading, s.
     usable_s: f64,
-    /// What it is lost for if nothing better comes.
+    /// The cause to report if nothing usable arrives any more.
     suspect: Loss,
 }
 

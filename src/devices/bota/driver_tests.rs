@@ -35,7 +35,7 @@ fn running() -> (Driver, MemoryBytes) {
     (driver, far)
 }
 
-/// What the driver is lost for, and how long after the last good reading, ms, when the line carries only `bytes`.
+/// Why the driver is lost, and how long after the last good reading, ms, if the line delivers `bytes` in each tick.
 fn lost_after(mut bytes: impl FnMut(u32) -> Vec<u8>) -> (Loss, u32, Health) {
     let (mut driver, mut far) = running();
     for k in 11..100 {
@@ -53,7 +53,7 @@ fn lost_after(mut bytes: impl FnMut(u32) -> Vec<u8>) -> (Loss, u32, Health) {
 fn time_goes_on_and_missing_late_and_repeated_readings_are_counted() {
     let (mut driver, mut far) = running();
     assert_eq!((driver.health().lost, driver.health().readings), (0, 10));
-    // 11 is late, 12 is missing, 13 comes twice, 20 is throttled.
+    // Reading 11 is late, 12 is missing, 13 is duplicated, 20 is throttled.
     for k in [13, 11, 13] {
         far.send(&bytes_of(&frame(k))).unwrap();
     }

@@ -1,6 +1,6 @@
-//! Words of the first generation's serial line: one-letter commands, and their acknowledgements (reference `bota.md`, 1.2).
+//! Serial commands of the first generation: single letters, and their acknowledgements (reference `bota.md`, 1.2).
 //!
-//! Text within a stream of binary frames: an acknowledgement is looked for anywhere in what arrived.
+//! The text may be in the middle of a stream of binary frames, so all received bytes are searched for it.
 
 use nima_files::quoted;
 
@@ -8,41 +8,42 @@ use nima_files::quoted;
 pub const CONFIG: &[u8] = b"C\n";
 /// Enters measurement: the stream starts.
 pub const RUN: &[u8] = b"R\n";
-/// Restarts the firmware; cures a calibration matrix that was not loaded.
+/// Restarts the firmware, which can fix a calibration matrix that was not loaded.
 pub const INIT: &[u8] = b"I\n";
-/// Asks for product and serial number.
+/// Requests product and serial number.
 pub const PRODUCT: &[u8] = b"p?\n";
-/// Takes offsets saved in the sensor out of its readings.
+/// Sets the offsets that are saved in the sensor to zero.
 pub const NO_OFFSET: &[u8] = b"b,0.000000,0.000000,0.000000,0.000000,0.000000,0.000000\n";
-/// The sensor's receiver holds so many bytes.
+/// Size of the sensor's receive buffer, bytes.
 pub const COMMAND_BYTES: usize = 64;
 /// Line speeds in the order of their index in the `c` command, bit/s.
 pub const BAUDS: [u32; 6] = [9_600, 57_600, 115_200, 230_400, 460_800, 921_600];
-/// Averaging lengths that the sensor takes.
+/// Averaging lengths that the sensor accepts.
 pub const SINC: std::ops::RangeInclusive<u16> = 64..=2047;
 
-/// Rate of a sensor with this averaging length, Hz.
+/// Rate with this averaging length, Hz.
 pub fn rate_hz(sinc: u16) -> f64 {
     51_200.0 / f64::from(sinc)
 }
 
-/// No temperature compensation, calibration matrix applied, binary frames, this speed of [`BAUDS`].
+/// Command for: no temperature compensation, calibration matrix applied, binary frames, line speed `baud_index` of
+/// [`BAUDS`].
 pub fn communication(baud_index: usize) -> String {
     format!("c,0,1,0,{baud_index}\n")
 }
 
-/// Averages over `sinc` samples, without chopping, fast mode and the second filter.
+/// Command for averaging over `sinc` samples, without chopping, fast mode and second filter.
 pub fn filter(sinc: u16) -> String {
     format!("f,{sinc},0,0,1\n")
 }
 
-/// An acknowledgement `r,0,<letter>,<code>`, 0 for good, of this command; the newest in `bytes`.
+/// Code of the newest acknowledgement `r,0,<letter>,<code>` of this command in `bytes`; 0 is success.
 pub fn acknowledged(bytes: &[u8], letter: u8) -> Option<u32> {
     let head = [b'r', b',', b'0', b',', letter, b','];
     bytes.windows(head.len()).enumerate().rev().filter(|(_, window)| *window == head).find_map(|(at, _)| {
         let digits = &bytes[at + head.len()..];
         let count = digits.iter().take_while(|byte| byte.is_ascii_digit()).count();
-        // Whole only with what ends it; a longer code would otherwise be cut.
+        // Require the end of the line; a longer code would otherwise be cut off.
         let ended = digits.get(count).is_some_and(|byte| matches!(byte, b'\r' | b'\n'));
         (ended && (1..=4).contains(&count)).then(|| number(&digits[..count]))
     })
@@ -52,7 +53,7 @@ fn number(digits: &[u8]) -> u32 {
     digits.iter().fold(0, |sum, digit| sum * 10 + u32::from(digit - b'0'))
 }
 
-/// Serial number and product of the answer `p,0,<serial>,<x>,<x>,<product>` to [`PRODUCT`].
+/// Serial number and product name in the answer `p,0,<serial>,<x>,<x>,<product>` to [`PRODUCT`].
 pub fn product(bytes: &[u8]) -> Option<(String, String)> {
     let text = String::from_utf8_lossy(bytes);
     let begin = text.rfind("p,0,")?;
@@ -64,19 +65,19 @@ pub fn product(bytes: &[u8]) -> Option<(String, String)> {
     }
 }
 
-/// What a sensor tells when it has started.
+/// The text that a sensor sends at start.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct BootText {
-    /// `App Init` was seen.
+    /// Whether `App Init` was received.
     pub started: bool,
     pub product: Option<String>,
     pub serial: Option<String>,
-    /// Firmware; the last line of the text.
+    /// Firmware version; the last line of the text.
     pub firmware: Option<String>,
 }
 
 impl BootText {
-    /// Finds it among other bytes.
+    /// Searches for the text among other bytes.
     pub fn of(bytes: &[u8]) -> Self {
         let text = String::from_utf8_lossy(bytes);
         let line = |key: &str| {

@@ -1,77 +1,77 @@
-//! Words of the second generation, on a serial line and over TCP alike: parameters by number, hexadecimal values
-//! (reference `bota.md`, 1.3).
+//! Text commands of the second generation, the same on a serial line and over TCP: numbered parameters with hexadecimal
+//! values (reference `bota.md`, 1.3).
 //!
-//! `wh,<id>,<sub>,<value>` writes and `rh,<id>,<sub>,` reads; the answer repeats the two letters, then a status and the value.
-//! Text within a stream of binary frames: an answer is looked for anywhere in what arrived.
+//! `wh,<id>,<sub>,<value>` writes and `rh,<id>,<sub>,` reads; the answer repeats the two letters, then a status and the
+//! value. The text may be in the middle of a stream of binary frames, so all received bytes are searched for it.
 
 use nima_files::quoted;
 
-/// Number of a parameter: identity and part.
+/// Number of a parameter: id and sub-id.
 pub type Parameter = (u8, u8);
 
-/// State asked for: one of [`INIT`], [`CONFIG`], [`RUN`].
+/// Requested state: one of [`INIT`], [`CONFIG`], [`RUN`].
 pub const STATE: Parameter = (1, 2);
-/// Offset of the first component; six follow one another. f32.
+/// Offset of the first component; the other five have the next numbers. f32.
 pub const OFFSET: Parameter = (2, 1);
-/// Kind of frames: 0 and 1 force and torque, 2 and 3 with the inertial unit.
+/// Frame format: 0 and 1 force and torque, 2 and 3 with the inertial unit.
 pub const MODE: Parameter = (3, 1);
-/// Rate, as a place in [`RATES_HZ`].
+/// Rate, as an index into [`RATES_HZ`].
 pub const SUBMODE: Parameter = (4, 1);
-/// Rate that follows from it, Hz; read only.
+/// The resulting rate, Hz; read only.
 pub const RATE: Parameter = (4, 2);
-/// Output rate: 0 for every measurement.
+/// Output rate: 0 sends every measurement.
 pub const OUTPUT_RATE: Parameter = (6, 1);
-/// Product, as text; read only.
+/// Product name, text; read only.
 pub const PRODUCT: Parameter = (23, 1);
-/// Serial number, as text; read only.
+/// Serial number, text; read only.
 pub const SERIAL: Parameter = (24, 1);
-/// Firmware, as text; read only.
+/// Firmware version, text; read only.
 pub const FIRMWARE: Parameter = (25, 1);
-/// First byte of the address that datagrams go to; four follow one another.
+/// First byte of the address to which datagrams are sent; the other three have the next numbers.
 pub const DESTINATION: Parameter = (30, 1);
-/// Port that datagrams go to.
+/// Port to which datagrams are sent.
 pub const DESTINATION_PORT: Parameter = (31, 1);
 
-/// Nothing runs.
+/// State: stopped.
 pub const INIT: u32 = 0;
-/// Parameters can be changed.
+/// State: parameters can be changed.
 pub const CONFIG: u32 = 1;
-/// Measures and sends.
+/// State: measuring and sending.
 pub const RUN: u32 = 2;
 
-/// Rates by their submode, Hz.
+/// Rates by submode, Hz.
 pub const RATES_HZ: [u32; 16] = [10, 20, 25, 50, 100, 200, 250, 270, 400, 500, 800, 1000, 1600, 2133, 3200, 3840];
-/// The highest kind of frames.
+/// The highest frame format.
 pub const MODE_MAX: u8 = 3;
-/// The first kind of frames with the inertial unit.
+/// The first frame format with the inertial unit.
 pub const MODE_INERTIAL: u8 = 2;
 
-/// The command that writes a whole number (or the bits of an f32).
+/// Command that writes an integer (or the bits of an f32).
 pub fn write(parameter: Parameter, value: u32) -> String {
     format!("wh,{},{},{value:x}\n", parameter.0, parameter.1)
 }
 
-/// The command that reads.
+/// Command that reads a parameter.
 pub fn read(parameter: Parameter) -> String {
     format!("rh,{},{},\n", parameter.0, parameter.1)
 }
 
-/// What a sensor answered.
+/// A sensor's answer.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Answer {
-    /// 0 for good; see [`words`].
+    /// 0 is success; see [`words`].
     pub status: u32,
-    /// The value, hexadecimal.
+    /// The value in hexadecimal.
     pub value: String,
 }
 
 impl Answer {
-    /// As a whole number, or the bits of an f32.
+    /// The value as an integer; for a float parameter these are the bits of its f32.
     pub fn number(&self) -> Option<u32> {
         u32::from_str_radix(&self.value, 16).ok()
     }
 
-    /// As text.
+    /// The value as text.
     pub fn text(&self) -> Option<String> {
         let digit = |byte: u8| char::from(byte).to_digit(16);
         let pairs = self.value.as_bytes().chunks_exact(2);
@@ -84,14 +84,14 @@ impl Answer {
     }
 }
 
-/// The newest whole answer in `bytes` to a command that began with `letters` (`wh` or `rh`).
+/// The newest complete answer in `bytes` to a command that began with `letters` (`wh` or `rh`).
 pub fn answer(bytes: &[u8], letters: &[u8; 2]) -> Option<Answer> {
     let head = [letters[0], letters[1], b','];
     let mut begins = bytes.windows(head.len()).enumerate().rev().filter(|(_, window)| *window == head);
     begins.find_map(|(at, _)| whole(&bytes[at + head.len()..]))
 }
 
-/// Status and value up to the end of the line; `None` where anything else is between.
+/// Status and value up to the end of the line; `None` if there is anything else in between.
 fn whole(bytes: &[u8]) -> Option<Answer> {
     let end = bytes.iter().position(|byte| *byte == b'\n')?;
     let line = std::str::from_utf8(&bytes[..end]).ok()?;
@@ -100,7 +100,7 @@ fn whole(bytes: &[u8]) -> Option<Answer> {
     Some(Answer { status: status.parse().ok().filter(|_| good)?, value: value.to_owned() })
 }
 
-/// What a status means.
+/// Meaning of a status.
 pub const fn words(status: u32) -> &'static str {
     match status {
         0 => "good",
@@ -116,7 +116,7 @@ pub const fn words(status: u32) -> &'static str {
     }
 }
 
-/// Text as the sensor writes it.
+/// Encodes a text as the sensor does.
 pub fn hex_of(text: &str) -> String {
     let digit = |value: u8| char::from_digit(u32::from(value), 16).unwrap_or('0');
     text.bytes().flat_map(|byte| [digit(byte >> 4), digit(byte & 15)]).collect()

@@ -1,4 +1,4 @@
-//! The way readings come: within the serial line's bytes, or as datagrams beside a connection for commands.
+//! Carries the readings: within the bytes of the serial line, or as datagrams next to a connection for commands.
 
 use super::codec::{Decoder, Frame, INERTIAL_BYTES};
 use crate::{
@@ -6,20 +6,20 @@ use crate::{
     transport::{Bytes, Datagrams},
 };
 
-/// An open sensor's lines. Receiving neither waits nor allocates.
+/// The connections of an open sensor. Receiving neither waits nor allocates.
 pub(super) struct Link {
     control: Box<dyn Bytes>,
     stream: Option<Box<dyn Datagrams>>,
     decoder: Decoder,
-    /// Datagrams that were no frame.
+    /// Datagrams that were not valid frames.
     damaged: u64,
 }
 
-/// Reads from a serial line in one go; each takes up to the decoder's room.
+/// Most reads from a serial line in one poll; each fills at most the decoder's buffer.
 const READS_MAX: usize = 16;
-/// Datagrams taken in one go: over 60 ms of the fastest sensor.
+/// Most datagrams read in one poll: over 60 ms of the fastest sensor.
 const DATAGRAMS_MAX: usize = 256;
-/// One byte more than the longest frame, so that a datagram that is too long is seen to be.
+/// One byte more than the longest frame, so that too long a datagram is recognised.
 const DATAGRAM_BYTES: usize = INERTIAL_BYTES + 1;
 
 impl Link {
@@ -27,7 +27,7 @@ impl Link {
         Self { control, stream, decoder: Decoder::default(), damaged: 0 }
     }
 
-    /// Hands every frame that has arrived to `give`.
+    /// Passes every frame that has arrived to `give`.
     pub(super) fn receive(&mut self, give: impl FnMut(Frame)) -> Result<(), Loss> {
         if self.stream.is_some() { self.receive_datagrams(give) } else { self.receive_bytes(give) }
     }
@@ -47,7 +47,7 @@ impl Link {
     }
 
     fn receive_datagrams(&mut self, mut give: impl FnMut(Frame)) -> Result<(), Loss> {
-        // Nothing is asked on the connection while the sensor runs, but its end is the sensor's end.
+        // No command is sent while the sensor runs, but a closed connection means that the sensor is gone.
         self.control.receive(&mut [0; 64])?;
         let Some(stream) = &mut self.stream else { return Ok(()) };
         let mut buffer = [0; DATAGRAM_BYTES];
@@ -64,7 +64,7 @@ impl Link {
         Ok(())
     }
 
-    /// Throws away what has arrived.
+    /// Discards what has arrived.
     pub(super) fn discard(&mut self) -> Result<(), Loss> {
         self.receive(|_| {})?;
         self.decoder.clear();
@@ -83,7 +83,7 @@ impl Link {
         self.control.send(command)
     }
 
-    /// The line for commands, to ask again.
+    /// The connections, for further commands.
     pub(super) fn into_lines(self) -> (Box<dyn Bytes>, Option<Box<dyn Datagrams>>) {
         (self.control, self.stream)
     }

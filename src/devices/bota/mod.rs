@@ -1,11 +1,12 @@
-//! Force-torque sensors of Bota Systems: first generation on a serial line, second generation (A) on a serial line or in the network.
+//! Force-torque sensors of Bota Systems: first generation on a serial line, second generation (A) on a serial line or
+//! in a network.
 //!
-//! Forces in N, torques in Nm, accelerations in m/s^2, angular velocities in rad/s, all in the sensor's own frame and as the sensor
-//! gives them (no offset, no filter of ours). [`Driver::open`] blocks and tells every failure as a [`Trouble`](super::Trouble);
-//! [`Driver`] then neither waits nor allocates, and hands out nothing that must not be used. What it must be told is in
-//! [`Settings`]. The emulator (`nima_world::emulators::bota`) speaks the same protocols.
+//! Forces in N, torques in Nm, accelerations in m/s^2, angular velocities in rad/s, all in the sensor's own frame and
+//! as the sensor sends them (no offset or filter is added here). [`Driver::open`] blocks and reports every failure as a
+//! [`Trouble`](super::Trouble). [`Driver`] then neither waits nor allocates, and returns only usable readings.
+//! Configuration: [`Settings`]. The emulator (`nima_world::emulators::bota`) uses the same protocols.
 //!
-//! Facts: `bota.md` of the reference; found by running the manufacturer's client, not proven on real sensors.
+//! Sources: `bota.md` of the reference, and observation of the manufacturer's client. Not verified with a real sensor.
 
 mod clock;
 pub mod codec;

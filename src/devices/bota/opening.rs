@@ -1,4 +1,4 @@
-//! From settings to a sensor that measures: the three ways of connection, each failure with its cause. Blocks.
+//! From settings to a measuring sensor, for the three types of connection; every failure has its cause. Blocks.
 
 use std::{
     net::{IpAddr, SocketAddr, ToSocketAddrs as _, UdpSocket},
@@ -19,21 +19,21 @@ use crate::{
     transport::{Datagrams, Serial, SerialSettings, Tcp, Udp},
 };
 
-/// A sensor that was opened and measures.
+/// A sensor that is open and measuring.
 pub(super) struct Opened {
     pub(super) link: Link,
     pub(super) identity: Identity,
-    /// Readings per second, Hz.
+    /// Rate of the readings, Hz.
     pub(super) rate_hz: f64,
-    /// The port hands bytes on at once (always so in the network).
+    /// Whether the port delivers bytes without delay (always true for the network).
     pub(super) low_latency: bool,
-    /// Stops the measurement.
+    /// The command that stops the measurement.
     pub(super) stop: &'static [u8],
 }
 
-/// Port for commands of a sensor in the network.
+/// TCP port for commands of a network sensor.
 pub const TCP_PORT: u16 = 23;
-/// How often a first-generation sensor without its calibration is restarted.
+/// How often a first-generation sensor that has not loaded its calibration is restarted.
 const RESTARTS: u32 = 5;
 const STOP_GEN_A: &[u8] = b"wh,1,2,1\n";
 const FIRST_GENERATION: &str = "first-generation Bota sensor";
@@ -81,7 +81,7 @@ fn open_gen0(settings: &Settings, timeouts: Timeouts) -> Result<Opened, Trouble>
     Err(fault_of(&settings.port, RAW_BIT))
 }
 
-/// Stops the stream. What answers instead tells what is wrong.
+/// Stops the stream. Anything else that answers shows what is wrong.
 fn enter_config_gen0(session: &mut Session, settings: &Settings) -> Result<(), Trouble> {
     for _ in 0..session.timeouts.tries {
         match session.ask(gen0::CONFIG, |heard| gen0::acknowledged(heard, b'C'))? {
@@ -96,7 +96,8 @@ fn enter_config_gen0(session: &mut Session, settings: &Settings) -> Result<(), T
     Err(session.why_no_answer("C", Some(settings.baud)))
 }
 
-/// By the official driver's question, or by what it told when it started: not every firmware knows the question.
+/// From the command that the manufacturer's driver uses, or from the text that the sensor sends at start: not every
+/// firmware knows the command.
 fn identity_gen0(session: &mut Session, boot: gen0::BootText) -> Result<Identity, Trouble> {
     let asked = session.ask(gen0::PRODUCT, |heard| {
         gen0::acknowledged(heard, b'p').map(|code| (code == 0).then(|| gen0::product(heard)).flatten())
@@ -109,7 +110,8 @@ fn identity_gen0(session: &mut Session, boot: gen0::BootText) -> Result<Identity
     })
 }
 
-/// Line, filter and offset, then measures. Nothing is saved in the sensor: its memory wears, and it is configured each time.
+/// Configures communication, filter and offset, then starts the measurement. Nothing is saved in the sensor, whose
+/// memory wears out; it is configured every time.
 fn configure_gen0(session: &mut Session, settings: &Settings) -> Result<(), Trouble> {
     let baud_index = gen0::BAUDS.iter().position(|baud| *baud == settings.baud).unwrap_or_default();
     let communication = gen0::communication(baud_index);
@@ -168,7 +170,7 @@ fn open_socket(settings: &Settings, timeouts: Timeouts) -> Result<Opened, Troubl
     }
 }
 
-/// The sensor's address: an IPv4 one, since it knows no other.
+/// The sensor's address; it supports IPv4 only.
 fn address_of(port: &str) -> Result<SocketAddr, Trouble> {
     let unreachable = || Trouble::Unreachable { place: port.to_owned() };
     let resolved = match port.parse::<IpAddr>() {
@@ -179,15 +181,15 @@ fn address_of(port: &str) -> Result<SocketAddr, Trouble> {
     resolved.ok_or_else(unreachable)
 }
 
-/// Where readings arrive: the address that the sensor sends to, where it is one of this computer's, else the one by which the sensor is
-/// reached. Never all of them: another network has no say in what the sensor measures.
+/// Where to listen for readings: at the address to which the sensor sends, if it is one of this computer's, else at the
+/// one through which the sensor is reached. Never at all addresses, so that no other network can inject readings.
 fn readings(destination: SocketAddr, here: Option<IpAddr>, sensor: SocketAddr) -> Result<Udp, Trouble> {
     let at = Some(destination.ip()).filter(|ip| Udp::is_local(*ip)).or(here);
     let at = at.ok_or_else(|| Trouble::Unreachable { place: sensor.to_string() })?;
     Udp::listen(SocketAddr::new(at, destination.port()), sensor.ip())
 }
 
-/// No reading arrives: perhaps because they go to another computer.
+/// No reading arrives; checks whether the sensor sends them to another computer.
 fn sends_elsewhere(place: String, sensor: SocketAddr, to: SocketAddr) -> Trouble {
     let route = UdpSocket::bind(("0.0.0.0", 0)).and_then(|socket| {
         socket.connect(sensor)?;
@@ -225,7 +227,7 @@ fn identity_gen_a(session: &mut Session) -> Result<Identity, Trouble> {
     Ok(Identity { product: text(gen_a::PRODUCT)?, serial: text(gen_a::SERIAL)?, firmware: text(gen_a::FIRMWARE)? })
 }
 
-/// Frames, rate and offset, then measures; gives the rate that the sensor itself tells, Hz.
+/// Configures frames, rate and offset, then starts the measurement; returns the rate that the sensor reports, Hz.
 fn configure_gen_a(session: &mut Session, settings: &Settings) -> Result<f64, Trouble> {
     let mut writes = vec![
         (gen_a::MODE, u32::from(settings.mode)),
@@ -246,7 +248,7 @@ fn configure_gen_a(session: &mut Session, settings: &Settings) -> Result<f64, Tr
     Ok(f64::from(told_hz))
 }
 
-/// Asks, and takes nothing but a good answer.
+/// Sends a command and requires a good answer.
 fn good(session: &mut Session, command: &str) -> Result<gen_a::Answer, Trouble> {
     let letters = if command.starts_with("wh") { b"wh" } else { b"rh" };
     match session.ask(command.as_bytes(), |heard| gen_a::answer(heard, letters))? {
@@ -286,13 +288,13 @@ fn check_serial(settings: &Settings, identity: &Identity) -> Result<(), Trouble>
     })
 }
 
-/// Readings looked at before a sensor counts as open.
+/// Number of readings examined before a sensor counts as open.
 const FIRST_READINGS: usize = 6;
-/// The measured rate may differ from the told one by this factor, because of jitter and rounding.
+/// The measured rate may differ from the reported one by this factor, because of jitter and rounding.
 const RATE_FACTOR: f64 = 1.2;
 const RAW: &str = "its calibration is not loaded (raw)";
 
-/// Waits for readings that can be used, come with the right rate, and are of the right kind.
+/// Waits for readings that are usable and have the right rate and format.
 fn first_readings(
     link: &mut Link,
     place: &str,
@@ -339,7 +341,7 @@ const THROTTLED_BIT: u16 = 1;
 const INVALID_BIT: u16 = 1 << 2;
 const RAW_BIT: u16 = 1 << 3;
 
-/// The fault that the status bits tell.
+/// The fault that the status bits indicate.
 fn fault_of(place: &str, status: u16) -> Trouble {
     let (words, cure) = if status & RAW_BIT != 0 {
         (RAW, "Switch the sensor off and on again.")

@@ -1,27 +1,27 @@
-//! Questions and answers while a sensor is being opened. Blocks and allocates; never used in a running loop.
+//! Commands and answers while a sensor is opened. Blocks and allocates; never used in a running loop.
 
 use std::time::{Duration, Instant};
 
 use super::codec::Decoder;
 use crate::{Trouble, transport::Bytes};
 
-/// How long an opening waits for what.
+/// Time limits while opening.
 #[derive(Clone, Copy, Debug)]
 pub struct Timeouts {
-    /// First generation: opening the port restarts it; until it has begun.
+    /// First generation: time for the restart that opening the port causes.
     pub boot: Duration,
-    /// For one answer.
+    /// Time for one answer.
     pub answer: Duration,
     /// How often the first command is sent.
     pub tries: u32,
-    /// First generation: after a restart of the firmware.
+    /// First generation: time for a restart of the firmware by command.
     pub init: Duration,
-    /// For the first readings, beyond their own time.
+    /// Additional time for the first readings.
     pub stream: Duration,
 }
 
 impl Default for Timeouts {
-    /// The official driver's times: 3 s for the start, 1 s for an answer.
+    /// The times of the manufacturer's driver: 3 s for the start, 1 s for an answer.
     fn default() -> Self {
         Self {
             boot: Duration::from_secs(3),
@@ -34,7 +34,7 @@ impl Default for Timeouts {
 }
 
 impl Timeouts {
-    /// For a diagnosis: a second, and as long again for the start of a first-generation sensor.
+    /// For a diagnosis: one second in total, and another one for the start of a first-generation sensor.
     pub(super) const SHORT: Self = Self {
         boot: Duration::from_secs(1),
         answer: Duration::from_millis(150),
@@ -44,14 +44,14 @@ impl Timeouts {
     };
 }
 
-/// Of what was heard, so much is kept to look for an answer in.
+/// Size of the buffer of received bytes in which answers are searched.
 const HEARD_MAX: usize = 8192;
 const NAP: Duration = Duration::from_millis(1);
-/// A line is flushed when it was quiet for so long, or after [`FLUSH`].
+/// Flushing a line ends when it has been quiet for this time, or after [`FLUSH`].
 const QUIET: Duration = Duration::from_millis(15);
 const FLUSH: Duration = Duration::from_millis(200);
 
-/// A line on which questions are asked, with what was heard on it as evidence.
+/// A line for commands; what was received on it is kept to explain failures.
 pub(super) struct Session {
     line: Box<dyn Bytes>,
     /// Port or address, for messages.
@@ -59,9 +59,9 @@ pub(super) struct Session {
     pub(super) timeouts: Timeouts,
     heard: Vec<u8>,
     decoder: Decoder,
-    /// Bytes since the line was opened.
+    /// Bytes received since the line was opened.
     bytes: u64,
-    /// Whole frames among them.
+    /// Number of complete frames among them.
     frames: u64,
 }
 
@@ -71,7 +71,7 @@ impl Session {
         Self { line, place: place.to_owned(), timeouts, heard, decoder, bytes: 0, frames: 0 }
     }
 
-    /// Listens until `found` finds something in what was heard since the last question, or for `timeout`.
+    /// Listens until `found` finds something in what was received since the last command, or until `timeout`.
     pub(super) fn listen<T>(
         &mut self,
         timeout: Duration,
@@ -91,7 +91,7 @@ impl Session {
         }
     }
 
-    /// Sends a command and listens for its answer.
+    /// Sends a command and waits for its answer.
     pub(super) fn ask<T>(
         &mut self,
         command: &[u8],
@@ -103,7 +103,7 @@ impl Session {
         self.listen(self.timeouts.answer, found)
     }
 
-    /// Throws away what is still coming, for instance of a stream that was just stopped.
+    /// Discards what is still arriving, for instance from a stream that was just stopped.
     pub(super) fn flush(&mut self) -> Result<(), Trouble> {
         let begin = Instant::now();
         let mut heard = begin;
@@ -117,7 +117,7 @@ impl Session {
         Ok(())
     }
 
-    /// Takes in what has arrived, and counts frames in it.
+    /// Reads what has arrived and counts the frames in it.
     fn take_in(&mut self) -> Result<usize, Trouble> {
         let count = self.line.receive(self.decoder.room()).map_err(|_| self.broken())?;
         let room = self.decoder.room();
@@ -133,7 +133,7 @@ impl Session {
         Ok(count)
     }
 
-    /// Why a command stays without an answer, by all that was heard. `baud` where the line has a speed.
+    /// Why a command is not answered, judged by everything received. `baud` if the line has a speed.
     pub(super) fn why_no_answer(&self, command: &str, baud: Option<u32>) -> Trouble {
         let place = self.place.clone();
         match baud {
@@ -147,7 +147,7 @@ impl Session {
         Trouble::Other { place: self.place.clone(), reason: "the connection broke while it was opened".to_owned() }
     }
 
-    /// The line, when all is asked.
+    /// Returns the line.
     pub(super) fn into_line(self) -> Box<dyn Bytes> {
         self.line
     }

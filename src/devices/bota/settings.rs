@@ -1,20 +1,20 @@
-//! Settings of a sensor as they stand in the rig file, checked before anything is opened.
+//! Settings of a sensor in a rig file, checked before anything is opened.
 
 use serde::{Deserialize, Serialize};
 
 use super::{codec, gen_a, gen0};
 use crate::Trouble;
 
-/// How the sensor is connected, and of which generation it is.
+/// Generation of the sensor and type of its connection.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Transport {
     /// First generation on a serial line: force and torque only.
     #[serde(rename = "gen0")]
     Gen0,
-    /// Second generation (A) on a serial line or as a serial device on USB.
+    /// Second generation (A) on a serial line, or as a serial device on USB.
     GenA,
-    /// Second generation (A) in the network: commands over TCP, readings over UDP.
+    /// Second generation (A) in a network: commands over TCP, readings over UDP.
     Socket,
 }
 
@@ -24,21 +24,24 @@ pub enum Transport {
 pub struct Settings {
     /// `"gen0"`, `"gen-a"` (serial) or `"socket"`.
     pub transport: Transport,
-    /// Device file of the line (`/dev/ttyUSB0`, `COM3`); for a socket the sensor's address, with `:port` where it is not 23.
+    /// Device file of the line (`/dev/ttyUSB0`, `COM3`); for a socket the sensor's address, with `:port` if that is not
+    /// 23.
     pub port: String,
     /// Speed of a serial line, bit/s.
     #[serde(default = "baud")]
     pub baud: u32,
-    /// First generation: samples averaged into a reading, 64 to 2047. The rate is 51200 Hz / sinc; more is slower and quieter.
+    /// First generation: number of samples averaged into a reading, 64 to 2047. The rate is 51200 Hz / sinc; a larger
+    /// number gives a lower rate and less noise.
     #[serde(default = "sinc")]
     pub sinc: u16,
-    /// Second generation: kind of frames; 0 and 1 force and torque, 2 and 3 with the inertial unit.
+    /// Second generation: frame format; 0 and 1 force and torque, 2 and 3 with the inertial unit.
     #[serde(default = "mode")]
     pub mode: u8,
-    /// Second generation: rate, Hz; one of the sensor's own (10 20 25 50 100 200 250 270 400 500 800 1000 1600 2133 3200 3840).
+    /// Second generation: rate, Hz; one that the sensor supports (10 20 25 50 100 200 250 270 400 500 800 1000 1600
+    /// 2133 3200 3840).
     #[serde(default = "rate")]
     pub rate_hz: u32,
-    /// Serial number that the sensor must have (`853` and `SN000853` are the same); any where it is left out.
+    /// Required serial number (`853` and `SN000853` are the same); any if omitted.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub serial_number: Option<String>,
 }
@@ -59,17 +62,17 @@ const fn rate() -> u32 {
     500
 }
 
-/// Bits on the line for one byte: start, eight, stop.
+/// Bits on the line per byte: start, eight data bits, stop.
 const BITS_PER_BYTE: f64 = 10.0;
 
 impl Settings {
-    /// With everything but these two as it is by default.
+    /// Default settings except for these two.
     pub fn new(transport: Transport, port: impl Into<String>) -> Self {
         let port = port.into();
         Self { transport, port, baud: baud(), sinc: sinc(), mode: mode(), rate_hz: rate(), serial_number: None }
     }
 
-    /// Readings per second that these settings ask for, Hz.
+    /// Expected rate of the readings with these settings, Hz.
     pub fn expected_hz(&self) -> f64 {
         match self.transport {
             Transport::Gen0 => gen0::rate_hz(self.sinc),
@@ -77,17 +80,20 @@ impl Settings {
         }
     }
 
-    /// Frames have the inertial unit.
+    /// Whether frames contain the inertial unit.
     pub const fn is_inertial(&self) -> bool {
         !matches!(self.transport, Transport::Gen0) && self.mode >= gen_a::MODE_INERTIAL
     }
 
-    /// The submode for the rate.
+    /// The submode for the configured rate.
     pub(super) fn submode(&self) -> Option<u32> {
         gen_a::RATES_HZ.iter().position(|rate_hz| *rate_hz == self.rate_hz).map(|place| place as u32)
     }
 
-    /// Refuses what no sensor can do.
+    /// Refuses settings that no sensor supports.
+    ///
+    /// # Errors
+    /// [`Trouble::Setting`] for the first invalid setting.
     pub fn check(&self) -> Result<(), Trouble> {
         let refuse = |key: &str, value: String, allowed: &str| {
             Err(Trouble::Setting { key: key.to_owned(), value, allowed: allowed.to_owned() })
@@ -118,12 +124,12 @@ impl Settings {
         Ok(())
     }
 
-    /// A serial device on USB, which has no line speed.
+    /// Whether it is a serial device on USB, which has no line speed.
     pub fn is_usb(&self) -> bool {
         self.transport == Transport::GenA && self.port.contains("ttyACM")
     }
 
-    /// Readings per second that fit through the line; endless for the network and for USB, which has no speed.
+    /// Highest rate that the line speed allows, Hz; infinite for network and USB, which have no line speed.
     fn line_hz(&self) -> f64 {
         if self.is_usb() || self.transport == Transport::Socket {
             return f64::INFINITY;
@@ -132,13 +138,13 @@ impl Settings {
         f64::from(self.baud) / (BITS_PER_BYTE * bytes as f64)
     }
 
-    /// This serial number is the one that is expected, if any is.
+    /// Whether this is the required serial number, or none is required.
     pub(super) fn accepts_serial(&self, serial: &str) -> bool {
         self.serial_number.as_ref().is_none_or(|expected| digits_of(expected) == digits_of(serial))
     }
 }
 
-/// A serial number without what programs put in front of it.
+/// The serial number without the prefix that some programs add.
 fn digits_of(serial: &str) -> &str {
     let bare = serial.trim();
     bare.strip_prefix("SN").unwrap_or(bare).trim_start_matches('0')

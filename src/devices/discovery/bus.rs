@@ -1,11 +1,11 @@
-//! Who is on a bus of servos: asked, not configured.
+//! Lists the servos on a bus without configuring them.
 
 use std::time::{Duration, Instant};
 
 use super::{Found, Probe};
 use crate::{Identity, Standing, Trouble, dynamixel};
 
-/// A try of a bus.
+/// A probe of a bus.
 #[derive(Debug)]
 pub(super) struct BusProbe {
     port: String,

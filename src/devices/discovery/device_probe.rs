@@ -1,20 +1,20 @@
-//! Tries any driver: opens it as the console would, listens, closes.
+//! Tests any driver: opens it as the console would, listens, closes.
 
 use std::time::{Duration, Instant};
 
 use super::{Found, Probe};
 use crate::{Device, Health, Loss, Standing, Trouble};
 
-/// When a device speaks.
+/// When a device sends data.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Speaks {
-    /// At its own rate, always: silence is trouble.
+    /// Continuously, at its own rate: silence is a fault.
     Always,
-    /// When something changes: silence tells nothing.
+    /// Only on a change: silence is normal.
     OnChange,
 }
 
-/// A try of a driver.
+/// A probe of a driver.
 pub struct DeviceProbe<F> {
     name: String,
     place: String,
@@ -23,17 +23,17 @@ pub struct DeviceProbe<F> {
     open: F,
 }
 
-/// Listened to for so long, unless there is less time.
+/// Listening time, unless the timeout is shorter.
 const LISTEN: Duration = Duration::from_millis(400);
 const NAP: Duration = Duration::from_micros(500);
 
 impl<F> DeviceProbe<F> {
-    /// Of what `open` opens at `place`.
+    /// A probe of the device that `open` opens at `place`.
     pub fn new(name: impl Into<String>, place: impl Into<String>, speaks: Speaks, open: F) -> Self {
         Self { name: name.into(), place: place.into(), speaks, extra: Duration::ZERO, open }
     }
 
-    /// Of a device that needs so much longer than others, for instance because it starts anew.
+    /// Allows this much more time than usual, for instance because the device restarts when it is opened.
     #[must_use]
     pub fn with_extra(self, extra: Duration) -> Self {
         Self { extra, ..self }

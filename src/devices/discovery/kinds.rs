@@ -1,4 +1,4 @@
-//! What can be tried, by its name. A driver takes part by one row.
+//! Probes by name. A driver is added with one row.
 
 use std::time::Duration;
 
@@ -13,15 +13,15 @@ use crate::{
 
 /// A kind of device.
 pub struct ProbeKind {
-    /// As in `nima devices --probe NAME=PLACE`.
+    /// Its name in `nima devices --probe NAME=PLACE`.
     pub name: &'static str,
-    /// How its place is written.
+    /// Format of its address.
     pub usage: &'static str,
-    /// Makes a probe of a place; empty where none was given.
+    /// Creates a probe for an address; the text is empty if none was given.
     pub make: fn(&str) -> Result<Box<dyn Probe>, Trouble>,
 }
 
-/// All kinds.
+/// All kinds of devices.
 pub const KINDS: &[ProbeKind] = &[
     ProbeKind { name: "spacemouse", usage: "spacemouse[=any|VVVV:PPPP|PATH|emulated:PATH|spacenavd]", make: cap },
     ProbeKind { name: "pedal", usage: "pedal[=any|VVVV:PPPP|PATH|emulated:PATH]", make: pedal },
@@ -40,12 +40,12 @@ pub const KINDS: &[ProbeKind] = &[
     },
 ];
 
-/// A setting of the command line that cannot be.
+/// An invalid address on the command line.
 fn wrong(kind: &str, place: &str, allowed: &str) -> Trouble {
     Trouble::Setting { key: kind.to_owned(), value: place.to_owned(), allowed: allowed.to_owned() }
 }
 
-/// Port and line speed of `PORT[@BAUD]`.
+/// Port and line speed of `PORT[@BAUD]`; `usual` is the default speed.
 fn line<'a>(kind: &str, place: &'a str, usual: u32) -> Result<(&'a str, u32), Trouble> {
     let (port, baud) = place.rsplit_once('@').unwrap_or((place, ""));
     let baud = if baud.is_empty() { Some(usual) } else { baud.parse().ok() };
@@ -104,7 +104,7 @@ fn bota(kind: &str, transport: Transport, place: &str) -> Result<Box<dyn Probe>,
     Ok(super::probes::sensor(kind, settings))
 }
 
-/// Asks who is on the bus; nothing is configured, since nothing says how.
+/// Lists the servos on the bus; nothing is configured, because the settings are not known.
 fn dynamixel(place: &str) -> Result<Box<dyn Probe>, Trouble> {
     let (port, baud) = line("dynamixel", place, 1_000_000)?;
     Ok(Box::new(super::bus::BusProbe::new(port, baud)))
@@ -143,7 +143,10 @@ fn force_dimension(place: &str) -> Result<Box<dyn Probe>, Trouble> {
     Ok(super::probes::handle("force-dimension", settings))
 }
 
-/// The probe of `KIND` or `KIND=PLACE`; its name is the whole text.
+/// The probe for `KIND` or `KIND=PLACE`; it is named after the whole text.
+///
+/// # Errors
+/// [`Trouble::Setting`] if the kind is unknown or its address invalid.
 pub fn probe_named(text: &str) -> Result<Box<dyn Probe>, Trouble> {
     let (name, place) = text.split_once('=').unwrap_or((text, ""));
     let Some(kind) = KINDS.iter().find(|kind| kind.name == name) else {

@@ -1,8 +1,8 @@
-//! What is plugged in, and why what is configured does not work: each cause with its cure.
+//! Finds out which devices are plugged in, and why a configured device does not work: each cause with its cure.
 //!
-//! [`Plugged::list`] looks without opening anything. [`diagnose`] tries devices, each on a thread of its own and all at once, within
-//! [`TIMEOUT`]; the real-time thread has no part in it, and a device that a running console holds is [`Trouble::Busy`]. A driver takes part by
-//! one line in [`KINDS`]: an open function in a [`DeviceProbe`].
+//! [`Plugged::list`] looks without opening anything. [`diagnose`] tests devices, each on a thread of its own and all at
+//! once, within [`TIMEOUT`]. The real-time thread is not involved; a device in use by a running console gives
+//! [`Trouble::Busy`]. A driver is added with one line in [`KINDS`]: its open function in a [`DeviceProbe`].
 
 mod bus;
 mod device_probe;
@@ -29,48 +29,51 @@ pub use network::TcpProbe;
 pub use plugged::{HidNode, Plugged, SerialPort, UsbDevice, UsbIds};
 pub use serial::{SerialProbe, frames};
 
-/// Time for one device, and so for all.
+/// Time limit of a diagnosis; all devices are tested at once.
 pub const TIMEOUT: Duration = Duration::from_millis(900);
 
 /// A device that answered.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Found {
-    /// Who it says it is.
+    /// Identity that it reports.
     pub identity: Identity,
-    /// Connected, or lost again while it was listened to.
+    /// Connected, or lost again while listening.
     pub standing: Standing,
-    /// Readings while it was listened to.
+    /// Readings received while listening.
     pub readings: u64,
-    /// Their rate, Hz; `None` of what speaks only when something changes or when asked.
+    /// Their rate, Hz; `None` for a device that sends only on a change or when asked.
     pub rate_hz: Option<f64>,
-    /// Readings that the device numbered and that never arrived.
+    /// Readings that never arrived, by the device's numbering.
     pub lost: u64,
-    /// Frames refused by checksum, shape or content.
+    /// Frames refused because of checksum, structure or content.
     pub damaged: u64,
-    /// Time it takes to answer, s: from opening to the first reading, or a connection's way there and back.
+    /// Response time, s: from opening to the first reading, or the round trip of a connection.
     pub latency_s: Option<f64>,
 }
 
-/// Something that can be tried.
+/// A test of one device or address.
 pub trait Probe: Send {
-    /// What it tries, for the first column of a table.
+    /// What it tests, for the first column of a table.
     fn name(&self) -> &str;
-    /// Time that it needs beyond the usual one.
+    /// Time that it needs in addition to the usual limit.
     fn extra(&self) -> Duration {
         Duration::ZERO
     }
-    /// Tries it, within `timeout` as well as it can.
+    /// Runs the test, within `timeout` as far as possible.
+    ///
+    /// # Errors
+    /// [`Trouble`] if the device does not work.
     fn probe(&mut self, timeout: Duration) -> Result<Found, Trouble>;
 }
 
-/// What came of a try.
+/// Result of a test.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case", tag = "state")]
 #[expect(missing_docs, reason = "the names say it")]
 pub enum Outcome {
-    /// It answers.
+    /// The device works.
     Connected(Found),
-    /// It does not.
+    /// The device does not work.
     Trouble {
         #[serde(flatten)]
         trouble: Trouble,
@@ -88,19 +91,19 @@ impl From<Result<Found, Trouble>> for Outcome {
     }
 }
 
-/// One device that was tried.
+/// The test of one device.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[expect(missing_docs, reason = "the names say it")]
 pub struct Diagnosis {
     pub name: String,
-    /// How long it took, s.
+    /// Duration of the test, s.
     pub took_s: f64,
     #[serde(flatten)]
     pub outcome: Outcome,
 }
 
-/// Tries all, each on a thread of its own; gives them in the order asked. One that does not come back within `timeout`, and what it
-/// needs beyond it, is told so and left to itself.
+/// Runs all tests, each on a thread of its own; returns the results in the given order. A test that does not finish
+/// within `timeout`, plus the additional time that it needs, is reported as such, and its thread is left running.
 pub fn diagnose(probes: Vec<Box<dyn Probe>>, timeout: Duration) -> Vec<Diagnosis> {
     let begin = Instant::now();
     let started = |probe: Box<dyn Probe>| {
@@ -127,18 +130,18 @@ pub fn diagnose(probes: Vec<Box<dyn Probe>>, timeout: Duration) -> Vec<Diagnosis
 type Answer = (Result<Found, Trouble>, Duration);
 
 fn start(mut probe: Box<dyn Probe>, timeout: Duration) -> (String, mpsc::Receiver<Answer>) {
-    /// Kept back, so that what uses up its time still tells what it knows.
+    /// Subtracted from the time of each test, so that a test that uses all of it can still report its result.
     const RESERVE: Duration = Duration::from_millis(100);
     let name = probe.name().to_owned();
     let (give, answer) = mpsc::sync_channel(1);
     let work = move || {
         let begin = Instant::now();
         let result = probe.probe(timeout.saturating_sub(RESERVE));
-        // Put away first, so that who reads the answer finds the device free.
+        // Closed before reporting, so that the device is free when the result is read.
         drop(probe);
         give.send((result, begin.elapsed())).ok();
     };
-    // Where no thread can be made, `give` is dropped, and the receiver tells.
+    // If no thread can be created, `give` is dropped, and the receiver reports that.
     Builder::new().name(format!("probe {name}")).spawn(work).ok();
     (name, answer)
 }

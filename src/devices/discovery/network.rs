@@ -1,4 +1,4 @@
-//! Whether somebody listens at a network address.
+//! Tests whether a server listens at a network address.
 
 use std::{
     net::ToSocketAddrs as _,
@@ -8,14 +8,17 @@ use std::{
 use super::{Found, Probe};
 use crate::{Identity, Standing, Trouble, transport::Tcp};
 
-/// A try of a TCP address; connects and hangs up.
+/// A probe of a TCP address; connects and disconnects.
 #[derive(Debug)]
 pub struct TcpProbe {
     address: String,
 }
 
 impl TcpProbe {
-    /// Of `host:port`.
+    /// For an address `host:port`.
+    ///
+    /// # Errors
+    /// [`Trouble::Setting`] if the text is not an address with a port.
     pub fn new(address: &str) -> Result<Self, Trouble> {
         let has_port =
             address.rsplit_once(':').is_some_and(|(host, port)| !host.is_empty() && port.parse::<u16>().is_ok());
@@ -37,7 +40,7 @@ impl Probe for TcpProbe {
         let resolved = self.address.to_socket_addrs().map_err(unknown)?.next();
         let resolved = resolved.ok_or_else(|| Trouble::Unreachable { place: self.address.clone() })?;
         let begin = Instant::now();
-        // Named as it was given, not as it was resolved.
+        // Report the address as it was given, not as it was resolved.
         let of = |trouble| match trouble {
             Trouble::Unreachable { .. } => Trouble::Unreachable { place: self.address.clone() },
             Trouble::NobodyListens { .. } => Trouble::NobodyListens { place: self.address.clone() },

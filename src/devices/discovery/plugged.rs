@@ -1,4 +1,4 @@
-//! What is plugged in, read from the kernel's file system without opening any device.
+//! Lists the devices that are plugged in, from the kernel's file system, without opening any of them.
 
 use std::{
     fs,
@@ -9,13 +9,13 @@ use serde::Serialize;
 
 use crate::hid;
 
-/// Who a USB device says it is.
+/// Identity of a USB device.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
 #[expect(missing_docs, reason = "the names say it")]
 pub struct UsbIds {
     pub vendor: u16,
     pub product: u16,
-    /// Product in its own words.
+    /// Product name.
     pub name: String,
     pub serial: String,
 }
@@ -34,29 +34,29 @@ pub struct SerialPort {
 pub struct HidNode {
     pub path: PathBuf,
     pub usb: UsbIds,
-    /// What this program can use it as.
+    /// What this program can use it for.
     pub usable_as: Option<&'static str>,
 }
 
-/// A USB device of a known vendor that is neither of these.
+/// A USB device of a known vendor that is neither a serial port nor a human interface device.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct UsbDevice {
     /// Vendor and product id.
     pub usb: UsbIds,
-    /// What this program can use it as.
+    /// What this program can use it for.
     pub usable_as: &'static str,
 }
 
 /// All that was found.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Plugged {
-    /// Includes ports that are not on USB.
+    /// Serial ports, including those that are not on USB.
     pub serial: Vec<SerialPort>,
     /// Human interface devices.
     pub hid: Vec<HidNode>,
-    /// Others.
+    /// Other USB devices.
     pub usb: Vec<UsbDevice>,
-    /// The library of Force Dimension, where it is found.
+    /// Path of Force Dimension's library, if it is installed.
     pub force_dimension_library: Option<PathBuf>,
 }
 
@@ -71,7 +71,7 @@ fn hexadecimal(path: &Path) -> Option<u16> {
     u16::from_str_radix(&text(path)?, 16).ok()
 }
 
-/// Entries of a folder, sorted by name with numbers in their order; none where there is no such folder.
+/// Entries of a folder, sorted by name with numbers in numerical order; empty if there is no such folder.
 fn entries(folder: &Path) -> Vec<PathBuf> {
     let mut entries: Vec<_> = fs::read_dir(folder).into_iter().flatten().flatten().map(|entry| entry.path()).collect();
     entries.sort_by_key(|path| (path.as_os_str().len(), path.clone()));
@@ -79,7 +79,7 @@ fn entries(folder: &Path) -> Vec<PathBuf> {
 }
 
 impl UsbIds {
-    /// Of a folder of the kernel's that describes a USB device.
+    /// Reads the description of a USB device from its folder in sysfs.
     fn of_folder(folder: &Path) -> Option<Self> {
         Some(Self {
             vendor: hexadecimal(&folder.join("idVendor"))?,
@@ -89,20 +89,20 @@ impl UsbIds {
         })
     }
 
-    /// Of the USB device that a device belongs to: the nearest folder above it that describes one.
+    /// The USB device to which a device belongs: the nearest parent folder that describes one.
     fn above(device: &Path) -> Option<Self> {
         let real = device.canonicalize().ok()?;
         real.ancestors().find_map(Self::of_folder)
     }
 
-    /// Of a serial port, with the kernel's file system at `sys`.
+    /// The USB device of a serial port; the kernel's file system is at `sys`.
     pub fn of_port(sys: &Path, port: &Path) -> Option<Self> {
-        // A name given by udev is a link.
+        // A name given by udev is a symbolic link.
         let real = port.canonicalize().unwrap_or_else(|_| port.to_owned());
         Self::above(&sys.join("class/tty").join(real.file_name()?).join("device"))
     }
 
-    /// In words.
+    /// Text for a table.
     pub fn words(&self) -> String {
         let Self { vendor, product, name, serial } = self;
         let mut words = format!("{vendor:04x}:{product:04x}");
@@ -115,13 +115,13 @@ impl UsbIds {
 }
 
 impl Plugged {
-    /// On this computer.
+    /// Lists the devices of this computer.
     pub fn list() -> Self {
         let library = crate::force_dimension::installed_library();
         Self { force_dimension_library: library, ..Self::under(Path::new("/sys")) }
     }
 
-    /// With the kernel's file system at `sys`; looks for no library.
+    /// Lists devices from the kernel's file system at `sys`; does not look for a library.
     pub fn under(sys: &Path) -> Self {
         let serial = entries(&sys.join("class/tty")).iter().filter_map(|entry| serial_port(entry)).collect();
         let hid = entries(&sys.join("class/hidraw")).iter().filter_map(|entry| hid_node(entry)).collect();
@@ -135,7 +135,7 @@ impl Plugged {
     }
 }
 
-/// A terminal with a device behind it; the kernel keeps names of ports that the board does not have, of type 0.
+/// A terminal with a device behind it. The kernel also lists ports that the board does not have; their type is 0.
 fn serial_port(entry: &Path) -> Option<SerialPort> {
     let device = entry.join("device");
     if !device.exists() || text(&entry.join("type")).is_some_and(|kind| kind == "0") {
@@ -147,7 +147,7 @@ fn serial_port(entry: &Path) -> Option<SerialPort> {
 fn hid_node(entry: &Path) -> Option<HidNode> {
     let event = text(&entry.join("device/uevent"))?;
     let value = |key: &str| event.lines().find_map(|line| line.strip_prefix(key)?.strip_prefix('='));
-    // Bus, vendor, product in hexadecimal digits.
+    // Bus, vendor and product in hexadecimal.
     let mut ids = value("HID_ID")?.split(':').skip(1).map(|part| u32::from_str_radix(part, 16).ok());
     let mut id = || ids.next().flatten().and_then(|id| u16::try_from(id).ok());
     let usb = UsbIds {

@@ -1,10 +1,10 @@
-//! The udev rules that let the person at the computer use the devices.
+//! The udev rules that give users access to the devices.
 
 use super::plugged::UsbIds;
 
-/// All of them, as installed.
+/// All rules, as installed.
 pub const RULES: &str = include_str!("../../../assets/70-nima.rules");
-/// Where they belong; the number must be below 73, where the system gives the rights.
+/// Where they are installed; the number must be below 73, the rule file in which systemd grants access to the user.
 pub const FILE: &str = "/etc/udev/rules.d/70-nima.rules";
 
 const RIGHTS: &str = r#"MODE="0660", GROUP="plugdev", TAG+="uaccess""#;
@@ -15,7 +15,7 @@ pub fn of_hidraw(ids: Option<(u16, u16)>) -> String {
     format!(r#"KERNEL=="hidraw*", {ids}{RIGHTS}"#)
 }
 
-/// The rule for one serial port, or for all on USB.
+/// The rule for one serial port, or for all serial ports on USB.
 pub fn of_serial(ids: Option<&UsbIds>) -> String {
     match ids {
         Some(UsbIds { vendor, product, .. }) => {
@@ -29,7 +29,7 @@ fn matching(vendor: u16, product: u16) -> String {
     format!(r#"ATTRS{{idVendor}}=="{vendor:04x}", ATTRS{{idProduct}}=="{product:04x}", "#)
 }
 
-/// The one command that installs what `program devices --udev-rules` prints.
+/// A single command that installs the output of `program devices --udev-rules`.
 pub fn install_command(program: &str) -> String {
     let quoted = format!("'{}'", program.replace('\'', r"'\''"));
     format!(

@@ -1,4 +1,4 @@
-//! Tries a serial port without knowing what is on it: rights, other users, silence, line speed.
+//! Tests a serial port without knowing which device is on it: permissions, use by other programs, silence, line speed.
 
 use std::{
     path::Path,
@@ -12,25 +12,25 @@ use crate::{
     transport::{Bytes as _, Serial, SerialSettings},
 };
 
-/// A try of a port. From text: `PORT@BAUD[,HEADER][,quiet]`.
+/// A probe of a port. Its text form is `PORT@BAUD[,HEADER][,quiet]`.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct SerialProbe {
     settings: SerialSettings,
-    /// First bytes of every frame; empty where they are not known. Without them a wrong line speed is told only by the port's own
-    /// count of framing errors, which pseudo-terminals and native USB do not have.
+    /// First bytes of every frame; empty if unknown. Without them a wrong line speed can be detected only by the port's
+    /// count of framing errors, which pseudo-terminals and native USB ports do not have.
     header: Vec<u8>,
-    /// The device speaks only when asked: silence is no trouble.
+    /// The device sends only when asked, so silence is normal.
     quiet: bool,
 }
 
-/// Listened to for so long, unless there is less time.
+/// Listening time, unless the timeout is shorter.
 const LISTEN: Duration = Duration::from_millis(400);
 const NAP: Duration = Duration::from_millis(2);
-/// The longest frames whose headers are looked for.
+/// Longest frame length for which headers are searched.
 const PERIOD_MAX: usize = 512;
-/// Headers at a constant distance that are no accident.
+/// Number of headers at a constant distance that cannot be a coincidence.
 const REPEATS: usize = 6;
-/// Bytes after which a missing header is held against the line speed.
+/// Number of bytes after which a missing header means a wrong line speed.
 const ENOUGH: usize = 64;
 
 impl FromStr for SerialProbe {
@@ -64,10 +64,10 @@ fn bytes_of(digits: &str) -> Option<Vec<u8>> {
     (0..digits.len()).step_by(2).map(|i| u8::from_str_radix(&digits[i..i + 2], 16).ok()).collect()
 }
 
-/// Frames that begin with `header` at a constant distance: how many, if it is no accident.
+/// Number of frames that begin with `header` at a constant distance; `None` if there are too few to be sure.
 pub fn frames(bytes: &[u8], header: &[u8]) -> Option<usize> {
     let first = bytes.windows(header.len()).take(PERIOD_MAX).position(|window| window == header)?;
-    // The first header may be an accident inside a frame; then the next one is tried.
+    // The first match may be a coincidence inside a frame; then the next one is tried.
     let starts = (first..bytes.len().min(first + PERIOD_MAX)).filter(|&start| bytes[start..].starts_with(header));
     let regular = |start: usize, period: usize| {
         let mut count = (start..bytes.len().saturating_sub(header.len() - 1)).step_by(period);
@@ -102,7 +102,8 @@ impl Probe for SerialProbe {
         }
         let place = port.clone();
         let wrong_baud = Err(Trouble::WrongBaud { place: place.clone(), baud: *baud });
-        // A break or a cut in the first byte makes one or two errors, a wrong speed makes them all the time.
+        // A break, or starting in the middle of a byte, gives one or two errors; a wrong speed gives errors all the
+        // time.
         let errors = line.line_errors().zip(errors_before).map_or(0, |(now, before)| now.wrapping_sub(before));
         if errors as usize > 2 + heard.len() / 50 {
             return wrong_baud;
@@ -128,7 +129,7 @@ impl Probe for SerialProbe {
     }
 }
 
-/// With the rule for just this device, where its ids are known.
+/// Adds the udev rule for exactly this device, if its USB ids are known.
 fn exact(trouble: Trouble, ids: Option<&UsbIds>) -> Trouble {
     match trouble {
         Trouble::Permission { place, .. } => Trouble::Permission { place, udev: rules::of_serial(ids) },

@@ -1,18 +1,18 @@
-//! The servos' clock: 15 bits of milliseconds (register 120) as seconds without jumps, and which readings are old.
+//! The servos' clock: unwraps 15 bits of milliseconds (register 120) to seconds and detects old readings.
 
 use super::table::TICK_WRAP;
 
-/// How fast the quickest delay is forgotten: clocks of servos are off by less than this.
+/// The smallest delay seen rises with time at this rate, larger than the rate error of a servo's clock.
 const DRIFT: f64 = 0.02;
 
-/// What the time of a reading says.
+/// Age of a reading by its time stamp.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Age {
-    /// Newer than all before.
+    /// Newer than all previous ones.
     New,
-    /// Of the same millisecond as the one before.
+    /// Of the same millisecond as the previous one.
     Same,
-    /// Older than one before, or too long on the way.
+    /// Older than a previous one, or delayed too long.
     Old,
 }
 
@@ -21,7 +21,7 @@ struct Last {
     tick: i32,
     device_s: f64,
     arrival_s: f64,
-    /// Arrival less device time of the quickest reading.
+    /// Arrival time minus device time of the fastest reading.
     offset_s: f64,
 }
 
@@ -33,12 +33,12 @@ pub(super) struct DeviceClock {
 }
 
 impl DeviceClock {
-    /// A reading `late_s` later than the quickest ones counts as an answer to an earlier question.
+    /// A reading delayed by `late_s` more than the fastest ones counts as an answer to an earlier exchange.
     pub(super) const fn new(late_s: f64) -> Self {
         Self { last: None, late_s }
     }
 
-    /// Takes the tick of a reading that arrived at `arrival_s`; its time, s, and whether it is old.
+    /// Adds the tick of a reading that arrived at `arrival_s`; returns its time, s, and its age.
     pub(super) fn take(&mut self, tick: u16, arrival_s: f64) -> (f64, Age) {
         let tick = i32::from(tick) % TICK_WRAP;
         let Some(last) = &mut self.last else {
@@ -83,7 +83,7 @@ mod tests {
     fn what_was_long_on_the_way_is_old_and_a_slow_clock_is_not() {
         let mut clock = DeviceClock::new(0.015);
         for k in 0..20_000_u16 {
-            // One percent slow.
+            // A servo's clock that is 1 % slow.
             assert_ne!(clock.take((f64::from(k) * 0.99) as u16, f64::from(k) * 1e-3).1, Age::Old, "{k}");
         }
         assert_eq!(clock.take(19_801, 20.050).1, Age::Old, "50 ms late");

@@ -1,9 +1,10 @@
-//! Packets of DYNAMIXEL Protocol 2.0: checksum, byte stuffing, finding packets in a dirty stream (e-manual, "Protocol 2.0").
+//! Packets of DYNAMIXEL Protocol 2.0: checksum, byte stuffing, and finding packets in a stream with errors (e-manual,
+//! "Protocol 2.0").
 //!
-//! `FF FF FD 00 ID LEN_L LEN_H INST P1..Pn CRC_L CRC_H`, LEN = n + 3; status packets have instruction 0x55 and the error byte as
-//! P1. After every `FF FF FD` within INST..Pn a sender puts one `FD` more, and LEN counts it. Answers to fast reads (status
-//! packets from the broadcast id) are not stuffed. Nothing here has a clock or allocates after it was made; the work per byte is
-//! bounded by the longest packet taken.
+//! `FF FF FD 00 ID LEN_L LEN_H INST P1..Pn CRC_L CRC_H`, LEN = n + 3; status packets have instruction 0x55 and the
+//! error byte as P1. After every `FF FF FD` within INST..Pn the sender inserts another `FD`, which LEN counts. Answers
+//! to fast reads (status packets from the broadcast id) are not stuffed. No clock is used and nothing is allocated
+//! after construction; the work per byte is bounded by the longest accepted packet.
 
 const HEADER: [u8; 4] = [0xFF, 0xFF, 0xFD, 0x00];
 const MARK: [u8; 3] = [0xFF, 0xFF, 0xFD];
@@ -37,12 +38,12 @@ const CRC_TABLE: [u16; 256] = {
     table
 };
 
-/// CRC-16/UMTS of `bytes`, going on from `before` (0 at the beginning).
+/// CRC-16/UMTS of `bytes`, continued from `before` (0 at the beginning).
 pub fn crc(before: u16, bytes: &[u8]) -> u16 {
     bytes.iter().fold(before, |crc, byte| (crc << 8) ^ CRC_TABLE[usize::from((crc >> 8) as u8 ^ byte)])
 }
 
-/// A packet on its way out. The buffer is reused; it grows only beyond the room that it was made with.
+/// Packets to be sent. The buffer is reused; it grows only beyond its initial capacity.
 #[derive(Debug)]
 pub struct Outgoing {
     bytes: Vec<u8>,
@@ -50,7 +51,7 @@ pub struct Outgoing {
 }
 
 impl Outgoing {
-    /// With room for `room` bytes.
+    /// With an initial capacity of `room` bytes.
     pub fn new(room: usize) -> Self {
         Self { bytes: Vec::with_capacity(room), begin: 0 }
     }
@@ -60,12 +61,12 @@ impl Outgoing {
         &self.bytes
     }
 
-    /// Forgets them.
+    /// Removes all packets.
     pub fn clear(&mut self) {
         self.bytes.clear();
     }
 
-    /// Begins a packet after those that are there.
+    /// Begins a packet behind the existing ones.
     pub fn begin(&mut self, id: u8, instruction: u8) -> &mut Self {
         self.begin = self.bytes.len();
         self.bytes.extend_from_slice(&HEADER);
@@ -73,11 +74,11 @@ impl Outgoing {
         self
     }
 
-    /// Puts parameters, stuffed where needed.
+    /// Appends parameters, with byte stuffing.
     pub fn put(&mut self, parameters: &[u8]) -> &mut Self {
         for &byte in parameters {
             self.bytes.push(byte);
-            // An `FD` that was stuffed cannot begin or end another mark: what follows it starts anew.
+            // A stuffed `FD` cannot be part of another mark: the bytes after it start a new one.
             if self.bytes[self.begin + PREFIX..].ends_with(&MARK) {
                 self.bytes.push(STUFFING);
             }
@@ -85,12 +86,12 @@ impl Outgoing {
         self
     }
 
-    /// Puts a 16-bit number.
+    /// Appends a 16-bit number.
     pub fn put_u16(&mut self, number: u16) -> &mut Self {
         self.put(&number.to_le_bytes())
     }
 
-    /// Ends the packet with its length and checksum.
+    /// Completes the packet with its length and checksum.
     pub fn end(&mut self) {
         let length = (self.bytes.len() - self.begin - PREFIX + 2) as u16;
         let [low, high] = length.to_le_bytes();
@@ -99,7 +100,8 @@ impl Outgoing {
         self.seal();
     }
 
-    /// Begins the answer to a fast read, whose blocks are `block_bytes` long in total (errors, ids, data and checksums).
+    /// Begins the answer to a fast read; `block_bytes` is the total length of its blocks (errors, ids, data and
+    /// checksums).
     pub fn begin_fast(&mut self, block_bytes: usize) -> &mut Self {
         self.begin(BROADCAST, STATUS);
         let [low, high] = (block_bytes as u16 + 1).to_le_bytes();
@@ -108,7 +110,7 @@ impl Outgoing {
         self
     }
 
-    /// Puts one servo's block of the answer to a fast read; its checksum covers all before it.
+    /// Appends one servo's block of the answer to a fast read; its checksum covers everything before it.
     pub fn put_block(&mut self, error: u8, id: u8, data: &[u8]) -> &mut Self {
         self.bytes.extend_from_slice(&[error, id]);
         self.bytes.extend_from_slice(data);
@@ -122,20 +124,20 @@ impl Outgoing {
     }
 }
 
-/// A whole packet with a good checksum.
+/// A complete packet with a correct checksum.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Packet<'a> {
-    /// Servo it is for or from.
+    /// Id of its receiver or sender.
     pub id: u8,
     /// Instruction, or [`STATUS`].
     pub instruction: u8,
-    /// Parameters, without stuffing; of a status packet the error byte first.
+    /// Parameters, without stuffing; in a status packet the error byte comes first.
     pub body: &'a [u8],
-    /// Its bytes on the line.
+    /// Its length on the wire, bytes.
     pub wire_bytes: usize,
 }
 
-/// What was refused on the way to packets, since it was made.
+/// Counters of refused data since construction.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Refused {
     /// Packets with a wrong checksum or an impossible length.
@@ -155,8 +157,8 @@ pub struct Incoming {
 }
 
 impl Incoming {
-    /// Takes packets of at most `longest` bytes; longer ones are taken for damage, so that a wrong length cannot swallow what
-    /// follows.
+    /// Accepts packets of at most `longest` bytes. Longer ones count as damaged, so that a wrong length cannot swallow
+    /// the packets after it.
     pub fn new(longest: usize) -> Self {
         let longest = longest.max(OVERHEAD);
         Self {
@@ -168,17 +170,17 @@ impl Incoming {
         }
     }
 
-    /// What was refused so far.
+    /// Counters of refused data.
     pub const fn refused(&self) -> Refused {
         self.refused
     }
 
-    /// Some bytes of a packet wait for the rest.
+    /// Whether an incomplete packet is in the buffer.
     pub const fn is_midway(&self) -> bool {
         self.begin < self.buffer.len()
     }
 
-    /// Forgets what is not yet a packet; gives the bytes forgotten, which count as skipped.
+    /// Discards an incomplete packet; returns the number of bytes discarded, which count as skipped.
     pub fn reset(&mut self) -> usize {
         let rest = self.buffer.len() - self.begin;
         self.refused.skipped += rest as u64;
@@ -187,7 +189,8 @@ impl Incoming {
         rest
     }
 
-    /// Takes bytes, as many as there is room for: call [`next`](Self::next) until it gives nothing, then give the rest.
+    /// Accepts as many bytes as there is room for and returns their number. Call [`next`](Self::next) until it returns
+    /// `None`, then pass the remaining bytes.
     pub fn feed(&mut self, bytes: &[u8]) -> usize {
         self.buffer.drain(..self.begin);
         self.begin = 0;
@@ -196,7 +199,7 @@ impl Incoming {
         count
     }
 
-    /// The next packet, if it is complete.
+    /// The next complete packet.
     #[expect(clippy::should_implement_trait, reason = "the packet borrows the buffer, which an iterator's item cannot")]
     pub fn next(&mut self) -> Option<Packet<'_>> {
         loop {
@@ -246,7 +249,7 @@ impl Incoming {
     }
 }
 
-/// Copies `from` without the `FD` after each mark. A mark without it stays: some senders do not stuff.
+/// Copies `from` without the `FD` after each mark. A mark without one stays as it is: some senders do not stuff.
 fn unstuff(from: &[u8], to: &mut Vec<u8>) {
     let mut matched = 0;
     for &byte in from {
@@ -275,8 +278,9 @@ pub struct Block<'a> {
     pub data: &'a [u8],
 }
 
-/// Splits the body of the answer to a fast read into blocks of `data_bytes` each. The packet's own checksum, which is the last
-/// block's, is off already and covers the ones between. `None` where the length does not fit.
+/// Splits the body of the answer to a fast read into blocks of `data_bytes` each. The checksum of the packet, which is
+/// also that of the last block, has been removed already, and it covers the checksums in between. `None` if the length
+/// does not fit.
 pub fn blocks(body: &[u8], data_bytes: usize) -> Option<impl Iterator<Item = Block<'_>>> {
     let each = data_bytes + 4;
     let fits = (body.len() + 2).is_multiple_of(each) && !body.is_empty();

@@ -1,10 +1,11 @@
-//! Driver of four servos: one exchange in flight at a time, as fast as bus and caller allow, never waiting.
+//! Driver of four servos. There is one exchange under way at a time, as fast as bus and caller allow; it never waits.
 //!
-//! An exchange is one `send`: a sync write of the goals (while the torque is on) and a sync read of clock, current, velocity
-//! and position of all four. Now and then one servo is asked for its condition instead (torque, hardware error, watchdog, voltage,
-//! temperature). What nobody answers within a few milliseconds is lost and asked anew. Lost for good: nothing new for
-//! `silence_s` (18 ms, more on slow lines: three exchanges), impossible numbers, a hardware error, an expired watchdog, a torque that
-//! went off by itself. Times in s on the caller's clock.
+//! An exchange is one `send`: a sync write of the goals (while the torque is on) and a sync read of clock, current,
+//! velocity and position of all four. At intervals it asks one servo for its condition instead (torque, hardware error,
+//! watchdog, voltage, temperature). An exchange that is not answered within a few milliseconds is given up and the next
+//! one starts. The servos count as lost after `silence_s` without a reading (18 ms, more on slow lines: three
+//! exchanges), and on impossible numbers, a hardware error, an expired watchdog, or a torque that went off by itself.
+//! Times in s on the caller's clock.
 
 mod exchange;
 
@@ -22,48 +23,49 @@ use crate::{
     transport::{Bytes, Serial, SerialSettings},
 };
 
-/// Bytes read of each servo: from the clock to the position.
+/// Bytes read from each servo: registers from the clock to the position.
 pub(super) const MOTION_BYTES: usize = 16;
-/// First address and bytes of a servo's condition: the RAM up to the temperature.
+/// First address and length of a servo's condition: the RAM up to the temperature.
 const CONDITION_FROM: u16 = EEPROM_BYTES;
 const CONDITION_BYTES: usize = (TEMPERATURE.address + 1 - CONDITION_FROM) as usize;
-/// Longest answer: a condition with as much stuffing as there can be.
+/// Longest answer: a condition with the largest possible byte stuffing.
 const LONGEST: usize = OVERHEAD + (CONDITION_BYTES + 1) * 4 / 3;
-/// Between two questions after a condition, s.
+/// Interval between two condition reads, s.
 const CONDITION_EVERY_S: f64 = 0.050;
-/// What adapter, operating system and servo may add to the time on the wire, of the time until silence: three attempts.
+/// Allowance for adapter, operating system and servo in addition to the time on the wire, as a share of the time until
+/// the servos count as silent; three attempts fit in.
 const SLACK: f64 = 0.2;
-/// A reading this much later than the quickest ones is old, of the time until silence.
+/// A reading delayed by this much more than the fastest ones is old; as a share of the time until silence.
 const LATE: f64 = 0.75;
-/// Bytes of an ordinary exchange, goals and all.
+/// Bytes on the wire in an ordinary exchange, including goals.
 const WIRE_BYTES: f64 = 160.0;
-/// No servo turns faster, units of 0.229 rpm (98 rad/s).
+/// Largest plausible velocity, units of 0.229 rpm (98 rad/s).
 const VELOCITY_MAX: i32 = 4095;
-/// No servo turns further, ticks (256 turns and the largest homing offset).
+/// Largest plausible position, ticks (256 turns and the largest homing offset).
 const POSITION_MAX: i32 = 2_100_000;
-/// No servo draws more, units.
+/// Largest plausible current, units.
 const CURRENT_MAX: i16 = 4095;
 
-/// What a servo says of itself besides its motion.
+/// State of a servo other than its motion.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Condition {
-    /// The motor is driven.
+    /// Whether the motor is driven.
     pub torque_on: bool,
-    /// Its hardware errors, and the watchdog.
+    /// Hardware errors, and the state of the watchdog.
     pub error: HardwareError,
-    /// Supply, V.
+    /// Supply voltage, V.
     pub voltage_v: f64,
     pub temperature_c: f64,
 }
 
-/// What became of commanded goals.
+/// Result of commanding goals.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Taken {
-    /// They are the goals now.
+    /// Accepted unchanged.
     AsAsked,
-    /// They are, brought back to the limits of the settings.
+    /// Accepted after limiting them to the range of the settings.
     Limited,
-    /// They are not: the torque is off, or a number is not finite.
+    /// Refused: the torque is off, or a number is not finite.
     Refused,
 }
 
@@ -73,7 +75,7 @@ struct Servo {
     current_unit_a: f64,
     limits_ticks: (f64, f64),
     condition: Option<Condition>,
-    /// Torque was seen on since it was switched on.
+    /// Whether the torque has been seen on since it was switched on.
     driven: bool,
 }
 
@@ -127,14 +129,14 @@ pub struct Driver<T: Bytes = Serial> {
 enum Torque {
     #[default]
     Off,
-    /// To be switched on with the next exchange after a reading.
+    /// To be switched on in the exchange after the next reading.
     Wanted,
     On,
-    /// To be switched off with the next exchange.
+    /// To be switched off in the next exchange.
     Ending,
 }
 
-/// How long nothing new has arrived. A caller that does not call is not the servos' silence.
+/// Time without new data. Time in which the caller did not poll does not count.
 #[derive(Clone, Copy, Debug, Default)]
 struct Quiet {
     polled_s: Option<f64>,
@@ -143,22 +145,34 @@ struct Quiet {
     refused_before: u64,
 }
 
-/// Opens the line, finds the servos, configures them; the torque is off.
+/// Opens the line, finds the servos and configures them; the torque is off.
+///
+/// # Errors
+/// [`Trouble`] if the port cannot be opened, or a servo is missing, cannot be configured or reports a fault.
 pub fn open(settings: &Settings) -> Result<Driver, Trouble> {
     open_with(settings, &Reboots::default())
 }
 
-/// The same, and restarts the servos that `reboots` asks for; the driver heeds it as well.
+/// The same, and restarts the servos requested in `reboots`; the driver obeys later requests as well.
+///
+/// # Errors
+/// As [`open`].
 pub fn open_with(settings: &Settings, reboots: &Reboots) -> Result<Driver, Trouble> {
     open_within(settings, reboots, Timeouts::USUAL)
 }
 
-/// Opens for a diagnosis: what does not answer is told within a second.
+/// Opens for a diagnosis: a servo that does not answer is reported within a second.
+///
+/// # Errors
+/// As [`open`].
 pub fn try_open(settings: &Settings) -> Result<Driver, Trouble> {
     open_within(settings, &Reboots::default(), Timeouts::SHORT)
 }
 
-/// Ids of the servos that answer on a line, and what they are; nothing is written.
+/// Ids and models of the servos that answer on a line; writes nothing.
+///
+/// # Errors
+/// [`Trouble`] if the port cannot be opened or closes during the search.
 pub fn who_is_there(port: &str, baud: u32) -> Result<Vec<(u8, &'static str)>, Trouble> {
     if !BAUDS.contains(&baud) {
         let allowed = format!("servos can have {BAUDS:?}");
@@ -175,7 +189,7 @@ pub fn who_is_there(port: &str, baud: u32) -> Result<Vec<(u8, &'static str)>, Tr
     Err(why_silent(&mut line, &mut pace, port, baud, heard, Timeouts::SHORT)?)
 }
 
-/// Servos that do not answer are at another speed, or not there.
+/// Finds out whether servos that do not answer use another line speed or are missing.
 fn why_silent(
     line: &mut Serial,
     pace: &mut Wall,
@@ -189,7 +203,7 @@ fn why_silent(
         return Ok(wrong);
     }
     for other in BAUDS.into_iter().filter(|other| *other != baud) {
-        // A speed that the adapter does not have cannot be the servos', either.
+        // The servos cannot use a speed that the adapter does not support.
         if line.set_baud(other).is_ok() && Session::new(line, pace, port, timeouts).anybody()? {
             return Ok(wrong);
         }
@@ -211,7 +225,10 @@ fn open_within(settings: &Settings, reboots: &Reboots, timeouts: Timeouts) -> Re
     Err(why_silent(&mut line, &mut pace, &settings.port, settings.baud, heard, timeouts)?)
 }
 
-/// Opens over a line that is open already, with a time of its own: how emulated servos are driven without a wall clock.
+/// Opens over an existing line with a clock of the caller: runs emulated servos in simulated time.
+///
+/// # Errors
+/// As [`open`], except for opening the port.
 pub fn open_over<T: Bytes>(
     mut line: T,
     pace: &mut impl Pace,
@@ -232,7 +249,7 @@ impl<T: Bytes> Driver<T> {
             Servo { id: servo.id, current_unit_a, limits_ticks, condition: None, driven: false }
         });
         let byte_s = 10.0 / f64::from(settings.baud);
-        // A slow line needs longer for three exchanges.
+        // On a slow line three exchanges take longer.
         let silence_s = settings.silence_s.max(3.0 * WIRE_BYTES / (1.0 - 3.0 * SLACK) * byte_s);
         Self {
             line,
@@ -259,7 +276,7 @@ impl<T: Bytes> Driver<T> {
         }
     }
 
-    /// Switches the torque on, held at the present angles, or off. Happens with the next exchange.
+    /// Switches the torque on, holding the present angles, or off. Takes effect with the next exchange.
     pub fn set_torque(&mut self, on: bool) {
         self.torque = match (on, self.torque) {
             (true, Torque::On) => Torque::On,
@@ -269,12 +286,12 @@ impl<T: Bytes> Driver<T> {
         };
     }
 
-    /// The torque was switched on.
+    /// Whether the torque has been switched on.
     pub fn is_torque_on(&self) -> bool {
         self.torque == Torque::On
     }
 
-    /// Sets the goals, rad, as often as wanted; they go out with every exchange.
+    /// Sets the goals, rad; they are sent with every exchange.
     pub fn set_goals(&mut self, goal_rad: &[f64; SERVOS]) -> Taken {
         if self.torque != Torque::On || !goal_rad.iter().all(|goal| goal.is_finite()) {
             return Taken::Refused;
@@ -291,18 +308,18 @@ impl<T: Bytes> Driver<T> {
         taken
     }
 
-    /// Restarts the servo at this place: the torque of all goes off, the driver counts as lost, and the next opening with the
-    /// same [`Reboots`] does it.
+    /// Restarts the servo with this index: the torque of all goes off, the driver reports itself lost, and the next
+    /// opening with the same [`Reboots`] restarts the servo.
     pub fn reboot(&self, index: usize) {
         self.reboots.ask(index);
     }
 
-    /// What each servo last said of itself; about five times a second.
+    /// Latest condition of each servo; updated about five times a second.
     pub fn conditions(&self) -> [Option<Condition>; SERVOS] {
         self.servos.map(|servo| servo.condition)
     }
 
-    /// One packet answers for all four.
+    /// Whether all four answer in one packet (fast sync read).
     pub const fn uses_fast_sync_read(&self) -> bool {
         self.fast
     }
@@ -330,7 +347,8 @@ impl<T: Bytes> Device for Driver<T> {
 }
 
 impl<T: Bytes> Drop for Driver<T> {
-    /// Switches the torque off, three times, each after the line fell quiet: what is on its way would collide with it.
+    /// Switches the torque off, three times, each after the line has fallen quiet, because a packet under way would
+    /// collide with it.
     fn drop(&mut self) {
         self.outgoing.clear();
         self.put_torque_off();

@@ -2,10 +2,27 @@
 
 use super::codec::{Outgoing, STATUS};
 
-/// What a controller asks. Lists stay as they are on the wire; [`Instruction::decode`] has checked their lengths.
+/// An instruction packet. Lists are kept as bytes of the wire; [`Instruction::decode`] has checked their lengths.
+///
+/// ```
+/// use nima_devices::dynamixel::{
+///     codec::{Incoming, Outgoing},
+///     message::Instruction,
+/// };
+///
+/// let mut out = Outgoing::new(32);
+/// Instruction::Ping.encode(1, &mut out);
+/// assert_eq!(out.bytes(), [0xFF, 0xFF, 0xFD, 0, 1, 3, 0, 1, 0x19, 0x4E], "the example of the e-manual");
+///
+/// let mut incoming = Incoming::new(64);
+/// incoming.feed(&[0x55, 0xFF]);
+/// incoming.feed(out.bytes());
+/// let packet = incoming.next().expect("a packet behind two bytes of noise");
+/// assert_eq!((packet.id, Instruction::decode(packet.instruction, packet.body)), (1, Ok(Instruction::Ping)));
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Instruction<'a> {
-    /// Who are you.
+    /// Ask for model and firmware.
     Ping,
     /// Read `count` bytes.
     Read {
@@ -13,61 +30,61 @@ pub enum Instruction<'a> {
         address: u16,
         count: u16,
     },
-    /// Write at once.
+    /// Write immediately.
     Write {
         /// First address.
         address: u16,
         data: &'a [u8],
     },
-    /// Write when [`Instruction::Action`] comes.
+    /// Store a write until [`Instruction::Action`].
     RegWrite {
         /// First address.
         address: u16,
         data: &'a [u8],
     },
-    /// Do what was registered.
+    /// Carry out the stored write.
     Action,
-    /// Back to the factory's values.
+    /// Restore the factory values.
     FactoryReset { keep: Keep },
-    /// Start again; the only way out of a shutdown.
+    /// Restart; the only way to clear a shutdown.
     Reboot,
-    /// Forget whole turns of the shaft.
+    /// Reset the count of whole turns.
     ClearTurns,
-    /// Save the control table, or take it back.
+    /// Save or restore the control table.
     Backup {
-        /// Take it back.
+        /// Restore instead of save.
         restore: bool,
     },
-    /// Read the same of several servos.
+    /// Read the same registers of several servos.
     SyncRead {
         /// First address.
         address: u16,
-        /// Bytes of each.
+        /// Bytes per servo.
         count: u16,
-        /// Servos.
+        /// Ids of the servos.
         ids: &'a [u8],
-        /// One packet answers for all.
+        /// All servos answer in one packet.
         fast: bool,
     },
-    /// Write the same of several servos; see [`sync_items`].
+    /// Write the same registers of several servos; see [`sync_items`].
     SyncWrite {
         /// First address.
         address: u16,
-        /// Bytes of each.
+        /// Bytes per servo.
         count: u16,
-        /// Id and data of each.
+        /// Id and data of each servo.
         items: &'a [u8],
     },
-    /// Read something of several servos; see [`bulk_reads`].
+    /// Read different registers of several servos; see [`bulk_reads`].
     BulkRead {
-        /// Id, address and count of each.
+        /// Id, address and count of each servo.
         items: &'a [u8],
-        /// One packet answers for all.
+        /// All servos answer in one packet.
         fast: bool,
     },
-    /// Write something of several servos; see [`bulk_writes`].
+    /// Write different registers of several servos; see [`bulk_writes`].
     BulkWrite {
-        /// Id, address, count and data of each.
+        /// Id, address, count and data of each servo.
         items: &'a [u8],
     },
 }
@@ -85,24 +102,27 @@ pub enum Keep {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
 pub enum Refusal {
-    /// It tried and failed.
+    /// The instruction failed.
     Failed = 1,
-    /// No such instruction.
+    /// Unknown instruction.
     Instruction = 2,
     /// Wrong checksum.
     Checksum = 3,
-    /// A value out of the register's range.
+    /// Value outside the register's range.
     Range = 4,
     /// Too few or too many bytes.
     Length = 5,
-    /// A value out of the limits set in the servo.
+    /// Value outside the limits set in the servo.
     Limit = 6,
-    /// Read-only, no register, or EEPROM while the torque is on.
+    /// Read-only register, no register, or EEPROM while the torque is on.
     Access = 7,
 }
 
 impl Refusal {
-    /// Of an error byte; `Ok` when it tells none, the byte itself when it is none of those known.
+    /// Decodes an error byte: `Ok(None)` without an error, `Err` with the byte if the error is unknown.
+    ///
+    /// # Errors
+    /// The byte itself if it is not a known error.
     pub const fn of(error: u8) -> Result<Option<Self>, u8> {
         Ok(Some(match error & !ALERT {
             0 => return Ok(None),
@@ -117,7 +137,7 @@ impl Refusal {
         }))
     }
 
-    /// In words.
+    /// Text for a message.
     pub const fn words(self) -> &'static str {
         match self {
             Self::Failed => "it could not do it",
@@ -131,12 +151,12 @@ impl Refusal {
     }
 }
 
-/// Bit of the error byte that tells of a hardware error.
+/// Bit of the error byte that is set if there is a hardware error.
 pub const ALERT: u8 = 0x80;
 
-/// "DXD" with a one before it, which [`Instruction::ClearTurns`] has to carry.
+/// Key that [`Instruction::ClearTurns`] must carry: 1, "DXL" and 0x22.
 const CLEAR_KEY: [u8; 5] = [0x01, 0x44, 0x58, 0x4C, 0x22];
-/// "CTRL", which [`Instruction::Backup`] has to carry.
+/// Key that [`Instruction::Backup`] must carry: 1 and "CTRL".
 const BACKUP_KEY: [u8; 5] = [0x01, 0x43, 0x54, 0x52, 0x4C];
 
 fn pair(body: &[u8]) -> Option<(u16, u16, &[u8])> {
@@ -145,7 +165,10 @@ fn pair(body: &[u8]) -> Option<(u16, u16, &[u8])> {
 }
 
 impl<'a> Instruction<'a> {
-    /// Of a packet's instruction and body.
+    /// Decodes the instruction and body of a packet.
+    ///
+    /// # Errors
+    /// [`Refusal`] with which a servo answers: unknown instruction, wrong length or wrong key.
     pub fn decode(instruction: u8, body: &'a [u8]) -> Result<Self, Refusal> {
         let bare = |it: Self| if body.is_empty() { Ok(it) } else { Err(Refusal::Length) };
         match instruction {
@@ -192,7 +215,7 @@ impl<'a> Instruction<'a> {
         }
     }
 
-    /// Its byte on the wire.
+    /// Its instruction byte.
     pub const fn code(&self) -> u8 {
         match self {
             Self::Ping => 0x01,
@@ -211,7 +234,7 @@ impl<'a> Instruction<'a> {
         }
     }
 
-    /// Puts it as a packet for `id`.
+    /// Appends it to `out` as a packet for `id`.
     pub fn encode(&self, id: u8, out: &mut Outgoing) {
         out.begin(id, self.code());
         match *self {
@@ -257,7 +280,7 @@ pub fn bulk_reads(items: &[u8]) -> impl Iterator<Item = (u8, u16, u16)> + Clone 
     items.chunks_exact(5).map(move |item| (item[0], number(item[1], item[2]), number(item[3], item[4])))
 }
 
-/// Id, address and data of each servo in a bulk write, as far as they are whole.
+/// Id, address and data of each servo in a bulk write; stops at an incomplete item.
 pub fn bulk_writes(mut items: &[u8]) -> impl Iterator<Item = (u8, u16, &[u8])> {
     std::iter::from_fn(move || {
         let (head, rest) = items.split_first_chunk::<5>()?;
@@ -267,7 +290,7 @@ pub fn bulk_writes(mut items: &[u8]) -> impl Iterator<Item = (u8, u16, &[u8])> {
     })
 }
 
-/// Puts a status packet.
+/// Appends a status packet.
 pub fn encode_status(id: u8, error: u8, parameters: &[u8], out: &mut Outgoing) {
     out.begin(id, STATUS).put(&[error]).put(parameters).end();
 }

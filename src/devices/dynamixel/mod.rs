@@ -1,11 +1,12 @@
 //! ROBOTIS DYNAMIXEL servos of the X series, Protocol 2.0: the four that move an instrument, on one half-duplex bus.
 //!
-//! Angles in rad, zero in the middle of the servo's range; speeds in rad/s; currents in A. [`open`] finds and configures them
-//! (return delay 0, operating mode, homing offset, sign, limits, gains, profiles) with the torque off. [`Driver::poll`](crate::Device::poll) never
-//! waits; each call moves the one exchange in flight on, so the rate is that of the caller or of the bus, whichever
-//! is lower, and is measured in [`Health`](crate::Health). The torque comes on by [`Driver::set_torque`] only, at the present
-//! angles; while it is on, each servo's own bus watchdog stops it when the bus falls quiet. It goes off when the driver is
-//! dropped. A servo that shut itself down ([`Fault`] in words) starts again only through [`Reboots`].
+//! Angles in rad, zero in the middle of the servo's range; speeds in rad/s; currents in A. [`open`] finds and
+//! configures the servos (return delay 0, operating mode, homing offset, sign, limits, gains, profiles) with the torque
+//! off. [`Driver::poll`](crate::Device::poll) never waits. Each call advances the one exchange under way, so the rate
+//! is that of the caller or of the bus, whichever is lower, and is measured in [`Health`](crate::Health). Only
+//! [`Driver::set_torque`] switches the torque on, at the present angles; while it is on, each servo's bus watchdog
+//! stops it when the bus falls quiet. Dropping the driver switches it off. A servo that has shut itself down ([`Fault`]
+//! gives the reason) starts again only through [`Reboots`].
 //!
 //! The emulated bus with its servos is `nima_world::emulators::dynamixel`.
 

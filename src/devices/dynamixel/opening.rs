@@ -1,7 +1,8 @@
-//! From an open line to four configured servos with the torque off. Blocks and allocates; runs on the opening thread.
+//! From an open serial line to four configured servos with the torque off. Blocks and allocates; runs on the thread
+//! that opens the device.
 //!
-//! Every answer is awaited for 0.1 s, three times; for a diagnosis less. What the EEPROM holds is compared first, and written only where it
-//! differs (it wears out). All that is written is read back.
+//! Waits 0.1 s for every answer, up to three times; less in a diagnosis. The EEPROM, which wears out, is read first and
+//! written only where it differs. Everything that is written is read back.
 
 use std::{
     sync::{
@@ -28,31 +29,33 @@ pub(super) struct Timeouts {
 }
 
 impl Timeouts {
-    /// Far more than a servo takes, for machines under load.
+    /// Much longer than a servo takes, to allow for a busy computer.
     pub(super) const USUAL: Self = Self { answer_s: 0.1, tries: 3 };
-    /// Enough for an adapter that holds bytes back for 16 ms; all line speeds are tried within the second of a diagnosis.
+    /// Enough for an adapter that holds bytes back for 16 ms, and short enough to try all line speeds within the second
+    /// of a diagnosis.
     pub(super) const SHORT: Self = Self { answer_s: 0.04, tries: 2 };
 }
 
-/// Reads at most to throw away what is left from before.
+/// Most reads to discard bytes left over from before.
 pub(super) const REST_READS: usize = 64;
-/// For a servo to come back after a reboot, s.
+/// Time for a servo to come back after a reboot, s.
 const REBOOT_S: f64 = 2.0;
 /// Longest packet while opening: the whole EEPROM, stuffed.
 const LONGEST: usize = 256;
 
-/// Servos that somebody wants restarted: the only way out of a shutdown. Asked from any thread; done by the next opening.
-/// A running driver that sees it switches the torque off and counts as lost, so that the opening follows.
+/// Servos that are to be restarted, which is the only way to clear a shutdown. Requested from any thread, carried out
+/// when the servos are opened next: a running driver that finds a request switches the torque off and reports itself
+/// lost, so that it is opened again.
 #[derive(Clone, Debug, Default)]
 pub struct Reboots(Arc<AtomicU32>);
 
 impl Reboots {
-    /// Asks for a restart of the servo at this place (0 to 3) of the settings.
+    /// Requests a restart of the servo with this index (0 to 3) in the settings.
     pub fn ask(&self, index: usize) {
         self.0.fetch_or(1 << index.min(SERVOS - 1), Ordering::AcqRel);
     }
 
-    /// Some were asked for and not yet done.
+    /// Whether a request is waiting.
     pub fn is_any(&self) -> bool {
         self.0.load(Ordering::Acquire) != 0
     }
@@ -62,15 +65,15 @@ impl Reboots {
     }
 }
 
-/// Time while waiting for answers: the machine's, or a test's.
+/// Clock for waiting: the system's, or a simulated one in tests.
 pub trait Pace {
-    /// Seconds since some moment.
+    /// Present time, s; the origin is arbitrary.
     fn now_s(&self) -> f64;
-    /// Lets a little of it pass.
+    /// Waits a short time.
     fn nap(&mut self);
 }
 
-/// The machine's own time.
+/// The system's clock.
 #[derive(Debug)]
 pub(super) struct Wall(pub(super) Instant);
 
@@ -84,7 +87,7 @@ impl Pace for Wall {
     }
 }
 
-/// What the driver needs to know of the servos.
+/// Properties of the servos that the driver needs.
 #[derive(Debug)]
 pub(super) struct Opened {
     pub(super) models: [&'static Model; SERVOS],
@@ -92,7 +95,7 @@ pub(super) struct Opened {
     pub(super) fast: bool,
 }
 
-/// A line while opening.
+/// A serial line during opening.
 pub(super) struct Session<'a, T, P> {
     line: &'a mut T,
     pace: &'a mut P,
@@ -114,12 +117,12 @@ impl<'a, T: Bytes, P: Pace> Session<'a, T, P> {
         Self { line, pace, place, incoming, outgoing, heard: 0, timeouts }
     }
 
-    /// Some bytes arrived, whatever they were.
+    /// Whether any bytes have arrived.
     pub(super) const fn heard_anything(&self) -> bool {
         self.heard > 0
     }
 
-    /// Finds the servos and makes them what `settings` say.
+    /// Finds the servos and configures them according to `settings`.
     pub(super) fn configure(&mut self, settings: &Settings, reboots: &Reboots) -> Result<Opened, Trouble> {
         let firmware = self.find(settings)?;
         let mut models = [&table::MODELS[0]; SERVOS];
@@ -141,7 +144,7 @@ impl<'a, T: Bytes, P: Pace> Session<'a, T, P> {
         Ok(Opened { models, identity, fast })
     }
 
-    /// Pings everyone; firmware of each.
+    /// Pings all servos; returns the firmware version of each.
     fn find(&mut self, settings: &Settings) -> Result<[u8; SERVOS], Trouble> {
         let mut firmware = [None; SERVOS];
         for (servo, version) in settings.servos.iter().zip(&mut firmware) {
@@ -197,10 +200,10 @@ impl<'a, T: Bytes, P: Pace> Session<'a, T, P> {
         })
     }
 
-    /// Torque and watchdog off, then everything that the settings say.
+    /// Switches torque and watchdog off, then writes all settings.
     fn prepare(&mut self, servo: &ServoSettings, model: &Model) -> Result<(), Trouble> {
         let id = servo.id;
-        // A servo that answers less than everything does not answer to this, either.
+        // A servo whose status return level is below 2 does not answer this write, either.
         let level = [2];
         self.ask(id, &Instruction::Write { address: table::STATUS_RETURN_LEVEL.address, data: &level })?;
         self.write(id, (table::TORQUE_ENABLE, 0))?;
@@ -217,7 +220,7 @@ impl<'a, T: Bytes, P: Pace> Session<'a, T, P> {
         Ok(())
     }
 
-    /// Sends the restart and waits until the servo answers again.
+    /// Restarts the servo and waits until it answers again.
     fn reboot(&mut self, id: u8) -> Result<(), Trouble> {
         self.send(id, &Instruction::Reboot)?;
         let begin_s = self.pace.now_s();
@@ -230,7 +233,7 @@ impl<'a, T: Bytes, P: Pace> Session<'a, T, P> {
         Err(Trouble::Absent { place: self.name(id) })
     }
 
-    /// The firmware of all of them knows the fast sync read.
+    /// Whether the firmware of all servos supports the fast sync read.
     fn answers_fast(&mut self, settings: &Settings) -> Result<bool, Trouble> {
         let ids = settings.servos.each_ref().map(|servo| servo.id);
         let (address, count) = (table::TICK.address, MOTION_BYTES as u16);
@@ -287,7 +290,7 @@ impl<'a, T: Bytes, P: Pace> Session<'a, T, P> {
         format!("servo {id} on {}", self.place)
     }
 
-    /// Asks until it answers, a few times.
+    /// Sends the instruction up to a few times until there is an answer.
     fn ask(&mut self, id: u8, instruction: &Instruction<'_>) -> Result<Option<Answer>, Trouble> {
         for _ in 0..self.timeouts.tries {
             let answer = self.once(id, instruction)?;
@@ -303,12 +306,12 @@ impl<'a, T: Bytes, P: Pace> Session<'a, T, P> {
         self.receive(|packet| packet.instruction == STATUS && (packet.id == id || id == BROADCAST))
     }
 
-    /// Somebody answers to a ping of everyone.
+    /// Whether any servo answers a broadcast ping.
     pub(super) fn anybody(&mut self) -> Result<bool, Trouble> {
         Ok(self.once(BROADCAST, &Instruction::Ping)?.is_some())
     }
 
-    /// Everyone who answers to a ping of all, one after the other: id and model.
+    /// Id and model of all servos that answer a broadcast ping.
     pub(super) fn everybody(&mut self) -> Result<Vec<(u8, &'static str)>, Trouble> {
         let mut servos: Vec<(u8, &'static str)> = Vec::new();
         self.send(BROADCAST, &Instruction::Ping)?;
@@ -329,7 +332,7 @@ impl<'a, T: Bytes, P: Pace> Session<'a, T, P> {
     }
 
     fn send(&mut self, id: u8, instruction: &Instruction<'_>) -> Result<(), Trouble> {
-        // Whatever is still there answers to something else.
+        // Bytes that are still waiting belong to earlier instructions.
         let mut rest = [0; LONGEST];
         for _ in 0..REST_READS {
             if self.line.receive(&mut rest).map_err(|_| self.gone())? == 0 {

@@ -1,4 +1,4 @@
-//! Settings of the four servos, checked before anything is opened, and the registers that follow from them.
+//! Settings of the four servos, checked before anything is opened, and the register values that follow from them.
 
 use std::f64::consts::FRAC_PI_2;
 
@@ -10,20 +10,21 @@ use super::table::{
 };
 use crate::{SERVOS, Trouble};
 
-/// What a servo makes of its goal.
+/// Operating mode of a servo.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum OperatingMode {
-    /// Within one turn; the servo itself refuses goals beyond its limits.
+    /// Within one turn; the servo refuses goals beyond its limits.
     #[default]
     Position = 3,
-    /// Over many turns.
+    /// Over several turns.
     ExtendedPosition = 4,
-    /// Over many turns, with no more current than `goal_current_a`.
+    /// Over several turns, with the current limited to `goal_current_a`.
     CurrentBasedPosition = 5,
 }
 
-/// Gains of the servo's own loops, in the units of its registers; the defaults are the factory's of the XM430.
+/// Gains of the servo's built-in controllers, in the units of its registers; the defaults are the factory's for the
+/// XM430.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Gains {
@@ -63,25 +64,26 @@ impl Default for Gains {
 pub struct ServoSettings {
     /// Id on the bus, 0 to 252.
     pub id: u8,
-    /// Name of the model, such as `XM430-W350`; any known one when left out.
+    /// Name of the model, such as `XM430-W350`; any known model if omitted.
     #[serde(default)]
     pub model: Option<String>,
-    /// Turns the other way (drive mode, bit 0; kept in the servo).
+    /// Reverses the direction of rotation (drive mode, bit 0; stored in the servo).
     #[serde(default)]
     pub reverse: bool,
-    /// Added to the angle of the encoder, rad (homing offset; kept in the servo). At most a quarter turn in position mode.
+    /// Offset added to the angle of the encoder, rad (homing offset; stored in the servo). At most a quarter turn in
+    /// position mode.
     #[serde(default)]
     pub homing_offset_rad: f64,
-    /// Operating mode (kept in the servo).
+    /// Operating mode (stored in the servo).
     #[serde(default)]
     pub operating_mode: OperatingMode,
     /// Lowest goal, rad.
     pub position_min_rad: f64,
     /// Highest goal, rad.
     pub position_max_rad: f64,
-    /// Current limit, A (kept in the servo).
+    /// Current limit, A (stored in the servo).
     pub current_limit_a: f64,
-    /// Current with which the goal is held in current-based position mode, A; the limit when left out.
+    /// Current with which the goal is held in current-based position mode, A; the current limit if omitted.
     #[serde(default)]
     pub goal_current_a: Option<f64>,
     /// Fastest speed of a move, rad/s; 0 sets no limit.
@@ -94,23 +96,23 @@ pub struct ServoSettings {
     pub gains: Gains,
 }
 
-/// Four servos on one line.
+/// Four servos on one serial line.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Settings {
     /// Device file of the adapter, or `COM3`.
     pub port: String,
-    /// Line speed, bit/s; one of the servos' own.
+    /// Line speed, bit/s; one that the servos support.
     pub baud: u32,
     /// The servos, in the order of the readings.
     pub servos: [ServoSettings; SERVOS],
-    /// Ask for one answer of all servos; where a firmware refuses it, each answers for itself.
+    /// Ask all servos for one common answer; if a firmware refuses this, each answers separately.
     #[serde(default = "yes")]
     pub fast_sync_read: bool,
-    /// While the torque is on, a servo that hears nothing for this long stops by itself, s; 0.02 to 2.54.
+    /// Time after which a servo with torque on stops by itself if it receives nothing, s; 0.02 to 2.54.
     #[serde(default = "watchdog_s")]
     pub bus_watchdog_s: f64,
-    /// Without a reading for this long the servos count as lost, s; 0.005 to 1.
+    /// Time without a reading after which the servos count as lost, s; 0.005 to 1.
     #[serde(default = "silence_s")]
     pub silence_s: f64,
 }
@@ -133,14 +135,17 @@ const ID_MAX: u8 = 252;
 const PROFILE_MAX: f64 = 32_767.0;
 /// Highest gain.
 const GAIN_MAX: u16 = 16_383;
-/// Turns that an extended position may reach either way.
+/// Turns that an extended position may reach in each direction.
 const TURNS_MAX: f64 = 255.0;
 
-/// A register and the value that it shall have.
+/// A register and the value that it is to have.
 pub(super) type Wanted = (Register, u32);
 
 impl Settings {
-    /// Everything in it is possible; else which key is not, and what is.
+    /// Checks every setting; the error names the key and the allowed values.
+    ///
+    /// # Errors
+    /// [`Trouble::Setting`] for the first invalid setting.
     pub fn check(&self) -> Result<(), Trouble> {
         let in_range = |key: &str, value: f64, low: f64, high: f64| {
             let allowed = format!("it is {low} to {high}");
@@ -160,7 +165,7 @@ impl Settings {
         Ok(())
     }
 
-    /// The watchdog's time in its units.
+    /// The watchdog's time in units of the register.
     pub(super) fn watchdog_units(&self) -> u8 {
         (self.bus_watchdog_s / WATCHDOG_UNIT_S).round().clamp(1.0, 127.0) as u8
     }
@@ -227,9 +232,9 @@ impl ServoSettings {
         }
     }
 
-    /// What shall stand in the EEPROM, kept without power; `drive_mode` is what stands there now.
+    /// Values for the EEPROM, which keeps them without power; `drive_mode` is the present value.
     pub(super) fn eeprom(&self, model: &Model, drive_mode: u8) -> Vec<Wanted> {
-        // Profiles count in velocities, and no goal switches the torque on: bits 2 and 3 off.
+        // Profiles are based on velocity, and a goal must not switch the torque on: bits 2 and 3 off.
         let drive_mode = u32::from(drive_mode & !0b1101) | u32::from(self.reverse);
         let homing = (self.homing_offset_rad / std::f64::consts::TAU * TICKS_PER_TURN).round() as i32;
         let mut wanted = vec![
@@ -246,10 +251,10 @@ impl ServoSettings {
         wanted
     }
 
-    /// What shall stand in the RAM, lost at every restart.
+    /// Values for the RAM, which is lost at every restart.
     pub(super) fn ram(&self, model: &Model) -> Vec<Wanted> {
         let gains = &self.gains;
-        // Anything but "no limit" must not round down to it.
+        // Only 0 means "no limit", so a small value must not round down to 0.
         let profile = |value: f64, unit: f64| if value > 0.0 { (value / unit).round().max(1.0) as u32 } else { 0 };
         let goal_a = self.goal_current_a.unwrap_or(self.current_limit_a);
         vec![

@@ -1,4 +1,5 @@
-//! Control table of the X series as far as both sides use it: addresses, units, models, hardware errors (e-manual, X series).
+//! Control table of the X series, as far as driver and emulator use it: addresses, units, models, hardware errors
+//! (e-manual, X series).
 
 use std::f64::consts::TAU;
 
@@ -15,7 +16,7 @@ const fn register(address: u16, bytes: u16) -> Register {
     Register { address, bytes }
 }
 
-/// Model number (2 bytes from here; 4 more of information, then the firmware).
+/// Model number (2 bytes; after it 4 bytes of model information and the firmware version).
 pub const MODEL: Register = register(0, 2);
 /// Version of the firmware.
 pub const FIRMWARE: Register = register(6, 1);
@@ -23,29 +24,29 @@ pub const FIRMWARE: Register = register(6, 1);
 pub const ID: Register = register(7, 1);
 /// Code of the line speed, see [`BAUDS`].
 pub const BAUD: Register = register(8, 1);
-/// Pause before an answer, 2 us each.
+/// Delay before an answer, units of 2 us.
 pub const RETURN_DELAY: Register = register(9, 1);
-/// Bit 0 reverses, bit 2 counts profiles in time, bit 3 switches the torque on with a goal.
+/// Bit 0 reverses the direction, bit 2 selects time-based profiles, bit 3 switches the torque on with a goal.
 pub const DRIVE_MODE: Register = register(10, 1);
 /// See [`super::OperatingMode`].
 pub const OPERATING_MODE: Register = register(11, 1);
-/// Second id, under which writes are obeyed silently.
+/// Secondary id; writes to it are carried out without an answer.
 pub const SHADOW_ID: Register = register(12, 1);
-/// Added to the encoder's position, ticks.
+/// Offset added to the encoder's position, ticks.
 pub const HOMING_OFFSET: Register = register(20, 4);
-/// Speed above which it counts as moving.
+/// Velocity above which the servo counts as moving.
 pub const MOVING_THRESHOLD: Register = register(24, 4);
-/// Degrees Celsius.
+/// Maximum temperature, degrees Celsius.
 pub const TEMPERATURE_LIMIT: Register = register(31, 1);
-/// 0.1 V.
+/// Maximum supply voltage, units of 0.1 V.
 pub const VOLTAGE_MAX: Register = register(32, 2);
-/// 0.1 V.
+/// Minimum supply voltage, units of 0.1 V.
 pub const VOLTAGE_MIN: Register = register(34, 2);
-/// 885 is all there is.
+/// Maximum PWM; 885 is 100 %.
 pub const PWM_LIMIT: Register = register(36, 2);
-/// The model's unit, see [`Model::current_unit_a`].
+/// In the model's unit, see [`Model::current_unit_a`].
 pub const CURRENT_LIMIT: Register = register(38, 2);
-/// 0.229 rpm.
+/// Units of 0.229 rpm.
 pub const VELOCITY_LIMIT: Register = register(44, 4);
 /// Ticks; in position mode only.
 pub const POSITION_MAX: Register = register(48, 4);
@@ -57,27 +58,27 @@ pub const SHUTDOWN: Register = register(63, 1);
 pub const EEPROM_BYTES: u16 = 64;
 /// 1: the motor is driven.
 pub const TORQUE_ENABLE: Register = register(64, 1);
-/// 0 answers to pings only, 1 to reads too, 2 to all.
+/// 0: answers pings only; 1: also reads; 2: every instruction.
 pub const STATUS_RETURN_LEVEL: Register = register(68, 1);
-/// Something waits for the action instruction.
+/// Whether a write waits for the action instruction.
 pub const REGISTERED: Register = register(69, 1);
 /// See [`HardwareError`].
 pub const HARDWARE_ERROR: Register = register(70, 1);
-/// Gains of the velocity loop.
+/// Integral gain of the velocity controller.
 pub const VELOCITY_I: Register = register(76, 2);
-/// Gains of the velocity loop.
+/// Proportional gain of the velocity controller.
 pub const VELOCITY_P: Register = register(78, 2);
-/// Gains of the position loop.
+/// Differential gain of the position controller.
 pub const POSITION_D: Register = register(80, 2);
-/// Gains of the position loop.
+/// Integral gain of the position controller.
 pub const POSITION_I: Register = register(82, 2);
-/// Gains of the position loop.
+/// Proportional gain of the position controller.
 pub const POSITION_P: Register = register(84, 2);
 /// Feed-forward of acceleration.
 pub const FEEDFORWARD_2: Register = register(88, 2);
 /// Feed-forward of velocity.
 pub const FEEDFORWARD_1: Register = register(90, 2);
-/// 20 ms each; 0 off, -1 expired.
+/// Units of 20 ms; 0 off, -1 expired.
 pub const BUS_WATCHDOG: Register = register(98, 1);
 /// Goal in PWM mode.
 pub const GOAL_PWM: Register = register(100, 2);
@@ -85,44 +86,44 @@ pub const GOAL_PWM: Register = register(100, 2);
 pub const GOAL_CURRENT: Register = register(102, 2);
 /// Goal in velocity mode.
 pub const GOAL_VELOCITY: Register = register(104, 4);
-/// 214.577 rev/min^2; 0 is as fast as it can.
+/// Units of 214.577 rev/min^2; 0 is no limit.
 pub const PROFILE_ACCELERATION: Register = register(108, 4);
-/// 0.229 rpm; 0 is as fast as it can.
+/// Units of 0.229 rpm; 0 is no limit.
 pub const PROFILE_VELOCITY: Register = register(112, 4);
 /// Ticks.
 pub const GOAL_POSITION: Register = register(116, 4);
 /// Milliseconds, 0 to 32767.
 pub const TICK: Register = register(120, 2);
-/// It moves.
+/// Whether the servo moves.
 pub const MOVING: Register = register(122, 1);
-/// Bit 0 in position, bit 1 a profile runs, bit 3 it does not follow.
+/// Bit 0: in position; bit 1: a profile is running; bit 3: following error.
 pub const MOVING_STATUS: Register = register(123, 1);
-/// Drive of the motor.
+/// Present PWM of the motor.
 pub const PRESENT_PWM: Register = register(124, 2);
-/// The model's unit.
+/// In the model's unit.
 pub const PRESENT_CURRENT: Register = register(126, 2);
-/// 0.229 rpm.
+/// Units of 0.229 rpm.
 pub const PRESENT_VELOCITY: Register = register(128, 4);
 /// Ticks.
 pub const PRESENT_POSITION: Register = register(132, 4);
-/// Of the profile, 0.229 rpm.
+/// Velocity of the profile, units of 0.229 rpm.
 pub const VELOCITY_TRAJECTORY: Register = register(136, 4);
-/// Of the profile, ticks.
+/// Position of the profile, ticks.
 pub const POSITION_TRAJECTORY: Register = register(140, 4);
-/// 0.1 V.
+/// Supply voltage, units of 0.1 V.
 pub const VOLTAGE: Register = register(144, 2);
 /// Degrees Celsius.
 pub const TEMPERATURE: Register = register(146, 1);
 
-/// Wrap of [`TICK`], ms.
+/// Value at which [`TICK`] overflows, ms.
 pub const TICK_WRAP: i32 = 32_768;
 /// Encoder steps of one turn.
 pub const TICKS_PER_TURN: f64 = 4096.0;
-/// Ticks of zero radians: the middle of the range.
+/// Ticks at zero radians: the middle of the range.
 pub const TICKS_AT_ZERO: f64 = 2048.0;
-/// rad/s of one unit of velocity, 0.229 rpm.
+/// One unit of velocity, 0.229 rpm, in rad/s.
 pub const VELOCITY_UNIT_RAD_S: f64 = 0.229 * TAU / 60.0;
-/// rad/s^2 of one unit of acceleration, 214.577 rev/min^2.
+/// One unit of acceleration, 214.577 rev/min^2, in rad/s^2.
 pub const ACCELERATION_UNIT_RAD_S2: f64 = 214.577 * TAU / 3600.0;
 /// One unit of the bus watchdog, s.
 pub const WATCHDOG_UNIT_S: f64 = 0.020;
@@ -142,13 +143,13 @@ pub fn rad_from_ticks(ticks: f64) -> f64 {
     (ticks - TICKS_AT_ZERO) / TICKS_PER_TURN * TAU
 }
 
-/// A model that measures its motor's current.
+/// A model with current measurement.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Model {
-    /// As it answers to a ping.
+    /// Model number in the answer to a ping.
     pub number: u16,
     pub name: &'static str,
-    /// A of one unit of current.
+    /// One unit of current, A.
     pub current_unit_a: f64,
     /// Highest current limit, units.
     pub current_max: u16,
@@ -158,7 +159,7 @@ const fn model(number: u16, name: &'static str, current_unit_a: f64, current_max
     Model { number, name, current_unit_a, current_max }
 }
 
-/// Models that the driver takes.
+/// Models that the driver supports.
 pub const MODELS: [Model; 8] = [
     model(1000, "XH430-W350", 2.69e-3, 648),
     model(1010, "XH430-W210", 2.69e-3, 648),
@@ -171,23 +172,23 @@ pub const MODELS: [Model; 8] = [
 ];
 
 impl Model {
-    /// By its number.
+    /// The model with this number.
     pub fn numbered(number: u16) -> Option<&'static Self> {
         MODELS.iter().find(|model| model.number == number)
     }
 
-    /// Its factory values are those of the small series at 5 V.
+    /// Whether it has the factory values of the small series for 5 V.
     pub const fn is_small(&self) -> bool {
         matches!(self.number, 1190 | 1200)
     }
 }
 
-/// Hardware error status (register 70), and the bus watchdog in the bit above.
+/// Hardware error status (register 70), with the state of the bus watchdog in bit 7.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct HardwareError(pub u8);
 
 impl HardwareError {
-    /// Bits in words, lowest first.
+    /// Text for each bit, lowest first.
     pub const WORDS: [(u8, &'static str); 7] = [
         (0x01, "input voltage out of its limits"),
         (0x04, "overheated"),
@@ -199,12 +200,12 @@ impl HardwareError {
     ];
     /// Not a bit of register 70: the bus watchdog has expired.
     pub const WATCHDOG: u8 = 0x80;
-    /// Not a bit of register 70: the torque is off though it was on and nobody switched it off, as after a restart.
+    /// Not a bit of register 70: the torque went off without a command, as after a restart.
     pub const TORQUE_GONE: u8 = 0x40;
     /// Overload.
     pub const OVERLOAD: u8 = 0x20;
 
-    /// There is one.
+    /// Whether there is an error.
     pub const fn is_any(self) -> bool {
         self.0 != 0
     }
@@ -222,7 +223,7 @@ impl std::fmt::Display for HardwareError {
     }
 }
 
-/// A servo's fault, as it travels in [`Loss::Device`](crate::Loss::Device).
+/// A servo's fault, encoded in [`Loss::Device`](crate::Loss::Device).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Fault {
     pub id: u8,
@@ -230,12 +231,12 @@ pub struct Fault {
 }
 
 impl Fault {
-    /// The code in a loss: the id above the error bits.
+    /// The code: the id above the error bits.
     pub const fn code(self) -> u32 {
         (self.id as u32) << 8 | self.error.0 as u32
     }
 
-    /// Of such a code.
+    /// Decodes such a code.
     pub const fn of_code(code: u32) -> Self {
         Self { id: (code >> 8) as u8, error: HardwareError(code as u8) }
     }

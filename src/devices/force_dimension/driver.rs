@@ -1,7 +1,7 @@
-//! Opening an omega.7 and taking part in it from the real-time loop.
+//! Opens an omega.7 and exchanges readings and forces with it from the real-time loop.
 //!
-//! The loop's side neither waits nor allocates: readings, events and force commands go through bounded queues to and from the thread
-//! that holds the device ([`super::worker`]).
+//! The loop's side neither waits nor allocates: readings, events and force commands go through bounded queues to and
+//! from the thread that owns the device ([`super::worker`]).
 
 use std::{
     net::SocketAddr,
@@ -21,28 +21,28 @@ use super::{
 };
 use crate::{Device, HandleReading, Health, Identity, Loss, Stamped, Trouble};
 
-/// Greatest force of an omega.7, N.
+/// Largest force of an omega.7, N.
 pub const FORCE_MAX_N: f64 = 12.0;
-/// Greatest force of its gripper, N.
+/// Largest force of its gripper, N.
 pub const GRIPPER_MAX_N: f64 = 8.0;
-/// Without a reading for so long the device is lost, s.
+/// Time without a reading after which the device is lost, s.
 pub const SILENCE_S: f64 = 0.020;
-/// Reports and commands under way at most.
+/// Capacity of the queues of reports and commands.
 pub(super) const QUEUE: usize = 64;
 const EVENTS: usize = 32;
-/// How long opening waits for the first reading.
+/// Time limit for the first reading while opening.
 const FIRST_READING_MAX: Duration = Duration::from_secs(1);
-/// How long dropping waits for the thread before it leaves it alone (with a library that hangs).
+/// How long dropping waits for the thread; if the library hangs, the thread is then left running.
 const JOIN_MAX: Duration = Duration::from_secs(2);
 
-/// What the handle does while no force is wanted.
+/// Behaviour of the handle while no force is wanted.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum IdleMode {
-    /// The motors brake: it stays where it is.
+    /// The motors brake, so the handle stays where it is.
     #[default]
     Brake,
-    /// No current: it moves freely, and sinks.
+    /// No current: it moves freely and sinks under its weight.
     Free,
 }
 
@@ -50,26 +50,26 @@ pub enum IdleMode {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Settings {
-    /// File of the library; without it, the manufacturer's is looked for where the SDK puts it, and an emulated handle is reached by
-    /// the stand-in within this program.
+    /// File of the library. If omitted, the manufacturer's library is searched for where the SDK installs it; an
+    /// emulated handle uses the replacement library within this program.
     pub library: Option<PathBuf>,
-    /// Serial number of the device; without it, any that is free. Two devices need theirs.
+    /// Serial number of the device; if omitted, any free device. Required if there are two devices.
     pub serial: Option<u16>,
-    /// Readings a second, Hz: 100 to 2000.
+    /// Rate of the readings, Hz: 100 to 2000.
     pub rate_hz: f64,
     /// Time without a force command after which the device switches its force off by itself, ms: 1 to 31.
     pub watchdog_ms: f64,
-    /// Greatest force, N: up to 12.
+    /// Largest force, N: up to 12.
     pub force_max_n: f64,
-    /// Greatest force of the gripper, N: up to 8.
+    /// Largest force of the gripper, N: up to 8.
     pub gripper_max_n: f64,
-    /// The library holds the handle's own weight while force is on.
+    /// Whether the library compensates the handle's weight while force is on.
     pub gravity_compensation: bool,
-    /// The closed gripper counts as button 0.
+    /// Whether the closed gripper counts as button 0.
     pub gripper_is_a_button: bool,
-    /// What the handle does while no force is wanted.
+    /// Behaviour of the handle while no force is wanted.
     pub idle: IdleMode,
-    /// Address of an emulated handle, which no manufacturer's library reaches; a real one has none.
+    /// Address of an emulated handle; a real one has none.
     pub emulator: Option<SocketAddr>,
 }
 
@@ -91,7 +91,10 @@ impl Default for Settings {
 }
 
 impl Settings {
-    /// Checks ranges.
+    /// Checks every setting.
+    ///
+    /// # Errors
+    /// [`Trouble::Setting`] for the first value outside its range.
     pub fn check(&self) -> Result<(), Trouble> {
         let ranges = [
             ("rate_hz", self.rate_hz, 100.0, 2000.0),
@@ -109,23 +112,24 @@ impl Settings {
         }
     }
 
-    /// The watchdog in the device's steps of 125 us.
+    /// The watchdog's time in steps of 125 us.
     pub fn watchdog_steps(&self) -> u8 {
         (self.watchdog_ms / 0.125).round().clamp(1.0, 255.0) as u8
     }
 }
 
-/// What the device did by itself, or did at last.
+/// A change of the device's force state.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case", tag = "handle")]
 pub enum HandleEvent {
-    /// Force is on, as was asked.
+    /// Force is on, as requested.
     ForceOn,
-    /// Force is off; [`ForceOffCause::Software`] when it was asked for here. It stays off until it is enabled again.
+    /// Force is off; the cause is [`ForceOffCause::Software`] if this was requested. It stays off until it is enabled
+    /// again.
     ForceOff { cause: ForceOffCause },
-    /// Force was asked for and did not come on.
+    /// Force was requested and did not come on.
     ForceRefused {
-        /// What the device says.
+        /// The cause reported by the device.
         cause: ForceOffCause,
     },
 }
@@ -135,29 +139,30 @@ pub enum HandleEvent {
 pub struct Counters {
     /// Calls of the SDK that failed.
     pub failed_calls: u64,
-    /// Readings that were the last one again.
+    /// Readings that repeated the last one (`DHD_TIMEGUARD`).
     pub time_guarded: u64,
     /// Readings with impossible numbers.
     pub implausible: u64,
-    /// Forces that the device scaled down to what its motors can.
+    /// Forces that the device reduced to the capability of its motors.
     pub saturated: u64,
-    /// Cycles in which the newest force command was too old, so that zero was applied.
+    /// Cycles in which zero was applied because the newest force command was too old.
     pub stale_commands: u64,
-    /// Cycles that began too late.
+    /// Cycles that started too late.
     pub late_cycles: u64,
-    /// How often the device took force away by itself.
+    /// How often the device switched its force off by itself.
     pub force_cut: u64,
 }
 
-/// What became of a force command.
+/// Result of a force command.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ForceAnswer {
     Taken,
-    /// Made smaller, to the limits.
+    /// Reduced to the limits.
     Clamped,
-    /// Not finite: zero was taken.
+    /// Not finite: zero is applied.
     NotFinite,
-    /// The queue is full, because the device's thread hangs; its force ends by age and by watchdog.
+    /// The queue is full because the device's thread hangs; the force ends when the last command expires and by the
+    /// watchdog.
     Full,
 }
 
@@ -180,14 +185,18 @@ pub struct Driver {
     thread: Option<JoinHandle<()>>,
 }
 
-/// What the thread says once it has opened the device.
+/// The thread's report once it has opened the device.
 struct Opened {
     identity: Identity,
     velocity_threshold: Option<u32>,
 }
 
-/// Opens a device: loads the library, opens and configures it on the thread that will hold it, waits for its first reading. The
-/// device has its brakes on (or is free, as set); no force.
+/// Opens a device: loads the library, opens and configures the device on the thread that will own it, and waits for the
+/// first reading. Afterwards its brakes are on (or it is free, depending on the settings), without force.
+///
+/// # Errors
+/// [`Trouble`] if a setting is invalid, the library is missing or unusable, or the device is missing, in use or not
+/// ready.
 pub fn open(settings: &Settings) -> Result<Driver, Trouble> {
     settings.check()?;
     let sdk = super::library::of(settings)?;
@@ -251,29 +260,30 @@ impl Driver {
         Err(Trouble::Silent { place: place.to_owned() })
     }
 
-    /// Asks for force; [`HandleEvent::ForceOn`] tells when it is on. Until a force is set it is zero.
+    /// Requests force; [`HandleEvent::ForceOn`] reports when it is on. The force is zero until it is set.
     pub fn enable_force(&self) {
         self.shared.force_wanted.store(true, Ordering::Release);
     }
 
-    /// Force off and brakes on (or free, as set), within a cycle.
+    /// Switches force off and brakes on (or free, depending on the settings) within a cycle.
     pub fn disable_force(&self) {
         self.shared.force_wanted.store(false, Ordering::Release);
     }
 
-    /// What another thread may do in an emergency: force off and brakes on within a cycle of the device's own thread.
+    /// For emergencies: a function for another thread that switches force off and brakes on within a cycle of the
+    /// device's thread.
     pub fn lever(&self) -> impl FnMut() + Send + 'static {
         let shared = Arc::clone(&self.shared);
         move || shared.force_wanted.store(false, Ordering::Release)
     }
 
-    /// Force is wanted; false again once the device took it away.
+    /// Whether force is requested; becomes false when the device switches it off.
     pub fn is_force_wanted(&self) -> bool {
         self.shared.force_wanted.load(Ordering::Acquire)
     }
 
-    /// Sets the force on the hand and the gripper's, N, in the device's frame. It holds for 10 ms; say it again every tick. Does
-    /// nothing while force is off.
+    /// Sets the force on the hand and on the gripper, N, in the device's frame. Valid for 10 ms, so it must be set in
+    /// every tick. Has no effect while force is off.
     pub fn set_force(&mut self, force_n: Vector3<f64>, gripper_n: f64) -> ForceAnswer {
         let (force_max_n, gripper_max_n) = self.limits_n;
         let mut answer = ForceAnswer::Taken;
@@ -281,7 +291,7 @@ impl Driver {
         if !force_n.iter().chain([&gripper_n]).all(|x| x.is_finite()) {
             (force_n, gripper_n, answer) = (Vector3::zeros(), 0.0, ForceAnswer::NotFinite);
         }
-        // Axis by axis first, so that squares of huge numbers stay finite.
+        // Axis by axis first, so that the squares of large numbers stay finite.
         let cut_n = force_n.map(|axis| axis.clamp(-force_max_n, force_max_n));
         let size_n = cut_n.norm();
         let bounded_n = if size_n > force_max_n { cut_n * (force_max_n / size_n) } else { cut_n };
@@ -293,22 +303,23 @@ impl Driver {
         if self.commands.try_send(command).is_err() { ForceAnswer::Full } else { answer }
     }
 
-    /// The next thing that happened, oldest first.
+    /// The next event, oldest first.
     pub fn take_event(&self) -> Option<HandleEvent> {
         self.events.try_recv().ok()
     }
 
-    /// The status with the newest report.
+    /// Status in the newest report.
     pub const fn status(&self) -> &Status {
         &self.status
     }
 
-    /// Counters with the newest report.
+    /// Counters in the newest report.
     pub const fn counters(&self) -> &Counters {
         &self.counters
     }
 
-    /// The velocity threshold that the device has (its own unit), which is never changed here; `None` where it does not tell.
+    /// The device's velocity threshold (in its own unit), which this driver never changes; `None` if the device does
+    /// not report it.
     pub const fn velocity_threshold(&self) -> Option<u32> {
         self.velocity_threshold
     }
@@ -369,7 +380,7 @@ impl Drop for Driver {
         let begin = Instant::now();
         while !thread.is_finished() {
             if begin.elapsed() > JOIN_MAX {
-                // The library hangs; the device's watchdog has switched force off.
+                // The library hangs; the device's watchdog has switched the force off.
                 return;
             }
             std::thread::sleep(Duration::from_millis(1));
@@ -379,7 +390,7 @@ impl Drop for Driver {
 }
 
 impl Identity {
-    /// Of an omega.7.
+    /// Identity of an omega.7.
     pub(super) fn of_handle(kind: Kind, name: Option<String>, serial: Option<u16>, firmware: Option<f64>) -> Self {
         Self {
             product: name.unwrap_or_else(|| kind.name()),

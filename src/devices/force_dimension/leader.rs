@@ -1,4 +1,4 @@
-//! The handle as a rig asks for it.
+//! Implements [`Leader`] for the handle.
 
 use nalgebra::Vector3;
 
@@ -11,7 +11,7 @@ impl Leader for Driver {
     }
 
     fn set_force(&mut self, force_n: Vector3<f64>, gripper_n: f64) {
-        // What is cut or not taken shows in the counters; the next tick says it again.
+        // A force that was limited or refused shows in the counters; the next tick sets it again.
         Self::set_force(self, force_n, gripper_n);
     }
 

@@ -1,7 +1,9 @@
-//! Which library a handle is reached by. A real one: the manufacturer's, at the file that its settings name or the first that is found
-//! where it may be installed. An emulated one: the stand-in that the program provides ([`provide_stand_in`]).
+//! Chooses the library for a handle. Real handle: the manufacturer's, at the path in its settings or the first one
+//! found where it may be installed. Emulated handle: the replacement library that the program provides
+//! ([`provide_stand_in`]).
 //!
-//! A real handle never gets a stand-in, wherever it lies, and an emulated one never the manufacturer's library.
+//! A real handle never uses a replacement library, wherever one may be, and an emulated handle never the
+//! manufacturer's.
 
 use std::{
     env,
@@ -15,16 +17,16 @@ use super::{
 };
 use crate::Trouble;
 
-/// Something to try.
+/// A library to try.
 #[derive(Clone, Debug, PartialEq, Eq)]
 enum Candidate {
-    /// A file that exists.
+    /// An existing file.
     File(PathBuf),
-    /// A name for the system's own search.
+    /// A name for the system's search.
     Name(&'static str),
 }
 
-/// Names for the system's own search: what is complete first (`libdrd` holds all of `libdhd`).
+/// Names for the system's search, the most complete library first (`libdrd` includes all of `libdhd`).
 #[cfg(target_os = "windows")]
 const NAMES: &[&str] = &["drd64.dll", "dhd64.dll"];
 #[cfg(target_os = "macos")]
@@ -32,7 +34,7 @@ const NAMES: &[&str] = &["libdrd.dylib", "libdhd.dylib"];
 #[cfg(not(any(target_os = "windows", target_os = "macos")))]
 const NAMES: &[&str] = &["libdrd.so.3", "libdrd.so", "libdhd.so.3", "libdhd.so"];
 
-/// Beginnings of file names, the same order.
+/// Beginnings of file names, in the same order.
 #[cfg(target_os = "windows")]
 const FILES: &[&str] = &["drd64.dll", "dhd64.dll"];
 #[cfg(target_os = "macos")]
@@ -51,7 +53,7 @@ fn within_sdk() -> PathBuf {
     }
 }
 
-/// The folders, most particular first, with `variable` giving the environment.
+/// The folders to search, the most specific first; `variable` reads the environment.
 fn folders(variable: impl Fn(&str) -> Option<PathBuf>) -> (Vec<PathBuf>, Vec<PathBuf>) {
     let sdk = ["FDSDK", "FORCEDIM_SDK"].into_iter().filter_map(&variable).map(|sdk| sdk.join(within_sdk())).collect();
     let mut system = Vec::new();
@@ -62,7 +64,7 @@ fn folders(variable: impl Fn(&str) -> Option<PathBuf>) -> (Vec<PathBuf>, Vec<Pat
     (sdk, system)
 }
 
-/// The numbers in a file name, so that 3.17 is newer than 3.9.
+/// The numbers in a file name, for comparing versions: 3.17 is newer than 3.9.
 fn version(path: &Path) -> Vec<u32> {
     let name = path.file_name().and_then(|name| name.to_str()).unwrap_or_default();
     name.split('.').filter_map(|part| part.parse().ok()).collect()
@@ -78,7 +80,7 @@ fn newest(folder: &Path, beginning: &str) -> Option<PathBuf> {
     here.filter(fits).max_by_key(|path| version(path))
 }
 
-/// What to try, and the same as a list for a person.
+/// The libraries to try, and a list of them for a message.
 fn candidates() -> (Vec<Candidate>, String) {
     search(|name| env::var_os(name).filter(|value| !value.is_empty()).map(PathBuf::from))
 }
@@ -101,10 +103,10 @@ fn search(variable: impl Fn(&str) -> Option<PathBuf>) -> (Vec<Candidate>, String
     (candidates, places.join("; "))
 }
 
-/// The stand-in of emulated handles, once the program has provided it.
+/// The replacement library for emulated handles, once the program has provided it.
 static STAND_IN: OnceLock<&'static Sdk> = OnceLock::new();
 
-/// Makes `sdk` what emulated handles ([`Settings::emulator`]) are reached by in this program; the first one stays.
+/// Makes this program use `sdk` for emulated handles ([`Settings::emulator`]); later calls have no effect.
 pub fn provide_stand_in(sdk: &'static Sdk) {
     STAND_IN.get_or_init(|| sdk);
 }
@@ -131,8 +133,8 @@ fn no_stand_in() -> Trouble {
     unusable("(within this program)", "this program was built without the stand-in of emulated handles".to_owned())
 }
 
-/// The manufacturer's library where it is found first. Stand-ins that lie on the way (a build folder that the system searches) are
-/// passed over.
+/// The first usable manufacturer's library. Replacement libraries found on the way (in a build folder that the system
+/// searches) are skipped.
 fn installed() -> Result<&'static Sdk, Trouble> {
     let (candidates, searched) = candidates();
     for candidate in &candidates {
@@ -143,7 +145,8 @@ fn installed() -> Result<&'static Sdk, Trouble> {
         match (open_library(&path), candidate) {
             (Ok(library), _) if is_stand_in(&library) => {}
             (Ok(library), _) => return keep(&path, library),
-            // The message begins with the file that is missing: another one is a library that this one needs.
+            // A message that begins with this file's name means that it is missing; with another name, that a library
+            // which it needs is missing.
             (Err(error), Candidate::Name(name)) if error.starts_with(name) || cfg!(not(target_os = "linux")) => {}
             (Err(error), _) => return Err(unusable(&path.display().to_string(), error)),
         }
@@ -151,7 +154,7 @@ fn installed() -> Result<&'static Sdk, Trouble> {
     Err(missing(searched))
 }
 
-/// The library that would be loaded, where it is a file; looked for, not loaded.
+/// Path of the library that would be loaded, if it is a file. The library is not loaded.
 pub fn installed_library() -> Option<PathBuf> {
     let real = |path: &PathBuf| path.is_file() && !is_stand_in_file(path);
     let by_linker = |name: &str| linker_folders().into_iter().map(|folder| folder.join(name)).find(real);
@@ -161,13 +164,13 @@ pub fn installed_library() -> Option<PathBuf> {
     })
 }
 
-/// By the name of a symbol that only a stand-in has.
+/// Recognised by a symbol that only a replacement library has.
 fn is_stand_in_file(path: &Path) -> bool {
     let symbol = STAND_IN_SYMBOL.as_bytes();
     std::fs::read(path).is_ok_and(|bytes| bytes.windows(symbol.len()).any(|window| window == symbol))
 }
 
-/// Where the system's own search looks.
+/// Folders of the system's search.
 fn linker_folders() -> Vec<PathBuf> {
     let named = env::var_os("LD_LIBRARY_PATH").unwrap_or_default();
     let mut folders: Vec<_> = env::split_paths(&named).filter(|path| !path.as_os_str().is_empty()).collect();

@@ -1,18 +1,21 @@
-//! Force Dimension omega.7: haptic handle with a passive wrist and an active gripper, through the manufacturer's library.
+//! Force Dimension omega.7: haptic handle with a passive wrist and an active gripper, used through the manufacturer's
+//! library.
 //!
-//! - In: position (m), orientation, opening of the gripper (rad), velocity (m/s), in the device's own frame; 1 kHz.
-//! - Out: force (N, at most 12) and gripper force (N, at most 8), each valid for 10 ms. Not finite: zero. Force is on only while it is
-//!   enabled by command; brakes are on before, after, and on every way out. The velocity threshold of the device is never touched, its
-//!   watchdog always set.
-//! - The library (`libdrd`, which holds all of `libdhd`) is loaded while running; the program builds and runs without it and says where
-//!   it looked ([`crate::Trouble::SdkMissing`]). An emulated handle is reached by a stand-in that the program provides.
-//! - Lost: without a reading for 20 ms, with ten impossible readings in a row, when the SDK names a lasting error, or when the
-//!   status array tells of a fault ([`status::fault_words`] reads the code). That the device took force away (button, speed,
-//!   watchdog) is no loss but a [`HandleEvent`]: it goes on reading.
-//! - A still handle reads the same numbers again and again; standing still is no fault. Only when the library itself says that
-//!   there is nothing newer (`DHD_TIMEGUARD`) for 20 ms it counts as silent.
+//! - Input: position (m), orientation, opening of the gripper (rad), velocity (m/s), in the device's own frame; 1 kHz.
+//! - Output: force (N, at most 12) and gripper force (N, at most 8), each valid for 10 ms; a value that is not finite
+//!   gives zero. Force is on only while it is enabled by command; otherwise, and however the program ends, the brakes
+//!   are on. The device's velocity threshold is never changed, its watchdog is always set.
+//! - The library (`libdrd`, which includes all of `libdhd`) is loaded at run time. The program builds and runs without
+//!   it and reports where it searched ([`crate::Trouble::SdkMissing`]). An emulated handle is reached through a
+//!   replacement library in the program.
+//! - The device is lost after 20 ms without a reading, after ten impossible readings in a row, on a permanent error of
+//!   the SDK, or on a fault in the status array ([`status::fault_words`] explains the code). If the device switches its
+//!   force off (button, speed, watchdog), that is a [`HandleEvent`] and not a loss; reading continues.
+//! - A handle that is not moved repeats the same numbers, which is not a fault. It counts as silent only if the library
+//!   reports for 20 ms that there is nothing newer (`DHD_TIMEGUARD`).
 //!
-//! `src/stand_in` stands in for the library; the emulated device behind it is `nima_world::emulators::force_dimension`.
+//! The replacement library is in `src/stand_in`; the emulated device behind it is
+//! `nima_world::emulators::force_dimension`.
 
 mod driver;
 mod leader;

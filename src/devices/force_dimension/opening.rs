@@ -1,4 +1,4 @@
-//! From a loaded library to a configured device, with every failure named.
+//! From a loaded library to a configured device; every failure has its cause.
 
 use super::{
     driver::Settings,
@@ -7,10 +7,10 @@ use super::{
 };
 use crate::{Identity, Loss, Trouble};
 
-/// Rule that lets everybody at the machine use devices of this make on USB.
+/// udev rule: every user of the computer may use USB devices of this manufacturer.
 pub(super) const UDEV: &str = r#"SUBSYSTEM=="usb", ATTR{idVendor}=="1451", MODE="0666""#;
 
-/// A device that is open and set up, not yet read.
+/// A device that is open and configured, but not read yet.
 pub(super) struct Opened {
     pub(super) device: OpenDevice,
     pub(super) identity: Identity,
@@ -18,7 +18,7 @@ pub(super) struct Opened {
     pub(super) velocity_threshold: Option<u32>,
 }
 
-/// How messages call it.
+/// Its name in messages.
 pub(super) fn place(settings: &Settings) -> String {
     match settings.serial {
         Some(serial) => format!("omega.7 with serial number {serial}"),
@@ -26,7 +26,7 @@ pub(super) fn place(settings: &Settings) -> String {
     }
 }
 
-/// Opens, checks and sets up.
+/// Opens, checks and configures the device.
 pub(super) fn open(sdk: &'static Sdk, settings: &Settings) -> Result<Opened, Trouble> {
     let place = place(settings);
     let device = sdk.open(settings.serial).map_err(|error| not_opened(sdk, &place, error))?;
@@ -45,7 +45,7 @@ pub(super) fn open(sdk: &'static Sdk, settings: &Settings) -> Result<Opened, Tro
         return Err(Trouble::WrongProduct { expected: place.clone(), place, found });
     }
     check(&place, &device.status().map_err(|error| refused("to tell its status", error))?)?;
-    // Brakes first: nothing is configured on a handle that pushes.
+    // Brakes first: a handle must not push while it is configured.
     device.stop().map_err(|error| refused("to stop", error))?;
     device.set_watchdog(settings.watchdog_steps()).map_err(|error| refused("the watchdog", error))?;
     let optional = |command: &str, outcome: Result<_, SdkError>| match outcome {
@@ -60,7 +60,7 @@ pub(super) fn open(sdk: &'static Sdk, settings: &Settings) -> Result<Opened, Tro
     Ok(Opened { device, identity, left_handed, velocity_threshold })
 }
 
-/// Whether its status lets it be used.
+/// Checks that its status allows its use.
 fn check(place: &str, status: &Status) -> Result<(), Trouble> {
     if status.reset {
         let (place, mode) = (place.to_owned(), "reset (calibration)".to_owned());
@@ -70,7 +70,7 @@ fn check(place: &str, status: &Status) -> Result<(), Trouble> {
     status.loss().map_or(Ok(()), |loss| Err(lost_at_once(place, loss)))
 }
 
-/// A device that was lost before its first reading.
+/// For a device that was lost before its first reading.
 pub(super) fn lost_at_once(place: &str, loss: Loss) -> Trouble {
     let place = place.to_owned();
     match loss {
@@ -105,7 +105,8 @@ fn not_opened(sdk: &Sdk, place: &str, error: SdkError) -> Trouble {
     }
 }
 
-/// A device of this make is on USB: Linux lists all, also those that this user may not open. False on other systems.
+/// Whether a device of this manufacturer is on USB. Linux lists all devices, even those that the user may not open.
+/// False on other systems.
 fn is_on_usb() -> bool {
     let Ok(devices) = std::fs::read_dir("/sys/bus/usb/devices") else { return false };
     let vendor = |entry: std::fs::DirEntry| std::fs::read_to_string(entry.path().join("idVendor"));

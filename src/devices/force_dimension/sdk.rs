@@ -1,10 +1,10 @@
-//! The manufacturer's library: loading it and calling it. The only unsafe code of this driver.
+//! Loads and calls the manufacturer's library. The only unsafe code of this driver.
 //!
-//! All calls go through one table of functions ([`SdkFunctions`]). It is filled from a library that is loaded while running, or, for
-//! emulated handles, by functions with the same declarations that are linked into the program ([`Sdk::linked`]).
-//! A library that is once loaded stays so until the program ends: its threads may still run. Every call takes the device's number;
-//! nothing here uses the library's "default device". Errors are the library's own, which it keeps for each thread, so a call and the
-//! question why it failed are made on the same thread.
+//! All calls go through one table of functions ([`SdkFunctions`]). It is filled from a library loaded at run time or,
+//! for emulated handles, with functions of the same signature that are linked into the program ([`Sdk::linked`]). A
+//! loaded library is never unloaded, because its threads may still be running. Every call passes the device's number;
+//! the library's "default device" is not used. The library keeps its last error per thread, so a call and the query for
+//! its error are made on the same thread.
 #![expect(unsafe_code, reason = "a C library that is loaded while running")]
 
 mod ending;
@@ -23,7 +23,7 @@ use nima_files::quoted;
 use super::status::{ENTRIES, SdkError, Status, Success};
 use crate::Trouble;
 
-/// Its name for a person.
+/// Its name in messages.
 pub(super) const NAME: &str = "Force Dimension SDK (libdrd or libdhd, 3.16 or newer)";
 /// The oldest version whose status array has the entries that are decoded here.
 const VERSION_MIN: (c_int, c_int) = (3, 16);
@@ -37,12 +37,12 @@ macro_rules! library {
                 #[doc = concat!("`", $symbol, "`")]
                 pub $field: unsafe extern "C" fn($($argument),*) $(-> $result)?,
             )*
-            /// Adds an emulated handle by its address; stand-ins alone have it.
+            /// Adds an emulated handle by its address; only replacement libraries have this function.
             pub emulate_handle: Option<EmulateHandle>,
         }
 
         impl SdkFunctions {
-            /// Takes all of them from a library, or gives the name of the one that is missing.
+            /// Looks up all functions in a library; the error is the name of the missing one.
             fn of(library: &Library) -> Result<Self, &'static str> {
                 Ok(Self {
                     $(
@@ -84,46 +84,47 @@ library! {
     force = "dhdSetForceAndTorqueAndGripperForce": fn(f64, f64, f64, f64, f64, f64, f64, c_char) -> c_int;
 }
 
-/// Only a stand-in exports it.
+/// Symbol that only a replacement library exports.
 pub(super) const STAND_IN_SYMBOL: &str = "nimaEmulateHandle";
 
-/// `nimaEmulateHandle`: takes an address ("127.0.0.1:PORT") and gives 0, or -1 when that is no address.
+/// `nimaEmulateHandle`: takes an address ("127.0.0.1:PORT"); returns 0, or -1 if it is not an address.
 pub type EmulateHandle = unsafe extern "C" fn(*const c_char) -> c_int;
 
 fn emulate_handle_of(library: &Library) -> Option<EmulateHandle> {
-    // SAFETY: the type is that of the stand-in's own symbol; a library from which it is kept is never unloaded.
+    // SAFETY: the type is that of the replacement library's own symbol; a library from which it is kept is never
+    // unloaded.
     unsafe { library.get::<EmulateHandle>(STAND_IN_SYMBOL).ok().map(|symbol| *symbol) }
 }
 
-/// This library is no manufacturer's: it emulates.
+/// Whether this library emulates devices and is not the manufacturer's.
 pub(super) fn is_stand_in(library: &Library) -> bool {
     emulate_handle_of(library).is_some()
 }
 
-/// The SDK: a loaded library, or functions that are linked into the program.
+/// The SDK: a loaded library, or functions linked into the program.
 #[derive(Debug)]
 pub struct Sdk {
     path: Cow<'static, str>,
     functions: SdkFunctions,
-    /// Opening goes through lists that the library shares between devices: one at a time.
+    /// Serialises opening, which uses lists that the library shares between devices.
     opening: Mutex<()>,
 }
 
-/// Libraries that are loaded, by path.
+/// Loaded libraries by path.
 static LOADED: Mutex<Vec<(PathBuf, &'static Sdk)>> = Mutex::new(Vec::new());
 
 /// A position (m) and a rotation matrix by rows.
 pub(super) type Pose = ([f64; 3], [f64; 9]);
 
-/// The library is there and does not fit.
+/// The library is installed but not usable.
 pub(super) fn unusable(path: &str, reason: String) -> Trouble {
     Trouble::SdkUnusable { name: NAME.to_owned(), path: path.to_owned(), reason }
 }
 
-/// Opens a library; an error in the system's words.
+/// Loads a library; the error is the system's text.
 pub(super) fn open_library(path: &Path) -> Result<Library, String> {
-    // SAFETY: loading runs the library's own beginning. It is the manufacturer's, named by the person at the rig or found
-    // where it is installed.
+    // SAFETY: loading runs the library's initialisation. It is the manufacturer's library, named by the user of the rig
+    // or found where it is installed.
     unsafe { Library::new(path) }.map_err(|error| {
         let mut words = error.to_string();
         if let Some(source) = std::error::Error::source(&error) {
@@ -133,7 +134,7 @@ pub(super) fn open_library(path: &Path) -> Result<Library, String> {
     })
 }
 
-/// Checks a library and keeps it for ever.
+/// Checks a library and keeps it until the program ends.
 pub(super) fn keep(path: &Path, library: Library) -> Result<&'static Sdk, Trouble> {
     let mut loaded = LOADED.lock().unwrap_or_else(PoisonError::into_inner);
     if let Some((_, sdk)) = loaded.iter().find(|(known, _)| known == path) {
@@ -143,7 +144,7 @@ pub(super) fn keep(path: &Path, library: Library) -> Result<&'static Sdk, Troubl
     let functions = SdkFunctions::of(&library);
     let functions = functions.map_err(|symbol| unusable(&place, format!("it has no symbol {symbol}")))?;
     let sdk = Sdk { path: place.clone().into(), functions, opening: Mutex::new(()) };
-    // A library that does not fit may be put away again: nothing of it runs. One that fits stays for ever.
+    // Forgotten, so that it is never unloaded. A library that was refused above is unloaded; nothing of it runs.
     std::mem::forget(library);
     let [major, minor, release, revision] = sdk.version();
     if (major, minor) < VERSION_MIN {
@@ -155,23 +156,23 @@ pub(super) fn keep(path: &Path, library: Library) -> Result<&'static Sdk, Troubl
 }
 
 impl Sdk {
-    /// Functions that are linked into this program; `name` stands for the library's file in messages.
+    /// Functions linked into this program; `name` takes the place of the library's file in messages.
     pub const fn linked(name: &'static str, functions: SdkFunctions) -> Self {
         Self { path: Cow::Borrowed(name), functions, opening: Mutex::new(()) }
     }
 
-    /// Where it was loaded from.
+    /// Path that it was loaded from.
     pub(super) fn path(&self) -> &str {
         &self.path
     }
 
-    /// It is no manufacturer's: it emulates.
+    /// Whether it emulates devices and is not the manufacturer's.
     pub(super) const fn is_stand_in(&self) -> bool {
         self.functions.emulate_handle.is_some()
     }
 
     fn last_error(&self) -> SdkError {
-        // SAFETY: no arguments; the library is loaded for ever.
+        // SAFETY: no arguments; the library is never unloaded.
         SdkError(unsafe { (self.functions.last_error)() })
     }
 
@@ -188,7 +189,7 @@ impl Sdk {
         numbers
     }
 
-    /// Adds an emulated handle (stand-in library only).
+    /// Adds an emulated handle (replacement library only).
     pub(super) fn emulate(&self, address: &str) -> Result<(), Trouble> {
         let refuse = |reason: &str| unusable(&self.path, reason.to_owned());
         let function = self
@@ -204,13 +205,13 @@ impl Sdk {
         }
     }
 
-    /// Devices that are attached.
+    /// Number of connected devices.
     pub(super) fn device_count(&self) -> i32 {
         // SAFETY: no arguments.
         unsafe { (self.functions.device_count)() }
     }
 
-    /// Opens a device by serial number, or any that is free.
+    /// Opens a device by serial number, or any free one.
     pub(super) fn open(&'static self, serial: Option<u16>) -> Result<OpenDevice, SdkError> {
         ending::call_before_exit();
         let _one_at_a_time = self.opening.lock().unwrap_or_else(PoisonError::into_inner);
@@ -221,7 +222,7 @@ impl Sdk {
                 None => (self.functions.open_any)(),
             }
         };
-        // A device's number fits C's char, signed or not.
+        // A device number must fit C's `char`, signed or not.
         match i8::try_from(id).ok().filter(|id| *id >= 0).and_then(|id| c_char::try_from(id).ok()) {
             Some(id) => {
                 ending::opened();
@@ -232,7 +233,7 @@ impl Sdk {
     }
 }
 
-/// An open device. Dropping it, also while panicking, engages the brakes and closes it.
+/// An open device. Dropping it, also during a panic, engages the brakes and closes it.
 pub(super) struct OpenDevice {
     sdk: &'static Sdk,
     id: c_char,
@@ -260,7 +261,7 @@ impl OpenDevice {
         Ok(serial)
     }
 
-    /// Number of its kind.
+    /// Number of its type (`DHD_DEVICE_*`).
     pub(super) fn kind(&self) -> Result<i32, SdkError> {
         // SAFETY: no pointers.
         let kind = unsafe { (self.sdk.functions.kind)(self.id) };
@@ -285,44 +286,44 @@ impl OpenDevice {
 
     /// Status.
     pub(super) fn status(&self) -> Result<Status, SdkError> {
-        // Longer than any version of the SDK fills.
+        // Longer than the array of any version of the SDK.
         let mut entries = [0; 4 * ENTRIES];
         // SAFETY: an array of ints, longer than what the library writes, that lives through the call.
         self.checked(unsafe { (self.sdk.functions.status)(entries.as_mut_ptr(), self.id) })?;
         Ok(entries.first_chunk().map(Status::decode).unwrap_or_default())
     }
 
-    /// Force on or off.
+    /// Switches force on or off.
     pub(super) fn enable_force(&self, on: bool) -> Result<Success, SdkError> {
         // SAFETY: no pointers.
         self.checked(unsafe { (self.sdk.functions.enable_force)(c_uchar::from(on), self.id) })
     }
 
-    /// Force off and brakes on.
+    /// Switches force off and brakes on.
     pub(super) fn stop(&self) -> Result<Success, SdkError> {
         // SAFETY: no pointers.
         self.checked(unsafe { (self.sdk.functions.stop)(self.id) })
     }
 
-    /// Brakes on, or off: no current in the motors.
+    /// Switches the brakes on, or off: no current in the motors.
     pub(super) fn set_brakes(&self, on: bool) -> Result<Success, SdkError> {
         // SAFETY: no pointers.
         self.checked(unsafe { (self.sdk.functions.brakes)(c_int::from(on), self.id) })
     }
 
-    /// Gravity compensation on or off.
+    /// Switches gravity compensation on or off.
     pub(super) fn set_gravity_compensation(&self, on: bool) -> Result<Success, SdkError> {
         // SAFETY: no pointers.
         self.checked(unsafe { (self.sdk.functions.gravity)(c_int::from(on), self.id) })
     }
 
-    /// Time without a force command after which the device gives up, in 125 us.
+    /// Sets the time without a force command after which the device switches its force off, in steps of 125 us.
     pub(super) fn set_watchdog(&self, steps: u8) -> Result<Success, SdkError> {
         // SAFETY: no pointers.
         self.checked(unsafe { (self.sdk.functions.watchdog)(steps, self.id) })
     }
 
-    /// Greatest force that the library lets through, N.
+    /// Sets the largest force that the library passes on, N.
     pub(super) fn set_force_max(&self, force_n: f64) -> Result<Success, SdkError> {
         // SAFETY: no pointers.
         self.checked(unsafe { (self.sdk.functions.force_max)(force_n, self.id) })
@@ -336,7 +337,7 @@ impl OpenDevice {
         Ok(threshold)
     }
 
-    /// Position and orientation: one exchange with the device.
+    /// Position and orientation; one exchange with the device.
     pub(super) fn pose(&self) -> Result<(Pose, Success), SdkError> {
         let ([mut x, mut y, mut z], mut frame) = ([0.0; 3], [0.0; 9]);
         let places = (&raw mut x, &raw mut y, &raw mut z, frame.as_mut_ptr());
@@ -353,7 +354,7 @@ impl OpenDevice {
         Ok(angle)
     }
 
-    /// Velocity, m/s; an error until two positions were read within its window.
+    /// Velocity, m/s; an error until two positions were read within its averaging window.
     pub(super) fn velocity_m_s(&self) -> Result<[f64; 3], SdkError> {
         let [mut x, mut y, mut z] = [0.0; 3];
         // SAFETY: three doubles that live through the call.
@@ -362,19 +363,19 @@ impl OpenDevice {
         Ok([x, y, z])
     }
 
-    /// Buttons, first in the lowest bit.
+    /// Pressed buttons, one per bit, the first button in the lowest bit.
     pub(super) fn buttons(&self) -> u32 {
         // SAFETY: no pointers.
         unsafe { (self.sdk.functions.buttons)(self.id) }
     }
 
-    /// The closed gripper counts as a button.
+    /// Whether the closed gripper counts as a button.
     pub(super) fn emulate_button(&self, on: bool) -> Result<Success, SdkError> {
         // SAFETY: no pointers.
         self.checked(unsafe { (self.sdk.functions.emulate_button)(c_uchar::from(on), self.id) })
     }
 
-    /// Force and gripper force, N; the wrist is passive.
+    /// Sets force and gripper force, N; no torque, because the wrist is passive.
     pub(super) fn set_force(&self, force_n: [f64; 3], gripper_n: f64) -> Result<Success, SdkError> {
         let [x, y, z] = force_n;
         // SAFETY: no pointers.
@@ -386,7 +387,7 @@ impl OpenDevice {
 #[cfg(target_os = "linux")]
 const PRIORITY: c_int = 82;
 
-/// Asks for real-time scheduling of the calling thread; where it is refused the thread goes on as it is.
+/// Requests real-time scheduling for the calling thread; if refused, the thread continues with normal scheduling.
 pub fn prepare_thread() {
     #[cfg(target_os = "linux")]
     // SAFETY: plain system calls on the calling thread with valid, initialised arguments.

@@ -1,6 +1,6 @@
-//! What the SDK's numbers mean: errors, kinds of devices, the status array, why force is off. No calls here, no clock.
+//! Meaning of the SDK's numbers: errors, types of devices, the status array, why force is off. No calls, no clock.
 //!
-//! Source: headers of SDK 3.17.5 (`DHD_STATUS_*`, `DHD_ERROR_*`, `DHD_DEVICE_*`), read as facts.
+//! Source: headers of SDK 3.17.5 (`DHD_STATUS_*`, `DHD_ERROR_*`, `DHD_DEVICE_*`).
 
 use serde::Serialize;
 
@@ -11,20 +11,20 @@ use crate::Loss;
 pub struct SdkError(pub i32);
 
 impl SdkError {
-    /// Something in the exchange over USB was wrong.
+    /// Error in the communication over USB.
     pub const COMMUNICATION: Self = Self(2);
-    /// The operating system has no driver for it.
+    /// The operating system has no driver for the device.
     pub const NO_DRIVER: Self = Self(4);
-    /// No device there (any more).
+    /// There is no device (any more).
     pub const NO_DEVICE: Self = Self(5);
     /// The device did not answer in time.
     pub const TIMED_OUT: Self = Self(7);
-    /// An encoder and its twin disagree.
+    /// Redundant encoders disagree.
     pub const REDUNDANT_ENCODER: Self = Self(18);
-    /// Another program has it.
+    /// In use by another program.
     pub const IN_USE: Self = Self(20);
 
-    /// In the SDK's words.
+    /// Text of the SDK.
     pub const fn words(self) -> &'static str {
         match self.0 {
             0 => "no error",
@@ -54,12 +54,12 @@ impl SdkError {
         }
     }
 
-    /// The device has no such feature, which is no fault.
+    /// Whether the device only lacks this feature, which is not a fault.
     pub const fn is_missing_feature(self) -> bool {
         matches!(self.0, 6 | 10 | 16 | 19)
     }
 
-    /// What a device is lost to when calls go on failing with this error.
+    /// Cause of the loss if calls continue to fail with this error.
     pub const fn loss(self) -> Loss {
         match self {
             Self::NO_DEVICE | Self::NO_DRIVER => Loss::Disconnected,
@@ -69,25 +69,25 @@ impl SdkError {
         }
     }
 
-    /// It does not pass: the device is lost at once.
+    /// Whether the error is permanent, so that the device is lost at once.
     pub const fn is_final(self) -> bool {
         matches!(self, Self::NO_DEVICE | Self::REDUNDANT_ENCODER)
     }
 }
 
-/// What a call that succeeded says besides (`DHD_TIMEGUARD`, `DHD_MOTOR_SATURATED`).
+/// Additional information of a successful call (`DHD_TIMEGUARD`, `DHD_MOTOR_SATURATED`).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Success {
-    /// All as asked.
+    /// No additional information.
     Plain,
-    /// Nothing newer was to be had: the last data, still valid.
+    /// No newer data were available: the last data are repeated.
     TimeGuard,
-    /// The force was scaled down to what the motors can.
+    /// The force was reduced to the capability of the motors.
     Saturated,
 }
 
 impl Success {
-    /// Of the value that a call returned; `None` where it failed.
+    /// Decodes the return value of a call; `None` if it failed.
     pub const fn of(code: i32) -> Option<Self> {
         match code {
             0 | 3.. => Some(Self::Plain),
@@ -98,20 +98,20 @@ impl Success {
     }
 }
 
-/// A kind of device (`DHD_DEVICE_*`).
+/// A type of device (`DHD_DEVICE_*`).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     /// omega.7 for the right or the left hand.
     Omega7 {
-        /// For the left one.
+        /// Whether it is for the left hand.
         left_handed: bool,
     },
-    /// Anything else, which this driver does not drive.
+    /// Any other device, which this driver does not support.
     Other(i32),
 }
 
 impl Kind {
-    /// Of the number that `dhdGetSystemType` gives.
+    /// Decodes the number returned by `dhdGetSystemType`.
     pub const fn of(number: i32) -> Self {
         match number {
             35 => Self::Omega7 { left_handed: false },
@@ -148,18 +148,18 @@ impl Kind {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ForceOffCause {
-    /// It did not say.
+    /// Not reported.
     #[default]
     None,
-    /// The force button on its base.
+    /// The force button on its base was pressed.
     Button,
     /// The hand was faster than the velocity threshold.
     Velocity,
     /// No force command arrived within the watchdog's time.
     Watchdog,
-    /// A program asked for it.
+    /// Requested by a program.
     Software,
-    /// Trouble on USB.
+    /// Error on USB.
     Usb,
     /// Nobody holds the handle.
     DeadMan,
@@ -181,12 +181,12 @@ impl ForceOffCause {
         }
     }
 
-    /// The device itself took force away, for a cause that it knows.
+    /// Whether the device switched the force off by itself, for a known cause.
     const fn is_by_the_device(self) -> bool {
         !matches!(self, Self::None | Self::Software | Self::Unknown)
     }
 
-    /// What happened and what to do, for a screen.
+    /// Cause and cure, for a screen.
     pub const fn words(self) -> &'static str {
         match self {
             Self::None => "the device does not say why",
@@ -201,10 +201,11 @@ impl ForceOffCause {
     }
 }
 
-/// Entries of the status array.
+/// Length of the status array.
 pub const ENTRIES: usize = 17;
 
-/// [`Loss::Device`] codes from here on are an entry of the status array plus this; below, an error number of the SDK.
+/// [`Loss::Device`] codes from this number on are this number plus an index of the status array; lower ones are error
+/// numbers of the SDK.
 pub const STATUS_CODE: u32 = 100;
 
 /// The status array, decoded.
@@ -213,9 +214,9 @@ pub const STATUS_CODE: u32 = 100;
 pub struct Status {
     pub power: bool,
     pub connected: bool,
-    /// It runs.
+    /// The device is running.
     pub started: bool,
-    /// It waits for its calibration: the handle must be put to its rest position.
+    /// It must be calibrated: the handle has to be put into its rest position.
     pub reset: bool,
     /// No current in the motors.
     pub idle: bool,
@@ -225,27 +226,27 @@ pub struct Status {
     pub brake: bool,
     /// Torque is on (active wrists only).
     pub torque: bool,
-    /// A wrist is there.
+    /// The device has a wrist.
     pub wrist: bool,
-    /// Its own error indicator.
+    /// The device's error indicator.
     pub error: bool,
     /// Gravity compensation is on.
     pub gravity: bool,
     pub time_guard: bool,
     /// The wrist is initialised.
     pub wrist_ready: bool,
-    /// Redundant encoders are checked and agree.
+    /// Redundant encoders are monitored and agree.
     pub redundancy: bool,
     /// Why force is off.
     pub force_off: ForceOffCause,
-    /// Locks are closed (-1 in the array, unknown, is no).
+    /// The locks are closed (the value -1, unknown, counts as false).
     pub locks: bool,
-    /// The axes are checked.
+    /// The axes have been checked.
     pub axis_checked: bool,
 }
 
 impl Status {
-    /// Of the array that `dhdGetStatus` fills.
+    /// Decodes the array filled by `dhdGetStatus`.
     pub const fn decode(of: &[i32; ENTRIES]) -> Self {
         Self {
             power: of[0] != 0,
@@ -268,8 +269,8 @@ impl Status {
         }
     }
 
-    /// What the device is lost to, if its status says so. An error indicator while force is off for a cause of the device's own tells
-    /// of that cause alone; the device still delivers. (The cause is that of the last time, also when force is on again.)
+    /// Cause of a loss according to the status. An error indicator while the device has switched its own force off
+    /// refers to that event; the device still delivers. (The cause keeps its last value when force is on again.)
     pub const fn loss(&self) -> Option<Loss> {
         if !self.connected {
             return Some(Loss::Disconnected);
@@ -284,7 +285,7 @@ impl Status {
     }
 }
 
-/// What a [`Loss::Device`] code of this driver means.
+/// Meaning of a [`Loss::Device`] code of this driver.
 pub fn fault_words(code: u32) -> &'static str {
     match code {
         STATUS_CODE => "it has no power",

@@ -1,9 +1,9 @@
-//! The thread that holds a device: every call into the SDK waits for USB, which the real-time loop must not.
+//! The thread that owns a device. Every call of the SDK waits for USB, which the real-time loop must not do.
 //!
-//! Each cycle it reads, applies the newest force command and reports. A command counts for [`COMMAND_AGE_MAX`]; after that the force
-//! is zero until the next one, so that a loop that hangs cannot leave a force standing; a thread that hangs itself is what the
-//! device's watchdog is for. Force is on only after the command for it. However the thread ends (told, lost, panic, end of
-//! the program) the device is left with its brakes on.
+//! In each cycle it reads, applies the newest force command and reports. A command is valid for [`COMMAND_AGE_MAX`];
+//! after that the force is zero until the next one, so a loop that hangs cannot leave a force applied. If this thread
+//! hangs, the device's watchdog switches the force off. Force is switched on only by command. However the thread ends
+//! (stopped, device lost, panic, end of the program), the device is left with its brakes on.
 
 use std::{
     sync::{
@@ -23,19 +23,20 @@ use super::{
 };
 use crate::{HandleReading, Loss};
 
-/// A force command older than this is no longer applied.
+/// A force command older than this is not applied.
 pub(super) const COMMAND_AGE_MAX: Duration = Duration::from_millis(10);
-/// Without a new reading for so long the device is lost. The rest of the promised 20 ms is for the way to the loop.
+/// Time without a new reading after which the device is lost. The remaining time to the specified 20 ms is for the
+/// report to reach the loop.
 const SILENCE_MAX: Duration = Duration::from_millis(14);
-/// Impossible readings in a row that make it lost.
+/// Number of impossible readings in a row after which the device is lost.
 const IMPLAUSIBLE_MAX: u32 = 10;
-/// Force that was asked for and is not on after so long was refused by the device.
+/// If force is not on this long after it was requested, the device has refused it.
 const ENABLE_MAX: Duration = Duration::from_millis(50);
-/// Cycles between two readings of the status.
+/// The status is read once in this many cycles.
 const STATUS_EVERY: u64 = 4;
-/// No handle of this make is so far from its base, m.
+/// Largest plausible distance of a handle from its base, m.
 const POSITION_MAX_M: f64 = 1.0;
-/// How far a rotation matrix may be from orthonormal.
+/// Largest plausible deviation of a rotation matrix from an orthonormal one.
 const FRAME_TOLERANCE: f64 = 1e-3;
 
 /// A force for the hand, N.
@@ -46,7 +47,7 @@ pub(super) struct ForceCommand {
     pub(super) given: Instant,
 }
 
-/// What the thread tells the loop, once a cycle.
+/// The thread's report to the loop, once per cycle.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Report {
     /// Number of the cycle.
@@ -55,20 +56,20 @@ pub(super) struct Report {
     pub(super) status: Status,
     pub(super) counters: Counters,
     pub(super) loss: Option<Loss>,
-    /// What it will be lost to if calls go on failing as the last one.
+    /// The loss to report if calls continue to fail.
     pub(super) failing: Option<Loss>,
 }
 
-/// What both threads share.
+/// State shared by both threads.
 #[derive(Debug, Default)]
 pub(super) struct Shared {
-    /// The loop wants force.
+    /// Whether the loop requests force.
     pub(super) force_wanted: AtomicBool,
-    /// The driver is being dropped.
+    /// Set when the driver is dropped.
     pub(super) stop: AtomicBool,
 }
 
-/// Ends of the queues on the thread's side.
+/// The thread's ends of the queues.
 pub(super) struct Ends {
     pub(super) reports: Sender<Report>,
     pub(super) events: Sender<HandleEvent>,
@@ -80,12 +81,12 @@ pub(super) struct Ends {
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Drive {
     Off,
-    /// Asked for, not yet seen in the status.
+    /// Requested, not yet seen in the status.
     Asked(Instant),
     On,
 }
 
-/// The thread's work.
+/// The thread's state.
 pub(super) struct Worker {
     device: OpenDevice,
     ends: Ends,
@@ -125,7 +126,7 @@ impl Worker {
         }
     }
 
-    /// Works until it is told to stop or the device is lost.
+    /// Runs until it is stopped or the device is lost.
     pub(super) fn run(mut self) {
         self.rest();
         let mut deadline = Instant::now();
@@ -137,7 +138,7 @@ impl Worker {
             if deadline > now {
                 std::thread::sleep(deadline - now);
             } else {
-                // Periods that passed are skipped, never caught up.
+                // Missed periods are skipped; the cycles are not made up for.
                 self.counters.late_cycles += 1;
                 deadline = now;
             }
@@ -154,7 +155,7 @@ impl Worker {
     fn step(&mut self) {
         self.cycle += 1;
         let reading = self.read();
-        // After a reading that failed the next one is tried at once: more calls would only wait for the same trouble.
+        // After a failed reading the next one is tried at once: other calls would only run into the same failure.
         if self.failure.is_none() {
             if self.cycle % STATUS_EVERY == 1 {
                 self.read_status();
@@ -163,7 +164,7 @@ impl Worker {
         }
         self.judge_silence();
         if self.ends.reports.try_send(self.report(reading)).is_err() {
-            // Counted by the loop from the numbers of the cycles.
+            // The loop counts missing reports by the cycle numbers.
         }
     }
 
@@ -184,7 +185,7 @@ impl Worker {
         }
     }
 
-    /// A new reading; `None` when there is none, or an impossible one.
+    /// A new reading; `None` if there is none, or an impossible one.
     fn read(&mut self) -> Option<HandleReading> {
         let read = self.device.pose().and_then(|pose| Ok((pose, self.device.gripper_rad()?)));
         let ((pose, success), gripper_rad) = match read {
@@ -195,9 +196,9 @@ impl Worker {
             }
         };
         self.failure = None;
-        // Until two positions were read within its window there is no velocity, which is no fault.
+        // No velocity until two positions were read within its averaging window; this is not a fault.
         let velocity = self.device.velocity_m_s().ok();
-        // The sign on left-handed devices is the other one.
+        // Left-handed devices use the opposite sign.
         let gripper_rad = if self.left_handed { gripper_rad.abs() } else { gripper_rad };
         let Some(reading) = plausible(pose, gripper_rad, velocity, self.device.buttons()) else {
             self.counters.implausible += 1;
@@ -208,7 +209,7 @@ impl Worker {
             return None;
         };
         self.implausible = 0;
-        // The time guard gives the last data again: new only if they differ.
+        // The time guard repeats the last data: the reading is new only if it differs.
         if success == Success::TimeGuard && self.last.is_some_and(|last| same_place(&last, &reading)) {
             self.counters.time_guarded += 1;
             return None;
@@ -247,7 +248,7 @@ impl Worker {
         }
     }
 
-    /// The device took force away: it stays off until the loop asks again.
+    /// The device has switched its force off: it stays off until the loop requests it again.
     fn give_up(&mut self, event: HandleEvent) {
         self.ends.shared.force_wanted.store(false, Ordering::Release);
         self.counters.force_cut += 1;
@@ -256,11 +257,11 @@ impl Worker {
     }
 
     fn tell(&self, event: HandleEvent) {
-        // With nobody listening the status still tells it.
+        // If nobody reads the events, the status still shows it.
         self.ends.events.try_send(event).ok();
     }
 
-    /// No force: brakes, or a free handle.
+    /// No force: brakes on, or a free handle.
     fn rest(&mut self) {
         self.drive = Drive::Off;
         self.command = None;
@@ -273,9 +274,9 @@ impl Worker {
         }
     }
 
-    /// Follows what the loop wants, and applies the newest command.
+    /// Follows the loop's request for force, and applies the newest command.
     fn drive(&mut self) {
-        // As many as the queue holds at most.
+        // At most as many as the queue holds.
         let newest = self.ends.commands.try_iter().take(super::driver::QUEUE).last();
         let wanted = self.ends.shared.force_wanted.load(Ordering::Acquire);
         match (self.drive, wanted) {
@@ -284,7 +285,7 @@ impl Worker {
                 if let Err(error) = self.device.enable_force(true) {
                     return self.fail(error);
                 }
-                // Only what is asked for from now on counts.
+                // Only commands from now on count.
                 self.command = None;
                 self.drive = Drive::Asked(Instant::now());
             }
@@ -307,7 +308,7 @@ impl Worker {
     }
 }
 
-/// A reading, if its numbers are possible.
+/// A reading, if its numbers are plausible.
 fn plausible(
     (position_m, frame): super::sdk::Pose,
     gripper_rad: f64,
@@ -316,7 +317,7 @@ fn plausible(
 ) -> Option<HandleReading> {
     let position_m = Vector3::from(position_m);
     let frame = Matrix3::from_row_slice(&frame);
-    // Comparisons with a number that is not finite are false.
+    // Comparisons with NaN are false.
     let placed = position_m.norm() < POSITION_MAX_M && gripper_rad.abs() < std::f64::consts::PI;
     let error = frame * frame.transpose() - Matrix3::identity();
     let turned = error.iter().all(|entry| entry.abs() < FRAME_TOLERANCE) && frame.determinant() > 0.0;

@@ -1,9 +1,10 @@
-//! Reports of six-axis caps (3Dconnexion): bytes in, axes and buttons out, and back. No clock, no allocation.
+//! Decodes and encodes the reports of six-axis caps (3Dconnexion). No clock, no allocation.
 //!
-//! A report is one packet, its id first. Split models send translation (id 1) and rotation (id 2) in 7 bytes each; combined ones send both
-//! as id 1 in 13 bytes; the length decides, not the product. Axes are signed 16-bit, little-endian, full deflection 350; raw x points
-//! right, y towards the user, z down. Readings are turned half around x into [`CapReading`]'s frame (x right, y away from the
-//! user, z up), translation and rotation alike, which is a proper rotation (the convention "HID, z up" of pyspacemouse).
+//! A report is one packet that begins with its id. Split models send translation (id 1) and rotation (id 2) in 7 bytes
+//! each; combined models send both as id 1 in 13 bytes; the length decides, not the product. Axes are signed 16-bit,
+//! little-endian, full deflection 350; raw x points right, y towards the user, z down. Readings are rotated by half a
+//! turn about x into [`CapReading`]'s frame (x right, y away from the user, z up), translation and rotation alike (the
+//! convention "HID, z up" of pyspacemouse).
 
 use nalgebra::Vector3;
 
@@ -11,12 +12,12 @@ use crate::CapReading;
 
 /// Counts of an axis at full deflection (logical maximum of the report descriptor).
 pub const FULL: f64 = 350.0;
-/// Counts above which an axis is not possible: twice full deflection.
+/// Larger counts are impossible: twice full deflection.
 pub const POSSIBLE: u16 = 700;
-/// A cap that is deflected and sends nothing for so long counts as let go, s. Split models send each half every 16 ms, wireless ones
-/// everything every 16 ms, and all send zeros before they fall silent at rest.
+/// A deflected cap that sends nothing for this time counts as released, s. Split models send each half every 16 ms,
+/// wireless ones everything every 16 ms, and all send zeros before they fall silent at rest.
 pub const RELEASE_AFTER_S: f64 = 0.100;
-/// The longest report that we make.
+/// Length of the longest report that is encoded here.
 pub const LENGTH_MAX: usize = 13;
 
 /// One report.
@@ -24,36 +25,36 @@ pub const LENGTH_MAX: usize = 13;
 pub enum CapReport {
     /// x, y, z of a split model, counts.
     Translation([i16; 3]),
-    /// Turns about x, y, z of a split model, counts.
+    /// Rotations about x, y, z of a split model, counts.
     Rotation([i16; 3]),
     /// All six of a combined model, counts.
     Motion([i16; 6]),
-    /// Buttons, first in the lowest bit.
+    /// Pressed buttons, one per bit, the first button in the lowest bit.
     Buttons(u32),
     /// Battery of a wireless model.
     Battery {
         /// Charge, percent.
         percent: u8,
-        /// On the cable.
+        /// Whether it is charging by cable.
         charging: bool,
     },
-    /// Something that this program does not need.
+    /// A report that this program does not use.
     Other,
 }
 
-/// Why a report was not taken.
+/// Why a report was refused.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BadReport {
-    /// No report of this device has such a shape.
+    /// The id or length is not that of a report of this device.
     Shape,
-    /// The shape is right, the content is not possible.
+    /// Impossible values.
     Content,
 }
 
 const TRANSLATION: u8 = 0x01;
 const ROTATION: u8 = 0x02;
 const BUTTONS: u8 = 0x03;
-/// Output report that switches the light.
+/// Id of the output report for the light.
 const LIGHT: u8 = 0x04;
 const BATTERY: u8 = 0x17;
 
@@ -71,7 +72,22 @@ fn axes<const N: usize>(bytes: &[u8]) -> Result<[i16; N], BadReport> {
 }
 
 impl CapReport {
-    /// Reads one report.
+    /// Decodes one report.
+    ///
+    /// # Errors
+    /// [`BadReport`] if the id or length is not that of a report, or a value is impossible.
+    ///
+    /// ```
+    /// use nima_devices::hid::cap_codec::{CapReport, CapState};
+    ///
+    /// let report = CapReport::decode(&[1, 0x5E, 0x01, 0, 0, 0, 0]);
+    /// assert_eq!(report, Ok(CapReport::Translation([350, 0, 0])));
+    ///
+    /// let mut cap = CapState::default();
+    /// cap.take(&CapReport::Translation([350, 175, 0]), 0.0);
+    /// let push = cap.reading().translation;
+    /// assert_eq!((push.x, push.y), (1.0, -0.5), "raw y points towards the user, the reading's y away");
+    /// ```
     pub fn decode(bytes: &[u8]) -> Result<Self, BadReport> {
         match bytes {
             [TRANSLATION, rest @ ..] if rest.len() == 6 => axes(rest).map(Self::Translation),
@@ -91,7 +107,8 @@ impl CapReport {
         }
     }
 
-    /// Writes it, and gives its length; 0 for [`CapReport::Other`]. Buttons take two bytes where they fit, as on two-button models.
+    /// Encodes it; returns its length, 0 for [`CapReport::Other`]. Buttons take two bytes if they fit, as on two-button
+    /// models.
     pub fn encode(&self, buffer: &mut [u8; LENGTH_MAX]) -> usize {
         let mut put = |id: u8, axes: &[i16]| {
             buffer[0] = id;
@@ -119,10 +136,10 @@ impl CapReport {
     }
 }
 
-/// Between the raw frame and that of the readings; its own inverse.
+/// Signs between the raw frame and the frame of the readings; their own inverse.
 const SIGNS: [f64; 3] = [1.0, -1.0, -1.0];
 
-/// The counts of a reading; what is not finite is zero.
+/// Counts for a reading; a value that is not finite becomes zero.
 pub fn counts_of(reading: &CapReading) -> [i16; 6] {
     let count = |value: f64, sign: f64| (value.clamp(-1.0, 1.0) * sign * FULL).round() as i16;
     std::array::from_fn(|i| match i {
@@ -131,7 +148,7 @@ pub fn counts_of(reading: &CapReading) -> [i16; 6] {
     })
 }
 
-/// What is known of a cap: the newest of both halves, each let go by itself when it is not renewed.
+/// State of a cap: the newest translation and rotation, each released separately if it is not renewed.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct CapState {
     halves: [Half; 2],
@@ -149,7 +166,7 @@ fn scaled(counts: &[i16]) -> Vector3<f64> {
 }
 
 impl CapState {
-    /// Takes a report that arrived at `now_s`; true when it says something of axes or buttons.
+    /// Applies a report that arrived at `now_s`; returns true if it contains axes or buttons.
     pub fn take(&mut self, report: &CapReport, now_s: f64) -> bool {
         let [translation, rotation] = &mut self.halves;
         match report {
@@ -165,12 +182,12 @@ impl CapState {
         true
     }
 
-    /// Takes axes that are in the frame of the readings already.
+    /// Sets axes that are already in the frame of the readings.
     pub fn set(&mut self, translation: Vector3<f64>, rotation: Vector3<f64>, now_s: f64) {
         self.halves = [translation, rotation].map(|axes| Half { axes, at_s: now_s });
     }
 
-    /// One button, from 0.
+    /// Sets one button, counted from 0.
     pub const fn set_button(&mut self, button: u32, pressed: bool) {
         if button < u32::BITS {
             let bit = 1 << button;
@@ -178,7 +195,8 @@ impl CapState {
         }
     }
 
-    /// Lets go what was deflected and not renewed for [`RELEASE_AFTER_S`]; gives how many halves that were.
+    /// Sets to zero what was deflected and not renewed for [`RELEASE_AFTER_S`]; returns how many of the two halves that
+    /// were.
     pub fn release_stale(&mut self, now_s: f64) -> u64 {
         let mut released = 0;
         for half in &mut self.halves {
@@ -190,7 +208,7 @@ impl CapState {
         released
     }
 
-    /// As it is now.
+    /// The present state.
     pub const fn reading(&self) -> CapReading {
         let [translation, rotation] = self.halves;
         CapReading { translation: translation.axes, rotation: rotation.axes, buttons: self.buttons }

@@ -1,4 +1,4 @@
-//! The driver of a six-axis cap.
+//! Driver of a six-axis cap.
 
 use serde::{Deserialize, Serialize};
 
@@ -11,15 +11,15 @@ use super::{
 };
 use crate::{CapReading, Device, Health, Identity, Stamped, Trouble, transport::Datagrams};
 
-/// Cap part of a rig file.
+/// The cap section of a rig file.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct CapSettings {
-    /// Where its reports come from; see [`Source`].
+    /// Source of its reports; see [`Source`].
     pub source: String,
-    /// Axes to turn the other way: x, y, z, turns about x, y, z (some models differ in the signs of the turns).
+    /// Axes to invert: x, y, z, rotations about x, y, z (some models differ in the signs of the rotations).
     pub invert: [bool; 6],
-    /// Its light is on while it is connected.
+    /// Whether its light is on while it is connected.
     pub light: bool,
 }
 
@@ -29,15 +29,16 @@ impl Default for CapSettings {
     }
 }
 
-/// How the bytes are to be read.
+/// Format of the bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Wire {
     Reports,
     Spacenavd,
 }
 
-/// An open cap. Lost when its source is gone or what it sends is damaged or impossible eight times in a row. Silence at rest is
-/// normal; silence while deflected lets go after [`RELEASE_AFTER_S`](super::RELEASE_AFTER_S) and counts as lost reports.
+/// An open cap. Lost when its source is gone, or when eight reports in a row are damaged or impossible. Silence at rest
+/// is normal; a deflected cap that falls silent counts as released after [`RELEASE_AFTER_S`](super::RELEASE_AFTER_S),
+/// and its missing reports as lost.
 pub struct CapDriver {
     line: Line,
     wire: Wire,
@@ -49,6 +50,9 @@ pub struct CapDriver {
 
 impl CapDriver {
     /// Opens it; may take some 100 ms.
+    ///
+    /// # Errors
+    /// [`Trouble`] if the source is invalid, or the device is missing, cannot be opened or is not a cap.
     pub fn open(settings: &CapSettings) -> Result<Self, Trouble> {
         let source: Source = settings.source.parse()?;
         let (datagrams, identity, wire) = match &source {
@@ -66,7 +70,7 @@ impl CapDriver {
         Ok(Self::on(datagrams, identity, wire, settings))
     }
 
-    /// On an open source of reports.
+    /// Uses an open source of reports.
     pub fn over(datagrams: Box<dyn Datagrams>, identity: &HidIdentity, settings: &CapSettings) -> Self {
         Self::on(datagrams, identity.identity(), Wire::Reports, settings)
     }
@@ -84,15 +88,15 @@ impl CapDriver {
         driver
     }
 
-    /// Charge of a wireless model, percent, once it has told it.
+    /// Charge of a wireless model, percent, once it has reported it.
     pub const fn battery_percent(&self) -> Option<u8> {
         self.battery_percent
     }
 
-    /// Switches the light, where it has one that this program is to use.
+    /// Switches the light, if the cap has one and the settings use it.
     fn show(&mut self, on: bool) {
         if self.light && self.wire == Wire::Reports {
-            // Models without a light refuse it.
+            // Models without a light refuse this; ignore it.
             self.line.source.send(&light(on)).ok();
         }
     }

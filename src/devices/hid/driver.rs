@@ -1,16 +1,16 @@
-//! What both drivers share: taking in reports with bounded work, and when damage is too much.
+//! Shared by both drivers: reads reports with bounded work, and decides when too many are damaged.
 
 use super::cap_codec::BadReport;
 use crate::{Health, Identity, Loss, Stamped, Standing, transport::Datagrams};
 
-/// Reports taken in one poll; a device that floods is cut into pieces.
+/// Most reports handled in one poll; further ones wait for the next.
 const REPORTS_MAX: usize = 64;
-/// So many bad reports in a row, 64 ms of a wired cap, and the device is lost.
+/// The device is lost after this many bad reports in a row: 64 ms of a wired cap.
 const BAD_MAX: u32 = 8;
 /// Longest report of a full-speed device, with its id.
 const BUFFER: usize = 65;
 
-/// An open source with its counters.
+/// An open source of reports, with its counters.
 pub(super) struct Line {
     pub(super) source: Box<dyn Datagrams>,
     pub(super) health: Health,
@@ -19,14 +19,14 @@ pub(super) struct Line {
 }
 
 impl Line {
-    /// Connected at once: a device at rest says nothing.
+    /// Connected immediately, because a device at rest sends nothing.
     pub(super) fn of(source: Box<dyn Datagrams>, identity: Identity) -> Self {
         let mut health = Health::opening();
         health.standing = Standing::Connected;
         Self { source, health, identity, bad_in_a_row: 0 }
     }
 
-    /// Gives every report that has arrived to `take`, whose answer tells whether it was good.
+    /// Passes every report that has arrived to `take`, which returns whether it was good.
     pub(super) fn receive(&mut self, now_s: f64, mut take: impl FnMut(&[u8]) -> Result<bool, BadReport>) -> bool {
         let mut buffer = [0; BUFFER];
         let mut news = false;
@@ -76,15 +76,15 @@ impl Line {
     }
 }
 
-/// The value of a device that speaks only when something changes: kept between its readings, at rest whenever it is not
-/// connected and until it has spoken again.
+/// The value of a device that reports only changes: kept between its reports, and at rest while the device is not
+/// connected and until it has reported again.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Held<T> {
     value: T,
 }
 
 impl<T: Copy + Default> Held<T> {
-    /// Takes what this tick's poll gave, and gives what counts now.
+    /// Adds the result of this tick's poll; returns the value that applies now.
     pub fn update(&mut self, reading: Option<Stamped<T>>, health: &Health) -> T {
         if let Some(reading) = reading {
             self.value = reading.value;

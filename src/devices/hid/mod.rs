@@ -1,12 +1,13 @@
-//! Human interface devices on the table and under it: six-axis caps (`SpaceMouse`) and foot pedals.
+//! Human interface devices: six-axis caps (`SpaceMouse`) and foot pedals.
 //!
-//! Reports come from one of four sources behind [`Datagrams`](super::transport::Datagrams): a hidraw node (found by its ids or
-//! opened by its path), the socket of our emulator, the socket of `spacenavd`, or a pair in memory (tests). Nothing here can tell
-//! a device at rest from one that is dead: both are silent. Therefore only what arrives presses a switch; whatever cannot be
-//! read, is damaged, lost or too old counts as released and as zero ([`Held`], [`RELEASE_AFTER_S`]).
+//! Reports come from one of four sources behind [`Datagrams`](super::transport::Datagrams): a hidraw node (found by its
+//! ids or opened by its path), the socket of this project's emulator, the socket of `spacenavd`, or a pair in memory
+//! (tests). A device at rest cannot be distinguished from a dead one: both are silent. Therefore a switch is pressed
+//! only by a report that has arrived, and whatever is unreadable, damaged, lost or too old counts as released and as
+//! zero ([`Held`], [`RELEASE_AFTER_S`]).
 //!
-//! A pedal that is a keyboard also types into the focused window unless the udev rules of `nima devices --udev` are installed. A
-//! pedal must never be the only emergency stop.
+//! A pedal that is a keyboard also types into the focused window unless the udev rules of `nima devices --udev-rules`
+//! are installed. A pedal must never be the only emergency stop.
 
 pub mod cap_codec;
 mod cap_driver;

@@ -1,18 +1,18 @@
-//! The devices that are known by their USB ids.
+//! Known devices by their USB ids.
 
-/// How a device reports.
+/// Format of a device's reports.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     /// A six-axis cap; split or combined reports, decided by their length.
     Cap,
-    /// A pedal that is a keyboard: boot protocol.
+    /// A pedal that reports as a keyboard (boot protocol).
     KeyboardPedal,
     /// A pedal with one bit per switch.
     SwitchPedal,
 }
 
 impl Kind {
-    /// In words.
+    /// Text for a message.
     pub const fn words(self) -> &'static str {
         match self {
             Self::Cap => "SpaceMouse",
@@ -21,7 +21,7 @@ impl Kind {
     }
 }
 
-/// One model.
+/// A known device.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Model {
     pub vendor: u16,
@@ -34,7 +34,7 @@ const fn model(vendor: u16, product: u16, name: &'static str, kind: Kind) -> Mod
     Model { vendor, product, name, kind }
 }
 
-/// All that are known.
+/// All known devices.
 pub const MODELS: [Model; 18] = [
     model(0x046d, 0xc625, "SpacePilot", Kind::Cap),
     model(0x046d, 0xc626, "SpaceNavigator", Kind::Cap),
@@ -56,7 +56,7 @@ pub const MODELS: [Model; 18] = [
     model(0x05f3, 0x00ff, "VEC Infinity IN-USB-2", Kind::SwitchPedal),
 ];
 
-/// The model with these ids.
+/// The known device with these ids.
 pub fn known(vendor: u16, product: u16) -> Option<&'static Model> {
     MODELS.iter().find(|model| (model.vendor, model.product) == (vendor, product))
 }

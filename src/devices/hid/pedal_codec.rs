@@ -1,19 +1,19 @@
-//! Reports of foot pedals: bytes in, switches out, and back. No clock, no allocation.
+//! Decodes and encodes the reports of foot pedals. No clock, no allocation.
 //!
 //! `PCsensor`: a boot keyboard, 8 bytes: modifiers, 0, six key codes (HID usage page 7); all zero when released. VEC Infinity: 2 bytes, the
 //! lowest three bits of the first are left, centre and right.
 
 use super::cap_codec::BadReport;
 
-/// Key codes that can be told apart.
+/// Number of keys that can be distinguished.
 pub const KEYS_MAX: usize = 8;
 /// The longest report.
 pub const LENGTH_MAX: usize = 8;
 
-/// How a pedal reports.
+/// Format of a pedal's reports.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Layout {
-    /// Boot keyboard; switch `i` is the key with code `keys[i]`, 0 for none.
+    /// Boot keyboard; switch `i` is the key with code `keys[i]`, or 0 if there is none.
     Keyboard {
         /// HID key codes.
         keys: [u8; KEYS_MAX],
@@ -22,15 +22,18 @@ pub enum Layout {
     Switches,
 }
 
-/// Switches of a [`Layout::Switches`] pedal.
+/// Bits of the switches of a [`Layout::Switches`] pedal.
 const SWITCHES: u8 = 0b111;
 const KEYBOARD_LENGTH: usize = 8;
 const SWITCHES_LENGTH: usize = 2;
-/// A keyboard that cannot tell which keys are down says one of 1 to 3 instead of a key.
+/// Codes 1 to 3 are error codes of a keyboard that cannot determine which keys are pressed.
 const FIRST_KEY: u8 = 4;
 
 impl Layout {
-    /// The pressed switches of one report, first in the lowest bit.
+    /// The pressed switches in a report, one per bit, the first switch in the lowest bit.
+    ///
+    /// # Errors
+    /// [`BadReport`] if the length or the content is not that of a pedal's report.
     pub fn decode(&self, report: &[u8]) -> Result<u32, BadReport> {
         match self {
             Self::Keyboard { keys } => {
@@ -52,7 +55,7 @@ impl Layout {
         }
     }
 
-    /// The report of these switches, and its length. A keyboard has room for six keys.
+    /// Writes the report for these switches; returns its length. A keyboard report has room for six keys.
     pub fn encode(&self, pressed: u32, buffer: &mut [u8; LENGTH_MAX]) -> usize {
         *buffer = [0; LENGTH_MAX];
         match self {

@@ -1,4 +1,4 @@
-//! The driver of foot pedals.
+//! Driver of foot pedals.
 
 use serde::{Deserialize, Serialize};
 
@@ -10,18 +10,19 @@ use super::{
 };
 use crate::{Device, Health, Identity, PedalReading, Stamped, Trouble, transport::Datagrams};
 
-/// Pedal part of a rig file.
+/// The pedal section of a rig file.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct PedalSettings {
-    /// Where its reports come from; see [`Source`].
+    /// Source of its reports; see [`Source`].
     pub source: String,
-    /// Of a pedal that is a keyboard: the key code (HID usage page 7) of every switch, first switch first. Single pedals leave the
-    /// factory with `b` (5), triple ones with `a`, `b`, `c` (4, 5, 6): by default switch 0 is `b`, 1 is `a`, 2 is `c`.
+    /// For a pedal that is a keyboard: the key code (HID usage page 7) of every switch, first switch first. Factory
+    /// settings are `b` (5) for single pedals and `a`, `b`, `c` (4, 5, 6) for triple ones, so by default switch 0 is
+    /// `b`, 1 is `a`, 2 is `c`.
     pub keys: Vec<u8>,
-    /// The switch, from 0, that couples the follower to the hand.
+    /// Index of the clutch switch, from 0; while pressed, the hand moves without moving the tip.
     pub clutch: u32,
-    /// The switch that says that somebody is there; none where there is no such switch.
+    /// Index of the presence switch; `None` if there is none.
     pub presence: Option<u32>,
 }
 
@@ -31,7 +32,7 @@ impl Default for PedalSettings {
     }
 }
 
-/// What the switches mean.
+/// Functions of the switches.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PedalRoles {
     clutch: u32,
@@ -39,19 +40,22 @@ pub struct PedalRoles {
 }
 
 impl PedalRoles {
-    /// The clutch is pressed.
+    /// Whether the clutch is pressed.
     pub const fn clutch(self, reading: PedalReading) -> bool {
         reading.pressed >> self.clutch & 1 == 1
     }
 
-    /// Somebody is there; `None` where no switch tells.
+    /// Whether the presence switch is pressed; `None` if there is none.
     pub fn presence(self, reading: PedalReading) -> Option<bool> {
         self.presence.map(|switch| reading.pressed >> switch & 1 == 1)
     }
 }
 
 impl PedalSettings {
-    /// Checks the numbers and gives the meaning of the switches.
+    /// Checks the indices and returns the functions of the switches.
+    ///
+    /// # Errors
+    /// [`Trouble::Setting`] for an index that the pedal does not have, or that is used twice.
     pub fn roles(&self) -> Result<PedalRoles, Trouble> {
         let setting = |key: &str, value: String, allowed: &str| Trouble::Setting {
             key: key.to_owned(),
@@ -72,7 +76,10 @@ impl PedalSettings {
         Ok(PedalRoles { clutch: self.clutch, presence: self.presence })
     }
 
-    /// Refuses switches, keys and sources that cannot be.
+    /// Refuses invalid switches, keys and sources.
+    ///
+    /// # Errors
+    /// [`Trouble::Setting`] for the first invalid setting.
     pub fn check(&self) -> Result<(), Trouble> {
         self.roles()?;
         self.source.parse::<Source>().map(drop)
@@ -88,8 +95,8 @@ impl PedalSettings {
     }
 }
 
-/// An open pedal; everything is released until it reports. Reports come on change, and a change that is not understood releases everything.
-/// Its silence cannot be told from a foot that does not move.
+/// An open pedal. All switches count as released until it reports. Reports come on changes, and a report that cannot be
+/// decoded releases all switches. A silent pedal cannot be distinguished from one that is not moved.
 pub struct PedalDriver {
     line: Line,
     layout: Layout,
@@ -99,6 +106,9 @@ pub struct PedalDriver {
 
 impl PedalDriver {
     /// Opens it; may take some 100 ms.
+    ///
+    /// # Errors
+    /// [`Trouble`] if a setting is invalid, or the device is missing, cannot be opened or is not a pedal.
     pub fn open(settings: &PedalSettings) -> Result<Self, Trouble> {
         settings.roles()?;
         let source: Source = settings.source.parse()?;
@@ -106,7 +116,10 @@ impl PedalDriver {
         Self::over(datagrams, &identity, settings)
     }
 
-    /// On an open source of reports. A pedal with unknown ids is taken for a keyboard.
+    /// Uses an open source of reports. A pedal with unknown ids is treated as a keyboard.
+    ///
+    /// # Errors
+    /// [`Trouble::Setting`] if a setting is invalid.
     pub fn over(
         datagrams: Box<dyn Datagrams>,
         identity: &HidIdentity,
@@ -117,7 +130,7 @@ impl PedalDriver {
         Ok(Self { line, layout, roles: settings.roles()?, pressed: 0 })
     }
 
-    /// What the switches mean.
+    /// Functions of the switches.
     pub const fn roles(&self) -> PedalRoles {
         self.roles
     }

@@ -1,4 +1,4 @@
-//! Reports of a real device: found and checked by `hidapi`, read without waiting and without allocation.
+//! Reports of a real device: found and checked with `hidapi`, read without waiting and without allocation.
 
 use std::path::Path;
 
@@ -10,10 +10,10 @@ use super::{
 };
 use crate::{Loss, Trouble, discovery::rules, transport::Datagrams};
 
-/// Usage pages and usages of the interface that reports, of the several that a device may have.
+/// Usage page and usage of the interface that sends the reports; a device may have several interfaces.
 const fn usage(kind: Kind) -> Option<(u16, u16)> {
     match kind {
-        // Generic desktop: multi-axis controller, keyboard.
+        // Generic desktop page: multi-axis controller, keyboard.
         Kind::Cap => Some((1, 8)),
         Kind::KeyboardPedal => Some((1, 6)),
         Kind::SwitchPedal => None,
@@ -33,7 +33,7 @@ fn identity(info: &DeviceInfo) -> HidIdentity {
     }
 }
 
-/// Opens the first device that `wanted` takes; of its interfaces, the one that reports.
+/// Opens the first device that `wanted` accepts, and of its interfaces the one that sends the reports.
 pub(super) fn open_first(
     what: &str,
     wanted: impl Fn(&HidIdentity) -> bool,
@@ -67,7 +67,7 @@ pub(super) fn open_path(path: &Path) -> Result<(Box<dyn Datagrams>, HidIdentity)
     }
 }
 
-/// Opens and closes the node as this user, for the system's own reason where that fails; `hidapi` gives words only.
+/// Opens and closes the node, to get the system's error code if this fails; `hidapi` gives only a text.
 fn permitted(path: &Path, ids: Option<(u16, u16)>) -> Result<(), Trouble> {
     let mut options = std::fs::File::options();
     options.read(true).write(true);
@@ -82,7 +82,7 @@ fn open(api: &HidApi, info: &DeviceInfo) -> Result<(Box<dyn Datagrams>, HidIdent
     let place = info.path().to_string_lossy().into_owned();
     let path = Path::new(&place);
     permitted(path, Some((info.vendor_id(), info.product_id())))?;
-    // Checks that it is a hidraw node. Its own reading makes a text, an allocation, of every error.
+    // Checks that it is a hidraw node. It is not read through `hidapi`, which allocates a text for every error.
     drop(api.open_path(info.path()).map_err(|error| other(&place, &error))?);
     let mut options = std::fs::File::options();
     options.read(true).write(true);
@@ -112,7 +112,7 @@ impl Datagrams for Node {
     fn receive(&mut self, buffer: &mut [u8]) -> Result<Option<usize>, Loss> {
         use std::io::{ErrorKind, Read as _};
         match self.node.read(buffer) {
-            // A report has at least one byte.
+            // A report has at least one byte, so 0 means the end.
             Ok(0) => Err(Loss::Disconnected),
             Ok(count) => Ok(Some(count)),
             Err(error) if matches!(error.kind(), ErrorKind::WouldBlock | ErrorKind::Interrupted) => Ok(None),

@@ -1,6 +1,8 @@
-//! Packets over a UNIX socket: the stand-in for a hidraw node, which no kernel interface can emulate everywhere.
+//! Packets over a UNIX socket, used by the emulator in place of a hidraw node, which no kernel interface can emulate on
+//! every computer.
 //!
-//! A read gives one packet, as a hidraw node gives one report; the other side's end is seen, as pulling the plug is.
+//! One read gives one packet, as with the reports of a hidraw node. Closing one end is noticed at the other, as when a
+//! device is unplugged.
 #![expect(unsafe_code, reason = "std makes no sequenced-packet sockets; everything after making them is safe")]
 
 use std::{
@@ -18,7 +20,7 @@ use std::{
 
 use crate::{Loss, transport::Datagrams};
 
-/// Connections that may wait to be accepted.
+/// Connections that may wait for being accepted.
 const BACKLOG: libc::c_int = 8;
 
 fn socket() -> io::Result<OwnedFd> {
@@ -30,7 +32,7 @@ fn socket() -> io::Result<OwnedFd> {
 }
 
 fn address(path: &Path) -> io::Result<(libc::sockaddr_un, libc::socklen_t)> {
-    // SAFETY: all zero is a valid address structure.
+    // SAFETY: all zeros are a valid address structure.
     let mut address: libc::sockaddr_un = unsafe { std::mem::zeroed() };
     address.sun_family = libc::AF_UNIX as libc::sa_family_t;
     let bytes = path.as_os_str().as_bytes();
@@ -46,7 +48,10 @@ fn succeeded(code: libc::c_int) -> io::Result<()> {
     if code == 0 { Ok(()) } else { Err(io::Error::last_os_error()) }
 }
 
-/// Listens for packets at a path that must not exist.
+/// Listens for connections at a path that does not exist yet.
+///
+/// # Errors
+/// I/O errors, for instance if the path exists or is too long.
 pub fn listen(path: &Path) -> io::Result<UnixListener> {
     let socket = socket()?;
     let (address, length) = address(path)?;
@@ -57,7 +62,10 @@ pub fn listen(path: &Path) -> io::Result<UnixListener> {
     Ok(UnixListener::from(socket))
 }
 
-/// Connects to a listener of packets.
+/// Connects to a listener.
+///
+/// # Errors
+/// I/O errors, for instance if nothing listens at the path.
 pub fn connect(path: &Path) -> io::Result<Packets> {
     let socket = socket()?;
     let (address, length) = address(path)?;
@@ -66,7 +74,7 @@ pub fn connect(path: &Path) -> io::Result<Packets> {
     Ok(Packets { stream: UnixStream::from(socket) })
 }
 
-/// One end of a connection that never waits.
+/// One end of a connection; reading does not wait.
 #[derive(Debug)]
 pub struct Packets {
     stream: UnixStream,

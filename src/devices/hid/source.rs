@@ -1,4 +1,4 @@
-//! Where reports come from, as written in a rig file.
+//! Sources of reports, as written in a rig file.
 
 use std::{fmt, path::PathBuf, str::FromStr};
 
@@ -10,39 +10,39 @@ use super::{
 };
 use crate::{Identity, Trouble, transport::Datagrams};
 
-/// Where reports come from. In a rig file: `any`, `046d:c626`, `046d:c626:SERIAL`, a path such as `/dev/hidraw0`, `emulated:PATH` (the
-/// socket of `nima emulate`), `spacenavd` or `spacenavd:PATH` (caps only).
+/// Source of reports. In a rig file: `any`, `046d:c626`, `046d:c626:SERIAL`, a path such as `/dev/hidraw0`,
+/// `emulated:PATH` (the socket of `nima emulate`), `spacenavd` or `spacenavd:PATH` (caps only).
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Source {
-    /// The first known device of the kind.
+    /// The first known device of this kind.
     Any,
-    /// By USB ids.
+    /// A device with these USB ids.
     Ids {
         vendor: u16,
         product: u16,
-        /// Serial number, where there are several of them.
+        /// Serial number, to choose among several.
         serial: Option<String>,
     },
     /// A device file.
     Path(PathBuf),
-    /// Our emulator.
+    /// The socket of this project's emulator.
     Emulated(PathBuf),
-    /// The daemon.
+    /// The socket of `spacenavd`.
     Spacenavd(PathBuf),
 }
 
-/// Who a human interface device says it is.
+/// Identity of a human interface device.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct HidIdentity {
     pub vendor: u16,
     pub product: u16,
     /// Serial number, often empty.
     pub serial: String,
-    /// Product in its own words.
+    /// Product name.
     pub name: String,
 }
 
-/// First word of the first packet of an emulator: what the file system of the kernel tells of a real device.
+/// First word of an emulator's first packet, which contains what the kernel's file system tells of a real device.
 const HELLO: &str = "nima-hid";
 
 impl HidIdentity {
@@ -66,7 +66,7 @@ impl HidIdentity {
         Some(Self { vendor: id(vendor)?, product: id(product)?, serial, name: name.to_owned() })
     }
 
-    /// How it reports; `None` of an unknown one. Everything newer of 3Dconnexion is a cap.
+    /// Format of its reports; `None` for an unknown device. Every newer device of 3Dconnexion is a cap.
     pub fn kind(&self) -> Option<Kind> {
         match known(self.vendor, self.product) {
             Some(model) => Some(model.kind),
@@ -75,7 +75,7 @@ impl HidIdentity {
         }
     }
 
-    /// In words.
+    /// Text for a message.
     pub fn words(&self) -> String {
         let Self { vendor, product, name, .. } = self;
         let name = if name.is_empty() { known(*vendor, *product).map_or("device", |model| model.name) } else { name };
@@ -129,7 +129,7 @@ impl fmt::Display for Source {
 }
 
 impl Source {
-    /// Opens it, and checks that what is there is one of `kinds`; ids that were given are believed.
+    /// Opens it and checks that the device is one of `kinds`; ids given in the rig file are not checked.
     pub(super) fn open(&self, kinds: &[Kind]) -> Result<(Box<dyn Datagrams>, HidIdentity), Trouble> {
         let what = kinds.first().map_or("device", |kind| kind.words());
         let fits = |identity: &HidIdentity| identity.kind().is_some_and(|kind| kinds.contains(&kind));
@@ -159,7 +159,7 @@ impl Source {
 #[cfg(target_os = "linux")]
 fn emulated(path: &std::path::Path) -> Result<(Box<dyn Datagrams>, HidIdentity), Trouble> {
     use std::time::{Duration, Instant};
-    /// An emulator says who it is within this.
+    /// Time limit for the emulator's first packet.
     const TIMEOUT: Duration = Duration::from_millis(300);
     let place = format!("emulated:{}", path.display());
     let mut packets = super::seqpacket::connect(path).map_err(|error| match error.kind() {

@@ -1,8 +1,8 @@
-//! The socket of `spacenavd` (protocol 0): a source for caps without rights on the device itself.
+//! The socket of `spacenavd` (protocol 0): the daemon gives access to a cap without permission for the device itself.
 //!
-//! A UNIX stream of events of eight native 32-bit integers: `[0, x, y, z, rx, ry, rz, period]` for motion, `[1, button, ...]` for press,
-//! `[2, button, ...]` for release. The daemon's axes are x right, y up, z away from the user (its default map), full deflection about 350
-//! at sensitivity 1. The events arrive only while something changes.
+//! A UNIX stream of events of eight native 32-bit integers: `[0, x, y, z, rx, ry, rz, period]` for motion, `[1, button,
+//! ...]` for press, `[2, button, ...]` for release. The daemon's axes are x right, y up, z away from the user (its
+//! default map), full deflection about 350 at sensitivity 1. Events arrive only on changes.
 
 use std::{
     io::{ErrorKind, Read as _, Write as _},
@@ -14,14 +14,14 @@ use nalgebra::Vector3;
 use super::cap_codec::{BadReport, CapState, FULL};
 use crate::{Loss, Trouble, transport::Datagrams};
 
-/// Where the daemon listens unless told otherwise.
+/// The daemon's default socket.
 pub const SOCKET: &str = "/var/run/spnav.sock";
 /// Bytes of an event.
 pub const EVENT_LENGTH: usize = 32;
 const MOTION: i32 = 0;
 const PRESS: i32 = 1;
 const RELEASE: i32 = 2;
-/// Counts above which an axis is not possible, whatever the sensitivity.
+/// Larger counts are impossible at any sensitivity.
 const POSSIBLE: u32 = 100_000;
 
 /// One event of the daemon.
@@ -32,13 +32,16 @@ pub enum Event {
     /// A button, from 0.
     Button {
         number: u32,
-        /// Down.
+        /// Whether it is pressed.
         pressed: bool,
     },
 }
 
 impl Event {
-    /// Reads one event.
+    /// Decodes one event.
+    ///
+    /// # Errors
+    /// [`BadReport`] if the length, the type or a value is not that of an event.
     pub fn decode(bytes: &[u8]) -> Result<Self, BadReport> {
         let bytes: &[u8; EVENT_LENGTH] = bytes.try_into().map_err(|_| BadReport::Shape)?;
         let mut words = [0_i32; 8];
@@ -54,7 +57,7 @@ impl Event {
         }
     }
 
-    /// Writes it; `period_ms` since the last motion.
+    /// Encodes it; `period_ms` is the time since the last motion.
     pub fn encode(&self, period_ms: i32) -> [u8; EVENT_LENGTH] {
         let mut words = [0_i32; 8];
         match self {
@@ -71,7 +74,7 @@ impl Event {
         bytes
     }
 
-    /// Takes it into a cap's state; the daemon's y and z change places.
+    /// Applies it to a cap's state; the daemon's y and z axes are exchanged.
     pub fn apply(&self, state: &mut CapState, now_s: f64) {
         match self {
             Self::Motion([x, y, z, rx, ry, rz]) => {
@@ -85,7 +88,7 @@ impl Event {
     }
 }
 
-/// A connection to the daemon that gives whole events.
+/// A connection to the daemon that returns complete events.
 #[cfg(unix)]
 #[derive(Debug)]
 pub struct Spacenavd {
@@ -97,6 +100,9 @@ pub struct Spacenavd {
 #[cfg(unix)]
 impl Spacenavd {
     /// Connects to the daemon's socket.
+    ///
+    /// # Errors
+    /// [`Trouble`] if the socket cannot be connected to.
     pub fn open(path: &Path) -> Result<Self, Trouble> {
         let stream = std::os::unix::net::UnixStream::connect(path).and_then(|stream| {
             stream.set_nonblocking(true)?;

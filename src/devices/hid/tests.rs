@@ -1,3 +1,3 @@
-//! Codecs against golden vectors and noise.
+//! The codecs against known reports and random bytes.
 
 mod codecs;

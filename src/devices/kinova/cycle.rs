@@ -1,4 +1,4 @@
-//! Which cyclic requests were answered, by their numbers: what is lost, late and twice. Fixed memory.
+//! Matches answers to cyclic requests by their numbers and counts what is lost, late or duplicated. Fixed memory.
 
 use crate::Health;
 
@@ -10,10 +10,10 @@ enum Fate {
     Lost,
 }
 
-/// Requests remembered; at one a millisecond a quarter of a second.
+/// Number of requests remembered; a quarter of a second at 1 kHz.
 const REMEMBERED: usize = 256;
 
-/// The requests of the last time. Numbers are shared with calls that are no cycle.
+/// The latest cyclic requests. Calls share their numbering.
 #[derive(Clone, Debug)]
 pub(super) struct Cycle {
     fates: [(u16, Fate); REMEMBERED],
@@ -27,7 +27,7 @@ impl Default for Cycle {
 }
 
 impl Cycle {
-    /// A request of this number leaves.
+    /// Records that a request with this number was sent.
     pub(super) fn asked(&mut self, number: u16, health: &mut Health) {
         let place = &mut self.fates[usize::from(number) % REMEMBERED];
         if place.1 == Fate::Waiting {
@@ -36,7 +36,7 @@ impl Cycle {
         *place = (number, Fate::Waiting);
     }
 
-    /// An answer to this number came. True when it is the newest so far; else it is counted as out of order.
+    /// Records an answer with this number. True if it is the newest so far; otherwise it counts as out of order.
     pub(super) fn answered(&mut self, number: u16, health: &mut Health) -> bool {
         let place = &mut self.fates[usize::from(number) % REMEMBERED];
         let fate = if place.0 == number { std::mem::take(&mut place.1) } else { Fate::Done };
@@ -46,7 +46,7 @@ impl Cycle {
                 false
             }
             Fate::Lost => {
-                // Late, but not lost.
+                // Late, so not lost after all.
                 health.lost -= 1;
                 health.out_of_order += 1;
                 false
@@ -58,7 +58,7 @@ impl Cycle {
         }
     }
 
-    /// What was asked before the newest answer and has none yet counts as lost.
+    /// Counts requests older than the newest answer that have no answer yet as lost.
     fn overtake(&mut self, number: u16, health: &mut Health) {
         let behind = self.newest.map_or(0, |newest| number.wrapping_sub(newest));
         for back in 1..usize::from(behind).min(REMEMBERED) {
@@ -83,7 +83,7 @@ mod tests {
             let (mut cycle, mut health) = (Cycle::default(), Health::default());
             let number = |k: u16| start.wrapping_add(k);
             for k in 0..20 {
-                // A call in between takes a number and is no cycle.
+                // This number was used by a call.
                 if k != 4 {
                     cycle.asked(number(k), &mut health);
                 }

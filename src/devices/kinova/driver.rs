@@ -1,7 +1,8 @@
-//! The running arm: one cyclic exchange a tick, calls that are never waited for, commands behind a guard.
+//! The running arm: one cyclic exchange per tick, calls without waiting, and joint commands checked by the guard.
 //!
-//! Lost after 18 ms without a good reading, 10 damaged or 5 impossible frames in a row, half a second without an answer to a call,
-//! the first fault, or a broken connection. Waiting is measured from the request on, so a tick that comes late loses nothing.
+//! The arm counts as lost after 18 ms without a good reading, 10 damaged or 5 impossible frames in a row, half a second
+//! without an answer to a call, the first fault, or a broken connection. Times are measured from the request on, so a
+//! late tick causes no loss.
 
 use nalgebra::{UnitQuaternion, Vector3};
 
@@ -29,52 +30,52 @@ pub(super) use leaving::close_sessions;
 const SILENT_S: f64 = 0.018;
 /// Longest wait for the answer to a call, s.
 const CALL_SILENT_S: f64 = 0.5;
-/// Between two signs of life on each connection, s (the manufacturer's client has the same).
+/// Interval of keep-alive messages on each connection, s (as in the manufacturer's client).
 const KEEP_ALIVE_S: f64 = 0.150;
 /// Longest wait for a change of mode, s.
 const MODE_S: f64 = 1.0;
-/// Requests are at least so far apart, s.
+/// Least time between two requests, s.
 const SPACING_S: f64 = 0.5e-3;
 
-/// Who moves the arm, and what is on its way to change that.
+/// Servoing mode of the arm, and changes under way.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Mode {
     Single,
-    /// Asked for low level.
+    /// Low-level servoing was requested.
     Entering {
         number: u16,
         since_s: f64,
     },
     Low,
-    /// Comes to rest before it leaves low level.
+    /// Braking before low-level servoing is left.
     Braking,
-    /// Asked for single level; holds until that is granted.
+    /// Single-level servoing was requested; the position is held until it is granted.
     Leaving {
         number: u16,
         since_s: f64,
     },
 }
 
-/// How a call that nobody waited for was refused.
+/// A call, sent without waiting, that was refused.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Answer {
-    /// What was called.
+    /// The call.
     pub rpc: Rpc,
     pub error: u8,
-    /// Error in it; see [`words`](super::messages::sub::words).
+    /// Sub error code; see [`words`](super::messages::sub::words).
     pub sub_error: u16,
 }
 
-/// Where the arm's own model sees its tool, in its base frame.
+/// State of the tool according to the arm's own model, in its base frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ToolReading {
-    /// Place, m.
+    /// Position, m.
     pub position_m: Vector3<f64>,
-    /// Orientation, under the convention of [`theta_rad`](super::kinematics::theta_rad).
+    /// Orientation, with the angle convention of [`theta_rad`](super::kinematics::theta_rad).
     pub orientation: UnitQuaternion<f64>,
     pub velocity_m_s: Vector3<f64>,
     pub angular_rad_s: Vector3<f64>,
-    /// Force on the tool, estimated by the arm, N.
+    /// Force on the tool as estimated by the arm, N.
     pub force_n: Vector3<f64>,
     pub torque_nm: Vector3<f64>,
 }
@@ -107,7 +108,7 @@ pub struct Driver {
 }
 
 impl Driver {
-    /// Over open sessions; `feedback` is the first.
+    /// Creates the driver on open sessions; `feedback` is the first feedback.
     pub(super) fn new(settings: &Settings, lines: Lines, identity: Identity, feedback: &Feedback) -> Self {
         let seen = (lines.packets.skipped, lines.packets.damaged);
         Self {
@@ -140,7 +141,7 @@ impl Driver {
         matches!(self.health.standing, Standing::Lost(_))
     }
 
-    /// Sends a call without waiting; its number.
+    /// Sends a call without waiting; returns its number.
     fn call(&mut self, rpc: Rpc, question: &impl prost::Message) -> u16 {
         let (number, bytes) = self.lines.calls.request(rpc, question);
         if let Err(loss) = self.lines.tcp.send(bytes) {
@@ -155,7 +156,7 @@ impl Driver {
         self.mode = Mode::Leaving { number, since_s: now_s };
     }
 
-    /// What has waited for too long.
+    /// Checks for timeouts.
     fn watch(&mut self, now_s: f64) {
         let over = |since_s: Option<f64>, limit_s: f64| since_s.is_some_and(|since_s| now_s - since_s > limit_s);
         if over(self.unanswered_s, SILENT_S) || over(self.call_unanswered_s, CALL_SILENT_S) {
@@ -170,7 +171,7 @@ impl Driver {
         }
     }
 
-    /// A sign of life on both connections.
+    /// Sends a keep-alive message on both connections.
     fn keep_alive(&mut self, now_s: f64) {
         if self.alive_s.is_some_and(|alive_s| now_s - alive_s < KEEP_ALIVE_S) {
             return;
@@ -183,7 +184,7 @@ impl Driver {
         }
     }
 
-    /// One request of the cycle: with positions in low level, without any in single level.
+    /// Sends a cyclic request: with joint positions in low-level servoing, without in single-level.
     fn send_cycle(&mut self, now_s: f64) {
         let elapsed_s = self.sent_s.map_or(SPACING_S, |sent_s| now_s - sent_s);
         if elapsed_s < SPACING_S {
@@ -203,7 +204,8 @@ impl Driver {
         self.unanswered_s.get_or_insert(now_s);
     }
 
-    /// The next positions. Every actuator's command has the number of the frame, or it is thrown away as out of time.
+    /// Sets the next joint positions. The command of every actuator must carry the number of the frame, otherwise the
+    /// arm discards it as out of date.
     fn fill_command(&mut self, elapsed_s: f64) {
         self.frame_id = self.frame_id.wrapping_add(1);
         self.command.frame_id = u32::from(self.frame_id);
@@ -234,7 +236,7 @@ impl Device for Driver {
         }
         if self.is_lost() {
             if self.mode != Mode::Single {
-                // Without waiting; closing makes sure of it.
+                // Asked without waiting here; closing the driver waits for it.
                 self.ask_single_level(now_s);
             }
             return None;
@@ -253,7 +255,7 @@ impl Drop for Driver {
     }
 }
 
-/// For [`ToolReading`]: three numbers of the wire.
+/// Converts three numbers of the wire for [`ToolReading`].
 fn vector(numbers: &[f32], scale: f64) -> Vector3<f64> {
     Vector3::new(f64::from(numbers[0]), f64::from(numbers[1]), f64::from(numbers[2])) * scale
 }

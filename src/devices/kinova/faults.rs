@@ -1,7 +1,7 @@
-//! Fault banks in words.
+//! Text for the fault bits.
 //!
-//! Bits of bank A: `Base.SafetyIdentifier` and `ActuatorConfig.SafetyIdentifierBankA` of the Kortex API. Bank B has no names in
-//! any public source and is told as a number.
+//! Bits of bank A: `Base.SafetyIdentifier` and `ActuatorConfig.SafetyIdentifierBankA` of the Kortex API. No public
+//! source names the bits of bank B, so they are shown as a number.
 
 use std::fmt::{self, Display, Formatter};
 
@@ -15,13 +15,13 @@ use crate::ARM_JOINTS;
 pub const JOINT_FAULT: u32 = 0x10;
 /// Base, bank A: emergency stop.
 pub const EMERGENCY_STOP: u32 = 0x80_0000;
-/// Actuator, bank A: command and measurement are too far apart.
+/// Actuator, bank A: too large a difference between command and measurement.
 pub const FOLLOWING_ERROR: u32 = 1;
 /// Actuator, bank A: above its range.
 pub const JOINT_LIMIT_HIGH: u32 = 4;
 /// Actuator, bank A: below its range.
 pub const JOINT_LIMIT_LOW: u32 = 8;
-/// Actuator, bank A: too much torque.
+/// Actuator, bank A: torque too large.
 pub const MAXIMUM_TORQUE: u32 = 0x20;
 /// Actuator, bank A: a cyclic command was missed.
 pub const COMMUNICATION_TICK_LOST: u32 = 0x40_0000;
@@ -92,30 +92,31 @@ const ACTUATOR: [&str; 29] = [
     "moved too far while the brake opened",
 ];
 
-/// All faults of an arm at one time. Printing it gives words.
+/// All faults of an arm at one time. Its `Display` gives text.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Faults {
-    /// The arm says that a fault holds it.
+    /// Whether the arm reports the state `IN_FAULT`.
     pub in_fault: bool,
     /// Fault banks A and B of the base.
     pub base: [u32; 2],
-    /// Of each actuator.
+    /// Fault banks A and B of each actuator.
     pub actuators: [[u32; 2]; ARM_JOINTS],
 }
 
 impl Faults {
-    /// Of a feedback.
+    /// Reads the faults from a feedback.
     pub fn of(feedback: &Feedback) -> Self {
         let in_fault = feedback.state == ArmState::IN_FAULT;
         Self { in_fault, base: feedback.banks.fault, actuators: feedback.actuators.map(|a| a.banks.fault) }
     }
 
-    /// There is one.
+    /// Whether there is a fault.
     pub fn any(&self) -> bool {
         *self != Self::default()
     }
 
-    /// One code for all: bank A of the first faulty joint (the cause), else bank A of the base, else 1 (a fault without bits).
+    /// A single code: bank A of the first faulty joint (the likely cause), else bank A of the base, else 1 (a fault
+    /// without bits).
     pub fn code(&self) -> u32 {
         let joint = self.actuators.iter().map(|bank| bank[0]).find(|bank| *bank != 0);
         joint.unwrap_or(if self.base[0] == 0 { 1 } else { self.base[0] })
@@ -150,7 +151,7 @@ impl Display for Faults {
 }
 
 impl Banks {
-    /// With these faults in bank A.
+    /// Banks with these faults in bank A.
     pub const fn with_fault(bits: u32) -> Self {
         Self { fault: [bits, 0], warning: [0; 2] }
     }

@@ -1,4 +1,4 @@
-//! What the arm answers to a refresh, read in place into fixed memory.
+//! The arm's cyclic feedback, decoded in place into fixed memory.
 //!
 //! `BaseCyclic.Feedback { fixed32 frame_id = 1; BaseFeedback base = 2; repeated ActuatorFeedback actuators = 3 }`; field
 //! numbers as in `BaseCyclic.proto`. Units as on the wire: degrees, metres, newtons.
@@ -17,12 +17,12 @@ pub struct Banks {
 }
 
 impl Banks {
-    /// It has a fault.
+    /// Whether there is a fault.
     pub const fn is_faulty(&self) -> bool {
         self.fault[0] | self.fault[1] != 0
     }
 
-    /// Takes the field `k` of the four that follow each other: fault A, B, warning A, B.
+    /// Stores field `k` of four consecutive ones: fault A, B, warning A, B.
     fn take(&mut self, k: u32, value: Value<'_>) -> Result<(), Damaged> {
         let bank = if k < 2 { &mut self.fault } else { &mut self.warning };
         bank[(k & 1) as usize] = value.fixed32()?;
@@ -30,30 +30,30 @@ impl Banks {
     }
 }
 
-/// What one actuator tells.
+/// Feedback of one actuator.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Actuator {
-    /// Number of the command that it took last.
+    /// Number of the last command that it accepted.
     pub command_id: u32,
     pub status: u32,
     /// Angle, degrees in [0, 360).
     pub position_deg: f32,
     /// Speed, degrees/s.
     pub velocity_deg_s: f32,
-    /// Torque, Nm, with the sign opposite to that of commands.
+    /// Torque, Nm, with the sign opposite to that of torque commands.
     pub torque_nm: f32,
     pub current_a: f32,
     /// Faults.
     pub banks: Banks,
 }
 
-/// What the arm tells.
+/// Feedback of the arm.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Feedback {
     /// Number of the cycle.
     pub frame_id: u32,
     pub state: ArmState,
-    /// Place of the tool, m, and its angles theta x, y, z, degrees.
+    /// Position of the tool, m, and its angles theta x, y, z, degrees.
     pub tool_pose: [f32; 6],
     /// Velocity of the tool, m/s and degrees/s.
     pub tool_twist: [f32; 6],
@@ -61,9 +61,9 @@ pub struct Feedback {
     pub tool_wrench: [f32; 6],
     /// Faults of the base.
     pub banks: Banks,
-    /// The actuators, from the base on.
+    /// The actuators, starting at the base.
     pub actuators: [Actuator; ARM_JOINTS],
-    /// How many actuators told something; more than seven are counted and not kept.
+    /// Number of actuators in the message; more than seven are counted and not stored.
     pub count: usize,
 }
 
@@ -83,7 +83,10 @@ impl Default for Feedback {
 }
 
 impl Feedback {
-    /// Of the payload of an answer to `Refresh` or `RefreshFeedback`.
+    /// Decodes the payload of an answer to `Refresh` or `RefreshFeedback`.
+    ///
+    /// # Errors
+    /// [`Damaged`] if the bytes are not a valid message.
     pub fn decode(payload: &[u8]) -> Result<Self, Damaged> {
         let mut feedback = Self::default();
         for field in Fields::of(payload) {
@@ -118,7 +121,7 @@ impl Feedback {
         Ok(())
     }
 
-    /// Every number that is used is finite.
+    /// Whether every number that is used is finite.
     pub fn is_finite(&self) -> bool {
         let tool = self.tool_pose.iter().chain(&self.tool_twist).chain(&self.tool_wrench);
         tool.chain(self.actuators.iter().flat_map(|a| [&a.position_deg, &a.velocity_deg_s, &a.torque_nm]))

@@ -1,11 +1,11 @@
-//! The arm as a rig asks for it.
+//! Implements [`Follower`] for the arm.
 
 use super::Driver;
 use crate::{ARM_JOINTS, Follower, Lever};
 
 impl Follower for Driver {
     fn enter_servoing(&mut self) {
-        // A refusal shows in the readings: the arm does not servo.
+        // A refusal shows in the readings, in which the arm is not servoing.
         self.enter_low_level().ok();
     }
 

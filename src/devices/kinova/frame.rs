@@ -1,4 +1,4 @@
-//! Frames of the Kortex router: one protobuf `Frame` per datagram; on TCP behind a mark and a length.
+//! Frames of the Kortex router: one protobuf `Frame` per datagram; on TCP preceded by a mark and a length.
 //!
 //! ```text
 //! Frame { Header header = 1; bytes payload = 2 }, Header of four fixed32:
@@ -7,8 +7,8 @@
 //! service_info 31:28 version (1) | 27:16 service | 15:0 function
 //! payload_info 23:0 length of the payload
 //! ```
-//! On TCP: `07 78 45 74 52 6F 4B 07`, length as u32 big-endian, frame. There is no checksum; what can be checked is the shape,
-//! the versions and the length of the payload. Source: the manufacturer's Python client as described in its documentation.
+//! On TCP: `07 78 45 74 52 6F 4B 07`, length as u32 big-endian, frame. There is no checksum, so structure, versions and
+//! the length of the payload are checked. Source: the manufacturer's Python client as described in its documentation.
 
 use prost::{
     Message,
@@ -20,31 +20,31 @@ use super::{
     wire::{Damaged, Fields},
 };
 
-/// Begins every packet on TCP.
+/// Start of every packet on TCP.
 pub const MARK: [u8; 8] = *b"\x07xEtRoK\x07";
 const LENGTH_BYTES: usize = 4;
 const VERSION: u32 = 1;
 
-/// Kinds of frames that are used.
+/// Types of frames that are used.
 pub const REQUEST: u8 = 1;
 /// An answer, with or without an error.
 pub const RESPONSE: u8 = 3;
 /// Sent by the base on its own.
 pub const NOTIFICATION: u8 = 5;
 
-/// What stands before every payload.
+/// The header of every payload.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Header {
     /// [`REQUEST`], [`RESPONSE`], [`NOTIFICATION`].
     pub kind: u8,
-    /// 0 the base, 1 to 7 an actuator.
+    /// 0: the base; 1 to 7: an actuator.
     pub device: u8,
-    /// Error class, 0 none.
+    /// Error class, 0 for none.
     pub error: u8,
     pub sub_error: u16,
-    /// Session, 0 before there is one.
+    /// Session, 0 before login.
     pub session: u16,
-    /// Number of the message; an answer has that of its request.
+    /// Number of the message; an answer has the number of its request.
     pub message: u16,
     pub service: u16,
     pub function: u16,
@@ -64,7 +64,7 @@ struct RawHeader {
 }
 
 impl Header {
-    /// What is called.
+    /// The call.
     pub const fn rpc(&self) -> Rpc {
         Rpc { service: self.service, function: self.function }
     }
@@ -103,16 +103,19 @@ impl Header {
     }
 }
 
-/// A frame that arrived.
+/// A received frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Frame<'a> {
     pub header: Header,
-    /// Its payload, a message that the function decides.
+    /// Its payload; the call determines the type of message.
     pub payload: &'a [u8],
 }
 
 impl<'a> Frame<'a> {
-    /// Of the bytes of one datagram or packet.
+    /// Decodes the bytes of one datagram or packet.
+    ///
+    /// # Errors
+    /// [`Damaged`] if structure, version or length are not those of a frame.
     pub fn decode(bytes: &'a [u8]) -> Result<Self, Damaged> {
         let (mut raw, mut payload) = (None, [].as_slice());
         for field in Fields::of(bytes) {
@@ -153,7 +156,7 @@ pub fn encode(header: &Header, payload: &impl Message, out: &mut Vec<u8>) {
     }
 }
 
-/// Appends a frame with a payload that is already written.
+/// Appends a frame with a payload that is already encoded.
 pub fn encode_written(header: &Header, payload: &[u8], out: &mut Vec<u8>) {
     message::encode(1, &header.raw(payload.len()), out);
     if !payload.is_empty() {
@@ -178,18 +181,18 @@ pub fn packed(out: &mut Vec<u8>, frame: impl FnOnce(&mut Vec<u8>)) {
     out[length_at..length_at + LENGTH_BYTES].copy_from_slice(&length.to_be_bytes());
 }
 
-/// Longest packet taken; the largest used here has some hundred bytes. A longer one is skipped as damage.
+/// Longest packet accepted; the longest in use has a few hundred bytes. A longer one is skipped as damaged.
 pub const PACKET_MAX: usize = 16 * 1024;
 
-/// Finds packets in a stream of bytes that may be dirty. Fixed memory; every byte is looked at a bounded number of times.
+/// Finds packets in a stream that may contain errors. Fixed memory; every byte is examined a bounded number of times.
 #[derive(Debug)]
 pub struct PacketReader {
     buffer: Box<[u8]>,
     begin: usize,
     end: usize,
-    /// Bytes thrown away to find a mark.
+    /// Bytes skipped while searching for a mark.
     pub skipped: u64,
-    /// Packets with a shape that cannot be.
+    /// Malformed packets.
     pub damaged: u64,
 }
 
@@ -200,7 +203,8 @@ impl Default for PacketReader {
 }
 
 impl PacketReader {
-    /// Where new bytes go; tell with [`took`](Self::took) how many came. Never empty once all packets are taken out.
+    /// Buffer for new bytes; report their number with [`took`](Self::took). Never empty once all complete packets have
+    /// been read.
     pub fn room(&mut self) -> &mut [u8] {
         if self.begin > 0 {
             self.buffer.copy_within(self.begin..self.end, 0);
@@ -209,12 +213,12 @@ impl PacketReader {
         &mut self.buffer[self.end..]
     }
 
-    /// `count` bytes were put into the room.
+    /// Reports that `count` bytes were written into the buffer.
     pub fn took(&mut self, count: usize) {
         self.end = (self.end + count).min(self.buffer.len());
     }
 
-    /// The next whole frame; `None` until more bytes come.
+    /// The next complete frame; `None` until more bytes arrive.
     pub fn next_frame(&mut self) -> Option<Frame<'_>> {
         let (from, to) = self.find()?;
         self.begin = to;
@@ -234,13 +238,13 @@ impl PacketReader {
                     return Some((from, from + length));
                 }
             }
-            // The length may be what is damaged: search on right behind this mark.
+            // The length may be the damaged part, so continue the search directly behind this mark.
             self.damaged += 1;
             self.begin += MARK.len();
         }
     }
 
-    /// Moves on to the next place where a mark begins, whole or cut off by the end.
+    /// Moves to the next position where a mark begins, possibly cut off at the end.
     fn seek(&mut self) {
         let waiting = &self.buffer[self.begin..self.end];
         let begins = |at: &usize| {

@@ -1,5 +1,5 @@
-//! Frames as the manufacturer's client sends them, byte for byte, both ways; answers as Google's protobuf library writes them;
-//! and bytes that are no frames.
+//! Byte-exact frames of the manufacturer's client, encoded and decoded; answers encoded by Google's protobuf library;
+//! and invalid bytes.
 
 use prost::Message as _;
 
@@ -26,7 +26,7 @@ const FEEDBACK: &str = "0a140d0000001315040007001d01000310255701000012d7020d0500
     1642b50200001a42bd0200001e42c502000022421a320d0500000015200800001d0c0000002500c0b3432d0000a0bf35000020403d0000\
     003f450000c0414d00000c4255000020421a3c0d0500000015200800001d0c000000250040b3432d0000a0bf35000020403d0000003f45\
     0000c0414d00000c4255000020425d010040007507000000220c0a050d090000001501000000";
-/// Refusal of `REFRESH` outside of low level.
+/// Refusal of `REFRESH` outside low-level servoing.
 const REFUSED: &str =
     "0a140d4b30001315040007001d01000310251900000012190803104b1a1357726f6e6720736572766f696e67206d6f6465";
 
@@ -58,7 +58,7 @@ fn login() -> CreateSessionInfo {
     }
 }
 
-/// Both ways: encoding gives the bytes, the bytes give header and message.
+/// Checks that encoding gives the bytes and decoding gives header and message.
 fn both_ways<M: prost::Message + Default + PartialEq + std::fmt::Debug>(hex: &str, header: Header, message: &M) {
     let mut out = Vec::new();
     encode(&header, message, &mut out);
@@ -92,7 +92,7 @@ fn an_answer_with_every_field_is_read() {
     assert_eq!(frame.header, Header { kind: RESPONSE, ..request(7, 4, Rpc::REFRESH) });
     let told = Feedback::decode(frame.payload).unwrap();
     assert_eq!((told.frame_id, told.state, told.count), (5, ArmState::SERVOING_LOW_LEVEL, 2));
-    // Field n of the base has the value n + 0.5; doubled they are whole.
+    // Field n of the base has the value n + 0.5; doubled, the values are integers.
     let doubled = |numbers: [f32; 6]| numbers.map(|x| (2.0 * x) as i32);
     assert_eq!(doubled(told.tool_pose), [27, 29, 31, 33, 35, 37]);
     assert_eq!(doubled(told.tool_twist), [39, 41, 43, 45, 47, 49]);
@@ -151,13 +151,13 @@ fn a_dirty_stream_is_taken_up_again_and_counted() {
     let (mut stream, mut noise) = (Vec::new(), 0);
     for message in 0..200 {
         for _ in 0..random.usize(..30) {
-            // The first byte of a mark too, so that marks are begun and broken.
+            // Includes the first byte of a mark, so that incomplete marks occur.
             stream.push(if random.bool() { MARK[0] } else { random.u8(128..) });
             noise += 1;
         }
         stream.extend(packet(message));
     }
-    // A packet that claims to be too long, and one that is no frame.
+    // A packet with too large a length, and one that is not a frame.
     stream.extend(MARK);
     stream.extend((PACKET_MAX as u32).to_be_bytes());
     stream.extend(MARK);
@@ -178,7 +178,7 @@ fn a_dirty_stream_is_taken_up_again_and_counted() {
     assert_eq!(reader.skipped, noise + 4 + 7);
 }
 
-/// Nothing that arrives makes a panic, and what is decoded is what was there.
+/// No input causes a panic, and decoded frames equal the encoded ones.
 fn storm(frames: u32, seed: u64) {
     let mut random = fastrand::Rng::with_seed(seed);
     let known = [KEEP_ALIVE, SEND_TWIST, REFRESH, FEEDBACK, REFUSED, CREATE_SESSION].map(bytes);

@@ -1,18 +1,19 @@
-//! What the arm may be commanded in low-level servoing, where it has no limits of its own but the hardware's ("no limitations in
-//! low level control", the manufacturer's staff, kortex issue 92).
+//! Limits of joint commands in low-level servoing, where the arm itself checks only those of its hardware ("no
+//! limitations in low level control", the manufacturer's staff, kortex issue 92).
 //!
-//! Angles in rad, unwrapped; speeds in rad/s. Every command that leaves passes [`Guard`], which refuses what is beyond the limits and
-//! alters nothing: a joint that is clipped alone takes the shaft out of the trocar. Limits are kept by whoever plans the path
-//! ([`Inverse`](nima_core::kinematics::Inverse)); a command beyond them is an error of the program, and ends the servoing.
+//! Angles in rad, unwrapped; speeds in rad/s. Every command passes [`Guard`], which refuses a command beyond the limits
+//! and never changes one: clipping a single joint would take the shaft out of the trocar. The planner of the path
+//! ([`Inverse`](nima_core::kinematics::Inverse)) keeps to the limits, so a command beyond them is a programming error
+//! and ends servoing.
 
 use nima_core::kinematics::{JointLimits, LIMIT_RAD, SPEED_RAD_S};
 
 use crate::ARM_JOINTS;
 
-/// One joint's bounds.
+/// Limits of one joint.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct JointLimit {
-    /// Lowest angle, rad; `-INFINITY` for a joint without end.
+    /// Lowest angle, rad; `-INFINITY` for a joint that turns without end.
     pub low_rad: f64,
     /// Highest angle, rad.
     pub high_rad: f64,
@@ -30,79 +31,81 @@ pub const GEN3: [JointLimit; ARM_JOINTS] = [limit(0), limit(1), limit(2), limit(
 /// Fastest twist of the tool that is sent: linear m/s, angular rad/s (`ros_kortex` `twist_limits.yaml`).
 pub const TWIST_MAX: (f64, f64) = (0.5, 1.74);
 
-/// One step of braking covers at most this time, s: after a pause the arm goes on slowly instead of catching up.
+/// One step of braking covers at most this time, s: after a delay the arm continues slowly instead of catching up.
 pub const STEP_MAX_S: f64 = 0.002;
 
-/// An angle as the wire has it: degrees in [0, 360).
+/// An angle in the format of the wire: degrees in [0, 360).
 pub fn wire_degrees(angle_rad: f64) -> f32 {
     let degrees = angle_rad.to_degrees().rem_euclid(360.0) as f32;
-    // Just below a whole turn rounds up to it.
+    // An angle just below 360 can round up to 360.
     if degrees >= 360.0 { 0.0 } else { degrees }
 }
 
-/// The turn of a wire angle that is nearest to `near_rad`.
+/// The angle, rad, that equals this wire angle and is nearest to `near_rad`.
 pub fn unwrapped(degrees: f32, near_rad: f64) -> f64 {
     let angle_rad = f64::from(degrees).to_radians();
     angle_rad + std::f64::consts::TAU * ((near_rad - angle_rad) / std::f64::consts::TAU).round()
 }
 
-/// In any time commands go no further than the limits of speed allow in that time and this, s. The loop's ticks are late and early by
-/// parts of a millisecond; the slowest loop that moves an arm has a period of 20 ms.
+/// In any interval commands may move as far as the speed limit allows in that time plus this, s. The ticks of the loop
+/// vary by fractions of a millisecond; the slowest loop that moves an arm has a period of 20 ms.
 const AHEAD_OF_TIME_S: f64 = 0.025;
 
-/// Which limit a command is beyond.
+/// Which limit a command exceeds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum Beyond {
-    /// The joint cannot go there.
+    /// The angle is outside the joint's range.
     #[error("outside of its range")]
     Range,
-    /// Further from the last command than the time since allows.
+    /// Further from the last command than the speed limit allows.
     #[error("faster than its limit")]
     Speed,
-    /// Too far from where the joint is.
+    /// Too far from the measured angle.
     #[error("too far ahead of the arm")]
     Lead,
 }
 
-/// The last look at commands before they leave: in range, in time, and near to the arm. Brakes where nobody leads the arm any more.
+/// Last check of commands before they are sent: within range, speed limit, and distance from the measured position.
+/// Brakes if no target is given.
 #[derive(Clone, Debug)]
 pub struct Guard {
     limits: JointLimits,
     command_rad: [f64; ARM_JOINTS],
     speed_rad_s: [f64; ARM_JOINTS],
     target_rad: Option<[f64; ARM_JOINTS]>,
-    /// Time at full speed that commands may use up at once, s.
+    /// Remaining time at full speed that commands may use, s.
     allowed_s: f64,
 }
 
 impl Guard {
-    /// Checks against these limits.
+    /// Creates a guard with these limits.
     pub const fn new(limits: JointLimits) -> Self {
         let rest = [0.0; ARM_JOINTS];
         Self { limits, command_rad: rest, speed_rad_s: rest, target_rad: None, allowed_s: AHEAD_OF_TIME_S }
     }
 
-    /// Begins at rest where the arm is.
+    /// Starts at rest at the measured position.
     pub const fn seed(&mut self, measured_rad: &[f64; ARM_JOINTS]) {
         *self = Self { command_rad: *measured_rad, ..Self::new(self.limits) };
     }
 
-    /// Sets the next command (finite) of an arm that is at `measured_rad`.
+    /// Sets the next command (finite) while the arm is at `measured_rad`.
     ///
     /// # Errors
-    /// When it is beyond a limit: the joint (counted from 1) and which. The command before stays in force.
+    /// The joint (counted from 1) and the limit that it exceeds. The previous command stays active.
     pub fn aim(
         &mut self,
         target_rad: &[f64; ARM_JOINTS],
         measured_rad: &[f64; ARM_JOINTS],
     ) -> Result<(), (usize, Beyond)> {
         let last_rad = self.target_rad.unwrap_or(self.command_rad);
-        // Held, the plan itself stops at `lead_rad`; it needs its way of braking, and as much again is left for the arm's own lag.
+        // If the arm is blocked, the plan itself stops at `lead_rad`. It then needs a distance to brake; the same again
+        // is allowed for the arm's lag.
         let braking_s = self.limits.braking_s();
         let mut needed_s: f64 = 0.0;
         for j in 0..ARM_JOINTS {
             let (at, speed_rad_s) = (target_rad[j], self.limits.speed_rad_s[j]);
-            // An arm that was pushed out of its range may stay or come back.
+            // An arm that was pushed out of its range may stay there or move back.
             if at < GEN3[j].low_rad.min(last_rad[j]) || at > GEN3[j].high_rad.max(last_rad[j]) {
                 return Err((j + 1, Beyond::Range));
             }
@@ -120,22 +123,22 @@ impl Guard {
         Ok(())
     }
 
-    /// Forgets the target: slows down and holds. In a straight line of the joints, since nobody knows the path any more.
+    /// Drops the target: slows down and holds. The joints move in a straight line, because the path is no longer known.
     pub const fn brake(&mut self) {
         self.target_rad = None;
     }
 
-    /// Nothing moves.
+    /// Whether all joints are at rest.
     pub fn is_still(&self) -> bool {
         self.speed_rad_s.iter().all(|speed| *speed == 0.0)
     }
 
-    /// The commands now, rad.
+    /// The present commands, rad.
     pub const fn command_rad(&self) -> &[f64; ARM_JOINTS] {
         &self.command_rad
     }
 
-    /// The commands to send, `elapsed_s` after the last ones.
+    /// The commands to send, `elapsed_s` after the previous ones.
     pub fn step(&mut self, elapsed_s: f64) -> &[f64; ARM_JOINTS] {
         if elapsed_s <= 0.0 {
             return &self.command_rad;
@@ -143,7 +146,7 @@ impl Guard {
         self.allowed_s = (self.allowed_s + elapsed_s).min(AHEAD_OF_TIME_S);
         if let Some(target_rad) = self.target_rad {
             let speed = |j: usize| (target_rad[j] - self.command_rad[j]) / elapsed_s;
-            // A command that comes early looks fast.
+            // A command that comes early looks faster than it is.
             let share = (0..ARM_JOINTS).map(|j| self.limits.speed_rad_s[j] / speed(j).abs()).fold(1.0, f64::min);
             self.speed_rad_s = std::array::from_fn(|j| speed(j) * share);
             self.command_rad = target_rad;
@@ -211,7 +214,7 @@ mod tests {
         for fraction in [0.1, 0.3, 1.0] {
             let mut guard = resting(fraction);
             let begin = *guard.command_rad();
-            // One that turns without end.
+            // A joint that turns without end.
             let j = 2 * random.usize(..4);
             let mut jump = begin;
             jump[j] += GEN3[j].speed_rad_s * fraction * 1.01 * AHEAD_OF_TIME_S;
@@ -219,7 +222,7 @@ mod tests {
             jump[j] = -jump[j];
             assert_eq!(guard.aim(&jump, &begin), Err((j + 1, Beyond::Speed)));
             assert!(guard.step(TICK_S) == &begin);
-            // 1 % too fast for long is too fast.
+            // 1 % too fast must be refused eventually.
             let mut target = begin;
             let refused = (0..5000).find_map(|_| {
                 target[j] += GEN3[j].speed_rad_s * fraction * 1.01 * TICK_S;
@@ -234,7 +237,7 @@ mod tests {
         assert_eq!(guard.aim(&[2.1; ARM_JOINTS], &[2.08; ARM_JOINTS]), Err((6, Beyond::Range)));
         assert_eq!(guard.aim(&[2.085; ARM_JOINTS], &[1.5; ARM_JOINTS]), Err((1, Beyond::Lead)));
         assert_eq!(guard.aim(&[2.085; ARM_JOINTS], &[2.08; ARM_JOINTS]), Ok(()));
-        // Pushed out by hand: back is allowed, further is not.
+        // Pushed out by hand: moving back is allowed, moving further is not.
         guard.seed(&[2.3; ARM_JOINTS]);
         assert_eq!(guard.aim(&[2.301; ARM_JOINTS], &[2.3; ARM_JOINTS]), Err((2, Beyond::Range)));
         assert_eq!(guard.aim(&[2.299; ARM_JOINTS], &[2.3; ARM_JOINTS]), Ok(()));

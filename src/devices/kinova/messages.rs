@@ -1,4 +1,4 @@
-//! The messages and calls of the Kortex API 2.x that are used here, as facts of the interface: field numbers, ids, enumerations.
+//! Messages and calls of the Kortex API 2.x that are used here: field numbers, ids, enumerations.
 //!
 //! Angles are in degrees, as on the wire. Sources: the `.proto` files in `Kinovarobotics/ros_kortex` (field numbers and
 //! `@RPC_ID`s) and the documentation in `Kinovarobotics/Kinova-kortex2_Gen3_G3L`.
@@ -22,7 +22,7 @@ macro_rules! calls {
                 pub const $name: Self = Self { service: $service, function: $function };
             )*
 
-            /// Its name, as the manufacturer's documentation has it.
+            /// Its name in the manufacturer's documentation.
             pub const fn name(self) -> &'static str {
                 match self {
                     $(Self::$name => $words,)*
@@ -59,25 +59,25 @@ calls! {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u32)]
 pub enum ServoingMode {
-    /// The base plans motion itself; twists and actions are obeyed. So after switching on.
+    /// The base plans the motion; twists and actions are accepted. The mode after power-on.
     Single = 2,
-    /// The actuators follow cyclic positions, without any limit of the base.
+    /// The actuators follow cyclic positions; the base checks no limits.
     Low = 3,
 }
 
-/// State of the arm (`ArmState`), as far as it is named here.
+/// State of the arm (`ArmState`); only some values have names here.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ArmState(pub u32);
 
 impl ArmState {
-    /// A fault holds it.
+    /// Stopped by a fault.
     pub const IN_FAULT: Self = Self(4);
-    /// It follows cyclic commands.
+    /// Follows cyclic commands.
     pub const SERVOING_LOW_LEVEL: Self = Self(6);
-    /// Ready for commands of the high level.
+    /// Ready for high-level commands.
     pub const SERVOING_READY: Self = Self(7);
 
-    /// In words.
+    /// Text for a message.
     pub const fn words(self) -> &'static str {
         match self.0 {
             2 => "idle",
@@ -93,7 +93,7 @@ impl ArmState {
         }
     }
 
-    /// It can neither be moved nor be read with sense until somebody does something about it.
+    /// Whether it needs a person's action before it can be used.
     pub const fn is_unready(self) -> bool {
         matches!(self.0, 3 | 5 | 10)
     }
@@ -224,32 +224,32 @@ pub const ERROR_DEVICE: u8 = 3;
 /// Error code of the server's protocol (`ERROR_PROTOCOL_SERVER`).
 pub const ERROR_SERVER: u8 = 1;
 
-/// Sub error codes with a meaning here.
+/// Sub error codes that are handled or explained here.
 pub mod sub {
-    /// The service is not known.
+    /// Unknown service.
     pub const UNSUPPORTED_SERVICE: u16 = 4;
-    /// The function is not known.
+    /// Unknown function.
     pub const UNSUPPORTED_METHOD: u16 = 5;
-    /// A frame of another kind.
+    /// Unsupported type of frame.
     pub const UNSUPPORTED_FRAME: u16 = 10;
     /// No session, or one that has timed out.
     pub const INVALID_SESSION: u16 = 12;
-    /// The payload is no message.
+    /// The payload cannot be decoded.
     pub const PAYLOAD_DECODING: u16 = 13;
-    /// The password is wrong.
+    /// Wrong password.
     pub const INVALID_PASSWORD: u16 = 15;
-    /// The user is not known.
+    /// Unknown user.
     pub const USER_NOT_FOUND: u16 = 16;
-    /// A fault holds the arm.
+    /// The arm is in a fault.
     pub const IN_FAULT: u16 = 22;
     /// Emergency stop.
     pub const EMERGENCY_STOP: u16 = 25;
-    /// Not in this servoing mode.
+    /// Not possible in this servoing mode.
     pub const WRONG_SERVOING_MODE: u16 = 75;
-    /// Another session drives the arm.
+    /// Another session has control of the arm.
     pub const NOT_IN_CONTROL: u16 = 130;
 
-    /// In words.
+    /// Text for a message.
     pub const fn words(code: u16) -> &'static str {
         match code {
             1 => "the call failed",

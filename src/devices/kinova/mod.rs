@@ -1,16 +1,17 @@
 //! Kinova Gen3 with 7 joints over the Kortex API 2.x: TCP for calls, UDP for the cycle of 1 kHz.
 //!
-//! - [`Driver`] reads [`ArmReading`](crate::ArmReading)s: angles in rad, unwrapped; joint torques in Nm with the sign of
-//!   commands. The tool's pose and twist beside it: [`ToolReading`].
-//! - Open means connected, in single-level servoing. The arm follows [`Driver::aim`] only after
-//!   [`Driver::enter_low_level`]; every command is checked by [`limits::Guard`], because the arm has no limits in that mode.
-//! - Faults are told in words ([`faults::Faults`]) and cleared by command only: [`FaultClearing`].
+//! - [`Driver`] reads [`ArmReading`](crate::ArmReading)s: angles in rad, unwrapped; joint torques in Nm with the sign
+//!   of commands. The tool's pose and twist are in [`ToolReading`].
+//! - After opening, the arm is connected and in single-level servoing. It follows [`Driver::aim`] only after
+//!   [`Driver::enter_low_level`]; every command is checked by [`limits::Guard`], because the arm checks no limits in
+//!   that mode.
+//! - Faults are reported as text ([`faults::Faults`]) and cleared only by command: [`FaultClearing`].
 //! - Dropping the driver brakes, leaves low-level servoing, stops a twist and closes the sessions.
 //! - The emulated arm, which follows commands, is `nima_world::emulators::kinova`.
 //!
-//! Layers without input and output: [`wire`] (protobuf read in place), [`frame`], [`messages`], [`feedback`], [`faults`],
-//! [`limits`], [`kinematics`]. The wire has degrees, everything else rad. There is no checksum and no time on the wire: shape,
-//! versions and lengths are checked, and readings are counted by the number that every answer has from its request.
+//! Modules without input and output: [`wire`] (decodes protobuf in place), [`frame`], [`messages`], [`feedback`],
+//! [`faults`], [`limits`], [`kinematics`]. The wire uses degrees, everything else rad. The protocol has no checksum and
+//! no time stamp: structure, versions and lengths are checked, and answers are matched by the number of their request.
 
 mod cycle;
 mod driver;

@@ -1,4 +1,5 @@
-//! From an address to a driver: log in, ask who it is and how it is. Blocks; for a thread of its own.
+//! From a network address to a running driver: logs in, asks the arm for its identity and state. Blocks; for a thread
+//! of its own.
 
 use std::{
     sync::{
@@ -21,26 +22,34 @@ use super::{
 };
 use crate::{ARM_JOINTS, Identity, Trouble};
 
-/// A person's command to clear the faults of an arm, kept until it is opened the next time: an arm in fault is never connected.
+/// A person's request to clear the faults of an arm. It is kept until the arm is opened the next time, because an arm
+/// in fault is never connected.
 #[derive(Clone, Debug, Default)]
 pub struct FaultClearing(Arc<AtomicBool>);
 
 impl FaultClearing {
-    /// The next opening clears the faults, once.
+    /// Requests that the next opening clears the faults, once.
     pub fn command(&self) {
         self.0.store(true, Ordering::Release);
     }
 }
 
-/// After clearing, the arm needs a moment.
+/// Time that the arm needs after clearing.
 const CLEARED: Duration = Duration::from_millis(100);
 
-/// Opens the arm; faults are told and left alone.
+/// Opens the arm. Faults are reported, not cleared.
+///
+/// # Errors
+/// [`Trouble`] if the arm cannot be reached, refuses the user, or is in a fault or another state in which it cannot be
+/// used.
 pub fn open(settings: &Settings) -> Result<Driver, Trouble> {
     open_clearing(settings, &FaultClearing::default())
 }
 
-/// Opens the arm, and clears its faults before if that was commanded.
+/// Opens the arm, after clearing its faults if that was requested.
+///
+/// # Errors
+/// As [`open`].
 pub fn open_clearing(settings: &Settings, clearing: &FaultClearing) -> Result<Driver, Trouble> {
     settings.check()?;
     let mut lines = Lines::connect(settings)?;
@@ -49,7 +58,7 @@ pub fn open_clearing(settings: &Settings, clearing: &FaultClearing) -> Result<Dr
     match opened {
         Ok((identity, feedback)) => Ok(Driver::new(settings, lines, identity, &feedback)),
         Err(trouble) => {
-            // Leaves no session behind.
+            // Close the sessions, or the arm would keep them until they time out.
             super::driver::close_sessions(&mut lines);
             Err(trouble)
         }
@@ -65,7 +74,7 @@ fn prepare(lines: &mut Lines, clearing: &FaultClearing) -> Result<(Identity, Fee
     let identity = identity(lines)?;
     let mode: Number = ask(lines, Rpc::GET_SERVOING_MODE)?;
     if mode.value != ServoingMode::Single as u32 {
-        // Left over from somebody who did not come back.
+        // The arm may have been left in low-level servoing by a client that broke off.
         call(lines, Rpc::SET_SERVOING_MODE, &Number { value: ServoingMode::Single as u32 })?;
     }
     if clearing.0.swap(false, Ordering::AcqRel) {
@@ -97,7 +106,7 @@ fn first_feedback(lines: &mut Lines) -> Result<Feedback, Trouble> {
     feedback.ok_or_else(|| Failure::Nonsense.trouble(&lines.place, Rpc::REFRESH_FEEDBACK))
 }
 
-/// Who it is; what the firmware does not tell stays empty.
+/// Identity of the arm; fields that the firmware does not report are empty.
 fn identity(lines: &mut Lines) -> Result<Identity, Trouble> {
     let known = |answer: Result<Vec<u8>, Failure>, place: &str, rpc| match answer {
         Ok(payload) => Ok(payload),

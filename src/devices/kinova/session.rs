@@ -1,4 +1,5 @@
-//! The two connections to an arm: numbers of messages and sessions, calls that wait (for opening and closing) and that do not.
+//! The two connections to an arm: numbering of messages and sessions, and calls that wait for the answer (for opening
+//! and closing) or do not.
 
 use std::{
     net::ToSocketAddrs as _,
@@ -18,18 +19,19 @@ use crate::{
     transport::{Bytes as _, Datagrams as _, Tcp, Udp},
 };
 
-/// The largest datagram there can be.
+/// Largest possible datagram.
 pub const DATAGRAM_MAX: usize = 65_507;
 
-/// A session that hears nothing for so long is closed by the arm, ms.
+/// The arm closes a session from which it has heard nothing for this time, ms.
 const SESSION_INACTIVITY_MS: u32 = 10_000;
-/// Motion of the high level stops when its session is silent for so long, ms; the shortest that the manufacturer's examples use.
+/// High-level motion stops when its session has been silent for this time, ms; the shortest value in the manufacturer's
+/// examples.
 const CONNECTION_INACTIVITY_MS: u32 = 2_000;
-/// A datagram may be lost: while opening it is sent again after this time.
+/// A datagram may be lost: while opening, requests are repeated after this time.
 const AGAIN: Duration = Duration::from_millis(200);
 const NAP: Duration = Duration::from_micros(200);
 
-/// Numbers requests and writes them into a buffer that is made once.
+/// Numbers requests and encodes them into a buffer that is allocated once.
 #[derive(Debug)]
 pub(super) struct Caller {
     session: u16,
@@ -43,7 +45,7 @@ impl Caller {
         Self { session: 0, message: 0, out: Vec::with_capacity(4096), packets }
     }
 
-    /// The bytes of a request and its number. Numbers begin with 1 and wrap.
+    /// The bytes of a request, and its number. Numbers start at 1 and wrap.
     pub(super) fn request(&mut self, rpc: Rpc, payload: &impl Message) -> (u16, &[u8]) {
         self.message = self.message.wrapping_add(1);
         let Rpc { service, function } = rpc;
@@ -65,14 +67,14 @@ impl Caller {
     }
 }
 
-/// An answer that is an error, as the header tells it, or none at all.
+/// Why there is no valid answer.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Failure {
     /// Refused with this error and sub error.
     Refused(u8, u16),
-    /// Nothing came in time.
+    /// No answer in time.
     Silent,
-    /// What came was no frame.
+    /// The answer was not a frame.
     Nonsense,
     /// The connection broke.
     Lost,
@@ -94,7 +96,10 @@ pub struct Lines {
 }
 
 impl Lines {
-    /// Connects, without sessions yet.
+    /// Connects, without opening sessions.
+    ///
+    /// # Errors
+    /// [`Trouble`] if the address cannot be reached.
     pub fn connect(settings: &Settings) -> Result<Self, Trouble> {
         let place = format!("{}:{}", settings.host, settings.tcp_port);
         let timeout = Duration::from_secs_f64(settings.timeout_s);
@@ -107,15 +112,18 @@ impl Lines {
         Ok(Self { tcp, packets, calls: Caller::new(true), udp, cyclic: Caller::new(false), datagram, place, timeout })
     }
 
-    /// Another end of the calls' connection with a request that is written already, for an emergency.
+    /// A duplicate of the TCP connection and an encoded request, for emergencies.
     pub(super) fn last_words(&self, rpc: Rpc, question: &impl Message) -> std::io::Result<(Tcp, Vec<u8>)> {
-        // A number of its own: ordinary calls count up from 1.
+        // A number far from those of ordinary calls, which count up from 1.
         let mut caller = Caller { session: self.calls.session, message: u16::MAX - 1, out: Vec::new(), packets: true };
         caller.request(rpc, question);
         Ok((self.tcp.duplicate()?, caller.out))
     }
 
-    /// Makes a session on each connection.
+    /// Opens a session on each connection.
+    ///
+    /// # Errors
+    /// [`Trouble`] if the arm refuses the user or does not answer.
     pub fn log_in(&mut self, settings: &Settings) -> Result<(), Trouble> {
         let login = CreateSessionInfo {
             username: settings.user.clone(),
@@ -138,7 +146,7 @@ impl Lines {
         Ok(())
     }
 
-    /// Calls and waits for the answer's payload (TCP).
+    /// Calls and waits for the payload of the answer (TCP).
     pub fn ask(&mut self, rpc: Rpc, question: &impl Message) -> Answered<Vec<u8>> {
         self.ask_within(rpc, question, self.timeout)
     }
@@ -164,12 +172,12 @@ impl Lines {
         Err(if dirty { Failure::Nonsense } else { Failure::Silent })
     }
 
-    /// Somebody who speaks another protocol answers nonsense and hangs up.
+    /// Something that speaks another protocol: it answers with unknown bytes and closes the connection.
     const fn broken(&self, _: Loss, skipped: u64) -> Failure {
         if self.packets.skipped > skipped { Failure::Nonsense } else { Failure::Lost }
     }
 
-    /// Calls on the cyclic connection and waits for the answer's payload; asks again while nothing comes.
+    /// Calls on the cyclic connection and waits for the payload of the answer; repeats the request while none comes.
     pub fn ask_cyclic(&mut self, rpc: Rpc, question: &impl Message) -> Answered<Vec<u8>> {
         let end = Instant::now() + self.timeout;
         let mut dirty = false;
@@ -204,7 +212,7 @@ fn payload(frame: &Frame<'_>) -> Answered<Vec<u8>> {
 }
 
 impl Failure {
-    /// In the words of the person who opens the arm.
+    /// The failure as a message for the user.
     pub(super) fn trouble(self, place: &str, rpc: Rpc) -> Trouble {
         let place = place.to_owned();
         match self {

@@ -1,4 +1,4 @@
-//! What the rig file says of the arm.
+//! Settings of the arm in a rig file.
 
 use nima_core::kinematics::JointLimits;
 use serde::{Deserialize, Serialize};
@@ -10,11 +10,11 @@ use crate::Trouble;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Settings {
-    /// Its address or name.
+    /// Network address or host name.
     pub host: String,
-    /// Port of the calls (TCP).
+    /// TCP port for calls.
     pub tcp_port: u16,
-    /// Port of the cycle (UDP).
+    /// UDP port for the cycle.
     pub udp_port: u16,
     pub user: String,
     pub password: String,
@@ -31,7 +31,7 @@ pub struct Settings {
 }
 
 impl Default for Settings {
-    /// The arm as it is delivered.
+    /// The factory settings of the arm.
     fn default() -> Self {
         Self {
             host: "192.168.1.10".to_owned(),
@@ -49,7 +49,16 @@ impl Default for Settings {
 }
 
 impl Settings {
-    /// The arm at an endpoint `HOST tcp=PORT udp=PORT`, as an emulator tells it.
+    /// Settings for an endpoint `HOST tcp=PORT udp=PORT`, the format in which an emulator prints it.
+    ///
+    /// ```
+    /// use nima_devices::kinova::Settings;
+    ///
+    /// let settings = Settings::at("127.0.0.1 tcp=10000 udp=10001").expect("a complete endpoint");
+    /// assert_eq!((settings.host.as_str(), settings.tcp_port, settings.udp_port), ("127.0.0.1", 10_000, 10_001));
+    /// assert!(settings.check().is_ok());
+    /// assert!(Settings::at("127.0.0.1 tcp=many").is_none(), "not a port");
+    /// ```
     pub fn at(endpoint: &str) -> Option<Self> {
         let mut words = endpoint.split_whitespace();
         let host = words.next()?.to_owned();
@@ -64,12 +73,15 @@ impl Settings {
         Some(settings)
     }
 
-    /// How its joints may be moved: whoever plans a path keeps to them, the driver checks them.
+    /// Limits of position, speed and acceleration: the planner keeps to them, the driver checks them.
     pub fn joint_limits(&self) -> JointLimits {
         JointLimits::of_arm(self.speed_fraction, self.lead_rad)
     }
 
-    /// Every number is possible.
+    /// Checks every value.
+    ///
+    /// # Errors
+    /// [`Trouble::Setting`] for the first value outside its range.
     pub fn check(&self) -> Result<(), Trouble> {
         let within = |key: &str, value: f64, low: f64, high: f64| {
             if value > low && value <= high {

@@ -1,13 +1,13 @@
-//! Protocol buffers read in place: no allocation, bounded work, every byte checked.
+//! Decodes protocol buffers in place: no allocation, bounded work, every byte checked.
 //!
-//! `prost` writes all messages and reads the rare ones; what comes a thousand times a second is read here, because its decoder
-//! allocates for repeated fields and for errors.
+//! `prost` encodes all messages and decodes the rare ones. Messages that arrive a thousand times a second are decoded
+//! here, because `prost` allocates for repeated fields and for errors.
 
-/// Bytes that are no message.
+/// Bytes that are not a valid message.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Damaged;
 
-/// The value of a field as it stands on the wire.
+/// The value of a field on the wire.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Value<'a> {
     Varint(u64),
@@ -26,7 +26,7 @@ impl<'a> Value<'a> {
     }
 
     pub(super) fn uint32(self) -> Result<u32, Damaged> {
-        // As protocol buffers have it: the upper half is dropped.
+        // As protocol buffers specify, the upper half is dropped.
         if let Self::Varint(number) = self { Ok(number as u32) } else { Err(Damaged) }
     }
 
@@ -35,7 +35,7 @@ impl<'a> Value<'a> {
     }
 }
 
-/// The fields of a message in their order; ends after the first error.
+/// Iterates over the fields of a message; ends after the first error.
 #[derive(Debug)]
 pub(super) struct Fields<'a> {
     rest: &'a [u8],

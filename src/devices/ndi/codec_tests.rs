@@ -1,4 +1,4 @@
-//! Golden bytes of the reference both ways, round trips, and dirt.
+//! Known bytes of the reference, encoded and decoded; round trips; and invalid bytes.
 
 use super::*;
 use crate::ndi::crc::write_hex;
@@ -217,7 +217,7 @@ fn a_flood_without_an_end_is_thrown_away() {
     }
 }
 
-/// One reply or command, whole or changed, or only noise.
+/// A reply or command, intact or altered, or random bytes.
 fn mutated(random: &mut fastrand::Rng, bytes: &mut Vec<u8>) {
     for _ in 0..random.usize(..4) {
         match random.u8(..4) {
@@ -232,7 +232,7 @@ fn mutated(random: &mut fastrand::Rng, bytes: &mut Vec<u8>) {
     }
 }
 
-/// Feeds `count` random and changed frames to everything that reads bytes. Returns how many were whole.
+/// Feeds `count` random and altered frames to everything that parses bytes. Returns how many were valid.
 fn fuzz(count: u32, seed: u64) -> u32 {
     let mut random = fastrand::Rng::with_seed(seed);
     let commands = every_command();
@@ -248,7 +248,8 @@ fn fuzz(count: u32, seed: u64) -> u32 {
             _ => (0..random.usize(..80)).for_each(|_| bytes.push(random.u8(..))),
         }
         mutated(&mut random, &mut bytes);
-        // Bodies with a right checksum reach the parsers; so do lines and blocks as a stream.
+        // Reply bodies, as they are after a correct checksum, go directly to the parsers; lines and blocks also as a
+        // stream.
         let read = [Frames::of_block(&bytes, options), Frames::of_text(&bytes, options)];
         whole += read.iter().flatten().count() as u32;
         Command::parse(&bytes).ok();

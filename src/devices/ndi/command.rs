@@ -1,21 +1,21 @@
-//! Commands of the Combined API, as a host writes them and a unit reads them.
+//! Commands of the Combined API: encoding by the host, parsing by the unit.
 //!
-//! `NAME:arguments` + checksum + CR, or `NAME arguments` + CR without a checksum (reference 1.2, 1.3). Units of the API itself:
-//! handles are bytes, addresses bytes within a tool definition. Nothing allocates.
+//! `NAME:arguments` + checksum + CR, or `NAME arguments` + CR without a checksum (reference 1.2, 1.3). Units are those
+//! of the API. No allocation.
 
 use super::{
     crc::{crc16, read_hex, write_hex},
     words::ErrorCode,
 };
 
-/// Bytes of a tool definition that one command carries.
+/// Bytes of a tool definition in one command.
 pub const CHUNK: usize = 64;
-/// Longest command line taken, with its CR: the definition's is 144.
+/// Longest command line accepted, including CR; the one of a tool definition has 144.
 pub const COMMAND_MAX: usize = 192;
-/// Which port to ask for: any device, any system, passive tool, any port.
+/// Port to request: any device, any system, passive tool, any port.
 pub const WIRELESS: [u8; 14] = *b"*********1****";
 
-/// Which form of tracking replies.
+/// Format of tracking replies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Form {
     /// `TX`: ASCII, four decimals.
@@ -26,16 +26,16 @@ pub enum Form {
 
 /// Reply option: transforms, port status and frame numbers.
 pub const TRANSFORMS: u16 = 0x0001;
-/// Reply option: report also tools outside of the volume.
+/// Reply option: also report tools outside the volume.
 pub const OUTSIDE_TOO: u16 = 0x0800;
-/// Reply option: stray passive markers.
+/// Reply option: stray passive markers (markers that belong to no tool).
 pub const STRAYS: u16 = 0x1000;
 
 /// Which handles `PHSR` lists.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Filter {
     All,
-    /// Those to be freed.
+    /// Handles to be freed.
     ToFree,
     /// Occupied, not initialised.
     ToInitialise,
@@ -48,14 +48,14 @@ impl Filter {
     const ALL: [Self; 5] = [Self::All, Self::ToFree, Self::ToInitialise, Self::ToEnable, Self::Enabled];
 }
 
-/// How a tool is expected to move.
+/// Expected motion of a tool.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Priority {
     /// Fixed in the scene.
     Static,
-    /// Moves.
+    /// Moving.
     Dynamic,
-    /// Only switches.
+    /// A tool that has only switches.
     Buttons,
 }
 
@@ -85,9 +85,9 @@ const SPEEDS: [(u8, u32); 9] = [
 /// One command.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Command<'a> {
-    /// `INIT`: frees all handles, stops tracking.
+    /// `INIT`: frees all handles and stops tracking.
     Init,
-    /// `RESET`: as after switching on.
+    /// `RESET`: returns to the state after power-on.
     Reset,
     /// `APIREV`: revision of the interface.
     ApiRevision,
@@ -95,49 +95,49 @@ pub enum Command<'a> {
     Comm { baud: u32 },
     /// `VER`: version texts; 0 is the control firmware.
     Version(u8),
-    /// `GETINFO`: what is known of a user parameter.
+    /// `GETINFO`: description of a user parameter.
     GetInfo(&'a str),
-    /// `GET`: a user parameter.
+    /// `GET`: value of a user parameter.
     Get(&'a str),
-    /// `SET`: `name=value`.
+    /// `SET`: sets a user parameter, `name=value`.
     Set(&'a str),
-    /// `ECHO`: says the same.
+    /// `ECHO`: returns its argument.
     Echo(&'a str),
-    /// `BEEP`: 1 to 9 times.
+    /// `BEEP`: beeps 1 to 9 times.
     Beep(u8),
-    /// `PHSR`: handles and their status.
+    /// `PHSR`: lists handles and their status.
     Handles(Filter),
-    /// `PHRQ`: a new handle, for the port described.
+    /// `PHRQ`: requests a handle for the port described.
     Request([u8; 14]),
-    /// `PVWR`: a piece of a tool definition.
+    /// `PVWR`: writes a piece of a tool definition.
     Write {
         handle: u8,
-        /// Where in the definition.
+        /// Address within the definition.
         address: u16,
         data: [u8; CHUNK],
     },
-    /// `PINIT`.
+    /// `PINIT`: initialises a handle.
     Initialise(u8),
-    /// `PENA`.
+    /// `PENA`: enables tracking of a handle.
     Enable(u8, Priority),
-    /// `PDIS`.
+    /// `PDIS`: disables tracking of a handle.
     Disable(u8),
     /// `PHF`: frees a handle.
     Free(u8),
-    /// `PHINF`: information on a handle, by option bits.
+    /// `PHINF`: information about a handle, selected by option bits.
     Information { handle: u8, options: u16 },
-    /// `TSTART`; with 80 the frame counter begins anew.
+    /// `TSTART`: starts tracking; with option 80 the frame counter is reset.
     Start {
-        /// Begin anew.
+        /// Reset the frame counter.
         anew: bool,
     },
-    /// `TSTOP`.
+    /// `TSTOP`: stops tracking.
     Stop,
-    /// `TX` or `BX` with reply options.
+    /// `TX` or `BX`: requests tracking data, with reply options.
     Track(Form, u16),
 }
 
-/// A command as bytes, with its CR.
+/// An encoded command, including CR.
 #[derive(Clone, Copy, Debug)]
 pub struct CommandLine {
     bytes: [u8; COMMAND_MAX],
@@ -150,7 +150,7 @@ impl CommandLine {
         &self.bytes[..self.length]
     }
 
-    /// What does not fit is cut off, which the unit refuses; only free text can be that long.
+    /// Bytes that do not fit are dropped, and the unit then refuses the command; only free text can be that long.
     fn push(&mut self, bytes: &[u8]) {
         let count = bytes.len().min(COMMAND_MAX - 5 - self.length.min(COMMAND_MAX - 5));
         self.bytes[self.length..self.length + count].copy_from_slice(&bytes[..count]);
@@ -165,7 +165,7 @@ impl CommandLine {
 }
 
 impl<'a> Command<'a> {
-    /// Its name on the wire.
+    /// Its name in the API.
     pub const fn name(&self) -> &'static str {
         match self {
             Self::Init => "INIT",
@@ -193,7 +193,7 @@ impl<'a> Command<'a> {
         }
     }
 
-    /// With its checksum and CR.
+    /// Encodes it with checksum and CR.
     pub fn encode(&self) -> CommandLine {
         let mut line = self.written(b':');
         let crc = crc16(line.as_bytes());
@@ -204,7 +204,7 @@ impl<'a> Command<'a> {
         line
     }
 
-    /// The form without a checksum, with its CR.
+    /// Encodes it without a checksum, with CR.
     pub fn encode_unchecked(&self) -> CommandLine {
         let mut line = self.written(b' ');
         line.bytes[line.length] = b'\r';
@@ -220,7 +220,7 @@ impl<'a> Command<'a> {
             Self::Init | Self::Reset | Self::ApiRevision | Self::Stop | Self::Start { anew: false } => {}
             Self::Start { anew: true } => line.push(b"80"),
             Self::Comm { baud } => {
-                // A speed without a code is refused by the unit.
+                // The unit refuses a speed that has no code.
                 let code = SPEEDS.iter().find(|(_, speed)| *speed == baud).map_or(b'?', |(code, _)| *code);
                 line.push(&[code]);
                 line.push(b"0000");
@@ -250,7 +250,20 @@ impl<'a> Command<'a> {
         line
     }
 
-    /// Reads a line (without its CR) as the unit does; an error is what the unit answers.
+    /// Parses a line (without its CR) as the unit does; an error is what the unit would answer.
+    ///
+    /// # Errors
+    /// [`ErrorCode`] that the unit would answer.
+    ///
+    /// ```
+    /// use nima_devices::ndi::{Command, ErrorCode};
+    ///
+    /// let line = Command::Beep(2).encode();
+    /// let (cr, text) = line.as_bytes().split_last().expect("a command is never empty");
+    /// assert!(text.starts_with(b"BEEP:2") && *cr == b'\r');
+    /// assert_eq!(Command::parse(text), Ok(Command::Beep(2)));
+    /// assert_eq!(Command::parse(b"BEEP:20000"), Err(ErrorCode::BAD_CRC));
+    /// ```
     pub fn parse(line: &'a [u8]) -> Result<Self, ErrorCode> {
         let is_name = |byte: &u8| byte.is_ascii_uppercase() || byte.is_ascii_digit();
         let end = line.iter().position(|byte| !is_name(byte)).unwrap_or(line.len());
@@ -298,7 +311,7 @@ impl<'a> Command<'a> {
         })
     }
 
-    /// The commands that concern handles.
+    /// Parses the commands about handles.
     fn of_port(name: &[u8], arguments: &[u8]) -> Result<Self, ErrorCode> {
         let handle = || Ok(hex(arguments, 0, 2)? as u8);
         Ok(match name {
@@ -341,13 +354,13 @@ impl<'a> Command<'a> {
     }
 }
 
-/// `digits` hexadecimal digits from `begin`.
+/// Parses `digits` hexadecimal digits at `begin`.
 fn hex(arguments: &[u8], begin: usize, digits: usize) -> Result<u32, ErrorCode> {
     let text = arguments.get(begin..begin + digits).ok_or(ErrorCode::PARAMETER_COUNT)?;
     read_hex(text).ok_or(ErrorCode::OUT_OF_RANGE)
 }
 
-/// Reply options from `begin`; where there are none, those that the guide takes for granted.
+/// Parses reply options at `begin`; if there are none, the default of the guide.
 fn options(arguments: &[u8], begin: usize) -> Result<u16, ErrorCode> {
     if arguments.len() == begin { Ok(TRANSFORMS) } else { Ok(hex(arguments, begin, 4)? as u16) }
 }

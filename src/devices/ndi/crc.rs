@@ -1,4 +1,4 @@
-//! The checksum of the Combined API: CRC-16/ARC (polynomial 0x8005 reflected, start 0), in both forms of replies.
+//! The checksum of the Combined API in both reply formats: CRC-16/ARC (polynomial 0x8005 reflected, start 0).
 
 /// Checksum of `bytes`.
 pub const fn crc16(bytes: &[u8]) -> u16 {
@@ -16,7 +16,7 @@ pub const fn crc16(bytes: &[u8]) -> u16 {
     crc
 }
 
-/// `number` as hexadecimal digits, upper case, the first of `digits.len()` digits first.
+/// Writes `number` as upper-case hexadecimal digits, most significant first, filling `digits`.
 pub(super) fn write_hex(digits: &mut [u8], mut number: u64) {
     for digit in digits.iter_mut().rev() {
         *digit = b"0123456789ABCDEF"[(number & 15) as usize];
@@ -24,7 +24,7 @@ pub(super) fn write_hex(digits: &mut [u8], mut number: u64) {
     }
 }
 
-/// The number that hexadecimal digits make (at most 8 of them, of either case); `None` where one is no digit.
+/// Parses hexadecimal digits (at most 8, of either case); `None` if one is not a digit.
 pub(super) fn read_hex(digits: &[u8]) -> Option<u32> {
     if digits.is_empty() || digits.len() > 8 {
         return None;

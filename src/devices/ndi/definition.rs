@@ -1,21 +1,25 @@
-//! Tool definitions: `.rom` files, written to the unit in pieces (reference 1.3, 752 bytes seen, 1024 always sent).
+//! Tool definitions: `.rom` files, written to the unit in pieces (reference 1.3; 752 bytes are used, 1024 are always
+//! sent).
 
 use std::path::Path;
 
 use super::command::CHUNK;
 use crate::Trouble;
 
-/// Bytes of a definition as sent, zero-padded.
+/// Length of a definition as sent, padded with zeros.
 pub const DEFINITION: usize = 1024;
-/// What a definition begins with.
+/// First bytes of a definition.
 const BEGIN: &[u8] = b"NDI\0";
 
-/// A tool definition as it is sent.
+/// A tool definition in the form in which it is sent.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Definition(Box<[u8; DEFINITION]>);
 
 impl Definition {
-    /// Reads the file that the rig file names under `key`.
+    /// Reads the file named under `key` in the rig file.
+    ///
+    /// # Errors
+    /// [`Trouble::Setting`] if the file cannot be read, is too long, or is not a tool definition.
     pub fn load(key: &str, path: &Path) -> Result<Self, Trouble> {
         let refuse =
             |allowed: String| Trouble::Setting { key: key.to_owned(), value: path.display().to_string(), allowed };
@@ -29,7 +33,7 @@ impl Definition {
         Ok(Self(bytes))
     }
 
-    /// The pieces, each with its address.
+    /// The pieces with their addresses.
     pub fn chunks(&self) -> impl Iterator<Item = (u16, [u8; CHUNK])> + '_ {
         let (chunks, _) = self.0.as_chunks::<CHUNK>();
         chunks.iter().enumerate().map(|(k, data)| ((k * CHUNK) as u16, *data))
@@ -47,7 +51,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let place = |name: &str| folder.path().join(name);
         assert!(Command::new("mkfifo").arg(place("pipe.rom")).status().unwrap().success());
-        // A terabyte without a byte on the disk: nobody has the memory to read it whole.
+        // A sparse file of 1 TB: it must not be read whole.
         fs::File::create(place("large.rom")).unwrap().set_len(1 << 40).unwrap();
         let cases = [
             (place("pipe.rom"), "it is a pipe"),

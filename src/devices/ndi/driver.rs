@@ -1,10 +1,11 @@
-//! The driver: asks for a frame as soon as the last reply is in, one command in flight, never waiting.
+//! The driver: requests a frame as soon as the last reply has arrived; one command under way at a time, never waiting.
 //!
-//! Readings in m, camera frame `c`, orientation `c_from_tool`. A reading is new by its frame number.
-//! Losses: [`Loss::Silent`] where no new frame came for [`SILENT_S`] and nothing at all for the command in flight,
-//! [`Loss::Corrupt`] where only bytes came that make no reply, or [`DAMAGED_MAX`] damaged replies in a row, [`Loss::Implausible`]
-//! for numbers that are none or impossible, [`Loss::Device`] for fault bits of the unit (`0x10000 +` system status), its errors
-//! (their code) and a restart ([`RESTARTED`]). Dropping it stops tracking and sets the line back to its first speed.
+//! Readings in m, camera frame `c`, orientation `c_from_tool`. A reading is new if its frame number is. Losses:
+//! [`Loss::Silent`] if no new frame came for [`SILENT_S`] and nothing at all for the present command; [`Loss::Corrupt`]
+//! if only bytes came that are not a reply, or [`DAMAGED_MAX`] damaged replies in a row; [`Loss::Implausible`] for
+//! numbers that are not finite or impossible; [`Loss::Device`] for fault bits of the unit (`0x10000 +` system status),
+//! its errors (their code) and a restart ([`RESTARTED`]). Dropping the driver stops tracking and resets the line to its
+//! initial speed.
 
 use std::time::Duration;
 
@@ -25,35 +26,35 @@ use crate::{
     transport::Bytes as _,
 };
 
-/// A new frame, and the reply to a command, must come within this time, s: six frames at 60 Hz.
+/// Time limit for a new frame, and for the reply to a command, s: six frames at 60 Hz.
 pub const SILENT_S: f64 = 0.100;
-/// Damaged replies in a row that end the belief in the line.
+/// Number of damaged replies in a row after which the unit counts as lost.
 pub const DAMAGED_MAX: u32 = 5;
-/// The code of [`Loss::Device`] for a unit that was switched off and on while it tracked.
+/// Code of [`Loss::Device`] for a unit that was switched off and on while tracking.
 pub const RESTARTED: u32 = 0x2_0000;
-/// The code of [`Loss::Device`] for fault bits of the unit, which stand below it.
+/// Code of [`Loss::Device`] for fault bits of the unit, which are in the lower bits.
 pub const SYSTEM_FAULT: u32 = 0x1_0000;
-/// Between two commands, s: a quarter of the frame of the fastest unit is enough.
+/// Interval between two commands, s: a quarter of the frame time of the fastest unit.
 const PACE_S: f64 = 0.002;
-/// Quiet after a damaged reply before the next command, s: the rest of it may still be on the way.
+/// Pause after a damaged reply, s: the remainder of it may still be arriving.
 const QUIET_S: f64 = 0.010;
-/// Pieces taken in one poll.
+/// Most reads in one poll.
 const READS_MAX: usize = 16;
-/// Farthest plausible place, mm; the largest volume ends at 3 m.
+/// Largest plausible distance, mm; the largest measurement volume ends at 3 m.
 const FARTHEST_MM: f64 = 6_000.0;
-/// Largest plausible departure of a quaternion's norm from 1; four decimals make 0.0002.
+/// Largest plausible deviation of a quaternion's norm from 1; rounding to four decimals gives 0.0002.
 const NORM_WITHIN: f64 = 0.01;
 
-/// What is in flight.
+/// Whether a command is under way.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Flight {
-    /// Nothing; the next command may go at this time, s.
+    /// None; the next one may be sent at this time, s.
     Idle(f64),
     /// A command that was sent at this time, s.
     Asked { at_s: f64, beep: bool },
 }
 
-/// A tracker that is open and tracks.
+/// An open, tracking unit.
 #[derive(Debug)]
 pub struct Driver {
     session: Session,
@@ -64,22 +65,22 @@ pub struct Driver {
     frame_hz: f64,
     serial: bool,
     flight: Flight,
-    /// When the last byte for the command in flight came, s; `None` until then.
+    /// When the last byte of the present reply arrived, s; `None` before the first.
     heard_s: Option<f64>,
     damaged_in_a_row: u32,
-    /// A damaged reply came for the command in flight.
+    /// Whether the reply to the present command was damaged.
     spoilt: bool,
     fresh_s: Option<f64>,
     frame: Option<u32>,
     frames_since_open: u64,
     beeps: u8,
-    /// The last command was a beep.
+    /// Whether the last command was a beep.
     beeped: bool,
     system: SystemStatus,
     status: [PortStatus; TRACKED_TOOLS],
 }
 
-/// What one arrival means; made before anything of the driver changes.
+/// Meaning of one arrival, computed before the driver's state changes.
 #[expect(clippy::large_enum_variant, reason = "made and used within one poll, where a box would be an allocation")]
 enum Event {
     Frames(Frames),
@@ -90,11 +91,15 @@ enum Event {
 
 impl Driver {
     /// Opens, configures and starts the unit; may take some seconds.
+    ///
+    /// # Errors
+    /// [`Trouble`] if a setting is invalid, the unit cannot be reached or reports a fault, or a tool definition is not
+    /// accepted.
     pub fn open(settings: &Settings) -> Result<Self, Trouble> {
         Self::open_within(settings, opening::Timeouts::USUAL)
     }
 
-    /// Opens for a diagnosis: what does not answer is told within a second.
+    /// Opens for a diagnosis: a unit that does not answer is reported within a second.
     pub(crate) fn try_open(settings: &Settings) -> Result<Self, Trouble> {
         Self::open_within(settings, opening::Timeouts::SHORT)
     }
@@ -125,27 +130,28 @@ impl Driver {
         })
     }
 
-    /// The form of tracking replies in use.
+    /// Format of tracking replies in use.
     pub const fn form(&self) -> Form {
         self.form
     }
 
-    /// Status of the unit in the newest reply.
+    /// Status of the unit in the latest reply.
     pub const fn system_status(&self) -> SystemStatus {
         self.system
     }
 
-    /// Status of each tool in the newest reply; 0 where there is none.
+    /// Status of each tool in the latest reply; 0 if there is none.
     pub const fn port_status(&self) -> [PortStatus; TRACKED_TOOLS] {
         self.status
     }
 
-    /// Lets the unit beep, 1 to 9 times, as soon as no other command is in flight; between two beeps it is asked for a frame.
+    /// Makes the unit beep 1 to 9 times, as soon as no other command is under way; between two beeps a frame is
+    /// requested.
     pub fn beep(&mut self, times: u8) {
         self.beeps = times.min(9);
     }
 
-    /// What is expected for the command in flight.
+    /// Format of the reply that is expected.
     fn expected(&self) -> Expected {
         match (self.flight, self.form) {
             (Flight::Asked { beep: false, .. } | Flight::Idle(_), Form::Binary) => Expected::Block,
@@ -167,7 +173,7 @@ impl Driver {
         frames.map_or(Event::Damaged, Event::Frames)
     }
 
-    /// Takes in what has arrived.
+    /// Reads what has arrived.
     fn receive(&mut self, now_s: f64) -> Result<Option<TrackerReading>, Loss> {
         let mut newest = None;
         for _ in 0..READS_MAX {
@@ -179,7 +185,7 @@ impl Driver {
             self.heard_s = Some(now_s);
             while let Some(arrival) = self.session.inbox.next(self.expected()) {
                 let Flight::Asked { at_s, beep } = self.flight else {
-                    // Nobody asked.
+                    // A reply without a command.
                     self.health.out_of_order += 1;
                     continue;
                 };
@@ -211,7 +217,7 @@ impl Driver {
         if self.damaged_in_a_row >= DAMAGED_MAX { Err(Loss::Corrupt) } else { Ok(()) }
     }
 
-    /// A whole reply: status, faults, and a reading if its frame is new.
+    /// Handles a complete reply: status, faults, and a reading if its frame is new.
     fn take(&mut self, frames: &Frames, now_s: f64) -> Result<Option<TrackerReading>, Loss> {
         self.system = frames.system;
         let faults = frames.system.faults();
@@ -242,7 +248,7 @@ impl Driver {
         Ok(Some(reading))
     }
 
-    /// Counts a frame; true where it is later than the last.
+    /// Counts a frame; true if it is later than the last one.
     fn is_new(&mut self, frame: u32, now_s: f64) -> bool {
         let ahead = self.frame.map_or(1, |last| frame.wrapping_sub(last).cast_signed());
         if ahead <= 0 {
@@ -258,7 +264,7 @@ impl Driver {
         true
     }
 
-    /// What has not come in time.
+    /// Checks for timeouts.
     fn watch(&mut self, now_s: f64) -> Result<(), Loss> {
         if let Flight::Asked { at_s, .. } = self.flight {
             if now_s - at_s >= SILENT_S {
@@ -311,7 +317,7 @@ impl Device for Driver {
                 value,
             }),
             Err(loss) => {
-                // A serial line that was pulled out reads as one with nothing on it.
+                // A serial adapter that was unplugged looks the same as a silent line.
                 let gone = loss == Loss::Silent && self.session.wire.is_gone();
                 self.health.lose(if gone { Loss::Disconnected } else { loss });
                 None
@@ -325,7 +331,8 @@ impl Device for Driver {
 }
 
 impl Drop for Driver {
-    /// Lets the reply in flight pass, stops tracking, and sets the line back to its first speed for whoever comes next.
+    /// Waits for the present reply to pass, stops tracking, and resets the line to its initial speed for the next
+    /// session.
     fn drop(&mut self) {
         const TIMEOUT: Duration = Duration::from_millis(100);
         if self.health.standing == Standing::Lost(Loss::Disconnected) {
@@ -334,7 +341,7 @@ impl Drop for Driver {
         if matches!(self.flight, Flight::Asked { .. }) {
             self.session.let_pass(TIMEOUT / 2);
         }
-        // A unit that does not answer any more gets the command all the same.
+        // Sent even if the unit does not answer any more.
         self.session.ask(&Command::Stop, TIMEOUT).ok();
         let first = Command::Comm { baud: FIRST_BAUD };
         if self.serial
@@ -346,7 +353,7 @@ impl Drop for Driver {
     }
 }
 
-/// A handle in the product's units; `None` for numbers that cannot be.
+/// Converts a handle to SI units; `None` for impossible numbers.
 fn tracked(told: &HandleFrame) -> Option<Tracked> {
     let out_of_volume = told.status.has(PortStatus::OUT_OF_VOLUME);
     match told.sight {
@@ -354,7 +361,7 @@ fn tracked(told: &HandleFrame) -> Option<Tracked> {
         Sight::Disabled => Some(Tracked::Disabled),
         Sight::Valid(at) => {
             let seen = seen(&at, told.status.has(PortStatus::PARTLY_OUT))?;
-            // Beyond the volume the numbers are not characterised: they are not handed on.
+            // Outside the volume the accuracy is not specified, so the numbers are not used.
             Some(if out_of_volume { Tracked::Missing { out_of_volume } } else { seen })
         }
     }

@@ -1,11 +1,11 @@
-//! NDI's optical and electromagnetic trackers (Polaris Spectra, Vicra, Vega; Aurora) by their Combined API.
+//! NDI's optical and electromagnetic trackers (Polaris Spectra, Vicra, Vega; Aurora) through their Combined API.
 //!
-//! Over a network (TCP 8765) or a serial line. The wire speaks mm; readings are in m, in the camera's frame `c`, orientations
-//! `c_from_tool`, scalar first. Which tools there are is told by definition files (`.rom`); up to four are read. A frame number
-//! makes a reading new. Errors while opening are [`Trouble`](super::Trouble); while running, see [`Driver`]. Any bytes on the wire are
-//! survived: the codecs refuse what they do not know.
+//! Over a network (TCP 8765) or a serial line. The wire uses mm; readings are in m, in the camera's frame `c`,
+//! orientations `c_from_tool`, scalar first. Definition files (`.rom`) describe the tools; up to four are tracked. A
+//! reading is new if its frame number is. Errors while opening are [`Trouble`](super::Trouble); for errors while
+//! running, see [`Driver`]. The codecs accept any bytes and refuse what they do not know.
 //!
-//! Source of the wire's facts: NDI's Combined API as its open clients show it; nothing here was tried on a real unit.
+//! Source of the protocol: NDI's Combined API as implemented in its open-source clients. Not verified with a real unit.
 
 pub mod command;
 mod crc;

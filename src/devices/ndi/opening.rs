@@ -1,4 +1,5 @@
-//! The way from nothing to a unit that tracks: line, reset, old handles, tool definitions, start (reference 1.3).
+//! From a connection to a tracking unit: line speed, reset, freeing old handles, tool definitions, start (reference
+//! 1.3).
 
 use std::time::Duration;
 
@@ -17,33 +18,33 @@ use crate::{
     transport::{Serial, SerialSettings, Tcp},
 };
 
-/// Reply options of every tracking command.
+/// Reply options used in every tracking command.
 pub(super) const OPTIONS: u16 = TRANSFORMS | OUTSIDE_TOO;
-/// Speed of the line after switching on and after a reset.
+/// Line speed after power-on and after a reset.
 pub(super) const FIRST_BAUD: u32 = 9600;
-/// How long to wait for the unit.
+/// Time limits for replies.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Timeouts {
-    /// For commands that it answers at once.
+    /// For commands that are answered immediately.
     quick: Duration,
-    /// For those for which it does something.
+    /// For commands that take the unit some time.
     slow: Duration,
 }
 
 impl Timeouts {
-    /// As the guide has it.
+    /// The values of the manufacturer's guide.
     pub(super) const USUAL: Self = Self { quick: Duration::from_millis(500), slow: Duration::from_secs(5) };
-    /// For a diagnosis, which tells within a second.
+    /// For a diagnosis, which must finish within a second.
     pub(super) const SHORT: Self = Self { quick: Duration::from_millis(200), slow: Duration::from_millis(400) };
 }
 
-/// After `INIT` and after a change of speed, as the guide asks.
+/// Wait after `INIT` and after a change of speed, as the guide requires.
 const SETTLE: Duration = Duration::from_millis(100);
-/// For a connection to be made.
+/// Time limit for connecting.
 const CONNECT: Duration = Duration::from_secs(2);
 const BREAK: Duration = Duration::from_millis(250);
 
-/// A unit that tracks.
+/// A unit that is tracking.
 #[derive(Debug)]
 pub(super) struct Opened {
     pub(super) session: Session,
@@ -74,18 +75,18 @@ fn over_network(place: &str, timeouts: Timeouts) -> Result<Session, Trouble> {
     Ok(session)
 }
 
-/// Finds the speed of the line: as the last console left it, as after switching on, or after a reset by a break.
+/// Finds the line speed: as the last session left it, as after power-on, or after a reset by a break.
 fn over_line(place: &str, baud: u32, timeouts: Timeouts) -> Result<Session, Trouble> {
     let line = Serial::open(&SerialSettings { port: place.to_owned(), baud })?;
     let mut session = Session::new(Wire::Serial(line));
     let told = |command, failure| trouble(place, Some(baud), command, failure);
-    // What the line still holds may be half a command or a reply to the last console: the first attempt may fail.
+    // The line may still hold half a command of, or a reply to, the last session, so the first attempt may fail.
     let mut found = false;
     for speed in [baud, FIRST_BAUD] {
         set_baud(&mut session, speed).map_err(|failure| told("INIT", failure))?;
         let mut answered = session.ask_again(&Command::Init, timeouts.quick / 2);
         if answered.as_deref() == Ok("RESET") {
-            // What is slow for a unit at a higher speed is a break to it.
+            // Bytes at a low speed look like a break to a unit at a higher speed.
             std::thread::sleep(SETTLE);
             answered = session.ask_again(&Command::Init, timeouts.slow);
         }
@@ -115,7 +116,7 @@ fn set_baud(session: &mut Session, baud: u32) -> Result<(), Failure> {
     }
 }
 
-/// A break on the line at the first speed; the unit says `RESET`.
+/// Sends a break at the initial speed; the unit replies `RESET`.
 fn reset(session: &mut Session, timeouts: Timeouts) -> Result<(), Failure> {
     set_baud(session, FIRST_BAUD)?;
     session.drain()?;
@@ -127,7 +128,7 @@ fn reset(session: &mut Session, timeouts: Timeouts) -> Result<(), Failure> {
     Ok(())
 }
 
-/// What a failure means to the person at the machine.
+/// Translates a failure for the user.
 fn trouble(place: &str, baud: Option<u32>, command: &str, failure: Failure) -> Trouble {
     let place = place.to_owned();
     match (failure, baud) {
@@ -179,7 +180,7 @@ impl Opening {
         Ok(Opened { session: self.session, identity, form, handles })
     }
 
-    /// Looks at the unit's status once, so that a fault is told as such and not as a loss after every opening.
+    /// Reads the unit's status once, so that a fault is reported as such and not as a loss after every opening.
     fn look(&mut self) -> Result<(), Trouble> {
         let answer = self.quick(&Command::Track(Form::Text, OPTIONS))?;
         let frames = Frames::of_text(answer.as_bytes(), OPTIONS).map_err(|_| self.trouble("TX", Failure::Garbled))?;
@@ -194,7 +195,7 @@ impl Opening {
         })
     }
 
-    /// Gives one tool a handle and its definition.
+    /// Requests a handle for one tool and loads its definition.
     fn define(&mut self, definition: &Definition, name: &str) -> Result<u8, Trouble> {
         let answer = self.slow(&Command::Request(WIRELESS), "PHRQ")?;
         let handle = read_hex(answer.as_bytes()).filter(|_| answer.len() == 2);
@@ -206,7 +207,7 @@ impl Opening {
         Ok(handle)
     }
 
-    /// Initialises what is plugged in; a tool can bring others, so the unit is asked twice.
+    /// Initialises tools that are plugged in. A tool can bring further handles, so the unit is asked twice.
     fn plugged(&mut self, handles: &mut [Option<u8>; TRACKED_TOOLS]) -> Result<(), Trouble> {
         for _ in 0..2 {
             for (handle, _) in self.handles(Filter::ToInitialise)? {
@@ -219,7 +220,7 @@ impl Opening {
         Ok(())
     }
 
-    /// Handles with their status.
+    /// Handles and their status.
     fn handles(&mut self, filter: Filter) -> Result<Vec<(u8, PortStatus)>, Trouble> {
         let answer = self.quick(&Command::Handles(filter))?;
         handles_of(answer.as_bytes()).ok_or_else(|| self.trouble("PHSR", Failure::Garbled))
@@ -238,7 +239,7 @@ impl Opening {
     }
 }
 
-/// Reads `PHSR`: a count, then for every handle two digits and its status in three.
+/// Parses `PHSR`: a count, then two digits for every handle and three for its status.
 pub(super) fn handles_of(text: &[u8]) -> Option<Vec<(u8, PortStatus)>> {
     let (count, rest) = text.split_at_checked(2)?;
     let count = read_hex(count)? as usize;

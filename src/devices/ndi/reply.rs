@@ -1,37 +1,39 @@
-//! Replies out of a stream of bytes that may be dirty: ASCII lines and binary blocks, each with its checksum (reference 1.2).
+//! Finds replies in a stream that may contain errors: ASCII lines and binary blocks, each with its checksum (reference
+//! 1.2).
 //!
-//! Bounded memory, no allocation after [`Inbox::new`]. A binary block is found again by its start and the checksum of its header;
-//! a line by its CR. What fails its checksum is told as [`Arrival::Damaged`] and gone.
+//! Bounded memory, no allocation after [`Inbox::new`]. A binary block is recognised by its start sequence and the
+//! checksum of its header; a line by its CR. A reply with a wrong checksum is reported as [`Arrival::Damaged`] and
+//! discarded.
 
 use super::crc::{crc16, read_hex};
 
 /// First bytes of a binary reply: 0xA5C4, little-endian.
 const BINARY_START: [u8; 2] = [0xC4, 0xA5];
-/// Longest reply that is taken, bytes on the wire. 24 tools in `TX` make 1700.
+/// Longest reply accepted, bytes on the wire. `TX` with 24 tools has 1700.
 pub const REPLY_MAX: usize = 4096;
 const HEADER: usize = 6;
 
-/// What a host waits for.
+/// Format of the reply that the host is waiting for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Expected {
     /// An ASCII line.
     Line,
-    /// A binary block, or `ERRORnn`, or `RESET` where the unit was switched off and on.
+    /// A binary block; or `ERRORnn`; or `RESET` if the unit was switched off and on.
     Block,
 }
 
-/// What came.
+/// A reply found in the stream.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Arrival<'a> {
-    /// An ASCII reply, checked, without checksum and CR.
+    /// An ASCII reply with a correct checksum; checksum and CR are removed.
     Line(&'a [u8]),
-    /// The body of a binary reply, checked.
+    /// The body of a binary reply with correct checksums.
     Block(&'a [u8]),
-    /// Something with a wrong checksum or of a wrong length.
+    /// A reply with a wrong checksum or an impossible length.
     Damaged,
 }
 
-/// Bytes that have arrived and are not yet a reply.
+/// Buffer of bytes that are not yet a complete reply.
 #[derive(Debug)]
 pub struct Inbox {
     bytes: Box<[u8; REPLY_MAX]>,
@@ -47,41 +49,41 @@ impl Default for Inbox {
 }
 
 impl Inbox {
-    /// Empty.
+    /// An empty buffer.
     pub fn new() -> Self {
         Self { bytes: Box::new([0; REPLY_MAX]), begin: 0, end: 0, skipped: 0 }
     }
 
-    /// Room for what arrives next; never empty.
+    /// Space for new bytes; never empty.
     pub fn room(&mut self) -> &mut [u8] {
         if self.end == REPLY_MAX {
             self.bytes.copy_within(self.begin..self.end, 0);
             (self.begin, self.end) = (0, self.end - self.begin);
         }
         if self.end == REPLY_MAX {
-            // Full of something that never became a reply.
+            // The buffer is full of bytes that never became a reply.
             self.clear();
         }
         &mut self.bytes[self.end..]
     }
 
-    /// So many bytes of the room were filled.
+    /// Reports that `count` bytes were written into the space.
     pub fn filled(&mut self, count: usize) {
         self.end = (self.end + count).min(REPLY_MAX);
     }
 
-    /// Forgets what has arrived.
+    /// Discards everything received.
     pub fn clear(&mut self) {
         self.skipped += (self.end - self.begin) as u64;
         (self.begin, self.end) = (0, 0);
     }
 
-    /// Bytes that were part of no reply, since the last call.
+    /// Number of bytes that belonged to no reply, since the last call.
     pub const fn take_skipped(&mut self) -> u64 {
         std::mem::replace(&mut self.skipped, 0)
     }
 
-    /// The next reply in what has arrived, if it is whole.
+    /// The next complete reply.
     pub fn next(&mut self, expected: Expected) -> Option<Arrival<'_>> {
         if self.begin == self.end {
             (self.begin, self.end) = (0, 0);
@@ -133,23 +135,23 @@ impl Inbox {
     }
 }
 
-/// The text of a line whose checksum is right.
+/// The text of a line with a correct checksum.
 fn checked(line: &[u8]) -> Option<&[u8]> {
     let (text, crc) = line.split_at_checked(line.len().checked_sub(4)?)?;
     (read_hex(crc) == Some(u32::from(crc16(text)))).then_some(text)
 }
 
-/// What the bytes begin with, where a block is expected.
+/// Start of the buffer when a block is expected.
 enum Found {
-    /// No reply.
+    /// Not a reply.
     Nothing,
-    /// It may become one.
+    /// Possibly an incomplete reply.
     Part,
     /// A reply with a wrong checksum.
     Bad,
-    /// A block with a body of this length.
+    /// A block with a body of this length, bytes.
     Block(usize),
-    /// A line with a text of this length.
+    /// A line with a text of this length, bytes.
     Line(usize),
 }
 
@@ -181,13 +183,13 @@ fn seek(bytes: &[u8]) -> Found {
     }
 }
 
-/// Appends the checksum and CR to the text in `reply`, which becomes an ASCII reply.
+/// Appends checksum and CR to the text in `reply`.
 pub fn finish_line(reply: &mut Vec<u8>) {
     let crc = crc16(reply);
     reply.extend_from_slice(format!("{crc:04X}\r").as_bytes());
 }
 
-/// A binary reply around `body`; what is longer than 65535 bytes has no such form and is cut off.
+/// A binary reply with this body; more than 65535 bytes cannot be represented and are cut off.
 pub fn block_of(body: &[u8]) -> Vec<u8> {
     let body = &body[..body.len().min(usize::from(u16::MAX))];
     let mut reply = BINARY_START.to_vec();

@@ -1,4 +1,4 @@
-//! One command, one reply, waiting for it: for opening and closing, never for the real-time thread.
+//! Sends a command and waits for the reply: for opening and closing, never for the real-time thread.
 
 use std::time::{Duration, Instant};
 
@@ -13,17 +13,17 @@ use crate::{
     transport::{Bytes, Serial, Tcp},
 };
 
-/// The two ways to a unit.
+/// The two types of connection.
 #[derive(Debug)]
 pub(super) enum Wire {
-    /// Network.
+    /// Network connection.
     Tcp(Tcp),
     /// Serial line.
     Serial(Serial),
 }
 
 impl Wire {
-    /// The line does not exist any more. A connection tells that by itself when it is read.
+    /// Whether the serial port no longer exists. A closed network connection is noticed when it is read.
     pub(super) fn is_gone(&mut self) -> bool {
         match self {
             Self::Tcp(_) => false,
@@ -48,24 +48,24 @@ impl Bytes for Wire {
     }
 }
 
-/// Why a command was not answered as it should be.
+/// Why a command failed.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum Failure {
-    /// Nothing came.
+    /// No reply.
     Silent,
-    /// Bytes that make no reply came.
+    /// Bytes that are not a reply.
     Garbled,
-    /// The connection is gone.
+    /// The connection is closed.
     Gone,
-    /// The unit refuses.
+    /// The unit refused the command.
     Refused(ErrorCode),
 }
 
-/// Time of quiet after which a reply that is damaged is over.
+/// A damaged reply counts as finished after this time without bytes.
 const QUIET: Duration = Duration::from_millis(50);
 const NAP: Duration = Duration::from_micros(500);
 
-/// A wire and what came over it.
+/// A connection and the bytes received over it.
 #[derive(Debug)]
 pub(super) struct Session {
     pub(super) wire: Wire,
@@ -77,14 +77,14 @@ impl Session {
         Self { wire, inbox: Inbox::new() }
     }
 
-    /// Sends a command and waits for its reply; the text of the reply.
+    /// Sends a command and waits for its reply; returns the text of the reply.
     pub(super) fn ask(&mut self, command: &Command<'_>, timeout: Duration) -> Result<String, Failure> {
         self.drain()?;
         self.wire.send(command.encode().as_bytes()).map_err(|_| Failure::Gone)?;
         self.wait(timeout)
     }
 
-    /// The same for a command that may be repeated without harm, when its reply does not come or is damaged.
+    /// The same for a command that may safely be repeated, if its reply is missing or damaged.
     pub(super) fn ask_again(&mut self, command: &Command<'_>, timeout: Duration) -> Result<String, Failure> {
         match self.ask(command, timeout) {
             Err(Failure::Silent | Failure::Garbled) => self.ask(command, timeout),
@@ -92,7 +92,7 @@ impl Session {
         }
     }
 
-    /// Waits for a line.
+    /// Waits for an ASCII reply.
     pub(super) fn wait(&mut self, timeout: Duration) -> Result<String, Failure> {
         let begin = Instant::now();
         let (mut heard, mut damaged) = (begin, false);
@@ -118,7 +118,7 @@ impl Session {
         Err(if any { Failure::Garbled } else { Failure::Silent })
     }
 
-    /// Waits until something has come and the line is quiet again, or until timeout ends.
+    /// Waits until something has arrived and the line is quiet again, or until `timeout`.
     pub(super) fn let_pass(&mut self, timeout: Duration) {
         let begin = Instant::now();
         let mut heard: Option<Instant> = None;
@@ -131,7 +131,7 @@ impl Session {
         }
     }
 
-    /// Throws away what has arrived.
+    /// Discards what has arrived.
     pub(super) fn drain(&mut self) -> Result<(), Failure> {
         let mut old = [0; COMMAND_MAX];
         for _ in 0..64 {

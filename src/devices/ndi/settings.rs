@@ -1,4 +1,4 @@
-//! What the rig file says of the tracker.
+//! Settings of the tracker in a rig file.
 
 use std::path::PathBuf;
 
@@ -6,16 +6,16 @@ use serde::{Deserialize, Serialize};
 
 use crate::{TRACKED_TOOLS, Trouble};
 
-/// TCP port of the units with a network (reference 1.1).
+/// TCP port of units with a network connection (reference 1.1).
 pub const PORT: u16 = 8765;
-/// Line speeds that carry a tracking reply of four tools within a frame's time or little more, bit/s.
+/// Line speeds at which a tracking reply with four tools takes about the time of a frame or less, bit/s.
 const SPEEDS: [u32; 6] = [38_400, 57_600, 115_200, 230_400, 921_600, 1_228_739];
 
-/// Which form of tracking replies to ask for.
+/// Format of tracking replies.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Replies {
-    /// As the firmware can.
+    /// The best that the firmware supports.
     #[default]
     Auto,
     /// `TX`.
@@ -24,23 +24,23 @@ pub enum Replies {
     Binary,
 }
 
-/// Settings of the tracker in the rig file. Either `address` or `port` is given.
+/// Settings of the tracker in a rig file. Exactly one of `address` and `port` must be given.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Settings {
-    /// Host, or `host:port`, of a unit with a network; the port is 8765 where none is given.
+    /// Network address: host, or `host:port`; the default port is 8765.
     pub address: Option<String>,
-    /// Serial port of another: its device file, or `COM3`.
+    /// Serial port: device file, or `COM3`.
     pub port: Option<String>,
-    /// Speed of the serial line while tracking, bit/s; the line begins at 9600 whatever stands here.
+    /// Line speed while tracking, bit/s; the session always starts at 9600.
     pub baud: u32,
     /// Tool definitions (`.rom` files) of the wireless tools, in the order in which they are reported.
     pub tools: Vec<PathBuf>,
-    /// Also take tools that are plugged in, after the wireless ones.
+    /// Whether tools that are plugged in are used too, after the wireless ones.
     pub wired: bool,
-    /// Form of the tracking replies.
+    /// Format of the tracking replies.
     pub replies: Replies,
-    /// Frames per second of the unit's frame counter, Hz, from which its time is told. 60 for Polaris, 40 for Aurora.
+    /// Rate of the unit's frame counter, Hz, from which its time is computed. 60 for Polaris, 40 for Aurora.
     pub frame_hz: f64,
 }
 
@@ -63,7 +63,10 @@ fn refuse(key: &str, value: impl Into<String>, allowed: &str) -> Trouble {
 }
 
 impl Settings {
-    /// Tells the first setting that is not possible.
+    /// Checks every setting.
+    ///
+    /// # Errors
+    /// [`Trouble::Setting`] for the first invalid setting.
     pub fn check(&self) -> Result<(), Trouble> {
         if self.address.is_some() == self.port.is_some() {
             let value = self.address.as_deref().unwrap_or("nothing");
@@ -84,7 +87,7 @@ impl Settings {
         Ok(())
     }
 
-    /// Where the unit is, with the port number where it has a network.
+    /// Its address, with the port number for a network connection, or its serial port.
     pub fn place(&self) -> String {
         match (&self.address, &self.port) {
             (Some(address), _) if address.contains(':') => address.clone(),

@@ -1,8 +1,8 @@
-//! What a tracking reply says: `BX` bodies and `TX` texts, both ways (reference 1.4, 1.5).
+//! Content of tracking replies: `BX` bodies and `TX` texts, decoded and encoded (reference 1.4, 1.5).
 //!
-//! Units of the wire: quaternions without a unit, scalar first, tool in the camera's frame; translations and errors in mm. Reply
-//! options understood are 0001 (transforms), 0800 (outside too), 1000 (strays, which are skipped and never sent). Parsing allocates nothing
-//! and takes any bytes; numbers are handed on as they are, also those that are not finite.
+//! Units of the wire: quaternions scalar first, tool in the camera's frame; translations and errors in mm. Supported
+//! reply options are 0001 (transforms), 0800 (tools outside the volume), 1000 (stray markers, which are skipped and
+//! never sent). Parsing allocates nothing and accepts any bytes; numbers are returned as they are, even if not finite.
 
 use super::{
     command::STRAYS,
@@ -10,26 +10,26 @@ use super::{
     words::{PortStatus, SystemStatus},
 };
 
-/// Handles in one reply.
+/// Most handles in one reply.
 pub const HANDLES_MAX: usize = 24;
 
-/// Where a tool is, in the units of the wire.
+/// Position and orientation of a tool, in the units of the wire.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Transform {
     /// Orientation of the tool in the camera's frame, scalar first.
     pub quaternion: [f64; 4],
     /// Its origin there, mm.
     pub translation_mm: [f64; 3],
-    /// Root mean square error of the markers, mm.
+    /// Root mean square error of the fit to the markers, mm.
     pub error_mm: f64,
 }
 
-/// What the unit says of one handle.
+/// Visibility of one tool.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Sight {
     /// Seen.
     Valid(Transform),
-    /// Not seen.
+    /// Not seen by the camera.
     #[default]
     Missing,
     /// Not enabled.
@@ -42,9 +42,9 @@ pub struct HandleFrame {
     pub handle: u8,
     /// Whether and where it is seen.
     pub sight: Sight,
-    /// Its status; 0 where it is disabled.
+    /// Its status; 0 if it is disabled.
     pub status: PortStatus,
-    /// Number of the frame; 0 where it is disabled.
+    /// Frame number; 0 if it is disabled.
     pub frame: u32,
 }
 
@@ -57,13 +57,13 @@ pub struct Frames {
     pub system: SystemStatus,
 }
 
-/// The reply has a right checksum and another shape than it should.
+/// The reply has a correct checksum but not the expected structure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("a tracking reply of an unknown shape")]
 pub struct Malformed;
 
 impl Frames {
-    /// Of these handles; no more than [`HANDLES_MAX`] are taken.
+    /// A reply with these handles; those beyond [`HANDLES_MAX`] are dropped.
     pub fn new(handles: &[HandleFrame], system: SystemStatus) -> Self {
         let mut frames = Self { system, ..Self::default() };
         for one in handles {
@@ -83,7 +83,10 @@ impl Frames {
         Ok(())
     }
 
-    /// Reads the body of a `BX` reply that was asked for with `options`.
+    /// Decodes the body of a `BX` reply to a request with `options`.
+    ///
+    /// # Errors
+    /// [`Malformed`] if the body does not have the structure that `options` require.
     pub fn of_block(body: &[u8], options: u16) -> Result<Self, Malformed> {
         let mut cursor = Cursor(body);
         let mut frames = Self::default();
@@ -110,7 +113,7 @@ impl Frames {
         Ok(frames)
     }
 
-    /// Writes the body of a `BX` reply to `options`.
+    /// Encodes the body of a `BX` reply to a request with `options`.
     pub fn write_block(&self, options: u16, body: &mut Vec<u8>) {
         body.push(self.count as u8);
         for HandleFrame { handle, sight, status, frame } in self.handles() {
@@ -136,7 +139,10 @@ impl Frames {
         body.extend_from_slice(&self.system.0.to_le_bytes());
     }
 
-    /// Reads a `TX` reply that was asked for with `options`.
+    /// Decodes a `TX` reply to a request with `options`.
+    ///
+    /// # Errors
+    /// [`Malformed`] if the text does not have the structure that `options` require.
     pub fn of_text(text: &[u8], options: u16) -> Result<Self, Malformed> {
         let mut cursor = Cursor(text);
         let mut frames = Self::default();
@@ -169,8 +175,8 @@ impl Frames {
         Ok(frames)
     }
 
-    /// Writes a `TX` reply to `options`. Numbers that do not fit their digits are cut to the largest that do, those
-    /// that are none to 0.
+    /// Encodes a `TX` reply to a request with `options`. Numbers too large for their field become the largest that
+    /// fits; NaN becomes 0.
     pub fn write_text(&self, options: u16, text: &mut Vec<u8>) {
         hex_to(text, 2, self.count as u32);
         for HandleFrame { handle, sight, status, frame } in self.handles() {
@@ -201,14 +207,14 @@ fn hex_to(text: &mut Vec<u8>, digits: usize, number: u32) {
     text.extend_from_slice(&room[..digits]);
 }
 
-/// A sign and so many decimal digits.
+/// Appends a sign and this number of decimal digits.
 fn decimal_to(text: &mut Vec<u8>, digits: u32, number: f64) {
     let largest = f64::from(10_u32.pow(digits)) - 1.0;
     let whole = number.round().clamp(-largest, largest) as i64;
     text.extend_from_slice(format!("{whole:+0width$}", width = digits as usize + 1).as_bytes());
 }
 
-/// The unread part of a reply.
+/// The part of a reply that has not been read yet.
 struct Cursor<'a>(&'a [u8]);
 
 impl<'a> Cursor<'a> {
@@ -246,7 +252,7 @@ impl<'a> Cursor<'a> {
         read_hex(self.take(digits)?).ok_or(Malformed)
     }
 
-    /// A sign and digits, times `scale`.
+    /// Reads a sign and digits; returns the number times `scale`.
     fn decimal(&mut self, digits: usize, scale: f64) -> Result<f64, Malformed> {
         let (sign, digits) = (self.byte()?, self.take(digits)?);
         let whole = digits.iter().try_fold(0.0, |whole, digit| {
@@ -274,7 +280,7 @@ impl<'a> Cursor<'a> {
         rest.is_some()
     }
 
-    /// Skips to the next line: further information may stand here, after `DISABLED` also the status.
+    /// Skips to the next line. Further information may stand here, after `DISABLED` also the status.
     fn rest_of_line(&mut self) -> Result<(), Malformed> {
         let end = self.0.iter().position(|byte| *byte == b'\n').ok_or(Malformed)?;
         self.take(end + 1).map(|_| ())

@@ -1,15 +1,16 @@
-//! Who the unit says it is: the reply to `VER:0`, and which form of tracking its firmware can give (reference 1.3).
+//! Identity of the unit from the reply to `VER:0`, and the format of tracking replies that its firmware supports
+//! (reference 1.3).
 
 use nima_files::quoted;
 
 use super::command::Form;
 use crate::Identity;
 
-/// Firmwares whose `BX` is not to be relied on; `TX` is used with them.
+/// Firmware versions whose `BX` is unreliable; `TX` is used with them.
 const TEXT_ONLY: [&str; 5] =
     ["AURORA Rev 007", "AURORA Rev 008", "Polaris Vega 008", "Polaris Spectra Rev 006", "Polaris Spectra Rev 007"];
 
-/// Reads the lines of `VER:0`. What is not there stays empty.
+/// Parses the lines of `VER:0`. Missing fields stay empty.
 pub fn identity_of(text: &str) -> Identity {
     let after = |keys: &[&str]| {
         let found = text.lines().find_map(|line| keys.iter().find_map(|key| line.trim().strip_prefix(key)));
@@ -23,7 +24,7 @@ pub fn identity_of(text: &str) -> Identity {
     }
 }
 
-/// The form of tracking replies for this firmware.
+/// The format of tracking replies for this firmware.
 pub fn form_of(firmware: &str) -> Form {
     if TEXT_ONLY.contains(&firmware) { Form::Text } else { Form::Binary }
 }

@@ -1,27 +1,27 @@
-//! What the unit's numbers mean: error codes and status bits, in words.
+//! Text for the unit's error codes and status bits.
 
-/// An `ERRORnn` of the unit.
+/// An error reply, `ERRORnn`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ErrorCode(pub u8);
 
 impl ErrorCode {
-    /// Unknown name of a command.
+    /// Unknown command.
     pub const INVALID_COMMAND: Self = Self(0x01);
-    /// Longer than any command.
+    /// Command too long.
     pub const TOO_LONG: Self = Self(0x02);
-    /// Shorter than the command may be.
+    /// Command too short.
     pub const TOO_SHORT: Self = Self(0x03);
-    /// The command's checksum is wrong.
+    /// Wrong checksum of the command.
     pub const BAD_CRC: Self = Self(0x04);
-    /// The line cannot be set so.
+    /// Invalid line parameters.
     pub const COMM_PARAMETERS: Self = Self(0x06);
-    /// Too few or too many parameters.
+    /// Wrong number of parameters.
     pub const PARAMETER_COUNT: Self = Self(0x07);
-    /// No such handle.
+    /// Unknown handle.
     pub const INVALID_HANDLE: Self = Self(0x08);
-    /// Priority is none of S, D, B.
+    /// Priority other than S, D or B.
     pub const INVALID_PRIORITY: Self = Self(0x09);
-    /// Not in this mode: tracking or not tracking.
+    /// Not possible in this mode (tracking or not tracking).
     pub const INVALID_MODE: Self = Self(0x0C);
     /// The handle has no tool.
     pub const NO_TOOL: Self = Self(0x0D);
@@ -31,16 +31,16 @@ impl ErrorCode {
     pub const NOT_ENABLED: Self = Self(0x0F);
     /// `INIT` was not sent.
     pub const SYSTEM_NOT_INITIALISED: Self = Self(0x10);
-    /// A parameter is out of its range.
+    /// A parameter is outside its range.
     pub const OUT_OF_RANGE: Self = Self(0x23);
-    /// No handle is left.
+    /// No free handle.
     pub const NO_HANDLES_LEFT: Self = Self(0x2D);
-    /// No such user parameter.
+    /// Unknown user parameter.
     pub const NO_SUCH_PARAMETER: Self = Self(0x34);
-    /// The user parameter cannot be written.
+    /// The user parameter is read-only.
     pub const READ_ONLY: Self = Self(0x39);
 
-    /// In words.
+    /// Text for a message.
     pub const fn words(self) -> &'static str {
         match self.0 {
             0x01 => "unknown command",
@@ -107,18 +107,18 @@ impl std::fmt::Display for ErrorCode {
 pub struct PortStatus(pub u32);
 
 impl PortStatus {
-    /// A tool is there.
+    /// A tool is present.
     pub const OCCUPIED: u32 = 1;
-    /// `PINIT` was done.
+    /// Initialised with `PINIT`.
     pub const INITIALISED: u32 = 1 << 4;
-    /// `PENA` was done.
+    /// Enabled with `PENA`.
     pub const ENABLED: u32 = 1 << 5;
-    /// Outside of the measurement volume.
+    /// Outside the measurement volume.
     pub const OUT_OF_VOLUME: u32 = 1 << 6;
-    /// Some markers are outside.
+    /// Some markers are outside the measurement volume.
     pub const PARTLY_OUT: u32 = 1 << 7;
 
-    /// Any of these bits is set.
+    /// Whether any of these bits is set.
     pub const fn has(self, bits: u32) -> bool {
         self.0 & bits != 0
     }
@@ -129,23 +129,23 @@ impl PortStatus {
 pub struct SystemStatus(pub u16);
 
 impl SystemStatus {
-    /// Bits that make the numbers doubtful: sync error, recoverable exception, temperature, changed hardware.
+    /// Bits that make the readings unreliable: sync error, recoverable exception, temperature, changed hardware.
     pub const FAULTS: u16 = 1 | 1 << 3 | 1 << 9 | 1 << 10;
     /// A recoverable processing exception.
     pub const EXCEPTION: u16 = 1 << 3;
-    /// A tool came.
+    /// A tool was plugged in.
     pub const TOOL_CAME: u16 = 1 << 6;
-    /// A tool went.
+    /// A tool was unplugged.
     pub const TOOL_WENT: u16 = 1 << 7;
-    /// A diagnostic message waits to be read (a knock, for one).
+    /// A diagnostic message is waiting (about a bump, for instance).
     pub const DIAGNOSTIC: u16 = 1 << 8;
 
-    /// The bits that are faults; 0 where there are none.
+    /// The fault bits that are set; 0 without a fault.
     pub const fn faults(self) -> u16 {
         self.0 & Self::FAULTS
     }
 
-    /// The gravest fault in words; nothing where there is none.
+    /// Text for the most serious fault; empty without one.
     pub const fn words(self) -> &'static str {
         match self.0 & Self::FAULTS {
             0 => "",

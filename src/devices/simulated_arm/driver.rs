@@ -1,4 +1,4 @@
-//! The arm itself.
+//! Driver of the simulated arm.
 
 use std::sync::{
     Arc,
@@ -10,7 +10,7 @@ use crate::{
     ARM_JOINTS, ArmReading, Device, Follower, Health, Identity, Lever, Stamped, Trouble, kinova::limits::Guard,
 };
 
-/// What it obeys.
+/// Whether it follows commands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Mode {
     Resting,
@@ -27,7 +27,7 @@ pub struct Driver {
     guard: Guard,
     mode: Mode,
     last_s: Option<f64>,
-    /// The lever was pulled.
+    /// Set when the lever was pulled.
     pulled: Arc<AtomicBool>,
     health: Health,
     identity: Identity,
@@ -37,7 +37,7 @@ impl Driver {
     /// An arm at rest.
     ///
     /// # Errors
-    /// [`Trouble::Setting`].
+    /// [`Trouble::Setting`] for a value outside its range.
     pub fn open(settings: &Settings) -> Result<Self, Trouble> {
         settings.check()?;
         let mut guard = Guard::new(settings.joint_limits());
@@ -162,7 +162,7 @@ mod tests {
         assert!(!arm.aim(&START_RAD), "it rests");
         arm.enter_servoing();
         assert!(polled(&mut arm, &mut now_s, 1).servoing);
-        // 0.1 rad/s in every joint, well below the limits; it lags by 1 / (2 pi 10 Hz).
+        // 0.1 rad/s in every joint, well below the limits; the lag is 1 / (2 pi 10 Hz).
         for tick in 1..=1000_u32 {
             assert!(arm.aim(&START_RAD.map(|rad| rad + 1e-4 * f64::from(tick))));
             polled(&mut arm, &mut now_s, 1);

@@ -1,7 +1,9 @@
-//! An arm without hardware: the joints of a Gen3 follow their commands with a lag of the first order. No wire, no emulator.
+//! An arm without hardware: the joints of a Gen3, which follow their commands with a first-order lag. There is no wire
+//! and no emulator.
 //!
-//! For trying a handle and a sensor before the arm is there. Commands are checked as those of the real arm are
-//! ([`Guard`](crate::kinova::limits::Guard)); it obeys one tick after it was asked to. Angles in rad. Time is handed in with every poll.
+//! For tests of a handle and a sensor without an arm. Commands are checked like those of the real arm
+//! ([`Guard`](crate::kinova::limits::Guard)); servoing starts one tick after the request. Angles in rad. The caller
+//! gives the time with every poll.
 
 mod driver;
 mod settings;

@@ -1,4 +1,4 @@
-//! What the rig file says of it.
+//! Settings of the simulated arm in a rig file.
 
 use std::f64::consts::TAU;
 
@@ -11,9 +11,9 @@ use crate::{ARM_JOINTS, Trouble};
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, tag = "make", rename = "simulated")]
 pub struct Settings {
-    /// Where its joints are at first, rad: the instrument must be in its trocar there.
+    /// Initial joint angles, rad; the instrument must be in its trocar there.
     pub start_rad: [f64; ARM_JOINTS],
-    /// How fast its joints follow, Hz, above 0 to 100.
+    /// Bandwidth of the joints, Hz, above 0 to 100.
     #[serde(default = "Settings::usual_bandwidth_hz")]
     pub bandwidth_hz: f64,
     /// Share of the arm's joint speeds that commands may use, above 0 to 1.
@@ -37,7 +37,7 @@ impl Settings {
         0.05
     }
 
-    /// An arm that begins there.
+    /// Settings with these initial joint angles (rad), the other values being the defaults.
     pub const fn at(start_rad: [f64; ARM_JOINTS]) -> Self {
         Self {
             start_rad,
@@ -47,7 +47,7 @@ impl Settings {
         }
     }
 
-    /// How its joints may be moved: whoever plans a path keeps to them, the driver checks them.
+    /// Limits of position, speed and acceleration: the planner keeps to them, the driver checks them.
     pub fn joint_limits(&self) -> JointLimits {
         JointLimits::of_arm(self.speed_fraction, self.lead_rad)
     }
@@ -57,7 +57,10 @@ impl Settings {
         TAU * self.bandwidth_hz
     }
 
-    /// Every number is possible.
+    /// Checks every value.
+    ///
+    /// # Errors
+    /// [`Trouble::Setting`] for the first value outside its range.
     pub fn check(&self) -> Result<(), Trouble> {
         let refuse =
             |key: &str, value: String, allowed: String| Trouble::Setting { key: key.to_owned(), value, allowed };

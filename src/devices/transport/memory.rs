@@ -1,4 +1,4 @@
-//! Transports within one process, for tests of drivers against emulators without the operating system between them.
+//! Transports within one process, for tests of drivers against emulators without the operating system.
 
 use std::{
     collections::VecDeque,
@@ -17,6 +17,21 @@ struct Line<T> {
 type Shared<T> = Arc<Mutex<Line<T>>>;
 
 /// One end of a pair of byte streams.
+///
+/// ```
+/// use nima_devices::{
+///     Loss,
+///     transport::{Bytes, MemoryBytes},
+/// };
+///
+/// let [mut here, mut there] = MemoryBytes::pair();
+/// let mut buffer = [0; 8];
+/// assert_eq!(there.receive(&mut buffer), Ok(0), "nothing has arrived yet");
+/// here.send(b"abc").expect("both ends are connected");
+/// assert_eq!((there.receive(&mut buffer).expect("three bytes"), &buffer[..3]), (3, &b"abc"[..]));
+/// here.cut();
+/// assert_eq!(there.receive(&mut buffer), Err(Loss::Disconnected));
+/// ```
 #[derive(Clone, Debug)]
 pub struct MemoryBytes {
     incoming: Shared<u8>,
@@ -35,13 +50,13 @@ fn with<T, R>(line: &Shared<T>, work: impl FnOnce(&mut Line<T>) -> R) -> R {
 }
 
 impl MemoryBytes {
-    /// Two ends that are joined.
+    /// Two connected ends.
     pub fn pair() -> [Self; 2] {
         let [one, other]: [Shared<u8>; 2] = Default::default();
         [Self { incoming: Arc::clone(&one), outgoing: Arc::clone(&other) }, Self { incoming: other, outgoing: one }]
     }
 
-    /// Cuts the line: both ends see it.
+    /// Disconnects both ends.
     pub fn cut(&self) {
         with(&self.incoming, |line| line.cut = true);
         with(&self.outgoing, |line| line.cut = true);
@@ -49,13 +64,13 @@ impl MemoryBytes {
 }
 
 impl MemoryDatagrams {
-    /// Two ends that are joined.
+    /// Two connected ends.
     pub fn pair() -> [Self; 2] {
         let [one, other]: [Shared<Vec<u8>>; 2] = Default::default();
         [Self { incoming: Arc::clone(&one), outgoing: Arc::clone(&other) }, Self { incoming: other, outgoing: one }]
     }
 
-    /// Cuts the line: both ends see it.
+    /// Disconnects both ends.
     pub fn cut(&self) {
         with(&self.incoming, |line| line.cut = true);
         with(&self.outgoing, |line| line.cut = true);
@@ -89,7 +104,7 @@ impl Datagrams for MemoryDatagrams {
     fn receive(&mut self, buffer: &mut [u8]) -> Result<Option<usize>, Loss> {
         with(&self.incoming, |line| match line.queue.pop_front() {
             Some(datagram) => {
-                // As the operating system does: what does not fit is cut off.
+                // As in the operating system, a datagram longer than the buffer is cut off.
                 let count = datagram.len().min(buffer.len());
                 buffer[..count].copy_from_slice(&datagram[..count]);
                 Ok(Some(count))

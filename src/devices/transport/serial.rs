@@ -1,4 +1,4 @@
-//! A serial line that never waits, with the low-latency flag where the port has it.
+//! A serial line that never waits, with the low-latency flag if the port supports it.
 
 use std::{
     io::{ErrorKind, Read as _, Write as _},
@@ -15,21 +15,21 @@ use super::Bytes;
 use crate::os;
 use crate::{Loss, Trouble};
 
-/// How a line is set; always 8 bits, no parity, one stop bit, no handshake.
+/// Settings of a line; always 8 bits, no parity, one stop bit, no handshake.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SerialSettings {
-    /// Its device file, or `COM3`.
+    /// Device file, or `COM3`.
     pub port: String,
     /// Line speed, bit/s.
     pub baud: u32,
 }
 
-/// An open line, held exclusively.
+/// An open line with exclusive access.
 pub struct Serial {
-    /// Settings of the line.
+    /// Used for the settings of the line.
     port: Port,
-    /// Its bytes. The port's own `read` makes an error with an allocation whenever there is nothing.
+    /// Used for its bytes. The port's own `read` allocates an error whenever nothing has arrived.
     #[cfg(unix)]
     bytes: std::fs::File,
     low_latency: bool,
@@ -46,11 +46,14 @@ impl std::fmt::Debug for Serial {
     }
 }
 
-/// Lets members of `plugdev` use any USB serial adapter.
+/// udev rule: members of `plugdev` may use any USB serial adapter.
 const UDEV: &str = r#"SUBSYSTEM=="tty", SUBSYSTEMS=="usb", GROUP="plugdev", MODE="0660", TAG+="uaccess""#;
 
 impl Serial {
-    /// Opens the line. On some sensors this alone restarts them (DTR).
+    /// Opens the line. Some sensors restart when their line is opened (DTR).
+    ///
+    /// # Errors
+    /// [`Trouble`] if the port is missing, in use, not permitted, or does not support the settings.
     pub fn open(settings: &SerialSettings) -> Result<Self, Trouble> {
         let SerialSettings { port, baud } = settings;
         let builder = serialport::new(port, *baud).timeout(Duration::from_millis(1));
@@ -68,12 +71,12 @@ impl Serial {
         }
     }
 
-    /// The driver of the port sends bytes on at once instead of collecting them for up to 16 ms.
+    /// Whether the port's driver delivers bytes without delay instead of collecting them for up to 16 ms.
     pub const fn has_low_latency(&self) -> bool {
         self.low_latency
     }
 
-    /// Errors that the port's hardware has counted (framing, parity, overrun, break); `None` where it does not count.
+    /// Errors counted by the port's hardware (framing, parity, overrun, break); `None` if it does not count them.
     #[cfg_attr(not(unix), expect(clippy::unused_self, reason = "only other systems count"))]
     pub fn line_errors(&self) -> Option<u32> {
         #[cfg(unix)]
@@ -86,19 +89,28 @@ impl Serial {
         }
     }
 
-    /// Another speed on an open line.
+    /// Changes the speed of the open line.
+    ///
+    /// # Errors
+    /// [`Loss::Disconnected`] if the port refuses the speed or is gone.
     pub fn set_baud(&mut self, baud: u32) -> Result<(), Loss> {
         self.port.set_baud_rate(baud).map_err(|_| Loss::Disconnected)
     }
 
-    /// Holds the line in the break condition for a while (blocks: for opening only).
+    /// Sends a break of this length (blocks, so for opening only).
+    ///
+    /// # Errors
+    /// [`Loss::Disconnected`] if the port refuses or is gone.
     pub fn send_break(&mut self, length: Duration) -> Result<(), Loss> {
         self.port.set_break().map_err(|_| Loss::Disconnected)?;
         std::thread::sleep(length);
         self.port.clear_break().map_err(|_| Loss::Disconnected)
     }
 
-    /// Throws away what has arrived.
+    /// Discards what has arrived.
+    ///
+    /// # Errors
+    /// [`Loss::Disconnected`] if the port is gone.
     pub fn clear(&mut self) -> Result<(), Loss> {
         self.port.clear(serialport::ClearBuffer::Input).map_err(|_| Loss::Disconnected)
     }
@@ -131,7 +143,8 @@ impl Serial {
 impl Bytes for Serial {
     fn receive(&mut self, buffer: &mut [u8]) -> Result<usize, Loss> {
         match self.stream().read(buffer) {
-            // Where nothing is there, reading is an error (raw mode waits for one byte at least); an end is a line hung up.
+            // Without data, reading is an error (raw mode waits for at least one byte), so 0 bytes mean that the line
+            // was hung up.
             Ok(0) if !buffer.is_empty() => Err(Loss::Disconnected),
             Ok(count) => Ok(count),
             Err(error)

@@ -16,7 +16,10 @@ pub struct Tcp {
 }
 
 impl Tcp {
-    /// Connects to `host:port`; waits at most `timeout`.
+    /// Connects to `host:port` within `timeout`.
+    ///
+    /// # Errors
+    /// [`Trouble`] if the address cannot be resolved or connected to in time.
     pub fn open(address: &str, timeout: Duration) -> Result<Self, Trouble> {
         let trouble = |error| Trouble::of_address(address, &error);
         let resolved = address.to_socket_addrs().map_err(trouble)?.next();
@@ -26,17 +29,23 @@ impl Tcp {
         Self::of(stream).map_err(trouble)
     }
 
-    /// This computer's address on the way to the other end.
+    /// This computer's address on the connection.
     pub fn local_ip(&self) -> Option<IpAddr> {
         self.stream.local_addr().ok().map(|address| address.ip())
     }
 
-    /// Another end of the same connection, for an emergency.
+    /// A second handle of the same connection, for emergencies.
+    ///
+    /// # Errors
+    /// If the operating system cannot duplicate the connection.
     pub fn duplicate(&self) -> std::io::Result<Self> {
         Ok(Self { stream: self.stream.try_clone()? })
     }
 
-    /// Of an accepted connection.
+    /// Wraps an accepted connection.
+    ///
+    /// # Errors
+    /// If the connection cannot be configured.
     pub fn of(stream: TcpStream) -> std::io::Result<Self> {
         stream.set_nonblocking(true)?;
         Ok(Self { stream })

@@ -1,4 +1,4 @@
-//! A UDP socket that talks to one peer and never waits.
+//! A UDP socket for one peer; it never waits.
 
 use std::{
     io::ErrorKind,
@@ -12,27 +12,33 @@ use crate::{Loss, Trouble};
 #[derive(Debug)]
 pub struct Udp {
     socket: UdpSocket,
-    /// Whose datagrams are taken; others are dropped.
+    /// Address of the peer; datagrams from others are dropped.
     from: IpAddr,
-    /// From which port, once that is known.
+    /// Port of the peer, once it is known.
     sender: Option<SocketAddr>,
     kept: bool,
 }
 
 impl Udp {
-    /// Listens at one address of this computer (port 0: any free one) for datagrams of one sender.
+    /// Listens at one address of this computer (port 0: any free one) for datagrams of one peer.
+    ///
+    /// # Errors
+    /// [`Trouble`] if this computer cannot listen at the address.
     pub fn listen(at: SocketAddr, from: IpAddr) -> Result<Self, Trouble> {
         let trouble = |error| Trouble::of_address(&format!("UDP port {} of {}", at.port(), at.ip()), &error);
         let socket = UdpSocket::bind(at).map_err(trouble)?;
         Self::of(socket, from).map_err(trouble)
     }
 
-    /// This computer can listen at this address, which is one address and not all of them.
+    /// Whether this computer can listen at this address, which must be a single address, not the wildcard.
     pub fn is_local(ip: IpAddr) -> bool {
         !ip.is_unspecified() && UdpSocket::bind((ip, 0)).is_ok()
     }
 
-    /// Talks to one address.
+    /// Communicates with one address.
+    ///
+    /// # Errors
+    /// [`Trouble`] if the socket cannot be created or connected.
     pub fn connect(to: SocketAddr) -> Result<Self, Trouble> {
         let trouble = |error| Trouble::of_address(&to.to_string(), &error);
         let socket = UdpSocket::bind(("0.0.0.0", 0)).map_err(trouble)?;
@@ -45,7 +51,7 @@ impl Udp {
         Ok(Self { socket, from, sender: None, kept: false })
     }
 
-    /// Where it listens.
+    /// The address at which it listens.
     pub fn local_address(&self) -> Option<SocketAddr> {
         self.socket.local_addr().ok()
     }
@@ -57,7 +63,7 @@ impl Udp {
     }
 }
 
-/// Strangers' datagrams skipped in one call.
+/// Most datagrams of other senders that are skipped in one call.
 const STRANGERS_MAX: usize = 16;
 
 impl Datagrams for Udp {
@@ -72,7 +78,7 @@ impl Datagrams for Udp {
                 Err(error) if matches!(error.kind(), ErrorKind::WouldBlock | ErrorKind::Interrupted) => {
                     return Ok(None);
                 }
-                // The peer's port is closed (an ICMP answer to what was sent).
+                // The peer's port is closed (an ICMP answer to a datagram sent earlier).
                 Err(_) => return Err(Loss::Disconnected),
             }
         }
@@ -82,7 +88,7 @@ impl Datagrams for Udp {
     fn send(&mut self, bytes: &[u8]) -> Result<(), Loss> {
         match self.socket.send(bytes) {
             Ok(_) => Ok(()),
-            // A full queue loses a datagram, as the network may.
+            // If the send queue is full, the datagram is lost, as may happen in the network.
             Err(error) if error.kind() == ErrorKind::WouldBlock => Ok(()),
             Err(_) => Err(Loss::Disconnected),
         }
@@ -90,7 +96,8 @@ impl Datagrams for Udp {
 
     fn keep_to_sender(&mut self) {
         let Some(sender) = self.sender.filter(|_| !self.kept) else { return };
-        // From here on the system drops strangers' datagrams before they take room; those that wait already are sorted out here.
+        // From here on the system drops datagrams of other senders before they use buffer space; those already waiting
+        // are dropped by this code.
         self.kept = self.socket.connect(sender).is_ok();
     }
 }
@@ -106,7 +113,7 @@ mod tests {
 
     const HOME: IpAddr = IpAddr::V4(Ipv4Addr::LOCALHOST);
 
-    /// The next datagram; waits long, for machines that are busy.
+    /// The next datagram, with a long timeout for busy computers.
     fn next(udp: &mut Udp) -> Vec<u8> {
         let (begin, mut buffer) = (Instant::now(), [0; 8]);
         while begin.elapsed() < Duration::from_secs(20) {
@@ -123,7 +130,7 @@ mod tests {
         let udp = Udp::listen(SocketAddr::new(HOME, 0), HOME).unwrap();
         let port = udp.local_address().unwrap().port();
         assert_eq!(udp.local_address().unwrap().ip(), HOME);
-        // A socket that listened at every address would leave no room for this one.
+        // If the socket listened at every address, this one could not be opened.
         #[cfg(target_os = "linux")]
         UdpSocket::bind(("127.0.0.2", port)).unwrap();
         assert!(matches!(Udp::listen(SocketAddr::new(HOME, port), HOME), Err(Trouble::Busy { .. })));
@@ -141,7 +148,7 @@ mod tests {
         assert_eq!(next(&mut udp), b"early", "whoever has its address may be the one");
         sensor.send_to(b"good", to).unwrap();
         assert_eq!(next(&mut udp), b"good");
-        // One arrives before the choice is made, the others after it.
+        // One arrives before the sender is chosen, the others after it.
         stranger.send_to(b"between", to).unwrap();
         udp.keep_to_sender();
         for count in 0..1000 {

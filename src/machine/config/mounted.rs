@@ -1,4 +1,4 @@
-//! What is mounted on the arms of a simulated rig. That is the rig's: a scene only says what is simulated.
+//! Sensors and tools on the simulated arms. They belong to the rig file; a scene only describes their physics.
 
 use nima_devices::Trouble;
 use nima_recording::store::{WristId, can_name_a_file};
@@ -7,18 +7,18 @@ use serde::{Deserialize, Serialize};
 use super::RigConfig;
 use crate::rig::Side;
 
-/// The wrist sensors and tools on the arms of a simulated rig.
+/// Identities of the wrist sensors and tools on the arms of a simulated rig.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct SimulatedWrists {
-    /// On the right arm, or the only one.
+    /// On the right arm.
     pub right: Option<WristId>,
     /// On the left arm.
     pub left: Option<WristId>,
 }
 
 impl SimulatedWrists {
-    /// What is on the arm of this side.
+    /// Sensor and tool on the arm of this side.
     pub const fn of(&self, side: Side) -> Option<&WristId> {
         match side {
             Side::Right => self.right.as_ref(),
@@ -28,7 +28,7 @@ impl SimulatedWrists {
 }
 
 impl RigConfig {
-    /// Sensor and tool on the simulated arm of this side, where the rig file names them; none on a rig with devices.
+    /// Sensor and tool on the simulated arm of this side, if the rig file names them; `None` on a rig with devices.
     pub fn simulated_wrist(&self, side: Side) -> Option<&WristId> {
         self.simulated.as_ref().filter(|_| self.devices.is_none())?.of(side)
     }

@@ -1,4 +1,4 @@
-//! What is told of the force at the tip: where it comes from, and what each stage made of it.
+//! The force at the tip: where it comes from, and the result of each processing stage.
 
 use nalgebra::Vector3;
 use nima_core::{
@@ -6,33 +6,33 @@ use nima_core::{
     tip_force::{Fallback, TipForceReport, Unsure},
 };
 
-/// Where the tip force of a tick comes from.
+/// Source of the tip force of a tick.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[expect(missing_docs, reason = "the names say it")]
 pub enum ForceSource {
     /// Measured at the tip.
     AtTip,
-    /// Measured at the wrist, weight and bias taken out; friction in the trocar is still in it.
+    /// Measured at the wrist, with weight and bias removed; friction in the trocar is still included.
     Wrist,
-    /// Measured at the wrist, weight, bias and friction taken out.
+    /// Measured at the wrist, with weight, bias and friction removed.
     Network,
-    /// The network is not sure: the fallback answers.
+    /// The network is uncertain about this sample; the force of the fallback is used.
     InDoubt { unsure: Unsure, fallback: Fallback },
-    /// Measured at the wrist, and no calibration is in force: nothing is rendered from it.
+    /// Measured at the wrist without a calibration; nothing is rendered.
     Uncalibrated,
     /// Calibrated, but the sample lacks the orientation that the calibration needs.
     NoOrientation,
-    /// A calibration or the network made an impossible number of a good sample.
+    /// A calibration or the network turned a valid sample into an impossible force.
     Poisoned,
 }
 
 impl ForceSource {
-    /// The tip force may be felt by a hand.
+    /// Whether the tip force may be rendered.
     pub const fn is_usable(self) -> bool {
         !matches!(self, Self::Uncalibrated | Self::NoOrientation | Self::Poisoned)
     }
 
-    /// Why the network does not answer, where it does not.
+    /// Why the network does not give the force, if it does not.
     pub const fn doubt(self) -> Option<Unsure> {
         match self {
             Self::InDoubt { unsure, .. } => Some(unsure),
@@ -41,21 +41,21 @@ impl ForceSource {
     }
 }
 
-/// What the path made of one sample.
+/// Result of the force path for one sample.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ForceReport {
     /// Where the tip force comes from.
     pub source: ForceSource,
-    /// Force of the tissue on the tip, N, world frame; zero when there is no usable one.
+    /// Force of the tissue on the tip, N, world frame; zero if there is no usable one.
     pub tip_n: Vector3<f64>,
-    /// What the wrist feels without weight and bias (`s1`), once gravity is calibrated.
+    /// Wrench at the wrist without weight and bias (`s1`), if gravity is calibrated.
     pub gravity_free: Option<Wrench>,
-    /// What the network said, where one is in force.
+    /// Output of the network, if there is one.
     pub tip_force: Option<TipForceReport>,
 }
 
 impl ForceReport {
-    /// No force, for this reason.
+    /// A report without a force, for this reason.
     pub const fn none(source: ForceSource, gravity_free: Option<Wrench>) -> Self {
         Self { source, tip_n: Vector3::new(0.0, 0.0, 0.0), gravity_free, tip_force: None }
     }

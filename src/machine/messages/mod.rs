@@ -1,4 +1,4 @@
-//! What crosses between the loop and the screen: commands in, ticks and events out. Nothing else does.
+//! All communication between the loop and the screen: commands in, ticks and events out.
 
 mod force;
 mod refusal;
@@ -21,14 +21,14 @@ use crate::rig::{DeviceEvent, Prompt, Side};
 /// State of an arm pair.
 pub type LoopState = State<Fault>;
 
-/// What a screen (or a script) may ask of the loop. Applied at the start of a tick, in order, at most a few per tick.
+/// Commands of a screen or a script to the loop. Applied at the start of a tick, in order, at most a few per tick.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Command {
     /// Render with this mode from the next tick on.
     SetMode(Mode),
     /// Feedback gain, 0 to 1; a value above 1 is refused here, see [`Command::SetGainAboveOne`].
     SetGain(f64),
-    /// Feedback gain up to 3, given by the operator's second, deliberate action.
+    /// Feedback gain up to 3, which the operator must confirm separately.
     SetGainAboveOne(f64),
     /// One-way delay of the link, seconds, 0 to [`nima_core::impedance::MAX_DELAY_S`].
     SetDelay(f64),
@@ -36,20 +36,20 @@ pub enum Command {
     SetDeadBand(f64),
     /// Keep rendering at standstill (true) or fade to zero in the dead band as the paper does (false).
     SetStaticHold(bool),
-    /// Ask the person at the arm of this side for something while calibrating; in idle only.
+    /// Give the person at the arm of this side an instruction for the calibration; in idle only.
     Prompt(Side, Prompt),
-    /// Lead the handle from the screen to this place, m (workspace), at most [`crate::teleop::GUIDE_MAX_M`] from its middle on
-    /// each axis; `None` lets it go. A stop and a fault let it go too.
+    /// Lead the handle from the screen to this position, m (workspace), at most [`crate::teleop::GUIDE_MAX_M`] from the
+    /// middle on each axis; `None` ends this. A stop and a fault end it too.
     Guide(Option<Vector3<f64>>),
-    /// The tip's way per way of the hand, within [`nima_core::kinematics::SCALES`].
+    /// Distance of the tip per distance of the hand, within [`nima_core::kinematics::SCALES`].
     SetScale(f64),
     /// Start force feedback and motion of every arm pair that is idle. Refused while the force at the tip is not known.
     Engage,
-    /// The same for one arm pair.
+    /// The same as [`Command::Engage`], for one arm pair.
     EngageOne(Side),
-    /// End force feedback and motion without a latch.
+    /// End force feedback and motion without latching a stop.
     Rest,
-    /// Zero force and a resting follower at once; latched until released.
+    /// Zero force and follower at rest at once; latched until released.
     Stop,
     /// First of two steps out of a stop or a fault: back to idle. Refused while the cause of a fault is still present.
     ReleaseStop,
@@ -58,7 +58,7 @@ pub enum Command {
 }
 
 impl Command {
-    /// It is for the pair of this side. The screen leads the right hand.
+    /// Whether the pair of this side carries it out. Leading from the screen is for the right hand.
     pub fn concerns(self, side: Side) -> bool {
         match self {
             Self::EngageOne(of) | Self::Prompt(of, _) => of == side,
@@ -82,60 +82,60 @@ pub struct Tick {
     pub mode: Mode,
     /// Delay of the link in force, seconds.
     pub delay_s: f64,
-    /// Where the hand leads the tip, m (workspace); while it does not, where the tip is.
+    /// Commanded tip position of the hand, m (workspace); while not engaged, the position of the tip.
     pub leader_m: Vector3<f64>,
     /// Instrument tip (follower), m.
     pub tip_m: Vector3<f64>,
-    /// Tip force as measured at the follower now, N (on the instrument).
+    /// Present tip force measured at the follower, N (on the instrument).
     pub measured_n: Vector3<f64>,
-    /// How the tip force was made.
+    /// How the tip force was obtained.
     pub force: ForceReport,
-    /// What the wrist sensor and its neighbours read, where the rig has one.
+    /// Readings of the wrist sensor and of the sensors used for calibration, if the rig has them.
     pub wrist: Option<WristSample>,
-    /// What the person at the arm is asked to do.
+    /// Instruction to the person at the arm.
     pub prompt: Prompt,
-    /// Where the screen leads the handle, m.
+    /// Position to which the screen leads the handle, m.
     pub guide_m: Option<Vector3<f64>>,
-    /// The same force as the link delivers it now: delayed DFR, N.
+    /// The tip force as the link delivers it now: delayed DFR, N.
     pub delayed_n: Vector3<f64>,
-    /// What each mode asks for at this tick before the gates, N, indexed by [`Mode::index`].
+    /// Force of each mode in this tick before the gates, N, indexed by [`Mode::index`].
     pub asked_n: [Vector3<f64>; MODES],
     /// Force commanded to the hand after all gates, N.
     pub rendered_n: Vector3<f64>,
-    /// What the gates did in this tick.
+    /// Effect of the gates in this tick.
     pub gates: GateReport,
-    /// Limits and knobs of the gates in force (the gain the operator chose; the ramp is in `gates`).
+    /// Settings of the gates (the gain is the operator's; the ramp is in `gates`).
     pub gate_settings: ChainSettings,
-    /// What identification says in this tick.
+    /// Result of the identification in this tick.
     pub identification: nima_core::impedance::Report,
     /// How late this tick woke after its deadline, s (0 on the virtual clock).
     pub wake_s: f64,
-    /// How long the tick before this one worked, s.
+    /// Duration of the work of the previous tick, s.
     pub work_s: f64,
-    /// From the arrival of the oldest measurement of the tick before this one to when its force was given to the device, s;
-    /// `None`: it had no measurement, or the clock is virtual.
+    /// Time from the arrival of the oldest measurement of the previous tick until its force was given to the device, s;
+    /// `None` if it had no measurement or the clock is virtual.
     pub sample_to_force_s: Option<f64>,
     pub missed: u64,
-    /// Ticks that did not reach the screen because its queue was full, so far.
+    /// Ticks dropped so far because the queue to the screen was full.
     pub dropped: u64,
 }
 
-/// A fault: zero force, shown with its cause and its cure; the first one is kept until released.
+/// A fault: zero force, shown with its cause and cure. The first fault is kept until it is released.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[expect(missing_docs, reason = "the names say it")]
 pub enum Fault {
-    /// The rig gave no finite sample for longer than the age limit.
+    /// The rig delivered no finite sample for longer than the age limit.
     SourceSilent,
-    /// The loop was held up: it missed too many periods in a row, or the supervisor found it silent.
+    /// The loop stalled: it missed too many periods in a row, or the supervisor found it silent.
     LoopStalled {
-        /// Periods missed at once.
+        /// Periods missed in a row.
         periods: u64,
     },
-    /// Engaged, and the force at the tip is not known: a calibration or what it needs is missing.
+    /// Engaged while the force at the tip is not known: a calibration, or a measurement that it needs, is missing.
     ForceUnknown,
     /// A device of the force path was lost.
     DeviceLost {
-        /// Its place in the rig's roster.
+        /// Index into the rig's roster.
         device: u8,
         loss: Loss,
     },
@@ -143,17 +143,17 @@ pub enum Fault {
     DrivesOff,
     /// The other arm pair has a fault.
     OtherArm,
-    /// The rig gave samples, and too many of them were missing or not finite.
+    /// The rig delivered samples, but too many of them were missing or not finite.
     SamplesLost,
-    /// Engaged, and nothing has come over the link for too long.
+    /// Engaged, and nothing has arrived over the link for too long.
     LinkSilent,
-    /// Time did not go on by whole periods.
+    /// The time did not advance by whole periods.
     ClockJumped,
-    /// Numbers came in time, are finite, and cannot be true.
+    /// Measurements are timely and finite, but not plausible.
     Implausible { what: Implausible },
 }
 
-/// How much attention a state needs: of two arm pairs the one with the larger number is shown first.
+/// Priority of a state for display: of two arm pairs the one with the larger number is shown first.
 pub const fn attention(state: LoopState) -> u8 {
     match state {
         LoopState::Engaged => 0,
@@ -167,11 +167,11 @@ pub const fn attention(state: LoopState) -> u8 {
     }
 }
 
-/// Something that happened once, told when it happens.
+/// Something that happens once and is reported at that moment.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[expect(missing_docs, reason = "the names say it")]
 pub enum Event {
-    /// The loop went from one state to another at this time (s).
+    /// The loop changed its state.
     StateChanged {
         /// Time on the loop's clock, s.
         t_s: f64,
@@ -180,23 +180,23 @@ pub enum Event {
         to: LoopState,
         why: Why,
     },
-    /// A fault was raised at this time (s).
+    /// A fault was raised.
     FaultRaised {
         /// Time on the loop's clock, s.
         t_s: f64,
         side: Side,
         fault: Fault,
     },
-    /// A command was not carried out, or an engagement that had begun was given up.
+    /// A command was refused, or an engagement in progress was given up.
     CommandRefused {
         /// Time on the loop's clock, s.
         t_s: f64,
         side: Side,
-        /// The command as it came.
+        /// The command.
         command: Command,
         why: Refusal,
     },
-    /// A device of the rig came or went.
+    /// A device of the rig connected or was lost.
     Device(DeviceEvent),
     /// What the operating system granted the real-time thread.
     Scheduling(Scheduling),

@@ -8,7 +8,8 @@ use crate::rig::Obstacle;
 /// Why a command was refused, or an engagement given up.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Refusal {
-    /// Not in this state: a stop or a fault is latched, a device is missing, or it is so already.
+    /// Not possible in this state: a stop or a fault is latched, a device is missing, or the pair is already as
+    /// requested.
     State(LoopState),
     /// The cause of a fault is still present.
     StillPresent(Fault),
@@ -16,17 +17,17 @@ pub enum Refusal {
     ForceUnknown,
     /// A measurement is not plausible.
     Implausible(Implausible),
-    /// The arm cannot start from where it is.
+    /// The arm cannot be engaged from its present position.
     Obstacle(Obstacle),
     /// The tracker does not see the endoscope.
     EndoscopeUnseen,
-    /// The drives were switched on and did not obey in time.
+    /// The drives did not come on in time.
     DrivesOff,
-    /// The arm moved until the time was up.
+    /// The arm was still moving when the time limit was reached.
     Moving,
-    /// Nobody held the handle until the time was up.
+    /// Nobody held the handle until the time limit was reached.
     HandAbsent,
-    /// The clutch was pressed until the time was up.
+    /// The clutch stayed pressed until the time limit was reached.
     ClutchPressed,
     /// The value is outside its range.
     OutOfRange,
@@ -35,7 +36,8 @@ pub enum Refusal {
 }
 
 impl Refusal {
-    /// It only says that an arm is already as it was asked to be, which is no news where the other arm obeyed.
+    /// Whether it only says that an arm is already as requested. This is not reported if the other arm carried out the
+    /// command.
     pub(crate) const fn is_already_so(self) -> bool {
         matches!(self, Self::State(LoopState::Idle | LoopState::Ready | LoopState::Engaged | LoopState::Clutched))
     }

@@ -1,6 +1,6 @@
-//! What the operating system grants a real-time thread.
+//! Real-time privileges that the operating system granted.
 
-/// What was asked for and what was granted.
+/// Privileges granted to the loop's thread.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
 pub struct Scheduling {
     /// `SCHED_FIFO` was granted.
@@ -12,7 +12,7 @@ pub struct Scheduling {
 }
 
 impl Scheduling {
-    /// What to grant, in words; `None` when everything was granted.
+    /// How to get the missing privileges, for the user; `None` if all were granted.
     pub const fn advice(&self) -> Option<&'static str> {
         if cfg!(not(target_os = "linux")) {
             return Some("real-time scheduling is used on Linux only; expect more missed ticks here");

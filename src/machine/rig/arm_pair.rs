@@ -1,4 +1,5 @@
-//! One side's devices: handle, arm, force sensor, servos; and the kinematics between the loop's metres and their joints.
+//! The devices of one side (handle, arm, force sensor, servos) and the kinematics between tip position (m) and joint
+//! angles (rad).
 
 use nalgebra::{UnitQuaternion, Vector3};
 use nima_core::{
@@ -21,16 +22,16 @@ use crate::rig::{Inputs, Outputs, Roster, Sensed, Side, Switches, View};
 /// Why an arm that delivers cannot be engaged.
 pub type Obstacle = StartError;
 
-/// What both sides share.
+/// Readings of the devices that both sides share.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Shared {
     pub(super) tissue_n: Option<Vector3<f64>>,
     pub(super) m_from_c: Option<UnitQuaternion<f64>>,
-    /// How the endoscope looks, in the camera's frame: `c_from_view`.
+    /// Orientation of the endoscope in the camera's frame: `c_from_view`.
     pub(super) c_from_view: View,
 }
 
-/// Begins to open a part of this name and enters it into the list; what is opened is given to `attach` first.
+/// Starts opening a device of this name and adds it to the roster; `attach` is called with the device once it is open.
 fn start<P>(
     name: &str,
     opener: Opener<P>,
@@ -78,11 +79,11 @@ pub struct ArmPair {
     s1_from_m: Option<UnitQuaternion<f64>>,
     at_wrist: bool,
     period_s: f64,
-    /// Where the arm is by its joints.
+    /// Pose of the instrument from the measured joint angles.
     pose: Option<Pose>,
     inverse: Option<Inverse>,
     obstacle: Option<Obstacle>,
-    /// Drives were permitted in the last tick.
+    /// Whether the drives were permitted in the last tick.
     driven: bool,
     force_is_on: bool,
 }
@@ -135,7 +136,7 @@ impl ArmPair {
         })
     }
 
-    /// Takes in what has arrived.
+    /// Reads what the devices have sent.
     pub(super) fn poll(&mut self, now_s: f64) {
         if let Some(reading) = self.handle.poll(now_s) {
             self.hand = Some(reading);
@@ -162,12 +163,12 @@ impl ArmPair {
         }
     }
 
-    /// The inverse kinematics from these joint angles (rad).
+    /// Starts the inverse kinematics at these joint angles (rad).
     fn begin(&self, joint_rad: &Joints) -> Result<Inverse, StartError> {
         Inverse::new(self.mount, self.rcm, self.period_s, joint_rad).map(|inverse| inverse.within(self.limits))
     }
 
-    /// The measurements, if every device of the force path delivers and none of them is too old.
+    /// The measurements; `None` unless every device of the force path delivers and none of its readings is too old.
     pub(super) fn inputs(&self, now_s: f64, shared: &Shared) -> Option<Inputs> {
         let (hand, joints, force) = (self.hand?, self.joints?, self.force?);
         let pose = self.pose.as_ref()?;
@@ -228,7 +229,7 @@ impl ArmPair {
         })
     }
 
-    /// Carries out what the loop commands.
+    /// Sends the loop's commands to the devices.
     pub(super) fn write(&mut self, now_s: f64, outputs: &Outputs) {
         if outputs.drives != self.driven {
             self.driven = outputs.drives;
@@ -243,9 +244,10 @@ impl ArmPair {
         self.turn(now_s, outputs.world_from_jaws);
     }
 
-    /// On once, by command: what switches itself off stays off until the next engagement.
+    /// Switches the drives on only when commanded: drives that switched themselves off stay off until the next
+    /// engagement.
     fn switch_drives(&mut self, on: bool) {
-        // Off, the arm leaves servoing once it has come to rest.
+        // When switched off, the arm leaves servoing only after it has come to rest.
         if let (true, Some(arm)) = (on, self.arm.device()) {
             arm.enter_servoing();
         }
@@ -260,7 +262,7 @@ impl ArmPair {
         }
     }
 
-    /// One step of the joints: towards the tip's target, or to rest on the way through the trocar.
+    /// One step of the joints: towards the tip's target, or, without a target, braking along a path through the trocar.
     fn lead(&mut self, tip_command_m: Option<Vector3<f64>>) {
         let (Some(arm), Some(joints)) = (self.arm.device(), self.joints) else {
             self.inverse = None;
@@ -268,7 +270,7 @@ impl ArmPair {
         };
         let measured_rad = Joints::from(joints.value.joint_rad);
         if self.inverse.is_none() && tip_command_m.is_some() {
-            // Where the arm is commanded to be, so that the first command is no step.
+            // Start from the commanded angles, so that the first command is not a step.
             let from_rad = if joints.value.servoing { Joints::from(arm.command_rad()) } else { measured_rad };
             match self.begin(&from_rad) {
                 Ok(inverse) => self.inverse = Some(inverse),
@@ -283,7 +285,8 @@ impl ArmPair {
                 None => inverse.brake(),
             };
             let at_rest = tip_command_m.is_none() && inverse.is_still();
-            // After a refusal the arm is not where the plan has it: a new one begins where it is.
+            // After a refused command the arm is not where the plan assumes it: start a new plan at the actual
+            // position.
             if !arm.aim(step.joint_rad.as_ref()) || at_rest {
                 self.inverse = None;
             }
@@ -305,17 +308,17 @@ impl ArmPair {
         }
     }
 
-    /// Of the handle and the arm.
+    /// Levers of the handle and of the arm.
     pub(super) const fn levers(&self) -> &[Lever; 2] {
         &self.levers
     }
 
-    /// Why the arm cannot be engaged from where it is.
+    /// Why the arm cannot be engaged from its present position.
     pub(super) const fn obstacle(&self) -> Option<Obstacle> {
         self.obstacle
     }
 
-    /// The devices in the order of the roster, and whether force depends on each.
+    /// Health of the devices in the order of the roster, and whether the force path needs each of them.
     pub(super) fn healths(&self) -> [Option<(&Health, bool)>; 4] {
         [
             Some((self.handle.health(), true)),

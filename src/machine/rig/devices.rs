@@ -1,9 +1,10 @@
-//! The devices of a rig, composed into what the loop asks for: one [`ArmPair`] for each side, and what both share.
+//! The devices of a rig behind the interface that the loop uses: one [`ArmPair`] per side, and the devices that both
+//! sides share.
 //!
-//! In: the loop's outputs (m, N). Out: measurements in the workspace frame, with the age of their oldest part (s): devices tick by their
-//! own clocks. Every device has a [`Slot`]: it comes and goes at any time, and comes back as connected, never as engaged. Neither
-//! reading nor writing waits or allocates. What no device can give (lost, refused, older than 20 ms) is `None`, never an old value as a
-//! new one.
+//! Input: the loop's outputs (m, N). Output: measurements in the workspace frame, with the age of the oldest part (s),
+//! because the devices sample at their own clocks. Every device has a [`Slot`]: it may disconnect and reconnect at any
+//! time, and is then connected but not engaged. Reading and writing neither wait nor allocate. A value that is lost,
+//! refused or older than 20 ms is `None`; an old value is never repeated as a new one.
 
 use std::io;
 
@@ -20,7 +21,7 @@ use super::{
     Settings, Side, Switches, View, Watch, arm_pair::Shared, makes::Opener,
 };
 
-/// A part older than this is not there, s.
+/// A reading older than this counts as missing, s.
 pub(super) const OLDEST_S: f64 = 0.020;
 
 /// All devices of a rig. Owned by the real-time thread.
@@ -48,41 +49,44 @@ impl std::fmt::Debug for Pedal {
     }
 }
 
-/// Why a rig of devices cannot be made.
+/// Why the devices of a rig cannot be set up.
 #[derive(Debug, thiserror::Error)]
 pub enum RigError {
-    /// The operating system gave no thread.
+    /// The operating system could not create a thread.
     #[error("no thread can be started for a device")]
     Thread(#[from] io::Error),
-    /// A setting is impossible.
+    /// A setting of a device is invalid.
     #[error("rig file, {device}: {trouble}")]
     Setting {
-        /// Of which device.
+        /// Name of the device.
         device: String,
-        /// Which.
+        /// What is wrong with the setting.
         trouble: Trouble,
     },
-    /// The arm's mount makes no sense.
+    /// The mounting of an arm is invalid.
     #[error("rig file, {side} mount")]
     Mount {
-        /// Of which side.
+        /// Side of the arm.
         side: &'static str,
-        /// Why.
+        /// What is wrong with it.
         source: nima_core::kinematics::ArmError,
     },
-    /// The trocar makes no sense.
+    /// The trocar (RCM) is invalid.
     #[error("rig file, {side} rcm")]
     Rcm {
-        /// Of which side.
+        /// Side of the arm.
         side: &'static str,
-        /// Why.
+        /// What is wrong with it.
         source: nima_core::kinematics::RcmError,
     },
 }
 
 impl DeviceRig {
-    /// Begins to open every device of these settings, for a loop of this period (s). `at_wrist` says for each side whether its sensor
-    /// feels at the wrist.
+    /// Starts opening every device of these settings, for a loop of this period (s). `at_wrist` says for each side
+    /// whether its force sensor is at the wrist.
+    ///
+    /// # Errors
+    /// [`RigError`] if a setting is invalid or a thread cannot be created.
     pub fn start(settings: &Settings, period_s: f64, at_wrist: [bool; SIDES]) -> Result<(Self, Roster), RigError> {
         let mut roster = Roster::new();
         let mut pairs = [None, None];
@@ -142,13 +146,13 @@ impl DeviceRig {
         let Some(pedal) = &mut self.pedal else { return Switches::default() };
         let reading = pedal.slot.poll(now_s);
         let pressed = pedal.held.update(reading, pedal.slot.health());
-        // A pedal that is not there holds nobody present.
+        // A pedal that is not connected must not report that somebody is present.
         Switches { clutch: pedal.roles.clutch(pressed), presence: pedal.roles.presence(pressed) }
     }
 
-    /// What both sides share, as one side sees it.
+    /// Readings of the shared devices, as this side uses them.
     fn shared(&self, side: Side, now_s: f64) -> Shared {
-        /// Frames of the tracker come 60 times a second.
+        /// The tracker sends 60 frames a second; allow six frames.
         const TRACKED_S: f64 = 0.1;
         let tissue_n =
             self.tissue_n.filter(|stamped| now_s - stamped.arrival_s <= OLDEST_S).map(|stamped| stamped.value);
@@ -233,13 +237,13 @@ impl Rig for DeviceRig {
     }
 }
 
-/// Enters a device into the list.
+/// Adds a device to the roster.
 pub(super) fn enrol<D: Device + 'static>(roster: &mut Roster, name: &str, driver: String, slot: &Slot<D>) {
     debug_assert!(roster.len() < DEVICES_MAX, "more devices than places");
     roster.push(RosterEntry::new(name, driver, slot.view()));
 }
 
-/// It delivers now.
+/// Whether the device delivers now.
 pub(super) fn is_there<D: Device + 'static>(slot: &Slot<D>) -> bool {
     slot.health().standing == Standing::Connected
 }

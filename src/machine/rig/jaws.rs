@@ -1,4 +1,4 @@
-//! The servos of an instrument: from the orientation of its jaws to servo angles and back, with a PID around each servo.
+//! Converts the orientation of the instrument's jaws to servo angles and back, with a PID controller around each servo.
 
 use nalgebra::UnitQuaternion;
 use nima_core::{
@@ -8,17 +8,18 @@ use nima_core::{
 use nima_devices::{SERVOS, ServoReading};
 use serde::{Deserialize, Serialize};
 
-/// How the servos move the instrument's wrist. Order: roll, pitch, yaw, grip.
+/// Transmission from the servos to the instrument's wrist. Order: roll, pitch, yaw, grip.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct JawsSettings {
-    /// Servo angle per angle of the wrist.
+    /// Servo angle per joint angle of the wrist.
     pub ratio: [f64; SERVOS],
     /// Opening of the jaws per opening of the gripper.
     pub grip_per_gripper: f64,
-    /// Force at the finger per current of the servo that closes the jaws, N/A; zero: the gripper feels nothing.
+    /// Force at the finger per current of the servo that closes the jaws, N/A; zero if there is no force feedback on
+    /// the gripper.
     pub grip_n_per_a: f64,
-    /// Around each servo's own loops; takes out what load and slack leave.
+    /// PID around each servo's built-in control, to remove the steady error due to load and backlash.
     pub pid: PidGains,
 }
 
@@ -34,7 +35,7 @@ impl Default for JawsSettings {
 pub(super) struct JawsControl {
     settings: JawsSettings,
     pids: [Pid; SERVOS],
-    /// Last orientation asked for, as angles: keeps turns.
+    /// Last commanded orientation, as angles; keeps count of full turns.
     asked: Option<Jaws>,
     period_s: f64,
 }
@@ -44,13 +45,13 @@ impl JawsControl {
         Self { settings, pids: [Pid::new(settings.pid); SERVOS], asked: None, period_s }
     }
 
-    /// Where the jaws are by the servos.
+    /// Orientation of the jaws from the measured servo angles.
     pub(super) fn measured(&self, reading: &ServoReading) -> Jaws {
         let [roll_rad, pitch_rad, yaw_rad, _] = self.angles(reading);
         Jaws { roll_rad, pitch_rad, yaw_rad }
     }
 
-    /// Force that opens the jaws, N at the finger: what the closing servo holds against.
+    /// Force that opens the jaws, N at the finger: the load on the closing servo.
     pub(super) fn grip_n(&self, reading: &ServoReading) -> Option<f64> {
         let Self { settings: JawsSettings { grip_n_per_a, ratio, .. }, .. } = self;
         let closing_a = -reading.current_a[SERVOS - 1] * ratio[SERVOS - 1].signum();
@@ -61,7 +62,7 @@ impl JawsControl {
         std::array::from_fn(|i| reading.position_rad[i] / self.settings.ratio[i])
     }
 
-    /// Goals of the servos, rad, for this orientation and opening of the gripper (rad).
+    /// Goal angles of the servos, rad, for this orientation and this opening of the gripper (rad).
     pub(super) fn goals(
         &mut self,
         s1_from_jaws: &UnitQuaternion<f64>,
@@ -80,7 +81,7 @@ impl JawsControl {
         })
     }
 
-    /// Forgets what was asked.
+    /// Forgets the last command.
     pub(super) fn reset(&mut self) {
         self.asked = None;
         self.pids.iter_mut().for_each(Pid::reset);

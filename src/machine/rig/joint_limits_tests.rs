@@ -1,4 +1,5 @@
-//! Fast commands through the inverse kinematics and what the arm's driver makes of them, at several shares of the arm's speed.
+//! Sends fast commands through the inverse kinematics and the arm's driver, at several shares of the arm's maximum
+//! speed.
 
 #[path = "../../core/kinematics/tests/usual_arm.rs"]
 mod usual_arm;
@@ -43,14 +44,14 @@ impl Hand {
     }
 }
 
-/// What a drive showed.
+/// Results of one drive.
 #[derive(Default)]
 struct Shown {
     misses_mm: Vec<f64>,
-    /// Greatest speed and acceleration of a joint as shares of its limits.
+    /// Highest speed and acceleration of a joint as shares of their limits.
     speed: f64,
     acceleration: f64,
-    /// Periods with a joint beside the end of its range, and periods in which a joint changes its direction.
+    /// Periods with a joint near the end of its range, and periods in which a joint changes direction.
     at_limits: usize,
     reversals: usize,
     /// Distance of the tip from the target, m.
@@ -69,7 +70,7 @@ fn drive(fraction: f64, cone_deg: f64, seed: u64, shown: &mut Shown) {
     for _ in 0..2000 {
         settled.step(&hand.target_m);
     }
-    // At the wide cone from where a joint is near the end of its range, which a slow arm would never reach in this time.
+    // With the wide cone start near a joint limit, which a slow arm would not reach in the time of the test.
     for _ in 0..5 * STEPS {
         if cone_deg < 45.0 || limit_margin_rad(settled.joint_rad()) < 0.03 {
             break;
@@ -131,7 +132,7 @@ fn the_trocar_and_every_limit_are_kept_at_any_share_of_the_arms_speed() {
             1e3 * at(&behind_m, 0.99),
         );
         assert!(worst_mm <= 0.1, "the axis leaves the trocar at {fraction} of the speed: {worst_mm} mm");
-        // Rounding of the angles is seen in their differences.
+        // The tolerance is for rounding: accelerations are second differences of the angles.
         assert!(speed <= 1.0 && acceleration <= 1.0 + 1e-6, "{fraction}: speed {speed}, acceleration {acceleration}");
         assert!(at_limits > 0 && reversals > 10, "nothing was tried: {at_limits} {reversals}");
     }

@@ -1,4 +1,4 @@
-//! The rig as the loop sees it, and the devices that make one.
+//! The rig as the loop sees it, and its implementation with devices.
 //!
 //! Positions in m, forces in N, both in the workspace frame (z up). A rig that cannot deliver a sample says so with
 //! `None`; it never repeats an old one as new.
@@ -30,66 +30,66 @@ pub use settings::{ArmSet, DeskSettings, EndoscopeSettings, SensorPlace, Setting
 pub use side::{SIDES, Side};
 pub use watch::Watch;
 
-/// Where the force on the instrument is measured.
+/// The force measurement, by the place of the sensor.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[expect(clippy::large_enum_variant, reason = "made and used within one tick, where a box would be an allocation")]
 pub enum Sensed {
-    /// At the tip: the force of the tissue on it, N.
+    /// At the tip: force of the tissue on the tip, N.
     AtTip(Vector3<f64>),
-    /// At the wrist: with weight, friction and bias in it, which calibrations take out.
+    /// At the wrist: includes weight, trocar friction and bias, which the calibrations remove.
     AtWrist(WristSample),
 }
 
-/// What switches and grips say about the operator.
+/// State of the pedals and of the handle's presence detection.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Switches {
-    /// The clutch is pressed: the hand moves freely.
+    /// The clutch is pressed: the hand moves without moving the tip.
     pub clutch: bool,
-    /// Somebody holds the handle; `None` where nothing tells.
+    /// Whether somebody holds the handle; `None` if nothing on the rig detects it.
     pub presence: Option<bool>,
 }
 
-/// How the endoscope looks, by which the hand's motion becomes the tip's.
+/// Orientation of the endoscope; the hand's motion is mapped to the tip's in the frame of its picture.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum View {
-    /// As the rig file has it.
+    /// Fixed, as given in the rig file.
     #[default]
     Fixed,
-    /// A tracker should see it and does not: hand and tip cannot be joined.
+    /// The rig has a tracker for it, which does not see it: the mapping is not known.
     Unseen,
-    /// `world_from_view` as a tracker sees it.
+    /// `world_from_view`, measured by a tracker.
     Seen(UnitQuaternion<f64>),
 }
 
 /// The measurements of an arm pair at one time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Inputs {
-    /// The hand, as its device sees it.
+    /// The hand as measured by its device.
     pub hand: Hand,
-    /// Opening of the gripper, rad, where there is one.
+    /// Opening of the gripper, rad, if the handle has one.
     pub gripper_rad: Option<f64>,
-    /// Force that opens the jaws, N at the finger, where it is known.
+    /// Force that opens the jaws, N at the finger, if known.
     pub grip_n: Option<f64>,
     /// Position of the instrument's tip, m.
     pub tip_m: Vector3<f64>,
-    /// Orientation of the instrument's jaws, where it is known.
+    /// Orientation of the instrument's jaws, if known.
     pub world_from_jaws: Option<UnitQuaternion<f64>>,
-    /// What the force sensor says.
+    /// The force measurement.
     pub sensed: Sensed,
-    /// How the endoscope looks.
+    /// Orientation of the endoscope.
     pub view: View,
     /// Clutch and presence.
     pub switches: Switches,
-    /// The drives obey: the arm follows commands, the handle's motors are on.
+    /// The drives are on: the arm follows commands and the handle's motors are powered.
     pub powered: bool,
-    /// Why the arm cannot be engaged from where it is.
+    /// Why the arm cannot be engaged from its present position.
     pub obstacle: Option<Obstacle>,
-    /// Age of the oldest part, s: devices tick by their own clocks. Zero in a simulation.
+    /// Age of the oldest part, s: the devices sample at their own clocks. Zero in a simulation.
     pub age_s: f64,
 }
 
 impl Inputs {
-    /// Every number in it is finite.
+    /// Whether every number in it is finite.
     pub fn is_finite(&self) -> bool {
         let sensed = match &self.sensed {
             Sensed::AtTip(force_n) => force_n.iter().all(|x| x.is_finite()),
@@ -106,30 +106,31 @@ impl Inputs {
     }
 }
 
-/// Farthest from the middle of the workspace that a handle may be led ([`Outputs::guide_m`]), on each axis, m.
+/// Largest distance from the middle of the workspace to which the screen may lead a handle ([`Outputs::guide_m`]), on
+/// each axis, m.
 pub const GUIDE_MAX_M: f64 = 0.1;
 
-/// What the loop commands to an arm pair.
+/// Commands of the loop to an arm pair.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Outputs {
-    /// Drives and motors may be on: without it the arm rests by itself and the handle has no force.
+    /// Drives and motors may be on. If false, the arm brakes to rest and the handle has no force.
     pub drives: bool,
-    /// Where the tip shall go, m; `None` holds the follower where it is.
+    /// Commanded tip position, m; `None` holds the follower where it is.
     pub tip_command_m: Option<Vector3<f64>>,
-    /// How the jaws shall stand; `None` holds them.
+    /// Commanded orientation of the jaws; `None` holds it.
     pub world_from_jaws: Option<UnitQuaternion<f64>>,
-    /// Force on the hand, N, in the frame of its device. Has passed every gate.
+    /// Force on the hand, N, in the frame of its device, after all gates.
     pub hand_force_n: Vector3<f64>,
-    /// Force on the gripper, N. Has passed its gates.
+    /// Force on the gripper, N, after its gates.
     pub gripper_n: f64,
-    /// What the screen asks of the person at the arm.
+    /// Instruction of the screen to the person at the arm.
     pub prompt: Prompt,
-    /// Where the person at the screen leads the handle with mouse or keyboard, m; `None`: nobody does.
+    /// Position to which the person at the screen leads the handle with mouse or keyboard, m; `None` if nobody does.
     pub guide_m: Option<Vector3<f64>>,
 }
 
 impl Outputs {
-    /// The safe outputs: no force, a resting follower, drives off.
+    /// Safe outputs: no force, follower at rest, drives off.
     pub const SAFE: Self = Self {
         drives: false,
         tip_command_m: None,
@@ -141,30 +142,31 @@ impl Outputs {
     };
 }
 
-/// Leaders, followers and force sensors that belong together, a pair for each side. Owned by the real-time thread.
+/// The hardware, or its simulation, of both sides. Owned by the real-time thread.
 pub trait Rig: Send {
-    /// Gives the newest measurements at loop time `now_s`; `None` when there are none.
+    /// Returns the newest measurements at loop time `now_s`; `None` for a side that has none.
     ///
     /// Must not block and must not allocate.
     fn read(&mut self, now_s: f64) -> [Option<Inputs>; SIDES];
 
-    /// Sends what the loop made of the measurements of the same tick at once: a force does not wait for the next period. In a simulated
-    /// world it holds until the next [`Rig::read`]. Before the first call [`Outputs::SAFE`] holds.
+    /// Sends the outputs of this tick, computed from the measurements of the same tick, so that a force does not wait
+    /// for the next period. A simulated world holds them until the next [`Rig::read`]. Until the first call,
+    /// [`Outputs::SAFE`] applies.
     ///
     /// Must not block and must not allocate.
     fn write(&mut self, now_s: f64, outputs: &[Outputs; SIDES]);
 
-    /// A device that came or went since the last call; call until `None`. Rigs without devices have none.
+    /// The next device that connected or was lost; call until it returns `None`. Rigs without devices have none.
     fn event(&mut self) -> Option<DeviceEvent> {
         None
     }
 
-    /// What another thread may pull when the loop no longer runs; asked for once, before the loop begins.
+    /// Levers that the supervisor may call when the loop no longer runs. Asked for once, before the loop starts.
     fn levers(&self) -> Vec<Lever> {
         Vec::new()
     }
 
-    /// How the devices are, in the order of the rig's [`Roster`].
+    /// Health of the devices, in the order of the rig's [`Roster`].
     fn health(&self) -> Healths {
         Healths::default()
     }
@@ -173,45 +175,46 @@ pub trait Rig: Send {
 /// Most devices of a rig.
 pub const DEVICES_MAX: usize = 16;
 
-/// How every device of a rig is.
+/// Health of every device of a rig.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Healths {
-    /// In the order of the roster; those beyond its end are closed.
+    /// In the order of the roster; entries beyond its end are `closed`.
     pub devices: [Health; DEVICES_MAX],
-    /// Why an arm that delivers cannot be engaged from where it is.
+    /// Why an arm that delivers cannot be engaged from its present position.
     pub obstacles: [Option<Obstacle>; SIDES],
 }
 
-/// A device came or went.
+/// A device connected or was lost.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DeviceEvent {
-    /// When it was noticed, s on the loop's clock.
+    /// When this was noticed, s on the loop's clock.
     pub t_s: f64,
-    /// Its place in the roster.
+    /// Index into the roster.
     pub device: u8,
-    /// Where it is now.
+    /// Its new state.
     pub standing: Standing,
-    /// The arm pairs whose force path it is part of.
+    /// The sides whose force path needs it.
     pub of_side: [bool; SIDES],
 }
 
-/// One device of a rig, as everybody but the real-time thread sees it.
+/// One device of a rig, as threads other than the real-time thread see it.
 #[derive(Clone, Debug)]
 pub struct RosterEntry {
     /// Its name in the rig: `left wrist sensor`.
     pub name: String,
-    /// What drives it: `Bota socket 192.168.1.1`.
+    /// Name of its driver and address: `Bota socket 192.168.1.1`.
     pub driver: String,
-    /// Connects, disconnects, tells troubles.
+    /// Connects and disconnects it, and reports why it is not connected.
     pub view: SlotView,
-    /// It is the force sensor on the arm of this side: calibrations belong to it.
+    /// Set if it is the force sensor on the arm of this side: calibrations are bound to it.
     pub force_sensor_of: Option<Side>,
-    /// Clears the device's own faults, where that is a person's command; it happens while it is opened the next time.
+    /// Clears the faults of the device itself, if it has such a command; carried out the next time the device is
+    /// opened.
     pub clear_faults: Option<ClearFaults>,
 }
 
 impl RosterEntry {
-    /// A device that belongs to no arm's force path and has no faults that a person clears.
+    /// A device that no force path needs and that has no faults to clear.
     pub fn new(name: impl Into<String>, driver: impl Into<String>, view: SlotView) -> Self {
         Self { name: name.into(), driver: driver.into(), view, force_sensor_of: None, clear_faults: None }
     }

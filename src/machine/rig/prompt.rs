@@ -1,23 +1,24 @@
-//! What the screen asks of the person at the arm while calibrating.
+//! Instructions of the screen to the person at the arm during calibration.
 
 use nalgebra::{UnitQuaternion, UnitVector3};
 
-/// One thing to do. On a real rig it is read from the screen and no machine moves; on a simulated one somebody obeys.
+/// One instruction. On a real rig a person reads it from the screen and no machine moves; on a simulated one a
+/// simulated person follows it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Prompt {
-    /// Leave the instrument alone.
+    /// None: leave the instrument alone.
     #[default]
     Rest,
     /// Turn the tool into this orientation, touch nothing, hold still.
     Hold {
-        /// Orientation of the wrist sensor to take.
+        /// Wanted orientation of the wrist sensor.
         world_from_s1: UnitQuaternion<f64>,
     },
-    /// Turn the tool slowly this way and that; touch nothing.
+    /// Turn the tool slowly in all directions; touch nothing.
     Wave,
-    /// Push onto the tissue this way, hold, release, and again.
+    /// Push onto the tissue in this direction, hold, release, and repeat.
     Push {
-        /// Which way the tool pushes (`world`); the tissue answers the other way.
+        /// Direction in which the tool pushes (`world`); the force of the tissue is opposite.
         direction: UnitVector3<f64>,
     },
     /// Work on the tissue: in and out through the trocar, sideways, in contact and free.
@@ -27,7 +28,7 @@ pub enum Prompt {
 }
 
 impl Prompt {
-    /// Every number in it is finite.
+    /// Whether every number in it is finite.
     pub fn is_finite(&self) -> bool {
         match self {
             Self::Hold { world_from_s1 } => world_from_s1.coords.iter().all(|x| x.is_finite()),

@@ -1,4 +1,4 @@
-//! What the rig file says of the devices: which there are, where, and what hangs on them.
+//! The devices section of a rig file: which devices there are, their addresses, and how they are mounted.
 
 use std::path::Path;
 
@@ -10,12 +10,12 @@ use serde::{Deserialize, Serialize};
 use super::{FollowerSettings, JawsSettings, LeaderSettings, SensorSettings};
 use crate::rig::{SIDES, Side};
 
-/// The devices of a rig. Each is there or not; an arm pair is there as a whole.
+/// The devices of a rig. Each is optional; the parts of an arm pair are not.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Settings {
-    /// The devices are emulated on this computer, at the places that stand here: the console starts them itself. Paths that do not begin
-    /// at the root are within the user's [`runtime_folder`](nima_devices::own_folder::runtime_folder).
+    /// The devices are emulated on this computer, at the addresses given here, and the console starts the emulators
+    /// itself. Relative paths are within the user's [`runtime_folder`](nima_devices::own_folder::runtime_folder).
     pub emulated: bool,
     /// The right arm pair, or the only one.
     pub right: Option<ArmSet>,
@@ -25,7 +25,8 @@ pub struct Settings {
     pub tissue_sensor: Option<SensorSettings>,
     /// The optical tracker.
     pub tracker: Option<ndi::Settings>,
-    /// The marker on the endoscope, which the tracker sees: hand and tip are joined by how it looks.
+    /// The marker on the endoscope, seen by the tracker: the mapping from hand to tip then follows the endoscope's
+    /// orientation.
     pub endoscope: Option<EndoscopeSettings>,
     /// The foot pedal: clutch and presence.
     pub pedal: Option<hid::PedalSettings>,
@@ -35,51 +36,53 @@ pub struct Settings {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct EndoscopeSettings {
-    /// Which of the tracker's tools it is, counted from 0; those of the arms are 0 (right) and 1 (left).
+    /// Index of the tracker's tool, from 0; tools 0 (right) and 1 (left) are on the instruments.
     pub tool: usize,
-    /// How the picture sits on the marker: roll, pitch, yaw of `n_from_view`, degrees.
+    /// Orientation of the picture relative to the marker: roll, pitch, yaw of `n_from_view`, degrees.
     pub n_from_view_deg: Vector3<f64>,
 }
 
-/// A handle, an arm and what it carries.
+/// A handle, and an arm with its sensor and instrument.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ArmSet {
     /// Name of the tool: calibrations are bound to it.
     pub tool: String,
-    /// Where the sensor feels: at the wrist, with the tool's weight and the trocar's friction, or at the tip itself.
+    /// Place of the force sensor: at the wrist, where it also measures the tool's weight and the trocar's friction, or
+    /// at the tip.
     #[serde(default)]
     pub sensor_at: SensorPlace,
     /// The haptic handle.
     pub handle: LeaderSettings,
     /// The arm.
     pub arm: FollowerSettings,
-    /// How the arm is mounted, and the instrument.
+    /// Mounting of the arm, and dimensions of the instrument.
     pub mount: ArmSettings,
-    /// Where the instrument enters the body.
+    /// Trocar point, where the instrument enters the body.
     pub rcm: RcmSettings,
     /// The force sensor between arm and instrument.
     pub sensor: SensorSettings,
-    /// How the tracker's marker sits on the instrument: roll, pitch, yaw of `s1_from_m`, degrees; where there is one.
+    /// Orientation of the tracker's marker on the instrument: roll, pitch, yaw of `s1_from_m`, degrees; only with a
+    /// marker.
     #[serde(default)]
     pub s1_from_m_deg: Option<Vector3<f64>>,
     /// The servos of the instrument.
     #[serde(default)]
     pub servos: Option<dynamixel::Settings>,
-    /// How the servos move its wrist.
+    /// Transmission from the servos to the instrument's wrist.
     #[serde(default)]
     pub jaws: JawsSettings,
 }
 
-/// The desk part of a rig file: what leads a simulated rig.
+/// The desk section of a rig file: input devices that lead a simulated rig.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct DeskSettings {
-    /// The cap.
+    /// The six-axis cap.
     pub cap: Option<hid::CapSettings>,
     /// The pedals.
     pub pedal: Option<hid::PedalSettings>,
-    /// Speed of the hand at a full push, m/s, above 0 to 0.15.
+    /// Speed of the hand at full deflection of the cap, m/s, above 0 to 0.15.
     pub speed_m_s: f64,
 }
 
@@ -89,14 +92,14 @@ impl Default for DeskSettings {
     }
 }
 
-/// Where a force sensor feels.
+/// Place of a force sensor.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum SensorPlace {
     /// Between arm and instrument.
     #[default]
     Wrist,
-    /// At the tip, beyond the trocar: what it reads is the tissue's force.
+    /// At the tip, beyond the trocar: it measures the tissue's force alone.
     Tip,
 }
 
@@ -109,7 +112,8 @@ impl Settings {
         }
     }
 
-    /// The same with every path of an emulated device within `folder`, unless it begins at the root; real devices stay where they are.
+    /// A copy in which the paths of emulated devices that are relative lie within `folder`; addresses of real devices
+    /// do not change.
     #[must_use]
     pub fn emulated_in(mut self, folder: &Path) -> Self {
         if !self.emulated {
@@ -138,10 +142,10 @@ impl Settings {
         self
     }
 
-    /// Tells the first setting that no device can have, by its whole key; nothing is opened.
+    /// Checks every setting; opens nothing.
     ///
     /// # Errors
-    /// [`Trouble::Setting`].
+    /// [`Trouble::Setting`] for the first invalid setting, with its full key.
     pub fn check(&self) -> Result<(), Trouble> {
         for side in Side::ALL {
             let Some(set) = self.arm(side) else { continue };
@@ -194,7 +198,7 @@ impl Settings {
     }
 }
 
-/// A trouble with its key as it stands in the rig file.
+/// Prefixes the key of a trouble with the part of the rig file that it stands in.
 fn below(part: &str, trouble: Trouble) -> Trouble {
     match trouble {
         Trouble::Setting { key, value, allowed } => {

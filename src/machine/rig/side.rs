@@ -5,22 +5,22 @@ use serde::{Deserialize, Serialize};
 /// Arm pairs at most.
 pub const SIDES: usize = 2;
 
-/// Which arm pair, as the surgeon sees it. A rig with one has the right one.
+/// Which arm pair, from the surgeon's point of view. A rig with one pair has the right one.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Side {
-    /// The right hand's.
+    /// For the right hand.
     #[default]
     Right,
-    /// The left hand's.
+    /// For the left hand.
     Left,
 }
 
 impl Side {
-    /// Both, in the order of every array of sides.
+    /// Both sides, in the order of every array of sides.
     pub const ALL: [Self; SIDES] = [Self::Right, Self::Left];
 
-    /// Its place in an array of sides.
+    /// Index in an array of sides.
     pub const fn index(self) -> usize {
         self as usize
     }
@@ -34,7 +34,7 @@ impl Side {
         }
     }
 
-    /// One word for the screen.
+    /// Its name on the screen.
     pub const fn word(self) -> &'static str {
         match self {
             Self::Right => "right",

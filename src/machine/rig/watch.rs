@@ -1,13 +1,13 @@
-//! Notices devices that come and go.
+//! Notices when devices connect or are lost.
 
 use nima_devices::Standing;
 
 use crate::rig::{DEVICES_MAX, DeviceEvent, SIDES};
 
-/// Events that wait at most; more are dropped, the healths tell the rest.
+/// Capacity for waiting events. Further ones are dropped; the published health still shows the state of every device.
 const WAITING: usize = 32;
 
-/// Where every device was, and what is still to be told.
+/// Last known state of every device, and the events not yet reported.
 #[derive(Debug)]
 pub struct Watch {
     before: [Standing; DEVICES_MAX],
@@ -23,7 +23,7 @@ impl Default for Watch {
 }
 
 impl Watch {
-    /// Takes in where a device is now.
+    /// Compares the state of a device with the last known one.
     pub fn look(&mut self, t_s: f64, device: usize, standing: Standing, of_side: [bool; SIDES]) {
         let Some(before) = self.before.get_mut(device) else { return };
         if *before == standing {
@@ -37,7 +37,7 @@ impl Watch {
         }
     }
 
-    /// The oldest event that was not told yet.
+    /// The oldest event not yet reported.
     pub const fn take(&mut self) -> Option<DeviceEvent> {
         if self.count == 0 {
             return None;

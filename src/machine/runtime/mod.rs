@@ -1,7 +1,10 @@
-//! Time and threads: runs the loop in its own thread, on the real clock or at the pace of it, or on the virtual clock as fast as it goes.
+//! Runs the loop in its own thread on the real clock or in paced simulated time, or in the caller's thread on the
+//! virtual clock.
 //!
-//! Takes an [`Assembly`]; gives a [`Handle`] (commands in; ticks and events out, over bounded queues) or a [`Summary`].
-//! The real-time thread owns the rig and the loop. It never waits for a receiver: what does not fit is dropped and counted.
+//! Takes an [`Assembly`]; returns a [`Handle`] (commands in; ticks and events out, over bounded queues) or a
+//! [`Summary`].
+//! The real-time thread owns the rig and the loop. It never waits for a receiver: if a queue is full, the item is
+//! dropped and counted.
 
 mod os;
 mod summary;
@@ -22,33 +25,34 @@ use crate::{
     teleop::Loop,
 };
 
-/// What the loop takes as its time.
+/// Source of the loop's time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Clock {
-    /// The monotonic clock: every period has a deadline, what is late is counted, and a stall switches the drives off.
+    /// The monotonic clock: every period has a deadline, late wake-ups are counted, and a stall switches the drives
+    /// off.
     Real,
-    /// Simulated time, at most so many times as fast as real time. A loop that was held up goes on where it was, and nothing is late: for
-    /// simulated rigs, where nobody is at the other end.
+    /// Simulated time that advances at most `speed` times as fast as real time. After a delay the loop continues where
+    /// it was, and nothing counts as late. For simulated rigs only, which have no hardware to keep in time.
     Simulated {
-        /// Simulated seconds in a real one.
+        /// Simulated seconds per real second.
         speed: f64,
     },
 }
 
-/// A loop and the rig that it runs on, ready to start.
+/// A loop and its rig, ready to start.
 pub struct Assembly {
     /// The loop.
     pub control: Loop,
     /// The rig.
     pub rig: Box<dyn Rig>,
-    /// The devices in it.
+    /// The devices of the rig.
     pub roster: Roster,
     /// Ticks per second.
     pub rate_hz: f64,
-    /// The loop's time, where it runs in a thread of its own.
+    /// Source of time, if the loop runs in a thread of its own.
     pub clock: Clock,
-    /// What to ask of the operating system.
+    /// Scheduling to request from the operating system.
     pub scheduling: SchedulingClass,
-    /// Engage as soon as everything is there.
+    /// Engage as soon as every device delivers.
     pub engage: bool,
 }

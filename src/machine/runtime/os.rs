@@ -1,20 +1,20 @@
-//! What the operating system grants a real-time thread: the one place with system calls.
+//! Real-time scheduling, memory locking and sleeping until a deadline: the only system calls of this crate.
 #![expect(unsafe_code, reason = "scheduling, memory locking and absolute sleep have no safe interface in std")]
 
 use crate::{config::SchedulingClass, messages::Scheduling};
 
-/// Processor time used so far, s: by this thread, and by the whole process. Zeros where it cannot be told.
+/// Processor time used so far, s: by this thread and by the whole process. Zeros if it cannot be read.
 #[cfg(target_os = "linux")]
 pub(super) fn cpu_s() -> [f64; 2] {
     [libc::CLOCK_THREAD_CPUTIME_ID, libc::CLOCK_PROCESS_CPUTIME_ID].map(|clock| {
         let mut time = libc::timespec { tv_sec: 0, tv_nsec: 0 };
-        // SAFETY: a plain system call with a valid place for its answer.
+        // SAFETY: a plain system call; `time` is valid for writing.
         let told = unsafe { libc::clock_gettime(clock, &raw mut time) } == 0;
         if told { time.tv_sec as f64 + time.tv_nsec as f64 * 1e-9 } else { 0.0 }
     })
 }
 
-/// Processor time used so far, s: by this thread, and by the whole process. Zeros where it cannot be told.
+/// Processor time used so far, s: by this thread and by the whole process. Zeros if it cannot be read.
 #[cfg(not(target_os = "linux"))]
 pub(super) fn cpu_s() -> [f64; 2] {
     [0.0; 2]
@@ -23,10 +23,11 @@ pub(super) fn cpu_s() -> [f64; 2] {
 /// Priority of the loop: above ordinary audio (70), below the kernel's own threads (99).
 #[cfg(target_os = "linux")]
 const PRIORITY: i32 = 80;
-/// Stack touched in advance, bytes.
+/// Bytes of stack touched in advance, so that no page fault happens in a tick.
 const STACK_TOUCHED: usize = 128 * 1024;
 
-/// Asks for what a thread of this class and period wants. Call it on that thread. Refusals are told, never fatal.
+/// Requests scheduling and locked memory for the calling thread. What is refused is reported in the result and is not
+/// an error.
 pub(super) fn prepare_thread(class: SchedulingClass, period_ns: u64) -> Scheduling {
     touch_stack();
     match class {
@@ -46,7 +47,7 @@ fn touch_stack() {
     std::hint::black_box(&stack);
 }
 
-/// A place above the loop for the thread that watches it, where that is granted.
+/// Gives the calling thread (the supervisor) a priority above the loop's, if the system allows it.
 pub(super) fn prepare_supervisor() {
     #[cfg(target_os = "linux")]
     // SAFETY: a plain system call on the calling thread with a valid, initialised argument.
@@ -56,11 +57,11 @@ pub(super) fn prepare_supervisor() {
     }
 }
 
-/// Share of a period that the loop may run before the kernel holds it back until the next one (`SCHED_DEADLINE`).
+/// Share of the period that `SCHED_DEADLINE` lets the loop use before the kernel suspends it until the next period.
 #[cfg(target_os = "linux")]
 const BUDGET: f64 = 0.8;
 
-/// `sched_setattr(2)`: the kernel's structure, of which the C library has no name everywhere.
+/// The kernel's `struct sched_attr`, see `sched_setattr(2)`. Not every C library declares it.
 #[cfg(target_os = "linux")]
 #[repr(C)]
 struct SchedulingAttributes {
@@ -74,7 +75,8 @@ struct SchedulingAttributes {
     period_ns: u64,
 }
 
-/// Asks for a budget in every period. The kernel refuses it where not all of the processors are open to the thread, or booked.
+/// Requests a time budget in every period (`SCHED_DEADLINE`). The kernel refuses if the thread may not use all
+/// processors, or if their time is already reserved.
 #[cfg(target_os = "linux")]
 fn deadline_granted(period_ns: u64) -> bool {
     const SCHED_DEADLINE: u32 = 6;
@@ -88,11 +90,11 @@ fn deadline_granted(period_ns: u64) -> bool {
         deadline_ns: period_ns,
         period_ns,
     };
-    // SAFETY: a plain system call on the calling thread with a valid, initialised structure of the size that it says.
+    // SAFETY: a plain system call on the calling thread; the structure is valid and states its own size.
     unsafe { libc::syscall(libc::SYS_sched_setattr, 0, &raw const attributes, 0) == 0 }
 }
 
-/// First come: a budget in every period where one is given and granted, else a fixed priority.
+/// `SCHED_DEADLINE` if a budget is given and granted, else `SCHED_FIFO`.
 #[cfg(target_os = "linux")]
 fn granted(period_ns: Option<u64>) -> Scheduling {
     let deadline = period_ns.is_some_and(deadline_granted);
@@ -102,11 +104,12 @@ fn granted(period_ns: Option<u64>) -> Scheduling {
         let parameter = libc::sched_param { sched_priority: PRIORITY };
         let fifo =
             !deadline && libc::pthread_setschedparam(libc::pthread_self(), libc::SCHED_FIFO, &raw const parameter) == 0;
-        // With a finite limit a locked process soon fails to map memory, so lock only without one.
+        // Lock only without a limit: with a finite one the process soon fails to map memory.
         let mut limit = libc::rlimit { rlim_cur: 0, rlim_max: 0 };
         let unlimited = libc::geteuid() == 0
             || (libc::getrlimit(libc::RLIMIT_MEMLOCK, &raw mut limit) == 0 && limit.rlim_cur == libc::RLIM_INFINITY);
-        // On fault: pages are locked once they are touched, so untouched reserves of other threads cost nothing.
+        // MCL_ONFAULT locks pages when they are first touched, so memory that other threads reserve and never use is
+        // not committed.
         let flags = libc::MCL_CURRENT | libc::MCL_FUTURE | libc::MCL_ONFAULT;
         Scheduling { fifo, deadline, memory_locked: unlimited && libc::mlockall(flags) == 0 }
     }

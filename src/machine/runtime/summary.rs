@@ -1,4 +1,4 @@
-//! What a run tells at its end.
+//! Figures that a run reports when it ends.
 
 use nima_core::{
     impedance::Mode,
@@ -13,7 +13,7 @@ use crate::{
     teleop::{Loop, Pair},
 };
 
-/// Error of one mode over a run, against the force at the follower at the same instant.
+/// Error of one mode over a run: rendered force minus the force at the follower at the same instant.
 #[derive(Clone, Copy, Debug, Serialize)]
 #[expect(missing_docs, reason = "the names say it")]
 pub struct ModeError {
@@ -25,7 +25,7 @@ pub struct ModeError {
     pub sd_n: f64,
     /// Largest 3-D error, N.
     pub max_n: f64,
-    /// Ticks in which the mode had nothing valid.
+    /// Ticks in which the mode had no valid force.
     pub invalid: u64,
 }
 
@@ -38,41 +38,41 @@ pub struct CpuShare {
     pub process: f64,
 }
 
-/// How one device was at the end of a run.
+/// State of one device at the end of a run.
 #[derive(Clone, Debug, Serialize)]
 pub struct DeviceFigures {
     /// Its name in the rig.
     pub name: String,
-    /// All that was counted since it was opened.
+    /// Counters since the device was opened.
     #[serde(flatten)]
     pub health: Health,
-    /// Why it is not connected, where that is known.
+    /// Why it is not connected, if known.
     pub trouble: Option<CauseAndCure>,
 }
 
-/// What went wrong, and what to do about it.
+/// A fault: its cause, and what to do about it.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct CauseAndCure {
-    /// The device concerned, where it is one.
+    /// The device concerned, if the fault is about a device.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub device: Option<String>,
-    /// What happened, as the screen would show it.
+    /// Cause, in the words of the screen.
     pub cause: String,
     /// What the operator can do.
     pub cure: String,
 }
 
-/// How one arm pair stood at the end of a run.
+/// State of one arm pair at the end of a run.
 #[derive(Clone, Debug, Serialize)]
 pub struct ArmEnd {
-    /// The arm pair whose end this is.
+    /// Which arm pair.
     pub side: Side,
-    /// Its state in the last tick, before it was left at rest.
+    /// Its state in the last tick, before the outputs were made safe.
     #[serde(serialize_with = "by_key")]
     pub final_state: LoopState,
-    /// Its fault, where that state is one, once [`Summary::explain`] gave it words.
+    /// Its fault, if it is in one; filled in by [`Summary::explain`].
     pub fault: Option<CauseAndCure>,
-    /// The device that a fault is about.
+    /// The device that the fault is about.
     #[serde(skip)]
     device: Option<String>,
 }
@@ -83,7 +83,7 @@ impl ArmEnd {
     }
 }
 
-/// One word for a script.
+/// Writes the state as one word, for scripts.
 fn by_key<S: serde::Serializer>(state: &LoopState, serializer: S) -> Result<S::Ok, S::Error> {
     serializer.serialize_str(match state {
         LoopState::Disconnected => "disconnected",
@@ -96,7 +96,7 @@ fn by_key<S: serde::Serializer>(state: &LoopState, serializer: S) -> Result<S::O
     })
 }
 
-/// Counts of durations; each bar holds those up to its end and above the end of the bar before.
+/// Histograms of durations; each bar counts the durations above the upper limit of the bar before and up to its own.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct Histograms {
     /// Lateness of wake-ups.
@@ -105,7 +105,7 @@ pub struct Histograms {
     pub work: Vec<Bar>,
     /// Exchange with the rig.
     pub rig: Vec<Bar>,
-    /// From measurement to force.
+    /// Time from measurement to force.
     pub sample_to_force: Vec<Bar>,
 }
 
@@ -114,46 +114,46 @@ pub struct Histograms {
 pub struct Summary {
     /// `real` or `virtual`.
     pub clock: &'static str,
-    /// Periods in which the loop ran.
+    /// Ticks executed.
     pub ticks: u64,
     /// Periods missed and skipped.
     pub missed: u64,
-    /// Ticks that did not fit into the screen's queue.
+    /// Ticks dropped because the queue to the screen was full.
     pub dropped: u64,
     /// Loop time at the end, s.
     pub seconds: f64,
-    /// Wall time per loop time: above 1 is faster than real time.
+    /// Loop time per wall time: above 1 is faster than real time.
     pub speed: f64,
     /// Lateness of wake-ups, us (zero on the virtual clock).
     pub wake_us: Quantiles,
     /// Work of one tick of the loop, without rig and queues, us.
     pub work_us: Quantiles,
-    /// Exchange with the rig (devices or simulation), us.
+    /// Time spent reading from and writing to the rig (devices or simulation), us.
     pub rig_us: Quantiles,
-    /// Time from the arrival of the oldest measurement to when the force made from it was given to the device, us; in a simulation
-    /// the loop's own time alone.
+    /// Time from the arrival of the oldest measurement until the force computed from it was given to the device, us. In
+    /// a simulation only the loop's own part.
     pub sample_to_force_us: Quantiles,
-    /// The same four as histograms.
+    /// The four durations above as histograms.
     pub histograms: Histograms,
     /// Processor time; zero on the virtual clock.
     pub cpu: CpuShare,
-    /// What the operating system granted.
+    /// Real-time privileges that the operating system granted.
     pub scheduling: Scheduling,
-    /// State at the end; of two arm pairs that of the one that needs more attention.
+    /// State at the end; with two arm pairs the state that needs more attention.
     #[serde(serialize_with = "by_key")]
     pub final_state: LoopState,
     /// The fault of the same arm pair.
     pub fault: Option<CauseAndCure>,
-    /// The same for each arm pair, the right one first.
+    /// The end state of each arm pair, the right one first.
     pub arms: Vec<ArmEnd>,
-    /// The devices, where there are some.
+    /// The devices; empty if everything is simulated.
     pub devices: Vec<DeviceFigures>,
-    /// Errors per arm pair and mode, the right one's first, before the gates.
+    /// Errors of what each mode asked for before the gates, per arm pair and mode, the right pair first.
     pub error: Vec<ModeError>,
 }
 
 impl Summary {
-    /// Adds what the opening threads know of the devices: their names in faults, and why one is not connected.
+    /// Adds what the threads that open the devices know: names for faults, and why a device is not connected.
     pub(super) fn tell_devices(&mut self, roster: &Roster) {
         for (device, entry) in self.devices.iter_mut().zip(roster) {
             if device.health.standing != Standing::Connected {
@@ -176,7 +176,8 @@ impl Summary {
         }
     }
 
-    /// Gives the faults at the end their words, which are not the machine's: `words` tells the cause and the cure of one.
+    /// Fills in the texts of the faults. `words` returns cause and cure of a fault; the texts belong to the user
+    /// interface, not to this crate.
     pub fn explain(&mut self, words: impl Fn(Fault) -> [&'static str; 2]) {
         for arm in &mut self.arms {
             if let LoopState::Faulted(fault) = arm.final_state {
@@ -189,7 +190,7 @@ impl Summary {
     }
 }
 
-/// Meters of a run, filled by both clocks.
+/// Statistics collected during a run, by both clocks.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Meters {
     pub(super) wake: Percentiles,

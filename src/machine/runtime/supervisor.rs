@@ -1,8 +1,10 @@
-//! Watches the loop from a thread of its own: a loop that is held up while drives are on loses them, whatever holds it up.
+//! Watches the loop from its own thread: if the loop stalls while the drives are on, for whatever reason, the drives
+//! are switched off.
 //!
-//! The loop beats once a tick; the supervisor looks every 2 ms and, after [`STALL_MAX_S`] without a beat, pulls the levers of all devices
-//! (handle: force off, brakes on; arm: out of cyclic servoing) and marks the pulse. The loop sees the mark in its next tick and
-//! goes to a latched fault: nothing resumes by itself.
+//! The loop calls `beat` once per tick. The supervisor checks every 2 ms; after [`STALL_MAX_S`] without a beat it calls
+//! the [`Lever`](nima_devices::Lever) of every device (handle: force off, brakes on; arm: leave cyclic servoing) and
+//! stores how long the loop was silent. The loop reads this in its next tick and enters a latched fault, so nothing
+//! resumes without a person.
 
 use std::{
     sync::{
@@ -21,23 +23,23 @@ use super::os;
 pub const STALL_MAX_S: f64 = 0.020;
 const LOOK_EVERY: Duration = Duration::from_millis(2);
 
-/// What loop and supervisor share.
+/// State shared by the loop and the supervisor.
 #[derive(Debug, Default)]
 pub(super) struct Pulse {
     beat_ns: AtomicU64,
     driven: AtomicBool,
-    /// How long the loop had been silent when the levers were pulled, ns; zero: they were not.
+    /// How long the loop had been silent when the levers were pulled, ns; zero if they were not pulled.
     pulled_ns: AtomicU64,
 }
 
 impl Pulse {
-    /// The loop is alive; `driven`: drives are on.
+    /// Reports that the loop is alive; `driven` is true while the drives are on.
     pub(super) fn beat(&self, now_ns: u64, driven: bool) {
         self.driven.store(driven, Ordering::Relaxed);
         self.beat_ns.store(now_ns, Ordering::Release);
     }
 
-    /// The levers were pulled since the last call: after how long a silence, s.
+    /// If the levers were pulled since the last call of this function: how long the loop had been silent, s.
     pub(super) fn take_pulled(&self) -> Option<f64> {
         match self.pulled_ns.swap(0, Ordering::AcqRel) {
             0 => None,
@@ -46,7 +48,7 @@ impl Pulse {
     }
 }
 
-/// The thread. Dropping it ends it.
+/// The supervisor's thread. Dropping this stops it.
 #[derive(Debug)]
 pub(super) struct Supervisor {
     stop: Arc<AtomicBool>,

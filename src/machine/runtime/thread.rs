@@ -1,4 +1,4 @@
-//! The loop on the real clock: a thread named `realtime` with absolute deadlines.
+//! Runs the loop on the real clock, in a thread named `realtime` that wakes at absolute deadlines.
 
 use std::{
     io,
@@ -23,17 +23,17 @@ use crate::{
     teleop::{Calibrations, Loop, Timing},
 };
 
-/// Ticks that wait for the screen before new ones are dropped: 8 s at 1 kHz.
+/// Capacity of the queue of ticks for the screen; further ticks are dropped. 8 s at 1 kHz.
 pub const TICKS_WAITING_MAX: usize = 8192;
-/// Commands that wait for the loop.
+/// Capacity of the queue of commands to the loop.
 const COMMANDS_WAITING_MAX: usize = 64;
-/// Events that wait for the screen.
+/// Capacity of the queue of events for the screen.
 const EVENTS_WAITING_MAX: usize = 256;
-/// Ticks between two looks at the health of the devices.
+/// The health of the devices is published once per this many ticks.
 const HEALTH_EVERY: u64 = 100;
-/// Devices that may come or go in one tick.
+/// Most device events (connected, lost) that are handled in one tick.
 const DEVICE_EVENTS_PER_TICK_MAX: usize = 4;
-/// Commands obeyed in one tick; the rest wait for the next.
+/// Most commands carried out in one tick; further ones wait for the next tick.
 const COMMANDS_PER_TICK_MAX: usize = 2;
 
 /// Why a loop could not be started.
@@ -42,7 +42,7 @@ pub enum StartError {
     /// The rig's settings are not usable.
     #[error(transparent)]
     Settings(#[from] SettingsError),
-    /// The rig's devices cannot be set up.
+    /// The operating system could not create the thread.
     #[error(transparent)]
     Rig(#[from] RigError),
     /// The operating system gave no thread.
@@ -50,7 +50,7 @@ pub enum StartError {
     Thread(#[from] io::Error),
 }
 
-/// One running loop. Dropping it ends the loop.
+/// A running loop. Dropping it ends the loop.
 #[derive(Debug)]
 pub struct Handle {
     commands: Sender<Command>,
@@ -60,14 +60,15 @@ pub struct Handle {
     roster: Roster,
     wrists: WristDoor,
     thread: Option<JoinHandle<Summary>>,
-    /// Outlives the loop: fields are dropped after [`Drop`] has joined its thread.
+    /// Declared after the thread: fields are dropped after [`Drop`] has joined the loop's thread, so the supervisor
+    /// outlives the loop.
     _supervisor: Supervisor,
 }
 
 /// Starts the loop in its own thread.
 ///
 /// # Errors
-/// [`StartError::Thread`] where the operating system gives none.
+/// [`StartError::Thread`] if the operating system cannot create the thread.
 pub fn start(assembly: Assembly) -> Result<Handle, StartError> {
     let Assembly { control, rig, roster, rate_hz, clock, scheduling, engage } = assembly;
     let (pulse, levers) = (Arc::new(Pulse::default()), rig.levers());
@@ -104,62 +105,63 @@ impl Handle {
         self.commands.try_send(command).is_ok()
     }
 
-    /// Hands over every waiting tick, oldest first, without blocking.
+    /// Calls `each` for every waiting tick, oldest first, without blocking.
     pub fn drain_ticks(&self, mut each: impl FnMut(&Tick)) {
-        // Bounded, so that a slow screen cannot be kept here by a fast loop.
+        // Bounded, so that a loop that produces ticks faster than the screen reads them cannot keep the screen in this
+        // function.
         self.ticks.try_iter().take(TICKS_WAITING_MAX).for_each(|tick| each(&tick));
     }
 
-    /// Hands over every waiting event, oldest first, without blocking.
+    /// Calls `each` for every waiting event, oldest first, without blocking.
     pub fn drain_events(&self, mut each: impl FnMut(&Event)) {
         self.events.try_iter().take(EVENTS_WAITING_MAX).for_each(|event| each(&event));
     }
 
-    /// The devices of the rig; empty where everything is simulated.
+    /// The devices of the rig; empty if everything is simulated.
     pub fn roster(&self) -> &Roster {
         &self.roster
     }
 
-    /// When the force sensor of this side came or went last. Look at this first and at [`Handle::force_sensor`] after it: then
-    /// [`Handle::put_in_force`] is refused if the sensor is another one by now.
+    /// When the force sensor of this side last connected or disconnected. Read this before [`Handle::force_sensor`]:
+    /// [`Handle::put_in_force`] is then refused if the sensor has been exchanged in between.
     pub fn wrist_change(&self, side: Side) -> WristChange {
         self.wrists.change(side)
     }
 
-    /// Who the force sensor of this side said it is; `None` before it was opened.
+    /// Identity that the force sensor of this side reported; `None` until it has been opened.
     pub fn force_sensor(&self, side: Side) -> Option<Identity> {
         self.roster.iter().find(|entry| entry.force_sensor_of == Some(side))?.view.report().identity
     }
 
-    /// Puts the calibrations of a force sensor in force, unless the sensor has come or gone since `change`; false where the loop takes
-    /// nothing now.
+    /// Puts the calibrations of a force sensor in force, unless the sensor has connected or disconnected since
+    /// `change`. Returns false if the loop cannot accept them now.
     pub fn put_in_force(&self, change: WristChange, calibrations: &Calibrations) -> bool {
         self.wrists.put_in_force(change, calibrations)
     }
 
-    /// How the devices are, if that is newer than the last time.
+    /// Health of the devices; `None` if it has not changed since the last call.
     pub fn healths(&self) -> Option<Healths> {
         self.healths.try_recv().ok()
     }
 
-    /// What ends this loop from any thread.
+    /// An object that can end this loop from any thread.
     pub fn ender(&self) -> Ender {
         Ender(self.commands.clone())
     }
 
-    /// The loop's thread is alive.
+    /// Whether the loop's thread is running.
     pub fn is_running(&self) -> bool {
         self.thread.as_ref().is_some_and(|thread| !thread.is_finished())
     }
 
-    /// Ends the loop and gives its figures; `None` if its thread died.
+    /// Ends the loop and returns its figures; `None` if its thread has panicked.
     pub fn stop_and_join(mut self) -> Option<Summary> {
         self.end()
     }
 
     fn end(&mut self) -> Option<Summary> {
         let thread = self.thread.take()?;
-        // A full queue must not keep a loop alive: wait for room.
+        // Block until the queue has room: a full queue must not keep the loop alive.
         self.commands.send(Command::Shutdown).ok();
         let mut summary = thread.join().ok()?;
         summary.tell_devices(&self.roster);
@@ -167,14 +169,15 @@ impl Handle {
     }
 }
 
-/// Ends a loop from any thread: no force, drives off, the arm at rest. Its figures wait in the [`Handle`].
+/// Ends a loop from any thread: zero force, drives off, arm at rest. The figures of the run stay available in the
+/// [`Handle`].
 #[derive(Clone, Debug)]
 pub struct Ender(Sender<Command>);
 
 impl Ender {
-    /// Ends it within a few ticks.
+    /// Ends the loop within a few ticks.
     pub fn end(&self) {
-        // A full queue is emptied by the loop; where there is no loop any more, nothing is left to be ended.
+        // May block while the queue is full, which the loop empties. The send fails only if the loop has already ended.
         self.0.send(Command::Shutdown).ok();
     }
 }
@@ -192,7 +195,7 @@ struct Realtime {
     scheduling: SchedulingClass,
     /// Names of the devices.
     names: Vec<String>,
-    /// Engage once, as soon as everything delivers.
+    /// Engage once, as soon as every device delivers.
     engage: bool,
     period_ns: u64,
     clock: Clock,
@@ -217,7 +220,7 @@ impl Realtime {
             Clock::Real => self.run_in_real_time(start_ns, &mut timing),
             Clock::Simulated { speed } => self.run_in_simulated_time(start_ns, speed, &mut timing),
         }
-        // Whatever ends the loop, the hand is left without force and the follower at rest.
+        // Whatever ended the loop: leave the hand without force and the follower at rest.
         self.rig.write(timing.now_s, &[Outputs::SAFE; SIDES]);
         self.pulse.beat(os::monotonic_ns(), false);
         let wall_s = (os::monotonic_ns() - start_ns) as f64 * 1e-9;
@@ -243,7 +246,7 @@ impl Realtime {
             os::sleep_until_ns(deadline_ns);
             let woke_ns = os::monotonic_ns();
             let late_ns = woke_ns.saturating_sub(deadline_ns);
-            // Whole periods that passed are counted and skipped, never caught up in a burst.
+            // Missed periods are counted and skipped. Executing them late would be a burst of ticks.
             timing.missed_now = late_ns / self.period_ns;
             deadline_ns += timing.missed_now * self.period_ns;
             timing.now_s = (deadline_ns - start_ns) as f64 * 1e-9;
@@ -259,14 +262,14 @@ impl Realtime {
             due_ns += pace_ns;
             os::sleep_until_ns(due_ns);
             let woke_ns = os::monotonic_ns();
-            // Time that was lost is not made up for: it would be a burst.
+            // Do not catch up after a delay: that would be a burst of ticks.
             due_ns = due_ns.max(woke_ns.saturating_sub(pace_ns));
             timing.now_s += self.period_ns as f64 * 1e-9;
             self.tick(timing, woke_ns);
         }
     }
 
-    /// False when the loop shall end.
+    /// Returns false if the loop is to end.
     fn obey_commands(&mut self, now_s: f64) -> bool {
         self.control.clear_events();
         for _ in 0..COMMANDS_PER_TICK_MAX {

@@ -1,4 +1,4 @@
-//! The loop on the virtual clock: the same code, no waiting, deterministic.
+//! Runs the loop on the virtual clock: the same code as on the real clock, without waiting, and deterministic.
 
 use std::time::Instant;
 
@@ -6,8 +6,8 @@ use super::{Assembly, Summary, summary::Meters};
 use crate::messages::{Command, Scheduling, Tick};
 use crate::teleop::Timing;
 
-/// Runs it for `seconds` of loop time; `each` sees every tick of every side, may give a command for the next and ends the run with
-/// [`Command::Shutdown`].
+/// Runs the loop for `seconds` of loop time. `each` is called with every tick of every side; it may return a command
+/// for the next tick, and ends the run by returning [`Command::Shutdown`].
 pub fn run_virtual(assembly: Assembly, seconds: f64, mut each: impl FnMut(&Tick) -> Option<Command>) -> Summary {
     let Assembly { mut control, mut rig, rate_hz, engage, .. } = assembly;
     let period_s = 1.0 / rate_hz;

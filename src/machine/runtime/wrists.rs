@@ -1,7 +1,8 @@
-//! Calibrations that come into force while the loop runs: once the force sensor of a side has told who it is.
+//! Applies calibrations while the loop runs, once the force sensor of a side has reported its identity.
 //!
-//! A sensor that comes or goes may be another one afterwards. So every change puts the calibrations of its side out of force, in the
-//! tick that notices it; and what was prepared before the change is refused. What a tick uses is allocated and freed outside.
+//! A sensor that reconnects may be a different one. So the tick that notices a change suspends the calibrations of that
+//! side, and calibrations prepared before the change are refused. The memory that a tick exchanges is allocated and
+//! freed in other threads.
 
 use std::sync::{
     Arc,
@@ -16,19 +17,20 @@ use crate::{
     teleop::{Calibrations, ForcePath, Loop},
 };
 
-/// Preparations that wait for the loop.
+/// Capacity of the queue of prepared calibrations.
 const WAITING_MAX: usize = 4;
 
-/// The last time that the force sensor of a side came or went: calibrations count until the next one.
+/// Identifies the last time that the force sensor of a side connected or disconnected. Calibrations are valid until the
+/// next change.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct WristChange {
     side: Side,
-    /// Odd while the sensor is there.
+    /// Odd while the sensor is connected.
     count: u64,
 }
 
 impl WristChange {
-    /// The sensor came.
+    /// Whether the change was a connection.
     pub const fn is_there(self) -> bool {
         self.count % 2 == 1
     }
@@ -46,7 +48,7 @@ struct Prepared {
 
 type Counts = Arc<[AtomicU64; SIDES]>;
 
-/// The loop's end.
+/// The part used by the loop.
 #[derive(Debug)]
 pub(super) struct Wrists {
     counts: Counts,
@@ -55,7 +57,7 @@ pub(super) struct Wrists {
     spent: Sender<Prepared>,
 }
 
-/// The other end.
+/// The part used by other threads.
 #[derive(Debug)]
 pub(super) struct WristDoor {
     counts: Counts,
@@ -64,11 +66,11 @@ pub(super) struct WristDoor {
     period_s: f64,
 }
 
-/// Both ends, for a loop of this period (s) on these devices.
+/// Creates both parts, for a loop of this period (s) on these devices.
 pub(super) fn ends(roster: &[RosterEntry], period_s: f64) -> (Wrists, WristDoor) {
     let counts = Counts::default();
     let (prepare, prepared) = bounded(WAITING_MAX);
-    // The door empties it before it sends, so that twice as many can never wait.
+    // The other part empties this queue before it sends, so there are never twice as many.
     let (spend, spent) = bounded(2 * WAITING_MAX);
     let of_device = std::array::from_fn(|device| roster.get(device).and_then(|entry| entry.force_sensor_of));
     let wrists = Wrists { counts: Arc::clone(&counts), of_device, prepared, spent: spend };
@@ -76,7 +78,7 @@ pub(super) fn ends(roster: &[RosterEntry], period_s: f64) -> (Wrists, WristDoor)
 }
 
 impl Wrists {
-    /// Takes in that a device came or went.
+    /// Handles the connection or loss of a device.
     pub(super) fn notice(&self, event: &DeviceEvent, control: &mut Loop) {
         if let Some(side) = self.of_device.get(usize::from(event.device)).copied().flatten() {
             control.suspend_calibrations(side);
@@ -84,19 +86,20 @@ impl Wrists {
         }
     }
 
-    /// Puts in force what was prepared for the sensor that is there.
+    /// Applies the calibrations that were prepared for the connected sensor.
     pub(super) fn put_in_force(&self, control: &mut Loop) {
         let Ok(mut prepared) = self.prepared.try_recv() else { return };
         let WristChange { side, count } = prepared.change;
         let now = self.counts[side.index()].load(Ordering::Acquire);
         if now == count && !control.exchange_force_path(side, &mut prepared.path) {
-            // Drives are on: whoever prepared it shall see that it is not in force, and come again.
+            // Drives are on, so the calibrations cannot change now. A new count makes the caller see that they are not
+            // in force and try again.
             self.count_on(side, prepared.change.is_there());
         }
         self.spent.try_send(prepared).ok();
     }
 
-    /// Only the loop counts.
+    /// Only the loop changes the count.
     fn count_on(&self, side: Side, is_there: bool) {
         let counter = &self.counts[side.index()];
         let change = WristChange { side, count: counter.load(Ordering::Relaxed) };
@@ -181,7 +184,7 @@ mod tests {
         }
     }
 
-    /// A tool at rest, hanging from an arm that measures at the wrist.
+    /// Inputs of a resting arm that measures the force at the wrist.
     fn at_wrist() -> Inputs {
         let sample = WristSample {
             raw: Wrench { force_n: Vector3::new(0.0, 0.0, -0.4 * GRAVITY_M_S2), torque_nm: Vector3::zeros() },
@@ -228,7 +231,7 @@ mod tests {
             assert_eq!(bench.tick(), ForceSource::Uncalibrated, "it may be another sensor now");
             assert_eq!(bench.door.change(Side::Right).is_there(), standing == Standing::Connected);
         }
-        // What was prepared for the sensor before comes too late.
+        // Prepared for the sensor before: refused.
         assert!(bench.door.put_in_force(met, &calibrated()));
         assert_eq!(bench.tick(), ForceSource::Uncalibrated);
         assert!(bench.door.put_in_force(bench.door.change(Side::Right), &calibrated()));

@@ -1,12 +1,12 @@
-//! How far each mode's force is from the force it should have been, running, without memory of samples.
+//! Running error of each mode's force against the true force; no samples are stored.
 
 use nalgebra::Vector3;
 use nima_core::impedance::{MODES, Mode, Rendered};
 
-/// Mean size and spread of a vector error, and its worst.
+/// Mean, standard deviation and maximum of a vector error.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ErrorStats {
-    /// How many were taken in.
+    /// Number of errors added.
     pub count: u64,
     /// Mean of the error's norm, N.
     pub mae_n: f64,
@@ -17,13 +17,13 @@ pub struct ErrorStats {
 }
 
 impl ErrorStats {
-    /// Takes in one error (N). One that is not finite must be counted elsewhere; it is ignored here.
+    /// Adds one error (N). An error that is not finite is ignored here and must be counted by the caller.
     pub fn add(&mut self, error_n: &Vector3<f64>) {
         let norm_n = error_n.norm();
         if !norm_n.is_finite() {
             return;
         }
-        // Welford's update: exact for long runs.
+        // Welford's update: numerically stable for long runs.
         self.count += 1;
         let count = self.count as f64;
         self.mae_n += (norm_n - self.mae_n) / count;
@@ -39,7 +39,7 @@ impl ErrorStats {
     }
 }
 
-/// Errors of every mode, as asked before the gates, against the force at the follower at the same instant.
+/// Errors of every mode's force before the gates, against the force at the follower at the same instant.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Accuracy {
     by_mode: [ErrorStats; MODES],
@@ -47,7 +47,7 @@ pub struct Accuracy {
 }
 
 impl Accuracy {
-    /// Takes in one tick. A mode without a valid force renders none: its error is the whole force.
+    /// Adds one tick. A mode without a valid force renders zero, so its error is the whole force.
     pub fn add(&mut self, rendered: &Rendered, truth_n: &Vector3<f64>) {
         for mode in Mode::ALL {
             let force_n = rendered.force(mode);
@@ -61,7 +61,7 @@ impl Accuracy {
         &self.by_mode[mode.index()]
     }
 
-    /// Ticks in which `mode` had nothing valid to ask for.
+    /// Ticks in which `mode` had no valid force.
     pub const fn invalid(&self, mode: Mode) -> u64 {
         self.invalid[mode.index()]
     }

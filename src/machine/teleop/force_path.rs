@@ -1,8 +1,8 @@
-//! From what the wrist feels to the force at the tip: one step a tick, allocation-free.
+//! Computes the force at the tip from the wrist sensor: one step per tick, without allocation.
 //!
-//! Weight and bias go first (`gravity`); what is left is the tissue's force plus the trocar's friction, which a trained network
-//! takes out. Every force leaves in the world frame. A sample from which no force can be told gives none, with the
-//! reason in [`ForceSource`].
+//! First `gravity` removes weight and bias; what remains is the tissue's force plus the trocar's friction, which a
+//! trained network removes. All forces are returned in the world frame. If a sample gives no force, [`ForceSource`]
+//! says why.
 
 use nima_core::{
     calibration::gravity::{Compensator, DEFAULT_TIME_CONSTANT_S, GravityModel},
@@ -16,7 +16,7 @@ use crate::{
     rig::Sensed,
 };
 
-/// The calibrations in force.
+/// The calibrations of one side.
 #[derive(Clone, Debug, Default)]
 pub struct Calibrations {
     /// Weight of the tool and bias of the wrist sensor.
@@ -25,36 +25,38 @@ pub struct Calibrations {
     pub tip_force: Option<TipForce>,
 }
 
-/// The chain of calibrations at work.
+/// The calibrations as they are applied to each sample.
 #[derive(Clone, Debug, Default)]
 pub struct ForcePath {
-    /// Which sensor is there is not known: its calibrations count for nothing.
+    /// It is not known which sensor is connected, so the calibrations must not be used.
     suspended: bool,
     gravity: Option<Compensator>,
     tip_force: Option<TipForce>,
 }
 
 impl ForcePath {
-    /// A path through these calibrations for a loop of this period (s). Everything is allocated here.
+    /// Creates the path for a loop of this period (s). All memory is allocated here.
     pub fn new(calibrations: &Calibrations, period_s: f64) -> Self {
         let live = |model| Compensator::new(model, DEFAULT_TIME_CONSTANT_S, period_s);
         Self { suspended: false, gravity: calibrations.gravity.map(live), tip_force: calibrations.tip_force.clone() }
     }
 
-    /// From now on no force is told from what a wrist feels: the sensor came or went, and may be another one now.
+    /// From now on no force is computed from wrist samples: the sensor was connected or lost, and may be a different
+    /// one.
     pub const fn suspend(&mut self) {
         self.suspended = true;
     }
 
-    /// A force at the tip can be told from such a sample.
+    /// Whether a force at the tip can be computed from such a sample.
     pub const fn knows(&self, sensed: &Sensed) -> bool {
         matches!(sensed, Sensed::AtTip(_)) || (self.gravity.is_some() && !self.suspended)
     }
 
-    /// The tip force of this sample, taken at this time (s).
+    /// The tip force of this sample, taken at `t_s` (s).
     pub fn step(&mut self, t_s: f64, sensed: &Sensed) -> ForceReport {
         let report = self.report(t_s, sensed);
-        // An impossible force from a plausible sample means a wrong calibration. Do not fall back on the last good force then.
+        // An impossible force from a plausible sample means a wrong calibration, so there is no fallback to the last
+        // good force.
         let possible = report.tip_n.iter().all(|f| f.abs() <= PLAUSIBLE_N);
         if possible { report } else { ForceReport::none(ForceSource::Poisoned, None) }
     }

@@ -1,17 +1,17 @@
-//! The link from follower to leader: what goes in comes out a programmed delay later, exact to one sample.
+//! The link from follower to leader: a parcel comes out a programmed delay after it went in, exact to one sample.
 //!
-//! Delivery goes by the parcels' own time, so a missed tick delays nothing but itself.
+//! Delivery is by the time stamps of the parcels, so a missed tick delays no other parcel.
 
 use std::fmt::Debug;
 
 use nima_core::impedance::{MAX_DELAY_S, Parcel};
 
-/// Carries parcels from the follower's end to the leader's. Nothing in it waits or allocates.
+/// Carries parcels from follower to leader. An implementation neither waits nor allocates.
 pub trait Link: Debug + Send {
     /// Changes the programmed delay (s, already a whole number of samples).
     fn set_delay(&mut self, delay_s: f64);
 
-    /// Loses everything under way.
+    /// Discards all parcels under way.
     fn clear(&mut self);
 
     /// Sends one parcel.
@@ -21,13 +21,13 @@ pub trait Link: Debug + Send {
     fn receive(&mut self, now_s: f64) -> Option<&Parcel>;
 }
 
-/// A ring of parcels on their way, within one process.
+/// A ring buffer of parcels under way, within one process.
 #[derive(Clone, Debug)]
 pub struct ProgrammedLink {
     ring: Vec<Parcel>,
-    /// Parcels sent so far; the newest is at `sent - 1` modulo the ring's length.
+    /// Number of parcels sent; the newest is at `sent - 1` modulo the length of the ring.
     sent: usize,
-    /// Parcels delivered so far, in the same count.
+    /// Number of parcels delivered.
     delivered: usize,
     delay_s: f64,
     half_period_s: f64,
@@ -50,7 +50,7 @@ impl ProgrammedLink {
 }
 
 impl Link for ProgrammedLink {
-    /// A longer delay goes back to what was delivered before.
+    /// With a longer delay, parcels that were delivered before are delivered again.
     fn set_delay(&mut self, delay_s: f64) {
         self.delay_s = delay_s;
         self.delivered = self.oldest_kept();
@@ -69,7 +69,7 @@ impl Link for ProgrammedLink {
 
     fn receive(&mut self, now_s: f64) -> Option<&Parcel> {
         let due_s = now_s - self.delay_s + self.half_period_s;
-        // Bounded by the ring's length; one step a tick except after a change of delay.
+        // At most the length of the ring; one step per tick except after a change of the delay.
         while self.delivered < self.sent && self.ring[self.slot(self.delivered)].t_s <= due_s {
             self.delivered += 1;
         }

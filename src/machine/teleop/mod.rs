@@ -1,9 +1,10 @@
 //! One tick of the whole loop for both arm pairs: measurements in, force and motion out.
 //!
-//! Takes [`Inputs`] (m, N, workspace frame) of each side and the time (s); gives [`Outputs`] and a [`Tick`] for each side.
-//! The same code runs on the real and on the virtual clock. Pure and deterministic; nothing is allocated after
-//! construction. Bad input (missing or not finite) means no force at once and a fault if it lasts. A fault of one pair takes the
-//! other one out of engagement too: nobody operates with one hand by surprise.
+//! Takes [`Inputs`] (m, N, workspace frame) of each side and the time (s); returns [`Outputs`] and a [`Tick`] for each
+//! side. The same code runs on the real and on the virtual clock. Deterministic, without input or output; nothing is
+//! allocated after construction. If a measurement is missing or not finite, the force is zero at once, and a fault
+//! follows if this lasts. A fault of one pair disengages the other one too, so that nobody is left operating with one
+//! hand by surprise.
 
 mod accuracy;
 mod force_path;
@@ -24,30 +25,30 @@ pub use link::{Link, ProgrammedLink};
 pub use pair::{EVENTS_PER_TICK_MAX, Pair, Timing};
 pub use tracking::Tracking;
 
-/// The pairs of a rig.
+/// The arm pairs of a rig.
 #[derive(Clone, Debug)]
 pub struct Loop<L: Link = ProgrammedLink> {
-    /// Boxed: a pair is large, and a thread's stack is not.
+    /// Boxed, because a pair is too large for a thread's stack.
     pairs: [Option<Box<Pair<L>>>; SIDES],
     refused: [Option<Event>; REFUSALS_PER_TICK_MAX],
 }
 
-/// Refused commands told in one tick: two commands at most are obeyed in one, by each side.
+/// Most refused commands reported in one tick: at most two commands are carried out per tick, each by both sides.
 const REFUSALS_PER_TICK_MAX: usize = 2 * SIDES;
 
 impl Loop {
-    /// A loop for the sides that have calibrations (empty ones, where the force is measured at the tip), both ends in this process.
-    /// Everything is allocated here.
+    /// A loop for the sides that have calibrations (which may be empty if the force is measured at the tip), with
+    /// leader and follower in this process. All memory is allocated here.
     ///
     /// # Errors
-    /// [`SettingsError`] for an identification that cannot be.
+    /// [`SettingsError`] if the settings of the identification are invalid.
     pub fn new(rig: &RigConfig, calibrations: &[Option<Calibrations>; SIDES]) -> Result<Self, SettingsError> {
         Self::over(rig, calibrations, ProgrammedLink::new)
     }
 }
 
 impl<L: Link> Loop<L> {
-    /// The same over links of another kind, made for a rate (Hz) and a delay (s).
+    /// The same with another kind of link; `link` creates one for a rate (Hz) and a delay (s).
     ///
     /// # Errors
     /// As [`Loop::new`].
@@ -75,23 +76,23 @@ impl<L: Link> Loop<L> {
         self.pairs[side.index()].as_deref()
     }
 
-    /// The pairs there are.
+    /// The pairs of the rig.
     pub fn pairs(&self) -> impl Iterator<Item = &Pair<L>> {
         self.pairs.iter().flatten().map(Box::as_ref)
     }
 
-    /// What happened since [`Loop::clear_events`], oldest first for each pair.
+    /// Events since [`Loop::clear_events`], oldest first for each pair.
     pub fn events(&self) -> impl Iterator<Item = &Event> {
         self.refused.iter().flatten().chain(self.pairs().flat_map(Pair::events))
     }
 
-    /// Forgets the events; call before handling commands of the next tick.
+    /// Removes all events; call before the commands of the next tick are handled.
     pub fn clear_events(&mut self) {
         self.refused = [None; REFUSALS_PER_TICK_MAX];
         self.pairs.iter_mut().flatten().for_each(|pair| pair.clear_events());
     }
 
-    /// Carries out one command in every pair that it concerns, and tells which of them refused it and why.
+    /// Carries out one command in every pair that it concerns, and reports which pair refused it and why.
     pub fn obey(&mut self, command: Command, t_s: f64) {
         let mut answers = [None; SIDES];
         for pair in self.pairs.iter_mut().flatten().filter(|pair| command.concerns(pair.side())) {
@@ -113,7 +114,7 @@ impl<L: Link> Loop<L> {
         }
     }
 
-    /// Every pair is idle, and can tell the force at its tip from these inputs.
+    /// Whether every pair is idle and can compute the force at its tip from these inputs.
     pub fn is_idle_with(&self, inputs: &[Option<Inputs>; SIDES]) -> bool {
         self.pairs().all(|pair| {
             let inputs = inputs[pair.side().index()].as_ref();
@@ -122,26 +123,28 @@ impl<L: Link> Loop<L> {
         })
     }
 
-    /// Takes in that a device came or went.
+    /// Handles the connection or loss of a device.
     pub fn notice(&mut self, event: &DeviceEvent) {
         for pair in self.pairs.iter_mut().flatten().filter(|pair| event.of_side[pair.side().index()]) {
             pair.notice(event);
         }
     }
 
-    /// Puts the calibrations of a side out of force: its wrist sensor came or went, and may be another one now.
+    /// Suspends the calibrations of a side: its wrist sensor was connected or lost, and may now be a different one.
     pub fn suspend_calibrations(&mut self, side: Side) {
         if let Some(pair) = &mut self.pairs[side.index()] {
             pair.suspend_calibrations();
         }
     }
 
-    /// Puts the calibrations of this path in force and hands those before back in it; refused while the drives of the side are on.
+    /// Exchanges the force path of this side with `path`, which then holds the old one. Returns false while the drives
+    /// of the side are on.
     pub fn exchange_force_path(&mut self, side: Side, path: &mut ForcePath) -> bool {
         self.pairs[side.index()].as_mut().is_some_and(|pair| pair.exchange_force_path(path))
     }
 
-    /// Takes in that the supervisor found the loop silent for so long, s, and switched the drives off.
+    /// Handles a report of the supervisor that the loop was silent for `silent_s` and that the drives were switched
+    /// off.
     pub fn notice_stall(&mut self, silent_s: f64, t_s: f64) {
         for pair in self.pairs.iter_mut().flatten() {
             let periods = (silent_s * pair.rate_hz()).round() as u64;
@@ -149,7 +152,22 @@ impl<L: Link> Loop<L> {
         }
     }
 
-    /// One tick of each pair. Sides without a pair rest and tell nothing.
+    /// Executes one tick of each pair. A side without a pair gets [`Outputs::SAFE`] and no tick.
+    ///
+    /// ```
+    /// use nima_machine::{
+    ///     config::RigConfig,
+    ///     rig::{Outputs, SIDES},
+    ///     teleop::{Calibrations, Loop, Timing},
+    /// };
+    ///
+    /// let rig = RigConfig::load("simulated")?;
+    /// let mut control = Loop::new(&rig, &[Some(Calibrations::default()), None])?;
+    /// let (outputs, ticks) = control.step([None; SIDES], &Timing::default());
+    /// assert_eq!(outputs, [Outputs::SAFE; SIDES], "no measurement, so no force and no motion");
+    /// assert!(ticks[0].is_some() && ticks[1].is_none(), "this loop has the right arm pair only");
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn step(
         &mut self,
         inputs: [Option<Inputs>; SIDES],

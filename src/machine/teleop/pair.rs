@@ -21,37 +21,39 @@ use crate::{
     rig::{DeviceEvent, Inputs, Outputs, Prompt, Side},
 };
 
-/// Rig silent for longer than this, s: fault.
+/// No sample from the rig for longer than this, s, is a fault.
 const SILENT_AFTER_S: f64 = 0.020;
-/// Nothing newer over the link for longer than this, beyond its delay, s: fault. The force is gone long before.
+/// No new parcel from the link for longer than this beyond its delay, s, is a fault. The age gate has removed the force
+/// long before.
 const LINK_SILENT_AFTER_S: f64 = 0.1;
-/// Missed periods in a row that make a fault while drives are on, as time, s.
+/// Consecutive missed periods that make a fault while drives are on, as time, s.
 const STALLED_AFTER_S: f64 = 0.050;
-/// Most events told in one tick; more in one tick is not possible.
+/// Most events of one tick; no more are possible.
 pub const EVENTS_PER_TICK_MAX: usize = 6;
-/// From the gripper's hinge to the finger, m (omega.7).
+/// Distance from the gripper's hinge to the finger, m (omega.7).
 const GRIPPER_ARM_M: f64 = 0.048;
-/// After each engagement the force rises to its full size within this time, s.
+/// Duration of the force ramp after each engagement, s.
 const RAMP_S: f64 = 0.2;
-/// A tip that moved more than this within a tick does not rest: nothing is engaged then, m.
+/// A tip that moved more than this within a tick is not at rest, and the pair is not engaged, m.
 const AT_REST_M: f64 = 0.2e-3;
 
-/// When a tick ran: handed in, never asked for.
+/// Times measured by the caller: the pair never reads a clock.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Timing {
     /// Loop time of this tick, s.
     pub now_s: f64,
     /// How late the tick woke after its deadline, s.
     pub wake_s: f64,
-    /// How long the tick before worked, s.
+    /// Duration of the work of the previous tick, s.
     pub work_s: f64,
-    /// From the arrival of the oldest measurement of the tick before to when its force was given to the device, s; `None`: no measurement.
+    /// Time from the arrival of the oldest measurement of the previous tick until its force was given to the device, s;
+    /// `None` without a measurement.
     pub sample_to_force_s: Option<f64>,
     /// Periods missed just before this tick.
     pub missed_now: u64,
 }
 
-/// The pair's whole memory.
+/// The state of an arm pair.
 #[derive(Clone, Debug)]
 pub struct Pair<L: Link = ProgrammedLink> {
     side: Side,
@@ -62,7 +64,7 @@ pub struct Pair<L: Link = ProgrammedLink> {
     mode: Mode,
     delay_s: f64,
     rate_hz: f64,
-    /// Of the identification: the one conversion of a delay to ticks is there.
+    /// Settings of the identification; the conversion of a delay to ticks is defined there only.
     settings: IdentifierSettings,
     follower_step_max_m: f64,
     identifier: Identifier,
@@ -75,13 +77,13 @@ pub struct Pair<L: Link = ProgrammedLink> {
     tracking: Tracking,
     plausibility: Plausibility,
     chain: Chain,
-    /// The gates found that nobody holds the handle: as good as a hand that is told absent.
+    /// The release gate has found that nobody holds the handle; treated like an absent hand.
     hand_is_gone: bool,
     gripper_chain: GripperChain,
     last_inputs: Option<Inputs>,
     last_input_s: f64,
     last_now_s: Option<f64>,
-    /// How often samples were missing lately, and whether the last one was there.
+    /// Share of samples missing lately, and whether the last one was present.
     gaps: f64,
     was_there: bool,
     hand_force_n: Vector3<f64>,
@@ -94,17 +96,17 @@ pub struct Pair<L: Link = ProgrammedLink> {
 }
 
 impl Pair {
-    /// The pair of this side, idle, both ends in this process. Everything is allocated here.
+    /// The pair of this side, idle, with leader and follower in this process. All memory is allocated here.
     ///
     /// # Errors
-    /// [`SettingsError`] for an identification that cannot be.
+    /// [`SettingsError`] if the settings of the identification are invalid.
     pub fn new(rig: &RigConfig, side: Side, calibrations: &Calibrations) -> Result<Self, SettingsError> {
         Self::over(rig, side, calibrations, ProgrammedLink::new(rig.rate_hz, rig.delay_s))
     }
 }
 
 impl<L: Link> Pair<L> {
-    /// The same over this link.
+    /// The same with this link.
     ///
     /// # Errors
     /// As [`Pair::new`].
@@ -151,7 +153,7 @@ impl<L: Link> Pair<L> {
         Ok(this)
     }
 
-    /// Which pair.
+    /// Its side.
     pub const fn side(&self) -> Side {
         self.side
     }
@@ -165,7 +167,7 @@ impl<L: Link> Pair<L> {
         self.rate_hz
     }
 
-    /// State now.
+    /// Present state.
     pub const fn state(&self) -> LoopState {
         self.interlock.state()
     }
@@ -180,12 +182,12 @@ impl<L: Link> Pair<L> {
         self.missed
     }
 
-    /// What happened since [`Pair::clear_events`], oldest first.
+    /// Events since [`Pair::clear_events`], oldest first.
     pub fn events(&self) -> impl Iterator<Item = &Event> {
         self.events.iter().flatten()
     }
 
-    /// Forgets the events; call before handling commands of the next tick.
+    /// Removes all events; call before the commands of the next tick are handled.
     pub fn clear_events(&mut self) {
         self.events = [None; EVENTS_PER_TICK_MAX];
     }
@@ -201,7 +203,7 @@ impl<L: Link> Pair<L> {
         self.force_path.suspend();
     }
 
-    /// Changes places with this path; refused while drives are on.
+    /// Exchanges the force path with `path`; refused while drives are on.
     pub(super) fn exchange_force_path(&mut self, path: &mut ForcePath) -> bool {
         let rests = !self.state().permits().drives;
         if rests {
@@ -210,14 +212,14 @@ impl<L: Link> Pair<L> {
         rests
     }
 
-    /// A device of this pair came or went.
+    /// Handles the connection or loss of a device of this pair.
     pub(super) fn notice(&mut self, event: &DeviceEvent) {
         if let Standing::Lost(loss) = event.standing {
             self.fail_if_driven(Fault::DeviceLost { device: event.device, loss }, event.t_s);
         }
     }
 
-    /// One tick: measurements in, commands out, everything about it in the [`Tick`].
+    /// Executes one tick: measurements in, commands out, and everything to display or record in the [`Tick`].
     pub fn step(&mut self, inputs: Option<Inputs>, timing: &Timing) -> (Outputs, Tick) {
         let now_s = timing.now_s;
         self.missed += timing.missed_now;
@@ -226,11 +228,13 @@ impl<L: Link> Pair<L> {
         let moved_m = inputs.zip(self.last_inputs).map_or(0.0, |(now, last)| (now.tip_m - last.tip_m).norm());
         let inputs = inputs.map(|inputs| self.take_in(inputs, now_s));
         if inputs.is_none() {
-            // Identification goes by even samples: a missing one is bridged, and nothing is sent of it.
+            // The identification needs evenly spaced samples: it interpolates a missing one, and no parcel is sent for
+            // it.
             self.identifier.step(&Sample { t_s: now_s, position_m: NOWHERE, force_n: NOWHERE });
         }
         self.watch(inputs.as_ref(), moved_m, timing);
-        // Nothing new: the link keeps delivering what is on its way, ever older; the age gate takes the force away.
+        // No new sample: the link keeps delivering what is under way, which grows older, and the age gate removes the
+        // force.
         let seen = self.last_inputs.unwrap_or(NOTHING_YET);
         let target = self.hand_eye.step(&seen.hand);
         let tip_command_m = self.follow(&seen, &target);
@@ -239,7 +243,7 @@ impl<L: Link> Pair<L> {
         if let Some(parcel) = parcel {
             self.plausibility.delivered(&parcel.force_n, parcel.t_s);
         }
-        // Before the first one the link is only filling.
+        // Until the first parcel arrives, the delay line is still filling.
         let parcel_is_there = parcel.is_some();
         let rendered = self.renderer.step(&motion_m, parcel);
         let delayed_n = parcel.map_or_else(Vector3::zeros, |parcel| parcel.force_n);
@@ -254,8 +258,8 @@ impl<L: Link> Pair<L> {
             force_n: rendered.force(self.mode).map(|force_n| force_n * ramp),
             age_s,
             speed_m_s: self.hand_speed_m_s,
-            // On the axes of the force; the way of the hand itself, whatever the scale makes of it. A lost sample hides no way: the
-            // next one shows it.
+            // On the axes of the force. The travel of the hand itself, before scaling. A missing sample hides no
+            // travel: the next one contains it.
             hand_m: self.hand_now_m(now_s),
             permitted,
         });
@@ -280,19 +284,19 @@ impl<L: Link> Pair<L> {
         (outputs, tick)
     }
 
-    /// Where the hand was last seen, m (`world`), while that is not long ago.
+    /// Last measured position of the hand, m (`world`), if it is recent.
     fn hand_now_m(&self, now_s: f64) -> Option<Vector3<f64>> {
         let seen = self.last_inputs.filter(|_| !self.is_silent(now_s))?;
         Some(self.hand_eye.mapping().world_from_leader() * seen.hand.position_m)
     }
 
-    /// The gripper feels what its jaws hold, through gates of its own.
+    /// Force on the gripper from the force on the jaws, through gates of its own.
     fn grip(&mut self, inputs: Option<&Inputs>, age_s: f64, permitted: bool) -> f64 {
         let (opening_rad, grip_n) = (inputs.and_then(|i| i.gripper_rad), inputs.and_then(|i| i.grip_n));
         let (force_n, _) = self.gripper_chain.step(&Request {
             force_n: grip_n.map(Vector1::new),
             age_s,
-            // A gripper that rests on what it holds goes on feeling it.
+            // Above the dead band: a gripper that holds something still must keep its force.
             speed_m_s: 1.0,
             hand_m: opening_rad.map(|rad| Vector1::new(rad * GRIPPER_ARM_M)),
             permitted: permitted && grip_n.is_some(),
@@ -300,7 +304,7 @@ impl<L: Link> Pair<L> {
         force_n.x
     }
 
-    /// What carries parcels.
+    /// The link.
     pub(super) const fn link_mut(&mut self) -> &mut L {
         &mut self.link
     }
@@ -309,7 +313,7 @@ impl<L: Link> Pair<L> {
         now_s - self.last_input_s > SILENT_AFTER_S - 0.5 / self.rate_hz
     }
 
-    /// The follower goes where the hand leads it, never faster than its speed limit; only while engaged.
+    /// Command to the follower: the hand's position, limited to the follower's maximum speed; only while engaged.
     fn follow(&mut self, seen: &Inputs, target: &Target) -> Option<Vector3<f64>> {
         if !self.hand_eye.is_engaged() {
             return None;
@@ -321,7 +325,7 @@ impl<L: Link> Pair<L> {
         self.command_m
     }
 
-    /// The follower's motion now as the leader can know it: its command, as late as the follower is observed to be.
+    /// The follower's present motion as the leader can know it: the command, delayed by the observed lag.
     fn motion_at_leader(&mut self, seen: &Inputs, tip_command_m: Option<Vector3<f64>>) -> Vector3<f64> {
         if let Some(command_m) = tip_command_m {
             return self.tracking.step(&command_m, &seen.tip_m);

@@ -1,18 +1,19 @@
-//! How far the follower lags behind its command, measured while it moves, and its motion now as the leader can know it.
+//! Estimates how far the follower lags behind its command, and from that the follower's present motion as the leader
+//! can know it.
 //!
-//! An impedance identified from the follower's motion must be fed with the follower's motion. The leader knows only what it
-//! commanded; this aligns the two. The lag is the shift between command and tip with the least mean square difference over
-//! the last seconds of motion, refined by a parabola.
+//! An impedance identified from the follower's motion must be rendered with the follower's motion, but the leader knows
+//! only its own command. The lag is the time shift between command and tip with the least mean square difference over
+//! the last seconds of motion, refined by a parabola through the minimum.
 
 use nalgebra::Vector3;
 
-/// Shifts compared.
+/// Number of time shifts compared.
 const CANDIDATES: usize = 64;
-/// Longest lag looked for, s.
+/// Longest lag that can be found, s.
 const LAG_MAX_S: f64 = 0.128;
-/// Memory of the comparison, s of motion.
+/// Averaging time of the comparison, s of motion.
 const MEMORY_S: f64 = 2.0;
-/// Speed below which shifts cannot be told apart, m/s.
+/// Speed below which the shifts cannot be distinguished, m/s.
 const MOVING_M_S: f64 = 0.005;
 
 /// Lag of a follower behind its command.
@@ -31,7 +32,7 @@ pub struct Tracking {
 }
 
 impl Tracking {
-    /// No lag known yet, for a loop of this rate (Hz).
+    /// Starts without a known lag, for a loop of this rate (Hz).
     pub fn new(rate_hz: f64) -> Self {
         let stride = ((LAG_MAX_S * rate_hz / CANDIDATES as f64).round() as usize).max(1);
         Self {
@@ -48,12 +49,12 @@ impl Tracking {
         }
     }
 
-    /// Forgets the commands so far (the lag is kept): the follower was not following.
+    /// Discards the commands so far because the follower was not following them; the lag is kept.
     pub fn interrupt(&mut self) {
         self.filled = 0;
     }
 
-    /// The lag in force, in ticks.
+    /// The lag in use, in ticks.
     pub const fn lag_samples(&self) -> f64 {
         self.lag_samples
     }
@@ -63,7 +64,7 @@ impl Tracking {
         &self.ring[(self.newest + room - samples.min(self.filled.saturating_sub(1))) % room]
     }
 
-    /// Takes in the command (m) and the tip (m) of this tick; gives where the leader may take the tip to be now, m.
+    /// Adds the command (m) and the tip (m) of this tick; returns the estimate of the tip's present position, m.
     pub fn step(&mut self, command_m: &Vector3<f64>, tip_m: &Vector3<f64>) -> Vector3<f64> {
         self.newest = (self.newest + 1) % self.ring.len();
         self.ring[self.newest] = *command_m;
@@ -80,7 +81,7 @@ impl Tracking {
 
     fn compare(&mut self, tip_m: &Vector3<f64>) {
         self.moving_ticks += 1;
-        // A plain mean until the memory is full, then a fading one.
+        // A plain mean until the averaging time is reached, then an exponentially weighted one.
         let weight = self.forget.max(1.0 / self.moving_ticks as f64);
         let mut best = 0;
         for candidate in 0..CANDIDATES {
@@ -95,7 +96,8 @@ impl Tracking {
         }
     }
 
-    /// Offset of the parabola's lowest point through the neighbours of `best`, in candidates, -0.5 to 0.5.
+    /// Position of the parabola's minimum through `best` and its neighbours, relative to `best`, in candidates, -0.5 to
+    /// 0.5.
     fn vertex(&self, best: usize) -> f64 {
         if best == 0 || best + 1 >= CANDIDATES {
             return 0.0;

@@ -1,33 +1,33 @@
-//! Which column of a file is which quantity: `--map x=px_mm*0.001`.
+//! Mapping of a file's columns to quantities: `--map x=px_mm*0.001`.
 
 use std::collections::BTreeMap;
 
-/// A mapping that cannot be understood.
+/// An invalid mapping.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[expect(missing_docs, reason = "the messages say it")]
 pub enum MappingError {
     /// Not of the form `NAME=COLUMN` or `NAME=COLUMN*SCALE`.
     #[error("--map {text}: write NAME=COLUMN or NAME=COLUMN*SCALE, for example x=px_mm*0.001")]
     Form { text: String },
-    /// The quantity is not one of ours.
+    /// Unknown quantity.
     #[error("--map {text}: there is no quantity \"{name}\"; use t, x, y, z, fx, fy or fz")]
     Name {
         text: String,
-        /// Its left side.
+        /// The part before `=`.
         name: String,
     },
-    /// The scale is no finite number, or zero.
+    /// The scale is zero or not a finite number.
     #[error("--map {text}: the scale \"{scale}\" is not a number other than zero")]
     Scale {
         text: String,
         /// The part after `*`.
         scale: String,
     },
-    /// The quantity was mapped before.
+    /// The quantity is mapped twice.
     #[error("--map {text}: \"{name}\" is mapped twice")]
     Twice {
         text: String,
-        /// Its left side.
+        /// The part before `=`.
         name: String,
     },
 }
@@ -51,7 +51,8 @@ impl Source {
     }
 }
 
-/// Quantities (`x_m`, `fx_n`, `t_s`, ...) to columns; what is not named is looked for under its own name.
+/// Mapping from quantities (`x_m`, `fx_n`, `t_s`, ...) to columns; a quantity that is not mapped has the column of its
+/// own name.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Mapping {
     sources: BTreeMap<&'static str, Source>,
@@ -62,10 +63,11 @@ const QUANTITIES: [(&str, &str); 7] =
     [("t", "t_s"), ("x", "x_m"), ("y", "y_m"), ("z", "z_m"), ("fx", "fx_n"), ("fy", "fy_n"), ("fz", "fz_n")];
 
 impl Mapping {
-    /// Reads `NAME=COLUMN[*SCALE]`, any number of them.
+    /// Parses any number of texts `NAME=COLUMN[*SCALE]`.
     ///
     /// # Errors
-    /// A text that has another form, a quantity that does not exist or is named twice, or a scale that is not finite.
+    /// [`MappingError`] for a text of another form, a quantity that does not exist or is mapped twice, or a scale that
+    /// is not finite.
     ///
     /// ```
     /// use nima_recording::csv::Mapping;
@@ -106,12 +108,12 @@ impl Mapping {
         Ok(Self { sources })
     }
 
-    /// The quantity was named by the user.
+    /// Whether the quantity is mapped.
     pub fn names(&self, quantity: &str) -> bool {
         self.sources.contains_key(quantity)
     }
 
-    /// Where a quantity comes from.
+    /// The column of a quantity.
     pub fn source(&self, quantity: &str) -> Source {
         self.sources.get(quantity).cloned().unwrap_or_else(|| Source { column: quantity.to_owned(), scale: 1.0 })
     }

@@ -1,8 +1,8 @@
 //! Reading recordings of motion and force (CSV).
 //!
-//! Columns: `t_s`; `x_m, y_m, z_m` with `fx_n, fy_n, fz_n`, one to three axes. Other names are mapped onto these. SI units,
-//! or any consistent ones (rad and Nm of a lever). A missing column, a value that is no number and a clock that does not
-//! rise are refused with their place; nothing is guessed. A file is read as a stream, which may come through a pipe, up to
+//! Columns: `t_s`; `x_m, y_m, z_m` with `fx_n, fy_n, fz_n`, one to three axes. Other names can be mapped to these. SI
+//! units, or any consistent ones (rad and Nm of a lever). A missing column, a field that is not a number and a time
+//! that does not rise are errors that state their position. A file is read as a stream, so it may be a pipe, up to
 //! [`nima_files::TABLE_MAX`] bytes.
 
 mod mapping;
@@ -23,7 +23,7 @@ pub use poses::read_poses;
 /// Names of the axes.
 pub const AXIS_NAMES: [&str; AXES] = ["x", "y", "z"];
 
-/// Why a recording could not be used: what, where, what to do.
+/// Why a recording could not be used: what, where, and what to do.
 #[derive(Debug, thiserror::Error)]
 #[expect(missing_docs, reason = "the messages say it")]
 pub enum RecordingError {
@@ -31,23 +31,23 @@ pub enum RecordingError {
     #[error("cannot read recording {path}: {reason}")]
     Open {
         path: PathBuf,
-        /// Why, in the reader's words (which name their own source already).
+        /// Text of the error (which names its own source).
         reason: String,
     },
     /// A row could not be read.
     #[error("recording {path}: {message}")]
     Row { path: PathBuf, message: String },
-    /// A needed column is not there.
+    /// A required column is missing.
     #[error("recording {path} has no column \"{column}\" for {purpose}; its columns are {available}; {cure}")]
     NoColumn {
         path: PathBuf,
         column: String,
         purpose: &'static str,
         available: String,
-        /// What to do: some files may have their columns mapped, in others the names are fixed.
+        /// What to do: in some files columns can be mapped, in others the names are fixed.
         cure: String,
     },
-    /// A quaternion is far from length one.
+    /// A quaternion does not have unit length.
     #[error(
         "recording {path}, line {line}: the quaternion has length {length:.3} instead of 1; remove or repair the row"
     )]
@@ -57,7 +57,7 @@ pub enum RecordingError {
         line: u64,
         length: f64,
     },
-    /// A field is no finite number.
+    /// A field is not a finite number.
     #[error(
         "recording {path}, line {line}, column \"{column}\": \"{field}\" is not a finite number; remove or repair the row"
     )]
@@ -88,9 +88,9 @@ pub enum RecordingError {
 /// Motion and force over time at a nearly constant rate.
 #[derive(Clone, Debug)]
 pub struct Recording {
-    /// As the user gave it.
+    /// The path as given by the user.
     pub path: PathBuf,
-    /// Which axes it holds, as indices into [`AXIS_NAMES`]; a sample's lane `i` is axis `axes[i]`.
+    /// Which axes it contains, as indices into [`AXIS_NAMES`]; lane `i` of a sample is axis `axes[i]`.
     pub axes: Vec<usize>,
     /// Rate, Hz: one over the median time step.
     pub rate_hz: f64,
@@ -99,11 +99,11 @@ pub struct Recording {
 }
 
 impl Recording {
-    /// Reads a CSV file under this mapping.
+    /// Reads a CSV file with this mapping of columns.
     ///
     /// # Errors
-    /// A file that cannot be read, a column that is missing, a row with what is no number, a clock that does not rise, or fewer than three
-    /// samples, each with its place.
+    /// [`RecordingError`], with the position, for a file that cannot be read, a missing column, a field that is not a
+    /// number, a time that does not rise, or fewer than three samples.
     ///
     /// ```
     /// use nima_recording::csv::{Mapping, Recording};
@@ -151,22 +151,22 @@ impl Recording {
     }
 }
 
-/// What to do about a column that may be mapped.
+/// What to do about a missing column that can be mapped.
 fn cure(key: &str) -> String {
     format!("name another with --map {key}=COLUMN")
 }
 
-/// The axes of which position or force is there; of a lone half the other is then found missing.
+/// The axes with a position or a force; if only one of the two exists, the other is reported as missing.
 fn axes(table: &Table, mapping: &Mapping) -> Vec<usize> {
     let has = |name: &str| mapping.names(name) || table.has(mapping.source(name).column());
     let found: Vec<usize> = (0..AXES)
         .filter(|&axis| has(&format!("{}_m", AXIS_NAMES[axis])) || has(&format!("f{}_n", AXIS_NAMES[axis])))
         .collect();
-    // With nothing at all, ask for x: the error then names the columns there are.
+    // If none exists, use x: the error then lists the columns that exist.
     if found.is_empty() { vec![0] } else { found }
 }
 
-/// One over the median time step, to eight digits so that 0.001 s steps give 1000 Hz.
+/// One over the median time step, rounded to eight digits so that steps of 0.001 s give 1000 Hz.
 fn rate_hz(samples: &[Sample]) -> Option<f64> {
     let mut steps: Vec<f64> = samples.windows(2).map(|pair| pair[1].t_s - pair[0].t_s).collect();
     if steps.len() < 2 {

@@ -1,8 +1,8 @@
 //! Reading still poses of a tool (CSV) for the calibration of gravity.
 //!
-//! Columns `fx_n, fy_n, fz_n`, optionally `tx_nm, ty_nm, tz_nm` (`s1`), and either `ax, ay, az` (m/s^2, `imu`) or
-//! `qw, qx, qy, qz` (`world_from_s1`, base from sensor). With both, the accelerometer is taken. A quaternion is normalised; one
-//! further than 1 % from unit length is refused with its line.
+//! Columns `fx_n, fy_n, fz_n`, optionally `tx_nm, ty_nm, tz_nm` (`s1`), and either `ax, ay, az` (m/s^2, `imu`) or `qw,
+//! qx, qy, qz` (`world_from_s1`, base from sensor). If both exist, the accelerometer is used. A quaternion is
+//! normalised; one further than 1 % from unit length is refused with its line.
 
 use std::path::Path;
 
@@ -23,7 +23,8 @@ const CURE: &str = "give fx_n,fy_n,fz_n, optionally tx_nm,ty_nm,tz_nm, and ax,ay
 /// Reads still poses in the order of their rows.
 ///
 /// # Errors
-/// A file that cannot be read, a column that is missing, or a row with what is no number or no rotation.
+/// [`RecordingError`] for a file that cannot be read, a missing column, or a row that is not valid numbers or not a
+/// rotation.
 ///
 /// ```
 /// use nima_recording::csv::read_poses;
@@ -59,7 +60,7 @@ pub fn read_poses(path: &Path) -> Result<Vec<Pose>, RecordingError> {
     })
 }
 
-/// Where the orientation stands in a row.
+/// Columns of the orientation.
 enum Columns {
     Arm([Column; 4]),
     Imu([Column; 3]),

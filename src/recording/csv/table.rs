@@ -1,4 +1,4 @@
-//! A CSV file, row by row, with every complaint naming its place.
+//! Reads a CSV file row by row; every error states its position.
 
 use std::path::{Path, PathBuf};
 
@@ -8,10 +8,10 @@ use nima_files::{self, Input, PASSAGE, quoted, shortened};
 
 use super::{Mapping, RecordingError, mapping::Source};
 
-/// A quaternion may depart from length one by this much: rounding in a file, not an error.
+/// Largest deviation of a quaternion from unit length that counts as rounding.
 const UNIT_TOLERANCE: f64 = 0.01;
 
-/// A file that is being read; columns are found before its rows come.
+/// A file being read; columns are looked up before the rows are read.
 pub(super) struct Table {
     path: PathBuf,
     header: StringRecord,
@@ -35,13 +35,13 @@ impl Table {
         Ok(Self { path: path.to_owned(), header, reader, row: StringRecord::new() })
     }
 
-    /// Goes on to the next row; `false` at the end.
+    /// Reads the next row; `false` at the end.
     pub(super) fn advance(&mut self) -> Result<bool, RecordingError> {
         let wrong = |error: csv::Error| RecordingError::Row { path: self.path.clone(), message: error.to_string() };
         self.reader.read_record(&mut self.row).map_err(wrong)
     }
 
-    /// What `take` makes of each row.
+    /// Applies `take` to each row.
     pub(super) fn rows<T>(
         &mut self,
         take: impl Fn(&Self) -> Result<T, RecordingError>,
@@ -61,7 +61,7 @@ impl Table {
         self.header.iter().any(|name| name == column)
     }
 
-    /// The column that a mapping names; `cure` says what to do where it is missing.
+    /// The column that a mapping names; `cure` says what to do if it is missing.
     pub(super) fn column(&self, source: &Source, purpose: &'static str, cure: &str) -> Result<Column, RecordingError> {
         let name = source.column().to_owned();
         match self.header.iter().position(|found| found == name) {
@@ -89,12 +89,12 @@ impl Table {
         found?.try_into().map_err(|_| unreachable!("as many columns as names"))
     }
 
-    /// A vector of three columns.
+    /// The vector in three columns.
     pub(super) fn vector(&self, [x, y, z]: &[Column; 3]) -> Result<Vector3<f64>, RecordingError> {
         Ok(Vector3::new(self.number(x)?, self.number(y)?, self.number(z)?))
     }
 
-    /// A rotation of four columns `w, x, y, z`, normalised; one further than 1 % from unit length is refused.
+    /// The rotation in four columns `w, x, y, z`, normalised; one further than 1 % from unit length is refused.
     pub(super) fn rotation(&self, [w, x, y, z]: &[Column; 4]) -> Result<UnitQuaternion<f64>, RecordingError> {
         let number = |column| self.number(column);
         let quaternion = Quaternion::new(number(w)?, number(x)?, number(y)?, number(z)?);

@@ -1,8 +1,8 @@
-//! Dates of records: seconds since 1970 to and from `2026-08-21T10:20:30Z`. Days by the proleptic Gregorian calendar.
+//! Dates of records: seconds since 1970 to and from `2026-08-21T10:20:30Z`, in the proleptic Gregorian calendar.
 
 const DAY_S: u64 = 86_400;
 
-/// In ISO 8601, UTC.
+/// Formats seconds since 1970 as ISO 8601, UTC.
 pub(super) fn format(seconds: u64) -> String {
     let (mut days, second) = (seconds / DAY_S, seconds % DAY_S);
     let mut year = 1970;
@@ -20,7 +20,7 @@ pub(super) fn format(seconds: u64) -> String {
     format!("{year:04}-{month:02}-{day:02}T{hour:02}:{minute:02}:{second:02}Z")
 }
 
-/// Seconds since 1970 of exactly the form that [`format`] writes, years 1970 to 9999; `None` for anything else.
+/// Parses exactly the format that [`format`] writes, years 1970 to 9999; `None` for anything else.
 pub(super) fn parse(text: &str) -> Option<u64> {
     let bytes = text.as_bytes();
     if !text.is_ascii() || bytes.len() != 20 {

@@ -1,4 +1,4 @@
-//! Files that are kept, refused, replaced and damaged.
+//! Calibration files: saved, refused, replaced and damaged.
 
 use std::time::Duration;
 
@@ -47,7 +47,7 @@ fn what_is_saved_is_loaded_digit_by_digit() {
     assert_eq!((loaded.record, loaded.age, loaded.path), (saved, Age::Fresh, path));
 }
 
-/// Written before the records had a head in common.
+/// A file in the format before records had a common head.
 const BEFORE: &str = include_str!("gravity-before.toml");
 
 #[test]
@@ -127,7 +127,7 @@ fn a_refused_one_is_kept_only_under_a_name() {
     refused.judgement.override_reason = Some("bench test".into());
     let path = store.save(&refused).unwrap();
     assert_eq!(store.load::<CorrespondenceRecord>("A1", "grasper", now()).unwrap().unwrap().record, refused);
-    // The name cannot be lost by hand without notice.
+    // Removing the name by hand must be noticed.
     let text = std::fs::read_to_string(&path).unwrap();
     assert!(text.contains("override_by = \"A. Technician\""), "{text}");
     std::fs::write(&path, text.replace("override_by = \"A. Technician\"\n", "")).unwrap();

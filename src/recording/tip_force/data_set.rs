@@ -1,9 +1,9 @@
-//! Data sets for training and judging: CSV files with named columns.
+//! Data sets for training and evaluation: CSV files with named columns.
 //!
-//! Inputs and outputs by name ([`DEFAULT_INPUTS`], [`DEFAULT_OUTPUTS`] or the caller's), optionally `trajectory` (whole
-//! number: consecutive rows of one number belong together; without it every file is one trajectory) and `contact` (0 or 1).
-//! A missing column and a field that is no finite number are refused with their place; nothing is guessed. An input can be
-//! made from the history of others (see [`Derived`]).
+//! Inputs and outputs by name ([`DEFAULT_INPUTS`], [`DEFAULT_OUTPUTS`] or the caller's), and optionally `trajectory`
+//! (integer: consecutive rows with the same number belong together; without this column each file is one trajectory)
+//! and `contact` (0 or 1). A missing column or a field that is not a finite number is an error that states its
+//! position. An input can be computed from the history of others (see [`Derived`]).
 
 use std::{
     io,
@@ -17,7 +17,7 @@ use nima_files::{PASSAGE, quoted, shortened};
 
 use crate::tip_force::TipForceError;
 
-/// Which columns to use; `None` means the default ones.
+/// Which columns to use; `None` selects the default ones.
 #[derive(Clone, Debug, Default)]
 pub struct Selection {
     /// Names of the inputs, columns or [`Derived`]; by default those of [`DEFAULT_INPUTS`] that the first file has.
@@ -38,14 +38,14 @@ impl Selection {
 pub struct Trajectory {
     /// Index into [`DataSet::files`].
     pub file: usize,
-    /// Into the rows of the whole data set.
+    /// Range of rows in the whole data set.
     pub rows: Range<usize>,
 }
 
 /// Rows of inputs and outputs, in the order of the files.
 #[derive(Clone, Debug)]
 pub struct DataSet {
-    /// Names of the inputs; a derived one is complete here (see [`Derived`]).
+    /// Names of the inputs; the name of a derived one is complete (see [`Derived`]).
     pub inputs: Vec<String>,
     /// Names of the output columns.
     pub outputs: Vec<String>,
@@ -53,11 +53,11 @@ pub struct DataSet {
     pub x: Vec<f32>,
     /// Output values, row by row.
     pub y: Vec<f32>,
-    /// Whether the tip touched something in a row; `None` where any file does not say.
+    /// Whether the tip was in contact in each row; `None` if a file has no such column.
     pub contact: Option<Vec<bool>>,
-    /// In the order in which they were given.
+    /// The files, in the given order.
     pub files: Vec<PathBuf>,
-    /// What belongs together, in order, covering all rows.
+    /// The trajectories, in order, covering all rows.
     pub trajectories: Vec<Trajectory>,
     /// FNV-1a (64 bit) over the bytes of all files in order, as 16 hexadecimal digits.
     pub hash: String,
@@ -67,7 +67,8 @@ impl DataSet {
     /// Reads these files, all with the same columns.
     ///
     /// # Errors
-    /// A file that cannot be read, a column that is missing or differs between the files, or a row with what is no number.
+    /// [`TipForceError`] for a file that cannot be read, a column that is missing or differs between the files, or a
+    /// field that is not a number.
     pub fn read(paths: &[PathBuf], selection: &Selection) -> Result<Self, TipForceError> {
         let open = |path: &PathBuf| {
             let failed = |error: io::Error| TipForceError::Open { path: path.clone(), reason: error.to_string() };
@@ -76,12 +77,15 @@ impl DataSet {
         Self::of(paths.iter().map(open), selection)
     }
 
-    /// The same of texts that go by these names.
+    /// The same for texts with these file names.
+    ///
+    /// # Errors
+    /// As [`DataSet::read`].
     pub fn parse(texts: &[(PathBuf, Vec<u8>)], selection: &Selection) -> Result<Self, TipForceError> {
         Self::of(texts.iter().map(|(path, bytes)| Ok((path.clone(), &bytes[..]))), selection)
     }
 
-    /// The same of whatever can be read, one after the other.
+    /// The same for any readers.
     fn of<R: io::Read>(
         sources: impl Iterator<Item = Result<(PathBuf, R), TipForceError>>,
         selection: &Selection,
@@ -116,7 +120,7 @@ impl DataSet {
         Ok(set)
     }
 
-    /// How many rows there are.
+    /// Number of rows.
     pub fn rows(&self) -> usize {
         self.y.len() / self.outputs.len().max(1)
     }
@@ -138,7 +142,7 @@ impl DataSet {
             selection.inputs.clone().unwrap_or_else(|| owned(DEFAULT_INPUTS.into_iter().filter(has).collect()));
         let outputs = selection.outputs.clone().unwrap_or_else(|| owned(DEFAULT_OUTPUTS.to_vec()));
         Self {
-            // With nothing found, ask for the first default: the error then names the columns there are.
+            // If none is found, use the first default: the error then lists the columns that exist.
             inputs: if inputs.is_empty() { owned(vec![DEFAULT_INPUTS[0]]) } else { inputs },
             outputs,
             x: Vec::new(),
@@ -185,7 +189,7 @@ impl DataSet {
             }
             last = id;
             for &index in &inputs {
-                // A derived input gets its value once all files are read.
+                // A derived input is computed after all files have been read.
                 self.x.push(index.map_or(Ok(0.0), |index| number(path, header, &record, index))?);
             }
             for history in &mut *histories {
@@ -206,8 +210,8 @@ impl DataSet {
         Ok(())
     }
 
-    /// Writes a derived input into its place. An open swing becomes the mean of all that were measured, in the name; within
-    /// these data a trajectory's own first one stands for what was not measured yet, which only training needs.
+    /// Computes a derived input. If its swing is not given, the mean of all measured swings is used and added to its
+    /// name. For rows before the first measured swing, training uses the first one of the same trajectory.
     fn fill(&mut self, history: History) -> Result<(), TipForceError> {
         let History { input, mut derived, rows, .. } = history;
         let open = derived.is_open();
@@ -240,7 +244,7 @@ impl DataSet {
 struct History {
     input: usize,
     derived: Derived,
-    /// Columns of position and load in the present file.
+    /// Indices of the columns of position and load in the present file.
     columns: [usize; 2],
     /// Position and load, row by row.
     rows: Vec<[f32; 2]>,
@@ -260,7 +264,7 @@ fn parsed(name: &str) -> Result<Option<Derived>, TipForceError> {
     Derived::parse(name).transpose().map_err(|reason| TipForceError::Columns { reason })
 }
 
-/// Adds what is read to a hash.
+/// A reader that also computes a hash of what is read.
 struct Hashed<'a, R> {
     from: R,
     hash: &'a mut u64,
@@ -362,7 +366,7 @@ mod tests {
         let column = |k: usize| set.x[..half].iter().skip(k).step_by(3).copied().collect::<Vec<_>>();
         assert_eq!(column(1), [0.0, 1.0, 1.0, -1.0, -1.0]);
         assert_eq!(column(2), [1.0, 2.0, 2.0, 2.0, 2.0]);
-        // What a model keeps is a name that reads the same from any file, also one that never turns back.
+        // A model stores a name that does not depend on the file, even on one without a reversal.
         let other = read(&["x,f,y\n0,1,0\n1,1,0\n"], &set.inputs.join(","), "y").unwrap();
         assert_eq!(other.x[5].to_bits(), 2.0_f32.to_bits());
         let message = |inputs: &str| read(&["x,f,y\n0,1,0\n1,1,0\n"], inputs, "y").unwrap_err().to_string();

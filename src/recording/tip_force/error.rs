@@ -1,4 +1,4 @@
-//! Why a tip-force model could not be trained, stored, loaded or used.
+//! Errors of training, storing, loading and using a tip-force model.
 
 use std::path::PathBuf;
 
@@ -12,15 +12,15 @@ pub enum TipForceError {
     #[error("cannot read {path}: {reason}")]
     Open {
         path: PathBuf,
-        /// Why, in the reader's words.
+        /// Text of the error.
         reason: String,
     },
-    /// A needed column is not there.
+    /// A required column is missing.
     #[error(
         "data set {path} has no column \"{column}\"; its columns are {available}; name others with --inputs and --outputs"
     )]
     NoColumn { path: PathBuf, column: String, available: String },
-    /// A field is no finite number.
+    /// A field is not a finite number.
     #[error(
         "data set {path}, line {line}, column \"{column}\": \"{field}\" is not a finite number; remove or repair the row"
     )]
@@ -31,47 +31,47 @@ pub enum TipForceError {
         column: String,
         field: String,
     },
-    /// Too few rows to learn from, or to judge by.
+    /// Too few rows for training or evaluation.
     #[error("the data set has {found} rows, at least {needed} are needed; record longer")]
     TooFewRows { found: usize, needed: usize },
-    /// An output never changes.
+    /// An output is constant.
     #[error(
         "output column \"{column}\" is constant over the whole data set: there is nothing to learn; record with contact or leave it out"
     )]
     ConstantOutput { column: String },
-    /// The choice of columns makes no model.
+    /// The choice of columns is not usable.
     #[error("the choice of columns is not usable: {reason}")]
     Columns { reason: String },
     /// A setting is out of its range.
     #[error("{name} is {value}, it must be {allowed}")]
     Setting { name: &'static str, value: String, allowed: &'static str },
-    /// Somebody asked to stop; nothing was kept.
+    /// The training was cancelled.
     #[error("training was cancelled; nothing was written")]
     Cancelled,
-    /// Weights ran away.
+    /// The training diverged.
     #[error(
         "training of member {member} ran away to numbers that are not finite; lower the learning rate or look for outliers in the data"
     )]
     Diverged {
-        /// Which member, from 1.
+        /// Number of the member, from 1.
         member: usize,
     },
     #[error("training failed inside the tensor library: {reason}")]
     Tensor { reason: String },
-    /// A file is no model of ours, or one that does not fit together.
+    /// A file is not a model, or its parts are inconsistent.
     #[error("{path} is not a usable tip-force model: {reason}; train it again with `nima train tip-force`")]
     Model {
         path: PathBuf,
-        /// What is wrong or absent.
+        /// What is wrong or missing.
         reason: String,
     },
-    /// The model cannot work in the loop.
+    /// The model cannot be used in the loop.
     #[error(transparent)]
     NotLive(#[from] nima_core::tip_force::NotLive),
-    /// Nobody may feel what is not proven.
+    /// The model has no accepted check.
     #[error("the tip-force model may not be used: {reason}; check it on a new recording")]
     NotProven { reason: String },
-    /// The store of calibrations refused.
+    /// Error of the store of calibrations.
     #[error(transparent)]
     Store(#[from] StoreError),
     /// The file could not be written.

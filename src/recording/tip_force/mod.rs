@@ -1,4 +1,4 @@
-//! Files around the force at the tip: data sets (CSV), their recording, and trained networks (safetensors).
+//! Files for the force at the tip: data sets (CSV), their recording, and trained networks (safetensors).
 
 mod data_set;
 mod error;

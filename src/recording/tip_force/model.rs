@@ -1,7 +1,8 @@
-//! A trained model and its file: one safetensors file with weights as tensors and all else as metadata.
+//! The file of a trained model: one safetensors file with the weights as tensors and everything else as metadata.
 //!
-//! The file holds names of inputs and outputs (units by their names), normalisation, weights, doubt, baselines and where it
-//! came from. Loading checks everything that inference relies on: an absent or unfitting piece is one clear error. f32.
+//! The file contains names of inputs and outputs (which include units), normalisation, weights, limits of uncertainty,
+//! baselines and origin. Loading checks everything that inference relies on; a missing or inconsistent part gives one
+//! clear error. f32.
 
 use std::path::Path;
 
@@ -16,11 +17,11 @@ use super::TipForceError;
 
 mod keeping;
 
-/// What the file calls itself.
+/// Format name in the file.
 const FORMAT: &str = "nima tip force 1";
 const KEY: &str = "nima";
 
-/// The part of the file that is text.
+/// The metadata.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Header {
@@ -34,10 +35,10 @@ struct Header {
     origin: Origin,
 }
 
-/// Writes the file; on any error the old one (or none) stays.
+/// Writes the file; on an error the old file, if any, is unchanged.
 ///
 /// # Errors
-/// A file that cannot be written.
+/// [`TipForceError`] if the file cannot be written.
 pub fn save_model(model: &Model, path: &Path) -> Result<(), TipForceError> {
     let wrong = |reason: String| TipForceError::Write { path: path.to_owned(), reason };
     let tensors: Vec<(String, Vec<usize>, Vec<u8>)> =
@@ -88,7 +89,7 @@ fn tensors_of(model: &Model) -> Vec<(String, Vec<usize>, Vec<f32>)> {
 /// Reads and checks a file.
 ///
 /// # Errors
-/// A file that cannot be read, is no model, or whose parts do not fit together.
+/// [`TipForceError`] if the file cannot be read, is not a model, or its parts are inconsistent.
 ///
 /// ```
 /// use nima_recording::tip_force::load_model;

@@ -1,8 +1,9 @@
-//! Recording a data set: a state machine fed with every sample, without a clock or a screen of its own.
+//! Records a data set: a state machine that is given every sample, without a clock or a screen.
 //!
-//! Takes the gravity-free wrench (N, Nm, `s1`), the [`WristSample`] with the sensor under the tissue, and the time (s). Keeps
-//! a row in every few samples: the network's inputs ([`DEFAULT_INPUTS`]) and the force at the tip as the sensor under the tissue tells it,
-//! turned into the wrist's frame by the calibrated correspondence. Memory is bounded and taken at the start.
+//! Takes the gravity-free wrench (N, Nm, `s1`), the [`WristSample`] with the sensor under the tissue, and the time (s).
+//! Stores a row for one in several samples: the network's inputs ([`DEFAULT_INPUTS`]) and the force at the tip from the
+//! sensor under the tissue, transformed to the wrist's frame with the calibrated correspondence. Memory is bounded and
+//! allocated at the start.
 
 use std::{io, path::Path};
 
@@ -14,51 +15,51 @@ use nima_core::{
 };
 use nima_files::write_atomically;
 
-/// Rows that a recording holds at most: four of the paper's data sets.
+/// Most rows of a recording: four of the paper's data sets.
 pub const MOST_ROWS: usize = 120_000;
-/// Rows are this far apart, s: the paper's 30000 rows are two and a half minutes.
+/// Interval between rows, s: the paper's 30000 rows take two and a half minutes.
 pub const ROW_EVERY_S: f64 = 0.005;
-/// Rows belong to one trajectory for this long, s: the pieces that are held out when a network is judged.
+/// Duration of a trajectory, s: the unit in which rows are held out when a network is judged.
 const TRAJECTORY_S: f64 = 5.0;
-/// How long the sensor under the tissue must rest at the start, s, and the most it may vary meanwhile, N (standard deviation).
+/// Required rest of the sensor under the tissue at the start, s, and its largest standard deviation meanwhile, N.
 const REST_S: f64 = 0.5;
 const REST_SD_N: f64 = 0.15;
-/// The tip touches something above this force, N, smoothed over this time, s.
+/// Force above which the tip is in contact, N, and averaging time of that force, s.
 const CONTACT_N: f64 = 0.10;
 const CONTACT_S: f64 = 0.020;
 
-/// What a sample lacks.
+/// What is missing in a sample.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Lack {
     /// Gravity is not calibrated, or the wrist sensor is silent.
     WristForce,
     /// The sensor under the tissue is silent.
     TissueForce,
-    /// A rotation of the chain: arm or tracker.
+    /// A rotation of the chain, from arm or tracker.
     Chain,
-    /// The depth through the trocar or the wrist's orientation, or a number is not finite.
+    /// The depth through the trocar or the wrist's orientation; or a number is not finite.
     Pose,
 }
 
-/// Where the recording is.
+/// State of the recording.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum RecorderPhase {
-    /// A source is missing; nothing is taken.
+    /// A source is missing; no rows are recorded.
     Lacks(Lack),
-    /// The tip is free and still: what the sensor under the tissue reads now is zero.
+    /// The tip must be free and still: the sensor under the tissue is being zeroed.
     Resting {
-        /// Share of the rest, 0 to 1.
+        /// Share of the required time, 0 to 1.
         share: f64,
     },
-    /// Waiting until the instrument has moved enough to know the friction's direction.
+    /// Waiting until the instrument has moved far enough for the direction of friction to be known.
     NotMoved,
-    /// Rows are taken.
+    /// Rows are being recorded.
     Recording,
-    /// No room is left.
+    /// The recording is full.
     Full,
 }
 
-/// The recording.
+/// A recording.
 #[derive(Clone, Debug)]
 pub struct Recorder {
     correspondence: Correspondence,
@@ -84,7 +85,7 @@ struct Row {
     tip_n: [f32; 3],
 }
 
-/// Mean and spread of what the sensor under the tissue reads at rest.
+/// Mean and standard deviation of the sensor under the tissue at rest.
 #[derive(Clone, Copy, Debug, Default)]
 struct Rest {
     since_s: f64,
@@ -94,7 +95,7 @@ struct Rest {
 }
 
 impl Recorder {
-    /// An empty recording; takes its memory here.
+    /// An empty recording; allocates its memory.
     pub fn new(correspondence: Correspondence) -> Self {
         Self {
             correspondence,
@@ -112,14 +113,14 @@ impl Recorder {
         }
     }
 
-    /// With other features than those of the live loop: for the study of their settings.
+    /// Uses other feature settings than the live loop; for the study that chose them.
     #[must_use]
     pub const fn with_features(mut self, settings: FeatureSettings) -> Self {
         self.features = Features::new(settings);
         self
     }
 
-    /// Takes one sample; gives where the recording is.
+    /// Adds one sample; returns the state of the recording.
     pub fn step(&mut self, t_s: f64, gravity_free: Option<&Wrench>, sample: &WristSample) -> RecorderPhase {
         self.phase = match self.tip_n(gravity_free, sample) {
             Ok((wrench, tip_n)) => self.take(t_s, &wrench, sample, tip_n),
@@ -133,7 +134,7 @@ impl Recorder {
         self.phase
     }
 
-    /// The wrench at the wrist, and the force on the tip by the sensor under the tissue, N (`s1`), not yet zeroed.
+    /// Wrench at the wrist, and force on the tip from the sensor under the tissue, N (`s1`), not yet zeroed.
     fn tip_n(&self, gravity_free: Option<&Wrench>, sample: &WristSample) -> Result<(Wrench, Vector3<f64>), Lack> {
         let wrench = gravity_free.filter(|wrench| wrench.is_finite()).ok_or(Lack::WristForce)?;
         let tissue_n = sample.tissue_n.ok_or(Lack::TissueForce)?;
@@ -195,34 +196,41 @@ impl Recorder {
         RecorderPhase::Resting { share }
     }
 
-    /// Where the recording is.
+    /// State of the recording.
     pub const fn phase(&self) -> RecorderPhase {
         self.phase
     }
 
-    /// Begins another trajectory with the next row, and rests anew: after somebody else touched the rig.
+    /// Starts another trajectory with the next row, and requires another rest period, because the rig may have been
+    /// touched.
     pub fn interrupt(&mut self) {
         self.features.reset();
         self.trajectory_ends_s = f64::NEG_INFINITY;
         (self.tissue_zero_n, self.rest.count) = (None, 0.0);
     }
 
-    /// Rows so far.
+    /// Number of rows.
     pub const fn rows(&self) -> usize {
         self.rows.len()
     }
 
-    /// How the rows fill what the network will meet.
+    /// How well the rows cover the conditions of use.
     pub const fn coverage(&self) -> &Coverage {
         &self.coverage
     }
 
-    /// Writes the data set as CSV; on any error the old file (or none) stays.
+    /// Saves the data set as CSV; on an error the old file, if any, is unchanged.
+    ///
+    /// # Errors
+    /// I/O errors.
     pub fn save(&self, path: &Path) -> io::Result<()> {
         write_atomically(path, |file| self.write(file))
     }
 
-    /// The data set as CSV.
+    /// Writes the data set as CSV.
+    ///
+    /// # Errors
+    /// I/O errors.
     pub fn write(&self, to: &mut dyn io::Write) -> io::Result<()> {
         writeln!(to, "t_s,trajectory,contact,{},{}", DEFAULT_INPUTS.join(","), DEFAULT_OUTPUTS.join(","))?;
         for row in &self.rows {

@@ -1,4 +1,5 @@
-//! Poisoned calibrations and networks: in their files, where loading must refuse them, and in memory, where the loop must.
+//! Corrupted calibrations and networks: in files, which loading must refuse, and in memory, where the loop must detect
+//! them.
 
 use std::{fs, path::Path, sync::atomic::AtomicBool, time::SystemTime};
 
@@ -31,7 +32,7 @@ use crate::{
     },
 };
 
-/// Every fault of a file or of what was loaded.
+/// Every fault of a file or of loaded data.
 pub(super) fn all() -> Result<Vec<Special>, FaultsError> {
     let folder = tempfile::tempdir().map_err(LiveError::Scratch)?;
     let gravity = experiment::gravity(1)?;
@@ -45,7 +46,7 @@ pub(super) fn all() -> Result<Vec<Special>, FaultsError> {
     Ok(specials)
 }
 
-/// The same model with another mass, or gain.
+/// The same model with its mass or gain scaled by `by`.
 fn poisoned(model: &GravityModel, by: f64) -> GravityModel {
     let mut poisoned = *model;
     match &mut poisoned.parameters {
@@ -56,7 +57,7 @@ fn poisoned(model: &GravityModel, by: f64) -> GravityModel {
     poisoned
 }
 
-/// The loop with a calibration that was sound when it was loaded: engaging must be refused.
+/// A loop whose calibration is corrupted after loading: engaging must be refused.
 fn in_memory(what: &str, gravity: &GravityModel) -> Result<Special, FaultsError> {
     let mut config = RigConfig::load("simulated")?;
     config.mode = Mode::Dfr;
@@ -85,7 +86,7 @@ fn in_memory(what: &str, gravity: &GravityModel) -> Result<Special, FaultsError>
     })
 }
 
-/// A hand that opens where nothing tells it: what the gates leave of it.
+/// The hand opens on a rig without presence detection: the force that the gates still allow.
 fn let_go() -> Result<Special, FaultsError> {
     let tissue = Scene::load("peg_transfer")?.tissue;
     let wrong = |reason: String| FaultsError::Calibration(ValidationError::Calibration(reason));
@@ -93,7 +94,7 @@ fn let_go() -> Result<Special, FaultsError> {
     let outcome = release::let_go(Situation::Held, Gates::WithoutRelease, Mode::Anchored, 50.0, tissue)
         .map_err(|error| wrong(error.to_string()))?;
     Ok(Special {
-        what: "the hand lets go, nothing tells".to_owned(),
+        what: "the hand opens, no presence detection".to_owned(),
         verdict: Verdict::Bounded,
         told: format!(
             "energy gate: {:.0} mJ, peak {:.1} N (no presence switch; docs/release.md)",
@@ -104,7 +105,7 @@ fn let_go() -> Result<Special, FaultsError> {
     })
 }
 
-/// A file with one number made NaN, one cut short, one of another format.
+/// A network's file with one number made NaN, a truncated one, and one of another format.
 fn networks(folder: &Path) -> Result<Vec<Special>, FaultsError> {
     let known = isolation::Known::calibrate(1)?;
     let scene = Experiment::scene("isolation", 1)?;
@@ -141,7 +142,7 @@ fn refused(what: &str, told: Option<String>, path: &Path) -> Special {
     Special { what: what.to_owned(), verdict, told, detection_ms: None, zero_ms: None }
 }
 
-/// The file of a sound calibration with one number made NaN, one cut short, and the sound one for another sensor and tool.
+/// A calibration file with one number made NaN, a truncated one, and a valid one of another sensor and tool.
 fn gravity_files(folder: &Path) -> Result<Vec<Special>, FaultsError> {
     let wrong = |reason: String| FaultsError::Calibration(ValidationError::Calibration(reason));
     let record = experiment::gravity_report(1)?.record("S1", "grasper", &utc_now());
@@ -168,7 +169,7 @@ fn gravity_files(folder: &Path) -> Result<Vec<Special>, FaultsError> {
     Ok(specials)
 }
 
-/// The text with the first bias of its model replaced.
+/// Replaces the first bias in the text of a calibration.
 fn numbers_replaced(text: &str, by: &str) -> String {
     let Some((before, after)) = text.split_once("bias_n = [") else { return String::new() };
     let rest = after.split_once(',').map_or(after, |(_, rest)| rest);

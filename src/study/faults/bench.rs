@@ -1,4 +1,5 @@
-//! The virtual bench: one world, the machine with the fault, and its twin that is given the truth of the same world.
+//! Test bench on the virtual clock: one world, the machine with the fault, and a fault-free twin that receives the true
+//! measurements.
 
 use nalgebra::Vector3;
 use nima_core::impedance::Mode;
@@ -18,17 +19,17 @@ use super::{
 use crate::validation::experiment;
 
 const PERIOD_S: f64 = 1e-3;
-/// Longest search for a place in the task, ticks.
+/// Longest time to reach a situation of the task, ticks.
 const TIMEOUT: u32 = 12_000;
-/// So long the machine runs before any fault, ticks: the watch on what stands has then seen noise and tremor.
+/// Ticks before any fault is injected. By then the monitors of stuck values have seen noise and tremor.
 const WARM_UP: u32 = 10_500;
-/// Moments lie apart by this, ticks.
+/// Interval between the moments tried, ticks.
 const APART: u32 = 1300;
 /// Delay of the link in the simulated rig, ticks.
 const LINK_TICKS: u32 = 50;
-/// A force that differs by more than this differs, N.
+/// Forces that differ by more than this are different, N.
 const HINT_N: f64 = 0.05;
-/// Positions nearer than this are the same, m.
+/// Positions closer than this are equal, m.
 const NEAR_M: f64 = 5e-4;
 
 /// World, machine and twin.
@@ -44,23 +45,23 @@ pub(super) struct Bench {
     tip_n: Vector3<f64>,
 }
 
-/// One tick of both.
+/// Result of one tick of machine and twin.
 #[derive(Clone, Copy, Debug)]
 #[expect(clippy::struct_excessive_bools, reason = "independent observations of one tick")]
 pub(super) struct Step {
     pub(super) machine: Tick,
     pub(super) twin: Tick,
-    /// What the twin commanded for this tick, N.
+    /// Force that the twin commanded for this tick, N.
     pub(super) twin_before_n: Vector3<f64>,
-    /// Force at the tip when it did, as the twin makes it of the truth, N.
+    /// Force at the tip when it was commanded, computed by the twin from the true measurements, N.
     pub(super) tip_before_n: Vector3<f64>,
-    /// What the rig was given.
+    /// Outputs that the rig received.
     pub(super) applied: Outputs,
-    /// What the machine wanted the rig to have.
+    /// Outputs that the machine sent.
     pub(super) wanted: Outputs,
-    /// What the loop was given or gave differs from the truth.
+    /// Whether the loop's inputs or outputs differ from the truth.
     pub(super) shows: bool,
-    /// The force that the loop is given differs at all.
+    /// Whether the loop's force input differs from the truth at all.
     pub(super) hints: bool,
     pub(super) raised: Option<Fault>,
     pub(super) refused: bool,
@@ -68,7 +69,7 @@ pub(super) struct Step {
 }
 
 impl Bench {
-    /// An idle rig whose force is measured there, in this mode.
+    /// An idle rig with its force sensor at this place, in this mode.
     pub(super) fn new(sensor: SensorAt, mode: Mode, seed: u64) -> Result<Self, FaultsError> {
         let mut config = RigConfig::load("simulated")?;
         config.mode = mode;
@@ -114,14 +115,14 @@ impl Bench {
         }
     }
 
-    /// A command for both.
+    /// Gives a command to both.
     pub(super) fn obey(&mut self, command: Command) {
         let now_s = f64::from(self.tick) * PERIOD_S;
         self.machine.obey(command, now_s);
         self.twin.obey(command, now_s);
     }
 
-    /// The machine's clock as the fault has it.
+    /// The machine's timing, altered by the fault.
     fn timing(&self, now_s: f64) -> Timing {
         let honest = Timing { now_s, ..Timing::default() };
         let Some((fault, since)) = self.fault else { return honest };
@@ -144,7 +145,7 @@ impl Bench {
         Timing { now_s, missed_now, ..honest }
     }
 
-    /// What a broken screen sends in this tick.
+    /// Commands of a faulty screen in this tick.
     fn mischief(&mut self, now_s: f64) {
         match self.fault {
             Some((Kind::CommandsPoisoned, since)) if self.tick - since < 4 => {
@@ -165,7 +166,7 @@ impl Bench {
         }
     }
 
-    /// One tick of everything; `None` only where there is no right pair.
+    /// One tick of world, machine and twin; `None` only if the rig has no right arm pair.
     pub(super) fn step(&mut self) -> Option<Step> {
         let now_s = f64::from(self.tick) * PERIOD_S;
         let timing = self.timing(now_s);
@@ -208,7 +209,8 @@ impl Bench {
         })
     }
 
-    /// The fault is not in the rig, and acts by now: of what a link loses or spoils nothing shows until it is due.
+    /// Whether the fault is outside the rig and has taken effect: parcels that a link loses or corrupts are missed only
+    /// when they are due.
     fn is_elsewhere(&self) -> bool {
         let Some((fault, since)) = self.fault else { return false };
         match fault.part() {
@@ -218,7 +220,7 @@ impl Bench {
         }
     }
 
-    /// Brings the bench to a place; `moment` tells cases at the same place apart.
+    /// Brings the bench into a situation; `moment` distinguishes cases in the same situation.
     pub(super) fn prepare(&mut self, place: Place, moment: u32) -> Result<(), FaultsError> {
         let engaged = !matches!(place, Place::Disconnected | Place::Idle | Place::Ready);
         if engaged {
@@ -263,7 +265,7 @@ impl Bench {
         }
     }
 
-    /// The tip is well above the tissue, or well in it.
+    /// Whether the tip is well above the tissue (`free`), or well in it.
     fn is_at(&self, free: bool) -> bool {
         let tip_z_m = self.rig.truth[FAULTY].map_or(0.0, |seen| seen.tip_m.z);
         if free { tip_z_m > 0.008 } else { tip_z_m < -0.005 }
@@ -280,7 +282,7 @@ impl Bench {
         }
     }
 
-    /// Force that the machine wants in the hand now, N.
+    /// Force that the machine commands now, N.
     pub(super) fn wanted_n(&self) -> Vector3<f64> {
         self.outputs[FAULTY].hand_force_n
     }
@@ -291,13 +293,13 @@ impl Bench {
     }
 }
 
-/// How far the force that the loop is given is from what was measured, N.
+/// Difference between the force given to the loop and the measured one, N.
 fn force_apart_n(given: Option<&Inputs>, truth: Option<&Inputs>) -> f64 {
     let apart = |(given, truth): (&Inputs, &Inputs)| (force_of(&given.sensed) - force_of(&truth.sensed)).norm();
     given.zip(truth).map_or(0.0, apart)
 }
 
-/// What the loop is given is not what was measured.
+/// Whether the loop's inputs differ from the measurements.
 fn differs(given: Option<&Inputs>, truth: Option<&Inputs>) -> bool {
     let (Some(given), Some(truth)) = (given, truth) else { return given.is_some() != truth.is_some() };
     let force_n = force_apart_n(Some(given), Some(truth));
@@ -317,7 +319,7 @@ fn differs(given: Option<&Inputs>, truth: Option<&Inputs>) -> bool {
     !near || turned || given.switches != truth.switches || given.powered != truth.powered || given.age_s > truth.age_s
 }
 
-/// What the rig is given is not what the loop wanted.
+/// Whether the rig's outputs differ from what the loop commanded.
 fn altered(wanted: &Outputs, applied: &Outputs) -> bool {
     let apart_m = match (wanted.tip_command_m, applied.tip_command_m) {
         (Some(wanted), Some(applied)) => (wanted - applied).norm(),

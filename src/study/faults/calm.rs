@@ -1,4 +1,4 @@
-//! Healthy machines at ordinary work, of which nothing may be told.
+//! Fault-free machines at ordinary work, which must report nothing.
 
 use nima_core::impedance::Mode;
 use nima_machine::{
@@ -15,25 +15,25 @@ use crate::validation::experiment;
 const SCENES: [&str; 4] = ["peg_transfer", "palpation", "free_motion", "bimanual"];
 const DELAYS_S: [f64; 4] = [0.0, 0.01, 0.05, 0.3];
 
-/// Healthy runs and what was told of them.
+/// Fault-free runs and their false alarms.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct Calm {
-    /// Runs.
+    /// Number of runs.
     pub runs: usize,
-    /// All of them together, s of loop time.
+    /// Their total duration, s of loop time.
     pub seconds: f64,
-    /// What was told, with scene, mode, delay and time.
+    /// Everything that was reported, with scene, mode, delay and time.
     pub false_alarms: Vec<String>,
 }
 
 impl Calm {
     pub(super) fn line(&self) -> String {
         let told = if self.false_alarms.is_empty() { "none".to_owned() } else { self.false_alarms.join("; ") };
-        format!("- false alarms in {} healthy runs of {:.0} minutes together: {told}", self.runs, self.seconds / 60.0)
+        format!("- false alarms in {} fault-free runs, {:.0} minutes in total: {told}", self.runs, self.seconds / 60.0)
     }
 }
 
-/// Runs every scene in both modes at every delay, each for so long, s.
+/// Runs every scene in both modes at every delay, each for `seconds`.
 pub(super) fn runs(seconds: f64) -> Result<Calm, FaultsError> {
     let mut calm = Calm::default();
     let gravity = experiment::gravity(1)?;
@@ -44,7 +44,7 @@ pub(super) fn runs(seconds: f64) -> Result<Calm, FaultsError> {
                 (rig.mode, rig.delay_s, rig.gates.static_hold) = (mode, delay_s, calm.runs % 2 == 0);
                 let known = Calibrations { gravity: Some(gravity), tip_force: None };
                 let scene = Scene::load(scene)?;
-                // Every run is another hand's tremor, noise and beginning.
+                // Every run has another seed: other tremor, noise and start.
                 let scene = Scene { seed: scene.seed + 1000 * calm.runs as u64, ..scene };
                 let calibrations = [known, Calibrations::default()];
                 let plan = Plan { rig, scene, calibrations, engage: true };

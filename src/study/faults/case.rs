@@ -1,4 +1,5 @@
-//! One case: the fault begins, machine and twin go on, and what is told, when, and how wrong the hand was is written down.
+//! Runs one case: starts the fault, steps the machine and its fault-free twin, and records what is reported, when, and
+//! the error of the force until then.
 
 use std::collections::VecDeque;
 
@@ -14,23 +15,25 @@ use super::{
     bench::{Bench, Step},
 };
 
-/// Ticks until what a place waits for comes: drives, the clutch.
+/// Ticks until the second event of a situation: drives come on, the clutch is released.
 const LATER: u32 = 200;
-/// A latched machine is watched for so long, ticks.
+/// Ticks for which a machine is observed after it has latched.
 const AFTER_LATCH: u32 = 100;
 
-/// Another state for so long is told, ticks.
+/// A state that differs from the twin's for this many ticks counts as reported.
 const APART: u32 = 5;
-/// A fault that does not show for so long begins anew when it shows again, ticks.
+/// A fault that has been invisible for this many ticks counts as starting again when it becomes visible.
 const PAUSE: u32 = 20;
-/// Forces are compared with the twin's of so many ticks before and after: what comes 5 ms late is fresh to the age gate.
+/// A force is compared with the twin's forces up to this many ticks before and after, because the age gate accepts data
+/// that are 5 ms late.
 const SHIFT: usize = 5;
 
-/// The healthy machine renders late and predicts: a machine whose mean error against the force at the tip is larger than its twin's by no
-/// more than this, and the largest by no more than [`HARMLESS_N`], is no worse.
+/// The healthy machine predicts over a delay and so has an error too. A machine counts as no worse if its mean error
+/// against the force at the tip exceeds its twin's by no more than this, N, and its largest error by no more than
+/// [`HARMLESS_N`].
 const MEAN_N: f64 = 0.02;
 
-/// Errors against the force that is felt at the tip at the same time, N.
+/// Errors against the present force at the tip, N.
 #[derive(Clone, Copy, Debug, Default)]
 struct Errors {
     sum_n: f64,
@@ -44,7 +47,7 @@ impl Errors {
     }
 }
 
-/// A stretch of time in which something was seen without a [`PAUSE`].
+/// A period in which a difference was visible, with interruptions shorter than [`PAUSE`].
 #[derive(Clone, Copy, Debug, Default)]
 struct Stretch {
     began: Option<u32>,
@@ -63,12 +66,12 @@ impl Stretch {
     }
 }
 
-/// What was seen until now.
+/// Observations so far.
 #[derive(Debug)]
 struct Watch {
     shows: Stretch,
     hints: Stretch,
-    /// The newest forces in the hand and of the twin, N, newest last.
+    /// The latest pairs of force in the hand and force of the twin, N, newest last.
     forces_n: VecDeque<[Vector3<f64>; 2]>,
     told: Option<(String, u32)>,
     zero: Option<u32>,
@@ -86,7 +89,7 @@ struct Watch {
     apart: u32,
 }
 
-/// Lets the fault happen on a bench that is ready for it.
+/// Applies the fault on a bench that has been prepared for it.
 pub(super) fn tried(mut bench: Bench, kind: Kind, sensor: SensorAt, mode: Mode, place: Place, moment: u32) -> Outcome {
     let mut watch = Watch {
         shows: Stretch::default(),
@@ -116,7 +119,7 @@ pub(super) fn tried(mut bench: Bench, kind: Kind, sensor: SensorAt, mode: Mode, 
         }
         let Some(step) = bench.step() else { break };
         watch.look(tick, &step);
-        // The twin may lose its way where the fault leads the arm elsewhere; then it is no measure any more.
+        // If the fault moved the arm elsewhere, the twin may latch; then it can no longer be compared with.
         if step.twin.state.is_latched() && !begun_latched {
             break;
         }
@@ -138,7 +141,7 @@ impl Watch {
         if self.told.is_none() {
             let state = || format!("state {}", step.machine.state.word().to_lowercase());
             self.told = told(step).map(|what| (what, tick));
-            // One that is a tick behind tells nothing.
+            // A state that differs for only a tick or two means nothing.
             if self.told.is_none() && self.apart == APART {
                 self.told = Some((state(), tick));
             }
@@ -150,7 +153,7 @@ impl Watch {
         if self.told.is_some() && self.felt && gone && self.zero.is_none() {
             self.zero = Some(tick);
         }
-        // The rig is given in a tick what the tick before made: so is the twin's.
+        // The rig receives in each tick the outputs of the previous one; so does the twin's.
         if self.zero.is_none() {
             self.peak_error_n = self.peak_error_n.max((applied_n - step.twin_before_n).norm());
             self.compare(applied_n, step.twin_before_n);
@@ -185,7 +188,8 @@ impl Watch {
 
     fn outcome(self, kind: Kind, sensor: SensorAt, mode: Mode, place: Place, moment: u32) -> Outcome {
         let told_at = self.told.as_ref().map(|(_, tick)| *tick);
-        // What was told while nothing showed is counted from where the force began to differ at all, or from the beginning.
+        // A report that came while no difference was visible is timed from the first small difference of the force, or
+        // from the start of the fault.
         let on = |stretch: &Stretch| stretch.began.filter(|_| told_at.is_none_or(|told| told <= stretch.last + PAUSE));
         let origin = on(&self.shows).or(on(&self.hints)).unwrap_or(0);
         let since_ms = |tick: u32| f64::from(tick - origin.min(tick)) + 1.0;
@@ -223,7 +227,7 @@ impl Watch {
     }
 }
 
-/// What the machine tells in this tick and its twin does not.
+/// What the machine reports in this tick and its twin does not.
 fn told(step: &Step) -> Option<String> {
     let (machine, twin) = (&step.machine, &step.twin);
     if let Some(fault) = step.raised {

@@ -1,30 +1,30 @@
-//! Every kind of fault on the virtual clock: what it is, where it sits, and why it cannot be told where nothing can.
+//! Every kind of fault on the virtual clock: its description, its location, and, where it cannot be detected, why not.
 
 use serde::Serialize;
 
-/// Where a fault sits.
+/// Where a fault is located.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 #[expect(missing_docs, reason = "the names say it")]
 pub enum Part {
     /// The force sensor.
     Force,
-    /// Orientation of the wrist: accelerometer or arm.
+    /// Orientation of the wrist, from accelerometer or arm.
     Orientation,
     Handle,
     Arm,
-    /// Pedal and presence.
+    /// Pedal and presence detection.
     Switches,
     /// The loop's clock.
     Clock,
     /// The link between follower and leader.
     Link,
-    /// Commands of the screen.
+    /// Commands from the screen.
     Commands,
 }
 
 impl Part {
-    /// A number that becomes a force in the hand passes here.
+    /// Whether the force to the hand is computed from data of this part.
     pub const fn is_on_force_path(self) -> bool {
         matches!(self, Self::Force | Self::Orientation | Self::Clock | Self::Link)
     }
@@ -131,7 +131,7 @@ impl Kind {
         K::CommandsPoisoned, K::CommandsDoubled, K::SliderShakes,
     ];
 
-    /// Where it sits.
+    /// Where it is located.
     pub const fn part(self) -> Part {
         match self {
             K::ImuStops
@@ -182,12 +182,12 @@ impl Kind {
         }
     }
 
-    /// It needs a sensor at the wrist.
+    /// Whether it needs a sensor at the wrist.
     pub const fn needs_wrist(self) -> bool {
         matches!(self.part(), Part::Orientation)
     }
 
-    /// What happens.
+    /// Description of the fault.
     #[rustfmt::skip]
     pub const fn words(self) -> &'static str {
         match self {
@@ -204,10 +204,10 @@ impl Kind {
             K::ForceAxes => "axes of the force are exchanged",
             K::ForceSpike => "one sample is 10 N off",
             K::ForceSpikes => "every 50th sample is 10 N off",
-            K::ForceSaturated => "range of the force ends 1 N from here",
+            K::ForceSaturated => "force saturates 1 N above its present value",
             K::ForceNoise => "noise of 0.4 N",
-            K::ForceLate => "force comes 50 ms late, untold",
-            K::ForceLateTold => "samples are 15 ms old, told",
+            K::ForceLate => "force is 50 ms late, without time stamps",
+            K::ForceLateTold => "samples are 15 ms old, with time stamps",
             K::ForceDoubled => "every sample comes twice, every second is lost",
             K::ForceReordered => "neighbouring samples are exchanged",
             K::ForceNan => "force is NaN",
@@ -245,11 +245,11 @@ impl Kind {
             K::PedalDown => "pedal is stuck down",
             K::PedalUp => "pedal is stuck up",
             K::PedalBounces => "pedal bounces every 20 ms",
-            K::HandAbsent => "hand lets go, the handle tells",
+            K::HandAbsent => "hand opens, detected by the handle",
             K::ClockForward => "clock jumps 1 s ahead",
             K::ClockBackward => "clock jumps 1 s back",
             K::ClockStops => "clock stands still",
-            K::ClockSlow => "clock goes at half its rate",
+            K::ClockSlow => "clock runs at half its rate",
             K::ClockNan => "time is NaN",
             K::PeriodsMissed => "100 periods are missed",
             K::FewPeriodsMissed => "10 periods are missed",
@@ -263,36 +263,36 @@ impl Kind {
             K::LinkRepeats => "link repeats one parcel under new times",
             K::CommandsPoisoned => "commands with NaN and out of range",
             K::CommandsDoubled => "every command comes twice",
-            K::SliderShakes => "gain is commanded to and fro each tick",
+            K::SliderShakes => "gain is commanded up and down in each tick",
         }
     }
 
-    /// Why it is not told by design, where that is so.
+    /// If it is accepted as fresh data by design: why.
     pub const fn passes_as_fresh(self) -> Option<&'static str> {
         match self {
-            K::LinkJitter | K::LinkHalf | K::LinkSwaps | K::ForceDoubled | K::ForceReordered | K::ForceSpikes => Some(
-                "late by less than 5 ms: the age gate takes it as fresh; gates with a memory then differ for a while",
-            ),
+            K::LinkJitter | K::LinkHalf | K::LinkSwaps | K::ForceDoubled | K::ForceReordered | K::ForceSpikes => {
+                Some("late by less than 5 ms, which the age gate accepts; gates with a memory then differ for a while")
+            }
             _ => None,
         }
     }
 
-    /// Why it cannot be told from an honest machine, where that is so; it must then be bounded.
+    /// If it cannot be distinguished from normal operation: why. The error must then be bounded.
     pub const fn untellable(self) -> Option<&'static str> {
         Some(match self {
             K::ForceSmallStep => "a small step is within what a contact does in a tick",
             K::ForceDrift | K::ForceSlowDrift => "a slow bias looks like a slow contact",
-            K::ForceAxes => "before a contact: a slanting surface gives the same",
-            K::ForceGain => "before a contact: a stiffer tissue gives the same",
-            K::ForceLate => "without time stamps of the sensor: a lagging arm gives the same",
-            K::ForceDead => "in the air: an ideal sensor gives the same",
+            K::ForceAxes => "before a contact, an inclined surface would look the same",
+            K::ForceGain => "before a contact, stiffer tissue would look the same",
+            K::ForceLate => "without time stamps of the sensor, a lagging arm would look the same",
+            K::ForceDead => "without contact, an ideal sensor would look the same",
             K::HandleWithoutForce | K::HandleInverted | K::HandleKeepsForce => {
                 "nothing measures the force in the handle"
             }
             K::HandDrift | K::HandLate | K::HandNoise | K::HandSign | K::HandAxes => {
-                "another motion of a hand gives the same"
+                "a different motion of the hand would look the same"
             }
-            K::TipDrift => "another place gives the same",
+            K::TipDrift => "a different position would look the same",
             _ => return None,
         })
     }

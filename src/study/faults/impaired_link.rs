@@ -1,25 +1,25 @@
-//! A link that loses, delays, exchanges, doubles, spoils or repeats parcels: around the loop's own, which knows nothing of it.
+//! A link that loses, delays, reorders, duplicates, corrupts or repeats parcels; it wraps the loop's own link.
 
 use nima_core::impedance::Parcel;
 use nima_machine::teleop::{Link, ProgrammedLink};
 
-/// What a link does to parcels.
+/// What happens to the parcels.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) enum Impairment {
     /// Nothing.
     #[default]
     None,
-    /// Loses all.
+    /// Loses every parcel.
     LosesAll,
-    /// Loses every second one.
+    /// Loses every second parcel.
     LosesHalf,
-    /// Delivers all so much later than it should, s.
+    /// Delivers every parcel this much too late, s.
     Late(f64),
-    /// Exchanges neighbours.
+    /// Exchanges neighbouring parcels.
     Swaps,
-    /// Delivers everything twice.
+    /// Delivers every parcel twice.
     Doubles,
-    /// Makes numbers of the force that are none.
+    /// Replaces numbers of the force by NaN.
     Poisons,
     /// Repeats one parcel under new time stamps.
     Repeats,
@@ -30,7 +30,7 @@ pub(super) enum Impairment {
 pub(super) struct ImpairedLink {
     line: ProgrammedLink,
     impairment: Impairment,
-    /// Parcels that were to be sent since the impairment changed, and one that is kept back.
+    /// Parcels offered since the impairment changed, and one that is held back.
     offered: usize,
     kept: Parcel,
 }

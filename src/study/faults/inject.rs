@@ -1,4 +1,4 @@
-//! Faults between a rig and the loop: what the loop is given and what the rig is given, edited from a moment on.
+//! Injects faults between a rig and the loop: from some tick on, the loop's inputs and the rig's outputs are altered.
 
 use std::collections::VecDeque;
 
@@ -9,12 +9,12 @@ use nima_machine::rig::{DeviceEvent, Inputs, Outputs, Rig, SIDES, Sensed};
 
 use super::Kind;
 
-/// The side whose devices fail.
+/// Side whose devices fail.
 pub(super) const FAULTY: usize = 0;
-/// Delay of late data, exchanges.
+/// Delay of late data, ticks.
 const LATE: usize = 50;
 
-/// What a situation does to the devices, no fault of theirs.
+/// State of the devices that belongs to the situation and is not a fault.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Situation {
     pub(super) connected: bool,
@@ -35,16 +35,16 @@ pub struct Faulty<R> {
     before: Option<Inputs>,
     late: VecDeque<Inputs>,
     event: Option<DeviceEvent>,
-    /// What the rig measured the last time, before the fault.
+    /// Last measurements of the rig, before the fault is applied.
     pub(super) truth: [Option<Inputs>; SIDES],
-    /// What the loop wrote.
+    /// Last outputs of the loop.
     wanted: [Outputs; SIDES],
-    /// What the rig was given of it the last time.
+    /// What the rig received of them last.
     pub(super) applied: Outputs,
 }
 
 impl<R: Rig> Faulty<R> {
-    /// A rig that is well.
+    /// A rig without a fault.
     pub fn new(rig: R) -> Self {
         Self {
             rig,
@@ -62,7 +62,7 @@ impl<R: Rig> Faulty<R> {
         }
     }
 
-    /// From the next tick on this fault acts, also on what was written last.
+    /// Applies this fault from the next tick on, also to the outputs already written.
     pub fn begin(&mut self, fault: Kind) {
         (self.fault, self.age, self.first, self.before) = (Some(fault), 0, None, None);
         self.late.clear();
@@ -72,7 +72,7 @@ impl<R: Rig> Faulty<R> {
         match self.fault {
             Some(Kind::HandleWithoutForce) => outputs.hand_force_n = Vector3::zeros(),
             Some(Kind::HandleInverted) => outputs.hand_force_n = -outputs.hand_force_n,
-            // Its motors obey the switch all the same.
+            // Even then the motors obey the switch.
             Some(Kind::HandleKeepsForce) if outputs.drives => {
                 outputs.hand_force_n = self.first.map_or(outputs, |(_, first)| first).hand_force_n;
             }
@@ -113,7 +113,7 @@ impl<R: Rig> Faulty<R> {
         }
     }
 
-    /// The later of two neighbours first: what came one tick ago, or the one before that again.
+    /// Neighbouring samples in exchanged order: alternately the present sample and the one before the previous.
     fn reordered(&self, inputs: &Inputs, before: &Inputs) -> Sensed {
         let two_ago = self.late.iter().rev().nth(2).unwrap_or(before);
         match self.age % 2 {
@@ -212,12 +212,12 @@ impl<R: Rig> Rig for Faulty<R> {
     }
 }
 
-/// x for z.
+/// Exchanges x and z.
 fn exchanged(v: Vector3<f64>) -> Vector3<f64> {
     Vector3::new(v.z, v.y, v.x)
 }
 
-/// What the force sensor reads, N.
+/// Force read by the force sensor, N.
 pub(super) fn force_of(sensed: &Sensed) -> Vector3<f64> {
     match sensed {
         Sensed::AtTip(force_n) => *force_n,

@@ -1,4 +1,5 @@
-//! Faults of threads and disks, on the real clock: a rig that hangs, a screen that hangs, busy cores, a slow and a full disk.
+//! Faults of threads and disks on the real clock: a rig that hangs, a screen that hangs, busy cores, a slow disk and a
+//! full one.
 
 use std::{
     fs, io,
@@ -25,45 +26,45 @@ use serde::Serialize;
 
 use super::Verdict;
 
-/// A fault that is not one of the virtual clock.
+/// A fault that is not tried on the virtual clock.
 #[derive(Clone, Debug, Serialize)]
 pub struct Special {
     /// What fails.
     pub what: String,
-    /// What became of it.
+    /// Outcome.
     pub verdict: Verdict,
-    /// What was told, or why it is harmless.
+    /// What was reported, or why the fault is harmless.
     pub told: String,
-    /// When, ms, where it was timed.
+    /// Time to detection, ms, if it was measured.
     pub detection_ms: Option<f64>,
-    /// When the force was gone, ms, where there was one.
+    /// Time until the force was removed, ms, if there was one.
     pub zero_ms: Option<f64>,
 }
 
 /// Why a fault could not be tried on the real clock.
 #[derive(Debug, thiserror::Error)]
 pub enum LiveError {
-    /// A scene or rig is wrong.
+    /// A scene or rig is invalid.
     #[error(transparent)]
     Config(#[from] ConfigError),
     /// The loop did not start.
     #[error(transparent)]
     Start(#[from] StartError),
     /// The loop was not engaged within 5 s.
-    #[error("the loop on the real clock did not engage within 5 s: too much runs beside it")]
+    #[error("the loop on the real clock did not engage within 5 s: other programs use too much processor time")]
     NotEngaged,
-    /// The loop's thread died.
-    #[error("the loop's thread died: start the study again and report this")]
+    /// The loop's thread panicked.
+    #[error("the loop's thread panicked: start the study again and report this")]
     Died,
-    /// The scratch folder.
-    #[error("no scratch folder can be made")]
+    /// The temporary folder could not be made.
+    #[error("the temporary folder cannot be created")]
     Scratch(#[source] io::Error),
 }
 
-/// A rig that hangs once, and tells when its lever was pulled.
+/// A rig that hangs once and records when its lever was pulled.
 struct Hanging {
     rig: Worlds,
-    /// Loop time at which it hangs, s, and for how long.
+    /// Loop time at which it hangs, s, and duration.
     at_s: f64,
     length: Duration,
     began: Arc<AtomicU64>,
@@ -92,7 +93,7 @@ impl Rig for Hanging {
     }
 }
 
-/// Never zero.
+/// Nanoseconds since `clock`, at least 1, because zero means "not yet".
 fn nanoseconds(clock: Instant) -> u64 {
     clock.elapsed().as_nanos() as u64 + 1
 }
@@ -116,7 +117,7 @@ fn until(handle: &Handle, good: impl Fn(&Tick) -> bool) -> Result<(), LiveError>
     Err(LiveError::NotEngaged)
 }
 
-/// Every fault on the real clock.
+/// Runs every fault on the real clock.
 pub(super) fn all() -> Result<Vec<Special>, LiveError> {
     let folder = tempfile::tempdir().map_err(LiveError::Scratch)?;
     Ok(vec![
@@ -135,7 +136,7 @@ pub(super) fn all() -> Result<Vec<Special>, LiveError> {
                 }
             });
         })?,
-        beside("a disk that is written through all the time while summaries are kept", |stop| {
+        beside("continuous synchronised disk writes while summaries are saved", |stop| {
             slow_disk(stop, folder.path());
         })?,
         full_disk(folder.path())?,
@@ -167,7 +168,7 @@ fn hang(what: &str, length: Duration) -> Result<Special, LiveError> {
     Ok(Special { what: what.to_owned(), verdict, told, detection_ms: after_ms, zero_ms: after_ms })
 }
 
-/// Nobody takes the ticks: at 4 kHz the queue of 8192 is full after two seconds.
+/// Nobody reads the ticks: at 4 kHz the queue of 8192 is full after two seconds.
 fn screen_hangs() -> Result<Special, LiveError> {
     let handle = start(&plan(4000.0)?)?;
     thread::sleep(Duration::from_millis(2500));
@@ -175,9 +176,9 @@ fn screen_hangs() -> Result<Special, LiveError> {
     let summary = handle.stop_and_join().ok_or(LiveError::Died)?;
     let counted = summary.dropped > 0 && running;
     Ok(Special {
-        what: "the screen hangs: nobody takes ticks".to_owned(),
+        what: "the screen hangs and reads no ticks".to_owned(),
         verdict: if counted { Verdict::Detected } else { Verdict::Silent },
-        told: format!("{} ticks counted as dropped; the loop went on, {}", summary.dropped, timing(&summary)),
+        told: format!("{} ticks counted as dropped; the loop continued, {}", summary.dropped, timing(&summary)),
         detection_ms: None,
         zero_ms: None,
     })
@@ -187,7 +188,7 @@ fn timing(summary: &Summary) -> String {
     format!("{} of {} periods missed, all counted", summary.missed, summary.missed + summary.ticks)
 }
 
-/// One second of the loop beside this load.
+/// Runs the loop for one second beside this load.
 fn beside(what: &str, load: impl Fn(&AtomicBool) + Send + Sync) -> Result<Special, LiveError> {
     let handle = start(&plan(1000.0)?)?;
     until(&handle, |tick| tick.state == LoopState::Engaged)?;
@@ -217,7 +218,7 @@ fn beside(what: &str, load: impl Fn(&AtomicBool) + Send + Sync) -> Result<Specia
     })
 }
 
-/// Writes through to the disk, 1 MB at a time, and a result beside it.
+/// Writes to the disk with synchronisation, 1 MB at a time, and a result file beside it.
 fn slow_disk(stop: &AtomicBool, folder: &Path) {
     let bytes = vec![0x5a_u8; 1 << 20];
     while !stop.load(Ordering::Relaxed) {
@@ -232,7 +233,7 @@ fn slow_disk(stop: &AtomicBool, folder: &Path) {
     }
 }
 
-/// A result on a disk without room: the error of the device that is always full, met half-way through.
+/// Writes a result to a full disk: the write fails half-way with the error of `/dev/full`.
 fn full_disk(folder: &Path) -> Result<Special, LiveError> {
     let path = folder.join("kept.json");
     write_atomically(&path, |file| file.write_all(b"the result before")).map_err(LiveError::Scratch)?;
@@ -243,6 +244,6 @@ fn full_disk(folder: &Path) -> Result<Special, LiveError> {
     });
     let kept = fs::read(&path).is_ok_and(|bytes| bytes == b"the result before");
     let verdict = if told.is_err() && kept { Verdict::Detected } else { Verdict::Silent };
-    let told = told.err().map_or_else(String::new, |error| format!("{error}; the file before is kept"));
+    let told = told.err().map_or_else(String::new, |error| format!("{error}; the previous file is kept"));
     Ok(Special { what: "the disk is full".to_owned(), verdict, told, detection_ms: None, zero_ms: None })
 }

@@ -1,10 +1,12 @@
-//! Faults of every kind in every state: what the machine tells, how soon, how soon the force is gone, and how wrong it was until then.
+//! Injects faults of every kind in every state and measures what the machine reports, how soon, how soon the force is
+//! removed, and how large its error is until then.
 //!
-//! Each case is a machine whose rig, clock, link or screen fails at a moment, and its twin in the same world that is given the truth.
-//! Takes nothing but [`Options`]; gives a [`Report`] (ms, N). A case is *detected* (a fault, a change of state, a refusal, a closed
-//! gate or an unusable force is told), *harmless* (there is no force and no motion, or the force in the hand differs from the
-//! twin's of the same 5 ms by at most [`HARMLESS_N`], or is no farther from the force at the tip than the twin's own), *bounded* (it cannot be told in principle; its largest error is given), or *silent*.
-//! Faults of threads and disks run on the real clock, those of files on files.
+//! Each case compares a machine whose rig, clock, link or screen fails with a fault-free twin in the same world. Takes
+//! [`Options`]; returns a [`Report`] (ms, N). A case is *detected* (the machine reports a fault, a change of state, a
+//! refusal, a closed gate or an unusable force), *harmless* (there is no force and no motion; or the force in the hand
+//! differs from the twin's within 5 ms by at most [`HARMLESS_N`], or is no further from the force at the tip than the
+//! twin's), *bounded* (it cannot be detected in principle; its largest error is given), or *silent*. Faults of threads
+//! and disks run on the real clock; faults of files need no clock.
 
 mod at_rest;
 mod bench;
@@ -29,14 +31,15 @@ pub use live::{LiveError, Special};
 use self::bench::Bench;
 use crate::validation::ValidationError;
 
-/// A force in the hand that differs from the twin's by no more than this is harmless, N: the deviation of the paper's own tip force.
+/// A force in the hand that differs from the twin's by no more than this is harmless, N: the standard deviation of the
+/// tip force in the paper.
 pub const HARMLESS_N: f64 = 0.2;
 
-/// Why the study cannot be made.
+/// Why the study could not be made.
 #[derive(Debug, thiserror::Error)]
 #[expect(missing_docs, reason = "the messages say it")]
 pub enum FaultsError {
-    /// A scene or rig is wrong.
+    /// A scene or rig is invalid.
     #[error(transparent)]
     Config(#[from] ConfigError),
     #[error(transparent)]
@@ -45,17 +48,17 @@ pub enum FaultsError {
     Calibration(#[from] ValidationError),
     #[error(transparent)]
     Network(#[from] TipForceError),
-    /// The healthy machine did not come to where a fault was to be tried.
+    /// The fault-free machine did not reach the situation in which a fault was to be tried.
     #[error(
-        "the healthy machine is {state} where it should be {place}: a false alarm, or this study's scenes have changed"
+        "the fault-free machine is {state} where it should be {place}: a false alarm, or this study's scenes have changed"
     )]
     NotReached { place: &'static str, state: String },
-    /// Faults on the real clock.
+    /// A fault on the real clock could not be tried.
     #[error(transparent)]
     Live(#[from] LiveError),
 }
 
-/// Where the force is measured.
+/// Place of the force sensor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum SensorAt {
@@ -66,7 +69,7 @@ pub enum SensorAt {
 }
 
 impl SensorAt {
-    /// Both.
+    /// Both places.
     pub const ALL: [Self; 2] = [Self::Tip, Self::Wrist];
 
     const fn scene(self) -> &'static str {
@@ -84,25 +87,25 @@ impl SensorAt {
     }
 }
 
-/// Where the machine is when the fault begins.
+/// State of the machine when the fault begins.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Place {
-    /// No device.
+    /// No device is connected.
     Disconnected,
-    /// Everything delivers, drives off.
+    /// All devices deliver, drives off.
     Idle,
-    /// Drives on their way; 200 ms later they obey, and the fault still stands.
+    /// Engaging: the drives come on 200 ms later, while the fault is still present.
     Ready,
-    /// Engaged, 8 mm above the tissue, on the way.
+    /// Engaged and moving, 8 mm above the tissue.
     Free,
     /// Engaged, 5 mm in the tissue.
     Contact,
-    /// Clutched out of a contact; 200 ms later the clutch is let go.
+    /// Clutch pressed while in contact, and released 200 ms later.
     Clutched,
-    /// Stopped by the operator.
+    /// Stopped by the operator, latched.
     Stopped,
-    /// Stopped by a fault.
+    /// In a latched fault.
     Faulted,
 }
 
@@ -119,7 +122,7 @@ impl Place {
         Self::Faulted,
     ];
 
-    /// In a word.
+    /// One word for tables.
     pub const fn word(self) -> &'static str {
         match self {
             Self::Disconnected => "no device",
@@ -133,7 +136,7 @@ impl Place {
         }
     }
 
-    /// Force and motion are on when the fault begins.
+    /// Whether force and motion are on when the fault begins.
     pub const fn is_engaged(self) -> bool {
         matches!(self, Self::Free | Self::Contact)
     }
@@ -150,7 +153,7 @@ impl Place {
         }
     }
 
-    /// Ticks that the fault is watched.
+    /// Ticks for which the fault is observed.
     const fn ticks(self) -> u32 {
         match self {
             Self::Ready | Self::Free | Self::Contact => 2500,
@@ -160,79 +163,81 @@ impl Place {
     }
 }
 
-/// What became of a case, better first.
+/// Outcome of a case, better first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Verdict {
-    /// Neither force nor motion all the time.
+    /// Neither force nor motion at any time.
     NoForce,
-    /// The force differs from the nearest of the twin's within 5 ms by at most [`HARMLESS_N`], or is no farther from the force at the tip
-    /// than the twin's own: its largest error by at most [`HARMLESS_N`], its mean error by at most 0.02 N.
+    /// The force differs from the twin's within 5 ms by at most [`HARMLESS_N`], or is no further from the force at the
+    /// tip than the twin's: its largest error by at most [`HARMLESS_N`], its mean error by at most 0.02 N.
     Harmless,
-    /// Something was told.
+    /// The machine reported something.
     Detected,
-    /// Cannot be told in principle; the error is given.
+    /// Cannot be detected in principle; the largest error is given.
     Bounded,
-    /// None of these.
+    /// None of the above: not detected, and not harmless.
     Silent,
 }
 
-/// One case.
+/// Result of one case.
 #[derive(Clone, Debug, Serialize)]
 #[expect(missing_docs, reason = "the names say it")]
 pub struct Outcome {
     pub kind: Kind,
-    /// Where it sits.
+    /// Where the fault is located.
     pub part: Part,
-    /// Where the force is measured.
+    /// Place of the force sensor.
     pub sensor: SensorAt,
     pub mode: Mode,
-    /// Where the machine was.
+    /// State of the machine when the fault began.
     pub place: Place,
-    /// Which moment there.
+    /// Number of the moment within that state.
     pub moment: u32,
     pub verdict: Verdict,
-    /// What was told first, if anything.
+    /// The first report, if any.
     pub told: Option<String>,
-    /// When it was told since what is given first differed from the truth (or since the fault began, where it was told before), ms.
+    /// Time to that report since the loop's inputs first differed from the truth (since the fault began, if it was
+    /// reported before), ms.
     pub detection_ms: Option<f64>,
-    /// When the force was gone since then, ms, where there was one.
+    /// Time until the force was removed, from the same instant, ms; `None` if there was no force.
     pub zero_ms: Option<f64>,
-    /// Largest difference of the force in the hand from the twin's until the force was gone, N.
+    /// Largest difference between the force in the hand and the twin's until the force was removed, N.
     pub peak_error_n: f64,
-    /// The same against the nearest of the twin's forces of 5 ms before and after, N: what is late by less is fresh to the age gate.
+    /// The same against the closest of the twin's forces within 5 ms before and after, N, because the age gate accepts
+    /// data that are 5 ms late.
     pub error_n: f64,
-    /// Largest force that the machine commanded, N.
+    /// Largest force commanded, N.
     pub most_n: f64,
-    /// Largest change of it in a tick other than to nothing, N.
+    /// Largest change of that force in one tick, except a change to zero, N.
     pub step_n: f64,
 }
 
-/// How much to try.
+/// Options: how much to try.
 #[derive(Clone, Copy, Debug)]
 pub struct Options {
-    /// Moments at each place with force; one elsewhere.
+    /// Number of moments tried in each state with force; one in the other states.
     pub moments: u32,
-    /// The faults of threads, disks and files too (some seconds on the real clock).
+    /// Whether faults of threads, disks and files are tried too (some seconds on the real clock).
     pub live: bool,
-    /// Time of each healthy run in which nothing may be told, s.
+    /// Duration of each fault-free run, in which nothing may be reported, s.
     pub calm_s: f64,
 }
 
-/// The study's result.
+/// Result of this study.
 #[derive(Clone, Debug, Serialize)]
 pub struct Report {
     /// Every case on the virtual clock.
     pub outcomes: Vec<Outcome>,
-    /// Faults on the real clock and of files.
+    /// Faults on the real clock, and of files.
     pub specials: Vec<Special>,
-    /// Healthy runs.
+    /// Fault-free runs.
     pub calm: Calm,
-    /// How many runs ended in each way.
+    /// Number of cases with each outcome.
     pub sums: Sums,
 }
 
-/// Counts and percentiles over a report.
+/// Counts and percentiles of a report.
 #[derive(Clone, Copy, Debug, Default, Serialize)]
 #[expect(missing_docs, reason = "the names say it")]
 pub struct Sums {
@@ -240,7 +245,7 @@ pub struct Sums {
     pub kinds: usize,
     /// Cases on the virtual clock.
     pub cases: usize,
-    /// Of these without force and motion.
+    /// Of these, cases without force and motion.
     pub no_force: usize,
     pub harmless: usize,
     pub detected: usize,
@@ -248,7 +253,7 @@ pub struct Sums {
     pub silent: usize,
     /// Detected cases on the force path while engaged.
     pub on_force_path: usize,
-    /// Time to their detection, median, ms.
+    /// Time to detection of these, median, ms.
     pub detection_p50_ms: f64,
     /// 99th percentile, ms.
     pub detection_p99_ms: f64,
@@ -258,7 +263,7 @@ pub struct Sums {
     pub bounded_error_n: f64,
     /// Largest force commanded in any case, N.
     pub most_n: f64,
-    /// Largest change of it in a tick, N.
+    /// Largest change of the commanded force in one tick, N.
     pub step_n: f64,
 }
 
@@ -301,7 +306,10 @@ impl Sums {
     }
 }
 
-/// Makes the study; `progress` is told now and then how many of how many parts are done.
+/// Runs the study; `progress` is called from time to time with the number of parts done and their total.
+///
+/// # Errors
+/// [`FaultsError`] if a scene or rig is invalid or a situation cannot be reached.
 pub fn study(options: &Options, mut progress: impl FnMut(usize, usize, &str)) -> Result<Report, FaultsError> {
     let mut outcomes = Vec::new();
     let all = SensorAt::ALL.len() * 2 * Place::ALL.len() + 1;
@@ -322,14 +330,14 @@ pub fn study(options: &Options, mut progress: impl FnMut(usize, usize, &str)) ->
         specials.extend(at_rest::all()?);
         specials.extend(live::all()?);
     }
-    progress(all - 1, all, "healthy runs");
+    progress(all - 1, all, "fault-free runs");
     let calm = calm::runs(options.calm_s)?;
     progress(all, all, "done");
     let sums = Sums::of(&outcomes, &specials);
     Ok(Report { outcomes, specials, calm, sums })
 }
 
-/// Every kind of fault at one place.
+/// Tries every kind of fault in one state.
 fn at(idle: &Bench, sensor: SensorAt, mode: Mode, place: Place, moments: u32) -> Result<Vec<Outcome>, FaultsError> {
     let mut outcomes = Vec::new();
     for moment in 0..if place.is_engaged() { moments } else { 1 } {

@@ -1,4 +1,5 @@
-//! The study of faults as Markdown: sums, one row for each fault and sensor, the faults outside of the virtual clock, the bounded ones.
+//! The study of faults as Markdown: summary, one row per fault and sensor, the faults outside the virtual clock, and
+//! the bounded ones.
 
 use std::fmt::Write as _;
 
@@ -6,7 +7,7 @@ use super::{FaultsError, HARMLESS_N, Kind, Options, Outcome, Place, Report, Sens
 use crate::{Experiment, Findings};
 
 impl Report {
-    /// For a document and a terminal.
+    /// Markdown for a document or a terminal.
     pub fn markdown(&self) -> String {
         let mut text = self.sums_text();
         // Writing into a String cannot fail, here and below.
@@ -18,13 +19,13 @@ impl Report {
                 self.row(&mut text, kind, sensor);
             }
         }
-        text.push_str("\nOn the real clock, and of files:\n\n| fault | verdict | detection (ms) | force gone (ms) | what is told |\n|---|---|---|---|---|\n");
+        text.push_str("\nFaults on the real clock and of files:\n\n| fault | verdict | detection (ms) | force gone (ms) | report |\n|---|---|---|---|---|\n");
         for Special { what, verdict, told, detection_ms, zero_ms } in &self.specials {
             let number = |ms: &Option<f64>| ms.map_or_else(|| "-".to_owned(), |ms| format!("{ms:.1}"));
             let [detection, zero] = [detection_ms, zero_ms].map(number);
             writeln!(text, "| {what} | {} | {detection} | {zero} | {told} |", word(*verdict)).ok();
         }
-        text.push_str("\nBounded, not detected:\n\n| fault | sensor at | largest error (N) | why it cannot be told |\n|---|---|---|---|\n");
+        text.push_str("\nBounded, not detected:\n\n| fault | sensor at | largest error (N) | why it cannot be detected |\n|---|---|---|---|\n");
         for kind in Kind::ALL {
             for sensor in SensorAt::ALL {
                 let of =
@@ -44,10 +45,10 @@ impl Report {
         let Sums { detection_p50_ms, detection_p99_ms, detection_max_ms, bounded_error_n, most_n, step_n, .. } =
             self.sums;
         let lines = [
-            format!("{kinds} kinds of fault; {cases} cases on the virtual clock, {} beside it.", self.specials.len()),
+            format!("{kinds} kinds of fault; {cases} cases on the virtual clock, {} others.", self.specials.len()),
             format!("- no force and no motion: {no_force}"),
             format!(
-                "- harmless (at most {HARMLESS_N} N from the twin within 5 ms, or no farther from the truth than the twin): {harmless}"
+                "- harmless (at most {HARMLESS_N} N from the twin within 5 ms, or no further from the true force than the twin): {harmless}"
             ),
             format!("- detected: {detected}"),
             format!("- bounded, not detected: {bounded} (largest error {bounded_error_n:.2} N)"),
@@ -78,7 +79,7 @@ impl Report {
     }
 }
 
-/// The worst of some cases: verdict, slowest detection / force gone (ms), largest error (N).
+/// The worst of some cases: outcome, slowest detection / removal of the force (ms), largest error (N).
 fn cell(cases: &[&Outcome]) -> String {
     let Some(worst) = cases.iter().map(|outcome| outcome.verdict).max() else { return "-".to_owned() };
     let most = |of: fn(&Outcome) -> Option<f64>| cases.iter().filter_map(|outcome| of(outcome)).reduce(f64::max);

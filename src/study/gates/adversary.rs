@@ -1,10 +1,10 @@
-//! Requests that no honest mode would make, in an endless reproducible stream.
+//! An endless, reproducible sequence of requests that no real mode would make.
 
 use fastrand::Rng;
 use nalgebra::SVector;
 use nima_core::safety::{ChainSettings, EnergyMode, Request};
 
-/// How the force goes on for a while.
+/// How the requested force varies for a while.
 #[derive(Clone, Copy, Debug)]
 enum Pattern {
     NotANumber,
@@ -32,7 +32,7 @@ const PATTERNS: [Pattern; 10] = [
     Pattern::Honest,
 ];
 
-/// What an operator, or a broken screen, does besides.
+/// Changes to a chain by an operator or a faulty screen.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Meddling {
     Nothing,
@@ -43,7 +43,7 @@ pub(super) enum Meddling {
     Reset,
 }
 
-/// The source of one chain's requests.
+/// Generates the requests to one chain.
 #[derive(Debug)]
 pub(super) struct Adversary<'a, const D: usize> {
     rng: &'a mut Rng,
@@ -55,7 +55,7 @@ pub(super) struct Adversary<'a, const D: usize> {
     permitted: bool,
 }
 
-/// Any settings that can be chosen, and some that cannot.
+/// Random settings, most of them valid, some invalid.
 pub(super) fn settings(rng: &mut Rng) -> ChainSettings {
     let fade_after_s = 0.02 * rng.f64();
     ChainSettings {
@@ -73,7 +73,7 @@ pub(super) fn settings(rng: &mut Rng) -> ChainSettings {
     }
 }
 
-/// Mostly a number from 0 to `most`, now and then one from outside, or none at all.
+/// Mostly a number from 0 to `most`; sometimes one outside that range, or NaN.
 fn odd(rng: &mut Rng, most: f64) -> f64 {
     match rng.u32(..16) {
         0 => f64::NAN,
@@ -94,7 +94,7 @@ impl<'a, const D: usize> Adversary<'a, D> {
         SVector::from_fn(|_, _| size * (2.0 * self.rng.f64() - 1.0))
     }
 
-    /// A vector with this value on one axis at least.
+    /// A vector with this value on at least one axis.
     fn poisoned(&mut self, value: f64) -> SVector<f64, D> {
         let mut vector = self.vector(4.0);
         vector[self.rng.usize(..D)] = if self.rng.bool() { value } else { -value };
@@ -131,7 +131,7 @@ impl<'a, const D: usize> Adversary<'a, D> {
     }
 
     fn hand(&mut self) -> Option<SVector<f64, D>> {
-        // A hand that runs before the force takes energy all the time.
+        // A hand that moves with the force takes energy from the device all the time.
         let along = if self.running { self.force_n / self.force_n.norm().max(1e-9) } else { SVector::zeros() };
         let way_m = self.vector(1e-4) + along * 2e-4;
         self.hand_m += way_m;
@@ -158,7 +158,7 @@ impl<'a, const D: usize> Adversary<'a, D> {
         }
     }
 
-    /// What somebody does to the chain before the next request.
+    /// A change to the chain before the next request.
     pub(super) fn meddling(&mut self) -> Meddling {
         match self.rng.u32(..100) {
             0 => Meddling::OrdinaryGain(odd(self.rng, 3.0)),

@@ -1,4 +1,4 @@
-//! Looks at everything that leaves a chain and counts what must not be. Knows the limits, not how the gates keep them.
+//! Checks everything that leaves a chain and counts violations. It knows the limits, not how the gates keep them.
 
 use nalgebra::SVector;
 use nima_core::safety::{Gate, GateReport, MAX_GAIN, MOST_J};
@@ -7,34 +7,34 @@ use serde::Serialize;
 /// Rounding allowed in a limit, relative.
 const ROUNDING: f64 = 1e-9;
 
-/// What must not happen, and how often it did.
+/// Number of violations of each limit.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Breaches {
     /// A force that is not finite.
     pub not_finite: u64,
-    /// A force above the ceiling, or above what the device can give.
+    /// A force above the ceiling, or above the device's maximum.
     pub ceiling: u64,
-    /// Two forces in a row further apart than the slew limit, other than by letting go altogether.
+    /// A change between consecutive forces above the slew limit, unless a gate has withdrawn the force.
     pub slew: u64,
     /// A gain that changed faster than its rate.
     pub gain_rate: u64,
-    /// A gain outside 0 to 3, or one above 1 chosen without the second action.
+    /// A gain outside 0 to 3, or one above 1 without the second confirmation.
     pub gain_range: u64,
-    /// A force without permission, without a hand, or from a request that is not valid.
+    /// A force without permission, without a hand, or from an invalid request.
     pub uncalled: u64,
-    /// A store of energy beyond its bound.
+    /// Stored energy above its limit.
     pub energy: u64,
 }
 
 impl Breaches {
-    /// All of them.
+    /// The sum of all.
     pub const fn total(&self) -> u64 {
         let Self { not_finite, ceiling, slew, gain_rate, gain_range, uncalled, energy } = *self;
         not_finite + ceiling + slew + gain_rate + gain_range + uncalled + energy
     }
 }
 
-/// The limits of one chain and what it did last.
+/// The limits of one chain, and its last output.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Watch<const D: usize> {
     pub(super) most_n: f64,
@@ -42,23 +42,23 @@ pub(super) struct Watch<const D: usize> {
     pub(super) gain_step: f64,
     pub(super) last_n: SVector<f64, D>,
     pub(super) gain: f64,
-    /// The second action was taken and not withdrawn.
+    /// Whether a gain above 1 has been confirmed and not withdrawn.
     pub(super) above_one: bool,
 }
 
 impl<const D: usize> Watch<D> {
-    /// Judges one force (N) with its report; `chosen` is the gain that is aimed at.
+    /// Checks one force (N) and its report; `chosen` is the gain that was set.
     pub(super) fn look(&mut self, now_n: &SVector<f64, D>, report: &GateReport, chosen: f64, breaches: &mut Breaches) {
         let within = |value: f64, limit: f64| value <= limit * (1.0 + ROUNDING) + f64::MIN_POSITIVE;
         let finite = now_n.iter().all(|f| f.is_finite()) && report.gain.is_finite();
         let let_go = [Gate::Permission, Gate::Validity, Gate::Release].iter().any(|gate| report.acted(*gate));
         let change_n = (now_n - self.last_n).norm();
-        // The last digit of a gain near 3 is larger than a slow ramp's relative rounding.
+        // The rounding of a gain near 3 is larger than the relative rounding of a slow ramp.
         let gain_change = (report.gain - self.gain).abs() - 4.0 * f64::EPSILON;
         let chosen_well = (0.0..=if self.above_one { MAX_GAIN } else { 1.0 }).contains(&chosen);
         breaches.not_finite += u64::from(!finite);
         breaches.ceiling += u64::from(!within(now_n.norm(), self.most_n));
-        // The last digits of the two forces, not of their small difference.
+        // The tolerance is the rounding of the two forces, which is larger than that of their small difference.
         breaches.slew += u64::from(!let_go && !within(change_n - 1e-14 * self.most_n, self.step_n));
         breaches.gain_rate += u64::from(!within(gain_change, self.gain_step));
         breaches.gain_range += u64::from(!chosen_well || !(0.0..=MAX_GAIN).contains(&report.gain));

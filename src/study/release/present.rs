@@ -1,4 +1,4 @@
-//! The study of letting go as a table, as Markdown, and as a picture.
+//! The study of a released handle as a table, as Markdown, and as a picture.
 
 use std::fmt::Write as _;
 
@@ -16,7 +16,7 @@ use crate::{
 const MODES: [Mode; 4] = [Mode::Dfr, Mode::Linear, Mode::Literal, Mode::Anchored];
 
 impl Report {
-    /// For a terminal and for a document: one Markdown table for each situation.
+    /// One Markdown table for each situation, for a terminal and for a document.
     pub fn markdown(&self) -> String {
         let mut text = String::new();
         for (situation, title) in [(Situation::Held, "Held for two seconds"), (Situation::Pressing, "While pressing")] {
@@ -34,7 +34,7 @@ impl Report {
         text
     }
 
-    /// The farthest way and the latest force over the brakes' viscosity, of all delays.
+    /// The longest travel and the latest force by viscosity of the brakes, over all delays.
     fn brakes(&self, text: &mut String) {
         let worst = |wanted: &dyn Fn(&Braked) -> bool, of: fn(&Outcome) -> f64| {
             self.braked.iter().filter(|braked| wanted(braked)).map(|braked| of(&braked.outcome)).fold(0.0, f64::max)
@@ -56,7 +56,7 @@ impl Report {
         }
     }
 
-    /// How many of the ways of letting go with a force in the hand reach both aims, by gates and mode: `(reached, of)`.
+    /// Number of releases with a force in the hand that meet both targets, by gates and mode: `(reached, of)`.
     pub fn reached(&self, gates: Gates, mode: Mode) -> (usize, usize) {
         let with_force = |outcome: &&Outcome| {
             outcome.gates == gates && outcome.mode == mode && outcome.before_n > AIM_N && !outcome.closed_before
@@ -65,7 +65,7 @@ impl Report {
         (self.outcomes.iter().filter(with_force).filter(good).count(), self.outcomes.iter().filter(with_force).count())
     }
 
-    /// Travel and energy over the delay, for the hand that held, each mode without and with all gates.
+    /// Travel and energy over the delay in the situation [`Situation::Held`], each mode without and with all gates.
     pub fn svg(&self) -> String {
         let chart = |title: &str, unit: &str, low: f64, high: f64, of: fn(&Outcome) -> f64| Chart {
             title: title.into(),
@@ -73,8 +73,8 @@ impl Report {
             y: Axis::log(unit, low, high),
             series: [
                 (Gates::None, Style::Dashed, "no gates"),
-                (Gates::WithoutRelease, Style::Line, "gates"),
-                (Gates::All, Style::Points, "and the hand's"),
+                (Gates::WithoutRelease, Style::Line, "without release gate"),
+                (Gates::All, Style::Points, "all gates"),
             ]
             .into_iter()
             .flat_map(|(gates, style, word)| {
@@ -89,7 +89,7 @@ impl Report {
             .collect(),
         };
         svg(&[
-            chart("Handle travel within 1 s of letting go", "travel (mm)", 1.0, 1e4, |outcome| outcome.travel_mm),
+            chart("Handle travel within 1 s of release", "travel (mm)", 1.0, 1e4, |outcome| outcome.travel_mm),
             chart("Energy given to the handle", "energy (mJ)", 0.1, 1e5, |outcome| outcome.energy_mj),
         ])
     }

@@ -1,8 +1,8 @@
-//! The extremes: motions and forces that a console may meet, and some that it should not.
+//! Extreme motions and forces: some that may occur in operation, and some that should not.
 
 use std::f64::consts::TAU;
 
-/// One tick's sample of one axis as it comes from a device, good or bad.
+/// One sample of one axis as a device delivers it, valid or not.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Raw {
     pub(super) t_s: f64,
@@ -10,7 +10,7 @@ pub(super) struct Raw {
     pub(super) force_n: f64,
 }
 
-/// One extreme.
+/// One extreme case.
 #[derive(Clone, Debug)]
 pub(super) struct Case {
     pub(super) group: &'static str,
@@ -21,30 +21,30 @@ pub(super) struct Case {
     pub(super) samples: Vec<Raw>,
 }
 
-/// Ticks after the differentiator has settled and both the paper's `u` and the window are full.
+/// Ticks until the differentiator has settled and both the paper's `u` and the window are filled.
 pub(super) fn warm(rate_hz: f64, window: usize) -> usize {
     ((0.03 * rate_hz) as usize).max(5) + 2 * window
 }
 
-/// Ticks from the newest sample to the horizon: 50 ms, half a window at most.
+/// Ticks from the newest sample to the horizon: 50 ms, at most half a window.
 pub(super) fn horizon(rate_hz: f64, window: usize) -> usize {
     ((0.05 * rate_hz).round() as usize).clamp(1, window / 2)
 }
 
 const WINDOW: usize = 300;
 const RATE_HZ: f64 = 1000.0;
-/// A hand's slow sweep about the trocar (m).
+/// Amplitude of a hand's slow motion about the trocar (m).
 const AMPLITUDE_M: f64 = 0.02;
 const FORCE_NOISE_N: f64 = 0.01;
 
-/// Soft tissue: stiffening spring, damping, a little mass; noise of the sensor.
+/// Soft tissue: stiffening spring, damping, a small mass, and sensor noise.
 fn tissue(x: f64, v: f64, a: f64, noise: &mut fastrand::Rng) -> f64 {
     300.0 * x + 4e3 * x * x + 8.0 * v + 0.2 * a + FORCE_NOISE_N * (noise.f64() * 2.0 - 1.0)
 }
 
 /// A hand's motion of the given size at `t`: position, velocity, acceleration.
 fn hand(amplitude: f64, t: f64) -> [f64; 3] {
-    // No common period: over one the paper's `u` would vanish.
+    // The frequencies have no common period: over a common one the paper's `u` would be zero.
     let waves = [(0.75, 0.713, 0.3), (0.2, 2.331, 1.1), (0.05, 6.127, 2.0)];
     waves.iter().fold([0.0; 3], |[x, v, a], (share, hz, phase)| {
         let (size, w) = (amplitude * share, TAU * hz);
@@ -76,7 +76,7 @@ fn moving(group: &'static str, name: impl Into<String>, amplitude: f64, rate_hz:
     case(group, name, rate_hz, window, |t| hand(amplitude, t))
 }
 
-/// The ordinary motion with every sample edited (number of the tick, the samples before it, the sample).
+/// The ordinary motion with every sample modified (arguments: tick, previous sample, sample).
 fn edited(name: &str, edit: impl Fn(usize, Option<Raw>, &mut Raw)) -> Case {
     let mut case = moving("input", name, AMPLITUDE_M, RATE_HZ, WINDOW);
     for k in 0..case.samples.len() {
@@ -129,7 +129,7 @@ fn inputs() -> Vec<Case> {
             }
         }),
         edited("late samples", |k, before, raw| {
-            // Four ticks see the old sample again.
+            // Four ticks repeat the old sample.
             if k % 97 < 4 {
                 *raw = before.unwrap_or(*raw);
             }
@@ -147,7 +147,7 @@ fn inputs() -> Vec<Case> {
     ]
 }
 
-/// All extremes; with `quick` without those that take long in arbitrary precision (windows and rates beyond 1000).
+/// All cases; `quick` leaves out those that take long in arbitrary precision (windows and rates above 1000).
 pub(super) fn all(quick: bool) -> Vec<Case> {
     let mut cases = motions();
     for (name, amplitude) in [

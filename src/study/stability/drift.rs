@@ -1,4 +1,4 @@
-//! The long run: does an error stay behind when samples have left the window?
+//! Long run: whether samples that have left the window leave a numerical error behind.
 
 use nalgebra::{DMatrix, DVector};
 use nima_core::impedance::{MAX_DEGREE, Scales, Settings};
@@ -9,25 +9,26 @@ use super::super::{
     solvers::{MAX_COLUMNS, Row, Sliding, Solver},
 };
 
-/// Rows of the motion that is run through again and again: a multiple of the block, so that windows recur exactly.
+/// Rows of the motion, which repeats; a multiple of the block length, so that windows recur exactly.
 const TABLE: usize = 3000;
 const BLOCK: usize = 150;
 const EARLY: u64 = 1000;
-/// Ticks looked at, each time.
+/// Number of ticks compared, early and late.
 const LOOKS: u64 = 20;
-/// The row that is 20 times too large: what is taken out of a sum again leaves rounding behind.
+/// A row with values 20 times too large: subtracting it from a running sum leaves a rounding error.
 const SPIKE: usize = 1500;
 
-/// Worst relative error of the predicted force, degree 5, early and late in the long run.
+/// Worst relative error of the predicted force at degree 5, early and late in the long run.
 #[derive(Clone, Debug, Serialize)]
 pub struct Drift {
     /// Ticks run; the last multiple of the motion's period plus 1000.
     pub ticks: u64,
-    /// Ours after 1000 ticks.
+    /// This project's solver after 1000 ticks.
     pub ours_early: f64,
-    /// Ours after all ticks, at the same place of the motion.
+    /// This project's solver after all ticks, at the same phase of the motion.
     pub ours_late: f64,
-    /// Beside it: the same normal equations with each leaving row subtracted from running sums, after 1000 ticks.
+    /// For comparison: running sums of the normal equations, from which each leaving row is subtracted, after 1000
+    /// ticks.
     pub running_sums_early: f64,
     /// The same after all ticks; `None` if there was no finite answer.
     pub running_sums_late: Option<f64>,
@@ -50,7 +51,7 @@ fn table() -> Vec<Row> {
         .collect()
 }
 
-/// Sums of products, a row taken in and one taken off at each tick.
+/// Running sums of products; one row is added and one subtracted in each tick.
 struct RunningSums {
     sums: [[f64; MAX_COLUMNS + 1]; MAX_COLUMNS + 1],
 }

@@ -9,7 +9,7 @@ use crate::{
 };
 
 impl Report {
-    /// One row per extreme, solver and degree; empty where there is no figure.
+    /// CSV with one row per case, solver and degree; a figure that does not exist is empty.
     pub fn csv(&self) -> String {
         let mut out = String::from(
             "group,name,rate_hz,window,solver,degree,asked,finite,error,unknowns,rank,deficient,condition,unit_difference\n",
@@ -34,7 +34,8 @@ impl Report {
         out
     }
 
-    /// The worst relative error of every solver over degrees 1 to 5 in every extreme, then the verdict.
+    /// Table of every solver's worst relative error over degrees 1 to 5 in every case, then the comparison with the
+    /// targets.
     pub fn table(&self) -> String {
         let mut out = format!("{:<10} {:<37}", "extreme", "");
         for solver in Solver::ALL {
@@ -56,13 +57,13 @@ impl Report {
         let (verdict, drift) = (&self.verdict, &self.drift);
         let mut out = String::from(
             "\nWorst relative error of the predicted force, degrees 1 to 5, against an exact solution of the same problem;\n\
-             k/30: so many of 30 predictions were finite numbers; *: the rows do not determine the solution;\n\
+             k/30: k of 30 predictions were finite; *: the rows do not determine the solution;\n\
              condition: of the scaled columns with the ridge (ours).\n\n",
         );
         for failures in &verdict.failures {
             writeln!(
                 out,
-                "{:<15} of {} extremes and degrees: {} not finite, {} off by more than 1 %",
+                "{:<15} of {} cases and degrees: {} not finite, {} off by more than 1 %",
                 failures.solver.name(),
                 failures.tried,
                 failures.not_finite,
@@ -81,14 +82,14 @@ impl Report {
         .ok();
         writeln!(
             out,
-            "metres or mm    ours {:.1e}, pseudo-inverse {:.1e}",
+            "m against mm     ours {:.1e}, pseudo-inverse {:.1e}",
             verdict.ours_unit_difference, verdict.pseudo_inverse_unit_difference
         )
         .ok();
         let late = drift.running_sums_late.map_or_else(|| "none".into(), |late| format!("{late:.1e}"));
         writeln!(
             out,
-            "{} ticks  ours {:.1e} early, {:.1e} late; sums with rows subtracted {:.1e} early, {late} late",
+            "{} ticks  ours {:.1e} early, {:.1e} late; running sums {:.1e} early, {late} late",
             drift.ticks, drift.ours_early, drift.ours_late, drift.running_sums_early
         )
         .ok();
@@ -96,7 +97,7 @@ impl Report {
         out
     }
 
-    /// Error over condition for every extreme and degree, and error over amplitude at degree 5.
+    /// Plots of error over condition for every case and degree, and of error over amplitude at degree 5.
     pub fn svg(&self) -> String {
         svg(&[self.by_condition(), self.by_amplitude()])
     }
@@ -117,13 +118,13 @@ impl Report {
             .collect();
         let target = vec![[1.0, TARGET], [ORDINARY_CONDITION, TARGET], [ORDINARY_CONDITION, 1e-17]];
         series.push(Series {
-            name: "target: stay left of and below, or right of it".into(),
+            name: "target: below the line, or to the right of it".into(),
             colour: 6,
             style: Style::Dashed,
             points: target,
         });
         Chart {
-            title: "Every extreme and degree (upper edge: no finite answer)".into(),
+            title: "Every case and degree (upper edge: no finite answer)".into(),
             x: Axis::log("condition of the solver's own columns (right edge: infinite)", 1.0, 1e18),
             y: Axis::log("worst relative error of the force", 1e-17, 1e6),
             series,
@@ -149,7 +150,7 @@ impl Report {
     }
 }
 
-/// The error to draw: the upper edge where an answer is missing.
+/// Vertical position of an error; the upper edge if there is no answer.
 fn height(entry: &Entry) -> f64 {
     if entry.finite < entry.asked { f64::MAX } else { entry.error.unwrap_or(f64::MAX) }
 }

@@ -1,42 +1,42 @@
-//! What the figures come to.
+//! Comparison of the figures with their targets.
 
 use serde::Serialize;
 
 use super::{Drift, Entry, Extreme, ORDINARY_CONDITION, Solver, TARGET};
 
-/// The targets, and the literal formula's failures beside them.
+/// The targets, and how often each solver fails.
 #[derive(Clone, Debug, Serialize)]
 pub struct Verdict {
-    /// Whether ours reaches all targets.
+    /// Whether this project's solver reaches all targets.
     pub reached: bool,
-    /// Share of our predictions that are finite.
+    /// Share of its predictions that are finite.
     pub ours_finite_share: f64,
-    /// Whether the whole identifier was finite in every extreme.
+    /// Whether the whole identifier stayed finite in every case.
     pub identifier_finite: bool,
-    /// Our worst relative error where the scaled condition is below 1e6.
+    /// Its worst relative error where the scaled condition is below 1e6.
     pub ours_worst_error: f64,
-    /// Our worst relative error anywhere.
+    /// Its worst relative error in any case.
     pub ours_worst_error_anywhere: f64,
-    /// Our largest scaled condition.
+    /// Its largest scaled condition.
     pub ours_worst_condition: f64,
-    /// Our worst difference between metres and millimetres where the scaled condition is below 1e6.
+    /// Its worst difference between metres and millimetres where the scaled condition is below 1e6.
     pub ours_unit_difference: f64,
     /// The pseudo-inverse's worst difference between metres and millimetres.
     pub pseudo_inverse_unit_difference: f64,
-    /// How often each solver gives no answer or a wrong one.
+    /// How often each solver gives no prediction or a wrong one.
     pub failures: Vec<Failures>,
 }
 
-/// How often a solver fails.
+/// Failures of one solver.
 #[derive(Clone, Debug, Serialize)]
 pub struct Failures {
     /// The solver.
     pub solver: Solver,
-    /// Extremes and degrees tried.
+    /// Number of cases and degrees tried.
     pub tried: usize,
-    /// Of these: some prediction was not a finite number.
+    /// Of these, with a prediction that is not finite.
     pub not_finite: usize,
-    /// Of these: all finite, but some off by more than 1 % of the force.
+    /// Of these, all finite, but with an error above 1 % of the force.
     pub wrong: usize,
 }
 

@@ -1,20 +1,20 @@
-//! What speed costs in accuracy: every knob of the identification, measured.
+//! Trade-off between computing time and accuracy, for every parameter of the identification.
 //!
-//! Takes motion and force over time ([`Source`]: a recording, or one made of a scene) and a [`Plan`]; gives for every
-//! [`Choice`] of the knobs the time of one tick (us, measured on this computer) and the error at the horizon: the force
-//! rendered for time t from data up to t - D and the motion at t, against the force measured at t (mean 3-D distance, in
-//! the unit of the source), beside delayed direct reflection (DFR), which renders the force of t - D.
-//! Not the full product of all knobs: one at a time around a base point, and the grid of degree and window at every
-//! delay, where the Pareto front is marked. Deterministic but for the times. A choice that a source is too short or too
-//! slow for is left out and named with its reason.
+//! Takes motion and force over time ([`Source`]: a recording, or a simulated scene) and a [`Plan`]. For every
+//! [`Choice`] of parameters, returns the time of one tick (us, measured on this computer) and the error at the horizon:
+//! the force rendered for time t from data up to t - D and the motion at t, against the force measured at t (mean 3-D
+//! distance, in the unit of the source), compared with delayed direct force reflection (DFR), which renders the force
+//! of t - D. Not all combinations are measured: each parameter is varied alone around a base point, and degree and
+//! window together at every delay, where the Pareto front is marked. Deterministic except for the times. A choice for
+//! which a source is too short or too slow is left out, and the reason is reported.
 //!
 //! | file | holds |
 //! |---|---|
 //! | `source` | recordings, scenes recorded open-loop, slower sampling |
-//! | `plan` | the knobs, and which of their values are tried |
-//! | `modes` | cost and error of a mode, as the loop runs it |
+//! | `plan` | the parameters and the values that are tried |
+//! | `modes` | cost and error of a mode as the loop runs it |
 //! | `windows` | cost and error of the plain model of a window, by each solver |
-//! | `sweep` | all points of all sources, their curves and the front |
+//! | `sweep` | all points of all sources, their curves and the Pareto front |
 //! | `chart`, `pictures` | the curves as SVG |
 //! | `table`, `words` | the figures as CSV, and for a terminal |
 

@@ -1,4 +1,4 @@
-//! Cost and error of a mode, as the loop runs it: one identifier that computes this mode (and DFR, which is free).
+//! Cost and error of a mode as the loop runs it: an identifier that computes this mode and DFR (which costs nothing).
 
 use std::{
     sync::atomic::{AtomicBool, Ordering},
@@ -15,10 +15,10 @@ use super::{
     sweep::{CostUs, SweepError},
 };
 
-/// How often a stop is looked for, in ticks.
+/// Ticks between two checks for cancellation.
 const LOOK_EVERY: usize = 512;
 
-/// What was found at one point.
+/// Results at one point.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Measured {
     pub(super) cost_us: CostUs,
@@ -30,7 +30,7 @@ pub(super) struct Measured {
     pub(super) judged: usize,
 }
 
-/// Sums of an error and of delayed DFR's on the same samples.
+/// Sums of a mode's error and of delayed DFR's on the same samples.
 #[derive(Debug, Default)]
 pub(super) struct Errors {
     norms: Vec<f64>,
@@ -64,7 +64,7 @@ impl Errors {
     }
 }
 
-/// Fails when somebody asked to stop.
+/// Returns an error if the sweep was cancelled.
 pub(super) fn look(cancel: &AtomicBool) -> Result<(), SweepError> {
     if cancel.load(Ordering::Relaxed) { Err(SweepError::Cancelled) } else { Ok(()) }
 }
@@ -108,7 +108,7 @@ pub(super) fn measure(
 fn judge(identifier: &Identifier, mode: Mode, sample: &Sample, errors: &mut Errors) {
     let report = identifier.report();
     let (rendered, held) = (report.prediction(mode), report.prediction(Mode::Dfr));
-    // What is not rendered errs by the whole force.
+    // Without a rendered force the error is the whole force.
     let error = (rendered.unwrap_or_default() - sample.force_n).norm();
     let dfr_error = (held.unwrap_or_default() - sample.force_n).norm();
     errors.add(error, dfr_error, rendered.is_some());

@@ -9,7 +9,7 @@ use crate::{
 };
 
 impl Study {
-    /// Pictures by name: cost against error for every source (by the source's own name), then one for every knob.
+    /// Pictures by name: error over cost for every source (under the source's name), then one for every parameter.
     pub fn pictures(&self) -> Vec<(String, String)> {
         let mut pictures: Vec<(String, String)> = Vec::new();
         for figures in &self.sources {
@@ -21,7 +21,7 @@ impl Study {
         }
         let knobs = [
             (Knob::Delay, Mode::Anchored, "Delay of the link (ms)"),
-            (Knob::Rate, Mode::Anchored, "Samples a second (Hz)"),
+            (Knob::Rate, Mode::Anchored, "Sampling rate (Hz)"),
             (Knob::Degree, Mode::Literal, "Highest degree N"),
             (Knob::Window, Mode::Literal, "Window (ms)"),
         ];
@@ -38,7 +38,7 @@ impl Study {
         pictures
     }
 
-    /// Error by delayed DFR's along one knob, a line for every source.
+    /// Ratio of the error to that of delayed DFR along one parameter, a line for every source.
     fn along(&self, knob: Knob, mode: Mode, label: &'static str) -> Chart {
         let line = |figures: &SourceFigures| {
             let curve = figures.curves.iter().find(|curve| curve.knob == knob && curve.method == Method::Mode(mode))?;
@@ -48,10 +48,10 @@ impl Study {
             Some((figures.source.clone(), places))
         };
         let lines: Vec<_> = self.sources.iter().filter_map(line).collect();
-        let title = format!("{} along the {}: error by delayed DFR's", capital(mode.name()), knob.name());
+        let title = format!("{}, {}: error relative to delayed DFR", capital(mode.name()), knob.name());
         let mut chart =
             chart(title, [label, "Mean error / that of delayed DFR"], lines, Style::Line, knob != Knob::Degree);
-        // The level to compare with is always in sight.
+        // Always show the ratio 1, the error of delayed DFR.
         chart.y.range = [chart.y.range[0].min(0.9), chart.y.range[1].max(1.1)];
         let ends = chart.x.range.map(|x| [x, 1.0]).to_vec();
         chart.series.push(Series { name: "delayed DFR".to_owned(), colour: 6, style: Style::Dashed, points: ends });
@@ -59,7 +59,7 @@ impl Study {
     }
 }
 
-/// All points of the modes at the base's delay and rate, and the front through them.
+/// All points of the modes at the base's delay and rate, and the Pareto front through them.
 fn cost_against_error(figures: &SourceFigures) -> Chart {
     let base_ms = figures
         .curves
@@ -81,16 +81,11 @@ fn cost_against_error(figures: &SourceFigures) -> Chart {
     let title = format!("{}: cost against error at {base_ms:.0} ms (force in {})", figures.source, figures.unit);
     let mut chart =
         chart(title, ["Median time of one tick (us)", "Mean error at the horizon"], modes, Style::Points, true);
-    chart.series.push(Series {
-        name: "nothing beats these".to_owned(),
-        colour: 6,
-        style: Style::Dashed,
-        points: front,
-    });
+    chart.series.push(Series { name: "Pareto front".to_owned(), colour: 6, style: Style::Dashed, points: front });
     chart
 }
 
-/// A chart around these series, its upright axis logarithmic.
+/// A chart of these series with a logarithmic vertical axis.
 fn chart(
     title: String,
     [x, y]: [&str; 2],

@@ -1,4 +1,4 @@
-//! The knobs, and which of their values are tried.
+//! The parameters of the identification, and the values that are tried.
 
 use nima_core::{
     impedance::{MAX_DEGREE, Mode, Settings},
@@ -9,13 +9,13 @@ use serde::Serialize;
 use super::source::Source;
 use crate::solvers::Solver;
 
-/// What turns samples into a force.
+/// What computes a force from samples.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(untagged)]
 pub enum Method {
     /// A mode, as the loop runs it.
     Mode(Mode),
-    /// The plain model of a window, by this solver (and in its precision).
+    /// The plain model of a window, computed by this solver (in its precision).
     Solver(Solver),
 }
 
@@ -37,23 +37,23 @@ impl Method {
     }
 }
 
-/// One position of all knobs.
+/// One value for every parameter.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[expect(missing_docs, reason = "the names say it")]
 pub struct Choice {
-    /// What renders.
+    /// Mode or solver.
     pub method: Method,
     pub degree: usize,
     pub window_ms: f64,
     pub rate_hz: f64,
     pub delay_ms: f64,
-    /// How velocity and acceleration are made.
+    /// Method for velocity and acceleration.
     pub differentiator: DifferentiatorKind,
-    /// Every how many samples of the source one is taken.
+    /// Every how many samples of the source one is used.
     pub every: usize,
 }
 
-/// A knob that is turned while the others stay.
+/// A parameter that is varied while the others are kept.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Knob {
@@ -65,9 +65,9 @@ pub enum Knob {
     Rate,
     /// Delay of the link.
     Delay,
-    /// How velocity and acceleration are made.
+    /// Method for velocity and acceleration.
     Differentiator,
-    /// What renders.
+    /// Mode of rendering.
     Mode,
     /// Degree and window together, at one delay.
     Grid,
@@ -88,24 +88,24 @@ impl Knob {
     }
 }
 
-/// Points along one knob.
+/// Points along one parameter.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Curve {
-    /// The setting that changes along the curve.
+    /// The parameter that varies along the curve.
     pub knob: Knob,
-    /// What renders on the whole curve (of [`Knob::Mode`]: at the base).
+    /// Method of the whole curve (for [`Knob::Mode`]: of its base point).
     pub method: Method,
     /// Indices into the source's points.
     pub points: Vec<usize>,
 }
 
-/// What is tried.
+/// The values to try.
 #[derive(Clone, Debug)]
 #[expect(missing_docs, reason = "the names say it")]
 pub struct Plan {
-    /// The base point, and what is not turned (scales, ridge). Rate and axes are those of the source.
+    /// The base point, and settings that are not varied (scales, ridge). Rate and axes are those of the source.
     pub base: Settings,
-    /// Modes on the grid and along every knob.
+    /// Modes on the grid and along every parameter.
     pub modes: Vec<Mode>,
     pub degrees: Vec<usize>,
     pub windows_s: Vec<f64>,
@@ -113,16 +113,16 @@ pub struct Plan {
     pub rates_hz: Vec<f64>,
     pub delays_s: Vec<f64>,
     pub differentiators: Vec<DifferentiatorKind>,
-    /// Solvers of the plain model of a window, along degree and window.
+    /// Solvers of the plain model of a window, measured along degree and window.
     pub solvers: Vec<Solver>,
-    /// Instants at which each solver is asked.
+    /// Number of instants at which each solver is evaluated.
     pub instants: usize,
-    /// Passes over the source for each point of a mode; the quietest one tells the cost.
+    /// Passes over the source for each point of a mode; the lowest time counts as its cost.
     pub passes: usize,
 }
 
 impl Plan {
-    /// Everything that the study prints.
+    /// All points of the full study.
     pub fn full(base: Settings) -> Self {
         Self {
             base,
@@ -138,7 +138,7 @@ impl Plan {
         }
     }
 
-    /// What a minute allows: three degrees, three windows, the delay of the base.
+    /// A reduced plan that takes about a minute: three degrees, three windows, the delay of the base point.
     pub fn quick(base: Settings) -> Self {
         Self {
             degrees: vec![1, 2, MAX_DEGREE],
@@ -164,7 +164,7 @@ impl Plan {
         }
     }
 
-    /// Points and curves for `source`; each point once, though several curves may pass through it.
+    /// Points and curves for `source`; each point once, even if several curves pass through it.
     pub(super) fn lay_out(&self, source: &Source) -> (Vec<Choice>, Vec<Curve>) {
         let mut layout = Layout::default();
         for &mode in &self.modes {
@@ -195,7 +195,8 @@ impl Plan {
         (layout.choices, layout.curves)
     }
 
-    /// Every degree with every window for the modes that use both; linear has one degree, DFR neither.
+    /// Every degree with every window, for the modes that depend on both; linear has one degree, DFR depends on
+    /// neither.
     fn lay_out_grid(&self, source: &Source, delay_ms: f64, layout: &mut Layout) {
         for mode in Mode::ALL {
             let base = Choice { delay_ms, ..self.base_choice(source, mode) };
@@ -212,7 +213,7 @@ impl Plan {
         }
     }
 
-    /// Every solver over the degrees at the base's window, and over the windows at the base's degree.
+    /// Every solver for all degrees at the base's window, and for all windows at the base's degree.
     fn lay_out_solvers(&self, source: &Source, layout: &mut Layout) {
         for &solver in &self.solvers {
             let method = Method::Solver(solver);
@@ -235,7 +236,7 @@ impl Plan {
         choices
     }
 
-    /// Settings of an identifier at `choice` for a source of so many axes.
+    /// Settings of an identifier for `choice`, for a source with this number of axes.
     pub(super) fn settings(&self, choice: &Choice, axes: usize) -> Settings {
         Settings {
             rate_hz: choice.rate_hz,
@@ -269,7 +270,7 @@ impl Layout {
     }
 }
 
-/// Seconds as milliseconds without the last digits of the product, so that equal choices are equal.
+/// Seconds to milliseconds, rounded, so that equal choices compare equal.
 fn ms(seconds: f64) -> f64 {
     (seconds * 1e9).round() / 1e6
 }

@@ -1,4 +1,4 @@
-//! Where motion and force come from.
+//! Sources of motion and force: recordings and simulated scenes.
 
 use nima_core::impedance::{AXES, Sample};
 use nima_machine::rig::{Outputs, Sensed};
@@ -16,8 +16,8 @@ pub struct Source {
 }
 
 impl Source {
-    /// Records `scene` open-loop on the virtual clock: the follower goes where the hand is, the hand feels nothing. So every
-    /// choice of the knobs sees the very same motion and force. The scene must have been validated.
+    /// Records `scene` open-loop on the virtual clock: the follower follows the hand, the hand feels nothing, so that
+    /// every choice of parameters is given identical motion and force. The scene must have been validated.
     pub fn from_scene(scene: &Scene, rate_hz: f64, seconds: f64) -> Self {
         let mut world = World::new(scene, rate_hz);
         let mut outputs = Outputs::SAFE;
@@ -27,7 +27,8 @@ impl Source {
             let t_s = k as f64 / rate_hz;
             if let Some(inputs) = world.exchange(t_s, &outputs) {
                 outputs.tip_command_m = Some(inputs.hand.position_m);
-                // Identification is compared here, not the way to the tip force: a wrist's scene gives its true one.
+                // This study compares identification, not the force path, so a scene with a wrist sensor gives the true
+                // tip force.
                 let force_n = match inputs.sensed {
                     Sensed::AtTip(force_n) => force_n,
                     Sensed::AtWrist(_) => world.true_tip_n(),
@@ -39,7 +40,7 @@ impl Source {
         Self { name: scene.name.clone(), unit: "N".to_owned(), recording }
     }
 
-    /// A recording under the name of its file.
+    /// A recording, named after its file.
     pub fn from_recording(recording: Recording, unit: &str) -> Self {
         let name = recording.path.file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
         Self { name, unit: unit.to_owned(), recording }
@@ -53,7 +54,7 @@ impl Source {
         }
     }
 
-    /// Every `every`-th sample, as a slower device would have read them (no filter).
+    /// Every `every`-th sample, as a slower device would have read them (without a filter).
     pub(super) fn slower(&self, every: usize) -> Recording {
         let every = every.max(1);
         Recording {

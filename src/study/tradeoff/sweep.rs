@@ -1,4 +1,4 @@
-//! All points of all sources, their curves and the front.
+//! Measures all points of all sources; returns them with their curves and Pareto front.
 
 use std::sync::atomic::AtomicBool;
 
@@ -15,23 +15,23 @@ use super::{
     windows,
 };
 
-/// Windows and delays longer than this share of a source leave too little to judge.
+/// Longest window or delay as a share of the source; longer ones leave too few samples to judge.
 const LONGEST_SHARE: f64 = 0.25;
 
-/// Why a sweep ended without figures.
+/// Why a sweep failed.
 #[derive(Debug, thiserror::Error)]
 #[expect(missing_docs, reason = "the messages say it")]
 pub enum SweepError {
-    #[error("cancelled; nothing was kept")]
+    #[error("cancelled; nothing was saved")]
     Cancelled,
     /// Nothing could be measured on a source.
     #[error("{name}: no point of the plan can be measured on it ({reason}); record longer, or at a higher rate")]
     Nothing {
         name: String,
-        /// Why the first point was left out.
+        /// Why its first point was left out.
         reason: String,
     },
-    /// A choice out of range that was not found out before.
+    /// An invalid choice that the plan's checks did not find.
     #[error("{choice:?}: {source}")]
     Settings { choice: Box<Choice>, source: SettingsError },
 }
@@ -45,42 +45,43 @@ pub struct CostUs {
 }
 
 impl CostUs {
-    /// Slower than anything.
+    /// Worse than any measurement.
     pub(super) const WORST: Self = Self { p50: f64::INFINITY, p99: f64::INFINITY };
 
-    /// The lower of both: what disturbs a computer only ever adds time.
+    /// The lower of both: disturbances by other programs only ever add time.
     pub(super) fn quieter(self, other: &Quantiles) -> Self {
         Self { p50: self.p50.min(other.p50), p99: self.p99.min(other.p99) }
     }
 }
 
-/// A choice and what it costs and gives.
+/// A choice, its cost and its error.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[expect(missing_docs, reason = "the names say it")]
 pub struct Point {
     #[serde(flatten)]
     pub choice: Choice,
-    /// Time of one tick, us; the quietest of the passes.
+    /// Time of one tick, us; the lowest of the passes.
     pub cost_us: CostUs,
-    /// Share of one processor that the median tick takes at this rate.
+    /// Share of one processor used by the median tick at this rate.
     pub load: f64,
-    /// Mean error at the horizon, unit of the source.
+    /// Mean error at the horizon, in the unit of the source.
     pub error: f64,
     pub error_p50: f64,
     pub error_p95: f64,
-    /// The same mean of delayed DFR on the same samples.
+    /// Mean error of delayed DFR on the same samples.
     pub dfr_error: f64,
-    /// `error / dfr_error`; not a number where DFR has none.
+    /// `error / dfr_error`; NaN if DFR's error is zero.
     pub ratio: f64,
-    /// Share of samples for which there was nothing to render (they err by the whole force).
+    /// Share of samples without a rendered force (their error is the whole force).
     pub not_rendered: f64,
     /// Samples judged and timed.
     pub judged: usize,
-    /// No other point of the grid (mode, degree, window) at the same delay is both cheaper and nearer to the truth.
+    /// On the Pareto front: no other grid point (mode, degree, window) at the same delay has both lower cost and lower
+    /// error.
     pub pareto: bool,
 }
 
-/// A choice that was left out, and why.
+/// A choice that was left out, and the reason.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[expect(missing_docs, reason = "the names say it")]
 pub struct Skipped {
@@ -89,7 +90,7 @@ pub struct Skipped {
     pub reason: String,
 }
 
-/// Everything about one source.
+/// Results of one source.
 #[derive(Clone, Debug, Serialize)]
 #[expect(missing_docs, reason = "the names say it")]
 pub struct SourceFigures {
@@ -98,23 +99,26 @@ pub struct SourceFigures {
     pub rate_hz: f64,
     pub samples: usize,
     pub axes: usize,
-    /// Only samples later than this and the delay are judged, s: the longest window must be full.
+    /// Only samples later than this and the delay are judged, s, so that the longest window is full.
     pub judged_from_s: f64,
     pub points: Vec<Point>,
-    /// Points along each knob.
+    /// Points along each parameter.
     pub curves: Vec<Curve>,
     pub skipped: Vec<Skipped>,
 }
 
-/// All figures; the JSON of `nima study tradeoff`.
+/// All results; the JSON of `nima study tradeoff`.
 #[derive(Clone, Debug, Serialize)]
 pub struct Study {
     /// One per source.
     pub sources: Vec<SourceFigures>,
 }
 
-/// Measures all points of `plan` on all `sources`. `progress` is told how many points are done, of how many; set `cancel` to
-/// stop within milliseconds.
+/// Measures all points of `plan` on all `sources`. `progress` is called with the number of points done and their total;
+/// setting `cancel` stops the sweep within milliseconds.
+///
+/// # Errors
+/// [`SweepError`] if the sweep is cancelled or no point can be measured on a source.
 pub fn sweep(
     sources: &[Source],
     plan: &Plan,
@@ -184,7 +188,8 @@ fn measure_source(
     })
 }
 
-/// The longest window that is measured at all: before it is full nothing is judged, so that all are judged on the same samples.
+/// The longest window that is measured. Judging starts only when it is full, so that all points are judged on the same
+/// samples.
 fn longest_usable(choices: &[Choice], longest_s: f64) -> f64 {
     choices.iter().map(|choice| choice.window_ms * 1e-3).filter(|&s| s <= longest_s).fold(0.0, f64::max)
 }
@@ -237,7 +242,7 @@ fn point(choice: &Choice, measured: &Measured) -> Point {
     }
 }
 
-/// Marks the points of the grid that no other of the grid at the same delay beats in both cost (median) and error.
+/// Marks the grid points that no other grid point at the same delay beats in both cost (median) and error.
 pub(super) fn mark_front(points: &mut [Point], on_grid: &[usize]) {
     let grid: Vec<Point> = on_grid.iter().map(|&index| points[index]).collect();
     for &index in on_grid {
@@ -248,14 +253,14 @@ pub(super) fn mark_front(points: &mut [Point], on_grid: &[usize]) {
     }
 }
 
-/// At least as good in both and better in one.
+/// Whether `a` is at least as good in both and better in one.
 fn beats(a: &Point, b: &Point) -> bool {
     let (cost, error) = (a.cost_us.p50, a.error);
     cost <= b.cost_us.p50 && error <= b.error && (cost < b.cost_us.p50 || error < b.error)
 }
 
 impl SourceFigures {
-    /// The point of delayed DFR at this delay (ms), if it was measured at the source's own rate.
+    /// The point of delayed DFR at this delay (ms) and at the source's own rate, if it was measured.
     pub fn dfr(&self, delay_ms: f64) -> Option<&Point> {
         let wanted = Method::Mode(Mode::Dfr);
         self.points.iter().find(|point| {

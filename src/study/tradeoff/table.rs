@@ -1,4 +1,4 @@
-//! Figures as comma-separated rows, one a point.
+//! The figures as CSV, one row per point.
 
 use std::fmt::Write as _;
 
@@ -8,7 +8,7 @@ const HEADER: &str = "source,unit,method,degree,window_ms,rate_hz,delay_ms,diffe
                       error,error_p50,error_p95,dfr_error,ratio,not_rendered,judged,pareto,knobs\n";
 
 impl Study {
-    /// All points of all sources as CSV. `knobs` names the curves that pass through the point.
+    /// All points of all sources as CSV. The column `knobs` names the curves that pass through the point.
     pub fn csv(&self) -> String {
         let mut text = HEADER.to_owned();
         for figures in &self.sources {
@@ -56,7 +56,7 @@ impl SourceFigures {
     }
 }
 
-/// A field that may hold commas or quotes.
+/// Quotes a field that contains commas or quotes.
 fn quoted(text: &str) -> String {
     if text.contains([',', '"', '\n']) { format!("\"{}\"", text.replace('"', "\"\"")) } else { text.to_owned() }
 }

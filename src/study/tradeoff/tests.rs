@@ -14,7 +14,7 @@ use crate::{
     solvers::Solver,
 };
 
-/// A hand that presses a soft spring twice a second.
+/// A hand that presses on a soft spring twice a second.
 fn source(seconds: f64, rate_hz: f64) -> Source {
     let samples = (0..(seconds * rate_hz) as usize)
         .map(|k| {
@@ -73,7 +73,7 @@ fn figures_repeat_but_for_the_times() {
     assert_eq!(without_times(&swept(&source, &tiny())), without_times(&swept(&source, &tiny())));
 }
 
-/// The sweep judges the same forces as the replay of `nima identify`, which is tested to be causal: the same mean error.
+/// The sweep and the replay of `nima identify` (which is tested to be causal) must give the same mean error.
 #[test]
 fn the_error_is_that_of_the_causal_replay() {
     let source = source(3.0, 1000.0);

@@ -1,9 +1,10 @@
-//! Cost and error of the plain model `f = M X` in a window, by each of the solvers that could find `M`.
+//! Cost and error of the plain model `f = M X` in a window, for each of the solvers that could find `M`.
 //!
-//! For time t every solver takes the window that ends at t - D, fits all degrees up to the chosen one, and predicts the
-//! force from the motion at t; nothing is anchored, mixed or bounded afterwards. Solving afresh is slow, so it is done at a
-//! number of instants spread over the source, the same for all; ours slides and takes every sample. Per-axis solvers are
-//! timed for all axes together; ours holds up to three axes in the lanes of one factor, so one axis is timed.
+//! For time t every solver is given the window that ends at t - D, fits all degrees up to the chosen one, and predicts
+//! the force from the motion at t; the prediction is not anchored, blended or bounded. A new solution of a whole window
+//! is slow, so it is computed at a number of instants spread over the source, the same for all solvers; the sliding
+//! solver processes every sample. Solvers that work per axis are timed for all axes together; the sliding one computes
+//! up to three axes in the lanes of one factor, so one axis is timed.
 
 use std::{hint::black_box, sync::atomic::AtomicBool, time::Instant};
 
@@ -92,7 +93,7 @@ pub(super) fn measure(
     Ok(errors.measured(CostUs::WORST.quieter(&times.quantiles())))
 }
 
-/// Takes row `known` of every axis; gives the time of the first, s.
+/// Adds row `known` of every axis; returns the time for the first axis, s.
 fn slide(sliding: &mut [Sliding], rows: &Rows, known: usize) -> f64 {
     let mut spent_s = 0.0;
     for (axis, (sliding, rows)) in sliding.iter_mut().zip(&rows.axes).enumerate() {

@@ -1,4 +1,4 @@
-//! Figures in words, for a terminal.
+//! The figures as text for a terminal.
 
 use std::fmt::Write as _;
 
@@ -26,7 +26,7 @@ impl Findings for Study {
     }
 }
 
-/// Writing into a String cannot fail: its results are dropped.
+/// Writing to a String cannot fail, so its results are ignored.
 fn source_in_words(figures: &SourceFigures, text: &mut String) {
     let SourceFigures { source, unit, rate_hz, samples, axes, judged_from_s, .. } = figures;
     writeln!(
@@ -42,7 +42,7 @@ fn source_in_words(figures: &SourceFigures, text: &mut String) {
     }
     let mut front: Vec<&Point> = figures.points.iter().filter(|p| p.pareto && p.choice.every == 1).collect();
     front.sort_by(|a, b| a.choice.delay_ms.total_cmp(&b.choice.delay_ms).then(a.cost_us.p50.total_cmp(&b.cost_us.p50)));
-    writeln!(text, "  front (delay, mode, degree, window)").ok();
+    writeln!(text, "  Pareto front (delay, mode, degree, window)").ok();
     for point in front {
         let Choice { method, degree, window_ms, delay_ms, .. } = point.choice;
         let knobs = match method {

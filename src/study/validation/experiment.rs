@@ -1,4 +1,5 @@
-//! The paper's experiments in the simulated rig, sample by sample, with the truth that only a simulation knows.
+//! The paper's experiments on the simulated rig, sample by sample, together with the true force, which only a
+//! simulation knows.
 
 use nalgebra::{UnitVector3, Vector3};
 use nima_core::{
@@ -15,7 +16,7 @@ use super::ValidationError;
 
 /// Rate of the rig, Hz.
 pub const RATE_HZ: f64 = 1000.0;
-/// Longest guided calibration, s.
+/// Time limit of a guided calibration, s.
 const PATIENCE_S: f64 = 120.0;
 
 /// A simulated rig and its time.
@@ -25,28 +26,31 @@ pub struct Experiment {
     ticks: u64,
 }
 
-/// The live compensation of gravity, for the rate of the rig.
+/// The compensation of gravity as the loop runs it, for the rate of the rig.
 pub fn compensator(gravity: &GravityModel) -> Compensator {
     Compensator::new(*gravity, DEFAULT_TIME_CONSTANT_S, 1.0 / RATE_HZ)
 }
 
 impl Experiment {
-    /// A scene with a person and a wrist sensor; other scenes give no samples.
+    /// For a scene with a person and a wrist sensor; other scenes give no samples.
     pub fn new(scene: &Scene) -> Self {
         Self { world: World::new(scene, RATE_HZ), ticks: 0 }
     }
 
     /// The embedded scene of this name with another seed.
+    ///
+    /// # Errors
+    /// [`ValidationError`] if there is no such scene.
     pub fn scene(name: &str, seed: u64) -> Result<Scene, ValidationError> {
         Ok(Scene { seed, ..Scene::load(name)? })
     }
 
-    /// Time, s.
+    /// Present time, s.
     pub fn t_s(&self) -> f64 {
         self.ticks as f64 / RATE_HZ
     }
 
-    /// The next sample while the person does this.
+    /// The next sample while the person follows this instruction.
     pub fn sample(&mut self, prompt: Prompt) -> Option<WristSample> {
         self.ticks += 1;
         let outputs = Outputs { prompt, ..Outputs::SAFE };
@@ -62,14 +66,20 @@ impl Experiment {
     }
 }
 
-/// Calibrates gravity on its own scene, as the wizard does.
+/// Calibrates gravity in its own scene, as the wizard does.
+///
+/// # Errors
+/// [`ValidationError`] if the scene is invalid or the calibration fails.
 pub fn gravity(seed: u64) -> Result<GravityModel, ValidationError> {
     let report = gravity_report(seed)?;
     let fit = report.chosen_fit().ok_or_else(|| ValidationError::Calibration(report.reason.clone()))?;
     Ok(fit.model)
 }
 
-/// The same with all that is known of how good it is.
+/// The same, with the figures that show how good the calibration is.
+///
+/// # Errors
+/// As [`gravity`].
 pub fn gravity_report(seed: u64) -> Result<GravityReport, ValidationError> {
     let mut experiment = Experiment::new(&Experiment::scene("gravity", seed)?);
     let mut session = GravitySession::new(SessionSettings::default());
@@ -85,17 +95,20 @@ pub fn gravity_report(seed: u64) -> Result<GravityReport, ValidationError> {
     session.report().map_err(|error| ValidationError::Calibration(error.to_string()))
 }
 
-/// What pushing without a trocar gave.
+/// Results of pushing on the tissue without a trocar.
 #[derive(Clone, Debug)]
 pub struct Pushes {
-    /// The fit of the pushes that were asked for.
+    /// The correspondence fitted to the guided pushes.
     pub report: CorrespondenceReport,
-    /// Later pushes that the fit never saw, sample by sample: force at the wrist, and force under the tissue told in its frame,
-    /// both N (`s1`).
+    /// Later pushes that were not used for the fit, sample by sample: force at the wrist, and force under the tissue
+    /// transformed to the wrist's frame, both N (`s1`).
     pub unseen_s1_n: Vec<[Vector3<f64>; 2]>,
 }
 
-/// Pushes on the tissue without a trocar, as the wizard asks for them, and for `seconds` more to judge by.
+/// Guided pushes on the tissue without a trocar, and pushes for `seconds` more to judge the fit.
+///
+/// # Errors
+/// [`ValidationError`] if the scene is invalid or the calibration fails.
 pub fn correspondence(gravity: &GravityModel, seed: u64, seconds: f64) -> Result<Pushes, ValidationError> {
     let mut experiment = Experiment::new(&Experiment::scene("correspondence", seed)?);
     let mut gravity = compensator(gravity);
@@ -122,7 +135,10 @@ pub fn correspondence(gravity: &GravityModel, seed: u64, seconds: f64) -> Result
     Ok(Pushes { report, unseen_s1_n })
 }
 
-/// The correspondence of a report, for use.
+/// The correspondence of a report, for further use.
+///
+/// # Errors
+/// [`ValidationError`] if the report has no rotation.
 pub fn known(report: &CorrespondenceReport) -> Result<Correspondence, ValidationError> {
     let found = report.solution.as_ref().ok_or_else(|| ValidationError::Calibration(report.reason.clone()))?;
     Ok(Correspondence { target: found.target, rotation: found.rotation(), flip_s2: false })
@@ -134,7 +150,7 @@ fn push(asked: Option<correspondence::PushTarget>, pushes: usize) -> Prompt {
     Prompt::Push { direction: UnitVector3::new_normalize(target.push_in_world) }
 }
 
-/// One sample and what it feels without weight and bias.
+/// The next sample and its wrench without weight and bias.
 pub fn felt(experiment: &mut Experiment, gravity: &mut Compensator, prompt: Prompt) -> Option<(WristSample, Wrench)> {
     let sample = experiment.sample(prompt)?;
     Some((sample, gravity.step(&sample)?))

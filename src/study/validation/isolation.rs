@@ -1,4 +1,4 @@
-//! Validation II: the force at the tip through the trocar, learned from one session and judged on others.
+//! Validation II: the force at the tip through the trocar, with a network trained on one session and judged on others.
 
 use std::{sync::atomic::AtomicBool, time::Instant};
 
@@ -17,7 +17,7 @@ use serde::Serialize;
 use super::{ValidationError, experiment};
 use crate::validation::experiment::{Experiment, felt};
 
-/// A recorded session: the data set as a technician gets it, and the truth beside every row.
+/// A recorded session: the data set as a technician records it, and the true force of every row.
 #[derive(Clone, Debug)]
 pub struct Session {
     /// The data set, CSV.
@@ -26,17 +26,20 @@ pub struct Session {
     pub truth_n: Vec<Vector3<f64>>,
 }
 
-/// What is known before a session.
+/// Calibrations made before a session.
 #[derive(Clone, Copy, Debug)]
 pub struct Known {
-    /// Weight and bias.
+    /// Weight of the tool and bias of the sensor.
     pub gravity: GravityModel,
-    /// How the sensor under the tissue is turned.
+    /// Orientation of the sensor under the tissue.
     pub correspondence: Correspondence,
 }
 
 impl Known {
-    /// Calibrates both on their own scenes.
+    /// Calibrates both, each in its own scene.
+    ///
+    /// # Errors
+    /// [`ValidationError`] if a scene is invalid or a calibration fails.
     pub fn calibrate(seed: u64) -> Result<Self, ValidationError> {
         let gravity = experiment::gravity(seed)?;
         let report = experiment::correspondence(&gravity, seed, 0.0)?.report;
@@ -44,7 +47,11 @@ impl Known {
     }
 }
 
-/// Records `rows` rows of a scene; of every ten seconds `contact_s` are worked in contact, the rest above the tissue.
+/// Records `rows` rows of a scene. Of every ten seconds `contact_s` are spent in contact, the remaining time above the
+/// tissue.
+///
+/// # Errors
+/// [`ValidationError`] if the recording cannot be written.
 pub fn record(
     scene: &Scene,
     known: &Known,
@@ -59,7 +66,7 @@ pub fn record(
     while recorder.rows() < rows {
         let t_s = experiment.t_s();
         let prompt = match t_s {
-            // The sensor under the tissue is zeroed first.
+            // For the first second nothing is touched: the sensor under the tissue is zeroed.
             t if t < 1.0 => Prompt::Rest,
             t if t % 10.0 < contact_s => Prompt::Work,
             _ => Prompt::WorkFree,
@@ -71,7 +78,7 @@ pub fn record(
             }
         }
         if t_s > 30.0 + rows as f64 * 0.02 {
-            let reason = format!("the recording stands still: {:?}", recorder.phase());
+            let reason = format!("the recording makes no progress: {:?}", recorder.phase());
             return Err(ValidationError::Calibration(reason));
         }
     }
@@ -81,14 +88,20 @@ pub fn record(
 }
 
 impl Session {
-    /// The data set with these inputs; `None` takes the default ones.
+    /// The data set with these inputs; `None` for the default inputs.
+    ///
+    /// # Errors
+    /// [`ValidationError`] if the data set lacks a column.
     pub fn data(&self, inputs: Option<&[&str]>) -> Result<DataSet, ValidationError> {
         let inputs = inputs.map(|names| names.iter().map(|name| (*name).to_owned()).collect());
         let texts = [("simulated session".into(), self.text.clone())];
         Ok(DataSet::parse(&texts, &Selection { inputs, outputs: None })?)
     }
 
-    /// The same with the true force at the tip in place of what the sensor under the tissue said.
+    /// The same with the true force at the tip in place of the measurement under the tissue.
+    ///
+    /// # Errors
+    /// [`ValidationError`] if the data set lacks a column.
     pub fn true_data(&self, inputs: Option<&[&str]>) -> Result<DataSet, ValidationError> {
         let mut data = self.data(inputs)?;
         data.y = self.truth_n.iter().flat_map(|n| [n.x as f32, n.y as f32, n.z as f32]).collect();
@@ -99,53 +112,53 @@ impl Session {
 
 /// The paper's inputs: wrist force and orientation.
 pub const PAPER_INPUTS: [&str; 7] = ["fx_n", "fy_n", "fz_n", "qw", "qx", "qy", "qz"];
-/// Rows of a training session: the paper's.
+/// Rows of a training session, as in the paper.
 pub const ROWS: usize = 30_000;
-/// Rows of a session to be judged by.
+/// Rows of a session used for judging.
 const JUDGED_ROWS: usize = 10_000;
-/// Seconds of every ten that are worked in contact.
+/// Seconds of every ten that are spent in contact.
 const CONTACT_S: f64 = 7.0;
 
-/// What a network reached on sessions that it never saw.
+/// Errors of a network on sessions that it was not trained on.
 #[derive(Clone, Debug, Serialize)]
 pub struct Reached {
-    /// Against the sensor under the tissue, as the paper measures.
+    /// Against the sensor under the tissue, as in the paper.
     pub measured: Part,
-    /// Against the truth, which only a simulation knows.
+    /// Against the true force, which only a simulation knows.
     pub truth: Part,
-    /// In the experiment without contact.
+    /// Without contact: mean and spread of the predictions.
     pub no_contact: Vec<NoContact>,
-    /// Share of unseen samples in doubt.
+    /// Share of samples of these sessions that the network flags as uncertain.
     pub false_alarms: f64,
-    /// Wall-clock time that the training took.
+    /// Wall-clock time of the training, s.
     pub training_s: f64,
-    /// One answer, microseconds.
+    /// Time of one inference, microseconds.
     pub inference_us: Quantiles,
 }
 
-/// Samples that lie outside of the training on purpose, and the share of them that is flagged.
+/// Samples outside the range of the training data on purpose, and the share that is flagged.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Foreign {
-    /// In what they are foreign.
+    /// In what they differ from the training data.
     pub what: &'static str,
-    /// Samples.
+    /// Number of samples.
     pub rows: usize,
-    /// Share of them in doubt.
+    /// Share of them that is flagged as uncertain.
     pub flagged: f64,
 }
 
-/// All of Validation II.
+/// Results of Validation II.
 #[derive(Clone, Debug, Serialize)]
 pub struct Isolation {
-    /// With the inputs of the paper.
+    /// With the inputs used in the paper.
     pub paper_inputs: Reached,
-    /// With ours.
+    /// With the default inputs of this project.
     pub our_inputs: Reached,
-    /// What doubt sees.
+    /// How often samples outside the training data are flagged.
     pub foreign: Vec<Foreign>,
 }
 
-/// One training session and sessions to judge by.
+/// One training session, and the sessions for judging.
 #[derive(Clone, Debug)]
 pub struct Sessions {
     known: Known,
@@ -156,7 +169,10 @@ pub struct Sessions {
 }
 
 impl Sessions {
-    /// Records them; `rows` for training.
+    /// Records the sessions; `rows` for training.
+    ///
+    /// # Errors
+    /// [`ValidationError`] if a scene is invalid or a calibration fails.
     pub fn record(seed: u64, rows: usize, features: FeatureSettings) -> Result<Self, ValidationError> {
         let known = Known::calibrate(seed)?;
         let session = |scene: &str, seed: u64, rows: usize, contact_s: f64| {
@@ -171,7 +187,10 @@ impl Sessions {
         })
     }
 
-    /// Trains on the one, judges on the others.
+    /// Trains on the first session, judges on the others.
+    ///
+    /// # Errors
+    /// [`ValidationError`] if the training fails.
     pub fn train(
         &self,
         inputs: Option<&[&str]>,
@@ -201,7 +220,10 @@ impl Sessions {
         Ok((estimator, reached))
     }
 
-    /// What doubt sees of samples unlike the training.
+    /// Share of flagged samples for several kinds of samples outside the training data.
+    ///
+    /// # Errors
+    /// [`ValidationError`] if a scene is invalid or cannot be recorded.
     pub fn foreign(&self, estimator: &mut Estimator) -> Result<Vec<Foreign>, ValidationError> {
         let strongest_n = self.training.truth_n.iter().map(Vector3::norm).fold(0.0, f64::max);
         let directions = directions(&self.training.data(None)?);
@@ -219,13 +241,15 @@ impl Sessions {
             Ok::<(), ValidationError>(())
         };
         one(
-            "force at the tip a quarter above all trained",
+            "tip force 25 % above the training range",
             &|scene| scene.tissue.iter_mut().for_each(|tissue| tissue.stiffness *= 3.0),
             &|_, _, truth_n| truth_n.norm() > 1.25 * strongest_n,
         )?;
-        one("shaft more than 5 degrees from all trained", &|scene| scene.trocar_m.x += 0.08, &|data, row, _| {
-            directions.iter().all(|known| known.angle(&direction(data, row)) > 5_f64.to_radians())
-        })?;
+        one(
+            "shaft more than 5 degrees outside the training range",
+            &|scene| scene.trocar_m.x += 0.08,
+            &|data, row, _| directions.iter().all(|known| known.angle(&direction(data, row)) > 5_f64.to_radians()),
+        )?;
         one(
             "another seal, three times the friction, while it slides",
             &|scene| {
@@ -251,12 +275,15 @@ fn direction(data: &DataSet, row: usize) -> Vector3<f64> {
     UnitQuaternion::from_quaternion(Quaternion::new(w, x, y, z)) * Vector3::z()
 }
 
-/// Directions of the shaft in a session, thinned.
+/// Directions of the shaft in a session, thinned out.
 fn directions(data: &DataSet) -> Vec<Vector3<f64>> {
     (0..data.rows()).step_by(20).map(|row| direction(data, row)).collect()
 }
 
 /// Validation II with the default settings.
+///
+/// # Errors
+/// [`ValidationError`] if a scene is invalid, a calibration fails, or the network cannot be trained.
 pub fn study(seed: u64, rows: usize) -> Result<Isolation, ValidationError> {
     let sessions = Sessions::record(seed, rows, FeatureSettings::default())?;
     let (_, paper_inputs) = sessions.train(Some(&PAPER_INPUTS), &TrainingSettings::default())?;

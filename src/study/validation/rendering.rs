@@ -1,4 +1,4 @@
-//! Validation III: how well each mode renders the force, in the window that it was fitted on and at the horizon.
+//! Validation III: the rendering error of each mode, within the window that it was fitted to and at the horizon.
 
 use nalgebra::Vector3;
 use nima_core::impedance::Mode;
@@ -8,13 +8,13 @@ use serde::Serialize;
 
 use super::ValidationError;
 
-/// The scene that is rendered: the paper's task.
+/// The scene: the paper's task.
 const SCENE: &str = "peg_transfer";
-/// How long, s, and how much at its beginning does not count: the window must fill.
+/// Duration, s, and the first part that is not judged because the window is still filling.
 const SECONDS: f64 = 60.0;
 const FILL_S: f64 = 1.0;
 
-/// Mean absolute error and standard deviation of one axis, the mean of the three, N.
+/// Mean absolute error and standard deviation per axis, averaged over the three axes, N.
 #[derive(Clone, Copy, Debug, Default, Serialize)]
 pub struct Figures {
     /// Mean absolute error, N.
@@ -31,18 +31,18 @@ pub struct ModeFigures {
     pub error: Figures,
 }
 
-/// All of Validation III.
+/// Results of Validation III.
 #[derive(Clone, Debug, Serialize)]
 pub struct Rendering {
-    /// The paper's recipe on the newest sample of the very window it was fitted on.
+    /// The paper's method, judged on the newest sample of the window that it was fitted to.
     pub in_window_nonlinear: Figures,
-    /// The same with N = 1.
+    /// The same with degree N = 1.
     pub in_window_linear: Figures,
-    /// Share of windows that chose a degree above 1.
+    /// Share of windows for which a degree above 1 was chosen.
     pub nonlinear_share: f64,
     /// The delay of the link, s.
     pub delay_s: f64,
-    /// At the horizon, per mode.
+    /// Errors at the horizon, per mode.
     pub at_horizon: Vec<ModeFigures>,
 }
 
@@ -64,6 +64,9 @@ impl Axes {
 }
 
 /// Runs the task with this delay (s).
+///
+/// # Errors
+/// [`ValidationError`] if the scene or a setting is invalid.
 pub fn study(seed: u64, delay_s: f64) -> Result<Rendering, ValidationError> {
     let scene = Scene { seed, ..Scene::load(SCENE)? };
     let rig = RigConfig { delay_s, ..RigConfig::load("simulated")? };

@@ -1,4 +1,4 @@
-//! The paper's figures beside ours, with the reason for the difference.
+//! The paper's figures and those of this project, with the reasons for differences.
 
 use std::fmt::Write as _;
 
@@ -9,16 +9,16 @@ use serde::Serialize;
 use super::{Agreement, Isolation, Options, Rendering, Report, ValidationError, study};
 use crate::{Experiment, Findings};
 
-/// One figure: the paper's, ours, and why they differ.
+/// One figure: the paper's value, this project's, and why they differ.
 #[derive(Clone, Debug, Serialize)]
 pub struct Row {
     /// `I`, `II` or `III`.
     pub validation: &'static str,
     /// What is compared, with its unit.
     pub what: String,
-    /// The paper's value or values (x, y, z); none where the paper has no such figure.
+    /// The paper's value, or values for x, y, z; empty if the paper has no such figure.
     pub paper: Vec<f64>,
-    /// Ours.
+    /// This project's value or values.
     pub ours: Vec<f64>,
     /// Why they differ.
     pub why: &'static str,
@@ -56,8 +56,8 @@ fn axes(part: &Part, method: usize, of: impl Fn(&nima_training::Stats) -> f64) -
 }
 
 fn isolation(two: &Isolation) -> Vec<Row> {
-    const CANNOT: &str = "force and orientation do not tell which way the friction pulls; the paper's sessions may have favoured one way";
-    const MEMORY: &str = "the seal's memory is among the inputs";
+    const CANNOT: &str = "force and orientation do not show the direction of friction; the paper's sessions may have favoured one direction";
+    const MEMORY: &str = "the inputs include the state of the seal";
     let (theirs, ours) = (&two.paper_inputs, &two.our_inputs);
     let free = |reached: &super::isolation::Reached, of: &dyn Fn(&nima_training::NoContact) -> f64| {
         reached.no_contact.iter().map(of).collect::<Vec<_>>()
@@ -70,7 +70,7 @@ fn isolation(two: &Isolation) -> Vec<Row> {
         row("II", "tip force, our 15 inputs, SD x y z (N)", sd, axes(&ours.measured, 0, |s| s.sd), MEMORY),
         row(
             "II",
-            "the same against the truth, MAE x y z (N)",
+            "the same against the true force, MAE x y z (N)",
             &[],
             axes(&ours.truth, 0, |s| s.mae),
             "the sensor under the tissue has noise of its own",
@@ -88,17 +88,23 @@ fn isolation(two: &Isolation) -> Vec<Row> {
         row("II", "no contact, 7 inputs, SD x y z (N)", sd_free, free(theirs, &|n| n.sd), CANNOT),
         row("II", "no contact, 15 inputs, mean x y z (N)", mean_free, free(ours, &|n| n.mean), MEMORY),
         row("II", "no contact, 15 inputs, SD x y z (N)", sd_free, free(ours, &|n| n.sd), MEMORY),
-        row("II", "unseen samples in doubt (share)", &[], [ours.false_alarms], "false alarms; 0.05 is the limit"),
+        row(
+            "II",
+            "unseen samples flagged as uncertain (share)",
+            &[],
+            [ours.false_alarms],
+            "false alarms; 0.05 is the limit",
+        ),
     ];
     for set in &two.foreign {
         let what = format!("flagged: {} (share of {})", set.what, set.rows);
-        all.push(row("II", what, &[], [set.flagged], "outside of the training on purpose"));
+        all.push(row("II", what, &[], [set.flagged], "outside the training data on purpose"));
     }
     all
 }
 
 fn rendering(three: &Rendering) -> Vec<Row> {
-    const IN_WINDOW: &str = "tested on the data it was fitted on, as the paper does; every axis weighs the same";
+    const IN_WINDOW: &str = "tested on the data it was fitted on, as the paper does; all axes have equal weight";
     let pair = |figures: super::rendering::Figures| [figures.mae_n, figures.sd_n];
     let mut all = vec![
         row(
@@ -114,14 +120,14 @@ fn rendering(three: &Rendering) -> Vec<Row> {
             "windows that chose a nonlinear degree (share)",
             &[0.64],
             [three.nonlinear_share],
-            "the least error inside its own window favours more columns; the paper's was another task",
+            "the smallest error within the window favours more columns; the paper used another task",
         ),
     ];
     for figures in &three.at_horizon {
         let why = match figures.mode {
-            Mode::Dfr => "the force as late as it comes: the yardstick",
-            Mode::Anchored => "our rendering: reflection and what is learned of its change",
-            Mode::Linear | Mode::Literal => "what the hand would feel; the paper tests in the window only",
+            Mode::Dfr => "the delayed force itself, for comparison",
+            Mode::Anchored => "our rendering: delayed force plus its learned change",
+            Mode::Linear | Mode::Literal => "at the horizon; the paper tests within the window only",
         };
         let what = format!("{}, {:.0} ms later, MAE and SD (N)", figures.mode.name(), 1e3 * three.delay_s);
         all.push(row("III", what, &[], pair(figures.error), why));
@@ -130,7 +136,7 @@ fn rendering(three: &Rendering) -> Vec<Row> {
 }
 
 impl Report {
-    /// For a terminal.
+    /// Text for a terminal.
     pub fn text(&self) -> String {
         let mut out = format!("{:<4} {:<78} {:>17}  {:>23}\n", "", "", "paper", "ours");
         for row in &self.table {
@@ -141,7 +147,7 @@ impl Report {
         out
     }
 
-    /// For the documentation: a Markdown table.
+    /// Markdown table for the documentation.
     pub fn markdown(&self) -> String {
         let mut out = String::from("| | | paper | ours | why they differ |\n|---|---|---|---|---|\n");
         for Row { validation, what, paper, ours, why } in &self.table {

@@ -1,4 +1,4 @@
-//! Which arms a rig has in a scene, and where their forces are measured. Sensors and tools are the rig's.
+//! Which arms a rig has in a scene, and where their forces are measured. Sensors and tools belong to the rig.
 
 use nima_machine::{
     config::{ConfigError, RigConfig},
@@ -8,7 +8,7 @@ use nima_machine::{
 use super::Scene;
 
 impl Scene {
-    /// There is an arm pair of this side on this rig.
+    /// Whether this rig has an arm pair on this side in this scene.
     pub fn has(&self, rig: &RigConfig, side: Side) -> bool {
         match &rig.devices {
             Some(devices) => devices.arm(side).is_some(),
@@ -16,10 +16,10 @@ impl Scene {
         }
     }
 
-    /// There is one, and its force is measured at the wrist.
+    /// Whether it has one, with its force measured at the wrist.
     pub fn measures_at_wrist(&self, rig: &RigConfig, side: Side) -> bool {
         match &rig.devices {
-            // What an emulated sensor feels is what the scene has.
+            // An emulated sensor measures what the scene contains.
             Some(devices) if !devices.emulated => {
                 devices.arm(side).is_some_and(|arm| arm.sensor_at == SensorPlace::Wrist)
             }
@@ -28,11 +28,11 @@ impl Scene {
     }
 }
 
-/// Scene files named sensor and tool once: tells where these belong now.
+/// Older scene files contained sensor and tool: adds to the error where they belong now.
 pub(super) fn moved_to_the_rig(error: ConfigError) -> ConfigError {
     let ConfigError::Parse { kind, path, message } = error else { return error };
     let moved = ["serial", "tool"].into_iter().find(|key| {
-        // Of the keys of [wrist] only: the expected ones are listed behind.
+        // Only for the keys of [wrist], which are recognised by the list of expected keys.
         message.contains(&format!("unknown field `{key}`")) && message.contains("`tool_mass_kg`")
     });
     let message = match (moved, message.split_once(": ")) {

@@ -1,15 +1,15 @@
-//! The parts of a scene around the wrist: sensor and tool, trocar, the sensor under the tissue, and the person at the arm.
+//! The parts of a scene at the wrist: sensor and tool, trocar, the sensor under the tissue, and the person at the arm.
 
 use nalgebra::Vector3;
 use nima_machine::config::{ConfigError, Ranges};
 use serde::{Deserialize, Serialize};
 
-/// A force-torque sensor (`s1`) between arm and instrument, and the tool that hangs on it: their physics. Which sensor and which tool
-/// they are, the rig says.
+/// Physics of a force-torque sensor (`s1`) between arm and instrument, and of the tool on it. Their identities are in
+/// the rig file.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Wrist {
-    /// Mass of the tool beyond the sensor, kg.
+    /// Mass of the tool on the sensor, kg.
     pub tool_mass_kg: f64,
     /// Its centre of mass, m (`s1`).
     pub com_m: Vector3<f64>,
@@ -19,7 +19,7 @@ pub struct Wrist {
     pub force_bias_n: Vector3<f64>,
     /// Reading without any load, Nm.
     pub torque_bias_nm: Vector3<f64>,
-    /// What the sensor reads per N along x, y, z; 1 is right.
+    /// Scale factors of the force readings along x, y, z; 1 is correct.
     pub gain: Vector3<f64>,
     /// Standard deviation of white noise per sample and axis, N.
     pub force_noise_n: f64,
@@ -29,7 +29,8 @@ pub struct Wrist {
     pub imu: Option<Imu>,
 }
 
-/// The accelerometer inside the wrist sensor. At rest it reads `+g` away from the ground, opposite to the tool's weight.
+/// The accelerometer inside the wrist sensor. At rest it reads `+g` away from the ground, opposite to the tool's
+/// weight.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Imu {
@@ -39,64 +40,66 @@ pub struct Imu {
     pub bias_m_s2: Vector3<f64>,
     /// Standard deviation of white noise per sample and axis, m/s^2.
     pub noise_m_s2: f64,
-    /// It reads towards the ground instead, as some drivers do.
+    /// It reads towards the ground instead, as with some drivers.
     #[serde(default)]
     pub reads_gravity: bool,
 }
 
 /// Friction and support where the instrument passes the body wall.
 ///
-/// Along the shaft the `LuGre` model (Canudas de Wit et al. 1995): sticks elastically, breaks away at `static_n`, slides at
-/// `coulomb_n` plus a viscous part; both grow with the sideways load. Across it the wall pushes a tilted shaft back and rubs.
+/// Along the shaft the `LuGre` model (Canudas de Wit et al. 1995): elastic while sticking, breaks away at `static_n`,
+/// slides at `coulomb_n` plus a viscous part; both increase with the lateral load. Across the shaft, the wall
+/// straightens a tilted shaft, with friction.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Trocar {
     /// Sliding friction along the shaft, N.
     pub coulomb_n: f64,
-    /// Friction at which it breaks away, N; not below `coulomb_n`.
+    /// Breakaway friction, N; not below `coulomb_n`.
     pub static_n: f64,
-    /// Speed at which the static part has faded, m/s.
+    /// Stribeck velocity: at this speed most of the static part is gone, m/s.
     pub stribeck_m_s: f64,
     /// Viscous friction along the shaft, N s/m.
     pub viscous_n_s_m: f64,
     /// Stretch of the seal before it slides, m.
     pub presliding_m: f64,
-    /// Friction added per N of sideways load.
+    /// Additional friction per N of lateral load.
     pub friction_per_load: f64,
-    /// Sideways force of the wall per unit of tilt (sine of the angle from straight down), N.
+    /// Lateral force of the wall per unit of tilt (sine of the angle from straight down), N.
     pub wall_n: f64,
     /// Sliding friction across the shaft, N.
     pub across_n: f64,
 }
 
-/// The sensor under the tissue (`s2`), the tracker's camera and the instrument's marker: only there while calibrating.
+/// The sensor under the tissue (`s2`), the tracker's camera and the instrument's marker; only present during
+/// calibration.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct TissueSensor {
-    /// How the sensor lies: roll, pitch, yaw of `world_from_s2`, degrees.
+    /// Orientation of the sensor: roll, pitch, yaw of `world_from_s2`, degrees.
     pub world_from_s2_deg: Vector3<f64>,
-    /// Where the camera looks: roll, pitch, yaw of `world_from_c`, degrees.
+    /// Orientation of the camera: roll, pitch, yaw of `world_from_c`, degrees.
     pub world_from_c_deg: Vector3<f64>,
-    /// How the marker sits on the instrument: roll, pitch, yaw of `s1_from_m`, degrees.
+    /// Orientation of the marker on the instrument: roll, pitch, yaw of `s1_from_m`, degrees.
     pub s1_from_m_deg: Vector3<f64>,
     /// Standard deviation of white noise per sample and axis, N.
     pub noise_n: f64,
     /// Standard deviation of the tracker's orientation about each axis, degrees.
     pub tracker_noise_deg: f64,
-    /// It tells what presses on the tissue, not what the tissue does to the instrument, as scales do.
+    /// It measures the force on the tissue instead of the force on the instrument, like a balance.
     #[serde(default)]
     pub reads_tissue: bool,
 }
 
-/// Somebody who guides the arm by hand and does what the screen asks.
+/// A person who guides the arm by hand and follows the instructions on the screen.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Person {
-    /// What the person does wrong, if anything: bad data on purpose, to see that they are refused.
+    /// A mistake that the person makes, to test that the resulting data are refused.
     pub flaw: Option<Flaw>,
 }
 
-/// Mistakes that calibrations must notice.
+/// Mistakes that calibrations must detect.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Flaw {
@@ -112,7 +115,7 @@ pub enum Flaw {
     PushesOnePlane,
     /// Works straight under the trocar only, whatever is asked for.
     WorksInOnePlace,
-    /// Pulls at the tissue's stand now and then: the two sensors do not feel the same.
+    /// Leans on the tissue's stand at times: the two sensors then do not measure the same force.
     LeansOnTheStand,
 }
 

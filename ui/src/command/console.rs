@@ -66,7 +66,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let _emulators = Emulators::start(&arguments.setup, rig.devices.as_ref())?;
     let calibrations = InForce::load(None, &rig, &scene).calibrations(&rig);
     let mut plan = Plan { rig: rig.clone(), scene: scene.clone(), calibrations, engage: false };
-    // The simulated hand cannot be hurt: the demo runs at once.
+    // Nobody can be hurt by a simulated or emulated rig, so the demo starts at once.
     let by_itself = rig.devices.as_ref().is_none_or(|devices| devices.emulated);
     plan.engage = by_itself && !arguments.at_rest && plan.may_engage();
     let handle = nima_world::start(&plan)?;

@@ -1,4 +1,5 @@
-//! `nima devices`: what is plugged in, and for what was asked: how it is, or why it does not work and what to do.
+//! `nima devices`: lists connected devices; tests the requested ones and prints why a device does not work and what to
+//! do.
 
 use std::fmt::Write as _;
 
@@ -60,7 +61,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     if arguments.json { output::json(&report) } else { output::line(in_words(&report).trim_end()) }
 }
 
-/// Columns that are as wide as their widest entry.
+/// Formats rows in columns as wide as their widest entry.
 fn table(text: &mut String, rows: &[[String; 3]]) {
     let width = |column: usize| rows.iter().map(|row| row[column].chars().count()).max().unwrap_or(0);
     let (first, second) = (width(0), width(1));

@@ -1,9 +1,10 @@
-//! `nima emulate`: emulators on the real wire, for drivers, third-party clients and demos without hardware.
+//! `nima emulate`: emulators on the real interfaces, for drivers, third-party clients and demos without hardware.
 //!
-//! Prints one JSON line per endpoint (`{"device": ..., "endpoint": ...}`), then serves until Ctrl-C, or until its standard input ends
-//! where that is a pipe or a terminal: whoever started it may have died without a word, and nobody else would end it. Lines on standard input set faults: `fault NAME` (see `--help`), `fault none` takes it back; with several devices
-//! `fault DEVICE NAME`, the name in quotes or with dashes where it has blanks. `nima emulate rig` emulates a whole rig around one
-//! simulated world; `pedal BITS` presses its pedal's switches.
+//! Prints one JSON line per endpoint (`{"device": ..., "endpoint": ...}`), then serves until Ctrl-C, or until its
+//! standard input ends if that is a pipe or a terminal, so that it does not outlive the process that started it. Lines
+//! on standard input set faults: `fault NAME` (see `--help`), `fault none` removes it; with several devices `fault
+//! DEVICE NAME`, with a name that contains blanks in quotes or with dashes. `nima emulate rig` emulates a whole rig
+//! with one simulated world; `pedal BITS` presses its pedal's switches.
 
 #[cfg(unix)]
 mod rig;
@@ -66,7 +67,8 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     serve(&served, arguments.until_input_ends, |_| false)
 }
 
-/// Tells the endpoints and serves until somebody ends it. Lines on standard input that `other` knows are obeyed by it.
+/// Prints the endpoints and serves until the end is requested. Lines on standard input that are not about faults are
+/// passed to `other`, which returns whether it knows them.
 fn serve(emulated: &[(&str, &Serving)], until_input_ends: bool, other: impl Fn(&str) -> bool) -> anyhow::Result<()> {
     for (device, serving) in emulated {
         output::line(&serde_json::to_string(&Endpoint { device, endpoint: &serving.endpoint })?)?;
@@ -92,14 +94,14 @@ fn serve(emulated: &[(&str, &Serving)], until_input_ends: bool, other: impl Fn(&
                 }
                 return Ok(());
             }
-            // A file was read to its end, or there never was an input.
+            // Standard input was a file that has been read completely, or there was none.
             Err(RecvTimeoutError::Disconnected) => std::thread::sleep(Duration::from_millis(50)),
         }
     }
     Ok(())
 }
 
-/// Somebody holds the other end of standard input: a person at a terminal, or a process with a pipe.
+/// Whether another process or a person at a terminal holds the other end of standard input.
 #[cfg(unix)]
 fn input_is_held() -> bool {
     use std::os::{fd::AsFd as _, unix::fs::FileTypeExt as _};
@@ -108,13 +110,13 @@ fn input_is_held() -> bool {
     stdin.is_terminal() || kind.is_ok_and(|kind| kind.file_type().is_fifo() || kind.file_type().is_socket())
 }
 
-/// Somebody holds the other end of standard input.
+/// Whether another process or a person at a terminal holds the other end of standard input.
 #[cfg(not(unix))]
 fn input_is_held() -> bool {
     true
 }
 
-/// A device's name, however its blanks are written.
+/// A device's name in normal form, whichever way its blanks were written.
 fn plain(name: &str) -> String {
     name.trim_matches(['"', '\'']).replace('-', " ")
 }

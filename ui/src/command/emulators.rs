@@ -1,4 +1,4 @@
-//! Starts the emulators of a rig that is emulated, as a process of their own, for as long as this one runs.
+//! Starts the emulators of an emulated rig in a process of their own, which ends with this one.
 
 use std::{
     io::{BufRead as _, BufReader},
@@ -11,23 +11,23 @@ use nima_machine::rig::{SIDES, Settings, Side};
 
 use super::setup::Setup;
 
-/// Emulators find good poses for their arms before they serve.
+/// Before they serve, emulators of arms search a starting pose.
 const READY_WITHIN: Duration = Duration::from_mins(1);
 
-/// The emulators' process; dropping it ends it.
+/// The process of the emulators; dropping this ends it.
 #[derive(Debug)]
 pub(super) struct Emulators {
     child: Child,
 }
 
 impl Emulators {
-    /// Starts them where the rig asks for it, and waits until they serve.
+    /// Starts the emulators if the rig is emulated, and waits until they serve.
     pub(super) fn start(setup: &Setup, devices: Option<&Settings>) -> anyhow::Result<Option<Self>> {
         let Some(devices) = devices.filter(|devices| devices.emulated) else { return Ok(None) };
         let program = std::env::current_exe().context("cannot find the path of this program")?;
         let mut command = Command::new(program);
         command.args(["emulate", "rig", "--rig", setup.rig(), "--scene", setup.scene(), "--until-input-ends"]);
-        // A Ctrl-C is for the loop, which leaves in order and then ends the emulators.
+        // Ctrl-C is for the loop only, which ends in order and then ends the emulators.
         #[cfg(unix)]
         std::os::unix::process::CommandExt::process_group(&mut command, 0);
         let child =
@@ -37,12 +37,12 @@ impl Emulators {
         Ok(Some(this))
     }
 
-    /// Each emulator tells its endpoint in one line once it serves.
+    /// Each emulator prints its endpoint in one line when it serves.
     fn wait(&mut self, devices: usize) -> anyhow::Result<()> {
         let Some(told) = self.child.stdout.take() else { return Ok(()) };
         let (line, lines) = std::sync::mpsc::channel();
         std::thread::spawn(move || {
-            // Goes on reading to the end: a pipe that nobody empties would hold the emulators up.
+            // Continues to read until the end, because the emulators would block on a full pipe.
             for text in BufReader::new(told).lines().map_while(Result::ok) {
                 line.send(text).ok();
             }
@@ -60,7 +60,7 @@ impl Emulators {
 
 impl Drop for Emulators {
     fn drop(&mut self) {
-        // The end of its input ends it in order.
+        // They end in order when their standard input ends.
         drop(self.child.stdin.take());
         for _ in 0..100 {
             if !matches!(self.child.try_wait(), Ok(None)) {

@@ -10,7 +10,7 @@ use nima_machine::{
 
 use crate::words::{cure_of_refusal, refused_because};
 
-/// Why arms were not engaged, as far as the loop told.
+/// Reasons why arms were not engaged, as reported by the loop.
 #[derive(Debug, Default)]
 pub(super) struct Reasons {
     refusals: [Option<Refusal>; SIDES],
@@ -18,12 +18,12 @@ pub(super) struct Reasons {
 }
 
 impl Reasons {
-    /// Takes a tick in.
+    /// Adds a tick.
     pub(super) fn watch(&mut self, tick: &Tick) {
         self.was_engaged[tick.side.index()] |= tick.state == LoopState::Engaged;
     }
 
-    /// Takes an event in; gives what is worth telling at once.
+    /// Adds an event; returns a message to print at once, if there is one.
     pub(super) fn take(&mut self, event: &Event) -> Option<String> {
         match *event {
             Event::CommandRefused { side, command: Command::Engage | Command::EngageOne(_), why, .. } => {
@@ -50,7 +50,8 @@ impl Reasons {
         }
     }
 
-    /// Why the run did not do what it was started for; `None` where it did. `engages`: the rig was to engage by itself.
+    /// Why the run did not do what it was started for; `None` if it did. `engages`: the rig was to engage
+    /// automatically.
     pub(super) fn of(&self, summary: &Summary, engages: bool) -> Option<String> {
         summary.arms.iter().find_map(|arm| self.of_arm(arm, summary, engages))
     }
@@ -85,7 +86,7 @@ impl Reasons {
     }
 }
 
-/// The first device that this arm misses, why, and what to do.
+/// The first missing device of this arm, why it is missing, and what to do.
 fn missing(side: Side, summary: &Summary) -> String {
     let absent = || summary.devices.iter().filter(|device| device.health.standing != Standing::Connected);
     let first = absent().find(|device| device.name.starts_with(side.word())).or_else(|| absent().next());

@@ -1,4 +1,4 @@
-//! `nima evaluate`: models on data they were not trained on.
+//! `nima evaluate`: judges models on data they were not trained on.
 
 use std::{
     fmt::Write as _,
@@ -35,7 +35,7 @@ pub(super) struct TipForce {
     json: bool,
 }
 
-/// What is written.
+/// Names of the files that are written.
 const FILES: [&str; 3] = [PREDICTIONS, REGRESSION, NO_CONTACT];
 const PREDICTIONS: &str = "predictions.csv";
 const REGRESSION: &str = "regression.svg";

@@ -1,4 +1,4 @@
-//! `nima identify`: identification over a recording.
+//! `nima identify`: runs the identification over a recording.
 
 use std::{
     fmt::Write as _,
@@ -84,7 +84,7 @@ fn header(recording: &Recording) -> String {
 }
 
 fn push_row(trace: &mut String, row: &Row, axes: usize) {
-    // Writing into a String cannot fail. Rust prints the shortest digits that read back to the same number.
+    // Writing into a String cannot fail. Rust prints the fewest digits from which the same number can be read.
     write!(trace, "{}", row.t_s).ok();
     for force in [&row.measured, &row.rendered, &row.held] {
         for lane in 0..axes {

@@ -58,7 +58,7 @@ enum Command {
     Evaluate(evaluate::EvaluateCommand),
 }
 
-/// Tells what was wrong with the arguments in one line: the complaint without the usage text that follows it.
+/// Reports invalid arguments in one line, without the usage text.
 fn usage(error: &clap::Error) -> ExitCode {
     let text = error.to_string();
     let complaint = text.lines().take_while(|line| !line.starts_with("Usage:")).collect::<Vec<_>>().join(" ");
@@ -68,7 +68,7 @@ fn usage(error: &clap::Error) -> ExitCode {
     ExitCode::from(2)
 }
 
-/// In one line, folded and of bounded length, whatever text of files and devices is in it.
+/// Folds any text of files and devices into one line of bounded length.
 fn one_line(text: &str) -> String {
     const MOST: usize = 2000;
     shortened(&text.split_whitespace().collect::<Vec<_>>().join(" "), MOST)
@@ -97,7 +97,7 @@ pub fn main() -> ExitCode {
     match result {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
-            // One line: causes joined, line breaks of other people's messages folded.
+            // One line: the chain of causes joined, line breaks in foreign messages folded.
             let line = one_line(&format!("{error:#}"));
             if error.is::<crate::console::NoWindow>() {
                 tell(format_args!(

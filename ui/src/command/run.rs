@@ -1,4 +1,4 @@
-//! `nima run`: the loop without a screen, with a live status line and figures at the end.
+//! `nima run`: the loop without a window, with a live status line and figures at the end.
 
 use std::{
     io::{self, IsTerminal as _, Write as _},
@@ -74,8 +74,8 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let emulators = Emulators::start(&arguments.setup, rig.devices.as_ref())?;
     let mut in_force = InForce::load(None, &rig, &scene);
     let calibrations = in_force.calibrations(&rig);
-    // With a calibrated wrist the bias is looked at before the tool may touch anything; and only what can hurt nobody engages by
-    // itself.
+    // With a calibrated wrist sensor the bias is checked before the tool may touch anything. Only rigs that cannot hurt
+    // anybody engage automatically.
     let by_itself = rig.devices.as_ref().is_none_or(|devices| devices.emulated);
     let engage = by_itself && in_force.drift().is_none() && !in_force.is_waiting();
     let plan = Plan { rig, scene, calibrations, engage };
@@ -110,7 +110,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     start.reasons.of(&summary, by_itself).map_or(Ok(()), |why| Err(anyhow::anyhow!(why)))
 }
 
-/// Engages once it was looked whether the bias of the wrist sensor is where it was; whatever the answer.
+/// Engages after the bias of the wrist sensor has been checked, whatever the result.
 struct Start {
     in_force: InForce,
     engaged: bool,
@@ -157,7 +157,7 @@ fn on_the_real_clock(plan: &Plan, start: &mut Start, leave: &Leave, arguments: &
                 wrist.tool
             );
         }
-        // The queue of commands holds nothing else: it takes this one.
+        // The queue of commands is empty here, so it has room for this one.
         command.map(|command| handle.send(command));
         if let Some(tick) = newest {
             status.show(&tick, troubles.first().as_deref());
@@ -171,7 +171,7 @@ fn on_the_real_clock(plan: &Plan, start: &mut Start, leave: &Leave, arguments: &
     Ok(summary)
 }
 
-/// Tells of each device that cannot be opened why, and what to do; again only when that changes.
+/// Reports why a device cannot be opened, once per cause.
 #[derive(Default)]
 struct Troubles {
     told: Vec<Option<Trouble>>,
@@ -201,7 +201,7 @@ impl Troubles {
         }
     }
 
-    /// The first device that is missing, with cause and cure.
+    /// The first missing device, with cause and cure.
     fn first(&self) -> Option<String> {
         let others = self.told.iter().flatten().count().saturating_sub(1);
         let more = if others > 0 { format!(" (and {others} more)") } else { String::new() };
@@ -209,7 +209,7 @@ impl Troubles {
     }
 }
 
-/// One line on stderr that is rewritten in place; on a pipe one line a second.
+/// A status line on stderr that is rewritten in place; one line per second if stderr is not a terminal.
 struct StatusLine {
     wanted: bool,
     terminal: bool,
@@ -221,7 +221,7 @@ impl StatusLine {
         Self { wanted, terminal: io::stderr().is_terminal(), last: None }
     }
 
-    /// Shows how the loop is; `missing`: the device that it waits for.
+    /// Shows the present state; `missing` is the device that the loop is waiting for.
     fn show(&mut self, tick: &Tick, missing: Option<&str>) {
         let pause = Duration::from_millis(if self.terminal { 100 } else { 1000 });
         if !self.wanted || self.last.is_some_and(|last| last.elapsed() < pause) {
@@ -246,13 +246,13 @@ impl StatusLine {
 
     fn write(&self, text: &str) {
         let mut err = io::stderr().lock();
-        // A terminal cuts what is longer than its line and keeps nothing of the text before.
+        // The terminal truncates a line that is too long, and clears the rest of the previous one.
         let written =
             if self.terminal { write!(err, "\r\x1b[?7l{text}\x1b[K\x1b[?7h") } else { writeln!(err, "{text}") };
         written.and_then(|()| err.flush()).ok();
     }
 
-    /// A line that stays, above the one that is rewritten.
+    /// Prints a permanent line above the status line.
     fn tell(&self, line: &str) {
         if self.wanted && self.terminal && self.last.is_some() {
             tell(format_args!("\r\x1b[K{line}"));

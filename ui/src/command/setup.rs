@@ -1,4 +1,4 @@
-//! What every command that runs the loop must be told: which rig, which scene.
+//! Arguments of every command that runs the loop: rig and scene.
 
 use clap::Args;
 use nima_machine::config::{ConfigError, RigConfig};
@@ -26,17 +26,17 @@ impl Default for Setup {
 }
 
 impl Setup {
-    /// The rig as it was named.
+    /// The name or path of the rig.
     pub(super) fn rig(&self) -> &str {
         &self.rig
     }
 
-    /// The scene as it was named.
+    /// The name or path of the scene.
     pub(super) fn scene(&self) -> &str {
         &self.scene
     }
 
-    /// What asks the run to end: signals, and the end of standard input where that was wished for.
+    /// Requests to end the run: signals, and the end of standard input if that was requested.
     pub(super) fn leave(&self) -> anyhow::Result<Leave> {
         let leave = Leave::on_signals()?;
         if self.until_input_ends {
@@ -45,7 +45,7 @@ impl Setup {
         Ok(leave)
     }
 
-    /// Reads and checks both.
+    /// Loads and checks both.
     pub(super) fn load(&self) -> Result<(RigConfig, Scene), ConfigError> {
         Ok((RigConfig::load(&self.rig)?, Scene::load(&self.scene)?))
     }

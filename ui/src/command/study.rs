@@ -1,6 +1,7 @@
-//! `nima study`: experiments that print figures.
+//! `nima study`: experiments that report figures.
 //!
-//! Each has a file with its arguments below `study/` and a line in the table; one writer serves them all.
+//! Each has a file with its arguments in `study/` and a line in the table below; all results are written by the same
+//! code.
 
 mod faults;
 mod gates;
@@ -21,14 +22,14 @@ use nima_study::{Experiment, Findings as _};
 
 use super::output;
 
-/// Arguments that say what is to be measured.
+/// Arguments that describe the experiment.
 pub(super) trait Asked: Args {
     type Experiment: Experiment;
 
     fn experiment(&self) -> anyhow::Result<Self::Experiment>;
 }
 
-/// Arguments of one study, and where its results go.
+/// Arguments of one study, and where to write its results.
 #[derive(Debug, Args)]
 pub(super) struct Study<A: Args> {
     #[command(flatten)]
@@ -76,7 +77,7 @@ studies! {
     Validation(validation::Validation),
 }
 
-/// The experiment that is asked for.
+/// The experiment that these arguments describe.
 type Of<A> = <A as Asked>::Experiment;
 
 impl<A: Asked> Study<A> {
@@ -85,7 +86,7 @@ impl<A: Asked> Study<A> {
         let inputs = experiment.inputs();
         let inputs: Vec<&Path> = inputs.iter().map(PathBuf::as_path).collect();
         if let Some(out) = &self.out {
-            // Before the work, so that a wrong name does not cost its time.
+            // Checked before the work, so that an invalid name does not waste its time.
             let names: Vec<String> = [".json"].iter().chain(Of::<A>::FILES).map(|end| name::<A>(end)).collect();
             output::folder(out, &names.iter().map(String::as_str).collect::<Vec<_>>(), &inputs)?;
         }
@@ -94,7 +95,7 @@ impl<A: Asked> Study<A> {
             let json = (".json".to_owned(), serde_json::to_string_pretty(&findings)?);
             let files = [json].into_iter().chain(findings.files());
             let files: Vec<_> = files.map(|(end, text)| (name::<A>(&end), text)).collect();
-            // Some are named by what was measured: only now is it known whether one of them is an input.
+            // Some names depend on the results, so only now can they be compared with the inputs.
             files.iter().try_for_each(|(name, _)| output::check(&out.join(name), &inputs))?;
             files.iter().try_for_each(|(name, text)| output::write(out, name, text))?;
         }
@@ -107,13 +108,13 @@ fn name<A: Asked>(end: &str) -> String {
     format!("{}{end}", Of::<A>::NAME)
 }
 
-/// One line on a terminal's stderr, written over and over, and wiped at the end.
+/// Shows progress in one line of the terminal, which is rewritten in place and cleared at the end.
 fn progress(done: usize, of: usize, what: &str) {
     let mut stderr = io::stderr().lock();
     if !stderr.is_terminal() {
         return;
     }
-    // A terminal that cannot be written to is no reason to stop a study.
+    // Errors are ignored: a closed terminal is no reason to stop a study.
     if done < of {
         write!(stderr, "\r\x1b[K{}/{of} {what}", done + 1).ok();
     } else {

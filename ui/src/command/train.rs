@@ -1,4 +1,4 @@
-//! `nima train`: models from data.
+//! `nima train`: trains models from data.
 
 use std::{
     fmt::Write as _,
@@ -106,7 +106,7 @@ fn bar(hidden: bool) -> ProgressBar {
     ProgressBar::new(1).with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()))
 }
 
-/// A member that stops early jumps to its end.
+/// If a member stops early, its part of the bar is complete.
 fn show(bar: &ProgressBar, progress: &Progress) {
     bar.set_length((progress.epochs_max * progress.members) as u64);
     bar.inc(if progress.finished { (progress.epochs_max - progress.epoch + 1) as u64 } else { 1 });

@@ -1,4 +1,4 @@
-//! The window: takes in what the loop sent, lays out the panels, sends what the operator asked.
+//! The window: receives what the loop has sent, lays out the panels, and sends the operator's commands.
 
 mod calibrating;
 mod pace;
@@ -42,16 +42,17 @@ use super::{
 };
 use crate::{console::text, telling::tell};
 
-/// Smooth edges in 3-D are given up when every second picture comes later than this after the one before (25 a second) ...
+/// Antialiasing in 3-D is switched off if the median time between frames is longer than this (fewer than 26 a second)
+/// ...
 const SLOW_MS: f64 = 38.0;
-/// ... though the window has had this time to warm up.
+/// ... after the window has had this time to warm up.
 const WARM_UP: Duration = Duration::from_secs(4);
 
-/// The console's state.
+/// State of the console.
 #[derive(Debug)]
 pub struct ConsoleApp {
     door: Option<Door>,
-    /// Wakes the window from another thread.
+    /// Used to wake the window from another thread.
     ctx: egui::Context,
     live: Live,
     outbox: Outbox,
@@ -63,26 +64,27 @@ pub struct ConsoleApp {
     wizards: Wizards,
     in_force: InForce,
     diary: Diary,
-    /// What was watched before a wizard took the rig over.
+    /// The scene that was shown before a wizard changed it.
     watched: Option<Scene>,
     options: Options,
     surface: Option<Arc<Surface>>,
-    /// What draws, in the driver's words.
+    /// Name of the OpenGL renderer.
     renderer: String,
     meter: Option<Meter>,
     opened: Instant,
     framed: Instant,
     /// When something was last engaged, or a wizard was open.
     moved: Instant,
-    /// When what waited was last taken in.
+    /// When the waiting ticks and events were last read.
     taken: Instant,
     pictured: bool,
-    /// Few pictures are drawn, because nothing is engaged.
+    /// Few frames are drawn, because nothing is engaged.
     calm: bool,
 }
 
 impl ConsoleApp {
-    /// The console on a running loop. Sets fonts and style of the context; draws in 3-D if it has OpenGL.
+    /// Creates the console for a running loop. Sets fonts and style of the context; draws in 3-D if OpenGL is
+    /// available.
     pub fn new(cc: &eframe::CreationContext<'_>, handle: Handle, rig: RigConfig, scene: Scene) -> Self {
         theme::apply(&cc.egui_ctx);
         let now = Instant::now();
@@ -120,7 +122,7 @@ impl ConsoleApp {
         }
     }
 
-    /// The same with wishes from outside.
+    /// Applies the options of the command line.
     #[must_use]
     pub fn with_options(mut self, options: Options) -> Self {
         self.options = options;
@@ -137,7 +139,7 @@ impl ConsoleApp {
         self
     }
 
-    /// Asked from outside to end, the loop ends at once, whatever the window does, and then the window.
+    /// When the process is asked to end, the loop ends at once, even if the window is blocked, and then the window.
     fn leave_when_asked(&self) {
         let Some(door) = &self.door else { return };
         let (ender, ctx) = (door.handle().ender(), self.ctx.clone());
@@ -148,7 +150,7 @@ impl ConsoleApp {
         });
     }
 
-    /// The same with what was chosen before; changes are kept.
+    /// Uses these settings; changes are saved.
     #[must_use]
     pub fn with_settings(mut self, settings: Kept) -> Self {
         if let Some(told) = settings.told() {
@@ -161,61 +163,62 @@ impl ConsoleApp {
         self
     }
 
-    /// What is remembered from one day to the next, to be changed from outside.
+    /// The settings that are saved between sessions, for tests.
     pub const fn settings_mut(&mut self) -> &mut Settings {
         &mut self.settings.now
     }
 
-    /// Who sits before the screen.
+    /// The present role.
     pub const fn role(&self) -> Role {
         self.settings.now.role
     }
 
-    /// The newest tick that reached the screen.
+    /// The newest tick that the window has received.
     pub fn tick(&self) -> Option<&Tick> {
         self.live.first_tick()
     }
 
-    /// The rig that the loop runs on now.
+    /// The rig that the loop is running on.
     pub fn rig(&self) -> &RigConfig {
         &self.live.rig
     }
 
-    /// The trade-off panel's memory, for what it has measured.
+    /// State of the trade-off panel.
     pub fn tradeoff(&self) -> &TradeoffState {
         &self.panels.tradeoff
     }
 
-    /// What is drawn into the view on request.
+    /// Optional objects in the 3-D view.
     pub const fn extras(&self) -> Extras {
         self.panels.scene.extras
     }
 
-    /// Moments that were marked, s on the loop's clock.
+    /// Marks set by the operator, s on the loop's clock.
     pub fn marks_s(&self) -> impl Iterator<Item = f64> {
         self.live.marks_s.iter().copied()
     }
 
-    /// What calibrations are in force.
+    /// The calibrations in force.
     pub fn in_force(&self) -> &InForce {
         &self.in_force
     }
 
-    /// Keeps calibrations in this store from now on, and uses what it holds for the rig's sensors and tools.
+    /// Uses this store of calibrations from now on, with the calibrations that it contains for the rig's sensors and
+    /// tools.
     #[must_use]
     pub fn with_store(mut self, folder: &Path) -> Self {
         self.in_force = InForce::load(Some(folder), &self.live.rig, &self.live.scene);
         self
     }
 
-    /// Goes on with these wizards and what they have taken.
+    /// Continues with these wizards and their data.
     #[must_use]
     pub fn with_wizards(mut self, wizards: Wizards) -> Self {
         self.wizards = wizards;
         self
     }
 
-    /// Takes in all that the loop has sent.
+    /// Reads everything that the loop has sent.
     fn take_in(&mut self) {
         let Some(door) = &self.door else { return };
         self.taken = Instant::now();
@@ -237,14 +240,14 @@ impl ConsoleApp {
         self.live.bias_moved_n = self.in_force.bias_moved_n();
     }
 
-    /// Ends the loop and starts it anew, idle: only the operator engages it again. Never a way out of a stop or a fault.
+    /// Ends the loop and starts it again, idle: only the operator engages it. Never possible in a stop or a fault.
     fn restart(&mut self, rig: RigConfig, scene: Scene) -> Result<(), String> {
         rig.validate().and_then(|()| scene.validate()).map_err(|error| error.to_string())?;
         self.take_in();
         if !matches!(self.live.state(), LoopState::Idle | LoopState::Engaged) {
             return Err(text::calibrations::LOOP_STOPPED.to_owned());
         }
-        // The old loop first: a rig has one master.
+        // End the old loop first: a rig must have one controller only.
         drop(self.door.take());
         self.in_force.bind(&rig, &scene);
         let calibrations = self.in_force.calibrations(&rig);
@@ -260,7 +263,7 @@ impl ConsoleApp {
         Ok(())
     }
 
-    /// Takes over what the trade-off panel chose.
+    /// Applies the choice of the trade-off panel.
     fn apply_tradeoff(&mut self, rig: RigConfig) {
         let told = match self.restart(rig, self.live.scene.clone()) {
             Ok(()) => text::tradeoff::APPLIED_BY_RESTART.to_owned(),
@@ -301,7 +304,8 @@ impl ConsoleApp {
     fn monitor_layout(&mut self, ui: &mut Ui) {
         let Wishes { restart, calibration } =
             role_ui(ui, &mut self.settings.now, &mut self.live, &mut self.panels, &self.in_force, &mut self.outbox);
-        // After everything was drawn of the loop as it was. A stop asked for in the same frame comes first.
+        // At the end of the frame, after everything was drawn with the old loop. A stop requested in the same frame
+        // takes precedence.
         if self.outbox.holds_stop() {
             return;
         }
@@ -317,7 +321,7 @@ impl ConsoleApp {
         if let Some(path) = screenshot.filter(|_| !self.pictured && open >= self.picture_at()) {
             self.pictured = true;
             ctx.request_screenshot(move |picture| {
-                // The window has no one to tell but the terminal it was started from.
+                // Errors can be reported only on the terminal.
                 if let Err(error) = screenshot::save(&path, &picture) {
                     tell(format_args!("{error:#}"));
                 }
@@ -339,7 +343,7 @@ impl eframe::App for ConsoleApp {
         if self.only_flashes(ctx) {
             return;
         }
-        // Also while the window is hidden, so that the queues stay empty and the history whole.
+        // Also while the window is hidden, so that the queues stay empty and the history complete.
         self.take_in();
         self.ask();
     }
@@ -347,9 +351,9 @@ impl eframe::App for ConsoleApp {
     fn ui(&mut self, ui: &mut Ui, frame: &mut eframe::Frame) {
         let ctx = ui.ctx().clone();
         self.measure(&ctx, frame);
-        // Once given up they stay so: a view that changes its look by itself again and again would be worse.
+        // Not switched on again: a view that keeps changing its look would be worse.
         let slow = self.opened.elapsed() > WARM_UP && self.live.figures.frame_ms[0] > SLOW_MS;
-        // Pictures for documents are taken with smooth edges, however long that takes.
+        // Screenshots for the documents are antialiased, however long that takes.
         self.live.rough_edges = self.photographer.is_none() && (self.live.rough_edges || slow);
         self.panels.scene.smooth = !self.live.rough_edges;
         menu::apply(&ctx, &mut self.settings.now);
@@ -370,7 +374,7 @@ impl eframe::App for ConsoleApp {
         }
     }
 
-    /// The ground of the whole window: clearing is far cheaper than painting panels over it.
+    /// The background of the whole window: clearing is much cheaper than painting panels over it.
     fn clear_color(&self, _visuals: &egui::Visuals) -> [f32; 4] {
         theme::now().background.to_normalized_gamma_f32()
     }
@@ -387,9 +391,9 @@ impl eframe::App for ConsoleApp {
     }
 }
 
-/// The door to a loop, that wakes the window of this context.
+/// Creates the door to a loop; it wakes the window of this context.
 fn door_of(handle: Handle, ctx: &egui::Context) -> Door {
     let ctx = ctx.clone();
-    // Once: without any delay egui draws two pictures.
+    // A short delay, because without one egui draws two frames.
     Door::new(handle, move || ctx.request_repaint_after(Duration::from_millis(1)))
 }

@@ -1,24 +1,25 @@
-//! Pairs of measured and rendered force over the last seconds, and the ellipsoid that holds 95 % of their difference.
+//! Measured and rendered force over the last seconds, and the ellipsoid that contains 95 % of their difference.
 //!
-//! Forces in N, workspace frame. The ellipsoid is that of a normal distribution of the same mean and covariance; how many of the
-//! differences it really holds is counted, because contact is not normal. Samples that are not finite are left out.
+//! Forces in N, workspace frame. The ellipsoid is that of a normal distribution with the same mean and covariance. The
+//! share of differences that it actually contains is counted, because contact is not normally distributed. Samples that
+//! are not finite are left out.
 
 use std::collections::VecDeque;
 
 use nalgebra::{Matrix3, Vector3};
 
-/// What is kept, s, and time between samples, s.
+/// Stored time, s, and time between samples, s.
 pub const SECONDS: f64 = 6.0;
 const STEP_S: f64 = 0.02;
 /// 95 % quantile of chi squared with three degrees of freedom.
 const CHI2_95: f64 = 7.814_728;
-/// Fewer samples make no ellipsoid.
+/// Fewest samples for an ellipsoid.
 const LEAST: usize = 50;
 
 /// One pair of forces.
 #[derive(Clone, Copy, Debug)]
 pub struct Pair {
-    /// When, s on the loop's clock.
+    /// Time, s on the loop's clock.
     pub t_s: f64,
     /// Measured at the instrument, N.
     pub measured_n: Vector3<f64>,
@@ -32,7 +33,7 @@ pub struct Cloud {
     pairs: VecDeque<Pair>,
 }
 
-/// Mean error and the half axes of the ellipsoid around it.
+/// Mean error, and the half axes of the ellipsoid around it.
 #[derive(Clone, Copy, Debug)]
 pub struct Ellipsoid {
     /// Mean of rendered minus measured, N.
@@ -44,7 +45,7 @@ pub struct Ellipsoid {
 }
 
 impl Cloud {
-    /// Takes in a tick; one in twenty is kept.
+    /// Adds a tick; one in twenty is stored.
     pub fn push(&mut self, t_s: f64, measured_n: Vector3<f64>, rendered_n: Vector3<f64>) {
         let finite = t_s.is_finite() && measured_n.iter().chain(&rendered_n).all(|x| x.is_finite());
         if !finite || self.pairs.back().is_some_and(|last| (0.0..STEP_S).contains(&(t_s - last.t_s))) {
@@ -56,12 +57,12 @@ impl Cloud {
         }
     }
 
-    /// What is kept, oldest first.
+    /// The stored pairs, oldest first.
     pub fn pairs(&self) -> impl DoubleEndedIterator<Item = &Pair> {
         self.pairs.iter()
     }
 
-    /// The 95 % ellipsoid of rendered minus measured; `None` before there is a second of it.
+    /// The 95 % ellipsoid of rendered minus measured force; `None` with less than a second of data.
     pub fn ellipsoid(&self) -> Option<Ellipsoid> {
         if self.pairs.len() < LEAST {
             return None;
@@ -86,7 +87,7 @@ impl Cloud {
 mod tests {
     use super::*;
 
-    /// Errors of this mean and these deviations, nearly normal (a sum of twelve).
+    /// Errors with this mean and these standard deviations, nearly normal (sum of twelve uniform numbers).
     fn cloud(mean_n: Vector3<f64>, deviations_n: Vector3<f64>) -> Cloud {
         let mut cloud = Cloud::default();
         let mut seed = 12_345_u64;

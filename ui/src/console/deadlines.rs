@@ -1,29 +1,29 @@
-//! Missed periods second by second: when the loop was late, not only how often.
+//! Missed periods per second: shows when the loop was late, not only how often.
 
 use std::collections::VecDeque;
 
-/// Length kept, s.
+/// Stored period, s.
 pub const SECONDS: usize = 120;
 
 /// Missed periods of the last seconds.
 #[derive(Clone, Debug, Default)]
 pub struct Deadlines {
-    /// Oldest first; the last one is the second that runs.
+    /// Oldest first; the last one is the present second.
     counts: VecDeque<u64>,
-    /// The second that runs, on the loop's clock.
+    /// The present second, on the loop's clock.
     now: u64,
 }
 
 impl Deadlines {
-    /// Takes in how many periods were missed before the tick at `t_s` (s on the loop's clock). A clock that stands, runs back or is not a
-    /// number adds to the second that runs.
+    /// Adds the number of periods missed before the tick at `t_s` (s on the loop's clock). If the clock stands still,
+    /// runs backwards or is not finite, they are added to the present second.
     pub fn push(&mut self, t_s: f64, missed: u64) {
         let second = t_s.max(0.0) as u64;
         if self.counts.is_empty() {
             self.now = second;
             self.counts.push_back(0);
         }
-        // A gap longer than all that is kept leaves nothing behind.
+        // After a gap longer than the stored period nothing old remains.
         for _ in 0..second.saturating_sub(self.now).min(SECONDS as u64) {
             self.counts.push_back(0);
         }
@@ -36,12 +36,12 @@ impl Deadlines {
         }
     }
 
-    /// Seconds back from now and periods missed in each, the newest first.
+    /// Age in seconds and number of missed periods, the newest first.
     pub fn newest_first(&self) -> impl Iterator<Item = (usize, u64)> {
         self.counts.iter().rev().copied().enumerate()
     }
 
-    /// All that were missed in the time that is kept.
+    /// Total over the stored period.
     pub fn total(&self) -> u64 {
         self.counts.iter().sum()
     }

@@ -1,42 +1,42 @@
-//! What happened in front of the screen, for the figures that are written when the window is closed: so that a session can be checked
-//! from outside by what the loop did, not by how it looked.
+//! A record of the session, written with the figures when the window is closed: tests can check a session by what the
+//! loop did, not by how it looked.
 
 use nima_core::impedance::Mode;
 use nima_machine::{messages::Tick, runtime::Summary};
 use serde::Serialize;
 
-/// States and modes kept; a session has few.
+/// Most states and modes stored.
 const KEPT: usize = 200;
 
-/// The session so far, of the right arm pair.
+/// Record of the right arm pair.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct Diary {
-    /// Words of the loop's states in their order, each when it was entered.
+    /// Names of the loop's states in the order in which they were entered.
     pub states: Vec<&'static str>,
-    /// Modes that were rendered with, in their order.
+    /// Rendering modes in the order of their use.
     pub modes: Vec<Mode>,
     /// Gain at the end, without unit.
     pub gain: f64,
-    /// Ticks in which somebody led the instrument from the screen.
+    /// Ticks in which the instrument was led from the window.
     pub led_ticks: u64,
-    /// Marks in the traces at the end.
+    /// Number of marks at the end.
     pub marks: usize,
-    /// The traces were held at the end.
+    /// Whether the traces were paused at the end.
     pub paused: bool,
 }
 
-/// The loop's figures and what happened before the screen, in one object.
+/// Figures of the loop and record of the session, in one object.
 #[derive(Debug, Serialize)]
 pub struct WithScreen<'a> {
-    /// Of the last loop.
+    /// Figures of the last loop.
     #[serde(flatten)]
     pub summary: &'a Summary,
-    /// Of the whole session.
+    /// Record of the whole session.
     pub screen: &'a Diary,
 }
 
 impl Diary {
-    /// Takes in one tick.
+    /// Adds one tick.
     pub(super) fn tick(&mut self, tick: &Tick) {
         follow(&mut self.states, tick.state.word());
         follow(&mut self.modes, tick.mode);

@@ -1,8 +1,8 @@
-//! Between the loop and a window that sleeps.
+//! Connects the loop to a window that is drawn rarely.
 //!
-//! While nothing moves, the window is drawn once in a while only. The loop goes on sending all the same, and what it sends must neither
-//! fill its queue nor be seen late. So a thread looks after the door: it keeps what came, and wakes the window when there is something
-//! to see. While the window is drawn all the time, the thread rests.
+//! While nothing moves, the window is drawn only once in a while. The loop still sends ticks and events, which must
+//! neither fill its queue nor be shown late. So a thread reads them, stores them, and wakes the window when there is
+//! something to show. While the window is drawn continuously, the thread is idle.
 
 use std::{
     sync::{
@@ -21,28 +21,28 @@ use nima_machine::{
     runtime::{Handle, Summary},
 };
 
-/// How often the thread looks while the window sleeps: twice as often as the eye could tell.
+/// Interval of the thread while the window is idle, short enough not to be noticed.
 const LOOK: Duration = Duration::from_millis(50);
-/// Ticks kept at most; what comes beyond them waits in the loop's own queue, where it is counted if it is lost.
+/// Most ticks stored; further ones wait in the loop's queue, where losses are counted.
 const KEPT_MAX: usize = 8192;
-/// So long without a tick is something to see: an alarm.
+/// A longer time without a tick is shown as an alarm.
 const SILENCE: Duration = Duration::from_millis(600);
-/// A force that has changed by this much (N) and a tip that has moved by this much (m) are something to see, as means over so many
-/// ticks: the noise of a sensor is not.
+/// A change of the force by this much (N), or of the tip position by this much (m), wakes the window; computed on means
+/// over this many ticks, so that the sensor's noise does not.
 const SEEN_N: f64 = 0.05;
 const SEEN_M: f64 = 2e-4;
 const MEAN_OVER: usize = 50;
 
-/// What comes from the loop.
+/// Something that came from the loop.
 #[derive(Clone, Copy, Debug)]
 pub enum News<'a> {
-    /// Something that happened.
+    /// An event.
     Event(&'a Event),
-    /// How everything was in one tick.
+    /// A tick.
     Tick(&'a Tick),
 }
 
-/// The window's end of the loop.
+/// The window's side of the connection to the loop.
 #[derive(Debug)]
 pub struct Door {
     shared: Arc<Shared>,
@@ -53,7 +53,7 @@ pub struct Door {
 struct Shared {
     handle: Handle,
     kept: Mutex<Kept>,
-    /// The window sleeps.
+    /// The window is drawn rarely.
     calm: AtomicBool,
     end: AtomicBool,
 }
@@ -62,19 +62,19 @@ struct Shared {
 struct Kept {
     ticks: Vec<Tick>,
     events: Vec<Event>,
-    /// What the window shows of each side.
+    /// The state of each side that the window shows.
     shown: [Option<Glance>; SIDES],
-    /// When the last tick came.
+    /// When the last tick arrived.
     came: Instant,
-    /// What was wrong at the last look: silent, ended.
+    /// Problems at the last check: silence, end of the loop.
     wrong: [bool; 2],
-    /// The window was woken and has not come yet.
+    /// The window was woken and has not been drawn since.
     woken: bool,
 }
 
 impl Door {
-    /// A door to this loop; `wake` is called from another thread when there is something to see. Without a thread to look after it
-    /// the window would be late, never wrong: then `None` stands for the thread.
+    /// Connects to this loop; `wake` is called from another thread when there is something to show. If that thread
+    /// cannot be created, the window is updated later but still correctly.
     pub fn new(handle: Handle, wake: impl Fn() + Send + 'static) -> Self {
         let kept = Kept {
             ticks: Vec::new(),
@@ -93,12 +93,12 @@ impl Door {
         Self { shared, keeper }
     }
 
-    /// The loop itself, for all but ticks and events.
+    /// The loop, for everything but ticks and events.
     pub fn handle(&self) -> &Handle {
         &self.shared.handle
     }
 
-    /// Hands over every event and then every tick that waits, oldest first.
+    /// Passes on every waiting event and then every waiting tick, oldest first.
     pub fn take(&self, mut each: impl FnMut(News<'_>)) {
         let mut kept = self.shared.lock();
         self.shared.bring_in(&mut kept);
@@ -112,17 +112,17 @@ impl Door {
         kept.woken = false;
     }
 
-    /// The window was woken and has not taken in why.
+    /// Whether the window was woken and has not read the news yet.
     pub fn has_woken(&self) -> bool {
         self.shared.lock().woken
     }
 
-    /// When the last tick came, as far as it was looked for.
+    /// When the last tick arrived, as of the last check.
     pub fn last_came(&self) -> Instant {
         self.shared.lock().came
     }
 
-    /// Tells whether the window sleeps from now on.
+    /// Sets whether the window is drawn rarely from now on.
     pub fn rest(&self, calm: bool) {
         if self.shared.calm.swap(calm, Ordering::Relaxed) != calm
             && let Some(keeper) = &self.keeper
@@ -131,7 +131,7 @@ impl Door {
         }
     }
 
-    /// Ends the loop and gives its figures; `None` if its thread died.
+    /// Ends the loop and returns its figures; `None` if its thread has panicked.
     pub fn stop_and_join(mut self) -> Option<Summary> {
         self.dismiss();
         let unused = Arc::clone(&self.shared);
@@ -139,7 +139,7 @@ impl Door {
         Arc::into_inner(unused)?.handle.stop_and_join()
     }
 
-    /// Sends the thread away.
+    /// Ends the thread.
     fn dismiss(&mut self) {
         self.shared.end.store(true, Ordering::Relaxed);
         if let Some(keeper) = self.keeper.take() {
@@ -176,7 +176,7 @@ impl Shared {
         }
     }
 
-    /// Takes over what waits in the loop's queues; true when it changes what is to be seen.
+    /// Reads the loop's queues; returns true if something visible has changed.
     fn bring_in(&self, kept: &mut Kept) -> bool {
         let before = (kept.ticks.len(), kept.events.len());
         self.handle.drain_events(|event| kept.events.push(*event));
@@ -197,7 +197,7 @@ impl Shared {
     }
 }
 
-/// What of some ticks can be seen.
+/// The visible part of some ticks.
 #[derive(Clone, Copy, Debug)]
 struct Glance {
     last: Tick,
@@ -209,7 +209,7 @@ struct Glance {
 }
 
 impl Glance {
-    /// The last of these ticks on this side; `None` of none.
+    /// From these ticks of this side; `None` if there are none.
     fn of(ticks: &[Tick], side: Side) -> Option<Self> {
         let ticks = || ticks.iter().rev().filter(|tick| tick.side == side).take(MEAN_OVER);
         let last = *ticks().next()?;
@@ -224,9 +224,9 @@ impl Glance {
         })
     }
 
-    /// Somebody who sees the one would see another picture for the other.
+    /// Whether the difference would be visible.
     fn differs(&self, now: &Self) -> bool {
-        // What is not finite differs only from what is.
+        // Values that are not finite differ only from finite ones.
         let moved = |a: &Vector3<f64>, b: &Vector3<f64>, least: f64| {
             let by = (a - b).norm();
             by > least || (by.is_nan() && a.norm().is_nan() != b.norm().is_nan())
@@ -253,7 +253,7 @@ mod tests {
 
     use super::*;
 
-    /// A loop at rest, its door, and what wakes the window.
+    /// A loop at rest, its connection, and a channel that reports when the window is woken.
     fn at_rest() -> (Door, mpsc::Receiver<()>) {
         let (rig, scene) = (RigConfig::load("simulated").unwrap(), Scene::load("peg_transfer").unwrap());
         let calibrations = Default::default();
@@ -297,7 +297,7 @@ mod tests {
         wait_for(&door, |tick| tick.state == LoopState::Idle);
         door.rest(true);
         assert!(door.handle().send(Command::Shutdown));
-        // Woken once for whatever came first; and again, because it was there since.
+        // Woken once for the first news, and again because it was read since.
         wakes.recv_timeout(Duration::from_secs(20)).unwrap();
         door.take(|_| {});
         if door.handle().is_running() {

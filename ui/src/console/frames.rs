@@ -1,8 +1,8 @@
-//! What the screen costs: time from picture to picture, work in them, start to the first live picture, processor and memory. All of it
-//! is measured by the running program on itself, for `nima console --frames`.
+//! Measures the cost of the window: time between frames, work per frame, start-up time, processor time and memory. The
+//! program measures itself, for `nima console --frames`.
 //!
-//! Times in ms or s as the names say, shares of one core, memory in MB. Figures of processor and memory come from `/proc` and are zero
-//! where there is none.
+//! Times in ms or s as the names say, processor time as shares of one core, memory in MB. Processor time and memory
+//! come from `/proc` and are zero on systems without it.
 
 use std::{
     collections::BTreeMap,
@@ -12,13 +12,13 @@ use std::{
 
 use serde::Serialize;
 
-/// The window, its shaders and fonts have settled after this time.
+/// Time after which window, shaders and fonts have settled.
 const WARM_UP: Duration = Duration::from_secs(4);
-/// Of a run whose end is known, only so much before it counts.
+/// If the end of the run is known, at most this much before it is measured.
 const LAST: Duration = Duration::from_secs(30);
-/// Threads of the machine under the screen; every other thread is the window's.
+/// Threads of the loop; all other threads belong to the window.
 const MACHINE: [&str; 3] = ["realtime", "supervisor", "emulator"];
-/// Clock ticks of `/proc` per second: fixed at 100 for programs on Linux.
+/// Clock ticks of `/proc` per second; always 100 for programs on Linux.
 const TICKS_PER_S: f64 = 100.0;
 
 /// Percentiles of durations, ms.
@@ -35,7 +35,7 @@ pub struct Spread {
 }
 
 impl Spread {
-    /// Percentiles of these durations (ms); zeros of none.
+    /// Percentiles of these durations (ms); zeros if there are none.
     pub fn of(durations_ms: &[f64]) -> Self {
         let mut sorted = durations_ms.to_vec();
         sorted.sort_by(f64::total_cmp);
@@ -52,38 +52,38 @@ impl Spread {
 pub struct Processor {
     /// The whole process.
     pub process: f64,
-    /// All threads but those of the machine: what the screen costs.
+    /// All threads but those of the loop: the cost of the window.
     pub window: f64,
-    /// The loop and what belongs to it.
+    /// The loop and its supervisor.
     pub machine: f64,
-    /// Each thread by name; threads of the same name together.
+    /// Each thread by name; threads of the same name are added up.
     pub threads: BTreeMap<String, f64>,
 }
 
 /// All figures of a run.
 #[derive(Clone, Debug, Serialize)]
 pub struct Figures {
-    /// What draws, in the driver's words.
+    /// Name of the OpenGL renderer.
     pub renderer: String,
-    /// From the start of the process to the first picture that shows a tick, s.
+    /// Time from the start of the process to the first frame that shows a tick, s.
     pub first_live_picture_s: Option<f64>,
-    /// What was measured over, s.
+    /// Duration of the measurement, s.
     pub seconds: f64,
-    /// Pictures in that time.
+    /// Number of frames in that time.
     pub pictures: usize,
-    /// From one picture to the next, while something was engaged, ms.
+    /// Time between two frames, while something was engaged, ms.
     pub period_ms: Spread,
-    /// Work on the window's own thread in a picture without showing it: layout, triangles, calls of the driver, ms.
+    /// Work of a frame on the window's thread, without displaying it: layout, triangles, driver calls, ms.
     pub work_ms: Spread,
-    /// Our own part of it: panels and plots, without triangles and driver, ms.
+    /// The program's own part of it: panels and plots, without triangles and driver, ms.
     pub layout_ms: Spread,
-    /// Part of the window that was drawn anew, 0 to 1, mean over the pictures.
+    /// Share of the window that was redrawn, 0 to 1, mean over the frames.
     pub drawn_share: f64,
-    /// Processor time over the same stretch.
+    /// Processor time over the same period.
     pub processor: Processor,
-    /// Load of the machine (mean number of running tasks in the last minute) at the end.
+    /// Load average of the computer (last minute) at the end.
     pub load: f64,
-    /// Memory of the process, minute by minute, MB.
+    /// Resident memory of the process, one value per minute, MB.
     pub resident_mb: Vec<f64>,
 }
 
@@ -91,7 +91,7 @@ pub struct Figures {
 #[derive(Debug)]
 pub struct Meter {
     opened: Instant,
-    /// Counting begins so long after the window opened.
+    /// Time after the window opened at which measuring starts.
     from: Duration,
     began: Option<(Instant, BTreeMap<String, f64>)>,
     first_live_s: Option<f64>,
@@ -106,18 +106,18 @@ pub struct Meter {
 /// One picture.
 #[derive(Clone, Copy, Debug)]
 pub struct Picture {
-    /// Since the one before, if that one asked for this one: not while nothing moves.
+    /// Time since the previous frame, if that one requested this one; `None` while nothing moves.
     pub period: Option<Duration>,
-    /// Work of the one before, s.
+    /// Work of the previous frame, s.
     pub work_s: Option<f64>,
-    /// Part of the window that the one before drew anew, 0 to 1.
+    /// Share of the window that the previous frame redrew, 0 to 1.
     pub drawn_share: f64,
-    /// There is a tick on it.
+    /// Whether a tick is shown.
     pub live: bool,
 }
 
 impl Meter {
-    /// Measures a window that opens now and closes after `exit_after`, if that is known.
+    /// Starts to measure a window that opens now and closes after `exit_after`, if that is known.
     pub fn new(exit_after: Option<Duration>) -> Self {
         let from = exit_after.map_or(WARM_UP, |exit| exit.saturating_sub(LAST)).max(WARM_UP);
         Self {
@@ -134,8 +134,8 @@ impl Meter {
         }
     }
 
-    /// Takes in the beginning of a picture. True when another is wanted at once, because only its beginning tells when this one stood
-    /// on the screen.
+    /// Records the start of a frame. Returns true if another frame is needed at once, because only its start shows when
+    /// this one was on the screen.
     pub fn begin(&mut self, picture: &Picture) -> bool {
         if std::mem::take(&mut self.live_pending) {
             self.first_live_s = age_s().or_else(|| Some(self.opened.elapsed().as_secs_f64()));
@@ -157,14 +157,14 @@ impl Meter {
         self.live_pending
     }
 
-    /// Takes in how long our own part of a picture took.
+    /// Records how long the program's own part of a frame took.
     pub fn end(&mut self, layout: Duration) {
         if self.began.is_some() {
             self.layout_ms.push(layout.as_secs_f64() * 1e3);
         }
     }
 
-    /// What was measured; `renderer` in the driver's words.
+    /// The figures; `renderer` is the name of the OpenGL renderer.
     pub fn figures(&self, renderer: &str) -> Figures {
         let seconds = self.began.as_ref().map_or(0.0, |(began, _)| began.elapsed().as_secs_f64());
         let before = self.began.as_ref().map(|(_, threads_s)| threads_s.clone()).unwrap_or_default();
@@ -185,8 +185,8 @@ impl Meter {
 }
 
 impl Processor {
-    /// Shares of one core between two looks at the threads' times (s), so many seconds apart. A thread that began since counts from
-    /// nothing; one that has ended is not seen.
+    /// Shares of one core from two readings of the threads' times (s), `seconds` apart. A thread that started in
+    /// between counts from zero; one that has ended is not included.
     fn between(before: &BTreeMap<String, f64>, now: &BTreeMap<String, f64>, seconds: f64) -> Self {
         let share = |(name, time_s): (&String, &f64)| {
             let used_s = (time_s - before.get(name).copied().unwrap_or(0.0)).max(0.0);
@@ -212,16 +212,16 @@ fn threads_s() -> BTreeMap<String, f64> {
     times_s
 }
 
-/// Name and processor time (s) from a line of `stat`. The name may hold spaces and parentheses.
+/// Name and processor time (s) from a line of `stat`. The name may contain spaces and parentheses.
 fn thread_s(stat: &str) -> Option<(String, f64)> {
     let (head, rest) = stat.rsplit_once(") ")?;
     let name = head.split_once('(')?.1.to_owned();
     let ticks = |place: usize| rest.split(' ').nth(place)?.parse::<f64>().ok();
-    // Fields 14 and 15; the third is the first after the name.
+    // Fields 14 and 15; field 3 is the first one after the name.
     Some((name, (ticks(11)? + ticks(12)?) / TICKS_PER_S))
 }
 
-/// Age of this process, s, within two hundredths.
+/// Age of this process, s, accurate to 0.02 s.
 fn age_s() -> Option<f64> {
     let stat = fs::read_to_string("/proc/self/stat").ok()?;
     let began_ticks: f64 = stat.rsplit_once(") ")?.1.split(' ').nth(19)?.parse().ok()?;
@@ -232,7 +232,7 @@ fn first_number(path: &str) -> Option<f64> {
     fs::read_to_string(path).ok()?.split_whitespace().next()?.parse().ok()
 }
 
-/// Memory of this process that is in use, MB; zero where it cannot be told.
+/// Resident memory of this process, MB; zero if not available.
 fn resident_mb() -> f64 {
     let status = fs::read_to_string("/proc/self/status").unwrap_or_default();
     let line = status.lines().find_map(|line| line.strip_prefix("VmRSS:"));

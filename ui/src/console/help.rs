@@ -1,5 +1,5 @@
-//! For whoever sits down for the first time: a tour of four steps, and a glossary. Both stay under the top bar, so that the stop is
-//! never covered, and hold nothing up.
+//! Help for new users: a tour of four steps, and a glossary. Both stay below the top bar so that the stop button is
+//! never covered, and the loop continues while they are open.
 
 use egui::{Align, Align2, Button, Context, Label, Rect, RichText, ScrollArea, Window, vec2};
 
@@ -11,22 +11,22 @@ use super::{
     theme,
 };
 
-/// What is open.
+/// Which help windows are open.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Help {
-    /// The step of the tour that is shown.
+    /// The step of the tour on display.
     tour: Option<usize>,
-    /// The glossary is open.
+    /// Whether the glossary is open.
     pub glossary: bool,
 }
 
 impl Help {
-    /// Begins the tour.
+    /// Starts the tour.
     pub const fn begin_tour(&mut self) {
         self.tour = Some(0);
     }
 
-    /// Draws what is open into `room`; true in the frame in which the tour ends.
+    /// Draws the open windows into `room`; returns true in the frame in which the tour ends.
     pub(super) fn ui(&mut self, ctx: &Context, room: Rect) -> bool {
         self.glossary_ui(ctx, room);
         let Some(step) = self.tour else { return false };

@@ -1,28 +1,29 @@
-//! What the traces draw: minima and maxima per time bucket, kept while samples arrive, at three resolutions.
+//! Data of the traces: minima and maxima per time bucket, updated with every sample, at three resolutions.
 //!
-//! A frame reads at most a few thousand buckets and never a raw sample: drawing costs the same after an hour as after a
-//! minute, and memory is flat. Times are seconds on the loop's clock; values are newtons here, but nothing depends on it.
+//! A frame reads at most a few thousand buckets and no raw samples, so drawing costs the same after an hour as after a
+//! minute, and memory is constant. Times are seconds on the loop's clock; values are newtons here, but nothing depends
+//! on it.
 
 use std::collections::VecDeque;
 
 use egui_plot::PlotPoint;
 
-/// Values kept per sample: measured x, y, z and rendered x, y, z.
+/// Number of values per sample: measured x, y, z and rendered x, y, z.
 pub const CHANNELS: usize = 6;
 
-/// Buckets kept per level.
+/// Number of buckets per level.
 const CAPACITY: usize = 8192;
-/// Length of a bucket on each level, s: the last 33 s in detail, two minutes, nine minutes.
+/// Length of a bucket on each level, s: covers the last 33 s, two minutes, nine minutes.
 const SPANS_S: [f64; 3] = [0.004, 0.016, 0.064];
 
-/// A stretch without samples that is shown as a gap, s; shorter ones are bridged.
+/// A longer interval without samples is drawn as a gap, s; shorter ones are bridged.
 const GAP_S: f64 = 0.05;
 
-/// A signal ready to be drawn: points with rising x, in runs between gaps.
+/// A signal to be drawn: points with rising x, in runs separated by gaps.
 #[derive(Clone, Debug, Default)]
 pub struct Trace {
     points: Vec<PlotPoint>,
-    /// Where each run but the first begins.
+    /// Index of the first point of each run but the first.
     breaks: Vec<usize>,
 }
 
@@ -39,7 +40,7 @@ impl Trace {
 struct Bucket {
     low: [f32; CHANNELS],
     high: [f32; CHANNELS],
-    /// Bit per channel: the minimum came before the maximum.
+    /// One bit per channel: the minimum came before the maximum.
     low_first: u8,
 }
 
@@ -48,7 +49,7 @@ impl Bucket {
 
     fn add(&mut self, values: &[f32; CHANNELS]) {
         for (channel, &value) in values.iter().enumerate() {
-            // Comparisons with NaN are false: a NaN leaves the bucket as it was.
+            // Comparisons with NaN are false, so NaN does not change the bucket.
             if value < self.low[channel] {
                 self.low[channel] = value;
                 self.low_first &= !(1 << channel);
@@ -68,7 +69,7 @@ impl Bucket {
 #[derive(Debug)]
 struct Level {
     span_s: f64,
-    /// Number of the first bucket kept, counted from time zero.
+    /// Number of the first stored bucket, counted from time zero.
     first: u64,
     buckets: VecDeque<Bucket>,
 }
@@ -89,7 +90,7 @@ impl Level {
             self.buckets.clear();
             self.first = number;
         }
-        // Samples that never came leave empty buckets, so that the place in the queue stays the time.
+        // Missing samples leave empty buckets, so that the index corresponds to the time.
         while self.first + (self.buckets.len() as u64) <= number {
             if self.buckets.len() == CAPACITY {
                 self.buckets.pop_front();
@@ -107,7 +108,7 @@ impl Level {
         self.number(t_s) >= self.first
     }
 
-    /// Kept buckets that touch `from_s..=to_s`, with the time each begins at.
+    /// Stored buckets that overlap `from_s..=to_s`, with the start time of each.
     fn between(&self, from_s: f64, to_s: f64) -> impl Iterator<Item = (f64, &Bucket)> {
         let from = self.number(from_s).saturating_sub(self.first).min(self.buckets.len() as u64) as usize;
         let to = (self.number(to_s) + 1).saturating_sub(self.first).min(self.buckets.len() as u64) as usize;
@@ -136,7 +137,7 @@ impl Default for History {
 }
 
 impl History {
-    /// Takes one sample at `t_s` (s, not before the one before it by more than what is kept).
+    /// Adds a sample at `t_s` (s; not earlier than the previous one by more than the stored time).
     pub fn push(&mut self, t_s: f64, values: &[f32; CHANNELS]) {
         if !t_s.is_finite() || t_s < 0.0 {
             return;
@@ -153,21 +154,21 @@ impl History {
         self.latest_s
     }
 
-    /// Time of the oldest moment still kept, s.
+    /// Time of the oldest stored sample, s.
     pub fn oldest_s(&self) -> f64 {
         let coarsest = &self.levels[SPANS_S.len() - 1];
         self.began_s.unwrap_or(0.0).max(coarsest.first as f64 * coarsest.span_s)
     }
 
-    /// The finest level that reaches back to `from_s` with no more than about `most` buckets up to `to_s`.
+    /// The finest level that reaches back to `from_s` and has at most about `most` buckets up to `to_s`.
     fn level(&self, from_s: f64, to_s: f64, most: usize) -> &Level {
         let from_s = from_s.max(self.oldest_s());
         let fits = |level: &&Level| (to_s - from_s) / level.span_s <= most as f64 && level.reaches_back_to(from_s);
         self.levels.iter().find(fits).unwrap_or(&self.levels[SPANS_S.len() - 1])
     }
 
-    /// Replaces `trace` by the signal between two times, two points a bucket, x counted from `origin_s`. The newest bucket comes when it
-    /// is full.
+    /// Replaces `trace` by the signal between two times, two points per bucket, x relative to `origin_s`. The newest
+    /// bucket is included when it is full.
     pub fn trace(&self, channel: usize, (from_s, to_s): (f64, f64), origin_s: f64, most: usize, trace: &mut Trace) {
         trace.points.clear();
         trace.breaks.clear();

@@ -1,8 +1,9 @@
-//! The calibrations in force on each side, as the screen tells them and as the loop gets them: those of the sensor and tool that are
-//! mounted there.
+//! The calibrations in force on each side, for display and for the loop: those of the sensor and tool that are mounted
+//! there.
 //!
-//! The rig says which these are. On a simulated one the rig file names them. On one with devices each sensor tells its serial number
-//! once it is open; until then nothing is in force, and [`InForce::meet`] sees to it afterwards, whenever a sensor comes or goes.
+//! The rig determines sensor and tool. For a simulated rig they are named in the rig file. On a rig with devices each
+//! sensor reports its serial number when it is opened; before that nothing is in force, and afterwards
+//! [`InForce::meet`] updates the calibrations whenever a sensor connects or disconnects.
 
 mod of_side;
 #[cfg(test)]
@@ -28,18 +29,18 @@ use super::{
 };
 use crate::console::text;
 
-/// What is in force, and what stood in the way.
+/// The calibrations in force, and problems with them.
 #[derive(Debug)]
 pub struct InForce {
     store: Option<Store>,
     sides: [OfSide; SIDES],
-    /// The arm that the wizards calibrate.
+    /// The arm that is calibrated by the wizards.
     side: Side,
     told: Option<String>,
 }
 
 impl InForce {
-    /// What the store in `folder` (or the user's own) holds for the sensors and tools of this rig.
+    /// Loads the calibrations for the sensors and tools of this rig from the store in `folder` (or the user's own).
     pub fn load(folder: Option<&Path>, rig: &RigConfig, scene: &Scene) -> Self {
         let store = folder.map_or_else(|| Store::of_user().ok(), |folder| Some(Store::open(folder)));
         let mut this = Self { store, sides: Default::default(), side: Side::Right, told: None };
@@ -47,7 +48,7 @@ impl InForce {
         this
     }
 
-    /// Goes over to a loop of this rig and scene that is about to begin.
+    /// Prepares for a loop of this rig and scene that is about to start.
     pub fn bind(&mut self, rig: &RigConfig, scene: &Scene) {
         for side in Side::ALL {
             let bound = if !scene.measures_at_wrist(rig, side) {
@@ -70,15 +71,15 @@ impl InForce {
         *now = OfSide::load(self.store.as_ref(), bound, now.last.take());
     }
 
-    /// Looks who the sensors of a running loop are, and puts in force what is known of them. True for each side whose sensor is
-    /// another one than before.
+    /// Reads the identity of the sensors of a running loop, and puts their calibrations in force. Returns true for each
+    /// side whose sensor has changed.
     pub fn meet(&mut self, handle: &Handle, rig: &RigConfig) -> [bool; SIDES] {
         Side::ALL.map(|side| self.meet_one(side, handle, rig).unwrap_or(false))
     }
 
     fn meet_one(&mut self, side: Side, handle: &Handle, rig: &RigConfig) -> Option<bool> {
         let tool = &rig.devices.as_ref()?.arm(side)?.tool;
-        // The change first: if the sensor is exchanged after this, what is found now is refused.
+        // Read the change first: if the sensor is exchanged after this, the loop refuses the calibrations.
         let change = handle.wrist_change(side);
         let now = &self.sides[side.index()];
         if now.bound == Bound::Nothing || now.since == Some(change) {
@@ -92,13 +93,13 @@ impl InForce {
         };
         self.go_over(side, bound);
         let now = &mut self.sides[side.index()];
-        // What the loop did not take is offered again.
+        // If the loop did not accept them, they are offered again in the next frame.
         let taken = handle.put_in_force(change, &now.calibrations(rig.tip_force.fallback));
         now.since = taken.then_some(change);
         Some(before.is_some() && now.last != before)
     }
 
-    /// A sensor that has not told who it is decides what is in force.
+    /// Whether a sensor has yet to report its identity.
     pub fn is_waiting(&self) -> bool {
         self.sides.iter().any(|of_side| of_side.bound == Bound::Waiting)
     }
@@ -108,22 +109,22 @@ impl InForce {
         self.sides.iter().find_map(OfSide::without_gravity)
     }
 
-    /// The arm that the wizards calibrate.
+    /// The arm that is calibrated by the wizards.
     pub const fn side(&self) -> Side {
         self.side
     }
 
-    /// Chooses the arm that the wizards calibrate.
+    /// Selects the arm that is calibrated by the wizards.
     pub const fn choose(&mut self, side: Side) {
         self.side = side;
     }
 
-    /// Takes in one tick of the loop.
+    /// Adds one tick of the loop.
     pub fn watch(&mut self, tick: &Tick) {
         self.sides[tick.side.index()].watch(tick);
     }
 
-    /// How gravity stands since the loop began, on the side that needs more attention; none where nothing is to be checked.
+    /// Result of the check of the bias, of the side that needs more attention; `None` if there is nothing to check.
     pub fn drift(&self) -> Option<Drift> {
         let attention = |drift: &Drift| match drift {
             Drift::Fine { .. } => 0,
@@ -134,7 +135,7 @@ impl InForce {
         self.sides.iter().filter_map(OfSide::drift).max_by_key(attention)
     }
 
-    /// By how much a bias has moved, if one has, N.
+    /// Change of the bias since the calibration, N; `None` if there is none.
     pub fn bias_moved_n(&self) -> Option<f64> {
         let moved = |of_side: &OfSide| match of_side.drift() {
             Some(Drift::Moved { by_n }) => Some(by_n),
@@ -143,12 +144,12 @@ impl InForce {
         self.sides.iter().filter_map(moved).max_by(f64::total_cmp)
     }
 
-    /// For a loop of this rig that is about to begin.
+    /// Calibrations for a loop of this rig that is about to start.
     pub fn calibrations(&mut self, rig: &RigConfig) -> [Calibrations; SIDES] {
         self.sides.each_mut().map(|of_side| of_side.calibrations(rig.tip_force.fallback))
     }
 
-    /// What a new calibration would belong to.
+    /// Sensor and tool to which a new calibration would be bound.
     pub fn binding(&self) -> Binding {
         let of_side = &self.sides[self.side.index()];
         let (sensor, tool) =
@@ -157,7 +158,7 @@ impl InForce {
         Binding { sensor, tool, date: utc_now(), correspondence, store: self.store.clone() }
     }
 
-    /// Keeps a record and takes it into force; words for the screen.
+    /// Saves a record and puts it in force; returns a text for the screen.
     pub fn save(&mut self, saving: Saving) -> Result<String, String> {
         let store = self.store.as_ref().ok_or(text::calibrations::NO_FOLDER)?;
         let of_side = &mut self.sides[self.side.index()];
@@ -169,19 +170,19 @@ impl InForce {
         Ok(text::calibrations::saved(&path))
     }
 
-    /// Something that went wrong, for the card.
+    /// Adds a problem to be displayed.
     pub fn tell(&mut self, words: String) {
         self.told = Some(words);
     }
 
-    /// What is wrong, and what can be done.
+    /// Problems, and what can be done.
     pub fn told(&self) -> Vec<String> {
         let [right, left] = &self.sides;
         let of_sides = [right.told(left.wrist()), left.told(right.wrist())];
         self.told.clone().into_iter().chain(of_sides.into_iter().flatten()).collect()
     }
 
-    /// One line for each calibration that matters to this rig.
+    /// One line for each calibration that matters for this rig.
     pub fn lines(&self) -> Vec<String> {
         let at_wrist = |side: &Side| self.sides[side.index()].bound != Bound::Nothing;
         let sides: Vec<_> = Side::ALL.into_iter().filter(at_wrist).collect();

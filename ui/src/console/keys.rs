@@ -1,11 +1,11 @@
-//! Keys that mean the same everywhere.
+//! Keys with the same function in every view.
 
 use egui::{Context, Event, Key};
 
 use super::roles::Role;
 
-/// Space and Escape stop, wherever the keyboard's focus is; nothing else sees them, so no button is pressed by them. While a name is
-/// being written, Space is a letter and Escape alone stops.
+/// Space and Escape stop, wherever the keyboard focus is; the key press is consumed, so that it triggers no button.
+/// While a text is being entered, Space is a letter and only Escape stops.
 pub(super) fn stop_pressed(ctx: &Context) -> bool {
     let writing = ctx.text_edit_focused();
     ctx.input_mut(|input| {
@@ -28,22 +28,22 @@ pub(super) fn role_pressed(ctx: &Context) -> Option<Role> {
     ctx.input(|input| Role::ALL.into_iter().find(|role| input.key_pressed(role.key())))
 }
 
-/// This moment shall be marked.
+/// Whether the key that sets a mark was pressed.
 pub(super) fn mark_pressed(ctx: &Context) -> bool {
     !ctx.text_edit_focused() && ctx.input(|input| input.key_pressed(Key::E))
 }
 
-/// Somebody has seen the alarms.
+/// Whether the key that acknowledges alarms was pressed.
 pub(super) fn acknowledge_pressed(ctx: &Context) -> bool {
     !ctx.text_edit_focused() && ctx.input(|input| input.modifiers.is_none() && input.key_pressed(Key::A))
 }
 
-/// The list of alarms shall be opened or closed.
+/// Whether the key for the list of alarms was pressed.
 pub(super) fn alarms_pressed(ctx: &Context) -> bool {
     ctx.input(|input| input.key_pressed(Key::F5))
 }
 
-/// The glossary shall be opened or closed.
+/// Whether the key for the glossary was pressed.
 pub(super) fn glossary_pressed(ctx: &Context) -> bool {
     ctx.input(|input| input.key_pressed(Key::F4))
 }

@@ -1,4 +1,4 @@
-//! What the screen knows of the loop: made from ticks and events, read by every panel, changed by none.
+//! The state of the loop as known to the window: updated from ticks and events, read by every panel, changed by none.
 
 mod intake;
 
@@ -32,34 +32,34 @@ use super::{
     text,
 };
 
-/// Window of the degree histograms, s.
+/// Period of the degree histograms, s.
 pub const DEGREES_S: f64 = 120.0;
-/// Length of the trend of errors, s; one point a second.
+/// Period of the trend of errors, s; one point per second.
 pub const TREND_S: usize = 180;
-/// Marks kept.
+/// Number of marks stored.
 const MARKS: usize = 100;
-/// Length of the tip's trail, s, and time between its points.
+/// Duration of the tip's trail, s, and time between its points.
 const TRAIL_S: f64 = 1.2;
 const TRAIL_STEP_S: f64 = 0.02;
-/// Figures that are read, not watched, change four times a second.
+/// Figures are updated four times a second, so that they can be read.
 const FIGURES_EVERY: Duration = Duration::from_millis(250);
-/// The two large force readings follow the arrows more closely.
+/// The two large force readings are updated more often.
 const READINGS_EVERY: Duration = Duration::from_millis(100);
-/// How long a refused command stays on the screen.
+/// How long a refused command is displayed.
 const REFUSAL_SHOWN: Duration = Duration::from_secs(6);
 
 /// A command that was refused.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Refused {
-    /// By which arm pair.
+    /// The side that refused it.
     pub side: Side,
-    /// Which.
+    /// The command.
     pub command: Command,
-    /// Why.
+    /// The reason.
     pub why: Refusal,
 }
 
-/// The screen's knowledge.
+/// The state of the loop as known to the window.
 #[derive(Debug)]
 pub struct Live {
     /// The rig.
@@ -70,37 +70,37 @@ pub struct Live {
     pub ticks: [Option<Tick>; SIDES],
     /// Forces over time, of each side.
     pub history: [History; SIDES],
-    /// Pairs of forces of the last seconds, of each side.
+    /// Forces of the last seconds, of each side.
     pub clouds: [Cloud; SIDES],
-    /// Moments that the operator marked, s on the loop's clock, oldest first.
+    /// Marks set by the operator, s on the loop's clock, oldest first.
     pub marks_s: VecDeque<f64>,
-    /// Degrees chosen by the console.
+    /// Polynomial degrees chosen by the identification.
     pub degrees: DegreeShares,
-    /// Degrees the paper's in-window rule would choose.
+    /// Degrees that the paper's in-window rule would choose.
     pub paper_degrees: DegreeShares,
-    /// Error of each mode at the horizon, N, second by second, oldest first.
+    /// Error of each mode at the horizon, N, one value per second, oldest first.
     pub trend_n: VecDeque<[f64; MODES]>,
-    /// Gates of each side over the last moments.
+    /// Recent activity of each side's gates.
     pub gates: [Gates; SIDES],
     /// The last change of each side's state.
     pub changes: [Option<Change>; SIDES],
-    /// How stiff each side's contact is, or the last one was.
+    /// Stiffness of each side's present or last contact.
     pub stiffness: [ContactStiffness; SIDES],
-    /// Numbers for reading.
+    /// Smoothed figures for display.
     pub figures: Figures,
     /// Recent positions of each side's tip, m, oldest first.
     pub trails: [VecDeque<Vector3<f32>>; SIDES],
-    /// Periods that the loop missed, second by second.
+    /// Periods that the loop missed, per second.
     pub deadlines: Deadlines,
-    /// What the operating system granted.
+    /// Real-time privileges that the operating system granted.
     pub scheduling: Option<Scheduling>,
-    /// The 3-D view gave up smooth edges, because this computer draws too slowly.
+    /// Antialiasing in 3-D was switched off because this computer draws too slowly.
     pub rough_edges: bool,
-    /// By how much the bias of the wrist sensor was found to have moved, if it has, N.
+    /// Change of the wrist sensor's bias since its calibration, N; `None` if it has not changed.
     pub bias_moved_n: Option<f64>,
-    /// The devices of the rig; empty where everything is simulated.
+    /// The devices of the rig; empty if everything is simulated.
     pub roster: Roster,
-    /// How they are, in the same order.
+    /// Health of the devices, in the same order.
     pub healths: Healths,
     first_fault: Option<(f64, Fault)>,
     refusal: Option<(Instant, Refused)>,
@@ -122,7 +122,7 @@ pub struct Live {
 }
 
 impl Live {
-    /// Nothing known yet.
+    /// Before the first tick.
     pub fn new(rig: RigConfig, scene: Scene) -> Self {
         let ticks = (DEGREES_S * rig.rate_hz) as usize;
         let now = Instant::now();
@@ -172,12 +172,12 @@ impl Live {
         self.tick_at = self.tick_at.max(at);
     }
 
-    /// What moves all the time is drawn anew at most this often, s: on a slow computer every second frame.
+    /// Least time between redrawing moving parts, s: on a slow computer every second frame.
     pub const fn least_step_s(&self) -> f64 {
         if self.rough_edges { 1.0 / 15.0 } else { 0.0 }
     }
 
-    /// Takes in how long the console's own frames take: from the last to this one, and its work (s).
+    /// Records the time since the last frame and its work (s).
     pub fn frame(&mut self, period_s: f64, work_s: Option<f64>) {
         self.frames.record(period_s);
         self.frame_work.push(work_s.unwrap_or(0.0) * 1e3, period_s, 1.0);
@@ -193,12 +193,12 @@ impl Live {
         &self.work
     }
 
-    /// From the arrival of a measurement to when the force made from it was given to the device.
+    /// Time from the arrival of a measurement until the force computed from it was given to the device.
     pub const fn sample_to_force(&self) -> &Percentiles {
         &self.sample_to_force
     }
 
-    /// Marks this moment.
+    /// Sets a mark at the present time.
     pub fn mark(&mut self) {
         let Some(tick) = self.first_tick() else { return };
         let t_s = tick.t_s;
@@ -213,58 +213,58 @@ impl Live {
         self.ticks[side.index()].as_ref()
     }
 
-    /// Newest tick of the right arm pair, or the only one: what is the same for both is read from it.
+    /// Newest tick of the right arm pair, used for everything that is common to both.
     pub const fn first_tick(&self) -> Option<&Tick> {
         self.tick_of(Side::Right)
     }
 
-    /// The arm pairs that the loop runs; the right one is always there.
+    /// The arm pairs of the loop; the right one always exists.
     pub fn sides(&self) -> impl Iterator<Item = Side> {
         Side::ALL.into_iter().filter(|&side| side == Side::Right || self.is_bimanual())
     }
 
-    /// There are two arm pairs.
+    /// Whether there are two arm pairs.
     pub const fn is_bimanual(&self) -> bool {
         self.scene.left.is_some() || self.tick_of(Side::Left).is_some()
     }
 
-    /// State of the loop as last seen, of two arm pairs the one that needs more attention; idle before anything came.
+    /// Last state of the loop; with two arm pairs the one that needs more attention; idle before the first tick.
     pub fn state(&self) -> LoopState {
         let states = self.ticks.iter().flatten().map(|tick| tick.state);
         states.max_by_key(|state| attention(*state)).unwrap_or(LoopState::Idle)
     }
 
-    /// Mode in force.
+    /// Present mode.
     pub fn mode(&self) -> Mode {
         self.first_tick().map_or(self.rig.mode, |tick| tick.mode)
     }
 
-    /// Gain in force.
+    /// Present gain.
     pub fn gain(&self) -> f64 {
         self.first_tick().map_or(self.rig.gates.gain, |tick| tick.gates.gain)
     }
 
-    /// Delay in force, s.
+    /// Present delay, s.
     pub fn delay_s(&self) -> f64 {
         self.first_tick().map_or(self.rig.delay_s, |tick| tick.delay_s)
     }
 
-    /// The last command that was refused, for a few seconds.
+    /// The last refused command, for some seconds.
     pub fn refusal(&self) -> Option<Refused> {
         self.refusal.filter(|(at, _)| at.elapsed() < REFUSAL_SHOWN).map(|(_, refused)| refused)
     }
 
-    /// Settings of the gates in force.
+    /// Present settings of the gates.
     pub fn gate_settings(&self) -> ChainSettings {
         self.first_tick().map_or(self.rig.gates, |tick| tick.gate_settings)
     }
 
-    /// Stiffness of the stiffer contact that either hand has or had last, N/m: the gain is the same for both.
+    /// Stiffness of the stiffer of both hands' present or last contacts, N/m: the gain is common to both.
     pub fn stiffness_n_m(&self) -> Option<f64> {
         self.stiffness.iter().filter_map(ContactStiffness::n_m).max_by(f64::total_cmp)
     }
 
-    /// The devices that are wanted and do not deliver, in the order of the roster.
+    /// Devices that are wanted and do not deliver, in the order of the roster.
     pub fn missing(&self) -> impl Iterator<Item = Missing> {
         self.roster.iter().zip(&self.healths.devices).enumerate().filter_map(|(place, (entry, health))| {
             let was_there = match health.standing {
@@ -275,14 +275,14 @@ impl Live {
             let (cause, cure) = match (entry.view.report().trouble, health.standing) {
                 (Some(trouble), _) => (trouble.to_string(), trouble.cure()),
                 (None, Standing::Lost(loss)) => (loss.cause().to_owned(), text::alarms::DEVICE_MISSING_CURE.to_owned()),
-                // The first attempt to open it takes its time.
+                // The first attempt to open a device takes some time.
                 (None, _) => return None,
             };
             Some(Missing { place, name: entry.name.clone(), was_there, cause, cure })
         })
     }
 
-    /// What alarms are judged from.
+    /// The data from which alarms are determined.
     pub fn signs(&self, stop_is_stuck: bool) -> Signs {
         Signs {
             missing: self.missing().collect(),

@@ -1,4 +1,4 @@
-//! How the console looks: light or dark, and how large. Kept from one day to the next.
+//! The View menu: appearance of the console, saved between sessions.
 
 use crate::console::text;
 use egui::{Button, Context, Ui, vec2};
@@ -11,7 +11,7 @@ use super::{
     settings::{SCALES, Settings},
 };
 
-/// What every view needs, in points: a larger scale than the window has room for is not used.
+/// Size that every view needs, in points; a larger scale than the window has space for is not used.
 const NEEDED: egui::Vec2 = vec2(1100.0, 680.0);
 const STEPS_PERCENT: [u16; 5] = [100, 125, 150, 175, 200];
 
@@ -63,7 +63,7 @@ pub(super) fn menu_ui(ui: &mut Ui, settings: &mut Settings, help: &mut Help, ala
     response.on_hover_text(text::menu::VIEW_HOVER);
 }
 
-/// Whether alarms sound, and what stands in the way.
+/// Switch for alarm sounds, and why they cannot be played.
 fn sound_ui(ui: &mut Ui, settings: &mut Settings, alarms: &mut Alarms) {
     let meaning = text::menu::SOUND_HOVER;
     ui.checkbox(&mut settings.sound, text::menu::SOUND).on_hover_text(meaning);
@@ -72,7 +72,7 @@ fn sound_ui(ui: &mut Ui, settings: &mut Settings, alarms: &mut Alarms) {
     }
 }
 
-/// Which panels are on the desk.
+/// Switches for the panels on the desk.
 fn panels_ui(ui: &mut Ui, layout: &mut Layout) {
     ui.label(text::menu::PANELS).on_hover_text(text::menu::PANELS_HOVER);
     for pair in Panel::ALL.chunks(2) {
@@ -94,7 +94,7 @@ fn panels_ui(ui: &mut Ui, layout: &mut Layout) {
     }
 }
 
-/// Puts the settings in force; call at the start of a frame.
+/// Applies the settings; call at the start of a frame.
 pub(super) fn apply(ctx: &Context, settings: &mut Settings) {
     super::theme::choose(ctx, settings.light);
     ctx.options_mut(|options| options.zoom_with_keyboard = false);

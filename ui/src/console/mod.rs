@@ -1,8 +1,8 @@
 //! The operator's window on one running loop.
 //!
-//! Takes a [`Handle`]: ticks and events come out of it, commands go in. Panels never change the machine; they show what
-//! comes back in the ticks and put what the operator asks into an outbox. All panels are plain functions over
-//! [`live::Live`], so they can be driven in tests without a screen. Only `scene3d/gl.rs` talks to the GPU.
+//! Receives ticks and events through a [`Handle`] and sends commands through it. Panels never change the loop directly;
+//! they show what the ticks report and put the operator's commands into an outbox. All panels are plain functions of
+//! [`live::Live`], so they can be tested without a screen. Only `scene3d/gl.rs` uses the GPU.
 
 pub mod alarms;
 pub mod app;
@@ -44,32 +44,32 @@ pub use app::ConsoleApp;
 
 use crate::leaving::Leave;
 
-/// What may be asked of the window from outside, for pictures and tests. The default opens it until it is closed.
+/// Options of the window, for screenshots and tests. By default it stays open until it is closed.
 #[derive(Clone, Debug, Default)]
 pub struct Options {
-    /// Close the window by itself after this time.
+    /// Close the window after this time.
     pub exit_after: Option<Duration>,
-    /// Save the window as PNG here just before it closes by itself (or after three seconds if it does not).
+    /// Save a screenshot (PNG) just before the window closes by itself (or after three seconds if it does not).
     pub screenshot: Option<PathBuf>,
-    /// Take pictures of every view, then close.
+    /// Take screenshots of every view, then close.
     pub pictures: Option<pictures::Album>,
-    /// Begin in this role instead of the last one.
+    /// Start in this role instead of the last one.
     pub role: Option<roles::Role>,
-    /// Begin with this wizard.
+    /// Open this wizard at the start.
     pub wizard: Option<wizards::Which>,
-    /// Write the loop's figures here when the window is closed.
+    /// Write the loop's figures to this file when the window is closed.
     pub summary: Option<PathBuf>,
-    /// Write what the screen costs here when the window is closed.
+    /// Write the cost of the window to this file when it is closed.
     pub frames: Option<PathBuf>,
-    /// Length of the traces at first, s.
+    /// Initial length of the traces, s.
     pub traces_s: Option<f64>,
-    /// Hold the window up for so long, once.
+    /// Block the window for this time, once.
     pub stall: Option<Duration>,
-    /// What asks the console to end from outside.
+    /// Requests to end the console.
     pub leave: Leave,
 }
 
-/// Opens the console on a running loop; returns when the window is closed and the loop has ended.
+/// Opens the console for a running loop; returns when the window is closed and the loop has ended.
 pub fn run(handle: Handle, rig: RigConfig, scene: Scene, options: Options) -> anyhow::Result<()> {
     let viewport = egui::ViewportBuilder::default()
         .with_title(text::top_bar::NIMA_CONSOLE)
@@ -80,7 +80,8 @@ pub fn run(handle: Handle, rig: RigConfig, scene: Scene, options: Options) -> an
         viewport,
         renderer: eframe::Renderer::Glow,
         depth_buffer: 24,
-        // For gradients, of which egui draws none here; in software it costs a part of every point.
+        // Only useful for gradients, which egui does not draw here; with a software renderer it costs time for every
+        // pixel.
         dithering: false,
         centered: true,
         ..Default::default()
@@ -90,7 +91,7 @@ pub fn run(handle: Handle, rig: RigConfig, scene: Scene, options: Options) -> an
         .map_err(|error| NoWindow::new(&error.to_string()).into())
 }
 
-/// The console with the user's settings; pictures are taken with the defaults and leave the settings alone.
+/// The console with the user's settings; screenshots use the defaults and do not change the settings.
 fn console(
     cc: &eframe::CreationContext<'_>,
     handle: Handle,
@@ -102,16 +103,16 @@ fn console(
     ConsoleApp::new(cc, handle, rig, scene).with_settings(settings).with_options(options)
 }
 
-/// No window could be opened: there is no display, or it has no usable OpenGL.
+/// No window could be opened: there is no display, or no usable OpenGL.
 #[derive(Debug, thiserror::Error)]
 #[error("{reason}")]
 pub struct NoWindow {
-    /// What the window system said (its own error cannot cross threads; its words are what matters).
+    /// Message of the window system (its error type cannot be sent between threads).
     pub reason: String,
 }
 
 impl NoWindow {
-    /// The window system's words without the place in its source that they may begin with.
+    /// The message without the position in the source code with which it may begin.
     fn new(words: &str) -> Self {
         let after_place = words.rsplit_once(".rs:").and_then(|(_, rest)| rest.split_once(": "));
         Self { reason: after_place.map_or(words, |(_, reason)| reason).to_owned() }

@@ -1,18 +1,18 @@
-//! What the operator asked for and the loop has not taken yet.
+//! Commands of the operator that the loop has not received yet.
 
 use nima_machine::{messages::Command, runtime::Handle};
 
-/// Commands on their way; a stop overtakes everything.
+/// Queue of commands; a stop overtakes all others.
 #[derive(Debug, Default)]
 pub struct Outbox {
     waiting: Vec<Command>,
-    /// A stop was offered to the loop and not taken.
+    /// A stop could not be put into the loop's queue.
     stop_refused: bool,
 }
 
 impl Outbox {
-    /// Puts a command in. A newer value of the same setting replaces the one that still waits, so that a dragged slider
-    /// never fills the loop's queue; a stop throws away all that waits, because none of it is wanted any more.
+    /// Adds a command. A newer value of a setting replaces a waiting one, so that dragging a slider does not fill the
+    /// loop's queue. A stop removes all waiting commands, because none of them is wanted any more.
     pub fn push(&mut self, command: Command) {
         if command == Command::Stop {
             self.waiting.clear();
@@ -21,7 +21,8 @@ impl Outbox {
         self.waiting.push(command);
     }
 
-    /// Hands over what the loop takes; the rest stays for the next frame. Without a loop nothing is taken.
+    /// Sends commands while the loop's queue has room; the others wait for the next frame. Without a loop nothing is
+    /// sent.
     pub fn flush(&mut self, handle: Option<&Handle>) {
         self.flush_into(|command| handle.is_some_and(|handle| handle.send(command)));
     }
@@ -32,12 +33,13 @@ impl Outbox {
         self.stop_refused = self.holds_stop();
     }
 
-    /// A stop is on its way.
+    /// Whether a stop is waiting.
     pub fn holds_stop(&self) -> bool {
         self.waiting.contains(&Command::Stop)
     }
 
-    /// The stop itself was not taken by the loop: the operator must know. Not yet so in the frame in which it is asked for.
+    /// Whether the loop's queue had no room for a stop, which the operator must know. Not yet true in the frame of the
+    /// request.
     pub const fn stop_is_stuck(&self) -> bool {
         self.stop_refused
     }

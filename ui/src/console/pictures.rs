@@ -1,4 +1,4 @@
-//! Pictures for the README and the documents, taken by the program of itself: every view in turn, each in a moment of contact.
+//! Screenshots for the README and the documents: every view in turn, each during a contact.
 
 use std::{
     path::{Path, PathBuf},
@@ -20,20 +20,20 @@ use super::{
 };
 use crate::telling::tell;
 
-/// The traces are full of data after this time.
+/// Time after which the traces are full.
 const FILLED: Duration = Duration::from_secs(11);
-/// A view has settled after this time.
+/// Time after which a view has settled.
 const SETTLED: Duration = Duration::from_millis(1200);
-/// A contact is waited for so long.
+/// Longest wait for a contact.
 const TIMEOUT: Duration = Duration::from_secs(6);
-/// A force worth a picture, N.
+/// Force of the contact at which a screenshot is taken, N.
 const CONTACT_N: f64 = 1.5;
-/// A loop that is not engaged for so long gives no picture.
+/// If the loop is not engaged for this time, no screenshots are taken.
 const GIVE_UP: Duration = Duration::from_secs(10);
-/// Time for the last picture to be taken.
+/// Time to save the last screenshot before the window closes.
 const LAST: Duration = Duration::from_millis(700);
 
-/// Name of the file, role, the panel that is brought to the front, light.
+/// File name, role, panel to bring to the front, light palette.
 const SHOTS: [(&str, Role, Option<Panel>, bool); 5] = [
     ("console", Role::Technician, None, false),
     ("safety", Role::Technician, Some(Panel::Safety), false),
@@ -42,7 +42,7 @@ const SHOTS: [(&str, Role, Option<Panel>, bool); 5] = [
     ("demo", Role::Demo, None, false),
 ];
 
-/// Where the pictures go, and how many were saved.
+/// Folder of the screenshots, and how many have been saved.
 #[derive(Clone, Debug)]
 pub struct Album {
     folder: PathBuf,
@@ -50,18 +50,18 @@ pub struct Album {
 }
 
 impl Album {
-    /// Pictures into this folder, which must exist.
+    /// Screenshots in this folder, which must exist.
     pub fn new(folder: &Path) -> Self {
         Self { folder: folder.to_path_buf(), saved: Arc::default() }
     }
 
-    /// All pictures were saved.
+    /// Whether all screenshots were saved.
     pub fn is_complete(&self) -> bool {
         self.saved.load(Ordering::Relaxed) == SHOTS.len()
     }
 }
 
-/// Which picture is next, and since when its view is shown.
+/// The next screenshot, and since when its view has been shown.
 #[derive(Debug)]
 pub(super) struct Photographer {
     album: Album,
@@ -75,8 +75,8 @@ impl Photographer {
         Self { album, next: 0, since: Instant::now(), touching: false }
     }
 
-    /// Sets the next view, takes its picture when it is ready; true when all are taken or
-    /// the loop has stopped.
+    /// Shows the next view and takes its screenshot when it is ready; returns true when all are taken or the loop has
+    /// stopped.
     pub(super) fn step(&mut self, ctx: &egui::Context, live: &Live, settings: &mut Settings) -> bool {
         let Some((name, role, front, light)) = SHOTS.get(self.next) else { return self.since.elapsed() > LAST };
         (settings.role, settings.light) = (*role, *light);
@@ -86,7 +86,7 @@ impl Photographer {
         let engaged = live.state() == LoopState::Engaged;
         let touching =
             live.first_tick().is_some_and(|tick| tick.measured_n.norm().min(tick.rendered_n.norm()) > CONTACT_N);
-        // At its beginning: the picture itself comes a frame or two later.
+        // At the start of the contact, because the screenshot is taken a frame or two later.
         let before = std::mem::replace(&mut self.touching, touching);
         let contact = touching && !before;
         if shown > least + GIVE_UP {

@@ -1,4 +1,4 @@
-//! What the screen reads off the ticks: gates as shares of the last moments, figures that can be read, changes of state.
+//! Values derived from the ticks for display: recent activity of the gates, smoothed figures, changes of state.
 
 use nima_core::{
     impedance::MODES,
@@ -12,32 +12,32 @@ use nima_machine::{
 
 use super::rolling::Fading;
 
-/// What the gates did lately.
+/// Recent activity of the gates.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Gates {
-    /// Share of recent ticks in which each acted, indexed by [`Gate::index`].
+    /// Share of recent ticks in which each gate acted, indexed by [`Gate::index`].
     acting: [Fading; GATES],
     /// Force withheld by the dead band, N.
     pub withheld_n: Fading,
 }
 
-/// How an arm pair came into its present state.
+/// How an arm pair entered its present state.
 #[derive(Clone, Copy, Debug)]
 pub struct Change {
-    /// When, s on the loop's clock.
+    /// Time, s on the loop's clock.
     pub t_s: f64,
-    /// From which state.
+    /// Previous state.
     pub from: LoopState,
-    /// Why.
+    /// Reason.
     pub why: Why,
 }
 
-/// Numbers as shown: steady enough to be read.
+/// Figures for display, smoothed so that they can be read.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Figures {
-    /// Mean size of the measured force of each side, N, indexed by `Side::index`.
+    /// Mean magnitude of the measured force of each side, N, indexed by `Side::index`.
     pub measured_n: [f64; SIDES],
-    /// Mean size of the rendered force of each side, N.
+    /// Mean magnitude of the rendered force of each side, N.
     pub rendered_n: [f64; SIDES],
     /// Error of each mode at the horizon, N, mean over the last seconds.
     pub horizon_n: [f64; MODES],
@@ -45,9 +45,9 @@ pub struct Figures {
     pub wake_us: Quantiles,
     /// Work of a tick, us.
     pub work_us: Quantiles,
-    /// From measurement to force, us.
+    /// Time from measurement to force, us.
     pub sample_to_force_us: Quantiles,
-    /// Ticks that came per second.
+    /// Ticks received per second.
     pub rate_hz: f64,
     /// Time from one frame of the console to the next, ms: the median and the 99th percentile.
     pub frame_ms: [f64; 2],
@@ -68,7 +68,7 @@ impl Gates {
         self.acting[gate.index()].get()
     }
 
-    /// It acted in most of them.
+    /// Whether it acted in most of them.
     pub fn closed(&self, gate: Gate) -> bool {
         self.share(gate) > 0.5
     }

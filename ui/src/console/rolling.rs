@@ -1,8 +1,8 @@
-//! Figures over the last seconds, kept up to date sample by sample.
+//! Statistics over the last seconds, updated with every sample.
 
 use std::collections::VecDeque;
 
-/// Highest degree that can be chosen, plus one for "none".
+/// Number of degrees, including 0 for "none".
 pub const DEGREES: usize = nima_core::impedance::MAX_DEGREE + 1;
 
 /// How often each degree was chosen in the last `capacity` ticks.
@@ -14,12 +14,12 @@ pub struct DegreeShares {
 }
 
 impl DegreeShares {
-    /// Remembers this many ticks.
+    /// Statistics over this many ticks.
     pub fn new(capacity: usize) -> Self {
         Self { chosen: VecDeque::with_capacity(capacity), counts: [0; DEGREES], capacity: capacity.max(1) }
     }
 
-    /// Takes in one choice; a number that is no degree is left out.
+    /// Adds one choice; an invalid degree is left out.
     pub fn push(&mut self, degree: u8) {
         let Some(count) = self.counts.get_mut(usize::from(degree)) else { return };
         *count += 1;
@@ -31,7 +31,7 @@ impl DegreeShares {
         }
     }
 
-    /// Share of each degree, 0 to 1; zeros before anything came.
+    /// Share of each degree, 0 to 1; zeros before the first.
     pub fn shares(&self) -> [f64; DEGREES] {
         let total = self.chosen.len().max(1) as f64;
         self.counts.map(|count| f64::from(count) / total)
@@ -43,14 +43,14 @@ impl DegreeShares {
     }
 }
 
-/// A mean that forgets with a time constant.
+/// An exponentially weighted mean.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Fading {
     value: Option<f64>,
 }
 
 impl Fading {
-    /// Takes in a value that stood for `dt_s`; what is not finite is left out.
+    /// Adds a value that was valid for `dt_s`; a value that is not finite is left out.
     pub fn push(&mut self, value: f64, dt_s: f64, constant_s: f64) {
         if !value.is_finite() {
             return;
@@ -59,7 +59,7 @@ impl Fading {
         self.value = Some(self.value.map_or(value, |old| old + share * (value - old)));
     }
 
-    /// The mean now; zero before anything came.
+    /// The present mean; zero before the first value.
     pub fn get(self) -> f64 {
         self.value.unwrap_or(0.0)
     }

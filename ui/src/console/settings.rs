@@ -1,7 +1,7 @@
-//! What the console remembers from one day to the next: who sits before it, and how it looks. Nothing of the loop: a rig begins with
-//! its own file.
+//! Settings of the console that are saved between sessions: role and appearance. Nothing of the loop is saved: a rig
+//! always starts with its own file.
 //!
-//! Kept as JSON beside the calibrations. A file that cannot be read is set aside under another name and told, never fatal.
+//! Saved as JSON beside the calibrations. A file that cannot be read is renamed and reported; it is never fatal.
 
 use std::{
     io,
@@ -22,21 +22,21 @@ const SET_ASIDE: &str = "console.corrupted.json";
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Settings {
-    /// Who sits before the screen.
+    /// The user's role.
     pub role: Role,
-    /// How a technician's panels lie.
+    /// Arrangement of the technician's panels.
     pub layout: Layout,
-    /// Alarms sound.
+    /// Whether alarms have sound.
     pub sound: bool,
-    /// Dark on light.
+    /// Whether the light palette is used.
     pub light: bool,
-    /// The tour was seen, or skipped.
+    /// Whether the tour was finished or skipped.
     pub toured: bool,
-    /// Size of everything, percent; [`SCALES`].
+    /// Scale of the user interface, percent; [`SCALES`].
     pub scale_percent: u16,
 }
 
-/// Least and largest size of everything, percent.
+/// Smallest and largest scale, percent.
 pub const SCALES: std::ops::RangeInclusive<u16> = 100..=200;
 
 impl Default for Settings {
@@ -52,24 +52,24 @@ impl Default for Settings {
     }
 }
 
-/// Settings and the folder that they are kept in.
+/// Settings and the folder in which they are saved.
 #[derive(Debug, Default)]
 pub struct Kept {
     folder: Option<PathBuf>,
-    /// In force.
+    /// The present settings.
     pub now: Settings,
     saved: Settings,
     told: Option<String>,
 }
 
 impl Kept {
-    /// The user's own, beside the calibrations.
+    /// The user's settings, saved beside the calibrations.
     pub fn of_user() -> Self {
         let folder = Store::of_user().ok().and_then(|store| store.folder().parent().map(Path::to_path_buf));
         folder.map_or_else(Self::default, |folder| Self::open(&folder))
     }
 
-    /// Those in this folder; the defaults where there are none or they cannot be read.
+    /// The settings in this folder; the defaults if there are none or they cannot be read.
     pub fn open(folder: &Path) -> Self {
         let (now, told) = match nima_files::read_text(&folder.join(FILE), nima_files::CONFIG_MAX) {
             Err(error) if error.kind() == io::ErrorKind::NotFound => (Settings::default(), None),
@@ -79,7 +79,7 @@ impl Kept {
         Self { folder: Some(folder.to_path_buf()), saved: now.clone(), now, told }
     }
 
-    /// Writes the settings if they have changed.
+    /// Saves the settings if they have changed.
     pub fn save(&mut self) {
         let Some(folder) = self.folder.as_ref().filter(|_| self.now != self.saved) else { return };
         self.saved = self.now.clone();
@@ -92,19 +92,19 @@ impl Kept {
         }
     }
 
-    /// There is somebody who could take a tour and has not.
+    /// Whether the tour has not been shown yet.
     pub const fn is_first_run(&self) -> bool {
         self.folder.is_some() && !self.now.toured
     }
 
-    /// What went wrong with them.
+    /// Error of the settings file, if there is one.
     pub fn told(&self) -> Option<&str> {
         self.told.as_deref()
     }
 }
 
-/// The settings in this text, and what is to be told of them: a layout that cannot be read costs the layout alone. Fields that a
-/// newer console wrote are passed over.
+/// Parses settings; returns them with a message about them. If only the layout cannot be read, the other settings are
+/// still used. Unknown fields, written by a newer version, are ignored.
 fn read(text: &str) -> Result<(Settings, Option<String>), serde_json::Error> {
     let mut value: serde_json::Value = serde_json::from_str(text)?;
     let layout = value.as_object_mut().and_then(|fields| fields.remove("layout"));

@@ -1,22 +1,22 @@
-//! How stiff the contact is just now, from what the screen sees: the slope of force over way along the force, by least squares
-//! over the last half second of contact.
+//! Estimates the stiffness of the present contact from the ticks: the slope of force over displacement along the force,
+//! by least squares over the last half second of contact.
 //!
-//! Way in m, force in N (workspace frame), stiffness in N/m. Only moments are kept, so a tick costs a few multiplications. What
-//! is not finite is left out; between contacts the last stiffness stays.
+//! Displacement in m, force in N (workspace frame), stiffness in N/m. Only moments are stored, so a tick costs a few
+//! multiplications. Values that are not finite are left out; between contacts the last stiffness is kept.
 
 use nalgebra::{Matrix3, Vector3};
 
-/// Below this there is no contact to measure, N.
+/// A smaller force is not considered a contact, N.
 const CONTACT_N: f64 = 0.3;
-/// Memory, s.
+/// Averaging time, s.
 const MEMORY_S: f64 = 0.5;
-/// A contact after so long a pause begins anew, s.
+/// After a pause this long a contact counts as a new one, s.
 const PAUSE_S: f64 = 0.2;
-/// Contact needed before a stiffness is told, s, and variation of the way, m.
+/// Contact time, s, and variation of the displacement, m, needed for an estimate.
 const LEAST_S: f64 = 0.15;
 const LEAST_WAY_M: f64 = 2e-4;
 
-/// Moments of way and force, forgetting.
+/// Exponentially weighted moments of displacement and force.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct ContactStiffness {
     weight_s: f64,
@@ -29,7 +29,7 @@ pub struct ContactStiffness {
 }
 
 impl ContactStiffness {
-    /// Takes in the tip and its force at a time (s).
+    /// Adds tip position and force at a time (s).
     pub fn push(&mut self, t_s: f64, tip_m: &Vector3<f64>, force_n: &Vector3<f64>) {
         let finite = t_s.is_finite() && tip_m.iter().chain(force_n).all(|x| x.is_finite());
         if !finite || force_n.norm() < CONTACT_N {
@@ -61,14 +61,14 @@ impl ContactStiffness {
         if self.weight_s < LEAST_S || way_m2 < LEAST_WAY_M * LEAST_WAY_M {
             return;
         }
-        // The tissue pushes back: more force against less way.
+        // Negative, because the force of the tissue opposes the displacement.
         let n_m = -(along.transpose() * self.force_way * along)[0] / way_m2;
         if (1.0..1e6).contains(&n_m) {
             self.n_m = Some(n_m);
         }
     }
 
-    /// Stiffness of the contact now, or of the last one, N/m; `None` before there was one.
+    /// Stiffness of the present or of the last contact, N/m; `None` before the first.
     pub const fn n_m(&self) -> Option<f64> {
         self.n_m
     }
@@ -78,7 +78,7 @@ impl ContactStiffness {
 mod tests {
     use super::*;
 
-    /// Presses and lets go along a direction, with noise of 0.02 N.
+    /// Presses and releases along a direction, with noise of 0.02 N.
     fn pressed(stiffness_n_m: f64, along: Vector3<f64>) -> ContactStiffness {
         let along = along.normalize();
         let mut found = ContactStiffness::default();

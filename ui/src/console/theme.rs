@@ -1,7 +1,7 @@
-//! The one place for colours, type and spacing. Panels name a token, never a colour.
+//! All colours, fonts and spacings. Panels use names from here, never a colour value.
 //!
-//! Red, yellow and cyan are kept for alarms (IEC 60601-1-8) and mean nothing else. The two forces differ in lightness
-//! as much as in hue, so that they stay apart for colour-blind eyes and on a grey print: measured is ivory, rendered blue.
+//! Red, yellow and cyan are reserved for alarms (IEC 60601-1-8). The two forces differ in lightness as well as in hue,
+//! so that colour-blind users and grey prints can distinguish them: measured is ivory, rendered blue.
 
 use std::{cell::Cell, sync::Arc};
 
@@ -10,10 +10,10 @@ use egui::{
     epaint::Shadow, vec2,
 };
 
-/// Every colour that a panel may name.
+/// The colours.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Palette {
-    /// Behind everything.
+    /// Background of the window.
     pub background: Color32,
     /// Bars and side panels.
     pub panel: Color32,
@@ -25,25 +25,25 @@ pub struct Palette {
     pub control: Color32,
     /// A control under the pointer.
     pub control_hover: Color32,
-    /// A groove: slider rails, empty bars, plot grounds.
+    /// Slider rails, empty bars, plot backgrounds.
     pub groove: Color32,
-    /// Hairlines.
+    /// Thin lines.
     pub line: Color32,
-    /// Text that is read first.
+    /// Main text.
     pub text: Color32,
-    /// Text that explains; at least 5.5:1 on a card.
+    /// Explanatory text; contrast of at least 5.5:1 on a card.
     pub text_weak: Color32,
-    /// The one thing on the screen that must be found without looking: the stop button.
+    /// The stop button, which must be found at a glance.
     pub stop: Color32,
-    /// What is selected or set by the operator.
+    /// Selected, or set by the operator.
     pub selected: Color32,
     /// The force measured at the instrument.
     pub measured: Color32,
     /// The force rendered to the hand.
     pub rendered: Color32,
-    /// What our own figures are compared with (delayed DFR, the paper's choice).
+    /// Reference for comparisons (delayed DFR, the paper's choice).
     pub reference: Color32,
-    /// Lines that stand side by side: axes x, y, z, or the members of an ensemble. They differ in lightness too.
+    /// Several lines in one plot: axes x, y, z, or the members of an ensemble. They also differ in lightness.
     pub series: [Color32; 4],
     /// The loop runs and feeds force back.
     pub engaged: Color32,
@@ -61,7 +61,7 @@ const fn rgb(hex: u32) -> Color32 {
     Color32::from_rgb((hex >> 16) as u8, (hex >> 8) as u8, hex as u8)
 }
 
-/// For a dark room; and for all that lies on the operating field and on alarms, which are dark in both.
+/// For a dark room; also for the 3-D view and for alarms, which are dark in both palettes.
 pub const DARK: Palette = Palette {
     background: rgb(0x10_1317),
     panel: rgb(0x15_191f),
@@ -86,7 +86,7 @@ pub const DARK: Palette = Palette {
     alarm_low: rgb(0x41_d6e0),
 };
 
-/// For a bright room and for print.
+/// For a bright room and for printing.
 pub const LIGHT: Palette = Palette {
     background: rgb(0xf4_f6f8),
     panel: rgb(0xe4_e9ee),
@@ -112,16 +112,16 @@ pub const LIGHT: Palette = Palette {
 };
 
 thread_local! {
-    // A window lives on one thread; tests have many windows on many threads.
+    // Thread-local: a window uses one thread, and tests have many windows on many threads.
     static NOW: Cell<&'static Palette> = const { Cell::new(&DARK) };
 }
 
-/// The palette in force.
+/// The present palette.
 pub fn now() -> &'static Palette {
     NOW.get()
 }
 
-/// Ground of the 3-D view, far and near.
+/// Background of the 3-D view, far and near.
 pub const FIELD_FAR: Color32 = Color32::from_rgb(0x2b, 0x33, 0x3d);
 /// See [`FIELD_FAR`].
 pub const FIELD_NEAR: Color32 = Color32::from_rgb(0x13, 0x17, 0x1c);
@@ -130,20 +130,20 @@ pub const FIELD_NEAR: Color32 = Color32::from_rgb(0x13, 0x17, 0x1c);
 pub const CARD_PADDING: i8 = 12;
 /// Space between cards.
 pub const GAP: f32 = 8.0;
-/// Height and least width of the stop button; the design asks for 48 at least.
+/// Smallest size of the stop button; the design requires at least 48.
 pub const STOP_SIZE: egui::Vec2 = vec2(132.0, 52.0);
 
-/// Corners of cards and controls.
+/// Corner radius of cards and controls.
 pub const CORNER: CornerRadius = CornerRadius::same(6);
 
 const STRONG: &str = "strong";
 
-/// The heavier cut, for figures and headings.
+/// The bold font, for figures and headings.
 pub fn strong(size: f32) -> FontId {
     FontId::new(size, FontFamily::Name(STRONG.into()))
 }
 
-/// The normal cut.
+/// The regular font.
 pub fn regular(size: f32) -> FontId {
     FontId::proportional(size)
 }
@@ -156,7 +156,7 @@ pub fn apply(ctx: &egui::Context) {
     choose(ctx, false);
 }
 
-/// Goes over to the light or the dark palette; call at the start of a frame.
+/// Selects the light or the dark palette; call at the start of a frame.
 pub fn choose(ctx: &egui::Context, light: bool) {
     NOW.set(if light { &LIGHT } else { &DARK });
     ctx.set_theme(if light { egui::Theme::Light } else { egui::Theme::Dark });
@@ -228,7 +228,7 @@ fn visuals(mut visuals: Visuals, palette: &Palette) -> Visuals {
         state.corner_radius = CORNER;
         state.expansion = 0.0;
     }
-    // The rail of a slider is painted with the resting fill: a little lighter than the card, so that it is seen.
+    // A slider's rail is painted with this fill: slightly lighter than the card, so that it is visible.
     visuals.widgets.hovered.bg_stroke = Stroke::new(1.0, palette.text_weak);
     visuals
 }
@@ -242,7 +242,7 @@ pub fn card() -> egui::Frame {
 mod tests {
     use super::*;
 
-    /// Relative luminance by WCAG 2.
+    /// Relative luminance as defined by WCAG 2.
     fn luminance(colour: Color32) -> f64 {
         let linear = |byte: u8| {
             let x = f64::from(byte) / 255.0;

@@ -5,7 +5,7 @@ use egui::{Align, Color32, Layout, Painter, Pos2, Rect, Response, RichText, Sens
 
 use super::theme;
 
-/// A card with a heading that explains itself on hover.
+/// A card with a heading; `meaning` is its hover text.
 pub fn card<R>(ui: &mut Ui, title: &str, meaning: &str, content: impl FnOnce(&mut Ui) -> R) -> R {
     let inner = theme::card().show(ui, |ui| {
         ui.set_width(ui.available_width());
@@ -18,7 +18,7 @@ pub fn card<R>(ui: &mut Ui, title: &str, meaning: &str, content: impl FnOnce(&mu
     inner.inner
 }
 
-/// A name on the left, its value on the right; both explain themselves on hover.
+/// A name on the left and its value on the right; `meaning` is their hover text.
 pub fn figure(ui: &mut Ui, name: &str, value: impl Into<String>, meaning: &str) -> Response {
     ui.spacing_mut().interact_size.y = 18.0;
     let row = ui.horizontal(|ui| {
@@ -30,17 +30,17 @@ pub fn figure(ui: &mut Ui, name: &str, value: impl Into<String>, meaning: &str) 
     row.response
 }
 
-/// Text that explains.
+/// Explanatory text.
 pub fn weak(text: impl Into<String>) -> RichText {
     RichText::new(text).color(theme::now().text_weak)
 }
 
-/// Small text that explains.
+/// Small explanatory text.
 pub fn small(text: impl Into<String>) -> RichText {
     weak(text).text_style(egui::TextStyle::Small)
 }
 
-/// Shapes that carry a meaning together with their colour.
+/// Symbols that convey a state together with their colour.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Sign {
     /// At rest.
@@ -55,7 +55,7 @@ pub enum Sign {
     Octagon,
 }
 
-/// Draws a sign of this radius.
+/// Draws a symbol of this radius.
 pub fn sign(painter: &Painter, sign: Sign, centre: Pos2, radius: f32, colour: Color32) {
     match sign {
         Sign::Ring => {
@@ -81,14 +81,14 @@ pub fn sign(painter: &Painter, sign: Sign, centre: Pos2, radius: f32, colour: Co
     }
 }
 
-/// Allocates room for a sign in a row and draws it.
+/// Allocates space for a symbol in a row and draws it.
 pub fn sign_ui(ui: &mut Ui, what: Sign, radius: f32, colour: Color32) -> Response {
     let (rect, response) = ui.allocate_exact_size(Vec2::splat(radius * 2.4), Sense::hover());
     sign(ui.painter(), what, rect.center(), radius, colour);
     response
 }
 
-/// The sign of a force as it stands beside its name: one line with a cone, or a beaded line with a double cone.
+/// The symbol of a force beside its name: a line with a cone, or a beaded line with a double cone.
 pub fn force_sign(painter: &Painter, palette: &theme::Palette, rect: Rect, rendered: bool) {
     let colour = if rendered { palette.rendered } else { palette.measured };
     let (y, left, right) = (rect.center().y, rect.left(), rect.right());
@@ -109,7 +109,7 @@ pub fn force_sign(painter: &Painter, palette: &theme::Palette, rect: Rect, rende
     cone(right);
 }
 
-/// A bar from the left of `rect` over this share of its width, in a groove.
+/// A horizontal bar that fills this share of `rect` from the left.
 pub fn bar(painter: &Painter, rect: Rect, share: f64, colour: Color32) {
     painter.rect_filled(rect, 2.0, theme::now().groove);
     let share = if share.is_finite() { share.clamp(0.0, 1.0) as f32 } else { 1.0 };
@@ -119,7 +119,7 @@ pub fn bar(painter: &Painter, rect: Rect, share: f64, colour: Color32) {
     }
 }
 
-/// A number with about three digits, in the unit given; large ones in powers of ten.
+/// A number with about three digits; large ones in powers of ten.
 pub fn three_digits(value: f64) -> String {
     match value.abs() {
         x if !x.is_finite() => text::common::NOT_FINITE.to_owned(),

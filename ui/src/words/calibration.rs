@@ -1,4 +1,4 @@
-//! What calibrations report: verdicts, what a sample lacks, how a saved one still fits.
+//! Texts about calibrations: verdicts, missing data, and whether a saved calibration still holds.
 
 use nima_core::calibration::{
     Verdict,
@@ -56,7 +56,7 @@ pub(crate) fn refusal(refusal: &Refusal) -> String {
     }
 }
 
-/// How a saved gravity calibration still fits, and what to do.
+/// Whether a saved gravity calibration still holds, and what to do.
 pub(crate) fn drift(drift: Drift) -> String {
     match drift {
         Drift::Waiting => "being checked: do not touch the tool for a moment".to_owned(),

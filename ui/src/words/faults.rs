@@ -1,4 +1,4 @@
-//! Faults: what happened, and what the operator can do.
+//! Texts: the cause of each fault, and what the operator can do.
 
 use nima_core::safety::Implausible;
 use nima_devices::Loss;

@@ -1,4 +1,4 @@
-//! Where the force at the tip comes from, and why a gate reduced it.
+//! Texts: the source of the force at the tip, and why a gate reduced it.
 
 use nima_core::{
     safety::Reason,

@@ -1,7 +1,8 @@
-//! The words for what the library reports as values: faults, reasons, sources, verdicts. The window and the command line use the same
-//! ones. The library itself holds the values only, so that all sentences that reach a person stand here or in `console/text`.
+//! Texts for the values that the libraries report: faults, reasons, sources, verdicts. The window and the command line
+//! use the same texts. The libraries contain only the values, so every sentence that a person reads is here or in
+//! `console/text`.
 //!
-//! Causes are sentences, cures are what the operator can do; reasons begin small, because they follow a colon.
+//! Causes are sentences; cures say what the operator can do; reasons start in lower case, because they follow a colon.
 
 mod calibration;
 mod faults;
@@ -11,7 +12,7 @@ mod refusals;
 pub(crate) use calibration::{drift, refusal};
 pub(crate) use refusals::{cure_of_refusal, refused_because};
 
-/// A value that is reported with what happened and what to do.
+/// A value with a text for its cause and for its cure.
 pub(crate) trait Remedy {
     /// What happened, in one sentence.
     fn cause(self) -> &'static str;
@@ -19,8 +20,8 @@ pub(crate) trait Remedy {
     fn cure(self) -> &'static str;
 }
 
-/// A value that is reported in a few words.
+/// A value with a short text.
 pub(crate) trait Words {
-    /// Those words.
+    /// The text.
     fn words(self) -> &'static str;
 }

@@ -1,10 +1,10 @@
-//! Refused commands: why, and what the operator can do.
+//! Texts: why a command was refused, and what the operator can do.
 
 use nima_machine::messages::{LoopState, Refusal};
 
 use super::Remedy as _;
 
-/// What stands against it, a clause without a full stop.
+/// The reason, a clause without a full stop.
 pub(crate) fn refused_because(why: Refusal) -> String {
     match why {
         Refusal::State(state) => in_state(state).to_owned(),
@@ -54,7 +54,7 @@ const fn in_state(state: LoopState) -> &'static str {
     }
 }
 
-/// The same words with a small first letter, to go on in a sentence.
+/// The same text with a lower-case first letter, for use within a sentence.
 fn lower(words: &str) -> String {
     let mut letters = words.chars();
     letters.next().map_or_else(String::new, |first| first.to_lowercase().chain(letters).collect())

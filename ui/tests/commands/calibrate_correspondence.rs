@@ -78,7 +78,7 @@ fn a_good_file_gives_the_rotation_and_a_calibration_that_loads() {
 }
 
 #[test]
-fn words_tell_the_verdict_first() {
+fn the_text_begins_with_the_verdict() {
     let folder = tempfile::tempdir().unwrap();
     let output = calibrate(&pairs(folder.path(), |v| v), &[]);
     let text = String::from_utf8(output.stdout).unwrap();

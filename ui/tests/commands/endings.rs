@@ -95,7 +95,7 @@ fn absent_rig(folder: &Path) -> PathBuf {
 }
 
 #[test]
-fn the_figures_tell_how_each_arm_ended() {
+fn the_figures_contain_the_end_state_of_each_arm() {
     let output = nima(&["run", "--virtual", "--seconds", "1", "--scene", "bimanual", "--json"]).output().unwrap();
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     let summary: Value = serde_json::from_slice(&output.stdout).unwrap();

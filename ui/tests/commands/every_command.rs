@@ -191,7 +191,7 @@ fn identify_refuses_bad_recordings_and_writes_nothing() {
 }
 
 #[test]
-fn run_on_the_virtual_clock_tells_everything() {
+fn run_on_the_virtual_clock_reports_everything() {
     let summary = json(&["run", "--virtual", "--seconds", "5", "--json"]);
     assert_eq!((summary["ticks"].as_u64(), summary["missed"].as_u64()), (Some(5000), Some(0)));
     assert_eq!(summary["clock"], "virtual");

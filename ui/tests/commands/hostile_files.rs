@@ -260,7 +260,7 @@ fn a_folder_of_results_spares_the_inputs_in_it() {
 }
 
 #[test]
-fn what_stands_at_the_output_is_refused_followed_or_keeps_its_mode() {
+fn an_existing_output_is_refused_followed_or_keeps_its_mode() {
     let folder = Folder::new();
     let input = folder.write("r.csv", &recording());
     let identify = |out: &str| ["identify", &input, "--out", out].map(str::to_owned);

@@ -79,7 +79,7 @@ fn has_words(literal: &str) -> bool {
 }
 
 #[test]
-fn a_new_sentence_goes_where_all_words_are() {
+fn every_sentence_is_in_the_text_modules() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/console");
     let mut files = Vec::new();
     sources(&root, &mut files);

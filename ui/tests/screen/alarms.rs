@@ -63,7 +63,7 @@ fn the_first_alarm_stays_pinned_and_a_new_one_calls_again_after_an_acknowledgeme
 }
 
 #[test]
-fn the_list_tells_all_alarms_with_their_times_and_opens_by_key_by_button_and_by_a_click_on_the_alarm() {
+fn the_list_shows_all_alarms_with_their_times_and_opens_by_key_button_and_click() {
     let mut harness = of_a_dead_loop();
     press(&mut harness, "Stop");
     harness.run_steps(3);
@@ -171,7 +171,7 @@ fn stop_by(harness: &mut Harness<'_, ConsoleApp>, key: Option<Key>, over: &str) 
 }
 
 #[test]
-fn a_stop_that_is_taken_is_no_alarm() {
+fn an_accepted_stop_is_no_alarm() {
     let mut harness = console_of("free_motion", SIZE, |app| app);
     until(&mut harness, "engaged", |tick| tick.state == LoopState::Engaged);
     stop_by(&mut harness, None, "monitor");

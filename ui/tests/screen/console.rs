@@ -142,7 +142,7 @@ fn delay_follows_the_slider() {
 
 /// The tremor of the scene's hand passes the default of 1 mm/s; the widest dead band closes at every peg.
 #[test]
-fn the_dead_band_closes_for_a_slow_hand_and_can_be_taken_away() {
+fn the_dead_band_closes_for_a_slow_hand_and_can_be_switched_off() {
     let mut harness = console();
     set_slider(&mut harness, "Dead band", 10.0);
     assert!(ever(&mut harness, 8.0, |tick| tick.gates.acted(Gate::DeadBand)));

@@ -163,7 +163,7 @@ fn the_histograms_tell_how_many_ticks_are_later_than_the_deadline() {
 }
 
 #[test]
-fn the_gates_are_told_of_the_hand_that_is_chosen() {
+fn the_gates_of_the_selected_hand_are_shown() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().to_path_buf();
     let mut harness = console_of("bimanual", SIZE, move |app| {

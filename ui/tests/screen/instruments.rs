@@ -9,7 +9,7 @@ use crate::bench::{console_of, press, until};
 const SIZE: [f32; 2] = [1600.0, 1000.0];
 
 #[test]
-fn the_interlock_of_each_hand_lights_up_where_it_is_and_says_why() {
+fn the_interlock_of_each_hand_shows_its_state_and_the_reason() {
     let mut harness = console_of("bimanual", SIZE, |app| app);
     until(&mut harness, "engaged", |tick| tick.state == LoopState::Engaged);
     press(&mut harness, "Safety");

@@ -32,7 +32,7 @@ fn the_cursor_of_one_plot_is_read_in_all() {
 }
 
 #[test]
-fn what_the_pointer_is_at_in_the_view_tells_itself() {
+fn the_object_under_the_pointer_is_described() {
     let mut harness = console_of("bimanual", SIZE, |app| app);
     until(&mut harness, "some data", |tick| tick.t_s > 0.2);
     point_at(&mut harness, pos2(760.0, 395.0));

@@ -182,7 +182,7 @@ fn a_noisy_sensor_is_told_with_its_figure_and_the_way_on_stays_shut() {
 }
 
 #[test]
-fn a_sensor_without_an_accelerometer_goes_on_by_the_arm() {
+fn a_sensor_without_an_accelerometer_uses_the_orientation_of_the_arm() {
     let folder = tempfile::tempdir().unwrap();
     let mut scene = gravity_scene(None);
     scene.wrist.as_mut().unwrap().imu = None;

@@ -5,7 +5,7 @@ use std::{collections::HashMap, process::Stdio, thread, time::Duration};
 use crate::server::{Xvfb, wait_until};
 
 #[test]
-fn the_window_opens_shows_a_living_picture_and_closes() {
+fn the_window_opens_shows_changing_frames_and_closes() {
     let _alone = nima_testing::real_time::alone();
     let Some(x) = Xvfb::start() else { return };
     let folder = tempfile::tempdir().unwrap();

@@ -1,11 +1,11 @@
-//! What else may be wrong between two sensors: one reads more than the other, or was not zeroed.
+//! Other errors between two sensors: different gains, or an offset because one was not zeroed.
 
 use nalgebra::{Rotation3, SMatrix, SVector, UnitQuaternion, Vector3};
 use serde::{Deserialize, Serialize};
 
 use super::solver::Row;
 
-/// In which sensor's axes a constant between the sensors stands still.
+/// The sensor in whose axes the offset is constant.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum OffsetFrame {
@@ -13,12 +13,13 @@ pub enum OffsetFrame {
     S1,
     /// The tissue sensor's.
     S2,
-    /// The wrist was not turned enough between the pushes to tell; the figures are in the wrist sensor's axes.
+    /// Not known, because the wrist was not turned enough between the pushes; the figures are in the wrist sensor's
+    /// axes.
     Unknown,
 }
 
-/// Gain and constant between the sensors, `f1 = gain R f2 + offset`, with their standard errors; by least squares together
-/// with the rotation, so that neither hides in it.
+/// Gain and offset between the sensors, `f1 = gain R f2 + offset`, with their standard errors; estimated by least
+/// squares together with the rotation, so that the rotation cannot absorb them.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Diagnosis {
@@ -26,33 +27,33 @@ pub struct Diagnosis {
     pub gain: f64,
     /// Standard error of the gain.
     pub gain_se: f64,
-    /// Constant between them, N.
+    /// Offset, N.
     pub offset_n: [f64; 3],
-    /// Standard error of the constant's worst axis, N.
+    /// Standard error of the offset's worst axis, N.
     pub offset_se_n: f64,
-    /// Whose axes the constant is given in.
+    /// In whose axes the offset is given.
     pub offset_frame: OffsetFrame,
 }
 
 impl Diagnosis {
-    /// Length of the constant, N.
+    /// Magnitude of the offset, N.
     pub fn offset_norm_n(&self) -> f64 {
         Vector3::from(self.offset_n).norm()
     }
 
-    /// The gain departs from one by more than `limit`, and by more than three standard errors.
+    /// Whether the gain differs from one by more than `limit`, and by more than three standard errors.
     pub fn gain_is_off(&self, limit: f64) -> bool {
         let by = (self.gain - 1.0).abs();
         by > limit && by > 3.0 * self.gain_se
     }
 
-    /// The constant exceeds `limit_n`, and four standard errors.
+    /// Whether the offset exceeds `limit_n`, and four standard errors.
     pub fn offset_is_off(&self, limit_n: f64) -> bool {
         let by_n = self.offset_norm_n();
         by_n > limit_n && by_n > 4.0 * self.offset_se_n
     }
 
-    /// Diagnoses the rows around this rotation; `None` when they cannot tell.
+    /// Estimates gain and offset around this rotation; `None` if the rows do not determine them.
     pub(super) fn of(rows: &[Row], c_from_s2: &Rotation3<f64>) -> Option<Self> {
         let wrist = joint_fit(rows, c_from_s2, |row, _| row.s1_from_c.inverse())?;
         let tissue = joint_fit(rows, c_from_s2, |_, c_from_s2| UnitQuaternion::from(*c_from_s2));
@@ -71,7 +72,7 @@ impl Diagnosis {
     }
 }
 
-/// Rotation (3), gain (1) and constant (3).
+/// Rotation (3), gain (1) and offset (3).
 const UNKNOWNS: usize = 7;
 
 struct JointFit {
@@ -82,7 +83,8 @@ struct JointFit {
     sd_n: f64,
 }
 
-/// Gauss-Newton on `c = gain R s2 + T offset` with `T = c_from_offset` of each row; it is nearly linear, so few steps do.
+/// Gauss-Newton on `c = gain R s2 + T offset` with `T = c_from_offset` of each row; nearly linear, so a few steps are
+/// enough.
 fn joint_fit(
     rows: &[Row],
     start: &Rotation3<f64>,

@@ -1,5 +1,6 @@
-//! The paper's way to the rotation: a search over roll, pitch and yaw, here by the simplex of Nelder and Mead (Comput. J.
-//! 1965) from several starts. It shares nothing with the closed form but the residual, so it can find it out.
+//! The paper's solution: a search over roll, pitch and yaw, here with the simplex method of Nelder and Mead (Comput. J.
+//! 1965) from several starts. It has only the residual in common with the closed-form solution, and so can detect an
+//! error in it.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -7,7 +8,7 @@ use nalgebra::{Rotation3, Vector3};
 
 use super::solver::Row;
 
-/// Starts (roll, pitch, yaw, rad): one of them is within 90 degrees of any rotation.
+/// Starting points (roll, pitch, yaw, rad): one of them is within 90 degrees of any rotation.
 const STARTS: [[f64; 3]; 6] = [
     [0.0, 0.0, 0.0],
     [PI, 0.0, 0.0],
@@ -17,12 +18,12 @@ const STARTS: [[f64; 3]; 6] = [
     [-FRAC_PI_2, -0.6, FRAC_PI_2],
 ];
 const MOST_STEPS: usize = 400;
-/// Size of a simplex that has converged, rad.
+/// Size of a converged simplex, rad.
 const FINE: f64 = 1e-9;
 
 type Vertex = (Vector3<f64>, f64);
 
-/// The rotation of least squared residual that the search finds.
+/// The rotation of least squared residual found by the search.
 pub(super) fn search(rows: &[Row]) -> Rotation3<f64> {
     let cost = |angles: &Vector3<f64>| {
         let rotation = rotation(angles);

@@ -1,18 +1,18 @@
-//! Whether the pushes determine a rotation at all.
+//! Whether the directions of the pushes determine a rotation.
 
 use nalgebra::{Matrix3, Vector3};
 use serde::Serialize;
 
 use super::solver::Row;
 
-/// How the pushes are spread over directions. Ratios are root mean squares along the principal axes of the push directions
-/// (unit vectors, so that a strong push is no wider spread than a weak one), the least over both sensors and over leaving out
-/// any one fold of the pushes: a single push must not carry a direction alone.
+/// Distribution of the pushes over directions. Ratios are root mean squares along the principal axes of the push
+/// directions (unit vectors, so that strength does not matter); each is the smallest over both sensors and over leaving
+/// out any one fold of the pushes, so that no direction may depend on a single push.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Excitation {
-    /// Second axis against the first: near zero when all pushes lie along one line.
+    /// Second axis relative to the first: near zero if all pushes lie along one line.
     pub second: f64,
-    /// Third axis against the first: near zero when all pushes lie in one plane.
+    /// Third axis relative to the first: near zero if all pushes lie in one plane.
     pub third: f64,
     /// Root mean square force along the weakest axis of the forces, N.
     pub weakest_n: f64,
@@ -21,7 +21,7 @@ pub struct Excitation {
 }
 
 impl Excitation {
-    /// Of these rows; `folds` are the ranges of rows to leave out in turn.
+    /// For these rows; `folds` are the ranges of rows to leave out in turn.
     pub(super) fn of(rows: &[Row], folds: &[std::ops::Range<usize>], least_spread: f64) -> Self {
         if rows.is_empty() {
             return Self::default();
@@ -63,7 +63,7 @@ impl Scatter {
         Self { vectors, sum }
     }
 
-    /// Root mean squares along the principal axes, largest first, without these vectors of it.
+    /// Root mean squares along the principal axes, largest first, without these vectors.
     fn without(&self, left_out: &[Vector3<f64>]) -> [f64; 3] {
         let sum = self.sum - left_out.iter().map(|v| v * v.transpose()).sum::<Matrix3<f64>>();
         let count = (self.vectors.len() - left_out.len()).max(1) as f64;

@@ -1,4 +1,4 @@
-//! From pairs to a report with its verdict.
+//! From pairs of forces to a report with its verdict.
 
 use std::ops::Range;
 
@@ -12,18 +12,18 @@ use super::{
 };
 use crate::calibration::Verdict;
 
-/// No push is stronger, N; beyond it squares lose their meaning.
+/// Largest plausible force, N; the squares of larger numbers would lose precision.
 const PLAUSIBLE_N: f64 = 1e4;
-/// Up to so many pairs each is held out alone, beyond it each tenth.
+/// Up to this number of pairs each is held out alone; above it, a tenth at a time.
 const ALONE: usize = 20;
-/// With fewer rows a rotation has no residual worth the name.
+/// With fewer rows the residual of a rotation means nothing.
 const LEAST_SOLVABLE: usize = 3;
 
-/// Fits the rotation between both sensors and judges it. Pairs in the order taken; a few hundred rows take about a
-/// millisecond. Errors only for numbers that cannot be forces or rotations; everything else is a verdict.
+/// Fits the rotation between both sensors and judges it. Pairs in the order recorded; a few hundred rows take about a
+/// millisecond. `Err` only for numbers that cannot be forces or rotations; everything else gives a verdict.
 ///
 /// # Errors
-/// A number that cannot belong to a force or to a rotation, with its pair.
+/// [`CorrespondenceError`] for a number that cannot be part of a force or rotation, with its pair.
 ///
 /// ```
 /// use nalgebra::{UnitQuaternion, Vector3};
@@ -86,7 +86,8 @@ fn check(pairs: &[Pair]) -> Result<(), CorrespondenceError> {
     Ok(())
 }
 
-/// Ranges to hold out in turn: single rows, or tenths in the order taken (neighbouring rows of one push are no test).
+/// Ranges to hold out in turn: single rows, or tenths in the order recorded (neighbouring rows of one push are no
+/// independent test).
 fn folds(rows: usize) -> Vec<Range<usize>> {
     let count = if rows <= ALONE { rows } else { 10 };
     (0..count).map(|fold| fold * rows / count..(fold + 1) * rows / count).collect()
@@ -116,17 +117,17 @@ fn solve(good: &[Row], folds: &[Range<usize>], target: Target) -> Solution {
     }
 }
 
-/// Root mean square angle of the error by the information of the pushes, `sum [f]x^T [f]x / noise^2`; 180 at most.
+/// Root mean square angular error from the information of the pushes, `sum [f]x^T [f]x / noise^2`; at most 180.
 fn uncertainty_deg(good: &[Row], noise_n: f64) -> f64 {
     let information: Matrix3<f64> =
         good.iter().map(|row| row.s2_n.cross_matrix().transpose() * row.s2_n.cross_matrix()).sum();
     let variance = information.try_inverse().map_or(f64::INFINITY, |inverse| noise_n * noise_n * inverse.trace());
-    // Written so that a NaN becomes the worst.
+    // Written so that NaN gives the largest error.
     if variance >= 0.0 { variance.sqrt().to_degrees().min(180.0) } else { 180.0 }
 }
 
-/// What explains the pushes at least twice as well as what was given: a sign or a rotation the wrong way round. Only where all
-/// pushes together span space, as in a plane a sign is no more than half a turn.
+/// A wrong sign or an inverted rotation that explains the pushes at least twice as well as the input does. Only if the
+/// pushes span all three dimensions: in a plane, a change of sign is the same as half a turn.
 fn mistaken_input(
     pairs: &[Pair],
     used: &[usize],
@@ -238,7 +239,7 @@ fn disagreement(report: &CorrespondenceReport, solution: &Solution, used: usize,
         ));
     }
     let angle_deg = solution.cross_check_deg;
-    // Written so that a NaN is refused.
+    // Written so that NaN is refused.
     let same = angle_deg <= limits.cross_check_deg;
     (!same)
         .then(|| format!("the two solvers differ by {angle_deg:.2} degrees; the pushes do not determine the rotation"))

@@ -1,15 +1,15 @@
-//! Correspondence: how the sensor under the tissue (`s2`) is turned against the one at the wrist (`s1`).
+//! Correspondence: the rotation between the sensor under the tissue (`s2`) and the one at the wrist (`s1`).
 //!
-//! Takes pairs of forces (N) that both sensors felt at the same time, gravity-free, and the known part of the chain
-//! `s1_from_c` of each; finds `R = c_from_s2` that minimises `sum |s1_from_c_i R f2_i - f1_i|^2`. Without a chain
-//! (`s1_from_c` all identity) the result is `s1_from_s2`. Both sensors must tell the force on the instrument: for a sensor
-//! that tells the force on the tissue set [`Options::flip_s2`].
+//! Takes pairs of gravity-free forces (N) that both sensors measured at the same time, and the known part of the chain
+//! `s1_from_c` of each; finds the `R = c_from_s2` that minimises `sum |s1_from_c_i R f2_i - f1_i|^2`. Without a chain
+//! (`s1_from_c` all identity) the result is `s1_from_s2`. Both sensors must measure the force on the instrument; for a
+//! sensor that measures the force on the tissue set [`Options::flip_s2`].
 //!
-//! The solver is Wahba's problem by singular values (Markley 1988) from a seeded consensus over pairs of pushes, so that a
-//! quarter of gross outliers does no harm; the paper's search over Euler angles runs beside it as a cross-check. The verdict
-//! rests on residuals of pushes that were held out, and on whether the pushes span all three directions at all: pushes along
-//! one line or in one plane are refused. Numbers that are not finite or not plausible are errors; data that are merely poor
-//! are a verdict with its reason.
+//! The solver is Wahba's problem by singular values (Markley 1988) with a seeded consensus over pairs of pushes, so
+//! that a quarter of gross outliers does no harm; the paper's search over Euler angles serves as a cross-check. The
+//! verdict is based on residuals of held-out pushes, and on whether the pushes span all three dimensions: pushes along
+//! one line or in one plane are refused. Numbers that are not finite or not plausible are errors; poor data give a
+//! verdict with its reason.
 
 mod diagnosis;
 mod euler;
@@ -35,37 +35,37 @@ pub use record::{CorrespondenceKind, CorrespondenceRecord};
 pub use report::{Agreement, CorrespondenceReport, Solution, Target};
 pub use session::{CorrespondenceSession, Missing, Phase, PushTarget, Refusal, SessionSettings, TARGETS};
 
-/// What both sensors felt in one push.
+/// Measurements of both sensors in one push.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pair {
     /// Gravity-free force at the wrist, N (`s1`).
     pub f1_n: Vector3<f64>,
     /// Force at the sensor under the tissue, N (`s2`).
     pub f2_n: Vector3<f64>,
-    /// The known part of the chain; identity when there is none.
+    /// The known part of the chain; identity if there is none.
     pub s1_from_c: UnitQuaternion<f64>,
 }
 
 impl Pair {
-    /// A pair without a chain: the rotation found is then `s1_from_s2`.
+    /// A pair without a chain: the result is then `s1_from_s2`.
     pub fn plain(f1_n: Vector3<f64>, f2_n: Vector3<f64>) -> Self {
         Self { f1_n, f2_n, s1_from_c: UnitQuaternion::identity() }
     }
 }
 
-/// A known correspondence at work: what the sensor under the tissue reads, told in the frame of the wrist sensor.
+/// A known correspondence: transforms readings of the sensor under the tissue to the frame of the wrist sensor.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Correspondence {
     /// Which rotation it is.
     pub target: Target,
-    /// Takes readings of `s2` into the frame that `target` names.
+    /// Rotation from `s2` to the frame that `target` names.
     pub rotation: UnitQuaternion<f64>,
-    /// The sensor under the tissue tells the force on the tissue, not on the instrument.
+    /// The sensor under the tissue measures the force on the tissue, not on the instrument.
     pub flip_s2: bool,
 }
 
 impl Correspondence {
-    /// Force on the tip, N (`s1`), of a reading of the sensor under the tissue, N (`s2`), taken with this sample; `None` where
+    /// Force on the tip, N (`s1`), from a reading of the sensor under the tissue, N (`s2`), and this sample; `None` if
     /// the sample lacks a rotation of the chain.
     pub fn tip_force_s1(&self, sample: &WristSample, tissue_n: &Vector3<f64>) -> Option<Vector3<f64>> {
         let s1_from_s2 = match self.target {
@@ -77,41 +77,42 @@ impl Correspondence {
     }
 }
 
-/// How to fit.
+/// Settings of a fit.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Options {
-    /// Take the forces of `s2` with the opposite sign: it tells what presses on the tissue, not on the instrument.
+    /// Invert the forces of `s2`: the sensor measures the force on the tissue, not on the instrument.
     pub flip_s2: bool,
-    /// When the result may be used.
+    /// Limits for the verdict.
     pub limits: Limits,
 }
 
-/// What separates a calibration that may be used from one that may not.
+/// Limits for the verdict.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Limits {
-    /// Fewest usable pushes.
+    /// Smallest number of usable pushes.
     pub least_pairs: usize,
     /// Pushes weaker than this on either sensor are left out, N.
     pub least_force_n: f64,
-    /// Least spread of the push directions along their weakest axis against their strongest, with any tenth of the pushes
-    /// left out. 1 is an even spread over all directions, 0 a plane; a cone of half angle 25 degrees has 0.22.
+    /// Smallest spread of the push directions along their weakest axis relative to their strongest, with any tenth of
+    /// the pushes left out. 1 is uniform over all directions, 0 a plane; a cone of half angle 25 degrees has 0.22.
     pub least_spread: f64,
-    /// Least force along the weakest axis, in multiples of the noise of the residuals: noise alone is no direction.
+    /// Smallest force along the weakest axis, as a multiple of the residuals' noise, so that noise does not count as a
+    /// direction.
     pub least_signal: f64,
-    /// Largest expected angle of error, degrees.
+    /// Largest expected angular error, degrees.
     pub uncertainty_deg: f64,
     /// Largest share of outliers.
     pub outlier_share: f64,
     /// Largest held-out mean absolute error of any axis, N (the paper's worst axis has 0.13).
     pub held_out_mae_n: f64,
-    /// Least held-out coefficient of determination over all axes (the paper has 0.95).
+    /// Smallest held-out coefficient of determination over all axes (the paper has 0.95).
     pub least_r2: f64,
-    /// Largest departure of the ratio of both sensors' forces from one.
+    /// Largest deviation from one of the ratio of both sensors' forces.
     pub gain_error: f64,
-    /// Largest constant between both sensors, N.
+    /// Largest offset between both sensors, N.
     pub offset_n: f64,
-    /// Largest angle between both solvers, degrees.
+    /// Largest angle between the results of both solvers, degrees.
     pub cross_check_deg: f64,
 }
 
@@ -133,7 +134,7 @@ impl Default for Limits {
     }
 }
 
-/// Input that cannot be fitted: what, where, what to do.
+/// Input that cannot be fitted; the message says what, where, and what to do.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[expect(missing_docs, reason = "the messages say it")]
 pub enum CorrespondenceError {
@@ -143,7 +144,7 @@ pub enum CorrespondenceError {
         /// Which pair, from 0.
         index: usize,
     },
-    /// A force that no push has.
+    /// An implausible force.
     #[error("pair {index}: {force_n:e} N is no force of a push; check the units (N)")]
     NotPlausible {
         /// Which pair, from 0.

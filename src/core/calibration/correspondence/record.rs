@@ -1,4 +1,4 @@
-//! A correspondence as it is kept in a file.
+//! A correspondence as stored in a file.
 
 use nalgebra::UnitQuaternion;
 use serde::{Deserialize, Serialize};
@@ -9,7 +9,7 @@ use super::{
 };
 use crate::calibration::{Judgement, Record, RecordHead};
 
-/// The only kind of this record: a file of another kind is refused on reading.
+/// Type of the record; a file of another kind is refused on reading.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum CorrespondenceKind {
@@ -18,39 +18,39 @@ pub enum CorrespondenceKind {
     Correspondence,
 }
 
-/// A fitted correspondence with all that proves it.
+/// A fitted correspondence with the figures of its quality.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 #[expect(missing_docs, reason = "the names say it")]
 pub struct CorrespondenceRecord {
     pub kind: CorrespondenceKind,
-    /// What it belongs to.
+    /// Sensor, tool and date.
     #[serde(flatten)]
     pub head: RecordHead,
     /// Whether it may be used.
     #[serde(flatten)]
     pub judgement: Judgement,
-    /// Which rotation it holds.
+    /// Which rotation it contains.
     pub target: Target,
-    /// The sensor under the tissue told the force on the tissue: its sign was changed before the fit.
+    /// The sensor under the tissue measured the force on the tissue: its sign was inverted before the fit.
     pub flip_s2: bool,
-    /// Pairs used.
+    /// Number of pairs used.
     pub pairs: usize,
     /// The rotation (w, x, y, z).
     pub rotation_wxyz: [f64; 4],
-    /// The same as roll, pitch, yaw, degrees; for the reader, not used on loading.
+    /// The same as roll, pitch, yaw, degrees; for readers of the file, ignored on loading.
     pub roll_pitch_yaw_deg: [f64; 3],
-    /// Expected angle of its error, degrees.
+    /// Expected angular error, degrees.
     pub uncertainty_deg: f64,
     /// Errors, fitted and held out, N.
     pub agreement: Agreement,
-    /// Gain and constant between the sensors.
+    /// Gain and offset between the sensors.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub diagnosis: Option<Diagnosis>,
 }
 
 impl CorrespondenceRecord {
-    /// The record of a report; `None` when the report has no rotation. `date` in ISO 8601, UTC.
+    /// The record of a report; `None` if the report has no rotation. `date` in ISO 8601, UTC.
     pub fn of(report: &CorrespondenceReport, [sensor, tool]: [&str; 2], flip_s2: bool, date: &str) -> Option<Self> {
         let solution = report.solution.as_ref()?;
         Some(Self {
@@ -68,7 +68,7 @@ impl CorrespondenceRecord {
         })
     }
 
-    /// For use.
+    /// The correspondence, for use.
     pub fn correspondence(&self) -> Correspondence {
         Correspondence { target: self.target, rotation: self.rotation(), flip_s2: self.flip_s2 }
     }
@@ -92,7 +92,7 @@ impl Record for CorrespondenceRecord {
 
     fn fault(&self) -> Option<&'static str> {
         let length = self.rotation_wxyz.iter().map(|part| part * part).sum::<f64>().sqrt();
-        // Written so that a NaN is a fault.
+        // Written so that NaN is a fault.
         let unit = (length - 1.0).abs() < 1e-6;
         if !unit {
             return Some("rotation_wxyz is not a quaternion of length one");

@@ -1,4 +1,4 @@
-//! What a fit of the correspondence says.
+//! Result of a fit of the correspondence.
 
 use nalgebra::{UnitQuaternion, Vector3};
 use serde::{Deserialize, Serialize};
@@ -9,18 +9,18 @@ use crate::{
     frames,
 };
 
-/// Which rotation was found.
+/// Which rotation was fitted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Target {
-    /// `c_from_s2`: the rest of the chain came with each push.
+    /// `c_from_s2`: the remaining chain was given with each push.
     CFromS2,
     /// `s1_from_s2`: no chain was given.
     S1FromS2,
 }
 
 impl Target {
-    /// Its name.
+    /// Its name in files.
     pub const fn name(self) -> &'static str {
         match self {
             Self::CFromS2 => "c_from_s2",
@@ -29,8 +29,8 @@ impl Target {
     }
 }
 
-/// How well the rotated force of `s2` tells that of `s1`, in the axes of `s1`, N; over the pushes that agree. Held out: each
-/// push (each tenth of them, in order, beyond 20) compared with a rotation fitted on the others.
+/// Agreement of the rotated force of `s2` with that of `s1`, in the axes of `s1`, N, over the agreeing pushes. Held
+/// out: each push (each tenth of them, in order, beyond 20) is compared with a rotation fitted to the others.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Agreement {
@@ -40,14 +40,14 @@ pub struct Agreement {
     pub r2_fitted: [f64; 3],
     /// The same, held out.
     pub r2_held_out: [f64; 3],
-    /// Of all axes together, of the fit.
+    /// Of all axes together, for the fit.
     pub r2_fitted_overall: f64,
     /// Of all axes together, held out.
     pub r2_held_out_overall: f64,
 }
 
 impl Agreement {
-    /// Of errors against the forces of `s1` (N), pair by pair.
+    /// From the forces of `s1` and the errors (N), pair by pair.
     pub(super) fn of(f1_n: &[Vector3<f64>], fitted_n: &[Vector3<f64>], held_out_n: &[Vector3<f64>]) -> Self {
         let (r2_fitted, r2_fitted_overall) = determination(f1_n, fitted_n);
         let (r2_held_out, r2_held_out_overall) = determination(f1_n, held_out_n);
@@ -57,7 +57,7 @@ impl Agreement {
     }
 }
 
-/// Coefficient of determination per axis and overall; zero where the force did not vary.
+/// Coefficient of determination per axis and overall; zero if the force did not vary.
 fn determination(force_n: &[Vector3<f64>], error_n: &[Vector3<f64>]) -> ([f64; 3], f64) {
     let mean_n = force_n.iter().sum::<Vector3<f64>>() / force_n.len().max(1) as f64;
     let squares = |vectors: &mut dyn Iterator<Item = Vector3<f64>>| {
@@ -69,24 +69,24 @@ fn determination(force_n: &[Vector3<f64>], error_n: &[Vector3<f64>]) -> ([f64; 3
     (unexplained.zip_map(&varied, share).into(), share(unexplained.sum(), varied.sum()))
 }
 
-/// The rotation, and how much it is worth.
+/// The rotation and its quality.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Solution {
     /// Which rotation it is.
     pub target: Target,
-    /// As a quaternion (w, x, y, z).
+    /// The rotation as a quaternion (w, x, y, z).
     pub rotation_wxyz: [f64; 4],
-    /// As roll, pitch, yaw, degrees (`Rz Ry Rx`).
+    /// The rotation as roll, pitch, yaw, degrees (`Rz Ry Rx`).
     pub roll_pitch_yaw_deg: [f64; 3],
-    /// How well it explains the pushes.
+    /// Agreement of the forces.
     pub agreement: Agreement,
-    /// Noise of both sensors together per axis, N: deviation of the residuals.
+    /// Noise of both sensors together per axis, N: standard deviation of the residuals.
     pub noise_n: f64,
-    /// Expected angle of its error (root mean square), degrees, for noise that differs from row to row.
+    /// Expected angular error (root mean square), degrees, for noise that is independent from row to row.
     pub uncertainty_deg: f64,
-    /// Angle to what the paper's search over Euler angles finds on the same pushes, degrees.
+    /// Angle to the result of the paper's search over Euler angles on the same pushes, degrees.
     pub cross_check_deg: f64,
-    /// Gain and constant between the sensors; `None` when the pushes cannot tell.
+    /// Gain and offset between the sensors; `None` if the pushes do not determine them.
     pub diagnosis: Option<Diagnosis>,
 }
 
@@ -110,21 +110,21 @@ pub(super) fn parts(rotation: &UnitQuaternion<f64>) -> ([f64; 4], [f64; 3]) {
     (wxyz, frames::to_roll_pitch_yaw_deg(rotation).into())
 }
 
-/// All that a fit says.
+/// Result of a fit.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct CorrespondenceReport {
     /// Whether it may be used.
     pub verdict: Verdict,
-    /// One sentence for the operator: what led to the verdict.
+    /// The reason for the verdict, one sentence for the operator.
     pub reason: String,
-    /// Pairs given.
+    /// Number of pairs given.
     pub pairs: usize,
-    /// Pairs too weak to use, by index from 0.
+    /// Indices of pairs that are too weak, from 0; not used.
     pub weak: Vec<usize>,
-    /// Pairs that the others contradict, by index from 0; not used.
+    /// Indices of pairs that contradict the others, from 0; not used.
     pub outliers: Vec<usize>,
-    /// How the pushes are spread.
+    /// Distribution of the pushes.
     pub excitation: Excitation,
-    /// The rotation; `None` below three usable pushes. Only to be used with [`Verdict::Accepted`].
+    /// The rotation; `None` with fewer than three usable pushes. Only to be used with [`Verdict::Accepted`].
     pub solution: Option<Solution>,
 }

@@ -1,9 +1,10 @@
-//! Taking pushes live: a state machine fed with every sample, without a clock or a screen of its own.
+//! Guided recording of pushes from live samples: a state machine without a clock or a screen.
 //!
-//! Takes the gravity-free force at the wrist (N, `s1`), the [`WristSample`] and the time (s); finds pushes by their force,
-//! keeps of each the mean over its stillest stretch near the peak, asks for the next direction and fits live. A push that is
-//! too short, moved, or felt by one sensor only is refused with its reason and can be repeated. Samples that are not finite
-//! or lack a source pause it. Memory is bounded and taken at the start.
+//! Takes the gravity-free force at the wrist (N, `s1`), the [`WristSample`] and the time (s); detects pushes by their
+//! force, stores for each the mean over its stillest interval near the peak, requests the next direction, and fits
+//! live. A push that is too short, not steady, or measured by one sensor only is refused with its reason and can be
+//! repeated. Samples that are not finite or lack a source pause the session. Memory is bounded and allocated at the
+//! start.
 
 use nalgebra::{UnitQuaternion, Vector3};
 
@@ -13,22 +14,23 @@ use super::{
 };
 use crate::frames::WristSample;
 
-/// How pushes are taken.
+/// Settings of a session.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SessionSettings {
     /// A push begins above this force at the wrist, N.
     pub begin_n: f64,
-    /// And ends below this one, N; also the most a sensor may read without contact.
+    /// A push ends below this force, N; also the largest reading of a sensor without contact.
     pub end_n: f64,
-    /// Length of the stretch that is kept of a push, s; shorter pushes are refused.
+    /// Length of the interval that is averaged, s; shorter pushes are refused.
     pub stretch_s: f64,
-    /// Most the force may vary within that stretch (standard deviation of the worst axis of either sensor), N.
+    /// Largest variation of the force within that interval (standard deviation of the worst axis of either sensor), N.
     pub still_n: f64,
-    /// How long both sensors must rest before the first push, s.
+    /// How long both sensors must be at rest before the first push, s.
     pub rest_s: f64,
-    /// The chain comes from the tracker; without it the result is `s1_from_s2`, true for one orientation of the wrist only.
+    /// Whether the chain comes from the tracker; without it the result is `s1_from_s2`, valid for one orientation of
+    /// the wrist only.
     pub chain: bool,
-    /// How to fit.
+    /// Settings of the fit.
     pub options: Options,
 }
 
@@ -46,70 +48,70 @@ impl Default for SessionSettings {
     }
 }
 
-/// What a sample lacks.
+/// What is missing in a sample.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Missing {
-    /// The gravity-free force at the wrist: sensor silent or gravity not calibrated.
+    /// The gravity-free force at the wrist: the sensor is silent or gravity is not calibrated.
     WristForce,
     /// The sensor under the tissue.
     TissueForce,
     /// A rotation of the chain: arm or tracker.
     Chain,
-    /// A finite number or a time that rises.
+    /// A number is not finite, or the time does not rise.
     Sense,
 }
 
 /// Why a push was not kept.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Refusal {
-    /// It ended before a stretch was full.
+    /// It ended before the interval was complete.
     TooShort,
-    /// The force did not stand still.
+    /// The force was not steady.
     Moved {
-        /// Standard deviation of the stillest stretch, N.
+        /// Standard deviation of the stillest interval, N.
         by_n: f64,
     },
-    /// The sensor under the tissue felt next to nothing.
+    /// The sensor under the tissue measured almost nothing.
     MissedTissue,
-    /// As many pushes as a session holds.
+    /// The session is full.
     Full,
 }
 
-/// Where the session is.
+/// State of the session.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Phase {
-    /// A source is missing; nothing is taken.
+    /// A source is missing; the session is paused.
     Missing(Missing),
-    /// Waiting for both sensors to rest without contact, before the first push.
+    /// Waiting for both sensors to be at rest without contact, before the first push.
     Resting {
-        /// Share of the rest, 0 to 1.
+        /// Share of the required time, 0 to 1.
         share: f64,
-        /// What the wrist sensor reads, N; zero it when this stays above the limit.
+        /// Reading of the wrist sensor, N; it must be zeroed if this stays above the limit.
         f1_n: f64,
-        /// The same of the sensor under the tissue, N.
+        /// Reading of the sensor under the tissue, N.
         f2_n: f64,
     },
     /// Ready for the next push.
     Ready,
-    /// The tool is being pushed; samples are taken.
+    /// The tool is being pushed.
     Pushing {
         /// Force at the wrist, N.
         force_n: f64,
-        /// The kept stretch is long and still enough: the push may end.
+        /// The interval is long and steady enough: the push may end.
         enough: bool,
     },
-    /// The push that just ended was kept, under this index.
+    /// The push that just ended was stored with this index.
     Recorded(usize),
-    /// The push that just ended was not kept.
+    /// The push that just ended was refused.
     Refused(Refusal),
 }
 
-/// A push to ask for.
+/// A push to request.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PushTarget {
-    /// For the screen.
+    /// Its name on the screen.
     pub name: &'static str,
-    /// Which way the tool pushes, unit vector (`world`: x away from the base, y left, z up).
+    /// Direction in which the tool pushes, unit vector (`world`: x away from the base, y left, z up).
     pub push_in_world: Vector3<f64>,
 }
 
@@ -119,7 +121,7 @@ const fn target(name: &'static str, x: f64, y: f64, z: f64) -> PushTarget {
     PushTarget { name, push_in_world: Vector3::new(x, y, z) }
 }
 
-/// What is asked for, in this order: what a tool can do to tissue that lies under it.
+/// The requested pushes, in this order: directions in which a tool can push on tissue below it.
 pub const TARGETS: [PushTarget; 9] = [
     target("down", 0.0, 0.0, -1.0),
     target("left", 0.0, 1.0, 0.0),
@@ -132,19 +134,19 @@ pub const TARGETS: [PushTarget; 9] = [
     target("down and towards the base", -S, 0.0, -S),
 ];
 
-/// A push counts for a target within 30 degrees (cosine).
+/// Cosine of the angle within which a push counts for a target: 30 degrees.
 const NEAR_TARGET: f64 = 0.866;
-/// Pushes that a session holds.
+/// Most pushes of a session.
 const MOST_PUSHES: usize = 64;
 
 #[derive(Clone, Copy, Debug)]
 struct Push {
     pair: Pair,
-    /// Which way it went (unit, `world`); `None` without the arm's kinematics.
+    /// Its direction (unit, `world`); `None` without the arm's kinematics.
     towards_in_world: Option<Vector3<f64>>,
 }
 
-/// The session. Nothing is allocated in [`step`](Self::step).
+/// A guided session. [`step`](Self::step) allocates nothing.
 #[derive(Clone, Debug)]
 pub struct CorrespondenceSession {
     settings: SessionSettings,
@@ -170,12 +172,12 @@ impl CorrespondenceSession {
         }
     }
 
-    /// Takes one sample; gives where the session is. `Recorded` and `Refused` last until the next push begins.
+    /// Adds one sample; returns the state of the session. `Recorded` and `Refused` last until the next push begins.
     pub fn step(&mut self, f1_n: Option<Vector3<f64>>, sample: &WristSample, t_s: f64) -> Phase {
         let reading = match self.reading(f1_n, sample, t_s) {
             Ok(reading) => reading,
             Err(missing) => {
-                // What was on is lost: a push with a hole proves nothing.
+                // The present push is discarded: one with a gap is not valid.
                 self.stretch.clear();
                 self.phase = Phase::Missing(missing);
                 return self.phase;
@@ -187,7 +189,7 @@ impl CorrespondenceSession {
             Phase::Pushing { .. } => self.push_on(&reading, sample),
             _ if self.rested_s < self.settings.rest_s => self.rest(&reading, gap_s),
             Phase::Missing(_) | Phase::Resting { .. } if reading.f1_n.norm() > self.settings.end_n => {
-                // A push whose beginning was not seen is not taken.
+                // A push whose beginning was not seen is not used.
                 Phase::Resting { share: 1.0, f1_n: reading.f1_n.norm(), f2_n: reading.f2_n.norm() }
             }
             Phase::Missing(_) | Phase::Resting { .. } => Phase::Ready,
@@ -209,11 +211,12 @@ impl CorrespondenceSession {
         if sense { Ok(Reading { t_s, f1_n, f2_n, s1_from_c }) } else { Err(Missing::Sense) }
     }
 
-    /// Both sensors must read about nothing for a while: one that was not zeroed is found before the first push.
+    /// Both sensors must read almost nothing for a while, so that one that was not zeroed is found before the first
+    /// push.
     fn rest(&mut self, reading: &Reading, gap_s: f64) -> Phase {
         let (f1_n, f2_n) = (reading.f1_n.norm(), reading.f2_n.norm());
         let resting = f1_n.max(f2_n) <= self.settings.end_n;
-        // A hole in the samples (or the first one, after no time at all) is not rest.
+        // A gap in the samples (or the first sample) does not count as rest.
         self.rested_s = if resting { self.rested_s + if gap_s < 0.1 { gap_s } else { 0.0 } } else { 0.0 };
         if self.rested_s >= self.settings.rest_s {
             return Phase::Ready;
@@ -244,19 +247,19 @@ impl CorrespondenceSession {
         if self.pushes.len() == MOST_PUSHES {
             return Phase::Refused(Refusal::Full);
         }
-        // The wrist feels the reaction: the tool pushes the other way.
+        // The wrist measures the reaction; the tool pushes in the opposite direction.
         let towards_in_world = self.world_from_s1.and_then(|turn| (turn * -best.pair.f1_n).try_normalize(1e-9));
         self.pushes.push(Push { pair: best.pair, towards_in_world });
         Phase::Recorded(self.pushes.len() - 1)
     }
 
-    /// Where the session is.
+    /// State of the session.
     pub const fn phase(&self) -> Phase {
         self.phase
     }
 
-    /// The next push to ask for: the first direction that no push came near to. Without the arm's kinematics the directions
-    /// are asked for in turn. `None` when all are done; more pushes still help.
+    /// The next push to request: the first direction without a push. Without the arm's kinematics the directions are
+    /// requested in turn. `None` when all are done; further pushes still improve the fit.
     pub fn target(&self) -> Option<PushTarget> {
         if self.pushes.iter().any(|push| push.towards_in_world.is_none()) {
             return TARGETS.get(self.pushes.len()).copied();
@@ -268,37 +271,38 @@ impl CorrespondenceSession {
         TARGETS.iter().find(|target| !near(target)).copied()
     }
 
-    /// Directions in all.
+    /// Number of directions.
     pub const fn targets(&self) -> usize {
         TARGETS.len()
     }
 
-    /// Which ways the kept pushes went: unit vectors (`world`); those taken without the arm's kinematics are left out.
+    /// Directions of the stored pushes: unit vectors (`world`); those recorded without the arm's kinematics are left
+    /// out.
     pub fn taken_in_world(&self) -> Vec<Vector3<f64>> {
         self.pushes.iter().filter_map(|push| push.towards_in_world).collect()
     }
 
-    /// How pushes are taken and fitted.
+    /// Settings of the session.
     pub const fn settings(&self) -> &SessionSettings {
         &self.settings
     }
 
-    /// Fits with the forces under the tissue of the opposite sign from now on, or not; pushes taken before are kept.
+    /// Sets whether the forces under the tissue are inverted in fits; stored pushes are kept.
     pub const fn set_flip_s2(&mut self, flip_s2: bool) {
         self.settings.options.flip_s2 = flip_s2;
     }
 
-    /// How many pushes are kept.
+    /// Number of stored pushes.
     pub const fn pushes(&self) -> usize {
         self.pushes.len()
     }
 
-    /// The pushes kept so far.
+    /// The stored pushes.
     pub fn pairs(&self) -> Vec<Pair> {
         self.pushes.iter().map(|push| push.pair).collect()
     }
 
-    /// Removes one push; `false` when there is none of this index.
+    /// Removes one push; `false` if there is none with this index.
     pub fn remove(&mut self, index: usize) -> bool {
         let there = index < self.pushes.len();
         if there {
@@ -307,12 +311,15 @@ impl CorrespondenceSession {
         there
     }
 
-    /// Removes the newest push; `false` when there is none.
+    /// Removes the newest push; `false` if there is none.
     pub fn undo(&mut self) -> bool {
         self.pushes.pop().is_some()
     }
 
-    /// Fits what is there and judges it. Allocates; for the screen's thread.
+    /// Fits the stored pushes and judges the fit. Allocates; for the screen's thread.
+    ///
+    /// # Errors
+    /// As [`fit`](super::fit()).
     pub fn report(&self) -> Result<CorrespondenceReport, CorrespondenceError> {
         fit(&self.pairs(), &self.settings.options)
     }

@@ -1,4 +1,4 @@
-//! A simulated technician who pushes in the directions asked for.
+//! A simulated technician who pushes in the requested directions.
 
 use super::*;
 use crate::{
@@ -52,7 +52,8 @@ impl Bench {
         (0..ticks).map(|_| self.feel(Vector3::zeros())).last().unwrap()
     }
 
-    /// Presses this way (`world`), rising and falling within 0.1 s, held for `held_s` with a slow sway; gives the last phase.
+    /// Pushes in this direction (`world`), rising and falling within 0.1 s, held for `held_s` with a slow variation;
+    /// returns the last phase.
     fn push(&mut self, towards: Vector3<f64>, peak_n: f64, held_s: f64) -> Phase {
         let ticks = ((0.2 + held_s) * 1e3) as usize;
         for tick in 0..ticks {
@@ -72,7 +73,7 @@ fn pushes_in_the_directions_asked_for_give_an_accepted_rotation_within_a_fifth_o
         assert_eq!(bench.rest(700), Phase::Ready, "{seed}");
         let mut asked = Vec::new();
         while bench.session.pairs().len() < 20 {
-            // The wrist turns between pushes, as an arm does.
+            // The wrist turns a little between pushes, as an arm does.
             bench.world_from_s1 *= from_roll_pitch_yaw_deg(&Vector3::new(3.0, -5.0, 8.0));
             let astray = bench.noise_n() * 3.0;
             let target = bench.session.target();
@@ -83,7 +84,7 @@ fn pushes_in_the_directions_asked_for_give_an_accepted_rotation_within_a_fifth_o
             let phase = bench.push(towards.normalize(), peak_n, 0.4);
             assert_eq!(phase, Phase::Recorded(index), "{seed}");
         }
-        // A push that went astray may do for its neighbour too.
+        // A push that deviates may count for a neighbouring target.
         assert!(asked.len() + 1 >= bench.session.targets() && bench.session.target().is_none(), "{asked:?}");
         let report = bench.session.report().unwrap();
         assert_eq!(report.verdict, Verdict::Accepted, "{seed}: {}", report.reason);
@@ -113,7 +114,7 @@ fn short_moved_and_one_sided_pushes_are_refused_with_their_reason() {
         bench.feel(Vector3::x() * force_n);
     }
     assert!(matches!(bench.rest(50), Phase::Refused(Refusal::Moved { by_n }) if by_n > 0.3));
-    // The shaft leans on something that is not the tissue.
+    // The shaft leans on something other than the tissue.
     let lean = |bench: &mut Bench, force_n: f64| {
         bench.t_s += 1e-3;
         let turn = Some(UnitQuaternion::identity());

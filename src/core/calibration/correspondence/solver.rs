@@ -1,17 +1,17 @@
-//! The rotation between two sets of vectors: Wahba's problem, made robust.
+//! The rotation between two sets of vectors: Wahba's problem, solved robustly.
 
 use nalgebra::{Matrix3, Rotation3, UnitQuaternion, Vector3};
 
 use super::Pair;
 
-/// One push as the solver sees it: the same force in `c` (by the wrist sensor and the chain) and in `s2`.
+/// One push: the same force in `c` (from the wrist sensor and the chain) and in `s2`.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Row {
-    /// By the wrist sensor, N (`c`).
+    /// From the wrist sensor, N (`c`).
     pub(super) c_n: Vector3<f64>,
-    /// By the sensor under the tissue, N (`s2`).
+    /// From the sensor under the tissue, N (`s2`).
     pub(super) s2_n: Vector3<f64>,
-    /// To tell residuals in the wrist sensor's axes.
+    /// For residuals in the wrist sensor's axes.
     pub(super) s1_from_c: UnitQuaternion<f64>,
 }
 
@@ -21,7 +21,7 @@ impl Row {
         Self { c_n: pair.s1_from_c.inverse() * pair.f1_n, s2_n: pair.f2_n * sign, s1_from_c: pair.s1_from_c }
     }
 
-    /// What the rotation leaves unexplained, N (`c`).
+    /// Residual of this rotation, N (`c`).
     pub(super) fn residual_n(&self, c_from_s2: &Rotation3<f64>) -> Vector3<f64> {
         c_from_s2 * self.s2_n - self.c_n
     }
@@ -32,8 +32,8 @@ impl Row {
     }
 }
 
-/// The proper rotation of least squares: `U diag(1, 1, det U det V) V^T` of `sum c s2^T` (Markley, J. Astronaut. Sci. 1988).
-/// Forces in N with the same noise each, so a strong push weighs more, as it should.
+/// The proper rotation of least squares: `U diag(1, 1, det U det V) V^T` of `sum c s2^T` (Markley, J. Astronaut. Sci.
+/// 1988). Forces in N with equal noise, so a stronger push has more weight, as it should.
 pub(super) fn wahba<'a>(rows: impl IntoIterator<Item = &'a Row>) -> Rotation3<f64> {
     let moment = rows.into_iter().fold(Matrix3::zeros(), |sum, row| sum + row.c_n * row.s2_n.transpose());
     let decomposed = moment.svd(true, true);
@@ -42,31 +42,32 @@ pub(super) fn wahba<'a>(rows: impl IntoIterator<Item = &'a Row>) -> Rotation3<f6
     Rotation3::from_matrix_unchecked(u * Matrix3::from_diagonal(&Vector3::new(1.0, 1.0, sign)) * v_t)
 }
 
-/// What most pushes agree on: the rotation is that of [`wahba`] on the rows that agree.
+/// Result of the robust estimation; the rotation is that of [`wahba`] on the agreeing rows.
 #[derive(Clone, Debug)]
 pub(super) struct Consensus {
-    /// Per row: it agrees.
+    /// Per row: whether it agrees.
     pub(super) inlier: Vec<bool>,
     /// Median length of the residuals of all rows, N.
     pub(super) median_n: f64,
 }
 
-/// Hypotheses drawn: with a third of outliers, the chance that none of them is clean is 1e-77.
+/// Number of random hypotheses: with a third of outliers, the probability that each of them contains one is 1e-77.
 const DRAWS: usize = 300;
-/// Up to so many rows every pair is tried instead.
+/// Up to this number of rows all pairs are tried instead.
 const EXHAUSTIVE: usize = 24;
-/// Rows that judge a hypothesis; more would only cost time.
+/// Most rows by which a hypothesis is judged; more would only take time.
 const JUDGES: usize = 400;
-/// Median length of a normal vector in space with a standard deviation of 1 per axis.
+/// Median length of a 3-D normal vector with a standard deviation of 1 per axis.
 const MEDIAN_OF_LENGTH: f64 = 1.538;
-/// A residual beyond this many deviations is an outlier: one in 900 good ones is lost.
+/// A residual beyond this many standard deviations is an outlier; one in 900 good ones is lost.
 const CUT: f64 = 4.0;
-/// Deviation below which readings are equal, N.
+/// Lower limit of the standard deviation, N: smaller differences of readings do not matter.
 const FINEST_N: f64 = 0.01;
-/// Two pushes nearer to one line than this (sine of the angle) make no hypothesis.
+/// Two pushes closer to one line than this (sine of the angle) define no rotation.
 const LEAST_SINE: f64 = 0.25;
 
-/// The rows that agree with the rotation of the least median residual over hypotheses from two pushes each, refined.
+/// The rows that agree with the rotation of least median residual, over hypotheses from two pushes each; refined
+/// iteratively.
 pub(super) fn consensus(rows: &[Row]) -> Consensus {
     let mut lengths = Vec::with_capacity(rows.len());
     let mut c_from_s2 = first_guess(rows, &mut lengths);

@@ -1,4 +1,4 @@
-//! The stillest stretch of a push near its peak, found in one pass with constant memory.
+//! Finds the stillest interval of a push near its peak, in one pass with constant memory.
 
 use std::collections::VecDeque;
 
@@ -15,25 +15,25 @@ pub(super) struct Reading {
     pub(super) s1_from_c: UnitQuaternion<f64>,
 }
 
-/// A stretch that may be kept.
+/// The best interval so far.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Best {
-    /// Means over the stretch.
+    /// Means over the interval.
     pub(super) pair: Pair,
     /// Standard deviation of the worst axis of either sensor, N.
     pub(super) deviation_n: f64,
 }
 
-/// Samples a stretch holds at most (0.1 s at 10 kHz and room to spare); a faster source gets a shorter stretch.
+/// Most samples of an interval (0.1 s at 10 kHz, with a margin); a faster source gets a shorter interval.
 const CAPACITY: usize = 2048;
-/// Samples that make a mean.
+/// Fewest samples for a mean.
 const LEAST_SAMPLES: usize = 10;
-/// A stretch this much below the strongest one is not near the peak.
+/// An interval weaker than this share of the strongest one is not near the peak.
 const NEAR_PEAK: f64 = 0.8;
-/// Readings further apart than this belong to different stretches, s.
+/// Readings further apart than this belong to different intervals, s.
 const LONGEST_GAP_S: f64 = 0.05;
 
-/// A sliding window with running sums, and the best that it has seen.
+/// A sliding window with running sums, and the best interval so far.
 #[derive(Clone, Debug)]
 pub(super) struct Stretch {
     length_s: f64,
@@ -68,24 +68,24 @@ impl Sums {
 }
 
 impl Stretch {
-    /// Of this length, s.
+    /// For intervals of this length, s.
     pub(super) fn new(length_s: f64) -> Self {
         Self { length_s, window: VecDeque::with_capacity(CAPACITY), sums: Sums::default(), best: None }
     }
 
-    /// Forgets everything, for the next push.
+    /// Resets it for the next push.
     pub(super) fn clear(&mut self) {
         self.window.clear();
         self.sums = Sums::default();
         self.best = None;
     }
 
-    /// The best stretch so far; `None` until one is full.
+    /// The best interval so far; `None` until the window has been full.
     pub(super) const fn best(&self) -> Option<Best> {
         self.best
     }
 
-    /// Takes a reading; `true` when the stretch that ends with it is the best so far.
+    /// Adds a reading; returns `true` if the interval that ends with it is the best so far.
     pub(super) fn take(&mut self, reading: &Reading) -> bool {
         if self.window.back().is_some_and(|last| reading.t_s - last.t_s > LONGEST_GAP_S) {
             self.window.clear();
@@ -111,7 +111,7 @@ impl Stretch {
             best_n < NEAR_PEAK * now_n || (now_n >= NEAR_PEAK * best_n && deviation_n < best.deviation_n)
         });
         if better {
-            // The arm stands still while it pushes; the mean takes out the tracker's noise.
+            // The arm is still while it pushes; averaging reduces the tracker's noise.
             let near = self.window.back().map_or_else(UnitQuaternion::identity, |last| last.s1_from_c);
             let sum = self.window.iter().fold(Quaternion::default(), |sum: Quaternion<f64>, reading| {
                 let part = reading.s1_from_c.into_inner();

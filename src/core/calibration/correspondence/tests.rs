@@ -1,4 +1,4 @@
-//! Seeded trials: good sets, degenerate sets, and every mistake that has a name.
+//! Seeded trials: good sets, degenerate sets, and every mistake that is recognised.
 
 use nalgebra::{UnitQuaternion, Vector3};
 
@@ -7,10 +7,10 @@ use crate::{calibration::Verdict, frames::from_roll_pitch_yaw_deg, noise::Noise}
 
 /// Noise of one reading per axis, N.
 const READING_N: f64 = 0.05;
-/// A push is the mean of so many readings (0.1 s at 1 kHz).
+/// A push is the mean of this many readings (0.1 s at 1 kHz).
 const READINGS: f64 = 100.0;
 
-/// A rig with a truth to find.
+/// A rig with a known rotation.
 struct Rig {
     noise: Noise,
     c_from_s2: UnitQuaternion<f64>,
@@ -246,7 +246,7 @@ fn held_out_errors_are_those_of_pushes_that_were_not_fitted() {
     assert!(solution.agreement.r2_held_out_overall > 0.99);
 }
 
-/// Spoils one pair, with some noise to do it by.
+/// Corrupts one pair; the vector is random noise for it.
 type Edit<'a> = &'a dyn Fn(&mut Pair, Vector3<f64>);
 
 #[test]

@@ -1,28 +1,29 @@
-//! Gravity taken out sample by sample while the tool moves.
+//! Removes gravity from every sample while the tool moves.
 //!
-//! An accelerometer beside the sensor reads gravity and motion together, and so does the sensor: what accelerates the tool is
-//! felt as `m a` on top of its weight. The models of gain and mass take off both at once as long as the reading is not delayed
-//! against the force, so a low-pass on the accelerometer may only be as slow as its noise needs. What remains is the turning of
-//! the tool about the accelerometer (`com x` angular acceleration, and the centripetal part). Measured in simulation (0.4 kg
-//! tool, centre of mass 60 mm off, tilting +-29 and +-11 degrees at 0.2 and 0.5 Hz, moving by 20 mm, 0.05 m/s^2 noise), mean
-//! error per axis: 0.025 N without filter, 0.021 N at 2 ms, 0.020 N at 5 ms, 0.031 N at 20 ms, 0.062 N at 50 ms; the same motion
-//! two and a half times as fast: 0.108, 0.108, 0.109, 0.129, 0.202 N. On the simulated
-//! rig (0.04 N noise of the force, no inertia) 0, 2, 5 and 20 ms leave 41.8, 40.4, 40.2 and 40.0 mN rms per axis at rest and 41.7,
-//! 40.5, 40.8 and 50.6 mN in motion. The default is 2 ms. Orientations by the arm have next to no noise and are not filtered.
+//! An accelerometer at the sensor measures gravity and motion together, and so does the sensor: acceleration of the
+//! tool adds a force `m a` to its weight. The models with gain or mass remove both, as long as the accelerometer's
+//! reading is not delayed against the force, so its low-pass should be no slower than its noise requires. What remains
+//! is due to the rotation of the tool about the accelerometer (`com x` angular acceleration, and the centripetal part).
+//! Mean error per axis measured in simulation (0.4 kg tool, centre of mass 60 mm off, tilting +-29 and +-11 degrees at
+//! 0.2 and 0.5 Hz, moving by 20 mm, 0.05 m/s^2 noise): 0.025 N without filter, 0.021 N at 2 ms, 0.020 N at 5 ms, 0.031
+//! N at 20 ms, 0.062 N at 50 ms; with the same motion two and a half times as fast: 0.108, 0.108, 0.109, 0.129, 0.202
+//! N. On the simulated rig (0.04 N noise of the force, no inertia) 0, 2, 5 and 20 ms leave 41.8, 40.4, 40.2 and 40.0 mN
+//! rms per axis at rest and 41.7, 40.5, 40.8 and 50.6 mN in motion. The default is 2 ms. Orientations from the arm have
+//! almost no noise and are not filtered.
 
 use nalgebra::Vector3;
 
 use super::{GravityModel, Source};
 use crate::frames::{Wrench, WristSample};
 
-/// Time constant within 2 % of the best measured, s.
+/// Default time constant, within 2 % of the best one measured, s.
 pub const DEFAULT_TIME_CONSTANT_S: f64 = 0.002;
 
-/// A model with a low-pass of first order on the field of gravity. Steps allocate nothing.
+/// A model with a first-order low-pass on the gravity vector. Steps allocate nothing.
 #[derive(Clone, Debug)]
 pub struct Compensator {
     model: GravityModel,
-    /// Share of a new reading that is taken, 0 to 1.
+    /// Weight of a new reading in the low-pass, 0 to 1.
     share: f64,
     field_m_s2: Option<Vector3<f64>>,
 }
@@ -31,7 +32,7 @@ impl Compensator {
     /// For a loop of this period (s). A time constant (s) that is zero, negative or not finite means no filter.
     pub fn new(model: GravityModel, time_constant_s: f64, period_s: f64) -> Self {
         let share = -(-period_s / time_constant_s).exp_m1();
-        // The arm's orientation has next to no noise: a filter would only delay it.
+        // The arm's orientation has almost no noise; a filter would only add delay.
         let usable = model.source == Source::Imu
             && time_constant_s > 0.0
             && time_constant_s.is_finite()
@@ -45,13 +46,13 @@ impl Compensator {
         &self.model
     }
 
-    /// Forgets the filtered field; the next sample starts it anew.
+    /// Resets the filter; the next sample initialises it.
     pub const fn reset(&mut self) {
         self.field_m_s2 = None;
     }
 
-    /// The sample's wrench without gravity and bias (`s1`, N and Nm); `None`, and a fresh start, when the wrench is not finite
-    /// or the source of orientation is missing, not finite or dead.
+    /// Wrench of the sample without gravity and bias (`s1`, N and Nm). `None`, and a reset of the filter, if the wrench
+    /// is not finite or the source of orientation is missing, not finite or defective.
     pub fn step(&mut self, sample: &WristSample) -> Option<Wrench> {
         let read = self.model.field_m_s2(sample).filter(|_| sample.raw.is_finite());
         self.field_m_s2 = read.map(|read| self.field_m_s2.map_or(read, |old| old + (read - old) * self.share));
@@ -78,7 +79,8 @@ mod tests {
 
     const STEP_S: f64 = 1e-3;
 
-    /// Orientation of the sensor and place of the accelerometer (m, world) of a hand that tilts and carries the tool.
+    /// Orientation of the sensor and position of the accelerometer (m, world) for a hand that tilts and carries the
+    /// tool.
     fn motion(t_s: f64) -> (UnitQuaternion<f64>, Vector3<f64>) {
         let wave = |hz: f64, phase: f64| (std::f64::consts::TAU * 0.4 * hz * t_s + phase).sin();
         let world_from_s1 =
@@ -91,7 +93,7 @@ mod tests {
         (place(t_s + STEP_S) - place(t_s) * 2.0 + place(t_s - STEP_S)) / (STEP_S * STEP_S)
     }
 
-    /// What sensor and accelerometer read in motion, inertia included.
+    /// Readings of sensor and accelerometer in motion, including inertia.
     fn moving_sample(tool: &mut Tool, t_s: f64) -> WristSample {
         let (world_from_s1, _) = motion(t_s);
         let mut sample = tool.sample(world_from_s1, 0.0, 0.0);
@@ -135,7 +137,7 @@ mod tests {
         let upright = tool.sample(UnitQuaternion::identity(), 0.0, 0.0);
         let tilted = tool.sample(UnitQuaternion::from_euler_angles(1.0, 0.0, 0.0), 0.0, 0.0);
         assert!(compensator.step(&upright).unwrap().force_n.norm() < 1e-6);
-        // One slow second behind: most of the tilt is still missing.
+        // Filtered with a time constant of one second, most of the tilt is still missing.
         assert!(compensator.step(&tilted).unwrap().force_n.norm() > 1.0);
         assert!(compensator.step(&WristSample { acceleration_m_s2: None, ..tilted }).is_none());
         assert!(compensator.step(&tilted).unwrap().force_n.norm() < 1e-6);

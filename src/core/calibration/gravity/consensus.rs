@@ -1,27 +1,28 @@
-//! Which poses agree with each other: one or two that were touched must not spoil the rest.
+//! Finds the poses that agree with each other, so that one or two touched poses do not spoil the fit.
 //!
-//! Least quantile of residuals over small random sets (Rousseeuw 1984) finds a start that a minority of bad poses cannot
-//! pull; then poses beyond a multiple of the spread of the agreeing ones are left out, until the set stays the same.
+//! The least quantile of residuals over small random sets (Rousseeuw 1984) gives a start that a minority of bad poses
+//! cannot affect. Then poses beyond a multiple of the agreeing poses' deviation are left out, until the set no longer
+//! changes.
 
 use super::{pose::Row, solve::scaled_rotation};
 use nalgebra::Vector3;
 
 /// Share of the poses that must agree.
 const AGREEING_SHARE: f64 = 0.7;
-/// Poses of one random set: seven unknowns, fifteen equations.
+/// Poses in one random set: fifteen equations for seven unknowns.
 const SET: usize = 5;
-/// Random sets tried: with 30 % bad poses, one all-good set is missed once in 1700.
+/// Number of random sets: with 30 % bad poses, all of them contain a bad pose once in 1700 cases.
 const SETS: usize = 40;
-/// Fewer poses than this cannot tell which of them is wrong.
+/// With fewer poses it cannot be determined which of them is wrong.
 const LEAST_POSES: usize = 8;
-/// A pose is an outlier beyond this many standard deviations: 1 in 900 by chance for three axes.
+/// Number of standard deviations beyond which a pose is an outlier: 1 in 900 by chance for three axes.
 const DEVIATIONS: f64 = 4.0;
-/// Median length of a vector of three unit normals.
+/// Median length of a vector of three standard normal numbers.
 const MEDIAN_LENGTH: f64 = 1.538;
-/// Same seed always: the same poses give the same answer.
+/// A fixed seed: the same poses give the same result.
 const SEED: u64 = 0x6772_6176;
 
-/// Rows that agree, as indices in rising order. `floor_n`: a residual below it is never an outlier, N.
+/// Indices of the rows that agree, in rising order. `floor_n`: a residual below it is never an outlier, N.
 pub(super) fn agreeing(rows: &[Row], floor_n: f64) -> Vec<usize> {
     let all: Vec<usize> = (0..rows.len()).collect();
     if rows.len() < LEAST_POSES {
@@ -32,7 +33,7 @@ pub(super) fn agreeing(rows: &[Row], floor_n: f64) -> Vec<usize> {
     for _ in 0..20 {
         let Some(residuals) = residuals(rows, &chosen) else { return all };
         let (order, sorted) = ranked(&residuals);
-        // The correction for few samples is Rousseeuw and Leroy's (1987).
+        // The correction for small samples is from Rousseeuw and Leroy (1987).
         let spread = sorted[rows.len() / 2] / MEDIAN_LENGTH * (1.0 + 5.0 / (rows.len() as f64 - 2.0));
         let limit = (DEVIATIONS * spread).max(floor_n);
         let count = sorted.partition_point(|&r| r <= limit).max(least);

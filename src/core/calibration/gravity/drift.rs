@@ -1,10 +1,12 @@
-//! Whether a saved calibration still holds: the force left at rest, looked at after every start. A state machine without a clock.
+//! Checks after every start whether a saved calibration still holds, by the force that remains at rest. A state machine
+//! without a clock.
 //!
-//! Takes every sample of the wrist sensor with the time (s) and whether the loop is idle; gives a [`Drift`]. For two seconds it
-//! waits, then the first stretch that is still decides. While nothing touches the tool, what gravity and bias leave is zero. A
-//! bias does not change within seconds and a hand on the tool does: a bad verdict takes three times the stretch of a good one.
-//! What rests on the tool perfectly still cannot be told from a bias that moved, so a bad verdict asks for it first, and is
-//! taken back by a later good stretch. Once the loop was engaged nothing is judged any more: the tool may touch tissue.
+//! Takes every sample of the wrist sensor with the time (s) and whether the loop is idle; returns a [`Drift`]. It waits
+//! for two seconds; then the first still interval decides. While nothing touches the tool, the force without gravity
+//! and bias is zero. A bias does not change within seconds, but the force of a hand does, so a bad verdict needs three
+//! times as long an interval as a good one. An object that rests motionless on the tool cannot be distinguished from a
+//! changed bias: the message of a bad verdict says so, and a later good interval revokes it. Once the loop has been
+//! engaged, nothing is judged any more, because the tool may touch tissue.
 
 use super::{
     GravityModel,
@@ -12,11 +14,11 @@ use super::{
 };
 use crate::frames::WristSample;
 
-/// After a start the filters of sensor and driver settle, s.
+/// After a start, the filters of sensor and driver need this time to settle, s.
 const SETTLE_S: f64 = 2.0;
-/// A bad verdict takes this many stretches on end.
+/// A bad verdict needs this many consecutive still intervals.
 const STRETCHES_FOR_BAD: f64 = 3.0;
-/// Without a verdict by then the check is given up, until a still stretch comes, s.
+/// Without a verdict after this time, the check reports why, s; a later still interval still decides.
 const TIMEOUT_S: f64 = 7.0;
 
 /// Why a calibration was not checked.
@@ -26,7 +28,7 @@ pub enum NotChecked {
     NoSample,
     /// The tool turns.
     Moving,
-    /// The tool does not turn, and yet the force is not still.
+    /// The tool does not turn, but the force is not constant.
     Touched,
     /// The body wall touches the instrument.
     InTrocar,
@@ -34,26 +36,26 @@ pub enum NotChecked {
     Engaged,
 }
 
-/// How a saved calibration stands since the start.
+/// Result of the check since the start.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Drift {
-    /// Not looked at for long enough yet.
+    /// Not enough data yet.
     Waiting,
-    /// Nothing can be said.
+    /// The check is not possible.
     NotChecked(NotChecked),
-    /// The bias is where it was.
+    /// The bias is unchanged.
     Fine {
-        /// Force left at rest, N.
+        /// Force remaining at rest, N.
         by_n: f64,
     },
-    /// The bias is not where it was, unless something rests on the tool.
+    /// The bias has changed, unless something rests on the tool.
     Moved {
-        /// Force left at rest, N.
+        /// Force remaining at rest, N.
         by_n: f64,
     },
 }
 
-/// Compares the force left at rest with zero. Steps allocate nothing.
+/// Compares the force remaining at rest with zero. Steps allocate nothing.
 #[derive(Clone, Debug)]
 pub struct DriftCheck {
     model: GravityModel,
@@ -66,30 +68,30 @@ pub struct DriftCheck {
 }
 
 impl DriftCheck {
-    /// A check of this model with a limit (N), from the first sample on.
+    /// Starts a check of this model with a limit (N).
     pub fn new(model: GravityModel, limit_n: f64, still: StillSettings) -> Self {
         let still = Still::new(still);
         Self { model, limit_n, still, began_s: None, newest: None, fresh_s: f64::NEG_INFINITY, drift: Drift::Waiting }
     }
 
-    /// How the calibration stands.
+    /// The present result.
     pub const fn drift(&self) -> Drift {
         self.drift
     }
 
-    /// Takes a sample, `None` while the sensor is silent, at time `t_s` (s, rising); says how the calibration stands.
+    /// Adds a sample (`None` while the sensor is silent) at time `t_s` (s, rising); returns the present result.
     pub fn step(&mut self, sample: Option<&WristSample>, idle: bool, t_s: f64) -> Drift {
         if matches!(self.drift, Drift::Fine { .. } | Drift::NotChecked(NotChecked::Engaged)) || !t_s.is_finite() {
             return self.drift;
         }
         let since_s = t_s - *self.began_s.get_or_insert(t_s);
         if !idle {
-            // A verdict stays; what has none gets none any more.
+            // A verdict is kept; without one there will be none any more.
             self.give_up(NotChecked::Engaged);
             self.still.reset();
             return self.drift;
         }
-        // A sensor that hangs repeats itself, and would look still.
+        // A sensor that hangs repeats its last sample, which would look still.
         if sample.is_some() && self.newest.as_ref() == sample {
             if since_s > TIMEOUT_S && t_s - self.fresh_s > SETTLE_S {
                 self.give_up(NotChecked::NoSample);
@@ -121,7 +123,7 @@ impl DriftCheck {
         self.drift
     }
 
-    /// Judges a stretch of this many times the still time.
+    /// Judges an interval of this multiple of the still time.
     fn judge(&mut self, share: f64) {
         let Some((wrench, field)) = self.still.mean() else { return };
         let by_n = (wrench.force_n - self.model.predict(&field).force_n).norm();
@@ -129,7 +131,7 @@ impl DriftCheck {
             self.drift = Drift::Fine { by_n };
         } else if share >= STRETCHES_FOR_BAD {
             self.drift = Drift::Moved { by_n };
-            // The next verdict takes a stretch of its own.
+            // The next verdict needs a new interval.
             self.still.reset();
         }
     }

@@ -1,4 +1,4 @@
-//! The fit: which poses agree, the three models over them, their errors on poses held out, and the verdict.
+//! The fit: agreement of the poses, the three models, their errors on held-out poses, and the verdict.
 
 use nalgebra::Vector3;
 
@@ -14,18 +14,18 @@ use crate::{
     frames::{GRAVITY_M_S2, Wrench},
 };
 
-/// Up to so many poses each is held out alone; beyond, every tenth together.
+/// Up to this number of poses each is held out alone; above it, every tenth together.
 const LEAVE_ONE_OUT: usize = 20;
-/// A free gain is chosen by itself only from so many poses on ...
+/// The gain model is chosen automatically only with at least this many poses ...
 const GAIN_POSES: usize = 12;
-/// ... and only when its held-out error is below this share of the physical model's.
+/// ... and only if its held-out error is below this share of the physical model's.
 const GAIN_SHARE: f64 = 0.75;
-/// Below this an error is rounding, which proves nothing, N.
+/// Errors below this are rounding and give no information, N.
 const ROUNDING_N: f64 = 1e-9;
-/// A mistaken reading of the orientation is named when it leaves less than this share of the error.
+/// A mistake in the orientation is reported if correcting it leaves less than this share of the error.
 const MISTAKE_SHARE: f64 = 0.5;
 
-/// What the poses are fitted with besides themselves.
+/// Common settings of the fits.
 struct Frame {
     source: Source,
     imu_sign: i8,
@@ -45,7 +45,7 @@ impl Frame {
     }
 }
 
-/// The rows, which of them agree, and what each fold is fitted on.
+/// The rows, which of them agree, and the training rows of each fold.
 struct Data {
     all: Vec<Row>,
     inliers: Vec<usize>,
@@ -63,12 +63,12 @@ impl Data {
     }
 }
 
-/// Fits all models to still poses and judges the chosen one. An `Err` is a pose that no fit may see; poses that determine
-/// nothing or fit badly give a report with that verdict.
+/// Fits all models to still poses and judges the chosen one. `Err` is returned only for invalid poses; poses that
+/// determine nothing, or fit badly, give a report with that verdict.
 ///
 /// # Errors
-/// A pose with a number that is not finite, with another source of orientation than the first, or with a dead accelerometer; no pose at
-/// all; a sign that is neither 1 nor -1.
+/// [`GravityError`] for a pose with a number that is not finite, with another source of orientation than the first, or
+/// with a defective accelerometer; for no poses at all; for a sign that is neither 1 nor -1.
 ///
 /// A tool of 0.25 kg, held still in eight orientations that the arm reports:
 ///
@@ -126,7 +126,7 @@ pub fn fit(poses: &[Pose], settings: &Settings) -> Result<GravityReport, Gravity
     Ok(report)
 }
 
-/// One model over the agreeing rows, and its errors there and on rows held out.
+/// Fits one model to the agreeing rows; errors on these and on held-out rows.
 fn one_fit(kind: ModelKind, frame: &Frame, data: &Data) -> Option<ModelFit> {
     let model = frame.fit(kind, &data.kept)?;
     let fitted: Vec<_> = data.kept.iter().map(|row| errors(&model, row)).collect();
@@ -148,13 +148,13 @@ fn errors(model: &GravityModel, row: &Row) -> Wrench {
     Wrench { force_n: row.wrench.force_n - predicted.force_n, torque_nm: row.wrench.torque_nm - predicted.torque_nm }
 }
 
-/// What each fold is fitted on. The rows choose anew which of them agree, so that a row held out has no say in it.
+/// Training rows of each fold. Agreement is determined again for each, so that a held-out row has no influence.
 fn trainings(frame: &Frame, all: &[Row], folds: usize) -> Vec<Vec<Row>> {
     let training = |fold| -> Vec<Row> { (0..all.len()).filter(|i| i % folds != fold).map(|i| all[i]).collect() };
     (0..folds).map(|fold| frame.agreeing(&training(fold))).collect()
 }
 
-/// Errors on rows that the model was not fitted on; rows named as outliers of the whole are not scored.
+/// Errors on held-out rows; outliers of the whole set are not counted.
 fn held_out(kind: ModelKind, frame: &Frame, data: &Data) -> Option<Vec<Wrench>> {
     let mut result = Vec::with_capacity(data.inliers.len());
     let folds = data.trainings.len();
@@ -174,7 +174,7 @@ fn weight(fits: &[ModelFit]) -> (Option<f64>, Option<[f64; 3]>) {
         .unwrap_or_default()
 }
 
-/// The model asked for; otherwise the physical one unless the gain is clearly better on poses it has not seen.
+/// The requested model; by default the physical one, unless the gain model is clearly better on held-out poses.
 fn chosen(report: &GravityReport, settings: &Settings) -> Option<ModelKind> {
     if let Some(kind) = settings.model {
         return report.fit_of(kind).map(|fit| fit.kind);
@@ -224,13 +224,14 @@ fn insufficient(report: &GravityReport, limits: &Limits) -> Option<String> {
     }
 }
 
-/// The force must follow gravity by more than its noise. A sensor that repeats one reading fits every model, with a mass of zero.
+/// The force must follow gravity by more than its noise. A sensor that repeats one reading fits every model with a mass
+/// of zero.
 fn weightless(report: &GravityReport, limits: &Limits) -> Option<String> {
     let fit = report.fit_of(ModelKind::Physical)?;
     let weight_n = report.mass_kg? * GRAVITY_M_S2;
     let noise_n = fit.force_n.fitted.sd.into_iter().fold(0.0, f64::max);
     let least_n = limits.least_weight_n.max(limits.least_signal * noise_n);
-    // Written so that a NaN is refused.
+    // Written so that NaN is refused.
     let seen = weight_n >= least_n;
     (!seen).then(|| {
         format!(
@@ -277,8 +278,8 @@ fn accepted(report: &GravityReport, fit: &ModelFit) -> String {
     )
 }
 
-/// The usual mistakes in how an orientation is read, named when one of them explains well-spread poses far better. A wrong
-/// sign makes the best fit a reflection, which no mounting can be.
+/// A common mistake in the orientation, reported if correcting it explains well-distributed poses far better. With a
+/// wrong sign the best fit is a reflection, which is not a possible mounting.
 fn mistake(report: &GravityReport, poses: &[Pose], settings: &Settings, frame: &Frame) -> Option<&'static str> {
     let limits = &settings.limits;
     let given = report.fit_of(ModelKind::Physical)?.force_n.held_out.mean_mae();

@@ -1,13 +1,13 @@
-//! Taking the tool's weight and the sensor's bias out of a wrist sensor's readings.
+//! Removes the tool's weight and the sensor's bias from a wrist sensor's readings.
 //!
-//! At rest the tool pulls on the sensor with its weight: `f = m R u + f0` and `tau = com x (m R u) + tau0` in `s1`, with `u` the
-//! field of gravity (m/s^2, pointing down) in the frame of the orientation source. That source is either the accelerometer
-//! (`u = -a`, frame `imu`, `R = s1_from_imu`) or the arm (`u = s1_from_world * (0, 0, -g)`, frame `s1`, `R` near the identity).
-//! The accelerometer's reading is not normalised: its own constant bias then disappears in `f0`. The sensor's drift after the
-//! calibration does not; the drift check sees that.
+//! At rest the tool acts on the sensor with its weight: `f = m R u + f0` and `tau = com x (m R u) + tau0` in `s1`, with
+//! the gravity vector `u` (m/s^2, pointing down) in the frame of the orientation source. That source is either the
+//! accelerometer (`u = -a`, frame `imu`, `R = s1_from_imu`) or the arm (`u = s1_from_world * (0, 0, -g)`, frame `s1`,
+//! `R` near the identity). The accelerometer's reading is not normalised, so that its constant bias becomes part of
+//! `f0`. Drift of the sensor after the calibration is not covered; the drift check detects it.
 //!
-//! Three models are fitted to the same still poses and compared on poses they were not fitted on: the physical one above, one
-//! with a free 3x3 gain in place of `m R`, and the paper's, linear in sine and cosine of roll and pitch.
+//! Three models are fitted to the same still poses and compared on held-out poses: the physical one above, one with a
+//! free 3x3 gain in place of `m R`, and the paper's, linear in sine and cosine of roll and pitch.
 
 mod compensator;
 mod consensus;
@@ -41,7 +41,7 @@ pub use session::{GravitySession, Phase, SessionSettings};
 pub use still::StillSettings;
 pub use targets::{PoseTarget, TARGETS};
 
-/// Why poses could not be fitted at all. Poses are counted from 1.
+/// Why poses could not be fitted. Messages count poses from 1.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[expect(missing_docs, reason = "the messages say it")]
 pub enum GravityError {
@@ -53,7 +53,7 @@ pub enum GravityError {
         /// Index of the pose, from 0.
         index: usize,
     },
-    /// Orientation from the accelerometer and from the arm in one set.
+    /// Orientations from the accelerometer and from the arm are mixed.
     #[error("pose {} takes its orientation from another source than the first; use one source for all", index + 1)]
     MixedSources {
         /// Index of the pose, from 0.
@@ -63,10 +63,10 @@ pub enum GravityError {
     DeadAccelerometer {
         /// Index of the pose, from 0.
         index: usize,
-        /// What it reads, m/s^2.
+        /// Magnitude of its reading, m/s^2.
         norm_m_s2: f64,
     },
-    /// Only +1 and -1 are signs.
+    /// The sign must be +1 or -1.
     #[error("the accelerometer's sign is {sign}; give 1 or -1")]
     BadSign { sign: i8 },
 }

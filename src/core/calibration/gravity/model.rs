@@ -1,14 +1,15 @@
-//! A fitted gravity model, and what it takes off a sample.
+//! A fitted gravity model, and the wrench that it predicts.
 
 use nalgebra::{Matrix3, Quaternion, SVector, UnitQuaternion, Vector3};
 use serde::{Deserialize, Serialize};
 
 use crate::frames::{GRAVITY_M_S2, Wrench, WristSample};
 
-/// Below this an accelerometer is dead or the arm falls: no orientation can be read, m/s^2.
+/// Below this value, m/s^2, the accelerometer is defective or the arm is in free fall, and no orientation can be
+/// computed.
 pub(super) const LEAST_FIELD_M_S2: f64 = 1.0;
 
-/// Where the direction of gravity comes from.
+/// Source of the direction of gravity.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Source {
@@ -18,7 +19,7 @@ pub enum Source {
     Arm,
 }
 
-/// Which of the three models.
+/// Type of the model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ModelKind {
@@ -31,7 +32,7 @@ pub enum ModelKind {
 }
 
 impl ModelKind {
-    /// All of them, in the order of a report.
+    /// All types, in the order of a report.
     pub const ALL: [Self; 3] = [Self::Physical, Self::Gain, Self::Paper];
 
     /// The model's name in one word.
@@ -44,29 +45,29 @@ impl ModelKind {
     }
 }
 
-/// How the weight makes a torque: `tau = com x f_gravity + tau0`.
+/// Torque of the weight: `tau = com x f_gravity + tau0`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct TorqueParameters {
     /// Centre of mass of the tool in `s1`, m.
     pub com_m: [f64; 3],
-    /// Torque that the sensor reads without any load, Nm.
+    /// Torque reading without load, Nm.
     pub bias_nm: [f64; 3],
 }
 
-/// The numbers of a model. Torque is `None` where the poses had none; the torque then passes as read.
+/// Parameters of a model. Torque is `None` if the poses had no torque; the torque is then not changed.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum Parameters {
     /// `f = m R u + f0`.
     Physical {
-        /// Mass of what hangs on the sensor, kg.
+        /// Mass of the tool, kg.
         mass_kg: f64,
         /// `R` from the source's frame to `s1`, unit quaternion `w, x, y, z`.
         s1_from_source_wxyz: [f64; 4],
         /// `f0`, N.
         bias_n: [f64; 3],
-        /// The torque's part.
+        /// Parameters of the torque.
         torque: Option<TorqueParameters>,
     },
     /// `f = G u + f0`.
@@ -75,10 +76,10 @@ pub enum Parameters {
         gain_kg: [[f64; 3]; 3],
         /// `f0`, N.
         bias_n: [f64; 3],
-        /// The torque's part.
+        /// Parameters of the torque.
         torque: Option<TorqueParameters>,
     },
-    /// `f = C (sin a, cos a, sin b, cos b, 1)`: a row per axis, N.
+    /// `f = C (sin a, cos a, sin b, cos b, 1)`, one row per axis, N.
     Paper {
         /// Coefficients of the force, N.
         force_n: [[f64; 5]; 3],
@@ -87,20 +88,20 @@ pub enum Parameters {
     },
 }
 
-/// A gravity model with the source it was fitted on.
+/// A gravity model and the source of orientation that it was fitted with.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct GravityModel {
-    /// Where its orientation comes from.
+    /// Source of its orientation.
     pub source: Source,
-    /// +1 when the accelerometer reads the support at rest (as most do), -1 when it reads towards gravity.
+    /// +1 if the accelerometer points away from the ground at rest (as most do), -1 if it points towards it.
     pub imu_sign: i8,
-    /// What the fit found; its fields depend on the kind of model.
+    /// Fitted parameters; they depend on the type of the model.
     pub parameters: Parameters,
 }
 
 impl GravityModel {
-    /// Which model it is.
+    /// Type of the model.
     pub const fn kind(&self) -> ModelKind {
         match self.parameters {
             Parameters::Physical { .. } => ModelKind::Physical,
@@ -109,7 +110,7 @@ impl GravityModel {
         }
     }
 
-    /// What is wrong with numbers that came from a file, in words; `None` when nothing is.
+    /// What is wrong with parameters that were read from a file; `None` if nothing is.
     pub fn fault(&self) -> Option<&'static str> {
         let finite = |numbers: &[f64]| numbers.iter().all(|x| x.is_finite());
         let torque_fits = |torque: &Option<TorqueParameters>| {
@@ -135,7 +136,8 @@ impl GravityModel {
         }
     }
 
-    /// Field of gravity in the source's frame at this sample, m/s^2; `None` when the source is missing, not finite or dead.
+    /// Gravity vector in the source's frame for this sample, m/s^2; `None` if the source is missing, not finite or
+    /// defective.
     pub fn field_m_s2(&self, sample: &WristSample) -> Option<Vector3<f64>> {
         let field = match self.source {
             Source::Imu => sample.acceleration_m_s2? * -f64::from(self.imu_sign),
@@ -144,11 +146,12 @@ impl GravityModel {
         (field.iter().all(|x| x.is_finite()) && field.norm() >= LEAST_FIELD_M_S2).then_some(field)
     }
 
-    /// What gravity and bias put on the sensor in this field (m/s^2, source's frame): force N and torque Nm in `s1`.
+    /// Wrench of gravity and bias on the sensor for this gravity vector (m/s^2, source's frame): force N and torque Nm
+    /// in `s1`.
     pub fn predict(&self, field_m_s2: &Vector3<f64>) -> Wrench {
         match &self.parameters {
             Parameters::Physical { mass_kg, s1_from_source_wxyz: [w, x, y, z], bias_n, torque } => {
-                // Refused on reading unless of unit length, see `fault`.
+                // Not checked here: `fault` refuses one that does not have unit length.
                 let s1_from_source = UnitQuaternion::new_unchecked(Quaternion::new(*w, *x, *y, *z));
                 loaded(s1_from_source * field_m_s2 * *mass_kg, bias_n, torque.as_ref())
             }
@@ -164,18 +167,18 @@ impl GravityModel {
     }
 }
 
-/// Field of gravity in `s1`, m/s^2, by the arm's orientation.
+/// Gravity vector in `s1`, m/s^2, from the arm's orientation.
 pub(super) fn arm_field_m_s2(world_from_s1: &UnitQuaternion<f64>) -> Vector3<f64> {
     world_from_s1.inverse_transform_vector(&Vector3::new(0.0, 0.0, -GRAVITY_M_S2))
 }
 
-/// The paper's row `(sin a, cos a, sin b, cos b, 1)` with roll `a = atan2(ay, az)` and pitch
-/// `b = atan2(-ax, sqrt(ay^2 + az^2))` of the support `-u`. Sines and cosines are taken as the ratios they are.
+/// The paper's row `(sin a, cos a, sin b, cos b, 1)` with roll `a = atan2(ay, az)` and pitch `b = atan2(-ax, sqrt(ay^2
+/// + az^2))` of `-u`. Sines and cosines are computed as ratios, without the angles.
 pub(super) fn paper_row(field_m_s2: &Vector3<f64>) -> SVector<f64, 5> {
     let support = -field_m_s2;
     let across = support.y.hypot(support.z);
     let whole = support.x.hypot(across);
-    // Straight along x the roll is undefined; atan2(0, 0) = 0 is what the formula then gives.
+    // Along x the roll is undefined; the formula gives atan2(0, 0) = 0.
     let (sin_a, cos_a) = if across > 0.0 { (support.y / across, support.z / across) } else { (0.0, 1.0) };
     let (sin_b, cos_b) = if whole > 0.0 { (-support.x / whole, across / whole) } else { (0.0, 1.0) };
     SVector::from([sin_a, cos_a, sin_b, cos_b, 1.0])

@@ -1,4 +1,4 @@
-//! Proving a calibration: a pass in free motion after it.
+//! Verifies a calibration by moving the tool freely afterwards.
 
 use super::Compensator;
 use crate::frames::WristSample;
@@ -7,24 +7,24 @@ use crate::frames::WristSample;
 const BIN_N: f64 = 0.01;
 const BINS: usize = 500;
 
-/// What a pass in free motion showed.
+/// Result of the verification.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PassResult {
-    /// Samples seen.
+    /// Number of samples.
     pub samples: u64,
-    /// Mean length of the gravity-free force, N; near zero when nothing is touched.
+    /// Mean magnitude of the gravity-free force, N; near zero if nothing is touched.
     pub mean_n: f64,
-    /// 95 % of the samples are below this, N (to 0.01 N; 5 N stands for more).
+    /// 95th percentile of the magnitude, N (resolution 0.01 N; 5 N stands for anything larger).
     pub p95_n: f64,
-    /// Angle between the direction of gravity at the start and the furthest seen, rad.
+    /// Largest angle of the direction of gravity from that at the start, rad.
     pub tilt_rad: f64,
-    /// Good enough, over enough tilt.
+    /// Whether the error is small enough, over enough tilt.
     pub passed: bool,
-    /// Why, in a sentence.
+    /// The reason, in a sentence.
     pub reason: &'static str,
 }
 
-/// A pass with the tool moved freely through the air. Steps allocate nothing.
+/// Verification with the tool moved freely through the air. Steps allocate nothing.
 #[derive(Clone, Debug)]
 pub struct CheckPass {
     compensator: Compensator,
@@ -37,12 +37,12 @@ pub struct CheckPass {
 }
 
 impl CheckPass {
-    /// A pass whose 95 % must stay below `limit_n` (N).
+    /// A verification in which the 95th percentile must stay below `limit_n` (N).
     pub fn new(compensator: Compensator, limit_n: f64) -> Self {
         Self { compensator, limit_n, first: None, tilt_rad: 0.0, sum_n: 0.0, samples: 0, bins: Box::new([0; BINS]) }
     }
 
-    /// Takes a sample; gives the length of its gravity-free force, N.
+    /// Adds a sample; returns the magnitude of its gravity-free force, N.
     pub fn step(&mut self, sample: &WristSample) -> Option<f64> {
         let force_n = self.compensator.step(sample)?.force_n.norm();
         let field = self.compensator.model().field_m_s2(sample)?;
@@ -54,7 +54,7 @@ impl CheckPass {
         Some(force_n)
     }
 
-    /// What was seen so far; passed needs a second of samples and 45 degrees of tilt.
+    /// Result so far; passing needs one second of samples and 45 degrees of tilt.
     pub fn result(&self) -> PassResult {
         let wanted = (self.samples as f64 * 0.95).ceil() as u64;
         let mut seen = 0;

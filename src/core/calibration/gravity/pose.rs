@@ -1,32 +1,32 @@
-//! Still poses of the tool, and what makes them unusable.
+//! Still poses of the tool, and checks of their validity.
 
 use nalgebra::{UnitQuaternion, Vector3};
 
 use super::{GravityError, Source, model::arm_field_m_s2};
 use crate::frames::Wrench;
 
-/// How the sensor was oriented in a pose.
+/// Orientation of the sensor in a pose.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Orientation {
     /// Mean reading of the accelerometer at rest (`imu`), m/s^2.
     Imu(Vector3<f64>),
-    /// `world_from_s1` by the arm.
+    /// `world_from_s1` from the arm.
     Arm(UnitQuaternion<f64>),
 }
 
-/// A still pose: means over the time the tool stood still.
+/// A still pose: means over the time in which the tool was still.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pose {
     /// Mean wrench as read (`s1`), N and Nm.
     pub wrench: Wrench,
-    /// The torque was measured; otherwise it is ignored.
+    /// Whether the torque was measured; otherwise it is ignored.
     pub has_torque: bool,
-    /// How the sensor was oriented.
+    /// Orientation of the sensor.
     pub orientation: Orientation,
 }
 
 impl Pose {
-    /// Where its orientation comes from.
+    /// Source of its orientation.
     pub const fn source(&self) -> Source {
         match self.orientation {
             Orientation::Imu(_) => Source::Imu,
@@ -35,14 +35,14 @@ impl Pose {
     }
 }
 
-/// One equation: the field of gravity in the source's frame (m/s^2) and the wrench that was read under it (`s1`).
+/// One equation: the gravity vector in the source's frame (m/s^2) and the wrench that was read (`s1`).
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Row {
     pub(super) field_m_s2: Vector3<f64>,
     pub(super) wrench: Wrench,
 }
 
-/// How an orientation is to be understood; all but `AsGiven` are the usual mistakes.
+/// Interpretations of an orientation; all but `AsGiven` are common mistakes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Reading {
     AsGiven,
@@ -50,7 +50,7 @@ pub(super) enum Reading {
     InverseRotation,
 }
 
-/// The rows of these poses under this reading.
+/// The rows of these poses under this interpretation.
 pub(super) fn rows(poses: &[Pose], imu_sign: i8, reading: Reading) -> Vec<Row> {
     let field = |pose: &Pose| match (pose.orientation, reading) {
         (Orientation::Imu(acceleration), Reading::Opposite) => acceleration * f64::from(imu_sign),
@@ -62,7 +62,7 @@ pub(super) fn rows(poses: &[Pose], imu_sign: i8, reading: Reading) -> Vec<Row> {
     poses.iter().map(|pose| Row { field_m_s2: field(pose), wrench: pose.wrench }).collect()
 }
 
-/// Refuses poses that no fit may see; gives their common source.
+/// Refuses invalid poses; returns their common source.
 pub(super) fn checked(poses: &[Pose]) -> Result<Source, GravityError> {
     let source = poses.first().ok_or(GravityError::NoPoses)?.source();
     for (index, pose) in poses.iter().enumerate() {

@@ -1,45 +1,48 @@
-//! Before the first pose: does the sensor deliver, how fast, how noisy, and does it lie still? A state machine without a clock.
+//! Checks before the first pose: whether the sensor delivers, at which rate, with how much noise, and whether it is
+//! still. A state machine without a clock.
 //!
-//! Takes the newest sample of every tick with its time (s); what is told changes twice a second. A loop whose sensor is silent
-//! goes on with the sample it has, so a sample that equals the one before in every number is not counted as read anew. A rig
-//! tells no status of its sensor (throttled, over range); its effects on rate, noise and gravity are what is seen here.
-//! Memory is bounded; a sample that is not finite is counted and used for nothing.
+//! Takes the newest sample of every tick with its time (s); the result is updated twice a second. If the sensor is
+//! silent, the loop continues with its last sample, so a sample that equals the previous one in every number does not
+//! count as new. A rig does not report the status of its sensor (throttled, over range); the effects on rate, noise and
+//! gravity are checked here. Memory is bounded; a sample that is not finite is counted and otherwise ignored.
 
 use nalgebra::Vector3;
 
 use super::{SessionSettings, session::field_of, still::Still};
 use crate::frames::{GRAVITY_M_S2, WristSample};
 
-/// Length of a stretch that is measured, s.
+/// Length of a measuring interval, s.
 const BLOCK_S: f64 = 0.5;
-/// Ticks further apart than this did not all reach the screen: no time that a sensor was silent in, s.
+/// If ticks are further apart than this, the screen has missed some; that time does not count as silence of the sensor,
+/// s.
 const HOLE_S: f64 = 0.020;
-/// Least share of the loop's rate at which samples must come: slower ones are felt as steps and lag.
+/// Smallest rate of samples as a share of the loop's rate: a lower one would be felt as steps and lag.
 const RATE_SHARE: f64 = 0.9;
-/// Most noise of a sample per axis at which a tool that lies still is seen as still: the mean of 20 ms at 1 kHz must stay
-/// within [`super::StillSettings::force_n`] (0.08 N) at 3.5 standard deviations. A good sensor has 0.01 to 0.05 N.
+/// Largest noise per sample and axis at which a still tool is recognised as still: the mean over 20 ms at 1 kHz must
+/// stay within [`super::StillSettings::force_n`] (0.08 N) at 3.5 standard deviations. A good sensor has 0.01 to 0.05 N.
 const FORCE_NOISE_N: f64 = 0.10;
 /// The same for the accelerometer and [`super::StillSettings::field_m_s2`], m/s^2. A good one has 0.01 to 0.05.
 const ACCELERATION_NOISE_M_S2: f64 = 0.12;
-/// Largest departure of the accelerometer's reading at rest from gravity, as a share.
+/// Largest relative deviation of the accelerometer's reading at rest from gravity.
 const GRAVITY_SHARE: f64 = 0.05;
-/// Stillness is told in steps of 20 ms, and its first sample is a tick late: a rest may seem shorter than it was by this, s.
+/// Stillness is judged in steps of 20 ms, and its first sample is a tick late: a rest may be measured too short by
+/// this, s.
 const REST_ROUNDING_S: f64 = 0.045;
-/// A tool that swings is still for a moment at its turning points; this long it is not, s.
+/// A swinging tool is still for a moment at its turning points, but not for this long, s.
 const REST_S: f64 = 0.2;
-/// Fewest samples of a stretch from which noise is told.
+/// Fewest samples of an interval for an estimate of the noise.
 const SAMPLES_MIN: f64 = 20.0;
 
 /// State of one check before the first pose.
 #[derive(Clone, Debug, PartialEq)]
 pub enum CheckState {
-    /// Not enough samples yet, or something else comes first.
+    /// Not enough samples yet, or another check must pass first.
     Waiting,
-    /// As it must be.
+    /// Passed.
     Good,
-    /// Wrong.
+    /// Failed.
     Bad {
-        /// What is wrong, with its figure.
+        /// The cause, with the measured value.
         cause: String,
         /// What the operator can do about it.
         cure: &'static str,
@@ -51,7 +54,7 @@ pub enum CheckState {
 #[expect(missing_docs, reason = "the names say it")]
 pub struct Check {
     pub name: &'static str,
-    /// What was measured, for the screen; empty where there is no figure.
+    /// Measured value, for the screen; empty if there is none.
     pub measured: String,
     pub state: CheckState,
 }
@@ -66,10 +69,10 @@ fn bad(cause: impl Into<String>, cure: &'static str) -> CheckState {
     CheckState::Bad { cause: cause.into(), cure }
 }
 
-/// What was measured, in words, and how it stands.
+/// Measured value as text, and state of the check.
 type Finding = (String, CheckState);
 
-/// Spread of vectors about their mean, and from each to the next.
+/// Deviation of vectors from their mean, and from one to the next.
 #[derive(Clone, Copy, Debug, Default)]
 struct Spread {
     first: Vector3<f64>,
@@ -85,7 +88,7 @@ impl Spread {
         if self.count == 0.0 {
             (self.first, self.last) = (*value, *value);
         }
-        // About the first value: a large bias would eat the digits of a small noise.
+        // Relative to the first value, because a large bias would reduce the precision of a small noise.
         let offset = value - self.first;
         let step = value - self.last;
         self.last = *value;
@@ -105,13 +108,14 @@ impl Spread {
         (self.squares / self.count.max(1.0) - mean.component_mul(&mean)).map(|variance| variance.max(0.0).sqrt())
     }
 
-    /// Standard deviation of white noise that would step so from sample to sample: slow motion is not in it.
+    /// Standard deviation of white noise that has these differences from sample to sample; slow motion does not affect
+    /// it.
     fn roughness(&self) -> Vector3<f64> {
         (self.steps / (2.0 * (self.count - 1.0).max(1.0))).map(f64::sqrt)
     }
 }
 
-/// What came in over a stretch of time.
+/// Data of a measuring interval.
 #[derive(Clone, Copy, Debug, Default)]
 struct Block {
     span_s: f64,
@@ -119,7 +123,7 @@ struct Block {
     repeated: u32,
     poisoned: u32,
     oriented: u32,
-    /// The tool lay still all the time.
+    /// Whether the tool was still all the time.
     still: bool,
     force_n: Spread,
     acceleration_m_s2: Spread,
@@ -174,12 +178,12 @@ impl Block {
     }
 }
 
-/// The check: samples in, lines for the screen out.
+/// The check: takes samples, returns lines for the screen.
 #[derive(Clone, Debug)]
 pub struct Precheck {
     settings: SessionSettings,
     still: Still,
-    /// How long the tool lies still by now, s; `None` while it moves or nothing is known.
+    /// How long the tool has been still, s; `None` while it moves or is not known.
     rested_s: Option<f64>,
     newest: Option<WristSample>,
     last_s: f64,
@@ -188,14 +192,14 @@ pub struct Precheck {
 }
 
 impl Precheck {
-    /// A check for a session of these settings.
+    /// Creates a check for a session with these settings.
     pub fn new(settings: SessionSettings) -> Self {
         let block = Block::default();
         let still = Still::new(settings.still);
         Self { settings, still, rested_s: None, newest: None, last_s: f64::NAN, block, measured: None }
     }
 
-    /// Takes the sample of one tick, `None` where there is none, at time `t_s` (s, rising). Allocates nothing.
+    /// Adds the sample of one tick, `None` if there is none, at time `t_s` (s, rising). Allocates nothing.
     pub fn step(&mut self, sample: Option<&WristSample>, t_s: f64) {
         let step_s = t_s - self.last_s;
         self.last_s = t_s;
@@ -215,7 +219,7 @@ impl Precheck {
             Some(sample) => self.take(sample, t_s),
         }
         self.newest = sample.copied();
-        // Sums of milliseconds fall short of the half second by their rounding.
+        // The tolerance is for the rounding of a sum of milliseconds.
         if self.block.span_s >= BLOCK_S - 1e-9 {
             self.block.still = self.rested_s.is_some_and(|rested_s| rested_s >= BLOCK_S - REST_ROUNDING_S);
             self.measured = Some(std::mem::take(&mut self.block));
@@ -240,7 +244,7 @@ impl Precheck {
         }
     }
 
-    /// How all stands, for a loop of this rate (Hz). Allocates; for the screen's thread.
+    /// State of all checks, for a loop of this rate (Hz). Allocates; for the screen's thread.
     pub fn checks(&self, rate_hz: f64) -> Vec<Check> {
         let block = self.measured.unwrap_or_default();
         let told = |finding: Finding| if block.fresh == 0 { (String::new(), CheckState::Waiting) } else { finding };
@@ -257,7 +261,7 @@ impl Precheck {
         lines.into_iter().map(|(name, (measured, state))| Check::of(name, measured, state)).collect()
     }
 
-    /// Nothing is in the way of the first pose.
+    /// Whether all checks have passed.
     pub fn passed(&self, rate_hz: f64) -> bool {
         self.checks(rate_hz).iter().all(|check| check.state == CheckState::Good)
     }
@@ -310,8 +314,8 @@ impl Precheck {
     }
 }
 
-/// Noise of the worst axis. While the tool moves, only what no motion explains is told, and only if it is too much already:
-/// a noise that looks like motion must not hide behind it.
+/// Noise of the worst axis. While the tool moves, only the part that motion cannot explain is reported, and only if it
+/// is too large by itself: noise that looks like motion must not be hidden by it.
 fn noise(spread: &Spread, still: bool, limit: f64, unit: &str, cure: &'static str) -> Finding {
     let (deviation, roughness) = (spread.deviation().max(), spread.roughness().max());
     let worst = if still { deviation } else { roughness };

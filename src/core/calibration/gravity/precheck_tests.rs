@@ -1,4 +1,4 @@
-//! Sensors with one thing wrong each: the line that must say so does, with a cause and a cure.
+//! Sensors with one defect each: the right line must report it, with cause and cure.
 
 use nalgebra::UnitQuaternion;
 
@@ -7,7 +7,7 @@ use crate::calibration::gravity::{SessionSettings, tests::Tool};
 
 const RATE_HZ: f64 = 1000.0;
 
-/// A second and a half of a sensor that lies still, changed by `edit` (which sees the tick's number).
+/// One and a half seconds of a still sensor, modified by `edit` (which is given the tick's number).
 fn seen(
     settings: SessionSettings,
     mut edit: impl FnMut(u32, &mut Tool, WristSample) -> Option<WristSample>,
@@ -27,7 +27,7 @@ fn line(precheck: &Precheck, name: &str) -> Check {
     precheck.checks(RATE_HZ).into_iter().find(|check| check.name == name).unwrap()
 }
 
-/// The line of this name is bad, and its cause and cure hold these words.
+/// Asserts that the line of this name has failed, and that its cause and cure contain these words.
 fn assert_bad(precheck: &Precheck, name: &str, in_cause: &str, in_cure: &str) {
     let CheckState::Bad { cause, cure } = line(precheck, name).state else {
         panic!("{name} is not bad: {:?}", precheck.checks(RATE_HZ));
@@ -89,7 +89,7 @@ fn noise_is_named_where_it_is_and_does_not_pass_as_motion() {
         })
     };
     assert_bad(&noisy(0.15), "force noise", "0.15", "shield");
-    // So much that the tool never seems to stand still.
+    // So much noise that the tool never seems still.
     assert_bad(&noisy(1.0), "force noise", "plausible", "shield");
     let shaken = seen(settings, |_, tool, mut sample| {
         sample.acceleration_m_s2 = sample.acceleration_m_s2.map(|a| a + tool.vector(0.3));
@@ -143,7 +143,7 @@ fn ticks_that_did_not_reach_the_screen_are_no_slow_sensor() {
     let mut tool = Tool::new(6, 0.4);
     for tick in 0..3000 {
         let sample = tool.sample(UnitQuaternion::identity(), 0.03, 1e-3);
-        // A screen that was busy for 100 ms of every 300.
+        // A screen that misses 100 ms out of every 300.
         if tick % 300 < 200 {
             precheck.step(Some(&sample), f64::from(tick) * 1e-3);
         }

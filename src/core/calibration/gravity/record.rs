@@ -1,11 +1,11 @@
-//! What is kept of a gravity calibration: the model, where it belongs and how good it was.
+//! The file content of a gravity calibration: the model, what it belongs to, and its quality.
 
 use serde::{Deserialize, Deserializer, Serialize, de::Error as _};
 
 use super::GravityModel;
 use crate::calibration::{Judgement, Record, RecordHead, Residuals};
 
-/// The only kind of this record: a file of another kind is refused on reading.
+/// Type of the record; a file of another kind is refused on reading.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum GravityKind {
@@ -14,45 +14,46 @@ pub enum GravityKind {
     Gravity,
 }
 
-/// A gravity calibration as it is written to a file.
+/// A gravity calibration as written to a file.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 #[expect(missing_docs, reason = "the names say it")]
 pub struct GravityRecord {
     pub kind: GravityKind,
-    /// What it belongs to.
+    /// Sensor, tool and date.
     #[serde(flatten)]
     pub head: RecordHead,
     /// Whether it may be used.
     #[serde(flatten)]
     pub judgement: Judgement,
-    /// Still poses it was made of.
+    /// Number of still poses.
     pub poses: usize,
-    /// Poses left out as outliers, counted from 0.
+    /// Indices of the poses left out as outliers, from 0.
     pub outliers: Vec<usize>,
-    /// Share of all directions of gravity with a pose within 45 degrees, 0 to 1.
+    /// Share of all directions of gravity within 45 degrees of a pose, 0 to 1.
     pub coverage: f64,
-    /// Condition number of the design; none when the poses determine nothing.
+    /// Condition number of the design; absent if the poses determine nothing.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub condition: Option<f64>,
     #[serde(deserialize_with = "sound")]
     pub model: GravityModel,
     /// Errors of the force, N.
     pub residuals: Residuals,
-    /// Errors of the torque, Nm, where it was measured.
+    /// Errors of the torque, Nm, if it was measured.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub torque_residuals: Option<Residuals>,
 }
 
-/// A bias that moved by less than this is not told from the temperature of a sensor that just started, N.
+/// A smaller change of bias cannot be distinguished from the temperature drift of a sensor that has just started, N.
 const DRIFT_FLOOR_N: f64 = 0.10;
-/// Whatever a calibration missed: this is no rest, N.
+/// Upper limit for any calibration, N.
 const DRIFT_MOST_N: f64 = 0.50;
 
 impl GravityRecord {
-    /// What the force left at rest may be before the bias has moved, N: what the model missed on poses held out, and a little.
+    /// Limit of the force remaining at rest above which the bias has changed, N: the model's error on held-out poses
+    /// plus a margin.
     pub fn drift_limit_n(&self) -> f64 {
-        // Written so that a NaN from a file gives the narrow limit.
+        // Written so that NaN from a file gives the strict limit.
         (DRIFT_FLOOR_N + self.residuals.held_out.largest().max(0.0)).min(DRIFT_MOST_N)
     }
 }
@@ -69,7 +70,7 @@ impl Record for GravityRecord {
     }
 }
 
-/// A model from a file is refused unless it can be used as it stands.
+/// Refuses a model from a file if it is not usable.
 fn sound<'de, D: Deserializer<'de>>(deserializer: D) -> Result<GravityModel, D::Error> {
     let model = GravityModel::deserialize(deserializer)?;
     model.fault().map_or(Ok(model), |fault| Err(D::Error::custom(fault)))

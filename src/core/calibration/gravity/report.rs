@@ -1,4 +1,4 @@
-//! What a fit is asked for and what it answers.
+//! Settings and result of a fit.
 
 use serde::{Deserialize, Serialize};
 
@@ -9,27 +9,27 @@ use crate::calibration::{Judgement, RecordHead, Residuals, Verdict};
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Limits {
-    /// Fewest poses left after outliers.
+    /// Smallest number of poses after removing outliers.
     pub least_poses: usize,
     /// Smallest coverage, 0 to 1.
     pub least_coverage: f64,
-    /// Largest condition number of the design. 30 is a shaft tilted by about 30 degrees all round.
+    /// Largest condition number of the design. 30 corresponds to a shaft tilted by about 30 degrees in all directions.
     pub most_condition: f64,
-    /// Largest share of poses left out as outliers.
+    /// Largest share of outliers.
     pub most_outliers: f64,
     /// Largest mean absolute error of the force on held-out poses, N ...
     pub mae_n: f64,
-    /// ... or this share of the tool's weight, whichever is more: heavy tools bend mounts.
+    /// ... or this share of the tool's weight, whichever is larger: heavy tools bend their mounts.
     pub mae_share: f64,
     /// Largest absolute error of the force on a held-out pose, N ...
     pub max_n: f64,
-    /// ... or this share of the tool's weight, whichever is more.
+    /// ... or this share of the tool's weight, whichever is larger.
     pub max_share: f64,
     /// Largest mean absolute error of the torque on held-out poses, Nm.
     pub torque_mae_nm: f64,
-    /// Least weight of the tool, N ...
+    /// Smallest weight of the tool, N ...
     pub least_weight_n: f64,
-    /// ... and in multiples of what the poses disagree by: a sensor that sends no readings has no weight.
+    /// ... and as a multiple of the poses' disagreement: a sensor that delivers no readings shows no weight.
     pub least_signal: f64,
     /// A pose whose force is within this of the model is never an outlier, N.
     pub outlier_floor_n: f64,
@@ -54,12 +54,12 @@ impl Default for Limits {
     }
 }
 
-/// How to fit.
+/// Settings of a fit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settings {
-    /// The model to use; `None` takes the physical one, or the gain where the poses clearly support it.
+    /// The model to use; `None` selects the physical one, or the gain model if the poses clearly support it.
     pub model: Option<ModelKind>,
-    /// +1 when the accelerometer reads the support at rest, -1 when it reads towards gravity.
+    /// +1 if the accelerometer points away from the ground at rest, -1 if it points towards it.
     pub imu_sign: i8,
     /// Limits of the verdict.
     pub limits: Limits,
@@ -74,40 +74,40 @@ impl Default for Settings {
 /// One fitted model and its errors.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct ModelFit {
-    /// Determines what the parameters mean.
+    /// Type of the model.
     pub kind: ModelKind,
-    /// Fitted on all poses but the outliers.
+    /// The model, fitted to all poses but the outliers.
     pub model: GravityModel,
     /// Errors of the force, N.
     pub force_n: Residuals,
-    /// Errors of the torque, Nm, where all poses have it.
+    /// Errors of the torque, Nm, if all poses have torque.
     pub torque_nm: Option<Residuals>,
 }
 
-/// The answer of a fit.
+/// Result of a fit.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct GravityReport {
     /// Whether the chosen model may be used.
     pub verdict: Verdict,
-    /// One sentence for the operator: what led to the verdict.
+    /// The reason for the verdict, one sentence for the operator.
     pub reason: String,
-    /// The chosen model; `None` when there are too few poses for it.
+    /// The chosen model; `None` if there are too few poses.
     pub chosen: Option<ModelKind>,
-    /// Poses given.
+    /// Number of poses given.
     pub poses: usize,
-    /// Where their orientation comes from.
+    /// Source of their orientation.
     pub source: Source,
-    /// Poses left out because they do not agree with the others, counted from 0.
+    /// Indices of poses that do not agree with the others, from 0; not used in the fit.
     pub outliers: Vec<usize>,
-    /// Share of all directions of gravity with a pose within 45 degrees, 0 to 1.
+    /// Share of all directions of gravity within 45 degrees of a pose, 0 to 1.
     pub coverage: f64,
-    /// Condition number of the design; `None` when the poses determine nothing.
+    /// Condition number of the design; `None` if the poses determine nothing.
     pub condition: Option<f64>,
-    /// Mass on the sensor by the physical model, kg.
+    /// Mass of the tool in the physical model, kg.
     pub mass_kg: Option<f64>,
-    /// Its centre in `s1`, m.
+    /// Its centre of mass in `s1`, m.
     pub com_m: Option<[f64; 3]>,
-    /// Parts of the poses held out in turn.
+    /// Number of folds of the cross-validation.
     pub folds: usize,
     /// All models that could be fitted.
     pub fits: Vec<ModelFit>,
@@ -124,7 +124,7 @@ impl GravityReport {
         self.fit_of(self.chosen?)
     }
 
-    /// The record of the chosen model; `None` when there is none. `date` in ISO 8601, UTC.
+    /// The record of the chosen model; `None` if there is none. `date` in ISO 8601, UTC.
     pub fn record(&self, sensor: &str, tool: &str, date: &str) -> Option<GravityRecord> {
         let fit = self.chosen_fit()?;
         Some(GravityRecord {

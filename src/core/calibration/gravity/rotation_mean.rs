@@ -1,31 +1,31 @@
-//! The mean of rotations that lie close together.
+//! The mean of similar rotations.
 //!
-//! The rotation whose squared sine of half the angle to all of them is least in sum: the eigenvector of the largest eigenvalue
-//! of `sum q q^T` (Markley, Cheng, Crassidis, Oshman 2007, "Averaging Quaternions"). A rotation and its negative quaternion
-//! count as the same; sums of parts can be added up.
+//! The rotation with the least sum of squared sines of half the angle to all of them: the eigenvector of the largest
+//! eigenvalue of `sum q q^T` (Markley, Cheng, Crassidis, Oshman 2007, "Averaging Quaternions"). q and -q count as the
+//! same rotation; sums of parts can be added.
 
 use nalgebra::{Matrix4, Quaternion, SymmetricEigen, UnitQuaternion};
 
-/// Running mean of rotations. Constant memory; nothing is allocated.
+/// Running mean of rotations. Constant memory, no allocation.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct RotationMean {
     outer: Matrix4<f64>,
 }
 
 impl RotationMean {
-    /// Takes in one rotation; it must be finite.
+    /// Adds a rotation, which must be finite.
     pub(super) fn add(&mut self, rotation: &UnitQuaternion<f64>) {
         self.outer += rotation.coords * rotation.coords.transpose();
     }
 
-    /// Takes in all that another one holds.
+    /// Adds all rotations of another mean.
     pub(super) fn merge(&mut self, other: &Self) {
         self.outer += other.outer;
     }
 
-    /// The mean; `None` of nothing.
+    /// The mean; `None` if there are no rotations.
     pub(super) fn mean(&self) -> Option<UnitQuaternion<f64>> {
-        // The trace counts the rotations: each has length one.
+        // The trace is the number of rotations, because each has length one.
         if self.outer.trace() < 0.5 {
             return None;
         }
@@ -58,7 +58,7 @@ mod tests {
             first.merge(&second);
             worst_rad = worst_rad.max(first.mean().unwrap().angle_to(&middle));
         }
-        // 0.01 rad per axis and sample: 0.0005 rad per axis of the mean of 400.
+        // 0.01 rad per axis and sample gives 0.0005 rad per axis for the mean of 400.
         assert!(worst_rad < 0.0025, "{worst_rad}");
     }
 

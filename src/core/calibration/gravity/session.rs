@@ -1,9 +1,9 @@
-//! Taking still poses, guided, from samples as they come: a state machine without a clock of its own.
+//! Guided recording of still poses from live samples: a state machine without a clock.
 //!
-//! Every sample goes through [`GravitySession::step`]. It allocates nothing, except in the step that records a pose, which fits
-//! anew (a few ms): it belongs to the side of the screen, not into a tick of the loop. A pose is a
-//! stretch in which force and orientation stand still for as long as they must. When enough poses are there, a still pose far
-//! from what the others say is refused as touched, and can be taken again at once.
+//! Every sample is passed to [`GravitySession::step`]. It allocates nothing, except in the step that records a pose,
+//! which repeats the fit (a few ms): it belongs to the screen's thread, not into a tick of the loop. A pose is an
+//! interval in which force and orientation are still for the required time. Once there are enough poses, a still pose
+//! that differs too much from the fit of the others is refused as touched, and can be repeated at once.
 
 use nalgebra::Vector3;
 
@@ -15,23 +15,23 @@ use super::{
 };
 use crate::frames::WristSample;
 
-/// Poses from which a new one is compared with the others.
+/// Number of poses from which on a new one is compared with the others.
 const COMPARE_FROM: usize = 6;
-/// A pose counts for a target within this angle of the direction of gravity, rad.
+/// Largest angle between the directions of gravity of a pose and of its target, rad.
 const REACH_RAD: f64 = 25.0 * std::f64::consts::PI / 180.0;
 
-/// How a session takes poses.
+/// Settings of a session.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SessionSettings {
     /// How the poses are fitted.
     pub fit: Settings,
-    /// What standing still means.
+    /// Criteria for stillness.
     pub still: StillSettings,
-    /// Take the orientation from the arm although an accelerometer is there.
+    /// Use the orientation from the arm even if there is an accelerometer.
     pub use_arm: bool,
-    /// A still pose whose force is further than this from the other poses' model was touched, N.
+    /// A still pose whose force differs from the other poses' model by more than this was touched, N.
     pub touched_n: f64,
-    /// The tool must be turned by this between two poses, rad.
+    /// Smallest rotation of the tool between two poses, rad.
     pub turn_rad: f64,
 }
 
@@ -47,44 +47,44 @@ impl Default for SessionSettings {
     }
 }
 
-/// What the session is doing.
+/// State of the session.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Phase {
-    /// The sample lacks what a pose needs, or holds a number that is not finite.
+    /// The sample is incomplete or contains a number that is not finite.
     NoSample,
-    /// The tool moves, or is where the last pose was taken.
+    /// The tool is moving, or still where the last pose was recorded.
     Moving,
-    /// Still for too short a time yet.
+    /// Still, but not long enough yet.
     Recording {
-        /// Share of the still time, 0 to 1.
+        /// Share of the required time, 0 to 1.
         share: f64,
     },
-    /// A pose was recorded just now.
+    /// A pose was just recorded.
     Recorded {
         /// Its index, from 0.
         index: usize,
     },
-    /// The tool does not turn, and yet the force is not still: something touches it.
+    /// The tool does not turn, but the force is not constant: something touches it.
     Disturbed,
-    /// Still where the last pose was taken: turn the tool to the next.
+    /// Still where the last pose was recorded: turn the tool to the next one.
     TakenHere,
-    /// Still, and off from what the other poses say: let go of the tool and take the pose again.
+    /// Still, but inconsistent with the other poses: take the hand off the tool and repeat the pose.
     Touched {
-        /// How far off, N.
+        /// Difference, N.
         by_n: f64,
     },
 }
 
-/// Where a pose was taken, for the guide only; the fit uses what was measured.
+/// Where a pose was recorded; only for guiding the operator, the fit uses the measurements.
 #[derive(Clone, Copy, Debug)]
 struct Place {
-    /// Index of the target that it counts for.
+    /// Index of the target for which it counts.
     target: Option<usize>,
-    /// Direction of gravity in `s1` by the arm, where it tells.
+    /// Direction of gravity in `s1` from the arm, if available.
     down_s1: Option<Vector3<f64>>,
 }
 
-/// Field of gravity (m/s^2, source's frame) by the source that these settings name; `None` when it is missing or dead.
+/// Gravity vector (m/s^2, source's frame) from the source in the settings; `None` if it is missing or defective.
 pub(super) fn field_of(settings: &SessionSettings, sample: &WristSample) -> Option<Vector3<f64>> {
     let field = if settings.use_arm {
         arm_field_m_s2(&sample.world_from_s1?)
@@ -114,19 +114,19 @@ impl GravitySession {
         Self { settings, still, poses, places, running: None, last: None, refused: None }
     }
 
-    /// How poses are taken.
+    /// Settings of the session.
     pub const fn settings(&self) -> &SessionSettings {
         &self.settings
     }
 
-    /// Reads the accelerometer with this sign (+1 or -1) from now on, in the poses taken before too.
+    /// Sets the sign of the accelerometer (+1 or -1), also for the poses already recorded.
     pub fn set_imu_sign(&mut self, imu_sign: i8) {
         self.settings.fit.imu_sign = imu_sign;
         self.still.reset();
         self.refit();
     }
 
-    /// Takes one sample at time `t_s` (s, rising); says what the session is doing.
+    /// Adds one sample at time `t_s` (s, rising); returns the state of the session.
     pub fn step(&mut self, sample: &WristSample, t_s: f64) -> Phase {
         let Some(field) = field_of(&self.settings, sample).filter(|_| sample.is_finite() && t_s.is_finite()) else {
             self.still.reset();
@@ -142,7 +142,8 @@ impl GravitySession {
             return Phase::TakenHere;
         }
         if let Some(by_n) = self.refused {
-            // Held like this it stays refused; a new try begins when the tool has moved or was let go.
+            // It stays refused while the tool is held like this; a new attempt starts after the tool has moved or was
+            // released.
             if progress >= 1.0 {
                 self.still.reset();
                 self.refused = None;
@@ -155,7 +156,7 @@ impl GravitySession {
         self.record()
     }
 
-    /// Keeps the still stretch as a pose, unless the others say that it was touched.
+    /// Stores the still interval as a pose, unless the other poses show that it was touched.
     fn record(&mut self) -> Phase {
         let Some((mean, field)) = self.still.mean() else { return Phase::Moving };
         let world_from_s1 = self.still.mean_world_from_s1();
@@ -191,12 +192,12 @@ impl GravitySession {
     fn refit(&mut self) {
         let enough = self.poses.len() >= COMPARE_FROM;
         let report = enough.then(|| self.report().ok()).flatten();
-        // Only a model that may be used can say that a new pose is off.
+        // Only an accepted model can show that a new pose is wrong.
         let usable = report.filter(|report| report.verdict == crate::calibration::Verdict::Accepted);
         self.running = usable.and_then(|report| report.chosen_fit().map(|fit| fit.model));
     }
 
-    /// The next orientation to take: the first that no pose counts for.
+    /// The next target: the first one without a pose.
     pub fn target(&self) -> Option<PoseTarget> {
         self.next().map(|index| TARGETS[index])
     }
@@ -209,13 +210,14 @@ impl GravitySession {
         self.places.iter().any(|place| place.target == Some(index))
     }
 
-    /// Targets that a pose was taken near.
+    /// Number of targets with a pose.
     pub fn targets_met(&self) -> usize {
         (0..TARGETS.len()).filter(|&index| self.is_met(index)).count()
     }
 
-    /// What a pose taken now counts for: the nearest target within reach by the arm's word. Without an arm the sensor's mounting
-    /// is not known yet, and what was asked for is believed; the fit's coverage judges in the end.
+    /// The target for which a pose recorded now counts: the nearest one within reach, by the arm's orientation. Without
+    /// an arm the sensor's mounting is not known yet, so the requested target is assumed; the fit's coverage decides in
+    /// the end.
     fn place(&self) -> Place {
         let Some(down_s1) = self.down_s1() else { return Place { target: self.next(), down_s1: None } };
         let angle = |index: &usize| Vector3::from(TARGETS[*index].down_s1).angle(&down_s1);
@@ -223,23 +225,23 @@ impl GravitySession {
         Place { target: nearest.filter(|index| angle(index) < REACH_RAD), down_s1: Some(down_s1) }
     }
 
-    /// Direction of gravity in `s1` now, by the arm.
+    /// Present direction of gravity in `s1`, from the arm.
     fn down_s1(&self) -> Option<Vector3<f64>> {
         arm_field_m_s2(&self.last?.world_from_s1?).try_normalize(1e-9)
     }
 
-    /// Directions of gravity in `s1` of the poses taken, for a picture: by the arm, else those asked for.
+    /// Directions of gravity in `s1` of the recorded poses, for a picture: from the arm, else the requested ones.
     pub fn taken_down_s1(&self) -> Vec<Vector3<f64>> {
         let known = |place: &Place| place.down_s1.or_else(|| Some(Vector3::from(TARGETS[place.target?].down_s1)));
         self.places.iter().filter_map(known).collect()
     }
 
-    /// Poses taken so far.
+    /// Poses recorded so far.
     pub fn poses(&self) -> &[Pose] {
         &self.poses
     }
 
-    /// Takes a pose back; `None` when there is no such pose.
+    /// Removes a pose; `None` if there is no such pose.
     pub fn remove(&mut self, index: usize) -> Option<Pose> {
         let removed = (index < self.poses.len()).then(|| {
             self.places.remove(index);
@@ -249,12 +251,15 @@ impl GravitySession {
         removed
     }
 
-    /// Takes the newest pose back.
+    /// Removes the newest pose.
     pub fn undo(&mut self) -> Option<Pose> {
         self.remove(self.poses.len().checked_sub(1)?)
     }
 
-    /// Fit of the poses taken so far.
+    /// Fit of the poses recorded so far.
+    ///
+    /// # Errors
+    /// As [`fit`](super::fit()).
     pub fn report(&self) -> Result<GravityReport, GravityError> {
         fit(&self.poses, &self.settings.fit)
     }
@@ -270,7 +275,7 @@ mod tests {
         gravity::{CheckPass, Compensator, tests::Tool},
     };
 
-    /// Holds the tool still for 1.6 s with an extra force and noise of 0.02 N; gives the phases seen.
+    /// Holds the tool still for 1.6 s with an additional force and noise of 0.02 N; returns the states seen.
     fn hold(
         session: &mut GravitySession,
         tool: &mut Tool,
@@ -346,7 +351,7 @@ mod tests {
         let mut session = GravitySession::new(SessionSettings { use_arm: true, ..SessionSettings::default() });
         for tick in 0..1600 {
             let mut sample = tool.sample(held, 0.02, 1e-3);
-            // Joint sensors that tremble by half a degree per axis.
+            // Noise of the joint sensors of half a degree per axis.
             let tremble = UnitQuaternion::from_scaled_axis(tool.vector(0.009));
             sample.world_from_s1 = Some(held * tremble);
             if matches!(session.step(&sample, f64::from(tick) * 1e-3), Phase::Recorded { .. }) {

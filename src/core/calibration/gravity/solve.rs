@@ -1,4 +1,4 @@
-//! The three least-squares solutions over given rows. All by singular values, none by normal equations.
+//! The three least-squares solutions, all by singular value decomposition rather than normal equations.
 
 use nalgebra::{DMatrix, Matrix3, Rotation3, UnitQuaternion, Vector3};
 
@@ -8,10 +8,10 @@ use super::{
 };
 use crate::frames::GRAVITY_M_S2;
 
-/// Singular values below this share of the largest are noise: the pseudo-inverse leaves them out.
+/// Singular values below this share of the largest are dropped as noise.
 const RANK_SHARE: f64 = 1e-10;
 
-/// Solves one model over these rows; `None` when there are too few rows or the solution is not finite.
+/// Fits one model to these rows; `None` if there are too few rows or the solution is not finite.
 pub(super) fn solve(kind: ModelKind, rows: &[Row], has_torque: bool) -> Option<Parameters> {
     match kind {
         ModelKind::Physical => physical(rows, has_torque),
@@ -20,7 +20,7 @@ pub(super) fn solve(kind: ModelKind, rows: &[Row], has_torque: bool) -> Option<P
     }
 }
 
-/// Least squares `A X = B` by singular values, the pseudo-inverse of the paper in its tall form.
+/// Least squares `A X = B` by singular value decomposition, equivalent to the pseudo-inverse of the paper.
 fn least_squares(a: DMatrix<f64>, b: &DMatrix<f64>) -> Option<DMatrix<f64>> {
     let svd = a.try_svd(true, true, f64::EPSILON, 200)?;
     let cut = svd.singular_values.max() * RANK_SHARE;
@@ -32,7 +32,7 @@ fn forces(rows: &[Row]) -> DMatrix<f64> {
     DMatrix::from_fn(rows.len(), 3, |i, j| rows[i].wrench.force_n[j])
 }
 
-/// Mass, rotation and bias: Wahba's problem with a scale (Umeyama 1991), on rows without their means.
+/// Mass, rotation and bias: Wahba's problem with a scale (Umeyama 1991), on rows with their means subtracted.
 fn physical(rows: &[Row], has_torque: bool) -> Option<Parameters> {
     let (mass_kg, s1_from_source) = scaled_rotation(rows)?;
     let (mean_force, mean_field) = means(rows);
@@ -51,7 +51,7 @@ fn means(rows: &[Row]) -> (Vector3<f64>, Vector3<f64>) {
     })
 }
 
-/// Scale (kg) and proper rotation that take the centred fields to the centred forces.
+/// Scale (kg) and proper rotation that map the centred gravity vectors to the centred forces.
 pub(super) fn scaled_rotation(rows: &[Row]) -> Option<(f64, Rotation3<f64>)> {
     if rows.len() < 3 {
         return None;
@@ -68,7 +68,7 @@ pub(super) fn scaled_rotation(rows: &[Row]) -> Option<(f64, Rotation3<f64>)> {
     }
     let svd = cross.try_svd(true, true, f64::EPSILON, 200)?;
     let (u, v_t) = (svd.u?, svd.v_t?);
-    // A rotation keeps hands: where the best orthogonal matrix mirrors, its weakest axis turns over (values are sorted).
+    // If the best orthogonal matrix is a reflection, invert its weakest axis (singular values are sorted).
     let hand = if (u * v_t).determinant() < 0.0 { -1.0 } else { 1.0 };
     let signs = Vector3::new(1.0, 1.0, hand);
     let rotation = Rotation3::from_matrix_unchecked(u * Matrix3::from_diagonal(&signs) * v_t);
@@ -76,7 +76,7 @@ pub(super) fn scaled_rotation(rows: &[Row]) -> Option<(f64, Rotation3<f64>)> {
     (mass_kg.is_finite() && rotation.matrix().iter().all(|x| x.is_finite())).then_some((mass_kg.max(0.0), rotation))
 }
 
-/// A free 3x3 gain and bias; columns divided by g so that they are of the size of the constant.
+/// A free 3x3 gain and bias; columns are divided by g to have the magnitude of the constant.
 fn gain(rows: &[Row], has_torque: bool) -> Option<Parameters> {
     if rows.len() < 4 {
         return None;
@@ -118,7 +118,7 @@ fn paper(rows: &[Row], has_torque: bool) -> Option<Parameters> {
 fn torque(rows: &[Row], gain_kg: &Matrix3<f64>) -> Option<TorqueParameters> {
     let mut a = DMatrix::zeros(3 * rows.len(), 6);
     let mut b = DMatrix::zeros(3 * rows.len(), 1);
-    // The columns of the centre of mass are of the size of the weight; the bias' columns are brought to the same.
+    // The columns of the centre of mass have the magnitude of the weight; those of the bias are scaled to match.
     let size = gain_kg.norm().max(f64::MIN_POSITIVE) * GRAVITY_M_S2 / 3_f64.sqrt();
     for (i, row) in rows.iter().enumerate() {
         let weight = gain_kg * row.field_m_s2;

@@ -1,20 +1,20 @@
-//! Telling whether force and orientation stand still, with bounded memory: running means that start anew on any motion.
+//! Detects when force and orientation are still, with bounded memory: running means that are reset on any motion.
 
 use nalgebra::{UnitQuaternion, Vector3};
 
 use super::rotation_mean::RotationMean;
 use crate::frames::{Wrench, WristSample};
 
-/// What standing still means.
+/// Criteria for stillness.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StillSettings {
-    /// How long, s.
+    /// Duration, s.
     pub time_s: f64,
-    /// Largest distance of a 20 ms mean of the force from the mean of the stretch, N.
+    /// Largest deviation of a 20 ms mean of the force from the mean of the interval, N.
     pub force_n: f64,
-    /// Largest distance of a 20 ms mean of the field of gravity from the mean of the stretch, m/s^2.
+    /// Largest deviation of a 20 ms mean of the gravity vector from the mean of the interval, m/s^2.
     pub field_m_s2: f64,
-    /// A gap in time longer than this starts anew, s.
+    /// A gap in time longer than this resets the interval, s.
     pub gap_s: f64,
 }
 
@@ -32,7 +32,7 @@ struct Sums {
     count: f64,
     wrench: Wrench,
     field: Vector3<f64>,
-    /// Samples with an orientation by the arm, and those orientations.
+    /// Number of samples with an orientation from the arm, and the sum of those orientations.
     turned: f64,
     world_from_s1: RotationMean,
 }
@@ -65,7 +65,7 @@ impl Sums {
     }
 }
 
-/// The stretch so far.
+/// The present interval.
 #[derive(Clone, Debug)]
 pub(super) struct Still {
     settings: StillSettings,
@@ -93,7 +93,7 @@ impl Still {
         }
     }
 
-    /// Forgets the stretch.
+    /// Resets the interval.
     pub(super) fn reset(&mut self) {
         (self.short, self.whole, self.last_s) = (Sums::default(), Sums::default(), None);
     }
@@ -103,22 +103,22 @@ impl Still {
         self.moved.map(|moved| !moved)
     }
 
-    /// It moves, and for half a second it was the force alone that did.
+    /// Whether the tool moves, and for the last half second only its force did.
     pub(super) fn only_force_moved(&self) -> bool {
         self.moved == Some(true) && self.last_s.is_some_and(|last| last - self.field_moved_s > 0.5)
     }
 
-    /// Mean of the stretch: wrench (`s1`) and field of gravity (m/s^2, source's frame).
+    /// Means over the interval: wrench (`s1`) and gravity vector (m/s^2, source's frame).
     pub(super) fn mean(&self) -> Option<(Wrench, Vector3<f64>)> {
         (self.whole.count > 0.0).then(|| self.whole.mean())
     }
 
-    /// Mean orientation over the stretch by the arm; `None` unless every sample of it had one.
+    /// Mean orientation from the arm over the interval; `None` unless every sample of it had one.
     pub(super) fn mean_world_from_s1(&self) -> Option<UnitQuaternion<f64>> {
         self.whole.world_from_s1.mean().filter(|_| self.whole.turned >= self.whole.count)
     }
 
-    /// Takes a sample; share of the still time so far (1 and more: enough), `None` while it moves.
+    /// Adds a sample; returns the share of the required time (1 or more: still long enough), `None` while it moves.
     pub(super) fn step(&mut self, sample: &WristSample, field: &Vector3<f64>, t_s: f64) -> Option<f64> {
         if !self.last_s.is_some_and(|last| t_s > last && t_s - last <= self.settings.gap_s) {
             self.reset();

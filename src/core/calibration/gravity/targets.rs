@@ -1,8 +1,8 @@
-//! Orientations that together show gravity from all sides.
+//! Orientations that together cover all directions of gravity.
 
 use nalgebra::{UnitQuaternion, Vector3};
 
-/// An orientation to bring the tool to. Gravity does not see a turn about the vertical, so tilt is all that counts.
+/// A target orientation of the tool. Gravity does not depend on rotation about the vertical, so only tilt matters.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PoseTarget {
     /// Short name for a screen.
@@ -12,10 +12,10 @@ pub struct PoseTarget {
 }
 
 impl PoseTarget {
-    /// The orientation of the sensor with the least turn from the base's frame.
+    /// The orientation of the sensor with the smallest rotation from the base's frame.
     pub fn world_from_s1(&self) -> UnitQuaternion<f64> {
         let (from, to) = (Vector3::from(self.down_s1), -Vector3::z());
-        // Straight opposite there is no shortest way: any half turn about a level axis does.
+        // For the opposite direction, use a half turn about a horizontal axis.
         UnitQuaternion::rotation_between(&from, &to)
             .unwrap_or_else(|| UnitQuaternion::from_axis_angle(&Vector3::x_axis(), std::f64::consts::PI))
     }
@@ -25,7 +25,8 @@ const fn target(name: &'static str, down_s1: [f64; 3]) -> PoseTarget {
     PoseTarget { name, down_s1 }
 }
 
-/// Twelve directions: along the axes, then between them. Easy ones first; every direction is within 45 degrees of one.
+/// Twelve directions: along the axes, then in between, the easy ones first. Every direction is within 45 degrees of one
+/// of them.
 pub const TARGETS: [PoseTarget; 12] = [
     target("shaft down", [0.0, 0.0, 1.0]),
     target("shaft level, +x side down", [1.0, 0.0, 0.0]),

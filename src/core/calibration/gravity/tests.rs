@@ -1,4 +1,4 @@
-//! The fit against tools whose mass, mounting and bias are known. Held-out figures are over poses that no fit has seen.
+//! The fit for tools with known mass, mounting and bias. Held-out figures are from poses that were not used for a fit.
 
 use nalgebra::{Rotation3, UnitQuaternion, Vector3};
 
@@ -9,7 +9,7 @@ use crate::{
     noise::Noise,
 };
 
-/// A tool with everything known.
+/// A tool with known parameters.
 pub(super) struct Tool {
     pub(super) mass_kg: f64,
     pub(super) com_m: Vector3<f64>,
@@ -32,7 +32,7 @@ impl Tool {
         Vector3::from_fn(|_, _| self.noise.gaussian() * size)
     }
 
-    /// Any orientation of the sensor, evenly over all of them.
+    /// A random orientation of the sensor, uniformly distributed.
     pub(super) fn any_orientation(&mut self) -> UnitQuaternion<f64> {
         UnitQuaternion::new_normalize(nalgebra::Quaternion::new(
             self.noise.gaussian(),
@@ -42,7 +42,7 @@ impl Tool {
         ))
     }
 
-    /// What the sensor reads at rest in this orientation.
+    /// Reading of the sensor at rest in this orientation.
     pub(super) fn sample(&mut self, world_from_s1: UnitQuaternion<f64>, noise_n: f64, noise_nm: f64) -> WristSample {
         let down_s1 = world_from_s1.inverse_transform_vector(&Vector3::new(0.0, 0.0, -GRAVITY_M_S2));
         let weight = down_s1 * self.mass_kg;
@@ -90,7 +90,7 @@ fn gravity_free(model: &GravityModel, sample: &WristSample) -> Option<Wrench> {
     Compensator::new(*model, DEFAULT_TIME_CONSTANT_S, 1e-3).step(sample)
 }
 
-/// Error of a model on fresh poses of the same tool.
+/// Errors of a model on new poses of the same tool.
 fn fresh_errors(model: &GravityModel, tool: &mut Tool, count: usize) -> Vec<Vector3<f64>> {
     let mut error = |_| {
         let world_from_s1 = tool.any_orientation();
@@ -266,7 +266,7 @@ fn a_sensor_that_does_not_feel_the_tool_is_refused_with_its_cause() {
             }
         }
     }
-    // A light tool is a tool: 20 g in the usual noise.
+    // A light tool of 20 g is accepted at usual noise.
     let accepted =
         (0..50).filter(|seed| report(&Tool::new(7100 + seed, 0.02).imu_poses(12)).verdict == Verdict::Accepted);
     assert!(accepted.count() >= 48);
@@ -335,7 +335,8 @@ fn a_record_reads_back_and_one_that_cannot_be_used_is_refused() {
     assert!(refused("coverage", "covfefe").contains("coverage"));
 }
 
-/// Not asserted: times of a debug build on a shared machine mean little. Run with `--ignored --nocapture --release`.
+/// Not asserted: run times of a debug build on a shared computer mean little. Run with `--ignored --nocapture
+/// --release`.
 #[test]
 #[ignore = "a measurement"]
 fn how_long_a_fit_and_a_compensation_take() {

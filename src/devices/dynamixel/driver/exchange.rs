@@ -1,4 +1,4 @@
-//! One exchange after the other: asking, taking answers, giving up, and when the servos are lost.
+//! Runs the exchanges: sends, receives answers, times out, and decides when the servos are lost.
 
 use super::{
     super::{
@@ -24,7 +24,7 @@ impl<T: Bytes> Driver<T> {
         Ok(reading)
     }
 
-    /// Takes in what has arrived.
+    /// Reads what has arrived.
     fn listen(&mut self, now_s: f64) -> Result<Option<Stamped<ServoReading>>, Loss> {
         let mut newest = None;
         let mut buffer = [0; 256];
@@ -54,7 +54,7 @@ impl<T: Bytes> Driver<T> {
         Ok(newest)
     }
 
-    /// Takes a status packet as the answer that is awaited, or counts what it is instead.
+    /// Handles a status packet: as part of the expected answer, or counts why it is not.
     fn take(&mut self, id: u8, body: &[u8], now_s: f64) -> Result<Option<Stamped<ServoReading>>, Loss> {
         let plain = body.len() == MOTION_BYTES + 1;
         let condition = body.len() == CONDITION_BYTES + 1;
@@ -93,7 +93,7 @@ impl<T: Bytes> Driver<T> {
         }
     }
 
-    /// One servo's part of a reading; false where it refused.
+    /// Stores one servo's part of a reading; false if the servo refused.
     fn take_motion(&mut self, index: usize, error: u8, data: &[u8]) -> bool {
         if error & ALERT != 0 {
             self.alert.get_or_insert(index);
@@ -109,7 +109,7 @@ impl<T: Bytes> Driver<T> {
         Refusal::of(error) == Ok(None)
     }
 
-    /// All parts are there.
+    /// Completes a reading whose parts have all arrived.
     fn finish(&mut self, good: bool, now_s: f64) -> Result<Option<Stamped<ServoReading>>, Loss> {
         if !good {
             self.exchange = None;
@@ -128,7 +128,7 @@ impl<T: Bytes> Driver<T> {
         }
         let (device_s, age) = self.clock.take(self.motions[0].tick, now_s);
         if age == Age::Old {
-            // An answer to an earlier question; ours may still come.
+            // An answer to an earlier exchange; the expected one may still come.
             self.health.out_of_order += 1;
             if let Some(exchange) = &mut self.exchange {
                 exchange.question = Question::Motion { next: 0 };
@@ -170,7 +170,7 @@ impl<T: Bytes> Driver<T> {
         if error.is_any() {
             return Err(Loss::Device { code: Fault { id: servo.id, error }.code() });
         }
-        // A command that got lost on the line is given again; it has no answer of its own.
+        // Repeat a torque command that may have been lost on the line: a sync write has no answer.
         match self.torque {
             Torque::On if !torque_on => self.torque = Torque::Wanted,
             Torque::Off if torque_on => self.torque = Torque::Ending,
@@ -179,7 +179,7 @@ impl<T: Bytes> Driver<T> {
         Ok(())
     }
 
-    /// Gives up an exchange that nobody answers.
+    /// Gives up an exchange that is not answered in time.
     fn expire(&mut self, now_s: f64) {
         let Some(exchange) = self.exchange.filter(|exchange| now_s >= exchange.until_s) else { return };
         self.exchange = None;
@@ -189,7 +189,7 @@ impl<T: Bytes> Driver<T> {
         }
     }
 
-    /// Begins the next exchange.
+    /// Starts the next exchange.
     fn ask(&mut self, now_s: f64) -> Result<(), Loss> {
         if self.reboots.is_any() {
             return Err(Loss::Silent);
@@ -218,7 +218,7 @@ impl<T: Bytes> Driver<T> {
         Ok(())
     }
 
-    /// Sync writes before the question; none of them is answered.
+    /// Appends the sync writes that precede the read; they have no answers.
     fn put_commands(&mut self) {
         match self.torque {
             Torque::Wanted if self.health.standing == Standing::Connected => {

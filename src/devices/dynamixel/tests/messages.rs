@@ -1,4 +1,4 @@
-//! Every instruction and the status packet against the vectors of the reference, both ways.
+//! Every instruction and the status packet, encoded and decoded, against the test vectors of the reference.
 
 use super::{
     super::{
@@ -68,7 +68,7 @@ fn instructions_are_those_of_the_reference() {
     ] {
         both_ways(id, &instruction, Some(wire));
     }
-    // Those for which the reference has no vector go there and back.
+    // Instructions for which the reference has no vector: encode and decode.
     for instruction in [
         I::BulkRead { items: &bulk_read, fast: true },
         I::Backup { restore: false },

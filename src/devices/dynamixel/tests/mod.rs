@@ -1,4 +1,4 @@
-//! The wire against golden frames and arbitrary bytes.
+//! The protocol against known frames and arbitrary bytes.
 
 mod messages;
 mod packets;

@@ -1,4 +1,4 @@
-//! Checksums, stuffing, resynchronisation, and that no bytes whatever do harm.
+//! Checksums, stuffing, resynchronisation, and robustness against arbitrary bytes.
 
 use super::super::{
     codec::{self, BROADCAST, Incoming, Outgoing, STATUS, crc},
@@ -9,7 +9,7 @@ pub(super) fn hex(text: &str) -> Vec<u8> {
     text.split_whitespace().map(|byte| u8::from_str_radix(byte, 16).unwrap()).collect()
 }
 
-/// Id, instruction and body of every packet in `bytes`, and what was refused.
+/// Id, instruction and body of every packet in `bytes`, and the counters of refused data.
 fn packets(incoming: &mut Incoming, bytes: &[u8]) -> Vec<(u8, u8, Vec<u8>)> {
     let mut found = Vec::new();
     let mut taken = 0;
@@ -39,7 +39,7 @@ fn stuffing_goes_in_and_comes_out() {
         assert_eq!(out.bytes(), hex(wire));
         assert_eq!(packets(&mut Incoming::new(64), &hex(wire)), [(1, 3, hex(data))]);
     }
-    // As a known client sends it: not stuffed at all.
+    // As a known client sends it: without any stuffing.
     let bare = "FF FF FD 00 01 09 00 03 E2 00 FF FF FD 05 4B 97";
     assert_eq!(packets(&mut Incoming::new(64), &hex(bare)), [(1, 3, hex("E2 00 FF FF FD 05"))]);
 }
@@ -49,7 +49,7 @@ fn any_parameters_survive_the_wire() {
     let mut random = fastrand::Rng::with_seed(1);
     let (mut out, mut incoming) = (Outgoing::new(256), Incoming::new(256));
     for _ in 0..100_000 {
-        // Few byte values, so that marks are frequent, also where one `put` ends and the next begins.
+        // Few byte values, so that marks are frequent, also across two calls of `put`.
         let data: Vec<u8> = (0..random.usize(0..40)).map(|_| *random.choice(&[0xFF, 0xFD, 0x00]).unwrap()).collect();
         let (head, tail) = data.split_at(random.usize(0..=data.len()));
         out.clear();
@@ -65,7 +65,7 @@ fn a_packet_is_found_behind_noise_and_behind_a_damaged_one() {
     let mut bad = good.clone();
     bad[9] ^= 1;
     let mut incoming = Incoming::new(64);
-    // A length that would swallow everything, a header that breaks off, a damaged packet.
+    // A length that would swallow everything, an incomplete header, a damaged packet.
     let stream = [hex("00 FF FF FD 00 01 FF 7F 55 FF FF FF"), bad, good.clone(), vec![0xFF; 5], good].concat();
     for byte in &stream[..stream.len() - 10] {
         packets(&mut incoming, &[*byte]);
@@ -126,7 +126,7 @@ fn fuzz(rounds: u64, seed: u64) {
         }
     }
     assert!(found <= given / 10);
-    // Only a damaged length may swallow a good packet, and the search within it finds that again.
+    // Only a damaged length may swallow a good packet; the search within the damaged one then finds most of them.
     assert!(found as f64 > 0.95 * whole as f64, "{found} of {whole}");
 }
 

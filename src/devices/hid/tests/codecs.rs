@@ -47,7 +47,7 @@ fn a_combined_report_says_the_same_as_the_two_halves() {
 
 #[test]
 fn buttons_in_every_byte_are_seen_and_other_reports_are_let_pass() {
-    // Pro: MENU 1.0, ESC 3.6, CTRL 4.1 (byte.bit in the report).
+    // Bits of the SpaceMouse Pro's report (byte.bit): MENU 1.0, ESC 3.6, CTRL 4.1.
     assert_eq!(CapReport::decode(&[3, 0x01, 0, 0x40, 0x02]), Ok(CapReport::Buttons(1 | 1 << 22 | 1 << 25)));
     assert_eq!(CapReport::decode(&[0x17, 88, 1]), Ok(CapReport::Battery { percent: 88, charging: true }));
     assert_eq!(CapReport::decode(&[0x1c, 1, 2, 3]), Ok(CapReport::Other));

@@ -1,4 +1,4 @@
-//! What may be asked of a running arm. Nothing here waits or allocates.
+//! Commands to a running arm. Nothing here waits or allocates.
 
 use nalgebra::{UnitQuaternion, Vector3};
 
@@ -14,7 +14,7 @@ use crate::{
     transport::Bytes as _,
 };
 
-/// Why a command was not taken.
+/// Why a command was refused.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum Refusal {
     #[error("the arm is lost: connect it again")]
@@ -25,22 +25,22 @@ pub enum Refusal {
     /// A twist needs single-level servoing.
     #[error("the arm takes no twist in low-level servoing: leave it first")]
     NotSingleLevel,
-    /// A twist still moves the arm.
+    /// The arm is moving with a twist.
     #[error("the arm moves with a twist: stop it first")]
     Moving,
     /// A number is not finite.
     #[error("the command has a number that is not finite")]
     NotFinite,
-    /// A limit of a joint.
+    /// A joint limit is exceeded.
     #[error("joint {joint} was commanded {beyond}: the arm brakes and leaves low-level servoing")]
     Beyond {
-        /// Counted from 1.
+        /// The joint, counted from 1.
         joint: usize,
         beyond: Beyond,
     },
 }
 
-/// In which frame a twist is given (`CartesianReferenceFrame`).
+/// Frame in which a twist is given (`CartesianReferenceFrame`).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[repr(u32)]
 pub enum TwistFrame {
@@ -78,7 +78,7 @@ impl ToolTwist {
     }
 }
 
-/// The twist in force. The arm has no time limit of its own for it but the session's 2 s, so it must be renewed.
+/// The active twist. The arm itself limits its duration only by the 2 s of the session, so the driver requires renewal.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Jog {
     twist: ToolTwist,
@@ -89,12 +89,16 @@ pub(super) struct Jog {
 
 /// A twist that is not renewed ends after this time, s.
 const TWIST_DEAD_MAN_S: f64 = 0.1;
-/// Between two twists, s: the base takes about 40 a second.
+/// Interval between two twists, s: the base accepts about 40 a second.
 const TWIST_PERIOD_S: f64 = 0.025;
 
 impl Driver {
-    /// Asks for low-level servoing, beginning at rest where the arm is. It has come when
-    /// [`ArmReading::servoing`](crate::ArmReading::servoing) turns true, after some ticks; a refusal is in [`Driver::answer`].
+    /// Requests low-level servoing, starting at rest at the present position. It is active when
+    /// [`ArmReading::servoing`](crate::ArmReading::servoing) becomes true, after some ticks; a refusal of the arm is in
+    /// [`Driver::answer`].
+    ///
+    /// # Errors
+    /// [`Refusal`] while a twist moves the arm.
     pub fn enter_low_level(&mut self) -> Result<(), Refusal> {
         self.still_there()?;
         if self.twist.active {
@@ -108,7 +112,7 @@ impl Driver {
         Ok(())
     }
 
-    /// Brakes, then goes back to single-level servoing.
+    /// Brakes, then returns to single-level servoing.
     pub fn leave_low_level(&mut self) {
         match self.mode {
             Mode::Single | Mode::Braking | Mode::Leaving { .. } => {}
@@ -120,9 +124,12 @@ impl Driver {
         }
     }
 
-    /// Where the joints shall be now, rad, in the turns of the readings: one step of a path that keeps to the
-    /// [limits](crate::kinova::Settings::joint_limits), from [`Driver::command_rad`] on. What is beyond them is refused and counted, and
-    /// ends the servoing: it comes from a plan that nobody may trust any more.
+    /// Commands joint angles, rad, in the turns of the readings: the next point of a path within the
+    /// [limits](crate::kinova::Settings::joint_limits), starting at [`Driver::command_rad`]. A command beyond the
+    /// limits is refused and counted, and ends servoing, because the plan that it comes from is wrong.
+    ///
+    /// # Errors
+    /// [`Refusal`] if the arm is not servoing, a number is not finite, or a limit is exceeded.
     pub fn aim(&mut self, target_rad: &[f64; ARM_JOINTS]) -> Result<(), Refusal> {
         self.still_there()?;
         if !target_rad.iter().all(|angle| angle.is_finite()) {
@@ -138,7 +145,7 @@ impl Driver {
         })
     }
 
-    /// Ends every motion: brakes and holds in low level; in single level a zero twist and `Stop`.
+    /// Ends every motion: in low-level servoing brakes and holds; in single-level sends a zero twist and `Stop`.
     pub fn stop(&mut self) {
         self.guard.brake();
         if !self.is_lost() && !matches!(self.mode, Mode::Low | Mode::Braking | Mode::Leaving { .. }) {
@@ -146,8 +153,11 @@ impl Driver {
         }
     }
 
-    /// Moves the tool in single level, cut to the speeds of the settings. Renew it within 0.1 s, or it ends; a zero twist ends
-    /// it at once.
+    /// Moves the tool in single-level servoing, limited to the speeds of the settings. The twist ends unless it is
+    /// renewed within 0.1 s; a zero twist ends it at once.
+    ///
+    /// # Errors
+    /// [`Refusal`] in low-level servoing, or if a number is not finite.
     pub fn twist(&mut self, twist: &ToolTwist) -> Result<(), Refusal> {
         self.still_there()?;
         if !twist.is_finite() {
@@ -167,53 +177,57 @@ impl Driver {
         Ok(())
     }
 
-    /// What another thread may do in an emergency: take the arm out of low-level servoing, whereupon it holds where it is.
+    /// For emergencies: a function that another thread can call to end low-level servoing; the arm then holds its
+    /// position.
     ///
     /// # Errors
-    /// When the operating system gives no second end of the connection.
+    /// If the operating system cannot duplicate the connection.
     pub fn lever(&self) -> std::io::Result<impl FnMut() + Send + 'static> {
         let single = Number { value: ServoingMode::Single as u32 };
         let (mut tcp, words) = self.lines.last_words(Rpc::SET_SERVOING_MODE, &single)?;
-        // With a broken connection the arm's own watchdog has acted.
+        // If the connection is broken, the arm's own watchdog has acted already.
         Ok(move || {
             tcp.send(&words).ok();
         })
     }
 
-    /// Clears warnings of a connected arm. An arm in fault is lost; its faults are cleared while opening it
-    /// ([`FaultClearing`](crate::kinova::FaultClearing)).
+    /// Clears the warnings of a connected arm. An arm in fault is not connected; its faults are cleared while it is
+    /// opened ([`FaultClearing`](crate::kinova::FaultClearing)).
+    ///
+    /// # Errors
+    /// [`Refusal`] if the arm cannot accept the call now.
     pub fn clear_faults(&mut self) -> Result<(), Refusal> {
         self.still_there()?;
         self.call(Rpc::CLEAR_FAULTS, &());
         Ok(())
     }
 
-    /// The faults of the newest answer.
+    /// Faults in the latest answer.
     pub fn faults(&self) -> Faults {
         Faults::of(&self.feedback)
     }
 
-    /// All that the newest good answer told, in the units of the wire.
+    /// The latest good answer, in the units of the wire.
     pub const fn feedback(&self) -> &Feedback {
         &self.feedback
     }
 
-    /// The last call that was refused, since low level was entered.
+    /// The last call that was refused since low-level servoing was entered.
     pub const fn answer(&self) -> Option<Answer> {
         self.answer
     }
 
-    /// How often somebody else took the arm out of low-level servoing.
+    /// How often another client ended low-level servoing.
     pub const fn ousted(&self) -> u32 {
         self.ousted
     }
 
-    /// The positions that are commanded now, rad; meaningful while servoing.
+    /// The commanded joint positions, rad; valid while servoing.
     pub const fn command_rad(&self) -> &[f64; ARM_JOINTS] {
         self.guard.command_rad()
     }
 
-    /// Where the arm sees its tool.
+    /// State of the tool according to the arm.
     pub fn tool(&self) -> ToolReading {
         let Feedback { tool_pose, tool_twist, tool_wrench, .. } = &self.feedback;
         let theta_rad = vector(&tool_pose[3..], 1_f64.to_radians());
@@ -231,7 +245,7 @@ impl Driver {
         if self.is_lost() { Err(Refusal::Lost) } else { Ok(()) }
     }
 
-    /// Sends the twist in force again when it is due; ends one that nobody renews.
+    /// Sends the active twist again when it is due; ends one that was not renewed.
     pub(super) fn send_twist(&mut self, now_s: f64) {
         if !self.twist.active {
             return;
@@ -244,7 +258,7 @@ impl Driver {
         }
     }
 
-    /// A zero twist, said explicitly, and `Stop`.
+    /// Sends an explicit zero twist, and `Stop`.
     pub(super) fn release_twist(&mut self) {
         let zero = ToolTwist { frame: self.twist.twist.frame, ..ToolTwist::default() };
         self.twist = Jog { twist: zero, ..Jog::default() };

@@ -1,6 +1,7 @@
-//! The end of a connection: whatever happened before, the arm is left at rest, in single level, without sessions of ours.
+//! Closing a connection: whatever happened before, the arm is left at rest, in single-level servoing, with our sessions
+//! closed.
 //!
-//! Waits, at most about two seconds; for a thread that may.
+//! Waits for up to two seconds, so it must not run on the real-time thread.
 
 use std::{
     thread::sleep,
@@ -17,7 +18,7 @@ use crate::{
     transport::Datagrams as _,
 };
 
-/// Longest time to come to rest and leave low level; at full speed braking takes 0.3 s.
+/// Longest time to brake and leave low-level servoing; from full speed braking takes 0.3 s.
 const LEAVE: Duration = Duration::from_millis(800);
 const ANSWER: Duration = Duration::from_millis(200);
 const TICK: Duration = Duration::from_millis(1);
@@ -34,7 +35,7 @@ impl Driver {
             self.poll(begin_s + begin.elapsed().as_secs_f64());
         }
         if self.mode != Mode::Single {
-            // The cycle is broken: at least say it, and stop.
+            // The cycle does not work: at least ask for single-level servoing and stop.
             let single = Number { value: ServoingMode::Single as u32 };
             self.lines.ask_within(Rpc::SET_SERVOING_MODE, &single, ANSWER).ok();
         }
@@ -42,7 +43,7 @@ impl Driver {
     }
 }
 
-/// Closes both sessions, as far as somebody listens.
+/// Closes both sessions if the arm still answers.
 pub(in crate::kinova) fn close_sessions(lines: &mut Lines) {
     let (_, bytes) = lines.cyclic.request(Rpc::CLOSE_SESSION, &());
     lines.udp.send(bytes).ok();

@@ -1,4 +1,4 @@
-//! What arrives: answers of the cycle and to calls, checked and counted.
+//! Incoming data: answers of the cycle and to calls, checked and counted.
 
 use super::{Answer, Driver, Mode};
 use crate::{
@@ -15,16 +15,16 @@ use crate::{
 
 const DAMAGED_MAX: u32 = 10;
 const IMPOSSIBLE_MAX: u32 = 5;
-/// Datagrams taken in one poll.
+/// Most datagrams handled in one poll.
 const DATAGRAMS: usize = 64;
-/// Reads of the stream in one poll.
+/// Most reads of the stream in one poll.
 const READS: usize = 4;
-/// Faster than this no joint turns, rad/s; with [`JUMP_RAD`] for old readings.
+/// Largest plausible speed of a joint, rad/s; with [`JUMP_RAD`] it bounds the change between two readings.
 const JUMP_RAD_S: f64 = 10.0;
 const JUMP_RAD: f64 = 0.2;
 
 impl Driver {
-    /// Takes in the answers of the cycle; the newest good one is the reading.
+    /// Handles the answers of the cycle; the newest good one is the reading.
     pub(super) fn take_cycle(&mut self, now_s: f64) -> Option<Stamped<ArmReading>> {
         let mut newest = None;
         for _ in 0..DATAGRAMS {
@@ -51,7 +51,7 @@ impl Driver {
         newest
     }
 
-    /// Counts a frame with a shape that cannot be.
+    /// Counts a malformed frame.
     fn damaged(&mut self) -> bool {
         self.health.damaged += 1;
         self.damaged_in_row += 1;
@@ -61,7 +61,7 @@ impl Driver {
         false
     }
 
-    /// True when it is a new and good reading.
+    /// Returns true if it is a new and good reading.
     fn take_datagram(&mut self, header: &Header, feedback: Option<&Feedback>, now_s: f64) -> bool {
         let cyclic = matches!(header.rpc(), Rpc::REFRESH | Rpc::REFRESH_FEEDBACK);
         match header.kind {
@@ -101,16 +101,16 @@ impl Driver {
         true
     }
 
-    /// The numbers are finite, within the arm's abilities, and no jump of the last ones.
+    /// Whether the numbers are finite, within the arm's limits, and close enough to the last ones.
     fn is_possible(&self, feedback: &Feedback, joint_rad: &[f64; ARM_JOINTS], now_s: f64) -> bool {
-        // Before the first reading a jump means nothing.
+        // Before the first reading there is nothing to compare with.
         let reach_rad = JUMP_RAD_S.mul_add(self.health.age_s(now_s), JUMP_RAD);
         feedback.is_finite()
             && feedback.actuators.iter().all(|a| a.position_deg.abs() <= 720.0 && a.velocity_deg_s.abs() <= 1000.0)
             && joint_rad.iter().zip(&self.joint_rad).all(|(now, last)| (now - last).abs() <= reach_rad)
     }
 
-    /// An error instead of an answer, on either connection.
+    /// Handles an error that came instead of an answer, on either connection.
     fn refused(&mut self, header: &Header) {
         let answer = Answer { rpc: header.rpc(), error: header.error, sub_error: header.sub_error };
         let cyclic = matches!(answer.rpc, Rpc::REFRESH | Rpc::REFRESH_FEEDBACK);
@@ -124,7 +124,7 @@ impl Driver {
             }
             sub::WRONG_SERVOING_MODE if cyclic => {
                 self.unanswered_s = None;
-                // Somebody else took the arm back to the single level.
+                // Another client returned the arm to single-level servoing.
                 if matches!(self.mode, Mode::Low | Mode::Braking) {
                     self.mode = Mode::Single;
                     self.ousted += 1;
@@ -143,13 +143,13 @@ impl Driver {
         ArmReading {
             joint_rad: self.joint_rad,
             joint_rad_s: std::array::from_fn(|j| f64::from(actuators[j].velocity_deg_s).to_radians()),
-            // The arm tells torques with the sign opposite to that of torque commands.
+            // The arm reports torques with the sign opposite to that of torque commands.
             joint_nm: std::array::from_fn(|j| -f64::from(actuators[j].torque_nm)),
             servoing: self.mode == Mode::Low && self.feedback.state == ArmState::SERVOING_LOW_LEVEL,
         }
     }
 
-    /// Takes in the answers to calls.
+    /// Handles the answers to calls.
     pub(super) fn take_answers(&mut self, now_s: f64) {
         for _ in 0..READS {
             match self.lines.tcp.receive(self.lines.packets.room()) {

@@ -14,7 +14,7 @@ use super::Opener;
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum FollowerSettings {
-    /// `make = "kinova"`, the usual one: Gen3 with seven joints.
+    /// `make = "kinova"`, the default: Gen3 with seven joints.
     Kinova(kinova::Settings),
     /// `make = "simulated"`: no hardware.
     Simulated(simulated_arm::Settings),
@@ -42,7 +42,7 @@ impl FollowerSettings {
         }
     }
 
-    /// Of an arm by Kinova.
+    /// The settings, if it is an arm by Kinova.
     pub const fn kinova_mut(&mut self) -> Option<&mut kinova::Settings> {
         match self {
             Self::Kinova(settings) => Some(settings),
@@ -50,10 +50,10 @@ impl FollowerSettings {
         }
     }
 
-    /// Every setting is possible.
+    /// Checks every setting.
     ///
     /// # Errors
-    /// [`Trouble::Setting`].
+    /// [`Trouble::Setting`] for the first invalid one.
     pub fn check(&self) -> Result<(), Trouble> {
         match self {
             Self::Kinova(settings) => settings.check(),
@@ -61,7 +61,8 @@ impl FollowerSettings {
         }
     }
 
-    /// In an emulated rig the handle and the sensor belong to a world that an emulated arm moves; a simulated arm has none.
+    /// Checks that an emulated rig has an emulated arm: handle and sensor of an emulated rig belong to a world that
+    /// this arm moves, and a simulated arm has no such world.
     pub(in crate::rig) fn check_emulated(&self, rig_is_emulated: bool) -> Result<(), Trouble> {
         match self {
             Self::Simulated(_) if rig_is_emulated => Err(Trouble::Setting {
@@ -73,7 +74,7 @@ impl FollowerSettings {
         }
     }
 
-    /// How its joints may be moved.
+    /// Limits of position, speed and acceleration of its joints.
     pub(in crate::rig) fn joint_limits(&self) -> JointLimits {
         match self {
             Self::Kinova(settings) => settings.joint_limits(),

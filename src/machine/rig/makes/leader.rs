@@ -13,7 +13,7 @@ use super::Opener;
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum LeaderSettings {
-    /// `make = "force_dimension"`, the usual one: omega.7.
+    /// `make = "force_dimension"`, the default: omega.7.
     ForceDimension(force_dimension::Settings),
 }
 
@@ -36,23 +36,24 @@ impl LeaderSettings {
         Some(settings)
     }
 
-    /// Of a handle by Force Dimension.
+    /// The settings, if it is a handle by Force Dimension.
     pub const fn force_dimension_mut(&mut self) -> Option<&mut force_dimension::Settings> {
         let Self::ForceDimension(settings) = self;
         Some(settings)
     }
 
-    /// Every setting is possible.
+    /// Checks every setting.
     ///
     /// # Errors
-    /// [`Trouble::Setting`].
+    /// [`Trouble::Setting`] for the first invalid one.
     pub fn check(&self) -> Result<(), Trouble> {
         match self {
             Self::ForceDimension(settings) => settings.check(),
         }
     }
 
-    /// A rig emulates its handles or none: a real one never gets a stand-in, and what engages by itself never a real one.
+    /// Checks that the handle is emulated if and only if the rig is. A real handle must never be replaced by an
+    /// emulated one unnoticed, and an emulated rig, which engages by itself, must never move a real one.
     pub(in crate::rig) fn check_emulated(&self, rig_is_emulated: bool) -> Result<(), Trouble> {
         let Self::ForceDimension(settings) = self;
         if settings.emulator.is_some() == rig_is_emulated {
@@ -64,7 +65,7 @@ impl LeaderSettings {
         Err(Trouble::Setting { key: "emulator".to_owned(), value, allowed })
     }
 
-    /// It cannot be taken for the other one.
+    /// Checks that the settings tell the two handles apart.
     pub(in crate::rig) fn check_beside(&self, other: &Self) -> Result<(), Trouble> {
         let (Self::ForceDimension(one), Self::ForceDimension(other)) = (self, other);
         if one.serial.is_some() && one.serial != other.serial {

@@ -1,6 +1,8 @@
-//! The makes of handle, arm and force sensor that a rig file can name: `make = "..."`, the first one listed where it says nothing.
+//! The makes of handle, arm and force sensor that a rig file can choose with `make = "..."`; the first one listed is
+//! the default.
 //!
-//! One file for each part, which is the only one of the rig that knows its makes: a new make is a variant there and an arm in each `match`.
+//! There is one file for each kind of device, and only that file knows the makes: a new make is a variant there and an
+//! arm in each `match`.
 
 mod follower;
 mod leader;
@@ -19,11 +21,11 @@ use toml::{
 
 use crate::rig::Side;
 
-/// How a part is opened; `P` is `Box<dyn Leader>` and so on.
+/// How a device is opened; `P` is `Box<dyn Leader>` and so on.
 pub(super) struct Opener<P> {
-    /// What drives it, for the screen.
+    /// Name of the driver, for the screen.
     pub(super) driver: String,
-    /// Opens it; called again whenever it was lost.
+    /// Opens it; called again whenever the connection was lost.
     pub(super) open: Box<dyn FnMut() -> Result<P, Trouble> + Send>,
     pub(super) clear_faults: Option<ClearFaults>,
 }

@@ -12,7 +12,7 @@ use super::Opener;
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum SensorSettings {
-    /// `make = "bota"`, the usual one.
+    /// `make = "bota"`, the default.
     Bota(bota::Settings),
 }
 
@@ -35,23 +35,23 @@ impl SensorSettings {
         Some(settings)
     }
 
-    /// Of a sensor by Bota.
+    /// The settings, if it is a sensor by Bota.
     pub const fn bota_mut(&mut self) -> Option<&mut bota::Settings> {
         let Self::Bota(settings) = self;
         Some(settings)
     }
 
-    /// Every setting is possible.
+    /// Checks every setting.
     ///
     /// # Errors
-    /// [`Trouble::Setting`].
+    /// [`Trouble::Setting`] for the first invalid one.
     pub fn check(&self) -> Result<(), Trouble> {
         match self {
             Self::Bota(settings) => settings.check(),
         }
     }
 
-    /// The file by which the system gives access to it, where it has one.
+    /// The device file through which it is reached, if it has one.
     pub(in crate::rig) const fn device_file(&mut self) -> Option<&mut String> {
         let Self::Bota(settings) = self;
         match settings.transport {

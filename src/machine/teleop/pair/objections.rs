@@ -1,4 +1,4 @@
-//! What stands against an engagement or a release, told to whoever asked for it.
+//! Reasons against an engagement or a release, reported to whoever asked for it.
 
 use nima_core::safety::Seen;
 
@@ -10,12 +10,12 @@ use crate::{
 };
 
 impl<L: Link> Pair<L> {
-    /// Nothing that is known now stands against engaging; the interlock judges the state.
+    /// Reasons against engaging that are known now; the interlock checks the state.
     pub(super) fn may_engage(&self) -> Result<(), Refusal> {
         if self.state() != LoopState::Idle {
             return Ok(());
         }
-        // A force that is mostly weight and bias must never reach a hand.
+        // A force that is mostly weight and bias must never be rendered.
         if !self.force.source.is_usable() {
             return Err(Refusal::ForceUnknown);
         }
@@ -39,7 +39,7 @@ impl<L: Link> Pair<L> {
         self.plausibility.doubt().map_or(Ok(()), |what| Err(Refusal::StillPresent(Fault::Implausible { what })))
     }
 
-    /// What an engagement that has begun still waits for.
+    /// What an engagement in progress is waiting for.
     pub(super) fn waits_for(&self, seen: Seen, inputs: Option<&Inputs>) -> Refusal {
         if !seen.powered {
             Refusal::DrivesOff

@@ -1,4 +1,5 @@
-//! What a pair makes of its measurements and of the time before it uses them: what leaps is bridged, what cannot be true is a fault.
+//! Checks of a pair's measurements and of the time before they are used: short impossible jumps are bridged,
+//! implausible values are faults.
 
 use nalgebra::UnitQuaternion;
 use nima_core::{
@@ -14,7 +15,7 @@ use crate::{
 };
 
 impl<L: Link> Pair<L> {
-    /// Takes a sample in; what leaps where nothing can is bridged in what is given back.
+    /// Checks a sample; returns it with impossible jumps replaced by the last plausible value.
     pub(super) fn take_in(&mut self, mut inputs: Inputs, now_s: f64) -> Inputs {
         self.force = self.force_path.step(now_s, &inputs.sensed);
         let admitted = self.plausibility.step(&Observed {
@@ -37,8 +38,8 @@ impl<L: Link> Pair<L> {
         inputs
     }
 
-    /// Time goes on by whole periods, as many as were missed and one. A clock that does not is a fault, and what was learnt by it is
-    /// forgotten: parcels from the future would never grow old.
+    /// Time must advance by whole periods: one plus the number missed. Otherwise it is a fault, and the identification
+    /// is reset: parcels with a time in the future would never grow old.
     pub(super) fn check_clock(&mut self, timing: &Timing) {
         let period_s = 1.0 / self.rate_hz;
         let Some(last_s) = self.last_now_s.replace(timing.now_s) else { return };
@@ -55,7 +56,7 @@ impl<L: Link> Pair<L> {
         }
     }
 
-    /// Faults first, then the interlock's look at the machine.
+    /// Raises faults, then steps the interlock.
     pub(super) fn watch(&mut self, inputs: Option<&Inputs>, moved_m: f64, timing: &Timing) {
         let now_s = timing.now_s;
         if timing.missed_now as f64 / self.rate_hz > STALLED_AFTER_S {
@@ -97,8 +98,8 @@ impl<L: Link> Pair<L> {
         }
     }
 
-    /// Gaps come so often that identification learns from what is not there: more than one sample in six, within 20 ms where it is
-    /// every second one. A silence is one gap.
+    /// Whether so many samples are missing that the identification would learn from interpolated data: more than one in
+    /// six; detected within 20 ms if every second one is missing. A continuous silence counts as one gap.
     fn loses_samples(&mut self, there: bool) -> bool {
         const TOO_MANY: f64 = 8.0;
         const FORGIVEN: f64 = 0.2;
@@ -111,8 +112,9 @@ impl<L: Link> Pair<L> {
         self.gaps >= TOO_MANY
     }
 
-    /// Hand speed for the dead band, from differences: it rises within 5 ms, so one step of the encoder does not open the gate,
-    /// and falls within 40 ms, so a trembling hand does not switch its force on and off twenty times a second.
+    /// Speed of the hand for the dead band, from position differences. It rises with a time constant of 5 ms, so that
+    /// one step of the encoder does not open the gate, and falls with 40 ms, so that a trembling hand does not switch
+    /// its force on and off twenty times a second.
     fn measure_speed(&mut self, inputs: &Inputs, now_s: f64) {
         const RISE_S: f64 = 0.005;
         const FALL_S: f64 = 0.040;
@@ -125,7 +127,7 @@ impl<L: Link> Pair<L> {
     }
 }
 
-/// Orientation of a wrist sensor by the arm.
+/// Orientation of the wrist sensor, from the arm's kinematics.
 fn orientation(sensed: &Sensed) -> Option<UnitQuaternion<f64>> {
     match sensed {
         Sensed::AtTip(_) => None,
@@ -133,7 +135,7 @@ fn orientation(sensed: &Sensed) -> Option<UnitQuaternion<f64>> {
     }
 }
 
-/// The numbers of a force sensor as they were read; NaN where it has none.
+/// The raw numbers of a force sensor, for the plausibility check; NaN for channels that it does not have.
 fn numbers(sensed: &Sensed) -> [f64; CHANNELS] {
     let mut all = [f64::NAN; CHANNELS];
     match sensed {

@@ -1,4 +1,4 @@
-//! The network in force: its file in the store, bound to sensor and tool, and used only when its check allows it.
+//! The stored network of a sensor, bound to sensor and tool, and used only if its check allows this.
 
 use std::{fs, time::SystemTime};
 
@@ -10,8 +10,10 @@ use crate::store::{Loaded, Store, keep_previous};
 const KIND: &str = "tip-force";
 const ENDING: &str = "safetensors";
 
-/// Takes the model into the store of its sensor; the file before stays as `.previous`. Refused without a sensor, a tool and
-/// a check that allows it.
+/// Saves the model in the store of its sensor; the previous file is kept as `.previous`. Returns its path.
+///
+/// # Errors
+/// [`TipForceError`] if the model has no sensor, tool or accepted check, or the file cannot be written.
 pub fn keep_model(model: &Model, store: &Store) -> Result<std::path::PathBuf, TipForceError> {
     let (Some(sensor), Some(_)) = (&model.origin.sensor, &model.origin.tool) else {
         return Err(TipForceError::NotProven { reason: "it names no sensor and tool".to_owned() });
@@ -25,7 +27,11 @@ pub fn keep_model(model: &Model, store: &Store) -> Result<std::path::PathBuf, Ti
     Ok(path)
 }
 
-/// The model kept for this sensor and tool; `None` when there is none. Refuses what belongs elsewhere or is not proven.
+/// Loads the model of this sensor and tool; `None` if there is none.
+///
+/// # Errors
+/// [`TipForceError`] if the file cannot be read, belongs to another sensor or tool, or its check does not allow its
+/// use.
 pub fn kept_model(
     store: &Store,
     sensor: &str,

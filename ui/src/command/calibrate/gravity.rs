@@ -1,4 +1,4 @@
-//! `nima calibrate gravity`: a gravity model from still poses, judged on poses held out.
+//! `nima calibrate gravity`: fits a gravity model to still poses and judges it on held-out poses.
 
 use std::{fmt::Write as _, path::PathBuf};
 

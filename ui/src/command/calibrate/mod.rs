@@ -1,4 +1,4 @@
-//! `nima calibrate`: calibrations from files, with their verdict.
+//! `nima calibrate`: calibrations from files, each with a verdict.
 
 mod correspondence;
 mod gravity;
@@ -25,7 +25,7 @@ pub(super) fn run(command: &CalibrateCommand) -> anyhow::Result<()> {
     }
 }
 
-/// Looks, before the work, whether a calibration can be written to `out` and the one before beside it.
+/// Checks before the work that a calibration can be written to `out`, and the previous one next to it.
 fn check(out: &Path, input: &Path) -> anyhow::Result<()> {
     output::check(out, &[input])?;
     if out.exists() { output::check(&store::previous(out), &[input]) } else { Ok(()) }

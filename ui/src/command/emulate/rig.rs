@@ -1,5 +1,5 @@
-//! `nima emulate rig`: every device of a rig file at its place, all around one simulated world; `--rig F`, `--scene F`. `pedal BITS` on
-//! standard input presses the pedal's switches (first in the lowest bit) until the next such line.
+//! `nima emulate rig`: every device of a rig file at its address, with one simulated world; `--rig F`, `--scene F`.
+//! `pedal BITS` on standard input presses the pedal's switches (the first in the lowest bit) until the next such line.
 
 use anyhow::{Context as _, bail};
 use nima_machine::config::RigConfig;
@@ -25,7 +25,7 @@ pub(super) fn run(rig: &str, scene: &str, until_input_ends: bool) -> anyhow::Res
     super::serve(&served, until_input_ends, |line| press(&emulated, line))
 }
 
-/// Obeys `pedal BITS`; false where the line is another.
+/// Handles `pedal BITS`; returns false for any other line.
 fn press(emulated: &EmulatedRig, line: &str) -> bool {
     let Some(switches) = line.strip_prefix("pedal ") else { return false };
     match switches.trim().parse() {

@@ -1,4 +1,4 @@
-//! The arguments of `nima study faults`.
+//! Arguments of `nima study faults`.
 
 use clap::Args;
 use nima_study::faults::Options;

@@ -1,4 +1,4 @@
-//! The arguments of `nima study gates`.
+//! Arguments of `nima study gates`.
 
 use clap::Args;
 use nima_study::gates::Options;
@@ -15,7 +15,7 @@ pub(in crate::command) struct Gates {
     seed: u64,
 }
 
-/// A whole number, also as `1e8`.
+/// Parses a whole number, also in the form `1e8`.
 fn requests(text: &str) -> Result<u64, String> {
     match text.parse::<f64>() {
         Ok(count) if (1.0..=1e12).contains(&count) && count.fract() == 0.0 => Ok(count as u64),

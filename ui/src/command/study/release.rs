@@ -1,4 +1,4 @@
-//! `nima study release` has no arguments of its own.
+//! Arguments of `nima study release`: none.
 
 use clap::Args;
 use nima_study::release::Options;

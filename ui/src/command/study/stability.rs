@@ -1,4 +1,4 @@
-//! The arguments of `nima study stability`.
+//! Arguments of `nima study stability`.
 
 use clap::Args;
 use nima_study::stability::Options;

@@ -1,4 +1,4 @@
-//! `nima study stability-map` has no arguments of its own.
+//! Arguments of `nima study stability-map`: none.
 
 use clap::Args;
 use nima_study::stability_map::Options;

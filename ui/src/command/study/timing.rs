@@ -1,6 +1,7 @@
-//! `nima study timing`: the loop on the real clock beside everything that may hold it up, under each scheduling class.
+//! `nima study timing`: the loop on the real clock while other activities may delay it, with each scheduling class.
 //!
-//! Each case is a process of its own, as in use; loads run in this one. Cases with a window need a display.
+//! Each case runs in a process of its own, as in normal use; the loads run in this process. Cases with a window need a
+//! display.
 
 use std::{
     convert::Infallible,
@@ -34,7 +35,7 @@ pub(in crate::command) struct Arguments {
     scene: String,
 }
 
-/// What goes on beside the loop.
+/// Activity in parallel with the loop.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 enum Beside {
@@ -63,7 +64,7 @@ impl Beside {
     }
 }
 
-/// Of [`nima_core::statistics::Quantiles`], what is shown.
+/// The fields of [`nima_core::statistics::Quantiles`] that are shown.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 struct Quantiles {
     p50: f64,
@@ -72,7 +73,7 @@ struct Quantiles {
     max: f64,
 }
 
-/// Of [`nima_machine::runtime::Summary`], what is shown.
+/// The fields of [`nima_machine::runtime::Summary`] that are shown.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 struct Figures {
     ticks: u64,
@@ -92,15 +93,15 @@ struct Scheduling {
 #[derive(Debug, Serialize)]
 pub(in crate::command) struct Case {
     beside: Beside,
-    /// What was asked of the operating system.
+    /// Scheduling class that was requested.
     asked: SchedulingClass,
     #[serde(flatten)]
     figures: Option<Figures>,
-    /// Why there are no figures.
+    /// Why there are no figures; `None` if there are some.
     skipped: Option<String>,
 }
 
-/// All of them.
+/// All cases.
 #[derive(Debug, Serialize)]
 #[serde(transparent)]
 pub(in crate::command) struct Cases(Vec<Case>);
@@ -123,7 +124,7 @@ impl Experiment for Arguments {
         vec![PathBuf::from(&self.scene)]
     }
 
-    /// Tells each case in a line of its own: it takes a while.
+    /// Prints one line per case, because each takes a while.
     fn run(&self, _: &mut dyn FnMut(usize, usize, &str)) -> Result<Cases, Infallible> {
         let mut cases = Vec::new();
         for beside in Beside::ALL {
@@ -169,21 +170,21 @@ fn measure(arguments: &Arguments, beside: Beside, asked: SchedulingClass) -> any
     }
     command.args(["--scene", &arguments.scene]);
     command.args(["--scheduling", asked.name()]);
-    // Its standard input ends with this process, however that ends: no loop is left behind.
+    // Its standard input closes when this process ends for whatever reason, so no loop keeps running.
     command.arg("--until-input-ends");
     let mut child = command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn()?;
     let held = child.stdin.take();
     let done = child.wait_with_output()?;
     drop((held, load));
     let text = if beside.has_window() { std::fs::read(&summary).unwrap_or_default() } else { done.stdout };
-    // A loop that was held up ends in a fault, and its figures are what is wanted.
+    // A loop that was delayed ends in a fault; its figures are still wanted.
     serde_json::from_slice(&text).map_err(|error| {
         let told = String::from_utf8_lossy(&done.stderr).lines().next_back().map(str::to_owned);
         told.filter(|_| !done.status.success()).map_or_else(|| error.into(), anyhow::Error::msg)
     })
 }
 
-/// Threads that make work until it is dropped.
+/// Threads that generate load until this is dropped.
 #[derive(Default)]
 struct Load {
     stop: Arc<AtomicBool>,
@@ -211,7 +212,7 @@ impl Load {
         })
     }
 
-    /// 4 MB at a time, each written through to the disk.
+    /// Writes 4 MB at a time to the disk, with synchronisation.
     fn disk(path: PathBuf) -> Self {
         let bytes = vec![0x5a_u8; 4 << 20];
         Self::start(1, move || {

@@ -1,4 +1,4 @@
-//! `nima study tradeoff`: what every knob of the identification costs and gives.
+//! `nima study tradeoff`: computing time and accuracy for every parameter of the identification.
 
 use std::path::PathBuf;
 
@@ -15,9 +15,9 @@ use nima_world::scene::Scene;
 use super::Asked;
 use crate::leaving::Leave;
 
-/// Scenes that are measured when nothing is named.
+/// Scenes that are measured by default.
 const SCENES: [&str; 2] = ["peg_transfer", "free_motion"];
-/// Length of a scene, s, and of one in a hurry.
+/// Duration of a scene, s; the second constant is for `--quick`.
 const SCENE_S: f64 = 10.0;
 const QUICK_SCENE_S: f64 = 6.0;
 const RATE_HZ: f64 = 1000.0;
@@ -80,7 +80,7 @@ fn plan(arguments: &Arguments) -> anyhow::Result<Plan> {
     }
     let delays_s: Vec<f64> = arguments.delay_ms.iter().map(|ms| ms * 1e-3).collect();
     let usual = Settings::default();
-    // The base stands at the usual delay where that is among those asked for.
+    // The base point uses the default delay if that is among the requested ones.
     let asked = delays_s.iter().copied().find(|delay_s| (delay_s - usual.delay_s).abs() < 1e-9);
     let base = Settings { delay_s: asked.or(delays_s.first().copied()).unwrap_or(usual.delay_s), ..usual };
     let mut plan = if arguments.quick { Plan::quick(base) } else { Plan::full(base) };

@@ -1,4 +1,4 @@
-//! The arguments of `nima study validation`.
+//! Arguments of `nima study validation`.
 
 use clap::Args;
 use nima_core::impedance::MAX_DELAY_S;

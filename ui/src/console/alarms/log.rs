@@ -1,7 +1,7 @@
-//! The last alarms: which are live, which are acknowledged, which are gone and when.
+//! Recent alarms: which are active, acknowledged, or over, and since when.
 //!
-//! An acknowledgement silences flashing and sound and is marked; it never ends an alarm, its cause does. What comes anew with the same
-//! or a higher priority than what was acknowledged calls for attention again.
+//! An acknowledgement ends flashing and sound and is displayed; it does not end an alarm, only the end of its cause
+//! does. A new alarm of the same or a higher priority than those acknowledged flashes and sounds again.
 
 use std::collections::VecDeque;
 
@@ -9,51 +9,51 @@ use nima_recording::store::utc_now;
 
 use super::{Alarm, Kind, Priority};
 
-/// Alarms kept.
+/// Number of alarms stored.
 pub const KEPT: usize = 50;
-/// A cause that comes back within this time is the same alarm, not a new one, s on the window's clock.
+/// A cause that returns within this time is the same alarm, s on the window's clock.
 const SAME_S: f64 = 5.0;
 
-/// When something happened.
+/// A time on three clocks.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Moment {
     /// Hours, minutes and seconds, UTC.
     pub utc: String,
-    /// On the loop's clock, s; none before the loop sent anything.
+    /// Time on the loop's clock, s; `None` before the loop has sent anything.
     pub loop_s: Option<f64>,
-    /// On the window's clock, s.
+    /// Time on the window's clock, s.
     pub window_s: f64,
 }
 
 impl Moment {
-    /// Now.
+    /// The present time.
     pub fn now(loop_s: Option<f64>, window_s: f64) -> Self {
         let utc = utc_now().get(11..19).unwrap_or_default().to_owned();
         Self { utc, loop_s, window_s }
     }
 }
 
-/// One alarm from its beginning.
+/// One alarm with its times.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Entry {
-    /// As it was last judged.
+    /// Its latest state.
     pub alarm: Alarm,
-    /// When its cause came.
+    /// When its cause appeared.
     pub began: Moment,
-    /// When its cause went; none while it lives.
+    /// When its cause ended; `None` while it is active.
     pub ended: Option<Moment>,
-    /// Somebody has seen it.
+    /// Whether it has been acknowledged.
     pub acknowledged: bool,
 }
 
-/// The last alarms, oldest first.
+/// Recent alarms, oldest first.
 #[derive(Clone, Debug, Default)]
 pub struct AlarmLog {
     entries: VecDeque<Entry>,
 }
 
 impl AlarmLog {
-    /// Takes in what is wrong now.
+    /// Updates the log with the present alarms.
     pub fn update(&mut self, alarms: &[Alarm], now: &Moment) {
         let is_wrong = |kind: Kind| alarms.iter().find(|alarm| alarm.kind == kind);
         for entry in self.entries.iter_mut().filter(|entry| entry.ended.is_none()) {
@@ -77,36 +77,36 @@ impl AlarmLog {
             }
         }
         while self.entries.len() > KEPT {
-            // Never one that lives: there are fewer kinds than places.
+            // An active alarm is never removed: there are fewer kinds than places.
             let gone = self.entries.iter().position(|entry| entry.ended.is_some()).unwrap_or(0);
             self.entries.remove(gone);
         }
     }
 
-    /// What is wrong now: the most urgent first, of one urgency the first that came.
+    /// Active alarms: the most urgent first; of the same urgency, the earliest first.
     pub fn live(&self) -> Vec<&Entry> {
         let mut live: Vec<&Entry> = self.entries.iter().filter(|entry| entry.ended.is_none()).collect();
         live.sort_by_key(|entry| entry.alarm.priority);
         live
     }
 
-    /// All that is kept, the newest first.
+    /// All stored alarms, the newest first.
     pub fn newest_first(&self) -> impl Iterator<Item = &Entry> {
         self.entries.iter().rev()
     }
 
-    /// Somebody has seen all that is wrong now.
+    /// Acknowledges all active alarms.
     pub fn acknowledge(&mut self) {
         self.entries.iter_mut().filter(|entry| entry.ended.is_none()).for_each(|entry| entry.acknowledged = true);
     }
 
-    /// There is something that nobody has acknowledged.
+    /// Whether there is an active alarm that is not acknowledged.
     pub fn has_unseen(&self) -> bool {
         self.live().iter().any(|entry| !entry.acknowledged)
     }
 
-    /// The priority that calls for attention by flashing and by sound; none where all that is wrong was acknowledged, or is less
-    /// urgent than what was, or is low.
+    /// The priority that requires flashing and sound; `None` if all active alarms are acknowledged, less urgent than an
+    /// acknowledged one, or of low priority.
     pub fn calls(&self) -> Option<Priority> {
         let live = self.live();
         let seen = live.iter().filter(|entry| entry.acknowledged).map(|entry| entry.alarm.priority).min();

@@ -1,5 +1,5 @@
-//! What is wrong, in order of urgency: cause first, then what to do. Worked out anew each frame from what came in, so an
-//! alarm ends when its cause ends and not before; [`log`] remembers the last of them, [`strip`] shows them, [`sound`] sounds them.
+//! Alarms in order of urgency, each with cause and cure. They are determined anew in each frame, so an alarm ends
+//! exactly when its cause ends; [`log`] stores the recent ones, [`strip`] shows them, [`sound`] plays their sound.
 
 pub mod log;
 pub mod sound;
@@ -20,13 +20,13 @@ pub enum Priority {
     High,
     /// Act soon. Yellow, flashing every second and a half.
     Medium,
-    /// Know about it. Cyan, steady.
+    /// For information. Cyan, steady.
     Low,
 }
 
 impl Priority {
-    /// Colour at this time on the dark plate that alarms stand on; flashing dims it and never hides it. What is acknowledged does
-    /// not flash, and a low priority never does.
+    /// Colour at this time on the dark background of alarms; flashing dims it but never hides it. Acknowledged alarms
+    /// and those of low priority do not flash.
     pub fn colour(self, time_s: f64, flashes: bool) -> Color32 {
         let colour = match self {
             Self::High => theme::DARK.alarm_high,
@@ -52,7 +52,7 @@ impl Priority {
         Some(half_s - time_s.rem_euclid(half_s))
     }
 
-    /// The word for those who do not see the colour.
+    /// A word for the priority, for readers who cannot distinguish the colours.
     pub const fn word(self) -> &'static str {
         match self {
             Self::High => text::alarms::ALARM,
@@ -62,33 +62,33 @@ impl Priority {
     }
 }
 
-/// What can be wrong: an alarm whose figures change stays the same alarm.
+/// Kind of an alarm: it stays the same alarm when its figures change.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     /// A stop did not reach the loop.
     StopStuck,
     /// A fault stopped the loop.
     Fault(Fault),
-    /// The loop sends nothing.
+    /// The loop sends no ticks.
     Silence,
-    /// A device at this place of the roster is missing.
+    /// The device with this index in the roster is missing.
     Device(usize),
-    /// Periods are missed.
+    /// Too many periods are missed.
     Missed,
-    /// The wrist sensor's bias has moved.
+    /// The wrist sensor's bias has changed.
     BiasMoved,
-    /// The operating system refused something.
+    /// The operating system refused real-time privileges.
     Scheduling,
 }
 
-/// One thing that is wrong.
+/// One alarm.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Alarm {
-    /// Which.
+    /// Its kind.
     pub kind: Kind,
     /// How urgent.
     pub priority: Priority,
-    /// What happened, and when if it has a moment.
+    /// What happened, and when, if that is known.
     pub cause: String,
     /// What the operator can do.
     pub cure: String,
@@ -97,47 +97,47 @@ pub struct Alarm {
 /// A device that is wanted and does not deliver.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Missing {
-    /// Its place in the roster.
+    /// Index in the roster.
     pub place: usize,
     /// Its name there.
     pub name: String,
-    /// It delivered before.
+    /// Whether it delivered before.
     pub was_there: bool,
-    /// Why.
+    /// Why it does not deliver.
     pub cause: String,
     /// What the operator can do.
     pub cure: String,
 }
 
-/// What alarms are judged from.
+/// The data from which alarms are determined.
 #[derive(Clone, Debug, Default)]
 pub struct Signs {
-    /// Devices that are missing, in the order of the roster.
+    /// Missing devices, in the order of the roster.
     pub missing: Vec<Missing>,
     /// State of the loop as last seen.
     pub state: Option<LoopState>,
     /// The first fault since the last release, and when (s on the loop's clock).
     pub first_fault: Option<(f64, Fault)>,
-    /// The loop's thread is alive.
+    /// Whether the loop's thread is running.
     pub running: bool,
-    /// Time since the last tick came.
+    /// Time since the last tick.
     pub silence: Duration,
     /// Share of periods missed in the last seconds, 0 to 1.
     pub missed_share: f64,
-    /// What the operating system granted, once told.
+    /// Real-time privileges that the operating system granted, once known.
     pub scheduling: Option<Scheduling>,
-    /// A stop could not be delivered.
+    /// A stop could not be sent to the loop.
     pub stop_is_stuck: bool,
-    /// By how much the bias of the wrist sensor has moved since its calibration, if it has, N.
+    /// Change of the wrist sensor's bias since its calibration, N; `None` if it has not changed.
     pub bias_moved_n: Option<f64>,
 }
 
-/// Ticks come every few milliseconds: half a second without one is a fault of its own.
+/// Ticks arrive every few milliseconds; half a second without one is an alarm.
 const SILENCE_MAX: Duration = Duration::from_millis(500);
-/// One lost period in a hundred is felt as roughness.
+/// More than one missed period in a hundred is felt as roughness.
 const MISSED_SHARE_MAX: f64 = 0.01;
 
-/// All that is wrong, most urgent first.
+/// All alarms, most urgent first.
 pub fn judge(signs: &Signs) -> Vec<Alarm> {
     let mut alarms = Vec::new();
     if signs.stop_is_stuck {
@@ -166,7 +166,7 @@ pub fn judge(signs: &Signs) -> Vec<Alarm> {
     }
     alarms.extend(signs.missing.iter().map(missing));
     if signs.missed_share > MISSED_SHARE_MAX {
-        // Nobody feels them while nothing is driven: then they stand below what keeps the arm from being engaged.
+        // While nothing is driven nobody can feel them, so they rank below the reasons why the arm cannot be engaged.
         let driven = signs.state.is_none_or(|state| state.permits().drives);
         alarms.push(Alarm {
             kind: Kind::Missed,
@@ -206,14 +206,14 @@ fn missing(device: &Missing) -> Alarm {
     }
 }
 
-/// What happened, with the name of the device where it is one's.
+/// Cause of a fault, with the name of the device if it is about one.
 fn cause_of(fault: Fault, signs: &Signs) -> String {
     let Fault::DeviceLost { device, .. } = fault else { return fault.cause().to_owned() };
     let name = signs.missing.iter().find(|missing| missing.place == usize::from(device)).map(|missing| &missing.name);
     name.map_or_else(|| fault.cause().to_owned(), |name| text::alarms::fault_of(name, fault.cause()))
 }
 
-/// The same words with a capital first letter.
+/// The text with an upper-case first letter.
 pub fn sentence(words: &str) -> String {
     let mut letters = words.chars();
     letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
@@ -267,7 +267,7 @@ mod tests {
             ..healthy()
         };
         let mut log = log::AlarmLog::default();
-        // The periods were missed first.
+        // The missed periods come first here.
         log.update(&judge(&Signs { missing: Vec::new(), ..signs.clone() }), &log::Moment::now(None, 0.0));
         log.update(&judge(&signs), &log::Moment::now(None, 1.0));
         let pinned = &log.live()[0].alarm;

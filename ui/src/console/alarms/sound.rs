@@ -1,7 +1,7 @@
-//! The sound of alarms, off until it is asked for: bursts of pulses by IEC 60601-1-8, ten for high priority, three for medium.
+//! Sound of alarms, off by default: bursts of pulses as in IEC 60601-1-8, ten for high priority, three for medium.
 //!
-//! Played by the player of the system that is there (`pw-play`, `paplay` or `aplay`), so that nothing more is needed to build; where
-//! there is none, or it fails, that is told in the menu. Nothing here waits: a burst is a child process that is looked after each frame.
+//! Played by an installed program (`pw-play`, `paplay` or `aplay`), so that no library is needed. If there is none, or
+//! it fails, the menu shows that. Nothing here waits: a burst is a child process that is checked in each frame.
 
 use crate::console::text;
 use std::{
@@ -15,27 +15,27 @@ use tempfile::TempDir;
 
 use super::Priority;
 
-/// Players that take a file's path as their only argument, the likeliest first.
+/// Programs that take a file's path as their only argument, the most common first.
 const PLAYERS: [&str; 3] = ["pw-play", "paplay", "aplay"];
 const RATE_HZ: u32 = 22_050;
-/// From the beginning of one burst to that of the next, s.
+/// Interval between the starts of two bursts of high priority, s.
 const HIGH_EVERY_S: f64 = 6.0;
 const MEDIUM_EVERY_S: f64 = 12.0;
 
-/// The player and what it plays.
+/// The player and its state.
 #[derive(Debug, Default)]
 pub struct Sound {
     player: Option<PathBuf>,
     looked: bool,
     bursts: Option<TempDir>,
     playing: Option<Child>,
-    /// Which was played last, and when, s on the window's clock.
+    /// Priority of the last burst, and its time, s on the window's clock.
     last: Option<(Priority, f64)>,
     failure: Option<String>,
 }
 
 impl Sound {
-    /// With the players in these folders instead of those in the search path.
+    /// Searches the players in these folders instead of the search path.
     #[cfg(test)]
     fn of(folders: &[&Path]) -> Self {
         let mut sound = Self::default();
@@ -44,7 +44,7 @@ impl Sound {
         sound
     }
 
-    /// What stands in the way of a sound, for the menu; none where nothing does.
+    /// Why no sound can be played, for the menu; `None` if it can.
     pub fn trouble(&mut self) -> Option<String> {
         self.look();
         match (&self.player, &self.failure) {
@@ -54,7 +54,7 @@ impl Sound {
         }
     }
 
-    /// Plays a burst when one is due; call each frame with what calls for attention.
+    /// Plays a burst when one is due; call in each frame with the priority that requires a sound.
     pub fn step(&mut self, calls: Option<Priority>, time_s: f64) {
         if let Some(Ok(Some(status))) = self.playing.as_mut().map(Child::try_wait) {
             self.playing = None;
@@ -98,7 +98,7 @@ impl Sound {
 impl Drop for Sound {
     fn drop(&mut self) {
         if let Some(child) = &mut self.playing {
-            // A burst is over by itself; its file must not go before it.
+            // The player must end before its file is deleted.
             child.kill().ok();
             child.wait().ok();
         }
@@ -109,7 +109,7 @@ fn find(mut folders: impl Iterator<Item = PathBuf>) -> Option<PathBuf> {
     folders.find_map(|folder| PLAYERS.iter().map(|player| folder.join(player)).find(|path| path.is_file()))
 }
 
-/// Both bursts as files.
+/// Creates the files of both bursts.
 fn bursts() -> io::Result<TempDir> {
     let folder = tempfile::tempdir()?;
     for priority in [Priority::High, Priority::Medium] {
@@ -125,7 +125,7 @@ const fn file_of(priority: Priority) -> &'static str {
     }
 }
 
-/// When each pulse of a burst begins, and how long it lasts, s.
+/// Start of each pulse of a burst, and its duration, s.
 fn pulses(priority: Priority) -> (Vec<f64>, f64) {
     match priority {
         Priority::High => {
@@ -136,7 +136,7 @@ fn pulses(priority: Priority) -> (Vec<f64>, f64) {
     }
 }
 
-/// The samples of a burst, -1 to 1: a tone with four harmonics, which is found by ear more easily than a pure one.
+/// Samples of a burst, -1 to 1: a tone with four harmonics, which is easier to locate than a pure tone.
 fn burst(priority: Priority) -> Vec<f64> {
     let tone_hz = if priority == Priority::High { 660.0 } else { 440.0 };
     let (starts_s, length_s) = pulses(priority);
@@ -148,7 +148,7 @@ fn burst(priority: Priority) -> Vec<f64> {
         let count = (length_s * f64::from(RATE_HZ)) as usize;
         for (i, sample) in burst.iter_mut().skip(first).take(count).enumerate() {
             let (t_s, left_s) = (i as f64 / f64::from(RATE_HZ), (count - i) as f64 / f64::from(RATE_HZ));
-            // Soft edges: a step would click.
+            // Ramps, because a step would be heard as a click.
             let loud = (t_s / 0.015).min(left_s / 0.015).min(1.0);
             let tone: f64 = (1..=4).map(|k| (TAU * tone_hz * f64::from(k) * t_s).sin() / f64::from(k)).sum();
             *sample = 0.35 * loud * tone;
@@ -157,7 +157,7 @@ fn burst(priority: Priority) -> Vec<f64> {
     burst
 }
 
-/// A file of 16-bit samples, one channel (RIFF WAVE).
+/// A file of 16-bit samples, mono (RIFF WAVE).
 fn wav(samples: &[f64]) -> Vec<u8> {
     let bytes = 2 * samples.len() as u32;
     let mut file = Vec::with_capacity(44 + bytes as usize);
@@ -183,7 +183,7 @@ fn wav(samples: &[f64]) -> Vec<u8> {
 mod tests {
     use super::*;
 
-    /// Pulses in a burst: runs of sound with silence of at least 30 ms between them.
+    /// Number of pulses in a burst: sound separated by at least 30 ms of silence.
     fn pulses_heard(samples: &[f64]) -> usize {
         let quiet = (0.03 * f64::from(RATE_HZ)) as usize;
         let (mut heard, mut silent) = (0, quiet);

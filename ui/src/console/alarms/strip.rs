@@ -1,7 +1,7 @@
-//! Alarms on the screen: a strip over the whole width under the top bar while anything is wrong, and the list of the last ones.
+//! Display of alarms: a strip below the top bar while anything is wrong, and the list of recent alarms.
 //!
-//! The strip pins the most urgent alarm, of several the first, with its time, cause and cure, and folds the others under it. It is as
-//! high as its words need: nothing in it is ever cut.
+//! The strip shows the most urgent alarm (of several, the first) with time, cause and cure, and the number of the
+//! others. It is as high as its text requires, so that nothing is cut off.
 
 use crate::console::text;
 use egui::{
@@ -19,23 +19,23 @@ use crate::console::{
     widgets::{Sign, sign, small, weak},
 };
 
-/// Room for the strip's buttons.
+/// Width of the strip's buttons.
 const BUTTONS: f32 = 270.0;
 const BUTTON: egui::Vec2 = vec2(124.0, 32.0);
 
-/// The log, and what is open of it.
+/// The log of alarms, and what is open.
 #[derive(Debug, Default)]
 pub struct Alarms {
-    /// The last alarms.
+    /// Recent alarms.
     pub log: AlarmLog,
-    /// The list is open.
+    /// Whether the list is open.
     pub list: bool,
-    /// What sounds them.
+    /// Plays the sounds.
     pub sound: Sound,
 }
 
 impl Alarms {
-    /// Takes in what is wrong, sounds it if that is wanted, and shows the strip; `loop_s` is the loop's clock.
+    /// Updates the alarms, plays their sound if wanted, and shows the strip; `loop_s` is the time on the loop's clock.
     pub fn strip_ui(&mut self, ui: &mut Ui, signs: &Signs, loop_s: Option<f64>, sounds: bool) {
         let time_s = ui.input(|input| input.time);
         self.log.update(&judge(signs), &Moment::now(loop_s, time_s));
@@ -48,7 +48,7 @@ impl Alarms {
         let live = self.log.live();
         let Some(&first) = live.first() else { return };
         if let Some(change_s) = calls.and_then(|priority| priority.until_change_s(time_s)) {
-            // A little later, so that it has changed.
+            // Slightly later, so that the colour has changed by then.
             ui.ctx().request_repaint_after(std::time::Duration::from_secs_f64(change_s + 2e-3));
         }
         let colour = calls.unwrap_or(first.alarm.priority).colour(time_s, calls.is_some());
@@ -80,7 +80,7 @@ impl Alarms {
         self.list |= opened;
     }
 
-    /// The list, into `room`.
+    /// Shows the list in `room`.
     pub fn list_ui(&mut self, ctx: &Context, room: Rect) {
         let window = Window::new(text::alarms::LIST_TITLE).open(&mut self.list).constrain_to(room).collapsible(false);
         let size = vec2(560.0, (room.height() - 90.0).min(460.0));
@@ -99,7 +99,7 @@ impl Alarms {
     }
 }
 
-/// The pinned alarm; true when it is clicked.
+/// The alarm in the strip; returns true if it was clicked.
 fn words_ui(ui: &mut Ui, first: &Entry, others: usize, colour: Color32) -> bool {
     let (rect, _) = ui.allocate_exact_size(vec2(24.0, 30.0), Sense::hover());
     sign(ui.painter(), Sign::Triangle, rect.center(), 9.0, colour);
@@ -115,7 +115,7 @@ fn words_ui(ui: &mut Ui, first: &Entry, others: usize, colour: Color32) -> bool 
         ui.add(Label::new(RichText::new(cause).font(theme::strong(14.0)).color(theme::DARK.text)).wrap());
         ui.add(Label::new(RichText::new(&alarm.cure).font(theme::regular(13.0)).color(theme::DARK.text_weak)).wrap());
     });
-    // Not a stop of the keyboard: the button beside it does the same.
+    // Not reachable with the Tab key: the button beside it does the same.
     ui.interact(words.response.rect, ui.scope_id().with("alarm"), Sense::CLICK).clicked()
 }
 

@@ -1,4 +1,4 @@
-//! The console while a wizard is open: another scene on the same rig, what is kept of it, and the way back.
+//! The console while a wizard is open: switches the scene, saves calibrations, and switches back.
 
 use egui::{CentralPanel, Frame, Margin, Panel, ScrollArea, Ui};
 use nima_machine::{
@@ -17,7 +17,7 @@ use crate::console::{
 };
 
 impl ConsoleApp {
-    /// Opens a wizard: a simulated rig goes over to its experiment, where somebody guides the arm.
+    /// Opens a wizard; a simulated rig changes to its scene, in which a simulated person guides the arm.
     pub(super) fn open_wizard(&mut self, which: Which) {
         let side = self.in_force.side();
         let here = which.suits(&self.live.scene) && self.live.scene.has(&self.live.rig, side);
@@ -34,7 +34,7 @@ impl ConsoleApp {
         }
     }
 
-    /// The same rig in another scene; the scene that was watched is kept for the way back.
+    /// Restarts the same rig in another scene; the previous scene is stored for the return.
     pub(super) fn restart_in(&mut self, scene: Scene) -> Result<(), String> {
         let watched = self.live.scene.clone();
         self.restart(self.live.rig.clone(), scene)?;
@@ -42,7 +42,7 @@ impl ConsoleApp {
         Ok(())
     }
 
-    /// Back to what was watched before; the wizards keep what they have.
+    /// Returns to the previous scene; the wizards keep their data.
     pub(super) fn close_wizard(&mut self) {
         self.wizards.open = None;
         let Some(scene) = self.watched.take() else {
@@ -55,7 +55,7 @@ impl ConsoleApp {
         }
     }
 
-    /// Goes over to the wrist sensor of the other arm: nothing taken from one belongs to the other.
+    /// Selects the wrist sensor of the other arm: data of one sensor must not be mixed with another's.
     fn choose_arm(&mut self, side: Side) {
         self.outbox.push(Command::Prompt(self.in_force.side(), Prompt::Rest));
         self.in_force.choose(side);
@@ -65,12 +65,12 @@ impl ConsoleApp {
         }
     }
 
-    /// The wizards begin anew: what they have was taken from another sensor.
+    /// Resets the wizards, because their data are from another sensor.
     pub(super) fn forget_what_was_taken(&mut self) {
         self.wizards = self.wizards.open.map_or_else(Wizards::default, Wizards::at);
     }
 
-    /// Keeps a calibration and puts it in force.
+    /// Saves a calibration and puts it in force.
     pub(super) fn save(&mut self, saving: Saving) {
         let told = match self.in_force.save(saving) {
             Ok(words) => match self.restart(self.live.rig.clone(), self.live.scene.clone()) {
@@ -82,7 +82,7 @@ impl ConsoleApp {
         self.wizards.tell_saved(told);
     }
 
-    /// Asks the person at the arm for what the open wizard needs now.
+    /// Sends the open wizard's instruction for the person at the arm.
     pub(super) fn ask(&mut self) {
         let wanted = self.wizards.prompt();
         let side = self.in_force.side();
@@ -93,7 +93,7 @@ impl ConsoleApp {
         }
     }
 
-    /// A technician's view: one wizard, what is in force, and the way back.
+    /// The technician's view with one wizard, the calibrations in force, and the button to return.
     pub(super) fn wizard_layout(&mut self, ui: &mut Ui) {
         let side = Frame::new().fill(theme::now().panel).inner_margin(Margin::same(8));
         let mut wish = None;

@@ -1,4 +1,4 @@
-//! When the next picture is drawn, and what the pictures cost.
+//! Decides when the next frame is drawn, and measures the cost of the frames.
 
 use std::{
     path::Path,
@@ -14,22 +14,23 @@ use crate::{
     telling::tell,
 };
 
-/// Thirty pictures a second while data flow.
+/// Interval between frames while data arrive: about thirty a second.
 const FRAME: Duration = Duration::from_millis(31);
-/// Input is looked at between two pictures, however slow they are.
+/// Least pause between two frames, in which input is handled however slow drawing is.
 const LEAST_REST: Duration = Duration::from_millis(1);
-/// While nothing is engaged the clocks go on by this; a change, the mouse and the keyboard are answered at once all the same.
+/// Interval between frames while nothing is engaged, for the clocks; changes, mouse and keyboard still cause a frame at
+/// once.
 const BEAT_AT_REST: Duration = Duration::from_secs(2);
-/// Once nothing is engaged, traces and figures come to rest in this time.
+/// Time in which traces and figures settle after the last engagement.
 const SETTLED: Duration = Duration::from_secs(2);
-/// When a picture was asked for but no end: the demo is in full swing by then.
+/// Time of the screenshot if no end was given: the demo is running by then.
 const SCREENSHOT_AT: Duration = Duration::from_secs(3);
-/// Room for the picture to be taken before the window closes.
+/// Time to take the screenshot before the window closes.
 const SCREENSHOT_BEFORE_EXIT: Duration = Duration::from_millis(700);
 
 impl ConsoleApp {
-    /// Asks for the next picture: soon while something moves, otherwise when something can change by itself. What comes from the loop
-    /// meanwhile wakes the window.
+    /// Requests the next frame: soon if something moves, otherwise when something changes by itself. News from the loop
+    /// wakes the window in between.
     pub(super) fn rest(&mut self, ctx: &egui::Context) {
         let moves = !(self.live.state().is_latched() || self.live.state() == LoopState::Idle);
         if moves || self.wizards.open.is_some() || self.live.first_tick().is_none() {
@@ -42,13 +43,13 @@ impl ConsoleApp {
         let next = if self.calm {
             self.until_change()
         } else {
-            // Counted from the beginning of this picture: what it took is no reason to wait longer.
+            // Measured from the start of this frame, so that its own duration counts.
             FRAME.saturating_sub(self.framed.elapsed()).max(LEAST_REST)
         };
         ctx.request_repaint_after(next);
     }
 
-    /// This picture of a window at rest is for a flashing alarm alone: nothing else moves on, so that nothing else is drawn.
+    /// Whether this frame of a window at rest is only for a flashing alarm: then nothing else is updated.
     pub(super) fn only_flashes(&mut self, ctx: &egui::Context) -> bool {
         let Some(door) = self.door.as_ref().filter(|_| self.calm) else { return false };
         let wanted = door.has_woken() || ctx.input(|input| !input.events.is_empty() || input.pointer.any_down());
@@ -59,7 +60,8 @@ impl ConsoleApp {
         true
     }
 
-    /// Time until something changes on a window at rest: the clocks, what was asked for from outside. A flashing alarm asks for itself.
+    /// Time until something changes in a window at rest: the clocks, or a request of the command line. A flashing alarm
+    /// requests its own frames.
     fn until_change(&self) -> Duration {
         let open = self.opened.elapsed();
         let Options { exit_after, screenshot, .. } = &self.options;
@@ -68,12 +70,12 @@ impl ConsoleApp {
         wanted.fold(BEAT_AT_REST.saturating_sub(self.taken.elapsed()), Duration::min).max(LEAST_REST)
     }
 
-    /// When the picture that was asked for is taken.
+    /// When the requested screenshot is taken.
     pub(super) fn picture_at(&self) -> Duration {
         self.options.exit_after.map_or(SCREENSHOT_AT, |exit| exit.saturating_sub(SCREENSHOT_BEFORE_EXIT))
     }
 
-    /// Takes in how long the picture before this one took.
+    /// Records the duration of the previous frame.
     pub(super) fn measure(&mut self, ctx: &egui::Context, frame: &eframe::Frame) {
         let before = std::mem::replace(&mut self.framed, Instant::now());
         let work_s = frame.info().cpu_usage.map(f64::from);
@@ -88,7 +90,7 @@ impl ConsoleApp {
         }
     }
 
-    /// Writes the figures of the loop and of the screen where they are wanted.
+    /// Writes the figures of the loop and of the window to files, if requested.
     pub(super) fn write_figures(&mut self) {
         if let (Some(path), Some(meter)) = (&self.options.frames, &self.meter) {
             write_json(path, &meter.figures(&self.renderer));
@@ -102,7 +104,7 @@ impl ConsoleApp {
     }
 }
 
-/// Writes a value as JSON; the window has no one to tell of a failure but the terminal it was started from.
+/// Writes a value as JSON; errors can be reported only on the terminal.
 fn write_json(path: &Path, value: &impl serde::Serialize) {
     let written = serde_json::to_vec_pretty(value)
         .map_err(std::io::Error::from)

@@ -1,9 +1,10 @@
-//! Draws anew only what has changed, where a processor must do the work of a graphics card.
+//! Redraws only what has changed, if a software renderer is used.
 //!
-//! egui describes the whole window in every frame, and its painter draws all of it. In software that is most of a frame: 1.6 million
-//! points are shaded and blended to change a few numbers. Here the shapes of a frame are compared with those of the one before; what differs makes a
-//! few rectangles, and only the shapes that touch them are drawn, over the picture that stands in the window already (`surface`). The
-//! result is the same picture, point for point. With a graphics card nothing of this is used.
+//! egui describes the whole window in every frame, and its painter draws all of it. With a software renderer that is
+//! most of a frame's cost: 1.6 million pixels are shaded and blended to change a few numbers. Here the shapes of a
+//! frame are compared with those of the previous one; the differences give a few rectangles, and only the shapes that
+//! overlap these are drawn, over the image that is in the window already (`surface`). The result is identical, pixel by
+//! pixel. With a GPU nothing of this is used.
 
 mod print;
 mod surface;
@@ -14,28 +15,28 @@ use egui::{Color32, Context, FullOutput, Rect, Shape, epaint::ClippedShape, pos2
 
 pub use surface::{Surface, renderer_of};
 
-/// Beyond its own bounds a shape may reach by the width of its smoothed edge, points.
+/// A shape may extend beyond its bounds by the width of its antialiased edge, points.
 const EDGE: f32 = 2.0;
-/// More rectangles than this are not worth their bookkeeping.
+/// Most rectangles; more would cost more than they save.
 const RECTANGLES_MAX: usize = 24;
 
-/// So often everything is drawn anew all the same, frames: what stands on a screen that people trust must not depend on a comparison alone.
+/// Every this many frames the whole window is drawn, so that the display never depends on comparisons alone.
 const WHOLE_EVERY: u64 = 150;
 
-/// Compares each frame with the one before.
+/// Compares each frame with the previous one.
 #[derive(Debug)]
 pub struct Canvas {
     surface: Arc<Surface>,
-    /// What stands on the surface. Kept alive, so that no address in its prints is used again.
+    /// The shapes on the surface. Kept alive, so that no address that is part of a hash is reused.
     before: Vec<ClippedShape>,
     prints: Vec<u64>,
     ground: Ground,
-    /// Number of the frame that `before` was.
+    /// Number of the frame that `before` belongs to.
     frame: u64,
     background: fn() -> Color32,
 }
 
-/// What all of a window is drawn on.
+/// Properties of the window as a whole.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Ground {
     rect: Rect,
@@ -44,7 +45,7 @@ struct Ground {
 }
 
 impl Canvas {
-    /// Keeps its picture on this surface, over this background.
+    /// Keeps the image on this surface, over this background.
     pub fn new(surface: Arc<Surface>, background: fn() -> Color32) -> Self {
         let ground = Ground { rect: Rect::NOTHING, pixels_per_point: 0.0, background: Color32::TRANSPARENT };
         Self { surface, before: Vec::new(), prints: Vec::new(), ground, frame: 0, background }
@@ -56,7 +57,7 @@ impl Canvas {
             return vec![ground.rect];
         }
         let Some(rects) = differences((&self.before, &self.prints), (shapes, prints)) else { return vec![ground.rect] };
-        // Whole pixels, so that what lies beside a rectangle is not touched.
+        // Whole pixels, so that neighbouring pixels are not affected.
         let whole = |x: f32, up: bool| {
             let pixels = x * ground.pixels_per_point;
             (if up { pixels.ceil() } else { pixels.floor() }) / ground.pixels_per_point
@@ -111,13 +112,13 @@ impl egui::Plugin for Canvas {
     }
 }
 
-/// What of the window a shape may touch.
+/// The part of the window that a shape may touch.
 fn bounds(shape: &ClippedShape) -> Rect {
     let own = shape.shape.visual_bounding_rect();
     (shape.transform_after_tessellation * own).expand(EDGE).intersect(shape.clip_rect)
 }
 
-/// Places of the shapes that are only in one of two frames; `None` when those in both do not lie over one another in the same order.
+/// Bounds of the shapes that are in only one of two frames; `None` if the common ones are not in the same order.
 fn differences(before: (&[ClippedShape], &[u64]), now: (&[ClippedShape], &[u64])) -> Option<Vec<Rect>> {
     let mut counts: HashMap<u64, [u32; 2]> = HashMap::with_capacity(now.1.len());
     for (which, prints) in [before.1, now.1].into_iter().enumerate() {
@@ -137,7 +138,8 @@ fn differences(before: (&[ClippedShape], &[u64]), now: (&[ClippedShape], &[u64])
     Some(rects)
 }
 
-/// Rectangles that do not touch one another and cover all of these. What is drawn by a callback is drawn whole or not at all.
+/// Rectangles that do not overlap and cover all of these. A shape drawn by a callback is drawn completely or not at
+/// all.
 fn apart(mut rects: Vec<Rect>, shapes: &[ClippedShape]) -> Vec<Rect> {
     let callbacks: Vec<Rect> =
         shapes.iter().filter(|shape| matches!(shape.shape, Shape::Callback(_))).map(bounds).collect();
@@ -154,7 +156,7 @@ fn apart(mut rects: Vec<Rect>, shapes: &[ClippedShape]) -> Vec<Rect> {
             break;
         }
     }
-    // Very many small places: the nearest in the list are the nearest on the screen, as they were laid out together.
+    // If there are too many, merge neighbours in the list, which are usually close on the screen.
     while rects.len() > RECTANGLES_MAX {
         let pairs = rects.chunks(2).map(|pair| pair.iter().copied().reduce(Rect::union).unwrap_or(Rect::NOTHING));
         rects = apart(pairs.collect(), shapes);
@@ -162,7 +164,7 @@ fn apart(mut rects: Vec<Rect>, shapes: &[ClippedShape]) -> Vec<Rect> {
     rects
 }
 
-/// One pass of taking each rectangle together with those that it touches.
+/// One pass of merging each rectangle with those that it overlaps.
 fn joined(rects: Vec<Rect>) -> Vec<Rect> {
     let mut apart: Vec<Rect> = Vec::new();
     for mut rect in rects {

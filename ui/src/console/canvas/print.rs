@@ -1,6 +1,7 @@
-//! A number for each shape: equal shapes have equal numbers, and different ones different numbers but for one case in 2^64.
+//! A hash for each shape: equal shapes have equal hashes; different ones differ except in one case in 2^64.
 //!
-//! What only a driver understands (callbacks) counts by its address. That is safe as long as the shapes compared are alive.
+//! Callbacks, which only the driver understands, are hashed by their address. That is safe as long as the compared
+//! shapes are alive.
 
 use std::{
     hash::{DefaultHasher, Hash as _, Hasher as _},
@@ -12,7 +13,7 @@ use egui::{
     epaint::{ClippedShape, ColorMode, PathStroke},
 };
 
-/// The number of a shape and of what it is clipped to.
+/// Hash of a shape and its clip rectangle.
 pub(super) fn of(shape: &ClippedShape) -> u64 {
     let mut hash = DefaultHasher::new();
     rect(&mut hash, &shape.clip_rect);
@@ -91,7 +92,7 @@ fn rectangle(hash: &mut DefaultHasher, shape: &egui::epaint::RectShape) {
     }
 }
 
-/// Text counts by its triangles: that of a disabled button is made anew in every frame and is the same.
+/// Text is hashed by its triangles: that of a disabled button is a new but equal object in every frame.
 fn galley(hash: &mut DefaultHasher, galley: &Galley) {
     for row in &galley.rows {
         points(hash, &[row.pos]);

@@ -1,9 +1,9 @@
-//! The window's picture as it is kept from frame to frame.
+//! Keeps the window's image from frame to frame.
 //!
-//! Where Mesa draws by the processor, showing a frame copies the picture to the screen and leaves it where it is, so the next
-//! frame need only change parts of it. OpenGL does not promise that; so each frame leaves a sign in one point (a part in 255 of blue)
-//! and the next one looks for it. Where it is not found again and again, every frame is drawn whole, as without all this.
-//! Between frames a framebuffer of one point is bound, because eframe begins each frame by wiping whatever is.
+//! Mesa's software renderer copies the image to the screen and keeps it, so the next frame needs to change only parts
+//! of it. OpenGL does not guarantee that, so each frame marks one pixel (blue changed by 1/255) and the next one checks
+//! the mark. If it is repeatedly missing, every frame is drawn completely. Between frames a framebuffer of one pixel is
+//! bound, because eframe clears the bound framebuffer at the start of each frame.
 
 #![expect(unsafe_code, reason = "OpenGL calls through glow")]
 
@@ -18,18 +18,18 @@ use eframe::{
 };
 use egui::{Color32, Context, Rect, Vec2, epaint::ViewportInPixels};
 
-/// Words in the name of a renderer that draws by the processor.
+/// Parts of the names of software renderers.
 const SOFTWARE: [&str; 6] = ["llvmpipe", "softpipe", "swrast", "swiftshader", "software", "gdi generic"];
-/// Pictures that were not found again, one after the other, before keeping is given up.
+/// Number of consecutive missing marks after which partial drawing is given up.
 const LOST_MAX: u32 = 3;
 
-/// What is known of the window's picture, shared between the comparison and the driver's calls.
+/// State of the window's image, shared between the comparison of frames and the drawing code.
 #[derive(Debug, Default)]
 pub struct Surface {
     inner: Mutex<Inner>,
-    /// Number of the newest frame that stands in the window.
+    /// Number of the frame that is in the window.
     drawn: AtomicU64,
-    /// Part of the window that was drawn anew in it, in millionths.
+    /// Share of the window that was redrawn in it, in millionths.
     share: AtomicU64,
     refused: AtomicBool,
 }
@@ -38,50 +38,50 @@ pub struct Surface {
 struct Inner {
     sink: Option<Sink>,
     size: [i32; 2],
-    /// The sign that the last frame left.
+    /// The mark set by the last frame.
     sign: Option<u8>,
     lost: u32,
-    /// The frame that is being drawn is not the whole window.
+    /// The present frame is not the whole window.
     torn: bool,
 }
 
-/// A framebuffer of one point.
+/// A framebuffer of one pixel.
 #[derive(Debug)]
 struct Sink {
     framebuffer: glow::Framebuffer,
     colour: glow::Renderbuffer,
 }
 
-/// What draws, in the driver's words.
+/// Name of the OpenGL renderer.
 pub fn renderer_of(gl: &glow::Context) -> String {
-    // SAFETY: a question to eframe's current context.
+    // SAFETY: a query of eframe's current context.
     unsafe { gl.get_parameter_string(glow::RENDERER) }
 }
 
 impl Surface {
-    /// A surface where the processor draws, which is where it pays.
+    /// A surface if a software renderer is used; with a GPU it would gain nothing.
     pub fn where_it_pays(gl: &glow::Context) -> Option<Arc<Self>> {
         let name = renderer_of(gl).to_lowercase();
         SOFTWARE.iter().any(|word| name.contains(word)).then(Arc::default)
     }
 
-    /// Pictures are not kept here.
+    /// Whether partial drawing was given up.
     pub fn is_refused(&self) -> bool {
         self.refused.load(Ordering::Relaxed)
     }
 
-    /// This frame stands in the window.
+    /// Whether the window shows this frame.
     pub fn shows(&self, frame: u64) -> bool {
         frame > 0 && self.drawn.load(Ordering::Relaxed) == frame
     }
 
-    /// Part of the window that was drawn anew in the last frame, 0 to 1.
+    /// Share of the window that was redrawn in the last frame, 0 to 1.
     pub fn drawn_share(&self) -> f64 {
         if self.is_refused() { 1.0 } else { self.share.load(Ordering::Relaxed) as f64 * 1e-6 }
     }
 
-    /// What comes before the shapes of a frame: these parts of the window (points) become empty. `expected` is the window's size in
-    /// pixels; `whole` tells that all of it is drawn.
+    /// Called before the shapes of a frame: clears these parts of the window (points). `expected` is the window's size
+    /// in pixels; `whole` means that the whole window is drawn.
     pub(super) fn begin(
         self: &Arc<Self>,
         expected: Vec2,
@@ -114,13 +114,13 @@ impl Surface {
         })
     }
 
-    /// What comes after them. The window shows `frame` from now on, `share` of which was drawn anew.
+    /// Called after the shapes. From now on the window shows `frame`, of which `share` was redrawn.
     pub(super) fn end(self: &Arc<Self>, ctx: &Context, frame: u64, share: f64, background: Color32) -> CallbackFn {
         let (surface, ctx) = (Arc::clone(self), ctx.clone());
         CallbackFn::new(move |_, painter| {
             let mut inner = surface.inner.lock().unwrap_or_else(PoisonError::into_inner);
             if inner.torn || surface.is_refused() {
-                // The next frame is whole.
+                // The next frame is drawn completely.
                 ctx.request_repaint();
             }
             // SAFETY: called inside egui's paint callback with its context current; egui restores its own state after it.
@@ -133,7 +133,7 @@ impl Surface {
         })
     }
 
-    /// Gives everything back to the driver.
+    /// Releases all objects on the GPU.
     pub fn destroy(&self, gl: &glow::Context) {
         let mut inner = self.inner.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(sink) = inner.sink.take() {
@@ -144,7 +144,7 @@ impl Surface {
 }
 
 impl Inner {
-    /// The picture in the window is the one that the last frame left there.
+    /// Whether the image in the window is the one that the last frame left there.
     ///
     /// # Safety
     /// The context must be current, with the window's framebuffer bound.
@@ -160,12 +160,12 @@ impl Inner {
         found
     }
 
-    /// Leaves a sign and turns what wipes the window away from it; false when the driver refuses.
+    /// Sets the mark and binds the small framebuffer, so that the window is not cleared; false if the driver refuses.
     ///
     /// # Safety
     /// The context must be current, with the window's framebuffer bound.
     unsafe fn leave(&mut self, gl: &glow::Context, frame: u64, background: Color32) -> bool {
-        // Three in turn, so that neither of two windows that take turns is taken for the other.
+        // Three values in turn, so that the images of two alternating buffers cannot be confused.
         let blue = background.b().clamp(1, 254) - 1 + (frame % 3) as u8;
         let [r, g, _, _] = background.to_normalized_gamma_f32();
         unsafe {

@@ -1,7 +1,8 @@
-//! Where the panels lie, as it is kept from one day to the next, and the layout that a console begins with.
+//! Arrangement of the panels as saved in the settings, and the default layout.
 //!
-//! The file's form is our own and small: rows, columns and tabs of panels, with shares of the room. Whatever a file says, every panel
-//! comes out exactly once: one that the file does not know is put in as a tab, one named twice stays where it was named first.
+//! The format is simple: rows, columns and tabs of panels, with shares of the space. Whatever a file contains, every
+//! panel appears exactly once: one that is missing in the file is added as a tab, one that is named twice stays at its
+//! first place.
 
 use egui::{Id, Vec2};
 use egui_tiles::{Container, Linear, LinearDir, Tile, TileId, Tiles, Tree};
@@ -9,46 +10,47 @@ use serde::{Deserialize, Serialize};
 
 use super::Panel;
 
-/// A whole, of which a [`Part`] has a share.
+/// The whole of which a [`Part`] has a share.
 const WHOLE: f32 = 10_000.0;
-/// No panel is made so small that its edge could not be caught any more, parts of [`WHOLE`].
+/// Smallest share of a panel, in parts of [`WHOLE`], so that its edge can still be dragged.
 const LEAST_SHARE: f32 = 300.0;
 
-/// Width of the column of knobs and of the column of figures.
+/// Width of the column of settings and of the column of figures.
 const KNOBS: f32 = 316.0;
 const FIGURES: f32 = 348.0;
-/// Width of the force space beside the traces, and of what lies between the columns from which there is room for it.
+/// Width of the force-space panel beside the traces, and the width between the columns from which it is placed there.
 const FORCE_SPACE: f32 = 300.0;
 const FORCE_SPACE_FROM: f32 = 720.0;
 /// Width of the traces.
 const TRACES: f32 = 560.0;
-/// Height of the desk from which calibrations and gates, or degrees and timing, lie under each other.
+/// Height of the desk from which calibrations and gates, and degrees and timing, are placed below one another instead
+/// of in tabs.
 const TALL_FROM: f32 = 860.0;
-/// Heights of panels that are not to be scrolled.
+/// Heights of panels that should not need scrolling.
 const FEEDBACK: f32 = 430.0;
 const CALIBRATIONS: f32 = 212.0;
 const HORIZON: f32 = 288.0;
 const DEGREES: f32 = 312.0;
 
-/// How the technician's panels lie.
+/// The technician's layout.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Layout {
-    /// Rows, columns and tabs; none is the default, which goes by the size of the window.
+    /// Rows, columns and tabs; `None` is the default layout, which depends on the size of the window.
     pub places: Option<Node>,
-    /// Panels that were closed; they keep their places.
+    /// Closed panels; they keep their places.
     pub closed: Vec<Panel>,
-    /// Tabs that were brought to the front, the last first.
+    /// Tabs that were selected, the latest first.
     pub front: Vec<Panel>,
 }
 
-/// A panel, or several with their arrangement.
+/// A panel, or a group of panels.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Node {
     /// One panel.
     Panel(Panel),
-    /// One behind the other.
+    /// Tabs, one behind the other.
     Tabs(Vec<Node>),
     /// Side by side.
     Row(Vec<Part>),
@@ -56,22 +58,22 @@ pub enum Node {
     Column(Vec<Part>),
 }
 
-/// A member of a row or a column.
+/// A member of a row or column.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Part {
-    /// Its share of the room; only the ratios matter.
+    /// Its share of the space; only ratios matter.
     pub share: u16,
-    /// What lies there.
+    /// Its content.
     pub of: Node,
 }
 
 impl Layout {
-    /// Whether this panel is on the desk.
+    /// Whether this panel is open.
     pub fn is_open(&self, panel: Panel) -> bool {
         !self.closed.contains(&panel)
     }
 
-    /// Closes the panel, or opens it again where it was and brings it to the front.
+    /// Closes the panel, or opens it at its former place and brings it to the front.
     pub fn toggle(&mut self, panel: Panel) {
         if self.is_open(panel) {
             self.closed.push(panel);
@@ -83,7 +85,7 @@ impl Layout {
         }
     }
 
-    /// The tiles of this layout on a desk of this size.
+    /// The tiles of this layout for a desk of this size.
     pub(super) fn tree(&self, size: Vec2) -> Tree<Panel> {
         let mut tiles = Tiles::default();
         let mut placed = Vec::new();
@@ -107,15 +109,15 @@ impl Layout {
                 tree.set_visible(tile, false);
             }
         }
-        // The first named of a group of tabs is the one in front: it comes last.
+        // The first one listed must be in front, so it is selected last.
         for panel in self.front.iter().rev() {
             tree.make_active(|_, tile| matches!(tile, Tile::Pane(pane) if pane == panel));
         }
         tree
     }
 
-    /// The layout of these tiles, of which `seen` were in front before. The default's places stay the default's unless tiles were
-    /// `moved`.
+    /// The layout of these tiles; `seen` are the panels that were in front before. The default layout stays the default
+    /// unless tiles were `moved`.
     pub(super) fn of(tree: &Tree<Panel>, moved: bool, seen: &[Panel], before: &Self) -> Self {
         let places = if moved { tree.root.and_then(|root| node(&tree.tiles, root)) } else { before.places.clone() };
         let mut front = in_front(tree);
@@ -125,7 +127,7 @@ impl Layout {
     }
 }
 
-/// The panels that are seen on the desk.
+/// The panels that are visible on the desk.
 pub(super) fn in_front(tree: &Tree<Panel>) -> Vec<Panel> {
     let mut panels: Vec<Panel> =
         tree.active_tiles().into_iter().filter_map(|id| tree.tiles.get_pane(&id).copied()).collect();
@@ -133,7 +135,7 @@ pub(super) fn in_front(tree: &Tree<Panel>) -> Vec<Panel> {
     panels
 }
 
-/// Puts a node in; nothing when none of its panels is new.
+/// Inserts a node; `None` if all its panels have been placed already.
 fn insert(tiles: &mut Tiles<Panel>, node: &Node, placed: &mut Vec<Panel>) -> Option<TileId> {
     match node {
         Node::Panel(panel) if placed.contains(panel) => None,
@@ -169,7 +171,7 @@ fn insert_parts(tiles: &mut Tiles<Panel>, dir: LinearDir, parts: &[Part], placed
     Some(tiles.insert_container(linear))
 }
 
-/// Puts tiles as tabs behind those of the first group there is; gives the root, which is new where there was no group.
+/// Adds tiles as tabs to the first group of tabs; returns the root, which is new if there was no group.
 fn add_as_tabs(tiles: &mut Tiles<Panel>, root: TileId, missing: Vec<TileId>) -> TileId {
     let first = tiles
         .iter()
@@ -185,7 +187,7 @@ fn add_as_tabs(tiles: &mut Tiles<Panel>, root: TileId, missing: Vec<TileId>) -> 
     tiles.insert_tab_tile(all)
 }
 
-/// The form of this tile in the file.
+/// This tile in the format of the file.
 fn node(tiles: &Tiles<Panel>, id: TileId) -> Option<Node> {
     let parts = |linear: &Linear| -> Vec<Part> {
         let whole: f32 = linear.children.iter().map(|child| linear.shares[*child]).sum::<f32>().max(f32::EPSILON);
@@ -204,14 +206,15 @@ fn node(tiles: &Tiles<Panel>, id: TileId) -> Option<Node> {
             LinearDir::Horizontal => Node::Row(parts(linear)),
             LinearDir::Vertical => Node::Column(parts(linear)),
         }),
-        // Nothing on the desk makes a grid; its members would lie one behind the other.
+        // Grids are never created; the members of one would become tabs.
         Tile::Container(container @ (Container::Tabs(_) | Container::Grid(_))) => {
             Some(Node::Tabs(container.children().filter_map(|child| node(tiles, *child)).collect()))
         }
     }
 }
 
-/// Knobs on the left, figures on the right, the field over the traces between them; what has no room lies behind a tab.
+/// Settings on the left, figures on the right, the 3-D view above the traces in between; what does not fit is placed in
+/// tabs.
 fn default_for(size: Vec2) -> Node {
     let middle = (size.x - KNOBS - FIGURES).max(200.0);
     let height = size.y.max(200.0);
@@ -232,7 +235,8 @@ fn default_for(size: Vec2) -> Node {
     row(vec![(KNOBS, left), (middle, between), (FIGURES, right)])
 }
 
-/// Where the traces have no room between two columns: the figures stand beside the field, and the traces under both.
+/// For windows too narrow for the traces between two columns: the figures beside the 3-D view, and the traces below
+/// both.
 fn narrow(width: f32, height: f32, traces: f32) -> Node {
     let [left, _] = short_sides(height);
     let above = row(vec![

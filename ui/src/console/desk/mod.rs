@@ -1,7 +1,8 @@
-//! The technician's desk: every panel is a tile with a title that can be dragged into tabs, rows and columns, resized, closed and opened
-//! again. What lies where is kept in the settings ([`Layout`]); the tiles themselves live here between frames.
+//! The technician's desk: every panel is a tile with a title that can be dragged into tabs, rows and columns, resized,
+//! closed and opened again. The arrangement is saved in the settings ([`Layout`]); the tiles themselves are kept here
+//! between frames.
 //!
-//! The desk takes the room under the top bar and never more, so that stop, state and alarms stay above everything.
+//! The desk is limited to the space below the top bar, so that stop button, state and alarms stay visible.
 
 mod layout;
 mod panel;
@@ -26,20 +27,20 @@ const GAP: f32 = 6.0;
 const PADDING: i8 = 10;
 const TITLE: f32 = 13.5;
 
-/// The tiles between frames.
+/// State of the tiles.
 #[derive(Debug, Default)]
 pub struct Desk {
-    /// The tiles, and what they were made from: the layout, and the desk's size where it goes by that.
+    /// The tiles, and what they were built from: the layout, and the desk's size if the layout depends on it.
     shown: Option<(Tree<Panel>, Layout, Option<Vec2>)>,
-    /// Tiles were dropped or resized, tabs brought to the front, since the layout was last kept.
+    /// Tiles were moved or resized, or tabs selected, since the layout was last saved.
     moved: bool,
     turned: bool,
-    /// The panels that were in front when the layout was last kept.
+    /// Panels that were in front when the layout was last saved.
     seen: Vec<Panel>,
 }
 
 impl Desk {
-    /// Shows the layout with these contents, and changes it as the operator does.
+    /// Shows the layout with these contents, and updates it when the operator changes it.
     pub fn ui(&mut self, ui: &mut Ui, layout: &mut Layout, contents: &mut dyn FnMut(&mut Ui, Panel)) {
         let size = layout.places.is_none().then(|| ui.available_size());
         if !self.shown.as_ref().is_some_and(|(_, shown, at)| shown == layout && *at == size) {
@@ -58,7 +59,7 @@ impl Desk {
             layout.toggle(panel);
             return;
         }
-        // While a button is down the tiles are still on their way.
+        // While a mouse button is down the tiles are still being moved.
         if (self.moved || self.turned) && !ui.input(|input| input.pointer.any_down()) {
             *layout = Layout::of(tree, self.moved, &self.seen, layout);
             self.seen = layout::in_front(tree);
@@ -71,7 +72,7 @@ impl Desk {
     }
 }
 
-/// What the tiles ask for while they are drawn.
+/// Callbacks of the tiles while they are drawn.
 struct Contents<'a> {
     draw: &'a mut dyn FnMut(&mut Ui, Panel),
     closed: Option<Panel>,
@@ -191,7 +192,7 @@ impl Behavior<Panel> for Contents<'_> {
     }
 }
 
-/// A panel that needs more room than it has.
+/// Shows a panel that is larger than its tile with scroll bars.
 fn scrolled(ui: &mut Ui, size: Vec2, content: impl FnOnce(&mut Ui)) {
     ScrollArea::both().auto_shrink(false).show(ui, |ui| {
         let (rect, _) = ui.allocate_exact_size(size, egui::Sense::hover());
@@ -199,7 +200,7 @@ fn scrolled(ui: &mut Ui, size: Vec2, content: impl FnOnce(&mut Ui)) {
     });
 }
 
-/// Shows which tab the keyboard is at.
+/// Shows which tab has the keyboard focus.
 fn focus_ring(ctx: &Context, tab: &Response) {
     let painter = ctx.layer_painter(tab.layer_id);
     painter.rect_stroke(tab.rect.shrink(1.0), 2.0, Stroke::new(2.0, theme::now().text), egui::StrokeKind::Inside);

@@ -1,10 +1,10 @@
-//! The panels that a technician can lay out: their names, what they are for, and the least room that each needs.
+//! The panels of the technician's desk: names, purposes, and smallest sizes.
 
 use crate::console::text;
 use egui::{Vec2, vec2};
 use serde::{Deserialize, Serialize};
 
-/// One panel. Its name in the settings' file is the variant's in small letters.
+/// A panel. Its name in the settings file is the variant's name in lower case.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Panel {
@@ -12,13 +12,13 @@ pub enum Panel {
     Field,
     /// Forces over time.
     Traces,
-    /// Forces against each other.
+    /// Measured against rendered force in three dimensions.
     ForceSpace,
     /// Mode, gain, delay, dead band.
     Feedback,
-    /// What the rig is made of.
+    /// The devices of the rig.
     Devices,
-    /// Calibrations in force, and the way to the wizards.
+    /// Calibrations in force, and buttons for the wizards.
     Calibrations,
     /// Why there is no force.
     Gates,
@@ -26,11 +26,11 @@ pub enum Panel {
     Safety,
     /// Error of each mode at the horizon.
     Horizon,
-    /// Degrees that were chosen.
+    /// Chosen polynomial degrees.
     Degrees,
-    /// Whether the loop keeps its time.
+    /// Timing of the loop.
     Timing,
-    /// Speed against accuracy.
+    /// Computing time against accuracy.
     Tradeoff,
 }
 
@@ -51,7 +51,7 @@ impl Panel {
         Self::Tradeoff,
     ];
 
-    /// On its tab and in the menu.
+    /// Title on its tab and in the menu.
     pub const fn title(self) -> &'static str {
         match self {
             Self::Field => text::desk::FIELD,
@@ -69,7 +69,7 @@ impl Panel {
         }
     }
 
-    /// What it is for, in a sentence or two.
+    /// Its purpose, in a sentence or two.
     pub const fn meaning(self) -> &'static str {
         match self {
             Self::Field => text::desk::FIELD_HOVER,
@@ -87,7 +87,7 @@ impl Panel {
         }
     }
 
-    /// The least room in which it can be read, points; with less it is scrolled.
+    /// The smallest size in which it can be read, points; if it is smaller, it is scrolled.
     pub(super) const fn least(self) -> Vec2 {
         match self {
             Self::Field => vec2(160.0, 120.0),
@@ -99,7 +99,7 @@ impl Panel {
         }
     }
 
-    /// It takes all the room there is; the others are as long as they are.
+    /// Whether it fills the available space; other panels have a fixed length.
     pub(super) const fn fills(self) -> bool {
         matches!(self, Self::Field | Self::Traces | Self::ForceSpace | Self::Safety)
     }

@@ -1,4 +1,4 @@
-//! The calibrations in force on one side: of one wrist sensor with one tool.
+//! The calibrations in force on one side, for one wrist sensor with one tool.
 
 use std::{path::PathBuf, time::SystemTime};
 
@@ -23,40 +23,40 @@ use nima_recording::{
 
 use crate::console::{text, wizards::Saving};
 
-/// Whose calibrations count on a side.
+/// The sensor and tool whose calibrations are used on a side.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(super) enum Bound {
-    /// Nobody's: the force is measured at the tip, or there is no such arm.
+    /// None: the force is measured at the tip, or there is no such arm.
     #[default]
     Nothing,
-    /// The sensor has not told yet who it is.
+    /// The sensor has not reported its identity yet.
     Waiting,
-    /// It never will: why, and what to do.
+    /// The sensor cannot report its identity: why, and what to do.
     Nameless(&'static str),
-    /// This sensor's, with this tool.
+    /// This sensor with this tool.
     To(WristId),
 }
 
-/// What is in force on a side, and what stood in the way.
+/// The calibrations of a side, and problems with them.
 #[derive(Debug, Default)]
 pub(super) struct OfSide {
     pub(super) bound: Bound,
-    /// The change of the loop's sensor that this takes into account.
+    /// The change of the sensor's connection up to which this is valid.
     pub(super) since: Option<WristChange>,
-    /// Sensor and tool as they were known last.
+    /// Last known sensor and tool.
     pub(super) last: Option<WristId>,
     pub(super) correspondence: Option<Loaded<CorrespondenceRecord>>,
     told: Option<String>,
-    /// Other sensors that are calibrated with the same tool.
+    /// Other sensors with a calibration for the same tool.
     others: Vec<String>,
     gravity: Option<Loaded<GravityRecord>>,
     tip_force: Option<Loaded<Model>>,
-    /// How gravity stands since the loop began, and when that was found.
+    /// Result of the check of the bias since the loop started, and its time.
     drift: Option<(DriftCheck, String)>,
 }
 
 impl OfSide {
-    /// What the store holds for this sensor and tool; `last` were known before them.
+    /// Loads the calibrations of this sensor and tool from the store; `last` are the sensor and tool known before.
     pub(super) fn load(store: Option<&Store>, bound: Bound, last: Option<WristId>) -> Self {
         let mut this = Self { bound, ..Self::default() };
         this.last = this.wrist().cloned().or(last);
@@ -73,7 +73,7 @@ impl OfSide {
         this
     }
 
-    /// Sensor and tool, once they are known.
+    /// Sensor and tool, once known.
     pub(super) const fn wrist(&self) -> Option<&WristId> {
         match &self.bound {
             Bound::To(wrist) => Some(wrist),
@@ -81,12 +81,12 @@ impl OfSide {
         }
     }
 
-    /// Sensor and tool, if they are known and no gravity is.
+    /// Sensor and tool, if they are known and there is no gravity calibration for them.
     pub(super) fn without_gravity(&self) -> Option<&WristId> {
         self.wrist().filter(|_| self.gravity.is_none())
     }
 
-    /// What is wrong, and what can be done; `across` is on the other arm.
+    /// Problems and what can be done; `across` is the wrist sensor of the other arm.
     pub(super) fn told(&self, across: Option<&WristId>) -> Option<String> {
         let elsewhere = |sensor: &&str| across.is_none_or(|across| across.serial_number != *sensor);
         let others: Vec<_> = self.others.iter().map(String::as_str).filter(elsewhere).collect();
@@ -98,13 +98,13 @@ impl OfSide {
         })
     }
 
-    /// Takes in one tick of this side: in the first seconds, idle and still, it shows whether the bias is where it was.
+    /// Adds one tick of this side: in the first seconds, idle and still, it shows whether the bias has changed.
     pub(super) fn watch(&mut self, tick: &Tick) {
         let Some((check, found_at)) = &mut self.drift else { return };
         let idle = match tick.state {
             LoopState::Idle if tick.prompt == Prompt::Rest => true,
             LoopState::Engaged => false,
-            // Somebody guides the arm, or what is shown is not new.
+            // A person guides the arm, or the sample is not new.
             _ => return,
         };
         let before = check.drift();
@@ -113,12 +113,12 @@ impl OfSide {
         }
     }
 
-    /// How gravity stands since the loop began; none where nothing is to be checked.
+    /// Result of the check of the bias; `None` if there is nothing to check.
     pub(super) fn drift(&self) -> Option<Drift> {
         self.drift.as_ref().map(|(check, _)| check.drift())
     }
 
-    /// For the loop.
+    /// The calibrations in the form that the loop uses.
     pub(super) fn calibrations(&mut self, fallback: Fallback) -> Calibrations {
         let model = self.tip_force.as_ref().map(|loaded| loaded.record.clone());
         let tip_force = model.map(|model| TipForce::new(model, fallback)).transpose();
@@ -128,7 +128,7 @@ impl OfSide {
         }
     }
 
-    /// Keeps a record and takes it into force; gives its path.
+    /// Saves a record and puts it in force; returns its path.
     pub(super) fn save(&mut self, store: &Store, saving: Saving) -> Result<PathBuf, String> {
         let path = match saving {
             Saving::Gravity(record) => kept(store, *record, &mut self.gravity)?,
@@ -143,7 +143,7 @@ impl OfSide {
         Ok(path)
     }
 
-    /// One line for each calibration that matters on this side, which is named where there are two.
+    /// One line for each calibration that matters on this side; the side is named if there are two.
     pub(super) fn lines(&self, side: Option<&str>) -> Vec<String> {
         let of_side = |words: String| side.map_or_else(|| words.clone(), |side| format!("{side}: {words}"));
         let wrist = match &self.bound {
@@ -168,7 +168,7 @@ impl OfSide {
     }
 }
 
-/// What was loaded; a file that cannot be used is told.
+/// The loaded record; if its file cannot be used, the reason is stored.
 fn usable<R>(what: &str, loaded: Result<Option<R>, impl std::error::Error>, told: &mut Option<String>) -> Option<R> {
     loaded.unwrap_or_else(|error| {
         *told = Some(text::calibrations::not_in_force(what, &in_one_line(&error)));
@@ -176,7 +176,7 @@ fn usable<R>(what: &str, loaded: Result<Option<R>, impl std::error::Error>, told
     })
 }
 
-/// Saves and takes into force; gives the path.
+/// Saves a record and puts it in force; returns its path.
 fn kept<R: Record>(store: &Store, record: R, in_force: &mut Option<Loaded<R>>) -> Result<PathBuf, String> {
     let path = store.save(&record).map_err(|error| in_one_line(&error))?;
     *in_force = Some(Loaded { record, age: Age::Fresh, path: path.clone() });
@@ -221,7 +221,7 @@ fn day_of(date: &str) -> &str {
     date.split('T').next().unwrap_or_default()
 }
 
-/// What to know of a record before it is trusted; empty when there is nothing.
+/// Warnings about a record; empty if there are none.
 fn remarks(age: Age, override_by: Option<&str>) -> String {
     let age = match age {
         Age::Fresh => String::new(),

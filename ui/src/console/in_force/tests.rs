@@ -1,4 +1,4 @@
-//! Whose calibrations are in force: the rig's sensors and tools decide, never the scene.
+//! Which calibrations are in force: determined by the rig's sensors and tools, never by the scene.
 
 use std::{
     path::Path,
@@ -20,7 +20,7 @@ use nima_world::{
 
 use super::*;
 
-/// The simulated gravity calibration, as if it had been made with this sensor and tool.
+/// The simulated gravity calibration, as if made with this sensor and tool.
 fn record(sensor: &str, tool: &str) -> GravityRecord {
     static MADE: std::sync::OnceLock<GravityRecord> = std::sync::OnceLock::new();
     let made = MADE.get_or_init(gravity::gravity).clone();
@@ -80,7 +80,7 @@ fn a_simulated_rig_that_names_no_sensor_tells_what_to_write() {
     assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
 }
 
-/// The simulated world of one arm, whose force sensor comes and goes on a real line with the real driver.
+/// The simulated world of one arm; its force sensor connects and disconnects on a real line with the real driver.
 struct OneSensor {
     worlds: Worlds,
     slot: Slot<bota::Driver>,
@@ -117,7 +117,7 @@ fn sensor(serial: &str, port: &std::path::Path) -> Serving {
     sensor.with(Box::new(|_| ForceReading::default())).serve().unwrap()
 }
 
-/// A loop on a rig with devices, and what the console makes of its sensor.
+/// A loop on a rig with devices, and the calibrations that the console puts in force.
 struct Bench {
     handle: Handle,
     in_force: InForce,
@@ -129,7 +129,7 @@ impl Bench {
     fn new(store: &Path, port: &Path) -> Self {
         let mut rig = RigConfig::load("paper").unwrap();
         rig.devices.as_mut().unwrap().left = None;
-        // What is watched by default measures at the tip: that says nothing of a rig with devices.
+        // The default scene has no wrist sensor; for a rig with devices that must not matter.
         let scene = Scene::load("peg_transfer").unwrap();
         let settings = bota::Settings::new(bota::Transport::GenA, port.display().to_string());
         let slot = Slot::start("sensor", move || bota::Driver::open(&settings)).unwrap();
@@ -164,7 +164,7 @@ fn a_calibration_comes_into_force_with_its_sensor_and_leaves_with_it() {
     let port = folder.path().join("ttyACM-sensor");
     let mut bench = Bench::new(store.path(), &port);
     assert!(bench.in_force.is_waiting());
-    // A rig with devices can be calibrated whatever the scene measures.
+    // A rig with devices can be calibrated whatever the scene.
     let first = sensor("4242", &port);
     bench.until("the sensor is known", |bench| bench.is_bound_to("SN004242"));
     assert_eq!(bench.in_force.binding().tool, "Right grasper");
@@ -174,7 +174,7 @@ fn a_calibration_comes_into_force_with_its_sensor_and_leaves_with_it() {
     let mut bench = Bench::new(store.path(), &port);
     bench.until("the calibration is in force", |bench| bench.source == Some(ForceSource::Wrist));
     assert_eq!(bench.in_force.uncalibrated(), None);
-    // Another sensor in the same place.
+    // Another sensor at the same address.
     drop(first);
     bench.until("it is out of force", |bench| bench.source == Some(ForceSource::Uncalibrated));
     let second = sensor("4243", &port);
@@ -184,7 +184,7 @@ fn a_calibration_comes_into_force_with_its_sensor_and_leaves_with_it() {
     std::thread::sleep(Duration::from_millis(50));
     bench.handle.drain_ticks(|tick| bench.source = Some(tick.force.source));
     assert_eq!(bench.source, Some(ForceSource::Uncalibrated), "the calibration of another sensor");
-    // And the first one again.
+    // The first one again.
     drop(second);
     let _again = sensor("4242", &port);
     bench.until("it is in force again", |bench| bench.source == Some(ForceSource::Wrist));

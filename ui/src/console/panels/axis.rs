@@ -4,7 +4,8 @@ use std::ops::RangeInclusive;
 
 use egui_plot::{GridInput, GridMark};
 
-/// Round marks over the range of an axis, at least so many points apart: numbers to read by however small the plot is.
+/// Marks at round values over the range of an axis, at least `apart` points apart, so that the numbers are legible
+/// however small the plot is.
 pub(super) fn marks(grid: &GridInput, apart: f64) -> Vec<GridMark> {
     let (low, high) = grid.bounds;
     // egui_plot's base step is 8 points long.
@@ -21,19 +22,19 @@ pub(super) fn marks(grid: &GridInput, apart: f64) -> Vec<GridMark> {
         .collect()
 }
 
-/// A number at the very end of an axis would run into the next plot.
+/// Whether a value is at the end of the axis, where its number would overlap the next plot.
 pub(super) fn near_end(value: f64, shown: &RangeInclusive<f64>) -> bool {
     let margin = 0.07 * (shown.end() - shown.start());
     value < shown.start() + margin || value > shown.end() - margin
 }
 
-/// Two digits with their sign; nothing is neither more nor less.
+/// Two decimals with a sign; zero has none.
 pub(super) fn signed(value: f64) -> String {
     let text = format!("{value:+.2}");
     if text == "-0.00" || text == "+0.00" { "0.00".to_owned() } else { text }
 }
 
-/// A number without needless zeros.
+/// A number without trailing zeros.
 pub(super) fn plain(value: f64) -> String {
     let text = format!("{value:.2}");
     let text = text.trim_end_matches('0').trim_end_matches('.');

@@ -1,4 +1,5 @@
-//! What is in force now between the wrist sensor and the tip force, on every view; and the way to the wizards.
+//! The calibrations in force between wrist sensor and tip force, shown in every view; and buttons that open the
+//! wizards.
 
 use egui::{Button, RichText, Ui, vec2};
 use nima_machine::{
@@ -19,18 +20,18 @@ use crate::{
     words::Words as _,
 };
 
-/// Where the technician wants to go.
+/// A request of the technician.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CalibrationWish {
-    /// To this wizard.
+    /// Open this wizard.
     Open(Which),
-    /// To the wrist sensor of this arm.
+    /// Select the wrist sensor of this arm.
     Choose(Side),
-    /// Back to the monitor.
+    /// Return to the normal view.
     Close,
 }
 
-/// The panel; `open` is the wizard on the screen.
+/// The panel; `open` is the wizard that is open.
 pub fn calibrations_ui(ui: &mut Ui, live: &Live, in_force: &InForce, open: Option<Which>) -> Option<CalibrationWish> {
     let mut wish = None;
     source_ui(ui, live);
@@ -65,7 +66,7 @@ pub fn calibrations_ui(ui: &mut Ui, live: &Live, in_force: &InForce, open: Optio
     wish
 }
 
-/// Which arm is calibrated.
+/// Selection of the arm to calibrate.
 fn side_ui(ui: &mut Ui, now: Side) -> Option<CalibrationWish> {
     let mut wish = None;
     ui.horizontal(|ui| {

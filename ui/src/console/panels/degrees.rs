@@ -1,4 +1,4 @@
-//! Which degree of impedance is identified, how often it is nonlinear, and how well the motion determines it.
+//! The identified polynomial degrees: which one, how often it is nonlinear, and how well the motion determines it.
 
 use crate::console::text;
 use egui::{Align2, Rect, Sense, Ui, vec2};
@@ -56,7 +56,7 @@ fn key_ui(ui: &mut Ui, colour: egui::Color32, name: &str, meaning: &str) {
     ui.label(small(name)).on_hover_text(meaning);
 }
 
-/// Six pairs of bars, 0 to 5, with their shares above.
+/// Six pairs of bars, degrees 0 to 5, with their shares above.
 fn chart_ui(ui: &mut Ui, live: &Live) {
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), CHART_HEIGHT + 20.0), Sense::hover());
     let (ours, papers) = (live.degrees.shares(), live.paper_degrees.shares());

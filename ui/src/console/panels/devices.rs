@@ -1,4 +1,4 @@
-//! The devices of the rig: where each is, how well it delivers, and for what fails the cause and the cure.
+//! The devices of the rig: state, rate and losses, and for a failed device the cause and the cure.
 
 use egui::{Button, Label, RichText, Ui, vec2};
 use nima_devices::{Health, Standing, Trouble};
@@ -10,7 +10,7 @@ use crate::console::{
     widgets::{Sign, sign_ui, small, weak},
 };
 
-/// The panel; where everything is simulated it says so.
+/// The panel; without devices it says that everything is simulated.
 pub fn devices_ui(ui: &mut Ui, live: &Live) {
     if live.roster.is_empty() {
         ui.label(weak(text::devices::NONE));

@@ -1,7 +1,7 @@
-//! How force is fed back: mode, gain, delay, dead band, standstill.
+//! Settings of the force feedback: mode, gain, delay, dead band, standstill.
 //!
-//! Controls show what is in force, as it came back from the loop; while a control is being moved, and for a moment after,
-//! it shows what was asked.
+//! Controls show the values in force as reported by the loop. While a control is being moved, and for a moment after,
+//! it shows the requested value.
 
 use std::ops::RangeInclusive;
 
@@ -12,17 +12,18 @@ use nima_machine::messages::Command;
 use super::{mode_meaning, mode_name, stable_gain::stable_gain_ui};
 use crate::console::{live::Live, outbox::Outbox, text, theme, widgets::small};
 
-/// How long a control shows what was asked before it falls back to what is in force, s: the gain ramps at 2 per second.
+/// How long a control shows the requested value before it shows the value in force again, s: the gain ramps at 2 per
+/// second.
 const ASKED_SHOWN_S: f64 = 1.6;
 const DELAY_MS: RangeInclusive<f64> = 0.0..=500.0;
 const DEAD_BAND_MM_S: RangeInclusive<f64> = 0.0..=10.0;
 const GAIN_LIMIT: f64 = 3.0;
-/// A value that was asked for and when (s on the window's clock).
+/// A requested value and when it was requested (s on the window's clock).
 #[derive(Clone, Copy, Debug, Default)]
 struct Asked(Option<(f64, f64)>);
 
 impl Asked {
-    /// What a control shows at `time_s` when `in_force` came back.
+    /// The value that a control shows at `time_s`, given the value in force.
     fn shown(&mut self, in_force: f64, time_s: f64) -> f64 {
         match self.0 {
             Some((value, at_s)) if time_s - at_s < ASKED_SHOWN_S && (value - in_force).abs() > 1e-6 => value,
@@ -34,7 +35,7 @@ impl Asked {
     }
 }
 
-/// What the panel remembers between frames.
+/// State of the panel.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct FeedbackState {
     allow_above_one: bool,
@@ -76,11 +77,11 @@ struct Setting {
     meaning: &'static str,
     suffix: &'static str,
     decimals: u8,
-    /// Ask the loop while the slider moves, not only when it is let go.
+    /// Send the value to the loop while the slider moves, not only when it is released.
     at_once: bool,
 }
 
-/// Shows the setting; gives the value that the operator wants, when there is a new one, and where the slider is.
+/// Shows the setting; returns the newly requested value, if there is one, and the slider's rectangle.
 fn setting_ui(
     ui: &mut Ui,
     setting: &Setting,
@@ -89,8 +90,8 @@ fn setting_ui(
     asked: &mut Asked,
 ) -> (Option<f64>, egui::Rect) {
     let time_s = ui.input(|input| input.time);
-    // Shown in whole steps. The widgets must not round or clamp by themselves: they would report it as an edit, and the
-    // screen would send the loop a setting that nobody chose.
+    // Rounded for display here, because a widget that rounds or clamps by itself would report an edit, and the window
+    // would send a setting that nobody chose.
     let step = 10f64.powi(-i32::from(setting.decimals));
     let whole = |value: f64| (value / step).round() * step;
     let mut value = whole(asked.shown(in_force, time_s));
@@ -149,7 +150,7 @@ fn gain_ui(ui: &mut Ui, live: &Live, state: &mut FeedbackState, outbox: &mut Out
     });
 }
 
-/// The gain alone, large: one figure, one slider, two buttons for steps of a tenth. Never above 1.
+/// The gain alone, large: one number, one slider, two buttons for steps of 0.1. Never above 1.
 pub fn calm_gain_ui(ui: &mut Ui, live: &Live, state: &mut FeedbackState, outbox: &mut Outbox) {
     let time_s = ui.input(|input| input.time);
     let shown = state.gain.shown(live.gain(), time_s);

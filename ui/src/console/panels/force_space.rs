@@ -1,5 +1,6 @@
-//! Forces in force space: where the two were in the last seconds, the ceiling as a sphere, and the ellipsoid that holds 95 % of
-//! their difference. Turned by dragging; drawn by egui's painter, so that it is the same with and without a GPU.
+//! Measured and rendered force as points in three dimensions: those of the last seconds, the ceiling as a sphere, and
+//! the ellipsoid that contains 95 % of their difference. Rotated by dragging; drawn by egui's painter, so that it looks
+//! the same with and without a GPU.
 
 use std::f32::consts::TAU;
 
@@ -14,19 +15,19 @@ use crate::console::{
     text, theme,
 };
 
-/// The caption's height.
+/// Height of the caption.
 const CAPTION: f32 = 40.0;
-/// Less than this fills the view, N.
+/// Smallest radius of the view, N.
 const LEAST_N: f32 = 0.75;
 const RING: u32 = 48;
 
-/// From where it is seen, and how far it reaches.
+/// State of the panel: direction of view and radius.
 #[derive(Clone, Copy, Debug)]
 pub struct ForceSpaceState {
     yaw: f32,
     pitch: f32,
     reach_n: f32,
-    /// The error's ellipsoid, and the time for which it was worked out, s.
+    /// The error's ellipsoid, and the time at which it was computed, s.
     ellipsoid: (f64, Option<Ellipsoid>),
 }
 
@@ -36,13 +37,13 @@ impl Default for ForceSpaceState {
     }
 }
 
-/// How force becomes a place on the screen.
+/// Projection from force to the screen.
 struct View {
     centre: Pos2,
     points_per_n: f32,
     right: Vector3<f32>,
     up: Vector3<f32>,
-    /// Half of the reach above the middle: contact pushes up.
+    /// Centre of the view: contact pushes upwards, so it is half a radius above zero.
     middle_n: Vector3<f32>,
 }
 
@@ -53,7 +54,7 @@ impl View {
     }
 }
 
-/// The plot, over all the room there is; `cursor_s` is the time that a trace points at, s on the loop's clock.
+/// Draws the plot over the available space; `cursor_s` is the time at the cursor of a trace, s on the loop's clock.
 pub fn force_space_ui(ui: &mut Ui, live: &Live, side: Side, state: &mut ForceSpaceState, cursor_s: Option<f64>) {
     let (rect, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
     let cloud = &live.clouds[side.index()];
@@ -63,7 +64,7 @@ pub fn force_space_ui(ui: &mut Ui, live: &Live, side: Side, state: &mut ForceSpa
         state.ellipsoid = (shown_s, cloud.ellipsoid());
     }
     let ellipsoid = state.ellipsoid.1;
-    // A little less than what is kept: the oldest go while nothing is drawn anew.
+    // Slightly less than what is stored: the oldest samples are dropped between two frames.
     let shown = (shown_s - SECONDS + 2.0 * live.least_step_s())..=shown_s;
     let pairs = || cloud.pairs().filter(|pair| shown.contains(&pair.t_s));
     let words = caption(ellipsoid.as_ref());
@@ -88,7 +89,7 @@ pub fn force_space_ui(ui: &mut Ui, live: &Live, side: Side, state: &mut ForceSpa
         let force_n = |pair: &crate::console::cloud::Pair| if rendered { pair.rendered_n } else { pair.measured_n };
         let points: Vec<Pos2> = pairs().map(|pair| view.place(&force_n(pair).cast())).collect();
         painter.line(points, Stroke::new(width, colour.gamma_multiply(0.75)));
-        // The newest, or the one that a trace points at.
+        // The newest sample, or the one at the cursor of a trace.
         let pointed_at = cursor_s.and_then(|at_s| cloud.pairs().find(|pair| pair.t_s >= at_s));
         if let Some(pair) = pointed_at.or_else(|| pairs().next_back()) {
             painter.circle_filled(view.place(&force_n(pair).cast()), 4.5, colour);
@@ -115,7 +116,7 @@ fn caption(ellipsoid: Option<&Ellipsoid>) -> String {
     )
 }
 
-/// A round reach that holds all there is and does not shrink at once.
+/// A round radius that contains all samples and does not shrink at once.
 fn reach_n(most_n: f32, now_n: f32) -> f32 {
     let steps = [LEAST_N, 1.5, 3.0, 4.5, 6.0, 9.0, 12.0];
     let wanted = steps.into_iter().find(|&step| most_n <= step).unwrap_or(12.0);
@@ -133,7 +134,7 @@ fn view(state: &ForceSpaceState, place: Rect) -> View {
     }
 }
 
-/// Three axes with a mark at each newton, or each half where that is all there is.
+/// Three axes with a mark at every newton, or every half newton if the radius is small.
 fn axes(painter: &Painter, view: &View, reach_n: f32) {
     let stroke = Stroke::new(1.0, theme::now().line.lerp_to_gamma(theme::now().text_weak, 0.4));
     let step_n = if reach_n > 4.0 {
@@ -178,7 +179,7 @@ fn ring(at: impl Fn(f32, f32) -> Pos2) -> Vec<Pos2> {
         .collect()
 }
 
-/// The outline of the ceiling's sphere.
+/// Outline of the sphere of the force ceiling.
 fn ceiling(painter: &Painter, view: &View, ceiling_n: f32) {
     let points = ring(|cos, sin| view.place(&(ceiling_n * (view.right * cos + view.up * sin))));
     painter.add(egui::Shape::Vec(egui::Shape::dashed_line(
@@ -189,7 +190,7 @@ fn ceiling(painter: &Painter, view: &View, ceiling_n: f32) {
     )));
 }
 
-/// The ellipsoid by its three sections through two half axes each.
+/// The ellipsoid, drawn as its three sections through two half axes each.
 fn rings(painter: &Painter, view: &View, around_n: &Vector3<f32>, ellipsoid: &Ellipsoid) {
     let half_n = ellipsoid.half_axes_n.cast::<f32>();
     let centre_n = around_n + ellipsoid.mean_n.cast::<f32>();

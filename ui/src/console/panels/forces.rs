@@ -1,7 +1,7 @@
-//! Force over time, x, y and z, measured against rendered, on one time axis.
+//! Measured and rendered force over time, x, y and z, on a common time axis.
 //!
-//! The view is a stretch of time counted back from now (or from the moment of the pause): it is panned by dragging, zoomed
-//! by the wheel and put back by a double click, also while data go on.
+//! The view is a time interval counted back from now (or from the moment of the pause). It is moved by dragging, zoomed
+//! with the wheel and reset by a double click, even while data arrive.
 
 use egui::{Align, Align2, Button, Color32, Layout, Rect, RichText, Sense, Ui, Vec2b, pos2, vec2};
 use egui_plot::{
@@ -22,26 +22,26 @@ const DEFAULT_VIEW_S: (f64, f64) = (-10.0, 0.0);
 const SHORTEST_S: f64 = 0.2;
 const LONGEST_S: f64 = 500.0;
 const AXES: [&str; 3] = ["x", "y", "z"];
-/// The lowest plot carries the time axis and is taller by this.
+/// Additional height of the lowest plot, which has the time axis.
 const TIME_AXIS: f32 = 34.0;
-/// The least that a plot shows up and down, N.
+/// Smallest range of the force axis, N.
 const LEAST_RANGE_N: f64 = 0.25;
 
-/// Room from which the header has a heading.
+/// Width from which the header shows a heading.
 const HEADING_FROM: f32 = 800.0;
 
-/// What the panel remembers between frames.
+/// State of the panel.
 #[derive(Debug)]
 pub struct ForcesState {
-    /// Shown stretch, s, relative to `now`.
+    /// Interval on display, s, relative to `now`.
     view_s: (f64, f64),
     paused_at_s: Option<f64>,
     ranges_n: [(f64, f64); 3],
     lines: [Trace; CHANNELS],
     cursor_s: Option<f64>,
-    /// The picture moves in steps of this, s: nothing is drawn anew for less than a point of the screen.
+    /// The view advances in steps of this, s, so that nothing is redrawn for less than one pixel.
     step_s: f64,
-    /// Whose forces are shown.
+    /// The side whose forces are shown.
     side: Side,
 }
 
@@ -60,29 +60,29 @@ impl Default for ForcesState {
 }
 
 impl ForcesState {
-    /// Shows this side's forces.
+    /// Selects the side whose forces are shown.
     pub fn of(side: Side) -> Self {
         Self { side, ..Self::default() }
     }
 
-    /// Shows the last so many seconds.
+    /// Shows the last `seconds`.
     pub fn show_last(&mut self, seconds: f64) {
         if seconds.is_finite() {
             self.view_s = (-seconds.clamp(SHORTEST_S, LONGEST_S), 0.0);
         }
     }
 
-    /// Whose forces are shown.
+    /// The side whose forces are shown.
     pub const fn side(&self) -> Side {
         self.side
     }
 
-    /// The picture is held.
+    /// Whether the view is paused.
     pub const fn is_paused(&self) -> bool {
         self.paused_at_s.is_some()
     }
 
-    /// The time that the pointer is at, s on the loop's clock.
+    /// Time at the cursor, s on the loop's clock.
     pub fn cursor_at_s(&self, live: &Live) -> Option<f64> {
         self.cursor_s.map(|cursor_s| self.now_s(self.history(live)) + cursor_s)
     }
@@ -101,7 +101,7 @@ impl ForcesState {
         self.view_s = (to_s - width_s, to_s);
     }
 
-    /// Makes the stretch shorter by this factor, keeping `around_s` where it is.
+    /// Divides the interval by this factor, keeping `around_s` in place.
     fn zoom(&mut self, factor: f64, around_s: f64) {
         let width_s = ((self.view_s.1 - self.view_s.0) / factor).clamp(SHORTEST_S, LONGEST_S);
         let share = (around_s - self.view_s.0) / (self.view_s.1 - self.view_s.0);
@@ -110,12 +110,12 @@ impl ForcesState {
     }
 }
 
-/// The last whole step before a time, both in s.
+/// The last multiple of the step before a time, both in s.
 pub(super) fn stepped(t_s: f64, step_s: f64) -> f64 {
     if step_s > 0.0 { (t_s / step_s).floor() * step_s } else { t_s }
 }
 
-/// The panel, with these axes (0 is x) one under the other.
+/// The panel, with plots of these axes (0 is x) below one another.
 pub fn forces_ui(ui: &mut Ui, live: &mut Live, state: &mut ForcesState, axes: &[usize]) {
     header_ui(ui, live, state);
     ui.add_space(2.0);
@@ -140,12 +140,12 @@ pub fn forces_ui(ui: &mut Ui, live: &mut Live, state: &mut ForcesState, axes: &[
             state.step_s = if point_s.is_finite() { point_s.max(live.least_step_s()) } else { 0.0 };
         }
         interact(ui, state, &response);
-        // The plot under the pointer tells its values there.
+        // The plot under the pointer shows its values there.
         if let Some(at_s) = cursor_s.filter(|_| !response.response.hovered()) {
             read_at(ui, history, axis, (now_s, at_s), response.response.rect);
         }
     }
-    // The cursor of one plot is drawn in all; those above it learn of it in the next frame.
+    // The cursor is drawn in all plots; those above the pointer show it in the next frame.
     if state.cursor_s != cursor_s {
         ui.ctx().request_repaint();
     }
@@ -310,16 +310,16 @@ fn interact(ui: &Ui, state: &mut ForcesState, plot: &PlotResponse<()>) {
     }
 }
 
-/// The range a plot shows: a round number that holds all there is, and that does not shrink at once when a peak leaves.
+/// Range of a plot: a round number that includes all values, and does not shrink at once when a peak leaves.
 fn range_n(extent_n: Option<(f64, f64)>, (low_n, high_n): (f64, f64)) -> (f64, f64) {
     let (least, most) = extent_n.unwrap_or((0.0, 0.0));
     let wanted = (-round_up(-least), round_up(most));
-    // Shrinks only when less than half is used: an axis that jumps with every peak cannot be read.
+    // Shrinks only when less than half is used, because an axis that changes with every peak cannot be read.
     let keep = |old: f64, wanted: f64| if wanted > old || wanted < 0.45 * old { wanted } else { old };
     (-keep(-low_n, -wanted.0), keep(high_n, wanted.1))
 }
 
-/// The next of 0.25, 0.5, 1, 1.5, 2, 3, 4, 6, 8, 12, ... with a tenth to spare.
+/// The next of 0.25, 0.5, 1, 1.5, 2, 3, 4, 6, 8, 12, ... with a margin of one tenth.
 fn round_up(value_n: f64) -> f64 {
     let needed = value_n * 1.1;
     let mut step = LEAST_RANGE_N;
@@ -332,7 +332,7 @@ fn round_up(value_n: f64) -> f64 {
     step
 }
 
-/// A vertical gauge of both forces against the ceiling; `rect` is its place.
+/// A vertical gauge of both forces and the ceiling, in `rect`.
 pub fn gauge(painter: &egui::Painter, rect: Rect, measured_n: f64, rendered_n: f64, ceiling_n: f64) {
     painter.rect_filled(rect, 3.0, Color32::from_black_alpha(120));
     let top_n = ceiling_n * 1.25;

@@ -1,4 +1,4 @@
-//! "Why is there no force?": the gates between model and hand, in their order, and what each does just now.
+//! The panel "Why no force?": the gates between model and hand in order, and the present effect of each.
 
 use egui::{Button, Color32, Label, RichText, Ui, vec2};
 use nima_core::safety::{EnergyMode, GATES, Gate as Which, Reason};
@@ -17,10 +17,10 @@ use crate::{
     words::Words as _,
 };
 
-/// Below this there is no contact worth rendering, N.
+/// A smaller force is not considered a contact, N.
 const CONTACT_N: f64 = 0.1;
 
-/// Whose gates are told.
+/// State of the panel: the selected side.
 #[derive(Clone, Copy, Debug)]
 pub struct GatesState {
     side: Side,
@@ -50,7 +50,7 @@ pub fn gates_ui(ui: &mut Ui, live: &Live, state: &mut GatesState) {
     }
     ui.add(Label::new(RichText::new(answer(live, state.side)).font(theme::strong(14.0))).wrap());
     ui.add_space(2.0);
-    // Nine rows that are to be seen at once.
+    // Little spacing, so that all nine rows are visible.
     ui.spacing_mut().item_spacing.y = 1.0;
     ui.spacing_mut().interact_size.y = 20.0;
     for gate in gates(live, state.side) {
@@ -58,7 +58,7 @@ pub fn gates_ui(ui: &mut Ui, live: &Live, state: &mut GatesState) {
     }
 }
 
-/// The answer in one sentence: the first closed gate, or that nothing is wrong.
+/// The summary: the first closed gate, or that nothing is wrong.
 fn answer(live: &Live, side: Side) -> String {
     why_no_force(live, side).unwrap_or_else(|| match live.figures {
         figures if figures.measured_n[side.index()] < CONTACT_N => text::gates::FREE_MOTION.to_owned(),
@@ -66,7 +66,7 @@ fn answer(live: &Live, side: Side) -> String {
     })
 }
 
-/// Why this hand feels nothing, or less than it should; `None` where nothing is wrong.
+/// Why this hand gets no force, or less than it should; `None` if nothing is wrong.
 pub fn why_no_force(live: &Live, side: Side) -> Option<String> {
     let (gates, hand) = (&live.gates[side.index()], side.index());
     let (measured_n, rendered_n) = (live.figures.measured_n[hand], live.figures.rendered_n[hand]);
@@ -96,7 +96,7 @@ pub fn why_no_force(live: &Live, side: Side) -> Option<String> {
     Some(words.to_owned())
 }
 
-/// One gate as the screen tells it.
+/// One gate as displayed.
 pub(super) struct Gate {
     pub(super) which: Which,
     pub(super) name: &'static str,
@@ -107,7 +107,7 @@ pub(super) struct Gate {
 }
 
 impl Gate {
-    /// Its sign and its word.
+    /// Its symbol and the word for it.
     pub(super) fn standing(&self) -> (Sign, &'static str) {
         let acting = self.share > if self.limits { 0.05 } else { 0.5 };
         match (acting, self.limits) {
@@ -124,7 +124,7 @@ pub(super) fn gates(live: &Live, side: Side) -> [Gate; GATES] {
     Which::ALL.map(|which| {
         let [name, meaning] = text::gates::of(which);
         let share = match which {
-            // Its ramp is no closed gate; a gain of zero is.
+            // A ramp of the gain does not count as a closed gate; a gain of zero does.
             Which::Gain => f64::from(u8::from(live.gain() < 0.01)),
             _ => gates.share(which),
         };
@@ -133,7 +133,7 @@ pub(super) fn gates(live: &Live, side: Side) -> [Gate; GATES] {
     })
 }
 
-/// What stands beside a gate: its setting, or what it does now.
+/// Text beside a gate: its setting, or its present effect.
 fn note(live: &Live, side: Side, which: Which) -> String {
     let (gates, chain) = (&live.gates[side.index()], &live.rig.gates);
     match which {
@@ -154,7 +154,7 @@ fn note(live: &Live, side: Side, which: Which) -> String {
     }
 }
 
-/// What the hand may still get back.
+/// Energy that the hand may still get back.
 fn stored(live: &Live, side: Side) -> String {
     if live.gate_settings().energy == EnergyMode::Off {
         return text::gates::ENERGY_OFF.to_owned();
@@ -162,7 +162,7 @@ fn stored(live: &Live, side: Side) -> String {
     live.tick_of(side).map_or_else(String::new, |tick| text::gates::energy_left(tick.gates.stored_j * 1e3))
 }
 
-/// How often the gate acted since the loop was made, and why it last did.
+/// How often the gate has acted since the loop was created, and why it acted last.
 pub(super) fn history(live: &Live, side: Side, gate: Which) -> String {
     let Some(counts) = live.tick_of(side).map(|tick| tick.gates.counts) else { return String::new() };
     let (acted, share, last) = (counts.acted[gate.index()], counts.share(gate), counts.last[gate.index()]);

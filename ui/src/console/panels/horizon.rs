@@ -1,4 +1,4 @@
-//! How far each mode's force is from the truth, at the true horizon: the delay of the link.
+//! Error of each mode at the horizon, which is the delay of the link.
 
 use egui::{Align2, Rect, Sense, Ui, vec2};
 use nima_core::impedance::Mode;
@@ -10,11 +10,11 @@ use crate::console::{
     widgets::{Sign, bar, sign, small, three_digits},
 };
 
-/// Bars end here, in errors of delayed direct reflection.
+/// Upper end of the bars, as a multiple of the error of delayed DFR.
 const LONGEST: f64 = 2.5;
-/// Height of the trend.
+/// Height of the trend plot.
 const TREND_HEIGHT: f32 = 46.0;
-/// Below this an error is noise and a ratio means nothing, N.
+/// A smaller error is noise, and its ratio has no meaning, N.
 const LEAST_N: f64 = 1e-4;
 
 /// The panel.
@@ -28,7 +28,7 @@ pub fn horizon_ui(ui: &mut Ui, live: &Live) {
     trend_ui(ui, live);
 }
 
-/// The active mode beside delayed reflection over the last minutes, one point a second.
+/// Errors of the active mode and of delayed DFR over the last minutes, one point per second.
 fn trend_ui(ui: &mut Ui, live: &Live) {
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), TREND_HEIGHT), Sense::hover());
     let mean = |mode: Mode| {

@@ -1,4 +1,5 @@
-//! One file per panel, each a function over what is known ([`super::live::Live`]) that puts what the operator asks into the outbox.
+//! One file per panel. Each panel is a function that shows [`super::live::Live`] and puts the operator's commands into
+//! the outbox.
 
 mod axis;
 pub mod calibrations;
@@ -44,7 +45,7 @@ pub const fn mode_name(mode: Mode) -> &'static str {
     }
 }
 
-/// What a mode does, in a sentence.
+/// Explanation of a mode, one sentence.
 pub const fn mode_meaning(mode: Mode) -> &'static str {
     match mode {
         Mode::Literal => text::modes::LITERAL_HOVER,

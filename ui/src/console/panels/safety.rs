@@ -1,5 +1,5 @@
-//! What stands between a model and a hand: the interlock of each arm pair as a diagram that lights up where it is, and the gates in
-//! the order in which a force passes them, with how often each acted and why.
+//! The interlock of each arm pair as a diagram of states with the present one highlighted, and the gates in the order
+//! in which a force passes them, with how often and why each acted.
 
 use egui::{Align2, Color32, Painter, Pos2, Rect, ScrollArea, Sense, Stroke, Ui, pos2, vec2};
 use nima_core::safety::Why;
@@ -16,7 +16,7 @@ use crate::console::{
 
 const NODE: egui::Vec2 = vec2(82.0, 28.0);
 const DIAGRAM_HEIGHT: f32 = 118.0;
-/// Narrower than this the states would lie on one another: then the diagrams stand one above the other.
+/// With less width the states would overlap, so the diagrams are placed one above the other.
 const DIAGRAM_WIDTH: f32 = 440.0;
 const GATE_HEIGHT: f32 = 82.0;
 
@@ -42,12 +42,12 @@ pub fn safety_ui(ui: &mut Ui, live: &Live) {
     });
 }
 
-/// Of which hand, where there are two.
+/// Addition to a text for the side, if there are two arms.
 fn of_side(live: &Live, side: Side) -> String {
     if live.is_bimanual() { text::safety::of_hand(side.word()) } else { String::new() }
 }
 
-/// States and where they stand, in parts of the diagram.
+/// States and their positions, relative to the diagram's size.
 const PLACES: [(&str, f32, f32); 7] = [
     (text::safety::NO_DEVICE, 0.10, 0.26),
     (text::safety::IDLE, 0.32, 0.26),
@@ -57,7 +57,7 @@ const PLACES: [(&str, f32, f32); 7] = [
     (text::safety::STOPPED, 0.32, 0.82),
     (text::safety::FAULT, 0.72, 0.82),
 ];
-/// Ways from one state to another; a stop and a fault come from everywhere and lead back to idle.
+/// Transitions between states; stop and fault can be entered from every state and lead back to idle.
 const WAYS: [(usize, usize); 6] = [(0, 1), (1, 2), (2, 3), (3, 4), (5, 1), (6, 1)];
 
 const fn place_of(state: LoopState) -> usize {
@@ -116,7 +116,7 @@ fn interlock_ui(ui: &mut Ui, live: &Live, side: Side) {
         let lit = last.is_some_and(|last| last == (from, to) || last == (to, from));
         way(&painter, at(from), at(to), from < 5, lit);
     }
-    // Stop and fault from everywhere: one rail under all states.
+    // Transitions from every state to stop and fault: one line below all states.
     let rail = diagram.top() + 0.54 * diagram.height();
     let stroke = Stroke::new(1.0, theme::now().text_weak);
     painter.add(egui::Shape::dashed_line(&[pos2(at(0).left(), rail), pos2(at(4).right(), rail)], stroke, 4.0, 4.0));
@@ -198,7 +198,7 @@ fn gates_row_ui(ui: &mut Ui, live: &Live, side: Side) {
     });
 }
 
-/// Where the row begins and ends: a force.
+/// Start or end of the row of gates: a force.
 fn end_ui(ui: &mut Ui, width: f32, name: &str, force_n: f64) {
     let (rect, response) = ui.allocate_exact_size(vec2(width, GATE_HEIGHT), Sense::hover());
     let number = if force_n < 1e3 { format!("{force_n:.1} N") } else { "> 1 kN".to_owned() };
@@ -215,7 +215,7 @@ fn end_ui(ui: &mut Ui, width: f32, name: &str, force_n: f64) {
     painter.text(rect.center() + vec2(0.0, 9.0), Align2::CENTER_CENTER, number, theme::strong(16.0), theme::now().text);
 }
 
-/// One gate: its lamp, what it does, how often it acted.
+/// One gate: indicator, effect, and how often it acted.
 fn gate_ui(ui: &mut Ui, live: &Live, side: Side, gate: &Gate, width: f32) {
     let (rect, response) = ui.allocate_exact_size(vec2(width, GATE_HEIGHT), Sense::hover());
     let (what, word) = gate.standing();
@@ -244,7 +244,7 @@ fn gate_ui(ui: &mut Ui, live: &Live, side: Side, gate: &Gate, width: f32) {
     }
 }
 
-/// A count that fits under a gate.
+/// A count in a short form that fits below a gate.
 fn compact(count: u64) -> String {
     match count {
         0 => text::safety::NEVER.to_owned(),

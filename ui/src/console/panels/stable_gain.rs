@@ -1,5 +1,5 @@
-//! Where the gain stands in the map of stability: a strip under its slider, whole where a gripping hand comes to rest, broken where
-//! it shakes, for the mode and delay in force and the stiffness of the contact now.
+//! Shows the stability map below the gain slider: a strip that is solid where a gripping hand is stable and broken
+//! where it is not, for the present mode, delay and contact stiffness.
 
 use egui::{Rect, Sense, Stroke, Ui, pos2, vec2};
 use nima_study::stability_map::{StabilityMap, Verdict};
@@ -7,10 +7,10 @@ use nima_study::stability_map::{StabilityMap, Verdict};
 use crate::console::{live::Live, text, theme, widgets::small};
 
 const HEIGHT: f32 = 8.0;
-/// Parts of the strip.
+/// Number of segments of the strip.
 const PARTS: u32 = 60;
 
-/// The strip and what it says; `rail` is the slider's place, `limit` the gain at its right end.
+/// Draws the strip and its text; `rail` is the slider's rectangle, `limit` the gain at its right end.
 pub(super) fn stable_gain_ui(ui: &mut Ui, live: &Live, rail: Rect, limit: f64) {
     let Some(map) = StabilityMap::committed() else { return };
     let Some(n_m) = live.stiffness_n_m() else {
@@ -18,7 +18,7 @@ pub(super) fn stable_gain_ui(ui: &mut Ui, live: &Live, rail: Rect, limit: f64) {
         return;
     };
     let (mode, delay_s) = (live.mode(), live.delay_s());
-    // The slider's handle stays within the rail by its own half width.
+    // The slider's handle stays within the rail by half its own width.
     let ends = rail.x_range().shrink(0.3 * rail.height());
     let (rect, response) = ui.allocate_exact_size(vec2(rail.width(), HEIGHT), Sense::hover());
     let painter = ui.painter();

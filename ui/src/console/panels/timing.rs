@@ -1,4 +1,4 @@
-//! Whether the loop keeps its time, and what it was granted.
+//! Whether the loop meets its deadlines, and which real-time privileges it has.
 
 use egui::{Grid, RichText, Ui};
 use nima_core::statistics::Quantiles;
@@ -11,17 +11,17 @@ use crate::console::{
     widgets::{figure, small, weak},
 };
 
-/// Counting the histograms takes a moment: they are read, not watched.
+/// Interval of counting the histograms, which takes some time.
 const BARS_EVERY_S: f64 = 0.25;
 
-/// Histograms as last counted.
+/// The histograms as last counted.
 #[derive(Clone, Debug, Default)]
 pub struct TimingState {
     bars: Vec<Vec<u64>>,
     made_at_s: Option<f64>,
 }
 
-/// What is timed, in the order of a tick. A duration without a deadline of its own is held against the period.
+/// The measured durations, in the order of a tick. One without a deadline of its own is compared with the period.
 fn timings(live: &Live) -> Vec<Timing<'_>> {
     let deadline_us = 1e6 / live.rig.rate_hz;
     vec![
@@ -115,7 +115,7 @@ fn scheduling_ui(ui: &mut Ui, live: &Live) {
     }
 }
 
-/// Digits in groups of three.
+/// A number with its digits in groups of three.
 pub(super) fn grouped(number: u64) -> String {
     let digits = number.to_string();
     let mut text = String::new();

@@ -1,5 +1,5 @@
-//! Histograms of the loop's durations with the deadline drawn in, counts on a logarithmic scale so that a single late tick is seen among
-//! millions; and the missed periods of the last two minutes as a strip.
+//! Histograms of the loop's durations with the deadline marked, counts on a logarithmic scale so that one late tick is
+//! visible among millions; and the missed periods of the last two minutes as a strip.
 
 use egui::{Align2, Painter, Rect, Sense, Stroke, Ui, pos2, vec2};
 use nima_core::statistics::{Percentiles, Quantiles};
@@ -11,26 +11,26 @@ use crate::console::{
     widgets::small,
 };
 
-/// Bars of a histogram; the last one holds all that is longer.
+/// Number of bars of a histogram; the last one includes everything longer.
 const BARS: usize = 50;
-/// The bars end here, in deadlines.
+/// Upper end of the histogram, as a multiple of the deadline.
 const REACH: f64 = 1.25;
 const HEIGHT: f32 = 58.0;
 const AXIS: f32 = 15.0;
 const STRIP: f32 = 26.0;
 
-/// A duration that is measured in every tick.
+/// A duration measured in every tick.
 pub(super) struct Timing<'a> {
     pub(super) name: &'static str,
     pub(super) meaning: &'static str,
     pub(super) quantiles: Quantiles,
     pub(super) durations: &'a Percentiles,
-    /// What it must stay below, us.
+    /// Its deadline, us.
     pub(super) deadline_us: f64,
 }
 
 impl Timing<'_> {
-    /// Counts, bar by bar.
+    /// Counts of all bars.
     pub(super) fn bars(&self) -> Vec<u64> {
         self.durations.bars(self.step_us(), BARS)
     }
@@ -39,7 +39,7 @@ impl Timing<'_> {
         REACH * self.deadline_us / BARS as f64
     }
 
-    /// What one bar says.
+    /// Hover text of one bar.
     fn words(&self, bars: &[u64], bar: usize) -> String {
         let total = bars.iter().sum::<u64>().max(1);
         let count = bars.get(bar).copied().unwrap_or_default();
@@ -50,7 +50,7 @@ impl Timing<'_> {
     }
 }
 
-/// A share in percent, with as many digits as it takes to see that it is not zero.
+/// A share in percent, with enough digits to show that it is not zero.
 fn percent(share: f64) -> String {
     match 100.0 * share {
         x if x <= 0.0 => "0 %".to_owned(),
@@ -59,12 +59,12 @@ fn percent(share: f64) -> String {
     }
 }
 
-/// Height of a bar, 0 to 1, on the logarithmic scale on which `most` is 1. One tick is seen.
+/// Height of a bar, 0 to 1, on a logarithmic scale with `most` at 1. A single tick is visible.
 fn height(count: u64, most: u64) -> f32 {
     if count == 0 { 0.0 } else { ((1.0 + count as f64).ln() / (1.0 + most.max(1) as f64).ln()) as f32 }
 }
 
-/// One histogram; the pointer reads a bar.
+/// Draws one histogram; the bar under the pointer shows its text.
 pub(super) fn bars_ui(ui: &mut Ui, timing: &Timing<'_>, bars: &[u64]) {
     ui.label(small(timing.name)).on_hover_text(timing.meaning);
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), HEIGHT + AXIS), Sense::hover());
@@ -95,13 +95,13 @@ pub(super) fn bars_ui(ui: &mut Ui, timing: &Timing<'_>, bars: &[u64]) {
     }
 }
 
-/// Ticks beyond the deadline: those of the bars that begin there or later.
+/// Number of ticks after the deadline: those in bars that begin there or later.
 fn late(bars: &[u64]) -> u64 {
     let first = (BARS as f64 / REACH).round() as usize;
     bars.iter().skip(first).sum()
 }
 
-/// Marks under the histogram, the deadline in it, and what its height means.
+/// Marks below the histogram, the deadline in it, and the explanation of its height.
 fn axis(painter: &Painter, ground: Rect, deadline_us: f64, most: u64) {
     let (font, ink) = (theme::regular(11.0), theme::now().text_weak);
     let x = |share: f64| ground.left() + ground.width() * (share / REACH) as f32;
@@ -115,7 +115,7 @@ fn axis(painter: &Painter, ground: Rect, deadline_us: f64, most: u64) {
     painter.text(pos2(x(1.0) - 6.0, ground.top() + 1.0), Align2::RIGHT_TOP, scale, font, ink);
 }
 
-/// Missed periods over the last two minutes, a bar a second.
+/// Missed periods of the last two minutes, one bar per second.
 pub(super) fn missed_ui(ui: &mut Ui, deadlines: &Deadlines) {
     let total = deadlines.total();
     let words = text::timing::missed(SECONDS / 60, &grouped(total));

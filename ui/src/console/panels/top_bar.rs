@@ -1,4 +1,4 @@
-//! Always there: what this is, the state of the loop, what is wrong, and the way to stop.
+//! The top bar, always visible: identity, state of the loop, problems, and the stop button.
 
 use egui::{Align, Align2, Area, Button, Id, Label, Layout, Order, RichText, Sense, Ui, vec2};
 use nima_machine::messages::{Command, LoopState, Refusal};
@@ -18,22 +18,23 @@ use crate::{
     words::{cure_of_refusal, refused_because},
 };
 
-/// After a change of state the next step waits this long (s), so that a double click is never two steps.
+/// After a change of state the next step is disabled for this time (s), so that a double click never triggers two
+/// steps.
 const STEP_WAITS_S: f64 = 0.7;
 
-/// Width of the window from which there is room for the scene's name.
+/// Width of the window from which the scene's name is shown.
 const SCENE_FROM: f32 = 1400.0;
 
-/// What the bar remembers between frames.
+/// State of the bar.
 #[derive(Debug, Default)]
 pub struct TopBarState {
-    /// When the state last changed, on the window's clock.
+    /// The last state, and when it was entered on the window's clock.
     seen: Option<(LoopState, f64)>,
-    /// What is and was wrong; its strip lies under the bar.
+    /// Present and past alarms; their strip is below the bar.
     pub alarms: Alarms,
 }
 
-/// The bar, with the switch of roles and the menu. While somebody's hands are on the arm (`calibrating`) it cannot be engaged.
+/// The bar, with role switch and menu. While a person guides the arm (`calibrating`), it cannot be engaged.
 pub fn top_bar_ui(
     ui: &mut Ui,
     live: &Live,
@@ -71,7 +72,7 @@ pub fn top_bar_ui(
     });
 }
 
-/// What this is, and under it the switch of roles and the menu.
+/// Name of the program, and below it the role switch and the menu.
 fn identity_ui(
     ui: &mut Ui,
     live: &Live,
@@ -118,7 +119,7 @@ fn state_ui(ui: &mut Ui, state: LoopState) {
     ui.painter().text(place, egui::Align2::LEFT_CENTER, state.word(), theme::strong(17.0), theme::now().text);
 }
 
-/// Always in the same place, above every window, menu and hint, always ready: pressing it twice does no harm.
+/// Always in the same place, above every window, menu and tooltip, and always enabled: pressing it twice does no harm.
 fn stop_ui(ui: &mut Ui, state: LoopState, outbox: &mut Outbox) {
     let latched = matches!(state, LoopState::Stopped | LoopState::Faulted(_));
     let (fill, ink) = if latched {
@@ -146,7 +147,7 @@ fn stop_button(ui: &mut Ui, button: Button<'_>, ink: egui::Color32) -> egui::Res
     response
 }
 
-/// The one step that leads on from here, beside the stop and never under it.
+/// The button for the next step, beside the stop button and never below it.
 fn step_ui(ui: &mut Ui, state: LoopState, ready: bool, outbox: &mut Outbox) {
     let (name, command, meaning) = match state {
         LoopState::Idle => (text::top_bar::ENGAGE, Command::Engage, text::top_bar::ENGAGE_HOVER),
@@ -166,7 +167,7 @@ fn step_ui(ui: &mut Ui, state: LoopState, ready: bool, outbox: &mut Outbox) {
     }
 }
 
-/// The last refusal, for a moment.
+/// The last refused command, for some seconds.
 fn refusal_ui(ui: &mut Ui, live: &Live) {
     let Some(Refused { side, command, why }) = live.refusal() else { return };
     let what = match command {
@@ -175,7 +176,7 @@ fn refusal_ui(ui: &mut Ui, live: &Live) {
         _ => text::top_bar::NOT_SET,
     };
     let arm = if live.is_bimanual() { side.word() } else { "" };
-    // Why an arm has no device is known where the devices are.
+    // Why an arm has no device is known from the list of devices.
     let missing = live.missing().next().filter(|_| why == Refusal::State(LoopState::Disconnected));
     let words = match missing {
         Some(Missing { name, cause, cure, .. }) => {

@@ -1,4 +1,5 @@
-//! What speed costs in accuracy on this computer: measured when asked, in the background, and applied when asked.
+//! Measures the trade-off between computing time and accuracy on this computer, in the background, and applies a chosen
+//! point.
 
 use std::{
     sync::{
@@ -24,11 +25,11 @@ use crate::console::{
     widgets::{small, three_digits},
 };
 
-/// Length of the scene that is measured on, s.
+/// Duration of the scene on which it is measured, s.
 const SCENE_S: f64 = 6.0;
 const BUTTON: egui::Vec2 = vec2(120.0, 30.0);
 
-/// What the panel remembers between frames.
+/// State of the panel.
 #[derive(Debug, Default)]
 pub struct TradeoffState {
     job: Option<Job>,
@@ -37,7 +38,7 @@ pub struct TradeoffState {
     message: String,
 }
 
-/// A sweep in the background. Dropping it asks it to stop.
+/// A sweep in the background. Dropping it requests it to stop.
 #[derive(Debug)]
 struct Job {
     cancel: Arc<AtomicBool>,
@@ -53,7 +54,8 @@ impl Job {
         let cancel = Arc::new(AtomicBool::new(false));
         let progress = Arc::new([AtomicUsize::new(0), AtomicUsize::new(1)]);
         let (stop, told) = (Arc::clone(&cancel), Arc::clone(&progress));
-        // An ordinary thread: the loop's own has real-time priority where that is granted, and is not kept waiting.
+        // A thread with normal priority: the loop's thread has real-time priority if that is granted, and is not
+        // delayed.
         let thread = Builder::new().name("trade-off".to_owned()).spawn(move || {
             let source = Source::from_scene(&scene, rig.rate_hz, SCENE_S);
             sweep(&[source], &Plan::quick(rig.settings()), &stop, |done, total| {
@@ -81,12 +83,12 @@ impl TradeoffState {
         self.measured.as_ref()
     }
 
-    /// Tells the operator what became of what was asked.
+    /// Shows a message to the operator.
     pub fn tell(&mut self, message: impl Into<String>) {
         self.message = message.into();
     }
 
-    /// Asks a sweep that is going on to stop.
+    /// Requests a running sweep to stop.
     pub fn cancel(&self) {
         if let Some(job) = &self.job {
             job.cancel.store(true, Ordering::Relaxed);
@@ -115,8 +117,8 @@ impl Drop for TradeoffState {
     }
 }
 
-/// The panel. Gives a rig when the operator applies a point that the running loop cannot take over: the loop must then be
-/// restarted with it.
+/// The panel. Returns a rig if the operator applies a point that the running loop cannot change to: the loop must then
+/// be restarted with it.
 pub fn tradeoff_ui(ui: &mut Ui, live: &Live, state: &mut TradeoffState, outbox: &mut Outbox) -> Option<RigConfig> {
     state.take_in();
     measure_ui(ui, live, state);
@@ -162,7 +164,7 @@ fn measure_ui(ui: &mut Ui, live: &Live, state: &mut TradeoffState) {
     });
 }
 
-/// The points that nothing beats, cheapest first, each a button.
+/// The points of the Pareto front, cheapest first, each a button.
 fn front_ui(ui: &mut Ui, figures: &SourceFigures, selected: &mut Option<usize>) {
     ui.label(small(text::tradeoff::FRONT)).on_hover_text(text::tradeoff::FRONT_HOVER);
     for index in front(figures) {
@@ -183,7 +185,7 @@ fn apply_ui(
 ) -> Option<RigConfig> {
     let mode = point.choice.method.mode()?;
     let restart = needs_restart(&live.rig.identification, &point.choice);
-    // A restart begins idle: it must never be a way out of a stop or a fault.
+    // After a restart the loop is idle, so it must not be a way out of a stop or a fault.
     let allowed = !restart || matches!(live.state(), LoopState::Idle | LoopState::Engaged);
     let size = vec2(ui.available_width(), 30.0);
     let button = ui.add_enabled(allowed, Button::new(text::tradeoff::APPLY).min_size(size));
@@ -205,7 +207,7 @@ fn apply_ui(
     None
 }
 
-/// Whether the loop must be built anew for this choice: it cannot change degree or window while it runs.
+/// Whether the loop must be restarted for this choice: degree and window cannot change while it runs.
 fn needs_restart(now: &Identification, choice: &Choice) -> bool {
     let degree = choice.degree != now.max_degree;
     let window = (choice.window_ms - now.window_s * 1e3).abs() > 1e-6;
@@ -216,7 +218,8 @@ fn needs_restart(now: &Identification, choice: &Choice) -> bool {
     }
 }
 
-/// The rig with this choice and everything that the operator has set since it was started; a gain above 1 falls back to 1.
+/// The rig with this choice and all settings that the operator has changed since the start; a gain above 1 is reset to
+/// 1.
 fn rig_with(live: &Live, mode: Mode, choice: &Choice) -> RigConfig {
     let mut rig = live.rig.clone();
     rig.mode = mode;
@@ -230,7 +233,7 @@ fn rig_with(live: &Live, mode: Mode, choice: &Choice) -> RigConfig {
     rig
 }
 
-/// Indices of the front at the source's own rate, cheapest first.
+/// Indices of the Pareto front at the source's own rate, cheapest first.
 fn front(figures: &SourceFigures) -> Vec<usize> {
     let points = &figures.points;
     let mut front: Vec<usize> =
@@ -243,7 +246,7 @@ fn most_accurate(figures: &SourceFigures) -> Option<usize> {
     front(figures).into_iter().min_by(|&a, &b| figures.points[a].error.total_cmp(&figures.points[b].error))
 }
 
-/// Mode, degree and window, as far as they matter.
+/// Name of a point: mode, degree and window, as far as they apply.
 pub(super) fn name(point: &Point) -> String {
     let Choice { method, degree, window_ms, .. } = point.choice;
     match method {
@@ -258,7 +261,7 @@ fn figures_of(point: &Point) -> String {
     format!("{} µs, {} N", three_digits(point.cost_us.p50), three_digits(point.error))
 }
 
-/// Everything about a point, for hovering.
+/// Hover text of a point.
 pub(super) fn words(point: &Point) -> String {
     let front = if point.pareto { text::tradeoff::ON_FRONT } else { "" };
     let [median_us, p99_us, error_n, ratio] =

@@ -1,4 +1,4 @@
-//! Cost against error, both on logarithmic axes, with the points that nothing beats joined.
+//! Plot of error over cost, both on logarithmic axes, with the Pareto front as a line.
 
 use egui::{Color32, Ui, Vec2b, vec2};
 use egui_plot::{
@@ -11,10 +11,10 @@ use super::{mode_name, tradeoff::words};
 use crate::console::{text, theme, widgets::three_digits};
 
 const HEIGHT: f32 = 230.0;
-/// A point is meant when the pointer is nearer to it than this share of the plot.
+/// A point is selected if the pointer is closer to it than this share of the plot.
 const NEAR: f64 = 0.06;
 
-/// The plot; gives the point that was clicked.
+/// Draws the plot; returns the point that was clicked.
 pub(super) fn plot_ui(ui: &mut Ui, figures: &SourceFigures, selected: Option<usize>) -> Option<usize> {
     let points = &figures.points;
     let shown = shown(points);
@@ -72,7 +72,7 @@ pub(super) fn plot_ui(ui: &mut Ui, figures: &SourceFigures, selected: Option<usi
     near(response.transform.value_from_position(clicked))
 }
 
-/// Shape, colour and size of a mode's marks.
+/// Shape, colour and size of a mode's markers.
 fn look(mode: Mode) -> (MarkerShape, Color32, f32) {
     match mode {
         Mode::Anchored => (MarkerShape::Circle, theme::now().rendered, 4.0),
@@ -82,7 +82,7 @@ fn look(mode: Mode) -> (MarkerShape, Color32, f32) {
     }
 }
 
-/// Points at the source's own rate and with the usual differentiator that can be drawn at all.
+/// Points at the source's own rate and with the default differentiator that can be drawn.
 fn shown(points: &[Point]) -> Vec<usize> {
     let usual = points.first().map(|point| point.choice.differentiator);
     (0..points.len())
@@ -94,7 +94,7 @@ fn shown(points: &[Point]) -> Vec<usize> {
         .collect()
 }
 
-/// Where a point stands: decades of time and of error.
+/// Position of a point: decades of time and of error.
 fn place(point: &Point) -> [f64; 2] {
     [point.cost_us.p50.log10(), point.error.log10()]
 }
@@ -122,7 +122,7 @@ fn nearest(points: &[Point], shown: &[usize], (low, high): &Range, at: PlotPoint
     shown.iter().copied().min_by(|&a, &b| distance(a).total_cmp(&distance(b))).filter(|&i| distance(i) < NEAR)
 }
 
-/// Marks at 1, 2 and 5 of every decade, or at every decade (or few) where there are many.
+/// Marks at 1, 2 and 5 of every decade, or only at decades if there are many.
 fn marks(grid: &GridInput) -> Vec<GridMark> {
     let (low, high) = grid.bounds;
     if !(low.is_finite() && high.is_finite()) || high - low > 60.0 {
@@ -139,7 +139,7 @@ fn marks(grid: &GridInput) -> Vec<GridMark> {
         .collect()
 }
 
-/// The number that stands at a decade.
+/// The number at a mark, whose position is in decades.
 fn plain(decade: f64) -> String {
     let value = 10f64.powf(decade);
     if (0.01..1e4).contains(&value) {

@@ -1,5 +1,5 @@
-//! The demonstration: a script that goes through the modes at a long and a short delay, tells what is seen, and invites to take
-//! over. It plays on simulated and emulated rigs only; where it is left, mode and delay are put back as they were.
+//! The demonstration: a script that shows the modes at a long and a short delay, explains them, and invites the
+//! audience to try. Only for simulated and emulated rigs; afterwards mode and delay are restored.
 
 use egui::{Button, CentralPanel, Frame, Label, Margin, Panel, RichText, Ui, vec2};
 use nima_core::impedance::Mode;
@@ -16,21 +16,21 @@ use crate::console::{
     widgets::{bar, card, small},
 };
 
-/// With less height than this the force space is left out.
+/// With less height than this the force-space plot is left out.
 const LEAST_SPACE: f32 = 190.0;
 
-/// One scene of the script.
+/// One step of the script.
 #[derive(Debug)]
 pub struct Step {
-    /// On its button.
+    /// Name on its button.
     pub name: &'static str,
-    /// What is seen, and why.
+    /// What can be seen, and why.
     pub words: &'static str,
-    /// What is rendered with.
+    /// Rendering mode.
     pub mode: Mode,
     /// Delay of the link, s.
     pub delay_s: f64,
-    /// How long it is shown, s.
+    /// Duration, s.
     pub seconds: f64,
 }
 
@@ -80,20 +80,20 @@ pub const SCRIPT: [Step; 6] = [
     },
 ];
 
-/// Where the script is.
+/// State of the script.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct DemoState {
     step: usize,
     shown_s: f64,
     held: bool,
-    /// The step that the loop was last told of.
+    /// The last step whose settings were sent to the loop.
     told: Option<usize>,
     /// Mode and delay (s) before the demonstration.
     before: Option<(Mode, f64)>,
 }
 
 impl DemoState {
-    /// Puts back what was found.
+    /// Restores mode and delay.
     pub fn leave(&mut self, outbox: &mut Outbox) {
         self.told = None;
         if let Some((mode, delay_s)) = self.before.take() {
@@ -102,7 +102,8 @@ impl DemoState {
         }
     }
 
-    /// Goes on by `dt_s`; time stands while somebody leads, has paused it, or the loop does not run.
+    /// Advances by `dt_s`; paused while a visitor leads the instrument, by the pause button, or while the loop does not
+    /// run.
     fn play(&mut self, live: &Live, leading: bool, dt_s: f64, outbox: &mut Outbox) {
         if live.first_tick().is_none() || live.state() != LoopState::Engaged {
             return;
@@ -127,12 +128,12 @@ impl DemoState {
     }
 }
 
-/// Nobody can be hurt on this rig.
+/// Whether the rig is simulated or emulated, so that nobody can be hurt.
 fn may_play(live: &Live) -> bool {
     live.rig.devices.as_ref().is_none_or(|devices| devices.emulated)
 }
 
-/// The view.
+/// Draws the view.
 pub(super) fn demo_ui(ui: &mut Ui, live: &mut Live, panels: &mut Panels, outbox: &mut Outbox) {
     if may_play(live) {
         let dt_s = f64::from(ui.input(|input| input.stable_dt)).min(0.1);
@@ -165,7 +166,7 @@ pub(super) fn demo_ui(ui: &mut Ui, live: &mut Live, panels: &mut Panels, outbox:
     });
 }
 
-/// The chapters, what is told now, and how far it is.
+/// The steps, the present text, and the progress.
 fn caption_ui(ui: &mut Ui, live: &Live, demo: &mut DemoState) {
     let plays = may_play(live);
     ui.horizontal(|ui| {

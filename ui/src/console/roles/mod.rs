@@ -1,6 +1,6 @@
-//! Three people, three views on the same loop: a calm monitor for the surgeon, every instrument for the technician, and a
-//! demonstration that runs by itself for the presenter. A role changes what is shown and never what the loop does; the one
-//! exception is the demonstration's script, which plays on simulated rigs only and puts back what it found.
+//! Three views of the same loop: a simple monitor for the surgeon, every panel for the technician, and a demonstration
+//! that runs by itself. A role changes the display, never the loop. The one exception is the script of the
+//! demonstration, which runs on simulated rigs only and restores the settings.
 
 pub mod demo;
 mod surgeon;
@@ -23,11 +23,11 @@ use super::{
 };
 use crate::console::text;
 
-/// Who sits before the screen.
+/// The user's role.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, clap::ValueEnum)]
 #[serde(rename_all = "lowercase")]
 pub enum Role {
-    /// The scene as the endoscope sees it, large; six figures; alarms.
+    /// The scene as seen by the endoscope, large; six numbers; alarms.
     Surgeon,
     /// Every panel.
     #[default]
@@ -37,10 +37,10 @@ pub enum Role {
 }
 
 impl Role {
-    /// In the order of their keys.
+    /// All roles, in the order of their keys.
     pub const ALL: [Self; 3] = [Self::Surgeon, Self::Technician, Self::Demo];
 
-    /// On its button.
+    /// Name on its button.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Surgeon => text::roles::SURGEON,
@@ -49,7 +49,7 @@ impl Role {
         }
     }
 
-    /// The key that leads there.
+    /// Its key.
     pub const fn key(self) -> Key {
         match self {
             Self::Surgeon => Key::F1,
@@ -58,7 +58,7 @@ impl Role {
         }
     }
 
-    /// What it shows.
+    /// Explanation of the view.
     pub const fn meaning(self) -> &'static str {
         match self {
             Self::Surgeon => text::roles::SURGEON_HOVER,
@@ -68,7 +68,7 @@ impl Role {
     }
 }
 
-/// What the panels of all roles remember between frames.
+/// State of the panels of all roles.
 #[derive(Debug, Default)]
 pub struct Panels {
     /// Mode, gain, delay.
@@ -77,30 +77,30 @@ pub struct Panels {
     pub forces: ForcesState,
     /// Force space.
     pub space: ForceSpaceState,
-    /// Speed against accuracy.
+    /// Computing time against accuracy.
     pub tradeoff: TradeoffState,
     /// The operating field.
     pub scene: SceneView,
-    /// Whose gates are told.
+    /// Side selected in the gates panel.
     pub gates: GatesState,
     /// Histograms of the loop's durations.
     pub timing: TimingState,
-    /// The technician's tiles.
+    /// The technician's desk.
     pub desk: Desk,
-    /// Where the demonstration is.
+    /// State of the demonstration.
     pub demo: DemoState,
 }
 
-/// What the operator asked for that the panels cannot do by a command.
+/// Requests of the operator that are not commands to the loop.
 #[derive(Debug, Default)]
 pub struct Wishes {
-    /// Another rig.
+    /// Restart with this rig.
     pub restart: Option<RigConfig>,
-    /// A wizard.
+    /// Open or close a wizard.
     pub calibration: Option<CalibrationWish>,
 }
 
-/// The view of the role in force, under the top bar.
+/// Draws the view of the present role, below the top bar.
 pub fn role_ui(
     ui: &mut Ui,
     settings: &mut Settings,
@@ -128,7 +128,7 @@ pub fn role_ui(
     }
 }
 
-/// One click for each role.
+/// One button for each role.
 pub fn switch_ui(ui: &mut Ui, now: &mut Role, allowed: bool) {
     ui.spacing_mut().item_spacing.x = 4.0;
     for role in Role::ALL {

@@ -1,5 +1,5 @@
-//! A calm monitor: the field as the endoscope sees it, and under it, where each hand is, its two forces against the ceiling
-//! with the gain between them. Six figures at most: two forces of each hand, the gain, the ceiling.
+//! The surgeon's view: the endoscope's image of the field, and below it for each hand both forces with the ceiling, and
+//! the gain in between. At most six numbers: two forces of each hand, the gain, the ceiling.
 
 use egui::{Align2, CentralPanel, Frame, Margin, Panel, Rect, Sense, Ui, pos2, vec2};
 use nima_machine::rig::Side;
@@ -16,10 +16,10 @@ use crate::console::{
 
 const STRIP: f32 = 176.0;
 const GAIN_WIDTH: f32 = 330.0;
-/// A bar reaches this far beyond the ceiling.
+/// Upper end of a bar, as a multiple of the ceiling.
 const BEYOND_CEILING: f64 = 1.25;
 
-/// The view.
+/// Draws the view.
 pub(super) fn surgeon_ui(ui: &mut Ui, live: &mut Live, panels: &mut Panels, outbox: &mut Outbox) {
     let strip = Frame::new().fill(theme::now().panel).inner_margin(Margin::same(8));
     Panel::bottom("strip").exact_size(STRIP).resizable(false).frame(strip).show(ui, |ui| {
@@ -44,7 +44,7 @@ pub(super) fn surgeon_ui(ui: &mut Ui, live: &mut Live, panels: &mut Panels, outb
     CentralPanel::no_frame().show(ui, |ui| scene_ui(ui, live, &mut panels.scene, outbox));
 }
 
-/// Why a hand feels less than it should, and which; else the mode.
+/// Why a hand gets less force than it should, and which hand; otherwise the mode.
 fn told(live: &Live) -> String {
     let whys: Vec<(Side, String)> =
         live.sides().filter_map(|side| why_no_force(live, side).map(|why| (side, why))).collect();
@@ -56,7 +56,7 @@ fn told(live: &Live) -> String {
     }
 }
 
-/// Where a second hand would be: what the colours mean.
+/// Explanation of the colours, in the place of a second hand.
 fn told_ui(ui: &Ui, live: &Live, place: Rect) {
     let painter = ui.painter_at(place);
     painter.rect_filled(place, theme::CORNER, theme::now().card);
@@ -71,7 +71,7 @@ fn told_ui(ui: &Ui, live: &Live, place: Rect) {
     }
 }
 
-/// Both forces of a hand as figures and as bars against the ceiling.
+/// Both forces of a hand as numbers and as bars with the ceiling.
 fn hand_ui(ui: &mut Ui, live: &Live, side: Side, place: Rect) {
     let ceiling_n = live.gate_settings().ceiling_n;
     let (measured_n, rendered_n) = (live.figures.measured_n[side.index()], live.figures.rendered_n[side.index()]);

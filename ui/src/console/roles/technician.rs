@@ -1,4 +1,4 @@
-//! Every instrument, on a desk that the technician arranges.
+//! The technician's view: every panel, on a desk that can be rearranged.
 
 use egui::{Frame, Margin, Ui};
 
@@ -15,7 +15,7 @@ use crate::console::{
     scene3d::scene_ui,
 };
 
-/// The view.
+/// Draws the view.
 pub(super) fn technician_ui(
     ui: &mut Ui,
     layout: &mut Layout,
@@ -47,7 +47,7 @@ pub(super) fn technician_ui(
     wishes
 }
 
-/// Forces over time. The last number of the time axis stands half beyond the plot.
+/// Forces over time, with space for the last number of the time axis, half of which is beyond the plot.
 fn traces_ui(ui: &mut Ui, live: &mut Live, panels: &mut Panels) {
     Frame::new().inner_margin(Margin { left: 8, right: 18, top: 6, bottom: 6 }).show(ui, |ui| {
         forces_ui(ui, live, &mut panels.forces, &[0, 1, 2]);

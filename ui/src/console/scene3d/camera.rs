@@ -1,4 +1,4 @@
-//! An orbit camera: looks at a point from a distance, turned by the mouse. Frame: workspace, z up, metres.
+//! An orbit camera: looks at a point from a distance, rotated with the mouse. Frame: workspace, z up, metres.
 
 use egui::{Pos2, Rect, Vec2};
 use nalgebra::{Matrix4, Perspective3, Point3, Vector3, Vector4};
@@ -6,22 +6,22 @@ use nima_world::scene::Scene;
 
 /// Vertical opening angle of the free view, rad.
 const FIELD_OF_VIEW: f32 = 0.62;
-/// The same of an endoscope: wide.
+/// The same for the endoscope, which has a wide angle.
 const ENDOSCOPE_FIELD: f32 = 0.92;
 const DISTANCE_M: std::ops::RangeInclusive<f32> = 0.06..=0.9;
-/// Just short of straight down and level with the surface, rad.
+/// Range of pitch: from nearly level with the surface to nearly straight down, rad.
 const PITCH: std::ops::RangeInclusive<f32> = 0.03..=1.5;
 
-/// Where the operator looks from.
+/// Position and direction of the camera.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Camera {
     /// Point looked at, m.
     pub target_m: Vector3<f32>,
     /// Distance from it, m.
     pub distance_m: f32,
-    /// Turn about z; 0 looks along +y, rad.
+    /// Rotation about z; 0 looks along +y, rad.
     pub yaw: f32,
-    /// Height above the horizon, rad.
+    /// Angle above the horizon, rad.
     pub pitch: f32,
     /// Vertical opening angle, rad.
     pub field_of_view: f32,
@@ -29,14 +29,15 @@ pub struct Camera {
 
 impl Default for Camera {
     fn default() -> Self {
-        // From beyond the field, so that the shaft leans away and covers neither the tip nor the forces.
+        // From the far side of the field, so that the shaft leans away and covers neither the tip nor the forces.
         let target_m = Vector3::new(0.0, -0.010, 0.046);
         Self { target_m, distance_m: 0.298, yaw: 2.62, pitch: 0.40, field_of_view: FIELD_OF_VIEW }
     }
 }
 
 impl Camera {
-    /// Where a scene is best seen from. Two hands are seen from where they stand, so that the right one is on the right.
+    /// Default camera of a scene. Two instruments are seen from the operator's side, so that the right one is on the
+    /// right.
     pub fn of(scene: &Scene) -> Self {
         if scene.left.is_none() {
             return Self::default();
@@ -44,14 +45,14 @@ impl Camera {
         Self { target_m: Vector3::new(0.0, -0.012, 0.042), distance_m: 0.30, yaw: 0.16, pitch: 0.58, ..Self::default() }
     }
 
-    /// Where the endoscope looks from: between two instruments, or beside a single one.
+    /// Camera of the endoscope: between two instruments, or beside a single one.
     pub fn endoscope(scene: &Scene) -> Self {
         let yaw = if scene.left.is_some() { 0.0 } else { -0.55 };
         let target_m = Vector3::new(0.0, 0.0, 0.006);
         Self { target_m, distance_m: 0.128, yaw, pitch: 0.72, field_of_view: ENDOSCOPE_FIELD }
     }
 
-    /// Turns by a drag of so many points.
+    /// Rotates by a drag of this many points.
     pub fn orbit(&mut self, drag: Vec2) {
         self.yaw -= drag.x * 0.008;
         self.pitch = (self.pitch + drag.y * 0.006).clamp(*PITCH.start(), *PITCH.end());
@@ -84,18 +85,18 @@ impl Camera {
         Vector3::new(-sin_yaw * sin_pitch, cos_yaw * sin_pitch, cos_pitch)
     }
 
-    /// Metres per point of the screen at the distance of the target, in a view of this height (points).
+    /// Metres per point of the screen at the distance of the target, for a view of this height (points).
     pub fn metres_per_point(&self, height: f32) -> f32 {
         2.0 * self.distance_m * (0.5 * self.field_of_view).tan() / height.max(1.0)
     }
 
-    /// Direction away from the eye along the ground, unit length.
+    /// Horizontal direction away from the eye, unit length.
     pub fn away(&self) -> Vector3<f32> {
         let (sin_yaw, cos_yaw) = self.yaw.sin_cos();
         Vector3::new(-sin_yaw, cos_yaw, 0.0)
     }
 
-    /// Workspace to OpenGL clip space for a view of this width by height.
+    /// Transformation from workspace to OpenGL clip space for a view of this aspect ratio (width / height).
     pub fn clip_from_workspace(&self, aspect: f32) -> Matrix4<f32> {
         let aspect = if aspect.is_finite() { aspect.max(0.01) } else { 1.0 };
         let projection = Perspective3::new(aspect, self.field_of_view, 0.01, 3.0);
@@ -103,7 +104,7 @@ impl Camera {
         projection.to_homogeneous() * view
     }
 
-    /// Where a point appears in `rect`; `None` behind the eye.
+    /// Position of a point on the screen; `None` if it is behind the eye.
     pub fn project(&self, point_m: &Vector3<f32>, rect: Rect) -> Option<Pos2> {
         let clip = self.clip_from_workspace(rect.aspect_ratio()) * Vector4::new(point_m.x, point_m.y, point_m.z, 1.0);
         if clip.w <= 1e-4 {

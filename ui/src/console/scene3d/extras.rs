@@ -1,4 +1,5 @@
-//! What is drawn into the view on request: the ceiling around each tip, and coordinate frames. By egui's painter, over the triangles.
+//! Optional objects in the 3-D view: the force ceiling around each tip, and coordinate frames. Drawn by egui's painter
+//! over the triangles.
 
 use egui::{
     Align2, Button, Color32, Painter, PopupCloseBehavior, Rect, Shape, Stroke, Ui, UiBuilder,
@@ -18,20 +19,20 @@ use crate::console::{text, theme};
 const AXIS_M: f32 = 0.016;
 const RING: u32 = 64;
 
-/// On its switch, with its meaning.
+/// Label of the menu of optional objects.
 pub const SHOW: &str = text::field::SHOW;
-/// See [`SHOW`].
+/// Hover text of [`SHOW`].
 pub const SHOW_MEANING: &str = text::field::SHOW_HOVER;
-/// The ceiling's switch.
+/// Label of the switch for the ceiling.
 pub const CEILING: &str = text::field::CEILING;
-/// See [`CEILING`].
+/// Hover text of [`CEILING`].
 pub const CEILING_MEANING: &str = text::field::CEILING_HOVER;
-/// The frames' switch.
+/// Label of the switch for the frames.
 pub const FRAMES: &str = text::field::FRAMES;
-/// See [`FRAMES`].
+/// Hover text of [`FRAMES`].
 pub const FRAMES_MEANING: &str = text::field::FRAMES_HOVER;
 
-/// What is switched on.
+/// Which objects are shown.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Extras {
     /// The force ceiling as a sphere.
@@ -40,7 +41,7 @@ pub struct Extras {
     pub frames: bool,
 }
 
-/// Where a frame stands (m) and where its axes point, in the workspace.
+/// Origin (m) and axes of a frame, in the workspace.
 #[derive(Clone, Debug)]
 struct Axes {
     name: String,
@@ -49,13 +50,13 @@ struct Axes {
 }
 
 impl Extras {
-    /// The switches, beside the one that leads the instrument.
+    /// The menu, beside the switch that leads the instrument.
     pub(super) fn ui(&mut self, ui: &mut Ui, rect: Rect) {
         let place = Rect::from_min_size(rect.right_bottom() - vec2(330.0, 46.0), vec2(72.0, 34.0)).intersect(rect);
         ui.scope_builder(UiBuilder::new().max_rect(place), |ui| {
             let on = *self != Self::default();
             let button = Button::selectable(on, SHOW).frame_when_inactive(true).min_size(place.size());
-            // Open until the pointer goes elsewhere: often both are wanted.
+            // Stays open until a click elsewhere, because often both switches are wanted.
             let config = MenuConfig::new().close_behavior(PopupCloseBehavior::CloseOnClickOutside);
             let menu = MenuButton::from_button(button).config(config);
             let (response, _) = menu.ui(ui, |ui| {
@@ -67,7 +68,7 @@ impl Extras {
         });
     }
 
-    /// Draws what is switched on.
+    /// Draws the selected objects.
     pub(super) fn paint(
         self,
         painter: &Painter,
@@ -90,7 +91,7 @@ impl Extras {
     }
 }
 
-/// The outline of the sphere that no arrow from this tip leaves.
+/// Outline of the sphere that represents the force ceiling, around this tip.
 fn ceiling(painter: &Painter, rect: Rect, camera: &Camera, arm: &Arm, ceiling_n: f32) {
     let radius_m = ceiling_n * stage::ARROW_M_PER_N;
     let outline = (0..=RING).filter_map(|i| {
@@ -101,7 +102,7 @@ fn ceiling(painter: &Painter, rect: Rect, camera: &Camera, arm: &Arm, ceiling_n:
     let Some(top) = outline.iter().copied().min_by(|a, b| a.y.total_cmp(&b.y)) else { return };
     painter.add(Shape::convex_polygon(outline.clone(), Color32::from_white_alpha(10), Stroke::NONE));
     painter.add(Shape::Vec(Shape::dashed_line(&outline, Stroke::new(1.4, theme::DARK.text_weak), 7.0, 6.0)));
-    // Within the view, however large the sphere is.
+    // Inside the view, however large the sphere is.
     let place = pos2(top.x, top.y.max(rect.top() + 24.0));
     label(
         painter,
@@ -129,7 +130,7 @@ fn frames(scene: &Scene, arms: &[Arm]) -> Vec<Axes> {
         let side = if arms.len() > 1 { format!(" {}", side_name(arm.side).to_lowercase()) } else { String::new() };
         frames.push(Axes { name: text::field::TROCAR.to_owned() + &side, origin_m: arm.trocar_m, ways: base });
         let Some(z) = (arm.trocar_m - arm.pose.tip_m).try_normalize(1e-4) else { continue };
-        // x as near to the base's as it can be.
+        // The direction of x closest to the base's x.
         let x = (Vector3::x() - z * z.x).try_normalize(1e-3).unwrap_or_else(Vector3::y);
         frames.push(Axes {
             name: text::field::TIP.to_owned() + &side,

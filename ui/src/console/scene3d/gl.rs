@@ -1,7 +1,7 @@
-//! The scene's triangles on the screen: one small OpenGL program with a depth test, inside egui's own frame.
+//! Draws the scene's triangles: a small OpenGL renderer with a depth test, inside egui's frame.
 //!
-//! Smooth edges come from a multisampled target of the view's own size, copied into egui's frame: multisampling the whole
-//! window would double the cost of every frame in software (74 against 37 ms at 1600x1000).
+//! Antialiasing uses a multisampled framebuffer of the view's size, which is copied into egui's frame. Multisampling
+//! the whole window would double the cost of every frame on a software renderer (74 instead of 37 ms at 1600x1000).
 
 #![expect(unsafe_code, reason = "OpenGL calls through glow")]
 
@@ -13,44 +13,44 @@ use nalgebra::{Matrix4, Vector3};
 
 use super::mesh::{Material, Mesh};
 
-/// Everything one frame needs.
+/// Data of one frame.
 #[derive(Debug)]
 pub struct Frame {
-    /// What to draw.
+    /// The triangles.
     pub mesh: Mesh,
-    /// Workspace to clip space.
+    /// Transformation from workspace to clip space.
     pub clip_from_workspace: Matrix4<f32>,
     /// Position of the eye, m.
     pub eye_m: Vector3<f32>,
-    /// Tip and top of each instrument's shaft, m: they throw shadows. At most two shafts count.
+    /// Tip and top of each instrument's shaft, m, for their shadows. At most two shafts are used.
     pub shafts_m: Vec<[Vector3<f32>; 2]>,
-    /// Colours at the top and at the bottom of the backdrop.
+    /// Colours at the top and at the bottom of the background.
     pub backdrop: [Color32; 2],
-    /// Draw with smooth edges.
+    /// Draw with antialiasing.
     pub smooth: bool,
 }
 
-/// Steps of the backdrop: no two neighbours differ by more than one part in 255.
+/// Bands of the background gradient; neighbouring bands differ by at most 1/255.
 const BACKDROP_STEPS: i32 = 32;
 const SAMPLES: i32 = 4;
-/// Size of a [`Vertex`](super::mesh::Vertex); a test of the mesh holds it.
+/// Size of a [`Vertex`](super::mesh::Vertex), checked by a test of the mesh.
 const VERTEX_BYTES: i32 = 28;
 const ATTRIBUTES: [&str; 3] = ["a_position", "a_normal", "a_colour"];
 
-/// The programs, as [`Material`] and number of shafts that throw shadows; the last is that of two.
+/// The shader programs, by [`Material`] and number of shafts with shadows; the last is for two.
 const PROGRAMS: [(Material, usize); 5] =
     [(Material::Matte, 1), (Material::Tissue, 1), (Material::Metal, 1), (Material::Plain, 1), (Material::Tissue, 2)];
-/// What is drawn first to last: what lies in front first, so that what it hides is never shaded.
+/// Drawing order: front objects first, so that hidden pixels are not shaded.
 const ORDER: [Material; 4] = [Material::Plain, Material::Metal, Material::Matte, Material::Tissue];
 
-/// The programs and their buffers on the GPU. Must be given back with [`Renderer::destroy`].
+/// The shader programs and their buffers on the GPU. Must be released with [`Renderer::destroy`].
 #[derive(Debug)]
 pub struct Renderer {
     programs: Vec<glow::Program>,
     array: glow::VertexArray,
     vertices: glow::Buffer,
     indices: glow::Buffer,
-    /// Made when first wanted and when the view changes its size.
+    /// Created when first needed and when the view changes its size.
     target: Mutex<TargetState>,
 }
 
@@ -58,11 +58,11 @@ pub struct Renderer {
 enum TargetState {
     None,
     Made(Target),
-    /// The driver does not do it: edges stay rough.
+    /// The driver does not support it: no antialiasing.
     Refused,
 }
 
-/// A multisampled picture of the view.
+/// A multisampled framebuffer for the view.
 #[derive(Debug)]
 struct Target {
     framebuffer: glow::Framebuffer,
@@ -72,7 +72,7 @@ struct Target {
 }
 
 impl Renderer {
-    /// Compiles the programs. The error says what the driver disliked.
+    /// Compiles the shader programs; the error is the driver's message.
     pub fn new(gl: &glow::Context) -> Result<Self, String> {
         // SAFETY: called with eframe's current context; every object made here is destroyed in `destroy`.
         unsafe {
@@ -98,7 +98,7 @@ impl Renderer {
         }
     }
 
-    /// Draws one frame into egui's viewport, in the framebuffer that is bound.
+    /// Draws one frame into egui's viewport, in the bound framebuffer.
     pub fn paint(&self, gl: &glow::Context, place: &ViewportInPixels, frame: &Frame) {
         let size = [place.width_px, place.height_px];
         if frame.mesh.indices.is_empty() || size.iter().any(|&x| x < 1) {
@@ -164,7 +164,7 @@ impl Renderer {
         }
     }
 
-    /// Gives everything back to the driver.
+    /// Releases all objects on the GPU.
     pub fn destroy(&self, gl: &glow::Context) {
         let state = self.target.lock().unwrap_or_else(PoisonError::into_inner);
         // SAFETY: the objects were made in this context and are not used again.
@@ -183,7 +183,7 @@ impl Renderer {
 }
 
 impl TargetState {
-    /// Makes the target, or makes it anew for another size.
+    /// Creates the framebuffer, or replaces it if the size has changed.
     ///
     /// # Safety
     /// The context must be current.
@@ -226,13 +226,13 @@ impl Target {
         }
     }
 
-    /// Copies the picture into egui's framebuffer; false when the driver refuses.
+    /// Copies the image into egui's framebuffer; false if the driver refuses.
     ///
     /// # Safety
     /// The context must be current.
     unsafe fn copy(&self, gl: &glow::Context, into: Option<glow::Framebuffer>, place: &ViewportInPixels) -> bool {
         unsafe {
-            // What egui itself may have left is none of ours.
+            // Clear errors left over from egui.
             gl.get_error();
             gl.bind_framebuffer(glow::READ_FRAMEBUFFER, Some(self.framebuffer));
             gl.bind_framebuffer(glow::DRAW_FRAMEBUFFER, into);
@@ -258,7 +258,7 @@ impl Target {
     }
 
     /// # Safety
-    /// The context must be current; the target is not used again.
+    /// The context must be current; the framebuffer is not used again.
     unsafe fn destroy(&self, gl: &glow::Context) {
         unsafe {
             gl.bind_framebuffer(glow::FRAMEBUFFER, None);
@@ -269,7 +269,8 @@ impl Target {
     }
 }
 
-/// Clears a part of the framebuffer to a gradient, band by band: far cheaper in software than shading every pixel.
+/// Clears a part of the framebuffer to a gradient, band by band: on a software renderer much cheaper than shading every
+/// pixel.
 ///
 /// # Safety
 /// The context must be current.
@@ -290,13 +291,13 @@ unsafe fn clear(gl: &glow::Context, [left, bottom]: [i32; 2], [width, height]: [
     }
 }
 
-/// The memory of a slice of plain numbers, as the GPU takes it.
+/// The bytes of a slice of plain numbers, in the GPU's format.
 fn bytes<T: Copy>(slice: &[T]) -> &[u8] {
     // SAFETY: `T` is `Vertex` (seven 4-byte fields, no padding) or `u32`; every byte is initialised.
     unsafe { std::slice::from_raw_parts(slice.as_ptr().cast(), size_of_val(slice)) }
 }
 
-/// What a program must know of the frame; what it has no use for it does not take.
+/// Sets the uniforms of a program; those that it does not use are skipped.
 ///
 /// # Safety
 /// The context must be current, with the program in use.
@@ -334,7 +335,7 @@ unsafe fn program(gl: &glow::Context, material: Material, shafts: usize) -> Resu
                 return Err(gl.get_shader_info_log(shader));
             }
             gl.attach_shader(program, shader);
-            // Lives as long as the program it is attached to.
+            // It is deleted together with the program that it is attached to.
             gl.delete_shader(shader);
         }
         gl.link_program(program);

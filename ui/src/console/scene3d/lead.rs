@@ -1,7 +1,7 @@
-//! Your turn: the instrument led by mouse and keyboard, for a demonstration on any laptop.
+//! Leads the instrument with mouse and keyboard, for demonstrations without a haptic device.
 //!
-//! The screen sends places (m, workspace); the hand that holds the handle goes there, and gives way under the force that is
-//! rendered. Nothing is led while the loop has stopped; a stop lets go.
+//! The window sends positions (m, workspace). The simulated hand moves there and yields to the rendered force. Leading
+//! ends when the loop stops.
 
 use egui::{Button, Key, Rect, Response, RichText, Ui, vec2};
 use nalgebra::Vector3;
@@ -10,27 +10,27 @@ use nima_machine::messages::{Command, LoopState};
 use super::{Camera, Live, Outbox};
 use crate::console::{text, theme};
 
-/// One press of an arrow key, m.
+/// Motion per press of an arrow key, m.
 const STEP_M: f32 = 0.001;
-/// Height per point of the wheel, m.
+/// Change of height per point of the wheel, m.
 const WHEEL_M: f32 = 0.0001;
-/// Where the instrument may be led: half width, half depth, lowest and highest, m.
+/// Space in which the instrument may be led: half width, half depth, lowest and highest, m.
 const SIDE_M: f32 = 0.055;
 const HEIGHT_M: std::ops::RangeInclusive<f32> = -0.02..=0.06;
 
-/// The switch and the place.
+/// Whether the instrument is led, and to which position.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Lead {
     at_m: Option<Vector3<f32>>,
 }
 
 impl Lead {
-    /// Somebody leads.
+    /// Whether the instrument is led.
     pub(super) const fn is_on(self) -> bool {
         self.at_m.is_some()
     }
 
-    /// The switch in the view, and what mouse and keys do while it is on. True while it is on.
+    /// The switch in the view, and the handling of mouse and keys while it is on. Returns true while it is on.
     pub(super) fn ui(
         &mut self,
         ui: &mut Ui,
@@ -42,7 +42,7 @@ impl Lead {
     ) -> bool {
         let runs = matches!(live.state(), LoopState::Idle | LoopState::Engaged);
         if self.is_on() && !runs {
-            // The loop has let go already.
+            // The loop has ended the leading already.
             self.at_m = None;
         }
         let place = Rect::from_min_size(rect.right_bottom() - vec2(250.0, 46.0), vec2(150.0, 34.0));
@@ -80,7 +80,7 @@ impl Lead {
     }
 }
 
-/// Small steps by keys, as the screen shows them.
+/// Small steps by keys, in the axes of the screen.
 fn keys_m(ui: &Ui, camera: &Camera) -> Vector3<f32> {
     if ui.ctx().text_edit_focused() {
         return Vector3::zeros();

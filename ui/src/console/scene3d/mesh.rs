@@ -1,23 +1,23 @@
-//! Triangles for the scene: tubes, spheres, rings and sheets with smooth normals. Knows no GPU.
+//! Triangle meshes: tubes, spheres, rings and surfaces with smooth normals. Independent of the GPU.
 
 use egui::Color32;
 use nalgebra::Vector3;
 
-/// How a surface answers to light; the fragment shader tells them apart by this number.
+/// Shading of a surface; the fragment shader selects it by this number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
 pub enum Material {
-    /// Plastic: soft light, faint highlight.
+    /// Plastic: diffuse light, weak highlight.
     Matte = 0,
-    /// Wet, mottled, with a 5 mm grid that shows the deformation; takes the instrument's shadow.
+    /// Wet and mottled, with a 5 mm grid that shows the deformation; receives the instrument's shadow.
     Tissue = 1,
     /// Steel: strong highlight.
     Metal = 2,
-    /// Its own colour, whatever the light: what is information and not a thing.
+    /// Constant colour independent of light, for information that is not a physical object.
     Plain = 3,
 }
 
-/// One corner as the GPU reads it: 28 bytes.
+/// One vertex in the GPU's format: 28 bytes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C)]
 pub struct Vertex {
@@ -29,21 +29,21 @@ pub struct Vertex {
     pub colour: [u8; 4],
 }
 
-/// Colour and answer to light.
+/// Colour and material.
 #[derive(Clone, Copy, Debug)]
 pub struct Paint(pub Color32, pub Material);
 
-/// Triangles to be drawn.
+/// A list of triangles.
 #[derive(Clone, Debug, Default)]
 pub struct Mesh {
-    /// Corners.
+    /// The vertices.
     pub vertices: Vec<Vertex>,
-    /// Three per triangle.
+    /// Indices of the vertices, three per triangle.
     pub indices: Vec<u32>,
 }
 
 impl Mesh {
-    /// Adds one corner, gives its number.
+    /// Adds a vertex; returns its index.
     pub fn vertex(&mut self, position: Vector3<f32>, normal: Vector3<f32>, paint: Paint) -> u32 {
         let [r, g, b, _] = paint.0.to_array();
         self.vertices.push(Vertex {
@@ -54,7 +54,7 @@ impl Mesh {
         self.vertices.len() as u32 - 1
     }
 
-    /// The corners of all triangles, three per triangle, by the number of their [`Material`], in the order in which they were added.
+    /// The indices of all triangles, three per triangle, by [`Material`], in the order in which they were added.
     pub fn corners_by_material(&self) -> [Vec<u32>; 4] {
         let mut corners: [Vec<u32>; 4] = Default::default();
         for triangle in self.indices.chunks_exact(3) {
@@ -66,7 +66,7 @@ impl Mesh {
         corners
     }
 
-    /// Adds `rows` by `columns` cells over corners that were added row by row from `first`.
+    /// Adds the triangles of `rows` by `columns` cells, whose vertices were added row by row starting at index `first`.
     pub fn sheet(&mut self, first: u32, rows: u32, columns: u32) {
         let stride = columns + 1;
         for row in 0..rows {
@@ -84,7 +84,7 @@ impl Mesh {
         let length = axis.norm();
         let Some(along) = axis.try_normalize(1e-7) else { return };
         let (u, v) = across(&along);
-        // On a cone the normal leans by the slope of its side.
+        // The normal of a cone is tilted by the slope of its side.
         let lean = along * ((radii[0] - radii[1]) / length);
         let first = self.vertices.len() as u32;
         for (end, radius) in ends.iter().zip(radii) {
@@ -126,7 +126,7 @@ impl Mesh {
         self.sheet(first, rings, sides);
     }
 
-    /// A ring that lies flat, each of its points lifted by `lift(x, y)` so that it rides on a surface.
+    /// A horizontal ring; each of its points is raised by `lift(x, y)`, so that it follows a surface.
     pub fn ring(
         &mut self,
         centre: Vector3<f32>,
@@ -171,7 +171,7 @@ impl Mesh {
         }
     }
 
-    /// A band along points that turns its flat side to the eye; `width` gives its width (m) at each point.
+    /// A band along points that faces the eye; `width` gives its width (m) at each point.
     pub fn ribbon(
         &mut self,
         points: &[Vector3<f32>],
@@ -202,7 +202,7 @@ fn across(along: &Vector3<f32>) -> (Vector3<f32>, Vector3<f32>) {
     (u, along.cross(&u))
 }
 
-/// The direction after `step` of `steps` parts of a full turn from `u` towards `v`.
+/// The direction after `step` of `steps` parts of a full rotation from `u` towards `v`.
 fn around(u: &Vector3<f32>, v: &Vector3<f32>, step: u32, steps: u32) -> Vector3<f32> {
     let (sin, cos) = (std::f32::consts::TAU * step as f32 / steps as f32).sin_cos();
     u * cos + v * sin

@@ -1,5 +1,5 @@
-//! The operating field in three dimensions: a plain description of triangles ([`stage`]), drawn by the GPU ([`gl`]) inside
-//! egui's frame, with labels by egui's painter over it. Without a GPU (tests) everything but the triangles is there.
+//! The 3-D view of the operating field: triangles built by [`stage`], drawn by the GPU ([`gl`]) inside egui's frame,
+//! with labels by egui's painter over them. Without a GPU (in tests) everything but the triangles is drawn.
 
 pub mod camera;
 pub mod extras;
@@ -28,38 +28,38 @@ use self::{
 use super::{live::Live, outbox::Outbox, panels::gauge, theme, widgets::force_sign};
 use crate::console::text;
 
-/// Two ways to look.
+/// The two cameras.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Look {
-    /// From anywhere.
+    /// A free camera.
     #[default]
     Free,
-    /// As the endoscope sees it.
+    /// The endoscope's view.
     Endoscope,
 }
 
 /// Camera and GPU objects of the view.
 #[derive(Debug)]
 pub struct SceneView {
-    /// Draw with smooth edges.
+    /// Draw with antialiasing.
     pub smooth: bool,
-    /// From where it is seen.
+    /// Selected camera.
     pub look: Look,
-    /// Figures in the view: forces in numbers, and their gauges.
+    /// Show the forces as numbers and gauges.
     pub figures: bool,
-    /// What is drawn into it on request.
+    /// Optional objects.
     pub extras: Extras,
     camera: Camera,
-    /// The scene that the cameras were set for.
+    /// Name of the scene for which the cameras were set.
     set_for: Option<String>,
     lead: Lead,
     renderer: Option<Arc<Renderer>>,
-    /// What was drawn last; the same again needs no new triangles, and where a processor draws no drawing.
+    /// The last drawn scene; if nothing has changed, no new triangles are built, and a software renderer does not draw.
     drawn: Option<(Drawn, egui::PaintCallback)>,
     problem: Option<String>,
 }
 
-/// All that the triangles depend on.
+/// Everything that the triangles depend on.
 #[derive(Clone, Debug, PartialEq)]
 struct Drawn {
     rect: Rect,
@@ -96,12 +96,12 @@ impl SceneView {
         }
     }
 
-    /// Somebody leads the instrument from the screen.
+    /// Whether the instrument is led from the window.
     pub const fn is_led(&self) -> bool {
         self.lead.is_on()
     }
 
-    /// The camera in use.
+    /// The present camera.
     fn camera(&self, scene: &Scene) -> Camera {
         match self.look {
             Look::Free => self.camera,
@@ -109,7 +109,7 @@ impl SceneView {
         }
     }
 
-    /// Gives the GPU objects back.
+    /// Releases all objects on the GPU.
     pub fn destroy(&mut self, gl: &glow::Context) {
         if let Some(renderer) = self.renderer.take() {
             renderer.destroy(gl);
@@ -117,7 +117,7 @@ impl SceneView {
     }
 }
 
-/// The view, over all the room there is.
+/// Draws the view over the available space.
 pub fn scene_ui(ui: &mut Ui, live: &Live, view: &mut SceneView, outbox: &mut Outbox) {
     if view.set_for.as_ref() != Some(&live.scene.name) {
         view.set_for = Some(live.scene.name.clone());
@@ -125,10 +125,10 @@ pub fn scene_ui(ui: &mut Ui, live: &Live, view: &mut SceneView, outbox: &mut Out
     }
     let (rect, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Canvas, true, text::field::OPERATING_FIELD));
-    // The triangles lie under the button that is put into the view, though they are known only after it.
+    // Reserves a place below the buttons of the view, because the triangles are known only later.
     let ground = ui.painter_at(rect).add(egui::Shape::Noop);
     let camera = view.camera(&live.scene);
-    // A surgeon's view is led by the surgeon's own hands.
+    // Not in a surgeon's view: the surgeon leads with the handle.
     let leading = (view.figures || view.lead.is_on()) && view.lead.ui(ui, rect, &response, live, &camera, outbox);
     if view.look == Look::Free {
         turn(ui, live, view, &response, leading);
@@ -155,14 +155,14 @@ pub fn scene_ui(ui: &mut Ui, live: &Live, view: &mut SceneView, outbox: &mut Out
         axes(&painter, rect, &camera);
     }
     hint(&painter, rect, view);
-    // Nothing pops up in a surgeon's field.
+    // No hover texts in a surgeon's view.
     let pointed_at = response.hover_pos().filter(|_| view.figures && !response.dragged());
     if let Some(words) = pointed_at.and_then(|pointer| pick::pick(pointer, rect, &camera, &live.scene, &arms)) {
         response.on_hover_text_at_pointer(words);
     }
 }
 
-/// Mouse and wheel turn the free camera.
+/// Rotates and zooms the free camera with mouse and wheel.
 fn turn(ui: &Ui, live: &Live, view: &mut SceneView, response: &egui::Response, leading: bool) {
     if response.dragged() && !leading {
         view.camera.orbit(response.drag_delta());
@@ -176,7 +176,7 @@ fn turn(ui: &Ui, live: &Live, view: &mut SceneView, response: &egui::Response, l
     }
 }
 
-/// What stands on the stage of one side: the last that is known of it, at rest above the field before anything is.
+/// The objects of one side from its newest tick; at rest above the field before there is one.
 fn arm(live: &Live, side: Side) -> Option<Arm> {
     let scene = live.scene.of_side(side)?;
     let finite = |v: Vector3<f64>| v.iter().all(|x| x.is_finite());
@@ -220,15 +220,15 @@ fn triangles(rect: Rect, live: &Live, view: &mut SceneView, arms: &[Arm]) -> Opt
     Some(callback)
 }
 
-/// Way up the shaft at which the name of a hand stands beside it, m: above the forces' numbers, and without them so low that the
-/// endoscope sees it.
+/// Distance up the shaft at which the name of a hand is shown, m: above the numbers of the forces or, without them, low
+/// enough for the endoscope to see it.
 const NAME_ABOVE_M: [f32; 2] = [0.05, 0.085];
 
-/// Names and numbers beside the things of one side.
+/// Names and numbers beside the objects of one side.
 fn labels(painter: &Painter, rect: Rect, live: &Live, camera: &Camera, arm: &Arm, figures: bool) {
     let at = |point_m: Vector3<f32>| camera.project(&point_m, rect);
     let Arm { trocar_m, pose, side, .. } = arm;
-    // Not under the plate of the readings.
+    // Not below the readings.
     let free = |place: &Pos2| !figures || place.y > rect.top() + 110.0 || place.x > rect.left() + 350.0;
     if let Some(place) = at(*trocar_m).filter(free) {
         label(
@@ -250,7 +250,7 @@ fn labels(painter: &Painter, rect: Rect, live: &Live, camera: &Camera, arm: &Arm
     }
     let right = camera.right();
     let [measured, rendered] = stage::arrow_bases_m(pose, trocar_m, &right);
-    // The outer one's number stands outside, the inner one's above its head: so they never meet.
+    // The number of the outer arrow is outside it and that of the inner one above its tip, so that they do not overlap.
     let (outside, shift) = if (measured - rendered).dot(&right) < 0.0 {
         (Align2::RIGHT_CENTER, vec2(-9.0, -6.0))
     } else {
@@ -278,7 +278,7 @@ pub const fn side_name(side: Side) -> &'static str {
     }
 }
 
-/// Text with a dark edge, so that it reads on any ground.
+/// Text with a dark outline, legible on any background.
 fn label(painter: &Painter, place: Pos2, align: Align2, text: &str, font: FontId, colour: Color32) {
     let shade = Color32::from_black_alpha(190);
     painter.text(place + vec2(1.0, 1.0), align, text, font.clone(), shade);
@@ -286,7 +286,8 @@ fn label(painter: &Painter, place: Pos2, align: Align2, text: &str, font: FontId
     painter.text(place, align, text, font, colour);
 }
 
-/// The forces in large figures, a column for each hand as they stand on the screen, and gauges of both against the ceiling.
+/// The forces in large figures, one column for each hand in their order on the screen, and gauges of both with the
+/// ceiling.
 fn readings(painter: &Painter, rect: Rect, live: &Live) {
     let mut sides: Vec<Side> = live.sides().collect();
     sides.reverse();
@@ -331,7 +332,7 @@ fn readings(painter: &Painter, rect: Rect, live: &Live) {
     painter.text(pos2(first - 8.0, line_y), Align2::RIGHT_CENTER, words, theme::regular(12.5), theme::DARK.text_weak);
 }
 
-/// Which way x, y and z of the traces go, in the lower right corner.
+/// Directions of the traces' x, y and z, in the lower right corner.
 fn axes(painter: &Painter, rect: Rect, camera: &Camera) {
     const LENGTH: f32 = 26.0;
     let origin = rect.right_bottom() - vec2(54.0, 40.0);

@@ -1,4 +1,4 @@
-//! What the pointer is at in the view, in words with numbers, units and frame.
+//! Hover texts of the 3-D view: the object under the pointer, with numbers, units and frame.
 
 use egui::{Pos2, Rect};
 use nalgebra::{Vector3, Vector4};
@@ -10,10 +10,10 @@ use super::{
 };
 use crate::console::text;
 
-/// As near as this a thing is meant, points.
+/// Distance from the pointer within which an object is hit, points.
 const REACH: f32 = 12.0;
 
-/// What is under the pointer, in front of all else that is; `None` where nothing is.
+/// Text of the frontmost object under the pointer; `None` if there is none.
 pub(super) fn pick(pointer: Pos2, rect: Rect, camera: &Camera, scene: &Scene, arms: &[Arm]) -> Option<String> {
     arms.iter().find_map(|arm| of_arm(pointer, rect, camera, scene, arm, arms.len() > 1)).or_else(|| {
         let place_m = on_tissue(pointer, rect, camera, scene)?;
@@ -49,12 +49,12 @@ fn of_arm(pointer: Pos2, rect: Rect, camera: &Camera, scene: &Scene, arm: &Arm, 
     near(trocar_m).then(|| text::field::trocar(&whose, &place(trocar_m)))
 }
 
-/// A place in millimetres of the base's frame.
+/// A position in millimetres in the base's frame.
 fn place(at_m: &Vector3<f32>) -> String {
     text::field::place((at_m * 1e3).into())
 }
 
-/// From a point to a stretch between two others, points.
+/// Distance from a point to a line segment, points.
 fn distance(point: Pos2, from: Pos2, to: Pos2) -> f32 {
     let way = to - from;
     let along = if way.length_sq() > 1e-6 { ((point - from).dot(way) / way.length_sq()).clamp(0.0, 1.0) } else { 0.0 };

@@ -1,4 +1,4 @@
-//! What stands on the stage: tissue, targets, trocar, instrument, forces, trail. Made anew each frame from one tick.
+//! Builds the 3-D scene: tissue, targets, trocar, instrument, forces, trail. Rebuilt in each frame from one tick.
 
 use egui::Color32;
 use nalgebra::Vector3;
@@ -10,16 +10,16 @@ use crate::console::theme;
 
 /// Length of a force arrow, m per N.
 pub const ARROW_M_PER_N: f32 = 0.017;
-/// Below this a force has no arrow: it would be noise, N.
+/// A smaller force has no arrow, because it would show noise, N.
 const ARROW_LEAST_N: f32 = 0.06;
-/// An arrow grows no longer than this, N.
+/// Force at which an arrow reaches its maximum length, N.
 const ARROW_MOST_N: f32 = 8.0;
 /// Radius of the instrument's shaft, m (a 5 mm instrument).
 pub const SHAFT_RADIUS_M: f32 = 0.0025;
 /// Width of the dent under a tip, m.
 const DENT_M: f32 = 0.0085;
 const SLAB_THICKNESS_M: f32 = 0.016;
-/// Cells of the tissue's surface along each side; fewer where a processor must draw them.
+/// Cells of the tissue's surface along each side; fewer with a software renderer.
 const CELLS: u32 = 64;
 const CELLS_COARSE: u32 = 40;
 
@@ -33,7 +33,7 @@ const STEEL: Paint = Paint(Color32::from_rgb(0xb4, 0xbc, 0xc6), Material::Metal)
 const SLEEVE: Paint = Paint(Color32::from_rgb(0x4a, 0x53, 0x5f), Material::Matte);
 const TRAIL: Paint = Paint(Color32::from_rgb(0xc8, 0xcf, 0xd8), Material::Plain);
 
-/// What changes from frame to frame, in the workspace frame.
+/// Data that change from frame to frame, in the workspace frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pose {
     /// Tip of the instrument, m.
@@ -44,7 +44,7 @@ pub struct Pose {
     pub rendered_n: Vector3<f32>,
 }
 
-/// How far the surface is pushed down under a tip and around it.
+/// Deformation of the surface around a tip.
 #[derive(Clone, Copy, Debug)]
 pub struct Dent {
     at_m: [f32; 2],
@@ -55,7 +55,7 @@ impl Dent {
     /// No dent.
     pub const NONE: Self = Self { at_m: [0.0; 2], depth_m: 0.0 };
 
-    /// The dent of a tip in the scene's tissue; none beside it or above it.
+    /// The deformation by a tip in the scene's tissue; none if the tip is beside or above it.
     pub fn new(scene: &Scene, tip_m: &Vector3<f32>) -> Self {
         let depth_m = scene.tissue.map_or(0.0, |tissue| {
             let [x_m, y_m] = tissue.size_m.map(|x| 0.5 * x as f32);
@@ -65,10 +65,11 @@ impl Dent {
         Self { at_m: [tip_m.x, tip_m.y], depth_m }
     }
 
-    /// Height change at a place, m: down under the tip, a slight bulge around, as for a soft body that keeps its volume.
+    /// Change of height at a position, m: down under the tip, with a slight bulge around it, as in a soft body of
+    /// constant volume.
     pub fn lift_m(&self, x: f32, y: f32) -> f32 {
         let q = ((x - self.at_m[0]).powi(2) + (y - self.at_m[1]).powi(2)) / (DENT_M * DENT_M);
-        // Far away less than a thousandth of a millimetre is left.
+        // Further away the change is below a micrometre.
         if self.depth_m <= 0.0 || q > 18.0 {
             return 0.0;
         }
@@ -76,12 +77,13 @@ impl Dent {
     }
 }
 
-/// The dents of both instruments in one surface.
+/// The deformations by both instruments.
 #[derive(Clone, Copy, Debug)]
 pub struct Dents(pub [Dent; SIDES]);
 
 impl Dents {
-    /// Height change at a place, m. Where two dents meet the deeper one counts: tissue is never lower than the lowest tip.
+    /// Change of height at a position, m. Where two overlap the deeper one counts: tissue is never below the lowest
+    /// tip.
     pub fn lift_m(&self, x: f32, y: f32) -> f32 {
         let [one, other] = self.0.each_ref().map(|dent| dent.lift_m(x, y));
         if one < 0.0 && other < 0.0 { one.min(other) } else { one + other }
@@ -95,26 +97,26 @@ impl Dents {
     }
 }
 
-/// One arm pair's part of the stage.
+/// The objects of one arm pair.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Arm {
-    /// Which.
+    /// Side of the arm.
     pub side: Side,
-    /// Where its shaft goes through the wall, m.
+    /// Position of its trocar, m.
     pub trocar_m: Vector3<f32>,
-    /// What it goes to, m.
+    /// Positions of its targets, m.
     pub targets_m: Vec<Vector3<f32>>,
-    /// What it does now.
+    /// Present pose and forces.
     pub pose: Pose,
-    /// Where its tip was, m, oldest first.
+    /// Recent positions of its tip, m, oldest first.
     pub trail_m: Vec<Vector3<f32>>,
 }
 
-/// Builds the whole stage as seen from `eye_m`, with `right` on the right of the screen, `fine` or with fewer triangles.
+/// Builds the scene as seen from `eye_m`, with `right` to the right of the screen; `fine` selects more triangles.
 pub fn build(scene: &Scene, arms: &[Arm], eye_m: &Vector3<f32>, right: &Vector3<f32>, fine: bool) -> Mesh {
     let mut mesh = Mesh { vertices: Vec::with_capacity(12_000), indices: Vec::with_capacity(60_000) };
     let mut dents = Dents([Dent::NONE; SIDES]);
-    // What is in front comes first, so that what it hides is never shaded.
+    // Front objects first, so that hidden pixels are not shaded.
     for Arm { side, trocar_m, pose, .. } in arms {
         let [measured, rendered] = arrow_bases_m(pose, trocar_m, right);
         measured_arrow(&mut mesh, measured, &pose.measured_n);
@@ -143,7 +145,7 @@ fn tissue(mesh: &mut Mesh, scene: &Scene, dents: &Dents, cells: u32) {
         for column in 0..=cells {
             let (x, y) = (place(column, x_m), place(row, y_m));
             let lift_m = dents.lift_m(x, y);
-            // A hollow gets less light from the sky, and pressed tissue less blood.
+            // Darker in a depression, and paler where the tissue is compressed.
             let shade = (-lift_m / 0.010).clamp(0.0, 1.0) * 0.55;
             let colour = mottled(x, y).lerp_to_gamma(TISSUE_HOLLOW, shade);
             let position = Vector3::new(x, y, top_m + lift_m);
@@ -170,7 +172,7 @@ fn tissue(mesh: &mut Mesh, scene: &Scene, dents: &Dents, cells: u32) {
     );
 }
 
-/// The tissue's colour at a place: slow waves of blood under the surface, so that it does not look like a tile.
+/// The tissue's colour at a position, with slow variations that look like blood below the surface.
 fn mottled(x: f32, y: f32) -> Color32 {
     let wave = (x * 97.0 + 2.1 * (y * 61.0).sin()).sin() + (y * 83.0 - 2.3 * (x * 53.0).sin() + 1.0).sin();
     let fine = ((x + 0.7 * y) * 271.0 + (y * 190.0).sin()).sin();
@@ -178,7 +180,7 @@ fn mottled(x: f32, y: f32) -> Color32 {
     TISSUE_DARK.lerp_to_gamma(TISSUE_PALE, share)
 }
 
-/// Shaft through the trocar to a blunt tip whose lowest point is the tip.
+/// Shaft through the trocar, with a blunt tip; its lowest point is the tip position.
 fn instrument(mesh: &mut Mesh, trocar_m: &Vector3<f32>, tip_m: &Vector3<f32>) {
     let Some(axis) = (trocar_m - tip_m).try_normalize(1e-4) else { return };
     let knob = tip_m + Vector3::z() * SHAFT_RADIUS_M;
@@ -192,26 +194,26 @@ fn instrument(mesh: &mut Mesh, trocar_m: &Vector3<f32>, tip_m: &Vector3<f32>) {
 
 const SHAFT: Paint = Paint(Color32::from_rgb(0x6d, 0x76, 0x82), Material::Metal);
 
-/// Both arrows begin beside the tip, on the side that the shaft does not cover as the operator sees it, measured outside:
-/// equal forces stay two arrows.
+/// Starting points of both arrows: beside the tip, on the side that the shaft does not cover in the operator's view,
+/// the measured force further out, so that equal forces do not overlap.
 pub fn arrow_bases_m(pose: &Pose, trocar_m: &Vector3<f32>, right: &Vector3<f32>) -> [Vector3<f32>; 2] {
     let side = if (trocar_m - pose.tip_m).dot(right) > 0.0 { -1.0 } else { 1.0 };
     [0.0135, 0.0060].map(|away| pose.tip_m + right * (side * away) + Vector3::z() * 0.002)
 }
 
-/// `None` for a force too small to be shown, or not finite.
+/// Size and direction of an arrow; `None` for a force too small to be shown, or not finite.
 fn size_and_direction(force_n: &Vector3<f32>) -> Option<(f32, Vector3<f32>)> {
     let size_n = force_n.norm();
-    // Far beyond the ceiling an arrow would only fill the view.
+    // A force far above the ceiling would otherwise fill the view.
     (size_n.is_finite() && size_n >= ARROW_LEAST_N).then(|| (size_n.min(ARROW_MOST_N), force_n / size_n))
 }
 
-/// The force is large enough to be shown.
+/// Whether the force is large enough for an arrow.
 pub fn has_arrow(force_n: &Vector3<f32>) -> bool {
     size_and_direction(force_n).is_some()
 }
 
-/// One smooth shaft, one cone.
+/// A plain shaft with one cone.
 fn measured_arrow(mesh: &mut Mesh, base: Vector3<f32>, force_n: &Vector3<f32>) {
     let paint = Paint(theme::DARK.measured, Material::Plain);
     let Some((size_n, along)) = size_and_direction(force_n) else { return };
@@ -221,7 +223,7 @@ fn measured_arrow(mesh: &mut Mesh, base: Vector3<f32>, force_n: &Vector3<f32>) {
     mesh.tube([base + along * (length - head), base + along * length], [0.0030, 0.0], 18, paint);
 }
 
-/// A beaded shaft and a double cone: told from the other by its shape alone.
+/// A beaded shaft with a double cone: its shape alone distinguishes it from the other arrow.
 fn rendered_arrow(mesh: &mut Mesh, base: Vector3<f32>, force_n: &Vector3<f32>) {
     const BEAD_M: f32 = 0.0055;
     let paint = Paint(theme::DARK.rendered, Material::Plain);

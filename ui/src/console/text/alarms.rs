@@ -1,4 +1,4 @@
-//! The alarms: cause and cure of each, the strip that pins the first, the list of the last.
+//! Alarms: cause and cure of each, the alarm strip, and the list of recent alarms.
 
 pub(in crate::console) const ALARM: &str = "Alarm";
 pub(in crate::console) const WARNING: &str = "Warning";
@@ -29,7 +29,7 @@ pub(in crate::console) const PRESENT: &str = "still present";
 pub(in crate::console) const DEVICE_MISSING_CURE: &str =
     "It is opened again automatically; check its cable and its power";
 
-/// A fault, and when it was first told, s on the loop's clock.
+/// A fault and the time of its first report, s on the loop's clock.
 pub(in crate::console) fn fault(cause: &str, t_s: f64) -> String {
     format!("{cause} (at {t_s:.1} s)")
 }
@@ -39,7 +39,7 @@ pub(in crate::console) fn device(name: &str, cause: &str) -> String {
     format!("The {name} is missing: {cause}")
 }
 
-/// A device that is open and delivers nothing any more.
+/// A device that is connected but no longer delivers.
 pub(in crate::console) fn device_lost(name: &str, cause: &str) -> String {
     format!("The {name} is lost: {cause}")
 }
@@ -49,42 +49,42 @@ pub(in crate::console) fn fault_of(name: &str, cause: &str) -> String {
     format!("{cause} ({name})")
 }
 
-/// The loop is late too often.
+/// The loop misses too many deadlines.
 pub(in crate::console) fn periods_missed(percent: f64) -> String {
     format!("The control loop misses {percent:.1} % of its periods")
 }
 
-/// Gravity is not what it was.
+/// The bias of the wrist sensor has changed since the calibration.
 pub(in crate::console) fn bias_moved(by_n: f64) -> String {
     format!("The wrist sensor reads {by_n:.2} N without contact: its bias has drifted since the calibration")
 }
 
-/// Nothing plays a sound.
+/// No program for playing sounds is installed.
 pub(in crate::console) fn no_player(players: &str) -> String {
     format!("No alarm sound: none of these players is installed: {players}")
 }
 
-/// The player ended badly.
+/// The program for playing sounds failed.
 pub(in crate::console) fn player_failed(status: &impl std::fmt::Display) -> String {
     format!("The alarm sound could not be played ({status})")
 }
 
-/// The player did not begin.
+/// The program for playing sounds could not be started.
 pub(in crate::console) fn player_not_started(error: &impl std::fmt::Display) -> String {
     format!("The alarm sound could not be played: {error}")
 }
 
-/// The pinned alarm; `remarks` tell of others and of the acknowledgement.
+/// The alarm in the strip; `remarks` mention further alarms and the acknowledgement.
 pub(in crate::console) fn pinned(priority: &str, cause: &str, began_utc: &str, remarks: &str) -> String {
     format!("{priority}: {cause}, since {began_utc} UTC{remarks}")
 }
 
-/// A remark: others are folded under it.
+/// Remark: number of further alarms.
 pub(in crate::console) fn others(count: usize) -> String {
     format!(" (+{count} more)")
 }
 
-/// An entry of the list.
+/// An entry of the list of recent alarms.
 pub(in crate::console) fn entry(began: &str, until: &str, priority: &str, standing: &str) -> String {
     format!("{began} to {until}: {priority}, {standing}")
 }

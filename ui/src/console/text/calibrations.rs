@@ -1,4 +1,4 @@
-//! The calibration panel: what is calibrated, how well, and the ways into the wizards.
+//! The calibration panel: what is calibrated, how well, and the buttons that open the wizards.
 
 pub(in crate::console) const OPEN_DISABLED_HOVER: &str =
     "Already open, or the loop is stopped: press Release stop first";
@@ -26,64 +26,64 @@ pub(in crate::console) const NO_SENSOR_TO_SAVE_FOR: &str =
     "the serial number of the wrist sensor is not known; see the devices";
 pub(in crate::console) const ARM_TO_CALIBRATE: &str = "The wizards calibrate the wrist sensor of this arm";
 
-/// The way to a wizard, whose name begins small.
+/// Button that opens a wizard; the wizard's name is in lower case.
 pub(in crate::console) fn calibrate(wizard: &str) -> String {
     format!("Calibrate {wizard}…")
 }
 
-/// What the way to a wizard does.
+/// Hover text of that button.
 pub(in crate::console) fn opens(meaning: &str) -> String {
     format!("{meaning}\nThe loop is set to idle")
 }
 
-/// Where the force at the tip comes from.
+/// Source of the force at the tip.
 pub(in crate::console) fn source(words: &str) -> String {
     format!("Tip force: {words}")
 }
 
-/// An arm, by its side.
+/// Name of an arm.
 pub(in crate::console) fn arm(side: &str) -> String {
     format!("{side} arm")
 }
 
-/// What the calibrations belong to.
+/// Sensor and tool of the calibrations.
 pub(in crate::console) fn bound_to(sensor: &str, tool: &str) -> String {
     format!("Sensor {sensor}, {tool}")
 }
 
-/// This sensor has no gravity calibration, and others have one with the same tool.
+/// This sensor has no gravity calibration, but others have one with the same tool.
 pub(in crate::console) fn other_sensors_are_calibrated(sensor: &str, tool: &str, others: &str) -> String {
     format!(
         "Sensor {sensor} has no gravity calibration with {tool}; sensor {others} has one: connect that sensor, or calibrate this one."
     )
 }
 
-/// A file cannot be used.
+/// A file that cannot be used.
 pub(in crate::console) fn not_in_force(what: &str, why: &str) -> String {
     format!("{what}: the saved calibration is not used: {why}")
 }
 
-/// A record was kept in this file.
+/// A calibration was saved to this file.
 pub(in crate::console) fn saved(path: &std::path::Path) -> String {
     format!("Saved and in use: {}", path.display())
 }
 
-/// Gravity, in one line.
+/// The gravity calibration in one line.
 pub(in crate::console) fn gravity(day: &str, poses: usize, error_n: f64, remarks: &str) -> String {
     format!("Gravity: {day}, {poses} poses, held-out error {error_n:.3} N{remarks}")
 }
 
-/// The bias, once it was looked at.
+/// Result of the check of the bias.
 pub(in crate::console) fn bias_checked(found_at: &str, words: &str) -> String {
     format!("Bias, checked at {found_at} UTC: {words}")
 }
 
-/// The bias before that.
+/// State of the bias before its check has finished.
 pub(in crate::console) fn bias(words: &str) -> String {
     format!("Bias: {words}")
 }
 
-/// Correspondence, in one line.
+/// The correspondence in one line.
 pub(in crate::console) fn correspondence(
     day: &str,
     pairs: usize,
@@ -96,42 +96,42 @@ pub(in crate::console) fn correspondence(
     )
 }
 
-/// Tip force, in one line.
+/// The tip-force network in one line.
 pub(in crate::console) fn tip_force(day: &str, rows: usize, error_n: f64, remarks: &str) -> String {
     format!("Tip force: {day}, {rows} rows, error on new data {error_n:.3} N{remarks}")
 }
 
-/// A remark: it is old.
+/// Remark: the calibration is old.
 pub(in crate::console) fn days_old(days: u64) -> String {
     format!("; {days} days old, calibrate again")
 }
 
-/// A remark: somebody kept it in spite of the verdict.
+/// Remark: its verdict was overridden by this person.
 pub(in crate::console) fn not_proven(name: &str) -> String {
     format!("; NOT PROVEN, kept by {name}")
 }
 
-/// A wizard was not opened.
+/// A wizard could not be opened.
 pub(in crate::console) fn not_opened(reason: &str) -> String {
     format!("Not opened: {reason}")
 }
 
-/// There was no way back from a wizard.
+/// The previous scene could not be restored after a wizard.
 pub(in crate::console) fn still_in_the_experiment(reason: &str) -> String {
     format!("Could not return to the monitor: {reason}")
 }
 
-/// Kept, but the loop goes on without it.
+/// Saved, but the running loop does not use it yet.
 pub(in crate::console) fn in_force_with_next_start(saved: &str, reason: &str) -> String {
     format!("{saved}. It is used from the next start on: {reason}")
 }
 
-/// Not kept.
+/// Could not be saved.
 pub(in crate::console) fn not_saved(reason: &str) -> String {
     format!("Not saved: {reason}")
 }
 
-/// The loop has ended and does not begin again.
+/// The loop has ended and could not be restarted.
 pub(in crate::console) fn not_started_again(error: &impl std::fmt::Display) -> String {
     format!("the control loop could not be restarted: {error}")
 }

@@ -1,4 +1,4 @@
-//! What several panels name alike.
+//! Names that several panels use.
 
 pub(in crate::console) const RIGHT: &str = "Right";
 pub(in crate::console) const LEFT: &str = "Left";
@@ -6,7 +6,7 @@ pub(in crate::console) const MEASURED: &str = "Measured";
 pub(in crate::console) const RENDERED: &str = "Rendered";
 pub(in crate::console) const NOT_FINITE: &str = "not finite";
 
-/// A hand by its name, as in "Right hand".
+/// Name of a hand, as in "Right hand".
 pub(in crate::console) fn hand(side: &str) -> String {
     format!("{side} hand")
 }

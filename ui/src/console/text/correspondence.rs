@@ -71,54 +71,54 @@ pub(in crate::console) const R2_OVERALL: &str = "R2 of all axes";
 pub(in crate::console) const R2_OVERALL_HOVER: &str =
     "Share of the variance that the fit explains; the paper reports 0.95";
 
-/// How many pushes there are.
+/// Number of recorded pushes.
 pub(in crate::console) fn taken_of(count: usize, asked: usize) -> String {
     format!("{count} recorded of {asked} or more")
 }
 
-/// The same as a figure.
+/// Number of recorded pushes, as a figure.
 pub(in crate::console) fn pushes(count: usize) -> String {
     format!("{count} pushes")
 }
 
-/// What the sensors read at rest.
+/// Readings of the sensors at rest.
 pub(in crate::console) fn at_rest(wrist_n: f64, tissue_n: f64) -> String {
     format!(
         "wrist {wrist_n:.2} N, tissue {tissue_n:.2} N; touch nothing; if a sensor stays above 0.3 N, set it to zero"
     )
 }
 
-/// A push that goes on.
+/// During a push: keep holding.
 pub(in crate::console) fn hold(force_n: f64) -> String {
     format!("{force_n:.1} N; hold still")
 }
 
-/// A push that may end.
+/// During a push: it may end now.
 pub(in crate::console) fn let_go(force_n: f64) -> String {
     format!("{force_n:.1} N; enough, let go")
 }
 
-/// A push that was taken.
+/// A push was recorded.
 pub(in crate::console) fn push_taken(number: usize) -> String {
     format!("push {number} recorded")
 }
 
-/// A push that was not.
+/// A push was not recorded.
 pub(in crate::console) fn not_taken(why: &str) -> String {
     format!("not recorded: {why}")
 }
 
-/// Pushes of the fit, and those that it leaves out.
+/// Number of pushes used in the fit, and of those left out.
 pub(in crate::console) fn used(pairs: usize, left_out: usize, weak: usize) -> String {
     format!("{pairs}; not used: {left_out} contradictory, {weak} too weak")
 }
 
-/// From which frame to which.
+/// Names of the two frames.
 pub(in crate::console) fn rotation(name: &str) -> String {
     format!("Rotation {name}")
 }
 
-/// Agreement of all axes.
+/// Coefficient of determination over all axes.
 pub(in crate::console) fn agreement(fitted: f64, held_out: f64) -> String {
     format!("{fitted:.3} fitted, {held_out:.3} held out")
 }

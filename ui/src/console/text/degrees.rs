@@ -25,12 +25,12 @@ pub(in crate::console) const EXCITATION_HOVER: &str = "How much the motion varie
     (mm/s), all axes. Without motion nothing can be identified.";
 pub(in crate::console) const NONE: &str = "none";
 
-/// How long the shares go back.
+/// Period that the shares cover.
 pub(in crate::console) fn last_minutes(minutes: f64) -> String {
     format!("last {minutes:.0} min")
 }
 
-/// Motion columns that carry information, and those in use.
+/// Number of motion columns that carry information, and number in use.
 pub(in crate::console) fn columns(rank: u8, of: usize, used: u8) -> String {
     format!("{rank} of {of} columns, {used} used")
 }
@@ -40,7 +40,7 @@ pub(in crate::console) fn chosen(shares: &str) -> String {
     format!("Degrees chosen: {shares}")
 }
 
-/// Both rows of shares.
+/// Shares of both rules.
 pub(in crate::console) fn both(ours: &str, papers: &str) -> String {
     format!("This console  {ours}\nPaper's rule  {papers}")
 }

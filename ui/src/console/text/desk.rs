@@ -1,4 +1,4 @@
-//! The panels by name and purpose, and how to arrange them.
+//! Names and purposes of the panels, and how to arrange them.
 
 pub(in crate::console) const FIELD: &str = "Field";
 pub(in crate::console) const TRACES: &str = "Traces";
@@ -37,12 +37,12 @@ pub(in crate::console) const TRADE_OFF_HOVER: &str = "Computing time of one tick
 pub(in crate::console) const ALL_CLOSED: &str = "All panels are closed; open them in the View menu";
 pub(in crate::console) const DRAG_HOVER: &str = "Drag the title to move the panel";
 
-/// The button of a panel that takes it off the desk.
+/// Accessible name of the button that closes a panel.
 pub(in crate::console) fn close(panel: &str) -> String {
     format!("Close {panel}")
 }
 
-/// What closing does; `close` as from [`close`].
+/// Hover text of that button; `close` from [`close`].
 pub(in crate::console) fn close_meaning(close: &str) -> String {
     format!("{close}; the View menu opens it again.")
 }

@@ -11,32 +11,32 @@ pub(in crate::console) const CLEAR_FAULTS_HOVER: &str =
 pub(in crate::console) const OPENING: &str = "connecting";
 pub(in crate::console) const DISCONNECTED: &str = "disconnected";
 
-/// Why an arm stays disengaged.
+/// Why an arm cannot be engaged.
 pub(in crate::console) fn not_to_be_engaged(side: &str, obstacle: &impl std::fmt::Display) -> String {
     format!("The {side} arm cannot be engaged: {obstacle}")
 }
 
-/// What a device is.
+/// Identity of a device.
 pub(in crate::console) fn identity(product: &str, serial: &str, firmware: &str) -> String {
     format!("{product} {serial}, firmware {firmware}")
 }
 
-/// The name of the button that clears them.
+/// Accessible name of the button that clears a device's faults.
 pub(in crate::console) fn clear_faults_of(name: &str) -> String {
     format!("Clear faults of the {name}")
 }
 
-/// How well a device delivers.
+/// Rate and losses of a device.
 pub(in crate::console) fn delivery(rate_hz: f64, lost: u64, damaged: u64, refused: u64) -> String {
     format!("{rate_hz:.0} Hz; lost {lost}, damaged {damaged}, refused {refused}")
 }
 
-/// How often a device was lost.
+/// Number and longest duration of the outages.
 pub(in crate::console) fn outages(count: u64, longest_s: f64) -> String {
     format!("; lost {count} times since the start, at longest for {longest_s:.1} s")
 }
 
-/// A device that went.
+/// A device that was lost.
 pub(in crate::console) fn lost(cause: &str, delivery: &str) -> String {
     format!("lost: {cause}; {delivery}")
 }

@@ -27,17 +27,17 @@ pub(in crate::console) const STABLE_GAIN_HOVER: &str = "From simulations of a gr
     Force is kept at standstill and the energy gate is off, which is harder than the default settings. \
     Solid: stable. Thin: at the limit. Hatched: the hand shakes.";
 
-/// Where the gain stands in the map of stability.
+/// Verdict of the stability map for this gain.
 pub(in crate::console) fn stable_up_to(verdict: &str, greatest: f64, stiffness_n_m: f64) -> String {
     format!("This gain is {verdict}; stable up to {greatest:.2} at {stiffness_n_m:.0} N/m")
 }
 
-/// The gain after its ramp.
+/// The present gain, while it ramps to the chosen one.
 pub(in crate::console) fn gain_in_use(gain: f64) -> String {
     format!("in use {gain:.2}")
 }
 
-/// What a button for a small step does.
+/// Hover text of a button that changes a value by 0.1.
 pub(in crate::console) fn by_a_tenth(name: &str) -> String {
     format!("{name} by 0.1")
 }

@@ -22,57 +22,57 @@ pub(in crate::console) const VIEW_HOVER: &str = "Drag to turn, wheel to zoom, do
 pub(in crate::console) const LEAD_HOVER: &str =
     "Drag to move the instrument, wheel or Page Up and Page Down to change its height, arrow keys for small steps";
 
-/// The view stays empty.
+/// The view cannot be drawn.
 pub(in crate::console) fn not_drawn(problem: &str) -> String {
     format!("This graphics driver cannot draw the 3-D view: {problem}")
 }
 
-/// At the sphere of the ceiling.
+/// Label of the sphere of the force ceiling.
 pub(in crate::console) fn ceiling_sphere(ceiling_n: f32) -> String {
     format!("ceiling {ceiling_n:.1} N")
 }
 
-/// At the mark of the gauges.
+/// Label of the ceiling's mark on the gauges.
 pub(in crate::console) fn ceiling_mark(ceiling_n: f64) -> String {
     format!("ceiling\n{ceiling_n:.0} N")
 }
 
-/// Of which hand, where there are two.
+/// Addition for the side, if there are two arms.
 pub(in crate::console) fn of_hand(side: &str) -> String {
     format!(" of the {side} hand")
 }
 
-/// A place in the base's frame, mm.
+/// A position in the base's frame, mm.
 pub(in crate::console) fn place([x, y, z]: [f32; 3]) -> String {
     format!("x {x:.1}, y {y:.1}, z {z:.1} mm (world)")
 }
 
-/// The tissue is pointed at.
+/// Hover text of the tissue.
 pub(in crate::console) fn tissue(place: &str) -> String {
     format!("Tissue at {place}")
 }
 
-/// An arrow is pointed at; the force in N, `whose` as from [`of_hand`].
+/// Hover text of an arrow; the force in N, `whose` from [`of_hand`].
 pub(in crate::console) fn arrow(name: &str, whose: &str, size_n: f32, [x, y, z]: [f32; 3]) -> String {
     format!("{name}{whose}: {size_n:.2} N\nx {x:+.2}, y {y:+.2}, z {z:+.2} N (world)")
 }
 
-/// How deep the tip is in the tissue.
+/// Depth of the tip in the tissue.
 pub(in crate::console) fn depth(depth_mm: f32) -> String {
     format!("\n{depth_mm:.1} mm below the surface at rest")
 }
 
-/// The tip is pointed at; `depth` as from [`depth`].
+/// Hover text of the tip; `depth` from [`depth`].
 pub(in crate::console) fn tip(whose: &str, place: &str, depth: &str) -> String {
     format!("Tip{whose} at {place}{depth}")
 }
 
-/// A target is pointed at.
+/// Hover text of a target.
 pub(in crate::console) fn target(number: usize, whose: &str, place: &str) -> String {
     format!("Target {number}{whose} at {place}")
 }
 
-/// The trocar is pointed at.
+/// Hover text of the trocar.
 pub(in crate::console) fn trocar(whose: &str, place: &str) -> String {
     format!("Trocar{whose}, the remote centre of motion, at {place}")
 }

@@ -6,17 +6,17 @@ pub(in crate::console) const HOVER: &str = "Measured and rendered force of the l
     they are normally distributed. The share that it really contains is written below. The dashed circle \
     is the force ceiling. Drag to turn, double-click to reset.";
 
-/// What the canvas shows.
+/// Accessible name of the plot.
 pub(in crate::console) fn canvas(words: &str) -> String {
     format!("Force space. {words}")
 }
 
-/// Before there is enough to work the ellipsoid out; two lines, parted by a semicolon.
+/// Not enough data for the ellipsoid yet; two lines, separated by a semicolon.
 pub(in crate::console) fn too_short(seconds: f64) -> String {
     format!("Last {seconds:.0} s; the error ellipsoid needs one second of data")
 }
 
-/// The ellipsoid (mean and half axes in N, share that it holds in percent); two lines, parted by a semicolon.
+/// The ellipsoid (mean and half axes in N, share of samples inside in percent); two lines, separated by a semicolon.
 pub(in crate::console) fn error(seconds: f64, mean_n: f64, [a, b, c]: [f64; 3], percent: f64) -> String {
     format!(
         "Error, last {seconds:.0} s: mean {mean_n:.2} N, 95 % half axes; {a:.2}, {b:.2}, {c:.2} N (contains {percent:.0} %)"

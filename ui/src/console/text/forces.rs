@@ -17,17 +17,17 @@ pub(in crate::console) const LAST_TEN_SECONDS: &str = "Last 10 s";
 pub(in crate::console) const LAST_TEN_SECONDS_HOVER: &str = "Shows the last ten seconds again";
 pub(in crate::console) const TIME_AXIS: &str = "Time before now (s)";
 
-/// Both forces of an axis (signed figures, N) where another plot is pointed at.
+/// Both forces of an axis (signed, N) at the cursor of another plot.
 pub(in crate::console) fn at_cursor(axis: &str, measured_n: &str, rendered_n: &str) -> String {
     format!("At the cursor, {axis}: measured {measured_n} N, rendered {rendered_n} N")
 }
 
-/// Whose forces a switch shows.
+/// Switch: forces of which side.
 pub(in crate::console) fn forces_of(side: &str) -> String {
     format!("Shows the forces of the {side} hand")
 }
 
-/// Both forces of an axis (signed figures, N) so many seconds ago.
+/// Both forces of an axis (signed, N) this many seconds ago.
 pub(in crate::console) fn before_now(ago_s: f64, axis: &str, measured_n: &str, rendered_n: &str) -> String {
     format!("{ago_s:.2} s before now\nmeasured {axis} {measured_n} N\nrendered {axis} {rendered_n} N")
 }

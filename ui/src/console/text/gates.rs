@@ -1,4 +1,4 @@
-//! "Why no force?": each gate, and the one answer above them.
+//! The panel "Why no force?": each gate, and the summary above them.
 
 use nima_core::safety::Gate;
 
@@ -24,42 +24,42 @@ pub(in crate::console) const CLOSED: &str = "closed";
 pub(in crate::console) const LIMITING: &str = "limiting";
 pub(in crate::console) const ENERGY_OFF: &str = "off";
 
-/// Whose gates a switch tells.
+/// Switch: gates of which side.
 pub(in crate::console) fn gates_of(side: &str) -> String {
     format!("Shows why there is no force in the {side} hand")
 }
 
-/// There is force.
+/// Summary: a force is rendered.
 pub(in crate::console) fn rendered(rendered_n: f64) -> String {
     format!("Force in the hand: {rendered_n:.1} N")
 }
 
-/// The dead band takes force away.
+/// Summary: the dead band reduces the force.
 pub(in crate::console) fn withheld_by_dead_band(withheld_n: f64) -> String {
     format!("{withheld_n:.1} N not rendered: the hand is slower than the dead band")
 }
 
-/// A gate takes force away.
+/// Summary: a gate reduces the force.
 pub(in crate::console) fn withheld(withheld_n: f64) -> String {
     format!("{withheld_n:.1} N not rendered")
 }
 
-/// The force has not come yet.
+/// Summary: the force is still under way over the link.
 pub(in crate::console) fn on_its_way(delay_ms: f64) -> String {
     format!("No force yet: the link delays it by {delay_ms:.0} ms")
 }
 
-/// Age at which nothing is left of a force.
+/// Age at which a force has faded to zero.
 pub(in crate::console) fn zero_after(age_ms: f64) -> String {
     format!("zero after {age_ms:.0} ms")
 }
 
-/// What the hand may still get back.
+/// Energy that the hand may still get back.
 pub(in crate::console) fn energy_left(stored_mj: f64) -> String {
     format!("{stored_mj:.0} mJ left")
 }
 
-/// How often a gate acted, and why it last did.
+/// How often a gate acted, and why it acted last.
 pub(in crate::console) fn acted(ticks: u64, percent: f64, why: &str) -> String {
     format!("Acted in {ticks} ticks ({percent:.1} %); last reason: {why}")
 }

@@ -81,32 +81,32 @@ pub(in crate::console) const P95: &str = "95 % below";
 pub(in crate::console) const UNDETERMINED: &str = "undetermined";
 pub(in crate::console) const LARGEST: &str = "largest";
 
-/// A pose that was taken.
+/// A pose was recorded.
 pub(in crate::console) fn pose_taken(number: usize) -> String {
     format!("pose {number} recorded")
 }
 
-/// A pose that is disturbed.
+/// A pose was refused because the tool was touched.
 pub(in crate::console) fn touched(by_n: f64) -> String {
     format!("{by_n:.1} N too much: something touches the tool; let go")
 }
 
-/// Poses that were left out.
+/// Poses left out of the fit.
 pub(in crate::console) fn left_out(numbers: &str) -> String {
     format!("poses {numbers}")
 }
 
-/// How many of the directions there are.
+/// Number of recorded directions.
 pub(in crate::console) fn recorded_of(recorded: usize, asked: usize) -> String {
     format!("{recorded} of {asked} recorded")
 }
 
-/// A force beside its limit.
+/// A force and its limit.
 pub(in crate::console) fn of_allowed(force_n: f64, limit_n: f64) -> String {
     format!("{force_n:.2} N of {limit_n} N allowed")
 }
 
-/// The model that is kept.
+/// The chosen model.
 pub(in crate::console) fn chosen(model: &str) -> String {
     format!("{model} (chosen)")
 }

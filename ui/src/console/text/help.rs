@@ -5,12 +5,12 @@ pub(in crate::console) const NEXT_STEP: &str = "Next step";
 pub(in crate::console) const BEGIN: &str = "Begin";
 pub(in crate::console) const SKIP_THE_TOUR: &str = "Skip the tour";
 
-/// Where in the tour.
+/// Position within the tour.
 pub(in crate::console) fn step_of(step: usize, steps: usize) -> String {
     format!("{step} of {steps}")
 }
 
-/// Heading and words of a step.
+/// Title and text of each step.
 pub(in crate::console) const TOUR: [(&str, &str); 4] = [
     (
         "Three views of one loop",
@@ -34,7 +34,7 @@ pub(in crate::console) const TOUR: [(&str, &str); 4] = [
     ),
 ];
 
-/// Terms of the field and of this program.
+/// Terms of the field and of this program, with their explanations.
 pub(in crate::console) const GLOSSARY: [(&str, &str); 25] = [
     (
         "Anchored",
@@ -78,7 +78,7 @@ pub(in crate::console) const GLOSSARY: [(&str, &str); 25] = [
 pub(in crate::console) const KEYS_HEADING: &str = "Keys";
 pub(in crate::console) const WORDS_HEADING: &str = "Terms";
 
-/// Every key that does something, and what.
+/// All keys with their functions.
 pub(in crate::console) const KEYS: [(&str, &str); 13] = [
     ("Space, Escape", "Stop, in every view. While you type a name, only Escape."),
     ("F1, F2, F3", "Surgeon, Technician, Demo."),

@@ -4,12 +4,12 @@ pub(in crate::console) const LAST_3_MIN: &str = "last 3 min";
 pub(in crate::console) const REFERENCE: &str = "reference";
 pub(in crate::console) const IN_USE: &str = " (in use)";
 
-/// How far ahead, and what the line in the bars is.
+/// The prediction horizon, and the meaning of the line in the bars.
 pub(in crate::console) fn ahead(delay_ms: f64) -> String {
     format!("Mean error {delay_ms:.0} ms ahead, last seconds; line: delayed DFR")
 }
 
-/// Both means of the trend (figures, N).
+/// Mean errors of the two curves of the trend (N).
 pub(in crate::console) fn trend(seconds: usize, mode: &str, error_n: &str, dfr_n: &str) -> String {
     format!("Last {seconds} s: {mode} {error_n} N, delayed DFR {dfr_n} N")
 }
@@ -24,7 +24,7 @@ pub(in crate::console) fn trend_meaning(trend: &str) -> String {
     format!("{trend}\nMean prediction error (N) of each second, for up to three minutes")
 }
 
-/// The name of a bar.
+/// Accessible name of a bar.
 pub(in crate::console) fn error(words: &str) -> String {
     format!("Error {words}")
 }

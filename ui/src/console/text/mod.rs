@@ -1,12 +1,12 @@
-//! Every word that the window shows, one module per room, so that a translation has one place to work in. What the library reports as
-//! values (faults, gate reasons, verdicts) has its words in `crate::words`, which the command line shares.
+//! All texts of the window, one module per part of it, so that a translation has one place to work in. Texts for values
+//! that the libraries report (faults, gate reasons, verdicts) are in `crate::words`, which the command line shares.
 //!
-//! Constants named by role, and small functions where a sentence holds numbers; a panel refers to them and holds no words of its own.
-//! A message library was tried on the feedback panel (fluent-bundle 0.16) and not taken: a mistyped name or a missing argument shows
-//! its own name on the screen where the compiler refuses a constant, `maximumFractionDigits` is ignored (0.8349 where 0.83 was asked for),
-//! a sentence with two numbers takes 13 us in place of 0.8 us in each frame, and its 12 crates add 23 s of processor time to a clean
-//! build. What it does well, plural rules, three sentences here could use; a second language would turn these functions into a choice
-//! by language, in these files alone.
+//! Constants are named by role; sentences with numbers are small functions. Panels contain no texts of their own. A
+//! message library (fluent-bundle 0.16) was tried on the feedback panel and not adopted: a misspelt name or a missing
+//! argument appears on the screen, where the compiler refuses an unknown constant; `maximumFractionDigits` is ignored
+//! (0.8349 instead of 0.83); a sentence with two numbers takes 13 us instead of 0.8 us in each frame; and its 12 crates
+//! add 23 s of processor time to a clean build. Its advantage, plural rules, would help three sentences. For a second
+//! language, these functions would select by language, in these files alone.
 
 pub(super) mod alarms;
 pub(super) mod calibrations;

@@ -46,17 +46,17 @@ pub(in crate::console) const RENDERED: &str = "rendered to the hand";
 pub(in crate::console) const BARS_HOVER: &str = "Size of the force measured at the instrument and of the force rendered to the hand (N). The mark is \
     the force ceiling, the largest force that can reach the hand.";
 
-/// What a role shows, and its key.
+/// Hover text of a view, with its key.
 pub(in crate::console) fn meaning_and_key(meaning: &str, key: &str) -> String {
     format!("{meaning}\nKey {key}")
 }
 
-/// Both forces of a hand against the ceiling, N.
+/// Both forces of a hand and the ceiling, N.
 pub(in crate::console) fn hand(name: &str, measured_n: f64, rendered_n: f64, ceiling_n: f64) -> String {
     format!("{name}: measured {measured_n:.1} N, rendered {rendered_n:.1} N, ceiling {ceiling_n:.0} N")
 }
 
-/// At the mark of the force ceiling.
+/// Label of the ceiling's mark.
 pub(in crate::console) fn ceiling(ceiling_n: f64) -> String {
     format!("ceiling {ceiling_n:.0} N")
 }

@@ -1,4 +1,4 @@
-//! The safety panel: the interlock and the gates in a row.
+//! The safety panel: the interlock and the row of gates.
 
 pub(in crate::console) const IDLE: &str = "Idle";
 pub(in crate::console) const READY: &str = "Ready";
@@ -26,22 +26,22 @@ pub(in crate::console) const ASKED: &str = "asked";
 pub(in crate::console) const HAND: &str = "hand";
 pub(in crate::console) const NEVER: &str = "never";
 
-/// Of which hand, where there are two.
+/// Addition for the side, if there are two arms.
 pub(in crate::console) fn of_hand(side: &str) -> String {
     format!(", {side} hand")
 }
 
-/// When the state began (s on the loop's clock), and why.
+/// When the state was entered (s on the loop's clock), and why.
 pub(in crate::console) fn since(t_s: f64, why: &str) -> String {
     format!("since {t_s:.1} s: {why}")
 }
 
-/// The diagram's title; `whose` as from [`of_hand`].
+/// Title of the diagram; `whose` from [`of_hand`].
 pub(in crate::console) fn interlock(whose: &str, state: &str) -> String {
     format!("Interlock{whose}: {state}")
 }
 
-/// A gate in one sentence; `whose` as from [`of_hand`].
+/// A gate in one sentence; `whose` from [`of_hand`].
 pub(in crate::console) fn gate(name: &str, whose: &str, standing: &str, ticks: u64) -> String {
     format!("Gate {name}{whose}: {standing}, acted in {ticks} ticks")
 }

@@ -1,8 +1,8 @@
-//! What can go wrong with the settings file.
+//! Errors of the settings file.
 
 pub(in crate::console) const LAYOUT_LOST: &str = "The panel layout cannot be read; the default layout is used";
 
-/// The file cannot be opened.
+/// The file cannot be read.
 pub(in crate::console) fn not_read(error: &impl std::fmt::Display) -> String {
     format!("The settings cannot be read: {error}")
 }
@@ -12,17 +12,17 @@ pub(in crate::console) fn not_kept(error: &impl std::fmt::Display) -> String {
     format!("The settings cannot be saved: {error}")
 }
 
-/// The layout alone cannot be read.
+/// Only the layout cannot be read.
 pub(in crate::console) fn layout_lost(error: &impl std::fmt::Display) -> String {
     format!("{LAYOUT_LOST} ({error})")
 }
 
-/// The file makes no sense and has another name now.
+/// The file is invalid and was renamed.
 pub(in crate::console) fn set_aside(error: &impl std::fmt::Display, name: &str) -> String {
     format!("The settings file was damaged ({error}); it was renamed to {name}, and the defaults are used")
 }
 
-/// The file makes no sense.
+/// The file is invalid.
 pub(in crate::console) fn damaged(error: &impl std::fmt::Display) -> String {
     format!("The settings file is damaged ({error}); the defaults are used")
 }

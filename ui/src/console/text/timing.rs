@@ -30,17 +30,17 @@ pub(in crate::console) const FRAME_HOVER_ROUGH: &str = "Time between two frames 
 pub(in crate::console) const GRANTED: &str = "granted";
 pub(in crate::console) const REFUSED: &str = "refused";
 
-/// The last bar of a histogram.
+/// Range of the last bar of a histogram.
 pub(in crate::console) fn and_more(from_us: f64) -> String {
     format!("{from_us:.0} µs or more")
 }
 
-/// Any other bar.
+/// Range of any other bar.
 pub(in crate::console) fn from_to(from_us: f64, to_us: f64) -> String {
     format!("{from_us:.0} to {to_us:.0} µs")
 }
 
-/// What a bar holds.
+/// Hover text of a bar.
 pub(in crate::console) fn bar(name: &str, range: &str, ticks: &str, share: &str) -> String {
     format!("{name}: {range}\n{ticks} ticks, {share}")
 }
@@ -50,37 +50,37 @@ pub(in crate::console) fn histogram(name: &str, late: &str, total: &str, deadlin
     format!("{name} histogram: {late} of {total} ticks exceeded the deadline of {deadline_us:.0} µs")
 }
 
-/// Under the line of the deadline.
+/// Label of the deadline.
 pub(in crate::console) fn deadline(deadline_us: f64) -> String {
     format!("deadline {deadline_us:.0} µs")
 }
 
-/// What the height of a histogram means.
+/// Explanation of the height scale of a histogram.
 pub(in crate::console) fn log_scale(top: &str) -> String {
     format!("log scale, maximum {top}")
 }
 
-/// Missed periods, over the strip.
+/// Title of the strip of missed periods.
 pub(in crate::console) fn missed(minutes: usize, count: &str) -> String {
     format!("Missed in the last {minutes} min: {count}")
 }
 
-/// The name of the strip.
+/// Accessible name of the strip.
 pub(in crate::console) fn missed_periods(words: &str) -> String {
     format!("{words} periods")
 }
 
-/// A bar of the strip.
+/// Hover text of a bar of the strip.
 pub(in crate::console) fn missed_at(age_s: usize, count: &str) -> String {
     format!("{age_s} s ago: {count} periods missed")
 }
 
-/// Ticks so far, and their rate.
+/// Number of ticks, and their rate.
 pub(in crate::console) fn ticks_at(ticks: &str, rate_hz: f64) -> String {
     format!("{ticks} at {rate_hz:.0} Hz")
 }
 
-/// Time between two frames (median and 99th percentile) and the work in one, ms.
+/// Time between two frames (median and 99th percentile) and work per frame, ms.
 pub(in crate::console) fn frame([p50_ms, p99_ms]: [f64; 2], work_ms: f64) -> String {
     format!("p50 {p50_ms:.0}, p99 {p99_ms:.0}, work {work_ms:.0} ms")
 }

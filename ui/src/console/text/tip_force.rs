@@ -151,97 +151,97 @@ pub(in crate::console) const RECORD_GO_ON: &str = "Go on recording";
 pub(in crate::console) const PHASE_PAUSED: &str = "paused";
 pub(in crate::console) const PHASE_RECORDING: &str = "recording";
 
-/// The check broke off.
+/// The check failed.
 pub(in crate::console) fn not_judged(error: &str) -> String {
     format!("The network could not be evaluated: {error}")
 }
 
-/// The training broke off.
+/// The training failed.
 pub(in crate::console) fn not_trained(error: &str) -> String {
     format!("Not trained: {error}. The recording is kept.")
 }
 
-/// What a recording is doing.
+/// State of a recording.
 pub(in crate::console) fn state(phase: &str) -> String {
     format!("State: {phase}")
 }
 
-/// What the check asks for.
+/// Task of the person at the arm during the check.
 pub(in crate::console) fn check_task(work_s: f64, free_s: f64) -> String {
     format!("{work_s:.0} s of work on the tissue, then {free_s:.0} s without touching it")
 }
 
-/// What the check found.
+/// Result of the check.
 pub(in crate::console) fn verdict(reason: &str) -> String {
     format!("Verdict: {reason}")
 }
 
-/// How often the network was in doubt.
+/// Share of samples for which the network was uncertain.
 pub(in crate::console) fn doubt(percent: f64, rows: usize) -> String {
     format!("{percent:.1} % of {rows} rows")
 }
 
-/// There is nothing to work in the background.
+/// The background thread could not be started.
 pub(in crate::console) fn no_thread(error: &impl std::fmt::Display) -> String {
     format!("The background task could not be started: {error}")
 }
 
-/// A recording was not kept.
+/// A recording could not be saved.
 pub(in crate::console) fn not_written(path: &std::path::Path, error: &impl std::fmt::Display) -> String {
     format!("The recording could not be written to {}: {error}", path.display())
 }
 
-/// Why good figures prove nothing.
+/// Why the check cannot be passed: the training data were incomplete.
 pub(in crate::console) fn trained_on_too_little(goal: &str) -> String {
     format!("the recording used for training is incomplete ({goal}); record more")
 }
 
-/// Length of the recording, beside the paper's.
+/// Length of the recording, compared with the paper's.
 pub(in crate::console) fn rows_and_seconds(rows: usize, seconds: f64, paper_rows: usize, paper_s: f64) -> String {
     format!("{rows}, {seconds:.0} s (paper: {paper_rows}, {paper_s:.0} s)")
 }
 
-/// What is missing, and the goal that asks for it.
+/// What is missing, and the requirement that it is for.
 pub(in crate::console) fn advice(when: &str, advice: &str, goal: &str) -> String {
     format!("{when}: {advice} ({goal})")
 }
 
-/// No rows come.
+/// No rows are being recorded.
 pub(in crate::console) fn nothing_taken(why: &str) -> String {
     format!("not recording: {why}")
 }
 
-/// The zero is being taken.
+/// The sensor under the tissue is being zeroed.
 pub(in crate::console) fn taking_zero(percent: f64) -> String {
     format!("setting the sensor under the tissue to zero: {percent:.0} %")
 }
 
-/// What was trained.
+/// Size of the training.
 pub(in crate::console) fn networks_on_rows(networks: usize, rows: usize) -> String {
     format!("{networks} networks on {rows} rows")
 }
 
-/// The recording lacked something.
+/// A requirement that the recording did not meet.
 pub(in crate::console) fn not_complete(goal: &str) -> String {
     format!("The recording is incomplete ({goal}): you can keep this network only under your name")
 }
 
-/// A line of the losses, by a network on rows that it has not seen.
+/// Legend: loss of a network on held-out rows.
 pub(in crate::console) fn held_out(network: usize) -> String {
     format!("{network} held out")
 }
 
-/// A line of the losses, by a network on its own rows.
+/// Legend: loss of a network on its training rows.
 pub(in crate::console) fn training(network: usize) -> String {
     format!("{network} training")
 }
 
-/// The losses in one sentence.
+/// The plot of the losses in one sentence.
 pub(in crate::console) fn losses(networks: usize, epochs: usize) -> String {
     format!("Losses of {networks} networks over {epochs} epochs")
 }
 
-/// How far the check is.
+/// Progress of the check.
 pub(in crate::console) fn rows_of(rows: usize, asked: usize) -> String {
     format!("{rows} of {asked}")
 }
@@ -251,7 +251,7 @@ pub(in crate::console) fn rows_and_time(rows: usize, seconds: f64) -> String {
     format!("{rows} rows, {seconds:.0} s")
 }
 
-/// How far the training is.
+/// Progress of the training.
 pub(in crate::console) fn time_left(percent: f64, elapsed_s: f64, left_s: f64) -> String {
     format!("{percent:.0} %, {elapsed_s:.0} s, at most {left_s:.0} s left")
 }

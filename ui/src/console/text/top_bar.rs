@@ -27,28 +27,28 @@ pub(in crate::console) const NOT_ENGAGED: &str = "Not engaged";
 pub(in crate::console) const NOT_RELEASED: &str = "Not released";
 pub(in crate::console) const NOT_SET: &str = "Not set";
 
-/// A command that was refused: what did not happen, to which arm where there are two, why, and what to do.
+/// A refused command: what was not done, for which arm if there are two, why, and what to do.
 pub(in crate::console) fn refused(what: &str, arm: &str, cause: &str, cure: &str) -> String {
     let arm = if arm.is_empty() { String::new() } else { format!(" ({arm} arm)") };
     format!("{what}{arm}: {cause}; {cure}")
 }
 
-/// A device that is missing.
+/// A missing device.
 pub(in crate::console) fn device(name: &str, cause: &str) -> String {
     format!("{name}: {cause}")
 }
 
-/// What runs.
+/// Names of scene and rig.
 pub(in crate::console) fn scene_and_rig(scene: &str, rig: &str) -> String {
     format!("Scene: {scene}\nRig: {rig}")
 }
 
-/// What the state means.
+/// Hover text of the state.
 pub(in crate::console) fn state_meaning(meaning: &str) -> String {
     format!("State of the control loop\n{meaning}")
 }
 
-/// The name of the state's field.
+/// Accessible name of the state.
 pub(in crate::console) fn state(state: &str) -> String {
     format!("Loop state: {state}")
 }

@@ -25,27 +25,27 @@ pub(in crate::console) const TIME_AXIS: &str = "One tick (µs)";
 pub(in crate::console) const APPLIED_BY_RESTART: &str =
     "Applied. The loop was restarted and is idle: press Engage when you are ready.";
 
-/// There is no thread for it.
+/// The background thread could not be started.
 pub(in crate::console) fn not_started(error: &impl std::fmt::Display) -> String {
     format!("The measurement could not be started: {error}")
 }
 
-/// How far it is.
+/// Progress of the measurement.
 pub(in crate::console) fn measured(percent: f32) -> String {
     format!("Trade-off measured: {percent:.0} %")
 }
 
-/// The loop goes on with this choice.
+/// The loop now uses this choice.
 pub(in crate::console) fn applied(choice: &str) -> String {
     format!("Applied: {choice}")
 }
 
-/// The loop was restarted with it or not, by this reason.
+/// The loop could not be restarted with the choice.
 pub(in crate::console) fn not_applied(reason: &str) -> String {
     format!("Not applied: {reason}")
 }
 
-/// Everything about a point, in figures.
+/// All figures of a point.
 pub(in crate::console) fn point(
     name: &str,
     [median_us, p99_us]: [&str; 2],
@@ -57,7 +57,7 @@ pub(in crate::console) fn point(
     )
 }
 
-/// The axis of errors.
+/// Title of the error axis.
 pub(in crate::console) fn error_axis(unit: &str) -> String {
     format!("Mean error ({unit})")
 }

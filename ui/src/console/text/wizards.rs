@@ -1,4 +1,4 @@
-//! What all calibration wizards share.
+//! Texts that all calibration wizards share.
 
 pub(in crate::console) const LAST_STEP: &str = "This is the last step";
 pub(in crate::console) const NEEDS_CHECKS: &str = "A check has not passed yet";
@@ -46,12 +46,12 @@ pub(in crate::console) const WAITING: &str = "waiting";
 pub(in crate::console) const NO_RESULT: &str = "No result";
 pub(in crate::console) const DONE: &str = "(done)";
 
-/// Under the picture of a pose.
+/// Caption of the picture of a pose.
 pub(in crate::console) fn tilt_off(tilt_deg: f64) -> String {
     format!("outline: target   solid: tool now   tilt error {tilt_deg:.0} deg")
 }
 
-/// Under the picture of directions.
+/// Caption of the picture of directions.
 pub(in crate::console) fn rings_and_discs(name: &str) -> String {
     format!("{name} (rings: to do, discs: recorded)")
 }
@@ -61,12 +61,12 @@ pub(in crate::console) fn fields_filled(title: &str, filled: usize, fields: usiz
     format!("{title}: {filled} of {fields} fields filled")
 }
 
-/// A check that is met, with what was measured.
+/// A check that has passed, with the measured value.
 pub(in crate::console) fn met(measured: &str) -> String {
     format!("{measured}, met")
 }
 
-/// Heading of a wizard.
+/// Title of a wizard.
 pub(in crate::console) fn title(wizard: &str) -> String {
     format!("{wizard} calibration")
 }

@@ -1,4 +1,4 @@
-//! The correspondence wizard: check, pushes, result, save. Pushes are kept at every step back and on closing.
+//! The correspondence wizard: check, pushes, result, save. Recorded pushes are kept when going back and when closing.
 
 use egui::{Button, Grid, RichText, Ui, vec2};
 use nalgebra::UnitVector3;
@@ -27,9 +27,9 @@ use crate::{
     words::{self, Words as _},
 };
 
-/// Fewest pushes from which a fit is shown.
+/// Fewest pushes for which a fit is shown.
 const PUSHES_MIN: usize = 6;
-/// As many are asked for: one in each direction.
+/// Number of pushes requested: one in each direction.
 const PUSHES_ASKED: usize = TARGETS.len();
 /// Steps of this wizard.
 const STEPS: [Step; 4] = [
@@ -42,7 +42,7 @@ const CHECK: usize = 0;
 const PUSHES: usize = 1;
 const RESULT: usize = 2;
 
-/// What came with the wrist's sample in the last tick.
+/// Which sources delivered with the wrist sensor's sample in the last tick.
 #[derive(Clone, Copy, Debug, Default)]
 struct Sources {
     gravity: bool,
@@ -50,14 +50,14 @@ struct Sources {
     chain: bool,
 }
 
-/// The wizard's memory.
+/// State of the wizard.
 #[derive(Debug)]
 pub struct CorrespondenceWizard {
     session: CorrespondenceSession,
     frame: Frame,
     /// `None` while the wrist sensor is silent.
     sources: Option<Sources>,
-    /// The loop's clock begins anew with every start of it; the session's goes on.
+    /// Time of the loop, which starts at zero with every start of it, and time of the session, which continues.
     clock_s: (f64, f64),
     report: Report<CorrespondenceReport>,
 }
@@ -69,7 +69,7 @@ impl Default for CorrespondenceWizard {
 }
 
 impl CorrespondenceWizard {
-    /// Nothing taken yet, on a rig that is built so.
+    /// Without data, for a rig with these settings.
     fn of(settings: SessionSettings) -> Self {
         Self {
             session: CorrespondenceSession::new(settings),
@@ -86,7 +86,7 @@ impl CorrespondenceWizard {
         self.frame.saved = None;
     }
 
-    /// The direction to ask for: first those that nobody pushed in yet, then all of them in turn.
+    /// The next direction to request: first those without a push, then all of them in turn.
     fn wanted(&self) -> PushTarget {
         self.session.target().unwrap_or(TARGETS[self.session.pushes() % TARGETS.len()])
     }
@@ -99,7 +99,7 @@ impl CorrespondenceWizard {
         self.good_report().and_then(|report| report.solution.as_ref())
     }
 
-    /// All sources are there, and both sensors have rested.
+    /// Whether all sources deliver and both sensors have been at rest.
     fn may_push(&self) -> Result<(), &'static str> {
         let Some(sources) = self.sources else { return Err(text::correspondence::NEEDS_WRIST_SENSOR) };
         match self.session.phase() {
@@ -232,7 +232,7 @@ impl Wizard for CorrespondenceWizard {
         let (begin_s, last_s) = self.clock_s;
         let mut now_s = begin_s + tick.t_s;
         if now_s < last_s {
-            // The loop was started anew: a push that was on has a hole, and is lost.
+            // The loop was restarted: a push under way has a gap and is discarded.
             now_s = last_s + 1e-3;
             self.clock_s.0 = now_s - tick.t_s;
             f1_n = None;
@@ -294,7 +294,7 @@ impl Wizard for CorrespondenceWizard {
     }
 }
 
-/// How far the push is, and what to do.
+/// Progress of the push, and what to do.
 fn phase_words(phase: &Phase) -> (f64, String) {
     match phase {
         Phase::Missing(missing) => (0.0, missing.words().to_owned()),
@@ -350,7 +350,7 @@ const fn frame_words(frame: OffsetFrame) -> &'static str {
     }
 }
 
-/// The paper's Validation I: how well the rotated force under the tissue tells that at the wrist.
+/// The paper's Validation I: agreement of the rotated force under the tissue with that at the wrist.
 fn agreement_ui(ui: &mut Ui, agreement: &Agreement) {
     let meaning = text::correspondence::AGREEMENT_HOVER;
     card(ui, text::correspondence::AGREEMENT_TITLE, meaning, |ui| {

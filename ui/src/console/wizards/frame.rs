@@ -1,4 +1,4 @@
-//! What all wizards share: steps, the ways back, on and over, and the last step, which saves.
+//! Common parts of all wizards: steps, buttons for back, next and reset, and the last step, which saves.
 
 use egui::{Button, RichText, TextEdit, Ui, vec2};
 use nima_core::calibration::Judgement;
@@ -17,22 +17,22 @@ pub(super) struct Step {
     pub(super) meaning: &'static str,
 }
 
-/// Where the technician wants to go.
+/// A request of the technician.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Wish {
     GoTo(usize),
     StartOver,
 }
 
-/// Where a wizard is, and what was entered and told in its last step.
+/// State of a wizard: its step, and the inputs and messages of the last step.
 #[derive(Debug, Default)]
 pub(super) struct Frame {
     pub(super) step: usize,
-    /// Who saves in spite of the verdict.
+    /// Name of the person who overrides the verdict.
     name: String,
-    /// And why.
+    /// The reason.
     why: String,
-    /// What became of the record that was handed out for saving.
+    /// Result of saving.
     pub(super) saved: Option<String>,
 }
 
@@ -43,34 +43,34 @@ impl Frame {
     }
 }
 
-/// A wizard around a session. It draws its own steps; the last one, saving, is the same for all.
+/// A wizard for one calibration. It draws its own steps except the last one (saving), which is common.
 pub(super) trait Wizard {
     /// Its steps; the last one saves.
     fn steps(&self) -> &'static [Step];
     fn frame_mut(&mut self) -> &mut Frame;
 
-    /// Takes in one tick of a loop of this rate (Hz).
+    /// Adds one tick of a loop of this rate (Hz).
     fn tick(&mut self, tick: &Tick, rate_hz: f64);
-    /// What the person at the arm is to do now.
+    /// Present instruction to the person at the arm.
     fn prompt(&self) -> Prompt;
-    /// Whether the step after this one may begin, or why not.
+    /// Whether the next step may start, or why not.
     fn may_go_on(&self, binding: &Binding) -> Result<(), &'static str>;
     /// Draws a step before the last.
     fn step_ui(&mut self, ui: &mut Ui, binding: &Binding) -> Option<Wish>;
-    /// What proves the result, in words; nothing where only a person's name can.
+    /// The evidence that the result is good, as text; `None` if it can only be saved with an override.
     fn proof(&self) -> Option<String>;
     /// What shall be saved, if there is anything, with the verdict as it was found.
     fn made(&self, binding: &Binding) -> Option<Saving>;
-    /// Forgets what was taken, not how the rig is built.
+    /// Removes the data, but keeps the settings of the rig.
     fn start_over(&mut self);
 
-    /// Before anything is drawn.
+    /// Called before drawing.
     fn refresh(&mut self, _binding: &Binding) {}
-    /// What is shown in every step, below the row of steps.
+    /// A message shown in every step, below the row of steps.
     fn notice(&self) -> Option<&str> {
         None
     }
-    /// Above the last step; false where there is nothing to save yet.
+    /// Draws the part above the last step; returns false if there is nothing to save yet.
     fn before_saving(&self, _ui: &mut Ui) -> bool {
         true
     }
@@ -79,7 +79,7 @@ pub(super) trait Wizard {
     }
 }
 
-/// A wizard on the screen; gives what shall be saved.
+/// Draws a wizard; returns the record to be saved.
 pub(super) fn wizard_ui(wizard: &mut dyn Wizard, ui: &mut Ui, binding: &Binding) -> Option<Saving> {
     wizard.refresh(binding);
     let (steps, now) = (wizard.steps(), wizard.frame_mut().step);
@@ -109,7 +109,7 @@ pub(super) fn wizard_ui(wizard: &mut dyn Wizard, ui: &mut Ui, binding: &Binding)
     saving
 }
 
-/// The row of steps with the ways back, on and over. Nothing good is lost by going back.
+/// The row of steps with buttons for back, next and reset. Going back loses no data.
 fn steps_ui(ui: &mut Ui, steps: &[Step], now: usize, may_go_on: Result<(), &'static str>) -> Option<Wish> {
     let mut wish = None;
     ui.horizontal_wrapped(|ui| {
@@ -148,8 +148,8 @@ fn steps_ui(ui: &mut Ui, steps: &[Step], now: usize, may_go_on: Result<(), &'sta
     wish
 }
 
-/// The last step of every wizard: what it will be bound to, and the button; true when it shall be saved. Without `proof` it takes
-/// a name and a reason.
+/// The last step of every wizard: sensor and tool of the record, and the save button; returns true when it is pressed.
+/// Without `proof` a name and a reason are required.
 fn save_card(ui: &mut Ui, binding: &Binding, proof: Option<&str>, frame: &mut Frame) -> bool {
     card(ui, text::wizards::STEP_SAVE, text::wizards::SAVE_HOVER, |ui| {
         figure(ui, text::wizards::SENSOR, &binding.sensor, text::wizards::SENSOR_HOVER);
@@ -168,7 +168,7 @@ fn save_card(ui: &mut Ui, binding: &Binding, proof: Option<&str>, frame: &mut Fr
     })
 }
 
-/// Name and reason of whoever overrides a verdict; true when both are there and it shall be done.
+/// Name and reason for an override; returns true when both are entered and confirmed.
 fn override_ui(ui: &mut Ui, by: [&mut String; 2]) -> bool {
     let mut named = true;
     for (label, text) in [text::wizards::YOUR_NAME, text::wizards::REASON].into_iter().zip(by) {

@@ -1,4 +1,5 @@
-//! The gravity wizard: check, twelve poses, result, free motion, save. What was good is kept at every step back and on closing.
+//! The gravity wizard: check, twelve poses, result, free motion, save. Recorded data are kept when going back and when
+//! closing.
 
 use egui::{Button, Grid, RichText, Ui, vec2};
 use nalgebra::{UnitQuaternion, Vector3};
@@ -29,9 +30,9 @@ use crate::{
     words::Words as _,
 };
 
-/// Free motion must read below this at its 95th percentile, N: noise of a sample included.
+/// Limit of the 95th percentile of the force in free motion, N; includes the noise of a sample.
 const FREE_MOTION_LIMIT_N: f64 = 0.25;
-/// Fewest poses from which a fit is tried.
+/// Fewest poses for a fit.
 const POSES_MIN: usize = 6;
 /// Steps of this wizard.
 const STEPS: [Step; 5] = [
@@ -46,7 +47,7 @@ const POSES: usize = 1;
 const RESULT: usize = 2;
 const FREE_MOTION: usize = 3;
 
-/// The wizard's memory.
+/// State of the wizard.
 #[derive(Debug)]
 pub struct GravityWizard {
     session: GravitySession,
@@ -67,7 +68,7 @@ impl Default for GravityWizard {
 }
 
 impl GravityWizard {
-    /// Nothing taken yet, on a rig that is built so.
+    /// Without data, for a rig with these settings.
     fn of(settings: SessionSettings) -> Self {
         Self {
             session: GravitySession::new(settings),
@@ -90,7 +91,7 @@ impl GravityWizard {
         self.phase = phase;
     }
 
-    /// What was concluded from other poses does not hold any more.
+    /// Results from other poses are no longer valid.
     fn fit(&mut self) {
         self.report =
             (self.session.poses().len() >= POSES_MIN).then(|| self.session.report().map_err(|error| error.to_string()));
@@ -207,7 +208,7 @@ impl GravityWizard {
         });
     }
 
-    /// Good enough to be saved without anyone's word for it.
+    /// Whether the result is good enough to be saved without an override.
     fn is_proven(&self) -> bool {
         self.good_report().is_some_and(|report| report.verdict == Verdict::Accepted)
             && self.pass_result().is_some_and(|result| result.passed)
@@ -347,7 +348,7 @@ fn verdict_ui(ui: &mut Ui, report: &GravityReport) {
     });
 }
 
-/// The models side by side, on the poses of the fit and on those held out.
+/// Table of the models' errors on the poses of the fit and on held-out ones.
 fn models_ui(ui: &mut Ui, report: &GravityReport) {
     card(ui, text::gravity::MODELS_TITLE, text::gravity::MODELS_HOVER, |ui| {
         Grid::new("gravity_models").num_columns(5).spacing(vec2(22.0, 6.0)).show(ui, |ui| {

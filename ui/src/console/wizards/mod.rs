@@ -1,7 +1,8 @@
-//! Wizards: a technician alone, step by step, from an uncalibrated sensor to a calibration that has proven itself.
+//! Calibration wizards, which guide a single technician step by step from an uncalibrated sensor to a verified
+//! calibration.
 //!
-//! A wizard sees every tick, asks the person at the arm for something ([`Prompt`]) and hands out a record when it shall be
-//! saved. It never changes the loop: saving restarts it, idle, with the new calibration.
+//! A wizard receives every tick, gives the person at the arm instructions ([`Prompt`]) and returns a record when it is
+//! to be saved. It does not change the loop; saving puts the new calibration in force.
 
 mod checks;
 mod correspondence;
@@ -32,7 +33,7 @@ use self::frame::{Wizard, wizard_ui};
 use super::{theme, widgets::small};
 use crate::console::text;
 
-/// What a calibration belongs to, and what a later one builds on.
+/// Sensor, tool and existing data for a new calibration.
 #[derive(Clone, Debug, Default)]
 pub struct Binding {
     /// Serial number of the wrist sensor.
@@ -41,9 +42,9 @@ pub struct Binding {
     pub tool: String,
     /// Now, ISO 8601, UTC.
     pub date: String,
-    /// How the sensor under the tissue is turned, if that is known.
+    /// Rotation of the sensor under the tissue, if known.
     pub correspondence: Option<Correspondence>,
-    /// Where calibrations and their data are kept; none where no folder is known.
+    /// Store of calibrations and their data; `None` if no folder is known.
     pub store: Option<Store>,
 }
 
@@ -52,17 +53,17 @@ pub struct Binding {
 pub enum Which {
     /// Weight and bias.
     Gravity,
-    /// How the sensor under the tissue is turned against the one at the wrist.
+    /// Rotation between the sensor under the tissue and the one at the wrist.
     Correspondence,
-    /// A network that takes the trocar's friction out.
+    /// The network that removes the trocar's friction.
     TipForce,
 }
 
 impl Which {
-    /// All of them, in the order of work.
+    /// All wizards, in the order of use.
     pub const ALL: [Self; 3] = [Self::Gravity, Self::Correspondence, Self::TipForce];
 
-    /// On buttons.
+    /// Name on buttons.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Gravity => text::wizards::GRAVITY,
@@ -71,7 +72,7 @@ impl Which {
         }
     }
 
-    /// What it is for.
+    /// Its purpose.
     pub const fn meaning(self) -> &'static str {
         match self {
             Self::Gravity => text::wizards::GRAVITY_MEANING,
@@ -80,7 +81,7 @@ impl Which {
         }
     }
 
-    /// The simulated experiment that it needs.
+    /// The simulated experiment for it.
     pub const fn scene(self) -> &'static str {
         match self {
             Self::Gravity => "gravity",
@@ -89,7 +90,8 @@ impl Which {
         }
     }
 
-    /// Whether somebody guides the arm in this scene and all that is needed is there, so that it need not be left.
+    /// Whether this scene has a person who guides the arm and everything else that the wizard needs, so that it need
+    /// not be changed.
     pub const fn suits(self, scene: &Scene) -> bool {
         let guided = scene.person.is_some() && scene.wrist.is_some();
         match self {
@@ -100,7 +102,7 @@ impl Which {
     }
 }
 
-/// Something to be saved and used.
+/// A record to be saved and used.
 #[derive(Clone, Debug)]
 pub enum Saving {
     /// A gravity calibration.
@@ -125,7 +127,7 @@ impl Saving {
 /// All wizards; each keeps what it has until it is started over.
 #[derive(Debug, Default)]
 pub struct Wizards {
-    /// The one on the screen.
+    /// The one that is open.
     pub open: Option<Which>,
     gravity: GravityWizard,
     correspondence: CorrespondenceWizard,
@@ -133,7 +135,7 @@ pub struct Wizards {
 }
 
 impl Wizards {
-    /// With this one on the screen.
+    /// With this one open.
     pub fn at(which: Which) -> Self {
         Self { open: Some(which), ..Self::default() }
     }
@@ -154,26 +156,26 @@ impl Wizards {
         }
     }
 
-    /// Takes in one tick of a loop of this rate (Hz).
+    /// Adds one tick of a loop of this rate (Hz).
     pub fn tick(&mut self, tick: &Tick, rate_hz: f64) {
         if let Some(which) = self.open {
             self.the_mut(which).tick(tick, rate_hz);
         }
     }
 
-    /// What the person at the arm is to do now.
+    /// Present instruction to the person at the arm.
     pub fn prompt(&self) -> Prompt {
         self.open.map_or(Prompt::Rest, |which| self.the(which).prompt())
     }
 
-    /// Tells the open wizard what became of its record.
+    /// Shows the result of saving in the open wizard.
     pub fn tell_saved(&mut self, words: String) {
         if let Some(which) = self.open {
             self.the_mut(which).frame_mut().saved = Some(words);
         }
     }
 
-    /// The open wizard; gives what shall be saved.
+    /// Draws the open wizard; returns the record to be saved.
     pub fn ui(&mut self, ui: &mut Ui, binding: &Binding) -> Option<Saving> {
         let which = self.open?;
         ui.label(RichText::new(text::wizards::title(which.name())).font(theme::strong(22.0)));
@@ -181,7 +183,7 @@ impl Wizards {
         ui.add_space(theme::GAP);
         let saving = wizard_ui(self.the_mut(which), ui, binding)?;
         if matches!(saving, Saving::Gravity(_)) {
-            // Pushes and recordings are free of gravity by the calibration before this one: both do not mix.
+            // Pushes and recordings used the previous gravity calibration; they must not be mixed with new ones.
             self.correspondence = CorrespondenceWizard::default();
             self.tip_force = TipForceWizard::default();
         }

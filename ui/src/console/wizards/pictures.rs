@@ -1,5 +1,5 @@
-//! Small pictures that guide a hand: the tool in the orientation to take, a sphere that fills with directions, maps that fill with
-//! rows.
+//! Pictures for guidance: the tool in the requested orientation, a sphere with the recorded directions, and maps of the
+//! coverage.
 
 use egui::{
     Align2, Color32, Painter, Pos2, Rect, Sense, Shape, Stroke, Ui, WidgetInfo, epaint::TextShape, lerp, pos2, vec2,
@@ -9,7 +9,7 @@ use nima_core::tip_force::{MAP, Map};
 
 use crate::console::{text, theme};
 
-/// The viewer stands in front of the base, a little to the right and above (`world`: x to the right, z up).
+/// Projection for a viewer in front of the base, slightly to the right and above (`world`: x to the right, z up).
 fn on_paper(centre: Pos2, scale: f32, point: &Vector3<f64>) -> (Pos2, f64) {
     let (turn, raise) = (0.45_f64, 0.38_f64);
     let right = point.x * turn.cos() + point.y * turn.sin();
@@ -19,7 +19,7 @@ fn on_paper(centre: Pos2, scale: f32, point: &Vector3<f64>) -> (Pos2, f64) {
     (pos2(centre.x + right as f32 * scale, centre.y - up as f32 * scale), depth)
 }
 
-/// The tool as it is held (solid) and as it should be (outline), with the angle between both.
+/// The tool as it is held (solid) and as requested (outline), with the angle between them.
 pub(super) fn pose_picture(ui: &mut Ui, target: Option<&UnitQuaternion<f64>>, held: Option<&UnitQuaternion<f64>>) {
     let size = vec2(ui.available_width().min(320.0), 250.0);
     let (rect, response) = ui.allocate_exact_size(size, Sense::hover());
@@ -50,7 +50,7 @@ fn caption_below(painter: &Painter, rect: Rect, words: String) {
     painter.text(place, Align2::CENTER_BOTTOM, words, theme::regular(12.5), theme::now().text_weak);
 }
 
-/// A square on the floor and the vertical, so that up is seen.
+/// A square on the floor and a vertical line, to show the orientation.
 fn ground(painter: &Painter, centre: Pos2, scale: f32) {
     let corner = |x: f64, y: f64| on_paper(centre, scale, &Vector3::new(x, y, -1.15)).0;
     let corners = vec![corner(-1.0, -1.0), corner(1.0, -1.0), corner(1.0, 1.0), corner(-1.0, 1.0)];
@@ -59,7 +59,7 @@ fn ground(painter: &Painter, centre: Pos2, scale: f32) {
     painter.extend(Shape::dashed_line(&[top, bottom], Stroke::new(1.0, theme::now().line), 5.0, 5.0));
 }
 
-/// Sensor (a disc with its x marked), shaft along z and a jaw at the end.
+/// Sensor (a disc with its x axis marked), shaft along z, and a jaw at the end.
 fn tool(painter: &Painter, centre: Pos2, scale: f32, world_from_s1: &UnitQuaternion<f64>, solid: bool) {
     let at = |x: f64, y: f64, z: f64| on_paper(centre, scale, &(world_from_s1 * Vector3::new(x, y, z))).0;
     let (colour, width) = if solid { (theme::now().measured, 3.0) } else { (theme::now().rendered, 1.5) };
@@ -79,11 +79,11 @@ fn tool(painter: &Painter, centre: Pos2, scale: f32, world_from_s1: &UnitQuatern
     for side in [-0.08, 0.08] {
         painter.line_segment([at(0.0, 0.0, 0.95), at(side, 0.0, 1.12)], stroke);
     }
-    // The sensor's x axis: tells a turn about the shaft.
+    // The sensor's x axis, which shows rotation about the shaft.
     painter.line_segment([at(0.28, 0.0, 0.0), at(0.46, 0.0, 0.0)], stroke);
 }
 
-/// Directions on a sphere: those wanted as rings, those taken as discs; hollow where they lie behind.
+/// Directions on a sphere: requested ones as rings, recorded ones as discs; hollow on the far side.
 pub(super) fn sphere_picture(
     ui: &mut Ui,
     name: &str,
@@ -113,7 +113,7 @@ pub(super) fn sphere_picture(
     caption_below(&painter, rect, caption);
 }
 
-/// Equator and two meridians; the parts behind are left out.
+/// Equator and two meridians; only their front parts.
 fn graticule(painter: &Painter, centre: Pos2, scale: f32) {
     let circles: [fn(f64) -> Vector3<f64>; 3] = [
         |a| Vector3::new(a.cos(), a.sin(), 0.0),
@@ -147,7 +147,7 @@ fn dot(
     }
 }
 
-/// A bar that fills, with words inside.
+/// A progress bar with a text inside.
 pub(super) fn progress(ui: &mut Ui, name: &str, share: f64, words: &str) {
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), 24.0), Sense::hover());
     let label = format!("{name}: {words}");
@@ -160,16 +160,16 @@ pub(super) fn progress(ui: &mut Ui, name: &str, share: f64, words: &str) {
     painter.text(rect.center(), Align2::CENTER_CENTER, label, theme::regular(13.0), theme::now().text);
 }
 
-/// Rows in a field of a map at which it is as bright as it gets.
+/// Number of rows in a cell of a map at which it has full brightness.
 const BRIGHTEST: f32 = 1000.0;
-/// Room for the words below and left of a map.
+/// Space for the texts below and left of a map.
 const BELOW: f32 = 34.0;
 const LEFT: f32 = 34.0;
 
-/// What an axis of a map shows: lowest value, name with unit, highest value.
+/// Texts of an axis of a map: lowest value, name with unit, highest value.
 pub(super) type AxisWords = [&'static str; 3];
 
-/// A map that fills with rows: dark where there are none, brighter with their number (logarithmic).
+/// A map of numbers of rows: dark where there are none, brighter with their number (logarithmic).
 pub(super) fn heat_map(ui: &mut Ui, width: f32, title: &str, map: &Map, [across, up]: [AxisWords; 2]) {
     let (rect, response) = ui.allocate_exact_size(vec2(width, width - LEFT + BELOW + 20.0), Sense::hover());
     let words = text::wizards::fields_filled(title, map.filled(), MAP * MAP);
@@ -192,7 +192,7 @@ pub(super) fn heat_map(ui: &mut Ui, width: f32, title: &str, map: &Map, [across,
     axis_words(&painter, field, across, up);
 }
 
-/// From the darkest to the brightest field.
+/// Colour of a cell, from dark to bright.
 fn heat(share: f32) -> Color32 {
     let [from, to] = [theme::now().selected, theme::now().measured].map(|colour| colour.to_array());
     let mix = |k: usize| lerp(f32::from(from[k])..=f32::from(to[k]), share) as u8;

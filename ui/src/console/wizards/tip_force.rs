@@ -1,7 +1,8 @@
 //! The tip-force wizard: check the rig, record, train, check the network, save.
 //!
-//! A recording outlives every step back, a cancelled training and the closing of the wizard; a trained network stays until a
-//! newer one is there. Training and judging run in the background and go on while the wizard is closed; they end with the window.
+//! A recording is kept when going back, cancelling the training, or closing the wizard; a trained network is kept until
+//! there is a newer one. Training and judging run in the background and continue while the wizard is closed; they end
+//! with the window.
 
 mod check_ui;
 mod job;
@@ -40,14 +41,15 @@ const RECORD: usize = 1;
 const TRAIN: usize = 2;
 const CHECK: usize = 3;
 
-/// Rows between two spells without contact, and rows of such a spell: where nothing is touched, nothing may be told.
+/// Number of rows between two periods without contact, and rows of such a period: the network must learn to predict
+/// zero there.
 const SPELL_EVERY: usize = 3000;
 const SPELL: usize = 900;
-/// Rows of the check: with work on the tissue (40 s), and then without contact (15 s).
+/// Rows of the check: in contact with the tissue (40 s), then without contact (15 s).
 const CHECK_WORK: usize = 8000;
 const CHECK_ROWS: usize = CHECK_WORK + 3000;
 
-/// What a recording was made with: rows of different rigs do not mix.
+/// What a recording was made with: rows of different rigs must not be mixed.
 #[derive(Clone, Debug)]
 struct RecordedWith {
     sensor: String,
@@ -56,7 +58,7 @@ struct RecordedWith {
 }
 
 impl RecordedWith {
-    /// It is the same rig as far as that is known.
+    /// Whether it is the same rig, as far as known.
     fn fits(&self, binding: &Binding) -> bool {
         let same = |now: &Correspondence| {
             let then = &self.correspondence;
@@ -73,15 +75,15 @@ impl Checked {
     }
 }
 
-/// A network of this wizard.
+/// A network trained in this wizard.
 #[derive(Clone, Debug)]
 struct Trained {
     model: Model,
-    /// The goal that its recording had not met, if any.
+    /// A requirement that its recording did not meet, if any.
     narrow: Option<&'static str>,
 }
 
-/// How large the networks are.
+/// Size of the networks.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 enum Size {
     Small,
@@ -111,16 +113,16 @@ impl Size {
     }
 }
 
-/// The wizard's memory.
+/// State of the wizard.
 #[derive(Debug, Default)]
 pub struct TipForceWizard {
     frame: Frame,
     clock: Clock,
-    /// What the last tick brought.
+    /// Sources that delivered in the last tick.
     sources: ready_ui::Sources,
     recorded_with: Option<RecordedWith>,
     recording: Option<Take>,
-    /// This recording has been written: its own file need not be kept as the previous one.
+    /// This recording has been saved: its file need not be kept as the previous one.
     written: bool,
     size: Size,
     training: Option<(Job<Model>, Option<&'static str>)>,
@@ -129,7 +131,7 @@ pub struct TipForceWizard {
     proof: Option<Take>,
     judging: Option<Job<Checked>>,
     checked: Option<Checked>,
-    /// What went wrong last, or what was put away.
+    /// The last error or message.
     told: Option<String>,
 }
 
@@ -139,12 +141,12 @@ impl TipForceWizard {
         self.recording.as_ref().map_or(0, |take| take.recorder.rows())
     }
 
-    /// The background is at the training.
+    /// Whether a training is running.
     const fn is_training(&self) -> bool {
         self.training.is_some()
     }
 
-    /// The first goal that the recording has not met.
+    /// The first requirement that the recording does not meet.
     fn lacking(&self) -> Option<nima_core::tip_force::Goal> {
         self.recording.as_ref().and_then(|take| take.recorder.coverage().next())
     }
@@ -156,7 +158,7 @@ impl TipForceWizard {
         if self.sources.iter().all(|there| *there) { Ok(()) } else { Err(text::wizards::NEEDS_CHECKS) }
     }
 
-    /// Results of the background, and a rig that has changed.
+    /// Handles results of background work, and a change of the rig.
     fn take_in(&mut self, binding: &Binding) {
         if self.recorded_with.as_ref().is_some_and(|with| !with.fits(binding)) {
             let told = text::tip_force::RECORDING_DISCARDED;
@@ -182,7 +184,7 @@ impl TipForceWizard {
     fn take_model(&mut self, result: Result<Model, String>, narrow: Option<&'static str>, cancelled: bool) {
         match result {
             Ok(model) => {
-                // What was found of the network before says nothing about this one.
+                // Results of the previous network are not valid for this one.
                 (self.trained, self.proof, self.checked) = (Some(Trained { model, narrow }), None, None);
                 (self.judging, self.frame.saved, self.told) = (None, None, None);
             }
@@ -222,7 +224,7 @@ impl TipForceWizard {
     fn start_check(&mut self, binding: &Binding) {
         let Some(correspondence) = binding.correspondence else { return };
         if self.checked.is_some() {
-            // Another check judges anew; the one before stays until then.
+            // The check is repeated; the previous check of the model stays until then.
             self.proof = None;
         }
         self.proof.get_or_insert_with(|| Take::new(correspondence)).running = true;
@@ -245,7 +247,7 @@ impl TipForceWizard {
         }
     }
 
-    /// Share of the training that is done, and how long it has taken, s.
+    /// Progress of the training, 0 to 1, and its duration so far, s.
     fn progress(&self) -> (f64, f64) {
         let curves = look(&self.curves);
         (curves.share(), curves.elapsed_s)

@@ -1,4 +1,4 @@
-//! The check: a new recording by prompts, then the network's errors beside the paper's and beside simpler methods.
+//! The check: a new guided recording, then the network's errors compared with the paper's and with simpler methods.
 
 use egui::{Button, Grid, RichText, Ui, vec2};
 use egui_plot::{AxisHints, Bar, BarChart, Corner, Legend, Line, LineStyle, MarkerShape, Plot, PlotPoints, Points};
@@ -27,7 +27,7 @@ const PAPER_SD_N: f64 = 0.20;
 const HEIGHT: f32 = 228.0;
 
 impl TipForceWizard {
-    /// Gives the wish to go back and record more.
+    /// Returns the request to go back and record more.
     pub(super) fn check_ui(&mut self, ui: &mut Ui, binding: &Binding) -> Option<Wish> {
         let mut wish = None;
         card(ui, text::tip_force::CHECK_TITLE, text::tip_force::CHECK_HOVER, |ui| {

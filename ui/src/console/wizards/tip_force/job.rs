@@ -1,4 +1,4 @@
-//! Work in the background of the wizard: training and judging. The window never waits for it.
+//! Background work of the wizard: training and judging. The window never waits for it.
 
 use std::{
     fs,
@@ -22,7 +22,7 @@ use nima_training::{Evaluation, Part, Progress, check, train_model};
 
 use crate::console::text;
 
-/// A thread at work. Dropping it asks it to stop; it then ends by itself, and nobody hears of its result.
+/// A background thread. Dropping this requests it to stop; it then ends by itself, and its result is discarded.
 #[derive(Debug)]
 pub(super) struct Job<T> {
     cancel: Arc<AtomicBool>,
@@ -30,7 +30,7 @@ pub(super) struct Job<T> {
 }
 
 impl<T: Send + 'static> Job<T> {
-    /// Begins `work` on an ordinary thread: the loop's own comes first where that is granted.
+    /// Starts `work` on a thread with normal priority; the loop's thread has priority over it if that is granted.
     pub(super) fn start(
         name: &str,
         work: impl FnOnce(&AtomicBool) -> Result<T, String> + Send + 'static,
@@ -42,7 +42,7 @@ impl<T: Send + 'static> Job<T> {
         Ok(Self { cancel, thread: Some(thread) })
     }
 
-    /// The result, once; `None` while it works.
+    /// The result, once; `None` while the work continues.
     pub(super) fn take_result(&mut self) -> Option<Result<T, String>> {
         let thread = self.thread.take_if(|thread| thread.is_finished())?;
         Some(thread.join().unwrap_or_else(|_| Err(text::tip_force::JOB_FAILED.to_owned())))
@@ -50,12 +50,12 @@ impl<T: Send + 'static> Job<T> {
 }
 
 impl<T> Job<T> {
-    /// Asks it to stop.
+    /// Requests it to stop.
     pub(super) fn cancel(&self) {
         self.cancel.store(true, Ordering::Relaxed);
     }
 
-    /// It was asked to stop.
+    /// Whether it was requested to stop.
     pub(super) fn is_cancelled(&self) -> bool {
         self.cancel.load(Ordering::Relaxed)
     }
@@ -67,22 +67,22 @@ impl<T> Drop for Job<T> {
     }
 }
 
-/// Losses of one member, epoch by epoch.
+/// Losses of one member by epoch.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Curve {
-    /// Epoch and decades of the loss on what it learns from.
+    /// Epoch, and logarithm (base 10) of the loss on training rows.
     pub(super) training: Vec<[f64; 2]>,
-    /// The same on what it never sees.
+    /// The same on held-out rows.
     pub(super) held_out: Vec<[f64; 2]>,
     share: f64,
 }
 
-/// What the training has told so far.
+/// Progress of the training.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Curves {
-    /// Member by member.
+    /// Losses of each member.
     pub(super) members: Vec<Curve>,
-    /// Since it began, s.
+    /// Time since the start, s.
     pub(super) elapsed_s: f64,
 }
 
@@ -103,30 +103,30 @@ impl Curves {
     }
 }
 
-/// Curves that two threads see.
+/// Losses shared by two threads.
 pub(super) type Shared = Arc<Mutex<Curves>>;
 
-/// A look at the curves; a thread that broke off leaves them as they were.
+/// Locks the losses; if a thread has panicked, they are used as they are.
 pub(super) fn look(curves: &Mutex<Curves>) -> MutexGuard<'_, Curves> {
     curves.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// What to train, and where its data are kept.
+/// What to train, and where to save the data.
 #[derive(Debug)]
 pub(super) struct Order {
     /// The recording.
     pub(super) recorder: Recorder,
-    /// An earlier data set of another recording is there and must be kept.
+    /// Keep the existing data set, which is from another recording.
     pub(super) keep_previous: bool,
-    /// How to train.
+    /// Settings of the training.
     pub(super) settings: TrainingSettings,
     /// Sensor and tool.
     pub(super) bound: [String; 2],
-    /// Where.
+    /// Store for the data set.
     pub(super) store: Store,
 }
 
-/// Where a recording of this kind is kept.
+/// Path of a recording of this kind.
 pub(super) fn path_of(store: &Store, kind: &str, sensor: &str) -> Result<PathBuf, String> {
     store.path_of(kind, sensor, "csv").map_err(|error| error.to_string())
 }
@@ -140,7 +140,7 @@ fn write(recorder: &Recorder, path: &Path, keeps: bool) -> Result<(), String> {
     recorder.save(path).map_err(failed)
 }
 
-/// Writes the data set, so that nothing is lost and the command line can train on it; then trains on what was written.
+/// Saves the data set, so that it is not lost and the command line can use it, then trains on it.
 pub(super) fn train(order: Order, curves: &Mutex<Curves>, cancel: &AtomicBool) -> Result<Model, String> {
     let Order { recorder, keep_previous, settings, bound: [sensor, tool], store } = order;
     let path = path_of(&store, "tip-force-data", &sensor)?;
@@ -151,27 +151,28 @@ pub(super) fn train(order: Order, curves: &Mutex<Curves>, cancel: &AtomicBool) -
     train_model(&data, &settings, [Some(sensor), Some(tool)], cancel, &told).map_err(|error| error.to_string())
 }
 
-/// Bins of the histogram of answers without contact, and their width, N.
+/// Bins of the histogram of predictions without contact, and their width, N.
 pub(super) const BINS: usize = 41;
 pub(super) const BIN_N: f64 = 0.01;
-/// Points of a regression plot at most.
+/// Most points of a regression plot.
 const POINTS: usize = 700;
 
-/// What a check found, made ready to be drawn.
+/// Result of a check, prepared for drawing.
 #[derive(Clone, Debug)]
 pub(super) struct Checked {
-    /// Figures and verdict.
+    /// Errors and verdict.
     pub(super) check: Check,
-    /// All methods side by side.
+    /// Errors of all methods.
     pub(super) part: Part,
-    /// Per axis: measured and predicted, N; a share of the rows.
+    /// Per axis: measured and predicted force, N; a subset of the rows.
     pub(super) points: [Vec<[f64; 2]>; 3],
-    /// Per axis: share of the rows without contact in each bin; the middle one is about zero, the outer ones hold all beyond.
+    /// Per axis: share of rows without contact in each bin; the middle one is around zero, the outer ones include
+    /// everything beyond.
     pub(super) bins: [[f64; BINS]; 3],
 }
 
-/// Judges a model on a new recording, which is kept beside the data set. What it was trained on was not complete where
-/// `narrow` says so: then it is not proven, whatever the figures.
+/// Judges a model on a new recording, which is saved beside the data set. If the training data were incomplete
+/// (`narrow`), the model is not accepted, whatever its errors.
 pub(super) fn judge(
     recorder: &Recorder,
     model: Model,

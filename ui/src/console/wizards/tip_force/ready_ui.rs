@@ -1,4 +1,4 @@
-//! The first page: is everything there that a recording needs, and what to do where it is not.
+//! First page of the wizard: whether everything for a recording is present, and what to do if not.
 
 use egui::Ui;
 use nima_machine::messages::Tick;
@@ -9,10 +9,10 @@ use super::{
 };
 use crate::console::{text, widgets::card};
 
-/// Which of [`SOURCES`] came with a tick.
+/// Which of [`SOURCES`] delivered in a tick.
 pub(super) type Sources = [bool; SOURCES.len()];
 
-/// What a tick must bring: name, and what is wrong without it and what to do.
+/// Required sources: name, and the text if it is missing.
 const SOURCES: [(&str, &str); 5] = [
     (text::tip_force::SOURCE_WRIST, text::tip_force::SOURCE_SILENT),
     (text::tip_force::SOURCE_GRAVITY, text::tip_force::SOURCE_NO_GRAVITY),
@@ -21,7 +21,7 @@ const SOURCES: [(&str, &str); 5] = [
     (text::tip_force::SOURCE_DEPTH, text::tip_force::SOURCE_NO_DEPTH),
 ];
 
-/// What this tick brought.
+/// Sources that delivered in this tick.
 pub(super) fn sources(tick: &Tick) -> Sources {
     tick.wrist.as_ref().map_or_else(Sources::default, |sample| {
         let gravity = tick.force.gravity_free.is_some();

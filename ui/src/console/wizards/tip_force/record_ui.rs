@@ -1,4 +1,4 @@
-//! The recording: what to do now, how much there is, what it still lacks, and three maps that fill.
+//! The recording page: the task, the number of rows, what is missing, and three maps of the coverage.
 
 use egui::{Align, Button, Layout, RichText, Ui, vec2};
 use nima_core::tip_force::Coverage;
@@ -19,11 +19,11 @@ use crate::console::{
     widgets::{card, small},
 };
 
-/// Rows of the paper's data set.
+/// Number of rows of the paper's data set.
 const PAPER_ROWS: usize = 30_000;
 
 impl TipForceWizard {
-    /// Gives the wish to train although not all goals are met.
+    /// Returns the request to train although not all requirements are met.
     pub(super) fn record_ui(&mut self, ui: &mut Ui, binding: &Binding) -> Option<Wish> {
         let (running, rows) = (self.recording.as_ref().is_some_and(|take| take.running), self.rows());
         let mut wish = None;
@@ -56,7 +56,7 @@ impl TipForceWizard {
         wish
     }
 
-    /// The person's task in large type, then what the recording is doing.
+    /// The person's task in large type, then the state of the recording.
     fn now_ui(&self, ui: &mut Ui) {
         let Some(take) = &self.recording else {
             ui.label(RichText::new(words(self.prompt())).font(theme::strong(19.0)));
@@ -81,7 +81,7 @@ impl TipForceWizard {
         ui.label(text::tip_force::state(&take.phase_words()));
     }
 
-    /// The big button; true when it is pressed.
+    /// The start button; returns true when it is pressed.
     fn start_ui(&self, ui: &mut Ui, running: bool, rows: usize, binding: &Binding) -> bool {
         let text = match (running, rows) {
             (true, _) => text::tip_force::PAUSE,
@@ -110,7 +110,7 @@ fn goals_ui(ui: &mut Ui, coverage: &Coverage) {
     card(ui, text::tip_force::GOALS_TITLE, text::tip_force::GOALS_HOVER, |ui| {
         ui.columns(2, |columns| {
             for (i, goal) in coverage.goals().iter().enumerate() {
-                // Never 100 before it is met.
+                // Rounded down, so that 100 is shown only when the requirement is met.
                 let percent = format!("{:.0} %", (100.0 * goal.share).floor());
                 progress(
                     &mut columns[i / 3],

@@ -1,4 +1,4 @@
-//! A recording that can be paused, broken off and gone on with, on a clock of its own.
+//! A recording that can be paused and continued, with a clock that is continuous over restarts of the loop.
 
 use nima_core::calibration::correspondence::Correspondence;
 use nima_machine::{messages::Tick, rig::Prompt};
@@ -6,10 +6,10 @@ use nima_recording::tip_force::{MOST_ROWS, Recorder, RecorderPhase};
 
 use crate::{console::text, words::Words as _};
 
-/// A longer hole in the ticks, s, means that nobody has watched the rig meanwhile.
+/// A gap in the ticks longer than this, s, means that the rig was not observed meanwhile.
 const HOLE_S: f64 = 1.0;
 
-/// The loop's clock begins anew with every start of it; this one goes on.
+/// A continuous clock: the loop's starts at zero with every start of it.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Clock {
     begin_s: f64,
@@ -17,7 +17,7 @@ pub(super) struct Clock {
 }
 
 impl Clock {
-    /// Time that only rises, s; and whether ticks were missing before this one.
+    /// Continuous time, s; and whether ticks were missing before this one.
     pub(super) fn at(&mut self, t_s: f64) -> (f64, bool) {
         let now_s = self.begin_s + t_s;
         let Some(last_s) = self.last_s.replace(now_s) else { return (now_s, false) };
@@ -34,13 +34,13 @@ impl Clock {
 /// A recording.
 #[derive(Clone, Debug)]
 pub(super) struct Take {
-    /// The rows.
+    /// The recorded rows.
     pub(super) recorder: Recorder,
-    /// Rows are being taken, or would be if nothing were missing.
+    /// Whether the recording is running, even if a source is missing at the moment.
     pub(super) running: bool,
-    /// The wrist sensor is silent.
+    /// Whether the wrist sensor is silent.
     silent: bool,
-    /// What the person is to do.
+    /// Present instruction to the person.
     asked: Prompt,
 }
 
@@ -49,31 +49,31 @@ impl Take {
         Self { recorder: Recorder::new(correspondence), running: false, silent: false, asked: Prompt::Rest }
     }
 
-    /// Takes one tick; `work` is what the person is to do once the rest is over.
+    /// Adds one tick; `work` is the instruction after the rest period.
     pub(super) fn step(&mut self, now_s: f64, tick: &Tick, work: Prompt) {
         self.silent = tick.wrist.is_none();
         let (Some(sample), true) = (&tick.wrist, self.running) else { return };
         match self.recorder.step(now_s, tick.force.gravity_free.as_ref(), sample) {
             RecorderPhase::Resting { .. } => self.asked = Prompt::Rest,
             RecorderPhase::NotMoved | RecorderPhase::Recording => self.asked = work,
-            // A short loss of a source changes nothing of what is to be done.
+            // A short loss of a source does not change the instruction.
             RecorderPhase::Lacks(_) => {}
             RecorderPhase::Full => self.running = false,
         }
     }
 
-    /// Somebody else may have touched the rig: it rests anew before it goes on.
+    /// Pauses: the rig may be touched, so a rest period is required before continuing.
     pub(super) fn break_off(&mut self) {
         self.recorder.interrupt();
         (self.running, self.asked) = (false, Prompt::Rest);
     }
 
-    /// What the person at the arm is to do now.
+    /// Present instruction to the person at the arm.
     pub(super) const fn prompt(&self) -> Prompt {
         if self.running { self.asked } else { Prompt::Rest }
     }
 
-    /// What the recording is doing, in words.
+    /// State of the recording as text.
     pub(super) fn phase_words(&self) -> String {
         if self.recorder.rows() == MOST_ROWS {
             return text::tip_force::PHASE_FULL.to_owned();
@@ -89,7 +89,7 @@ impl Take {
     }
 }
 
-/// What the screen says to the person at the arm.
+/// Text of the instruction.
 pub(super) const fn words(prompt: Prompt) -> &'static str {
     match prompt {
         Prompt::Work => text::tip_force::TASK_WORK,

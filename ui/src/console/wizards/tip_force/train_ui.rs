@@ -1,4 +1,4 @@
-//! The training: size, start and cancel, how far it is, and the losses as they fall.
+//! The training page: size, start and cancel, progress, and the losses.
 
 use egui::{Button, Ui, vec2};
 use egui_plot::{AxisHints, Corner, GridInput, GridMark, Legend, Line, LineStyle, Plot, PlotPoints};
@@ -134,7 +134,7 @@ fn curves_ui(ui: &mut Ui, curves: &Curves) {
     response.response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, described.clone()));
 }
 
-/// Marks at 1, 2 and 5 in each decade, values being decades.
+/// Marks at 1, 2 and 5 in each decade; values are in decades.
 fn whole_decades(grid: &GridInput) -> Vec<GridMark> {
     let (low, high) = (grid.bounds.0.max(-12.0), grid.bounds.1.min(12.0));
     let fine = high - low < 3.0;

@@ -172,8 +172,8 @@ pub(super) fn arm_field_m_s2(world_from_s1: &UnitQuaternion<f64>) -> Vector3<f64
     world_from_s1.inverse_transform_vector(&Vector3::new(0.0, 0.0, -GRAVITY_M_S2))
 }
 
-/// The paper's row `(sin a, cos a, sin b, cos b, 1)` with roll `a = atan2(ay, az)` and pitch `b = atan2(-ax, sqrt(ay^2
-/// + az^2))` of `-u`. Sines and cosines are computed as ratios, without the angles.
+/// The paper's row `(sin a, cos a, sin b, cos b, 1)` with roll `a = atan2(ay, az)` and pitch
+/// `b = atan2(-ax, sqrt(ay^2 + az^2))` of `-u`. Sines and cosines are computed as ratios, without the angles.
 pub(super) fn paper_row(field_m_s2: &Vector3<f64>) -> SVector<f64, 5> {
     let support = -field_m_s2;
     let across = support.y.hypot(support.z);

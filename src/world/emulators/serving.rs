@@ -96,7 +96,9 @@ impl Turn<'_> {
 }
 
 fn send(ends: &mut [Box<dyn End>], to: Peer, bytes: &[u8]) {
-    ends.iter_mut().for_each(|end| end.send(to, bytes));
+    for end in ends {
+        end.send(to, bytes);
+    }
 }
 
 struct Host {

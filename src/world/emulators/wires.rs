@@ -65,7 +65,9 @@ pub(super) const ARRIVALS: usize = 64;
 #[expect(unsafe_code, reason = "std waits for one descriptor only")]
 pub(super) fn wait(ends: &[Box<dyn End>], longest: Duration, admits: bool) {
     let mut watched = Vec::new();
-    ends.iter().for_each(|end| end.watch(admits, &mut watched));
+    for end in ends {
+        end.watch(admits, &mut watched);
+    }
     let of = |fd| libc::pollfd { fd, events: libc::POLLIN, revents: 0 };
     let mut watched: Vec<libc::pollfd> = watched.into_iter().map(of).collect();
     let (first, count) = (watched.as_mut_ptr(), watched.len() as libc::nfds_t);

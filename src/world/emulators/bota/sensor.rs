@@ -51,8 +51,8 @@ impl Sensor {
 }
 
 fn garble(bytes: &mut [u8], understood: bool) {
-    if !understood {
-        bytes.iter_mut().for_each(|byte| *byte = byte.rotate_left(3) ^ 0x5A);
+    for byte in bytes.iter_mut().filter(|_| !understood) {
+        *byte = byte.rotate_left(3) ^ 0x5A;
     }
 }
 

@@ -37,13 +37,13 @@ pub(super) struct Connections<P: Place> {
     place: P,
     for_one: bool,
     listener: Option<P::Listener>,
-    connections: Vec<Connection<P::Stream>>,
+    clients: Vec<Client<P::Stream>>,
     accepted: u64,
-    /// Which connection is asked next.
+    /// Which client is asked next.
     next: usize,
 }
 
-struct Connection<S> {
+struct Client<S> {
     peer: Peer,
     stream: S,
     alive: bool,
@@ -51,7 +51,7 @@ struct Connection<S> {
 
 impl<P: Place> Connections<P> {
     pub(super) const fn new(place: P, for_one: bool) -> Self {
-        Self { place, for_one, listener: None, connections: Vec::new(), accepted: 0, next: 0 }
+        Self { place, for_one, listener: None, clients: Vec::new(), accepted: 0, next: 0 }
     }
 }
 
@@ -68,36 +68,36 @@ impl<P: Place> End for Connections<P> {
     }
 
     fn cut(&mut self) -> bool {
-        self.connections.clear();
+        self.clients.clear();
         self.listener.take().map(|_| self.place.leave()).is_some()
     }
 
     fn next(&mut self, buffer: &mut [u8], admits: bool) -> Option<Arrival> {
         if admits && let Ok(stream) = P::accept(self.listener.as_ref()?) {
             if self.for_one {
-                self.connections.clear();
+                self.clients.clear();
             }
             self.accepted += 1;
             let peer = Peer::Connection(self.accepted);
-            self.connections.push(Connection { peer, stream, alive: true });
+            self.clients.push(Client { peer, stream, alive: true });
             return Some(Arrival::Came(peer, 0));
         }
         // Each in its turn: one that sends much keeps no other waiting.
-        for _ in 0..self.connections.len() {
-            let at = self.next % self.connections.len();
+        for _ in 0..self.clients.len() {
+            let at = self.next % self.clients.len();
             self.next = at + 1;
-            let Connection { peer, stream, alive } = &mut self.connections[at];
+            let Client { peer, stream, alive } = &mut self.clients[at];
             match stream.read(buffer) {
                 Ok(count) if *alive && count > 0 => return Some(Arrival::Heard(*peer, count)),
                 Err(error) if *alive && matches!(error.kind(), ErrorKind::WouldBlock | ErrorKind::Interrupted) => {}
-                _ => return Some(Arrival::Gone(self.connections.remove(at).peer)),
+                _ => return Some(Arrival::Gone(self.clients.remove(at).peer)),
             }
         }
         None
     }
 
     fn send(&mut self, to: Peer, bytes: &[u8]) {
-        for Connection { peer, stream, alive } in &mut self.connections {
+        for Client { peer, stream, alive } in &mut self.clients {
             if to == Peer::Everyone || to == *peer {
                 let whole = stream.write(bytes).is_ok_and(|count| count == bytes.len());
                 *alive &= whole || P::LOSES;
@@ -106,12 +106,12 @@ impl<P: Place> End for Connections<P> {
     }
 
     fn hang_up(&mut self) {
-        self.connections.iter_mut().for_each(|connection| connection.alive = false);
+        self.clients.iter_mut().for_each(|client| client.alive = false);
     }
 
     fn watch(&self, admits: bool, watched: &mut Vec<RawFd>) {
         watched.extend(self.listener.iter().filter(|_| admits).map(P::Listener::as_raw_fd));
-        watched.extend(self.connections.iter().map(|connection| connection.stream.as_raw_fd()));
+        watched.extend(self.clients.iter().map(|client| client.stream.as_raw_fd()));
     }
 }
 

@@ -16,8 +16,8 @@ type Listen = fn(&Path) -> io::Result<UnixListener>;
 
 /// A socket at `path`, made by `listen`; without a path, at `name` in a folder of its own. What a client does not read is lost.
 pub(in crate::emulators) fn socket(path: Option<&Path>, name: &str, listen: Listen) -> io::Result<Box<dyn End>> {
-    let (path, _folder) = socket_path(path, name)?;
-    Ok(Box::new(Connections::new(SocketPath { path, _folder, listen }, false)))
+    let (path, folder) = socket_path(path, name)?;
+    Ok(Box::new(Connections::new(SocketPath { path, _folder: folder, listen }, false)))
 }
 
 struct SocketPath {

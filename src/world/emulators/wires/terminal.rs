@@ -112,7 +112,7 @@ impl End for Terminal {
     fn send(&mut self, to: Peer, bytes: &[u8]) {
         if let Some(line) = self.line.as_mut().filter(|line| line.present && to == Peer::Everyone) {
             // What does not fit is lost, as on a real line that nobody reads.
-            line.bytes.write(bytes).ok();
+            let _lost = line.bytes.write(bytes);
         }
     }
 

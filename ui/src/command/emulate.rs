@@ -60,7 +60,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
             let known: Vec<_> = ALONE.iter().map(|(known, _)| *known).collect();
             bail!("unknown emulator \"{name}\"; known: {}", known.join(", "));
         };
-        let serving = emulator(&settings).and_then(|emulator| emulator.serve());
+        let serving = emulator(&settings).and_then(<dyn nima_world::emulators::Emulator>::serve);
         emulated.push((*known, serving.with_context(|| format!("cannot emulate {name}"))?));
     }
     let served: Vec<_> = emulated.iter().map(|(device, serving)| (*device, serving)).collect();

@@ -19,7 +19,7 @@ pub use mounted::SimulatedWrists;
 
 use crate::rig;
 
-/// What the loop runs on and how.
+/// The settings of a rig: its loop, and its devices if it has any.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct RigConfig {

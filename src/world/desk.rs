@@ -158,7 +158,7 @@ mod tests {
     #[test]
     fn a_cap_leads_the_hand_and_a_pedal_is_the_clutch() {
         let push = CapReading { translation: Vector3::new(0.5, 0.0, 0.0), ..CapReading::default() };
-        // At rest for a while, then pushed to the right.
+        // Released for a while, then pushed to the right.
         let cap = cap(
             None,
             CapModel::default(),

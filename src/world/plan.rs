@@ -137,7 +137,7 @@ pub fn start_simulated(plan: &Plan, speed: f64) -> Result<Handle, StartError> {
 ///     largest_n = largest_n.max(tick.rendered_n.norm());
 ///     None
 /// })?;
-/// assert_eq!((summary.state, summary.missed), (LoopState::Engaged, 0));
+/// assert_eq!((summary.final_state, summary.missed), (LoopState::Engaged, 0));
 /// assert!(largest_n > 0.5 && largest_n <= plan.rig.gates.ceiling_n, "{largest_n} N");
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```

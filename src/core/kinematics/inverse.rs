@@ -40,7 +40,7 @@ const POSTURE_SHARE: f64 = 0.2;
 /// If the shaft misses the trocar by more than this at the start, the instrument is not in it, m.
 pub const START_MISS_M: f64 = 5e-3;
 
-/// How good the pose is after a step.
+/// Quality of the pose after a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Measures {
     /// Distance of the shaft's axis from the trocar, m.

@@ -136,7 +136,7 @@ impl Rcm {
         if inward.norm() < POINT_M {
             return refuse("inward", inward.norm(), "its length must not be zero");
         }
-        // Written so that NaN is refused.
+        // Written so that NaN is refused as well.
         if !(cone_deg > 0.0 && cone_deg <= 80.0) {
             return refuse("cone_deg", cone_deg, "it must be above 0 and at most 80 degrees");
         }

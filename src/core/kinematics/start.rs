@@ -1,24 +1,24 @@
-//! Why the inverse kinematics cannot start from where the arm is.
+//! Why the inverse kinematics cannot start from the arm's present position.
 
 use thiserror::Error;
 
 use super::gen3::{Joints, LIMIT_RAD};
 
-/// Why the arm cannot start from where it is.
+/// Why the arm cannot start from its present position.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 #[expect(missing_docs, reason = "the messages say it")]
 pub enum StartError {
-    /// The loop's period makes no sense.
+    /// The loop's period is invalid.
     #[error("the period of the inverse kinematics is {period_s} s: it must be above 0 and at most 0.02 s")]
     Period { period_s: f64 },
-    /// The instrument is shorter than the way it shall go.
+    /// The instrument is shorter than the largest insertion.
     #[error(
         "the shaft of {shaft_m} m is too short for an insertion of {insertion_max_m} m: correct the one or the other"
     )]
     ShortShaft {
-        /// From the sensor to the tip, m.
+        /// Distance from the sensor to the tip, m.
         shaft_m: f64,
-        /// Greatest insertion, m.
+        /// Largest insertion, m.
         insertion_max_m: f64,
     },
     /// A joint angle is not finite.
@@ -37,7 +37,7 @@ pub enum StartError {
         angle_deg: f64,
         limit_deg: f64,
     },
-    /// The shaft does not lead through the trocar.
+    /// The shaft does not pass through the trocar.
     #[error(
         "the shaft's axis misses the trocar by {miss_m:.4} m, at most {most_m} m are allowed: move the arm to the ready pose"
     )]
@@ -46,15 +46,15 @@ pub enum StartError {
         miss_m: f64,
         most_m: f64,
     },
-    /// The tip is not in the body.
+    /// The tip is not inside the body.
     #[error("the tip is {insertion_m:.4} m behind the trocar: insert the instrument before starting")]
     NotInserted {
-        /// Along the shaft, m; negative in front of the trocar.
+        /// Along the shaft, m; negative outside the body.
         insertion_m: f64,
     },
 }
 
-/// Every angle is a number within its range.
+/// Checks that every angle is finite and within its range.
 pub(super) fn check_joints(joint_rad: &Joints) -> Result<(), StartError> {
     for (i, (angle, limit)) in joint_rad.iter().zip(LIMIT_RAD).enumerate() {
         if !angle.is_finite() {

@@ -383,7 +383,7 @@ impl OpenDevice {
     }
 }
 
-/// Above the loop (80), which must not keep a device waiting.
+/// Above the priority of the loop (80), so that the loop cannot delay a device.
 #[cfg(target_os = "linux")]
 const PRIORITY: c_int = 82;
 

@@ -1,4 +1,4 @@
-//! How files of settings are read: by name, with the line of what is wrong, and with checks of ranges.
+//! Reading of settings files: by name, with the line of an error, and with range checks.
 
 use std::{
     ops::Range,
@@ -13,7 +13,7 @@ use toml::de::DeTable;
 
 use crate::rig::Misread;
 
-/// A file that could not be used: what, where, what to do.
+/// Why a settings file cannot be used; the message says what, where, and what to do.
 #[derive(Debug, thiserror::Error)]
 #[expect(missing_docs, reason = "the messages say it")]
 pub enum ConfigError {
@@ -43,7 +43,7 @@ pub enum ConfigError {
         /// Line, column and key.
         message: String,
     },
-    /// A device of the rig has a setting that it cannot have.
+    /// A setting of a device is invalid.
     #[error("rig \"{name}\"")]
     Device { name: String, source: Trouble },
     /// A value is outside its range.
@@ -58,10 +58,10 @@ pub enum ConfigError {
     },
 }
 
-/// The text of a file or an embedded name, and where it came from.
+/// Text of a file or of an embedded one of this name, and its path.
 ///
 /// # Errors
-/// [`ConfigError::Unknown`], [`ConfigError::Read`].
+/// [`ConfigError::Unknown`] if there is no such name or file; [`ConfigError::Read`] if the file cannot be read.
 pub fn text(kind: &'static str, name: &str, embedded: &[(&str, &str)]) -> Result<(PathBuf, String), ConfigError> {
     if let Some((known, text)) = embedded.iter().find(|(known, _)| *known == name) {
         return Ok((PathBuf::from(known), (*text).to_owned()));
@@ -80,12 +80,21 @@ pub fn text(kind: &'static str, name: &str, embedded: &[(&str, &str)]) -> Result
 /// Reads one file of settings.
 ///
 /// # Errors
-/// [`ConfigError::Parse`] with its line.
+/// [`ConfigError::Parse`] with the line of the error.
+///
+/// ```
+/// use std::path::Path;
+///
+/// use nima_machine::config::{RigConfig, parse};
+///
+/// let error = parse::<RigConfig>("rig", Path::new("mine.toml"), "rate = 1000").expect_err("no such key");
+/// assert!(error.to_string().contains("mine.toml") && error.to_string().contains("rate"), "{error}");
+/// ```
 pub fn parse<T: for<'de> Deserialize<'de>>(kind: &'static str, path: &Path, text: &str) -> Result<T, ConfigError> {
     parse_with(kind, path, text, |_| Ok(()))
 }
 
-/// The same of a file whose tables are brought into another form first; each value keeps its place.
+/// The same for a file whose tables are transformed first; every value keeps its position in the text.
 pub(crate) fn parse_with<T: for<'de> Deserialize<'de>>(
     kind: &'static str,
     path: &Path,
@@ -108,7 +117,7 @@ pub(crate) fn parse_with<T: for<'de> Deserialize<'de>>(
     }
 }
 
-/// Collects range checks so that each reads as one line.
+/// Range checks with a message of one line each.
 pub struct Ranges<'a> {
     /// `rig` or `scene`.
     pub kind: &'static str,
@@ -117,7 +126,10 @@ pub struct Ranges<'a> {
 }
 
 impl Ranges<'_> {
-    /// Refuses a value that is not good, by its key.
+    /// Refuses the value of `key` unless `good`.
+    ///
+    /// # Errors
+    /// [`ConfigError::Range`].
     pub fn check(&self, key: &'static str, value: f64, good: bool, range: &'static str) -> Result<(), ConfigError> {
         if good && value.is_finite() {
             return Ok(());
@@ -125,17 +137,26 @@ impl Ranges<'_> {
         Err(ConfigError::Range { kind: self.kind, name: self.name.to_owned(), key, value, range })
     }
 
-    /// Every entry on its own: a sum would hide infinities that cancel.
+    /// Refuses a vector that is not finite. Each entry is checked on its own, because infinities can cancel in a sum.
+    ///
+    /// # Errors
+    /// [`ConfigError::Range`].
     pub fn finite(&self, key: &'static str, vector: &Vector3<f64>) -> Result<(), ConfigError> {
         vector.iter().try_for_each(|entry| self.check(key, *entry, true, "finite numbers"))
     }
 
-    /// A number above 0.
+    /// Refuses a value that is not above 0.
+    ///
+    /// # Errors
+    /// [`ConfigError::Range`].
     pub fn positive(&self, key: &'static str, value: f64) -> Result<(), ConfigError> {
         self.check(key, value, value > 0.0, "a number above 0")
     }
 
-    /// 0 or above.
+    /// Refuses a value below 0.
+    ///
+    /// # Errors
+    /// [`ConfigError::Range`].
     pub fn not_negative(&self, key: &'static str, value: f64) -> Result<(), ConfigError> {
         self.check(key, value, value >= 0.0, "0 or above")
     }

@@ -15,7 +15,8 @@ use self::usual_arm::{READY_RAD, TROCAR_M, arm, middle_m, rcm};
 const PERIOD_S: f64 = 1e-3;
 const STEPS: usize = 20_000;
 
-/// A hand in a hurry: at 0.3 m/s (the fastest follower of the rig files) to random places, turned back at random, with a jump now and then.
+/// A hand that moves at 0.3 m/s (the fastest follower of the rig files) to random places, with random reversals and
+/// occasional jumps.
 struct Hand {
     random: fastrand::Rng,
     goal_m: Vector3<f64>,
@@ -58,9 +59,10 @@ struct Shown {
     behind_m: Vec<f64>,
 }
 
-/// A cone of 20 degrees can be served everywhere; at the rim of one of 50 joints come to their limits.
+/// Within a cone of 20 degrees no joint comes near its limits; at the edge of a cone of 50 degrees some do.
 ///
-/// As the rig leads an arm: a plan within the arm's limits, the driver's check, and now and then a clutch, which brakes and begins anew.
+/// Leads the arm as the rig does: a plan within the arm's limits, the driver's check, and now and then a clutch, which
+/// brakes and starts a new plan.
 fn drive(fraction: f64, cone_deg: f64, seed: u64, shown: &mut Shown) {
     let (arm, rcm) = (arm(), rcm(cone_deg));
     let limits = JointLimits::of_arm(fraction, 0.05);

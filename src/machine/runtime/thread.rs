@@ -45,7 +45,7 @@ pub enum StartError {
     /// The operating system could not create the thread.
     #[error(transparent)]
     Rig(#[from] RigError),
-    /// The operating system gave no thread.
+    /// The operating system could not create a thread.
     #[error("the real-time thread could not be started")]
     Thread(#[from] io::Error),
 }

@@ -21,7 +21,7 @@ use crate::{
 pub struct Calibrations {
     /// Weight of the tool and bias of the wrist sensor.
     pub gravity: Option<GravityModel>,
-    /// The network against the trocar's friction.
+    /// Network that removes the trocar's friction.
     pub tip_force: Option<TipForce>,
 }
 

@@ -198,7 +198,7 @@ impl<L: Link> Pair<L> {
         }
     }
 
-    /// The wrist sensor came, went or changed.
+    /// The wrist sensor was connected, lost or exchanged.
     pub(super) const fn suspend_calibrations(&mut self) {
         self.force_path.suspend();
     }

@@ -167,7 +167,7 @@ impl Live {
         }
     }
 
-    /// A tick came at this moment and waits to be taken in: the loop is not silent.
+    /// Records that a tick arrived at this moment and waits to be read: the loop is not silent.
     pub fn heard(&mut self, at: Instant) {
         self.tick_at = self.tick_at.max(at);
     }

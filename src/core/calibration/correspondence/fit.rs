@@ -239,7 +239,7 @@ fn disagreement(report: &CorrespondenceReport, solution: &Solution, used: usize,
         ));
     }
     let angle_deg = solution.cross_check_deg;
-    // Written so that NaN is refused.
+    // Written so that NaN is refused as well.
     let same = angle_deg <= limits.cross_check_deg;
     (!same)
         .then(|| format!("the two solvers differ by {angle_deg:.2} degrees; the pushes do not determine the rotation"))

@@ -55,7 +55,7 @@ pub enum Missing {
     WristForce,
     /// The sensor under the tissue.
     TissueForce,
-    /// A rotation of the chain: arm or tracker.
+    /// A rotation of the chain, from arm or tracker.
     Chain,
     /// A number is not finite, or the time does not rise.
     Sense,

@@ -231,7 +231,7 @@ fn weightless(report: &GravityReport, limits: &Limits) -> Option<String> {
     let weight_n = report.mass_kg? * GRAVITY_M_S2;
     let noise_n = fit.force_n.fitted.sd.into_iter().fold(0.0, f64::max);
     let least_n = limits.least_weight_n.max(limits.least_signal * noise_n);
-    // Written so that NaN is refused.
+    // Written so that NaN is refused as well.
     let seen = weight_n >= least_n;
     (!seen).then(|| {
         format!(

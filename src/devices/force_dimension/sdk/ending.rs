@@ -1,34 +1,34 @@
-//! No device stays without brakes when the program ends by itself.
+//! Ensures that no device is left without brakes when the program ends through `exit`.
 
 use std::{
     sync::atomic::{AtomicBool, AtomicUsize, Ordering},
     time::{Duration, Instant},
 };
 
-/// Devices that are open in this program.
+/// Number of devices that are open in this program.
 static OPEN_DEVICES: AtomicUsize = AtomicUsize::new(0);
-/// The program ends: threads that hold a device let go of it.
+/// Set when the program ends: threads that own a device must close it.
 static ENDING: AtomicBool = AtomicBool::new(false);
 /// How long the end of the program waits for that.
 const END_MAX: Duration = Duration::from_millis(300);
 
-/// One device more is open.
+/// Counts a device that was opened.
 pub(super) fn opened() {
     OPEN_DEVICES.fetch_add(1, Ordering::AcqRel);
 }
 
-/// One device less is open.
+/// Counts a device that was closed.
 pub(super) fn closed() {
     OPEN_DEVICES.fetch_sub(1, Ordering::AcqRel);
 }
 
-/// The program ends.
+/// Whether the program is ending.
 pub(in crate::force_dimension) fn is_ending() -> bool {
     ENDING.load(Ordering::Acquire)
 }
 
-/// Has brakes engaged also when the program ends without dropping its devices (`exit` somewhere). The threads that hold them do it
-/// themselves; the end only waits for them.
+/// Ensures that brakes are engaged even if the program ends without dropping its devices (a call of `exit`). The
+/// threads that own the devices do this themselves; the exit handler only waits for them.
 pub(super) fn call_before_exit() {
     extern "C" fn release_all() {
         ENDING.store(true, Ordering::Release);
@@ -40,7 +40,7 @@ pub(super) fn call_before_exit() {
     #[cfg(unix)]
     {
         static ONCE: std::sync::Once = std::sync::Once::new();
-        // SAFETY: a function that lives for ever, does not unwind and touches statics without destructors only.
+        // SAFETY: the function is static, does not unwind, and uses only statics without destructors.
         ONCE.call_once(|| unsafe {
             libc::atexit(release_all);
         });

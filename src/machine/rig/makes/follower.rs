@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize, Serializer};
 
 use super::Opener;
 
-/// The arm of a rig file. Both have the joints of a Gen3.
+/// The arm of a rig file. Both makes have the joints of a Gen3.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum FollowerSettings {

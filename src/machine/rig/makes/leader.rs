@@ -30,7 +30,7 @@ impl LeaderSettings {
     /// Its makes as a rig file names them, the usual one first.
     pub(super) const MAKES: &[&str] = &["force_dimension"];
 
-    /// Of a handle by Force Dimension.
+    /// The settings, if it is a handle by Force Dimension.
     pub const fn force_dimension(&self) -> Option<&force_dimension::Settings> {
         let Self::ForceDimension(settings) = self;
         Some(settings)

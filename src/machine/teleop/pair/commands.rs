@@ -1,4 +1,4 @@
-//! What a person commands and what a fault does: the pair's ways from state to state.
+//! Commands and faults: the changes of state of a pair.
 
 use nalgebra::UnitQuaternion;
 use nima_core::{
@@ -23,7 +23,10 @@ impl<L: Link> Pair<L> {
         Ok(())
     }
 
-    /// Carries out one command, or gives why not. [`Command::Shutdown`] is the runtime's.
+    /// Carries out one command, or returns why it cannot. [`Command::Shutdown`] is handled by the runtime.
+    ///
+    /// # Errors
+    /// [`Refusal`] if the command is not allowed in this state, its value is out of range, or a measurement forbids it.
     pub fn obey(&mut self, command: Command, t_s: f64) -> Result<(), Refusal> {
         match command {
             Command::SetMode(mode) => self.mode = mode,
@@ -38,7 +41,7 @@ impl<L: Link> Pair<L> {
                 Ok(mapping) => self.hand_eye.set_mapping(mapping),
                 Err(_) => return Err(Refusal::OutOfRange),
             },
-            // Whoever is asked to handle the arm must be safe from it.
+            // In idle only: a person who handles the arm must be safe from its motion.
             Command::Prompt(_, prompt) if self.state() == LoopState::Idle && prompt.is_finite() => self.prompt = prompt,
             Command::Guide(guide_m)
                 if !self.state().is_latched()
@@ -65,7 +68,7 @@ impl<L: Link> Pair<L> {
     }
 
     pub(super) fn set_delay(&mut self, delay_s: f64) {
-        // The delay is exact to one sample, and the screen shows what is in force.
+        // The delay is a whole number of samples; this is the delay that is shown on the screen.
         self.delay_s = self.settings.delay_ticks(delay_s) as f64 / self.rate_hz;
         self.link.set_delay(self.delay_s);
         self.identifier.set_delay(self.delay_s);
@@ -79,14 +82,14 @@ impl<L: Link> Pair<L> {
         }
     }
 
-    /// A fault that matters only while drives are on.
+    /// Raises a fault that matters only while drives are on.
     pub(in crate::teleop) fn fail_if_driven(&mut self, fault: Fault, t_s: f64) {
         if self.state().permits().drives {
             self.fail(fault, t_s);
         }
     }
 
-    /// What entering a state does: everything begins from no force and a resting follower.
+    /// Actions on entering a state: everything starts from zero force and a follower at rest.
     pub(super) fn enter(&mut self, change: Change<Fault>, t_s: f64) {
         let Change { from, to, why } = change;
         self.tell(Event::StateChanged { t_s, side: self.side, from, to, why });
@@ -102,12 +105,14 @@ impl<L: Link> Pair<L> {
             self.guide_m = None;
         }
         if let (LoopState::Engaged, Some(seen)) = (to, self.last_inputs) {
-            // Only here: an endoscope that turns while hand and tip are joined must not turn the motion under the hand.
+            // Only here: if the endoscope turns while engaged, the mapping must not turn the motion under the
+            // operator's hand.
             if let View::Seen(world_from_view) = seen.view {
                 let mapping = self.teleoperation.seen(&world_from_view, self.hand_eye.mapping().scale());
                 self.hand_eye.set_mapping(mapping);
             }
-            // Hand and tip are joined where both are: the first command is where the tip is.
+            // The mapping starts at the present positions of hand and tip, so the first command is the present tip
+            // position.
             let world_from_jaws = seen.world_from_jaws.unwrap_or_else(UnitQuaternion::identity);
             self.hand_eye.engage(Target { tip_m: seen.tip_m, world_from_jaws });
             self.engaged_s = t_s;

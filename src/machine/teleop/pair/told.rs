@@ -1,4 +1,4 @@
-//! What a pair tells of a tick, and what it shows before there was a sample.
+//! Fills in the [`Tick`] of a pair, and defines what is reported before the first sample.
 
 use nalgebra::Vector3;
 use nima_core::{
@@ -14,10 +14,10 @@ use crate::{
     teleop::Link,
 };
 
-/// What was not measured.
+/// Marks a sample that was not measured.
 pub(super) const NOWHERE: Vector3<f64> = Vector3::new(f64::NAN, f64::NAN, f64::NAN);
 
-/// Shown until the rig has delivered its first sample.
+/// Displayed until the rig has delivered its first sample.
 pub(super) const NOTHING_YET: Inputs = Inputs {
     hand: Hand::at(Vector3::new(0.0, 0.0, 0.0)),
     gripper_rad: None,
@@ -32,7 +32,8 @@ pub(super) const NOTHING_YET: Inputs = Inputs {
     age_s: 0.0,
 };
 
-/// Until the first sample: an absent force is no usable force, and a rig that measures at the tip shows so at once.
+/// Used until the first sample. The source `AtTip` with no force is not usable, and shows a rig that measures at the
+/// tip correctly from the start.
 pub(super) const NO_FORCE_YET: ForceReport = ForceReport::none(ForceSource::AtTip, None);
 
 impl<L: Link> Pair<L> {

@@ -1,4 +1,4 @@
-//! What comes from the loop, taken in: ticks, events, how the devices are.
+//! Updates the state from the loop's ticks, events and device health.
 
 use std::time::Instant;
 
@@ -17,7 +17,7 @@ use crate::console::{
 };
 
 impl Live {
-    /// Takes in all that waits at the loop's door; `each` sees every tick.
+    /// Reads everything that the loop has sent; `each` is called with every tick.
     pub fn take_in(&mut self, door: &Door, mut each: impl FnMut(&Tick)) {
         let handle = door.handle();
         if self.roster.len() != handle.roster().len() {
@@ -74,7 +74,7 @@ impl Live {
         }
     }
 
-    /// What is the same for both sides: the loop's time, and the identification of the first.
+    /// Updates what is common to both sides: timing, and the identification of the first.
     fn follow_loop(&mut self, tick: &Tick, before: Option<&Tick>) {
         let dt_s = before.map_or(0.0, |before| (tick.t_s - before.t_s).max(0.0));
         let missed = before.map_or(0, |before| tick.missed.saturating_sub(before.missed));
@@ -99,7 +99,7 @@ impl Live {
         self.ticks_counted += 1;
     }
 
-    /// What is kept of both sides alike: forces and the way of the tip.
+    /// Updates what is stored for each side: forces and trail of the tip.
     fn follow(&mut self, tick: &Tick, before: Option<&Tick>) {
         let (side, dt_s) = (tick.side.index(), before.map_or(0.0, |before| (tick.t_s - before.t_s).max(0.0)));
         let (m, r) = (tick.measured_n, tick.rendered_n);

@@ -37,7 +37,7 @@ pub(super) struct Frame {
 }
 
 impl Frame {
-    /// Writes the name and the reason that were entered into what is saved.
+    /// Copies the entered name and reason into the record.
     fn override_in(&self, judgement: &mut Judgement) {
         judgement.override_by(&self.name, Some(&self.why));
     }
@@ -59,7 +59,7 @@ pub(super) trait Wizard {
     fn step_ui(&mut self, ui: &mut Ui, binding: &Binding) -> Option<Wish>;
     /// The evidence that the result is good, as text; `None` if it can only be saved with an override.
     fn proof(&self) -> Option<String>;
-    /// What shall be saved, if there is anything, with the verdict as it was found.
+    /// The record to be saved, if there is one, with its verdict before any override.
     fn made(&self, binding: &Binding) -> Option<Saving>;
     /// Removes the data, but keeps the settings of the rig.
     fn start_over(&mut self);

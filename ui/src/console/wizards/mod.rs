@@ -124,7 +124,7 @@ impl Saving {
     }
 }
 
-/// All wizards; each keeps what it has until it is started over.
+/// All wizards; each keeps its data until it is reset.
 #[derive(Debug, Default)]
 pub struct Wizards {
     /// The one that is open.

@@ -1,4 +1,4 @@
-//! A session's report on the screen, or why there is none.
+//! Display of a session's report, or why there is none.
 
 use egui::{RichText, Ui};
 use nima_core::calibration::Verdict;
@@ -8,20 +8,20 @@ use crate::{
     words::Words as _,
 };
 
-/// What a session concludes, or why it cannot; `None` while too little was taken.
+/// Result of a session, or why there is none; `None` with too few data.
 pub(super) type Report<R> = Option<Result<R, String>>;
 
-/// A verdict and its reason.
+/// Text of a verdict and its reason.
 pub(super) fn verdict_words(verdict: Verdict, reason: &str) -> String {
     format!("{}: {reason}", verdict.words())
 }
 
-/// The same as a line of a card.
+/// The same text as a line of a card.
 pub(super) fn verdict_line(ui: &mut Ui, verdict: Verdict, reason: &str) {
     ui.label(RichText::new(verdict_words(verdict, reason)).font(theme::strong(14.0)));
 }
 
-/// The step that shows the result: the report, why it failed, or that too little was taken.
+/// The step that shows the result: the report, the error, or that there are too few data.
 pub(super) fn result_ui<R>(
     ui: &mut Ui,
     report: Option<&Result<R, String>>,

@@ -163,7 +163,7 @@ pub(super) struct Posture {
 
 impl Posture {
     pub(super) const BLANK: Self =
-        Self { features: [Lanes::ZERO; MOTION_COLUMNS], stance: Stance { x: Lanes::ZERO, u: [Lanes::ZERO; 4] } };
+        Self { features: [Lanes::ZERO; MOTION_COLUMNS], stance: Stance::BLANK };
 }
 
 /// Shortens a force to `bound_n`; zero where it is not finite.

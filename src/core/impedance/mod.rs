@@ -17,7 +17,7 @@
 //! | `horizon` | the nested solution that foretells force best at the true delay |
 //! | `anchored`, `regressors`, `regression`, `stack` | anchored rendering: experts, their trust, the guard |
 //! | `matched` | matched rendering: the force from the hand's own motion, by parameters alone |
-//! | `envelope` | the range of forces seen |
+//! | `pace`, `envelope` | a clock that motion drives; the range of forces seen |
 //! | `identifier`, `renderer`, `messages` | the two ends of the link, and what goes between them |
 
 mod anchored;
@@ -33,6 +33,7 @@ mod literal;
 mod matched;
 mod messages;
 mod mode;
+mod pace;
 mod regression;
 mod regressors;
 mod renderer;

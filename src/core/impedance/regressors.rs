@@ -47,11 +47,15 @@ pub(super) struct Stance {
     pub(super) u: [Lanes; BANK],
     /// The first difference's own difference from its low-pass: acceleration.
     pub(super) surge: Lanes,
+    /// Where dry friction saturates, and how fast time runs, by this end's [`Clock`](super::pace::Clock).
+    pub(super) knee: Lanes,
+    pub(super) pace: f64,
 }
 
 impl Stance {
     /// At the origin, at rest.
-    pub(super) const BLANK: Self = Self { x: Lanes::ZERO, u: [Lanes::ZERO; BANK], surge: Lanes::ZERO };
+    pub(super) const BLANK: Self =
+        Self { x: Lanes::ZERO, u: [Lanes::ZERO; BANK], surge: Lanes::ZERO, knee: Lanes::ZERO, pace: 0.0 };
 }
 
 /// What the follower knows at the anchor besides the motion.

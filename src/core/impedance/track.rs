@@ -3,6 +3,7 @@
 use super::{
     features::{Features, Scales, features},
     messages::Posture,
+    pace::Clock,
     regressors::{Stance, position_bank, shortest_share},
     settings::Settings,
 };
@@ -20,6 +21,7 @@ pub(super) struct Track {
     differentiator: Differentiator,
     bank: LowPassBank,
     speed_m: Lanes,
+    clock: Clock,
     speed_share: f64,
     scales: Scales,
     degree: usize,
@@ -37,6 +39,7 @@ impl Track {
             differentiator: Differentiator::new(settings.differentiator, settings.rate_hz),
             bank: position_bank(settings),
             speed_m: Lanes::ZERO,
+            clock: Clock::new(settings.rate_hz),
             speed_share: shortest_share(settings),
             scales: settings.scales,
             degree: settings.max_degree,
@@ -66,9 +69,16 @@ impl Track {
         self.history.push(self.last);
         let u = self.bank.step(position);
         self.speed_m = (self.speed_m + (u[0] - self.speed_m) * self.speed_share).settled();
+        self.clock.step(u[1]);
         self.posture = Posture {
             features: self.scales.features(&self.last, self.degree),
-            stance: Stance { x: position, u, surge: u[0] - self.speed_m },
+            stance: Stance {
+                x: position,
+                u,
+                surge: u[0] - self.speed_m,
+                knee: self.clock.knee_m(),
+                pace: self.clock.pace(),
+            },
         };
         self.posture
     }
@@ -91,6 +101,7 @@ impl Track {
         self.differentiator.reset();
         self.bank.reset();
         self.speed_m = Lanes::ZERO;
+        self.clock.reset();
         self.posture = Posture::BLANK;
         self.history.clear();
         self.last = Motion::default();

@@ -66,9 +66,8 @@ impl Form {
         }
     }
 
-    /// The columns of a posture. `one`: 1 in the lanes in use; `origin`: where the positions count from; `knee`: where dry
-    /// friction saturates (m).
-    pub(super) fn row(self, posture: &Posture, one: Lanes, origin: Lanes, knee: Lanes) -> Row {
+    /// The columns of a posture. `one`: 1 in the lanes in use; `origin`: where the positions count from.
+    pub(super) fn row(self, posture: &Posture, one: Lanes, origin: Lanes) -> Row {
         let mut row = [Lanes::ZERO; COLUMNS];
         let d = self.position(posture) - origin;
         row[0] = one;
@@ -83,7 +82,7 @@ impl Form {
             }
             return row;
         }
-        let Stance { u, surge, .. } = posture.stance;
+        let Stance { u, surge, knee, .. } = posture.stance;
         let own = [d, u[0], u[1], u[2], u[3], surge];
         row[1..7].copy_from_slice(&own);
         row[7] = saturated(u[1], knee);

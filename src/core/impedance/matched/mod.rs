@@ -10,7 +10,6 @@
 //! paper's recipe (increments, raw columns, no constant, no ridge, degree by the error inside the window) asks for 1e6 N at
 //! the horizon, the paper's own columns under these rules ([`Form::Paper`]) do better than reflection.
 
-mod clock;
 mod drift;
 mod form;
 mod model;
@@ -22,14 +21,14 @@ pub use form::Form;
 pub use model::MatchedModel;
 
 use self::{
-    clock::Clock,
     drift::Drift,
     form::{COLUMNS, Row, product},
-    sums::{Sums, share},
+    sums::Sums,
 };
 use super::{
     envelope::Envelope,
     messages::Posture,
+    pace::share,
     settings::{MAX_DELAY_S, Settings},
 };
 use crate::signal::{DelayLine, Lanes};
@@ -44,8 +43,6 @@ const SOLVE_HZ: f64 = 200.0;
 /// Memory of the experts' errors (s by the clock), the exponent of the softmin is eight, and errors below this are equal (N).
 const ERROR_S: f64 = 1.0;
 const EQUAL_N: f64 = 1e-12;
-/// Memory of the mean size of the motion, half of which is where dry friction saturates (s by the clock).
-const KNEE_S: f64 = 2.0;
 
 /// The follower's end.
 #[derive(Clone, Debug)]
@@ -56,15 +53,13 @@ pub(super) struct Matched {
     every: usize,
     tick: usize,
     one: Lanes,
-    clock: Clock,
     sums: Sums,
     experts: Vec<Expert>,
     envelope: Envelope,
     drift: Drift,
     origin: Lanes,
-    mean_u_m: Lanes,
-    /// Samples learnt and samples judged, by the clock.
-    seen: f64,
+    started: bool,
+    /// Ticks judged, by the clock.
     judged: f64,
     model: MatchedModel,
 }
@@ -103,14 +98,12 @@ impl Matched {
             every,
             tick: 0,
             one: super::messages::active(&nalgebra::Vector3::repeat(1.0), settings.axes),
-            clock: Clock::new(rate_hz),
             sums: Sums::new(form.columns(), memory_s, rate_hz),
             experts: experts.collect(),
             envelope: Envelope::new(rate_hz),
             drift: Drift::new(rate_hz, max_delay),
             origin: Lanes::ZERO,
-            mean_u_m: Lanes::ZERO,
-            seen: 0.0,
+            started: false,
             judged: 0.0,
             model: MatchedModel::NONE,
         };
@@ -143,19 +136,14 @@ impl Matched {
     }
 
     fn learn(&mut self, posture: &Posture, force_n: Lanes) {
-        if self.seen <= 0.0 {
-            self.origin = self.form.position(posture);
+        if !self.started {
+            (self.started, self.origin) = (true, self.form.position(posture));
         }
-        let pace = self.clock.step(&posture.stance);
-        self.seen += pace;
-        let size_m = posture.stance.u[1].map(f64::abs);
-        let share = share(pace, self.seen, KNEE_S * self.rate_hz);
-        self.mean_u_m = (self.mean_u_m + (size_m - self.mean_u_m) * share).settled();
-        let row = self.form.row(posture, self.one, self.origin, self.mean_u_m * 0.5);
+        let pace = posture.stance.pace;
+        let row = self.form.row(posture, self.one, self.origin);
         let error_n = self.experts.last().map_or(force_n, |full| force_n - product(&full.parameters, &row, full.columns));
         self.sums.learn(&row, force_n, error_n, pace);
         self.envelope.see(force_n, pace);
-        self.model.knee = self.mean_u_m * 0.5;
     }
 
     /// One factorisation per ridge, spread over the ticks between two renewals.
@@ -186,7 +174,7 @@ impl Matched {
 
     fn judge(&mut self, posture: &Posture, force_n: Lanes, sent: &MatchedModel) {
         let row = sent.row(posture);
-        let pace = self.clock.pace();
+        let pace = posture.stance.pace;
         self.judged += pace;
         let share = share(pace, self.judged, ERROR_S * self.rate_hz);
         let mut least_n = Lanes::splat(f64::INFINITY);
@@ -228,7 +216,6 @@ impl Matched {
             one: self.one,
             parameters,
             origin: self.origin,
-            knee: self.model.knee,
             bounds_n: self.envelope.bounds_n(),
             offset_n: Lanes::ZERO,
         };
@@ -245,7 +232,6 @@ impl Matched {
     /// Forgets everything.
     pub(super) fn reset(&mut self) {
         self.tick = 0;
-        self.clock.reset();
         self.sums.reset();
         let weight = self.one * (1.0 / self.experts.len() as f64);
         for expert in &mut self.experts {
@@ -254,8 +240,7 @@ impl Matched {
         }
         self.envelope.reset();
         self.drift.reset();
-        (self.origin, self.mean_u_m) = (Lanes::ZERO, Lanes::ZERO);
-        (self.seen, self.judged) = (0.0, 0.0);
+        (self.started, self.origin, self.judged) = (false, Lanes::ZERO, 0.0);
         self.model = MatchedModel::NONE;
     }
 }

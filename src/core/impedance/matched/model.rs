@@ -20,8 +20,6 @@ pub struct MatchedModel {
     pub parameters: [Lanes; COLUMNS],
     /// Where positions count from (m; in the paper's form in scaled units).
     pub origin: Lanes,
-    /// Where dry friction saturates (m).
-    pub knee: Lanes,
     /// Least and greatest force made of the parameters (N).
     pub bounds_n: [Lanes; 2],
     /// A slow offset (N), added after the bounds.
@@ -36,7 +34,6 @@ impl MatchedModel {
         one: Lanes::ZERO,
         parameters: [Lanes::ZERO; COLUMNS],
         origin: Lanes::ZERO,
-        knee: Lanes::ZERO,
         bounds_n: [Lanes::ZERO; 2],
         offset_n: Lanes::ZERO,
     };
@@ -52,7 +49,7 @@ impl MatchedModel {
 
     /// The columns of a motion as this model counts them.
     pub(super) fn row(&self, now: &Posture) -> Row {
-        self.form.row(now, self.one, self.origin, self.knee)
+        self.form.row(now, self.one, self.origin)
     }
 
     pub(super) fn clipped(&self, force_n: Lanes) -> Lanes {

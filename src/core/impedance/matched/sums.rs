@@ -1,7 +1,7 @@
 //! Normal equations that fade by the clock, and their nested solutions.
 
 use super::{
-    super::factor::column_start,
+    super::{factor::column_start, pace::share},
     form::{COLUMNS, Row},
 };
 use crate::signal::{Lanes, NOTHING};
@@ -60,13 +60,12 @@ impl Sums {
     /// Takes in a force (N) with its columns; `error_n`: what the newest full model leaves of it; `pace`: of the clock.
     pub(super) fn learn(&mut self, row: &Row, force_n: Lanes, error_n: Lanes, pace: f64) {
         self.seen += pace;
-        let share = share(pace, self.seen, SQUARES_S * self.rate_hz);
+        let [of_squares, of_errors] = [SQUARES_S, ERROR_S].map(|memory_s| share(pace, self.seen, memory_s * self.rate_hz));
         for (square, q) in self.mean_squares.iter_mut().zip(row).take(self.columns) {
-            *square = (*square + (*q * *q - *square) * share).settled();
+            *square = (*square + (*q * *q - *square) * of_squares).settled();
         }
         let size_n = error_n.map(f64::abs);
-        let share = self::share(pace, self.seen, ERROR_S * self.rate_hz);
-        self.mean_error_n = (self.mean_error_n + (size_n - self.mean_error_n) * share).settled();
+        self.mean_error_n = (self.mean_error_n + (size_n - self.mean_error_n) * of_errors).settled();
         let weight = size_n
             .zip(self.mean_error_n, |size, mean| if mean > 0.0 { pace / (size / mean + FLATTEN) } else { pace });
         let fade = (-pace / (self.memory_s * self.rate_hz)).exp();
@@ -128,9 +127,4 @@ impl Sums {
     pub(super) fn reset(&mut self) {
         *self = Self::new(self.columns, self.memory_s, self.rate_hz);
     }
-}
-
-/// The share of the newest value in a running mean over `memory` ticks of the clock, of which `seen` have passed.
-pub(super) fn share(pace: f64, seen: f64, memory: f64) -> f64 {
-    (pace / seen.max(1.0).min(memory)).min(1.0)
 }

@@ -33,11 +33,10 @@ use super::{
 };
 use crate::signal::{DelayLine, Lanes};
 
-/// Memory of the fit (s by the clock); in the paper's form that of its window.
+/// Memory of the fit (s by the clock); the paper's form has its window's.
 const MEMORY_S: f64 = 1.0;
-const PAPER_MEMORY_S: f64 = 0.3;
 /// Ridges, in seconds of typical motion that say "no force".
-const RIDGES_S: [f64; 2] = [0.0003, 0.01];
+const RIDGES_S: [f64; 2] = [0.0001, 0.01];
 /// Solves per second of every expert (at most one a tick).
 const SOLVE_HZ: f64 = 200.0;
 /// Memory of the experts' errors (s by the clock), the exponent of the softmin is eight, and errors below this are equal (N).
@@ -80,7 +79,7 @@ impl Matched {
         let rate_hz = settings.rate_hz;
         let every = ((rate_hz / SOLVE_HZ).round() as usize).max(1);
         let max_delay = (MAX_DELAY_S * rate_hz).ceil() as usize;
-        let memory_s = if matches!(form, Form::Paper(_)) { PAPER_MEMORY_S } else { MEMORY_S };
+        let memory_s = if matches!(form, Form::Paper(_)) { settings.window_s } else { MEMORY_S };
         let expert = |ridge, columns| Expert {
             ridge,
             columns,
@@ -150,7 +149,8 @@ impl Matched {
     fn solve(&mut self) {
         let phase = self.tick % self.every;
         for (ridge, ridge_s) in RIDGES_S.into_iter().enumerate() {
-            if phase != self.phase(ridge) {
+            // All on the first tick: an expert that has said nothing cannot be judged.
+            if phase != self.phase(ridge) && self.tick > 0 {
                 continue;
             }
             self.sums.factorise(ridge_s);

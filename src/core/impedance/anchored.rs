@@ -120,7 +120,11 @@ impl Anchored {
         }
         self.solve();
         let model = self.model(stance, &background, impedance);
-        let decision = Decision { weights: *self.stack.weights(), bound_n: model.bound_n, envelope_n: [model.low_n, model.high_n] };
+        let decision = Decision {
+            weights: *self.stack.weights(),
+            bound_n: model.bound_n,
+            envelope_n: [model.low_n, model.high_n],
+        };
         self.decisions.push(decision);
         self.tick += 1;
         model

@@ -26,6 +26,7 @@ use self::{
     sums::Sums,
 };
 use super::{
+    best::eighth_power,
     envelope::Envelope,
     messages::Posture,
     pace::share,
@@ -117,7 +118,12 @@ impl Matched {
 
     /// Takes the follower's newest motion and force (N), `None` where either was not measured; `sent`: the model of
     /// [`horizon`](Self::horizon) ticks ago. Returns the model to send.
-    pub(super) fn step(&mut self, posture: &Posture, force_n: Option<Lanes>, sent: Option<&MatchedModel>) -> &MatchedModel {
+    pub(super) fn step(
+        &mut self,
+        posture: &Posture,
+        force_n: Option<Lanes>,
+        sent: Option<&MatchedModel>,
+    ) -> &MatchedModel {
         if let Some(force_n) = force_n {
             self.learn(posture, force_n);
         }
@@ -140,7 +146,8 @@ impl Matched {
         }
         let pace = posture.stance.pace;
         let row = self.form.row(posture, self.one, self.origin);
-        let error_n = self.experts.last().map_or(force_n, |full| force_n - product(&full.parameters, &row, full.columns));
+        let error_n =
+            self.experts.last().map_or(force_n, |full| force_n - product(&full.parameters, &row, full.columns));
         self.sums.learn(&row, force_n, error_n, pace);
         self.envelope.see(force_n, pace);
     }
@@ -243,10 +250,4 @@ impl Matched {
         (self.started, self.origin, self.judged) = (false, Lanes::ZERO, 0.0);
         self.model = MatchedModel::NONE;
     }
-}
-
-fn eighth_power(value: Lanes) -> Lanes {
-    let square = value * value;
-    let fourth = square * square;
-    fourth * fourth
 }

@@ -60,14 +60,15 @@ impl Sums {
     /// Takes in a force (N) with its columns; `error_n`: what the newest full model leaves of it; `pace`: of the clock.
     pub(super) fn learn(&mut self, row: &Row, force_n: Lanes, error_n: Lanes, pace: f64) {
         self.seen += pace;
-        let [of_squares, of_errors] = [SQUARES_S, ERROR_S].map(|memory_s| share(pace, self.seen, memory_s * self.rate_hz));
+        let [of_squares, of_errors] =
+            [SQUARES_S, ERROR_S].map(|memory_s| share(pace, self.seen, memory_s * self.rate_hz));
         for (square, q) in self.mean_squares.iter_mut().zip(row).take(self.columns) {
             *square = (*square + (*q * *q - *square) * of_squares).settled();
         }
         let size_n = error_n.map(f64::abs);
         self.mean_error_n = (self.mean_error_n + (size_n - self.mean_error_n) * of_errors).settled();
-        let weight = size_n
-            .zip(self.mean_error_n, |size, mean| if mean > 0.0 { pace / (size / mean + FLATTEN) } else { pace });
+        let weight =
+            size_n.zip(self.mean_error_n, |size, mean| if mean > 0.0 { pace / (size / mean + FLATTEN) } else { pace });
         let fade = (-pace / (self.memory_s * self.rate_hz)).exp();
         for j in 0..self.columns {
             let weighted = row[j] * weight;
@@ -101,9 +102,8 @@ impl Sums {
                 square += entry * entry;
                 z -= entry * right[k];
             }
-            inverse[j] = (own - square).zip(own, |pivot, own| {
-                if pivot > NOTHING.max(ROUNDING * own) { 1.0 / pivot.sqrt() } else { 0.0 }
-            });
+            inverse[j] = (own - square)
+                .zip(own, |pivot, own| if pivot > NOTHING.max(ROUNDING * own) { 1.0 / pivot.sqrt() } else { 0.0 });
             right[j] = z * inverse[j];
         }
     }

@@ -1,7 +1,5 @@
 //! What matched rendering promises: parameters only, nothing forgotten at rest, finite whatever comes.
 
-#![expect(clippy::float_cmp, reason = "causality holds to the bit")]
-
 use std::f64::consts::TAU;
 
 use nalgebra::Vector3;
@@ -78,10 +76,10 @@ fn contact_n(at_m: Vector3<f64>) -> Vector3<f64> {
 fn the_force_is_made_of_what_was_known_one_delay_ago_and_of_the_own_motion() {
     for form in FORMS {
         let [mut clean, mut corrupt] = [(); 2].map(|()| Pair::new(form, &settings(0.1)));
-        let (changed, horizon) = (1500, 100);
+        let (changed, horizon) = (1500_u32, 100);
         for k in 0..changed + horizon {
-            let at_m = hand_m(k as f64 * 1e-3);
-            let noise = Vector3::new(7.0, -3.0, 11.0) * ((k * 7919) % 101) as f64;
+            let at_m = hand_m(f64::from(k) * 1e-3);
+            let noise = Vector3::new(7.0, -3.0, 11.0) * f64::from((k * 7919) % 101);
             clean.follower(at_m, Some(contact_n(at_m)));
             // From here on the follower measures and does something else altogether; the leader's hand does not.
             let (tip_m, force_n) =
@@ -89,7 +87,7 @@ fn the_force_is_made_of_what_was_known_one_delay_ago_and_of_the_own_motion() {
             corrupt.follower(tip_m, Some(force_n));
             assert_eq!(clean.leader(at_m), corrupt.leader(at_m), "{form:?}, tick {k}");
         }
-        let at_m = hand_m((changed + horizon) as f64 * 1e-3);
+        let at_m = hand_m(f64::from(changed + horizon) * 1e-3);
         let [clean, corrupt] = [&mut clean, &mut corrupt].map(|pair| {
             pair.follower(at_m, Some(contact_n(at_m)));
             pair.leader(at_m)
@@ -122,9 +120,11 @@ fn a_hand_that_leaves_when_the_link_fails_leaves_the_force_behind() {
             }
             let left_n = pair.link[last].force(&pair.leader_track.step(Some(at_m.into()))).unwrap().norm();
             let gone = -at_m.z <= 0.0;
-            eprintln!("{form:?} {delay_s} s, {speed_m_s} m/s: {before_n:.2} N, {:.3} left", left_n / before_n);
             assert!(before_n > 2.0, "{before_n} N");
-            assert!(!gone || left_n <= 0.15 * before_n, "{form:?}, {delay_s} s, {speed_m_s} m/s: {left_n} of {before_n} N");
+            assert!(
+                !gone || left_n <= 0.15 * before_n,
+                "{form:?}, {delay_s} s, {speed_m_s} m/s: {left_n} of {before_n} N"
+            );
         }
     }
 }
@@ -146,14 +146,14 @@ fn nothing_is_forgotten_while_the_hand_stands_still() {
         }
         // The leader alone moves on: what it feels is the stiffness that was learnt a minute ago.
         let model = *pair.link.last().unwrap();
-        let mut force_n = |at_m: Vector3<f64>| model.force(&pair.leader_track.step(Some(at_m.into()))).unwrap().vector();
+        let mut force_n =
+            |at_m: Vector3<f64>| model.force(&pair.leader_track.step(Some(at_m.into()))).unwrap().vector();
         let rest_n = force_n(at_m);
         for _ in 0..2000 {
             force_n(at_m - at_m * 0.2);
         }
         let change_n = force_n(at_m - at_m * 0.2) - rest_n;
         let expected_n = at_m * (0.2 * STIFFNESS_N_M);
-        eprintln!("{form:?}: {change_n:?} for {expected_n:?}");
         assert!((change_n - expected_n).norm() < 0.1 * expected_n.norm(), "{form:?}: {change_n} for {expected_n}");
     }
 }
@@ -228,37 +228,4 @@ fn a_million_ticks_leave_it_as_it_was() {
         }
     }
     assert!((error_n[1] / error_n[0] - 1.0).abs() < 1e-6, "{error_n:?}");
-}
-
-/// TEMPORARY
-#[test]
-fn figures() {
-    let dir = "/work/shared/data/tue_1dof";
-    let mut sums = [[[0.0; 4]; 2]; 2];
-    for (m, form) in [Form::Tissue, Form::Paper(5)].into_iter().enumerate() {
-        for (i, run) in ["m1_question1a", "m1_question1b", "m1_question1c", "m2_question1a"].iter().enumerate() {
-            for env in ["foam", "free_motion", "rigid", "spring"] {
-                let mut reader = csv::Reader::from_path(format!("{dir}/{run}_{env}.csv")).unwrap();
-                let rows: Vec<(f64, f64)> =
-                    reader.records().map(|r| r.unwrap()).map(|r| (r[2].parse().unwrap(), r[4].parse().unwrap())).collect();
-                let mut line = [0.0; 4];
-                for (j, d) in [10, 50, 100, 300].into_iter().enumerate() {
-                    let s = Settings { axes: 1, ..settings(d as f64 * 1e-3) };
-                    let mut pair = Pair::new(form, &s);
-                    let (mut e, mut h) = (0.0, 0.0);
-                    for (k, (x, f)) in rows.iter().enumerate() {
-                        let r = pair.step(Vector3::new(*x, 0.0, 0.0), Vector3::new(*f, 0.0, 0.0));
-                        if k >= d {
-                            e += (r.unwrap().x - f).abs();
-                            h += (rows[k - d].1 - f).abs();
-                        }
-                    }
-                    line[j] = e / h;
-                    sums[m][i / 2][j] += e / h / 8.0;
-                }
-                eprintln!("{form:?} {run} {env} {line:.3?}");
-            }
-        }
-    }
-    eprintln!("{sums:.4?}");
 }

@@ -18,6 +18,8 @@ use nima_core::{
 const RATE_HZ: f64 = 1000.0;
 const COLUMNS: usize = 16;
 const ROW: usize = COLUMNS + 1;
+/// The modes before matched rendering.
+const BEFORE: ModeSet = ModeSet::only(Mode::Anchored).with(Mode::Literal).with(Mode::Linear);
 
 fn sample(k: usize) -> Sample {
     let t = k as f64 / RATE_HZ;
@@ -155,7 +157,10 @@ fn table(window: usize) -> f64 {
     for (name, modes) in [
         ("identifier step, anchored", ModeSet::only(Mode::Anchored)),
         ("identifier step, literal and linear", ModeSet::only(Mode::Literal).with(Mode::Linear)),
-        ("identifier step, all four modes", ModeSet::ALL),
+        ("identifier step, matched", ModeSet::only(Mode::Matched)),
+        ("identifier step, the paper's columns repaired", ModeSet::only(Mode::Nima)),
+        ("identifier step, anchored, literal and linear", BEFORE),
+        ("identifier step, all modes", ModeSet::ALL),
     ] {
         let samples: Vec<_> = (0..warm + calls).map(sample).collect();
         let mut identifier = identifier(window, modes);
@@ -228,7 +233,7 @@ fn ours(bencher: divan::Bencher, window: usize) {
 }
 
 #[divan::bench(args = [300, 3000])]
-fn all_four_modes(bencher: divan::Bencher, window: usize) {
+fn all_modes(bencher: divan::Bencher, window: usize) {
     let mut identifier = identifier(window, ModeSet::ALL);
     (0..4 * window).for_each(|k| identifier.step(&sample(k)));
     let mut k = 4 * window;

@@ -41,6 +41,8 @@ const START_M: f64 = 0.005;
 const HOLD_S: f64 = 2.0;
 const PATIENCE_S: f64 = 20.0;
 const TREMOR_M: f64 = 8e-5;
+/// The modes that are let go of.
+const MODES: [Mode; 4] = [Mode::Dfr, Mode::Linear, Mode::Literal, Mode::Anchored];
 /// Modes with a steady force in the hand: only then can the handle's acceleration show that the hand has opened.
 const STEADY: [Mode; 2] = [Mode::Dfr, Mode::Anchored];
 
@@ -168,11 +170,11 @@ pub struct Report {
 pub fn study(mut progress: impl FnMut(usize, usize, &str)) -> Result<Report, ReleaseError> {
     let tissue = Scene::load("peg_transfer")?.tissue.ok_or(ReleaseError::NoTissue)?;
     let mut outcomes = Vec::new();
-    let alone = 2 * Gates::ALL.len() * Mode::ALL.len() * DELAYS_MS.len();
+    let alone = 2 * Gates::ALL.len() * MODES.len() * DELAYS_MS.len();
     let all = alone + 2 * STEADY.len() * DELAYS_MS.len() * BRAKES_N_S_M.len();
     for situation in [Situation::Held, Situation::Pressing] {
         for gates in Gates::ALL {
-            for mode in [Mode::Dfr, Mode::Linear, Mode::Literal, Mode::Anchored] {
+            for mode in MODES {
                 for delay_ms in DELAYS_MS {
                     progress(outcomes.len(), all, mode.name());
                     outcomes.push(let_go(situation, gates, mode, delay_ms, tissue)?);

@@ -136,8 +136,10 @@ pub struct Row {
     pub t_s: f64,
     pub measured: Vector3<f64>,
     /// Rendered force, before the gates.
-    pub rendered: Vector3<f64>,
-    pub held: Vector3<f64>,
+    /// `None` before the first parcel, and where the mode has no valid force.
+    pub rendered: Option<Vector3<f64>>,
+    /// `None` before the first parcel.
+    pub held: Option<Vector3<f64>>,
     /// Degree used, 0 for none.
     pub degree: usize,
     /// Condition of the scaled regression.
@@ -227,25 +229,16 @@ pub fn replay(recording: &Recording, options: &Options, mut each: impl FnMut(&Ro
         let row = Row {
             t_s: sample.t_s,
             measured: sample.force_n,
-            rendered: rendered.unwrap_or_else(Vector3::zeros),
-            held: held.unwrap_or_else(Vector3::zeros),
-            degree: degree(report, options.mode),
+            rendered: rendered.filter(|_| held.is_some()),
+            held,
+            degree: usize::from(report.degree_of(options.mode)),
             condition: report.condition,
             gate: gate.first_closed(),
         };
-        tally.add(&row, rendered.is_some(), held.is_some(), report);
+        tally.add(&row, report);
         each(&row);
     }
     Ok(tally.figures(recording, options.mode, &settings))
-}
-
-fn degree(report: &Report, mode: Mode) -> usize {
-    match mode {
-        Mode::Literal => usize::from(report.paper_degree),
-        Mode::Linear => usize::from(report.paper_degree > 0),
-        Mode::Dfr => 0,
-        Mode::Anchored => usize::from(report.degree),
-    }
 }
 
 /// Sums over the replay.
@@ -262,7 +255,7 @@ struct Tally {
 }
 
 impl Tally {
-    fn add(&mut self, row: &Row, valid: bool, has_held: bool, report: &Report) {
+    fn add(&mut self, row: &Row, report: &Report) {
         if let Some(chosen) = usize::from(report.paper_degree).checked_sub(1) {
             for (errors, residual) in self.reconstruction.iter_mut().zip(&report.reconstruction_n) {
                 errors.add(residual);
@@ -272,13 +265,12 @@ impl Tally {
         if report.condition > 0.0 {
             self.conditions.push(report.condition);
         }
-        if !has_held {
-            return;
-        }
-        self.error.add(&(row.rendered - row.measured));
-        self.hold.add(&(row.held - row.measured));
+        let Some(held) = row.held else { return };
+        // A mode without a valid force renders none: its error is the whole force.
+        self.error.add(&(row.rendered.unwrap_or_else(Vector3::zeros) - row.measured));
+        self.hold.add(&(held - row.measured));
         self.degrees[row.degree.min(MAX_DEGREE)] += 1;
-        self.rejected += u64::from(!valid);
+        self.rejected += u64::from(row.rendered.is_none());
     }
 
     fn figures(mut self, recording: &Recording, mode: Mode, settings: &Settings) -> Figures {

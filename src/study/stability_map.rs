@@ -31,7 +31,8 @@ pub const GAINS: [f64; 8] = [0.25, 0.5, 0.75, 1.0, 1.5, 2.0, 2.5, 3.0];
 pub const DELAYS_S: [f64; 8] = [0.0, 0.01, 0.02, 0.05, 0.1, 0.15, 0.2, 0.3];
 /// Tissue stiffnesses of the map, N/m: from fat to a stiff wall.
 pub const STIFFNESSES_N_M: [f64; 8] = [12.0, 50.0, 100.0, 200.0, 400.0, 800.0, 2000.0, 6000.0];
-const MODES: [Mode; 4] = Mode::ALL;
+/// The modes of the map, in its order.
+const MODES: [Mode; 4] = [Mode::Literal, Mode::Linear, Mode::Dfr, Mode::Anchored];
 const POINTS: usize = MODES.len() * DELAYS_S.len() * STIFFNESSES_N_M.len() * GAINS.len();
 /// Contact force, N, without the force rendered by the loop.
 const CONTACT_N: f64 = 1.2;
@@ -176,18 +177,19 @@ impl StabilityMap {
         Ok(Self { verdicts })
     }
 
-    /// The worst verdict of the grid points around this point. A gain of zero is stable; a value beyond the grid, or
-    /// NaN, counts as the grid's last.
+    /// The worst verdict of the grid points around this point; for a mode that is not in the map, that of direct reflection.
+    /// A gain of zero is stable; a value beyond the grid, or NaN, counts as the grid's last.
     pub fn at(&self, mode: Mode, gain: f64, delay_s: f64, stiffness_n_m: f64) -> Verdict {
         if gain <= 0.0 {
             return Verdict::Stable;
         }
         let (gains, delays) = (around(&GAINS, gain), around(&DELAYS_S, delay_s));
+        let mode = MODES.iter().position(|mapped| *mapped == mode).unwrap_or(Mode::Dfr.index());
         let mut worst = Verdict::Stable;
         for delay in delays {
             for stiffness in around(&STIFFNESSES_N_M, stiffness_n_m) {
                 for gain in gains {
-                    worst = worst.max(self.verdicts[index(mode.index(), delay, stiffness, gain)]);
+                    worst = worst.max(self.verdicts[index(mode, delay, stiffness, gain)]);
                 }
             }
         }

@@ -8,6 +8,7 @@
 //! weights that is missing to one, and a guard falls back to it altogether.
 
 use super::{
+    envelope::Envelope,
     features::Features,
     messages::{AnchoredModel, Impedance, clip},
     regression::{Parameters, Regression, SOLUTIONS, length, predict},
@@ -21,10 +22,6 @@ use crate::signal::{DelayLine, Lanes, settled};
 const BOUND: f64 = 1.5;
 /// Solves per second of every model (at most one a tick).
 const SOLVE_HZ: f64 = 200.0;
-/// Memory of the envelope of forces seen (s), and how far beyond it a rendered force may go, in its widths.
-const ENVELOPE_S: f64 = 5.0;
-const ENVELOPE_MARGIN: f64 = 0.1;
-
 /// Added to the guard's ratio while the judgement is made with newer parameters than those that would have been sent (which
 /// is optimistic), and in the first moments, when nothing is known but free motion: a first contact was rendered up to 4 %
 /// worse than reflected.
@@ -49,7 +46,7 @@ pub(super) struct Anchored {
     decisions: DelayLine<Decision>,
     stack: Stack<EXPERTS>,
     largest_change_n: f64,
-    envelope_n: [Lanes; 2],
+    envelope: Envelope,
     restarts: u64,
 }
 
@@ -90,7 +87,7 @@ impl Anchored {
             decisions: DelayLine::new(max_delay, Decision::default()),
             stack: Stack::new(rate_hz),
             largest_change_n: 0.0,
-            envelope_n: [Lanes::ZERO; 2],
+            envelope: Envelope::new(rate_hz),
             restarts: 0,
         }
     }
@@ -107,7 +104,7 @@ impl Anchored {
         let d = self.delay_ticks;
         let usual = (self.tick > 2 * d).then(|| self.regression.mean_squares());
         let background = self.surroundings.step(stance, force_n, usual);
-        self.widen_envelope(force_n);
+        self.envelope.see(force_n, 1.0);
         self.moments.push(Moment { good, stance: *stance, background, features: *features, impedance: *impedance });
         if let Some(then) = self.moments.get(d).filter(|then| d > 0 && good && then.good).copied() {
             let q = then.background.regressors(stance, &then.stance);
@@ -123,7 +120,11 @@ impl Anchored {
         }
         self.solve();
         let model = self.model(stance, &background, impedance);
-        let decision = Decision { weights: *self.stack.weights(), bound_n: model.bound_n, envelope_n: self.envelope_n };
+        let decision = Decision {
+            weights: *self.stack.weights(),
+            bound_n: model.bound_n,
+            envelope_n: [model.low_n, model.high_n],
+        };
         self.decisions.push(decision);
         self.tick += 1;
         model
@@ -150,7 +151,7 @@ impl Anchored {
             *self.decisions.get(d - 1).unwrap_or(newest)
         };
         let mixed = said.iter().zip(decision.weights).fold(Lanes::ZERO, |sum, (said, weight)| sum + *said * weight);
-        let [low, high] = with_margin(decision.envelope_n);
+        let [low, high] = decision.envelope_n;
         let force_n = then.background.force_n;
         let mixed = within(force_n + clip(mixed, decision.bound_n), low, high) - force_n;
         self.stack.judge(said, mixed, change, self.largest_change_n);
@@ -175,16 +176,6 @@ impl Anchored {
         }
     }
 
-    fn widen_envelope(&mut self, force_n: Lanes) {
-        if self.tick == 0 {
-            self.envelope_n = [force_n; 2];
-        }
-        let [low, high] = self.envelope_n;
-        let (middle, leak) = ((low + high) * 0.5, 1.0 / (ENVELOPE_S * self.rate_hz));
-        let leaked = |edge: Lanes| (edge + (middle - edge) * leak).settled();
-        self.envelope_n = [leaked(low).zip(force_n, f64::min), leaked(high).zip(force_n, f64::max)];
-    }
-
     /// Experts, weights and gate folded into what the leader needs.
     fn model(&self, stance: &Stance, background: &Background, impedance: &Impedance) -> AnchoredModel {
         let first = (self.tick as f64) < FIRST_S * self.rate_hz;
@@ -201,7 +192,7 @@ impl Anchored {
         }
         // With no motion since the anchor only what the follower alone knows is left.
         let constant = predict(&p, &background.regressors(stance, stance), REGRESSORS);
-        let [low, high] = with_margin(self.envelope_n);
+        let [low, high] = self.envelope.bounds_n();
         let (force, m, c) = (background.force_n, at::MOTION, at::CURVATURE);
         AnchoredModel {
             impedance: impedance.weighted(weights[0]),
@@ -254,12 +245,8 @@ impl Anchored {
         self.decisions.clear();
         self.stack.reset();
         self.largest_change_n = 0.0;
+        self.envelope.reset();
     }
-}
-
-fn with_margin([low, high]: [Lanes; 2]) -> [Lanes; 2] {
-    let margin = (high - low) * ENVELOPE_MARGIN;
-    [low - margin, high + margin]
 }
 
 /// Each lane kept between two bounds.

@@ -2,11 +2,13 @@
 
 use super::{
     MAX_DEGREE, MODES, Mode, anchored,
+    best::Best,
     factor::{Factor, MAX_ROW},
     features::Features,
     gram::Gram,
     horizon::Horizon,
     literal::{self, LiteralSolver},
+    matched::{Form, Matched},
     messages::{Excitation, LiteralModel, Parcel, Posture, Report, Sample, active},
     settings::{MAX_DELAY_S, Settings, SettingsError},
     solution::Solution,
@@ -58,6 +60,9 @@ pub struct Identifier {
     last_force_n: Lanes,
     paper: Option<Paper>,
     anchored: Option<Anchored>,
+    matched: Option<Matched>,
+    nima: Option<Matched>,
+    best: Option<Best>,
     sent: DelayLine<(Parcel, Posture)>,
     forget: f64,
     parcel: Parcel,
@@ -107,6 +112,9 @@ impl Identifier {
                 correction: anchored::Anchored::new(settings, delay_ticks),
             }
         });
+        let matched =
+            |mode: Mode, form: Form| settings.modes.contains(mode).then(|| Matched::new(form, settings, delay_ticks));
+        let coupled = settings.cross_talk && settings.axes > 1;
         let max_delay = (MAX_DELAY_S * settings.rate_hz).ceil() as usize;
         Ok(Self {
             delay_ticks,
@@ -115,6 +123,9 @@ impl Identifier {
             last_force_n: Lanes::ZERO,
             paper,
             anchored,
+            matched: matched(Mode::Matched, if coupled { Form::Coupled } else { Form::Tissue }),
+            nima: matched(Mode::Nima, Form::Paper(settings.max_degree as u8)),
+            best: settings.modes.contains(Mode::Best).then(|| Best::new(settings.rate_hz)),
             sent: DelayLine::new(max_delay, (Parcel::BLANK, Posture::BLANK)),
             forget: 1.0 - (-1.0 / (ERROR_MEMORY_S * settings.rate_hz)).exp(),
             parcel: Parcel::BLANK,
@@ -149,6 +160,7 @@ impl Identifier {
         self.parcel.fresh = good;
         self.step_paper(&increments, usable);
         self.step_anchored(&now, good, usable);
+        self.step_matched(&now, good, usable);
         self.sent.push((self.parcel, now));
         self.predict(&now, &increments, good);
     }
@@ -201,6 +213,22 @@ impl Identifier {
         self.report.excitation = excitation(window.current(), *ridge, &self.settings);
     }
 
+    fn step_matched(&mut self, now: &Posture, good: bool, usable: bool) {
+        let sent = self.sent.get(self.delay_ticks.max(1) - 1).map(|(parcel, _)| parcel);
+        let force = Some(self.last_force_n);
+        if let Some(matched) = &mut self.matched {
+            self.parcel.matched = *matched.step(now, force.filter(|_| good), sent.map(|parcel| &parcel.matched));
+            self.report.matched_degree = self.parcel.matched.degree;
+        }
+        if let Some(nima) = &mut self.nima {
+            self.parcel.nima = *nima.step(now, force.filter(|_| usable), sent.map(|parcel| &parcel.nima));
+            self.report.nima_degree = self.parcel.nima.degree;
+        }
+        if let Some(best) = &self.best {
+            self.parcel.anchored_weight = best.anchored();
+        }
+    }
+
     /// What every mode renders for this tick from the parcel one delay old, and its running error.
     fn predict(&mut self, now: &Posture, increments: &Features, good: bool) {
         let modes = self.settings.modes;
@@ -208,6 +236,10 @@ impl Identifier {
             Some((parcel, then)) if parcel.t_s.is_finite() => parcel.render(now, then, increments),
             _ => [None; MODES],
         };
+        let said = [Mode::Anchored, Mode::Matched].map(|mode| forces[mode.index()]);
+        if let (Some(best), [Some(anchored), Some(matched)], true) = (&mut self.best, said, good) {
+            best.judge(anchored, matched, self.last_force_n, now.stance.pace);
+        }
         for mode in Mode::ALL {
             let force = forces[mode.index()].filter(|_| modes.contains(mode));
             self.report.prediction_n[mode.index()] = force.unwrap_or_default().vector();
@@ -248,6 +280,9 @@ impl Identifier {
             anchored.horizon.set_delay(self.delay_ticks);
             anchored.correction.set_delay(self.delay_ticks);
         }
+        for matched in [&mut self.matched, &mut self.nima].into_iter().flatten() {
+            matched.set_delay(self.delay_ticks);
+        }
     }
 
     /// Forgets everything, counters included, without allocating.
@@ -263,6 +298,12 @@ impl Identifier {
             anchored.window.reset();
             anchored.horizon.reset();
             anchored.correction.reset();
+        }
+        for matched in [&mut self.matched, &mut self.nima].into_iter().flatten() {
+            matched.reset();
+        }
+        if let Some(best) = &mut self.best {
+            best.reset();
         }
         self.sent.clear();
         self.parcel = Parcel::BLANK;

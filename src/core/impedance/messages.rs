@@ -7,6 +7,7 @@ use super::{
     anchored::within,
     features::{Features, MOTION_COLUMNS},
     literal,
+    matched::MatchedModel,
     regressors::{Stance, motion_changes},
 };
 use crate::signal::{LANES, Lanes};
@@ -162,8 +163,7 @@ pub(super) struct Posture {
 }
 
 impl Posture {
-    pub(super) const BLANK: Self =
-        Self { features: [Lanes::ZERO; MOTION_COLUMNS], stance: Stance { x: Lanes::ZERO, u: [Lanes::ZERO; 4] } };
+    pub(super) const BLANK: Self = Self { features: [Lanes::ZERO; MOTION_COLUMNS], stance: Stance::BLANK };
 }
 
 /// Shortens a force to `bound_n`; zero where it is not finite.
@@ -194,6 +194,12 @@ pub struct Parcel {
     pub linear: LiteralModel,
     /// Anchored rendering's choice.
     pub anchored: AnchoredModel,
+    /// Matched rendering's parameters.
+    pub matched: MatchedModel,
+    /// The same in the paper's columns.
+    pub nima: MatchedModel,
+    /// Weight of anchored rendering in the mixture with matched rendering, 0 to 1.
+    pub anchored_weight: Lanes,
 }
 
 impl Parcel {
@@ -205,6 +211,9 @@ impl Parcel {
         literal: LiteralModel::NONE,
         linear: LiteralModel::NONE,
         anchored: AnchoredModel::NONE,
+        matched: MatchedModel::NONE,
+        nima: MatchedModel::NONE,
+        anchored_weight: Lanes::ZERO,
     };
 
     /// The force of every mode for the motion now, by [`Mode::index`](super::Mode::index): `anchored` features now and at
@@ -215,11 +224,17 @@ impl Parcel {
         if !measured.is_finite() {
             return [None; MODES];
         }
+        let anchored = self.anchored.force(measured, now, then);
+        let matched = self.matched.force(now);
+        let best = matched.map_or(anchored, |matched| matched + (anchored - matched) * self.anchored_weight);
         [
             self.literal.force(increments),
             self.linear.force(increments),
             Some(measured),
-            Some(self.anchored.force(measured, now, then)),
+            Some(anchored),
+            matched,
+            self.nima.force(now),
+            Some(best),
         ]
     }
 }
@@ -239,7 +254,7 @@ impl Rendered {
         self.valid[mode.index()].then(|| self.force_n[mode.index()])
     }
 
-    pub(super) fn new(forces: [Option<Lanes>; MODES]) -> Self {
+    pub(super) fn new(forces: &[Option<Lanes>; MODES]) -> Self {
         Self { force_n: forces.map(|force| force.unwrap_or_default().vector()), valid: forces.map(|f| f.is_some()) }
     }
 }
@@ -269,6 +284,10 @@ pub struct Report {
     /// Degree of anchored rendering: that of the nested window impedance which foretells force best at the horizon; 1 where
     /// none does better than reflection but the regressions do; 0: no correction.
     pub degree: u8,
+    /// Degree of the matched model with the largest weight; 0 while nothing is known.
+    pub matched_degree: u8,
+    /// The same in the paper's columns.
+    pub nima_degree: u8,
     /// Motion columns of that window impedance, 0 (none) to 15: three per degree (x, v, a); the last degree may hold x or
     /// x, v only.
     pub columns: u8,
@@ -300,6 +319,18 @@ impl Report {
         self.prediction_valid[mode.index()].then(|| self.prediction_n[mode.index()])
     }
 
+    /// The degree that `mode` uses; 0: none.
+    pub fn degree_of(&self, mode: Mode) -> u8 {
+        match mode {
+            Mode::Literal => self.paper_degree,
+            Mode::Linear => u8::from(self.paper_degree > 0),
+            Mode::Dfr => 0,
+            Mode::Anchored => self.degree,
+            Mode::Matched | Mode::Best => self.matched_degree,
+            Mode::Nima => self.nima_degree,
+        }
+    }
+
     /// Nothing measured yet.
     pub const BLANK: Self = Self {
         t_s: f64::NEG_INFINITY,
@@ -308,6 +339,8 @@ impl Report {
         reconstruction_n: [Vector3::new(0.0, 0.0, 0.0); MAX_DEGREE],
         paper_degree: 0,
         degree: 0,
+        matched_degree: 0,
+        nima_degree: 0,
         columns: 0,
         coupled: false,
         cross_talk_ratio: 1.0,

@@ -16,19 +16,26 @@
 //! | `cross_factor`, `cross_talk` | the same with every axis' force from the motion of all axes, where a scene asks for it |
 //! | `horizon` | the nested solution that foretells force best at the true delay |
 //! | `anchored`, `regressors`, `regression`, `stack` | anchored rendering: experts, their trust, the guard |
+//! | `best` | a softmin over anchored and matched rendering |
+//! | `matched` | matched rendering: the force from the hand's own motion, by parameters alone |
+//! | `pace`, `envelope` | a clock that motion drives; the range of forces seen |
 //! | `identifier`, `renderer`, `messages` | the two ends of the link, and what goes between them |
 
 mod anchored;
+mod best;
 mod cross_factor;
 mod cross_talk;
+mod envelope;
 mod factor;
 mod features;
 mod gram;
 mod horizon;
 mod identifier;
 mod literal;
+mod matched;
 mod messages;
 mod mode;
+mod pace;
 mod regression;
 mod regressors;
 mod renderer;
@@ -48,6 +55,7 @@ pub use features::{Features, MOTION_COLUMNS, Scales};
 pub use gram::Gram;
 pub use identifier::Identifier;
 pub use literal::LiteralSolver;
+pub use matched::{Form, MatchedModel};
 pub use messages::{AnchoredModel, Excitation, Impedance, LiteralModel, Parcel, Rendered, Report, Sample};
 pub use mode::{MODES, Mode, ParseModeError};
 pub use renderer::Renderer;

@@ -25,14 +25,21 @@ pub enum Mode {
     Dfr,
     /// Anchored rendering: the last measured force, corrected by the identified impedance over the link's delay.
     Anchored,
+    /// Matched rendering: parameters cross the link, the force is made of the hand's own motion (NIMA as it was meant).
+    Matched,
+    /// The paper's columns under the rules of matched rendering.
+    Nima,
+    /// Anchored and matched rendering, weighted by their errors of late.
+    Best,
 }
 
 /// Number of modes.
-pub const MODES: usize = 4;
+pub const MODES: usize = 7;
 
 impl Mode {
     /// Every mode, in the order of [`Mode::index`].
-    pub const ALL: [Self; MODES] = [Self::Literal, Self::Linear, Self::Dfr, Self::Anchored];
+    pub const ALL: [Self; MODES] =
+        [Self::Literal, Self::Linear, Self::Dfr, Self::Anchored, Self::Matched, Self::Nima, Self::Best];
 
     /// Position in [`Mode::ALL`], for tables with one entry per mode.
     pub const fn index(self) -> usize {
@@ -46,6 +53,9 @@ impl Mode {
             Self::Linear => "linear",
             Self::Dfr => "dfr",
             Self::Anchored => "anchored",
+            Self::Matched => "matched",
+            Self::Nima => "nima",
+            Self::Best => "best",
         }
     }
 }

@@ -45,6 +45,17 @@ pub(super) type Regressors = [Lanes; REGRESSORS];
 pub(super) struct Stance {
     pub(super) x: Lanes,
     pub(super) u: [Lanes; BANK],
+    /// The first difference's own difference from its low-pass: acceleration.
+    pub(super) surge: Lanes,
+    /// Where dry friction saturates, and how fast time runs, by this end's [`Clock`](super::pace::Clock).
+    pub(super) knee: Lanes,
+    pub(super) pace: f64,
+}
+
+impl Stance {
+    /// At the origin, at rest.
+    pub(super) const BLANK: Self =
+        Self { x: Lanes::ZERO, u: [Lanes::ZERO; BANK], surge: Lanes::ZERO, knee: Lanes::ZERO, pace: 0.0 };
 }
 
 /// What the follower knows at the anchor besides the motion.
@@ -64,6 +75,11 @@ pub(super) struct Background {
 /// The bank for positions, the same at both ends of the link.
 pub(super) fn position_bank(settings: &Settings) -> LowPassBank {
     LowPassBank::new(BANK_S[0], BANK_S[1], settings.rate_hz)
+}
+
+/// What a low-pass of the bank's shortest time constant takes up of a change in one sample.
+pub(super) fn shortest_share(settings: &Settings) -> f64 {
+    -(-1.0 / (BANK_S[0] * settings.rate_hz).max(1.0)).exp_m1()
 }
 
 /// `u / (|u| + knee)`: the sign of the motion, smoothed.

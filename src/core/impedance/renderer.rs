@@ -83,7 +83,7 @@ impl Renderer {
                 forces[mode.index()] = None;
             }
         }
-        Rendered::new(forces)
+        Rendered::new(&forces)
     }
 
     /// Changes the programmed delay, exact to one sample, at most [`MAX_DELAY_S`].

@@ -23,21 +23,22 @@ const WINDOW_SAMPLES: std::ops::RangeInclusive<f64> = 10.0..=10_000.0;
 pub struct ModeSet([bool; MODES]);
 
 impl ModeSet {
-    /// All four.
+    /// Every mode.
     pub const ALL: Self = Self([true; MODES]);
 
     /// One mode (delayed reflection comes with every one, for comparison).
     pub const fn only(mode: Mode) -> Self {
-        let mut set = [false; MODES];
-        set[mode.index()] = true;
-        set[Mode::Dfr.index()] = true;
-        Self(set)
+        Self([false; MODES]).with(Mode::Dfr).with(mode)
     }
 
-    /// This set and one more mode.
+    /// This set and one more mode, with those that it is made of.
     #[must_use]
     pub const fn with(mut self, mode: Mode) -> Self {
         self.0[mode.index()] = true;
+        if matches!(mode, Mode::Best) {
+            self.0[Mode::Anchored.index()] = true;
+            self.0[Mode::Matched.index()] = true;
+        }
         self
     }
 

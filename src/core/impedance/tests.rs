@@ -42,6 +42,9 @@ fn assert_finite(report: &Report, parcel: &Parcel) {
     {
         assert!(coefficients.iter().all(|m| m.is_finite()), "{parcel:?}");
     }
+    for model in [&parcel.matched, &parcel.nima] {
+        assert!(model.parameters.iter().chain([&model.offset_n]).all(|m| m.is_finite()), "{parcel:?}");
+    }
 }
 
 #[test]
@@ -66,6 +69,8 @@ fn without_delay_reflection_and_anchored_are_the_measured_force() {
         for mode in [Mode::Dfr, Mode::Anchored] {
             assert_eq!(identifier.report().prediction_n[mode.index()], sample.force_n);
         }
+        let best_n = identifier.report().prediction_n[Mode::Best.index()];
+        assert!(k < 2 || (best_n - sample.force_n).norm() < 1e-9, "the best of two is the exact one");
     }
 }
 
@@ -149,7 +154,8 @@ fn metres_and_millimetres_agree() {
         // Not literal: the paper's normal equations of degree 5 square a condition number near 1e8, and depend on the unit.
         let literal = [&a, &b].map(|identifier| identifier.report().prediction_n[Mode::Literal.index()]);
         worst = worst.max((literal[0] - literal[1]).norm() / (1e-3 + literal[0].norm()));
-        for (mode, tolerance) in [(Mode::Linear, 1e-9), (Mode::Dfr, 0.0), (Mode::Anchored, 1e-9)] {
+        let all = [Mode::Linear, Mode::Dfr, Mode::Anchored, Mode::Matched, Mode::Nima, Mode::Best];
+        for (mode, tolerance) in all.map(|mode| (mode, if mode == Mode::Dfr { 0.0 } else { 1e-9 })) {
             let (a, b) = (a.report().prediction_n[mode.index()], b.report().prediction_n[mode.index()]);
             assert!((a - b).norm() <= tolerance * (1.0 + a.norm()), "{mode}, tick {k}: {a} {b}");
         }

@@ -3,7 +3,8 @@
 use super::{
     features::{Features, Scales, features},
     messages::Posture,
-    regressors::{Stance, position_bank},
+    pace::Clock,
+    regressors::{Stance, position_bank, shortest_share},
     settings::Settings,
 };
 use crate::signal::{DelayLine, Differentiator, Lanes, LowPassBank, Motion};
@@ -19,6 +20,9 @@ const ABSURD: f64 = 1e4;
 pub(super) struct Track {
     differentiator: Differentiator,
     bank: LowPassBank,
+    speed_m: Lanes,
+    clock: Clock,
+    speed_share: f64,
     scales: Scales,
     degree: usize,
     posture: Posture,
@@ -34,6 +38,9 @@ impl Track {
         Self {
             differentiator: Differentiator::new(settings.differentiator, settings.rate_hz),
             bank: position_bank(settings),
+            speed_m: Lanes::ZERO,
+            clock: Clock::new(settings.rate_hz),
+            speed_share: shortest_share(settings),
             scales: settings.scales,
             degree: settings.max_degree,
             posture: Posture::BLANK,
@@ -60,9 +67,18 @@ impl Track {
         };
         self.last = self.differentiator.step(position);
         self.history.push(self.last);
+        let u = self.bank.step(position);
+        self.speed_m = (self.speed_m + (u[0] - self.speed_m) * self.speed_share).settled();
+        self.clock.step(u[1]);
         self.posture = Posture {
             features: self.scales.features(&self.last, self.degree),
-            stance: Stance { x: position, u: self.bank.step(position) },
+            stance: Stance {
+                x: position,
+                u,
+                surge: u[0] - self.speed_m,
+                knee: self.clock.knee_m(),
+                pace: self.clock.pace(),
+            },
         };
         self.posture
     }
@@ -84,6 +100,8 @@ impl Track {
     pub(super) fn reset(&mut self) {
         self.differentiator.reset();
         self.bank.reset();
+        self.speed_m = Lanes::ZERO;
+        self.clock.reset();
         self.posture = Posture::BLANK;
         self.history.clear();
         self.last = Motion::default();

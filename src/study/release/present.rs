@@ -5,15 +5,13 @@ use std::fmt::Write as _;
 use nima_core::impedance::Mode;
 
 use super::{
-    AIM_M, AIM_N, BRAKES_N_S_M, Braked, DELAYS_MS, Gates, Options, Outcome, ReleaseError, Report, STEADY, Situation,
-    study,
+    AIM_M, AIM_N, BRAKES_N_S_M, Braked, DELAYS_MS, Gates, MODES, Options, Outcome, ReleaseError, Report, STEADY,
+    Situation, study,
 };
 use crate::{
     Experiment, Findings,
     picture::{Axis, Chart, Series, Style, svg},
 };
-
-const MODES: [Mode; 4] = [Mode::Dfr, Mode::Linear, Mode::Literal, Mode::Anchored];
 
 impl Report {
     /// One Markdown table for each situation, for a terminal and for a document.

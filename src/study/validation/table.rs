@@ -128,6 +128,9 @@ fn rendering(three: &Rendering) -> Vec<Row> {
             Mode::Dfr => "the delayed force itself, for comparison",
             Mode::Anchored => "our rendering: delayed force plus its learned change",
             Mode::Linear | Mode::Literal => "at the horizon; the paper tests within the window only",
+            Mode::Matched => "parameters alone, the force from the hand's own motion",
+            Mode::Nima => "the paper's columns with a constant, a kept origin and a ridge",
+            Mode::Best => "anchored and matched, weighted by their recent errors",
         };
         let what = format!("{}, {:.0} ms later, MAE and SD (N)", figures.mode.name(), 1e3 * three.delay_s);
         all.push(row("III", what, &[], pair(figures.error), why));

@@ -86,9 +86,13 @@ fn header(recording: &Recording) -> String {
 fn push_row(trace: &mut String, row: &Row, axes: usize) {
     // Writing into a String cannot fail. Rust prints the fewest digits from which the same number can be read.
     write!(trace, "{}", row.t_s).ok();
-    for force in [&row.measured, &row.rendered, &row.held] {
+    for force in [Some(&row.measured), row.rendered.as_ref(), row.held.as_ref()] {
         for lane in 0..axes {
-            write!(trace, ",{:e}", force[lane]).ok();
+            match force {
+                Some(force) => write!(trace, ",{:e}", force[lane]).ok(),
+                // A blank, not a zero: nothing had come yet.
+                None => write!(trace, ",").ok(),
+            };
         }
     }
     writeln!(trace, ",{},{:e},{}", row.degree, row.condition, row.gate).ok();

@@ -149,7 +149,7 @@ impl Live {
             first_fault: None,
             refusal: None,
             trend_n: VecDeque::with_capacity(TREND_S + 1),
-            horizon: [Fading::default(); 4],
+            horizon: [Fading::default(); MODES],
             measured: Default::default(),
             rendered: Default::default(),
             missed_share: Fading::default(),

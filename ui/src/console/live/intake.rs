@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use nima_core::statistics::Quantiles;
+use nima_core::{impedance::Mode, statistics::Quantiles};
 use nima_machine::{
     messages::{Event, LoopState, Tick},
     rig::Side,
@@ -80,7 +80,9 @@ impl Live {
         let missed = before.map_or(0, |before| tick.missed.saturating_sub(before.missed));
         self.deadlines.push(tick.t_s, missed);
         self.missed_share.push(missed as f64 / (missed as f64 + 1.0), dt_s, 3.0);
-        self.degrees.push(tick.identification.degree);
+        let of_matched = matches!(tick.mode, Mode::Matched | Mode::Nima | Mode::Best);
+        let identification = &tick.identification;
+        self.degrees.push(if of_matched { identification.degree_of(tick.mode) } else { identification.degree });
         self.paper_degrees.push(tick.identification.paper_degree);
         if before.is_some_and(|before| before.t_s.floor() < tick.t_s.floor()) {
             self.trend_n.push_back(tick.identification.horizon_error_n);

@@ -58,9 +58,11 @@ pub fn feedback_ui(ui: &mut Ui, live: &mut Live, state: &mut FeedbackState, outb
 fn mode_ui(ui: &mut Ui, live: &Live, outbox: &mut Outbox) {
     let size = vec2(0.5 * (ui.available_width() - 6.0), 32.0);
     ui.spacing_mut().item_spacing = vec2(6.0, 6.0);
-    for pair in [[Mode::Anchored, Mode::Dfr], [Mode::Linear, Mode::Literal]] {
+    let rows: [&[Mode]; 4] =
+        [&[Mode::Anchored, Mode::Dfr], &[Mode::Matched, Mode::Best], &[Mode::Nima, Mode::Literal], &[Mode::Linear]];
+    for row in rows {
         ui.horizontal(|ui| {
-            for mode in pair {
+            for &mode in row {
                 let button =
                     Button::selectable(live.mode() == mode, mode_name(mode)).frame_when_inactive(true).min_size(size);
                 if ui.add(button).on_hover_text(mode_meaning(mode)).clicked() {

@@ -42,6 +42,9 @@ pub const fn mode_name(mode: Mode) -> &'static str {
         Mode::Linear => text::modes::LINEAR,
         Mode::Dfr => text::modes::DFR,
         Mode::Anchored => text::modes::ANCHORED,
+        Mode::Matched => text::modes::MATCHED,
+        Mode::Nima => text::modes::NIMA,
+        Mode::Best => text::modes::BEST,
     }
 }
 
@@ -52,5 +55,8 @@ pub const fn mode_meaning(mode: Mode) -> &'static str {
         Mode::Linear => text::modes::LINEAR_HOVER,
         Mode::Dfr => text::modes::DFR_HOVER,
         Mode::Anchored => text::modes::ANCHORED_HOVER,
+        Mode::Matched => text::modes::MATCHED_HOVER,
+        Mode::Nima => text::modes::NIMA_HOVER,
+        Mode::Best => text::modes::BEST_HOVER,
     }
 }

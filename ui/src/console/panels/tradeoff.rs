@@ -212,7 +212,7 @@ fn needs_restart(now: &Identification, choice: &Choice) -> bool {
     let degree = choice.degree != now.max_degree;
     let window = (choice.window_ms - now.window_s * 1e3).abs() > 1e-6;
     match choice.method.mode() {
-        Some(Mode::Anchored | Mode::Literal) => degree || window,
+        Some(Mode::Anchored | Mode::Best | Mode::Nima | Mode::Literal) => degree || window,
         Some(Mode::Linear) => window,
         _ => false,
     }

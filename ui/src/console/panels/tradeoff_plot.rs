@@ -76,8 +76,11 @@ pub(super) fn plot_ui(ui: &mut Ui, figures: &SourceFigures, selected: Option<usi
 fn look(mode: Mode) -> (MarkerShape, Color32, f32) {
     match mode {
         Mode::Anchored => (MarkerShape::Circle, theme::now().rendered, 4.0),
+        Mode::Matched => (MarkerShape::Diamond, theme::now().rendered, 4.5),
+        Mode::Best => (MarkerShape::Up, theme::now().rendered, 4.5),
         Mode::Dfr => (MarkerShape::Square, theme::now().measured, 5.0),
         Mode::Linear => (MarkerShape::Up, theme::now().reference, 4.5),
+        Mode::Nima => (MarkerShape::Circle, theme::now().reference, 4.0),
         Mode::Literal => (MarkerShape::Diamond, theme::now().reference, 4.5),
     }
 }

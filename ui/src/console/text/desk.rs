@@ -26,7 +26,7 @@ pub(in crate::console) const SAFETY_HOVER: &str =
     "The safety functions between the model and the hand: the interlock and the gates of each arm";
 pub(in crate::console) const ERROR_AT_THE_HORIZON_HOVER: &str = "Difference between the force that each mode would render now, before the gates, and the force \
     measured now (N, 3-D distance, mean of the last four seconds). Each mode only knows data as old as \
-    the link's delay. All four modes are computed all the time.";
+    the link's delay. All modes are computed all the time.";
 pub(in crate::console) const DEGREES_HOVER: &str =
     "Degree N of the polynomial f = M X between motion and force, chosen every tick from the last 300 ms";
 pub(in crate::console) const TIMING_HOVER: &str =

@@ -27,6 +27,9 @@ pub(in crate::console) const DEMO_LITERAL_CAPTION: &str = "The paper's method: a
 pub(in crate::console) const DEMO_ANCHORED: &str = "Anchored";
 pub(in crate::console) const DEMO_ANCHORED_CAPTION: &str = "Our method: the last measured force, corrected for the hand's motion since then, and only as far as \
     earlier corrections reduced the error. On the right, compare its error with direct reflection.";
+pub(in crate::console) const DEMO_MATCHED: &str = "Matched";
+pub(in crate::console) const DEMO_MATCHED_CAPTION: &str = "Same delay, and no force crosses the link at all. Only the tissue's \
+    parameters do; the blue arrow is made from the hand's own motion, so a late force cannot kick.";
 pub(in crate::console) const DEMO_YOUR_TURN: &str = "Your turn";
 pub(in crate::console) const DEMO_YOUR_TURN_CAPTION: &str = "Press M, or the button in the view, and move the instrument yourself: drag with the mouse, wheel for \
     the height, arrow keys for small steps. Press into the tissue and watch the arrows. With the rig \

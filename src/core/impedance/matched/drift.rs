@@ -1,0 +1,79 @@
+//! What the parameters do not explain and what stays: a slowly drifting offset, kept small.
+
+use super::super::anchored::within;
+use crate::signal::{DelayLine, Lanes};
+
+/// Memory of the learnt share, of the mean force and of the largest force (s).
+const SHARE_S: f64 = 1.0;
+const FORCE_S: f64 = 2.0;
+/// Ridge of the share, and how much of the mean force is added to an error before its weight is taken.
+const RIDGE: f64 = 0.02;
+const FLATTEN: f64 = 0.05;
+/// The offset may be this share of the largest force of late: it must not become a reflected force.
+const BOUND: f64 = 0.1;
+
+/// Learns, per axis, what share of the residual of one delay ago is still there (0 to 1, least absolute error).
+#[derive(Clone, Debug)]
+pub(super) struct Drift {
+    rate_hz: f64,
+    residuals_n: DelayLine<Lanes>,
+    products: Lanes,
+    right: Lanes,
+    share: Lanes,
+    mean_n: Lanes,
+    largest_n: Lanes,
+    seen: f64,
+}
+
+impl Drift {
+    pub(super) fn new(rate_hz: f64, max_delay: usize) -> Self {
+        Self {
+            rate_hz,
+            residuals_n: DelayLine::new(max_delay, Lanes::ZERO),
+            products: Lanes::ZERO,
+            right: Lanes::ZERO,
+            share: Lanes::ZERO,
+            mean_n: Lanes::ZERO,
+            largest_n: Lanes::ZERO,
+            seen: 0.0,
+        }
+    }
+
+    /// Takes what the parameters of `delay` ticks ago did not explain now (N), and the offset that was sent with them (N). The
+    /// residual of that time is `delay - 1` entries back: this tick's has not come yet.
+    pub(super) fn judge(&mut self, delay: usize, unexplained_n: Lanes, sent_n: Lanes) {
+        let Some(then_n) = self.residuals_n.get(delay - 1).copied() else { return };
+        let size = (unexplained_n - sent_n).map(f64::abs) + self.mean_n * FLATTEN;
+        let weighted = then_n * size.recip_or_zero();
+        let fade = (-1.0 / (SHARE_S * self.rate_hz)).exp();
+        self.products = (self.products * fade + weighted * then_n).settled();
+        self.right = (self.right * fade + weighted * unexplained_n).settled();
+        let share = self.right * (self.products * (1.0 + RIDGE)).recip_or_zero();
+        self.share = within(share, Lanes::ZERO, Lanes::splat(1.0));
+    }
+
+    /// Takes this tick's residual and force (N); returns the offset to send (N).
+    pub(super) fn step(&mut self, residual_n: Lanes, force_n: Lanes) -> Lanes {
+        self.residuals_n.push(residual_n);
+        let size_n = force_n.map(f64::abs);
+        self.seen += 1.0;
+        let memory = FORCE_S * self.rate_hz;
+        self.mean_n = (self.mean_n + (size_n - self.mean_n) * self.seen.min(memory).recip()).settled();
+        self.largest_n = (self.largest_n * (1.0 - memory.recip())).settled().zip(size_n, f64::max);
+        let bound_n = self.largest_n * BOUND;
+        within(self.share * residual_n, -bound_n, bound_n)
+    }
+
+    /// Nothing was measured in this tick.
+    pub(super) fn hold(&mut self) {
+        let last_n = self.residuals_n.get(0).copied().unwrap_or_default();
+        self.residuals_n.push(last_n);
+    }
+
+    pub(super) fn reset(&mut self) {
+        self.residuals_n.clear();
+        let rest = Lanes::ZERO;
+        (self.products, self.right, self.share, self.mean_n, self.largest_n) = (rest, rest, rest, rest, rest);
+        self.seen = 0.0;
+    }
+}

@@ -1,0 +1,106 @@
+//! The columns of a model: what a force is made of.
+
+use super::super::{
+    messages::Posture,
+    regressors::{Stance, saturated},
+};
+use crate::signal::Lanes;
+
+/// Columns of the largest form.
+pub(super) const COLUMNS: usize = 23;
+
+/// The columns of one tick, or their parameters, one lane per axis.
+pub(super) type Row = [Lanes; COLUMNS];
+
+/// Leading columns of each nested model.
+const TISSUE: &[usize] = &[8, 11];
+const COUPLED: &[usize] = &[8, 11, 23];
+const PAPER: &[usize] = &[4, 7, 10, 13, 16];
+
+/// Which columns a model has; the first is a constant, positions count from a kept origin `d = x - x0`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Form {
+    /// `1, d, u1..u4` (position above its low-passes at 5, 20, 80, 320 ms: four Maxwell branches), acceleration, dry friction;
+    /// then `d^2, d^3, d u2`.
+    Tissue,
+    /// The same, and `d, u1..u4`, acceleration of the two other axes: the full `M`.
+    Coupled,
+    /// The paper's: `1, d, v, a, d^2, v^2, a^2, ...` up to this degree.
+    Paper(u8),
+}
+
+impl Form {
+    /// Leading columns of each nested model, ascending.
+    pub(super) fn nested(self) -> &'static [usize] {
+        match self {
+            Self::Tissue => TISSUE,
+            Self::Coupled => COUPLED,
+            Self::Paper(degree) => &PAPER[..usize::from(degree).clamp(1, PAPER.len())],
+        }
+    }
+
+    /// All columns.
+    pub(super) fn columns(self) -> usize {
+        self.nested().last().copied().unwrap_or(1)
+    }
+
+    /// The degree of the nested model with this many columns.
+    pub(super) fn degree(self, columns: usize) -> u8 {
+        match self {
+            Self::Tissue | Self::Coupled => {
+                if columns > TISSUE[0] {
+                    3
+                } else {
+                    1
+                }
+            }
+            Self::Paper(_) => (columns / 3) as u8,
+        }
+    }
+
+    /// The position that the columns count from.
+    pub(super) fn position(self, posture: &Posture) -> Lanes {
+        match self {
+            Self::Tissue | Self::Coupled => posture.stance.x,
+            Self::Paper(_) => posture.features[0],
+        }
+    }
+
+    /// The columns of a posture. `one`: 1 in the lanes in use; `origin`: where the positions count from.
+    pub(super) fn row(self, posture: &Posture, one: Lanes, origin: Lanes) -> Row {
+        let mut row = [Lanes::ZERO; COLUMNS];
+        let d = self.position(posture) - origin;
+        row[0] = one;
+        if let Self::Paper(degree) = self {
+            let base = [d, posture.features[1], posture.features[2]];
+            let mut power = base;
+            for triple in row[1..].chunks_exact_mut(3).take(usize::from(degree)) {
+                triple.copy_from_slice(&power);
+                for (power, base) in power.iter_mut().zip(base) {
+                    *power *= base;
+                }
+            }
+            return row;
+        }
+        let Stance { u, surge, knee, .. } = posture.stance;
+        let own = [d, u[0], u[1], u[2], u[3], surge];
+        row[1..7].copy_from_slice(&own);
+        row[7] = saturated(u[1], knee);
+        row[8] = d * d;
+        row[9] = row[8] * d;
+        row[10] = d * u[1];
+        if self == Self::Coupled {
+            for (j, Lanes([x, y, z, _])) in own.into_iter().enumerate() {
+                row[11 + j] = Lanes([y, z, x, 0.0]);
+                row[17 + j] = Lanes([z, x, y, 0.0]);
+            }
+        }
+        row
+    }
+}
+
+/// `sum_j parameters_j row_j` over the leading columns.
+#[inline]
+pub(super) fn product(parameters: &Row, row: &Row, columns: usize) -> Lanes {
+    parameters.iter().zip(row).take(columns).fold(Lanes::ZERO, |sum, (p, q)| sum + *p * *q)
+}

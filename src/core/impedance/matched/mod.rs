@@ -1,0 +1,253 @@
+//! Matched rendering: parameters cross the link, the force is made of the hand's own motion, so no late force can kick.
+//!
+//! The follower fits the force at its tip, `f = theta phi(motion)`, on normal equations whose memory runs on a clock that motion
+//! drives; two ridges and nested sets of columns are its experts. What each expert would have said one delay ago is compared
+//! with the force that came; the weights are a softmin of that running error, and what is sent is the weighted sum of the
+//! parameters, with the range of forces seen and a small offset. The leader puts in its own motion, which may be the
+//! follower's as it knows it (accurate) or the handle's (passive whatever the delay).
+//!
+//! Positions count from a kept origin, there is a constant, the ridge is in proportion to each column's mean square: where the
+//! paper's recipe (increments, raw columns, no constant, no ridge, degree by the error inside the window) asks for 1e6 N at
+//! the horizon, the paper's own columns under these rules ([`Form::Paper`]) do better than reflection.
+
+mod drift;
+mod form;
+mod model;
+mod sums;
+#[cfg(test)]
+mod tests;
+
+pub use form::Form;
+pub use model::MatchedModel;
+
+use self::{
+    drift::Drift,
+    form::{COLUMNS, Row, product},
+    sums::Sums,
+};
+use super::{
+    best::eighth_power,
+    envelope::Envelope,
+    messages::Posture,
+    pace::share,
+    settings::{MAX_DELAY_S, Settings},
+};
+use crate::signal::{DelayLine, Lanes};
+
+/// Memory of the fit (s by the clock); the paper's form has its window's.
+const MEMORY_S: f64 = 1.0;
+/// Ridges, in seconds of typical motion that say "no force".
+const RIDGES_S: [f64; 2] = [0.0001, 0.01];
+/// Solves per second of every expert (at most one a tick).
+const SOLVE_HZ: f64 = 200.0;
+/// Memory of the experts' errors (s by the clock), the exponent of the softmin is eight, and errors below this are equal (N).
+const ERROR_S: f64 = 1.0;
+const EQUAL_N: f64 = 1e-12;
+
+/// The follower's end.
+#[derive(Clone, Debug)]
+pub(super) struct Matched {
+    form: Form,
+    rate_hz: f64,
+    delay_ticks: usize,
+    every: usize,
+    tick: usize,
+    one: Lanes,
+    sums: Sums,
+    experts: Vec<Expert>,
+    envelope: Envelope,
+    drift: Drift,
+    origin: Lanes,
+    started: bool,
+    /// Ticks judged, by the clock.
+    judged: f64,
+    model: MatchedModel,
+}
+
+/// One ridge and one nested set of columns.
+#[derive(Clone, Debug)]
+struct Expert {
+    ridge: usize,
+    columns: usize,
+    parameters: Row,
+    past: DelayLine<Row>,
+    error_n: Lanes,
+    weight: Lanes,
+}
+
+impl Matched {
+    pub(super) fn new(form: Form, settings: &Settings, delay_ticks: usize) -> Self {
+        let rate_hz = settings.rate_hz;
+        let every = ((rate_hz / SOLVE_HZ).round() as usize).max(1);
+        let max_delay = (MAX_DELAY_S * rate_hz).ceil() as usize;
+        let memory_s = if matches!(form, Form::Paper(_)) { settings.window_s } else { MEMORY_S };
+        let expert = |ridge, columns| Expert {
+            ridge,
+            columns,
+            parameters: [Lanes::ZERO; COLUMNS],
+            past: DelayLine::new(max_delay / every + 1, [Lanes::ZERO; COLUMNS]),
+            error_n: Lanes::ZERO,
+            weight: Lanes::ZERO,
+        };
+        let ridges = 0..RIDGES_S.len();
+        let experts = ridges.flat_map(|ridge| form.nested().iter().map(move |&columns| expert(ridge, columns)));
+        let mut matched = Self {
+            form,
+            rate_hz,
+            delay_ticks,
+            every,
+            tick: 0,
+            one: super::messages::active(&nalgebra::Vector3::repeat(1.0), settings.axes),
+            sums: Sums::new(form.columns(), memory_s, rate_hz),
+            experts: experts.collect(),
+            envelope: Envelope::new(rate_hz),
+            drift: Drift::new(rate_hz, max_delay),
+            origin: Lanes::ZERO,
+            started: false,
+            judged: 0.0,
+            model: MatchedModel::NONE,
+        };
+        matched.reset();
+        matched
+    }
+
+    /// Ticks back to the parcel that the leader has now; without a delay the last one stands for it.
+    pub(super) fn horizon(&self) -> usize {
+        self.delay_ticks.max(1)
+    }
+
+    /// Takes the follower's newest motion and force (N), `None` where either was not measured; `sent`: the model of
+    /// [`horizon`](Self::horizon) ticks ago. Returns the model to send.
+    pub(super) fn step(
+        &mut self,
+        posture: &Posture,
+        force_n: Option<Lanes>,
+        sent: Option<&MatchedModel>,
+    ) -> &MatchedModel {
+        if let Some(force_n) = force_n {
+            self.learn(posture, force_n);
+        }
+        self.solve();
+        if let Some(force_n) = force_n {
+            if let Some(sent) = sent.filter(|sent| sent.degree > 0) {
+                self.judge(posture, force_n, sent);
+            }
+            self.mix(posture, force_n);
+        } else {
+            self.drift.hold();
+        }
+        self.tick += 1;
+        &self.model
+    }
+
+    fn learn(&mut self, posture: &Posture, force_n: Lanes) {
+        if !self.started {
+            (self.started, self.origin) = (true, self.form.position(posture));
+        }
+        let pace = posture.stance.pace;
+        let row = self.form.row(posture, self.one, self.origin);
+        let error_n =
+            self.experts.last().map_or(force_n, |full| force_n - product(&full.parameters, &row, full.columns));
+        self.sums.learn(&row, force_n, error_n, pace);
+        self.envelope.see(force_n, pace);
+    }
+
+    /// One factorisation per ridge, spread over the ticks between two renewals.
+    fn solve(&mut self) {
+        let phase = self.tick % self.every;
+        for (ridge, ridge_s) in RIDGES_S.into_iter().enumerate() {
+            // All on the first tick: an expert that has said nothing cannot be judged.
+            if phase != self.phase(ridge) && self.tick > 0 {
+                continue;
+            }
+            self.sums.factorise(ridge_s);
+            for expert in self.experts.iter_mut().filter(|expert| expert.ridge == ridge) {
+                // What is not finite is not kept and not sent.
+                expert.parameters = self.sums.parameters(expert.columns).unwrap_or(expert.parameters);
+                expert.past.push(expert.parameters);
+            }
+        }
+    }
+
+    const fn phase(&self, ridge: usize) -> usize {
+        ridge * self.every / RIDGES_S.len()
+    }
+
+    /// How many renewals ago the parameters in force `ticks` ago were found.
+    const fn renewals(&self, ridge: usize, ticks: usize) -> usize {
+        let ahead = self.every - self.phase(ridge);
+        (self.tick + ahead) / self.every - (self.tick.saturating_sub(ticks) + ahead) / self.every
+    }
+
+    fn judge(&mut self, posture: &Posture, force_n: Lanes, sent: &MatchedModel) {
+        let row = sent.row(posture);
+        let pace = posture.stance.pace;
+        self.judged += pace;
+        let share = share(pace, self.judged, ERROR_S * self.rate_hz);
+        let mut least_n = Lanes::splat(f64::INFINITY);
+        for i in 0..self.experts.len() {
+            let age = self.renewals(self.experts[i].ridge, self.horizon());
+            let expert = &mut self.experts[i];
+            let Some(parameters) = expert.past.get(age) else { continue };
+            let said_n = sent.clipped(product(parameters, &row, expert.columns));
+            expert.error_n = (expert.error_n + ((force_n - said_n).map(f64::abs) - expert.error_n) * share).settled();
+            least_n = least_n.zip(expert.error_n, f64::min);
+        }
+        let mut sum = Lanes::ZERO;
+        for expert in &mut self.experts {
+            expert.weight = eighth_power((least_n + Lanes::splat(EQUAL_N)) / (expert.error_n + Lanes::splat(EQUAL_N)));
+            sum += expert.weight;
+        }
+        let scale = sum.recip_or_zero();
+        self.experts.iter_mut().for_each(|expert| expert.weight *= scale);
+        let said_n = sent.clipped(product(&sent.parameters, &row, self.form.columns()));
+        self.drift.judge(self.horizon(), force_n - said_n, sent.offset_n);
+    }
+
+    /// The experts by their weights, and what else the leader needs.
+    fn mix(&mut self, posture: &Posture, force_n: Lanes) {
+        let mut parameters = [Lanes::ZERO; COLUMNS];
+        let mut heaviest = (f64::NEG_INFINITY, 0);
+        for expert in &self.experts {
+            for (sum, parameter) in parameters.iter_mut().zip(&expert.parameters).take(expert.columns) {
+                *sum += *parameter * expert.weight;
+            }
+            let [x, y, z, _] = (expert.weight * self.one).0;
+            if x + y + z > heaviest.0 {
+                heaviest = (x + y + z, expert.columns);
+            }
+        }
+        self.model = MatchedModel {
+            form: self.form,
+            degree: self.form.degree(heaviest.1),
+            one: self.one,
+            parameters,
+            origin: self.origin,
+            bounds_n: self.envelope.bounds_n(),
+            offset_n: Lanes::ZERO,
+        };
+        let row = self.model.row(posture);
+        let said_n = self.model.clipped(product(&parameters, &row, self.form.columns()));
+        self.model.offset_n = self.drift.step(force_n - said_n, force_n);
+    }
+
+    /// Judges at another delay from now on.
+    pub(super) fn set_delay(&mut self, delay_ticks: usize) {
+        self.delay_ticks = delay_ticks;
+    }
+
+    /// Forgets everything.
+    pub(super) fn reset(&mut self) {
+        self.tick = 0;
+        self.sums.reset();
+        let weight = self.one * (1.0 / self.experts.len() as f64);
+        for expert in &mut self.experts {
+            (expert.parameters, expert.error_n, expert.weight) = ([Lanes::ZERO; COLUMNS], Lanes::ZERO, weight);
+            expert.past.clear();
+        }
+        self.envelope.reset();
+        self.drift.reset();
+        (self.started, self.origin, self.judged) = (false, Lanes::ZERO, 0.0);
+        self.model = MatchedModel::NONE;
+    }
+}

@@ -1,0 +1,231 @@
+//! What matched rendering promises: parameters only, nothing forgotten at rest, finite whatever comes.
+
+use std::f64::consts::TAU;
+
+use nalgebra::Vector3;
+
+use super::{super::track::Track, *};
+
+const FORMS: [Form; 3] = [Form::Tissue, Form::Coupled, Form::Paper(5)];
+const MATCHED: [Form; 2] = [Form::Tissue, Form::Coupled];
+
+/// Both ends, and a link of `delay` ticks between them; the leader's own motion is handed in.
+struct Pair {
+    follower_track: Track,
+    follower: Matched,
+    leader_track: Track,
+    link: Vec<MatchedModel>,
+    delay: usize,
+}
+
+impl Pair {
+    fn new(form: Form, settings: &Settings) -> Self {
+        let delay = settings.delay_ticks(settings.delay_s);
+        Self {
+            follower_track: Track::new(settings),
+            follower: Matched::new(form, settings, delay),
+            leader_track: Track::new(settings),
+            link: Vec::new(),
+            delay,
+        }
+    }
+
+    /// One tick of the follower; the model that it sends.
+    fn follower(&mut self, tip_m: Vector3<f64>, force_n: Option<Vector3<f64>>) -> MatchedModel {
+        let posture = self.follower_track.step(Some(tip_m.into()));
+        let sent = self.link.len().checked_sub(self.delay.max(1)).map(|then| self.link[then]);
+        let model = *self.follower.step(&posture, force_n.map(Lanes::from), sent.as_ref());
+        self.link.push(model);
+        model
+    }
+
+    /// One tick of the leader, after the follower's: the force for the hand.
+    fn leader(&mut self, hand_m: Vector3<f64>) -> Option<Vector3<f64>> {
+        let now = self.leader_track.step(Some(hand_m.into()));
+        let arrived = self.link.len().checked_sub(self.delay + 1)?;
+        self.link[arrived].force(&now).map(Lanes::vector)
+    }
+
+    /// Both ends at one place.
+    fn step(&mut self, at_m: Vector3<f64>, force_n: Vector3<f64>) -> Option<Vector3<f64>> {
+        self.follower(at_m, Some(force_n));
+        self.leader(at_m)
+    }
+}
+
+fn settings(delay_s: f64) -> Settings {
+    Settings { delay_s, ..Settings::default() }
+}
+
+/// A hand that presses, slides and lifts, m.
+fn hand_m(t_s: f64) -> Vector3<f64> {
+    Vector3::new(
+        0.004 * (TAU * 0.7 * t_s).sin() + 0.0004 * (TAU * 8.3 * t_s).sin(),
+        0.003 * (TAU * 0.9 * t_s + 0.4).sin(),
+        0.005 * (TAU * 0.8 * t_s).cos() + 0.0003 * (TAU * 9.7 * t_s).sin(),
+    )
+}
+
+/// Contact below the surface z = 0 and a little drag, N.
+fn contact_n(at_m: Vector3<f64>) -> Vector3<f64> {
+    let depth_m = (-at_m.z).max(0.0);
+    Vector3::new(-20.0 * at_m.x, -15.0 * at_m.y, 500.0 * depth_m + 2e4 * depth_m * depth_m)
+}
+
+#[test]
+fn the_force_is_made_of_what_was_known_one_delay_ago_and_of_the_own_motion() {
+    for form in FORMS {
+        let [mut clean, mut corrupt] = [(); 2].map(|()| Pair::new(form, &settings(0.1)));
+        let (changed, horizon) = (1500_u32, 100);
+        for k in 0..changed + horizon {
+            let at_m = hand_m(f64::from(k) * 1e-3);
+            let noise = Vector3::new(7.0, -3.0, 11.0) * f64::from((k * 7919) % 101);
+            clean.follower(at_m, Some(contact_n(at_m)));
+            // From here on the follower measures and does something else altogether; the leader's hand does not.
+            let (tip_m, force_n) =
+                if k < changed { (at_m, contact_n(at_m)) } else { (at_m + 0.01 * noise, contact_n(at_m) + noise) };
+            corrupt.follower(tip_m, Some(force_n));
+            assert_eq!(clean.leader(at_m), corrupt.leader(at_m), "{form:?}, tick {k}");
+        }
+        let at_m = hand_m(f64::from(changed + horizon) * 1e-3);
+        let [clean, corrupt] = [&mut clean, &mut corrupt].map(|pair| {
+            pair.follower(at_m, Some(contact_n(at_m)));
+            pair.leader(at_m)
+        });
+        assert_ne!(clean, corrupt, "{form:?}: the corrupt samples arrive in the end");
+    }
+}
+
+#[test]
+fn a_hand_that_leaves_when_the_link_fails_leaves_the_force_behind() {
+    for form in MATCHED {
+        for (delay_s, speed_m_s) in [(0.05, 0.1), (0.05, 0.3), (0.1, 0.1), (0.1, 0.2), (0.3, 0.1), (0.3, 0.3)] {
+            let mut pair = Pair::new(form, &settings(delay_s));
+            // Palpation of a spring, at its deepest when the last parcel is sent.
+            let pressed = |k: i32| Vector3::new(0.0, 0.0, -0.0025 * (1.0 - (TAU * 1e-3 * f64::from(k)).cos()));
+            let spring_n = |at_m: Vector3<f64>| Vector3::new(0.0, 0.0, (-600.0 * at_m.z).max(0.0));
+            for k in 0..5500 {
+                pair.step(pressed(k), spring_n(pressed(k)));
+            }
+            let last = pair.link.len() - 1 - pair.delay;
+            let mut at_m = pressed(5500);
+            let before_n = pair.link[last].force(&pair.leader_track.step(Some(at_m.into()))).unwrap().norm();
+            for _ in 0..pair.delay {
+                at_m.z += speed_m_s * 1e-3;
+                let now = pair.leader_track.step(Some(at_m.into()));
+                if at_m.z > 0.03 {
+                    break;
+                }
+                assert!(pair.link[last].force(&now).is_some());
+            }
+            let left_n = pair.link[last].force(&pair.leader_track.step(Some(at_m.into()))).unwrap().norm();
+            let gone = -at_m.z <= 0.0;
+            assert!(before_n > 2.0, "{before_n} N");
+            assert!(
+                !gone || left_n <= 0.15 * before_n,
+                "{form:?}, {delay_s} s, {speed_m_s} m/s: {left_n} of {before_n} N"
+            );
+        }
+    }
+}
+
+#[test]
+fn nothing_is_forgotten_while_the_hand_stands_still() {
+    const STIFFNESS_N_M: f64 = 600.0;
+    for form in MATCHED {
+        let mut pair = Pair::new(form, &settings(0.05));
+        let spring_n = |at_m: Vector3<f64>| at_m * -STIFFNESS_N_M;
+        let mut at_m = Vector3::zeros();
+        for k in 0..4000 {
+            at_m = hand_m(f64::from(k) * 1e-3);
+            pair.step(at_m, spring_n(at_m));
+        }
+        for _ in 0..60_000 {
+            pair.step(at_m, spring_n(at_m));
+            pair.link.drain(..pair.link.len().saturating_sub(200));
+        }
+        // The leader alone moves on: what it feels is the stiffness that was learnt a minute ago.
+        let model = *pair.link.last().unwrap();
+        let mut force_n =
+            |at_m: Vector3<f64>| model.force(&pair.leader_track.step(Some(at_m.into()))).unwrap().vector();
+        let rest_n = force_n(at_m);
+        for _ in 0..2000 {
+            force_n(at_m - at_m * 0.2);
+        }
+        let change_n = force_n(at_m - at_m * 0.2) - rest_n;
+        let expected_n = at_m * (0.2 * STIFFNESS_N_M);
+        assert!((change_n - expected_n).norm() < 0.1 * expected_n.norm(), "{form:?}: {change_n} for {expected_n}");
+    }
+}
+
+#[test]
+fn metres_and_millimetres_give_the_same_force() {
+    let metres = settings(0.05);
+    let mut millimetres = metres.clone();
+    for scale in [
+        &mut millimetres.scales.position_m,
+        &mut millimetres.scales.velocity_m_s,
+        &mut millimetres.scales.acceleration_m_s2,
+    ] {
+        *scale *= 1e3;
+    }
+    for form in FORMS {
+        let (mut a, mut b) = (Pair::new(form, &metres), Pair::new(form, &millimetres));
+        for k in 0..4000 {
+            let at_m = hand_m(f64::from(k) * 1e-3);
+            let force_n = contact_n(at_m);
+            if let (Some(a), Some(b)) = (a.step(at_m, force_n), b.step(at_m * 1e3, force_n)) {
+                assert!((a - b).norm() <= 1e-9 * (1.0 + a.norm()), "{form:?}, tick {k}: {a} {b}");
+            }
+        }
+    }
+}
+
+#[test]
+fn whatever_comes_in_the_force_is_finite_and_within_the_range_seen() {
+    let mut random = fastrand::Rng::with_seed(7);
+    for form in FORMS {
+        let mut pair = Pair::new(form, &settings(0.05));
+        for k in 0..40_000_u32 {
+            let mut any = |exponent: f64| (random.f64() - 0.5) * 10.0_f64.powf(exponent * (random.f64() - 0.5));
+            let (at_m, force_n) = match (k / 1000) % 8 {
+                0 | 4 => {
+                    let at_m = hand_m(f64::from(k) * 1e-3);
+                    (at_m, Some(contact_n(at_m)))
+                }
+                1 => (Vector3::zeros(), Some(Vector3::zeros())),
+                2 => (Vector3::new(0.01, 0.0, -0.02), Some(Vector3::new(1.0, 0.0, 3.0))),
+                3 => (Vector3::from_fn(|_, _| any(5.0).clamp(-1e3, 1e3)), Some(Vector3::from_fn(|_, _| any(8.0)))),
+                5 => (Vector3::from_fn(|_, _| any(300.0).clamp(-1e3, 1e3)), None),
+                6 => (Vector3::from_fn(|_, _| any(40.0) * 1e-30), Some(Vector3::from_fn(|_, _| any(40.0) * 1e-30))),
+                _ => (Vector3::from_fn(|_, _| any(1.0) * 1e3), Some(Vector3::from_fn(|_, _| any(1.0) * 4e4))),
+            };
+            let model = pair.follower(at_m, force_n);
+            assert!(model.parameters.iter().all(|p| p.is_finite()), "{form:?}, tick {k}");
+            if let Some(force_n) = pair.leader(at_m) {
+                assert!(force_n.iter().all(|f| f.abs() <= 1e5), "{form:?}, tick {k}: {force_n}");
+            } else {
+                assert!(k < 50, "{form:?}, tick {k}: no force");
+            }
+            pair.link.drain(..pair.link.len().saturating_sub(100));
+        }
+    }
+}
+
+#[test]
+fn a_million_ticks_leave_it_as_it_was() {
+    let mut pair = Pair::new(Form::Tissue, &settings(0.02));
+    let mut error_n = [0.0, 0.0];
+    for k in 0..1_000_000_u32 {
+        let at_m = hand_m(f64::from(k % 50_000) * 1e-3);
+        let rendered_n = pair.step(at_m, contact_n(at_m));
+        pair.link.drain(..pair.link.len().saturating_sub(30));
+        let error = |sum: &mut f64| *sum += rendered_n.map_or(0.0, |f| (f - contact_n(at_m)).norm());
+        match k {
+            50_000..100_000 => error(&mut error_n[0]),
+            950_000.. => error(&mut error_n[1]),
+            _ => {}
+        }
+    }
+    assert!((error_n[1] / error_n[0] - 1.0).abs() < 1e-6, "{error_n:?}");
+}

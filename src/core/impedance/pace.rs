@@ -1,0 +1,63 @@
+//! A clock that motion drives.
+
+use crate::signal::Lanes;
+
+/// Memory of the largest motion of late (s by this clock).
+const LARGEST_S: f64 = 20.0;
+/// Time runs at full pace from this share of the largest motion on, and at rest at this pace.
+const FULL: f64 = 0.1;
+const REST: f64 = 0.02;
+/// The pace falls off with this time constant (s), so that a turning point does not stop the clock.
+const HOLD_S: f64 = 0.05;
+/// Memory of the mean size of the motion (s by this clock), half of which is where dry friction saturates.
+const KNEE_S: f64 = 2.0;
+
+/// Tells how much each sample weighs: memories that fade by it forget nothing while the hand stands still.
+#[derive(Clone, Debug)]
+pub(super) struct Clock {
+    rate_hz: f64,
+    release: f64,
+    largest_m: Lanes,
+    mean_m: Lanes,
+    pace: f64,
+    passed: f64,
+}
+
+impl Clock {
+    pub(super) fn new(rate_hz: f64) -> Self {
+        let release = -(-1.0 / (HOLD_S * rate_hz)).exp_m1();
+        Self { rate_hz, release, largest_m: Lanes::ZERO, mean_m: Lanes::ZERO, pace: 0.0, passed: 0.0 }
+    }
+
+    /// Takes the motion of this tick (position above its 20 ms low-pass, m).
+    pub(super) fn step(&mut self, motion_m: Lanes) {
+        let size_m = motion_m.map(f64::abs);
+        let fade = 1.0 - self.pace / (LARGEST_S * self.rate_hz);
+        self.largest_m = (self.largest_m * fade).settled().zip(size_m, f64::max);
+        let shares = size_m * (self.largest_m * FULL).recip_or_zero();
+        let pace = shares.0.into_iter().fold(REST, f64::max).min(1.0);
+        self.pace = pace.max(self.pace + (pace - self.pace) * self.release);
+        self.passed += self.pace;
+        let share = share(self.pace, self.passed, KNEE_S * self.rate_hz);
+        self.mean_m = (self.mean_m + (size_m - self.mean_m) * share).settled();
+    }
+
+    /// The pace of the newest tick, above 0 up to 1, by the axis that moves most.
+    pub(super) const fn pace(&self) -> f64 {
+        self.pace
+    }
+
+    /// Where dry friction saturates (m).
+    pub(super) fn knee_m(&self) -> Lanes {
+        self.mean_m * 0.5
+    }
+
+    pub(super) fn reset(&mut self) {
+        *self = Self::new(self.rate_hz);
+    }
+}
+
+/// The share of the newest value in a running mean over `memory` ticks of the clock, of which `passed` have passed.
+pub(super) fn share(pace: f64, passed: f64, memory: f64) -> f64 {
+    (pace / passed.max(1.0).min(memory)).min(1.0)
+}

@@ -177,14 +177,19 @@ impl StabilityMap {
         Ok(Self { verdicts })
     }
 
-    /// The worst verdict of the grid points around this point; for a mode that is not in the map, that of direct reflection.
-    /// A gain of zero is stable; a value beyond the grid, or NaN, counts as the grid's last.
+    /// Whether this mode was simulated for the map.
+    pub fn has(mode: Mode) -> bool {
+        MODES.contains(&mode)
+    }
+
+    /// The worst verdict of the grid points around this point. A gain of zero is stable; a value beyond the grid, or NaN, counts as the
+    /// grid's last. A mode that is not in the map counts as unstable.
     pub fn at(&self, mode: Mode, gain: f64, delay_s: f64, stiffness_n_m: f64) -> Verdict {
         if gain <= 0.0 {
             return Verdict::Stable;
         }
         let (gains, delays) = (around(&GAINS, gain), around(&DELAYS_S, delay_s));
-        let mode = MODES.iter().position(|mapped| *mapped == mode).unwrap_or(Mode::Dfr.index());
+        let Some(mode) = MODES.iter().position(|mapped| *mapped == mode) else { return Verdict::Unstable };
         let mut worst = Verdict::Stable;
         for delay in delays {
             for stiffness in around(&STIFFNESSES_N_M, stiffness_n_m) {

@@ -13,6 +13,10 @@ const PARTS: u32 = 60;
 /// Draws the strip and its text; `rail` is the slider's rectangle, `limit` the gain at its right end.
 pub(super) fn stable_gain_ui(ui: &mut Ui, live: &Live, rail: Rect, limit: f64) {
     let Some(map) = StabilityMap::committed() else { return };
+    if !StabilityMap::has(live.mode()) {
+        ui.label(small(text::feedback::STABLE_GAIN_UNMEASURED)).on_hover_text(text::feedback::STABLE_GAIN_HOVER);
+        return;
+    }
     let Some(n_m) = live.stiffness_n_m() else {
         ui.label(small(text::feedback::STABLE_GAIN_UNKNOWN)).on_hover_text(text::feedback::STABLE_GAIN_HOVER);
         return;

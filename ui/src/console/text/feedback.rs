@@ -22,6 +22,7 @@ pub(in crate::console) const LINK_DELAY: &str = "Link delay";
 pub(in crate::console) const DEAD_BAND: &str = "Dead band";
 pub(in crate::console) const HOLD: &str = "Keep force at standstill";
 pub(in crate::console) const STABLE_GAIN_UNKNOWN: &str = "Highest stable gain: known after the first contact";
+pub(in crate::console) const STABLE_GAIN_UNMEASURED: &str = "Highest stable gain: not measured in this mode";
 pub(in crate::console) const STABLE_GAIN_HOVER: &str = "From simulations of a gripping hand that is pushed aside and must come to rest again, for the mode \
     and delay in use and the stiffness of the present contact (N/m; between contacts, of the last one). \
     Force is kept at standstill and the energy gate is off, which is harder than the default settings. \

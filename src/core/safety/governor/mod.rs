@@ -171,16 +171,13 @@ impl<const D: usize> Governor<D> {
         if self.handle.mass_kg <= 0.0 {
             return Governed { force_n: asked_n, withheld: 0.0, reason: Reason::Open };
         }
-        let brake_n = match hand_m {
-            Some(at_m) => {
-                let push = self.push(at_m, asked_n);
-                self.judge(&push, threat_n);
-                self.brake(&push)
-            }
-            None => {
-                self.observer.forget();
-                SVector::zeros()
-            }
+        let brake_n = if let Some(at_m) = hand_m {
+            let push = self.push(at_m, asked_n);
+            self.judge(&push, threat_n);
+            self.brake(&push)
+        } else {
+            self.observer.forget();
+            SVector::zeros()
         };
         if self.gone {
             return none(Reason::HandGone);

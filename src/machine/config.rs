@@ -265,6 +265,10 @@ impl RigConfig {
         ranges.positive("gates.slew_n_per_s", gates.slew_n_per_s)?;
         ranges.positive("gates.gain_rate_per_s", gates.gain_rate_per_s)?;
         ranges.not_negative("gates.dead_band_m_s", gates.dead_band_m_s)?;
+        ranges.not_negative("gates.handle_kg", gates.handle_kg)?;
+        ranges.not_negative("gates.handle_n_s_m", gates.handle_n_s_m)?;
+        ranges.positive("gates.handle_step_m", gates.handle_step_m)?;
+        ranges.not_negative("gates.brake_n_s_m", gates.brake_n_s_m)?;
         let ages = gates.fade_after_s >= 0.0 && gates.zero_after_s > gates.fade_after_s;
         ranges.check("gates.zero_after_s", gates.zero_after_s, ages, "later than fade_after_s")?;
         let devices = self.devices.as_ref().map_or(Ok(()), rig::Settings::check);

@@ -115,6 +115,7 @@ impl Tally {
             gain_step: in_force.gain_rate_per_s * period_s,
             last_n: SVector::zeros(),
             gain: in_force.gain,
+            governed: false,
             above_one: false,
         };
         let mut adversary = Adversary::<D>::new(rng);
@@ -148,6 +149,7 @@ fn meddle<const D: usize>(chain: &mut Chain<D>, watch: &mut Watch<D>, meddling: 
         Meddling::Reset => {
             chain.reset();
             watch.last_n = SVector::zeros();
+            watch.governed = false;
         }
     }
 }

@@ -11,7 +11,8 @@ use nalgebra::Vector3;
 use nima_core::{
     impedance::{Identifier, Mode, ModeSet, Renderer, Sample, Settings, SettingsError},
     noise::Noise,
-    safety::{Chain, ChainSettings, Gate, GateReport, Request},
+    safety::{Chain, ChainSettings, GateReport, Request},
+    signal::Speed,
 };
 use nima_machine::teleop::{Link as _, ProgrammedLink, Tracking};
 use nima_world::{Tissue, scene::Tissue as TissueConfig};
@@ -24,11 +25,8 @@ const SUBSTEPS: u32 = 4;
 pub(super) const GRIP_KG: f64 = 0.35;
 pub(super) const GRIP_N_M: f64 = 900.0;
 const GRIP_N_S_M: f64 = 18.0;
-/// The free handle: apparent mass of an omega.7 at its grip, kg, and friction of its bearings and cables, N s/m.
-pub(super) const HANDLE_KG: f64 = 0.25;
-pub(super) const HANDLE_N_S_M: f64 = 0.5;
-/// Largest force of the device, N.
-pub(super) const DEVICE_N: f64 = 12.0;
+/// Speed at which Coulomb friction is nearly whole, m/s.
+const RUBS_M_S: f64 = 0.002;
 /// As in the scenes: noise of the force sensor (N), resolution of the handle's position (m), natural frequency (Hz) and
 /// maximum speed (m/s) of the follower.
 const NOISE_N: f64 = 0.02;
@@ -36,20 +34,32 @@ const RESOLUTION_M: f64 = 1e-5;
 const FOLLOWER_HZ: f64 = 12.0;
 const FOLLOWER_M_S: f64 = 0.3;
 
+/// The handle alone.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Handle {
+    /// Apparent mass at the grip, kg.
+    pub(super) kg: f64,
+    /// What its bearings and cables brake, N s/m, and their Coulomb friction, N.
+    pub(super) n_s_m: f64,
+    pub(super) coulomb_n: f64,
+}
+
+impl Handle {
+    /// Roughly an omega.7's.
+    pub(super) const OMEGA: Self = Self { kg: 0.25, n_s_m: 0.5, coulomb_n: 0.0 };
+}
+
 /// Parameters of a trial.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Trial {
     pub(super) mode: Mode,
     pub(super) delay_s: f64,
-    /// `None`: the mode's force goes to the device unchanged.
-    pub(super) gates: Option<ChainSettings>,
+    pub(super) gates: ChainSettings,
     pub(super) gain: f64,
     pub(super) tissue: TissueConfig,
     /// Amplitude of the hand's tremor, m.
     pub(super) tremor_m: f64,
-    /// Viscosity that the device's brakes add to the handle's own friction once the loop has found that the hand is
-    /// gone, N s/m.
-    pub(super) brake_n_s_m: f64,
+    pub(super) handle: Handle,
     pub(super) seed: u64,
 }
 
@@ -73,7 +83,7 @@ pub(super) struct Pair {
     tracking: Tracking,
     renderer: Renderer,
     chain: Chain,
-    read_m: Vector3<f64>,
+    speed: Speed<3>,
     speed_m_s: f64,
     tip_n: Vector3<f64>,
     force_n: Vector3<f64>,
@@ -91,7 +101,7 @@ impl Pair {
         };
         let mut noise = Noise::new(trial.seed);
         let tremor_phase = std::array::from_fn(|_| std::array::from_fn(|_| TAU * noise.uniform()));
-        let mut chain = Chain::new(trial.gates.unwrap_or_default(), 1.0 / RATE_HZ);
+        let mut chain = Chain::new(trial.gates, 1.0 / RATE_HZ);
         chain.set_gain_above_one(trial.gain);
         Ok(Self {
             trial: *trial,
@@ -110,7 +120,7 @@ impl Pair {
             tracking: Tracking::new(RATE_HZ),
             renderer: Renderer::new(&settings)?,
             chain,
-            read_m: at_m,
+            speed: Speed::new(RESOLUTION_M, RATE_HZ),
             speed_m_s: 0.0,
             tip_n: Vector3::zeros(),
             force_n: Vector3::zeros(),
@@ -158,7 +168,7 @@ impl Pair {
         self.identifier.step(&Sample { t_s: now_s, position_m: self.tip_m, force_n });
         self.link.send(self.identifier.parcel());
         let read_m = self.handle_m.map(|x| (x / RESOLUTION_M).round() * RESOLUTION_M);
-        self.measure_speed(&read_m);
+        self.speed_m_s = self.speed.step(now_s, read_m);
         self.command(&read_m);
         let motion_m = self.tracking.step(&self.command_m, &self.tip_m);
         let parcel = self.link.receive(now_s);
@@ -168,10 +178,6 @@ impl Pair {
     }
 
     fn gated(&mut self, asked_n: Option<Vector3<f64>>, age_s: f64, hand_m: Vector3<f64>) -> Vector3<f64> {
-        if self.trial.gates.is_none() {
-            let force_n = asked_n.filter(|f| f.norm().is_finite()).unwrap_or_else(Vector3::zeros) * self.trial.gain;
-            return force_n * (DEVICE_N / force_n.norm().max(DEVICE_N));
-        }
         let speed_m_s = self.speed_m_s;
         let (force_n, report) =
             self.chain.step(&Request { force_n: asked_n, age_s, speed_m_s, hand_m: Some(hand_m), permitted: true });
@@ -181,12 +187,13 @@ impl Pair {
 
     fn move_handle(&mut self, intended_m: &Vector3<f64>) {
         let dt_s = 1.0 / (RATE_HZ * f64::from(SUBSTEPS));
+        let handle = self.trial.handle;
         let (mass_kg, grip_n_m, friction_n_s_m) =
-            if self.gripped { (GRIP_KG, GRIP_N_M, GRIP_N_S_M) } else { (HANDLE_KG, 0.0, HANDLE_N_S_M) };
-        let brake_n_s_m = friction_n_s_m + if self.report.acted(Gate::Release) { self.trial.brake_n_s_m } else { 0.0 };
+            if self.gripped { (GRIP_KG, GRIP_N_M, GRIP_N_S_M) } else { (handle.kg, 0.0, handle.n_s_m) };
         for _ in 0..SUBSTEPS {
-            let hand_n = (intended_m - self.handle_m) * grip_n_m - self.handle_m_s * brake_n_s_m;
-            self.handle_m_s += (hand_n + self.force_n) * (dt_s / mass_kg);
+            let hand_n = (intended_m - self.handle_m) * grip_n_m - self.handle_m_s * friction_n_s_m;
+            let rubbed_n = self.handle_m_s * (handle.coulomb_n / self.handle_m_s.norm().max(RUBS_M_S));
+            self.handle_m_s += (hand_n - rubbed_n + self.force_n) * (dt_s / mass_kg);
             self.handle_m += self.handle_m_s * dt_s;
         }
     }
@@ -203,15 +210,6 @@ impl Pair {
     fn command(&mut self, read_m: &Vector3<f64>) {
         let (way_m, most_m) = (read_m - self.command_m, FOLLOWER_M_S / RATE_HZ);
         self.command_m += way_m * (most_m / way_m.norm().max(most_m));
-    }
-
-    /// Speed as the loop measures it for the dead band: rises fast, falls slowly.
-    fn measure_speed(&mut self, read_m: &Vector3<f64>) {
-        let dt_s = 1.0 / RATE_HZ;
-        let speed_m_s = (read_m - self.read_m).norm() / dt_s;
-        let smoothing_s = if speed_m_s > self.speed_m_s { 0.005 } else { 0.040 };
-        self.speed_m_s += (speed_m_s - self.speed_m_s) * (dt_s / (smoothing_s + dt_s));
-        self.read_m = *read_m;
     }
 
     fn tremor(&self, now_s: f64) -> Vector3<f64> {

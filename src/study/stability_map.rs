@@ -22,7 +22,7 @@ use serde::{Serialize, Serializer};
 
 use crate::{
     Experiment, Findings,
-    pair::{GRIP_N_M, Pair, RATE_HZ, Trial},
+    pair::{GRIP_N_M, Handle, Pair, RATE_HZ, Trial},
 };
 
 /// Gains of the map.
@@ -313,15 +313,14 @@ pub fn trial(mode: Mode, gain: f64, delay_s: f64, stiffness_n_m: f64) -> Result<
         shear_stiffness_n_m: 0.0,
     };
     let gates =
-        ChainSettings { static_hold: true, energy: EnergyMode::Off, gain_rate_per_s: 1e3, ..ChainSettings::default() };
+        ChainSettings { static_hold: true, energy: EnergyMode::Off, gain_rate_per_s: 1e3, ..ChainSettings::default() }
+            .without_governor();
     let seed = 1;
     let above_m = Vector3::new(0.0, 0.0, 2e-3);
     // The intended position of the hand at which tissue and feedback together balance it at the contact force.
     let deep_m = Vector3::new(0.0, 0.0, -CONTACT_N / stiffness_n_m - gain.min(4.0 / CONTACT_N) * CONTACT_N / GRIP_N_M);
-    let mut pair = Pair::new(
-        &Trial { mode, delay_s, gates: Some(gates), gain, tissue, tremor_m: 0.0, brake_n_s_m: 0.0, seed },
-        above_m,
-    )?;
+    let mut pair =
+        Pair::new(&Trial { mode, delay_s, gates, gain, tissue, tremor_m: 0.0, handle: Handle::OMEGA, seed }, above_m)?;
     let (mut low_m, mut high_m) = (Vector3::repeat(f64::INFINITY), Vector3::repeat(f64::NEG_INFINITY));
     for tick in 0..(TRIAL_S * RATE_HZ) as u32 {
         let t_s = f64::from(tick) / RATE_HZ;

@@ -1,4 +1,4 @@
-//! Last gate: the largest force that ever reaches the hand, never above what the device can give.
+//! Seventh gate: the largest force that ever reaches the hand, never above what the device can give.
 
 use nalgebra::SVector;
 

@@ -1,11 +1,11 @@
-//! The gates in their fixed order: permission, hand, validity, age, dead band, gain, slew, energy, ceiling.
+//! The gates in their fixed order: permission, validity, age, dead band, gain, slew, energy, ceiling, governor.
 //!
 //! One chain for a force in space, one for a torque, one for a gripper: the same gates, of as many axes as are asked for.
 
 use nalgebra::SVector;
 
 use super::{
-    Age, Ceiling, ChainSettings, DeadBand, Energy, EnergyMode, Gain, Gate, GateCounts, GateReport, Reason, Release,
+    Age, Ceiling, ChainSettings, DeadBand, Energy, EnergyMode, Gain, Gate, GateCounts, GateReport, Governor, Reason,
     Slew, admitted, settings::DEAD_BAND_MAX_M_S,
 };
 
@@ -36,13 +36,15 @@ impl<const D: usize> Default for Request<D> {
 pub struct Chain<const D: usize = 3> {
     settings: ChainSettings,
     period_s: f64,
-    release: Release<D>,
     age: Age,
     dead_band: DeadBand,
     gain: Gain,
     slew: Slew<D>,
     energy: Energy<D>,
     ceiling: Ceiling,
+    governor: Governor<D>,
+    /// The force that reached the hand last, N. The slew limit's own last force is the one before the governor.
+    applied_n: SVector<f64, D>,
     counts: GateCounts,
 }
 
@@ -60,13 +62,14 @@ impl<const D: usize> Chain<D> {
         Self {
             settings,
             period_s,
-            release: Release::new(settings.handle_kg, period_s),
             age: Age::new(settings.fade_after_s, settings.zero_after_s),
-            dead_band: DeadBand::new(settings.dead_band_m_s),
+            dead_band: DeadBand::new(settings.dead_band_m_s, period_s),
             gain,
             slew: Slew::new(settings.slew_n_per_s, period_s),
             energy: Energy::new(settings.energy, period_s),
             ceiling: Ceiling::new(settings.ceiling_n, settings.device_limit_n),
+            governor: Governor::new(settings.handle(), period_s),
+            applied_n: SVector::zeros(),
             counts: GateCounts::default(),
         }
     }
@@ -116,7 +119,8 @@ impl<const D: usize> Chain<D> {
     pub fn reset(&mut self) {
         self.slew.left(SVector::zeros());
         self.energy.reset();
-        self.release.reset();
+        self.governor.reset();
+        self.applied_n = SVector::zeros();
     }
 
     /// Sends one request through all gates; gives the force for the hand (N) and what each gate did. Call once a period.
@@ -151,14 +155,13 @@ impl<const D: usize> Chain<D> {
     pub fn step(&mut self, request: &Request<D>) -> (SVector<f64, D>, GateReport) {
         let mut report = GateReport::default();
         if self.settings.energy != EnergyMode::Off {
-            self.energy.observe(request.hand_m, &self.slew.last_n());
+            self.energy.observe(request.hand_m, &self.applied_n);
         }
-        let force_n = self.through(request, &mut report);
-        self.slew.left(force_n);
+        self.applied_n = self.through(request, &mut report);
         report.stored_j = self.energy.stored_j();
         self.counts.add(&report.reasons);
         report.counts = self.counts;
-        (force_n, report)
+        (self.applied_n, report)
     }
 
     fn through(&mut self, request: &Request<D>, report: &mut GateReport) -> SVector<f64, D> {
@@ -170,19 +173,30 @@ impl<const D: usize> Chain<D> {
         report.note(Gate::Age, age);
         report.note(Gate::Gain, ramp);
         let aged_n = admitted.unwrap_or_else(|_| SVector::zeros()) * fresh;
-        let hand = self.release.step(request.hand_m, &self.slew.last_n());
-        report.note(Gate::Release, hand);
         let moving_n = self.past_dead_band(aged_n, request.speed_m_s, report);
         if !request.permitted {
             report.note(Gate::Permission, Reason::NotPermitted);
-            report.note(Gate::Release, Reason::Open);
             self.reset();
-        }
-        if !request.permitted || report.acted(Gate::Validity) || report.acted(Gate::Release) {
-            // A stop is a stop: no ramp down, the slew limit does not apply to letting go.
             return SVector::zeros();
         }
-        let (slewed_n, slew) = self.slew.limited(moving_n * gain);
+        let limited_n = if report.acted(Gate::Validity) {
+            // A stop is a stop: no ramp down, the slew limit does not apply to letting go.
+            SVector::zeros()
+        } else {
+            self.limited(moving_n * gain, report)
+        };
+        self.slew.left(limited_n);
+        // Behind every limit, because it only shortens; the force that the dead band keeps back now is there at the next motion.
+        let threat_n = (aged_n.norm() * gain).min(self.ceiling.most_n());
+        let governed = self.governor.step(request.hand_m, limited_n, threat_n);
+        report.note(Gate::Governor, governed.reason);
+        report.governed = governed.withheld;
+        governed.force_n
+    }
+
+    /// Slew, energy, ceiling.
+    fn limited(&self, force_n: SVector<f64, D>, report: &mut GateReport) -> SVector<f64, D> {
+        let (slewed_n, slew) = self.slew.limited(force_n);
         report.note(Gate::Slew, slew);
         let (paid_n, energy) = self.energy.controlled(slewed_n);
         report.note(Gate::Energy, energy);
@@ -323,7 +337,7 @@ mod tests {
                 let (now, report) = chain.step(&asked);
                 prop_assert!(now.iter().all(|f| f.is_finite()));
                 prop_assert!(now.norm() <= settings.ceiling_n * (1.0 + 1e-12));
-                let let_go = [Gate::Permission, Gate::Validity, Gate::Release].iter().any(|gate| report.acted(*gate));
+                let let_go = [Gate::Permission, Gate::Validity, Gate::Governor].iter().any(|gate| report.acted(*gate));
                 let change = (now - last).norm();
                 prop_assert!(if let_go { now.norm() == 0.0 } else { change <= 0.5 * (1.0 + 1e-9) }, "change {}", change);
                 prop_assert!((report.gain - last_gain).abs() <= 2e-3 * (1.0 + 1e-9));

@@ -6,8 +6,6 @@
 pub enum Gate {
     /// Whether the state machine allows force at all.
     Permission,
-    /// Whether a hand is on the handle.
-    Release,
     /// Whether there is a force, finite and plausible.
     Validity,
     /// How old the data behind it are.
@@ -22,6 +20,8 @@ pub enum Gate {
     Energy,
     /// How large the force is.
     Ceiling,
+    /// Whether somebody carries the force.
+    Governor,
 }
 
 /// Number of gates.
@@ -31,7 +31,6 @@ impl Gate {
     /// Every gate, in the order of the chain.
     pub const ALL: [Self; GATES] = [
         Self::Permission,
-        Self::Release,
         Self::Validity,
         Self::Age,
         Self::DeadBand,
@@ -39,6 +38,7 @@ impl Gate {
         Self::Slew,
         Self::Energy,
         Self::Ceiling,
+        Self::Governor,
     ];
 
     /// Position in [`Gate::ALL`], for tables with one entry per gate.
@@ -50,7 +50,6 @@ impl Gate {
     pub const fn name(self) -> &'static str {
         match self {
             Self::Permission => "not_permitted",
-            Self::Release => "release",
             Self::Validity => "validity",
             Self::Age => "age",
             Self::DeadBand => "dead_band",
@@ -58,6 +57,7 @@ impl Gate {
             Self::Slew => "slew",
             Self::Energy => "energy",
             Self::Ceiling => "ceiling",
+            Self::Governor => "governor",
         }
     }
 }
@@ -71,8 +71,6 @@ pub enum Reason {
     Open,
     /// The loop is not engaged.
     NotPermitted,
-    /// The handle flies off as it does without a hand.
-    HandGone,
     /// The mode has nothing valid to render.
     NothingAsked,
     /// The request is no finite number.
@@ -99,6 +97,10 @@ pub enum Reason {
     AboveCeiling,
     /// The force is above what the device can give.
     AboveDeviceLimit,
+    /// The handle runs away along the force and nobody carries it: it is braked instead of pushed.
+    RunsAway,
+    /// The hand has let go: the handle rests, and there has been no sign of a hand since.
+    HandGone,
 }
 
 /// How often each gate acted since the chain was made, and why it last did.
@@ -136,6 +138,8 @@ pub struct GateReport {
     pub reasons: [Reason; GATES],
     /// How much force the dead band kept from the hand, N.
     pub withheld_n: f64,
+    /// Share of the force that the governor kept from the handle, 0 to 1.
+    pub governed: f64,
     /// The gain in force in this tick.
     pub gain: f64,
     /// What the hand may still get back, J; below zero: what it got too much (seen unless the gate is off).

@@ -1,6 +1,6 @@
 //! Limits and knobs of a chain, and their safe values.
 
-use super::MAX_GAIN;
+use super::{Handle, MAX_GAIN};
 
 /// What the energy gate does.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
@@ -53,8 +53,15 @@ pub struct ChainSettings {
     pub static_hold: bool,
     /// What the energy gate does.
     pub energy: EnergyMode,
-    /// Apparent mass of the handle alone, kg, by which an opened hand is told (the loop then rests); 0: not known, then it is not.
+    /// Apparent mass of the handle alone, kg, by which the governor tells a handle that nobody holds; 0: not known, then it passes
+    /// everything.
     pub handle_kg: f64,
+    /// What the handle's bearings and cables brake, N s/m.
+    pub handle_n_s_m: f64,
+    /// Step of the handle's reading, m: what the hand's speed is told from.
+    pub handle_step_m: f64,
+    /// Most viscous damping that the device can make of its force without shaking, N s/m: the governor's brake.
+    pub brake_n_s_m: f64,
 }
 
 impl Default for ChainSettings {
@@ -72,9 +79,13 @@ impl Default for ChainSettings {
             dead_band_m_s: 1e-3,
             static_hold: false,
             energy: EnergyMode::default(),
-            // Off: with an omega.7's 0.25 kg it also closed for a hand that presses twice as fast as ordinary ones, and for
-            // modes that shake the hand.
-            handle_kg: 0.0,
+            // An omega.7 at its grip.
+            handle_kg: 0.25,
+            handle_n_s_m: 0.5,
+            // Of an omega.7, and of the simulated handles.
+            handle_step_m: 1e-5,
+            // The most that chai3d asks of an omega.7.
+            brake_n_s_m: 30.0,
         }
     }
 }
@@ -82,7 +93,7 @@ impl Default for ChainSettings {
 impl ChainSettings {
     /// For the force of a gripper (N between the fingers; an omega.7 gives 8 N): the same gates, but what is held is felt.
     pub fn gripper() -> Self {
-        Self { device_limit_n: 8.0, static_hold: true, ..Self::default() }
+        Self { device_limit_n: 8.0, static_hold: true, ..Self::default() }.without_governor()
     }
 
     /// For a torque on the handle (Nm, rad/s; a sigma.7 gives 0.4 Nm, an omega.7 none: then the limit is 0).
@@ -96,6 +107,19 @@ impl ChainSettings {
             energy: EnergyMode::Observe,
             ..Self::default()
         }
+        .without_governor()
+    }
+
+    /// The same for what has no handle of known mass. A gripper: what its finger weighs is told nowhere, and one that is let go opens
+    /// to its stop, which is how it rests. A torque: so it is with the wrist's inertia.
+    #[must_use]
+    pub fn without_governor(self) -> Self {
+        Self { handle_kg: 0.0, ..self }
+    }
+
+    /// The handle that the governor observes.
+    pub(super) const fn handle(&self) -> Handle {
+        Handle { mass_kg: self.handle_kg, damping_n_s_m: self.handle_n_s_m, brake_n_s_m: self.brake_n_s_m }
     }
 
     /// Every value within its range; one that is not a number takes its safe value.
@@ -114,7 +138,10 @@ impl ChainSettings {
             slew_n_per_s: fit(self.slew_n_per_s, 0.0, 1e9, safe.slew_n_per_s),
             fade_after_s,
             zero_after_s: fit(self.zero_after_s, fade_after_s + 1e-6, 2.0, fade_after_s + 1e-6),
-            handle_kg: fit(self.handle_kg, 0.0, 100.0, 0.0),
+            handle_kg: fit(self.handle_kg, 0.0, 100.0, safe.handle_kg),
+            handle_step_m: fit(self.handle_step_m, 1e-7, 1e-3, safe.handle_step_m),
+            brake_n_s_m: fit(self.brake_n_s_m, 0.0, 1e3, safe.brake_n_s_m),
+            handle_n_s_m: fit(self.handle_n_s_m, 0.0, 100.0, safe.handle_n_s_m),
             dead_band_m_s: fit(self.dead_band_m_s, 0.0, DEAD_BAND_MAX_M_S, safe.dead_band_m_s),
             ..self
         }

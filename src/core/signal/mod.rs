@@ -34,12 +34,14 @@ mod kalman;
 mod lanes;
 mod pid;
 mod savitzky_golay;
+mod speed;
 
 pub use bank::{BANK, LowPassBank};
 pub use delay::DelayLine;
 pub use differentiator::{Differentiator, DifferentiatorKind};
 pub use lanes::{LANES, Lanes, NOTHING, settled};
 pub use pid::{Pid, PidGains};
+pub use speed::Speed;
 
 /// Position, velocity and acceleration of one instant, one lane per axis.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -9,7 +9,8 @@ use nalgebra::{UnitQuaternion, Vector1, Vector3};
 use nima_core::{
     impedance::{Identifier, Mode, Renderer, Sample, Settings as IdentifierSettings, SettingsError},
     kinematics::{HandEye, Target},
-    safety::{Chain, Gate, GripperChain, Interlock, Plausibility, Request},
+    safety::{Chain, Gate, GripperChain, Interlock, Plausibility, Reason, Request},
+    signal::Speed,
 };
 use nima_devices::Standing;
 
@@ -77,7 +78,7 @@ pub struct Pair<L: Link = ProgrammedLink> {
     tracking: Tracking,
     plausibility: Plausibility,
     chain: Chain,
-    /// The release gate has found that nobody holds the handle; treated like an absent hand.
+    /// The governor found that nobody holds the handle: as good as a hand that is told absent.
     hand_is_gone: bool,
     gripper_chain: GripperChain,
     last_inputs: Option<Inputs>,
@@ -88,6 +89,7 @@ pub struct Pair<L: Link = ProgrammedLink> {
     was_there: bool,
     hand_force_n: Vector3<f64>,
     command_m: Option<Vector3<f64>>,
+    speed: Speed<3>,
     hand_speed_m_s: f64,
     accuracy: Accuracy,
     ticks: u64,
@@ -135,7 +137,7 @@ impl<L: Link> Pair<L> {
             plausibility: Plausibility::new(1.0 / rig.rate_hz),
             chain: Chain::new(rig.gates, 1.0 / rig.rate_hz),
             hand_is_gone: false,
-            gripper_chain: GripperChain::new(rig.gates, 1.0 / rig.rate_hz),
+            gripper_chain: GripperChain::new(rig.gates.without_governor(), 1.0 / rig.rate_hz),
             last_inputs: None,
             last_input_s: 0.0,
             last_now_s: None,
@@ -143,6 +145,7 @@ impl<L: Link> Pair<L> {
             was_there: false,
             hand_force_n: Vector3::zeros(),
             command_m: None,
+            speed: Speed::new(rig.gates.handle_step_m, rig.rate_hz),
             hand_speed_m_s: 0.0,
             accuracy: Accuracy::default(),
             ticks: 0,
@@ -263,7 +266,7 @@ impl<L: Link> Pair<L> {
             hand_m: self.hand_now_m(now_s),
             permitted,
         });
-        self.hand_is_gone |= gates.acted(Gate::Release);
+        self.hand_is_gone |= gates.reason(Gate::Governor) == Reason::HandGone;
         let gripper_n = self.grip(inputs.as_ref(), age_s, permitted);
         if inputs.is_some() {
             self.accuracy.add(&rendered, &self.force.tip_n);

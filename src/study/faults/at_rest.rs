@@ -24,7 +24,7 @@ use nima_world::{Worlds, scene::Scene};
 
 use super::{FaultsError, LiveError, SensorAt, Special, Verdict};
 use crate::{
-    release::{self, Gates, Situation},
+    release::{self, Situation, Way},
     validation::{
         ValidationError,
         experiment::{self, Experiment},
@@ -91,14 +91,14 @@ fn let_go() -> Result<Special, FaultsError> {
     let tissue = Scene::load("peg_transfer")?.tissue;
     let wrong = |reason: String| FaultsError::Calibration(ValidationError::Calibration(reason));
     let tissue = tissue.ok_or_else(|| wrong("peg_transfer has no tissue".to_owned()))?;
-    let outcome = release::let_go(Situation::Held, Gates::WithoutRelease, Mode::Anchored, 50.0, tissue)
-        .map_err(|error| wrong(error.to_string()))?;
+    let way = Way { situation: Situation::Held, governor: true, mode: Mode::Anchored, delay_ms: 50.0, contact_n: 5.0 };
+    let row = release::let_go(&way, tissue).map_err(|error| wrong(error.to_string()))?;
     Ok(Special {
         what: "the hand opens, no presence detection".to_owned(),
         verdict: Verdict::Bounded,
         told: format!(
-            "energy gate: {:.0} mJ, peak {:.1} N (no presence switch; docs/release.md)",
-            outcome.energy_mj, outcome.peak_n
+            "governor: {:.1} mJ, {:.1} mm (no presence switch; docs/release.md)",
+            row.energy_mj, row.travel_mm
         ),
         detection_ms: None,
         zero_ms: None,

@@ -68,7 +68,10 @@ pub(super) fn settings(rng: &mut Rng) -> ChainSettings {
         zero_after_s: fade_after_s + 0.05 * rng.f64(),
         dead_band_m_s: [0.0, 1e-3, odd(rng, 0.1)][rng.usize(..3)],
         static_hold: rng.bool(),
-        handle_kg: [0.0, 0.0, 0.25, odd(rng, 1.0)][rng.usize(..4)],
+        handle_kg: [0.0, 0.25, 0.25, odd(rng, 1.0)][rng.usize(..4)],
+        handle_n_s_m: odd(rng, 5.0),
+        handle_step_m: odd(rng, 2e-5),
+        brake_n_s_m: odd(rng, 60.0),
         energy: EnergyMode::ALL[rng.usize(..EnergyMode::ALL.len())],
     }
 }

@@ -1,7 +1,7 @@
 //! Checks everything that leaves a chain and counts violations. It knows the limits, not how the gates keep them.
 
 use nalgebra::SVector;
-use nima_core::safety::{Gate, GateReport, MAX_GAIN, MOST_J};
+use nima_core::safety::{Gate, GateReport, MAX_GAIN, MOST_J, Reason};
 use serde::Serialize;
 
 /// Rounding allowed in a limit, relative.
@@ -42,6 +42,8 @@ pub(super) struct Watch<const D: usize> {
     pub(super) gain_step: f64,
     pub(super) last_n: SVector<f64, D>,
     pub(super) gain: f64,
+    /// The governor acted on the last one.
+    pub(super) governed: bool,
     /// Whether a gain above 1 has been confirmed and not withdrawn.
     pub(super) above_one: bool,
 }
@@ -51,7 +53,10 @@ impl<const D: usize> Watch<D> {
     pub(super) fn look(&mut self, now_n: &SVector<f64, D>, report: &GateReport, chosen: f64, breaches: &mut Breaches) {
         let within = |value: f64, limit: f64| value <= limit * (1.0 + ROUNDING) + f64::MIN_POSITIVE;
         let finite = now_n.iter().all(|f| f.is_finite()) && report.gain.is_finite();
-        let let_go = [Gate::Permission, Gate::Validity, Gate::Release].iter().any(|gate| report.acted(*gate));
+        let let_go = [Gate::Permission, Gate::Validity].iter().any(|gate| report.acted(*gate))
+            || [Reason::HandGone, Reason::NotFinite].contains(&report.reason(Gate::Governor));
+        // The governor takes a force away as fast as a handle flies, and gives it back so; the force before it keeps the limit.
+        let governs = report.acted(Gate::Governor) || self.governed;
         let change_n = (now_n - self.last_n).norm();
         // The rounding of a gain near 3 is larger than the relative rounding of a slow ramp.
         let gain_change = (report.gain - self.gain).abs() - 4.0 * f64::EPSILON;
@@ -59,21 +64,19 @@ impl<const D: usize> Watch<D> {
         breaches.not_finite += u64::from(!finite);
         breaches.ceiling += u64::from(!within(now_n.norm(), self.most_n));
         // The tolerance is the rounding of the two forces, which is larger than that of their small difference.
-        breaches.slew += u64::from(!let_go && !within(change_n - 1e-14 * self.most_n, self.step_n));
+        breaches.slew += u64::from(!let_go && !governs && !within(change_n - 1e-14 * self.most_n, self.step_n));
         breaches.gain_rate += u64::from(!within(gain_change, self.gain_step));
         breaches.gain_range += u64::from(!chosen_well || !(0.0..=MAX_GAIN).contains(&report.gain));
         breaches.uncalled += u64::from(let_go && now_n.norm() != 0.0);
         breaches.energy += u64::from(!within(report.stored_j.abs(), MOST_J));
-        (self.last_n, self.gain) = (*now_n, report.gain);
+        (self.last_n, self.gain, self.governed) = (*now_n, report.gain, report.acted(Gate::Governor));
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use nalgebra::Vector3;
-    use nima_core::safety::Reason;
-
     use super::*;
+    use nalgebra::Vector3;
 
     fn seen(now_n: Vector3<f64>, report: GateReport, chosen: f64) -> Breaches {
         let mut watch = Watch {
@@ -82,6 +85,7 @@ mod tests {
             gain_step: 0.002,
             last_n: Vector3::new(3.8, 0.0, 0.0),
             gain: 1.0,
+            governed: false,
             above_one: false,
         };
         let mut breaches = Breaches::default();

@@ -1,12 +1,12 @@
-//! The study of a released handle as a table, as Markdown, and as a picture.
+//! The study of letting go as tables, as Markdown, and as a picture.
 
 use std::fmt::Write as _;
 
 use nima_core::impedance::Mode;
 
 use super::{
-    AIM_M, AIM_N, BRAKES_N_S_M, Braked, DELAYS_MS, Gates, MODES, Options, Outcome, ReleaseError, Report, STEADY,
-    Situation, study,
+    AIM_M_S, AIM_MJ, AIM_MM, AIM_N, CONTACTS_N, DELAYS_MS, Options, ReleaseError, Report, Row, Situation, WEAK_AIM_MM,
+    Worst, study,
 };
 use crate::{
     Experiment, Findings,
@@ -14,99 +14,125 @@ use crate::{
 };
 
 impl Report {
-    /// One Markdown table for each situation, for a terminal and for a document.
+    /// For a terminal and for a document: a summary, other handles, and every letting go of 5 N.
     pub fn markdown(&self) -> String {
         let mut text = String::new();
+        self.summary(&mut text);
+        self.handles(&mut text);
         for (situation, title) in [(Situation::Held, "Held for two seconds"), (Situation::Pressing, "While pressing")] {
             // Writing into a String cannot fail, here and below.
-            writeln!(text, "{title}:\n").ok();
+            writeln!(text, "{title}, {} N:\n", CONTACTS_N[0]).ok();
             text.push_str(
-                "| gates | mode | delay (ms) | force before (N) | travel in 20 ms (mm) | travel in 1 s (mm) | peak (N) | after 20 ms (N) | energy (mJ) |\n|---|---|---|---|---|---|---|---|---|\n",
+                "| mode | delay (ms) | governor | force before (N) | travel (mm) | peak (m/s) | energy (mJ) | after 100 ms (N) |\n|---|---|---|---|---|---|---|---|\n",
             );
-            for outcome in self.outcomes.iter().filter(|outcome| outcome.situation == situation) {
-                row(&mut text, outcome);
+            for row in self.rows.iter().filter(|row| row.situation == situation && row.contact_n >= CONTACTS_N[0]) {
+                line(&mut text, row);
             }
             text.push('\n');
         }
-        self.brakes(&mut text);
         text
     }
 
-    /// The longest travel and the latest force by viscosity of the brakes, over all delays.
-    fn brakes(&self, text: &mut String) {
-        let worst = |wanted: &dyn Fn(&Braked) -> bool, of: fn(&Outcome) -> f64| {
-            self.braked.iter().filter(|braked| wanted(braked)).map(|braked| of(&braked.outcome)).fold(0.0, f64::max)
-        };
-        text.push_str("With all gates and brakes, the worst of all delays:\n\n| brakes (N s/m) | mode | held: travel in 1 s (mm) | after 20 ms (N) | pressing: travel in 1 s (mm) | after 20 ms (N) |\n|---|---|---|---|---|---|\n");
-        for brake_n_s_m in BRAKES_N_S_M {
-            for mode in STEADY {
-                write!(text, "| {brake_n_s_m:.0} | {mode} |").ok();
-                for situation in [Situation::Held, Situation::Pressing] {
-                    let wanted = |braked: &Braked| {
-                        (braked.brake_n_s_m - brake_n_s_m).abs() < 1e-9
-                            && (braked.outcome.mode, braked.outcome.situation) == (mode, situation)
+    /// The worst of all delays and both situations, for each mode and force; rows in which the hand held no force are left out.
+    fn summary(&self, text: &mut String) {
+        writeln!(
+            text,
+            "Worst of all delays, held and pressing. Aims with the governor: {AIM_MM} mm ({WEAK_AIM_MM} mm up to 2 N), {AIM_M_S} m/s, {AIM_MJ} mJ, {AIM_N} N.\n"
+        )
+        .ok();
+        text.push_str(
+            "| contact (N) | mode | governor | travel (mm) | peak (m/s) | energy (mJ) | after 100 ms (N) | aims met |\n|---|---|---|---|---|---|---|---|\n",
+        );
+        for contact_n in CONTACTS_N {
+            for mode in Mode::ALL {
+                for governor in [false, true] {
+                    let all = || {
+                        self.rows.iter().filter(|row| {
+                            row.mode == mode
+                                && row.governor == governor
+                                && (row.contact_n - contact_n).abs() < 1e-9
+                                && row.counts()
+                        })
                     };
-                    let (travel_mm, late_n) = (worst(&wanted, |o| o.travel_mm), worst(&wanted, |o| o.late_n));
-                    write!(text, " {travel_mm:.2} | {late_n:.2} |").ok();
+                    let worst = |of: fn(&Row) -> f64| all().map(of).fold(0.0, f64::max);
+                    let (met, of) = (all().filter(|row| row.meets_the_aims()).count(), all().count());
+                    let on = on_or_off(governor);
+                    writeln!(
+                        text,
+                        "| {contact_n} | {mode} | {on} | {:.2} | {:.3} | {:.2} | {:.2} | {met} of {of} |",
+                        worst(|row| row.travel_mm),
+                        worst(|row| row.peak_m_s),
+                        worst(|row| row.energy_mj),
+                        worst(|row| row.force_after_100_ms_n),
+                    )
+                    .ok();
                 }
-                text.push('\n');
             }
         }
+        text.push('\n');
     }
 
-    /// Number of releases with a force in the hand that meet both targets, by gates and mode: `(reached, of)`.
-    pub fn reached(&self, gates: Gates, mode: Mode) -> (usize, usize) {
-        let with_force = |outcome: &&Outcome| {
-            outcome.gates == gates && outcome.mode == mode && outcome.before_n > AIM_N && !outcome.closed_before
-        };
-        let good = |outcome: &&Outcome| outcome.late_n <= AIM_N && outcome.travel_mm <= 1e3 * AIM_M;
-        (self.outcomes.iter().filter(with_force).filter(good).count(), self.outcomes.iter().filter(with_force).count())
+    fn handles(&self, text: &mut String) {
+        text.push_str("Other handles and brakes (the governor is told of 0.25 kg), dfr and anchored, worst of all delays, held and pressing:\n\n| contact (N) | brake (N s/m) | handle (kg) | Coulomb friction (N) | travel (mm) | peak (m/s) | energy (mJ) | after 100 ms (N) |\n|---|---|---|---|---|---|---|---|\n");
+        for worst in &self.worst {
+            let Worst { contact_n, brake_n_s_m, handle_kg, coulomb_n, travel_mm, .. } = *worst;
+            let Worst { peak_m_s, energy_mj, force_after_100_ms_n, .. } = *worst;
+            writeln!(
+                text,
+                "| {contact_n} | {brake_n_s_m} | {handle_kg:.2} | {coulomb_n:.2} | {travel_mm:.2} | {peak_m_s:.3} | {energy_mj:.2} | {force_after_100_ms_n:.2} |"
+            )
+            .ok();
+        }
+        text.push('\n');
     }
 
-    /// Travel and energy over the delay in the situation [`Situation::Held`], each mode without and with all gates.
+    /// Travel and energy over the delay, for the hand that held 5 N, each mode with and without the governor.
     pub fn svg(&self) -> String {
-        let chart = |title: &str, unit: &str, low: f64, high: f64, of: fn(&Outcome) -> f64| Chart {
+        let chart = |title: &str, unit: &str, low: f64, high: f64, of: fn(&Row) -> f64| Chart {
             title: title.into(),
             x: Axis::linear("delay of the link (ms)", 0.0, DELAYS_MS[DELAYS_MS.len() - 1]),
             y: Axis::log(unit, low, high),
-            series: [
-                (Gates::None, Style::Dashed, "no gates"),
-                (Gates::WithoutRelease, Style::Line, "without release gate"),
-                (Gates::All, Style::Points, "all gates"),
-            ]
-            .into_iter()
-            .flat_map(|(gates, style, word)| {
-                MODES.into_iter().enumerate().map(move |(colour, mode)| (gates, style, word, colour, mode))
-            })
-            .map(|(gates, style, word, colour, mode)| Series {
-                name: format!("{mode}, {word}"),
-                colour,
-                style,
-                points: self.points(gates, mode, of),
-            })
-            .collect(),
+            series: [(false, Style::Dashed, "without"), (true, Style::Line, "governor")]
+                .into_iter()
+                .flat_map(|(governor, style, word)| {
+                    Mode::ALL.into_iter().enumerate().map(move |(colour, mode)| (governor, style, word, colour, mode))
+                })
+                .map(|(governor, style, word, colour, mode)| Series {
+                    name: format!("{mode}, {word}"),
+                    colour,
+                    style,
+                    points: self.points(governor, mode, of),
+                })
+                .collect(),
         };
         svg(&[
-            chart("Handle travel within 1 s of release", "travel (mm)", 1.0, 1e4, |outcome| outcome.travel_mm),
-            chart("Energy given to the handle", "energy (mJ)", 0.1, 1e5, |outcome| outcome.energy_mj),
+            chart("Handle travel within 1 s of letting go of 5 N", "travel (mm)", 0.1, 1e3, |row| row.travel_mm),
+            chart("Energy given to the handle", "energy (mJ)", 0.1, 1e3, |row| row.energy_mj),
         ])
     }
 
-    fn points(&self, gates: Gates, mode: Mode, of: fn(&Outcome) -> f64) -> Vec<[f64; 2]> {
-        let wanted =
-            |outcome: &&Outcome| outcome.situation == Situation::Held && outcome.gates == gates && outcome.mode == mode;
-        self.outcomes.iter().filter(wanted).map(|outcome| [outcome.delay_ms, of(outcome)]).collect()
+    fn points(&self, governor: bool, mode: Mode, of: fn(&Row) -> f64) -> Vec<[f64; 2]> {
+        let wanted = |row: &&Row| {
+            row.situation == Situation::Held
+                && row.governor == governor
+                && row.mode == mode
+                && row.contact_n >= CONTACTS_N[0]
+        };
+        self.rows.iter().filter(wanted).map(|row| [row.delay_ms, of(row)]).collect()
     }
 }
 
-fn row(text: &mut String, outcome: &Outcome) {
-    let Outcome { gates, mode, delay_ms, before_n, closed_before, .. } = *outcome;
-    let Outcome { travel_mm, travel_soon_mm, peak_n, late_n, energy_mj, .. } = *outcome;
-    let before = if closed_before { "closed wrongly".to_owned() } else { format!("{before_n:.2}") };
+const fn on_or_off(governor: bool) -> &'static str {
+    if governor { "on" } else { "off" }
+}
+
+fn line(text: &mut String, row: &Row) {
+    let Row { mode, delay_ms, governor, before_n, closed_before, .. } = *row;
+    let Row { travel_mm, peak_m_s, energy_mj, force_after_100_ms_n, .. } = *row;
+    let (on, mark) = (on_or_off(governor), if closed_before { ", withholding" } else { "" });
     writeln!(
         text,
-        "| {} | {mode} | {delay_ms:.0} | {before} | {travel_soon_mm:.2} | {travel_mm:.1} | {peak_n:.2} | {late_n:.2} | {energy_mj:.1} |",
-        gates.words()
+        "| {mode} | {delay_ms:.0} | {on} | {before_n:.2}{mark} | {travel_mm:.2} | {peak_m_s:.3} | {energy_mj:.2} | {force_after_100_ms_n:.2} |"
     )
     .ok();
 }

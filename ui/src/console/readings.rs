@@ -19,6 +19,8 @@ pub struct Gates {
     acting: [Fading; GATES],
     /// Force withheld by the dead band, N.
     pub withheld_n: Fading,
+    /// Share of the force that the governor keeps from the handle, lately.
+    pub governed: Fading,
 }
 
 /// How an arm pair entered its present state.
@@ -61,6 +63,7 @@ impl Gates {
             share.push(f64::from(u8::from(tick.gates.acted(gate))), dt_s, 0.15);
         }
         self.withheld_n.push(tick.gates.withheld_n, dt_s, 0.15);
+        self.governed.push(tick.gates.governed, dt_s, 0.15);
     }
 
     /// Share of recent ticks in which this gate acted.

@@ -13,6 +13,7 @@ impl Words for Reason {
         match self {
             Self::Open => "open",
             Self::NotPermitted => "the loop is not engaged",
+            Self::RunsAway => "the handle runs away and nobody carries the force",
             Self::HandGone => "the hand has let go of the handle",
             Self::NothingAsked => "the mode has no valid result",
             Self::NotFinite => "the mode's result is not a number",

@@ -30,7 +30,7 @@ impl<L: Link> Pair<L> {
             guided: self.guide_m.is_some(),
         });
         (self.force.tip_n, inputs.tip_m, inputs.hand.position_m) = (admitted.force_n, admitted.tip_m, admitted.hand_m);
-        self.measure_speed(&inputs, now_s);
+        self.hand_speed_m_s = self.speed.step(now_s - inputs.age_s, inputs.hand.position_m);
         self.identifier.step(&Sample { t_s: now_s, position_m: inputs.tip_m, force_n: self.force.tip_n });
         self.link.send(self.identifier.parcel());
         self.last_inputs = Some(inputs);
@@ -110,20 +110,6 @@ impl<L: Link> Pair<L> {
         }
         self.was_there = there;
         self.gaps >= TOO_MANY
-    }
-
-    /// Speed of the hand for the dead band, from position differences. It rises with a time constant of 5 ms, so that
-    /// one step of the encoder does not open the gate, and falls with 40 ms, so that a trembling hand does not switch
-    /// its force on and off twenty times a second.
-    fn measure_speed(&mut self, inputs: &Inputs, now_s: f64) {
-        const RISE_S: f64 = 0.005;
-        const FALL_S: f64 = 0.040;
-        if let Some(last) = self.last_inputs {
-            let dt_s = (now_s - self.last_input_s).max(0.5 / self.rate_hz);
-            let speed = (inputs.hand.position_m - last.hand.position_m).norm() / dt_s;
-            let smoothing_s = if speed > self.hand_speed_m_s { RISE_S } else { FALL_S };
-            self.hand_speed_m_s += (speed - self.hand_speed_m_s) * (dt_s / (smoothing_s + dt_s));
-        }
     }
 }
 

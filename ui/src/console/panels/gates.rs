@@ -79,7 +79,6 @@ pub fn why_no_force(live: &Live, side: Side) -> Option<String> {
         LoopState::Stopped => text::gates::NONE_STOPPED,
         LoopState::Faulted(Fault::OtherArm) => text::gates::NONE_OTHER_ARM,
         LoopState::Faulted(_) => text::gates::NONE_FAULT,
-        LoopState::Engaged if gates.closed(Which::Release) => text::gates::NONE_RELEASED,
         LoopState::Engaged if gates.closed(Which::Validity) => text::gates::NONE_INVALID,
         LoopState::Engaged if gates.closed(Which::Age) => text::gates::NONE_STALE,
         LoopState::Engaged if measured_n < CONTACT_N => return None,
@@ -87,6 +86,7 @@ pub fn why_no_force(live: &Live, side: Side) -> Option<String> {
             return Some(text::gates::withheld_by_dead_band(withheld_n));
         }
         LoopState::Engaged if live.gain() < 0.01 => text::gates::NONE_GAIN,
+        LoopState::Engaged if gates.closed(Which::Governor) => text::gates::LESS_GOVERNED,
         LoopState::Engaged if gates.closed(Which::Energy) => text::gates::LESS_ENERGY,
         LoopState::Engaged if rendered_n < 0.05 => {
             return Some(text::gates::on_its_way(live.delay_s() * 1e3));
@@ -128,7 +128,7 @@ pub(super) fn gates(live: &Live, side: Side) -> [Gate; GATES] {
             Which::Gain => f64::from(u8::from(live.gain() < 0.01)),
             _ => gates.share(which),
         };
-        let limits = matches!(which, Which::Slew | Which::Energy | Which::Ceiling);
+        let limits = matches!(which, Which::Slew | Which::Energy | Which::Ceiling | Which::Governor);
         Gate { which, name, share, limits, note: note(live, side, which), meaning }
     })
 }
@@ -138,8 +138,6 @@ fn note(live: &Live, side: Side, which: Which) -> String {
     let (gates, chain) = (&live.gates[side.index()], &live.rig.gates);
     match which {
         Which::Permission => live.tick_of(side).map_or(LoopState::Idle, |tick| tick.state).word().to_lowercase(),
-        Which::Release if chain.handle_kg > 0.0 => String::new(),
-        Which::Release => text::gates::RELEASE_OFF.to_owned(),
         Which::Validity => String::new(),
         Which::Age => text::gates::zero_after(chain.zero_after_s * 1e3),
         Which::DeadBand if live.gate_settings().static_hold => text::gates::DEAD_BAND_OFF.to_owned(),
@@ -151,6 +149,8 @@ fn note(live: &Live, side: Side, which: Which) -> String {
         Which::Slew => format!("{:.0} N/s", chain.slew_n_per_s),
         Which::Energy => stored(live, side),
         Which::Ceiling => format!("{:.1} N", chain.ceiling_n.min(chain.device_limit_n)),
+        Which::Governor if chain.handle_kg <= 0.0 => text::gates::GOVERNOR_OFF.to_owned(),
+        Which::Governor => text::gates::governed(100.0 * gates.governed.get()),
     }
 }
 

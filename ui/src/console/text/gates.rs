@@ -10,14 +10,14 @@ pub(in crate::console) const NONE_CLUTCH: &str = "No force: the clutch is presse
 pub(in crate::console) const NONE_STOPPED: &str = "No force: stopped by the operator";
 pub(in crate::console) const NONE_OTHER_ARM: &str = "No force: the other arm has a fault";
 pub(in crate::console) const NONE_FAULT: &str = "No force: stopped by a fault";
-pub(in crate::console) const NONE_RELEASED: &str =
-    "No force: the hand has let go of the handle. The force returns after the contact ends.";
 pub(in crate::console) const NONE_INVALID: &str = "No force: the mode has no valid result";
 pub(in crate::console) const NONE_STALE: &str = "No force: the data are too old";
 pub(in crate::console) const NONE_GAIN: &str = "No force: the gain is zero";
 pub(in crate::console) const LESS_ENERGY: &str = "Reduced force: the hand would get back more energy than it put in";
 pub(in crate::console) const DEAD_BAND_OFF: &str = "off: force is kept";
-pub(in crate::console) const RELEASE_OFF: &str = "off: handle's mass unknown";
+pub(in crate::console) const LESS_GOVERNED: &str =
+    "Reduced force: the handle runs away and nobody carries the force. It returns when the hand takes it up.";
+pub(in crate::console) const GOVERNOR_OFF: &str = "off: handle's mass unknown";
 pub(in crate::console) const NEVER_ACTED: &str = "It has not acted so far";
 pub(in crate::console) const OPEN: &str = "open";
 pub(in crate::console) const CLOSED: &str = "closed";
@@ -54,6 +54,11 @@ pub(in crate::console) fn zero_after(age_ms: f64) -> String {
     format!("zero after {age_ms:.0} ms")
 }
 
+/// How much of the force the governor keeps back.
+pub(in crate::console) fn governed(percent: f64) -> String {
+    format!("{percent:.0} % withheld")
+}
+
 /// Energy that the hand may still get back.
 pub(in crate::console) fn energy_left(stored_mj: f64) -> String {
     format!("{stored_mj:.0} mJ left")
@@ -68,11 +73,6 @@ pub(in crate::console) fn acted(ticks: u64, percent: f64, why: &str) -> String {
 pub(in crate::console) const fn of(gate: Gate) -> [&'static str; 2] {
     match gate {
         Gate::Permission => ["Engaged", "Closed unless the loop is engaged. Stop closes it at once."],
-        Gate::Release => [
-            "Hand",
-            "Closed when the handle accelerates as it would without a hand. Opens when the contact has ended, or \
-    when you engage again.",
-        ],
         Gate::Validity => [
             "Valid",
             "Closed when the mode has no result, when the result is not a finite number, or when it is above 1000 N",
@@ -94,5 +94,10 @@ pub(in crate::console) const fn of(gate: Gate) -> [&'static str; 2] {
     the part of the force along the hand's motion.",
         ],
         Gate::Ceiling => ["Ceiling", "The largest force that can reach the hand, never above what the device can give"],
+        Gate::Governor => [
+            "Governor",
+            "Brakes a handle that runs away under its force while nobody carries it. The force returns when the hand \
+    takes it up; a hand that stays away makes the loop rest.",
+        ],
     }
 }

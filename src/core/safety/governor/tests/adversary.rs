@@ -1,0 +1,126 @@
+//! Requests made to pump energy into a handle that nobody holds, by one who sees the handle's motion.
+
+use nalgebra::Vector1;
+
+use crate::{
+    noise::Noise,
+    safety::{Chain, ChainSettings, Request},
+};
+
+const PERIOD_S: f64 = 1e-3;
+/// A handle is let alone for so long before it is taken back to rest, and so is the chain, s.
+pub(super) const EPISODE_S: f64 = 2.0;
+
+/// How the requests go on for a while.
+#[derive(Clone, Copy, Debug)]
+enum Pattern {
+    Steady,
+    AlongMotion,
+    AlongMotionWithBreaks,
+    AlongMotionInBursts,
+    AgainstThenAlong,
+    Wave,
+    Noise,
+    Weak,
+    NotANumber,
+    Nothing,
+}
+
+const PATTERNS: [Pattern; 10] = [
+    Pattern::Steady,
+    Pattern::AlongMotion,
+    Pattern::AlongMotionWithBreaks,
+    Pattern::AlongMotionInBursts,
+    Pattern::AgainstThenAlong,
+    Pattern::Wave,
+    Pattern::Noise,
+    Pattern::Weak,
+    Pattern::NotANumber,
+    Pattern::Nothing,
+];
+
+struct Plan {
+    pattern: Pattern,
+    left: u32,
+    size_n: f64,
+    every: u32,
+}
+
+impl Plan {
+    fn new(noise: &mut Noise) -> Self {
+        let mut pick = |most: f64| (most * noise.uniform()) as u32;
+        let (pattern, left, every) = (PATTERNS[pick(10.0) as usize], 1 + pick(400.0), 2 + pick(40.0));
+        Self { pattern, left, size_n: 5.0 * noise.uniform(), every }
+    }
+
+    fn force_n(&self, tick: u32, speed_m_s: f64, noise: &mut Noise) -> Option<f64> {
+        let along = if speed_m_s >= 0.0 { self.size_n } else { -self.size_n };
+        let phase = tick % self.every;
+        Some(match self.pattern {
+            Pattern::Steady => self.size_n,
+            Pattern::AlongMotion => along,
+            Pattern::AlongMotionWithBreaks => {
+                if phase == 0 {
+                    -0.01 * along
+                } else {
+                    along
+                }
+            }
+            Pattern::AlongMotionInBursts => {
+                if 2 * phase < self.every {
+                    along
+                } else {
+                    0.0
+                }
+            }
+            Pattern::AgainstThenAlong => {
+                if 3 * phase < self.every {
+                    -along
+                } else {
+                    along
+                }
+            }
+            Pattern::Wave => along * (std::f64::consts::TAU * f64::from(phase) / f64::from(self.every)).sin().abs(),
+            Pattern::Noise => self.size_n * noise.gaussian(),
+            Pattern::Weak => along.clamp(-0.28, 0.28),
+            Pattern::NotANumber => f64::NAN,
+            Pattern::Nothing => return None,
+        })
+    }
+}
+
+/// Most energy (J) that a lone handle was given in one episode by so many adversarial requests.
+pub(super) fn most_given_j(requests: u64, seed: u64, settings: ChainSettings) -> f64 {
+    let mut noise = Noise::new(seed);
+    let mut most_j = 0.0_f64;
+    for _ in 0..requests.div_ceil((EPISODE_S / PERIOD_S) as u64) {
+        most_j = most_j.max(episode_j(&mut noise, settings));
+    }
+    most_j
+}
+
+fn episode_j(noise: &mut Noise, settings: ChainSettings) -> f64 {
+    let mut chain = Chain::<1>::new(settings, PERIOD_S);
+    let handle_kg = 0.2 + 0.11 * noise.uniform();
+    let (mut at_m, mut speed_m_s, mut given_j, mut most_j) = (0.0, 0.0, 0.0, 0.0_f64);
+    let mut plan = Plan::new(noise);
+    for tick in 0..(EPISODE_S / PERIOD_S) as u32 {
+        if plan.left == 0 {
+            plan = Plan::new(noise);
+        }
+        plan.left -= 1;
+        let request = Request {
+            force_n: plan.force_n(tick, speed_m_s, noise).map(Vector1::new),
+            age_s: 0.0,
+            speed_m_s: 1.0,
+            hand_m: Some(Vector1::new((at_m / 1e-5_f64).round() * 1e-5)),
+            permitted: true,
+        };
+        let held_n = chain.step(&request).0.x;
+        speed_m_s += (held_n - 0.1 * speed_m_s) / handle_kg * PERIOD_S;
+        at_m += speed_m_s * PERIOD_S;
+        given_j += held_n * speed_m_s * PERIOD_S;
+        most_j = most_j.max(given_j);
+    }
+    most_j
+}

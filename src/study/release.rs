@@ -2,7 +2,7 @@
 //!
 //! Takes nothing; gives a [`Report`]: one [`Row`] for every mode, delay, force and situation (held for two seconds, and let go while still
 //! pressing), with and without the governor, all other gates as they come; and with the governor the worst over handles that are
-//! not the one that it is told of, and over the viscosity of its brake.
+//! not the one that it assumes, and over the viscosity of its brake.
 
 mod present;
 
@@ -138,7 +138,7 @@ pub struct Worst {
     pub contact_n: f64,
     /// Viscosity of the governor's brake, N s/m.
     pub brake_n_s_m: f64,
-    /// True mass of the handle, kg; the governor is told of 0.25.
+    /// True mass of the handle, kg; the governor assumes 0.25.
     pub handle_kg: f64,
     /// Its Coulomb friction, N.
     pub coulomb_n: f64,
@@ -159,7 +159,7 @@ pub struct Options;
 /// The study's result.
 #[derive(Clone, Debug, Serialize)]
 pub struct Report {
-    /// Every letting go of the handle that the governor is told of.
+    /// Every release of a handle with the mass that the governor assumes.
     pub rows: Vec<Row>,
     /// Other handles and brakes.
     pub worst: Vec<Worst>,
@@ -180,7 +180,11 @@ pub struct Way {
     pub contact_n: f64,
 }
 
-/// Makes the study; `progress` is told before each part how many of how many are done, and what comes.
+/// Runs the study; before each part `progress` is called with the number of parts done, their total, and the name of
+/// the next.
+///
+/// # Errors
+/// [`ReleaseError`] if the scene cannot be used or the contact force is not reached.
 pub fn study(mut progress: impl FnMut(usize, usize, &str)) -> Result<Report, ReleaseError> {
     let tissue = Scene::load("peg_transfer")?.tissue.ok_or(ReleaseError::NoTissue)?;
     let mut rows = Vec::new();
@@ -237,7 +241,7 @@ fn worst_of(contact_n: f64, brake_n_s_m: f64, handle: &Handle, tissue: Tissue) -
     Ok(worst)
 }
 
-/// One letting go of the handle that the governor is told of.
+/// One release of a handle with the mass that the governor assumes.
 pub fn let_go(way: &Way, tissue: Tissue) -> Result<Row, ReleaseError> {
     let gates = ChainSettings::default();
     let gates = if way.governor { gates } else { gates.without_governor() };

@@ -1,7 +1,6 @@
 //! What something costs that a user would take instead, as a multiple of what ours costs. `./dev bench` compares these ratios with
-//! those of `benches/baseline.toml`: unlike times, they hardly depend on how fast and how busy the computer is.
-
-use std::time::Instant;
+//! those of `benches/baseline.toml`: unlike times, they hardly depend on how fast the computer is, and not on who else uses it, because
+//! only the time counts in which the thread has a processor.
 
 /// The ratios alone were asked for.
 pub(crate) fn alone() -> bool {
@@ -14,13 +13,9 @@ pub(crate) fn tell(name: &str, mut ours: impl FnMut(), mut theirs: impl FnMut())
     const ROUNDS: usize = 25;
     let [our_calls, their_calls] = [calls(ROUND_S, &mut ours), calls(ROUND_S, &mut theirs)];
     let round = |_| time_s(their_calls, &mut theirs) / time_s(our_calls, &mut ours);
-    print(name, (0..ROUNDS).map(round).collect());
-}
-
-/// Prints the median of some ratios, in the form that `./dev bench` reads.
-pub(crate) fn print(name: &str, mut ratios: Vec<f64>) {
+    let mut ratios: Vec<f64> = (0..ROUNDS).map(round).collect();
     ratios.sort_by(f64::total_cmp);
-    println!("ratio {name} {:.4}", ratios[ratios.len() / 2]);
+    println!("ratio {name} {:.4}", ratios[ROUNDS / 2]);
 }
 
 /// How many calls fill this time, at least one; the caches are warm afterwards.
@@ -34,7 +29,24 @@ fn calls(round_s: f64, work: &mut impl FnMut()) -> usize {
 
 /// Mean time of a call, s.
 fn time_s(calls: usize, work: &mut impl FnMut()) -> f64 {
-    let start = Instant::now();
+    let start_s = processor_s();
     (0..calls).for_each(|_| work());
-    start.elapsed().as_secs_f64() / calls as f64
+    (processor_s() - start_s) / calls as f64
+}
+
+/// For how long this thread has had a processor, s.
+#[cfg(unix)]
+#[expect(unsafe_code, reason = "the standard library does not tell it")]
+fn processor_s() -> f64 {
+    let mut time = libc::timespec { tv_sec: 0, tv_nsec: 0 };
+    // SAFETY: a structure of the right type that lives through the call.
+    unsafe { libc::clock_gettime(libc::CLOCK_THREAD_CPUTIME_ID, &raw mut time) };
+    time.tv_sec as f64 + 1e-9 * time.tv_nsec as f64
+}
+
+/// Elsewhere all time counts.
+#[cfg(not(unix))]
+fn processor_s() -> f64 {
+    static START: std::sync::LazyLock<std::time::Instant> = std::sync::LazyLock::new(std::time::Instant::now);
+    START.elapsed().as_secs_f64()
 }

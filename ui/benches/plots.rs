@@ -1,10 +1,13 @@
 //! What the traces cost the processor in a frame, without a window: 12 traces of 120 s at 2 kHz, our panel beside the same plots
 //! given every sample. Counted are layout, our own code and the making of triangles; drawing them is the graphics card's.
 //!
-//! Prints ms per frame as percentiles of each of several runs, and the ratio of the medians. Everything is measured on this
-//! computer; nothing is asserted.
+//! Prints ms per frame as percentiles of each of several runs, and the ratio of the medians; with `--ratios` only the ratio that
+//! `./dev bench` keeps. Everything is measured on this computer; nothing is asserted.
 
 #![expect(clippy::unwrap_used, reason = "a benchmark that cannot begin has nothing to say")]
+
+#[path = "../../benches/ratio.rs"]
+mod ratio;
 
 use std::{hint::black_box, time::Instant};
 
@@ -62,8 +65,8 @@ fn frame_ms(ctx: &Context, number: usize, content: &mut dyn FnMut(&mut Ui)) -> f
     frame_ms
 }
 
-/// Our panel, twice: three plots with two traces for each hand.
-fn ours(runs: &mut Vec<Vec<f64>>) {
+/// A frame of our panel, twice: three plots with two traces for each hand. Gives its time, ms.
+fn ours() -> impl FnMut() -> f64 {
     let mut live = Live::new(RigConfig::load("simulated").unwrap(), Scene::load("bimanual").unwrap());
     let mut now_s = SECONDS;
     fill(&mut live, 0.0, now_s);
@@ -73,24 +76,22 @@ fn ours(runs: &mut Vec<Vec<f64>>) {
     for state in &mut states {
         state.show_last(SECONDS);
     }
-    for _ in 0..RUNS {
-        let run = (0..FRAMES).map(|number| {
-            fill(&mut live, now_s, now_s + FRAME_S);
-            now_s += FRAME_S;
-            frame_ms(&ctx, number, &mut |ui| {
-                ui.columns(2, |columns| {
-                    for (ui, state) in columns.iter_mut().zip(&mut states) {
-                        ui.push_id(state.side().word(), |ui| forces_ui(ui, &mut live, state, &[0, 1, 2]));
-                    }
-                });
-            })
-        });
-        runs.push(run.collect());
+    let mut numbers = 0..;
+    move || {
+        fill(&mut live, now_s, now_s + FRAME_S);
+        now_s += FRAME_S;
+        frame_ms(&ctx, numbers.next().unwrap(), &mut |ui| {
+            ui.columns(2, |columns| {
+                for (ui, state) in columns.iter_mut().zip(&mut states) {
+                    ui.push_id(state.side().word(), |ui| forces_ui(ui, &mut live, state, &[0, 1, 2]));
+                }
+            });
+        })
     }
 }
 
-/// The same twelve lines, every sample given to the plots.
-fn all_samples(runs: &mut Vec<Vec<f64>>) {
+/// A frame of the same twelve lines, every sample given to the plots. Gives its time, ms.
+fn all_samples() -> impl FnMut() -> f64 {
     let count = (SECONDS * RATE_HZ) as u64;
     let lines: Vec<Vec<PlotPoint>> = (0..2 * CHANNELS)
         .map(|channel| {
@@ -103,26 +104,29 @@ fn all_samples(runs: &mut Vec<Vec<f64>>) {
         .collect();
     let ctx = Context::default();
     theme::apply(&ctx);
-    for _ in 0..RUNS {
-        let run = (0..FRAMES / 4).map(|number| {
-            frame_ms(&ctx, number, &mut |ui| {
-                ui.columns(2, |columns| {
-                    for (side, ui) in columns.iter_mut().enumerate() {
-                        let height = ui.available_height() / 3.0 - 8.0;
-                        for axis in 0..3 {
-                            Plot::new((side, axis)).height(height).show(ui, |plot| {
-                                for channel in [axis, axis + 3] {
-                                    let points = &lines[channel + CHANNELS * side];
-                                    plot.line(Line::new(channel.to_string(), PlotPoints::Borrowed(points)));
-                                }
-                            });
-                        }
+    let mut numbers = 0..;
+    move || {
+        frame_ms(&ctx, numbers.next().unwrap(), &mut |ui| {
+            ui.columns(2, |columns| {
+                for (side, ui) in columns.iter_mut().enumerate() {
+                    let height = ui.available_height() / 3.0 - 8.0;
+                    for axis in 0..3 {
+                        Plot::new((side, axis)).height(height).show(ui, |plot| {
+                            for channel in [axis, axis + 3] {
+                                let points = &lines[channel + CHANNELS * side];
+                                plot.line(Line::new(channel.to_string(), PlotPoints::Borrowed(points)));
+                            }
+                        });
                     }
-                });
-            })
-        });
-        runs.push(run.collect());
+                }
+            });
+        })
     }
+}
+
+/// Times of some runs of so many frames, ms.
+fn runs(frames: usize, mut frame: impl FnMut() -> f64) -> Vec<Vec<f64>> {
+    (0..RUNS).map(|_| (0..frames).map(|_| frame()).collect()).collect()
 }
 
 /// Prints the percentiles of each run; the median of all.
@@ -141,12 +145,21 @@ fn told(name: &str, runs: &[Vec<f64>]) -> f64 {
 }
 
 fn main() {
+    let (mut ours, mut theirs) = (ours(), all_samples());
+    if ratio::alone() {
+        ratio::tell(
+            "plots_every_sample",
+            || {
+                ours();
+            },
+            || {
+                theirs();
+            },
+        );
+        return;
+    }
     println!("12 traces of {SECONDS:.0} s at {RATE_HZ:.0} Hz, {RUNS} runs");
-    let (mut our_runs, mut their_runs) = (Vec::new(), Vec::new());
-    ours(&mut our_runs);
-    all_samples(&mut their_runs);
-    let (ours_ms, theirs_ms) = (told("this panel", &our_runs), told("every sample", &their_runs));
+    let (ours_ms, theirs_ms) =
+        (told("this panel", &runs(FRAMES, ours)), told("every sample", &runs(FRAMES / 4, theirs)));
     println!("medians: this panel {ours_ms:.2} ms, every sample {theirs_ms:.2} ms, ratio {:.1}", theirs_ms / ours_ms);
-    // For `./dev bench`, as `benches/ratio.rs` prints it.
-    println!("ratio plots_every_sample {:.4}", theirs_ms / ours_ms);
 }

@@ -1,7 +1,7 @@
 //! Validation III: the rendering error of each mode, within the window that it was fitted to and at the horizon.
 
 use nalgebra::Vector3;
-use nima_core::impedance::Mode;
+use nima_core::impedance::{MODES, Mode};
 use nima_machine::{config::RigConfig, teleop::ErrorStats};
 use nima_world::{Plan, run_virtual, scene::Scene};
 use serde::Serialize;
@@ -72,7 +72,7 @@ pub fn study(seed: u64, delay_s: f64) -> Result<Rendering, ValidationError> {
     let rig = RigConfig { delay_s, ..RigConfig::load("simulated")? };
     let plan = Plan { rig, scene, calibrations: Default::default(), engage: true };
     let (mut nonlinear, mut linear) = (Axes::default(), Axes::default());
-    let mut at_horizon: [Axes; 4] = std::array::from_fn(|_| Axes::default());
+    let mut at_horizon: [Axes; MODES] = std::array::from_fn(|_| Axes::default());
     let (mut windows, mut above_one) = (0_u32, 0_u32);
     run_virtual(&plan, SECONDS, |tick| {
         if tick.t_s < FILL_S + delay_s {

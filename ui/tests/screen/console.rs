@@ -103,8 +103,11 @@ fn every_mode_can_be_chosen_and_comes_back() {
     let mut harness = console();
     for (label, mode) in [
         ("Direct (DFR)", Mode::Dfr),
-        ("Linear (IMA)", Mode::Linear),
-        ("Literal (NIMA)", Mode::Literal),
+        ("Linear", Mode::Linear),
+        ("Literal", Mode::Literal),
+        ("Matched", Mode::Matched),
+        ("Best of both", Mode::Best),
+        ("NIMA", Mode::Nima),
         ("Anchored", Mode::Anchored),
     ] {
         harness.get_by_role_and_label(Role::Button, label).click();

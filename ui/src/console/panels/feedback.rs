@@ -56,11 +56,12 @@ pub fn feedback_ui(ui: &mut Ui, live: &mut Live, state: &mut FeedbackState, outb
 }
 
 fn mode_ui(ui: &mut Ui, live: &Live, outbox: &mut Outbox) {
-    let size = vec2(0.5 * (ui.available_width() - 6.0), 32.0);
-    ui.spacing_mut().item_spacing = vec2(6.0, 6.0);
-    let rows: [&[Mode]; 4] =
-        [&[Mode::Anchored, Mode::Dfr], &[Mode::Matched, Mode::Best], &[Mode::Nima, Mode::Literal], &[Mode::Linear]];
+    ui.spacing_mut().item_spacing = vec2(6.0, 5.0);
+    let rows: [&[Mode]; 3] =
+        [&[Mode::Anchored, Mode::Dfr], &[Mode::Matched, Mode::Best], &[Mode::Nima, Mode::Literal, Mode::Linear]];
     for row in rows {
+        let between = ui.spacing().item_spacing.x * (row.len() - 1) as f32;
+        let size = vec2((ui.available_width() - between) / row.len() as f32, 20.0);
         ui.horizontal(|ui| {
             for &mode in row {
                 let button =

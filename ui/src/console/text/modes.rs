@@ -1,11 +1,11 @@
 //! The rendering modes.
 
-pub(in crate::console) const LITERAL: &str = "Literal (NIMA)";
-pub(in crate::console) const LINEAR: &str = "Linear (IMA)";
+pub(in crate::console) const LITERAL: &str = "Literal";
+pub(in crate::console) const LINEAR: &str = "Linear";
 pub(in crate::console) const DFR: &str = "Direct (DFR)";
 pub(in crate::console) const ANCHORED: &str = "Anchored";
 pub(in crate::console) const MATCHED: &str = "Matched";
-pub(in crate::console) const NIMA: &str = "NIMA, repaired";
+pub(in crate::console) const NIMA: &str = "NIMA";
 pub(in crate::console) const BEST: &str = "Best of both";
 pub(in crate::console) const MATCHED_HOVER: &str = "Only the tissue's parameters cross the link; the force is made from the hand's own motion, so no late force can kick";
 pub(in crate::console) const NIMA_HOVER: &str = "The paper's polynomials under the rules of Matched: a constant, a kept origin, a ridge, and degrees judged at the horizon";

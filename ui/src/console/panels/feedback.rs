@@ -47,16 +47,16 @@ pub struct FeedbackState {
 /// The panel.
 pub fn feedback_ui(ui: &mut Ui, live: &mut Live, state: &mut FeedbackState, outbox: &mut Outbox) {
     mode_ui(ui, live, outbox);
-    ui.add_space(8.0);
+    ui.add_space(4.0);
     gain_ui(ui, live, state, outbox);
-    ui.add_space(8.0);
+    ui.add_space(4.0);
     delay_ui(ui, live, state, outbox);
-    ui.add_space(8.0);
+    ui.add_space(4.0);
     standstill_ui(ui, live, state, outbox);
 }
 
 fn mode_ui(ui: &mut Ui, live: &Live, outbox: &mut Outbox) {
-    ui.spacing_mut().item_spacing = vec2(6.0, 5.0);
+    ui.spacing_mut().item_spacing = vec2(6.0, 4.0);
     let rows: [&[Mode]; 3] =
         [&[Mode::Anchored, Mode::Dfr], &[Mode::Matched, Mode::Best], &[Mode::Nima, Mode::Literal, Mode::Linear]];
     for row in rows {

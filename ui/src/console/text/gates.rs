@@ -16,7 +16,7 @@ pub(in crate::console) const NONE_GAIN: &str = "No force: the gain is zero";
 pub(in crate::console) const LESS_ENERGY: &str = "Reduced force: the hand would get back more energy than it put in";
 pub(in crate::console) const DEAD_BAND_OFF: &str = "off: force is kept";
 pub(in crate::console) const LESS_GOVERNED: &str =
-    "Reduced force: the handle runs away and nobody carries the force. It returns when the hand takes it up.";
+    "Reduced force: the handle runs away and no hand holds it. The force returns when a hand takes hold.";
 pub(in crate::console) const GOVERNOR_OFF: &str = "off: handle's mass unknown";
 pub(in crate::console) const NEVER_ACTED: &str = "It has not acted so far";
 pub(in crate::console) const OPEN: &str = "open";
@@ -96,8 +96,8 @@ pub(in crate::console) const fn of(gate: Gate) -> [&'static str; 2] {
         Gate::Ceiling => ["Ceiling", "The largest force that can reach the hand, never above what the device can give"],
         Gate::Governor => [
             "Governor",
-            "Brakes a handle that runs away under its force while nobody carries it. The force returns when the hand \
-    takes it up; a hand that stays away makes the loop rest.",
+            "Brakes a handle that runs away under the force while no hand holds it. The force returns when a hand takes \
+    hold; if none does, the loop goes to idle.",
         ],
     }
 }

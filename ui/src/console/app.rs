@@ -52,6 +52,8 @@ const WARM_UP: Duration = Duration::from_secs(4);
 #[derive(Debug)]
 pub struct ConsoleApp {
     door: Option<Door>,
+    /// Loops that the console starts run in simulated time, so many times as fast as real time.
+    simulated_speed: Option<f64>,
     /// Used to wake the window from another thread.
     ctx: egui::Context,
     live: Live,
@@ -99,6 +101,7 @@ impl ConsoleApp {
             renderer: cc.gl.as_deref().map(renderer_of).unwrap_or_default(),
             meter: None,
             door: Some(door_of(handle, &cc.egui_ctx)),
+            simulated_speed: None,
             ctx: cc.egui_ctx.clone(),
             in_force,
             diary: Diary::default(),
@@ -211,6 +214,13 @@ impl ConsoleApp {
         self
     }
 
+    /// Runs every loop that a wizard or a setting needs in simulated time, at most `speed` times as fast as real time.
+    #[must_use]
+    pub const fn with_simulated_time(mut self, speed: f64) -> Self {
+        self.simulated_speed = Some(speed);
+        self
+    }
+
     /// Continues with these wizards and their data.
     #[must_use]
     pub fn with_wizards(mut self, wizards: Wizards) -> Self {
@@ -252,7 +262,11 @@ impl ConsoleApp {
         self.in_force.bind(&rig, &scene);
         let calibrations = self.in_force.calibrations(&rig);
         let plan = Plan { rig: rig.clone(), scene: scene.clone(), calibrations, engage: false };
-        let started = nima_world::start(&plan).map_err(|error| text::calibrations::not_started_again(&error));
+        let started = match self.simulated_speed {
+            Some(speed) => nima_world::start_simulated(&plan, speed),
+            None => nima_world::start(&plan),
+        };
+        let started = started.map_err(|error| text::calibrations::not_started_again(&error));
         let rough_edges = self.live.rough_edges;
         self.live = Live::new(rig, scene);
         self.live.rough_edges = rough_edges;

@@ -48,7 +48,7 @@ pub(crate) fn shown_at(
     Harness::builder()
         .with_size(size)
         .with_step_dt(1.0 / 30.0)
-        .build_eframe(move |cc| prepare(ConsoleApp::new(cc, handle, rig, scene)))
+        .build_eframe(move |cc| prepare(ConsoleApp::new(cc, handle, rig, scene).with_simulated_time(speed)))
 }
 
 /// Steps the window until the newest tick on the screen is as wanted. The window never settles, so `run` is of no use.

@@ -38,10 +38,14 @@ fn gravity_scene(flaw: Option<Flaw>) -> Scene {
 fn until(console: &mut Console, what: &str, good: impl Fn(&Console) -> bool) {
     let began = Instant::now();
     while !good(console) {
-        assert!(began.elapsed() < TIMEOUT, "never came: {what}");
+        assert!(began.elapsed() < TIMEOUT, "never came: {what}; there is: {:?}", texts(console));
         std::thread::sleep(Duration::from_millis(15));
         console.step();
     }
+}
+
+fn texts(console: &Console) -> Vec<String> {
+    console.query_all_by_role(Role::Label).filter_map(|node| node.accesskit_node().value()).collect()
 }
 
 fn can_press(console: &Console, label: &str) -> bool {

@@ -1,6 +1,7 @@
 //! The loop's process is killed during a contact: the watchdogs of the devices must remove the force and hold the arm.
 #![cfg(target_os = "linux")]
 use std::{
+    fs,
     process::{Child, Command, Stdio},
     time::{Duration, Instant},
 };
@@ -19,7 +20,8 @@ use nima_world::{
     scene::Scene,
 };
 
-const DEVICES: &str = "NIMA_TEST_DEVICES";
+/// Names the rig file of the process that is killed.
+const RIG: &str = "NIMA_TEST_RIG";
 /// Watchdog of the handle in the rig file, s.
 const WATCHDOG_S: f64 = 0.020;
 /// Watchdog of the emulated arm, s.
@@ -31,18 +33,23 @@ const SLACK_S: f64 = 0.030;
 #[test]
 #[ignore = "run by the other test, which kills it"]
 fn the_loop_of_another_process() {
-    let Ok(devices) = std::env::var(DEVICES) else { return };
+    let Ok(rig) = std::env::var(RIG) else { return };
     provide_handles();
-    let mut rig = RigConfig::load("emulated").unwrap();
-    rig.devices = Some(toml::from_str::<Settings>(&devices).unwrap());
-    rig.mode = Mode::Dfr;
-    rig.gates.static_hold = true;
-    // The watchdogs are judged here, not the governor.
-    rig.gates.handle_kg = 0.0;
-    let plan =
-        Plan { rig, scene: Scene::load("peg_transfer").unwrap(), calibrations: Default::default(), engage: true };
+    let plan = Plan {
+        rig: RigConfig::load(&rig).unwrap(),
+        scene: Scene::load("peg_transfer").unwrap(),
+        calibrations: Default::default(),
+        engage: true,
+    };
     let _handle = nima_world::start(&plan).unwrap();
     std::thread::sleep(Duration::from_mins(1));
+}
+
+/// A rig that presses on tissue and holds still, so that the hand feels a steady force.
+fn pressing_rig(devices: Settings) -> RigConfig {
+    let mut rig = RigConfig { devices: Some(devices), mode: Mode::Dfr, ..RigConfig::load("emulated").unwrap() };
+    rig.gates.static_hold = true;
+    rig
 }
 
 struct Killed(Child);
@@ -62,13 +69,14 @@ fn a_killed_process_leaves_no_force_in_the_hand() {
         let folder = tempfile::tempdir().unwrap();
         let devices = right_arm(folder.path());
         let rig = started(&devices);
+        let rig_file = folder.path().join("rig.toml");
+        fs::write(&rig_file, toml::to_string(&pressing_rig(devices)).unwrap()).unwrap();
         let truth = || rig.truth(Side::Right).unwrap();
         let loop_of_another_process = || {
             let child = Command::new(std::env::current_exe().unwrap())
                 .args(["killed::the_loop_of_another_process", "--exact", "--ignored"])
-                .env(DEVICES, toml::to_string(&devices).unwrap())
+                .env(RIG, &rig_file)
                 .stdout(Stdio::null())
-                .stderr(Stdio::null())
                 .spawn();
             Killed(child.unwrap())
         };

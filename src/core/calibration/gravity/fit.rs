@@ -8,6 +8,7 @@ use super::{
     coverage::{condition, coverage},
     pose::{Pose, Reading, Row, checked, rows},
     solve::solve,
+    trend::drift_n,
 };
 use crate::{
     calibration::{AxisStats, Residuals, Verdict},
@@ -31,6 +32,7 @@ struct Frame {
     imu_sign: i8,
     has_torque: bool,
     floor_n: f64,
+    drifts: bool,
 }
 
 impl Frame {
@@ -39,9 +41,9 @@ impl Frame {
         Some(GravityModel { source: self.source, imu_sign: self.imu_sign, parameters })
     }
 
-    /// Rows that agree with each other.
-    fn agreeing(&self, rows: &[Row]) -> Vec<Row> {
-        agreeing(rows, self.floor_n).into_iter().map(|i| rows[i]).collect()
+    /// Indices of rows that agree with each other, in rising order.
+    fn agreeing(&self, rows: &[Row]) -> Vec<usize> {
+        if self.drifts { (0..rows.len()).collect() } else { agreeing(rows, self.floor_n) }
     }
 }
 
@@ -51,15 +53,20 @@ struct Data {
     inliers: Vec<usize>,
     kept: Vec<Row>,
     trainings: Vec<Vec<Row>>,
+    /// Change of the bias from the first pose to the last (N), if they disagree by a drift.
+    drift_n: Option<f64>,
 }
 
 impl Data {
     fn new(frame: &Frame, all: Vec<Row>) -> Self {
-        let inliers = agreeing(&all, frame.floor_n);
+        // Poses that drift apart are no outliers: each is as good as the others, and least squares uses all.
+        let drift_n = drift_n(&all, frame.floor_n);
+        let frame = &Frame { drifts: drift_n.is_some(), ..*frame };
+        let inliers = frame.agreeing(&all);
         let kept = inliers.iter().map(|&i| all[i]).collect();
         let folds = if all.len() <= LEAVE_ONE_OUT { all.len() } else { 10 };
         let trainings = trainings(frame, &all, folds);
-        Self { all, inliers, kept, trainings }
+        Self { all, inliers, kept, trainings, drift_n }
     }
 }
 
@@ -101,7 +108,7 @@ pub fn fit(poses: &[Pose], settings: &Settings) -> Result<GravityReport, Gravity
     let source = checked(poses)?;
     let Settings { imu_sign, limits, .. } = *settings;
     let has_torque = poses.iter().all(|pose| pose.has_torque);
-    let frame = Frame { source, imu_sign, has_torque, floor_n: limits.outlier_floor_n };
+    let frame = Frame { source, imu_sign, has_torque, floor_n: limits.outlier_floor_n, drifts: false };
     let data = Data::new(&frame, rows(poses, imu_sign, Reading::AsGiven));
     let outliers: Vec<usize> = (0..poses.len()).filter(|i| data.inliers.binary_search(i).is_err()).collect();
     let fits: Vec<ModelFit> = ModelKind::ALL.into_iter().filter_map(|kind| one_fit(kind, &frame, &data)).collect();
@@ -122,7 +129,7 @@ pub fn fit(poses: &[Pose], settings: &Settings) -> Result<GravityReport, Gravity
         fits,
     };
     report.chosen = chosen(&report, settings);
-    (report.verdict, report.reason) = judge(&report, poses, settings, &frame);
+    (report.verdict, report.reason) = judge(&report, poses, settings, &frame, data.drift_n);
     Ok(report)
 }
 
@@ -151,7 +158,8 @@ fn errors(model: &GravityModel, row: &Row) -> Wrench {
 /// Training rows of each fold. Agreement is determined again for each, so that a held-out row has no influence.
 fn trainings(frame: &Frame, all: &[Row], folds: usize) -> Vec<Vec<Row>> {
     let training = |fold| -> Vec<Row> { (0..all.len()).filter(|i| i % folds != fold).map(|i| all[i]).collect() };
-    (0..folds).map(|fold| frame.agreeing(&training(fold))).collect()
+    let agreeing = |rows: Vec<Row>| frame.agreeing(&rows).into_iter().map(|i| rows[i]).collect();
+    (0..folds).map(|fold| agreeing(training(fold))).collect()
 }
 
 /// Errors on held-out rows; outliers of the whole set are not counted.
@@ -186,7 +194,13 @@ fn chosen(report: &GravityReport, settings: &Settings) -> Option<ModelKind> {
     Some(if enough && better { ModelKind::Gain } else { ModelKind::Physical })
 }
 
-fn judge(report: &GravityReport, poses: &[Pose], settings: &Settings, frame: &Frame) -> (Verdict, String) {
+fn judge(
+    report: &GravityReport,
+    poses: &[Pose],
+    settings: &Settings,
+    frame: &Frame,
+    drift_n: Option<f64>,
+) -> (Verdict, String) {
     let limits = &settings.limits;
     if let Some(mistake) = mistake(report, poses, settings, frame) {
         return (Verdict::PoorData, mistake.to_owned());
@@ -197,10 +211,16 @@ fn judge(report: &GravityReport, poses: &[Pose], settings: &Settings, frame: &Fr
     match report.chosen_fit() {
         None => (Verdict::InsufficientMotion, "the poses determine no model; take more poses".to_owned()),
         Some(fit) => match weightless(report, limits).or_else(|| poor(report, fit, limits)) {
-            Some(reason) => (Verdict::PoorData, reason),
+            Some(reason) => (Verdict::PoorData, drift_n.map_or(reason, drifted)),
             None => (Verdict::Accepted, accepted(report, fit)),
         },
     }
+}
+
+fn drifted(drift_n: f64) -> String {
+    format!(
+        "the bias drifted by {drift_n:.2} N from the first pose to the last; let the sensor warm up and record the poses again"
+    )
 }
 
 fn insufficient(report: &GravityReport, limits: &Limits) -> Option<String> {

@@ -27,6 +27,7 @@ mod still;
 mod targets;
 #[cfg(test)]
 mod tests;
+mod trend;
 
 pub use compensator::{Compensator, DEFAULT_TIME_CONSTANT_S};
 pub use drift::{Drift, DriftCheck, NotChecked};

@@ -35,7 +35,22 @@ pub enum ReplayError {
         /// Rate of the recording, Hz.
         rate_hz: f64,
     },
+    /// A delay that would be rounded to none.
+    #[error(
+        "the delay of {delay_ms} ms is less than half a sample of recording {path} ({rate_hz} Hz); give 0 or at least {least_ms:.3} ms"
+    )]
+    ShortDelay {
+        path: String,
+        delay_ms: f64,
+        /// Rate of the recording, Hz.
+        rate_hz: f64,
+        least_ms: f64,
+    },
 }
+
+/// A time step longer than this (s) and this many periods is a hole: nothing is learnt or rendered across it.
+const HOLE_S: f64 = 0.05;
+const HOLE_PERIODS: f64 = 10.0;
 
 /// Mean, standard deviation, percentile and maximum of an error.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
@@ -125,6 +140,10 @@ pub struct Figures {
     pub condition: Spread,
     /// Compared samples for which the mode had no valid force and rendered zero.
     pub rejected: u64,
+    /// Holes in the recording; after each, window and delay begin anew.
+    pub holes: u64,
+    /// The longest of them, s.
+    pub longest_hole_s: f64,
     /// Computing time of one tick of identification.
     pub tick_us: TickTime,
 }
@@ -200,6 +219,14 @@ pub fn replay(recording: &Recording, options: &Options, mut each: impl FnMut(&Ro
     settings.validate()?;
     let delay = (options.delay_s * rate_hz).round() as usize;
     settings.delay_s = delay as f64 / rate_hz;
+    if delay == 0 && options.delay_s > 0.0 {
+        return Err(ReplayError::ShortDelay {
+            path: recording.path.display().to_string(),
+            delay_ms: options.delay_s * 1e3,
+            rate_hz,
+            least_ms: 0.5e3 / rate_hz,
+        });
+    }
     let mut identifier = Identifier::new(&settings)?;
     let window = (options.window_s * rate_hz).round() as usize;
     let needed = window + delay + 1;
@@ -215,14 +242,23 @@ pub fn replay(recording: &Recording, options: &Options, mut each: impl FnMut(&Ro
     }
     let mut tally = Tally::default();
     let mut gates = Chain::new(ChainSettings::default(), 1.0 / rate_hz);
+    let hole_s = HOLE_S.max(HOLE_PERIODS / rate_hz);
+    let mut begin = 0;
     for (i, sample) in recording.samples.iter().enumerate() {
+        let step_s = sample.t_s - recording.samples[i.saturating_sub(1)].t_s;
+        if step_s > hole_s {
+            begin = i;
+            tally.hole(step_s);
+            identifier.reset();
+            gates.reset();
+        }
         let start = Instant::now();
         identifier.step(sample);
         tally.tick.record(start.elapsed().as_secs_f64());
         let report = identifier.report();
         let rendered = report.prediction(options.mode);
-        let held = i.checked_sub(delay).map(|then| recording.samples[then].force_n);
-        let last_m = recording.samples[i.saturating_sub(1)].position_m;
+        let held = i.checked_sub(delay).filter(|then| *then >= begin).map(|then| recording.samples[then].force_n);
+        let last_m = recording.samples[i.saturating_sub(1).max(begin)].position_m;
         let speed_m_s = (sample.position_m - last_m).norm() * rate_hz;
         let (_, gate) =
             gates.step(&Request { force_n: rendered, age_s: 0.0, speed_m_s, hand_m: None, permitted: true });
@@ -251,10 +287,17 @@ struct Tally {
     degrees: [u64; MAX_DEGREE + 1],
     conditions: Vec<f64>,
     rejected: u64,
+    holes: u64,
+    longest_hole_s: f64,
     tick: Percentiles,
 }
 
 impl Tally {
+    fn hole(&mut self, seconds: f64) {
+        self.holes += 1;
+        self.longest_hole_s = self.longest_hole_s.max(seconds);
+    }
+
     fn add(&mut self, row: &Row, report: &Report) {
         if let Some(chosen) = usize::from(report.paper_degree).checked_sub(1) {
             for (errors, residual) in self.reconstruction.iter_mut().zip(&report.reconstruction_n) {
@@ -306,6 +349,8 @@ impl Tally {
                 max: quantile(&self.conditions, 1.0),
             },
             rejected: self.rejected,
+            holes: self.holes,
+            longest_hole_s: tidy_ms(self.longest_hole_s) * 1e-3,
             tick_us: TickTime { p50: tick.p50, p99: tick.p99, max: tick.max },
         }
     }

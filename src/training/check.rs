@@ -66,7 +66,7 @@ fn judge(evaluation: &Evaluation, [rows, free]: [usize; 2]) -> (Verdict, String)
     let wrist_n = part.methods.iter().find(|method| method.method == "no model").map_or(f64::INFINITY, worst);
     let free_n = part.no_contact.iter().map(|rest| rest.mean.abs()).fold(0.0, f64::max);
     let doubt = part.doubt_share;
-    if evaluation.trained_on_these {
+    if !evaluation.trained_on.is_empty() {
         (Verdict::PoorData, "these are the data it was trained on; record anew".to_owned())
     } else if rows < ROWS || free < OF_EACH || rows - free < OF_EACH {
         let touching = rows - free;

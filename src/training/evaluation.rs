@@ -64,8 +64,8 @@ pub struct Evaluation {
     pub outputs: Vec<String>,
     pub files: Vec<Part>,
     pub overall: Part,
-    /// Whether the model was trained on these files, so that the errors say nothing about new data.
-    pub trained_on_these: bool,
+    /// Those of these files that the model was trained on: their errors say nothing about new data.
+    pub trained_on: Vec<String>,
     /// Time of one prediction, microseconds.
     pub inference_us: Quantiles,
     /// Predictions, row by row.
@@ -120,11 +120,17 @@ pub fn evaluate(estimator: &mut Estimator, data: &DataSet) -> Result<Evaluation,
         outputs: data.outputs.clone(),
         files,
         overall: part("all".into(), &all),
-        trained_on_these: data.hash == estimator.model().origin.data_hash,
+        trained_on: trained_on(data, &estimator.model().origin.data_hashes),
         inference_us: times.quantiles(),
         predictions: methods[0].iter().flatten().map(|value| value.unwrap_or_default()).collect(),
         in_doubt,
     })
+}
+
+/// The files of this data set that are among those with these hashes.
+fn trained_on(data: &DataSet, hashes: &[String]) -> Vec<String> {
+    let files = data.files.iter().zip(&data.hashes);
+    files.filter(|(_, hash)| hashes.contains(hash)).map(|(path, _)| path.display().to_string()).collect()
 }
 
 fn method_names() -> impl Iterator<Item = &'static str> {
@@ -166,4 +172,25 @@ fn no_contact(data: &DataSet, predicted: &[Vec<Option<f32>>], rows: &[usize]) ->
         NoContact { mean, sd: variance.sqrt(), n }
     };
     (0..data.outputs.len()).map(one).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use nima_recording::tip_force::Selection;
+
+    use super::*;
+
+    #[test]
+    fn one_training_file_among_new_ones_is_found() {
+        let columns = Selection { inputs: Some(vec!["a".into()]), outputs: Some(vec!["b".into()]) };
+        let read = |files: &[(&str, &str)]| {
+            let texts: Vec<_> = files.iter().map(|(name, text)| ((*name).into(), text.as_bytes().to_vec())).collect();
+            DataSet::parse(&texts, &columns).unwrap()
+        };
+        let (old, new) = ("a,b\n1,2\n", "a,b\n3,4\n");
+        let training = read(&[("one.csv", old), ("two.csv", "a,b\n5,6\n")]);
+        let evaluation = read(&[("new.csv", new), ("renamed.csv", old)]);
+        assert_eq!(trained_on(&evaluation, &training.hashes), ["renamed.csv"]);
+        assert!(trained_on(&read(&[("new.csv", new)]), &training.hashes).is_empty());
+    }
 }

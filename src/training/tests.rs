@@ -19,7 +19,7 @@ fn world(trajectories: usize, seed: u64) -> DataSet {
         contact: None,
         files: vec![PathBuf::from("made")],
         trajectories: Vec::new(),
-        hash: "made".into(),
+        hashes: vec!["made".into()],
     };
     for k in 0..trajectories {
         let [a, b, c] = [generator.f32(), generator.f32(), generator.f32()];

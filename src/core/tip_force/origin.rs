@@ -97,8 +97,8 @@ pub struct Origin {
     pub date: String,
     /// Version of this software.
     pub software: String,
-    /// Hash of the training files (FNV-1a over their bytes).
-    pub data_hash: String,
+    /// Hash of each training file (FNV-1a over its bytes).
+    pub data_hashes: Vec<String>,
     /// Rows trained on.
     pub rows: usize,
     /// Settings of the training, sufficient to repeat it.

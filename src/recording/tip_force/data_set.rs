@@ -59,8 +59,8 @@ pub struct DataSet {
     pub files: Vec<PathBuf>,
     /// The trajectories, in order, covering all rows.
     pub trajectories: Vec<Trajectory>,
-    /// FNV-1a (64 bit) over the bytes of all files in order, as 16 hexadecimal digits.
-    pub hash: String,
+    /// FNV-1a (64 bit) over the bytes of each file, as 16 hexadecimal digits.
+    pub hashes: Vec<String>,
 }
 
 impl DataSet {
@@ -90,12 +90,12 @@ impl DataSet {
         sources: impl Iterator<Item = Result<(PathBuf, R), TipForceError>>,
         selection: &Selection,
     ) -> Result<Self, TipForceError> {
-        let mut hash = FNV_START;
         let mut set: Option<Self> = None;
         let mut histories = Vec::new();
         for source in sources {
             let (path, from) = source?;
             let open = |error: csv::Error| TipForceError::Open { path: path.clone(), reason: error.to_string() };
+            let mut hash = FNV_START;
             let hashed = Hashed { from, hash: &mut hash };
             let mut reader = ReaderBuilder::new().trim(Trim::All).comment(Some(b'#')).from_reader(hashed);
             let header = reader.headers().map_err(open)?.clone();
@@ -107,6 +107,7 @@ impl DataSet {
             }
             if let Some(set) = &mut set {
                 set.append(&path, &header, &mut reader, &mut histories)?;
+                set.hashes.push(format!("{hash:016x}"));
             }
         }
         let mut set = set.ok_or(TipForceError::TooFewRows { found: 0, needed: 1 })?;
@@ -116,7 +117,6 @@ impl DataSet {
         for history in histories {
             set.fill(history)?;
         }
-        set.hash = format!("{hash:016x}");
         Ok(set)
     }
 
@@ -150,7 +150,7 @@ impl DataSet {
             contact: Some(Vec::new()),
             files: Vec::new(),
             trajectories: Vec::new(),
-            hash: String::new(),
+            hashes: Vec::new(),
         }
     }
 
@@ -349,9 +349,11 @@ mod tests {
 
     #[test]
     fn the_hash_is_that_of_the_bytes() {
-        let hash = |text: &str| read(&[text], "a", "b").unwrap().hash;
+        let hash = |text: &str| read(&[text], "a", "b").unwrap().hashes;
         assert_eq!(hash("a,b\n1,2\n"), hash("a,b\n1,2\n"));
         assert_ne!(hash("a,b\n1,2\n"), hash("a,b\n1,3\n"));
+        let both = read(&["a,b\n1,2\n", "a,b\n1,3\n"], "a", "b").unwrap().hashes;
+        assert_eq!(both, [hash("a,b\n1,2\n"), hash("a,b\n1,3\n")].concat(), "each file has its own");
         // The published test vector of FNV-1a 64 for "a".
         assert_eq!((FNV_START ^ 0x61).wrapping_mul(FNV_PRIME), 0xaf63_dc4c_8601_ec8c);
     }

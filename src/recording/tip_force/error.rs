@@ -16,9 +16,7 @@ pub enum TipForceError {
         reason: String,
     },
     /// A required column is missing.
-    #[error(
-        "data set {path} has no column \"{column}\"; its columns are {available}; name others with --inputs and --outputs"
-    )]
+    #[error("data set {path} has no column \"{column}\"; its columns are {available}")]
     NoColumn { path: PathBuf, column: String, available: String },
     /// A field is not a finite number.
     #[error(

@@ -142,8 +142,9 @@ fn histogram(figures: &Evaluation, contact: &[bool]) -> String {
 
 fn in_words(figures: &Evaluation) -> String {
     let mut text = String::new();
-    if figures.trained_on_these {
-        text.push_str("THE MODEL WAS TRAINED ON THESE FILES: these results say nothing about new data\n");
+    if !figures.trained_on.is_empty() {
+        let files = figures.trained_on.join(", ");
+        writeln!(text, "THE MODEL WAS TRAINED ON {files}: these results say nothing about new data").ok();
     }
     for part in figures.files.iter().chain([&figures.overall]) {
         part_in_words(part, &figures.outputs, &mut text);

@@ -22,7 +22,7 @@ pub(super) struct Arguments {
     /// Other column names, with an optional factor: `x=px_mm*0.001`
     #[arg(long, value_name = "NAME=COLUMN[*SCALE]")]
     map: Vec<String>,
-    /// Rendering mode: literal, linear, dfr or anchored
+    /// Rendering mode: anchored, best, matched, nima, dfr, linear or literal
     #[arg(long, default_value = "anchored")]
     mode: Mode,
     /// Length of the identification window, ms
@@ -99,14 +99,25 @@ fn push_row(trace: &mut String, row: &Row, axes: usize) {
 }
 
 fn in_words(figures: &Figures) -> String {
-    let ratio = if figures.hold.mae > 0.0 { figures.error.mae / figures.hold.mae } else { f64::NAN };
+    let ratio = if figures.hold.mae > 0.0 {
+        format!("{:.3}", figures.error.mae / figures.hold.mae)
+    } else {
+        "none: the held force is exact".to_owned()
+    };
+    let holes = match figures.holes {
+        0 => String::new(),
+        count => format!(
+            "\nHOLES                  {count}, the longest {:.3} s: window and delay began anew after each",
+            figures.longest_hole_s
+        ),
+    };
     let reconstruction = &figures.reconstruction;
     let [d1, d2, d3, d4, d5] = figures.degree_share.map(|share| share * 100.0);
     format!(
-        "{samples} samples at {rate:.1} Hz, axes {axes}; mode {mode}, window {window:.1} ms, delay {delay:.1} ms\n\
+        "{samples} samples at {rate:.1} Hz, axes {axes}; mode {mode}, window {window:.1} ms, delay {delay:.1} ms{holes}\n\
          error at the horizon   mean {:.5}   sd {:.5}   p95 {:.5}   max {:.5}\n\
          held force (DFR)       mean {:.5}   sd {:.5}   p95 {:.5}   max {:.5}\n\
-         rendered / held        {ratio:.3}\n\
+         rendered / held        {ratio}\n\
          in-window error        N=1 {:.6}   N=2 {:.6}   N=3 {:.6}   N=4 {:.6}   N=5 {:.6}   selected {:.6}\n\
          degree chosen          N=1 {d1:.1} %   N=2 {d2:.1} %   N=3 {d3:.1} %   N=4 {d4:.1} %   N=5 {d5:.1} %   nonlinear {:.1} %\n\
          condition              p50 {:.3e}   p95 {:.3e}   max {:.3e};   rejected {}\n\

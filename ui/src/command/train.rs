@@ -6,10 +6,11 @@ use std::{
     path::PathBuf,
 };
 
+use anyhow::anyhow;
 use clap::{Args, Subcommand};
 use indicatif::{ProgressBar, ProgressStyle};
 use nima_core::tip_force::{Model, TrainingSettings};
-use nima_recording::tip_force::{DataSet, Selection, save_model};
+use nima_recording::tip_force::{DataSet, Selection, TipForceError, save_model};
 use nima_training::{Progress, train_model};
 use serde::Serialize;
 
@@ -74,7 +75,10 @@ pub(super) fn run(command: &TrainCommand) -> anyhow::Result<()> {
     let TrainCommand::TipForce(arguments) = command;
     let selection = Selection { inputs: arguments.inputs.clone(), outputs: arguments.outputs.clone() };
     output::check(&arguments.out, &arguments.data.iter().map(PathBuf::as_path).collect::<Vec<_>>())?;
-    let data = DataSet::read(&arguments.data, &selection)?;
+    let data = DataSet::read(&arguments.data, &selection).map_err(|error| match error {
+        TipForceError::NoColumn { .. } => anyhow!("{error}; name others with --inputs and --outputs"),
+        other => other.into(),
+    })?;
     let settings = TrainingSettings {
         seed: arguments.seed,
         members: arguments.members,

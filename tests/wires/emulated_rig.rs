@@ -231,12 +231,17 @@ fn the_tracker_tells_how_the_endoscope_looks_whatever_the_rig_file_has() {
     }
 }
 
+/// Readings from which the motion of the jaws is judged.
+const READINGS: usize = 4000;
+
 /// Motion of the jaws.
 #[derive(Clone, Copy, Debug)]
 struct JawsShown {
-    /// Distance from the commanded orientation over time, root mean square, degrees; infinite if devices were missing
-    /// too long.
+    /// Distance from the commanded orientation over time, root mean square, degrees; infinite if there were too few
+    /// readings.
     rms_deg: f64,
+    /// Readings of the jaws, up to [`READINGS`].
+    readings: usize,
     /// Delay, s: printed with a failure.
     #[expect(dead_code, reason = "read by its Debug form, in the message of a failure")]
     late_s: f64,
@@ -245,9 +250,10 @@ struct JawsShown {
 }
 
 impl JawsShown {
-    /// Whether the readings were timely, so that the figures show the PID and not the load of the computer.
+    /// Whether the readings were timely, so that the figures show the PID and not the load of the computer. Servos that
+    /// never answered are no matter of load.
     fn is_quiet(&self) -> bool {
-        self.period_p99_s < 0.004
+        self.period_p99_s < 0.004 && (self.readings == 0 || self.readings >= READINGS)
     }
 }
 
@@ -259,7 +265,7 @@ fn jaws_in_motion(devices: &Settings) -> JawsShown {
     let mut home = None;
     let mut way: Vec<(UnitQuaternion<f64>, UnitQuaternion<f64>)> = Vec::new();
     let (mut since_s, mut before_s, mut periods_s) = (0.0, 0.0, Vec::new());
-    while way.len() < 4000 && before_s < 15.0 {
+    while way.len() < READINGS && before_s < 15.0 {
         let now_s = begin.elapsed().as_secs_f64();
         periods_s.push(now_s - before_s);
         before_s = now_s;
@@ -280,8 +286,9 @@ fn jaws_in_motion(devices: &Settings) -> JawsShown {
     }
     periods_s.sort_by(f64::total_cmp);
     let period_p99_s = periods_s[periods_s.len() * 99 / 100];
-    if way.len() < 4000 {
-        return JawsShown { rms_deg: f64::INFINITY, late_s: f64::INFINITY, period_p99_s };
+    let readings = way.len();
+    if readings < READINGS {
+        return JawsShown { rms_deg: f64::INFINITY, readings, late_s: f64::INFINITY, period_p99_s };
     }
     // The first second is for the integral part to settle.
     let rms_deg = |late: usize| {
@@ -293,7 +300,7 @@ fn jaws_in_motion(devices: &Settings) -> JawsShown {
     };
     let late = (0..150).min_by(|a, b| rms_deg(*a).total_cmp(&rms_deg(*b))).unwrap();
     let late_s = late as f64 * (begin.elapsed().as_secs_f64() - since_s) / way.len() as f64;
-    JawsShown { rms_deg: rms_deg(0), late_s, period_p99_s }
+    JawsShown { rms_deg: rms_deg(0), readings, late_s, period_p99_s }
 }
 
 /// In real time with real connections: on a computer too busy for timely exchanges the result cannot be judged, which

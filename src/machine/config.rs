@@ -6,7 +6,7 @@ mod mounted;
 use nalgebra::{UnitQuaternion, Vector3};
 use nima_core::{
     frames::from_roll_pitch_yaw_deg,
-    impedance::{MAX_DEGREE, MAX_DELAY_S, Mode, Scales, Settings},
+    impedance::{MAX_DEGREE, MAX_DELAY_S, MAX_REST_N, Mode, Scales, Settings},
     kinematics::{Mapping, SCALES, view_from_omega},
     safety::ChainSettings,
     tip_force::Fallback,
@@ -158,6 +158,11 @@ pub struct Identification {
     pub window_s: f64,
     /// Highest degree identified, 1 to 5.
     pub max_degree: usize,
+    /// Compute every mode beside the one that is rendered, to compare them; otherwise only that one is computed.
+    pub compare: bool,
+    /// The identification rests while the force lies within this, N: there is no contact. Choose five times the noise of
+    /// the force. 0: it never rests.
+    pub rest_n: f64,
     /// Learn the full matrix `M` with cross-talk between the axes; this doubles the cost.
     pub cross_talk: bool,
     /// Fixed physical scales of the regressor's columns, from the rig's workspace.
@@ -166,7 +171,14 @@ pub struct Identification {
 
 impl Default for Identification {
     fn default() -> Self {
-        Self { window_s: 0.3, max_degree: MAX_DEGREE, cross_talk: false, scales: Scales::default() }
+        Self {
+            window_s: 0.3,
+            max_degree: MAX_DEGREE,
+            compare: false,
+            rest_n: 0.1,
+            cross_talk: false,
+            scales: Scales::default(),
+        }
     }
 }
 
@@ -204,11 +216,12 @@ impl RigConfig {
 
     /// Settings of the identification for this rig.
     pub fn settings(&self) -> Settings {
-        let Identification { window_s, max_degree, cross_talk, scales } = self.identification;
+        let Identification { window_s, max_degree, rest_n, cross_talk, scales, .. } = self.identification;
         Settings {
             rate_hz: self.rate_hz,
             window_s,
             max_degree,
+            rest_n,
             cross_talk,
             scales,
             delay_s: self.delay_s,
@@ -249,6 +262,8 @@ impl RigConfig {
         )?;
         let degree = self.identification.max_degree;
         ranges.check("identification.max_degree", degree as f64, (1..=MAX_DEGREE).contains(&degree), "1 to 5")?;
+        let rest_n = self.identification.rest_n;
+        ranges.check("identification.rest_n", rest_n, (0.0..=MAX_REST_N).contains(&rest_n), "0 to 1 N")?;
         let gates = &self.gates;
         ranges.check(
             "gates.gain",

@@ -1,6 +1,6 @@
 //! The whole loop on the virtual clock, over whole scenes, including faults.
 use nalgebra::Vector3;
-use nima_core::impedance::Mode;
+use nima_core::impedance::{Mode, ModeSet};
 use nima_machine::{
     config::RigConfig,
     messages::{Command, Fault, LoopState, Refusal, Tick},
@@ -20,7 +20,7 @@ fn plan(scene: &str) -> Plan {
 }
 
 fn error_of(summary: &Summary, mode: Mode) -> f64 {
-    summary.error[mode.index()].mae_n
+    summary.error.iter().find(|error| error.mode == mode).unwrap().mae_n
 }
 
 #[test]
@@ -33,6 +33,33 @@ fn anchored_is_nearer_to_the_truth_than_delayed_reflection_at_every_delay() {
         println!("delay {delay_s} s: {:?}", summary.error);
         assert!(anchored < dfr, "delay {delay_s} s: anchored {anchored} N, delayed reflection {dfr} N");
     }
+}
+
+#[test]
+fn a_change_of_mode_takes_no_force_from_the_hand_and_leaves_one_mode_computed() {
+    let mut plan = plan("peg_transfer");
+    (plan.rig.delay_s, plan.rig.gates.static_hold) = (0.3, true);
+    let (mut changed_s, mut least_n, mut computed) = (None, f64::INFINITY, Vec::new());
+    run_virtual(&plan, 20.0, |tick: &Tick| {
+        let felt_n = tick.rendered_n.norm();
+        match changed_s {
+            None if tick.t_s > 5.0 && felt_n > 1.5 => {
+                changed_s = Some(tick.t_s);
+                return Some(Command::SetMode(Mode::Matched));
+            }
+            Some(at_s) if tick.t_s < at_s + 0.1 => least_n = least_n.min(felt_n),
+            _ => {}
+        }
+        computed.push(tick.identification.modes);
+        None
+    })
+    .unwrap();
+    let changed_s = changed_s.expect("the tip presses on the tissue");
+    assert!(least_n > 0.8, "{least_n} N just after {changed_s} s");
+    let of = |mode| ModeSet::only(mode);
+    assert_eq!((computed[0], *computed.last().unwrap()), (of(Mode::Anchored), of(Mode::Matched)));
+    assert!(computed.contains(&of(Mode::Matched).with(Mode::Anchored)), "both while the new one learns");
+    assert!(!computed.contains(&ModeSet::ALL), "nothing else is computed");
 }
 
 #[test]

@@ -92,7 +92,8 @@ impl Anchored {
         }
     }
 
-    /// Takes the follower's newest motion and force and the window's impedance; `good`: the sample was measured, not bridged.
+    /// Takes the follower's newest motion and force and the window's impedance; `good`: the sample was measured, not bridged;
+    /// `learn`: there is something to learn from.
     pub(super) fn step(
         &mut self,
         stance: &Stance,
@@ -100,13 +101,16 @@ impl Anchored {
         force_n: Lanes,
         impedance: &Impedance,
         good: bool,
+        learn: bool,
     ) -> AnchoredModel {
         let d = self.delay_ticks;
         let usual = (self.tick > 2 * d).then(|| self.regression.mean_squares());
         let background = self.surroundings.step(stance, force_n, usual);
-        self.envelope.see(force_n, 1.0);
+        if learn {
+            self.envelope.see(force_n, 1.0);
+        }
         self.moments.push(Moment { good, stance: *stance, background, features: *features, impedance: *impedance });
-        if let Some(then) = self.moments.get(d).filter(|then| d > 0 && good && then.good).copied() {
+        if let Some(then) = self.moments.get(d).filter(|then| d > 0 && learn && good && then.good).copied() {
             let q = then.background.regressors(stance, &then.stance);
             let change = force_n - then.background.force_n;
             let forget = (-1.0 / ((2.0 * d as f64).max(0.5 * self.rate_hz))).exp();
@@ -118,7 +122,7 @@ impl Anchored {
             let newest = self.snapshots.get(0).unwrap_or(&self.parameters);
             self.regression.learn(&q, change, newest);
         }
-        self.solve();
+        self.solve(learn);
         let model = self.model(stance, &background, impedance);
         let decision = Decision {
             weights: *self.stack.weights(),
@@ -158,10 +162,10 @@ impl Anchored {
     }
 
     /// One solve per ridge, spread over a block of ticks; a block's work becomes the next block's snapshot.
-    fn solve(&mut self) {
+    fn solve(&mut self, learn: bool) {
         let phase = self.tick % self.every;
         for ridge in 0..SOLUTIONS / 2 {
-            if ridge * self.every / (SOLUTIONS / 2) == phase {
+            if learn && ridge * self.every / (SOLUTIONS / 2) == phase {
                 self.regression.solve(ridge, &mut self.parameters);
             }
         }

@@ -47,6 +47,13 @@ impl CrossTalk {
         }
     }
 
+    /// Keeps the newest solutions for one more renewal.
+    pub(super) fn rest(&mut self) {
+        if let Some(models) = self.models.get(0).copied() {
+            self.models.push(models);
+        }
+    }
+
     /// Judges the solutions of `age` renewals ago by a change of force (N) over the delay and of the features with it.
     pub(super) fn judge(&mut self, age: usize, moved: &Features, change: Lanes, bound_n: f64) {
         let Some(models) = self.models.get(age) else { return };

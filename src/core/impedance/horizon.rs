@@ -72,6 +72,23 @@ impl Horizon {
         }
     }
 
+    /// Goes on without judging: only what a later judgement needs is kept.
+    pub(super) fn rest(&mut self, features: &Features, force_n: Lanes) -> Impedance {
+        self.keep(features, force_n);
+        if self.tick.is_multiple_of(self.every)
+            && let Some(solution) = self.solutions.get(0).copied()
+        {
+            self.solutions.push(solution);
+            self.cross.iter_mut().for_each(CrossTalk::rest);
+        }
+        self.tick += 1;
+        self.newest
+    }
+
+    fn keep(&mut self, features: &Features, force_n: Lanes) {
+        self.past.push(Past { features: *features, force_n, bound_n: BOUND * self.largest_change_n });
+    }
+
     /// Judges all candidates on the newest sample and returns the one to send. `good`: the force is a measurement; `usable`:
     /// the features are those of a full filter, too.
     pub(super) fn step(
@@ -85,7 +102,7 @@ impl Horizon {
         if good && self.delay_ticks > 0 {
             self.judge(features, force_n);
         }
-        self.past.push(Past { features: *features, force_n, bound_n: BOUND * self.largest_change_n });
+        self.keep(features, force_n);
         let renew = self.tick.is_multiple_of(self.every);
         if renew {
             self.solutions.push(*solution.increments());

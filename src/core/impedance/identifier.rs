@@ -1,5 +1,7 @@
 //! The follower's end: from samples to a parcel, and a report of how good it would have been.
 
+use nalgebra::Vector3;
+
 use super::{
     MAX_DEGREE, MODES, Mode, anchored,
     best::Best,
@@ -10,7 +12,7 @@ use super::{
     literal::{self, LiteralSolver},
     matched::{Form, Matched},
     messages::{Excitation, LiteralModel, Parcel, Posture, Report, Sample, active},
-    settings::{MAX_DELAY_S, Settings, SettingsError},
+    settings::{MAX_DELAY_S, ModeSet, Settings, SettingsError},
     solution::Solution,
     track::{Track, usable_force, usable_position},
     window::{SlidingWindow, Summary as _},
@@ -58,10 +60,15 @@ pub struct Identifier {
     track: Track,
     last_t_s: f64,
     last_force_n: Lanes,
-    paper: Option<Paper>,
-    anchored: Option<Anchored>,
-    matched: Option<Matched>,
-    nima: Option<Matched>,
+    computed: ModeSet,
+    /// Ticks since there was last something to learn.
+    idle_ticks: usize,
+    paper: Option<Box<Paper>>,
+    /// The paper's linear model alone, where that is all that is computed.
+    linear: Option<Box<Paper>>,
+    anchored: Option<Box<Anchored>>,
+    matched: Option<Box<Matched>>,
+    nima: Option<Box<Matched>>,
     best: Option<Best>,
     sent: DelayLine<(Parcel, Posture)>,
     forget: f64,
@@ -93,27 +100,29 @@ impl Identifier {
         settings.validate()?;
         let delay_ticks = settings.delay_ticks(settings.delay_s);
         let block = settings.block();
-        let paper = (settings.modes.contains(Mode::Literal) || settings.modes.contains(Mode::Linear)).then(|| {
-            let degree = if settings.modes.contains(Mode::Literal) { settings.max_degree } else { 1 };
-            let empty = Gram::new(3 * degree);
-            Paper {
-                window: SlidingWindow::new(block, empty.clone(), empty),
-                solver: LiteralSolver::new(degree, settings.axes),
-            }
-        });
+        let paper = |mode: Mode, degree: usize| {
+            settings.modes.contains(mode).then(|| {
+                let empty = Gram::new(3 * degree);
+                Box::new(Paper {
+                    window: SlidingWindow::new(block, empty.clone(), empty),
+                    solver: LiteralSolver::new(degree, settings.axes),
+                })
+            })
+        };
         let anchored = settings.modes.contains(Mode::Anchored).then(|| {
             let columns = 1 + 3 * settings.max_degree;
             let ridge = settings.ridge * 2.0 * block as f64;
-            Anchored {
+            Box::new(Anchored {
                 window: SlidingWindow::new(block, Factor::new(columns), Factor::with_ridge(columns, ridge)),
                 ridge,
                 solution: Solution::new(columns),
                 horizon: Horizon::new(settings, ridge, delay_ticks),
                 correction: anchored::Anchored::new(settings, delay_ticks),
-            }
+            })
         });
-        let matched =
-            |mode: Mode, form: Form| settings.modes.contains(mode).then(|| Matched::new(form, settings, delay_ticks));
+        let matched = |mode: Mode, form: Form| {
+            settings.modes.contains(mode).then(|| Box::new(Matched::new(form, settings, delay_ticks)))
+        };
         let coupled = settings.cross_talk && settings.axes > 1;
         let max_delay = (MAX_DELAY_S * settings.rate_hz).ceil() as usize;
         Ok(Self {
@@ -121,17 +130,55 @@ impl Identifier {
             track: Track::new(settings),
             last_t_s: f64::NEG_INFINITY,
             last_force_n: Lanes::ZERO,
-            paper,
+            computed: settings.modes,
+            idle_ticks: 0,
+            paper: paper(Mode::Literal, settings.max_degree),
+            linear: paper(Mode::Linear, 1),
             anchored,
             matched: matched(Mode::Matched, if coupled { Form::Coupled } else { Form::Tissue }),
             nima: matched(Mode::Nima, Form::Paper(settings.max_degree as u8)),
             best: settings.modes.contains(Mode::Best).then(|| Best::new(settings.rate_hz)),
             sent: DelayLine::new(max_delay, (Parcel::BLANK, Posture::BLANK)),
             forget: 1.0 - (-1.0 / (ERROR_MEMORY_S * settings.rate_hz)).exp(),
-            parcel: Parcel::BLANK,
-            report: Report::BLANK,
+            parcel: Parcel { modes: settings.modes, ..Parcel::BLANK },
+            report: Report { modes: settings.modes, ..Report::BLANK },
             settings: settings.clone(),
         })
+    }
+
+    /// Computes only these modes from now on, of those in the settings (and delayed reflection, which costs nothing). A mode
+    /// that comes in begins to learn anew; one that is left out costs nothing. Nothing is allocated.
+    pub fn compute(&mut self, modes: ModeSet) {
+        let modes = modes.with(Mode::Dfr).and(self.settings.modes);
+        let before = std::mem::replace(&mut self.computed, modes);
+        let begins = |mode: Mode| modes.contains(mode) && !before.contains(mode);
+        if begins(Mode::Literal)
+            || begins(Mode::Linear)
+            || !modes.contains(Mode::Literal) && before.contains(Mode::Literal)
+        {
+            self.paper.iter_mut().chain(&mut self.linear).for_each(|paper| paper.reset());
+        }
+        if begins(Mode::Anchored) {
+            self.anchored.iter_mut().for_each(|anchored| anchored.reset());
+        }
+        if begins(Mode::Matched) {
+            self.matched.iter_mut().for_each(|matched| matched.reset());
+        }
+        if begins(Mode::Nima) {
+            self.nima.iter_mut().for_each(|nima| nima.reset());
+        }
+        if begins(Mode::Best) {
+            self.best.iter_mut().for_each(Best::reset);
+        }
+        self.idle_ticks = 0;
+        let Parcel { t_s, force_n, fresh, .. } = self.parcel;
+        self.parcel = Parcel { t_s, force_n, fresh, modes, ..Parcel::BLANK };
+        let Report { t_s, learnt, rejected, restarts, literal_failures, mut horizon_error_n, .. } = self.report;
+        for mode in Mode::ALL.into_iter().filter(|mode| begins(*mode) || !modes.contains(*mode)) {
+            horizon_error_n[mode.index()] = 0.0;
+        }
+        self.report =
+            Report { t_s, modes, learnt, rejected, restarts, literal_failures, horizon_error_n, ..Report::BLANK };
     }
 
     /// Takes one sample.
@@ -154,19 +201,42 @@ impl Identifier {
         let now = self.track.step(position);
         let increments = self.track.increments();
         let usable = good && self.track.settled();
+        let learn = !self.rests(good);
+        self.report.resting = !learn;
+        self.report.learnt += u64::from(learn && good);
 
         self.parcel.t_s = self.last_t_s;
         self.parcel.force_n = self.last_force_n.vector();
         self.parcel.fresh = good;
-        self.step_paper(&increments, usable);
-        self.step_anchored(&now, good, usable);
-        self.step_matched(&now, good, usable);
+        if learn {
+            self.step_paper(&increments, usable);
+        }
+        self.step_anchored(&now, good, usable, learn);
+        self.step_matched(&now, good, usable, learn);
         self.sent.push((self.parcel, now));
         self.predict(&now, &increments, good);
     }
 
+    /// Whether nothing is to be learnt: for as long as a window there was no force, and none was rendered.
+    fn rests(&mut self, good: bool) -> bool {
+        let rest_n = self.settings.rest_n;
+        let within = |force_n: &Vector3<f64>| force_n.norm_squared() <= rest_n * rest_n;
+        let idle = rest_n > 0.0
+            && (!good || within(&self.last_force_n.vector()))
+            && self.report.prediction_n.iter().all(within);
+        self.idle_ticks = if idle { self.idle_ticks.saturating_add(1) } else { 0 };
+        self.idle_ticks > 2 * self.settings.block()
+    }
+
     fn step_paper(&mut self, increments: &Features, usable: bool) {
-        let Some(Paper { window, solver }) = &mut self.paper else { return };
+        let of_mode = if self.computed.contains(Mode::Literal) {
+            &mut self.paper
+        } else if self.computed.contains(Mode::Linear) {
+            &mut self.linear
+        } else {
+            return;
+        };
+        let Some(Paper { window, solver }) = of_mode.as_deref_mut() else { return };
         let mut row = window.current().row(increments, self.last_force_n);
         if !usable {
             row = Gram::BLANK_ROW;
@@ -187,8 +257,15 @@ impl Identifier {
         }
     }
 
-    fn step_anchored(&mut self, now: &Posture, good: bool, usable: bool) {
-        let Some(Anchored { window, ridge, solution, horizon, correction }) = &mut self.anchored else { return };
+    fn step_anchored(&mut self, now: &Posture, good: bool, usable: bool, learn: bool) {
+        let of_mode = self.anchored.as_deref_mut().filter(|_| self.computed.contains(Mode::Anchored));
+        let Some(Anchored { window, ridge, solution, horizon, correction }) = of_mode else { return };
+        if !learn {
+            let impedance = horizon.rest(&now.features, self.last_force_n);
+            let (stance, features) = (&now.stance, &now.features);
+            self.parcel.anchored = correction.step(stance, features, self.last_force_n, &impedance, good, false);
+            return;
+        }
         let columns = solution.columns();
         let mut row = [Lanes::ZERO; MAX_ROW];
         if usable {
@@ -199,7 +276,7 @@ impl Identifier {
         window.push(&row);
         solution.solve(window.current());
         let impedance = horizon.step(solution, &now.features, self.last_force_n, good, usable);
-        let model = correction.step(&now.stance, &now.features, self.last_force_n, &impedance, good);
+        let model = correction.step(&now.stance, &now.features, self.last_force_n, &impedance, good, true);
         self.parcel.anchored = model;
         self.report.columns = impedance.columns;
         self.report.coupled = impedance.coupled;
@@ -213,14 +290,21 @@ impl Identifier {
         self.report.excitation = excitation(window.current(), *ridge, &self.settings);
     }
 
-    fn step_matched(&mut self, now: &Posture, good: bool, usable: bool) {
+    fn step_matched(&mut self, now: &Posture, good: bool, usable: bool, learn: bool) {
+        let computed = self.computed;
+        let matched = self.matched.as_mut().filter(|_| computed.contains(Mode::Matched));
+        let nima = self.nima.as_mut().filter(|_| computed.contains(Mode::Nima));
+        if !learn {
+            matched.into_iter().chain(nima).for_each(|matched| matched.rest());
+            return;
+        }
         let sent = self.sent.get(self.delay_ticks.max(1) - 1).map(|(parcel, _)| parcel);
         let force = Some(self.last_force_n);
-        if let Some(matched) = &mut self.matched {
+        if let Some(matched) = matched {
             self.parcel.matched = *matched.step(now, force.filter(|_| good), sent.map(|parcel| &parcel.matched));
             self.report.matched_degree = self.parcel.matched.degree;
         }
-        if let Some(nima) = &mut self.nima {
+        if let Some(nima) = nima {
             self.parcel.nima = *nima.step(now, force.filter(|_| usable), sent.map(|parcel| &parcel.nima));
             self.report.nima_degree = self.parcel.nima.degree;
         }
@@ -231,13 +315,14 @@ impl Identifier {
 
     /// What every mode renders for this tick from the parcel one delay old, and its running error.
     fn predict(&mut self, now: &Posture, increments: &Features, good: bool) {
-        let modes = self.settings.modes;
+        let modes = self.computed;
         let forces = match self.sent.get(self.delay_ticks) {
             Some((parcel, then)) if parcel.t_s.is_finite() => parcel.render(now, then, increments),
             _ => [None; MODES],
         };
         let said = [Mode::Anchored, Mode::Matched].map(|mode| forces[mode.index()]);
-        if let (Some(best), [Some(anchored), Some(matched)], true) = (&mut self.best, said, good) {
+        let judges = good && !self.report.resting;
+        if let (Some(best), [Some(anchored), Some(matched)], true) = (&mut self.best, said, judges) {
             best.judge(anchored, matched, self.last_force_n, now.stance.pace);
         }
         for mode in Mode::ALL {
@@ -270,7 +355,7 @@ impl Identifier {
 
     /// The paper's solutions of every degree on the newest window; `None` if neither literal nor linear is computed.
     pub fn literal(&self) -> Option<&LiteralSolver> {
-        self.paper.as_ref().map(|paper| &paper.solver)
+        self.paper.as_ref().or(self.linear.as_ref()).map(|paper| &paper.solver)
     }
 
     /// Changes the programmed delay, exact to one sample, at most [`MAX_DELAY_S`]. The judge of anchored rendering begins anew.
@@ -290,15 +375,9 @@ impl Identifier {
         self.track.reset();
         self.last_t_s = f64::NEG_INFINITY;
         self.last_force_n = Lanes::ZERO;
-        if let Some(paper) = &mut self.paper {
-            paper.window.reset();
-            paper.solver.reset();
-        }
-        if let Some(anchored) = &mut self.anchored {
-            anchored.window.reset();
-            anchored.horizon.reset();
-            anchored.correction.reset();
-        }
+        self.idle_ticks = 0;
+        self.paper.iter_mut().chain(&mut self.linear).for_each(|paper| paper.reset());
+        self.anchored.iter_mut().for_each(|anchored| anchored.reset());
         for matched in [&mut self.matched, &mut self.nima].into_iter().flatten() {
             matched.reset();
         }
@@ -306,8 +385,23 @@ impl Identifier {
             best.reset();
         }
         self.sent.clear();
-        self.parcel = Parcel::BLANK;
-        self.report = Report::BLANK;
+        self.parcel = Parcel { modes: self.computed, ..Parcel::BLANK };
+        self.report = Report { modes: self.computed, ..Report::BLANK };
+    }
+}
+
+impl Paper {
+    fn reset(&mut self) {
+        self.window.reset();
+        self.solver.reset();
+    }
+}
+
+impl Anchored {
+    fn reset(&mut self) {
+        self.window.reset();
+        self.horizon.reset();
+        self.correction.reset();
     }
 }
 

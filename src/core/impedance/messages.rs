@@ -9,6 +9,7 @@ use super::{
     literal,
     matched::MatchedModel,
     regressors::{Stance, motion_changes},
+    settings::ModeSet,
 };
 use crate::signal::{LANES, Lanes};
 
@@ -188,6 +189,8 @@ pub struct Parcel {
     pub force_n: Vector3<f64>,
     /// Whether that sample was good.
     pub fresh: bool,
+    /// The modes that were computed; nothing is rendered in the others.
+    pub modes: ModeSet,
     /// The paper's choice.
     pub literal: LiteralModel,
     /// The paper's linear model.
@@ -208,6 +211,7 @@ impl Parcel {
         t_s: f64::NEG_INFINITY,
         force_n: Vector3::new(0.0, 0.0, 0.0),
         fresh: false,
+        modes: ModeSet::only(Mode::Dfr),
         literal: LiteralModel::NONE,
         linear: LiteralModel::NONE,
         anchored: AnchoredModel::NONE,
@@ -227,7 +231,7 @@ impl Parcel {
         let anchored = self.anchored.force(measured, now, then);
         let matched = self.matched.force(now);
         let best = matched.map_or(anchored, |matched| matched + (anchored - matched) * self.anchored_weight);
-        [
+        let mut forces = [
             self.literal.force(increments),
             self.linear.force(increments),
             Some(measured),
@@ -235,7 +239,11 @@ impl Parcel {
             matched,
             self.nima.force(now),
             Some(best),
-        ]
+        ];
+        for mode in Mode::ALL.into_iter().filter(|mode| !self.modes.contains(*mode)) {
+            forces[mode.index()] = None;
+        }
+        forces
     }
 }
 
@@ -273,6 +281,12 @@ pub struct Excitation {
 pub struct Report {
     /// Time of the newest sample (s).
     pub t_s: f64,
+    /// The modes that are computed.
+    pub modes: ModeSet,
+    /// Whether the identification rests: there is no contact, and nothing to learn.
+    pub resting: bool,
+    /// Samples that were learnt from so far.
+    pub learnt: u64,
     /// For each mode the force (N) for this time made from data up to `t - D` and the follower's motion at `t`.
     pub prediction_n: [Vector3<f64>; MODES],
     /// Whether that prediction exists and is finite; it is zero otherwise.
@@ -334,6 +348,9 @@ impl Report {
     /// Nothing measured yet.
     pub const BLANK: Self = Self {
         t_s: f64::NEG_INFINITY,
+        modes: ModeSet::only(Mode::Dfr),
+        resting: false,
+        learnt: 0,
         prediction_n: [Vector3::new(0.0, 0.0, 0.0); MODES],
         prediction_valid: [false; MODES],
         reconstruction_n: [Vector3::new(0.0, 0.0, 0.0); MAX_DEGREE],

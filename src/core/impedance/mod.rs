@@ -48,6 +48,8 @@ mod window;
 #[cfg(test)]
 mod comparison_tests;
 #[cfg(test)]
+mod rest_tests;
+#[cfg(test)]
 mod tests;
 
 pub use factor::Factor;
@@ -59,7 +61,7 @@ pub use matched::{Form, MatchedModel};
 pub use messages::{AnchoredModel, Excitation, Impedance, LiteralModel, Parcel, Rendered, Report, Sample};
 pub use mode::{MODES, Mode, ParseModeError};
 pub use renderer::Renderer;
-pub use settings::{MAX_DELAY_S, ModeSet, Settings, SettingsError};
+pub use settings::{MAX_DELAY_S, MAX_REST_N, ModeSet, Settings, SettingsError};
 pub use solution::Solution;
 pub use window::{SlidingWindow, Summary};
 

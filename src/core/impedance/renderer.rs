@@ -77,13 +77,7 @@ impl Renderer {
         // Not that much motion yet: the anchor is now, i.e. no correction.
         let age = self.delay_ticks.saturating_add(self.waiting);
         let then = self.postures.get(age).unwrap_or(&now);
-        let mut forces = parcel.render(&now, then, &increments);
-        for mode in super::Mode::ALL {
-            if !self.settings.modes.contains(mode) {
-                forces[mode.index()] = None;
-            }
-        }
-        Rendered::new(&forces)
+        Rendered::new(&parcel.render(&now, then, &increments))
     }
 
     /// Changes the programmed delay, exact to one sample, at most [`MAX_DELAY_S`].

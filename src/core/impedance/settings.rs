@@ -8,6 +8,9 @@ use crate::signal::DifferentiatorKind;
 /// Longest programmed delay of the link (s); the rings are made for it.
 pub const MAX_DELAY_S: f64 = 1.0;
 
+/// Largest force that may count as none (N).
+pub const MAX_REST_N: f64 = 1.0;
+
 /// Fewest and most samples in a window.
 const WINDOW_SAMPLES: std::ops::RangeInclusive<f64> = 10.0..=10_000.0;
 
@@ -46,6 +49,12 @@ impl ModeSet {
     pub const fn contains(self, mode: Mode) -> bool {
         self.0[mode.index()]
     }
+
+    /// The modes that are in both sets.
+    #[must_use]
+    pub fn and(self, other: Self) -> Self {
+        Self(std::array::from_fn(|mode| self.0[mode] && other.0[mode]))
+    }
 }
 
 impl Default for ModeSet {
@@ -71,8 +80,11 @@ pub struct Settings {
     pub axes: usize,
     /// Physical scales of the columns.
     pub scales: Scales,
-    /// The modes to compute.
+    /// The modes to compute; [`Identifier::compute`](super::Identifier::compute) can leave some of them out for a while.
     pub modes: ModeSet,
+    /// The identification rests while the force measured and the forces rendered lie within this (N): there is no contact,
+    /// and nothing to learn. 0: it never rests.
+    pub rest_n: f64,
     /// Whether the force on each axis may depend on the motion of the others (the full `M`, 45 columns, in anchored
     /// rendering). Costs 4 us a tick and 21 us more in every fifth at 1 kHz; gained 1 % at best on simulated reaches over
     /// inclined tissue, nothing on palpation, so it is off unless asked for. The report shows the gain.
@@ -94,6 +106,7 @@ impl Default for Settings {
             axes: AXES,
             scales: Scales::default(),
             modes: ModeSet::ALL,
+            rest_n: 0.0,
             cross_talk: false,
             differentiator: DifferentiatorKind::default(),
             ridge: 1e-6,
@@ -143,6 +156,9 @@ impl Settings {
                 return Err(E::Scale { name, value });
             }
         }
+        if !(0.0..=MAX_REST_N).contains(&self.rest_n) {
+            return Err(E::Rest { rest_n: self.rest_n });
+        }
         if !(0.0..=1e6).contains(&self.ridge) {
             return Err(E::Ridge { ridge: self.ridge });
         }
@@ -189,6 +205,8 @@ pub enum SettingsError {
         name: &'static str,
         value: f64,
     },
+    #[error("the force at which the identification rests is {rest_n} N; it must lie between 0 and {MAX_REST_N} N")]
+    Rest { rest_n: f64 },
     #[error("the ridge is {ridge}; it must lie between 0 and 1e6")]
     Ridge { ridge: f64 },
 }

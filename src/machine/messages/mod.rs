@@ -26,6 +26,8 @@ pub type LoopState = State<Fault>;
 pub enum Command {
     /// Render with this mode from the next tick on.
     SetMode(Mode),
+    /// Compute every mode beside the one that is rendered, to compare them (true), or only that one (false).
+    Compare(bool),
     /// Feedback gain, 0 to 1; a value above 1 is refused here, see [`Command::SetGainAboveOne`].
     SetGain(f64),
     /// Feedback gain up to 3, which the operator must confirm separately.

@@ -223,7 +223,10 @@ impl Meters {
         };
         let arms: Vec<ArmEnd> = of.pairs().map(ArmEnd::of).collect();
         let worst = arms.iter().max_by_key(|arm| attention(arm.final_state));
-        let error = of.pairs().flat_map(|pair| Mode::ALL.map(|mode| of_mode(pair, mode)));
+        let computed = |pair: &Pair, mode: &Mode| pair.accuracy().of(*mode).count > 0;
+        let error = of.pairs().flat_map(|pair| {
+            Mode::ALL.into_iter().filter(move |mode| computed(pair, mode)).map(move |mode| of_mode(pair, mode))
+        });
         Summary {
             clock,
             ticks: self.ticks,

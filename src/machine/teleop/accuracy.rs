@@ -1,7 +1,7 @@
 //! Running error of each mode's force against the true force; no samples are stored.
 
 use nalgebra::Vector3;
-use nima_core::impedance::{MODES, Mode, Rendered};
+use nima_core::impedance::{MODES, Mode, ModeSet, Rendered};
 
 /// Mean, standard deviation and maximum of a vector error.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -47,9 +47,10 @@ pub struct Accuracy {
 }
 
 impl Accuracy {
-    /// Adds one tick. A mode without a valid force renders zero, so its error is the whole force.
-    pub fn add(&mut self, rendered: &Rendered, truth_n: &Vector3<f64>) {
-        for mode in Mode::ALL {
+    /// Adds one tick of the modes that are computed. A mode without a valid force renders zero, so its error is the whole
+    /// force.
+    pub fn add(&mut self, rendered: &Rendered, computed: ModeSet, truth_n: &Vector3<f64>) {
+        for mode in Mode::ALL.into_iter().filter(|mode| computed.contains(*mode)) {
             let force_n = rendered.force(mode);
             self.invalid[mode.index()] += u64::from(force_n.is_none());
             self.by_mode[mode.index()].add(&(force_n.unwrap_or_else(Vector3::zeros) - truth_n));

@@ -63,6 +63,9 @@ pub struct Pair<L: Link = ProgrammedLink> {
     hand_eye: HandEye,
     engaged_s: f64,
     mode: Mode,
+    /// The mode that is rendered until the new one has something to render.
+    before: Option<Mode>,
+    compares: bool,
     delay_s: f64,
     rate_hz: f64,
     /// Settings of the identification; the conversion of a delay to ticks is defined there only.
@@ -122,6 +125,8 @@ impl<L: Link> Pair<L> {
             hand_eye: HandEye::new(rig.teleoperation.mapping(), at_rest),
             engaged_s: 0.0,
             mode: rig.mode,
+            before: None,
+            compares: rig.identification.compare,
             delay_s: rig.delay_s,
             rate_hz: rig.rate_hz,
             follower_step_max_m: rig.follower_speed_max_m_s / rig.rate_hz,
@@ -153,6 +158,7 @@ impl<L: Link> Pair<L> {
             events: [None; EVENTS_PER_TICK_MAX],
         };
         this.set_delay(rig.delay_s);
+        this.compute();
         Ok(this)
     }
 
@@ -256,9 +262,10 @@ impl<L: Link> Pair<L> {
         }
         let permits = self.state().permits();
         let permitted = permits.coupled && self.force.source.is_usable();
+        let force_n = self.in_force(&rendered);
         let ramp = ((now_s - self.engaged_s) / RAMP_S).clamp(0.0, 1.0);
         let (rendered_n, gates) = self.chain.step(&Request {
-            force_n: rendered.force(self.mode).map(|force_n| force_n * ramp),
+            force_n: force_n.map(|force_n| force_n * ramp),
             age_s,
             speed_m_s: self.hand_speed_m_s,
             // On the axes of the force. The travel of the hand itself, before scaling. A missing sample hides no
@@ -269,7 +276,7 @@ impl<L: Link> Pair<L> {
         self.hand_is_gone |= gates.reason(Gate::Governor) == Reason::HandGone;
         let gripper_n = self.grip(inputs.as_ref(), age_s, permitted);
         if inputs.is_some() {
-            self.accuracy.add(&rendered, &self.force.tip_n);
+            self.accuracy.add(&rendered, self.identifier.report().modes, &self.force.tip_n);
         }
         let outputs = Outputs {
             drives: permits.drives,

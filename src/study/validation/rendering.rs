@@ -69,7 +69,8 @@ impl Axes {
 /// [`ValidationError`] if the scene or a setting is invalid.
 pub fn study(seed: u64, delay_s: f64) -> Result<Rendering, ValidationError> {
     let scene = Scene { seed, ..Scene::load(SCENE)? };
-    let rig = RigConfig { delay_s, ..RigConfig::load("simulated")? };
+    let mut rig = RigConfig { delay_s, ..RigConfig::load("simulated")? };
+    rig.identification.compare = true;
     let plan = Plan { rig, scene, calibrations: Default::default(), engage: true };
     let (mut nonlinear, mut linear) = (Axes::default(), Axes::default());
     let mut at_horizon: [Axes; MODES] = std::array::from_fn(|_| Axes::default());

@@ -26,13 +26,14 @@ use crate::{
 };
 
 #[derive(Debug, Args)]
+#[expect(clippy::struct_excessive_bools, reason = "switches of a command")]
 pub(super) struct Arguments {
     #[command(flatten)]
     setup: Setup,
     /// Seconds to run (default: until Ctrl-C; 60 with --virtual)
     #[arg(long, value_name = "S", value_parser = positive_seconds, allow_negative_numbers = true)]
     seconds: Option<f64>,
-    /// Rendering mode: literal, linear, dfr or anchored (default: the rig's)
+    /// Rendering mode: anchored, best, matched, nima, dfr, linear or literal (default: the rig's)
     #[arg(long)]
     mode: Option<Mode>,
     /// One-way delay of the link in ms (default: the rig's)
@@ -41,6 +42,9 @@ pub(super) struct Arguments {
     /// Let the force on each axis depend on the motion of all axes (anchored mode; slower)
     #[arg(long)]
     cross_talk: bool,
+    /// Compute every mode and compare their errors (default: only the mode that is rendered, beside delayed reflection)
+    #[arg(long)]
+    compare: bool,
     /// Run on a virtual clock, as fast as this computer can
     #[arg(long = "virtual")]
     virtual_clock: bool,
@@ -65,6 +69,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     rig.mode = arguments.mode.unwrap_or(rig.mode);
     rig.delay_s = arguments.delay_ms.map_or(rig.delay_s, |delay_ms| delay_ms * 1e-3);
     rig.identification.cross_talk |= arguments.cross_talk;
+    rig.identification.compare |= arguments.compare;
     rig.scheduling = arguments.scheduling.unwrap_or(rig.scheduling);
     rig.validate()?;
     if arguments.virtual_clock && rig.devices.is_some() {

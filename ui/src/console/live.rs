@@ -9,7 +9,7 @@ use std::{
 
 use nalgebra::Vector3;
 use nima_core::{
-    impedance::{MODES, Mode},
+    impedance::{MODES, Mode, ModeSet},
     safety::ChainSettings,
     statistics::Percentiles,
 };
@@ -216,6 +216,11 @@ impl Live {
     /// Newest tick of the right arm pair, used for everything that is common to both.
     pub const fn first_tick(&self) -> Option<&Tick> {
         self.tick_of(Side::Right)
+    }
+
+    /// Whether every mode is computed, to compare them.
+    pub fn compares(&self) -> bool {
+        self.first_tick().is_some_and(|tick| tick.identification.modes == ModeSet::ALL)
     }
 
     /// The arm pairs of the loop; the right one always exists.

@@ -4,6 +4,7 @@ use std::{
     process::{Command, Output},
 };
 
+use nima_core::impedance::Mode;
 use serde_json::Value;
 
 fn nima(arguments: &[&str]) -> Output {
@@ -89,6 +90,29 @@ fn identify_prints_every_field_of_its_json() {
         figures["error"]["mae"].as_f64() < figures["hold"]["mae"].as_f64(),
         "anchored is better than holding: {figures}"
     );
+}
+
+#[test]
+fn a_hole_in_a_recording_is_told_and_nothing_is_made_of_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let later = |seconds: f64| {
+        move |i: usize, row: &mut String| {
+            if i >= 1000 {
+                let (_, rest) = row.split_once(',').unwrap();
+                *row = format!("{},{rest}", i as f64 * 1e-3 + seconds);
+            }
+        }
+    };
+    let whole = recording(folder.path(), "whole.csv", 2000, |_, _| {});
+    let hole = recording(folder.path(), "hole.csv", 2000, later(2.0));
+    let figures = |path: &Path| json(&["identify", path.to_str().unwrap(), "--delay-ms", "50", "--json"]);
+    assert_eq!((figures(&whole)["holes"].as_u64(), figures(&whole)["compared"].as_u64()), (Some(0), Some(1950)));
+    let figures = figures(&hole);
+    assert_eq!((figures["holes"].as_u64(), figures["longest_hole_s"].as_f64()), (Some(1), Some(2.001)));
+    assert_eq!(figures["compared"].as_u64(), Some(1900), "the delay fills again after the hole");
+    let output = nima(&["identify", hole.to_str().unwrap()]);
+    let text = String::from_utf8(output.stdout).unwrap();
+    assert!(text.contains("HOLES                  1, the longest 2.001 s") && !text.contains("NaN"), "{text}");
 }
 
 #[test]
@@ -179,6 +203,7 @@ fn identify_refuses_bad_recordings_and_writes_nothing() {
     refuse(&good, &["--window-ms", "2"], &["window"]);
     refuse(&good, &["--delay-ms", "5000"], &["delay"]);
     refuse(&good, &["--delay-ms", "-1"], &["delay"]);
+    refuse(&good, &["--delay-ms", "0.4"], &["0.4 ms", "half a sample", "0 or at least 0.500 ms"]);
     refuse(&good, &["--delay-ms", "NaN"], &["delay"]);
     refuse(&good, &["--max-degree", "9"], &["degree"]);
     let own = good.to_str().unwrap();
@@ -198,9 +223,12 @@ fn run_on_the_virtual_clock_reports_everything() {
     for quantile in ["p50", "p99", "p999", "max"] {
         assert!(summary["wake_us"][quantile].is_f64() && summary["work_us"][quantile].is_f64());
     }
-    let modes: Vec<_> =
-        summary["error"].as_array().unwrap().iter().map(|e| e["mode"].as_str().unwrap().to_owned()).collect();
-    assert_eq!(modes, nima_core::impedance::Mode::ALL.map(nima_core::impedance::Mode::name));
+    let modes = |summary: &Value| -> Vec<String> {
+        summary["error"].as_array().unwrap().iter().map(|e| e["mode"].as_str().unwrap().to_owned()).collect()
+    };
+    assert_eq!(modes(&summary), ["dfr", "anchored"], "only what is needed is computed");
+    let compared = json(&["run", "--virtual", "--seconds", "5", "--compare", "--json"]);
+    assert_eq!(modes(&compared), Mode::ALL.map(Mode::name));
 }
 
 #[test]

@@ -140,6 +140,21 @@ impl Matched {
         &self.model
     }
 
+    /// Goes on without learning: what was learnt stays in force.
+    pub(super) fn rest(&mut self) {
+        let phase = self.tick % self.every;
+        for ridge in 0..RIDGES_S.len() {
+            if phase != self.phase(ridge) {
+                continue;
+            }
+            for expert in self.experts.iter_mut().filter(|expert| expert.ridge == ridge) {
+                expert.past.push(expert.parameters);
+            }
+        }
+        self.drift.hold();
+        self.tick += 1;
+    }
+
     fn learn(&mut self, posture: &Posture, force_n: Lanes) {
         if !self.started {
             (self.started, self.origin) = (true, self.form.position(posture));

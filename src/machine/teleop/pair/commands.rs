@@ -1,8 +1,8 @@
 //! Commands and faults: the changes of state of a pair.
 
-use nalgebra::UnitQuaternion;
+use nalgebra::{UnitQuaternion, Vector3};
 use nima_core::{
-    impedance::MAX_DELAY_S,
+    impedance::{MAX_DELAY_S, Mode, ModeSet, Rendered},
     kinematics::Target,
     safety::{Change, MAX_GAIN, Wish},
 };
@@ -29,7 +29,11 @@ impl<L: Link> Pair<L> {
     /// [`Refusal`] if the command is not allowed in this state, its value is out of range, or a measurement forbids it.
     pub fn obey(&mut self, command: Command, t_s: f64) -> Result<(), Refusal> {
         match command {
-            Command::SetMode(mode) => self.mode = mode,
+            Command::SetMode(mode) => self.set_mode(mode),
+            Command::Compare(compares) => {
+                self.compares = compares;
+                self.compute();
+            }
             Command::SetGain(gain) if (0.0..=1.0).contains(&gain) => self.chain.set_ordinary_gain(gain),
             Command::SetGainAboveOne(gain) if (0.0..=MAX_GAIN).contains(&gain) => {
                 self.chain.set_gain_above_one(gain);
@@ -65,6 +69,33 @@ impl<L: Link> Pair<L> {
             _ => return Err(Refusal::OutOfRange),
         }
         Ok(())
+    }
+
+    fn set_mode(&mut self, mode: Mode) {
+        let last = std::mem::replace(&mut self.mode, mode);
+        if last != mode {
+            self.before = Some(last);
+            self.compute();
+        }
+    }
+
+    /// The force of the mode chosen; until it has one, that of the mode before, so that a change of mode takes no force from
+    /// the hand.
+    pub(super) fn in_force(&mut self, rendered: &Rendered) -> Option<Vector3<f64>> {
+        let force_n = rendered.force(self.mode);
+        let Some(before) = self.before else { return force_n };
+        if force_n.is_some() {
+            self.before = None;
+            self.compute();
+        }
+        force_n.or_else(|| rendered.force(before))
+    }
+
+    /// Computes the modes that are asked for, and no others.
+    pub(super) fn compute(&mut self) {
+        let chosen = ModeSet::only(self.mode);
+        let both = self.before.map_or(chosen, |before| chosen.with(before));
+        self.identifier.compute(if self.compares { ModeSet::ALL } else { both });
     }
 
     pub(super) fn set_delay(&mut self, delay_s: f64) {

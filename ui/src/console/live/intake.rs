@@ -83,7 +83,9 @@ impl Live {
         let of_matched = matches!(tick.mode, Mode::Matched | Mode::Nima | Mode::Best);
         let identification = &tick.identification;
         self.degrees.push(if of_matched { identification.degree_of(tick.mode) } else { identification.degree });
-        self.paper_degrees.push(tick.identification.paper_degree);
+        if identification.modes.contains(Mode::Literal) {
+            self.paper_degrees.push(identification.paper_degree);
+        }
         if before.is_some_and(|before| before.t_s.floor() < tick.t_s.floor()) {
             self.trend_n.push_back(tick.identification.horizon_error_n);
             if self.trend_n.len() > TREND_S {

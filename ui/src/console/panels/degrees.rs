@@ -2,6 +2,7 @@
 
 use crate::console::text;
 use egui::{Align2, Rect, Sense, Ui, vec2};
+use nima_core::impedance::Mode;
 
 use crate::console::{
     live::{DEGREES_S, Live},
@@ -14,20 +15,19 @@ const CHART_HEIGHT: f32 = 92.0;
 
 /// The panel.
 pub fn degrees_ui(ui: &mut Ui, live: &Live) {
+    let compares = live.first_tick().is_some_and(|tick| tick.identification.modes.contains(Mode::Literal));
     ui.horizontal(|ui| {
         key_ui(ui, theme::now().rendered, text::degrees::KEY_OURS, text::degrees::KEY_OURS_HOVER);
-        key_ui(ui, theme::now().reference, text::degrees::KEY_PAPER, text::degrees::KEY_PAPER_HOVER);
+        if compares {
+            key_ui(ui, theme::now().reference, text::degrees::KEY_PAPER, text::degrees::KEY_PAPER_HOVER);
+        }
         ui.label(small(text::degrees::last_minutes(DEGREES_S / 60.0)));
     });
-    chart_ui(ui, live);
+    chart_ui(ui, live, compares);
     let share = |share: f64| format!("{:.0} %", 100.0 * share);
     figure(ui, text::degrees::NONLINEAR_OURS, share(live.degrees.nonlinear()), text::degrees::NONLINEAR_OURS_HOVER);
-    figure(
-        ui,
-        text::degrees::NONLINEAR_PAPER,
-        share(live.paper_degrees.nonlinear()),
-        text::degrees::NONLINEAR_PAPER_HOVER,
-    );
+    let papers = if compares { share(live.paper_degrees.nonlinear()) } else { text::degrees::NOT_COMPUTED.to_owned() };
+    figure(ui, text::degrees::NONLINEAR_PAPER, papers, text::degrees::NONLINEAR_PAPER_HOVER);
     quality_ui(ui, live);
 }
 
@@ -57,7 +57,7 @@ fn key_ui(ui: &mut Ui, colour: egui::Color32, name: &str, meaning: &str) {
 }
 
 /// Six pairs of bars, degrees 0 to 5, with their shares above.
-fn chart_ui(ui: &mut Ui, live: &Live) {
+fn chart_ui(ui: &mut Ui, live: &Live, compares: bool) {
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), CHART_HEIGHT + 20.0), Sense::hover());
     let (ours, papers) = (live.degrees.shares(), live.paper_degrees.shares());
     let words = |shares: &[f64; DEGREES]| {
@@ -69,7 +69,11 @@ fn chart_ui(ui: &mut Ui, live: &Live) {
             .join("   ")
     };
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, text::degrees::chosen(&words(&ours))));
-    response.on_hover_text(text::degrees::both(&words(&ours), &words(&papers)));
+    response.on_hover_text(if compares {
+        text::degrees::both(&words(&ours), &words(&papers))
+    } else {
+        text::degrees::chosen(&words(&ours))
+    });
     let painter = ui.painter();
     let ground = Rect::from_min_size(rect.min, vec2(rect.width(), CHART_HEIGHT));
     painter.rect_filled(ground, 3.0, theme::now().groove);
@@ -77,10 +81,11 @@ fn chart_ui(ui: &mut Ui, live: &Live) {
     let width = 0.32 * cell;
     for degree in 0..DEGREES {
         let middle = ground.left() + (degree as f32 + 0.5) * cell;
-        for (share, left, colour) in [
+        let bars = [
             (ours[degree], middle - width - 1.0, theme::now().rendered),
             (papers[degree], middle + 1.0, theme::now().reference),
-        ] {
+        ];
+        for (share, left, colour) in bars.into_iter().take(1 + usize::from(compares)) {
             let height = (CHART_HEIGHT - 18.0) * share as f32;
             let filled = Rect::from_min_max(
                 egui::pos2(left, ground.bottom() - height.max(1.0)),

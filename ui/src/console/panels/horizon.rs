@@ -1,11 +1,13 @@
 //! Error of each mode at the horizon, which is the delay of the link.
 
 use egui::{Align2, Rect, Sense, Ui, vec2};
-use nima_core::impedance::Mode;
+use nima_core::impedance::{Mode, ModeSet};
+use nima_machine::messages::Command;
 
 use super::{mode_meaning, mode_name};
 use crate::console::{
     live::{Live, TREND_S},
+    outbox::Outbox,
     text, theme,
     widgets::{Sign, bar, sign, small, three_digits},
 };
@@ -18,12 +20,18 @@ const TREND_HEIGHT: f32 = 46.0;
 const LEAST_N: f64 = 1e-4;
 
 /// The panel.
-pub fn horizon_ui(ui: &mut Ui, live: &Live) {
+pub fn horizon_ui(ui: &mut Ui, live: &Live, outbox: &mut Outbox) {
+    let computed = live.first_tick().map_or(ModeSet::only(Mode::Dfr), |tick| tick.identification.modes);
     let dfr_n = live.figures.horizon_n[Mode::Dfr.index()];
     ui.label(small(text::horizon::ahead(live.delay_s() * 1e3)));
     ui.add_space(2.0);
-    for mode in [Mode::Best, Mode::Matched, Mode::Anchored, Mode::Dfr, Mode::Nima, Mode::Linear, Mode::Literal] {
+    let order = [Mode::Best, Mode::Matched, Mode::Anchored, Mode::Dfr, Mode::Nima, Mode::Linear, Mode::Literal];
+    for mode in order.into_iter().filter(|mode| computed.contains(*mode)) {
         mode_ui(ui, mode, live.figures.horizon_n[mode.index()], dfr_n, live.mode() == mode);
+    }
+    let mut compares = live.compares();
+    if ui.checkbox(&mut compares, text::horizon::COMPARE).on_hover_text(text::horizon::COMPARE_HOVER).changed() {
+        outbox.push(Command::Compare(compares));
     }
     trend_ui(ui, live);
 }

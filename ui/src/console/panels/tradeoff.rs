@@ -201,6 +201,8 @@ fn apply_ui(
     if restart {
         return Some(rig_with(live, mode, &point.choice));
     }
+    // The cost that was measured is that of this mode alone.
+    outbox.push(Command::Compare(false));
     outbox.push(Command::SetMode(mode));
     outbox.push(Command::SetDelay(point.choice.delay_ms * 1e-3));
     state.tell(text::tradeoff::applied(&name(point)));
@@ -223,6 +225,7 @@ fn needs_restart(now: &Identification, choice: &Choice) -> bool {
 fn rig_with(live: &Live, mode: Mode, choice: &Choice) -> RigConfig {
     let mut rig = live.rig.clone();
     rig.mode = mode;
+    rig.identification.compare = false;
     rig.delay_s = choice.delay_ms * 1e-3;
     rig.identification.window_s = choice.window_ms * 1e-3;
     if mode != Mode::Linear {

@@ -95,17 +95,18 @@ pub struct DemoState {
     held: bool,
     /// The last step whose settings were sent to the loop.
     told: Option<usize>,
-    /// Mode and delay (s) before the demonstration.
-    before: Option<(Mode, f64)>,
+    /// Mode, delay (s), and whether all modes were compared before the demonstration.
+    before: Option<(Mode, f64, bool)>,
 }
 
 impl DemoState {
-    /// Restores mode and delay.
+    /// Restores what was set before.
     pub fn leave(&mut self, outbox: &mut Outbox) {
         self.told = None;
-        if let Some((mode, delay_s)) = self.before.take() {
+        if let Some((mode, delay_s, compares)) = self.before.take() {
             outbox.push(Command::SetMode(mode));
             outbox.push(Command::SetDelay(delay_s));
+            outbox.push(Command::Compare(compares));
         }
     }
 
@@ -115,7 +116,10 @@ impl DemoState {
         if live.first_tick().is_none() || live.state() != LoopState::Engaged {
             return;
         }
-        self.before.get_or_insert((live.mode(), live.delay_s()));
+        if self.before.is_none() {
+            self.before = Some((live.mode(), live.delay_s(), live.compares()));
+            outbox.push(Command::Compare(true));
+        }
         if !self.held && !leading {
             self.shown_s += dt_s;
         }
@@ -156,7 +160,7 @@ pub(super) fn demo_ui(ui: &mut Ui, live: &mut Live, panels: &mut Panels, outbox:
         });
     Panel::right("figures").exact_size(348.0).resizable(false).frame(side).show(ui, |ui| {
         let panel = desk::Panel::Horizon;
-        card(ui, panel.title(), panel.meaning(), |ui| horizon_ui(ui, live));
+        card(ui, panel.title(), panel.meaning(), |ui| horizon_ui(ui, live, outbox));
         let Panels { forces, space, .. } = panels;
         let room = vec2(ui.available_width(), ui.available_height().min(380.0));
         if room.y < LEAST_SPACE {

@@ -38,7 +38,7 @@ pub(super) fn technician_ui(
         Panel::Calibrations => wishes.calibration = calibrations_ui(ui, live, in_force, None),
         Panel::Gates => gates_ui(ui, live, &mut panels.gates),
         Panel::Safety => safety_ui(ui, live),
-        Panel::Horizon => horizon_ui(ui, live),
+        Panel::Horizon => horizon_ui(ui, live, outbox),
         Panel::Degrees => degrees_ui(ui, live),
         Panel::Timing => timing_ui(ui, live, &mut panels.timing),
         Panel::Tradeoff => wishes.restart = tradeoff_ui(ui, live, &mut panels.tradeoff, outbox),

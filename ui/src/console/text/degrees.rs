@@ -12,7 +12,7 @@ pub(in crate::console) const NONLINEAR_OURS_HOVER: &str =
 pub(in crate::console) const NONLINEAR_PAPER: &str = "Nonlinear, the paper's rule";
 pub(in crate::console) const NONLINEAR_PAPER_HOVER: &str = "Share of ticks in which degree 2 or more had the smallest error inside the window. A higher degree \
     always fits the window at least as well, so this is near 100 % for any tissue. It is not evidence of \
-    nonlinearity.";
+    nonlinearity. Computed only while all modes are compared.";
 pub(in crate::console) const CONDITION: &str = "Condition";
 pub(in crate::console) const CONDITION_HOVER: &str = "Condition number of the chosen model's scaled columns, worst axis, no unit. 1 is perfect; above 10 \
     000 the columns can hardly be told apart.";
@@ -23,6 +23,7 @@ pub(in crate::console) const RANK_HOVER: &str = "Number of motion columns that v
 pub(in crate::console) const EXCITATION: &str = "Excitation";
 pub(in crate::console) const EXCITATION_HOVER: &str = "How much the motion varies within the window: standard deviation of position (mm) and of velocity \
     (mm/s), all axes. Without motion nothing can be identified.";
+pub(in crate::console) const NOT_COMPUTED: &str = "compare all modes";
 pub(in crate::console) const NONE: &str = "none";
 
 /// Period that the shares cover.

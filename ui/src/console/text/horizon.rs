@@ -2,6 +2,9 @@
 
 pub(in crate::console) const LAST_3_MIN: &str = "last 3 min";
 pub(in crate::console) const REFERENCE: &str = "reference";
+pub(in crate::console) const COMPARE: &str = "Compare all modes";
+pub(in crate::console) const COMPARE_HOVER: &str = "Compute every mode on the same samples and show its error. Otherwise only the mode in use is computed, which \
+    takes less time. The force in the hand does not change.";
 pub(in crate::console) const IN_USE: &str = " (in use)";
 
 /// The prediction horizon, and the meaning of the line in the bars.

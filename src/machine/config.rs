@@ -163,10 +163,24 @@ pub struct Identification {
     /// The identification rests while the force lies within this, N: there is no contact. Choose five times the noise of
     /// the force. 0: it never rests.
     pub rest_n: f64,
+    /// The motion from which the leader makes the force.
+    pub own_motion: OwnMotion,
     /// Learn the full matrix `M` with cross-talk between the axes; this doubles the cost.
     pub cross_talk: bool,
     /// Fixed physical scales of the regressor's columns, from the rig's workspace.
     pub scales: Scales,
+}
+
+/// The motion from which the leader makes the force.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum OwnMotion {
+    /// Where the follower is now, as its commands and its lag tell: accurate.
+    #[default]
+    Follower,
+    /// Where the handle is: the force is that of the place which the follower will reach. Matched rendering is then
+    /// passive at every delay.
+    Handle,
 }
 
 impl Default for Identification {
@@ -176,6 +190,7 @@ impl Default for Identification {
             max_degree: MAX_DEGREE,
             compare: false,
             rest_n: 0.1,
+            own_motion: OwnMotion::Follower,
             cross_talk: false,
             scales: Scales::default(),
         }

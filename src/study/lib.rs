@@ -7,6 +7,7 @@
 pub mod faults;
 pub mod gates;
 mod pair;
+pub mod passivity;
 pub mod picture;
 pub mod reference;
 pub mod release;

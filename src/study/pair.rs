@@ -1,5 +1,5 @@
-//! One hand, one handle, one follower in tissue, and the loop between them: the test bench of the studies `release` and
-//! `stability_map`.
+//! One hand, one handle, one follower in tissue, and the loop between them: the test bench of the studies `release`,
+//! `passivity` and `stability_map`.
 //!
 //! The parts of the loop are the real ones (identifier, link, tracking, renderer, gates); hand, handle and follower are
 //! models. SI units, workspace frame (z up, tissue at rest at z = 0), 1 kHz. Deterministic for a seed. Unlike in the
@@ -14,17 +14,16 @@ use nima_core::{
     safety::{Chain, ChainSettings, GateReport, Request},
     signal::Speed,
 };
-use nima_machine::teleop::{Link as _, ProgrammedLink, Tracking};
+use nima_machine::{
+    config::OwnMotion,
+    teleop::{Link as _, ProgrammedLink, Tracking},
+};
 use nima_world::{Tissue, scene::Tissue as TissueConfig};
 
 /// Ticks per second.
 pub(super) const RATE_HZ: f64 = 1000.0;
 /// Integration steps of the equation of motion per tick.
 const SUBSTEPS: u32 = 4;
-/// The gripping hand with the handle, as in the scenes: kg, N/m, N s/m.
-pub(super) const GRIP_KG: f64 = 0.35;
-pub(super) const GRIP_N_M: f64 = 900.0;
-const GRIP_N_S_M: f64 = 18.0;
 /// Speed at which Coulomb friction is nearly whole, m/s.
 const RUBS_M_S: f64 = 0.002;
 /// As in the scenes: noise of the force sensor (N), resolution of the handle's position (m), natural frequency (Hz) and
@@ -49,10 +48,24 @@ impl Handle {
     pub(super) const OMEGA: Self = Self { kg: 0.25, n_s_m: 0.5, coulomb_n: 0.0 };
 }
 
+/// The gripping hand with the handle.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Grip {
+    pub(super) kg: f64,
+    pub(super) n_m: f64,
+    pub(super) n_s_m: f64,
+}
+
+impl Grip {
+    /// As in the scenes.
+    pub(super) const FIRM: Self = Self { kg: 0.35, n_m: 900.0, n_s_m: 18.0 };
+}
+
 /// Parameters of a trial.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Trial {
     pub(super) mode: Mode,
+    pub(super) own_motion: OwnMotion,
     pub(super) delay_s: f64,
     pub(super) gates: ChainSettings,
     pub(super) gain: f64,
@@ -60,6 +73,7 @@ pub(super) struct Trial {
     /// Amplitude of the hand's tremor, m.
     pub(super) tremor_m: f64,
     pub(super) handle: Handle,
+    pub(super) grip: Grip,
     pub(super) seed: u64,
 }
 
@@ -170,7 +184,11 @@ impl Pair {
         let read_m = self.handle_m.map(|x| (x / RESOLUTION_M).round() * RESOLUTION_M);
         self.speed_m_s = self.speed.step(now_s, read_m);
         self.command(&read_m);
-        let motion_m = self.tracking.step(&self.command_m, &self.tip_m);
+        let follower_m = self.tracking.step(&self.command_m, &self.tip_m);
+        let motion_m = match self.trial.own_motion {
+            OwnMotion::Follower => follower_m,
+            OwnMotion::Handle => read_m,
+        };
         let parcel = self.link.receive(now_s);
         let age_s = parcel.map_or(f64::INFINITY, |parcel| now_s - parcel.t_s - self.trial.delay_s);
         let asked_n = self.renderer.step(&motion_m, parcel).force(self.trial.mode);
@@ -187,9 +205,9 @@ impl Pair {
 
     fn move_handle(&mut self, intended_m: &Vector3<f64>) {
         let dt_s = 1.0 / (RATE_HZ * f64::from(SUBSTEPS));
-        let handle = self.trial.handle;
+        let (handle, grip) = (self.trial.handle, self.trial.grip);
         let (mass_kg, grip_n_m, friction_n_s_m) =
-            if self.gripped { (GRIP_KG, GRIP_N_M, GRIP_N_S_M) } else { (handle.kg, 0.0, handle.n_s_m) };
+            if self.gripped { (grip.kg, grip.n_m, grip.n_s_m) } else { (handle.kg, 0.0, handle.n_s_m) };
         for _ in 0..SUBSTEPS {
             let hand_n = (intended_m - self.handle_m) * grip_n_m - self.handle_m_s * friction_n_s_m;
             let rubbed_n = self.handle_m_s * (handle.coulomb_n / self.handle_m_s.norm().max(RUBS_M_S));

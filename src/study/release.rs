@@ -11,11 +11,11 @@ use nima_core::{
     impedance::{Mode, SettingsError},
     safety::ChainSettings,
 };
-use nima_machine::config::ConfigError;
+use nima_machine::config::{ConfigError, OwnMotion};
 use nima_world::scene::{Scene, Tissue};
 use serde::Serialize;
 
-use super::pair::{Handle, Pair, RATE_HZ, Trial};
+use super::pair::{Grip, Handle, Pair, RATE_HZ, Trial};
 
 /// Delays of the link, ms.
 pub const DELAYS_MS: [f64; 6] = [0.0, 10.0, 50.0, 100.0, 200.0, 300.0];
@@ -252,12 +252,14 @@ fn tried(way: &Way, gates: ChainSettings, handle: &Handle, tissue: Tissue) -> Re
     let Way { situation, governor, mode, delay_ms, contact_n } = *way;
     let trial = Trial {
         mode,
+        own_motion: OwnMotion::Follower,
         delay_s: 1e-3 * delay_ms,
         gates,
         gain: 1.0,
         tissue,
         tremor_m: TREMOR_M,
         handle: *handle,
+        grip: Grip::FIRM,
         seed: 1,
     };
     let mut intended_m = Vector3::new(0.0, 0.0, START_M);

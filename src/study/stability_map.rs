@@ -17,12 +17,13 @@ use nima_core::{
     impedance::{Mode, SettingsError},
     safety::{ChainSettings, EnergyMode},
 };
+use nima_machine::config::OwnMotion;
 use nima_world::scene::Tissue;
 use serde::{Serialize, Serializer};
 
 use crate::{
     Experiment, Findings,
-    pair::{GRIP_N_M, Handle, Pair, RATE_HZ, Trial},
+    pair::{Grip, Handle, Pair, RATE_HZ, Trial},
 };
 
 /// Gains of the map.
@@ -32,7 +33,8 @@ pub const DELAYS_S: [f64; 8] = [0.0, 0.01, 0.02, 0.05, 0.1, 0.15, 0.2, 0.3];
 /// Tissue stiffnesses of the map, N/m: from fat to a stiff wall.
 pub const STIFFNESSES_N_M: [f64; 8] = [12.0, 50.0, 100.0, 200.0, 400.0, 800.0, 2000.0, 6000.0];
 /// The modes of the map, in its order.
-const MODES: [Mode; 4] = [Mode::Literal, Mode::Linear, Mode::Dfr, Mode::Anchored];
+const MODES: [Mode; 7] =
+    [Mode::Literal, Mode::Linear, Mode::Dfr, Mode::Anchored, Mode::Matched, Mode::Nima, Mode::Best];
 const POINTS: usize = MODES.len() * DELAYS_S.len() * STIFFNESSES_N_M.len() * GAINS.len();
 /// Contact force, N, without the force rendered by the loop.
 const CONTACT_N: f64 = 1.2;
@@ -221,7 +223,7 @@ impl StabilityMap {
     /// Markdown table of the largest stable gain by delay and stiffness, for every mode.
     pub fn markdown(&self) -> String {
         let mut text = String::new();
-        for mode in [Mode::Dfr, Mode::Anchored, Mode::Linear, Mode::Literal] {
+        for mode in MODES.into_iter().rev() {
             let stiffnesses = STIFFNESSES_N_M.map(|n_m| format!(" {n_m:.0} N/m |")).concat();
             writeln!(
                 text,
@@ -318,9 +320,11 @@ pub fn trial(mode: Mode, gain: f64, delay_s: f64, stiffness_n_m: f64) -> Result<
     let seed = 1;
     let above_m = Vector3::new(0.0, 0.0, 2e-3);
     // The intended position of the hand at which tissue and feedback together balance it at the contact force.
-    let deep_m = Vector3::new(0.0, 0.0, -CONTACT_N / stiffness_n_m - gain.min(4.0 / CONTACT_N) * CONTACT_N / GRIP_N_M);
-    let mut pair =
-        Pair::new(&Trial { mode, delay_s, gates, gain, tissue, tremor_m: 0.0, handle: Handle::OMEGA, seed }, above_m)?;
+    let deep_m =
+        Vector3::new(0.0, 0.0, -CONTACT_N / stiffness_n_m - gain.min(4.0 / CONTACT_N) * CONTACT_N / Grip::FIRM.n_m);
+    let (own_motion, handle, grip) = (OwnMotion::Follower, Handle::OMEGA, Grip::FIRM);
+    let trial = Trial { mode, own_motion, delay_s, gates, gain, tissue, tremor_m: 0.0, handle, grip, seed };
+    let mut pair = Pair::new(&trial, above_m)?;
     let (mut low_m, mut high_m) = (Vector3::repeat(f64::INFINITY), Vector3::repeat(f64::NEG_INFINITY));
     for tick in 0..(TRIAL_S * RATE_HZ) as u32 {
         let t_s = f64::from(tick) / RATE_HZ;
@@ -365,6 +369,9 @@ mod tests {
             (Mode::Dfr, 3.0, 0.3, 6000.0),
             (Mode::Anchored, 1.0, 0.05, 200.0),
             (Mode::Linear, 1.0, 0.05, 400.0),
+            (Mode::Matched, 2.0, 0.05, 400.0),
+            (Mode::Nima, 1.0, 0.3, 800.0),
+            (Mode::Best, 1.0, 0.1, 2000.0),
         ] {
             assert_eq!(
                 trial(mode, gain, delay_s, n_m).unwrap(),

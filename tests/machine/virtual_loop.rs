@@ -2,7 +2,7 @@
 use nalgebra::Vector3;
 use nima_core::impedance::{Mode, ModeSet};
 use nima_machine::{
-    config::RigConfig,
+    config::{OwnMotion, RigConfig},
     messages::{Command, Fault, LoopState, Refusal, Tick},
     rig::{Inputs, Outputs, Sensed, Side},
     runtime::Summary,
@@ -60,6 +60,17 @@ fn a_change_of_mode_takes_no_force_from_the_hand_and_leaves_one_mode_computed() 
     assert_eq!((computed[0], *computed.last().unwrap()), (of(Mode::Anchored), of(Mode::Matched)));
     assert!(computed.contains(&of(Mode::Matched).with(Mode::Anchored)), "both while the new one learns");
     assert!(!computed.contains(&ModeSet::ALL), "nothing else is computed");
+}
+
+#[test]
+fn the_handles_own_motion_is_ahead_of_the_follower_and_so_is_its_force() {
+    let error_n = |own_motion| {
+        let mut plan = plan("peg_transfer");
+        (plan.rig.mode, plan.rig.identification.own_motion) = (Mode::Matched, own_motion);
+        error_of(&run_virtual(&plan, 20.0, |_| None).unwrap(), Mode::Matched)
+    };
+    let [follower_n, handle_n] = [OwnMotion::Follower, OwnMotion::Handle].map(error_n);
+    assert!(follower_n + 0.02 < handle_n && handle_n < 3.0 * follower_n, "{follower_n} N, {handle_n} N");
 }
 
 #[test]

@@ -17,7 +17,7 @@ use nima_devices::Standing;
 use self::told::{NO_FORCE_YET, NOTHING_YET, NOWHERE};
 use super::{Accuracy, Calibrations, ForcePath, Link, ProgrammedLink, Tracking};
 use crate::{
-    config::{RigConfig, Teleoperation},
+    config::{OwnMotion, RigConfig, Teleoperation},
     messages::{Event, Fault, ForceReport, LoopState, Tick},
     rig::{DeviceEvent, Inputs, Outputs, Prompt, Side},
 };
@@ -66,6 +66,7 @@ pub struct Pair<L: Link = ProgrammedLink> {
     /// The mode that is rendered until the new one has something to render.
     before: Option<Mode>,
     compares: bool,
+    own_motion: OwnMotion,
     delay_s: f64,
     rate_hz: f64,
     /// Settings of the identification; the conversion of a delay to ticks is defined there only.
@@ -127,6 +128,7 @@ impl<L: Link> Pair<L> {
             mode: rig.mode,
             before: None,
             compares: rig.identification.compare,
+            own_motion: rig.identification.own_motion,
             delay_s: rig.delay_s,
             rate_hz: rig.rate_hz,
             follower_step_max_m: rig.follower_speed_max_m_s / rig.rate_hz,
@@ -247,7 +249,7 @@ impl<L: Link> Pair<L> {
         let seen = self.last_inputs.unwrap_or(NOTHING_YET);
         let target = self.hand_eye.step(&seen.hand);
         let tip_command_m = self.follow(&seen, &target);
-        let motion_m = self.motion_at_leader(&seen, tip_command_m);
+        let motion_m = self.motion_at_leader(&seen, &target.tip_m, tip_command_m);
         let parcel = self.link.receive(now_s);
         if let Some(parcel) = parcel {
             self.plausibility.delivered(&parcel.force_n, parcel.t_s);
@@ -335,10 +337,20 @@ impl<L: Link> Pair<L> {
         self.command_m
     }
 
-    /// The follower's present motion as the leader can know it: the command, delayed by the observed lag.
-    fn motion_at_leader(&mut self, seen: &Inputs, tip_command_m: Option<Vector3<f64>>) -> Vector3<f64> {
+    /// The motion from which the force is made: the follower's as the leader can know it (the command, delayed by the
+    /// observed lag), or the handle's, mapped to the tip; while not engaged, the tip's.
+    fn motion_at_leader(
+        &mut self,
+        seen: &Inputs,
+        handle_m: &Vector3<f64>,
+        tip_command_m: Option<Vector3<f64>>,
+    ) -> Vector3<f64> {
         if let Some(command_m) = tip_command_m {
-            return self.tracking.step(&command_m, &seen.tip_m);
+            let follower_m = self.tracking.step(&command_m, &seen.tip_m);
+            return match self.own_motion {
+                OwnMotion::Follower => follower_m,
+                OwnMotion::Handle => *handle_m,
+            };
         }
         self.tracking.interrupt();
         seen.tip_m

@@ -5,6 +5,7 @@
 
 mod faults;
 mod gates;
+mod passivity;
 mod release;
 mod stability;
 mod stability_map;
@@ -65,6 +66,8 @@ studies! {
     Gates(gates::Gates),
     /// Let go of a handle pressed with 5 N: every mode and delay, without and with gates
     Release(release::Release),
+    /// Measure whether the loop gives the hand energy, and whether a loose grip oscillates, in every mode and at every delay
+    Passivity(passivity::Passivity),
     /// Compare every solver with an arbitrary-precision reference in extreme cases
     Stability(stability::Stability),
     /// Find by simulation which gain, delay and stiffness are stable with a gripping hand (takes minutes)

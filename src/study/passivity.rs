@@ -1,0 +1,278 @@
+//! Does the loop give the hand more energy than it takes? Net power into the hand in three tasks, and whether a loose grip oscillates.
+//!
+//! Takes nothing; gives a [`Report`]: one [`Row`] for every mode, motion from which the leader makes the force, task and delay. All gates
+//! are as they come, but for the energy gate and the governor, which are off: what is shown is the rendering alone.
+
+mod present;
+
+use std::f64::consts::TAU;
+
+use nalgebra::Vector3;
+use nima_core::{
+    impedance::{Mode, SettingsError},
+    safety::{ChainSettings, EnergyMode},
+};
+use nima_machine::config::{ConfigError, OwnMotion};
+use nima_world::scene::{Scene, Tissue};
+use serde::Serialize;
+
+use super::pair::{Grip, Handle, Pair, RATE_HZ, Trial};
+
+/// Delays of the link, ms.
+pub const DELAYS_MS: [f64; 5] = [0.0, 10.0, 50.0, 100.0, 300.0];
+/// Stiffnesses of loose grips, N/m, with a damping of 5 N s/m.
+pub const LOOSE_N_M: [f64; 3] = [150.0, 300.0, 600.0];
+/// A held handle that moves faster than this oscillates, m/s.
+pub const STILL_M_S: f64 = 0.01;
+/// Duration of a task, and the time before it is judged, s.
+const TASK_S: f64 = 12.0;
+const FROM_S: f64 = 1.5;
+/// Duration of a hold with a loose grip, and its last part that is judged, s.
+const HOLD_S: f64 = 6.0;
+const JUDGED_S: f64 = 1.0;
+const LOOSE_N_S_M: f64 = 5.0;
+const TREMOR_M: f64 = 8e-5;
+/// Height above the tissue and depth in it that the hand intends, m.
+const ABOVE_M: f64 = 0.004;
+const DEPTH_M: f64 = 0.012;
+
+/// Why the study could not be made.
+#[derive(Debug, thiserror::Error)]
+pub enum PassivityError {
+    /// The scene whose tissue is pressed cannot be had.
+    #[error(transparent)]
+    Scene(#[from] ConfigError),
+    /// Settings out of range.
+    #[error(transparent)]
+    Settings(#[from] SettingsError),
+    /// The scene has no tissue.
+    #[error("the scene peg_transfer has no [tissue]: there is nothing to press")]
+    NoTissue,
+}
+
+/// What the hand does.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Task {
+    /// Up and down at 1 Hz, always in contact at the deepest point.
+    PalpationSlow,
+    /// The same at 3 Hz.
+    PalpationFast,
+    /// Reach, press, drag sideways, hold, withdraw, move on.
+    PegTransfer,
+    /// Press, hold, and withdraw at 200 mm/s.
+    Withdrawal,
+}
+
+impl Task {
+    /// All tasks.
+    pub const ALL: [Self; 4] = [Self::PalpationSlow, Self::PalpationFast, Self::PegTransfer, Self::Withdrawal];
+
+    /// Where the hand wants to be (m) at this time (s).
+    fn intended_m(self, t_s: f64) -> Vector3<f64> {
+        let span_m = ABOVE_M + DEPTH_M;
+        let way = |t_s: f64, from_s: f64, for_s: f64| smooth((t_s - from_s) / for_s);
+        match self {
+            Self::PalpationSlow | Self::PalpationFast => {
+                let hz = if self == Self::PalpationSlow { 1.0 } else { 3.0 };
+                Vector3::new(0.0, 0.0, ABOVE_M - span_m * 0.5 * (1.0 - (TAU * hz * t_s).cos()))
+            }
+            Self::PegTransfer => {
+                let (count, t_s) = ((t_s / 2.15).floor(), t_s.rem_euclid(2.15));
+                let deep = way(t_s, 0.9, 0.45) - way(t_s, 1.7, 0.45);
+                let side_m = if count.rem_euclid(2.0) < 1.0 { 0.03 } else { -0.03 };
+                let across_m = side_m * (2.0 * way(t_s, 0.0, 0.9) - 1.0) + 0.004 * way(t_s, 0.9, 0.45);
+                Vector3::new(across_m, 0.0, ABOVE_M - span_m * deep)
+            }
+            Self::Withdrawal => {
+                let t_s = t_s.rem_euclid(2.0);
+                Vector3::new(0.0, 0.0, ABOVE_M - span_m * (way(t_s, 0.2, 0.6) - linear((t_s - 1.4) * 0.2 / span_m)))
+            }
+        }
+    }
+}
+
+/// From 0 to 1 without a jump of speed or acceleration.
+fn smooth(s: f64) -> f64 {
+    let s = s.clamp(0.0, 1.0);
+    s * s * s * (10.0 + s * (-15.0 + 6.0 * s))
+}
+
+fn linear(s: f64) -> f64 {
+    s.clamp(0.0, 1.0)
+}
+
+/// One task in one mode.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct Row {
+    /// Mode that rendered.
+    pub mode: Mode,
+    /// Motion from which the leader made the force.
+    pub own_motion: OwnMotion,
+    /// What the hand did.
+    pub task: Task,
+    /// Delay of the link, ms.
+    pub delay_ms: f64,
+    /// Mean power into the hand, mW: positive where the loop drives the hand.
+    pub power_mw: f64,
+    /// Mean error of the force against the tissue's on the tip, N.
+    pub error_n: f64,
+}
+
+/// A loose grip that holds still, 12 mm deep.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct Held {
+    /// Mode that rendered.
+    pub mode: Mode,
+    /// Motion from which the leader made the force.
+    pub own_motion: OwnMotion,
+    /// Stiffness of the grip, N/m.
+    pub grip_n_m: f64,
+    /// Delay of the link, ms.
+    pub delay_ms: f64,
+    /// Fastest motion in the last second, m/s.
+    pub peak_m_s: f64,
+}
+
+/// What to do: there is nothing to choose.
+#[derive(Clone, Copy, Debug)]
+pub struct Options;
+
+/// The study's result.
+#[derive(Clone, Debug, Serialize)]
+pub struct Report {
+    /// Every task.
+    pub rows: Vec<Row>,
+    /// Every loose grip.
+    pub held: Vec<Held>,
+}
+
+/// The modes of the study with the motions that make sense for them: a force that is reflected does not depend on the leader's.
+pub const WAYS: [(Mode, OwnMotion); 7] = [
+    (Mode::Dfr, OwnMotion::Follower),
+    (Mode::Anchored, OwnMotion::Follower),
+    (Mode::Best, OwnMotion::Follower),
+    (Mode::Matched, OwnMotion::Follower),
+    (Mode::Matched, OwnMotion::Handle),
+    (Mode::Nima, OwnMotion::Follower),
+    (Mode::Nima, OwnMotion::Handle),
+];
+
+/// Runs the study; before each part `progress` is called with the number of parts done, their total, and the name of the next.
+///
+/// # Errors
+/// [`PassivityError`] if the scene cannot be used.
+pub fn study(mut progress: impl FnMut(usize, usize, &str)) -> Result<Report, PassivityError> {
+    let tissue = Scene::load("peg_transfer")?.tissue.ok_or(PassivityError::NoTissue)?;
+    let (mut rows, mut held) = (Vec::new(), Vec::new());
+    let all = WAYS.len() * DELAYS_MS.len();
+    for (done, (way, delay_ms)) in
+        WAYS.into_iter().flat_map(|way| DELAYS_MS.map(|delay_ms| (way, delay_ms))).enumerate()
+    {
+        progress(done, all, way.0.name());
+        for task in Task::ALL {
+            rows.push(tasked(way, task, delay_ms, tissue)?);
+        }
+        for grip_n_m in LOOSE_N_M {
+            held.push(hold(way, grip_n_m, delay_ms, tissue)?);
+        }
+    }
+    progress(all, all, "done");
+    Ok(Report { rows, held })
+}
+
+fn trial((mode, own_motion): (Mode, OwnMotion), delay_ms: f64, grip: Grip, tissue: Tissue, tremor_m: f64) -> Trial {
+    let gates = ChainSettings { static_hold: true, energy: EnergyMode::Off, ..ChainSettings::default() };
+    Trial {
+        mode,
+        own_motion,
+        delay_s: 1e-3 * delay_ms,
+        gates: gates.without_governor(),
+        gain: 1.0,
+        tissue,
+        tremor_m,
+        handle: Handle::OMEGA,
+        grip,
+        seed: 1,
+    }
+}
+
+/// One task.
+///
+/// # Errors
+/// [`SettingsError`] if the loop's settings are invalid.
+pub fn tasked(way: (Mode, OwnMotion), task: Task, delay_ms: f64, tissue: Tissue) -> Result<Row, SettingsError> {
+    let mut pair = Pair::new(&trial(way, delay_ms, Grip::FIRM, tissue, TREMOR_M), task.intended_m(0.0))?;
+    let (mut energy_j, mut error_n, mut count) = (0.0, 0.0, 0_u32);
+    for tick in 0..(TASK_S * RATE_HZ) as u32 {
+        let t_s = f64::from(tick) / RATE_HZ;
+        let (force_n, at_m) = (pair.force_n(), pair.handle_m());
+        pair.step(&task.intended_m(t_s));
+        if t_s >= FROM_S {
+            energy_j += force_n.dot(&(pair.handle_m() - at_m));
+            error_n += (pair.force_n() - pair.tip_n()).norm();
+            count += 1;
+        }
+    }
+    let (mode, own_motion) = way;
+    let seconds = f64::from(count) / RATE_HZ;
+    Ok(Row {
+        mode,
+        own_motion,
+        task,
+        delay_ms,
+        power_mw: 1e3 * energy_j / seconds,
+        error_n: error_n / f64::from(count),
+    })
+}
+
+/// One loose grip.
+///
+/// # Errors
+/// [`SettingsError`] if the loop's settings are invalid.
+pub fn hold(way: (Mode, OwnMotion), grip_n_m: f64, delay_ms: f64, tissue: Tissue) -> Result<Held, SettingsError> {
+    let grip = Grip { n_m: grip_n_m, n_s_m: LOOSE_N_S_M, ..Grip::FIRM };
+    let above_m = Vector3::new(0.0, 0.0, ABOVE_M);
+    let mut pair = Pair::new(&trial(way, delay_ms, grip, tissue, 0.0), above_m)?;
+    let mut peak_m_s = 0.0_f64;
+    for tick in 0..(HOLD_S * RATE_HZ) as u32 {
+        let t_s = f64::from(tick) / RATE_HZ;
+        pair.step(&(above_m - Vector3::z() * (ABOVE_M + DEPTH_M) * smooth(t_s / 0.6)));
+        if t_s >= HOLD_S - JUDGED_S {
+            peak_m_s = peak_m_s.max(pair.handle_m_s().norm());
+        }
+    }
+    let (mode, own_motion) = way;
+    Ok(Held { mode, own_motion, grip_n_m, delay_ms, peak_m_s })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn tissue() -> Tissue {
+        Scene::load("peg_transfer").unwrap().tissue.unwrap()
+    }
+
+    #[test]
+    fn matched_on_the_handles_motion_hardly_drives_the_hand_and_late_reflection_does() {
+        for task in Task::ALL {
+            for delay_ms in [10.0, 100.0, 300.0] {
+                let row = tasked((Mode::Matched, OwnMotion::Handle), task, delay_ms, tissue()).unwrap();
+                assert!(row.power_mw <= 0.6, "{row:?}");
+            }
+            let reflected = tasked((Mode::Dfr, OwnMotion::Follower), task, 100.0, tissue()).unwrap();
+            assert!(reflected.power_mw > 12.0, "{reflected:?}");
+        }
+    }
+
+    #[test]
+    fn a_loose_grip_holds_still_with_it() {
+        for grip_n_m in LOOSE_N_M {
+            let held = hold((Mode::Matched, OwnMotion::Handle), grip_n_m, 100.0, tissue()).unwrap();
+            assert!(held.peak_m_s < STILL_M_S, "{held:?}");
+        }
+        let reflected = hold((Mode::Dfr, OwnMotion::Follower), LOOSE_N_M[0], 100.0, tissue()).unwrap();
+        assert!(reflected.peak_m_s > STILL_M_S, "{reflected:?}");
+    }
+}

@@ -1,0 +1,81 @@
+//! The study of passivity as tables.
+
+use std::fmt::Write as _;
+
+use super::{DELAYS_MS, LOOSE_N_M, OwnMotion, PassivityError, Report, STILL_M_S, Task, WAYS, study};
+use crate::{Experiment, Findings};
+
+impl Report {
+    /// Power and error of each task, and the speed of loose grips, by delay.
+    pub fn markdown(&self) -> String {
+        let mut text = String::new();
+        let delays = DELAYS_MS.map(|delay_ms| format!(" {delay_ms:.0} ms |")).concat();
+        for task in Task::ALL {
+            let head = format!("| mode | own motion |{delays}\n|---|---|{}\n", "---|".repeat(DELAYS_MS.len()));
+            // Writing into a String cannot fail, here and below.
+            write!(text, "{}: mean power into the hand (mW) / mean error (N):\n\n{head}", title(task)).ok();
+            for way in WAYS {
+                let rows = self.rows.iter().filter(|row| (row.mode, row.own_motion) == way && row.task == task);
+                let cells: Vec<_> = rows.map(|row| format!(" {:.1} / {:.3} |", row.power_mw, row.error_n)).collect();
+                let cells = cells.concat();
+                writeln!(text, "| {} | {} |{cells}", way.0, word(way.1)).ok();
+            }
+            text.push('\n');
+        }
+        for grip_n_m in LOOSE_N_M {
+            let head = format!("| mode | own motion |{delays}\n|---|---|{}\n", "---|".repeat(DELAYS_MS.len()));
+            let limit_mm_s = 1e3 * STILL_M_S;
+            write!(
+                text,
+                "A grip of {grip_n_m:.0} N/m holds still: fastest motion (mm/s); above {limit_mm_s:.0} it oscillates:\n\n{head}"
+            )
+            .ok();
+            for way in WAYS {
+                let held = self.held.iter().filter(|held| (held.mode, held.own_motion) == way);
+                let held = held.filter(|held| (held.grip_n_m - grip_n_m).abs() < 1e-9);
+                let cells: Vec<_> = held.map(|held| format!(" {:.1} |", 1e3 * held.peak_m_s)).collect();
+                let cells = cells.concat();
+                writeln!(text, "| {} | {} |{cells}", way.0, word(way.1)).ok();
+            }
+            text.push('\n');
+        }
+        text
+    }
+}
+
+const fn title(task: Task) -> &'static str {
+    match task {
+        Task::PalpationSlow => "Palpation at 1 Hz",
+        Task::PalpationFast => "Palpation at 3 Hz",
+        Task::PegTransfer => "Peg transfer",
+        Task::Withdrawal => "Withdrawal at 200 mm/s",
+    }
+}
+
+const fn word(own_motion: OwnMotion) -> &'static str {
+    match own_motion {
+        OwnMotion::Follower => "follower",
+        OwnMotion::Handle => "handle",
+    }
+}
+
+impl Experiment for super::Options {
+    const NAME: &'static str = "passivity";
+    const FILES: &'static [&'static str] = &[".md"];
+    type Findings = Report;
+    type Error = PassivityError;
+
+    fn run(&self, progress: &mut dyn FnMut(usize, usize, &str)) -> Result<Report, PassivityError> {
+        study(progress)
+    }
+}
+
+impl Findings for Report {
+    fn text(&self) -> String {
+        self.markdown()
+    }
+
+    fn files(&self) -> Vec<(String, String)> {
+        vec![(".md".to_owned(), self.markdown())]
+    }
+}

@@ -7,9 +7,10 @@ use super::{
     features::Features,
     gram::Gram,
     horizon::Horizon,
-    literal::{self, LiteralSolver},
+    literal::LiteralSolver,
     matched::{Form, Matched},
-    messages::{Excitation, LiteralModel, Parcel, Posture, Report, Sample, active},
+    messages::{Excitation, Parcel, Posture, Report, Sample, active},
+    recipe::{Choice, Next},
     settings::{MAX_DELAY_S, Settings, SettingsError},
     solution::Solution,
     track::{Track, usable_force, usable_position},
@@ -73,6 +74,8 @@ pub struct Identifier {
 struct Paper {
     window: SlidingWindow<Gram>,
     solver: LiteralSolver,
+    /// Where the degree is chosen by what comes after the window.
+    next: Option<Next>,
 }
 
 #[derive(Clone, Debug)]
@@ -95,10 +98,13 @@ impl Identifier {
         let block = settings.block();
         let paper = (settings.modes.contains(Mode::Literal) || settings.modes.contains(Mode::Linear)).then(|| {
             let degree = if settings.modes.contains(Mode::Literal) { settings.max_degree } else { 1 };
-            let empty = Gram::new(3 * degree);
+            let recipe = &settings.literal;
+            let one = active(&nalgebra::Vector3::repeat(1.0), settings.axes);
+            let empty = if recipe.constant { Gram::with_constant(3 * degree, one) } else { Gram::new(3 * degree) };
             Paper {
                 window: SlidingWindow::new(block, empty.clone(), empty),
-                solver: LiteralSolver::new(degree, settings.axes),
+                solver: LiteralSolver::new(degree, settings.axes, recipe, &settings.scales),
+                next: (recipe.choice == Choice::Next).then(|| Next::new(settings.rate_hz)),
             }
         });
         let anchored = settings.modes.contains(Mode::Anchored).then(|| {
@@ -152,22 +158,22 @@ impl Identifier {
         self.report.rejected += u64::from(!good);
 
         let now = self.track.step(position);
-        let increments = self.track.increments();
+        let x = self.track.paper_x();
         let usable = good && self.track.settled();
 
         self.parcel.t_s = self.last_t_s;
         self.parcel.force_n = self.last_force_n.vector();
         self.parcel.fresh = good;
-        self.step_paper(&increments, usable);
+        self.step_paper(&x, usable);
         self.step_anchored(&now, good, usable);
         self.step_matched(&now, good, usable);
         self.sent.push((self.parcel, now));
-        self.predict(&now, &increments, good);
+        self.predict(&now, &x, good);
     }
 
-    fn step_paper(&mut self, increments: &Features, usable: bool) {
-        let Some(Paper { window, solver }) = &mut self.paper else { return };
-        let mut row = window.current().row(increments, self.last_force_n);
+    fn step_paper(&mut self, x: &Features, usable: bool) {
+        let Some(Paper { window, solver, next }) = &mut self.paper else { return };
+        let mut row = window.current().row(x, self.last_force_n);
         if !usable {
             row = Gram::BLANK_ROW;
         }
@@ -176,13 +182,16 @@ impl Identifier {
             return;
         }
         solver.solve(window.current(), window.len());
-        let choice = solver.choice();
-        self.parcel.linear = model(solver, 1);
-        self.parcel.literal = model(solver, choice);
+        let choice = match next {
+            Some(next) => next.step(usable.then_some((x, self.last_force_n)), solver),
+            None => solver.choice(),
+        };
+        self.parcel.linear = *solver.model(1);
+        self.parcel.literal = *solver.model(choice);
         self.report.paper_degree = choice as u8;
         self.report.literal_failures = solver.failures();
         for degree in 1..=MAX_DEGREE {
-            let rendered = literal::product(solver.coefficients(degree), increments, 3 * degree);
+            let rendered = solver.model(degree).product(x);
             self.report.reconstruction_n[degree - 1] = (self.last_force_n - rendered).vector();
         }
     }
@@ -230,10 +239,10 @@ impl Identifier {
     }
 
     /// What every mode renders for this tick from the parcel one delay old, and its running error.
-    fn predict(&mut self, now: &Posture, increments: &Features, good: bool) {
+    fn predict(&mut self, now: &Posture, x: &Features, good: bool) {
         let modes = self.settings.modes;
         let forces = match self.sent.get(self.delay_ticks) {
-            Some((parcel, then)) if parcel.t_s.is_finite() => parcel.render(now, then, increments),
+            Some((parcel, then)) if parcel.t_s.is_finite() => parcel.render(now, then, x),
             _ => [None; MODES],
         };
         let said = [Mode::Anchored, Mode::Matched].map(|mode| forces[mode.index()]);
@@ -293,6 +302,9 @@ impl Identifier {
         if let Some(paper) = &mut self.paper {
             paper.window.reset();
             paper.solver.reset();
+            if let Some(next) = &mut paper.next {
+                next.reset();
+            }
         }
         if let Some(anchored) = &mut self.anchored {
             anchored.window.reset();
@@ -308,14 +320,6 @@ impl Identifier {
         self.sent.clear();
         self.parcel = Parcel::BLANK;
         self.report = Report::BLANK;
-    }
-}
-
-fn model(solver: &LiteralSolver, degree: usize) -> LiteralModel {
-    if solver.is_solved(degree) {
-        LiteralModel { degree: degree as u8, coefficients: *solver.coefficients(degree) }
-    } else {
-        LiteralModel::NONE
     }
 }
 

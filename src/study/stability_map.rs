@@ -14,7 +14,7 @@ use std::{fmt::Write as _, sync::OnceLock};
 
 use nalgebra::Vector3;
 use nima_core::{
-    impedance::{Mode, SettingsError},
+    impedance::{Mode, Recipe, SettingsError},
     safety::{ChainSettings, EnergyMode},
 };
 use nima_world::scene::Tissue;
@@ -22,7 +22,7 @@ use serde::{Serialize, Serializer};
 
 use crate::{
     Experiment, Findings,
-    pair::{GRIP_N_M, Handle, Pair, RATE_HZ, Trial},
+    pair::{GRIP_N_M, Handle, NOISE_N, Pair, RATE_HZ, Trial},
 };
 
 /// Gains of the map.
@@ -319,8 +319,10 @@ pub fn trial(mode: Mode, gain: f64, delay_s: f64, stiffness_n_m: f64) -> Result<
     let above_m = Vector3::new(0.0, 0.0, 2e-3);
     // The intended position of the hand at which tissue and feedback together balance it at the contact force.
     let deep_m = Vector3::new(0.0, 0.0, -CONTACT_N / stiffness_n_m - gain.min(4.0 / CONTACT_N) * CONTACT_N / GRIP_N_M);
-    let mut pair =
-        Pair::new(&Trial { mode, delay_s, gates, gain, tissue, tremor_m: 0.0, handle: Handle::OMEGA, seed }, above_m)?;
+    let (literal, handle, tremor_m, noise_n) = (Recipe::default(), Handle::OMEGA, 0.0, NOISE_N);
+    let grip_n_m = GRIP_N_M;
+    let trial = Trial { mode, literal, delay_s, gates, gain, tissue, tremor_m, noise_n, grip_n_m, handle, seed };
+    let mut pair = Pair::new(&trial, above_m)?;
     let (mut low_m, mut high_m) = (Vector3::repeat(f64::INFINITY), Vector3::repeat(f64::NEG_INFINITY));
     for tick in 0..(TRIAL_S * RATE_HZ) as u32 {
         let t_s = f64::from(tick) / RATE_HZ;

@@ -104,6 +104,7 @@ impl Options {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::release::Situation;
 
     /// The lines of the paper (0.01 +- 0.02 N, 0.2 +- 0.4 N, 64 %), to its digits.
     #[test]
@@ -131,9 +132,23 @@ mod tests {
     }
 
     #[test]
+    fn nothing_kicks_a_hand_that_is_quite_still_and_the_printed_recipe_shakes_one_that_gives_way() {
+        let held = |way, hand| kick::let_go(way, Situation::Held, hand, 0.3).unwrap().row;
+        for way in kick::WAYS {
+            let row = held(way, kick::Hand::FIRM);
+            assert!(row.before_n < 0.01 && row.travel_mm < 0.1 && row.force_after_100_ms_n < 0.01, "{way:?}: {row:?}");
+        }
+        let [printed, repaired, reflection] = kick::WAYS.map(|way| held(way, kick::Hand::YIELDING));
+        assert!(printed.shake_m_s > 0.03 && printed.travel_mm > 10.0, "{printed:?}");
+        for row in [repaired, reflection] {
+            assert!(row.shake_m_s < 0.02 && row.before_n > 3.0 && row.travel_mm > 100.0, "{row:?}");
+        }
+    }
+
+    #[test]
     fn a_recording_is_judged_like_a_task() {
-        let recorded = Conditions::PAPER.record(2, 5.0).unwrap();
-        let options = Options { seed: 2, seconds: 5.0, recordings: vec![recorded.clone()] };
+        let recorded = Conditions::PAPER.record(2, 2.0).unwrap();
+        let options = Options { seed: 2, seconds: 2.0, recordings: vec![recorded.clone()] };
         let entries = options.entries(&mut |_, _, _| {}).unwrap();
         let [first, .., last] = &*entries else { panic!("{} entries", entries.len()) };
         assert_eq!(entries.len(), Conditions::ALL.len() + 1);

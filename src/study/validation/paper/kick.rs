@@ -1,6 +1,9 @@
 //! What the handle does when the hand lets go while the paper's recipe renders, without the governor.
 
-use nima_core::{impedance::Mode, safety::ChainSettings};
+use nima_core::{
+    impedance::{Mode, Recipe},
+    safety::ChainSettings,
+};
 use nima_world::scene::Scene;
 use serde::Serialize;
 
@@ -13,17 +16,35 @@ use crate::{
 /// Force of the contact, N, and delays of the link, s.
 const CONTACT_N: f64 = 5.0;
 const DELAYS_S: [f64; 2] = [0.05, 0.3];
-/// Tremor of the hand (m), noise of the force sensor (N), stiffness of the grip (N/m): a hand that gives way as usual and one that hardly
-/// does, each without tremor and noise, with noise only, and with both.
-const HANDS: [(f64, f64, f64); 6] = [
-    (0.0, 0.0, FIRM_N_M),
-    (0.0, NOISE_N, FIRM_N_M),
-    (TREMOR_M, NOISE_N, FIRM_N_M),
-    (0.0, 0.0, GRIP_N_M),
-    (0.0, NOISE_N, GRIP_N_M),
-    (TREMOR_M, NOISE_N, GRIP_N_M),
-];
-const FIRM_N_M: f64 = 1e5;
+/// Tremor of the hand (m), noise of the force sensor (N), stiffness of the grip (N/m).
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Hand {
+    tremor_m: f64,
+    noise_n: f64,
+    grip_n_m: f64,
+}
+
+impl Hand {
+    /// One that does not give way and does not move.
+    pub(super) const FIRM: Self = Self { tremor_m: 0.0, noise_n: 0.0, grip_n_m: 1e5 };
+    /// One that gives way and does not move by itself.
+    pub(super) const YIELDING: Self = Self { grip_n_m: GRIP_N_M, ..Self::FIRM };
+    /// Both, with noise, and with noise and tremor.
+    const ALL: [Self; 6] = [
+        Self::FIRM,
+        Self { noise_n: NOISE_N, ..Self::FIRM },
+        Self { noise_n: NOISE_N, tremor_m: TREMOR_M, ..Self::FIRM },
+        Self::YIELDING,
+        Self { noise_n: NOISE_N, ..Self::YIELDING },
+        Self { noise_n: NOISE_N, tremor_m: TREMOR_M, ..Self::YIELDING },
+    ];
+}
+
+/// What renders: a name, the mode, its recipe.
+type Way = (&'static str, Mode, Recipe);
+/// The recipe as printed, repaired, and reflection beside it.
+pub(super) const WAYS: [Way; 3] =
+    [("as printed", Mode::Literal, PRINTED), ("repaired", Mode::Literal, REPAIRED), ("reflection", Mode::Dfr, PRINTED)];
 
 /// One letting go.
 #[derive(Clone, Copy, Debug, Serialize)]
@@ -46,35 +67,23 @@ pub struct Kick {
 /// # Errors
 /// [`ReleaseError`] if the scene has no tissue or the force is never reached.
 pub fn all() -> Result<Vec<Kick>, ReleaseError> {
-    let tissue = Scene::load("peg_transfer")?.tissue.ok_or(ReleaseError::NoTissue)?;
-    let (gates, handle, gain, seed) = (ChainSettings::default().without_governor(), Handle::OMEGA, 1.0, 1);
-    let recipes = [
-        ("as printed", Mode::Literal, PRINTED),
-        ("repaired", Mode::Literal, REPAIRED),
-        ("reflection", Mode::Dfr, PRINTED),
-    ];
     let mut all = Vec::new();
-    for (name, mode, literal) in recipes {
+    for way in WAYS {
         for situation in Situation::ALL {
-            for (tremor_m, noise_n, grip_n_m) in HANDS {
+            for hand in Hand::ALL {
                 for delay_s in DELAYS_S {
-                    let trial = Trial {
-                        mode,
-                        literal,
-                        delay_s,
-                        gates,
-                        gain,
-                        tissue,
-                        tremor_m,
-                        noise_n,
-                        grip_n_m,
-                        handle,
-                        seed,
-                    };
-                    all.push(Kick { name, tremor_m, noise_n, grip_n_m, row: release(&trial, situation, CONTACT_N)? });
+                    all.push(let_go(way, situation, hand, delay_s)?);
                 }
             }
         }
     }
     Ok(all)
+}
+
+pub(super) fn let_go(way: Way, situation: Situation, hand: Hand, delay_s: f64) -> Result<Kick, ReleaseError> {
+    let tissue = Scene::load("peg_transfer")?.tissue.ok_or(ReleaseError::NoTissue)?;
+    let ((name, mode, literal), Hand { tremor_m, noise_n, grip_n_m }) = (way, hand);
+    let (gates, handle, gain, seed) = (ChainSettings::default().without_governor(), Handle::OMEGA, 1.0, 1);
+    let trial = Trial { mode, literal, delay_s, gates, gain, tissue, tremor_m, noise_n, grip_n_m, handle, seed };
+    Ok(Kick { name, tremor_m, noise_n, grip_n_m, row: release(&trial, situation, CONTACT_N)? })
 }

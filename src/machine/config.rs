@@ -6,7 +6,7 @@ mod mounted;
 use nalgebra::{UnitQuaternion, Vector3};
 use nima_core::{
     frames::from_roll_pitch_yaw_deg,
-    impedance::{MAX_DEGREE, MAX_DELAY_S, MAX_REST_N, Mode, Scales, Settings},
+    impedance::{MAX_DEGREE, MAX_DELAY_S, MAX_REST_N, Mode, RIDGES, Recipe, Scales, Settings},
     kinematics::{Mapping, SCALES, view_from_omega},
     safety::ChainSettings,
     tip_force::Fallback,
@@ -169,6 +169,8 @@ pub struct Identification {
     pub cross_talk: bool,
     /// Fixed physical scales of the regressor's columns, from the rig's workspace.
     pub scales: Scales,
+    /// How the literal and the linear mode read the paper.
+    pub literal: Recipe,
 }
 
 /// The motion from which the leader makes the force.
@@ -193,6 +195,7 @@ impl Default for Identification {
             own_motion: OwnMotion::Follower,
             cross_talk: false,
             scales: Scales::default(),
+            literal: Recipe::default(),
         }
     }
 }
@@ -231,7 +234,7 @@ impl RigConfig {
 
     /// Settings of the identification for this rig.
     pub fn settings(&self) -> Settings {
-        let Identification { window_s, max_degree, rest_n, cross_talk, scales, .. } = self.identification;
+        let Identification { window_s, max_degree, rest_n, cross_talk, scales, literal, .. } = self.identification;
         Settings {
             rate_hz: self.rate_hz,
             window_s,
@@ -239,6 +242,7 @@ impl RigConfig {
             rest_n,
             cross_talk,
             scales,
+            literal,
             delay_s: self.delay_s,
             ..Settings::default()
         }
@@ -279,6 +283,8 @@ impl RigConfig {
         ranges.check("identification.max_degree", degree as f64, (1..=MAX_DEGREE).contains(&degree), "1 to 5")?;
         let rest_n = self.identification.rest_n;
         ranges.check("identification.rest_n", rest_n, (0.0..=MAX_REST_N).contains(&rest_n), "0 to 1 N")?;
+        let ridge = self.identification.literal.ridge;
+        ranges.check("identification.literal.ridge", ridge, RIDGES.contains(&ridge), "0 to 1e6")?;
         let gates = &self.gates;
         ranges.check(
             "gates.gain",
@@ -310,6 +316,8 @@ impl RigConfig {
 
 #[cfg(test)]
 mod tests {
+    use nima_core::impedance::{Choice, Reading};
+
     use super::*;
 
     #[test]
@@ -326,6 +334,34 @@ mod tests {
         std::fs::write(&path, RIGS[0].1.replace("rate_hz", "rate_khz")).unwrap();
         let message = RigConfig::load(path.to_str().unwrap()).unwrap_err().to_string();
         assert!(message.contains("rate_khz") && message.contains("line "), "{message}");
+    }
+
+    #[test]
+    fn the_keys_of_the_literal_mode_are_read_and_what_is_unknown_is_refused() {
+        let folder = tempfile::tempdir().unwrap();
+        let with = |keys: &str| {
+            let path = folder.path().join("rig.toml");
+            let text = RIGS[0].1.replace("[gates]", &format!("[identification.literal]\n{keys}\n\n[gates]"));
+            std::fs::write(&path, text).unwrap();
+            RigConfig::load(path.to_str().unwrap()).map(|rig| rig.settings().literal)
+        };
+        assert_eq!(with("").unwrap(), Recipe::default());
+        let all = "reading = \"displacement\"\nchoice = \"next\"\nconstant = true\nridge = 0.003";
+        let read = Recipe { reading: Reading::Displacement, choice: Choice::Next, constant: true, ridge: 3e-3 };
+        assert_eq!(with(all).unwrap(), read);
+        let printed = "reading = \"increments\"\nchoice = \"window\"\nconstant = false\nridge = 0.0";
+        assert_eq!(with(printed).unwrap(), Recipe::default());
+        for (wrong, words) in [
+            ("reading = \"sideways\"", ["sideways", "displacement"]),
+            ("choice = \"best\"", ["best", "window"]),
+            ("constant = 1", ["line 14", "boolean"]),
+            ("ridges = 1.0", ["ridges", "ridge"]),
+            ("ridge = -1.0", ["identification.literal.ridge is -1", "0 to 1e6"]),
+            ("ridge = nan", ["identification.literal.ridge", "0 to 1e6"]),
+        ] {
+            let told = with(wrong).unwrap_err().to_string();
+            assert!(words.iter().all(|word| told.contains(word)) && !told.contains('\n'), "{wrong}: {told}");
+        }
     }
 
     #[test]

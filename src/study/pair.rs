@@ -9,7 +9,7 @@ use std::f64::consts::TAU;
 
 use nalgebra::Vector3;
 use nima_core::{
-    impedance::{Identifier, Mode, ModeSet, Renderer, Sample, Settings, SettingsError},
+    impedance::{Identifier, Mode, ModeSet, Recipe, Renderer, Sample, Settings, SettingsError},
     noise::Noise,
     safety::{Chain, ChainSettings, GateReport, Request},
     signal::Speed,
@@ -28,7 +28,7 @@ const SUBSTEPS: u32 = 4;
 const RUBS_M_S: f64 = 0.002;
 /// As in the scenes: noise of the force sensor (N), resolution of the handle's position (m), natural frequency (Hz) and
 /// maximum speed (m/s) of the follower.
-const NOISE_N: f64 = 0.02;
+pub(super) const NOISE_N: f64 = 0.02;
 const RESOLUTION_M: f64 = 1e-5;
 const FOLLOWER_HZ: f64 = 12.0;
 const FOLLOWER_M_S: f64 = 0.3;
@@ -59,6 +59,12 @@ pub(super) struct Grip {
 impl Grip {
     /// As in the scenes.
     pub(super) const FIRM: Self = Self { kg: 0.35, n_m: 900.0, n_s_m: 18.0 };
+
+    /// A grip of this stiffness (N/m) with the same damping ratio.
+    pub(super) fn of_stiffness(n_m: f64) -> Self {
+        let Self { kg, n_m: firm_n_m, n_s_m } = Self::FIRM;
+        Self { kg, n_m, n_s_m: n_s_m * (n_m / firm_n_m).sqrt() }
+    }
 }
 
 /// Parameters of a trial.
@@ -66,12 +72,16 @@ impl Grip {
 pub(super) struct Trial {
     pub(super) mode: Mode,
     pub(super) own_motion: OwnMotion,
+    /// How literal and linear read the paper.
+    pub(super) literal: Recipe,
     pub(super) delay_s: f64,
     pub(super) gates: ChainSettings,
     pub(super) gain: f64,
     pub(super) tissue: TissueConfig,
     /// Amplitude of the hand's tremor, m.
     pub(super) tremor_m: f64,
+    /// Noise of the force sensor, N.
+    pub(super) noise_n: f64,
     pub(super) handle: Handle,
     pub(super) grip: Grip,
     pub(super) seed: u64,
@@ -111,6 +121,7 @@ impl Pair {
             rate_hz: RATE_HZ,
             delay_s: trial.delay_s,
             modes: ModeSet::only(trial.mode),
+            literal: trial.literal,
             ..Settings::default()
         };
         let mut noise = Noise::new(trial.seed);
@@ -177,8 +188,8 @@ impl Pair {
         self.move_handle(&(intended_m + self.tremor(now_s)));
         self.follow();
         self.tip_n = self.tissue.contact_n(&self.tip_m, &self.tip_m_s);
-        let noise = &mut self.noise;
-        let force_n = self.tip_n + Vector3::from_fn(|_, _| NOISE_N * noise.gaussian());
+        let (noise, noise_n) = (&mut self.noise, self.trial.noise_n);
+        let force_n = self.tip_n + Vector3::from_fn(|_, _| noise_n * noise.gaussian());
         self.identifier.step(&Sample { t_s: now_s, position_m: self.tip_m, force_n });
         self.link.send(self.identifier.parcel());
         let read_m = self.handle_m.map(|x| (x / RESOLUTION_M).round() * RESOLUTION_M);
@@ -206,10 +217,10 @@ impl Pair {
     fn move_handle(&mut self, intended_m: &Vector3<f64>) {
         let dt_s = 1.0 / (RATE_HZ * f64::from(SUBSTEPS));
         let (handle, grip) = (self.trial.handle, self.trial.grip);
-        let (mass_kg, grip_n_m, friction_n_s_m) =
+        let (mass_kg, stiffness_n_m, friction_n_s_m) =
             if self.gripped { (grip.kg, grip.n_m, grip.n_s_m) } else { (handle.kg, 0.0, handle.n_s_m) };
         for _ in 0..SUBSTEPS {
-            let hand_n = (intended_m - self.handle_m) * grip_n_m - self.handle_m_s * friction_n_s_m;
+            let hand_n = (intended_m - self.handle_m) * stiffness_n_m - self.handle_m_s * friction_n_s_m;
             let rubbed_n = self.handle_m_s * (handle.coulomb_n / self.handle_m_s.norm().max(RUBS_M_S));
             self.handle_m_s += (hand_n - rubbed_n + self.force_n) * (dt_s / mass_kg);
             self.handle_m += self.handle_m_s * dt_s;

@@ -9,14 +9,14 @@ use std::f64::consts::TAU;
 
 use nalgebra::Vector3;
 use nima_core::{
-    impedance::{Mode, SettingsError},
+    impedance::{Mode, Recipe, SettingsError},
     safety::{ChainSettings, EnergyMode},
 };
 use nima_machine::config::{ConfigError, OwnMotion};
 use nima_world::scene::{Scene, Tissue};
 use serde::Serialize;
 
-use super::pair::{Grip, Handle, Pair, RATE_HZ, Trial};
+use super::pair::{Grip, Handle, NOISE_N, Pair, RATE_HZ, Trial};
 
 /// Delays of the link, ms.
 pub const DELAYS_MS: [f64; 5] = [0.0, 10.0, 50.0, 100.0, 300.0];
@@ -186,11 +186,13 @@ fn trial((mode, own_motion): (Mode, OwnMotion), delay_ms: f64, grip: Grip, tissu
     Trial {
         mode,
         own_motion,
+        literal: Recipe::default(),
         delay_s: 1e-3 * delay_ms,
         gates: gates.without_governor(),
         gain: 1.0,
         tissue,
         tremor_m,
+        noise_n: NOISE_N,
         handle: Handle::OMEGA,
         grip,
         seed: 1,

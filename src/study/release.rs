@@ -8,14 +8,14 @@ mod present;
 
 use nalgebra::Vector3;
 use nima_core::{
-    impedance::{Mode, SettingsError},
+    impedance::{Mode, Recipe, SettingsError},
     safety::ChainSettings,
 };
 use nima_machine::config::{ConfigError, OwnMotion};
 use nima_world::scene::{Scene, Tissue};
 use serde::Serialize;
 
-use super::pair::{Grip, Handle, Pair, RATE_HZ, Trial};
+use super::pair::{Grip, Handle, NOISE_N, Pair, RATE_HZ, Trial};
 
 /// Delays of the link, ms.
 pub const DELAYS_MS: [f64; 6] = [0.0, 10.0, 50.0, 100.0, 200.0, 300.0];
@@ -40,12 +40,13 @@ const HANDLES: [(f64, f64); 6] = [(0.20, 0.0), (0.20, 0.15), (0.25, 0.0), (0.25,
 /// Time looked at after the hand has opened, and when there should be no force any more, s.
 const AFTER_S: f64 = 1.0;
 const LATE_S: f64 = 0.1;
-/// Speed of pressing (m/s), height at the start (m), time of holding (s), patience (s).
+/// Speed of pressing (m/s), height at the start (m), time of holding and its last part (s), patience (s).
 const PRESS_M_S: f64 = 0.020;
 const START_M: f64 = 0.005;
 const HOLD_S: f64 = 2.0;
+const SHAKE_S: f64 = 0.3;
 const PATIENCE_S: f64 = 20.0;
-const TREMOR_M: f64 = 8e-5;
+pub(super) const TREMOR_M: f64 = 8e-5;
 /// Modes that have a steady force in the hand, of those that the worst cases are made of.
 const STEADY: [Mode; 2] = [Mode::Dfr, Mode::Anchored];
 
@@ -103,6 +104,8 @@ pub struct Row {
     pub contact_n: f64,
     /// Force on the handle when it did, N.
     pub before_n: f64,
+    /// Fastest motion of a handle that was held, in the last 0.3 s, m/s; 0 where it was pressing.
+    pub shake_m_s: f64,
     /// The governor withheld force at that moment although the hand was there.
     pub closed_before: bool,
     /// Farthest from where the handle was let go, or from where it would have swung to by itself, the lesser of the two, mm.
@@ -249,48 +252,61 @@ pub fn let_go(way: &Way, tissue: Tissue) -> Result<Row, ReleaseError> {
 }
 
 fn tried(way: &Way, gates: ChainSettings, handle: &Handle, tissue: Tissue) -> Result<Row, ReleaseError> {
-    let Way { situation, governor, mode, delay_ms, contact_n } = *way;
+    let Way { situation, mode, delay_ms, contact_n, .. } = *way;
     let trial = Trial {
         mode,
         own_motion: OwnMotion::Follower,
+        literal: Recipe::default(),
         delay_s: 1e-3 * delay_ms,
         gates,
         gain: 1.0,
         tissue,
         tremor_m: TREMOR_M,
+        noise_n: NOISE_N,
         handle: *handle,
         grip: Grip::FIRM,
         seed: 1,
     };
+    release(&trial, situation, contact_n)
+}
+
+/// A hand presses as this trial says, and opens.
+pub(super) fn release(trial: &Trial, situation: Situation, contact_n: f64) -> Result<Row, ReleaseError> {
+    let (mode, delay_ms) = (trial.mode, 1e3 * trial.delay_s);
     let mut intended_m = Vector3::new(0.0, 0.0, START_M);
-    let mut pair = Pair::new(&trial, intended_m)?;
+    let mut pair = Pair::new(trial, intended_m)?;
     let mut patience = (PATIENCE_S * RATE_HZ) as u32;
     while pair.tip_n().z < contact_n {
         patience = patience.checked_sub(1).ok_or(ReleaseError::NoContact { mode, delay_ms, contact_n })?;
         intended_m.z -= PRESS_M_S / RATE_HZ;
         pair.step(&intended_m);
     }
+    let mut shake_m_s = 0.0_f64;
     if situation == Situation::Held {
-        for _ in 0..(HOLD_S * RATE_HZ) as u32 {
+        for left in (0..(HOLD_S * RATE_HZ) as u32).rev() {
             // Whoever holds a force corrects slowly, 2 mm/s for a newton that is missing.
             intended_m.z += 0.002 / RATE_HZ * (pair.tip_n().z - contact_n).clamp(-1.0, 1.0);
             pair.step(&intended_m);
+            if f64::from(left) < SHAKE_S * RATE_HZ {
+                shake_m_s = shake_m_s.max(pair.handle_m_s().norm());
+            }
         }
     }
     let start = Row {
         mode,
         delay_ms,
-        governor,
+        governor: trial.gates.handle_kg > 0.0,
         situation,
         contact_n,
         before_n: pair.force_n().norm(),
+        shake_m_s,
         closed_before: pair.report().governed > 0.0,
         travel_mm: 0.0,
         peak_m_s: 0.0,
         energy_mj: 0.0,
         force_after_100_ms_n: 0.0,
     };
-    Ok(watch(pair, &intended_m, handle, start))
+    Ok(watch(pair, &intended_m, &trial.handle, start))
 }
 
 /// Opens the hand and looks at the handle.

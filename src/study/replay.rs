@@ -9,7 +9,7 @@ use std::time::Instant;
 
 use nalgebra::Vector3;
 use nima_core::{
-    impedance::{Identifier, MAX_DEGREE, Mode, Report, Settings, SettingsError},
+    impedance::{Identifier, MAX_DEGREE, Mode, Recipe, Report, Settings, SettingsError},
     safety::{Chain, ChainSettings, Request},
     statistics::Percentiles,
 };
@@ -177,6 +177,8 @@ pub struct Options {
     pub max_degree: usize,
     /// Learn the full matrix `M`, with cross-talk.
     pub cross_talk: bool,
+    /// How literal and linear read the paper.
+    pub literal: Recipe,
 }
 
 /// Replays `recording`; `each` is called with every row in order.
@@ -185,7 +187,7 @@ pub struct Options {
 /// [`ReplayError`] if a setting is out of range or the recording is shorter than window and delay together.
 ///
 /// ```
-/// use nima_core::impedance::Mode;
+/// use nima_core::impedance::{Mode, Recipe};
 /// use nima_recording::csv::{Mapping, Recording};
 /// use nima_study::replay::{Options, replay};
 ///
@@ -200,7 +202,8 @@ pub struct Options {
 /// std::fs::write(&path, format!("t_s,x_m,fx_n\n{}", (0..2000).map(row).collect::<String>()))?;
 ///
 /// let recording = Recording::read(&path, &Mapping::default())?;
-/// let options = Options { mode: Mode::Anchored, window_s: 0.3, delay_s: 0.05, max_degree: 2, cross_talk: false };
+/// let literal = Recipe::default();
+/// let options = Options { mode: Mode::Anchored, window_s: 0.3, delay_s: 0.05, max_degree: 2, cross_talk: false, literal };
 /// let figures = replay(&recording, &options, |_| {})?;
 /// assert!(figures.error.mae < 0.5 * figures.hold.mae, "better than the delayed force");
 /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -213,6 +216,7 @@ pub fn replay(recording: &Recording, options: &Options, mut each: impl FnMut(&Ro
         delay_s: options.delay_s,
         max_degree: options.max_degree,
         cross_talk: options.cross_talk,
+        literal: options.literal,
         axes: recording.axes.len(),
         ..Settings::default()
     };

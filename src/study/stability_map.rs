@@ -14,7 +14,7 @@ use std::{fmt::Write as _, sync::OnceLock};
 
 use nalgebra::Vector3;
 use nima_core::{
-    impedance::{Mode, SettingsError},
+    impedance::{Mode, Recipe, SettingsError},
     safety::{ChainSettings, EnergyMode},
 };
 use nima_machine::config::OwnMotion;
@@ -23,7 +23,7 @@ use serde::{Serialize, Serializer};
 
 use crate::{
     Experiment, Findings,
-    pair::{Grip, Handle, Pair, RATE_HZ, Trial},
+    pair::{Grip, Handle, NOISE_N, Pair, RATE_HZ, Trial},
 };
 
 /// Gains of the map.
@@ -322,8 +322,10 @@ pub fn trial(mode: Mode, gain: f64, delay_s: f64, stiffness_n_m: f64) -> Result<
     // The intended position of the hand at which tissue and feedback together balance it at the contact force.
     let deep_m =
         Vector3::new(0.0, 0.0, -CONTACT_N / stiffness_n_m - gain.min(4.0 / CONTACT_N) * CONTACT_N / Grip::FIRM.n_m);
-    let (own_motion, handle, grip) = (OwnMotion::Follower, Handle::OMEGA, Grip::FIRM);
-    let trial = Trial { mode, own_motion, delay_s, gates, gain, tissue, tremor_m: 0.0, handle, grip, seed };
+    let (own_motion, literal) = (OwnMotion::Follower, Recipe::default());
+    let (handle, grip, tremor_m, noise_n) = (Handle::OMEGA, Grip::FIRM, 0.0, NOISE_N);
+    let trial =
+        Trial { mode, own_motion, literal, delay_s, gates, gain, tissue, tremor_m, noise_n, handle, grip, seed };
     let mut pair = Pair::new(&trial, above_m)?;
     let (mut low_m, mut high_m) = (Vector3::repeat(f64::INFINITY), Vector3::repeat(f64::NEG_INFINITY));
     for tick in 0..(TRIAL_S * RATE_HZ) as u32 {

@@ -2,6 +2,7 @@
 
 pub mod experiment;
 pub mod isolation;
+pub mod paper;
 pub mod rendering;
 mod table;
 
@@ -31,6 +32,9 @@ pub enum ValidationError {
     /// The network could not be trained or used.
     #[error(transparent)]
     TipForce(#[from] TipForceError),
+    /// Letting go could not be tried.
+    #[error(transparent)]
+    Release(#[from] crate::release::ReleaseError),
     /// Writing to memory failed.
     #[error("the simulated session could not be stored")]
     Scratch(#[source] std::io::Error),

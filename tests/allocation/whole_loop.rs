@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 use nima_core::{
-    impedance::{Identifier, Mode, ModeSet, Renderer, Sample, Settings},
+    impedance::{Choice, Identifier, Mode, ModeSet, Reading, Recipe, Renderer, Sample, Settings},
     signal::DifferentiatorKind,
 };
 use nima_machine::{
@@ -32,10 +32,11 @@ fn sample(k: u32) -> Sample {
 #[test]
 fn identification_and_rendering_allocate_nothing() {
     let _alone = alone();
+    let every_key = Recipe { reading: Reading::Displacement, choice: Choice::Next, constant: true, ridge: 3e-3 };
     for differentiator in DifferentiatorKind::ALL {
-        for cross_talk in [false, true] {
-            let settings =
-                Settings { differentiator, cross_talk, modes: ModeSet::ALL, delay_s: 0.05, ..Settings::default() };
+        for (cross_talk, literal) in [(false, Recipe::default()), (true, every_key)] {
+            let (modes, delay_s) = (ModeSet::ALL, 0.05);
+            let settings = Settings { differentiator, cross_talk, literal, modes, delay_s, ..Settings::default() };
             let mut identifier = Identifier::new(&settings).unwrap();
             let mut renderer = Renderer::new(&settings).unwrap();
             let before = calls();

@@ -7,8 +7,8 @@ use super::{
 };
 use crate::signal::Lanes;
 
-/// Entries of a row: the motion columns, then the force.
-pub(super) const GRAM_ROW: usize = MOTION_COLUMNS + 1;
+/// Most entries of a row: a constant, the motion columns, the force.
+pub(super) const GRAM_ROW: usize = MOTION_COLUMNS + 2;
 const ELEMENTS: usize = GRAM_ROW * (GRAM_ROW + 1) / 2;
 
 /// `[X; f] [X; f]^T`, one per lane: the upper triangle packed by columns, the force in the last one.
@@ -17,18 +17,30 @@ const ELEMENTS: usize = GRAM_ROW * (GRAM_ROW + 1) / 2;
 #[derive(Clone, Debug)]
 pub struct Gram {
     columns: usize,
+    /// 1 in the lanes in use if the first column is a constant.
+    constant: Option<Lanes>,
     elements: [Lanes; ELEMENTS],
 }
 
 impl Gram {
     /// The sums of no rows, for `columns <= 15` motion columns.
     pub fn new(columns: usize) -> Self {
-        Self { columns: columns.min(MOTION_COLUMNS), elements: [Lanes::ZERO; ELEMENTS] }
+        Self { columns: columns.min(MOTION_COLUMNS), constant: None, elements: [Lanes::ZERO; ELEMENTS] }
     }
 
-    /// Number of motion columns.
+    /// The same with a constant before the motion columns, `one` in the lanes in use.
+    pub fn with_constant(columns: usize, one: Lanes) -> Self {
+        Self { columns: columns.min(MOTION_COLUMNS) + 1, constant: Some(one), ..Self::new(0) }
+    }
+
+    /// Number of columns, the constant included.
     pub fn columns(&self) -> usize {
         self.columns
+    }
+
+    /// Columns before the motion's: 1 with a constant, 0 without.
+    pub fn constants(&self) -> usize {
+        usize::from(self.constant.is_some())
     }
 
     /// Column `j` (rows `0..=j`); `j == columns()` is the force.
@@ -41,14 +53,16 @@ impl Gram {
     #[inline]
     pub(super) fn row(&self, features: &Features, force_n: Lanes) -> [Lanes; GRAM_ROW] {
         let mut row = [Lanes::ZERO; GRAM_ROW];
-        row[..self.columns].copy_from_slice(&features[..self.columns]);
+        let first = self.constants();
+        row[0] = self.constant.unwrap_or(Lanes::ZERO);
+        row[first..self.columns].copy_from_slice(&features[..self.columns - first]);
         row[self.columns] = force_n;
         row
     }
 }
 
 impl Summary for Gram {
-    /// `columns` motion columns, then the force at index `columns`; the rest is ignored.
+    /// `columns` columns, then the force at index `columns`; the rest is ignored.
     type Row = [Lanes; GRAM_ROW];
 
     const BLANK_ROW: Self::Row = [Lanes::ZERO; GRAM_ROW];

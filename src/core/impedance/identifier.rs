@@ -9,9 +9,10 @@ use super::{
     features::Features,
     gram::Gram,
     horizon::Horizon,
-    literal::{self, LiteralSolver},
+    literal::LiteralSolver,
     matched::{Form, Matched},
-    messages::{Excitation, LiteralModel, Parcel, Posture, Report, Sample, active},
+    messages::{Excitation, Parcel, Posture, Report, Sample, active},
+    recipe::{Choice, Next},
     settings::{MAX_DELAY_S, ModeSet, Settings, SettingsError},
     solution::Solution,
     track::{Track, usable_force, usable_position},
@@ -80,6 +81,8 @@ pub struct Identifier {
 struct Paper {
     window: SlidingWindow<Gram>,
     solver: LiteralSolver,
+    /// Where the degree is chosen by what comes after the window.
+    next: Option<Next>,
 }
 
 #[derive(Clone, Debug)]
@@ -102,10 +105,13 @@ impl Identifier {
         let block = settings.block();
         let paper = |mode: Mode, degree: usize| {
             settings.modes.contains(mode).then(|| {
-                let empty = Gram::new(3 * degree);
+                let recipe = &settings.literal;
+                let one = active(&Vector3::repeat(1.0), settings.axes);
+                let empty = if recipe.constant { Gram::with_constant(3 * degree, one) } else { Gram::new(3 * degree) };
                 Box::new(Paper {
                     window: SlidingWindow::new(block, empty.clone(), empty),
-                    solver: LiteralSolver::new(degree, settings.axes),
+                    solver: LiteralSolver::new(degree, settings.axes, recipe, &settings.scales),
+                    next: (recipe.choice == Choice::Next).then(|| Next::new(settings.rate_hz)),
                 })
             })
         };
@@ -199,7 +205,7 @@ impl Identifier {
         self.report.rejected += u64::from(!good);
 
         let now = self.track.step(position);
-        let increments = self.track.increments();
+        let x = self.track.paper_x();
         let usable = good && self.track.settled();
         let learn = !self.rests(good);
         self.report.resting = !learn;
@@ -209,12 +215,12 @@ impl Identifier {
         self.parcel.force_n = self.last_force_n.vector();
         self.parcel.fresh = good;
         if learn {
-            self.step_paper(&increments, usable);
+            self.step_paper(&x, usable);
         }
         self.step_anchored(&now, good, usable, learn);
         self.step_matched(&now, good, usable, learn);
         self.sent.push((self.parcel, now));
-        self.predict(&now, &increments, good);
+        self.predict(&now, &x, good);
     }
 
     /// Whether nothing is to be learnt: for as long as a window there was no force, and none was rendered.
@@ -228,7 +234,7 @@ impl Identifier {
         self.idle_ticks > 2 * self.settings.block()
     }
 
-    fn step_paper(&mut self, increments: &Features, usable: bool) {
+    fn step_paper(&mut self, x: &Features, usable: bool) {
         let of_mode = if self.computed.contains(Mode::Literal) {
             &mut self.paper
         } else if self.computed.contains(Mode::Linear) {
@@ -236,8 +242,8 @@ impl Identifier {
         } else {
             return;
         };
-        let Some(Paper { window, solver }) = of_mode.as_deref_mut() else { return };
-        let mut row = window.current().row(increments, self.last_force_n);
+        let Some(Paper { window, solver, next }) = of_mode.as_deref_mut() else { return };
+        let mut row = window.current().row(x, self.last_force_n);
         if !usable {
             row = Gram::BLANK_ROW;
         }
@@ -246,13 +252,16 @@ impl Identifier {
             return;
         }
         solver.solve(window.current(), window.len());
-        let choice = solver.choice();
-        self.parcel.linear = model(solver, 1);
-        self.parcel.literal = model(solver, choice);
+        let choice = match next {
+            Some(next) => next.step(usable.then_some((x, self.last_force_n)), solver),
+            None => solver.choice(),
+        };
+        self.parcel.linear = *solver.model(1);
+        self.parcel.literal = *solver.model(choice);
         self.report.paper_degree = choice as u8;
         self.report.literal_failures = solver.failures();
         for degree in 1..=MAX_DEGREE {
-            let rendered = literal::product(solver.coefficients(degree), increments, 3 * degree);
+            let rendered = solver.model(degree).product(x);
             self.report.reconstruction_n[degree - 1] = (self.last_force_n - rendered).vector();
         }
     }
@@ -314,10 +323,10 @@ impl Identifier {
     }
 
     /// What every mode renders for this tick from the parcel one delay old, and its running error.
-    fn predict(&mut self, now: &Posture, increments: &Features, good: bool) {
+    fn predict(&mut self, now: &Posture, x: &Features, good: bool) {
         let modes = self.computed;
         let forces = match self.sent.get(self.delay_ticks) {
-            Some((parcel, then)) if parcel.t_s.is_finite() => parcel.render(now, then, increments),
+            Some((parcel, then)) if parcel.t_s.is_finite() => parcel.render(now, then, x),
             _ => [None; MODES],
         };
         let said = [Mode::Anchored, Mode::Matched].map(|mode| forces[mode.index()]);
@@ -394,6 +403,7 @@ impl Paper {
     fn reset(&mut self) {
         self.window.reset();
         self.solver.reset();
+        self.next.iter_mut().for_each(Next::reset);
     }
 }
 
@@ -402,14 +412,6 @@ impl Anchored {
         self.window.reset();
         self.horizon.reset();
         self.correction.reset();
-    }
-}
-
-fn model(solver: &LiteralSolver, degree: usize) -> LiteralModel {
-    if solver.is_solved(degree) {
-        LiteralModel { degree: degree as u8, coefficients: *solver.coefficients(degree) }
-    } else {
-        LiteralModel::NONE
     }
 }
 

@@ -3,34 +3,36 @@
 use super::{
     MAX_DEGREE,
     factor::column_start,
-    features::{Features, MOTION_COLUMNS},
+    features::{MOTION_COLUMNS, Scales},
     gram::{GRAM_ROW, Gram},
+    messages::LiteralModel,
+    recipe::Recipe,
 };
 use crate::signal::{LANES, Lanes};
 
 /// Solves the normal equations of every degree from one Cholesky factorisation of the largest Gram matrix.
 ///
-/// Raw SI columns, no constant, no ridge, no pivoting, no cut-off: where the matrix is not positive definite in floating
-/// point, or a number is not finite, that axis and degree has *failed*; it is counted, its coefficients are zero and its
-/// error is the whole force. Nothing else is done about it.
+/// Raw SI columns, no pivoting, no cut-off, and unless the [`Recipe`] says otherwise no constant and no ridge: where the matrix
+/// is not positive definite in floating point, or a number is not finite, that axis and degree has *failed*; it is counted,
+/// its coefficients are zero and its error is the whole force. Nothing else is done about it.
 #[derive(Clone, Debug)]
 pub struct LiteralSolver {
     max_degree: usize,
     axes: usize,
-    coefficients: [[Lanes; MOTION_COLUMNS]; MAX_DEGREE],
-    solved: [[bool; LANES]; MAX_DEGREE],
+    penalty: [f64; MOTION_COLUMNS],
+    models: [LiteralModel; MAX_DEGREE],
     error_n: [f64; MAX_DEGREE],
     failures: u64,
 }
 
 impl LiteralSolver {
     /// A solver for degrees `1..=max_degree` of the first `axes` lanes.
-    pub fn new(max_degree: usize, axes: usize) -> Self {
+    pub fn new(max_degree: usize, axes: usize, recipe: &Recipe, scales: &Scales) -> Self {
         Self {
             max_degree,
             axes,
-            coefficients: [[Lanes::ZERO; MOTION_COLUMNS]; MAX_DEGREE],
-            solved: [[false; LANES]; MAX_DEGREE],
+            penalty: recipe.penalty(scales),
+            models: [LiteralModel::NONE; MAX_DEGREE],
             error_n: [f64::INFINITY; MAX_DEGREE],
             failures: 0,
         }
@@ -38,10 +40,10 @@ impl LiteralSolver {
 
     /// Solves every degree on the sums of `rows` rows.
     pub fn solve(&mut self, gram: &Gram, rows: usize) {
-        let n = gram.columns();
-        let (r, definite) = cholesky(gram);
+        let (n, first) = (gram.columns(), gram.constants());
+        let (r, definite) = cholesky(gram, &self.ridge(first, rows));
         for degree in 1..=self.max_degree {
-            let columns = 3 * degree;
+            let columns = first + 3 * degree;
             let mut m = back_substitute(&r, columns, n);
             let squares = residual_squares(gram, &m, columns);
             // Not finite in a lane where any coefficient or the error is not.
@@ -57,15 +59,31 @@ impl LiteralSolver {
                 self.failures += failed as u64;
                 m = m.map(|m| Lanes(std::array::from_fn(|lane| if solved[lane] { m[lane] } else { 0.0 })));
             }
-            self.solved[degree - 1] = solved;
-            self.coefficients[degree - 1] = m;
+            let model = &mut self.models[degree - 1];
+            model.degree = if failed < self.axes { degree as u8 } else { 0 };
+            model.constant_n = if first > 0 { m[0] } else { Lanes::ZERO };
+            model.coefficients.copy_from_slice(&m[first..first + MOTION_COLUMNS]);
             self.error_n[degree - 1] = (square_n2 / rows.max(1) as f64).sqrt();
         }
     }
 
+    /// What is added to the pivots.
+    fn ridge(&self, first: usize, rows: usize) -> [f64; GRAM_ROW] {
+        let mut ridge = [0.0; GRAM_ROW];
+        for (ridge, penalty) in ridge[first..].iter_mut().zip(self.penalty) {
+            *ridge = rows as f64 * penalty;
+        }
+        ridge
+    }
+
+    /// The fit of `degree` (1-based), zero where that axis failed; none where every axis failed.
+    pub fn model(&self, degree: usize) -> &LiteralModel {
+        degree.checked_sub(1).and_then(|index| self.models.get(index)).unwrap_or(&LiteralModel::NONE)
+    }
+
     /// Coefficients of `degree` (1-based), SI units, zero beyond `3 * degree` and where that axis failed.
     pub fn coefficients(&self, degree: usize) -> &[Lanes; MOTION_COLUMNS] {
-        &self.coefficients[degree.clamp(1, MAX_DEGREE) - 1]
+        &self.models[degree.clamp(1, MAX_DEGREE) - 1].coefficients
     }
 
     /// Root mean square 3-D error (N) inside the window with `degree`.
@@ -75,7 +93,7 @@ impl LiteralSolver {
 
     /// Whether at least one axis was solved with `degree`.
     pub fn is_solved(&self, degree: usize) -> bool {
-        (1..=self.max_degree).contains(&degree) && self.solved[degree - 1].iter().any(|solved| *solved)
+        self.model(degree).degree > 0
     }
 
     /// The paper's choice: the degree with the least 3-D error inside the window; 0 if none could be solved.
@@ -93,20 +111,17 @@ impl LiteralSolver {
 
     /// Forgets all solutions and the count of failures.
     pub fn reset(&mut self) {
-        *self = Self::new(self.max_degree, self.axes);
+        self.models = [LiteralModel::NONE; MAX_DEGREE];
+        self.error_n = [f64::INFINITY; MAX_DEGREE];
+        self.failures = 0;
     }
-}
-
-/// `M X` (N) for `columns` columns.
-#[inline]
-pub(super) fn product(m: &[Lanes; MOTION_COLUMNS], features: &Features, columns: usize) -> Lanes {
-    m.iter().zip(features).take(columns).fold(Lanes::ZERO, |sum, (m, feature)| sum + *m * *feature)
 }
 
 type Triangle = [Lanes; GRAM_ROW * (GRAM_ROW + 1) / 2];
 
-/// `R` with `R^T R = [X; f] [X; f]^T` (the force column too), and for each lane how many leading pivots were positive.
-fn cholesky(gram: &Gram) -> (Triangle, [usize; LANES]) {
+/// `R` with `R^T R = [X; f] [X; f]^T` (the force column too), and for each lane how many leading pivots were positive. `ridge` is added
+/// to the diagonal of `X X^T`.
+fn cholesky(gram: &Gram, ridge: &[f64; GRAM_ROW]) -> (Triangle, [usize; LANES]) {
     let n = gram.columns();
     let mut r = [Lanes::ZERO; GRAM_ROW * (GRAM_ROW + 1) / 2];
     let mut definite = [n; LANES];
@@ -125,6 +140,7 @@ fn cholesky(gram: &Gram) -> (Triangle, [usize; LANES]) {
             column[k] = if k < j { rest * above[k].recip_or_zero() } else { rest };
         }
         if j < n {
+            column[j] += Lanes::splat(ridge[j]);
             for (lane, definite) in definite.iter_mut().enumerate() {
                 // A NaN pivot is not positive either.
                 let positive = column[j][lane] > 0.0;
@@ -137,8 +153,8 @@ fn cholesky(gram: &Gram) -> (Triangle, [usize; LANES]) {
 }
 
 /// Solves `R_p M = z_p` for the leading `columns` columns; `n` is the column of the right-hand side.
-fn back_substitute(r: &Triangle, columns: usize, n: usize) -> [Lanes; MOTION_COLUMNS] {
-    let mut m = [Lanes::ZERO; MOTION_COLUMNS];
+fn back_substitute(r: &Triangle, columns: usize, n: usize) -> [Lanes; GRAM_ROW] {
+    let mut m = [Lanes::ZERO; GRAM_ROW];
     let z = column_start(n);
     m[..columns].copy_from_slice(&r[z..z + columns]);
     for j in (0..columns).rev() {
@@ -153,7 +169,7 @@ fn back_substitute(r: &Triangle, columns: usize, n: usize) -> [Lanes; MOTION_COL
 }
 
 /// `|f - M X|^2` over the window from the sums: `f f^T - 2 M X f^T + M X X^T M^T`.
-fn residual_squares(gram: &Gram, m: &[Lanes; MOTION_COLUMNS], columns: usize) -> Lanes {
+fn residual_squares(gram: &Gram, m: &[Lanes; GRAM_ROW], columns: usize) -> Lanes {
     let n = gram.columns();
     let force = gram.column(n);
     let mut sum = force[n];

@@ -6,7 +6,6 @@ use super::{
     MAX_DEGREE, MODES, Mode,
     anchored::within,
     features::{Features, MOTION_COLUMNS},
-    literal,
     matched::MatchedModel,
     regressors::{Stance, motion_changes},
     settings::ModeSet,
@@ -29,18 +28,26 @@ pub struct Sample {
 pub struct LiteralModel {
     /// Degree `N`; 0: none could be solved.
     pub degree: u8,
+    /// Constant force (N); zero unless the recipe has one.
+    pub constant_n: Lanes,
     /// `M`: the first `3 N` are in use, N per SI unit of the feature.
     pub coefficients: [Lanes; MOTION_COLUMNS],
 }
 
 impl LiteralModel {
     /// No model.
-    pub const NONE: Self = Self { degree: 0, coefficients: [Lanes::ZERO; MOTION_COLUMNS] };
+    pub const NONE: Self = Self { degree: 0, constant_n: Lanes::ZERO, coefficients: [Lanes::ZERO; MOTION_COLUMNS] };
 
-    /// `M X` (N), `X` the features of the increments over the window, in SI units; `None` without a model or where the
-    /// product is not finite.
-    pub(super) fn force(&self, increments: &Features) -> Option<Lanes> {
-        let force = literal::product(&self.coefficients, increments, 3 * usize::from(self.degree));
+    /// `M X` (N), `X` in SI units as the recipe reads it.
+    #[inline]
+    pub(super) fn product(&self, x: &Features) -> Lanes {
+        let terms = self.coefficients.iter().zip(x).take(3 * usize::from(self.degree));
+        terms.fold(self.constant_n, |sum, (m, x)| sum + *m * *x)
+    }
+
+    /// The same; `None` without a model or where the product is not finite.
+    pub(super) fn force(&self, x: &Features) -> Option<Lanes> {
+        let force = self.product(x);
         (self.degree > 0 && force.is_finite()).then_some(force)
     }
 }
@@ -220,10 +227,10 @@ impl Parcel {
         anchored_weight: Lanes::ZERO,
     };
 
-    /// The force of every mode for the motion now, by [`Mode::index`](super::Mode::index): `anchored` features now and at
-    /// the time of the parcel, `literal` increments now. Nothing is made of a force that is not finite: limits would turn it into
+    /// The force of every mode for the motion now, by [`Mode::index`](super::Mode::index): `anchored` from the motion now and at
+    /// the time of the parcel, `literal` from `x`, the paper's `X` now. Nothing is made of a force that is not finite: limits would turn it into
     /// one of their edges.
-    pub(super) fn render(&self, now: &Posture, then: &Posture, increments: &Features) -> [Option<Lanes>; MODES] {
+    pub(super) fn render(&self, now: &Posture, then: &Posture, x: &Features) -> [Option<Lanes>; MODES] {
         let measured = Lanes::from(self.force_n);
         if !measured.is_finite() {
             return [None; MODES];
@@ -232,8 +239,8 @@ impl Parcel {
         let matched = self.matched.force(now);
         let best = matched.map_or(anchored, |matched| matched + (anchored - matched) * self.anchored_weight);
         let mut forces = [
-            self.literal.force(increments),
-            self.linear.force(increments),
+            self.literal.force(x),
+            self.linear.force(x),
             Some(measured),
             Some(anchored),
             matched,
@@ -293,7 +300,7 @@ pub struct Report {
     pub prediction_valid: [bool; MODES],
     /// Force minus `M X` (N) at the newest sample, for each literal degree fitted on the window that ends with it.
     pub reconstruction_n: [Vector3<f64>; MAX_DEGREE],
-    /// The paper's in-window choice of the degree; 0 while the window is not full or nothing can be solved.
+    /// The paper's choice of the degree, as the recipe makes it; 0 while the window is not full or nothing can be solved.
     pub paper_degree: u8,
     /// Degree of anchored rendering: that of the nested window impedance which foretells force best at the horizon; 1 where
     /// none does better than reflection but the regressions do; 0: no correction.

@@ -13,6 +13,7 @@
 //! | `track`, `features` | the motion of one end; its features `u, u', u'', ..., u^N, u'^N, u''^N` and their scales |
 //! | `window`, `factor`, `solution` | sliding window at a constant cost; triangular factor; all its nested solutions |
 //! | `gram`, `literal` | the paper's normal equations, all degrees, in-window choice |
+//! | `recipe` | how the paper is read where it leaves a choice; the choice by what comes after the window |
 //! | `cross_factor`, `cross_talk` | the same with every axis' force from the motion of all axes, where a scene asks for it |
 //! | `horizon` | the nested solution that foretells force best at the true delay |
 //! | `anchored`, `regressors`, `regression`, `stack` | anchored rendering: experts, their trust, the guard |
@@ -36,6 +37,7 @@ mod matched;
 mod messages;
 mod mode;
 mod pace;
+mod recipe;
 mod regression;
 mod regressors;
 mod renderer;
@@ -47,6 +49,8 @@ mod window;
 
 #[cfg(test)]
 mod comparison_tests;
+#[cfg(test)]
+mod recipe_tests;
 #[cfg(test)]
 mod rest_tests;
 #[cfg(test)]
@@ -60,8 +64,9 @@ pub use literal::LiteralSolver;
 pub use matched::{Form, MatchedModel};
 pub use messages::{AnchoredModel, Excitation, Impedance, LiteralModel, Parcel, Rendered, Report, Sample};
 pub use mode::{MODES, Mode, ParseModeError};
+pub use recipe::{Choice, Reading, Recipe};
 pub use renderer::Renderer;
-pub use settings::{MAX_DELAY_S, MAX_REST_N, ModeSet, Settings, SettingsError};
+pub use settings::{MAX_DELAY_S, MAX_REST_N, ModeSet, RIDGES, Settings, SettingsError};
 pub use solution::Solution;
 pub use window::{SlidingWindow, Summary};
 

@@ -61,7 +61,7 @@ impl Renderer {
     pub fn step(&mut self, position_m: &Vector3<f64>, parcel: Option<&Parcel>) -> Rendered {
         let position = usable_position(active(position_m, self.settings.axes), &self.settings.scales);
         let now = self.track.step(position);
-        let increments = self.track.increments();
+        let x = self.track.paper_x();
         self.postures.push(now);
 
         let Some(parcel) = parcel.filter(|parcel| parcel.t_s.is_finite()) else {
@@ -77,7 +77,7 @@ impl Renderer {
         // Not that much motion yet: the anchor is now, i.e. no correction.
         let age = self.delay_ticks.saturating_add(self.waiting);
         let then = self.postures.get(age).unwrap_or(&now);
-        Rendered::new(&parcel.render(&now, then, &increments))
+        Rendered::new(&parcel.render(&now, then, &x))
     }
 
     /// Changes the programmed delay, exact to one sample, at most [`MAX_DELAY_S`].

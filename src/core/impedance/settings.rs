@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{AXES, MAX_DEGREE, MODES, Mode, features::Scales};
+use super::{AXES, MAX_DEGREE, MODES, Mode, features::Scales, recipe::Recipe};
 use crate::signal::DifferentiatorKind;
 
 /// Longest programmed delay of the link (s); the rings are made for it.
@@ -13,6 +13,9 @@ pub const MAX_REST_N: f64 = 1.0;
 
 /// Fewest and most samples in a window.
 const WINDOW_SAMPLES: std::ops::RangeInclusive<f64> = 10.0..=10_000.0;
+
+/// Least and greatest ridge.
+pub const RIDGES: std::ops::RangeInclusive<f64> = 0.0..=1e6;
 
 /// The modes to compute; what is not asked for costs nothing.
 ///
@@ -94,6 +97,8 @@ pub struct Settings {
     /// Ridge of the anchored fit, per row of the window and in scaled columns: a coefficient costs as much as if each row had
     /// been seen once more with this mean square and no force. 0 switches it off.
     pub ridge: f64,
+    /// How literal and linear read the paper.
+    pub literal: Recipe,
 }
 
 impl Default for Settings {
@@ -110,6 +115,7 @@ impl Default for Settings {
             cross_talk: false,
             differentiator: DifferentiatorKind::default(),
             ridge: 1e-6,
+            literal: Recipe::default(),
         }
     }
 }
@@ -159,8 +165,10 @@ impl Settings {
         if !(0.0..=MAX_REST_N).contains(&self.rest_n) {
             return Err(E::Rest { rest_n: self.rest_n });
         }
-        if !(0.0..=1e6).contains(&self.ridge) {
-            return Err(E::Ridge { ridge: self.ridge });
+        for ridge in [self.ridge, self.literal.ridge] {
+            if !RIDGES.contains(&ridge) {
+                return Err(E::Ridge { ridge });
+            }
         }
         Ok(())
     }

@@ -4,6 +4,7 @@ use super::{
     features::{Features, Scales, features},
     messages::Posture,
     pace::Clock,
+    recipe::Reading,
     regressors::{Stance, position_bank, shortest_share},
     settings::Settings,
 };
@@ -24,6 +25,7 @@ pub(super) struct Track {
     clock: Clock,
     speed_share: f64,
     scales: Scales,
+    reading: Reading,
     degree: usize,
     posture: Posture,
     history: DelayLine<Motion>,
@@ -42,6 +44,7 @@ impl Track {
             clock: Clock::new(settings.rate_hz),
             speed_share: shortest_share(settings),
             scales: settings.scales,
+            reading: settings.literal.reading,
             degree: settings.max_degree,
             posture: Posture::BLANK,
             history: DelayLine::new(2 * settings.block(), Motion::default()),
@@ -84,8 +87,11 @@ impl Track {
     }
 
     /// The paper's features `X` (SI units) of `u`: what position, velocity and acceleration have changed over the window (over the time since the
-    /// first sample, while that is less).
-    pub(super) fn increments(&self) -> Features {
+    /// first sample, while that is less), or what they are.
+    pub(super) fn paper_x(&self) -> Features {
+        if self.reading == Reading::Displacement {
+            return features(&self.last, self.degree);
+        }
         let window = self.history.max_delay();
         let then = self.history.get_or_oldest(window).copied().unwrap_or_default();
         let u = Motion { x: self.last.x - then.x, v: self.last.v - then.v, a: self.last.a - then.a };

@@ -2,7 +2,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use nalgebra::Vector3;
 use nima_core::{
-    impedance::{Mode, Sample, Settings},
+    impedance::{Mode, Recipe, Sample, Settings},
     signal::DifferentiatorKind,
 };
 use nima_recording::csv::{Mapping, Recording};
@@ -79,7 +79,8 @@ fn the_error_is_that_of_the_causal_replay() {
     let source = source(3.0, 1000.0);
     let figures = swept(&source, &tiny());
     for mode in Mode::ALL {
-        let options = Options { mode, window_s: 0.2, delay_s: 0.05, max_degree: 2, cross_talk: false };
+        let literal = Recipe::default();
+        let options = Options { mode, window_s: 0.2, delay_s: 0.05, max_degree: 2, cross_talk: false, literal };
         let (mut sum, mut count) = (0.0, 0);
         replay(&source.recording, &options, |row| {
             if row.t_s >= figures.judged_from_s + 0.05 {

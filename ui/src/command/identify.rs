@@ -8,10 +8,11 @@ use std::{
 
 use anyhow::Context as _;
 use clap::Args;
-use nima_core::impedance::{MAX_DEGREE, Mode};
+use nima_core::impedance::{Choice, MAX_DEGREE, Mode, Reading, Recipe};
 use nima_files::write_atomically;
 use nima_recording::csv::{AXIS_NAMES, Mapping, Recording};
 use nima_study::replay::{Figures, Options, Row, replay};
+use serde::de::{DeserializeOwned, IntoDeserializer as _, value::Error};
 
 use super::output;
 
@@ -37,6 +38,18 @@ pub(super) struct Arguments {
     /// Let the force on each axis depend on the motion of all axes (anchored mode; slower)
     #[arg(long)]
     cross_talk: bool,
+    /// What literal and linear regress on: increments (what the motion changed over the window) or displacement (from the origin)
+    #[arg(long, value_name = "READING", default_value = "increments", value_parser = word::<Reading>)]
+    reading: Reading,
+    /// By what error literal chooses its degree: window (in the window that it fitted) or next (over the 10 ms after it)
+    #[arg(long, value_name = "CHOICE", default_value = "window", value_parser = word::<Choice>)]
+    choice: Choice,
+    /// Give literal and linear a free constant force
+    #[arg(long)]
+    constant: bool,
+    /// Ridge of literal and linear per row of the window, in columns divided by the workspace's scales; 0 for none
+    #[arg(long, value_name = "R", default_value_t = 0.0, allow_negative_numbers = true)]
+    ridge: f64,
     /// Write one row per sample to this CSV file
     /// (replaces a file, whose mode stays; follows a link; refuses the input, a device or a pipe)
     #[arg(long, value_name = "TRACE.csv")]
@@ -57,6 +70,12 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         delay_s: arguments.delay_ms * 1e-3,
         max_degree: arguments.max_degree,
         cross_talk: arguments.cross_talk,
+        literal: Recipe {
+            reading: arguments.reading,
+            choice: arguments.choice,
+            constant: arguments.constant,
+            ridge: arguments.ridge,
+        },
     };
     let mut trace = header(&recording);
     let keep = arguments.out.is_some();
@@ -70,6 +89,11 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         write_atomically(out, fill).with_context(|| format!("cannot write the trace {}", out.display()))?;
     }
     if arguments.json { output::json(&figures) } else { output::line(&in_words(&figures)) }
+}
+
+/// A word of a rig file.
+fn word<T: DeserializeOwned>(text: &str) -> Result<T, Error> {
+    T::deserialize(text.into_deserializer())
 }
 
 fn header(recording: &Recording) -> String {

@@ -28,6 +28,10 @@ pub(super) trait Asked: Args {
     type Experiment: Experiment;
 
     fn experiment(&self) -> anyhow::Result<Self::Experiment>;
+
+    fn carry_out(&self, results: &Results) -> anyhow::Result<()> {
+        results.of(&self.experiment()?)
+    }
 }
 
 /// Arguments of one study, and where to write its results.
@@ -35,6 +39,13 @@ pub(super) trait Asked: Args {
 pub(super) struct Study<A: Args> {
     #[command(flatten)]
     asked: A,
+    #[command(flatten)]
+    results: Results,
+}
+
+/// Where to write the results of a study.
+#[derive(Debug, Args)]
+pub(super) struct Results {
     /// Write the results into this folder: JSON, tables (Markdown or CSV) and pictures (SVG), named after the study (created if
     /// missing; replaces files, whose mode stays; follows links; refuses inputs, devices and pipes)
     #[arg(long, value_name = "DIR")]
@@ -53,7 +64,7 @@ macro_rules! studies {
 
         pub(super) fn run(command: &StudyCommand) -> anyhow::Result<()> {
             match command {
-                $(StudyCommand::$name(study) => study.carry_out(),)*
+                $(StudyCommand::$name(study) => study.asked.carry_out(&study.results),)*
             }
         }
     };
@@ -80,24 +91,20 @@ studies! {
     Validation(validation::Validation),
 }
 
-/// The experiment that these arguments describe.
-type Of<A> = <A as Asked>::Experiment;
-
-impl<A: Asked> Study<A> {
-    fn carry_out(&self) -> anyhow::Result<()> {
-        let experiment = self.asked.experiment()?;
+impl Results {
+    fn of<E: Experiment>(&self, experiment: &E) -> anyhow::Result<()> {
         let inputs = experiment.inputs();
         let inputs: Vec<&Path> = inputs.iter().map(PathBuf::as_path).collect();
         if let Some(out) = &self.out {
             // Checked before the work, so that an invalid name does not waste its time.
-            let names: Vec<String> = [".json"].iter().chain(Of::<A>::FILES).map(|end| name::<A>(end)).collect();
+            let names: Vec<String> = [".json"].iter().chain(E::FILES).map(|end| name::<E>(end)).collect();
             output::folder(out, &names.iter().map(String::as_str).collect::<Vec<_>>(), &inputs)?;
         }
         let findings = experiment.run(&mut progress)?;
         if let Some(out) = &self.out {
             let json = (".json".to_owned(), serde_json::to_string_pretty(&findings)?);
             let files = [json].into_iter().chain(findings.files());
-            let files: Vec<_> = files.map(|(end, text)| (name::<A>(&end), text)).collect();
+            let files: Vec<_> = files.map(|(end, text)| (name::<E>(&end), text)).collect();
             // Some names depend on the results, so only now can they be compared with the inputs.
             files.iter().try_for_each(|(name, _)| output::check(&out.join(name), &inputs))?;
             files.iter().try_for_each(|(name, text)| output::write(out, name, text))?;
@@ -107,8 +114,8 @@ impl<A: Asked> Study<A> {
     }
 }
 
-fn name<A: Asked>(end: &str) -> String {
-    format!("{}{end}", Of::<A>::NAME)
+fn name<E: Experiment>(end: &str) -> String {
+    format!("{}{end}", E::NAME)
 }
 
 /// Shows progress in one line of the terminal, which is rewritten in place and cleared at the end.

@@ -142,11 +142,31 @@ fn a_real_recording_is_identified_better_than_held_and_literal_is_shown_as_it_is
 }
 
 #[test]
+fn every_way_to_read_the_paper_changes_the_literal_mode_and_no_other() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = recording(folder.path(), "rec.csv", 2000, |_, _| {});
+    let error = |mode: &str, keys: &[&str]| {
+        let given = ["identify", path.to_str().unwrap(), "--mode", mode, "--delay-ms", "50", "--json"];
+        json(&given.iter().chain(keys).copied().collect::<Vec<_>>())["error"]["mae"].as_f64().unwrap()
+    };
+    let keys: [&[&str]; 4] =
+        [&["--reading", "displacement"], &["--choice", "next"], &["--constant"], &["--ridge", "0.003"]];
+    for key in keys {
+        assert!((error("literal", key) - error("literal", &[])).abs() > 1e-9, "{key:?}");
+        assert!((error("matched", key) - error("matched", &[])).abs() <= 0.0, "{key:?}");
+    }
+    refused(&["identify", path.to_str().unwrap(), "--choice", "best"], &["`window` or `next`"]);
+    refused(&["identify", path.to_str().unwrap(), "--reading", "sideways"], &["`displacement`"]);
+    refused(&["identify", path.to_str().unwrap(), "--ridge", "-1"], &["the ridge is -1"]);
+}
+
+#[test]
 fn cutting_the_tail_never_changes_earlier_rows() {
     let folder = tempfile::tempdir().unwrap();
     let whole = recording(folder.path(), "whole.csv", 2000, |_, _| {});
     let cut = recording(folder.path(), "cut.csv", 1300, |_, _| {});
-    for mode in ["literal", "linear", "dfr", "anchored"] {
+    let modes = ["literal", "linear", "dfr", "anchored"].map(|mode| (mode, "window"));
+    for (mode, choice) in modes.into_iter().chain([("literal", "next")]) {
         let trace = |path: &Path, out: &str| {
             let out = folder.path().join(out);
             json(&[
@@ -154,6 +174,8 @@ fn cutting_the_tail_never_changes_earlier_rows() {
                 path.to_str().unwrap(),
                 "--mode",
                 mode,
+                "--choice",
+                choice,
                 "--delay-ms",
                 "50",
                 "--json",

@@ -50,11 +50,39 @@ fn stability_prints_a_table() {
 }
 
 #[test]
+fn the_papers_figures_are_told_under_a_name_of_their_own() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().to_str().unwrap();
+    let output = nima(&["study", "validation", "--paper", "--seconds", "5", "--json", "--out", out]);
+    assert!(output.status.success() && output.stderr.is_empty(), "{}", String::from_utf8_lossy(&output.stderr));
+    let report: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let entries = report["entries"].as_array().unwrap();
+    for entry in entries {
+        let share = |key: &str| entry["in_window"][key].as_f64().unwrap();
+        assert!(share("window_share") > share("next_share"), "{entry}");
+        assert_eq!(entry["at_horizon"].as_array().unwrap().len(), 20, "{}", entry["name"]);
+    }
+    let read = |name: &str| std::fs::read_to_string(folder.path().join(name)).unwrap();
+    assert_eq!(serde_json::from_str::<Value>(&read("validation-paper.json")).unwrap(), report);
+    let text = read("validation-paper.md");
+    assert!(entries.iter().all(|entry| text.contains(entry["name"].as_str().unwrap())), "{text}");
+    // A table has as many cells in each row as in its head.
+    let columns = |line: &str| line.matches('|').count();
+    for table in text.split("\n\n").filter(|table| table.starts_with('|')) {
+        assert!(table.lines().all(|line| columns(line) == columns(table.lines().next().unwrap())), "{table}");
+    }
+}
+
+#[test]
 fn bad_input_is_one_line() {
     refused(&["study"], "study");
     refused(&["study", "nonsense"], "nonsense");
     refused(&["study", "stability", "--ticks", "9"], "10000");
     refused(&["study", "stability", "--ticks", "many"], "many");
+    refused(&["study", "validation", "--paper", "--rows", "2000"], "--rows");
+    refused(&["study", "validation", "--paper", "--seconds", "1"], "from 5 to 3600 s");
+    refused(&["study", "validation", "--recording", "a.csv"], "--paper");
+    refused(&["study", "validation", "--paper", "--recording", "/nowhere/a.csv"], "/nowhere/a.csv");
     let file = tempfile::NamedTempFile::new().unwrap();
     refused(&["study", "stability", "--out", file.path().to_str().unwrap()], "folder");
 }

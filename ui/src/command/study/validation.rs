@@ -1,11 +1,16 @@
 //! Arguments of `nima study validation`.
 
+use std::path::PathBuf;
+
 use clap::Args;
 use nima_core::impedance::MAX_DELAY_S;
-use nima_recording::tip_force::MOST_ROWS;
-use nima_study::validation::{Options, isolation::ROWS};
+use nima_recording::{
+    csv::{Mapping, Recording},
+    tip_force::MOST_ROWS,
+};
+use nima_study::validation::{Options, isolation::ROWS, paper};
 
-use super::Asked;
+use super::{Asked, Results};
 
 #[derive(Debug, Args)]
 pub(in crate::command) struct Validation {
@@ -13,17 +18,36 @@ pub(in crate::command) struct Validation {
     #[arg(long, value_name = "N", default_value_t = 1)]
     seed: u64,
     /// Rows to train the tip force on
-    #[arg(long, value_name = "N", default_value_t = ROWS, value_parser = rows)]
+    #[arg(long, value_name = "N", default_value_t = ROWS, value_parser = rows, conflicts_with = "paper")]
     rows: usize,
     /// Delay of the link in the rendering part, ms
-    #[arg(long, value_name = "D", default_value_t = 300.0, value_parser = delay_ms)]
+    #[arg(long, value_name = "D", default_value_t = 300.0, value_parser = delay_ms, conflicts_with = "paper")]
     delay_ms: f64,
+    /// Only the rendering part, under the paper's conditions and under others: in its window, at the horizon, and when the hand lets go
+    #[arg(long)]
+    paper: bool,
+    /// Duration of the task under each condition, s
+    #[arg(long, value_name = "S", default_value_t = paper::SECONDS, value_parser = seconds, requires = "paper")]
+    seconds: f64,
+    /// CSV file with motion and force, as for `nima identify`, which is judged too; may be given several times
+    #[arg(long, value_name = "FILE", requires = "paper")]
+    recording: Vec<PathBuf>,
+    /// Other column names in the recordings, with an optional factor: `x=px_mm*0.001`
+    #[arg(long, value_name = "NAME=COLUMN[*SCALE]", requires = "recording")]
+    map: Vec<String>,
 }
 
 fn rows(text: &str) -> Result<usize, String> {
     match text.parse() {
         Ok(rows @ 2000..=MOST_ROWS) => Ok(rows),
         _ => Err(format!("give a number of rows from 2000 to {MOST_ROWS}")),
+    }
+}
+
+fn seconds(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(seconds) if (5.0..=3600.0).contains(&seconds) => Ok(seconds),
+        _ => Err("give a duration from 5 to 3600 s".to_owned()),
     }
 }
 
@@ -39,5 +63,14 @@ impl Asked for Validation {
 
     fn experiment(&self) -> anyhow::Result<Options> {
         Ok(Options { seed: self.seed, rows: self.rows, delay_s: 1e-3 * self.delay_ms })
+    }
+
+    fn carry_out(&self, results: &Results) -> anyhow::Result<()> {
+        if !self.paper {
+            return results.of(&self.experiment()?);
+        }
+        let mapping = Mapping::parse(&self.map)?;
+        let recordings = self.recording.iter().map(|path| Recording::read(path, &mapping)).collect::<Result<_, _>>()?;
+        results.of(&paper::Options { seed: self.seed, seconds: self.seconds, recordings })
     }
 }

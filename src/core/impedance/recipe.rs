@@ -1,0 +1,124 @@
+//! How the paper is read where its text leaves a choice.
+
+use serde::{Deserialize, Serialize};
+
+use super::{
+    MAX_DEGREE,
+    features::{Features, MOTION_COLUMNS, Scales},
+    literal::LiteralSolver,
+    messages::LiteralModel,
+};
+use crate::signal::Lanes;
+
+/// Time after a window in which [`Choice::Next`] judges its fits (s).
+const JUDGED_S: f64 = 0.01;
+
+/// What the paper's `u` is, the "incremental positional changes of the instrument within a time interval".
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Reading {
+    /// What position, velocity and acceleration have changed over the window: zero one window after the hand has stopped.
+    #[default]
+    Increments,
+    /// The displacement from the workspace's origin, and its derivatives.
+    Displacement,
+}
+
+/// By what error the degree is chosen.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Choice {
+    /// In the window that the degrees were fitted to.
+    #[default]
+    Window,
+    /// Over the 10 ms after that window.
+    Next,
+}
+
+/// Settings of the literal and the linear mode; the default is the paper's recipe to the letter.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Recipe {
+    /// What is regressed on.
+    pub reading: Reading,
+    /// How the literal mode chooses its degree.
+    pub choice: Choice,
+    /// Whether a free constant force is part of the fit.
+    pub constant: bool,
+    /// Ridge, per row of the window and in columns divided by the workspace's [`Scales`]; 0 for none.
+    pub ridge: f64,
+}
+
+impl Recipe {
+    /// What the ridge adds to the diagonal of the normal equations, per row of the window, for each motion column in SI units.
+    pub(super) fn penalty(&self, scales: &Scales) -> [f64; MOTION_COLUMNS] {
+        let Scales { position_m, velocity_m_s, acceleration_m_s2, .. } = *scales;
+        let squares = [position_m, velocity_m_s, acceleration_m_s2].map(|scale| scale * scale);
+        let mut penalty = [0.0; MOTION_COLUMNS];
+        let mut power = squares.map(|square| self.ridge * square);
+        for triple in penalty.chunks_exact_mut(3) {
+            triple.copy_from_slice(&power);
+            power.iter_mut().zip(squares).for_each(|(power, square)| *power *= square);
+        }
+        penalty
+    }
+}
+
+/// The degree that foretold best what came after its window: all degrees of a window are judged for 10 ms, then those of the
+/// window that ends there.
+#[derive(Clone, Debug)]
+pub(super) struct Next {
+    ticks: usize,
+    models: [LiteralModel; MAX_DEGREE],
+    squares_n2: [f64; MAX_DEGREE],
+    waited: usize,
+    judged: usize,
+    degree: usize,
+}
+
+impl Next {
+    pub(super) fn new(rate_hz: f64) -> Self {
+        Self {
+            ticks: ((JUDGED_S * rate_hz).round() as usize).max(1),
+            models: [LiteralModel::NONE; MAX_DEGREE],
+            squares_n2: [0.0; MAX_DEGREE],
+            waited: 0,
+            judged: 0,
+            degree: 0,
+        }
+    }
+
+    /// Takes the newest row (force in N), `None` where nothing was measured, and the fits of the window that ends with it. Returns the degree
+    /// for now, 0 as long as none is known.
+    pub(super) fn step(&mut self, row: Option<(&Features, Lanes)>, newest: &LiteralSolver) -> usize {
+        self.waited += 1;
+        if let Some((features, force_n)) = row {
+            self.judged += 1;
+            for (square_n2, model) in self.squares_n2.iter_mut().zip(&self.models) {
+                let Lanes([x, y, z, _]) = force_n - model.product(features);
+                *square_n2 += x * x + y * y + z * z;
+            }
+        }
+        if self.waited >= self.ticks {
+            if self.judged > 0 {
+                self.degree = self.best();
+            }
+            for (degree, model) in (1..).zip(&mut self.models) {
+                *model = *newest.model(degree);
+            }
+            (self.squares_n2, self.waited, self.judged) = ([0.0; MAX_DEGREE], 0, 0);
+        }
+        // Where that degree cannot be solved now, the next lower one that can.
+        (1..=self.degree).rev().find(|&degree| newest.is_solved(degree)).unwrap_or(0)
+    }
+
+    fn best(&self) -> usize {
+        let known = |degree: &usize| self.models[degree - 1].degree > 0 && self.squares_n2[degree - 1].is_finite();
+        let error = |degree: usize| self.squares_n2[degree - 1];
+        (1..=MAX_DEGREE).filter(known).min_by(|&a, &b| error(a).total_cmp(&error(b))).unwrap_or(0)
+    }
+
+    pub(super) fn reset(&mut self) {
+        *self = Self { ticks: self.ticks, ..Self::new(1.0) };
+    }
+}

@@ -1,0 +1,185 @@
+//! The literal mode's recipe: the default to the bit, what each key changes, and that nothing is judged before it has come.
+
+use nalgebra::Vector3;
+
+use super::{tests::sample, *};
+
+const PRINTED: Recipe = Recipe { reading: Reading::Increments, choice: Choice::Window, constant: false, ridge: 0.0 };
+/// The default, every key alone, and all together.
+const RECIPES: [Recipe; 6] = [
+    PRINTED,
+    Recipe { reading: Reading::Displacement, ..PRINTED },
+    Recipe { choice: Choice::Next, ..PRINTED },
+    Recipe { constant: true, ..PRINTED },
+    Recipe { ridge: 3e-3, ..PRINTED },
+    Recipe { reading: Reading::Displacement, choice: Choice::Next, constant: true, ridge: 3e-3 },
+];
+
+fn settings(literal: Recipe) -> Settings {
+    let modes = ModeSet::only(Mode::Literal).with(Mode::Linear);
+    Settings { window_s: 0.1, delay_s: 0.03, modes, literal, ..Settings::default() }
+}
+
+/// A number from 0 to 1, the same every time.
+fn uneven(state: &mut u64) -> f64 {
+    *state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+    (*state >> 11) as f64 / (1_u64 << 53) as f64
+}
+
+/// Presses and rests, without sines, whose last bits differ from computer to computer.
+fn pressed(k: u32, state: &mut u64) -> Sample {
+    let share = f64::from(k % 700).min(400.0) / 400.0;
+    let depth_m = 0.01 * 4.0 * share * (1.0 - 0.5 * share);
+    let noise_n = Vector3::from_fn(|_, _| 0.01 * (uneven(state) - 0.5));
+    let position_m = Vector3::new(0.3 * depth_m, 0.002 * share * share, -depth_m);
+    let force_n = Vector3::new(40.0 * depth_m, 10.0 * share, 300.0 * depth_m + 9000.0 * depth_m * depth_m);
+    Sample { t_s: f64::from(k) * 1e-3, position_m, force_n: force_n + noise_n }
+}
+
+#[test]
+fn the_default_is_what_it_was_before_there_was_a_choice_to_the_bit() {
+    let mut identifier = Identifier::new(&Settings::default()).unwrap();
+    let (mut state, mut bits) = (1, 0xcbf2_9ce4_8422_2325_u64);
+    let mut mix = |value: f64| bits = (bits ^ value.to_bits()).wrapping_mul(0x0100_0000_01b3);
+    for k in 0..3000 {
+        identifier.step(&pressed(k, &mut state));
+        let (parcel, report) = (identifier.parcel(), identifier.report());
+        for model in [&parcel.literal, &parcel.linear] {
+            model.coefficients.iter().flat_map(|m| m.0).for_each(&mut mix);
+        }
+        for mode in [Mode::Literal, Mode::Linear] {
+            report.prediction_n[mode.index()].iter().copied().for_each(&mut mix);
+        }
+        report.reconstruction_n.iter().flat_map(|error_n| error_n.iter().copied()).for_each(&mut mix);
+        mix(f64::from(report.paper_degree));
+        mix(report.literal_failures as f64);
+    }
+    // Made before the keys were added.
+    assert_eq!(bits, 0x3a84_451f_1665_593e, "{bits:#x}");
+}
+
+#[test]
+fn every_key_changes_what_is_said_and_the_leader_says_the_same() {
+    let said = RECIPES.map(|recipe| {
+        let settings = settings(recipe);
+        let (mut identifier, mut renderer) = (Identifier::new(&settings).unwrap(), Renderer::new(&settings).unwrap());
+        let (mut link, mut said_n) = (Vec::new(), Vec::new());
+        for k in 0..1500 {
+            let sample = sample(k, 1000.0);
+            identifier.step(&sample);
+            link.push(*identifier.parcel());
+            let rendered = renderer.step(&sample.position_m, k.checked_sub(30).map(|k| &link[k]));
+            assert_eq!(rendered.force_n, identifier.report().prediction_n, "tick {k}");
+            assert_eq!(rendered.valid, identifier.report().prediction_valid, "tick {k}");
+            said_n.push(rendered.force_n[Mode::Literal.index()]);
+        }
+        said_n
+    });
+    for (i, one) in said.iter().enumerate() {
+        for (j, other) in said.iter().enumerate().take(i) {
+            assert_ne!(one, other, "recipes {i} and {j}");
+        }
+    }
+}
+
+#[test]
+fn forces_that_have_not_come_yet_choose_nothing() {
+    for recipe in RECIPES {
+        let (mut plain, mut other) =
+            (Identifier::new(&settings(recipe)).unwrap(), Identifier::new(&settings(recipe)).unwrap());
+        for k in 0..1200 {
+            let sample = sample(k, 1000.0);
+            plain.step(&sample);
+            // Another force from tick 800 on, in the midst of ten that are judged together.
+            let force_n = if k < 805 { sample.force_n } else { Vector3::new(3.0, -2.0, 1.0) };
+            other.step(&Sample { force_n, ..sample });
+            assert!(k >= 805 || plain.parcel() == other.parcel(), "tick {k}: {recipe:?}");
+            let same = plain.report().prediction_n == other.report().prediction_n;
+            assert_eq!(same, k < 835, "tick {k}: {recipe:?}");
+        }
+    }
+}
+
+#[test]
+fn the_next_samples_choose_no_degree_for_the_noise() {
+    // A plain spring, measured with noise: every degree above 1 describes noise.
+    let mean_degree = |choice| {
+        let mut identifier = Identifier::new(&settings(Recipe { choice, ..PRINTED })).unwrap();
+        let (mut state, mut sum) = (1, 0.0);
+        for k in 0..3000 {
+            let s = sample(k, 1000.0);
+            let noise_n = Vector3::from_fn(|_, _| 0.05 * (uneven(&mut state) - 0.5));
+            identifier.step(&Sample { force_n: 100.0 * s.position_m + noise_n, ..s });
+            sum += f64::from(identifier.report().paper_degree) / 3000.0;
+        }
+        sum
+    };
+    let (window, next) = (mean_degree(Choice::Window), mean_degree(Choice::Next));
+    assert!(next + 1.0 < window, "{window} {next}");
+}
+
+#[test]
+fn a_constant_and_a_ridge_hold_a_force_at_rest_and_the_printed_recipe_does_not() {
+    let at_rest = |recipe| {
+        let mut identifier = Identifier::new(&settings(recipe)).unwrap();
+        for k in 0..2000 {
+            let mut s = sample(k.min(1000), 1000.0);
+            (s.t_s, s.force_n) = (k as f64 * 1e-3, Vector3::new(0.0, 0.0, 1.4));
+            identifier.step(&s);
+        }
+        identifier.report().prediction_n[Mode::Literal.index()]
+    };
+    assert!(at_rest(PRINTED).norm() < 1e-6, "nothing without motion: {}", at_rest(PRINTED));
+    let held_n = at_rest(Recipe { constant: true, ridge: 3e-3, ..PRINTED });
+    assert!((held_n - Vector3::new(0.0, 0.0, 1.4)).norm() < 1e-6, "{held_n}");
+}
+
+#[test]
+fn with_a_constant_the_origin_of_the_displacement_does_not_matter() {
+    let recipe = Recipe { reading: Reading::Displacement, constant: true, ..PRINTED };
+    let mut linear_n = [0.0, 0.3].map(|shift_m| {
+        let mut identifier = Identifier::new(&settings(recipe)).unwrap();
+        for k in 0..1000 {
+            let mut s = sample(k, 1000.0);
+            s.position_m.add_scalar_mut(shift_m);
+            identifier.step(&s);
+        }
+        identifier.report().prediction_n[Mode::Linear.index()]
+    });
+    linear_n[1] -= linear_n[0];
+    assert!(linear_n[1].norm() < 1e-6 && linear_n[0].norm() > 0.1, "{linear_n:?}");
+}
+
+#[test]
+fn whatever_comes_in_no_recipe_sends_a_number_that_is_not_finite_and_all_are_forgotten() {
+    for recipe in RECIPES {
+        let mut used = Identifier::new(&settings(recipe)).unwrap();
+        let mut state = 1;
+        for k in 0..6000 {
+            let mut s = sample(k, 1000.0);
+            match (k / 300) % 5 {
+                0 => s = Sample { t_s: s.t_s, ..sample(0, 1000.0) },
+                1 => s.position_m *= 10_f64.powf(40.0 * uneven(&mut state) - 20.0),
+                2 => s.force_n *= 10_f64.powf(40.0 * uneven(&mut state) - 20.0),
+                3 if k % 3 == 0 => s.force_n.y = f64::NAN,
+                3 if k % 7 == 0 => s.position_m.x = f64::INFINITY,
+                _ => {}
+            }
+            used.step(&s);
+            let (parcel, report) = (used.parcel(), used.report());
+            for model in [&parcel.literal, &parcel.linear] {
+                assert!(model.coefficients.iter().chain([&model.constant_n]).all(|m| m.is_finite()), "{recipe:?}");
+            }
+            let all_n = report.prediction_n.iter().chain(&report.reconstruction_n);
+            assert!(all_n.flat_map(|force_n| force_n.iter()).all(|f| f.is_finite()), "tick {k}: {recipe:?}");
+        }
+        used.reset();
+        let mut fresh = Identifier::new(&settings(recipe)).unwrap();
+        for k in 0..600 {
+            used.step(&sample(k, 1000.0));
+            fresh.step(&sample(k, 1000.0));
+            assert_eq!(used.report(), fresh.report(), "tick {k}: {recipe:?}");
+            assert_eq!(used.parcel(), fresh.parcel(), "tick {k}: {recipe:?}");
+        }
+    }
+}

@@ -1,0 +1,199 @@
+//! What the paper's recipe says of a recording: inside the window that it was fitted to, and at the horizon.
+
+use nalgebra::Vector3;
+use nima_core::impedance::{Choice, Identifier, Mode, ModeSet, Reading, Recipe, Settings};
+use nima_machine::teleop::ErrorStats;
+use nima_recording::csv::Recording;
+use serde::Serialize;
+
+use crate::validation::{ValidationError, rendering::Figures};
+
+/// Delays of the link, s.
+pub const DELAYS_S: [f64; 4] = [0.01, 0.05, 0.1, 0.3];
+
+/// The recipe as printed.
+pub const PRINTED: Recipe =
+    Recipe { reading: Reading::Increments, choice: Choice::Window, constant: false, ridge: 0.0 };
+/// Ways to read it, from the printed one to the one that can be used.
+pub const RECIPES: [(&str, Recipe); 5] = [
+    ("as printed", PRINTED),
+    ("choice = next", Recipe { choice: Choice::Next, ..PRINTED }),
+    ("and constant", Recipe { choice: Choice::Next, constant: true, ..PRINTED }),
+    ("and ridge = 0.003", REPAIRED),
+    ("and displacement", Recipe { reading: Reading::Displacement, ..REPAIRED }),
+];
+/// With all that cures it but the reading.
+pub const REPAIRED: Recipe = Recipe { choice: Choice::Next, constant: true, ridge: 3e-3, ..PRINTED };
+
+/// Figures inside the window: the fits judged on the newest sample of the window that they were made from, all axes alike.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct InWindow {
+    /// The degree chosen by the error in the window, as the paper does.
+    pub nonlinear: Figures,
+    /// Degree 1.
+    pub linear: Figures,
+    /// The first with displacements in place of increments.
+    pub displacement: Figures,
+    /// How much less the first is than the second.
+    pub less: f64,
+    /// Share of windows for which a degree above 1 is chosen by the error in the window.
+    pub window_share: f64,
+    /// The same where each degree is judged over the 10 ms after its window.
+    pub next_share: f64,
+}
+
+/// Errors at the horizon with one way to read the recipe.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct AtHorizon {
+    /// What is changed.
+    pub name: &'static str,
+    /// The keys of a rig file.
+    pub recipe: Recipe,
+    /// Delay of the link, s.
+    pub delay_s: f64,
+    /// Force of the literal mode.
+    pub literal: Figures,
+    /// The delayed force, as it came.
+    pub dfr: Figures,
+    /// Stiffness in the fit (the coefficient of `u`, the largest of the axes, 99th percentile over the windows), N/m.
+    pub stiffness_p99_n_m: f64,
+}
+
+/// Everything about one recording.
+#[derive(Clone, Debug, Serialize)]
+pub struct Judged {
+    /// Inside the window.
+    pub in_window: InWindow,
+    /// At the horizon, for each way to read the recipe and each delay.
+    pub at_horizon: Vec<AtHorizon>,
+}
+
+/// Judges a recording.
+///
+/// # Errors
+/// [`ValidationError`] if its rate or its axes are out of range.
+pub fn judge(recording: &Recording) -> Result<Judged, ValidationError> {
+    let mut at_horizon = Vec::new();
+    for (name, recipe) in RECIPES {
+        for delay_s in DELAYS_S {
+            at_horizon.push(horizon(recording, name, recipe, delay_s)?);
+        }
+    }
+    Ok(Judged { in_window: in_window(recording)?, at_horizon })
+}
+
+/// Runs the identification over a recording.
+fn identify(
+    recording: &Recording,
+    recipe: Recipe,
+    delay_s: f64,
+    mut each: impl FnMut(&Vector3<f64>, &Identifier),
+) -> Result<(), ValidationError> {
+    let Recording { rate_hz, axes, samples, .. } = recording;
+    let mut identifier = Identifier::new(&Settings {
+        rate_hz: *rate_hz,
+        delay_s,
+        axes: axes.len(),
+        modes: ModeSet::only(Mode::Literal).with(Mode::Linear),
+        literal: recipe,
+        ..Settings::default()
+    })?;
+    for sample in samples {
+        identifier.step(sample);
+        each(&sample.force_n, &identifier);
+    }
+    Ok(())
+}
+
+/// Errors of all axes in use.
+#[derive(Default)]
+struct Errors([ErrorStats; 3]);
+
+impl Errors {
+    fn add(&mut self, error_n: &Vector3<f64>) {
+        for (axis, stats) in self.0.iter_mut().enumerate() {
+            stats.add(&Vector3::new(error_n[axis], 0.0, 0.0));
+        }
+    }
+
+    /// Mean absolute error and standard deviation over the axes of this recording taken together.
+    fn figures(&self, recording: &Recording) -> Figures {
+        let count = recording.axes.len().max(1) as f64;
+        let mean = |of: fn(&ErrorStats) -> f64| self.0[..recording.axes.len()].iter().map(of).sum::<f64>() / count;
+        Figures { mae_n: mean(|stats| stats.mae_n), sd_n: mean(|stats| stats.sd_n().powi(2)).sqrt() }
+    }
+}
+
+pub(super) fn in_window(recording: &Recording) -> Result<InWindow, ValidationError> {
+    let (mut nonlinear, mut linear, mut displacement) = (Errors::default(), Errors::default(), Errors::default());
+    let (mut window, mut next) = (Share::default(), Share::default());
+    identify(recording, PRINTED, 0.0, |_, identifier| {
+        let report = identifier.report();
+        if let degree @ 1.. = usize::from(report.paper_degree) {
+            window.add(degree);
+            nonlinear.add(&report.reconstruction_n[degree - 1]);
+            linear.add(&report.reconstruction_n[0]);
+        }
+    })?;
+    identify(recording, Recipe { choice: Choice::Next, ..PRINTED }, 0.0, |_, identifier| {
+        next.add(usize::from(identifier.report().paper_degree));
+    })?;
+    identify(recording, Recipe { reading: Reading::Displacement, ..PRINTED }, 0.0, |_, identifier| {
+        let report = identifier.report();
+        if let degree @ 1.. = usize::from(report.paper_degree) {
+            displacement.add(&report.reconstruction_n[degree - 1]);
+        }
+    })?;
+    let (nonlinear, linear) = (nonlinear.figures(recording), linear.figures(recording));
+    Ok(InWindow {
+        nonlinear,
+        linear,
+        displacement: displacement.figures(recording),
+        less: 1.0 - nonlinear.mae_n / linear.mae_n.max(f64::MIN_POSITIVE),
+        window_share: window.value(),
+        next_share: next.value(),
+    })
+}
+
+pub(super) fn horizon(
+    recording: &Recording,
+    name: &'static str,
+    recipe: Recipe,
+    delay_s: f64,
+) -> Result<AtHorizon, ValidationError> {
+    let (mut literal, mut dfr, mut stiffness) = (Errors::default(), Errors::default(), Vec::new());
+    identify(recording, recipe, delay_s, |measured_n, identifier| {
+        let model = identifier.parcel().literal;
+        if model.degree > 0 {
+            stiffness.push(model.coefficients[0].0.iter().fold(0.0_f64, |most, m| m.abs().max(most)));
+        }
+        // Before anything has arrived there is nothing to judge; a mode that renders nothing errs by the whole force.
+        let report = identifier.report();
+        if let Some(delayed_n) = report.prediction(Mode::Dfr) {
+            dfr.add(&(delayed_n - measured_n));
+            literal.add(&(report.prediction(Mode::Literal).unwrap_or_default() - measured_n));
+        }
+    })?;
+    stiffness.sort_unstable_by(f64::total_cmp);
+    let stiffness_p99_n_m = stiffness.get(stiffness.len() * 99 / 100).copied().unwrap_or(0.0);
+    let (literal, dfr) = (literal.figures(recording), dfr.figures(recording));
+    Ok(AtHorizon { name, recipe, delay_s, literal, dfr, stiffness_p99_n_m })
+}
+
+/// How often a degree above 1 was chosen where one was.
+#[derive(Default)]
+struct Share {
+    yes: u32,
+    all: u32,
+}
+
+impl Share {
+    fn add(&mut self, degree: usize) {
+        self.all += u32::from(degree > 0);
+        self.yes += u32::from(degree > 1);
+    }
+
+    fn value(&self) -> f64 {
+        f64::from(self.yes) / f64::from(self.all.max(1))
+    }
+}

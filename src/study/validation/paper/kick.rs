@@ -1,0 +1,92 @@
+//! What the handle does when the hand lets go while the paper's recipe renders, without the governor.
+
+use nima_core::{
+    impedance::{Mode, Recipe},
+    safety::ChainSettings,
+};
+use nima_machine::config::OwnMotion;
+use nima_world::scene::Scene;
+use serde::Serialize;
+
+use super::judged::{PRINTED, REPAIRED};
+use crate::{
+    pair::{Grip, Handle, NOISE_N, Trial},
+    release::{ReleaseError, Row, Situation, TREMOR_M, release},
+};
+
+/// Force of the contact, N, and delays of the link, s.
+const CONTACT_N: f64 = 5.0;
+const DELAYS_S: [f64; 2] = [0.05, 0.3];
+/// Tremor of the hand (m), noise of the force sensor (N), stiffness of the grip (N/m).
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Hand {
+    tremor_m: f64,
+    noise_n: f64,
+    grip_n_m: f64,
+}
+
+impl Hand {
+    /// One that does not give way and does not move.
+    pub(super) const FIRM: Self = Self { tremor_m: 0.0, noise_n: 0.0, grip_n_m: 1e5 };
+    /// One that gives way and does not move by itself.
+    pub(super) const YIELDING: Self = Self { grip_n_m: Grip::FIRM.n_m, ..Self::FIRM };
+    /// Both, with noise, and with noise and tremor.
+    const ALL: [Self; 6] = [
+        Self::FIRM,
+        Self { noise_n: NOISE_N, ..Self::FIRM },
+        Self { noise_n: NOISE_N, tremor_m: TREMOR_M, ..Self::FIRM },
+        Self::YIELDING,
+        Self { noise_n: NOISE_N, ..Self::YIELDING },
+        Self { noise_n: NOISE_N, tremor_m: TREMOR_M, ..Self::YIELDING },
+    ];
+}
+
+/// What renders: a name, the mode, its recipe.
+type Way = (&'static str, Mode, Recipe);
+/// The recipe as printed, repaired, and reflection beside it.
+pub(super) const WAYS: [Way; 3] =
+    [("as printed", Mode::Literal, PRINTED), ("repaired", Mode::Literal, REPAIRED), ("reflection", Mode::Dfr, PRINTED)];
+
+/// One letting go.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct Kick {
+    /// What is changed in the recipe; reflection for comparison.
+    pub name: &'static str,
+    /// Amplitude of the hand's tremor, m.
+    pub tremor_m: f64,
+    /// Noise of the force sensor, N.
+    pub noise_n: f64,
+    /// Stiffness of the grip, N/m.
+    pub grip_n_m: f64,
+    /// What happened.
+    #[serde(flatten)]
+    pub row: Row,
+}
+
+/// Held and pressing, by each hand, as printed and repaired, and reflection beside them.
+///
+/// # Errors
+/// [`ReleaseError`] if the scene has no tissue or the force is never reached.
+pub fn all() -> Result<Vec<Kick>, ReleaseError> {
+    let mut all = Vec::new();
+    for way in WAYS {
+        for situation in Situation::ALL {
+            for hand in Hand::ALL {
+                for delay_s in DELAYS_S {
+                    all.push(let_go(way, situation, hand, delay_s)?);
+                }
+            }
+        }
+    }
+    Ok(all)
+}
+
+pub(super) fn let_go(way: Way, situation: Situation, hand: Hand, delay_s: f64) -> Result<Kick, ReleaseError> {
+    let tissue = Scene::load("peg_transfer")?.tissue.ok_or(ReleaseError::NoTissue)?;
+    let ((name, mode, literal), Hand { tremor_m, noise_n, grip_n_m }) = (way, hand);
+    let (gates, handle, gain, seed) = (ChainSettings::default().without_governor(), Handle::OMEGA, 1.0, 1);
+    let (own_motion, grip) = (OwnMotion::Follower, Grip::of_stiffness(grip_n_m));
+    let trial =
+        Trial { mode, own_motion, literal, delay_s, gates, gain, tissue, tremor_m, noise_n, handle, grip, seed };
+    Ok(Kick { name, tremor_m, noise_n, grip_n_m, row: release(&trial, situation, CONTACT_N)? })
+}

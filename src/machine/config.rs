@@ -6,7 +6,7 @@ mod mounted;
 use nalgebra::{UnitQuaternion, Vector3};
 use nima_core::{
     frames::from_roll_pitch_yaw_deg,
-    impedance::{MAX_DEGREE, MAX_DELAY_S, Mode, Scales, Settings},
+    impedance::{MAX_DEGREE, MAX_DELAY_S, Mode, ModeSet, Scales, Settings},
     kinematics::{Mapping, SCALES, view_from_omega},
     safety::ChainSettings,
     tip_force::Fallback,
@@ -212,6 +212,7 @@ impl RigConfig {
             cross_talk,
             scales,
             delay_s: self.delay_s,
+            modes: ModeSet::default().with(self.mode),
             ..Settings::default()
         }
     }
@@ -280,6 +281,8 @@ impl RigConfig {
 
 #[cfg(test)]
 mod tests {
+    use nima_core::impedance::Baseline;
+
     use super::*;
 
     #[test]
@@ -296,6 +299,21 @@ mod tests {
         std::fs::write(&path, RIGS[0].1.replace("rate_hz", "rate_khz")).unwrap();
         let message = RigConfig::load(path.to_str().unwrap()).unwrap_err().to_string();
         assert!(message.contains("rate_khz") && message.contains("line "), "{message}");
+    }
+
+    #[test]
+    fn a_baseline_is_computed_only_where_the_rig_names_it() {
+        let rig = RigConfig::load("simulated").unwrap();
+        assert_eq!(rig.settings().modes.baseline(), None);
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("rig.toml");
+        std::fs::write(&path, RIGS[0].1.replace("mode = \"anchored\"", "mode = \"kalman\"")).unwrap();
+        let rig = RigConfig::load(path.to_str().unwrap()).unwrap();
+        assert_eq!(rig.mode, Mode::Baseline(Baseline::Kalman));
+        assert_eq!(rig.settings().modes.baseline(), Some(Baseline::Kalman));
+        std::fs::write(&path, RIGS[0].1.replace("mode = \"anchored\"", "mode = \"smith\"")).unwrap();
+        let message = RigConfig::load(path.to_str().unwrap()).unwrap_err().to_string();
+        assert!(message.contains("smith") && message.contains("line "), "{message}");
     }
 
     #[test]

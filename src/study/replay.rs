@@ -9,7 +9,7 @@ use std::time::Instant;
 
 use nalgebra::Vector3;
 use nima_core::{
-    impedance::{Identifier, MAX_DEGREE, Mode, Report, Settings, SettingsError},
+    impedance::{Identifier, MAX_DEGREE, Mode, ModeSet, Report, Settings, SettingsError},
     safety::{Chain, ChainSettings, Request},
     statistics::Percentiles,
 };
@@ -195,6 +195,7 @@ pub fn replay(recording: &Recording, options: &Options, mut each: impl FnMut(&Ro
         max_degree: options.max_degree,
         cross_talk: options.cross_talk,
         axes: recording.axes.len(),
+        modes: ModeSet::default().with(options.mode),
         ..Settings::default()
     };
     settings.validate()?;

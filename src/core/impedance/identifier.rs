@@ -1,7 +1,7 @@
 //! The follower's end: from samples to a parcel, and a report of how good it would have been.
 
 use super::{
-    MAX_DEGREE, MODES, Mode, anchored,
+    MAX_DEGREE, Mode, SLOTS, anchored, baselines,
     best::Best,
     factor::{Factor, MAX_ROW},
     features::Features,
@@ -63,6 +63,7 @@ pub struct Identifier {
     matched: Option<Matched>,
     nima: Option<Matched>,
     best: Option<Best>,
+    baseline: Option<BaselineEnds>,
     sent: DelayLine<(Parcel, Posture)>,
     forget: f64,
     parcel: Parcel,
@@ -82,6 +83,13 @@ struct Anchored {
     solution: Solution,
     horizon: Horizon,
     correction: anchored::Anchored,
+}
+
+/// Both ends of a baseline: what it sends, and what a leader that makes the follower's own motion would render.
+#[derive(Clone, Debug)]
+struct BaselineEnds {
+    follower: baselines::Follower,
+    leader: baselines::Leader,
 }
 
 impl Identifier {
@@ -126,6 +134,10 @@ impl Identifier {
             matched: matched(Mode::Matched, if coupled { Form::Coupled } else { Form::Tissue }),
             nima: matched(Mode::Nima, Form::Paper(settings.max_degree as u8)),
             best: settings.modes.contains(Mode::Best).then(|| Best::new(settings.rate_hz)),
+            baseline: settings.modes.baseline().map(|baseline| BaselineEnds {
+                follower: baselines::Follower::new(baseline, settings, delay_ticks),
+                leader: baselines::Leader::new(settings),
+            }),
             sent: DelayLine::new(max_delay, (Parcel::BLANK, Posture::BLANK)),
             forget: 1.0 - (-1.0 / (ERROR_MEMORY_S * settings.rate_hz)).exp(),
             parcel: Parcel::BLANK,
@@ -161,6 +173,9 @@ impl Identifier {
         self.step_paper(&increments, usable);
         self.step_anchored(&now, good, usable);
         self.step_matched(&now, good, usable);
+        if let Some(BaselineEnds { follower, .. }) = &mut self.baseline {
+            self.parcel.baseline = follower.step(&now, force.filter(|_| good));
+        }
         self.sent.push((self.parcel, now));
         self.predict(&now, &increments, good);
     }
@@ -231,21 +246,23 @@ impl Identifier {
 
     /// What every mode renders for this tick from the parcel one delay old, and its running error.
     fn predict(&mut self, now: &Posture, increments: &Features, good: bool) {
-        let modes = self.settings.modes;
+        let leader = self.baseline.as_mut().map(|baseline| &mut baseline.leader);
         let forces = match self.sent.get(self.delay_ticks) {
-            Some((parcel, then)) if parcel.t_s.is_finite() => parcel.render(now, then, increments),
-            _ => [None; MODES],
+            Some((parcel, then)) if parcel.t_s.is_finite() => parcel.render(now, then, increments, |model, force_n| {
+                leader.and_then(|leader| leader.step(model, force_n, now, self.delay_ticks))
+            }),
+            _ => [None; SLOTS],
         };
         let said = [Mode::Anchored, Mode::Matched].map(|mode| forces[mode.index()]);
         if let (Some(best), [Some(anchored), Some(matched)], true) = (&mut self.best, said, good) {
             best.judge(anchored, matched, self.last_force_n, now.stance.pace);
         }
-        for mode in Mode::ALL {
-            let force = forces[mode.index()].filter(|_| modes.contains(mode));
+        for mode in self.settings.modes.modes() {
+            let force = forces[mode.index()];
             self.report.prediction_n[mode.index()] = force.unwrap_or_default().vector();
             self.report.prediction_valid[mode.index()] = force.is_some();
             // A mode that renders nothing errs by the whole force; before anything arrived nothing is judged.
-            if good && forces[Mode::Dfr.index()].is_some() && modes.contains(mode) {
+            if good && forces[Mode::Dfr.index()].is_some() {
                 let error_n = (self.last_force_n - force.unwrap_or_default()).norm();
                 let mean = &mut self.report.horizon_error_n[mode.index()];
                 *mean = settled(*mean + self.forget * (error_n - *mean));
@@ -283,6 +300,9 @@ impl Identifier {
         for matched in [&mut self.matched, &mut self.nima].into_iter().flatten() {
             matched.set_delay(self.delay_ticks);
         }
+        if let Some(baseline) = &mut self.baseline {
+            baseline.follower.set_delay(self.delay_ticks);
+        }
     }
 
     /// Forgets everything, counters included, without allocating.
@@ -304,6 +324,10 @@ impl Identifier {
         }
         if let Some(best) = &mut self.best {
             best.reset();
+        }
+        if let Some(BaselineEnds { follower, leader }) = &mut self.baseline {
+            follower.reset();
+            leader.reset();
         }
         self.sent.clear();
         self.parcel = Parcel::BLANK;

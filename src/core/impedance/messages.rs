@@ -3,8 +3,9 @@
 use nalgebra::Vector3;
 
 use super::{
-    MAX_DEGREE, MODES, Mode,
+    MAX_DEGREE, Mode, SLOTS,
     anchored::within,
+    baselines::BaselineModel,
     features::{Features, MOTION_COLUMNS},
     literal,
     matched::MatchedModel,
@@ -200,6 +201,8 @@ pub struct Parcel {
     pub nima: MatchedModel,
     /// Weight of anchored rendering in the mixture with matched rendering, 0 to 1.
     pub anchored_weight: Lanes,
+    /// What the baseline needs, where one is computed.
+    pub baseline: BaselineModel,
 }
 
 impl Parcel {
@@ -214,15 +217,22 @@ impl Parcel {
         matched: MatchedModel::NONE,
         nima: MatchedModel::NONE,
         anchored_weight: Lanes::ZERO,
+        baseline: BaselineModel::Nothing,
     };
 
     /// The force of every mode for the motion now, by [`Mode::index`](super::Mode::index): `anchored` features now and at
-    /// the time of the parcel, `literal` increments now. Nothing is made of a force that is not finite: limits would turn it into
-    /// one of their edges.
-    pub(super) fn render(&self, now: &Posture, then: &Posture, increments: &Features) -> [Option<Lanes>; MODES] {
+    /// the time of the parcel, `literal` increments now. `baseline`: that mode's force, which has a state of its own at the leader.
+    /// Nothing is made of a force that is not finite: limits would turn it into one of their edges.
+    pub(super) fn render(
+        &self,
+        now: &Posture,
+        then: &Posture,
+        increments: &Features,
+        baseline: impl FnOnce(&BaselineModel, Lanes) -> Option<Lanes>,
+    ) -> [Option<Lanes>; SLOTS] {
         let measured = Lanes::from(self.force_n);
         if !measured.is_finite() {
-            return [None; MODES];
+            return [None; SLOTS];
         }
         let anchored = self.anchored.force(measured, now, then);
         let matched = self.matched.force(now);
@@ -235,6 +245,7 @@ impl Parcel {
             matched,
             self.nima.force(now),
             Some(best),
+            baseline(&self.baseline, measured),
         ]
     }
 }
@@ -243,9 +254,9 @@ impl Parcel {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Rendered {
     /// Force of every mode (N), by [`Mode::index`](super::Mode::index); zero where not valid.
-    pub force_n: [Vector3<f64>; MODES],
+    pub force_n: [Vector3<f64>; SLOTS],
     /// Whether that mode had something to render, and it was finite.
-    pub valid: [bool; MODES],
+    pub valid: [bool; SLOTS],
 }
 
 impl Rendered {
@@ -254,7 +265,7 @@ impl Rendered {
         self.valid[mode.index()].then(|| self.force_n[mode.index()])
     }
 
-    pub(super) fn new(forces: &[Option<Lanes>; MODES]) -> Self {
+    pub(super) fn new(forces: &[Option<Lanes>; SLOTS]) -> Self {
         Self { force_n: forces.map(|force| force.unwrap_or_default().vector()), valid: forces.map(|f| f.is_some()) }
     }
 }
@@ -274,9 +285,9 @@ pub struct Report {
     /// Time of the newest sample (s).
     pub t_s: f64,
     /// For each mode the force (N) for this time made from data up to `t - D` and the follower's motion at `t`.
-    pub prediction_n: [Vector3<f64>; MODES],
+    pub prediction_n: [Vector3<f64>; SLOTS],
     /// Whether that prediction exists and is finite; it is zero otherwise.
-    pub prediction_valid: [bool; MODES],
+    pub prediction_valid: [bool; SLOTS],
     /// Force minus `M X` (N) at the newest sample, for each literal degree fitted on the window that ends with it.
     pub reconstruction_n: [Vector3<f64>; MAX_DEGREE],
     /// The paper's in-window choice of the degree; 0 while the window is not full or nothing can be solved.
@@ -310,7 +321,7 @@ pub struct Report {
     /// Literal solves (one per tick, axis and degree) that failed so far.
     pub literal_failures: u64,
     /// Running mean (about 0.5 s) of each mode's 3-D error at the horizon (N).
-    pub horizon_error_n: [f64; MODES],
+    pub horizon_error_n: [f64; SLOTS],
 }
 
 impl Report {
@@ -324,7 +335,7 @@ impl Report {
         match mode {
             Mode::Literal => self.paper_degree,
             Mode::Linear => u8::from(self.paper_degree > 0),
-            Mode::Dfr => 0,
+            Mode::Dfr | Mode::Baseline(_) => 0,
             Mode::Anchored => self.degree,
             Mode::Matched | Mode::Best => self.matched_degree,
             Mode::Nima => self.nima_degree,
@@ -334,8 +345,8 @@ impl Report {
     /// Nothing measured yet.
     pub const BLANK: Self = Self {
         t_s: f64::NEG_INFINITY,
-        prediction_n: [Vector3::new(0.0, 0.0, 0.0); MODES],
-        prediction_valid: [false; MODES],
+        prediction_n: [Vector3::new(0.0, 0.0, 0.0); SLOTS],
+        prediction_valid: [false; SLOTS],
         reconstruction_n: [Vector3::new(0.0, 0.0, 0.0); MAX_DEGREE],
         paper_degree: 0,
         degree: 0,
@@ -355,7 +366,7 @@ impl Report {
         rejected: 0,
         restarts: 0,
         literal_failures: 0,
-        horizon_error_n: [0.0; MODES],
+        horizon_error_n: [0.0; SLOTS],
     };
 }
 

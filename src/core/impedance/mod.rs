@@ -18,10 +18,12 @@
 //! | `anchored`, `regressors`, `regression`, `stack` | anchored rendering: experts, their trust, the guard |
 //! | `best` | a softmin over anchored and matched rendering |
 //! | `matched` | matched rendering: the force from the hand's own motion, by parameters alone |
+//! | `baselines` | methods of others, to compare with; at most one is computed |
 //! | `pace`, `envelope` | a clock that motion drives; the range of forces seen |
 //! | `identifier`, `renderer`, `messages` | the two ends of the link, and what goes between them |
 
 mod anchored;
+mod baselines;
 mod best;
 mod cross_factor;
 mod cross_talk;
@@ -50,6 +52,7 @@ mod comparison_tests;
 #[cfg(test)]
 mod tests;
 
+pub use baselines::{BaselineModel, Contact, Wave};
 pub use factor::Factor;
 pub use features::{Features, MOTION_COLUMNS, Scales};
 pub use gram::Gram;
@@ -57,7 +60,7 @@ pub use identifier::Identifier;
 pub use literal::LiteralSolver;
 pub use matched::{Form, MatchedModel};
 pub use messages::{AnchoredModel, Excitation, Impedance, LiteralModel, Parcel, Rendered, Report, Sample};
-pub use mode::{MODES, Mode, ParseModeError};
+pub use mode::{Baseline, MODES, Mode, ParseModeError, SLOTS};
 pub use renderer::Renderer;
 pub use settings::{MAX_DELAY_S, ModeSet, Settings, SettingsError};
 pub use solution::Solution;

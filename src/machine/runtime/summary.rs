@@ -223,7 +223,8 @@ impl Meters {
         };
         let arms: Vec<ArmEnd> = of.pairs().map(ArmEnd::of).collect();
         let worst = arms.iter().max_by_key(|arm| attention(arm.final_state));
-        let error = of.pairs().flat_map(|pair| Mode::ALL.map(|mode| of_mode(pair, mode)));
+        let modes = |pair: &Pair| Mode::ALL.into_iter().chain(pair.baseline().map(Mode::Baseline));
+        let error = of.pairs().flat_map(|pair| modes(pair).map(|mode| of_mode(pair, mode)).collect::<Vec<_>>());
         Summary {
             clock,
             ticks: self.ticks,

@@ -29,7 +29,7 @@ impl<L: Link> Pair<L> {
     /// [`Refusal`] if the command is not allowed in this state, its value is out of range, or a measurement forbids it.
     pub fn obey(&mut self, command: Command, t_s: f64) -> Result<(), Refusal> {
         match command {
-            Command::SetMode(mode) => self.mode = mode,
+            Command::SetMode(mode) if self.settings.modes.contains(mode) => self.mode = mode,
             Command::SetGain(gain) if (0.0..=1.0).contains(&gain) => self.chain.set_ordinary_gain(gain),
             Command::SetGainAboveOne(gain) if (0.0..=MAX_GAIN).contains(&gain) => {
                 self.chain.set_gain_above_one(gain);

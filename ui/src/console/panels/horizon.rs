@@ -22,7 +22,9 @@ pub fn horizon_ui(ui: &mut Ui, live: &Live) {
     let dfr_n = live.figures.horizon_n[Mode::Dfr.index()];
     ui.label(small(text::horizon::ahead(live.delay_s() * 1e3)));
     ui.add_space(2.0);
-    for mode in [Mode::Best, Mode::Matched, Mode::Anchored, Mode::Dfr, Mode::Nima, Mode::Linear, Mode::Literal] {
+    let own = [Mode::Best, Mode::Matched, Mode::Anchored, Mode::Dfr, Mode::Nima, Mode::Linear, Mode::Literal];
+    let baseline = Some(live.rig.mode).filter(|mode| matches!(mode, Mode::Baseline(_)));
+    for mode in own.into_iter().chain(baseline) {
         mode_ui(ui, mode, live.figures.horizon_n[mode.index()], dfr_n, live.mode() == mode);
     }
     trend_ui(ui, live);

@@ -22,7 +22,7 @@ pub(super) struct Arguments {
     /// Other column names, with an optional factor: `x=px_mm*0.001`
     #[arg(long, value_name = "NAME=COLUMN[*SCALE]")]
     map: Vec<String>,
-    /// Rendering mode: anchored, matched, best, nima, dfr, linear, literal, or a baseline: model_mediated, waves, passivity,
+    /// Rendering mode: anchored, matched, best, nima, dfr, linear, literal, or a baseline: `model_mediated`, waves, passivity,
     /// kalman, autoregressive
     #[arg(long, default_value = "anchored")]
     mode: Mode,

@@ -32,7 +32,7 @@ pub(super) struct Arguments {
     /// Seconds to run (default: until Ctrl-C; 60 with --virtual)
     #[arg(long, value_name = "S", value_parser = positive_seconds, allow_negative_numbers = true)]
     seconds: Option<f64>,
-    /// Rendering mode: anchored, matched, best, nima, dfr, linear, literal, or a baseline: model_mediated, waves, passivity,
+    /// Rendering mode: anchored, matched, best, nima, dfr, linear, literal, or a baseline: `model_mediated`, waves, passivity,
     /// kalman, autoregressive (default: the rig's)
     #[arg(long)]
     mode: Option<Mode>,

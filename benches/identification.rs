@@ -11,7 +11,7 @@ use std::{hint::black_box, time::Instant};
 
 use nalgebra::{DMatrix, DVector, Vector3};
 use nima_core::{
-    impedance::{Factor, Identifier, Mode, ModeSet, Sample, Settings, SlidingWindow, Solution},
+    impedance::{Baseline, Factor, Identifier, Mode, ModeSet, Sample, Settings, SlidingWindow, Solution},
     signal::Lanes,
 };
 
@@ -161,6 +161,11 @@ fn table(window: usize) -> f64 {
         ("identifier step, the paper's columns repaired", ModeSet::only(Mode::Nima)),
         ("identifier step, anchored, literal and linear", BEFORE),
         ("identifier step, all modes", ModeSet::ALL),
+        ("identifier step, model_mediated", ModeSet::only(Mode::Baseline(Baseline::ModelMediated))),
+        ("identifier step, waves", ModeSet::only(Mode::Baseline(Baseline::Waves))),
+        ("identifier step, passivity", ModeSet::only(Mode::Baseline(Baseline::Passivity))),
+        ("identifier step, kalman", ModeSet::only(Mode::Baseline(Baseline::Kalman))),
+        ("identifier step, autoregressive", ModeSet::only(Mode::Baseline(Baseline::Autoregressive))),
     ] {
         let samples: Vec<_> = (0..warm + calls).map(sample).collect();
         let mut identifier = identifier(window, modes);

@@ -6,7 +6,7 @@ mod mounted;
 use nalgebra::{UnitQuaternion, Vector3};
 use nima_core::{
     frames::from_roll_pitch_yaw_deg,
-    impedance::{MAX_DEGREE, MAX_DELAY_S, MAX_REST_N, Mode, RIDGES, Recipe, Scales, Settings},
+    impedance::{MAX_DEGREE, MAX_DELAY_S, MAX_REST_N, Mode, ModeSet, RIDGES, Recipe, Scales, Settings},
     kinematics::{Mapping, SCALES, view_from_omega},
     safety::ChainSettings,
     tip_force::Fallback,
@@ -244,6 +244,7 @@ impl RigConfig {
             scales,
             literal,
             delay_s: self.delay_s,
+            modes: ModeSet::default().with(self.mode),
             ..Settings::default()
         }
     }
@@ -316,7 +317,7 @@ impl RigConfig {
 
 #[cfg(test)]
 mod tests {
-    use nima_core::impedance::{Choice, Reading};
+    use nima_core::impedance::{Baseline, Choice, Reading};
 
     use super::*;
 
@@ -362,6 +363,21 @@ mod tests {
             let told = with(wrong).unwrap_err().to_string();
             assert!(words.iter().all(|word| told.contains(word)) && !told.contains('\n'), "{wrong}: {told}");
         }
+    }
+
+    #[test]
+    fn a_baseline_is_computed_only_where_the_rig_names_it() {
+        let rig = RigConfig::load("simulated").unwrap();
+        assert_eq!(rig.settings().modes.baseline(), None);
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("rig.toml");
+        std::fs::write(&path, RIGS[0].1.replace("mode = \"anchored\"", "mode = \"kalman\"")).unwrap();
+        let rig = RigConfig::load(path.to_str().unwrap()).unwrap();
+        assert_eq!(rig.mode, Mode::Baseline(Baseline::Kalman));
+        assert_eq!(rig.settings().modes.baseline(), Some(Baseline::Kalman));
+        std::fs::write(&path, RIGS[0].1.replace("mode = \"anchored\"", "mode = \"smith\"")).unwrap();
+        let message = RigConfig::load(path.to_str().unwrap()).unwrap_err().to_string();
+        assert!(message.contains("smith") && message.contains("line "), "{message}");
     }
 
     #[test]

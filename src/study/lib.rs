@@ -4,6 +4,7 @@
 //! turns findings into files and into text on a terminal.
 #![warn(missing_docs)]
 
+pub mod baselines;
 pub mod faults;
 pub mod gates;
 mod pair;

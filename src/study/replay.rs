@@ -9,7 +9,7 @@ use std::time::Instant;
 
 use nalgebra::Vector3;
 use nima_core::{
-    impedance::{Identifier, MAX_DEGREE, Mode, Recipe, Report, Settings, SettingsError},
+    impedance::{Identifier, MAX_DEGREE, Mode, ModeSet, Recipe, Report, Settings, SettingsError},
     safety::{Chain, ChainSettings, Request},
     statistics::Percentiles,
 };
@@ -218,6 +218,7 @@ pub fn replay(recording: &Recording, options: &Options, mut each: impl FnMut(&Ro
         cross_talk: options.cross_talk,
         literal: options.literal,
         axes: recording.axes.len(),
+        modes: ModeSet::default().with(options.mode),
         ..Settings::default()
     };
     settings.validate()?;

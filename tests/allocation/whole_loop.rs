@@ -62,6 +62,30 @@ fn identification_and_rendering_allocate_nothing() {
 }
 
 #[test]
+fn baselines_allocate_nothing() {
+    let _alone = alone();
+    for mode in Mode::BASELINES {
+        let settings = Settings { modes: ModeSet::only(mode), delay_s: 0.05, ..Settings::default() };
+        let (mut identifier, mut renderer) = (Identifier::new(&settings).unwrap(), Renderer::new(&settings).unwrap());
+        let before = calls();
+        for k in 0..3000 {
+            let sample = sample(k);
+            identifier.step(&sample);
+            renderer.step(&sample.position_m, Some(identifier.parcel()));
+            if k == 1000 {
+                identifier.set_delay(0.3);
+                renderer.set_delay(0.3);
+            }
+            if k == 2000 {
+                identifier.reset();
+                renderer.reset();
+            }
+        }
+        assert_eq!(calls() - before, 0, "{mode}");
+    }
+}
+
+#[test]
 fn a_tick_of_the_whole_loop_and_of_the_simulation_allocates_nothing() {
     let _alone = alone();
     let rig = RigConfig::load("simulated").unwrap();

@@ -74,6 +74,38 @@ fn the_handles_own_motion_is_ahead_of_the_follower_and_so_is_its_force() {
 }
 
 #[test]
+fn every_baseline_runs_behind_the_gates() {
+    let ceiling_n = plan("peg_transfer").rig.gates.ceiling_n;
+    for mode in Mode::BASELINES {
+        let mut plan = plan("peg_transfer");
+        (plan.rig.mode, plan.rig.delay_s) = (mode, 0.1);
+        let mut largest_n = 0.0_f64;
+        let summary = run_virtual(&plan, 6.0, |tick| {
+            largest_n = largest_n.max(tick.rendered_n.norm());
+            None
+        })
+        .unwrap();
+        assert_eq!(summary.final_state, LoopState::Engaged, "{mode}");
+        assert!(largest_n > 0.5 && largest_n <= ceiling_n + 1e-9, "{mode}: {largest_n} N");
+        let error = error_of(&summary, mode);
+        assert!(error < 1.6 * error_of(&summary, Mode::Dfr), "{mode}: {error} N");
+    }
+}
+
+#[test]
+fn of_the_baselines_only_the_one_of_the_rig_can_be_chosen() {
+    for mode in Mode::BASELINES {
+        let rig = RigConfig { mode, ..RigConfig::load("simulated").unwrap() };
+        let mut pair = Pair::new(&rig, Side::Right, &Calibrations::default()).unwrap();
+        for other in Mode::ALL.into_iter().chain(Mode::BASELINES) {
+            let computed = other == mode || !matches!(other, Mode::Baseline(_));
+            let expected = if computed { Ok(()) } else { Err(Refusal::OutOfRange) };
+            assert_eq!(pair.obey(Command::SetMode(other), 0.0), expected, "{other} beside {mode}");
+        }
+    }
+}
+
+#[test]
 fn without_delay_the_reflected_force_is_the_measured_one() {
     let mut plan = plan("peg_transfer");
     plan.rig.delay_s = 0.0;

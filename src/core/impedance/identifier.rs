@@ -3,20 +3,20 @@
 use nalgebra::Vector3;
 
 use super::{
-    MAX_DEGREE, MODES, Mode, anchored,
+    Mode, SLOTS, anchored, baselines,
     best::Best,
     factor::{Factor, MAX_ROW},
     features::Features,
-    gram::Gram,
     horizon::Horizon,
+    information::{excitation, rank},
     literal::LiteralSolver,
     matched::{Form, Matched},
-    messages::{Excitation, Parcel, Posture, Report, Sample, active},
-    recipe::{Choice, Next},
+    messages::{Parcel, Posture, Report, Sample, active},
+    paper::Paper,
     settings::{MAX_DELAY_S, ModeSet, Settings, SettingsError},
     solution::Solution,
     track::{Track, usable_force, usable_position},
-    window::{SlidingWindow, Summary as _},
+    window::SlidingWindow,
 };
 use crate::signal::{DelayLine, Lanes, settled};
 
@@ -71,18 +71,11 @@ pub struct Identifier {
     matched: Option<Box<Matched>>,
     nima: Option<Box<Matched>>,
     best: Option<Best>,
+    baseline: Option<BaselineEnds>,
     sent: DelayLine<(Parcel, Posture)>,
     forget: f64,
     parcel: Parcel,
     report: Report,
-}
-
-#[derive(Clone, Debug)]
-struct Paper {
-    window: SlidingWindow<Gram>,
-    solver: LiteralSolver,
-    /// Where the degree is chosen by what comes after the window.
-    next: Option<Next>,
 }
 
 #[derive(Clone, Debug)]
@@ -94,6 +87,13 @@ struct Anchored {
     correction: anchored::Anchored,
 }
 
+/// Both ends of a baseline: what it sends, and what a leader that makes the follower's own motion would render.
+#[derive(Clone, Debug)]
+struct BaselineEnds {
+    follower: baselines::Follower,
+    leader: baselines::Leader,
+}
+
 impl Identifier {
     /// Allocates everything, rings for [`MAX_DELAY_S`] included.
     ///
@@ -103,18 +103,8 @@ impl Identifier {
         settings.validate()?;
         let delay_ticks = settings.delay_ticks(settings.delay_s);
         let block = settings.block();
-        let paper = |mode: Mode, degree: usize| {
-            settings.modes.contains(mode).then(|| {
-                let recipe = &settings.literal;
-                let one = active(&Vector3::repeat(1.0), settings.axes);
-                let empty = if recipe.constant { Gram::with_constant(3 * degree, one) } else { Gram::new(3 * degree) };
-                Box::new(Paper {
-                    window: SlidingWindow::new(block, empty.clone(), empty),
-                    solver: LiteralSolver::new(degree, settings.axes, recipe, &settings.scales),
-                    next: (recipe.choice == Choice::Next).then(|| Next::new(settings.rate_hz)),
-                })
-            })
-        };
+        let paper =
+            |mode: Mode, degree: usize| settings.modes.contains(mode).then(|| Box::new(Paper::new(degree, settings)));
         let anchored = settings.modes.contains(Mode::Anchored).then(|| {
             let columns = 1 + 3 * settings.max_degree;
             let ridge = settings.ridge * 2.0 * block as f64;
@@ -144,6 +134,10 @@ impl Identifier {
             matched: matched(Mode::Matched, if coupled { Form::Coupled } else { Form::Tissue }),
             nima: matched(Mode::Nima, Form::Paper(settings.max_degree as u8)),
             best: settings.modes.contains(Mode::Best).then(|| Best::new(settings.rate_hz)),
+            baseline: settings.modes.baseline().map(|baseline| BaselineEnds {
+                follower: baselines::Follower::new(baseline, settings, delay_ticks),
+                leader: baselines::Leader::new(settings),
+            }),
             sent: DelayLine::new(max_delay, (Parcel::BLANK, Posture::BLANK)),
             forget: 1.0 - (-1.0 / (ERROR_MEMORY_S * settings.rate_hz)).exp(),
             parcel: Parcel { modes: settings.modes, ..Parcel::BLANK },
@@ -176,11 +170,14 @@ impl Identifier {
         if begins(Mode::Best) {
             self.best.iter_mut().for_each(Best::reset);
         }
+        if modes.baseline() != before.baseline() {
+            self.baseline.iter_mut().for_each(BaselineEnds::reset);
+        }
         self.idle_ticks = 0;
         let Parcel { t_s, force_n, fresh, .. } = self.parcel;
         self.parcel = Parcel { t_s, force_n, fresh, modes, ..Parcel::BLANK };
         let Report { t_s, learnt, rejected, restarts, literal_failures, mut horizon_error_n, .. } = self.report;
-        for mode in Mode::ALL.into_iter().filter(|mode| begins(*mode) || !modes.contains(*mode)) {
+        for mode in self.settings.modes.modes().filter(|mode| begins(*mode) || !modes.contains(*mode)) {
             horizon_error_n[mode.index()] = 0.0;
         }
         self.report =
@@ -219,6 +216,11 @@ impl Identifier {
         }
         self.step_anchored(&now, good, usable, learn);
         self.step_matched(&now, good, usable, learn);
+        if self.computed.baseline().is_some()
+            && let Some(BaselineEnds { follower, .. }) = &mut self.baseline
+        {
+            self.parcel.baseline = follower.step(&now, force.filter(|_| good));
+        }
         self.sent.push((self.parcel, now));
         self.predict(&now, &x, good);
     }
@@ -242,27 +244,8 @@ impl Identifier {
         } else {
             return;
         };
-        let Some(Paper { window, solver, next }) = of_mode.as_deref_mut() else { return };
-        let mut row = window.current().row(x, self.last_force_n);
-        if !usable {
-            row = Gram::BLANK_ROW;
-        }
-        window.push(&row);
-        if !window.is_full() {
-            return;
-        }
-        solver.solve(window.current(), window.len());
-        let choice = match next {
-            Some(next) => next.step(usable.then_some((x, self.last_force_n)), solver),
-            None => solver.choice(),
-        };
-        self.parcel.linear = *solver.model(1);
-        self.parcel.literal = *solver.model(choice);
-        self.report.paper_degree = choice as u8;
-        self.report.literal_failures = solver.failures();
-        for degree in 1..=MAX_DEGREE {
-            let rendered = solver.model(degree).product(x);
-            self.report.reconstruction_n[degree - 1] = (self.last_force_n - rendered).vector();
+        if let Some(paper) = of_mode.as_deref_mut() {
+            paper.step(x, self.last_force_n, usable, &mut self.parcel, &mut self.report);
         }
     }
 
@@ -324,22 +307,24 @@ impl Identifier {
 
     /// What every mode renders for this tick from the parcel one delay old, and its running error.
     fn predict(&mut self, now: &Posture, x: &Features, good: bool) {
-        let modes = self.computed;
+        let leader = self.baseline.as_mut().map(|baseline| &mut baseline.leader);
         let forces = match self.sent.get(self.delay_ticks) {
-            Some((parcel, then)) if parcel.t_s.is_finite() => parcel.render(now, then, x),
-            _ => [None; MODES],
+            Some((parcel, then)) if parcel.t_s.is_finite() => parcel.render(now, then, x, |model, force_n| {
+                leader.and_then(|leader| leader.step(model, force_n, now, self.delay_ticks))
+            }),
+            _ => [None; SLOTS],
         };
         let said = [Mode::Anchored, Mode::Matched].map(|mode| forces[mode.index()]);
         let judges = good && !self.report.resting;
         if let (Some(best), [Some(anchored), Some(matched)], true) = (&mut self.best, said, judges) {
             best.judge(anchored, matched, self.last_force_n, now.stance.pace);
         }
-        for mode in Mode::ALL {
-            let force = forces[mode.index()].filter(|_| modes.contains(mode));
+        for mode in self.settings.modes.modes() {
+            let force = forces[mode.index()];
             self.report.prediction_n[mode.index()] = force.unwrap_or_default().vector();
             self.report.prediction_valid[mode.index()] = force.is_some();
             // A mode that renders nothing errs by the whole force; before anything arrived nothing is judged.
-            if good && forces[Mode::Dfr.index()].is_some() && modes.contains(mode) {
+            if good && self.computed.contains(mode) && forces[Mode::Dfr.index()].is_some() {
                 let error_n = (self.last_force_n - force.unwrap_or_default()).norm();
                 let mean = &mut self.report.horizon_error_n[mode.index()];
                 *mean = settled(*mean + self.forget * (error_n - *mean));
@@ -364,7 +349,7 @@ impl Identifier {
 
     /// The paper's solutions of every degree on the newest window; `None` if neither literal nor linear is computed.
     pub fn literal(&self) -> Option<&LiteralSolver> {
-        self.paper.as_ref().or(self.linear.as_ref()).map(|paper| &paper.solver)
+        self.paper.as_ref().or(self.linear.as_ref()).map(|paper| paper.solver())
     }
 
     /// Changes the programmed delay, exact to one sample, at most [`MAX_DELAY_S`]. The judge of anchored rendering begins anew.
@@ -376,6 +361,9 @@ impl Identifier {
         }
         for matched in [&mut self.matched, &mut self.nima].into_iter().flatten() {
             matched.set_delay(self.delay_ticks);
+        }
+        if let Some(baseline) = &mut self.baseline {
+            baseline.follower.set_delay(self.delay_ticks);
         }
     }
 
@@ -393,17 +381,17 @@ impl Identifier {
         if let Some(best) = &mut self.best {
             best.reset();
         }
+        self.baseline.iter_mut().for_each(BaselineEnds::reset);
         self.sent.clear();
         self.parcel = Parcel { modes: self.computed, ..Parcel::BLANK };
         self.report = Report { modes: self.computed, ..Report::BLANK };
     }
 }
 
-impl Paper {
+impl BaselineEnds {
     fn reset(&mut self) {
-        self.window.reset();
-        self.solver.reset();
-        self.next.iter_mut().for_each(Next::reset);
+        self.follower.reset();
+        self.leader.reset();
     }
 }
 
@@ -412,34 +400,5 @@ impl Anchored {
         self.window.reset();
         self.horizon.reset();
         self.correction.reset();
-    }
-}
-
-/// Motion columns whose part orthogonal to the columns before them outweighs the ridge (and rounding), the fewest of the axes.
-fn rank(factor: &Factor, ridge: f64, axes: usize) -> u8 {
-    let mut ranks = [0_u8; 4];
-    for j in 1..factor.columns() {
-        let column = factor.column(j);
-        let total = column.iter().fold(Lanes::ZERO, |sum, r| sum + *r * *r);
-        for (lane, rank) in ranks.iter_mut().enumerate().take(axes) {
-            let own = column[j][lane] * column[j][lane] - ridge;
-            *rank += u8::from(own > ridge.max(1e-24 * total[lane]));
-        }
-    }
-    ranks[..axes].iter().copied().min().unwrap_or(0)
-}
-
-/// Standard deviations of x, v and a in the window, from the first columns of the factor without the constant's row.
-fn excitation(factor: &Factor, ridge: f64, settings: &Settings) -> Excitation {
-    let rows = factor.column(0)[0];
-    let deviation = |j: usize, scale: f64| {
-        let squares = factor.column(j)[1..].iter().fold(Lanes::ZERO, |sum, r| sum + *r * *r);
-        let variance = (squares - Lanes::splat(ridge)).map(|s| s.max(0.0));
-        (variance.sqrt() * rows.recip_or_zero().map(f64::abs) * scale).vector()
-    };
-    Excitation {
-        position_m: deviation(1, settings.scales.position_m),
-        velocity_m_s: deviation(2, settings.scales.velocity_m_s),
-        acceleration_m_s2: deviation(3, settings.scales.acceleration_m_s2),
     }
 }

@@ -3,8 +3,9 @@
 use nalgebra::Vector3;
 
 use super::{
-    MAX_DEGREE, MODES, Mode,
+    MAX_DEGREE, Mode, SLOTS,
     anchored::within,
+    baselines::BaselineModel,
     features::{Features, MOTION_COLUMNS},
     matched::MatchedModel,
     regressors::{Stance, motion_changes},
@@ -210,6 +211,8 @@ pub struct Parcel {
     pub nima: MatchedModel,
     /// Weight of anchored rendering in the mixture with matched rendering, 0 to 1.
     pub anchored_weight: Lanes,
+    /// What the baseline needs, where one is computed.
+    pub baseline: BaselineModel,
 }
 
 impl Parcel {
@@ -225,15 +228,22 @@ impl Parcel {
         matched: MatchedModel::NONE,
         nima: MatchedModel::NONE,
         anchored_weight: Lanes::ZERO,
+        baseline: BaselineModel::Nothing,
     };
 
     /// The force of every mode for the motion now, by [`Mode::index`](super::Mode::index): `anchored` from the motion now and at
-    /// the time of the parcel, `literal` from `x`, the paper's `X` now. Nothing is made of a force that is not finite: limits would turn it into
-    /// one of their edges.
-    pub(super) fn render(&self, now: &Posture, then: &Posture, x: &Features) -> [Option<Lanes>; MODES] {
+    /// the time of the parcel, `literal` from `x`, the paper's `X` now. `baseline`: that mode's force, which has a state of its own
+    /// at the leader. Nothing is made of a force that is not finite: limits would turn it into one of their edges.
+    pub(super) fn render(
+        &self,
+        now: &Posture,
+        then: &Posture,
+        x: &Features,
+        baseline: impl FnOnce(&BaselineModel, Lanes) -> Option<Lanes>,
+    ) -> [Option<Lanes>; SLOTS] {
         let measured = Lanes::from(self.force_n);
         if !measured.is_finite() {
-            return [None; MODES];
+            return [None; SLOTS];
         }
         let anchored = self.anchored.force(measured, now, then);
         let matched = self.matched.force(now);
@@ -246,6 +256,7 @@ impl Parcel {
             matched,
             self.nima.force(now),
             Some(best),
+            self.modes.baseline().and_then(|_| baseline(&self.baseline, measured)),
         ];
         for mode in Mode::ALL.into_iter().filter(|mode| !self.modes.contains(*mode)) {
             forces[mode.index()] = None;
@@ -258,9 +269,9 @@ impl Parcel {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Rendered {
     /// Force of every mode (N), by [`Mode::index`](super::Mode::index); zero where not valid.
-    pub force_n: [Vector3<f64>; MODES],
+    pub force_n: [Vector3<f64>; SLOTS],
     /// Whether that mode had something to render, and it was finite.
-    pub valid: [bool; MODES],
+    pub valid: [bool; SLOTS],
 }
 
 impl Rendered {
@@ -269,7 +280,7 @@ impl Rendered {
         self.valid[mode.index()].then(|| self.force_n[mode.index()])
     }
 
-    pub(super) fn new(forces: &[Option<Lanes>; MODES]) -> Self {
+    pub(super) fn new(forces: &[Option<Lanes>; SLOTS]) -> Self {
         Self { force_n: forces.map(|force| force.unwrap_or_default().vector()), valid: forces.map(|f| f.is_some()) }
     }
 }
@@ -295,9 +306,9 @@ pub struct Report {
     /// Samples that were learnt from so far.
     pub learnt: u64,
     /// For each mode the force (N) for this time made from data up to `t - D` and the follower's motion at `t`.
-    pub prediction_n: [Vector3<f64>; MODES],
+    pub prediction_n: [Vector3<f64>; SLOTS],
     /// Whether that prediction exists and is finite; it is zero otherwise.
-    pub prediction_valid: [bool; MODES],
+    pub prediction_valid: [bool; SLOTS],
     /// Force minus `M X` (N) at the newest sample, for each literal degree fitted on the window that ends with it.
     pub reconstruction_n: [Vector3<f64>; MAX_DEGREE],
     /// The paper's choice of the degree, as the recipe makes it; 0 while the window is not full or nothing can be solved.
@@ -331,7 +342,7 @@ pub struct Report {
     /// Literal solves (one per tick, axis and degree) that failed so far.
     pub literal_failures: u64,
     /// Running mean (about 0.5 s) of each mode's 3-D error at the horizon (N).
-    pub horizon_error_n: [f64; MODES],
+    pub horizon_error_n: [f64; SLOTS],
 }
 
 impl Report {
@@ -345,7 +356,7 @@ impl Report {
         match mode {
             Mode::Literal => self.paper_degree,
             Mode::Linear => u8::from(self.paper_degree > 0),
-            Mode::Dfr => 0,
+            Mode::Dfr | Mode::Baseline(_) => 0,
             Mode::Anchored => self.degree,
             Mode::Matched | Mode::Best => self.matched_degree,
             Mode::Nima => self.nima_degree,
@@ -358,8 +369,8 @@ impl Report {
         modes: ModeSet::only(Mode::Dfr),
         resting: false,
         learnt: 0,
-        prediction_n: [Vector3::new(0.0, 0.0, 0.0); MODES],
-        prediction_valid: [false; MODES],
+        prediction_n: [Vector3::new(0.0, 0.0, 0.0); SLOTS],
+        prediction_valid: [false; SLOTS],
         reconstruction_n: [Vector3::new(0.0, 0.0, 0.0); MAX_DEGREE],
         paper_degree: 0,
         degree: 0,
@@ -379,7 +390,7 @@ impl Report {
         rejected: 0,
         restarts: 0,
         literal_failures: 0,
-        horizon_error_n: [0.0; MODES],
+        horizon_error_n: [0.0; SLOTS],
     };
 }
 

@@ -12,17 +12,19 @@
 //! |---|---|
 //! | `track`, `features` | the motion of one end; its features `u, u', u'', ..., u^N, u'^N, u''^N` and their scales |
 //! | `window`, `factor`, `solution` | sliding window at a constant cost; triangular factor; all its nested solutions |
-//! | `gram`, `literal` | the paper's normal equations, all degrees, in-window choice |
+//! | `paper`, `gram`, `literal` | the paper's normal equations, all degrees, in-window choice |
 //! | `recipe` | how the paper is read where it leaves a choice; the choice by what comes after the window |
 //! | `cross_factor`, `cross_talk` | the same with every axis' force from the motion of all axes, where a scene asks for it |
 //! | `horizon` | the nested solution that foretells force best at the true delay |
 //! | `anchored`, `regressors`, `regression`, `stack` | anchored rendering: experts, their trust, the guard |
 //! | `best` | a softmin over anchored and matched rendering |
 //! | `matched` | matched rendering: the force from the hand's own motion, by parameters alone |
+//! | `baselines` | methods of others, to compare with; at most one is computed |
 //! | `pace`, `envelope` | a clock that motion drives; the range of forces seen |
-//! | `identifier`, `renderer`, `messages` | the two ends of the link, and what goes between them |
+//! | `identifier`, `information`, `renderer`, `messages` | the two ends of the link, and what goes between them |
 
 mod anchored;
+mod baselines;
 mod best;
 mod cross_factor;
 mod cross_talk;
@@ -32,11 +34,13 @@ mod features;
 mod gram;
 mod horizon;
 mod identifier;
+mod information;
 mod literal;
 mod matched;
 mod messages;
 mod mode;
 mod pace;
+mod paper;
 mod recipe;
 mod regression;
 mod regressors;
@@ -56,6 +60,7 @@ mod rest_tests;
 #[cfg(test)]
 mod tests;
 
+pub use baselines::{BaselineModel, Contact, Wave};
 pub use factor::Factor;
 pub use features::{Features, MOTION_COLUMNS, Scales};
 pub use gram::Gram;
@@ -63,7 +68,7 @@ pub use identifier::Identifier;
 pub use literal::LiteralSolver;
 pub use matched::{Form, MatchedModel};
 pub use messages::{AnchoredModel, Excitation, Impedance, LiteralModel, Parcel, Rendered, Report, Sample};
-pub use mode::{MODES, Mode, ParseModeError};
+pub use mode::{Baseline, MODES, Mode, ParseModeError, SLOTS};
 pub use recipe::{Choice, Reading, Recipe};
 pub use renderer::Renderer;
 pub use settings::{MAX_DELAY_S, MAX_REST_N, ModeSet, RIDGES, Settings, SettingsError};

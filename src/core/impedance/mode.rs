@@ -4,18 +4,51 @@ use std::{fmt, str::FromStr};
 
 use serde::{Deserialize, Serialize};
 
+/// A method of others, computed to compare with; see [`baselines`](super::baselines).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Baseline {
+    /// Model-mediated teleoperation: a Hunt-Crossley contact by recursive least squares.
+    ModelMediated,
+    /// Wave variables, the way back.
+    Waves,
+    /// Time-domain passivity with the energy that the tissue returned, the way back.
+    Passivity,
+    /// Extrapolation by a Kalman filter of force and its rate.
+    Kalman,
+    /// Extrapolation by an autoregressive model of the force, by recursive least squares.
+    Autoregressive,
+}
+
+impl Baseline {
+    /// Every baseline.
+    pub const ALL: [Self; 5] = [Self::ModelMediated, Self::Waves, Self::Passivity, Self::Kalman, Self::Autoregressive];
+
+    /// The name used on the command line, in files and on the screen.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::ModelMediated => "model_mediated",
+            Self::Waves => "waves",
+            Self::Passivity => "passivity",
+            Self::Kalman => "kalman",
+            Self::Autoregressive => "autoregressive",
+        }
+    }
+}
+
 /// How the force for the hand is made from the follower's measurements.
 ///
 /// ```
-/// use nima_core::impedance::Mode;
+/// use nima_core::impedance::{Baseline, Mode};
 ///
-/// for mode in Mode::ALL {
+/// for mode in Mode::ALL.into_iter().chain(Mode::BASELINES) {
 ///     assert_eq!(mode.name().parse(), Ok(mode));
 /// }
+/// assert_eq!("kalman".parse(), Ok(Mode::Baseline(Baseline::Kalman)));
 /// assert!("sideways".parse::<Mode>().is_err());
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
+#[serde(into = "&'static str", try_from = "String")]
 pub enum Mode {
     /// The paper to the letter: `f = M X`, degree chosen by the error inside the window (NIMA).
     Literal,
@@ -31,19 +64,42 @@ pub enum Mode {
     Nima,
     /// Anchored and matched rendering, weighted by their errors of late.
     Best,
+    /// A method of others, to compare with.
+    Baseline(Baseline),
 }
 
-/// Number of modes.
+/// Number of the program's own modes.
 pub const MODES: usize = 7;
+/// Entries of a table of modes: the program's own, and the one baseline that may be computed beside them.
+pub const SLOTS: usize = MODES + 1;
 
 impl Mode {
-    /// Every mode, in the order of [`Mode::index`].
+    /// The program's own modes, in the order of [`Mode::index`].
     pub const ALL: [Self; MODES] =
         [Self::Literal, Self::Linear, Self::Dfr, Self::Anchored, Self::Matched, Self::Nima, Self::Best];
+    /// Every baseline as a mode.
+    pub const BASELINES: [Self; Baseline::ALL.len()] = {
+        let mut modes = [Self::Dfr; Baseline::ALL.len()];
+        let mut i = 0;
+        while i < modes.len() {
+            modes[i] = Self::Baseline(Baseline::ALL[i]);
+            i += 1;
+        }
+        modes
+    };
 
-    /// Position in [`Mode::ALL`], for tables with one entry per mode.
+    /// Its entry in tables of [`SLOTS`] modes: the position in [`Mode::ALL`], and the last one for whichever baseline is computed.
     pub const fn index(self) -> usize {
-        self as usize
+        match self {
+            Self::Literal => 0,
+            Self::Linear => 1,
+            Self::Dfr => 2,
+            Self::Anchored => 3,
+            Self::Matched => 4,
+            Self::Nima => 5,
+            Self::Best => 6,
+            Self::Baseline(_) => MODES,
+        }
     }
 
     /// The name used on the command line, in files and on the screen.
@@ -56,7 +112,22 @@ impl Mode {
             Self::Matched => "matched",
             Self::Nima => "nima",
             Self::Best => "best",
+            Self::Baseline(baseline) => baseline.name(),
         }
+    }
+}
+
+impl From<Mode> for &'static str {
+    fn from(mode: Mode) -> Self {
+        mode.name()
+    }
+}
+
+impl TryFrom<String> for Mode {
+    type Error = ParseModeError;
+
+    fn try_from(word: String) -> Result<Self, ParseModeError> {
+        word.parse()
     }
 }
 
@@ -68,7 +139,11 @@ impl fmt::Display for Mode {
 
 /// A word that names no mode.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("no mode is called \"{word}\"; use one of {}", Mode::ALL.map(Mode::name).join(", "))]
+#[error(
+    "no mode is called \"{word}\"; use one of {}, or a baseline: {}",
+    Mode::ALL.map(Mode::name).join(", "),
+    Mode::BASELINES.map(Mode::name).join(", ")
+)]
 pub struct ParseModeError {
     /// The word as given.
     pub word: String,
@@ -78,6 +153,7 @@ impl FromStr for Mode {
     type Err = ParseModeError;
 
     fn from_str(word: &str) -> Result<Self, Self::Err> {
-        Self::ALL.into_iter().find(|mode| mode.name() == word).ok_or_else(|| ParseModeError { word: word.to_owned() })
+        let mut known = Self::ALL.into_iter().chain(Self::BASELINES);
+        known.find(|mode| mode.name() == word).ok_or_else(|| ParseModeError { word: word.to_owned() })
     }
 }

@@ -3,6 +3,7 @@
 use nalgebra::Vector3;
 
 use super::{
+    baselines::Leader,
     messages::{Parcel, Posture, Rendered, active},
     settings::{MAX_DELAY_S, Settings, SettingsError},
     track::{Track, usable_position},
@@ -29,6 +30,7 @@ pub struct Renderer {
     delay_ticks: usize,
     track: Track,
     postures: DelayLine<Posture>,
+    baseline: Option<Leader>,
     parcel_t_s: f64,
     /// Ticks since the newest parcel came.
     waiting: usize,
@@ -46,6 +48,7 @@ impl Renderer {
             delay_ticks: settings.delay_ticks(settings.delay_s),
             track: Track::new(settings),
             postures: DelayLine::new(2 * max_delay, Posture::BLANK),
+            baseline: settings.modes.baseline().map(|_| Leader::new(settings)),
             parcel_t_s: f64::NEG_INFINITY,
             waiting: 0,
             settings: settings.clone(),
@@ -77,7 +80,10 @@ impl Renderer {
         // Not that much motion yet: the anchor is now, i.e. no correction.
         let age = self.delay_ticks.saturating_add(self.waiting);
         let then = self.postures.get(age).unwrap_or(&now);
-        Rendered::new(&parcel.render(&now, then, &x))
+        let baseline = self.baseline.as_mut();
+        Rendered::new(&parcel.render(&now, then, &x, |model, force_n| {
+            baseline.and_then(|leader| leader.step(model, force_n, &now, age))
+        }))
     }
 
     /// Changes the programmed delay, exact to one sample, at most [`MAX_DELAY_S`].
@@ -92,6 +98,9 @@ impl Renderer {
     pub fn reset(&mut self) {
         self.track.reset();
         self.postures.clear();
+        if let Some(baseline) = &mut self.baseline {
+            baseline.reset();
+        }
         self.parcel_t_s = f64::NEG_INFINITY;
         self.waiting = 0;
     }

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{AXES, MAX_DEGREE, MODES, Mode, features::Scales, recipe::Recipe};
+use super::{AXES, Baseline, MAX_DEGREE, MODES, Mode, features::Scales, recipe::Recipe};
 use crate::signal::DifferentiatorKind;
 
 /// Longest programmed delay of the link (s); the rings are made for it.
@@ -26,37 +26,61 @@ pub const RIDGES: std::ops::RangeInclusive<f64> = 0.0..=1e6;
 /// assert!(set.contains(Mode::Anchored) && !set.contains(Mode::Literal));
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct ModeSet([bool; MODES]);
+pub struct ModeSet {
+    own: [bool; MODES],
+    baseline: Option<Baseline>,
+}
 
 impl ModeSet {
-    /// Every mode.
-    pub const ALL: Self = Self([true; MODES]);
+    /// Every mode of the program's own; a baseline is computed only where it is asked for.
+    pub const ALL: Self = Self { own: [true; MODES], baseline: None };
 
     /// One mode (delayed reflection comes with every one, for comparison).
     pub const fn only(mode: Mode) -> Self {
-        Self([false; MODES]).with(Mode::Dfr).with(mode)
+        Self { own: [false; MODES], baseline: None }.with(Mode::Dfr).with(mode)
     }
 
-    /// This set and one more mode, with those that it is made of.
+    /// This set and one more mode, with those that it is made of; a baseline takes the place of the one before.
     #[must_use]
     pub const fn with(mut self, mode: Mode) -> Self {
-        self.0[mode.index()] = true;
+        if let Mode::Baseline(baseline) = mode {
+            self.baseline = Some(baseline);
+            return self;
+        }
+        self.own[mode.index()] = true;
         if matches!(mode, Mode::Best) {
-            self.0[Mode::Anchored.index()] = true;
-            self.0[Mode::Matched.index()] = true;
+            self.own[Mode::Anchored.index()] = true;
+            self.own[Mode::Matched.index()] = true;
         }
         self
     }
 
     /// Whether `mode` is computed.
-    pub const fn contains(self, mode: Mode) -> bool {
-        self.0[mode.index()]
+    pub fn contains(self, mode: Mode) -> bool {
+        match mode {
+            Mode::Baseline(baseline) => self.baseline == Some(baseline),
+            _ => self.own[mode.index()],
+        }
+    }
+
+    /// The baseline that is computed.
+    pub const fn baseline(self) -> Option<Baseline> {
+        self.baseline
+    }
+
+    /// The modes that are computed.
+    pub fn modes(self) -> impl Iterator<Item = Mode> {
+        let own = Mode::ALL.into_iter().filter(move |mode| self.contains(*mode));
+        own.chain(self.baseline.map(Mode::Baseline))
     }
 
     /// The modes that are in both sets.
     #[must_use]
     pub fn and(self, other: Self) -> Self {
-        Self(std::array::from_fn(|mode| self.0[mode] && other.0[mode]))
+        Self {
+            own: std::array::from_fn(|mode| self.own[mode] && other.own[mode]),
+            baseline: self.baseline.filter(|baseline| other.baseline == Some(*baseline)),
+        }
     }
 }
 

@@ -7,7 +7,7 @@ mod scheduling;
 use nalgebra::Vector3;
 use nima_core::{
     frames::WristSample,
-    impedance::{MODES, Mode},
+    impedance::{Mode, SLOTS},
     safety::{ChainSettings, GateReport, Implausible, State, Why},
 };
 use nima_devices::Loss;
@@ -101,7 +101,7 @@ pub struct Tick {
     /// The tip force as the link delivers it now: delayed DFR, N.
     pub delayed_n: Vector3<f64>,
     /// Force of each mode in this tick before the gates, N, indexed by [`Mode::index`].
-    pub asked_n: [Vector3<f64>; MODES],
+    pub asked_n: [Vector3<f64>; SLOTS],
     /// Force commanded to the hand after all gates, N.
     pub rendered_n: Vector3<f64>,
     /// Effect of the gates in this tick.

@@ -224,8 +224,10 @@ impl Meters {
         let arms: Vec<ArmEnd> = of.pairs().map(ArmEnd::of).collect();
         let worst = arms.iter().max_by_key(|arm| attention(arm.final_state));
         let computed = |pair: &Pair, mode: &Mode| pair.accuracy().of(*mode).count > 0;
+        let modes = |pair: &Pair| Mode::ALL.into_iter().chain(pair.baseline().map(Mode::Baseline));
         let error = of.pairs().flat_map(|pair| {
-            Mode::ALL.into_iter().filter(move |mode| computed(pair, mode)).map(move |mode| of_mode(pair, mode))
+            let computed = modes(pair).filter(|mode| computed(pair, mode));
+            computed.map(|mode| of_mode(pair, mode)).collect::<Vec<_>>()
         });
         Summary {
             clock,

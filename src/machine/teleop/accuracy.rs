@@ -1,7 +1,7 @@
 //! Running error of each mode's force against the true force; no samples are stored.
 
 use nalgebra::Vector3;
-use nima_core::impedance::{MODES, Mode, ModeSet, Rendered};
+use nima_core::impedance::{Mode, ModeSet, Rendered, SLOTS};
 
 /// Mean, standard deviation and maximum of a vector error.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -42,15 +42,15 @@ impl ErrorStats {
 /// Errors of every mode's force before the gates, against the force at the follower at the same instant.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Accuracy {
-    by_mode: [ErrorStats; MODES],
-    invalid: [u64; MODES],
+    by_mode: [ErrorStats; SLOTS],
+    invalid: [u64; SLOTS],
 }
 
 impl Accuracy {
     /// Adds one tick of the modes that are computed. A mode without a valid force renders zero, so its error is the whole
     /// force.
     pub fn add(&mut self, rendered: &Rendered, computed: ModeSet, truth_n: &Vector3<f64>) {
-        for mode in Mode::ALL.into_iter().filter(|mode| computed.contains(*mode)) {
+        for mode in computed.modes() {
             let force_n = rendered.force(mode);
             self.invalid[mode.index()] += u64::from(force_n.is_none());
             self.by_mode[mode.index()].add(&(force_n.unwrap_or_else(Vector3::zeros) - truth_n));

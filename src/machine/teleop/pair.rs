@@ -7,7 +7,7 @@ mod watch;
 
 use nalgebra::{UnitQuaternion, Vector1, Vector3};
 use nima_core::{
-    impedance::{Identifier, Mode, Renderer, Sample, Settings as IdentifierSettings, SettingsError},
+    impedance::{Baseline, Identifier, Mode, Renderer, Sample, Settings as IdentifierSettings, SettingsError},
     kinematics::{HandEye, Target},
     safety::{Chain, Gate, GripperChain, Interlock, Plausibility, Reason, Request},
     signal::Speed,
@@ -176,6 +176,11 @@ impl<L: Link> Pair<L> {
     /// Ticks per second.
     pub(super) const fn rate_hz(&self) -> f64 {
         self.rate_hz
+    }
+
+    /// The baseline that is computed beside the program's own modes, if the rig starts with one.
+    pub const fn baseline(&self) -> Option<Baseline> {
+        self.settings.modes.baseline()
     }
 
     /// Present state.

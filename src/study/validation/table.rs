@@ -131,6 +131,7 @@ fn rendering(three: &Rendering) -> Vec<Row> {
             Mode::Matched => "parameters alone, the force from the hand's own motion",
             Mode::Nima => "the paper's columns with a constant, a kept origin and a ridge",
             Mode::Best => "anchored and matched, weighted by their recent errors",
+            Mode::Baseline(_) => "a method of others",
         };
         let what = format!("{}, {:.0} ms later, MAE and SD (N)", figures.mode.name(), 1e3 * three.delay_s);
         all.push(row("III", what, &[], pair(figures.error), why));

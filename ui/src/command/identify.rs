@@ -23,7 +23,8 @@ pub(super) struct Arguments {
     /// Other column names, with an optional factor: `x=px_mm*0.001`
     #[arg(long, value_name = "NAME=COLUMN[*SCALE]")]
     map: Vec<String>,
-    /// Rendering mode: anchored, best, matched, nima, dfr, linear or literal
+    /// Rendering mode: anchored, matched, best, nima, dfr, linear, literal, or a baseline: `model_mediated`, waves, passivity,
+    /// kalman, autoregressive
     #[arg(long, default_value = "anchored")]
     mode: Mode,
     /// Length of the identification window, ms

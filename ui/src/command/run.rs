@@ -33,7 +33,8 @@ pub(super) struct Arguments {
     /// Seconds to run (default: until Ctrl-C; 60 with --virtual)
     #[arg(long, value_name = "S", value_parser = positive_seconds, allow_negative_numbers = true)]
     seconds: Option<f64>,
-    /// Rendering mode: anchored, best, matched, nima, dfr, linear or literal (default: the rig's)
+    /// Rendering mode: anchored, matched, best, nima, dfr, linear, literal, or a baseline: `model_mediated`, waves, passivity,
+    /// kalman, autoregressive (default: the rig's)
     #[arg(long)]
     mode: Option<Mode>,
     /// One-way delay of the link in ms (default: the rig's)
@@ -305,7 +306,7 @@ fn in_words(plan: &Plan, summary: &Summary) -> String {
     );
     for error in &summary.error {
         let fields = format!(
-            "\n  {:5}  {:8}  mean {:10.4} N   sd {:10.4} N   max {:10.4} N   invalid {}",
+            "\n  {:5}  {:14}  mean {:10.4} N   sd {:10.4} N   max {:10.4} N   invalid {}",
             error.side.word(),
             error.mode,
             error.mae_n,

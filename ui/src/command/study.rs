@@ -3,6 +3,7 @@
 //! Each has a file with its arguments in `study/` and a line in the table below; all results are written by the same
 //! code.
 
+mod baselines;
 mod faults;
 mod gates;
 mod passivity;
@@ -71,6 +72,8 @@ macro_rules! studies {
 }
 
 studies! {
+    /// Compare the methods of others with every mode, on recordings and scenes: error at the horizon over delayed reflection
+    Baselines(baselines::Arguments),
     /// Inject every kind of fault in every state; report what is detected, how soon, and the force error at the hand
     Faults(faults::Faults),
     /// Send extreme force requests through the gates and count violations of their limits

@@ -9,7 +9,7 @@ use std::{
 
 use nalgebra::Vector3;
 use nima_core::{
-    impedance::{MODES, Mode, ModeSet},
+    impedance::{Mode, SLOTS},
     safety::ChainSettings,
     statistics::Percentiles,
 };
@@ -79,7 +79,7 @@ pub struct Live {
     /// Degrees that the paper's in-window rule would choose.
     pub paper_degrees: DegreeShares,
     /// Error of each mode at the horizon, N, one value per second, oldest first.
-    pub trend_n: VecDeque<[f64; MODES]>,
+    pub trend_n: VecDeque<[f64; SLOTS]>,
     /// Recent activity of each side's gates.
     pub gates: [Gates; SIDES],
     /// The last change of each side's state.
@@ -104,7 +104,7 @@ pub struct Live {
     pub healths: Healths,
     first_fault: Option<(f64, Fault)>,
     refusal: Option<(Instant, Refused)>,
-    horizon: [Fading; MODES],
+    horizon: [Fading; SLOTS],
     measured: [Fading; SIDES],
     rendered: [Fading; SIDES],
     missed_share: Fading,
@@ -149,7 +149,7 @@ impl Live {
             first_fault: None,
             refusal: None,
             trend_n: VecDeque::with_capacity(TREND_S + 1),
-            horizon: [Fading::default(); MODES],
+            horizon: [Fading::default(); SLOTS],
             measured: Default::default(),
             rendered: Default::default(),
             missed_share: Fading::default(),
@@ -220,7 +220,7 @@ impl Live {
 
     /// Whether every mode is computed, to compare them.
     pub fn compares(&self) -> bool {
-        self.first_tick().is_some_and(|tick| tick.identification.modes == ModeSet::ALL)
+        self.first_tick().is_some_and(|tick| Mode::ALL.into_iter().all(|mode| tick.identification.modes.contains(mode)))
     }
 
     /// The arm pairs of the loop; the right one always exists.

@@ -1,7 +1,7 @@
 //! Values derived from the ticks for display: recent activity of the gates, smoothed figures, changes of state.
 
 use nima_core::{
-    impedance::MODES,
+    impedance::SLOTS,
     safety::{GATES, Gate, Why},
     statistics::Quantiles,
 };
@@ -42,7 +42,7 @@ pub struct Figures {
     /// Mean magnitude of the rendered force of each side, N.
     pub rendered_n: [f64; SIDES],
     /// Error of each mode at the horizon, N, mean over the last seconds.
-    pub horizon_n: [f64; MODES],
+    pub horizon_n: [f64; SLOTS],
     /// Lateness of wake-ups, us.
     pub wake_us: Quantiles,
     /// Work of a tick, us.

@@ -141,7 +141,7 @@ fn the_glossary_has_every_gate_mode_and_state() {
         LoopState::Faulted(Fault::OtherArm),
     ];
     let gates = Gate::ALL.into_iter().map(|gate| format!("| `{}` |", gate.name()));
-    let modes = Mode::ALL.into_iter().map(|mode| format!("| `{}` |", mode.name()));
+    let modes = Mode::ALL.into_iter().chain(Mode::BASELINES).map(|mode| format!("| `{}` |", mode.name()));
     let states = states.into_iter().map(|state| format!("| {} |", state.word()));
     let missing: Vec<String> =
         gates.chain(modes).chain(states).filter(|row| !glossary.contains(row.as_str())).collect();

@@ -254,6 +254,22 @@ fn run_on_the_virtual_clock_reports_everything() {
 }
 
 #[test]
+fn every_baseline_runs_in_the_loop_and_over_a_recording() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = recording(folder.path(), "r.csv", 2000, |_, _| {});
+    for mode in Mode::BASELINES.map(Mode::name) {
+        let summary = json(&["run", "--virtual", "--seconds", "2", "--mode", mode, "--json"]);
+        let errors = summary["error"].as_array().unwrap();
+        let own = errors.iter().find(|error| error["mode"] == mode).unwrap();
+        assert!(own["mae_n"].as_f64().unwrap() > 0.0 && own["invalid"].as_u64().unwrap() < 100, "{own}");
+        assert_eq!(errors.len(), 2, "it and delayed reflection, one baseline at a time");
+        let figures = json(&["identify", path.to_str().unwrap(), "--delay-ms", "50", "--mode", mode, "--json"]);
+        assert_eq!((figures["mode"].as_str(), figures["rejected"].as_u64()), (Some(mode), Some(0)));
+    }
+    refused(&["run", "--virtual", "--mode", "smith"], &["smith", "kalman"]);
+}
+
+#[test]
 fn run_on_the_real_clock_counts_every_period() {
     // A loop that a busy machine holds up ends in a fault, and counts its periods all the same.
     let output = nima(&["run", "--seconds", "2", "--json"]);

@@ -99,3 +99,36 @@ fn the_gates_hold_against_a_short_attack_and_a_wrong_number_is_refused() {
         refused(&["study", "gates", &format!("--requests={wrong}")], "whole number");
     }
 }
+
+#[test]
+fn the_methods_of_others_are_compared_on_a_recording() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("press.csv");
+    let row = |k: u32| {
+        let t = 1e-3 * f64::from(k);
+        let x = 0.01 * (9.0 * t).sin();
+        format!("{t},{x},{}\n", if x > 0.0 { -300.0 * x.powf(1.3) } else { 0.0 })
+    };
+    std::fs::write(&path, format!("t_s,x_m,fx_n\n{}", (0..3000).map(row).collect::<String>())).unwrap();
+    let (path, out) = (path.to_str().unwrap(), folder.path().join("out"));
+    let arguments = ["study", "baselines", "--recording", path, "--delay-ms", "50", "--delay-ms", "300", "--json"];
+    let output = nima(&[&arguments[..], &["--out", out.to_str().unwrap()]].concat());
+    assert!(output.status.success() && output.stderr.is_empty(), "{}", String::from_utf8_lossy(&output.stderr));
+    let report: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let means = report["means"].as_array().unwrap();
+    assert_eq!(means.len(), 2 * 10);
+    for mean in means {
+        assert_eq!((mean["split"].as_str(), mean["sources"].as_u64()), (Some("held_out"), Some(1)), "{mean}");
+        assert!(mean["mean"].as_f64().unwrap() > 0.0 && mean["low"].is_null(), "one recording has no interval: {mean}");
+    }
+    let model = means.iter().find(|mean| mean["mode"] == "model_mediated" && mean["delay_ms"] == 300.0).unwrap();
+    assert!(model["mean"].as_f64().unwrap() < 0.3, "{model}");
+    let table = std::fs::read_to_string(out.join("baselines.md")).unwrap();
+    assert!(table.contains("Held-out split") && table.contains("| kalman |"), "{table}");
+    assert_eq!(std::fs::read_to_string(out.join("baselines.csv")).unwrap().lines().count(), 1 + 20);
+
+    refused(&["study", "baselines", "--recording", "nowhere.csv"], "nowhere.csv");
+    refused(&["study", "baselines", "--map", "x=a"], "--recording");
+    refused(&["study", "baselines", "--recording", path, "--delay-ms", "2000"], "1000 ms");
+    refused(&["study", "baselines", "--recording", path, "--delay-ms", "0"], "--delay-ms");
+}

@@ -10,7 +10,10 @@ use egui_kittest::{
     kittest::{NodeT as _, Queryable as _},
 };
 use nima_console::console::ConsoleApp;
-use nima_core::{impedance::Mode, safety::Gate};
+use nima_core::{
+    impedance::{Baseline, Mode},
+    safety::Gate,
+};
 use nima_machine::{
     config::RigConfig,
     messages::{LoopState, Tick},
@@ -114,6 +117,23 @@ fn every_mode_can_be_chosen_and_comes_back() {
         harness.step();
         until(&mut harness, label, |tick| tick.mode == mode);
     }
+}
+
+#[test]
+fn the_baseline_that_the_rig_names_is_offered_and_no_other() {
+    let kalman = Mode::Baseline(Baseline::Kalman);
+    let rig = RigConfig { mode: kalman, ..RigConfig::load("simulated").unwrap() };
+    let scene = Scene::load("peg_transfer").unwrap();
+    let plan = Plan { rig, scene, calibrations: Default::default(), engage: true };
+    let mut harness = shown(&plan, [1600.0, 1000.0], |app| app);
+    until(&mut harness, "engaged", |tick| tick.state == LoopState::Engaged && tick.mode == kalman);
+    for (label, mode) in [("Direct (DFR)", Mode::Dfr), ("Kalman", kalman)] {
+        harness.get_by_role_and_label(Role::Button, label).click();
+        harness.step();
+        until(&mut harness, label, |tick| tick.mode == mode);
+    }
+    assert!(harness.query_by_role_and_label(Role::Button, "Wave variables").is_none());
+    assert!(console().query_by_role_and_label(Role::Button, "Kalman").is_none(), "this rig names none");
 }
 
 #[test]

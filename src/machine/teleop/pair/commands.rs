@@ -29,7 +29,7 @@ impl<L: Link> Pair<L> {
     /// [`Refusal`] if the command is not allowed in this state, its value is out of range, or a measurement forbids it.
     pub fn obey(&mut self, command: Command, t_s: f64) -> Result<(), Refusal> {
         match command {
-            Command::SetMode(mode) => self.set_mode(mode),
+            Command::SetMode(mode) if self.settings.modes.contains(mode) => self.set_mode(mode),
             Command::Compare(compares) => {
                 self.compares = compares;
                 self.compute();
@@ -95,7 +95,7 @@ impl<L: Link> Pair<L> {
     pub(super) fn compute(&mut self) {
         let chosen = ModeSet::only(self.mode);
         let both = self.before.map_or(chosen, |before| chosen.with(before));
-        self.identifier.compute(if self.compares { ModeSet::ALL } else { both });
+        self.identifier.compute(if self.compares { self.settings.modes } else { both });
     }
 
     pub(super) fn set_delay(&mut self, delay_s: f64) {

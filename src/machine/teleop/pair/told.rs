@@ -1,11 +1,7 @@
 //! Fills in the [`Tick`] of a pair, and defines what is reported before the first sample.
 
 use nalgebra::Vector3;
-use nima_core::{
-    impedance::{Mode, Rendered},
-    kinematics::Hand,
-    safety::GateReport,
-};
+use nima_core::{impedance::Rendered, kinematics::Hand, safety::GateReport};
 
 use super::{Pair, Timing};
 use crate::{
@@ -66,7 +62,7 @@ impl<L: Link> Pair<L> {
             prompt: self.prompt,
             guide_m: self.guide_m,
             delayed_n,
-            asked_n: Mode::ALL.map(|mode| rendered.force(mode).unwrap_or_else(Vector3::zeros)),
+            asked_n: rendered.force_n,
             rendered_n,
             gates,
             gate_settings: *self.chain.settings(),

@@ -59,7 +59,12 @@ fn mode_ui(ui: &mut Ui, live: &Live, outbox: &mut Outbox) {
     ui.spacing_mut().item_spacing = vec2(6.0, 4.0);
     let rows: [&[Mode]; 3] =
         [&[Mode::Anchored, Mode::Dfr], &[Mode::Matched, Mode::Best], &[Mode::Nima, Mode::Literal, Mode::Linear]];
-    for row in rows {
+    // A method of others is computed, and offered, only where the rig file names it.
+    let baseline: &[Mode] = match &live.rig.mode {
+        baseline @ Mode::Baseline(_) => std::slice::from_ref(baseline),
+        _ => &[],
+    };
+    for row in rows.into_iter().chain((!baseline.is_empty()).then_some(baseline)) {
         let between = ui.spacing().item_spacing.x * (row.len() - 1) as f32;
         let size = vec2((ui.available_width() - between) / row.len() as f32, 20.0);
         ui.horizontal(|ui| {

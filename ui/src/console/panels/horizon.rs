@@ -25,8 +25,9 @@ pub fn horizon_ui(ui: &mut Ui, live: &Live, outbox: &mut Outbox) {
     let dfr_n = live.figures.horizon_n[Mode::Dfr.index()];
     ui.label(small(text::horizon::ahead(live.delay_s() * 1e3)));
     ui.add_space(2.0);
-    let order = [Mode::Best, Mode::Matched, Mode::Anchored, Mode::Dfr, Mode::Nima, Mode::Linear, Mode::Literal];
-    for mode in order.into_iter().filter(|mode| computed.contains(*mode)) {
+    let own = [Mode::Best, Mode::Matched, Mode::Anchored, Mode::Dfr, Mode::Nima, Mode::Linear, Mode::Literal];
+    let modes = own.into_iter().chain(computed.baseline().map(Mode::Baseline));
+    for mode in modes.filter(|mode| computed.contains(*mode)) {
         mode_ui(ui, mode, live.figures.horizon_n[mode.index()], dfr_n, live.mode() == mode);
     }
     let mut compares = live.compares();

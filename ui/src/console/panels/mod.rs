@@ -18,7 +18,7 @@ pub mod top_bar;
 pub mod tradeoff;
 mod tradeoff_plot;
 
-use nima_core::impedance::Mode;
+use nima_core::impedance::{Baseline, Mode};
 
 pub use calibrations::{CalibrationWish, calibrations_ui};
 pub use degrees::degrees_ui;
@@ -45,6 +45,11 @@ pub const fn mode_name(mode: Mode) -> &'static str {
         Mode::Matched => text::modes::MATCHED,
         Mode::Nima => text::modes::NIMA,
         Mode::Best => text::modes::BEST,
+        Mode::Baseline(Baseline::ModelMediated) => text::modes::MODEL_MEDIATED,
+        Mode::Baseline(Baseline::Waves) => text::modes::WAVES,
+        Mode::Baseline(Baseline::Passivity) => text::modes::PASSIVITY,
+        Mode::Baseline(Baseline::Kalman) => text::modes::KALMAN,
+        Mode::Baseline(Baseline::Autoregressive) => text::modes::AUTOREGRESSIVE,
     }
 }
 
@@ -58,5 +63,10 @@ pub const fn mode_meaning(mode: Mode) -> &'static str {
         Mode::Matched => text::modes::MATCHED_HOVER,
         Mode::Nima => text::modes::NIMA_HOVER,
         Mode::Best => text::modes::BEST_HOVER,
+        Mode::Baseline(Baseline::ModelMediated) => text::modes::MODEL_MEDIATED_HOVER,
+        Mode::Baseline(Baseline::Waves) => text::modes::WAVES_HOVER,
+        Mode::Baseline(Baseline::Passivity) => text::modes::PASSIVITY_HOVER,
+        Mode::Baseline(Baseline::Kalman) => text::modes::KALMAN_HOVER,
+        Mode::Baseline(Baseline::Autoregressive) => text::modes::AUTOREGRESSIVE_HOVER,
     }
 }

@@ -82,6 +82,7 @@ fn look(mode: Mode) -> (MarkerShape, Color32, f32) {
         Mode::Linear => (MarkerShape::Up, theme::now().reference, 4.5),
         Mode::Nima => (MarkerShape::Circle, theme::now().reference, 4.0),
         Mode::Literal => (MarkerShape::Diamond, theme::now().reference, 4.5),
+        Mode::Baseline(_) => (MarkerShape::Cross, theme::now().reference, 4.5),
     }
 }
 

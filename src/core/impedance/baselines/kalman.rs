@@ -1,0 +1,73 @@
+//! Extrapolation by a Kalman filter of the force and its rate.
+//!
+//! The force moves at a rate that white noise drives and that forgets itself with a time constant `tau`, as Singer takes it for the
+//! acceleration of a target ("Estimating optimal tracking filter performance for manned maneuvering targets", IEEE Trans. Aerospace
+//! and Electronic Systems 6, 1970), here one derivative lower: a force has no inertia. Over a time `t` the state goes by
+//! `f + f' tau (1 - e^(-t/tau))`, `f' e^(-t/tau)`; `tau` without end would be the constant-rate filter of the textbooks, which
+//! overshoots by the whole rate times the delay. The gain is the fixed point of the Riccati equation; the leader extrapolates over the
+//! parcel's age.
+
+use super::BaselineModel;
+use crate::signal::Lanes;
+
+/// How long a rate lasts (s), and the bandwidth of the filter (Hz): `w^4` is the spectral density of the noise over that of the
+/// measurement (chosen on recordings, see docs/baselines.md).
+const LASTING_S: f64 = 0.005;
+const BANDWIDTH_HZ: f64 = 100.0;
+
+/// The force that this state leads to after a time.
+pub(super) fn extrapolated(force_n: Lanes, rate_n_s: Lanes, age_s: f64) -> Lanes {
+    force_n - rate_n_s * (LASTING_S * (-age_s / LASTING_S).exp_m1())
+}
+
+#[derive(Clone, Debug)]
+pub(super) struct Kalman {
+    period_s: f64,
+    lasting: f64,
+    gain: [f64; 2],
+    state: Option<[Lanes; 2]>,
+}
+
+impl Kalman {
+    pub(super) fn new(rate_hz: f64) -> Self {
+        let period_s = rate_hz.recip();
+        Self { period_s, lasting: (-period_s / LASTING_S).exp(), gain: gain(rate_hz), state: None }
+    }
+
+    pub(super) fn step(&mut self, force_n: Option<Lanes>) -> BaselineModel {
+        if let Some([force, rate]) = &mut self.state {
+            // A missing force leaves the state as it was: the leader extrapolates by age.
+            if let Some(measured) = force_n {
+                let foretold = extrapolated(*force, *rate, self.period_s);
+                let innovation = measured - foretold;
+                *force = (foretold + innovation * self.gain[0]).settled();
+                *rate = (*rate * self.lasting + innovation * self.gain[1]).settled();
+            }
+        } else {
+            self.state = force_n.map(|force| [force, Lanes::ZERO]);
+        }
+        self.state.map_or(BaselineModel::Nothing, |[force_n, rate_n_s]| BaselineModel::Trend { force_n, rate_n_s })
+    }
+
+    pub(super) fn reset(&mut self) {
+        self.state = None;
+    }
+}
+
+/// The steady-state gain for force and rate (1, 1/s). Computed in periods, so that all numbers are near one.
+fn gain(rate_hz: f64) -> [f64; 2] {
+    let (tau, bandwidth_hz) = (LASTING_S * rate_hz, BANDWIDTH_HZ.min(0.1 * rate_hz));
+    let (way, lasting) = (-tau * (-1.0 / tau).exp_m1(), (-1.0 / tau).exp());
+    let q = (std::f64::consts::TAU * bandwidth_hz / rate_hz).powi(4);
+    // Covariances of force, of both, of rate; the measurement's is one.
+    let (mut ff, mut fr, mut rr) = (1.0, 0.0, 1.0);
+    let mut gain = [1.0, 0.0];
+    for _ in 0..20_000 {
+        let ahead_ff = ff + way * (2.0 * fr + way * rr) + q / 3.0;
+        let ahead_fr = lasting * (fr + way * rr) + q / 2.0;
+        let ahead_rr = lasting * lasting * rr + q;
+        gain = [ahead_ff / (ahead_ff + 1.0), ahead_fr / (ahead_ff + 1.0)];
+        (ff, fr, rr) = ((1.0 - gain[0]) * ahead_ff, (1.0 - gain[0]) * ahead_fr, ahead_rr - gain[1] * ahead_fr);
+    }
+    [gain[0], gain[1] * rate_hz]
+}

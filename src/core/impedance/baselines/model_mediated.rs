@@ -1,0 +1,238 @@
+//! Model-mediated teleoperation: a Hunt-Crossley contact is identified at the follower, its parameters cross the link, and the leader
+//! renders the contact from its own motion (Mitra and Niemeyer, "Model-mediated telemanipulation", Int. J. Robotics Research 27,
+//! 2008).
+//!
+//! `f = K d^n + B d^n v` at a depth `d` beyond the surface; `K` and `B` by recursive least squares with exponential forgetting, the
+//! first stage of Diolaiti, Melchiorri and Stramigioli ("Contact impedance estimation for robotic systems", IEEE Trans. Robotics 21,
+//! 2005).
+//!
+//! The publications know where the surface is, and their sensors feel nothing but the contact. Here surface and exponent are those of a
+//! few that fit best (their second stage, a logarithmic regression for the exponent, was tried and was worse), with a contact on each
+//! side of the surface (an instrument between two walls); an offset, damping and mass of the instrument are fitted too; and the force
+//! stays within the range of forces seen, as in our own modes.
+
+use super::{
+    kept,
+    rls::{Rls, dot},
+};
+use crate::{
+    impedance::{anchored::within, envelope::Envelope},
+    signal::{Lanes, Motion},
+};
+
+/// Memory (s) and ridge (s) of the regression, and memory of the errors (s) (chosen on recordings, see docs/baselines.md).
+const MEMORY_S: f64 = 1.0;
+const RIDGE_S: f64 = 0.01;
+const ERROR_S: f64 = 1.0;
+/// Solves per second (at most one a tick).
+const SOLVE_HZ: f64 = 200.0;
+/// Places where the surface may be, evenly over the range visited.
+const PLACES: usize = 5;
+/// Exponents that are compared: a linear contact, a sphere's, a cone's.
+const EXPONENTS: [f64; 3] = [1.0, 1.5, 2.0];
+const CANDIDATES: usize = PLACES * EXPONENTS.len();
+/// The range is enlarged by this share at once, so that the sums are seldom brought to another one.
+const ROOM: f64 = 0.05;
+
+/// Stiffness and damping on both sides; then an offset, and the instrument's own damping and mass.
+const COLUMNS: usize = 7;
+const SIDES: usize = 4;
+
+/// What crosses the link: a Hunt-Crossley contact on each side of a surface.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Contact {
+    /// The surface (m).
+    pub surface_m: Lanes,
+    /// Depth by which depths are divided (m).
+    pub reach_m: Lanes,
+    /// `n`.
+    pub exponent: Lanes,
+    /// For the side above and below the surface stiffness (N at the reach) and damping (N s/m at the reach); then the offset (N), the
+    /// instrument's damping (N s/m) and mass (kg).
+    pub parameters: [Lanes; COLUMNS],
+    /// Least and greatest force rendered (N).
+    pub bounds_n: [Lanes; 2],
+}
+
+impl Contact {
+    const NONE: Self = Self {
+        surface_m: Lanes::ZERO,
+        reach_m: Lanes::ZERO,
+        exponent: Lanes::ZERO,
+        parameters: [Lanes::ZERO; COLUMNS],
+        bounds_n: [Lanes::ZERO; 2],
+    };
+
+    /// The force (N) for a motion.
+    pub(super) fn force(&self, own: &Motion) -> Lanes {
+        let force_n = dot(&self.parameters, &self.columns(own));
+        let [low, high] = self.bounds_n;
+        // A limit would turn what is not a number into one of its edges.
+        if force_n.is_finite() { within(force_n, low, high) } else { force_n }
+    }
+
+    /// Signed depth in reaches.
+    fn depth(&self, motion: &Motion) -> Lanes {
+        (motion.x - self.surface_m) * self.reach_m.recip_or_zero()
+    }
+
+    fn columns(&self, motion: &Motion) -> [Lanes; COLUMNS] {
+        let depth = self.depth(motion);
+        let power = |side: f64| (depth * side).zip(self.exponent, |depth, n| power(depth.max(0.0), n));
+        let (above, below) = (power(1.0), power(-1.0));
+        [above, above * motion.v, below, below * motion.v, Lanes([1.0, 1.0, 1.0, 0.0]), motion.v, motion.a]
+    }
+
+    /// Takes over another contact on one axis; the reach is the same.
+    fn take(&mut self, lane: usize, better: &Self) {
+        self.surface_m[lane] = better.surface_m[lane];
+        self.exponent[lane] = better.exponent[lane];
+        for (parameter, better) in self.parameters.iter_mut().zip(&better.parameters) {
+            parameter[lane] = better[lane];
+        }
+    }
+}
+
+/// A depth to one of the exponents.
+fn power(depth: f64, exponent: f64) -> f64 {
+    if exponent > 1.75 {
+        depth * depth
+    } else if exponent > 1.25 {
+        depth * depth.sqrt()
+    } else {
+        depth
+    }
+}
+
+/// A surface and an exponent, and the contact that is identified for them.
+#[derive(Clone, Debug)]
+struct Candidate {
+    contact: Contact,
+    rls: Rls<COLUMNS>,
+    error_n: Lanes,
+}
+
+#[derive(Clone, Debug)]
+pub(super) struct ModelMediated {
+    errors_kept: f64,
+    every: usize,
+    tick: usize,
+    candidates: [Candidate; CANDIDATES],
+    /// Least and greatest position (m).
+    range_m: [Lanes; 2],
+    envelope: Envelope,
+    contact: Contact,
+}
+
+impl ModelMediated {
+    pub(super) fn new(rate_hz: f64) -> Self {
+        let rls = Rls::new(MEMORY_S, RIDGE_S, rate_hz);
+        let mut model_mediated = Self {
+            errors_kept: kept(ERROR_S, rate_hz),
+            every: ((rate_hz / SOLVE_HZ).round() as usize).max(1),
+            tick: 0,
+            candidates: std::array::from_fn(|_| Candidate {
+                contact: Contact::NONE,
+                rls: rls.clone(),
+                error_n: Lanes::ZERO,
+            }),
+            range_m: [Lanes::ZERO; 2],
+            envelope: Envelope::new(rate_hz),
+            contact: Contact::NONE,
+        };
+        model_mediated.reset();
+        model_mediated
+    }
+
+    pub(super) fn step(&mut self, motion: &Motion, force_n: Option<Lanes>) -> Contact {
+        let Some(force_n) = force_n else { return self.contact };
+        self.envelope.see(force_n, 1.0);
+        self.visit(motion);
+        for (i, candidate) in self.candidates.iter_mut().enumerate() {
+            candidate.learn(motion, force_n, self.errors_kept);
+            // One after the other, and all on the first tick.
+            if self.tick == 0 || self.tick % self.every == i % self.every {
+                candidate.solve();
+            }
+        }
+        self.contact = self.best();
+        self.tick = self.tick.wrapping_add(1);
+        self.contact
+    }
+
+    /// Enlarges the range to where the follower is, and brings the surfaces to it.
+    fn visit(&mut self, motion: &Motion) {
+        if self.tick == 0 {
+            self.range_m = [motion.x; 2];
+        }
+        let [low, high] = self.range_m;
+        let room = (high - low) * ROOM;
+        let (lower, higher) = (motion.x.zip(low, f64::min), motion.x.zip(high, f64::max));
+        if self.tick > 0 && [lower, higher] == [low, high] {
+            return;
+        }
+        let beyond = |edge: Lanes, before: Lanes, sign: f64| {
+            let moved = edge.zip(before, |edge, before| if edge.to_bits() == before.to_bits() { 0.0 } else { sign });
+            edge + moved * room
+        };
+        self.range_m = [beyond(lower, low, -1.0), beyond(higher, high, 1.0)];
+        let [low, high] = self.range_m;
+        for (i, candidate) in self.candidates.iter_mut().enumerate() {
+            let share = (i % PLACES) as f64 / (PLACES - 1) as f64;
+            candidate.move_to(low + (high - low) * share, high - low);
+        }
+    }
+
+    /// On each axis the contact that fits best.
+    fn best(&self) -> Contact {
+        let [first, others @ ..] = &self.candidates;
+        let (mut best, mut least_n) = (first.contact, first.error_n);
+        for candidate in others {
+            for lane in 0..3 {
+                if candidate.error_n[lane] < least_n[lane] {
+                    least_n[lane] = candidate.error_n[lane];
+                    best.take(lane, &candidate.contact);
+                }
+            }
+        }
+        Contact { bounds_n: self.envelope.bounds_n(), ..best }
+    }
+
+    pub(super) fn reset(&mut self) {
+        for (i, candidate) in self.candidates.iter_mut().enumerate() {
+            let exponent = Lanes::splat(EXPONENTS[i / PLACES]);
+            (candidate.contact, candidate.error_n) = (Contact { exponent, ..Contact::NONE }, Lanes::ZERO);
+            candidate.rls.reset();
+        }
+        self.envelope.reset();
+        (self.tick, self.contact) = (0, Contact::NONE);
+    }
+}
+
+impl Candidate {
+    fn learn(&mut self, motion: &Motion, force_n: Lanes, kept: f64) {
+        let columns = self.contact.columns(motion);
+        let error_n = (force_n - dot(&self.contact.parameters, &columns)).map(f64::abs);
+        self.error_n = (error_n + (self.error_n - error_n) * kept).settled();
+        self.rls.learn(&columns, force_n);
+    }
+
+    fn solve(&mut self) {
+        let found = self.rls.solve(&[Lanes::ZERO; COLUMNS]);
+        if found.iter().all(|parameter| parameter.is_finite()) {
+            self.contact.parameters = found;
+        }
+    }
+
+    /// Takes another surface and reach. The sums are brought to the reach, for a depth in reaches becomes smaller; what the surface
+    /// moves by is forgotten with time.
+    fn move_to(&mut self, surface_m: Lanes, reach_m: Lanes) {
+        let ratio = (self.contact.reach_m * reach_m.recip_or_zero()).zip(self.contact.exponent, power);
+        let one = Lanes::splat(1.0);
+        self.rls.rescale(&[ratio, ratio, ratio, ratio, one, one, one]);
+        for parameter in &mut self.contact.parameters[..SIDES] {
+            *parameter *= ratio.map(|ratio| if ratio > 1e-12 { 1.0 / ratio } else { 0.0 });
+        }
+        (self.contact.surface_m, self.contact.reach_m) = (surface_m, reach_m);
+    }
+}

@@ -1,0 +1,76 @@
+//! Time-domain passivity over a delayed link, the way back (Hannaford and Ryu, "Time-domain passivity control of haptic interfaces",
+//! IEEE Trans. Robotics and Automation 18, 2002; Ryu, Artigas and Preusche, "A passive bilateral control scheme for a teleoperator
+//! with time-varying communication delay", Mechatronics 20, 2010).
+//!
+//! The energy at each port is split by its direction. The follower adds up what the tissue gives into the link, `E_in`, which
+//! never falls, and sends it with the force. The leader adds up what the link gives the hand, `E_out`, and may give no more than
+//! has come in: observer `W(k) = E_in(k - D) - E_out(k) + E_pc(k - 1)`; where that is negative the controller adds the damping
+//! `alpha = -W / (v^2 T)`, which takes `E_pc += alpha v^2 T`. The deficit of a tick is at most what that tick gives, so the damping
+//! never turns the force round.
+//!
+//! Left out, because motion has no delay on its way to the follower in this loop: the observer and controller at the follower.
+
+use crate::signal::{Lanes, Motion};
+
+/// The follower's part: energy that the tissue returns.
+#[derive(Clone, Debug)]
+pub(super) struct Returned {
+    period_s: f64,
+    energy_j: Lanes,
+}
+
+impl Returned {
+    pub(super) fn new(rate_hz: f64) -> Self {
+        Self { period_s: rate_hz.recip(), energy_j: Lanes::ZERO }
+    }
+
+    pub(super) fn step(&mut self, motion: &Motion, force_n: Option<Lanes>) -> Lanes {
+        if let Some(force_n) = force_n {
+            self.energy_j += given(force_n, motion, self.period_s);
+        }
+        self.energy_j
+    }
+
+    pub(super) fn reset(&mut self) {
+        self.energy_j = Lanes::ZERO;
+    }
+}
+
+/// The leader's part: observer and controller.
+#[derive(Clone, Debug)]
+pub(super) struct Controller {
+    period_s: f64,
+    came_j: Lanes,
+    /// `E_in - E_out + E_pc`.
+    store_j: Lanes,
+}
+
+impl Controller {
+    pub(super) fn new(rate_hz: f64) -> Self {
+        Self { period_s: rate_hz.recip(), came_j: Lanes::ZERO, store_j: Lanes::ZERO }
+    }
+
+    /// The force (N) for the hand: the one that came and what the controller adds to it.
+    pub(super) fn step(&mut self, force_n: Lanes, came_j: Lanes, own: &Motion) -> Lanes {
+        if !came_j.is_finite() {
+            return force_n;
+        }
+        // Energy that comes twice (a longer delay, a follower that began anew) is not counted again.
+        self.store_j += (came_j - self.came_j).map(|more_j| more_j.max(0.0));
+        self.came_j = came_j;
+        self.store_j -= given(force_n, own, self.period_s);
+        // `-alpha v = W / (v T)`, against the motion; then nothing is owed.
+        let damping_n = self.store_j.map(|store_j| store_j.min(0.0)) * (own.v * self.period_s).recip_or_zero();
+        self.store_j = self.store_j.map(|store_j| store_j.max(0.0));
+        force_n + damping_n
+    }
+
+    pub(super) fn reset(&mut self) {
+        (self.came_j, self.store_j) = (Lanes::ZERO, Lanes::ZERO);
+    }
+}
+
+/// What a force gives in one period along the motion (J), nothing where it takes.
+fn given(force_n: Lanes, motion: &Motion, period_s: f64) -> Lanes {
+    (force_n * motion.v * period_s).map(|energy_j| energy_j.max(0.0))
+}

@@ -1,0 +1,33 @@
+//! How much the motion in a window tells of the impedance.
+
+use super::{factor::Factor, messages::Excitation, settings::Settings};
+use crate::signal::Lanes;
+
+/// Motion columns whose part orthogonal to the columns before them outweighs the ridge (and rounding), the fewest of the axes.
+pub(super) fn rank(factor: &Factor, ridge: f64, axes: usize) -> u8 {
+    let mut ranks = [0_u8; 4];
+    for j in 1..factor.columns() {
+        let column = factor.column(j);
+        let total = column.iter().fold(Lanes::ZERO, |sum, r| sum + *r * *r);
+        for (lane, rank) in ranks.iter_mut().enumerate().take(axes) {
+            let own = column[j][lane] * column[j][lane] - ridge;
+            *rank += u8::from(own > ridge.max(1e-24 * total[lane]));
+        }
+    }
+    ranks[..axes].iter().copied().min().unwrap_or(0)
+}
+
+/// Standard deviations of x, v and a in the window, from the first columns of the factor without the constant's row.
+pub(super) fn excitation(factor: &Factor, ridge: f64, settings: &Settings) -> Excitation {
+    let rows = factor.column(0)[0];
+    let deviation = |j: usize, scale: f64| {
+        let squares = factor.column(j)[1..].iter().fold(Lanes::ZERO, |sum, r| sum + *r * *r);
+        let variance = (squares - Lanes::splat(ridge)).map(|s| s.max(0.0));
+        (variance.sqrt() * rows.recip_or_zero().map(f64::abs) * scale).vector()
+    };
+    Excitation {
+        position_m: deviation(1, settings.scales.position_m),
+        velocity_m_s: deviation(2, settings.scales.velocity_m_s),
+        acceleration_m_s2: deviation(3, settings.scales.acceleration_m_s2),
+    }
+}

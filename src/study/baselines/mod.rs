@@ -1,0 +1,192 @@
+//! The baselines of others beside the program's own modes, on recordings and scenes.
+//!
+//! Takes [`Source`]s of motion and force. For every source, delay and mode it gives the mean error at the horizon (the force
+//! rendered for time t from data up to t - D and the motion at t, against the force measured at t) over that of delayed
+//! reflection, start-up included: every sample counts from the first one that has a delayed force, for all modes alike, and a
+//! mode without a valid force renders none. Then the mean over the sources with its 95 % confidence interval, apart for the
+//! recordings that constants were chosen on, for those held out, and for simulated scenes. Deterministic.
+
+mod measure;
+mod present;
+mod statistics;
+#[cfg(test)]
+mod tests;
+
+use std::path::PathBuf;
+
+use nima_core::impedance::{Mode, SettingsError};
+use serde::Serialize;
+
+pub use statistics::Interval;
+
+use crate::{Experiment, Findings, tradeoff::Source};
+
+/// Recordings that constants were chosen on, of the program's own modes and of the baselines: files whose names begin so.
+pub const CHOSEN_ON: [&str; 2] = ["m1_question1a_", "m1_question1b_"];
+
+/// The modes of the table, best known last.
+const OWN: [Mode; 5] = [Mode::Dfr, Mode::Anchored, Mode::Matched, Mode::Nima, Mode::Best];
+
+/// Which part of the material a source belongs to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Split {
+    /// A recording that no constant was chosen on.
+    HeldOut,
+    /// A recording that constants were chosen on.
+    ChosenOn,
+    /// A simulated scene.
+    Scene,
+}
+
+impl Split {
+    /// All parts, the one that proves most first.
+    pub const ALL: [Self; 3] = [Self::HeldOut, Self::ChosenOn, Self::Scene];
+
+    /// The part of a recording of this name (its file's, without the ending).
+    pub fn of_recording(name: &str) -> Self {
+        if CHOSEN_ON.iter().any(|chosen| name.starts_with(chosen)) { Self::ChosenOn } else { Self::HeldOut }
+    }
+}
+
+/// Why the study could not be run.
+#[derive(Debug, thiserror::Error)]
+#[expect(missing_docs, reason = "the messages say it")]
+pub enum BaselinesError {
+    #[error("{name}: {source}")]
+    Settings { name: String, source: SettingsError },
+    /// Shorter than the delay.
+    #[error(
+        "{name} has {samples} samples; a delay of {delay_ms} ms at {rate_hz} Hz needs more than {needed}; record longer or give a shorter --delay-ms"
+    )]
+    TooShort { name: String, samples: usize, needed: usize, delay_ms: f64, rate_hz: f64 },
+    /// Reflection makes no error, so nothing can be compared with it.
+    #[error(
+        "{name}: the delayed force is never wrong at a delay of {delay_ms} ms (no force, or less than half a sample of delay); give a recording with contact or a longer --delay-ms"
+    )]
+    NothingToCompare { name: String, delay_ms: f64 },
+}
+
+/// The study: what to compare on, and how.
+#[derive(Clone, Debug)]
+pub struct Options {
+    /// Recordings and scenes, with the part that each belongs to.
+    pub sources: Vec<(Source, Split)>,
+    /// Delays of the link, s.
+    pub delays_s: Vec<f64>,
+    /// Let the program's own modes learn the full matrix `M`.
+    pub cross_talk: bool,
+    /// Files that were read.
+    pub inputs: Vec<PathBuf>,
+}
+
+/// One mode on one source at one delay.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[expect(missing_docs, reason = "the names say it")]
+pub struct Row {
+    pub source: String,
+    pub split: Split,
+    pub delay_ms: f64,
+    pub mode: Mode,
+    /// Mean error at the horizon, in the unit of the source.
+    pub error: f64,
+    /// The same of delayed reflection.
+    pub held_error: f64,
+    /// The first over the second.
+    pub ratio: f64,
+}
+
+/// One mode at one delay over all sources of one part.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[expect(missing_docs, reason = "the names say it")]
+pub struct Mean {
+    pub split: Split,
+    pub delay_ms: f64,
+    pub mode: Mode,
+    /// Number of sources.
+    pub sources: usize,
+    /// Mean of the ratios, and its 95 % confidence interval over the sources.
+    #[serde(flatten)]
+    pub ratio: Interval,
+}
+
+/// The results.
+#[derive(Clone, Debug, Serialize)]
+pub struct Report {
+    /// What the interval is, in words.
+    pub interval: &'static str,
+    /// Recordings that constants were chosen on: beginnings of their names.
+    pub chosen_on: [&'static str; CHOSEN_ON.len()],
+    /// Means over the sources.
+    pub means: Vec<Mean>,
+    /// Every source alone.
+    pub rows: Vec<Row>,
+}
+
+impl Experiment for Options {
+    const NAME: &'static str = "baselines";
+    const FILES: &'static [&'static str] = &[".md", ".csv"];
+    type Findings = Report;
+    type Error = BaselinesError;
+
+    fn inputs(&self) -> Vec<PathBuf> {
+        self.inputs.clone()
+    }
+
+    fn run(&self, progress: &mut dyn FnMut(usize, usize, &str)) -> Result<Report, BaselinesError> {
+        let mut rows = Vec::new();
+        let of = self.sources.len() * self.delays_s.len();
+        let mut done = 0;
+        for (source, split) in &self.sources {
+            for &delay_s in &self.delays_s {
+                progress(done, of, &source.name);
+                rows.extend(measure::measure(source, *split, delay_s, self.cross_talk)?);
+                done += 1;
+            }
+        }
+        progress(of, of, "done");
+        Ok(Report { interval: statistics::WORDS, chosen_on: CHOSEN_ON, means: means(&rows), rows })
+    }
+}
+
+impl Findings for Report {
+    fn text(&self) -> String {
+        self.markdown()
+    }
+
+    fn files(&self) -> Vec<(String, String)> {
+        vec![(".md".to_owned(), self.markdown()), (".csv".to_owned(), self.csv())]
+    }
+}
+
+/// The modes of the table, in its order.
+fn modes() -> impl Iterator<Item = Mode> {
+    OWN.into_iter().chain(Mode::BASELINES)
+}
+
+fn means(rows: &[Row]) -> Vec<Mean> {
+    let mut means: Vec<Mean> = Vec::new();
+    for row in rows {
+        let same =
+            |of: &Mean| of.split == row.split && of.mode == row.mode && of.delay_ms.total_cmp(&row.delay_ms).is_eq();
+        if means.iter().any(same) {
+            continue;
+        }
+        let of = Row::is_of(row.split, row.mode, row.delay_ms);
+        let ratios: Vec<f64> = rows.iter().filter(|row| of(row)).map(|row| row.ratio).collect();
+        means.push(Mean {
+            split: row.split,
+            delay_ms: row.delay_ms,
+            mode: row.mode,
+            sources: ratios.len(),
+            ratio: Interval::of_mean(&ratios),
+        });
+    }
+    means
+}
+
+impl Row {
+    fn is_of(split: Split, mode: Mode, delay_ms: f64) -> impl Fn(&Self) -> bool {
+        move |row| row.split == split && row.mode == mode && row.delay_ms.total_cmp(&delay_ms).is_eq()
+    }
+}

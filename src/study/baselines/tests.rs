@@ -1,0 +1,79 @@
+use std::path::Path;
+
+use nima_core::impedance::{Baseline, Mode};
+use nima_recording::csv::{Mapping, Recording};
+use nima_world::scene::Scene;
+
+use super::{CHOSEN_ON, Options, Report, Split};
+use crate::{Experiment as _, Findings as _, tradeoff::Source};
+
+/// Real recordings; they are not part of the repository.
+const FOLDER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/data/tue_1dof");
+
+fn ratio(report: &Report, split: Split, mode: Mode, delay_ms: f64) -> f64 {
+    let is_it =
+        |mean: &&super::Mean| mean.split == split && mean.mode == mode && (mean.delay_ms - delay_ms).abs() < 1e-9;
+    report.means.iter().find(is_it).unwrap().ratio.mean
+}
+
+fn scenes(names: &[&str], seconds: f64, delays_s: &[f64]) -> Options {
+    let source = |name: &&str| (Source::from_scene(&Scene::load(name).unwrap(), 1000.0, seconds), Split::Scene);
+    let sources = names.iter().map(source).collect();
+    Options { sources, delays_s: delays_s.to_vec(), cross_talk: false, inputs: Vec::new() }
+}
+
+#[test]
+fn a_scene_gives_every_mode_a_figure_and_the_same_one_again() {
+    let options = scenes(&["peg_transfer"], 3.0, &[0.01, 0.05]);
+    let report = options.run(&mut |_, _, _| {}).unwrap();
+    assert_eq!(report.rows.len(), 2 * 10);
+    assert!(report.rows.iter().all(|row| row.ratio.is_finite() && row.ratio > 0.0), "{report:?}");
+    for row in report.rows.iter().filter(|row| row.mode == Mode::Dfr) {
+        assert!((row.ratio - 1.0).abs() < 1e-12, "reflection is what everything is compared with: {row:?}");
+    }
+    assert_eq!(report.rows, options.run(&mut |_, _, _| {}).unwrap().rows);
+    let text = report.text();
+    for mode in Mode::BASELINES {
+        assert!(text.contains(&format!("| {mode} |")), "{text}");
+    }
+    assert_eq!(report.files()[1].1.lines().count(), 1 + report.rows.len());
+}
+
+#[test]
+fn sources_that_cannot_be_compared_are_named() {
+    let none = scenes(&["free_motion"], 1.0, &[0.0]).run(&mut |_, _, _| {}).unwrap_err().to_string();
+    assert!(none.contains("Free motion") && none.contains("--delay-ms"), "{none}");
+    let short = scenes(&["peg_transfer"], 0.1, &[0.3]).run(&mut |_, _, _| {}).unwrap_err().to_string();
+    assert!(short.contains("100 samples") && !short.contains('\n'), "{short}");
+}
+
+#[test]
+fn recordings_are_split_by_name() {
+    assert_eq!(Split::of_recording("m1_question1b_foam"), Split::ChosenOn);
+    assert_eq!(Split::of_recording("m1_question1c_foam"), Split::HeldOut);
+    assert!(CHOSEN_ON.iter().all(|name| Split::of_recording(name) == Split::ChosenOn));
+}
+
+#[test]
+fn on_real_recordings_the_peers_are_as_good_as_their_literature() {
+    let mapping = Mapping::parse(&["x=pos_follower_rad".to_owned(), "fx=Fe_Nm".to_owned()]).unwrap();
+    let sources: Vec<(Source, Split)> = ["m1_question1c_foam", "m1_question1c_spring", "m2_question1a_spring"]
+        .map(|name| Path::new(FOLDER).join(name).with_extension("csv"))
+        .into_iter()
+        .filter(|path| path.exists())
+        .map(|path| (Source::from_recording(Recording::read(&path, &mapping).unwrap(), "Nm"), Split::HeldOut))
+        .collect();
+    if sources.is_empty() {
+        eprintln!("skipped: {FOLDER} is not there");
+        return;
+    }
+    let delays_s = vec![0.01, 0.3];
+    let report = Options { sources, delays_s, cross_talk: false, inputs: Vec::new() }.run(&mut |_, _, _| {}).unwrap();
+    let of = |baseline, delay_ms| ratio(&report, Split::HeldOut, Mode::Baseline(baseline), delay_ms);
+    assert!(of(Baseline::Kalman, 10.0) < 0.9, "a short extrapolation is better than holding");
+    assert!(of(Baseline::Autoregressive, 10.0) < 0.9);
+    assert!(of(Baseline::ModelMediated, 300.0) < 0.6, "a model bridges a long delay");
+    for baseline in Baseline::ALL {
+        assert!(of(baseline, 300.0) < 1.5, "{baseline:?}: {}", of(baseline, 300.0));
+    }
+}

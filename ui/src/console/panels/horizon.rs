@@ -24,15 +24,15 @@ pub fn horizon_ui(ui: &mut Ui, live: &Live, outbox: &mut Outbox) {
     let computed = live.first_tick().map_or(ModeSet::only(Mode::Dfr), |tick| tick.identification.modes);
     let dfr_n = live.figures.horizon_n[Mode::Dfr.index()];
     ui.label(small(text::horizon::ahead(live.delay_s() * 1e3)));
+    let mut compares = live.compares();
+    if ui.checkbox(&mut compares, text::horizon::COMPARE).on_hover_text(text::horizon::COMPARE_HOVER).changed() {
+        outbox.push(Command::Compare(compares));
+    }
     ui.add_space(2.0);
     let own = [Mode::Best, Mode::Matched, Mode::Anchored, Mode::Dfr, Mode::Nima, Mode::Linear, Mode::Literal];
     let modes = own.into_iter().chain(computed.baseline().map(Mode::Baseline));
     for mode in modes.filter(|mode| computed.contains(*mode)) {
         mode_ui(ui, mode, live.figures.horizon_n[mode.index()], dfr_n, live.mode() == mode);
-    }
-    let mut compares = live.compares();
-    if ui.checkbox(&mut compares, text::horizon::COMPARE).on_hover_text(text::horizon::COMPARE_HOVER).changed() {
-        outbox.push(Command::Compare(compares));
     }
     trend_ui(ui, live);
 }

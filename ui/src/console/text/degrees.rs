@@ -23,7 +23,7 @@ pub(in crate::console) const RANK_HOVER: &str = "Number of motion columns that v
 pub(in crate::console) const EXCITATION: &str = "Excitation";
 pub(in crate::console) const EXCITATION_HOVER: &str = "How much the motion varies within the window: standard deviation of position (mm) and of velocity \
     (mm/s), all axes. Without motion nothing can be identified.";
-pub(in crate::console) const NOT_COMPUTED: &str = "compare all modes";
+pub(in crate::console) const NOT_COMPUTED: &str = "not computed";
 pub(in crate::console) const NONE: &str = "none";
 
 /// Period that the shares cover.

@@ -12,11 +12,14 @@ use nima_core::{
     impedance::{Mode, Recipe, SettingsError},
     safety::{ChainSettings, EnergyMode},
 };
-use nima_machine::config::{ConfigError, OwnMotion};
-use nima_world::scene::{Scene, Tissue};
+use nima_machine::config::OwnMotion;
+use nima_world::scene::Tissue;
 use serde::Serialize;
 
-use super::pair::{Grip, Handle, NOISE_N, Pair, RATE_HZ, Trial};
+use super::{
+    pair::{Grip, Handle, NOISE_N, Pair, RATE_HZ, Trial},
+    release::{ReleaseError, TREMOR_M, pressed_tissue},
+};
 
 /// Delays of the link, ms.
 pub const DELAYS_MS: [f64; 5] = [0.0, 10.0, 50.0, 100.0, 300.0];
@@ -31,24 +34,9 @@ const FROM_S: f64 = 1.5;
 const HOLD_S: f64 = 6.0;
 const JUDGED_S: f64 = 1.0;
 const LOOSE_N_S_M: f64 = 5.0;
-const TREMOR_M: f64 = 8e-5;
 /// Height above the tissue and depth in it that the hand intends, m.
 const ABOVE_M: f64 = 0.004;
 const DEPTH_M: f64 = 0.012;
-
-/// Why the study could not be made.
-#[derive(Debug, thiserror::Error)]
-pub enum PassivityError {
-    /// The scene whose tissue is pressed cannot be had.
-    #[error(transparent)]
-    Scene(#[from] ConfigError),
-    /// Settings out of range.
-    #[error(transparent)]
-    Settings(#[from] SettingsError),
-    /// The scene has no tissue.
-    #[error("the scene peg_transfer has no [tissue]: there is nothing to press")]
-    NoTissue,
-}
 
 /// What the hand does.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -161,9 +149,9 @@ pub const WAYS: [(Mode, OwnMotion); 7] = [
 /// Runs the study; before each part `progress` is called with the number of parts done, their total, and the name of the next.
 ///
 /// # Errors
-/// [`PassivityError`] if the scene cannot be used.
-pub fn study(mut progress: impl FnMut(usize, usize, &str)) -> Result<Report, PassivityError> {
-    let tissue = Scene::load("peg_transfer")?.tissue.ok_or(PassivityError::NoTissue)?;
+/// [`ReleaseError`] if the scene cannot be used.
+pub fn study(mut progress: impl FnMut(usize, usize, &str)) -> Result<Report, ReleaseError> {
+    let tissue = pressed_tissue()?;
     let (mut rows, mut held) = (Vec::new(), Vec::new());
     let all = WAYS.len() * DELAYS_MS.len();
     for (done, (way, delay_ms)) in
@@ -253,7 +241,7 @@ mod tests {
     use super::*;
 
     fn tissue() -> Tissue {
-        Scene::load("peg_transfer").unwrap().tissue.unwrap()
+        pressed_tissue().unwrap()
     }
 
     #[test]

@@ -189,7 +189,7 @@ pub struct Way {
 /// # Errors
 /// [`ReleaseError`] if the scene cannot be used or the contact force is not reached.
 pub fn study(mut progress: impl FnMut(usize, usize, &str)) -> Result<Report, ReleaseError> {
-    let tissue = Scene::load("peg_transfer")?.tissue.ok_or(ReleaseError::NoTissue)?;
+    let tissue = pressed_tissue()?;
     let mut rows = Vec::new();
     let modes = CONTACTS_N.len() * 2 * Situation::ALL.len() * Mode::ALL.len() * DELAYS_MS.len();
     let all = modes + 2 * BRAKES_N_S_M.len() * HANDLES.len();
@@ -216,6 +216,11 @@ pub fn study(mut progress: impl FnMut(usize, usize, &str)) -> Result<Report, Rel
     }
     progress(all, all, "done");
     Ok(Report { rows, worst })
+}
+
+/// The tissue that is pressed in the studies with a hand: that of the peg transfer.
+pub(super) fn pressed_tissue() -> Result<Tissue, ReleaseError> {
+    Scene::load("peg_transfer")?.tissue.ok_or(ReleaseError::NoTissue)
 }
 
 fn worst_of(contact_n: f64, brake_n_s_m: f64, handle: &Handle, tissue: Tissue) -> Result<Worst, ReleaseError> {

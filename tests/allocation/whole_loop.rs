@@ -29,6 +29,32 @@ fn sample(k: u32) -> Sample {
     sample
 }
 
+/// Three seconds of both ends: the delay changes, modes are left out and come back, all begins anew.
+#[expect(clippy::unwrap_used, reason = "a test fails by panicking")]
+fn run_both_ends(settings: &Settings, words: &str) {
+    let (mut identifier, mut renderer) = (Identifier::new(settings).unwrap(), Renderer::new(settings).unwrap());
+    let before = calls();
+    for k in 0..3000 {
+        let sample = sample(k);
+        identifier.step(&sample);
+        renderer.step(&sample.position_m, Some(identifier.parcel()));
+        match k {
+            1000 => {
+                identifier.set_delay(0.3);
+                renderer.set_delay(0.3);
+            }
+            1400 => identifier.compute(ModeSet::only(Mode::Dfr)),
+            1700 => identifier.compute(settings.modes),
+            2000 => {
+                identifier.reset();
+                renderer.reset();
+            }
+            _ => {}
+        }
+    }
+    assert_eq!(calls() - before, 0, "{words}");
+}
+
 #[test]
 fn identification_and_rendering_allocate_nothing() {
     let _alone = alone();
@@ -37,23 +63,7 @@ fn identification_and_rendering_allocate_nothing() {
         for (cross_talk, literal) in [(false, Recipe::default()), (true, every_key)] {
             let (modes, delay_s) = (ModeSet::ALL, 0.05);
             let settings = Settings { differentiator, cross_talk, literal, modes, delay_s, ..Settings::default() };
-            let mut identifier = Identifier::new(&settings).unwrap();
-            let mut renderer = Renderer::new(&settings).unwrap();
-            let before = calls();
-            for k in 0..3000 {
-                let sample = sample(k);
-                identifier.step(&sample);
-                renderer.step(&sample.position_m, Some(identifier.parcel()));
-                if k == 1000 {
-                    identifier.set_delay(0.3);
-                    renderer.set_delay(0.3);
-                }
-                if k == 2000 {
-                    identifier.reset();
-                    renderer.reset();
-                }
-            }
-            assert_eq!(calls() - before, 0, "{differentiator:?}, cross-talk {cross_talk}");
+            run_both_ends(&settings, &format!("{differentiator:?}, cross-talk {cross_talk}"));
         }
     }
     let before = calls();
@@ -66,22 +76,7 @@ fn baselines_allocate_nothing() {
     let _alone = alone();
     for mode in Mode::BASELINES {
         let settings = Settings { modes: ModeSet::only(mode), delay_s: 0.05, ..Settings::default() };
-        let (mut identifier, mut renderer) = (Identifier::new(&settings).unwrap(), Renderer::new(&settings).unwrap());
-        let before = calls();
-        for k in 0..3000 {
-            let sample = sample(k);
-            identifier.step(&sample);
-            renderer.step(&sample.position_m, Some(identifier.parcel()));
-            if k == 1000 {
-                identifier.set_delay(0.3);
-                renderer.set_delay(0.3);
-            }
-            if k == 2000 {
-                identifier.reset();
-                renderer.reset();
-            }
-        }
-        assert_eq!(calls() - before, 0, "{mode}");
+        run_both_ends(&settings, mode.name());
     }
 }
 

@@ -2,8 +2,8 @@
 
 use std::fmt::Write as _;
 
-use super::{DELAYS_MS, LOOSE_N_M, OwnMotion, PassivityError, Report, STILL_M_S, Task, WAYS, study};
-use crate::{Experiment, Findings};
+use super::{DELAYS_MS, LOOSE_N_M, OwnMotion, Report, STILL_M_S, Task, WAYS, study};
+use crate::{Experiment, Findings, release::ReleaseError};
 
 impl Report {
     /// Power and error of each task, and the speed of loose grips, by delay.
@@ -63,9 +63,9 @@ impl Experiment for super::Options {
     const NAME: &'static str = "passivity";
     const FILES: &'static [&'static str] = &[".md"];
     type Findings = Report;
-    type Error = PassivityError;
+    type Error = ReleaseError;
 
-    fn run(&self, progress: &mut dyn FnMut(usize, usize, &str)) -> Result<Report, PassivityError> {
+    fn run(&self, progress: &mut dyn FnMut(usize, usize, &str)) -> Result<Report, ReleaseError> {
         study(progress)
     }
 }

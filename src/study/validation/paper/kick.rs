@@ -5,13 +5,12 @@ use nima_core::{
     safety::ChainSettings,
 };
 use nima_machine::config::OwnMotion;
-use nima_world::scene::Scene;
 use serde::Serialize;
 
 use super::judged::{PRINTED, REPAIRED};
 use crate::{
     pair::{Grip, Handle, NOISE_N, Trial},
-    release::{ReleaseError, Row, Situation, TREMOR_M, release},
+    release::{ReleaseError, Row, Situation, TREMOR_M, pressed_tissue, release},
 };
 
 /// Force of the contact, N, and delays of the link, s.
@@ -82,7 +81,7 @@ pub fn all() -> Result<Vec<Kick>, ReleaseError> {
 }
 
 pub(super) fn let_go(way: Way, situation: Situation, hand: Hand, delay_s: f64) -> Result<Kick, ReleaseError> {
-    let tissue = Scene::load("peg_transfer")?.tissue.ok_or(ReleaseError::NoTissue)?;
+    let tissue = pressed_tissue()?;
     let ((name, mode, literal), Hand { tremor_m, noise_n, grip_n_m }) = (way, hand);
     let (gates, handle, gain, seed) = (ChainSettings::default().without_governor(), Handle::OMEGA, 1.0, 1);
     let (own_motion, grip) = (OwnMotion::Follower, Grip::of_stiffness(grip_n_m));

@@ -17,6 +17,8 @@ const NAP: Duration = Duration::from_millis(1);
 /// A quiet machine wakes a sleeping thread within this time, and never later than `PAUSE`.
 const LATE: Duration = Duration::from_millis(3);
 const PAUSE: Duration = Duration::from_millis(20);
+/// With less of the processors' time idle than this, other threads than the one that sleeps may be held up unseen.
+const IDLE_SHARE: f64 = 0.1;
 
 /// Held by one test of a program at a time: devices in real time look silent beside other work that takes every core.
 pub fn alone() -> MutexGuard<'static, ()> {
@@ -57,6 +59,16 @@ fn judged_on<Busy: FnOnce() -> bool>(test: impl Fn(), watch: impl Fn() -> Busy) 
 struct Watch {
     end: Arc<AtomicBool>,
     thread: JoinHandle<bool>,
+    spent: Option<[f64; 2]>,
+}
+
+/// Time of all processors since the start of the machine, idle and in all, in the kernel's ticks; `None` where it does not tell.
+fn spent() -> Option<[f64; 2]> {
+    let text = std::fs::read_to_string("/proc/stat").ok()?;
+    let times = text.lines().next()?.strip_prefix("cpu ")?.split_whitespace().take(8);
+    let times: Vec<f64> = times.map_while(|field| field.parse().ok()).collect();
+    // user, nice, system, idle, iowait, ...
+    Some([times.get(3)? + times.get(4)?, times.iter().sum()])
 }
 
 impl Watch {
@@ -75,13 +87,18 @@ impl Watch {
             }
             longest > PAUSE || late * 100 > naps
         });
-        Self { end, thread }
+        Self { end, thread, spent: spent() }
     }
 
     fn was_busy(self) -> bool {
         self.end.store(true, Relaxed);
-        self.thread.join().unwrap_or(true)
+        let late = self.thread.join().unwrap_or(true);
+        late || self.spent.zip(spent()).is_some_and(|(before, now)| is_full(before, now))
     }
+}
+
+fn is_full([idle_before, before]: [f64; 2], [idle, all]: [f64; 2]) -> bool {
+    idle - idle_before < IDLE_SHARE * (all - before)
 }
 
 #[cfg(test)]
@@ -98,6 +115,14 @@ mod tests {
             assert!(made.get() >= good, "attempt {}", made.get());
         };
         catch_unwind(AssertUnwindSafe(|| judged_on(test, || move || busy))).is_ok().then_some(made.get())
+    }
+
+    #[test]
+    fn processors_that_never_rest_are_full() {
+        assert!(is_full([100.0, 1000.0], [105.0, 1200.0]));
+        assert!(!is_full([100.0, 1000.0], [150.0, 1200.0]));
+        let machine = spent();
+        assert!(machine.is_none_or(|[idle, all]| idle >= 0.0 && all > idle), "{machine:?}");
     }
 
     #[test]

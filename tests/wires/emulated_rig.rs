@@ -250,10 +250,10 @@ struct JawsShown {
 }
 
 impl JawsShown {
-    /// Whether the readings were timely, so that the figures show the PID and not the load of the computer. Servos that
-    /// never answered are no matter of load.
+    /// Whether the readings were timely and enough, so that the figures show the PID and not the load of the computer. That
+    /// the servos answer at all is tested by others.
     fn is_quiet(&self) -> bool {
-        self.period_p99_s < 0.004 && (self.readings == 0 || self.readings >= READINGS)
+        self.period_p99_s < 0.004 && self.readings >= READINGS
     }
 }
 

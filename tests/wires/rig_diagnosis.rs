@@ -9,7 +9,7 @@ use nima_devices::{
     force_dimension,
 };
 use nima_machine::rig::{Settings, rig_probes};
-use nima_testing::real_time::alone;
+use nima_testing::real_time::{alone, judged};
 use nima_tests::emulated::{elsewhere, started};
 use nima_world::emulators::{EmulatedFault, force_dimension::Held};
 
@@ -78,15 +78,17 @@ fn all_well(found: &[Diagnosis]) -> bool {
 #[test]
 fn a_running_rig_is_reported_without_trouble() {
     let _alone = alone();
-    let folder = tempfile::tempdir().unwrap();
-    let devices = elsewhere(folder.path());
-    let rig = started(&devices);
-    // On a busy computer a device may seem silent at times.
-    let tries: Vec<_> = (0..5).map(|_| tried(&devices)).take_while(|found| !all_well(found)).collect();
-    assert!(tries.len() < 5, "{:#?}", tries.last());
-    let served: Vec<_> = rig.servings().iter().map(|device| device.name.clone()).collect();
-    let names: Vec<_> = tried(&devices).into_iter().map(|one| one.name).collect();
-    assert_eq!(names, served, "the same devices by the same names");
+    judged(|| {
+        let folder = tempfile::tempdir().unwrap();
+        let devices = elsewhere(folder.path());
+        let rig = started(&devices);
+        // On a busy computer a device may seem silent at times.
+        let tries: Vec<_> = (0..5).map(|_| tried(&devices)).take_while(|found| !all_well(found)).collect();
+        assert!(tries.len() < 5, "{:#?}", tries.last());
+        let served: Vec<_> = rig.servings().iter().map(|device| device.name.clone()).collect();
+        let names: Vec<_> = tried(&devices).into_iter().map(|one| one.name).collect();
+        assert_eq!(names, served, "the same devices by the same names");
+    });
 }
 
 #[test]
@@ -109,67 +111,71 @@ fn a_rig_that_does_not_run_is_reported_device_by_device() {
 #[test]
 fn wrong_settings_are_reported_with_the_device_that_answers() {
     let _alone = alone();
-    let folder = tempfile::tempdir().unwrap();
-    let devices = elsewhere(folder.path());
-    let _rig = started(&devices);
-    let mut wrong = devices.clone();
-    let right = wrong.right.as_mut().unwrap();
-    right.handle.force_dimension_mut().unwrap().library = Some("/no/such/libdrd.so.3".into());
-    right.arm.kinova_mut().unwrap().password = "guess".to_owned();
-    right.sensor.bota_mut().unwrap().transport = bota::Transport::Gen0;
-    right.servos.as_mut().unwrap().baud = 57_600;
-    let left = wrong.left.as_mut().unwrap();
-    left.handle.force_dimension_mut().unwrap().serial = Some(9999);
-    left.sensor.bota_mut().unwrap().serial_number = Some("12345".to_owned());
-    wrong.tissue_sensor.as_mut().unwrap().bota_mut().unwrap().baud = 921_600;
-    wrong.tracker.as_mut().unwrap().tools[0] = folder.path().join("none.rom");
-    let found = tried(&wrong);
-    assert_told!(found,
-        "right handle" => Trouble::SdkMissing { .. },
-        "right arm" => Trouble::RefusedLogin { .. },
-        "right sensor" => Trouble::WrongProduct { .. },
-        "right servos" => Trouble::WrongBaud { .. },
-        "left handle" => Trouble::Absent { .. },
-        "left sensor" => Trouble::WrongProduct { .. },
-        "tissue sensor" => Trouble::WrongBaud { .. },
-        "tracker" => Trouble::Setting { .. },
-    );
-    let mut other = devices;
-    other.right.as_mut().unwrap().servos.as_mut().unwrap().servos[2].model = Some("XM540-W270".to_owned());
-    assert_told!(tried(&other), "right servos" => Trouble::WrongProduct { .. });
+    judged(|| {
+        let folder = tempfile::tempdir().unwrap();
+        let devices = elsewhere(folder.path());
+        let _rig = started(&devices);
+        let mut wrong = devices.clone();
+        let right = wrong.right.as_mut().unwrap();
+        right.handle.force_dimension_mut().unwrap().library = Some("/no/such/libdrd.so.3".into());
+        right.arm.kinova_mut().unwrap().password = "guess".to_owned();
+        right.sensor.bota_mut().unwrap().transport = bota::Transport::Gen0;
+        right.servos.as_mut().unwrap().baud = 57_600;
+        let left = wrong.left.as_mut().unwrap();
+        left.handle.force_dimension_mut().unwrap().serial = Some(9999);
+        left.sensor.bota_mut().unwrap().serial_number = Some("12345".to_owned());
+        wrong.tissue_sensor.as_mut().unwrap().bota_mut().unwrap().baud = 921_600;
+        wrong.tracker.as_mut().unwrap().tools[0] = folder.path().join("none.rom");
+        let found = tried(&wrong);
+        assert_told!(found,
+            "right handle" => Trouble::SdkMissing { .. },
+            "right arm" => Trouble::RefusedLogin { .. },
+            "right sensor" => Trouble::WrongProduct { .. },
+            "right servos" => Trouble::WrongBaud { .. },
+            "left handle" => Trouble::Absent { .. },
+            "left sensor" => Trouble::WrongProduct { .. },
+            "tissue sensor" => Trouble::WrongBaud { .. },
+            "tracker" => Trouble::Setting { .. },
+        );
+        let mut other = devices;
+        other.right.as_mut().unwrap().servos.as_mut().unwrap().servos[2].model = Some("XM540-W270".to_owned());
+        assert_told!(tried(&other), "right servos" => Trouble::WrongProduct { .. });
+    });
 }
 
 #[test]
 fn silence_and_faults_of_every_device_are_reported() {
     let _alone = alone();
-    let folder = tempfile::tempdir().unwrap();
-    let devices = elsewhere(folder.path());
-    let rig = started(&devices);
-    let all = |fault| {
-        rig.servings().iter().for_each(|device| device.serving.faults.set(fault));
-        // An emulator that waits for its client checks its fault switch once a millisecond.
-        std::thread::sleep(Duration::from_millis(20));
-    };
-    all(EmulatedFault::Silence);
-    assert_told!(tried(&devices),
-        "right handle" => Trouble::Absent { .. },
-        "right arm" => Trouble::Silent { .. },
-        "right sensor" => Trouble::Silent { .. },
-        "right servos" => Trouble::Silent { .. },
-        "left sensor" => Trouble::Silent { .. },
-        "tissue sensor" => Trouble::Silent { .. },
-        "tracker" => Trouble::Silent { .. },
-    );
-    all(EmulatedFault::DeviceFault);
-    assert_told!(tried(&devices),
-        "right handle" => Trouble::DeviceFault { .. },
-        "right arm" => Trouble::DeviceFault { .. },
-        "right sensor" => Trouble::DeviceFault { .. },
-        "right servos" => Trouble::DeviceFault { .. },
-        "left sensor" => Trouble::DeviceFault { .. },
-        "tissue sensor" => Trouble::DeviceFault { .. },
-        "tracker" => Trouble::DeviceFault { .. },
-    );
+    judged(|| {
+        let folder = tempfile::tempdir().unwrap();
+        let devices = elsewhere(folder.path());
+        let rig = started(&devices);
+        let all = |fault| {
+            rig.servings().iter().for_each(|device| device.serving.faults.set(fault));
+            // An emulator that waits for its client checks its fault switch once a millisecond.
+            std::thread::sleep(Duration::from_millis(20));
+        };
+        all(EmulatedFault::Silence);
+        assert_told!(tried(&devices),
+            "right handle" => Trouble::Absent { .. },
+            "right arm" => Trouble::Silent { .. },
+            "right sensor" => Trouble::Silent { .. },
+            "right servos" => Trouble::Silent { .. },
+            "left sensor" => Trouble::Silent { .. },
+            "tissue sensor" => Trouble::Silent { .. },
+            "tracker" => Trouble::Silent { .. },
+        );
+        all(EmulatedFault::DeviceFault);
+        assert_told!(tried(&devices),
+            "right handle" => Trouble::DeviceFault { .. },
+            "right arm" => Trouble::DeviceFault { .. },
+            "right sensor" => Trouble::DeviceFault { .. },
+            "right servos" => Trouble::DeviceFault { .. },
+            "left sensor" => Trouble::DeviceFault { .. },
+            "tissue sensor" => Trouble::DeviceFault { .. },
+            "tracker" => Trouble::DeviceFault { .. },
+        );
+    });
 }
 
 #[test]

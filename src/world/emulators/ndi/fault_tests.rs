@@ -4,6 +4,7 @@
 use std::time::Instant;
 
 use nima_devices::{Loss, Slot, Stamped, Standing, TrackerReading, ndi::*};
+use nima_testing::real_time::judged;
 
 use super::driver_tests::{BLOCK_FIRMWARE, TEXT_FIRMWARE, definitions, line, network, profile, until};
 use crate::emulators::{EmulatedFault, Serving, ndi::wandering};
@@ -71,9 +72,11 @@ fn survives_all(served: &Serving, settings: Settings, form: Form, faults: &[Emul
 }
 
 fn survives_over_a_network(firmware: &str, form: Form, faults: &[EmulatedFault]) {
-    let (_folder, tools) = definitions(1);
-    let served = profile(firmware).on_network(0, wandering).serve().unwrap();
-    survives_all(&served, network(&served, tools), form, faults);
+    judged(|| {
+        let (_folder, tools) = definitions(1);
+        let served = profile(firmware).on_network(0, wandering).serve().unwrap();
+        survives_all(&served, network(&served, tools), form, faults);
+    });
 }
 
 #[test]
@@ -108,9 +111,11 @@ fn it_survives_a_unit_that_is_wrong() {
 }
 
 fn survives_over_a_line(faults: &[EmulatedFault]) {
-    let (_folder, tools) = definitions(1);
-    let served = profile(BLOCK_FIRMWARE).on_line(None, wandering).serve().unwrap();
-    survives_all(&served, line(&served, tools), Form::Binary, faults);
+    judged(|| {
+        let (_folder, tools) = definitions(1);
+        let served = profile(BLOCK_FIRMWARE).on_line(None, wandering).serve().unwrap();
+        survives_all(&served, line(&served, tools), Form::Binary, faults);
+    });
 }
 
 #[test]

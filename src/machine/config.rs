@@ -180,8 +180,8 @@ pub enum OwnMotion {
     /// Where the follower is now, as its commands and its lag tell: accurate.
     #[default]
     Follower,
-    /// Where the handle is: the force is that of the place which the follower will reach. Matched rendering is then
-    /// passive at every delay.
+    /// Where the handle is: the force is that of the place which the follower will reach. Matched rendering then
+    /// gives the hand hardly any power at any delay.
     Handle,
 }
 

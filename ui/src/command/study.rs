@@ -8,6 +8,7 @@ mod faults;
 mod gates;
 mod passivity;
 mod release;
+mod sources;
 mod stability;
 mod stability_map;
 mod timing;

@@ -248,3 +248,17 @@ fn the_instrument_is_led_by_mouse_and_keys_and_a_stop_lets_it_go() {
     press(&mut harness, "Stop");
     until(&mut harness, "stopped and let go", |tick| tick.state == LoopState::Stopped && tick.guide_m.is_none());
 }
+
+#[test]
+fn all_modes_are_computed_only_while_they_are_compared() {
+    let mut harness = console();
+    let all = |tick: &Tick| Mode::ALL.into_iter().all(|mode| tick.identification.modes.contains(mode));
+    assert!(!harness.state().tick().is_some_and(all));
+    assert!(harness.query_by_label_contains("Error Literal").is_none());
+    harness.get_by_role_and_label(Role::CheckBox, "Compare all modes").click();
+    until(&mut harness, "all modes", all);
+    harness.step();
+    harness.get_by_label_contains("Error Literal");
+    harness.get_by_role_and_label(Role::CheckBox, "Compare all modes").click();
+    until(&mut harness, "one mode again", |tick| !all(tick));
+}

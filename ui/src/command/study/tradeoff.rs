@@ -2,17 +2,18 @@
 
 use std::path::PathBuf;
 
-use anyhow::bail;
 use clap::Args;
-use nima_core::impedance::{MAX_DELAY_S, Settings};
-use nima_recording::csv::{Mapping, Recording};
+use nima_core::impedance::Settings;
 use nima_study::{
     Experiment,
     tradeoff::{Plan, Source, Study, SweepError, sweep},
 };
 use nima_world::scene::Scene;
 
-use super::Asked;
+use super::{
+    Asked,
+    sources::{RATE_HZ, Sources, delays_s},
+};
 use crate::leaving::Leave;
 
 /// Scenes that are measured by default.
@@ -20,19 +21,11 @@ const SCENES: [&str; 2] = ["peg_transfer", "free_motion"];
 /// Duration of a scene, s; the second constant is for `--quick`.
 const SCENE_S: f64 = 10.0;
 const QUICK_SCENE_S: f64 = 6.0;
-const RATE_HZ: f64 = 1000.0;
 
 #[derive(Debug, Args)]
 pub(in crate::command) struct Arguments {
-    /// CSV file with motion and force, as for `nima identify`; may be given several times
-    #[arg(long, value_name = "FILE")]
-    recording: Vec<PathBuf>,
-    /// Other column names in the recordings, with an optional factor: `x=px_mm*0.001`
-    #[arg(long, value_name = "NAME=COLUMN[*SCALE]")]
-    map: Vec<String>,
-    /// Scene, recorded open-loop: built-in name or TOML file; may be given several times (default: all built-in scenes, or none with --recording)
-    #[arg(long, value_name = "SCENE")]
-    scene: Vec<String>,
+    #[command(flatten)]
+    sources: Sources,
     /// One-way delay of the link in ms; may be given several times (default: 10, 50, 100 and 300; with --quick 50)
     #[arg(long, value_name = "D", allow_negative_numbers = true)]
     delay_ms: Vec<f64>,
@@ -53,7 +46,7 @@ impl Asked for Arguments {
     type Experiment = Tradeoff;
 
     fn experiment(&self) -> anyhow::Result<Tradeoff> {
-        let inputs = self.recording.iter().cloned().chain(self.scene.iter().map(PathBuf::from)).collect();
+        let inputs = self.sources.inputs();
         Ok(Tradeoff { plan: plan(self)?, sources: sources(self)?, inputs, leave: Leave::on_signals()? })
     }
 }
@@ -74,11 +67,7 @@ impl Experiment for Tradeoff {
 }
 
 fn plan(arguments: &Arguments) -> anyhow::Result<Plan> {
-    let most_ms = MAX_DELAY_S * 1e3;
-    if let Some(delay_ms) = arguments.delay_ms.iter().find(|delay_ms| !(0.0..=most_ms).contains(*delay_ms)) {
-        bail!("--delay-ms {delay_ms}: the delay must lie between 0 and {most_ms} ms");
-    }
-    let delays_s: Vec<f64> = arguments.delay_ms.iter().map(|ms| ms * 1e-3).collect();
+    let delays_s = delays_s(&arguments.delay_ms)?;
     let usual = Settings::default();
     // The base point uses the default delay if that is among the requested ones.
     let asked = delays_s.iter().copied().find(|delay_s| (delay_s - usual.delay_s).abs() < 1e-9);
@@ -91,21 +80,13 @@ fn plan(arguments: &Arguments) -> anyhow::Result<Plan> {
 }
 
 fn sources(arguments: &Arguments) -> anyhow::Result<Vec<Source>> {
-    let mapping = Mapping::parse(&arguments.map)?;
-    if !arguments.map.is_empty() && arguments.recording.is_empty() {
-        bail!("--map names columns of a recording: give one with --recording");
-    }
-    let unit =
-        if ["fx_n", "fy_n", "fz_n"].into_iter().any(|force| mapping.names(force)) { "recorded unit" } else { "N" };
-    let mut sources = Vec::new();
-    for path in &arguments.recording {
-        sources.push(Source::from_recording(Recording::read(path, &mapping)?, unit));
-    }
-    let all = SCENES.map(str::to_owned);
-    let scenes = if arguments.scene.is_empty() && sources.is_empty() { &all[..] } else { &arguments.scene[..] };
     let seconds = if arguments.quick { QUICK_SCENE_S } else { SCENE_S };
-    for name in scenes {
-        sources.push(Source::from_scene(&Scene::load(name)?, RATE_HZ, seconds));
+    let mut sources = arguments.sources.recordings()?;
+    sources.extend(arguments.sources.scenes(seconds)?);
+    if arguments.sources.is_empty() {
+        for name in SCENES {
+            sources.push(Source::from_scene(&Scene::load(name)?, RATE_HZ, seconds));
+        }
     }
     Ok(sources)
 }

@@ -1,0 +1,68 @@
+//! What a study of the identification runs over: recordings and scenes.
+
+use std::path::PathBuf;
+
+use anyhow::{Context as _, bail};
+use clap::Args;
+use nima_core::impedance::MAX_DELAY_S;
+use nima_recording::csv::{Mapping, Recording};
+use nima_study::tradeoff::Source;
+use nima_world::scene::Scene;
+
+/// Rate of a scene, Hz.
+pub(super) const RATE_HZ: f64 = 1000.0;
+
+#[derive(Debug, Args)]
+pub(super) struct Sources {
+    /// CSV file with motion and force, as for `nima identify`; one or several
+    #[arg(long, value_name = "FILE", num_args = 1..)]
+    recording: Vec<PathBuf>,
+    /// Other column names in the recordings, with an optional factor: `x=px_mm*0.001`
+    #[arg(long, value_name = "NAME=COLUMN[*SCALE]")]
+    map: Vec<String>,
+    /// Scene, recorded open-loop: built-in name or TOML file; may be given several times (default: scenes of this study, or none
+    /// with --recording)
+    #[arg(long, value_name = "SCENE")]
+    scene: Vec<String>,
+}
+
+impl Sources {
+    /// Whether neither a recording nor a scene is given.
+    pub(super) fn is_empty(&self) -> bool {
+        self.recording.is_empty() && self.scene.is_empty()
+    }
+
+    /// Files that are read; results must not overwrite them.
+    pub(super) fn inputs(&self) -> Vec<PathBuf> {
+        self.recording.iter().cloned().chain(self.scene.iter().map(PathBuf::from)).collect()
+    }
+
+    pub(super) fn recordings(&self) -> anyhow::Result<Vec<Source>> {
+        if !self.map.is_empty() && self.recording.is_empty() {
+            bail!("--map names columns of a recording: give one with --recording");
+        }
+        let mapping = Mapping::parse(&self.map)?;
+        let forces = ["fx_n", "fy_n", "fz_n"];
+        let unit = if forces.into_iter().any(|force| mapping.names(force)) { "recorded unit" } else { "N" };
+        let read = |path: &PathBuf| Ok(Source::from_recording(Recording::read(path, &mapping)?, unit));
+        self.recording.iter().map(read).collect()
+    }
+
+    /// The scenes given, each for this long (s).
+    pub(super) fn scenes(&self, seconds: f64) -> anyhow::Result<Vec<Source>> {
+        let load = |name: &String| {
+            let scene = Scene::load(name).with_context(|| format!("--scene {name}"))?;
+            Ok(Source::from_scene(&scene, RATE_HZ, seconds))
+        };
+        self.scene.iter().map(load).collect()
+    }
+}
+
+/// Delays in seconds from `--delay-ms`, all within what the link can do.
+pub(super) fn delays_s(asked_ms: &[f64]) -> anyhow::Result<Vec<f64>> {
+    let most_ms = MAX_DELAY_S * 1e3;
+    if let Some(delay_ms) = asked_ms.iter().find(|delay_ms| !(0.0..=most_ms).contains(*delay_ms)) {
+        bail!("--delay-ms {delay_ms}: the delay must lie between 0 and {most_ms} ms");
+    }
+    Ok(asked_ms.iter().map(|ms| ms * 1e-3).collect())
+}

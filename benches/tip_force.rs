@@ -1,7 +1,7 @@
 //! The tip-force network's size against accuracy and time, on sessions it never saw; and beside what a user would use instead.
 //!
 //! `./dev bench` prints one row per size: errors against the truth of the simulated trocar, answers without contact, time of one
-//! answer, time of training 30000 rows. Below it the same network evaluated by the tensor library that trained it. With `--ratios`
+//! answer, time of training 30000 rows. Below it the same network as products of dynamic matrices. With `--ratios`
 //! only the ratio of the two, which `./dev bench` keeps.
 #![expect(clippy::unwrap_used, reason = "a benchmark fails by panicking")]
 
@@ -9,13 +9,13 @@ mod ratio;
 
 use std::{hint::black_box, time::Instant};
 
-use candle_core::{Device, Tensor};
+use nalgebra::DMatrix;
 use nima_core::tip_force::{FeatureSettings, TrainingSettings};
 use nima_study::validation::isolation::{ROWS, Reached, Sessions};
 
 const SIZES: [&[usize]; 7] = [&[8], &[16], &[32], &[16, 16], &[32, 32], &[64, 64], &[128, 128]];
 
-/// The tensor library's answer as a multiple of ours, which tells its doubt too.
+/// The same arithmetic with a library of matrices as a multiple of ours, which tells its doubt too.
 fn ratios() {
     let sessions = Sessions::record(1, ROWS, FeatureSettings::default()).unwrap();
     let settings = TrainingSettings { epochs: Some(1), ..TrainingSettings::default() };
@@ -24,7 +24,7 @@ fn ratios() {
     let ours = || {
         black_box(estimator.estimate(black_box(&input)));
     };
-    ratio::tell("tip_force_tensors", ours, tensors());
+    ratio::tell("tip_force_matrices", ours, matrices());
 }
 
 fn main() {
@@ -54,26 +54,27 @@ fn main() {
         let free = no_contact.iter().map(|free| free.sd).fold(0.0, f64::max);
         println!("{:>6.0} worst MAE {mae:.3} N, free sd {free:.3} N", 1e3 * smoothing_s);
     }
-    println!("\nfour networks of 36-32-32-3 for one row in the tensor library: {:.1} us median", tensors_us());
+    println!("\nfour networks of 36-32-32-3 for one row as products of matrices: {:.1} us median", matrices_us());
 }
 
-/// The same arithmetic as separate tensor operations.
-fn tensors() -> impl FnMut() {
-    let device = Device::Cpu;
-    let random = |rows: usize, columns: usize| Tensor::randn(0.0_f32, 1.0, (rows, columns), &device).unwrap();
-    let layers: Vec<[Tensor; 3]> = (0..4).map(|_| [random(36, 32), random(32, 32), random(32, 3)]).collect();
-    let input = random(1, 36);
+/// The same arithmetic as products of dynamic matrices.
+fn matrices() -> impl FnMut() {
+    let mut generator = fastrand::Rng::with_seed(1);
+    let mut random = |rows: usize, columns: usize| DMatrix::from_fn(rows, columns, |_, _| 2.0 * generator.f32() - 1.0);
+    let layers: Vec<[DMatrix<f32>; 3]> = (0..4).map(|_| [random(32, 36), random(32, 32), random(3, 32)]).collect();
+    let input = random(36, 1);
+    let bent = |z: f32| z / (1.0 + z * z).sqrt();
     move || {
         for [first, second, last] in &layers {
-            let hidden = input.matmul(first).unwrap().tanh().unwrap().matmul(second).unwrap().tanh().unwrap();
-            black_box(hidden.matmul(last).unwrap());
+            let hidden = (second * (first * &input).map(bent)).map(bent);
+            black_box(last * hidden);
         }
     }
 }
 
 /// Their median time, microseconds.
-fn tensors_us() -> f64 {
-    let mut work = tensors();
+fn matrices_us() -> f64 {
+    let mut work = matrices();
     let mut times: Vec<f64> = (0..2000)
         .map(|_| {
             let start = Instant::now();

@@ -1,4 +1,4 @@
-//! Training of the ensemble (with candle, on the CPU): `AdamW`, mini-batches, decreasing learning rate, early stopping.
+//! Training of the ensemble: `AdamW`, mini-batches, decreasing learning rate, early stopping.
 //!
 //! Early stopping of every member uses held-out data: the folds are whole trajectories or, if there are too few,
 //! contiguous blocks with a gap to the training rows. Each member holds out another fold, so that together they use all
@@ -198,7 +198,7 @@ fn all_members(fit: &Fit<'_>, folds: &Folds) -> Result<Vec<(Member, MemberFigure
                         return;
                     }
                     let (training, validation) = folds.split(member);
-                    let result = fit.member(member, &training, &validation).map_err(|failure| failure.0);
+                    let result = fit.member(member, &training, &validation);
                     if result.is_err() {
                         next.store(count, Ordering::Relaxed);
                     }
@@ -253,8 +253,7 @@ pub fn train_model(
     progress: &(dyn Fn(&Progress) + Sync),
 ) -> Result<Model, TipForceError> {
     let trained = train(data, settings, cancel, progress)?;
-    let absent = || TipForceError::Tensor { reason: "members do not fit together".into() };
-    let mut network = Network::new(trained.members).ok_or_else(absent)?;
+    let mut network = Network::new(trained.members).ok_or(TipForceError::Shapes)?;
     let width = trained.expansion.width();
     let mut x = features_of(data, &trained.expansion);
     x.chunks_mut(width).for_each(|row| trained.features.apply(row));

@@ -1,14 +1,16 @@
 //! Training and evaluation of the network that estimates the force at the tip.
 //!
-//! Takes a data set; returns a [`Model`](nima_core::tip_force::Model) and its errors on held-out rows. This is the only
-//! crate that needs a tensor library. For a background thread; nothing here runs in the loop.
+//! Takes a data set; returns a [`Model`](nima_core::tip_force::Model) and its errors on held-out rows. For a
+//! background thread; nothing here runs in the loop.
 #![warn(missing_docs)]
 
+mod adamw;
 mod check;
 mod ensemble;
 mod evaluation;
 mod fit;
 mod folds;
+mod perceptron;
 #[cfg(test)]
 mod tests;
 

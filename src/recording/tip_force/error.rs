@@ -54,8 +54,8 @@ pub enum TipForceError {
         /// Number of the member, from 1.
         member: usize,
     },
-    #[error("training failed inside the tensor library: {reason}")]
-    Tensor { reason: String },
+    #[error("the trained networks do not fit together; check the numbers of inputs and outputs")]
+    Shapes,
     /// A file is not a model, or its parts are inconsistent.
     #[error("{path} is not a usable tip-force model: {reason}; train it again with `nima train tip-force`")]
     Model {

@@ -14,6 +14,7 @@
 mod cases;
 mod drift;
 mod present;
+mod rendering;
 mod verdict;
 
 use nalgebra::{DMatrix, Vector3};
@@ -24,7 +25,8 @@ use nima_core::{
 use serde::Serialize;
 
 pub use drift::Drift;
-pub use verdict::{Failures, Verdict};
+pub use rendering::{Endurance, Rendering};
+pub use verdict::{Failures, RenderingVerdict, Verdict};
 
 use self::cases::{Case, horizon, warm};
 use super::{
@@ -102,6 +104,8 @@ pub struct Extreme {
     pub identifier_finite: bool,
     /// Every solver and degree.
     pub entries: Vec<Entry>,
+    /// The modes that send parameters only.
+    pub renderings: Vec<Rendering>,
 }
 
 /// Result of this study.
@@ -111,8 +115,10 @@ pub struct Report {
     pub reference_bits: usize,
     /// Comparison with the targets.
     pub verdict: Verdict,
-    /// The long run.
+    /// The long run of the solver.
     pub drift: Drift,
+    /// The long run of the modes that send parameters only.
+    pub endurance: Vec<Endurance>,
     /// Every case.
     pub extremes: Vec<Extreme>,
 }
@@ -127,16 +133,19 @@ pub fn study(options: &Options, mut progress: impl FnMut(usize, usize, &str)) ->
         return Err(StabilityError::Ticks { ticks: options.ticks });
     }
     let cases = cases::all(options.quick);
-    let count = cases.len() + 1;
+    let count = cases.len() + 2;
     let mut extremes = Vec::with_capacity(cases.len());
     for (done, case) in cases.iter().enumerate() {
         progress(done, count, &case.name);
         extremes.push(extreme(case)?);
     }
-    progress(count - 1, count, "long run");
+    progress(count - 2, count, "long run of the solver");
     let drift = drift::run(options.ticks);
+    progress(count - 1, count, "long run of the modes");
+    let endurance = rendering::endurance(options.ticks)?;
     progress(count, count, "done");
-    Ok(Report { reference_bits: PRECISION_BITS, verdict: Verdict::of(&extremes, &drift), drift, extremes })
+    let verdict = Verdict::of(&extremes, &drift, &endurance);
+    Ok(Report { reference_bits: PRECISION_BITS, verdict, drift, endurance, extremes })
 }
 
 /// Rows of a case, and which of them are used in the window.
@@ -244,9 +253,9 @@ fn extreme(case: &Case) -> Result<Extreme, StabilityError> {
             }
         }
     }
-    let identifier_finite = identifier_finite(case)?;
+    let (identifier_finite, renderings) = (identifier_finite(case)?, rendering::extreme(case)?);
     let Case { group, name, rate_hz, window, .. } = case.clone();
-    Ok(Extreme { group, name, rate_hz, window, identifier_finite, entries })
+    Ok(Extreme { group, name, rate_hz, window, identifier_finite, entries, renderings })
 }
 
 /// One window of one problem: its exact solution and its singular values.
@@ -381,6 +390,12 @@ mod tests {
         let report = study(&Options { ticks: 10_000, quick: true }, |_, _, _| {}).unwrap();
         for extreme in &report.extremes {
             assert!(extreme.identifier_finite, "{}", extreme.name);
+            for rendering in &extreme.renderings {
+                // The shortest case is over before the first parcel has come.
+                let too_short = extreme.window as f64 / extreme.rate_hz < 0.05;
+                assert!(rendering.asked > 0 || too_short, "{}: {rendering:?}", extreme.name);
+                assert_eq!(rendering.finite, rendering.asked, "{}: {rendering:?}", extreme.name);
+            }
             for entry in extreme.entries.iter().filter(|entry| entry.solver == Solver::Sliding) {
                 let name = format!("{} N={}: {entry:?}", extreme.name, entry.degree);
                 assert_eq!(entry.finite, entry.asked, "{name}");

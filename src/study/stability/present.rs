@@ -2,7 +2,9 @@
 
 use std::fmt::Write as _;
 
-use super::{Entry, Extreme, ORDINARY_CONDITION, Options, Report, Solver, StabilityError, TARGET, study};
+use super::{
+    Entry, Extreme, ORDINARY_CONDITION, Options, RenderingVerdict, Report, Solver, StabilityError, TARGET, study,
+};
 use crate::{
     Experiment, Findings,
     picture::{Axis, Chart, Series, Style, svg},
@@ -93,6 +95,19 @@ impl Report {
             drift.ticks, drift.ours_early, drift.ours_late, drift.running_sums_early
         )
         .ok();
+        for RenderingVerdict { mode, finite_share, unit_difference, worst_case, long_run_difference, .. } in
+            &verdict.renderings
+        {
+            let long = long_run_difference.map_or_else(|| "too few to tell".into(), |late| format!("{late:.1e}"));
+            writeln!(
+                out,
+                "{:<15} finite {:.1} %, m against mm {unit_difference:.1e} ({worst_case}), {} ticks against the last 500000 alone {long}",
+                mode.name(),
+                finite_share * 100.0,
+                drift.ticks,
+            )
+            .ok();
+        }
         write!(out, "targets {}", if verdict.reached { "reached" } else { "MISSED" }).ok();
         out
     }

@@ -1,13 +1,14 @@
 //! Comparison of the figures with their targets.
 
+use nima_core::impedance::Mode;
 use serde::Serialize;
 
-use super::{Drift, Entry, Extreme, ORDINARY_CONDITION, Solver, TARGET};
+use super::{Drift, Endurance, Entry, Extreme, ORDINARY_CONDITION, Solver, TARGET};
 
 /// The targets, and how often each solver fails.
 #[derive(Clone, Debug, Serialize)]
 pub struct Verdict {
-    /// Whether this project's solver reaches all targets.
+    /// Whether this project's solver and the mode *matched* reach all targets.
     pub reached: bool,
     /// Share of its predictions that are finite.
     pub ours_finite_share: f64,
@@ -23,8 +24,47 @@ pub struct Verdict {
     pub ours_unit_difference: f64,
     /// The pseudo-inverse's worst difference between metres and millimetres.
     pub pseudo_inverse_unit_difference: f64,
+    /// The modes that send parameters only.
+    pub renderings: Vec<RenderingVerdict>,
     /// How often each solver gives no prediction or a wrong one.
     pub failures: Vec<Failures>,
+}
+
+/// One of the modes that send parameters only.
+#[derive(Clone, Debug, Serialize)]
+pub struct RenderingVerdict {
+    /// The mode.
+    pub mode: Mode,
+    /// Whether it reaches the targets.
+    pub reached: bool,
+    /// Share of its forces that are finite, in every case and in the long run.
+    pub finite_share: f64,
+    /// Its worst difference between metres and millimetres, and the case in which that is.
+    pub unit_difference: f64,
+    /// See there.
+    pub worst_case: String,
+    /// Its difference between a long run and a fresh one; `None` if the run was too short to tell.
+    pub long_run_difference: Option<f64>,
+}
+
+impl RenderingVerdict {
+    fn of(extremes: &[Extreme], run: &Endurance) -> Self {
+        let (mut asked, mut finite) = (run.ticks, run.ticks - run.not_finite);
+        let (mut unit_difference, mut worst_case) = (0.0, String::new());
+        for extreme in extremes {
+            for rendering in extreme.renderings.iter().filter(|rendering| rendering.mode == run.mode) {
+                (asked, finite) = (asked + rendering.asked as u64, finite + rendering.finite as u64);
+                if let Some(difference) = rendering.unit_difference.filter(|difference| *difference > unit_difference) {
+                    (unit_difference, worst_case) = (difference, extreme.name.clone());
+                }
+            }
+        }
+        let reached = finite == asked
+            && unit_difference <= TARGET
+            && run.difference.is_none_or(|difference| difference <= TARGET);
+        let finite_share = finite as f64 / asked.max(1) as f64;
+        Self { mode: run.mode, reached, finite_share, unit_difference, worst_case, long_run_difference: run.difference }
+    }
 }
 
 /// Failures of one solver.
@@ -41,7 +81,7 @@ pub struct Failures {
 }
 
 impl Verdict {
-    pub(super) fn of(extremes: &[Extreme], drift: &Drift) -> Self {
+    pub(super) fn of(extremes: &[Extreme], drift: &Drift, endurance: &[Endurance]) -> Self {
         let all = || extremes.iter().flat_map(|extreme| &extreme.entries);
         let ours = || all().filter(|entry| entry.solver == Solver::Sliding);
         let ordinary = || ours().filter(|entry| entry.condition.is_some_and(|c| c < ORDINARY_CONDITION));
@@ -68,13 +108,15 @@ impl Verdict {
             pseudo_inverse_unit_difference: most(
                 &mut all().filter(|e| e.solver == Solver::PseudoInverse).map(|e| e.unit_difference),
             ),
+            renderings: endurance.iter().map(|run| RenderingVerdict::of(extremes, run)).collect(),
             failures: failures.to_vec(),
         };
         verdict.reached = asked == finite
             && verdict.identifier_finite
             && verdict.ours_worst_error <= TARGET
             && verdict.ours_unit_difference <= TARGET
-            && drift.ours_late <= drift.ours_early;
+            && drift.ours_late <= drift.ours_early
+            && verdict.renderings.iter().all(|one| one.reached || one.mode != Mode::Matched);
         verdict
     }
 }

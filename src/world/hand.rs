@@ -14,6 +14,11 @@ const TREMOR_HZ: [f64; 3] = [8.3, 9.7, 11.6];
 
 /// Maximum speed of a handle that is led from the screen, m/s.
 const GUIDE_M_S: f64 = 0.15;
+/// A handle that nobody holds: its mass, kg, what its bearings brake, N s/m (an omega.7's, as the gates assume them), and where its
+/// mechanism ends on each axis, m.
+const HANDLE_KG: f64 = 0.25;
+const HANDLE_N_S_M: f64 = 0.5;
+const HANDLE_STOP_M: f64 = 0.08;
 /// Distance from the task's path at which a released hand resumes the task, m.
 const CAUGHT_UP_M: f64 = 5e-4;
 
@@ -55,6 +60,8 @@ pub struct Hand {
     waits_m: Option<Vector3<f64>>,
     /// Intended position while the hand is led, and on its way back to the task.
     led_m: Option<Vector3<f64>>,
+    /// It has let go of the handle, which now moves alone.
+    open: bool,
 }
 
 impl Hand {
@@ -76,7 +83,16 @@ impl Hand {
             guide_m: None,
             waits_m: None,
             led_m: None,
+            open: false,
         }
+    }
+
+    /// Opens the hand (true), or closes it around the handle where that is now (false); then it goes on with its task.
+    pub fn let_go(&mut self, lets_go: bool) {
+        if self.open && !lets_go {
+            (self.led_m, self.velocity_m_s) = (Some(self.position_m), Vector3::zeros());
+        }
+        self.open = lets_go;
     }
 
     /// Leads the hand to this position instead of its task; `None` resumes the task. The intended position is
@@ -126,6 +142,9 @@ impl Hand {
     /// Advances by `dt_s` with this force (N) of the handle on the hand.
     pub fn advance(&mut self, dt_s: f64, force_n: &Vector3<f64>) {
         self.time_s += dt_s;
+        if self.open {
+            return self.fly(dt_s, force_n);
+        }
         if self.aside_m().is_none() {
             self.in_move_s += dt_s;
         }
@@ -140,6 +159,18 @@ impl Hand {
         // Semi-implicit Euler: stable for these stiffnesses at 1 ms.
         self.velocity_m_s += (grip_n + force_n) * (dt_s / mass_kg);
         self.position_m += self.velocity_m_s * dt_s;
+    }
+
+    /// The handle alone, up to the end of its mechanism.
+    fn fly(&mut self, dt_s: f64, force_n: &Vector3<f64>) {
+        self.velocity_m_s += (force_n - self.velocity_m_s * HANDLE_N_S_M) * (dt_s / HANDLE_KG);
+        let free_m = self.position_m + self.velocity_m_s * dt_s;
+        self.position_m = free_m.map(|x| x.clamp(-HANDLE_STOP_M, HANDLE_STOP_M));
+        self.velocity_m_s.zip_apply(&(self.position_m - free_m), |speed, beyond| {
+            if beyond != 0.0 {
+                *speed = 0.0;
+            }
+        });
     }
 
     fn tremor_m(&self) -> Vector3<f64> {

@@ -131,6 +131,7 @@ impl World {
             _ => self.tip_m,
         };
         self.hand.guide(outputs.guide_m);
+        self.hand.let_go(outputs.lets_go);
         self.prompt = if outputs.prompt.is_finite() { outputs.prompt } else { Prompt::Rest };
     }
 

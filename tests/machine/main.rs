@@ -3,6 +3,7 @@
 
 mod bimanual;
 mod davinci;
+mod letting_go;
 mod simulated_calibration;
 mod simulated_experiments;
 mod tip_force_loop;

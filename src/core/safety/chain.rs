@@ -5,8 +5,8 @@
 use nalgebra::SVector;
 
 use super::{
-    Age, Ceiling, ChainSettings, DeadBand, Energy, EnergyMode, Gain, Gate, GateCounts, GateReport, Governor, Reason,
-    Slew, admitted, settings::DEAD_BAND_MAX_M_S,
+    Age, Ceiling, ChainSettings, DeadBand, Energy, EnergyMode, Gain, Gate, GateCounts, GateReport, Governor, Handle,
+    Reason, Slew, admitted, settings::DEAD_BAND_MAX_M_S,
 };
 
 /// One force asking to reach the hand. [`Request::default`] is one that is not permitted.
@@ -43,6 +43,7 @@ pub struct Chain<const D: usize = 3> {
     energy: Energy<D>,
     ceiling: Ceiling,
     governor: Governor<D>,
+    handle: Handle,
     /// The force that reached the hand last, N. The slew limit's own last force is the one before the governor.
     applied_n: SVector<f64, D>,
     counts: GateCounts,
@@ -69,6 +70,7 @@ impl<const D: usize> Chain<D> {
             energy: Energy::new(settings.energy, period_s),
             ceiling: Ceiling::new(settings.ceiling_n, settings.device_limit_n),
             governor: Governor::new(settings.handle(), period_s),
+            handle: settings.handle(),
             applied_n: SVector::zeros(),
             counts: GateCounts::default(),
         }
@@ -113,6 +115,13 @@ impl<const D: usize> Chain<D> {
     /// Keeps the force at standstill (true) or fades it in the dead band (false).
     pub const fn set_static_hold(&mut self, hold: bool) {
         self.settings.static_hold = hold;
+    }
+
+    /// Leaves the governor out (false) or lets it watch again (true). For simulated handles only.
+    pub fn set_governor(&mut self, on: bool) {
+        let handle = if on { self.handle } else { Handle { mass_kg: 0.0, ..self.handle } };
+        self.settings.handle_kg = handle.mass_kg;
+        self.governor = Governor::new(handle, self.period_s);
     }
 
     /// Forgets the last force, so that the next one starts from zero, and the hand's motion; the hand is taken to be there.

@@ -43,6 +43,10 @@ pub enum Command {
     /// Lead the handle from the screen to this position, m (workspace), at most [`crate::teleop::GUIDE_MAX_M`] from the
     /// middle on each axis; `None` ends this. A stop and a fault end it too.
     Guide(Option<Vector3<f64>>),
+    /// The simulated hand lets go of its handle (true) or takes it again (false). On a simulated rig only.
+    LetGo(bool),
+    /// Leave the governor out (false) or let it watch again (true). On a simulated rig only, where nobody holds the handle.
+    SetGovernor(bool),
     /// Distance of the tip per distance of the hand, within [`nima_core::kinematics::SCALES`].
     SetScale(f64),
     /// Start force feedback and motion of every arm pair that is idle. Refused while the force at the tip is not known.
@@ -60,11 +64,11 @@ pub enum Command {
 }
 
 impl Command {
-    /// Whether the pair of this side carries it out. Leading from the screen is for the right hand.
+    /// Whether the pair of this side carries it out. Leading from the screen and letting go are for the right hand.
     pub fn concerns(self, side: Side) -> bool {
         match self {
             Self::EngageOne(of) | Self::Prompt(of, _) => of == side,
-            Self::Guide(_) => side == Side::Right,
+            Self::Guide(_) | Self::LetGo(_) | Self::SetGovernor(_) => side == Side::Right,
             _ => true,
         }
     }

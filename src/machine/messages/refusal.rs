@@ -31,6 +31,8 @@ pub enum Refusal {
     ClutchPressed,
     /// The value is outside its range.
     OutOfRange,
+    /// A person may hold the handle: this is for simulated rigs.
+    SimulatedOnly,
     /// The rig has no arm on this side.
     NoSuchArm,
 }

@@ -127,6 +127,8 @@ pub struct Outputs {
     pub prompt: Prompt,
     /// Position to which the person at the screen leads the handle with mouse or keyboard, m; `None` if nobody does.
     pub guide_m: Option<Vector3<f64>>,
+    /// The simulated hand has let go of the handle.
+    pub lets_go: bool,
 }
 
 impl Outputs {
@@ -139,6 +141,7 @@ impl Outputs {
         gripper_n: 0.0,
         prompt: Prompt::Rest,
         guide_m: None,
+        lets_go: false,
     };
 }
 

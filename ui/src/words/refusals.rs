@@ -18,6 +18,7 @@ pub(crate) fn refused_because(why: Refusal) -> String {
         Refusal::HandAbsent => "nobody holds the handle".to_owned(),
         Refusal::ClutchPressed => "the clutch is pressed".to_owned(),
         Refusal::OutOfRange => "the value is outside its range".to_owned(),
+        Refusal::SimulatedOnly => "a person may hold the handle of this rig".to_owned(),
         Refusal::NoSuchArm => "this rig has no arm on that side".to_owned(),
     }
 }
@@ -39,6 +40,7 @@ pub(crate) const fn cure_of_refusal(why: Refusal) -> &'static str {
         Refusal::HandAbsent => "hold the handle, then engage again",
         Refusal::ClutchPressed => "release the clutch, then engage again",
         Refusal::OutOfRange => "choose a value within the range",
+        Refusal::SimulatedOnly => "choose a simulated rig",
         Refusal::NoSuchArm => "choose another arm",
     }
 }

@@ -3,7 +3,7 @@
 use egui::{Key, accesskit};
 use egui_kittest::kittest::Queryable as _;
 use nima_console::console::{roles::Role, settings::Kept};
-use nima_core::impedance::Mode;
+use nima_core::{impedance::Mode, safety::ChainSettings};
 use nima_machine::messages::LoopState;
 
 use crate::bench::{console_of, press, until};
@@ -80,6 +80,34 @@ fn the_demonstration_goes_on_by_itself_and_stands_while_the_loop_is_stopped() {
     until(&mut harness, "engaged again", |tick| tick.state == LoopState::Engaged);
     harness.run_steps(430);
     until(&mut harness, "the second chapter", |tick| tick.mode == Mode::Dfr);
+}
+
+#[test]
+fn the_demonstration_lets_go_with_and_without_the_governor_and_leaves_everything_as_it_was() {
+    let mut harness = console_of("peg_transfer", SIZE, |app| app);
+    until(&mut harness, "engaged", |tick| tick.state == LoopState::Engaged);
+    let before = harness.state().tick().unwrap().gate_settings;
+    press(&mut harness, "Demo");
+    press(&mut harness, "7. Letting go");
+    until(&mut harness, "without a governor", |tick| tick.gate_settings.handle_kg == 0.0);
+    press(&mut harness, "Hold");
+    until(&mut harness, "the handle flies to where its mechanism ends", |tick| tick.leader_m.z > 0.07);
+    harness.get_by_label_contains("The handle moved");
+    assert_eq!(harness.state().tick().unwrap().state, LoopState::Engaged, "nothing ends it");
+    press(&mut harness, "8. The governor");
+    until(&mut harness, "with the governor", |tick| tick.gate_settings == before_with_hold(before));
+    until(&mut harness, "nobody holds the handle", |tick| tick.state == LoopState::Idle);
+    let went = harness.get_by_label_contains("The handle moved").value().unwrap_or_default();
+    assert!(went.contains("moved 0.") || went.contains("moved 1."), "{went}");
+    until(&mut harness, "engaged again", |tick| tick.state == LoopState::Engaged);
+    harness.key_press(Key::F2);
+    harness.step();
+    until(&mut harness, "as before", |tick| tick.gate_settings == before && tick.mode == Mode::Anchored);
+}
+
+/// A force that fades at standstill would leave nothing to let go.
+fn before_with_hold(before: ChainSettings) -> ChainSettings {
+    ChainSettings { static_hold: true, ..before }
 }
 
 #[test]

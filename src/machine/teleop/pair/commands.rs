@@ -53,6 +53,9 @@ impl<L: Link> Pair<L> {
             {
                 self.guide_m = guide_m;
             }
+            Command::LetGo(_) | Command::SetGovernor(_) if !self.simulated => return Err(Refusal::SimulatedOnly),
+            Command::LetGo(lets_go) => self.lets_go = lets_go,
+            Command::SetGovernor(on) => self.chain.set_governor(on),
             Command::Prompt(_, prompt) if prompt.is_finite() => return Err(Refusal::State(self.state())),
             Command::Guide(_) if self.state().is_latched() => return Err(Refusal::State(self.state())),
             Command::Engage | Command::EngageOne(_) => {
@@ -133,7 +136,7 @@ impl<L: Link> Pair<L> {
             self.prompt = Prompt::Rest;
         }
         if to.is_latched() {
-            self.guide_m = None;
+            (self.guide_m, self.lets_go) = (None, false);
         }
         if let (LoopState::Engaged, Some(seen)) = (to, self.last_inputs) {
             // Only here: if the endoscope turns while engaged, the mapping must not turn the motion under the

@@ -30,6 +30,12 @@ pub(in crate::console) const DEMO_ANCHORED_CAPTION: &str = "Our method: the last
 pub(in crate::console) const DEMO_MATCHED: &str = "Matched";
 pub(in crate::console) const DEMO_MATCHED_CAPTION: &str = "Same delay, and no force crosses the link at all. Only the tissue's \
     parameters do; the blue arrow is made from the hand's own motion, so a late force cannot kick.";
+pub(in crate::console) const DEMO_LET_GO: &str = "Letting go";
+pub(in crate::console) const DEMO_LET_GO_CAPTION: &str = "Direct reflection at 300 ms, and the governor is left out. The hand lets go while it presses: the late \
+    force now pushes a handle that nobody holds, and kicks it away.";
+pub(in crate::console) const DEMO_GOVERNOR: &str = "The governor";
+pub(in crate::console) const DEMO_GOVERNOR_CAPTION: &str = "The same with the last gate, the governor: it notices that no hand carries the force, brakes the handle \
+    instead, and ends the feedback. The demonstration engages again when the hand is back.";
 pub(in crate::console) const DEMO_YOUR_TURN: &str = "Your turn";
 pub(in crate::console) const DEMO_YOUR_TURN_CAPTION: &str = "Press M, or the button in the view, and move the instrument yourself: drag with the mouse, wheel for \
     the height, arrow keys for small steps. Press into the tissue and watch the arrows. With the rig \
@@ -48,6 +54,15 @@ pub(in crate::console) const MEASURED: &str = "measured at the instrument";
 pub(in crate::console) const RENDERED: &str = "rendered to the hand";
 pub(in crate::console) const BARS_HOVER: &str = "Size of the force measured at the instrument and of the force rendered to the hand (N). The mark is \
     the force ceiling, the largest force that can reach the hand.";
+
+/// How far the handle went since it was let go, mm.
+pub(in crate::console) fn handle_went(travel_mm: f64) -> String {
+    if travel_mm < 10.0 {
+        format!("The handle moved {travel_mm:.1} mm.")
+    } else {
+        format!("The handle moved {travel_mm:.0} mm.")
+    }
+}
 
 /// Hover text of a view, with its key.
 pub(in crate::console) fn meaning_and_key(meaning: &str, key: &str) -> String {

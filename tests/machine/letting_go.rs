@@ -1,0 +1,71 @@
+//! A simulated hand that lets go on command, as the demonstration shows it.
+use nalgebra::Vector3;
+use nima_core::impedance::Mode;
+use nima_machine::{
+    config::RigConfig,
+    messages::{Command, LoopState, Refusal, Tick},
+    rig::Side,
+    teleop::{Calibrations, Pair},
+};
+use nima_world::{Plan, run_virtual, scene::Scene};
+
+/// Direct reflection at 300 ms, let go while pressing; the farthest place of the handle while engaged (m), and the states that
+/// followed. The hand takes the handle again after 2.5 s, and the loop is asked to engage.
+fn let_go(governor: bool) -> (f64, Vec<LoopState>) {
+    let mut rig = RigConfig::load("simulated").unwrap();
+    (rig.mode, rig.delay_s, rig.gates.static_hold) = (Mode::Dfr, 0.3, true);
+    let plan =
+        Plan { rig, scene: Scene::load("peg_transfer").unwrap(), calibrations: Default::default(), engage: true };
+    let (mut opened, mut far_m, mut states) = (None::<(f64, Vector3<f64>)>, 0.0_f64, Vec::new());
+    let mut asked = false;
+    run_virtual(&plan, 20.0, |tick: &Tick| {
+        if !asked {
+            asked = true;
+            return Some(Command::SetGovernor(governor));
+        }
+        let Some((at_s, from_m)) = opened else {
+            if tick.t_s > 3.0 && tick.rendered_n.z > 1.5 {
+                opened = Some((tick.t_s, tick.leader_m));
+                return Some(Command::LetGo(true));
+            }
+            return None;
+        };
+        if states.last() != Some(&tick.state) {
+            states.push(tick.state);
+        }
+        let since_s = tick.t_s - at_s;
+        if tick.state == LoopState::Engaged && since_s < 2.5 {
+            far_m = far_m.max((tick.leader_m - from_m).norm());
+        }
+        let now = |after_s: f64| (since_s - after_s).abs() < 0.5e-3;
+        if now(2.5) { Some(Command::LetGo(false)) } else { now(2.6).then_some(Command::Engage) }
+    })
+    .unwrap();
+    assert!(opened.is_some(), "the hand presses");
+    (far_m, states)
+}
+
+#[test]
+fn reflection_kicks_the_handle_away_and_the_governor_holds_it() {
+    let (kicked_m, states) = let_go(false);
+    println!("without the governor {:.1} mm, {states:?}", 1e3 * kicked_m);
+    assert!(kicked_m > 0.05, "{kicked_m} m");
+    assert_eq!(states, [LoopState::Engaged], "nothing else ends it");
+    let (held_m, states) = let_go(true);
+    println!("with the governor {:.2} mm, {states:?}", 1e3 * held_m);
+    assert!(held_m < 0.005, "{held_m} m");
+    assert_eq!(states.first(), Some(&LoopState::Engaged));
+    assert!(states.contains(&LoopState::Idle), "nobody holds the handle: {states:?}");
+    assert_eq!(states.last(), Some(&LoopState::Engaged), "engaged again by a command, with the hand back: {states:?}");
+}
+
+#[test]
+fn where_a_person_may_hold_the_handle_neither_is_obeyed() {
+    for name in ["emulated", "paper"] {
+        let rig = RigConfig::load(name).unwrap();
+        let mut pair = Pair::new(&rig, Side::Right, &Calibrations::default()).unwrap();
+        for command in [Command::LetGo(true), Command::SetGovernor(false), Command::SetGovernor(true)] {
+            assert_eq!(pair.obey(command, 0.0), Err(Refusal::SimulatedOnly), "{name}: {command:?}");
+        }
+    }
+}

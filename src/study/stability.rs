@@ -15,11 +15,13 @@ mod cases;
 mod drift;
 mod present;
 mod rendering;
+#[cfg(test)]
+mod tests;
 mod verdict;
 
-use nalgebra::{DMatrix, Vector3};
+use nalgebra::DMatrix;
 use nima_core::{
-    impedance::{Identifier, MAX_DEGREE, Mode, Sample, Scales, Settings, SettingsError},
+    impedance::{Identifier, MAX_DEGREE, Mode, Scales, Settings, SettingsError},
     signal::{Differentiator, Lanes, Motion},
 };
 use serde::Serialize;
@@ -372,47 +374,10 @@ fn identifier_finite(case: &Case) -> Result<bool, StabilityError> {
     let mut identifier = Identifier::new(&settings)?;
     let mut finite = true;
     for raw in &case.samples {
-        let [position_m, force_n] = [raw.position_m, raw.force_n].map(|value| Vector3::new(value, 0.0, 0.0));
-        identifier.step(&Sample { t_s: raw.t_s, position_m, force_n });
+        identifier.step(&rendering::sample(raw.t_s, raw.position_m, raw.force_n));
         let report = identifier.report();
         finite &= Mode::ALL.iter().filter_map(|mode| report.prediction(*mode)).all(|force| force.x.is_finite());
         finite &= report.condition.is_finite();
     }
     Ok(finite)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn ours_holds_at_the_extremes() {
-        let report = study(&Options { ticks: 10_000, quick: true }, |_, _, _| {}).unwrap();
-        for extreme in &report.extremes {
-            assert!(extreme.identifier_finite, "{}", extreme.name);
-            for rendering in &extreme.renderings {
-                // The shortest case is over before the first parcel has come.
-                let too_short = extreme.window as f64 / extreme.rate_hz < 0.05;
-                assert!(rendering.asked > 0 || too_short, "{}: {rendering:?}", extreme.name);
-                assert_eq!(rendering.finite, rendering.asked, "{}: {rendering:?}", extreme.name);
-            }
-            for entry in extreme.entries.iter().filter(|entry| entry.solver == Solver::Sliding) {
-                let name = format!("{} N={}: {entry:?}", extreme.name, entry.degree);
-                assert_eq!(entry.finite, entry.asked, "{name}");
-                if entry.condition.unwrap() < ORDINARY_CONDITION {
-                    assert!(entry.error.unwrap() <= TARGET, "{name}");
-                    assert!(entry.unit_difference.unwrap() <= TARGET, "{name}");
-                }
-            }
-        }
-        assert!(report.verdict.reached, "{:?} {:?}", report.verdict, report.drift);
-        let literal = &report.verdict.failures[0];
-        assert!(literal.not_finite + literal.wrong > literal.tried / 3, "{literal:?}");
-    }
-
-    #[test]
-    fn too_few_ticks_are_refused() {
-        let error = study(&Options { ticks: 9, quick: true }, |_, _, _| {}).unwrap_err();
-        assert_eq!(error.to_string(), "9 ticks were asked for; it must be 10000 to 1000000000");
-    }
 }

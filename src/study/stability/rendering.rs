@@ -51,7 +51,8 @@ fn settings(unit: f64, mode: Mode) -> Settings {
     Settings { delay_s: DELAY_S, axes: 1, scales: scales(unit), modes: ModeSet::only(mode), ..Settings::default() }
 }
 
-fn sample(t_s: f64, position_m: f64, force_n: f64) -> Sample {
+/// A sample of one axis.
+pub(super) fn sample(t_s: f64, position_m: f64, force_n: f64) -> Sample {
     let [position_m, force_n] = [position_m, force_n].map(|value| Vector3::new(value, 0.0, 0.0));
     Sample { t_s, position_m, force_n }
 }

@@ -1,0 +1,32 @@
+use super::*;
+
+#[test]
+fn ours_holds_at_the_extremes() {
+    let report = study(&Options { ticks: 10_000, quick: true }, |_, _, _| {}).unwrap();
+    for extreme in &report.extremes {
+        assert!(extreme.identifier_finite, "{}", extreme.name);
+        for rendering in &extreme.renderings {
+            // The shortest case is over before the first parcel has come.
+            let too_short = extreme.window as f64 / extreme.rate_hz < 0.05;
+            assert!(rendering.asked > 0 || too_short, "{}: {rendering:?}", extreme.name);
+            assert_eq!(rendering.finite, rendering.asked, "{}: {rendering:?}", extreme.name);
+        }
+        for entry in extreme.entries.iter().filter(|entry| entry.solver == Solver::Sliding) {
+            let name = format!("{} N={}: {entry:?}", extreme.name, entry.degree);
+            assert_eq!(entry.finite, entry.asked, "{name}");
+            if entry.condition.unwrap() < ORDINARY_CONDITION {
+                assert!(entry.error.unwrap() <= TARGET, "{name}");
+                assert!(entry.unit_difference.unwrap() <= TARGET, "{name}");
+            }
+        }
+    }
+    assert!(report.verdict.reached, "{:?} {:?}", report.verdict, report.drift);
+    let literal = &report.verdict.failures[0];
+    assert!(literal.not_finite + literal.wrong > literal.tried / 3, "{literal:?}");
+}
+
+#[test]
+fn too_few_ticks_are_refused() {
+    let error = study(&Options { ticks: 9, quick: true }, |_, _, _| {}).unwrap_err();
+    assert_eq!(error.to_string(), "9 ticks were asked for; it must be 10000 to 1000000000");
+}

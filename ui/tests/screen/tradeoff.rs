@@ -189,7 +189,7 @@ fn a_measured_point_is_applied_and_a_restart_comes_back_idle() {
     press(&mut harness, "Apply");
     assert_eq!(harness.state().rig().identification.max_degree, degree);
     until(&mut harness, "idle", |app| app.tick().is_some_and(|tick| tick.state == LoopState::Idle));
-    assert_eq!(harness.state().tick().unwrap().mode, nima_core::impedance::Mode::Best);
+    assert_eq!(harness.state().tick().unwrap().mode, nima_core::impedance::Mode::Anchored);
     harness.get_by_label_contains("is idle: press Engage");
     let waiting = |harness: &Harness<'_, ConsoleApp>| {
         harness.get_by_role_and_label(Role::Button, "Engage").accesskit_node().is_disabled()

@@ -158,6 +158,7 @@ fn table(window: usize) -> f64 {
         ("identifier step, anchored", ModeSet::only(Mode::Anchored)),
         ("identifier step, literal and linear", ModeSet::only(Mode::Literal).with(Mode::Linear)),
         ("identifier step, matched", ModeSet::only(Mode::Matched)),
+        ("identifier step, best (what runs by default)", ModeSet::only(Mode::Best)),
         ("identifier step, the paper's columns repaired", ModeSet::only(Mode::Nima)),
         ("identifier step, anchored, literal and linear", BEFORE),
         ("identifier step, all modes", ModeSet::ALL),

@@ -371,11 +371,11 @@ mod tests {
         assert_eq!(rig.settings().modes.baseline(), None);
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("rig.toml");
-        std::fs::write(&path, RIGS[0].1.replace("mode = \"anchored\"", "mode = \"kalman\"")).unwrap();
+        std::fs::write(&path, RIGS[0].1.replace("mode = \"best\"", "mode = \"kalman\"")).unwrap();
         let rig = RigConfig::load(path.to_str().unwrap()).unwrap();
         assert_eq!(rig.mode, Mode::Baseline(Baseline::Kalman));
         assert_eq!(rig.settings().modes.baseline(), Some(Baseline::Kalman));
-        std::fs::write(&path, RIGS[0].1.replace("mode = \"anchored\"", "mode = \"smith\"")).unwrap();
+        std::fs::write(&path, RIGS[0].1.replace("mode = \"best\"", "mode = \"smith\"")).unwrap();
         let message = RigConfig::load(path.to_str().unwrap()).unwrap_err().to_string();
         assert!(message.contains("smith") && message.contains("line "), "{message}");
     }

@@ -181,6 +181,11 @@ impl Pair {
         self.gripped = false;
     }
 
+    /// Puts another tissue in place of the one so far; the tip must be outside of both.
+    pub(super) fn exchange_tissue(&mut self, tissue: TissueConfig) {
+        self.tissue = Tissue::new(tissue);
+    }
+
     /// One tick; the hand's intended position (m) is given.
     pub(super) fn step(&mut self, intended_m: &Vector3<f64>) {
         self.tick += 1;

@@ -56,24 +56,33 @@ impl Task {
     /// All tasks.
     pub const ALL: [Self; 4] = [Self::PalpationSlow, Self::PalpationFast, Self::PegTransfer, Self::Withdrawal];
 
+    /// Time from one touch to the next, s; the tip is outside of the tissue at its beginning.
+    const fn period_s(self) -> f64 {
+        match self {
+            Self::PalpationSlow => 1.0,
+            Self::PalpationFast => 1.0 / 3.0,
+            Self::PegTransfer => 2.15,
+            Self::Withdrawal => 2.0,
+        }
+    }
+
     /// Where the hand wants to be (m) at this time (s).
     fn intended_m(self, t_s: f64) -> Vector3<f64> {
         let span_m = ABOVE_M + DEPTH_M;
         let way = |t_s: f64, from_s: f64, for_s: f64| smooth((t_s - from_s) / for_s);
         match self {
             Self::PalpationSlow | Self::PalpationFast => {
-                let hz = if self == Self::PalpationSlow { 1.0 } else { 3.0 };
-                Vector3::new(0.0, 0.0, ABOVE_M - span_m * 0.5 * (1.0 - (TAU * hz * t_s).cos()))
+                Vector3::new(0.0, 0.0, ABOVE_M - span_m * 0.5 * (1.0 - (TAU * t_s / self.period_s()).cos()))
             }
             Self::PegTransfer => {
-                let (count, t_s) = ((t_s / 2.15).floor(), t_s.rem_euclid(2.15));
+                let (count, t_s) = ((t_s / self.period_s()).floor(), t_s.rem_euclid(self.period_s()));
                 let deep = way(t_s, 0.9, 0.45) - way(t_s, 1.7, 0.45);
                 let side_m = if count.rem_euclid(2.0) < 1.0 { 0.03 } else { -0.03 };
                 let across_m = side_m * (2.0 * way(t_s, 0.0, 0.9) - 1.0) + 0.004 * way(t_s, 0.9, 0.45);
                 Vector3::new(across_m, 0.0, ABOVE_M - span_m * deep)
             }
             Self::Withdrawal => {
-                let t_s = t_s.rem_euclid(2.0);
+                let t_s = t_s.rem_euclid(self.period_s());
                 Vector3::new(0.0, 0.0, ABOVE_M - span_m * (way(t_s, 0.2, 0.6) - linear((t_s - 1.4) * 0.2 / span_m)))
             }
         }
@@ -192,10 +201,29 @@ fn trial((mode, own_motion): (Mode, OwnMotion), delay_ms: f64, grip: Grip, tissu
 /// # Errors
 /// [`SettingsError`] if the loop's settings are invalid.
 pub fn tasked(way: (Mode, OwnMotion), task: Task, delay_ms: f64, tissue: Tissue) -> Result<Row, SettingsError> {
-    let mut pair = Pair::new(&trial(way, delay_ms, Grip::FIRM, tissue, TREMOR_M), task.intended_m(0.0))?;
+    tasked_over(way, task, delay_ms, |_| tissue)
+}
+
+/// One task over a tissue that may be another one at every touch.
+///
+/// # Errors
+/// [`SettingsError`] if the loop's settings are invalid.
+pub fn tasked_over(
+    way: (Mode, OwnMotion),
+    task: Task,
+    delay_ms: f64,
+    tissue: impl Fn(u32) -> Tissue,
+) -> Result<Row, SettingsError> {
+    let mut pair = Pair::new(&trial(way, delay_ms, Grip::FIRM, tissue(0), TREMOR_M), task.intended_m(0.0))?;
+    let mut touch = 0;
     let (mut energy_j, mut error_n, mut count) = (0.0, 0.0, 0_u32);
     for tick in 0..(TASK_S * RATE_HZ) as u32 {
         let t_s = f64::from(tick) / RATE_HZ;
+        let now = (t_s / task.period_s()) as u32;
+        if now != touch {
+            touch = now;
+            pair.exchange_tissue(tissue(touch));
+        }
         let (force_n, at_m) = (pair.force_n(), pair.handle_m());
         pair.step(&task.intended_m(t_s));
         if t_s >= FROM_S {
@@ -253,6 +281,50 @@ mod tests {
             }
             let reflected = tasked((Mode::Dfr, OwnMotion::Follower), task, 100.0, tissue()).unwrap();
             assert!(reflected.power_mw > 12.0, "{reflected:?}");
+        }
+    }
+
+    /// What the best of two modes is worth must not depend on the tissue, the hand or the delay.
+    #[test]
+    fn the_best_of_two_is_never_much_worse_than_anchored() {
+        let plain = tissue();
+        let tissues = [
+            plain,
+            Tissue { stiffness: plain.stiffness / 3.0, ..plain },
+            Tissue { stiffness: plain.stiffness * 3.0, ..plain },
+            Tissue { friction: 0.0, shear_stiffness_n_m: 0.0, ..plain },
+        ];
+        let mut worst = (0.0, String::new());
+        for tissue in tissues {
+            for task in Task::ALL {
+                for delay_ms in [10.0, 50.0, 100.0, 300.0] {
+                    let error_n = |mode| tasked((mode, OwnMotion::Follower), task, delay_ms, tissue).unwrap().error_n;
+                    let ratio = error_n(Mode::Best) / error_n(Mode::Anchored);
+                    if ratio > worst.0 {
+                        worst = (ratio, format!("{task:?} at {delay_ms} ms, {tissue:?}"));
+                    }
+                }
+            }
+        }
+        println!("{worst:?}");
+        assert!(worst.0 <= 1.02, "{worst:?}");
+    }
+
+    /// Stiffness 0.5 to 2 times the usual, surface 2 mm up or down, another one at every touch.
+    #[test]
+    fn over_tissue_that_changes_at_every_touch_the_best_of_two_is_better_than_reflection() {
+        let plain = tissue();
+        let other = |touch: u32| {
+            let share = |step: f64| (f64::from(touch) * step + 0.3).fract() * 2.0 - 1.0;
+            let surface_z_m = plain.surface_z_m + 0.002 * share(0.618_034);
+            Tissue { surface_z_m, stiffness: plain.stiffness * share(0.754_878).exp2(), ..plain }
+        };
+        for (task, limit) in [(Task::PegTransfer, 0.6), (Task::Withdrawal, 0.6)] {
+            let error_n = |mode| tasked_over((mode, OwnMotion::Follower), task, 300.0, other).unwrap().error_n;
+            let [dfr_n, anchored_n, matched_n, best_n] =
+                [Mode::Dfr, Mode::Anchored, Mode::Matched, Mode::Best].map(error_n);
+            println!("{task:?}: dfr {dfr_n:.3}, anchored {anchored_n:.3}, matched {matched_n:.3}, best {best_n:.3} N");
+            assert!(best_n <= limit * dfr_n, "{task:?}: {best_n} N of {dfr_n} N");
         }
     }
 

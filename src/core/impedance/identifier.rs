@@ -3,12 +3,12 @@
 use nalgebra::Vector3;
 
 use super::{
-    Mode, SLOTS, anchored, baselines,
+    Mode, SLOTS,
+    anchored::Anchored,
+    baselines,
     best::Best,
-    factor::{Factor, MAX_ROW},
+    degrees::Degrees,
     features::Features,
-    horizon::Horizon,
-    information::{excitation, rank},
     literal::LiteralSolver,
     matched::{Form, Matched},
     messages::{Parcel, Posture, Report, Sample, active},
@@ -16,7 +16,6 @@ use super::{
     settings::{MAX_DELAY_S, ModeSet, Settings, SettingsError},
     solution::Solution,
     track::{Track, usable_force, usable_position},
-    window::SlidingWindow,
 };
 use crate::signal::{DelayLine, Lanes, settled};
 
@@ -68,6 +67,8 @@ pub struct Identifier {
     /// The paper's linear model alone, where that is all that is computed.
     linear: Option<Box<Paper>>,
     anchored: Option<Box<Anchored>>,
+    /// The degrees of the window's impedance, where anchored is compared with the paper.
+    degrees: Option<Box<Degrees>>,
     matched: Option<Box<Matched>>,
     nima: Option<Box<Matched>>,
     best: Option<Best>,
@@ -76,15 +77,6 @@ pub struct Identifier {
     forget: f64,
     parcel: Parcel,
     report: Report,
-}
-
-#[derive(Clone, Debug)]
-struct Anchored {
-    window: SlidingWindow<Factor>,
-    ridge: f64,
-    solution: Solution,
-    horizon: Horizon,
-    correction: anchored::Anchored,
 }
 
 /// Both ends of a baseline: what it sends, and what a leader that makes the follower's own motion would render.
@@ -102,20 +94,8 @@ impl Identifier {
     pub fn new(settings: &Settings) -> Result<Self, SettingsError> {
         settings.validate()?;
         let delay_ticks = settings.delay_ticks(settings.delay_s);
-        let block = settings.block();
         let paper =
             |mode: Mode, degree: usize| settings.modes.contains(mode).then(|| Box::new(Paper::new(degree, settings)));
-        let anchored = settings.modes.contains(Mode::Anchored).then(|| {
-            let columns = 1 + 3 * settings.max_degree;
-            let ridge = settings.ridge * 2.0 * block as f64;
-            Box::new(Anchored {
-                window: SlidingWindow::new(block, Factor::new(columns), Factor::with_ridge(columns, ridge)),
-                ridge,
-                solution: Solution::new(columns),
-                horizon: Horizon::new(settings, ridge, delay_ticks),
-                correction: anchored::Anchored::new(settings, delay_ticks),
-            })
-        });
         let matched = |mode: Mode, form: Form| {
             settings.modes.contains(mode).then(|| Box::new(Matched::new(form, settings, delay_ticks)))
         };
@@ -130,10 +110,11 @@ impl Identifier {
             idle_ticks: 0,
             paper: paper(Mode::Literal, settings.max_degree),
             linear: paper(Mode::Linear, 1),
-            anchored,
+            anchored: settings.modes.contains(Mode::Anchored).then(|| Box::new(Anchored::new(settings, delay_ticks))),
+            degrees: compares(settings.modes).then(|| Box::new(Degrees::new(settings, delay_ticks))),
             matched: matched(Mode::Matched, if coupled { Form::Coupled } else { Form::Tissue }),
             nima: matched(Mode::Nima, Form::Paper(settings.max_degree as u8)),
-            best: settings.modes.contains(Mode::Best).then(|| Best::new(settings.rate_hz)),
+            best: settings.modes.contains(Mode::Best).then(|| Best::new(settings)),
             baseline: settings.modes.baseline().map(|baseline| BaselineEnds {
                 follower: baselines::Follower::new(baseline, settings, delay_ticks),
                 leader: baselines::Leader::new(settings),
@@ -161,14 +142,14 @@ impl Identifier {
         if begins(Mode::Anchored) {
             self.anchored.iter_mut().for_each(|anchored| anchored.reset());
         }
+        if compares(modes) && !compares(before) {
+            self.degrees.iter_mut().for_each(|degrees| degrees.reset());
+        }
         if begins(Mode::Matched) {
             self.matched.iter_mut().for_each(|matched| matched.reset());
         }
         if begins(Mode::Nima) {
             self.nima.iter_mut().for_each(|nima| nima.reset());
-        }
-        if begins(Mode::Best) {
-            self.best.iter_mut().for_each(Best::reset);
         }
         if modes.baseline() != before.baseline() {
             self.baseline.iter_mut().for_each(BaselineEnds::reset);
@@ -211,10 +192,12 @@ impl Identifier {
         self.parcel.t_s = self.last_t_s;
         self.parcel.force_n = self.last_force_n.vector();
         self.parcel.fresh = good;
+        self.parcel.resting = !learn;
         if learn {
             self.step_paper(&x, usable);
         }
-        self.step_anchored(&now, good, usable, learn);
+        self.step_anchored(&now, good, learn);
+        self.step_degrees(&now, good, usable, learn);
         self.step_matched(&now, good, usable, learn);
         if self.computed.baseline().is_some()
             && let Some(BaselineEnds { follower, .. }) = &mut self.baseline
@@ -249,37 +232,24 @@ impl Identifier {
         }
     }
 
-    fn step_anchored(&mut self, now: &Posture, good: bool, usable: bool, learn: bool) {
+    fn step_anchored(&mut self, now: &Posture, good: bool, learn: bool) {
         let of_mode = self.anchored.as_deref_mut().filter(|_| self.computed.contains(Mode::Anchored));
-        let Some(Anchored { window, ridge, solution, horizon, correction }) = of_mode else { return };
-        if !learn {
-            let impedance = horizon.rest(&now.features, self.last_force_n);
-            let (stance, features) = (&now.stance, &now.features);
-            self.parcel.anchored = correction.step(stance, features, self.last_force_n, &impedance, good, false);
-            return;
+        let Some(anchored) = of_mode else { return };
+        self.parcel.anchored = anchored.step(&now.stance, self.last_force_n, good, learn);
+        if learn {
+            self.report.degree = self.parcel.anchored.degree;
+            self.report.gain = self.parcel.anchored.gain;
+            self.report.restarts = anchored.restarts();
         }
-        let columns = solution.columns();
-        let mut row = [Lanes::ZERO; MAX_ROW];
-        if usable {
-            row[0] = active(&nalgebra::Vector3::repeat(1.0), self.settings.axes);
-            row[1..columns].copy_from_slice(&now.features[..columns - 1]);
-            row[columns] = self.last_force_n;
+    }
+
+    fn step_degrees(&mut self, now: &Posture, good: bool, usable: bool, learn: bool) {
+        let Some(degrees) = self.degrees.as_deref_mut().filter(|_| compares(self.computed)) else { return };
+        if learn {
+            degrees.step(now, self.last_force_n, good, usable, &self.settings, &mut self.report);
+        } else {
+            degrees.rest(now, self.last_force_n);
         }
-        window.push(&row);
-        solution.solve(window.current());
-        let impedance = horizon.step(solution, &now.features, self.last_force_n, good, usable);
-        let model = correction.step(&now.stance, &now.features, self.last_force_n, &impedance, good, true);
-        self.parcel.anchored = model;
-        self.report.columns = impedance.columns;
-        self.report.coupled = impedance.coupled;
-        self.report.cross_talk_ratio = horizon.cross_talk_ratio();
-        self.report.degree = if model.gain > 0.0 { impedance.columns.div_ceil(3).max(1) } else { 0 };
-        self.report.gain = model.gain;
-        self.report.restarts = correction.restarts();
-        let condition = solution.condition(2.max(1 + usize::from(impedance.columns)));
-        self.report.condition = condition.0[..self.settings.axes].iter().fold(1.0, |worst, c| c.max(worst));
-        self.report.rank = rank(window.current(), *ridge, self.settings.axes);
-        self.report.excitation = excitation(window.current(), *ridge, &self.settings);
     }
 
     fn step_matched(&mut self, now: &Posture, good: bool, usable: bool, learn: bool) {
@@ -300,24 +270,23 @@ impl Identifier {
             self.parcel.nima = *nima.step(now, force.filter(|_| usable), sent.map(|parcel| &parcel.nima));
             self.report.nima_degree = self.parcel.nima.degree;
         }
-        if let Some(best) = &self.best {
-            self.parcel.anchored_weight = best.anchored();
-        }
     }
 
     /// What every mode renders for this tick from the parcel one delay old, and its running error.
     fn predict(&mut self, now: &Posture, x: &Features, good: bool) {
         let leader = self.baseline.as_mut().map(|baseline| &mut baseline.leader);
-        let forces = match self.sent.get(self.delay_ticks) {
-            Some((parcel, then)) if parcel.t_s.is_finite() => parcel.render(now, then, x, |model, force_n| {
+        let weight = self.best.as_ref().map_or(Lanes::ZERO, Best::anchored);
+        let arrived = self.sent.get(self.delay_ticks).filter(|(parcel, _)| parcel.t_s.is_finite());
+        let forces = arrived.map_or([None; SLOTS], |(parcel, then)| {
+            parcel.render(now, then, x, weight, |model, force_n| {
                 leader.and_then(|leader| leader.step(model, force_n, now, self.delay_ticks))
-            }),
-            _ => [None; SLOTS],
-        };
-        let said = [Mode::Anchored, Mode::Matched].map(|mode| forces[mode.index()]);
-        let judges = good && !self.report.resting;
-        if let (Some(best), [Some(anchored), Some(matched)], true) = (&mut self.best, said, judges) {
-            best.judge(anchored, matched, self.last_force_n, now.stance.pace);
+            })
+        });
+        if let Some(best) = &mut self.best {
+            best.say(&forces, now.stance.pace);
+            if let Some((parcel, _)) = arrived {
+                best.hear(parcel, self.delay_ticks);
+            }
         }
         for mode in self.settings.modes.modes() {
             let force = forces[mode.index()];
@@ -342,9 +311,9 @@ impl Identifier {
         &self.report
     }
 
-    /// Every nested solution on the newest window, in scaled columns (N); `None` if anchored rendering is not computed.
+    /// Every nested solution on the newest window, in scaled columns (N); `None` unless both anchored and literal are computed.
     pub fn solution(&self) -> Option<&Solution> {
-        self.anchored.as_ref().map(|anchored| &anchored.solution)
+        self.degrees.as_ref().map(|degrees| degrees.solution())
     }
 
     /// The paper's solutions of every degree on the newest window; `None` if neither literal nor linear is computed.
@@ -356,8 +325,10 @@ impl Identifier {
     pub fn set_delay(&mut self, delay_s: f64) {
         self.delay_ticks = self.settings.delay_ticks(delay_s);
         if let Some(anchored) = &mut self.anchored {
-            anchored.horizon.set_delay(self.delay_ticks);
-            anchored.correction.set_delay(self.delay_ticks);
+            anchored.set_delay(self.delay_ticks);
+        }
+        if let Some(degrees) = &mut self.degrees {
+            degrees.set_delay(self.delay_ticks);
         }
         for matched in [&mut self.matched, &mut self.nima].into_iter().flatten() {
             matched.set_delay(self.delay_ticks);
@@ -375,6 +346,7 @@ impl Identifier {
         self.idle_ticks = 0;
         self.paper.iter_mut().chain(&mut self.linear).for_each(|paper| paper.reset());
         self.anchored.iter_mut().for_each(|anchored| anchored.reset());
+        self.degrees.iter_mut().for_each(|degrees| degrees.reset());
         for matched in [&mut self.matched, &mut self.nima].into_iter().flatten() {
             matched.reset();
         }
@@ -395,10 +367,7 @@ impl BaselineEnds {
     }
 }
 
-impl Anchored {
-    fn reset(&mut self) {
-        self.window.reset();
-        self.horizon.reset();
-        self.correction.reset();
-    }
+/// Whether the degrees of the window are wanted: for comparison with the paper's.
+fn compares(modes: ModeSet) -> bool {
+    modes.contains(Mode::Anchored) && modes.contains(Mode::Literal)
 }

@@ -53,68 +53,10 @@ impl LiteralModel {
     }
 }
 
-/// An impedance between changes of motion and of force: `M (phi(t) - phi(t - D))`.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Impedance {
-    /// Motion columns in use, from the first; 0: none.
-    pub columns: u8,
-    /// Whether axes are coupled.
-    pub coupled: bool,
-    /// `M` (N per scaled feature) from an axis' motion to its own force, zero beyond the columns in use.
-    pub coefficients: [Lanes; MOTION_COLUMNS],
-    /// The same from the motion of the next axis (y for x, z for y, x for z) and of the one after; used only if coupled.
-    pub cross: [[Lanes; MOTION_COLUMNS]; 2],
-}
-
-impl Impedance {
-    /// No impedance: no change of force.
-    pub const NONE: Self = Self {
-        columns: 0,
-        coupled: false,
-        coefficients: [Lanes::ZERO; MOTION_COLUMNS],
-        cross: [[Lanes::ZERO; MOTION_COLUMNS]; 2],
-    };
-
-    /// The change of force (N) from the features `then` to `now`.
-    #[inline]
-    pub(super) fn change(&self, now: &Features, then: &Features) -> Lanes {
-        let columns = usize::from(self.columns);
-        let terms = self.coefficients.iter().zip(now).zip(then).take(columns);
-        let own = terms.fold(Lanes::ZERO, |sum, ((m, now), then)| sum + *m * (*now - *then));
-        if !self.coupled {
-            return own;
-        }
-        let [next, last] = &self.cross;
-        let terms = next.iter().zip(last).zip(now).zip(then).take(columns);
-        terms.fold(own, |sum, (((next, last), now), then)| {
-            let [x, y, z, _] = (*now - *then).0;
-            sum + *next * Lanes([y, z, x, 0.0]) + *last * Lanes([z, x, y, 0.0])
-        })
-    }
-
-    /// This impedance times a factor.
-    pub(super) fn weighted(&self, factor: f64) -> Self {
-        let mut weighted = *self;
-        weighted.coefficients.iter_mut().for_each(|m| *m = *m * factor);
-        if self.coupled {
-            weighted.cross.as_flattened_mut().iter_mut().for_each(|m| *m = *m * factor);
-        }
-        weighted
-    }
-}
-
-impl Default for Impedance {
-    fn default() -> Self {
-        Self::NONE
-    }
-}
-
 /// Parameters of anchored rendering: `f^(t) = f(t - D) + clip(...)`, all experts folded into one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AnchoredModel {
-    /// The window's impedance, with its weight in the mixture.
-    pub impedance: Impedance,
-    /// The regressions' share: N per change of position (m), of its differences from four low-passes (m), of friction
+    /// N per change of position (m), of its differences from four low-passes (m), of friction
     /// (1), of square, cube and product of the position about the centre (m², m³, m²).
     pub motion: [Lanes; 9],
     /// What the follower alone knows: the change expected without any motion (N).
@@ -129,14 +71,15 @@ pub struct AnchoredModel {
     pub high_n: Lanes,
     /// Largest correction (N, norm over the axes).
     pub bound_n: f64,
-    /// How much of a full correction this is, 0 (plain reflection) to 1.
+    /// Highest power of the position in the model that most of the weight is on, 1 or 3; 0 without a correction.
+    pub degree: u8,
+    /// How much of a full correction this is, 0 (plain reflection) to 1, on the axis that is corrected most.
     pub gain: f64,
 }
 
 impl AnchoredModel {
     /// No correction.
     pub const NONE: Self = Self {
-        impedance: Impedance::NONE,
         motion: [Lanes::ZERO; 9],
         constant_n: Lanes::ZERO,
         centre_m: Lanes::ZERO,
@@ -144,6 +87,7 @@ impl AnchoredModel {
         low_n: Lanes::ZERO,
         high_n: Lanes::ZERO,
         bound_n: 0.0,
+        degree: 0,
         gain: 0.0,
     };
 
@@ -154,8 +98,7 @@ impl AnchoredModel {
             return measured;
         }
         let changes = motion_changes(&now.stance, &then.stance, self.centre_m, self.knee);
-        let regressions = self.motion.iter().zip(changes).fold(self.constant_n, |sum, (k, change)| sum + *k * change);
-        let correction = regressions + self.impedance.change(&now.features, &then.features);
+        let correction = self.motion.iter().zip(changes).fold(self.constant_n, |sum, (k, change)| sum + *k * change);
         if correction.is_finite() {
             within(measured + clip(correction, self.bound_n), self.low_n, self.high_n)
         } else {
@@ -197,6 +140,8 @@ pub struct Parcel {
     pub force_n: Vector3<f64>,
     /// Whether that sample was good.
     pub fresh: bool,
+    /// Whether the identification rested: there was no contact.
+    pub resting: bool,
     /// The modes that were computed; nothing is rendered in the others.
     pub modes: ModeSet,
     /// The paper's choice.
@@ -209,8 +154,6 @@ pub struct Parcel {
     pub matched: MatchedModel,
     /// The same in the paper's columns.
     pub nima: MatchedModel,
-    /// Weight of anchored rendering in the mixture with matched rendering, 0 to 1.
-    pub anchored_weight: Lanes,
     /// What the baseline needs, where one is computed.
     pub baseline: BaselineModel,
 }
@@ -227,18 +170,20 @@ impl Parcel {
         anchored: AnchoredModel::NONE,
         matched: MatchedModel::NONE,
         nima: MatchedModel::NONE,
-        anchored_weight: Lanes::ZERO,
+        resting: false,
         baseline: BaselineModel::Nothing,
     };
 
     /// The force of every mode for the motion now, by [`Mode::index`](super::Mode::index): `anchored` from the motion now and at
-    /// the time of the parcel, `literal` from `x`, the paper's `X` now. `baseline`: that mode's force, which has a state of its own
+    /// the time of the parcel, `literal` from `x`, the paper's `X` now. `anchored_weight`: that of anchored rendering in the best of
+    /// both, 0 to 1. `baseline`: that mode's force, which has a state of its own
     /// at the leader. Nothing is made of a force that is not finite: limits would turn it into one of their edges.
     pub(super) fn render(
         &self,
         now: &Posture,
         then: &Posture,
         x: &Features,
+        anchored_weight: Lanes,
         baseline: impl FnOnce(&BaselineModel, Lanes) -> Option<Lanes>,
     ) -> [Option<Lanes>; SLOTS] {
         let measured = Lanes::from(self.force_n);
@@ -247,7 +192,7 @@ impl Parcel {
         }
         let anchored = self.anchored.force(measured, now, then);
         let matched = self.matched.force(now);
-        let best = matched.map_or(anchored, |matched| matched + (anchored - matched) * self.anchored_weight);
+        let best = matched.map_or(anchored, |matched| matched + (anchored - matched) * anchored_weight);
         let mut forces = [
             self.literal.force(x),
             self.linear.force(x),
@@ -313,23 +258,19 @@ pub struct Report {
     pub reconstruction_n: [Vector3<f64>; MAX_DEGREE],
     /// The paper's choice of the degree, as the recipe makes it; 0 while the window is not full or nothing can be solved.
     pub paper_degree: u8,
-    /// Degree of anchored rendering: that of the nested window impedance which foretells force best at the horizon; 1 where
-    /// none does better than reflection but the regressions do; 0: no correction.
+    /// Degree of anchored rendering: the highest power of the position in the model that most of the weight is on, 1 or 3; 0: no
+    /// correction.
     pub degree: u8,
     /// Degree of the matched model with the largest weight; 0 while nothing is known.
     pub matched_degree: u8,
     /// The same in the paper's columns.
     pub nima_degree: u8,
-    /// Motion columns of that window impedance, 0 (none) to 15: three per degree (x, v, a); the last degree may hold x or
-    /// x, v only.
+    /// Motion columns of the nested solution on the window which foretells force best at the horizon, 0 (none) to 15: three per
+    /// degree (x, v, a). This, condition, rank and excitation are made only where anchored and literal are compared.
     pub columns: u8,
-    /// Whether that window impedance couples the axes.
-    pub coupled: bool,
-    /// Error at the horizon with cross-talk relative to that without (window impedances only); 1 where it is not computed.
-    pub cross_talk_ratio: f64,
     /// How much of a full correction anchored rendering makes, 0 (plain reflection) to 1.
     pub gain: f64,
-    /// Condition (scaled columns) of that choice, the worst of the axes; of the constant and `x` if nothing is chosen.
+    /// Condition (scaled columns) of those columns, the worst of the axes; of the constant and `x` if nothing is chosen.
     pub condition: f64,
     /// Motion columns that carry more information than the ridge, the fewest of the axes.
     pub rank: u8,
@@ -377,8 +318,6 @@ impl Report {
         matched_degree: 0,
         nima_degree: 0,
         columns: 0,
-        coupled: false,
-        cross_talk_ratio: 1.0,
         gain: 0.0,
         condition: 1.0,
         rank: 0,

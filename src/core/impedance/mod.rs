@@ -14,10 +14,9 @@
 //! | `window`, `factor`, `solution` | sliding window at a constant cost; triangular factor; all its nested solutions |
 //! | `paper`, `gram`, `literal` | the paper's normal equations, all degrees, in-window choice |
 //! | `recipe` | how the paper is read where it leaves a choice; the choice by what comes after the window |
-//! | `cross_factor`, `cross_talk` | the same with every axis' force from the motion of all axes, where a scene asks for it |
-//! | `horizon` | the nested solution that foretells force best at the true delay |
-//! | `anchored`, `regressors`, `regression`, `stack` | anchored rendering: experts, their trust, the guard |
-//! | `best` | a softmin over anchored and matched rendering |
+//! | `degrees`, `horizon` | the nested solution that foretells force best at the true delay, where modes are compared |
+//! | `anchored`, `regressors`, `regression`, `mixture` | anchored rendering: experts and their trust |
+//! | `best` | a softmin over anchored and matched rendering, judged by the leader |
 //! | `matched` | matched rendering: the force from the hand's own motion, by parameters alone |
 //! | `baselines` | methods of others, to compare with; at most one is computed |
 //! | `pace`, `envelope` | a clock that motion drives; the range of forces seen |
@@ -26,8 +25,7 @@
 mod anchored;
 mod baselines;
 mod best;
-mod cross_factor;
-mod cross_talk;
+mod degrees;
 mod envelope;
 mod factor;
 mod features;
@@ -38,6 +36,7 @@ mod information;
 mod literal;
 mod matched;
 mod messages;
+mod mixture;
 mod mode;
 mod pace;
 mod paper;
@@ -47,7 +46,6 @@ mod regressors;
 mod renderer;
 mod settings;
 mod solution;
-mod stack;
 mod track;
 mod window;
 
@@ -67,7 +65,7 @@ pub use gram::Gram;
 pub use identifier::Identifier;
 pub use literal::LiteralSolver;
 pub use matched::{Form, MatchedModel};
-pub use messages::{AnchoredModel, Excitation, Impedance, LiteralModel, Parcel, Rendered, Report, Sample};
+pub use messages::{AnchoredModel, Excitation, LiteralModel, Parcel, Rendered, Report, Sample};
 pub use mode::{Baseline, MODES, Mode, ParseModeError, SLOTS};
 pub use recipe::{Choice, Reading, Recipe};
 pub use renderer::Renderer;

@@ -3,12 +3,14 @@
 use nalgebra::Vector3;
 
 use super::{
+    Mode, SLOTS,
     baselines::Leader,
+    best::Best,
     messages::{Parcel, Posture, Rendered, active},
     settings::{MAX_DELAY_S, Settings, SettingsError},
     track::{Track, usable_position},
 };
-use crate::signal::DelayLine;
+use crate::signal::{DelayLine, Lanes};
 
 /// Renders a force from what came over the link and the leader's motion. Nothing is allocated after construction.
 ///
@@ -31,6 +33,7 @@ pub struct Renderer {
     track: Track,
     postures: DelayLine<Posture>,
     baseline: Option<Leader>,
+    best: Option<Best>,
     parcel_t_s: f64,
     /// Ticks since the newest parcel came.
     waiting: usize,
@@ -49,6 +52,7 @@ impl Renderer {
             track: Track::new(settings),
             postures: DelayLine::new(2 * max_delay, Posture::BLANK),
             baseline: settings.modes.baseline().map(|_| Leader::new(settings)),
+            best: settings.modes.contains(Mode::Best).then(|| Best::new(settings)),
             parcel_t_s: f64::NEG_INFINITY,
             waiting: 0,
             settings: settings.clone(),
@@ -69,6 +73,9 @@ impl Renderer {
 
         let Some(parcel) = parcel.filter(|parcel| parcel.t_s.is_finite()) else {
             self.waiting = self.waiting.saturating_add(1);
+            if let Some(best) = &mut self.best {
+                best.say(&[None; SLOTS], 0.0);
+            }
             return Rendered::default();
         };
         if parcel.t_s > self.parcel_t_s {
@@ -81,9 +88,17 @@ impl Renderer {
         let age = self.delay_ticks.saturating_add(self.waiting);
         let then = self.postures.get(age).unwrap_or(&now);
         let baseline = self.baseline.as_mut();
-        Rendered::new(&parcel.render(&now, then, &x, |model, force_n| {
+        let weight = self.best.as_ref().map_or(Lanes::ZERO, Best::anchored);
+        let forces = parcel.render(&now, then, &x, weight, |model, force_n| {
             baseline.and_then(|leader| leader.step(model, force_n, &now, age))
-        }))
+        });
+        if let Some(best) = &mut self.best {
+            best.say(&forces, now.stance.pace);
+            if self.waiting == 0 {
+                best.hear(parcel, age);
+            }
+        }
+        Rendered::new(&forces)
     }
 
     /// Changes the programmed delay, exact to one sample, at most [`MAX_DELAY_S`].
@@ -100,6 +115,9 @@ impl Renderer {
         self.postures.clear();
         if let Some(baseline) = &mut self.baseline {
             baseline.reset();
+        }
+        if let Some(best) = &mut self.best {
+            best.reset();
         }
         self.parcel_t_s = f64::NEG_INFINITY;
         self.waiting = 0;

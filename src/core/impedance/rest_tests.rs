@@ -79,7 +79,7 @@ fn a_mode_that_nobody_chose_is_not_computed() {
     let report = identifier.report();
     let valid = Mode::ALL.map(|mode| report.prediction(mode).is_some());
     assert_eq!(valid, Mode::ALL.map(|mode| matches!(mode, Mode::Dfr | Mode::Matched)));
-    assert_eq!((report.paper_degree, report.degree, report.nima_degree), (0, 0, 0));
+    assert_eq!((report.paper_degree, report.degree, report.nima_degree, report.rank), (0, 0, 0, 0));
     assert_eq!(identifier.parcel(), alone.parcel(), "what is left out leaves no trace");
 
     // A mode that comes in begins anew, beside the one that goes on.
@@ -90,6 +90,7 @@ fn a_mode_that_nobody_chose_is_not_computed() {
     }
     assert_eq!(identifier.parcel().matched, alone.parcel().matched);
     assert!(identifier.report().degree > 0 && identifier.report().paper_degree > 0);
+    assert!(identifier.report().rank > 0, "the window's degrees are there to be compared");
     assert!(identifier.report().prediction(Mode::Linear).is_none());
 
     identifier.compute(ModeSet::only(Mode::Linear));

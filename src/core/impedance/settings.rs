@@ -112,9 +112,8 @@ pub struct Settings {
     /// The identification rests while the force measured and the forces rendered lie within this (N): there is no contact,
     /// and nothing to learn. 0: it never rests.
     pub rest_n: f64,
-    /// Whether the force on each axis may depend on the motion of the others (the full `M`, 45 columns, in anchored
-    /// rendering). Costs 4 us a tick and 21 us more in every fifth at 1 kHz; gained 1 % at best on simulated reaches over
-    /// inclined tissue, nothing on palpation, so it is off unless asked for. The report shows the gain.
+    /// Whether the force on each axis may depend on the motion of the others (the full `M`) in matched rendering, and so in the best
+    /// of both.
     pub cross_talk: bool,
     /// How velocity and acceleration are made.
     pub differentiator: DifferentiatorKind,

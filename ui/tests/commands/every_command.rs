@@ -248,7 +248,7 @@ fn run_on_the_virtual_clock_reports_everything() {
     let modes = |summary: &Value| -> Vec<String> {
         summary["error"].as_array().unwrap().iter().map(|e| e["mode"].as_str().unwrap().to_owned()).collect()
     };
-    assert_eq!(modes(&summary), ["dfr", "anchored"], "only what is needed is computed");
+    assert_eq!(modes(&summary), ["dfr", "anchored", "matched", "best"], "only what is needed is computed");
     let compared = json(&["run", "--virtual", "--seconds", "5", "--compare", "--json"]);
     assert_eq!(modes(&compared), Mode::ALL.map(Mode::name));
 }

@@ -28,12 +28,22 @@ pub fn degrees_ui(ui: &mut Ui, live: &Live) {
     figure(ui, text::degrees::NONLINEAR_OURS, share(live.degrees.nonlinear()), text::degrees::NONLINEAR_OURS_HOVER);
     let papers = if compares { share(live.paper_degrees.nonlinear()) } else { text::degrees::NOT_COMPUTED.to_owned() };
     figure(ui, text::degrees::NONLINEAR_PAPER, papers, text::degrees::NONLINEAR_PAPER_HOVER);
-    quality_ui(ui, live);
+    quality_ui(ui, live, compares);
 }
 
-fn quality_ui(ui: &mut Ui, live: &Live) {
+fn quality_ui(ui: &mut Ui, live: &Live, compares: bool) {
     let Some(tick) = live.first_tick() else { return };
     let report = &tick.identification;
+    if !compares {
+        for (name, meaning) in [
+            (text::degrees::CONDITION, text::degrees::CONDITION_HOVER),
+            (text::degrees::RANK, text::degrees::RANK_HOVER),
+            (text::degrees::EXCITATION, text::degrees::EXCITATION_HOVER),
+        ] {
+            figure(ui, name, text::degrees::NOT_COMPUTED.to_owned(), meaning);
+        }
+        return;
+    }
     figure(ui, text::degrees::CONDITION, three_digits(report.condition), text::degrees::CONDITION_HOVER);
     figure(
         ui,

@@ -2,7 +2,7 @@
 
 pub(in crate::console) const KEY_OURS: &str = "this console";
 pub(in crate::console) const KEY_OURS_HOVER: &str =
-    "The degree with the smallest recent prediction error; 0 means no correction";
+    "The highest power of the position in the model with the smallest recent prediction error; 0 means no correction";
 pub(in crate::console) const KEY_PAPER: &str = "the paper's rule";
 pub(in crate::console) const KEY_PAPER_HOVER: &str =
     "The degree with the smallest error inside the window; 0 means that the window is not full yet";
@@ -14,15 +14,16 @@ pub(in crate::console) const NONLINEAR_PAPER_HOVER: &str = "Share of ticks in wh
     always fits the window at least as well, so this is near 100 % for any tissue. It is not evidence of \
     nonlinearity. Computed only while all modes are compared.";
 pub(in crate::console) const CONDITION: &str = "Condition";
-pub(in crate::console) const CONDITION_HOVER: &str = "Condition number of the chosen model's scaled columns, worst axis, no unit. 1 is perfect; above 10 \
-    000 the columns can hardly be told apart.";
+pub(in crate::console) const CONDITION_HOVER: &str = "Condition number of the scaled columns that predict best from the window, worst axis, no unit. 1 is perfect; above 10 \
+    000 the columns can hardly be told apart. Computed only while all modes are compared.";
 pub(in crate::console) const RANK: &str = "Rank";
 pub(in crate::console) const RANK_HOVER: &str = "Number of motion columns that vary enough in the window to be identified, out of all columns (three \
     per degree: position, velocity, acceleration). The ridge gives the others no weight. Used: columns \
-    in the model chosen now.";
+    that predict best now. Computed only while all modes are compared.";
 pub(in crate::console) const EXCITATION: &str = "Excitation";
 pub(in crate::console) const EXCITATION_HOVER: &str = "How much the motion varies within the window: standard deviation of position (mm) and of velocity \
-    (mm/s), all axes. Without motion nothing can be identified.";
+    (mm/s), all axes. Without motion nothing can be identified. Computed only while \
+    all modes are compared.";
 pub(in crate::console) const NOT_COMPUTED: &str = "not computed";
 pub(in crate::console) const NONE: &str = "none";
 

@@ -10,7 +10,7 @@ pub(in crate::console) const BEST: &str = "Best of both";
 pub(in crate::console) const MATCHED_HOVER: &str = "Only the tissue's parameters cross the link; the force is made from the hand's own motion, so no late force can kick";
 pub(in crate::console) const NIMA_HOVER: &str = "The paper's polynomials under the rules of Matched: a constant, a kept origin, a ridge, and degrees judged at the horizon";
 pub(in crate::console) const BEST_HOVER: &str =
-    "Anchored and Matched, mixed on each axis by how wrong each was during the last second";
+    "Anchored and Matched, mixed on each axis by how wrong each was at the leader during the last second; the default";
 pub(in crate::console) const LITERAL_HOVER: &str = "Exactly as in the paper: renders M X from the hand's own motion, with the degree that has the \
     smallest error inside the window. Renders no force at standstill.";
 pub(in crate::console) const LINEAR_HOVER: &str =

@@ -4,6 +4,7 @@ use nalgebra::Vector3;
 
 use super::{
     baselines::Leader,
+    matched::Slip,
     messages::{Parcel, Posture, Rendered, active},
     settings::{MAX_DELAY_S, Settings, SettingsError},
     track::{Track, usable_position},
@@ -30,6 +31,7 @@ pub struct Renderer {
     delay_ticks: usize,
     track: Track,
     postures: DelayLine<Posture>,
+    slip: Slip,
     baseline: Option<Leader>,
     parcel_t_s: f64,
     /// Ticks since the newest parcel came.
@@ -48,6 +50,7 @@ impl Renderer {
             delay_ticks: settings.delay_ticks(settings.delay_s),
             track: Track::new(settings),
             postures: DelayLine::new(2 * max_delay, Posture::BLANK),
+            slip: Slip::default(),
             baseline: settings.modes.baseline().map(|_| Leader::new(settings)),
             parcel_t_s: f64::NEG_INFINITY,
             waiting: 0,
@@ -81,7 +84,7 @@ impl Renderer {
         let age = self.delay_ticks.saturating_add(self.waiting);
         let then = self.postures.get(age).unwrap_or(&now);
         let baseline = self.baseline.as_mut();
-        Rendered::new(&parcel.render(&now, then, &x, |model, force_n| {
+        Rendered::new(&parcel.render(&now, then, &x, &mut self.slip, |model, force_n| {
             baseline.and_then(|leader| leader.step(model, force_n, &now, age))
         }))
     }
@@ -98,6 +101,7 @@ impl Renderer {
     pub fn reset(&mut self) {
         self.track.reset();
         self.postures.clear();
+        self.slip = Slip::default();
         if let Some(baseline) = &mut self.baseline {
             baseline.reset();
         }

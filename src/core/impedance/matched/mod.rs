@@ -40,7 +40,7 @@ use crate::signal::{DelayLine, Lanes};
 /// Memories of the fit (s by the clock): the longer one, for friction across the contact, knows the tissue from the touches
 /// before. The paper's form has its window's.
 const MEMORIES_S: [f64; 2] = [1.0, 10.0];
-/// Ridges, in seconds of typical motion that say "no force", each with its memory. The last is only for [`Form::Sliding`].
+/// Ridges, in seconds of typical motion that say "no force", each with its memory. The last is for forms that slip.
 const RIDGES: [Ridge; 3] =
     [Ridge { s: 0.0001, memory: 0 }, Ridge { s: 0.01, memory: 0 }, Ridge { s: 0.0001, memory: 1 }];
 /// Solves per second of every expert (at most one a tick).
@@ -103,11 +103,11 @@ impl Matched {
         let rate_hz = settings.rate_hz;
         let every = ((rate_hz / SOLVE_HZ).round() as usize).max(1);
         let max_delay = (MAX_DELAY_S * rate_hz).ceil() as usize;
-        let ridges = if form == Form::Sliding { &RIDGES[..] } else { &RIDGES[..2] };
+        let ridges = if form.slips() { &RIDGES[..] } else { &RIDGES[..2] };
         let memories_s = match form {
             Form::Paper(_) => &[settings.window_s][..],
-            Form::Sliding => &MEMORIES_S[..],
-            Form::Tissue | Form::Coupled => &MEMORIES_S[..1],
+            Form::Sliding | Form::Coupled => &MEMORIES_S,
+            Form::Tissue => &MEMORIES_S[..1],
         };
         let sums = memories_s
             .iter()

@@ -10,7 +10,7 @@ use super::{
     degrees::Degrees,
     features::Features,
     literal::LiteralSolver,
-    matched::{Form, Matched},
+    matched::{Form, Matched, Slip},
     messages::{Parcel, Posture, Report, Sample, active},
     paper::Paper,
     settings::{MAX_DELAY_S, ModeSet, Settings, SettingsError},
@@ -73,6 +73,8 @@ pub struct Identifier {
     nima: Option<Box<Matched>>,
     best: Option<Best>,
     baseline: Option<BaselineEnds>,
+    /// That of a leader that makes the follower's own motion.
+    slip: Slip,
     sent: DelayLine<(Parcel, Posture)>,
     forget: f64,
     parcel: Parcel,
@@ -99,7 +101,6 @@ impl Identifier {
         let matched = |mode: Mode, form: Form| {
             settings.modes.contains(mode).then(|| Box::new(Matched::new(form, settings, delay_ticks)))
         };
-        let coupled = settings.cross_talk && settings.axes > 1;
         let max_delay = (MAX_DELAY_S * settings.rate_hz).ceil() as usize;
         Ok(Self {
             delay_ticks,
@@ -112,13 +113,14 @@ impl Identifier {
             linear: paper(Mode::Linear, 1),
             anchored: settings.modes.contains(Mode::Anchored).then(|| Box::new(Anchored::new(settings, delay_ticks))),
             degrees: compares(settings.modes).then(|| Box::new(Degrees::new(settings, delay_ticks))),
-            matched: matched(Mode::Matched, if coupled { Form::Coupled } else { Form::Tissue }),
+            matched: matched(Mode::Matched, Form::of(settings)),
             nima: matched(Mode::Nima, Form::Paper(settings.max_degree as u8)),
             best: settings.modes.contains(Mode::Best).then(|| Best::new(settings)),
             baseline: settings.modes.baseline().map(|baseline| BaselineEnds {
                 follower: baselines::Follower::new(baseline, settings, delay_ticks),
                 leader: baselines::Leader::new(settings),
             }),
+            slip: Slip::default(),
             sent: DelayLine::new(max_delay, (Parcel::BLANK, Posture::BLANK)),
             forget: 1.0 - (-1.0 / (ERROR_MEMORY_S * settings.rate_hz)).exp(),
             parcel: Parcel { modes: settings.modes, ..Parcel::BLANK },
@@ -256,11 +258,13 @@ impl Identifier {
         let computed = self.computed;
         let matched = self.matched.as_mut().filter(|_| computed.contains(Mode::Matched));
         let nima = self.nima.as_mut().filter(|_| computed.contains(Mode::Nima));
+        let sent = self.sent.get(self.delay_ticks.max(1) - 1).map(|(parcel, _)| parcel);
         if !learn {
-            matched.into_iter().chain(nima).for_each(|matched| matched.rest());
+            let matched = matched.map(|matched| (matched, sent.map(|parcel| &parcel.matched)));
+            let nima = nima.map(|nima| (nima, sent.map(|parcel| &parcel.nima)));
+            matched.into_iter().chain(nima).for_each(|(matched, sent)| matched.rest(now, sent));
             return;
         }
-        let sent = self.sent.get(self.delay_ticks.max(1) - 1).map(|(parcel, _)| parcel);
         let force = Some(self.last_force_n);
         if let Some(matched) = matched {
             self.parcel.matched = *matched.step(now, force.filter(|_| good), sent.map(|parcel| &parcel.matched));
@@ -278,7 +282,7 @@ impl Identifier {
         let weight = self.best.as_ref().map_or(Lanes::ZERO, Best::anchored);
         let arrived = self.sent.get(self.delay_ticks).filter(|(parcel, _)| parcel.t_s.is_finite());
         let forces = arrived.map_or([None; SLOTS], |(parcel, then)| {
-            parcel.render(now, then, x, weight, |model, force_n| {
+            parcel.render(now, then, x, &mut self.slip, weight, |model, force_n| {
                 leader.and_then(|leader| leader.step(model, force_n, now, self.delay_ticks))
             })
         });
@@ -355,6 +359,7 @@ impl Identifier {
         }
         self.baseline.iter_mut().for_each(BaselineEnds::reset);
         self.sent.clear();
+        self.slip = Slip::default();
         self.parcel = Parcel { modes: self.computed, ..Parcel::BLANK };
         self.report = Report { modes: self.computed, ..Report::BLANK };
     }

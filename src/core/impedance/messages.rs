@@ -7,7 +7,7 @@ use super::{
     anchored::within,
     baselines::BaselineModel,
     features::{Features, MOTION_COLUMNS},
-    matched::MatchedModel,
+    matched::{MatchedModel, Slip},
     regressors::{Stance, motion_changes},
     settings::ModeSet,
 };
@@ -175,14 +175,15 @@ impl Parcel {
     };
 
     /// The force of every mode for the motion now, by [`Mode::index`](super::Mode::index): `anchored` from the motion now and at
-    /// the time of the parcel, `literal` from `x`, the paper's `X` now. `anchored_weight`: that of anchored rendering in the best of
-    /// both, 0 to 1. `baseline`: that mode's force, which has a state of its own
+    /// the time of the parcel, `literal` from `x`, the paper's `X` now, `matched` with this end's `slip`. `anchored_weight`: that of
+    /// anchored rendering in the best of both, 0 to 1. `baseline`: that mode's force, which has a state of its own
     /// at the leader. Nothing is made of a force that is not finite: limits would turn it into one of their edges.
     pub(super) fn render(
         &self,
         now: &Posture,
         then: &Posture,
         x: &Features,
+        slip: &mut Slip,
         anchored_weight: Lanes,
         baseline: impl FnOnce(&BaselineModel, Lanes) -> Option<Lanes>,
     ) -> [Option<Lanes>; SLOTS] {
@@ -191,7 +192,7 @@ impl Parcel {
             return [None; SLOTS];
         }
         let anchored = self.anchored.force(measured, now, then);
-        let matched = self.matched.force(now);
+        let matched = self.matched.force(now, slip);
         let best = matched.map_or(anchored, |matched| matched + (anchored - matched) * anchored_weight);
         let mut forces = [
             self.literal.force(x),
@@ -199,7 +200,7 @@ impl Parcel {
             Some(measured),
             Some(anchored),
             matched,
-            self.nima.force(now),
+            self.nima.force(now, &mut Slip::default()),
             Some(best),
             self.modes.baseline().and_then(|_| baseline(&self.baseline, measured)),
         ];

@@ -6,6 +6,7 @@ use super::{
     Mode, SLOTS,
     baselines::Leader,
     best::Best,
+    matched::Slip,
     messages::{Parcel, Posture, Rendered, active},
     settings::{MAX_DELAY_S, Settings, SettingsError},
     track::{Track, usable_position},
@@ -32,6 +33,7 @@ pub struct Renderer {
     delay_ticks: usize,
     track: Track,
     postures: DelayLine<Posture>,
+    slip: Slip,
     baseline: Option<Leader>,
     best: Option<Best>,
     parcel_t_s: f64,
@@ -51,6 +53,7 @@ impl Renderer {
             delay_ticks: settings.delay_ticks(settings.delay_s),
             track: Track::new(settings),
             postures: DelayLine::new(2 * max_delay, Posture::BLANK),
+            slip: Slip::default(),
             baseline: settings.modes.baseline().map(|_| Leader::new(settings)),
             best: settings.modes.contains(Mode::Best).then(|| Best::new(settings)),
             parcel_t_s: f64::NEG_INFINITY,
@@ -89,7 +92,7 @@ impl Renderer {
         let then = self.postures.get(age).unwrap_or(&now);
         let baseline = self.baseline.as_mut();
         let weight = self.best.as_ref().map_or(Lanes::ZERO, Best::anchored);
-        let forces = parcel.render(&now, then, &x, weight, |model, force_n| {
+        let forces = parcel.render(&now, then, &x, &mut self.slip, weight, |model, force_n| {
             baseline.and_then(|leader| leader.step(model, force_n, &now, age))
         });
         if let Some(best) = &mut self.best {
@@ -113,6 +116,7 @@ impl Renderer {
     pub fn reset(&mut self) {
         self.track.reset();
         self.postures.clear();
+        self.slip = Slip::default();
         if let Some(baseline) = &mut self.baseline {
             baseline.reset();
         }

@@ -1,20 +1,25 @@
 //! The columns of a model: what a force is made of.
 
-use super::super::{
-    messages::Posture,
-    regressors::{Stance, saturated},
+use super::{
+    super::{
+        messages::Posture,
+        regressors::{Stance, saturated},
+        settings::Settings,
+    },
+    slip::{Held, SLIPS},
 };
 use crate::signal::Lanes;
 
 /// Columns of the largest form.
-pub(super) const COLUMNS: usize = 23;
+pub(super) const COLUMNS: usize = 25;
 
 /// The columns of one tick, or their parameters, one lane per axis.
 pub(super) type Row = [Lanes; COLUMNS];
 
 /// Leading columns of each nested model.
 const TISSUE: &[usize] = &[8, 11];
-const COUPLED: &[usize] = &[8, 11, 23];
+const SLIDING: &[usize] = &[8, 11, 13];
+const COUPLED: &[usize] = &[8, 11, 23, 25];
 const PAPER: &[usize] = &[4, 7, 10, 13, 16];
 
 /// Which columns a model has; the first is a constant, positions count from a kept origin `d = x - x0`.
@@ -23,6 +28,8 @@ pub enum Form {
     /// `1, d, u1..u4` (position above its low-passes at 5, 20, 80, 320 ms: four Maxwell branches), acceleration, dry friction;
     /// then `d^2, d^3, d u2`.
     Tissue,
+    /// The same, and friction that grows with the force along the other axes: springs that slip (`slip.rs`).
+    Sliding,
     /// The same, and `d, u1..u4`, acceleration of the two other axes: the full `M`.
     Coupled,
     /// The paper's: `1, d, v, a, d^2, v^2, a^2, ...` up to this degree.
@@ -30,10 +37,20 @@ pub enum Form {
 }
 
 impl Form {
+    /// That of matched rendering: what other axes know is of use only where there are any.
+    pub(in super::super) const fn of(settings: &Settings) -> Self {
+        match settings.axes {
+            1 => Self::Tissue,
+            _ if settings.cross_talk => Self::Coupled,
+            _ => Self::Sliding,
+        }
+    }
+
     /// Leading columns of each nested model, ascending.
     pub(super) fn nested(self) -> &'static [usize] {
         match self {
             Self::Tissue => TISSUE,
+            Self::Sliding => SLIDING,
             Self::Coupled => COUPLED,
             Self::Paper(degree) => &PAPER[..usize::from(degree).clamp(1, PAPER.len())],
         }
@@ -47,7 +64,7 @@ impl Form {
     /// The degree of the nested model with this many columns.
     pub(super) fn degree(self, columns: usize) -> u8 {
         match self {
-            Self::Tissue | Self::Coupled => {
+            Self::Tissue | Self::Sliding | Self::Coupled => {
                 if columns > TISSUE[0] {
                     3
                 } else {
@@ -61,13 +78,19 @@ impl Form {
     /// The position that the columns count from.
     pub(super) fn position(self, posture: &Posture) -> Lanes {
         match self {
-            Self::Tissue | Self::Coupled => posture.stance.x,
+            Self::Tissue | Self::Sliding | Self::Coupled => posture.stance.x,
             Self::Paper(_) => posture.features[0],
         }
     }
 
-    /// The columns of a posture. `one`: 1 in the lanes in use; `origin`: where the positions count from.
-    pub(super) fn row(self, posture: &Posture, one: Lanes, origin: Lanes) -> Row {
+    /// Whether it has slip columns.
+    pub(super) const fn slips(self) -> bool {
+        matches!(self, Self::Sliding | Self::Coupled)
+    }
+
+    /// The columns of a posture. `one`: 1 in the lanes in use; `origin`: where the positions count from; `held`: what the slip
+    /// columns hold.
+    pub(super) fn row(self, posture: &Posture, one: Lanes, origin: Lanes, held: &Held) -> Row {
         let mut row = [Lanes::ZERO; COLUMNS];
         let d = self.position(posture) - origin;
         row[0] = one;
@@ -89,6 +112,9 @@ impl Form {
         row[8] = d * d;
         row[9] = row[8] * d;
         row[10] = d * u[1];
+        if self.slips() {
+            row[self.columns() - SLIPS..self.columns()].copy_from_slice(held);
+        }
         if self == Self::Coupled {
             for (j, Lanes([x, y, z, _])) in own.into_iter().enumerate() {
                 row[11 + j] = Lanes([y, z, x, 0.0]);

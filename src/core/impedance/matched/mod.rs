@@ -13,16 +13,19 @@
 mod drift;
 mod form;
 mod model;
+mod slip;
 mod sums;
 #[cfg(test)]
 mod tests;
 
 pub use form::Form;
 pub use model::MatchedModel;
+pub(super) use slip::Slip;
 
 use self::{
     drift::Drift,
     form::{COLUMNS, Row, product},
+    slip::{Held, SLIPS, Stretch, Usual},
     sums::Sums,
 };
 use super::{
@@ -34,12 +37,16 @@ use super::{
 };
 use crate::signal::{DelayLine, Lanes};
 
-/// Memory of the fit (s by the clock); the paper's form has its window's.
-const MEMORY_S: f64 = 1.0;
-/// Ridges, in seconds of typical motion that say "no force".
-const RIDGES_S: [f64; 2] = [0.0001, 0.01];
+/// Memories of the fit (s by the clock): the longer one, for friction across the contact, knows the tissue from the touches
+/// before. The paper's form has its window's.
+const MEMORIES_S: [f64; 2] = [1.0, 10.0];
+/// Ridges, in seconds of typical motion that say "no force", each with its memory. The last is for forms that slip.
+const RIDGES: [Ridge; 3] =
+    [Ridge { s: 0.0001, memory: 0 }, Ridge { s: 0.01, memory: 0 }, Ridge { s: 0.0001, memory: 1 }];
 /// Solves per second of every expert (at most one a tick).
 const SOLVE_HZ: f64 = 200.0;
+/// Renewals of the other experts in one of those with the long memory.
+const LONG_RENEWALS: usize = 2;
 /// Memory of the experts' errors (s by the clock), the exponent of the softmin is eight, and errors below this are equal (N).
 const ERROR_S: f64 = 1.0;
 const EQUAL_N: f64 = 1e-12;
@@ -53,15 +60,31 @@ pub(super) struct Matched {
     every: usize,
     tick: usize,
     one: Lanes,
-    sums: Sums,
+    /// One for each memory.
+    sums: Vec<Sums>,
+    ridges: &'static [Ridge],
     experts: Vec<Expert>,
     envelope: Envelope,
     drift: Drift,
     origin: Lanes,
     started: bool,
+    /// The newest columns, with springs under the load that was measured.
+    row: Row,
+    stretch: Stretch,
+    usual: Usual,
+    gives: [f64; SLIPS],
+    /// The leader's springs, one delay ahead of those that it has now.
+    twin: Slip,
     /// Ticks judged, by the clock.
     judged: f64,
     model: MatchedModel,
+}
+
+/// One way to fit.
+#[derive(Debug)]
+struct Ridge {
+    s: f64,
+    memory: usize,
 }
 
 /// One ridge and one nested set of columns.
@@ -80,7 +103,17 @@ impl Matched {
         let rate_hz = settings.rate_hz;
         let every = ((rate_hz / SOLVE_HZ).round() as usize).max(1);
         let max_delay = (MAX_DELAY_S * rate_hz).ceil() as usize;
-        let memory_s = if matches!(form, Form::Paper(_)) { settings.window_s } else { MEMORY_S };
+        let ridges = if form.slips() { &RIDGES[..] } else { &RIDGES[..2] };
+        let memories_s = match form {
+            Form::Paper(_) => &[settings.window_s][..],
+            Form::Sliding | Form::Coupled => &MEMORIES_S,
+            Form::Tissue => &MEMORIES_S[..1],
+        };
+        let sums = memories_s
+            .iter()
+            .zip([1, every])
+            .map(|(memory_s, step)| Sums::new(form.columns(), *memory_s, rate_hz / step as f64))
+            .collect();
         let expert = |ridge, columns| Expert {
             ridge,
             columns,
@@ -89,8 +122,11 @@ impl Matched {
             error_n: Lanes::ZERO,
             weight: Lanes::ZERO,
         };
-        let ridges = 0..RIDGES_S.len();
-        let experts = ridges.flat_map(|ridge| form.nested().iter().map(move |&columns| expert(ridge, columns)));
+        let experts = ridges.iter().enumerate().flat_map(|(ridge, Ridge { memory, .. })| {
+            // What is known from the touches before is of use where the columns tell a contact from none: all of them.
+            let least = if *memory == 0 { 0 } else { form.columns() };
+            form.nested().iter().filter(move |columns| **columns >= least).map(move |&columns| expert(ridge, columns))
+        });
         let mut matched = Self {
             form,
             rate_hz,
@@ -98,12 +134,18 @@ impl Matched {
             every,
             tick: 0,
             one: super::messages::active(&nalgebra::Vector3::repeat(1.0), settings.axes),
-            sums: Sums::new(form.columns(), memory_s, rate_hz),
+            sums,
+            ridges,
             experts: experts.collect(),
             envelope: Envelope::new(rate_hz),
             drift: Drift::new(rate_hz, max_delay),
             origin: Lanes::ZERO,
             started: false,
+            row: [Lanes::ZERO; COLUMNS],
+            stretch: Stretch::default(),
+            usual: Usual::default(),
+            gives: [0.0; SLIPS],
+            twin: Slip::default(),
             judged: 0.0,
             model: MatchedModel::NONE,
         };
@@ -128,11 +170,12 @@ impl Matched {
             self.learn(posture, force_n);
         }
         self.solve();
+        let sent = self.leader(posture, sent);
         if let Some(force_n) = force_n {
-            if let Some(sent) = sent.filter(|sent| sent.degree > 0) {
-                self.judge(posture, force_n, sent);
+            if let Some((sent, said)) = sent {
+                self.judge(posture, force_n, sent, &said);
             }
-            self.mix(posture, force_n);
+            self.mix(force_n);
         } else {
             self.drift.hold();
         }
@@ -140,10 +183,22 @@ impl Matched {
         &self.model
     }
 
+    /// What the leader makes of this motion with the model that it has then: that model, its columns and
+    /// its force before the limits (N).
+    fn leader<'a>(
+        &mut self,
+        posture: &Posture,
+        sent: Option<&'a MatchedModel>,
+    ) -> Option<(&'a MatchedModel, (Row, Lanes))> {
+        let sent = sent.filter(|sent| sent.degree > 0)?;
+        Some((sent, self.twin.step(sent, posture)))
+    }
+
     /// Goes on without learning: what was learnt stays in force.
-    pub(super) fn rest(&mut self) {
+    pub(super) fn rest(&mut self, posture: &Posture, sent: Option<&MatchedModel>) {
+        self.leader(posture, sent);
         let phase = self.tick % self.every;
-        for ridge in 0..RIDGES_S.len() {
+        for ridge in 0..self.ridges.len() {
             if phase != self.phase(ridge) {
                 continue;
             }
@@ -160,32 +215,50 @@ impl Matched {
             (self.started, self.origin) = (true, self.form.position(posture));
         }
         let pace = posture.stance.pace;
-        let row = self.form.row(posture, self.one, self.origin);
-        let error_n =
-            self.experts.last().map_or(force_n, |full| force_n - product(&full.parameters, &row, full.columns));
-        self.sums.learn(&row, force_n, error_n, pace);
+        let held = if self.form.slips() {
+            self.gives = self.usual.step(posture.stance.u[1], force_n, pace, self.rate_hz);
+            *self.stretch.step(posture.stance.x, force_n, &self.gives)
+        } else {
+            Held::default()
+        };
+        let row = self.form.row(posture, self.one, self.origin, &held);
+        // A long memory loses nothing where it takes one sample in each renewal.
+        let memories = if self.tick.is_multiple_of(self.every) { self.sums.len() } else { 1 };
+        for (memory, sums) in self.sums.iter_mut().enumerate().take(memories) {
+            let full = self.experts.iter().rfind(|expert| self.ridges[expert.ridge].memory == memory);
+            let error_n = full.map_or(force_n, |full| force_n - product(&full.parameters, &row, full.columns));
+            sums.learn(&row, force_n, error_n, pace);
+        }
+        self.row = row;
         self.envelope.see(force_n, pace);
     }
 
     /// One factorisation per ridge, spread over the ticks between two renewals.
     fn solve(&mut self) {
         let phase = self.tick % self.every;
-        for (ridge, ridge_s) in RIDGES_S.into_iter().enumerate() {
+        for (ridge, Ridge { s, memory }) in self.ridges.iter().enumerate() {
             // All on the first tick: an expert that has said nothing cannot be judged.
             if phase != self.phase(ridge) && self.tick > 0 {
                 continue;
             }
-            self.sums.factorise(ridge_s);
+            let sums = &mut self.sums[*memory];
+            // A long memory changes slowly.
+            let renew = *memory == 0 || (self.tick / self.every).is_multiple_of(LONG_RENEWALS);
+            if renew {
+                sums.factorise(*s);
+            }
             for expert in self.experts.iter_mut().filter(|expert| expert.ridge == ridge) {
                 // What is not finite is not kept and not sent.
-                expert.parameters = self.sums.parameters(expert.columns).unwrap_or(expert.parameters);
+                if renew && let Some(found) = sums.parameters(expert.columns) {
+                    expert.parameters = found;
+                }
                 expert.past.push(expert.parameters);
             }
         }
     }
 
     const fn phase(&self, ridge: usize) -> usize {
-        ridge * self.every / RIDGES_S.len()
+        ridge * self.every / self.ridges.len()
     }
 
     /// How many renewals ago the parameters in force `ticks` ago were found.
@@ -194,17 +267,20 @@ impl Matched {
         (self.tick + ahead) / self.every - (self.tick.saturating_sub(ticks) + ahead) / self.every
     }
 
-    fn judge(&mut self, posture: &Posture, force_n: Lanes, sent: &MatchedModel) {
-        let row = sent.row(posture);
+    fn judge(&mut self, posture: &Posture, force_n: Lanes, sent: &MatchedModel, (row, said_n): &(Row, Lanes)) {
         let pace = posture.stance.pace;
         self.judged += pace;
         let share = share(pace, self.judged, ERROR_S * self.rate_hz);
         let mut least_n = Lanes::splat(f64::INFINITY);
-        for i in 0..self.experts.len() {
-            let age = self.renewals(self.experts[i].ridge, self.horizon());
-            let expert = &mut self.experts[i];
+        let horizon = self.horizon();
+        let mut ages = [0; RIDGES.len()];
+        for (ridge, age) in ages.iter_mut().enumerate().take(self.ridges.len()) {
+            *age = self.renewals(ridge, horizon);
+        }
+        for expert in &mut self.experts {
+            let age = ages[expert.ridge];
             let Some(parameters) = expert.past.get(age) else { continue };
-            let said_n = sent.clipped(product(parameters, &row, expert.columns));
+            let said_n = sent.clipped(product(parameters, row, expert.columns));
             expert.error_n = (expert.error_n + ((force_n - said_n).map(f64::abs) - expert.error_n) * share).settled();
             least_n = least_n.zip(expert.error_n, f64::min);
         }
@@ -215,12 +291,11 @@ impl Matched {
         }
         let scale = sum.recip_or_zero();
         self.experts.iter_mut().for_each(|expert| expert.weight *= scale);
-        let said_n = sent.clipped(product(&sent.parameters, &row, self.form.columns()));
-        self.drift.judge(self.horizon(), force_n - said_n, sent.offset_n);
+        self.drift.judge(self.horizon(), force_n - sent.clipped(*said_n), sent.offset_n);
     }
 
     /// The experts by their weights, and what else the leader needs.
-    fn mix(&mut self, posture: &Posture, force_n: Lanes) {
+    fn mix(&mut self, force_n: Lanes) {
         let mut parameters = [Lanes::ZERO; COLUMNS];
         let mut heaviest = (f64::NEG_INFINITY, 0);
         for expert in &self.experts {
@@ -238,11 +313,11 @@ impl Matched {
             one: self.one,
             parameters,
             origin: self.origin,
+            gives: self.gives,
             bounds_n: self.envelope.bounds_n(),
             offset_n: Lanes::ZERO,
         };
-        let row = self.model.row(posture);
-        let said_n = self.model.clipped(product(&parameters, &row, self.form.columns()));
+        let said_n = self.model.clipped(product(&parameters, &self.row, self.form.columns()));
         self.model.offset_n = self.drift.step(force_n - said_n, force_n);
     }
 
@@ -254,7 +329,7 @@ impl Matched {
     /// Forgets everything.
     pub(super) fn reset(&mut self) {
         self.tick = 0;
-        self.sums.reset();
+        self.sums.iter_mut().for_each(Sums::reset);
         let weight = self.one * (1.0 / self.experts.len() as f64);
         for expert in &mut self.experts {
             (expert.parameters, expert.error_n, expert.weight) = ([Lanes::ZERO; COLUMNS], Lanes::ZERO, weight);
@@ -263,6 +338,8 @@ impl Matched {
         self.envelope.reset();
         self.drift.reset();
         (self.started, self.origin, self.judged) = (false, Lanes::ZERO, 0.0);
+        (self.stretch, self.usual, self.twin) = (Stretch::default(), Usual::default(), Slip::default());
+        self.gives = [0.0; SLIPS];
         self.model = MatchedModel::NONE;
     }
 }

@@ -2,7 +2,8 @@
 
 use super::{
     super::{anchored::within, messages::Posture},
-    form::{COLUMNS, Form, Row, product},
+    form::{COLUMNS, Form},
+    slip::{SLIPS, Slip},
 };
 use crate::signal::Lanes;
 
@@ -20,6 +21,8 @@ pub struct MatchedModel {
     pub parameters: [Lanes; COLUMNS],
     /// Where positions count from (m; in the paper's form in scaled units).
     pub origin: Lanes,
+    /// How far the springs of the slip columns give way per force along the other axes (m/N).
+    pub gives: [f64; SLIPS],
     /// Least and greatest force made of the parameters (N).
     pub bounds_n: [Lanes; 2],
     /// A slow offset (N), added after the bounds.
@@ -34,22 +37,18 @@ impl MatchedModel {
         one: Lanes::ZERO,
         parameters: [Lanes::ZERO; COLUMNS],
         origin: Lanes::ZERO,
+        gives: [0.0; SLIPS],
         bounds_n: [Lanes::ZERO; 2],
         offset_n: Lanes::ZERO,
     };
 
-    /// The force (N) for a motion; `None` without a model or where it is not finite.
-    pub(in super::super) fn force(&self, now: &Posture) -> Option<Lanes> {
+    /// The force (N) for a motion; `None` without a model or where it is not finite. `slip`: this end's springs, which move on.
+    pub(in super::super) fn force(&self, now: &Posture, slip: &mut Slip) -> Option<Lanes> {
         if self.degree == 0 {
             return None;
         }
-        let force = product(&self.parameters, &self.row(now), self.form.columns());
+        let (_, force) = slip.step(self, now);
         force.is_finite().then(|| self.clipped(force) + self.offset_n)
-    }
-
-    /// The columns of a motion as this model counts them.
-    pub(super) fn row(&self, now: &Posture) -> Row {
-        self.form.row(now, self.one, self.origin)
     }
 
     pub(super) fn clipped(&self, force_n: Lanes) -> Lanes {

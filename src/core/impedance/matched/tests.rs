@@ -6,14 +6,15 @@ use nalgebra::Vector3;
 
 use super::{super::track::Track, *};
 
-const FORMS: [Form; 3] = [Form::Tissue, Form::Coupled, Form::Paper(5)];
-const MATCHED: [Form; 2] = [Form::Tissue, Form::Coupled];
+const FORMS: [Form; 4] = [Form::Tissue, Form::Sliding, Form::Coupled, Form::Paper(5)];
+const MATCHED: [Form; 3] = [Form::Tissue, Form::Sliding, Form::Coupled];
 
 /// Both ends, and a link of `delay` ticks between them; the leader's own motion is handed in.
 struct Pair {
     follower_track: Track,
     follower: Matched,
     leader_track: Track,
+    leader_slip: Slip,
     link: Vec<MatchedModel>,
     delay: usize,
 }
@@ -25,6 +26,7 @@ impl Pair {
             follower_track: Track::new(settings),
             follower: Matched::new(form, settings, delay),
             leader_track: Track::new(settings),
+            leader_slip: Slip::default(),
             link: Vec::new(),
             delay,
         }
@@ -41,9 +43,17 @@ impl Pair {
 
     /// One tick of the leader, after the follower's: the force for the hand.
     fn leader(&mut self, hand_m: Vector3<f64>) -> Option<Vector3<f64>> {
+        let Some(arrived) = self.link.len().checked_sub(self.delay + 1) else {
+            self.leader_track.step(Some(hand_m.into()));
+            return None;
+        };
+        self.leader_with(&self.link[arrived].clone(), hand_m)
+    }
+
+    /// One tick of the leader with a model that came.
+    fn leader_with(&mut self, model: &MatchedModel, hand_m: Vector3<f64>) -> Option<Vector3<f64>> {
         let now = self.leader_track.step(Some(hand_m.into()));
-        let arrived = self.link.len().checked_sub(self.delay + 1)?;
-        self.link[arrived].force(&now).map(Lanes::vector)
+        model.force(&now, &mut self.leader_slip).map(Lanes::vector)
     }
 
     /// Both ends at one place.
@@ -107,18 +117,17 @@ fn a_hand_that_leaves_when_the_link_fails_leaves_the_force_behind() {
             for k in 0..5500 {
                 pair.step(pressed(k), spring_n(pressed(k)));
             }
-            let last = pair.link.len() - 1 - pair.delay;
+            let last = pair.link[pair.link.len() - 1 - pair.delay];
             let mut at_m = pressed(5500);
-            let before_n = pair.link[last].force(&pair.leader_track.step(Some(at_m.into()))).unwrap().norm();
+            let before_n = pair.leader_with(&last, at_m).unwrap().norm();
             for _ in 0..pair.delay {
                 at_m.z += speed_m_s * 1e-3;
-                let now = pair.leader_track.step(Some(at_m.into()));
+                assert!(pair.leader_with(&last, at_m).is_some());
                 if at_m.z > 0.03 {
                     break;
                 }
-                assert!(pair.link[last].force(&now).is_some());
             }
-            let left_n = pair.link[last].force(&pair.leader_track.step(Some(at_m.into()))).unwrap().norm();
+            let left_n = pair.leader_with(&last, at_m).unwrap().norm();
             let gone = -at_m.z <= 0.0;
             assert!(before_n > 2.0, "{before_n} N");
             assert!(
@@ -146,8 +155,7 @@ fn nothing_is_forgotten_while_the_hand_stands_still() {
         }
         // The leader alone moves on: what it feels is the stiffness that was learnt a minute ago.
         let model = *pair.link.last().unwrap();
-        let mut force_n =
-            |at_m: Vector3<f64>| model.force(&pair.leader_track.step(Some(at_m.into()))).unwrap().vector();
+        let mut force_n = |at_m: Vector3<f64>| pair.leader_with(&model, at_m).unwrap();
         let rest_n = force_n(at_m);
         for _ in 0..2000 {
             force_n(at_m - at_m * 0.2);
@@ -159,7 +167,7 @@ fn nothing_is_forgotten_while_the_hand_stands_still() {
 }
 
 #[test]
-fn metres_and_millimetres_give_the_same_force() {
+fn metres_and_newtons_give_the_same_force_as_millimetres_and_millinewtons() {
     let metres = settings(0.05);
     let mut millimetres = metres.clone();
     for scale in [
@@ -174,7 +182,7 @@ fn metres_and_millimetres_give_the_same_force() {
         for k in 0..4000 {
             let at_m = hand_m(f64::from(k) * 1e-3);
             let force_n = contact_n(at_m);
-            if let (Some(a), Some(b)) = (a.step(at_m, force_n), b.step(at_m * 1e3, force_n)) {
+            if let (Some(a), Some(b)) = (a.step(at_m, force_n), b.step(at_m * 1e3, force_n * 1e3).map(|f| f * 1e-3)) {
                 assert!((a - b).norm() <= 1e-9 * (1.0 + a.norm()), "{form:?}, tick {k}: {a} {b}");
             }
         }
@@ -228,4 +236,38 @@ fn a_million_ticks_leave_it_as_it_was() {
         }
     }
     assert!((error_n[1] / error_n[0] - 1.0).abs() < 1e-6, "{error_n:?}");
+}
+
+/// A tip that presses into a soft plane, drags along it and lifts, with Coulomb friction under the load (N).
+struct Rubbing {
+    held_m: Vector3<f64>,
+    last_m: Vector3<f64>,
+}
+
+impl Rubbing {
+    fn step(&mut self, at_m: Vector3<f64>) -> Vector3<f64> {
+        let load_n = 800.0 * (-at_m.z).max(0.0);
+        let way_m = std::mem::replace(&mut self.last_m, at_m);
+        let stretched_m = self.held_m + Vector3::new(at_m.x - way_m.x, at_m.y - way_m.y, 0.0);
+        self.held_m = stretched_m.cap_magnitude(0.3 * load_n / 400.0);
+        Vector3::new(0.0, 0.0, load_n) - self.held_m * 400.0
+    }
+}
+
+#[test]
+fn friction_is_known_from_the_force_along_the_other_axes() {
+    let error_n = |form: Form| {
+        let mut pair = Pair::new(form, &settings(0.1));
+        let mut rubbing = Rubbing { held_m: Vector3::zeros(), last_m: Vector3::zeros() };
+        let mut sum_n = 0.0;
+        for k in 0..12_000 {
+            let at_m = hand_m(f64::from(k) * 1e-3);
+            let force_n = rubbing.step(at_m);
+            let rendered_n = pair.step(at_m, force_n).unwrap_or_default();
+            sum_n += if k < 4000 { 0.0 } else { (rendered_n - force_n).xy().norm() };
+        }
+        sum_n / 8000.0
+    };
+    let [blind_n, sliding_n] = [Form::Tissue, Form::Sliding].map(error_n);
+    assert!(sliding_n < 0.4 * blind_n, "{sliding_n} N with slip columns, {blind_n} N without");
 }

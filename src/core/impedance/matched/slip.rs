@@ -1,0 +1,134 @@
+//! Friction across a contact: how far the tip drags along what it touches, under a load that only the other axes feel.
+
+use super::{
+    super::{anchored::within, messages::Posture, pace::share},
+    form::{Row, product},
+    model::MatchedModel,
+};
+use crate::signal::{Lanes, settled};
+
+/// Slip columns of an axis.
+pub(super) const SLIPS: usize = 2;
+/// How far each gives way under the usual force, in usual motions (rms of the position above its 20 ms low-pass). Half or twice
+/// as much gives the same error within 3 %: the fit weighs them.
+const GIVES_IN_USUAL_MOTIONS: [f64; SLIPS] = [0.5, 2.0];
+/// Memory of the usual motion and load (s by the clock).
+const USUAL_S: f64 = 20.0;
+
+/// What each slip column holds, one lane per axis.
+pub(super) type Held = [Lanes; SLIPS];
+
+/// Springs (m) that follow the tip and slip at a length in proportion to the force along the other axes: Maxwell slip under a
+/// load that changes. Without a load nothing is held, so that they forget when contact ends.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Stretch {
+    held: Held,
+    last: Option<Lanes>,
+}
+
+impl Stretch {
+    /// Takes a position, the force (N) on all axes and the lengths per force (m/N) at which the springs slip.
+    pub(super) fn step(&mut self, x: Lanes, force_n: Lanes, gives: &[f64; SLIPS]) -> &Held {
+        let way = self.last.replace(x).map_or(Lanes::ZERO, |last| x - last);
+        let load_n = load(force_n);
+        for (held, give) in self.held.iter_mut().zip(gives) {
+            let limit = load_n * *give;
+            *held = within(*held + way, -limit, limit);
+        }
+        &self.held
+    }
+}
+
+/// The springs at the leader, and at the follower's copy of it: the load is the force that the parameters make.
+#[derive(Clone, Copy, Debug, Default)]
+pub(in super::super) struct Slip {
+    stretch: Stretch,
+    /// The force of the tick before (N): the newest one needs the springs first.
+    said_n: Lanes,
+}
+
+impl Slip {
+    /// Moves on with the newest model that came; the columns of this motion, and what the parameters make of them (N).
+    pub(super) fn step(&mut self, model: &MatchedModel, now: &Posture) -> (Row, Lanes) {
+        let held = self.stretch.step(now.stance.x, self.said_n, &model.gives);
+        let row = model.form.row(now, model.one, model.origin, held);
+        let said_n = product(&model.parameters, &row, model.form.columns());
+        self.said_n = if said_n.is_finite() { model.clipped(said_n) } else { Lanes::ZERO };
+        (row, said_n)
+    }
+}
+
+/// Usual sizes of motion (m) and force (N), over all axes, which make the springs free of units.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Usual {
+    motion2: f64,
+    force2: f64,
+    passed: f64,
+}
+
+impl Usual {
+    /// Takes the position above its 20 ms low-pass and the force (N); gives the lengths per force (m/N) at which the springs
+    /// slip.
+    pub(super) fn step(&mut self, motion: Lanes, force_n: Lanes, pace: f64, rate_hz: f64) -> [f64; SLIPS] {
+        self.passed += pace;
+        let share = share(pace, self.passed, USUAL_S * rate_hz);
+        for (mean, size) in [(&mut self.motion2, motion.norm()), (&mut self.force2, force_n.norm())] {
+            *mean = settled(*mean + (size * size - *mean) * share);
+        }
+        let give = if self.force2 > 0.0 { (self.motion2 / self.force2).sqrt() } else { 0.0 };
+        GIVES_IN_USUAL_MOTIONS.map(|times| give * times)
+    }
+}
+
+/// The length of the force along the two other axes (N).
+fn load(force_n: Lanes) -> Lanes {
+    let [x, y, z, _] = force_n.0;
+    let (next, last) = (Lanes([y, z, x, 0.0]), Lanes([z, x, y, 0.0]));
+    (next * next + last * last).sqrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const GIVES: [f64; SLIPS] = [0.001, 0.01];
+
+    fn at(x: f64) -> Lanes {
+        Lanes([x, 0.0, 0.0, 0.0])
+    }
+
+    #[test]
+    fn a_spring_holds_slips_under_its_load_turns_round_and_forgets_without_a_load() {
+        let mut stretch = Stretch::default();
+        // Force along x itself is no load for x.
+        let pressed_n = Lanes([50.0, 0.0, 2.0, 0.0]);
+        let mut held_m = |x: f64, force_n: Lanes| stretch.step(at(x), force_n, &GIVES).map(|held| held[0]);
+        let unpressed_n = Lanes([50.0, 0.0, 0.0, 0.0]);
+        for (what, x, force_n, expected_m) in [
+            ("begins where it is", 0.1, pressed_n, [0.0, 0.0]),
+            ("holds", 0.101, pressed_n, [0.001, 0.001]),
+            ("slips", 0.105, pressed_n, [0.002, 0.005]),
+            ("turns round", 0.104, pressed_n, [0.001, 0.004]),
+            ("forgets", 0.102, unpressed_n, [0.0, 0.0]),
+        ] {
+            for (held, expected) in held_m(x, force_n).into_iter().zip(expected_m) {
+                assert!((held - expected).abs() < 1e-12, "it {what}: {held}, not {expected}");
+            }
+        }
+    }
+
+    #[test]
+    fn gives_are_those_of_usual_motion_and_force_whatever_the_units() {
+        let gives = |per_m: f64, per_n: f64| {
+            let mut usual = Usual::default();
+            let step = |_| usual.step(at(0.002 * per_m), Lanes([0.0, 0.0, 4.0 * per_n, 0.0]), 1.0, 1000.0);
+            (0..100).map(step).last().unwrap()
+        };
+        let expected = GIVES_IN_USUAL_MOTIONS.map(|times| times * 0.002 / 4.0);
+        for (per_m, per_n) in [(1.0, 1.0), (1e3, 1.0), (1.0, 1e3)] {
+            for (give, expected) in gives(per_m, per_n).into_iter().zip(expected) {
+                assert!((give * per_n / per_m - expected).abs() < 1e-12, "{give} at {per_m}/m and {per_n}/N");
+            }
+        }
+    }
+}

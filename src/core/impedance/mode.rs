@@ -102,6 +102,16 @@ impl Mode {
         }
     }
 
+    /// Whether it is fitted to a window of samples, whose length is then a setting of it. The others fade by their own memories.
+    pub const fn has_window(self) -> bool {
+        matches!(self, Self::Literal | Self::Linear | Self::Nima)
+    }
+
+    /// Whether it chooses among polynomial degrees, the highest of which is then a setting of it.
+    pub const fn has_degrees(self) -> bool {
+        matches!(self, Self::Literal | Self::Nima)
+    }
+
     /// The name used on the command line, in files and on the screen.
     pub const fn name(self) -> &'static str {
         match self {

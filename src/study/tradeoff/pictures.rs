@@ -20,10 +20,10 @@ impl Study {
             pictures.push((name, svg(&[cost_against_error(figures)])));
         }
         let knobs = [
-            (Knob::Delay, Mode::Anchored, "Delay of the link (ms)"),
-            (Knob::Rate, Mode::Anchored, "Sampling rate (Hz)"),
-            (Knob::Degree, Mode::Literal, "Highest degree N"),
-            (Knob::Window, Mode::Literal, "Window (ms)"),
+            (Knob::Delay, Mode::Best, "Delay of the link (ms)"),
+            (Knob::Rate, Mode::Best, "Sampling rate (Hz)"),
+            (Knob::Degree, Mode::Nima, "Highest degree N"),
+            (Knob::Window, Mode::Nima, "Window (ms)"),
         ];
         for (knob, mode, label) in knobs {
             pictures.push((format!("knob-{}", knob.name()), svg(&[self.along(knob, mode, label)])));

@@ -105,7 +105,7 @@ pub struct Curve {
 pub struct Plan {
     /// The base point, and settings that are not varied (scales, ridge). Rate and axes are those of the source.
     pub base: Settings,
-    /// Modes on the grid and along every parameter.
+    /// Modes measured along every parameter that they have; the grid has all.
     pub modes: Vec<Mode>,
     pub degrees: Vec<usize>,
     pub windows_s: Vec<f64>,
@@ -126,7 +126,7 @@ impl Plan {
     pub fn full(base: Settings) -> Self {
         Self {
             base,
-            modes: vec![Mode::Anchored, Mode::Literal],
+            modes: vec![Mode::Best, Mode::Nima, Mode::Literal],
             degrees: (1..=MAX_DEGREE).collect(),
             windows_s: vec![0.1, 0.2, 0.3, 0.5, 1.0],
             rates_hz: vec![500.0, 200.0, 66.0],
@@ -169,18 +169,18 @@ impl Plan {
         let mut layout = Layout::default();
         for &mode in &self.modes {
             let base = self.base_choice(source, mode);
-            let knobs = [
-                (Knob::Degree, self.degrees.iter().map(|&degree| Choice { degree, ..base }).collect()),
-                (Knob::Window, self.windows_s.iter().map(|&s| Choice { window_ms: ms(s), ..base }).collect()),
-                (Knob::Rate, self.rates(&base)),
-                (Knob::Delay, self.delays_s.iter().map(|&s| Choice { delay_ms: ms(s), ..base }).collect()),
-                (
-                    Knob::Differentiator,
-                    self.differentiators.iter().map(|&differentiator| Choice { differentiator, ..base }).collect(),
-                ),
-            ];
-            for (knob, choices) in knobs {
-                layout.curve(knob, base.method, choices);
+            let delays = self.delays_s.iter().map(|&s| Choice { delay_ms: ms(s), ..base });
+            layout.curve(Knob::Rate, base.method, self.rates(&base));
+            layout.curve(Knob::Delay, base.method, delays.collect());
+            if mode.has_degrees() {
+                layout.curve(Knob::Degree, base.method, self.of_degrees(base).collect());
+            }
+            if mode.has_window() {
+                layout.curve(Knob::Window, base.method, self.of_windows(base).collect());
+                // Velocity and acceleration are columns of these modes only.
+                let differentiators = self.differentiators.iter();
+                let choices = differentiators.map(|&differentiator| Choice { differentiator, ..base });
+                layout.curve(Knob::Differentiator, base.method, choices.collect());
             }
         }
         if let Some(&mode) = self.modes.first() {
@@ -195,19 +195,23 @@ impl Plan {
         (layout.choices, layout.curves)
     }
 
-    /// Every degree with every window, for the modes that depend on both; linear has one degree, DFR depends on
-    /// neither.
+    fn of_degrees(&self, base: Choice) -> impl Iterator<Item = Choice> {
+        self.degrees.iter().map(move |&degree| Choice { degree, ..base })
+    }
+
+    fn of_windows(&self, base: Choice) -> impl Iterator<Item = Choice> {
+        self.windows_s.iter().map(move |&s| Choice { window_ms: ms(s), ..base })
+    }
+
+    /// Every mode with every degree and every window that it can have.
     fn lay_out_grid(&self, source: &Source, delay_ms: f64, layout: &mut Layout) {
         for mode in Mode::ALL {
             let base = Choice { delay_ms, ..self.base_choice(source, mode) };
-            let windows = self.windows_s.iter().map(|&s| Choice { window_ms: ms(s), ..base });
-            let choices: Vec<Choice> = match mode {
-                Mode::Dfr => vec![base],
-                Mode::Linear => windows.collect(),
-                _ if self.modes.contains(&mode) => windows
-                    .flat_map(|choice| self.degrees.iter().map(move |&degree| Choice { degree, ..choice }))
-                    .collect(),
-                _ => continue,
+            let windows: Vec<Choice> = if mode.has_window() { self.of_windows(base).collect() } else { vec![base] };
+            let choices = if mode.has_degrees() {
+                windows.into_iter().flat_map(|choice| self.of_degrees(choice)).collect()
+            } else {
+                windows
             };
             layout.curve(Knob::Grid, base.method, choices);
         }
@@ -218,10 +222,8 @@ impl Plan {
         for &solver in &self.solvers {
             let method = Method::Solver(solver);
             let base = Choice { method, ..self.base_choice(source, Mode::Dfr) };
-            let degrees = self.degrees.iter().map(|&degree| Choice { degree, ..base }).collect();
-            let windows = self.windows_s.iter().map(|&s| Choice { window_ms: ms(s), ..base }).collect();
-            layout.curve(Knob::Degree, method, degrees);
-            layout.curve(Knob::Window, method, windows);
+            layout.curve(Knob::Degree, method, self.of_degrees(base).collect());
+            layout.curve(Knob::Window, method, self.of_windows(base).collect());
         }
     }
 

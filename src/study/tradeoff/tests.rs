@@ -62,8 +62,15 @@ fn every_knob_has_a_curve_and_every_point_its_figures() {
     }
     let dfr = figures.dfr(50.0).unwrap();
     assert!((dfr.ratio - 1.0).abs() < 1e-12, "{dfr:?}");
-    let anchored = figures.points.iter().find(|p| p.choice.method == Method::Mode(Mode::Anchored)).unwrap();
-    assert!(anchored.ratio < 0.8, "{anchored:?}");
+    for mode in [Mode::Anchored, Mode::Matched, Mode::Best] {
+        let of: Vec<_> = figures.points.iter().filter(|p| p.choice.method == Method::Mode(mode)).collect();
+        assert!(of.iter().all(|point| point.ratio < 0.8), "{of:?}");
+        let once =
+            |p: &&&Point| (p.choice.degree, p.choice.every) == (2, 1) && (p.choice.window_ms - 200.0).abs() < 1e-9;
+        assert_eq!(of.iter().filter(once).count(), 1, "it has neither degree nor window: {of:?}");
+    }
+    let of_nima = figures.curves.iter().filter(|c| c.method == Method::Mode(Mode::Nima)).map(|c| c.knob);
+    assert!(of_nima.eq([Knob::Rate, Knob::Delay, Knob::Degree, Knob::Window, Knob::Differentiator, Knob::Grid]));
     assert!(figures.skipped.is_empty());
 }
 
@@ -187,6 +194,6 @@ fn a_real_recording_has_a_front() {
     let mapping = Mapping::parse(&["x=pos_follower_rad", "fx=Fe_Nm"]).unwrap();
     let source = Source::from_recording(Recording::read(&path, &mapping).unwrap(), "Nm");
     let figures = swept(&source, &tiny());
-    assert!(figures.points.iter().any(|p| p.pareto && p.choice.method == Method::Mode(Mode::Anchored)));
+    assert!(figures.points.iter().any(|p| p.pareto && p.choice.method == Method::Mode(Mode::Best)));
     assert!(figures.points.iter().any(|p| p.pareto && p.choice.method == Method::Mode(Mode::Dfr)));
 }

@@ -45,12 +45,10 @@ fn source_in_words(figures: &SourceFigures, text: &mut String) {
     writeln!(text, "  Pareto front (delay, mode, degree, window)").ok();
     for point in front {
         let Choice { method, degree, window_ms, delay_ms, .. } = point.choice;
-        let knobs = match method {
-            Method::Mode(Mode::Dfr) => String::new(),
-            Method::Mode(Mode::Linear) => format!(" {window_ms:.0} ms"),
-            _ => format!(" N={degree} {window_ms:.0} ms"),
-        };
-        row(point, &format!("{delay_ms:.0} ms {}{knobs}", method.name()), text);
+        let mode = method.mode();
+        let degree = if mode.is_some_and(Mode::has_degrees) { format!(" N={degree}") } else { String::new() };
+        let window = if mode.is_some_and(Mode::has_window) { format!(" {window_ms:.0} ms") } else { String::new() };
+        row(point, &format!("{delay_ms:.0} ms {}{degree}{window}", method.name()), text);
     }
     if let Some(first) = figures.skipped.first() {
         writeln!(text, "  {} points skipped; the first: {}", figures.skipped.len(), first.reason).ok();

@@ -213,11 +213,7 @@ fn apply_ui(
 fn needs_restart(now: &Identification, choice: &Choice) -> bool {
     let degree = choice.degree != now.max_degree;
     let window = (choice.window_ms - now.window_s * 1e3).abs() > 1e-6;
-    match choice.method.mode() {
-        Some(Mode::Anchored | Mode::Best | Mode::Nima | Mode::Literal) => degree || window,
-        Some(Mode::Linear) => window,
-        _ => false,
-    }
+    choice.method.mode().is_some_and(|mode| (mode.has_degrees() && degree) || (mode.has_window() && window))
 }
 
 /// The rig with this choice and all settings that the operator has changed since the start; a gain above 1 is reset to
@@ -227,8 +223,10 @@ fn rig_with(live: &Live, mode: Mode, choice: &Choice) -> RigConfig {
     rig.mode = mode;
     rig.identification.compare = false;
     rig.delay_s = choice.delay_ms * 1e-3;
-    rig.identification.window_s = choice.window_ms * 1e-3;
-    if mode != Mode::Linear {
+    if mode.has_window() {
+        rig.identification.window_s = choice.window_ms * 1e-3;
+    }
+    if mode.has_degrees() {
         rig.identification.max_degree = choice.degree;
     }
     rig.gates = live.gate_settings();
@@ -253,9 +251,9 @@ fn most_accurate(figures: &SourceFigures) -> Option<usize> {
 pub(super) fn name(point: &Point) -> String {
     let Choice { method, degree, window_ms, .. } = point.choice;
     match method {
-        Method::Mode(mode @ Mode::Dfr) => mode_name(mode).to_owned(),
-        Method::Mode(mode @ Mode::Linear) => format!("{}, {window_ms:.0} ms", mode_name(mode)),
-        Method::Mode(mode) => format!("{}, N = {degree}, {window_ms:.0} ms", mode_name(mode)),
+        Method::Mode(mode) if mode.has_degrees() => format!("{}, N = {degree}, {window_ms:.0} ms", mode_name(mode)),
+        Method::Mode(mode) if mode.has_window() => format!("{}, {window_ms:.0} ms", mode_name(mode)),
+        Method::Mode(mode) => mode_name(mode).to_owned(),
         Method::Solver(solver) => solver.name().to_owned(),
     }
 }

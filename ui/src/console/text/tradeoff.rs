@@ -11,8 +11,8 @@ pub(in crate::console) const MEASURE: &str = "Measure on this machine…";
 pub(in crate::console) const CANCEL: &str = "Cancel";
 pub(in crate::console) const CANCEL_HOVER: &str = "Stops measuring at once; earlier results are kept";
 pub(in crate::console) const FRONT: &str = "Best choices, cheapest first:";
-pub(in crate::console) const FRONT_HOVER: &str = "The Pareto front: every other choice takes more time or has a larger error. Degree and window \
-    change literal and linear; anchored rendering uses neither.";
+pub(in crate::console) const FRONT_HOVER: &str = "The Pareto front: every other choice takes more time or has a larger error. Only NIMA and \
+    literal have a degree, and these two and linear a window.";
 pub(in crate::console) const APPLY: &str = "Apply";
 pub(in crate::console) const APPLY_BY_RESTART: &str = "Degree or window differ from those in use: the loop restarts and is then idle, without force. Press \
     Engage when you are ready.";

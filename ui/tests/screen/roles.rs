@@ -74,7 +74,7 @@ fn the_demonstration_goes_on_by_itself_and_stands_while_the_loop_is_stopped() {
     until(&mut harness, "stopped", |tick| tick.state == LoopState::Stopped);
     // Far longer than a chapter, in steps of a thirtieth of a second.
     harness.run_steps(600);
-    assert_eq!(harness.state().tick().unwrap().mode, Mode::Anchored);
+    assert_eq!(harness.state().tick().unwrap().mode, Mode::Best);
     press(&mut harness, "Release stop");
     press(&mut harness, "Engage");
     until(&mut harness, "engaged again", |tick| tick.state == LoopState::Engaged);

@@ -59,7 +59,7 @@ pub const SCRIPT: [Step; 9] = [
     Step {
         name: text::roles::DEMO_START,
         words: text::roles::DEMO_START_CAPTION,
-        mode: Mode::Anchored,
+        mode: Mode::Best,
         delay_s: 0.05,
         lets_go: None,
         seconds: 14.0,
@@ -123,7 +123,7 @@ pub const SCRIPT: [Step; 9] = [
     Step {
         name: text::roles::DEMO_YOUR_TURN,
         words: text::roles::DEMO_YOUR_TURN_CAPTION,
-        mode: Mode::Anchored,
+        mode: Mode::Best,
         delay_s: 0.05,
         lets_go: None,
         seconds: 20.0,
@@ -367,7 +367,7 @@ mod tests {
 
     #[test]
     fn the_modes_of_the_paper_and_ours_are_all_shown() {
-        for mode in [Mode::Literal, Mode::Linear, Mode::Dfr, Mode::Anchored, Mode::Matched] {
+        for mode in [Mode::Literal, Mode::Linear, Mode::Dfr, Mode::Anchored, Mode::Matched, Mode::Best] {
             assert!(SCRIPT.iter().any(|step| step.mode == mode), "{mode}");
         }
     }

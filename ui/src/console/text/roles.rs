@@ -25,7 +25,7 @@ pub(in crate::console) const DEMO_LITERAL_CAPTION: &str = "The paper's method: a
     predicts the future badly, and it renders no force while the hand rests. The gates keep its \
     excessive forces from the hand.";
 pub(in crate::console) const DEMO_ANCHORED: &str = "Anchored";
-pub(in crate::console) const DEMO_ANCHORED_CAPTION: &str = "Our method: the last measured force, corrected for the hand's motion since then, and only as far as \
+pub(in crate::console) const DEMO_ANCHORED_CAPTION: &str = "The last measured force, corrected for the hand's motion since then, and only as far as \
     earlier corrections reduced the error. On the right, compare its error with direct reflection.";
 pub(in crate::console) const DEMO_MATCHED: &str = "Matched";
 pub(in crate::console) const DEMO_MATCHED_CAPTION: &str = "Same delay, and no force crosses the link at all. Only the tissue's \
@@ -38,8 +38,8 @@ pub(in crate::console) const DEMO_GOVERNOR_CAPTION: &str = "The same with the la
     instead, and ends the feedback. The demonstration engages again when the hand is back.";
 pub(in crate::console) const DEMO_YOUR_TURN: &str = "Your turn";
 pub(in crate::console) const DEMO_YOUR_TURN_CAPTION: &str = "Press M, or the button in the view, and move the instrument yourself: drag with the mouse, wheel for \
-    the height, arrow keys for small steps. Press into the tissue and watch the arrows. With the rig \
-    \"desk\" you can use a SpaceMouse.";
+    the height, arrow keys for small steps. Press into the tissue and watch the arrows. The mode is now \
+    the best of both, anchored and matched, by what each was worth lately. With the rig \"desk\" you can use a SpaceMouse.";
 pub(in crate::console) const PLAY: &str = "Play";
 pub(in crate::console) const PLAY_HOVER: &str = "Continues with the next chapter automatically";
 pub(in crate::console) const HOLD: &str = "Hold";

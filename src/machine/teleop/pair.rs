@@ -78,9 +78,8 @@ pub struct Pair<L: Link = ProgrammedLink> {
     force: ForceReport,
     prompt: Prompt,
     guide_m: Option<Vector3<f64>>,
-    /// Everything is simulated: no hand holds the handle but the simulated one, which may let go on command.
-    simulated: bool,
-    lets_go: bool,
+    /// Whether the simulated hand has let go of the handle; `None` where the handle is a device, which a person may hold.
+    lets_go: Option<bool>,
     link: L,
     tracking: Tracking,
     plausibility: Plausibility,
@@ -142,8 +141,7 @@ impl<L: Link> Pair<L> {
             force: NO_FORCE_YET,
             prompt: Prompt::Rest,
             guide_m: None,
-            simulated: rig.devices.is_none(),
-            lets_go: false,
+            lets_go: rig.devices.is_none().then_some(false),
             link,
             tracking: Tracking::new(rig.rate_hz),
             plausibility: Plausibility::new(1.0 / rig.rate_hz),
@@ -298,7 +296,7 @@ impl<L: Link> Pair<L> {
             gripper_n,
             prompt: self.prompt,
             guide_m: self.guide_m,
-            lets_go: self.lets_go,
+            lets_go: self.lets_go.unwrap_or(false),
         };
         self.hand_force_n = outputs.hand_force_n;
         let leader_m = if tip_command_m.is_some() { target.tip_m } else { seen.tip_m };

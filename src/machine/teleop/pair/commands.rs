@@ -53,8 +53,10 @@ impl<L: Link> Pair<L> {
             {
                 self.guide_m = guide_m;
             }
-            Command::LetGo(_) | Command::SetGovernor(_) if !self.simulated => return Err(Refusal::SimulatedOnly),
-            Command::LetGo(lets_go) => self.lets_go = lets_go,
+            Command::LetGo(_) | Command::SetGovernor(_) if self.lets_go.is_none() => {
+                return Err(Refusal::SimulatedOnly);
+            }
+            Command::LetGo(lets_go) => self.lets_go = Some(lets_go),
             Command::SetGovernor(on) => self.chain.set_governor(on),
             Command::Prompt(_, prompt) if prompt.is_finite() => return Err(Refusal::State(self.state())),
             Command::Guide(_) if self.state().is_latched() => return Err(Refusal::State(self.state())),
@@ -136,7 +138,7 @@ impl<L: Link> Pair<L> {
             self.prompt = Prompt::Rest;
         }
         if to.is_latched() {
-            (self.guide_m, self.lets_go) = (None, false);
+            (self.guide_m, self.lets_go) = (None, self.lets_go.map(|_| false));
         }
         if let (LoopState::Engaged, Some(seen)) = (to, self.last_inputs) {
             // Only here: if the endoscope turns while engaged, the mapping must not turn the motion under the

@@ -117,12 +117,13 @@ fn the_best_of_two_is_judged_by_what_the_leader_rendered() {
     let mut link = Vec::new();
     let modes = [Mode::Anchored, Mode::Matched, Mode::Best];
     let (mut here_n, mut there_n) = ([0.0; 3], [0.0; 3]);
-    for k in 0..5000 {
+    for k in 0..9000 {
         let truth = sample(k, 1000.0);
         identifier.step(&truth);
         link.push(*identifier.parcel());
         let rendered = renderer.step(&sample(k + 20, 1000.0).position_m, k.checked_sub(10).map(|k| &link[k]));
-        if k >= 2000 {
+        // The softmin remembers a second of motion, the first moments included.
+        if k >= 6000 {
             for (i, mode) in modes.into_iter().enumerate() {
                 here_n[i] += (identifier.report().prediction(mode).unwrap() - truth.force_n).norm();
                 there_n[i] += (rendered.force(mode).unwrap() - truth.force_n).norm();

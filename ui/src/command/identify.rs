@@ -25,7 +25,7 @@ pub(super) struct Arguments {
     map: Vec<String>,
     /// Rendering mode: anchored, matched, best, nima, dfr, linear, literal, or a baseline: `model_mediated`, waves, passivity,
     /// kalman, autoregressive
-    #[arg(long, default_value = "anchored")]
+    #[arg(long, default_value = "best")]
     mode: Mode,
     /// Length of the identification window, ms
     #[arg(long, value_name = "MS", default_value_t = 300.0, allow_negative_numbers = true)]
@@ -36,7 +36,7 @@ pub(super) struct Arguments {
     /// Highest polynomial degree
     #[arg(long, value_name = "N", default_value_t = MAX_DEGREE)]
     max_degree: usize,
-    /// Let the force on each axis depend on the motion of all axes (anchored mode; slower)
+    /// Let the force on each axis depend on the motion of all axes (matched and best; slower)
     #[arg(long)]
     cross_talk: bool,
     /// What literal and linear regress on: increments (what the motion changed over the window) or displacement (from the origin)

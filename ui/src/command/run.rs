@@ -40,7 +40,7 @@ pub(super) struct Arguments {
     /// One-way delay of the link in ms (default: the rig's)
     #[arg(long, value_name = "D", allow_negative_numbers = true)]
     delay_ms: Option<f64>,
-    /// Let the force on each axis depend on the motion of all axes (anchored mode; slower)
+    /// Let the force on each axis depend on the motion of all axes (matched and best; slower)
     #[arg(long)]
     cross_talk: bool,
     /// Compute every mode and compare their errors (default: only the mode that is rendered, beside delayed reflection)

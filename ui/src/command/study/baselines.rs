@@ -27,7 +27,7 @@ pub(in crate::command) struct Arguments {
     /// One-way delay of the link in ms; may be given several times (default: 10, 50, 100 and 300)
     #[arg(long, value_name = "D", allow_negative_numbers = true)]
     delay_ms: Vec<f64>,
-    /// Let the program's own modes learn the force on each axis from the motion of all axes
+    /// Let matched and best learn the force on each axis from the motion of all axes
     #[arg(long)]
     cross_talk: bool,
 }

@@ -2,6 +2,9 @@
 
 mod files;
 mod mounted;
+mod rig_file;
+
+use std::path::Path;
 
 use nalgebra::{UnitQuaternion, Vector3};
 use nima_core::{
@@ -16,6 +19,7 @@ use serde::{Deserialize, Serialize};
 pub(crate) use files::parse_with;
 pub use files::{ConfigError, Ranges, parse, text};
 pub use mounted::SimulatedWrists;
+pub use rig_file::{RigFile, RigFileError};
 
 use crate::rig;
 
@@ -226,10 +230,23 @@ impl RigConfig {
     /// ```
     pub fn load(name: &str) -> Result<Self, ConfigError> {
         let (path, text) = text("rig", name, &RIGS)?;
-        let mut rig: Self = parse_with("rig", &path, &text, rig::take_out_makes)?;
+        Self::parse(&path, &text)
+    }
+
+    /// The rig that this text of a file describes.
+    ///
+    /// # Errors
+    /// As [`load`](Self::load).
+    pub fn parse(path: &Path, text: &str) -> Result<Self, ConfigError> {
+        let mut rig: Self = parse_with("rig", path, text, rig::take_out_makes)?;
         rig.devices = rig.devices.map(|devices| devices.emulated_in(&nima_devices::own_folder::runtime_folder()));
         rig.validate()?;
         Ok(rig)
+    }
+
+    /// The names of the embedded rigs.
+    pub fn names() -> impl Iterator<Item = &'static str> {
+        RIGS.into_iter().map(|(name, _)| name)
     }
 
     /// Settings of the identification for this rig.

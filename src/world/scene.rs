@@ -189,6 +189,11 @@ impl Scene {
         Ok(scene)
     }
 
+    /// The names of the built-in scenes.
+    pub fn names() -> impl Iterator<Item = &'static str> {
+        SCENES.into_iter().map(|(name, _)| name)
+    }
+
     /// Checks every value's range.
     ///
     /// # Errors

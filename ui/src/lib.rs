@@ -4,6 +4,7 @@
 
 pub mod command;
 pub mod console;
+mod emulators;
 pub mod leaving;
 pub mod telling;
 mod words;

@@ -121,6 +121,26 @@ impl Plugged {
         Self { force_dimension_library: library, ..Self::under(Path::new("/sys")) }
     }
 
+    /// One line for each: where it is, what it can be used for, its identity.
+    pub fn lines(&self) -> Vec<[String; 3]> {
+        let usb = |usb: &Option<UsbIds>| usb.as_ref().map_or_else(|| "not on USB".to_owned(), UsbIds::words);
+        let mut lines = Vec::new();
+        for port in &self.serial {
+            lines.push([port.path.display().to_string(), "serial port".to_owned(), usb(&port.usb)]);
+        }
+        for node in &self.hid {
+            let used = node.usable_as.unwrap_or("other input device").to_owned();
+            lines.push([node.path.display().to_string(), used, node.usb.words()]);
+        }
+        for device in &self.usb {
+            lines.push(["USB".to_owned(), device.usable_as.to_owned(), device.usb.words()]);
+        }
+        if let Some(library) = &self.force_dimension_library {
+            lines.push(["library".to_owned(), "Force Dimension SDK".to_owned(), library.display().to_string()]);
+        }
+        lines
+    }
+
     /// Lists devices from the kernel's file system at `sys`; does not look for a library.
     pub fn under(sys: &Path) -> Self {
         let serial = entries(&sys.join("class/tty")).iter().filter_map(|entry| serial_port(entry)).collect();

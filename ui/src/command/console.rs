@@ -10,9 +10,10 @@ use clap::Args;
 use nima_machine::config::SchedulingClass;
 use nima_world::Plan;
 
-use super::{emulators::Emulators, output, setup::Setup};
+use super::{output, setup::Setup};
 use crate::{
-    console::{self, Options, in_force::InForce, pictures::Album, roles::Role, wizards::Which},
+    console::{self, Begun, Options, in_force::InForce, pictures::Album, roles::Role, wizards::Which},
+    emulators::Emulators,
     telling::tell,
 };
 
@@ -63,7 +64,8 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let (mut rig, scene) = arguments.setup.load()?;
     rig.scheduling = arguments.scheduling.unwrap_or(rig.scheduling);
     let leave = arguments.setup.leave()?;
-    let _emulators = Emulators::start(&arguments.setup, rig.devices.as_ref())?;
+    let choice = arguments.setup.choice();
+    let emulators = Emulators::start(&choice.rig, &choice.scene, rig.devices.as_ref())?;
     let calibrations = InForce::load(None, &rig, &scene).calibrations(&rig);
     let mut plan = Plan { rig: rig.clone(), scene: scene.clone(), calibrations, engage: false };
     // Nobody can be hurt by a simulated or emulated rig, so the demo starts at once.
@@ -86,7 +88,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     if let Some(folder) = &arguments.pictures {
         std::fs::create_dir_all(folder).with_context(|| format!("cannot create the folder {}", folder.display()))?;
     }
-    console::run(handle, rig, scene, options)?;
+    console::run(Begun { choice, emulators, handle, rig, scene }, options)?;
     if leave.is_asked() {
         tell("nima: ended as asked: force and drives are off");
     }

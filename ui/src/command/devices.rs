@@ -7,7 +7,7 @@ use anyhow::{Context as _, bail};
 use clap::Args;
 use nima_devices::{
     Standing,
-    discovery::{Diagnosis, Found, KINDS, Outcome, Plugged, TIMEOUT, UsbIds, diagnose, probe_named, rules},
+    discovery::{Diagnosis, Found, KINDS, Outcome, Plugged, TIMEOUT, diagnose, probe_named, rules},
 };
 use nima_machine::{config::RigConfig, rig::rig_probes};
 use serde::Serialize;
@@ -73,21 +73,7 @@ fn table(text: &mut String, rows: &[[String; 3]]) {
 fn in_words(report: &Report) -> String {
     let Report { plugged, devices } = report;
     let mut text = String::from("Plugged in\n");
-    let usb = |usb: &Option<UsbIds>| usb.as_ref().map_or_else(|| "not on USB".to_owned(), UsbIds::words);
-    let mut rows = Vec::new();
-    for port in &plugged.serial {
-        rows.push([port.path.display().to_string(), "serial port".to_owned(), usb(&port.usb)]);
-    }
-    for node in &plugged.hid {
-        let used = node.usable_as.unwrap_or("other input device").to_owned();
-        rows.push([node.path.display().to_string(), used, node.usb.words()]);
-    }
-    for device in &plugged.usb {
-        rows.push(["USB".to_owned(), device.usable_as.to_owned(), device.usb.words()]);
-    }
-    if let Some(library) = &plugged.force_dimension_library {
-        rows.push(["library".to_owned(), "Force Dimension SDK".to_owned(), library.display().to_string()]);
-    }
+    let rows = plugged.lines();
     if rows.is_empty() {
         text.push_str("  no device that this program can use\n");
     }

@@ -4,7 +4,6 @@ mod calibrate;
 mod console;
 mod devices;
 mod emulate;
-mod emulators;
 mod ending;
 mod evaluate;
 mod identify;

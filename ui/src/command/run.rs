@@ -17,9 +17,10 @@ use nima_machine::{
 };
 use nima_world::Plan;
 
-use super::{emulators::Emulators, ending::Reasons, output, setup::Setup};
+use super::{ending::Reasons, output, setup::Setup};
 use crate::{
     console::in_force::InForce,
+    emulators::Emulators,
     leaving::Leave,
     telling::tell,
     words::{self, Remedy as _},
@@ -77,7 +78,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         bail!("rig \"{}\" has devices, which need the real clock: remove --virtual", rig.name);
     }
     let leave = arguments.setup.leave()?;
-    let emulators = Emulators::start(&arguments.setup, rig.devices.as_ref())?;
+    let emulators = Emulators::start(arguments.setup.rig(), arguments.setup.scene(), rig.devices.as_ref())?;
     let mut in_force = InForce::load(None, &rig, &scene);
     let calibrations = in_force.calibrations(&rig);
     // With a calibrated wrist sensor the bias is checked before the tool may touch anything. Only rigs that cannot hurt

@@ -4,7 +4,7 @@ use clap::Args;
 use nima_machine::config::{ConfigError, RigConfig};
 use nima_world::scene::Scene;
 
-use crate::leaving::Leave;
+use crate::{console::start::Choice, leaving::Leave};
 
 #[derive(Debug, Args)]
 pub(super) struct Setup {
@@ -34,6 +34,15 @@ impl Setup {
     /// The name or path of the scene.
     pub(super) fn scene(&self) -> &str {
         &self.scene
+    }
+
+    /// Both, as the console remembers them: files by their whole paths.
+    pub(super) fn choice(&self) -> Choice {
+        let whole = |name: &str| {
+            let path = std::fs::canonicalize(name).ok().filter(|path| path.is_file());
+            path.map_or_else(|| name.to_owned(), |path| path.display().to_string())
+        };
+        Choice { rig: whole(&self.rig), scene: whole(&self.scene) }
     }
 
     /// Requests to end the run: signals, and the end of standard input if that was requested.

@@ -2,6 +2,7 @@
 
 mod calibrating;
 mod pace;
+mod starting;
 
 use std::{
     path::Path,
@@ -37,10 +38,12 @@ use super::{
     scene3d::{SceneView, extras::Extras},
     screenshot,
     settings::{Kept, Settings},
+    start::{Choice, StartPage},
     theme,
     wizards::Wizards,
 };
-use crate::{console::text, telling::tell};
+use crate::{console::text, emulators::Emulators, telling::tell};
+use starting::Starting;
 
 /// Antialiasing in 3-D is switched off if the median time between frames is longer than this (fewer than 26 a second)
 /// ...
@@ -52,6 +55,11 @@ const WARM_UP: Duration = Duration::from_secs(4);
 #[derive(Debug)]
 pub struct ConsoleApp {
     door: Option<Door>,
+    /// The emulators of an emulated rig; they end after the loop.
+    emulators: Option<Emulators>,
+    running: Choice,
+    starting: Option<Starting>,
+    start: StartPage,
     /// Loops that the console starts run in simulated time, so many times as fast as real time.
     simulated_speed: Option<f64>,
     /// Used to wake the window from another thread.
@@ -101,6 +109,10 @@ impl ConsoleApp {
             renderer: cc.gl.as_deref().map(renderer_of).unwrap_or_default(),
             meter: None,
             door: Some(door_of(handle, &cc.egui_ctx)),
+            emulators: None,
+            running: Choice::default(),
+            starting: None,
+            start: StartPage::new(Choice::default()),
             simulated_speed: None,
             ctx: cc.egui_ctx.clone(),
             in_force,
@@ -162,7 +174,9 @@ impl ConsoleApp {
         if settings.is_first_run() {
             self.help.begin_tour();
         }
+        self.start.set_folder(settings.folder());
         self.settings = settings;
+        self.running.remember(&mut self.settings.now.recent);
         self
     }
 
@@ -259,6 +273,11 @@ impl ConsoleApp {
         }
         // End the old loop first: a rig must have one controller only.
         drop(self.door.take());
+        self.start_loop(rig, scene)
+    }
+
+    /// Starts the loop of this rig, idle, when the old one has ended.
+    fn start_loop(&mut self, rig: RigConfig, scene: Scene) -> Result<(), String> {
         self.in_force.bind(&rig, &scene);
         let calibrations = self.in_force.calibrations(&rig);
         let plan = Plan { rig: rig.clone(), scene: scene.clone(), calibrations, engage: false };
@@ -290,7 +309,8 @@ impl ConsoleApp {
         let bar = Frame::new().fill(theme::now().panel).inner_margin(Margin::symmetric(14, 0));
         Panel::top("top_bar").exact_size(72.0).resizable(false).frame(bar).show(ui, |ui| {
             let calibrating = self.wizards.open.is_some();
-            top_bar_ui(
+            let before = self.role();
+            let wants_start = top_bar_ui(
                 ui,
                 &self.live,
                 &mut self.top_bar,
@@ -301,6 +321,11 @@ impl ConsoleApp {
             );
             let pressed = keys::role_pressed(ui.ctx()).filter(|_| !calibrating);
             self.settings.now.role = pressed.unwrap_or(self.role());
+            if wants_start && !self.start.is_open {
+                self.open_start();
+            } else if self.starting.is_none() && (wants_start || pressed.is_some() || self.role() != before) {
+                self.start.is_open = false;
+            }
         });
         let signs = self.live.signs(self.outbox.stop_is_stuck());
         let loop_s = self.live.first_tick().map(|tick| tick.t_s);
@@ -308,6 +333,8 @@ impl ConsoleApp {
         let room = ui.available_rect_before_wrap();
         if self.wizards.open.is_some() {
             self.wizard_layout(ui);
+        } else if self.start.is_open {
+            self.start_layout(ui);
         } else {
             self.monitor_layout(ui);
         }
@@ -358,6 +385,7 @@ impl eframe::App for ConsoleApp {
             return;
         }
         // Also while the window is hidden, so that the queues stay empty and the history complete.
+        self.go_on_starting();
         self.take_in();
         self.ask();
     }
@@ -375,6 +403,7 @@ impl eframe::App for ConsoleApp {
             self.outbox.push(Command::Stop);
         }
         self.help.glossary ^= keys::glossary_pressed(&ctx);
+        self.obey_start_key(&ctx);
         if keys::mark_pressed(&ctx) {
             self.live.mark();
         }

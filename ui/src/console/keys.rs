@@ -43,6 +43,11 @@ pub(super) fn alarms_pressed(ctx: &Context) -> bool {
     ctx.input(|input| input.key_pressed(Key::F5))
 }
 
+/// Whether the key for the start page was pressed.
+pub(super) fn start_pressed(ctx: &Context) -> bool {
+    ctx.input(|input| input.key_pressed(Key::F6))
+}
+
 /// Whether the key for the glossary was pressed.
 pub(super) fn glossary_pressed(ctx: &Context) -> bool {
     ctx.input(|input| input.key_pressed(Key::F4))

@@ -28,6 +28,7 @@ pub mod rolling;
 pub mod scene3d;
 pub mod screenshot;
 pub mod settings;
+pub mod start;
 pub mod stiffness;
 pub mod text;
 pub mod theme;
@@ -39,10 +40,11 @@ use std::{path::PathBuf, time::Duration};
 use nima_machine::{config::RigConfig, runtime::Handle};
 use nima_world::scene::Scene;
 use settings::Kept;
+use start::Choice;
 
 pub use app::ConsoleApp;
 
-use crate::leaving::Leave;
+use crate::{emulators::Emulators, leaving::Leave};
 
 /// Options of the window, for screenshots and tests. By default it stays open until it is closed.
 #[derive(Clone, Debug, Default)]
@@ -69,8 +71,18 @@ pub struct Options {
     pub leave: Leave,
 }
 
+/// What runs when the console opens.
+#[derive(Debug)]
+pub(crate) struct Begun {
+    pub(crate) choice: Choice,
+    pub(crate) emulators: Option<Emulators>,
+    pub(crate) handle: Handle,
+    pub(crate) rig: RigConfig,
+    pub(crate) scene: Scene,
+}
+
 /// Opens the console for a running loop; returns when the window is closed and the loop has ended.
-pub fn run(handle: Handle, rig: RigConfig, scene: Scene, options: Options) -> anyhow::Result<()> {
+pub(crate) fn run(begun: Begun, options: Options) -> anyhow::Result<()> {
     let viewport = egui::ViewportBuilder::default()
         .with_title(text::top_bar::NIMA_CONSOLE)
         .with_app_id("nima-console")
@@ -86,21 +98,28 @@ pub fn run(handle: Handle, rig: RigConfig, scene: Scene, options: Options) -> an
         centered: true,
         ..Default::default()
     };
-    let create: eframe::AppCreator<'_> = Box::new(move |cc| Ok(Box::new(console(cc, handle, rig, scene, options))));
+    let create: eframe::AppCreator<'_> = Box::new(move |cc| Ok(Box::new(console(cc, begun, options))));
     eframe::run_native(text::top_bar::NIMA_CONSOLE, native, create)
         .map_err(|error| NoWindow::new(&error.to_string()).into())
 }
 
 /// The console with the user's settings; screenshots use the defaults and do not change the settings.
-fn console(
-    cc: &eframe::CreationContext<'_>,
-    handle: Handle,
-    rig: RigConfig,
-    scene: Scene,
-    options: Options,
-) -> ConsoleApp {
+fn console(cc: &eframe::CreationContext<'_>, begun: Begun, options: Options) -> ConsoleApp {
+    let Begun { choice, emulators, handle, rig, scene } = begun;
     let settings = if options.pictures.is_some() { Kept::default() } else { Kept::of_user() };
-    ConsoleApp::new(cc, handle, rig, scene).with_settings(settings).with_options(options)
+    let app = ConsoleApp::new(cc, handle, rig, scene).with_choice(choice, emulators);
+    app.with_settings(settings).with_options(options)
+}
+
+/// An error with its causes, in one line.
+fn chain(error: &dyn std::error::Error) -> String {
+    let mut words = error.to_string();
+    let mut source = error.source();
+    while let Some(cause) = source {
+        words = format!("{words}: {cause}");
+        source = cause.source();
+    }
+    words
 }
 
 /// No window could be opened: there is no display, or no usable OpenGL.

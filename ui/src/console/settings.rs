@@ -12,7 +12,7 @@ use nima_files::{PASSAGE, shortened, write_atomically};
 use nima_recording::store::Store;
 use serde::{Deserialize, Serialize};
 
-use super::{desk::Layout, roles::Role};
+use super::{desk::Layout, roles::Role, start::Choice};
 use crate::console::text;
 
 const FILE: &str = "console.json";
@@ -34,6 +34,8 @@ pub struct Settings {
     pub toured: bool,
     /// Scale of the user interface, percent; [`SCALES`].
     pub scale_percent: u16,
+    /// Rigs and scenes that were used, the last one first.
+    pub recent: Vec<Choice>,
 }
 
 /// Smallest and largest scale, percent.
@@ -48,6 +50,7 @@ impl Default for Settings {
             light: false,
             toured: false,
             scale_percent: 100,
+            recent: Vec::new(),
         }
     }
 }
@@ -77,6 +80,11 @@ impl Kept {
             Ok(text) => read(&text).unwrap_or_else(|error| (Settings::default(), Some(set_aside(folder, &error)))),
         };
         Self { folder: Some(folder.to_path_buf()), saved: now.clone(), now, told }
+    }
+
+    /// The folder of the user's data; `None` if there is none.
+    pub fn folder(&self) -> Option<&Path> {
+        self.folder.as_deref()
     }
 
     /// Saves the settings if they have changed.

@@ -8,6 +8,7 @@ mod desk;
 mod drift;
 mod instruments;
 mod roles;
+mod starting;
 mod tradeoff;
 mod view;
 mod virtual_rig;

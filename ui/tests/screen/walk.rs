@@ -197,6 +197,19 @@ fn nothing_is_cut_or_overlaps_in_the_wizards() {
 }
 
 #[test]
+fn nothing_is_cut_or_overlaps_on_the_start_page() {
+    let mut harness = console_of("peg_transfer", SIZES[0], |app| app);
+    until(&mut harness, "any tick", |_| true);
+    bench::press(&mut harness, "Rig");
+    let mut all = Vec::new();
+    for size in SIZES {
+        let faults = faults(&mut harness, size, true);
+        all.extend(faults.into_iter().map(|fault| format!("{size:?}: {fault}")));
+    }
+    assert!(all.is_empty(), "{} faults:\n{}", all.len(), all.join("\n"));
+}
+
+#[test]
 fn the_alarm_and_the_stopped_state_fit_too() {
     let mut harness = console_of("bimanual", SIZES[0], |app| app);
     until(&mut harness, "any tick", |_| true);

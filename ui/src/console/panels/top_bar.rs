@@ -34,7 +34,8 @@ pub struct TopBarState {
     pub alarms: Alarms,
 }
 
-/// The bar, with role switch and menu. While a person guides the arm (`calibrating`), it cannot be engaged.
+/// The bar, with role switch and menu. While a person guides the arm (`calibrating`), it cannot be engaged. Returns true when the start
+/// page is wanted.
 pub fn top_bar_ui(
     ui: &mut Ui,
     live: &Live,
@@ -43,7 +44,8 @@ pub fn top_bar_ui(
     settings: &mut Settings,
     help: &mut Help,
     calibrating: bool,
-) {
+) -> bool {
+    let mut wants_start = false;
     let time_s = ui.input(|input| input.time);
     let now = live.state();
     let since_s = match state.seen {
@@ -58,7 +60,7 @@ pub fn top_bar_ui(
         }
     };
     ui.horizontal_centered(|ui| {
-        identity_ui(ui, live, settings, help, &mut state.alarms, calibrating);
+        wants_start = identity_ui(ui, live, settings, help, &mut state.alarms, calibrating);
         ui.add_space(10.0);
         state_ui(ui, now);
         ui.add_space(10.0);
@@ -70,9 +72,10 @@ pub fn top_bar_ui(
             refusal_ui(ui, live);
         });
     });
+    wants_start
 }
 
-/// Name of the program, and below it the role switch and the menu.
+/// Name of the program, and below it the role switch, the button of the start page, and the menu. Returns true when that is pressed.
 fn identity_ui(
     ui: &mut Ui,
     live: &Live,
@@ -80,7 +83,8 @@ fn identity_ui(
     help: &mut Help,
     alarms: &mut Alarms,
     calibrating: bool,
-) {
+) -> bool {
+    let mut wants_start = false;
     ui.vertical(|ui| {
         ui.add_space(8.0);
         ui.spacing_mut().item_spacing.y = 4.0;
@@ -90,6 +94,9 @@ fn identity_ui(
         });
         ui.horizontal(|ui| {
             switch_ui(ui, &mut settings.role, !calibrating);
+            let start = Button::new(text::start::OPEN).min_size(vec2(44.0, 30.0));
+            let start = ui.add_enabled(!calibrating, start).on_hover_text(text::start::OPEN_HOVER);
+            wants_start = start.on_disabled_hover_text(text::start::OPEN_DISABLED_HOVER).clicked();
             menu_ui(ui, settings, help, alarms);
             if ui.ctx().content_rect().width() >= SCENE_FROM {
                 ui.add_space(4.0);
@@ -98,6 +105,7 @@ fn identity_ui(
             }
         });
     });
+    wants_start
 }
 
 fn state_ui(ui: &mut Ui, state: LoopState) {

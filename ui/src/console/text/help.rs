@@ -79,11 +79,12 @@ pub(in crate::console) const KEYS_HEADING: &str = "Keys";
 pub(in crate::console) const WORDS_HEADING: &str = "Terms";
 
 /// All keys with their functions.
-pub(in crate::console) const KEYS: [(&str, &str); 13] = [
+pub(in crate::console) const KEYS: [(&str, &str); 14] = [
     ("Space, Escape", "Stop, in every view. While you type a name, only Escape."),
     ("F1, F2, F3", "Surgeon, Technician, Demo."),
     ("F4", "This list of keys and terms."),
     ("F5", "The list of the last alarms."),
+    ("F6", "Choose a rig and a scene."),
     ("A", "Acknowledge the alarms."),
     ("E", "Mark this moment in the traces."),
     ("M", "Drive the instrument by mouse, or let it go."),

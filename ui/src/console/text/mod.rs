@@ -28,6 +28,7 @@ pub(super) mod modes;
 pub(super) mod roles;
 pub(super) mod safety;
 pub(super) mod settings;
+pub(super) mod start;
 pub(super) mod timing;
 pub(super) mod tip_force;
 pub(super) mod top_bar;

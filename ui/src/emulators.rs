@@ -9,24 +9,22 @@ use std::{
 use anyhow::{Context as _, bail};
 use nima_machine::rig::{SIDES, Settings, Side};
 
-use super::setup::Setup;
-
 /// Before they serve, emulators of arms search a starting pose.
 const READY_WITHIN: Duration = Duration::from_mins(1);
 
 /// The process of the emulators; dropping this ends it.
 #[derive(Debug)]
-pub(super) struct Emulators {
+pub(crate) struct Emulators {
     child: Child,
 }
 
 impl Emulators {
-    /// Starts the emulators if the rig is emulated, and waits until they serve.
-    pub(super) fn start(setup: &Setup, devices: Option<&Settings>) -> anyhow::Result<Option<Self>> {
+    /// Starts the emulators if the rig of this name is emulated, around the scene of that name, and waits until they serve.
+    pub(crate) fn start(rig: &str, scene: &str, devices: Option<&Settings>) -> anyhow::Result<Option<Self>> {
         let Some(devices) = devices.filter(|devices| devices.emulated) else { return Ok(None) };
         let program = std::env::current_exe().context("cannot find the path of this program")?;
         let mut command = Command::new(program);
-        command.args(["emulate", "rig", "--rig", setup.rig(), "--scene", setup.scene(), "--until-input-ends"]);
+        command.args(["emulate", "rig", "--rig", rig, "--scene", scene, "--until-input-ends"]);
         // Ctrl-C is for the loop only, which ends in order and then ends the emulators.
         #[cfg(unix)]
         std::os::unix::process::CommandExt::process_group(&mut command, 0);

@@ -1,0 +1,205 @@
+//! Rig files that the program changes: comments, order and layout of whoever wrote them are kept.
+
+use std::{
+    io,
+    path::{Path, PathBuf},
+};
+
+use toml_edit::{DocumentMut, Item, Table, Value};
+
+use super::{ConfigError, RIGS, RigConfig, text};
+
+/// A rig file in memory.
+///
+/// ```
+/// use nima_machine::config::RigFile;
+///
+/// let mut file = RigFile::of("emulated")?;
+/// file.set("devices.right.sensor.serial_number", "4711");
+/// assert_eq!(file.rig()?.name, "Emulated rig");
+/// assert!(file.text().contains("# The mirror image."), "comments stay");
+///
+/// file.set("rate_hz", 1.0);
+/// assert!(file.rig().is_err(), "and what is impossible is refused");
+/// # Ok::<(), nima_machine::config::RigFileError>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct RigFile {
+    path: PathBuf,
+    document: DocumentMut,
+}
+
+/// Why a rig file cannot be changed or saved.
+#[derive(Debug, thiserror::Error)]
+pub enum RigFileError {
+    /// The file cannot be used, or would not be usable any more.
+    #[error(transparent)]
+    Config(#[from] ConfigError),
+    /// It cannot be written.
+    #[error("cannot write the rig file {path}")]
+    Write {
+        /// Its path.
+        path: PathBuf,
+        /// Why.
+        source: io::Error,
+    },
+}
+
+impl RigFile {
+    /// The embedded rig of this name, or a file.
+    ///
+    /// # Errors
+    /// As [`RigConfig::load`].
+    pub fn of(name: &str) -> Result<Self, RigFileError> {
+        let (path, text) = text("rig", name, &RIGS)?;
+        // The settings' own parser first: its errors name the line and the key.
+        RigConfig::parse(&path, &text)?;
+        let document = text.parse().map_err(|error: toml_edit::TomlError| ConfigError::Parse {
+            kind: "rig",
+            path: path.clone(),
+            message: error.message().to_owned(),
+        })?;
+        Ok(Self { path, document })
+    }
+
+    /// Sets the value of a key with dots (`devices.right.sensor.port`); the comment beside it stays. Tables that are missing are made.
+    pub fn set(&mut self, key: &str, value: impl Into<Value>) {
+        let (tables, last) = key.rsplit_once('.').map_or(("", key), |(tables, last)| (tables, last));
+        let mut table: &mut dyn toml_edit::TableLike = self.document.as_table_mut();
+        for name in tables.split('.').filter(|name| !name.is_empty()) {
+            let item = table.entry(name).or_insert(Item::Table(Table::new()));
+            if !item.is_table_like() {
+                *item = Item::Table(Table::new());
+            }
+            let Some(next) = item.as_table_like_mut() else { return };
+            table = next;
+        }
+        let mut value = value.into();
+        if let Some(before) = table.get(last).and_then(Item::as_value) {
+            *value.decor_mut() = before.decor().clone();
+        }
+        table.insert(last, Item::Value(value));
+    }
+
+    /// Takes a key with dots away, with everything below it.
+    pub fn remove(&mut self, key: &str) {
+        let (tables, last) = key.rsplit_once('.').map_or(("", key), |(tables, last)| (tables, last));
+        let mut table: &mut dyn toml_edit::TableLike = self.document.as_table_mut();
+        for name in tables.split('.').filter(|name| !name.is_empty()) {
+            let Some(next) = table.get_mut(name).and_then(Item::as_table_like_mut) else { return };
+            table = next;
+        }
+        table.remove(last);
+    }
+
+    /// Exchanges what two keys with dots hold; nothing where one of them is missing.
+    pub fn swap(&mut self, one: &str, other: &str) {
+        let (Some(first), Some(second)) = (self.item(one).cloned(), self.item(other).cloned()) else { return };
+        self.put(one, second);
+        self.put(other, first);
+    }
+
+    fn item(&self, key: &str) -> Option<&Item> {
+        let mut item = self.document.as_item();
+        for name in key.split('.') {
+            item = item.as_table_like()?.get(name)?;
+        }
+        Some(item)
+    }
+
+    fn put(&mut self, key: &str, new: Item) {
+        let mut item = self.document.as_item_mut();
+        for name in key.split('.') {
+            let Some(next) = item.as_table_like_mut().and_then(|table| table.get_mut(name)) else { return };
+            item = next;
+        }
+        *item = new;
+    }
+
+    /// The text of the file.
+    pub fn text(&self) -> String {
+        self.document.to_string()
+    }
+
+    /// The rig that it describes now.
+    ///
+    /// # Errors
+    /// As [`RigConfig::load`].
+    pub fn rig(&self) -> Result<RigConfig, ConfigError> {
+        RigConfig::parse(&self.path, &self.text())
+    }
+
+    /// Writes it there, whole or not at all; a rig that would be refused is not written.
+    ///
+    /// # Errors
+    /// [`RigFileError`].
+    pub fn save(&self, path: &Path) -> Result<RigConfig, RigFileError> {
+        let rig = self.rig()?;
+        let written = path
+            .parent()
+            .map_or(Ok(()), std::fs::create_dir_all)
+            .and_then(|()| nima_files::write_atomically(path, |file| file.write_all(self.text().as_bytes())));
+        written.map_err(|source| RigFileError::Write { path: path.to_owned(), source })?;
+        Ok(rig)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_person_s_comments_and_order_stay() {
+        let mut file = RigFile::of("paper").unwrap();
+        let before = file.text();
+        file.set("name", "Rig of theatre 3");
+        let after = file.text();
+        let changed: Vec<_> = before.lines().zip(after.lines()).filter(|(before, after)| before != after).collect();
+        assert_eq!(changed.len(), 1, "{changed:?}");
+        assert_eq!(changed[0].1, "name = \"Rig of theatre 3\"");
+        assert_eq!(before.lines().count(), after.lines().count());
+    }
+
+    #[test]
+    fn what_was_not_there_is_made_and_what_is_taken_away_is_gone() {
+        let mut file = RigFile::of("simulated").unwrap();
+        file.set("desk.cap.source", "any");
+        assert!(file.rig().unwrap().desk.is_some());
+        file.remove("desk");
+        file.remove("desk.cap");
+        assert_eq!(file.text(), RigFile::of("simulated").unwrap().text());
+    }
+
+    #[test]
+    fn two_sides_are_exchanged_whole() {
+        let mut file = RigFile::of("emulated").unwrap();
+        let was = file.rig().unwrap().devices.unwrap();
+        file.swap("devices.right.handle", "devices.left.handle");
+        file.swap("devices.right.sensor", "devices.left.sensor");
+        let now = file.rig().unwrap().devices.unwrap();
+        let (right, left) = (now.right.unwrap(), now.left.unwrap());
+        let (right_was, left_was) = (was.right.unwrap(), was.left.unwrap());
+        assert_eq!((&right.handle, &left.handle), (&left_was.handle, &right_was.handle));
+        assert_eq!((&right.sensor, &left.sensor), (&left_was.sensor, &right_was.sensor));
+        assert_eq!(right.arm, right_was.arm);
+        file.swap("devices.right.handle", "devices.third.handle");
+        assert_eq!(file.rig().unwrap().devices.unwrap().right.unwrap().handle, right.handle);
+    }
+
+    #[test]
+    fn a_file_is_written_whole_and_only_if_it_can_be_used() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("rigs/mine.toml");
+        let mut file = RigFile::of("simulated").unwrap();
+        file.set("name", "Mine");
+        assert_eq!(file.save(&path).unwrap().name, "Mine");
+        assert_eq!(RigConfig::load(path.to_str().unwrap()).unwrap().name, "Mine");
+        file.set("delay_s", 1000.0);
+        let told = file.save(&path).unwrap_err().to_string();
+        assert!(told.contains("delay_s"), "{told}");
+        assert!(RigConfig::load(path.to_str().unwrap()).is_ok(), "the file of before stays");
+        let nowhere = folder.path().join("rigs/mine.toml/below.toml");
+        file.set("delay_s", 0.05);
+        assert!(matches!(file.save(&nowhere), Err(RigFileError::Write { .. })));
+    }
+}

@@ -1,0 +1,130 @@
+//! The console while it changes to another rig or scene: ends the loop, starts the emulators if there are any, starts the loop again, idle.
+
+use std::{
+    sync::mpsc::{Receiver, TryRecvError, channel},
+    thread,
+};
+
+use egui::Ui;
+use nima_machine::config::RigConfig;
+use nima_world::scene::Scene;
+
+use super::ConsoleApp;
+use crate::{
+    console::{
+        chain, keys,
+        start::{Choice, Now},
+        text,
+    },
+    emulators::Emulators,
+};
+
+/// A rig that is being started.
+#[derive(Debug)]
+pub(super) struct Starting {
+    choice: Choice,
+    rig: RigConfig,
+    scene: Scene,
+    emulators: Receiver<Result<Option<Emulators>, String>>,
+    /// What ran before, to go back to if this fails.
+    before: Option<Choice>,
+    /// Why it is started again, if it is what ran before.
+    because: Option<String>,
+}
+
+impl ConsoleApp {
+    /// This rig and this scene run, on these emulators if it is an emulated rig.
+    #[must_use]
+    pub(crate) fn with_choice(mut self, running: Choice, emulators: Option<Emulators>) -> Self {
+        (self.running, self.emulators) = (running, emulators);
+        self
+    }
+
+    /// What runs: a rig and a scene.
+    pub const fn running(&self) -> &Choice {
+        &self.running
+    }
+
+    /// Opens and closes the start page by its key.
+    pub(super) fn obey_start_key(&mut self, ctx: &egui::Context) {
+        if keys::start_pressed(ctx) && self.wizards.open.is_none() && self.starting.is_none() {
+            if self.start.is_open {
+                self.start.is_open = false;
+            } else {
+                self.open_start();
+            }
+        }
+    }
+
+    pub(super) fn open_start(&mut self) {
+        self.start.open(&self.running, &self.settings.now.recent);
+    }
+
+    pub(super) fn start_layout(&mut self, ui: &mut Ui) {
+        let now = Now {
+            live: &self.live,
+            running: &self.running,
+            recent: &self.settings.now.recent,
+            is_starting: self.starting.is_some(),
+        };
+        if let Some(choice) = self.start.ui(ui, &now)
+            && !self.outbox.holds_stop()
+        {
+            let before = self.running.clone();
+            self.begin(choice, Some(before), None);
+        }
+    }
+
+    /// Ends the loop and begins to start this choice. What cannot be loaded ends nothing.
+    fn begin(&mut self, choice: Choice, before: Option<Choice>, because: Option<String>) {
+        let loaded = RigConfig::load(&choice.rig).and_then(|rig| Ok((rig, Scene::load(&choice.scene)?)));
+        let (rig, scene) = match loaded {
+            Ok(loaded) => loaded,
+            Err(error) => return self.start.tell(Some(text::start::not_started(&chain(&error), None))),
+        };
+        // End the old loop first: a rig must have one controller only, and emulators of the same places cannot run twice.
+        drop(self.door.take());
+        drop(self.emulators.take());
+        self.start.tell(None);
+        let (give, emulators) = channel();
+        let (ctx, devices, names) = (self.ctx.clone(), rig.devices.clone(), choice.clone());
+        let work = move || {
+            let started = Emulators::start(&names.rig, &names.scene, devices.as_ref());
+            give.send(started.map_err(|error| format!("{error:#}"))).ok();
+            ctx.request_repaint();
+        };
+        // If no thread can be created, `give` is dropped, and that is told.
+        thread::Builder::new().name("emulators".to_owned()).spawn(work).ok();
+        self.starting = Some(Starting { choice, rig, scene, emulators, before, because });
+    }
+
+    /// Goes on with what was begun, once the emulators serve.
+    pub(super) fn go_on_starting(&mut self) {
+        let Some(starting) = &self.starting else { return };
+        let emulators = match starting.emulators.try_recv() {
+            Err(TryRecvError::Empty) => return,
+            Err(TryRecvError::Disconnected) => Err(text::start::NO_THREAD.to_owned()),
+            Ok(emulators) => emulators,
+        };
+        let Some(Starting { choice, rig, scene, before, because, .. }) = self.starting.take() else { return };
+        let started = emulators.and_then(|emulators| {
+            self.emulators = emulators;
+            self.start_loop(rig, scene)
+        });
+        match (started, before) {
+            (Ok(()), _) => {
+                choice.remember(&mut self.settings.now.recent);
+                self.forget_what_was_taken();
+                self.watched = None;
+                self.start.is_open = because.is_some();
+                self.start.tell(because.map(|cause| text::start::not_started(&cause, Some(&self.live.rig.name))));
+                self.running = choice;
+            }
+            (Err(cause), Some(before)) => self.begin(before, None, Some(cause)),
+            (Err(cause), None) => {
+                self.start.is_open = true;
+                self.start.tell(Some(text::start::not_started(&because.unwrap_or(cause), None)));
+            }
+        }
+    }
+}

@@ -1,0 +1,153 @@
+//! The rigs and scenes to choose from: built-in ones, those in the user's folders, and those used last.
+
+use std::path::Path;
+
+use nima_machine::{config::RigConfig, rig::rig_probes};
+use nima_world::scene::Scene;
+use serde::{Deserialize, Serialize};
+
+use crate::console::text;
+
+/// A rig and a scene, by name or path.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Choice {
+    /// Name of an embedded rig, or the path of a file.
+    pub rig: String,
+    /// Name of a built-in scene, or the path of a file.
+    pub scene: String,
+}
+
+impl Default for Choice {
+    fn default() -> Self {
+        Self { rig: "simulated".to_owned(), scene: "peg_transfer".to_owned() }
+    }
+}
+
+/// Number of choices that are remembered.
+const RECENT_MAX: usize = 5;
+
+impl Choice {
+    /// Puts this choice in front of those made before.
+    pub(in crate::console) fn remember(&self, recent: &mut Vec<Self>) {
+        recent.retain(|choice| choice != self);
+        recent.insert(0, self.clone());
+        recent.truncate(RECENT_MAX);
+    }
+}
+
+/// One entry of a list.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct Entry {
+    /// Name or path: what [`Choice`] holds.
+    pub(super) key: String,
+    pub(super) name: String,
+    pub(super) about: String,
+    pub(super) usable: bool,
+    /// It stands in the user's folder.
+    pub(super) own: bool,
+}
+
+/// Both lists, as they were read last.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Lists {
+    pub(super) rigs: Vec<Entry>,
+    pub(super) scenes: Vec<Entry>,
+}
+
+impl Lists {
+    /// Reads the user's files in `folder` beside what is built in. Files of these choices are listed too, wherever they are.
+    pub(super) fn read(folder: Option<&Path>, used: &[Choice]) -> Self {
+        let rigs = keys(
+            RigConfig::names(),
+            folder.map(|folder| folder.join("rigs")).as_deref(),
+            used.iter().map(|one| &one.rig),
+        );
+        let scenes = keys(
+            Scene::names(),
+            folder.map(|folder| folder.join("scenes")).as_deref(),
+            used.iter().map(|one| &one.scene),
+        );
+        Self { rigs: rigs.into_iter().map(rig).collect(), scenes: scenes.into_iter().map(scene).collect() }
+    }
+}
+
+/// The keys of one list, with whether each is the user's own.
+fn keys<'a>(
+    built_in: impl Iterator<Item = &'static str>,
+    folder: Option<&Path>,
+    used: impl Iterator<Item = &'a String>,
+) -> Vec<(String, bool)> {
+    let mut keys: Vec<_> = built_in.map(|name| (name.to_owned(), false)).collect();
+    let mut own: Vec<_> =
+        folder.iter().flat_map(std::fs::read_dir).flatten().flatten().map(|entry| entry.path()).collect();
+    own.retain(|path| path.extension().is_some_and(|ending| ending == "toml"));
+    own.sort();
+    keys.extend(own.into_iter().map(|path| (path.display().to_string(), true)));
+    for key in used {
+        if keys.iter().all(|(known, _)| known != key) {
+            keys.push((key.clone(), true));
+        }
+    }
+    keys
+}
+
+fn rig((key, own): (String, bool)) -> Entry {
+    match RigConfig::load(&key) {
+        Ok(rig) => {
+            let about = rig.devices.as_ref().map_or_else(
+                || text::start::SIMULATED.to_owned(),
+                |devices| text::start::of_devices(rig_probes(devices).len(), devices.emulated),
+            );
+            Entry { key, name: rig.name, about, usable: true, own }
+        }
+        Err(error) => unusable(key, &error, own),
+    }
+}
+
+fn scene((key, own): (String, bool)) -> Entry {
+    match Scene::load(&key) {
+        Ok(scene) => Entry { key, name: scene.name, about: scene.description, usable: true, own },
+        Err(error) => unusable(key, &error, own),
+    }
+}
+
+fn unusable(key: String, error: &dyn std::error::Error, own: bool) -> Entry {
+    let about = text::start::unusable(&crate::console::chain(error));
+    Entry { name: key.clone(), key, about, usable: false, own }
+}
+
+#[cfg(test)]
+mod tests {
+    use nima_machine::config::RigFile;
+
+    use super::*;
+
+    fn choice(rig: &str) -> Choice {
+        Choice { rig: rig.to_owned(), scene: "bimanual".to_owned() }
+    }
+
+    #[test]
+    fn the_last_choice_is_first_and_none_stands_twice() {
+        let mut recent = Vec::new();
+        for rig in ["a", "b", "a", "c", "d", "e", "f"] {
+            choice(rig).remember(&mut recent);
+        }
+        assert_eq!(recent, ["f", "e", "d", "c", "a"].map(choice));
+    }
+
+    #[test]
+    fn a_file_that_cannot_be_used_is_listed_with_its_cause() {
+        let folder = tempfile::tempdir().unwrap();
+        let rigs = folder.path().join("rigs");
+        RigFile::of("simulated").unwrap().save(&rigs.join("good.toml")).unwrap();
+        std::fs::write(rigs.join("bad.toml"), "rate_hz = \"much\"\n").unwrap();
+        std::fs::write(rigs.join("notes.txt"), "").unwrap();
+        let lists = Lists::read(Some(folder.path()), &[choice("/no/such/rig.toml")]);
+        let own: Vec<_> = lists.rigs.iter().filter(|entry| entry.own).collect();
+        assert_eq!(own.iter().map(|entry| entry.usable).collect::<Vec<_>>(), [false, true, false]);
+        assert!(own[0].about.contains("rate_hz") || own[0].about.contains("line 1"), "{}", own[0].about);
+        assert!(own[2].about.contains("/no/such/rig.toml"), "{}", own[2].about);
+        assert!(lists.scenes.iter().all(|entry| entry.usable && !entry.own && !entry.about.is_empty()));
+        assert_eq!(Lists::read(None, &[]).rigs.len(), RigConfig::names().count());
+    }
+}

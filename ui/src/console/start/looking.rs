@@ -1,0 +1,93 @@
+//! Looks for devices in the background: what is plugged in, and whether the devices of a rig answer.
+
+use std::{
+    sync::mpsc::{Receiver, TryRecvError, channel},
+    thread,
+    time::{Duration, Instant},
+};
+
+use egui::Context;
+use nima_devices::discovery::{Diagnosis, Plugged, TIMEOUT, diagnose};
+use nima_machine::rig::{Settings, rig_probes};
+
+/// Time between two looks at what is plugged in.
+const AGAIN: Duration = Duration::from_secs(2);
+
+/// Work on a thread of its own, and its last result.
+#[derive(Debug)]
+pub(super) struct Looked<T> {
+    running: Option<Receiver<T>>,
+    found: Option<T>,
+}
+
+impl<T> Default for Looked<T> {
+    fn default() -> Self {
+        Self { running: None, found: None }
+    }
+}
+
+impl<T: Send + 'static> Looked<T> {
+    /// Begins; the window is woken when there is a result. Does nothing while work is going on.
+    fn begin(&mut self, ctx: &Context, work: impl FnOnce() -> T + Send + 'static) {
+        if self.running.is_some() {
+            return;
+        }
+        let (give, take) = channel();
+        let ctx = ctx.clone();
+        let looks = move || {
+            give.send(work()).ok();
+            ctx.request_repaint();
+        };
+        self.running = thread::Builder::new().name("devices".to_owned()).spawn(looks).ok().map(|_| take);
+    }
+
+    /// The last result.
+    pub(super) fn found(&mut self) -> Option<&T> {
+        match self.running.as_ref().map(Receiver::try_recv) {
+            Some(Ok(found)) => (self.running, self.found) = (None, Some(found)),
+            Some(Err(TryRecvError::Disconnected)) => self.running = None,
+            Some(Err(TryRecvError::Empty)) | None => {}
+        }
+        self.found.as_ref()
+    }
+
+    /// Whether work is going on.
+    pub(super) const fn is_running(&self) -> bool {
+        self.running.is_some()
+    }
+
+    /// Forgets the result; one that is still to come is dropped.
+    pub(super) fn forget(&mut self) {
+        *self = Self::default();
+    }
+}
+
+/// What is plugged into this computer.
+#[derive(Debug, Default)]
+pub(super) struct PluggedIn {
+    looked: Looked<Plugged>,
+    at: Option<Instant>,
+}
+
+impl PluggedIn {
+    /// As of at most some seconds ago; `None` before the first result.
+    pub(super) fn now(&mut self, ctx: &Context) -> Option<&Plugged> {
+        if self.at.is_none_or(|at| at.elapsed() > AGAIN) {
+            self.at = Some(Instant::now());
+            self.looked.begin(ctx, Plugged::list);
+        }
+        ctx.request_repaint_after(AGAIN);
+        self.looked.found()
+    }
+}
+
+/// Whether each device of a rig answers.
+pub(super) type Answers = Looked<Vec<Diagnosis>>;
+
+impl Answers {
+    /// Opens every device of the rig for a moment.
+    pub(super) fn check(&mut self, ctx: &Context, devices: &Settings) {
+        let probes = rig_probes(devices);
+        self.begin(ctx, move || diagnose(probes, TIMEOUT));
+    }
+}

@@ -1,0 +1,316 @@
+//! The start page: choose or make a rig, choose a scene, see what is plugged in and what is missing.
+
+mod choices;
+mod looking;
+mod making;
+
+use std::path::{Path, PathBuf};
+
+use egui::{Align, Button, CentralPanel, Frame, Label, Layout, Margin, RichText, ScrollArea, TextEdit, Ui, vec2};
+use nima_devices::discovery::{Diagnosis, Found, Outcome, Plugged};
+use nima_machine::{config::RigConfig, messages::LoopState, rig::Settings as Devices};
+
+pub use choices::Choice;
+use choices::{Entry, Lists};
+use looking::{Answers, PluggedIn};
+
+use super::{
+    live::Live,
+    text, theme,
+    widgets::{Sign, card, sign_ui, small, weak},
+};
+
+/// Height of a button that takes a whole row.
+const ROW: f32 = 40.0;
+
+/// State of the page.
+#[derive(Debug)]
+pub struct StartPage {
+    /// Whether the page is shown.
+    pub(super) is_open: bool,
+    chosen: Choice,
+    folder: Option<PathBuf>,
+    lists: Lists,
+    /// The chosen rig's devices, as long as they are what they were when it was chosen.
+    devices: Option<Devices>,
+    new_name: String,
+    told: Option<String>,
+    plugged: PluggedIn,
+    answers: Answers,
+}
+
+/// What the page is drawn from.
+pub(super) struct Now<'a> {
+    pub(super) live: &'a Live,
+    /// What runs.
+    pub(super) running: &'a Choice,
+    pub(super) recent: &'a [Choice],
+    /// A rig is being started.
+    pub(super) is_starting: bool,
+}
+
+impl StartPage {
+    /// The page, closed.
+    pub(super) fn new(chosen: Choice) -> Self {
+        Self {
+            is_open: false,
+            chosen,
+            folder: None,
+            lists: Lists::default(),
+            devices: None,
+            new_name: String::new(),
+            told: None,
+            plugged: PluggedIn::default(),
+            answers: Answers::default(),
+        }
+    }
+
+    /// Shows the page, with everything read anew; what runs is chosen.
+    pub(super) fn open(&mut self, running: &Choice, recent: &[Choice]) {
+        self.is_open = true;
+        self.told = None;
+        self.read(running, recent);
+        self.choose(running.clone());
+    }
+
+    /// Shows this below the button.
+    pub(super) fn tell(&mut self, told: Option<String>) {
+        self.told = told;
+    }
+
+    /// Folder of the user's rigs and scenes.
+    pub(super) fn set_folder(&mut self, folder: Option<&Path>) {
+        self.folder = folder.map(Path::to_path_buf);
+    }
+
+    fn read(&mut self, running: &Choice, recent: &[Choice]) {
+        let used: Vec<_> = recent.iter().chain([running]).cloned().collect();
+        self.lists = Lists::read(self.folder.as_deref(), &used);
+    }
+
+    fn choose(&mut self, choice: Choice) {
+        if choice.rig != self.chosen.rig || self.devices.is_none() {
+            self.answers.forget();
+            self.devices = RigConfig::load(&choice.rig).ok().and_then(|rig| rig.devices);
+        }
+        self.chosen = choice;
+    }
+
+    /// Draws the page; returns the choice that is to be started.
+    pub(super) fn ui(&mut self, ui: &mut Ui, now: &Now<'_>) -> Option<Choice> {
+        let mut start = None;
+        let frame = Frame::new().inner_margin(Margin::symmetric(14, 12));
+        CentralPanel::default().frame(frame).show(ui, |ui| {
+            let height = ui.available_height() - 76.0;
+            ui.horizontal_top(|ui| {
+                let width = (ui.available_width() - 2.0 * theme::GAP) / 3.0;
+                ui.spacing_mut().item_spacing.x = theme::GAP;
+                column(ui, "rigs", vec2(width, height), |ui| self.rigs_ui(ui, now));
+                column(ui, "scenes", vec2(width, height), |ui| self.scenes_ui(ui));
+                column(ui, "devices", vec2(width, height), |ui| self.devices_ui(ui, now));
+            });
+            ui.add_space(6.0);
+            start = self.foot_ui(ui, now);
+        });
+        start
+    }
+
+    fn rigs_ui(&mut self, ui: &mut Ui, now: &Now<'_>) {
+        let mut chosen = None;
+        card(ui, text::start::RIGS, text::start::RIGS_HOVER, |ui| {
+            let others: Vec<_> = now.recent.iter().filter(|choice| *choice != now.running).collect();
+            if !others.is_empty() {
+                ui.label(small(text::start::RECENT));
+            }
+            for choice in others {
+                let rig = name_in(&self.lists.rigs, &choice.rig);
+                let words = format!("{rig}, {}", name_in(&self.lists.scenes, &choice.scene));
+                if row_ui(ui, self.chosen == *choice, true, &words, "").clicked() {
+                    chosen = Some(choice.clone());
+                }
+            }
+            for (heading, own) in [(text::start::BUILT_IN, false), (text::start::YOURS, true)] {
+                let rigs: Vec<_> = self.lists.rigs.iter().filter(|entry| entry.own == own).collect();
+                if !rigs.is_empty() {
+                    ui.label(small(heading));
+                }
+                for entry in rigs {
+                    if entry_ui(ui, entry, self.chosen.rig == entry.key, now.running.rig == entry.key) {
+                        chosen = Some(Choice { rig: entry.key.clone(), ..self.chosen.clone() });
+                    }
+                }
+            }
+        });
+        if let Some(chosen) = chosen {
+            self.choose(chosen);
+        }
+        card(ui, text::start::NEW_NAME, text::start::MAKE_HOVER, |ui| {
+            let width = ui.available_width();
+            let field = ui.add_sized(vec2(width, 28.0), TextEdit::singleline(&mut self.new_name));
+            field.widget_info(|| egui::WidgetInfo::labeled(egui::Role::TextInput, true, text::start::NEW_NAME));
+            let make = ui.add(Button::new(text::start::MAKE).min_size(vec2(width, 32.0)));
+            if make.on_hover_text(text::start::MAKE_HOVER).clicked() {
+                self.make(now);
+            }
+        });
+    }
+
+    fn make(&mut self, now: &Now<'_>) {
+        match making::make(self.folder.as_deref(), &self.chosen.rig, &self.new_name) {
+            Ok(path) => {
+                self.told = Some(text::start::made(&path));
+                self.new_name.clear();
+                self.read(now.running, now.recent);
+                self.choose(Choice { rig: path.display().to_string(), ..self.chosen.clone() });
+            }
+            Err(told) => self.told = Some(told),
+        }
+    }
+
+    fn scenes_ui(&mut self, ui: &mut Ui) {
+        card(ui, text::start::SCENES, text::start::SCENES_HOVER, |ui| {
+            for entry in &self.lists.scenes {
+                if entry_ui(ui, entry, self.chosen.scene == entry.key, false) {
+                    self.chosen.scene.clone_from(&entry.key);
+                }
+            }
+        });
+    }
+
+    fn devices_ui(&mut self, ui: &mut Ui, now: &Now<'_>) {
+        card(ui, text::start::MISSING, text::start::MISSING_HOVER, |ui| self.missing_ui(ui, now));
+        card(ui, text::start::PLUGGED, text::start::PLUGGED_HOVER, |ui| {
+            let ctx = ui.ctx().clone();
+            if let Some(plugged) = self.plugged.now(&ctx) {
+                plugged_ui(ui, plugged);
+            }
+        });
+    }
+
+    /// Of the rig that runs its list of devices tells what is missing; the devices of another one are opened for a moment.
+    fn missing_ui(&mut self, ui: &mut Ui, now: &Now<'_>) {
+        let Some(devices) = &self.devices else {
+            ui.label(text::start::SIMULATED);
+            return;
+        };
+        if self.chosen.rig == now.running.rig {
+            let missing: Vec<_> = now.live.missing().collect();
+            if missing.is_empty() {
+                answer_ui(ui, true, text::start::ALL_THERE);
+            }
+            for one in missing {
+                trouble_ui(ui, &one.name, &one.cause, &one.cure);
+            }
+            return;
+        }
+        if devices.emulated {
+            ui.label(text::start::EMULATED);
+            return;
+        }
+        let checking = self.answers.is_running();
+        let button = Button::new(if checking { text::start::CHECKING } else { text::start::CHECK });
+        let button = ui.add_enabled(!checking, button.min_size(vec2(ui.available_width(), 32.0)));
+        if button.on_hover_text(text::start::CHECK_HOVER).clicked() {
+            let ctx = ui.ctx().clone();
+            self.answers.check(&ctx, devices);
+        }
+        for Diagnosis { name, outcome, .. } in self.answers.found().into_iter().flatten() {
+            match outcome {
+                Outcome::Connected(Found { identity, .. }) => {
+                    answer_ui(ui, true, &text::start::answers(name, &identity.product, &identity.serial));
+                }
+                Outcome::Trouble { cause, cure, .. } => trouble_ui(ui, name, cause, cure),
+            }
+        }
+    }
+
+    fn foot_ui(&mut self, ui: &mut Ui, now: &Now<'_>) -> Option<Choice> {
+        let mut start = None;
+        ui.horizontal(|ui| {
+            let held = now.live.state() == LoopState::Engaged && is_real(&now.live.rig);
+            let same = self.chosen == *now.running;
+            let usable = |list: &[Entry], key: &str| list.iter().any(|entry| entry.key == key && entry.usable);
+            let ready = usable(&self.lists.rigs, &self.chosen.rig) && usable(&self.lists.scenes, &self.chosen.scene);
+            let words = if same { text::start::START_AGAIN } else { text::start::START };
+            let button = Button::new(RichText::new(words).font(theme::strong(17.0))).min_size(theme::STOP_SIZE);
+            let button = ui.add_enabled(ready && !held && !now.is_starting, button);
+            if button.on_hover_text(text::start::START_HOVER).on_disabled_hover_text(text::start::ENGAGED).clicked() {
+                start = Some(self.chosen.clone());
+            }
+            let back = Button::new(text::start::BACK).min_size(theme::STOP_SIZE);
+            if ui.add_enabled(!now.is_starting, back).on_hover_text(text::start::BACK_HOVER).clicked() {
+                self.is_open = false;
+            }
+            ui.vertical(|ui| {
+                let [rig, scene] = [(&self.lists.rigs, &self.chosen.rig), (&self.lists.scenes, &self.chosen.scene)]
+                    .map(|(list, key)| name_in(list, key));
+                ui.label(RichText::new(format!("{rig}, {scene}")).font(theme::strong(15.0)));
+                if now.is_starting {
+                    ui.label(weak(text::start::STARTING));
+                }
+                if let Some(told) = &self.told {
+                    ui.add(Label::new(told).wrap());
+                }
+            });
+        });
+        start
+    }
+}
+
+/// Whether a person may be at the handle and a patient below the arm.
+pub(super) fn is_real(rig: &RigConfig) -> bool {
+    rig.devices.as_ref().is_some_and(|devices| !devices.emulated)
+}
+
+fn name_in<'a>(list: &'a [Entry], key: &'a str) -> &'a str {
+    list.iter().find(|entry| entry.key == key).map_or(key, |entry| &entry.name)
+}
+
+fn column(ui: &mut Ui, name: &str, size: egui::Vec2, content: impl FnOnce(&mut Ui)) {
+    ui.allocate_ui_with_layout(size, Layout::top_down(Align::Min), |ui| {
+        ScrollArea::vertical().id_salt(name).auto_shrink(false).max_height(size.y).show(ui, |ui| {
+            ui.set_width(size.x - 8.0);
+            content(ui);
+        });
+    });
+}
+
+fn row_ui(ui: &mut Ui, chosen: bool, usable: bool, name: &str, about: &str) -> egui::Response {
+    let button = Button::selectable(chosen, name).frame_when_inactive(true);
+    let button = ui.add_enabled(usable, button.min_size(vec2(ui.available_width(), ROW * 0.75)));
+    if about.is_empty() { button } else { button.on_hover_text(about).on_disabled_hover_text(about) }
+}
+
+fn entry_ui(ui: &mut Ui, entry: &Entry, chosen: bool, running: bool) -> bool {
+    let clicked = row_ui(ui, chosen, entry.usable, &entry.name, &entry.key).clicked();
+    let words = if running { format!("{}. {}", text::start::RUNNING, entry.about) } else { entry.about.clone() };
+    ui.add(Label::new(small(words)).wrap());
+    ui.add_space(4.0);
+    clicked
+}
+
+fn answer_ui(ui: &mut Ui, good: bool, words: &str) {
+    let (what, colour) =
+        if good { (Sign::Disc, theme::now().engaged) } else { (Sign::Triangle, theme::now().alarm_medium) };
+    ui.horizontal(|ui| {
+        sign_ui(ui, what, 5.0, colour);
+        ui.add(Label::new(RichText::new(words).font(theme::strong(14.0))).wrap());
+    });
+}
+
+fn trouble_ui(ui: &mut Ui, name: &str, cause: &str, cure: &str) {
+    answer_ui(ui, false, name);
+    ui.add(Label::new(cause).wrap());
+    ui.add(Label::new(small(cure)).wrap());
+}
+
+fn plugged_ui(ui: &mut Ui, plugged: &Plugged) {
+    let lines = plugged.lines();
+    if lines.is_empty() {
+        ui.label(weak(text::start::NOTHING_PLUGGED));
+    }
+    for [place, used, ids] in lines {
+        ui.label(RichText::new(used).font(theme::strong(14.0)));
+        ui.add(Label::new(small(format!("{place}, {ids}"))).wrap());
+    }
+}

@@ -1,0 +1,114 @@
+//! The start page: another rig and another scene without leaving the program.
+
+use std::{path::Path, time::Instant};
+
+use egui::{Key, accesskit::Role};
+use egui_kittest::{Harness, kittest::Queryable as _};
+use nima_console::console::{ConsoleApp, settings::Kept, start::Choice};
+use nima_machine::messages::LoopState;
+
+use crate::bench::{TIMEOUT, console_of, press, until};
+
+const SIZE: [f32; 2] = [1600.0, 1000.0];
+
+fn console(folder: &Path) -> Harness<'static, ConsoleApp> {
+    let folder = folder.to_path_buf();
+    let mut harness = console_of("peg_transfer", SIZE, move |app| {
+        let mut kept = Kept::open(&folder);
+        kept.now.toured = true;
+        app.with_settings(kept)
+    });
+    until(&mut harness, "engaged", |tick| tick.state == LoopState::Engaged);
+    harness
+}
+
+fn until_runs(harness: &mut Harness<'_, ConsoleApp>, rig: &str, scene: &str) {
+    let began = Instant::now();
+    let wanted = Choice { rig: rig.to_owned(), scene: scene.to_owned() };
+    while *harness.state().running() != wanted {
+        assert!(began.elapsed() < TIMEOUT, "{:?} runs, not {wanted:?}", harness.state().running());
+        std::thread::sleep(std::time::Duration::from_millis(5));
+        harness.step();
+    }
+}
+
+#[test]
+fn another_scene_and_another_rig_start_idle_and_are_offered_again() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut harness = console(folder.path());
+    harness.key_press(Key::F6);
+    harness.step();
+    press(&mut harness, "Bimanual peg transfer");
+    press(&mut harness, "Start");
+    until_runs(&mut harness, "simulated", "bimanual");
+    until(&mut harness, "idle: only the operator engages", |tick| tick.state == LoopState::Idle);
+    press(&mut harness, "Engage");
+    until(&mut harness, "engaged", |tick| tick.state == LoopState::Engaged);
+
+    press(&mut harness, "Rig");
+    press(&mut harness, "Desk rig");
+    press(&mut harness, "Free motion");
+    press(&mut harness, "Start");
+    until_runs(&mut harness, "desk", "free_motion");
+    assert_eq!(harness.state().rig().name, "Desk rig");
+    press(&mut harness, "Rig");
+    press(&mut harness, "Simulated rig, Bimanual peg transfer");
+    press(&mut harness, "Start");
+    until_runs(&mut harness, "simulated", "bimanual");
+
+    let recent = Kept::open(folder.path()).now.recent;
+    let recent: Vec<_> = recent.iter().map(|choice| (choice.rig.as_str(), choice.scene.as_str())).collect();
+    assert_eq!(recent, [("simulated", "bimanual"), ("desk", "free_motion"), ("simulated", "peg_transfer")]);
+}
+
+#[test]
+fn a_rig_is_made_from_another_and_used() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut harness = console(folder.path());
+    press(&mut harness, "Rig");
+    press(&mut harness, "Make a copy of the chosen rig");
+    harness.get_by_label_contains("Give it a name");
+    let field = harness.get_by_role_and_label(Role::TextInput, "Name of a new rig");
+    field.focus();
+    harness.step();
+    harness.get_by_role_and_label(Role::TextInput, "Name of a new rig").type_text("Theatre 3");
+    harness.step();
+    press(&mut harness, "Make a copy of the chosen rig");
+    let path = folder.path().join("rigs/theatre-3.toml");
+    assert!(path.exists());
+    press(&mut harness, "Start");
+    until_runs(&mut harness, path.to_str().unwrap(), "peg_transfer");
+    assert_eq!(harness.state().rig().name, "Theatre 3");
+}
+
+#[test]
+fn what_cannot_start_is_told_and_what_ran_before_runs_again() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut harness = console(folder.path());
+    // The scene asks for a wrist sensor that this rig does not name.
+    let rig = std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/../config/rigs/simulated.toml")).unwrap();
+    let bare = rig.split("[simulated.right]").next().unwrap().replace("Simulated rig", "Bare rig");
+    std::fs::create_dir_all(folder.path().join("rigs")).unwrap();
+    let path = folder.path().join("rigs/bare.toml");
+    std::fs::write(&path, bare).unwrap();
+    press(&mut harness, "Rig");
+    press(&mut harness, "Bare rig");
+    std::fs::remove_file(&path).unwrap();
+    press(&mut harness, "Start");
+    harness.get_by_label_contains("Not started: there is no rig");
+    assert_eq!(harness.state().running(), &Choice::default());
+    press(&mut harness, "Back");
+    until(&mut harness, "it was never ended", |tick| tick.state == LoopState::Engaged);
+}
+
+#[test]
+fn a_stop_on_the_start_page_stops() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut harness = console(folder.path());
+    press(&mut harness, "Rig");
+    press(&mut harness, "Stop");
+    until(&mut harness, "stopped", |tick| tick.state == LoopState::Stopped);
+    harness.key_press(Key::F2);
+    harness.run_steps(2);
+    assert!(harness.query_by_label("1. Choose a rig").is_none(), "a view's key leaves the page");
+}

@@ -63,12 +63,12 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let (mut rig, scene) = arguments.setup.load()?;
     rig.scheduling = arguments.scheduling.unwrap_or(rig.scheduling);
     let leave = arguments.setup.leave()?;
-    let _emulators = Emulators::start(&arguments.setup, rig.devices.as_ref())?;
+    let emulators = Emulators::start(&arguments.setup, rig.devices.as_ref())?;
     let calibrations = InForce::load(None, &rig, &scene).calibrations(&rig);
     let mut plan = Plan { rig: rig.clone(), scene: scene.clone(), calibrations, engage: false };
     // Nobody can be hurt by a simulated or emulated rig, so the demo starts at once.
     let by_itself = rig.devices.as_ref().is_none_or(|devices| devices.emulated);
-    plan.engage = by_itself && !arguments.at_rest && plan.may_engage();
+    plan.engage = by_itself && !arguments.at_rest && arguments.calibrate.is_none() && plan.may_engage();
     let handle = nima_world::start(&plan)?;
     let options = Options {
         exit_after: arguments.exit_after.map(Duration::from_secs_f64),
@@ -80,6 +80,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         frames: arguments.frames.clone(),
         traces_s: arguments.traces,
         stall: arguments.stall.map(Duration::from_secs_f64),
+        reader: emulators.as_ref().map(Emulators::technician),
         leave: leave.clone(),
     };
     let album = options.pictures.clone();

@@ -17,7 +17,7 @@ use nima_machine::{
     rig::Side,
     runtime::Handle,
 };
-use nima_world::{Plan, scene::Scene};
+use nima_world::{Plan, emulated::Screen, scene::Scene};
 
 use super::{
     Options,
@@ -68,6 +68,8 @@ pub struct ConsoleApp {
     diary: Diary,
     /// The scene that was shown before a wizard changed it.
     watched: Option<Scene>,
+    /// What the technician of an emulated rig has read last.
+    read: Option<Screen>,
     options: Options,
     surface: Option<Arc<Surface>>,
     /// Name of the OpenGL renderer.
@@ -107,6 +109,7 @@ impl ConsoleApp {
             diary: Diary::default(),
             wizards: Wizards::default(),
             watched: None,
+            read: None,
             live,
             surface,
             outbox: Outbox::default(),

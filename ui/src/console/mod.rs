@@ -22,6 +22,7 @@ mod menu;
 pub mod outbox;
 pub mod panels;
 pub mod pictures;
+pub mod reader;
 pub mod readings;
 pub mod roles;
 pub mod rolling;
@@ -65,6 +66,8 @@ pub struct Options {
     pub traces_s: Option<f64>,
     /// Block the window for this time, once.
     pub stall: Option<Duration>,
+    /// Reads the wizards' instructions: the technician of an emulated rig.
+    pub reader: Option<reader::Reader>,
     /// Requests to end the console.
     pub leave: Leave,
 }

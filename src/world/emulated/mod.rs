@@ -8,6 +8,7 @@
 //! line.
 
 mod errors;
+mod flawed;
 mod guiding;
 mod places;
 mod scene;
@@ -33,7 +34,7 @@ use nima_core::kinematics::{Arm, ArmError, Mapping, Rcm, RcmError, ReadyError, f
 use nima_devices::Trouble;
 use nima_machine::{
     config::ConfigError,
-    rig::{ArmSet, Prompt, SIDES, Settings, Side},
+    rig::{ArmSet, Flaws, Prompt, SIDES, Settings, Side},
 };
 use side::SideWorld;
 
@@ -262,7 +263,9 @@ fn sides(devices: &Settings, scene: &Scene, hands: &[HandFrame; SIDES]) -> Resul
     if Side::ALL.iter().all(|side| devices.arm(*side).is_none()) {
         return Err(EmulatedRigError::NoArm);
     }
-    let seek = |side: Side| devices.arm(side).map(|set| of_side(side, set, scene, hands[side.index()])).transpose();
+    let seek = |side: Side| {
+        devices.arm(side).map(|set| of_side(side, set, scene, hands[side.index()], devices.flaws)).transpose()
+    };
     let (right, left) = std::thread::scope(|scope| {
         let left = scope.spawn(|| seek(Side::Left));
         (seek(Side::Right), left.join())
@@ -274,12 +277,18 @@ fn sides(devices: &Settings, scene: &Scene, hands: &[HandFrame; SIDES]) -> Resul
     Ok([right?, left.map_err(|_| broken())??])
 }
 
-fn of_side(side: Side, set: &ArmSet, scene: &Scene, hand: HandFrame) -> Result<SideWorld, EmulatedRigError> {
+fn of_side(
+    side: Side,
+    set: &ArmSet,
+    scene: &Scene,
+    hand: HandFrame,
+    flaws: Flaws,
+) -> Result<SideWorld, EmulatedRigError> {
     let device = || format!("{} arm", side.word());
     let scene = scene::of_side(scene, side, set)?;
     let arm = Arm::new(&set.mount).map_err(|source| EmulatedRigError::Mount { device: device(), source })?;
     let rcm = Rcm::new(&set.rcm).map_err(|source| EmulatedRigError::Trocar { device: device(), source })?;
     let ready = find(&arm, &rcm, &Hand::new(&scene).position_m());
     let ready = ready.map_err(|source| EmulatedRigError::Ready { device: device(), source })?;
-    Ok(SideWorld::new(&scene, set, arm, &ready.joint_rad, hand))
+    Ok(SideWorld::new(&scene, set, arm, &ready.joint_rad, hand, flaws))
 }

@@ -10,9 +10,9 @@ use nima_core::{
     kinematics::{Arm, Joints, view_from_omega},
 };
 use nima_devices::{ARM_JOINTS, ForceReading, ForceStatus, Tracked};
-use nima_machine::rig::{ArmSet, EndoscopeSettings, Outputs, Prompt, Sensed};
+use nima_machine::rig::{ArmSet, EndoscopeSettings, Flaws, Outputs, Prompt, Sensed};
 
-use super::{HandFrame, Task, seen::Camera, technician::Technician};
+use super::{HandFrame, Task, flawed::Flawed, seen::Camera, technician::Technician};
 use crate::{
     World,
     emulators::{
@@ -67,6 +67,7 @@ pub(super) struct SideWorld {
     imu_from_s1: UnitQuaternion<f64>,
     technician: Technician,
     camera: Camera,
+    flawed: Flawed,
     world_from_s1: UnitQuaternion<f64>,
     turn_rad_s: Vector3<f64>,
     tip_m: Vector3<f64>,
@@ -81,7 +82,14 @@ pub(super) struct SideWorld {
 
 impl SideWorld {
     /// The world of a scene that has been made fit for this side, with the arm at these angles.
-    pub(super) fn new(scene: &Scene, set: &ArmSet, arm: Arm, start_rad: &Joints, hand: HandFrame) -> Self {
+    pub(super) fn new(
+        scene: &Scene,
+        set: &ArmSet,
+        arm: Arm,
+        start_rad: &Joints,
+        hand: HandFrame,
+        flaws: Flaws,
+    ) -> Self {
         let pose = arm.pose(start_rad);
         let imu_deg = scene.wrist.as_ref().and_then(|wrist| wrist.imu).map(|imu| imu.s1_from_imu_deg);
         // The arm is this side's own, and so is the person at it.
@@ -99,6 +107,7 @@ impl SideWorld {
             imu_from_s1: imu_deg.map_or_else(UnitQuaternion::identity, |deg| from_roll_pitch_yaw_deg(&deg).inverse()),
             technician: Technician::new(arm, *start_rad, scene),
             camera: Camera::new(scene, set),
+            flawed: Flawed::new(flaws, (*start_rad).into()),
             world_from_s1: pose.orientation(),
             turn_rad_s: Vector3::zeros(),
             tip_m: pose.tip_m,
@@ -125,7 +134,7 @@ impl SideWorld {
     pub(super) fn ask(&mut self, now_s: f64, asked: &Asked) -> BodyState {
         self.advance(now_s);
         self.asked = *asked;
-        self.body
+        BodyState { joint_rad: self.flawed.encoders(&self.body.joint_rad), ..self.body }
     }
 
     /// What the motors of the handle do from now on; where it is, in its own frame.
@@ -156,9 +165,10 @@ impl SideWorld {
             Sensed::AtWrist(sample) => (sample.raw, sample.acceleration_m_s2),
             Sensed::AtTip(tip_n) => (Wrench { force_n: s1_from_world * tip_n, torque_nm: Vector3::zeros() }, None),
         };
+        let more = self.flawed.wrench(now_s, self.body.joint_rad[ARM_JOINTS - 1]);
         ForceReading {
-            wrench,
-            acceleration_m_s2: Some(measured.unwrap_or(support)),
+            wrench: Wrench { force_n: wrench.force_n + more.force_n, torque_nm: wrench.torque_nm + more.torque_nm },
+            acceleration_m_s2: Some(self.flawed.askew() * measured.unwrap_or(support)),
             angular_velocity_rad_s: Some(self.imu_from_s1 * self.turn_rad_s),
             temperature_c: SENSOR_C,
             status: ForceStatus::default(),
@@ -182,7 +192,8 @@ impl SideWorld {
             Sensed::AtTip(_) => None,
         };
         let sensor_m = self.tip_m - self.world_from_s1 * Vector3::new(0.0, 0.0, self.arm.shaft_m());
-        self.camera.marker(&self.world_from_s1, &sensor_m, noisy)
+        let marker = self.camera.marker(&self.world_from_s1, &sensor_m, noisy);
+        self.flawed.tracked(now_s, marker)
     }
 
     /// What it tells of the marker on the endoscope, which stands still. An Omega stands below the endoscope's picture, and the
@@ -218,7 +229,8 @@ impl SideWorld {
         let pose = self.arm.pose(&self.body.joint_rad.into());
         let orientation = pose.orientation();
         self.turn_rad_s = (self.world_from_s1.inverse() * orientation).scaled_axis() / STEP_S;
-        (self.world_from_s1, self.tip_m) = (orientation, pose.tip_m);
+        let bent_m = self.flawed.bent_m(&self.world.true_tip_n(), &pose.direction);
+        (self.world_from_s1, self.tip_m) = (orientation, pose.tip_m + bent_m);
         self.world.carry(orientation);
         // He takes his hands off an arm whose drives are on.
         let hands_on = asked == Asked::Rest && !self.technician.is_away();
@@ -232,7 +244,7 @@ impl SideWorld {
             self.world.wait(!matches!(asked, Asked::Joints(_)));
         }
         let force_n = self.hand.leader_from_world.inverse() * self.applied.force_n;
-        let outputs = Outputs { tip_command_m: Some(pose.tip_m), hand_force_n: force_n, ..Outputs::SAFE };
+        let outputs = Outputs { tip_command_m: Some(self.tip_m), hand_force_n: force_n, ..Outputs::SAFE };
         self.made += 1;
         let inputs = self.world.advance_to(self.made as f64 * STEP_S, &outputs);
         (self.hand_m, self.sensed) = (inputs.hand.position_m, inputs.sensed);

@@ -190,6 +190,8 @@ impl Start {
             None => "the force contains the trocar's friction",
         };
         let told = format!("not calibrated ({effect}): {words}; calibrate with `nima calibrate rig --rig {rig}`");
+        // A sensor or tool in another's place.
+        let told = std::iter::once(told).chain(self.in_force.told()).collect::<Vec<_>>().join(". ");
         let is_new = !words.is_empty() && self.lacking.as_ref() != Some(&told);
         is_new.then(|| self.lacking.insert(told).clone())
     }

@@ -114,3 +114,57 @@ pub(super) fn in_words(figures: &[TipError]) -> String {
     }
     text
 }
+
+#[cfg(test)]
+mod tests {
+    use nima_machine::{config::RigConfig, messages::LoopState};
+    use nima_world::{Plan, run_virtual, scene::Scene};
+
+    use super::*;
+    use crate::console::in_force::InForce;
+
+    /// Ticks of an engaged run on the simulated rig.
+    fn ticks() -> Vec<Tick> {
+        let (rig, scene) = (RigConfig::load("simulated").unwrap(), Scene::load("palpation").unwrap());
+        let folder = tempfile::tempdir().unwrap();
+        nima_recording::store::Store::open(folder.path()).save(&nima_tests::gravity::gravity()).unwrap();
+        let calibrations = InForce::load(Some(folder.path()), &rig, &scene).calibrations(&rig);
+        let mut ticks = Vec::new();
+        run_virtual(&Plan { rig, scene, calibrations, engage: true }, 6.0, |tick| {
+            ticks.push(*tick);
+            None
+        })
+        .unwrap();
+        ticks
+    }
+
+    #[test]
+    fn a_true_force_is_compared_with_the_tick_of_its_time() {
+        const BEGAN_S: f64 = 1.7e9;
+        let ticks = ticks();
+        let compared = |late_s: f64| {
+            let mut comparison = Comparison::default();
+            for (index, tick) in ticks.iter().enumerate() {
+                // Ticks are seen up to 5 ms after they were made, and the truth comes before the tick that it is about.
+                let known =
+                    Known { truth: Side::Right, at_s: BEGAN_S + tick.t_s + late_s, tip_n: tick.measured_n.into() };
+                comparison.know(std::iter::once(known));
+                comparison.tick(tick, BEGAN_S + tick.t_s + 1e-3 * (index % 6) as f64);
+            }
+            comparison.know(std::iter::empty());
+            comparison.figures()
+        };
+        let engaged = ticks.iter().filter(|tick| tick.state == LoopState::Engaged).count() as u64;
+        let figures = compared(0.0);
+        assert_eq!(
+            figures.iter().map(|error| error.method).collect::<Vec<_>>(),
+            ["tip force", "gravity only", "wrist only"]
+        );
+        assert!(figures[0].samples > engaged / 2, "{} of {engaged}", figures[0].samples);
+        assert!(figures[0].mae_n.iter().all(|n| *n < 1e-3), "the same force at the same time: {:?}", figures[0]);
+        assert!(figures[2].mae_n[2] > 2.0, "weight and bias are in the wrist's: {:?}", figures[2]);
+        let late = compared(0.03);
+        assert!(late[0].mae_n[2] > 5.0 * figures[0].mae_n[2] + 1e-3, "another time is another force: {:?}", late[0]);
+        assert!(in_words(&figures).contains("wrist only") && in_words(&[]).is_empty());
+    }
+}

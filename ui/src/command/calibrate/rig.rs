@@ -82,7 +82,7 @@ pub(in crate::command) fn run(arguments: &Arguments) -> anyhow::Result<()> {
             ));
         }
     }
-    super::output::line(&bench.in_force.lines().join("\n"))
+    super::output::line(&bench.saved.join("\n"))
 }
 
 /// The running loop, the technician, and the wizards.
@@ -94,13 +94,16 @@ struct Bench {
     read: Option<Screen>,
     wizards: Wizards,
     ticks: [Option<Tick>; SIDES],
+    /// What is in force after the last saving, line by line.
+    saved: Vec<String>,
     leave: Leave,
 }
 
 impl Bench {
     fn start(plan: Plan, in_force: InForce, reader: Reader, leave: Leave) -> anyhow::Result<Self> {
         let (wizards, ticks) = (Wizards::default(), [None; SIDES]);
-        let mut this = Self { plan, handle: None, in_force, reader, read: None, wizards, ticks, leave };
+        let saved = Vec::new();
+        let mut this = Self { plan, handle: None, in_force, reader, read: None, wizards, ticks, saved, leave };
         this.restart()?;
         Ok(this)
     }
@@ -195,6 +198,7 @@ impl Bench {
         self.reader.show(Screen { side, task: Task::Surgery, prompt: Prompt::Rest }, &mut self.read);
         let told = self.in_force.save(saving).map_err(anyhow::Error::msg)?;
         tell(told);
+        self.saved = self.in_force.lines();
         self.restart()
     }
 }

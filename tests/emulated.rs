@@ -9,7 +9,7 @@ use std::{
 use nima_devices::bota;
 use nima_machine::{
     config::RigConfig,
-    rig::{SensorSettings, Settings},
+    rig::{SensorPlace, SensorSettings, Settings},
 };
 use nima_world::{
     emulated::{EmulatedRig, HandFrame, provide_handles},
@@ -57,9 +57,18 @@ pub fn elsewhere(folder: &Path) -> Settings {
     devices
 }
 
-/// Only its right arm: handle, arm, sensor and servos.
+/// The same with its sensors at the tips, where they feel the tissue alone and need no calibration.
+pub fn at_tip(folder: &Path) -> Settings {
+    let mut devices = elsewhere(folder);
+    for set in [&mut devices.right, &mut devices.left].into_iter().flatten() {
+        set.sensor_at = SensorPlace::Tip;
+    }
+    devices
+}
+
+/// Only the right arm of that: handle, arm, sensor and servos.
 pub fn right_arm(folder: &Path) -> Settings {
-    Settings { left: None, tissue_sensor: None, tracker: None, endoscope: None, pedal: None, ..elsewhere(folder) }
+    Settings { left: None, tissue_sensor: None, tracker: None, endoscope: None, pedal: None, ..at_tip(folder) }
 }
 
 /// Starts the emulated devices of that rig, in the peg-transfer scene.

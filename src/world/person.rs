@@ -7,7 +7,7 @@ use nalgebra::{UnitQuaternion, UnitVector3, Vector3};
 use nima_core::noise::Noise;
 use nima_machine::rig::Prompt;
 
-use super::{hand::Move, trocar::shaft, wrist::along_shaft};
+use super::{hand::Move, trocar::shaft, world::Touch, wrist::along_shaft};
 use crate::scene::{Flaw, Person as PersonConfig, Scene};
 
 /// Speed at which the tool is rotated, rad/s, and shortest duration of a rotation, s.
@@ -83,6 +83,14 @@ impl Person {
         }
     }
 
+    /// Begins with the tip here (m), through the body wall.
+    pub(super) fn begins_at(mut self, tip_m: Vector3<f64>) -> Self {
+        self.tip_m = tip_m;
+        self.lift_off();
+        self.reach_on(0.0);
+        self
+    }
+
     /// Orientation of the wrist.
     pub(super) const fn world_from_s1(&self) -> UnitQuaternion<f64> {
         self.world_from_s1
@@ -93,20 +101,25 @@ impl Person {
         (self.tip_m, self.velocity_m_s)
     }
 
+    /// What the person's hands do.
+    pub(super) fn touch(&self) -> Touch {
+        Touch { tip: self.push_n(), tool: self.touch_n(), stand: self.stand_n() }
+    }
+
     /// Force on the tip from pushing, N (`world`).
-    pub(super) fn push_n(&self) -> Vector3<f64> {
+    fn push_n(&self) -> Vector3<f64> {
         self.push * pulse(self.in_push_s)
     }
 
     /// Force on the tissue's stand that the tip does not feel, N (`world`).
-    pub(super) fn stand_n(&self) -> Vector3<f64> {
+    fn stand_n(&self) -> Vector3<f64> {
         let working = matches!(self.prompt, Prompt::Work);
         let share = if working { pulse(PUSH_S[0] * self.in_reach_s / REACH_S[0]) } else { pulse(self.in_push_s) };
         self.stand * share
     }
 
     /// Force of a hand on the tool, N (`world`).
-    pub(super) fn touch_n(&self) -> Vector3<f64> {
+    fn touch_n(&self) -> Vector3<f64> {
         let holds = matches!(self.prompt, Prompt::Hold { .. } | Prompt::Wave);
         if self.flaw == Some(Flaw::Touches) && holds {
             // The force of a resting hand varies.

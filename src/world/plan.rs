@@ -40,10 +40,12 @@ impl Plan {
     }
 
     /// Whether the rig may be engaged automatically: the force at every tip is known, or may become known with the
-    /// devices, and the followers will follow.
+    /// devices, and the followers will follow. On a simulated rig a person at the arm keeps it from following; at an emulated
+    /// one he comes only for a calibration.
     pub fn may_engage(&self) -> bool {
         let knowable = |side: Side| self.rig.devices.is_some() || self.calibrations[side.index()].gravity.is_some();
-        self.scene.person.is_none() && Side::ALL.into_iter().all(|side| !self.is_at_wrist(side) || knowable(side))
+        let follows = self.rig.devices.is_some() || self.scene.person.is_none();
+        follows && Side::ALL.into_iter().all(|side| !self.is_at_wrist(side) || knowable(side))
     }
 
     /// Creates the loop for this plan.

@@ -38,6 +38,21 @@ pub struct World {
     hand_force_n: Vector3<f64>,
     /// Orientation of the wrist, if an arm outside this world determines it.
     carried: Option<UnitQuaternion<f64>>,
+    /// Hands of a person outside this world.
+    touch: Touch,
+    /// Body wall and tissue are out of the way.
+    aside: bool,
+}
+
+/// Forces of a person's hands, N (`world`).
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Touch {
+    /// On the tip, which is pushed onto something that does not give way.
+    pub(super) tip: Vector3<f64>,
+    /// On the tool.
+    pub(super) tool: Vector3<f64>,
+    /// On the stand of the tissue; the tip does not feel it.
+    pub(super) stand: Vector3<f64>,
 }
 
 /// Longest time simulated in one exchange, in periods; after a longer stall the remainder is skipped.
@@ -68,6 +83,8 @@ impl World {
             command_m: start_m,
             hand_force_n: Vector3::zeros(),
             carried: None,
+            touch: Touch::default(),
+            aside: false,
             hand,
         }
     }
@@ -91,6 +108,21 @@ impl World {
     /// Pauses the hand's task; the hand then follows the tip (true). Or continues it (false).
     pub fn wait(&mut self, waits: bool) {
         self.hand.wait(waits.then_some(self.tip_m));
+    }
+
+    /// Pauses the hand's task; the hand waits here, m.
+    pub(super) fn wait_at(&mut self, at_m: Vector3<f64>) {
+        self.hand.wait(Some(at_m));
+    }
+
+    /// From now on a person outside this world touches the tool like this, and has set body wall and tissue aside, or not.
+    /// A seal that comes back is undeformed.
+    pub(super) fn touched(&mut self, touch: &Touch, aside: bool) {
+        self.touch = *touch;
+        if self.aside && !aside {
+            self.trocar.iter_mut().for_each(Trocar::relax);
+        }
+        self.aside = aside;
     }
 
     /// Applies the loop's outputs and returns what a rig would measure at loop time `now_s`. Until the follower is
@@ -148,7 +180,7 @@ impl World {
             }
             None => self.follow(dt_s),
         }
-        if let Some(trocar) = &mut self.trocar {
+        if let Some(trocar) = self.trocar.as_mut().filter(|_| !self.aside) {
             trocar.advance(&self.tip_m, dt_s);
         }
     }
@@ -168,13 +200,18 @@ impl World {
         self.tip_velocity_m_s = (velocity - slope * (omega * dt_s)) * decay;
     }
 
+    /// The person at the arm, inside this world or outside.
+    fn hands(&self) -> Touch {
+        self.person.as_ref().map_or(self.touch, Person::touch)
+    }
+
     /// Force on the tip by the tissue or a person, N; call once per step.
     fn contact_n(&mut self) -> Vector3<f64> {
         let tissue_n = match &mut self.tissue {
-            Some(tissue) => tissue.contact_n(&self.tip_m, &self.tip_velocity_m_s),
-            None => Vector3::zeros(),
+            Some(tissue) if !self.aside => tissue.contact_n(&self.tip_m, &self.tip_velocity_m_s),
+            _ => Vector3::zeros(),
         };
-        tissue_n + self.person.as_ref().map_or_else(Vector3::zeros, Person::push_n)
+        tissue_n + self.hands().tip
     }
 
     fn world_from_s1(&self) -> UnitQuaternion<f64> {
@@ -189,12 +226,13 @@ impl World {
         let tip_n = self.contact_n();
         self.true_tip_n = tip_n;
         let world_from_s1 = self.world_from_s1();
+        let Touch { tool, stand, .. } = self.hands();
         if let Some(wrist) = &mut self.wrist {
-            let wall = self.trocar.as_ref().map(|trocar| (trocar.force_n(), trocar.shaft(&self.tip_m).1));
-            let person = self.person.as_ref();
-            let touch_n = person.map_or_else(Vector3::zeros, Person::touch_n);
-            let stand_n = person.map_or_else(Vector3::zeros, Person::stand_n);
-            return Sensed::AtWrist(wrist.measure(&world_from_s1, &Loads { tip_n, wall, touch_n, stand_n }));
+            let trocar = self.trocar.as_ref().filter(|_| !self.aside);
+            let wall = trocar.map(|trocar| (trocar.force_n(), trocar.shaft(&self.tip_m).1));
+            return Sensed::AtWrist(
+                wrist.measure(&world_from_s1, &Loads { tip_n, wall, touch_n: tool, stand_n: stand }),
+            );
         }
         let noise_n = match &mut self.sensor_noise_n {
             Some((sigma_n, noise)) => Vector3::from_fn(|_, _| *sigma_n * noise.gaussian()),

@@ -17,7 +17,7 @@ use nima_machine::{
     runtime::Handle,
 };
 use nima_testing::real_time::{alone, judged};
-use nima_tests::emulated::{elsewhere, started};
+use nima_tests::emulated::{at_tip, started};
 use nima_world::{Plan, emulated::EmulatedRig, emulators::EmulatedFault, scene::Scene};
 
 /// Time limit for the event of a device; a tracker sends 60 frames a second.
@@ -241,7 +241,7 @@ fn table(rows: &[Row]) -> String {
 fn every_fault_of_every_device_is_told_takes_the_force_away_and_passes() {
     let _alone = alone();
     let folder = tempfile::tempdir().unwrap();
-    let devices = Settings { left: None, ..elsewhere(folder.path()) };
+    let devices = Settings { left: None, ..at_tip(folder.path()) };
     let bench = RefCell::new(Bench::new(&devices));
     bench.borrow_mut().pressing();
     let mut rows = Vec::new();

@@ -6,3 +6,4 @@ mod device_faults;
 mod emulated_rig;
 mod killed;
 mod rig_diagnosis;
+mod technician;

@@ -1,13 +1,19 @@
 //! Starts the emulators of an emulated rig in a process of their own, which ends with this one.
+//!
+//! The loop reaches them through their devices only. Their standard input is for the technician, who reads what the screen
+//! shows, and on their standard output they tell what only a simulation knows.
 
 use std::{
-    io::{BufRead as _, BufReader},
-    process::{Child, Command, Stdio},
+    io::{BufRead as _, BufReader, Write as _},
+    process::{Child, ChildStdin, Command, Stdio},
+    sync::{Arc, Mutex, PoisonError, mpsc::Receiver},
     time::Duration,
 };
 
 use anyhow::{Context as _, bail};
 use nima_machine::rig::{SIDES, Settings, Side};
+
+use crate::{command::truth::Known, console::reader::Reader};
 
 /// Before they serve, emulators of arms search a starting pose.
 const READY_WITHIN: Duration = Duration::from_mins(1);
@@ -16,6 +22,8 @@ const READY_WITHIN: Duration = Duration::from_mins(1);
 #[derive(Debug)]
 pub(crate) struct Emulators {
     child: Child,
+    input: Arc<Mutex<Option<ChildStdin>>>,
+    told: Option<Receiver<String>>,
 }
 
 impl Emulators {
@@ -28,9 +36,10 @@ impl Emulators {
         // Ctrl-C is for the loop only, which ends in order and then ends the emulators.
         #[cfg(unix)]
         std::os::unix::process::CommandExt::process_group(&mut command, 0);
-        let child =
+        let mut child =
             command.stdin(Stdio::piped()).stdout(Stdio::piped()).spawn().context("cannot start the emulators")?;
-        let mut this = Self { child };
+        let input = Arc::new(Mutex::new(child.stdin.take()));
+        let mut this = Self { child, input, told: None };
         this.wait(count(devices))?;
         Ok(Some(this))
     }
@@ -52,14 +61,38 @@ impl Emulators {
                 );
             }
         }
+        self.told = Some(lines);
         Ok(())
+    }
+
+    /// The technician, who reads the screen.
+    pub(crate) fn technician(&self) -> Reader {
+        let input = Arc::clone(&self.input);
+        Reader::new(move |screen| write(&input, &format!("screen {screen}")))
+    }
+
+    /// From now on they tell the true forces at the tips, so many times a second.
+    pub(crate) fn tell_truth(&self, rate_hz: u32) {
+        write(&self.input, &format!("truth {rate_hz}"));
+    }
+
+    /// The true forces that were told since the last call.
+    pub(crate) fn known(&self) -> impl Iterator<Item = Known> {
+        self.told.iter().flat_map(Receiver::try_iter).filter_map(|line| serde_json::from_str(&line).ok())
+    }
+}
+
+/// Writes a line; emulators that have ended are noticed by their devices.
+fn write(input: &Mutex<Option<ChildStdin>>, line: &str) {
+    if let Some(input) = &mut *input.lock().unwrap_or_else(PoisonError::into_inner) {
+        writeln!(input, "{line}").and_then(|()| input.flush()).ok();
     }
 }
 
 impl Drop for Emulators {
     fn drop(&mut self) {
         // They end in order when their standard input ends.
-        drop(self.child.stdin.take());
+        drop(self.input.lock().unwrap_or_else(PoisonError::into_inner).take());
         for _ in 0..100 {
             if !matches!(self.child.try_wait(), Ok(None)) {
                 return;

@@ -4,7 +4,9 @@
 use nalgebra::{UnitQuaternion, Vector3};
 use nima_core::{
     frames::{WristSample, from_roll_pitch_yaw_deg},
-    kinematics::{Arm, Hand, Inverse, Jaws, JointLimits, Joints, Pose, Rcm, StartError, world_from_tracked_view},
+    kinematics::{
+        Arm, Hand, Inverse, Jaws, JointLimits, Joints, Pose, Rcm, START_MISS_M, StartError, world_from_tracked_view,
+    },
 };
 use nima_devices::{
     ArmReading, ClearFaults, Device, Follower, ForceReading, ForceSensor, HandleReading, Health, Leader, Lever, SERVOS,
@@ -218,13 +220,16 @@ impl ArmPair {
         if !self.at_wrist {
             return Sensed::AtTip(world_from_s1 * force.wrench.force_n);
         }
+        let trocar_m = &self.rcm.settings().trocar_m;
+        let in_trocar = pose.axis_miss_m(trocar_m).norm() <= START_MISS_M;
         Sensed::AtWrist(WristSample {
             raw: force.wrench,
             acceleration_m_s2: force.acceleration_m_s2,
             world_from_s1: Some(*world_from_s1),
             world_from_m: self.s1_from_m.map(|s1_from_m| world_from_s1 * s1_from_m),
             m_from_c: shared.m_from_c,
-            insertion_m: Some(pose.insertion_m(&self.rcm.settings().trocar_m)),
+            // A tool that was taken out has no depth.
+            insertion_m: Some(pose.insertion_m(trocar_m)).filter(|_| in_trocar),
             tissue_n: shared.tissue_n,
         })
     }

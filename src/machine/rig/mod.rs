@@ -5,6 +5,7 @@
 
 mod arm_pair;
 mod devices;
+mod flaws;
 mod jaws;
 #[cfg(test)]
 mod joint_limits_tests;
@@ -21,6 +22,7 @@ use nima_devices::{ClearFaults, Health, Lever, SlotView, Standing};
 
 pub use arm_pair::{ArmPair, Obstacle};
 pub use devices::{DeviceRig, RigError};
+pub use flaws::Flaws;
 pub use jaws::JawsSettings;
 pub use makes::{FollowerSettings, LeaderSettings, SensorSettings};
 pub(crate) use makes::{Misread, take_out_makes};

@@ -7,7 +7,7 @@ use nima_core::kinematics::{ArmSettings, RcmSettings};
 use nima_devices::{TRACKED_TOOLS, Trouble, dynamixel, hid, ndi};
 use serde::{Deserialize, Serialize};
 
-use super::{FollowerSettings, JawsSettings, LeaderSettings, SensorSettings};
+use super::{Flaws, FollowerSettings, JawsSettings, LeaderSettings, SensorSettings};
 use crate::rig::{SIDES, Side};
 
 /// The devices of a rig. Each is optional; the parts of an arm pair are not.
@@ -30,6 +30,8 @@ pub struct Settings {
     pub endoscope: Option<EndoscopeSettings>,
     /// The foot pedal: clutch and presence.
     pub pedal: Option<hid::PedalSettings>,
+    /// Flaws that the emulated devices have; none on a rig of real ones.
+    pub flaws: Flaws,
 }
 
 /// A marker of the tracker on the endoscope.
@@ -161,6 +163,12 @@ impl Settings {
             right.handle.check_beside(&left.handle).map_err(|trouble| below("right.handle", trouble))?;
         }
         self.check_endoscope()?;
+        self.flaws.check(self.emulated).map_err(|trouble| match trouble {
+            Trouble::Setting { key, value, allowed } => {
+                Trouble::Setting { key: format!("devices.{key}"), value, allowed }
+            }
+            other => other,
+        })?;
         let of = |part: &'static str| move |trouble| below(part, trouble);
         self.tissue_sensor.as_ref().map_or(Ok(()), SensorSettings::check).map_err(of("tissue_sensor"))?;
         self.tracker.as_ref().map_or(Ok(()), ndi::Settings::check).map_err(of("tracker"))?;

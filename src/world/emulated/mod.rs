@@ -2,14 +2,24 @@
 //!
 //! Takes what the rig file says of the devices and a scene; gives devices on real wires (pseudo-terminals, TCP, UDP, the handle's
 //! library), which the real drivers open; for the handles their program first calls [`provide_handles`]. Move the emulated handle and the arm that follows it presses the tissue, and the
-//! sensor feels it. Frames: everything inside is in `world`; each device tells in its own. Needs Unix; the pedal needs Linux.
-//! Bad input: what cannot be emulated here (another computer's address, a scene with a person) is refused in one line.
+//! sensor feels it. Where the sensors sit at the wrists, a simulated technician obeys the calibrations' instructions:
+//! [`EmulatedRig::technician`] takes what the screen shows him. Frames: everything inside is in `world`; each device tells in its
+//! own. Needs Unix; the pedal needs Linux. Bad input: what cannot be emulated here (another computer's address) is refused in one
+//! line.
 
+mod errors;
+mod flawed;
+mod guiding;
 mod places;
 mod scene;
+mod screen;
+mod seen;
 mod serving;
 mod side;
 mod stand_in;
+mod technician;
+#[cfg(test)]
+mod tests;
 
 use std::{
     sync::{
@@ -22,9 +32,14 @@ use std::{
 use nalgebra::UnitQuaternion;
 use nima_core::kinematics::{Arm, ArmError, Mapping, Rcm, RcmError, ReadyError, find};
 use nima_devices::Trouble;
-use nima_machine::rig::{ArmSet, SIDES, Settings, Side};
+use nima_machine::{
+    config::ConfigError,
+    rig::{ArmSet, Flaws, Prompt, SIDES, Settings, Side},
+};
 use side::SideWorld;
 
+pub use errors::{FreeError, TipError, TipErrors};
+pub use screen::{NoScreen, Screen, Task};
 pub use side::Truth;
 pub use stand_in::provide_handles;
 
@@ -59,12 +74,6 @@ impl Default for HandFrame {
 /// Why a rig cannot be emulated.
 #[derive(Debug, thiserror::Error)]
 pub enum EmulatedRigError {
-    /// Somebody at the arm obeys the screen, which no wire carries.
-    #[error("scene \"{scene}\" has a person at the arm: run it on the simulated rig (--rig simulated)")]
-    Person {
-        /// Its name.
-        scene: String,
-    },
     /// The rig has no arm pair.
     #[error("this rig names no arm pair to emulate: give it [devices.right], or use the rig `emulated`")]
     NoArm,
@@ -84,6 +93,9 @@ pub enum EmulatedRigError {
         /// What it must be.
         wanted: &'static str,
     },
+    /// The scene that describes the paper's rig.
+    #[error("the paper's rig is not known")]
+    Paper(#[from] ConfigError),
     /// The rig file says something impossible.
     #[error("the rig cannot be emulated")]
     Settings(#[from] Trouble),
@@ -157,6 +169,45 @@ impl std::fmt::Debug for EmulatedRig {
     }
 }
 
+/// Knows what only a simulation knows, from any thread.
+#[derive(Clone)]
+pub struct Witness {
+    sides: [Option<Shared>; SIDES],
+}
+
+impl Witness {
+    /// The truth of a side now; `None` where the rig has none.
+    pub fn truth(&self, side: Side) -> Option<Truth> {
+        self.sides[side.index()].as_ref().map(|shared| shared.with(SideWorld::truth))
+    }
+}
+
+/// The simulated technician, who reads the screen: whoever shows instructions tells him. He goes to the arm that is
+/// calibrated, and away from the other one.
+#[derive(Clone)]
+pub struct Technician {
+    sides: [Option<Shared>; SIDES],
+}
+
+impl std::fmt::Debug for Technician {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Technician").finish_non_exhaustive()
+    }
+}
+
+impl Technician {
+    /// He reads what the screen shows now.
+    pub fn reads(&self, screen: &Screen) {
+        for (side, shared) in Side::ALL.into_iter().zip(&self.sides) {
+            let here = side == screen.side;
+            let (task, prompt) = if here { (screen.task, screen.prompt) } else { (Task::Surgery, Prompt::Rest) };
+            if let Some(shared) = shared {
+                shared.with(|side, now_s| side.reads(now_s, task, prompt));
+            }
+        }
+    }
+}
+
 impl EmulatedRig {
     /// Starts an emulator for every device in `devices`, at its place. `hands` tells, in the order of [`Side::ALL`], how the
     /// handles stand to the workspace. Takes under a second, for the arms' poses.
@@ -168,7 +219,7 @@ impl EmulatedRig {
         let sides = sides(devices, scene, hands)?;
         let sides = sides.map(|side| side.map(|side| Shared { begin, side: Arc::new(Mutex::new(side)) }));
         let pedal = Arc::new(AtomicU32::new(0));
-        let devices = serving::all(devices, scene, &sides, &pedal)?;
+        let devices = serving::all(devices, &sides, &pedal)?;
         Ok(Self { devices, sides, pedal })
     }
 
@@ -184,6 +235,11 @@ impl EmulatedRig {
         device.map(|device| device.serving.faults.set(fault)).is_some()
     }
 
+    /// The technician at the arms.
+    pub fn technician(&self) -> Technician {
+        Technician { sides: self.sides.clone() }
+    }
+
     /// Presses the pedal's switches, first in the lowest bit, until told otherwise.
     pub fn press(&self, switches: u32) {
         self.pedal.store(switches, Ordering::Release);
@@ -191,7 +247,12 @@ impl EmulatedRig {
 
     /// What only a simulation knows of a side; `None` where the rig has none.
     pub fn truth(&self, side: Side) -> Option<Truth> {
-        self.sides[side.index()].as_ref().map(|shared| shared.with(SideWorld::truth))
+        self.witness().truth(side)
+    }
+
+    /// The same, from any thread.
+    pub fn witness(&self) -> Witness {
+        Witness { sides: self.sides.clone() }
     }
 }
 
@@ -202,7 +263,9 @@ fn sides(devices: &Settings, scene: &Scene, hands: &[HandFrame; SIDES]) -> Resul
     if Side::ALL.iter().all(|side| devices.arm(*side).is_none()) {
         return Err(EmulatedRigError::NoArm);
     }
-    let seek = |side: Side| devices.arm(side).map(|set| of_side(side, set, scene, hands[side.index()])).transpose();
+    let seek = |side: Side| {
+        devices.arm(side).map(|set| of_side(side, set, scene, hands[side.index()], devices.flaws)).transpose()
+    };
     let (right, left) = std::thread::scope(|scope| {
         let left = scope.spawn(|| seek(Side::Left));
         (seek(Side::Right), left.join())
@@ -214,12 +277,18 @@ fn sides(devices: &Settings, scene: &Scene, hands: &[HandFrame; SIDES]) -> Resul
     Ok([right?, left.map_err(|_| broken())??])
 }
 
-fn of_side(side: Side, set: &ArmSet, scene: &Scene, hand: HandFrame) -> Result<SideWorld, EmulatedRigError> {
+fn of_side(
+    side: Side,
+    set: &ArmSet,
+    scene: &Scene,
+    hand: HandFrame,
+    flaws: Flaws,
+) -> Result<SideWorld, EmulatedRigError> {
     let device = || format!("{} arm", side.word());
     let scene = scene::of_side(scene, side, set)?;
     let arm = Arm::new(&set.mount).map_err(|source| EmulatedRigError::Mount { device: device(), source })?;
     let rcm = Rcm::new(&set.rcm).map_err(|source| EmulatedRigError::Trocar { device: device(), source })?;
     let ready = find(&arm, &rcm, &Hand::new(&scene).position_m());
     let ready = ready.map_err(|source| EmulatedRigError::Ready { device: device(), source })?;
-    Ok(SideWorld::new(&scene, set, arm, &ready.joint_rad, hand))
+    Ok(SideWorld::new(&scene, set, arm, &ready.joint_rad, hand, flaws))
 }

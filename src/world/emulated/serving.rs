@@ -9,16 +9,13 @@ use std::{
     },
 };
 
-use nalgebra::{UnitQuaternion, Vector3};
-use nima_core::frames::{Wrench, from_roll_pitch_yaw_deg};
+use nalgebra::Vector3;
+use nima_core::frames::Wrench;
 use nima_devices::{ForceReading, PedalReading, Tracked, bota, dynamixel, force_dimension, hid, kinova, ndi};
 use nima_machine::rig::{ArmSet, EndoscopeSettings, SIDES, SensorSettings, Settings, Side};
 
 use super::{EmulatedDevice, EmulatedRigError, Shared, SideWorld, places};
-use crate::{
-    emulators::{self, Emulator},
-    scene::Scene,
-};
+use crate::emulators::{self, Emulator};
 
 type Sides = [Option<Shared>; SIDES];
 type Served = Result<EmulatedDevice, EmulatedRigError>;
@@ -26,14 +23,6 @@ type Served = Result<EmulatedDevice, EmulatedRigError>;
 /// How the cables of the instrument pull at a servo, Nm/rad, and where they rest, rad: guesses of the right size.
 const CABLES_NM_PER_RAD: f64 = 0.3;
 const CABLES_REST_RAD: f64 = 0.3;
-/// Far from the workspace's middle the tracker's camera stands, m.
-const CAMERA_M: f64 = 1.5;
-/// Where it looks from where no scene says: level along the workspace's y (roll, pitch, yaw of `world_from_c`, degrees).
-const CAMERA_DEG: Vector3<f64> = Vector3::new(90.0, 0.0, 0.0);
-/// The marker sits so far down the shaft from the wrist sensor, m.
-const MARKER_M: f64 = 0.08;
-/// Residual of a marker that is well seen, m.
-const MARKER_ERROR_M: f64 = 0.000_15;
 /// A first-generation sensor needs so long to start, s: as short as leaves all of its steps visible.
 const BOOT_S: f64 = 0.2;
 /// The sensor under the tissue is at room temperature, degrees Celsius.
@@ -49,7 +38,6 @@ fn served(device: String, emulator: Box<dyn Emulator>) -> Served {
 /// Every device of the rig.
 pub(super) fn all(
     settings: &Settings,
-    scene: &Scene,
     sides: &Sides,
     pedal_switches: &Arc<AtomicU32>,
 ) -> Result<Vec<EmulatedDevice>, EmulatedRigError> {
@@ -69,7 +57,7 @@ pub(super) fn all(
         devices.push(sensor("tissue sensor".to_owned(), chosen, Side::Right, under_the_tissue(sides))?);
     }
     if let Some(chosen) = &settings.tracker {
-        devices.push(tracker(chosen, settings.endoscope, scene, sides)?);
+        devices.push(tracker(chosen, settings.endoscope, sides)?);
     }
     if let Some(chosen) = &settings.pedal {
         devices.push(pedal(chosen, pedal_switches)?);
@@ -168,7 +156,7 @@ fn servos(side: Side, chosen: &dynamixel::Settings) -> Served {
     }
 }
 
-fn tracker(chosen: &ndi::Settings, endoscope: Option<EndoscopeSettings>, scene: &Scene, sides: &Sides) -> Served {
+fn tracker(chosen: &ndi::Settings, endoscope: Option<EndoscopeSettings>, sides: &Sides) -> Served {
     let name = "tracker".to_owned();
     for tool in &chosen.tools {
         if let Err(source) = define(tool) {
@@ -176,11 +164,10 @@ fn tracker(chosen: &ndi::Settings, endoscope: Option<EndoscopeSettings>, scene: 
         }
     }
     let worlds: Vec<Shared> = sides.iter().flatten().cloned().collect();
-    let view = View::new(scene);
     let body = move |_: f64, number: usize| match (worlds.get(number), endoscope, worlds.first()) {
-        (Some(world), ..) => world.with(|side, now_s| view.of(side, now_s)),
+        (Some(world), ..) => world.with(SideWorld::marker),
         (None, Some(endoscope), Some(world)) if endoscope.tool == number => {
-            world.with(|side, _| view.endoscope(&side.world_from_view(), &endoscope))
+            world.with(|side, _| side.endoscope(&endoscope))
         }
         _ => Tracked::Missing { out_of_volume: false },
     };
@@ -203,49 +190,6 @@ fn define(path: &Path) -> std::io::Result<()> {
     let mut definition = b"NDI\0emulated instrument".to_vec();
     definition.resize(ndi::DEFINITION, 0);
     nima_files::write_atomically(path, |file| file.write_all(&definition))
-}
-
-/// Where the tracker's camera is and how the marker sits on the instrument.
-#[derive(Clone, Copy, Debug)]
-struct View {
-    c_from_world: UnitQuaternion<f64>,
-    s1_from_m: UnitQuaternion<f64>,
-}
-
-impl View {
-    fn new(scene: &Scene) -> Self {
-        let (camera_deg, marker_deg) = scene
-            .tissue_sensor
-            .map_or((CAMERA_DEG, Vector3::zeros()), |sensor| (sensor.world_from_c_deg, sensor.s1_from_m_deg));
-        Self {
-            c_from_world: from_roll_pitch_yaw_deg(&camera_deg).inverse(),
-            s1_from_m: from_roll_pitch_yaw_deg(&marker_deg),
-        }
-    }
-
-    /// The marker on the endoscope, which stands still.
-    fn endoscope(&self, world_from_view: &UnitQuaternion<f64>, endoscope: &EndoscopeSettings) -> Tracked {
-        let view_from_n = from_roll_pitch_yaw_deg(&endoscope.n_from_view_deg).inverse();
-        Tracked::Seen {
-            c_from_tool: self.c_from_world * world_from_view * view_from_n,
-            position_in_c_m: -Vector3::new(0.0, 0.0, CAMERA_M),
-            error_m: MARKER_ERROR_M,
-            at_the_edge: false,
-        }
-    }
-
-    /// The marker of a side, in the camera's frame, which looks along its own -z.
-    fn of(&self, side: &mut SideWorld, now_s: f64) -> Tracked {
-        let noisy = side.seen(now_s);
-        let truth = side.truth(now_s);
-        let marker_m = side.sensor_m() + truth.world_from_s1 * Vector3::new(0.0, 0.0, MARKER_M);
-        Tracked::Seen {
-            c_from_tool: noisy.unwrap_or(self.c_from_world * truth.world_from_s1 * self.s1_from_m),
-            position_in_c_m: self.c_from_world * marker_m - Vector3::new(0.0, 0.0, CAMERA_M),
-            error_m: MARKER_ERROR_M,
-            at_the_edge: false,
-        }
-    }
 }
 
 #[cfg(target_os = "linux")]

@@ -1,17 +1,18 @@
 //! One side's world with an arm of joints in it: what every emulator of the side asks.
 //!
 //! Time is the common clock's (s); the world goes on by fixed steps of 1 ms up to it whenever anybody asks. Positions in m, forces in N,
-//! in `world` unless the name says another. The joints follow what is asked of the arm as the simulated follower follows its command.
+//! in `world` unless the name says another. The joints follow what is asked of the arm as the simulated follower follows its command,
+//! or, while its drives are off, the hands of the technician.
 
 use nalgebra::{UnitQuaternion, Vector3};
 use nima_core::{
     frames::{GRAVITY_M_S2, Wrench, from_roll_pitch_yaw_deg},
     kinematics::{Arm, Joints, view_from_omega},
 };
-use nima_devices::{ARM_JOINTS, ForceReading, ForceStatus};
-use nima_machine::rig::{ArmSet, Outputs, Sensed, SensorPlace};
+use nima_devices::{ARM_JOINTS, ForceReading, ForceStatus, Tracked};
+use nima_machine::rig::{ArmSet, EndoscopeSettings, Flaws, Outputs, Prompt, Sensed};
 
-use super::HandFrame;
+use super::{HandFrame, Task, flawed::Flawed, seen::Camera, technician::Technician};
 use crate::{
     World,
     emulators::{
@@ -19,6 +20,7 @@ use crate::{
         kinova::{Asked, Body as _, BodyState, StandIn},
     },
     scene::Scene,
+    world::Touch,
 };
 
 /// One step of the world, s.
@@ -63,7 +65,9 @@ pub(super) struct SideWorld {
     hand: HandFrame,
     start_m: Vector3<f64>,
     imu_from_s1: UnitQuaternion<f64>,
-    sensor_at: SensorPlace,
+    technician: Technician,
+    camera: Camera,
+    flawed: Flawed,
     world_from_s1: UnitQuaternion<f64>,
     turn_rad_s: Vector3<f64>,
     tip_m: Vector3<f64>,
@@ -78,10 +82,18 @@ pub(super) struct SideWorld {
 
 impl SideWorld {
     /// The world of a scene that has been made fit for this side, with the arm at these angles.
-    pub(super) fn new(scene: &Scene, set: &ArmSet, arm: Arm, start_rad: &Joints, hand: HandFrame) -> Self {
+    pub(super) fn new(
+        scene: &Scene,
+        set: &ArmSet,
+        arm: Arm,
+        start_rad: &Joints,
+        hand: HandFrame,
+        flaws: Flaws,
+    ) -> Self {
         let pose = arm.pose(start_rad);
         let imu_deg = scene.wrist.as_ref().and_then(|wrist| wrist.imu).map(|imu| imu.s1_from_imu_deg);
-        let world = World::new(&Scene { follower: None, ..scene.clone() }, STEP_S.recip());
+        // The arm is this side's own, and so is the person at it.
+        let world = World::new(&Scene { follower: None, person: None, ..scene.clone() }, STEP_S.recip());
         let start_m = world.hand().position_m();
         let mut side = Self {
             world,
@@ -93,7 +105,9 @@ impl SideWorld {
             hand,
             start_m,
             imu_from_s1: imu_deg.map_or_else(UnitQuaternion::identity, |deg| from_roll_pitch_yaw_deg(&deg).inverse()),
-            sensor_at: set.sensor_at,
+            technician: Technician::new(arm, *start_rad, scene),
+            camera: Camera::new(scene, set),
+            flawed: Flawed::new(flaws, (*start_rad).into()),
             world_from_s1: pose.orientation(),
             turn_rad_s: Vector3::zeros(),
             tip_m: pose.tip_m,
@@ -120,7 +134,7 @@ impl SideWorld {
     pub(super) fn ask(&mut self, now_s: f64, asked: &Asked) -> BodyState {
         self.advance(now_s);
         self.asked = *asked;
-        self.body
+        BodyState { joint_rad: self.flawed.encoders(&self.body.joint_rad), ..self.body }
     }
 
     /// What the motors of the handle do from now on; where it is, in its own frame.
@@ -149,24 +163,16 @@ impl SideWorld {
         let support = self.imu_from_s1 * (s1_from_world * Vector3::new(0.0, 0.0, GRAVITY_M_S2));
         let (wrench, measured) = match &self.sensed {
             Sensed::AtWrist(sample) => (sample.raw, sample.acceleration_m_s2),
-            Sensed::AtTip(tip_n) => (self.carried_to_the_sensor(&(s1_from_world * tip_n)), None),
+            Sensed::AtTip(tip_n) => (Wrench { force_n: s1_from_world * tip_n, torque_nm: Vector3::zeros() }, None),
         };
+        let more = self.flawed.wrench(now_s, self.body.joint_rad[ARM_JOINTS - 1]);
         ForceReading {
-            wrench,
-            acceleration_m_s2: Some(measured.unwrap_or(support)),
+            wrench: Wrench { force_n: wrench.force_n + more.force_n, torque_nm: wrench.torque_nm + more.torque_nm },
+            acceleration_m_s2: Some(self.flawed.askew() * measured.unwrap_or(support)),
             angular_velocity_rad_s: Some(self.imu_from_s1 * self.turn_rad_s),
             temperature_c: SENSOR_C,
             status: ForceStatus::default(),
         }
-    }
-
-    /// A force on the tip (N, `s1`) as this rig's sensor reads it: beside the tip without, at the wrist with the shaft's lever.
-    fn carried_to_the_sensor(&self, force_n: &Vector3<f64>) -> Wrench {
-        let lever_m = match self.sensor_at {
-            SensorPlace::Tip => 0.0,
-            SensorPlace::Wrist => self.arm.shaft_m(),
-        };
-        Wrench { force_n: *force_n, torque_nm: Vector3::new(0.0, 0.0, lever_m).cross(force_n) }
     }
 
     /// Share of this side in what the sensor under the tissue reads, N.
@@ -178,18 +184,23 @@ impl SideWorld {
         }
     }
 
-    /// How the tracker sees the marker turned, with its noise; `None` where the scene has no tracker.
-    pub(super) fn seen(&mut self, now_s: f64) -> Option<UnitQuaternion<f64>> {
+    /// What the tracker tells of the marker on the instrument.
+    pub(super) fn marker(&mut self, now_s: f64) -> Tracked {
         self.advance(now_s);
-        match &self.sensed {
+        let noisy = match &self.sensed {
             Sensed::AtWrist(sample) => sample.m_from_c.map(|m_from_c| m_from_c.inverse()),
             Sensed::AtTip(_) => None,
-        }
+        };
+        let sensor_m = self.tip_m - self.world_from_s1 * Vector3::new(0.0, 0.0, self.arm.shaft_m());
+        let marker = self.camera.marker(&self.world_from_s1, &sensor_m, noisy);
+        self.flawed.tracked(now_s, marker)
     }
 
-    /// How the endoscope looks: an Omega stands below its picture, and the hand goes the picture's ways.
-    pub(super) fn world_from_view(&self) -> UnitQuaternion<f64> {
-        (view_from_omega() * self.hand.leader_from_world).inverse()
+    /// What it tells of the marker on the endoscope, which stands still. An Omega stands below the endoscope's picture, and the
+    /// hand goes the picture's ways.
+    pub(super) fn endoscope(&self, endoscope: &EndoscopeSettings) -> Tracked {
+        let world_from_view = (view_from_omega() * self.hand.leader_from_world).inverse();
+        self.camera.endoscope(&world_from_view, endoscope)
     }
 
     /// What only a simulation knows.
@@ -206,9 +217,10 @@ impl SideWorld {
         }
     }
 
-    /// Where the origin of the wrist sensor is, m.
-    pub(super) fn sensor_m(&self) -> Vector3<f64> {
-        self.tip_m - self.world_from_s1 * Vector3::new(0.0, 0.0, self.arm.shaft_m())
+    /// The technician reads the screen.
+    pub(super) fn reads(&mut self, now_s: f64, task: Task, prompt: Prompt) {
+        self.advance(now_s);
+        self.technician.reads(task, prompt);
     }
 
     fn step(&mut self) {
@@ -217,12 +229,22 @@ impl SideWorld {
         let pose = self.arm.pose(&self.body.joint_rad.into());
         let orientation = pose.orientation();
         self.turn_rad_s = (self.world_from_s1.inverse() * orientation).scaled_axis() / STEP_S;
-        (self.world_from_s1, self.tip_m) = (orientation, pose.tip_m);
+        let bent_m = self.flawed.bent_m(&self.world.true_tip_n(), &pose.direction);
+        (self.world_from_s1, self.tip_m) = (orientation, pose.tip_m + bent_m);
         self.world.carry(orientation);
-        // A hand does not begin its task before the arm follows it.
-        self.world.wait(!matches!(asked, Asked::Joints(_)));
+        // He takes his hands off an arm whose drives are on.
+        let hands_on = asked == Asked::Rest && !self.technician.is_away();
+        let (touch, aside) = (self.technician.touch(), self.technician.sets_aside());
+        let (touch, aside) = if hands_on { (touch, aside) } else { (Touch::default(), false) };
+        self.world.touched(&touch, aside);
+        if hands_on {
+            self.world.wait_at(self.start_m);
+        } else {
+            // A hand does not begin its task before the arm follows it.
+            self.world.wait(!matches!(asked, Asked::Joints(_)));
+        }
         let force_n = self.hand.leader_from_world.inverse() * self.applied.force_n;
-        let outputs = Outputs { tip_command_m: Some(pose.tip_m), hand_force_n: force_n, ..Outputs::SAFE };
+        let outputs = Outputs { tip_command_m: Some(self.tip_m), hand_force_n: force_n, ..Outputs::SAFE };
         self.made += 1;
         let inputs = self.world.advance_to(self.made as f64 * STEP_S, &outputs);
         (self.hand_m, self.sensed) = (inputs.hand.position_m, inputs.sensed);
@@ -231,7 +253,13 @@ impl SideWorld {
 
     fn move_joints(&mut self, asked: &Asked) {
         match asked {
-            Asked::Rest => self.body.joint_rad_s = [0.0; ARM_JOINTS],
+            Asked::Rest if self.technician.is_away() => self.body.joint_rad_s = [0.0; ARM_JOINTS],
+            Asked::Rest => {
+                let before = Joints::from(self.body.joint_rad);
+                let guided = self.technician.advance(&before, STEP_S);
+                self.body.joint_rad = guided.into();
+                self.body.joint_rad_s = ((guided - before) / STEP_S).into();
+            }
             Asked::Joints(goal_rad) => {
                 for (joint, goal_rad) in goal_rad.iter().enumerate() {
                     self.follow(joint, *goal_rad);

@@ -19,11 +19,9 @@ impl Scene {
     /// Whether it has one, with its force measured at the wrist.
     pub fn measures_at_wrist(&self, rig: &RigConfig, side: Side) -> bool {
         match &rig.devices {
-            // An emulated sensor measures what the scene contains.
-            Some(devices) if !devices.emulated => {
-                devices.arm(side).is_some_and(|arm| arm.sensor_at == SensorPlace::Wrist)
-            }
-            _ => self.has(rig, side) && self.wrist.is_some(),
+            // Also for emulated devices: a scene that says nothing of a wrist gets the paper's there.
+            Some(devices) => devices.arm(side).is_some_and(|arm| arm.sensor_at == SensorPlace::Wrist),
+            None => self.has(rig, side) && self.wrist.is_some(),
         }
     }
 }

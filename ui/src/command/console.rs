@@ -70,7 +70,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let mut plan = Plan { rig: rig.clone(), scene: scene.clone(), calibrations, engage: false };
     // Nobody can be hurt by a simulated or emulated rig, so the demo starts at once.
     let by_itself = rig.devices.as_ref().is_none_or(|devices| devices.emulated);
-    plan.engage = by_itself && !arguments.at_rest && plan.may_engage();
+    plan.engage = by_itself && !arguments.at_rest && arguments.calibrate.is_none() && plan.may_engage();
     let handle = nima_world::start(&plan)?;
     let options = Options {
         exit_after: arguments.exit_after.map(Duration::from_secs_f64),

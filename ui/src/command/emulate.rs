@@ -4,7 +4,7 @@
 //! standard input ends if that is a pipe or a terminal, so that it does not outlive the process that started it. Lines
 //! on standard input set faults: `fault NAME` (see `--help`), `fault none` removes it; with several devices `fault
 //! DEVICE NAME`, with a name that contains blanks in quotes or with dashes. `nima emulate rig` emulates a whole rig
-//! with one simulated world; `pedal BITS` presses its pedal's switches.
+//! with one simulated world; `pedal BITS` presses its pedal's switches, `screen ...` shows its technician what to do.
 
 #[cfg(unix)]
 mod rig;

@@ -12,6 +12,7 @@ mod run;
 mod setup;
 mod study;
 mod train;
+pub(crate) mod truth;
 
 use std::process::ExitCode;
 
@@ -43,7 +44,7 @@ enum Command {
     Devices(devices::Arguments),
     /// Emulate devices on their real interfaces (serial port, network, HID)
     Emulate(emulate::Arguments),
-    /// Calibrate from a file; prints errors on held-out data and a verdict
+    /// Calibrate from a file, or a whole emulated rig; prints errors on held-out data and a verdict
     #[command(subcommand, arg_required_else_help = false)]
     Calibrate(calibrate::CalibrateCommand),
     /// Run an experiment and print its results

@@ -15,9 +15,16 @@ use nima_machine::{
     messages::{Command, LoopState, Tick},
     runtime::{ArmEnd, CauseAndCure, DeviceFigures, Handle, Summary},
 };
-use nima_world::Plan;
+use nima_recording::store::WristId;
+use nima_world::{Plan, emulated::TipError};
+use serde::Serialize;
 
-use super::{ending::Reasons, output, setup::Setup};
+use super::{
+    ending::Reasons,
+    output,
+    setup::Setup,
+    truth::{self, Comparison},
+};
 use crate::{
     console::in_force::InForce,
     emulators::Emulators,
@@ -25,6 +32,9 @@ use crate::{
     telling::tell,
     words::{self, Remedy as _},
 };
+
+/// True forces at the tips that emulators tell in a second.
+const TRUTH_HZ: u32 = 200;
 
 #[derive(Debug, Args)]
 #[expect(clippy::struct_excessive_bools, reason = "switches of a command")]
@@ -79,6 +89,9 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     }
     let leave = arguments.setup.leave()?;
     let emulators = Emulators::start(arguments.setup.rig(), arguments.setup.scene(), rig.devices.as_ref())?;
+    if let Some(emulators) = &emulators {
+        emulators.tell_truth(TRUTH_HZ);
+    }
     let mut in_force = InForce::load(None, &rig, &scene);
     let calibrations = in_force.calibrations(&rig);
     // With a calibrated wrist sensor the bias is checked before the tool may touch anything. Only rigs that cannot hurt
@@ -86,7 +99,14 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let by_itself = rig.devices.as_ref().is_none_or(|devices| devices.emulated);
     let engage = by_itself && in_force.drift().is_none() && !in_force.is_waiting();
     let plan = Plan { rig, scene, calibrations, engage };
-    let mut start = Start { in_force, engaged: plan.engage || !by_itself, reasons: Reasons::default() };
+    let mut start = Start {
+        in_force,
+        engaged: plan.engage || !by_itself,
+        reasons: Reasons::default(),
+        emulators,
+        comparison: Comparison::default(),
+        lacking: None,
+    };
     if !plan.may_engage() {
         bail!(
             "scene \"{}\" cannot be engaged: the force at its tip is not known; calibrate with `nima console --calibrate gravity`",
@@ -101,20 +121,32 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     } else {
         on_the_real_clock(&plan, &mut start, &leave, arguments)?
     };
-    drop(emulators);
+    drop(start.emulators.take());
+    let tip_error = start.comparison.figures();
     summary.explain(|fault| [fault.cause(), fault.cure()]);
     let drift = start.in_force.drift();
     if arguments.json {
         if let Some(drift @ Drift::Moved { .. }) = drift {
             tell(format_args!("warning: the bias of the wrist sensor has {}", words::drift(drift)));
         }
-        output::json(&summary)?;
+        output::json(&Told { summary: &summary, tip_error })?;
     } else {
         let bias =
             drift.map_or_else(String::new, |drift| format!("\nbias of the wrist sensor: {}", words::drift(drift)));
-        output::line(&(in_words(&plan, &summary) + &bias))?;
+        output::line(&(in_words(&plan, &summary) + &truth::in_words(&tip_error) + &bias))?;
     }
-    start.reasons.of(&summary, by_itself).map_or(Ok(()), |why| Err(anyhow::anyhow!(why)))
+    // Without its calibrations an emulated rig does what it can, and has said what it lacks.
+    let was_to_engage = by_itself && start.in_force.uncalibrated().is_none();
+    start.reasons.of(&summary, was_to_engage).map_or(Ok(()), |why| Err(anyhow::anyhow!(why)))
+}
+
+/// The figures of a run; the truth only where the rig knows it.
+#[derive(Serialize)]
+struct Told<'a> {
+    #[serde(flatten)]
+    summary: &'a Summary,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    tip_error: Vec<TipError>,
 }
 
 /// Engages after the bias of the wrist sensor has been checked, whatever the result.
@@ -122,15 +154,46 @@ struct Start {
     in_force: InForce,
     engaged: bool,
     reasons: Reasons,
+    emulators: Option<Emulators>,
+    comparison: Comparison,
+    /// What was told to be missing.
+    lacking: Option<String>,
 }
 
 impl Start {
     fn watch(&mut self, tick: &Tick) -> Option<Command> {
         self.in_force.watch(tick);
         self.reasons.watch(tick);
-        let go = !self.engaged && !self.in_force.is_waiting() && self.in_force.drift() != Some(Drift::Waiting);
+        let known = !self.in_force.is_waiting() && self.in_force.uncalibrated().is_none();
+        let go = !self.engaged && known && self.in_force.drift() != Some(Drift::Waiting);
         self.engaged |= go;
         go.then_some(Command::Engage)
+    }
+
+    /// Compares the forces at the tips with the true ones, where they are known.
+    fn compare(&mut self) {
+        if let Some(emulators) = &self.emulators {
+            self.comparison.know(emulators.known());
+        }
+    }
+
+    /// What is missing on an emulated rig, with its cure, if it has not been told yet.
+    fn newly_lacking(&mut self, rig: &str) -> Option<String> {
+        self.emulators.as_ref().filter(|_| !self.in_force.is_waiting())?;
+        let lacking = self.in_force.lacking();
+        let of = |(wrist, lacks): &(&WristId, Vec<&str>)| {
+            format!("sensor {} with \"{}\": {}", wrist.serial_number, wrist.tool, lacks.join(", ").to_lowercase())
+        };
+        let words = lacking.iter().map(of).collect::<Vec<_>>().join("; ");
+        let effect = match self.in_force.uncalibrated() {
+            Some(_) => "the arms stay idle",
+            None => "the force contains the trocar's friction",
+        };
+        let told = format!("not calibrated ({effect}): {words}; calibrate with `nima calibrate rig --rig {rig}`");
+        // A sensor or tool in another's place.
+        let told = std::iter::once(told).chain(self.in_force.told()).collect::<Vec<_>>().join(". ");
+        let is_new = !words.is_empty() && self.lacking.as_ref() != Some(&told);
+        is_new.then(|| self.lacking.insert(told).clone())
     }
 }
 
@@ -145,8 +208,10 @@ fn on_the_real_clock(plan: &Plan, start: &mut Start, leave: &Leave, arguments: &
         let rest = end.map_or(Duration::MAX, |end| end.saturating_duration_since(Instant::now()));
         thread::sleep(rest.min(Duration::from_millis(50)));
         let (mut newest, mut command) = (None, None);
+        let seen_s = truth::now_s();
         handle.drain_ticks(|tick| {
             newest = Some(*tick);
+            start.comparison.tick(tick, seen_s);
             command = start.watch(tick).or(command);
         });
         handle.drain_events(|event| {
@@ -156,7 +221,11 @@ fn on_the_real_clock(plan: &Plan, start: &mut Start, leave: &Leave, arguments: &
         });
         troubles.look(&handle, &status);
         start.in_force.meet(&handle, &plan.rig);
-        if let Some(wrist) = start.in_force.uncalibrated() {
+        start.compare();
+        if let Some(lacking) = start.newly_lacking(arguments.setup.rig()) {
+            tell(lacking);
+        }
+        if let Some(wrist) = start.in_force.uncalibrated().filter(|_| start.emulators.is_none()) {
             bail!(
                 "the loop cannot be engaged: wrist sensor {} with tool \"{}\" has no gravity calibration; \
                  calibrate with `nima console --calibrate gravity`",

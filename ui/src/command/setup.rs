@@ -26,6 +26,11 @@ impl Default for Setup {
 }
 
 impl Setup {
+    /// Of this rig and scene.
+    pub(super) fn of(rig: &str, scene: &str) -> Self {
+        Self { rig: rig.to_owned(), scene: scene.to_owned(), until_input_ends: false }
+    }
+
     /// The name or path of the rig.
     pub(super) fn rig(&self) -> &str {
         &self.rig

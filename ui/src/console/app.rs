@@ -18,7 +18,7 @@ use nima_machine::{
     rig::Side,
     runtime::Handle,
 };
-use nima_world::{Plan, scene::Scene};
+use nima_world::{Plan, emulated::Screen, scene::Scene};
 
 use super::{
     Options,
@@ -34,6 +34,7 @@ use super::{
     outbox::Outbox,
     panels::{ForcesState, TopBarState, TradeoffState, top_bar_ui},
     pictures::Photographer,
+    reader::Reader,
     roles::{Panels, Role, Wishes, role_ui},
     scene3d::{SceneView, extras::Extras},
     screenshot,
@@ -57,6 +58,8 @@ pub struct ConsoleApp {
     door: Option<Door>,
     /// The emulators of an emulated rig; they end after the loop.
     emulators: Option<Emulators>,
+    /// The emulators' technician, who reads the wizards' instructions.
+    reader: Option<Reader>,
     running: Choice,
     starting: Option<Starting>,
     start: StartPage,
@@ -76,6 +79,8 @@ pub struct ConsoleApp {
     diary: Diary,
     /// The scene that was shown before a wizard changed it.
     watched: Option<Scene>,
+    /// What the technician of an emulated rig has read last.
+    read: Option<Screen>,
     options: Options,
     surface: Option<Arc<Surface>>,
     /// Name of the OpenGL renderer.
@@ -110,6 +115,7 @@ impl ConsoleApp {
             meter: None,
             door: Some(door_of(handle, &cc.egui_ctx)),
             emulators: None,
+            reader: None,
             running: Choice::default(),
             starting: None,
             start: StartPage::new(Choice::default()),
@@ -119,6 +125,7 @@ impl ConsoleApp {
             diary: Diary::default(),
             wizards: Wizards::default(),
             watched: None,
+            read: None,
             live,
             surface,
             outbox: Outbox::default(),

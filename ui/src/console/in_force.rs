@@ -109,6 +109,15 @@ impl InForce {
         self.sides.iter().find_map(OfSide::without_gravity)
     }
 
+    /// What is missing on each side whose sensor is known: sensor, tool and the names of the calibrations.
+    pub fn lacking(&self) -> Vec<(&WristId, Vec<&'static str>)> {
+        self.sides
+            .iter()
+            .filter_map(|of_side| Some((of_side.wrist()?, of_side.lacks())))
+            .filter(|(_, lacks)| !lacks.is_empty())
+            .collect()
+    }
+
     /// The arm that is calibrated by the wizards.
     pub const fn side(&self) -> Side {
         self.side

@@ -22,6 +22,7 @@ mod menu;
 pub mod outbox;
 pub mod panels;
 pub mod pictures;
+pub mod reader;
 pub mod readings;
 pub mod roles;
 pub mod rolling;

@@ -17,7 +17,7 @@ const ATTEMPTS: usize = 4;
 const PORTS: [u16; 8] = [47130, 47100, 47101, 47131, 47110, 47111, 47140, 47120];
 
 /// The embedded emulated rig on ports that are free for TCP and UDP, so that it disturbs nobody.
-fn rig() -> String {
+pub(crate) fn rig() -> String {
     let mut text = include_str!("../../../config/rigs/emulated.toml").to_owned();
     // All are held until the last is chosen, so that no two are the same.
     let mut held = Vec::new();

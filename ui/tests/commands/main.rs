@@ -3,6 +3,7 @@
 
 mod calibrate_correspondence;
 mod calibrate_gravity;
+mod calibrate_rig;
 mod devices;
 mod docs;
 mod endings;

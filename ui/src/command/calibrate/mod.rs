@@ -1,7 +1,8 @@
-//! `nima calibrate`: calibrations from files, each with a verdict.
+//! `nima calibrate`: calibrations from files, each with a verdict; or all of an emulated rig.
 
 mod correspondence;
 mod gravity;
+mod rig;
 
 use std::path::Path;
 
@@ -16,12 +17,15 @@ pub(super) enum CalibrateCommand {
     Gravity(gravity::Arguments),
     /// Find the rotation between the sensor under the tissue and the wrist sensor from pairs of forces
     Correspondence(correspondence::Arguments),
+    /// Let the simulated technician of an emulated rig do every calibration of every arm, and save them (some minutes)
+    Rig(rig::Arguments),
 }
 
 pub(super) fn run(command: &CalibrateCommand) -> anyhow::Result<()> {
     match command {
         CalibrateCommand::Gravity(arguments) => gravity::run(arguments),
         CalibrateCommand::Correspondence(arguments) => correspondence::run(arguments),
+        CalibrateCommand::Rig(arguments) => rig::run(arguments),
     }
 }
 

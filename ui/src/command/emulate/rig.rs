@@ -1,14 +1,24 @@
 //! `nima emulate rig`: every device of a rig file at its address, with one simulated world; `--rig F`, `--scene F`.
-//! `pedal BITS` on standard input presses the pedal's switches (the first in the lowest bit) until the next such line.
+//! Lines on standard input: `pedal BITS` presses the pedal's switches (the first in the lowest bit) until the next such line;
+//! `screen SIDE TASK PROMPT` shows the technician at the arms what the screen shows; `truth HZ` prints the true forces at the
+//! tips from now on, so many times a second.
+
+use std::time::Duration;
 
 use anyhow::{Context as _, bail};
-use nima_machine::config::RigConfig;
+use nima_machine::{config::RigConfig, rig::Side};
 use nima_world::{
-    emulated::{EmulatedRig, HandFrame},
+    emulated::{EmulatedRig, HandFrame, Screen, Witness},
     scene::Scene,
 };
 
-use crate::telling::tell;
+use crate::{
+    command::{
+        output,
+        truth::{Known, now_s},
+    },
+    telling::tell,
+};
 
 pub(super) fn run(rig: &str, scene: &str, until_input_ends: bool) -> anyhow::Result<()> {
     let rig = RigConfig::load(rig)?;
@@ -22,7 +32,50 @@ pub(super) fn run(rig: &str, scene: &str, until_input_ends: bool) -> anyhow::Res
     let emulated = EmulatedRig::start(devices, &scene, &[HandFrame::of(&rig.teleoperation.mapping()); 2])
         .with_context(|| format!("rig \"{}\"", rig.name))?;
     let served: Vec<_> = emulated.servings().iter().map(|device| (device.name.as_str(), &device.serving)).collect();
-    super::serve(&served, until_input_ends, |line| press(&emulated, line))
+    super::serve(&served, until_input_ends, |line| obey(&emulated, line))
+}
+
+/// Obeys a line; returns false for one that it does not know.
+fn obey(emulated: &EmulatedRig, line: &str) -> bool {
+    press(emulated, line) || show(emulated, line) || testify(emulated, line)
+}
+
+/// Handles `screen SIDE TASK PROMPT`.
+fn show(emulated: &EmulatedRig, line: &str) -> bool {
+    let Some(shown) = line.strip_prefix("screen ") else { return false };
+    match shown.parse::<Screen>() {
+        Ok(screen) => emulated.technician().reads(&screen),
+        Err(expected) => tell(format_args!("unknown screen \"{shown}\"; {expected}")),
+    }
+    true
+}
+
+/// Handles `truth HZ`.
+fn testify(emulated: &EmulatedRig, line: &str) -> bool {
+    let Some(rate) = line.strip_prefix("truth ") else { return false };
+    match rate.trim().parse::<u32>() {
+        Ok(rate_hz @ 1..=1000) => {
+            let witness = emulated.witness();
+            std::thread::spawn(move || tell_truth(&witness, Duration::from_secs(1) / rate_hz));
+        }
+        _ => tell(format_args!("unknown command \"{line}\"; expected: truth HZ, from 1 to 1000")),
+    }
+    true
+}
+
+fn tell_truth(witness: &Witness, pause: Duration) {
+    loop {
+        for side in Side::ALL {
+            let at_s = now_s();
+            let Some(truth) = witness.truth(side) else { continue };
+            let known = Known { truth: side, at_s, tip_n: truth.tip_n.into() };
+            let written = serde_json::to_string(&known).map(|line| output::line(&line));
+            if !matches!(written, Ok(Ok(()))) {
+                return;
+            }
+        }
+        std::thread::sleep(pause);
+    }
 }
 
 /// Handles `pedal BITS`; returns false for any other line.

@@ -5,21 +5,32 @@ use nima_machine::{
     messages::{Command, LoopState},
     rig::{Prompt, Side},
 };
-use nima_world::scene::Scene;
+use nima_world::{emulated::Screen, scene::Scene};
 
 use super::ConsoleApp;
 use crate::console::{
     desk::Panel as Tile,
     panels::{CalibrationWish, calibrations_ui},
+    reader::task_of,
     text, theme,
     widgets::card,
     wizards::{Saving, Which, Wizards},
 };
 
 impl ConsoleApp {
-    /// Opens a wizard; a simulated rig changes to its scene, in which a simulated person guides the arm.
+    /// Opens a wizard; a simulated rig changes to its scene, in which a simulated person guides the arm. At the arm of a rig
+    /// with devices is a technician.
     pub(super) fn open_wizard(&mut self, which: Which) {
         let side = self.in_force.side();
+        if self.live.rig.devices.is_some() {
+            let rests = matches!(self.live.state(), LoopState::Idle | LoopState::Disconnected);
+            let (rig, scene) = (self.live.rig.clone(), self.live.scene.clone());
+            match if rests { Ok(()) } else { self.restart(rig, scene) } {
+                Ok(()) => self.wizards.open = Some(which),
+                Err(reason) => self.in_force.tell(text::calibrations::not_opened(&reason)),
+            }
+            return;
+        }
         let here = which.suits(&self.live.scene) && self.live.scene.has(&self.live.rig, side);
         let opened = if here && self.wizards.open.is_none() {
             Ok(())
@@ -82,10 +93,13 @@ impl ConsoleApp {
         self.wizards.tell_saved(told);
     }
 
-    /// Sends the open wizard's instruction for the person at the arm.
+    /// Sends the open wizard's instruction for the person at the arm, and shows it to the technician of an emulated rig.
     pub(super) fn ask(&mut self) {
         let wanted = self.wizards.prompt();
         let side = self.in_force.side();
+        if let Some(reader) = &self.reader {
+            reader.show(Screen { side, task: task_of(self.wizards.open), prompt: wanted }, &mut self.read);
+        }
         let tick = self.live.tick_of(side);
         let asked = tick.is_some_and(|tick| tick.state == LoopState::Idle && tick.prompt != wanted);
         if self.wizards.open.is_some() && asked {

@@ -36,8 +36,16 @@ impl ConsoleApp {
     /// This rig and this scene run, on these emulators if it is an emulated rig.
     #[must_use]
     pub(crate) fn with_choice(mut self, running: Choice, emulators: Option<Emulators>) -> Self {
-        (self.running, self.emulators) = (running, emulators);
+        self.running = running;
+        self.serve(emulators);
         self
+    }
+
+    /// From now on these emulators serve the loop, and their technician reads the screen.
+    fn serve(&mut self, emulators: Option<Emulators>) {
+        self.reader = emulators.as_ref().map(Emulators::technician);
+        self.read = None;
+        self.emulators = emulators;
     }
 
     /// What runs: a rig and a scene.
@@ -84,7 +92,7 @@ impl ConsoleApp {
         };
         // End the old loop first: a rig must have one controller only, and emulators of the same places cannot run twice.
         drop(self.door.take());
-        drop(self.emulators.take());
+        self.serve(None);
         self.start.tell(None);
         let (give, emulators) = channel();
         let (ctx, devices, names) = (self.ctx.clone(), rig.devices.clone(), choice.clone());
@@ -108,7 +116,7 @@ impl ConsoleApp {
         };
         let Some(Starting { choice, rig, scene, before, because, .. }) = self.starting.take() else { return };
         let started = emulators.and_then(|emulators| {
-            self.emulators = emulators;
+            self.serve(emulators);
             self.start_loop(rig, scene)
         });
         match (started, before) {

@@ -86,6 +86,17 @@ impl OfSide {
         self.wrist().filter(|_| self.gravity.is_none())
     }
 
+    /// Names of the calibrations that are missing. The correspondence is needed only to train the network.
+    pub(super) fn lacks(&self) -> Vec<&'static str> {
+        let correspondence = self.correspondence.is_some() || self.tip_force.is_some();
+        let needed = [
+            (text::calibrations::GRAVITY, self.gravity.is_some()),
+            (text::calibrations::CORRESPONDENCE, correspondence),
+            (text::calibrations::TIP_FORCE, self.tip_force.is_some()),
+        ];
+        needed.into_iter().filter(|(_, there)| !there).map(|(name, _)| name).collect()
+    }
+
     /// Problems and what can be done; `across` is the wrist sensor of the other arm.
     pub(super) fn told(&self, across: Option<&WristId>) -> Option<String> {
         let elsewhere = |sensor: &&str| across.is_none_or(|across| across.serial_number != *sensor);

@@ -268,6 +268,10 @@ impl Wizard for CorrespondenceWizard {
         }
     }
 
+    fn attend(&mut self, _: &Binding) -> bool {
+        self.frame.step != PUSHES || self.session.target().is_none()
+    }
+
     fn step_ui(&mut self, ui: &mut Ui, _: &Binding) -> Option<Wish> {
         match self.frame.step {
             CHECK => self.check_ui(ui),

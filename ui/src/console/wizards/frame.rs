@@ -64,6 +64,11 @@ pub(super) trait Wizard {
     /// Removes the data, but keeps the settings of the rig.
     fn start_over(&mut self);
 
+    /// Does what a technician without a screen does in this step; returns whether it has all that it asks for.
+    fn attend(&mut self, _binding: &Binding) -> bool {
+        true
+    }
+
     /// Called before drawing.
     fn refresh(&mut self, _binding: &Binding) {}
     /// A message shown in every step, below the row of steps.

@@ -32,6 +32,8 @@ use crate::{
 
 /// Limit of the 95th percentile of the force in free motion, N; includes the noise of a sample.
 const FREE_MOTION_LIMIT_N: f64 = 0.25;
+/// Samples of free motion that a technician without a screen takes.
+const FREE_MOTION_SAMPLES: u64 = 8000;
 /// Fewest poses for a fit.
 const POSES_MIN: usize = 6;
 /// Steps of this wizard.
@@ -260,6 +262,14 @@ impl Wizard for GravityWizard {
             FREE_MOTION if self.pass_result().is_some_and(|result| result.samples > 0) => Ok(()),
             FREE_MOTION => Err(text::gravity::NEEDS_FREE_MOTION),
             _ => Err(text::wizards::LAST_STEP),
+        }
+    }
+
+    fn attend(&mut self, _: &Binding) -> bool {
+        match self.frame.step {
+            POSES => self.session.target().is_none(),
+            FREE_MOTION => self.pass_result().is_some_and(|result| result.samples >= FREE_MOTION_SAMPLES),
+            _ => true,
         }
     }
 

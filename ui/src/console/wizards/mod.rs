@@ -4,6 +4,7 @@
 //! A wizard receives every tick, gives the person at the arm instructions ([`Prompt`]) and returns a record when it is
 //! to be saved. It does not change the loop; saving puts the new calibration in force.
 
+mod attend;
 mod checks;
 mod correspondence;
 mod frame;
@@ -25,6 +26,7 @@ use nima_machine::{messages::Tick, rig::Prompt};
 use nima_recording::store::Store;
 use nima_world::scene::Scene;
 
+pub use attend::Attended;
 pub use correspondence::CorrespondenceWizard;
 pub use gravity::GravityWizard;
 pub use tip_force::TipForceWizard;
@@ -182,11 +184,7 @@ impl Wizards {
         ui.label(small(which.meaning()));
         ui.add_space(theme::GAP);
         let saving = wizard_ui(self.the_mut(which), ui, binding)?;
-        if matches!(saving, Saving::Gravity(_)) {
-            // Pushes and recordings used the previous gravity calibration; they must not be mixed with new ones.
-            self.correspondence = CorrespondenceWizard::default();
-            self.tip_force = TipForceWizard::default();
-        }
+        self.forget_what_rests_on(&saving);
         Some(saving)
     }
 }

@@ -49,6 +49,9 @@ const SPELL: usize = 900;
 const CHECK_WORK: usize = 8000;
 const CHECK_ROWS: usize = CHECK_WORK + 3000;
 
+/// Rows that a technician without a screen records: a minute.
+const ENOUGH_ROWS: usize = 12_000;
+
 /// What a recording was made with: rows of different rigs must not be mixed.
 #[derive(Clone, Debug)]
 struct RecordedWith {
@@ -312,6 +315,33 @@ impl Wizard for TipForceWizard {
 
     fn refresh(&mut self, binding: &Binding) {
         self.take_in(binding);
+    }
+
+    fn attend(&mut self, binding: &Binding) -> bool {
+        match self.frame.step {
+            RECORD => {
+                let enough = self.rows() >= ENOUGH_ROWS && self.lacking().is_none();
+                let running = self.recording.as_ref().is_some_and(|take| take.running);
+                if !enough && !running && self.may_record(binding).is_ok() {
+                    self.start_recording(binding);
+                }
+                enough
+            }
+            TRAIN => {
+                if self.trained.is_none() && !self.is_training() && self.told.is_none() {
+                    self.start_training(binding);
+                }
+                self.trained.is_some()
+            }
+            CHECK => {
+                let running = self.judging.is_some() || self.proof.as_ref().is_some_and(|take| take.running);
+                if self.checked.is_none() && !running && self.told.is_none() {
+                    self.start_check(binding);
+                }
+                self.checked.is_some()
+            }
+            _ => true,
+        }
     }
 
     fn notice(&self) -> Option<&str> {

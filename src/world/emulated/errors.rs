@@ -1,0 +1,121 @@
+//! Errors of the force at the tip against the true force of the tissue, which only a simulation knows.
+
+use nalgebra::Vector3;
+use nima_machine::{
+    messages::Tick,
+    rig::{SIDES, Side},
+};
+use serde::Serialize;
+
+use super::Truth;
+
+/// What is compared: the force that the loop uses, and what it would have without the later calibrations.
+const METHODS: [&str; 3] = ["tip force", "gravity only", "wrist only"];
+
+/// Mean and deviation, per axis (x, y, z of `world`), N.
+#[derive(Clone, Copy, Debug, Default)]
+struct Sums {
+    count: f64,
+    magnitude: Vector3<f64>,
+    mean: Vector3<f64>,
+    squares: Vector3<f64>,
+}
+
+impl Sums {
+    fn add(&mut self, error_n: &Vector3<f64>) {
+        self.count += 1.0;
+        self.magnitude += error_n.abs();
+        let before = error_n - self.mean;
+        self.mean += before / self.count;
+        self.squares += before.component_mul(&(error_n - self.mean));
+    }
+
+    fn mae_n(&self) -> [f64; 3] {
+        (self.magnitude / self.count.max(1.0)).into()
+    }
+
+    fn sd_n(&self) -> [f64; 3] {
+        (self.squares / self.count.max(1.0)).map(f64::sqrt).into()
+    }
+}
+
+/// Errors of one method without contact: what is told there is an error.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct FreeError {
+    /// Samples without contact.
+    pub samples: u64,
+    /// Mean per axis, N.
+    pub mean_n: [f64; 3],
+    /// Standard deviation per axis, N.
+    pub sd_n: [f64; 3],
+}
+
+/// Errors of one method on one side, per axis (x, y, z of `world`).
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct TipError {
+    /// The side.
+    pub side: Side,
+    /// `tip force`: the force that the loop uses; `gravity only`: without the network; `wrist only`: as the sensor reads.
+    pub method: &'static str,
+    /// Samples while engaged.
+    pub samples: u64,
+    /// Mean absolute error per axis, N.
+    pub mae_n: [f64; 3],
+    /// Without contact; `None` if there was contact all the time.
+    pub free: Option<FreeError>,
+    /// Share of the samples in which the loop did not use the network.
+    pub without_network: f64,
+}
+
+/// Errors of both sides.
+#[derive(Clone, Debug, Default)]
+pub struct TipErrors {
+    sides: [[(Sums, Sums); METHODS.len()]; SIDES],
+    without_network: [u64; SIDES],
+}
+
+impl TipErrors {
+    /// Adds the true force (N, `world`) at the time of an engaged tick; others are left out.
+    pub fn add(&mut self, tick: &Tick, true_n: &Vector3<f64>) {
+        let Some(sample) = tick.wrist.as_ref().filter(|_| tick.state.permits().coupled) else { return };
+        let (Some(world_from_s1), Some(gravity_free)) = (sample.world_from_s1, tick.force.gravity_free) else { return };
+        let side = tick.side.index();
+        let told_n = [tick.force.tip_n, world_from_s1 * gravity_free.force_n, world_from_s1 * sample.raw.force_n];
+        for ((all, free), told_n) in self.sides[side].iter_mut().zip(told_n) {
+            let error_n = told_n - true_n;
+            all.add(&error_n);
+            if true_n.norm() < f64::EPSILON {
+                free.add(&error_n);
+            }
+        }
+        let by_network = tick.force.tip_force.is_some() && tick.force.source.doubt().is_none();
+        self.without_network[side] += u64::from(!by_network);
+    }
+
+    /// Adds the truth that was read at the time of a tick.
+    pub fn add_truth(&mut self, tick: &Tick, truth: &Truth) {
+        self.add(tick, &truth.tip_n);
+    }
+
+    /// The figures; none of a side without samples.
+    pub fn figures(&self) -> Vec<TipError> {
+        Side::ALL.into_iter().flat_map(|side| self.of(side)).collect()
+    }
+
+    fn of(&self, side: Side) -> Vec<TipError> {
+        let of_side = METHODS.iter().zip(&self.sides[side.index()]).filter(|(_, (all, _))| all.count > 0.0);
+        let figures = of_side.map(|(method, (all, free))| TipError {
+            side,
+            method,
+            samples: all.count as u64,
+            mae_n: all.mae_n(),
+            free: (free.count > 0.0).then(|| FreeError {
+                samples: free.count as u64,
+                mean_n: free.mean.into(),
+                sd_n: free.sd_n(),
+            }),
+            without_network: self.without_network[side.index()] as f64 / all.count,
+        });
+        figures.collect()
+    }
+}

@@ -1,0 +1,160 @@
+//! Hand guiding: joint angles (rad) for how a person holds the tool.
+//!
+//! A person determines the tilt of the tool, or where its tip is and where the shaft points; the arm, whose brakes are
+//! open, takes whatever joint angles that needs. Damped least squares; a joint at its limit is left out, and the freedom
+//! that remains pulls the joints towards a comfortable pose. Lengths in m, in `world`.
+
+use std::f64::consts::{PI, TAU};
+
+use nalgebra::{SMatrix, SVector, Vector3};
+use nima_core::{
+    kinematics::{Arm, JOINTS, Joints, LIMIT_RAD, Pose, SPEED_RAD_S, limit_margin_rad},
+    noise::Noise,
+};
+
+/// Length that makes a rotation comparable with a displacement, m.
+const LENGTH_M: f64 = 0.3;
+const DAMPING: f64 = 1e-4;
+/// A person stays this far from a joint's limit, rad.
+const KEEP_OFF_RAD: f64 = 0.1;
+/// Share of the way to the comfortable pose in one second.
+const COMFORT_PER_S: f64 = 0.5;
+/// The search: random starts, steps from each, longest step, rad, and the miss at which it ends, m.
+const STARTS: usize = 40;
+const STEPS: usize = 150;
+const LONGEST_RAD: f64 = 0.25;
+const CLOSE_M: f64 = 1e-5;
+
+/// How a person holds the tool.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Hold {
+    /// Gravity acts in this direction of the sensor (unit, `s1`); where the tool is does not matter.
+    Tilt(Vector3<f64>),
+    /// The tip is here, and the shaft points in this direction (unit); its rotation about itself does not matter.
+    Tip { tip_m: Vector3<f64>, along: Vector3<f64> },
+}
+
+/// The arm in a person's hands.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Guide {
+    arm: Arm,
+    comfort_rad: Joints,
+}
+
+type Rows = SMatrix<f64, 5, JOINTS>;
+type Miss = SVector<f64, 5>;
+
+impl Guide {
+    /// `comfort_rad` are the joint angles that a person prefers.
+    pub(super) const fn new(arm: Arm, comfort_rad: Joints) -> Self {
+        Self { arm, comfort_rad }
+    }
+
+    /// Guides the joints towards this hold for `dt_s`, at most as fast as they can move; returns what is still missing, m.
+    pub(super) fn step(&self, joint_rad: &mut Joints, hold: &Hold, dt_s: f64) -> f64 {
+        let (step_rad, miss_m) = self.towards(joint_rad, hold, COMFORT_PER_S * dt_s);
+        let share = step_rad.iter().zip(SPEED_RAD_S).map(|(step, most)| step.abs() / (most * dt_s)).fold(1.0, f64::max);
+        *joint_rad += step_rad / share;
+        miss_m
+    }
+
+    /// Joint angles for this hold with the shortest way from `from_rad`; `None` if the arm cannot take it.
+    pub(super) fn find(&self, from_rad: &Joints, hold: &Hold) -> Option<Joints> {
+        let mut noise = Noise::new(0x6a_1d);
+        let mut random = || Joints::from_fn(|joint, _| (2.0 * noise.uniform() - 1.0) * LIMIT_RAD[joint].min(PI));
+        let starts = [*from_rad, self.comfort_rad].into_iter().chain((0..STARTS).map(|_| random()));
+        let found = starts.filter_map(|start| self.converged(start, hold)).map(|found| nearest_turn(from_rad, &found));
+        found.min_by(|a, b| (a - from_rad).amax().total_cmp(&(b - from_rad).amax()))
+    }
+
+    fn converged(&self, start_rad: Joints, hold: &Hold) -> Option<Joints> {
+        let mut joint_rad = start_rad;
+        for _ in 0..STEPS {
+            let (step_rad, miss_m) = self.towards(&joint_rad, hold, 0.0);
+            if miss_m < CLOSE_M {
+                return (limit_margin_rad(&joint_rad) >= KEEP_OFF_RAD).then_some(joint_rad);
+            }
+            joint_rad += step_rad * (LONGEST_RAD / step_rad.amax().max(LONGEST_RAD));
+        }
+        None
+    }
+
+    /// The step to this hold, with a share of the way to the comfortable pose in the freedom that remains, and the miss.
+    fn towards(&self, joint_rad: &Joints, hold: &Hold, comfort: f64) -> (Joints, f64) {
+        let (rows, miss) = missing(&self.arm.pose(joint_rad), hold);
+        let relaxed = nearest_turn(joint_rad, &self.comfort_rad) - joint_rad;
+        let mut free = [true; JOINTS];
+        let mut step_rad = Joints::zeros();
+        for _ in 0..JOINTS {
+            step_rad = solve(&rows, &miss, &(relaxed * comfort), free);
+            let mut stopped = false;
+            for joint in 0..JOINTS {
+                let (now, next) = (joint_rad[joint].abs(), (joint_rad[joint] + step_rad[joint]).abs());
+                if free[joint] && next > LIMIT_RAD[joint] - KEEP_OFF_RAD && next > now {
+                    (free[joint], stopped) = (false, true);
+                }
+            }
+            if !stopped {
+                break;
+            }
+        }
+        (step_rad, miss.norm())
+    }
+}
+
+/// What a step of each joint changes, and what is missing: rotations times [`LENGTH_M`], m.
+fn missing(pose: &Pose, hold: &Hold) -> (Rows, Miss) {
+    let jacobian = pose.chain.jacobian(&pose.tip_m);
+    let (place, turn) = (jacobian.fixed_rows::<3>(0), jacobian.fixed_rows::<3>(3) * LENGTH_M);
+    let (mut rows, mut miss) = (Rows::zeros(), Miss::zeros());
+    match hold {
+        Hold::Tilt(down_s1) => {
+            // A rotation about the vertical changes no tilt.
+            let e = rotation(&(pose.world_from_s1.rotation * down_s1), &-Vector3::z()) * LENGTH_M;
+            for axis in 0..2 {
+                rows.row_mut(axis).copy_from(&turn.row(axis));
+                miss[axis] = e[axis];
+            }
+        }
+        Hold::Tip { tip_m, along } => {
+            rows.fixed_rows_mut::<3>(0).copy_from(&place);
+            miss.fixed_rows_mut::<3>(0).copy_from(&(tip_m - pose.tip_m));
+            let e = rotation(&pose.direction, along) * LENGTH_M;
+            for (row, across) in pose.across.iter().enumerate() {
+                rows.row_mut(3 + row).copy_from(&(across.transpose() * turn));
+                miss[3 + row] = across.dot(&e);
+            }
+        }
+    }
+    (rows, miss)
+}
+
+/// Least squares with the joints that are free; the rest of the freedom follows `relaxed`.
+fn solve(rows: &Rows, miss: &Miss, relaxed: &Joints, free: [bool; JOINTS]) -> Joints {
+    let mut rows = *rows;
+    let mut relaxed = *relaxed;
+    for (joint, _) in free.iter().enumerate().filter(|(_, free)| !**free) {
+        rows.column_mut(joint).fill(0.0);
+        relaxed[joint] = 0.0;
+    }
+    let square = rows * rows.transpose() + SMatrix::<f64, 5, 5>::identity() * DAMPING;
+    square.cholesky().map_or_else(Joints::zeros, |c| relaxed + rows.transpose() * c.solve(&(miss - rows * relaxed)))
+}
+
+/// Rotation vector, rad, that turns one unit vector into another; for opposite ones, half a turn about a level axis.
+fn rotation(from: &Vector3<f64>, to: &Vector3<f64>) -> Vector3<f64> {
+    let (axis, cos) = (from.cross(to), from.dot(to));
+    let sin = axis.norm();
+    if sin > 1e-9 {
+        return axis * (sin.atan2(cos) / sin);
+    }
+    if cos > 0.0 { Vector3::zeros() } else { Vector3::x() * PI }
+}
+
+/// The same pose with the joints that turn without end in the turn nearest to `from_rad`.
+pub(super) fn nearest_turn(from_rad: &Joints, joint_rad: &Joints) -> Joints {
+    Joints::from_fn(|joint, _| {
+        let (from, to) = (from_rad[joint], joint_rad[joint]);
+        if LIMIT_RAD[joint].is_finite() { to } else { to - TAU * ((to - from) / TAU).round() }
+    })
+}

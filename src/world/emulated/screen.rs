@@ -1,0 +1,155 @@
+//! What the screen shows to the person at the arms, and its form as a line of text.
+
+use std::{fmt, str::FromStr};
+
+use nalgebra::{Quaternion, UnitQuaternion, UnitVector3, Vector3};
+use nima_machine::rig::{Prompt, Side};
+
+/// What the person at the arms is to do.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Task {
+    /// No calibration: the instrument is in the trocar, and nobody touches the arm.
+    #[default]
+    Surgery,
+    /// Gravity: the instrument is taken out of the trocar, and nothing is near it.
+    Gravity,
+    /// Correspondence: the tissue lies on its sensor, without the body wall.
+    Correspondence,
+    /// Tip force: through the trocar onto the tissue.
+    TipForce,
+}
+
+impl Task {
+    const ALL: [(Self, &'static str); 4] = [
+        (Self::Surgery, "surgery"),
+        (Self::Gravity, "gravity"),
+        (Self::Correspondence, "correspondence"),
+        (Self::TipForce, "tip-force"),
+    ];
+}
+
+/// What the screen shows: which arm is calibrated, which calibration is open, and its present instruction.
+///
+/// As text, `right gravity rest` or `left correspondence push 0 0 -1`:
+///
+/// ```
+/// use nima_machine::rig::{Prompt, Side};
+/// use nima_world::emulated::{Screen, Task};
+///
+/// let screen = Screen { side: Side::Left, task: Task::TipForce, prompt: Prompt::Work };
+/// assert_eq!(screen.to_string(), "left tip-force work");
+/// assert_eq!("left tip-force work".parse(), Ok(screen));
+/// assert!("left tip-force sing".parse::<Screen>().is_err());
+/// ```
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Screen {
+    /// The arm.
+    pub side: Side,
+    /// The calibration.
+    pub task: Task,
+    /// The instruction.
+    pub prompt: Prompt,
+}
+
+impl fmt::Display for Screen {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let task = Task::ALL.iter().find(|(task, _)| *task == self.task).map_or("", |(_, word)| word);
+        write!(f, "{} {task} ", self.side.word())?;
+        match &self.prompt {
+            Prompt::Rest => f.write_str("rest"),
+            Prompt::Hold { world_from_s1: q } => write!(f, "hold {} {} {} {}", q.w, q.i, q.j, q.k),
+            Prompt::Wave => f.write_str("wave"),
+            Prompt::Push { direction } => write!(f, "push {} {} {}", direction.x, direction.y, direction.z),
+            Prompt::Work => f.write_str("work"),
+            Prompt::WorkFree => f.write_str("work-free"),
+        }
+    }
+}
+
+/// A line that is no screen.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error(
+    "expected: SIDE TASK PROMPT, with right or left; surgery, gravity, correspondence or tip-force; rest, hold W X Y Z, wave, push X Y Z, \
+     work or work-free"
+)]
+pub struct NoScreen;
+
+impl FromStr for Screen {
+    type Err = NoScreen;
+
+    fn from_str(line: &str) -> Result<Self, NoScreen> {
+        let words: Vec<&str> = line.split_whitespace().collect();
+        let [side, task, prompt, numbers @ ..] = &words[..] else { return Err(NoScreen) };
+        let side = Side::ALL.into_iter().find(|known| known.word() == *side).ok_or(NoScreen)?;
+        let (task, _) = Task::ALL.into_iter().find(|(_, word)| word == task).ok_or(NoScreen)?;
+        let numbers: Vec<f64> = numbers.iter().map(|x| x.parse().map_err(|_| NoScreen)).collect::<Result<_, _>>()?;
+        let prompt = match (*prompt, &numbers[..]) {
+            ("rest", []) => Prompt::Rest,
+            ("wave", []) => Prompt::Wave,
+            ("work", []) => Prompt::Work,
+            ("work-free", []) => Prompt::WorkFree,
+            ("hold", [w, x, y, z]) => {
+                let turn = UnitQuaternion::try_new(Quaternion::new(*w, *x, *y, *z), 1e-6).ok_or(NoScreen)?;
+                Prompt::Hold { world_from_s1: turn }
+            }
+            ("push", [x, y, z]) => {
+                let direction = UnitVector3::try_new(Vector3::new(*x, *y, *z), 1e-6).ok_or(NoScreen)?;
+                Prompt::Push { direction }
+            }
+            _ => return Err(NoScreen),
+        };
+        if prompt.is_finite() { Ok(Self { side, task, prompt }) } else { Err(NoScreen) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_screen_is_the_same_after_it_was_written_and_read() {
+        let turn = UnitQuaternion::from_euler_angles(0.3, -1.2, 2.0);
+        let direction = UnitVector3::new_normalize(Vector3::new(0.1, -0.7, -0.4));
+        let prompts = [
+            Prompt::Rest,
+            Prompt::Hold { world_from_s1: turn },
+            Prompt::Wave,
+            Prompt::Push { direction },
+            Prompt::Work,
+            Prompt::WorkFree,
+        ];
+        for (task, _) in Task::ALL {
+            for (side, prompt) in Side::ALL.into_iter().flat_map(|side| prompts.map(|prompt| (side, prompt))) {
+                let read: Screen = Screen { side, task, prompt }.to_string().parse().unwrap();
+                assert_eq!((read.side, read.task), (side, task));
+                match (read.prompt, prompt) {
+                    (Prompt::Hold { world_from_s1: now }, Prompt::Hold { world_from_s1: was }) => {
+                        assert!(now.angle_to(&was) < 1e-7);
+                    }
+                    (Prompt::Push { direction: now }, Prompt::Push { direction: was }) => {
+                        assert!((now.into_inner() - was.into_inner()).norm() < 1e-9);
+                    }
+                    (now, was) => assert_eq!(now, was),
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn what_is_no_screen_is_refused() {
+        for bad in [
+            "",
+            "right",
+            "right gravity",
+            "up gravity rest",
+            "right sleep rest",
+            "right gravity hold 1 0 0",
+            "right gravity hold 0 0 0 0",
+            "right gravity hold NaN 0 0 1",
+            "right gravity push inf 0 0",
+            "right gravity rest 1",
+        ] {
+            assert_eq!(bad.parse::<Screen>(), Err(NoScreen), "{bad}");
+        }
+    }
+}

@@ -1,0 +1,93 @@
+//! The simulated technician at the emulated arms, over the wires: what he does is seen through the drivers only.
+//! `calibrate_rig::from_boxes_to_first_touch` (commands) does every calibration of both arms.
+#![cfg(target_os = "linux")]
+use std::time::{Duration, Instant};
+
+use nima_core::calibration::gravity::{GravitySession, SessionSettings};
+use nima_machine::{
+    config::RigConfig,
+    messages::Tick,
+    rig::{Prompt, SIDES, Side},
+    runtime::Handle,
+};
+use nima_testing::real_time::{alone, judged};
+use nima_tests::emulated::{elsewhere, started};
+use nima_world::{
+    Plan,
+    emulated::{EmulatedRig, Screen, Task},
+    scene::Scene,
+};
+
+/// Poses that are taken at each arm.
+const POSES: usize = 3;
+
+struct Bench {
+    rig: EmulatedRig,
+    handle: Handle,
+    newest: [Option<Tick>; SIDES],
+}
+
+impl Bench {
+    /// Looks at every tick of a side until `good`; whether that came in time.
+    fn until(&mut self, side: Side, within: Duration, mut good: impl FnMut(&Self, &Tick) -> bool) -> bool {
+        let begin = Instant::now();
+        while begin.elapsed() < within {
+            let mut ticks = Vec::new();
+            self.handle.drain_ticks(|tick| ticks.push(*tick));
+            self.handle.drain_events(|_| {});
+            for tick in ticks {
+                self.newest[tick.side.index()] = Some(tick);
+                if tick.side == side && good(self, &tick) {
+                    return true;
+                }
+            }
+            std::thread::sleep(Duration::from_millis(1));
+        }
+        false
+    }
+
+    fn show(&self, side: Side, task: Task, prompt: Prompt) {
+        self.rig.technician().reads(&Screen { side, task, prompt });
+    }
+
+    /// Whether the instrument is through its trocar, as the loop sees it.
+    fn is_in_trocar(tick: &Tick) -> bool {
+        tick.wrist.as_ref().is_some_and(|sample| sample.insertion_m.is_some_and(|depth_m| depth_m > 0.0))
+    }
+}
+
+#[test]
+fn the_technician_takes_poses_at_the_arm_that_is_calibrated_and_puts_the_instrument_back() {
+    let _alone = alone();
+    let folder = tempfile::tempdir().unwrap();
+    let devices = elsewhere(folder.path());
+    judged(|| {
+        let rig = started(&devices);
+        let config = RigConfig { devices: Some(devices.clone()), ..RigConfig::load("emulated").unwrap() };
+        let scene = Scene::load("peg_transfer").unwrap();
+        let plan = Plan { rig: config, scene, calibrations: Default::default(), engage: false };
+        let handle = nima_world::start(&plan).unwrap();
+        let mut bench = Bench { rig, handle, newest: [None; SIDES] };
+        for side in Side::ALL {
+            let other = bench.rig.truth(side.other()).unwrap().joint_rad;
+            let mut session = GravitySession::new(SessionSettings::default());
+            let taken = bench.until(side, Duration::from_secs(40), |bench, tick| {
+                let target = session.target().unwrap();
+                bench.show(side, Task::Gravity, Prompt::Hold { world_from_s1: target.world_from_s1() });
+                if let Some(sample) = &tick.wrist {
+                    session.step(sample, tick.t_s);
+                }
+                session.poses().len() == POSES
+            });
+            assert!(taken, "{side:?}: {} poses", session.poses().len());
+            assert!(!Bench::is_in_trocar(&bench.newest[side.index()].unwrap()), "{side:?}: it is out of the trocar");
+            let still = bench.rig.truth(side.other()).unwrap().joint_rad;
+            assert_eq!(other.map(f64::to_bits), still.map(f64::to_bits), "{side:?}: he is at one arm only");
+            bench.show(side, Task::Surgery, Prompt::Rest);
+            let back = bench.until(side, Duration::from_secs(20), |_, tick| Bench::is_in_trocar(tick));
+            assert!(back, "{side:?}: the instrument is not in its trocar again");
+            // He has gone: the arm rests.
+            std::thread::sleep(Duration::from_millis(1500));
+        }
+    });
+}

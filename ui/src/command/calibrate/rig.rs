@@ -1,0 +1,205 @@
+//! `nima calibrate rig`: all calibrations of an emulated rig without a screen.
+//!
+//! The same wizards as in the console, in the same order of steps: gravity of both arms, correspondence, tip force. The
+//! simulated technician at the arms reads what they ask for; what they learn comes through the drivers. The results are saved as
+//! those of the console, for the sensors and tools of the rig.
+
+use std::{
+    thread,
+    time::{Duration, Instant},
+};
+
+use anyhow::{Context as _, bail};
+use clap::Args;
+use nima_machine::{
+    messages::{Command, LoopState, Tick},
+    rig::{Prompt, SIDES, Side},
+    runtime::Handle,
+};
+use nima_world::{
+    Plan,
+    emulated::{Screen, Task},
+};
+
+use crate::{
+    command::setup::Setup,
+    console::{
+        in_force::InForce,
+        reader::{Reader, task_of},
+        wizards::{Attended, Saving, Which, Wizards},
+    },
+    emulators::Emulators,
+    leaving::Leave,
+    telling::tell,
+};
+
+/// A step that takes longer than this has failed.
+const PATIENCE: Duration = Duration::from_mins(5);
+
+#[derive(Debug, Args)]
+pub(in crate::command) struct Arguments {
+    /// Rig: built-in name or TOML file; it must be emulated
+    #[arg(long, value_name = "RIG", default_value = "emulated")]
+    rig: String,
+    /// Scene: built-in name or TOML file; it must have tissue
+    #[arg(long, value_name = "SCENE", default_value = "peg_transfer")]
+    scene: String,
+    /// Calibrate the wrist sensor of this arm only: right or left
+    #[arg(long, value_name = "SIDE", value_parser = side)]
+    arm: Option<Side>,
+    /// Do this calibration only
+    #[arg(long, value_name = "WIZARD")]
+    only: Option<Which>,
+}
+
+fn side(word: &str) -> Result<Side, String> {
+    Side::ALL.into_iter().find(|side| side.word() == word).ok_or_else(|| "give right or left".to_owned())
+}
+
+pub(in crate::command) fn run(arguments: &Arguments) -> anyhow::Result<()> {
+    let setup = Setup::of(&arguments.rig, &arguments.scene);
+    let (rig, scene) = setup.load()?;
+    let sides: Vec<_> = Side::ALL.into_iter().filter(|side| arguments.arm.is_none_or(|arm| arm == *side)).collect();
+    let sides: Vec<_> = sides.into_iter().filter(|side| scene.measures_at_wrist(&rig, *side)).collect();
+    if sides.is_empty() {
+        bail!("rig \"{}\" has no sensor at the wrist of such an arm: there is nothing to calibrate", rig.name);
+    }
+    let leave = setup.leave()?;
+    let Some(emulators) = Emulators::start(setup.rig(), setup.scene(), rig.devices.as_ref())? else {
+        bail!("rig \"{}\" has no simulated technician; calibrate with `nima console --calibrate gravity`", rig.name);
+    };
+    let in_force = InForce::load(None, &rig, &scene);
+    let plan = Plan { rig, scene, calibrations: Default::default(), engage: false };
+    let mut bench = Bench::start(plan, in_force, emulators.technician(), leave)?;
+    for which in Which::ALL.into_iter().filter(|which| arguments.only.is_none_or(|only| only == *which)) {
+        for side in &sides {
+            let began = Instant::now();
+            bench.calibrate(which, *side)?;
+            tell(format_args!(
+                "{} arm, {}: {:.0} s",
+                side.word(),
+                which.name().to_lowercase(),
+                began.elapsed().as_secs_f64()
+            ));
+        }
+    }
+    super::output::line(&bench.saved.join("\n"))
+}
+
+/// The running loop, the technician, and the wizards.
+struct Bench {
+    plan: Plan,
+    handle: Option<Handle>,
+    in_force: InForce,
+    reader: Reader,
+    read: Option<Screen>,
+    wizards: Wizards,
+    ticks: [Option<Tick>; SIDES],
+    /// What is in force after the last saving, line by line.
+    saved: Vec<String>,
+    leave: Leave,
+}
+
+impl Bench {
+    fn start(plan: Plan, in_force: InForce, reader: Reader, leave: Leave) -> anyhow::Result<Self> {
+        let (wizards, ticks) = (Wizards::default(), [None; SIDES]);
+        let saved = Vec::new();
+        let mut this = Self { plan, handle: None, in_force, reader, read: None, wizards, ticks, saved, leave };
+        this.restart()?;
+        Ok(this)
+    }
+
+    /// Ends the loop and starts it again, idle, as the console does when a calibration is saved.
+    fn restart(&mut self) -> anyhow::Result<()> {
+        self.handle = None;
+        self.in_force.bind(&self.plan.rig, &self.plan.scene);
+        self.plan.calibrations = self.in_force.calibrations(&self.plan.rig);
+        let handle = nima_world::start(&self.plan)?;
+        let ender = handle.ender();
+        self.leave.at_once(move || ender.end());
+        (self.handle, self.ticks) = (Some(handle), [None; SIDES]);
+        Ok(())
+    }
+
+    fn calibrate(&mut self, which: Which, side: Side) -> anyhow::Result<()> {
+        self.in_force.choose(side);
+        self.wizards = Wizards::at(which);
+        let what = format!("{} arm, {}", side.word(), which.name().to_lowercase());
+        let (mut shown, mut since) = (None, Instant::now());
+        let saving = loop {
+            if self.leave.is_asked() {
+                bail!("ended as asked; the calibrations that were finished are saved");
+            }
+            self.look(side)?;
+            let binding = self.in_force.binding();
+            if binding.sensor.is_empty() {
+                Self::wait(since, &what, "the wrist sensor", self.missing().as_deref())?;
+                continue;
+            }
+            match self.wizards.attend(&binding).context("no wizard is open")? {
+                Attended::Proven(saving) => break saving,
+                Attended::NotProven(reason) => bail!("{what}: not proven: {reason}"),
+                Attended::Working(step, notice) => {
+                    if shown != Some(step) {
+                        tell(format_args!("{what}: {}", step.to_lowercase()));
+                        (shown, since) = (Some(step), Instant::now());
+                    }
+                    Self::wait(since, &what, step, notice.as_deref())?;
+                }
+            }
+        };
+        self.save(saving)
+    }
+
+    fn wait(since: Instant, what: &str, step: &str, notice: Option<&str>) -> anyhow::Result<()> {
+        if since.elapsed() > PATIENCE {
+            bail!(
+                "{what}: \"{step}\" does not come to its end: {}",
+                notice.unwrap_or("the rig does not deliver what it needs")
+            );
+        }
+        thread::sleep(Duration::from_millis(2));
+        Ok(())
+    }
+
+    /// Why a device is not there.
+    fn missing(&self) -> Option<String> {
+        let roster = self.handle.as_ref()?.roster();
+        roster.iter().find_map(|entry| Some(format!("{}: {}", entry.name, entry.view.report().trouble?)))
+    }
+
+    /// Takes in what the loop has sent, and shows the technician what the wizard asks for.
+    fn look(&mut self, side: Side) -> anyhow::Result<()> {
+        let Some(handle) = &self.handle else { bail!("the loop has ended") };
+        if !handle.is_running() {
+            bail!("the loop has ended");
+        }
+        let rate_hz = self.plan.rig.rate_hz;
+        handle.drain_ticks(|tick| {
+            if tick.side == side {
+                self.wizards.tick(tick, rate_hz);
+            }
+            self.in_force.watch(tick);
+            self.ticks[tick.side.index()] = Some(*tick);
+        });
+        handle.drain_events(|_| {});
+        self.in_force.meet(handle, &self.plan.rig);
+        let prompt = self.wizards.prompt();
+        self.reader.show(Screen { side, task: task_of(self.wizards.open), prompt }, &mut self.read);
+        let tick = self.ticks[side.index()];
+        if tick.is_some_and(|tick| tick.state == LoopState::Idle && tick.prompt != prompt) {
+            handle.send(Command::Prompt(side, prompt));
+        }
+        Ok(())
+    }
+
+    fn save(&mut self, saving: Saving) -> anyhow::Result<()> {
+        let side = self.in_force.side();
+        self.wizards = Wizards::default();
+        self.reader.show(Screen { side, task: Task::Surgery, prompt: Prompt::Rest }, &mut self.read);
+        let told = self.in_force.save(saving).map_err(anyhow::Error::msg)?;
+        tell(told);
+        self.saved = self.in_force.lines();
+        self.restart()
+    }
+}

@@ -1,0 +1,42 @@
+//! Who reads the wizards' instructions besides the person in front of the screen: the technician of an emulated rig.
+
+use std::sync::Arc;
+
+use nima_world::emulated::{Screen, Task};
+
+use super::wizards::Which;
+
+/// Takes what the screen shows. Clones are the same reader.
+#[derive(Clone)]
+pub struct Reader(Arc<dyn Fn(&Screen) + Send + Sync>);
+
+impl Reader {
+    /// A reader that is shown every change of the screen.
+    pub fn new(reads: impl Fn(&Screen) + Send + Sync + 'static) -> Self {
+        Self(Arc::new(reads))
+    }
+
+    /// Shows the screen; nothing happens if it is the one that was shown `last`.
+    pub fn show(&self, screen: Screen, last: &mut Option<Screen>) {
+        if *last != Some(screen) {
+            (self.0)(&screen);
+            *last = Some(screen);
+        }
+    }
+}
+
+impl std::fmt::Debug for Reader {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_tuple("Reader").finish()
+    }
+}
+
+/// What an open wizard asks of the person at the arm.
+pub const fn task_of(open: Option<Which>) -> Task {
+    match open {
+        None => Task::Surgery,
+        Some(Which::Gravity) => Task::Gravity,
+        Some(Which::Correspondence) => Task::Correspondence,
+        Some(Which::TipForce) => Task::TipForce,
+    }
+}

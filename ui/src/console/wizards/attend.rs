@@ -1,0 +1,51 @@
+//! A wizard without a screen: the same sessions and the same order of steps, taken on as soon as a step has all that it asks for.
+
+use super::{Binding, CorrespondenceWizard, Saving, TipForceWizard, Wizards};
+
+/// What came of attending to the open wizard.
+#[derive(Debug)]
+pub enum Attended {
+    /// It goes on, in this step; and what the wizard has to tell.
+    Working(&'static str, Option<String>),
+    /// It is proven, and to be saved.
+    Proven(Saving),
+    /// It has ended without proof, for this reason.
+    NotProven(String),
+}
+
+impl Wizards {
+    /// Does what a technician does with the open wizard; `None` if none is open.
+    pub fn attend(&mut self, binding: &Binding) -> Option<Attended> {
+        let which = self.open?;
+        let wizard = self.the_mut(which);
+        wizard.refresh(binding);
+        let (steps, now) = (wizard.steps(), wizard.frame_mut().step);
+        if now + 1 < steps.len() {
+            if wizard.attend(binding) && wizard.may_go_on(binding).is_ok() {
+                wizard.go_to(now + 1);
+            }
+            return Some(Attended::Working(steps[now].name, wizard.notice().map(str::to_owned)));
+        }
+        let proven = wizard.proof().is_some();
+        let made = wizard.made(binding);
+        Some(match made {
+            Some(saving) if proven => {
+                self.forget_what_rests_on(&saving);
+                Attended::Proven(saving)
+            }
+            Some(mut saving) => {
+                let reason = saving.judgement_mut().map(|judgement| judgement.reason.clone());
+                Attended::NotProven(reason.unwrap_or_default())
+            }
+            None => Attended::NotProven(String::new()),
+        })
+    }
+
+    /// Pushes and recordings use the gravity calibration; those made with the previous one must not be mixed with new ones.
+    pub(super) fn forget_what_rests_on(&mut self, saving: &Saving) {
+        if matches!(saving, Saving::Gravity(_)) {
+            self.correspondence = CorrespondenceWizard::default();
+            self.tip_force = TipForceWizard::default();
+        }
+    }
+}

@@ -7,6 +7,7 @@
 pub mod correspondence;
 pub mod gravity;
 mod record;
+mod rotation_mean;
 mod verdict;
 
 pub use record::{Judgement, Record, RecordHead};

@@ -161,4 +161,11 @@ fn a_refused_result_keeps_its_cause_in_the_record() {
     let record = stored(&Tip::by_tracker().fit(&samples).unwrap());
     assert!(matches!(record.cause, Cause::PoorPlace { .. }), "{:?}", record.cause);
     assert!(!record.judgement().allows());
+    for mistake in [Mistake::SwappedMarker, Mistake::WrongSign([false, true, false])] {
+        let wrong = |sample: &FrameSample| mistake.undone(sample, Carrier::Marker).unwrap();
+        let samples: Vec<FrameSample> = rig.samples(in_dimple(), 24).iter().map(wrong).collect();
+        let record = stored(&Tip::by_tracker().fit(&samples).unwrap());
+        assert_eq!(record.cause, Cause::Mistake { mistake });
+        assert_eq!(record.judgement().verdict, Verdict::PoorData);
+    }
 }

@@ -8,6 +8,11 @@
 //! | `m` | optical marker on the base of the instrument |
 //! | `c` | tracker camera |
 //! | `s2` | force sensor under the tissue |
+//! | `base`, `flange` | base and flange of an arm |
+//! | `table` | origin and plane that were touched with the tip; z up |
+//! | `view` | the endoscope's picture: x right, y down, z into the picture |
+//! | `n` | optical marker on the endoscope |
+//! | `leader` | the haptic device, from its base |
 //!
 //! A rotation named `target_from_source` transforms a vector from the source frame to the target frame, so that
 //! adjacent names match in a chain: `s1_from_s2 = s1_from_world * world_from_m * m_from_c * c_from_s2`.

@@ -20,7 +20,6 @@ mod pose;
 mod precheck;
 mod record;
 mod report;
-mod rotation_mean;
 mod session;
 mod solve;
 mod still;

@@ -2,8 +2,10 @@
 
 use nalgebra::{UnitQuaternion, Vector3};
 
-use super::rotation_mean::RotationMean;
-use crate::frames::{Wrench, WristSample};
+use crate::{
+    calibration::rotation_mean::RotationMean,
+    frames::{Wrench, WristSample},
+};
 
 /// Criteria for stillness.
 #[derive(Clone, Copy, Debug, PartialEq)]

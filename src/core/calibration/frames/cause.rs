@@ -1,0 +1,195 @@
+//! Why a frame calibration got its verdict: values for the screen and the record, without sentences.
+
+use nalgebra::{Isometry3, Matrix3, UnitQuaternion, Vector3};
+use serde::{Deserialize, Serialize};
+
+use super::{Carrier, FrameSample};
+use crate::calibration::Verdict;
+
+/// The reason for a verdict.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(tag = "name", rename_all = "snake_case", deny_unknown_fields)]
+#[expect(missing_docs, reason = "the names of the fields say it")]
+pub enum Cause {
+    /// Accurate on held-out data.
+    Proven,
+    /// Not enough poses, lines, points or moves.
+    TooFew { have: usize, least: usize },
+    /// It hardly turned: the root mean square of the turns from their mean. A pure translation has none.
+    SmallTurns { turn_deg: f64, least_deg: f64 },
+    /// It turned about one axis only: the root mean square of the turns about the second axis.
+    OneAxis { second_deg: f64, least_deg: f64 },
+    /// The lines are nearly parallel: the root mean square of their tilts from the mean, about the weaker axis.
+    NearlyParallel { tilt_deg: f64, least_deg: f64 },
+    /// The points or directions lie on one line: their spread along the second axis (m, or a share of one for directions).
+    Collinear { spread: f64, least: f64 },
+    /// The directions lie in one plane: their spread along the third axis, as a share of one.
+    OnePlane { spread: f64, least: f64 },
+    /// The force does not follow gravity.
+    Weightless { weight_n: f64, least_n: f64 },
+    /// The data determine the result too weakly: half the length of its 95 % interval.
+    UncertainPlace { by_m: f64, most_m: f64 },
+    /// See [`Cause::UncertainPlace`].
+    UncertainAngle { by_deg: f64, most_deg: f64 },
+    /// The root mean square error in place on held-out data is too large.
+    PoorPlace { by_m: f64, most_m: f64 },
+    /// The same for angles.
+    PoorAngle { by_deg: f64, most_deg: f64 },
+    /// Too many poses contradict the others.
+    Outliers { share: f64, most: f64 },
+    /// Something was mistaken for something else. Undoing this mistake explains the data.
+    Mistake { mistake: Mistake },
+}
+
+impl Cause {
+    /// The verdict that follows.
+    pub const fn verdict(&self) -> Verdict {
+        match self {
+            Self::Proven => Verdict::Accepted,
+            Self::TooFew { .. }
+            | Self::SmallTurns { .. }
+            | Self::OneAxis { .. }
+            | Self::NearlyParallel { .. }
+            | Self::Collinear { .. }
+            | Self::OnePlane { .. }
+            | Self::UncertainPlace { .. }
+            | Self::UncertainAngle { .. } => Verdict::InsufficientMotion,
+            Self::Weightless { .. }
+            | Self::PoorPlace { .. }
+            | Self::PoorAngle { .. }
+            | Self::Outliers { .. }
+            | Self::Mistake { .. } => Verdict::PoorData,
+        }
+    }
+}
+
+/// A mistake that the data can tell.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Mistake {
+    /// The poses of the two markers are exchanged.
+    SwappedMarker,
+    /// The poses of the two arms are exchanged.
+    SwappedArm,
+    /// The poses are inverse: camera from marker was expected, marker from camera came (or base and flange).
+    InversePose,
+    /// Only their rotations are inverse (a conjugated quaternion).
+    InverseRotation,
+    /// The poses are those of a left-handed frame (or the signs of all positions are wrong, which is the same).
+    LeftHanded,
+    /// The signs of these axes (x, y, z) of the positions are wrong. A tip or a trocar cannot tell one axis from the
+    /// other two together; the one is named.
+    WrongSign([bool; 3]),
+    /// The measured axes are the right ones with other names or signs.
+    WrongAxes(SignedAxes),
+    /// The directions fit in a mirror only: two axes are exchanged, or one points the other way.
+    Mirrored,
+}
+
+impl Mistake {
+    /// The mistakes that the poses of one carrier can show. Position signs up to a common factor of -1, which no
+    /// pivoting shows.
+    pub(super) const fn of_pivoting(carrier: Carrier) -> [Self; 6] {
+        [
+            Self::swapped(carrier),
+            Self::InversePose,
+            Self::InverseRotation,
+            Self::WrongSign([true, false, false]),
+            Self::WrongSign([false, true, false]),
+            Self::WrongSign([false, false, true]),
+        ]
+    }
+
+    /// The other side's poses came.
+    pub(super) const fn swapped(carrier: Carrier) -> Self {
+        match carrier {
+            Carrier::Marker => Self::SwappedMarker,
+            Carrier::Flange | Carrier::Handle => Self::SwappedArm,
+        }
+    }
+
+    /// The sample without this mistake, which concerns the poses of `carrier`; `None` if it lacks what that takes.
+    pub(super) fn undone(self, sample: &FrameSample, carrier: Carrier) -> Option<FrameSample> {
+        let mut right = *sample;
+        match self {
+            Self::SwappedMarker => {
+                right.c_from_m = Some(sample.c_from_other_m?);
+                right.c_from_other_m = sample.c_from_m;
+            }
+            Self::SwappedArm => {
+                right.base_from_flange = Some(sample.other_base_from_flange?);
+                right.other_base_from_flange = sample.base_from_flange;
+            }
+            _ => {
+                let pose = right.pose_mut(carrier)?;
+                *pose = self.corrected(pose)?;
+            }
+        }
+        Some(right)
+    }
+
+    fn corrected(self, pose: &Isometry3<f64>) -> Option<Isometry3<f64>> {
+        let (place_m, turn) = (pose.translation.vector, pose.rotation);
+        let (place_m, turn) = match self {
+            Self::InversePose => return Some(pose.inverse()),
+            Self::InverseRotation => (place_m, turn.inverse()),
+            // A mirror along z changes the rotation's parts along x and y.
+            Self::LeftHanded => (flipped(&place_m, [false, false, true]), mirrored_z(&turn)),
+            Self::WrongSign(axes) => (flipped(&place_m, axes), turn),
+            Self::SwappedMarker | Self::SwappedArm | Self::WrongAxes(_) | Self::Mirrored => return None,
+        };
+        Some(Isometry3::from_parts(place_m.into(), turn))
+    }
+}
+
+fn flipped(vector: &Vector3<f64>, axes: [bool; 3]) -> Vector3<f64> {
+    vector.zip_map(&Vector3::from(axes), |value, flip| if flip { -value } else { value })
+}
+
+fn mirrored_z(turn: &UnitQuaternion<f64>) -> UnitQuaternion<f64> {
+    UnitQuaternion::new_unchecked(nalgebra::Quaternion::new(turn.w, -turn.i, -turn.j, turn.k))
+}
+
+/// An axis of a frame, with its sign.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+#[expect(missing_docs, reason = "the names say it")]
+pub enum SignedAxis {
+    PlusX,
+    PlusY,
+    PlusZ,
+    MinusX,
+    MinusY,
+    MinusZ,
+}
+
+impl SignedAxis {
+    const ALL: [Self; 6] = [Self::PlusX, Self::PlusY, Self::PlusZ, Self::MinusX, Self::MinusY, Self::MinusZ];
+}
+
+/// Which axes of the expected frame the measured x, y and z are: a permutation with signs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct SignedAxes(pub [SignedAxis; 3]);
+
+impl SignedAxes {
+    /// Every axis has its own name and sign.
+    pub const SAME: Self = Self([SignedAxis::PlusX, SignedAxis::PlusY, SignedAxis::PlusZ]);
+    /// Beyond this angle two frames do not differ by names and signs of axes alone, degrees.
+    const NEAR_DEG: f64 = 20.0;
+
+    /// The nearest permutation with signs to an orthogonal matrix `measured_from_expected`; `None` if none is within 20 degrees.
+    pub(super) fn nearest(measured_from_expected: &Matrix3<f64>) -> Option<Self> {
+        let mut axes = [SignedAxis::PlusX; 3];
+        let mut taken = [false; 3];
+        for (row, axis) in axes.iter_mut().enumerate() {
+            let values = measured_from_expected.row(row);
+            let column = values.transpose().iamax();
+            let near = values[column].abs() >= Self::NEAR_DEG.to_radians().cos();
+            if !near || std::mem::replace(&mut taken[column], true) {
+                return None;
+            }
+            *axis = SignedAxis::ALL[column + if values[column] < 0.0 { 3 } else { 0 }];
+        }
+        Some(Self(axes))
+    }
+}

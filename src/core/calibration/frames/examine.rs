@@ -1,0 +1,155 @@
+//! What every fit does with its rows: leave out those that contradict the others, and compare each with a fit to the rest.
+
+/// How far a row is from a model; `None` where the calibration has no such error.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Miss {
+    pub(super) place_m: Option<f64>,
+    pub(super) angle_rad: Option<f64>,
+}
+
+impl Miss {
+    pub(super) const fn of_place(place_m: f64) -> Self {
+        Self { place_m: Some(place_m), angle_rad: None }
+    }
+
+    pub(super) const fn of_angle(angle_rad: f64) -> Self {
+        Self { place_m: None, angle_rad: Some(angle_rad) }
+    }
+}
+
+/// A kind of rows and of models.
+pub(super) trait Problem {
+    type Row: Copy;
+    type Model;
+    /// Number of rows of a hypothesis.
+    const HYPOTHESIS: usize;
+    /// Errors up to this are those of good rows: at least four standard deviations of the expected noise.
+    const FLOOR: Miss;
+
+    /// The model of least squares; `None` if the rows determine none.
+    fn solve(&self, rows: &[Self::Row]) -> Option<Self::Model>;
+
+    /// A fast model, good enough to tell which rows agree.
+    fn guess(&self, rows: &[Self::Row]) -> Option<Self::Model> {
+        self.solve(rows)
+    }
+
+    /// The error of a row.
+    fn miss(&self, model: &Self::Model, row: &Self::Row) -> Miss;
+
+    /// Size of an error relative to the floor.
+    fn size(&self, model: &Self::Model, row: &Self::Row) -> f64 {
+        let miss = self.miss(model, row);
+        let part = |miss: Option<f64>, floor: Option<f64>| miss.zip(floor).map_or(0.0, |(miss, floor)| miss / floor);
+        let size = part(miss.place_m, Self::FLOOR.place_m).max(part(miss.angle_rad, Self::FLOOR.angle_rad));
+        if size.is_nan() { f64::INFINITY } else { size }
+    }
+}
+
+/// A model with the errors of the rows.
+#[derive(Debug)]
+pub(super) struct Examined<M> {
+    pub(super) model: M,
+    /// Indices of rows that agree, in rising order, and of the others.
+    pub(super) kept: Vec<usize>,
+    pub(super) outliers: Vec<usize>,
+    pub(super) fitted: Vec<Miss>,
+    /// Empty if a fold determines no model.
+    pub(super) held_out: Vec<Miss>,
+}
+
+impl<M> Examined<M> {
+    /// Sum of the squared errors in place of the fit, m^2.
+    pub(super) fn squares_m2(&self) -> f64 {
+        self.fitted.iter().filter_map(|miss| miss.place_m).map(|miss| miss * miss).sum()
+    }
+
+    /// Sum of the squared errors in angle of the fit, rad^2.
+    pub(super) fn squares_rad2(&self) -> f64 {
+        self.fitted.iter().filter_map(|miss| miss.angle_rad).map(|miss| miss * miss).sum()
+    }
+}
+
+/// Random hypotheses: with a quarter of outliers and four rows in each, the probability that all contain one is 2e-7.
+const DRAWS: usize = 40;
+/// Median length of a 3-D normal vector with a standard deviation of 1 per axis.
+const MEDIAN_OF_LENGTH: f64 = 1.538;
+/// A row beyond this many standard deviations is an outlier.
+const CUT: f64 = 4.0;
+/// Rows whose median error is above this many floors fit nothing.
+const HOPELESS: f64 = 10.0;
+/// Up to this number of rows each is held out alone; above it, every tenth together.
+const LEAVE_ONE_OUT: usize = 20;
+
+/// Fits the rows that agree with each other; `None` if no model can be determined.
+pub(super) fn examined<P: Problem>(problem: &P, rows: &[P::Row]) -> Option<Examined<P::Model>> {
+    let kept = agreeing(problem, rows)?;
+    let outliers = (0..rows.len()).filter(|i| kept.binary_search(i).is_err()).collect();
+    let good: Vec<P::Row> = kept.iter().map(|&i| rows[i]).collect();
+    let model = problem.solve(&good)?;
+    let fitted: Vec<Miss> = good.iter().map(|row| problem.miss(&model, row)).collect();
+    // Rows that fit nothing are not fitted again and again: held out, their errors would be as large.
+    let hopeless = median(problem, &model, &good) > HOPELESS;
+    let held_out = if hopeless { fitted.clone() } else { held_out(problem, &good).unwrap_or_default() };
+    Some(Examined { model, kept, outliers, fitted, held_out })
+}
+
+fn held_out<P: Problem>(problem: &P, rows: &[P::Row]) -> Option<Vec<Miss>> {
+    let folds = if rows.len() <= LEAVE_ONE_OUT { rows.len() } else { 10 };
+    let mut misses = Vec::with_capacity(rows.len());
+    for fold in 0..folds {
+        let (tested, training): (Vec<_>, Vec<_>) = rows.iter().enumerate().partition(|(i, _)| i % folds == fold);
+        let training: Vec<P::Row> = training.into_iter().map(|(_, row)| *row).collect();
+        let model = problem.solve(&training)?;
+        misses.extend(tested.into_iter().map(|(_, row)| problem.miss(&model, row)));
+    }
+    Some(misses)
+}
+
+/// Indices of the rows that agree: all of them if none misses by more than the floor; else those near the hypothesis of
+/// least median error (Rousseeuw 1984), refined until nothing changes.
+fn agreeing<P: Problem>(problem: &P, rows: &[P::Row]) -> Option<Vec<usize>> {
+    let whole = problem.guess(rows)?;
+    if rows.iter().all(|row| problem.size(&whole, row) <= 1.0) || rows.len() <= P::HYPOTHESIS {
+        return Some((0..rows.len()).collect());
+    }
+    let mut model = first_guess(problem, rows, whole);
+    let mut kept = Vec::new();
+    for _ in 0..10 {
+        let cut = (CUT * median(problem, &model, rows) / MEDIAN_OF_LENGTH).max(1.0);
+        let near: Vec<usize> = (0..rows.len()).filter(|&i| problem.size(&model, &rows[i]) <= cut).collect();
+        if near == kept {
+            break;
+        }
+        let good: Vec<P::Row> = near.iter().map(|&i| rows[i]).collect();
+        kept = near;
+        match problem.guess(&good) {
+            Some(refined) => model = refined,
+            None => break,
+        }
+    }
+    Some(kept)
+}
+
+fn first_guess<P: Problem>(problem: &P, rows: &[P::Row], whole: P::Model) -> P::Model {
+    let mut rng = fastrand::Rng::with_seed(1);
+    let mut best = (median(problem, &whole, rows), whole);
+    for _ in 0..DRAWS {
+        let few: Vec<P::Row> = rng.choose_multiple(rows.iter().copied(), P::HYPOTHESIS);
+        let Some(model) = problem.guess(&few) else { continue };
+        let size = median(problem, &model, rows);
+        if size < best.0 {
+            best = (size, model);
+        }
+    }
+    best.1
+}
+
+fn median<P: Problem>(problem: &P, model: &P::Model, rows: &[P::Row]) -> f64 {
+    let mut sizes: Vec<f64> = rows.iter().map(|row| problem.size(model, row)).collect();
+    if sizes.is_empty() {
+        return f64::INFINITY;
+    }
+    let middle = sizes.len() / 2;
+    *sizes.select_nth_unstable_by(middle, f64::total_cmp).1
+}

@@ -1,0 +1,208 @@
+//! Hand-eye calibration: the marker on the flange and the tracker beside the arm, both at once.
+//!
+//! In every pose `base_from_flange * flange_from_m = base_from_c * c_from_m`, in short `A X = Y B`. A published solver gives the
+//! start ([`Solver`]), Gauss and Newton's method on the rigid motions refines it, with the errors weighted as a tracker makes them.
+//! Errors are judged at the tip: where the tracker sees it against where the joints say that it is.
+
+mod refine;
+mod solvers;
+
+use nalgebra::{Isometry3, Point3, Vector3};
+use serde::{Deserialize, Serialize};
+
+use self::refine::Refined;
+use super::{
+    Calibration, Carrier, Cause, Coverage, FrameReport, FrameSample, Limits, Mistake, Sizes, Source, StoredPose,
+    examine::{Miss, Problem, examined},
+    record::Found,
+    report::finite,
+    spread::{Turns, radius_95},
+    tip::{of_turns, turned},
+};
+
+/// Which published solver gives the start.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Solver {
+    /// Park and Martin, "Robot sensor calibration: solving AX = XB on the Euclidean group", IEEE Trans. Robot. Autom. 10, 1994:
+    /// `X` from the motions between all pairs of poses, then `Y` as a mean.
+    ParkMartin,
+    /// Shah, "Solving the robot-world/hand-eye calibration problem using the Kronecker product", J. Mech. Robot. 5,
+    /// 2013: both rotations from one singular vector, then both places.
+    Shah,
+}
+
+/// Settings of a hand-eye calibration.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct HandEye {
+    /// The tip in the flange's frame, m: where errors are judged.
+    pub tip_in_flange_m: Vector3<f64>,
+    /// The solver that gives the start.
+    pub solver: Solver,
+    /// Whether its result is refined.
+    pub refine: bool,
+    /// Limits for the verdict.
+    pub limits: Limits,
+}
+
+impl HandEye {
+    /// For an instrument with its tip here in the flange's frame, m.
+    pub const fn new(tip_in_flange_m: Vector3<f64>) -> Self {
+        let limits = Limits {
+            least: 10,
+            held_out: Sizes::both(2.0e-3, 0.4),
+            uncertainty: Sizes::both(1.0e-3, 0.2),
+            outliers: 0.25,
+        };
+        Self { tip_in_flange_m, solver: Solver::Shah, refine: true, limits }
+    }
+}
+
+/// Marker and tracker that were found.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct HandEyeFound {
+    /// The marker on the flange.
+    pub flange_from_m: StoredPose,
+    /// The tracker's camera in the frame of the arm's base.
+    pub base_from_c: StoredPose,
+}
+
+impl Found for HandEyeFound {
+    const KIND: &'static str = "hand_eye";
+
+    fn fault(&self) -> Option<&'static str> {
+        self.flange_from_m.fault().or_else(|| self.base_from_c.fault())
+    }
+}
+
+/// One pose: `A` and `B`.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Row {
+    base_from_flange: Isometry3<f64>,
+    c_from_m: Isometry3<f64>,
+}
+
+/// `X` and `Y`.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Frames {
+    flange_from_m: Isometry3<f64>,
+    base_from_c: Isometry3<f64>,
+}
+
+impl Problem for HandEye {
+    type Row = Row;
+    type Model = Frames;
+    const HYPOTHESIS: usize = 4;
+    const FLOOR: Miss = Miss { place_m: Some(2.0e-3), angle_rad: Some(0.006) };
+
+    fn guess(&self, rows: &[Row]) -> Option<Frames> {
+        solvers::park_martin(rows)
+    }
+
+    fn solve(&self, rows: &[Row]) -> Option<Frames> {
+        let start = match self.solver {
+            Solver::ParkMartin => solvers::park_martin(rows),
+            Solver::Shah => solvers::shah(rows),
+        }?;
+        Some(if self.refine { refine::refined(rows, start)?.frames } else { start })
+    }
+
+    fn miss(&self, frames: &Frames, row: &Row) -> Miss {
+        let seen = frames.base_from_c * row.c_from_m * frames.flange_from_m.inverse();
+        let tip_m = Point3::from(self.tip_in_flange_m);
+        let place_m = (seen * tip_m - row.base_from_flange * tip_m).norm();
+        Miss { place_m: Some(place_m), angle_rad: Some(seen.rotation.angle_to(&row.base_from_flange.rotation)) }
+    }
+}
+
+impl Calibration for HandEye {
+    type Found = HandEyeFound;
+
+    fn needs(&self) -> Vec<Source> {
+        vec![Source::Flange, Source::Marker]
+    }
+
+    fn carrier(&self) -> Carrier {
+        Carrier::Flange
+    }
+
+    fn differs(&self, sample: &FrameSample, taken: &[FrameSample]) -> bool {
+        turned(sample, taken, Carrier::Flange)
+    }
+
+    fn coverage(&self, taken: &[FrameSample]) -> Coverage {
+        of_turns(taken, Carrier::Flange)
+    }
+
+    fn fault(&self) -> Option<&'static str> {
+        (!finite(&self.tip_in_flange_m)).then_some("the tip in the flange's frame is not finite")
+    }
+
+    fn attempt(&self, samples: &[FrameSample]) -> FrameReport<HandEyeFound> {
+        let row =
+            |sample: &FrameSample| Some(Row { base_from_flange: sample.base_from_flange?, c_from_m: sample.c_from_m? });
+        let rows: Vec<Row> = samples.iter().filter_map(row).collect();
+        let (have, least) = (rows.len(), self.limits.least);
+        if have < least {
+            return FrameReport::nothing(have, Cause::TooFew { have, least });
+        }
+        if let Some(cause) = lacking(&rows) {
+            return FrameReport::nothing(have, cause);
+        }
+        let Some(found) = examined(self, &rows) else {
+            return FrameReport::nothing(have, Cause::OneAxis { second_deg: 0.0, least_deg: 0.0 });
+        };
+        let kept: Vec<Row> = found.kept.iter().map(|&i| rows[i]).collect();
+        if let Some(cause) = lacking(&kept) {
+            return FrameReport::nothing(have, cause);
+        }
+        let uncertainty = self.uncertainty(&kept, found.model);
+        let Frames { flange_from_m, base_from_c } = found.model;
+        let value =
+            HandEyeFound { flange_from_m: StoredPose::of(&flange_from_m), base_from_c: StoredPose::of(&base_from_c) };
+        FrameReport::of(have, found, uncertainty, value).judged(&self.limits)
+    }
+
+    /// If arm and marker of different sides were taken, and both sides move, then either could be meant: the marker is named.
+    /// While the other side rests, the one that was exchanged is.
+    fn mistakes(&self) -> Vec<(Mistake, Carrier)> {
+        let mut mistakes = vec![
+            (Mistake::SwappedMarker, Carrier::Marker),
+            (Mistake::SwappedArm, Carrier::Flange),
+            (Mistake::InversePose, Carrier::Marker),
+            (Mistake::InverseRotation, Carrier::Marker),
+            (Mistake::LeftHanded, Carrier::Marker),
+        ];
+        // Every set of signs, those of one axis first: here each has a result of its own. All three together are a left-handed
+        // frame, turned.
+        let signs = [[true, false, false], [false, true, false], [false, false, true]];
+        let more = [[true, true, false], [true, false, true], [false, true, true]];
+        mistakes.extend(signs.into_iter().chain(more).map(|axes| (Mistake::WrongSign(axes), Carrier::Marker)));
+        mistakes
+    }
+}
+
+/// Both must turn: a flange that turns beside a marker that does not is no hand-eye motion, but a swapped arm or marker.
+fn lacking(rows: &[Row]) -> Option<Cause> {
+    let flange = Turns::of(rows.iter().map(|row| &row.base_from_flange));
+    let marker = Turns::of(rows.iter().map(|row| &row.c_from_m));
+    flange.lacking().or_else(|| marker.lacking())
+}
+
+impl HandEye {
+    /// At the tip, averaged over the poses, in the frame of the base; from the covariance of the refinement. Unknown (empty) if that
+    /// is not determined.
+    fn uncertainty(&self, rows: &[Row], frames: Frames) -> Sizes {
+        let Some(Refined { covariance, freedom, .. }) = refine::unmoved(rows, frames) else { return Sizes::default() };
+        let regions = rows.iter().map(|row| {
+            let [place, turn] = refine::slopes_at_tip(row, &frames, &self.tip_in_flange_m);
+            [place * covariance * place.transpose(), turn * covariance * turn.transpose()]
+        });
+        let [mut place, mut turn] = [nalgebra::Matrix3::zeros(); 2];
+        for region in regions {
+            place += region[0] / rows.len() as f64;
+            turn += region[1] / rows.len() as f64;
+        }
+        Sizes { place_m: Some(radius_95(&place, freedom)), angle_deg: Some(radius_95(&turn, freedom).to_degrees()) }
+    }
+}

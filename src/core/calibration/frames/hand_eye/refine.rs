@@ -1,0 +1,126 @@
+//! Refinement of both frames: Gauss and Newton's method, damped after Levenberg and Marquardt, over two rigid motions.
+//!
+//! The joints are exact beside the tracker, so the errors are those of `B` against `Y^-1 A X`, place and angle each divided by
+//! its noise, as in Strobl and Hirzinger (IROS 2006). A step changes `X` to `X exp(x)` and `Y` to `Y exp(y)` (place, then
+//! rotation vector).
+
+use nalgebra::{Isometry3, Matrix3, SMatrix, SVector, UnitQuaternion, Vector3};
+
+use super::{Frames, Row};
+
+const UNKNOWNS: usize = 12;
+type Normal = SMatrix<f64, UNKNOWNS, UNKNOWNS>;
+type Step = SVector<f64, UNKNOWNS>;
+type Slopes = SMatrix<f64, 3, UNKNOWNS>;
+
+/// Noise of a tracker; only the ratio of the two matters here. 0.25 mm and 0.02 degrees.
+const NOISE_M: f64 = 0.25e-3;
+const NOISE_RAD: f64 = 3.5e-4;
+const STEPS: usize = 10;
+/// A step that lowers the sum of squares by a smaller share is the last. From a solver's start two or three are taken.
+const LAST_SHARE: f64 = 1e-7;
+
+/// Refined frames.
+pub(super) struct Refined {
+    pub(super) frames: Frames,
+    /// Of a step: `x`, then `y`.
+    pub(super) covariance: Normal,
+    /// Degrees of freedom of the variance in it.
+    pub(super) freedom: usize,
+}
+
+struct Linear {
+    normal: Normal,
+    right: Step,
+    squares: f64,
+}
+
+/// The frames of least weighted squares near `start`; `None` if the poses do not determine them.
+pub(super) fn refined(rows: &[Row], start: Frames) -> Option<Refined> {
+    let mut frames = start;
+    let mut here = linear(rows, &frames);
+    let mut damping = 1e-6;
+    for _ in 0..STEPS {
+        let mut damped = here.normal;
+        for i in 0..UNKNOWNS {
+            damped[(i, i)] *= 1.0 + damping;
+        }
+        let step = damped.cholesky()?.solve(&here.right);
+        let tried = moved(&frames, &step);
+        let there = linear(rows, &tried);
+        if there.squares <= here.squares {
+            let last = here.squares - there.squares <= LAST_SHARE * here.squares;
+            (frames, here, damping) = (tried, there, damping * 0.1);
+            if last {
+                break;
+            }
+        } else {
+            damping *= 30.0;
+        }
+    }
+    with_covariance(rows, frames, &here)
+}
+
+/// The covariance at these frames, without a step.
+pub(super) fn unmoved(rows: &[Row], frames: Frames) -> Option<Refined> {
+    with_covariance(rows, frames, &linear(rows, &frames))
+}
+
+fn with_covariance(rows: &[Row], frames: Frames, here: &Linear) -> Option<Refined> {
+    let freedom = (6 * rows.len()).saturating_sub(UNKNOWNS).max(1);
+    let covariance = here.normal.cholesky()?.inverse() * (here.squares / freedom as f64);
+    Some(Refined { frames, covariance, freedom })
+}
+
+fn linear(rows: &[Row], frames: &Frames) -> Linear {
+    let mut linear = Linear { normal: Normal::zeros(), right: Step::zeros(), squares: 0.0 };
+    let c_from_base = frames.base_from_c.inverse();
+    for row in rows {
+        let expected = c_from_base * row.base_from_flange * frames.flange_from_m;
+        let turn = expected.rotation.to_rotation_matrix().into_inner();
+        let place_m = expected.translation.vector;
+        let mut slopes = Slopes::zeros();
+        slopes.fixed_view_mut::<3, 3>(0, 0).copy_from(&turn);
+        slopes.fixed_view_mut::<3, 3>(0, 6).copy_from(&-Matrix3::identity());
+        slopes.fixed_view_mut::<3, 3>(0, 9).copy_from(&place_m.cross_matrix());
+        linear.add(&(slopes / NOISE_M), &((row.c_from_m.translation.vector - place_m) / NOISE_M));
+        let mut slopes = Slopes::zeros();
+        slopes.fixed_view_mut::<3, 3>(0, 3).copy_from(&Matrix3::identity());
+        slopes.fixed_view_mut::<3, 3>(0, 9).copy_from(&-turn.transpose());
+        let error = (expected.rotation.inverse() * row.c_from_m.rotation).scaled_axis();
+        linear.add(&(slopes / NOISE_RAD), &(error / NOISE_RAD));
+    }
+    linear
+}
+
+impl Linear {
+    fn add(&mut self, slopes: &Slopes, error: &Vector3<f64>) {
+        self.normal += slopes.transpose() * slopes;
+        self.right += slopes.transpose() * error;
+        self.squares += error.norm_squared();
+    }
+}
+
+fn moved(frames: &Frames, step: &Step) -> Frames {
+    let motion = |from: usize| {
+        let turn = UnitQuaternion::from_scaled_axis(step.fixed_rows::<3>(from + 3).into_owned());
+        Isometry3::from_parts(step.fixed_rows::<3>(from).into_owned().into(), turn)
+    };
+    Frames { flange_from_m: frames.flange_from_m * motion(0), base_from_c: frames.base_from_c * motion(6) }
+}
+
+/// Change of the tip (m) and of its rotation vector (rad) as the tracker sees them in one pose, in the base's frame, per step.
+pub(super) fn slopes_at_tip(row: &Row, frames: &Frames, tip_in_flange_m: &Vector3<f64>) -> [Slopes; 2] {
+    let in_m = frames.flange_from_m.inverse() * nalgebra::Point3::from(*tip_in_flange_m);
+    let in_c = row.c_from_m * in_m;
+    let y = frames.base_from_c.rotation.to_rotation_matrix().into_inner();
+    let yb = (frames.base_from_c.rotation * row.c_from_m.rotation).to_rotation_matrix().into_inner();
+    let (mut place, mut turn) = (Slopes::zeros(), Slopes::zeros());
+    place.fixed_view_mut::<3, 3>(0, 0).copy_from(&-yb);
+    place.fixed_view_mut::<3, 3>(0, 3).copy_from(&(yb * in_m.coords.cross_matrix()));
+    place.fixed_view_mut::<3, 3>(0, 6).copy_from(&y);
+    place.fixed_view_mut::<3, 3>(0, 9).copy_from(&(-y * in_c.coords.cross_matrix()));
+    turn.fixed_view_mut::<3, 3>(0, 3).copy_from(&-yb);
+    turn.fixed_view_mut::<3, 3>(0, 9).copy_from(&y);
+    [place, turn]
+}

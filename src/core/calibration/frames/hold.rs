@@ -1,0 +1,149 @@
+//! The mean over a pose that is held still, with bounded memory.
+
+use nalgebra::{Isometry3, Vector3};
+
+use super::FrameSample;
+use crate::{calibration::rotation_mean::RotationMean, frames::Wrench};
+
+/// A sample further than this from the mean of the pose ends it: six standard deviations of a tracker, m and rad.
+const SAMPLE_M: f64 = 1.5e-3;
+const SAMPLE_RAD: f64 = 0.004;
+/// Largest difference between the means of the two halves: a slow motion hides in the noise of single samples, m and rad.
+const HALVES_M: f64 = 0.5e-3;
+const HALVES_RAD: f64 = 0.0014;
+/// A longer gap between samples ends a pose, s.
+const GAP_S: f64 = 0.2;
+const POSES: usize = 5;
+
+/// State of a hold.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Held {
+    /// It moved, by this much from where it was held.
+    Moved { by_m: f64, by_rad: f64 },
+    /// Not long enough yet: the share of the time.
+    Share(f64),
+    /// Held long enough: the mean.
+    Long(Box<FrameSample>),
+}
+
+#[derive(Clone, Copy, Debug, Default)]
+struct Sums {
+    count: f64,
+    poses: [Option<(Vector3<f64>, RotationMean)>; POSES],
+    wrench: Option<Wrench>,
+    first: FrameSample,
+}
+
+impl Sums {
+    fn of(sample: &FrameSample) -> Self {
+        let poses = sample.poses().map(|pose| pose.map(|_| (Vector3::zeros(), RotationMean::default())));
+        let mut sums = Self { count: 0.0, poses, wrench: sample.wrench.map(|_| Wrench::default()), first: *sample };
+        sums.add(sample);
+        sums
+    }
+
+    /// Adds a sample; a part that is missing once is missing in the mean.
+    fn add(&mut self, sample: &FrameSample) {
+        self.count += 1.0;
+        for (sum, pose) in self.poses.iter_mut().zip(sample.poses()) {
+            *sum = sum.zip(pose).map(|((place_m, mut turn), pose)| {
+                turn.add(&pose.rotation);
+                (place_m + pose.translation.vector, turn)
+            });
+        }
+        self.wrench = self.wrench.zip(sample.wrench).map(|(sum, wrench)| Wrench {
+            force_n: sum.force_n + wrench.force_n,
+            torque_nm: sum.torque_nm + wrench.torque_nm,
+        });
+    }
+
+    fn merge(mut self, other: &Self) -> Self {
+        self.count += other.count;
+        for (sum, more) in self.poses.iter_mut().zip(&other.poses) {
+            *sum = sum.zip(*more).map(|((place_m, mut turn), (more_m, more))| {
+                turn.merge(&more);
+                (place_m + more_m, turn)
+            });
+        }
+        self.wrench = self.wrench.zip(other.wrench).map(|(sum, more)| Wrench {
+            force_n: sum.force_n + more.force_n,
+            torque_nm: sum.torque_nm + more.torque_nm,
+        });
+        self
+    }
+
+    fn mean(&self) -> FrameSample {
+        let share = 1.0 / self.count.max(1.0);
+        let poses = self.poses.map(|sums| {
+            let (place_m, turn) = sums?;
+            Some(Isometry3::from_parts((place_m * share).into(), turn.mean()?))
+        });
+        let wrench = self.wrench.map(|sum| Wrench { force_n: sum.force_n * share, torque_nm: sum.torque_nm * share });
+        FrameSample { wrench, ..self.first.with_poses(&poses) }
+    }
+}
+
+/// The present pose.
+#[derive(Clone, Debug)]
+pub(super) struct Hold {
+    time_s: f64,
+    /// `None` before the first sample; the second half begins after half of the time.
+    halves: Option<(Sums, Option<Sums>)>,
+    since_s: f64,
+    last_s: f64,
+}
+
+impl Hold {
+    pub(super) const fn new(time_s: f64) -> Self {
+        Self { time_s, halves: None, since_s: 0.0, last_s: 0.0 }
+    }
+
+    pub(super) fn reset(&mut self) {
+        self.halves = None;
+    }
+
+    /// Adds a finite sample at time `t_s` (s, rising). Only poses that this calibration needs (`watched`) must be still.
+    pub(super) fn step(&mut self, sample: &FrameSample, watched: [bool; POSES], t_s: f64) -> Held {
+        if self.time_s <= 0.0 {
+            return Held::Long(Box::new(*sample));
+        }
+        let follows = t_s > self.last_s && t_s - self.last_s <= GAP_S;
+        self.last_s = t_s;
+        let Some((first, second)) = self.halves.as_mut().filter(|_| follows) else {
+            (self.halves, self.since_s) = (Some((Sums::of(sample), None)), t_s);
+            return Held::Share(0.0);
+        };
+        let mean = first.mean();
+        let (by_m, by_rad) = apart(&mean, sample, watched);
+        if by_m > SAMPLE_M || by_rad > SAMPLE_RAD {
+            self.halves = None;
+            return Held::Moved { by_m, by_rad };
+        }
+        let share = (t_s - self.since_s) / self.time_s;
+        match second {
+            Some(second) => second.add(sample),
+            None if share < 0.5 => first.add(sample),
+            None => *second = Some(Sums::of(sample)),
+        }
+        if share < 1.0 {
+            return Held::Share(share);
+        }
+        let (first, second) = (*first, *second);
+        self.halves = None;
+        let Some(second) = second else { return Held::Share(0.0) };
+        let (by_m, by_rad) = apart(&mean, &second.mean(), watched);
+        if by_m > HALVES_M || by_rad > HALVES_RAD {
+            return Held::Moved { by_m, by_rad };
+        }
+        Held::Long(Box::new(first.merge(&second).mean()))
+    }
+}
+
+/// Largest differences of the watched poses, m and rad.
+fn apart(a: &FrameSample, b: &FrameSample, watched: [bool; POSES]) -> (f64, f64) {
+    let pairs = a.poses().into_iter().zip(b.poses()).zip(watched).filter(|(_, watched)| *watched);
+    pairs.filter_map(|((a, b), _)| a.zip(b)).fold((0.0, 0.0), |(by_m, by_rad): (f64, f64), (a, b)| {
+        let way_m = (a.translation.vector - b.translation.vector).norm();
+        (by_m.max(way_m), by_rad.max(a.rotation.angle_to(&b.rotation)))
+    })
+}

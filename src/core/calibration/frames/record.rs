@@ -1,0 +1,158 @@
+//! The file content of a frame calibration: what was found, what it belongs to, and its quality.
+
+use nalgebra::{Isometry3, Quaternion, UnitQuaternion, Vector3};
+use serde::{Deserialize, Serialize, de::DeserializeOwned};
+
+use super::{Cause, FrameReport, Sizes};
+use crate::calibration::{Judgement, Record, RecordHead};
+
+/// Serial numbers of what was measured with, besides the wrist sensor in the head; absent if it was not used.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Serials {
+    /// Of the arm.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub arm: Option<String>,
+    /// Of the tracker.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub tracker: Option<String>,
+    /// Of the marker, or its definition's name.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub marker: Option<String>,
+}
+
+/// What a calibration finds, as it stands in a file.
+pub trait Found: Clone + Serialize + DeserializeOwned {
+    /// Kind of its record, also the first part of the file's name.
+    const KIND: &'static str;
+    /// What makes its numbers unusable; `None` if they are usable.
+    fn fault(&self) -> Option<&'static str>;
+}
+
+/// A frame calibration as written to a file.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, bound = "F: Found")]
+pub struct FrameRecord<F> {
+    /// [`Found::KIND`]; a file of another kind is refused on reading.
+    pub kind: String,
+    /// Wrist sensor, tool, date and program version.
+    #[serde(flatten)]
+    pub head: RecordHead,
+    /// Whether it may be used.
+    #[serde(flatten)]
+    pub judgement: Judgement,
+    /// Number of poses.
+    pub poses: usize,
+    /// Indices of the poses left out as outliers, from 0.
+    pub outliers: Vec<usize>,
+    /// What else was measured with.
+    pub serials: Serials,
+    /// Why it got its verdict.
+    pub cause: Cause,
+    /// Root mean square error of the poses in the fit.
+    pub fitted: Sizes,
+    /// The same on held-out poses.
+    pub held_out: Sizes,
+    /// Largest error on a held-out pose.
+    pub held_out_max: Sizes,
+    /// Half the length of the 95 % interval.
+    pub uncertainty: Sizes,
+    /// What was found.
+    pub found: F,
+}
+
+impl<F: Found> FrameRecord<F> {
+    pub(super) fn of(report: &FrameReport<F>, head: RecordHead, serials: Serials, reason: &str) -> Option<Self> {
+        Some(Self {
+            kind: F::KIND.to_owned(),
+            head,
+            judgement: Judgement::new(report.verdict, reason),
+            poses: report.poses,
+            outliers: report.outliers.clone(),
+            serials,
+            cause: report.cause,
+            fitted: report.fitted,
+            held_out: report.held_out,
+            held_out_max: report.held_out_max,
+            uncertainty: report.uncertainty,
+            found: report.found.clone()?,
+        })
+    }
+}
+
+impl<F: Found> Record for FrameRecord<F> {
+    const KIND: &'static str = F::KIND;
+
+    fn head(&self) -> &RecordHead {
+        &self.head
+    }
+
+    fn judgement(&self) -> &Judgement {
+        &self.judgement
+    }
+
+    fn fault(&self) -> Option<&'static str> {
+        if self.kind != F::KIND {
+            return Some("kind is that of another calibration");
+        }
+        // An override may stand in the file, but no verdict that its cause contradicts.
+        if self.judgement.verdict != self.cause.verdict() {
+            return Some("verdict does not follow from cause");
+        }
+        let sizes = [self.fitted, self.held_out, self.held_out_max, self.uncertainty];
+        let sound = |size: Option<f64>| size.is_none_or(|size| size >= 0.0 && size.is_finite());
+        if !sizes.iter().all(|sizes| sound(sizes.place_m) && sound(sizes.angle_deg)) {
+            return Some("an error or uncertainty is no number of zero or more");
+        }
+        self.found.fault()
+    }
+}
+
+/// A pose as it stands in a file: place (m) and rotation (w, x, y, z).
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct StoredPose {
+    /// Origin of the source frame in the target frame, m.
+    pub place_m: [f64; 3],
+    /// Rotation from the source frame to the target frame.
+    pub rotation_wxyz: [f64; 4],
+}
+
+impl StoredPose {
+    /// From a pose.
+    pub(super) fn of(pose: &Isometry3<f64>) -> Self {
+        Self { place_m: pose.translation.vector.into(), rotation_wxyz: wxyz(&pose.rotation) }
+    }
+
+    /// The pose.
+    pub fn pose(&self) -> Isometry3<f64> {
+        Isometry3::from_parts(Vector3::from(self.place_m).into(), rotation(&self.rotation_wxyz))
+    }
+
+    pub(super) fn fault(&self) -> Option<&'static str> {
+        place_fault(&self.place_m).or_else(|| rotation_fault(&self.rotation_wxyz))
+    }
+}
+
+/// The parts of a rotation, `w` not negative.
+pub(super) fn wxyz(rotation: &UnitQuaternion<f64>) -> [f64; 4] {
+    let sign = if rotation.w < 0.0 { -1.0 } else { 1.0 };
+    [rotation.w, rotation.i, rotation.j, rotation.k].map(|part| part * sign)
+}
+
+/// A rotation from its parts; normalised.
+pub(super) fn rotation(wxyz: &[f64; 4]) -> UnitQuaternion<f64> {
+    let [w, x, y, z] = *wxyz;
+    UnitQuaternion::from_quaternion(Quaternion::new(w, x, y, z))
+}
+
+pub(super) fn place_fault(place_m: &[f64; 3]) -> Option<&'static str> {
+    (!place_m.iter().all(|x| x.is_finite() && x.abs() <= 10.0)).then_some("a place is not finite or beyond 10 m")
+}
+
+pub(super) fn rotation_fault(wxyz: &[f64; 4]) -> Option<&'static str> {
+    let length = wxyz.iter().map(|part| part * part).sum::<f64>().sqrt();
+    // Written so that NaN is a fault.
+    let unit = (length - 1.0).abs() < 1e-6;
+    (!unit).then_some("rotation_wxyz is not a quaternion of length one")
+}

@@ -1,0 +1,255 @@
+//! The result of a frame calibration, and what all of them have in common.
+
+use nalgebra::Vector3;
+use serde::{Deserialize, Serialize};
+
+use super::{
+    Carrier, Cause, Coverage, FrameError, FrameRecord, FrameSample, Mistake, Serials, Source,
+    examine::{Examined, Miss},
+    record::Found,
+    sample::check,
+};
+use crate::calibration::{RecordHead, Verdict};
+
+/// A size in place and in angle; `None` where a calibration has no such size.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Sizes {
+    /// Length, m.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub place_m: Option<f64>,
+    /// Angle, degrees.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub angle_deg: Option<f64>,
+}
+
+impl Sizes {
+    /// A length only, m.
+    pub const fn place(place_m: f64) -> Self {
+        Self { place_m: Some(place_m), angle_deg: None }
+    }
+
+    /// An angle only, degrees.
+    pub const fn angle(angle_deg: f64) -> Self {
+        Self { place_m: None, angle_deg: Some(angle_deg) }
+    }
+
+    /// Both, m and degrees.
+    pub const fn both(place_m: f64, angle_deg: f64) -> Self {
+        Self { place_m: Some(place_m), angle_deg: Some(angle_deg) }
+    }
+
+    /// Root mean square and largest of these misses, in what all of them have.
+    pub(super) fn of(misses: &[Miss]) -> [Self; 2] {
+        let sizes = |of: fn(f64, f64) -> f64, finish: &dyn Fn(f64) -> f64| {
+            let fold = |part: fn(&Miss) -> Option<f64>| {
+                let values: Option<Vec<f64>> = misses.iter().map(part).collect();
+                let values = values.filter(|values| !values.is_empty())?;
+                Some(finish(values.into_iter().fold(0.0, of)))
+            };
+            let angle_deg = fold(|miss| miss.angle_rad).map(f64::to_degrees);
+            Self { place_m: fold(|miss| miss.place_m), angle_deg }
+        };
+        let count = misses.len().max(1) as f64;
+        [sizes(|sum, x| sum + x * x, &|sum| (sum / count).sqrt()), sizes(f64::max, &|max| max)]
+    }
+}
+
+/// Limits for a verdict; `None` where a calibration has no such size.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Limits {
+    /// Smallest number of poses, lines, points or moves.
+    pub least: usize,
+    /// Largest root mean square error on held-out data.
+    pub held_out: Sizes,
+    /// Largest half length of the 95 % interval.
+    pub uncertainty: Sizes,
+    /// Largest share of outliers.
+    pub outliers: f64,
+}
+
+/// Result of a fit.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct FrameReport<F> {
+    /// Whether it may be used.
+    pub verdict: Verdict,
+    /// Why.
+    pub cause: Cause,
+    /// Number of poses given.
+    pub poses: usize,
+    /// Indices of poses that contradict the others, from 0; not used.
+    pub outliers: Vec<usize>,
+    /// Root mean square error of the poses in the fit.
+    pub fitted: Sizes,
+    /// Root mean square error on held-out poses. Each pose (beyond 20: each tenth of them) is compared with a fit to the
+    /// others; outliers are not counted.
+    pub held_out: Sizes,
+    /// Largest error on a held-out pose.
+    pub held_out_max: Sizes,
+    /// Half the length of the 95 % interval: in place along the longest axis of its ellipsoid, in angle about any axis.
+    pub uncertainty: Sizes,
+    /// What was found; `None` if the data determine nothing. Only to be used with [`Verdict::Accepted`].
+    pub found: Option<F>,
+}
+
+impl<F> FrameReport<F> {
+    /// A report without a result.
+    pub(super) fn nothing(poses: usize, cause: Cause) -> Self {
+        let none = Sizes::default();
+        Self {
+            verdict: cause.verdict(),
+            cause,
+            poses,
+            outliers: Vec::new(),
+            fitted: none,
+            held_out: none,
+            held_out_max: none,
+            uncertainty: none,
+            found: None,
+        }
+    }
+
+    /// A report of what was found, not judged yet.
+    pub(super) fn of<M>(poses: usize, examined: Examined<M>, uncertainty: Sizes, found: F) -> Self {
+        let [fitted, _] = Sizes::of(&examined.fitted);
+        let [held_out, held_out_max] = Sizes::of(&examined.held_out);
+        let outliers = examined.outliers;
+        let cause = Cause::Proven;
+        Self {
+            verdict: cause.verdict(),
+            cause,
+            poses,
+            outliers,
+            fitted,
+            held_out,
+            held_out_max,
+            uncertainty,
+            found: Some(found),
+        }
+    }
+
+    /// Changes the cause, and the verdict with it.
+    pub(super) const fn because(mut self, cause: Cause) -> Self {
+        (self.verdict, self.cause) = (cause.verdict(), cause);
+        self
+    }
+
+    /// The cause that follows from errors and uncertainty.
+    pub(super) fn judged(self, limits: &Limits) -> Self {
+        let cause = self.cause_within(limits);
+        self.because(cause)
+    }
+
+    fn cause_within(&self, limits: &Limits) -> Cause {
+        let kept = self.poses - self.outliers.len();
+        if kept < limits.least {
+            return Cause::TooFew { have: kept, least: limits.least };
+        }
+        let share = self.outliers.len() as f64 / self.poses.max(1) as f64;
+        if share > limits.outliers {
+            return Cause::Outliers { share, most: limits.outliers };
+        }
+        let (error, most) = (&self.held_out, &limits.held_out);
+        if let Some((by_m, most_m)) = above(error.place_m, most.place_m) {
+            return Cause::PoorPlace { by_m, most_m };
+        }
+        if let Some((by_deg, most_deg)) = above(error.angle_deg, most.angle_deg) {
+            return Cause::PoorAngle { by_deg, most_deg };
+        }
+        let (doubt, most) = (&self.uncertainty, &limits.uncertainty);
+        if let Some((by_m, most_m)) = above(doubt.place_m, most.place_m) {
+            return Cause::UncertainPlace { by_m, most_m };
+        }
+        if let Some((by_deg, most_deg)) = above(doubt.angle_deg, most.angle_deg) {
+            return Cause::UncertainAngle { by_deg, most_deg };
+        }
+        Cause::Proven
+    }
+}
+
+impl<F: Found> FrameReport<F> {
+    /// The record of what was found; `None` if there is nothing. `reason` is the sentence for [`Self::cause`].
+    pub fn record(&self, head: RecordHead, serials: Serials, reason: &str) -> Option<FrameRecord<F>> {
+        FrameRecord::of(self, head, serials, reason)
+    }
+}
+
+/// Value and limit if the value is above it, is no number or could not be determined.
+fn above(value: Option<f64>, most: Option<f64>) -> Option<(f64, f64)> {
+    most.map(|most| (value.unwrap_or(f64::INFINITY), most)).filter(|(value, most)| value.is_nan() || value > most)
+}
+
+/// A frame calibration: its settings, and how it is fitted. [`FrameSession`](super::FrameSession) records for it.
+pub trait Calibration {
+    /// What it finds.
+    type Found: Found;
+
+    /// Sources that every sample must have.
+    fn needs(&self) -> Vec<Source>;
+
+    /// What moves while it is recorded.
+    fn carrier(&self) -> Carrier;
+
+    /// How long a pose is held, s; 0 takes single samples in motion.
+    fn hold_s(&self) -> f64 {
+        0.5
+    }
+
+    /// Whether a pose differs enough from those taken.
+    fn differs(&self, sample: &FrameSample, taken: &[FrameSample]) -> bool;
+
+    /// How much of the motion is there, and what is missing.
+    fn coverage(&self, taken: &[FrameSample]) -> Coverage;
+
+    /// The fit as the data are given; the samples are checked.
+    fn attempt(&self, samples: &[FrameSample]) -> FrameReport<Self::Found>;
+
+    /// Mistakes to look for, the likeliest first, and the carrier whose poses they concern.
+    fn mistakes(&self) -> Vec<(Mistake, Carrier)>;
+
+    /// What makes these settings unusable.
+    fn fault(&self) -> Option<&'static str> {
+        None
+    }
+
+    /// Fits and judges. `Err` is returned for invalid samples and settings only; data that determine nothing, or fit badly, give
+    /// a report with that verdict. A mistake is named if undoing it, and only that, gives data that are accepted.
+    ///
+    /// # Errors
+    /// [`FrameError`] for a sample without a source, with a number that is not finite, or beyond 10 m; for settings that
+    /// are not finite.
+    fn fit(&self, samples: &[FrameSample]) -> Result<FrameReport<Self::Found>, FrameError> {
+        if let Some(setting) = self.fault() {
+            return Err(FrameError::Setting { setting });
+        }
+        check(samples, &self.needs())?;
+        let given = self.attempt(samples);
+        // Data that fit, in a way that cannot be, have named their mistake already.
+        let fits = given.found.is_some() && matches!(given.cause, Cause::Mistake { .. });
+        if given.verdict == Verdict::Accepted || fits {
+            return Ok(given);
+        }
+        let mut best: Option<(f64, Mistake)> = None;
+        for (mistake, carrier) in self.mistakes() {
+            let undone: Option<Vec<_>> = samples.iter().map(|sample| mistake.undone(sample, carrier)).collect();
+            let Some(report) = undone.map(|samples| self.attempt(&samples)) else { continue };
+            let size = report.held_out.place_m.or(report.held_out.angle_deg).unwrap_or(f64::INFINITY);
+            let better = best.is_none_or(|(least, _)| size < CLEARLY * least);
+            if report.verdict == Verdict::Accepted && better {
+                best = Some((size, mistake));
+            }
+        }
+        Ok(match best {
+            Some((_, mistake)) => given.because(Cause::Mistake { mistake }),
+            None => given,
+        })
+    }
+}
+
+/// A less likely mistake is named if its error is below this share of a likelier one's.
+const CLEARLY: f64 = 0.7;
+
+/// Whether every number is finite.
+pub(super) fn finite(vector: &Vector3<f64>) -> bool {
+    vector.iter().all(|x| x.is_finite())
+}

@@ -1,0 +1,277 @@
+//! The mount of the wrist sensor: `flange_from_s1` from the weight of the tool in still poses of the arm.
+//!
+//! In a still pose `f = m R u + f0` with the gravity vector `u` in the flange's frame, which the joints tell. `R = s1_from_flange`, the
+//! mass `m` and the bias `f0` of least squares follow in closed form: differences from the means take the bias away, `R` is
+//! Wahba's problem on them, `m` their scale (Umeyama, IEEE Trans. Pattern Anal. Mach. Intell. 13, 1991). The result is compared
+//! with the mount in force.
+
+use nalgebra::{Matrix3, Rotation3, UnitQuaternion, Vector3};
+use serde::{Deserialize, Serialize};
+
+use super::{
+    Calibration, Carrier, Cause, Coverage, FrameReport, FrameSample, Limits, Missing, Mistake, SignedAxes, Sizes,
+    Source,
+    examine::{Miss, Problem, examined},
+    record::{Found, rotation, rotation_fault, wxyz},
+    report::finite,
+    spread::{below, nearest_orthogonal, principal, radius_95},
+};
+use crate::frames::GRAVITY_M_S2;
+
+/// Smallest turn of the flange against gravity between two poses, rad.
+const APART_RAD: f64 = 0.17;
+/// Smallest root mean square of the directions of gravity from their mean along the third axis, 0 to 1; 0.58 for all directions.
+const LEAST_SPREAD: f64 = 0.1;
+const PLENTY_SPREAD: f64 = 0.35;
+const PLENTY: usize = 12;
+/// Smallest weight, N, and as a multiple of the noise.
+const LEAST_WEIGHT_N: f64 = 0.3;
+const LEAST_SIGNAL: f64 = 5.0;
+/// A mirror explains the forces if its error is below this share of the rotation's.
+const MIRROR_SHARE: f64 = 0.5;
+
+/// Settings of the sensor mount's calibration.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SensorMount {
+    /// The mount in force, `flange_from_s1`.
+    pub in_force: UnitQuaternion<f64>,
+    /// Direction upwards in the frame of the arm's base.
+    pub up_in_base: Vector3<f64>,
+    /// Limits for the verdict.
+    pub limits: Limits,
+}
+
+impl SensorMount {
+    /// For a comparison with this mount (`flange_from_s1`), on an arm with this direction upwards in its base's frame.
+    pub const fn new(in_force: UnitQuaternion<f64>, up_in_base: Vector3<f64>) -> Self {
+        let limits = Limits { least: 6, held_out: Sizes::angle(5.0), uncertainty: Sizes::angle(3.0), outliers: 0.25 };
+        Self { in_force, up_in_base, limits }
+    }
+
+    /// Direction of gravity in the flange's frame, unit length.
+    fn down_in_flange(&self, sample: &FrameSample) -> Option<Vector3<f64>> {
+        Some(-(sample.base_from_flange?.rotation.inverse() * self.up_in_base.try_normalize(0.0)?))
+    }
+
+    fn rows(&self, samples: &[FrameSample]) -> Vec<Row> {
+        let row =
+            |sample: &FrameSample| Some(Row { down: self.down_in_flange(sample)?, force_n: sample.wrench?.force_n });
+        samples.iter().filter_map(row).collect()
+    }
+}
+
+/// The mount that was found.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SensorMountFound {
+    /// `flange_from_s1`.
+    pub flange_from_s1_wxyz: [f64; 4],
+    /// Angle between this mount and the one in force, degrees.
+    pub from_in_force_deg: f64,
+    /// Which axes of the mount in force the measured x, y and z are, if the two differ by names and signs of axes; all the same if they
+    /// agree. `None` if they differ otherwise.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub axes: Option<SignedAxes>,
+    /// Mass of the tool, kg.
+    pub mass_kg: f64,
+    /// Bias of the sensor, N (`s1`).
+    pub bias_n: [f64; 3],
+}
+
+impl SensorMountFound {
+    /// A mount that differs by less than this agrees with the one in force, degrees.
+    pub const AGREES_DEG: f64 = 3.0;
+
+    /// `flange_from_s1`.
+    pub fn flange_from_s1(&self) -> UnitQuaternion<f64> {
+        rotation(&self.flange_from_s1_wxyz)
+    }
+
+    /// Whether the mount in force is right.
+    pub fn agrees(&self) -> bool {
+        self.from_in_force_deg <= Self::AGREES_DEG
+    }
+}
+
+impl Found for SensorMountFound {
+    const KIND: &'static str = "sensor_mount";
+
+    fn fault(&self) -> Option<&'static str> {
+        let sound = (0.0..=180.0).contains(&self.from_in_force_deg)
+            && self.mass_kg > 0.0
+            && self.mass_kg.is_finite()
+            && self.bias_n.iter().all(|x| x.is_finite());
+        let fault = (!sound).then_some("an angle, the mass or the bias is no such number");
+        rotation_fault(&self.flange_from_s1_wxyz).or(fault)
+    }
+}
+
+/// One pose: direction of gravity in the flange's frame (unit length), and the force as read (N, `s1`).
+#[derive(Clone, Copy, Debug)]
+struct Row {
+    down: Vector3<f64>,
+    force_n: Vector3<f64>,
+}
+
+/// `f = weight turn down + bias`.
+#[derive(Clone, Copy, Debug)]
+struct Weighed {
+    turn: Matrix3<f64>,
+    weight_n: f64,
+    bias_n: Vector3<f64>,
+}
+
+impl Weighed {
+    fn error_n(&self, row: &Row) -> Vector3<f64> {
+        row.force_n - self.turn * row.down * self.weight_n - self.bias_n
+    }
+
+    /// The least-squares solution with this sign of the determinant: 1 for a rotation, -1 for a reflection.
+    fn of(rows: &[Row], sign: f64) -> Option<Self> {
+        let share = 1.0 / rows.len().max(1) as f64;
+        let down = rows.iter().map(|row| row.down).sum::<Vector3<f64>>() * share;
+        let force_n = rows.iter().map(|row| row.force_n).sum::<Vector3<f64>>() * share;
+        let moment: Matrix3<f64> = rows.iter().map(|row| (row.force_n - force_n) * (row.down - down).transpose()).sum();
+        let squares: f64 = rows.iter().map(|row| (row.down - down).norm_squared()).sum();
+        let turn = nearest_orthogonal(&moment, sign)?;
+        let weight_n = (turn.transpose() * moment).trace() / squares;
+        let found = Self { turn, weight_n, bias_n: force_n - turn * down * weight_n };
+        (weight_n.is_finite() && weight_n > 0.0).then_some(found)
+    }
+}
+
+struct Weighing {
+    sign: f64,
+}
+
+impl Problem for Weighing {
+    type Row = Row;
+    type Model = Weighed;
+    const HYPOTHESIS: usize = 4;
+    const FLOOR: Miss = Miss::of_angle(0.1);
+
+    fn solve(&self, rows: &[Row]) -> Option<Weighed> {
+        Weighed::of(rows, self.sign)
+    }
+
+    /// The error of the force as an angle of the weight.
+    fn miss(&self, weighed: &Weighed, row: &Row) -> Miss {
+        Miss::of_angle((weighed.error_n(row).norm() / weighed.weight_n).atan())
+    }
+}
+
+/// Spread of the directions of gravity about their mean along the third axis.
+fn spread(rows: &[Row]) -> f64 {
+    let mean = rows.iter().map(|row| row.down).sum::<Vector3<f64>>() / rows.len().max(1) as f64;
+    let from_mean: Vec<Vector3<f64>> = rows.iter().map(|row| row.down - mean).collect();
+    principal(&from_mean)[2]
+}
+
+impl Calibration for SensorMount {
+    type Found = SensorMountFound;
+
+    fn needs(&self) -> Vec<Source> {
+        vec![Source::Flange, Source::Wrench]
+    }
+
+    fn carrier(&self) -> Carrier {
+        Carrier::Flange
+    }
+
+    /// Only the direction of gravity counts.
+    fn differs(&self, sample: &FrameSample, taken: &[FrameSample]) -> bool {
+        let Some(down) = self.down_in_flange(sample) else { return false };
+        taken.iter().filter_map(|sample| self.down_in_flange(sample)).all(|other| other.angle(&down) >= APART_RAD)
+    }
+
+    fn coverage(&self, taken: &[FrameSample]) -> Coverage {
+        Coverage::least([
+            (taken.len() as f64 / PLENTY as f64, Missing::Poses),
+            (spread(&self.rows(taken)) / PLENTY_SPREAD, Missing::Directions),
+        ])
+    }
+
+    fn fault(&self) -> Option<&'static str> {
+        let sound = finite(&self.up_in_base)
+            && self.up_in_base.norm() > 0.0
+            && (self.in_force.coords.norm() - 1.0).abs() < 1e-6;
+        (!sound).then_some("the mount in force or the direction upwards is not finite")
+    }
+
+    fn attempt(&self, samples: &[FrameSample]) -> FrameReport<SensorMountFound> {
+        let rows = self.rows(samples);
+        let (have, least) = (rows.len(), self.limits.least);
+        if have < least {
+            return FrameReport::nothing(have, Cause::TooFew { have, least });
+        }
+        let spread = spread(&rows);
+        if below(spread, LEAST_SPREAD) {
+            return FrameReport::nothing(have, Cause::OnePlane { spread, least: LEAST_SPREAD });
+        }
+        if let Some(mistake) = self.mirrored(&rows) {
+            return FrameReport::nothing(have, Cause::Mistake { mistake });
+        }
+        let weightless = |weight_n, least_n| FrameReport::nothing(have, Cause::Weightless { weight_n, least_n });
+        let Some(found) = examined(&Weighing { sign: 1.0 }, &rows) else { return weightless(0.0, LEAST_WEIGHT_N) };
+        let kept: Vec<Row> = found.kept.iter().map(|&i| rows[i]).collect();
+        let weighed = found.model;
+        let freedom = (3 * kept.len()).saturating_sub(7).max(1);
+        let squares_n2: f64 = kept.iter().map(|row| weighed.error_n(row).norm_squared()).sum();
+        let variance_n2 = squares_n2 / freedom as f64;
+        let least_n = LEAST_WEIGHT_N.max(LEAST_SIGNAL * variance_n2.sqrt());
+        if below(weighed.weight_n, least_n) {
+            return weightless(weighed.weight_n, least_n);
+        }
+        let region = turn_covariance(&kept, &weighed, variance_n2);
+        let angle_deg = region.map(|region| radius_95(&region, freedom).to_degrees());
+        let report = FrameReport::of(have, found, Sizes { place_m: None, angle_deg }, self.found(&weighed));
+        report.judged(&self.limits)
+    }
+
+    fn mistakes(&self) -> Vec<(Mistake, Carrier)> {
+        vec![(Mistake::SwappedArm, Carrier::Flange), (Mistake::InverseRotation, Carrier::Flange)]
+    }
+}
+
+impl SensorMount {
+    fn found(&self, weighed: &Weighed) -> SensorMountFound {
+        let turn = Rotation3::from_matrix_unchecked(weighed.turn.transpose());
+        let flange_from_s1 = UnitQuaternion::from_rotation_matrix(&turn);
+        let measured_from_expected = weighed.turn * self.in_force.to_rotation_matrix().into_inner();
+        SensorMountFound {
+            flange_from_s1_wxyz: wxyz(&flange_from_s1),
+            from_in_force_deg: flange_from_s1.angle_to(&self.in_force).to_degrees(),
+            axes: SignedAxes::nearest(&measured_from_expected),
+            mass_kg: weighed.weight_n / GRAVITY_M_S2,
+            bias_n: weighed.bias_n.into(),
+        }
+    }
+
+    /// Forces that fit in a mirror only have an axis with a wrong sign, or two that are exchanged: no mount does that.
+    fn mirrored(&self, rows: &[Row]) -> Option<Mistake> {
+        let error = |sign| {
+            let found = Weighed::of(rows, sign)?;
+            let mut squares: Vec<f64> = rows.iter().map(|row| found.error_n(row).norm_squared()).collect();
+            // The median: a touched pose does not decide.
+            let middle = squares.len() / 2;
+            Some((*squares.select_nth_unstable_by(middle, f64::total_cmp).1, found))
+        };
+        let (mirror, found) = error(-1.0)?;
+        // Without a rotation that sees any weight, the mirror stands alone.
+        let turn = error(1.0).map_or(f64::INFINITY, |(turn, _)| turn);
+        if mirror >= MIRROR_SHARE * MIRROR_SHARE * turn {
+            return None;
+        }
+        let measured_from_expected = found.turn * self.in_force.to_rotation_matrix().into_inner();
+        Some(SignedAxes::nearest(&measured_from_expected).map_or(Mistake::Mirrored, Mistake::WrongAxes))
+    }
+}
+
+/// Covariance of the turn (rotation vector in `s1`, rad), with the bias estimated beside it.
+fn turn_covariance(rows: &[Row], weighed: &Weighed, variance_n2: f64) -> Option<Matrix3<f64>> {
+    let slopes: Vec<Matrix3<f64>> =
+        rows.iter().map(|row| -(weighed.turn * row.down * weighed.weight_n).cross_matrix()).collect();
+    let mean = slopes.iter().sum::<Matrix3<f64>>() / rows.len() as f64;
+    let normal: Matrix3<f64> = slopes.iter().map(|slope| (slope - mean).transpose() * (slope - mean)).sum();
+    Some(normal.cholesky()?.inverse() * variance_n2)
+}

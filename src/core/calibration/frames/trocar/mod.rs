@@ -1,0 +1,234 @@
+//! The trocar: the point about which the instrument pivots, from lines of its shaft; and a watch over it afterwards.
+//!
+//! The point `x` of least squares to all lines (point `p_i`, direction `d_i`) solves `sum (I - d_i d_i^T) (x - p_i) = 0`.
+
+mod watch;
+
+use nalgebra::{Isometry3, Matrix3, Point3, Vector3};
+use serde::{Deserialize, Serialize};
+
+use super::{
+    Calibration, Carrier, Cause, Coverage, FrameReport, FrameSample, Limits, Missing, Mistake, Sizes, Source,
+    examine::{Miss, Problem, examined},
+    record::{Found, place_fault},
+    report::finite,
+    spread::{below, ellipsoid_95},
+};
+use crate::kinematics::Arm;
+pub use watch::{TrocarState, TrocarWatch};
+
+/// Smallest root mean square tilt of the lines from their mean, degrees.
+const LEAST_TILT_DEG: f64 = 4.0;
+/// Smallest angle between two lines, rad.
+const APART_RAD: f64 = 0.035;
+/// With this much a session is complete.
+const PLENTY: usize = 40;
+const PLENTY_TILT_DEG: f64 = 10.0;
+
+/// The axis of the instrument's shaft.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ShaftLine {
+    /// A point on it, m.
+    pub point_m: Vector3<f64>,
+    /// Its direction towards the tip, unit length.
+    pub direction: Vector3<f64>,
+}
+
+impl ShaftLine {
+    /// In the flange's frame, by the mount of the wrist sensor: its z axis.
+    pub fn of_arm(arm: &Arm) -> Self {
+        let flange_from_s1 = arm.flange_from_s1();
+        Self { point_m: flange_from_s1.translation.vector, direction: flange_from_s1.rotation * Vector3::z() }
+    }
+
+    /// In another frame.
+    #[must_use]
+    pub fn in_frame(&self, target_from_source: &Isometry3<f64>) -> Self {
+        let point_m = (target_from_source * Point3::from(self.point_m)).coords;
+        Self { point_m, direction: target_from_source.rotation * self.direction }
+    }
+
+    /// Vector from a point to the nearest point of the line, m.
+    pub fn miss_m(&self, point_m: &Vector3<f64>) -> Vector3<f64> {
+        across(&self.direction) * (self.point_m - point_m)
+    }
+}
+
+/// `I - d d^T`: what is left of a vector across a direction.
+fn across(direction: &Vector3<f64>) -> Matrix3<f64> {
+    Matrix3::identity() - direction * direction.transpose()
+}
+
+/// Settings of a trocar's calibration.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Trocar {
+    /// What tells the pose of the shaft: marker or flange.
+    pub carrier: Carrier,
+    /// The shaft in the frame of the marker or of the flange.
+    pub shaft: ShaftLine,
+    /// Limits for the verdict.
+    pub limits: Limits,
+}
+
+impl Trocar {
+    /// By the arm's joints.
+    pub fn by_arm(arm: &Arm) -> Self {
+        Self::of(Carrier::Flange, ShaftLine::of_arm(arm))
+    }
+
+    /// By the tracker, with the hand-eye calibration `flange_from_m`.
+    pub fn by_tracker(arm: &Arm, flange_from_m: &Isometry3<f64>) -> Self {
+        Self::of(Carrier::Marker, ShaftLine::of_arm(arm).in_frame(&flange_from_m.inverse()))
+    }
+
+    fn of(carrier: Carrier, shaft: ShaftLine) -> Self {
+        let limits =
+            Limits { least: 30, held_out: Sizes::place(2.0e-3), uncertainty: Sizes::place(1.0e-3), outliers: 0.25 };
+        Self { carrier, shaft, limits }
+    }
+
+    /// The shaft in the frame of the camera or of the arm's base; `None` if the sample lacks the pose.
+    pub fn line(&self, sample: &FrameSample) -> Option<ShaftLine> {
+        Some(self.shaft.in_frame(sample.pose(self.carrier)?))
+    }
+
+    fn lines<'a>(&'a self, samples: &'a [FrameSample]) -> impl Iterator<Item = ShaftLine> + 'a {
+        samples.iter().filter_map(|sample| self.line(sample))
+    }
+}
+
+/// A trocar that was found, in the frame of the camera or of the arm's base.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct TrocarFound {
+    /// Whose lines they were: marker (frame of the camera) or flange (frame of the base).
+    pub carrier: Carrier,
+    /// The remote centre of motion, m.
+    pub trocar_m: [f64; 3],
+    /// Mean direction of the shaft, into the body; unit length.
+    pub inward: [f64; 3],
+    /// Half axes of the 95 % ellipsoid, the longest first, m.
+    pub ellipsoid_m: [[f64; 3]; 3],
+}
+
+impl Found for TrocarFound {
+    const KIND: &'static str = "trocar";
+
+    fn fault(&self) -> Option<&'static str> {
+        let unit = (Vector3::from(self.inward).norm() - 1.0).abs() < 1e-6;
+        let fault = self.ellipsoid_m.iter().chain([&self.trocar_m]).find_map(place_fault);
+        fault.or((!unit).then_some("inward is not of length one"))
+    }
+}
+
+/// Point nearest to all lines.
+struct Centre {
+    point_m: Vector3<f64>,
+    /// For a variance of one across each line.
+    covariance: Matrix3<f64>,
+}
+
+struct Lines;
+
+impl Problem for Lines {
+    type Row = ShaftLine;
+    type Model = Centre;
+    const HYPOTHESIS: usize = 4;
+    const FLOOR: Miss = Miss::of_place(1.5e-3);
+
+    fn solve(&self, rows: &[ShaftLine]) -> Option<Centre> {
+        let (mut normal, mut right) = (Matrix3::zeros(), Vector3::zeros());
+        for row in rows {
+            let across = across(&row.direction);
+            normal += across;
+            right += across * row.point_m;
+        }
+        let covariance = normal.cholesky()?.inverse();
+        Some(Centre { point_m: covariance * right, covariance })
+    }
+
+    fn miss(&self, centre: &Centre, row: &ShaftLine) -> Miss {
+        Miss::of_place(row.miss_m(&centre.point_m).norm())
+    }
+}
+
+/// Root mean square tilt of lines from their mean direction, degrees.
+fn tilt_deg(lines: impl Iterator<Item = ShaftLine>) -> f64 {
+    let (mut sum, mut count) = (Matrix3::zeros(), 0.0);
+    for line in lines {
+        sum += across(&line.direction);
+        count += 1.0;
+    }
+    if count == 0.0 { 0.0 } else { (sum / count).symmetric_eigenvalues().min().max(0.0).sqrt().asin().to_degrees() }
+}
+
+impl Calibration for Trocar {
+    type Found = TrocarFound;
+
+    fn needs(&self) -> Vec<Source> {
+        vec![self.carrier.source()]
+    }
+
+    fn carrier(&self) -> Carrier {
+        self.carrier
+    }
+
+    /// Lines are taken in motion: all joints are read at one moment, and so is a marker.
+    fn hold_s(&self) -> f64 {
+        0.0
+    }
+
+    fn differs(&self, sample: &FrameSample, taken: &[FrameSample]) -> bool {
+        self.line(sample)
+            .is_some_and(|line| self.lines(taken).all(|other| other.direction.angle(&line.direction) >= APART_RAD))
+    }
+
+    fn coverage(&self, taken: &[FrameSample]) -> Coverage {
+        Coverage::least([
+            (taken.len() as f64 / PLENTY as f64, Missing::Poses),
+            (tilt_deg(self.lines(taken)) / PLENTY_TILT_DEG, Missing::Tilt),
+        ])
+    }
+
+    fn fault(&self) -> Option<&'static str> {
+        let unit = (self.shaft.direction.norm() - 1.0).abs() < 1e-6;
+        (!(unit && finite(&self.shaft.point_m)))
+            .then_some("the shaft's line is not finite or its direction has no length one")
+    }
+
+    fn attempt(&self, samples: &[FrameSample]) -> FrameReport<TrocarFound> {
+        let rows: Vec<ShaftLine> = self.lines(samples).collect();
+        let (have, least) = (rows.len(), self.limits.least);
+        if have < least {
+            return FrameReport::nothing(have, Cause::TooFew { have, least });
+        }
+        let parallel = |rows: &mut dyn Iterator<Item = ShaftLine>| {
+            let tilt_deg = tilt_deg(rows);
+            below(tilt_deg, LEAST_TILT_DEG).then_some(Cause::NearlyParallel { tilt_deg, least_deg: LEAST_TILT_DEG })
+        };
+        if let Some(cause) = parallel(&mut rows.iter().copied()) {
+            return FrameReport::nothing(have, cause);
+        }
+        let Some(found) = examined(&Lines, &rows) else {
+            return FrameReport::nothing(have, Cause::NearlyParallel { tilt_deg: 0.0, least_deg: LEAST_TILT_DEG });
+        };
+        if let Some(cause) = parallel(&mut found.kept.iter().map(|&i| rows[i])) {
+            return FrameReport::nothing(have, cause);
+        }
+        let freedom = (2 * found.kept.len()).saturating_sub(3).max(1);
+        let axes = ellipsoid_95(&(found.model.covariance * (found.squares_m2() / freedom as f64)), freedom);
+        let inward: Vector3<f64> = found.kept.iter().map(|&i| rows[i].direction).sum();
+        let value = TrocarFound {
+            carrier: self.carrier,
+            trocar_m: found.model.point_m.into(),
+            inward: inward.normalize().into(),
+            ellipsoid_m: axes.map(Into::into),
+        };
+        let uncertainty = Sizes::place(axes[0].norm());
+        FrameReport::of(have, found, uncertainty, value).judged(&self.limits)
+    }
+
+    fn mistakes(&self) -> Vec<(Mistake, Carrier)> {
+        Mistake::of_pivoting(self.carrier).map(|mistake| (mistake, self.carrier)).to_vec()
+    }
+}

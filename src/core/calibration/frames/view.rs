@@ -1,0 +1,253 @@
+//! The endoscope's view: how the picture is turned against the arm, the camera or the handle, from moves seen in the picture.
+//!
+//! The person moves the tip (or the handle) to the right in the picture, up, into it, and back the same way. Each way in the frame of
+//! base, camera or leader belongs to a known direction in the frame `view` (x right, y down, z into the picture); the rotation
+//! between the two sets is Wahba's problem (Markley 1988). The product of both rotations is what
+//! [`crate::kinematics::Mapping::new`] takes: then "right" on the handle is right in the picture.
+
+use nalgebra::{Isometry3, Matrix3, Point3, Rotation3, UnitQuaternion, Vector3};
+use serde::{Deserialize, Serialize};
+
+use super::{
+    Calibration, Carrier, Cause, Coverage, FrameReport, FrameSample, Limits, Missing, Mistake, Sizes, Source,
+    examine::{Miss, Problem, examined},
+    record::{Found, rotation, rotation_fault, wxyz},
+    report::finite,
+    spread::{below, nearest_orthogonal, principal, radius_95},
+};
+
+/// Shortest move, m.
+const LEAST_M: f64 = 0.015;
+/// Smallest root mean square of the moves' directions along the second and third axis of all; 0.58 for square ones.
+const LEAST_SECOND: f64 = 0.3;
+const LEAST_THIRD: f64 = 0.2;
+/// A mirror explains the moves if its error is below this share of the rotation's.
+const MIRROR_SHARE: f64 = 0.5;
+
+/// A move in the picture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+#[expect(missing_docs, reason = "the names say it")]
+pub enum Move {
+    Right,
+    Up,
+    /// Away from the endoscope, into the picture.
+    Deeper,
+    Left,
+    Down,
+    /// Towards the endoscope.
+    Back,
+}
+
+impl Move {
+    /// The moves in the order in which they are asked for. They end where they began.
+    pub const ALL: [Self; 6] = [Self::Right, Self::Up, Self::Deeper, Self::Left, Self::Down, Self::Back];
+
+    /// Its direction in the frame `view`, unit length.
+    pub fn in_view(self) -> Vector3<f64> {
+        match self {
+            Self::Right => Vector3::x(),
+            Self::Up => -Vector3::y(),
+            Self::Deeper => Vector3::z(),
+            Self::Left => -Vector3::x(),
+            Self::Down => Vector3::y(),
+            Self::Back => -Vector3::z(),
+        }
+    }
+}
+
+/// Settings of the view's calibration. The samples are the ends of the moves of [`Move::ALL`], again and again, from a first place on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct View {
+    /// What moves: the tip (by flange or marker) or the handle.
+    pub carrier: Carrier,
+    /// The point that moves, in the carrier's frame, m: the tip, or zero for the handle.
+    pub point_in_carrier_m: Vector3<f64>,
+    /// Limits for the verdict: those of a person's hand.
+    pub limits: Limits,
+}
+
+impl View {
+    /// With the tip, by the arm: finds `base_from_view`.
+    pub const fn by_arm(tip_in_flange_m: Vector3<f64>) -> Self {
+        Self::of(Carrier::Flange, tip_in_flange_m)
+    }
+
+    /// With the tip, by the tracker: finds `c_from_view`.
+    pub const fn by_tracker(tip_in_m_m: Vector3<f64>) -> Self {
+        Self::of(Carrier::Marker, tip_in_m_m)
+    }
+
+    /// With the handle: finds `leader_from_view`.
+    pub fn by_handle() -> Self {
+        Self::of(Carrier::Handle, Vector3::zeros())
+    }
+
+    const fn of(carrier: Carrier, point_in_carrier_m: Vector3<f64>) -> Self {
+        let limits = Limits { least: 6, held_out: Sizes::angle(15.0), uncertainty: Sizes::angle(15.0), outliers: 0.25 };
+        Self { carrier, point_in_carrier_m, limits }
+    }
+
+    fn points(&self, samples: &[FrameSample]) -> Vec<Vector3<f64>> {
+        let point = Point3::from(self.point_in_carrier_m);
+        samples.iter().filter_map(|sample| Some((sample.pose(self.carrier)? * point).coords)).collect()
+    }
+
+    /// The move that is asked for after these samples; `None` before the first place.
+    pub fn asked(&self, taken: usize) -> Option<Move> {
+        Some(Move::ALL[taken.checked_sub(1)? % Move::ALL.len()])
+    }
+}
+
+/// How the picture is turned.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ViewFound {
+    /// What moved: flange (`base_from_view`), marker (`c_from_view`) or handle (`leader_from_view`).
+    pub carrier: Carrier,
+    /// Rotation from `view` to that frame.
+    pub from_view_wxyz: [f64; 4],
+}
+
+impl ViewFound {
+    /// Rotation from `view` to the frame of base, camera or leader.
+    pub fn from_view(&self) -> UnitQuaternion<f64> {
+        rotation(&self.from_view_wxyz)
+    }
+
+    /// How the picture is turned against a marker `n` on the endoscope, `n_from_view`, from the marker's orientation while the moves
+    /// were recorded with the arm, and the hand-eye calibration. With it the view follows the endoscope.
+    pub fn n_from_view(
+        &self,
+        base_from_c: &UnitQuaternion<f64>,
+        c_from_n: &UnitQuaternion<f64>,
+    ) -> UnitQuaternion<f64> {
+        (base_from_c * c_from_n).inverse() * self.from_view()
+    }
+}
+
+impl Found for ViewFound {
+    const KIND: &'static str = "view";
+
+    fn fault(&self) -> Option<&'static str> {
+        rotation_fault(&self.from_view_wxyz)
+    }
+}
+
+/// Directions of one move, unit length.
+#[derive(Clone, Copy, Debug)]
+struct Row {
+    in_view: Vector3<f64>,
+    measured: Vector3<f64>,
+}
+
+struct Moves;
+
+fn moment(rows: &[Row]) -> Matrix3<f64> {
+    rows.iter().map(|row| row.measured * row.in_view.transpose()).sum()
+}
+
+impl Problem for Moves {
+    type Row = Row;
+    type Model = Matrix3<f64>;
+    const HYPOTHESIS: usize = 3;
+    const FLOOR: Miss = Miss::of_angle(0.7);
+
+    fn solve(&self, rows: &[Row]) -> Option<Matrix3<f64>> {
+        nearest_orthogonal(&moment(rows), 1.0)
+    }
+
+    fn miss(&self, turn: &Matrix3<f64>, row: &Row) -> Miss {
+        Miss::of_angle((turn * row.in_view).angle(&row.measured))
+    }
+}
+
+impl Calibration for View {
+    type Found = ViewFound;
+
+    fn needs(&self) -> Vec<Source> {
+        vec![self.carrier.source()]
+    }
+
+    fn carrier(&self) -> Carrier {
+        self.carrier
+    }
+
+    /// Only the last place counts: the moves go back to the first.
+    fn differs(&self, sample: &FrameSample, taken: &[FrameSample]) -> bool {
+        let last = taken.last().map(|last| self.points(&[*last]));
+        let here = self.points(&[*sample]);
+        last.is_none_or(|last| last.iter().zip(&here).all(|(last, here)| (last - here).norm() >= LEAST_M))
+    }
+
+    fn coverage(&self, taken: &[FrameSample]) -> Coverage {
+        let next = self.asked(taken.len()).map_or(Missing::Poses, Missing::Move);
+        Coverage::least([(taken.len() as f64 / (Move::ALL.len() + 1) as f64, next)])
+    }
+
+    fn fault(&self) -> Option<&'static str> {
+        (!finite(&self.point_in_carrier_m)).then_some("the point that moves is not finite")
+    }
+
+    fn attempt(&self, samples: &[FrameSample]) -> FrameReport<ViewFound> {
+        let points = self.points(samples);
+        let ways = points.windows(2).zip(Move::ALL.iter().cycle());
+        // A way that is too short has no direction; the others keep their names.
+        let row = |(ends, asked): (&[Vector3<f64>], &Move)| {
+            let measured = (ends[1] - ends[0]).try_normalize(LEAST_M)?;
+            Some(Row { in_view: asked.in_view(), measured })
+        };
+        let rows: Vec<Row> = ways.filter_map(row).collect();
+        let (have, least) = (rows.len(), self.limits.least);
+        if have < least {
+            return FrameReport::nothing(have, Cause::TooFew { have, least });
+        }
+        let directions: Vec<Vector3<f64>> = rows.iter().map(|row| row.measured).collect();
+        let [_, second, third] = principal(&directions);
+        if below(second, LEAST_SECOND) {
+            return FrameReport::nothing(have, Cause::Collinear { spread: second, least: LEAST_SECOND });
+        }
+        if below(third, LEAST_THIRD) {
+            return FrameReport::nothing(have, Cause::OnePlane { spread: third, least: LEAST_THIRD });
+        }
+        if is_mirrored(&rows) {
+            return FrameReport::nothing(have, Cause::Mistake { mistake: Mistake::Mirrored });
+        }
+        let Some(found) = examined(&Moves, &rows) else {
+            return FrameReport::nothing(have, Cause::Collinear { spread: 0.0, least: LEAST_SECOND });
+        };
+        let turn = Rotation3::from_matrix_unchecked(found.model);
+        let from_view_wxyz = wxyz(&UnitQuaternion::from_rotation_matrix(&turn));
+        let value = ViewFound { carrier: self.carrier, from_view_wxyz };
+        // Each direction tells two turns; n directions spread over all axes have 2 n / 3 of each.
+        let kept = found.kept.len();
+        let freedom = (2 * kept).saturating_sub(3).max(1);
+        let variance = found.squares_rad2() / freedom as f64 * 1.5 / kept as f64;
+        let angle_deg = radius_95(&Matrix3::from_diagonal_element(variance), freedom).to_degrees();
+        FrameReport::of(have, found, Sizes::angle(angle_deg), value).judged(&self.limits)
+    }
+
+    fn mistakes(&self) -> Vec<(Mistake, Carrier)> {
+        match self.carrier {
+            Carrier::Handle => Vec::new(),
+            carrier => vec![(Mistake::swapped(carrier), carrier)],
+        }
+    }
+}
+
+/// Whether a reflection explains the moves far better than any rotation.
+fn is_mirrored(rows: &[Row]) -> bool {
+    let squares = |sign| {
+        let best = nearest_orthogonal(&moment(rows), sign)?;
+        Some(rows.iter().map(|row| (row.measured - best * row.in_view).norm_squared()).sum::<f64>())
+    };
+    squares(-1.0).zip(squares(1.0)).is_some_and(|(mirror, turn)| mirror < MIRROR_SHARE * turn)
+}
+
+/// Pose with only a place, for a device without a wrist.
+impl From<Vector3<f64>> for FrameSample {
+    fn from(handle_m: Vector3<f64>) -> Self {
+        let pose = Isometry3::from_parts(handle_m.into(), UnitQuaternion::identity());
+        Self { leader_from_handle: Some(pose), ..Self::default() }
+    }
+}

@@ -78,7 +78,13 @@ impl RigFile {
         if let Some(before) = table.get(last).and_then(Item::as_value) {
             *value.decor_mut() = before.decor().clone();
         }
-        table.insert(last, Item::Value(value));
+        // A key that stands there stays as it is: the lines above it, the head of the file among them, are its own.
+        match table.get_mut(last) {
+            Some(item) => *item = Item::Value(value),
+            None => {
+                table.insert(last, Item::Value(value));
+            }
+        }
     }
 
     /// Takes a key with dots away, with everything below it.

@@ -27,7 +27,7 @@ impl Reader {
 
 impl std::fmt::Debug for Reader {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_tuple("Reader").finish()
+        f.write_str(std::any::type_name::<Self>())
     }
 }
 

@@ -91,6 +91,11 @@ impl RigFile {
         table.insert(last, Item::Value(value));
     }
 
+    /// The same for a list of texts.
+    pub fn set_all(&mut self, key: &str, values: impl IntoIterator<Item = String>) {
+        self.set(key, values.into_iter().collect::<Value>());
+    }
+
     /// Takes a key with dots away, with everything below it.
     pub fn remove(&mut self, key: &str) {
         let (tables, last) = key.rsplit_once('.').map_or(("", key), |(tables, last)| (tables, last));
@@ -305,11 +310,8 @@ mod tests {
         let mut file = RigFile::of("paper").unwrap();
         let right = file.rig().unwrap().devices.unwrap().right.unwrap().handle;
         let taken = i64::from(right.force_dimension().unwrap().serial.unwrap());
-        let offer = Offer {
-            place: String::new(),
-            identity: Identity::default(),
-            changes: vec![("serial", taken.into())],
-        };
+        let offer =
+            Offer { place: String::new(), identity: Identity::default(), changes: vec![("serial", taken.into())] };
         file.choose(Part::Handle(Side::Left), &Chosen::Found(offer));
         assert!(file.rig().is_err());
     }

@@ -107,8 +107,7 @@ impl ArmPair {
         let rcm = Rcm::new(&set.rcm).map_err(|source| RigError::Rcm { side: word, source })?;
         let levers = [Lever::default(), Lever::default()];
         let [of_handle, of_arm] = levers.clone();
-        let handle =
-            start(Part::Handle(side), set.handle.opener(), roster, move |handle| handle.attach(&of_handle))?;
+        let handle = start(Part::Handle(side), set.handle.opener(), roster, move |handle| handle.attach(&of_handle))?;
         let arm = start(Part::Arm(side), set.arm.opener(), roster, move |arm| arm.attach(&of_arm))?;
         let sensor = start(Part::Sensor(side), set.sensor.opener(), roster, |_| ())?;
         let servos = set.servos.clone().map(|settings| {

@@ -155,7 +155,9 @@ impl DeviceRig {
         }
         let ticked = [self.tissue.as_ref().map(Slot::health), self.tracker.as_ref().map(Slot::health)];
         for (gauge, health) in [of_tissue, of_tracker].into_iter().zip(ticked) {
-            health.into_iter().for_each(|health| gauge.tick(health, now_s, self.period_s));
+            if let Some(health) = health {
+                gauge.tick(health, now_s, self.period_s);
+            }
         }
         let Some(pedal) = &mut self.pedal else { return Switches::default() };
         let reading = pedal.slot.poll(now_s);
@@ -257,7 +259,11 @@ impl Rig for DeviceRig {
         let from_s = std::mem::replace(&mut self.gauged_s, now_s);
         let mut gauges = Gauges { from_s, to_s: now_s, devices: [Gauge::NONE; DEVICES_MAX] };
         let mut places = gauges.devices.iter_mut();
-        let mut put = |gauge: Gauge| places.next().into_iter().for_each(|place| *place = gauge);
+        let mut put = |gauge: Gauge| {
+            if let Some(place) = places.next() {
+                *place = gauge;
+            }
+        };
         for pair in self.pairs.iter_mut().flatten() {
             pair.take_gauges().into_iter().flatten().for_each(&mut put);
         }

@@ -89,14 +89,8 @@ pub struct Gauge {
 
 impl Gauge {
     /// Of a device that has delivered nothing.
-    pub const NONE: Self = Self {
-        channels: [Spread::NONE; CHANNELS],
-        ages: [0; AGES],
-        readings: 0,
-        lost: 0,
-        damaged: 0,
-        refused: 0,
-    };
+    pub const NONE: Self =
+        Self { channels: [Spread::NONE; CHANNELS], ages: [0; AGES], readings: 0, lost: 0, damaged: 0, refused: 0 };
 
     fn add(&mut self, values: impl IntoIterator<Item = f64>) {
         self.channels.iter_mut().zip(values).for_each(|(channel, value)| channel.add(value));

@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use nima_core::kinematics::LIMIT_RAD;
 use nima_devices::dynamixel;
 
-use super::{Part, PartKind, Settings, gauge::CHANNELS};
+use super::{Part, PartKind, SensorSettings, Settings, gauge::CHANNELS};
 
 /// Distance from the middle to which an omega.7 reaches at least, m (the manufacturer's figure for its workspace).
 const HANDLE_REACH_M: f64 = 0.075;
@@ -33,7 +33,7 @@ impl Nominal {
         let set = part.side().and_then(|side| devices.arm(side));
         match part {
             Part::Handle(_) => {
-                nominal.rate_hz = set.and_then(|set| set.handle.rate_hz()).map(|hz| hz.min(loop_hz));
+                nominal.rate_hz = set.map(|set| set.handle.rate_hz().min(loop_hz));
                 nominal.ranges[..3].fill(Some([-HANDLE_REACH_M, HANDLE_REACH_M]));
                 nominal.ranges[GRIPPER] = Some([0.0, GRIPPER_RAD]);
             }
@@ -44,9 +44,13 @@ impl Nominal {
                 nominal.ranges[..turning.len()].copy_from_slice(&turning);
             }
             Part::Sensor(_) | Part::TissueSensor => {
-                let sensor = if part == Part::TissueSensor { devices.tissue_sensor.as_ref() } else { set.map(|set| &set.sensor) };
-                nominal.rate_hz = sensor.and_then(|sensor| sensor.expected_hz());
-                nominal.inertial = sensor.is_some_and(|sensor| sensor.is_inertial());
+                let sensor = if part == Part::TissueSensor {
+                    devices.tissue_sensor.as_ref()
+                } else {
+                    set.map(|set| &set.sensor)
+                };
+                nominal.rate_hz = sensor.map(SensorSettings::expected_hz);
+                nominal.inertial = sensor.is_some_and(SensorSettings::is_inertial);
             }
             Part::Servos(_) => nominal.ranges = ranges_of(set.and_then(|set| set.servos.as_ref())),
             Part::Tracker => nominal.rate_hz = devices.tracker.as_ref().map(|tracker| tracker.frame_hz),
@@ -78,8 +82,7 @@ mod tests {
     fn every_part_of_the_emulated_rig_has_its_yardstick() {
         let rig = RigConfig::load("emulated").unwrap();
         let devices = rig.devices.unwrap();
-        let rates: Vec<_> =
-            Part::ALL.iter().map(|part| Nominal::of(*part, &devices, rig.rate_hz).rate_hz).collect();
+        let rates: Vec<_> = Part::ALL.iter().map(|part| Nominal::of(*part, &devices, rig.rate_hz).rate_hz).collect();
         let [thousand, none] = [Some(1000.0), None];
         let of_side = [thousand, thousand, thousand, none];
         assert_eq!(rates[..4], of_side);

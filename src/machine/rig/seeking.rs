@@ -56,10 +56,19 @@ pub fn seek(part: Part, devices: &Settings, plugged: &Plugged, place: &str) -> V
     let (probes, wanted): (Vec<_>, Vec<_>) =
         trials.into_iter().map(|Trial { place, serial, changes, probe }| (probe, (place, serial, changes))).unzip();
     let found = diagnose(probes, TIMEOUT);
-    found.into_iter().zip(wanted).map(|(diagnosis, (place, serial, changes))| told(diagnosis, place, serial, changes)).collect()
+    found
+        .into_iter()
+        .zip(wanted)
+        .map(|(diagnosis, (place, serial, changes))| told(diagnosis, place, serial, changes))
+        .collect()
 }
 
-fn told(diagnosis: Diagnosis, place: String, serial: Option<String>, mut changes: Vec<(&'static str, Value)>) -> Sought {
+fn told(
+    diagnosis: Diagnosis,
+    place: String,
+    serial: Option<String>,
+    mut changes: Vec<(&'static str, Value)>,
+) -> Sought {
     let found = match diagnosis.outcome {
         Outcome::Trouble { trouble, .. } => Err(trouble),
         Outcome::Connected(found) => {
@@ -164,11 +173,17 @@ fn pedals(devices: &Settings, plugged: &Plugged) -> Vec<Sought> {
 
 /// An arm at the address that a person named, else at the manufacturer's own.
 fn arms(part: Part, devices: &Settings, place: &str) -> Vec<Trial> {
-    let now = part.side().and_then(|side| devices.arm(side)).and_then(|set| set.arm.kinova()).cloned().unwrap_or_default();
+    let now =
+        part.side().and_then(|side| devices.arm(side)).and_then(|set| set.arm.kinova()).cloned().unwrap_or_default();
     let usual = kinova::Settings::default();
     let place = if place.is_empty() { usual.host.as_str() } else { place };
     let Some(at) = kinova::Settings::at(place) else { return Vec::new() };
-    if place == usual.host && [&devices.right, &devices.left].into_iter().flatten().any(|set| set.arm.kinova().is_some_and(|arm| arm.host == place)) {
+    if place == usual.host
+        && [&devices.right, &devices.left]
+            .into_iter()
+            .flatten()
+            .any(|set| set.arm.kinova().is_some_and(|arm| arm.host == place))
+    {
         return Vec::new();
     }
     let mut changes = vec![("host", Value::from(at.host.as_str()))];

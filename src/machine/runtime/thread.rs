@@ -101,7 +101,17 @@ pub fn start(assembly: Assembly) -> Result<Handle, StartError> {
     let supervisor = Supervisor::start(pulse, levers, scheduling != SchedulingClass::Ordinary)?;
     let thread = Builder::new().name("realtime".to_owned()).spawn(move || realtime.run())?;
     let wrists = wrist_door;
-    Ok(Handle { commands, ticks, events, healths, gauges, roster, wrists, thread: Some(thread), _supervisor: supervisor })
+    Ok(Handle {
+        commands,
+        ticks,
+        events,
+        healths,
+        gauges,
+        roster,
+        wrists,
+        thread: Some(thread),
+        _supervisor: supervisor,
+    })
 }
 
 impl Handle {

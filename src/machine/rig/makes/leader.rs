@@ -77,9 +77,9 @@ impl LeaderSettings {
     }
 
     /// Rate of its readings, Hz.
-    pub(in crate::rig) const fn rate_hz(&self) -> Option<f64> {
+    pub(in crate::rig) const fn rate_hz(&self) -> f64 {
         let Self::ForceDimension(settings) = self;
-        Some(settings.rate_hz)
+        settings.rate_hz
     }
 
     pub(in crate::rig) fn opener(&self) -> Opener<Box<dyn Leader>> {

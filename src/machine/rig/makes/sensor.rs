@@ -61,9 +61,9 @@ impl SensorSettings {
     }
 
     /// Rate of its readings, Hz.
-    pub(in crate::rig) fn expected_hz(&self) -> Option<f64> {
+    pub(in crate::rig) fn expected_hz(&self) -> f64 {
         let Self::Bota(settings) = self;
-        Some(settings.expected_hz())
+        settings.expected_hz()
     }
 
     /// Whether its readings have an acceleration.

@@ -120,11 +120,8 @@ fn what_is_wrong_with_the_readings_is_found() {
 
 #[test]
 fn ends_of_ranges_and_hidden_markers_are_found() {
-    let arm = Bench {
-        part: Part::Arm(Side::Left),
-        value: |channel, _, _| if channel == 3 { -2.5 } else { 0.1 },
-        ..IN_ORDER
-    };
+    let arm =
+        Bench { part: Part::Arm(Side::Left), value: |channel, _, _| if channel == 3 { -2.5 } else { 0.1 }, ..IN_ORDER };
     let findings = arm.tested().findings;
     assert!(matches!(findings[..], [Finding::AtTheEnd { channel: 3, value: -2.5, .. }]), "{findings:?}");
     let tracker = Bench {
@@ -135,10 +132,7 @@ fn ends_of_ranges_and_hidden_markers_are_found() {
         ..IN_ORDER
     };
     let findings = tracker.tested().findings;
-    assert!(
-        matches!(findings[..], [Finding::Hidden { tool: 1, share }] if share > 0.3 && share < 0.6),
-        "{findings:?}"
-    );
+    assert!(matches!(findings[..], [Finding::Hidden { tool: 1, share }] if share > 0.3 && share < 0.6), "{findings:?}");
 }
 
 #[test]

@@ -3,7 +3,7 @@
 //! Every number of a device's readings has its own noise, which is learnt while it rests. A device is active while one
 //! of its numbers changes by clearly more than that, and by more than what nobody does on purpose.
 
-use nima_machine::rig::{CHANNELS, DEVICES_MAX, Gauge, Gauges, PartKind, RosterEntry, Spread};
+use nima_machine::rig::{CHANNELS, DEVICES_MAX, Gauge, Gauges, Part, PartKind, RosterEntry, Spread};
 
 /// Blocks from which the noise is learnt before anything counts as a change; a block is 0.1 s.
 const LEARNING: u32 = 4;
@@ -103,7 +103,7 @@ pub(crate) struct Activity {
 impl Activity {
     /// Of these devices, none of which is known to rest or to move.
     pub(crate) fn of(roster: &[RosterEntry]) -> Self {
-        Self::of_kinds(|place| roster.get(place).and_then(|entry| entry.part).map(|part| part.kind()))
+        Self::of_kinds(|place| roster.get(place).and_then(|entry| entry.part).map(Part::kind))
     }
 
     fn of_kinds(kind: impl Fn(usize) -> Option<PartKind>) -> Self {

@@ -59,14 +59,9 @@ pub(in crate::console) fn not_to_be_engaged(side: &str, obstacle: &impl std::fmt
 
 /// Identity of a device.
 pub(in crate::console) fn identity(product: &str, serial: &str, firmware: &str) -> String {
-    let mut words = product.to_owned();
-    if !serial.is_empty() {
-        words += &format!(", serial number {serial}");
-    }
-    if !firmware.is_empty() {
-        words += &format!(", firmware {firmware}");
-    }
-    words
+    let serial = if serial.is_empty() { String::new() } else { format!(", serial number {serial}") };
+    let firmware = if firmware.is_empty() { String::new() } else { format!(", firmware {firmware}") };
+    format!("{product}{serial}{firmware}")
 }
 
 /// Accessible name of the button that clears a device's faults.
@@ -139,10 +134,9 @@ pub(in crate::console) fn motion(kind: PartKind, channel: usize) -> String {
         (PartKind::Handle, 3..=5) => "turned".to_owned(),
         (PartKind::Handle, 6) => "gripper".to_owned(),
         (PartKind::Handle, _) => "button".to_owned(),
-        (PartKind::Sensor, 0..=5) => "pressed".to_owned(),
+        (PartKind::Sensor, 0..=5) | (PartKind::Pedal, _) => "pressed".to_owned(),
         (PartKind::Sensor, _) => "moved".to_owned(),
         (PartKind::Tracker, _) => format!("{} moved", marker(channel / 3)),
-        (PartKind::Pedal, _) => "pressed".to_owned(),
         (PartKind::Arm | PartKind::Servos, _) => format!("{} moved", channel_name(kind, channel)),
     }
 }

@@ -7,7 +7,7 @@ use nima_machine::rig::{AGES, CHANNELS, Gauge, Gauges, Nominal, Part, PartKind, 
 use crate::console::activity::least;
 
 /// Blocks of 0.1 s in a test; the counters of the first one are where it begins.
-pub const BLOCKS: usize = 21;
+pub(super) const BLOCKS: usize = 21;
 /// The rate may differ from the nominal one by this share.
 const RATE_OFF: f64 = 0.05;
 /// Share of the readings that may be lost.
@@ -28,7 +28,7 @@ const ACCELERATION: std::ops::Range<usize> = 6..9;
 
 /// Something to look at, with a cause and a cure on the screen.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Finding {
+pub(super) enum Finding {
     /// No reading came.
     Silent,
     /// It was opened again during the test.
@@ -59,53 +59,53 @@ pub enum Finding {
 
 /// One number of a device's readings during the test.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Measured {
-    pub channel: usize,
+pub(super) struct Measured {
+    pub(super) channel: usize,
     /// Standard deviation within tenths of a second: the noise, without slow motion.
-    pub noise: f64,
-    pub low: f64,
-    pub high: f64,
-    pub range: Option<[f64; 2]>,
+    pub(super) noise: f64,
+    pub(super) low: f64,
+    pub(super) high: f64,
+    pub(super) range: Option<[f64; 2]>,
 }
 
 /// What a test has found.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Checkup {
-    pub part: Part,
+pub(super) struct Checkup {
+    pub(super) part: Part,
     /// Duration, s.
-    pub took_s: f64,
-    pub rate_hz: f64,
-    pub nominal_hz: Option<f64>,
+    pub(super) took_s: f64,
+    pub(super) rate_hz: f64,
+    pub(super) nominal_hz: Option<f64>,
     /// Each number that it delivered.
-    pub measured: Vec<Measured>,
+    pub(super) measured: Vec<Measured>,
     /// Age of the newest reading in a tick, s: median and 99th percentile; `None` if it was never heard.
-    pub age_s: Option<[f64; 2]>,
-    pub lost: u64,
-    pub damaged: u64,
-    pub refused: u64,
+    pub(super) age_s: Option<[f64; 2]>,
+    pub(super) lost: u64,
+    pub(super) damaged: u64,
+    pub(super) refused: u64,
     /// Mean acceleration, m/s^2; of a sensor at rest it points upwards.
-    pub up_m_s2: Option<Vector3<f64>>,
+    pub(super) up_m_s2: Option<Vector3<f64>>,
     /// What to look at; empty if all is fine.
-    pub findings: Vec<Finding>,
+    pub(super) findings: Vec<Finding>,
 }
 
 /// What a test needs to know of a device.
 #[derive(Clone, Copy, Debug)]
-pub struct Subject<'a> {
-    pub part: Part,
+pub(super) struct Subject<'a> {
+    pub(super) part: Part,
     /// Place in the roster.
-    pub place: usize,
-    pub nominal: Nominal,
+    pub(super) place: usize,
+    pub(super) nominal: Nominal,
     /// Period of the loop, s.
-    pub period_s: f64,
+    pub(super) period_s: f64,
     /// Number of tools that a tracker follows.
-    pub tools: usize,
-    pub blocks: &'a [&'a Gauges],
+    pub(super) tools: usize,
+    pub(super) blocks: &'a [&'a Gauges],
 }
 
 impl Checkup {
     /// The test of a device from these blocks, oldest first; `None` with fewer than two.
-    pub fn of(subject: &Subject<'_>) -> Option<Self> {
+    pub(super) fn of(subject: &Subject<'_>) -> Option<Self> {
         let (first, rest) = subject.blocks.split_first()?;
         let last = rest.last()?;
         let [before, after] = [first, last].map(|block| &block.devices[subject.place]);
@@ -182,7 +182,7 @@ impl Checkup {
         let at_the_end = self.measured.iter().filter_map(|&Measured { channel, low, high, range, .. }| {
             let range = range?;
             let reach = NEAR_END * (range[1] - range[0]) / 2.0;
-            let middle = (range[0] + range[1]) / 2.0;
+            let middle = f64::midpoint(range[0], range[1]);
             let value = if high - middle > middle - low { high } else { low };
             // A closed gripper is at the end of its range on purpose.
             let on_purpose = kind == PartKind::Handle && channel == 6;
@@ -211,7 +211,9 @@ fn moved(kind: PartKind, gauges: &[&Gauge]) -> Option<usize> {
     let change = |channel: usize| {
         let mut means = Spread::NONE;
         let blocks = gauges.iter().map(|gauge| &gauge.channels[channel]).filter(|block| block.count > 0);
-        blocks.for_each(|block| means.add(block.mean));
+        for block in blocks {
+            means.add(block.mean);
+        }
         means.extent() / (2.0 * least(kind, channel))
     };
     let most = (0..CHANNELS).map(|channel| (channel, change(channel))).max_by(|a, b| a.1.total_cmp(&b.1))?;
@@ -220,7 +222,9 @@ fn moved(kind: PartKind, gauges: &[&Gauge]) -> Option<usize> {
 
 fn whole(channel: usize, gauges: &[&Gauge]) -> Spread {
     let mut whole = Spread::NONE;
-    gauges.iter().for_each(|gauge| whole.join(&gauge.channels[channel]));
+    for gauge in gauges {
+        whole.join(&gauge.channels[channel]);
+    }
     whole
 }
 
@@ -257,10 +261,9 @@ fn ages(gauges: &[&Gauge], period_s: f64) -> Option<[f64; 2]> {
 const fn noise_max(kind: PartKind, channel: usize) -> Option<f64> {
     match (kind, channel) {
         (PartKind::Handle, 0..=2) => Some(1e-4),
-        (PartKind::Handle, 3..=6) | (PartKind::Servos, _) => Some(5e-3),
+        (PartKind::Handle, 3..=6) | (PartKind::Servos, _) | (PartKind::Sensor, 3..=5) => Some(5e-3),
         (PartKind::Arm, _) => Some(5e-4),
         (PartKind::Sensor, 0..=2) => Some(0.1),
-        (PartKind::Sensor, 3..=5) => Some(5e-3),
         (PartKind::Sensor, _) => Some(0.2),
         (PartKind::Tracker, _) => Some(3e-4),
         (PartKind::Handle | PartKind::Pedal, _) => None,

@@ -98,7 +98,7 @@ fn short(value: f64) -> String {
 /// Greatest distance from the middle of the range as a share of what is possible, percent.
 fn reached_percent(one: &Measured) -> Option<f64> {
     let [low, high] = one.range?;
-    let (middle, half) = ((low + high) / 2.0, (high - low) / 2.0);
+    let (middle, half) = (f64::midpoint(low, high), (high - low) / 2.0);
     Some(100.0 * (one.high - middle).max(middle - one.low) / half)
 }
 

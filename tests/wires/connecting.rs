@@ -127,7 +127,7 @@ fn what_every_device_delivers_reaches_the_screen() {
             assert!((gravity(&machine, side) - 9.81).abs() < 0.3, "{side:?}: {}", gravity(&machine, side));
         }
         emulated.press(1);
-        machine.until("the pedal", |machine| machine.gauge(Part::Pedal).is_some_and(|one| one.channels[0].high == 1.0));
+        machine.until("the pedal", |machine| machine.gauge(Part::Pedal).is_some_and(|one| one.channels[0].high > 0.5));
     });
 }
 

@@ -1,7 +1,10 @@
 //! The devices panel on an emulated rig: which device is which, their test, and other devices for a part.
 #![cfg(target_os = "linux")]
 
-use std::{path::Path, time::Instant};
+use std::{
+    path::Path,
+    time::{Duration, Instant},
+};
 
 use egui::accesskit::Role;
 use egui_kittest::{
@@ -20,20 +23,27 @@ use nima_machine::{
 };
 use nima_testing::real_time::{alone, judged, too_busy};
 use nima_tests::emulated::{elsewhere, rig_file};
+use nima_world::{Plan, scene::Scene, start_simulated};
 
-use crate::bench::{TIMEOUT, console_of, press, until};
+use crate::bench::{press, until};
 
 const SIZE: [f32; 2] = [1600.0, 1000.0];
+/// Far longer than emulators and devices need to start; a machine on which they do not is too busy.
+const WITHIN: Duration = Duration::from_secs(40);
 const NIMA: &str = env!("CARGO_BIN_EXE_nima");
 
 /// A console with the devices panel in front, on the simulated rig; its data folder is `folder`.
 fn console(folder: &Path) -> Harness<'static, ConsoleApp> {
     let folder = folder.to_path_buf();
+    let (rig, scene) = (RigConfig::load("simulated").unwrap(), Scene::load("peg_transfer").unwrap());
+    let plan = Plan { rig, scene, calibrations: Default::default(), engage: true };
+    let handle = start_simulated(&plan, 1.0).unwrap();
     // The loop of an emulated rig runs in real time, as its devices do.
-    let mut harness = console_of("peg_transfer", SIZE, move |app| {
+    let mut harness = Harness::builder().with_size(SIZE).with_step_dt(1.0 / 30.0).build_eframe(move |cc| {
         let mut kept = Kept::open(&folder);
         kept.now.toured = true;
         kept.now.layout = Layout { front: vec![Panel::Devices], ..Layout::default() };
+        let app = ConsoleApp::new(cc, handle, plan.rig, plan.scene);
         app.with_settings(kept).with_store(&folder).with_program(Path::new(NIMA))
     });
     until(&mut harness, "any tick", |_| true);
@@ -56,14 +66,20 @@ fn on_emulated_rig(folder: &Path) -> (Harness<'static, ConsoleApp>, RigFile) {
     (harness, file)
 }
 
+/// What the rows say of their devices.
+fn told(harness: &Harness<'_, ConsoleApp>) -> Vec<String> {
+    let rows = harness.query_all_by_label_contains("per second").chain(harness.query_all_by_label_contains("connect"));
+    rows.filter_map(|row| row.accesskit_node().value()).collect()
+}
+
 fn wait(harness: &mut Harness<'_, ConsoleApp>, what: &str, good: impl Fn(&Harness<'_, ConsoleApp>) -> bool) {
     let began = Instant::now();
     while !good(harness) {
-        if began.elapsed() > TIMEOUT {
-            eprintln!("never: {what}");
+        if began.elapsed() > WITHIN {
+            eprintln!("never: {what}; {:?}", told(harness));
             too_busy();
         }
-        std::thread::sleep(std::time::Duration::from_millis(5));
+        std::thread::sleep(Duration::from_millis(5));
         harness.step();
     }
 }
@@ -122,22 +138,19 @@ fn every_device_is_tested_and_its_figures_are_told() {
         let folder = tempfile::tempdir().unwrap();
         let (mut harness, _) = on_emulated_rig(folder.path());
         press(&mut harness, "Test all");
-        assert!(
-            harness.query_by_label("testing: let it rest").is_some()
-                || harness.query_all_by_label("testing: let it rest").count() > 1
-        );
+        assert!(harness.query_all_by_label("testing: let it rest").next().is_some());
         wait(&mut harness, "results", |harness| harness.query_all_by_label_contains("Tested: ").count() == 11);
         // Two sensors with an accelerometer, three with forces.
         assert_eq!(harness.query_all_by_label("Up").count(), 2);
         assert_eq!(harness.query_all_by_label("Noise of force").count(), 3);
         assert_eq!(harness.query_all_by_label("Noise of third marker").count(), 1);
         assert_eq!(harness.query_all_by_label_contains(" of 1000 Hz").count(), 6);
-        assert_eq!(harness.query_all_by_label_contains(" m/s\u{b2}").count() >= 2, true);
+        assert!(harness.query_all_by_label_contains(" m/s\u{b2}").count() >= 2);
         press(&mut harness, "Disconnect pedal");
         press(&mut harness, "Test right arm");
         wait(&mut harness, "the result of one", |harness| {
             harness.query_all_by_label_contains("Tested: ").count() == 11
-                && harness.query_by_label("testing: let it rest").is_none()
+                && harness.query_all_by_label("testing: let it rest").next().is_none()
         });
     });
 }
@@ -145,7 +158,7 @@ fn every_device_is_tested_and_its_figures_are_told() {
 #[test]
 fn nothing_is_changed_while_the_drives_are_on_and_a_rig_without_devices_says_so() {
     let folder = tempfile::tempdir().unwrap();
-    let mut harness = console(folder.path());
+    let harness = console(folder.path());
     harness.get_by_label("This rig is simulated: it has no devices");
     assert!(harness.query_by_label_contains("Exchange").is_none());
     drop(harness);

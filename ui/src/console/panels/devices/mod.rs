@@ -11,7 +11,7 @@ mod choosing;
 mod report;
 mod row;
 
-use egui::{Button, Label, RichText, Ui, vec2};
+use egui::{Align, Button, Label, Layout, RichText, Ui, vec2};
 use nima_machine::{
     config::Chosen,
     messages::LoopState,
@@ -156,10 +156,13 @@ pub fn devices_ui(ui: &mut Ui, live: &Live, state: &mut DevicesState) -> Option<
     ui.columns(columns[0].len(), |columns_ui| {
         for row in &columns {
             for (ui, (side, places)) in columns_ui.iter_mut().zip(row) {
-                ui.label(small(text::devices::column(*side)));
-                for place in places {
-                    change = row_ui(ui, live, state, *place, refused).or(change.take());
-                }
+                // Columns justify their texts; ragged lines are easier to read in a narrow one.
+                ui.with_layout(Layout::top_down(Align::Min), |ui| {
+                    ui.label(small(text::devices::column(*side)));
+                    for place in places {
+                        change = row_ui(ui, live, state, *place, refused).or(change.take());
+                    }
+                });
             }
         }
     });

@@ -1,6 +1,6 @@
 //! One device: its light, its state, its buttons, and what is opened below it.
 
-use egui::{Align, Button, Color32, Label, Layout, RichText, Sense, Ui, Vec2, vec2};
+use egui::{Button, Color32, Label, RichText, Sense, Ui, Vec2, vec2};
 use nima_devices::{Health, Identity, Standing, Trouble};
 use nima_machine::rig::RosterEntry;
 
@@ -97,7 +97,7 @@ fn button_ui(ui: &mut Ui, entry: &RosterEntry, words: &str, hover: &str, enabled
 fn buttons_ui(ui: &mut Ui, live: &Live, state: &mut DevicesState, place: usize) {
     let entry = &live.roster[place];
     let wanted = live.healths.devices.get(place).is_some_and(|health| health.standing != Standing::Closed);
-    ui.with_layout(Layout::left_to_right(Align::Center).with_main_wrap(true), |ui| {
+    ui.horizontal_wrapped(|ui| {
         if let Some(part) = entry.part {
             if button_ui(ui, entry, text::devices::TEST, text::devices::TEST_HOVER, !state.is_testing()) {
                 state.begin_test(vec![place], live);

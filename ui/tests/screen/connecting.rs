@@ -84,6 +84,10 @@ fn wait(harness: &mut Harness<'_, ConsoleApp>, what: &str, good: impl Fn(&Harnes
     }
 }
 
+fn state(harness: &Harness<'_, ConsoleApp>) -> Option<LoopState> {
+    harness.state().tick().map(|tick| tick.state)
+}
+
 fn serials(rig: &RigConfig) -> [Option<u16>; 2] {
     let devices = rig.devices.as_ref().unwrap();
     Side::ALL.map(|side| devices.arm(side).unwrap().handle.force_dimension().unwrap().serial)
@@ -102,13 +106,12 @@ fn another_handle_is_chosen_by_its_serial_number_and_sensors_are_exchanged_by_on
         let was = file.rig().unwrap().devices.unwrap();
         assert_eq!(serials(harness.state().rig()), [Some(4711), Some(4712)]);
         press(&mut harness, "Choose right handle");
-        harness.get_by_label_contains("serial number 4712, firmware");
-        let other = harness.get_by_label_contains("now the left handle; the two are exchanged");
+        let other = harness.get_by_label_contains("serial number 4712, firmware 3.2: now the left handle");
         other.click();
         harness.step();
         wait(&mut harness, "exchanged handles", |harness| serials(harness.state().rig()) == [Some(4712), Some(4711)]);
-        until(&mut harness, "idle or waiting for its devices", |tick| {
-            matches!(tick.state, LoopState::Idle | LoopState::Disconnected)
+        wait(&mut harness, "idle or waiting for its devices", |harness| {
+            matches!(state(harness), Some(LoopState::Idle | LoopState::Disconnected))
         });
         harness.run_steps(2);
         harness.get_by_label_contains("Saved in the rig file");
@@ -177,7 +180,7 @@ fn nothing_is_changed_while_the_drives_are_on_and_a_rig_without_devices_says_so(
         press(&mut harness, "Start");
         wait(&mut harness, "the rig runs", |harness| harness.state().rig().name == "Bench rig");
         press(&mut harness, "Engage");
-        until(&mut harness, "engaged", |tick| tick.state == LoopState::Engaged);
+        wait(&mut harness, "engaged", |harness| state(harness) == Some(LoopState::Engaged));
         harness.run_steps(2);
         harness.get_by_label_contains("Rest or stop first: the drives are on");
         let button = harness.get_by_role_and_label(Role::Button, "Exchange handles");
@@ -186,7 +189,7 @@ fn nothing_is_changed_while_the_drives_are_on_and_a_rig_without_devices_says_so(
         let other = harness.get_by_label_contains("now the right arm; the two are exchanged");
         assert!(other.accesskit_node().is_disabled());
         press(&mut harness, "Stop");
-        until(&mut harness, "stopped", |tick| tick.state == LoopState::Stopped);
+        wait(&mut harness, "stopped", |harness| state(harness) == Some(LoopState::Stopped));
         harness.run_steps(2);
         harness.get_by_label_contains("Release the stop first");
     });

@@ -12,9 +12,8 @@ pub(in crate::console) const AGE_HOVER: &str =
 pub(in crate::console) const LOSSES: &str = "Lost, damaged, refused";
 pub(in crate::console) const LOSSES_HOVER: &str =
     "Lost: missing by the device's own count. Damaged: checksum or structure. Refused: status or impossible numbers.";
-pub(in crate::console) const NOISE_HOVER: &str =
-    "Standard deviation of each axis within tenths of a second, so that slow motion does not count";
-pub(in crate::console) const SPAN_HOVER: &str = "Lowest and highest reading of the test, and of the device's range the share from its middle that was reached, where the range is known";
+pub(in crate::console) const NOISE_HOVER: &str = "Standard deviation of each number (x, y, z or joint by joint) within tenths of a second, so that slow motion does not count";
+pub(in crate::console) const SPAN_HOVER: &str = "Lowest and highest reading of each number (x, y, z or joint by joint), and of the device's range the share from its middle that was reached, where the range is known";
 pub(in crate::console) const UP: &str = "Up";
 pub(in crate::console) const UP_HOVER: &str =
     "Where the accelerometer sees up, in the sensor's own axes, and the size of gravity; 9.81 m/s\u{b2} at rest";
@@ -100,10 +99,22 @@ pub(in crate::console) fn refused(count: u64) -> [String; 2] {
 }
 
 /// Late readings.
-pub(in crate::console) fn late(p99_s: f64, most_s: f64) -> [String; 2] {
+pub(in crate::console) fn late(kind: PartKind, p99_s: f64, most_s: f64) -> [String; 2] {
+    let cure = match kind {
+        PartKind::Sensor | PartKind::Servos | PartKind::Tracker => {
+            "A serial adapter must hand on its bytes after 1 ms (latency_timer: nima devices --udev); else look at the load of this computer (panel Timing)"
+        }
+        PartKind::Handle | PartKind::Arm | PartKind::Pedal => {
+            "Look at the load of this computer (panel Timing), and connect the device without a hub or switch"
+        }
+    };
     [
-        format!("One reading in a hundred was {:.0} ms old or older; {:.0} ms would be in order", p99_s * 1e3, most_s * 1e3),
-        "A serial adapter must hand on its bytes after 1 ms (latency_timer: nima devices --udev); else look at the load of this computer".to_owned(),
+        format!(
+            "One reading in a hundred was {:.0} ms old or older; {:.0} ms would be in order",
+            p99_s * 1e3,
+            most_s * 1e3
+        ),
+        cure.to_owned(),
     ]
 }
 

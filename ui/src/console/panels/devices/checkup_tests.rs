@@ -92,6 +92,11 @@ fn a_sensor_in_order_is_fine_and_its_figures_are_right() {
 fn what_is_wrong_with_the_delivery_is_found() {
     let slow = Bench { rate_hz: 500, ..IN_ORDER }.tested();
     assert!(matches!(slow.findings[..], [Finding::Rate { nominal_hz: 1000.0, .. }]), "{:?}", slow.findings);
+    let arm = Bench { part: Part::Arm(Side::Right), value: |_, _, _| 0.1, ..IN_ORDER };
+    assert_eq!(Bench { rate_hz: 960, ..arm }.tested().findings, [], "the loop missed some periods");
+    let missed = Bench { change: |gauge| gauge.ages[0] = 78, rate_hz: 800, value: |_, _, _| 0.1, ..IN_ORDER };
+    let missed = Bench { part: Part::Arm(Side::Right), ..missed };
+    assert_eq!(missed.tested().findings, [], "a loop that makes 800 ticks asks 800 times");
     let counted = |change| Bench { change, ..IN_ORDER }.tested().findings;
     assert_eq!(counted(|gauge| gauge.damaged = 3), [Finding::Damaged { count: 3 }]);
     assert_eq!(counted(|gauge| gauge.refused = 1), [Finding::Refused { count: 1 }]);

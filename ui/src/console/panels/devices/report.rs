@@ -13,6 +13,10 @@ use crate::console::{
 
 /// Draws the result of a test.
 pub(super) fn report_ui(ui: &mut Ui, checkup: &Checkup) {
+    ui.scope(|ui| result_ui(ui, checkup));
+}
+
+fn result_ui(ui: &mut Ui, checkup: &Checkup) {
     let fine = checkup.findings.is_empty();
     let (what, colour, verdict) = if fine {
         (Sign::Disc, theme::now().engaged, text::devices::FINE)
@@ -28,6 +32,8 @@ pub(super) fn report_ui(ui: &mut Ui, checkup: &Checkup) {
         ui.add(Label::new(cause).wrap());
         ui.add(Label::new(small(cure)).wrap());
     }
+    // The rows are text only: they need not be as high as buttons.
+    ui.spacing_mut().interact_size.y = 0.0;
     Grid::new(("checkup", checkup.part)).num_columns(2).spacing([10.0, 2.0]).show(ui, |ui| {
         for (name, value, meaning) in figures(checkup) {
             ui.label(small(name)).on_hover_text(meaning);
@@ -51,9 +57,9 @@ fn figures(checkup: &Checkup) -> Vec<Figure> {
     figures.push(named(words::LOSSES, words::losses(lost, damaged, refused), words::LOSSES_HOVER));
     for (name, unit, scale, members) in groups(checkup) {
         let noise: Vec<_> = members.iter().map(|one| three_digits(one.noise * scale)).collect();
-        figures.push((words::noise_of(name), format!("{} {unit}", noise.join(" ")), words::NOISE_HOVER));
+        figures.push((words::noise_of(name), format!("{} {unit}", noise.join(", ")), words::NOISE_HOVER));
         let spans: Vec<_> = members.iter().map(|one| span(one, scale)).collect();
-        let mut value = format!("{} {unit}", spans.join(" "));
+        let mut value = format!("{} {unit}", spans.join(", "));
         let shares: Vec<f64> = members.iter().filter_map(|one| reached_percent(one)).collect();
         if let Some(most) = shares.into_iter().reduce(f64::max) {
             value = format!("{value}; {}", words::share(most));
@@ -134,7 +140,7 @@ fn sentences(kind: PartKind, finding: &Finding) -> [String; 2] {
         Finding::Lost { count } => words::lost(count),
         Finding::Damaged { count } => words::damaged(count),
         Finding::Refused { count } => words::refused(count),
-        Finding::Late { p99_s, most_s } => words::late(p99_s, most_s),
+        Finding::Late { p99_s, most_s } => words::late(kind, p99_s, most_s),
         Finding::Moved { channel } => words::moved(kind, channel),
         Finding::Noisy { channel, deviation, most } => {
             words::noisy(kind, channel, &with_unit(channel, deviation), &with_unit(channel, most))

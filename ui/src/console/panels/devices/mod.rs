@@ -5,11 +5,11 @@
 //! out: it writes the rig file and starts the machine again.
 
 mod checkup;
-#[cfg(test)]
-mod checkup_tests;
 mod choosing;
 mod report;
 mod row;
+#[cfg(test)]
+mod tests;
 
 use egui::{Align, Button, Label, Layout, RichText, Ui, vec2};
 use nima_machine::{

@@ -154,8 +154,9 @@ impl ConsoleApp {
             self.serve(emulators);
             self.start_loop(rig, scene)
         });
-        if let (Err(_), Some(undo)) = (&started, &undo) {
+        if let (Err(cause), Some(undo)) = (&started, &undo) {
             undo.take_back();
+            self.panels.devices.tell(text::devices::not_changed(cause));
         }
         match (started, before) {
             (Ok(()), _) => {

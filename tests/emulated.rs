@@ -8,8 +8,8 @@ use std::{
 
 use nima_devices::bota;
 use nima_machine::{
-    config::RigConfig,
-    rig::{SensorPlace, SensorSettings, Settings},
+    config::{RigConfig, RigFile},
+    rig::{SensorPlace, SensorSettings, Settings, Side},
 };
 use nima_world::{
     emulated::{EmulatedRig, HandFrame, provide_handles},
@@ -55,6 +55,29 @@ pub fn elsewhere(folder: &Path) -> Settings {
     }
     devices.pedal.as_mut().unwrap().source = format!("emulated:{}", folder.join("pedal").display());
     devices
+}
+
+/// The built-in rig as a file in which the devices stand at these places.
+pub fn rig_file(devices: &Settings) -> RigFile {
+    let mut file = RigFile::of("emulated").unwrap();
+    for side in Side::ALL {
+        let (set, side) = (devices.arm(side).unwrap(), side.word());
+        let handle = set.handle.force_dimension().unwrap();
+        file.set(&format!("devices.{side}.handle.emulator"), handle.emulator.unwrap().to_string());
+        let arm = set.arm.kinova().unwrap();
+        file.set(&format!("devices.{side}.arm.tcp_port"), i64::from(arm.tcp_port));
+        file.set(&format!("devices.{side}.arm.udp_port"), i64::from(arm.udp_port));
+        file.set(&format!("devices.{side}.sensor.port"), &set.sensor.bota().unwrap().port);
+        file.set(&format!("devices.{side}.servos.port"), &set.servos.as_ref().unwrap().port);
+    }
+    file.set("devices.tissue_sensor.port", &devices.tissue_sensor.as_ref().unwrap().bota().unwrap().port);
+    let tracker = devices.tracker.as_ref().unwrap();
+    file.set("devices.tracker.address", tracker.address.as_ref().unwrap());
+    let tools = tracker.tools.iter().map(|tool| tool.display().to_string());
+    file.set_all("devices.tracker.tools", tools);
+    file.set("devices.pedal.source", &devices.pedal.as_ref().unwrap().source);
+    assert_eq!(file.rig().unwrap().devices.as_ref(), Some(devices));
+    file
 }
 
 /// The same with its sensors at the tips, where they feel the tissue alone and need no calibration.

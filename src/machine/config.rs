@@ -19,7 +19,7 @@ use serde::{Deserialize, Serialize};
 pub(crate) use files::parse_with;
 pub use files::{ConfigError, Ranges, parse, text};
 pub use mounted::SimulatedWrists;
-pub use rig_file::{RigFile, RigFileError};
+pub use rig_file::{Chosen, RigFile, RigFileError};
 
 use crate::rig;
 

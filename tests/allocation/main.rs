@@ -5,6 +5,7 @@
 
 mod bota;
 mod counting;
+mod device_rig;
 mod dynamixel;
 mod force_dimension;
 mod hid;

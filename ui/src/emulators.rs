@@ -5,6 +5,7 @@
 
 use std::{
     io::{BufRead as _, BufReader, Write as _},
+    path::Path,
     process::{Child, ChildStdin, Command, Stdio},
     sync::{Arc, Mutex, PoisonError, mpsc::Receiver},
     time::Duration,
@@ -29,8 +30,18 @@ pub(crate) struct Emulators {
 impl Emulators {
     /// Starts the emulators if the rig of this name is emulated, around the scene of that name, and waits until they serve.
     pub(crate) fn start(rig: &str, scene: &str, devices: Option<&Settings>) -> anyhow::Result<Option<Self>> {
-        let Some(devices) = devices.filter(|devices| devices.emulated) else { return Ok(None) };
         let program = std::env::current_exe().context("cannot find the path of this program")?;
+        Self::start_by(&program, rig, scene, devices)
+    }
+
+    /// The same with this program; tests are not the program themselves.
+    pub(crate) fn start_by(
+        program: &Path,
+        rig: &str,
+        scene: &str,
+        devices: Option<&Settings>,
+    ) -> anyhow::Result<Option<Self>> {
+        let Some(devices) = devices.filter(|devices| devices.emulated) else { return Ok(None) };
         let mut command = Command::new(program);
         command.args(["emulate", "rig", "--rig", rig, "--scene", scene, "--until-input-ends"]);
         // Ctrl-C is for the loop only, which ends in order and then ends the emulators.

@@ -29,5 +29,6 @@ pub use driver::{
     Counters, Driver, FORCE_MAX_N, ForceAnswer, GRIPPER_MAX_N, HandleEvent, IdleMode, SILENCE_S, Settings, open,
 };
 pub use library::{installed_library, provide_stand_in};
+pub use opening::attached;
 pub use sdk::{EmulateHandle, Sdk, SdkFunctions, prepare_thread};
 pub use status::{ForceOffCause, Kind, SdkError, Status};

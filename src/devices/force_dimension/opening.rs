@@ -60,6 +60,36 @@ pub(super) fn open(sdk: &'static Sdk, settings: &Settings) -> Result<Opened, Tro
     Ok(Opened { device, identity, left_handed, velocity_threshold })
 }
 
+/// Most handles that are looked for.
+const HANDLES_MAX: usize = 8;
+
+/// Serial number and identity of every handle that no program has open. Each is opened for a moment, with its brakes
+/// on; the one that `settings` names does not matter, its library and its emulator do.
+///
+/// # Errors
+/// [`Trouble`] if the library is missing or unusable.
+pub fn attached(settings: &Settings) -> Result<Vec<(u16, Identity)>, Trouble> {
+    let sdk = super::library::of(settings)?;
+    let look = move || {
+        super::sdk::prepare_thread();
+        // All stay open until the last one is found: the library opens any that is free.
+        let mut open = Vec::new();
+        while open.len() < HANDLES_MAX
+            && let Ok(device) = sdk.open(None)
+        {
+            open.push(device);
+        }
+        let told = |device: &OpenDevice| {
+            let (kind, serial) = (Kind::of(device.kind().ok()?), device.serial().ok()?);
+            Some((serial, Identity::of_handle(kind, device.name(), Some(serial), device.firmware().ok())))
+        };
+        open.iter().filter_map(told).collect()
+    };
+    let failed = || Trouble::Other { place: place(settings), reason: "the SDK's thread failed".to_owned() };
+    let thread = std::thread::Builder::new().name("handles".to_owned()).spawn(look).map_err(|_| failed())?;
+    thread.join().map_err(|_| failed())
+}
+
 /// Checks that its status allows its use.
 fn check(place: &str, status: &Status) -> Result<(), Trouble> {
     if status.reset {

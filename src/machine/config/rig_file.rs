@@ -8,6 +8,7 @@ use std::{
 use toml_edit::{DocumentMut, Item, Table, Value};
 
 use super::{ConfigError, RIGS, RigConfig, text};
+use crate::rig::{Offer, Part, PartKind, Side};
 
 /// A rig file in memory.
 ///
@@ -27,6 +28,15 @@ use super::{ConfigError, RIGS, RigConfig, text};
 pub struct RigFile {
     path: PathBuf,
     document: DocumentMut,
+}
+
+/// A device for a part of a rig.
+#[derive(Clone, Debug)]
+pub enum Chosen {
+    /// The one that this other part has now.
+    Of(Part),
+    /// One that was found and is not used yet.
+    Found(Offer),
 }
 
 /// Why a rig file cannot be changed or saved.
@@ -87,6 +97,11 @@ impl RigFile {
         }
     }
 
+    /// The same for a list of texts.
+    pub fn set_all(&mut self, key: &str, values: impl IntoIterator<Item = String>) {
+        self.set(key, values.into_iter().collect::<Value>());
+    }
+
     /// Takes a key with dots away, with everything below it.
     pub fn remove(&mut self, key: &str) {
         let (tables, last) = key.rsplit_once('.').map_or(("", key), |(tables, last)| (tables, last));
@@ -98,11 +113,41 @@ impl RigFile {
         table.remove(last);
     }
 
-    /// Exchanges what two keys with dots hold; nothing where one of them is missing.
+    /// Exchanges what two keys with dots hold; nothing where one of them is missing. Comments go with what they stand
+    /// above, and the order of the keys stays.
     pub fn swap(&mut self, one: &str, other: &str) {
-        let (Some(first), Some(second)) = (self.item(one).cloned(), self.item(other).cloned()) else { return };
+        let (Some(mut first), Some(mut second)) = (self.item(one).cloned(), self.item(other).cloned()) else { return };
+        let [of_first, of_second] = [&first, &second].map(|item| item.as_table().and_then(Table::position));
+        set_position(&mut first, of_second);
+        set_position(&mut second, of_first);
         self.put(one, second);
         self.put(other, first);
+    }
+
+    /// Puts `chosen` in the place of this part: the device of another part of the same kind, which then gets this one's,
+    /// or one that was found.
+    pub fn choose(&mut self, part: Part, chosen: &Chosen) {
+        match chosen {
+            Chosen::Of(other) => self.swap(part.key(), other.key()),
+            Chosen::Found(offer) => {
+                // Of the tracker's two kinds of place the other one must go.
+                for (key, other) in [("address", "port"), ("port", "address")] {
+                    if part == Part::Tracker && offer.changes.iter().any(|(changed, _)| *changed == key) {
+                        self.remove(&format!("{}.{other}", part.key()));
+                    }
+                }
+                for (key, value) in &offer.changes {
+                    self.set(&format!("{}.{key}", part.key()), value.clone());
+                }
+            }
+        }
+    }
+
+    /// Exchanges the devices of this kind between right and left.
+    pub fn exchange_sides(&mut self, kind: PartKind) {
+        if let (Some(right), Some(left)) = (kind.of(Side::Right), kind.of(Side::Left)) {
+            self.swap(right.key(), left.key());
+        }
     }
 
     fn item(&self, key: &str) -> Option<&Item> {
@@ -150,8 +195,27 @@ impl RigFile {
     }
 }
 
+/// Puts a table where another one stood in the text; what is below it follows.
+fn set_position(item: &mut Item, position: Option<isize>) {
+    match item {
+        Item::Table(table) => {
+            table.set_position(position);
+            table.iter_mut().for_each(|(_, item)| set_position(item, None));
+        }
+        Item::ArrayOfTables(tables) => {
+            for table in tables.iter_mut() {
+                table.set_position(None);
+                table.iter_mut().for_each(|(_, item)| set_position(item, None));
+            }
+        }
+        Item::None | Item::Value(_) => {}
+    }
+}
+
 #[cfg(test)]
 mod tests {
+    use nima_devices::Identity;
+
     use super::*;
 
     #[test]
@@ -190,6 +254,72 @@ mod tests {
         assert_eq!(right.arm, right_was.arm);
         file.swap("devices.right.handle", "devices.third.handle");
         assert_eq!(file.rig().unwrap().devices.unwrap().right.unwrap().handle, right.handle);
+    }
+
+    #[test]
+    fn an_exchange_keeps_the_order_and_a_second_one_takes_it_back() {
+        let mut file = RigFile::of("emulated").unwrap();
+        let before = file.text();
+        let headers =
+            |text: &str| text.lines().filter(|line| line.starts_with('[')).map(str::to_owned).collect::<Vec<_>>();
+        for kind in PartKind::OF_A_SIDE {
+            file.exchange_sides(kind);
+            assert_eq!(headers(&file.text()), headers(&before), "{kind:?}");
+        }
+        let network = "# In the network; its readings come to the UDP port of the same number.\n[devices.right.sensor]";
+        assert!(file.text().contains(network), "a comment goes with its device:\n{}", file.text());
+        for kind in PartKind::OF_A_SIDE {
+            file.exchange_sides(kind);
+        }
+        assert_eq!(file.text(), before);
+        file.exchange_sides(PartKind::Tracker);
+        assert_eq!(file.text(), before, "there is only one");
+    }
+
+    #[test]
+    fn the_device_of_another_part_is_chosen_by_exchanging_the_two() {
+        let mut file = RigFile::of("emulated").unwrap();
+        let was = file.rig().unwrap().devices.unwrap();
+        file.choose(Part::Sensor(Side::Right), &Chosen::Of(Part::TissueSensor));
+        let now = file.rig().unwrap().devices.unwrap();
+        assert_eq!(now.right.as_ref().map(|set| &set.sensor), was.tissue_sensor.as_ref());
+        assert_eq!(now.tissue_sensor.as_ref(), was.right.as_ref().map(|set| &set.sensor));
+        assert_eq!(now.left, was.left);
+    }
+
+    #[test]
+    fn a_device_that_was_found_is_chosen_by_its_place_and_serial_number() {
+        let offer = |changes| Offer { place: String::new(), identity: Identity::default(), changes };
+        let mut file = RigFile::of("paper").unwrap();
+        let sensor = offer(vec![
+            ("transport", "gen-a".into()),
+            ("port", "/dev/ttyACM7".into()),
+            ("serial_number", "853".into()),
+        ]);
+        file.choose(Part::Sensor(Side::Left), &Chosen::Found(sensor));
+        file.choose(Part::Handle(Side::Left), &Chosen::Found(offer(vec![("serial", 815.into())])));
+        let other_place = |file: &RigFile| {
+            let tracker = file.rig().unwrap().devices.unwrap().tracker.unwrap();
+            if tracker.port.is_some() { "address" } else { "port" }
+        };
+        let tracker = other_place(&file);
+        file.choose(Part::Tracker, &Chosen::Found(offer(vec![(tracker, "/dev/ttyUSB9".into())])));
+        assert_ne!(other_place(&file), tracker, "one of the two keys is there");
+        let left = file.rig().unwrap().devices.unwrap().left.unwrap();
+        let sensor = left.sensor.bota().unwrap();
+        assert_eq!((sensor.port.as_str(), sensor.serial_number.as_deref()), ("/dev/ttyACM7", Some("853")));
+        assert_eq!(left.handle.force_dimension().unwrap().serial, Some(815));
+    }
+
+    #[test]
+    fn two_handles_of_one_serial_number_are_refused() {
+        let mut file = RigFile::of("paper").unwrap();
+        let right = file.rig().unwrap().devices.unwrap().right.unwrap().handle;
+        let taken = i64::from(right.force_dimension().unwrap().serial.unwrap());
+        let offer =
+            Offer { place: String::new(), identity: Identity::default(), changes: vec![("serial", taken.into())] };
+        file.choose(Part::Handle(Side::Left), &Chosen::Found(offer));
+        assert!(file.rig().is_err());
     }
 
     #[test]

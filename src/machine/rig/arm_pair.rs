@@ -14,7 +14,7 @@ use nima_devices::{
 };
 
 use super::{
-    ArmSet, RigError,
+    ArmSet, Gauge, Part, RigError,
     devices::{OLDEST_S, enrol, is_there},
     jaws::JawsControl,
     makes::Opener,
@@ -33,9 +33,9 @@ pub(super) struct Shared {
     pub(super) c_from_view: View,
 }
 
-/// Starts opening a device of this name and adds it to the roster; `attach` is called with the device once it is open.
+/// Starts opening a device and adds it to the roster; `attach` is called with the device once it is open.
 fn start<P>(
-    name: &str,
+    part: Part,
     opener: Opener<P>,
     roster: &mut Roster,
     attach: impl Fn(&P) + Send + 'static,
@@ -44,8 +44,8 @@ where
     P: Device + 'static,
 {
     let Opener { driver, mut open, clear_faults } = opener;
-    let slot = Slot::start(name, move || open().inspect(&attach))?;
-    enrol(roster, name, driver, &slot);
+    let slot = Slot::start(part.name(), move || open().inspect(&attach))?;
+    enrol(roster, part, driver, &slot);
     if let Some(entry) = roster.last_mut() {
         entry.clear_faults = clear_faults;
     }
@@ -75,6 +75,10 @@ pub struct ArmPair {
     joints: Option<Stamped<ArmReading>>,
     force: Option<Stamped<ForceReading>>,
     turned: Option<Stamped<ServoReading>>,
+    /// What handle, arm, sensor and servos have delivered since this was last handed over.
+    gauges: [Gauge; 4],
+    /// Orientation in which the handle was first read.
+    held_from: Option<UnitQuaternion<f64>>,
     mount: Arm,
     rcm: Rcm,
     limits: JointLimits,
@@ -103,15 +107,11 @@ impl ArmPair {
         let rcm = Rcm::new(&set.rcm).map_err(|source| RigError::Rcm { side: word, source })?;
         let levers = [Lever::default(), Lever::default()];
         let [of_handle, of_arm] = levers.clone();
-        let name = |part: &str| format!("{word} {part}");
-        let handle = start(&name("handle"), set.handle.opener(), roster, move |handle| handle.attach(&of_handle))?;
-        let arm = start(&name("arm"), set.arm.opener(), roster, move |arm| arm.attach(&of_arm))?;
-        let sensor = start(&name("sensor"), set.sensor.opener(), roster, |_| ())?;
-        if let Some(entry) = roster.last_mut() {
-            entry.force_sensor_of = Some(side);
-        }
+        let handle = start(Part::Handle(side), set.handle.opener(), roster, move |handle| handle.attach(&of_handle))?;
+        let arm = start(Part::Arm(side), set.arm.opener(), roster, move |arm| arm.attach(&of_arm))?;
+        let sensor = start(Part::Sensor(side), set.sensor.opener(), roster, |_| ())?;
         let servos = set.servos.clone().map(|settings| {
-            let slot = start(&name("servos"), servos_opener(settings), roster, |_| ())?;
+            let slot = start(Part::Servos(side), servos_opener(settings), roster, |_| ())?;
             Ok::<_, std::io::Error>((slot, JawsControl::new(set.jaws, period_s)))
         });
         Ok(Self {
@@ -124,6 +124,8 @@ impl ArmPair {
             joints: None,
             force: None,
             turned: None,
+            gauges: [Gauge::NONE; 4],
+            held_from: None,
             mount,
             rcm,
             limits: set.arm.joint_limits(),
@@ -140,20 +142,32 @@ impl ArmPair {
 
     /// Reads what the devices have sent.
     pub(super) fn poll(&mut self, now_s: f64) {
+        let [of_handle, of_arm, of_sensor, of_servos] = &mut self.gauges;
         if let Some(reading) = self.handle.poll(now_s) {
+            let from = self.held_from.get_or_insert(reading.value.orientation.unwrap_or_default());
+            of_handle.handle(&reading.value, from);
             self.hand = Some(reading);
         }
         if let Some(reading) = self.arm.poll(now_s) {
+            of_arm.arm(&reading.value);
             self.pose = Some(self.mount.pose(&Joints::from(reading.value.joint_rad)));
             self.joints = Some(reading);
         }
         if let Some(reading) = self.sensor.poll(now_s) {
+            of_sensor.sensor(&reading.value);
             self.force = Some(reading).filter(|reading| reading.value.status.is_usable());
         }
         if let Some((slot, _)) = &mut self.servos
             && let Some(reading) = slot.poll(now_s)
         {
+            of_servos.servos(&reading.value);
             self.turned = Some(reading);
+        }
+        of_handle.tick(self.handle.health(), now_s, self.period_s);
+        of_arm.tick(self.arm.health(), now_s, self.period_s);
+        of_sensor.tick(self.sensor.health(), now_s, self.period_s);
+        if let Some((slot, _)) = &self.servos {
+            of_servos.tick(slot.health(), now_s, self.period_s);
         }
         let mut on = self.force_is_on && is_there(&self.handle);
         if let Some(changed) = self.handle.device().and_then(|handle| handle.force_change()) {
@@ -321,6 +335,12 @@ impl ArmPair {
     /// Why the arm cannot be engaged from its present position.
     pub(super) const fn obstacle(&self) -> Option<Obstacle> {
         self.obstacle
+    }
+
+    /// What the devices have delivered, in the order of the roster; begins anew.
+    pub(super) fn take_gauges(&mut self) -> [Option<Gauge>; 4] {
+        let [handle, arm, sensor, servos] = std::mem::replace(&mut self.gauges, [Gauge::NONE; 4]);
+        [Some(handle), Some(arm), Some(sensor), self.servos.as_ref().map(|_| servos)]
     }
 
     /// Health of the devices in the order of the roster, and whether the force path needs each of them.

@@ -17,8 +17,8 @@ use nima_devices::{
 };
 
 use super::{
-    ArmPair, DEVICES_MAX, DeviceEvent, EndoscopeSettings, Healths, Inputs, Outputs, Rig, Roster, RosterEntry, SIDES,
-    Settings, Side, Switches, View, Watch, arm_pair::Shared, makes::Opener,
+    ArmPair, DEVICES_MAX, DeviceEvent, EndoscopeSettings, Gauge, Gauges, Healths, Inputs, Outputs, Part, Rig, Roster,
+    RosterEntry, SIDES, Settings, Side, Switches, View, Watch, arm_pair::Shared, makes::Opener,
 };
 
 /// A reading older than this counts as missing, s.
@@ -35,6 +35,10 @@ pub struct DeviceRig {
     tracked: Option<Stamped<TrackerReading>>,
     pedal: Option<Pedal>,
     watch: Watch,
+    /// What tissue sensor, tracker and pedal have delivered since this was last handed over, and since when, s.
+    gauges: [Gauge; 3],
+    gauged_s: f64,
+    period_s: f64,
 }
 
 struct Pedal {
@@ -98,15 +102,15 @@ impl DeviceRig {
         }
         let tissue = settings.tissue_sensor.as_ref().map(|sensor| {
             let Opener { driver, open, .. } = sensor.opener();
-            let slot = Slot::start("tissue sensor", open)?;
-            enrol(&mut roster, "tissue sensor", driver, &slot);
+            let slot = Slot::start(Part::TissueSensor.name(), open)?;
+            enrol(&mut roster, Part::TissueSensor, driver, &slot);
             Ok::<_, io::Error>(slot)
         });
         let tracker = settings.tracker.clone().map(|tracker| {
             let place = tracker.place();
             let open = move || ndi::Driver::open(&tracker).map(|driver| Box::new(driver) as Box<dyn Tracker>);
-            let slot = Slot::start("tracker", open)?;
-            enrol(&mut roster, "tracker", format!("NDI tracker, {place}"), &slot);
+            let slot = Slot::start(Part::Tracker.name(), open)?;
+            enrol(&mut roster, Part::Tracker, format!("NDI tracker, {place}"), &slot);
             Ok::<_, io::Error>(slot)
         });
         let pedal = settings.pedal.clone().map(|pedal| {
@@ -114,8 +118,8 @@ impl DeviceRig {
             let roles = pedal.roles().map_err(setting)?;
             let place = pedal.source.clone();
             let open = move || hid::PedalDriver::open(&pedal).map(|driver| Box::new(driver) as Box<dyn Switch>);
-            let slot = Slot::start("pedal", open)?;
-            enrol(&mut roster, "pedal", format!("foot pedal, {place}"), &slot);
+            let slot = Slot::start(Part::Pedal.name(), open)?;
+            enrol(&mut roster, Part::Pedal, format!("foot pedal, {place}"), &slot);
             Ok::<_, RigError>(Pedal { slot, held: Held::default(), roles })
         });
         let rig = Self {
@@ -127,12 +131,17 @@ impl DeviceRig {
             tracked: None,
             pedal: pedal.transpose()?,
             watch: Watch::default(),
+            gauges: [Gauge::NONE; 3],
+            gauged_s: 0.0,
+            period_s,
         };
         Ok((rig, roster))
     }
 
     fn poll_shared(&mut self, now_s: f64) -> Switches {
+        let [of_tissue, of_tracker, of_pedal] = &mut self.gauges;
         if let Some(reading) = self.tissue.as_mut().and_then(|slot| slot.poll(now_s)) {
+            of_tissue.sensor(&reading.value);
             let usable = reading.value.status.is_usable();
             self.tissue_n = usable.then_some(Stamped {
                 device_s: reading.device_s,
@@ -141,11 +150,21 @@ impl DeviceRig {
             });
         }
         if let Some(reading) = self.tracker.as_mut().and_then(|slot| slot.poll(now_s)) {
+            of_tracker.tracker(&reading.value);
             self.tracked = Some(reading);
+        }
+        let ticked = [self.tissue.as_ref().map(Slot::health), self.tracker.as_ref().map(Slot::health)];
+        for (gauge, health) in [of_tissue, of_tracker].into_iter().zip(ticked) {
+            if let Some(health) = health {
+                gauge.tick(health, now_s, self.period_s);
+            }
         }
         let Some(pedal) = &mut self.pedal else { return Switches::default() };
         let reading = pedal.slot.poll(now_s);
         let pressed = pedal.held.update(reading, pedal.slot.health());
+        // It sends on a change only: its state in every tick is what can be seen.
+        of_pedal.pedal(pressed);
+        of_pedal.tick(pedal.slot.health(), now_s, self.period_s);
         // A pedal that is not connected must not report that somebody is present.
         Switches { clutch: pedal.roles.clutch(pressed), presence: pedal.roles.presence(pressed) }
     }
@@ -235,12 +254,30 @@ impl Rig for DeviceRig {
         healths.obstacles = self.pairs.each_ref().map(|pair| pair.as_ref().and_then(|pair| pair.obstacle()));
         healths
     }
+
+    fn gauges(&mut self, now_s: f64) -> Option<Gauges> {
+        let from_s = std::mem::replace(&mut self.gauged_s, now_s);
+        let mut gauges = Gauges { from_s, to_s: now_s, devices: [Gauge::NONE; DEVICES_MAX] };
+        let mut places = gauges.devices.iter_mut();
+        let mut put = |gauge: Gauge| {
+            if let Some(place) = places.next() {
+                *place = gauge;
+            }
+        };
+        for pair in self.pairs.iter_mut().flatten() {
+            pair.take_gauges().into_iter().flatten().for_each(&mut put);
+        }
+        let there = [self.tissue.is_some(), self.tracker.is_some(), self.pedal.is_some()];
+        let shared = std::mem::replace(&mut self.gauges, [Gauge::NONE; 3]);
+        shared.into_iter().zip(there).filter(|(_, there)| *there).for_each(|(gauge, _)| put(gauge));
+        Some(gauges)
+    }
 }
 
 /// Adds a device to the roster.
-pub(super) fn enrol<D: Device + 'static>(roster: &mut Roster, name: &str, driver: String, slot: &Slot<D>) {
+pub(super) fn enrol<D: Device + 'static>(roster: &mut Roster, part: Part, driver: String, slot: &Slot<D>) {
     debug_assert!(roster.len() < DEVICES_MAX, "more devices than places");
-    roster.push(RosterEntry::new(name, driver, slot.view()));
+    roster.push(RosterEntry::of(part, driver, slot.view()));
 }
 
 /// Whether the device delivers now.

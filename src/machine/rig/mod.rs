@@ -6,12 +6,16 @@
 mod arm_pair;
 mod devices;
 mod flaws;
+mod gauge;
 mod jaws;
 #[cfg(test)]
 mod joint_limits_tests;
 mod makes;
+mod nominal;
+mod part;
 mod probes;
 mod prompt;
+mod seeking;
 mod settings;
 mod side;
 mod watch;
@@ -23,11 +27,15 @@ use nima_devices::{ClearFaults, Health, Lever, SlotView, Standing};
 pub use arm_pair::{ArmPair, Obstacle};
 pub use devices::{DeviceRig, RigError};
 pub use flaws::Flaws;
+pub use gauge::{AGES, CHANNELS, Gauge, Gauges, Spread};
 pub use jaws::JawsSettings;
 pub use makes::{FollowerSettings, LeaderSettings, SensorSettings};
 pub(crate) use makes::{Misread, take_out_makes};
+pub use nominal::Nominal;
+pub use part::{Part, PartKind};
 pub use probes::rig_probes;
 pub use prompt::Prompt;
+pub use seeking::{Offer, Sought, seek};
 pub use settings::{ArmSet, DeskSettings, EndoscopeSettings, SensorPlace, Settings};
 pub use side::{SIDES, Side};
 pub use watch::Watch;
@@ -175,6 +183,13 @@ pub trait Rig: Send {
     fn health(&self) -> Healths {
         Healths::default()
     }
+
+    /// What the devices have delivered since the last call, until now; `None` for a rig without devices.
+    ///
+    /// Must not block and must not allocate.
+    fn gauges(&mut self, _now_s: f64) -> Option<Gauges> {
+        None
+    }
 }
 
 /// Most devices of a rig.
@@ -211,17 +226,30 @@ pub struct RosterEntry {
     pub driver: String,
     /// Connects and disconnects it, and reports why it is not connected.
     pub view: SlotView,
-    /// Set if it is the force sensor on the arm of this side: calibrations are bound to it.
-    pub force_sensor_of: Option<Side>,
+    /// What it is used for; `None` for a device that leads a simulated rig.
+    pub part: Option<Part>,
     /// Clears the faults of the device itself, if it has such a command; carried out the next time the device is
     /// opened.
     pub clear_faults: Option<ClearFaults>,
 }
 
 impl RosterEntry {
-    /// A device that no force path needs and that has no faults to clear.
+    /// A device that is no part of the rig and that has no faults to clear.
     pub fn new(name: impl Into<String>, driver: impl Into<String>, view: SlotView) -> Self {
-        Self { name: name.into(), driver: driver.into(), view, force_sensor_of: None, clear_faults: None }
+        Self { name: name.into(), driver: driver.into(), view, part: None, clear_faults: None }
+    }
+
+    /// A part of the rig.
+    pub fn of(part: Part, driver: impl Into<String>, view: SlotView) -> Self {
+        Self { part: Some(part), ..Self::new(part.name(), driver, view) }
+    }
+
+    /// The side of the arm that carries it, if it is a force sensor at an arm: calibrations are bound to it.
+    pub const fn force_sensor_of(&self) -> Option<Side> {
+        match self.part {
+            Some(Part::Sensor(side)) => Some(side),
+            _ => None,
+        }
     }
 }
 

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 pub const SIDES: usize = 2;
 
 /// Which arm pair, from the surgeon's point of view. A rig with one pair has the right one.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Side {
     /// For the right hand.

@@ -19,7 +19,7 @@ use super::{
 use crate::{
     config::SchedulingClass,
     messages::{Command, Event, Tick},
-    rig::{Healths, Outputs, Rig, RigError, Roster, SIDES, Side},
+    rig::{Gauges, Healths, Outputs, Rig, RigError, Roster, SIDES, Side},
     teleop::{Calibrations, Loop, Timing},
 };
 
@@ -29,8 +29,10 @@ pub const TICKS_WAITING_MAX: usize = 8192;
 const COMMANDS_WAITING_MAX: usize = 64;
 /// Capacity of the queue of events for the screen.
 const EVENTS_WAITING_MAX: usize = 256;
-/// The health of the devices is published once per this many ticks.
+/// The health of the devices, and what they have delivered, are published once per this many ticks.
 const HEALTH_EVERY: u64 = 100;
+/// Capacity of the queue of what the devices have delivered; 4 s at 1 kHz, more than the screen ever rests.
+const GAUGES_WAITING_MAX: usize = 40;
 /// Most device events (connected, lost) that are handled in one tick.
 const DEVICE_EVENTS_PER_TICK_MAX: usize = 4;
 /// Most commands carried out in one tick; further ones wait for the next tick.
@@ -57,6 +59,7 @@ pub struct Handle {
     ticks: Receiver<Tick>,
     events: Receiver<Event>,
     healths: Receiver<Healths>,
+    gauges: Receiver<Gauges>,
     roster: Roster,
     wrists: WristDoor,
     thread: Option<JoinHandle<Summary>>,
@@ -76,6 +79,7 @@ pub fn start(assembly: Assembly) -> Result<Handle, StartError> {
     let (ticks_out, ticks) = bounded(TICKS_WAITING_MAX);
     let (events_out, events) = bounded(EVENTS_WAITING_MAX);
     let (healths_out, healths) = bounded(1);
+    let (gauges_out, gauges) = bounded(if roster.is_empty() { 1 } else { GAUGES_WAITING_MAX });
     let (wrists, wrist_door) = wrists::ends(&roster, 1.0 / rate_hz);
     let realtime = Realtime {
         control,
@@ -90,13 +94,24 @@ pub fn start(assembly: Assembly) -> Result<Handle, StartError> {
         ticks: ticks_out,
         events: events_out,
         healths: healths_out,
+        gauges: gauges_out,
         meters: Meters::default(),
         pulse: Arc::clone(&pulse),
     };
     let supervisor = Supervisor::start(pulse, levers, scheduling != SchedulingClass::Ordinary)?;
     let thread = Builder::new().name("realtime".to_owned()).spawn(move || realtime.run())?;
     let wrists = wrist_door;
-    Ok(Handle { commands, ticks, events, healths, roster, wrists, thread: Some(thread), _supervisor: supervisor })
+    Ok(Handle {
+        commands,
+        ticks,
+        events,
+        healths,
+        gauges,
+        roster,
+        wrists,
+        thread: Some(thread),
+        _supervisor: supervisor,
+    })
 }
 
 impl Handle {
@@ -130,7 +145,7 @@ impl Handle {
 
     /// Identity that the force sensor of this side reported; `None` until it has been opened.
     pub fn force_sensor(&self, side: Side) -> Option<Identity> {
-        self.roster.iter().find(|entry| entry.force_sensor_of == Some(side))?.view.report().identity
+        self.roster.iter().find(|entry| entry.force_sensor_of() == Some(side))?.view.report().identity
     }
 
     /// Puts the calibrations of a force sensor in force, unless the sensor has connected or disconnected since
@@ -142,6 +157,11 @@ impl Handle {
     /// Health of the devices; `None` if it has not changed since the last call.
     pub fn healths(&self) -> Option<Healths> {
         self.healths.try_recv().ok()
+    }
+
+    /// What the devices have delivered, in blocks of time, oldest first. Blocks that nobody reads in time are dropped.
+    pub fn gauges(&self) -> impl Iterator<Item = Gauges> {
+        self.gauges.try_iter().take(GAUGES_WAITING_MAX)
     }
 
     /// An object that can end this loop from any thread.
@@ -203,6 +223,7 @@ struct Realtime {
     ticks: Sender<Tick>,
     events: Sender<Event>,
     healths: Sender<Healths>,
+    gauges: Sender<Gauges>,
     meters: Meters,
     pulse: Arc<Pulse>,
 }
@@ -322,6 +343,9 @@ impl Realtime {
         }
         if self.meters.ticks.is_multiple_of(HEALTH_EVERY) {
             self.healths.try_send(self.rig.health()).ok();
+            if let Some(gauges) = self.rig.gauges(timing.now_s) {
+                self.gauges.try_send(gauges).ok();
+            }
         }
         for mut tick in ticks.into_iter().flatten() {
             tick.dropped = self.meters.dropped;

@@ -72,7 +72,7 @@ pub(super) fn ends(roster: &[RosterEntry], period_s: f64) -> (Wrists, WristDoor)
     let (prepare, prepared) = bounded(WAITING_MAX);
     // The other part empties this queue before it sends, so there are never twice as many.
     let (spend, spent) = bounded(2 * WAITING_MAX);
-    let of_device = std::array::from_fn(|device| roster.get(device).and_then(|entry| entry.force_sensor_of));
+    let of_device = std::array::from_fn(|device| roster.get(device).and_then(RosterEntry::force_sensor_of));
     let wrists = Wrists { counts: Arc::clone(&counts), of_device, prepared, spent: spend };
     (wrists, WristDoor { counts, prepared: prepare, spent, period_s })
 }
@@ -133,7 +133,7 @@ mod tests {
     use crate::{
         config::RigConfig,
         messages::ForceSource,
-        rig::{Inputs, Sensed, Switches, View},
+        rig::{Inputs, Part, Sensed, Switches, View},
         teleop::Timing,
     };
 
@@ -162,8 +162,7 @@ mod tests {
         fn new() -> Self {
             let rig = RigConfig::load("simulated").unwrap();
             let slot = Slot::start("test", || Ok(Silent(Health::default(), Identity::default()))).unwrap();
-            let entry =
-                RosterEntry { force_sensor_of: Some(Side::Right), ..RosterEntry::new("right sensor", "", slot.view()) };
+            let entry = RosterEntry::of(Part::Sensor(Side::Right), "", slot.view());
             let (wrists, door) = ends(&[entry], 1e-3);
             let mut control = Loop::new(&rig, &[Some(calibrated()), None]).unwrap();
             control.suspend_calibrations(Side::Right);

@@ -1,11 +1,12 @@
 //! The window: receives what the loop has sent, lays out the panels, and sends the operator's commands.
 
 mod calibrating;
+mod connecting;
 mod pace;
 mod starting;
 
 use std::{
-    path::Path,
+    path::{Path, PathBuf},
     sync::Arc,
     time::{Duration, Instant},
 };
@@ -65,6 +66,8 @@ pub struct ConsoleApp {
     start: StartPage,
     /// Loops that the console starts run in simulated time, so many times as fast as real time.
     simulated_speed: Option<f64>,
+    /// The program that starts emulators; this one, except in a test.
+    program: Option<PathBuf>,
     /// Used to wake the window from another thread.
     ctx: egui::Context,
     live: Live,
@@ -120,6 +123,7 @@ impl ConsoleApp {
             starting: None,
             start: StartPage::new(Choice::default()),
             simulated_speed: None,
+            program: None,
             ctx: cc.egui_ctx.clone(),
             in_force,
             diary: Diary::default(),
@@ -242,6 +246,13 @@ impl ConsoleApp {
         self
     }
 
+    /// Starts emulators by this program.
+    #[must_use]
+    pub fn with_program(mut self, program: &Path) -> Self {
+        self.program = Some(program.to_path_buf());
+        self
+    }
+
     /// Continues with these wizards and their data.
     #[must_use]
     pub fn with_wizards(mut self, wizards: Wizards) -> Self {
@@ -297,6 +308,7 @@ impl ConsoleApp {
         self.live = Live::new(rig, scene);
         self.live.rough_edges = rough_edges;
         self.panels.forces = ForcesState::default();
+        self.panels.devices.begin_anew();
         self.outbox = Outbox::default();
         self.door = Some(door_of(started?, &self.ctx));
         self.leave_when_asked();
@@ -350,7 +362,9 @@ impl ConsoleApp {
     }
 
     fn monitor_layout(&mut self, ui: &mut Ui) {
-        let Wishes { restart, calibration } =
+        self.panels.devices.is_seen = false;
+        self.panels.devices.is_starting = self.starting.is_some();
+        let Wishes { restart, calibration, devices } =
             role_ui(ui, &mut self.settings.now, &mut self.live, &mut self.panels, &self.in_force, &mut self.outbox);
         // At the end of the frame, after everything was drawn with the old loop. A stop requested in the same frame
         // takes precedence.
@@ -359,6 +373,9 @@ impl ConsoleApp {
         }
         if let Some(rig) = restart {
             self.apply_tradeoff(rig);
+        }
+        if let Some(change) = devices {
+            self.connect(&change);
         }
         self.obey_calibrations(calibration);
     }

@@ -17,14 +17,18 @@ use nalgebra::Vector3;
 use nima_core::safety::{GATES, Gate};
 use nima_machine::{
     messages::{Event, Tick},
-    rig::{SIDES, Side},
+    rig::{Gauges, SIDES, Side},
     runtime::{Handle, Summary},
 };
+
+use super::activity::Activity;
 
 /// Interval of the thread while the window is idle, short enough not to be noticed.
 const LOOK: Duration = Duration::from_millis(50);
 /// Most ticks stored; further ones wait in the loop's queue, where losses are counted.
 const KEPT_MAX: usize = 8192;
+/// Most blocks of what the devices have delivered that are stored; newer ones are dropped.
+const BLOCKS_MAX: usize = 40;
 /// A longer time without a tick is shown as an alarm.
 const SILENCE: Duration = Duration::from_millis(600);
 /// A change of the force by this much (N), or of the tip position by this much (m), wakes the window; computed on means
@@ -40,6 +44,8 @@ pub enum News<'a> {
     Event(&'a Event),
     /// A tick.
     Tick(&'a Tick),
+    /// What the devices have delivered in a block of time.
+    Gauges(&'a Gauges),
 }
 
 /// The window's side of the connection to the loop.
@@ -55,6 +61,8 @@ struct Shared {
     kept: Mutex<Kept>,
     /// The window is drawn rarely.
     calm: AtomicBool,
+    /// The window shows which devices are moved.
+    shows_devices: AtomicBool,
     end: AtomicBool,
 }
 
@@ -62,6 +70,8 @@ struct Shared {
 struct Kept {
     ticks: Vec<Tick>,
     events: Vec<Event>,
+    gauges: Vec<Gauges>,
+    activity: Activity,
     /// The state of each side that the window shows.
     shown: [Option<Glance>; SIDES],
     /// When the last tick arrived.
@@ -79,13 +89,15 @@ impl Door {
         let kept = Kept {
             ticks: Vec::new(),
             events: Vec::new(),
+            gauges: Vec::new(),
+            activity: Activity::of(handle.roster()),
             shown: [None; SIDES],
             came: Instant::now(),
             wrong: [false; 2],
             woken: false,
         };
-        let (calm, end) = (AtomicBool::new(false), AtomicBool::new(false));
-        let shared = Arc::new(Shared { handle, kept: Mutex::new(kept), calm, end });
+        let [calm, shows_devices, end] = [false; 3].map(AtomicBool::new);
+        let shared = Arc::new(Shared { handle, kept: Mutex::new(kept), calm, shows_devices, end });
         let keeper = {
             let shared = Arc::clone(&shared);
             thread::Builder::new().name("door".to_owned()).spawn(move || shared.look_after(&wake)).ok()
@@ -98,12 +110,15 @@ impl Door {
         &self.shared.handle
     }
 
-    /// Passes on every waiting event and then every waiting tick, oldest first.
+    /// Passes on every waiting event, then what the devices have delivered, and then every waiting tick, each oldest
+    /// first.
     pub fn take(&self, mut each: impl FnMut(News<'_>)) {
         let mut kept = self.shared.lock();
         self.shared.bring_in(&mut kept);
         kept.events.iter().for_each(|event| each(News::Event(event)));
         kept.events.clear();
+        kept.gauges.iter().for_each(|gauges| each(News::Gauges(gauges)));
+        kept.gauges.clear();
         kept.ticks.iter().for_each(|tick| each(News::Tick(tick)));
         for side in Side::ALL {
             kept.shown[side.index()] = Glance::of(&kept.ticks, side).or(kept.shown[side.index()]);
@@ -129,6 +144,11 @@ impl Door {
         {
             keeper.thread().unpark();
         }
+    }
+
+    /// Sets whether the window shows which devices are moved: then it is woken when another one is.
+    pub fn show_devices(&self, shown: bool) {
+        self.shared.shows_devices.store(shown, Ordering::Relaxed);
     }
 
     /// Ends the loop and returns its figures; `None` if its thread has panicked.
@@ -184,6 +204,14 @@ impl Shared {
             let ticks = &mut kept.ticks;
             self.handle.drain_ticks(|tick| ticks.push(*tick));
         }
+        let mut lights = false;
+        for gauges in self.handle.gauges() {
+            lights |= kept.activity.follow(&gauges);
+            if kept.gauges.len() < BLOCKS_MAX {
+                kept.gauges.push(gauges);
+            }
+        }
+        let lights = lights && self.shows_devices.load(Ordering::Relaxed);
         if kept.ticks.len() > before.0 {
             kept.came = Instant::now();
         }
@@ -193,7 +221,7 @@ impl Shared {
             let now = Glance::of(&kept.ticks[before.0..], side);
             now.is_some_and(|now| kept.shown[side.index()].is_none_or(|shown| shown.differs(&now)))
         });
-        turned || kept.events.len() > before.1 || news
+        turned || lights || kept.events.len() > before.1 || news
     }
 }
 

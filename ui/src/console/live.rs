@@ -17,11 +17,12 @@ use nima_devices::Standing;
 use nima_machine::{
     config::RigConfig,
     messages::{Command, Fault, LoopState, Refusal, Scheduling, Tick, attention},
-    rig::{Healths, Roster, SIDES, Side},
+    rig::{Gauges, Healths, Roster, SIDES, Side},
 };
 use nima_world::scene::Scene;
 
 use super::{
+    activity::Activity,
     alarms::{Missing, Signs},
     cloud::Cloud,
     deadlines::Deadlines,
@@ -45,6 +46,8 @@ const TRAIL_STEP_S: f64 = 0.02;
 const FIGURES_EVERY: Duration = Duration::from_millis(250);
 /// The two large force readings are updated more often.
 const READINGS_EVERY: Duration = Duration::from_millis(100);
+/// Blocks of what the devices have delivered that are kept, of 0.1 s each.
+const BLOCKS_KEPT: usize = 40;
 /// How long a refused command is displayed.
 const REFUSAL_SHOWN: Duration = Duration::from_secs(6);
 
@@ -102,6 +105,12 @@ pub struct Live {
     pub roster: Roster,
     /// Health of the devices, in the same order.
     pub healths: Healths,
+    /// What the devices have delivered in the last seconds, oldest first.
+    pub blocks: VecDeque<Box<Gauges>>,
+    /// Number of such blocks since the loop began.
+    pub blocks_counted: u64,
+    /// Which devices are being moved.
+    pub(crate) activity: Activity,
     first_fault: Option<(f64, Fault)>,
     refusal: Option<(Instant, Refused)>,
     horizon: [Fading; SLOTS],
@@ -146,6 +155,9 @@ impl Live {
             bias_moved_n: None,
             roster: Roster::new(),
             healths: Healths::default(),
+            blocks: VecDeque::with_capacity(BLOCKS_KEPT + 1),
+            blocks_counted: 0,
+            activity: Activity::of(&[]),
             first_fault: None,
             refusal: None,
             trend_n: VecDeque::with_capacity(TREND_S + 1),

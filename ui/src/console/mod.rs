@@ -4,6 +4,7 @@
 //! they show what the ticks report and put the operator's commands into an outbox. All panels are plain functions of
 //! [`live::Live`], so they can be tested without a screen. Only `scene3d/gl.rs` uses the GPU.
 
+mod activity;
 pub mod alarms;
 pub mod app;
 pub mod canvas;

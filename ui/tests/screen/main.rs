@@ -3,6 +3,7 @@
 
 mod alarms;
 mod bench;
+mod connecting;
 mod console;
 mod desk;
 mod drift;

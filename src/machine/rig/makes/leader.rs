@@ -76,6 +76,12 @@ impl LeaderSettings {
         Err(Trouble::Setting { key: "serial".to_owned(), value, allowed })
     }
 
+    /// Rate of its readings, Hz.
+    pub(in crate::rig) const fn rate_hz(&self) -> f64 {
+        let Self::ForceDimension(settings) = self;
+        settings.rate_hz
+    }
+
     pub(in crate::rig) fn opener(&self) -> Opener<Box<dyn Leader>> {
         match self.clone() {
             Self::ForceDimension(settings) => {

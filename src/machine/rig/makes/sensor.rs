@@ -60,6 +60,18 @@ impl SensorSettings {
         }
     }
 
+    /// Rate of its readings, Hz.
+    pub(in crate::rig) fn expected_hz(&self) -> f64 {
+        let Self::Bota(settings) = self;
+        settings.expected_hz()
+    }
+
+    /// Whether its readings have an acceleration.
+    pub(in crate::rig) const fn is_inertial(&self) -> bool {
+        let Self::Bota(settings) = self;
+        settings.is_inertial()
+    }
+
     pub(in crate::rig) fn opener(&self) -> Opener<Box<dyn ForceSensor>> {
         match self.clone() {
             Self::Bota(settings) => Opener {

@@ -33,11 +33,13 @@ impl ConsoleApp {
     /// wakes the window in between.
     pub(super) fn rest(&mut self, ctx: &egui::Context) {
         let moves = !(self.live.state().is_latched() || self.live.state() == LoopState::Idle);
-        if moves || self.wizards.open.is_some() || self.live.first_tick().is_none() {
+        let devices = &self.panels.devices;
+        if moves || devices.is_testing() || self.wizards.open.is_some() || self.live.first_tick().is_none() {
             self.moved = Instant::now();
         }
         self.calm = self.moved.elapsed() > SETTLED;
         if let Some(door) = &self.door {
+            door.show_devices(devices.is_seen);
             door.rest(self.calm);
         }
         let next = if self.calm {

@@ -1,6 +1,7 @@
 //! The console while it changes to another rig or scene: ends the loop, starts the emulators if there are any, starts the loop again, idle.
 
 use std::{
+    path::PathBuf,
     sync::mpsc::{Receiver, TryRecvError, channel},
     thread,
 };
@@ -30,6 +31,26 @@ pub(super) struct Starting {
     before: Option<Choice>,
     /// Why it is started again, if it is what ran before.
     because: Option<String>,
+    /// What to write back if it does not start.
+    undo: Option<Undo>,
+}
+
+/// A rig file as it was before it was changed.
+#[derive(Debug)]
+pub(super) struct Undo {
+    pub(super) path: PathBuf,
+    /// Its text; `None` if it was not there.
+    pub(super) text: Option<String>,
+}
+
+impl Undo {
+    /// Makes the file what it was. If that fails, the next start tells what is wrong with it.
+    pub(super) fn take_back(&self) {
+        match &self.text {
+            Some(text) => nima_files::write_atomically(&self.path, |file| file.write_all(text.as_bytes())).ok(),
+            None => std::fs::remove_file(&self.path).ok(),
+        };
+    }
 }
 
 impl ConsoleApp {
@@ -83,6 +104,16 @@ impl ConsoleApp {
         }
     }
 
+    /// Begins to start a rig whose file was changed; what does not start is taken back.
+    pub(super) fn begin_changed(&mut self, choice: Choice, undo: Undo) {
+        let before = self.running.clone();
+        self.begin(choice, Some(before), None);
+        match &mut self.starting {
+            Some(starting) => starting.undo = Some(undo),
+            None => undo.take_back(),
+        }
+    }
+
     /// Ends the loop and begins to start this choice. What cannot be loaded ends nothing.
     fn begin(&mut self, choice: Choice, before: Option<Choice>, because: Option<String>) {
         let loaded = RigConfig::load(&choice.rig).and_then(|rig| Ok((rig, Scene::load(&choice.scene)?)));
@@ -96,14 +127,18 @@ impl ConsoleApp {
         self.start.tell(None);
         let (give, emulators) = channel();
         let (ctx, devices, names) = (self.ctx.clone(), rig.devices.clone(), choice.clone());
+        let program = self.program.clone();
         let work = move || {
-            let started = Emulators::start(&names.rig, &names.scene, devices.as_ref());
+            let started = match program {
+                Some(program) => Emulators::start_by(&program, &names.rig, &names.scene, devices.as_ref()),
+                None => Emulators::start(&names.rig, &names.scene, devices.as_ref()),
+            };
             give.send(started.map_err(|error| format!("{error:#}"))).ok();
             ctx.request_repaint();
         };
         // If no thread can be created, `give` is dropped, and that is told.
         thread::Builder::new().name("emulators".to_owned()).spawn(work).ok();
-        self.starting = Some(Starting { choice, rig, scene, emulators, before, because });
+        self.starting = Some(Starting { choice, rig, scene, emulators, before, because, undo: None });
     }
 
     /// Goes on with what was begun, once the emulators serve.
@@ -114,11 +149,15 @@ impl ConsoleApp {
             Err(TryRecvError::Disconnected) => Err(text::start::NO_THREAD.to_owned()),
             Ok(emulators) => emulators,
         };
-        let Some(Starting { choice, rig, scene, before, because, .. }) = self.starting.take() else { return };
+        let Some(Starting { choice, rig, scene, before, because, undo, .. }) = self.starting.take() else { return };
         let started = emulators.and_then(|emulators| {
             self.serve(emulators);
             self.start_loop(rig, scene)
         });
+        if let (Err(cause), Some(undo)) = (&started, &undo) {
+            undo.take_back();
+            self.panels.devices.tell(text::devices::not_changed(cause));
+        }
         match (started, before) {
             (Ok(()), _) => {
                 choice.remember(&mut self.settings.now.recent);

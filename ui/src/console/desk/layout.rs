@@ -231,7 +231,7 @@ fn default_for(size: Vec2) -> Node {
     } else {
         tabs(&[Panel::Traces, Panel::Safety, Panel::ForceSpace])
     };
-    let between = column(vec![(height - traces, tabs(&[Panel::Field])), (traces, under)]);
+    let between = column(vec![(height - traces, tabs(&[Panel::Field, Panel::Devices])), (traces, under)]);
     row(vec![(KNOBS, left), (middle, between), (FIGURES, right)])
 }
 
@@ -240,7 +240,7 @@ fn default_for(size: Vec2) -> Node {
 fn narrow(width: f32, height: f32, traces: f32) -> Node {
     let [left, _] = short_sides(height);
     let above = row(vec![
-        (width - KNOBS - FIGURES, tabs(&[Panel::Field])),
+        (width - KNOBS - FIGURES, tabs(&[Panel::Field, Panel::Devices])),
         (FIGURES, tabs(&[Panel::Horizon, Panel::Degrees, Panel::Timing, Panel::Tradeoff])),
     ]);
     let under = tabs(&[Panel::Traces, Panel::Safety, Panel::ForceSpace]);
@@ -251,7 +251,7 @@ fn tall_sides(height: f32) -> [Node; 2] {
     [
         column(vec![
             (FEEDBACK, tabs(&[Panel::Feedback])),
-            (CALIBRATIONS, tabs(&[Panel::Calibrations, Panel::Devices])),
+            (CALIBRATIONS, tabs(&[Panel::Calibrations])),
             (height - FEEDBACK - CALIBRATIONS, tabs(&[Panel::Gates])),
         ]),
         column(vec![
@@ -268,7 +268,7 @@ fn short_sides(height: f32) -> [Node; 2] {
     [
         column(vec![
             (feedback, tabs(&[Panel::Feedback])),
-            (height - feedback, tabs(&[Panel::Gates, Panel::Calibrations, Panel::Devices])),
+            (height - feedback, tabs(&[Panel::Gates, Panel::Calibrations])),
         ]),
         column(vec![
             (horizon, tabs(&[Panel::Horizon])),

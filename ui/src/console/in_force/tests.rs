@@ -9,7 +9,7 @@ use nima_core::calibration::{RecordHead, gravity::GravityRecord};
 use nima_devices::{ForceReading, Lever, Slot, bota};
 use nima_machine::{
     messages::ForceSource,
-    rig::{DeviceEvent, Inputs, Outputs, Rig, Roster, RosterEntry, Watch},
+    rig::{DeviceEvent, Inputs, Outputs, Part, Rig, Roster, RosterEntry, Watch},
 };
 use nima_tests::gravity;
 use nima_world::{
@@ -133,8 +133,7 @@ impl Bench {
         let scene = Scene::load("peg_transfer").unwrap();
         let settings = bota::Settings::new(bota::Transport::GenA, port.display().to_string());
         let slot = Slot::start("sensor", move || bota::Driver::open(&settings)).unwrap();
-        let entry =
-            RosterEntry { force_sensor_of: Some(Side::Right), ..RosterEntry::new("right sensor", "", slot.view()) };
+        let entry = RosterEntry::of(Part::Sensor(Side::Right), "", slot.view());
         let worlds = Worlds::new(&Scene::load("palpation").unwrap(), rig.rate_hz);
         let one = OneSensor { worlds, slot, watch: Watch::default() };
         let in_force = InForce::load(Some(store), &rig, &scene);

@@ -5,11 +5,12 @@ use std::time::Instant;
 use nima_core::{impedance::Mode, statistics::Quantiles};
 use nima_machine::{
     messages::{Event, LoopState, Tick},
-    rig::Side,
+    rig::{Gauges, Side},
 };
 
-use super::{FIGURES_EVERY, Live, READINGS_EVERY, Refused, TRAIL_S, TRAIL_STEP_S, TREND_S};
+use super::{BLOCKS_KEPT, FIGURES_EVERY, Live, READINGS_EVERY, Refused, TRAIL_S, TRAIL_STEP_S, TREND_S};
 use crate::console::{
+    activity::Activity,
     door::{Door, News},
     history::CHANNELS,
     readings::{Change, Figures},
@@ -22,6 +23,7 @@ impl Live {
         let handle = door.handle();
         if self.roster.len() != handle.roster().len() {
             self.roster.clone_from(handle.roster());
+            self.activity = Activity::of(&self.roster);
         }
         if let Some(healths) = handle.healths() {
             self.healths = healths;
@@ -30,6 +32,7 @@ impl Live {
         door.take(|news| {
             let tick = match news {
                 News::Event(event) => return self.event(event),
+                News::Gauges(gauges) => return self.gauges(gauges),
                 News::Tick(tick) => tick,
             };
             self.tick(tick);
@@ -63,6 +66,15 @@ impl Live {
                     health.standing = event.standing;
                 }
             }
+        }
+    }
+
+    fn gauges(&mut self, gauges: &Gauges) {
+        self.activity.follow(gauges);
+        self.blocks.push_back(Box::new(*gauges));
+        self.blocks_counted += 1;
+        if self.blocks.len() > BLOCKS_KEPT {
+            self.blocks.pop_front();
         }
     }
 

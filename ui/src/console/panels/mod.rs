@@ -22,7 +22,7 @@ use nima_core::impedance::{Baseline, Mode};
 
 pub use calibrations::{CalibrationWish, calibrations_ui};
 pub use degrees::degrees_ui;
-pub use devices::devices_ui;
+pub use devices::{DevicesState, devices_ui};
 pub use feedback::{FeedbackState, calm_gain_ui, feedback_ui};
 pub use force_space::{ForceSpaceState, force_space_ui};
 pub use forces::{ForcesState, forces_ui, gauge};

@@ -17,7 +17,11 @@ use super::{
     in_force::InForce,
     live::Live,
     outbox::Outbox,
-    panels::{CalibrationWish, FeedbackState, ForceSpaceState, ForcesState, GatesState, TimingState, TradeoffState},
+    panels::devices::Change,
+    panels::{
+        CalibrationWish, DevicesState, FeedbackState, ForceSpaceState, ForcesState, GatesState, TimingState,
+        TradeoffState,
+    },
     scene3d::{Look, SceneView},
     settings::Settings,
 };
@@ -83,6 +87,8 @@ pub struct Panels {
     pub scene: SceneView,
     /// Side selected in the gates panel.
     pub gates: GatesState,
+    /// Which device is which, and their tests.
+    pub devices: DevicesState,
     /// Histograms of the loop's durations.
     pub timing: TimingState,
     /// The technician's desk.
@@ -98,6 +104,8 @@ pub struct Wishes {
     pub restart: Option<RigConfig>,
     /// Open or close a wizard.
     pub calibration: Option<CalibrationWish>,
+    /// Use other devices.
+    pub devices: Option<Change>,
 }
 
 /// Draws the view of the present role, below the top bar.

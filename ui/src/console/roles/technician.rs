@@ -34,7 +34,7 @@ pub(super) fn technician_ui(
             force_space_ui(ui, live, forces.side(), space, forces.cursor_at_s(live));
         }
         Panel::Feedback => feedback_ui(ui, live, &mut panels.feedback, outbox),
-        Panel::Devices => devices_ui(ui, live),
+        Panel::Devices => wishes.devices = devices_ui(ui, live, &mut panels.devices),
         Panel::Calibrations => wishes.calibration = calibrations_ui(ui, live, in_force, None),
         Panel::Gates => gates_ui(ui, live, &mut panels.gates),
         Panel::Safety => safety_ui(ui, live),

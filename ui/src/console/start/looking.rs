@@ -15,7 +15,7 @@ const AGAIN: Duration = Duration::from_secs(2);
 
 /// Work on a thread of its own, and its last result.
 #[derive(Debug)]
-pub(super) struct Looked<T> {
+pub(in crate::console) struct Looked<T> {
     running: Option<Receiver<T>>,
     found: Option<T>,
 }
@@ -28,7 +28,7 @@ impl<T> Default for Looked<T> {
 
 impl<T: Send + 'static> Looked<T> {
     /// Begins; the window is woken when there is a result. Does nothing while work is going on.
-    fn begin(&mut self, ctx: &Context, work: impl FnOnce() -> T + Send + 'static) {
+    pub(in crate::console) fn begin(&mut self, ctx: &Context, work: impl FnOnce() -> T + Send + 'static) {
         if self.running.is_some() {
             return;
         }
@@ -42,7 +42,7 @@ impl<T: Send + 'static> Looked<T> {
     }
 
     /// The last result.
-    pub(super) fn found(&mut self) -> Option<&T> {
+    pub(in crate::console) fn found(&mut self) -> Option<&T> {
         match self.running.as_ref().map(Receiver::try_recv) {
             Some(Ok(found)) => (self.running, self.found) = (None, Some(found)),
             Some(Err(TryRecvError::Disconnected)) => self.running = None,
@@ -52,12 +52,12 @@ impl<T: Send + 'static> Looked<T> {
     }
 
     /// Whether work is going on.
-    pub(super) const fn is_running(&self) -> bool {
+    pub(in crate::console) const fn is_running(&self) -> bool {
         self.running.is_some()
     }
 
     /// Forgets the result; one that is still to come is dropped.
-    pub(super) fn forget(&mut self) {
+    pub(in crate::console) fn forget(&mut self) {
         *self = Self::default();
     }
 }

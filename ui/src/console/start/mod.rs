@@ -12,6 +12,7 @@ use nima_machine::{config::RigConfig, messages::LoopState, rig::Settings as Devi
 
 pub use choices::Choice;
 use choices::{Entry, Lists};
+pub(in crate::console) use looking::Looked;
 use looking::{Answers, PluggedIn};
 
 use super::{

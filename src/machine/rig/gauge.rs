@@ -1,0 +1,220 @@
+//! What each device has delivered in a short time: its readings summed up in constant memory, for the screen.
+//!
+//! The loop adds every reading and, in every tick, the age of the newest one; ten times a second it hands the sums over
+//! and begins anew. Nothing here allocates. The screen joins blocks to the time that it needs.
+
+use nalgebra::{UnitQuaternion, Vector3};
+use nima_devices::{
+    ArmReading, ForceReading, HandleReading, Health, PedalReading, SERVOS, ServoReading, TRACKED_TOOLS, Tracked,
+    TrackerReading,
+};
+
+use super::DEVICES_MAX;
+
+/// Most numbers of a reading that are summed up: three for each of a tracker's tools.
+pub const CHANNELS: usize = 3 * TRACKED_TOOLS;
+/// Ages that are told apart, in periods of the loop; the last one includes everything older.
+pub const AGES: usize = 48;
+
+/// Count, mean, spread and range of one number.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[expect(missing_docs, reason = "the names say it")]
+pub struct Spread {
+    pub count: u32,
+    pub mean: f64,
+    /// Sum of the squared distances from the mean.
+    pub squares: f64,
+    pub low: f64,
+    pub high: f64,
+}
+
+impl Spread {
+    /// Of nothing.
+    pub const NONE: Self = Self { count: 0, mean: 0.0, squares: 0.0, low: f64::INFINITY, high: f64::NEG_INFINITY };
+
+    /// Adds a value; one that is not finite is left out.
+    pub fn add(&mut self, value: f64) {
+        if value.is_finite() {
+            self.join(&Self { count: 1, mean: value, squares: 0.0, low: value, high: value });
+        }
+    }
+
+    /// Adds the values of another one.
+    pub fn join(&mut self, other: &Self) {
+        let count = self.count + other.count;
+        if other.count == 0 {
+            return;
+        }
+        let (share, apart) = (f64::from(other.count) / f64::from(count), other.mean - self.mean);
+        self.squares += other.squares + apart * apart * share * f64::from(self.count);
+        self.mean += apart * share;
+        self.low = self.low.min(other.low);
+        self.high = self.high.max(other.high);
+        self.count = count;
+    }
+
+    /// Standard deviation; zero with fewer than two values.
+    pub fn deviation(&self) -> f64 {
+        if self.count < 2 { 0.0 } else { (self.squares / f64::from(self.count - 1)).sqrt() }
+    }
+
+    /// Distance between the highest and the lowest value; zero without values.
+    pub fn extent(&self) -> f64 {
+        (self.high - self.low).max(0.0)
+    }
+}
+
+/// What one device has delivered.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Gauge {
+    /// The numbers of its readings:
+    ///
+    /// - handle: position (m), rotation since it was first read (rad), opening of the gripper (rad), buttons;
+    /// - arm: joint angles (rad); servos: angles (rad);
+    /// - force sensor: force (N), torque (Nm), acceleration (m/s^2);
+    /// - tracker: position of each tool in the camera's frame (m), as often as it is seen;
+    /// - pedal: its switches as one number.
+    pub channels: [Spread; CHANNELS],
+    /// Ticks by the age of the newest reading, in periods of the loop.
+    pub ages: [u16; AGES],
+    /// Readings accepted, since the device was opened.
+    pub readings: u64,
+    /// Readings that never arrived, since the device was opened.
+    pub lost: u64,
+    /// Frames refused for their checksum or structure, since the device was opened.
+    pub damaged: u64,
+    /// Readings refused for their status or numbers, since the device was opened.
+    pub refused: u64,
+}
+
+impl Gauge {
+    /// Of a device that has delivered nothing.
+    pub const NONE: Self =
+        Self { channels: [Spread::NONE; CHANNELS], ages: [0; AGES], readings: 0, lost: 0, damaged: 0, refused: 0 };
+
+    fn add(&mut self, values: impl IntoIterator<Item = f64>) {
+        self.channels.iter_mut().zip(values).for_each(|(channel, value)| channel.add(value));
+    }
+
+    /// Adds a reading of a handle; rotations are told from `from`.
+    pub fn handle(&mut self, reading: &HandleReading, from: &UnitQuaternion<f64>) {
+        let turned = reading.orientation.map_or(NOWHERE, |now| (from.inverse() * now).scaled_axis());
+        let rest = [reading.gripper_rad.unwrap_or(f64::NAN), f64::from(reading.buttons)];
+        self.add(reading.position_m.iter().chain(&turned).copied().chain(rest));
+    }
+
+    /// Adds a reading of an arm.
+    pub fn arm(&mut self, reading: &ArmReading) {
+        self.add(reading.joint_rad);
+    }
+
+    /// Adds a reading of a force sensor.
+    pub fn sensor(&mut self, reading: &ForceReading) {
+        let acceleration = reading.acceleration_m_s2.unwrap_or(NOWHERE);
+        self.add(reading.wrench.force_n.iter().chain(&reading.wrench.torque_nm).chain(&acceleration).copied());
+    }
+
+    /// Adds a reading of servos.
+    pub fn servos(&mut self, reading: &ServoReading) {
+        self.add(reading.position_rad[..SERVOS].iter().copied());
+    }
+
+    /// Adds a reading of a tracker.
+    pub fn tracker(&mut self, reading: &TrackerReading) {
+        for (tool, channels) in reading.tools.iter().zip(self.channels.chunks_exact_mut(3)) {
+            if let Tracked::Seen { position_in_c_m, .. } = tool {
+                channels.iter_mut().zip(position_in_c_m).for_each(|(channel, value)| channel.add(*value));
+            }
+        }
+    }
+
+    /// Adds a reading of a pedal.
+    pub fn pedal(&mut self, reading: PedalReading) {
+        self.add([f64::from(reading.pressed)]);
+    }
+
+    /// Notes the age of the newest reading in this tick, and the device's counters.
+    pub fn tick(&mut self, health: &Health, now_s: f64, period_s: f64) {
+        let age = (health.age_s(now_s) / period_s).round().clamp(0.0, (AGES - 1) as f64);
+        self.ages[age as usize] = self.ages[age as usize].saturating_add(1);
+        let Health { readings, lost, damaged, refused, .. } = *health;
+        (self.readings, self.lost, self.damaged, self.refused) = (readings, lost, damaged, refused);
+    }
+}
+
+/// Numbers that a device does not have.
+const NOWHERE: Vector3<f64> = Vector3::new(f64::NAN, f64::NAN, f64::NAN);
+
+/// What every device of a rig has delivered in a block of time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Gauges {
+    /// Begin of the block, s on the loop's clock.
+    pub from_s: f64,
+    /// Its end.
+    pub to_s: f64,
+    /// In the order of the roster.
+    pub devices: [Gauge; DEVICES_MAX],
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn joined_spreads_are_those_of_all_values() {
+        let values: Vec<f64> = (0..500).map(|k| 100.0 + f64::from(k * k % 97) * 1e-3).collect();
+        let (mut whole, mut joined) = (Spread::NONE, Spread::NONE);
+        for block in values.chunks(37) {
+            let mut part = Spread::NONE;
+            for value in block {
+                part.add(*value);
+            }
+            joined.join(&part);
+        }
+        for value in &values {
+            whole.add(*value);
+        }
+        let mean = values.iter().sum::<f64>() / 500.0;
+        let squares: f64 = values.iter().map(|value| (value - mean).powi(2)).sum();
+        for spread in [whole, joined] {
+            assert!((spread.mean - mean).abs() < 1e-12, "{spread:?}");
+            assert!((spread.deviation() - (squares / 499.0).sqrt()).abs() < 1e-12, "{spread:?}");
+            assert_eq!((spread.count, spread.low, spread.high), (500, 100.0, 100.096));
+        }
+        whole.add(f64::NAN);
+        whole.join(&Spread::NONE);
+        assert_eq!(whole.count, 500);
+        assert_eq!((Spread::NONE.deviation(), Spread::NONE.extent()), (0.0, 0.0));
+    }
+
+    #[test]
+    fn what_a_device_does_not_have_or_does_not_see_is_not_counted() {
+        let mut gauge = Gauge::NONE;
+        gauge.sensor(&ForceReading::default());
+        let counts = |gauge: &Gauge| gauge.channels.map(|channel| channel.count);
+        assert_eq!(counts(&gauge), [1, 1, 1, 1, 1, 1, 0, 0, 0, 0, 0, 0]);
+        let mut gauge = Gauge::NONE;
+        let seen = Tracked::Seen {
+            c_from_tool: UnitQuaternion::identity(),
+            position_in_c_m: Vector3::new(0.1, 0.2, 0.3),
+            error_m: 0.0,
+            at_the_edge: false,
+        };
+        let missing = Tracked::Missing { out_of_volume: false };
+        gauge.tracker(&TrackerReading { frame: 1, tools: [missing, seen, Tracked::Absent, Tracked::Disabled] });
+        assert_eq!(counts(&gauge), [0, 0, 0, 1, 1, 1, 0, 0, 0, 0, 0, 0]);
+        assert!((gauge.channels[5].mean - 0.3).abs() < 1e-12);
+    }
+
+    #[test]
+    fn ages_are_counted_in_periods_and_a_device_that_was_never_heard_is_as_old_as_can_be() {
+        let (mut gauge, mut health) = (Gauge::NONE, Health::default());
+        gauge.tick(&health, 1.0, 1e-3);
+        assert_eq!(gauge.ages[AGES - 1], 1);
+        health.accept(1.001);
+        for tick in 1..4 {
+            gauge.tick(&health, 1.0 + f64::from(tick) * 1e-3, 1e-3);
+        }
+        assert_eq!((gauge.ages[..3].to_vec(), gauge.readings), (vec![1, 1, 1], 1));
+    }
+}

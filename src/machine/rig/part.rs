@@ -1,0 +1,135 @@
+//! The parts of a rig: what a device is used for, and where a rig file describes it.
+
+use super::{Settings, Side};
+
+/// What a device is used for in a rig.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Part {
+    /// The handle in this hand.
+    Handle(Side),
+    /// The arm of this side.
+    Arm(Side),
+    /// The force sensor on the arm of this side: calibrations are bound to it.
+    Sensor(Side),
+    /// The servos of the instrument of this side.
+    Servos(Side),
+    /// The force sensor under the tissue.
+    TissueSensor,
+    /// The optical tracker.
+    Tracker,
+    /// The foot pedal.
+    Pedal,
+}
+
+/// Devices of one kind can take each other's places.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[expect(missing_docs, reason = "the names say it")]
+pub enum PartKind {
+    Handle,
+    Arm,
+    Sensor,
+    Servos,
+    Tracker,
+    Pedal,
+}
+
+impl PartKind {
+    /// Kinds of which each side has one.
+    pub const OF_A_SIDE: [Self; 4] = [Self::Handle, Self::Arm, Self::Sensor, Self::Servos];
+
+    /// The part of this kind on a side; `None` for a kind that both sides share.
+    pub const fn of(self, side: Side) -> Option<Part> {
+        match self {
+            Self::Handle => Some(Part::Handle(side)),
+            Self::Arm => Some(Part::Arm(side)),
+            Self::Sensor => Some(Part::Sensor(side)),
+            Self::Servos => Some(Part::Servos(side)),
+            Self::Tracker | Self::Pedal => None,
+        }
+    }
+}
+
+impl Part {
+    /// Every part, in the order of the roster.
+    pub const ALL: [Self; 11] = [
+        Self::Handle(Side::Right),
+        Self::Arm(Side::Right),
+        Self::Sensor(Side::Right),
+        Self::Servos(Side::Right),
+        Self::Handle(Side::Left),
+        Self::Arm(Side::Left),
+        Self::Sensor(Side::Left),
+        Self::Servos(Side::Left),
+        Self::TissueSensor,
+        Self::Tracker,
+        Self::Pedal,
+    ];
+
+    /// Its kind.
+    pub const fn kind(self) -> PartKind {
+        match self {
+            Self::Handle(_) => PartKind::Handle,
+            Self::Arm(_) => PartKind::Arm,
+            Self::Sensor(_) | Self::TissueSensor => PartKind::Sensor,
+            Self::Servos(_) => PartKind::Servos,
+            Self::Tracker => PartKind::Tracker,
+            Self::Pedal => PartKind::Pedal,
+        }
+    }
+
+    /// Its side; `None` for what both sides share.
+    pub const fn side(self) -> Option<Side> {
+        match self {
+            Self::Handle(side) | Self::Arm(side) | Self::Sensor(side) | Self::Servos(side) => Some(side),
+            Self::TissueSensor | Self::Tracker | Self::Pedal => None,
+        }
+    }
+
+    /// Its name on the screen and in messages: `right handle`.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Handle(Side::Right) => "right handle",
+            Self::Handle(Side::Left) => "left handle",
+            Self::Arm(Side::Right) => "right arm",
+            Self::Arm(Side::Left) => "left arm",
+            Self::Sensor(Side::Right) => "right sensor",
+            Self::Sensor(Side::Left) => "left sensor",
+            Self::Servos(Side::Right) => "right servos",
+            Self::Servos(Side::Left) => "left servos",
+            Self::TissueSensor => "tissue sensor",
+            Self::Tracker => "tracker",
+            Self::Pedal => "pedal",
+        }
+    }
+
+    /// Key of its table in a rig file.
+    pub const fn key(self) -> &'static str {
+        match self {
+            Self::Handle(Side::Right) => "devices.right.handle",
+            Self::Handle(Side::Left) => "devices.left.handle",
+            Self::Arm(Side::Right) => "devices.right.arm",
+            Self::Arm(Side::Left) => "devices.left.arm",
+            Self::Sensor(Side::Right) => "devices.right.sensor",
+            Self::Sensor(Side::Left) => "devices.left.sensor",
+            Self::Servos(Side::Right) => "devices.right.servos",
+            Self::Servos(Side::Left) => "devices.left.servos",
+            Self::TissueSensor => "devices.tissue_sensor",
+            Self::Tracker => "devices.tracker",
+            Self::Pedal => "devices.pedal",
+        }
+    }
+
+    /// Whether a rig with these devices has it.
+    pub const fn is_in(self, devices: &Settings) -> bool {
+        match self {
+            Self::Handle(side) | Self::Arm(side) | Self::Sensor(side) => devices.arm(side).is_some(),
+            Self::Servos(side) => match devices.arm(side) {
+                Some(set) => set.servos.is_some(),
+                None => false,
+            },
+            Self::TissueSensor => devices.tissue_sensor.is_some(),
+            Self::Tracker => devices.tracker.is_some(),
+            Self::Pedal => devices.pedal.is_some(),
+        }
+    }
+}

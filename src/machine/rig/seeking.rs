@@ -1,0 +1,242 @@
+//! Looks for devices that could become a part of a rig and that the rig does not use yet.
+//!
+//! Devices on USB are found by themselves; what is in a network is tried at an address that a person names. Each is
+//! asked for its identity by the driver of its kind. Not for the real-time thread: it opens devices and waits.
+
+use std::path::{Path, PathBuf};
+
+use nima_devices::{
+    Identity, Trouble, bota,
+    discovery::{Diagnosis, Outcome, Plugged, Probe, TIMEOUT, diagnose, probe_named, probes},
+    dynamixel, force_dimension, kinova, ndi,
+};
+use toml_edit::Value;
+
+use super::{Part, PartKind, Settings};
+
+/// A device that was found, and what a rig file has to say to use it.
+#[derive(Clone, Debug)]
+pub struct Offer {
+    /// Port, address or name of the device.
+    pub place: String,
+    /// Who it is.
+    pub identity: Identity,
+    /// Keys below the part's table, and their values.
+    pub(crate) changes: Vec<(&'static str, Value)>,
+}
+
+/// One place where a device was looked for.
+#[derive(Clone, Debug)]
+pub struct Sought {
+    /// Port or address.
+    pub place: String,
+    /// The device there, or why there is none.
+    pub found: Result<Offer, Trouble>,
+}
+
+/// Where `nima` looks by itself: ports for what is on a line, USB for the rest.
+struct Trial {
+    place: String,
+    serial: Option<String>,
+    changes: Vec<(&'static str, Value)>,
+    probe: Box<dyn Probe>,
+}
+
+/// Looks for devices for this part: at what is plugged in, and at `place` if a person named one.
+pub fn seek(part: Part, devices: &Settings, plugged: &Plugged, place: &str) -> Vec<Sought> {
+    let ports = Ports::free(devices, plugged, place.trim());
+    let trials = match part.kind() {
+        PartKind::Handle => return handles(part, devices),
+        PartKind::Pedal => return pedals(devices, plugged),
+        PartKind::Arm => arms(part, devices, place.trim()),
+        PartKind::Sensor => sensors(&ports),
+        PartKind::Servos => servos(part, devices, &ports),
+        PartKind::Tracker => trackers(devices, &ports),
+    };
+    let (probes, wanted): (Vec<_>, Vec<_>) =
+        trials.into_iter().map(|Trial { place, serial, changes, probe }| (probe, (place, serial, changes))).unzip();
+    let found = diagnose(probes, TIMEOUT);
+    found
+        .into_iter()
+        .zip(wanted)
+        .map(|(diagnosis, (place, serial, changes))| told(diagnosis, place, serial, changes))
+        .collect()
+}
+
+fn told(
+    diagnosis: Diagnosis,
+    place: String,
+    serial: Option<String>,
+    mut changes: Vec<(&'static str, Value)>,
+) -> Sought {
+    let found = match diagnosis.outcome {
+        Outcome::Trouble { trouble, .. } => Err(trouble),
+        Outcome::Connected(found) => {
+            let mut identity = found.identity;
+            // A bus has no serial number of its own; its adapter on USB has one.
+            match serial {
+                Some(serial) => identity.serial = serial,
+                None => {
+                    if let Some((_, number)) = changes.iter_mut().find(|(key, _)| *key == SERIAL_NUMBER) {
+                        *number = identity.serial.as_str().into();
+                    }
+                }
+            }
+            changes.retain(|(key, value)| *key != SERIAL_NUMBER || value.as_str() != Some(""));
+            Ok(Offer { place: place.clone(), identity, changes })
+        }
+    };
+    Sought { place, found }
+}
+
+/// Key of a sensor's serial number; filled in when the sensor has told it.
+const SERIAL_NUMBER: &str = "serial_number";
+
+/// Serial ports that no part of the rig uses, and what a person named.
+struct Ports {
+    /// Each with the serial number of its adapter on USB.
+    lines: Vec<(String, Option<String>)>,
+    /// A network address.
+    address: Option<String>,
+}
+
+impl Ports {
+    fn free(devices: &Settings, plugged: &Plugged, place: &str) -> Self {
+        let is_line = place.contains('/') || place.starts_with("COM");
+        let used = used_ports(devices);
+        let is_used = |path: &Path| used.iter().any(|used| same_file(used, path));
+        let named = is_line.then(|| (place.to_owned(), None));
+        let found = plugged.serial.iter().filter(|port| port.usb.is_some() && !is_used(&port.path)).map(|port| {
+            let serial = port.usb.as_ref().map(|usb| usb.serial.clone()).filter(|serial| !serial.is_empty());
+            (lasting_name(&port.path).display().to_string(), serial)
+        });
+        let lines = if is_line { named.into_iter().collect() } else { found.collect() };
+        Self { lines, address: (!is_line && !place.is_empty()).then(|| place.to_owned()) }
+    }
+}
+
+fn used_ports(devices: &Settings) -> Vec<PathBuf> {
+    let mut used = Vec::new();
+    for set in [&devices.right, &devices.left].into_iter().flatten() {
+        used.extend(set.sensor.bota().map(|sensor| sensor.port.clone()));
+        used.extend(set.servos.as_ref().map(|servos| servos.port.clone()));
+    }
+    used.extend(devices.tissue_sensor.as_ref().and_then(|sensor| sensor.bota()).map(|sensor| sensor.port.clone()));
+    used.extend(devices.tracker.as_ref().and_then(|tracker| tracker.port.clone()));
+    used.into_iter().map(PathBuf::from).collect()
+}
+
+fn same_file(one: &Path, other: &Path) -> bool {
+    one == other || matches!((one.canonicalize(), other.canonicalize()), (Ok(one), Ok(other)) if one == other)
+}
+
+/// The name of a port that holds its device's serial number and stays when devices are plugged in another order.
+fn lasting_name(port: &Path) -> PathBuf {
+    let names = std::fs::read_dir("/dev/serial/by-id").into_iter().flatten().flatten().map(|entry| entry.path());
+    names.into_iter().find(|name| same_file(name, port)).unwrap_or_else(|| port.to_owned())
+}
+
+/// Every handle that no program has open.
+fn handles(part: Part, devices: &Settings) -> Vec<Sought> {
+    let place = "USB".to_owned();
+    let now = part.side().and_then(|side| devices.arm(side)).and_then(|set| set.handle.force_dimension());
+    match force_dimension::attached(&now.cloned().unwrap_or_default()) {
+        Err(trouble) => vec![Sought { place, found: Err(trouble) }],
+        Ok(handles) => {
+            let offer = |(serial, identity): (u16, Identity)| {
+                let changes = vec![("serial", Value::from(i64::from(serial)))];
+                Sought { place: place.clone(), found: Ok(Offer { place: place.clone(), identity, changes }) }
+            };
+            handles.into_iter().map(offer).collect()
+        }
+    }
+}
+
+/// Pedals are known by their ids: nothing needs to be opened.
+fn pedals(devices: &Settings, plugged: &Plugged) -> Vec<Sought> {
+    let used = devices.pedal.as_ref().map(|pedal| pedal.source.clone());
+    let mut sought: Vec<Sought> = Vec::new();
+    for node in plugged.hid.iter().filter(|node| node.usable_as == Some("foot pedal")) {
+        let usb = &node.usb;
+        let ids = format!("{:04x}:{:04x}", usb.vendor, usb.product);
+        let place = if usb.serial.is_empty() { ids } else { format!("{ids}:{}", usb.serial) };
+        // One pedal has a node for each of its interfaces.
+        if used.as_ref() == Some(&place) || sought.iter().any(|one| one.place == place) {
+            continue;
+        }
+        let identity = Identity { product: usb.name.clone(), serial: usb.serial.clone(), ..Identity::default() };
+        let changes = vec![("source", Value::from(place.as_str()))];
+        sought.push(Sought { place: place.clone(), found: Ok(Offer { place, identity, changes }) });
+    }
+    sought
+}
+
+/// An arm at the address that a person named, else at the manufacturer's own.
+fn arms(part: Part, devices: &Settings, place: &str) -> Vec<Trial> {
+    let now =
+        part.side().and_then(|side| devices.arm(side)).and_then(|set| set.arm.kinova()).cloned().unwrap_or_default();
+    let usual = kinova::Settings::default();
+    let place = if place.is_empty() { usual.host.as_str() } else { place };
+    let Some(at) = kinova::Settings::at(place) else { return Vec::new() };
+    if place == usual.host
+        && [&devices.right, &devices.left]
+            .into_iter()
+            .flatten()
+            .any(|set| set.arm.kinova().is_some_and(|arm| arm.host == place))
+    {
+        return Vec::new();
+    }
+    let mut changes = vec![("host", Value::from(at.host.as_str()))];
+    if (at.tcp_port, at.udp_port) != (usual.tcp_port, usual.udp_port) {
+        changes.push(("tcp_port", i64::from(at.tcp_port).into()));
+        changes.push(("udp_port", i64::from(at.udp_port).into()));
+    }
+    let settings = kinova::Settings { host: at.host, tcp_port: at.tcp_port, udp_port: at.udp_port, ..now };
+    vec![Trial { place: place.to_owned(), serial: None, changes, probe: probes::arm(part.name(), settings) }]
+}
+
+/// A port that the system calls a modem is a sensor of the second generation; an adapter may carry either.
+fn sensors(ports: &Ports) -> Vec<Trial> {
+    use bota::Transport::{Gen0, GenA, Socket};
+    let trial = |place: &str, transport, name: &str| {
+        let settings = bota::Settings::new(transport, place);
+        settings.check().ok()?;
+        let changes = vec![("transport", name.into()), ("port", place.into()), (SERIAL_NUMBER, "".into())];
+        Some(Trial { place: place.to_owned(), serial: None, changes, probe: probes::sensor(place, settings) })
+    };
+    let on_line = |(place, _): &(String, Option<String>)| {
+        let is_usb = Path::new(place).canonicalize().is_ok_and(|real| real.to_string_lossy().contains("ttyACM"));
+        if is_usb { trial(place, GenA, "gen-a") } else { trial(place, Gen0, "gen0") }
+    };
+    let in_network = ports.address.iter().filter_map(|address| trial(address, Socket, "socket"));
+    ports.lines.iter().filter_map(on_line).chain(in_network).collect()
+}
+
+/// Servos are listed without being configured.
+fn servos(part: Part, devices: &Settings, ports: &Ports) -> Vec<Trial> {
+    let now = part.side().and_then(|side| devices.arm(side)).and_then(|set| set.servos.as_ref());
+    let baud = now.map_or(dynamixel::table::BAUDS[0], |servos| servos.baud);
+    let trial = |(place, serial): &(String, Option<String>)| {
+        let probe = probe_named(&format!("dynamixel={place}@{baud}")).ok()?;
+        let changes = vec![("port", Value::from(place.as_str()))];
+        Some(Trial { place: place.clone(), serial: serial.clone(), changes, probe })
+    };
+    ports.lines.iter().filter_map(trial).collect()
+}
+
+/// A tracker is opened with the tools of the rig.
+fn trackers(devices: &Settings, ports: &Ports) -> Vec<Trial> {
+    let Some(now) = &devices.tracker else { return Vec::new() };
+    let trial = |settings: ndi::Settings, key: &'static str, place: &str| {
+        settings.check().ok()?;
+        let changes = vec![(key, Value::from(place))];
+        Some(Trial { place: place.to_owned(), serial: None, changes, probe: probes::tracker(place, settings) })
+    };
+    let on_line = ports.lines.iter().filter_map(|(place, _)| {
+        trial(ndi::Settings { port: Some(place.clone()), address: None, ..now.clone() }, "port", place)
+    });
+    let in_network = ports.address.iter().filter_map(|address| {
+        trial(ndi::Settings { address: Some(address.clone()), port: None, ..now.clone() }, "address", address)
+    });
+    on_line.chain(in_network).collect()
+}

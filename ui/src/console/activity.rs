@@ -1,0 +1,232 @@
+//! Which devices are being moved, pressed or pushed right now, so that a person sees which one is which.
+//!
+//! Every number of a device's readings has its own noise, which is learnt while it rests. A device is active while one
+//! of its numbers changes by clearly more than that, and by more than what nobody does on purpose.
+
+use nima_machine::rig::{CHANNELS, DEVICES_MAX, Gauge, Gauges, Part, PartKind, RosterEntry, Spread};
+
+/// Blocks from which the noise is learnt before anything counts as a change; a block is 0.1 s.
+const LEARNING: u32 = 4;
+/// How far the mean of a block lies from where the device rested, and how wide a block is, in standard deviations of
+/// its noise, before this counts as a change.
+const APART: f64 = 4.0;
+const WIDE: f64 = 10.0;
+/// How fast place and noise are learnt at rest, and the noise of a device that never rests, per block.
+const LEARN: f64 = 0.3;
+const LEARN_MOVING: f64 = 0.02;
+/// How long a device stays lit after its last change, s.
+const LIT_S: f64 = 0.5;
+
+/// A smaller change of this number of a reading is nothing that a person does on purpose: m, rad, N, Nm, m/s^2.
+pub(crate) const fn least(kind: PartKind, channel: usize) -> f64 {
+    match (kind, channel) {
+        (PartKind::Handle, 0..=2) => 3e-4,
+        (PartKind::Handle, 3..=6) | (PartKind::Servos, _) => 0.01,
+        (PartKind::Arm, _) => 2e-3,
+        (PartKind::Sensor, 0..=2) => 0.3,
+        (PartKind::Sensor, 3..=5) => 0.02,
+        (PartKind::Tracker, _) => 7e-4,
+        // An acceleration, a button or a switch.
+        (PartKind::Sensor | PartKind::Handle | PartKind::Pedal, _) => 0.5,
+    }
+}
+
+/// One number of a device's readings.
+#[derive(Clone, Copy, Debug, Default)]
+struct Usual {
+    blocks: u32,
+    /// Where it rests.
+    mean: f64,
+    /// Standard deviation at rest.
+    noise: f64,
+}
+
+impl Usual {
+    /// How many times the change of this block is larger than what counts as one; above 1 it is one.
+    fn follow(&mut self, block: &Spread, least: f64) -> f64 {
+        if block.count == 0 {
+            return 0.0;
+        }
+        let (mean, noise) = (block.mean, block.deviation());
+        self.blocks += 1;
+        if self.blocks <= LEARNING {
+            (self.mean, self.noise) = (mean, if self.blocks == 1 { noise } else { self.noise.min(noise) });
+            return 0.0;
+        }
+        let apart = (mean - self.mean).abs() / (least + APART * self.noise);
+        let wide = block.extent() / (least + WIDE * self.noise);
+        let change = apart.max(wide);
+        if change > 1.0 {
+            // Where it is now may be where it rests from now on.
+            self.mean = mean;
+            self.noise += LEARN_MOVING * (noise - self.noise);
+        } else {
+            self.mean += LEARN * (mean - self.mean);
+            self.noise += LEARN * (noise - self.noise);
+        }
+        change
+    }
+}
+
+/// One device.
+#[derive(Clone, Copy, Debug)]
+struct Device {
+    kind: Option<PartKind>,
+    channels: [Usual; CHANNELS],
+    /// When it was last active, s on the loop's clock, and by which number of its readings.
+    active: Option<(f64, usize)>,
+}
+
+impl Device {
+    fn follow(&mut self, gauge: &Gauge, at_s: f64) {
+        let Some(kind) = self.kind else { return };
+        let mut most = (1.0, None);
+        for (channel, (usual, block)) in self.channels.iter_mut().zip(&gauge.channels).enumerate() {
+            let change = usual.follow(block, least(kind, channel));
+            if change > most.0 {
+                most = (change, Some(channel));
+            }
+        }
+        if let (_, Some(channel)) = most {
+            self.active = Some((at_s, channel));
+        }
+    }
+}
+
+/// The activity of a rig's devices.
+#[derive(Debug)]
+pub(crate) struct Activity {
+    devices: Box<[Device; DEVICES_MAX]>,
+    now_s: f64,
+}
+
+impl Activity {
+    /// Of these devices, none of which is known to rest or to move.
+    pub(crate) fn of(roster: &[RosterEntry]) -> Self {
+        Self::of_kinds(|place| roster.get(place).and_then(|entry| entry.part).map(Part::kind))
+    }
+
+    fn of_kinds(kind: impl Fn(usize) -> Option<PartKind>) -> Self {
+        let device = |place| Device { kind: kind(place), channels: [Usual::default(); CHANNELS], active: None };
+        Self { devices: Box::new(std::array::from_fn(device)), now_s: 0.0 }
+    }
+
+    /// Adds a block; returns whether other devices are lit now than before.
+    pub(crate) fn follow(&mut self, gauges: &Gauges) -> bool {
+        let before = self.lit_ones();
+        self.now_s = gauges.to_s;
+        for (device, gauge) in self.devices.iter_mut().zip(&gauges.devices) {
+            device.follow(gauge, gauges.to_s);
+        }
+        self.lit_ones() != before
+    }
+
+    /// Which number of its readings lights this device now.
+    pub(crate) fn lit(&self, place: usize) -> Option<usize> {
+        let (at_s, channel) = self.devices.get(place)?.active?;
+        (self.now_s - at_s <= LIT_S).then_some(channel)
+    }
+
+    fn lit_ones(&self) -> [Option<usize>; DEVICES_MAX] {
+        std::array::from_fn(|place| self.lit(place))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Two handles, two sensors, a pedal.
+    const KINDS: [PartKind; 5] =
+        [PartKind::Handle, PartKind::Handle, PartKind::Sensor, PartKind::Sensor, PartKind::Pedal];
+
+    struct Bench {
+        activity: Activity,
+        samples: u64,
+        block: u32,
+    }
+
+    impl Bench {
+        fn new() -> Self {
+            let activity = Activity::of_kinds(|place| KINDS.get(place).copied());
+            let mut this = Self { activity, samples: 0, block: 0 };
+            for _ in 0..20 {
+                assert!(this.block(|_, _, _| 0.0).is_empty(), "its own noise is no change");
+            }
+            this
+        }
+
+        /// One block of every device: noise, and what `moved` adds at a time (s); the lit ones with their channels.
+        fn block(&mut self, moved: impl Fn(usize, usize, f64) -> f64) -> Vec<(usize, usize)> {
+            let from_s = f64::from(self.block) * 0.1;
+            self.block += 1;
+            let mut gauges = Gauges { from_s, to_s: from_s + 0.1, devices: [Gauge::NONE; DEVICES_MAX] };
+            for sample in 0..100 {
+                let t_s = from_s + f64::from(sample) * 1e-3;
+                for (place, kind) in KINDS.into_iter().enumerate() {
+                    for channel in 0..9 {
+                        self.samples += 1;
+                        // Even, but without a pattern that a block could show.
+                        let even = (self.samples * self.samples % 9973) as f64 / 9973.0 - 0.5;
+                        let noise = if kind == PartKind::Pedal { 0.0 } else { 0.6 * least(kind, channel) * even };
+                        gauges.devices[place].channels[channel].add(1.0 + noise + moved(place, channel, t_s));
+                    }
+                }
+            }
+            self.activity.follow(&gauges);
+            (0..KINDS.len()).filter_map(|place| Some((place, self.activity.lit(place)?))).collect()
+        }
+    }
+
+    #[test]
+    fn the_handle_that_is_moved_lights_up_and_no_other() {
+        for hand in [0, 1] {
+            let mut bench = Bench::new();
+            let since_s = 2.0;
+            // 1 cm to and fro, twice a second.
+            let to_and_fro = |place, channel, t_s: f64| {
+                if (place, channel) == (hand, 1) { 0.01 * (12.6 * (t_s - since_s)).sin() } else { 0.0 }
+            };
+            for _ in 0..10 {
+                assert_eq!(bench.block(to_and_fro), [(hand, 1)]);
+            }
+            let lit = (0..10).map(|_| bench.block(|_, _, _| 0.0).len()).collect::<Vec<_>>();
+            assert_eq!((lit[2], lit[9]), (1, 0), "it goes out half a second later: {lit:?}");
+        }
+    }
+
+    #[test]
+    fn a_push_that_stays_is_seen_once_and_a_slow_one_too() {
+        let mut bench = Bench::new();
+        let pushed = |place, channel, _| if (place, channel) == (3, 2) { 2.0 } else { 0.0 };
+        assert_eq!(bench.block(pushed), [(3, 2)]);
+        let still: Vec<_> = (0..20).map(|_| bench.block(pushed).len()).collect();
+        assert_eq!(still[19], 0, "a load that rests is no change: {still:?}");
+        let mut bench = Bench::new();
+        // 3 N in a second.
+        let rising = |place, channel, t_s: f64| if (place, channel) == (2, 0) { 3.0 * (t_s - 2.0) } else { 0.0 };
+        let seen: Vec<_> = (0..10).map(|_| bench.block(rising)).collect();
+        assert!(seen[3..].iter().all(|lit| lit == &[(2, 0)]), "{seen:?}");
+    }
+
+    #[test]
+    fn a_pedal_lights_up_when_it_is_pressed_and_when_it_is_released() {
+        let mut bench = Bench::new();
+        let pressed = |place, _, _| if place == 4 { 1.0 } else { 0.0 };
+        assert_eq!(bench.block(pressed)[0].0, 4);
+        (0..10).for_each(|_| drop(bench.block(pressed)));
+        assert_eq!(bench.activity.lit(4), None);
+        assert_eq!(bench.block(|_, _, _| 0.0)[0].0, 4);
+    }
+
+    #[test]
+    fn a_device_that_shakes_all_the_time_becomes_quiet() {
+        let mut bench = Bench::new();
+        let shaking = |place, channel, t_s: f64| {
+            if (place, channel) == (2, 0) { (300.0 * t_s).sin() } else { 0.0 }
+        };
+        assert_eq!(bench.block(shaking), [(2, 0)]);
+        (0..300).for_each(|_| drop(bench.block(shaking)));
+        assert_eq!(bench.activity.lit(2), None);
+    }
+}

@@ -1,0 +1,120 @@
+//! Other devices for the rig in use: the rig file is changed and written, and the machine starts again with it, idle.
+
+use std::path::{Path, PathBuf};
+
+use nima_machine::config::{RigConfig, RigFile};
+
+use super::{ConsoleApp, starting::Undo};
+use crate::console::{
+    chain,
+    panels::devices::{Change, why_not_to_change},
+    start::Choice,
+    text,
+};
+
+/// Names that are tried for a copy of a built-in rig.
+const COPIES_MAX: u32 = 1000;
+
+impl ConsoleApp {
+    /// Changes the rig file and starts the machine again; tells on the panel what was done, or why not.
+    pub(super) fn connect(&mut self, change: &Change) {
+        // The newest state counts: somebody may have engaged since the panel was drawn.
+        self.take_in();
+        let told = match why_not_to_change(&self.live, self.starting.is_some()) {
+            Some(reason) => Err(reason.to_owned()),
+            None => write(self.settings.folder(), &self.running.rig, change),
+        };
+        match told {
+            Ok(Written { path, told, undo }) => {
+                self.panels.devices.tell(told);
+                let choice = Choice { rig: path.display().to_string(), ..self.running.clone() };
+                self.begin_changed(choice, undo);
+            }
+            Err(cause) => self.panels.devices.tell(text::devices::not_changed(&cause)),
+        }
+    }
+}
+
+/// A rig file that was written.
+#[derive(Debug)]
+struct Written {
+    path: PathBuf,
+    told: String,
+    undo: Undo,
+}
+
+/// Writes the changed rig: in its own file, or in a new one in `folder` if it is built in.
+fn write(folder: Option<&Path>, rig: &str, change: &Change) -> Result<Written, String> {
+    let mut file = RigFile::of(rig).map_err(|error| chain(&error))?;
+    let before = file.text();
+    match change {
+        Change::ExchangeSides(kind) => file.exchange_sides(*kind),
+        Change::Choose(part, chosen) => file.choose(*part, chosen),
+    }
+    let is_built_in = RigConfig::names().any(|name| name == rig);
+    let path = if is_built_in {
+        let name = file.rig().map_err(|error| chain(&error))?.name;
+        let (path, number) = free_path(folder.ok_or(text::start::NO_FOLDER)?, rig)?;
+        file.set("name", format!("{name} {number}"));
+        path
+    } else {
+        PathBuf::from(rig)
+    };
+    let name = file.save(&path).map_err(|error| chain(&error))?.name;
+    let told = if is_built_in { text::devices::saved_as(&name, &path) } else { text::devices::saved(&path) };
+    let undo = Undo { path: path.clone(), text: (!is_built_in).then_some(before) };
+    Ok(Written { path, told, undo })
+}
+
+/// A file that is not there yet, and its number: `rigs/emulated-2.toml`, 2.
+fn free_path(folder: &Path, rig: &str) -> Result<(PathBuf, u32), String> {
+    let path = |number| folder.join("rigs").join(format!("{rig}-{number}")).with_extension("toml");
+    let free = (2..COPIES_MAX).map(|number| (path(number), number)).find(|(path, _)| !path.exists());
+    free.ok_or_else(|| text::start::taken(&path(COPIES_MAX)))
+}
+
+#[cfg(test)]
+mod tests {
+    use nima_machine::{
+        config::Chosen,
+        rig::{Part, PartKind, Settings, Side},
+    };
+
+    use super::*;
+
+    fn devices(path: &Path) -> Settings {
+        RigConfig::load(path.to_str().unwrap()).unwrap().devices.unwrap()
+    }
+
+    #[test]
+    fn a_built_in_rig_is_copied_and_the_copy_is_changed_in_its_place() {
+        let folder = tempfile::tempdir().unwrap();
+        let was = RigConfig::load("emulated").unwrap().devices.unwrap();
+        let handles = Change::ExchangeSides(PartKind::Handle);
+        let first = write(Some(folder.path()), "emulated", &handles).unwrap();
+        assert_eq!(first.path, folder.path().join("rigs/emulated-2.toml"));
+        assert!(first.told.contains("\"Emulated rig 2\"") && first.told.contains("emulated-2.toml"), "{}", first.told);
+        assert_eq!(devices(&first.path).right.unwrap().handle, was.left.as_ref().unwrap().handle);
+        let second = write(Some(folder.path()), "emulated", &handles).unwrap();
+        assert_eq!(second.path, folder.path().join("rigs/emulated-3.toml"), "nothing is written over");
+
+        let sensor = Change::Choose(Part::Sensor(Side::Left), Chosen::Of(Part::TissueSensor));
+        let again = write(None, first.path.to_str().unwrap(), &sensor).unwrap();
+        assert_eq!(again.path, first.path);
+        let now = devices(&first.path);
+        assert_eq!(now.left.as_ref().map(|set| &set.sensor), was.tissue_sensor.as_ref());
+        assert_eq!(now.right.unwrap().handle, was.left.unwrap().handle);
+
+        again.undo.take_back();
+        assert_eq!(devices(&first.path).tissue_sensor, was.tissue_sensor);
+        first.undo.take_back();
+        assert!(!first.path.exists(), "what was not there before is not there again");
+    }
+
+    #[test]
+    fn without_a_folder_or_a_file_nothing_is_written_and_the_cause_is_told() {
+        let handles = Change::ExchangeSides(PartKind::Handle);
+        assert_eq!(write(None, "emulated", &handles).unwrap_err(), text::start::NO_FOLDER);
+        assert!(write(None, "/no/such/rig.toml", &handles).unwrap_err().contains("/no/such/rig.toml"));
+    }
+}

@@ -1,0 +1,274 @@
+//! The test of a device: what it delivered in about two seconds, and what is to be said about it.
+
+use nalgebra::Vector3;
+use nima_core::frames::GRAVITY_M_S2;
+use nima_machine::rig::{AGES, CHANNELS, Gauge, Gauges, Nominal, Part, PartKind, Spread};
+
+use crate::console::activity::least;
+
+/// Blocks of 0.1 s in a test; the counters of the first one are where it begins.
+pub(super) const BLOCKS: usize = 21;
+/// The rate may differ from the nominal one by this share.
+const RATE_OFF: f64 = 0.05;
+/// Share of the readings that may be lost.
+const LOST_MAX: f64 = 0.005;
+/// A reading may be as old as this many periods of the device, and as this many ticks, s.
+const AGE_PERIODS: f64 = 2.0;
+const AGE_TICKS: f64 = 2.0;
+/// The same for a device without a rate of its own, s: half of what the loop accepts.
+const AGE_MAX_S: f64 = 0.010;
+/// An accelerometer at rest may be off by this much, m/s^2: three hundredths of gravity.
+const GRAVITY_OFF_M_S2: f64 = 0.3;
+/// Share of a range from which its end is near.
+const NEAR_END: f64 = 0.95;
+/// Share of the frames in which a marker is seen.
+const SEEN_MIN: f64 = 0.95;
+/// Channels of a force sensor's accelerometer.
+const ACCELERATION: std::ops::Range<usize> = 6..9;
+
+/// Something to look at, with a cause and a cure on the screen.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Finding {
+    /// No reading came.
+    Silent,
+    /// It was opened again during the test.
+    Reopened,
+    /// Fewer or more readings than it should send.
+    Rate { hz: f64, nominal_hz: f64 },
+    /// Readings are missing.
+    Lost { count: u64 },
+    /// Frames were damaged.
+    Damaged { count: u64 },
+    /// Readings were refused for what they say.
+    Refused { count: u64 },
+    /// Readings come late or in bursts.
+    Late { p99_s: f64, most_s: f64 },
+    /// A force sensor repeats the same numbers.
+    Frozen,
+    /// It did not rest: noise and gravity cannot be judged.
+    Moved { channel: usize },
+    /// More noise than such a device has.
+    Noisy { channel: usize, deviation: f64, most: f64 },
+    /// At rest the accelerometer does not measure gravity.
+    Gravity { size_m_s2: f64 },
+    /// Close to the end of its range.
+    AtTheEnd { channel: usize, value: f64, range: [f64; 2] },
+    /// A marker is not seen, or not always.
+    Hidden { tool: usize, share: f64 },
+}
+
+/// One number of a device's readings during the test.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Measured {
+    pub(super) channel: usize,
+    /// Standard deviation within tenths of a second: the noise, without slow motion.
+    pub(super) noise: f64,
+    pub(super) low: f64,
+    pub(super) high: f64,
+    pub(super) range: Option<[f64; 2]>,
+}
+
+/// What a test has found.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Checkup {
+    pub(super) part: Part,
+    /// Duration, s.
+    pub(super) took_s: f64,
+    pub(super) rate_hz: f64,
+    pub(super) nominal_hz: Option<f64>,
+    /// Each number that it delivered.
+    pub(super) measured: Vec<Measured>,
+    /// Age of the newest reading in a tick, s: median and 99th percentile; `None` if it was never heard.
+    pub(super) age_s: Option<[f64; 2]>,
+    pub(super) lost: u64,
+    pub(super) damaged: u64,
+    pub(super) refused: u64,
+    /// Mean acceleration, m/s^2; of a sensor at rest it points upwards.
+    pub(super) up_m_s2: Option<Vector3<f64>>,
+    /// What to look at; empty if all is fine.
+    pub(super) findings: Vec<Finding>,
+}
+
+/// What a test needs to know of a device.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Subject<'a> {
+    pub(super) part: Part,
+    /// Place in the roster.
+    pub(super) place: usize,
+    pub(super) nominal: Nominal,
+    /// Period of the loop, s.
+    pub(super) period_s: f64,
+    /// Number of tools that a tracker follows.
+    pub(super) tools: usize,
+    pub(super) blocks: &'a [&'a Gauges],
+}
+
+impl Checkup {
+    /// The test of a device from these blocks, oldest first; `None` with fewer than two.
+    pub(super) fn of(subject: &Subject<'_>) -> Option<Self> {
+        let (first, rest) = subject.blocks.split_first()?;
+        let last = rest.last()?;
+        let [before, after] = [first, last].map(|block| &block.devices[subject.place]);
+        let took_s = last.to_s - first.to_s;
+        let readings = after.readings.saturating_sub(before.readings);
+        let gauges: Vec<&Gauge> = rest.iter().map(|block| &block.devices[subject.place]).collect();
+        let mut this = Self {
+            part: subject.part,
+            took_s,
+            rate_hz: readings as f64 / took_s.max(1e-9),
+            nominal_hz: subject.nominal.rate_hz,
+            measured: (0..CHANNELS).filter_map(|channel| measured(channel, &gauges, &subject.nominal)).collect(),
+            age_s: ages(&gauges, subject.period_s),
+            lost: after.lost.saturating_sub(before.lost),
+            damaged: after.damaged.saturating_sub(before.damaged),
+            refused: after.refused.saturating_sub(before.refused),
+            up_m_s2: None,
+            findings: Vec::new(),
+        };
+        if subject.nominal.inertial {
+            let mean = ACCELERATION.map(|channel| whole(channel, &gauges)).filter(|spread| spread.count > 0);
+            let mean: Vec<f64> = mean.map(|spread| spread.mean).collect();
+            this.up_m_s2 = <[f64; 3]>::try_from(mean).ok().map(Vector3::from);
+        }
+        if after.readings < before.readings {
+            this.findings.push(Finding::Reopened);
+        } else if readings == 0 && Nominal::is_steady(subject.part) {
+            this.findings.push(Finding::Silent);
+        } else {
+            let ticks: u64 = gauges.iter().flat_map(|gauge| gauge.ages).map(u64::from).sum();
+            this.judge_delivery(subject, readings, ticks);
+            this.judge_values(subject, &gauges);
+        }
+        Some(this)
+    }
+
+    fn judge_delivery(&mut self, subject: &Subject<'_>, readings: u64, ticks: u64) {
+        // An arm answers once in a tick: what the loop missed is not its fault.
+        let most_hz = if subject.part.kind() == PartKind::Arm { ticks as f64 / self.took_s } else { f64::INFINITY };
+        if let Some(nominal_hz) = self.nominal_hz
+            && (self.rate_hz / nominal_hz.min(most_hz) - 1.0).abs() > RATE_OFF
+        {
+            self.findings.push(Finding::Rate { hz: self.rate_hz, nominal_hz });
+        }
+        if self.lost as f64 > LOST_MAX * readings as f64 {
+            self.findings.push(Finding::Lost { count: self.lost });
+        }
+        if self.damaged > 0 {
+            self.findings.push(Finding::Damaged { count: self.damaged });
+        }
+        if self.refused > 0 {
+            self.findings.push(Finding::Refused { count: self.refused });
+        }
+        let most_s = self.nominal_hz.map_or(AGE_MAX_S, |hz| AGE_PERIODS / hz + AGE_TICKS * subject.period_s);
+        if let Some([_, p99_s]) = self.age_s.filter(|_| Nominal::is_steady(subject.part))
+            && p99_s > most_s + 0.5 * subject.period_s
+        {
+            self.findings.push(Finding::Late { p99_s, most_s });
+        }
+    }
+
+    fn judge_values(&mut self, subject: &Subject<'_>, gauges: &[&Gauge]) {
+        let kind = subject.part.kind();
+        if kind == PartKind::Tracker {
+            let frames = (self.rate_hz * self.took_s).max(1.0);
+            let share = |tool: usize| f64::from(whole(3 * tool, gauges).count) / frames;
+            let hidden = (0..subject.tools).map(|tool| Finding::Hidden { tool, share: share(tool) });
+            self.findings
+                .extend(hidden.filter(|one| matches!(one, Finding::Hidden { share, .. } if *share < SEEN_MIN)));
+        }
+        if matches!(kind, PartKind::Sensor)
+            && !self.measured.is_empty()
+            && self.measured.iter().all(|one| one.high <= one.low)
+        {
+            self.findings.push(Finding::Frozen);
+        }
+        let at_the_end = self.measured.iter().filter_map(|&Measured { channel, low, high, range, .. }| {
+            let range = range?;
+            let reach = NEAR_END * (range[1] - range[0]) / 2.0;
+            let middle = f64::midpoint(range[0], range[1]);
+            let value = if high - middle > middle - low { high } else { low };
+            // A closed gripper is at the end of its range on purpose.
+            let on_purpose = kind == PartKind::Handle && channel == 6;
+            ((value - middle).abs() > reach && !on_purpose).then_some(Finding::AtTheEnd { channel, value, range })
+        });
+        self.findings.extend(at_the_end);
+        if let Some(channel) = moved(kind, gauges) {
+            self.findings.push(Finding::Moved { channel });
+            return;
+        }
+        let noisy = self.measured.iter().filter_map(|one| {
+            let most = noise_max(kind, one.channel)?;
+            (one.noise > most).then_some(Finding::Noisy { channel: one.channel, deviation: one.noise, most })
+        });
+        self.findings.extend(noisy);
+        if let Some(up) = self.up_m_s2
+            && (up.norm() - GRAVITY_M_S2).abs() > GRAVITY_OFF_M_S2
+        {
+            self.findings.push(Finding::Gravity { size_m_s2: up.norm() });
+        }
+    }
+}
+
+/// The number of a reading that moved most during the test, if one did.
+fn moved(kind: PartKind, gauges: &[&Gauge]) -> Option<usize> {
+    let change = |channel: usize| {
+        let mut means = Spread::NONE;
+        let blocks = gauges.iter().map(|gauge| &gauge.channels[channel]).filter(|block| block.count > 0);
+        for block in blocks {
+            means.add(block.mean);
+        }
+        means.extent() / (2.0 * least(kind, channel))
+    };
+    let most = (0..CHANNELS).map(|channel| (channel, change(channel))).max_by(|a, b| a.1.total_cmp(&b.1))?;
+    (most.1 > 1.0).then_some(most.0)
+}
+
+fn whole(channel: usize, gauges: &[&Gauge]) -> Spread {
+    let mut whole = Spread::NONE;
+    for gauge in gauges {
+        whole.join(&gauge.channels[channel]);
+    }
+    whole
+}
+
+fn measured(channel: usize, gauges: &[&Gauge], nominal: &Nominal) -> Option<Measured> {
+    let Spread { count, low, high, .. } = whole(channel, gauges);
+    if count == 0 {
+        return None;
+    }
+    let blocks = || gauges.iter().map(|gauge| &gauge.channels[channel]).filter(|block| block.count > 1);
+    let free: u32 = blocks().map(|block| block.count - 1).sum();
+    let squares: f64 = blocks().map(|block| block.squares).sum();
+    let noise = if free == 0 { 0.0 } else { (squares / f64::from(free)).sqrt() };
+    Some(Measured { channel, noise, low, high, range: nominal.ranges[channel] })
+}
+
+/// Median and 99th percentile of the age, s; `None` if the device was never heard.
+fn ages(gauges: &[&Gauge], period_s: f64) -> Option<[f64; 2]> {
+    let counts: [u64; AGES] = std::array::from_fn(|age| gauges.iter().map(|gauge| u64::from(gauge.ages[age])).sum());
+    let total: u64 = counts.iter().sum();
+    let at = |share: f64| {
+        let mut left = (share * total as f64).ceil() as u64;
+        let place = counts.iter().position(|count| {
+            let reached = *count >= left;
+            left = left.saturating_sub(*count);
+            reached
+        });
+        place.unwrap_or(AGES - 1) as f64 * period_s
+    };
+    (total > 0 && counts[AGES - 1] < total).then(|| [at(0.5), at(0.99)])
+}
+
+/// Most noise of a device in order, standard deviation; `None` where noise means nothing. Force sensors: what the
+/// calibrations are laid out for. The others: well above their resolution.
+const fn noise_max(kind: PartKind, channel: usize) -> Option<f64> {
+    match (kind, channel) {
+        (PartKind::Handle, 0..=2) => Some(1e-4),
+        (PartKind::Handle, 3..=6) | (PartKind::Servos, _) | (PartKind::Sensor, 3..=5) => Some(5e-3),
+        (PartKind::Arm, _) => Some(5e-4),
+        (PartKind::Sensor, 0..=2) => Some(0.1),
+        (PartKind::Sensor, _) => Some(0.2),
+        (PartKind::Tracker, _) => Some(3e-4),
+        (PartKind::Handle | PartKind::Pedal, _) => None,
+    }
+}

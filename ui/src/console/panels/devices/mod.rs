@@ -1,0 +1,230 @@
+//! The devices of the rig: which one is which, whether each is connected and measures well, and which one is used for
+//! what.
+//!
+//! Left and right stand side by side where there is room. A change of the rig is a [`Change`] that the window carries
+//! out: it writes the rig file and starts the machine again.
+
+mod checkup;
+mod choosing;
+mod report;
+mod row;
+#[cfg(test)]
+mod tests;
+
+use egui::{Align, Button, Label, Layout, RichText, Ui, vec2};
+use nima_machine::{
+    config::Chosen,
+    messages::LoopState,
+    rig::{Gauges, Nominal, Part, PartKind, Roster, SIDES, Side},
+};
+
+use crate::console::{
+    live::Live,
+    text, theme,
+    widgets::{small, weak},
+};
+use checkup::{BLOCKS, Checkup, Subject};
+use choosing::Chooser;
+use row::row_ui;
+
+/// Width from which left and right stand side by side.
+const TWO_COLUMNS: f32 = 600.0;
+/// A test that gets no data for so long is broken off.
+const TEST_MAX: std::time::Duration = std::time::Duration::from_secs(6);
+
+/// A change of the rig that a person asked for.
+#[derive(Clone, Debug)]
+pub enum Change {
+    /// Exchange the devices of this kind between right and left.
+    ExchangeSides(PartKind),
+    /// Use another device for this part.
+    Choose(Part, Chosen),
+}
+
+/// A test that is going on.
+#[derive(Debug)]
+struct Test {
+    /// Places in the roster.
+    places: Vec<usize>,
+    /// Number of the block with which it begins.
+    from: u64,
+    began: std::time::Instant,
+}
+
+/// State of the panel.
+#[derive(Debug, Default)]
+pub struct DevicesState {
+    test: Option<Test>,
+    results: Vec<(usize, Checkup)>,
+    chooser: Option<Chooser>,
+    told: Option<String>,
+    /// The machine is being started.
+    pub(in crate::console) is_starting: bool,
+    /// The panel was drawn in the last frame: lights are looked after while the window rests.
+    pub(in crate::console) is_seen: bool,
+}
+
+impl DevicesState {
+    /// Shows this at the top of the panel.
+    pub(in crate::console) fn tell(&mut self, told: String) {
+        self.told = Some(told);
+    }
+
+    /// Other devices may be there now: what was found out about the ones before is forgotten.
+    pub(in crate::console) fn begin_anew(&mut self) {
+        (self.test, self.chooser) = (None, None);
+        self.results.clear();
+    }
+
+    /// Whether a test is going on, which needs every block of data.
+    pub(in crate::console) const fn is_testing(&self) -> bool {
+        self.test.is_some()
+    }
+
+    fn begin_test(&mut self, places: Vec<usize>, live: &Live) {
+        self.results.retain(|(place, _)| !places.contains(place));
+        self.told = None;
+        self.test = Some(Test { places, from: live.blocks_counted, began: std::time::Instant::now() });
+    }
+
+    fn is_tested(&self, place: usize) -> bool {
+        self.test.as_ref().is_some_and(|test| test.places.contains(&place))
+    }
+
+    fn result(&self, place: usize) -> Option<&Checkup> {
+        self.results.iter().find(|(at, _)| *at == place).map(|(_, result)| result)
+    }
+
+    /// Ends a test that has its data.
+    fn follow_test(&mut self, live: &Live) {
+        let Some(test) = &self.test else { return };
+        if live.blocks_counted < test.from + BLOCKS as u64 {
+            if test.began.elapsed() > TEST_MAX {
+                self.test = None;
+                self.tell(text::devices::TEST_BROKEN_OFF.to_owned());
+            }
+            return;
+        }
+        let Some(test) = self.test.take() else { return };
+        let blocks: Vec<&Gauges> = {
+            let newest = (live.blocks_counted - test.from) as usize;
+            let skip = live.blocks.len().saturating_sub(newest);
+            live.blocks.iter().skip(skip).take(BLOCKS).map(AsRef::as_ref).collect()
+        };
+        for place in test.places {
+            let checkup = subject(live, place, &blocks).and_then(|subject| Checkup::of(&subject));
+            self.results.extend(checkup.map(|checkup| (place, checkup)));
+        }
+    }
+}
+
+fn subject<'a>(live: &Live, place: usize, blocks: &'a [&'a Gauges]) -> Option<Subject<'a>> {
+    let (part, devices) = (live.roster.get(place)?.part?, live.rig.devices.as_ref()?);
+    let nominal = Nominal::of(part, devices, live.rig.rate_hz);
+    let tools = devices.tracker.as_ref().map_or(0, |tracker| tracker.tools.len());
+    Some(Subject { part, place, nominal, period_s: 1.0 / live.rig.rate_hz, tools, blocks })
+}
+
+/// Why the rig cannot be changed now.
+pub(in crate::console) fn why_not_to_change(live: &Live, is_starting: bool) -> Option<&'static str> {
+    if is_starting {
+        return Some(text::devices::STARTING);
+    }
+    live.ticks.iter().flatten().find_map(|tick| match tick.state {
+        LoopState::Ready | LoopState::Engaged | LoopState::Clutched => Some(text::devices::ENGAGED),
+        LoopState::Stopped => Some(text::devices::STOPPED),
+        LoopState::Idle | LoopState::Disconnected | LoopState::Faulted(_) => None,
+    })
+}
+
+/// The panel; without devices it says that everything is simulated. Returns a change of the rig that was asked for.
+pub fn devices_ui(ui: &mut Ui, live: &Live, state: &mut DevicesState) -> Option<Change> {
+    state.is_seen = true;
+    if live.roster.is_empty() {
+        ui.label(weak(text::devices::NONE));
+        ui.add(Label::new(small(text::devices::NONE_TO_CONNECT)).wrap());
+        return None;
+    }
+    state.follow_test(live);
+    let refused = why_not_to_change(live, state.is_starting);
+    let mut change = head_ui(ui, live, state, refused);
+    if let Some(told) = &state.told {
+        ui.add(Label::new(told).wrap());
+    }
+    ui.add_space(4.0);
+    let columns = columns_of(&live.roster, ui.available_width());
+    ui.columns(columns[0].len(), |columns_ui| {
+        for row in &columns {
+            for (ui, (side, places)) in columns_ui.iter_mut().zip(row) {
+                // Columns justify their texts; ragged lines are easier to read in a narrow one.
+                ui.with_layout(Layout::top_down(Align::Min), |ui| {
+                    ui.label(small(text::devices::column(*side)));
+                    for place in places {
+                        change = row_ui(ui, live, state, *place, refused).or(change.take());
+                    }
+                });
+            }
+        }
+    });
+    for (side, obstacle) in Side::ALL.into_iter().zip(&live.healths.obstacles) {
+        if let Some(obstacle) = obstacle {
+            ui.add(Label::new(text::devices::not_to_be_engaged(side.word(), obstacle)).wrap());
+        }
+    }
+    change
+}
+
+type Column = (Option<Side>, Vec<usize>);
+
+/// Rows of columns: left and right side by side where there is room, what both share in a column of its own.
+fn columns_of(roster: &Roster, width: f32) -> Vec<Vec<Column>> {
+    let of = |side: Option<Side>| {
+        let is_of = |place: &usize| roster[*place].part.and_then(Part::side) == side;
+        (side, (0..roster.len()).filter(is_of).collect::<Vec<_>>())
+    };
+    let columns = [of(Some(Side::Left)), of(Some(Side::Right)), of(None)];
+    let columns: Vec<Column> = columns.into_iter().filter(|(_, places)| !places.is_empty()).collect();
+    let side_by_side = ((width / TWO_COLUMNS * SIDES as f32) as usize).clamp(1, columns.len().max(1));
+    if side_by_side == 1 {
+        return columns.into_iter().map(|column| vec![column]).collect();
+    }
+    columns.chunks(side_by_side).map(<[Column]>::to_vec).collect()
+}
+
+/// Above the devices: what the lights are for, the test of all, the exchanges.
+fn head_ui(ui: &mut Ui, live: &Live, state: &mut DevicesState, refused: Option<&str>) -> Option<Change> {
+    ui.add(Label::new(weak(text::devices::WHICH)).wrap());
+    let mut change = None;
+    let both = |kind: PartKind| {
+        let has = |side| live.roster.iter().any(|entry| entry.part.is_some() && entry.part == kind.of(side));
+        Side::ALL.into_iter().all(has)
+    };
+    let kinds: Vec<_> = PartKind::OF_A_SIDE.into_iter().filter(|kind| both(*kind)).collect();
+    ui.horizontal_wrapped(|ui| {
+        let parts: Vec<_> = (0..live.roster.len()).filter(|place| live.roster[*place].part.is_some()).collect();
+        let button = Button::new(RichText::new(text::devices::TEST_ALL)).min_size(vec2(84.0, 26.0));
+        let button = ui.add_enabled(!state.is_testing() && !parts.is_empty(), button);
+        if button.on_hover_text(text::devices::TEST_HOVER).clicked() {
+            state.begin_test(parts, live);
+        }
+        if !kinds.is_empty() {
+            ui.add_space(8.0);
+            ui.label(small(text::devices::EXCHANGE));
+        }
+        for kind in kinds {
+            let button = Button::new(small(text::devices::kind(kind))).min_size(vec2(58.0, 26.0));
+            let button = ui.add_enabled(refused.is_none(), button);
+            button.widget_info(|| {
+                egui::WidgetInfo::labeled(egui::Role::Button, refused.is_none(), text::devices::exchange(kind))
+            });
+            let button = button.on_hover_text(text::devices::EXCHANGE_HOVER);
+            if button.on_disabled_hover_text(refused.unwrap_or_default()).clicked() {
+                change = Some(Change::ExchangeSides(kind));
+            }
+        }
+    });
+    if let Some(refused) = refused {
+        ui.add(Label::new(RichText::new(text::devices::not_changeable(refused)).color(theme::now().text_weak)).wrap());
+    }
+    change
+}

@@ -1,0 +1,178 @@
+//! What the test of a device has found: a verdict, what to look at with its cure, and the figures.
+
+use egui::{Grid, Label, RichText, Ui};
+use nalgebra::Vector3;
+use nima_machine::rig::PartKind;
+
+use super::checkup::{Checkup, Finding, Measured};
+use crate::console::{
+    text::{self, checkup as words},
+    theme,
+    widgets::{Sign, sign_ui, small, three_digits},
+};
+
+/// Draws the result of a test.
+pub(super) fn report_ui(ui: &mut Ui, checkup: &Checkup) {
+    ui.scope(|ui| result_ui(ui, checkup));
+}
+
+fn result_ui(ui: &mut Ui, checkup: &Checkup) {
+    let fine = checkup.findings.is_empty();
+    let (what, colour, verdict) = if fine {
+        (Sign::Disc, theme::now().engaged, text::devices::FINE)
+    } else {
+        (Sign::Triangle, theme::now().alarm_medium, text::devices::LOOK_AT)
+    };
+    ui.horizontal(|ui| {
+        sign_ui(ui, what, 5.0, colour);
+        ui.label(RichText::new(verdict).font(theme::strong(14.0)));
+    });
+    for finding in &checkup.findings {
+        let [cause, cure] = sentences(checkup.part.kind(), finding);
+        ui.add(Label::new(cause).wrap());
+        ui.add(Label::new(small(cure)).wrap());
+    }
+    // The rows are text only: they need not be as high as buttons.
+    ui.spacing_mut().interact_size.y = 0.0;
+    Grid::new(("checkup", checkup.part)).num_columns(2).spacing([10.0, 2.0]).show(ui, |ui| {
+        for (name, value, meaning) in figures(checkup) {
+            ui.label(small(name)).on_hover_text(meaning);
+            ui.add(Label::new(RichText::new(value).text_style(egui::TextStyle::Small)).wrap()).on_hover_text(meaning);
+            ui.end_row();
+        }
+    });
+}
+
+type Figure = (String, String, &'static str);
+
+fn figures(checkup: &Checkup) -> Vec<Figure> {
+    let Checkup { rate_hz, nominal_hz, age_s, lost, damaged, refused, .. } = *checkup;
+    let named = |name: &str, value: String, meaning| (name.to_owned(), value, meaning);
+    let mut figures = Vec::new();
+    if checkup.part.kind() != PartKind::Pedal {
+        figures.push(named(words::RATE, words::rate(rate_hz, nominal_hz), words::RATE_HOVER));
+        let age = age_s.map_or_else(|| words::NO_AGE.to_owned(), words::age);
+        figures.push(named(words::AGE, age, words::AGE_HOVER));
+    }
+    figures.push(named(words::LOSSES, words::losses(lost, damaged, refused), words::LOSSES_HOVER));
+    for (name, unit, scale, members) in groups(checkup) {
+        let noise: Vec<_> = members.iter().map(|one| three_digits(one.noise * scale)).collect();
+        figures.push((words::noise_of(name), format!("{} {unit}", noise.join(", ")), words::NOISE_HOVER));
+        let spans: Vec<_> = members.iter().map(|one| span(one, scale)).collect();
+        let mut value = format!("{} {unit}", spans.join(", "));
+        let shares: Vec<f64> = members.iter().filter_map(|one| reached_percent(one)).collect();
+        if let Some(most) = shares.into_iter().reduce(f64::max) {
+            value = format!("{value}; {}", words::share(most));
+        }
+        figures.push((words::span_of(name), value, words::SPAN_HOVER));
+    }
+    if let Some((axis, off_deg, size)) = checkup.up_m_s2.and_then(|up| nearest_axis(&up)) {
+        figures.push(named(words::UP, words::up(axis, off_deg, size), words::UP_HOVER));
+    }
+    figures
+}
+
+type Group<'a> = (&'static str, &'static str, f64, Vec<&'a Measured>);
+
+/// The numbers of the readings by what they measure.
+fn groups(checkup: &Checkup) -> Vec<Group<'_>> {
+    let mut groups: Vec<Group<'_>> = Vec::new();
+    for one in &checkup.measured {
+        let Some((name, unit, scale)) = text::devices::group(checkup.part.kind(), one.channel) else { continue };
+        match groups.last_mut().filter(|(last, ..)| *last == name) {
+            Some((.., members)) => members.push(one),
+            None => groups.push((name, unit, scale, vec![one])),
+        }
+    }
+    groups
+}
+
+/// Lowest and highest reading; one number where they hardly differ.
+fn span(one: &Measured, scale: f64) -> String {
+    let [low, high] = [one.low, one.high].map(|value| short(value * scale));
+    if low == high { low } else { format!("{low}\u{2026}{high}") }
+}
+
+/// A number with as many decimals as a person at the device can use.
+fn short(value: f64) -> String {
+    let decimals = if value.abs() >= 10.0 { 1 } else { 2 };
+    let words = format!("{value:.decimals$}");
+    // Minus zero is zero.
+    if words.trim_start_matches(['-', '0', '.']).is_empty() { words.trim_start_matches('-').to_owned() } else { words }
+}
+
+/// Greatest distance from the middle of the range as a share of what is possible, percent.
+fn reached_percent(one: &Measured) -> Option<f64> {
+    let [low, high] = one.range?;
+    let (middle, half) = (f64::midpoint(low, high), (high - low) / 2.0);
+    Some(100.0 * (one.high - middle).max(middle - one.low) / half)
+}
+
+/// The axis that is nearest to this direction, how far off it is (degrees), and the length.
+fn nearest_axis(up: &Vector3<f64>) -> Option<(&'static str, f64, f64)> {
+    let size = up.norm();
+    if !size.is_finite() || size <= 0.0 {
+        return None;
+    }
+    let axis = up.iamax();
+    let name = match (axis, up[axis] < 0.0) {
+        (0, false) => "+x",
+        (0, true) => "-x",
+        (1, false) => "+y",
+        (1, true) => "-y",
+        (_, false) => "+z",
+        (_, true) => "-z",
+    };
+    Some((name, (up[axis].abs() / size).min(1.0).acos().to_degrees(), size))
+}
+
+/// Cause and cure.
+fn sentences(kind: PartKind, finding: &Finding) -> [String; 2] {
+    let with_unit = |channel: usize, value: f64| {
+        let (_, unit, scale) = text::devices::group(kind, channel).unwrap_or_default();
+        format!("{} {unit}", three_digits(value * scale))
+    };
+    match *finding {
+        Finding::Silent => words::SILENT.map(str::to_owned),
+        Finding::Reopened => words::REOPENED.map(str::to_owned),
+        Finding::Frozen => words::FROZEN.map(str::to_owned),
+        Finding::Rate { hz, nominal_hz } => words::wrong_rate(hz, nominal_hz),
+        Finding::Lost { count } => words::lost(count),
+        Finding::Damaged { count } => words::damaged(count),
+        Finding::Refused { count } => words::refused(count),
+        Finding::Late { p99_s, most_s } => words::late(kind, p99_s, most_s),
+        Finding::Moved { channel } => words::moved(kind, channel),
+        Finding::Noisy { channel, deviation, most } => {
+            words::noisy(kind, channel, &with_unit(channel, deviation), &with_unit(channel, most))
+        }
+        Finding::Gravity { size_m_s2 } => words::gravity(size_m_s2),
+        Finding::AtTheEnd { channel, value, range: [low, high] } => {
+            let range = format!("{} \u{2026} {}", with_unit(channel, low), with_unit(channel, high));
+            words::at_the_end(kind, channel, &with_unit(channel, value), &range)
+        }
+        Finding::Hidden { tool, share } => words::hidden(tool, share),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_axis_that_points_up_is_named_with_its_angle() {
+        let (axis, off_deg, size) = nearest_axis(&Vector3::new(0.0, -9.0, 0.9)).unwrap();
+        assert_eq!(axis, "-y");
+        assert!((off_deg - 5.71).abs() < 0.01 && (size - 9.045).abs() < 1e-3, "{off_deg} {size}");
+        assert_eq!(nearest_axis(&Vector3::zeros()), None);
+        assert_eq!(nearest_axis(&Vector3::repeat(f64::NAN)), None);
+    }
+
+    #[test]
+    fn ranges_are_short_and_zero_has_no_sign() {
+        let one = |low, high, range| Measured { channel: 0, noise: 0.0, low, high, range };
+        assert_eq!(span(&one(-0.001, 0.5, None), 1.0), "0.00\u{2026}0.50");
+        assert_eq!(span(&one(0.012_34, 0.012_34, None), 1e3), "12.3");
+        assert_eq!(reached_percent(&one(-0.5, 1.2, Some([-1.6, 1.6]))).map(f64::round), Some(75.0));
+        assert_eq!(reached_percent(&one(-0.5, 1.2, None)), None);
+    }
+}

@@ -1,0 +1,133 @@
+//! One device: its light, its state, its buttons, and what is opened below it.
+
+use egui::{Button, Color32, Label, RichText, Sense, Ui, Vec2, vec2};
+use nima_devices::{Health, Identity, Standing, Trouble};
+use nima_machine::rig::RosterEntry;
+
+use super::{Change, DevicesState, choosing, report::report_ui};
+use crate::console::{
+    live::Live,
+    text, theme,
+    widgets::{Sign, sign, sign_ui, small},
+};
+
+const BUTTON: Vec2 = vec2(62.0, 22.0);
+/// Radius of the light.
+const LIGHT: f32 = 8.0;
+
+/// Draws a device; returns a change of the rig that was asked for.
+pub(super) fn row_ui(
+    ui: &mut Ui,
+    live: &Live,
+    state: &mut DevicesState,
+    place: usize,
+    refused: Option<&str>,
+) -> Option<Change> {
+    let (entry, health) = (live.roster.get(place)?, live.healths.devices.get(place)?);
+    let (what, colour, words) = standing_words(health);
+    ui.horizontal(|ui| {
+        sign_ui(ui, what, 5.0, colour);
+        ui.label(RichText::new(&entry.name).font(theme::strong(14.0))).on_hover_text(&entry.driver);
+        light_ui(ui, live, entry, place);
+    });
+    ui.add(Label::new(small(words)).wrap());
+    let report = entry.view.report();
+    if let Some(words) = report.identity.as_ref().and_then(identity_words) {
+        ui.add(Label::new(small(words)).wrap());
+    }
+    if let Some(trouble) = report.trouble {
+        trouble_ui(ui, entry, &trouble);
+    }
+    buttons_ui(ui, live, state, place);
+    if let Some(checkup) = state.result(place) {
+        report_ui(ui, checkup);
+    }
+    let change = entry.part.and_then(|part| choosing::chooser_ui(ui, live, state, part, refused));
+    ui.add_space(8.0);
+    change
+}
+
+/// A device by its name and serial number; `None` if it tells neither.
+pub(super) fn identity_words(identity: &Identity) -> Option<String> {
+    let Identity { product, serial, firmware } = identity;
+    (!product.is_empty()).then(|| text::devices::identity(product, serial, firmware))
+}
+
+/// The light that tells which device is moved.
+fn light_ui(ui: &mut Ui, live: &Live, entry: &RosterEntry, place: usize) {
+    let Some(part) = entry.part else { return };
+    let motion = live.activity.lit(place).map(|channel| text::devices::motion(part.kind(), channel));
+    let (rect, light) = ui.allocate_exact_size(Vec2::splat(LIGHT * 2.4), Sense::hover());
+    let name = text::devices::light(&entry.name, motion.as_deref());
+    light.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, &name));
+    light.on_hover_text(text::devices::LIGHT_HOVER);
+    let palette = theme::now();
+    match &motion {
+        Some(motion) => {
+            ui.painter().circle_filled(rect.center(), LIGHT * 1.2, palette.text.gamma_multiply(0.25));
+            sign(ui.painter(), Sign::Disc, rect.center(), LIGHT * 0.8, palette.text);
+            ui.label(RichText::new(motion).font(theme::strong(13.0)).color(palette.text));
+        }
+        None => sign(ui.painter(), Sign::Ring, rect.center(), LIGHT * 0.8, palette.text_weak),
+    }
+}
+
+fn trouble_ui(ui: &mut Ui, entry: &RosterEntry, trouble: &Trouble) {
+    ui.add(Label::new(trouble.to_string()).wrap());
+    ui.add(Label::new(small(trouble.cure())).wrap());
+    if let (Trouble::DeviceFault { .. }, Some(clear)) = (trouble, &entry.clear_faults) {
+        let button = ui.add(Button::new(small(text::devices::CLEAR_FAULTS)).min_size(vec2(84.0, 22.0)));
+        button.widget_info(|| {
+            egui::WidgetInfo::labeled(egui::Role::Button, true, text::devices::clear_faults_of(&entry.name))
+        });
+        if button.on_hover_text(text::devices::CLEAR_FAULTS_HOVER).clicked() {
+            clear.command();
+        }
+    }
+}
+
+/// A small button of one device, named after it.
+fn button_ui(ui: &mut Ui, entry: &RosterEntry, words: &str, hover: &str, enabled: bool) -> bool {
+    let button = ui.add_enabled(enabled, Button::new(small(words)).min_size(BUTTON));
+    button
+        .widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, enabled, text::devices::of(words, &entry.name)));
+    button.on_hover_text(hover).clicked()
+}
+
+fn buttons_ui(ui: &mut Ui, live: &Live, state: &mut DevicesState, place: usize) {
+    let entry = &live.roster[place];
+    let wanted = live.healths.devices.get(place).is_some_and(|health| health.standing != Standing::Closed);
+    ui.horizontal_wrapped(|ui| {
+        if let Some(part) = entry.part {
+            if button_ui(ui, entry, text::devices::TEST, text::devices::TEST_HOVER, !state.is_testing()) {
+                state.begin_test(vec![place], live);
+            }
+            if button_ui(ui, entry, text::devices::CHOOSE, text::devices::CHOOSE_HOVER, true) {
+                choosing::toggle(state, part);
+            }
+        }
+        let words = if wanted { text::devices::DISCONNECT } else { text::devices::CONNECT };
+        if button_ui(ui, entry, words, text::devices::CONNECT_HOVER, true) {
+            entry.view.want(!wanted);
+        }
+        if state.is_tested(place) {
+            ui.label(small(text::devices::TESTING));
+        }
+    });
+}
+
+fn standing_words(health: &Health) -> (Sign, Color32, String) {
+    let figures = || {
+        let Health { rate_hz, lost, damaged, refused, outages, longest_outage_s, .. } = *health;
+        let delivery = text::devices::delivery(rate_hz, lost, damaged, refused);
+        if outages > 0 { delivery + &text::devices::outages(outages, longest_outage_s) } else { delivery }
+    };
+    match health.standing {
+        Standing::Connected => (Sign::Disc, theme::now().engaged, figures()),
+        Standing::Opening => (Sign::Ring, theme::now().text, text::devices::OPENING.to_owned()),
+        Standing::Closed => (Sign::Ring, theme::now().text_weak, text::devices::DISCONNECTED.to_owned()),
+        Standing::Lost(loss) => {
+            (Sign::Triangle, theme::now().alarm_medium, text::devices::lost(loss.cause(), &figures()))
+        }
+    }
+}

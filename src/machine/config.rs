@@ -1,16 +1,16 @@
 //! Rig files (TOML). An unknown key is an error.
 
 mod files;
+mod identification;
 mod mounted;
 mod rig_file;
+mod teleoperation;
 
 use std::path::Path;
 
-use nalgebra::{UnitQuaternion, Vector3};
 use nima_core::{
-    frames::from_roll_pitch_yaw_deg,
-    impedance::{MAX_DEGREE, MAX_DELAY_S, MAX_REST_N, Mode, ModeSet, RIDGES, Recipe, Scales, Settings},
-    kinematics::{Mapping, SCALES, view_from_omega},
+    impedance::{MAX_DEGREE, MAX_DELAY_S, MAX_REST_N, Mode, ModeSet, RIDGES, Settings},
+    kinematics::SCALES,
     safety::ChainSettings,
     tip_force::Fallback,
 };
@@ -18,8 +18,10 @@ use serde::{Deserialize, Serialize};
 
 pub(crate) use files::parse_with;
 pub use files::{ConfigError, Ranges, parse, text};
+pub use identification::{Identification, OwnMotion};
 pub use mounted::SimulatedWrists;
 pub use rig_file::{Chosen, RigFile, RigFileError};
+pub use teleoperation::{LeaderMount, Teleoperation};
 
 use crate::rig;
 
@@ -100,108 +102,12 @@ impl std::str::FromStr for SchedulingClass {
     }
 }
 
-/// Mapping from the hand's motion to the tip's: `world_from_view * view_from_leader`, and the scale.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields, default)]
-pub struct Teleoperation {
-    /// Distance of the tip per distance of the hand.
-    pub scale: f64,
-    /// Orientation of the endoscope: roll, pitch, yaw of `world_from_view`, degrees (picture: x right, y down, z into
-    /// it).
-    pub world_from_view_deg: Vector3<f64>,
-    /// Orientation of the leader relative to the picture.
-    pub leader: LeaderMount,
-}
-
-impl Default for Teleoperation {
-    fn default() -> Self {
-        Self { scale: 1.0, world_from_view_deg: Vector3::zeros(), leader: LeaderMount::Workspace }
-    }
-}
-
-/// Orientation of a leader relative to the picture.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum LeaderMount {
-    /// The leader's axes are those of the picture.
-    #[default]
-    Workspace,
-    /// An Omega below the screen, with its base towards the user.
-    Omega,
-}
-
-impl Teleoperation {
-    /// The mapping; the default one if the numbers are not finite (which [`RigConfig::validate`] refuses).
-    pub fn mapping(&self) -> Mapping {
-        self.seen(&from_roll_pitch_yaw_deg(&self.world_from_view_deg), self.scale)
-    }
-
-    /// The mapping for an endoscope of this orientation; the default one if the numbers are not finite.
-    pub fn seen(&self, world_from_view: &UnitQuaternion<f64>, scale: f64) -> Mapping {
-        let view_from_leader = match self.leader {
-            LeaderMount::Workspace => UnitQuaternion::identity(),
-            LeaderMount::Omega => view_from_omega(),
-        };
-        Mapping::new(world_from_view, &view_from_leader, scale).unwrap_or_default()
-    }
-}
-
 /// Tip-force part of a rig file.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct TipForcePart {
     /// Force to render while the network is uncertain.
     pub fallback: Fallback,
-}
-
-/// Identification part of a rig file.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields, default)]
-pub struct Identification {
-    /// Length of the rolling window, s (the paper's 0.3 s).
-    pub window_s: f64,
-    /// Highest degree identified, 1 to 5.
-    pub max_degree: usize,
-    /// Compute every mode beside the one that is rendered, to compare them; otherwise only that one is computed.
-    pub compare: bool,
-    /// The identification rests while the force lies within this, N: there is no contact. Choose five times the noise of
-    /// the force. 0: it never rests.
-    pub rest_n: f64,
-    /// The motion from which the leader makes the force.
-    pub own_motion: OwnMotion,
-    /// Learn the full matrix `M` with cross-talk between the axes; this doubles the cost.
-    pub cross_talk: bool,
-    /// Fixed physical scales of the regressor's columns, from the rig's workspace.
-    pub scales: Scales,
-    /// How the literal and the linear mode read the paper.
-    pub literal: Recipe,
-}
-
-/// The motion from which the leader makes the force.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum OwnMotion {
-    /// Where the follower is now, as its commands and its lag tell: accurate.
-    #[default]
-    Follower,
-    /// Where the handle is: the force is that of the place which the follower will reach. Matched rendering then
-    /// gives the hand hardly any power at any delay.
-    Handle,
-}
-
-impl Default for Identification {
-    fn default() -> Self {
-        Self {
-            window_s: 0.3,
-            max_degree: MAX_DEGREE,
-            compare: false,
-            rest_n: 0.1,
-            own_motion: OwnMotion::Follower,
-            cross_talk: false,
-            scales: Scales::default(),
-            literal: Recipe::default(),
-        }
-    }
 }
 
 const RIGS: [(&str, &str); 4] = [
@@ -334,7 +240,7 @@ impl RigConfig {
 
 #[cfg(test)]
 mod tests {
-    use nima_core::impedance::{Baseline, Choice, Reading};
+    use nima_core::impedance::{Baseline, Choice, Reading, Recipe};
 
     use super::*;
 

@@ -4,8 +4,6 @@
 //! from the thread that owns the device ([`super::worker`]).
 
 use std::{
-    net::SocketAddr,
-    path::PathBuf,
     sync::{Arc, atomic::Ordering},
     thread::{Builder, JoinHandle},
     time::{Duration, Instant},
@@ -13,18 +11,15 @@ use std::{
 
 use crossbeam_channel::{Receiver, Sender, bounded};
 use nalgebra::Vector3;
-use serde::{Deserialize, Serialize};
+use serde::Serialize;
 
 use super::{
+    settings::Settings,
     status::{ForceOffCause, Kind, Status},
     worker::{Ends, ForceCommand, Report, Shared, Worker},
 };
 use crate::{Device, HandleReading, Health, Identity, Loss, Stamped, Trouble};
 
-/// Largest force of an omega.7, N.
-pub const FORCE_MAX_N: f64 = 12.0;
-/// Largest force of its gripper, N.
-pub const GRIPPER_MAX_N: f64 = 8.0;
 /// Time without a reading after which the device is lost, s.
 pub const SILENCE_S: f64 = 0.020;
 /// Capacity of the queues of reports and commands.
@@ -34,89 +29,6 @@ const EVENTS: usize = 32;
 const FIRST_READING_MAX: Duration = Duration::from_secs(1);
 /// How long dropping waits for the thread; if the library hangs, the thread is then left running.
 const JOIN_MAX: Duration = Duration::from_secs(2);
-
-/// Behaviour of the handle while no force is wanted.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum IdleMode {
-    /// The motors brake, so the handle stays where it is.
-    #[default]
-    Brake,
-    /// No current: it moves freely and sinks under its weight.
-    Free,
-}
-
-/// Settings of one omega.7.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields, default)]
-pub struct Settings {
-    /// File of the library. If omitted, the manufacturer's library is searched for where the SDK installs it; an
-    /// emulated handle uses the replacement library within this program.
-    pub library: Option<PathBuf>,
-    /// Serial number of the device; if omitted, any free device. Required if there are two devices.
-    pub serial: Option<u16>,
-    /// Rate of the readings, Hz: 100 to 2000.
-    pub rate_hz: f64,
-    /// Time without a force command after which the device switches its force off by itself, ms: 1 to 31.
-    pub watchdog_ms: f64,
-    /// Largest force, N: up to 12.
-    pub force_max_n: f64,
-    /// Largest force of the gripper, N: up to 8.
-    pub gripper_max_n: f64,
-    /// Whether the library compensates the handle's weight while force is on.
-    pub gravity_compensation: bool,
-    /// Whether the closed gripper counts as button 0.
-    pub gripper_is_a_button: bool,
-    /// Behaviour of the handle while no force is wanted.
-    pub idle: IdleMode,
-    /// Address of an emulated handle; a real one has none.
-    pub emulator: Option<SocketAddr>,
-}
-
-impl Default for Settings {
-    fn default() -> Self {
-        Self {
-            library: None,
-            serial: None,
-            rate_hz: 1000.0,
-            watchdog_ms: 20.0,
-            force_max_n: FORCE_MAX_N,
-            gripper_max_n: GRIPPER_MAX_N,
-            gravity_compensation: true,
-            gripper_is_a_button: true,
-            idle: IdleMode::Brake,
-            emulator: None,
-        }
-    }
-}
-
-impl Settings {
-    /// Checks every setting.
-    ///
-    /// # Errors
-    /// [`Trouble::Setting`] for the first value outside its range.
-    pub fn check(&self) -> Result<(), Trouble> {
-        let ranges = [
-            ("rate_hz", self.rate_hz, 100.0, 2000.0),
-            ("watchdog_ms", self.watchdog_ms, 1.0, 31.0),
-            ("force_max_n", self.force_max_n, 0.0, FORCE_MAX_N),
-            ("gripper_max_n", self.gripper_max_n, 0.0, GRIPPER_MAX_N),
-        ];
-        match ranges.into_iter().find(|(_, value, least, most)| !(*least..=*most).contains(value)) {
-            None => Ok(()),
-            Some((key, value, least, most)) => Err(Trouble::Setting {
-                key: key.to_owned(),
-                value: value.to_string(),
-                allowed: format!("{key} is from {least} to {most}"),
-            }),
-        }
-    }
-
-    /// The watchdog's time in steps of 125 us.
-    pub fn watchdog_steps(&self) -> u8 {
-        (self.watchdog_ms / 0.125).round().clamp(1.0, 255.0) as u8
-    }
-}
 
 /// A change of the device's force state.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]

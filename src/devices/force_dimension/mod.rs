@@ -22,13 +22,13 @@ mod leader;
 mod library;
 mod opening;
 mod sdk;
+mod settings;
 pub mod status;
 mod worker;
 
-pub use driver::{
-    Counters, Driver, FORCE_MAX_N, ForceAnswer, GRIPPER_MAX_N, HandleEvent, IdleMode, SILENCE_S, Settings, open,
-};
+pub use driver::{Counters, Driver, ForceAnswer, HandleEvent, SILENCE_S, open};
 pub use library::{installed_library, provide_stand_in};
 pub use opening::attached;
 pub use sdk::{EmulateHandle, Sdk, SdkFunctions, prepare_thread};
+pub use settings::{FORCE_MAX_N, GRIPPER_MAX_N, IdleMode, Settings};
 pub use status::{ForceOffCause, Kind, SdkError, Status};

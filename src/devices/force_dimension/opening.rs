@@ -1,8 +1,8 @@
 //! From a loaded library to a configured device; every failure has its cause.
 
 use super::{
-    driver::Settings,
     sdk::{OpenDevice, Sdk},
+    settings::Settings,
     status::{Kind, SdkError, Status, fault_words},
 };
 use crate::{Identity, Loss, Trouble};

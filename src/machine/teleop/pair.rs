@@ -191,6 +191,11 @@ impl<L: Link> Pair<L> {
         self.interlock.state()
     }
 
+    /// The follower's end of the identification.
+    pub const fn identifier(&self) -> &Identifier {
+        &self.identifier
+    }
+
     /// Errors per mode since construction.
     pub const fn accuracy(&self) -> &Accuracy {
         &self.accuracy

@@ -22,7 +22,7 @@ use nima_recording::{
 use nima_training::train_model;
 use nima_world::{Worlds, scene::Scene};
 
-use super::{FaultsError, LiveError, SensorAt, Special, Verdict};
+use super::{FaultsError, LiveError, MODES, SensorAt, Special, Verdict};
 use crate::{
     release::{self, Situation, Way},
     validation::{
@@ -91,7 +91,7 @@ fn let_go() -> Result<Special, FaultsError> {
     let tissue = Scene::load("peg_transfer")?.tissue;
     let wrong = |reason: String| FaultsError::Calibration(ValidationError::Calibration(reason));
     let tissue = tissue.ok_or_else(|| wrong("peg_transfer has no tissue".to_owned()))?;
-    let way = Way { situation: Situation::Held, governor: true, mode: Mode::Anchored, delay_ms: 50.0, contact_n: 5.0 };
+    let way = Way { situation: Situation::Held, governor: true, mode: MODES[0], delay_ms: 50.0, contact_n: 5.0 };
     let row = release::let_go(&way, tissue).map_err(|error| wrong(error.to_string()))?;
     Ok(Special {
         what: "the hand opens, no presence detection".to_owned(),

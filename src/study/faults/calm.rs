@@ -1,6 +1,5 @@
 //! Fault-free machines at ordinary work, which must report nothing.
 
-use nima_core::impedance::Mode;
 use nima_machine::{
     config::RigConfig,
     messages::{Command, LoopState},
@@ -9,7 +8,7 @@ use nima_machine::{
 use nima_world::{Plan, run_virtual, scene::Scene};
 use serde::Serialize;
 
-use super::FaultsError;
+use super::{FaultsError, MODES};
 use crate::validation::experiment;
 
 const SCENES: [&str; 4] = ["peg_transfer", "palpation", "free_motion", "bimanual"];
@@ -38,7 +37,7 @@ pub(super) fn runs(seconds: f64) -> Result<Calm, FaultsError> {
     let mut calm = Calm::default();
     let gravity = experiment::gravity(1)?;
     for scene in SCENES {
-        for mode in [Mode::Anchored, Mode::Dfr] {
+        for mode in MODES {
             for delay_s in DELAYS_S {
                 let mut rig = RigConfig::load("simulated")?;
                 (rig.mode, rig.delay_s, rig.gates.static_hold) = (mode, delay_s, calm.runs % 2 == 0);

@@ -84,7 +84,9 @@ struct Watch {
     ticks: u32,
     most_n: f64,
     step_n: f64,
+    governed_step_n: f64,
     last_n: Vector3<f64>,
+    was_governed: bool,
     /// Ticks for which machine and twin have been in different states.
     apart: u32,
 }
@@ -106,7 +108,9 @@ pub(super) fn tried(mut bench: Bench, kind: Kind, sensor: SensorAt, mode: Mode, 
         ticks: 0,
         most_n: 0.0,
         step_n: 0.0,
+        governed_step_n: 0.0,
         last_n: bench.wanted_n(),
+        was_governed: false,
         apart: 0,
     };
     bench.begin(kind);
@@ -162,10 +166,13 @@ impl Watch {
             self.ticks += 1;
         }
         self.most_n = self.most_n.max(wanted_n.norm());
+        // The governor comes after the slew limit: it takes the force away, and brakes, as fast as the handle runs.
+        let governed = step.machine.gates.governed > 0.0;
+        let step_n = if governed || self.was_governed { &mut self.governed_step_n } else { &mut self.step_n };
         if wanted_n.norm() > 0.0 {
-            self.step_n = self.step_n.max((wanted_n - self.last_n).norm());
+            *step_n = step_n.max((wanted_n - self.last_n).norm());
         }
-        self.last_n = wanted_n;
+        (self.last_n, self.was_governed) = (wanted_n, governed);
     }
 
     fn compare(&mut self, applied_n: Vector3<f64>, twin_n: Vector3<f64>) {
@@ -223,6 +230,7 @@ impl Watch {
             error_n: self.error_n,
             most_n: self.most_n,
             step_n: self.step_n,
+            governed_step_n: self.governed_step_n,
         }
     }
 }

@@ -34,6 +34,8 @@ use crate::validation::ValidationError;
 /// A force in the hand that differs from the twin's by no more than this is harmless, N: the standard deviation of the
 /// tip force in the paper.
 pub const HARMLESS_N: f64 = 0.2;
+/// Modes that are tried: the default one, which keeps the most in memory, and the one that keeps nothing.
+const MODES: [Mode; 2] = [Mode::Best, Mode::Dfr];
 
 /// Why the study could not be made.
 #[derive(Debug, thiserror::Error)]
@@ -211,6 +213,8 @@ pub struct Outcome {
     pub most_n: f64,
     /// Largest change of that force in one tick, except a change to zero, N.
     pub step_n: f64,
+    /// The same where the governor acts, which comes after the slew limit, N.
+    pub governed_step_n: f64,
 }
 
 /// Options: how much to try.
@@ -265,6 +269,8 @@ pub struct Sums {
     pub most_n: f64,
     /// Largest change of the commanded force in one tick, N.
     pub step_n: f64,
+    /// The same where the governor acts, which comes after the slew limit, N.
+    pub governed_step_n: f64,
 }
 
 impl Sums {
@@ -302,6 +308,7 @@ impl Sums {
             bounded_error_n: bounded.map(|outcome| outcome.peak_error_n).fold(0.0, f64::max),
             most_n: most(|outcome| outcome.most_n),
             step_n: most(|outcome| outcome.step_n),
+            governed_step_n: most(|outcome| outcome.governed_step_n),
         }
     }
 }
@@ -312,10 +319,10 @@ impl Sums {
 /// [`FaultsError`] if a scene or rig is invalid or a situation cannot be reached.
 pub fn study(options: &Options, mut progress: impl FnMut(usize, usize, &str)) -> Result<Report, FaultsError> {
     let mut outcomes = Vec::new();
-    let all = SensorAt::ALL.len() * 2 * Place::ALL.len() + 1;
+    let all = SensorAt::ALL.len() * MODES.len() * Place::ALL.len() + 1;
     let mut done = 0;
     for sensor in SensorAt::ALL {
-        for mode in [Mode::Anchored, Mode::Dfr] {
+        for mode in MODES {
             let idle = Bench::new(sensor, mode, 0)?;
             for place in Place::ALL {
                 progress(done, all, place.word());

@@ -42,8 +42,8 @@ impl Report {
 
     fn sums_text(&self) -> String {
         let Sums { kinds, cases, no_force, harmless, detected, bounded, silent, on_force_path, .. } = self.sums;
-        let Sums { detection_p50_ms, detection_p99_ms, detection_max_ms, bounded_error_n, most_n, step_n, .. } =
-            self.sums;
+        let Sums { detection_p50_ms, detection_p99_ms, detection_max_ms, bounded_error_n, .. } = self.sums;
+        let Sums { most_n, step_n, governed_step_n, .. } = self.sums;
         let lines = [
             format!("{kinds} kinds of fault; {cases} cases on the virtual clock, {} others.", self.specials.len()),
             format!("- no force and no motion: {no_force}"),
@@ -58,7 +58,9 @@ impl Report {
                  max {detection_max_ms:.0} ms"
             ),
             self.calm.line(),
-            format!("- largest force commanded {most_n:.2} N, largest change in a tick {step_n:.2} N"),
+            format!(
+                "- largest force commanded {most_n:.2} N, largest change in a tick {step_n:.2} N, where the governor acts {governed_step_n:.2} N"
+            ),
         ];
         lines.join("\n") + "\n"
     }

@@ -1,9 +1,9 @@
 use super::*;
 
 fn tried(sensor: SensorAt, place: Place, kinds: &[Kind]) -> Vec<Outcome> {
-    let mut bench = Bench::new(sensor, Mode::Anchored, 3).unwrap();
+    let mut bench = Bench::new(sensor, MODES[0], 3).unwrap();
     bench.prepare(place, 0).unwrap();
-    kinds.iter().map(|kind| case::tried(bench.clone(), *kind, sensor, Mode::Anchored, place, 0)).collect()
+    kinds.iter().map(|kind| case::tried(bench.clone(), *kind, sensor, MODES[0], place, 0)).collect()
 }
 
 #[test]
@@ -49,4 +49,12 @@ fn without_drives_no_fault_makes_force_or_motion() {
 fn a_healthy_machine_is_its_twin() {
     let outcome = tried(SensorAt::Wrist, Place::Contact, &[Kind::LinkDoubles]);
     assert!(outcome[0].verdict == Verdict::Harmless && outcome[0].most_n > 0.5, "{outcome:?}");
+}
+
+/// A handle that trembles by itself runs ahead of the hand: the governor withdraws, and only it may do so faster than the slew limit.
+#[test]
+fn a_change_beyond_the_slew_limit_is_the_governor_s() {
+    for outcome in tried(SensorAt::Wrist, Place::Free, &[Kind::HandNoise]) {
+        assert!(outcome.governed_step_n > 2.0 && outcome.step_n <= 0.51, "{outcome:?}");
+    }
 }

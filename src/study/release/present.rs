@@ -6,7 +6,7 @@ use nima_core::impedance::Mode;
 
 use super::{
     AIM_M_S, AIM_MJ, AIM_MM, AIM_N, CONTACTS_N, DELAYS_MS, Options, ReleaseError, Report, Row, Situation, WEAK_AIM_MM,
-    Worst, study,
+    Worst, methods, study,
 };
 use crate::{
     Experiment, Findings,
@@ -44,7 +44,7 @@ impl Report {
             "| contact (N) | mode | governor | travel (mm) | peak (m/s) | energy (mJ) | after 100 ms (N) | aims met |\n|---|---|---|---|---|---|---|---|\n",
         );
         for contact_n in CONTACTS_N {
-            for mode in Mode::ALL {
+            for mode in methods() {
                 for governor in [false, true] {
                     let all = || {
                         self.rows.iter().filter(|row| {
@@ -86,7 +86,7 @@ impl Report {
         text.push('\n');
     }
 
-    /// Travel and energy over the delay, for the hand that held 5 N, each mode with and without the governor.
+    /// Travel and energy over the delay, for the hand that held 5 N, each of the program's own modes with and without the governor.
     pub fn svg(&self) -> String {
         let chart = |title: &str, unit: &str, low: f64, high: f64, of: fn(&Row) -> f64| Chart {
             title: title.into(),

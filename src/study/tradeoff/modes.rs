@@ -1,4 +1,5 @@
-//! Cost and error of a mode as the loop runs it: an identifier that computes this mode and DFR (which costs nothing).
+//! Cost and error of a mode as the loop runs it: an identifier with memory for every mode that computes this one and DFR (which
+//! costs nothing).
 
 use std::{
     sync::atomic::{AtomicBool, Ordering},
@@ -6,7 +7,7 @@ use std::{
 };
 
 use nima_core::{
-    impedance::{Identifier, Mode, ModeSet, Sample, Settings},
+    impedance::{Identifier, Mode, ModeSet, Sample, Settings, SettingsError},
     statistics::Percentiles,
 };
 
@@ -69,6 +70,13 @@ pub(super) fn look(cancel: &AtomicBool) -> Result<(), SweepError> {
     if cancel.load(Ordering::Relaxed) { Err(SweepError::Cancelled) } else { Ok(()) }
 }
 
+/// An identifier that computes `mode` alone, as the loop does: its settings name every mode, so that any can be chosen while it runs.
+pub(super) fn identifier(settings: &Settings, mode: Mode) -> Result<Identifier, SettingsError> {
+    let mut identifier = Identifier::new(&Settings { modes: settings.modes.with(mode), ..settings.clone() })?;
+    identifier.compute(ModeSet::only(mode));
+    Ok(identifier)
+}
+
 /// Runs `mode` over `samples` `passes` times; only samples from `from_s` on are judged and timed.
 pub(super) fn measure(
     samples: &[Sample],
@@ -78,12 +86,11 @@ pub(super) fn measure(
     passes: usize,
     cancel: &AtomicBool,
 ) -> Result<Measured, SweepError> {
-    let settings = Settings { modes: ModeSet::only(mode), ..settings.clone() };
     let mut errors = Errors::default();
     let mut cost_us = CostUs::WORST;
     for pass in 0..passes.max(1) {
         let mut identifier =
-            Identifier::new(&settings).map_err(|source| SweepError::Settings { choice: Box::new(*choice), source })?;
+            identifier(settings, mode).map_err(|source| SweepError::Settings { choice: Box::new(*choice), source })?;
         let mut times = Percentiles::new();
         for (k, sample) in samples.iter().enumerate() {
             if k % LOOK_EVERY == 0 {

@@ -1,12 +1,12 @@
 //! The parameters of the identification, and the values that are tried.
 
 use nima_core::{
-    impedance::{MAX_DEGREE, Mode, Settings},
+    impedance::{Identifier, MAX_DEGREE, Mode, Settings, SettingsError},
     signal::DifferentiatorKind,
 };
 use serde::Serialize;
 
-use super::source::Source;
+use super::{modes, source::Source};
 use crate::solvers::Solver;
 
 /// What computes a force from samples.
@@ -236,6 +236,14 @@ impl Plan {
             }
         }
         choices
+    }
+
+    /// The identifier that is measured for `choice` on a source with this number of axes; `None` for a solver, which has none.
+    ///
+    /// # Errors
+    /// [`SettingsError`] if the choice is out of range.
+    pub fn identifier(&self, choice: &Choice, axes: usize) -> Result<Option<Identifier>, SettingsError> {
+        choice.method.mode().map(|mode| modes::identifier(&self.settings(choice, axes), mode)).transpose()
     }
 
     /// Settings of an identifier for `choice`, for a source with this number of axes.

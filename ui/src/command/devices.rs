@@ -48,7 +48,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         let program = std::env::current_exe().context("cannot find the path of this program")?;
         return output::line(&rules::install_command(&program.to_string_lossy()));
     }
-    let mut probes = Vec::new();
+    let (mut probes, mut emulated) = (Vec::new(), None);
     for text in &arguments.probe {
         probes.push(probe_named(text).map_err(|trouble| anyhow::anyhow!("{trouble}"))?);
     }
@@ -56,9 +56,26 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         let rig = RigConfig::load(name)?;
         let Some(devices) = &rig.devices else { bail!("rig \"{}\" is simulated: it has no devices", rig.name) };
         probes.extend(rig_probes(devices));
+        emulated = devices.emulated.then_some(name);
     }
     let report = Report { plugged: Plugged::list(), devices: diagnose(probes, TIMEOUT) };
-    if arguments.json { output::json(&report) } else { output::line(in_words(&report).trim_end()) }
+    if arguments.json {
+        return output::json(&report);
+    }
+    let mut text = in_words(&report);
+    if let Some(rig) = emulated.filter(|_| report.devices.iter().all(is_trouble)) {
+        // What each device advises is for a real one.
+        writeln!(
+            text,
+            "\nThis rig is emulated: start its devices with `nima emulate rig --rig {rig}` in another terminal"
+        )
+        .ok();
+    }
+    output::line(text.trim_end())
+}
+
+const fn is_trouble(device: &Diagnosis) -> bool {
+    matches!(device.outcome, Outcome::Trouble { .. })
 }
 
 /// Formats rows in columns as wide as their widest entry.

@@ -1,24 +1,29 @@
 //! `nima run`: the loop without a window, with a live status line and figures at the end.
 
+mod status;
+mod words;
+
 use std::{
-    io::{self, IsTerminal as _, Write as _},
     thread,
     time::{Duration, Instant},
 };
 
 use anyhow::{Context as _, bail};
 use clap::Args;
-use nima_core::{calibration::gravity::Drift, impedance::Mode, statistics::Quantiles};
-use nima_devices::{Health, Standing, Trouble};
+use nima_core::{calibration::gravity::Drift, impedance::Mode};
 use nima_machine::{
     config::SchedulingClass,
-    messages::{Command, LoopState, Tick},
-    runtime::{ArmEnd, CauseAndCure, DeviceFigures, Handle, Summary},
+    messages::{Command, Tick},
+    runtime::Summary,
 };
 use nima_recording::store::WristId;
 use nima_world::{Plan, emulated::TipError};
 use serde::Serialize;
 
+use self::{
+    status::{StatusLine, Troubles},
+    words::in_words,
+};
 use super::{
     ending::Reasons,
     output,
@@ -30,7 +35,7 @@ use crate::{
     emulators::Emulators,
     leaving::Leave,
     telling::tell,
-    words::{self, Remedy as _},
+    words::{Remedy as _, drift as drift_in_words},
 };
 
 /// True forces at the tips that emulators tell in a second.
@@ -127,12 +132,12 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let drift = start.in_force.drift();
     if arguments.json {
         if let Some(drift @ Drift::Moved { .. }) = drift {
-            tell(format_args!("warning: the bias of the wrist sensor has {}", words::drift(drift)));
+            tell(format_args!("warning: the bias of the wrist sensor has {}", drift_in_words(drift)));
         }
         output::json(&Told { summary: &summary, tip_error })?;
     } else {
         let bias =
-            drift.map_or_else(String::new, |drift| format!("\nbias of the wrist sensor: {}", words::drift(drift)));
+            drift.map_or_else(String::new, |drift| format!("\nbias of the wrist sensor: {}", drift_in_words(drift)));
         output::line(&(in_words(&plan, &summary) + &truth::in_words(&tip_error) + &bias))?;
     }
     // Without its calibrations an emulated rig does what it can, and has said what it lacks.
@@ -245,186 +250,4 @@ fn on_the_real_clock(plan: &Plan, start: &mut Start, leave: &Leave, arguments: &
         tell("nima: ended as asked: force and drives are off");
     }
     Ok(summary)
-}
-
-/// Reports why a device cannot be opened, once per cause.
-#[derive(Default)]
-struct Troubles {
-    told: Vec<Option<Trouble>>,
-    first: Option<String>,
-    looked: Option<Instant>,
-}
-
-impl Troubles {
-    fn look(&mut self, handle: &Handle, status: &StatusLine) {
-        const LOOK_EVERY: Duration = Duration::from_millis(500);
-        if self.looked.is_some_and(|looked| looked.elapsed() < LOOK_EVERY) {
-            return;
-        }
-        self.looked = Some(Instant::now());
-        self.told.resize(handle.roster().len(), None);
-        self.first = None;
-        for (entry, told) in handle.roster().iter().zip(&mut self.told) {
-            let trouble = entry.view.report().trouble;
-            if let Some(trouble) = &trouble {
-                let words = format!("{}: {trouble}. {}", entry.name, trouble.cure());
-                if told.as_ref() != Some(trouble) {
-                    status.tell(&words);
-                }
-                self.first.get_or_insert(words);
-            }
-            *told = trouble;
-        }
-    }
-
-    /// The first missing device, with cause and cure.
-    fn first(&self) -> Option<String> {
-        let others = self.told.iter().flatten().count().saturating_sub(1);
-        let more = if others > 0 { format!(" (and {others} more)") } else { String::new() };
-        self.first.as_ref().map(|first| format!("{first}{more}"))
-    }
-}
-
-/// A status line on stderr that is rewritten in place; one line per second if stderr is not a terminal.
-struct StatusLine {
-    wanted: bool,
-    terminal: bool,
-    last: Option<Instant>,
-}
-
-impl StatusLine {
-    fn new(wanted: bool) -> Self {
-        Self { wanted, terminal: io::stderr().is_terminal(), last: None }
-    }
-
-    /// Shows the present state; `missing` is the device that the loop is waiting for.
-    fn show(&mut self, tick: &Tick, missing: Option<&str>) {
-        let pause = Duration::from_millis(if self.terminal { 100 } else { 1000 });
-        if !self.wanted || self.last.is_some_and(|last| last.elapsed() < pause) {
-            return;
-        }
-        self.last = Some(Instant::now());
-        if let (LoopState::Disconnected, Some(missing)) = (tick.state, missing) {
-            return self.write(&format!("{:8.1} s  {}: {missing}", tick.t_s, tick.state.word()));
-        }
-        let text = format!(
-            "{:8.1} s  {:8}  {:8}  measured {:5.2} N  rendered {:5.2} N  degree {}  missed {}",
-            tick.t_s,
-            tick.state.word(),
-            tick.mode,
-            tick.measured_n.norm(),
-            tick.rendered_n.norm(),
-            tick.identification.degree,
-            tick.missed,
-        );
-        self.write(&text);
-    }
-
-    fn write(&self, text: &str) {
-        let mut err = io::stderr().lock();
-        // The terminal truncates a line that is too long, and clears the rest of the previous one.
-        let written =
-            if self.terminal { write!(err, "\r\x1b[?7l{text}\x1b[K\x1b[?7h") } else { writeln!(err, "{text}") };
-        written.and_then(|()| err.flush()).ok();
-    }
-
-    /// Prints a permanent line above the status line.
-    fn tell(&self, line: &str) {
-        if self.wanted && self.terminal && self.last.is_some() {
-            tell(format_args!("\r\x1b[K{line}"));
-        } else {
-            tell(line);
-        }
-    }
-
-    fn end(&self) {
-        if self.wanted && self.terminal && self.last.is_some() {
-            tell("");
-        }
-    }
-}
-
-fn in_words(plan: &Plan, summary: &Summary) -> String {
-    let times =
-        |q: &Quantiles| format!("p50 {:7.1}   p99 {:7.1}   p99.9 {:7.1}   max {:7.1}", q.p50, q.p99, q.p999, q.max);
-    let mut text = format!(
-        "{} on \"{}\", {} clock: {:.1} s, {} ticks, {} missed, {:.1} times real time\n\
-         link delay {:.0} ms, mode {}\n\
-         wake-up us  {}\n\
-         work us     {}\n\
-         rig us      {}\n\
-         sample to force us {}\n\
-         processor   {:.1} % of a core in the loop's thread, {:.1} % in the whole program{}{}\n\
-         error of each mode before the gates, against the force at the tip at the same instant:",
-        plan.scene.name,
-        plan.rig.name,
-        summary.clock,
-        summary.seconds,
-        summary.ticks,
-        summary.missed,
-        summary.speed,
-        plan.rig.delay_s * 1e3,
-        plan.rig.mode,
-        times(&summary.wake_us),
-        times(&summary.work_us),
-        times(&summary.rig_us),
-        times(&summary.sample_to_force_us),
-        summary.cpu.realtime * 100.0,
-        summary.cpu.process * 100.0,
-        devices_in_words(summary),
-        ends_in_words(summary),
-    );
-    for error in &summary.error {
-        let fields = format!(
-            "\n  {:5}  {:14}  mean {:10.4} N   sd {:10.4} N   max {:10.4} N   invalid {}",
-            error.side.word(),
-            error.mode,
-            error.mae_n,
-            error.sd_n,
-            error.max_n,
-            error.invalid
-        );
-        text.push_str(&fields);
-    }
-    if let (Some(advice), "real") = (summary.scheduling.advice(), summary.clock) {
-        text.push_str("\nnote: ");
-        text.push_str(advice);
-    }
-    text
-}
-
-fn devices_in_words(summary: &Summary) -> String {
-    summary.devices.iter().map(device_in_words).collect()
-}
-
-fn device_in_words(DeviceFigures { name, health, trouble }: &DeviceFigures) -> String {
-    let standing = match health.standing {
-        Standing::Connected => "connected".to_owned(),
-        Standing::Opening => "never connected".to_owned(),
-        Standing::Closed => "disconnected".to_owned(),
-        Standing::Lost(loss) => format!("lost: {}", loss.cause()),
-    };
-    let Health { readings, rate_hz, lost, damaged, refused, outages, longest_outage_s, .. } = health;
-    let outages = match outages {
-        0 => String::new(),
-        _ => format!("   outages {outages}, the longest {longest_outage_s:.1} s"),
-    };
-    let trouble = match trouble {
-        Some(CauseAndCure { cause, cure, .. }) => format!("\n  {:14}  {cause}. {cure}", ""),
-        None => String::new(),
-    };
-    format!(
-        "\n  {name:14}  {standing:12}  {readings:8} readings   {rate_hz:7.1} Hz   lost {lost}   damaged {damaged}   refused {refused}{outages}{trouble}"
-    )
-}
-
-fn ends_in_words(summary: &Summary) -> String {
-    let end = |ArmEnd { side, final_state, fault, .. }: &ArmEnd| {
-        let fault = fault.as_ref().map_or_else(String::new, |CauseAndCure { device, cause, .. }| {
-            let device = device.as_ref().map_or_else(String::new, |device| format!(" ({device})"));
-            format!(": {cause}{device}")
-        });
-        format!("\n{:5} arm ended: {}{fault}", side.word(), final_state.word())
-    };
-    summary.arms.iter().map(end).collect()
 }

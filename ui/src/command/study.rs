@@ -79,7 +79,7 @@ studies! {
     Faults(faults::Faults),
     /// Send extreme force requests through the gates and count violations of their limits
     Gates(gates::Gates),
-    /// Let go of a handle pressed with 5 N: every mode and delay, without and with gates
+    /// Let go of a handle pressed with up to 5 N: every mode, method of others and delay, without and with the governor
     Release(release::Release),
     /// Measure whether the loop gives the hand energy, and whether a loose grip oscillates, in every mode and at every delay
     Passivity(passivity::Passivity),

@@ -40,3 +40,27 @@ fn an_unknown_kind_names_the_known_ones_in_one_line() {
     let told = String::from_utf8(output.stderr).unwrap();
     assert!(!output.status.success() && told.lines().count() == 1 && told.contains("serial=PORT@BAUD"), "{told}");
 }
+
+/// Whoever tests an emulated rig before its emulators run is not sent to look for plugs.
+#[cfg(target_os = "linux")]
+#[test]
+fn an_emulated_rig_that_nobody_serves_names_the_command_that_does() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("rig.toml"), crate::installed::rig()).unwrap();
+    let told = |rig: &str| {
+        let output = Command::new(env!("CARGO_BIN_EXE_nima"))
+            .args(["devices", "--rig", rig])
+            .current_dir(folder.path())
+            .env("XDG_RUNTIME_DIR", folder.path())
+            .output()
+            .unwrap();
+        String::from_utf8(output.stdout).unwrap()
+    };
+    let emulated = told("rig.toml");
+    assert!(emulated.contains("right arm") && emulated.contains("`nima emulate rig --rig rig.toml`"), "{emulated}");
+    let rig = crate::installed::rig().replace("emulated = true", "emulated = false");
+    let real: Vec<_> = rig.lines().filter(|line| !line.starts_with("emulator = ")).collect();
+    std::fs::write(folder.path().join("real.toml"), real.join("\n")).unwrap();
+    let real = told("real.toml");
+    assert!(real.contains("right arm") && !real.contains("nima emulate rig"), "{real}");
+}

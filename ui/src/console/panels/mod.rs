@@ -16,6 +16,7 @@ pub mod timing;
 mod timing_bars;
 pub mod top_bar;
 pub mod tradeoff;
+mod tradeoff_apply;
 mod tradeoff_plot;
 
 use nima_core::impedance::{Baseline, Mode};

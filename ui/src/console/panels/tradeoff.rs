@@ -10,14 +10,10 @@ use std::{
 };
 
 use egui::{Button, ProgressBar, Ui, vec2};
-use nima_core::impedance::Mode;
-use nima_machine::{
-    config::{Identification, RigConfig},
-    messages::{Command, LoopState},
-};
+use nima_machine::{config::RigConfig, messages::LoopState};
 use nima_study::tradeoff::{Choice, Method, Plan, Point, Source, SourceFigures, Study, SweepError, sweep};
 
-use super::{mode_meaning, mode_name, tradeoff_plot::plot_ui};
+use super::{mode_meaning, mode_name, tradeoff_apply::Apply, tradeoff_plot::plot_ui};
 use crate::console::{
     live::Live,
     outbox::Outbox,
@@ -48,17 +44,15 @@ struct Job {
 
 impl Job {
     fn start(live: &Live) -> std::io::Result<Self> {
-        let mut rig = live.rig.clone();
-        rig.delay_s = live.delay_s();
-        let scene = live.scene.clone();
+        let (plan, rate_hz, scene) = (plan(live), live.rig.rate_hz, live.scene.clone());
         let cancel = Arc::new(AtomicBool::new(false));
         let progress = Arc::new([AtomicUsize::new(0), AtomicUsize::new(1)]);
         let (stop, told) = (Arc::clone(&cancel), Arc::clone(&progress));
         // A thread with normal priority: the loop's thread has real-time priority if that is granted, and is not
         // delayed.
         let thread = Builder::new().name("trade-off".to_owned()).spawn(move || {
-            let source = Source::from_scene(&scene, rig.rate_hz, SCENE_S);
-            sweep(&[source], &Plan::quick(rig.settings()), &stop, |done, total| {
+            let source = Source::from_scene(&scene, rate_hz, SCENE_S);
+            sweep(&[source], &plan, &stop, |done, total| {
                 told[0].store(done, Ordering::Relaxed);
                 told[1].store(total, Ordering::Relaxed);
             })
@@ -75,6 +69,13 @@ impl Job {
         let Self { thread, .. } = self;
         thread.join().ok()
     }
+}
+
+/// What is measured: the rig as it is, at the present delay.
+pub(super) fn plan(live: &Live) -> Plan {
+    let mut rig = live.rig.clone();
+    rig.delay_s = live.delay_s();
+    Plan::quick(rig.settings())
 }
 
 impl TradeoffState {
@@ -184,7 +185,8 @@ fn apply_ui(
     outbox: &mut Outbox,
 ) -> Option<RigConfig> {
     let mode = point.choice.method.mode()?;
-    let restart = needs_restart(&live.rig.identification, &point.choice);
+    let apply = Apply::of(live, mode, &point.choice);
+    let restart = matches!(apply, Apply::Restart(_));
     // After a restart the loop is idle, so it must not be a way out of a stop or a fault.
     let allowed = !restart || matches!(live.state(), LoopState::Idle | LoopState::Engaged);
     let size = vec2(ui.available_width(), 30.0);
@@ -198,40 +200,12 @@ fn apply_ui(
     if !clicked {
         return None;
     }
-    if restart {
-        return Some(rig_with(live, mode, &point.choice));
+    match apply {
+        Apply::Restart(rig) => return Some(*rig),
+        Apply::AtOnce(commands) => commands.into_iter().for_each(|command| outbox.push(command)),
     }
-    // The cost that was measured is that of this mode alone.
-    outbox.push(Command::Compare(false));
-    outbox.push(Command::SetMode(mode));
-    outbox.push(Command::SetDelay(point.choice.delay_ms * 1e-3));
     state.tell(text::tradeoff::applied(&name(point)));
     None
-}
-
-/// Whether the loop must be restarted for this choice: degree and window cannot change while it runs.
-fn needs_restart(now: &Identification, choice: &Choice) -> bool {
-    let degree = choice.degree != now.max_degree;
-    let window = (choice.window_ms - now.window_s * 1e3).abs() > 1e-6;
-    choice.method.mode().is_some_and(|mode| (mode.has_degrees() && degree) || (mode.has_window() && window))
-}
-
-/// The rig with this choice and all settings that the operator has changed since the start; a gain above 1 is reset to
-/// 1.
-fn rig_with(live: &Live, mode: Mode, choice: &Choice) -> RigConfig {
-    let mut rig = live.rig.clone();
-    rig.mode = mode;
-    rig.identification.compare = false;
-    rig.delay_s = choice.delay_ms * 1e-3;
-    if mode.has_window() {
-        rig.identification.window_s = choice.window_ms * 1e-3;
-    }
-    if mode.has_degrees() {
-        rig.identification.max_degree = choice.degree;
-    }
-    rig.gates = live.gate_settings();
-    rig.gates.gain = live.gain().min(1.0);
-    rig
 }
 
 /// Indices of the Pareto front at the source's own rate, cheapest first.

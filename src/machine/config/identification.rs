@@ -1,0 +1,54 @@
+//! Identification part of a rig file.
+
+use nima_core::impedance::{MAX_DEGREE, Recipe, Scales};
+use serde::{Deserialize, Serialize};
+
+/// Identification part of a rig file.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Identification {
+    /// Length of the rolling window, s (the paper's 0.3 s).
+    pub window_s: f64,
+    /// Highest degree identified, 1 to 5.
+    pub max_degree: usize,
+    /// Compute every mode beside the one that is rendered, to compare them; otherwise only that one is computed.
+    pub compare: bool,
+    /// The identification rests while the force lies within this, N: there is no contact. Choose five times the noise of
+    /// the force. 0: it never rests.
+    pub rest_n: f64,
+    /// The motion from which the leader makes the force.
+    pub own_motion: OwnMotion,
+    /// Learn the full matrix `M` with cross-talk between the axes; this doubles the cost.
+    pub cross_talk: bool,
+    /// Fixed physical scales of the regressor's columns, from the rig's workspace.
+    pub scales: Scales,
+    /// How the literal and the linear mode read the paper.
+    pub literal: Recipe,
+}
+
+/// The motion from which the leader makes the force.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum OwnMotion {
+    /// Where the follower is now, as its commands and its lag tell: accurate.
+    #[default]
+    Follower,
+    /// Where the handle is: the force is that of the place which the follower will reach. Matched rendering then
+    /// gives the hand hardly any power at any delay.
+    Handle,
+}
+
+impl Default for Identification {
+    fn default() -> Self {
+        Self {
+            window_s: 0.3,
+            max_degree: MAX_DEGREE,
+            compare: false,
+            rest_n: 0.1,
+            own_motion: OwnMotion::Follower,
+            cross_talk: false,
+            scales: Scales::default(),
+            literal: Recipe::default(),
+        }
+    }
+}

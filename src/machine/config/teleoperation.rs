@@ -1,0 +1,54 @@
+//! Teleoperation part of a rig file.
+
+use nalgebra::{UnitQuaternion, Vector3};
+use nima_core::{
+    frames::from_roll_pitch_yaw_deg,
+    kinematics::{Mapping, view_from_omega},
+};
+use serde::{Deserialize, Serialize};
+
+/// Mapping from the hand's motion to the tip's: `world_from_view * view_from_leader`, and the scale.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Teleoperation {
+    /// Distance of the tip per distance of the hand.
+    pub scale: f64,
+    /// Orientation of the endoscope: roll, pitch, yaw of `world_from_view`, degrees (picture: x right, y down, z into
+    /// it).
+    pub world_from_view_deg: Vector3<f64>,
+    /// Orientation of the leader relative to the picture.
+    pub leader: LeaderMount,
+}
+
+impl Default for Teleoperation {
+    fn default() -> Self {
+        Self { scale: 1.0, world_from_view_deg: Vector3::zeros(), leader: LeaderMount::Workspace }
+    }
+}
+
+/// Orientation of a leader relative to the picture.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum LeaderMount {
+    /// The leader's axes are those of the picture.
+    #[default]
+    Workspace,
+    /// An Omega below the screen, with its base towards the user.
+    Omega,
+}
+
+impl Teleoperation {
+    /// The mapping; the default one if the numbers are not finite (which [`RigConfig::validate`] refuses).
+    pub fn mapping(&self) -> Mapping {
+        self.seen(&from_roll_pitch_yaw_deg(&self.world_from_view_deg), self.scale)
+    }
+
+    /// The mapping for an endoscope of this orientation; the default one if the numbers are not finite.
+    pub fn seen(&self, world_from_view: &UnitQuaternion<f64>, scale: f64) -> Mapping {
+        let view_from_leader = match self.leader {
+            LeaderMount::Workspace => UnitQuaternion::identity(),
+            LeaderMount::Omega => view_from_omega(),
+        };
+        Mapping::new(world_from_view, &view_from_leader, scale).unwrap_or_default()
+    }
+}

@@ -1,0 +1,132 @@
+//! Sums over a replay, from which its figures are made.
+
+use nalgebra::Vector3;
+use nima_core::{
+    impedance::{MAX_DEGREE, Mode, Report, Settings},
+    statistics::Percentiles,
+};
+use nima_recording::csv::Recording;
+
+use super::{
+    Row,
+    figures::{ErrorFigures, Figures, Reconstruction, Reconstructions, Spread, TickTime},
+};
+
+/// Sums over the replay.
+#[derive(Default)]
+pub(super) struct Tally {
+    error: Errors,
+    hold: Errors,
+    reconstruction: [Errors; MAX_DEGREE],
+    selected: Errors,
+    degrees: [u64; MAX_DEGREE + 1],
+    conditions: Vec<f64>,
+    rejected: u64,
+    holes: u64,
+    longest_hole_s: f64,
+    pub(super) tick: Percentiles,
+}
+
+impl Tally {
+    pub(super) fn hole(&mut self, seconds: f64) {
+        self.holes += 1;
+        self.longest_hole_s = self.longest_hole_s.max(seconds);
+    }
+
+    pub(super) fn add(&mut self, row: &Row, report: &Report) {
+        if let Some(chosen) = usize::from(report.paper_degree).checked_sub(1) {
+            for (errors, residual) in self.reconstruction.iter_mut().zip(&report.reconstruction_n) {
+                errors.add(residual);
+            }
+            self.selected.add(&report.reconstruction_n[chosen]);
+        }
+        if report.condition > 0.0 {
+            self.conditions.push(report.condition);
+        }
+        let Some(held) = row.held else { return };
+        // A mode without a valid force renders none: its error is the whole force.
+        self.error.add(&(row.rendered.unwrap_or_else(Vector3::zeros) - row.measured));
+        self.hold.add(&(held - row.measured));
+        self.degrees[row.degree.min(MAX_DEGREE)] += 1;
+        self.rejected += u64::from(row.rendered.is_none());
+    }
+
+    pub(super) fn figures(mut self, recording: &Recording, mode: Mode, settings: &Settings) -> Figures {
+        let compared = self.error.norms.len();
+        let share = |count: u64| count as f64 / compared.max(1) as f64;
+        let [degree_1, degree_2, degree_3, degree_4, degree_5] =
+            self.reconstruction.map(|errors| errors.reconstruction());
+        let tick = self.tick.quantiles();
+        self.conditions.sort_unstable_by(f64::total_cmp);
+        Figures {
+            samples: recording.samples.len(),
+            rate_hz: recording.rate_hz,
+            axes: recording.axes.iter().map(|&axis| nima_recording::csv::AXIS_NAMES[axis]).collect(),
+            mode,
+            window_ms: tidy_ms(settings.window_s),
+            delay_ms: tidy_ms(settings.delay_s),
+            compared,
+            error: self.error.figures(),
+            hold: self.hold.figures(),
+            reconstruction: Reconstructions {
+                degree_1,
+                degree_2,
+                degree_3,
+                degree_4,
+                degree_5,
+                selected: self.selected.reconstruction(),
+            },
+            degree_share: std::array::from_fn(|i| share(self.degrees[i + 1])),
+            nonlinear_share: share(self.degrees[2..].iter().sum()),
+            condition: Spread {
+                p50: quantile(&self.conditions, 0.5),
+                p95: quantile(&self.conditions, 0.95),
+                max: quantile(&self.conditions, 1.0),
+            },
+            rejected: self.rejected,
+            holes: self.holes,
+            longest_hole_s: tidy_ms(self.longest_hole_s) * 1e-3,
+            tick_us: TickTime { p50: tick.p50, p99: tick.p99, max: tick.max },
+        }
+    }
+}
+
+/// Seconds to milliseconds, rounded to remove the error of the division.
+fn tidy_ms(seconds: f64) -> f64 {
+    (seconds * 1e9).round() * 1e-6
+}
+
+/// Errors stored to compute percentiles.
+#[derive(Default)]
+struct Errors {
+    norms: Vec<f64>,
+    sum: Vector3<f64>,
+    squares: f64,
+}
+
+impl Errors {
+    fn add(&mut self, error: &Vector3<f64>) {
+        self.norms.push(error.norm());
+        self.sum += error;
+        self.squares += error.norm_squared();
+    }
+
+    fn reconstruction(&self) -> Reconstruction {
+        let count = self.norms.len().max(1) as f64;
+        let mae = self.norms.iter().sum::<f64>() / count;
+        let variance = self.squares / count - (self.sum / count).norm_squared();
+        Reconstruction { mae, sd: variance.max(0.0).sqrt() }
+    }
+
+    fn figures(&mut self) -> ErrorFigures {
+        let Reconstruction { mae, sd } = self.reconstruction();
+        self.norms.sort_unstable_by(f64::total_cmp);
+        ErrorFigures { mae, sd, p95: quantile(&self.norms, 0.95), max: quantile(&self.norms, 1.0) }
+    }
+}
+
+/// Quantile of sorted values (nearest rank); 0 if there are none.
+fn quantile(sorted: &[f64], q: f64) -> f64 {
+    let rank = (q * sorted.len() as f64).ceil() as usize;
+    sorted.get(rank.clamp(1, sorted.len().max(1)) - 1).copied().unwrap_or(0.0)
+}

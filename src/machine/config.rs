@@ -9,7 +9,7 @@ use std::path::Path;
 use nalgebra::{UnitQuaternion, Vector3};
 use nima_core::{
     frames::from_roll_pitch_yaw_deg,
-    impedance::{MAX_DEGREE, MAX_DELAY_S, MAX_REST_N, Mode, ModeSet, RIDGES, Recipe, Scales, Settings},
+    impedance::{MAX_DEGREE, MAX_DELAY_S, MAX_REST_N, Mode, ModeSet, OwnMotion, RIDGES, Recipe, Scales, Settings},
     kinematics::{Mapping, SCALES, view_from_omega},
     safety::ChainSettings,
     tip_force::Fallback,
@@ -177,18 +177,6 @@ pub struct Identification {
     pub literal: Recipe,
 }
 
-/// The motion from which the leader makes the force.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum OwnMotion {
-    /// Where the follower is now, as its commands and its lag tell: accurate.
-    #[default]
-    Follower,
-    /// Where the handle is: the force is that of the place which the follower will reach. Matched rendering then
-    /// gives the hand hardly any power at any delay.
-    Handle,
-}
-
 impl Default for Identification {
     fn default() -> Self {
         Self {
@@ -251,12 +239,14 @@ impl RigConfig {
 
     /// Settings of the identification for this rig.
     pub fn settings(&self) -> Settings {
-        let Identification { window_s, max_degree, rest_n, cross_talk, scales, literal, .. } = self.identification;
+        let Identification { window_s, max_degree, rest_n, own_motion, cross_talk, scales, literal, .. } =
+            self.identification;
         Settings {
             rate_hz: self.rate_hz,
             window_s,
             max_degree,
             rest_n,
+            own_motion,
             cross_talk,
             scales,
             literal,

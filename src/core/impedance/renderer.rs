@@ -107,10 +107,8 @@ impl Renderer {
             }
         }
         for (mode, damper) in self.dampers.iter_mut().flatten() {
-            match &mut forces[mode.index()] {
-                Some(force_n) => *force_n -= damper.step(&now.stance, *force_n),
-                None => damper.interrupt(),
-            }
+            let force_n = &mut forces[mode.index()];
+            *force_n = force_n.map(|force_n| damper.step(&now.stance, force_n));
         }
         Rendered::new(&forces)
     }

@@ -18,7 +18,7 @@ use serde::{Deserialize, Serialize};
 
 pub(crate) use files::parse_with;
 pub use files::{ConfigError, Ranges, parse, text};
-pub use identification::{Identification, OwnMotion};
+pub use identification::Identification;
 pub use mounted::SimulatedWrists;
 pub use rig_file::{Chosen, RigFile, RigFileError};
 pub use teleoperation::{LeaderMount, Teleoperation};
@@ -157,12 +157,14 @@ impl RigConfig {
 
     /// Settings of the identification for this rig.
     pub fn settings(&self) -> Settings {
-        let Identification { window_s, max_degree, rest_n, cross_talk, scales, literal, .. } = self.identification;
+        let Identification { window_s, max_degree, rest_n, own_motion, cross_talk, scales, literal, .. } =
+            self.identification;
         Settings {
             rate_hz: self.rate_hz,
             window_s,
             max_degree,
             rest_n,
+            own_motion,
             cross_talk,
             scales,
             literal,

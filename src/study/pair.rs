@@ -9,15 +9,12 @@ use std::f64::consts::TAU;
 
 use nalgebra::Vector3;
 use nima_core::{
-    impedance::{Identifier, Mode, ModeSet, Recipe, Renderer, Sample, Settings, SettingsError},
+    impedance::{Identifier, Mode, ModeSet, OwnMotion, Recipe, Renderer, Sample, Settings, SettingsError},
     noise::Noise,
     safety::{Chain, ChainSettings, GateReport, Request},
     signal::Speed,
 };
-use nima_machine::{
-    config::OwnMotion,
-    teleop::{Link as _, ProgrammedLink, Tracking},
-};
+use nima_machine::teleop::{Link as _, ProgrammedLink, Tracking};
 use nima_world::{Tissue, scene::Tissue as TissueConfig};
 
 /// Ticks per second.
@@ -122,6 +119,7 @@ impl Pair {
             delay_s: trial.delay_s,
             modes: ModeSet::only(trial.mode),
             literal: trial.literal,
+            own_motion: trial.own_motion,
             ..Settings::default()
         };
         let mut noise = Noise::new(trial.seed);

@@ -8,10 +8,10 @@ mod present;
 
 use nalgebra::Vector3;
 use nima_core::{
-    impedance::{Mode, Recipe, SettingsError},
+    impedance::{Mode, OwnMotion, Recipe, SettingsError},
     safety::ChainSettings,
 };
-use nima_machine::config::{ConfigError, OwnMotion};
+use nima_machine::config::ConfigError;
 use nima_world::scene::{Scene, Tissue};
 use serde::Serialize;
 

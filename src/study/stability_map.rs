@@ -17,10 +17,9 @@ use std::{fmt::Write as _, sync::OnceLock};
 
 use nalgebra::Vector3;
 use nima_core::{
-    impedance::{Mode, Recipe, SettingsError},
+    impedance::{Mode, OwnMotion, Recipe, SettingsError},
     safety::{ChainSettings, EnergyMode},
 };
-use nima_machine::config::OwnMotion;
 use nima_world::scene::Tissue;
 use serde::{Serialize, Serializer};
 

@@ -1,8 +1,8 @@
 //! The whole loop on the virtual clock, over whole scenes, including faults.
 use nalgebra::Vector3;
-use nima_core::impedance::{Mode, ModeSet};
+use nima_core::impedance::{Mode, ModeSet, OwnMotion};
 use nima_machine::{
-    config::{OwnMotion, RigConfig},
+    config::RigConfig,
     messages::{Command, Fault, LoopState, Refusal, Tick},
     rig::{Inputs, Outputs, Sensed, Side},
     runtime::Summary,

@@ -18,6 +18,7 @@
 //! | `anchored`, `regressors`, `regression`, `mixture` | anchored rendering: experts and their trust |
 //! | `best` | a softmin over anchored and matched rendering, judged by the leader |
 //! | `matched` | matched rendering: the force from the hand's own motion, by parameters alone |
+//! | `damper` | the damping that keeps a force of the handle's own motion from driving the hand |
 //! | `baselines` | methods of others, to compare with; at most one is computed |
 //! | `pace`, `envelope` | a clock that motion drives; the range of forces seen |
 //! | `identifier`, `information`, `renderer`, `messages` | the two ends of the link, and what goes between them |
@@ -25,6 +26,7 @@
 mod anchored;
 mod baselines;
 mod best;
+mod damper;
 mod degrees;
 mod envelope;
 mod factor;
@@ -69,7 +71,7 @@ pub use messages::{AnchoredModel, Excitation, LiteralModel, Parcel, Rendered, Re
 pub use mode::{Baseline, MODES, Mode, ParseModeError, SLOTS};
 pub use recipe::{Choice, Reading, Recipe};
 pub use renderer::Renderer;
-pub use settings::{MAX_DELAY_S, MAX_REST_N, ModeSet, RIDGES, Settings, SettingsError};
+pub use settings::{MAX_DELAY_S, MAX_REST_N, ModeSet, OwnMotion, RIDGES, Settings, SettingsError};
 pub use solution::Solution;
 pub use window::{SlidingWindow, Summary};
 

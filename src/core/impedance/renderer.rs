@@ -6,9 +6,10 @@ use super::{
     Mode, SLOTS,
     baselines::Leader,
     best::Best,
+    damper::Damper,
     matched::Slip,
     messages::{Parcel, Posture, Rendered, active},
-    settings::{MAX_DELAY_S, Settings, SettingsError},
+    settings::{MAX_DELAY_S, OwnMotion, Settings, SettingsError},
     track::{Track, usable_position},
 };
 use crate::signal::{DelayLine, Lanes};
@@ -36,6 +37,8 @@ pub struct Renderer {
     slip: Slip,
     baseline: Option<Leader>,
     best: Option<Best>,
+    /// What is rendered from the handle's own motion must not drive the hand.
+    dampers: Option<[(Mode, Damper); 2]>,
     parcel_t_s: f64,
     /// Ticks since the newest parcel came.
     waiting: usize,
@@ -56,6 +59,8 @@ impl Renderer {
             slip: Slip::default(),
             baseline: settings.modes.baseline().map(|_| Leader::new(settings)),
             best: settings.modes.contains(Mode::Best).then(|| Best::new(settings)),
+            dampers: (settings.own_motion == OwnMotion::Handle)
+                .then(|| [Mode::Matched, Mode::Nima].map(|mode| (mode, Damper::new(settings.rate_hz)))),
             parcel_t_s: f64::NEG_INFINITY,
             waiting: 0,
             settings: settings.clone(),
@@ -92,7 +97,7 @@ impl Renderer {
         let then = self.postures.get(age).unwrap_or(&now);
         let baseline = self.baseline.as_mut();
         let weight = self.best.as_ref().map_or(Lanes::ZERO, Best::anchored);
-        let forces = parcel.render(&now, then, &x, &mut self.slip, weight, |model, force_n| {
+        let mut forces = parcel.render(&now, then, &x, &mut self.slip, weight, |model, force_n| {
             baseline.and_then(|leader| leader.step(model, force_n, &now, age))
         });
         if let Some(best) = &mut self.best {
@@ -100,6 +105,10 @@ impl Renderer {
             if self.waiting == 0 {
                 best.hear(parcel, age);
             }
+        }
+        for (mode, damper) in self.dampers.iter_mut().flatten() {
+            let force_n = &mut forces[mode.index()];
+            *force_n = force_n.map(|force_n| damper.step(&now.stance, force_n));
         }
         Rendered::new(&forces)
     }
@@ -123,6 +132,7 @@ impl Renderer {
         if let Some(best) = &mut self.best {
             best.reset();
         }
+        self.dampers.iter_mut().flatten().for_each(|(_, damper)| damper.reset());
         self.parcel_t_s = f64::NEG_INFINITY;
         self.waiting = 0;
     }

@@ -90,6 +90,18 @@ impl Default for ModeSet {
     }
 }
 
+/// The motion from which the leader makes the force.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum OwnMotion {
+    /// Where the follower is now, as its commands and its lag tell: accurate.
+    #[default]
+    Follower,
+    /// Where the handle is: the force is that of the place which the follower will reach. Matched rendering then
+    /// gives the hand no power in the mean: what its changing parameters give is damped.
+    Handle,
+}
+
 /// Settings of an [`Identifier`](super::Identifier) and of the [`Renderer`](super::Renderer) at the other end of the link;
 /// both must be given the same.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -115,6 +127,8 @@ pub struct Settings {
     /// Whether the force on each axis may depend on the motion of the others (the full `M`) in matched rendering, and so in the best
     /// of both.
     pub cross_talk: bool,
+    /// The motion that the leader is given.
+    pub own_motion: OwnMotion,
     /// How velocity and acceleration are made.
     pub differentiator: DifferentiatorKind,
     /// Ridge of the anchored fit, per row of the window and in scaled columns: a coefficient costs as much as if each row had
@@ -136,6 +150,7 @@ impl Default for Settings {
             modes: ModeSet::ALL,
             rest_n: 0.0,
             cross_talk: false,
+            own_motion: OwnMotion::default(),
             differentiator: DifferentiatorKind::default(),
             ridge: 1e-6,
             literal: Recipe::default(),

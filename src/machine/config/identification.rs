@@ -1,6 +1,6 @@
 //! Identification part of a rig file.
 
-use nima_core::impedance::{MAX_DEGREE, Recipe, Scales};
+use nima_core::impedance::{MAX_DEGREE, OwnMotion, Recipe, Scales};
 use serde::{Deserialize, Serialize};
 
 /// Identification part of a rig file.
@@ -24,18 +24,6 @@ pub struct Identification {
     pub scales: Scales,
     /// How the literal and the linear mode read the paper.
     pub literal: Recipe,
-}
-
-/// The motion from which the leader makes the force.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum OwnMotion {
-    /// Where the follower is now, as its commands and its lag tell: accurate.
-    #[default]
-    Follower,
-    /// Where the handle is: the force is that of the place which the follower will reach. Matched rendering then
-    /// gives the hand hardly any power at any delay.
-    Handle,
 }
 
 impl Default for Identification {

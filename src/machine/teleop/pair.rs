@@ -7,7 +7,9 @@ mod watch;
 
 use nalgebra::{UnitQuaternion, Vector1, Vector3};
 use nima_core::{
-    impedance::{Baseline, Identifier, Mode, Renderer, Sample, Settings as IdentifierSettings, SettingsError},
+    impedance::{
+        Baseline, Identifier, Mode, OwnMotion, Renderer, Sample, Settings as IdentifierSettings, SettingsError,
+    },
     kinematics::{HandEye, Target},
     safety::{Chain, Gate, GripperChain, Interlock, Plausibility, Reason, Request},
     signal::Speed,
@@ -17,7 +19,7 @@ use nima_devices::Standing;
 use self::told::{NO_FORCE_YET, NOTHING_YET, NOWHERE};
 use super::{Accuracy, Calibrations, ForcePath, Link, ProgrammedLink, Tracking};
 use crate::{
-    config::{OwnMotion, RigConfig, Teleoperation},
+    config::{RigConfig, Teleoperation},
     messages::{Event, Fault, ForceReport, LoopState, Tick},
     rig::{DeviceEvent, Inputs, Outputs, Prompt, Side},
 };
@@ -66,7 +68,6 @@ pub struct Pair<L: Link = ProgrammedLink> {
     /// The mode that is rendered until the new one has something to render.
     before: Option<Mode>,
     compares: bool,
-    own_motion: OwnMotion,
     delay_s: f64,
     rate_hz: f64,
     /// Settings of the identification; the conversion of a delay to ticks is defined there only.
@@ -130,7 +131,6 @@ impl<L: Link> Pair<L> {
             mode: rig.mode,
             before: None,
             compares: rig.identification.compare,
-            own_motion: rig.identification.own_motion,
             delay_s: rig.delay_s,
             rate_hz: rig.rate_hz,
             follower_step_max_m: rig.follower_speed_max_m_s / rig.rate_hz,
@@ -361,7 +361,7 @@ impl<L: Link> Pair<L> {
     ) -> Vector3<f64> {
         if let Some(command_m) = tip_command_m {
             let follower_m = self.tracking.step(&command_m, &seen.tip_m);
-            return match self.own_motion {
+            return match self.settings.own_motion {
                 OwnMotion::Follower => follower_m,
                 OwnMotion::Handle => *handle_m,
             };

@@ -1,10 +1,9 @@
 //! What the handle does when the hand lets go while the paper's recipe renders, without the governor.
 
 use nima_core::{
-    impedance::{Mode, Recipe},
+    impedance::{Mode, OwnMotion, Recipe},
     safety::ChainSettings,
 };
-use nima_machine::config::OwnMotion;
 use serde::Serialize;
 
 use super::judged::{PRINTED, REPAIRED};

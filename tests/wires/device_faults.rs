@@ -271,9 +271,10 @@ fn every_fault_of_every_device_is_told_takes_the_force_away_and_passes() {
     let name = std::thread::current().name().unwrap().to_owned();
     let rows: Vec<Row> = std::thread::scope(|scope| {
         // By the test's name: a thread that finds the machine too busy says who it is.
-        let of =
-            |share| std::thread::Builder::new().name(name.clone()).spawn_scoped(scope, move || every_fault_of(share));
-        let threads = shares.map(|share| of(share).unwrap());
+        let threads = shares.map(|(devices, serial)| {
+            let named = std::thread::Builder::new().name(name.clone());
+            named.spawn_scoped(scope, move || every_fault_of(devices, serial)).unwrap()
+        });
         threads.into_iter().flat_map(|thread| thread.join().unwrap()).collect()
     });
     let table = table(&rows);

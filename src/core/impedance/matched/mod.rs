@@ -4,7 +4,7 @@
 //! drives; two ridges and nested sets of columns are its experts. What each expert would have said one delay ago is compared
 //! with the force that came; the weights are a softmin of that running error, and what is sent is the weighted sum of the
 //! parameters, with the range of forces seen and a small offset. The leader puts in its own motion, which may be the
-//! follower's as it knows it (accurate) or the handle's (nearly passive at any delay).
+//! follower's as it knows it (accurate) or the handle's (with a little damping passive at any delay).
 //!
 //! Positions count from a kept origin, there is a constant, the ridge is in proportion to each column's mean square: where the
 //! paper's recipe (increments, raw columns, no constant, no ridge, degree by the error inside the window) asks for 1e6 N at

@@ -96,9 +96,14 @@ pub fn right_arm(folder: &Path) -> Settings {
 
 /// Starts the emulated devices of that rig, in the peg-transfer scene.
 pub fn started(devices: &Settings) -> EmulatedRig {
+    started_in(&Scene::load("peg_transfer").unwrap(), devices)
+}
+
+/// The same in another scene.
+pub fn started_in(scene: &Scene, devices: &Settings) -> EmulatedRig {
     EmulatedRig::start(
         devices,
-        &Scene::load("peg_transfer").unwrap(),
+        scene,
         &[HandFrame::of(&RigConfig::load("emulated").unwrap().teleoperation.mapping()); 2],
     )
     .unwrap()

@@ -2,6 +2,7 @@
 
 mod files;
 mod mounted;
+mod own_copy;
 mod rig_file;
 
 use std::path::Path;
@@ -19,6 +20,7 @@ use serde::{Deserialize, Serialize};
 pub(crate) use files::parse_with;
 pub use files::{ConfigError, Ranges, parse, text};
 pub use mounted::SimulatedWrists;
+pub use own_copy::{change_rig, own_path};
 pub use rig_file::{RigFile, RigFileError};
 
 use crate::rig;
@@ -111,11 +113,19 @@ pub struct Teleoperation {
     pub world_from_view_deg: Vector3<f64>,
     /// Orientation of the leader relative to the picture.
     pub leader: LeaderMount,
+    /// The same as it was measured: roll, pitch, yaw of `view_from_leader`, degrees; in place of [`leader`](Self::leader).
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub view_from_leader_deg: Option<Vector3<f64>>,
 }
 
 impl Default for Teleoperation {
     fn default() -> Self {
-        Self { scale: 1.0, world_from_view_deg: Vector3::zeros(), leader: LeaderMount::Workspace }
+        Self {
+            scale: 1.0,
+            world_from_view_deg: Vector3::zeros(),
+            leader: LeaderMount::Workspace,
+            view_from_leader_deg: None,
+        }
     }
 }
 
@@ -138,11 +148,16 @@ impl Teleoperation {
 
     /// The mapping for an endoscope of this orientation; the default one if the numbers are not finite.
     pub fn seen(&self, world_from_view: &UnitQuaternion<f64>, scale: f64) -> Mapping {
-        let view_from_leader = match self.leader {
-            LeaderMount::Workspace => UnitQuaternion::identity(),
-            LeaderMount::Omega => view_from_omega(),
-        };
-        Mapping::new(world_from_view, &view_from_leader, scale).unwrap_or_default()
+        Mapping::new(world_from_view, &self.view_from_leader(), scale).unwrap_or_default()
+    }
+
+    /// Orientation of the leader relative to the picture, as measured or else as usual for its mount.
+    pub fn view_from_leader(&self) -> UnitQuaternion<f64> {
+        match (&self.view_from_leader_deg, self.leader) {
+            (Some(measured_deg), _) => from_roll_pitch_yaw_deg(measured_deg),
+            (None, LeaderMount::Workspace) => UnitQuaternion::identity(),
+            (None, LeaderMount::Omega) => view_from_omega(),
+        }
     }
 }
 
@@ -289,6 +304,9 @@ impl RigConfig {
         let scale = self.teleoperation.scale;
         ranges.check("teleoperation.scale", scale, SCALES.contains(&scale), "0.01 to 5")?;
         ranges.finite("teleoperation.world_from_view_deg", &self.teleoperation.world_from_view_deg)?;
+        if let Some(measured_deg) = &self.teleoperation.view_from_leader_deg {
+            ranges.finite("teleoperation.view_from_leader_deg", measured_deg)?;
+        }
         let window_s = self.identification.window_s;
         let samples = window_s * self.rate_hz;
         ranges.check(

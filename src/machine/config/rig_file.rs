@@ -78,7 +78,26 @@ impl RigFile {
         if let Some(before) = table.get(last).and_then(Item::as_value) {
             *value.decor_mut() = before.decor().clone();
         }
-        table.insert(last, Item::Value(value));
+        // A key that stands there stays as it is: the lines above it, the head of the file among them, are its own.
+        match table.get_mut(last) {
+            Some(item) => *item = Item::Value(value),
+            None => {
+                table.insert(last, Item::Value(value));
+            }
+        }
+    }
+
+    /// The value of a key with dots as TOML text, without its comment; `None` where there is none.
+    pub fn value(&self, key: &str) -> Option<String> {
+        let mut value = self.item(key)?.as_value()?.clone();
+        value.decor_mut().clear();
+        Some(value.to_string())
+    }
+
+    /// Sets the value of a key with dots from TOML text, as [`value`](Self::value) gives it; false if that is no value.
+    pub fn set_text(&mut self, key: &str, text: &str) -> bool {
+        let value = text.parse::<Value>();
+        value.map(|value| self.set(key, value)).is_ok()
     }
 
     /// Takes a key with dots away, with everything below it.
@@ -168,6 +187,24 @@ mod tests {
         file.remove("desk");
         file.remove("desk.cap");
         assert_eq!(file.text(), RigFile::of("simulated").unwrap().text());
+    }
+
+    #[test]
+    fn a_value_is_read_as_text_and_written_back_as_it_was() {
+        let mut file = RigFile::of("emulated").unwrap();
+        let before = file.text();
+        let key = "devices.right.mount.sensor_m";
+        let was = file.value(key).unwrap();
+        assert_eq!(was, "[0.00, 0.00, 0.05]");
+        assert!(file.set_text(key, "[0.001, 0.0, 0.05]"));
+        let right = file.rig().unwrap().devices.unwrap().right.unwrap();
+        assert!((right.mount.sensor_m.x - 0.001).abs() < 1e-12);
+        assert!(file.set_text(key, &was) && file.text() == before, "{}", file.text());
+        assert!(!file.set_text(key, "[0.001,") && file.text() == before);
+        assert_eq!(file.value("devices.right.base_from_c_m"), None);
+        assert!(file.set_text("devices.right.base_from_c_m", "[1.0, 2.0, 3.0]"));
+        file.remove("devices.right.base_from_c_m");
+        assert_eq!(file.text(), before);
     }
 
     #[test]

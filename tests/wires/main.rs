@@ -4,6 +4,7 @@
 
 mod device_faults;
 mod emulated_rig;
+mod frames;
 mod killed;
 mod rig_diagnosis;
 mod technician;

@@ -60,8 +60,8 @@ const RESULT: usize = 2;
 const SAVE: usize = 3;
 /// Samples are taken this far apart, s: poses are held for half a second, and the tracker sends 60 frames a second.
 const EVERY_S: f64 = 0.004;
-/// A pose of a list that gives nothing new for so long is passed, s.
-const PASSED_S: f64 = 1.5;
+/// A pose of a list that gives nothing new for so long is passed, s: longer than a person takes to begin with it.
+const PASSED_S: f64 = 8.0;
 
 /// A result that is to be saved: its record, and the values of the rig file that follow from it, as TOML text.
 #[derive(Clone, Debug)]

@@ -109,6 +109,8 @@ pub(in crate::console) const CHANGE_TITLE: &str = "What changes in the rig file"
 pub(in crate::console) const CHANGE_HOVER: &str =
     "Nothing is changed before you save; afterwards the change can be undone";
 pub(in crate::console) const NO_CHANGE: &str = "Nothing: the rig file is right";
+pub(in crate::console) const WITHIN_UNCERTAINTY: &str =
+    "The change is smaller than the uncertainty of the result: the rig file was right";
 pub(in crate::console) const KEY: &str = "Key";
 pub(in crate::console) const BEFORE: &str = "Now";
 pub(in crate::console) const AFTER: &str = "New";
@@ -141,7 +143,13 @@ pub(in crate::console) fn coverage(count: usize, units: &str, missing: Option<&s
 pub(in crate::console) fn effect(change: Option<[f64; 2]>) -> String {
     change.map_or_else(
         || "solid: found now; the rig file does not give it".to_owned(),
-        |[m, deg]| format!("dashed: now   solid: new   moved by {:.2} mm, turned by {deg:.2} deg", m * 1e3),
+        |[m, deg]| {
+            // A point has no angle, and a rotation no place.
+            let moved = (m > 1e-9).then(|| format!("moved by {:.2} mm", m * 1e3));
+            let turned = (deg > 1e-6).then(|| format!("turned by {deg:.2} deg"));
+            let words: Vec<_> = moved.into_iter().chain(turned).collect();
+            format!("dashed: now   solid: new   {}", words.join(", "))
+        },
     )
 }
 

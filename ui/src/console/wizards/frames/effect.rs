@@ -27,7 +27,7 @@ pub(super) fn effect_picture(ui: &mut Ui, effect: &Effect) {
     let way_m = effect.change().map_or(0.0, |[way_m, _]| way_m);
     let points_per_m = APART * half / way_m.max(LEAST_M);
     // The new frame is in the middle: what is known best.
-    let centre = rect.center() - vec2(0.0, 10.0);
+    let centre = rect.center() + vec2(0.0, 18.0);
     let middle_m = effect.after.translation.vector;
     let place = |frame: &Isometry3<f64>| {
         let offset = (frame.translation.vector - middle_m) * points_per_m;

@@ -227,21 +227,20 @@ impl FrameWizard {
             let asked =
                 if complete { texts::ALL_RECORDED.to_owned() } else { Kind::asks(&self.prompt(), self.passed.0) };
             ui.label(RichText::new(asked).font(theme::strong(19.0)));
-            ui.label(task);
-            ui.add_space(6.0);
-            let (share, phase) = match words::phase(&self.phase) {
-                _ if complete => (1.0, texts::ALL_RECORDED.to_owned()),
-                _ if self.paused => (0.0, texts::PAUSED.to_owned()),
-                words => words,
-            };
-            progress(ui, texts::PROGRESS, share, &phase);
-            ui.add_space(4.0);
+            if !complete {
+                ui.label(task);
+                ui.add_space(6.0);
+                let paused = (0.0, texts::PAUSED.to_owned());
+                let (share, phase) = if self.paused { paused } else { words::phase(&self.phase) };
+                progress(ui, texts::PROGRESS, share, &phase);
+                ui.add_space(4.0);
+            }
             let words = texts::coverage(self.taken(), units, coverage.missing.map(words::Words::words));
             progress(ui, texts::COVERAGE, coverage.share, &words);
             ui.add_space(6.0);
             ui.horizontal(|ui| {
                 let pause = if self.paused { texts::GO_ON } else { texts::PAUSE };
-                if ui.button(pause).on_hover_text(texts::PAUSE_HOVER).clicked() {
+                if ui.add_enabled(!complete, Button::new(pause)).on_hover_text(texts::PAUSE_HOVER).clicked() {
                     self.paused = !self.paused;
                 }
                 if ui.add_enabled(self.taken() > 0, Button::new(texts::REMOVE_LAST)).clicked() {
@@ -262,7 +261,7 @@ impl FrameWizard {
 
     /// Looks up what the last saved calibration changed; nothing if the rig file has other values now.
     fn look_for_undo(&mut self, binding: &Binding) {
-        let Some(store) = binding.store.as_ref().filter(|_| !binding.sensor.is_empty()) else { return };
+        let Some(store) = &binding.store else { return };
         let wrist = [binding.sensor.as_str(), binding.tool.as_str()];
         let handle = self.kind == Kind::View && self.other_way;
         self.undoable = last_changes(store, self.kind, handle, wrist);
@@ -292,7 +291,8 @@ impl Wizard for FrameWizard {
         } else if let (Some(subject), Some(now)) = (&mut self.subject, &binding.subject) {
             subject.serials.clone_from(&now.serials);
         }
-        if self.frame.step == SAVE && self.frame.take_changed() {
+        // After a new start of the loop the sensor tells its number only after a while.
+        if self.frame.step == SAVE && !binding.sensor.is_empty() && self.frame.take_changed() {
             self.look_for_undo(binding);
         }
     }

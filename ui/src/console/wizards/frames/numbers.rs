@@ -2,7 +2,9 @@
 
 use nalgebra::{Isometry3, Point3, UnitQuaternion, Vector3};
 use nima_core::{
-    calibration::frames::{Carrier, HandEyeFound, SensorMountFound, TableFound, TipFound, TrocarFound, ViewFound},
+    calibration::frames::{
+        Carrier, HandEyeFound, SensorMountFound, Sizes, TableFound, TipFound, TrocarFound, ViewFound,
+    },
     frames::{from_roll_pitch_yaw_deg, to_roll_pitch_yaw_deg},
 };
 
@@ -77,6 +79,12 @@ impl Effect {
     pub(super) fn change(&self) -> Option<[f64; 2]> {
         let by = self.before?.inverse() * self.after;
         Some([by.translation.vector.norm(), by.rotation.angle().to_degrees()])
+    }
+
+    /// Whether the change is within what the result is known to.
+    pub(super) fn is_within(&self, known_to: Sizes) -> bool {
+        let within = |by: f64, most: Option<f64>| most.map_or(by <= 1e-9, |most| by <= most);
+        self.change().is_some_and(|[m, deg]| within(m, known_to.place_m) && within(deg, known_to.angle_deg))
     }
 }
 

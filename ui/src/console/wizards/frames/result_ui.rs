@@ -51,6 +51,10 @@ pub(super) fn outcome_ui(
         } else {
             numbers_ui(ui, &numbers);
         }
+        if effect.is_within(quality.uncertainty) {
+            ui.add_space(4.0);
+            ui.label(texts::WITHIN_UNCERTAINTY);
+        }
     });
 }
 
@@ -98,14 +102,21 @@ fn numbers_ui(ui: &mut Ui, numbers: &[Number]) {
 
 fn shown(values: &[f64], unit: Unit) -> String {
     let (scale, digits, name) = of_unit(unit);
-    let numbers: Vec<_> = values.iter().map(|x| format!("{:.digits$}", x * scale)).collect();
+    let numbers: Vec<_> = values.iter().map(|x| format!("{:.digits$}", rounded(x * scale, digits))).collect();
     format!("{}{name}", numbers.join(", "))
 }
 
 fn changed(before: &[f64], number: &Number) -> String {
     let (scale, digits, name) = of_unit(number.unit);
-    let by: Vec<_> = before.iter().zip(&number.after).map(|(a, b)| format!("{:+.digits$}", (b - a) * scale)).collect();
+    let by = before.iter().zip(&number.after).map(|(a, b)| rounded((b - a) * scale, digits));
+    let by: Vec<_> = by.map(|x| format!("{x:+.digits$}")).collect();
     format!("{}{name}", by.join(", "))
+}
+
+/// To so many digits, without a minus in front of zero.
+fn rounded(x: f64, digits: usize) -> f64 {
+    let scale = 10_f64.powi(digits as i32);
+    (x * scale).round() / scale + 0.0
 }
 
 /// Scale, digits and name of a unit on the screen.

@@ -3,7 +3,7 @@
 use nalgebra::Vector3;
 use nima_core::calibration::{
     frames::{FrameSample, FrameSession, HandEye, SensorMount, Table, Tip, Trocar, View},
-    gravity::TARGETS,
+    gravity::PoseTarget,
 };
 use nima_machine::rig::Prompt;
 
@@ -101,11 +101,11 @@ impl Kind {
         }
     }
 
-    /// What is asked of the person after `taken` records; `passed` counts the poses of the list that were taken or given up.
-    pub(super) fn prompt(self, other_way: bool, taken: usize, passed: usize) -> Prompt {
+    /// What is asked of the person after `taken` records; `target` tells the next pose of the list.
+    pub(super) fn prompt(self, other_way: bool, taken: usize, target: impl Fn() -> PoseTarget) -> Prompt {
         let asked = View::by_arm(Vector3::zeros()).asked(taken);
         match self {
-            Self::Mount => Prompt::Hold { world_from_s1: TARGETS[passed % TARGETS.len()].world_from_s1() },
+            Self::Mount => Prompt::Hold { world_from_s1: target().world_from_s1() },
             Self::Tip => Prompt::PivotInDimple,
             Self::HandEye => Prompt::Turn,
             Self::Trocar => Prompt::PivotInTrocar,
@@ -116,9 +116,9 @@ impl Kind {
     }
 
     /// What whoever stands at the arm is to do now, in words.
-    pub(super) fn asks(prompt: &Prompt, passed: usize) -> String {
+    pub(super) fn asks(prompt: &Prompt, target: &str) -> String {
         match prompt {
-            Prompt::Hold { .. } => texts::hold(TARGETS[passed % TARGETS.len()].name),
+            Prompt::Hold { .. } => texts::hold(target),
             Prompt::PivotInDimple => texts::PIVOT.to_owned(),
             Prompt::Turn => texts::TURN.to_owned(),
             Prompt::PivotInTrocar => texts::PIVOT_IN_TROCAR.to_owned(),

@@ -11,10 +11,11 @@ mod subject;
 mod tests;
 
 use egui::{Button, RichText, Ui};
-use nalgebra::UnitQuaternion;
+use nalgebra::{UnitQuaternion, Vector3};
 use nima_core::calibration::{
     RecordHead, Verdict,
     frames::{FrameSample, Phase, RigChange, Source},
+    gravity::{PoseTarget, TARGETS},
 };
 use nima_machine::{
     messages::Tick,
@@ -62,6 +63,8 @@ const SAVE: usize = 3;
 const EVERY_S: f64 = 0.004;
 /// A pose of a list that gives nothing new for so long is passed, s: longer than a person takes to begin with it.
 const PASSED_S: f64 = 8.0;
+/// A direction of gravity this near to one of the list is as good, rad.
+const NEAR_RAD: f64 = 0.3;
 
 /// A result that is to be saved: its record, and the values of the rig file that follow from it, as TOML text.
 #[derive(Clone, Debug)]
@@ -84,7 +87,7 @@ pub struct FrameWizard {
     seen: FrameSample,
     seen_view: Option<UnitQuaternion<f64>>,
     paused: bool,
-    /// Poses of a list that were taken or given up, and how long the present one gave nothing new, s.
+    /// Poses of a list that were given up, and how long the present one gave nothing new, s.
     passed: (usize, f64),
     /// Time of the loop, which starts at zero with every start of it, and time of the session, which goes on, s.
     clock_s: (f64, f64),
@@ -150,7 +153,7 @@ impl FrameWizard {
         match self.phase {
             Phase::Recorded { .. } => {
                 (self.report, self.frame.saved) = (None, None);
-                self.passed = (self.passed.0 + 1, 0.0);
+                self.passed = (0, 0.0);
             }
             Phase::TakenHere => {
                 self.passed.1 += since_s;
@@ -160,6 +163,21 @@ impl FrameWizard {
             }
             _ => self.passed.1 = 0.0,
         }
+    }
+
+    /// The pose of the list that is asked for: the first direction of gravity that nothing is near to yet, or the next one if that gave
+    /// nothing new, as with a sensor that is not mounted as the rig file says.
+    fn target(&self) -> PoseTarget {
+        let (Some(job), Some(subject)) = (&self.job, &self.subject) else { return TARGETS[0] };
+        let down = |sample: &FrameSample| {
+            let base_from_s1 = sample.base_from_flange?.rotation * subject.arm.flange_from_s1.rotation;
+            Some(-(base_from_s1.inverse() * subject.up_in_base()))
+        };
+        let taken: Vec<_> = job.samples().iter().filter_map(down).collect();
+        let is_open = |target: &PoseTarget| taken.iter().all(|s1| s1.angle(&Vector3::from(target.down_s1)) > NEAR_RAD);
+        let open: Vec<_> = TARGETS.into_iter().filter(is_open).collect();
+        let list = if open.is_empty() { &TARGETS[..] } else { &open[..] };
+        list[self.passed.0 % list.len()]
     }
 
     fn fit(&mut self) {
@@ -225,7 +243,7 @@ impl FrameWizard {
         let complete = coverage.share >= 1.0;
         card(ui, texts::RECORD_TITLE, texts::RECORD_HOVER, |ui| {
             let asked =
-                if complete { texts::ALL_RECORDED.to_owned() } else { Kind::asks(&self.prompt(), self.passed.0) };
+                if complete { texts::ALL_RECORDED.to_owned() } else { Kind::asks(&self.prompt(), self.target().name) };
             ui.label(RichText::new(asked).font(theme::strong(19.0)));
             if !complete {
                 ui.label(task);
@@ -318,7 +336,7 @@ impl Wizard for FrameWizard {
         if self.frame.step != RECORD || self.paused || self.job.is_none() || self.is_complete() {
             return Prompt::Rest;
         }
-        self.kind.prompt(self.other_way, self.taken(), self.passed.0)
+        self.kind.prompt(self.other_way, self.taken(), || self.target())
     }
 
     fn may_go_on(&self, _: &Binding) -> Result<(), &'static str> {
@@ -354,7 +372,12 @@ impl Wizard for FrameWizard {
     fn made(&self, binding: &Binding) -> Option<Saving> {
         let head = RecordHead::new(&binding.sensor, &binding.tool, &binding.date);
         let record = self.outcome()?.record(head, self.subject.as_ref()?.serials.clone())?;
-        let numbers = self.numbers().into_iter().map(|number| (number.key.clone(), number.toml())).collect();
+        let numbers = self
+            .numbers()
+            .into_iter()
+            .filter(Number::changes)
+            .map(|number| (number.key.clone(), number.toml()))
+            .collect();
         Some(Saving::Frame(Box::new(FrameSaving { record, numbers })))
     }
 

@@ -42,6 +42,12 @@ impl Number {
         Self { key, unit, before: before.map(|before| before.as_slice().to_vec()), after: after.as_slice().to_vec() }
     }
 
+    /// Whether the file would say something else.
+    pub(super) fn changes(&self) -> bool {
+        let before = self.before.as_ref().map(|before| Self { after: before.clone(), ..self.clone() }.toml());
+        before.is_none_or(|before| before != self.toml())
+    }
+
     /// The new value as it is written into the file.
     pub(super) fn toml(&self) -> String {
         let digits = if self.unit == Unit::Degrees { DIGITS_DEG } else { DIGITS_M };

@@ -115,7 +115,7 @@ fn changed(before: &[f64], number: &Number) -> String {
 
 /// To so many digits, without a minus in front of zero.
 fn rounded(x: f64, digits: usize) -> f64 {
-    let scale = 10_f64.powi(digits as i32);
+    let scale = (0..digits).fold(1.0, |scale, _| scale * 10.0);
     (x * scale).round() / scale + 0.0
 }
 

@@ -3,6 +3,7 @@
 mod files;
 mod identification;
 mod mounted;
+mod own_copy;
 mod rig_file;
 mod teleoperation;
 
@@ -20,6 +21,7 @@ pub(crate) use files::parse_with;
 pub use files::{ConfigError, Ranges, parse, text};
 pub use identification::Identification;
 pub use mounted::SimulatedWrists;
+pub use own_copy::{change_rig, own_path};
 pub use rig_file::{Chosen, RigFile, RigFileError};
 pub use teleoperation::{LeaderMount, Teleoperation};
 
@@ -197,6 +199,9 @@ impl RigConfig {
         let scale = self.teleoperation.scale;
         ranges.check("teleoperation.scale", scale, SCALES.contains(&scale), "0.01 to 5")?;
         ranges.finite("teleoperation.world_from_view_deg", &self.teleoperation.world_from_view_deg)?;
+        if let Some(measured_deg) = &self.teleoperation.view_from_leader_deg {
+            ranges.finite("teleoperation.view_from_leader_deg", measured_deg)?;
+        }
         let window_s = self.identification.window_s;
         let samples = window_s * self.rate_hz;
         ranges.check(

@@ -1,12 +1,15 @@
 //! A simulated person at the arm who follows the instructions of a calibration, correctly or, on purpose, with a
 //! mistake.
 
+mod handling;
+
 use std::f64::consts::TAU;
 
 use nalgebra::{UnitQuaternion, UnitVector3, Vector3};
 use nima_core::noise::Noise;
 use nima_machine::rig::Prompt;
 
+use self::handling::{Handling, is_handling};
 use super::{hand::Move, trocar::shaft, world::Touch, wrist::along_shaft};
 use crate::scene::{Flaw, Person as PersonConfig, Scene};
 
@@ -50,6 +53,7 @@ pub(super) struct Person {
     push: Vector3<f64>,
     stand: Vector3<f64>,
     touch_n: Vector3<f64>,
+    handling: Handling,
 }
 
 impl Person {
@@ -61,6 +65,7 @@ impl Person {
         let wall_m = scene.trocar.map(|_| scene.trocar_m);
         let down = along_shaft(&wall_m.map_or_else(|| -Vector3::z(), |wall_m| shaft(&wall_m, &tip_m).0));
         let touch_n = Vector3::from_fn(|_, _| noise.gaussian()).normalize();
+        let handling = Handling::new(Noise::new(scene.seed ^ 0xf4_a3), tip_m, down);
         Self {
             flaw: config.flaw,
             noise,
@@ -80,6 +85,7 @@ impl Person {
             push: Vector3::zeros(),
             stand: Vector3::zeros(),
             touch_n,
+            handling,
         }
     }
 
@@ -141,14 +147,19 @@ impl Person {
             Prompt::Push { direction } => self.push(&direction, dt_s),
             Prompt::Work => self.work(true, dt_s),
             Prompt::WorkFree => self.work(false, dt_s),
+            _ => self.handle(dt_s),
         }
     }
 
     fn begin(&mut self, prompt: &Prompt) {
+        let handled = is_handling(&self.prompt);
         self.prompt = *prompt;
         (self.push, self.stand, self.in_push_s) = (Vector3::zeros(), Vector3::zeros(), f64::INFINITY);
         self.velocity_m_s = Vector3::zeros();
         self.in_reach_s = f64::INFINITY;
+        if handled || is_handling(prompt) {
+            self.begin_handling();
+        }
         if *prompt == Prompt::Rest && self.wall_m.is_some() {
             self.lift_off();
         }

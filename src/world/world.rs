@@ -5,7 +5,7 @@
 //! nothing. A command that is not finite is ignored; a force that is not finite counts as zero.
 
 use nalgebra::{UnitQuaternion, Vector3};
-use nima_core::{kinematics, noise::Noise};
+use nima_core::{calibration::frames::FrameSample, kinematics, noise::Noise};
 use nima_machine::rig::{Inputs, Outputs, Prompt, Sensed, Switches, View};
 
 use crate::{
@@ -243,6 +243,11 @@ impl World {
 
     fn measure(&mut self) -> Inputs {
         let sensed = self.sense();
+        // This world has no arm of joints, and its tracker tells no places.
+        let wrench = match &sensed {
+            Sensed::AtWrist(sample) => Some(sample.raw),
+            Sensed::AtTip(_) => None,
+        };
         let hand_m = self.hand.position_m();
         let leader_m = self
             .leader
@@ -255,6 +260,7 @@ impl World {
             world_from_jaws: None,
             sensed,
             view: View::Fixed,
+            frames: FrameSample { wrench, ..FrameSample::from(leader_m) },
             switches: Switches::default(),
             powered: true,
             obstacle: None,

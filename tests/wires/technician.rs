@@ -7,7 +7,7 @@ use nima_core::calibration::gravity::{GravitySession, SessionSettings};
 use nima_machine::{
     config::RigConfig,
     messages::Tick,
-    rig::{Prompt, SIDES, Side},
+    rig::{Prompt, SIDES, Settings, Side},
     runtime::Handle,
 };
 use nima_testing::real_time::{alone, judged};
@@ -21,15 +21,25 @@ use nima_world::{
 /// Poses that are taken at each arm.
 const POSES: usize = 3;
 
-struct Bench {
-    rig: EmulatedRig,
+/// An emulated rig and the loop over its wires.
+pub(super) struct Bench {
+    pub(super) rig: EmulatedRig,
     handle: Handle,
     newest: [Option<Tick>; SIDES],
 }
 
 impl Bench {
+    /// The loop of these devices, idle, over the emulators of `rig`.
+    pub(super) fn start(rig: EmulatedRig, devices: &Settings) -> Self {
+        let config = RigConfig { devices: Some(devices.clone()), ..RigConfig::load("emulated").unwrap() };
+        let scene = Scene::load("peg_transfer").unwrap();
+        let plan = Plan { rig: config, scene, calibrations: Default::default(), engage: false };
+        let handle = nima_world::start(&plan).unwrap();
+        Self { rig, handle, newest: [None; SIDES] }
+    }
+
     /// Looks at every tick of a side until `good`; whether that came in time.
-    fn until(&mut self, side: Side, within: Duration, mut good: impl FnMut(&Self, &Tick) -> bool) -> bool {
+    pub(super) fn until(&mut self, side: Side, within: Duration, mut good: impl FnMut(&Self, &Tick) -> bool) -> bool {
         let begin = Instant::now();
         while begin.elapsed() < within {
             let mut ticks = Vec::new();
@@ -46,7 +56,7 @@ impl Bench {
         false
     }
 
-    fn show(&self, side: Side, task: Task, prompt: Prompt) {
+    pub(super) fn show(&self, side: Side, task: Task, prompt: Prompt) {
         self.rig.technician().reads(&Screen { side, task, prompt });
     }
 
@@ -62,12 +72,7 @@ fn the_technician_takes_poses_at_the_arm_that_is_calibrated_and_puts_the_instrum
     let folder = tempfile::tempdir().unwrap();
     let devices = elsewhere(folder.path());
     judged(|| {
-        let rig = started(&devices);
-        let config = RigConfig { devices: Some(devices.clone()), ..RigConfig::load("emulated").unwrap() };
-        let scene = Scene::load("peg_transfer").unwrap();
-        let plan = Plan { rig: config, scene, calibrations: Default::default(), engage: false };
-        let handle = nima_world::start(&plan).unwrap();
-        let mut bench = Bench { rig, handle, newest: [None; SIDES] };
+        let mut bench = Bench::start(started(&devices), &devices);
         for side in Side::ALL {
             let other = bench.rig.truth(side.other()).unwrap().joint_rad;
             let mut session = GravitySession::new(SessionSettings::default());

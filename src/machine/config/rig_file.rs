@@ -102,6 +102,19 @@ impl RigFile {
         self.set(key, values.into_iter().collect::<Value>());
     }
 
+    /// The value of a key with dots as TOML text, without its comment; `None` where there is none.
+    pub fn value(&self, key: &str) -> Option<String> {
+        let mut value = self.item(key)?.as_value()?.clone();
+        value.decor_mut().clear();
+        Some(value.to_string())
+    }
+
+    /// Sets the value of a key with dots from TOML text, as [`value`](Self::value) gives it; false if that is no value.
+    pub fn set_text(&mut self, key: &str, text: &str) -> bool {
+        let value = text.parse::<Value>();
+        value.map(|value| self.set(key, value)).is_ok()
+    }
+
     /// Takes a key with dots away, with everything below it.
     pub fn remove(&mut self, key: &str) {
         let (tables, last) = key.rsplit_once('.').map_or(("", key), |(tables, last)| (tables, last));
@@ -238,6 +251,24 @@ mod tests {
         file.remove("desk");
         file.remove("desk.cap");
         assert_eq!(file.text(), RigFile::of("simulated").unwrap().text());
+    }
+
+    #[test]
+    fn a_value_is_read_as_text_and_written_back_as_it_was() {
+        let mut file = RigFile::of("emulated").unwrap();
+        let before = file.text();
+        let key = "devices.right.mount.sensor_m";
+        let was = file.value(key).unwrap();
+        assert_eq!(was, "[0.00, 0.00, 0.05]");
+        assert!(file.set_text(key, "[0.001, 0.0, 0.05]"));
+        let right = file.rig().unwrap().devices.unwrap().right.unwrap();
+        assert!((right.mount.sensor_m.x - 0.001).abs() < 1e-12);
+        assert!(file.set_text(key, &was) && file.text() == before, "{}", file.text());
+        assert!(!file.set_text(key, "[0.001,") && file.text() == before);
+        assert_eq!(file.value("devices.right.base_from_c_m"), None);
+        assert!(file.set_text("devices.right.base_from_c_m", "[1.0, 2.0, 3.0]"));
+        file.remove("devices.right.base_from_c_m");
+        assert_eq!(file.text(), before);
     }
 
     #[test]

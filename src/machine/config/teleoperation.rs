@@ -18,11 +18,19 @@ pub struct Teleoperation {
     pub world_from_view_deg: Vector3<f64>,
     /// Orientation of the leader relative to the picture.
     pub leader: LeaderMount,
+    /// The same as it was measured: roll, pitch, yaw of `view_from_leader`, degrees; in place of [`leader`](Self::leader).
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub view_from_leader_deg: Option<Vector3<f64>>,
 }
 
 impl Default for Teleoperation {
     fn default() -> Self {
-        Self { scale: 1.0, world_from_view_deg: Vector3::zeros(), leader: LeaderMount::Workspace }
+        Self {
+            scale: 1.0,
+            world_from_view_deg: Vector3::zeros(),
+            leader: LeaderMount::Workspace,
+            view_from_leader_deg: None,
+        }
     }
 }
 
@@ -45,10 +53,15 @@ impl Teleoperation {
 
     /// The mapping for an endoscope of this orientation; the default one if the numbers are not finite.
     pub fn seen(&self, world_from_view: &UnitQuaternion<f64>, scale: f64) -> Mapping {
-        let view_from_leader = match self.leader {
-            LeaderMount::Workspace => UnitQuaternion::identity(),
-            LeaderMount::Omega => view_from_omega(),
-        };
-        Mapping::new(world_from_view, &view_from_leader, scale).unwrap_or_default()
+        Mapping::new(world_from_view, &self.view_from_leader(), scale).unwrap_or_default()
+    }
+
+    /// Orientation of the leader relative to the picture, as measured or else as usual for its mount.
+    pub fn view_from_leader(&self) -> UnitQuaternion<f64> {
+        match (&self.view_from_leader_deg, self.leader) {
+            (Some(measured_deg), _) => from_roll_pitch_yaw_deg(measured_deg),
+            (None, LeaderMount::Workspace) => UnitQuaternion::identity(),
+            (None, LeaderMount::Omega) => view_from_omega(),
+        }
     }
 }

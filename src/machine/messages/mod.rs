@@ -6,6 +6,7 @@ mod scheduling;
 
 use nalgebra::Vector3;
 use nima_core::{
+    calibration::frames::FrameSample,
     frames::WristSample,
     impedance::{Mode, SLOTS},
     safety::{ChainSettings, GateReport, Implausible, State, Why},
@@ -16,7 +17,7 @@ pub use force::{ForceReport, ForceSource};
 pub use refusal::Refusal;
 pub use scheduling::Scheduling;
 
-use crate::rig::{DeviceEvent, Prompt, Side};
+use crate::rig::{DeviceEvent, Prompt, Side, View};
 
 /// State of an arm pair.
 pub type LoopState = State<Fault>;
@@ -98,6 +99,10 @@ pub struct Tick {
     pub force: ForceReport,
     /// Readings of the wrist sensor and of the sensors used for calibration, if the rig has them.
     pub wrist: Option<WristSample>,
+    /// What the frame calibrations are made of; empty without a new measurement.
+    pub frames: FrameSample,
+    /// How the endoscope is turned, as the tracker sees its marker.
+    pub view: View,
     /// Instruction to the person at the arm.
     pub prompt: Prompt,
     /// Position to which the screen leads the handle, m.

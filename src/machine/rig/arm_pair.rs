@@ -1,8 +1,9 @@
 //! The devices of one side (handle, arm, force sensor, servos) and the kinematics between tip position (m) and joint
 //! angles (rad).
 
-use nalgebra::{UnitQuaternion, Vector3};
+use nalgebra::{Isometry3, UnitQuaternion, Vector3};
 use nima_core::{
+    calibration::frames::FrameSample,
     frames::{WristSample, from_roll_pitch_yaw_deg},
     kinematics::{
         Arm, Hand, Inverse, Jaws, JointLimits, Joints, Pose, Rcm, START_MISS_M, StartError, world_from_tracked_view,
@@ -28,9 +29,16 @@ pub type Obstacle = StartError;
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Shared {
     pub(super) tissue_n: Option<Vector3<f64>>,
-    pub(super) m_from_c: Option<UnitQuaternion<f64>>,
+    /// The marker on this side's instrument in the camera's frame.
+    pub(super) c_from_m: Option<Isometry3<f64>>,
     /// Orientation of the endoscope in the camera's frame: `c_from_view`.
     pub(super) c_from_view: View,
+}
+
+impl Shared {
+    fn m_from_c(&self) -> Option<UnitQuaternion<f64>> {
+        self.c_from_m.map(|c_from_m| c_from_m.rotation.inverse())
+    }
 }
 
 /// Starts opening a device and adds it to the roster; `attach` is called with the device once it is open.
@@ -205,6 +213,7 @@ impl ArmPair {
             world_from_jaws: jaws.map(|jaws| world_from_s1 * jaws.s1_from_jaws()),
             sensed: self.sensed(&force.value, pose, &world_from_s1, shared),
             view: self.view(&world_from_s1, shared),
+            frames: self.frames(&hand.value, pose, &force.value, shared),
             switches: Switches::default(),
             powered: self.force_is_on && joints.value.servoing && self.obstacle.is_none(),
             obstacle: self.obstacle,
@@ -214,9 +223,25 @@ impl ArmPair {
 
     fn view(&self, world_from_s1: &UnitQuaternion<f64>, shared: &Shared) -> View {
         let View::Seen(c_from_view) = shared.c_from_view else { return shared.c_from_view };
-        self.s1_from_m.zip(shared.m_from_c).map_or(View::Unseen, |(s1_from_m, m_from_c)| {
+        self.s1_from_m.zip(shared.m_from_c()).map_or(View::Unseen, |(s1_from_m, m_from_c)| {
             View::Seen(world_from_tracked_view(&(world_from_s1 * s1_from_m), &m_from_c, &c_from_view))
         })
+    }
+
+    /// What the frame calibrations are made of; the other side's poses are added by the rig.
+    fn frames(&self, hand: &HandleReading, pose: &Pose, force: &ForceReading, shared: &Shared) -> FrameSample {
+        let base_from_flange = self.mount.world_from_base().inverse() * pose.chain.world_from_flange;
+        let handle_turn = hand.orientation.unwrap_or_else(UnitQuaternion::identity);
+        FrameSample {
+            base_from_flange: Some(Isometry3::from_parts(
+                base_from_flange.translation,
+                UnitQuaternion::from_rotation_matrix(&base_from_flange.rotation),
+            )),
+            c_from_m: shared.c_from_m,
+            leader_from_handle: Some(Isometry3::from_parts(hand.position_m.into(), handle_turn)),
+            wrench: Some(force.wrench),
+            ..FrameSample::default()
+        }
     }
 
     fn measured_jaws(&self) -> Option<Jaws> {
@@ -241,7 +266,7 @@ impl ArmPair {
             acceleration_m_s2: force.acceleration_m_s2,
             world_from_s1: Some(*world_from_s1),
             world_from_m: self.s1_from_m.map(|s1_from_m| world_from_s1 * s1_from_m),
-            m_from_c: shared.m_from_c,
+            m_from_c: shared.m_from_c(),
             // A tool that was taken out has no depth.
             insertion_m: Some(pose.insertion_m(trocar_m)).filter(|_| in_trocar),
             tissue_n: shared.tissue_n,

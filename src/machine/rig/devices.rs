@@ -8,6 +8,7 @@
 
 use std::io;
 
+use nalgebra::Isometry3;
 use nima_core::frames::from_roll_pitch_yaw_deg;
 use nima_devices::{
     Device, ForceSensor, Health, Lever, PedalReading, Slot, Stamped, Standing, Switch, Tracked, Tracker,
@@ -177,14 +178,16 @@ impl DeviceRig {
             self.tissue_n.filter(|stamped| now_s - stamped.arrival_s <= OLDEST_S).map(|stamped| stamped.value);
         let tracked = self.tracked.filter(|stamped| now_s - stamped.arrival_s <= TRACKED_S);
         let c_from = |tool: usize| match tracked?.value.tools.get(tool)? {
-            Tracked::Seen { c_from_tool, .. } => Some(*c_from_tool),
+            Tracked::Seen { c_from_tool, position_in_c_m, .. } => {
+                Some(Isometry3::from_parts((*position_in_c_m).into(), *c_from_tool))
+            }
             _ => None,
         };
         let c_from_view = self.endoscope.map_or(View::Fixed, |endoscope| {
             let n_from_view = from_roll_pitch_yaw_deg(&endoscope.n_from_view_deg);
-            c_from(endoscope.tool).map_or(View::Unseen, |c_from_n| View::Seen(c_from_n * n_from_view))
+            c_from(endoscope.tool).map_or(View::Unseen, |c_from_n| View::Seen(c_from_n.rotation * n_from_view))
         });
-        Shared { tissue_n, m_from_c: c_from(side.index()).map(|c_from_m| c_from_m.inverse()), c_from_view }
+        Shared { tissue_n, c_from_m: c_from(side.index()), c_from_view }
     }
 
     fn each_health(&self, mut each: impl FnMut(&Health, [bool; SIDES])) {
@@ -216,6 +219,7 @@ impl Rig for DeviceRig {
                 inputs[side.index()] = pair.inputs(now_s, &shared).map(|inputs| Inputs { switches, ..inputs });
             }
         }
+        join_sides(&mut inputs);
         let mut watch = std::mem::take(&mut self.watch);
         let mut device = 0;
         self.each_health(|health, of_side| {
@@ -271,6 +275,17 @@ impl Rig for DeviceRig {
         let shared = std::mem::replace(&mut self.gauges, [Gauge::NONE; 3]);
         shared.into_iter().zip(there).filter(|(_, there)| *there).for_each(|(gauge, _)| put(gauge));
         Some(gauges)
+    }
+}
+
+/// Each side is told the other's poses: they tell an exchanged arm or marker.
+fn join_sides(inputs: &mut [Option<Inputs>; SIDES]) {
+    let frames = inputs.map(|inputs| inputs.map(|inputs| inputs.frames));
+    for side in Side::ALL {
+        if let (Some(inputs), Some(other)) = (&mut inputs[side.index()], frames[side.other().index()]) {
+            inputs.frames.other_base_from_flange = other.base_from_flange;
+            inputs.frames.c_from_other_m = other.c_from_m;
+        }
     }
 }
 

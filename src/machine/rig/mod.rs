@@ -21,7 +21,7 @@ mod side;
 mod watch;
 
 use nalgebra::{UnitQuaternion, Vector3};
-use nima_core::{frames::WristSample, kinematics::Hand};
+use nima_core::{calibration::frames::FrameSample, frames::WristSample, kinematics::Hand};
 use nima_devices::{ClearFaults, Health, Lever, SlotView, Standing};
 
 pub use arm_pair::{ArmPair, Obstacle};
@@ -88,6 +88,8 @@ pub struct Inputs {
     pub sensed: Sensed,
     /// Orientation of the endoscope.
     pub view: View,
+    /// What the frame calibrations are made of. Not checked by [`Inputs::is_finite`]: no force depends on it.
+    pub frames: FrameSample,
     /// Clutch and presence.
     pub switches: Switches,
     /// The drives are on: the arm follows commands and the handle's motors are powered.

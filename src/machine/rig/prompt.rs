@@ -1,6 +1,7 @@
 //! Instructions of the screen to the person at the arm during calibration.
 
 use nalgebra::{UnitQuaternion, UnitVector3};
+use nima_core::calibration::frames::Move;
 
 /// One instruction. On a real rig a person reads it from the screen and no machine moves; on a simulated one a
 /// simulated person follows it.
@@ -25,6 +26,21 @@ pub enum Prompt {
     Work,
     /// The same without touching the tissue.
     WorkFree,
+    /// Turn the tool about its tip, which stays in a dimple; hold each pose still.
+    PivotInDimple,
+    /// Tilt and turn the tool in free space, also about its shaft; hold each pose still.
+    Turn,
+    /// Pivot the tool in the trocar to all sides, at several depths.
+    PivotInTrocar,
+    /// Touch a point of the table with the tip, and hold still.
+    Touch {
+        /// 0: the origin; 1: a point along x; 2: one on the side of y; from 3 on: anywhere else.
+        point: u8,
+    },
+    /// Move the tip this way in the endoscope's picture, then hold still.
+    MoveTip(Move),
+    /// Move the handle this way in the endoscope's picture, then hold still.
+    MoveHandle(Move),
 }
 
 impl Prompt {
@@ -33,7 +49,7 @@ impl Prompt {
         match self {
             Self::Hold { world_from_s1 } => world_from_s1.coords.iter().all(|x| x.is_finite()),
             Self::Push { direction } => direction.iter().all(|x| x.is_finite()),
-            Self::Rest | Self::Wave | Self::Work | Self::WorkFree => true,
+            _ => true,
         }
     }
 }

@@ -68,6 +68,15 @@ pub struct ArmSet {
     /// marker.
     #[serde(default)]
     pub s1_from_m_deg: Option<Vector3<f64>>,
+    /// Its origin in the frame of the wrist sensor, m; found by the hand-eye calibration.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub s1_from_m_m: Option<Vector3<f64>>,
+    /// Origin of the tracker's camera in the frame of the arm's base, m; found by the hand-eye calibration.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub base_from_c_m: Option<Vector3<f64>>,
+    /// Orientation of the camera: roll, pitch, yaw of `base_from_c`, degrees.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub base_from_c_deg: Option<Vector3<f64>>,
     /// The servos of the instrument.
     #[serde(default)]
     pub servos: Option<dynamixel::Settings>,
@@ -162,6 +171,7 @@ impl Settings {
         if let (Some(right), Some(left)) = (&self.right, &self.left) {
             right.handle.check_beside(&left.handle).map_err(|trouble| below("right.handle", trouble))?;
         }
+        self.check_hand_eye()?;
         self.check_endoscope()?;
         self.flaws.check(self.emulated).map_err(|trouble| match trouble {
             Trouble::Setting { key, value, allowed } => {
@@ -177,6 +187,27 @@ impl Settings {
 }
 
 impl Settings {
+    fn check_hand_eye(&self) -> Result<(), Trouble> {
+        for side in Side::ALL {
+            let Some(set) = self.arm(side) else { continue };
+            let given = [
+                ("s1_from_m_deg", set.s1_from_m_deg),
+                ("s1_from_m_m", set.s1_from_m_m),
+                ("base_from_c_m", set.base_from_c_m),
+                ("base_from_c_deg", set.base_from_c_deg),
+            ];
+            let finite = |vector: &Vector3<f64>| vector.iter().all(|x| x.is_finite());
+            if let Some((key, Some(vector))) = given.into_iter().find(|(_, given)| given.is_some_and(|v| !finite(&v))) {
+                return Err(Trouble::Setting {
+                    key: format!("devices.{}.{key}", side.word()),
+                    value: format!("{:?}", vector.as_slice()),
+                    allowed: "three finite numbers".to_owned(),
+                });
+            }
+        }
+        Ok(())
+    }
+
     fn check_endoscope(&self) -> Result<(), Trouble> {
         let Some(endoscope) = &self.endoscope else { return Ok(()) };
         let refuse = |key: &str, value: String, allowed: &str| Trouble::Setting {

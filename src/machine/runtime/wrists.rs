@@ -123,7 +123,10 @@ impl WristDoor {
 mod tests {
     use nalgebra::{UnitQuaternion, Vector3};
     use nima_core::{
-        calibration::gravity::{GravityModel, Parameters, Source},
+        calibration::{
+            frames::FrameSample,
+            gravity::{GravityModel, Parameters, Source},
+        },
         frames::{GRAVITY_M_S2, Wrench, WristSample},
         kinematics::Hand,
     };
@@ -202,6 +205,7 @@ mod tests {
             world_from_jaws: None,
             sensed: Sensed::AtWrist(sample),
             view: View::Fixed,
+            frames: FrameSample::default(),
             switches: Switches::default(),
             powered: true,
             obstacle: None,

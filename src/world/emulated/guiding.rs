@@ -6,7 +6,7 @@
 
 use std::f64::consts::{PI, TAU};
 
-use nalgebra::{SMatrix, SVector, Vector3};
+use nalgebra::{SMatrix, SVector, UnitQuaternion, Vector3};
 use nima_core::{
     kinematics::{Arm, JOINTS, Joints, LIMIT_RAD, Pose, SPEED_RAD_S, limit_margin_rad},
     noise::Noise,
@@ -32,6 +32,8 @@ pub(super) enum Hold {
     Tilt(Vector3<f64>),
     /// The tip is here, and the shaft points in this direction (unit); its rotation about itself does not matter.
     Tip { tip_m: Vector3<f64>, along: Vector3<f64> },
+    /// The tip is here, and the tool is turned like this, also about its shaft.
+    Pose { tip_m: Vector3<f64>, world_from_s1: UnitQuaternion<f64> },
 }
 
 /// The arm in a person's hands.
@@ -41,8 +43,10 @@ pub(super) struct Guide {
     comfort_rad: Joints,
 }
 
-type Rows = SMatrix<f64, 5, JOINTS>;
-type Miss = SVector<f64, 5>;
+/// Conditions of a hold at most; rows that a hold does not need are zero.
+const CONDITIONS: usize = 6;
+type Rows = SMatrix<f64, CONDITIONS, JOINTS>;
+type Miss = SVector<f64, CONDITIONS>;
 
 impl Guide {
     /// `comfort_rad` are the joint angles that a person prefers.
@@ -65,6 +69,11 @@ impl Guide {
         let starts = [*from_rad, self.comfort_rad].into_iter().chain((0..STARTS).map(|_| random()));
         let found = starts.filter_map(|start| self.converged(start, hold)).map(|found| nearest_turn(from_rad, &found));
         found.min_by(|a, b| (a - from_rad).amax().total_cmp(&(b - from_rad).amax()))
+    }
+
+    /// Whether the arm comes to this hold from here without taking another pose first.
+    pub(super) fn reaches(&self, from_rad: &Joints, hold: &Hold) -> bool {
+        self.converged(*from_rad, hold).is_some()
     }
 
     fn converged(&self, start_rad: Joints, hold: &Hold) -> Option<Joints> {
@@ -125,6 +134,13 @@ fn missing(pose: &Pose, hold: &Hold) -> (Rows, Miss) {
                 miss[3 + row] = across.dot(&e);
             }
         }
+        Hold::Pose { tip_m, world_from_s1 } => {
+            rows.fixed_rows_mut::<3>(0).copy_from(&place);
+            miss.fixed_rows_mut::<3>(0).copy_from(&(tip_m - pose.tip_m));
+            let e = (world_from_s1 * pose.orientation().inverse()).scaled_axis() * LENGTH_M;
+            rows.fixed_rows_mut::<3>(3).copy_from(&turn);
+            miss.fixed_rows_mut::<3>(3).copy_from(&e);
+        }
     }
     (rows, miss)
 }
@@ -137,7 +153,7 @@ fn solve(rows: &Rows, miss: &Miss, relaxed: &Joints, free: [bool; JOINTS]) -> Jo
         rows.column_mut(joint).fill(0.0);
         relaxed[joint] = 0.0;
     }
-    let square = rows * rows.transpose() + SMatrix::<f64, 5, 5>::identity() * DAMPING;
+    let square = rows * rows.transpose() + SMatrix::<f64, CONDITIONS, CONDITIONS>::identity() * DAMPING;
     square.cholesky().map_or_else(Joints::zeros, |c| relaxed + rows.transpose() * c.solve(&(miss - rows * relaxed)))
 }
 

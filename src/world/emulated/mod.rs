@@ -9,6 +9,8 @@
 
 mod errors;
 mod flawed;
+#[cfg(test)]
+mod frame_tests;
 mod guiding;
 mod places;
 mod scene;

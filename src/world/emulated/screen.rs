@@ -3,6 +3,7 @@
 use std::{fmt, str::FromStr};
 
 use nalgebra::{Quaternion, UnitQuaternion, UnitVector3, Vector3};
+use nima_core::calibration::frames::Move;
 use nima_machine::rig::{Prompt, Side};
 
 /// What the person at the arms is to do.
@@ -17,14 +18,29 @@ pub enum Task {
     Correspondence,
     /// Tip force: through the trocar onto the tissue.
     TipForce,
+    /// Tip: the instrument is out of the trocar, its tip in a dimple.
+    Tip,
+    /// Hand-eye: it is out of the trocar, its marker in the tracker's sight.
+    HandEye,
+    /// Trocar: it stays in the trocar, above the tissue.
+    Trocar,
+    /// Table: its tip touches points of the table; nothing lies on it.
+    Table,
+    /// View: its tip, then the handle, is moved in the picture's directions.
+    View,
 }
 
 impl Task {
-    const ALL: [(Self, &'static str); 4] = [
+    const ALL: [(Self, &'static str); 9] = [
         (Self::Surgery, "surgery"),
         (Self::Gravity, "gravity"),
         (Self::Correspondence, "correspondence"),
         (Self::TipForce, "tip-force"),
+        (Self::Tip, "tip"),
+        (Self::HandEye, "hand-eye"),
+        (Self::Trocar, "trocar"),
+        (Self::Table, "table"),
+        (Self::View, "view"),
     ];
 }
 
@@ -62,15 +78,36 @@ impl fmt::Display for Screen {
             Prompt::Push { direction } => write!(f, "push {} {} {}", direction.x, direction.y, direction.z),
             Prompt::Work => f.write_str("work"),
             Prompt::WorkFree => f.write_str("work-free"),
+            Prompt::PivotInDimple => f.write_str("pivot-in-dimple"),
+            Prompt::Turn => f.write_str("turn"),
+            Prompt::PivotInTrocar => f.write_str("pivot-in-trocar"),
+            Prompt::Touch { point } => write!(f, "touch {point}"),
+            Prompt::MoveTip(way) => write!(f, "move-tip {}", number_of(*way)),
+            Prompt::MoveHandle(way) => write!(f, "move-handle {}", number_of(*way)),
         }
     }
+}
+
+/// A move by its place in the order in which moves are asked for.
+fn number_of(way: Move) -> usize {
+    Move::ALL.iter().position(|known| *known == way).unwrap_or_default()
+}
+
+/// A whole number from 0 on, as a number of a line.
+fn whole(x: f64) -> Result<u8, NoScreen> {
+    if x.fract() == 0.0 && (0.0..=255.0).contains(&x) { Ok(x as u8) } else { Err(NoScreen) }
+}
+
+fn way(x: f64) -> Result<Move, NoScreen> {
+    Move::ALL.get(usize::from(whole(x)?)).copied().ok_or(NoScreen)
 }
 
 /// A line that is no screen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error(
-    "expected: SIDE TASK PROMPT, with right or left; surgery, gravity, correspondence or tip-force; rest, hold W X Y Z, wave, push X Y Z, \
-     work or work-free"
+    "expected: SIDE TASK PROMPT, with right or left; surgery, gravity, correspondence, tip-force, tip, hand-eye, trocar, table or view; rest, \
+     hold W X Y Z, wave, push X Y Z, work, work-free, pivot-in-dimple, turn, pivot-in-trocar, touch POINT, move-tip WAY or move-handle WAY \
+     (0 to 5)"
 )]
 pub struct NoScreen;
 
@@ -88,6 +125,12 @@ impl FromStr for Screen {
             ("wave", []) => Prompt::Wave,
             ("work", []) => Prompt::Work,
             ("work-free", []) => Prompt::WorkFree,
+            ("pivot-in-dimple", []) => Prompt::PivotInDimple,
+            ("turn", []) => Prompt::Turn,
+            ("pivot-in-trocar", []) => Prompt::PivotInTrocar,
+            ("touch", [point]) => Prompt::Touch { point: whole(*point)? },
+            ("move-tip", [number]) => Prompt::MoveTip(way(*number)?),
+            ("move-handle", [number]) => Prompt::MoveHandle(way(*number)?),
             ("hold", [w, x, y, z]) => {
                 let turn = UnitQuaternion::try_new(Quaternion::new(*w, *x, *y, *z), 1e-6).ok_or(NoScreen)?;
                 Prompt::Hold { world_from_s1: turn }
@@ -117,6 +160,12 @@ mod tests {
             Prompt::Push { direction },
             Prompt::Work,
             Prompt::WorkFree,
+            Prompt::PivotInDimple,
+            Prompt::Turn,
+            Prompt::PivotInTrocar,
+            Prompt::Touch { point: 3 },
+            Prompt::MoveTip(Move::Deeper),
+            Prompt::MoveHandle(Move::Back),
         ];
         for (task, _) in Task::ALL {
             for (side, prompt) in Side::ALL.into_iter().flat_map(|side| prompts.map(|prompt| (side, prompt))) {
@@ -148,6 +197,10 @@ mod tests {
             "right gravity hold NaN 0 0 1",
             "right gravity push inf 0 0",
             "right gravity rest 1",
+            "right table touch",
+            "right table touch -1",
+            "right table touch 0.5",
+            "right view move-tip 6",
         ] {
             assert_eq!(bad.parse::<Screen>(), Err(NoScreen), "{bad}");
         }

@@ -1,7 +1,7 @@
 //! What the tracker's camera sees of a side's marker and of the endoscope's.
 
-use nalgebra::{UnitQuaternion, Vector3};
-use nima_core::frames::from_roll_pitch_yaw_deg;
+use nalgebra::{Isometry3, UnitQuaternion, Vector3};
+use nima_core::{frames::from_roll_pitch_yaw_deg, noise::Noise};
 use nima_devices::Tracked;
 use nima_machine::rig::{ArmSet, EndoscopeSettings};
 
@@ -13,14 +13,17 @@ const CAMERA_M: f64 = 1.5;
 const CAMERA_DEG: Vector3<f64> = Vector3::new(90.0, 0.0, 0.0);
 /// The marker sits so far down the shaft from the wrist sensor, m.
 const MARKER_M: f64 = 0.08;
+/// Noise of a marker's place per axis, m.
+const MARKER_NOISE_M: f64 = 0.000_25;
 /// Residual of a marker that is well seen, m.
 const MARKER_ERROR_M: f64 = 0.000_15;
 
 /// Where the camera is, and how the marker sits on the instrument.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct Camera {
     c_from_world: UnitQuaternion<f64>,
     s1_from_m: UnitQuaternion<f64>,
+    noise: Noise,
 }
 
 impl Camera {
@@ -31,6 +34,7 @@ impl Camera {
         Self {
             c_from_world: from_roll_pitch_yaw_deg(&camera_deg).inverse(),
             s1_from_m: from_roll_pitch_yaw_deg(&marker_deg),
+            noise: Noise::new(scene.seed ^ 0xca_3e),
         }
     }
 
@@ -43,14 +47,23 @@ impl Camera {
     /// The marker on an instrument whose wrist sensor is turned like this, with its origin here (m); `noisy` is its
     /// orientation (`c_from_m`) with the tracker's noise, if the scene has it.
     pub(super) fn marker(
-        &self,
+        &mut self,
         world_from_s1: &UnitQuaternion<f64>,
         sensor_m: &Vector3<f64>,
         noisy: Option<UnitQuaternion<f64>>,
     ) -> Tracked {
         let marker_m = sensor_m + world_from_s1 * Vector3::new(0.0, 0.0, MARKER_M);
         let c_from_m = noisy.unwrap_or(self.c_from_world * world_from_s1 * self.s1_from_m);
-        seen(c_from_m, self.c_from_world * marker_m)
+        let miss_m = Vector3::from_fn(|_, _| MARKER_NOISE_M * self.noise.gaussian());
+        seen(c_from_m, self.c_from_world * marker_m + miss_m)
+    }
+
+    /// The true frames that a hand-eye calibration finds: the marker in the wrist sensor's frame, and the camera in the workspace.
+    pub(super) fn truth(&self) -> [Isometry3<f64>; 2] {
+        let marker_m = Vector3::new(0.0, 0.0, MARKER_M);
+        let world_from_c = self.c_from_world.inverse();
+        let camera_m = world_from_c * Vector3::new(0.0, 0.0, CAMERA_M);
+        [Isometry3::from_parts(marker_m.into(), self.s1_from_m), Isometry3::from_parts(camera_m.into(), world_from_c)]
     }
 }
 

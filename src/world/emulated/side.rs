@@ -4,7 +4,7 @@
 //! in `world` unless the name says another. The joints follow what is asked of the arm as the simulated follower follows its command,
 //! or, while its drives are off, the hands of the technician.
 
-use nalgebra::{UnitQuaternion, Vector3};
+use nalgebra::{Isometry3, UnitQuaternion, Vector3};
 use nima_core::{
     frames::{GRAVITY_M_S2, Wrench, from_roll_pitch_yaw_deg},
     kinematics::{Arm, Joints, view_from_omega},
@@ -51,6 +51,15 @@ pub struct Truth {
     pub applied: Applied,
     /// The arm moves as it is asked to; else it holds.
     pub servoing: bool,
+    /// The marker in the wrist sensor's frame.
+    pub s1_from_m: Isometry3<f64>,
+    /// The tracker's camera in the workspace.
+    pub world_from_c: Isometry3<f64>,
+}
+
+/// How the endoscope's picture is turned.
+fn world_from_view(hand: &HandFrame) -> UnitQuaternion<f64> {
+    (view_from_omega() * hand.leader_from_world).inverse()
 }
 
 /// The world of one side.
@@ -105,7 +114,7 @@ impl SideWorld {
             hand,
             start_m,
             imu_from_s1: imu_deg.map_or_else(UnitQuaternion::identity, |deg| from_roll_pitch_yaw_deg(&deg).inverse()),
-            technician: Technician::new(arm, *start_rad, scene),
+            technician: Technician::new(arm, *start_rad, scene, world_from_view(&hand)),
             camera: Camera::new(scene, set),
             flawed: Flawed::new(flaws, (*start_rad).into()),
             world_from_s1: pose.orientation(),
@@ -199,13 +208,13 @@ impl SideWorld {
     /// What it tells of the marker on the endoscope, which stands still. An Omega stands below the endoscope's picture, and the
     /// hand goes the picture's ways.
     pub(super) fn endoscope(&self, endoscope: &EndoscopeSettings) -> Tracked {
-        let world_from_view = (view_from_omega() * self.hand.leader_from_world).inverse();
-        self.camera.endoscope(&world_from_view, endoscope)
+        self.camera.endoscope(&world_from_view(&self.hand), endoscope)
     }
 
     /// What only a simulation knows.
     pub(super) fn truth(&mut self, now_s: f64) -> Truth {
         self.advance(now_s);
+        let [s1_from_m, world_from_c] = self.camera.truth();
         Truth {
             tip_m: self.tip_m,
             tip_n: self.world.true_tip_n(),
@@ -214,6 +223,8 @@ impl SideWorld {
             world_from_s1: self.world_from_s1,
             applied: self.applied,
             servoing: self.asked != Asked::Rest,
+            s1_from_m,
+            world_from_c,
         }
     }
 
@@ -238,7 +249,7 @@ impl SideWorld {
         let (touch, aside) = if hands_on { (touch, aside) } else { (Touch::default(), false) };
         self.world.touched(&touch, aside);
         if hands_on {
-            self.world.wait_at(self.start_m);
+            self.world.wait_at(self.start_m + self.technician.handle_m());
         } else {
             // A hand does not begin its task before the arm follows it.
             self.world.wait(!matches!(asked, Asked::Joints(_)));

@@ -4,7 +4,7 @@
 //! calibration needs it. Everything he does reaches the loop through the devices: the arm's joints move, the sensors feel
 //! his hands. He never guides an arm whose drives are on.
 
-use nalgebra::Vector3;
+use nalgebra::{UnitQuaternion, Vector3};
 use nima_core::kinematics::{Arm, Joints};
 use nima_machine::rig::Prompt;
 
@@ -27,6 +27,10 @@ const CARRY_MIN_S: f64 = 0.8;
 const STUCK_M: f64 = 0.03;
 /// ... for this long is not reached by turning on: he lets the arm take another pose, s.
 const STUCK_S: f64 = 1.0;
+/// So many poses he considers before he takes one that the arm may not reach.
+const CHOICES: usize = 10;
+/// Height at which he holds the tip before poses in free space, touches and moves, m.
+const ABOVE_M: f64 = 0.05;
 
 /// The technician as far as this side is concerned.
 #[derive(Clone, Debug)]
@@ -36,6 +40,8 @@ pub(super) struct Technician {
     ready_rad: Joints,
     config: PersonConfig,
     scene: Scene,
+    /// How the endoscope's picture is turned.
+    world_from_view: UnitQuaternion<f64>,
     task: Task,
     prompt: Prompt,
     doing: Doing,
@@ -84,13 +90,14 @@ impl Carry {
 impl Technician {
     /// Away from the arm of a scene that has been made fit for its side. `ready_rad` are the joint angles in which the
     /// instrument is in the trocar.
-    pub(super) fn new(arm: Arm, ready_rad: Joints, scene: &Scene) -> Self {
+    pub(super) fn new(arm: Arm, ready_rad: Joints, scene: &Scene, world_from_view: UnitQuaternion<f64>) -> Self {
         Self {
             arm,
             guide: Guide::new(arm, ready_rad),
             ready_rad,
             config: scene.person.unwrap_or_default(),
             scene: scene.clone(),
+            world_from_view,
             task: Task::Surgery,
             prompt: Prompt::Rest,
             doing: Doing::Away,
@@ -119,7 +126,7 @@ impl Technician {
         self.doing = match std::mem::replace(&mut self.doing, Doing::Away) {
             Doing::Away => Doing::Away,
             // Nothing is taken out that is to go in again.
-            Doing::Called if self.task == Task::TipForce && self.is_in_trocar(joint_rad) => {
+            Doing::Called if self.stays_in_trocar() && self.is_in_trocar(joint_rad) => {
                 Doing::AtWork(Box::new(self.person(joint_rad)))
             }
             Doing::Called => Doing::Carrying(Carry::new(joint_rad, &self.beginning(joint_rad))),
@@ -145,6 +152,7 @@ impl Technician {
 
     fn obey(&mut self, mut person: Box<Person>, joints: &mut Joints, dt_s: f64) -> Doing {
         person.advance(&self.prompt, dt_s);
+        self.let_choose(&mut person, joints);
         let hold = self.hold(&person);
         let miss_m = self.guide.step(joints, &hold, dt_s);
         self.stuck_s = if miss_m > STUCK_M { self.stuck_s + dt_s } else { 0.0 };
@@ -157,6 +165,25 @@ impl Technician {
         Doing::AtWork(person)
     }
 
+    /// A pose that the arm does not take from where it is, he does not try.
+    fn let_choose(&self, person: &mut Person, joint_rad: &Joints) {
+        for _ in 0..CHOICES {
+            let Some((tip_m, world_from_s1)) = person.chosen() else { return };
+            if !self.holds_poses() || self.guide.reaches(joint_rad, &Hold::Pose { tip_m, world_from_s1 }) {
+                return;
+            }
+            person.choose_again();
+        }
+    }
+
+    const fn holds_poses(&self) -> bool {
+        matches!(self.task, Task::Tip | Task::HandEye)
+    }
+
+    const fn stays_in_trocar(&self) -> bool {
+        matches!(self.task, Task::TipForce | Task::Trocar)
+    }
+
     fn is_in_trocar(&self, joint_rad: &Joints) -> bool {
         let (pose, trocar_m) = (self.arm.pose(joint_rad), &self.scene.trocar_m);
         pose.insertion_m(trocar_m) > 0.0 && pose.axis_miss_m(trocar_m).norm() < IN_TROCAR_M
@@ -167,12 +194,19 @@ impl Technician {
         self.visits += 1;
         let mut scene = self.scene.clone();
         scene.seed = scene.seed.wrapping_add(self.visits);
-        if self.task == Task::TipForce {
-            return Person::new(self.config, &scene).begins_at(self.arm.pose(joint_rad).tip_m);
+        let pose = self.arm.pose(joint_rad);
+        if self.stays_in_trocar() {
+            return Person::new(self.config, &scene).begins_at(pose.tip_m);
         }
         // The others are done without the body wall.
         scene.trocar = None;
-        Person::new(self.config, &scene)
+        let person = Person::new(self.config, &scene);
+        match self.task {
+            Task::Tip | Task::HandEye | Task::Table | Task::View => {
+                person.begins_at(pose.tip_m).turned(pose.orientation(), self.world_from_view)
+            }
+            _ => person,
+        }
     }
 
     /// Joint angles in which the present task begins.
@@ -180,12 +214,13 @@ impl Technician {
         let ready_rad = nearest_turn(from_rad, &self.ready_rad);
         let down = Vector3::new(0.0, 0.0, 1.0);
         let hold = match self.task {
-            Task::Surgery | Task::TipForce => return ready_rad,
+            Task::Surgery | Task::TipForce | Task::Trocar => return ready_rad,
             Task::Gravity => Hold::Tilt(down),
             Task::Correspondence => {
                 let person = Person::new(self.config, &Scene { trocar: None, ..self.scene.clone() });
                 Hold::Tip { tip_m: person.tip().0, along: -down }
             }
+            Task::Tip | Task::HandEye | Task::Table | Task::View => Hold::Tip { tip_m: down * ABOVE_M, along: -down },
         };
         self.guide.find(from_rad, &hold).unwrap_or(ready_rad)
     }
@@ -194,6 +229,7 @@ impl Technician {
         let world_from_s1 = person.world_from_s1();
         match self.task {
             Task::Gravity => Hold::Tilt(world_from_s1.inverse() * -Vector3::z()),
+            Task::Tip | Task::HandEye => Hold::Pose { tip_m: person.tip().0, world_from_s1 },
             _ => Hold::Tip { tip_m: person.tip().0, along: world_from_s1 * Vector3::z() },
         }
     }
@@ -204,7 +240,15 @@ impl Technician {
         match self.doing {
             Doing::Away => false,
             Doing::Called | Doing::Carrying(_) | Doing::Reseating(..) => true,
-            Doing::AtWork(_) => !matches!(self.task, Task::TipForce),
+            Doing::AtWork(_) => !self.stays_in_trocar(),
+        }
+    }
+
+    /// Where he leads the handle, from where it rests, m (`world`).
+    pub(super) fn handle_m(&self) -> Vector3<f64> {
+        match &self.doing {
+            Doing::AtWork(person) | Doing::Reseating(person, _) => person.handle_m(),
+            _ => Vector3::zeros(),
         }
     }
 

@@ -9,13 +9,13 @@ mod of_side;
 #[cfg(test)]
 mod tests;
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
-use nima_core::calibration::gravity::Drift;
+use nima_core::calibration::{frames::RigChange, gravity::Drift};
 use nima_machine::{
-    config::RigConfig,
+    config::{RigConfig, RigFile, change_rig},
     messages::Tick,
-    rig::{SIDES, Side},
+    rig::{Roster, SIDES, Side},
     runtime::Handle,
     teleop::Calibrations,
 };
@@ -24,8 +24,9 @@ use nima_world::scene::Scene;
 use of_side::{Bound, OfSide};
 
 use super::{
+    chain,
     scene3d::side_name,
-    wizards::{Binding, Saving},
+    wizards::{Binding, FrameSaving, Saving, Subject},
 };
 use crate::console::text;
 
@@ -164,7 +165,58 @@ impl InForce {
         let (sensor, tool) =
             of_side.wrist().map(|wrist| (wrist.serial_number.clone(), wrist.tool.clone())).unwrap_or_default();
         let correspondence = of_side.correspondence.as_ref().map(|loaded| loaded.record.correspondence());
-        Binding { sensor, tool, date: utc_now(), correspondence, store: self.store.clone() }
+        let store = self.store.clone();
+        Binding { sensor, tool, date: utc_now(), correspondence, store, subject: None, rig: String::new() }
+    }
+
+    /// The same with the arm as this rig, of this name and with these devices, describes it.
+    pub fn binding_of(&self, name: &str, rig: &RigConfig, roster: &Roster) -> Binding {
+        let subject = Subject::of(rig, self.side, roster);
+        Binding { subject, rig: name.to_owned(), ..self.binding() }
+    }
+
+    /// Saves a frame calibration: its record, with what it changes, into the store, and the numbers into the rig file of this
+    /// name, or into a copy in `folder` if it is a built-in rig. Returns the rig as it is now, its path, and a text for the screen.
+    ///
+    /// # Errors
+    /// One line for the screen.
+    pub fn save_frame(
+        &self,
+        saving: FrameSaving,
+        rig: &str,
+        folder: Option<&Path>,
+    ) -> Result<(RigConfig, PathBuf, String), String> {
+        let store = self.store.as_ref().ok_or(text::calibrations::NO_FOLDER)?;
+        if self.sides[self.side.index()].wrist().is_none() {
+            return Err(text::calibrations::NO_SENSOR_TO_SAVE_FOR.to_owned());
+        }
+        let file = RigFile::of(rig).map_err(|error| chain(&error))?;
+        let FrameSaving { mut record, numbers } = saving;
+        let change = |(key, after): (String, String)| RigChange { before: file.value(&key), after: Some(after), key };
+        let changes: Vec<RigChange> = numbers.into_iter().map(change).collect();
+        record.rig_mut().clone_from(&changes);
+        let kept = record.save(store).map_err(|error| chain(&error))?;
+        let (path, rig) = self.change_rig(&changes, rig, folder)?;
+        let words = text::frames::written(&kept, &path);
+        Ok((rig, path, words))
+    }
+
+    /// Changes the rig file of this name, or a copy in `folder` if it is a built-in rig.
+    ///
+    /// # Errors
+    /// One line for the screen.
+    pub fn change_rig(
+        &self,
+        changes: &[RigChange],
+        rig: &str,
+        folder: Option<&Path>,
+    ) -> Result<(PathBuf, RigConfig), String> {
+        let folder = folder.ok_or(text::calibrations::NO_FOLDER)?;
+        if changes.is_empty() {
+            let config = RigConfig::load(rig).map_err(|error| chain(&error))?;
+            return Ok((PathBuf::from(rig), config));
+        }
+        change_rig(rig, &folder.join("rigs"), changes).map_err(|error| chain(&error))
     }
 
     /// Saves a record and puts it in force; returns a text for the screen.

@@ -35,8 +35,14 @@ impl std::fmt::Debug for Reader {
 pub const fn task_of(open: Option<Which>) -> Task {
     match open {
         None => Task::Surgery,
-        Some(Which::Gravity) => Task::Gravity,
+        // Both take poses in all directions of gravity.
+        Some(Which::Gravity | Which::Mount) => Task::Gravity,
         Some(Which::Correspondence) => Task::Correspondence,
         Some(Which::TipForce) => Task::TipForce,
+        Some(Which::Tip) => Task::Tip,
+        Some(Which::HandEye) => Task::HandEye,
+        Some(Which::Table) => Task::Table,
+        Some(Which::View) => Task::View,
+        Some(Which::Trocar) => Task::Trocar,
     }
 }

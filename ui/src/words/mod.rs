@@ -7,9 +7,11 @@
 mod calibration;
 mod faults;
 mod force;
+mod frames;
 mod refusals;
 
 pub(crate) use calibration::{drift, refusal};
+pub(crate) use frames::{axes_words, cause, phase};
 pub(crate) use refusals::{cure_of_refusal, refused_because};
 
 /// A value with a text for its cause and for its cure.

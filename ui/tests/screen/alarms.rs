@@ -149,7 +149,9 @@ fn the_stop_is_hit_in_every_wizard() {
             let folder = tempfile::tempdir().unwrap();
             let path = folder.path().to_path_buf();
             let options = Options { wizard: Some(which), ..Options::default() };
-            let mut harness = console_of(which.scene(), SIZE, move |app| app.with_store(&path).with_options(options));
+            let mut harness = console_of(which.scene().unwrap_or("peg_transfer"), SIZE, move |app| {
+                app.with_store(&path).with_options(options)
+            });
             until(&mut harness, "any tick", |_| true);
             stop_by(&mut harness, key, which.name());
         }

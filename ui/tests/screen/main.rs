@@ -15,5 +15,6 @@ mod view;
 mod virtual_rig;
 mod walk;
 mod wizard_correspondence;
+mod wizard_frames;
 mod wizard_gravity;
 mod wizard_tip_force;

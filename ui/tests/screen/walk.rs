@@ -186,7 +186,9 @@ fn nothing_is_cut_or_overlaps_in_the_wizards() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().to_path_buf();
         let options = Options { wizard: Some(which), ..Options::default() };
-        let mut harness = console_of(which.scene(), SIZES[0], move |app| app.with_store(&path).with_options(options));
+        let mut harness = console_of(which.scene().unwrap_or("peg_transfer"), SIZES[0], move |app| {
+            app.with_store(&path).with_options(options)
+        });
         until(&mut harness, "any tick", |_| true);
         for size in SIZES {
             let faults = faults(&mut harness, size, true);

@@ -77,6 +77,7 @@ impl Console {
                 date: utc_now(),
                 correspondence: Some(correspondence.correspondence()),
                 store: Some(Store::open(folder)),
+                ..Binding::default()
             },
             saving: None,
         };

@@ -57,7 +57,7 @@ mod view;
 
 pub use cause::{Cause, Mistake, SignedAxes, SignedAxis};
 pub use hand_eye::{HandEye, HandEyeFound, Solver};
-pub use record::{Found, FrameRecord, Serials, StoredPose};
+pub use record::{Found, FrameRecord, RigChange, Serials, StoredPose};
 pub use report::{Calibration, FrameReport, Limits, Sizes};
 pub use sample::{Carrier, FrameSample, Source};
 pub use sensor_mount::{SensorMount, SensorMountFound};

@@ -59,6 +59,31 @@ pub struct FrameRecord<F> {
     pub uncertainty: Sizes,
     /// What was found.
     pub found: F,
+    /// What it changed in the rig file.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub rig: Vec<RigChange>,
+}
+
+/// A value of the rig file that a calibration changed: before and after, as TOML text.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct RigChange {
+    /// Its key, with dots.
+    pub key: String,
+    /// Its value before; `None` if there was none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub before: Option<String>,
+    /// Its value since then; `None` if the key was taken away.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub after: Option<String>,
+}
+
+impl RigChange {
+    /// The change that undoes this one.
+    #[must_use]
+    pub fn undone(self) -> Self {
+        Self { key: self.key, before: self.after, after: self.before }
+    }
 }
 
 impl<F: Found> FrameRecord<F> {
@@ -76,6 +101,7 @@ impl<F: Found> FrameRecord<F> {
             held_out_max: report.held_out_max,
             uncertainty: report.uncertainty,
             found: report.found.clone()?,
+            rig: Vec::new(),
         })
     }
 }

@@ -1,7 +1,7 @@
 //! Fills in the [`Tick`] of a pair, and defines what is reported before the first sample.
 
 use nalgebra::Vector3;
-use nima_core::{impedance::Rendered, kinematics::Hand, safety::GateReport};
+use nima_core::{calibration::frames::FrameSample, impedance::Rendered, kinematics::Hand, safety::GateReport};
 
 use super::{Pair, Timing};
 use crate::{
@@ -13,6 +13,16 @@ use crate::{
 /// Marks a sample that was not measured.
 pub(super) const NOWHERE: Vector3<f64> = Vector3::new(f64::NAN, f64::NAN, f64::NAN);
 
+/// No poses: nothing was measured in this tick.
+const NO_FRAMES: FrameSample = FrameSample {
+    base_from_flange: None,
+    other_base_from_flange: None,
+    c_from_m: None,
+    c_from_other_m: None,
+    leader_from_handle: None,
+    wrench: None,
+};
+
 /// Displayed until the rig has delivered its first sample.
 pub(super) const NOTHING_YET: Inputs = Inputs {
     hand: Hand::at(Vector3::new(0.0, 0.0, 0.0)),
@@ -22,6 +32,7 @@ pub(super) const NOTHING_YET: Inputs = Inputs {
     world_from_jaws: None,
     sensed: Sensed::AtTip(Vector3::new(0.0, 0.0, 0.0)),
     view: View::Fixed,
+    frames: NO_FRAMES,
     switches: Switches { clutch: false, presence: None },
     powered: false,
     obstacle: None,
@@ -59,6 +70,9 @@ impl<L: Link> Pair<L> {
                 Sensed::AtTip(_) => None,
                 Sensed::AtWrist(sample) => Some(sample),
             },
+            // A pose that is not new would look as if it were held still.
+            frames: if self.was_there { seen.frames } else { NO_FRAMES },
+            view: seen.view,
             prompt: self.prompt,
             guide_m: self.guide_m,
             delayed_n,

@@ -13,9 +13,10 @@ use anyhow::{Context as _, bail};
 use clap::Args;
 use nima_machine::{
     messages::{Command, LoopState, Tick},
-    rig::{Prompt, SIDES, Side},
+    rig::{Prompt, Roster, SIDES, Side},
     runtime::Handle,
 };
+use nima_recording::store::Store;
 use nima_world::{
     Plan,
     emulated::{Screen, Task},
@@ -26,7 +27,7 @@ use crate::{
     console::{
         in_force::InForce,
         reader::{Reader, task_of},
-        wizards::{Attended, Saving, Which, Wizards},
+        wizards::{Attended, Binding, Saving, Which, Wizards},
     },
     emulators::Emulators,
     leaving::Leave,
@@ -50,6 +51,16 @@ pub(in crate::command) struct Arguments {
     /// Do this calibration only
     #[arg(long, value_name = "WIZARD")]
     only: Option<Which>,
+    /// Do the frame calibrations too: sensor mount, tip, hand-eye, table, view and trocar
+    #[arg(long, conflicts_with = "only")]
+    frames: bool,
+}
+
+impl Arguments {
+    /// Those of the force, unless another was asked for: the frames of an emulated rig are those of its file.
+    fn does(&self, which: Which) -> bool {
+        self.only.map_or(self.frames || which.frames().is_none(), |only| only == which)
+    }
 }
 
 fn side(word: &str) -> Result<Side, String> {
@@ -70,8 +81,8 @@ pub(in crate::command) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     };
     let in_force = InForce::load(None, &rig, &scene);
     let plan = Plan { rig, scene, calibrations: Default::default(), engage: false };
-    let mut bench = Bench::start(plan, in_force, emulators.technician(), leave)?;
-    for which in Which::ALL.into_iter().filter(|which| arguments.only.is_none_or(|only| only == *which)) {
+    let mut bench = Bench::start(plan, arguments.rig.clone(), in_force, emulators.technician(), leave)?;
+    for which in Which::ALL.into_iter().filter(|which| arguments.does(*which)) {
         for side in &sides {
             let began = Instant::now();
             bench.calibrate(which, *side)?;
@@ -89,6 +100,8 @@ pub(in crate::command) fn run(arguments: &Arguments) -> anyhow::Result<()> {
 /// The running loop, the technician, and the wizards.
 struct Bench {
     plan: Plan,
+    /// Name or path of the rig.
+    rig: String,
     handle: Option<Handle>,
     in_force: InForce,
     reader: Reader,
@@ -101,10 +114,10 @@ struct Bench {
 }
 
 impl Bench {
-    fn start(plan: Plan, in_force: InForce, reader: Reader, leave: Leave) -> anyhow::Result<Self> {
+    fn start(plan: Plan, rig: String, in_force: InForce, reader: Reader, leave: Leave) -> anyhow::Result<Self> {
         let (wizards, ticks) = (Wizards::default(), [None; SIDES]);
         let saved = Vec::new();
-        let mut this = Self { plan, handle: None, in_force, reader, read: None, wizards, ticks, saved, leave };
+        let mut this = Self { plan, rig, handle: None, in_force, reader, read: None, wizards, ticks, saved, leave };
         this.restart()?;
         Ok(this)
     }
@@ -131,7 +144,7 @@ impl Bench {
                 bail!("ended as asked; the calibrations that were finished are saved");
             }
             self.look(side)?;
-            let binding = self.in_force.binding();
+            let binding = self.binding();
             if binding.sensor.is_empty() {
                 Self::wait(since, &what, "the wrist sensor", self.missing().as_deref())?;
                 continue;
@@ -149,6 +162,12 @@ impl Bench {
             }
         };
         self.save(saving)
+    }
+
+    fn binding(&self) -> Binding {
+        let none = Roster::new();
+        let roster = self.handle.as_ref().map_or(&none, |handle| handle.roster());
+        self.in_force.binding_of(&self.rig, &self.plan.rig, roster)
     }
 
     fn wait(since: Instant, what: &str, step: &str, notice: Option<&str>) -> anyhow::Result<()> {
@@ -197,7 +216,16 @@ impl Bench {
         let side = self.in_force.side();
         self.wizards = Wizards::default();
         self.reader.show(Screen { side, task: Task::Surgery, prompt: Prompt::Rest }, &mut self.read);
-        let told = self.in_force.save(saving).map_err(anyhow::Error::msg)?;
+        let told = match saving {
+            Saving::Frame(saving) => {
+                let folder = Store::of_user().ok().and_then(|store| Some(store.folder().parent()?.to_path_buf()));
+                let saved = self.in_force.save_frame(*saving, &self.rig, folder.as_deref());
+                let (rig, path, words) = saved.map_err(anyhow::Error::msg)?;
+                (self.plan.rig, self.rig) = (rig, path.display().to_string());
+                words
+            }
+            saving => self.in_force.save(saving).map_err(anyhow::Error::msg)?,
+        };
         tell(told);
         self.saved = self.in_force.lines();
         self.restart()

@@ -2,8 +2,9 @@
 
 use egui::{CentralPanel, Frame, Margin, Panel, ScrollArea, Ui};
 use nima_machine::{
+    config::RigConfig,
     messages::{Command, LoopState},
-    rig::{Prompt, Side},
+    rig::{Prompt, Roster, Side},
 };
 use nima_world::{emulated::Screen, scene::Scene};
 
@@ -14,7 +15,7 @@ use crate::console::{
     reader::task_of,
     text, theme,
     widgets::card,
-    wizards::{Saving, Which, Wizards},
+    wizards::{Binding, Saving, Which, Wizards},
 };
 
 impl ConsoleApp {
@@ -22,20 +23,22 @@ impl ConsoleApp {
     /// with devices is a technician.
     pub(super) fn open_wizard(&mut self, which: Which) {
         let side = self.in_force.side();
-        if self.live.rig.devices.is_some() {
-            let rests = matches!(self.live.state(), LoopState::Idle | LoopState::Disconnected);
+        let Some(scene) = which.scene().filter(|_| self.live.rig.devices.is_none()) else {
+            // A simulated rig has no arm of joints: the wizard says so.
+            let rests = matches!(self.live.state(), LoopState::Idle | LoopState::Disconnected)
+                || self.live.rig.devices.is_none();
             let (rig, scene) = (self.live.rig.clone(), self.live.scene.clone());
             match if rests { Ok(()) } else { self.restart(rig, scene) } {
                 Ok(()) => self.wizards.open = Some(which),
                 Err(reason) => self.in_force.tell(text::calibrations::not_opened(&reason)),
             }
             return;
-        }
+        };
         let here = which.suits(&self.live.scene) && self.live.scene.has(&self.live.rig, side);
         let opened = if here && self.wizards.open.is_none() {
             Ok(())
         } else {
-            let scene = Scene::load(which.scene()).map_err(|error| error.to_string());
+            let scene = Scene::load(scene).map_err(|error| error.to_string());
             let scene = scene.map(|scene| if side == Side::Left { scene.with_left_hand() } else { scene });
             scene.and_then(|scene| self.restart_in(scene))
         };
@@ -83,14 +86,30 @@ impl ConsoleApp {
 
     /// Saves a calibration and puts it in force.
     pub(super) fn save(&mut self, saving: Saving) {
-        let told = match self.in_force.save(saving) {
-            Ok(words) => match self.restart(self.live.rig.clone(), self.live.scene.clone()) {
+        let saved = self.saved(saving);
+        let told = match saved {
+            Ok((rig, words)) => match self.restart(rig, self.live.scene.clone()) {
                 Ok(()) => words,
                 Err(reason) => text::calibrations::in_force_with_next_start(&words, &reason),
             },
             Err(reason) => text::calibrations::not_saved(&reason),
         };
         self.wizards.tell_saved(told);
+    }
+
+    /// Saves; returns the rig as it is now, and a text for the screen.
+    fn saved(&mut self, saving: Saving) -> Result<(RigConfig, String), String> {
+        let (rig, path, words) = match saving {
+            Saving::Frame(saving) => self.in_force.save_frame(*saving, &self.running.rig, self.settings.folder())?,
+            Saving::Undo(changes) => {
+                let (path, rig) = self.in_force.change_rig(&changes, &self.running.rig, self.settings.folder())?;
+                (rig, path, text::frames::UNDONE.to_owned())
+            }
+            saving => return Ok((self.live.rig.clone(), self.in_force.save(saving)?)),
+        };
+        self.running.rig = path.display().to_string();
+        self.running.remember(&mut self.settings.now.recent);
+        Ok((rig, words))
     }
 
     /// Sends the open wizard's instruction for the person at the arm, and shows it to the technician of an emulated rig.
@@ -107,6 +126,13 @@ impl ConsoleApp {
         }
     }
 
+    /// Sensor, tool and arm for a new calibration.
+    fn binding(&self) -> Binding {
+        let none = Roster::new();
+        let roster = self.door.as_ref().map_or(&none, |door| door.handle().roster());
+        self.in_force.binding_of(&self.running.rig, &self.live.rig, roster)
+    }
+
     /// The technician's view with one wizard, the calibrations in force, and the button to return.
     pub(super) fn wizard_layout(&mut self, ui: &mut Ui) {
         let side = Frame::new().fill(theme::now().panel).inner_margin(Margin::same(8));
@@ -117,7 +143,7 @@ impl ConsoleApp {
                 calibrations_ui(ui, &self.live, &self.in_force, self.wizards.open)
             });
         });
-        let binding = self.in_force.binding();
+        let binding = self.binding();
         let mut saving = None;
         CentralPanel::default().frame(Frame::new().inner_margin(Margin::symmetric(18, 14))).show(ui, |ui| {
             ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {

@@ -14,6 +14,7 @@ use super::ConsoleApp;
 use crate::{
     console::{
         chain, keys,
+        reader::Reader,
         start::{Choice, Now},
         text,
     },
@@ -59,6 +60,20 @@ impl ConsoleApp {
     pub(crate) fn with_choice(mut self, running: Choice, emulators: Option<Emulators>) -> Self {
         self.running = running;
         self.serve(emulators);
+        self
+    }
+
+    /// Shows the wizards' instructions to this reader, for tests whose emulators run in the same process.
+    #[must_use]
+    pub fn with_reader(mut self, reader: Reader) -> Self {
+        self.reader = Some(reader);
+        self
+    }
+
+    /// The rig of this name or path runs.
+    #[must_use]
+    pub fn with_rig_name(mut self, rig: impl Into<String>) -> Self {
+        self.running.rig = rig.into();
         self
     }
 

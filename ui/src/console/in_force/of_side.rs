@@ -149,6 +149,7 @@ impl OfSide {
                 self.tip_force = Some(Loaded { record: *model, age: Age::Fresh, path: path.clone() });
                 path
             }
+            Saving::Frame(_) | Saving::Undo(_) => return Err(text::calibrations::NOT_OF_A_SENSOR.to_owned()),
         };
         self.told = None;
         Ok(path)

@@ -46,7 +46,9 @@ pub fn calibrations_ui(ui: &mut Ui, live: &Live, in_force: &InForce, open: Optio
     if live.is_bimanual() {
         wish = side_ui(ui, in_force.side());
     }
-    for which in Which::ALL {
+    // The frames are those of an arm with joints.
+    let has_arm = live.rig.devices.is_some();
+    for which in Which::ALL.into_iter().filter(|which| has_arm || which.scene().is_some()) {
         let text = text::calibrations::calibrate(&which.name().to_lowercase());
         let button = Button::selectable(open == Some(which), text)
             .frame_when_inactive(true)

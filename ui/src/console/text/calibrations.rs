@@ -1,5 +1,6 @@
 //! The calibration panel: what is calibrated, how well, and the buttons that open the wizards.
 
+pub(in crate::console) const NOT_OF_A_SENSOR: &str = "these numbers belong into the rig file";
 pub(in crate::console) const OPEN_DISABLED_HOVER: &str =
     "Already open, or the loop is stopped: press Release stop first";
 pub(in crate::console) const CLOSE_WIZARD: &str = "Back to the monitor";

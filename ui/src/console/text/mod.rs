@@ -20,6 +20,7 @@ pub(super) mod feedback;
 pub(super) mod field;
 pub(super) mod force_space;
 pub(super) mod forces;
+pub(super) mod frames;
 pub(super) mod gates;
 pub(super) mod gravity;
 pub(super) mod help;

@@ -1,6 +1,6 @@
 //! A wizard without a screen: the same sessions and the same order of steps, taken on as soon as a step has all that it asks for.
 
-use super::{Binding, CorrespondenceWizard, Saving, TipForceWizard, Wizards};
+use super::{Binding, CorrespondenceWizard, FrameWizard, Kind, Saving, TipForceWizard, Which, Wizards};
 
 /// What came of attending to the open wizard.
 #[derive(Debug)]
@@ -41,11 +41,18 @@ impl Wizards {
         })
     }
 
-    /// Pushes and recordings use the gravity calibration; those made with the previous one must not be mixed with new ones.
+    /// Pushes and recordings use the gravity calibration; those made with the previous one must not be mixed with new ones. What the other
+    /// wizards of the frames have recorded belongs to the rig file as it was.
     pub(super) fn forget_what_rests_on(&mut self, saving: &Saving) {
         if matches!(saving, Saving::Gravity(_)) {
             self.correspondence = CorrespondenceWizard::default();
             self.tip_force = TipForceWizard::default();
+        }
+        if matches!(saving, Saving::Frame(_) | Saving::Undo(_)) {
+            let open = self.open.and_then(Which::frames);
+            for kind in Kind::ALL.into_iter().filter(|kind| Some(*kind) != open) {
+                self.frames[kind as usize] = FrameWizard::new(kind);
+            }
         }
     }
 }

@@ -34,9 +34,21 @@ pub(super) struct Frame {
     why: String,
     /// Result of saving.
     pub(super) saved: Option<String>,
+    /// The step or what is saved has changed since [`Frame::take_changed`].
+    pub(super) changed: bool,
 }
 
 impl Frame {
+    /// Shows the result of saving.
+    pub(super) fn tell_saved(&mut self, words: String) {
+        (self.saved, self.changed) = (Some(words), true);
+    }
+
+    /// Whether the step or what is saved has changed since the last call.
+    pub(super) const fn take_changed(&mut self) -> bool {
+        std::mem::replace(&mut self.changed, false)
+    }
+
     /// Copies the entered name and reason into the record.
     fn override_in(&self, judgement: &mut Judgement) {
         judgement.override_by(&self.name, Some(&self.why));
@@ -79,6 +91,10 @@ pub(super) trait Wizard {
     fn before_saving(&self, _ui: &mut Ui) -> bool {
         true
     }
+    /// Draws the part below the last step; returns what else is to be saved.
+    fn after_saving(&mut self, _ui: &mut Ui) -> Option<Saving> {
+        None
+    }
     fn go_to(&mut self, step: usize) {
         self.frame_mut().step = step;
     }
@@ -105,6 +121,7 @@ pub(super) fn wizard_ui(wizard: &mut dyn Wizard, ui: &mut Ui, binding: &Binding)
         if let (None, Some(judgement)) = (proof, saving.as_mut().and_then(Saving::judgement_mut)) {
             wizard.frame_mut().override_in(judgement);
         }
+        saving = wizard.after_saving(ui).or(saving);
     }
     match wish {
         Some(Wish::GoTo(step)) => wizard.go_to(step),

@@ -8,6 +8,7 @@ mod attend;
 mod checks;
 mod correspondence;
 mod frame;
+mod frames;
 mod gravity;
 mod pictures;
 mod report;
@@ -18,16 +19,18 @@ use nima_core::{
     calibration::{
         Judgement,
         correspondence::{Correspondence, CorrespondenceRecord},
+        frames::RigChange,
         gravity::GravityRecord,
     },
     tip_force::Model,
 };
-use nima_machine::{messages::Tick, rig::Prompt};
+use nima_machine::{config::RigFile, messages::Tick, rig::Prompt};
 use nima_recording::store::Store;
 use nima_world::scene::Scene;
 
 pub use attend::Attended;
 pub use correspondence::CorrespondenceWizard;
+pub use frames::{FrameCalibration, FrameSaving, FrameWizard, Kind, Subject};
 pub use gravity::GravityWizard;
 pub use tip_force::TipForceWizard;
 
@@ -48,6 +51,17 @@ pub struct Binding {
     pub correspondence: Option<Correspondence>,
     /// Store of calibrations and their data; `None` if no folder is known.
     pub store: Option<Store>,
+    /// The arm in its rig file; `None` if the rig has no such arm.
+    pub subject: Option<Subject>,
+    /// Name or path of the rig.
+    pub rig: String,
+}
+
+impl Binding {
+    /// A value of the rig file as TOML text.
+    fn rig_value(&self, key: &str) -> Option<String> {
+        RigFile::of(&self.rig).ok()?.value(key)
+    }
 }
 
 /// Which wizard.
@@ -59,11 +73,46 @@ pub enum Which {
     Correspondence,
     /// The network that removes the trocar's friction.
     TipForce,
+    /// How the wrist sensor is mounted on the flange.
+    Mount,
+    /// Where the instrument's tip is.
+    Tip,
+    /// Where the marker is on the instrument, and the tracker beside the arm.
+    HandEye,
+    /// Origin and plane of the workspace.
+    Table,
+    /// How the endoscope's picture is turned against arm and handle.
+    View,
+    /// The remote centre of motion.
+    Trocar,
 }
 
 impl Which {
     /// All wizards, in the order of use.
-    pub const ALL: [Self; 3] = [Self::Gravity, Self::Correspondence, Self::TipForce];
+    pub const ALL: [Self; 9] = [
+        Self::Gravity,
+        Self::Correspondence,
+        Self::TipForce,
+        Self::Mount,
+        Self::Tip,
+        Self::HandEye,
+        Self::Table,
+        Self::View,
+        Self::Trocar,
+    ];
+
+    /// The frame calibration that it is; `None` for those of the force.
+    pub const fn frames(self) -> Option<Kind> {
+        match self {
+            Self::Gravity | Self::Correspondence | Self::TipForce => None,
+            Self::Mount => Some(Kind::Mount),
+            Self::Tip => Some(Kind::Tip),
+            Self::HandEye => Some(Kind::HandEye),
+            Self::Table => Some(Kind::Table),
+            Self::View => Some(Kind::View),
+            Self::Trocar => Some(Kind::Trocar),
+        }
+    }
 
     /// Name on buttons.
     pub const fn name(self) -> &'static str {
@@ -71,6 +120,12 @@ impl Which {
             Self::Gravity => text::wizards::GRAVITY,
             Self::Correspondence => text::wizards::CORRESPONDENCE,
             Self::TipForce => text::wizards::TIP_FORCE,
+            Self::Mount => text::frames::MOUNT,
+            Self::Tip => text::frames::TIP,
+            Self::HandEye => text::frames::HAND_EYE,
+            Self::Table => text::frames::TABLE,
+            Self::View => text::frames::VIEW,
+            Self::Trocar => text::frames::TROCAR,
         }
     }
 
@@ -80,15 +135,22 @@ impl Which {
             Self::Gravity => text::wizards::GRAVITY_MEANING,
             Self::Correspondence => text::wizards::CORRESPONDENCE_MEANING,
             Self::TipForce => text::wizards::TIP_FORCE_MEANING,
+            Self::Mount => text::frames::MOUNT_MEANING,
+            Self::Tip => text::frames::TIP_MEANING,
+            Self::HandEye => text::frames::HAND_EYE_MEANING,
+            Self::Table => text::frames::TABLE_MEANING,
+            Self::View => text::frames::VIEW_MEANING,
+            Self::Trocar => text::frames::TROCAR_MEANING,
         }
     }
 
-    /// The simulated experiment for it.
-    pub const fn scene(self) -> &'static str {
+    /// The simulated experiment for it; `None` if it needs a rig with devices.
+    pub const fn scene(self) -> Option<&'static str> {
         match self {
-            Self::Gravity => "gravity",
-            Self::Correspondence => "correspondence",
-            Self::TipForce => "isolation",
+            Self::Gravity => Some("gravity"),
+            Self::Correspondence => Some("correspondence"),
+            Self::TipForce => Some("isolation"),
+            _ => None,
         }
     }
 
@@ -100,6 +162,7 @@ impl Which {
             Self::Gravity => guided,
             Self::Correspondence => guided && scene.tissue_sensor.is_some(),
             Self::TipForce => guided && scene.tissue_sensor.is_some() && scene.trocar.is_some(),
+            _ => true,
         }
     }
 }
@@ -113,6 +176,10 @@ pub enum Saving {
     Correspondence(Box<CorrespondenceRecord>),
     /// A network with its check.
     TipForce(Box<Model>),
+    /// A frame calibration, with what it changes in the rig file.
+    Frame(Box<FrameSaving>),
+    /// Values that are put back into the rig file.
+    Undo(Vec<RigChange>),
 }
 
 impl Saving {
@@ -122,18 +189,34 @@ impl Saving {
             Self::Gravity(record) => Some(&mut record.judgement),
             Self::Correspondence(record) => Some(&mut record.judgement),
             Self::TipForce(model) => model.origin.check.as_mut().map(|check| &mut check.judgement),
+            Self::Frame(saving) => Some(saving.record.judgement_mut()),
+            Self::Undo(_) => None,
         }
     }
 }
 
 /// All wizards; each keeps its data until it is reset.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub struct Wizards {
     /// The one that is open.
     pub open: Option<Which>,
     gravity: GravityWizard,
     correspondence: CorrespondenceWizard,
     tip_force: TipForceWizard,
+    /// In the order of [`Kind::ALL`].
+    frames: [FrameWizard; Kind::ALL.len()],
+}
+
+impl Default for Wizards {
+    fn default() -> Self {
+        Self {
+            open: None,
+            gravity: GravityWizard::default(),
+            correspondence: CorrespondenceWizard::default(),
+            tip_force: TipForceWizard::default(),
+            frames: Kind::ALL.map(FrameWizard::new),
+        }
+    }
 }
 
 impl Wizards {
@@ -143,18 +226,20 @@ impl Wizards {
     }
 
     fn the(&self, which: Which) -> &dyn Wizard {
-        match which {
-            Which::Gravity => &self.gravity,
-            Which::Correspondence => &self.correspondence,
-            Which::TipForce => &self.tip_force,
+        match which.frames() {
+            Some(kind) => &self.frames[kind as usize],
+            None if which == Which::Gravity => &self.gravity,
+            None if which == Which::Correspondence => &self.correspondence,
+            None => &self.tip_force,
         }
     }
 
     fn the_mut(&mut self, which: Which) -> &mut dyn Wizard {
-        match which {
-            Which::Gravity => &mut self.gravity,
-            Which::Correspondence => &mut self.correspondence,
-            Which::TipForce => &mut self.tip_force,
+        match which.frames() {
+            Some(kind) => &mut self.frames[kind as usize],
+            None if which == Which::Gravity => &mut self.gravity,
+            None if which == Which::Correspondence => &mut self.correspondence,
+            None => &mut self.tip_force,
         }
     }
 
@@ -173,7 +258,7 @@ impl Wizards {
     /// Shows the result of saving in the open wizard.
     pub fn tell_saved(&mut self, words: String) {
         if let Some(which) = self.open {
-            self.the_mut(which).frame_mut().saved = Some(words);
+            self.the_mut(which).frame_mut().tell_saved(words);
         }
     }
 

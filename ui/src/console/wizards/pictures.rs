@@ -10,7 +10,7 @@ use nima_core::tip_force::{MAP, Map};
 use crate::console::{text, theme};
 
 /// Projection for a viewer in front of the base, slightly to the right and above (`world`: x to the right, z up).
-fn on_paper(centre: Pos2, scale: f32, point: &Vector3<f64>) -> (Pos2, f64) {
+pub(super) fn on_paper(centre: Pos2, scale: f32, point: &Vector3<f64>) -> (Pos2, f64) {
     let (turn, raise) = (0.45_f64, 0.38_f64);
     let right = point.x * turn.cos() + point.y * turn.sin();
     let away = -point.x * turn.sin() + point.y * turn.cos();

@@ -1,0 +1,81 @@
+//! Where a rig file is changed: a file of the user's stays where it is, a built-in rig is copied into the user's folder first.
+
+use std::path::{Path, PathBuf};
+
+use nima_core::calibration::frames::RigChange;
+
+use super::{RIGS, RigConfig, RigFile, RigFileError};
+
+/// The file that is written when the rig of this name changes: itself, or for a built-in rig a new file in `folder`.
+pub fn own_path(rig: &str, folder: &Path) -> PathBuf {
+    if RIGS.iter().all(|(name, _)| *name != rig) {
+        return PathBuf::from(rig);
+    }
+    let named = |name: String| folder.join(name).with_extension("toml");
+    let further = (2..).map(|number| named(format!("{rig}-{number}")));
+    std::iter::once(named(rig.to_owned())).chain(further).find(|path| !path.exists()).unwrap_or_default()
+}
+
+/// Applies these changes to the rig of this name and writes its file, or for a built-in rig a copy of it in `folder`; comments
+/// are kept. Returns the path and the rig as it is now.
+///
+/// # Errors
+/// [`RigFileError`] if the rig cannot be read, would be impossible afterwards, or its file cannot be written.
+///
+/// ```
+/// use nima_core::calibration::frames::RigChange;
+/// use nima_machine::config::change_rig;
+///
+/// let folder = tempfile::tempdir()?;
+/// let key = "devices.right.mount.shaft_m".to_owned();
+/// let change = RigChange { key, before: Some("0.40".to_owned()), after: Some("0.403".to_owned()) };
+/// let (path, rig) = change_rig("emulated", folder.path(), std::slice::from_ref(&change))?;
+/// assert_eq!(path, folder.path().join("emulated.toml"));
+/// assert_eq!(rig.devices.and_then(|devices| devices.right).map(|set| set.mount.shaft_m), Some(0.403));
+///
+/// let name = path.to_str().ok_or("a path in letters")?;
+/// let (same, _) = change_rig(name, folder.path(), &[change.undone()])?;
+/// assert_eq!(same, path, "a file of the user's is changed where it is");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn change_rig(rig: &str, folder: &Path, changes: &[RigChange]) -> Result<(PathBuf, RigConfig), RigFileError> {
+    let mut file = RigFile::of(rig)?;
+    for change in changes {
+        match &change.after {
+            // Text that is no value comes from a damaged record only, and changes nothing.
+            Some(text) => _ = file.set_text(&change.key, text),
+            None => file.remove(&change.key),
+        }
+    }
+    let path = own_path(rig, folder);
+    let rig = file.save(&path)?;
+    Ok((path, rig))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_built_in_rig_never_overwrites_a_file_and_a_file_stays_where_it_is() {
+        let folder = tempfile::tempdir().unwrap();
+        let first = own_path("emulated", folder.path());
+        assert_eq!(first, folder.path().join("emulated.toml"));
+        std::fs::write(&first, "").unwrap();
+        assert_eq!(own_path("emulated", folder.path()), folder.path().join("emulated-2.toml"));
+        assert_eq!(own_path("mine/rig.toml", folder.path()), PathBuf::from("mine/rig.toml"));
+    }
+
+    #[test]
+    fn an_impossible_change_is_told_and_nothing_is_written() {
+        let folder = tempfile::tempdir().unwrap();
+        let far = RigChange {
+            key: "devices.right.base_from_c_m".to_owned(),
+            before: None,
+            after: Some("[nan, 0.0, 0.0]".to_owned()),
+        };
+        let told = change_rig("emulated", folder.path(), &[far]).map(|(path, _)| path);
+        assert!(told.is_err(), "{told:?}");
+        assert!(!own_path("emulated", folder.path()).exists());
+    }
+}

@@ -1,0 +1,93 @@
+//! Frame calibrations over the emulated wires: the drivers' readings in the ticks, judged against what only the emulators know.
+use std::time::Duration;
+
+use nalgebra::{Isometry3, Point3, Vector3};
+use nima_core::{
+    calibration::{
+        Verdict,
+        frames::{Calibration, FrameReport, FrameSession, HandEye, Tip, Trocar},
+    },
+    kinematics::Arm,
+};
+use nima_machine::rig::{Prompt, Side};
+use nima_testing::real_time::{alone, judged, too_busy};
+use nima_tests::emulated::{elsewhere, started};
+use nima_world::emulated::Task;
+
+use super::technician::Bench;
+
+const SIDE: Side = Side::Right;
+
+/// Lets the technician do it until nothing is missing; a machine that is too busy for that is not judged.
+fn run<C: Calibration>(bench: &mut Bench, calibration: C, task: Task, prompt: Prompt) -> FrameReport<C::Found> {
+    let mut session = FrameSession::new(calibration);
+    // He carries the arm to where it begins.
+    bench.show(SIDE, task, Prompt::Rest);
+    bench.until(SIDE, Duration::from_secs(8), |_, _| false);
+    bench.show(SIDE, task, prompt);
+    let complete = bench.until(SIDE, Duration::from_secs(150), |_, tick| {
+        if tick.index % 4 == 0 {
+            session.step(&tick.frames, tick.t_s);
+        }
+        session.coverage().share >= 1.0
+    });
+    if !complete {
+        println!("{task:?}: {:?} after {} poses", session.coverage(), session.samples().len());
+        too_busy();
+    }
+    let report = session.report().unwrap();
+    println!("{task:?}: {} poses, held out {:?}", report.poses, report.held_out);
+    assert_eq!(report.verdict, Verdict::Accepted, "{task:?}: {:?}", report.cause);
+    report
+}
+
+fn pose(isometry: &nalgebra::IsometryMatrix3<f64>) -> Isometry3<f64> {
+    Isometry3::from_parts(isometry.translation, isometry.rotation.into())
+}
+
+#[test]
+fn tip_hand_eye_and_trocar_are_found_within_half_a_millimetre() {
+    let _alone = alone();
+    let folder = tempfile::tempdir().unwrap();
+    let truth = elsewhere(folder.path());
+    let set = truth.arm(SIDE).unwrap();
+    let arm = Arm::new(&set.mount).unwrap();
+    // The loop's rig file is wrong about the tip and about the trocar, and does not know the tracker's place.
+    let mut believed = truth.clone();
+    let wrong = believed.right.as_mut().unwrap();
+    wrong.mount.shaft_m += 0.006;
+    wrong.mount.sensor_m.x += 0.003;
+    wrong.rcm.trocar_m.y += 0.004;
+    judged(|| {
+        let mut bench = Bench::start(started(&truth), &believed);
+        let tip = run(&mut bench, Tip::by_arm(), Task::Tip, Prompt::PivotInDimple);
+        let tip_m = Vector3::from(tip.found.unwrap().tip_in_carrier_m);
+        let true_m = (arm.flange_from_s1() * Point3::new(0.0, 0.0, arm.shaft_m())).coords;
+        let miss_mm = (tip_m - true_m).norm() * 1e3;
+        println!("tip: {miss_mm:.3} mm off");
+        assert!(miss_mm <= 0.5, "{miss_mm} mm");
+
+        let found = run(&mut bench, HandEye::new(tip_m), Task::HandEye, Prompt::Turn).found.unwrap();
+        let known = bench.rig.truth(SIDE).unwrap();
+        let flange = arm.pose(&known.joint_rad.into()).chain.world_from_flange;
+        let base_from_world = pose(arm.world_from_base()).inverse();
+        let base_from_flange = base_from_world * pose(&flange);
+        let flange_from_m = pose(arm.flange_from_s1()) * known.s1_from_m;
+        let c_from_m = (base_from_world * known.world_from_c).inverse() * base_from_flange * flange_from_m;
+        let seen = found.base_from_c.pose() * c_from_m * found.flange_from_m.pose().inverse();
+        let tip = Point3::from(true_m);
+        let miss_mm = (seen * tip - base_from_flange * tip).norm() * 1e3;
+        let miss_deg = seen.rotation.angle_to(&base_from_flange.rotation).to_degrees();
+        println!("hand-eye: {miss_mm:.3} mm, {miss_deg:.3} degrees off at the tip");
+        assert!(miss_mm <= 0.5 && miss_deg <= 0.1, "{miss_mm} mm, {miss_deg} degrees");
+
+        // With the instrument in its trocar again.
+        bench.show(SIDE, Task::Surgery, Prompt::Rest);
+        bench.until(SIDE, Duration::from_secs(8), |_, _| false);
+        let trocar = run(&mut bench, Trocar::by_arm(&arm), Task::Trocar, Prompt::PivotInTrocar).found.unwrap();
+        let true_m = base_from_world * Point3::from(set.rcm.trocar_m);
+        let miss_mm = (Vector3::from(trocar.trocar_m) - true_m.coords).norm() * 1e3;
+        println!("trocar: {miss_mm:.3} mm off");
+        assert!(miss_mm <= 0.5, "{miss_mm} mm");
+    });
+}

@@ -1,0 +1,198 @@
+//! One type for the sessions, results and records of all frame calibrations.
+
+use std::{fmt::Debug, path::PathBuf, time::SystemTime};
+
+use nima_core::calibration::{
+    Judgement, RecordHead, Verdict,
+    frames::{
+        Calibration, Cause, Coverage, FrameError, FrameRecord, FrameReport, FrameSample, FrameSession, HandEyeFound,
+        Phase, RigChange, SensorMountFound, Serials, Sizes, Source, TableFound, TipFound, TrocarFound, ViewFound,
+    },
+};
+use nima_recording::store::{self, Store, StoreError};
+
+use super::kind::Kind;
+
+/// A session of any frame calibration.
+pub(super) trait Job: Debug {
+    fn needs(&self) -> Vec<Source>;
+    fn step(&mut self, sample: &FrameSample, t_s: f64) -> Phase;
+    fn coverage(&self) -> Coverage;
+    fn samples(&self) -> &[FrameSample];
+    fn undo(&mut self);
+    fn report(&self) -> Result<Outcome, FrameError>;
+}
+
+impl<C> Job for FrameSession<C>
+where
+    C: Calibration + Debug,
+    Outcome: From<FrameReport<C::Found>>,
+{
+    fn needs(&self) -> Vec<Source> {
+        self.calibration().needs()
+    }
+
+    fn step(&mut self, sample: &FrameSample, t_s: f64) -> Phase {
+        Self::step(self, sample, t_s)
+    }
+
+    fn coverage(&self) -> Coverage {
+        Self::coverage(self)
+    }
+
+    fn samples(&self) -> &[FrameSample] {
+        Self::samples(self)
+    }
+
+    fn undo(&mut self) {
+        Self::undo(self);
+    }
+
+    fn report(&self) -> Result<Outcome, FrameError> {
+        Self::report(self).map(Into::into)
+    }
+}
+
+/// An enum over what the calibrations find, with one type around each.
+macro_rules! of_each {
+    ($(#[$meta:meta])* $vis:vis $name:ident($around:ident): $($variant:ident($found:ty)),*) => {
+        $(#[$meta])*
+        #[derive(Clone, Debug)]
+        $vis enum $name {
+            $($variant($around<$found>)),*
+        }
+
+        $(impl From<$around<$found>> for $name {
+            fn from(value: $around<$found>) -> Self {
+                Self::$variant(value)
+            }
+        })*
+    };
+}
+
+/// What is the same for each of them.
+macro_rules! each {
+    ($value:expr, $name:ident => $same:expr) => {
+        match $value {
+            Self::Tip($name) => $same,
+            Self::HandEye($name) => $same,
+            Self::Trocar($name) => $same,
+            Self::Table($name) => $same,
+            Self::View($name) => $same,
+            Self::Mount($name) => $same,
+        }
+    };
+}
+
+of_each!(
+    /// The result of a frame calibration.
+    pub(super) Outcome(FrameReport): Tip(TipFound), HandEye(HandEyeFound), Trocar(TrocarFound), Table(TableFound), View(ViewFound),
+    Mount(SensorMountFound)
+);
+
+of_each!(
+    /// The record of a frame calibration.
+    pub FrameCalibration(FrameRecord): Tip(TipFound), HandEye(HandEyeFound), Trocar(TrocarFound), Table(TableFound), View(ViewFound),
+    Mount(SensorMountFound)
+);
+
+/// What every result has.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Quality {
+    pub(super) verdict: Verdict,
+    pub(super) cause: Cause,
+    pub(super) poses: usize,
+    pub(super) fitted: Sizes,
+    pub(super) held_out: Sizes,
+    pub(super) held_out_max: Sizes,
+    pub(super) uncertainty: Sizes,
+}
+
+impl Outcome {
+    pub(super) fn quality(&self) -> Quality {
+        each!(self, report => Quality {
+            verdict: report.verdict,
+            cause: report.cause,
+            poses: report.poses,
+            fitted: report.fitted,
+            held_out: report.held_out,
+            held_out_max: report.held_out_max,
+            uncertainty: report.uncertainty,
+        })
+    }
+
+    /// Indices of the poses that were left out.
+    pub(super) fn outliers(&self) -> &[usize] {
+        each!(self, report => &report.outliers)
+    }
+
+    /// Whether there is a result.
+    pub(super) fn is_found(&self) -> bool {
+        each!(self, report => report.found.is_some())
+    }
+
+    /// The record of the result; `None` if there is none.
+    pub(super) fn record(&self, head: RecordHead, serials: Serials) -> Option<FrameCalibration> {
+        let reason = crate::words::cause(&self.quality().cause);
+        each!(self, report => report.record(head, serials, &reason).map(Into::into))
+    }
+}
+
+impl FrameCalibration {
+    /// What was judged of it.
+    pub fn judgement_mut(&mut self) -> &mut Judgement {
+        each!(self, record => &mut record.judgement)
+    }
+
+    /// What it changed in the rig file.
+    pub fn rig_mut(&mut self) -> &mut Vec<RigChange> {
+        each!(self, record => &mut record.rig)
+    }
+
+    /// Writes it into the store; returns its path.
+    ///
+    /// # Errors
+    /// As [`Store::save`].
+    pub fn save(&self, store: &Store) -> Result<PathBuf, StoreError> {
+        match self {
+            // The two parts of a view are two files.
+            Self::View(record) if record.found.carrier == nima_core::calibration::frames::Carrier::Handle => {
+                let path = store.path_of(HANDLE, &record.head.sensor, "toml")?;
+                let failed = |source| StoreError::Write { path: path.clone(), source };
+                std::fs::create_dir_all(store.folder()).map_err(failed)?;
+                store::write(&path, record)?;
+                Ok(path)
+            }
+            _ => each!(self, record => store.save(record)),
+        }
+    }
+}
+
+/// First part of the name of the file for the handle's part of a view.
+const HANDLE: &str = "view_handle";
+
+/// What the last saved calibration of this kind changed in the rig file; empty if there is none for this sensor and tool.
+pub(super) fn last_changes(store: &Store, kind: Kind, handle: bool, [sensor, tool]: [&str; 2]) -> Vec<RigChange> {
+    fn of<F: nima_core::calibration::frames::Found>(
+        store: &Store,
+        [sensor, tool]: [&str; 2],
+    ) -> Option<Vec<RigChange>> {
+        let loaded = store.load::<FrameRecord<F>>(sensor, tool, SystemTime::now()).ok()??;
+        Some(loaded.record.rig)
+    }
+    let wrist = [sensor, tool];
+    let changes = match kind {
+        Kind::Tip => of::<TipFound>(store, wrist),
+        Kind::HandEye => of::<HandEyeFound>(store, wrist),
+        Kind::Trocar => of::<TrocarFound>(store, wrist),
+        Kind::Table => of::<TableFound>(store, wrist),
+        Kind::View if handle => {
+            let record =
+                store.path_of(HANDLE, sensor, "toml").and_then(|path| store::read::<FrameRecord<ViewFound>>(&path));
+            record.ok().flatten().map(|record| record.rig)
+        }
+        Kind::View => of::<ViewFound>(store, wrist),
+        Kind::Mount => of::<SensorMountFound>(store, wrist),
+    };
+    changes.unwrap_or_default()
+}

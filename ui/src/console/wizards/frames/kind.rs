@@ -1,0 +1,134 @@
+//! What is different between the frame calibrations: settings, texts, instructions.
+
+use nalgebra::Vector3;
+use nima_core::calibration::{
+    frames::{FrameSample, FrameSession, HandEye, SensorMount, Table, Tip, Trocar, View},
+    gravity::PoseTarget,
+};
+use nima_machine::rig::Prompt;
+
+use super::{Subject, job::Job};
+use crate::console::text::frames as texts;
+
+/// The frame calibrations, in the order of use.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// How the wrist sensor is mounted on the flange.
+    Mount,
+    /// Where the tip is.
+    Tip,
+    /// Where the marker is on the flange, and the tracker beside the arm.
+    HandEye,
+    /// Origin and plane of the workspace.
+    Table,
+    /// How the picture is turned against arm and handle.
+    View,
+    /// The remote centre of motion.
+    Trocar,
+}
+
+/// Texts of one calibration.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Texts {
+    /// What is to be done before the recording, which begins with the next step.
+    pub(super) before: &'static str,
+    /// What is to be done while it records.
+    pub(super) task: &'static str,
+    /// What is recorded.
+    pub(super) units: &'static str,
+    /// The other way to do it, and its meaning.
+    pub(super) other_way: Option<[&'static str; 2]>,
+}
+
+impl Kind {
+    /// All of them, in the order of use.
+    pub const ALL: [Self; 6] = [Self::Mount, Self::Tip, Self::HandEye, Self::Table, Self::View, Self::Trocar];
+
+    pub(super) const fn texts(self, other_way: bool) -> Texts {
+        let by_tracker = Some([texts::BY_TRACKER, texts::BY_TRACKER_HOVER]);
+        let by_handle = Some([texts::BY_HANDLE, texts::BY_HANDLE_HOVER]);
+        let (before, task, units, other) = match self {
+            Self::Mount => (texts::MOUNT_BEFORE, texts::MOUNT_TASK, texts::POSES, None),
+            Self::Tip => (texts::TIP_BEFORE, texts::TIP_TASK, texts::POSES, by_tracker),
+            Self::HandEye => (texts::HAND_EYE_BEFORE, texts::HAND_EYE_TASK, texts::POSES, None),
+            Self::Table => (texts::TABLE_BEFORE, texts::TABLE_TASK, texts::POINTS, None),
+            Self::View if other_way => (texts::VIEW_HANDLE_BEFORE, texts::VIEW_HANDLE_TASK, texts::PLACES, by_handle),
+            Self::View => (texts::VIEW_BEFORE, texts::VIEW_TASK, texts::PLACES, by_handle),
+            Self::Trocar => (texts::TROCAR_BEFORE, texts::TROCAR_TASK, texts::LINES, by_tracker),
+        };
+        Texts { before, task, units, other_way: other }
+    }
+
+    /// Whether the other way is open on this rig, or why not.
+    pub(super) fn other_way_needs(self, subject: &Subject) -> Result<(), &'static str> {
+        match self {
+            Self::Tip | Self::Trocar if subject.hand_eye().is_none() => Err(texts::NEEDS_HAND_EYE),
+            _ => Ok(()),
+        }
+    }
+
+    /// A session without poses; `other_way` is by the tracker, or with the handle.
+    pub(super) fn job(self, subject: &Subject, other_way: bool) -> Option<Box<dyn Job>> {
+        let tip_m = subject.tip_in_flange_m();
+        Some(match self {
+            Self::Tip if other_way => Box::new(FrameSession::new(Tip::by_tracker())),
+            Self::Tip => Box::new(FrameSession::new(Tip::by_arm())),
+            Self::HandEye => Box::new(FrameSession::new(HandEye::new(tip_m))),
+            Self::Trocar if other_way => {
+                let [flange_from_m, _] = subject.hand_eye()?;
+                Box::new(FrameSession::new(Trocar::by_tracker(&subject.arm()?, &flange_from_m)))
+            }
+            Self::Trocar => Box::new(FrameSession::new(Trocar::by_arm(&subject.arm()?))),
+            Self::Table => Box::new(FrameSession::new(Table::by_arm(tip_m, subject.up_in_base()))),
+            Self::View if other_way => Box::new(FrameSession::new(View::by_handle())),
+            Self::View => Box::new(FrameSession::new(View::by_arm(tip_m))),
+            Self::Mount => {
+                let in_force = subject.arm.flange_from_s1.rotation;
+                Box::new(FrameSession::new(SensorMount::new(in_force, subject.up_in_base())))
+            }
+        })
+    }
+
+    /// The sample as this calibration uses it.
+    pub(super) fn seen(self, sample: &FrameSample) -> FrameSample {
+        match (self, sample.leader_from_handle) {
+            // A hand is never so still that its handle does not turn; only the handle's place counts.
+            (Self::View, Some(handle)) => {
+                let place_only = FrameSample::from(handle.translation.vector);
+                FrameSample { leader_from_handle: place_only.leader_from_handle, ..*sample }
+            }
+            _ => *sample,
+        }
+    }
+
+    /// What is asked of the person after `taken` records; `target` tells the next pose of the list.
+    pub(super) fn prompt(self, other_way: bool, taken: usize, target: impl Fn() -> PoseTarget) -> Prompt {
+        let asked = View::by_arm(Vector3::zeros()).asked(taken);
+        match self {
+            Self::Mount => Prompt::Hold { world_from_s1: target().world_from_s1() },
+            Self::Tip => Prompt::PivotInDimple,
+            Self::HandEye => Prompt::Turn,
+            Self::Trocar => Prompt::PivotInTrocar,
+            Self::Table => Prompt::Touch { point: u8::try_from(taken).unwrap_or(u8::MAX) },
+            Self::View if other_way => asked.map_or(Prompt::Rest, Prompt::MoveHandle),
+            Self::View => asked.map_or(Prompt::Rest, Prompt::MoveTip),
+        }
+    }
+
+    /// What whoever stands at the arm is to do now, in words.
+    pub(super) fn asks(prompt: &Prompt, target: &str) -> String {
+        match prompt {
+            Prompt::Hold { .. } => texts::hold(target),
+            Prompt::PivotInDimple => texts::PIVOT.to_owned(),
+            Prompt::Turn => texts::TURN.to_owned(),
+            Prompt::PivotInTrocar => texts::PIVOT_IN_TROCAR.to_owned(),
+            Prompt::Touch { point: 0 } => texts::TOUCH_ORIGIN.to_owned(),
+            Prompt::Touch { point: 1 } => texts::TOUCH_X.to_owned(),
+            Prompt::Touch { point: 2 } => texts::TOUCH_Y.to_owned(),
+            Prompt::Touch { .. } => texts::TOUCH_FURTHER.to_owned(),
+            Prompt::MoveTip(way) => texts::moved(texts::THE_TIP, crate::words::Words::words(*way)),
+            Prompt::MoveHandle(way) => texts::moved(texts::THE_HANDLE, crate::words::Words::words(*way)),
+            _ => texts::HOLD_STILL.to_owned(),
+        }
+    }
+}

@@ -1,0 +1,407 @@
+//! One wizard for all frame calibrations: check, record, result, save. [`Kind`] tells them apart. What is recorded is kept when going
+//! back and when closing.
+
+mod effect;
+mod job;
+mod kind;
+mod numbers;
+mod result_ui;
+mod subject;
+#[cfg(test)]
+mod tests;
+
+use egui::{Button, RichText, Ui};
+use nalgebra::{UnitQuaternion, Vector3};
+use nima_core::calibration::{
+    RecordHead, Verdict,
+    frames::{FrameSample, Phase, RigChange, Source},
+    gravity::{PoseTarget, TARGETS},
+};
+use nima_machine::{
+    messages::Tick,
+    rig::{Prompt, View},
+};
+
+pub use job::FrameCalibration;
+pub use kind::Kind;
+pub use subject::Subject;
+
+use self::{
+    job::{Job, Outcome, last_changes},
+    kind::Texts,
+    numbers::Number,
+    result_ui::outcome_ui,
+};
+use super::{
+    Binding, Saving,
+    checks::{check_line, switch_ui},
+    frame::{Frame, Step, Wish, Wizard},
+    pictures::progress,
+    report::{Report, result_ui},
+};
+use crate::{
+    console::{
+        text::{self, frames as texts},
+        theme,
+        widgets::{card, small},
+    },
+    words::{self, Words as _},
+};
+
+/// Steps of these wizards.
+const STEPS: [Step; 4] = [
+    Step { name: text::wizards::STEP_CHECK, meaning: texts::STEP_CHECK_HOVER },
+    Step { name: texts::STEP_RECORD, meaning: texts::STEP_RECORD_HOVER },
+    Step { name: text::wizards::STEP_RESULT, meaning: texts::STEP_RESULT_HOVER },
+    Step { name: text::wizards::STEP_SAVE, meaning: texts::STEP_SAVE_HOVER },
+];
+const CHECK: usize = 0;
+const RECORD: usize = 1;
+const RESULT: usize = 2;
+const SAVE: usize = 3;
+/// Samples are taken this far apart, s: poses are held for half a second, and the tracker sends 60 frames a second.
+const EVERY_S: f64 = 0.004;
+/// A pose of a list that gives nothing new for so long is passed, s: longer than a person takes to begin with it.
+const PASSED_S: f64 = 8.0;
+/// A direction of gravity this near to one of the list is as good, rad.
+const NEAR_RAD: f64 = 0.3;
+
+/// A result that is to be saved: its record, and the values of the rig file that follow from it, as TOML text.
+#[derive(Clone, Debug)]
+pub struct FrameSaving {
+    /// The record, without what it changes in the rig file.
+    pub record: FrameCalibration,
+    /// Keys with dots and their new values.
+    pub numbers: Vec<(String, String)>,
+}
+
+/// The wizard of one frame calibration.
+#[derive(Debug)]
+pub struct FrameWizard {
+    kind: Kind,
+    other_way: bool,
+    frame: Frame,
+    subject: Option<Subject>,
+    job: Option<Box<dyn Job>>,
+    phase: Phase,
+    seen: FrameSample,
+    seen_view: Option<UnitQuaternion<f64>>,
+    paused: bool,
+    /// Poses of a list that were given up, and how long the present one gave nothing new, s.
+    passed: (usize, f64),
+    /// Time of the loop, which starts at zero with every start of it, and time of the session, which goes on, s.
+    clock_s: (f64, f64),
+    report: Report<Outcome>,
+    /// What the last saved calibration changed, if the rig file still has it so.
+    undoable: Vec<RigChange>,
+}
+
+impl FrameWizard {
+    /// Without data.
+    pub fn new(kind: Kind) -> Self {
+        Self {
+            kind,
+            other_way: false,
+            frame: Frame::default(),
+            subject: None,
+            job: None,
+            phase: Phase::Missing(None),
+            seen: FrameSample::default(),
+            seen_view: None,
+            paused: false,
+            passed: (0, 0.0),
+            clock_s: (0.0, 0.0),
+            report: None,
+            undoable: Vec::new(),
+        }
+    }
+
+    fn texts(&self) -> Texts {
+        self.kind.texts(self.other_way)
+    }
+
+    fn taken(&self) -> usize {
+        self.job.as_ref().map_or(0, |job| job.samples().len())
+    }
+
+    fn is_complete(&self) -> bool {
+        self.job.as_ref().is_some_and(|job| job.coverage().share >= 1.0)
+    }
+
+    /// Begins anew, for this subject.
+    fn begin(&mut self, subject: Option<Subject>) {
+        let job = subject.as_ref().and_then(|subject| self.kind.job(subject, self.other_way));
+        let (other_way, clock_s, kind) = (self.other_way, self.clock_s, self.kind);
+        *self = Self { other_way, subject, job, clock_s, ..Self::new(kind) };
+    }
+
+    /// Time of the session at this time of the loop, s.
+    fn session_s(&mut self, loop_s: f64) -> f64 {
+        let (last_s, session_s) = self.clock_s;
+        // After a new start of the loop there is a gap, which ends a pose.
+        let way_s = if loop_s > last_s { loop_s - last_s } else { 1.0 };
+        self.clock_s = (loop_s, session_s + way_s);
+        self.clock_s.1
+    }
+
+    fn record(&mut self, t_s: f64, since_s: f64) {
+        if self.paused || self.is_complete() {
+            return;
+        }
+        let Some(job) = &mut self.job else { return };
+        self.phase = job.step(&self.kind.seen(&self.seen), t_s);
+        match self.phase {
+            Phase::Recorded { .. } => {
+                (self.report, self.frame.saved) = (None, None);
+                self.passed = (0, 0.0);
+            }
+            Phase::TakenHere => {
+                self.passed.1 += since_s;
+                if self.passed.1 > PASSED_S {
+                    self.passed = (self.passed.0 + 1, 0.0);
+                }
+            }
+            _ => self.passed.1 = 0.0,
+        }
+    }
+
+    /// The pose of the list that is asked for: the first direction of gravity that nothing is near to yet, or the next one if that gave
+    /// nothing new, as with a sensor that is not mounted as the rig file says.
+    fn target(&self) -> PoseTarget {
+        let (Some(job), Some(subject)) = (&self.job, &self.subject) else { return TARGETS[0] };
+        let down = |sample: &FrameSample| {
+            let base_from_s1 = sample.base_from_flange?.rotation * subject.arm.flange_from_s1.rotation;
+            Some(-(base_from_s1.inverse() * subject.up_in_base()))
+        };
+        let taken: Vec<_> = job.samples().iter().filter_map(down).collect();
+        let is_open = |target: &PoseTarget| taken.iter().all(|s1| s1.angle(&Vector3::from(target.down_s1)) > NEAR_RAD);
+        let open: Vec<_> = TARGETS.into_iter().filter(is_open).collect();
+        let list = if open.is_empty() { &TARGETS[..] } else { &open[..] };
+        list[self.passed.0 % list.len()]
+    }
+
+    fn fit(&mut self) {
+        self.report = self.job.as_ref().map(|job| job.report().map_err(|error| error.to_string()));
+    }
+
+    fn outcome(&self) -> Option<&Outcome> {
+        self.report.as_ref().and_then(|report| report.as_ref().ok())
+    }
+
+    fn numbers(&self) -> Vec<Number> {
+        let found = self.outcome().zip(self.subject.as_ref());
+        found
+            .and_then(|(outcome, subject)| numbers::of(outcome, subject, self.seen_view))
+            .map_or(Vec::new(), |(all, _)| all)
+    }
+
+    fn lacks(&self) -> Option<Source> {
+        let has = |source: &Source| match source {
+            Source::Flange => self.seen.base_from_flange.is_some(),
+            Source::Marker => self.seen.c_from_m.is_some(),
+            Source::Handle => self.seen.leader_from_handle.is_some(),
+            Source::Wrench => self.seen.wrench.is_some(),
+        };
+        self.job.as_ref()?.needs().into_iter().find(|source| !has(source))
+    }
+
+    fn check_ui(&mut self, ui: &mut Ui) {
+        card(ui, texts::CHECKS_TITLE, texts::CHECKS_HOVER, |ui| {
+            let Some(job) = &self.job else {
+                ui.label(texts::NO_ARM);
+                return;
+            };
+            ui.label(self.texts().before);
+            ui.add_space(6.0);
+            for source in job.needs() {
+                let (name, met) = match source {
+                    Source::Flange => (texts::CHECK_ARM, self.seen.base_from_flange.is_some()),
+                    Source::Marker => (texts::CHECK_MARKER, self.seen.c_from_m.is_some()),
+                    Source::Handle => (texts::CHECK_HANDLE, self.seen.leader_from_handle.is_some()),
+                    Source::Wrench => (texts::CHECK_WRENCH, self.seen.wrench.is_some()),
+                };
+                check_line(ui, name, met, source.words());
+            }
+        });
+        let (Some([name, meaning]), Some(subject)) = (self.texts().other_way, self.subject.clone()) else { return };
+        card(ui, texts::OPTIONS_TITLE, texts::OPTIONS_HOVER, |ui| {
+            let needs = self.kind.other_way_needs(&subject);
+            let free = needs.is_ok() && self.taken() == 0;
+            if let Some(other_way) = switch_ui(ui, free, self.other_way, name, meaning) {
+                self.other_way = other_way;
+                self.begin(Some(subject));
+            }
+            if let Err(reason) = needs {
+                ui.label(small(reason));
+            }
+        });
+    }
+
+    fn record_ui(&mut self, ui: &mut Ui) {
+        let Texts { task, units, .. } = self.texts();
+        let Some(coverage) = self.job.as_ref().map(|job| job.coverage()) else { return };
+        let complete = coverage.share >= 1.0;
+        card(ui, texts::RECORD_TITLE, texts::RECORD_HOVER, |ui| {
+            let asked =
+                if complete { texts::ALL_RECORDED.to_owned() } else { Kind::asks(&self.prompt(), self.target().name) };
+            ui.label(RichText::new(asked).font(theme::strong(19.0)));
+            if !complete {
+                ui.label(task);
+                ui.add_space(6.0);
+                let paused = (0.0, texts::PAUSED.to_owned());
+                let (share, phase) = if self.paused { paused } else { words::phase(&self.phase) };
+                progress(ui, texts::PROGRESS, share, &phase);
+                ui.add_space(4.0);
+            }
+            let words = texts::coverage(self.taken(), units, coverage.missing.map(words::Words::words));
+            progress(ui, texts::COVERAGE, coverage.share, &words);
+            ui.add_space(6.0);
+            ui.horizontal(|ui| {
+                let pause = if self.paused { texts::GO_ON } else { texts::PAUSE };
+                if ui.add_enabled(!complete, Button::new(pause)).on_hover_text(texts::PAUSE_HOVER).clicked() {
+                    self.paused = !self.paused;
+                }
+                if ui.add_enabled(self.taken() > 0, Button::new(texts::REMOVE_LAST)).clicked() {
+                    self.job.iter_mut().for_each(|job| job.undo());
+                    (self.report, self.frame.saved) = (None, None);
+                }
+            });
+        });
+    }
+
+    fn result_ui(&self, ui: &mut Ui) {
+        let otherwise = [texts::NO_RESULT_HOVER, texts::TOO_FEW];
+        let Some(subject) = &self.subject else { return };
+        result_ui(ui, self.report.as_ref(), otherwise, |ui, outcome| {
+            outcome_ui(ui, outcome, subject, self.seen_view, self.texts().units);
+        });
+    }
+
+    /// Looks up what the last saved calibration changed; nothing if the rig file has other values now.
+    fn look_for_undo(&mut self, binding: &Binding) {
+        let Some(store) = &binding.store else { return };
+        let wrist = [binding.sensor.as_str(), binding.tool.as_str()];
+        let handle = self.kind == Kind::View && self.other_way;
+        self.undoable = last_changes(store, self.kind, handle, wrist);
+        self.undoable.retain(|change| binding.rig_value(&change.key) == change.after);
+    }
+}
+
+impl Wizard for FrameWizard {
+    fn steps(&self) -> &'static [Step] {
+        &STEPS
+    }
+
+    fn frame_mut(&mut self) -> &mut Frame {
+        &mut self.frame
+    }
+
+    fn refresh(&mut self, binding: &Binding) {
+        let changed = match (&self.subject, &binding.subject) {
+            (Some(before), Some(now)) => !before.is_same_place(now),
+            (before, now) => before.is_some() != now.is_some(),
+        };
+        // What was recorded belongs to the rig as it was then.
+        if changed && self.taken() == 0 {
+            let step = self.frame.step;
+            self.begin(binding.subject.clone());
+            self.frame.step = step;
+        } else if let (Some(subject), Some(now)) = (&mut self.subject, &binding.subject) {
+            subject.serials.clone_from(&now.serials);
+        }
+        // After a new start of the loop the sensor tells its number only after a while.
+        if self.frame.step == SAVE && !binding.sensor.is_empty() && self.frame.take_changed() {
+            self.look_for_undo(binding);
+        }
+    }
+
+    fn tick(&mut self, tick: &Tick, _: f64) {
+        let since_s = tick.t_s - self.clock_s.0;
+        if (0.0..EVERY_S).contains(&since_s) {
+            return;
+        }
+        self.seen = tick.frames;
+        if let View::Seen(world_from_view) = tick.view
+            && self.frame.step == RECORD
+        {
+            self.seen_view = Some(world_from_view);
+        }
+        let t_s = self.session_s(tick.t_s);
+        if self.frame.step == RECORD {
+            self.record(t_s, since_s.clamp(0.0, 0.1));
+        }
+    }
+
+    fn prompt(&self) -> Prompt {
+        if self.frame.step != RECORD || self.paused || self.job.is_none() || self.is_complete() {
+            return Prompt::Rest;
+        }
+        self.kind.prompt(self.other_way, self.taken(), || self.target())
+    }
+
+    fn may_go_on(&self, _: &Binding) -> Result<(), &'static str> {
+        match self.frame.step {
+            CHECK if self.job.is_none() => Err(texts::NO_ARM),
+            CHECK => self.lacks().map_or(Ok(()), |_| Err(text::wizards::NEEDS_CHECKS)),
+            RECORD if self.taken() >= 3 => Ok(()),
+            RECORD => Err(texts::NEEDS_MORE),
+            RESULT if self.outcome().is_some_and(Outcome::is_found) => Ok(()),
+            RESULT => Err(texts::NEEDS_RESULT),
+            _ => Err(text::wizards::LAST_STEP),
+        }
+    }
+
+    fn attend(&mut self, _: &Binding) -> bool {
+        self.frame.step != RECORD || self.is_complete()
+    }
+
+    fn step_ui(&mut self, ui: &mut Ui, _: &Binding) -> Option<Wish> {
+        match self.frame.step {
+            CHECK => self.check_ui(ui),
+            RECORD => self.record_ui(ui),
+            _ => self.result_ui(ui),
+        }
+        None
+    }
+
+    fn proof(&self) -> Option<String> {
+        let proven = self.outcome().is_some_and(|outcome| outcome.quality().verdict == Verdict::Accepted);
+        proven.then(|| texts::PROOF.to_owned())
+    }
+
+    fn made(&self, binding: &Binding) -> Option<Saving> {
+        let head = RecordHead::new(&binding.sensor, &binding.tool, &binding.date);
+        let record = self.outcome()?.record(head, self.subject.as_ref()?.serials.clone())?;
+        let numbers = self
+            .numbers()
+            .into_iter()
+            .filter(Number::changes)
+            .map(|number| (number.key.clone(), number.toml()))
+            .collect();
+        Some(Saving::Frame(Box::new(FrameSaving { record, numbers })))
+    }
+
+    fn after_saving(&mut self, ui: &mut Ui) -> Option<Saving> {
+        if self.undoable.is_empty() {
+            return None;
+        }
+        let wanted = card(ui, texts::UNDO_TITLE, texts::UNDO_CARD_HOVER, |ui| ui.button(texts::UNDO).clicked());
+        wanted.then(|| Saving::Undo(self.undoable.iter().cloned().map(RigChange::undone).collect()))
+    }
+
+    fn go_to(&mut self, step: usize) {
+        self.frame.step = step;
+        self.frame.changed = true;
+        if step == RECORD {
+            (self.paused, self.phase) = (false, Phase::Missing(None));
+        }
+        if step == RESULT && self.report.is_none() {
+            self.fit();
+        }
+    }
+
+    fn start_over(&mut self) {
+        // The present rig comes with the next frame.
+        self.begin(None);
+    }
+}

@@ -1,0 +1,228 @@
+//! The numbers of the rig file that a result changes. Lengths in m, rotations as roll, pitch, yaw in degrees.
+
+use nalgebra::{Isometry3, Point3, UnitQuaternion, Vector3};
+use nima_core::{
+    calibration::frames::{
+        Carrier, HandEyeFound, SensorMountFound, Sizes, TableFound, TipFound, TrocarFound, ViewFound,
+    },
+    frames::{from_roll_pitch_yaw_deg, to_roll_pitch_yaw_deg},
+};
+
+use super::{Subject, job::Outcome};
+
+/// Digits behind the point: hundredths of a millimetre, thousandths of a degree.
+const DIGITS_M: usize = 5;
+const DIGITS_DEG: usize = 3;
+
+/// What kind of number it is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Unit {
+    Metres,
+    Degrees,
+    /// Part of a direction.
+    One,
+}
+
+/// A value of the rig file: one number or three.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Number {
+    pub(super) key: String,
+    pub(super) unit: Unit,
+    /// As the rig file has it; `None` if it does not have it.
+    pub(super) before: Option<Vec<f64>>,
+    pub(super) after: Vec<f64>,
+}
+
+impl Number {
+    fn one(key: String, unit: Unit, before: f64, after: f64) -> Self {
+        Self { key, unit, before: Some(vec![before]), after: vec![after] }
+    }
+
+    fn three(key: String, unit: Unit, before: Option<Vector3<f64>>, after: Vector3<f64>) -> Self {
+        Self { key, unit, before: before.map(|before| before.as_slice().to_vec()), after: after.as_slice().to_vec() }
+    }
+
+    /// Whether the file would say something else.
+    pub(super) fn changes(&self) -> bool {
+        let before = self.before.as_ref().map(|before| Self { after: before.clone(), ..self.clone() }.toml());
+        before.is_none_or(|before| before != self.toml())
+    }
+
+    /// The new value as it is written into the file.
+    pub(super) fn toml(&self) -> String {
+        let digits = if self.unit == Unit::Degrees { DIGITS_DEG } else { DIGITS_M };
+        let number = |x: &f64| {
+            let words = format!("{x:.digits$}");
+            // No minus in front of zero.
+            if words.trim_start_matches(['-', '0', '.']).is_empty() { format!("{:.digits$}", 0.0) } else { words }
+        };
+        match self.after.as_slice() {
+            [one] => number(one),
+            many => format!("[{}]", many.iter().map(number).collect::<Vec<_>>().join(", ")),
+        }
+    }
+}
+
+/// How the result changes a point or a frame, for a picture: before, if it was known, and after, in the same frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Effect {
+    pub(super) before: Option<Isometry3<f64>>,
+    pub(super) after: Isometry3<f64>,
+}
+
+impl Effect {
+    fn of_points(before_m: Vector3<f64>, after_m: Vector3<f64>) -> Self {
+        let at = |point_m: Vector3<f64>| Isometry3::from_parts(point_m.into(), UnitQuaternion::identity());
+        Self { before: Some(at(before_m)), after: at(after_m) }
+    }
+
+    fn of_turns(before: UnitQuaternion<f64>, after: UnitQuaternion<f64>) -> Self {
+        let turned = |turn: UnitQuaternion<f64>| Isometry3::from_parts(Vector3::zeros().into(), turn);
+        Self { before: Some(turned(before)), after: turned(after) }
+    }
+
+    /// Distance (m) and angle (degrees) between before and after.
+    pub(super) fn change(&self) -> Option<[f64; 2]> {
+        let by = self.before?.inverse() * self.after;
+        Some([by.translation.vector.norm(), by.rotation.angle().to_degrees()])
+    }
+
+    /// Whether the change is within what the result is known to.
+    pub(super) fn is_within(&self, known_to: Sizes) -> bool {
+        let within = |by: f64, most: Option<f64>| most.map_or(by <= 1e-9, |most| by <= most);
+        self.change().is_some_and(|[m, deg]| within(m, known_to.place_m) && within(deg, known_to.angle_deg))
+    }
+}
+
+/// The numbers that the result changes, and its effect; `None` without a result.
+pub(super) fn of(
+    outcome: &Outcome,
+    subject: &Subject,
+    seen_view: Option<UnitQuaternion<f64>>,
+) -> Option<(Vec<Number>, Effect)> {
+    match outcome {
+        Outcome::Tip(report) => tip(&report.found?, subject),
+        Outcome::HandEye(report) => Some(hand_eye(&report.found?, subject)),
+        Outcome::Trocar(report) => trocar(&report.found?, subject),
+        Outcome::Table(report) => Some(table(&report.found?, subject)),
+        Outcome::View(report) => Some(view(&report.found?, subject, seen_view)),
+        Outcome::Mount(report) => Some(mount(report.found.as_ref()?, subject)),
+    }
+}
+
+/// The axis of the shaft is moved across, parallel to itself, until it goes through the tip; its length follows.
+fn tip(found: &TipFound, subject: &Subject) -> Option<(Vec<Number>, Effect)> {
+    let found_m = Point3::from(Vector3::from(found.tip_in_carrier_m));
+    let tip_m = match found.carrier {
+        Carrier::Marker => subject.hand_eye()?[0] * found_m,
+        Carrier::Flange | Carrier::Handle => found_m,
+    };
+    let mount = subject.arm.flange_from_s1;
+    let tip_in_s1_m = mount.inverse_transform_point(&tip_m).coords;
+    let across_m = mount.rotation * Vector3::new(tip_in_s1_m.x, tip_in_s1_m.y, 0.0);
+    let sensor_m = subject.set.mount.sensor_m;
+    let moved = Isometry3::from_parts((sensor_m + across_m).into(), mount.rotation);
+    let mut numbers = vec![
+        Number::three(subject.key("mount.sensor_m"), Unit::Metres, Some(sensor_m), moved.translation.vector),
+        Number::one(subject.key("mount.shaft_m"), Unit::Metres, subject.arm.shaft_m, tip_in_s1_m.z),
+    ];
+    numbers.extend(marker_stays(subject, &moved));
+    Some((numbers, Effect::of_points(subject.tip_in_flange_m(), tip_m.coords)))
+}
+
+/// The marker is where it was on the flange, so that its place in the frame of a sensor that moved is another.
+fn marker_stays(subject: &Subject, flange_from_s1: &Isometry3<f64>) -> Vec<Number> {
+    let Some([flange_from_m, _]) = subject.hand_eye() else { return Vec::new() };
+    marker(subject, &(flange_from_s1.inverse() * flange_from_m))
+}
+
+fn marker(subject: &Subject, s1_from_m: &Isometry3<f64>) -> Vec<Number> {
+    let angles_deg = to_roll_pitch_yaw_deg(&s1_from_m.rotation);
+    vec![
+        Number::three(subject.key("s1_from_m_deg"), Unit::Degrees, subject.set.s1_from_m_deg, angles_deg),
+        Number::three(subject.key("s1_from_m_m"), Unit::Metres, subject.set.s1_from_m_m, s1_from_m.translation.vector),
+    ]
+}
+
+fn hand_eye(found: &HandEyeFound, subject: &Subject) -> (Vec<Number>, Effect) {
+    let s1_from_m = subject.arm.flange_from_s1.inverse() * found.flange_from_m.pose();
+    let base_from_c = found.base_from_c.pose();
+    let (set, angles_deg) = (&subject.set, to_roll_pitch_yaw_deg(&base_from_c.rotation));
+    let place_m = base_from_c.translation.vector;
+    let mut numbers = marker(subject, &s1_from_m);
+    numbers.push(Number::three(subject.key("base_from_c_m"), Unit::Metres, set.base_from_c_m, place_m));
+    numbers.push(Number::three(subject.key("base_from_c_deg"), Unit::Degrees, set.base_from_c_deg, angles_deg));
+    // A rig file that does not tell the marker's place tells its orientation at least.
+    let before = subject.s1_from_m().or_else(|| {
+        let turn = from_roll_pitch_yaw_deg(&set.s1_from_m_deg?);
+        Some(Isometry3::from_parts(s1_from_m.translation, turn))
+    });
+    (numbers, Effect { before, after: s1_from_m })
+}
+
+fn trocar(found: &TrocarFound, subject: &Subject) -> Option<(Vec<Number>, Effect)> {
+    let found_m = Point3::from(Vector3::from(found.trocar_m));
+    let in_base_m = match found.carrier {
+        Carrier::Marker => subject.base_from_c()? * found_m,
+        Carrier::Flange | Carrier::Handle => found_m,
+    };
+    let (before_m, after_m) = (subject.set.rcm.trocar_m, (subject.arm.world_from_base * in_base_m).coords);
+    let number = Number::three(subject.key("rcm.trocar_m"), Unit::Metres, Some(before_m), after_m);
+    Some((vec![number], Effect::of_points(before_m, after_m)))
+}
+
+/// The table's frame is the workspace: the base gets its place in it, and the trocar, which has not moved, goes along.
+fn table(found: &TableFound, subject: &Subject) -> (Vec<Number>, Effect) {
+    let before = subject.arm.world_from_base;
+    let after = found.from_table.pose().inverse();
+    let moved = after * before.inverse();
+    let (mount, rcm) = (&subject.set.mount, &subject.set.rcm);
+    let angles_deg = to_roll_pitch_yaw_deg(&after.rotation);
+    let trocar_m = (moved * Point3::from(rcm.trocar_m)).coords;
+    let numbers = vec![
+        Number::three(subject.key("mount.base_m"), Unit::Metres, Some(mount.base_m), after.translation.vector),
+        Number::three(subject.key("mount.base_deg"), Unit::Degrees, Some(mount.base_deg), angles_deg),
+        Number::three(subject.key("rcm.trocar_m"), Unit::Metres, Some(rcm.trocar_m), trocar_m),
+        Number::three(subject.key("rcm.inward"), Unit::One, Some(rcm.inward), moved.rotation * rcm.inward),
+    ];
+    // The picture shows the table in the frame of the base, where it was touched.
+    (numbers, Effect { before: Some(before.inverse()), after: found.from_table.pose() })
+}
+
+fn view(found: &ViewFound, subject: &Subject, seen_view: Option<UnitQuaternion<f64>>) -> (Vec<Number>, Effect) {
+    let teleoperation = &subject.teleoperation;
+    if found.carrier == Carrier::Handle {
+        let (before, after) = (teleoperation.view_from_leader(), found.from_view().inverse());
+        let key = "teleoperation.view_from_leader_deg".to_owned();
+        let angles_deg = to_roll_pitch_yaw_deg(&after);
+        let number = Number::three(key, Unit::Degrees, teleoperation.view_from_leader_deg, angles_deg);
+        return (vec![number], Effect::of_turns(before, after));
+    }
+    let after = subject.arm.world_from_base.rotation * found.from_view();
+    // With a marker on the endoscope the picture's turn against the marker is what the rig file has.
+    if let (Some(endoscope), Some(seen)) = (&subject.endoscope, seen_view) {
+        let n_from_view = from_roll_pitch_yaw_deg(&endoscope.n_from_view_deg) * seen.inverse() * after;
+        let key = "devices.endoscope.n_from_view_deg".to_owned();
+        let angles_deg = to_roll_pitch_yaw_deg(&n_from_view);
+        let number = Number::three(key, Unit::Degrees, Some(endoscope.n_from_view_deg), angles_deg);
+        return (vec![number], Effect::of_turns(seen, after));
+    }
+    let before_deg = teleoperation.world_from_view_deg;
+    let key = "teleoperation.world_from_view_deg".to_owned();
+    let number = Number::three(key, Unit::Degrees, Some(before_deg), to_roll_pitch_yaw_deg(&after));
+    (vec![number], Effect::of_turns(from_roll_pitch_yaw_deg(&before_deg), after))
+}
+
+/// A mount that agrees stays: a drawing tells an angle better than a weight does.
+fn mount(found: &SensorMountFound, subject: &Subject) -> (Vec<Number>, Effect) {
+    let (before, after) = (subject.arm.flange_from_s1, found.flange_from_s1());
+    let effect = Effect::of_turns(before.rotation, after);
+    if found.agrees() {
+        return (Vec::new(), effect);
+    }
+    let before_deg = subject.set.mount.sensor_deg;
+    let key = subject.key("mount.sensor_deg");
+    let mut numbers = vec![Number::three(key, Unit::Degrees, Some(before_deg), to_roll_pitch_yaw_deg(&after))];
+    numbers.extend(marker_stays(subject, &Isometry3::from_parts(before.translation, after)));
+    (numbers, effect)
+}

@@ -1,0 +1,129 @@
+//! The step that shows a result: verdict with cause and cure, errors, and what changes in the rig file.
+
+use egui::{Grid, Ui, vec2};
+use nalgebra::UnitQuaternion;
+use nima_core::calibration::frames::{SignedAxes, Sizes};
+
+use super::{
+    Subject,
+    effect::effect_picture,
+    job::{Outcome, Quality},
+    numbers::{self, Number, Unit},
+};
+use crate::{
+    console::{
+        alarms::sentence,
+        text::frames as texts,
+        widgets::{card, figure, small},
+    },
+    words::{self, Words as _},
+};
+
+/// Draws the result; `units` is what was recorded.
+pub(super) fn outcome_ui(
+    ui: &mut Ui,
+    outcome: &Outcome,
+    subject: &Subject,
+    seen_view: Option<UnitQuaternion<f64>>,
+    units: &str,
+) {
+    let quality = outcome.quality();
+    card(ui, quality.verdict.words(), texts::VERDICT_HOVER, |ui| {
+        ui.label(sentence(&words::cause(&quality.cause)));
+        ui.add_space(4.0);
+        figures_ui(ui, &quality, outcome.outliers(), units);
+        if let Outcome::Mount(report) = outcome
+            && let Some(found) = &report.found
+        {
+            ui.label(texts::mount_found(found.from_in_force_deg, found.agrees()));
+            if let Some(axes) = found.axes.filter(|axes| *axes != SignedAxes::SAME) {
+                ui.label(texts::mount_axes(&words::axes_words(axes)));
+            }
+            figure(ui, texts::TOOL_MASS, format!("{:.3} kg", found.mass_kg), texts::TOOL_MASS_HOVER);
+        }
+    });
+    let Some((numbers, effect)) = numbers::of(outcome, subject, seen_view) else { return };
+    card(ui, texts::CHANGE_TITLE, texts::CHANGE_HOVER, |ui| {
+        effect_picture(ui, &effect);
+        ui.add_space(6.0);
+        if numbers.is_empty() {
+            ui.label(texts::NO_CHANGE);
+        } else {
+            numbers_ui(ui, &numbers);
+        }
+        if effect.is_within(quality.uncertainty) {
+            ui.add_space(4.0);
+            ui.label(texts::WITHIN_UNCERTAINTY);
+        }
+    });
+}
+
+fn figures_ui(ui: &mut Ui, quality: &Quality, outliers: &[usize], units: &str) {
+    figure(ui, &sentence(units), quality.poses.to_string(), texts::RECORDED_HOVER);
+    if !outliers.is_empty() {
+        let list = outliers.iter().map(|i| (i + 1).to_string()).collect::<Vec<_>>().join(", ");
+        figure(ui, texts::LEFT_OUT, list, texts::LEFT_OUT_HOVER);
+    }
+    let rows = [
+        (texts::HELD_OUT, quality.held_out, texts::HELD_OUT_HOVER),
+        (texts::HELD_OUT_MAX, quality.held_out_max, texts::HELD_OUT_MAX_HOVER),
+        (texts::FITTED, quality.fitted, texts::FITTED_HOVER),
+        (texts::UNCERTAINTY, quality.uncertainty, texts::UNCERTAINTY_HOVER),
+    ];
+    for (name, sizes, meaning) in rows {
+        if let Some(words) = sizes_words(sizes) {
+            figure(ui, name, words, meaning);
+        }
+    }
+}
+
+fn sizes_words(sizes: Sizes) -> Option<String> {
+    let place = sizes.place_m.map(|m| format!("{:.2} mm", m * 1e3));
+    let angle = sizes.angle_deg.map(|deg| format!("{deg:.2} deg"));
+    let words: Vec<_> = place.into_iter().chain(angle).collect();
+    (!words.is_empty()).then(|| words.join(", "))
+}
+
+fn numbers_ui(ui: &mut Ui, numbers: &[Number]) {
+    Grid::new("rig_numbers").num_columns(4).spacing(vec2(22.0, 6.0)).show(ui, |ui| {
+        for head in [texts::KEY, texts::BEFORE, texts::AFTER, texts::CHANGE] {
+            ui.label(small(head));
+        }
+        ui.end_row();
+        for number in numbers {
+            ui.label(&number.key);
+            ui.label(number.before.as_ref().map_or(texts::NOT_GIVEN.to_owned(), |before| shown(before, number.unit)));
+            ui.label(shown(&number.after, number.unit));
+            ui.label(number.before.as_ref().map_or(String::new(), |before| changed(before, number)));
+            ui.end_row();
+        }
+    });
+}
+
+fn shown(values: &[f64], unit: Unit) -> String {
+    let (scale, digits, name) = of_unit(unit);
+    let numbers: Vec<_> = values.iter().map(|x| format!("{:.digits$}", rounded(x * scale, digits))).collect();
+    format!("{}{name}", numbers.join(", "))
+}
+
+fn changed(before: &[f64], number: &Number) -> String {
+    let (scale, digits, name) = of_unit(number.unit);
+    let by = before.iter().zip(&number.after).map(|(a, b)| rounded((b - a) * scale, digits));
+    let by: Vec<_> = by.map(|x| format!("{x:+.digits$}")).collect();
+    format!("{}{name}", by.join(", "))
+}
+
+/// To so many digits, without a minus in front of zero.
+fn rounded(x: f64, digits: usize) -> f64 {
+    let scale = (0..digits).fold(1.0, |scale, _| scale * 10.0);
+    (x * scale).round() / scale + 0.0
+}
+
+/// Scale, digits and name of a unit on the screen.
+const fn of_unit(unit: Unit) -> (f64, usize, &'static str) {
+    match unit {
+        Unit::Metres => (1e3, 2, " mm"),
+        Unit::Degrees => (1.0, 2, " deg"),
+        Unit::One => (1.0, 3, ""),
+    }
+}

@@ -1,0 +1,105 @@
+//! The arm that is calibrated, as its rig file describes it now, and the serial numbers of what it is measured with.
+
+use nalgebra::{Isometry3, IsometryMatrix3, Point3, UnitQuaternion, Vector3};
+use nima_core::{calibration::frames::Serials, frames::from_roll_pitch_yaw_deg, kinematics::Arm};
+use nima_machine::{
+    config::{RigConfig, Teleoperation},
+    rig::{ArmSet, EndoscopeSettings, Roster, Side},
+};
+
+/// The arm pair of a side in a rig file.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Subject {
+    /// Its side.
+    pub side: Side,
+    /// Its devices, and how they are mounted.
+    pub set: ArmSet,
+    /// The mapping from hand to tip.
+    pub teleoperation: Teleoperation,
+    /// The marker on the endoscope, if there is one.
+    pub endoscope: Option<EndoscopeSettings>,
+    /// The arm in this place.
+    pub(super) arm: Geometry,
+    /// What it is measured with.
+    pub serials: Serials,
+}
+
+/// Poses of base and sensor, and the length of the shaft, as in the rig file.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Geometry {
+    pub(super) world_from_base: Isometry3<f64>,
+    pub(super) flange_from_s1: Isometry3<f64>,
+    pub(super) shaft_m: f64,
+}
+
+fn pose(isometry: &IsometryMatrix3<f64>) -> Isometry3<f64> {
+    Isometry3::from_parts(isometry.translation, UnitQuaternion::from_rotation_matrix(&isometry.rotation))
+}
+
+impl Subject {
+    /// The arm of this side; `None` if the rig has none.
+    pub fn of(rig: &RigConfig, side: Side, roster: &Roster) -> Option<Self> {
+        let devices = rig.devices.as_ref()?;
+        let set = devices.arm(side)?.clone();
+        let arm = Arm::new(&set.mount).ok()?;
+        let serial = |name: &str| {
+            let entry = roster.iter().find(|entry| entry.name == name)?;
+            entry.view.report().identity.map(|identity| identity.serial).filter(|serial| !serial.is_empty())
+        };
+        let marker = devices.tracker.as_ref().and_then(|tracker| tracker.tools.get(side.index()));
+        let marker = marker.and_then(|path| Some(path.file_stem()?.to_string_lossy().into_owned()));
+        let serials = Serials { arm: serial(&format!("{} arm", side.word())), tracker: serial("tracker"), marker };
+        let arm = Geometry {
+            world_from_base: pose(arm.world_from_base()),
+            flange_from_s1: pose(arm.flange_from_s1()),
+            shaft_m: arm.shaft_m(),
+        };
+        let (teleoperation, endoscope) = (rig.teleoperation, devices.endoscope);
+        Some(Self { side, set, teleoperation, endoscope, arm, serials })
+    }
+
+    /// The same numbers, whatever it is measured with.
+    pub(super) fn is_same_place(&self, other: &Self) -> bool {
+        Self { serials: Serials::default(), ..self.clone() } == Self { serials: Serials::default(), ..other.clone() }
+    }
+
+    /// The same arm, as its mount describes it to the mathematics.
+    pub(super) fn arm(&self) -> Option<Arm> {
+        Arm::new(&self.set.mount).ok()
+    }
+
+    /// The tip in the flange's frame, m.
+    pub(super) fn tip_in_flange_m(&self) -> Vector3<f64> {
+        (self.arm.flange_from_s1 * Point3::new(0.0, 0.0, self.arm.shaft_m)).coords
+    }
+
+    /// Direction upwards in the frame of the base.
+    pub(super) fn up_in_base(&self) -> Vector3<f64> {
+        self.arm.world_from_base.rotation.inverse() * Vector3::z()
+    }
+
+    /// The marker in the wrist sensor's frame, if its place is known.
+    pub(super) fn s1_from_m(&self) -> Option<Isometry3<f64>> {
+        from(self.set.s1_from_m_m?, self.set.s1_from_m_deg?)
+    }
+
+    /// The tracker's camera in the frame of the base, if it is known.
+    pub(super) fn base_from_c(&self) -> Option<Isometry3<f64>> {
+        from(self.set.base_from_c_m?, self.set.base_from_c_deg?)
+    }
+
+    /// Marker on the flange and camera beside the base: what the hand-eye calibration has found.
+    pub(super) fn hand_eye(&self) -> Option<[Isometry3<f64>; 2]> {
+        Some([self.arm.flange_from_s1 * self.s1_from_m()?, self.base_from_c()?])
+    }
+
+    /// Key of a value of this arm pair in the rig file.
+    pub(super) fn key(&self, name: &str) -> String {
+        format!("devices.{}.{name}", self.side.word())
+    }
+}
+
+#[expect(clippy::unnecessary_wraps, reason = "ends a chain of options")]
+fn from(place_m: Vector3<f64>, angles_deg: Vector3<f64>) -> Option<Isometry3<f64>> {
+    Some(Isometry3::from_parts(place_m.into(), from_roll_pitch_yaw_deg(&angles_deg)))
+}

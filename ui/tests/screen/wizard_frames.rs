@@ -1,0 +1,156 @@
+//! The frame wizards, walked by accessible names over the wires of an emulated rig whose rig file is wrong.
+#![cfg(target_os = "linux")]
+
+use std::{path::Path, time::Instant};
+
+use egui::accesskit::Role;
+use egui_kittest::{
+    Harness,
+    kittest::{NodeT as _, Queryable as _},
+};
+use nima_console::console::{ConsoleApp, reader::Reader, settings::Kept};
+use nima_machine::{
+    config::{RigConfig, RigFile},
+    rig::{Settings, Side},
+};
+use nima_testing::real_time::{alone, judged, too_busy};
+use nima_tests::emulated::{elsewhere, started};
+use nima_world::{Plan, emulated::EmulatedRig, scene::Scene, start};
+
+use crate::bench::{TIMEOUT, console_of};
+
+type Console = Harness<'static, ConsoleApp>;
+
+const SIZE: [f32; 2] = [1600.0, 1000.0];
+
+/// The built-in emulated rig as a file with the places of these devices, and with another shaft.
+fn rig_file(folder: &Path, devices: &Settings) -> String {
+    let mut file = RigFile::of("emulated").unwrap();
+    let mut put = |key: &str, value: &dyn std::fmt::Display| file.set(&format!("devices.{key}"), value.to_string());
+    for side in Side::ALL {
+        let (set, word) = (devices.arm(side).unwrap(), side.word());
+        put(&format!("{word}.handle.emulator"), &set.handle.force_dimension().unwrap().emulator.unwrap());
+        put(&format!("{word}.sensor.port"), &set.sensor.bota().unwrap().port);
+        put(&format!("{word}.servos.port"), &set.servos.as_ref().unwrap().port);
+    }
+    put("tissue_sensor.port", &devices.tissue_sensor.as_ref().unwrap().bota().unwrap().port);
+    put("tracker.address", devices.tracker.as_ref().unwrap().address.as_ref().unwrap());
+    put("pedal.source", &devices.pedal.as_ref().unwrap().source);
+    for side in Side::ALL {
+        let arm = devices.arm(side).unwrap().arm.kinova().unwrap();
+        for (key, port) in [("tcp_port", arm.tcp_port), ("udp_port", arm.udp_port)] {
+            assert!(file.set_text(&format!("devices.{}.arm.{key}", side.word()), &port.to_string()));
+        }
+    }
+    let tools = &devices.tracker.as_ref().unwrap().tools;
+    assert!(file.set_text("devices.tracker.tools", &format!("{tools:?}")));
+    // The instrument was exchanged for a longer one, and nobody has told the rig file.
+    let shaft_m = devices.right.as_ref().unwrap().mount.shaft_m - 0.006;
+    file.set("devices.right.mount.shaft_m", shaft_m);
+    let path = folder.join("theatre.toml");
+    file.save(&path).unwrap();
+    path.display().to_string()
+}
+
+/// The console on the emulated wires, and the emulators.
+fn console(folder: &Path) -> (Console, EmulatedRig, String) {
+    let devices = elsewhere(folder);
+    let emulators = started(&devices);
+    let name = rig_file(folder, &devices);
+    let rig = RigConfig::load(&name).unwrap();
+    let scene = Scene::load("peg_transfer").unwrap();
+    let plan = Plan { rig: rig.clone(), scene: scene.clone(), calibrations: Default::default(), engage: false };
+    let handle = start(&plan).unwrap();
+    let technician = emulators.technician();
+    let (store, kept, running) = (folder.join("calibrations"), folder.to_path_buf(), name.clone());
+    let console = Harness::builder().with_size(SIZE).with_step_dt(1.0 / 30.0).build_eframe(move |cc| {
+        let mut settings = Kept::open(&kept);
+        settings.now.toured = true;
+        ConsoleApp::new(cc, handle, rig, scene)
+            .with_store(&store)
+            .with_settings(settings)
+            .with_rig_name(running)
+            .with_reader(Reader::new(move |screen| technician.reads(screen)))
+    });
+    (console, emulators, name)
+}
+
+fn texts(console: &Console) -> Vec<String> {
+    console.query_all_by_role(Role::Label).filter_map(|node| node.accesskit_node().value()).collect()
+}
+
+/// Steps the window until `good`; a machine that is too busy for that is not judged.
+fn until(console: &mut Console, what: &str, good: impl Fn(&Console) -> bool) {
+    let began = Instant::now();
+    while !good(console) {
+        if began.elapsed() > TIMEOUT {
+            println!("never came: {what}; there is: {:?}", texts(console));
+            too_busy();
+        }
+        std::thread::sleep(std::time::Duration::from_millis(15));
+        console.step();
+    }
+}
+
+fn shows(console: &Console, words: &str) -> bool {
+    console.query_all_by_label_contains(words).next().is_some()
+}
+
+fn can_press(console: &Console, label: &str) -> bool {
+    console.query_by_role_and_label(Role::Button, label).is_some_and(|button| !button.accesskit_node().is_disabled())
+}
+
+fn press(console: &mut Console, label: &str) {
+    until(console, label, |console| can_press(console, label));
+    console.get_by_role_and_label(Role::Button, label).click_accesskit();
+    console.step();
+    console.step();
+}
+
+fn shaft_m(rig: &str) -> f64 {
+    RigConfig::load(rig).unwrap().devices.unwrap().right.unwrap().mount.shaft_m
+}
+
+#[test]
+fn a_technician_finds_the_tip_sees_the_change_saves_it_and_undoes_it() {
+    let _alone = alone();
+    judged(|| {
+        let folder = tempfile::tempdir().unwrap();
+        let (mut console, _emulators, rig) = console(folder.path());
+        let wrong_m = shaft_m(&rig);
+        press(&mut console, "Calibrate tip…");
+        until(&mut console, "the joints", |c| shows(c, "Joints of the arm: met"));
+        assert!(shows(&console, "put its tip into a dimple"));
+        press(&mut console, "Next");
+        until(&mut console, "some poses", |c| shows(c, "4 poses; still needed: "));
+        until(&mut console, "all poses", |c| shows(c, "20 poses; complete"));
+        press(&mut console, "Next");
+        until(&mut console, "the verdict", |c| shows(c, "Accurate on held-out data"));
+        assert!(shows(&console, "devices.right.mount.shaft_m") && shows(&console, "dashed: now   solid: new"));
+        assert_eq!(shaft_m(&rig).to_bits(), wrong_m.to_bits(), "nothing is changed before it is saved");
+        press(&mut console, "Next");
+        press(&mut console, "Save and use");
+        until(&mut console, "saved", |c| shows(c, "Saved: "));
+        let found_m = shaft_m(&rig);
+        println!("shaft: {wrong_m} m believed, {found_m} m found");
+        assert!((found_m - wrong_m - 0.006).abs() < 0.5e-3, "{found_m} m");
+        assert!(RigFile::of(&rig).unwrap().text().contains("# The mirror image."), "comments stay");
+        let now = console.state().rig().devices.as_ref().unwrap().right.as_ref().unwrap().mount.shaft_m;
+        assert!((now - found_m).abs() < 1e-12, "the loop runs with it");
+        press(&mut console, "Put the values of before back");
+        until(&mut console, "undone", |c| shows(c, "The values of before are in the rig file again"));
+        assert!((shaft_m(&rig) - wrong_m).abs() < 1e-12);
+    });
+}
+
+#[test]
+fn a_rig_without_an_arm_of_joints_says_what_to_do() {
+    use nima_console::console::{Options, wizards::Which};
+    for which in Which::ALL.into_iter().filter(|which| which.frames().is_some()) {
+        let options = Options { wizard: Some(which), ..Options::default() };
+        let mut console = console_of("peg_transfer", SIZE, move |app| app.with_options(options));
+        console.run_steps(4);
+        assert!(shows(&console, "choose a rig with devices on the start page"), "{which:?}: {:?}", texts(&console));
+        assert!(!can_press(&console, "Next"));
+    }
+}

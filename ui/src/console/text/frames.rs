@@ -77,6 +77,7 @@ pub(in crate::console) const CHECK_HANDLE: &str = "Position of the handle";
 pub(in crate::console) const CHECK_WRENCH: &str = "Force at the wrist";
 pub(in crate::console) const OPTIONS_TITLE: &str = "How to measure";
 pub(in crate::console) const OPTIONS_HOVER: &str = "Leave this off unless you need it";
+pub(in crate::console) const NEEDS_ARM: &str = "This rig has no arm with joints";
 pub(in crate::console) const NO_ARM: &str =
     "This rig has no arm with joints: choose a rig with devices on the start page, for example the emulated rig";
 pub(in crate::console) const RECORD_TITLE: &str = "Do this now";

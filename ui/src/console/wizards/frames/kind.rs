@@ -1,6 +1,6 @@
 //! What is different between the frame calibrations: settings, texts, instructions.
 
-use nalgebra::Vector3;
+use nalgebra::{Isometry3, UnitQuaternion, Vector3};
 use nima_core::calibration::{
     frames::{FrameSample, FrameSession, HandEye, SensorMount, Table, Tip, Trocar, View},
     gravity::PoseTarget,
@@ -90,12 +90,20 @@ impl Kind {
     }
 
     /// The sample as this calibration uses it.
-    pub(super) fn seen(self, sample: &FrameSample) -> FrameSample {
-        match (self, sample.leader_from_handle) {
+    pub(super) fn seen(self, sample: &FrameSample, subject: &Subject) -> FrameSample {
+        match (self, sample.leader_from_handle, sample.base_from_flange) {
             // A hand is never so still that its handle does not turn; only the handle's place counts.
-            (Self::View, Some(handle)) => {
+            (Self::View, Some(handle), _) => {
                 let place_only = FrameSample::from(handle.translation.vector);
                 FrameSample { leader_from_handle: place_only.leader_from_handle, ..*sample }
+            }
+            // Only the tilt counts: an arm that is held so still drifts and turns about the vertical.
+            (Self::Mount, _, Some(flange)) => {
+                let up = subject.up_in_base();
+                let up_in_flange = flange.rotation.inverse() * up;
+                let turn = UnitQuaternion::rotation_between(&up_in_flange, &up).unwrap_or(flange.rotation);
+                let tilt_only = Isometry3::from_parts(Vector3::zeros().into(), turn);
+                FrameSample { base_from_flange: Some(tilt_only), ..*sample }
             }
             _ => *sample,
         }

@@ -148,8 +148,8 @@ impl FrameWizard {
         if self.paused || self.is_complete() {
             return;
         }
-        let Some(job) = &mut self.job else { return };
-        self.phase = job.step(&self.kind.seen(&self.seen), t_s);
+        let (Some(job), Some(subject)) = (&mut self.job, &self.subject) else { return };
+        self.phase = job.step(&self.kind.seen(&self.seen, subject), t_s);
         match self.phase {
             Phase::Recorded { .. } => {
                 (self.report, self.frame.saved) = (None, None);
@@ -341,7 +341,7 @@ impl Wizard for FrameWizard {
 
     fn may_go_on(&self, _: &Binding) -> Result<(), &'static str> {
         match self.frame.step {
-            CHECK if self.job.is_none() => Err(texts::NO_ARM),
+            CHECK if self.job.is_none() => Err(texts::NEEDS_ARM),
             CHECK => self.lacks().map_or(Ok(()), |_| Err(text::wizards::NEEDS_CHECKS)),
             RECORD if self.taken() >= 3 => Ok(()),
             RECORD => Err(texts::NEEDS_MORE),

@@ -149,6 +149,38 @@ fn a_tip_is_recorded_judged_written_into_the_rig_file_and_undone() {
     assert!(bench.wizard.undoable.is_empty(), "what is undone cannot be undone again");
 }
 
+#[test]
+fn a_mount_is_recorded_while_the_arm_turns_about_the_vertical() {
+    let mut bench = Bench::new(Kind::Mount);
+    let subject = bench.subject();
+    let (mount, up) = (subject.arm.flange_from_s1.rotation, subject.up_in_base());
+    let wrist = |down_s1: Vector3<f64>| nima_core::frames::Wrench { force_n: down_s1 * 4.0, ..Default::default() };
+    let pose = |target: &PoseTarget, turned_rad: f64| {
+        let vertical = UnitQuaternion::from_scaled_axis(up * turned_rad);
+        let base_from_world = subject.arm.world_from_base.rotation.inverse();
+        let flange = vertical * base_from_world * target.world_from_s1() * mount.inverse();
+        let wrench = wrist(Vector3::from(target.down_s1).normalize());
+        FrameSample {
+            base_from_flange: Some(at(up * turned_rad, flange)),
+            wrench: Some(wrench),
+            ..FrameSample::default()
+        }
+    };
+    bench.hold(&pose(&TARGETS[0], 0.0), 0.1);
+    bench.next();
+    for taken in 0..TARGETS.len() {
+        assert_eq!(bench.wizard.target(), TARGETS[taken], "the list in its order");
+        for i in 0..70 {
+            bench.hold(&pose(&TARGETS[taken], 0.01 * f64::from(i)), 3.0 * EVERY_S);
+        }
+        assert_eq!(bench.wizard.taken(), taken + 1, "{:?}", bench.wizard.phase);
+    }
+    assert!(bench.wizard.is_complete());
+    bench.next();
+    assert_eq!(bench.wizard.outcome().unwrap().quality().verdict, Verdict::Accepted);
+    assert!(bench.wizard.numbers().is_empty(), "a mount that agrees changes nothing");
+}
+
 /// Flange and marker, with marker and camera in known places.
 fn seen(i: u32, flange_from_m: &Isometry3<f64>, base_from_c: &Isometry3<f64>) -> FrameSample {
     let place_m = Vector3::new(0.4, 0.02 * f64::from(i % 5), 0.3);

@@ -21,7 +21,7 @@ pub(crate) use files::parse_with;
 pub use files::{ConfigError, Ranges, parse, text};
 pub use identification::Identification;
 pub use mounted::SimulatedWrists;
-pub use own_copy::{change_rig, own_path};
+pub use own_copy::{change_rig, own_copy};
 pub use rig_file::{Chosen, RigFile, RigFileError};
 pub use teleoperation::{LeaderMount, Teleoperation};
 

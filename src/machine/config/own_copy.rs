@@ -4,16 +4,17 @@ use std::path::{Path, PathBuf};
 
 use nima_core::calibration::frames::RigChange;
 
-use super::{RIGS, RigConfig, RigFile, RigFileError};
+use super::{RigConfig, RigFile, RigFileError};
 
-/// The file that is written when the rig of this name changes: itself, or for a built-in rig a new file in `folder`.
-pub fn own_path(rig: &str, folder: &Path) -> PathBuf {
-    if RIGS.iter().all(|(name, _)| *name != rig) {
-        return PathBuf::from(rig);
+/// The file that is written when the rig of this name changes, and the rig's new name: the file itself under its own name (`None`),
+/// for a built-in rig the first free one of `NAME-2.toml`, `NAME-3.toml`, ... in `folder`, named by its number.
+pub fn own_copy(rig: &RigConfig, name: &str, folder: &Path) -> (PathBuf, Option<String>) {
+    if RigConfig::names().all(|built_in| built_in != name) {
+        return (PathBuf::from(name), None);
     }
-    let named = |name: String| folder.join(name).with_extension("toml");
-    let further = (2..).map(|number| named(format!("{rig}-{number}")));
-    std::iter::once(named(rig.to_owned())).chain(further).find(|path| !path.exists()).unwrap_or_default()
+    let path = |number: u32| folder.join(format!("{name}-{number}")).with_extension("toml");
+    let number = (2..u32::MAX).find(|number| !path(*number).exists()).unwrap_or(u32::MAX);
+    (path(number), Some(format!("{} {number}", rig.name)))
 }
 
 /// Applies these changes to the rig of this name and writes its file, or for a built-in rig a copy of it in `folder`; comments
@@ -30,7 +31,7 @@ pub fn own_path(rig: &str, folder: &Path) -> PathBuf {
 /// let key = "devices.right.mount.shaft_m".to_owned();
 /// let change = RigChange { key, before: Some("0.40".to_owned()), after: Some("0.403".to_owned()) };
 /// let (path, rig) = change_rig("emulated", folder.path(), std::slice::from_ref(&change))?;
-/// assert_eq!(path, folder.path().join("emulated.toml"));
+/// assert_eq!(path, folder.path().join("emulated-2.toml"));
 /// assert_eq!(rig.devices.and_then(|devices| devices.right).map(|set| set.mount.shaft_m), Some(0.403));
 ///
 /// let name = path.to_str().ok_or("a path in letters")?;
@@ -47,7 +48,10 @@ pub fn change_rig(rig: &str, folder: &Path, changes: &[RigChange]) -> Result<(Pa
             None => file.remove(&change.key),
         }
     }
-    let path = own_path(rig, folder);
+    let (path, new_name) = own_copy(&file.rig()?, rig, folder);
+    if let Some(new_name) = new_name {
+        file.set("name", new_name);
+    }
     let rig = file.save(&path)?;
     Ok((path, rig))
 }
@@ -59,11 +63,13 @@ mod tests {
     #[test]
     fn a_built_in_rig_never_overwrites_a_file_and_a_file_stays_where_it_is() {
         let folder = tempfile::tempdir().unwrap();
-        let first = own_path("emulated", folder.path());
-        assert_eq!(first, folder.path().join("emulated.toml"));
+        let rig = RigConfig::load("emulated").unwrap();
+        let (first, name) = own_copy(&rig, "emulated", folder.path());
+        assert_eq!(first, folder.path().join("emulated-2.toml"));
+        assert_eq!(name.as_deref(), Some("Emulated rig 2"));
         std::fs::write(&first, "").unwrap();
-        assert_eq!(own_path("emulated", folder.path()), folder.path().join("emulated-2.toml"));
-        assert_eq!(own_path("mine/rig.toml", folder.path()), PathBuf::from("mine/rig.toml"));
+        assert_eq!(own_copy(&rig, "emulated", folder.path()).0, folder.path().join("emulated-3.toml"));
+        assert_eq!(own_copy(&rig, "mine/rig.toml", folder.path()), (PathBuf::from("mine/rig.toml"), None));
     }
 
     #[test]
@@ -76,6 +82,6 @@ mod tests {
         };
         let told = change_rig("emulated", folder.path(), &[far]).map(|(path, _)| path);
         assert!(told.is_err(), "{told:?}");
-        assert!(!own_path("emulated", folder.path()).exists());
+        assert!(!folder.path().join("emulated-2.toml").exists());
     }
 }

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use nima_machine::config::{RigConfig, RigFile};
+use nima_machine::config::{RigConfig, RigFile, own_copy};
 
 use super::{ConsoleApp, starting::Undo};
 use crate::console::{
@@ -11,9 +11,6 @@ use crate::console::{
     start::Choice,
     text,
 };
-
-/// Names that are tried for a copy of a built-in rig.
-const COPIES_MAX: u32 = 1000;
 
 impl ConsoleApp {
     /// Changes the rig file and starts the machine again; tells on the panel what was done, or why not.
@@ -51,26 +48,18 @@ fn write(folder: Option<&Path>, rig: &str, change: &Change) -> Result<Written, S
         Change::ExchangeSides(kind) => file.exchange_sides(*kind),
         Change::Choose(part, chosen) => file.choose(*part, chosen),
     }
+    let changed = file.rig().map_err(|error| chain(&error))?;
     let is_built_in = RigConfig::names().any(|name| name == rig);
-    let path = if is_built_in {
-        let name = file.rig().map_err(|error| chain(&error))?.name;
-        let (path, number) = free_path(folder.ok_or(text::start::NO_FOLDER)?, rig)?;
-        file.set("name", format!("{name} {number}"));
-        path
-    } else {
-        PathBuf::from(rig)
-    };
+    // A file of the user's needs no folder.
+    let folder = if is_built_in { folder.ok_or(text::start::NO_FOLDER)? } else { Path::new("") };
+    let (path, new_name) = own_copy(&changed, rig, &folder.join("rigs"));
+    if let Some(new_name) = new_name {
+        file.set("name", new_name);
+    }
     let name = file.save(&path).map_err(|error| chain(&error))?.name;
     let told = if is_built_in { text::devices::saved_as(&name, &path) } else { text::devices::saved(&path) };
     let undo = Undo { path: path.clone(), text: (!is_built_in).then_some(before) };
     Ok(Written { path, told, undo })
-}
-
-/// A file that is not there yet, and its number: `rigs/emulated-2.toml`, 2.
-fn free_path(folder: &Path, rig: &str) -> Result<(PathBuf, u32), String> {
-    let path = |number| folder.join("rigs").join(format!("{rig}-{number}")).with_extension("toml");
-    let free = (2..COPIES_MAX).map(|number| (path(number), number)).find(|(path, _)| !path.exists());
-    free.ok_or_else(|| text::start::taken(&path(COPIES_MAX)))
 }
 
 #[cfg(test)]

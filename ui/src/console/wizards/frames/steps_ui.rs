@@ -1,0 +1,85 @@
+//! The first two steps: what must be there before the recording, and the recording with its instructions.
+
+use egui::{Button, RichText, Ui};
+use nima_core::calibration::frames::Source;
+
+use super::{FrameWizard, Kind, kind::Texts};
+use crate::{
+    console::{
+        text::frames as texts,
+        theme,
+        widgets::{card, small},
+        wizards::{
+            checks::{check_line, switch_ui},
+            frame::Wizard as _,
+            pictures::progress,
+        },
+    },
+    words::{self, Words as _},
+};
+
+impl FrameWizard {
+    pub(super) fn check_ui(&mut self, ui: &mut Ui) {
+        card(ui, texts::CHECKS_TITLE, texts::CHECKS_HOVER, |ui| {
+            let Some(job) = &self.job else {
+                ui.label(texts::NO_ARM);
+                return;
+            };
+            ui.label(self.texts().before);
+            ui.add_space(6.0);
+            for source in job.needs() {
+                let (name, met) = match source {
+                    Source::Flange => (texts::CHECK_ARM, self.seen.base_from_flange.is_some()),
+                    Source::Marker => (texts::CHECK_MARKER, self.seen.c_from_m.is_some()),
+                    Source::Handle => (texts::CHECK_HANDLE, self.seen.leader_from_handle.is_some()),
+                    Source::Wrench => (texts::CHECK_WRENCH, self.seen.wrench.is_some()),
+                };
+                check_line(ui, name, met, source.words());
+            }
+        });
+        let (Some([name, meaning]), Some(subject)) = (self.texts().other_way, self.subject.clone()) else { return };
+        card(ui, texts::OPTIONS_TITLE, texts::OPTIONS_HOVER, |ui| {
+            let needs = self.kind.other_way_needs(&subject);
+            let free = needs.is_ok() && self.taken() == 0;
+            if let Some(other_way) = switch_ui(ui, free, self.other_way, name, meaning) {
+                self.other_way = other_way;
+                self.begin(Some(subject));
+            }
+            if let Err(reason) = needs {
+                ui.label(small(reason));
+            }
+        });
+    }
+
+    pub(super) fn record_ui(&mut self, ui: &mut Ui) {
+        let Texts { task, units, .. } = self.texts();
+        let Some(coverage) = self.job.as_ref().map(|job| job.coverage()) else { return };
+        let complete = coverage.share >= 1.0;
+        card(ui, texts::RECORD_TITLE, texts::RECORD_HOVER, |ui| {
+            let asked =
+                if complete { texts::ALL_RECORDED.to_owned() } else { Kind::asks(&self.prompt(), self.target().name) };
+            ui.label(RichText::new(asked).font(theme::strong(19.0)));
+            if !complete {
+                ui.label(task);
+                ui.add_space(6.0);
+                let paused = (0.0, texts::PAUSED.to_owned());
+                let (share, phase) = if self.paused { paused } else { words::phase(&self.phase) };
+                progress(ui, texts::PROGRESS, share, &phase);
+                ui.add_space(4.0);
+            }
+            let words = texts::coverage(self.taken(), units, coverage.missing.map(words::Words::words));
+            progress(ui, texts::COVERAGE, coverage.share, &words);
+            ui.add_space(6.0);
+            ui.horizontal(|ui| {
+                let pause = if self.paused { texts::GO_ON } else { texts::PAUSE };
+                if ui.add_enabled(!complete, Button::new(pause)).on_hover_text(texts::PAUSE_HOVER).clicked() {
+                    self.paused = !self.paused;
+                }
+                if ui.add_enabled(self.taken() > 0, Button::new(texts::REMOVE_LAST)).clicked() {
+                    self.job.iter_mut().for_each(|job| job.undo());
+                    (self.report, self.frame.saved) = (None, None);
+                }
+            });
+        });
+    }
+}

@@ -5,7 +5,6 @@
 //! the disagreement of the ensemble. The limits of distance and range are calibrated by cross-validation (each fold in
 //! turn), so that at most about [`FALSE_ALARMS`] of unseen samples from the range of the others are flagged. A value
 //! that is not finite has an infinite score.
-//! most about [`FALSE_ALARMS`] of unseen samples in the range of the others are flagged. Anything that is not finite has an endless score.
 
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 

@@ -1,0 +1,82 @@
+//! What a console is given when it is opened: options, settings, calibrations.
+
+use std::path::Path;
+
+use super::ConsoleApp;
+use crate::console::{
+    Options, frames::Meter, in_force::InForce, pictures::Photographer, settings::Kept, wizards::Wizards,
+};
+
+impl ConsoleApp {
+    /// Applies the options of the command line.
+    #[must_use]
+    pub fn with_options(mut self, options: Options) -> Self {
+        self.options = options;
+        self.meter = self.options.frames.as_ref().map(|_| Meter::new(self.options.exit_after));
+        if let Some(seconds) = self.options.traces_s {
+            self.panels.forces.show_last(seconds);
+        }
+        self.photographer = self.options.pictures.clone().map(Photographer::new);
+        self.settings.now.role = self.options.role.unwrap_or(self.settings.now.role);
+        if let Some(which) = self.options.wizard {
+            self.open_wizard(which);
+        }
+        self.leave_when_asked();
+        self
+    }
+
+    /// When the process is asked to end, the loop ends at once, even if the window is blocked, and then the window.
+    pub(super) fn leave_when_asked(&self) {
+        let Some(door) = &self.door else { return };
+        let (ender, ctx) = (door.handle().ender(), self.ctx.clone());
+        self.options.leave.at_once(move || {
+            ender.end();
+            ctx.send_viewport_cmd(egui::ViewportCommand::Close);
+            ctx.request_repaint();
+        });
+    }
+
+    /// Uses these settings; changes are saved.
+    #[must_use]
+    pub fn with_settings(mut self, settings: Kept) -> Self {
+        if let Some(told) = settings.told() {
+            self.in_force.tell(format!("{told}."));
+        }
+        if settings.is_first_run() {
+            self.help.begin_tour();
+        }
+        self.start.set_folder(settings.folder());
+        self.settings = settings;
+        self.running.remember(&mut self.settings.now.recent);
+        self
+    }
+
+    /// Uses this store of calibrations from now on, with the calibrations that it contains for the rig's sensors and
+    /// tools.
+    #[must_use]
+    pub fn with_store(mut self, folder: &Path) -> Self {
+        self.in_force = InForce::load(Some(folder), &self.live.rig, &self.live.scene);
+        self
+    }
+
+    /// Runs every loop that a wizard or a setting needs in simulated time, at most `speed` times as fast as real time.
+    #[must_use]
+    pub const fn with_simulated_time(mut self, speed: f64) -> Self {
+        self.simulated_speed = Some(speed);
+        self
+    }
+
+    /// Starts emulators by this program.
+    #[must_use]
+    pub fn with_program(mut self, program: &Path) -> Self {
+        self.program = Some(program.to_path_buf());
+        self
+    }
+
+    /// Continues with these wizards and their data.
+    #[must_use]
+    pub fn with_wizards(mut self, wizards: Wizards) -> Self {
+        self.wizards = wizards;
+        self
+    }
+}

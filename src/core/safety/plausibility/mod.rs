@@ -184,6 +184,12 @@ impl Plausibility {
         (self.handle_stuck, self.tip_stuck) = (Stuck::default(), Stuck::default());
     }
 
+    /// The force is known from now on, or computed in another way: what it was before says nothing about a jump.
+    pub fn force_is_new(&mut self) {
+        self.force = Leap::default();
+        self.began_s = None;
+    }
+
     /// Takes one exchange in and gives what may be used of it.
     pub fn step(&mut self, seen: &Observed) -> Admitted {
         let dt_s = seen.t_s - self.last_t_s;

@@ -3,7 +3,7 @@
 use nalgebra::Vector3;
 use nima_core::tip_force::Unsure;
 use nima_machine::{
-    messages::Tick,
+    messages::{ForceSource, Tick},
     rig::{SIDES, Side},
 };
 use serde::Serialize;
@@ -66,14 +66,16 @@ pub struct TipError {
     pub free: Option<FreeError>,
     /// Share of the samples in which the loop did not use the network.
     pub without_network: f64,
-    /// Shares of the samples in which the network was in doubt, by the reason.
+    /// Shares of the samples in which the network was not sure, by the reason.
     pub doubt: DoubtShares,
 }
 
-/// Why the network was in doubt: shares of all samples, 0 to 1.
+/// Where the network was not sure: shares of all samples, 0 to 1.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct DoubtShares {
-    /// Outside the training data.
+    /// Outside the training data, where the network still answers by its linear path.
+    pub extrapolated: f64,
+    /// Far outside the training data.
     pub outside_training: f64,
     /// The direction of friction was not known.
     pub not_moved: f64,
@@ -84,6 +86,7 @@ pub struct DoubtShares {
 impl DoubtShares {
     fn over(self, samples: f64) -> Self {
         Self {
+            extrapolated: self.extrapolated / samples,
             outside_training: self.outside_training / samples,
             not_moved: self.not_moved / samples,
             missing: self.missing / samples,
@@ -117,6 +120,9 @@ impl TipErrors {
         let by_network = tick.force.tip_force.is_some() && tick.force.source.doubt().is_none();
         self.without_network[side] += u64::from(!by_network);
         let doubt = &mut self.doubt[side];
+        if tick.force.source == ForceSource::Extrapolated {
+            doubt.extrapolated += 1.0;
+        }
         match tick.force.source.doubt() {
             Some(Unsure::OutsideTraining) => doubt.outside_training += 1.0,
             Some(Unsure::NotMoved) => doubt.not_moved += 1.0,

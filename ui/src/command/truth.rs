@@ -110,10 +110,13 @@ pub(super) fn in_words(figures: &[TipError]) -> String {
         }
         if *method == "tip force" {
             write!(text, "   without the network {:.1} % of the time", 100.0 * without_network).ok();
-            let DoubtShares { outside_training, not_moved, missing } = doubt;
-            for (share, why) in
-                [(outside_training, "outside training"), (not_moved, "not moved yet"), (missing, "incomplete samples")]
-            {
+            let DoubtShares { extrapolated, outside_training, not_moved, missing } = doubt;
+            for (share, why) in [
+                (extrapolated, "extrapolated"),
+                (outside_training, "outside training"),
+                (not_moved, "not moved yet"),
+                (missing, "incomplete samples"),
+            ] {
                 if *share > 0.0 {
                     write!(text, ", {why} {:.1} %", 100.0 * share).ok();
                 }

@@ -26,6 +26,7 @@ impl<L: Link> Pair<L> {
             t_s: now_s,
             sensed: numbers(&inputs.sensed),
             force_n: self.force.tip_n,
+            least_n: self.force.source.least_n(),
             world_from_s1: orientation(&inputs.sensed),
             tip_m: inputs.tip_m,
             hand_m: inputs.hand.position_m,

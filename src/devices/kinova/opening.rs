@@ -54,7 +54,7 @@ pub fn open_clearing(settings: &Settings, clearing: &FaultClearing) -> Result<Dr
     settings.check()?;
     let mut lines = Lines::connect(settings)?;
     lines.log_in(settings)?;
-    let opened = prepare(&mut lines, clearing);
+    let opened = prepare(&mut lines, settings, clearing);
     match opened {
         Ok((identity, feedback)) => Ok(Driver::new(settings, lines, identity, &feedback)),
         Err(trouble) => {
@@ -65,13 +65,14 @@ pub fn open_clearing(settings: &Settings, clearing: &FaultClearing) -> Result<Dr
     }
 }
 
-fn prepare(lines: &mut Lines, clearing: &FaultClearing) -> Result<(Identity, Feedback), Trouble> {
+fn prepare(lines: &mut Lines, settings: &Settings, clearing: &FaultClearing) -> Result<(Identity, Feedback), Trouble> {
     let joints: Number = ask(lines, Rpc::ACTUATOR_COUNT)?;
     if joints.value as usize != ARM_JOINTS {
         let (expected, found) = (format!("arm with {ARM_JOINTS} joints"), format!("arm with {} joints", joints.value));
         return Err(Trouble::WrongProduct { place: lines.place.clone(), expected, found });
     }
     let identity = identity(lines)?;
+    check_serial(settings, &identity, &lines.place)?;
     let mode: Number = ask(lines, Rpc::GET_SERVOING_MODE)?;
     if mode.value != ServoingMode::Single as u32 {
         // The arm may have been left in low-level servoing by a client that broke off.
@@ -97,6 +98,18 @@ fn prepare(lines: &mut Lines, clearing: &FaultClearing) -> Result<(Identity, Fee
         });
     }
     Ok((identity, feedback))
+}
+
+fn check_serial(settings: &Settings, identity: &Identity, place: &str) -> Result<(), Trouble> {
+    let Some(wanted) = settings.serial_number.as_ref().filter(|wanted| wanted.trim() != identity.serial.trim()) else {
+        return Ok(());
+    };
+    let found = if identity.serial.is_empty() { "unknown" } else { &identity.serial };
+    Err(Trouble::WrongProduct {
+        place: place.to_owned(),
+        expected: format!("arm with serial number {wanted}"),
+        found: format!("arm with serial number {found}"),
+    })
 }
 
 fn first_feedback(lines: &mut Lines) -> Result<Feedback, Trouble> {

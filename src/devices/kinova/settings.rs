@@ -16,6 +16,9 @@ pub struct Settings {
     pub tcp_port: u16,
     /// UDP port for the cycle.
     pub udp_port: u16,
+    /// Required serial number; any if omitted. With it, arms whose cables were exchanged are told.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub serial_number: Option<String>,
     pub user: String,
     pub password: String,
     /// Share of the arm's joint speeds that commands may use, above 0 to 1.
@@ -37,6 +40,7 @@ impl Default for Settings {
             host: "192.168.1.10".to_owned(),
             tcp_port: 10_000,
             udp_port: 10_001,
+            serial_number: None,
             user: "admin".to_owned(),
             password: "admin".to_owned(),
             speed_fraction: 0.5,

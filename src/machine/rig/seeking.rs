@@ -89,7 +89,7 @@ fn told(
     Sought { place, found }
 }
 
-/// Key of a sensor's serial number; filled in when the sensor has told it.
+/// Key of the serial number of a sensor or an arm; filled in when the device has told it.
 const SERIAL_NUMBER: &str = "serial_number";
 
 /// Serial ports that no part of the rig uses, and what a person named.
@@ -186,12 +186,13 @@ fn arms(part: Part, devices: &Settings, place: &str) -> Vec<Trial> {
     {
         return Vec::new();
     }
-    let mut changes = vec![("host", Value::from(at.host.as_str()))];
+    let mut changes = vec![("host", Value::from(at.host.as_str())), (SERIAL_NUMBER, "".into())];
     if (at.tcp_port, at.udp_port) != (usual.tcp_port, usual.udp_port) {
         changes.push(("tcp_port", i64::from(at.tcp_port).into()));
         changes.push(("udp_port", i64::from(at.udp_port).into()));
     }
-    let settings = kinova::Settings { host: at.host, tcp_port: at.tcp_port, udp_port: at.udp_port, ..now };
+    let settings =
+        kinova::Settings { host: at.host, tcp_port: at.tcp_port, udp_port: at.udp_port, serial_number: None, ..now };
     vec![Trial { place: place.to_owned(), serial: None, changes, probe: probes::arm(part.name(), settings) }]
 }
 

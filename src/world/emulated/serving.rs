@@ -89,10 +89,11 @@ fn arm(side: Side, set: &ArmSet, shared: &Shared) -> Served {
     let Some(chosen) = set.arm.kinova() else {
         return Err(EmulatedRigError::Make { device: name });
     };
-    let kinova::Settings { host, tcp_port, udp_port, user, password, .. } = chosen.clone();
+    let kinova::Settings { host, tcp_port, udp_port, serial_number, user, password, .. } = chosen.clone();
     places::local(&name, &host)?;
     let usual = emulators::kinova::Emulated::default();
-    let emulated = emulators::kinova::Emulated { user, password, tcp_port, udp_port, ..usual };
+    let serial = serial_number.unwrap_or_else(|| format!("EMULATED-{}", 1 + side.index()));
+    let emulated = emulators::kinova::Emulated { user, password, serial, tcp_port, udp_port, ..usual };
     let world = shared.clone();
     let body = move |_: f64, asked: &_| world.with(|side, now_s| side.ask(now_s, asked));
     served(name, emulated.with(body))

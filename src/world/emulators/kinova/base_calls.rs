@@ -86,7 +86,7 @@ impl Base {
     /// A Gen3 on a fixed base, with a spherical wrist and nothing at its end.
     fn product(&self) -> Product {
         Product {
-            kin: "EMULATED-1".to_owned(),
+            kin: self.arm.serial.clone(),
             model: 1,
             joints: self.arm.joints,
             base: 2,

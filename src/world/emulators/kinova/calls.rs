@@ -63,7 +63,7 @@ impl Base {
     pub(super) fn new(arm: Emulated, body: Box<dyn Body>) -> Self {
         let robot = Robot::new(arm.clone(), body);
         Self {
-            devices: Devices::new(arm.joints),
+            devices: Devices::new(arm.joints, arm.serial.clone()),
             control: Control::new(),
             kept: Kept::default(),
             player: Player::default(),

@@ -34,14 +34,16 @@ enum Kind {
 
 pub(super) struct Devices {
     joints: u8,
+    serial: String,
     actuators: Vec<Vec<Setting>>,
     interconnect: Interconnect,
 }
 
 impl Devices {
-    pub(super) fn new(joints: u32) -> Self {
+    pub(super) fn new(joints: u32, serial: String) -> Self {
         let joints = joints.min(32) as u8;
-        Self { joints, actuators: (0..joints).map(|_| actuator()).collect(), interconnect: Interconnect::new() }
+        let actuators = (0..joints).map(|_| actuator()).collect();
+        Self { joints, serial, actuators, interconnect: Interconnect::new() }
     }
 
     fn kind(&self, device: u8) -> Result<Kind, Refused> {
@@ -83,8 +85,8 @@ impl Devices {
             Rpc::MODEL_NUMBER => text("emulated".to_owned()),
             PART_NUMBER => text(format!("emulated-{}", kind as u32)),
             PART_REVISION => text("1".to_owned()),
-            Rpc::SERIAL_NUMBER if kind == Kind::Base => text("EMULATED-1".to_owned()),
-            Rpc::SERIAL_NUMBER => text(format!("EMULATED-1-{device}")),
+            Rpc::SERIAL_NUMBER if kind == Kind::Base => text(self.serial.clone()),
+            Rpc::SERIAL_NUMBER => text(format!("{}-{device}", self.serial)),
             // Administered locally: no manufacturer's.
             MAC_ADDRESS => Ok(MacAddress { bytes: vec![2, 0, 0, 0, 0, device] }.encode_to_vec()),
             _ => Err(UNSUPPORTED_METHOD),

@@ -47,6 +47,8 @@ pub struct Emulated {
     pub user: String,
     /// The user's password.
     pub password: String,
+    /// Serial number of its base.
+    pub serial: String,
     /// How many joints it says it has.
     pub joints: u32,
     /// State that it tells while it is not in fault: 7 ready, 3 initialisation, 5 maintenance.
@@ -67,6 +69,7 @@ impl Default for Emulated {
         Self {
             user: "admin".to_owned(),
             password: "admin".to_owned(),
+            serial: "EMULATED-1".to_owned(),
             joints: ARM_JOINTS as u32,
             idle_state: 7,
             watchdog_ms: 50.0,

@@ -139,3 +139,63 @@ pub(super) fn eighth_power(value: Lanes) -> Lanes {
     let fourth = square * square;
     fourth * fourth
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::impedance::{ModeSet, SLOTS};
+
+    const DELAY: usize = 100;
+
+    /// A leader that hears of a force of `0` what `errors_n` (anchored, matched) said one delay before.
+    struct Bench(Best);
+
+    impl Bench {
+        fn new() -> Self {
+            Self(Best::new(&Settings::default()))
+        }
+
+        /// Goes on for some ticks; the weight of anchored afterwards.
+        fn run(&mut self, ticks: usize, errors_n: [f64; 2]) -> f64 {
+            let parcel = Parcel { fresh: true, modes: ModeSet::only(Mode::Best), ..Parcel::BLANK };
+            for _ in 0..ticks {
+                let mut forces_n = [None; SLOTS];
+                for (mode, error_n) in [Mode::Anchored, Mode::Matched].into_iter().zip(errors_n) {
+                    forces_n[mode.index()] = Some(Lanes::splat(error_n));
+                }
+                self.0.say(&forces_n, 1.0);
+                self.0.hear(&parcel, DELAY);
+            }
+            self.0.anchored()[0]
+        }
+    }
+
+    #[test]
+    fn an_error_that_does_not_go_away_tells_another_tissue_before_anchored_has_been_right_again() {
+        let mut bench = Bench::new();
+        assert!(bench.run(5000, [0.1, 0.05]) < 0.01, "on a known tissue matched is the better");
+        // Both err by the new tissue: anchored for one delay. Nothing else is known yet when it is right again.
+        bench.run(DELAY, [0.6, 0.6]);
+        let weight = bench.run(DELAY, [0.1, 0.6]);
+        assert!(weight > 0.9, "{weight} when the first errors of the new tissue have all come");
+    }
+
+    #[test]
+    fn an_error_that_passes_changes_little() {
+        let mut bench = Bench::new();
+        bench.run(5000, [0.1, 0.05]);
+        for _ in 0..20 {
+            let weight = bench.run(20, [0.1, 0.3]).max(bench.run(180, [0.1, 0.03]));
+            assert!(weight < 0.2, "{weight}");
+        }
+    }
+
+    #[test]
+    fn what_was_learnt_first_says_little_and_everything_ends_in_the_better() {
+        let mut bench = Bench::new();
+        assert!(bench.run(DELAY, [0.1, 0.5]) <= 0.0, "nothing was judged: matched has all the weight");
+        assert!(bench.run(300, [0.1, 0.5]) > 0.9);
+        assert!(bench.run(3000, [0.1, 0.05]) < 0.01);
+        assert!(bench.run(5000, [0.1, 0.11]) > 0.6);
+    }
+}

@@ -55,6 +55,27 @@ impl Work for Accumulate<'_> {
     }
 }
 
+/// `sum_j a_j b_j` over the shorter of the two.
+#[inline]
+pub(super) fn dot(a: &[Lanes], b: &[Lanes]) -> Lanes {
+    widest(Dot { a, b })
+}
+
+struct Dot<'a> {
+    a: &'a [Lanes],
+    b: &'a [Lanes],
+}
+
+impl Work for Dot<'_> {
+    type Output = Lanes;
+
+    #[inline(always)]
+    fn run<V: Vector>(self) -> Lanes {
+        let none = V::of(&Lanes::ZERO);
+        self.a.iter().zip(self.b).fold(none, |sum, (a, b)| sum.plus(V::of(a).times(V::of(b)))).lanes()
+    }
+}
+
 /// Cholesky factor of sums with a ridge, and the right-hand side that went through it.
 #[derive(Clone, Debug)]
 pub(super) struct Factor {

@@ -1,7 +1,7 @@
 //! Recursive regression of the change of force over the delay, with forgetting, several ridges at once.
 
 use super::{
-    normal::{Factor, accumulate},
+    normal::{Factor, accumulate, dot},
     regressors::{LINEAR_REGRESSORS, REGRESSORS, Regressors},
 };
 use crate::signal::{Lanes, settled};
@@ -28,7 +28,7 @@ pub(super) type Solutions = [Regressors; NESTED];
 /// `sum_j parameters_j regressors_j` of one solution (N).
 #[inline]
 pub(super) fn predict(parameters: &Regressors, regressors: &Regressors, length: usize) -> Lanes {
-    parameters.iter().zip(regressors).take(length).fold(Lanes::ZERO, |sum, (p, q)| sum + *p * *q)
+    dot(&parameters[..length], regressors)
 }
 
 /// Exponentially forgotten sums of products, weighted for the least absolute error; solved by Cholesky with a ridge in

@@ -44,7 +44,7 @@ const MEMORIES_S: [f64; 2] = [1.0, 10.0];
 const RIDGES: [Ridge; 3] =
     [Ridge { s: 0.0001, memory: 0 }, Ridge { s: 0.01, memory: 0 }, Ridge { s: 0.0001, memory: 1 }];
 /// Solves per second of every expert (at most one a tick).
-const SOLVE_HZ: f64 = 200.0;
+const SOLVE_HZ: f64 = 150.0;
 /// Renewals of the other experts in one of those with the long memory.
 const LONG_RENEWALS: usize = 2;
 /// Memory of the experts' errors (s by the clock), the exponent of the softmin is eight, and errors below this are equal (N).

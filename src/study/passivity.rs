@@ -311,25 +311,52 @@ mod tests {
             }
         }
         println!("{worst:?}");
-        assert!(worst.0 <= 1.02, "{worst:?}");
+        assert!(worst.0 <= 1.01, "{worst:?}");
     }
 
-    /// Stiffness 0.5 to 2 times the usual, surface 2 mm up or down, another one at every touch.
-    #[test]
-    fn over_tissue_that_changes_at_every_touch_the_best_of_two_is_better_than_reflection() {
-        let plain = tissue();
-        let other = |touch: u32| {
-            let share = |step: f64| (f64::from(touch) * step + 0.3).fract() * 2.0 - 1.0;
+    /// Stiffness 0.5 to 2 times the usual, surface 2 mm up or down, another one at every touch; one sequence for every `begin`.
+    fn changing(plain: Tissue, begin: f64) -> impl Fn(u32) -> Tissue {
+        move |touch| {
+            let share = |step: f64| (f64::from(touch) * step + begin).fract() * 2.0 - 1.0;
             let surface_z_m = plain.surface_z_m + 0.002 * share(0.618_034);
             Tissue { surface_z_m, stiffness: plain.stiffness * share(0.754_878).exp2(), ..plain }
-        };
-        for (task, limit) in [(Task::PegTransfer, 0.6), (Task::Withdrawal, 0.6)] {
-            let error_n = |mode| tasked_over((mode, OwnMotion::Follower), task, 300.0, other).unwrap().error_n;
+        }
+    }
+
+    #[test]
+    fn over_tissue_that_changes_at_every_touch_the_best_of_two_is_better_than_reflection() {
+        for (task, limit) in [(Task::PegTransfer, 0.5), (Task::Withdrawal, 0.45)] {
+            let other = changing(tissue(), 0.3);
+            let error_n = |mode| tasked_over((mode, OwnMotion::Follower), task, 300.0, &other).unwrap().error_n;
             let [dfr_n, anchored_n, matched_n, best_n] =
                 [Mode::Dfr, Mode::Anchored, Mode::Matched, Mode::Best].map(error_n);
             println!("{task:?}: dfr {dfr_n:.3}, anchored {anchored_n:.3}, matched {matched_n:.3}, best {best_n:.3} N");
             assert!(best_n <= limit * dfr_n, "{task:?}: {best_n} N of {dfr_n} N");
         }
+    }
+
+    /// Before errors that last counted at once, it was up to 19 % worse here, and more than 2 % in a fifth of all cases.
+    #[test]
+    fn over_tissue_that_changes_at_every_touch_the_best_of_two_is_hardly_worse_than_anchored() {
+        let (mut cases, mut worse) = (0, Vec::new());
+        for begin in [0.3, 0.55, 0.82] {
+            let other = changing(tissue(), begin);
+            for task in Task::ALL {
+                for delay_ms in [10.0, 50.0, 100.0, 300.0] {
+                    let error_n =
+                        |mode| tasked_over((mode, OwnMotion::Follower), task, delay_ms, &other).unwrap().error_n;
+                    let ratio = error_n(Mode::Best) / error_n(Mode::Anchored);
+                    let limit = if delay_ms > 200.0 { 1.13 } else { 1.06 };
+                    assert!(ratio <= limit, "{ratio} times anchored: {task:?} at {delay_ms} ms, sequence {begin}");
+                    cases += 1;
+                    if ratio > 1.02 {
+                        worse.push((ratio, task, delay_ms));
+                    }
+                }
+            }
+        }
+        println!("{worse:?}");
+        assert!(worse.len() * 8 <= cases, "{} of {cases}: {worse:?}", worse.len());
     }
 
     #[test]

@@ -40,6 +40,7 @@ mod matched;
 mod messages;
 mod mixture;
 mod mode;
+mod normal;
 mod pace;
 mod paper;
 mod recipe;

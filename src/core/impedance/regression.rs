@@ -1,10 +1,10 @@
 //! Recursive regression of the change of force over the delay, with forgetting, several ridges at once.
 
 use super::{
-    factor::column_start,
+    normal::{Factor, accumulate, dot},
     regressors::{LINEAR_REGRESSORS, REGRESSORS, Regressors},
 };
-use crate::signal::{Lanes, NOTHING, settled};
+use crate::signal::{Lanes, settled};
 
 /// Memory of the regression (s).
 const MEMORY_S: f64 = 3.0;
@@ -17,22 +17,18 @@ const ERROR_S: f64 = 0.5;
 const FLATTEN: f64 = 0.5;
 
 pub(super) const RIDGES: usize = 3;
-/// Solutions: for each ridge the linear and the full model.
-pub(super) const SOLUTIONS: usize = 2 * RIDGES;
+/// Models of each ridge: the linear and the full one, and their leading regressors.
+pub(super) const NESTED: usize = 2;
+pub(super) const LENGTHS: [usize; NESTED] = [LINEAR_REGRESSORS, REGRESSORS];
 const ELEMENTS: usize = REGRESSORS * (REGRESSORS + 1) / 2;
 
-/// Parameters of every solution, one lane per axis; solution `2 r` is the linear model with ridge `r`, `2 r + 1` the full one.
-pub(super) type Parameters = [Regressors; SOLUTIONS];
-
-/// Regressors in use by a solution.
-pub(super) const fn length(solution: usize) -> usize {
-    if solution.is_multiple_of(2) { LINEAR_REGRESSORS } else { REGRESSORS }
-}
+/// Parameters of the models of one ridge, one lane per axis.
+pub(super) type Solutions = [Regressors; NESTED];
 
 /// `sum_j parameters_j regressors_j` of one solution (N).
 #[inline]
 pub(super) fn predict(parameters: &Regressors, regressors: &Regressors, length: usize) -> Lanes {
-    parameters.iter().zip(regressors).take(length).fold(Lanes::ZERO, |sum, (p, q)| sum + *p * *q)
+    dot(&parameters[..length], regressors)
 }
 
 /// Exponentially forgotten sums of products, weighted for the least absolute error; solved by Cholesky with a ridge in
@@ -47,6 +43,7 @@ pub(super) struct Regression {
     mean_squares: Regressors,
     mean_error_n: f64,
     learnt: f64,
+    factor: Factor,
 }
 
 impl Regression {
@@ -59,6 +56,7 @@ impl Regression {
             mean_squares: [Lanes::ZERO; REGRESSORS],
             mean_error_n: 0.0,
             learnt: 0.0,
+            factor: Factor::new(),
         }
     }
 
@@ -67,74 +65,32 @@ impl Regression {
         &self.mean_squares
     }
 
-    /// Takes in one change of force (N) with its regressors; `newest` are the newest parameters, whose error weighs it.
-    pub(super) fn learn(&mut self, q: &Regressors, change_n: Lanes, newest: &Parameters) {
+    /// Takes in one change of force (N) with its regressors; `newest`: parameters of the full model, whose error weighs it.
+    pub(super) fn learn(&mut self, q: &Regressors, change_n: Lanes, newest: &Regressors) {
         self.learnt += 1.0;
         let share = 1.0 / self.learnt.min(ENERGY_S * self.rate_hz);
         for (square, q) in self.mean_squares.iter_mut().zip(q) {
             *square = (*square + (*q * *q - *square) * share).settled();
         }
-        let error_n = (change_n - predict(&newest[1], q, REGRESSORS)).norm();
+        let error_n = (change_n - predict(newest, q, REGRESSORS)).norm();
         let share = 1.0 / self.learnt.min(ERROR_S * self.rate_hz);
         self.mean_error_n = settled(self.mean_error_n + (error_n - self.mean_error_n) * share);
         let weight = if self.mean_error_n > 0.0 { 1.0 / (error_n / self.mean_error_n + FLATTEN) } else { 1.0 };
-        for j in 0..REGRESSORS {
-            let weighted = q[j] * weight;
-            self.right[j] = (self.right[j] * self.forget + weighted * change_n).settled();
-            let start = column_start(j);
-            for (sum, q) in self.gram[start..=start + j].iter_mut().zip(q) {
-                *sum = *sum * self.forget + weighted * *q;
-            }
-        }
+        accumulate(&mut self.gram, &mut self.right, q, change_n, Lanes::splat(weight), self.forget);
     }
 
     /// Solves for ridge `r`: the linear model and the full one.
-    pub(super) fn solve(&mut self, r: usize, parameters: &mut Parameters) {
-        let ridge = RIDGES_S[r] * self.rate_hz;
-        let mut factor = [Lanes::ZERO; ELEMENTS];
-        let mut inverse = [Lanes::ZERO; REGRESSORS];
-        let mut z = [Lanes::ZERO; REGRESSORS];
-        for j in 0..REGRESSORS {
-            let start = column_start(j);
-            let (done, rest) = factor.split_at_mut(start);
-            let column = &mut rest[..=j];
-            for (entry, sum) in column.iter_mut().zip(&mut self.gram[start..=start + j]) {
-                *sum = sum.settled();
-                *entry = *sum;
-            }
-            let mut square = Lanes::ZERO;
-            let mut right = self.right[j];
-            for k in 0..j {
-                let known = dot(&done[column_start(k)..column_start(k) + k], &column[..k]);
-                let entry = (column[k] - known) * inverse[k];
-                column[k] = entry;
-                square += entry * entry;
-                right -= entry * z[k];
-            }
-            let pivot = column[j] + self.mean_squares[j] * ridge - square;
-            inverse[j] = pivot.map(|pivot| if pivot > NOTHING { 1.0 / pivot.sqrt() } else { 0.0 });
-            z[j] = right * inverse[j];
+    pub(super) fn solve(&mut self, r: usize) -> Solutions {
+        let ridge = self.mean_squares.map(|square| square * (RIDGES_S[r] * self.rate_hz));
+        self.factor.renew(&mut self.gram, &mut self.right, &ridge);
+        let mut found = [[Lanes::ZERO; REGRESSORS]; NESTED];
+        for (found, length) in found.iter_mut().zip(LENGTHS) {
+            self.factor.solve(&mut found[..length]);
         }
-        for solution in [2 * r, 2 * r + 1] {
-            let mut rest = z;
-            let found = &mut parameters[solution];
-            for j in (0..length(solution)).rev() {
-                let value = rest[j] * inverse[j];
-                found[j] = value;
-                let start = column_start(j);
-                for (rest, entry) in rest.iter_mut().zip(&factor[start..start + j]) {
-                    *rest -= value * *entry;
-                }
-            }
-        }
+        found
     }
 
     pub(super) fn reset(&mut self) {
         *self = Self::new(self.rate_hz);
     }
-}
-
-#[inline]
-fn dot(a: &[Lanes], b: &[Lanes]) -> Lanes {
-    a.iter().zip(b).fold(Lanes::ZERO, |sum, (a, b)| sum + *a * *b)
 }

@@ -35,6 +35,7 @@ mod lanes;
 mod pid;
 mod savitzky_golay;
 mod speed;
+mod widest;
 
 pub use bank::{BANK, LowPassBank};
 pub use delay::DelayLine;
@@ -42,6 +43,7 @@ pub use differentiator::{Differentiator, DifferentiatorKind};
 pub use lanes::{LANES, Lanes, NOTHING, settled};
 pub use pid::{Pid, PidGains};
 pub use speed::Speed;
+pub(crate) use widest::{Vector, Work, widest};
 
 /// Position, velocity and acceleration of one instant, one lane per axis.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -3,6 +3,7 @@
 use super::{
     super::{
         messages::Posture,
+        normal::dot,
         regressors::{Stance, saturated},
         settings::Settings,
     },
@@ -128,5 +129,5 @@ impl Form {
 /// `sum_j parameters_j row_j` over the leading columns.
 #[inline]
 pub(super) fn product(parameters: &Row, row: &Row, columns: usize) -> Lanes {
-    parameters.iter().zip(row).take(columns).fold(Lanes::ZERO, |sum, (p, q)| sum + *p * *q)
+    dot(&parameters[..columns], row)
 }

@@ -43,8 +43,8 @@ const MEMORIES_S: [f64; 2] = [1.0, 10.0];
 /// Ridges, in seconds of typical motion that say "no force", each with its memory. The last is for forms that slip.
 const RIDGES: [Ridge; 3] =
     [Ridge { s: 0.0001, memory: 0 }, Ridge { s: 0.01, memory: 0 }, Ridge { s: 0.0001, memory: 1 }];
-/// Solves per second of every expert (at most one a tick).
-const SOLVE_HZ: f64 = 200.0;
+/// Solves per second of every expert (at most one a tick); the paper's form, whose memory is short, has the second.
+const SOLVE_HZ: [f64; 2] = [150.0, 200.0];
 /// Renewals of the other experts in one of those with the long memory.
 const LONG_RENEWALS: usize = 2;
 /// Memory of the experts' errors (s by the clock), the exponent of the softmin is eight, and errors below this are equal (N).
@@ -101,7 +101,8 @@ struct Expert {
 impl Matched {
     pub(super) fn new(form: Form, settings: &Settings, delay_ticks: usize) -> Self {
         let rate_hz = settings.rate_hz;
-        let every = ((rate_hz / SOLVE_HZ).round() as usize).max(1);
+        let solve_hz = SOLVE_HZ[usize::from(matches!(form, Form::Paper(_)))];
+        let every = ((rate_hz / solve_hz).round() as usize).max(1);
         let max_delay = (MAX_DELAY_S * rate_hz).ceil() as usize;
         let ridges = if form.slips() { &RIDGES[..] } else { &RIDGES[..2] };
         let memories_s = match form {

@@ -5,6 +5,7 @@
 //! Dates are UTC, ISO 8601.
 
 mod date;
+mod ready;
 
 use std::{
     fs, io,
@@ -15,6 +16,8 @@ use std::{
 use nima_core::calibration::Record;
 use nima_files::{PASSAGE, copy_atomically, quoted, shortened, write_atomically};
 use serde::{Deserialize, Serialize};
+
+pub use ready::{CheckedDevice, CheckedItem, KIND as READY_CHECK, Outcome, ReadyRecord, VALID_S};
 
 /// What a calibration is bound to: one wrist sensor with one tool.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]

@@ -6,7 +6,7 @@ use nima_core::{
     calibration::{
         Record,
         correspondence::CorrespondenceRecord,
-        gravity::{Drift, DriftCheck, GravityRecord, StillSettings},
+        gravity::{Drift, DriftCheck, GravityModel, GravityRecord, StillSettings},
     },
     tip_force::{Fallback, Model, TipForce},
 };
@@ -84,6 +84,21 @@ impl OfSide {
     /// Sensor and tool, if they are known and there is no gravity calibration for them.
     pub(super) fn without_gravity(&self) -> Option<&WristId> {
         self.wrist().filter(|_| self.gravity.is_none())
+    }
+
+    /// The gravity calibration, and the limit of the force that remains at rest, N.
+    pub(super) fn gravity(&self) -> Option<(GravityModel, f64)> {
+        self.gravity.as_ref().map(|loaded| (loaded.record.model, loaded.record.drift_limit_n()))
+    }
+
+    /// Whether a calibration is dated in the future.
+    pub(super) fn is_from_the_future(&self) -> bool {
+        let ages = [
+            self.gravity.as_ref().map(|loaded| loaded.age),
+            self.correspondence.as_ref().map(|loaded| loaded.age),
+            self.tip_force.as_ref().map(|loaded| loaded.age),
+        ];
+        ages.contains(&Some(Age::Future))
     }
 
     /// Names of the calibrations that are missing. The correspondence is needed only to train the network.

@@ -25,14 +25,22 @@ use crate::{
 pub enum CalibrationWish {
     /// Open this wizard.
     Open(Which),
+    /// Open the ready check.
+    Check,
     /// Select the wrist sensor of this arm.
     Choose(Side),
     /// Return to the normal view.
     Close,
 }
 
-/// The panel; `open` is the wizard that is open.
-pub fn calibrations_ui(ui: &mut Ui, live: &Live, in_force: &InForce, open: Option<Which>) -> Option<CalibrationWish> {
+/// The panel; `open` is the wizard that is open, `checks` says whether the ready check is.
+pub fn calibrations_ui(
+    ui: &mut Ui,
+    live: &Live,
+    in_force: &InForce,
+    open: Option<Which>,
+    checks: bool,
+) -> Option<CalibrationWish> {
     let mut wish = None;
     source_ui(ui, live);
     for line in in_force.lines() {
@@ -43,8 +51,14 @@ pub fn calibrations_ui(ui: &mut Ui, live: &Live, in_force: &InForce, open: Optio
     }
     ui.add_space(4.0);
     let free = matches!(live.state(), LoopState::Idle | LoopState::Engaged);
+    let check = Button::selectable(checks, text::ready::OPEN).frame_when_inactive(true);
+    let check = ui.add_enabled(free && !checks, check.min_size(vec2(ui.available_width(), 28.0)));
+    let check = check.on_hover_text(text::calibrations::opens(text::ready::MEANING));
+    if check.on_disabled_hover_text(text::calibrations::OPEN_DISABLED_HOVER).clicked() {
+        wish = Some(CalibrationWish::Check);
+    }
     if live.is_bimanual() {
-        wish = side_ui(ui, in_force.side());
+        wish = side_ui(ui, in_force.side()).or(wish);
     }
     // The frames are those of an arm with joints.
     let has_arm = live.rig.devices.is_some();
@@ -59,7 +73,7 @@ pub fn calibrations_ui(ui: &mut Ui, live: &Live, in_force: &InForce, open: Optio
             wish = Some(CalibrationWish::Open(which));
         }
     }
-    if open.is_some() {
+    if open.is_some() || checks {
         let back = Button::new(text::calibrations::CLOSE_WIZARD).min_size(vec2(ui.available_width(), 32.0));
         if ui.add(back).on_hover_text(text::calibrations::CLOSE_WIZARD_HOVER).clicked() {
             wish = Some(CalibrationWish::Close);

@@ -1,4 +1,4 @@
-//! The test of every device ([`Checkup`]): rate, losses, age, noise, range.
+//! The test of every device ([`Checkup`]): rate, losses, age, noise, range. What is found must be found twice.
 
 use super::{
     Ask, Cause, Figure, Subject, Unit,
@@ -19,11 +19,19 @@ pub(super) struct Rates {
     blocks: Vec<Gauges>,
     /// A device did not rest: it is measured again.
     moved: Option<(usize, Finding)>,
+    /// Devices in which the measurement before found something: once may be chance, twice is not.
+    suspects: Vec<usize>,
 }
 
 impl Rates {
     pub(super) fn of(subject: &Subject) -> Self {
-        Self { rig: subject.rig.clone(), parts: subject.parts.clone(), blocks: Vec::new(), moved: None }
+        Self {
+            rig: subject.rig.clone(),
+            parts: subject.parts.clone(),
+            blocks: Vec::new(),
+            moved: None,
+            suspects: Vec::new(),
+        }
     }
 
     fn tested(&self) -> Vec<(usize, Checkup)> {
@@ -55,11 +63,13 @@ impl Item for Rates {
         self.blocks.clear();
         let findings = || tested.iter().flat_map(|(place, test)| test.findings.iter().map(|found| (*place, *found)));
         let moved = |found: &Finding| matches!(found, Finding::Moved { .. });
-        if let Some((place, finding)) = findings().find(|(_, found)| !moved(found)) {
+        let found = || findings().filter(|(_, found)| !moved(found));
+        if let Some((place, finding)) = found().find(|(place, _)| self.suspects.contains(place)) {
             return Progress::Failed(Cause::Found { place, finding });
         }
-        self.moved = findings().next();
-        if self.moved.is_some() {
+        self.suspects = found().map(|(place, _)| place).collect();
+        self.moved = findings().find(|(_, found)| moved(found));
+        if findings().next().is_some() {
             return Progress::Asking(Ask::Nothing);
         }
         let worst = tested.iter().map(|(_, test)| off(test)).fold(0.0, f64::max);

@@ -38,6 +38,8 @@ pub(super) struct Flaws {
     pub(super) pulls_m_s: f64,
     pub(super) trocar_m: Vector3<f64>,
     pub(super) sensor_hz: u32,
+    /// Damaged frames of the sensor at a time, s, since the beginning.
+    pub(super) damaged: fn(f64) -> u64,
     /// One period in so many is missed.
     pub(super) missed_every: u64,
     pub(super) obeys: fn(&Ask) -> bool,
@@ -53,6 +55,7 @@ impl Default for Flaws {
             pulls_m_s: 0.0,
             trocar_m: Vector3::zeros(),
             sensor_hz: 1000,
+            damaged: |_| 0,
             missed_every: u64::MAX,
             obeys: |_| true,
             supervised: true,
@@ -202,7 +205,7 @@ impl Bench {
                 gauge.channels[channel].add(mean + 1e-3 * self.noise.gaussian());
             }
         }
-        (gauge.ages[0], gauge.readings) = (100, self.readings);
+        (gauge.ages[0], gauge.readings, gauge.damaged) = (100, self.readings, (self.flaws.damaged)(now_s));
         let mut gauges = Gauges { from_s: now_s - 0.1, to_s: now_s, devices: [Gauge::NONE; DEVICES_MAX] };
         gauges.devices[0] = gauge;
         self.session.gauges(&gauges);

@@ -59,6 +59,17 @@ fn a_low_rate_is_found() {
 }
 
 #[test]
+fn one_damaged_frame_is_measured_again_and_more_of_them_are_a_finding() {
+    let once = Bench::judged(Flaws { damaged: |now_s| u64::from(now_s > 2.0), ..Flaws::default() });
+    assert!(once.has_passed(), "{:?}", once.list());
+    let (check, cause) = failure_of(Flaws { damaged: |now_s| now_s as u64, ..Flaws::default() });
+    assert!(
+        matches!((check, cause), (Check::Rates, Cause::Found { finding: Finding::Damaged { .. }, .. })),
+        "{cause:?}"
+    );
+}
+
+#[test]
 fn missed_periods_and_a_wrong_date_are_found() {
     let (check, cause) = failure_of(Flaws { missed_every: 73, ..Flaws::default() });
     assert!(matches!((check, cause), (Check::Clocks, Cause::Missed { share }) if share > 0.012), "{cause:?}");

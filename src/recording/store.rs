@@ -287,6 +287,11 @@ pub fn utc_now() -> String {
     date::format(seconds(SystemTime::now()))
 }
 
+/// Whole days from a date (UTC, ISO 8601) to `now`; `None` if it is not a valid date. Zero for one in the future.
+pub fn days_since(date: &str, now: SystemTime) -> Option<u64> {
+    date::parse(date).map(|made_s| seconds(now).saturating_sub(made_s) / DAY_S)
+}
+
 /// Seconds since 1970; zero for earlier times.
 fn seconds(time: SystemTime) -> u64 {
     time.duration_since(UNIX_EPOCH).map_or(0, |since| since.as_secs())

@@ -3,6 +3,7 @@
 mod calibrating;
 mod checking;
 mod connecting;
+mod listing;
 mod opening;
 mod pace;
 mod starting;
@@ -40,14 +41,14 @@ use super::{
     reader::Reader,
     roles::{Panels, Role, Wishes, role_ui},
     scene3d::{SceneView, extras::Extras},
-    screenshot,
     settings::{Kept, Settings},
     start::{Choice, StartPage},
     theme,
     wizards::Wizards,
 };
-use crate::{console::text, emulators::Emulators, telling::tell};
+use crate::{console::text, emulators::Emulators};
 use checking::Checking;
+use listing::Listing;
 use starting::Starting;
 
 /// Antialiasing in 3-D is switched off if the median time between frames is longer than this (fewer than 26 a second)
@@ -82,6 +83,7 @@ pub struct ConsoleApp {
     photographer: Option<Photographer>,
     wizards: Wizards,
     checking: Checking,
+    listing: Listing,
     in_force: InForce,
     diary: Diary,
     /// The scene that was shown before a wizard changed it.
@@ -133,6 +135,7 @@ impl ConsoleApp {
             diary: Diary::default(),
             wizards: Wizards::default(),
             checking: Checking::default(),
+            listing: Listing::default(),
             watched: None,
             read: None,
             live,
@@ -290,6 +293,8 @@ impl ConsoleApp {
         let room = ui.available_rect_before_wrap();
         if self.checking.is_open() {
             self.check_layout(ui);
+        } else if self.listing.is_open() {
+            self.listing_layout(ui);
         } else if self.wizards.open.is_some() {
             self.wizard_layout(ui);
         } else if self.start.is_open {
@@ -318,28 +323,6 @@ impl ConsoleApp {
             self.connect(&change);
         }
         self.obey_calibrations(calibration);
-    }
-
-    fn obey_options(&mut self, ctx: &egui::Context) {
-        let open = self.opened.elapsed();
-        let Options { exit_after, screenshot, .. } = self.options.clone();
-        if let Some(path) = screenshot.filter(|_| !self.pictured && open >= self.picture_at()) {
-            self.pictured = true;
-            ctx.request_screenshot(move |picture| {
-                // Errors can be reported only on the terminal.
-                if let Err(error) = screenshot::save(&path, &picture) {
-                    tell(format_args!("{error:#}"));
-                }
-            });
-        }
-        let finished =
-            self.photographer.as_mut().is_some_and(|taker| taker.step(ctx, &self.live, &mut self.settings.now));
-        if let Some(stall) = self.options.stall.take_if(|_| open >= WARM_UP) {
-            std::thread::sleep(stall);
-        }
-        if finished || exit_after.is_some_and(|exit| open >= exit) {
-            ctx.send_viewport_cmd(egui::ViewportCommand::Close);
-        }
     }
 }
 

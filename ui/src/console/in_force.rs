@@ -22,12 +22,13 @@ use nima_machine::{
     runtime::Handle,
     teleop::Calibrations,
 };
-use nima_recording::store::{Store, WristId, utc_now};
+use nima_recording::store::{ReadyRecord, Store, WristId, utc_now};
 use nima_world::scene::Scene;
 use of_side::{Bound, OfSide};
 
 use super::{
     chain,
+    overview::Line,
     scene3d::side_name,
     wizards::{Binding, FrameSaving, Saving, Subject},
 };
@@ -165,6 +166,21 @@ impl InForce {
     /// The gravity calibration of a side, and the limit of the force that remains at rest, N.
     pub fn gravity(&self, side: Side) -> Option<(GravityModel, f64)> {
         self.sides[side.index()].gravity()
+    }
+
+    /// Whether the force of this side is measured at the wrist.
+    pub fn is_at_wrist(&self, side: Side) -> bool {
+        self.sides[side.index()].bound != Bound::Nothing
+    }
+
+    /// Sensor and tool of a side, once known.
+    pub const fn wrist(&self, side: Side) -> Option<&WristId> {
+        self.sides[side.index()].wrist()
+    }
+
+    /// The calibrations of the force of this side; `last` is the last ready check.
+    pub(crate) fn kept(&self, side: Side, last: Option<&ReadyRecord>) -> Vec<Line> {
+        self.sides[side.index()].kept(side, last)
     }
 
     /// Whether a calibration is dated in the future: this computer's date is wrong, or was.

@@ -21,6 +21,7 @@ mod keys;
 pub mod live;
 mod menu;
 pub mod outbox;
+pub(crate) mod overview;
 pub mod panels;
 pub mod pictures;
 pub mod reader;

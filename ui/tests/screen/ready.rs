@@ -72,3 +72,40 @@ fn the_list_is_gone_through_by_the_person_at_the_screen_and_the_one_at_the_arm()
     press(&mut console, "Back to the monitor");
     assert!(!shows(&console, "Who checks"));
 }
+
+/// A button that may be scrolled out of sight.
+fn pick(console: &mut Console, label: &str) {
+    let began = Instant::now();
+    let ready = |console: &Console| {
+        console
+            .query_by_role_and_label(Role::Button, label)
+            .is_some_and(|button| !button.accesskit_node().is_disabled())
+    };
+    while !ready(console) {
+        assert!(began.elapsed() < TIMEOUT, "no button \"{label}\" that can be pressed");
+        std::thread::sleep(std::time::Duration::from_millis(5));
+        console.step();
+    }
+    console.get_by_role_and_label(Role::Button, label).click_accesskit();
+    console.step();
+    console.step();
+}
+
+#[test]
+fn all_calibrations_stand_on_one_page_and_each_is_repeated_by_its_button() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut console = console(&folder.path().join("calibrations"));
+    until(&mut console, "a tick", |tick| tick.state == LoopState::Idle);
+    pick(&mut console, "All calibrations…");
+    until_shown(&mut console, "Right arm: sensor SIM-S1-0001, Simulated grasper");
+    assert!(shows(&console, "Accepted, held-out error 0.0") && shows(&console, ", today"));
+    assert!(shows(&console, "not calibrated"), "the correspondence is missing");
+    // What the check of the bias finds in the meantime comes without a click.
+    until_shown(&mut console, "N without contact, good");
+    pick(&mut console, "Redo Right arm, gravity");
+    until_shown(&mut console, "let go of it: nothing may touch the tool");
+    pick(&mut console, "All calibrations…");
+    until_shown(&mut console, "Since then");
+    pick(&mut console, "Back to the monitor");
+    assert!(!shows(&console, "Since then"));
+}

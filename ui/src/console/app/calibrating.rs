@@ -11,7 +11,7 @@ use nima_world::{emulated::Screen, scene::Scene};
 use super::ConsoleApp;
 use crate::console::{
     desk::Panel as Tile,
-    panels::{CalibrationWish, calibrations_ui},
+    panels::{CalibrationWish, Page, calibrations_ui},
     reader::task_of,
     text, theme,
     widgets::card,
@@ -60,6 +60,7 @@ impl ConsoleApp {
     pub(super) fn close_wizard(&mut self) {
         self.wizards.open = None;
         self.close_check();
+        self.listing.close();
         let Some(scene) = self.watched.take() else {
             self.outbox.push(Command::Prompt(self.in_force.side(), Prompt::Rest));
             return;
@@ -144,7 +145,7 @@ impl ConsoleApp {
         Panel::left("calibrations").exact_size(316.0).resizable(false).frame(side).show(ui, |ui| {
             let panel = Tile::Calibrations;
             wish = card(ui, panel.title(), panel.meaning(), |ui| {
-                calibrations_ui(ui, &self.live, &self.in_force, self.wizards.open, false)
+                calibrations_ui(ui, &self.live, &self.in_force, self.wizards.open.map(Page::Wizard))
             });
         });
         let binding = self.binding();
@@ -165,9 +166,11 @@ impl ConsoleApp {
         match wish {
             Some(CalibrationWish::Open(which)) => {
                 self.close_check();
+                self.listing.close();
                 self.open_wizard(which);
             }
             Some(CalibrationWish::Check) => self.open_check(),
+            Some(CalibrationWish::List) => self.open_listing(),
             Some(CalibrationWish::Choose(side)) => self.choose_arm(side),
             Some(CalibrationWish::Close) => self.close_wizard(),
             None => {}

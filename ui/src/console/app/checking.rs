@@ -14,7 +14,7 @@ use super::ConsoleApp;
 use crate::console::{
     chain,
     desk::Panel as Tile,
-    panels::calibrations_ui,
+    panels::{Page, calibrations_ui},
     ready::{Run, Wish, devices_of, ready_ui, record, subject},
     text, theme,
     widgets::card,
@@ -64,6 +64,7 @@ impl ConsoleApp {
     /// Opens the page; a simulated rig changes to a scene with somebody at the arm.
     pub(super) fn open_check(&mut self) {
         self.wizards.open = None;
+        self.listing.close();
         let rests = matches!(self.live.state(), LoopState::Idle | LoopState::Disconnected);
         let (rig, scene) = (self.live.rig.clone(), self.live.scene.clone());
         let opened = if self.live.rig.devices.is_none() && scene.person.is_none() {
@@ -154,7 +155,7 @@ impl ConsoleApp {
         Panel::left("calibrations").exact_size(316.0).resizable(false).frame(side).show(ui, |ui| {
             let panel = Tile::Calibrations;
             wish = card(ui, panel.title(), panel.meaning(), |ui| {
-                calibrations_ui(ui, &self.live, &self.in_force, None, true)
+                calibrations_ui(ui, &self.live, &self.in_force, Some(Page::Check))
             });
         });
         let (mut wanted, roster) = (None, self.roster());

@@ -27,20 +27,27 @@ pub enum CalibrationWish {
     Open(Which),
     /// Open the ready check.
     Check,
+    /// Open the list of all calibrations.
+    List,
     /// Select the wrist sensor of this arm.
     Choose(Side),
     /// Return to the normal view.
     Close,
 }
 
-/// The panel; `open` is the wizard that is open, `checks` says whether the ready check is.
-pub fn calibrations_ui(
-    ui: &mut Ui,
-    live: &Live,
-    in_force: &InForce,
-    open: Option<Which>,
-    checks: bool,
-) -> Option<CalibrationWish> {
+/// What is open beside the panel.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Page {
+    /// A wizard.
+    Wizard(Which),
+    /// The ready check.
+    Check,
+    /// The list of all calibrations.
+    All,
+}
+
+/// The panel; `open` is the page that is open beside it.
+pub fn calibrations_ui(ui: &mut Ui, live: &Live, in_force: &InForce, open: Option<Page>) -> Option<CalibrationWish> {
     let mut wish = None;
     source_ui(ui, live);
     for line in in_force.lines() {
@@ -51,11 +58,16 @@ pub fn calibrations_ui(
     }
     ui.add_space(4.0);
     let free = matches!(live.state(), LoopState::Idle | LoopState::Engaged);
-    let check = Button::selectable(checks, text::ready::OPEN).frame_when_inactive(true);
-    let check = ui.add_enabled(free && !checks, check.min_size(vec2(ui.available_width(), 28.0)));
-    let check = check.on_hover_text(text::calibrations::opens(text::ready::MEANING));
-    if check.on_disabled_hover_text(text::calibrations::OPEN_DISABLED_HOVER).clicked() {
-        wish = Some(CalibrationWish::Check);
+    for (page, name, meaning, opens) in [
+        (Page::Check, text::ready::OPEN, text::calibrations::opens(text::ready::MEANING), CalibrationWish::Check),
+        (Page::All, text::overview::OPEN, text::overview::MEANING.to_owned(), CalibrationWish::List),
+    ] {
+        let button = Button::selectable(open == Some(page), name).frame_when_inactive(true);
+        let button = button.min_size(vec2(ui.available_width(), 28.0));
+        let button = ui.add_enabled((free || page == Page::All) && open != Some(page), button).on_hover_text(meaning);
+        if button.on_disabled_hover_text(text::calibrations::OPEN_DISABLED_HOVER).clicked() {
+            wish = Some(opens);
+        }
     }
     if live.is_bimanual() {
         wish = side_ui(ui, in_force.side()).or(wish);
@@ -64,16 +76,16 @@ pub fn calibrations_ui(
     let has_arm = live.rig.devices.is_some();
     for which in Which::ALL.into_iter().filter(|which| has_arm || which.scene().is_some()) {
         let text = text::calibrations::calibrate(&which.name().to_lowercase());
-        let button = Button::selectable(open == Some(which), text)
-            .frame_when_inactive(true)
-            .min_size(vec2(ui.available_width(), 28.0));
-        let response = ui.add_enabled(free && open != Some(which), button);
+        let is_open = open == Some(Page::Wizard(which));
+        let button =
+            Button::selectable(is_open, text).frame_when_inactive(true).min_size(vec2(ui.available_width(), 28.0));
+        let response = ui.add_enabled(free && !is_open, button);
         let response = response.on_hover_text(text::calibrations::opens(which.meaning()));
         if response.on_disabled_hover_text(text::calibrations::OPEN_DISABLED_HOVER).clicked() {
             wish = Some(CalibrationWish::Open(which));
         }
     }
-    if open.is_some() || checks {
+    if open.is_some() {
         let back = Button::new(text::calibrations::CLOSE_WIZARD).min_size(vec2(ui.available_width(), 32.0));
         if ui.add(back).on_hover_text(text::calibrations::CLOSE_WIZARD_HOVER).clicked() {
             wish = Some(CalibrationWish::Close);

@@ -35,7 +35,7 @@ pub(super) fn technician_ui(
         }
         Panel::Feedback => feedback_ui(ui, live, &mut panels.feedback, outbox),
         Panel::Devices => wishes.devices = devices_ui(ui, live, &mut panels.devices),
-        Panel::Calibrations => wishes.calibration = calibrations_ui(ui, live, in_force, None, false),
+        Panel::Calibrations => wishes.calibration = calibrations_ui(ui, live, in_force, None),
         Panel::Gates => gates_ui(ui, live, &mut panels.gates),
         Panel::Safety => safety_ui(ui, live),
         Panel::Horizon => horizon_ui(ui, live, outbox),

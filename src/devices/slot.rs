@@ -31,7 +31,8 @@ pub struct SlotReport {
 
 /// Time between two attempts to open.
 const RETRY: Duration = Duration::from_millis(500);
-const NAP: Duration = Duration::from_millis(5);
+/// The thread looks so often whether it is to close, open or end; the time of a wake-up is the loop's.
+const NAP: Duration = Duration::from_millis(20);
 
 /// The slot of one device. Dropping it closes the device and ends its thread.
 pub struct Slot<D: Device> {
@@ -128,6 +129,7 @@ impl<D: Device> Drop for Slot<D> {
     fn drop(&mut self) {
         self.shared.stop.store(true, Ordering::Release);
         if let Some(thread) = self.thread.take() {
+            thread.thread().unpark();
             thread.join().ok();
         }
     }
@@ -172,10 +174,10 @@ impl<D: Device> Keeper<D> {
             if let Ok(lost) = self.take.try_recv() {
                 drop(lost);
                 out = false;
-                std::thread::sleep(NAP);
+                self.nap(NAP);
             }
             if out || !self.shared.wanted.load(Ordering::Acquire) {
-                std::thread::sleep(NAP);
+                self.nap(NAP);
                 continue;
             }
             match open() {
@@ -189,7 +191,7 @@ impl<D: Device> Keeper<D> {
                 }
                 Err(trouble) => {
                     self.tell(|report| report.trouble = Some(trouble));
-                    self.wait(RETRY);
+                    self.nap(RETRY);
                 }
             }
         }
@@ -199,14 +201,10 @@ impl<D: Device> Keeper<D> {
         change(&mut self.shared.report.lock().unwrap_or_else(PoisonError::into_inner));
     }
 
-    /// Sleeps in short steps, so that the thread can be stopped quickly.
-    fn wait(&self, length: Duration) {
-        let pieces = length.as_millis() / NAP.as_millis();
-        for _ in 0..pieces {
-            if self.shared.stop.load(Ordering::Acquire) {
-                return;
-            }
-            std::thread::sleep(NAP);
+    /// Waits; the end of the slot ends the wait.
+    fn nap(&self, length: Duration) {
+        if !self.shared.stop.load(Ordering::Acquire) {
+            std::thread::park_timeout(length);
         }
     }
 }

@@ -53,8 +53,12 @@ fn scene(seed: u64) -> Scene {
 
 /// Another tool, which the network was not trained for.
 fn heavier(seed: u64) -> Scene {
+    heavier_by(0.3, seed)
+}
+
+fn heavier_by(mass_kg: f64, seed: u64) -> Scene {
     let mut scene = scene(seed);
-    scene.wrist.as_mut().unwrap().tool_mass_kg += 0.3;
+    scene.wrist.as_mut().unwrap().tool_mass_kg += mass_kg;
     scene
 }
 
@@ -77,6 +81,23 @@ fn the_fallback_is_used_with_its_reason_until_the_instrument_has_moved() {
     let not_moved = ForceSource::InDoubt { unsure: Unsure::NotMoved, fallback: Fallback::WristForce };
     assert_eq!(all[0].0.source, not_moved);
     assert!(all.iter().any(|(report, _)| report.source == ForceSource::Network));
+}
+
+#[test]
+fn a_little_outside_its_training_the_network_is_better_than_the_wrist_force() {
+    // 0.8 N of weight that no calibration knows are in both.
+    let scene = heavier_by(0.08, 11);
+    let all = work(path(Some(Fallback::WristForce)), &scene, 20.0);
+    let share = |source| all.iter().filter(|(report, _)| report.source == source).count() as f64 / all.len() as f64;
+    assert!(share(ForceSource::Extrapolated) > 0.3, "{}", share(ForceSource::Extrapolated));
+    let outside: Vec<_> = all
+        .iter()
+        .zip(work(path(None), &scene, 20.0))
+        .filter(|((report, _), _)| report.source == ForceSource::Extrapolated)
+        .collect();
+    let (with, without): (Vec<_>, Vec<_>) = outside.into_iter().map(|(with, without)| (*with, without)).unzip();
+    let [with, without] = [mean_error_n(&with), mean_error_n(&without)];
+    assert!(with < 0.7 * without, "{with:.3} N against {without:.3} N");
 }
 
 #[test]

@@ -82,15 +82,10 @@ impl Features {
     /// # Errors
     /// [`NoRow`] if the sample is incomplete or the state is not known yet.
     pub fn step(&mut self, t_s: f64, gravity_free: &Wrench, sample: &WristSample) -> Result<[f32; LIVE_INPUTS], NoRow> {
-        let (Some(world_from_s1), Some(insertion_m)) = (sample.world_from_s1, sample.insertion_m) else {
-            self.last = None;
-            return Err(NoRow::Missing);
-        };
+        // The state outlives an incomplete sample: the next complete one tells how far the instrument went meanwhile.
+        let complete = sample.world_from_s1.zip(sample.insertion_m);
         let finite = gravity_free.is_finite() && sample.is_finite() && t_s.is_finite();
-        if !finite {
-            self.last = None;
-            return Err(NoRow::Missing);
-        }
+        let Some((world_from_s1, insertion_m)) = complete.filter(|_| finite) else { return Err(NoRow::Missing) };
         let now = match self.last {
             Some(last) if t_s > last.t_s && t_s - last.t_s <= HOLE_S => {
                 self.advance(&last, t_s, gravity_free, insertion_m)
@@ -204,7 +199,7 @@ mod tests {
     }
 
     #[test]
-    fn holes_and_poison_empty_the_memory() {
+    fn a_hole_empties_the_memory_and_an_incomplete_sample_does_not() {
         let wrench = Wrench::default();
         let mut t_s = 0.0;
         let mut features = Features::new(FeatureSettings::default());
@@ -220,13 +215,18 @@ mod tests {
         assert!(row.is_ok());
         let mut after = features.clone();
         assert_eq!(after.step(now_s + 0.04, &wrench, &sample(0.106)), Err(NoRow::NotMoved), "40 ms without a sample");
-        let mut after = features.clone();
-        assert_eq!(after.step(now_s + 1e-3, &wrench, &sample(f64::NAN)), Err(NoRow::Missing));
-        assert_eq!(after.step(now_s + 2e-3, &wrench, &sample(0.106)), Err(NoRow::NotMoved));
         assert!(features.clone().step(now_s, &wrench, &sample(0.106)).is_err(), "time that does not rise");
         let mut without = sample(0.106);
         without.insertion_m = None;
-        assert_eq!(features.clone().step(now_s + 1e-3, &wrench, &without), Err(NoRow::Missing));
+        for incomplete in [sample(f64::NAN), without] {
+            let mut after = features.clone();
+            assert_eq!(after.step(now_s + 1e-3, &wrench, &incomplete), Err(NoRow::Missing));
+            assert!(after.step(now_s + 2e-3, &wrench, &sample(0.106)).is_ok(), "it knows the way since then");
+            for k in 3..30 {
+                assert_eq!(after.step(now_s + 1e-3 * f64::from(k), &wrench, &incomplete), Err(NoRow::Missing));
+            }
+            assert_eq!(after.step(now_s + 0.03, &wrench, &sample(0.106)), Err(NoRow::NotMoved), "28 ms of them");
+        }
         assert!(moved(&mut features).0.is_ok(), "a hole heals by moving");
     }
 }

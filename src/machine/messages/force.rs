@@ -16,6 +16,8 @@ pub enum ForceSource {
     Wrist,
     /// Measured at the wrist, with weight, bias and friction removed.
     Network,
+    /// The same outside the training data: of the network only the linear path answers.
+    Extrapolated,
     /// The network is uncertain about this sample; the force of the fallback is used.
     InDoubt { unsure: Unsure, fallback: Fallback },
     /// Measured at the wrist without a calibration; nothing is rendered.
@@ -30,6 +32,12 @@ impl ForceSource {
     /// Whether the tip force may be rendered.
     pub const fn is_usable(self) -> bool {
         !matches!(self, Self::Uncalibrated | Self::NoOrientation | Self::Poisoned)
+    }
+
+    /// The least force that tells a touch, N: several times the noise of a sensor at the tip, and five times the error that
+    /// calibrations leave at the wrist (0.08 N in each axis).
+    pub const fn least_n(self) -> f64 {
+        if matches!(self, Self::AtTip) { 0.1 } else { 0.4 }
     }
 
     /// Why the network does not give the force, if it does not.

@@ -135,7 +135,7 @@ mod tests {
     use super::*;
     use crate::{
         config::RigConfig,
-        messages::ForceSource,
+        messages::{Command, ForceSource, LoopState},
         rig::{Inputs, Part, Sensed, Switches, View},
         teleop::Timing,
     };
@@ -159,6 +159,7 @@ mod tests {
         wrists: Wrists,
         door: WristDoor,
         t_s: f64,
+        load_n: f64,
     }
 
     impl Bench {
@@ -169,14 +170,15 @@ mod tests {
             let (wrists, door) = ends(&[entry], 1e-3);
             let mut control = Loop::new(&rig, &[Some(calibrated()), None]).unwrap();
             control.suspend_calibrations(Side::Right);
-            Self { control, wrists, door, t_s: 0.0 }
+            Self { control, wrists, door, t_s: 0.0, load_n: 0.0 }
         }
 
         fn tick(&mut self) -> ForceSource {
             self.t_s += 1e-3;
             self.wrists.put_in_force(&mut self.control);
-            let (_, [tick, _]) =
-                self.control.step([Some(at_wrist()), None], &Timing { now_s: self.t_s, ..Timing::default() });
+            let (_, [tick, _]) = self
+                .control
+                .step([Some(at_wrist(self.load_n, self.t_s)), None], &Timing { now_s: self.t_s, ..Timing::default() });
             tick.unwrap().force.source
         }
 
@@ -186,11 +188,12 @@ mod tests {
         }
     }
 
-    /// Inputs of a resting arm that measures the force at the wrist.
-    fn at_wrist() -> Inputs {
+    /// Inputs of a resting arm that measures this force (N) beside the weight at the wrist; no reading repeats itself.
+    fn at_wrist(load_n: f64, t_s: f64) -> Inputs {
+        let force_n = Vector3::new(load_n, 0.0, -0.4 * GRAVITY_M_S2 + 1e-3 * t_s);
         let sample = WristSample {
-            raw: Wrench { force_n: Vector3::new(0.0, 0.0, -0.4 * GRAVITY_M_S2), torque_nm: Vector3::zeros() },
-            acceleration_m_s2: Some(Vector3::new(0.0, 0.0, GRAVITY_M_S2)),
+            raw: Wrench { force_n, torque_nm: Vector3::zeros() },
+            acceleration_m_s2: Some(Vector3::new(1e-3 * t_s, 0.0, GRAVITY_M_S2)),
             world_from_s1: Some(UnitQuaternion::identity()),
             world_from_m: None,
             m_from_c: None,
@@ -239,6 +242,27 @@ mod tests {
         assert_eq!(bench.tick(), ForceSource::Uncalibrated);
         assert!(bench.door.put_in_force(bench.door.change(Side::Right), &calibrated()));
         assert_eq!(bench.tick(), ForceSource::Wrist);
+    }
+
+    #[test]
+    fn an_engagement_right_after_the_calibrations_sees_no_jump_of_the_force() {
+        for after in 1..5 {
+            let mut bench = Bench::new();
+            bench.load_n = 2.0;
+            bench.sensor_is(Standing::Connected);
+            for _ in 0..100 {
+                assert_eq!(bench.tick(), ForceSource::Uncalibrated);
+            }
+            assert!(bench.door.put_in_force(bench.door.change(Side::Right), &calibrated()));
+            for _ in 0..after {
+                assert_eq!(bench.tick(), ForceSource::Wrist, "the trocar holds the instrument with 2 N");
+            }
+            bench.control.obey(Command::Engage, bench.t_s);
+            for _ in 0..100 {
+                bench.tick();
+            }
+            assert_eq!(bench.control.pair(Side::Right).unwrap().state(), LoopState::Engaged, "after {after} ticks");
+        }
     }
 
     #[test]

@@ -84,7 +84,11 @@ impl ForcePath {
         };
         let report = tip_force.step(t_s, &wrench, sample);
         let fallback = tip_force.fallback();
-        let source = report.unsure.map_or(ForceSource::Network, |unsure| ForceSource::InDoubt { unsure, fallback });
+        let source = match report.unsure {
+            Some(unsure) => ForceSource::InDoubt { unsure, fallback },
+            None if report.extrapolates => ForceSource::Extrapolated,
+            None => ForceSource::Network,
+        };
         let tip_n = world_from_s1 * report.force_s1_n;
         ForceReport { source, tip_n, gravity_free, tip_force: Some(report) }
     }

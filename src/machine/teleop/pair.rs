@@ -239,6 +239,7 @@ impl<L: Link> Pair<L> {
         let rests = !self.state().permits().drives;
         if rests {
             std::mem::swap(&mut self.force_path, path);
+            self.plausibility.force_is_new();
         }
         rests
     }

@@ -1,8 +1,9 @@
 //! Errors of the force at the tip against the true force of the tissue, which only a simulation knows.
 
 use nalgebra::Vector3;
+use nima_core::tip_force::Unsure;
 use nima_machine::{
-    messages::Tick,
+    messages::{ForceSource, Tick},
     rig::{SIDES, Side},
 };
 use serde::Serialize;
@@ -65,6 +66,32 @@ pub struct TipError {
     pub free: Option<FreeError>,
     /// Share of the samples in which the loop did not use the network.
     pub without_network: f64,
+    /// Shares of the samples in which the network was not sure, by the reason.
+    pub doubt: DoubtShares,
+}
+
+/// Where the network was not sure: shares of all samples, 0 to 1.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct DoubtShares {
+    /// Outside the training data, where the network still answers by its linear path.
+    pub extrapolated: f64,
+    /// Far outside the training data.
+    pub outside_training: f64,
+    /// The direction of friction was not known.
+    pub not_moved: f64,
+    /// The orientation or the depth was missing.
+    pub missing: f64,
+}
+
+impl DoubtShares {
+    fn over(self, samples: f64) -> Self {
+        Self {
+            extrapolated: self.extrapolated / samples,
+            outside_training: self.outside_training / samples,
+            not_moved: self.not_moved / samples,
+            missing: self.missing / samples,
+        }
+    }
 }
 
 /// Errors of both sides.
@@ -72,6 +99,8 @@ pub struct TipError {
 pub struct TipErrors {
     sides: [[(Sums, Sums); METHODS.len()]; SIDES],
     without_network: [u64; SIDES],
+    /// Samples in doubt.
+    doubt: [DoubtShares; SIDES],
 }
 
 impl TipErrors {
@@ -90,6 +119,16 @@ impl TipErrors {
         }
         let by_network = tick.force.tip_force.is_some() && tick.force.source.doubt().is_none();
         self.without_network[side] += u64::from(!by_network);
+        let doubt = &mut self.doubt[side];
+        if tick.force.source == ForceSource::Extrapolated {
+            doubt.extrapolated += 1.0;
+        }
+        match tick.force.source.doubt() {
+            Some(Unsure::OutsideTraining) => doubt.outside_training += 1.0,
+            Some(Unsure::NotMoved) => doubt.not_moved += 1.0,
+            Some(Unsure::Missing) => doubt.missing += 1.0,
+            None => {}
+        }
     }
 
     /// Adds the truth that was read at the time of a tick.
@@ -115,6 +154,7 @@ impl TipErrors {
                 sd_n: free.sd_n(),
             }),
             without_network: self.without_network[side.index()] as f64 / all.count,
+            doubt: self.doubt[side.index()].over(all.count),
         });
         figures.collect()
     }

@@ -40,7 +40,7 @@ use nima_machine::{
 };
 use side::SideWorld;
 
-pub use errors::{FreeError, TipError, TipErrors};
+pub use errors::{DoubtShares, FreeError, TipError, TipErrors};
 pub use screen::{NoScreen, Screen, Task};
 pub use side::Truth;
 pub use stand_in::provide_handles;

@@ -55,10 +55,10 @@ pub trait Emulator: Send {
     /// A client sent this; nothing at first, where it only connected.
     fn hear(&mut self, from: Peer, bytes: &[u8], turn: &mut Turn<'_>);
 
-    /// Time has passed, a millisecond at most and not beyond [`due_s`](Self::due_s); also while the line is cut.
+    /// Time has passed, 5 ms at most and not beyond [`due_s`](Self::due_s); also while the line is cut.
     fn pass(&mut self, turn: &mut Turn<'_>);
 
-    /// When it has something to send or to do, s; `None`: nothing that must not wait for a millisecond.
+    /// When it has something to send or to do, s; `None`: nothing that must not wait for two milliseconds.
     fn due_s(&self) -> Option<f64> {
         None
     }

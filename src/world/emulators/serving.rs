@@ -16,8 +16,12 @@ use super::{
     wires::{ARRIVALS, Arrival, End, Peer, wait},
 };
 
-/// Time passes for an emulator at least so often.
-const TICK: Duration = Duration::from_millis(1);
+/// Time passes at least so often for an emulator that does not say when it has something to do, ...
+const TICK: Duration = Duration::from_millis(2);
+/// ... for one that does, so that faults and the end are not far away, ...
+const IDLE_TICK: Duration = Duration::from_millis(5);
+/// ... and while a fault is in force. Every needless wake-up takes its time from the loop that is tried.
+const FAULTY_TICK: Duration = Duration::from_millis(1);
 /// What is taken from a wire at once: the longest datagram.
 const BUFFER_BYTES: usize = 65_507;
 
@@ -139,12 +143,21 @@ impl Host {
                 turn.line.let_late_ones_go(turn.now_s, &mut |to, bytes| send(turn.ends, to, bytes));
                 emulator.pass(turn);
             });
-            let rest_s =
-                self.emulator.due_s().map_or(f64::INFINITY, |due_s| due_s - self.begin.elapsed().as_secs_f64());
-            let rest = Duration::from_secs_f64(rest_s.clamp(0.0, TICK.as_secs_f64()));
-            wait(&self.ends, rest, self.emulator.admits());
+            wait(&self.ends, self.rest(), self.emulator.admits());
         }
         self.cut();
+    }
+
+    /// How long nothing is to be done unless something arrives.
+    fn rest(&self) -> Duration {
+        let due_s = self.emulator.due_s();
+        let rest_s = due_s.map_or(f64::INFINITY, |due_s| due_s - self.begin.elapsed().as_secs_f64());
+        let longest = match (self.faults.get(), due_s) {
+            (EmulatedFault::None, None) => TICK,
+            (EmulatedFault::None, Some(_)) => IDLE_TICK,
+            _ => FAULTY_TICK,
+        };
+        Duration::from_secs_f64(rest_s.clamp(0.0, longest.as_secs_f64()))
     }
 
     /// True if anything was open.

@@ -14,7 +14,7 @@ use nima_machine::{
     messages::Tick,
     rig::{SIDES, Side},
 };
-use nima_world::emulated::{TipError, TipErrors};
+use nima_world::emulated::{DoubtShares, TipError, TipErrors};
 use serde::{Deserialize, Serialize};
 
 /// Ticks of a side that are kept for the truth about them: two seconds at 1 kHz.
@@ -102,7 +102,7 @@ pub(super) fn in_words(figures: &[TipError]) -> String {
     let mut text =
         "\nforce at the tip against the true one, N per axis (x, y, z of the workspace), while engaged:".to_owned();
     // Writing into a String cannot fail.
-    for TipError { side, method, mae_n: [x, y, z], free, without_network, .. } in figures {
+    for TipError { side, method, mae_n: [x, y, z], free, without_network, doubt, .. } in figures {
         write!(text, "\n  {:5}  {method:12}  mean error {x:.3} {y:.3} {z:.3}", side.word()).ok();
         if let Some(free) = free {
             let ([a, b, c], [d, e, f]) = (free.mean_n, free.sd_n);
@@ -110,6 +110,17 @@ pub(super) fn in_words(figures: &[TipError]) -> String {
         }
         if *method == "tip force" {
             write!(text, "   without the network {:.1} % of the time", 100.0 * without_network).ok();
+            let DoubtShares { extrapolated, outside_training, not_moved, missing } = doubt;
+            for (share, why) in [
+                (extrapolated, "extrapolated"),
+                (outside_training, "outside training"),
+                (not_moved, "not moved yet"),
+                (missing, "incomplete samples"),
+            ] {
+                if *share > 0.0 {
+                    write!(text, ", {why} {:.1} %", 100.0 * share).ok();
+                }
+            }
         }
     }
     text

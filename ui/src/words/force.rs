@@ -38,6 +38,9 @@ impl Words for ForceSource {
             Self::AtTip => "measured at the tip",
             Self::Wrist => "wrist force without the tool's weight, but with trocar friction",
             Self::Network => "wrist force without the tool's weight and without trocar friction (network)",
+            Self::Extrapolated => {
+                "wrist force without weight and friction, outside the network's training data: less exact"
+            }
             Self::InDoubt { fallback: Fallback::WristForce, .. } => {
                 "network in doubt: wrist force with trocar friction is used"
             }
@@ -54,7 +57,7 @@ impl Words for ForceSource {
 impl Words for Unsure {
     fn words(self) -> &'static str {
         match self {
-            Self::OutsideTraining => "the wrist force is outside the range of the training data",
+            Self::OutsideTraining => "the sample is far outside the training data",
             Self::NotMoved => "the direction of friction is not known yet; move the instrument in or out by 2 mm",
             Self::Missing => "the orientation or the depth through the trocar is missing",
         }

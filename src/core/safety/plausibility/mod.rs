@@ -79,6 +79,8 @@ pub struct Observed {
     pub sensed: [f64; CHANNELS],
     /// Force at the tip made of them, N.
     pub force_n: Vector3<f64>,
+    /// A force below this is none, N: what is made of a wrist sensor's reading errs by more than one at the tip does.
+    pub least_n: f64,
     /// Orientation of the wrist by the arm, where it is known.
     pub world_from_s1: Option<UnitQuaternion<f64>>,
     /// The instrument's tip in the workspace, m.
@@ -184,6 +186,12 @@ impl Plausibility {
         (self.handle_stuck, self.tip_stuck) = (Stuck::default(), Stuck::default());
     }
 
+    /// The force is known from now on, or computed in another way: what it was before says nothing about a jump.
+    pub fn force_is_new(&mut self) {
+        self.force = Leap::default();
+        self.began_s = None;
+    }
+
     /// Takes one exchange in and gives what may be used of it.
     pub fn step(&mut self, seen: &Observed) -> Admitted {
         let dt_s = seen.t_s - self.last_t_s;
@@ -203,7 +211,7 @@ impl Plausibility {
         let most_n = if settles { f64::INFINITY } else { FORCE_SLACK_N + STIFFEST_N_M * widest_m };
         let (force_n, force_jumped) = self.force.admit(&seen.force_n, most_n);
         let frozen = self.frozen.look(&seen.sensed, seen.t_s);
-        let along = self.opposed.look(&force_n, self.tip.moved(), seen.command_m.is_some());
+        let along = self.opposed.look(&force_n, seen.least_n, self.tip.moved(), seen.command_m.is_some());
         let turned = seen.world_from_s1.is_some_and(|turn| self.turn.admit(&axes(&turn), TURN_MAX).1);
         let doubts = [
             (force_jumped, Implausible::ForceJumped),

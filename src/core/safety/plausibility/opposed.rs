@@ -6,12 +6,10 @@
 
 use nalgebra::Vector3;
 
-/// A force below this is none, N.
-const FREE_N: f64 = 0.1;
 /// The tip must have been free for so long before a touch is judged, s.
 const FREE_S: f64 = 0.05;
-/// Work that is enough for a judgement, J: a soft touch of 0.3 N over 1 mm.
-const ENOUGH_J: f64 = 0.1e-3;
+/// Work that is enough for a judgement: that of the least force over this way, m.
+const ENOUGH_AT_LEAST_M: f64 = 1e-3;
 /// Way that is enough, m.
 const ENOUGH_M: f64 = 0.3e-3;
 /// Share of that work which the force must give to be along the motion.
@@ -46,12 +44,12 @@ impl Opposed {
         Self { period_s, share, force_n: Vector3::zeros(), free_s: 0.0, touch: None }
     }
 
-    /// Takes the force (N) and the way of the tip since the last tick (m); `led`: the tip is commanded. Says whether a touch drives
-    /// the tip into what it touches.
-    pub fn look(&mut self, force_n: &Vector3<f64>, way_m: &Vector3<f64>, led: bool) -> bool {
+    /// Takes the force (N) and the way of the tip since the last tick (m); `least_n`: a force below it is none; `led`: the tip is
+    /// commanded. Says whether a touch drives the tip into what it touches.
+    pub fn look(&mut self, force_n: &Vector3<f64>, least_n: f64, way_m: &Vector3<f64>, led: bool) -> bool {
         self.force_n += (force_n - self.force_n) * self.share;
         let felt_n = self.force_n.norm();
-        if felt_n < FREE_N || !led {
+        if felt_n < least_n || !led {
             self.free_s = if led { self.free_s + self.period_s } else { 0.0 };
             self.touch = None;
             return false;
@@ -66,7 +64,7 @@ impl Opposed {
         touch.work_j += self.force_n.dot(way_m);
         touch.most_j += felt_n * way_m.norm();
         let Touch { seconds, way_m, work_j, most_j } = *touch;
-        if most_j > ENOUGH_J && way_m > ENOUGH_M {
+        if most_j > least_n * ENOUGH_AT_LEAST_M && way_m > ENOUGH_M {
             self.touch = None;
             return work_j > ALONG * most_j;
         }

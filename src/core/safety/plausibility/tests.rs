@@ -23,6 +23,7 @@ impl Bench {
             t_s,
             sensed,
             force_n,
+            least_n: 0.1,
             world_from_s1: None,
             tip_m: at_m,
             hand_m: at_m,
@@ -123,6 +124,21 @@ fn a_force_along_the_way_into_a_contact_is_told_and_a_puncture_is_not() {
     assert!(matches!(told, Some((201..=225, Implausible::ForceAlong))), "{told:?}");
     assert_eq!(touch(1.0, 9.0), None);
     assert_eq!(touch(1.0, 0.4), None);
+}
+
+#[test]
+fn an_error_of_the_force_below_the_least_one_is_no_touch() {
+    // Friction that was taken out too much pushes along the motion.
+    let told = |least_n: f64| {
+        Bench::new().run(600, move |k, seen| {
+            let at_m = Vector3::new(0.0, 0.0, 0.010 - 5e-5 * f64::from(k));
+            (seen.tip_m, seen.command_m, seen.hand_m) = (at_m, Some(at_m), at_m);
+            seen.force_n.z -= if k > 200 { 0.2 } else { 0.0 };
+            seen.least_n = least_n;
+        })
+    };
+    assert!(matches!(told(0.1), Some((_, Implausible::ForceAlong))), "{:?}", told(0.1));
+    assert_eq!(told(0.4), None);
 }
 
 #[test]

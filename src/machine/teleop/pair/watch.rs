@@ -17,11 +17,16 @@ use crate::{
 impl<L: Link> Pair<L> {
     /// Checks a sample; returns it with impossible jumps replaced by the last plausible value.
     pub(super) fn take_in(&mut self, mut inputs: Inputs, now_s: f64) -> Inputs {
+        let was_known = self.force.source.is_usable();
         self.force = self.force_path.step(now_s, &inputs.sensed);
+        if self.force.source.is_usable() && !was_known {
+            self.plausibility.force_is_new();
+        }
         let admitted = self.plausibility.step(&Observed {
             t_s: now_s,
             sensed: numbers(&inputs.sensed),
             force_n: self.force.tip_n,
+            least_n: self.force.source.least_n(),
             world_from_s1: orientation(&inputs.sensed),
             tip_m: inputs.tip_m,
             hand_m: inputs.hand.position_m,

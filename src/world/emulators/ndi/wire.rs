@@ -149,7 +149,7 @@ impl Emulator for Line {
     }
 
     fn due_s(&self) -> Option<f64> {
-        self.due.as_ref().map(|(due_s, _)| *due_s)
+        Some(self.due.as_ref().map_or(f64::INFINITY, |(due_s, _)| *due_s))
     }
 
     fn lose(&mut self, _: Peer) {

@@ -53,6 +53,9 @@ pub struct RigConfig {
     /// Scheduling to request for the loop's thread; if refused, this is reported.
     #[serde(default)]
     pub scheduling: SchedulingClass,
+    /// What an engagement needs of the ready check.
+    #[serde(default)]
+    pub ready_check: ReadyCheck,
     /// Mapping from the hand's motion to the tip's.
     #[serde(default)]
     pub teleoperation: Teleoperation,
@@ -65,6 +68,17 @@ pub struct RigConfig {
     /// The devices; if absent, everything is simulated.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub devices: Option<rig::Settings>,
+}
+
+/// What an engagement needs of the ready check.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ReadyCheck {
+    /// Nothing: a missing check is told.
+    #[default]
+    Told,
+    /// A passed check of today: without one the loop refuses to engage.
+    Required,
 }
 
 /// Scheduling of the loop's thread (Linux).

@@ -5,12 +5,14 @@
 //! | `config` | rig files, and how files of settings are read |
 //! | `rig` | the hardware interface of the loop, and its implementation with the devices of a rig file |
 //! | `messages` | commands in; ticks and events out |
+//! | `ready` | the ready check before the first engagement of the day |
 //! | `teleop` | one tick of the whole loop for both arm pairs |
 //! | `runtime` | the real-time thread, its supervisor, the virtual clock |
 #![warn(missing_docs)]
 
 pub mod config;
 pub mod messages;
+pub mod ready;
 pub mod rig;
 pub mod runtime;
 pub mod teleop;

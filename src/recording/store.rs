@@ -5,6 +5,7 @@
 //! Dates are UTC, ISO 8601.
 
 mod date;
+mod ready;
 
 use std::{
     fs, io,
@@ -15,6 +16,8 @@ use std::{
 use nima_core::calibration::Record;
 use nima_files::{PASSAGE, copy_atomically, quoted, shortened, write_atomically};
 use serde::{Deserialize, Serialize};
+
+pub use ready::{CheckedDevice, CheckedItem, KIND as READY_CHECK, Outcome, ReadyRecord, VALID_S};
 
 /// What a calibration is bound to: one wrist sensor with one tool.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -282,6 +285,11 @@ pub fn read<R: Record>(path: &Path) -> Result<Option<R>, StoreError> {
 /// The present time, UTC, ISO 8601 to the second: the date of a record.
 pub fn utc_now() -> String {
     date::format(seconds(SystemTime::now()))
+}
+
+/// Whole days from a date (UTC, ISO 8601) to `now`; `None` if it is not a valid date. Zero for one in the future.
+pub fn days_since(date: &str, now: SystemTime) -> Option<u64> {
+    date::parse(date).map(|made_s| seconds(now).saturating_sub(made_s) / DAY_S)
 }
 
 /// Seconds since 1970; zero for earlier times.

@@ -107,7 +107,9 @@ impl World {
 
     /// Pauses the hand's task; the hand then follows the tip (true). Or continues it (false).
     pub fn wait(&mut self, waits: bool) {
-        self.hand.wait(waits.then_some(self.tip_m));
+        // A person at the arm leads the handle beside it.
+        let beside_m = self.person.as_ref().map_or_else(Vector3::zeros, Person::handle_m);
+        self.hand.wait(waits.then_some(self.tip_m + beside_m));
     }
 
     /// Pauses the hand's task; the hand waits here, m.

@@ -4,7 +4,9 @@
 mod bimanual;
 mod davinci;
 mod letting_go;
+mod ready_check;
 mod simulated_calibration;
 mod simulated_experiments;
 mod tip_force_loop;
 mod virtual_loop;
+mod watchdogs;

@@ -9,3 +9,4 @@ mod frames;
 mod killed;
 mod rig_diagnosis;
 mod technician;
+mod watchdogs;

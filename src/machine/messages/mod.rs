@@ -3,6 +3,7 @@
 mod force;
 mod refusal;
 mod scheduling;
+mod watchdog;
 
 use nalgebra::Vector3;
 use nima_core::{
@@ -16,6 +17,7 @@ use nima_devices::Loss;
 pub use force::{ForceReport, ForceSource};
 pub use refusal::Refusal;
 pub use scheduling::Scheduling;
+pub use watchdog::Watchdog;
 
 use crate::rig::{DeviceEvent, Prompt, Side, View};
 
@@ -60,6 +62,11 @@ pub enum Command {
     Stop,
     /// First of two steps out of a stop or a fault: back to idle. Refused while the cause of a fault is still present.
     ReleaseStop,
+    /// Fire this watchdog on purpose: what it watches over is withheld until it raises its fault. Only while every arm pair is idle, so
+    /// that there is neither force nor motion; the fault is latched as any other one.
+    TestWatchdog(Watchdog),
+    /// A ready check of today has passed with the devices of the rig (true), or none has. Matters where the rig file requires one.
+    Checked(bool),
     /// End the loop; its thread returns its final timing.
     Shutdown,
 }

@@ -29,6 +29,8 @@ pub enum Refusal {
     HandAbsent,
     /// The clutch stayed pressed until the time limit was reached.
     ClutchPressed,
+    /// The rig file requires a ready check, and none of today has passed.
+    NotChecked,
     /// The value is outside its range.
     OutOfRange,
     /// A person may hold the handle: this is for simulated rigs.

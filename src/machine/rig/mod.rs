@@ -4,6 +4,9 @@
 //! `None`; it never repeats an old one as new.
 
 mod arm_pair;
+pub mod checkup;
+#[cfg(test)]
+mod checkup_tests;
 mod devices;
 mod flaws;
 mod gauge;

@@ -325,7 +325,11 @@ impl Realtime {
         self.rig.write(timing.now_s, &outputs);
         let written_ns = os::monotonic_ns();
         let stalls = self.clock == Clock::Real;
-        self.pulse.beat(written_ns, stalls && outputs.iter().any(|outputs| outputs.drives));
+        if self.control.withholds_beat() {
+            self.pulse.withhold();
+        } else {
+            self.pulse.beat(written_ns, stalls && outputs.iter().any(|outputs| outputs.drives));
+        }
         timing.work_s = (worked_ns - read_ns) as f64 * 1e-9;
         self.meters.wake.record(timing.wake_s);
         self.meters.rig.record((read_ns - woke_ns + written_ns - worked_ns) as f64 * 1e-9);

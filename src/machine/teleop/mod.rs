@@ -16,7 +16,7 @@ use nima_core::impedance::SettingsError;
 
 pub use crate::{
     config::RigConfig,
-    messages::{Command, Event, Fault, LoopState, Refusal, Tick},
+    messages::{Command, Event, Fault, LoopState, Refusal, Tick, Watchdog},
     rig::{DeviceEvent, GUIDE_MAX_M, Inputs, Outputs, SIDES, Side},
 };
 pub use accuracy::{Accuracy, ErrorStats};
@@ -94,6 +94,10 @@ impl<L: Link> Loop<L> {
 
     /// Carries out one command in every pair that it concerns, and reports which pair refused it and why.
     pub fn obey(&mut self, command: Command, t_s: f64) {
+        let busy = self.pairs().find(|pair| pair.state() != LoopState::Idle).map(|pair| (pair.side(), pair.state()));
+        if let (Command::TestWatchdog(_), Some((side, state))) = (command, busy) {
+            return self.refuse(side, command, Refusal::State(state), t_s);
+        }
         let mut answers = [None; SIDES];
         for pair in self.pairs.iter_mut().flatten().filter(|pair| command.concerns(pair.side())) {
             answers[pair.side().index()] = Some(pair.obey(command, t_s));
@@ -141,6 +145,11 @@ impl<L: Link> Loop<L> {
     /// of the side are on.
     pub fn exchange_force_path(&mut self, side: Side, path: &mut ForcePath) -> bool {
         self.pairs[side.index()].as_mut().is_some_and(|pair| pair.exchange_force_path(path))
+    }
+
+    /// Whether the loop is to look to its supervisor as if it stood still with its drives on, because that watchdog is tested.
+    pub fn withholds_beat(&self) -> bool {
+        self.pairs().any(|pair| pair.withholds(Watchdog::Loop))
     }
 
     /// Handles a report of the supervisor that the loop was silent for `silent_s` and that the drives were switched

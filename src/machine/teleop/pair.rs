@@ -4,6 +4,7 @@ mod commands;
 mod objections;
 mod told;
 mod watch;
+mod watchdog_test;
 
 use nalgebra::{UnitQuaternion, Vector1, Vector3};
 use nima_core::{
@@ -19,8 +20,8 @@ use nima_devices::Standing;
 use self::told::{NO_FORCE_YET, NOTHING_YET, NOWHERE};
 use super::{Accuracy, Calibrations, ForcePath, Link, ProgrammedLink, Tracking};
 use crate::{
-    config::{RigConfig, Teleoperation},
-    messages::{Event, Fault, ForceReport, LoopState, Tick},
+    config::{ReadyCheck, RigConfig, Teleoperation},
+    messages::{Event, Fault, ForceReport, LoopState, Tick, Watchdog},
     rig::{DeviceEvent, Inputs, Outputs, Prompt, Side},
 };
 
@@ -101,6 +102,10 @@ pub struct Pair<L: Link = ProgrammedLink> {
     accuracy: Accuracy,
     ticks: u64,
     missed: u64,
+    /// Whether a ready check has passed; `None` where none is required.
+    checked: Option<bool>,
+    /// A watchdog is being fired on purpose.
+    watchdog_test: Option<watchdog_test::WatchdogTest>,
     events: [Option<Event>; EVENTS_PER_TICK_MAX],
 }
 
@@ -160,6 +165,8 @@ impl<L: Link> Pair<L> {
             accuracy: Accuracy::default(),
             ticks: 0,
             missed: 0,
+            checked: (rig.ready_check == ReadyCheck::Required).then_some(false),
+            watchdog_test: None,
             events: [None; EVENTS_PER_TICK_MAX],
         };
         this.set_delay(rig.delay_s);
@@ -249,7 +256,8 @@ impl<L: Link> Pair<L> {
         let now_s = timing.now_s;
         self.missed += timing.missed_now;
         self.check_clock(timing);
-        let inputs = inputs.filter(Inputs::is_finite);
+        self.end_late_test(now_s);
+        let inputs = inputs.filter(|inputs| inputs.is_finite() && !self.withholds(Watchdog::Source));
         let moved_m = inputs.zip(self.last_inputs).map_or(0.0, |(now, last)| (now.tip_m - last.tip_m).norm());
         let inputs = inputs.map(|inputs| self.take_in(inputs, now_s));
         if inputs.is_none() {

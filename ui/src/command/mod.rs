@@ -1,6 +1,7 @@
 //! The command line of `nima`: one file per subcommand. Failure is one clear line on stderr and a non-zero exit.
 
 mod calibrate;
+mod check;
 mod console;
 mod devices;
 mod emulate;
@@ -47,6 +48,9 @@ enum Command {
     /// Calibrate from a file, or a whole emulated rig; prints errors on held-out data and a verdict
     #[command(subcommand, arg_required_else_help = false)]
     Calibrate(calibrate::CalibrateCommand),
+    /// Check whether a rig is ready for the day; keeps a record, and fails if it is not
+    #[command(subcommand, arg_required_else_help = false)]
+    Check(check::CheckCommand),
     /// Run an experiment and print its results
     #[command(subcommand, arg_required_else_help = false)]
     Study(study::StudyCommand),
@@ -90,6 +94,7 @@ pub fn main() -> ExitCode {
         Command::Devices(arguments) => devices::run(&arguments),
         Command::Emulate(arguments) => emulate::run(&arguments),
         Command::Calibrate(calibrate) => calibrate::run(&calibrate),
+        Command::Check(check) => check::run(&check),
         Command::Study(study) => study::run(&study),
         Command::Train(train) => train::run(&train),
         Command::Evaluate(evaluate) => evaluate::run(&evaluate),

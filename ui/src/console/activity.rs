@@ -3,7 +3,7 @@
 //! Every number of a device's readings has its own noise, which is learnt while it rests. A device is active while one
 //! of its numbers changes by clearly more than that, and by more than what nobody does on purpose.
 
-use nima_machine::rig::{CHANNELS, DEVICES_MAX, Gauge, Gauges, Part, PartKind, RosterEntry, Spread};
+use nima_machine::rig::{CHANNELS, DEVICES_MAX, Gauge, Gauges, Part, PartKind, RosterEntry, Spread, checkup::least};
 
 /// Blocks from which the noise is learnt before anything counts as a change; a block is 0.1 s.
 const LEARNING: u32 = 4;
@@ -16,20 +16,6 @@ const LEARN: f64 = 0.3;
 const LEARN_MOVING: f64 = 0.02;
 /// How long a device stays lit after its last change, s.
 const LIT_S: f64 = 0.5;
-
-/// A smaller change of this number of a reading is nothing that a person does on purpose: m, rad, N, Nm, m/s^2.
-pub(crate) const fn least(kind: PartKind, channel: usize) -> f64 {
-    match (kind, channel) {
-        (PartKind::Handle, 0..=2) => 3e-4,
-        (PartKind::Handle, 3..=6) | (PartKind::Servos, _) => 0.01,
-        (PartKind::Arm, _) => 2e-3,
-        (PartKind::Sensor, 0..=2) => 0.3,
-        (PartKind::Sensor, 3..=5) => 0.02,
-        (PartKind::Tracker, _) => 7e-4,
-        // An acceleration, a button or a switch.
-        (PartKind::Sensor | PartKind::Handle | PartKind::Pedal, _) => 0.5,
-    }
-}
 
 /// One number of a device's readings.
 #[derive(Clone, Copy, Debug, Default)]

@@ -1,7 +1,9 @@
 //! The window: receives what the loop has sent, lays out the panels, and sends the operator's commands.
 
 mod calibrating;
+mod checking;
 mod connecting;
+mod listing;
 mod opening;
 mod pace;
 mod starting;
@@ -26,7 +28,7 @@ use super::{
     Options,
     canvas::{Canvas, Surface, renderer_of},
     diary::Diary,
-    door::Door,
+    door::{Door, News},
     frames::Meter,
     help::Help,
     in_force::InForce,
@@ -39,13 +41,14 @@ use super::{
     reader::Reader,
     roles::{Panels, Role, Wishes, role_ui},
     scene3d::{SceneView, extras::Extras},
-    screenshot,
     settings::{Kept, Settings},
     start::{Choice, StartPage},
     theme,
     wizards::Wizards,
 };
-use crate::{console::text, emulators::Emulators, telling::tell};
+use crate::{console::text, emulators::Emulators};
+use checking::Checking;
+use listing::Listing;
 use starting::Starting;
 
 /// Antialiasing in 3-D is switched off if the median time between frames is longer than this (fewer than 26 a second)
@@ -79,6 +82,8 @@ pub struct ConsoleApp {
     help: Help,
     photographer: Option<Photographer>,
     wizards: Wizards,
+    checking: Checking,
+    listing: Listing,
     in_force: InForce,
     diary: Diary,
     /// The scene that was shown before a wizard changed it.
@@ -129,6 +134,8 @@ impl ConsoleApp {
             in_force,
             diary: Diary::default(),
             wizards: Wizards::default(),
+            checking: Checking::default(),
+            listing: Listing::default(),
             watched: None,
             read: None,
             live,
@@ -195,8 +202,12 @@ impl ConsoleApp {
         self.taken = Instant::now();
         let rate_hz = self.live.rig.rate_hz;
         let (wizards, in_force, diary) = (&mut self.wizards, &mut self.in_force, &mut self.diary);
-        let calibrated = in_force.side();
-        self.live.take_in(door, |tick| {
+        let (calibrated, mut check) = (in_force.side(), self.checking.run_mut());
+        self.live.take_in(door, |news| {
+            if let Some(check) = &mut check {
+                check.take(news);
+            }
+            let News::Tick(tick) = news else { return };
             if tick.side == calibrated {
                 wizards.tick(tick, rate_hz);
             }
@@ -238,6 +249,7 @@ impl ConsoleApp {
         self.live.rough_edges = rough_edges;
         self.panels.forces = ForcesState::default();
         self.panels.devices.begin_anew();
+        self.checking.forget();
         self.outbox = Outbox::default();
         self.door = Some(door_of(started?, &self.ctx));
         self.leave_when_asked();
@@ -256,7 +268,7 @@ impl ConsoleApp {
     fn layout(&mut self, ui: &mut Ui) {
         let bar = Frame::new().fill(theme::now().panel).inner_margin(Margin::symmetric(14, 0));
         Panel::top("top_bar").exact_size(72.0).resizable(false).frame(bar).show(ui, |ui| {
-            let calibrating = self.wizards.open.is_some();
+            let calibrating = self.wizards.open.is_some() || self.checking.is_open();
             let before = self.role();
             let wants_start = top_bar_ui(
                 ui,
@@ -279,7 +291,11 @@ impl ConsoleApp {
         let loop_s = self.live.first_tick().map(|tick| tick.t_s);
         self.top_bar.alarms.strip_ui(ui, &signs, loop_s, self.settings.now.sound);
         let room = ui.available_rect_before_wrap();
-        if self.wizards.open.is_some() {
+        if self.checking.is_open() {
+            self.check_layout(ui);
+        } else if self.listing.is_open() {
+            self.listing_layout(ui);
+        } else if self.wizards.open.is_some() {
             self.wizard_layout(ui);
         } else if self.start.is_open {
             self.start_layout(ui);
@@ -308,28 +324,6 @@ impl ConsoleApp {
         }
         self.obey_calibrations(calibration);
     }
-
-    fn obey_options(&mut self, ctx: &egui::Context) {
-        let open = self.opened.elapsed();
-        let Options { exit_after, screenshot, .. } = self.options.clone();
-        if let Some(path) = screenshot.filter(|_| !self.pictured && open >= self.picture_at()) {
-            self.pictured = true;
-            ctx.request_screenshot(move |picture| {
-                // Errors can be reported only on the terminal.
-                if let Err(error) = screenshot::save(&path, &picture) {
-                    tell(format_args!("{error:#}"));
-                }
-            });
-        }
-        let finished =
-            self.photographer.as_mut().is_some_and(|taker| taker.step(ctx, &self.live, &mut self.settings.now));
-        if let Some(stall) = self.options.stall.take_if(|_| open >= WARM_UP) {
-            std::thread::sleep(stall);
-        }
-        if finished || exit_after.is_some_and(|exit| open >= exit) {
-            ctx.send_viewport_cmd(egui::ViewportCommand::Close);
-        }
-    }
 }
 
 impl eframe::App for ConsoleApp {
@@ -341,6 +335,7 @@ impl eframe::App for ConsoleApp {
         self.go_on_starting();
         self.take_in();
         self.ask();
+        self.go_on_checking();
     }
 
     fn ui(&mut self, ui: &mut Ui, frame: &mut eframe::Frame) {

@@ -11,7 +11,10 @@ mod tests;
 
 use std::path::{Path, PathBuf};
 
-use nima_core::calibration::{frames::RigChange, gravity::Drift};
+use nima_core::calibration::{
+    frames::RigChange,
+    gravity::{Drift, GravityModel},
+};
 use nima_machine::{
     config::{RigConfig, RigFile, change_rig},
     messages::Tick,
@@ -19,12 +22,13 @@ use nima_machine::{
     runtime::Handle,
     teleop::Calibrations,
 };
-use nima_recording::store::{Store, WristId, utc_now};
+use nima_recording::store::{ReadyRecord, Store, WristId, utc_now};
 use nima_world::scene::Scene;
 use of_side::{Bound, OfSide};
 
 use super::{
     chain,
+    overview::Line,
     scene3d::side_name,
     wizards::{Binding, FrameSaving, Saving, Subject},
 };
@@ -157,6 +161,36 @@ impl InForce {
     /// Calibrations for a loop of this rig that is about to start.
     pub fn calibrations(&mut self, rig: &RigConfig) -> [Calibrations; SIDES] {
         self.sides.each_mut().map(|of_side| of_side.calibrations(rig.tip_force.fallback))
+    }
+
+    /// The gravity calibration of a side, and the limit of the force that remains at rest, N.
+    pub fn gravity(&self, side: Side) -> Option<(GravityModel, f64)> {
+        self.sides[side.index()].gravity()
+    }
+
+    /// Whether the force of this side is measured at the wrist.
+    pub fn is_at_wrist(&self, side: Side) -> bool {
+        self.sides[side.index()].bound != Bound::Nothing
+    }
+
+    /// Sensor and tool of a side, once known.
+    pub const fn wrist(&self, side: Side) -> Option<&WristId> {
+        self.sides[side.index()].wrist()
+    }
+
+    /// The calibrations of the force of this side; `last` is the last ready check.
+    pub(crate) fn kept(&self, side: Side, last: Option<&ReadyRecord>) -> Vec<Line> {
+        self.sides[side.index()].kept(side, last)
+    }
+
+    /// Whether a calibration is dated in the future: this computer's date is wrong, or was.
+    pub fn is_date_behind(&self) -> bool {
+        self.sides.iter().any(OfSide::is_from_the_future)
+    }
+
+    /// The store of calibrations and checks; `None` if no folder is known.
+    pub const fn store(&self) -> Option<&Store> {
+        self.store.as_ref()
     }
 
     /// Sensor and tool to which a new calibration would be bound.

@@ -101,6 +101,8 @@ pub struct Live {
     pub rough_edges: bool,
     /// Change of the wrist sensor's bias since its calibration, N; `None` if it has not changed.
     pub bias_moved_n: Option<f64>,
+    /// No ready check of today has passed on this rig.
+    pub is_unchecked: bool,
     /// The devices of the rig; empty if everything is simulated.
     pub roster: Roster,
     /// Health of the devices, in the same order.
@@ -153,6 +155,7 @@ impl Live {
             scheduling: None,
             rough_edges: false,
             bias_moved_n: None,
+            is_unchecked: false,
             roster: Roster::new(),
             healths: Healths::default(),
             blocks: VecDeque::with_capacity(BLOCKS_KEPT + 1),
@@ -311,6 +314,7 @@ impl Live {
             scheduling: self.scheduling,
             stop_is_stuck,
             bias_moved_n: self.bias_moved_n,
+            is_unchecked: self.is_unchecked,
         }
     }
 }

@@ -21,10 +21,12 @@ mod keys;
 pub mod live;
 mod menu;
 pub mod outbox;
+pub(crate) mod overview;
 pub mod panels;
 pub mod pictures;
 pub mod reader;
 pub mod readings;
+pub(crate) mod ready;
 pub mod roles;
 pub mod rolling;
 pub mod scene3d;
@@ -45,6 +47,7 @@ use settings::Kept;
 use start::Choice;
 
 pub use app::ConsoleApp;
+pub(crate) use panels::finding_words;
 
 use crate::{emulators::Emulators, leaving::Leave};
 

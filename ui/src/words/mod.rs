@@ -8,10 +8,12 @@ mod calibration;
 mod faults;
 mod force;
 mod frames;
+mod ready;
 mod refusals;
 
 pub(crate) use calibration::{drift, refusal};
 pub(crate) use frames::{axes_words, cause, phase};
+pub(crate) use ready::{ask_words, cause_words, check_name, figure_words, lacks_words, unit};
 pub(crate) use refusals::{cure_of_refusal, refused_because};
 
 /// A value with a text for its cause and for its cure.

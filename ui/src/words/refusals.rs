@@ -17,6 +17,7 @@ pub(crate) fn refused_because(why: Refusal) -> String {
         Refusal::Moving => "the arm was not at rest".to_owned(),
         Refusal::HandAbsent => "nobody holds the handle".to_owned(),
         Refusal::ClutchPressed => "the clutch is pressed".to_owned(),
+        Refusal::NotChecked => "this rig requires a ready check, and none of the last 12 hours has passed".to_owned(),
         Refusal::OutOfRange => "the value is outside its range".to_owned(),
         Refusal::SimulatedOnly => "a person may hold the handle of this rig".to_owned(),
         Refusal::NoSuchArm => "this rig has no arm on that side".to_owned(),
@@ -39,6 +40,7 @@ pub(crate) const fn cure_of_refusal(why: Refusal) -> &'static str {
         Refusal::Moving => "let the arm come to rest, then engage again",
         Refusal::HandAbsent => "hold the handle, then engage again",
         Refusal::ClutchPressed => "release the clutch, then engage again",
+        Refusal::NotChecked => "press Ready check in the panel Calibration",
         Refusal::OutOfRange => "choose a value within the range",
         Refusal::SimulatedOnly => "choose a simulated rig",
         Refusal::NoSuchArm => "choose another arm",
@@ -84,6 +86,7 @@ mod tests {
             Refusal::Moving,
             Refusal::HandAbsent,
             Refusal::ClutchPressed,
+            Refusal::NotChecked,
             Refusal::OutOfRange,
             Refusal::NoSuchArm,
         ];

@@ -157,6 +157,7 @@ fn from_boxes_to_first_touch() {
         }
         assert!(is_there(home.0.path(), &format!("tip-force-{sensor}.safetensors")), "tip force of {sensor}");
     }
+    is_ready(&home);
     judged(|| {
         let (figures, told) = home.run("30");
         assert!(!told.contains("not calibrated"), "{told}");
@@ -165,6 +166,22 @@ fn from_boxes_to_first_touch() {
             too_busy();
         }
         judge(&figures);
+    });
+}
+
+/// The ready check of the calibrated rig, by the technician at its arms.
+fn is_ready(home: &Home) {
+    judged(|| {
+        let checked = home.nima(&["check", "rig", "--rig", "rig.toml"]);
+        let told = String::from_utf8_lossy(&checked.stdout).into_owned();
+        println!("{told}");
+        // What a busy machine holds up looks like a bad device.
+        if told.lines().any(|line| line.contains("FAILED") && (line.starts_with("Rates") || line.starts_with("Clocks")))
+        {
+            too_busy();
+        }
+        assert!(checked.status.success(), "{told}");
+        assert!(!told.contains("left out"), "the rig has every part: {told}");
     });
 }
 

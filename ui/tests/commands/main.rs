@@ -4,6 +4,7 @@
 mod calibrate_correspondence;
 mod calibrate_gravity;
 mod calibrate_rig;
+mod check_rig;
 mod devices;
 mod docs;
 mod endings;

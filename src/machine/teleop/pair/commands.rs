@@ -70,6 +70,8 @@ impl<L: Link> Pair<L> {
                 self.may_release(t_s)?;
                 return self.ask(Wish::Release, t_s);
             }
+            Command::Checked(passed) => self.checked = self.checked.map(|_| passed),
+            Command::TestWatchdog(watchdog) => return self.test_watchdog(watchdog, t_s),
             Command::Shutdown => {}
             _ => return Err(Refusal::OutOfRange),
         }
@@ -118,9 +120,9 @@ impl<L: Link> Pair<L> {
         }
     }
 
-    /// Raises a fault that matters only while drives are on.
+    /// Raises a fault that matters only while drives are on, or while its watchdog is tested.
     pub(in crate::teleop) fn fail_if_driven(&mut self, fault: Fault, t_s: f64) {
-        if self.state().permits().drives {
+        if self.state().permits().drives || self.is_tested(fault) {
             self.fail(fault, t_s);
         }
     }
@@ -132,6 +134,7 @@ impl<L: Link> Pair<L> {
         self.chain.reset();
         self.gripper_chain.reset();
         self.hand_is_gone = false;
+        self.watchdog_test = None;
         self.command_m = None;
         self.hand_eye.release();
         if !to.permits().drives || !from.permits().drives {

@@ -15,6 +15,9 @@ impl<L: Link> Pair<L> {
         if self.state() != LoopState::Idle {
             return Ok(());
         }
+        if self.checked == Some(false) {
+            return Err(Refusal::NotChecked);
+        }
         // A force that is mostly weight and bias must never be rendered.
         if !self.force.source.is_usable() {
             return Err(Refusal::ForceUnknown);

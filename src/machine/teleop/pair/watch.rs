@@ -9,7 +9,7 @@ use nima_core::{
 
 use super::{AT_REST_M, Pair, STALLED_AFTER_S, Timing};
 use crate::{
-    messages::{Command, Event, Fault},
+    messages::{Command, Event, Fault, Watchdog},
     rig::{Inputs, Sensed, Switches, View},
     teleop::{Link, LoopState},
 };
@@ -37,7 +37,9 @@ impl<L: Link> Pair<L> {
         (self.force.tip_n, inputs.tip_m, inputs.hand.position_m) = (admitted.force_n, admitted.tip_m, admitted.hand_m);
         self.hand_speed_m_s = self.speed.step(now_s - inputs.age_s, inputs.hand.position_m);
         self.identifier.step(&Sample { t_s: now_s, position_m: inputs.tip_m, force_n: self.force.tip_n });
-        self.link.send(self.identifier.parcel());
+        if !self.withholds(Watchdog::Link) {
+            self.link.send(self.identifier.parcel());
+        }
         self.last_inputs = Some(inputs);
         self.last_input_s = now_s - inputs.age_s;
         inputs

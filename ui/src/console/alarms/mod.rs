@@ -79,6 +79,8 @@ pub enum Kind {
     BiasMoved,
     /// The operating system refused real-time privileges.
     Scheduling,
+    /// No ready check of today has passed.
+    Unchecked,
 }
 
 /// One alarm.
@@ -130,6 +132,8 @@ pub struct Signs {
     pub stop_is_stuck: bool,
     /// Change of the wrist sensor's bias since its calibration, N; `None` if it has not changed.
     pub bias_moved_n: Option<f64>,
+    /// No ready check of today has passed on this rig.
+    pub is_unchecked: bool,
 }
 
 /// Ticks arrive every few milliseconds; half a second without one is an alarm.
@@ -190,6 +194,14 @@ pub fn judge(signs: &Signs) -> Vec<Alarm> {
             priority: Priority::Low,
             cause: sentence(cause),
             cure: sentence(cure),
+        });
+    }
+    if signs.is_unchecked {
+        alarms.push(Alarm {
+            kind: Kind::Unchecked,
+            priority: Priority::Low,
+            cause: text::alarms::UNCHECKED_CAUSE.to_owned(),
+            cure: text::alarms::UNCHECKED_CURE.to_owned(),
         });
     }
     alarms.sort_by_key(|alarm| alarm.priority);

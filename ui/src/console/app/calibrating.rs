@@ -11,7 +11,7 @@ use nima_world::{emulated::Screen, scene::Scene};
 use super::ConsoleApp;
 use crate::console::{
     desk::Panel as Tile,
-    panels::{CalibrationWish, calibrations_ui},
+    panels::{CalibrationWish, Page, calibrations_ui},
     reader::task_of,
     text, theme,
     widgets::card,
@@ -59,6 +59,8 @@ impl ConsoleApp {
     /// Returns to the previous scene; the wizards keep their data.
     pub(super) fn close_wizard(&mut self) {
         self.wizards.open = None;
+        self.close_check();
+        self.listing.close();
         let Some(scene) = self.watched.take() else {
             self.outbox.push(Command::Prompt(self.in_force.side(), Prompt::Rest));
             return;
@@ -114,6 +116,9 @@ impl ConsoleApp {
 
     /// Sends the open wizard's instruction for the person at the arm, and shows it to the technician of an emulated rig.
     pub(super) fn ask(&mut self) {
+        if self.checking.is_open() {
+            return;
+        }
         let wanted = self.wizards.prompt();
         let side = self.in_force.side();
         if let Some(reader) = &self.reader {
@@ -140,7 +145,7 @@ impl ConsoleApp {
         Panel::left("calibrations").exact_size(316.0).resizable(false).frame(side).show(ui, |ui| {
             let panel = Tile::Calibrations;
             wish = card(ui, panel.title(), panel.meaning(), |ui| {
-                calibrations_ui(ui, &self.live, &self.in_force, self.wizards.open)
+                calibrations_ui(ui, &self.live, &self.in_force, self.wizards.open.map(Page::Wizard))
             });
         });
         let binding = self.binding();
@@ -159,7 +164,13 @@ impl ConsoleApp {
 
     pub(super) fn obey_calibrations(&mut self, wish: Option<CalibrationWish>) {
         match wish {
-            Some(CalibrationWish::Open(which)) => self.open_wizard(which),
+            Some(CalibrationWish::Open(which)) => {
+                self.close_check();
+                self.listing.close();
+                self.open_wizard(which);
+            }
+            Some(CalibrationWish::Check) => self.open_check(),
+            Some(CalibrationWish::List) => self.open_listing(),
             Some(CalibrationWish::Choose(side)) => self.choose_arm(side),
             Some(CalibrationWish::Close) => self.close_wizard(),
             None => {}

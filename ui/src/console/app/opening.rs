@@ -2,9 +2,12 @@
 
 use std::path::Path;
 
-use super::ConsoleApp;
-use crate::console::{
-    Options, frames::Meter, in_force::InForce, pictures::Photographer, settings::Kept, wizards::Wizards,
+use super::{ConsoleApp, WARM_UP};
+use crate::{
+    console::{
+        Options, frames::Meter, in_force::InForce, pictures::Photographer, screenshot, settings::Kept, wizards::Wizards,
+    },
+    telling::tell,
 };
 
 impl ConsoleApp {
@@ -78,5 +81,28 @@ impl ConsoleApp {
     pub fn with_wizards(mut self, wizards: Wizards) -> Self {
         self.wizards = wizards;
         self
+    }
+
+    /// Does what the command line asked for at this time: screenshots, a stall, the end.
+    pub(super) fn obey_options(&mut self, ctx: &egui::Context) {
+        let open = self.opened.elapsed();
+        let Options { exit_after, screenshot, .. } = self.options.clone();
+        if let Some(path) = screenshot.filter(|_| !self.pictured && open >= self.picture_at()) {
+            self.pictured = true;
+            ctx.request_screenshot(move |picture| {
+                // Errors can be reported only on the terminal.
+                if let Err(error) = screenshot::save(&path, &picture) {
+                    tell(format_args!("{error:#}"));
+                }
+            });
+        }
+        let finished =
+            self.photographer.as_mut().is_some_and(|taker| taker.step(ctx, &self.live, &mut self.settings.now));
+        if let Some(stall) = self.options.stall.take_if(|_| open >= WARM_UP) {
+            std::thread::sleep(stall);
+        }
+        if finished || exit_after.is_some_and(|exit| open >= exit) {
+            ctx.send_viewport_cmd(egui::ViewportCommand::Close);
+        }
     }
 }

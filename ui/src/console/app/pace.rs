@@ -33,8 +33,9 @@ impl ConsoleApp {
     /// wakes the window in between.
     pub(super) fn rest(&mut self, ctx: &egui::Context) {
         let moves = !(self.live.state().is_latched() || self.live.state() == LoopState::Idle);
+        let asks = self.wizards.open.is_some() || self.checking.is_open();
         let devices = &self.panels.devices;
-        if moves || devices.is_testing() || self.wizards.open.is_some() || self.live.first_tick().is_none() {
+        if moves || devices.is_testing() || asks || self.live.first_tick().is_none() {
             self.moved = Instant::now();
         }
         self.calm = self.moved.elapsed() > SETTLED;

@@ -91,7 +91,8 @@ impl ConsoleApp {
 
     /// Opens and closes the start page by its key.
     pub(super) fn obey_start_key(&mut self, ctx: &egui::Context) {
-        if keys::start_pressed(ctx) && self.wizards.open.is_none() && self.starting.is_none() {
+        let asks = self.wizards.open.is_some() || self.checking.is_open();
+        if keys::start_pressed(ctx) && !asks && self.starting.is_none() {
             if self.start.is_open {
                 self.start.is_open = false;
             } else {

@@ -6,22 +6,27 @@ use nima_core::{
     calibration::{
         Record,
         correspondence::CorrespondenceRecord,
-        gravity::{Drift, DriftCheck, GravityRecord, StillSettings},
+        gravity::{Drift, DriftCheck, GravityModel, GravityRecord, StillSettings},
     },
     tip_force::{Fallback, Model, TipForce},
 };
 use nima_machine::{
     messages::{LoopState, Tick},
-    rig::Prompt,
+    ready::Check,
+    rig::{Prompt, Side},
     runtime::WristChange,
     teleop::Calibrations,
 };
 use nima_recording::{
-    store::{Age, Loaded, Store, WristId, utc_now},
+    store::{Age, Loaded, ReadyRecord, Store, WristId, utc_now},
     tip_force::{keep_model, kept_model},
 };
 
-use crate::console::{text, wizards::Saving};
+use crate::console::{
+    overview::{Kept, Line, found_since},
+    text,
+    wizards::{Saving, Which},
+};
 
 /// The sensor and tool whose calibrations are used on a side.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -46,7 +51,8 @@ pub(super) struct OfSide {
     /// Last known sensor and tool.
     pub(super) last: Option<WristId>,
     pub(super) correspondence: Option<Loaded<CorrespondenceRecord>>,
-    told: Option<String>,
+    /// Calibrations whose files cannot be used, and why.
+    unusable: Vec<(&'static str, String)>,
     /// Other sensors with a calibration for the same tool.
     others: Vec<String>,
     gravity: Option<Loaded<GravityRecord>>,
@@ -62,10 +68,10 @@ impl OfSide {
         this.last = this.wrist().cloned().or(last);
         let (Some(store), Bound::To(wrist)) = (store, &this.bound) else { return this };
         let WristId { serial_number, tool } = wrist;
-        let (now, told) = (SystemTime::now(), &mut this.told);
-        this.tip_force = usable(text::calibrations::TIP_FORCE, kept_model(store, serial_number, tool, now), told);
-        this.correspondence = usable(text::calibrations::CORRESPONDENCE, store.load(serial_number, tool, now), told);
-        this.gravity = usable(text::calibrations::GRAVITY, store.load(serial_number, tool, now), told);
+        let (now, bad) = (SystemTime::now(), &mut this.unusable);
+        this.tip_force = usable(text::calibrations::TIP_FORCE, kept_model(store, serial_number, tool, now), bad);
+        this.correspondence = usable(text::calibrations::CORRESPONDENCE, store.load(serial_number, tool, now), bad);
+        this.gravity = usable(text::calibrations::GRAVITY, store.load(serial_number, tool, now), bad);
         this.drift = this.gravity.as_ref().map(|Loaded { record, .. }| {
             (DriftCheck::new(record.model, record.drift_limit_n(), StillSettings::default()), String::new())
         });
@@ -86,6 +92,64 @@ impl OfSide {
         self.wrist().filter(|_| self.gravity.is_none())
     }
 
+    /// The gravity calibration, and the limit of the force that remains at rest, N.
+    pub(super) fn gravity(&self) -> Option<(GravityModel, f64)> {
+        self.gravity.as_ref().map(|loaded| (loaded.record.model, loaded.record.drift_limit_n()))
+    }
+
+    /// The calibrations of the force, in the order of use; `last` is the last ready check.
+    pub(super) fn kept(&self, side: Side, last: Option<&ReadyRecord>) -> Vec<Line> {
+        let gravity = self.gravity.as_ref().map(|Loaded { record, age, .. }| {
+            kept_of(record, *age, text::overview::newton(record.residuals.held_out.mean_mae()))
+        });
+        let bias = gravity.as_ref().map(|kept| match self.drift() {
+            Some(drift @ (Drift::Fine { .. } | Drift::Moved { .. })) => crate::words::drift(drift),
+            drift => found_since(last, Check::Bias(side), &kept.date)
+                .or_else(|| drift.map(crate::words::drift))
+                .unwrap_or_default(),
+        });
+        let correspondence = self.correspondence.as_ref().map(|Loaded { record, age, .. }| {
+            kept_of(record, *age, text::overview::newton(record.agreement.residuals.held_out.mean_mae()))
+        });
+        let tip_force = self.tip_force.as_ref().map(|Loaded { record, age, .. }| {
+            let check = record.origin.check.as_ref();
+            Kept {
+                date: record.origin.date.clone(),
+                age: *age,
+                judgement: check.map(|check| check.judgement.clone()),
+                error: check
+                    .map_or_else(String::new, |check| text::overview::newton(check.mae_n.iter().sum::<f64>() / 3.0)),
+            }
+        });
+        let not_watched = |kept: &Option<Kept>| kept.as_ref().map(|_| text::overview::NOT_WATCHED.to_owned());
+        let (of_correspondence, of_tip_force) = (not_watched(&correspondence), not_watched(&tip_force));
+        [
+            (Which::Gravity, gravity, bias),
+            (Which::Correspondence, correspondence, of_correspondence),
+            (Which::TipForce, tip_force, of_tip_force),
+        ]
+        .map(|(which, kept, since)| Line {
+            which,
+            name: which.name(),
+            kept: match (kept, self.unusable.iter().find(|(what, _)| *what == which.name())) {
+                (None, Some((_, why))) => Err(why.clone()),
+                (kept, _) => Ok(kept),
+            },
+            since: since.unwrap_or_default(),
+        })
+        .into()
+    }
+
+    /// Whether a calibration is dated in the future.
+    pub(super) fn is_from_the_future(&self) -> bool {
+        let ages = [
+            self.gravity.as_ref().map(|loaded| loaded.age),
+            self.correspondence.as_ref().map(|loaded| loaded.age),
+            self.tip_force.as_ref().map(|loaded| loaded.age),
+        ];
+        ages.contains(&Some(Age::Future))
+    }
+
     /// Names of the calibrations that are missing. The correspondence is needed only to train the network.
     pub(super) fn lacks(&self) -> Vec<&'static str> {
         let correspondence = self.correspondence.is_some() || self.tip_force.is_some();
@@ -102,7 +166,8 @@ impl OfSide {
         let elsewhere = |sensor: &&str| across.is_none_or(|across| across.serial_number != *sensor);
         let others: Vec<_> = self.others.iter().map(String::as_str).filter(elsewhere).collect();
         let swapped = self.without_gravity().filter(|_| !others.is_empty());
-        self.told.clone().or_else(|| {
+        let unusable = self.unusable.last().map(|(what, why)| text::calibrations::not_in_force(what, why));
+        unusable.or_else(|| {
             swapped.map(|wrist| {
                 text::calibrations::other_sensors_are_calibrated(&wrist.serial_number, &wrist.tool, &others.join(", "))
             })
@@ -135,7 +200,7 @@ impl OfSide {
         let tip_force = model.map(|model| TipForce::new(model, fallback)).transpose();
         Calibrations {
             gravity: self.gravity.as_ref().map(|loaded| loaded.record.model),
-            tip_force: usable(text::calibrations::TIP_FORCE, tip_force, &mut self.told),
+            tip_force: usable(text::calibrations::TIP_FORCE, tip_force, &mut self.unusable),
         }
     }
 
@@ -151,7 +216,7 @@ impl OfSide {
             }
             Saving::Frame(_) | Saving::Undo(_) => return Err(text::calibrations::NOT_OF_A_SENSOR.to_owned()),
         };
-        self.told = None;
+        self.unusable.clear();
         Ok(path)
     }
 
@@ -180,10 +245,19 @@ impl OfSide {
     }
 }
 
+fn kept_of(record: &impl Record, age: Age, error: String) -> Kept {
+    Kept { date: record.head().date.clone(), age, judgement: Some(record.judgement().clone()), error }
+}
+
 /// The loaded record; if its file cannot be used, the reason is stored.
-fn usable<R>(what: &str, loaded: Result<Option<R>, impl std::error::Error>, told: &mut Option<String>) -> Option<R> {
+fn usable<R>(
+    what: &'static str,
+    loaded: Result<Option<R>, impl std::error::Error>,
+    unusable: &mut Vec<(&'static str, String)>,
+) -> Option<R> {
     loaded.unwrap_or_else(|error| {
-        *told = Some(text::calibrations::not_in_force(what, &in_one_line(&error)));
+        unusable.retain(|(known, _)| *known != what);
+        unusable.push((what, in_one_line(&error)));
         None
     })
 }

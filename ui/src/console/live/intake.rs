@@ -18,8 +18,8 @@ use crate::console::{
 };
 
 impl Live {
-    /// Reads everything that the loop has sent; `each` is called with every tick.
-    pub fn take_in(&mut self, door: &Door, mut each: impl FnMut(&Tick)) {
+    /// Reads everything that the loop has sent; `each` is called with all of it.
+    pub fn take_in(&mut self, door: &Door, mut each: impl FnMut(&News<'_>)) {
         let handle = door.handle();
         if self.roster.len() != handle.roster().len() {
             self.roster.clone_from(handle.roster());
@@ -30,14 +30,15 @@ impl Live {
         }
         let mut came = false;
         door.take(|news| {
-            let tick = match news {
-                News::Event(event) => return self.event(event),
-                News::Gauges(gauges) => return self.gauges(gauges),
-                News::Tick(tick) => tick,
-            };
-            self.tick(tick);
-            each(tick);
-            came = true;
+            match news {
+                News::Event(event) => self.event(event),
+                News::Gauges(gauges) => self.gauges(gauges),
+                News::Tick(tick) => {
+                    self.tick(tick);
+                    came = true;
+                }
+            }
+            each(&news);
         });
         if came {
             self.tick_at = Instant::now();

@@ -25,14 +25,29 @@ use crate::{
 pub enum CalibrationWish {
     /// Open this wizard.
     Open(Which),
+    /// Open the ready check.
+    Check,
+    /// Open the list of all calibrations.
+    List,
     /// Select the wrist sensor of this arm.
     Choose(Side),
     /// Return to the normal view.
     Close,
 }
 
-/// The panel; `open` is the wizard that is open.
-pub fn calibrations_ui(ui: &mut Ui, live: &Live, in_force: &InForce, open: Option<Which>) -> Option<CalibrationWish> {
+/// What is open beside the panel.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Page {
+    /// A wizard.
+    Wizard(Which),
+    /// The ready check.
+    Check,
+    /// The list of all calibrations.
+    All,
+}
+
+/// The panel; `open` is the page that is open beside it.
+pub fn calibrations_ui(ui: &mut Ui, live: &Live, in_force: &InForce, open: Option<Page>) -> Option<CalibrationWish> {
     let mut wish = None;
     source_ui(ui, live);
     for line in in_force.lines() {
@@ -43,17 +58,28 @@ pub fn calibrations_ui(ui: &mut Ui, live: &Live, in_force: &InForce, open: Optio
     }
     ui.add_space(4.0);
     let free = matches!(live.state(), LoopState::Idle | LoopState::Engaged);
+    for (page, name, meaning, opens) in [
+        (Page::Check, text::ready::OPEN, text::calibrations::opens(text::ready::MEANING), CalibrationWish::Check),
+        (Page::All, text::overview::OPEN, text::overview::MEANING.to_owned(), CalibrationWish::List),
+    ] {
+        let button = Button::selectable(open == Some(page), name).frame_when_inactive(true);
+        let button = button.min_size(vec2(ui.available_width(), 28.0));
+        let button = ui.add_enabled((free || page == Page::All) && open != Some(page), button).on_hover_text(meaning);
+        if button.on_disabled_hover_text(text::calibrations::OPEN_DISABLED_HOVER).clicked() {
+            wish = Some(opens);
+        }
+    }
     if live.is_bimanual() {
-        wish = side_ui(ui, in_force.side());
+        wish = side_ui(ui, in_force.side()).or(wish);
     }
     // The frames are those of an arm with joints.
     let has_arm = live.rig.devices.is_some();
     for which in Which::ALL.into_iter().filter(|which| has_arm || which.scene().is_some()) {
         let text = text::calibrations::calibrate(&which.name().to_lowercase());
-        let button = Button::selectable(open == Some(which), text)
-            .frame_when_inactive(true)
-            .min_size(vec2(ui.available_width(), 28.0));
-        let response = ui.add_enabled(free && open != Some(which), button);
+        let is_open = open == Some(Page::Wizard(which));
+        let button =
+            Button::selectable(is_open, text).frame_when_inactive(true).min_size(vec2(ui.available_width(), 28.0));
+        let response = ui.add_enabled(free && !is_open, button);
         let response = response.on_hover_text(text::calibrations::opens(which.meaning()));
         if response.on_disabled_hover_text(text::calibrations::OPEN_DISABLED_HOVER).clicked() {
             wish = Some(CalibrationWish::Open(which));

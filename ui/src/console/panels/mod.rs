@@ -21,8 +21,9 @@ mod tradeoff_plot;
 
 use nima_core::impedance::{Baseline, Mode};
 
-pub use calibrations::{CalibrationWish, calibrations_ui};
+pub use calibrations::{CalibrationWish, Page, calibrations_ui};
 pub use degrees::degrees_ui;
+pub(crate) use devices::finding_words;
 pub use devices::{DevicesState, devices_ui};
 pub use feedback::{FeedbackState, calm_gain_ui, feedback_ui};
 pub use force_space::{ForceSpaceState, force_space_ui};

@@ -64,6 +64,10 @@ pub(in crate::console) fn no_player(players: &str) -> String {
     format!("No alarm sound: none of these players is installed: {players}")
 }
 
+pub(in crate::console) const UNCHECKED_CAUSE: &str =
+    "No ready check of the last 12 hours has passed with these devices";
+pub(in crate::console) const UNCHECKED_CURE: &str = "Press Ready check in the panel Calibration before you engage";
+
 /// The program for playing sounds failed.
 pub(in crate::console) fn player_failed(status: &impl std::fmt::Display) -> String {
     format!("The alarm sound could not be played ({status})")

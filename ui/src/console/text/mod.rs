@@ -27,6 +27,8 @@ pub(super) mod help;
 pub(super) mod horizon;
 pub(super) mod menu;
 pub(super) mod modes;
+pub(super) mod overview;
+pub(super) mod ready;
 pub(super) mod roles;
 pub(super) mod safety;
 pub(super) mod settings;

@@ -30,7 +30,8 @@ use nima_world::scene::Scene;
 
 pub use attend::Attended;
 pub use correspondence::CorrespondenceWizard;
-pub use frames::{FrameCalibration, FrameSaving, FrameWizard, Kind, Subject};
+pub(in crate::console) use frames::sizes_words;
+pub use frames::{FrameCalibration, FrameKept, FrameSaving, FrameWizard, Kind, Subject, frame_kept};
 pub use gravity::GravityWizard;
 pub use tip_force::TipForceWizard;
 

@@ -4,18 +4,18 @@
 //! Left and right stand side by side where there is room. A change of the rig is a [`Change`] that the window carries
 //! out: it writes the rig file and starts the machine again.
 
-mod checkup;
 mod choosing;
 mod report;
 mod row;
-#[cfg(test)]
-mod tests;
 
 use egui::{Align, Button, Label, Layout, RichText, Ui, vec2};
 use nima_machine::{
     config::Chosen,
     messages::LoopState,
-    rig::{Gauges, Nominal, Part, PartKind, Roster, SIDES, Side},
+    rig::{
+        Gauges, Part, PartKind, Roster, SIDES, Side,
+        checkup::{BLOCKS, Checkup, Subject},
+    },
 };
 
 use crate::console::{
@@ -23,8 +23,8 @@ use crate::console::{
     text, theme,
     widgets::{small, weak},
 };
-use checkup::{BLOCKS, Checkup, Subject};
 use choosing::Chooser;
+pub(crate) use report::sentences as finding_words;
 use row::row_ui;
 
 /// Width from which left and right stand side by side.
@@ -112,17 +112,12 @@ impl DevicesState {
             live.blocks.iter().skip(skip).take(BLOCKS).map(AsRef::as_ref).collect()
         };
         for place in test.places {
-            let checkup = subject(live, place, &blocks).and_then(|subject| Checkup::of(&subject));
+            let part = live.roster.get(place).and_then(|entry| entry.part);
+            let subject = part.and_then(|part| Subject::of(part, place, &live.rig, &blocks));
+            let checkup = subject.and_then(|subject| Checkup::of(&subject));
             self.results.extend(checkup.map(|checkup| (place, checkup)));
         }
     }
-}
-
-fn subject<'a>(live: &Live, place: usize, blocks: &'a [&'a Gauges]) -> Option<Subject<'a>> {
-    let (part, devices) = (live.roster.get(place)?.part?, live.rig.devices.as_ref()?);
-    let nominal = Nominal::of(part, devices, live.rig.rate_hz);
-    let tools = devices.tracker.as_ref().map_or(0, |tracker| tracker.tools.len());
-    Some(Subject { part, place, nominal, period_s: 1.0 / live.rig.rate_hz, tools, blocks })
 }
 
 /// Why the rig cannot be changed now.

@@ -2,9 +2,11 @@
 
 use egui::{Grid, Label, RichText, Ui};
 use nalgebra::Vector3;
-use nima_machine::rig::PartKind;
+use nima_machine::rig::{
+    PartKind,
+    checkup::{Checkup, Finding, Measured},
+};
 
-use super::checkup::{Checkup, Finding, Measured};
 use crate::console::{
     text::{self, checkup as words},
     theme,
@@ -127,7 +129,7 @@ fn nearest_axis(up: &Vector3<f64>) -> Option<(&'static str, f64, f64)> {
 }
 
 /// Cause and cure.
-fn sentences(kind: PartKind, finding: &Finding) -> [String; 2] {
+pub(crate) fn sentences(kind: PartKind, finding: &Finding) -> [String; 2] {
     let with_unit = |channel: usize, value: f64| {
         let (_, unit, scale) = text::devices::group(kind, channel).unwrap_or_default();
         format!("{} {unit}", three_digits(value * scale))

@@ -5,11 +5,12 @@ use std::{fmt::Debug, path::PathBuf, time::SystemTime};
 use nima_core::calibration::{
     Judgement, RecordHead, Verdict,
     frames::{
-        Calibration, Cause, Coverage, FrameError, FrameRecord, FrameReport, FrameSample, FrameSession, HandEyeFound,
-        Phase, RigChange, SensorMountFound, Serials, Sizes, Source, TableFound, TipFound, TrocarFound, ViewFound,
+        Calibration, Cause, Coverage, Found, FrameError, FrameRecord, FrameReport, FrameSample, FrameSession,
+        HandEyeFound, Phase, RigChange, SensorMountFound, Serials, Sizes, Source, TableFound, TipFound, TrocarFound,
+        ViewFound,
     },
 };
-use nima_recording::store::{self, Store, StoreError};
+use nima_recording::store::{self, Age, Loaded, Store, StoreError};
 
 use super::kind::Kind;
 
@@ -171,28 +172,61 @@ impl FrameCalibration {
 /// First part of the name of the file for the handle's part of a view.
 const HANDLE: &str = "view_handle";
 
-/// What the last saved calibration of this kind changed in the rig file; empty if there is none for this sensor and tool.
-pub(super) fn last_changes(store: &Store, kind: Kind, handle: bool, [sensor, tool]: [&str; 2]) -> Vec<RigChange> {
-    fn of<F: nima_core::calibration::frames::Found>(
-        store: &Store,
-        [sensor, tool]: [&str; 2],
-    ) -> Option<Vec<RigChange>> {
-        let loaded = store.load::<FrameRecord<F>>(sensor, tool, SystemTime::now()).ok()??;
-        Some(loaded.record.rig)
+/// What is kept of a frame calibration, whichever it is.
+#[derive(Clone, Debug)]
+pub struct FrameKept {
+    /// When it was made, UTC, ISO 8601.
+    pub date: String,
+    /// Its age.
+    pub age: Age,
+    /// Its verdict.
+    pub judgement: Judgement,
+    /// Root mean square error on held-out poses.
+    pub held_out: Sizes,
+    /// What it changed in the rig file.
+    pub rig: Vec<RigChange>,
+}
+
+impl<F: Found> From<Loaded<FrameRecord<F>>> for FrameKept {
+    fn from(Loaded { record, age, .. }: Loaded<FrameRecord<F>>) -> Self {
+        let FrameRecord { head, judgement, held_out, rig, .. } = record;
+        Self { date: head.date, age, judgement, held_out, rig }
+    }
+}
+
+/// The last saved calibration of this kind for a sensor and tool (`handle`: the handle's part of a view); `None` if there is none.
+///
+/// # Errors
+/// As [`Store::load`].
+pub fn frame_kept(
+    store: &Store,
+    kind: Kind,
+    handle: bool,
+    [sensor, tool]: [&str; 2],
+) -> Result<Option<FrameKept>, StoreError> {
+    fn of<F: Found>(store: &Store, [sensor, tool]: [&str; 2]) -> Result<Option<FrameKept>, StoreError> {
+        Ok(store.load::<FrameRecord<F>>(sensor, tool, SystemTime::now())?.map(Into::into))
     }
     let wrist = [sensor, tool];
-    let changes = match kind {
+    match kind {
         Kind::Tip => of::<TipFound>(store, wrist),
         Kind::HandEye => of::<HandEyeFound>(store, wrist),
         Kind::Trocar => of::<TrocarFound>(store, wrist),
         Kind::Table => of::<TableFound>(store, wrist),
         Kind::View if handle => {
-            let record =
-                store.path_of(HANDLE, sensor, "toml").and_then(|path| store::read::<FrameRecord<ViewFound>>(&path));
-            record.ok().flatten().map(|record| record.rig)
+            let path = store.path_of(HANDLE, sensor, "toml")?;
+            let record = store::read::<FrameRecord<ViewFound>>(&path)?;
+            Ok(record.map(|record| {
+                let age = store.age_of(&record.head.date, SystemTime::now()).unwrap_or(Age::Future);
+                Loaded { record, age, path }.into()
+            }))
         }
         Kind::View => of::<ViewFound>(store, wrist),
         Kind::Mount => of::<SensorMountFound>(store, wrist),
-    };
-    changes.unwrap_or_default()
+    }
+}
+
+/// What the last saved calibration of this kind changed in the rig file; empty if there is none for this sensor and tool.
+pub(super) fn last_changes(store: &Store, kind: Kind, handle: bool, wrist: [&str; 2]) -> Vec<RigChange> {
+    frame_kept(store, kind, handle, wrist).ok().flatten().map(|kept| kept.rig).unwrap_or_default()
 }

@@ -23,8 +23,9 @@ use nima_machine::{
     rig::{Prompt, View},
 };
 
-pub use job::FrameCalibration;
+pub use job::{FrameCalibration, FrameKept, frame_kept};
 pub use kind::Kind;
+pub(in crate::console) use result_ui::sizes_words;
 pub use subject::Subject;
 
 use self::{

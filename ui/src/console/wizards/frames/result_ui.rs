@@ -77,7 +77,7 @@ fn figures_ui(ui: &mut Ui, quality: &Quality, outliers: &[usize], units: &str) {
     }
 }
 
-fn sizes_words(sizes: Sizes) -> Option<String> {
+pub(in crate::console) fn sizes_words(sizes: Sizes) -> Option<String> {
     let place = sizes.place_m.map(|m| format!("{:.2} mm", m * 1e3));
     let angle = sizes.angle_deg.map(|deg| format!("{deg:.2} deg"));
     let words: Vec<_> = place.into_iter().chain(angle).collect();

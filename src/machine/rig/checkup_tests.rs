@@ -1,14 +1,7 @@
 //! Every finding is made where it belongs, and a device in order has none.
 
-use nima_machine::{
-    config::RigConfig,
-    rig::{DEVICES_MAX, Side},
-};
-
-use super::checkup::*;
-use nima_machine::rig::{AGES, Gauge, Gauges, Nominal, Part};
-
-const PERIOD_S: f64 = 1e-3;
+use super::{AGES, DEVICES_MAX, Gauge, Gauges, Part, Side, checkup::*};
+use crate::config::RigConfig;
 
 /// A reading of a sensor at rest, tilted; `even` is from -1 to 1.
 fn at_rest(channel: usize, even: f64) -> f64 {
@@ -41,7 +34,6 @@ const IN_ORDER: Bench = Bench {
 impl Bench {
     fn tested(&self) -> Checkup {
         let rig = RigConfig::load("emulated").unwrap();
-        let devices = rig.devices.unwrap();
         let mut readings = 0_u64;
         let blocks: Vec<Gauges> = (0..BLOCKS as u32)
             .map(|block| {
@@ -67,9 +59,7 @@ impl Bench {
             })
             .collect();
         let blocks: Vec<&Gauges> = blocks.iter().collect();
-        let nominal = Nominal::of(self.part, &devices, 1000.0);
-        let subject = Subject { part: self.part, place: 2, nominal, period_s: PERIOD_S, tools: 3, blocks: &blocks };
-        Checkup::of(&subject).unwrap()
+        Checkup::of(&Subject::of(self.part, 2, &rig, &blocks).unwrap()).unwrap()
     }
 }
 

@@ -2,14 +2,14 @@
 
 use nalgebra::Vector3;
 use nima_core::frames::GRAVITY_M_S2;
-use nima_machine::rig::{AGES, CHANNELS, Gauge, Gauges, Nominal, Part, PartKind, Spread};
 
-use crate::console::activity::least;
+use super::{AGES, CHANNELS, Gauge, Gauges, Nominal, Part, PartKind, Spread};
+use crate::config::RigConfig;
 
 /// Blocks of 0.1 s in a test; the counters of the first one are where it begins.
-pub(super) const BLOCKS: usize = 21;
+pub const BLOCKS: usize = 21;
 /// The rate may differ from the nominal one by this share.
-const RATE_OFF: f64 = 0.05;
+pub const RATE_OFF: f64 = 0.05;
 /// Share of the readings that may be lost.
 const LOST_MAX: f64 = 0.005;
 /// A reading may be as old as this many periods of the device, and as this many ticks, s.
@@ -28,7 +28,8 @@ const ACCELERATION: std::ops::Range<usize> = 6..9;
 
 /// Something to look at, with a cause and a cure on the screen.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Finding {
+#[expect(missing_docs, reason = "the names say it")]
+pub enum Finding {
     /// No reading came.
     Silent,
     /// It was opened again during the test.
@@ -59,53 +60,81 @@ pub(super) enum Finding {
 
 /// One number of a device's readings during the test.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Measured {
-    pub(super) channel: usize,
+#[expect(missing_docs, reason = "the names say it")]
+pub struct Measured {
+    pub channel: usize,
     /// Standard deviation within tenths of a second: the noise, without slow motion.
-    pub(super) noise: f64,
-    pub(super) low: f64,
-    pub(super) high: f64,
-    pub(super) range: Option<[f64; 2]>,
+    pub noise: f64,
+    pub low: f64,
+    pub high: f64,
+    pub range: Option<[f64; 2]>,
+}
+
+/// A smaller change of this number of a reading is nothing that a person does on purpose: m, rad, N, Nm, m/s^2.
+pub const fn least(kind: PartKind, channel: usize) -> f64 {
+    match (kind, channel) {
+        (PartKind::Handle, 0..=2) => 3e-4,
+        (PartKind::Handle, 3..=6) | (PartKind::Servos, _) => 0.01,
+        (PartKind::Arm, _) => 2e-3,
+        (PartKind::Sensor, 0..=2) => 0.3,
+        (PartKind::Sensor, 3..=5) => 0.02,
+        (PartKind::Tracker, _) => 7e-4,
+        // An acceleration, a button or a switch.
+        (PartKind::Sensor | PartKind::Handle | PartKind::Pedal, _) => 0.5,
+    }
 }
 
 /// What a test has found.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Checkup {
-    pub(super) part: Part,
+#[expect(missing_docs, reason = "the names say it")]
+pub struct Checkup {
+    pub part: Part,
     /// Duration, s.
-    pub(super) took_s: f64,
-    pub(super) rate_hz: f64,
-    pub(super) nominal_hz: Option<f64>,
+    pub took_s: f64,
+    pub rate_hz: f64,
+    pub nominal_hz: Option<f64>,
     /// Each number that it delivered.
-    pub(super) measured: Vec<Measured>,
+    pub measured: Vec<Measured>,
     /// Age of the newest reading in a tick, s: median and 99th percentile; `None` if it was never heard.
-    pub(super) age_s: Option<[f64; 2]>,
-    pub(super) lost: u64,
-    pub(super) damaged: u64,
-    pub(super) refused: u64,
+    pub age_s: Option<[f64; 2]>,
+    pub lost: u64,
+    pub damaged: u64,
+    pub refused: u64,
     /// Mean acceleration, m/s^2; of a sensor at rest it points upwards.
-    pub(super) up_m_s2: Option<Vector3<f64>>,
+    pub up_m_s2: Option<Vector3<f64>>,
     /// What to look at; empty if all is fine.
-    pub(super) findings: Vec<Finding>,
+    pub findings: Vec<Finding>,
 }
 
 /// What a test needs to know of a device.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Subject<'a> {
-    pub(super) part: Part,
+#[expect(missing_docs, reason = "the names say it")]
+pub struct Subject<'a> {
+    pub part: Part,
     /// Place in the roster.
-    pub(super) place: usize,
-    pub(super) nominal: Nominal,
+    pub place: usize,
+    pub nominal: Nominal,
     /// Period of the loop, s.
-    pub(super) period_s: f64,
+    pub period_s: f64,
     /// Number of tools that a tracker follows.
-    pub(super) tools: usize,
-    pub(super) blocks: &'a [&'a Gauges],
+    pub tools: usize,
+    /// What was delivered meanwhile, oldest first.
+    pub blocks: &'a [&'a Gauges],
+}
+
+impl<'a> Subject<'a> {
+    /// The part of this rig at this place of the roster; `None` if the rig has no devices.
+    pub fn of(part: Part, place: usize, rig: &RigConfig, blocks: &'a [&'a Gauges]) -> Option<Self> {
+        let devices = rig.devices.as_ref()?;
+        let nominal = Nominal::of(part, devices, rig.rate_hz);
+        let tools = devices.tracker.as_ref().map_or(0, |tracker| tracker.tools.len());
+        Some(Self { part, place, nominal, period_s: 1.0 / rig.rate_hz, tools, blocks })
+    }
 }
 
 impl Checkup {
     /// The test of a device from these blocks, oldest first; `None` with fewer than two.
-    pub(super) fn of(subject: &Subject<'_>) -> Option<Self> {
+    pub fn of(subject: &Subject<'_>) -> Option<Self> {
         let (first, rest) = subject.blocks.split_first()?;
         let last = rest.last()?;
         let [before, after] = [first, last].map(|block| &block.devices[subject.place]);

@@ -1,0 +1,67 @@
+//! The loop keeps its deadlines, its clock goes as the computer's, and the computer's date can be right.
+
+use super::{
+    Ask, Cause, Figure, Subject, Unit,
+    item::{Item, Progress},
+};
+use crate::messages::Tick;
+
+/// Duration of the measurement, s.
+const TAKES_S: f64 = 2.0;
+/// More than one missed period in a hundred is felt as roughness.
+const MISSED_MAX: f64 = 0.01;
+/// Both clocks may differ by this much: ticks wait for whoever reads them, s.
+const APART_MAX_S: f64 = 0.25;
+
+#[derive(Debug)]
+pub(super) struct Clocks {
+    is_date_behind: bool,
+    newest: Option<Tick>,
+    /// The first tick, and when it was looked at.
+    first: Option<(Tick, f64)>,
+}
+
+impl Clocks {
+    pub(super) const fn of(subject: &Subject) -> Self {
+        Self { is_date_behind: subject.is_date_behind, newest: None, first: None }
+    }
+}
+
+impl Item for Clocks {
+    fn tick(&mut self, tick: &Tick) {
+        // One arm is enough: both have the same clock.
+        if self.newest.is_none_or(|newest| newest.side == tick.side) {
+            self.newest = Some(*tick);
+        }
+    }
+
+    fn look(&mut self, now_s: f64) -> Progress {
+        if self.is_date_behind {
+            return Progress::Failed(Cause::DateBehind);
+        }
+        let Some(newest) = self.newest else { return Progress::Asking(Ask::Nothing) };
+        let (first, first_s) = self.first.get_or_insert((newest, now_s));
+        let (took_s, loop_s) = (now_s - *first_s, newest.t_s - first.t_s);
+        if took_s < TAKES_S {
+            return Progress::Asking(Ask::Nothing);
+        }
+        let by_s = (took_s - loop_s).abs();
+        if by_s.is_nan() || by_s > APART_MAX_S {
+            return Progress::Failed(Cause::LoopClock { by_s });
+        }
+        let (missed, made) = (newest.missed.saturating_sub(first.missed), newest.index.saturating_sub(first.index));
+        let share = missed as f64 / (missed + made).max(1) as f64;
+        if share > MISSED_MAX {
+            return Progress::Failed(Cause::Missed { share });
+        }
+        Progress::Passed(Figure { value: 100.0 * share, limit: 100.0 * MISSED_MAX, unit: Unit::Percent })
+    }
+
+    fn late(&self) -> Cause {
+        Cause::NoTicks
+    }
+
+    fn patience_s(&self) -> f64 {
+        8.0
+    }
+}

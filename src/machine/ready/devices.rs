@@ -1,0 +1,58 @@
+//! Every device of the rig file is there and stays for a second.
+
+use nima_devices::Standing;
+
+use super::{
+    Ask, Cause, Figure, Subject, Unit,
+    item::{Item, Progress},
+};
+use crate::rig::Healths;
+
+/// A device counts as steady after this time, s.
+const STEADY_S: f64 = 1.0;
+
+#[derive(Debug)]
+pub(super) struct Devices {
+    count: usize,
+    healths: Option<Healths>,
+    /// Since when all are there, and how often devices had been lost then.
+    since: Option<(f64, u64)>,
+}
+
+impl Devices {
+    pub(super) fn of(subject: &Subject) -> Self {
+        Self { count: subject.parts.len(), healths: None, since: None }
+    }
+
+    fn missing(&self) -> Option<usize> {
+        let Some(healths) = &self.healths else { return Some(0) };
+        healths.devices.iter().take(self.count).position(|health| health.standing != Standing::Connected)
+    }
+}
+
+impl Item for Devices {
+    fn healths(&mut self, healths: &Healths) {
+        self.healths = Some(*healths);
+    }
+
+    fn look(&mut self, now_s: f64) -> Progress {
+        let outages = self.healths.map_or(0, |healths| healths.devices.iter().map(|health| health.outages).sum());
+        if self.missing().is_some() || self.since.is_some_and(|(_, before)| before != outages) {
+            self.since = None;
+            return Progress::Asking(Ask::Nothing);
+        }
+        let (since_s, _) = *self.since.get_or_insert((now_s, outages));
+        if now_s - since_s < STEADY_S {
+            return Progress::Asking(Ask::Nothing);
+        }
+        Progress::Passed(Figure { value: self.count as f64, limit: self.count as f64, unit: Unit::Count })
+    }
+
+    fn late(&self) -> Cause {
+        Cause::Missing { place: self.missing().unwrap_or(0) }
+    }
+
+    fn patience_s(&self) -> f64 {
+        15.0
+    }
+}

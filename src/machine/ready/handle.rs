@@ -1,0 +1,98 @@
+//! The handle is free: let go it rests, no force is asked of it, and it goes where the hand moves it.
+
+use nalgebra::{UnitQuaternion, Vector3};
+use nima_core::calibration::frames::Move;
+
+use super::{
+    Ask, Cause, Figure, Subject, Unit, angle_deg,
+    item::{Item, Progress},
+};
+use crate::{messages::Tick, rig::Side};
+
+/// Let go, it rests within this, m, for this time, s.
+const RESTS_M: f64 = 1e-3;
+const RESTS_S: f64 = 0.6;
+/// Way after which its direction is judged, m.
+const WAY_M: f64 = 0.010;
+/// Largest angle between what was asked and what is measured, degrees: a person's hand, and nearer to this axis than to any other.
+const ASKEW_MAX_DEG: f64 = 40.0;
+/// The way that is asked for.
+const WAY: Move = Move::Right;
+
+#[derive(Debug)]
+pub(super) struct Handle {
+    side: Side,
+    view_from_leader: UnitQuaternion<f64>,
+    /// Where it rests, m (leader), and since when, s on the loop's clock.
+    rest: Option<(Vector3<f64>, f64)>,
+    /// It has rested: from here it is moved, m.
+    from_m: Option<Vector3<f64>>,
+    /// The farthest it came, in the picture's frame, m.
+    far_m: Vector3<f64>,
+    /// How far it went by itself, m.
+    drifted_m: f64,
+    force_n: f64,
+}
+
+impl Handle {
+    pub(super) fn of(side: Side, subject: &Subject) -> Self {
+        Self {
+            side,
+            view_from_leader: subject.rig.teleoperation.view_from_leader(),
+            rest: None,
+            from_m: None,
+            far_m: Vector3::zeros(),
+            drifted_m: 0.0,
+            force_n: 0.0,
+        }
+    }
+}
+
+impl Item for Handle {
+    fn tick(&mut self, tick: &Tick) {
+        if tick.side != self.side {
+            return;
+        }
+        self.force_n = self.force_n.max(tick.rendered_n.norm());
+        let Some(at_m) = tick.frames.leader_from_handle.map(|pose| pose.translation.vector) else { return };
+        if let Some(from_m) = self.from_m {
+            let way_m = self.view_from_leader * (at_m - from_m);
+            if way_m.norm() > self.far_m.norm() {
+                self.far_m = way_m;
+            }
+            return;
+        }
+        let (rest_m, since_s) = *self.rest.get_or_insert((at_m, tick.t_s));
+        let by_m = (at_m - rest_m).norm();
+        if by_m > RESTS_M {
+            self.drifted_m = self.drifted_m.max(by_m);
+            self.rest = Some((at_m, tick.t_s));
+        } else if tick.t_s - since_s >= RESTS_S {
+            self.from_m = Some(at_m);
+        }
+    }
+
+    fn look(&mut self, _now_s: f64) -> Progress {
+        if self.force_n > 0.0 {
+            return Progress::Failed(Cause::HandleForce { force_n: self.force_n });
+        }
+        if self.from_m.is_none() {
+            return Progress::Asking(Ask::LetGo(self.side));
+        }
+        if self.far_m.norm() < WAY_M {
+            return Progress::Asking(Ask::MoveHandle(self.side, WAY));
+        }
+        let by_deg = angle_deg(&self.far_m, &WAY.in_view());
+        if by_deg > ASKEW_MAX_DEG {
+            return Progress::Failed(Cause::HandleAskew { by_deg });
+        }
+        Progress::Passed(Figure { value: by_deg, limit: ASKEW_MAX_DEG, unit: Unit::Degree })
+    }
+
+    fn late(&self) -> Cause {
+        match self.from_m {
+            None => Cause::HandlePulls { by_m: self.drifted_m },
+            Some(_) => Cause::HandleStuck { by_m: self.far_m.norm() },
+        }
+    }
+}

@@ -1,0 +1,84 @@
+//! One push in a known direction: the force is measured in that direction, in the workspace.
+
+use nalgebra::Vector3;
+
+use super::{
+    Arm, Ask, Cause, Figure, Unit, angle_deg,
+    item::{Item, Progress},
+};
+use crate::{messages::Tick, rig::Side};
+
+/// A push begins at this force, N, and is judged by its mean over this time, s.
+const FELT_N: f64 = 1.0;
+const FELT_S: f64 = 0.2;
+/// Largest angle between the push and what is measured, degrees: a person's hand, and far from any other axis.
+const ASKEW_MAX_DEG: f64 = 30.0;
+
+/// To the right: it tells a turn about the vertical from one about the axis away from the person, which gravity cannot.
+fn asked() -> nalgebra::UnitVector3<f64> {
+    Vector3::x_axis()
+}
+
+#[derive(Debug)]
+pub(super) struct Push {
+    side: Side,
+    /// There is a calibration, or none is needed.
+    is_calibrated: bool,
+    /// The force is known at present: not while the sensor is being opened.
+    is_known: bool,
+    most_n: f64,
+    /// Since when it is felt, s on the loop's clock; sum of the forces, N.
+    felt: Option<(f64, Vector3<f64>)>,
+    by_deg: Option<f64>,
+}
+
+impl Push {
+    pub(super) const fn of(side: Side, arm: &Arm) -> Self {
+        let is_calibrated = !arm.at_wrist || arm.gravity.is_some();
+        Self { side, is_calibrated, is_known: false, most_n: 0.0, felt: None, by_deg: None }
+    }
+}
+
+/// Force of the surroundings on the tip, N (`world`), without the network, which knows the trocar only.
+fn force_n(tick: &Tick) -> Option<Vector3<f64>> {
+    match (&tick.force.gravity_free, tick.wrist.as_ref().and_then(|sample| sample.world_from_s1)) {
+        (Some(wrench), Some(world_from_s1)) => Some(world_from_s1 * wrench.force_n),
+        _ => tick.force.source.is_usable().then_some(tick.force.tip_n),
+    }
+}
+
+impl Item for Push {
+    fn tick(&mut self, tick: &Tick) {
+        if tick.side != self.side || self.by_deg.is_some() {
+            return;
+        }
+        let force_n = force_n(tick);
+        self.is_known = force_n.is_some();
+        let Some(force_n) = force_n.filter(|force_n| force_n.norm() >= FELT_N) else {
+            self.most_n = force_n.map_or(self.most_n, |force_n| self.most_n.max(force_n.norm()));
+            self.felt = None;
+            return;
+        };
+        let (since_s, sum_n) = self.felt.get_or_insert((tick.t_s, Vector3::zeros()));
+        *sum_n += force_n;
+        if tick.t_s - *since_s >= FELT_S {
+            // What is pushed pushes back.
+            self.by_deg = Some(angle_deg(sum_n, &-asked().into_inner()));
+        }
+    }
+
+    fn look(&mut self, _now_s: f64) -> Progress {
+        match self.by_deg {
+            Some(value) if value <= ASKEW_MAX_DEG => {
+                Progress::Passed(Figure { value, limit: ASKEW_MAX_DEG, unit: Unit::Degree })
+            }
+            Some(by_deg) => Progress::Failed(Cause::PushAskew { by_deg }),
+            None if !self.is_calibrated => Progress::Failed(Cause::Uncalibrated),
+            None => Progress::Asking(Ask::Push(self.side, asked())),
+        }
+    }
+
+    fn late(&self) -> Cause {
+        if self.is_known { Cause::NoPush { most_n: self.most_n } } else { Cause::Uncalibrated }
+    }
+}

@@ -1,0 +1,86 @@
+//! The test of every device ([`Checkup`]): rate, losses, age, noise, range. What is found must be found twice.
+
+use super::{
+    Ask, Cause, Figure, Subject, Unit,
+    item::{Item, Progress},
+};
+use crate::{
+    config::RigConfig,
+    rig::{
+        Gauges, Part,
+        checkup::{self, BLOCKS, Checkup, Finding, RATE_OFF},
+    },
+};
+
+#[derive(Debug)]
+pub(super) struct Rates {
+    rig: RigConfig,
+    parts: Vec<Option<Part>>,
+    blocks: Vec<Gauges>,
+    /// A device did not rest: it is measured again.
+    moved: Option<(usize, Finding)>,
+    /// Devices in which the measurement before found something: once may be chance, twice is not.
+    suspects: Vec<usize>,
+}
+
+impl Rates {
+    pub(super) fn of(subject: &Subject) -> Self {
+        Self {
+            rig: subject.rig.clone(),
+            parts: subject.parts.clone(),
+            blocks: Vec::new(),
+            moved: None,
+            suspects: Vec::new(),
+        }
+    }
+
+    fn tested(&self) -> Vec<(usize, Checkup)> {
+        let blocks: Vec<&Gauges> = self.blocks.iter().collect();
+        let test = |(place, part): (usize, &Option<Part>)| {
+            Some((place, Checkup::of(&checkup::Subject::of((*part)?, place, &self.rig, &blocks)?)?))
+        };
+        self.parts.iter().enumerate().filter_map(test).collect()
+    }
+}
+
+/// How far the rate is off, as a share.
+fn off(checkup: &Checkup) -> f64 {
+    checkup.nominal_hz.map_or(0.0, |nominal_hz| (checkup.rate_hz / nominal_hz - 1.0).abs())
+}
+
+impl Item for Rates {
+    fn gauges(&mut self, gauges: &Gauges) {
+        if self.blocks.len() < BLOCKS {
+            self.blocks.push(*gauges);
+        }
+    }
+
+    fn look(&mut self, _now_s: f64) -> Progress {
+        if self.blocks.len() < BLOCKS {
+            return Progress::Asking(Ask::Nothing);
+        }
+        let tested = self.tested();
+        self.blocks.clear();
+        let findings = || tested.iter().flat_map(|(place, test)| test.findings.iter().map(|found| (*place, *found)));
+        let moved = |found: &Finding| matches!(found, Finding::Moved { .. });
+        let found = || findings().filter(|(_, found)| !moved(found));
+        if let Some((place, finding)) = found().find(|(place, _)| self.suspects.contains(place)) {
+            return Progress::Failed(Cause::Found { place, finding });
+        }
+        self.suspects = found().map(|(place, _)| place).collect();
+        self.moved = findings().find(|(_, found)| moved(found));
+        if findings().next().is_some() {
+            return Progress::Asking(Ask::Nothing);
+        }
+        let worst = tested.iter().map(|(_, test)| off(test)).fold(0.0, f64::max);
+        Progress::Passed(Figure { value: 100.0 * worst, limit: 100.0 * RATE_OFF, unit: Unit::Percent })
+    }
+
+    fn late(&self) -> Cause {
+        self.moved.map_or(Cause::NoGauges, |(place, finding)| Cause::Found { place, finding })
+    }
+
+    fn patience_s(&self) -> f64 {
+        12.0
+    }
+}

@@ -1,0 +1,87 @@
+//! The trocar is where the rig file has it: the line of the shaft, by the arm's joints, passes it. Along the shaft nothing is seen.
+
+use nalgebra::{Isometry3, UnitQuaternion, Vector3};
+use nima_core::{
+    calibration::frames::{ShaftLine, TrocarState, TrocarWatch},
+    kinematics,
+};
+
+use super::{
+    Ask, Cause, Figure, Subject, Unit,
+    item::{Item, Progress},
+};
+use crate::{messages::Tick, rig::Side};
+
+/// The instrument is in its trocar when the shaft passes this near, m: half of what an engagement permits is far more than a trocar
+/// that has moved unnoticed.
+const NEAR_M: f64 = kinematics::START_MISS_M;
+/// The arm rests when its tip moves by less than this, m, for this time, s.
+const RESTS_M: f64 = 0.3e-3;
+const RESTS_S: f64 = 1.2;
+
+#[derive(Debug)]
+pub(super) struct Trocar {
+    side: Side,
+    /// The shaft in the flange's frame, the base in the workspace, and the trocar there (m).
+    arm: Option<(ShaftLine, Isometry3<f64>, Vector3<f64>)>,
+    watch: Option<TrocarWatch>,
+    /// Where the tip rests, m, and since when, s on the loop's clock.
+    rest: Option<(Vector3<f64>, f64)>,
+    has_rested: bool,
+    miss_m: f64,
+}
+
+impl Trocar {
+    pub(super) fn of(side: Side, subject: &Subject) -> Self {
+        let arm = subject.rig.devices.as_ref().and_then(|devices| {
+            let set = devices.arm(side)?;
+            let arm = kinematics::Arm::new(&set.mount).ok()?;
+            let base = arm.world_from_base();
+            let turn = UnitQuaternion::from_rotation_matrix(&base.rotation);
+            let world_from_base = Isometry3::from_parts(base.translation, turn);
+            Some((ShaftLine::of_arm(&arm), world_from_base, set.rcm.trocar_m))
+        });
+        Self { side, arm, watch: None, rest: None, has_rested: false, miss_m: f64::INFINITY }
+    }
+
+    /// Notes whether the tip rests.
+    fn follow(&mut self, tick: &Tick) {
+        let (rest_m, since_s) = *self.rest.get_or_insert((tick.tip_m, tick.t_s));
+        self.has_rested = tick.t_s - since_s >= RESTS_S;
+        if (tick.tip_m - rest_m).norm() > RESTS_M {
+            (self.rest, self.watch, self.has_rested) = (None, None, false);
+        }
+    }
+}
+
+impl Item for Trocar {
+    fn tick(&mut self, tick: &Tick) {
+        let Some((shaft, world_from_base, trocar_m)) = self.arm.filter(|_| tick.side == self.side) else { return };
+        let Some(base_from_flange) = &tick.frames.base_from_flange else { return };
+        self.follow(tick);
+        let line = shaft.in_frame(&(world_from_base * base_from_flange));
+        let is_through = (tick.tip_m - trocar_m).dot(&line.direction) > 0.0;
+        self.miss_m = if is_through { line.miss_m(&trocar_m).norm() } else { f64::INFINITY };
+        let watch = self.watch.get_or_insert_with(|| TrocarWatch::new(trocar_m, TrocarWatch::LIMIT_M));
+        watch.step(&line, tick.t_s);
+    }
+
+    fn look(&mut self, _now_s: f64) -> Progress {
+        let Some(watch) = self.watch.as_ref().filter(|_| self.has_rested && self.miss_m <= NEAR_M) else {
+            return Progress::Asking(Ask::PutBack(self.side));
+        };
+        match watch.state() {
+            TrocarState::Waiting => Progress::Asking(Ask::PutBack(self.side)),
+            TrocarState::Fine { by_m } => Progress::Passed(Figure {
+                value: 1e3 * by_m,
+                limit: 1e3 * TrocarWatch::LIMIT_M,
+                unit: Unit::Millimetre,
+            }),
+            TrocarState::Moved { by_m } => Progress::Failed(Cause::TrocarMoved { by_m: Vector3::from(by_m).norm() }),
+        }
+    }
+
+    fn late(&self) -> Cause {
+        Cause::BesideTrocar { miss_m: self.miss_m }
+    }
+}

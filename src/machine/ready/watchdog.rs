@@ -1,0 +1,105 @@
+//! A watchdog is fired on purpose: its own fault comes in time, without force, and a person releases it.
+
+use super::{
+    Ask, Cause, Figure, Subject, Unit,
+    arms::Arms,
+    item::{Item, Progress},
+};
+use crate::messages::{Command, LoopState, Refusal, Tick, Watchdog as Which};
+
+/// Time until the fault, s on the loop's clock, beyond the link's own delay: the longest limit of a watchdog is 0.1 s, the rest is the
+/// command's way to the loop.
+const BITES_WITHIN_S: f64 = 0.4;
+/// Without a fault after this time it does not bite, s.
+const GIVEN_UP_S: f64 = 2.5;
+
+#[derive(Debug)]
+pub(super) struct Watchdog {
+    which: Which,
+    arms: Arms,
+    within_s: f64,
+    /// When the command was sent: on the clock of whoever looks, and on the loop's.
+    sent: Option<(f64, f64)>,
+    is_sent: bool,
+    refused: Option<Refusal>,
+    /// When the last arm had its fault, s on the loop's clock.
+    bitten_s: Option<f64>,
+    cause: Option<Cause>,
+}
+
+impl Watchdog {
+    pub(super) fn of(which: Which, subject: &Subject) -> Self {
+        let within_s = BITES_WITHIN_S + subject.rig.delay_s;
+        let arms = Arms::of(subject);
+        Self { which, arms, within_s, sent: None, is_sent: false, refused: None, bitten_s: None, cause: None }
+    }
+}
+
+impl Item for Watchdog {
+    fn tick(&mut self, tick: &Tick) {
+        self.arms.tick(tick);
+        if !self.is_sent {
+            return;
+        }
+        if tick.rendered_n.norm() > 0.0 {
+            self.cause.get_or_insert(Cause::Force { force_n: tick.rendered_n.norm() });
+        }
+        if let LoopState::Faulted(fault) = tick.state
+            && !self.which.raises(fault)
+        {
+            self.cause.get_or_insert(Cause::OtherFault(fault));
+        }
+        let own = |state| matches!(state, LoopState::Faulted(fault) if self.which.raises(fault));
+        if self.arms.all(own) {
+            self.bitten_s.get_or_insert(tick.t_s);
+        }
+    }
+
+    fn refused(&mut self, why: Refusal) {
+        self.refused = Some(why);
+    }
+
+    fn look(&mut self, now_s: f64) -> Progress {
+        if let Some(why) = self.refused {
+            return Progress::Failed(Cause::Refused(why));
+        }
+        if let Some(cause) = self.cause {
+            return Progress::Failed(cause);
+        }
+        let idle = self.arms.all(|state| state == LoopState::Idle);
+        let Some((sent_s, sent_loop_s)) = self.sent else {
+            if idle {
+                self.sent = self.arms.now_s().map(|loop_s| (now_s, loop_s));
+            }
+            return Progress::Asking(Ask::Nothing);
+        };
+        let Some(bitten_s) = self.bitten_s else {
+            let late = now_s - sent_s > GIVEN_UP_S + self.within_s;
+            return if late { Progress::Failed(Cause::NoBite(self.which)) } else { Progress::Asking(Ask::Nothing) };
+        };
+        let after_s = bitten_s - sent_loop_s;
+        if after_s > self.within_s {
+            return Progress::Failed(Cause::LateBite { after_s });
+        }
+        if !idle {
+            return Progress::Asking(Ask::Release);
+        }
+        Progress::Passed(Figure { value: after_s, limit: self.within_s, unit: Unit::Second })
+    }
+
+    fn late(&self) -> Cause {
+        if self.bitten_s.is_some() { Cause::NotReleased } else { Cause::NoBite(self.which) }
+    }
+
+    fn command(&mut self) -> Option<Command> {
+        if self.sent.is_none() || self.is_sent {
+            return None;
+        }
+        self.is_sent = true;
+        Some(Command::TestWatchdog(self.which))
+    }
+
+    fn expects_latch(&self) -> bool {
+        self.is_sent
+    }
+}

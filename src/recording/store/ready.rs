@@ -1,0 +1,227 @@
+//! Records of ready checks: TOML, one file per check, in the folder `checks` beside the calibrations. All are kept.
+
+use std::{
+    fs, io,
+    path::{Path, PathBuf},
+    time::SystemTime,
+};
+
+use nima_files::write_atomically;
+use serde::{Deserialize, Serialize};
+
+use super::{Store, StoreError, date, seconds};
+
+/// A check counts for the engagements of the next twelve hours: a working day, whatever the time zone.
+pub const VALID_S: u64 = 12 * 3600;
+
+/// A device as it was checked.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+#[expect(missing_docs, reason = "the names say it")]
+pub struct CheckedDevice {
+    /// Its name in the rig: `right sensor`.
+    pub name: String,
+    pub driver: String,
+    /// Empty if it tells none.
+    pub serial: String,
+}
+
+/// How a point of the list ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Outcome {
+    /// In order.
+    Passed,
+    /// Not in order.
+    Failed,
+    /// The rig has no such part.
+    LeftOut,
+    /// The check was ended before it.
+    NotReached,
+}
+
+/// A point of the list.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct CheckedItem {
+    /// What was checked.
+    pub check: String,
+    /// How it ended.
+    pub outcome: Outcome,
+    /// What was measured, its limit and their unit.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub value: Option<f64>,
+    /// See `value`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub limit: Option<f64>,
+    /// See `value`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub unit: Option<String>,
+    /// Why it failed, or what the rig lacks.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub cause: Option<String>,
+    /// What was to be done.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub cure: Option<String>,
+}
+
+/// A ready check.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ReadyRecord {
+    /// Always [`KIND`].
+    pub kind: String,
+    /// Its end, UTC, ISO 8601.
+    pub date: String,
+    /// Version of the program.
+    pub software: String,
+    /// Name of the rig.
+    pub rig: String,
+    /// Built-in name or path of its file.
+    pub rig_file: String,
+    /// Who did what was asked for.
+    pub by: String,
+    /// No point failed, and each was reached.
+    pub passed: bool,
+    /// Duration, s.
+    pub took_s: f64,
+    /// The devices, in the order of the rig's roster.
+    #[serde(default)]
+    pub devices: Vec<CheckedDevice>,
+    /// The list.
+    #[serde(default)]
+    pub items: Vec<CheckedItem>,
+}
+
+/// First word of the files' names.
+pub const KIND: &str = "ready_check";
+
+impl ReadyRecord {
+    /// Age at `now`, s; `None` if its date is none, or later than `now` by more than a minute.
+    pub fn age_s(&self, now: SystemTime) -> Option<u64> {
+        let (made_s, now_s) = (date::parse(&self.date)?, seconds(now));
+        (made_s <= now_s + 60).then(|| now_s.saturating_sub(made_s))
+    }
+
+    /// Whether it passed, is of today, and was made with these devices.
+    pub fn is_valid(&self, devices: &[CheckedDevice], now: SystemTime) -> bool {
+        self.passed && self.devices == devices && self.age_s(now).is_some_and(|age_s| age_s <= VALID_S)
+    }
+}
+
+impl Store {
+    /// The folder of the checks.
+    fn checks(&self) -> PathBuf {
+        self.folder().parent().unwrap_or(Path::new("")).join("checks")
+    }
+
+    /// Saves a ready check as a new file; returns its path.
+    ///
+    /// # Errors
+    /// [`StoreError`] if the folder or the file cannot be written.
+    pub fn save_check(&self, record: &ReadyRecord) -> Result<PathBuf, StoreError> {
+        let folder = self.checks();
+        let text = toml::to_string(record)
+            .map_err(|error| StoreError::Unwritable { kind: KIND, message: error.to_string() })?;
+        let stem = format!("{}{}", prefix(&record.rig), record.date.replace(':', ""));
+        let failed = |path: &Path, source| StoreError::Write { path: path.to_owned(), source };
+        fs::create_dir_all(&folder).map_err(|source| failed(&folder, source))?;
+        // Two checks within a second are two files.
+        let path = (0..100)
+            .map(|again| folder.join(if again == 0 { format!("{stem}.toml") } else { format!("{stem}-{again}.toml") }))
+            .find(|path| !path.exists())
+            .ok_or_else(|| failed(&folder, io::ErrorKind::AlreadyExists.into()))?;
+        write_atomically(&path, |file| file.write_all(text.as_bytes())).map_err(|source| failed(&path, source))?;
+        Ok(path)
+    }
+
+    /// The last check of the rig of this name; files that cannot be read are passed over.
+    pub fn last_check(&self, rig: &str) -> Option<ReadyRecord> {
+        let prefix = prefix(rig);
+        let entries = fs::read_dir(self.checks()).ok()?.flatten();
+        let mut names: Vec<_> = entries.filter_map(|entry| entry.file_name().into_string().ok()).collect();
+        names.retain(|name| {
+            name.starts_with(&prefix) && name.rsplit_once('.').is_some_and(|(_, ending)| ending == "toml")
+        });
+        // The date is part of the name, with the longer name of the same second after the shorter one.
+        names.sort_by(|one, other| stem(one).cmp(stem(other)));
+        names.iter().rev().find_map(|name| {
+            let text = nima_files::read_text(&self.checks().join(name), nima_files::CONFIG_MAX).ok()?;
+            let record: ReadyRecord = toml::from_str(&text).ok()?;
+            (record.kind == KIND && record.rig == rig).then_some(record)
+        })
+    }
+}
+
+fn stem(name: &str) -> &str {
+    name.strip_suffix(".toml").unwrap_or(name)
+}
+
+/// Begin of the names of a rig's checks: `ready_check-Emulated_rig-`.
+fn prefix(rig: &str) -> String {
+    let plain = |letter: char| if letter.is_ascii_alphanumeric() { letter } else { '_' };
+    format!("{KIND}-{}-", rig.chars().take(48).map(plain).collect::<String>())
+}
+
+#[cfg(test)]
+mod tests {
+    use std::time::{Duration, UNIX_EPOCH};
+
+    use super::*;
+
+    fn record(rig: &str, date: &str, passed: bool) -> ReadyRecord {
+        let device = CheckedDevice { name: "right sensor".into(), driver: "Bota".into(), serial: "SN000901".into() };
+        let item = |outcome| CheckedItem {
+            check: "Stop".into(),
+            outcome,
+            value: Some(0.001),
+            limit: Some(0.1),
+            unit: Some("s".into()),
+            cause: None,
+            cure: None,
+        };
+        ReadyRecord {
+            kind: KIND.into(),
+            date: date.into(),
+            software: "0.2.0".into(),
+            rig: rig.into(),
+            rig_file: "emulated".into(),
+            by: "Ada".into(),
+            passed,
+            took_s: 41.5,
+            devices: vec![device],
+            items: vec![item(Outcome::Passed), item(Outcome::LeftOut)],
+        }
+    }
+
+    #[test]
+    fn every_check_is_kept_and_the_last_one_of_the_rig_is_found() {
+        let folder = tempfile::tempdir().unwrap();
+        let store = Store::open(folder.path().join("calibrations"));
+        assert_eq!(store.last_check("Emulated rig"), None);
+        let dates = ["2026-08-21T10:20:30Z", "2026-08-22T07:00:00Z", "2026-08-22T07:00:00Z"];
+        for (date, passed) in dates.into_iter().zip([true, false, true]) {
+            store.save_check(&record("Emulated rig", date, passed)).unwrap();
+        }
+        store.save_check(&record("Another rig", "2026-08-23T07:00:00Z", true)).unwrap();
+        assert_eq!(fs::read_dir(folder.path().join("checks")).unwrap().count(), 4);
+        assert_eq!(store.last_check("Emulated rig"), Some(record("Emulated rig", dates[2], true)), "digit by digit");
+        fs::write(folder.path().join("checks/ready_check-Emulated_rig-2027.toml"), "kind = 3").unwrap();
+        assert!(store.last_check("Emulated rig").is_some(), "a damaged file is passed over");
+    }
+
+    #[test]
+    fn a_check_counts_for_twelve_hours_with_the_same_devices_if_it_passed() {
+        let made = record("Emulated rig", "2026-08-21T10:20:30Z", true);
+        let at = |hours: f64| {
+            UNIX_EPOCH + Duration::from_secs(date::parse(&made.date).unwrap()) + Duration::from_secs_f64(hours * 3600.0)
+        };
+        assert!(made.is_valid(&made.devices, at(0.0)) && made.is_valid(&made.devices, at(11.9)));
+        assert!(!made.is_valid(&made.devices, at(12.1)));
+        let other = CheckedDevice { serial: "SN000902".into(), ..made.devices[0].clone() };
+        assert!(!made.is_valid(&[other], at(1.0)), "another sensor");
+        assert!(!ReadyRecord { passed: false, ..made.clone() }.is_valid(&made.devices, at(1.0)));
+        let before = UNIX_EPOCH + Duration::from_secs(date::parse(&made.date).unwrap() - 7200);
+        assert!(!made.is_valid(&made.devices, before), "dated in the future");
+    }
+}

@@ -1,0 +1,59 @@
+//! Watchdogs fired on purpose over the wires: the real levers of handle and arm are pulled, nothing is lost by it, and the arm engages
+//! afterwards as before.
+use std::time::{Duration, Instant};
+
+use nima_machine::{
+    config::RigConfig,
+    messages::{Command, LoopState, Tick, Watchdog},
+    runtime::Handle,
+};
+use nima_testing::real_time::{alone, judged, too_busy};
+use nima_tests::emulated::{right_arm, started};
+use nima_world::{Plan, scene::Scene};
+
+/// Waits for such a tick; in a state without drives no force is commanded. A machine that is too busy for that is not judged.
+fn until(handle: &Handle, what: &str, good: impl Fn(&Tick) -> bool) {
+    let (began, mut newest) = (Instant::now(), None);
+    while !newest.as_ref().is_some_and(&good) {
+        if began.elapsed() > Duration::from_secs(10) {
+            println!("never came: {what}; {:?}", newest.map(|tick: Tick| tick.state));
+            too_busy();
+        }
+        handle.drain_ticks(|tick| {
+            let driven = tick.state.permits().drives;
+            assert!(driven || tick.rendered_n.norm() == 0.0, "{what}: {} N", tick.rendered_n.norm());
+            newest = Some(*tick);
+        });
+        handle.drain_events(|_| {});
+        std::thread::sleep(Duration::from_millis(1));
+    }
+}
+
+#[test]
+fn every_watchdog_bites_in_idle_twice_and_the_arm_engages_afterwards() {
+    let _alone = alone();
+    let folder = tempfile::tempdir().unwrap();
+    let devices = right_arm(folder.path());
+    judged(|| {
+        let _rig = started(&devices);
+        let config = RigConfig { devices: Some(devices.clone()), ..RigConfig::load("emulated").unwrap() };
+        let scene = Scene::load("peg_transfer").unwrap();
+        let plan = Plan { rig: config, scene, calibrations: Default::default(), engage: false };
+        let handle = nima_world::start(&plan).unwrap();
+        let is = |state: LoopState| move |tick: &Tick| tick.state == state;
+        // It begins idle, before its devices are there.
+        until(&handle, "a second of samples", |tick| tick.state == LoopState::Idle && tick.t_s > 2.0);
+        for watchdog in Watchdog::ALL.into_iter().chain(Watchdog::ALL) {
+            assert!(handle.send(Command::TestWatchdog(watchdog)));
+            let bitten = |tick: &Tick| matches!(tick.state, LoopState::Faulted(fault) if watchdog.raises(fault));
+            until(&handle, "its fault", bitten);
+            // What was withheld comes again.
+            std::thread::sleep(Duration::from_millis(50));
+            assert!(handle.send(Command::ReleaseStop));
+            until(&handle, "released", is(LoopState::Idle));
+        }
+        std::thread::sleep(Duration::from_millis(100));
+        assert!(handle.send(Command::Engage));
+        until(&handle, "engaged", is(LoopState::Engaged));
+    });
+}

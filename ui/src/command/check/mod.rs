@@ -1,0 +1,17 @@
+//! `nima check`: whether a rig is ready for the day.
+
+mod rig;
+
+use clap::Subcommand;
+
+#[derive(Debug, Subcommand)]
+pub(super) enum CheckCommand {
+    /// Go through the ready check of an emulated or simulated rig (about a minute), and keep its record
+    Rig(rig::Arguments),
+}
+
+pub(super) fn run(command: &CheckCommand) -> anyhow::Result<()> {
+    match command {
+        CheckCommand::Rig(arguments) => rig::run(arguments),
+    }
+}

@@ -1,0 +1,201 @@
+//! `nima check rig`: the ready check without a screen.
+//!
+//! The same list as in the console. What is asked for at the arms is done by the simulated technician of an emulated rig, who reads it,
+//! or by the simulated person of a scene; the stop and the releases go to the loop as those of the console do. A real rig is checked in
+//! the console, where a person presses its stop.
+
+use std::{
+    thread,
+    time::{Duration, Instant},
+};
+
+use anyhow::bail;
+use clap::Args;
+use nima_machine::{
+    config::RigConfig,
+    messages::{Command, Tick},
+    ready::{Ask, Entry, State},
+    rig::{Roster, SIDES},
+    runtime::Handle,
+};
+use nima_recording::store::Store;
+use nima_world::{Plan, emulated::Screen, scene::Scene};
+
+use crate::{
+    command::{output, setup::Setup},
+    console::{
+        in_force::InForce,
+        reader::Reader,
+        ready::{Run, record, subject},
+    },
+    emulators::Emulators,
+    leaving::Leave,
+    telling::tell,
+    words::{ask_words, cause_words, check_name, figure_words, lacks_words},
+};
+
+/// Force sensors tell who they are within this time, or are missing.
+const SENSORS_WITHIN: Duration = Duration::from_secs(15);
+/// Whoever sits at the screen obeys after this time.
+const ANSWERS_AFTER: Duration = Duration::from_millis(300);
+/// Scenes in which somebody is at the arm: around the emulators, and of a simulated rig.
+const SCENES: [&str; 2] = ["peg_transfer", "correspondence"];
+
+#[derive(Debug, Args)]
+pub(in crate::command) struct Arguments {
+    /// Rig: built-in name or TOML file; it must be emulated or simulated
+    #[arg(long, value_name = "RIG", default_value = "emulated")]
+    rig: String,
+    /// Scene: built-in name or TOML file (default: one with somebody at the arm)
+    #[arg(long, value_name = "SCENE")]
+    scene: Option<String>,
+    /// Who checks; written into the record
+    #[arg(long, value_name = "NAME", default_value = "nima check rig")]
+    by: String,
+    /// Print the record (JSON) in place of one line per point
+    #[arg(long)]
+    json: bool,
+}
+
+pub(in crate::command) fn run(arguments: &Arguments) -> anyhow::Result<()> {
+    let rig = RigConfig::load(&arguments.rig)?;
+    let [emulated, simulated] = SCENES;
+    let guided = if rig.devices.is_some() { emulated } else { simulated };
+    let scene_name = arguments.scene.as_deref().unwrap_or(guided);
+    let scene = Scene::load(scene_name)?;
+    if rig.devices.as_ref().is_some_and(|devices| !devices.emulated) {
+        bail!("rig \"{}\" is for real devices, whose stop a person must press; check it in `nima console`", rig.name);
+    }
+    let leave = Setup::of(&arguments.rig, scene_name).leave()?;
+    let emulators = Emulators::start(&arguments.rig, scene_name, rig.devices.as_ref())?;
+    let mut in_force = InForce::load(None, &rig, &scene);
+    let calibrations = in_force.calibrations(&rig);
+    let plan = Plan { rig, scene, calibrations, engage: false };
+    let handle = nima_world::start(&plan)?;
+    let ender = handle.ender();
+    leave.at_once(move || ender.end());
+    let reader = emulators.as_ref().map(Emulators::technician);
+    let mut bench = Bench { plan, handle, in_force, reader, read: None, ticks: [None; SIDES], leave };
+    bench.await_sensors()?;
+    let roster = bench.handle.roster().clone();
+    let mut run = Run::new(subject(&arguments.rig, &bench.plan.rig, &bench.plan.scene, &roster, &bench.in_force));
+    bench.go_through(&mut run, arguments.json)?;
+    end(&run, arguments, &roster)
+}
+
+/// Keeps and prints the record; an error if the rig is not ready.
+fn end(run: &Run, arguments: &Arguments, roster: &Roster) -> anyhow::Result<()> {
+    let record = record(&run.session, &arguments.rig, &arguments.by, roster);
+    let path = Store::of_user()?.save_check(&record)?;
+    if arguments.json {
+        output::json(&record)?;
+    }
+    tell(format_args!("{:.0} s; the record is {}", record.took_s, path.display()));
+    if record.passed {
+        return Ok(());
+    }
+    let failed = run.session.list().iter().filter(|entry| matches!(entry.state, State::Failed(_)));
+    let names: Vec<_> = failed.map(|entry| check_name(entry.check)).collect();
+    bail!("the rig is not ready: {}; {} says why and what to do", names.join(", "), path.display())
+}
+
+/// A point with its result in one line.
+fn line(entry: &Entry, roster: &Roster) -> String {
+    let name = check_name(entry.check);
+    match &entry.state {
+        State::Waiting | State::Asking(_) => name,
+        State::Passed(figure) => format!("{name}: passed ({})", figure_words(figure)),
+        State::Failed(cause) => {
+            let [cause, cure] = cause_words(cause, roster);
+            format!("{name}: FAILED: {cause}; {cure}")
+        }
+        State::LeftOut(lacks) => format!("{name}: left out, {}", lacks_words(*lacks)),
+    }
+}
+
+/// The running loop and the technician.
+struct Bench {
+    plan: Plan,
+    handle: Handle,
+    in_force: InForce,
+    reader: Option<Reader>,
+    read: Option<Screen>,
+    ticks: [Option<Tick>; SIDES],
+    leave: Leave,
+}
+
+impl Bench {
+    fn may_go_on(&self) -> anyhow::Result<()> {
+        if self.leave.is_asked() {
+            bail!("ended as asked; no record was made");
+        }
+        if !self.handle.is_running() {
+            bail!("the loop has ended; no record was made");
+        }
+        thread::sleep(Duration::from_millis(2));
+        Ok(())
+    }
+
+    /// Until it is known which calibrations are in force.
+    fn await_sensors(&mut self) -> anyhow::Result<()> {
+        let began = Instant::now();
+        while self.in_force.is_waiting() && began.elapsed() < SENSORS_WITHIN {
+            self.may_go_on()?;
+            self.handle.drain_ticks(|_| {});
+            self.in_force.meet(&self.handle, &self.plan.rig);
+        }
+        Ok(())
+    }
+
+    fn go_through(&mut self, run: &mut Run, quiet: bool) -> anyhow::Result<()> {
+        let (mut told, mut asked) = (0, (Ask::Nothing, Instant::now()));
+        while !run.session.is_finished() {
+            self.may_go_on()?;
+            self.look(run);
+            let ask = run.session.ask();
+            if ask != asked.0 {
+                asked = (ask, Instant::now());
+                if ask != Ask::Nothing {
+                    tell(ask_words(&ask));
+                }
+            } else if asked.1.elapsed() >= ANSWERS_AFTER
+                && let Some(answer) = run.answer()
+            {
+                self.handle.send(answer);
+                asked.1 = Instant::now();
+            }
+            let list = run.session.list();
+            while let Some(entry) =
+                list.get(told).filter(|entry| !matches!(entry.state, State::Waiting | State::Asking(_)))
+            {
+                if !quiet {
+                    output::line(&line(entry, self.handle.roster()))?;
+                }
+                told += 1;
+            }
+        }
+        Ok(())
+    }
+
+    /// Takes in what the loop has sent, and shows at the arms what is asked for.
+    fn look(&mut self, run: &mut Run) {
+        self.handle.drain_ticks(|tick| {
+            run.session.tick(tick);
+            self.ticks[tick.side.index()] = Some(*tick);
+        });
+        self.handle.drain_events(|event| run.session.event(event));
+        self.handle.gauges().for_each(|gauges| run.session.gauges(&gauges));
+        if let Some(healths) = self.handle.healths() {
+            run.session.healths(&healths);
+        }
+        self.in_force.meet(&self.handle, &self.plan.rig);
+        let command: Option<Command> = run.look();
+        let prompts = self.ticks.iter().flatten().filter_map(|tick| run.prompt_for(tick));
+        for command in command.into_iter().chain(prompts) {
+            self.handle.send(command);
+        }
+        if let Some(reader) = &self.reader {
+            reader.show(run.screen(), &mut self.read);
+        }
+    }
+}

@@ -1,0 +1,181 @@
+//! The console while the page of the ready check is open: goes through the list, shows what is asked for at the arms, keeps the record.
+
+use std::time::{Duration, Instant, SystemTime};
+
+use egui::{CentralPanel, Frame, Margin, Panel, ScrollArea, Ui};
+use nima_machine::{
+    config::ReadyCheck,
+    messages::{Command, LoopState},
+    rig::Roster,
+};
+use nima_world::scene::Scene;
+
+use super::ConsoleApp;
+use crate::console::{
+    chain,
+    desk::Panel as Tile,
+    panels::{Page, calibrations_ui},
+    ready::{Run, Wish, devices_of, ready_ui, record, subject},
+    text, theme,
+    widgets::card,
+};
+
+/// The scene in which somebody stands at a simulated arm.
+const SCENE: &str = "correspondence";
+/// Force sensors that have not told who they are by then are missing.
+const SENSORS_WITHIN: Duration = Duration::from_secs(15);
+/// Whether there is a valid check is looked at so often.
+const LOOK_EVERY: Duration = Duration::from_secs(5);
+
+/// The ready check.
+#[derive(Debug, Default)]
+pub(super) struct Checking {
+    /// Since when its page is open.
+    open: Option<Instant>,
+    run: Option<Run>,
+    by: String,
+    /// Where the record is, or why there is none.
+    saved: Option<String>,
+    /// Whether a check of today exists for these devices, and when that was looked at.
+    valid: Option<(bool, Instant)>,
+}
+
+impl Checking {
+    pub(super) const fn is_open(&self) -> bool {
+        self.open.is_some()
+    }
+
+    pub(super) const fn run_mut(&mut self) -> Option<&mut Run> {
+        self.run.as_mut()
+    }
+
+    /// Another loop is started: what was found out belongs to the one before.
+    pub(super) fn forget(&mut self) {
+        self.begin_anew();
+        self.valid = None;
+    }
+
+    fn begin_anew(&mut self) {
+        (self.run, self.saved) = (None, None);
+    }
+}
+
+impl ConsoleApp {
+    /// Opens the page; a simulated rig changes to a scene with somebody at the arm.
+    pub(super) fn open_check(&mut self) {
+        self.wizards.open = None;
+        self.listing.close();
+        let rests = matches!(self.live.state(), LoopState::Idle | LoopState::Disconnected);
+        let (rig, scene) = (self.live.rig.clone(), self.live.scene.clone());
+        let opened = if self.live.rig.devices.is_none() && scene.person.is_none() {
+            Scene::load(SCENE).map_err(|error| error.to_string()).and_then(|scene| self.restart_in(scene))
+        } else if rests {
+            Ok(())
+        } else {
+            self.restart(rig, scene)
+        };
+        match opened {
+            Ok(()) => {
+                self.checking.begin_anew();
+                self.checking.open = Some(Instant::now());
+                if self.checking.by.is_empty() {
+                    self.checking.by = std::env::var("USER").unwrap_or_default();
+                }
+            }
+            Err(reason) => self.in_force.tell(text::calibrations::not_opened(&reason)),
+        }
+    }
+
+    /// Closes the page; what was not reached is not kept.
+    pub(super) fn close_check(&mut self) {
+        self.checking.open = None;
+        self.checking.begin_anew();
+    }
+
+    fn roster(&self) -> Roster {
+        self.door.as_ref().map_or_else(Roster::new, |door| door.handle().roster().clone())
+    }
+
+    /// Goes through the list.
+    pub(super) fn go_on_checking(&mut self) {
+        self.look_for_a_check();
+        let Some(since) = self.checking.open else { return };
+        if self.checking.run.is_none() {
+            if self.in_force.is_waiting() && since.elapsed() < SENSORS_WITHIN {
+                return;
+            }
+            let roster = self.roster();
+            let subject = subject(&self.running.rig, &self.live.rig, &self.live.scene, &roster, &self.in_force);
+            self.checking.run = Some(Run::new(subject));
+        }
+        let Some(run) = &mut self.checking.run else { return };
+        run.session.healths(&self.live.healths);
+        if let Some(command) = run.look() {
+            self.outbox.push(command);
+        }
+        self.live.ticks.iter().flatten().filter_map(|tick| run.prompt_for(tick)).for_each(|it| self.outbox.push(it));
+        if let Some(reader) = &self.reader {
+            reader.show(run.screen(), &mut self.read);
+        }
+        if run.session.is_finished() && self.checking.saved.is_none() {
+            self.keep_check();
+        }
+    }
+
+    fn keep_check(&mut self) {
+        let (Some(run), roster) = (&self.checking.run, self.roster()) else { return };
+        let record = record(&run.session, &self.running.rig, &self.checking.by, &roster);
+        let saved = self.in_force.store().map(|store| store.save_check(&record));
+        self.checking.saved = Some(match saved {
+            Some(Ok(path)) => text::ready::saved(&path),
+            Some(Err(error)) => text::ready::not_saved(&chain(&error)),
+            None => text::ready::not_saved(text::calibrations::NO_FOLDER),
+        });
+        self.checking.valid = None;
+    }
+
+    /// Whether a passed check of today exists; a simulated rig needs none.
+    fn look_for_a_check(&mut self) {
+        if self.live.rig.devices.is_none() || self.checking.valid.is_some_and(|(_, at)| at.elapsed() < LOOK_EVERY) {
+            return;
+        }
+        let last = self.in_force.store().and_then(|store| store.last_check(&self.live.rig.name));
+        let valid = last.is_some_and(|record| record.is_valid(&devices_of(&self.roster()), SystemTime::now()));
+        self.checking.valid = Some((valid, Instant::now()));
+        self.live.is_unchecked = !valid;
+        if self.live.rig.ready_check == ReadyCheck::Required {
+            self.outbox.push(Command::Checked(valid));
+        }
+    }
+
+    /// The page beside the calibrations in force.
+    pub(super) fn check_layout(&mut self, ui: &mut Ui) {
+        let side = Frame::new().fill(theme::now().panel).inner_margin(Margin::same(8));
+        let mut wish = None;
+        Panel::left("calibrations").exact_size(316.0).resizable(false).frame(side).show(ui, |ui| {
+            let panel = Tile::Calibrations;
+            wish = card(ui, panel.title(), panel.meaning(), |ui| {
+                calibrations_ui(ui, &self.live, &self.in_force, Some(Page::Check))
+            });
+        });
+        let (mut wanted, roster) = (None, self.roster());
+        let Checking { run, by, saved, .. } = &mut self.checking;
+        CentralPanel::default().frame(Frame::new().inner_margin(Margin::symmetric(18, 14))).show(ui, |ui| {
+            ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+                ui.set_max_width(760.0);
+                wanted = ready_ui(ui, run.as_ref(), by, saved.as_deref(), &roster);
+            });
+        });
+        match wanted {
+            Some(Wish::Again) => {
+                *saved = None;
+                if let Some(run) = run {
+                    run.session.again();
+                }
+            }
+            Some(Wish::Whole) => self.checking.begin_anew(),
+            None => {}
+        }
+        self.obey_calibrations(wish);
+    }
+}

@@ -1,0 +1,71 @@
+//! The console while the page of all calibrations is open.
+
+use std::time::{Duration, Instant};
+
+use egui::{CentralPanel, Frame, Margin, Panel, ScrollArea, Ui};
+use nima_machine::messages::LoopState;
+
+use super::ConsoleApp;
+use crate::console::{
+    desk::Panel as Tile,
+    overview::{OfArm, overview, overview_ui},
+    panels::{CalibrationWish, Page, calibrations_ui},
+    theme,
+    widgets::card,
+};
+
+/// The list is made again so often: another one may be saved, or a sensor come.
+const AGAIN_EVERY: Duration = Duration::from_secs(2);
+
+/// The list while its page is open, and when it was made.
+#[derive(Debug, Default)]
+pub(super) struct Listing(Option<(Vec<OfArm>, Instant)>);
+
+impl Listing {
+    pub(super) const fn is_open(&self) -> bool {
+        self.0.is_some()
+    }
+
+    pub(super) fn close(&mut self) {
+        self.0 = None;
+    }
+}
+
+impl ConsoleApp {
+    /// Makes the list and opens its page; the loop goes on.
+    pub(super) fn open_listing(&mut self) {
+        self.close_check();
+        self.wizards.open = None;
+        let arms = overview(&self.in_force, &self.live.rig, &self.running.rig);
+        self.listing.0 = Some((arms, Instant::now()));
+    }
+
+    /// The page beside the calibrations in force.
+    pub(super) fn listing_layout(&mut self, ui: &mut Ui) {
+        if self.listing.0.as_ref().is_some_and(|(_, at)| at.elapsed() > AGAIN_EVERY) {
+            self.open_listing();
+        }
+        let side = Frame::new().fill(theme::now().panel).inner_margin(Margin::same(8));
+        let mut wish = None;
+        Panel::left("calibrations").exact_size(316.0).resizable(false).frame(side).show(ui, |ui| {
+            let panel = Tile::Calibrations;
+            wish = card(ui, panel.title(), panel.meaning(), |ui| {
+                calibrations_ui(ui, &self.live, &self.in_force, Some(Page::All))
+            });
+        });
+        let free = matches!(self.live.state(), LoopState::Idle | LoopState::Engaged);
+        let mut redo = None;
+        CentralPanel::default().frame(Frame::new().inner_margin(Margin::symmetric(18, 14))).show(ui, |ui| {
+            ScrollArea::both().auto_shrink(false).show(ui, |ui| {
+                redo = self.listing.0.as_ref().and_then(|(arms, _)| overview_ui(ui, arms, free));
+            });
+        });
+        if let Some((side, which)) = redo {
+            if side != self.in_force.side() {
+                self.obey_calibrations(Some(CalibrationWish::Choose(side)));
+            }
+            wish = Some(CalibrationWish::Open(which));
+        }
+        self.obey_calibrations(wish);
+    }
+}

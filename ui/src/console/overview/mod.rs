@@ -1,0 +1,149 @@
+//! All calibrations of a rig in one list: of every arm with its sensor, how old each is, its verdict and what has changed since.
+
+mod page;
+#[cfg(test)]
+mod tests;
+
+use std::time::SystemTime;
+
+use nima_core::calibration::Judgement;
+use nima_machine::{
+    config::{RigConfig, RigFile},
+    ready::Check,
+    rig::Side,
+};
+use nima_recording::store::{Age, Outcome, ReadyRecord, Store, WristId, days_since};
+
+pub(crate) use page::overview_ui;
+
+use super::{
+    chain,
+    in_force::InForce,
+    text,
+    wizards::{FrameKept, Kind, Which, frame_kept, sizes_words},
+};
+use crate::words::{Words as _, check_name};
+
+/// A calibration that was made.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Kept {
+    /// UTC, ISO 8601.
+    pub(crate) date: String,
+    pub(crate) age: Age,
+    /// `None` for a network that was never checked.
+    pub(crate) judgement: Option<Judgement>,
+    /// Error on held-out data, with its unit.
+    pub(crate) error: String,
+}
+
+/// One line of the list.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Line {
+    pub(crate) which: Which,
+    pub(crate) name: &'static str,
+    /// What is kept; `None` if it was never made, an error if its file cannot be used.
+    pub(crate) kept: Result<Option<Kept>, String>,
+    /// What has changed since.
+    pub(crate) since: String,
+}
+
+/// The list of an arm.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct OfArm {
+    pub(crate) side: Side,
+    /// Its sensor and tool; `None` until the sensor has told who it is.
+    pub(crate) wrist: Option<WristId>,
+    pub(crate) lines: Vec<Line>,
+}
+
+/// The list of every arm that has calibrations, of the rig of this name.
+pub(crate) fn overview(in_force: &InForce, rig: &RigConfig, name: &str) -> Vec<OfArm> {
+    let has_joints = rig.devices.is_some();
+    let last = in_force.store().and_then(|store| store.last_check(&rig.name));
+    let file = RigFile::of(name).ok();
+    let sides = Side::ALL.into_iter().filter(|side| in_force.is_at_wrist(*side));
+    let of_arm = |side: Side| {
+        // Without the sensor nobody knows which calibrations are those of this arm.
+        let wrist = in_force.wrist(side).cloned();
+        let mut lines = wrist.as_ref().map_or_else(Vec::new, |_| in_force.kept(side, last.as_ref()));
+        if let (true, Some(store), Some(wrist)) = (has_joints, in_force.store(), &wrist) {
+            lines.extend(frames(store, wrist, side, last.as_ref(), file.as_ref()));
+        }
+        OfArm { side, wrist, lines }
+    };
+    sides.map(of_arm).collect()
+}
+
+fn frames(store: &Store, wrist: &WristId, side: Side, last: Option<&ReadyRecord>, file: Option<&RigFile>) -> Vec<Line> {
+    let of_wrist = [wrist.serial_number.as_str(), wrist.tool.as_str()];
+    let line = |which: Which, kind: Kind, handle: bool| {
+        let found = frame_kept(store, kind, handle, of_wrist);
+        let since = match &found {
+            Ok(Some(kept)) if kind == Kind::Trocar => {
+                found_since(last, Check::Trocar(side), &kept.date).unwrap_or_else(|| in_file(kept, file))
+            }
+            Ok(Some(kept)) => in_file(kept, file),
+            _ => String::new(),
+        };
+        let kept = found.map_err(|error| chain(&error)).map(|kept| kept.map(Kept::from));
+        Line { which, name: if handle { text::overview::HANDLE } else { which.name() }, kept, since }
+    };
+    let frames = Which::ALL.into_iter().filter_map(|which| Some((which, which.frames()?)));
+    frames
+        .flat_map(|(which, kind)| {
+            let handle = (kind == Kind::View).then(|| line(which, kind, true));
+            std::iter::once(line(which, kind, false)).chain(handle)
+        })
+        .collect()
+}
+
+impl From<FrameKept> for Kept {
+    fn from(kept: FrameKept) -> Self {
+        let FrameKept { date, age, judgement, held_out, .. } = kept;
+        Self { date, age, judgement: Some(judgement), error: sizes_words(held_out).unwrap_or_default() }
+    }
+}
+
+/// Whether the rig file still has what the calibration wrote into it.
+fn in_file(kept: &FrameKept, file: Option<&RigFile>) -> String {
+    let Some(file) = file.filter(|_| !kept.rig.is_empty()) else { return text::overview::NOT_WATCHED.to_owned() };
+    let same = kept.rig.iter().all(|change| file.value(&change.key) == change.after);
+    if same { text::overview::IN_FILE } else { text::overview::OTHER_IN_FILE }.to_owned()
+}
+
+/// What the last ready check has found of this, if it was made after the calibration of this date.
+pub(crate) fn found_since(last: Option<&ReadyRecord>, check: Check, date: &str) -> Option<String> {
+    // Dates of this form are ordered as texts.
+    let last = last.filter(|last| last.date.as_str() >= date)?;
+    let item = last.items.iter().find(|item| item.check == check_name(check))?;
+    let found = match (item.outcome, item.value.zip(item.limit), &item.cause) {
+        (Outcome::Passed, Some((value, limit)), _) => {
+            text::overview::within(value, limit, item.unit.as_deref().unwrap_or_default())
+        }
+        (Outcome::Failed, _, Some(cause)) => cause.clone(),
+        _ => return None,
+    };
+    Some(text::overview::checked(day(&last.date), &found))
+}
+
+fn day(date: &str) -> &str {
+    date.split('T').next().unwrap_or_default()
+}
+
+/// When it was made and how old it is.
+fn made_words(kept: &Kept) -> String {
+    let age = match kept.age {
+        Age::Future => text::overview::FUTURE.to_owned(),
+        Age::Fresh | Age::Old { .. } => {
+            days_since(&kept.date, SystemTime::now()).map_or_else(String::new, text::overview::days)
+        }
+    };
+    text::overview::made(day(&kept.date), &age)
+}
+
+/// Its verdict and its error, or who has overridden the verdict.
+fn verdict_words(kept: &Kept) -> String {
+    let Some(judgement) = &kept.judgement else { return text::overview::UNCHECKED.to_owned() };
+    let words = text::overview::verdict(judgement.verdict.words(), &kept.error);
+    judgement.override_by.as_ref().map_or_else(|| words.clone(), |name| text::overview::overridden(&words, name))
+}

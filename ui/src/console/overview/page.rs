@@ -1,0 +1,84 @@
+//! The page of all calibrations.
+
+use egui::{Button, Grid, Label, RichText, Ui, WidgetInfo, vec2};
+use nima_machine::rig::Side;
+use nima_recording::store::Age;
+
+use super::{Line, OfArm, made_words, verdict_words};
+use crate::console::{
+    scene3d::side_name,
+    text, theme,
+    widgets::{Sign, sign_ui, small},
+    wizards::Which,
+};
+
+/// Widths of the columns of words.
+const WIDTHS: [f32; 3] = [150.0, 260.0, 260.0];
+
+/// Draws the page; returns the calibration that is to be repeated. With `free` false none can be.
+pub(crate) fn overview_ui(ui: &mut Ui, arms: &[OfArm], free: bool) -> Option<(Side, Which)> {
+    ui.label(RichText::new(text::overview::TITLE).font(theme::strong(22.0)));
+    ui.label(small(text::overview::MEANING));
+    ui.add_space(theme::GAP);
+    if arms.is_empty() {
+        ui.label(text::calibrations::NOT_NEEDED);
+    }
+    let mut wish = None;
+    for arm in arms {
+        let name = side_name(arm.side);
+        let head = arm.wrist.as_ref().map_or_else(
+            || text::overview::of_unknown(name, text::calibrations::SENSOR_NOT_CONNECTED),
+            |wrist| text::overview::of_arm(name, &wrist.serial_number, &wrist.tool),
+        );
+        ui.label(RichText::new(head).font(theme::strong(15.0)));
+        if arm.lines.is_empty() {
+            continue;
+        }
+        Grid::new(("overview", name)).num_columns(6).spacing(vec2(14.0, 6.0)).show(ui, |ui| {
+            ui.label("");
+            let [calibration, made, verdict, since] =
+                [text::overview::CALIBRATION, text::overview::MADE, text::overview::VERDICT, text::overview::SINCE];
+            for words in [calibration, made, verdict, since] {
+                ui.label(small(words));
+            }
+            ui.end_row();
+            for line in &arm.lines {
+                if line_ui(ui, line, name, free) {
+                    wish = Some((arm.side, line.which));
+                }
+                ui.end_row();
+            }
+        });
+        ui.add_space(theme::GAP);
+    }
+    wish
+}
+
+/// One line; returns whether it is to be repeated.
+fn line_ui(ui: &mut Ui, line: &Line, arm: &str, free: bool) -> bool {
+    let in_order = match &line.kept {
+        Ok(Some(kept)) => {
+            kept.age == Age::Fresh && kept.judgement.as_ref().is_some_and(|it| it.allows() && it.override_by.is_none())
+        }
+        Ok(None) | Err(_) => false,
+    };
+    let (what, colour) =
+        if in_order { (Sign::Disc, theme::now().engaged) } else { (Sign::Triangle, theme::now().alarm_medium) };
+    sign_ui(ui, what, 5.0, colour);
+    ui.label(line.name);
+    let words = match &line.kept {
+        Ok(Some(kept)) => [made_words(kept), verdict_words(kept), line.since.clone()],
+        Ok(None) => [text::overview::NEVER.to_owned(), String::new(), String::new()],
+        Err(why) => [String::new(), why.clone(), String::new()],
+    };
+    for (words, width) in words.into_iter().zip(WIDTHS) {
+        ui.scope(|ui| {
+            ui.set_max_width(width);
+            ui.add(Label::new(words).wrap());
+        });
+    }
+    let button = ui.add_enabled(free, Button::new(text::overview::REDO).min_size(vec2(64.0, 24.0)));
+    let name = text::overview::redo(arm, &line.name.to_lowercase());
+    button.widget_info(|| WidgetInfo::labeled(egui::Role::Button, free, name.clone()));
+    button.on_disabled_hover_text(text::calibrations::OPEN_DISABLED_HOVER).clicked()
+}

@@ -1,0 +1,80 @@
+//! The list of calibrations: what was made with its age and verdict, what was never made, what cannot be used.
+
+use nima_core::calibration::{RecordHead, Verdict, gravity::GravityRecord};
+use nima_machine::{config::RigConfig, ready::Check, rig::Side};
+use nima_recording::store::{CheckedItem, Outcome, READY_CHECK, ReadyRecord, Store, utc_now};
+use nima_tests::gravity::gravity;
+use nima_world::scene::Scene;
+
+use super::{InForce, found_since, made_words, overview, verdict_words};
+use crate::{console::wizards::Which, words::check_name};
+
+fn listed(store: &Store) -> Vec<super::OfArm> {
+    let (rig, scene) = (RigConfig::load("simulated").unwrap(), Scene::load("palpation").unwrap());
+    overview(&InForce::load(Some(store.folder()), &rig, &scene), &rig, "simulated")
+}
+
+#[test]
+fn what_was_made_stands_with_age_and_verdict_and_what_was_not_says_so() {
+    let folder = tempfile::tempdir().unwrap();
+    let store = Store::open(folder.path().join("calibrations"));
+    store.save(&gravity()).unwrap();
+    let arms = listed(&store);
+    let [arm] = &arms[..] else { panic!("{arms:?}") };
+    assert_eq!(arm.wrist.as_ref().unwrap().serial_number, "SIM-S1-0001");
+    let which: Vec<_> = arm.lines.iter().map(|line| line.which).collect();
+    assert_eq!(which, [Which::Gravity, Which::Correspondence, Which::TipForce], "a simulated arm has no frames");
+    let kept = arm.lines[0].kept.as_ref().unwrap().as_ref().unwrap();
+    assert!(made_words(kept).ends_with(", today"), "{}", made_words(kept));
+    assert!(verdict_words(kept).starts_with("Accepted, held-out error 0.0"), "{}", verdict_words(kept));
+    assert!(arm.lines[0].since.contains("being checked"), "{}", arm.lines[0].since);
+    assert_eq!(arm.lines[1].kept, Ok(None));
+}
+
+#[test]
+fn an_old_one_an_overridden_one_and_a_damaged_one_are_told() {
+    let folder = tempfile::tempdir().unwrap();
+    let store = Store::open(folder.path().join("calibrations"));
+    let mut record = gravity();
+    record.head = RecordHead::new(&record.head.sensor, &record.head.tool, "2026-01-02T10:00:00Z");
+    record.judgement.verdict = Verdict::PoorData;
+    record.judgement.override_by("Ada Lovelace", Some("bench test"));
+    store.save(&record).unwrap();
+    let arms = listed(&store);
+    let kept = arms[0].lines[0].kept.as_ref().unwrap().as_ref().unwrap();
+    assert!(made_words(kept).starts_with("2026-01-02, ") && made_words(kept).ends_with(" days old"));
+    assert!(verdict_words(kept).ends_with("kept by Ada Lovelace"), "{}", verdict_words(kept));
+    std::fs::write(store.path::<GravityRecord>(&record.head.sensor).unwrap(), "kind = 3").unwrap();
+    let arms = listed(&store);
+    assert!(arms[0].lines[0].kept.is_err(), "{:?}", arms[0].lines[0]);
+}
+
+#[test]
+fn a_ready_check_tells_what_has_changed_since_if_it_was_later() {
+    let item = CheckedItem {
+        check: check_name(Check::Trocar(Side::Left)),
+        outcome: Outcome::Passed,
+        value: Some(0.31),
+        limit: Some(1.0),
+        unit: Some("mm".to_owned()),
+        cause: None,
+        cure: None,
+    };
+    let check = ReadyRecord {
+        kind: READY_CHECK.to_owned(),
+        date: "2026-08-21T10:20:30Z".to_owned(),
+        software: String::new(),
+        rig: String::new(),
+        rig_file: String::new(),
+        by: String::new(),
+        passed: true,
+        took_s: 0.0,
+        devices: Vec::new(),
+        items: vec![item],
+    };
+    let since = |side, date: &str| found_since(Some(&check), Check::Trocar(side), date);
+    let words = Some("ready check of 2026-08-21: 0.31 mm, limit 1.00".to_owned());
+    assert_eq!(since(Side::Left, "2026-08-20T10:20:30Z"), words);
+    assert_eq!(since(Side::Left, &utc_now()), None, "calibrated after the check");
+    assert_eq!(since(Side::Right, "2026-08-20T10:20:30Z"), None);
+}

@@ -1,0 +1,94 @@
+//! The ready check in the console and without a screen: what it is fed with, its record, and its page.
+
+mod page;
+mod record;
+
+use std::time::Instant;
+
+use nima_machine::{
+    config::RigConfig,
+    messages::{Command, LoopState, Tick},
+    ready::{Arm, Ask, Session, Subject},
+    rig::{Prompt, Roster, Side},
+};
+use nima_world::{
+    emulated::{Screen, Task},
+    scene::Scene,
+};
+
+pub(crate) use page::{Wish, ready_ui};
+pub(crate) use record::{devices_of, record};
+
+use super::{door::News, in_force::InForce};
+
+/// What is checked: this rig of this name (built-in, or path of its file) with these devices.
+pub(crate) fn subject(name: &str, rig: &RigConfig, scene: &Scene, roster: &Roster, in_force: &InForce) -> Subject {
+    let has_person = rig.devices.is_some() || scene.person.is_some();
+    let arm = |side: Side| {
+        let at_wrist = scene.measures_at_wrist(rig, side);
+        scene.has(rig, side).then(|| Arm { at_wrist, gravity: in_force.gravity(side), has_person })
+    };
+    Subject {
+        rig: rig.clone(),
+        arms: Side::ALL.map(arm),
+        parts: roster.iter().map(|entry| entry.part).collect(),
+        gates_in_file: RigConfig::load(name).ok().map(|rig| rig.gates),
+        is_date_behind: in_force.is_date_behind(),
+    }
+}
+
+/// A check that goes on, and the clock that it is given.
+#[derive(Debug)]
+pub(crate) struct Run {
+    pub(crate) session: Session,
+    began: Instant,
+    /// The arm at which something was asked for last.
+    side: Side,
+}
+
+impl Run {
+    pub(crate) fn new(subject: Subject) -> Self {
+        Self { session: Session::new(subject), began: Instant::now(), side: Side::Right }
+    }
+
+    /// Adds something that came from the loop.
+    pub(crate) fn take(&mut self, news: &News<'_>) {
+        match news {
+            News::Tick(tick) => self.session.tick(tick),
+            News::Gauges(gauges) => self.session.gauges(gauges),
+            News::Event(event) => self.session.event(event),
+        }
+    }
+
+    /// Goes on; returns a command for the loop.
+    pub(crate) fn look(&mut self) -> Option<Command> {
+        let command = self.session.look(self.began.elapsed().as_secs_f64());
+        self.side = self.session.ask().side().unwrap_or(self.side);
+        command
+    }
+
+    /// What the technician of an emulated rig is shown.
+    pub(crate) fn screen(&self) -> Screen {
+        let ask = self.session.ask();
+        // Out of the trocar he does what is asked for as in the calibration of gravity.
+        let task = if ask.is_out_of_trocar() { Task::Gravity } else { Task::Surgery };
+        Screen { side: self.side, task, prompt: ask.prompt() }
+    }
+
+    /// The instruction that an arm is to have, if it has another one.
+    pub(crate) fn prompt_for(&self, tick: &Tick) -> Option<Command> {
+        let wanted =
+            if self.session.ask().side() == Some(tick.side) { self.session.ask().prompt() } else { Prompt::Rest };
+        let differs = tick.state == LoopState::Idle && tick.prompt != wanted;
+        differs.then_some(Command::Prompt(tick.side, wanted))
+    }
+
+    /// What whoever sits at the screen does to obey; `None` for what is done at the arms.
+    pub(crate) fn answer(&self) -> Option<Command> {
+        match self.session.ask() {
+            Ask::PressStop => Some(Command::Stop),
+            Ask::Release => Some(Command::ReleaseStop),
+            _ => None,
+        }
+    }
+}

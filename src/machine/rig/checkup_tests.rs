@@ -89,6 +89,7 @@ fn what_is_wrong_with_the_delivery_is_found() {
     assert_eq!(missed.tested().findings, [], "a loop that makes 800 ticks asks 800 times");
     let counted = |change| Bench { change, ..IN_ORDER }.tested().findings;
     assert_eq!(counted(|gauge| gauge.damaged = 3), [Finding::Damaged { count: 3 }]);
+    assert_eq!(counted(|gauge| gauge.damaged = 1), [], "one is no reason to look");
     assert_eq!(counted(|gauge| gauge.refused = 1), [Finding::Refused { count: 1 }]);
     assert_eq!(counted(|gauge| gauge.lost = 40), [Finding::Lost { count: 40 }]);
     assert_eq!(counted(|gauge| gauge.lost = 2), [], "one in a thousand is no reason to look");

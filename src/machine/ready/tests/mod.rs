@@ -59,10 +59,10 @@ fn a_low_rate_is_found() {
 }
 
 #[test]
-fn one_damaged_frame_is_measured_again_and_more_of_them_are_a_finding() {
-    let once = Bench::judged(Flaws { damaged: |now_s| u64::from(now_s > 2.0), ..Flaws::default() });
+fn damaged_frames_are_measured_again_and_more_of_them_are_a_finding() {
+    let once = Bench::judged(Flaws { damaged: |now_s| if now_s > 2.0 { 20 } else { 0 }, ..Flaws::default() });
     assert!(once.has_passed(), "{:?}", once.list());
-    let (check, cause) = failure_of(Flaws { damaged: |now_s| now_s as u64, ..Flaws::default() });
+    let (check, cause) = failure_of(Flaws { damaged: |now_s| (10.0 * now_s) as u64, ..Flaws::default() });
     assert!(
         matches!((check, cause), (Check::Rates, Cause::Found { finding: Finding::Damaged { .. }, .. })),
         "{cause:?}"

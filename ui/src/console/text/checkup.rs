@@ -85,7 +85,7 @@ pub(in crate::console) fn lost(count: u64) -> [String; 2] {
 /// Damaged frames.
 pub(in crate::console) fn damaged(count: u64) -> [String; 2] {
     [
-        format!("{count} frames were damaged"),
+        if count == 1 { "a frame was damaged".to_owned() } else { format!("{count} frames were damaged") },
         "Check plug, shield and length of the cable, and keep it away from motors".to_owned(),
     ]
 }

@@ -7,7 +7,7 @@ use super::{
 use crate::{
     config::RigConfig,
     rig::{
-        Gauges, Part,
+        Gauges, Part, PartKind,
         checkup::{self, BLOCKS, Checkup, Finding, RATE_OFF},
     },
 };
@@ -17,7 +17,7 @@ pub(super) struct Rates {
     rig: RigConfig,
     parts: Vec<Option<Part>>,
     blocks: Vec<Gauges>,
-    /// A device did not rest: it is measured again.
+    /// A sensor did not rest: it is measured again.
     moved: Option<(usize, Finding)>,
     /// Devices in which the measurement before found something: once may be chance, twice is not.
     suspects: Vec<usize>,
@@ -61,8 +61,11 @@ impl Item for Rates {
         }
         let tested = self.tested();
         self.blocks.clear();
-        let findings = || tested.iter().flat_map(|(place, test)| test.findings.iter().map(|found| (*place, *found)));
         let moved = |found: &Finding| matches!(found, Finding::Moved { .. });
+        // A handle may be in somebody's hand; its noise does not matter here.
+        let is_handle = |place: usize| self.parts[place].is_some_and(|part| part.kind() == PartKind::Handle);
+        let all = || tested.iter().flat_map(|(place, test)| test.findings.iter().map(|found| (*place, *found)));
+        let findings = || all().filter(|(place, found)| !(moved(found) && is_handle(*place)));
         let found = || findings().filter(|(_, found)| !moved(found));
         if let Some((place, finding)) = found().find(|(place, _)| self.suspects.contains(place)) {
             return Progress::Failed(Cause::Found { place, finding });

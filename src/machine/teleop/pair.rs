@@ -183,6 +183,11 @@ impl<L: Link> Pair<L> {
         &self.force_path
     }
 
+    /// The force at the tip was known in the last tick.
+    pub(super) const fn knows_force(&self) -> bool {
+        self.force.source.is_usable()
+    }
+
     /// Ticks per second.
     pub(super) const fn rate_hz(&self) -> f64 {
         self.rate_hz

@@ -1,7 +1,10 @@
 //! The top bar, always visible: identity, state of the loop, problems, and the stop button.
 
 use egui::{Align, Align2, Area, Button, Id, Label, Layout, Order, RichText, Sense, Ui, vec2};
-use nima_machine::messages::{Command, LoopState, Refusal};
+use nima_machine::{
+    messages::{Command, LoopState, Refusal},
+    rig::Side,
+};
 
 use crate::{
     console::{
@@ -11,6 +14,7 @@ use crate::{
         menu::menu_ui,
         outbox::Outbox,
         roles::switch_ui,
+        scene3d::side_name,
         settings::Settings,
         text, theme,
         widgets::{Sign, sign, small, weak},
@@ -62,7 +66,7 @@ pub fn top_bar_ui(
     ui.horizontal_centered(|ui| {
         wants_start = identity_ui(ui, live, settings, help, &mut state.alarms, calibrating);
         ui.add_space(10.0);
-        state_ui(ui, now);
+        state_ui(ui, live, now);
         ui.add_space(10.0);
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             stop_ui(ui, now, outbox);
@@ -108,7 +112,9 @@ fn identity_ui(
     wants_start
 }
 
-fn state_ui(ui: &mut Ui, state: LoopState) {
+/// The state of the arm that needs more attention; where the other arm is in another state, both, one below the other: an idle
+/// arm must not hide that the other hand feels a force.
+fn state_ui(ui: &mut Ui, live: &Live, state: LoopState) {
     let (what, colour, meaning) = match state {
         LoopState::Disconnected => (Sign::Ring, theme::now().text_weak, text::top_bar::DISCONNECTED_MEANING),
         LoopState::Ready => (Sign::Ring, theme::now().engaged, text::top_bar::READY_MEANING),
@@ -120,11 +126,25 @@ fn state_ui(ui: &mut Ui, state: LoopState) {
     };
     let (rect, response) = ui.allocate_exact_size(vec2(136.0, 44.0), Sense::hover());
     let response = response.on_hover_text(text::top_bar::state_meaning(meaning));
-    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, text::top_bar::state(state.word())));
+    let lines = state_lines(live, state);
+    let name = text::top_bar::state(&lines.join(", "));
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, &name));
     ui.painter().rect(rect, theme::CORNER, theme::now().card, egui::Stroke::new(1.5, colour), egui::StrokeKind::Inside);
     sign(ui.painter(), what, rect.left_center() + vec2(24.0, 0.0), 8.5, colour);
-    let place = rect.left_center() + vec2(44.0, 0.0);
-    ui.painter().text(place, egui::Align2::LEFT_CENTER, state.word(), theme::strong(17.0), theme::now().text);
+    let (size, height) = if lines.len() > 1 { (13.0, 17.0) } else { (17.0, 0.0) };
+    for (line, offset) in lines.iter().zip([-0.5 * height, 0.5 * height]) {
+        let place = rect.left_center() + vec2(44.0, offset);
+        ui.painter().text(place, egui::Align2::LEFT_CENTER, line, theme::strong(size), theme::now().text);
+    }
+}
+
+fn state_lines(live: &Live, state: LoopState) -> Vec<String> {
+    let states: Vec<(Side, LoopState)> =
+        live.sides().filter_map(|side| Some((side, live.tick_of(side)?.state))).collect();
+    if states.iter().all(|(_, of_side)| of_side.word() == state.word()) {
+        return vec![state.word().to_owned()];
+    }
+    states.into_iter().rev().map(|(side, state)| text::top_bar::state_of_side(side_name(side), state.word())).collect()
 }
 
 /// Always in the same place, above every window, menu and tooltip, and always enabled: pressing it twice does no harm.
@@ -193,4 +213,27 @@ fn refusal_ui(ui: &mut Ui, live: &Live) {
         None => text::top_bar::refused(what, arm, &refused_because(why), cure_of_refusal(why)),
     };
     ui.add(Label::new(small(words)).wrap());
+}
+
+#[cfg(test)]
+mod tests {
+    use nima_machine::config::RigConfig;
+    use nima_world::{Plan, run_virtual, scene::Scene};
+
+    use super::*;
+
+    #[test]
+    fn an_idle_arm_does_not_hide_that_the_other_one_is_engaged() {
+        let (rig, scene) = (RigConfig::load("simulated").unwrap(), Scene::load("bimanual").unwrap());
+        let plan = Plan { rig: rig.clone(), scene: scene.clone(), calibrations: Default::default(), engage: true };
+        let mut live = Live::new(rig, scene);
+        run_virtual(&plan, 1.0, |tick| {
+            live.ticks[tick.side.index()] = Some(*tick);
+            None
+        })
+        .unwrap();
+        assert_eq!(state_lines(&live, live.state()), ["Engaged"]);
+        live.ticks[Side::Left.index()].as_mut().unwrap().state = LoopState::Idle;
+        assert_eq!(state_lines(&live, live.state()), ["Left: Idle", "Right: Engaged"]);
+    }
 }

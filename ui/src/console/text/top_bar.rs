@@ -48,6 +48,11 @@ pub(in crate::console) fn state_meaning(meaning: &str) -> String {
     format!("State of the control loop\n{meaning}")
 }
 
+/// State of one of two arms that differ.
+pub(in crate::console) fn state_of_side(side: &str, state: &str) -> String {
+    format!("{side}: {state}")
+}
+
 /// Accessible name of the state.
 pub(in crate::console) fn state(state: &str) -> String {
     format!("Loop state: {state}")

@@ -48,7 +48,10 @@ pub enum Page {
 
 /// The panel; `open` is the page that is open beside it.
 pub fn calibrations_ui(ui: &mut Ui, live: &Live, in_force: &InForce, open: Option<Page>) -> Option<CalibrationWish> {
-    let mut wish = None;
+    let free = matches!(live.state(), LoopState::Idle | LoopState::Engaged);
+    // First: with two arms the lines below are more than fit.
+    let mut wish = rig_ui(ui, free, open);
+    ui.add_space(2.0);
     source_ui(ui, live);
     for line in in_force.lines() {
         ui.label(small(line));
@@ -57,8 +60,6 @@ pub fn calibrations_ui(ui: &mut Ui, live: &Live, in_force: &InForce, open: Optio
         ui.label(told);
     }
     ui.add_space(4.0);
-    let free = matches!(live.state(), LoopState::Idle | LoopState::Engaged);
-    wish = rig_ui(ui, free, open).or(wish);
     if live.is_bimanual() {
         wish = side_ui(ui, in_force.side()).or(wish);
     }

@@ -125,11 +125,25 @@ impl<D: Device> std::fmt::Debug for Slot<D> {
     }
 }
 
+impl<D: Device> Slot<D> {
+    /// Ends the slot: its thread closes the device. Who ends several slots calls this for all before dropping the first: an arm
+    /// that is not served while another one brakes would go into a fault.
+    pub fn retire(&mut self) {
+        if let Some(device) = self.device.take() {
+            // While an older one is being closed, this one is closed here.
+            self.lost.try_send(device).ok();
+        }
+        self.shared.stop.store(true, Ordering::Release);
+        if let Some(thread) = &self.thread {
+            thread.thread().unpark();
+        }
+    }
+}
+
 impl<D: Device> Drop for Slot<D> {
     fn drop(&mut self) {
-        self.shared.stop.store(true, Ordering::Release);
+        self.retire();
         if let Some(thread) = self.thread.take() {
-            thread.thread().unpark();
             thread.join().ok();
         }
     }
@@ -195,6 +209,7 @@ impl<D: Device> Keeper<D> {
                 }
             }
         }
+        self.take.try_iter().for_each(drop);
     }
 
     fn tell(&self, change: impl FnOnce(&mut SlotReport)) {
@@ -250,6 +265,52 @@ mod tests {
             std::thread::sleep(Duration::from_millis(1));
         }
         false
+    }
+
+    /// A device whose closing waits until another one is being closed too.
+    struct Slow(Flaky, Arc<AtomicU64>, Arc<AtomicU64>);
+
+    impl Device for Slow {
+        type Reading = u32;
+
+        fn poll(&mut self, now_s: f64) -> Option<Stamped<u32>> {
+            self.0.poll(now_s)
+        }
+
+        fn about(&self) -> (&Health, &Identity) {
+            self.0.about()
+        }
+    }
+
+    impl Drop for Slow {
+        fn drop(&mut self) {
+            let (begin, Self(_, closing, together)) = (Instant::now(), self);
+            closing.fetch_add(1, Ordering::AcqRel);
+            while closing.load(Ordering::Acquire) < 2 && begin.elapsed() < Duration::from_secs(5) {
+                std::thread::sleep(Duration::from_millis(1));
+            }
+            together.fetch_add(u64::from(closing.load(Ordering::Acquire) == 2), Ordering::AcqRel);
+        }
+    }
+
+    #[test]
+    fn slots_that_retire_together_close_their_devices_at_once() {
+        let [closing, together] = [(); 2].map(|()| Arc::new(AtomicU64::new(0)));
+        let mut slots = [(); 2].map(|()| {
+            let (closing, together) = (Arc::clone(&closing), Arc::clone(&together));
+            let flaky = || Flaky { health: Health::default(), identity: Identity::default(), left: u32::MAX };
+            Slot::start("slow", move || Ok(Slow(flaky(), Arc::clone(&closing), Arc::clone(&together)))).unwrap()
+        });
+        let begin = Instant::now();
+        while !slots.iter_mut().all(|slot| slot.device().is_some()) && begin.elapsed() < Duration::from_secs(5) {
+            for slot in &mut slots {
+                slot.poll(0.0);
+            }
+            std::thread::sleep(Duration::from_millis(1));
+        }
+        slots.iter_mut().for_each(Slot::retire);
+        drop(slots);
+        assert_eq!(together.load(Ordering::Acquire), 2, "one after the other: the second arm would miss its cycle");
     }
 
     #[test]

@@ -352,6 +352,16 @@ impl ArmPair {
         }
     }
 
+    /// Begins to close all devices; see [`Slot::retire`].
+    pub(super) fn retire(&mut self) {
+        self.arm.retire();
+        self.handle.retire();
+        self.sensor.retire();
+        if let Some((slot, _)) = &mut self.servos {
+            slot.retire();
+        }
+    }
+
     /// Levers of the handle and of the arm.
     pub(super) const fn levers(&self) -> &[Lever; 2] {
         &self.levers

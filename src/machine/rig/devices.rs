@@ -42,6 +42,16 @@ pub struct DeviceRig {
     period_s: f64,
 }
 
+impl Drop for DeviceRig {
+    /// All devices are closed at once: while one arm brakes, the other one must be served too.
+    fn drop(&mut self) {
+        self.pairs.iter_mut().flatten().for_each(|pair| pair.retire());
+        self.tissue.iter_mut().for_each(Slot::retire);
+        self.tracker.iter_mut().for_each(Slot::retire);
+        self.pedal.iter_mut().for_each(|pedal| pedal.slot.retire());
+    }
+}
+
 struct Pedal {
     slot: Slot<Box<dyn Switch>>,
     held: Held<PedalReading>,

@@ -98,7 +98,7 @@ fn all_calibrations_stand_on_one_page_and_each_is_repeated_by_its_button() {
     until(&mut console, "a tick", |tick| tick.state == LoopState::Idle);
     pick(&mut console, "All calibrations…");
     until_shown(&mut console, "Right arm: sensor SIM-S1-0001, Simulated grasper");
-    assert!(shows(&console, "Accepted, held-out error 0.0") && shows(&console, ", today"));
+    assert!(shows(&console, "Accepted, held-out error 0.0") && shows(&console, ", less than a day old"));
     assert!(shows(&console, "not calibrated"), "the correspondence is missing");
     // What the check of the bias finds in the meantime comes without a click.
     until_shown(&mut console, "N without contact, good");

@@ -25,7 +25,7 @@ fn what_was_made_stands_with_age_and_verdict_and_what_was_not_says_so() {
     let which: Vec<_> = arm.lines.iter().map(|line| line.which).collect();
     assert_eq!(which, [Which::Gravity, Which::Correspondence, Which::TipForce], "a simulated arm has no frames");
     let kept = arm.lines[0].kept.as_ref().unwrap().as_ref().unwrap();
-    assert!(made_words(kept).ends_with(", less than a day ago"), "{}", made_words(kept));
+    assert!(made_words(kept).ends_with(", less than a day old"), "{}", made_words(kept));
     assert!(verdict_words(kept).starts_with("Accepted, held-out error 0.0"), "{}", verdict_words(kept));
     assert!(arm.lines[0].since.contains("being checked"), "{}", arm.lines[0].since);
     assert_eq!(arm.lines[1].kept, Ok(None));

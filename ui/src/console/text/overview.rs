@@ -40,7 +40,7 @@ pub(in crate::console) fn made(day: &str, age: &str) -> String {
 /// Age in days.
 pub(in crate::console) fn days(days: u64) -> String {
     match days {
-        0 => "less than a day ago".to_owned(),
+        0 => "less than a day old".to_owned(),
         1 => "1 day old".to_owned(),
         _ => format!("{days} days old"),
     }

@@ -15,7 +15,7 @@ use nima_console::console::{
     ConsoleApp,
     in_force::InForce,
     theme,
-    wizards::{Binding, Saving, Which, Wizards},
+    wizards::{Asked, Binding, Saving, Which, Wizards},
 };
 use nima_core::calibration::Verdict;
 use nima_machine::{
@@ -52,8 +52,9 @@ impl eframe::App for Bench {
     fn ui(&mut self, ui: &mut egui::Ui, _frame: &mut eframe::Frame) {
         ScrollArea::vertical().show(ui, |ui| {
             ui.set_max_width(760.0);
-            let wanted = self.wizards.ui(ui, &self.binding);
-            self.saving = self.saving.take().or(wanted);
+            if let Some(Asked::Save(saving)) = self.wizards.ui(ui, &self.binding) {
+                self.saving.get_or_insert(saving);
+            }
         });
     }
 }
@@ -276,7 +277,7 @@ fn without_a_correspondence_nothing_can_be_recorded() {
     until(&mut real, "the reason", |window| {
         window.query_by_label_contains("The correspondence is not known: calibrate it first").is_some()
             && window.query_by_label_contains("Correspondence: not known; press").is_some()
-            && window.query_by_label_contains("Gravity: met").is_some()
+            && window.query_by_label_contains("Gravity: fine").is_some()
     });
     for _ in 0..20 {
         real.step();

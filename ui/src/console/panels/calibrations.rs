@@ -49,13 +49,9 @@ pub enum Page {
 /// The panel; `open` is the page that is open beside it.
 pub fn calibrations_ui(ui: &mut Ui, live: &Live, in_force: &InForce, open: Option<Page>) -> Option<CalibrationWish> {
     let free = matches!(live.state(), LoopState::Idle | LoopState::Engaged);
-    // First: with two arms the lines below are more than fit.
     let mut wish = rig_ui(ui, free, open);
     ui.add_space(2.0);
     source_ui(ui, live);
-    for line in in_force.lines() {
-        ui.label(small(line));
-    }
     for told in in_force.told() {
         ui.label(told);
     }
@@ -81,6 +77,11 @@ pub fn calibrations_ui(ui: &mut Ui, live: &Live, in_force: &InForce, open: Optio
         if ui.add(back).on_hover_text(text::calibrations::CLOSE_WIZARD_HOVER).clicked() {
             wish = Some(CalibrationWish::Close);
         }
+    }
+    // Below the buttons, which must not move under a hand when a sensor comes or goes.
+    ui.add_space(4.0);
+    for line in in_force.lines() {
+        ui.label(small(line));
     }
     wish
 }

@@ -137,7 +137,7 @@ impl StartPage {
                 }
                 for entry in rigs {
                     if entry_ui(ui, entry, self.chosen.rig == entry.key, now.running.rig == entry.key) {
-                        chosen = Some(Choice { rig: entry.key.clone(), ..self.chosen.clone() });
+                        chosen = Some(self.chosen.with_rig(&entry.key));
                     }
                 }
             }

@@ -4,8 +4,9 @@ use egui::{Button, RichText, TextEdit, Ui, vec2};
 use nima_core::calibration::Judgement;
 use nima_machine::{messages::Tick, rig::Prompt};
 
-use super::{Binding, Saving};
+use super::{Asked, Binding, Saving, Wanted};
 use crate::console::{
+    scene3d::side_name,
     text, theme,
     widgets::{card, figure, small, weak},
 };
@@ -22,6 +23,8 @@ pub(super) struct Step {
 pub(super) enum Wish {
     GoTo(usize),
     StartOver,
+    /// Go on with another calibration.
+    Open(Wanted),
 }
 
 /// State of a wizard: its step, and the inputs and messages of the last step.
@@ -34,14 +37,21 @@ pub(super) struct Frame {
     why: String,
     /// Result of saving.
     pub(super) saved: Option<String>,
+    /// What is to be calibrated after what was saved.
+    following: Option<Wanted>,
     /// The step or what is saved has changed since [`Frame::take_changed`].
     pub(super) changed: bool,
 }
 
 impl Frame {
-    /// Shows the result of saving.
-    pub(super) fn tell_saved(&mut self, words: String) {
-        (self.saved, self.changed) = (Some(words), true);
+    /// Shows the result of saving, and what is to be calibrated after it.
+    pub(super) fn tell_saved(&mut self, words: String, following: Option<Wanted>) {
+        (self.saved, self.changed, self.following) = (Some(words), true, following);
+    }
+
+    /// What is to be calibrated next; `None` before something was saved.
+    fn following(&self) -> Option<Wanted> {
+        self.following.filter(|_| self.saved.is_some())
     }
 
     /// Whether the step or what is saved has changed since the last call.
@@ -100,11 +110,12 @@ pub(super) trait Wizard {
     }
 }
 
-/// Draws a wizard; returns the record to be saved.
-pub(super) fn wizard_ui(wizard: &mut dyn Wizard, ui: &mut Ui, binding: &Binding) -> Option<Saving> {
+/// Draws a wizard; returns what is asked for.
+pub(super) fn wizard_ui(wizard: &mut dyn Wizard, ui: &mut Ui, binding: &Binding) -> Option<Asked> {
     wizard.refresh(binding);
     let (steps, now) = (wizard.steps(), wizard.frame_mut().step);
-    let mut wish = steps_ui(ui, steps, now, wizard.may_go_on(binding));
+    let following = wizard.frame_mut().following();
+    let mut wish = steps_ui(ui, steps, now, wizard.may_go_on(binding), following);
     ui.add_space(theme::GAP);
     if let Some(notice) = wizard.notice() {
         ui.label(notice);
@@ -126,13 +137,21 @@ pub(super) fn wizard_ui(wizard: &mut dyn Wizard, ui: &mut Ui, binding: &Binding)
     match wish {
         Some(Wish::GoTo(step)) => wizard.go_to(step),
         Some(Wish::StartOver) => wizard.start_over(),
+        Some(Wish::Open(wanted)) => return Some(Asked::Open(wanted)),
         None => {}
     }
-    saving
+    saving.map(Asked::Save)
 }
 
-/// The row of steps with buttons for back, next and reset. Going back loses no data.
-fn steps_ui(ui: &mut Ui, steps: &[Step], now: usize, may_go_on: Result<(), &'static str>) -> Option<Wish> {
+/// The row of steps with buttons for back, next and reset. Going back loses no data. After the last step the same button goes on with the
+/// `following` calibration.
+fn steps_ui(
+    ui: &mut Ui,
+    steps: &[Step],
+    now: usize,
+    may_go_on: Result<(), &'static str>,
+    following: Option<Wanted>,
+) -> Option<Wish> {
     let mut wish = None;
     ui.horizontal_wrapped(|ui| {
         for (i, step) in steps.iter().enumerate() {
@@ -154,9 +173,13 @@ fn steps_ui(ui: &mut Ui, steps: &[Step], now: usize, may_go_on: Result<(), &'sta
             wish = Some(Wish::GoTo(now - 1));
         }
         let last = now + 1 == steps.len();
-        let next = ui.add_enabled(!last && may_go_on.is_ok(), Button::new(text::wizards::NEXT).min_size(size));
+        let (name, goes_to) = match following.filter(|_| last) {
+            Some(wanted) => (text::wizards::following(side_name(wanted.side), wanted.name()), Some(Wish::Open(wanted))),
+            None => (text::wizards::NEXT.to_owned(), (!last && may_go_on.is_ok()).then_some(Wish::GoTo(now + 1))),
+        };
+        let next = ui.add_enabled(goes_to.is_some(), Button::new(name).min_size(size));
         if next.clicked() {
-            wish = Some(Wish::GoTo(now + 1));
+            wish = goes_to;
         }
         if let (Err(reason), false) = (may_go_on, last) {
             next.on_disabled_hover_text(reason);

@@ -16,7 +16,7 @@ use crate::console::{
     reader::task_of,
     text, theme,
     widgets::card,
-    wizards::{Asked, Binding, Saving, Wanted, Which, Wizards},
+    wizards::{Asked, Binding, GoOn, Saving, Wanted, Which, Wizards},
 };
 
 impl ConsoleApp {
@@ -91,9 +91,7 @@ impl ConsoleApp {
     pub(super) fn save(&mut self, saving: Saving) {
         let saved = self.saved(saving);
         // Before the new start, after which the sensor must be opened first.
-        let following = saved.as_ref().ok().and_then(|(rig, _)| {
-            following(&overview(&self.in_force, rig, &self.running.rig), self.wizards.wanted(self.in_force.side()))
-        });
+        let following = saved.as_ref().ok().and_then(|(rig, _)| self.following(rig));
         let told = match saved {
             Ok((rig, words)) => match self.restart(rig, self.live.scene.clone()) {
                 Ok(()) => words,
@@ -102,6 +100,13 @@ impl ConsoleApp {
             Err(reason) => text::calibrations::not_saved(&reason),
         };
         self.wizards.tell_saved(told, following);
+    }
+
+    /// What is to be done after the calibration that is open, on this rig; a simulated one needs no ready check.
+    fn following(&self, rig: &RigConfig) -> Option<GoOn> {
+        let arms = overview(&self.in_force, rig, &self.running.rig);
+        let wanted = following(&arms, self.wizards.wanted(self.in_force.side()));
+        wanted.map(GoOn::Calibrate).or(rig.devices.as_ref().map(|_| GoOn::Check))
     }
 
     /// Opens the wizard of this calibration, at its arm.
@@ -172,7 +177,8 @@ impl ConsoleApp {
         });
         match asked {
             Some(Asked::Save(saving)) => self.save(saving),
-            Some(Asked::Open(wanted)) => self.open_wanted(wanted),
+            Some(Asked::GoOn(GoOn::Calibrate(wanted))) => self.open_wanted(wanted),
+            Some(Asked::GoOn(GoOn::Check)) => self.obey_calibrations(Some(CalibrationWish::Check)),
             None => {}
         }
         self.obey_calibrations(wish);

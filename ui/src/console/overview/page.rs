@@ -6,8 +6,8 @@ use super::{Line, OfArm, following, made_words, verdict_words};
 use crate::console::{
     scene3d::side_name,
     text, theme,
-    widgets::{Sign, sign_ui, small},
-    wizards::Wanted,
+    widgets::{Sign, next_button, sign_ui, small},
+    wizards::{GoOn, Wanted},
 };
 
 /// Widths of the columns of words.
@@ -55,9 +55,8 @@ pub(crate) fn overview_ui(ui: &mut Ui, arms: &[OfArm], free: bool) -> Option<Wan
 /// The button that opens what is to be calibrated next.
 fn following_ui(ui: &mut Ui, arms: &[OfArm], free: bool) -> Option<Wanted> {
     let wanted = following(arms, None)?;
-    let name = text::wizards::following(side_name(wanted.side), wanted.name());
-    let button =
-        ui.add_enabled(free, Button::new(RichText::new(name).font(theme::strong(15.0))).min_size(vec2(300.0, 34.0)));
+    let name = RichText::new(GoOn::Calibrate(wanted).words()).font(theme::strong(15.0));
+    let button = ui.add_enabled(free, next_button(name, free).min_size(vec2(300.0, 34.0)));
     ui.add_space(theme::GAP);
     button.on_disabled_hover_text(text::calibrations::OPEN_DISABLED_HOVER).clicked().then_some(wanted)
 }

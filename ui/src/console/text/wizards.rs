@@ -45,6 +45,7 @@ pub(in crate::console) const MET: &str = "met";
 pub(in crate::console) const FINE: &str = "fine";
 pub(in crate::console) const WAITING: &str = "waiting";
 pub(in crate::console) const NO_RESULT: &str = "No result";
+pub(in crate::console) const FOLLOWING_CHECK: &str = "Next: ready check";
 pub(in crate::console) const DONE: &str = "(done)";
 
 /// Caption of the picture of a pose.

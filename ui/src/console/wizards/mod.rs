@@ -40,7 +40,7 @@ pub use gravity::GravityWizard;
 pub use tip_force::TipForceWizard;
 
 use self::frame::{Wizard, wizard_ui};
-use super::{theme, widgets::small};
+use super::{scene3d::side_name, theme, widgets::small};
 use crate::console::text;
 
 /// Sensor, tool and existing data for a new calibration.
@@ -190,13 +190,32 @@ impl Wanted {
     }
 }
 
+/// What is to be done after a calibration.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum GoOn {
+    /// Another calibration.
+    Calibrate(Wanted),
+    /// Nothing is missing: the ready check.
+    Check,
+}
+
+impl GoOn {
+    /// Name on a button.
+    pub(in crate::console) fn words(self) -> String {
+        match self {
+            Self::Calibrate(wanted) => text::wizards::following(side_name(wanted.side), wanted.name()),
+            Self::Check => text::wizards::FOLLOWING_CHECK.to_owned(),
+        }
+    }
+}
+
 /// What the technician asks for on a wizard's page.
 #[derive(Clone, Debug)]
 pub enum Asked {
     /// Save this and use it.
     Save(Saving),
-    /// Go on with this calibration.
-    Open(Wanted),
+    /// Go on elsewhere.
+    GoOn(GoOn),
 }
 
 /// A record to be saved and used.
@@ -301,8 +320,8 @@ impl Wizards {
         Some(Wanted { side, which, by_handle })
     }
 
-    /// Shows the result of saving in the open wizard, and what is to be calibrated after it.
-    pub fn tell_saved(&mut self, words: String, following: Option<Wanted>) {
+    /// Shows the result of saving in the open wizard, and what is to be done after it.
+    pub fn tell_saved(&mut self, words: String, following: Option<GoOn>) {
         if let Some(which) = self.open {
             self.the_mut(which).frame_mut().tell_saved(words, following);
         }

@@ -317,31 +317,35 @@ impl Wizard for TipForceWizard {
         self.take_in(binding);
     }
 
-    fn attend(&mut self, binding: &Binding) -> bool {
+    fn is_done(&self) -> bool {
         match self.frame.step {
-            RECORD => {
-                let enough = self.rows() >= ENOUGH_ROWS && self.lacking().is_none();
-                let running = self.recording.as_ref().is_some_and(|take| take.running);
-                if !enough && !running && self.may_record(binding).is_ok() {
-                    self.start_recording(binding);
-                }
-                enough
-            }
-            TRAIN => {
-                if self.trained.is_none() && !self.is_training() && self.told.is_none() {
-                    self.start_training(binding);
-                }
-                self.trained.is_some()
-            }
-            CHECK => {
-                let running = self.judging.is_some() || self.proof.as_ref().is_some_and(|take| take.running);
-                if self.checked.is_none() && !running && self.told.is_none() {
-                    self.start_check(binding);
-                }
-                self.checked.is_some()
-            }
+            RECORD => self.rows() >= ENOUGH_ROWS && self.lacking().is_none(),
+            TRAIN => self.trained.is_some(),
+            CHECK => self.checked.is_some(),
             _ => true,
         }
+    }
+
+    fn attend(&mut self, binding: &Binding) -> bool {
+        let done = self.is_done();
+        match self.frame.step {
+            _ if done => {}
+            RECORD => {
+                let running = self.recording.as_ref().is_some_and(|take| take.running);
+                if !running && self.may_record(binding).is_ok() {
+                    self.start_recording(binding);
+                }
+            }
+            TRAIN if !self.is_training() && self.told.is_none() => self.start_training(binding),
+            CHECK => {
+                let running = self.judging.is_some() || self.proof.as_ref().is_some_and(|take| take.running);
+                if !running && self.told.is_none() {
+                    self.start_check(binding);
+                }
+            }
+            _ => {}
+        }
+        done
     }
 
     fn notice(&self) -> Option<&str> {

@@ -295,7 +295,7 @@ impl Wizard for FrameWizard {
         }
     }
 
-    fn attend(&mut self, _: &Binding) -> bool {
+    fn is_done(&self) -> bool {
         self.frame.step != RECORD || self.is_complete()
     }
 

@@ -94,10 +94,10 @@ impl ConsoleApp {
         let following = saved.as_ref().ok().and_then(|(rig, _)| self.following(rig));
         let told = match saved {
             Ok((rig, words)) => match self.restart(rig, self.live.scene.clone()) {
-                Ok(()) => words,
-                Err(reason) => text::calibrations::in_force_with_next_start(&words, &reason),
+                Ok(()) => Ok(words),
+                Err(reason) => Ok(text::calibrations::in_force_with_next_start(&words, &reason)),
             },
-            Err(reason) => text::calibrations::not_saved(&reason),
+            Err(reason) => Err(text::calibrations::not_saved(&reason)),
         };
         self.wizards.tell_saved(told, following);
     }

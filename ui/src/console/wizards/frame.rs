@@ -34,8 +34,8 @@ pub(super) struct Frame {
     name: String,
     /// The reason.
     why: String,
-    /// Result of saving.
-    pub(super) saved: Option<String>,
+    /// What is told of saving: done, or why not.
+    pub(super) saved: Option<Result<String, String>>,
     /// What is to be done after what was saved.
     following: Option<GoOn>,
     /// The step or what is saved has changed since [`Frame::take_changed`].
@@ -44,13 +44,17 @@ pub(super) struct Frame {
 
 impl Frame {
     /// Shows the result of saving, and what is to be done after it.
-    pub(super) fn tell_saved(&mut self, words: String, following: Option<GoOn>) {
-        (self.saved, self.changed, self.following) = (Some(words), true, following);
+    pub(super) fn tell_saved(&mut self, told: Result<String, String>, following: Option<GoOn>) {
+        (self.saved, self.changed, self.following) = (Some(told), true, following);
+    }
+
+    const fn is_saved(&self) -> bool {
+        matches!(self.saved, Some(Ok(_)))
     }
 
     /// What is to be done next; `None` before something was saved.
     fn following(&self) -> Option<GoOn> {
-        self.following.filter(|_| self.saved.is_some())
+        self.following.filter(|_| self.is_saved())
     }
 
     /// Whether the step or what is saved has changed since the last call.
@@ -209,14 +213,19 @@ fn save_card(ui: &mut Ui, binding: &Binding, proof: Option<&str>, frame: &mut Fr
         figure(ui, text::wizards::TOOL, &binding.tool, text::wizards::TOOL_HOVER);
         let wanted = if let Some(proof) = proof {
             ui.label(proof);
-            let save = next_button(text::wizards::SAVE_AND_USE, frame.saved.is_none());
-            ui.add(save.min_size(vec2(180.0, 36.0))).clicked()
+            let (known, next) = (!binding.sensor.is_empty(), !frame.is_saved());
+            let save =
+                ui.add_enabled(known, next_button(text::wizards::SAVE_AND_USE, next).min_size(vec2(180.0, 36.0)));
+            if !known {
+                ui.label(small(text::calibrations::SENSOR_NOT_CONNECTED));
+            }
+            save.clicked()
         } else {
             ui.label(weak(text::wizards::NOT_PROVEN));
             override_ui(ui, [&mut frame.name, &mut frame.why])
         };
-        if let Some(saved) = &frame.saved {
-            ui.label(saved);
+        if let Some(Ok(told) | Err(told)) = &frame.saved {
+            ui.label(told);
         }
         wanted
     })

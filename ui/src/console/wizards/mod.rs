@@ -321,9 +321,9 @@ impl Wizards {
     }
 
     /// Shows the result of saving in the open wizard, and what is to be done after it.
-    pub fn tell_saved(&mut self, words: String, following: Option<GoOn>) {
+    pub fn tell_saved(&mut self, told: Result<String, String>, following: Option<GoOn>) {
         if let Some(which) = self.open {
-            self.the_mut(which).frame_mut().tell_saved(words, following);
+            self.the_mut(which).frame_mut().tell_saved(told, following);
         }
     }
 

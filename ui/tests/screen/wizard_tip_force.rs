@@ -269,6 +269,25 @@ fn answers_in_the_loop(folder: &Path) {
 }
 
 #[test]
+fn a_sensor_that_is_lost_for_a_moment_costs_no_recording_and_another_one_does() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut console = Console::new(None, folder.path());
+    console.press("Next");
+    console.press("Start recording");
+    console.record(300);
+    let known = console.window.state().binding.clone();
+    let store = known.store.clone();
+    console.window.state_mut().binding = Binding { date: utc_now(), store, ..Binding::default() };
+    console.window.step();
+    console.window.state_mut().binding = known.clone();
+    console.record(600);
+    assert!(!console.shows("was discarded"));
+    console.window.state_mut().binding.sensor = "another one".to_owned();
+    console.read("was discarded");
+    assert!(!console.shows("Pause"));
+}
+
+#[test]
 fn without_a_correspondence_nothing_can_be_recorded() {
     let folder = tempfile::tempdir().unwrap();
     Store::open(folder.path()).save(&records().0).unwrap();

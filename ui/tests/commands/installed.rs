@@ -8,10 +8,8 @@ use std::{
     process::Command,
 };
 
+use nima_testing::real_time::{alone, judged, too_busy};
 use serde_json::Value;
-
-/// A machine under load lets devices in real time look lost; then it is tried again.
-const ATTEMPTS: usize = 4;
 
 /// Ports of the embedded rig.
 const PORTS: [u16; 8] = [47130, 47100, 47101, 47131, 47110, 47111, 47140, 47120];
@@ -61,6 +59,7 @@ fn run(folder: &Path) -> (Vec<u64>, String) {
 
 #[test]
 fn the_emulated_rig_runs_with_nothing_beside_the_program() {
+    let _alone = alone();
     let folder = tempfile::tempdir().unwrap();
     fs::copy(env!("CARGO_BIN_EXE_nima"), folder.path().join("nima")).unwrap();
     fs::DirBuilder::new().mode(0o700).create(folder.path().join("run")).unwrap();

@@ -23,7 +23,7 @@ fn run<C: Calibration>(bench: &mut Bench, calibration: C, task: Task, prompt: Pr
     let mut session = FrameSession::new(calibration);
     // He carries the arm to where it begins.
     bench.show(SIDE, task, Prompt::Rest);
-    bench.until(SIDE, Duration::from_secs(8), |_, _| false);
+    bench.rests(SIDE);
     bench.show(SIDE, task, prompt);
     let complete = bench.until(SIDE, Duration::from_secs(150), |_, tick| {
         if tick.index % 4 == 0 {
@@ -83,7 +83,7 @@ fn tip_hand_eye_and_trocar_are_found_within_half_a_millimetre() {
 
         // With the instrument in its trocar again.
         bench.show(SIDE, Task::Surgery, Prompt::Rest);
-        bench.until(SIDE, Duration::from_secs(8), |_, _| false);
+        bench.rests(SIDE);
         let trocar = run(&mut bench, Trocar::by_arm(&arm), Task::Trocar, Prompt::PivotInTrocar).found.unwrap();
         let true_m = base_from_world * Point3::from(set.rcm.trocar_m);
         let miss_mm = (Vector3::from(trocar.trocar_m) - true_m.coords).norm() * 1e3;

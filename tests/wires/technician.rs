@@ -4,6 +4,7 @@
 use std::time::{Duration, Instant};
 
 use nima_core::calibration::gravity::{GravitySession, SessionSettings};
+use nima_devices::ARM_JOINTS;
 use nima_machine::{
     config::RigConfig,
     messages::Tick,
@@ -20,6 +21,9 @@ use nima_world::{
 
 /// Poses that are taken at each arm.
 const POSES: usize = 3;
+/// An arm rests whose joints turn no further than this, rad, in this time, s.
+const STILL_RAD: f64 = 1e-4;
+const STILL_S: f64 = 0.3;
 
 /// An emulated rig and the loop over its wires.
 pub(super) struct Bench {
@@ -60,6 +64,19 @@ impl Bench {
         self.rig.technician().reads(&Screen { side, task, prompt });
     }
 
+    /// Waits until nobody has moved the arm of this side for a while: who was called to it has carried it where he begins.
+    pub(super) fn rests(&mut self, side: Side) {
+        let (mut at_rad, mut since_s) = ([f64::INFINITY; ARM_JOINTS], 0.0);
+        self.until(side, Duration::from_secs(20), |bench, tick| {
+            let joint_rad = bench.rig.truth(side).unwrap().joint_rad;
+            let moved = joint_rad.iter().zip(&at_rad).any(|(now, then)| (now - then).abs() > STILL_RAD);
+            if moved {
+                (at_rad, since_s) = (joint_rad, tick.t_s);
+            }
+            tick.t_s - since_s > STILL_S
+        });
+    }
+
     /// Whether the instrument is through its trocar, as the loop sees it.
     fn is_in_trocar(tick: &Tick) -> bool {
         tick.wrist.as_ref().is_some_and(|sample| sample.insertion_m.is_some_and(|depth_m| depth_m > 0.0))
@@ -92,7 +109,7 @@ fn the_technician_takes_poses_at_the_arm_that_is_calibrated_and_puts_the_instrum
             let back = bench.until(side, Duration::from_secs(20), |_, tick| Bench::is_in_trocar(tick));
             assert!(back, "{side:?}: the instrument is not in its trocar again");
             // He has gone: the arm rests.
-            std::thread::sleep(Duration::from_millis(1500));
+            bench.rests(side);
         }
     });
 }

@@ -10,19 +10,22 @@ use std::{
 };
 
 use nima_console::leaving::Leave;
-use nima_core::impedance::Mode;
 use nima_machine::{
     config::RigConfig,
     rig::{Settings, Side},
 };
-use nima_testing::real_time;
+use nima_testing::real_time::{alone, judged, too_busy};
 use nima_tests::emulated;
-use nima_world::{Plan, emulated::Truth, emulators::force_dimension::Mode as Motors, scene::Scene, start};
+use nima_world::{
+    Plan,
+    emulated::{Truth, provide_handles},
+    emulators::force_dimension::Mode as Motors,
+    scene::Scene,
+    start,
+};
 use serde_json::Value;
 
 const TIMEOUT: Duration = Duration::from_mins(1);
-/// A run on a busy machine may be held up, which is a fault of its own: then another one is tried.
-const ATTEMPTS: usize = 5;
 
 fn nima(arguments: &[&str]) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_nima"));
@@ -174,16 +177,15 @@ fn ended_by(signal: &str) -> Option<Output> {
 
 #[test]
 fn whatever_signal_ends_a_run_its_figures_are_printed() {
-    for signal in ["-TERM", "-HUP", "-INT"] {
-        let Some(output) = (0..ATTEMPTS).find_map(|_| ended_by(signal)) else {
-            println!("too busy to judge");
-            return;
-        };
-        let (figures, told) = (String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr));
-        assert!(output.status.success(), "{signal}: {} {told}", output.status);
-        assert!(figures.contains("right arm ended: Engaged") && figures.contains("work us"), "{signal}: {figures}");
-        assert!(told.contains("nima: ended as asked: force and drives are off"), "{signal}: {told}");
-    }
+    judged(|| {
+        for signal in ["-TERM", "-HUP", "-INT"] {
+            let Some(output) = ended_by(signal) else { too_busy() };
+            let (figures, told) = (String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr));
+            assert!(output.status.success(), "{signal}: {} {told}", output.status);
+            assert!(figures.contains("right arm ended: Engaged") && figures.contains("work us"), "{signal}: {figures}");
+            assert!(told.contains("nima: ended as asked: force and drives are off"), "{signal}: {told}");
+        }
+    });
 }
 
 #[test]
@@ -281,21 +283,23 @@ fn options_without_a_subcommand_reach_the_console_or_the_run_that_stands_for_it(
     assert_eq!(dev("", &[]), "nima run");
 }
 
-const DEVICES: &str = "NIMA_TEST_DEVICES";
+/// Names the rig file of the process that is asked to end, and where it puts its figures.
+const RIG: &str = "NIMA_TEST_RIG";
 const SUMMARY: &str = "NIMA_TEST_SUMMARY";
 
 /// The process that the test below asks to end; it starts it.
 #[test]
 #[ignore = "run by the other test, which ends it"]
 fn the_loop_of_another_process() {
-    let Ok(devices) = std::env::var(DEVICES) else { return };
+    let Ok(rig) = std::env::var(RIG) else { return };
+    provide_handles();
     let leave = Leave::on_signals().unwrap();
-    let mut rig = RigConfig::load("emulated").unwrap();
-    rig.devices = Some(serde_json::from_str::<Settings>(&devices).unwrap());
-    rig.mode = Mode::Dfr;
-    rig.gates.static_hold = true;
-    let plan =
-        Plan { rig, scene: Scene::load("peg_transfer").unwrap(), calibrations: Default::default(), engage: true };
+    let plan = Plan {
+        rig: RigConfig::load(&rig).unwrap(),
+        scene: Scene::load("peg_transfer").unwrap(),
+        calibrations: Default::default(),
+        engage: true,
+    };
     let handle = start(&plan).unwrap();
     let ender = handle.ender();
     leave.at_once(move || ender.end());
@@ -306,6 +310,18 @@ fn the_loop_of_another_process() {
     }
     let summary = handle.stop_and_join().unwrap();
     fs::write(std::env::var(SUMMARY).unwrap(), serde_json::to_vec(&summary).unwrap()).unwrap();
+}
+
+/// The right arm of the emulated rig as a file at `path`: it presses on tissue, and the hand feels a steady force.
+fn pressing_rig(path: &Path) -> Settings {
+    let mut file = emulated::rig_file(&emulated::elsewhere(path.parent().unwrap()));
+    for part in ["left", "tissue_sensor", "tracker", "endoscope", "pedal"] {
+        file.remove(&format!("devices.{part}"));
+    }
+    file.set("devices.right.sensor_at", "tip");
+    file.set("mode", "dfr");
+    file.set("gates.static_hold", true);
+    file.save(path).unwrap().devices.unwrap()
 }
 
 /// Waits until the emulated devices are like that.
@@ -323,41 +339,33 @@ fn come(truth: &dyn Fn() -> Truth, within: Duration, good: impl Fn(&Truth) -> bo
 #[test]
 #[ignore = "real lines in real time: `./dev test` runs it alone"]
 fn an_engaged_arm_is_braked_and_left_by_every_signal() {
-    let _alone = real_time::alone();
+    let _alone = alone();
     let folder = tempfile::tempdir().unwrap();
-    let devices = emulated::right_arm(folder.path());
-    let rig = emulated::started(&devices);
+    let rig_file = folder.path().join("rig.toml");
+    let rig = emulated::started(&pressing_rig(&rig_file));
     let truth = || rig.truth(Side::Right).unwrap();
     let figures = folder.path().join("summary.json");
     let another_process = || {
         let child = Command::new(std::env::current_exe().unwrap())
             .args(["endings::the_loop_of_another_process", "--exact", "--ignored"])
-            .env(DEVICES, serde_json::to_string(&devices).unwrap())
+            .env(RIG, &rig_file)
             .env(SUMMARY, &figures)
             .stdout(Stdio::null())
-            .stderr(Stdio::null())
             .spawn();
         Running(child.unwrap())
     };
-    for signal in ["-TERM", "-HUP", "-INT"] {
-        let ended = || {
+    judged(|| {
+        for signal in ["-TERM", "-HUP", "-INT"] {
             let mut child = another_process();
             let feels = |truth: &Truth| truth.applied.force_n.norm() > 0.5 && truth.servoing;
-            if !come(&truth, Duration::from_secs(10), feels) {
-                return None;
-            }
+            assert!(come(&truth, Duration::from_secs(10), feels), "{signal}: the hand feels nothing: {:?}", truth());
             child.signal(signal);
             assert!(child.ended().success(), "{signal}: it was ended, and did not leave");
             let summary: Value = serde_json::from_slice(&fs::read(&figures).unwrap()).unwrap();
-            Some(summary).filter(|summary| summary["final_state"] == "engaged")
-        };
-        let Some(summary) = (0..ATTEMPTS).find_map(|_| ended()) else {
-            println!("too busy to judge");
-            return;
-        };
-        assert_eq!(summary["fault"], Value::Null, "{signal}");
-        let left = truth();
-        assert!(left.applied.mode == Motors::Brake && left.applied.force_n.norm() < 1e-12, "{signal}: {left:?}");
-        assert!(!left.servoing, "{signal}: the arm is out of cyclic servoing");
-    }
+            assert_eq!((&summary["final_state"], &summary["fault"]), (&"engaged".into(), &Value::Null), "{signal}");
+            let left = truth();
+            assert!(left.applied.mode == Motors::Brake && left.applied.force_n.norm() < 1e-12, "{signal}: {left:?}");
+            assert!(!left.servoing, "{signal}: the arm is out of cyclic servoing");
+        }
+    });
 }

@@ -28,14 +28,14 @@ struct Session<'a> {
 }
 
 impl<'a> Session<'a> {
-    fn begin(x: &'a Xvfb, role: &str, seconds: u32) -> Self {
+    fn begin(x: &'a Xvfb, role: &str) -> Self {
         let folder = tempfile::tempdir().unwrap();
         std::fs::write(folder.path().join("console.json"), r#"{"toured":true}"#).unwrap();
         let console = x
             .command(env!("CARGO_BIN_EXE_nima"))
             .env("XDG_RUNTIME_DIR", folder.path())
             .env("NIMA_DATA_DIR", folder.path())
-            .args(["console", "--role", role, "--exit-after", &seconds.to_string(), "--summary"])
+            .args(["console", "--role", role, "--summary"])
             .arg(folder.path().join("summary.json"))
             .stdout(Stdio::null())
             .spawn()
@@ -71,9 +71,11 @@ impl<'a> Session<'a> {
         self.tool(&["mouseup", "1"]);
     }
 
-    /// What the program wrote: the loop's figures and the settings.
+    /// Asks the program to end, when the last action is done; what it wrote: the loop's figures and the settings.
     fn end(mut self) -> [serde_json::Value; 2] {
-        assert!(self.console.wait().unwrap().success(), "the console closes by itself with success");
+        thread::sleep(Duration::from_millis(1200));
+        assert!(self.x.command("kill").arg(self.console.id().to_string()).status().unwrap().success());
+        assert!(self.console.wait().unwrap().success(), "the console closes with success");
         let told = ["summary.json", "console.json"].map(|file| read(&self.folder.path().join(file)));
         // Everything is simulated here: only a loop that this machine held up ends in a fault.
         if states(&told[0]).contains(&"Fault") {
@@ -100,7 +102,7 @@ fn states(summary: &serde_json::Value) -> Vec<&str> {
 }
 
 fn surgeon(x: &Xvfb) {
-    let session = Session::begin(x, "surgeon", 14);
+    let session = Session::begin(x, "surgeon");
     session.click(LOWER_THE_GAIN);
     session.click(LOWER_THE_GAIN);
     thread::sleep(Duration::from_millis(700));
@@ -114,7 +116,7 @@ fn surgeon(x: &Xvfb) {
 }
 
 fn technician(x: &Xvfb) {
-    let session = Session::begin(x, "technician", 26);
+    let session = Session::begin(x, "technician");
     session.click(CALIBRATE_GRAVITY);
     thread::sleep(Duration::from_millis(800));
     session.click(BACK_TO_THE_MONITOR);
@@ -137,7 +139,7 @@ fn technician(x: &Xvfb) {
 }
 
 fn demo(x: &Xvfb) {
-    let session = Session::begin(x, "demo", 13);
+    let session = Session::begin(x, "demo");
     session.key("m");
     thread::sleep(Duration::from_millis(700));
     session.key("Page_Down");

@@ -18,6 +18,7 @@ use super::{
     ArmSet, Gauge, Part, RigError,
     devices::{OLDEST_S, enrol, is_there},
     jaws::JawsControl,
+    known::Known,
     makes::Opener,
 };
 use crate::rig::{Inputs, Outputs, Roster, Sensed, Side, Switches, View};
@@ -45,6 +46,7 @@ impl Shared {
 fn start<P>(
     part: Part,
     opener: Opener<P>,
+    known: &Known,
     roster: &mut Roster,
     attach: impl Fn(&P) + Send + 'static,
 ) -> std::io::Result<Slot<P>>
@@ -52,7 +54,8 @@ where
     P: Device + 'static,
 {
     let Opener { driver, mut open, clear_faults } = opener;
-    let slot = Slot::start(part.name(), move || open().inspect(&attach))?;
+    let known = known.clone();
+    let slot = Slot::start(part.name(), move || known.admit(part, open()).inspect(&attach))?;
     enrol(roster, part, driver, &slot);
     if let Some(entry) = roster.last_mut() {
         entry.clear_faults = clear_faults;
@@ -108,6 +111,7 @@ impl ArmPair {
         set: &ArmSet,
         period_s: f64,
         at_wrist: bool,
+        known: &Known,
         roster: &mut Roster,
     ) -> Result<Self, RigError> {
         let word = side.word();
@@ -115,11 +119,12 @@ impl ArmPair {
         let rcm = Rcm::new(&set.rcm).map_err(|source| RigError::Rcm { side: word, source })?;
         let levers = [Lever::default(), Lever::default()];
         let [of_handle, of_arm] = levers.clone();
-        let handle = start(Part::Handle(side), set.handle.opener(), roster, move |handle| handle.attach(&of_handle))?;
-        let arm = start(Part::Arm(side), set.arm.opener(), roster, move |arm| arm.attach(&of_arm))?;
-        let sensor = start(Part::Sensor(side), set.sensor.opener(), roster, |_| ())?;
+        let leader = if known.has_both_sides() { set.handle.for_hand_of(side) } else { set.handle.clone() };
+        let handle = start(Part::Handle(side), leader.opener(), known, roster, move |handle| handle.attach(&of_handle))?;
+        let arm = start(Part::Arm(side), set.arm.opener(), known, roster, move |arm| arm.attach(&of_arm))?;
+        let sensor = start(Part::Sensor(side), set.sensor.opener(), known, roster, |_| ())?;
         let servos = set.servos.clone().map(|settings| {
-            let slot = start(Part::Servos(side), servos_opener(settings), roster, |_| ())?;
+            let slot = start(Part::Servos(side), servos_opener(settings), known, roster, |_| ())?;
             Ok::<_, std::io::Error>((slot, JawsControl::new(set.jaws, period_s)))
         });
         Ok(Self {

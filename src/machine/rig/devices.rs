@@ -19,7 +19,7 @@ use nima_devices::{
 
 use super::{
     ArmPair, DEVICES_MAX, DeviceEvent, EndoscopeSettings, Gauge, Gauges, Healths, Inputs, Outputs, Part, Rig, Roster,
-    RosterEntry, SIDES, Settings, Side, Switches, View, Watch, arm_pair::Shared, makes::Opener,
+    RosterEntry, SIDES, Settings, Side, Switches, View, Watch, arm_pair::Shared, known::Known, makes::Opener,
 };
 
 /// A reading older than this counts as missing, s.
@@ -104,16 +104,18 @@ impl DeviceRig {
     /// [`RigError`] if a setting is invalid or a thread cannot be created.
     pub fn start(settings: &Settings, period_s: f64, at_wrist: [bool; SIDES]) -> Result<(Self, Roster), RigError> {
         let mut roster = Roster::new();
+        let known = Known::of(settings);
         let mut pairs = [None, None];
         for side in Side::ALL {
             if let Some(set) = settings.arm(side) {
-                let pair = ArmPair::start(side, set, period_s, at_wrist[side.index()], &mut roster)?;
+                let pair = ArmPair::start(side, set, period_s, at_wrist[side.index()], &known, &mut roster)?;
                 pairs[side.index()] = Some(Box::new(pair));
             }
         }
         let tissue = settings.tissue_sensor.as_ref().map(|sensor| {
-            let Opener { driver, open, .. } = sensor.opener();
-            let slot = Slot::start(Part::TissueSensor.name(), open)?;
+            let Opener { driver, mut open, .. } = sensor.opener();
+            let known = known.clone();
+            let slot = Slot::start(Part::TissueSensor.name(), move || known.admit(Part::TissueSensor, open()))?;
             enrol(&mut roster, Part::TissueSensor, driver, &slot);
             Ok::<_, io::Error>(slot)
         });

@@ -11,6 +11,7 @@ mod devices;
 mod flaws;
 mod gauge;
 mod jaws;
+mod known;
 #[cfg(test)]
 mod joint_limits_tests;
 mod makes;
@@ -32,6 +33,7 @@ pub use devices::{DeviceRig, RigError};
 pub use flaws::Flaws;
 pub use gauge::{AGES, CHANNELS, Gauge, Gauges, Spread};
 pub use jaws::JawsSettings;
+pub use known::Checked;
 pub use makes::{FollowerSettings, LeaderSettings, SensorSettings};
 pub(crate) use makes::{Misread, take_out_makes};
 pub use nominal::Nominal;

@@ -7,7 +7,7 @@ use nima_core::kinematics::{ArmSettings, RcmSettings};
 use nima_devices::{TRACKED_TOOLS, Trouble, dynamixel, hid, ndi};
 use serde::{Deserialize, Serialize};
 
-use super::{Flaws, FollowerSettings, JawsSettings, LeaderSettings, SensorSettings};
+use super::{Checked, Flaws, FollowerSettings, JawsSettings, LeaderSettings, SensorSettings};
 use crate::rig::{SIDES, Side};
 
 /// The devices of a rig. Each is optional; the parts of an arm pair are not.
@@ -32,6 +32,10 @@ pub struct Settings {
     pub pedal: Option<hid::PedalSettings>,
     /// Flaws that the emulated devices have; none on a rig of real ones.
     pub flaws: Flaws,
+    /// The devices of the last passed ready check, which tell right from left where the file names no serial number. Not in
+    /// the file.
+    #[serde(skip)]
+    pub checked: Option<Checked>,
 }
 
 /// A marker of the tracker on the endoscope.
@@ -170,6 +174,16 @@ impl Settings {
         }
         if let (Some(right), Some(left)) = (&self.right, &self.left) {
             right.handle.check_beside(&left.handle).map_err(|trouble| below("right.handle", trouble))?;
+            if let (Some(of_right), Some(of_left)) = (&right.servos, &left.servos) {
+                of_left.check_beside(of_right).map_err(|trouble| below("left.servos", trouble))?;
+            }
+            if right.tool == left.tool {
+                return Err(Trouble::Setting {
+                    key: "devices.left.tool".to_owned(),
+                    value: format!("\"{}\"", left.tool),
+                    allowed: "another name than the right tool's: calibrations belong to sensor and tool, and exchanged sensors would keep theirs".to_owned(),
+                });
+            }
         }
         self.check_hand_eye()?;
         self.check_endoscope()?;

@@ -1,0 +1,108 @@
+//! Which device belongs to which part, by the serial numbers that the rig file names and, where it names none, by those of the
+//! last passed ready check. A device that answers at the place of another part is not let in: it is told as exchanged with it.
+
+use nima_devices::{Device, Trouble, same_serial};
+use nima_recording::store::ReadyRecord;
+
+use super::{Part, Settings};
+
+/// The devices of a ready check.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Checked {
+    /// When it was.
+    date: String,
+    /// Who was where; parts whose device tells no serial number are left out.
+    serials: Vec<(Part, String)>,
+}
+
+impl Checked {
+    /// What a record says of the parts.
+    pub fn of(record: &ReadyRecord) -> Self {
+        let part = |name: &str| Part::ALL.into_iter().find(|part| part.name() == name);
+        let told = record.devices.iter().filter(|device| !device.serial.trim().is_empty());
+        let serials = told.filter_map(|device| Some((part(&device.name)?, device.serial.clone()))).collect();
+        Self { date: record.date.clone(), serials }
+    }
+}
+
+/// Who is who on a rig.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Known {
+    has_both_sides: bool,
+    /// By the rig file.
+    named: Vec<(Part, String)>,
+    checked: Checked,
+}
+
+fn serial_of(serials: &[(Part, String)], part: Part) -> Option<&str> {
+    serials.iter().find(|(known, _)| *known == part).map(|(_, serial)| serial.as_str())
+}
+
+impl Known {
+    pub(super) fn of(settings: &Settings) -> Self {
+        let has_both_sides = settings.right.is_some() && settings.left.is_some();
+        let named = |part: Part| Some((part, settings.serial(part)?));
+        Self {
+            has_both_sides,
+            named: Part::ALL.into_iter().filter_map(named).collect(),
+            checked: settings.checked.clone().unwrap_or_default(),
+        }
+    }
+
+    pub(super) const fn has_both_sides(&self) -> bool {
+        self.has_both_sides
+    }
+
+    /// Whose device it is that answers as this part with this serial number, if it is another part's: that part, and the
+    /// date of the ready check by which it is known.
+    fn whose(&self, part: Part, serial: &str) -> Option<(Part, Option<&str>)> {
+        let is_it = |known: Option<&str>| known.is_some_and(|known| same_serial(known, serial));
+        let others = || Part::ALL.into_iter().filter(|other| *other != part && other.kind() == part.kind());
+        if is_it(serial_of(&self.named, part)) {
+            return None;
+        }
+        if let Some(other) = others().find(|other| is_it(serial_of(&self.named, *other))) {
+            return Some((other, None));
+        }
+        let by_check = |part: Part| serial_of(&self.checked.serials, part);
+        if serial_of(&self.named, part).is_some() || is_it(by_check(part)) {
+            return None;
+        }
+        let other = others().find(|other| is_it(by_check(*other)))?;
+        Some((other, Some(&self.checked.date)))
+    }
+
+    /// Lets the device in that was opened as this part, unless it is another part's; names that part also if the driver has
+    /// refused the serial number.
+    pub(super) fn admit<D: Device>(&self, part: Part, opened: Result<D, Trouble>) -> Result<D, Trouble> {
+        let serial = match &opened {
+            Ok(device) => device.about().1.serial.clone(),
+            Err(Trouble::OtherSerial { found, .. }) => found.clone(),
+            Err(_) => return opened,
+        };
+        match self.whose(part, &serial) {
+            None => opened,
+            Some((other, checked)) => Err(Trouble::Exchanged {
+                part: part.name().to_owned(),
+                other: other.name().to_owned(),
+                serial,
+                checked: checked.map(str::to_owned),
+            }),
+        }
+    }
+}
+
+impl Settings {
+    /// The serial number that the rig file names for a part; the ids of servos.
+    fn serial(&self, part: Part) -> Option<String> {
+        let set = part.side().and_then(|side| self.arm(side));
+        match part {
+            Part::Handle(_) => set?.handle.serial(),
+            Part::Arm(_) => set?.arm.serial(),
+            Part::Sensor(_) => set?.sensor.serial(),
+            Part::Servos(_) => set?.servos.as_ref().map(nima_devices::dynamixel::Settings::ids_in_words),
+            Part::TissueSensor => self.tissue_sensor.as_ref()?.serial(),
+            Part::Tracker | Part::Pedal => None,
+        }
+    }
+}

@@ -47,12 +47,12 @@ pub enum Trouble {
     #[error("what answers as {part} is the {other} (serial number {serial}){}", since(.checked.as_deref()))]
     Exchanged {
         /// Where it answers: `right sensor`.
-        part: String,
+        part: &'static str,
         /// Whose device it is: `left sensor`.
-        other: String,
-        serial: String,
+        other: &'static str,
+        serial: Box<str>,
         /// Date of the ready check that knows it there; `None` if the rig file says so.
-        checked: Option<String>,
+        checked: Option<Box<str>>,
     },
     /// Bytes arrive that are not valid frames, as with a wrong line speed.
     #[error("{place} sends bytes that make no sense at {baud} baud")]

@@ -1,7 +1,7 @@
 //! The devices of one side (handle, arm, force sensor, servos) and the kinematics between tip position (m) and joint
 //! angles (rad).
 
-use nalgebra::{Isometry3, UnitQuaternion, Vector3};
+use nalgebra::{Isometry3, IsometryMatrix3, UnitQuaternion, Vector3};
 use nima_core::{
     calibration::frames::FrameSample,
     frames::{WristSample, from_roll_pitch_yaw_deg},
@@ -20,11 +20,9 @@ use super::{
     jaws::JawsControl,
     known::Known,
     makes::Opener,
+    obstacle::{HandEye, Obstacle, Shown},
 };
 use crate::rig::{Inputs, Outputs, Roster, Sensed, Side, Switches, View};
-
-/// Why an arm that delivers cannot be engaged.
-pub type Obstacle = StartError;
 
 /// Readings of the devices that both sides share.
 #[derive(Clone, Copy, Debug, Default)]
@@ -74,6 +72,10 @@ fn servos_opener(settings: dynamixel::Settings) -> Opener<dynamixel::Driver> {
     }
 }
 
+fn rigid(pose: &IsometryMatrix3<f64>) -> Isometry3<f64> {
+    Isometry3::from_parts(pose.translation, UnitQuaternion::from_rotation_matrix(&pose.rotation))
+}
+
 /// The devices of one side.
 #[derive(Debug)]
 pub struct ArmPair {
@@ -94,6 +96,7 @@ pub struct ArmPair {
     rcm: Rcm,
     limits: JointLimits,
     s1_from_m: Option<UnitQuaternion<f64>>,
+    hand_eye: Option<HandEye>,
     at_wrist: bool,
     period_s: f64,
     /// Pose of the instrument from the measured joint angles.
@@ -143,6 +146,7 @@ impl ArmPair {
             rcm,
             limits: set.arm.joint_limits(),
             s1_from_m: set.s1_from_m_deg.as_ref().map(from_roll_pitch_yaw_deg),
+            hand_eye: set.hand_eye().map(|[s1_from_m, base_from_c]| HandEye { s1_from_m, base_from_c }),
             at_wrist,
             period_s,
             pose: None,
@@ -188,8 +192,22 @@ impl ArmPair {
         }
         self.force_is_on = on;
         if !self.driven {
-            self.obstacle = self.joints.and_then(|joints| self.begin(&joints.value.joint_rad.into()).err());
+            let begin = |joints: Stamped<ArmReading>| self.begin(&joints.value.joint_rad.into()).err();
+            self.obstacle = self.joints.and_then(begin).map(Obstacle::Start);
         }
+    }
+
+    /// What arm and marker show while the drives are off; `c_from_m` is the marker as the tracker sees it.
+    pub(super) fn shown(&self, c_from_m: Option<Isometry3<f64>>) -> Option<Shown> {
+        let joints = Joints::from(self.joints.filter(|_| !self.driven)?.value.joint_rad);
+        let base_from_s1 = rigid(&(self.mount.world_from_base().inverse() * self.mount.pose(&joints).world_from_s1));
+        let (mount, rcm, hand_eye) = (self.mount, self.rcm, self.hand_eye);
+        Some(Shown { mount, rcm, joints, base_from_s1, hand_eye, c_from_m })
+    }
+
+    /// Right and left are exchanged: that comes before any other reason.
+    pub(super) const fn object(&mut self, obstacle: Obstacle) {
+        self.obstacle = Some(obstacle);
     }
 
     /// Starts the inverse kinematics at these joint angles (rad).
@@ -238,10 +256,7 @@ impl ArmPair {
         let base_from_flange = self.mount.world_from_base().inverse() * pose.chain.world_from_flange;
         let handle_turn = hand.orientation.unwrap_or_else(UnitQuaternion::identity);
         FrameSample {
-            base_from_flange: Some(Isometry3::from_parts(
-                base_from_flange.translation,
-                UnitQuaternion::from_rotation_matrix(&base_from_flange.rotation),
-            )),
+            base_from_flange: Some(rigid(&base_from_flange)),
             c_from_m: shared.c_from_m,
             leader_from_handle: Some(Isometry3::from_parts(hand.position_m.into(), handle_turn)),
             wrench: Some(force.wrench),
@@ -323,7 +338,7 @@ impl ArmPair {
             let from_rad = if joints.value.servoing { Joints::from(arm.command_rad()) } else { measured_rad };
             match self.begin(&from_rad) {
                 Ok(inverse) => self.inverse = Some(inverse),
-                Err(obstacle) => self.obstacle = Some(obstacle),
+                Err(obstacle) => self.obstacle = Some(Obstacle::Start(obstacle)),
             }
         }
         let Some(arm) = self.arm.device() else { return };

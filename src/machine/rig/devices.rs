@@ -18,7 +18,7 @@ use nima_devices::{
 };
 
 use super::{
-    ArmPair, DEVICES_MAX, DeviceEvent, EndoscopeSettings, Gauge, Gauges, Healths, Inputs, Outputs, Part, Rig, Roster,
+    ArmPair, DEVICES_MAX, DeviceEvent, EndoscopeSettings, Gauge, Gauges, Healths, Inputs, Obstacle, Outputs, Part, Rig, Roster,
     RosterEntry, SIDES, Settings, Side, Switches, View, Watch, arm_pair::Shared, known::Known, makes::Opener,
 };
 
@@ -202,6 +202,19 @@ impl DeviceRig {
         Shared { tissue_n, c_from_m: c_from(side.index()), c_from_view }
     }
 
+    /// Compares each arm, while its drives are off, with the other one's settings.
+    fn look_for_exchanges(&mut self, shared: &[Shared; SIDES]) {
+        let [Some(right), Some(left)] = &mut self.pairs else { return };
+        let [of_right, of_left] = shared.each_ref().map(|shared| shared.c_from_m);
+        let (Some(on_right), Some(on_left)) = (right.shown(of_right), left.shown(of_left)) else { return };
+        if let Some(exchange) = on_right.exchange(&on_left) {
+            right.object(Obstacle::Exchanged(exchange));
+        }
+        if let Some(exchange) = on_left.exchange(&on_right) {
+            left.object(Obstacle::Exchanged(exchange));
+        }
+    }
+
     fn each_health(&self, mut each: impl FnMut(&Health, [bool; SIDES])) {
         for side in Side::ALL {
             if let Some(pair) = &self.pairs[side.index()] {
@@ -223,13 +236,13 @@ impl DeviceRig {
 impl Rig for DeviceRig {
     fn read(&mut self, now_s: f64) -> [Option<Inputs>; SIDES] {
         let switches = self.poll_shared(now_s);
+        let shared = Side::ALL.map(|side| self.shared(side, now_s));
+        self.pairs.iter_mut().flatten().for_each(|pair| pair.poll(now_s));
+        self.look_for_exchanges(&shared);
         let mut inputs = [None; SIDES];
-        for side in Side::ALL {
-            let shared = self.shared(side, now_s);
-            if let Some(pair) = &mut self.pairs[side.index()] {
-                pair.poll(now_s);
-                inputs[side.index()] = pair.inputs(now_s, &shared).map(|inputs| Inputs { switches, ..inputs });
-            }
+        for ((pair, shared), inputs) in self.pairs.iter().zip(&shared).zip(&mut inputs) {
+            *inputs = pair.as_ref().and_then(|pair| pair.inputs(now_s, shared));
+            *inputs = inputs.map(|inputs| Inputs { switches, ..inputs });
         }
         join_sides(&mut inputs);
         let mut watch = std::mem::take(&mut self.watch);

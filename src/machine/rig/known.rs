@@ -4,7 +4,7 @@
 use nima_devices::{Device, Trouble, same_serial};
 use nima_recording::store::ReadyRecord;
 
-use super::{Part, Settings};
+use super::{Part, PartKind, Settings, Side};
 
 /// The devices of a ready check.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -83,16 +83,27 @@ impl Known {
         match self.whose(part, &serial) {
             None => opened,
             Some((other, checked)) => Err(Trouble::Exchanged {
-                part: part.name().to_owned(),
-                other: other.name().to_owned(),
-                serial,
-                checked: checked.map(str::to_owned),
+                part: part.name(),
+                other: other.name(),
+                serial: serial.into(),
+                checked: checked.map(Into::into),
             }),
         }
     }
 }
 
 impl Settings {
+    /// Whether the file tells right from left for every device and marker in the path of force and motion: by serial numbers,
+    /// the hands of the handles, ids of servos, and the hand-eye calibration. With one arm there is nothing to exchange.
+    pub(crate) fn tells_sides(&self) -> bool {
+        let (Some(right), Some(left)) = (&self.right, &self.left) else { return true };
+        let is_named = |kind: PartKind| Side::ALL.into_iter().all(|side| kind.of(side).is_some_and(|part| self.serial(part).is_some()));
+        let arms = [right, left].into_iter().all(|set| set.arm.kinova().is_none()) || is_named(PartKind::Arm);
+        let hands = right.handle.for_hand_of(Side::Right).hand() != left.handle.for_hand_of(Side::Left).hand();
+        let markers = self.endoscope.is_none() || right.hand_eye().is_some() && left.hand_eye().is_some();
+        hands && arms && markers && is_named(PartKind::Handle) && is_named(PartKind::Sensor)
+    }
+
     /// The serial number that the rig file names for a part; the ids of servos.
     fn serial(&self, part: Part) -> Option<String> {
         let set = part.side().and_then(|side| self.arm(side));

@@ -2,8 +2,11 @@
 
 use std::path::Path;
 
-use nalgebra::Vector3;
-use nima_core::kinematics::{ArmSettings, RcmSettings};
+use nalgebra::{Isometry3, Vector3};
+use nima_core::{
+    frames::from_roll_pitch_yaw_deg,
+    kinematics::{ArmSettings, RcmSettings},
+};
 use nima_devices::{TRACKED_TOOLS, Trouble, dynamixel, hid, ndi};
 use serde::{Deserialize, Serialize};
 
@@ -87,6 +90,17 @@ pub struct ArmSet {
     /// Transmission from the servos to the instrument's wrist.
     #[serde(default)]
     pub jaws: JawsSettings,
+}
+
+impl ArmSet {
+    /// The marker in the frame of the wrist sensor, and the camera in the frame of the arm's base; `None` before the hand-eye
+    /// calibration.
+    pub(super) fn hand_eye(&self) -> Option<[Isometry3<f64>; 2]> {
+        let pose = |at_m: Option<Vector3<f64>>, deg: Option<Vector3<f64>>| {
+            Some(Isometry3::from_parts(at_m?.into(), from_roll_pitch_yaw_deg(&deg?)))
+        };
+        Some([pose(self.s1_from_m_m, self.s1_from_m_deg)?, pose(self.base_from_c_m, self.base_from_c_deg)?])
+    }
 }
 
 /// The desk section of a rig file: input devices that lead a simulated rig.

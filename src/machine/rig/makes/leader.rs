@@ -94,6 +94,12 @@ impl LeaderSettings {
         Self::ForceDimension(settings)
     }
 
+    /// The hand that it must be made for, if the settings say so.
+    pub(in crate::rig) const fn hand(&self) -> Option<force_dimension::Hand> {
+        let Self::ForceDimension(settings) = self;
+        settings.hand
+    }
+
     /// Its serial number in the rig file.
     pub(in crate::rig) fn serial(&self) -> Option<String> {
         let Self::ForceDimension(settings) = self;

@@ -44,7 +44,7 @@ pub enum Trouble {
         hand: String,
     },
     /// The device of another part of the rig answers at this part's place.
-    #[error("what answers as {part} is the {other} (serial number {serial}){}", since(.checked.as_deref()))]
+    #[error("the device in the place of the {part} is that of the {other} ({serial}){}", since(.checked.as_deref()))]
     Exchanged {
         /// Where it answers: `right sensor`.
         part: &'static str,

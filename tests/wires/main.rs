@@ -8,5 +8,6 @@ mod emulated_rig;
 mod frames;
 mod killed;
 mod rig_diagnosis;
+mod sides;
 mod technician;
 mod watchdogs;

@@ -71,7 +71,9 @@ impl Check {
     /// The arm that it is about.
     pub const fn side(self) -> Option<Side> {
         match self {
-            Self::Own(side) | Self::Bias(side) | Self::Push(side) | Self::Handle(side) | Self::Trocar(side) => Some(side),
+            Self::Own(side) | Self::Bias(side) | Self::Push(side) | Self::Handle(side) | Self::Trocar(side) => {
+                Some(side)
+            }
             Self::Devices | Self::Rates | Self::Clocks | Self::Ceiling | Self::Stop | Self::Watchdog(_) => None,
         }
     }

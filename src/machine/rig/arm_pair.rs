@@ -18,9 +18,9 @@ use super::{
     ArmSet, Gauge, Part, RigError,
     devices::{OLDEST_S, enrol, is_there},
     jaws::JawsControl,
-    known::Known,
+    known::{Known, ServosKnown},
     makes::Opener,
-    obstacle::{HandEye, Obstacle, Shown},
+    obstacle::{Awaited, HandEye, Obstacle, Shown},
 };
 use crate::rig::{Inputs, Outputs, Roster, Sensed, Side, Switches, View};
 
@@ -84,6 +84,7 @@ pub struct ArmPair {
     arm: Slot<Box<dyn Follower>>,
     sensor: Slot<Box<dyn ForceSensor>>,
     servos: Option<(Slot<dynamixel::Driver>, JawsControl)>,
+    servos_known: ServosKnown,
     hand: Option<Stamped<HandleReading>>,
     joints: Option<Stamped<ArmReading>>,
     force: Option<Stamped<ForceReading>>,
@@ -123,7 +124,8 @@ impl ArmPair {
         let levers = [Lever::default(), Lever::default()];
         let [of_handle, of_arm] = levers.clone();
         let leader = if known.has_both_sides() { set.handle.for_hand_of(side) } else { set.handle.clone() };
-        let handle = start(Part::Handle(side), leader.opener(), known, roster, move |handle| handle.attach(&of_handle))?;
+        let handle =
+            start(Part::Handle(side), leader.opener(), known, roster, move |handle| handle.attach(&of_handle))?;
         let arm = start(Part::Arm(side), set.arm.opener(), known, roster, move |arm| arm.attach(&of_arm))?;
         let sensor = start(Part::Sensor(side), set.sensor.opener(), known, roster, |_| ())?;
         let servos = set.servos.clone().map(|settings| {
@@ -136,6 +138,7 @@ impl ArmPair {
             arm,
             sensor,
             servos: servos.transpose()?,
+            servos_known: known.servos_of(side),
             hand: None,
             joints: None,
             force: None,
@@ -193,7 +196,8 @@ impl ArmPair {
         self.force_is_on = on;
         if !self.driven {
             let begin = |joints: Stamped<ArmReading>| self.begin(&joints.value.joint_rad.into()).err();
-            self.obstacle = self.joints.and_then(begin).map(Obstacle::Start);
+            let of_servos = self.servos.as_ref().and_then(|_| self.servos_known.obstacle());
+            self.obstacle = of_servos.or_else(|| self.joints.and_then(begin).map(Obstacle::Start));
         }
     }
 
@@ -203,6 +207,11 @@ impl ArmPair {
         let base_from_s1 = rigid(&(self.mount.world_from_base().inverse() * self.mount.pose(&joints).world_from_s1));
         let (mount, rcm, hand_eye) = (self.mount, self.rcm, self.hand_eye);
         Some(Shown { mount, rcm, joints, base_from_s1, hand_eye, c_from_m })
+    }
+
+    /// Nothing else objects, but this has not told its side yet.
+    pub(super) fn wait_for(&mut self, awaited: Awaited) {
+        self.obstacle.get_or_insert(Obstacle::Waiting(awaited));
     }
 
     /// Right and left are exchanged: that comes before any other reason.

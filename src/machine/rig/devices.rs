@@ -18,8 +18,9 @@ use nima_devices::{
 };
 
 use super::{
-    ArmPair, DEVICES_MAX, DeviceEvent, EndoscopeSettings, Gauge, Gauges, Healths, Inputs, Obstacle, Outputs, Part, Rig, Roster,
-    RosterEntry, SIDES, Settings, Side, Switches, View, Watch, arm_pair::Shared, known::Known, makes::Opener,
+    ArmPair, Awaited, DEVICES_MAX, DeviceEvent, EndoscopeSettings, Gauge, Gauges, Healths, Inputs, Obstacle, Outputs,
+    Part, Rig, Roster, RosterEntry, SIDES, Settings, Side, Switches, View, Watch, arm_pair::Shared, known::Known,
+    makes::Opener,
 };
 
 /// A reading older than this counts as missing, s.
@@ -34,6 +35,8 @@ pub struct DeviceRig {
     tracker: Option<Slot<Box<dyn Tracker>>>,
     endoscope: Option<EndoscopeSettings>,
     tracked: Option<Stamped<TrackerReading>>,
+    /// Both instruments' markers have been compared with where they should be.
+    has_seen_markers: bool,
     pedal: Option<Pedal>,
     watch: Watch,
     /// What tissue sensor, tracker and pedal have delivered since this was last handed over, and since when, s.
@@ -142,6 +145,7 @@ impl DeviceRig {
             tracker: tracker.transpose()?,
             endoscope: settings.endoscope,
             tracked: None,
+            has_seen_markers: false,
             pedal: pedal.transpose()?,
             watch: Watch::default(),
             gauges: [Gauge::NONE; 3],
@@ -207,6 +211,11 @@ impl DeviceRig {
         let [Some(right), Some(left)] = &mut self.pairs else { return };
         let [of_right, of_left] = shared.each_ref().map(|shared| shared.c_from_m);
         let (Some(on_right), Some(on_left)) = (right.shown(of_right), left.shown(of_left)) else { return };
+        self.has_seen_markers |= on_right.is_marked() && on_left.is_marked();
+        if self.endoscope.is_some() && !self.has_seen_markers {
+            right.wait_for(Awaited::Markers);
+            left.wait_for(Awaited::Markers);
+        }
         if let Some(exchange) = on_right.exchange(&on_left) {
             right.object(Obstacle::Exchanged(exchange));
         }

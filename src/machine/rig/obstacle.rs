@@ -10,9 +10,30 @@ pub enum Obstacle {
     /// The arm cannot start from its present position.
     #[error(transparent)]
     Start(#[from] StartError),
+    /// Something has not been heard of yet: nobody knows whether it is this side's.
+    #[error("{}", .0.words())]
+    Waiting(Awaited),
     /// Right and left are exchanged.
     #[error("{}", .0.words())]
     Exchanged(Exchange),
+}
+
+/// What must have told its side before an engagement, and does not belong to the path of force.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Awaited {
+    /// The servos, until they are open or found missing.
+    Servos,
+    /// The markers by which the tracker joins hand and tip.
+    Markers,
+}
+
+impl Awaited {
+    const fn words(self) -> &'static str {
+        match self {
+            Self::Servos => "the servos have not answered yet",
+            Self::Markers => "the tracker has not seen the markers of both instruments yet",
+        }
+    }
 }
 
 /// What is exchanged between right and left.
@@ -24,6 +45,8 @@ pub enum Exchange {
     Arms,
     /// The wrist sensors.
     Sensors,
+    /// The servos of the instruments.
+    Servos,
     /// The markers on the instruments.
     Markers,
     /// The trocars.
@@ -37,6 +60,7 @@ impl Exchange {
             Self::Handles => "the right and the left handle are exchanged",
             Self::Arms => "the right and the left arm, or their mounts in the rig file, are exchanged",
             Self::Sensors => "the right and the left sensor are exchanged",
+            Self::Servos => "the servos of the right and the left instrument are exchanged",
             Self::Markers => "the markers of the right and the left instrument are exchanged",
             Self::Trocars => "the right and the left trocar are exchanged, or the instruments stand in each other's",
         }
@@ -70,6 +94,11 @@ impl Shown {
     /// What is exchanged with the other arm, if its own settings contradict what it shows and those of the other one do not.
     pub(super) fn exchange(&self, other: &Self) -> Option<Exchange> {
         self.exchanged_place(other).or_else(|| self.exchanged_marker(other))
+    }
+
+    /// Whether the marker can be compared with where it should be, and is seen.
+    pub(super) const fn is_marked(&self) -> bool {
+        self.hand_eye.is_none() || self.c_from_m.is_some()
     }
 
     fn exchanged_place(&self, other: &Self) -> Option<Exchange> {

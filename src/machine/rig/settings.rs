@@ -323,6 +323,13 @@ mod tests {
         let speed =
             told(|settings| settings.left.as_mut().unwrap().arm.kinova_mut().unwrap().speed_fraction = f64::NAN);
         assert!(speed.contains("devices.left.arm.speed_fraction"), "{speed}");
+        let ids = told(|settings| {
+            let servos = settings.right.as_ref().unwrap().servos.clone();
+            settings.left.as_mut().unwrap().servos = servos;
+        });
+        assert!(ids.contains("devices.left.servos.servos[0].id = 1") && ids.contains("different ids"), "{ids}");
+        let tool = told(|settings| settings.left.as_mut().unwrap().tool = "Right grasper".to_owned());
+        assert!(tool.contains("devices.left.tool = \"Right grasper\""), "{tool}");
         let baud = told(|settings| settings.right.as_mut().unwrap().servos.as_mut().unwrap().baud = 1);
         assert!(baud.contains("devices.right.servos.baud"), "{baud}");
         let pedal = told(|settings| settings.pedal.as_mut().unwrap().source = "nothing".to_owned());

@@ -42,10 +42,9 @@ pub(super) fn capital(word: &str) -> String {
 pub(crate) fn ask_words(ask: &Ask) -> String {
     match ask {
         Ask::Nothing => String::new(),
-        Ask::Move(side) => format!(
-            "Take the {} instrument out of its trocar; if it is out, move it by 10 cm",
-            side.word()
-        ),
+        Ask::Move(side) => {
+            format!("Take the {} instrument out of its trocar; if it is out, move it by 10 cm", side.word())
+        }
         Ask::TakeOut(side) => {
             format!("Take the {} instrument out of its trocar, so that nothing touches it", side.word())
         }
@@ -288,6 +287,7 @@ mod tests {
             Cause::Exchanged(Exchange::Handles),
             Cause::Exchanged(Exchange::Arms),
             Cause::Exchanged(Exchange::Sensors),
+            Cause::Exchanged(Exchange::Servos),
             Cause::Exchanged(Exchange::Markers),
             Cause::Exchanged(Exchange::Trocars),
             Cause::ArmStuck { by_m: 0.0 },

@@ -14,6 +14,7 @@ pub(crate) fn refused_because(why: Refusal) -> String {
         Refusal::StillPresent(fault) => format!("the cause of a fault is still present: {}", lower(fault.cause())),
         Refusal::ForceUnknown => "the force at the tip is not known".to_owned(),
         Refusal::Implausible(what) => format!("a measurement is not plausible: {}", lower(what.cause())),
+        Refusal::Obstacle(waiting @ Obstacle::Waiting(_)) => waiting.to_string(),
         Refusal::Obstacle(Obstacle::Exchanged(exchange)) => exchange.words().to_owned(),
         Refusal::Obstacle(obstacle) => format!("the arm cannot start from where it is: {obstacle}"),
         Refusal::EndoscopeUnseen => "the tracker does not see the endoscope".to_owned(),
@@ -41,6 +42,7 @@ pub(crate) const fn cure_of_refusal(why: Refusal) -> &'static str {
         Refusal::Obstacle(Obstacle::Exchanged(_)) => {
             "put what is exchanged back, in the room or in the rig file; the ready check tells which it is"
         }
+        Refusal::Obstacle(Obstacle::Waiting(_)) => "wait a moment, clear the tracker's view, then engage again",
         Refusal::Obstacle(_) => "move the arm, then engage again",
         Refusal::EndoscopeUnseen => "clear the tracker's view of the endoscope and of the arm, then engage again",
         Refusal::DrivesOff => "look at the arm's and the handle's own lamps and buttons, then engage again",

@@ -10,6 +10,7 @@ pub(super) fn exchanged(exchange: Exchange) -> [String; 2] {
         Exchange::Handles => "Exchange Handles in the panel Devices, or put each handle in its place",
         Exchange::Arms => "Exchange the arms' cables, or Arms in the panel Devices; see the mounts in the rig file",
         Exchange::Sensors => "Exchange the sensors' cables, or Sensors in the panel Devices, then calibrate",
+        Exchange::Servos => "Exchange the servos' cables, or Servos in the panel Devices",
         Exchange::Markers => {
             "Put each marker on its instrument, or exchange the first two tools of [devices.tracker] in the rig file"
         }

@@ -9,5 +9,6 @@ mod frames;
 mod killed;
 mod rig_diagnosis;
 mod sides;
+mod sides_ready;
 mod technician;
 mod watchdogs;

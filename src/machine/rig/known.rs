@@ -172,7 +172,7 @@ mod tests {
         Known::of(&settings)
     }
 
-    fn checked() -> Option<Checked> {
+    fn checked() -> Checked {
         let serials = [
             (Part::Sensor(Side::Right), "SN000853"),
             (Part::Sensor(Side::Left), "SN000854"),
@@ -181,14 +181,14 @@ mod tests {
             (Part::Arm(Side::Left), "KP-2"),
         ];
         let serials = serials.map(|(part, serial)| (part, serial.to_owned())).into();
-        Some(Checked { date: "2026-08-21T10:20:30Z".to_owned(), serials })
+        Checked { date: "2026-08-21T10:20:30Z".to_owned(), serials }
     }
 
     const SENSOR: Part = Part::Sensor(Side::Right);
 
     #[test]
     fn a_ready_check_tells_right_from_left_where_the_file_is_silent() {
-        let known = known(|settings| settings.checked = checked());
+        let known = known(|settings| settings.checked = Some(checked()));
         let date = Some("2026-08-21T10:20:30Z");
         assert_eq!(known.whose(SENSOR, "853"), None);
         assert_eq!(known.whose(SENSOR, "854"), Some((Part::Sensor(Side::Left), date)));
@@ -206,7 +206,7 @@ mod tests {
             right.serial_number = Some(serial.to_owned());
         };
         let moved = known(|settings| {
-            settings.checked = checked();
+            settings.checked = Some(checked());
             name(settings, "854");
         });
         assert_eq!(moved.whose(SENSOR, "SN000854"), None, "the rig file was changed on purpose");

@@ -25,8 +25,6 @@ use nima_world::{
 };
 
 const TIMEOUT: Duration = Duration::from_secs(12);
-/// Nothing may be told within this time where nothing is exchanged.
-const QUIET: Duration = Duration::from_secs(1);
 const DATE: &str = "2026-08-21T10:20:30Z";
 
 /// What is exchanged: at the wires (the devices as they stand there), in the rig file, or on the instruments.
@@ -56,8 +54,7 @@ fn sets(devices: &mut Settings) -> [&mut ArmSet; 2] {
     [devices.right.as_mut().unwrap(), devices.left.as_mut().unwrap()]
 }
 
-/// The built-in rig on other ports, with a tissue sensor of the wrist sensors' generation, trocars beside each other and the
-/// numbers of the hand-eye calibration.
+/// The built-in rig on other ports, with a tissue sensor of the wrist sensors' generation and trocars beside each other.
 fn rig(folder: &Path) -> Settings {
     let mut devices = at_tip(folder);
     let tissue = devices.tissue_sensor.as_mut().unwrap().bota_mut().unwrap();
@@ -370,8 +367,7 @@ fn right_and_left_exchanged_at_any_place_are_told_before_any_force() {
             let (_emulated, mut machine) = start(&row, folder.path());
             let told = machine.told(&row);
             println!("{}: {told:?}", row.place);
-            let is_harmless = matches!(row.told, Told::Harmless);
-            if !is_harmless {
+            if !matches!(row.told, Told::Harmless) {
                 // Whoever insists gets nothing.
                 let end = Instant::now() + Duration::from_millis(200);
                 while Instant::now() < end {
@@ -391,7 +387,7 @@ fn where_nothing_is_exchanged_nothing_is_told() {
         let row = Row { file: checked, ..row("nothing", Told::Harmless) };
         let (_emulated, mut machine) = start(&row, folder.path());
         machine.until("force", |machine| machine.most_n > 0.0);
-        let end = Instant::now() + QUIET;
+        let end = Instant::now() + Duration::from_secs(1);
         while Instant::now() < end {
             machine.look();
             assert_eq!(machine.troubles(), []);

@@ -10,17 +10,17 @@ use nima_core::{
     },
 };
 use nima_devices::{
-    ArmReading, ClearFaults, Device, Follower, ForceReading, ForceSensor, HandleReading, Health, Leader, Lever, SERVOS,
-    ServoReading, Slot, Stamped, dynamixel,
+    ArmReading, Follower, ForceReading, ForceSensor, HandleReading, Health, Leader, Lever, ServoReading, Slot, Stamped,
+    dynamixel,
 };
 
 use super::{
     ArmSet, Gauge, Part, RigError,
-    devices::{OLDEST_S, enrol, is_there},
+    devices::{OLDEST_S, is_there},
     jaws::JawsControl,
     known::{Known, ServosKnown},
-    makes::Opener,
     obstacle::{Awaited, HandEye, Obstacle, Shown},
+    starting::{servos_opener, start},
 };
 use crate::rig::{Inputs, Outputs, Roster, Sensed, Side, Switches, View};
 
@@ -37,38 +37,6 @@ pub(super) struct Shared {
 impl Shared {
     fn m_from_c(&self) -> Option<UnitQuaternion<f64>> {
         self.c_from_m.map(|c_from_m| c_from_m.rotation.inverse())
-    }
-}
-
-/// Starts opening a device and adds it to the roster; `attach` is called with the device once it is open.
-fn start<P>(
-    part: Part,
-    opener: Opener<P>,
-    known: &Known,
-    roster: &mut Roster,
-    attach: impl Fn(&P) + Send + 'static,
-) -> std::io::Result<Slot<P>>
-where
-    P: Device + 'static,
-{
-    let Opener { driver, mut open, clear_faults } = opener;
-    let known = known.clone();
-    let slot = Slot::start(part.name(), move || known.admit(part, open()).inspect(&attach))?;
-    enrol(roster, part, driver, &slot);
-    if let Some(entry) = roster.last_mut() {
-        entry.clear_faults = clear_faults;
-    }
-    Ok(slot)
-}
-
-fn servos_opener(settings: dynamixel::Settings) -> Opener<dynamixel::Driver> {
-    let driver = format!("DYNAMIXEL servos, {}", settings.port);
-    let reboots = dynamixel::Reboots::default();
-    let of_opening = reboots.clone();
-    Opener {
-        driver,
-        open: Box::new(move || dynamixel::open_with(&settings, &of_opening)),
-        clear_faults: Some(ClearFaults::by(move || (0..SERVOS).for_each(|servo| reboots.ask(servo)))),
     }
 }
 

@@ -23,6 +23,7 @@ mod prompt;
 mod seeking;
 mod settings;
 mod side;
+mod starting;
 mod watch;
 
 use nalgebra::{UnitQuaternion, Vector3};

@@ -113,6 +113,14 @@ pub enum Trouble {
         value: String,
         allowed: String,
     },
+    /// A file that the rig file names cannot be used.
+    #[error("{key} = {path}: {reason}")]
+    File {
+        /// Key in the rig file.
+        key: String,
+        path: String,
+        reason: String,
+    },
     /// Any other error of the operating system.
     #[error("{place}: {reason}")]
     Other { place: String, reason: String },
@@ -169,6 +177,7 @@ impl Trouble {
             Self::NotReady { cure, .. } | Self::DeviceFault { cure, .. } => cure.clone(),
             Self::Refused { .. } => "Check that the firmware fits, then connect again.".to_owned(),
             Self::Setting { allowed, .. } => format!("Correct the rig file: {allowed}."),
+            Self::File { .. } => "Put the file there, or correct its path in the rig file.".to_owned(),
             Self::Other { .. } => "Connect again; if it stays, restart the device.".to_owned(),
         }
     }

@@ -54,15 +54,12 @@ fn sets(devices: &mut Settings) -> [&mut ArmSet; 2] {
     [devices.right.as_mut().unwrap(), devices.left.as_mut().unwrap()]
 }
 
-/// The built-in rig on other ports, with a tissue sensor of the wrist sensors' generation and trocars beside each other.
+/// The built-in rig on other ports, with a tissue sensor of the wrist sensors' generation; its trocars stand beside each other.
 fn rig(folder: &Path) -> Settings {
     let mut devices = at_tip(folder);
     let tissue = devices.tissue_sensor.as_mut().unwrap().bota_mut().unwrap();
     (tissue.transport, tissue.mode, tissue.rate_hz) = (bota::Transport::GenA, 2, 1000);
     tissue.port = folder.join("ttyACM-tissue-sensor").display().to_string();
-    for (set, x_m) in sets(&mut devices).into_iter().zip([0.01, -0.01]) {
-        set.rcm.trocar_m.x = x_m;
-    }
     devices
 }
 

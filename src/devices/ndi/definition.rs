@@ -19,14 +19,13 @@ impl Definition {
     /// Reads the file named under `key` in the rig file.
     ///
     /// # Errors
-    /// [`Trouble::Setting`] if the file cannot be read, is too long, or is not a tool definition.
+    /// [`Trouble::File`] if the file cannot be read, is too long, or is not a tool definition.
     pub fn load(key: &str, path: &Path) -> Result<Self, Trouble> {
-        let refuse =
-            |allowed: String| Trouble::Setting { key: key.to_owned(), value: path.display().to_string(), allowed };
+        let refuse = |reason: String| Trouble::File { key: key.to_owned(), path: path.display().to_string(), reason };
         let file = nima_files::read(path, DEFINITION as u64)
-            .map_err(|error| refuse(format!("a tool definition of NDI (.rom) that can be read ({error})")))?;
+            .map_err(|error| refuse(format!("the tool definition cannot be read ({error})")))?;
         if !file.starts_with(BEGIN) {
-            return Err(refuse("a tool definition of NDI (.rom), at most 1024 bytes".to_owned()));
+            return Err(refuse("it is not a tool definition of NDI (.rom, at most 1024 bytes)".to_owned()));
         }
         let mut bytes = Box::new([0; DEFINITION]);
         bytes[..file.len()].copy_from_slice(&file);

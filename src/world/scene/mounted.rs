@@ -2,12 +2,31 @@
 
 use nima_machine::{
     config::{ConfigError, RigConfig},
-    rig::{SensorPlace, Side},
+    rig::{SensorPlace, Settings, Side},
 };
 
 use super::Scene;
 
 impl Scene {
+    /// Name of the built-in scene for a rig where nobody has chosen one: two arms have two tasks.
+    pub fn default_for(rig: &RigConfig) -> &'static str {
+        if rig.devices.as_ref().is_some_and(has_both_arms) { "bimanual" } else { "peg_transfer" }
+    }
+
+    /// The scene as it is at this rig: a hand for each of its arms, whose trocars are where the rig file says.
+    #[must_use]
+    pub fn mounted_at(self, rig: &RigConfig) -> Self {
+        let Some(devices) = &rig.devices else { return self };
+        let mut scene = if devices.arm(Side::Left).is_some() { self.with_left_hand() } else { self };
+        if let Some(set) = devices.arm(Side::Right) {
+            scene.trocar_m = set.rcm.trocar_m;
+        }
+        if let (Some(set), Some(left)) = (devices.arm(Side::Left), &mut scene.left) {
+            left.trocar_m = set.rcm.trocar_m;
+        }
+        scene
+    }
+
     /// Whether this rig has an arm pair on this side in this scene.
     pub fn has(&self, rig: &RigConfig, side: Side) -> bool {
         match &rig.devices {
@@ -24,6 +43,10 @@ impl Scene {
             None => self.has(rig, side) && self.wrist.is_some(),
         }
     }
+}
+
+fn has_both_arms(devices: &Settings) -> bool {
+    Side::ALL.into_iter().all(|side| devices.arm(side).is_some())
 }
 
 /// Older scene files contained sensor and tool: adds to the error where they belong now.
@@ -46,6 +69,19 @@ pub(super) fn moved_to_the_rig(error: ConfigError) -> ConfigError {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_rig_with_two_arms_has_two_hands_in_every_scene_and_its_own_trocars() {
+        let [one, two] = ["simulated", "emulated"].map(|rig| RigConfig::load(rig).unwrap());
+        assert_eq!([&one, &two].map(Scene::default_for), ["peg_transfer", "bimanual"]);
+        let scene = Scene::load("peg_transfer").unwrap();
+        assert!(scene.clone().mounted_at(&one).left.is_none());
+        let mounted = scene.mounted_at(&two);
+        let devices = two.devices.as_ref().unwrap();
+        let trocars_m = Side::ALL.map(|side| mounted.of_side(side).unwrap().trocar_m);
+        assert_eq!(trocars_m, Side::ALL.map(|side| devices.arm(side).unwrap().rcm.trocar_m));
+        assert!((trocars_m[0] - trocars_m[1]).norm() > 0.05, "two instruments do not fit through one trocar");
+    }
 
     #[test]
     fn a_scene_that_names_its_sensor_is_told_where_that_belongs() {

@@ -60,7 +60,8 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     }
     let report = Report { plugged: Plugged::list(), devices: diagnose(probes, TIMEOUT) };
     if arguments.json {
-        return output::json(&report);
+        output::json(&report)?;
+        return end(&report);
     }
     let mut text = in_words(&report);
     if let Some(rig) = emulated.filter(|_| report.devices.iter().all(is_trouble)) {
@@ -71,7 +72,17 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         )
         .ok();
     }
-    output::line(text.trim_end())
+    output::line(text.trim_end())?;
+    end(&report)
+}
+
+/// An error if a device has a problem: whoever asks from a script must learn of it.
+fn end(report: &Report) -> anyhow::Result<()> {
+    let (troubled, all) = (report.devices.iter().filter(|device| is_trouble(device)).count(), report.devices.len());
+    if troubled > 0 {
+        bail!("{troubled} of {all} devices cannot be used; the cause and what to do stand beside each");
+    }
+    Ok(())
 }
 
 const fn is_trouble(device: &Diagnosis) -> bool {

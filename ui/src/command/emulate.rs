@@ -20,7 +20,7 @@ use clap::Args;
 use nima_world::emulators::{ALONE, EmulatedFault, Serving, Settings};
 use serde::Serialize;
 
-use super::output;
+use super::{output, setup::default_scene};
 use crate::{leaving::Leave, telling::tell};
 
 #[derive(Debug, Args)]
@@ -34,9 +34,9 @@ pub(super) struct Arguments {
     /// With `rig`: the rig, by name or TOML file
     #[arg(long, default_value = "emulated")]
     rig: String,
-    /// With `rig`: the scene, by name or TOML file
-    #[arg(long, default_value = "peg_transfer")]
-    scene: String,
+    /// With `rig`: the scene, by name or TOML file (default: `bimanual` for a rig with two arms, else `peg_transfer`)
+    #[arg(long)]
+    scene: Option<String>,
     /// End with standard input and without a word: whoever started this holds its other end
     #[arg(long, hide = true)]
     until_input_ends: bool,
@@ -51,7 +51,11 @@ struct Endpoint<'a> {
 pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     #[cfg(unix)]
     if arguments.devices == ["rig"] {
-        return rig::run(&arguments.rig, &arguments.scene, arguments.until_input_ends);
+        return rig::run(
+            &arguments.rig,
+            arguments.scene.as_deref().unwrap_or_else(|| default_scene(&arguments.rig)),
+            arguments.until_input_ends,
+        );
     }
     let settings = Settings::new(&arguments.set)?;
     let mut emulated = Vec::new();

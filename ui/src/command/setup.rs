@@ -11,9 +11,9 @@ pub(super) struct Setup {
     /// Rig: built-in name or TOML file
     #[arg(long, value_name = "RIG", default_value = "simulated")]
     rig: String,
-    /// Scene: built-in name or TOML file
-    #[arg(long, value_name = "SCENE", default_value = "peg_transfer")]
-    scene: String,
+    /// Scene: built-in name or TOML file (default: `bimanual` for a rig with two arms, else `peg_transfer`)
+    #[arg(long, value_name = "SCENE")]
+    scene: Option<String>,
     /// End with standard input: whoever started this holds its other end
     #[arg(long, hide = true)]
     until_input_ends: bool,
@@ -21,14 +21,14 @@ pub(super) struct Setup {
 
 impl Default for Setup {
     fn default() -> Self {
-        Self { rig: "simulated".to_owned(), scene: "peg_transfer".to_owned(), until_input_ends: false }
+        Self { rig: "simulated".to_owned(), scene: None, until_input_ends: false }
     }
 }
 
 impl Setup {
     /// Of this rig and scene.
-    pub(super) fn of(rig: &str, scene: &str) -> Self {
-        Self { rig: rig.to_owned(), scene: scene.to_owned(), until_input_ends: false }
+    pub(super) fn of(rig: &str, scene: Option<&str>) -> Self {
+        Self { rig: rig.to_owned(), scene: scene.map(str::to_owned), until_input_ends: false }
     }
 
     /// The name or path of the rig.
@@ -38,7 +38,7 @@ impl Setup {
 
     /// The name or path of the scene.
     pub(super) fn scene(&self) -> &str {
-        &self.scene
+        self.scene.as_deref().unwrap_or_else(|| default_scene(&self.rig))
     }
 
     /// Both, as the console remembers them: files by their whole paths.
@@ -47,7 +47,7 @@ impl Setup {
             let path = std::fs::canonicalize(name).ok().filter(|path| path.is_file());
             path.map_or_else(|| name.to_owned(), |path| path.display().to_string())
         };
-        Choice { rig: whole(&self.rig), scene: whole(&self.scene) }
+        Choice { rig: whole(&self.rig), scene: whole(self.scene()) }
     }
 
     /// Requests to end the run: signals, and the end of standard input if that was requested.
@@ -61,6 +61,14 @@ impl Setup {
 
     /// Loads and checks both.
     pub(super) fn load(&self) -> Result<(RigConfig, Scene), ConfigError> {
-        Ok((RigConfig::load(&self.rig)?, Scene::load(&self.scene)?))
+        let rig = RigConfig::load(&self.rig)?;
+        let scene = Scene::load(self.scene())?.mounted_at(&rig);
+        Ok((rig, scene))
     }
+}
+
+/// The scene of a rig, by its name or path, for which none was given.
+pub(super) fn default_scene(rig: &str) -> &'static str {
+    // A rig that cannot be loaded is refused when it is.
+    RigConfig::load(rig).map_or("peg_transfer", |rig| Scene::default_for(&rig))
 }

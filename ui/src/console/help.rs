@@ -44,7 +44,8 @@ impl Help {
                     self.tour = Some(step - 1);
                 }
                 let last = step + 1 == TOUR.len();
-                if ui.add(Button::new(if last { BEGIN } else { NEXT_STEP }).min_size(size)).clicked() {
+                let next = super::widgets::next_button(if last { BEGIN } else { NEXT_STEP }, true);
+                if ui.add(next.min_size(size)).clicked() {
                     self.tour = if last { None } else { Some(step + 1) };
                 }
                 if !last && ui.add(Button::new(SKIP_THE_TOUR).min_size(size)).clicked() {

@@ -37,6 +37,8 @@ pub struct Palette {
     pub stop: Color32,
     /// Selected, or set by the operator.
     pub selected: Color32,
+    /// The one button to press next.
+    pub primary: Color32,
     /// The force measured at the instrument.
     pub measured: Color32,
     /// The force rendered to the hand.
@@ -75,6 +77,7 @@ pub const DARK: Palette = Palette {
     text_weak: rgb(0x9d_a8b4),
     stop: rgb(0xff_ffff),
     selected: rgb(0x3f_5d86),
+    primary: rgb(0x24_62c8),
     measured: rgb(0xf3_e9d2),
     rendered: rgb(0x6c_9dff),
     reference: rgb(0x87_919d),
@@ -100,6 +103,7 @@ pub const LIGHT: Palette = Palette {
     text_weak: rgb(0x4b_5764),
     stop: rgb(0x10_1317),
     selected: rgb(0xa8_c4ec),
+    primary: rgb(0x2a_5db0),
     measured: rgb(0x5d_4715),
     rendered: rgb(0x1c_63dd),
     reference: rgb(0x6c_7783),

@@ -1,7 +1,9 @@
 //! Small parts that several panels share.
 
 use crate::console::text;
-use egui::{Align, Color32, Layout, Painter, Pos2, Rect, Response, RichText, Sense, Stroke, Ui, Vec2, pos2, vec2};
+use egui::{
+    Align, Button, Color32, Layout, Painter, Pos2, Rect, Response, RichText, Sense, Stroke, Ui, Vec2, pos2, vec2,
+};
 
 use super::theme;
 
@@ -28,6 +30,12 @@ pub fn figure(ui: &mut Ui, name: &str, value: impl Into<String>, meaning: &str) 
         });
     });
     row.response
+}
+
+/// A button that stands out if it is the `next` one to press; at most one on the screen does.
+pub fn next_button(name: impl Into<RichText>, next: bool) -> Button<'static> {
+    let name = name.into();
+    if next { Button::new(name.color(theme::DARK.text)).fill(theme::now().primary) } else { Button::new(name) }
 }
 
 /// Explanatory text.

@@ -15,11 +15,15 @@ fn text(arguments: &[&str]) -> String {
 
 #[test]
 fn a_port_that_is_not_there_and_a_port_where_nobody_listens_are_told_with_their_cures() {
-    let told = text(&["--probe", "serial=/dev/no-such-port@460800", "--probe", "tcp=127.0.0.1:1"]);
+    let output = nima(&["--probe", "serial=/dev/no-such-port@460800", "--probe", "tcp=127.0.0.1:1"]);
+    let refused = String::from_utf8(output.stderr).unwrap();
+    assert!(!output.status.success() && refused.contains("2 of 2 devices cannot be used"), "{refused}");
+    let told = String::from_utf8(output.stdout).unwrap();
     for words in ["Plugged in", "/dev/no-such-port is not there", "Plug it in", "nobody listens at 127.0.0.1:1"] {
         assert!(told.contains(words), "\"{words}\" is not in:\n{told}");
     }
-    let json: Value = serde_json::from_str(&text(&["--json", "--probe", "serial=/dev/no-such-port@460800"])).unwrap();
+    let output = nima(&["--json", "--probe", "serial=/dev/no-such-port@460800"]);
+    let json: Value = serde_json::from_slice(&output.stdout).unwrap();
     let device = &json["devices"][0];
     assert_eq!(device["name"], "serial=/dev/no-such-port@460800");
     assert_eq!((&device["state"], &device["trouble"]), (&"trouble".into(), &"absent".into()));

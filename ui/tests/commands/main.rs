@@ -11,5 +11,6 @@ mod endings;
 mod every_command;
 mod hostile_files;
 mod installed;
+mod paper_rig;
 mod study;
 mod words;

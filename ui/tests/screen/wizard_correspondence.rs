@@ -111,7 +111,7 @@ fn without_gravity_no_push_is_asked_for() {
     let mut harness = console(Scene::load("peg_transfer").unwrap(), folder.path(), Calibrations::default());
     press(&mut harness, "Calibrate correspondence…");
     read(&mut harness, "Gravity is not calibrated: calibrate it first");
-    read(&mut harness, "Force under the tissue: met");
+    read(&mut harness, "Force under the tissue: fine");
     let from = Instant::now();
     while from.elapsed() < Duration::from_secs(1) {
         harness.step();
@@ -189,5 +189,5 @@ fn a_sensor_of_the_opposite_sign_is_named_and_the_switch_cures_it_without_new_pu
     assert!(record.flip_s2 && record.judgement.verdict == Verdict::Accepted, "{}", record.judgement.reason);
     press(&mut harness, "Start over");
     switch(&mut harness, "No tracker");
-    read(&mut harness, "Arm and tracker (not used): met");
+    read(&mut harness, "Arm and tracker (not used): fine");
 }

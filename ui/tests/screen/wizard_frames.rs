@@ -119,7 +119,7 @@ fn a_technician_finds_the_tip_sees_the_change_saves_it_and_undoes_it() {
         let (mut console, _emulators, rig) = console(folder.path());
         let wrong_m = shaft_m(&rig);
         press(&mut console, "Calibrate tip…");
-        until(&mut console, "the joints", |c| shows(c, "Joints of the arm: met"));
+        until(&mut console, "the joints", |c| shows(c, "Joints of the arm: fine"));
         assert!(shows(&console, "put its tip into a dimple"));
         press(&mut console, "Next");
         until(&mut console, "some poses", |c| shows(c, "4 poses; still needed: "));
@@ -140,6 +140,8 @@ fn a_technician_finds_the_tip_sees_the_change_saves_it_and_undoes_it() {
         press(&mut console, "Put the values of before back");
         until(&mut console, "undone", |c| shows(c, "The values of before are in the rig file again"));
         assert!((shaft_m(&rig) - wrong_m).abs() < 1e-12);
+        press(&mut console, "Next: Right arm, hand-eye");
+        assert!(shows(&console, "turn its marker towards the tracker"));
     });
 }
 

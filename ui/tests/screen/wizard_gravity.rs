@@ -196,7 +196,7 @@ fn a_noisy_sensor_is_told_with_its_figure_and_the_way_on_stays_shut() {
     let mut console = console(scene, folder.path());
     press(&mut console, "Calibrate gravity…");
     until(&mut console, "the noise", |c| shows(c, "Force noise: 0.3") && shows(c, "check shield and earth"));
-    until(&mut console, "the good lines", |c| shows(c, "Rate: ") && shows(c, "of the loop's 1000 Hz, met"));
+    until(&mut console, "the good lines", |c| shows(c, "Rate: ") && shows(c, "of the loop's 1000 Hz, fine"));
     assert!(!can_press(&console, "Next"));
 }
 

@@ -15,7 +15,7 @@ use nima_console::console::{
     ConsoleApp,
     in_force::InForce,
     theme,
-    wizards::{Binding, Saving, Which, Wizards},
+    wizards::{Asked, Binding, Saving, Which, Wizards},
 };
 use nima_core::calibration::Verdict;
 use nima_machine::{
@@ -52,8 +52,9 @@ impl eframe::App for Bench {
     fn ui(&mut self, ui: &mut egui::Ui, _frame: &mut eframe::Frame) {
         ScrollArea::vertical().show(ui, |ui| {
             ui.set_max_width(760.0);
-            let wanted = self.wizards.ui(ui, &self.binding);
-            self.saving = self.saving.take().or(wanted);
+            if let Some(Asked::Save(saving)) = self.wizards.ui(ui, &self.binding) {
+                self.saving.get_or_insert(saving);
+            }
         });
     }
 }
@@ -268,6 +269,25 @@ fn answers_in_the_loop(folder: &Path) {
 }
 
 #[test]
+fn a_sensor_that_is_lost_for_a_moment_costs_no_recording_and_another_one_does() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut console = Console::new(None, folder.path());
+    console.press("Next");
+    console.press("Start recording");
+    console.record(300);
+    let known = console.window.state().binding.clone();
+    let store = known.store.clone();
+    console.window.state_mut().binding = Binding { date: utc_now(), store, ..Binding::default() };
+    console.window.step();
+    console.window.state_mut().binding = known.clone();
+    console.record(600);
+    assert!(!console.shows("was discarded"));
+    console.window.state_mut().binding.sensor = "another one".to_owned();
+    console.read("was discarded");
+    assert!(!console.shows("Pause"));
+}
+
+#[test]
 fn without_a_correspondence_nothing_can_be_recorded() {
     let folder = tempfile::tempdir().unwrap();
     Store::open(folder.path()).save(&records().0).unwrap();
@@ -276,7 +296,7 @@ fn without_a_correspondence_nothing_can_be_recorded() {
     until(&mut real, "the reason", |window| {
         window.query_by_label_contains("The correspondence is not known: calibrate it first").is_some()
             && window.query_by_label_contains("Correspondence: not known; press").is_some()
-            && window.query_by_label_contains("Gravity: met").is_some()
+            && window.query_by_label_contains("Gravity: fine").is_some()
     });
     for _ in 0..20 {
         real.step();

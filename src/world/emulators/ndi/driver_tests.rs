@@ -354,7 +354,7 @@ fn a_unit_with_a_fault_is_told_while_opening() {
 fn impossible_settings_are_told() {
     let (folder, tools) = definitions(5);
     let key_of = |settings: &Settings| match Driver::open(settings) {
-        Err(Trouble::Setting { key, .. }) => key,
+        Err(Trouble::Setting { key, .. } | Trouble::File { key, .. }) => key,
         other => panic!("{other:?}"),
     };
     let good = Settings { address: Some("127.0.0.1:1".to_owned()), tools: tools[..1].to_vec(), ..Settings::default() };

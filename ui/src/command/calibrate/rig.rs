@@ -42,9 +42,9 @@ pub(in crate::command) struct Arguments {
     /// Rig: built-in name or TOML file; it must be emulated
     #[arg(long, value_name = "RIG", default_value = "emulated")]
     rig: String,
-    /// Scene: built-in name or TOML file; it must have tissue
-    #[arg(long, value_name = "SCENE", default_value = "peg_transfer")]
-    scene: String,
+    /// Scene: built-in name or TOML file; it must have tissue (default: `bimanual` for a rig with two arms, else `peg_transfer`)
+    #[arg(long, value_name = "SCENE")]
+    scene: Option<String>,
     /// Calibrate the wrist sensor of this arm only: right or left
     #[arg(long, value_name = "SIDE", value_parser = side)]
     arm: Option<Side>,
@@ -68,7 +68,7 @@ fn side(word: &str) -> Result<Side, String> {
 }
 
 pub(in crate::command) fn run(arguments: &Arguments) -> anyhow::Result<()> {
-    let setup = Setup::of(&arguments.rig, &arguments.scene);
+    let setup = Setup::of(&arguments.rig, arguments.scene.as_deref());
     let (rig, scene) = setup.load()?;
     let sides: Vec<_> = Side::ALL.into_iter().filter(|side| arguments.arm.is_none_or(|arm| arm == *side)).collect();
     let sides: Vec<_> = sides.into_iter().filter(|side| scene.measures_at_wrist(&rig, *side)).collect();

@@ -38,8 +38,8 @@ use crate::{
 const SENSORS_WITHIN: Duration = Duration::from_secs(15);
 /// Whoever sits at the screen obeys after this time.
 const ANSWERS_AFTER: Duration = Duration::from_millis(300);
-/// Scenes in which somebody is at the arm: around the emulators, and of a simulated rig.
-const SCENES: [&str; 2] = ["peg_transfer", "correspondence"];
+/// Scene of a simulated rig in which somebody is at the arm; at emulated arms he is in every scene.
+const SIMULATED: &str = "correspondence";
 
 #[derive(Debug, Args)]
 pub(in crate::command) struct Arguments {
@@ -59,14 +59,13 @@ pub(in crate::command) struct Arguments {
 
 pub(in crate::command) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let rig = RigConfig::load(&arguments.rig)?;
-    let [emulated, simulated] = SCENES;
-    let guided = if rig.devices.is_some() { emulated } else { simulated };
+    let guided = if rig.devices.is_some() { Scene::default_for(&rig) } else { SIMULATED };
     let scene_name = arguments.scene.as_deref().unwrap_or(guided);
-    let scene = Scene::load(scene_name)?;
+    let scene = Scene::load(scene_name)?.mounted_at(&rig);
     if rig.devices.as_ref().is_some_and(|devices| !devices.emulated) {
         bail!("rig \"{}\" is for real devices, whose stop a person must press; check it in `nima console`", rig.name);
     }
-    let leave = Setup::of(&arguments.rig, scene_name).leave()?;
+    let leave = Setup::of(&arguments.rig, Some(scene_name)).leave()?;
     let emulators = Emulators::start(&arguments.rig, scene_name, rig.devices.as_ref())?;
     let mut in_force = InForce::load(None, &rig, &scene);
     let calibrations = in_force.calibrations(&rig);

@@ -16,8 +16,7 @@ pub(super) fn in_words(plan: &Plan, summary: &Summary) -> String {
          work us     {}\n\
          rig us      {}\n\
          sample to force us {}\n\
-         processor   {:.1} % of a core in the loop's thread, {:.1} % in the whole program{}{}\n\
-         error of each mode before the gates, against the force at the tip at the same instant:",
+         processor   {:.1} % of a core in the loop's thread, {:.1} % in the whole program{}{}",
         plan.scene.name,
         plan.rig.name,
         summary.clock,
@@ -36,6 +35,9 @@ pub(super) fn in_words(plan: &Plan, summary: &Summary) -> String {
         devices_in_words(summary),
         ends_in_words(summary),
     );
+    if !summary.error.is_empty() {
+        text.push_str("\nerror of each mode before the gates, against the force at the tip at the same instant:");
+    }
     for error in &summary.error {
         let fields = format!(
             "\n  {:5}  {:14}  mean {:10.4} N   sd {:10.4} N   max {:10.4} N   invalid {}",

@@ -11,11 +11,12 @@ use nima_world::{emulated::Screen, scene::Scene};
 use super::ConsoleApp;
 use crate::console::{
     desk::Panel as Tile,
+    overview::{following, overview},
     panels::{CalibrationWish, Page, calibrations_ui},
     reader::task_of,
     text, theme,
     widgets::card,
-    wizards::{Binding, Saving, Which, Wizards},
+    wizards::{Asked, Binding, GoOn, Saving, Wanted, Which, Wizards},
 };
 
 impl ConsoleApp {
@@ -89,14 +90,32 @@ impl ConsoleApp {
     /// Saves a calibration and puts it in force.
     pub(super) fn save(&mut self, saving: Saving) {
         let saved = self.saved(saving);
+        // Before the new start, after which the sensor must be opened first.
+        let following = saved.as_ref().ok().and_then(|(rig, _)| self.following(rig));
         let told = match saved {
             Ok((rig, words)) => match self.restart(rig, self.live.scene.clone()) {
-                Ok(()) => words,
-                Err(reason) => text::calibrations::in_force_with_next_start(&words, &reason),
+                Ok(()) => Ok(words),
+                Err(reason) => Ok(text::calibrations::in_force_with_next_start(&words, &reason)),
             },
-            Err(reason) => text::calibrations::not_saved(&reason),
+            Err(reason) => Err(text::calibrations::not_saved(&reason)),
         };
-        self.wizards.tell_saved(told);
+        self.wizards.tell_saved(told, following);
+    }
+
+    /// What is to be done after the calibration that is open, on this rig; a simulated one needs no ready check.
+    fn following(&self, rig: &RigConfig) -> Option<GoOn> {
+        let arms = overview(&self.in_force, rig, &self.running.rig);
+        let wanted = following(&arms, self.wizards.wanted(self.in_force.side()));
+        wanted.map(GoOn::Calibrate).or(rig.devices.as_ref().map(|_| GoOn::Check))
+    }
+
+    /// Opens the wizard of this calibration, at its arm.
+    pub(super) fn open_wanted(&mut self, wanted: Wanted) {
+        if wanted.side != self.in_force.side() {
+            self.obey_calibrations(Some(CalibrationWish::Choose(wanted.side)));
+        }
+        self.wizards.choose_part(wanted);
+        self.obey_calibrations(Some(CalibrationWish::Open(wanted.which)));
     }
 
     /// Saves; returns the rig as it is now, and a text for the screen.
@@ -149,15 +168,18 @@ impl ConsoleApp {
             });
         });
         let binding = self.binding();
-        let mut saving = None;
+        let mut asked = None;
         CentralPanel::default().frame(Frame::new().inner_margin(Margin::symmetric(18, 14))).show(ui, |ui| {
             ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
                 ui.set_max_width(760.0);
-                saving = self.wizards.ui(ui, &binding);
+                asked = self.wizards.ui(ui, &binding);
             });
         });
-        if let Some(saving) = saving {
-            self.save(saving);
+        match asked {
+            Some(Asked::Save(saving)) => self.save(saving),
+            Some(Asked::GoOn(GoOn::Calibrate(wanted))) => self.open_wanted(wanted),
+            Some(Asked::GoOn(GoOn::Check)) => self.obey_calibrations(Some(CalibrationWish::Check)),
+            None => {}
         }
         self.obey_calibrations(wish);
     }

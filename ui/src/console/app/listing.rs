@@ -9,7 +9,7 @@ use super::ConsoleApp;
 use crate::console::{
     desk::Panel as Tile,
     overview::{OfArm, overview, overview_ui},
-    panels::{CalibrationWish, Page, calibrations_ui},
+    panels::{Page, calibrations_ui},
     theme,
     widgets::card,
 };
@@ -54,18 +54,15 @@ impl ConsoleApp {
             });
         });
         let free = matches!(self.live.state(), LoopState::Idle | LoopState::Engaged);
-        let mut redo = None;
+        let mut wanted = None;
         CentralPanel::default().frame(Frame::new().inner_margin(Margin::symmetric(18, 14))).show(ui, |ui| {
             ScrollArea::both().auto_shrink(false).show(ui, |ui| {
-                redo = self.listing.0.as_ref().and_then(|(arms, _)| overview_ui(ui, arms, free));
+                wanted = self.listing.0.as_ref().and_then(|(arms, _)| overview_ui(ui, arms, free));
             });
         });
-        if let Some((side, which)) = redo {
-            if side != self.in_force.side() {
-                self.obey_calibrations(Some(CalibrationWish::Choose(side)));
-            }
-            wish = Some(CalibrationWish::Open(which));
+        match wanted {
+            Some(wanted) => self.open_wanted(wanted),
+            None => self.obey_calibrations(wish),
         }
-        self.obey_calibrations(wish);
     }
 }

@@ -132,7 +132,10 @@ impl ConsoleApp {
 
     /// Ends the loop and begins to start this choice. What cannot be loaded ends nothing.
     fn begin(&mut self, choice: Choice, before: Option<Choice>, because: Option<String>) {
-        let loaded = RigConfig::load(&choice.rig).and_then(|rig| Ok((rig, Scene::load(&choice.scene)?)));
+        let loaded = RigConfig::load(&choice.rig).and_then(|rig| {
+            let scene = Scene::load(&choice.scene)?.mounted_at(&rig);
+            Ok((rig, scene))
+        });
         let (rig, scene) = match loaded {
             Ok(loaded) => loaded,
             Err(error) => return self.start.tell(Some(text::start::not_started(&chain(&error), None))),

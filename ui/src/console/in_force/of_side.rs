@@ -25,7 +25,7 @@ use nima_recording::{
 use crate::console::{
     overview::{Kept, Line, found_since},
     text,
-    wizards::{Saving, Which},
+    wizards::{Saving, Wanted, Which},
 };
 
 /// The sensor and tool whose calibrations are used on a side.
@@ -129,8 +129,7 @@ impl OfSide {
             (Which::TipForce, tip_force, of_tip_force),
         ]
         .map(|(which, kept, since)| Line {
-            which,
-            name: which.name(),
+            wanted: Wanted { side, which, by_handle: false },
             kept: match (kept, self.unusable.iter().find(|(what, _)| *what == which.name())) {
                 (None, Some((_, why))) => Err(why.clone()),
                 (kept, _) => Ok(kept),

@@ -20,7 +20,7 @@ use super::{
     chain,
     in_force::InForce,
     text,
-    wizards::{FrameKept, Kind, Which, frame_kept, sizes_words},
+    wizards::{FrameKept, Kind, Wanted, Which, frame_kept, sizes_words},
 };
 use crate::words::{Words as _, check_name};
 
@@ -39,12 +39,20 @@ pub(crate) struct Kept {
 /// One line of the list.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Line {
-    pub(crate) which: Which,
-    pub(crate) name: &'static str,
+    pub(crate) wanted: Wanted,
     /// What is kept; `None` if it was never made, an error if its file cannot be used.
     pub(crate) kept: Result<Option<Kept>, String>,
     /// What has changed since.
     pub(crate) since: String,
+}
+
+impl Line {
+    /// Whether nothing needs to be done: it is proven, and neither old nor overridden.
+    fn is_in_order(&self) -> bool {
+        let Ok(Some(kept)) = &self.kept else { return false };
+        let is_proven = |judgement: &Judgement| judgement.allows() && judgement.override_by.is_none();
+        kept.age == Age::Fresh && kept.judgement.as_ref().is_some_and(is_proven)
+    }
 }
 
 /// The list of an arm.
@@ -65,19 +73,30 @@ pub(crate) fn overview(in_force: &InForce, rig: &RigConfig, name: &str) -> Vec<O
     let of_arm = |side: Side| {
         // Without the sensor nobody knows which calibrations are those of this arm.
         let wrist = in_force.wrist(side).cloned();
-        let mut lines = wrist.as_ref().map_or_else(Vec::new, |_| in_force.kept(side, last.as_ref()));
+        let mut lines = Vec::new();
         if let (true, Some(store), Some(wrist)) = (has_joints, in_force.store(), &wrist) {
             lines.extend(frames(store, wrist, side, last.as_ref(), file.as_ref()));
         }
+        lines.extend(wrist.iter().flat_map(|_| in_force.kept(side, last.as_ref())));
         OfArm { side, wrist, lines }
     };
     sides.map(of_arm).collect()
 }
 
+/// What is to be calibrated after this one (from the first on without one): the first that is not in order. What was made just now
+/// is not asked for again.
+pub(crate) fn following(arms: &[OfArm], after: Option<Wanted>) -> Option<Wanted> {
+    let all: Vec<&Line> = arms.iter().flat_map(|arm| &arm.lines).collect();
+    let from = all.iter().position(|line| Some(line.wanted) == after).map_or(0, |place| place + 1);
+    let (before, behind) = all.split_at(from);
+    let mut open = behind.iter().chain(before).filter(|line| !line.is_in_order() && Some(line.wanted) != after);
+    open.next().map(|line| line.wanted)
+}
+
 fn frames(store: &Store, wrist: &WristId, side: Side, last: Option<&ReadyRecord>, file: Option<&RigFile>) -> Vec<Line> {
     let of_wrist = [wrist.serial_number.as_str(), wrist.tool.as_str()];
-    let line = |which: Which, kind: Kind, handle: bool| {
-        let found = frame_kept(store, kind, handle, of_wrist);
+    let line = |which: Which, kind: Kind, by_handle: bool| {
+        let found = frame_kept(store, kind, by_handle, of_wrist);
         let since = match &found {
             Ok(Some(kept)) if kind == Kind::Trocar => {
                 found_since(last, Check::Trocar(side), &kept.date).unwrap_or_else(|| in_file(kept, file))
@@ -86,7 +105,7 @@ fn frames(store: &Store, wrist: &WristId, side: Side, last: Option<&ReadyRecord>
             _ => String::new(),
         };
         let kept = found.map_err(|error| chain(&error)).map(|kept| kept.map(Kept::from));
-        Line { which, name: if handle { text::overview::HANDLE } else { which.name() }, kept, since }
+        Line { wanted: Wanted { side, which, by_handle }, kept, since }
     };
     let frames = Which::ALL.into_iter().filter_map(|which| Some((which, which.frames()?)));
     frames

@@ -1,29 +1,27 @@
 //! The page of all calibrations.
 
 use egui::{Button, Grid, Label, RichText, Ui, WidgetInfo, vec2};
-use nima_machine::rig::Side;
-use nima_recording::store::Age;
 
-use super::{Line, OfArm, made_words, verdict_words};
+use super::{Line, OfArm, following, made_words, verdict_words};
 use crate::console::{
     scene3d::side_name,
     text, theme,
-    widgets::{Sign, sign_ui, small},
-    wizards::Which,
+    widgets::{Sign, next_button, sign_ui, small},
+    wizards::{GoOn, Wanted},
 };
 
 /// Widths of the columns of words.
 const WIDTHS: [f32; 3] = [150.0, 260.0, 260.0];
 
-/// Draws the page; returns the calibration that is to be repeated. With `free` false none can be.
-pub(crate) fn overview_ui(ui: &mut Ui, arms: &[OfArm], free: bool) -> Option<(Side, Which)> {
+/// Draws the page; returns the calibration that is to be made. With `free` false none can be.
+pub(crate) fn overview_ui(ui: &mut Ui, arms: &[OfArm], free: bool) -> Option<Wanted> {
     ui.label(RichText::new(text::overview::TITLE).font(theme::strong(22.0)));
     ui.label(small(text::overview::MEANING));
     ui.add_space(theme::GAP);
     if arms.is_empty() {
         ui.label(text::calibrations::NOT_NEEDED);
     }
-    let mut wish = None;
+    let mut wish = following_ui(ui, arms, free);
     for arm in arms {
         let name = side_name(arm.side);
         let head = arm.wrist.as_ref().map_or_else(
@@ -44,7 +42,7 @@ pub(crate) fn overview_ui(ui: &mut Ui, arms: &[OfArm], free: bool) -> Option<(Si
             ui.end_row();
             for line in &arm.lines {
                 if line_ui(ui, line, name, free) {
-                    wish = Some((arm.side, line.which));
+                    wish = Some(line.wanted);
                 }
                 ui.end_row();
             }
@@ -54,18 +52,24 @@ pub(crate) fn overview_ui(ui: &mut Ui, arms: &[OfArm], free: bool) -> Option<(Si
     wish
 }
 
+/// The button that opens what is to be calibrated next.
+fn following_ui(ui: &mut Ui, arms: &[OfArm], free: bool) -> Option<Wanted> {
+    let wanted = following(arms, None)?;
+    let name = RichText::new(GoOn::Calibrate(wanted).words()).font(theme::strong(15.0));
+    let button = ui.add_enabled(free, next_button(name, free).min_size(vec2(300.0, 34.0)));
+    ui.add_space(theme::GAP);
+    button.on_disabled_hover_text(text::calibrations::OPEN_DISABLED_HOVER).clicked().then_some(wanted)
+}
+
 /// One line; returns whether it is to be repeated.
 fn line_ui(ui: &mut Ui, line: &Line, arm: &str, free: bool) -> bool {
-    let in_order = match &line.kept {
-        Ok(Some(kept)) => {
-            kept.age == Age::Fresh && kept.judgement.as_ref().is_some_and(|it| it.allows() && it.override_by.is_none())
-        }
-        Ok(None) | Err(_) => false,
+    let (what, colour) = if line.is_in_order() {
+        (Sign::Disc, theme::now().engaged)
+    } else {
+        (Sign::Triangle, theme::now().alarm_medium)
     };
-    let (what, colour) =
-        if in_order { (Sign::Disc, theme::now().engaged) } else { (Sign::Triangle, theme::now().alarm_medium) };
     sign_ui(ui, what, 5.0, colour);
-    ui.label(line.name);
+    ui.label(line.wanted.name());
     let words = match &line.kept {
         Ok(Some(kept)) => [made_words(kept), verdict_words(kept), line.since.clone()],
         Ok(None) => [text::overview::NEVER.to_owned(), String::new(), String::new()],
@@ -77,8 +81,9 @@ fn line_ui(ui: &mut Ui, line: &Line, arm: &str, free: bool) -> bool {
             ui.add(Label::new(words).wrap());
         });
     }
-    let button = ui.add_enabled(free, Button::new(text::overview::REDO).min_size(vec2(64.0, 24.0)));
-    let name = text::overview::redo(arm, &line.name.to_lowercase());
+    let verb = if line.kept == Ok(None) { text::overview::MAKE } else { text::overview::REDO };
+    let button = ui.add_enabled(free, Button::new(verb).min_size(vec2(84.0, 24.0)));
+    let name = text::overview::button(verb, arm, &line.wanted.name().to_lowercase());
     button.widget_info(|| WidgetInfo::labeled(egui::Role::Button, free, name.clone()));
     button.on_disabled_hover_text(text::calibrations::OPEN_DISABLED_HOVER).clicked()
 }

@@ -6,8 +6,11 @@ use nima_recording::store::{CheckedItem, Outcome, READY_CHECK, ReadyRecord, Stor
 use nima_tests::gravity::gravity;
 use nima_world::scene::Scene;
 
-use super::{InForce, found_since, made_words, overview, verdict_words};
-use crate::{console::wizards::Which, words::check_name};
+use super::{InForce, Line, OfArm, following, found_since, made_words, overview, verdict_words};
+use crate::{
+    console::wizards::{Wanted, Which},
+    words::check_name,
+};
 
 fn listed(store: &Store) -> Vec<super::OfArm> {
     let (rig, scene) = (RigConfig::load("simulated").unwrap(), Scene::load("palpation").unwrap());
@@ -22,7 +25,7 @@ fn what_was_made_stands_with_age_and_verdict_and_what_was_not_says_so() {
     let arms = listed(&store);
     let [arm] = &arms[..] else { panic!("{arms:?}") };
     assert_eq!(arm.wrist.as_ref().unwrap().serial_number, "SIM-S1-0001");
-    let which: Vec<_> = arm.lines.iter().map(|line| line.which).collect();
+    let which: Vec<_> = arm.lines.iter().map(|line| line.wanted.which).collect();
     assert_eq!(which, [Which::Gravity, Which::Correspondence, Which::TipForce], "a simulated arm has no frames");
     let kept = arm.lines[0].kept.as_ref().unwrap().as_ref().unwrap();
     assert!(made_words(kept).ends_with(", less than a day old"), "{}", made_words(kept));
@@ -77,4 +80,31 @@ fn a_ready_check_tells_what_has_changed_since_if_it_was_later() {
     assert_eq!(since(Side::Left, "2026-08-20T10:20:30Z"), words);
     assert_eq!(since(Side::Left, &utc_now()), None, "calibrated after the check");
     assert_eq!(since(Side::Right, "2026-08-20T10:20:30Z"), None);
+}
+
+#[test]
+fn what_is_to_be_calibrated_next_is_the_first_that_is_not_in_order_after_what_was_made() {
+    let folder = tempfile::tempdir().unwrap();
+    let store = Store::open(folder.path().join("calibrations"));
+    store.save(&gravity()).unwrap();
+    let [good, missing] = [listed(&store)[0].lines[0].kept.clone(), Ok(None)];
+    let wanted = |side, which| Wanted { side, which, by_handle: false };
+    let arm = |side, kept: [&Result<_, _>; 2]| OfArm {
+        side,
+        wrist: None,
+        lines: [Which::Tip, Which::Gravity]
+            .into_iter()
+            .zip(kept)
+            .map(|(which, kept)| Line { wanted: wanted(side, which), kept: kept.clone(), since: String::new() })
+            .collect(),
+    };
+    let (right, left) = (Side::Right, Side::Left);
+    let next = |right_kept, left_kept, after| following(&[arm(right, right_kept), arm(left, left_kept)], after);
+    assert_eq!(next([&missing, &good], [&good, &missing], None), Some(wanted(right, Which::Tip)));
+    let after = |side, which| Some(wanted(side, which));
+    assert_eq!(next([&good, &good], [&missing, &missing], after(right, Which::Tip)), after(left, Which::Tip));
+    assert_eq!(next([&missing, &good], [&good, &good], after(left, Which::Gravity)), after(right, Which::Tip));
+    // What was kept without proof is not asked for again at once.
+    assert_eq!(next([&good, &missing], [&good, &good], after(right, Which::Gravity)), None);
+    assert_eq!(next([&good; 2], [&good; 2], None), None);
 }

@@ -14,7 +14,7 @@ use crate::{
         live::Live,
         scene3d::side_name,
         text, theme,
-        widgets::{Sign, sign_ui, small},
+        widgets::{Sign, next_button, sign_ui, small},
         wizards::Which,
     },
     words::Words as _,
@@ -48,14 +48,10 @@ pub enum Page {
 
 /// The panel; `open` is the page that is open beside it.
 pub fn calibrations_ui(ui: &mut Ui, live: &Live, in_force: &InForce, open: Option<Page>) -> Option<CalibrationWish> {
-    let free = matches!(live.state(), LoopState::Idle | LoopState::Engaged);
-    // First: with two arms the lines below are more than fit.
-    let mut wish = rig_ui(ui, free, open);
+    let free = is_free(live);
+    let mut wish = rig_ui(ui, live, open);
     ui.add_space(2.0);
     source_ui(ui, live);
-    for line in in_force.lines() {
-        ui.label(small(line));
-    }
     for told in in_force.told() {
         ui.label(told);
     }
@@ -82,20 +78,32 @@ pub fn calibrations_ui(ui: &mut Ui, live: &Live, in_force: &InForce, open: Optio
             wish = Some(CalibrationWish::Close);
         }
     }
+    // Below the buttons, which must not move under a hand when a sensor comes or goes.
+    ui.add_space(4.0);
+    for line in in_force.lines() {
+        ui.label(small(line));
+    }
     wish
 }
 
-/// What concerns the whole rig: the ready check and the list of all calibrations.
-fn rig_ui(ui: &mut Ui, free: bool, open: Option<Page>) -> Option<CalibrationWish> {
+/// What concerns the whole rig: the ready check and the list of all calibrations. Of a rig with devices, one of them is what is to be done
+/// before it can be engaged.
+fn rig_ui(ui: &mut Ui, live: &Live, open: Option<Page>) -> Option<CalibrationWish> {
     let mut wish = None;
+    let free = is_free(live);
+    let is_known = live.first_tick().is_some_and(|tick| tick.force.source.is_usable());
+    let next = (live.rig.devices.is_some() && live.state() == LoopState::Idle && open.is_none())
+        .then_some(if is_known { Page::Check } else { Page::All })
+        .filter(|page| *page == Page::All || live.is_unchecked);
     let width = (ui.available_width() - ui.spacing().item_spacing.x) / 2.0;
     ui.horizontal(|ui| {
         for (page, name, meaning, opens) in [
             (Page::Check, text::ready::OPEN, text::calibrations::opens(text::ready::MEANING), CalibrationWish::Check),
             (Page::All, text::overview::OPEN, text::overview::MEANING.to_owned(), CalibrationWish::List),
         ] {
-            let is_open = open == Some(page);
-            let button = Button::selectable(is_open, name).frame_when_inactive(true).min_size(vec2(width, 28.0));
+            let (is_open, next) = (open == Some(page), next == Some(page));
+            let button =
+                next_button(name, next).selected(is_open).frame_when_inactive(true).min_size(vec2(width, 28.0));
             let button = ui.add_enabled((free || page == Page::All) && !is_open, button).on_hover_text(meaning);
             if button.on_disabled_hover_text(text::calibrations::OPEN_DISABLED_HOVER).clicked() {
                 wish = Some(opens);
@@ -103,6 +111,11 @@ fn rig_ui(ui: &mut Ui, free: bool, open: Option<Page>) -> Option<CalibrationWish
         }
     });
     wish
+}
+
+/// Whether a page may be opened that sets the loop to idle.
+fn is_free(live: &Live) -> bool {
+    matches!(live.state(), LoopState::Idle | LoopState::Engaged)
 }
 
 /// Selection of the arm to calibrate.

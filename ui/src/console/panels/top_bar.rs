@@ -124,9 +124,11 @@ fn state_ui(ui: &mut Ui, live: &Live, state: LoopState) {
         LoopState::Stopped => (Sign::Square, theme::now().stop, text::top_bar::STOPPED_MEANING),
         LoopState::Faulted(_) => (Sign::Triangle, theme::now().alarm_high, text::top_bar::FAULT_MEANING),
     };
-    let (rect, response) = ui.allocate_exact_size(vec2(136.0, 44.0), Sense::hover());
-    let response = response.on_hover_text(text::top_bar::state_meaning(meaning));
     let lines = state_lines(live, state);
+    // Two lines, each with the name of its arm, are longer than one.
+    let width = if lines.len() > 1 { 156.0 } else { 136.0 };
+    let (rect, response) = ui.allocate_exact_size(vec2(width, 44.0), Sense::hover());
+    let response = response.on_hover_text(text::top_bar::state_meaning(meaning));
     let name = text::top_bar::state(&lines.join(", "));
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, &name));
     ui.painter().rect(rect, theme::CORNER, theme::now().card, egui::Stroke::new(1.5, colour), egui::StrokeKind::Inside);

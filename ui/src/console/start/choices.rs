@@ -27,6 +27,14 @@ impl Default for Choice {
 const RECENT_MAX: usize = 5;
 
 impl Choice {
+    /// Another rig. The scene stays, unless it was only that of the rig before.
+    pub(super) fn with_rig(&self, rig: &str) -> Self {
+        let default = |rig: &str| RigConfig::load(rig).map(|rig| Scene::default_for(&rig)).ok();
+        let untouched = default(&self.rig) == Some(self.scene.as_str());
+        let scene = default(rig).filter(|_| untouched).map_or_else(|| self.scene.clone(), str::to_owned);
+        Self { rig: rig.to_owned(), scene }
+    }
+
     /// Puts this choice in front of those made before.
     pub(in crate::console) fn remember(&self, recent: &mut Vec<Self>) {
         recent.retain(|choice| choice != self);
@@ -133,6 +141,16 @@ mod tests {
             choice(rig).remember(&mut recent);
         }
         assert_eq!(recent, ["f", "e", "d", "c", "a"].map(choice));
+    }
+
+    #[test]
+    fn another_rig_brings_its_own_scene_unless_one_was_chosen() {
+        let first = Choice::default();
+        let two_arms = first.with_rig("emulated");
+        assert_eq!(two_arms, Choice { rig: "emulated".to_owned(), scene: "bimanual".to_owned() });
+        assert_eq!(two_arms.with_rig("simulated"), first);
+        let chosen = Choice { scene: "palpation".to_owned(), ..first };
+        assert_eq!(chosen.with_rig("emulated").scene, "palpation");
     }
 
     #[test]

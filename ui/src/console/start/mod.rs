@@ -18,7 +18,7 @@ use looking::{Answers, PluggedIn};
 use super::{
     live::Live,
     text, theme,
-    widgets::{Sign, card, sign_ui, small, weak},
+    widgets::{Sign, card, next_button, sign_ui, small, weak},
 };
 
 /// Height of a button that takes a whole row.
@@ -137,7 +137,7 @@ impl StartPage {
                 }
                 for entry in rigs {
                     if entry_ui(ui, entry, self.chosen.rig == entry.key, now.running.rig == entry.key) {
-                        chosen = Some(Choice { rig: entry.key.clone(), ..self.chosen.clone() });
+                        chosen = Some(self.chosen.with_rig(&entry.key));
                     }
                 }
             }
@@ -233,7 +233,8 @@ impl StartPage {
             let usable = |list: &[Entry], key: &str| list.iter().any(|entry| entry.key == key && entry.usable);
             let ready = usable(&self.lists.rigs, &self.chosen.rig) && usable(&self.lists.scenes, &self.chosen.scene);
             let words = if same { text::start::START_AGAIN } else { text::start::START };
-            let button = Button::new(RichText::new(words).font(theme::strong(17.0))).min_size(theme::STOP_SIZE);
+            let name = RichText::new(words).font(theme::strong(17.0));
+            let button = next_button(name, !same).min_size(theme::STOP_SIZE);
             let button = ui.add_enabled(ready && !held && !now.is_starting, button);
             if button.on_hover_text(text::start::START_HOVER).on_disabled_hover_text(text::start::ENGAGED).clicked() {
                 start = Some(self.chosen.clone());

@@ -26,7 +26,7 @@ pub(in crate::console) const SENSOR_WITHOUT_SERIAL: &str =
 pub(in crate::console) const RIG_WITHOUT_SENSOR: &str =
     "The rig file names no wrist sensor for this arm: add serial_number and tool to its [simulated] part";
 pub(in crate::console) const NO_SENSOR_TO_SAVE_FOR: &str =
-    "the serial number of the wrist sensor is not known; see the devices";
+    "the serial number of the wrist sensor is not known; save again once the sensor is connected";
 pub(in crate::console) const ARM_TO_CALIBRATE: &str = "The wizards calibrate the wrist sensor of this arm";
 
 /// Button that opens a wizard; the wizard's name is in lower case.

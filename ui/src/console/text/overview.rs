@@ -2,12 +2,13 @@
 
 pub(in crate::console) const TITLE: &str = "All calibrations";
 pub(in crate::console) const MEANING: &str =
-    "Of every arm: when each was made, its verdict, what has changed since then, and a button that repeats it";
+    "Of every arm: when each was made, its verdict, what has changed since then, and a button that makes it";
 pub(in crate::console) const OPEN: &str = "All calibrations…";
 pub(in crate::console) const CALIBRATION: &str = "Calibration";
 pub(in crate::console) const MADE: &str = "Made";
 pub(in crate::console) const VERDICT: &str = "Verdict";
 pub(in crate::console) const SINCE: &str = "Since then";
+pub(in crate::console) const MAKE: &str = "Calibrate";
 pub(in crate::console) const REDO: &str = "Redo";
 pub(in crate::console) const NEVER: &str = "not calibrated";
 pub(in crate::console) const NOT_WATCHED: &str = "not watched";
@@ -17,9 +18,9 @@ pub(in crate::console) const UNCHECKED: &str = "trained but not checked";
 pub(in crate::console) const HANDLE: &str = "View, handle";
 pub(in crate::console) const FUTURE: &str = "in the future";
 
-/// Accessible name of a button that repeats a calibration.
-pub(in crate::console) fn redo(arm: &str, calibration: &str) -> String {
-    format!("Redo {arm} arm, {calibration}")
+/// Accessible name of a button that makes a calibration.
+pub(in crate::console) fn button(verb: &str, arm: &str, calibration: &str) -> String {
+    format!("{verb} {arm} arm, {calibration}")
 }
 
 /// Sensor and tool above an arm's lines.

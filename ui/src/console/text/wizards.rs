@@ -42,8 +42,10 @@ pub(in crate::console) const POSE_UNKNOWN: &str = "the arm does not report the t
 pub(in crate::console) const SWITCH_DISABLED_HOVER: &str =
     "To change this, press Start over: the recorded data depend on it";
 pub(in crate::console) const MET: &str = "met";
+pub(in crate::console) const FINE: &str = "fine";
 pub(in crate::console) const WAITING: &str = "waiting";
 pub(in crate::console) const NO_RESULT: &str = "No result";
+pub(in crate::console) const FOLLOWING_CHECK: &str = "Next: ready check";
 pub(in crate::console) const DONE: &str = "(done)";
 
 /// Caption of the picture of a pose.
@@ -63,7 +65,12 @@ pub(in crate::console) fn fields_filled(title: &str, filled: usize, fields: usiz
 
 /// A check that has passed, with the measured value.
 pub(in crate::console) fn met(measured: &str) -> String {
-    format!("{measured}, met")
+    format!("{measured}, fine")
+}
+
+/// Button that goes on with the calibration that is to be made after a saved one.
+pub(in crate::console) fn following(arm: &str, calibration: &str) -> String {
+    format!("Next: {arm} arm, {}", calibration.to_lowercase())
 }
 
 /// Title of a wizard.

@@ -13,7 +13,7 @@ use crate::console::{
 pub(super) fn check_ui(ui: &mut Ui, check: &Check) {
     let (what, colour, words) = match &check.state {
         CheckState::Good if check.measured.is_empty() => {
-            (Sign::Disc, theme::now().engaged, text::wizards::MET.to_owned())
+            (Sign::Disc, theme::now().engaged, text::wizards::FINE.to_owned())
         }
         CheckState::Good => (Sign::Disc, theme::now().engaged, text::wizards::met(&check.measured)),
         CheckState::Waiting => (Sign::Ring, theme::now().at_rest, text::wizards::WAITING.to_owned()),
@@ -25,7 +25,7 @@ pub(super) fn check_ui(ui: &mut Ui, check: &Check) {
 /// A check that has passed, or what to do.
 pub(super) fn check_line(ui: &mut Ui, name: &str, met: bool, otherwise: &str) {
     let (what, colour, words) = if met {
-        (Sign::Disc, theme::now().engaged, text::wizards::MET)
+        (Sign::Disc, theme::now().engaged, text::wizards::FINE)
     } else {
         (Sign::Triangle, theme::now().text, otherwise)
     };

@@ -268,7 +268,7 @@ impl Wizard for CorrespondenceWizard {
         }
     }
 
-    fn attend(&mut self, _: &Binding) -> bool {
+    fn is_done(&self) -> bool {
         self.frame.step != PUSHES || self.session.target().is_none()
     }
 

@@ -4,10 +4,10 @@ use egui::{Button, RichText, TextEdit, Ui, vec2};
 use nima_core::calibration::Judgement;
 use nima_machine::{messages::Tick, rig::Prompt};
 
-use super::{Binding, Saving};
+use super::{Asked, Binding, GoOn, Saving};
 use crate::console::{
     text, theme,
-    widgets::{card, figure, small, weak},
+    widgets::{card, figure, next_button, small, weak},
 };
 
 /// One step of a wizard.
@@ -22,6 +22,8 @@ pub(super) struct Step {
 pub(super) enum Wish {
     GoTo(usize),
     StartOver,
+    /// Go on elsewhere.
+    GoOn(GoOn),
 }
 
 /// State of a wizard: its step, and the inputs and messages of the last step.
@@ -32,16 +34,27 @@ pub(super) struct Frame {
     name: String,
     /// The reason.
     why: String,
-    /// Result of saving.
-    pub(super) saved: Option<String>,
+    /// What is told of saving: done, or why not.
+    pub(super) saved: Option<Result<String, String>>,
+    /// What is to be done after what was saved.
+    following: Option<GoOn>,
     /// The step or what is saved has changed since [`Frame::take_changed`].
     pub(super) changed: bool,
 }
 
 impl Frame {
-    /// Shows the result of saving.
-    pub(super) fn tell_saved(&mut self, words: String) {
-        (self.saved, self.changed) = (Some(words), true);
+    /// Shows the result of saving, and what is to be done after it.
+    pub(super) fn tell_saved(&mut self, told: Result<String, String>, following: Option<GoOn>) {
+        (self.saved, self.changed, self.following) = (Some(told), true, following);
+    }
+
+    const fn is_saved(&self) -> bool {
+        matches!(self.saved, Some(Ok(_)))
+    }
+
+    /// What is to be done next; `None` before something was saved.
+    fn following(&self) -> Option<GoOn> {
+        self.following.filter(|_| self.is_saved())
     }
 
     /// Whether the step or what is saved has changed since the last call.
@@ -76,9 +89,13 @@ pub(super) trait Wizard {
     /// Removes the data, but keeps the settings of the rig.
     fn start_over(&mut self);
 
-    /// Does what a technician without a screen does in this step; returns whether it has all that it asks for.
-    fn attend(&mut self, _binding: &Binding) -> bool {
+    /// Whether this step has all that it asks for.
+    fn is_done(&self) -> bool {
         true
+    }
+    /// Does what a technician without a screen does in this step; returns whether it is done.
+    fn attend(&mut self, _binding: &Binding) -> bool {
+        self.is_done()
     }
 
     /// Called before drawing.
@@ -100,11 +117,13 @@ pub(super) trait Wizard {
     }
 }
 
-/// Draws a wizard; returns the record to be saved.
-pub(super) fn wizard_ui(wizard: &mut dyn Wizard, ui: &mut Ui, binding: &Binding) -> Option<Saving> {
+/// Draws a wizard; returns what is asked for.
+pub(super) fn wizard_ui(wizard: &mut dyn Wizard, ui: &mut Ui, binding: &Binding) -> Option<Asked> {
     wizard.refresh(binding);
     let (steps, now) = (wizard.steps(), wizard.frame_mut().step);
-    let mut wish = steps_ui(ui, steps, now, wizard.may_go_on(binding));
+    let following = wizard.frame_mut().following();
+    let going_on = GoingOn { may: wizard.may_go_on(binding), is_done: wizard.is_done(), following };
+    let mut wish = steps_ui(ui, steps, now, &going_on);
     ui.add_space(theme::GAP);
     if let Some(notice) = wizard.notice() {
         ui.label(notice);
@@ -126,13 +145,24 @@ pub(super) fn wizard_ui(wizard: &mut dyn Wizard, ui: &mut Ui, binding: &Binding)
     match wish {
         Some(Wish::GoTo(step)) => wizard.go_to(step),
         Some(Wish::StartOver) => wizard.start_over(),
+        Some(Wish::GoOn(following)) => return Some(Asked::GoOn(following)),
         None => {}
     }
-    saving
+    saving.map(Asked::Save)
+}
+
+/// Whether and where the button for the next step leads.
+struct GoingOn {
+    /// Whether the next step may start, or why not.
+    may: Result<(), &'static str>,
+    /// The present step has all that it asks for.
+    is_done: bool,
+    /// What follows after the last step.
+    following: Option<GoOn>,
 }
 
 /// The row of steps with buttons for back, next and reset. Going back loses no data.
-fn steps_ui(ui: &mut Ui, steps: &[Step], now: usize, may_go_on: Result<(), &'static str>) -> Option<Wish> {
+fn steps_ui(ui: &mut Ui, steps: &[Step], now: usize, going_on: &GoingOn) -> Option<Wish> {
     let mut wish = None;
     ui.horizontal_wrapped(|ui| {
         for (i, step) in steps.iter().enumerate() {
@@ -154,11 +184,16 @@ fn steps_ui(ui: &mut Ui, steps: &[Step], now: usize, may_go_on: Result<(), &'sta
             wish = Some(Wish::GoTo(now - 1));
         }
         let last = now + 1 == steps.len();
-        let next = ui.add_enabled(!last && may_go_on.is_ok(), Button::new(text::wizards::NEXT).min_size(size));
+        let (name, goes_to) = match going_on.following.filter(|_| last) {
+            Some(following) => (following.words(), Some(Wish::GoOn(following))),
+            None => (text::wizards::NEXT.to_owned(), (!last && going_on.may.is_ok()).then_some(Wish::GoTo(now + 1))),
+        };
+        let next = next_button(name, goes_to.is_some() && going_on.is_done).min_size(size);
+        let next = ui.add_enabled(goes_to.is_some(), next);
         if next.clicked() {
-            wish = Some(Wish::GoTo(now + 1));
+            wish = goes_to;
         }
-        if let (Err(reason), false) = (may_go_on, last) {
+        if let (Err(reason), false) = (going_on.may, last) {
             next.on_disabled_hover_text(reason);
             ui.label(small(reason));
         }
@@ -178,13 +213,19 @@ fn save_card(ui: &mut Ui, binding: &Binding, proof: Option<&str>, frame: &mut Fr
         figure(ui, text::wizards::TOOL, &binding.tool, text::wizards::TOOL_HOVER);
         let wanted = if let Some(proof) = proof {
             ui.label(proof);
-            ui.add(Button::new(text::wizards::SAVE_AND_USE).min_size(vec2(180.0, 36.0))).clicked()
+            let (known, next) = (!binding.sensor.is_empty(), !frame.is_saved());
+            let save =
+                ui.add_enabled(known, next_button(text::wizards::SAVE_AND_USE, next).min_size(vec2(180.0, 36.0)));
+            if !known {
+                ui.label(small(text::calibrations::SENSOR_NOT_CONNECTED));
+            }
+            save.clicked()
         } else {
             ui.label(weak(text::wizards::NOT_PROVEN));
             override_ui(ui, [&mut frame.name, &mut frame.why])
         };
-        if let Some(saved) = &frame.saved {
-            ui.label(saved);
+        if let Some(Ok(told) | Err(told)) = &frame.saved {
+            ui.label(told);
         }
         wanted
     })

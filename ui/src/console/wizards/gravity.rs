@@ -265,7 +265,7 @@ impl Wizard for GravityWizard {
         }
     }
 
-    fn attend(&mut self, _: &Binding) -> bool {
+    fn is_done(&self) -> bool {
         match self.frame.step {
             POSES => self.session.target().is_none(),
             FREE_MOTION => self.pass_result().is_some_and(|result| result.samples >= FREE_MOTION_SAMPLES),

@@ -24,7 +24,11 @@ use nima_core::{
     },
     tip_force::Model,
 };
-use nima_machine::{config::RigFile, messages::Tick, rig::Prompt};
+use nima_machine::{
+    config::RigFile,
+    messages::Tick,
+    rig::{Prompt, Side},
+};
 use nima_recording::store::Store;
 use nima_world::scene::Scene;
 
@@ -36,7 +40,7 @@ pub use gravity::GravityWizard;
 pub use tip_force::TipForceWizard;
 
 use self::frame::{Wizard, wizard_ui};
-use super::{theme, widgets::small};
+use super::{scene3d::side_name, theme, widgets::small};
 use crate::console::text;
 
 /// Sensor, tool and existing data for a new calibration.
@@ -89,17 +93,17 @@ pub enum Which {
 }
 
 impl Which {
-    /// All wizards, in the order of use.
+    /// All wizards, in the order of use: what is measured at the wrist is turned by the frames, so these come first.
     pub const ALL: [Self; 9] = [
-        Self::Gravity,
-        Self::Correspondence,
-        Self::TipForce,
         Self::Mount,
         Self::Tip,
         Self::HandEye,
         Self::Table,
         Self::View,
         Self::Trocar,
+        Self::Gravity,
+        Self::Correspondence,
+        Self::TipForce,
     ];
 
     /// The frame calibration that it is; `None` for those of the force.
@@ -166,6 +170,52 @@ impl Which {
             _ => true,
         }
     }
+}
+
+/// One calibration of one arm.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Wanted {
+    /// The arm.
+    pub side: Side,
+    /// The wizard that makes it.
+    pub which: Which,
+    /// The handle's part of a view.
+    pub by_handle: bool,
+}
+
+impl Wanted {
+    /// Name of the calibration.
+    pub const fn name(&self) -> &'static str {
+        if self.by_handle { text::overview::HANDLE } else { self.which.name() }
+    }
+}
+
+/// What is to be done after a calibration.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum GoOn {
+    /// Another calibration.
+    Calibrate(Wanted),
+    /// Nothing is missing: the ready check.
+    Check,
+}
+
+impl GoOn {
+    /// Name on a button.
+    pub(in crate::console) fn words(self) -> String {
+        match self {
+            Self::Calibrate(wanted) => text::wizards::following(side_name(wanted.side), wanted.name()),
+            Self::Check => text::wizards::FOLLOWING_CHECK.to_owned(),
+        }
+    }
+}
+
+/// What the technician asks for on a wizard's page.
+#[derive(Clone, Debug)]
+pub enum Asked {
+    /// Save this and use it.
+    Save(Saving),
+    /// Go on elsewhere.
+    GoOn(GoOn),
 }
 
 /// A record to be saved and used.
@@ -256,21 +306,37 @@ impl Wizards {
         self.open.map_or(Prompt::Rest, |which| self.the(which).prompt())
     }
 
-    /// Shows the result of saving in the open wizard.
-    pub fn tell_saved(&mut self, words: String) {
-        if let Some(which) = self.open {
-            self.the_mut(which).frame_mut().tell_saved(words);
+    /// Chooses between the two parts of a view.
+    pub fn choose_part(&mut self, wanted: Wanted) {
+        if let Some(kind) = wanted.which.frames().filter(|kind| *kind == Kind::View) {
+            self.frames[kind as usize].choose_way(wanted.by_handle);
         }
     }
 
-    /// Draws the open wizard; returns the record to be saved.
-    pub fn ui(&mut self, ui: &mut Ui, binding: &Binding) -> Option<Saving> {
+    /// The calibration of the open wizard.
+    pub fn wanted(&self, side: Side) -> Option<Wanted> {
+        let which = self.open?;
+        let by_handle = which == Which::View && self.frames[Kind::View as usize].goes_the_other_way();
+        Some(Wanted { side, which, by_handle })
+    }
+
+    /// Shows the result of saving in the open wizard, and what is to be done after it.
+    pub fn tell_saved(&mut self, told: Result<String, String>, following: Option<GoOn>) {
+        if let Some(which) = self.open {
+            self.the_mut(which).frame_mut().tell_saved(told, following);
+        }
+    }
+
+    /// Draws the open wizard; returns what is asked for.
+    pub fn ui(&mut self, ui: &mut Ui, binding: &Binding) -> Option<Asked> {
         let which = self.open?;
         ui.label(RichText::new(text::wizards::title(which.name())).font(theme::strong(22.0)));
         ui.label(small(which.meaning()));
         ui.add_space(theme::GAP);
-        let saving = wizard_ui(self.the_mut(which), ui, binding)?;
-        self.forget_what_rests_on(&saving);
-        Some(saving)
+        let asked = wizard_ui(self.the_mut(which), ui, binding)?;
+        if let Asked::Save(saving) = &asked {
+            self.forget_what_rests_on(saving);
+        }
+        Some(asked)
     }
 }

@@ -61,8 +61,11 @@ struct RecordedWith {
 }
 
 impl RecordedWith {
-    /// Whether it is the same rig, as far as known.
+    /// Whether it is the same rig, as far as known: a sensor that is lost for a moment may come back as the same one.
     fn fits(&self, binding: &Binding) -> bool {
+        if binding.sensor.is_empty() {
+            return true;
+        }
         let same = |now: &Correspondence| {
             let then = &self.correspondence;
             let turned_rad = now.rotation.angle_to(&then.rotation);
@@ -205,7 +208,7 @@ impl TipForceWizard {
     }
 
     fn start_training(&mut self, binding: &Binding) {
-        let (Some(take), Some(store)) = (&self.recording, &binding.store) else {
+        let (Some(take), Some(with), Some(store)) = (&self.recording, &self.recorded_with, &binding.store) else {
             self.told = Some(text::tip_force::NO_FOLDER.to_owned());
             return;
         };
@@ -214,7 +217,7 @@ impl TipForceWizard {
             recorder: take.recorder.clone(),
             keep_previous: !self.written,
             settings: self.size.settings(),
-            bound: [binding.sensor.clone(), binding.tool.clone()],
+            bound: [with.sensor.clone(), with.tool.clone()],
             store: store.clone(),
         };
         let (narrow, curves) = (self.lacking().map(|goal| goal.name), Arc::clone(&self.curves));
@@ -242,8 +245,8 @@ impl TipForceWizard {
         let (Some(store), Some(Trained { model, narrow })) = (binding.store.clone(), self.trained.clone()) else {
             return;
         };
-        let Some(take) = self.proof.take() else { return };
-        let sensor = binding.sensor.clone();
+        let (Some(take), Some(with)) = (self.proof.take(), &self.recorded_with) else { return };
+        let sensor = with.sensor.clone();
         match Job::start("tip-force-check", move |_| judge(&take.recorder, model, narrow, (&store, &sensor))) {
             Ok(job) => (self.judging, self.frame.saved) = (Some(job), None),
             Err(error) => self.told = Some(error),
@@ -317,31 +320,35 @@ impl Wizard for TipForceWizard {
         self.take_in(binding);
     }
 
-    fn attend(&mut self, binding: &Binding) -> bool {
+    fn is_done(&self) -> bool {
         match self.frame.step {
-            RECORD => {
-                let enough = self.rows() >= ENOUGH_ROWS && self.lacking().is_none();
-                let running = self.recording.as_ref().is_some_and(|take| take.running);
-                if !enough && !running && self.may_record(binding).is_ok() {
-                    self.start_recording(binding);
-                }
-                enough
-            }
-            TRAIN => {
-                if self.trained.is_none() && !self.is_training() && self.told.is_none() {
-                    self.start_training(binding);
-                }
-                self.trained.is_some()
-            }
-            CHECK => {
-                let running = self.judging.is_some() || self.proof.as_ref().is_some_and(|take| take.running);
-                if self.checked.is_none() && !running && self.told.is_none() {
-                    self.start_check(binding);
-                }
-                self.checked.is_some()
-            }
+            RECORD => self.rows() >= ENOUGH_ROWS && self.lacking().is_none(),
+            TRAIN => self.trained.is_some(),
+            CHECK => self.checked.is_some(),
             _ => true,
         }
+    }
+
+    fn attend(&mut self, binding: &Binding) -> bool {
+        let done = self.is_done();
+        match self.frame.step {
+            _ if done => {}
+            RECORD => {
+                let running = self.recording.as_ref().is_some_and(|take| take.running);
+                if !running && self.may_record(binding).is_ok() {
+                    self.start_recording(binding);
+                }
+            }
+            TRAIN if !self.is_training() && self.told.is_none() => self.start_training(binding),
+            CHECK => {
+                let running = self.judging.is_some() || self.proof.as_ref().is_some_and(|take| take.running);
+                if !running && self.told.is_none() {
+                    self.start_check(binding);
+                }
+            }
+            _ => {}
+        }
+        done
     }
 
     fn notice(&self) -> Option<&str> {

@@ -112,6 +112,18 @@ impl FrameWizard {
         }
     }
 
+    /// Measures the other way or not; what was recorded the one way is no use for the other.
+    pub(super) fn choose_way(&mut self, other_way: bool) {
+        if self.other_way != other_way {
+            self.other_way = other_way;
+            self.begin(None);
+        }
+    }
+
+    pub(super) const fn goes_the_other_way(&self) -> bool {
+        self.other_way
+    }
+
     fn texts(&self) -> Texts {
         self.kind.texts(self.other_way)
     }
@@ -283,7 +295,7 @@ impl Wizard for FrameWizard {
         }
     }
 
-    fn attend(&mut self, _: &Binding) -> bool {
+    fn is_done(&self) -> bool {
         self.frame.step != RECORD || self.is_complete()
     }
 

@@ -51,7 +51,8 @@ pub(super) fn outcome_ui(
         } else {
             numbers_ui(ui, &numbers);
         }
-        if effect.is_within(quality.uncertainty) {
+        let were_given = !numbers.is_empty() && numbers.iter().all(|number| number.before.is_some());
+        if were_given && effect.is_within(quality.uncertainty) {
             ui.add_space(4.0);
             ui.label(texts::WITHIN_UNCERTAINTY);
         }

@@ -75,7 +75,7 @@ impl Bench {
         };
         let (rig, path, words) = self.in_force.save_frame(saving, &self.rig_name, Some(self.folder.path()))?;
         (self.rig, self.rig_name) = (rig, path.display().to_string());
-        self.wizard.frame.tell_saved(words);
+        self.wizard.frame.tell_saved(Ok(words), None);
         self.refresh();
         Ok(())
     }

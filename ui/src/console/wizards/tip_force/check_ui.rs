@@ -15,7 +15,7 @@ use super::{
 use crate::{
     console::{
         text, theme,
-        widgets::{card, figure, small},
+        widgets::{card, figure, next_button, small},
     },
     words::Words as _,
 };
@@ -83,7 +83,8 @@ impl TipForceWizard {
             None => text::tip_force::CHECK_START,
         };
         let may = if self.judging.is_some() { Err(text::tip_force::CHECK_WAIT) } else { self.may_record(binding) };
-        let button = Button::new(RichText::new(text).font(theme::strong(16.0))).min_size(vec2(220.0, 40.0));
+        let next = !running && self.checked.is_none() && may.is_ok();
+        let button = next_button(RichText::new(text).font(theme::strong(16.0)), next).min_size(vec2(220.0, 40.0));
         let response = ui.add_enabled(running || may.is_ok(), button);
         if response.on_disabled_hover_text(may.err().unwrap_or_default()).clicked() {
             match &mut self.proof {

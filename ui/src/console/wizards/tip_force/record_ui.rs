@@ -16,7 +16,7 @@ use super::{
 };
 use crate::console::{
     text, theme,
-    widgets::{card, small},
+    widgets::{card, next_button, small},
 };
 
 /// Number of rows of the paper's data set.
@@ -89,7 +89,8 @@ impl TipForceWizard {
             (false, _) => text::tip_force::RECORD_GO_ON,
         };
         let may = self.may_record(binding);
-        let button = Button::new(RichText::new(text).font(theme::strong(17.0))).min_size(vec2(220.0, 48.0));
+        let next = !running && !self.is_done() && may.is_ok();
+        let button = next_button(RichText::new(text).font(theme::strong(17.0)), next).min_size(vec2(220.0, 48.0));
         let response = ui.add_enabled(running || may.is_ok(), button);
         let reason = may.err().unwrap_or_default();
         if !running && !reason.is_empty() {

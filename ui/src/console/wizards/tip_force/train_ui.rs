@@ -11,7 +11,7 @@ use super::{
 };
 use crate::console::{
     text, theme,
-    widgets::{card, figure, small},
+    widgets::{card, figure, next_button, small},
 };
 
 const HEIGHT: f32 = 330.0;
@@ -33,7 +33,8 @@ impl TipForceWizard {
                 }
                 let text =
                     if self.trained.is_some() { text::tip_force::TRAIN_AGAIN } else { text::tip_force::TRAIN_START };
-                let button = ui.add_enabled(rows > 0, Button::new(text).min_size(vec2(180.0, 40.0)));
+                let button =
+                    ui.add_enabled(rows > 0, next_button(text, self.trained.is_none()).min_size(vec2(180.0, 40.0)));
                 if button.on_disabled_hover_text(text::tip_force::TRAIN_DISABLED_HOVER).clicked() {
                     self.start_training(binding);
                 }

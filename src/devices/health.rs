@@ -152,6 +152,12 @@ pub struct Identity {
     pub firmware: String,
 }
 
+/// Whether two serial numbers are the same: `853`, `SN853` and `SN000853` are. An empty one is nobody's.
+pub fn same_serial(one: &str, other: &str) -> bool {
+    let [one, other] = [one, other].map(|serial| serial.trim().trim_start_matches("SN").trim_start_matches('0'));
+    !one.is_empty() && one == other
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

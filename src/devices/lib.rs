@@ -30,7 +30,7 @@ mod slot;
 pub mod transport;
 mod trouble;
 
-pub use health::{Health, Identity, Loss, Standing};
+pub use health::{Health, Identity, Loss, Standing, same_serial};
 pub use lever::Lever;
 pub use parts::{Follower, ForceSensor, Leader, Switch, Tracker};
 pub use reading::{

@@ -27,6 +27,33 @@ pub enum Trouble {
     /// Another device answers at this address.
     #[error("{place} is a {found}, not a {expected}")]
     WrongProduct { place: String, expected: String, found: String },
+    /// The right kind of device, but another one than the rig file names.
+    #[error("{place} has the serial number {found}, not {expected}")]
+    OtherSerial {
+        place: String,
+        /// As the rig file has it; ids, for servos.
+        expected: String,
+        /// What the device tells; `unknown` if it tells none.
+        found: String,
+    },
+    /// A handle for the other hand.
+    #[error("{place} is for the {hand} hand")]
+    OtherHand {
+        place: String,
+        /// `right` or `left`.
+        hand: String,
+    },
+    /// The device of another part of the rig answers at this part's place.
+    #[error("the device in the place of the {part} is that of the {other} ({serial}){}", since(.checked.as_deref()))]
+    Exchanged {
+        /// Where it answers: `right sensor`.
+        part: &'static str,
+        /// Whose device it is: `left sensor`.
+        other: &'static str,
+        serial: Box<str>,
+        /// Date of the ready check that knows it there; `None` if the rig file says so.
+        checked: Option<Box<str>>,
+    },
     /// Bytes arrive that are not valid frames, as with a wrong line speed.
     #[error("{place} sends bytes that make no sense at {baud} baud")]
     WrongBaud { place: String, baud: u32 },
@@ -99,6 +126,10 @@ pub enum Trouble {
     Other { place: String, reason: String },
 }
 
+fn since(checked: Option<&str>) -> String {
+    checked.map_or_else(String::new, |date| format!(" since the ready check of {date}"))
+}
+
 impl Trouble {
     /// What to do about it, in one sentence.
     pub fn cure(&self) -> String {
@@ -109,6 +140,22 @@ impl Trouble {
             ),
             Self::Busy { .. } => "Close the other program, or the other console.".to_owned(),
             Self::WrongProduct { .. } => "Correct the port or the driver in the rig file.".to_owned(),
+            Self::OtherSerial { .. } => {
+                "See whether cables or addresses of right and left are exchanged, or press Choose in the panel Devices."
+                    .to_owned()
+            }
+            Self::OtherHand { hand, .. } => format!(
+                "Right and left handles are exchanged: press Exchange Handles in the panel Devices. If it is meant to be here, write hand = \"{hand}\" beside its serial number in the rig file."
+            ),
+            Self::Exchanged { part, other, checked, .. } => {
+                let cure = format!(
+                    "The {part} and the {other} are exchanged: exchange their cables or addresses, or exchange the two in the panel Devices."
+                );
+                match checked {
+                    None => cure,
+                    Some(_) => cure + " If they are meant so, give each its serial number in the rig file (Choose).",
+                }
+            }
             Self::WrongBaud { .. } => "Set the device's own speed as `baud` in the rig file.".to_owned(),
             Self::Silent { .. } => "Switch the device on, check its cable, and that it is set to send.".to_owned(),
             Self::Unreachable { .. } => {

@@ -15,6 +15,7 @@ use nima_core::{
     safety::ChainSettings,
     tip_force::Fallback,
 };
+use nima_recording::store::ReadyRecord;
 use serde::{Deserialize, Serialize};
 
 pub(crate) use files::parse_with;
@@ -169,6 +170,20 @@ impl RigConfig {
     /// The names of the embedded rigs.
     pub fn names() -> impl Iterator<Item = &'static str> {
         RIGS.into_iter().map(|(name, _)| name)
+    }
+
+    /// Whether the loop refuses to engage without a passed ready check of today: where the file asks for it, and on a rig of real
+    /// devices whose file does not tell right from left.
+    pub fn requires_check(&self) -> bool {
+        let unnamed = |devices: &rig::Settings| !devices.emulated && !devices.tells_sides();
+        self.ready_check == ReadyCheck::Required || self.devices.as_ref().is_some_and(unnamed)
+    }
+
+    /// Adds the devices of the last passed ready check, by which exchanged ones are told; `None` forgets them.
+    pub fn remember(&mut self, check: Option<&ReadyRecord>) {
+        if let Some(devices) = &mut self.devices {
+            devices.checked = check.map(rig::Checked::of);
+        }
     }
 
     /// Settings of the identification for this rig.

@@ -3,7 +3,7 @@
 use std::cell::Cell;
 
 use nalgebra::{UnitQuaternion, Vector3};
-use nima_core::safety::Why;
+use nima_core::{kinematics::StartError, safety::Why};
 use nima_devices::{Loss, Standing};
 use nima_machine::{
     config::RigConfig,
@@ -122,7 +122,7 @@ fn one_hand_may_engage_and_a_stop_is_for_both() {
 
 #[test]
 fn a_refused_engagement_says_why_and_one_arm_that_obeys_does_not_hide_the_other() {
-    let obstacle = Obstacle::AtLimit { joint: 4, angle_deg: 148.0, limit_deg: 147.8 };
+    let obstacle = Obstacle::Start(StartError::AtLimit { joint: 4, angle_deg: 148.0, limit_deg: 147.8 });
     let stuck =
         |side: Side, inputs: Inputs| Some(Inputs { obstacle: (side == Side::Left).then_some(obstacle), ..inputs });
     let mut bench = Bench::new();

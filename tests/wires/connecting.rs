@@ -72,6 +72,9 @@ fn the_chosen_handle_and_the_exchanged_sensors_are_the_ones_that_the_machine_use
         let devices = elsewhere(folder.path());
         let emulated = started(&devices);
         let mut file = rig_file(&devices);
+        // Emulated handles know their hands, as real ones do: who wants them exchanged says so.
+        file.set("devices.right.handle.hand", "right");
+        file.set("devices.left.handle.hand", "left");
         file.choose(Part::Handle(Side::Right), &Chosen::Of(Part::Handle(Side::Left)));
         file.exchange_sides(PartKind::Sensor);
         file.exchange_sides(PartKind::Servos);

@@ -8,5 +8,7 @@ mod emulated_rig;
 mod frames;
 mod killed;
 mod rig_diagnosis;
+mod sides;
+mod sides_ready;
 mod technician;
 mod watchdogs;

@@ -133,7 +133,7 @@ fn wrong_settings_are_reported_with_the_device_that_answers() {
             "right sensor" => Trouble::WrongProduct { .. },
             "right servos" => Trouble::WrongBaud { .. },
             "left handle" => Trouble::Absent { .. },
-            "left sensor" => Trouble::WrongProduct { .. },
+            "left sensor" => Trouble::OtherSerial { .. },
             "tissue sensor" => Trouble::WrongBaud { .. },
             "tracker" => Trouble::Setting { .. },
         );

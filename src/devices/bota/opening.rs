@@ -281,11 +281,7 @@ fn check_serial(settings: &Settings, identity: &Identity) -> Result<(), Trouble>
     }
     let expected = settings.serial_number.clone().unwrap_or_default();
     let found = if identity.serial.is_empty() { "unknown" } else { &identity.serial };
-    Err(Trouble::WrongProduct {
-        place: settings.port.clone(),
-        expected: format!("sensor with serial number {expected}"),
-        found: format!("sensor with serial number {found}"),
-    })
+    Err(Trouble::OtherSerial { place: settings.port.clone(), expected, found: found.to_owned() })
 }
 
 /// Number of readings examined before a sensor counts as open.

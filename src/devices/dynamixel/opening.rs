@@ -16,7 +16,7 @@ use super::{
     codec::{self, BROADCAST, Incoming, Outgoing, Packet, STATUS},
     driver::MOTION_BYTES,
     message::{Instruction, Refusal},
-    settings::{ServoSettings, Settings, Wanted},
+    settings::{ServoSettings, Settings, Wanted, ids_in_words},
     table::{self, Fault, HardwareError, Model, Register},
 };
 use crate::{Identity, SERVOS, Trouble, transport::Bytes};
@@ -138,7 +138,7 @@ impl<'a, T: Bytes, P: Pace> Session<'a, T, P> {
         let list = |words: Vec<String>| words.join(" ");
         let identity = Identity {
             product: list(models.iter().map(|model| model.name.to_owned()).collect()),
-            serial: format!("ids {}", list(settings.servos.iter().map(|servo| servo.id.to_string()).collect())),
+            serial: settings.ids_in_words(),
             firmware: list(firmware.iter().map(u8::to_string).collect()),
         };
         Ok(Opened { models, identity, fast })
@@ -151,7 +151,13 @@ impl<'a, T: Bytes, P: Pace> Session<'a, T, P> {
             *version = self.ask(servo.id, &Instruction::Ping)?.and_then(|answer| answer.data.get(2).copied());
         }
         if firmware == [None; SERVOS] {
-            return Err(Trouble::Silent { place: self.place.to_owned() });
+            let (place, others) = (self.place.to_owned(), self.everybody()?);
+            if others.is_empty() {
+                return Err(Trouble::Silent { place });
+            }
+            // Ids are all that servos tell of themselves.
+            let found = ids_in_words(others.into_iter().map(|(id, _)| id));
+            return Err(Trouble::OtherSerial { place, expected: settings.ids_in_words(), found });
         }
         let missing = firmware.iter().position(Option::is_none);
         if let Some(index) = missing {

@@ -165,10 +165,34 @@ impl Settings {
         Ok(())
     }
 
+    /// The ids as the servos' identity has them: `ids 1 2 3 4`.
+    pub fn ids_in_words(&self) -> String {
+        ids_in_words(self.servos.iter().map(|servo| servo.id))
+    }
+
+    /// Checks that the servos of two instruments have different ids: a cable at the other adapter is told by nothing else.
+    ///
+    /// # Errors
+    /// [`Trouble::Setting`] for the first id that the other one has too.
+    pub fn check_beside(&self, other: &Self) -> Result<(), Trouble> {
+        let has = |id: u8| other.servos.iter().any(|servo| servo.id == id);
+        match self.servos.iter().position(|servo| has(servo.id)) {
+            None => Ok(()),
+            Some(index) => {
+                let allowed = "the servos of right and left need different ids, so that exchanged cables are told";
+                Err(impossible(&format!("servos[{index}].id"), &self.servos[index].id, allowed.to_owned()))
+            }
+        }
+    }
+
     /// The watchdog's time in units of the register.
     pub(super) fn watchdog_units(&self) -> u8 {
         (self.bus_watchdog_s / WATCHDOG_UNIT_S).round().clamp(1.0, 127.0) as u8
     }
+}
+
+pub(super) fn ids_in_words(ids: impl Iterator<Item = u8>) -> String {
+    ids.fold("ids".to_owned(), |words, id| format!("{words} {id}"))
 }
 
 fn impossible(key: &str, value: &dyn std::fmt::Display, allowed: String) -> Trouble {

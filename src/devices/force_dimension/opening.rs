@@ -2,7 +2,7 @@
 
 use super::{
     sdk::{OpenDevice, Sdk},
-    settings::Settings,
+    settings::{Hand, Settings},
     status::{Kind, SdkError, Status, fault_words},
 };
 use crate::{Identity, Loss, Trouble};
@@ -43,6 +43,10 @@ pub(super) fn open(sdk: &'static Sdk, settings: &Settings) -> Result<Opened, Tro
     if settings.serial.is_some_and(|wanted| wanted != serial) {
         let found = format!("omega.7 with serial number {serial}");
         return Err(Trouble::WrongProduct { expected: place.clone(), place, found });
+    }
+    let hand = if left_handed { Hand::Left } else { Hand::Right };
+    if settings.hand.is_some_and(|wanted| wanted != hand) {
+        return Err(Trouble::OtherHand { place, hand: hand.word().to_owned() });
     }
     check(&place, &device.status().map_err(|error| refused("to tell its status", error))?)?;
     // Brakes first: a handle must not push while it is configured.

@@ -22,6 +22,25 @@ pub enum IdleMode {
     Free,
 }
 
+/// The hand for which a handle is made.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+#[expect(missing_docs, reason = "the names say it")]
+pub enum Hand {
+    Right,
+    Left,
+}
+
+impl Hand {
+    /// Its name.
+    pub const fn word(self) -> &'static str {
+        match self {
+            Self::Right => "right",
+            Self::Left => "left",
+        }
+    }
+}
+
 /// Settings of one omega.7.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
@@ -31,6 +50,10 @@ pub struct Settings {
     pub library: Option<PathBuf>,
     /// Serial number of the device; if omitted, any free device. Required if there are two devices.
     pub serial: Option<u16>,
+    /// The hand that it must be made for, by its own word. If omitted: that of its side on a rig with two handles, any on a
+    /// rig with one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub hand: Option<Hand>,
     /// Rate of the readings, Hz: 100 to 2000.
     pub rate_hz: f64,
     /// Time without a force command after which the device switches its force off by itself, ms: 1 to 31.
@@ -54,6 +77,7 @@ impl Default for Settings {
         Self {
             library: None,
             serial: None,
+            hand: None,
             rate_hz: 1000.0,
             watchdog_ms: 20.0,
             force_max_n: FORCE_MAX_N,

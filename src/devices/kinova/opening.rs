@@ -105,11 +105,7 @@ fn check_serial(settings: &Settings, identity: &Identity, place: &str) -> Result
         return Ok(());
     };
     let found = if identity.serial.is_empty() { "unknown" } else { &identity.serial };
-    Err(Trouble::WrongProduct {
-        place: place.to_owned(),
-        expected: format!("arm with serial number {wanted}"),
-        found: format!("arm with serial number {found}"),
-    })
+    Err(Trouble::OtherSerial { place: place.to_owned(), expected: wanted.clone(), found: found.to_owned() })
 }
 
 fn first_feedback(lines: &mut Lines) -> Result<Feedback, Trouble> {

@@ -7,7 +7,10 @@ use super::{
     Ask, Cause, Figure, Subject, Unit, angle_deg,
     item::{Item, Progress},
 };
-use crate::{messages::Tick, rig::Side};
+use crate::{
+    messages::Tick,
+    rig::{Exchange, Side},
+};
 
 /// Let go, it rests within this, m, for this time, s.
 const RESTS_M: f64 = 1e-3;
@@ -32,6 +35,8 @@ pub(super) struct Handle {
     /// How far it went by itself, m.
     drifted_m: f64,
     force_n: f64,
+    /// Where the other handle was when this one was to be moved, and how far it came, m.
+    other: Option<(Vector3<f64>, f64)>,
 }
 
 impl Handle {
@@ -44,6 +49,7 @@ impl Handle {
             far_m: Vector3::zeros(),
             drifted_m: 0.0,
             force_n: 0.0,
+            other: None,
         }
     }
 }
@@ -51,6 +57,11 @@ impl Handle {
 impl Item for Handle {
     fn tick(&mut self, tick: &Tick) {
         if tick.side != self.side {
+            if let (Some(pose), Some(_)) = (tick.frames.leader_from_handle, self.from_m) {
+                let at_m = pose.translation.vector;
+                let (from_m, far_m) = self.other.get_or_insert((at_m, 0.0));
+                *far_m = far_m.max((at_m - *from_m).norm());
+            }
             return;
         }
         self.force_n = self.force_n.max(tick.rendered_n.norm());
@@ -78,6 +89,9 @@ impl Item for Handle {
         }
         if self.from_m.is_none() {
             return Progress::Asking(Ask::LetGo(self.side));
+        }
+        if self.far_m.norm() <= RESTS_M && self.other.is_some_and(|(_, far_m)| far_m >= WAY_M) {
+            return Progress::Failed(Cause::Exchanged(Exchange::Handles));
         }
         if self.far_m.norm() < WAY_M {
             return Progress::Asking(Ask::MoveHandle(self.side, WAY));

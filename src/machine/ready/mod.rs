@@ -13,6 +13,7 @@ mod clocks;
 mod devices;
 mod handle;
 mod item;
+mod own;
 mod push;
 mod rates;
 mod session;
@@ -36,7 +37,7 @@ pub use session::{Entry, Session};
 use crate::{
     config::RigConfig,
     messages::{Fault, Refusal, Watchdog},
-    rig::{Part, Prompt, SIDES, Side, checkup::Finding},
+    rig::{Exchange, Part, Prompt, SIDES, Side, checkup::Finding},
 };
 
 /// One point of the list.
@@ -48,6 +49,8 @@ pub enum Check {
     Rates,
     /// The loop keeps its deadlines, and the computer's date can be right.
     Clocks,
+    /// The arm of this side moves when its instrument is moved, its marker with it, and the other side's do not.
+    Own(Side),
     /// The bias of the wrist sensor is where it was when it was calibrated.
     Bias(Side),
     /// A push is measured in the direction in which it is made.
@@ -68,7 +71,9 @@ impl Check {
     /// The arm that it is about.
     pub const fn side(self) -> Option<Side> {
         match self {
-            Self::Bias(side) | Self::Push(side) | Self::Handle(side) | Self::Trocar(side) => Some(side),
+            Self::Own(side) | Self::Bias(side) | Self::Push(side) | Self::Handle(side) | Self::Trocar(side) => {
+                Some(side)
+            }
             Self::Devices | Self::Rates | Self::Clocks | Self::Ceiling | Self::Stop | Self::Watchdog(_) => None,
         }
     }
@@ -79,6 +84,8 @@ impl Check {
 pub enum Ask {
     /// Nothing: wait.
     Nothing,
+    /// Move the instrument by 10 cm, out of its trocar.
+    Move(Side),
     /// Take the instrument out of its trocar, so that nothing touches it.
     TakeOut(Side),
     /// It is out: do not touch it.
@@ -110,7 +117,8 @@ impl Ask {
     /// The arm at which something is to be done.
     pub const fn side(&self) -> Option<Side> {
         match self {
-            Self::TakeOut(side)
+            Self::Move(side)
+            | Self::TakeOut(side)
             | Self::LeaveAlone(side)
             | Self::Push(side, _)
             | Self::LetGo(side)
@@ -156,6 +164,8 @@ pub enum Lacks {
     WristSensor,
     /// Nobody stands at the simulated arm.
     Person,
+    /// There is one arm only: nothing can be exchanged.
+    OtherArm,
 }
 
 /// Why a check failed.
@@ -200,6 +210,18 @@ pub enum Cause {
     },
     /// The bias could not be looked at.
     BiasUnseen(NotChecked),
+    /// Right and left are exchanged.
+    Exchanged(Exchange),
+    /// The arm did not move.
+    ArmStuck {
+        /// How far it came, m.
+        by_m: f64,
+    },
+    /// The tracker does not see the marker on the instrument, or it does not move with it.
+    MarkerStuck {
+        /// How far it came, m.
+        by_m: f64,
+    },
     /// No push was felt.
     NoPush {
         /// The largest force, N.
@@ -332,6 +354,8 @@ impl Subject {
             let Some(arm) = &self.arms[side.index()] else { continue };
             let at_wrist = if arm.at_wrist { State::Waiting } else { State::LeftOut(Lacks::WristSensor) };
             let by_person = if arm.has_person { State::Waiting } else { State::LeftOut(Lacks::Person) };
+            let beside = if self.arms.iter().flatten().count() < SIDES { Some(Lacks::OtherArm) } else { None };
+            list.push(entry(Check::Own(side), beside.filter(|_| has_devices).map_or(on_devices, State::LeftOut)));
             list.push(entry(Check::Bias(side), at_wrist));
             list.push(entry(Check::Push(side), by_person));
             list.push(entry(Check::Handle(side), by_person));

@@ -6,7 +6,10 @@ use super::{
     Arm, Ask, Cause, Figure, Unit, angle_deg,
     item::{Item, Progress},
 };
-use crate::{messages::Tick, rig::Side};
+use crate::{
+    messages::Tick,
+    rig::{Exchange, Side},
+};
 
 /// A push begins at this force, N, and is judged by its mean over this time, s.
 const FELT_N: f64 = 1.0;
@@ -30,12 +33,26 @@ pub(super) struct Push {
     /// Since when it is felt, s on the loop's clock; sum of the forces, N.
     felt: Option<(f64, Vector3<f64>)>,
     by_deg: Option<f64>,
+    /// What the other sensor measured when the push was asked for, N, and since when it measures something else.
+    other_n: Option<Vector3<f64>>,
+    other_felt_s: Option<f64>,
+    other_felt: bool,
 }
 
 impl Push {
     pub(super) const fn of(side: Side, arm: &Arm) -> Self {
         let is_calibrated = !arm.at_wrist || arm.gravity.is_some();
-        Self { side, is_calibrated, is_known: false, most_n: 0.0, felt: None, by_deg: None }
+        Self {
+            side,
+            is_calibrated,
+            is_known: false,
+            most_n: 0.0,
+            felt: None,
+            by_deg: None,
+            other_n: None,
+            other_felt_s: None,
+            other_felt: false,
+        }
     }
 }
 
@@ -47,9 +64,26 @@ fn force_n(tick: &Tick) -> Option<Vector3<f64>> {
     }
 }
 
+impl Push {
+    /// The other instrument is at rest, so a change of what its sensor measures is a force on it.
+    fn other(&mut self, tick: &Tick) {
+        let force_n = tick.wrist.as_ref().map_or(tick.force.tip_n, |sample| sample.raw.force_n);
+        let change_n = (force_n - *self.other_n.get_or_insert(force_n)).norm();
+        if change_n < FELT_N || self.felt.is_some() {
+            self.other_felt_s = None;
+            return;
+        }
+        self.other_felt |= tick.t_s - *self.other_felt_s.get_or_insert(tick.t_s) >= FELT_S;
+    }
+}
+
 impl Item for Push {
     fn tick(&mut self, tick: &Tick) {
-        if tick.side != self.side || self.by_deg.is_some() {
+        if self.by_deg.is_some() {
+            return;
+        }
+        if tick.side != self.side {
+            self.other(tick);
             return;
         }
         let force_n = force_n(tick);
@@ -73,6 +107,7 @@ impl Item for Push {
                 Progress::Passed(Figure { value, limit: ASKEW_MAX_DEG, unit: Unit::Degree })
             }
             Some(by_deg) => Progress::Failed(Cause::PushAskew { by_deg }),
+            None if self.other_felt => Progress::Failed(Cause::Exchanged(Exchange::Sensors)),
             None if !self.is_calibrated => Progress::Failed(Cause::Uncalibrated),
             None => Progress::Asking(Ask::Push(self.side, asked())),
         }

@@ -10,7 +10,10 @@ use super::{
     Ask, Cause, Figure, Subject, Unit,
     item::{Item, Progress},
 };
-use crate::{messages::Tick, rig::Side};
+use crate::{
+    messages::Tick,
+    rig::{Exchange, Healths, Obstacle, Side},
+};
 
 /// The instrument is in its trocar when the shaft passes this near, m: half of what an engagement permits is far more than a trocar
 /// that has moved unnoticed.
@@ -29,6 +32,8 @@ pub(super) struct Trocar {
     rest: Option<(Vector3<f64>, f64)>,
     has_rested: bool,
     miss_m: f64,
+    /// As the rig's geometry tells it.
+    exchange: Option<Exchange>,
 }
 
 impl Trocar {
@@ -41,7 +46,7 @@ impl Trocar {
             let world_from_base = Isometry3::from_parts(base.translation, turn);
             Some((ShaftLine::of_arm(&arm), world_from_base, set.rcm.trocar_m))
         });
-        Self { side, arm, watch: None, rest: None, has_rested: false, miss_m: f64::INFINITY }
+        Self { side, arm, watch: None, rest: None, has_rested: false, miss_m: f64::INFINITY, exchange: None }
     }
 
     /// Notes whether the tip rests.
@@ -66,7 +71,17 @@ impl Item for Trocar {
         watch.step(&line, tick.t_s);
     }
 
+    fn healths(&mut self, healths: &Healths) {
+        self.exchange = match healths.obstacles[self.side.index()] {
+            Some(Obstacle::Exchanged(exchange)) => Some(exchange),
+            _ => None,
+        };
+    }
+
     fn look(&mut self, _now_s: f64) -> Progress {
+        if let Some(exchange) = self.exchange.filter(|_| self.has_rested) {
+            return Progress::Failed(Cause::Exchanged(exchange));
+        }
         let Some(watch) = self.watch.as_ref().filter(|_| self.has_rested && self.miss_m <= NEAR_M) else {
             return Progress::Asking(Ask::PutBack(self.side));
         };

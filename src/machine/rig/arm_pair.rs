@@ -1,7 +1,7 @@
 //! The devices of one side (handle, arm, force sensor, servos) and the kinematics between tip position (m) and joint
 //! angles (rad).
 
-use nalgebra::{Isometry3, UnitQuaternion, Vector3};
+use nalgebra::{Isometry3, IsometryMatrix3, UnitQuaternion, Vector3};
 use nima_core::{
     calibration::frames::FrameSample,
     frames::{WristSample, from_roll_pitch_yaw_deg},
@@ -10,20 +10,19 @@ use nima_core::{
     },
 };
 use nima_devices::{
-    ArmReading, ClearFaults, Device, Follower, ForceReading, ForceSensor, HandleReading, Health, Leader, Lever, SERVOS,
-    ServoReading, Slot, Stamped, dynamixel,
+    ArmReading, Follower, ForceReading, ForceSensor, HandleReading, Health, Leader, Lever, ServoReading, Slot, Stamped,
+    dynamixel,
 };
 
 use super::{
     ArmSet, Gauge, Part, RigError,
-    devices::{OLDEST_S, enrol, is_there},
+    devices::{OLDEST_S, is_there},
     jaws::JawsControl,
-    makes::Opener,
+    known::{Known, ServosKnown},
+    obstacle::{Awaited, HandEye, Obstacle, Shown},
+    starting::{servos_opener, start},
 };
 use crate::rig::{Inputs, Outputs, Roster, Sensed, Side, Switches, View};
-
-/// Why an arm that delivers cannot be engaged.
-pub type Obstacle = StartError;
 
 /// Readings of the devices that both sides share.
 #[derive(Clone, Copy, Debug, Default)]
@@ -41,34 +40,8 @@ impl Shared {
     }
 }
 
-/// Starts opening a device and adds it to the roster; `attach` is called with the device once it is open.
-fn start<P>(
-    part: Part,
-    opener: Opener<P>,
-    roster: &mut Roster,
-    attach: impl Fn(&P) + Send + 'static,
-) -> std::io::Result<Slot<P>>
-where
-    P: Device + 'static,
-{
-    let Opener { driver, mut open, clear_faults } = opener;
-    let slot = Slot::start(part.name(), move || open().inspect(&attach))?;
-    enrol(roster, part, driver, &slot);
-    if let Some(entry) = roster.last_mut() {
-        entry.clear_faults = clear_faults;
-    }
-    Ok(slot)
-}
-
-fn servos_opener(settings: dynamixel::Settings) -> Opener<dynamixel::Driver> {
-    let driver = format!("DYNAMIXEL servos, {}", settings.port);
-    let reboots = dynamixel::Reboots::default();
-    let of_opening = reboots.clone();
-    Opener {
-        driver,
-        open: Box::new(move || dynamixel::open_with(&settings, &of_opening)),
-        clear_faults: Some(ClearFaults::by(move || (0..SERVOS).for_each(|servo| reboots.ask(servo)))),
-    }
+fn rigid(pose: &IsometryMatrix3<f64>) -> Isometry3<f64> {
+    Isometry3::from_parts(pose.translation, UnitQuaternion::from_rotation_matrix(&pose.rotation))
 }
 
 /// The devices of one side.
@@ -79,6 +52,7 @@ pub struct ArmPair {
     arm: Slot<Box<dyn Follower>>,
     sensor: Slot<Box<dyn ForceSensor>>,
     servos: Option<(Slot<dynamixel::Driver>, JawsControl)>,
+    servos_known: ServosKnown,
     hand: Option<Stamped<HandleReading>>,
     joints: Option<Stamped<ArmReading>>,
     force: Option<Stamped<ForceReading>>,
@@ -91,6 +65,7 @@ pub struct ArmPair {
     rcm: Rcm,
     limits: JointLimits,
     s1_from_m: Option<UnitQuaternion<f64>>,
+    hand_eye: Option<HandEye>,
     at_wrist: bool,
     period_s: f64,
     /// Pose of the instrument from the measured joint angles.
@@ -108,6 +83,7 @@ impl ArmPair {
         set: &ArmSet,
         period_s: f64,
         at_wrist: bool,
+        known: &Known,
         roster: &mut Roster,
     ) -> Result<Self, RigError> {
         let word = side.word();
@@ -115,11 +91,13 @@ impl ArmPair {
         let rcm = Rcm::new(&set.rcm).map_err(|source| RigError::Rcm { side: word, source })?;
         let levers = [Lever::default(), Lever::default()];
         let [of_handle, of_arm] = levers.clone();
-        let handle = start(Part::Handle(side), set.handle.opener(), roster, move |handle| handle.attach(&of_handle))?;
-        let arm = start(Part::Arm(side), set.arm.opener(), roster, move |arm| arm.attach(&of_arm))?;
-        let sensor = start(Part::Sensor(side), set.sensor.opener(), roster, |_| ())?;
+        let leader = if known.has_both_sides() { set.handle.for_hand_of(side) } else { set.handle.clone() };
+        let handle =
+            start(Part::Handle(side), leader.opener(), known, roster, move |handle| handle.attach(&of_handle))?;
+        let arm = start(Part::Arm(side), set.arm.opener(), known, roster, move |arm| arm.attach(&of_arm))?;
+        let sensor = start(Part::Sensor(side), set.sensor.opener(), known, roster, |_| ())?;
         let servos = set.servos.clone().map(|settings| {
-            let slot = start(Part::Servos(side), servos_opener(settings), roster, |_| ())?;
+            let slot = start(Part::Servos(side), servos_opener(settings), known, roster, |_| ())?;
             Ok::<_, std::io::Error>((slot, JawsControl::new(set.jaws, period_s)))
         });
         Ok(Self {
@@ -128,6 +106,7 @@ impl ArmPair {
             arm,
             sensor,
             servos: servos.transpose()?,
+            servos_known: known.servos_of(side),
             hand: None,
             joints: None,
             force: None,
@@ -138,6 +117,7 @@ impl ArmPair {
             rcm,
             limits: set.arm.joint_limits(),
             s1_from_m: set.s1_from_m_deg.as_ref().map(from_roll_pitch_yaw_deg),
+            hand_eye: set.hand_eye().map(|[s1_from_m, base_from_c]| HandEye { s1_from_m, base_from_c }),
             at_wrist,
             period_s,
             pose: None,
@@ -183,8 +163,28 @@ impl ArmPair {
         }
         self.force_is_on = on;
         if !self.driven {
-            self.obstacle = self.joints.and_then(|joints| self.begin(&joints.value.joint_rad.into()).err());
+            let begin = |joints: Stamped<ArmReading>| self.begin(&joints.value.joint_rad.into()).err();
+            let of_servos = self.servos.as_ref().and_then(|_| self.servos_known.obstacle());
+            self.obstacle = of_servos.or_else(|| self.joints.and_then(begin).map(Obstacle::Start));
         }
+    }
+
+    /// What arm and marker show while the drives are off; `c_from_m` is the marker as the tracker sees it.
+    pub(super) fn shown(&self, c_from_m: Option<Isometry3<f64>>) -> Option<Shown> {
+        let joints = Joints::from(self.joints.filter(|_| !self.driven)?.value.joint_rad);
+        let base_from_s1 = rigid(&(self.mount.world_from_base().inverse() * self.mount.pose(&joints).world_from_s1));
+        let (mount, rcm, hand_eye) = (self.mount, self.rcm, self.hand_eye);
+        Some(Shown { mount, rcm, joints, base_from_s1, hand_eye, c_from_m })
+    }
+
+    /// Nothing else objects, but this has not told its side yet.
+    pub(super) fn wait_for(&mut self, awaited: Awaited) {
+        self.obstacle.get_or_insert(Obstacle::Waiting(awaited));
+    }
+
+    /// Right and left are exchanged: that comes before any other reason.
+    pub(super) const fn object(&mut self, obstacle: Obstacle) {
+        self.obstacle = Some(obstacle);
     }
 
     /// Starts the inverse kinematics at these joint angles (rad).
@@ -233,10 +233,7 @@ impl ArmPair {
         let base_from_flange = self.mount.world_from_base().inverse() * pose.chain.world_from_flange;
         let handle_turn = hand.orientation.unwrap_or_else(UnitQuaternion::identity);
         FrameSample {
-            base_from_flange: Some(Isometry3::from_parts(
-                base_from_flange.translation,
-                UnitQuaternion::from_rotation_matrix(&base_from_flange.rotation),
-            )),
+            base_from_flange: Some(rigid(&base_from_flange)),
             c_from_m: shared.c_from_m,
             leader_from_handle: Some(Isometry3::from_parts(hand.position_m.into(), handle_turn)),
             wrench: Some(force.wrench),
@@ -318,7 +315,7 @@ impl ArmPair {
             let from_rad = if joints.value.servoing { Joints::from(arm.command_rad()) } else { measured_rad };
             match self.begin(&from_rad) {
                 Ok(inverse) => self.inverse = Some(inverse),
-                Err(obstacle) => self.obstacle = Some(obstacle),
+                Err(obstacle) => self.obstacle = Some(Obstacle::Start(obstacle)),
             }
         }
         let Some(arm) = self.arm.device() else { return };

@@ -18,8 +18,9 @@ use nima_devices::{
 };
 
 use super::{
-    ArmPair, DEVICES_MAX, DeviceEvent, EndoscopeSettings, Gauge, Gauges, Healths, Inputs, Outputs, Part, Rig, Roster,
-    RosterEntry, SIDES, Settings, Side, Switches, View, Watch, arm_pair::Shared, makes::Opener,
+    ArmPair, Awaited, DEVICES_MAX, DeviceEvent, EndoscopeSettings, Gauge, Gauges, Healths, Inputs, Obstacle, Outputs,
+    Part, Rig, Roster, RosterEntry, SIDES, Settings, Side, Switches, View, Watch, arm_pair::Shared, known::Known,
+    makes::Opener,
 };
 
 /// A reading older than this counts as missing, s.
@@ -34,6 +35,8 @@ pub struct DeviceRig {
     tracker: Option<Slot<Box<dyn Tracker>>>,
     endoscope: Option<EndoscopeSettings>,
     tracked: Option<Stamped<TrackerReading>>,
+    /// Both instruments' markers have been compared with where they should be.
+    has_seen_markers: bool,
     pedal: Option<Pedal>,
     watch: Watch,
     /// What tissue sensor, tracker and pedal have delivered since this was last handed over, and since when, s.
@@ -104,16 +107,18 @@ impl DeviceRig {
     /// [`RigError`] if a setting is invalid or a thread cannot be created.
     pub fn start(settings: &Settings, period_s: f64, at_wrist: [bool; SIDES]) -> Result<(Self, Roster), RigError> {
         let mut roster = Roster::new();
+        let known = Known::of(settings);
         let mut pairs = [None, None];
         for side in Side::ALL {
             if let Some(set) = settings.arm(side) {
-                let pair = ArmPair::start(side, set, period_s, at_wrist[side.index()], &mut roster)?;
+                let pair = ArmPair::start(side, set, period_s, at_wrist[side.index()], &known, &mut roster)?;
                 pairs[side.index()] = Some(Box::new(pair));
             }
         }
         let tissue = settings.tissue_sensor.as_ref().map(|sensor| {
-            let Opener { driver, open, .. } = sensor.opener();
-            let slot = Slot::start(Part::TissueSensor.name(), open)?;
+            let Opener { driver, mut open, .. } = sensor.opener();
+            let known = known.clone();
+            let slot = Slot::start(Part::TissueSensor.name(), move || known.admit(Part::TissueSensor, open()))?;
             enrol(&mut roster, Part::TissueSensor, driver, &slot);
             Ok::<_, io::Error>(slot)
         });
@@ -140,6 +145,7 @@ impl DeviceRig {
             tracker: tracker.transpose()?,
             endoscope: settings.endoscope,
             tracked: None,
+            has_seen_markers: false,
             pedal: pedal.transpose()?,
             watch: Watch::default(),
             gauges: [Gauge::NONE; 3],
@@ -200,6 +206,24 @@ impl DeviceRig {
         Shared { tissue_n, c_from_m: c_from(side.index()), c_from_view }
     }
 
+    /// Compares each arm, while its drives are off, with the other one's settings.
+    fn look_for_exchanges(&mut self, shared: &[Shared; SIDES]) {
+        let [Some(right), Some(left)] = &mut self.pairs else { return };
+        let [of_right, of_left] = shared.each_ref().map(|shared| shared.c_from_m);
+        let (Some(on_right), Some(on_left)) = (right.shown(of_right), left.shown(of_left)) else { return };
+        self.has_seen_markers |= on_right.is_marked() && on_left.is_marked();
+        if self.endoscope.is_some() && !self.has_seen_markers {
+            right.wait_for(Awaited::Markers);
+            left.wait_for(Awaited::Markers);
+        }
+        if let Some(exchange) = on_right.exchange(&on_left) {
+            right.object(Obstacle::Exchanged(exchange));
+        }
+        if let Some(exchange) = on_left.exchange(&on_right) {
+            left.object(Obstacle::Exchanged(exchange));
+        }
+    }
+
     fn each_health(&self, mut each: impl FnMut(&Health, [bool; SIDES])) {
         for side in Side::ALL {
             if let Some(pair) = &self.pairs[side.index()] {
@@ -221,13 +245,13 @@ impl DeviceRig {
 impl Rig for DeviceRig {
     fn read(&mut self, now_s: f64) -> [Option<Inputs>; SIDES] {
         let switches = self.poll_shared(now_s);
+        let shared = Side::ALL.map(|side| self.shared(side, now_s));
+        self.pairs.iter_mut().flatten().for_each(|pair| pair.poll(now_s));
+        self.look_for_exchanges(&shared);
         let mut inputs = [None; SIDES];
-        for side in Side::ALL {
-            let shared = self.shared(side, now_s);
-            if let Some(pair) = &mut self.pairs[side.index()] {
-                pair.poll(now_s);
-                inputs[side.index()] = pair.inputs(now_s, &shared).map(|inputs| Inputs { switches, ..inputs });
-            }
+        for ((pair, shared), inputs) in self.pairs.iter().zip(&shared).zip(&mut inputs) {
+            *inputs = pair.as_ref().and_then(|pair| pair.inputs(now_s, shared));
+            *inputs = inputs.map(|inputs| Inputs { switches, ..inputs });
         }
         join_sides(&mut inputs);
         let mut watch = std::mem::take(&mut self.watch);

@@ -13,28 +13,33 @@ mod gauge;
 mod jaws;
 #[cfg(test)]
 mod joint_limits_tests;
+mod known;
 mod makes;
 mod nominal;
+mod obstacle;
 mod part;
 mod probes;
 mod prompt;
 mod seeking;
 mod settings;
 mod side;
+mod starting;
 mod watch;
 
 use nalgebra::{UnitQuaternion, Vector3};
 use nima_core::{calibration::frames::FrameSample, frames::WristSample, kinematics::Hand};
 use nima_devices::{ClearFaults, Health, Lever, SlotView, Standing};
 
-pub use arm_pair::{ArmPair, Obstacle};
+pub use arm_pair::ArmPair;
 pub use devices::{DeviceRig, RigError};
 pub use flaws::Flaws;
 pub use gauge::{AGES, CHANNELS, Gauge, Gauges, Spread};
 pub use jaws::JawsSettings;
+pub use known::Checked;
 pub use makes::{FollowerSettings, LeaderSettings, SensorSettings};
 pub(crate) use makes::{Misread, take_out_makes};
 pub use nominal::Nominal;
+pub use obstacle::{Awaited, Exchange, Obstacle};
 pub use part::{Part, PartKind};
 pub use probes::rig_probes;
 pub use prompt::Prompt;

@@ -14,7 +14,9 @@ pub fn rig_probes(settings: &Settings) -> Vec<Box<dyn Probe>> {
     for side in Side::ALL {
         let Some(set) = settings.arm(side) else { continue };
         let name = |part: &str| format!("{} {part}", side.word());
-        probes.push(set.handle.probe(&name("handle")));
+        let is_one_of_two = settings.arm(side.other()).is_some();
+        let handle = if is_one_of_two { set.handle.for_hand_of(side) } else { set.handle.clone() };
+        probes.push(handle.probe(&name("handle")));
         probes.push(set.arm.probe(&name("arm")));
         probes.push(set.sensor.probe(&name("sensor")));
         probes.extend(set.servos.clone().map(|chosen| servos(&name("servos"), chosen)));

@@ -2,12 +2,15 @@
 
 use std::path::Path;
 
-use nalgebra::Vector3;
-use nima_core::kinematics::{ArmSettings, RcmSettings};
+use nalgebra::{Isometry3, Vector3};
+use nima_core::{
+    frames::from_roll_pitch_yaw_deg,
+    kinematics::{ArmSettings, RcmSettings},
+};
 use nima_devices::{TRACKED_TOOLS, Trouble, dynamixel, hid, ndi};
 use serde::{Deserialize, Serialize};
 
-use super::{Flaws, FollowerSettings, JawsSettings, LeaderSettings, SensorSettings};
+use super::{Checked, Flaws, FollowerSettings, JawsSettings, LeaderSettings, SensorSettings};
 use crate::rig::{SIDES, Side};
 
 /// The devices of a rig. Each is optional; the parts of an arm pair are not.
@@ -32,6 +35,10 @@ pub struct Settings {
     pub pedal: Option<hid::PedalSettings>,
     /// Flaws that the emulated devices have; none on a rig of real ones.
     pub flaws: Flaws,
+    /// The devices of the last passed ready check, which tell right from left where the file names no serial number. Not in
+    /// the file.
+    #[serde(skip)]
+    pub checked: Option<Checked>,
 }
 
 /// A marker of the tracker on the endoscope.
@@ -83,6 +90,17 @@ pub struct ArmSet {
     /// Transmission from the servos to the instrument's wrist.
     #[serde(default)]
     pub jaws: JawsSettings,
+}
+
+impl ArmSet {
+    /// The marker in the frame of the wrist sensor, and the camera in the frame of the arm's base; `None` before the hand-eye
+    /// calibration.
+    pub(super) fn hand_eye(&self) -> Option<[Isometry3<f64>; 2]> {
+        let pose = |at_m: Option<Vector3<f64>>, deg: Option<Vector3<f64>>| {
+            Some(Isometry3::from_parts(at_m?.into(), from_roll_pitch_yaw_deg(&deg?)))
+        };
+        Some([pose(self.s1_from_m_m, self.s1_from_m_deg)?, pose(self.base_from_c_m, self.base_from_c_deg)?])
+    }
 }
 
 /// The desk section of a rig file: input devices that lead a simulated rig.
@@ -170,6 +188,16 @@ impl Settings {
         }
         if let (Some(right), Some(left)) = (&self.right, &self.left) {
             right.handle.check_beside(&left.handle).map_err(|trouble| below("right.handle", trouble))?;
+            if let (Some(of_right), Some(of_left)) = (&right.servos, &left.servos) {
+                of_left.check_beside(of_right).map_err(|trouble| below("left.servos", trouble))?;
+            }
+            if right.tool == left.tool {
+                return Err(Trouble::Setting {
+                    key: "devices.left.tool".to_owned(),
+                    value: format!("\"{}\"", left.tool),
+                    allowed: "another name than the right tool's: calibrations belong to sensor and tool, and exchanged sensors would keep theirs".to_owned(),
+                });
+            }
         }
         self.check_hand_eye()?;
         self.check_endoscope()?;
@@ -295,6 +323,13 @@ mod tests {
         let speed =
             told(|settings| settings.left.as_mut().unwrap().arm.kinova_mut().unwrap().speed_fraction = f64::NAN);
         assert!(speed.contains("devices.left.arm.speed_fraction"), "{speed}");
+        let ids = told(|settings| {
+            let servos = settings.right.as_ref().unwrap().servos.clone();
+            settings.left.as_mut().unwrap().servos = servos;
+        });
+        assert!(ids.contains("devices.left.servos.servos[0].id = 1") && ids.contains("different ids"), "{ids}");
+        let tool = told(|settings| settings.left.as_mut().unwrap().tool = "Right grasper".to_owned());
+        assert!(tool.contains("devices.left.tool = \"Right grasper\""), "{tool}");
         let baud = told(|settings| settings.right.as_mut().unwrap().servos.as_mut().unwrap().baud = 1);
         assert!(baud.contains("devices.right.servos.baud"), "{baud}");
         let pedal = told(|settings| settings.pedal.as_mut().unwrap().source = "nothing".to_owned());

@@ -17,7 +17,7 @@ use nima_core::impedance::SettingsError;
 pub use crate::{
     config::RigConfig,
     messages::{Command, Event, Fault, LoopState, Refusal, Tick, Watchdog},
-    rig::{DeviceEvent, GUIDE_MAX_M, Inputs, Outputs, SIDES, Side},
+    rig::{DeviceEvent, GUIDE_MAX_M, Inputs, Obstacle, Outputs, SIDES, Side},
 };
 pub use accuracy::{Accuracy, ErrorStats};
 pub use force_path::{Calibrations, ForcePath};
@@ -123,7 +123,9 @@ impl<L: Link> Loop<L> {
     pub fn is_idle_with(&self, inputs: &[Option<Inputs>; SIDES]) -> bool {
         self.pairs().all(|pair| {
             let inputs = inputs[pair.side().index()].as_ref();
-            let knows = |inputs: &Inputs| pair.force_path().knows(&inputs.sensed);
+            let knows = |inputs: &Inputs| {
+                pair.force_path().knows(&inputs.sensed) && !matches!(inputs.obstacle, Some(Obstacle::Waiting(_)))
+            };
             pair.state() == LoopState::Idle && pair.knows_force() && inputs.is_some_and(knows)
         })
     }

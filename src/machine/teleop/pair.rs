@@ -20,7 +20,7 @@ use nima_devices::Standing;
 use self::told::{NO_FORCE_YET, NOTHING_YET, NOWHERE};
 use super::{Accuracy, Calibrations, ForcePath, Link, ProgrammedLink, Tracking};
 use crate::{
-    config::{ReadyCheck, RigConfig, Teleoperation},
+    config::{RigConfig, Teleoperation},
     messages::{Event, Fault, ForceReport, LoopState, Tick, Watchdog},
     rig::{DeviceEvent, Inputs, Outputs, Prompt, Side},
 };
@@ -165,7 +165,7 @@ impl<L: Link> Pair<L> {
             accuracy: Accuracy::default(),
             ticks: 0,
             missed: 0,
-            checked: (rig.ready_check == ReadyCheck::Required).then_some(false),
+            checked: rig.requires_check().then_some(false),
             watchdog_test: None,
             events: [None; EVENTS_PER_TICK_MAX],
         };

@@ -137,6 +137,15 @@ impl Store {
 
     /// The last check of the rig of this name; files that cannot be read are passed over.
     pub fn last_check(&self, rig: &str) -> Option<ReadyRecord> {
+        self.last_check_that(rig, |_| true)
+    }
+
+    /// The last one that passed, however old: it knows which device belongs to which part.
+    pub fn last_passed_check(&self, rig: &str) -> Option<ReadyRecord> {
+        self.last_check_that(rig, |record| record.passed)
+    }
+
+    fn last_check_that(&self, rig: &str, fits: impl Fn(&ReadyRecord) -> bool) -> Option<ReadyRecord> {
         let prefix = prefix(rig);
         let entries = fs::read_dir(self.checks()).ok()?.flatten();
         let mut names: Vec<_> = entries.filter_map(|entry| entry.file_name().into_string().ok()).collect();
@@ -148,7 +157,7 @@ impl Store {
         names.iter().rev().find_map(|name| {
             let text = nima_files::read_text(&self.checks().join(name), nima_files::CONFIG_MAX).ok()?;
             let record: ReadyRecord = toml::from_str(&text).ok()?;
-            (record.kind == KIND && record.rig == rig).then_some(record)
+            (record.kind == KIND && record.rig == rig && fits(&record)).then_some(record)
         })
     }
 }
@@ -206,6 +215,9 @@ mod tests {
         store.save_check(&record("Another rig", "2026-08-23T07:00:00Z", true)).unwrap();
         assert_eq!(fs::read_dir(folder.path().join("checks")).unwrap().count(), 4);
         assert_eq!(store.last_check("Emulated rig"), Some(record("Emulated rig", dates[2], true)), "digit by digit");
+        store.save_check(&record("Emulated rig", "2026-08-24T07:00:00Z", false)).unwrap();
+        assert_eq!(store.last_passed_check("Emulated rig"), Some(record("Emulated rig", dates[2], true)));
+        fs::remove_file(folder.path().join("checks/ready_check-Emulated_rig-2026-08-24T070000Z.toml")).unwrap();
         fs::write(folder.path().join("checks/ready_check-Emulated_rig-2027.toml"), "kind = 3").unwrap();
         assert!(store.last_check("Emulated rig").is_some(), "a damaged file is passed over");
     }

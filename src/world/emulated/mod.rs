@@ -26,7 +26,7 @@ mod tests;
 use std::{
     sync::{
         Arc, Mutex, PoisonError,
-        atomic::{AtomicU32, Ordering},
+        atomic::{AtomicBool, AtomicU32, Ordering},
     },
     time::Instant,
 };
@@ -163,6 +163,7 @@ pub struct EmulatedRig {
     devices: Vec<EmulatedDevice>,
     sides: [Option<Shared>; SIDES],
     pedal: Arc<AtomicU32>,
+    markers_exchanged: Arc<AtomicBool>,
 }
 
 impl std::fmt::Debug for EmulatedRig {
@@ -221,8 +222,9 @@ impl EmulatedRig {
         let sides = sides(devices, scene, hands)?;
         let sides = sides.map(|side| side.map(|side| Shared { begin, side: Arc::new(Mutex::new(side)) }));
         let pedal = Arc::new(AtomicU32::new(0));
-        let devices = serving::all(devices, &sides, &pedal)?;
-        Ok(Self { devices, sides, pedal })
+        let markers_exchanged = Arc::new(AtomicBool::new(false));
+        let devices = serving::all(devices, &sides, &pedal, &markers_exchanged)?;
+        Ok(Self { devices, sides, pedal, markers_exchanged })
     }
 
     /// Everything that serves.
@@ -245,6 +247,11 @@ impl EmulatedRig {
     /// Presses the pedal's switches, first in the lowest bit, until told otherwise.
     pub fn press(&self, switches: u32) {
         self.pedal.store(switches, Ordering::Release);
+    }
+
+    /// Puts each marker on the other side's instrument.
+    pub fn exchange_markers(&self) {
+        self.markers_exchanged.fetch_xor(true, Ordering::AcqRel);
     }
 
     /// What only a simulation knows of a side; `None` where the rig has none.

@@ -5,7 +5,7 @@ use std::{
     path::{Path, PathBuf},
     sync::{
         Arc,
-        atomic::{AtomicU32, Ordering},
+        atomic::{AtomicBool, AtomicU32, Ordering},
     },
 };
 
@@ -40,6 +40,7 @@ pub(super) fn all(
     settings: &Settings,
     sides: &Sides,
     pedal_switches: &Arc<AtomicU32>,
+    markers_exchanged: &Arc<AtomicBool>,
 ) -> Result<Vec<EmulatedDevice>, EmulatedRigError> {
     settings.check()?;
     let mut devices = Vec::new();
@@ -57,7 +58,7 @@ pub(super) fn all(
         devices.push(sensor("tissue sensor".to_owned(), chosen, Side::Right, under_the_tissue(sides))?);
     }
     if let Some(chosen) = &settings.tracker {
-        devices.push(tracker(chosen, settings.endoscope, sides)?);
+        devices.push(tracker(chosen, settings.endoscope, sides, Arc::clone(markers_exchanged))?);
     }
     if let Some(chosen) = &settings.pedal {
         devices.push(pedal(chosen, pedal_switches)?);
@@ -157,7 +158,12 @@ fn servos(side: Side, chosen: &dynamixel::Settings) -> Served {
     }
 }
 
-fn tracker(chosen: &ndi::Settings, endoscope: Option<EndoscopeSettings>, sides: &Sides) -> Served {
+fn tracker(
+    chosen: &ndi::Settings,
+    endoscope: Option<EndoscopeSettings>,
+    sides: &Sides,
+    exchanged: Arc<AtomicBool>,
+) -> Served {
     let name = "tracker".to_owned();
     for tool in &chosen.tools {
         if let Err(source) = define(tool) {
@@ -165,7 +171,11 @@ fn tracker(chosen: &ndi::Settings, endoscope: Option<EndoscopeSettings>, sides: 
         }
     }
     let worlds: Vec<Shared> = sides.iter().flatten().cloned().collect();
-    let body = move |_: f64, number: usize| match (worlds.get(number), endoscope, worlds.first()) {
+    let on = move |number: usize| match number {
+        0 | 1 if exchanged.load(Ordering::Acquire) => 1 - number,
+        _ => number,
+    };
+    let body = move |_: f64, number: usize| match (worlds.get(on(number)), endoscope, worlds.first()) {
         (Some(world), ..) => world.with(SideWorld::marker),
         (None, Some(endoscope), Some(world)) if endoscope.tool == number => {
             world.with(|side, _| side.endoscope(&endoscope))

@@ -66,7 +66,8 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let leave = arguments.setup.leave()?;
     let choice = arguments.setup.choice();
     let emulators = Emulators::start(&choice.rig, &choice.scene, rig.devices.as_ref())?;
-    let calibrations = InForce::load(None, &rig, &scene).calibrations(&rig);
+    let mut in_force = InForce::load(None, &rig, &scene);
+    let (rig, calibrations) = (in_force.with_checked(rig.clone()), in_force.calibrations(&rig));
     let mut plan = Plan { rig: rig.clone(), scene: scene.clone(), calibrations, engage: false };
     // Nobody can be hurt by a simulated or emulated rig, so the demo starts at once.
     let by_itself = rig.devices.as_ref().is_none_or(|devices| devices.emulated);

@@ -103,6 +103,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     // anybody engage automatically.
     let by_itself = rig.devices.as_ref().is_none_or(|devices| devices.emulated);
     let engage = by_itself && in_force.drift().is_none() && !in_force.is_waiting();
+    let rig = in_force.with_checked(rig);
     let plan = Plan { rig, scene, calibrations, engage };
     let mut start = Start {
         in_force,

@@ -238,6 +238,7 @@ impl ConsoleApp {
     fn start_loop(&mut self, rig: RigConfig, scene: Scene) -> Result<(), String> {
         self.in_force.bind(&rig, &scene);
         let calibrations = self.in_force.calibrations(&rig);
+        let rig = self.in_force.with_checked(rig);
         let plan = Plan { rig: rig.clone(), scene: scene.clone(), calibrations, engage: false };
         let started = match self.simulated_speed {
             Some(speed) => nima_world::start_simulated(&plan, speed),

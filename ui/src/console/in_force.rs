@@ -158,6 +158,14 @@ impl InForce {
         self.sides.iter().filter_map(moved).max_by(f64::total_cmp)
     }
 
+    /// The rig for a loop that is about to start, with the devices of its last passed ready check.
+    #[must_use]
+    pub fn with_checked(&self, mut rig: RigConfig) -> RigConfig {
+        let last = self.store.as_ref().and_then(|store| store.last_passed_check(&rig.name));
+        rig.remember(last.as_ref());
+        rig
+    }
+
     /// Calibrations for a loop of this rig that is about to start.
     pub fn calibrations(&mut self, rig: &RigConfig) -> [Calibrations; SIDES] {
         self.sides.each_mut().map(|of_side| of_side.calibrations(rig.tip_force.fallback))
@@ -273,6 +281,11 @@ impl InForce {
     /// Problems, and what can be done.
     pub fn told(&self) -> Vec<String> {
         let [right, left] = &self.sides;
+        let exchanged = right.is_exchanged_with(left).zip(left.is_exchanged_with(right));
+        if let Some((of_right, of_left)) = exchanged {
+            let words = text::calibrations::sensors_are_exchanged(of_right, of_left);
+            return self.told.clone().into_iter().chain([words]).collect();
+        }
         let of_sides = [right.told(left.wrist()), left.told(right.wrist())];
         self.told.clone().into_iter().chain(of_sides.into_iter().flatten()).collect()
     }

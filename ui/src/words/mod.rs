@@ -10,6 +10,7 @@ mod force;
 mod frames;
 mod ready;
 mod refusals;
+mod sides;
 
 pub(crate) use calibration::{drift, refusal};
 pub(crate) use frames::{axes_words, cause, phase};

@@ -7,7 +7,10 @@ use nima_machine::{
     rig::{Roster, Side},
 };
 
-use super::{Remedy as _, Words as _, cure_of_refusal, refused_because};
+use super::{
+    Remedy as _, Words as _, cure_of_refusal, refused_because,
+    sides::{arm_stuck, exchanged, marker_stuck, no_push},
+};
 use crate::console::finding_words;
 
 /// Name of a point.
@@ -17,6 +20,7 @@ pub(crate) fn check_name(check: Check) -> String {
         Check::Devices => "Devices present and steady".to_owned(),
         Check::Rates => "Rates and losses of the devices".to_owned(),
         Check::Clocks => "Clocks and deadlines".to_owned(),
+        Check::Own(side) => of_arm(side, "arm and marker are its own"),
         Check::Bias(side) => of_arm(side, "drift of the bias"),
         Check::Push(side) => of_arm(side, "direction of the force"),
         Check::Handle(side) => of_arm(side, "handle free"),
@@ -29,7 +33,7 @@ pub(crate) fn check_name(check: Check) -> String {
     }
 }
 
-fn capital(word: &str) -> String {
+pub(super) fn capital(word: &str) -> String {
     let mut letters = word.chars();
     letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
 }
@@ -38,6 +42,9 @@ fn capital(word: &str) -> String {
 pub(crate) fn ask_words(ask: &Ask) -> String {
     match ask {
         Ask::Nothing => String::new(),
+        Ask::Move(side) => {
+            format!("Take the {} instrument out of its trocar; if it is out, move it by 10 cm", side.word())
+        }
         Ask::TakeOut(side) => {
             format!("Take the {} instrument out of its trocar, so that nothing touches it", side.word())
         }
@@ -98,6 +105,7 @@ pub(crate) const fn lacks_words(lacks: Lacks) -> &'static str {
     match lacks {
         Lacks::Devices => "this rig is simulated and has no devices",
         Lacks::WristSensor => "the force is measured at the tip",
+        Lacks::OtherArm => "there is one arm only",
         Lacks::Person => "nobody is at the simulated arm in this scene",
     }
 }
@@ -126,12 +134,10 @@ pub(crate) fn cause_words(cause: &Cause, roster: &Roster) -> [String; 2] {
                 "Make sure that nothing touches the tool; if it stays, calibrate gravity again",
             );
         }
-        Cause::NoPush { most_n } => {
-            return with(
-                format!("No push of 1 N was measured; the largest force was {most_n:.2} N"),
-                "Push harder; if the sensor does not react, check its cable and its mount",
-            );
-        }
+        Cause::Exchanged(exchange) => return exchanged(exchange),
+        Cause::ArmStuck { by_m } => return arm_stuck(by_m),
+        Cause::MarkerStuck { by_m } => return marker_stuck(by_m),
+        Cause::NoPush { most_n } => return no_push(most_n),
         Cause::PushAskew { by_deg } => return askew(by_deg),
         Cause::HandlePulls { by_m } => {
             return with(
@@ -209,7 +215,7 @@ pub(crate) fn cause_words(cause: &Cause, roster: &Roster) -> [String; 2] {
 const CLOSE_PROGRAMS: &str = "Close other programs or grant real-time priority (panel Timing), then check again";
 const STOP_CURE: &str = "Do not engage; check the key, the pedal or the button with which you stop";
 
-fn with(cause: String, cure: &str) -> [String; 2] {
+pub(super) fn with(cause: String, cure: &str) -> [String; 2] {
     [cause, cure.to_owned()]
 }
 
@@ -265,6 +271,8 @@ fn beside(miss_m: f64) -> [String; 2] {
 
 #[cfg(test)]
 mod tests {
+    use nima_machine::rig::Exchange;
+
     use super::*;
 
     #[test]
@@ -276,6 +284,14 @@ mod tests {
             Cause::BiasMoved { by_n: 0.5, limit_n: 0.2 },
             Cause::BiasUnseen(NotChecked::Touched),
             Cause::NoPush { most_n: 0.1 },
+            Cause::Exchanged(Exchange::Handles),
+            Cause::Exchanged(Exchange::Arms),
+            Cause::Exchanged(Exchange::Sensors),
+            Cause::Exchanged(Exchange::Servos),
+            Cause::Exchanged(Exchange::Markers),
+            Cause::Exchanged(Exchange::Trocars),
+            Cause::ArmStuck { by_m: 0.0 },
+            Cause::MarkerStuck { by_m: 0.0 },
             Cause::PushAskew { by_deg: 178.0 },
             Cause::PushAskew { by_deg: 88.0 },
             Cause::HandlePulls { by_m: 0.01 },

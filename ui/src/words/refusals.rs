@@ -1,6 +1,9 @@
 //! Texts: why a command was refused, and what the operator can do.
 
-use nima_machine::messages::{LoopState, Refusal};
+use nima_machine::{
+    messages::{LoopState, Refusal},
+    rig::Obstacle,
+};
 
 use super::Remedy as _;
 
@@ -11,6 +14,8 @@ pub(crate) fn refused_because(why: Refusal) -> String {
         Refusal::StillPresent(fault) => format!("the cause of a fault is still present: {}", lower(fault.cause())),
         Refusal::ForceUnknown => "the force at the tip is not known".to_owned(),
         Refusal::Implausible(what) => format!("a measurement is not plausible: {}", lower(what.cause())),
+        Refusal::Obstacle(waiting @ Obstacle::Waiting(_)) => waiting.to_string(),
+        Refusal::Obstacle(Obstacle::Exchanged(exchange)) => exchange.words().to_owned(),
         Refusal::Obstacle(obstacle) => format!("the arm cannot start from where it is: {obstacle}"),
         Refusal::EndoscopeUnseen => "the tracker does not see the endoscope".to_owned(),
         Refusal::DrivesOff => "the drives did not obey in time".to_owned(),
@@ -34,6 +39,10 @@ pub(crate) const fn cure_of_refusal(why: Refusal) -> &'static str {
         Refusal::StillPresent(_) => "remove the cause first",
         Refusal::ForceUnknown => "calibrate gravity for this sensor and tool",
         Refusal::Implausible(_) => "see the sensor and its cable",
+        Refusal::Obstacle(Obstacle::Exchanged(_)) => {
+            "put what is exchanged back, in the room or in the rig file; the ready check tells which it is"
+        }
+        Refusal::Obstacle(Obstacle::Waiting(_)) => "wait a moment, clear the tracker's view, then engage again",
         Refusal::Obstacle(_) => "move the arm, then engage again",
         Refusal::EndoscopeUnseen => "clear the tracker's view of the endoscope and of the arm, then engage again",
         Refusal::DrivesOff => "look at the arm's and the handle's own lamps and buttons, then engage again",
@@ -80,7 +89,7 @@ mod tests {
             Refusal::State(LoopState::Engaged),
             Refusal::StillPresent(fault),
             Refusal::ForceUnknown,
-            Refusal::Obstacle(nima_machine::rig::Obstacle::NotFinite { joint: 3 }),
+            Refusal::Obstacle(Obstacle::Exchanged(nima_machine::rig::Exchange::Arms)),
             Refusal::EndoscopeUnseen,
             Refusal::DrivesOff,
             Refusal::Moving,

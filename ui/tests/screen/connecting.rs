@@ -54,6 +54,9 @@ fn console(folder: &Path) -> Harness<'static, ConsoleApp> {
 fn on_emulated_rig(folder: &Path) -> (Harness<'static, ConsoleApp>, RigFile) {
     let mut file = rig_file(&elsewhere(folder));
     file.set("name", "Bench rig");
+    // Emulated handles know their hands, as real ones do: who wants them exchanged says so.
+    file.set("devices.right.handle.hand", "right");
+    file.set("devices.left.handle.hand", "left");
     file.save(&folder.join("rigs/bench.toml")).unwrap();
     let mut harness = console(folder);
     press(&mut harness, "Rig");

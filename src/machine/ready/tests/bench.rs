@@ -14,7 +14,7 @@ use nima_devices::Health;
 
 use crate::{
     config::RigConfig,
-    messages::{Command, LoopState},
+    messages::{Command, LoopState, Tick},
     ready::{Arm, Ask, Check, Session, State, Subject},
     rig::{DEVICES_MAX, Gauge, Gauges, Healths, Inputs, Part, Sensed, Side, Switches, View},
     runtime::STALL_MAX_S,
@@ -146,6 +146,12 @@ impl Bench {
         }
     }
 
+    /// Any tick of the loop.
+    pub(super) fn some_tick(&mut self) -> Tick {
+        let inputs = self.inputs();
+        self.control.step([Some(inputs), None], &Timing::default()).1[0].unwrap()
+    }
+
     fn tick(&mut self, missed_now: u64) {
         let now_s = self.now_s();
         self.handle_m.y += self.flaws.pulls_m_s * 1e-3;
@@ -176,7 +182,7 @@ impl Bench {
             return;
         }
         match ask {
-            Ask::TakeOut(_) => self.is_out = true,
+            Ask::Move(_) | Ask::TakeOut(_) => self.is_out = true,
             Ask::PutBack(_) => self.is_out = false,
             Ask::Push(_, direction) => self.push_n = (self.flaws.pushed)(-2.0 * direction.into_inner()),
             Ask::MoveHandle(_, way) => self.move_handle(way),

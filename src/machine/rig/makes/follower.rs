@@ -50,6 +50,11 @@ impl FollowerSettings {
         }
     }
 
+    /// Its serial number in the rig file.
+    pub(in crate::rig) fn serial(&self) -> Option<String> {
+        self.kinova().and_then(|settings| settings.serial_number.clone())
+    }
+
     /// Checks every setting.
     ///
     /// # Errors

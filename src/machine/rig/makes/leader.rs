@@ -8,6 +8,7 @@ use nima_devices::{
 use serde::{Deserialize, Serialize, Serializer};
 
 use super::Opener;
+use crate::rig::Side;
 
 /// The handle of a rig file.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
@@ -80,6 +81,29 @@ impl LeaderSettings {
     pub(in crate::rig) const fn rate_hz(&self) -> f64 {
         let Self::ForceDimension(settings) = self;
         settings.rate_hz
+    }
+
+    /// These settings for the handle of a side: without a word in the file it must be made for that hand.
+    #[must_use]
+    pub(in crate::rig) fn for_hand_of(&self, side: Side) -> Self {
+        let Self::ForceDimension(mut settings) = self.clone();
+        settings.hand = settings.hand.or(Some(match side {
+            Side::Right => force_dimension::Hand::Right,
+            Side::Left => force_dimension::Hand::Left,
+        }));
+        Self::ForceDimension(settings)
+    }
+
+    /// The hand that it must be made for, if the settings say so.
+    pub(in crate::rig) const fn hand(&self) -> Option<force_dimension::Hand> {
+        let Self::ForceDimension(settings) = self;
+        settings.hand
+    }
+
+    /// Its serial number in the rig file.
+    pub(in crate::rig) fn serial(&self) -> Option<String> {
+        let Self::ForceDimension(settings) = self;
+        settings.serial.map(|serial| serial.to_string())
     }
 
     pub(in crate::rig) fn opener(&self) -> Opener<Box<dyn Leader>> {

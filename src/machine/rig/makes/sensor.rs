@@ -41,6 +41,11 @@ impl SensorSettings {
         Some(settings)
     }
 
+    /// Its serial number in the rig file.
+    pub(in crate::rig) fn serial(&self) -> Option<String> {
+        self.bota().and_then(|settings| settings.serial_number.clone())
+    }
+
     /// Checks every setting.
     ///
     /// # Errors

@@ -211,7 +211,7 @@ fn troubles_of_the_line_are_told_apart() {
         drop(held);
         let other = Settings { serial_number: Some("854".to_owned()), ..settings };
         match trouble(&other) {
-            Trouble::WrongProduct { found, .. } => assert!(found.ends_with("853"), "{found}"),
+            Trouble::OtherSerial { found, .. } => assert!(found.ends_with("853"), "{found}"),
             other => panic!("{other:?}"),
         }
     });

@@ -344,7 +344,7 @@ fn every_trouble_while_opening_has_its_cause() {
     let exchanged = trouble(Emulated { serial: "KP-2".to_owned(), ..patient() }, |settings| {
         settings.serial_number = Some("KP-1".to_owned());
     });
-    assert!(matches!(exchanged, Trouble::WrongProduct { found, .. } if found == "arm with serial number KP-2"));
+    assert!(matches!(exchanged, Trouble::OtherSerial { found, .. } if found == "KP-2"));
     let starting = trouble(Emulated { idle_state: 3, ..patient() }, same);
     assert!(matches!(starting, Trouble::NotReady { mode, .. } if mode == "initialisation"));
     let nobody = |change: fn(&mut Settings)| matches!(trouble(patient(), change), Trouble::NobodyListens { .. });

@@ -80,6 +80,7 @@ pub(in crate::command) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         bail!("rig \"{}\" has no simulated technician; calibrate with `nima console --calibrate gravity`", rig.name);
     };
     let in_force = InForce::load(None, &rig, &scene);
+    let rig = in_force.with_checked(rig);
     let plan = Plan { rig, scene, calibrations: Default::default(), engage: false };
     let mut bench = Bench::start(plan, arguments.rig.clone(), in_force, emulators.technician(), leave)?;
     for which in Which::ALL.into_iter().filter(|which| arguments.does(*which)) {

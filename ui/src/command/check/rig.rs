@@ -69,6 +69,7 @@ pub(in crate::command) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let emulators = Emulators::start(&arguments.rig, scene_name, rig.devices.as_ref())?;
     let mut in_force = InForce::load(None, &rig, &scene);
     let calibrations = in_force.calibrations(&rig);
+    let rig = in_force.with_checked(rig);
     let plan = Plan { rig, scene, calibrations, engage: false };
     let handle = nima_world::start(&plan)?;
     let ender = handle.ender();

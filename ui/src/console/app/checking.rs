@@ -4,7 +4,6 @@ use std::time::{Duration, Instant, SystemTime};
 
 use egui::{CentralPanel, Frame, Margin, Panel, ScrollArea, Ui};
 use nima_machine::{
-    config::ReadyCheck,
     messages::{Command, LoopState},
     rig::Roster,
 };
@@ -143,7 +142,7 @@ impl ConsoleApp {
         let valid = last.is_some_and(|record| record.is_valid(&devices_of(&self.roster()), SystemTime::now()));
         self.checking.valid = Some((valid, Instant::now()));
         self.live.is_unchecked = !valid;
-        if self.live.rig.ready_check == ReadyCheck::Required {
+        if self.live.rig.requires_check() {
             self.outbox.push(Command::Checked(valid));
         }
     }

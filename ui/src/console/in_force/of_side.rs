@@ -160,6 +160,12 @@ impl OfSide {
         needed.into_iter().filter(|(_, there)| !there).map(|(name, _)| name).collect()
     }
 
+    /// The sensor of this side, if it has no gravity calibration with the tool here and the other side's sensor has one.
+    pub(super) fn is_exchanged_with(&self, across: &Self) -> Option<&WristId> {
+        let other = &across.wrist()?.serial_number;
+        self.without_gravity().filter(|_| self.others.contains(other))
+    }
+
     /// Problems and what can be done; `across` is the wrist sensor of the other arm.
     pub(super) fn told(&self, across: Option<&WristId>) -> Option<String> {
         let elsewhere = |sensor: &&str| across.is_none_or(|across| across.serial_number != *sensor);

@@ -68,6 +68,56 @@ fn each_arm_has_the_calibration_of_its_own_sensor() {
     assert_eq!(in_force.binding().sensor, "SIM-S1-0002");
 }
 
+/// A rig whose right and left arms have sensors and tools of these names.
+fn mounted(right: [&str; 2], left: [&str; 2]) -> RigConfig {
+    let mut rig = RigConfig::load("simulated").unwrap();
+    let wrist = |[serial, tool]: [&str; 2]| Some(WristId { serial_number: serial.to_owned(), tool: tool.to_owned() });
+    let wrists = rig.simulated.as_mut().unwrap();
+    (wrists.right, wrists.left) = (wrist(right), wrist(left));
+    rig.validate().unwrap();
+    rig
+}
+
+#[test]
+fn exchanged_sensors_or_tools_have_no_calibration_in_force_and_are_told_as_exchanged() {
+    let folder = tempfile::tempdir().unwrap();
+    let store = Store::open(folder.path());
+    store.save(&record("R-1", "Right grasper")).unwrap();
+    store.save(&record("L-1", "Left grasper")).unwrap();
+    let scene = Scene::load("palpation").unwrap().with_left_hand();
+    let in_force = |rig: &RigConfig| InForce::load(Some(folder.path()), rig, &scene);
+    let good = mounted(["R-1", "Right grasper"], ["L-1", "Left grasper"]);
+    let mut in_order = in_force(&good);
+    assert_eq!((has_gravity(&mut in_order, &good), in_order.told()), ([true; SIDES], Vec::new()));
+    for exchanged in [
+        mounted(["L-1", "Right grasper"], ["R-1", "Left grasper"]),
+        mounted(["R-1", "Left grasper"], ["L-1", "Right grasper"]),
+    ] {
+        let mut in_force = in_force(&exchanged);
+        assert_eq!(has_gravity(&mut in_force, &exchanged), [false; SIDES], "no force is known, so nothing engages");
+        let [words] = &in_force.told()[..] else { panic!("{:?}", in_force.told()) };
+        assert!(
+            words.contains("are exchanged") && words.contains("R-1") && words.contains("Exchange Sensors"),
+            "{words}"
+        );
+    }
+}
+
+#[test]
+fn a_calibration_that_was_copied_to_the_other_side_is_not_in_force_and_is_told() {
+    let folder = tempfile::tempdir().unwrap();
+    let store = Store::open(folder.path());
+    store.save(&record("R-1", "Right grasper")).unwrap();
+    let paths = ["R-1", "L-1"].map(|sensor| store.path::<GravityRecord>(sensor).unwrap());
+    std::fs::copy(&paths[0], &paths[1]).unwrap();
+    let rig = mounted(["R-1", "Right grasper"], ["L-1", "Left grasper"]);
+    let scene = Scene::load("palpation").unwrap().with_left_hand();
+    let mut in_force = InForce::load(Some(folder.path()), &rig, &scene);
+    assert_eq!(has_gravity(&mut in_force, &rig), [true, false]);
+    let told = in_force.told();
+    assert!(told.len() == 1 && told[0].contains("not used") && told[0].contains("R-1"), "{told:?}");
+}
+
 #[test]
 fn a_simulated_rig_that_names_no_sensor_tells_what_to_write() {
     let (mut rig, scene) = (RigConfig::load("simulated").unwrap(), Scene::load("palpation").unwrap());

@@ -1,5 +1,7 @@
 //! The calibration panel: what is calibrated, how well, and the buttons that open the wizards.
 
+use nima_recording::store::WristId;
+
 pub(in crate::console) const NOT_OF_A_SENSOR: &str = "these numbers belong into the rig file";
 pub(in crate::console) const OPEN_DISABLED_HOVER: &str =
     "Already open, or the loop is stopped: press Release stop first";
@@ -56,6 +58,14 @@ pub(in crate::console) fn bound_to(sensor: &str, tool: &str) -> String {
 pub(in crate::console) fn other_sensors_are_calibrated(sensor: &str, tool: &str, others: &str) -> String {
     format!(
         "Sensor {sensor} has no gravity calibration with {tool}; sensor {others} has one: connect that sensor, or calibrate this one."
+    )
+}
+
+/// Each sensor is calibrated with the tool of the other arm.
+pub(in crate::console) fn sensors_are_exchanged(right: &WristId, left: &WristId) -> String {
+    format!(
+        "The right and the left sensor, or their tools in the rig file, are exchanged: {} is calibrated with {}, and {} with {}: exchange the cables, or press Exchange Sensors in the panel Devices.",
+        right.serial_number, left.tool, left.serial_number, right.tool
     )
 }
 

@@ -1,0 +1,108 @@
+//! What is asked for on one side happens on the other: told by name, and nothing is told where each device is its own.
+
+use nalgebra::{Isometry3, Vector3};
+
+use super::bench::{Bench, Flaws, SIDE, subject};
+use crate::{
+    config::RigConfig,
+    messages::Tick,
+    ready::{
+        Arm, Cause, Subject,
+        handle::Handle,
+        item::{Item, Progress},
+        own::Own,
+        push::Push,
+    },
+    rig::{Exchange, Side},
+};
+
+fn both() -> Subject {
+    let one = subject();
+    let arm = one.arms[0].clone();
+    Subject { rig: RigConfig::load("emulated").unwrap(), arms: [arm.clone(), arm], ..one }
+}
+
+/// What both sides show: how far arm, marker and handle have come, m, and the push on the instrument, N.
+#[derive(Clone, Copy, Debug, Default)]
+struct Shows {
+    arm_m: f64,
+    marker_m: f64,
+    handle_m: f64,
+    push_n: f64,
+}
+
+/// A second of rest, then these for a second.
+fn ends(item: &mut impl Item, [right, left]: [Shows; 2]) -> Progress {
+    let template = Bench::new(subject(), Flaws::default()).some_tick();
+    let mut end = item.look(0.0);
+    for ms in 0..2000_u32 {
+        for (side, shows) in Side::ALL.into_iter().zip([right, left]) {
+            let shows = if ms < 1000 { Shows::default() } else { shows };
+            item.tick(&tick(&template, side, f64::from(ms) * 1e-3, &shows));
+        }
+        end = item.look(f64::from(ms) * 1e-3);
+        if !matches!(end, Progress::Asking(_)) {
+            break;
+        }
+    }
+    end
+}
+
+fn tick(template: &Tick, side: Side, t_s: f64, shows: &Shows) -> Tick {
+    let at = |x_m: f64| Some(Isometry3::translation(x_m, 0.0, 0.0));
+    let mut tick = Tick { side, t_s, ..*template };
+    tick.frames.base_from_flange = at(shows.arm_m);
+    tick.frames.c_from_m = at(shows.marker_m);
+    tick.frames.leader_from_handle = at(shows.handle_m);
+    let push_n = Vector3::new(-shows.push_n, 0.0, 0.0);
+    tick.force.gravity_free =
+        tick.force.gravity_free.map(|wrench| nima_core::frames::Wrench { force_n: push_n, ..wrench });
+    assert!(tick.force.gravity_free.is_some(), "the push is felt by a calibrated sensor");
+    tick.wrist.as_mut().unwrap().raw.force_n = Vector3::new(0.0, 0.0, -4.0) + push_n;
+    tick
+}
+
+const REST: Shows = Shows { arm_m: 0.0, marker_m: 0.0, handle_m: 0.0, push_n: 0.0 };
+
+fn exchanged(end: Progress) -> Option<Exchange> {
+    match end {
+        Progress::Failed(Cause::Exchanged(exchange)) => Some(exchange),
+        _ => None,
+    }
+}
+
+#[test]
+fn an_arm_or_a_marker_that_moves_in_place_of_its_own_is_named() {
+    let own = |shows| ends(&mut Own::of(SIDE, &both()), shows);
+    let moved = Shows { arm_m: 0.1, marker_m: 0.09, ..REST };
+    assert!(matches!(own([moved, REST]), Progress::Passed(_)));
+    assert_eq!(exchanged(own([REST, moved])), Some(Exchange::Arms));
+    let (arm, marker) = (Shows { marker_m: 0.0, ..moved }, Shows { arm_m: 0.0, ..moved });
+    assert_eq!(exchanged(own([arm, marker])), Some(Exchange::Markers));
+    for undecided in [[moved, moved], [arm, REST], [moved, marker], [REST, REST]] {
+        assert!(matches!(own(undecided), Progress::Asking(_)), "{undecided:?}");
+    }
+    let mut without_tracker = both();
+    without_tracker.rig.devices.as_mut().unwrap().tracker = None;
+    assert!(matches!(ends(&mut Own::of(SIDE, &without_tracker), [arm, REST]), Progress::Passed(_)));
+}
+
+#[test]
+fn a_handle_that_moves_in_place_of_the_one_asked_for_is_named() {
+    let handle = |shows| ends(&mut Handle::of(SIDE, &both()), shows);
+    let moved = Shows { handle_m: 0.02, ..REST };
+    assert_eq!(exchanged(handle([REST, moved])), Some(Exchange::Handles));
+    assert_eq!(exchanged(handle([moved, REST])), None);
+    assert!(matches!(handle([REST, REST]), Progress::Asking(_)));
+}
+
+#[test]
+fn a_push_that_the_other_sensor_feels_is_named() {
+    let arm = Arm { at_wrist: true, ..both().arms[0].clone().unwrap() };
+    let push = |shows| ends(&mut Push::of(SIDE, &arm), shows);
+    let pushed = Shows { push_n: 2.0, ..REST };
+    assert!(matches!(push([pushed, REST]), Progress::Passed(_)));
+    assert_eq!(exchanged(push([REST, pushed])), Some(Exchange::Sensors));
+    assert!(matches!(push([REST, REST]), Progress::Asking(_)));
+    assert_eq!(exchanged(push([pushed, pushed])), None, "its own one felt it too");
+}

@@ -1,0 +1,242 @@
+//! Which device belongs to which part, by the serial numbers that the rig file names and, where it names none, by those of the
+//! last passed ready check. A device that answers at the place of another part is not let in: it is told as exchanged with it.
+
+use std::sync::{
+    Arc,
+    atomic::{AtomicU8, Ordering},
+};
+
+use nima_devices::{Device, Trouble, same_serial};
+use nima_recording::store::ReadyRecord;
+
+use super::{Awaited, Exchange, Obstacle, Part, PartKind, SIDES, Settings, Side};
+
+/// The devices of a ready check.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Checked {
+    /// When it was.
+    date: String,
+    /// Who was where; parts whose device tells no serial number are left out.
+    serials: Vec<(Part, String)>,
+}
+
+impl Checked {
+    /// What a record says of the parts.
+    pub fn of(record: &ReadyRecord) -> Self {
+        let part = |name: &str| Part::ALL.into_iter().find(|part| part.name() == name);
+        let told = record.devices.iter().filter(|device| !device.serial.trim().is_empty());
+        let serials = told.filter_map(|device| Some((part(&device.name)?, device.serial.clone()))).collect();
+        Self { date: record.date.clone(), serials }
+    }
+}
+
+/// Who is who on a rig.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Known {
+    has_both_sides: bool,
+    /// By the rig file.
+    named: Vec<(Part, String)>,
+    checked: Checked,
+    /// The servos of each side, for the real-time thread: force and motion do not need them, and must not begin while they are
+    /// the other side's.
+    servos: [Arc<AtomicU8>; SIDES],
+}
+
+/// The servos have not been opened yet, are there or missing, or are those of the other side.
+const UNASKED: u8 = 0;
+const ASKED: u8 = 1;
+const EXCHANGED: u8 = 2;
+
+/// What the servos of a side object to an engagement.
+#[derive(Clone, Debug)]
+pub(super) struct ServosKnown(Arc<AtomicU8>);
+
+impl ServosKnown {
+    pub(super) fn obstacle(&self) -> Option<Obstacle> {
+        match self.0.load(Ordering::Acquire) {
+            UNASKED => Some(Obstacle::Waiting(Awaited::Servos)),
+            EXCHANGED => Some(Obstacle::Exchanged(Exchange::Servos)),
+            _ => None,
+        }
+    }
+}
+
+fn serial_of(serials: &[(Part, String)], part: Part) -> Option<&str> {
+    serials.iter().find(|(known, _)| *known == part).map(|(_, serial)| serial.as_str())
+}
+
+impl Known {
+    pub(super) fn of(settings: &Settings) -> Self {
+        let has_both_sides = settings.right.is_some() && settings.left.is_some();
+        let named = |part: Part| Some((part, settings.serial(part)?));
+        Self {
+            has_both_sides,
+            named: Part::ALL.into_iter().filter_map(named).collect(),
+            checked: settings.checked.clone().unwrap_or_default(),
+            servos: Default::default(),
+        }
+    }
+
+    pub(super) fn servos_of(&self, side: Side) -> ServosKnown {
+        ServosKnown(Arc::clone(&self.servos[side.index()]))
+    }
+
+    pub(super) const fn has_both_sides(&self) -> bool {
+        self.has_both_sides
+    }
+
+    /// Whose device it is that answers as this part with this serial number, if it is another part's: that part, and the
+    /// date of the ready check by which it is known.
+    fn whose(&self, part: Part, serial: &str) -> Option<(Part, Option<&str>)> {
+        let is_it = |known: Option<&str>| known.is_some_and(|known| same_serial(known, serial));
+        let others = || Part::ALL.into_iter().filter(|other| *other != part && other.kind() == part.kind());
+        if is_it(serial_of(&self.named, part)) {
+            return None;
+        }
+        if let Some(other) = others().find(|other| is_it(serial_of(&self.named, *other))) {
+            return Some((other, None));
+        }
+        let by_check = |part: Part| serial_of(&self.checked.serials, part);
+        if serial_of(&self.named, part).is_some() || is_it(by_check(part)) {
+            return None;
+        }
+        let other = others().find(|other| is_it(by_check(*other)))?;
+        Some((other, Some(&self.checked.date)))
+    }
+
+    /// Lets the device in that was opened as this part, unless it is another part's; names that part also if the driver has
+    /// refused the serial number.
+    pub(super) fn admit<D: Device>(&self, part: Part, opened: Result<D, Trouble>) -> Result<D, Trouble> {
+        let admitted = self.identified(part, opened);
+        if let Part::Servos(side) = part {
+            let known = if matches!(admitted, Err(Trouble::Exchanged { .. })) { EXCHANGED } else { ASKED };
+            self.servos[side.index()].store(known, Ordering::Release);
+        }
+        admitted
+    }
+
+    fn identified<D: Device>(&self, part: Part, opened: Result<D, Trouble>) -> Result<D, Trouble> {
+        let serial = match &opened {
+            Ok(device) => device.about().1.serial.clone(),
+            Err(Trouble::OtherSerial { found, .. }) => found.clone(),
+            Err(_) => return opened,
+        };
+        match self.whose(part, &serial) {
+            None => opened,
+            Some((other, checked)) => Err(Trouble::Exchanged {
+                part: part.name(),
+                other: other.name(),
+                serial: serial.into(),
+                checked: checked.map(Into::into),
+            }),
+        }
+    }
+}
+
+impl Settings {
+    /// Whether the file tells right from left for every device and marker in the path of force and motion: by serial numbers,
+    /// the hands of the handles, ids of servos, and the hand-eye calibration. With one arm there is nothing to exchange.
+    pub(crate) fn tells_sides(&self) -> bool {
+        let (Some(right), Some(left)) = (&self.right, &self.left) else { return true };
+        let is_named = |kind: PartKind| {
+            Side::ALL.into_iter().all(|side| kind.of(side).is_some_and(|part| self.serial(part).is_some()))
+        };
+        let arms = [right, left].into_iter().all(|set| set.arm.kinova().is_none()) || is_named(PartKind::Arm);
+        let hands = right.handle.for_hand_of(Side::Right).hand() != left.handle.for_hand_of(Side::Left).hand();
+        let markers = self.endoscope.is_none() || right.hand_eye().is_some() && left.hand_eye().is_some();
+        hands && arms && markers && is_named(PartKind::Handle) && is_named(PartKind::Sensor)
+    }
+
+    /// The serial number that the rig file names for a part; the ids of servos.
+    fn serial(&self, part: Part) -> Option<String> {
+        let set = part.side().and_then(|side| self.arm(side));
+        match part {
+            Part::Handle(_) => set?.handle.serial(),
+            Part::Arm(_) => set?.arm.serial(),
+            Part::Sensor(_) => set?.sensor.serial(),
+            Part::Servos(_) => set?.servos.as_ref().map(nima_devices::dynamixel::Settings::ids_in_words),
+            Part::TissueSensor => self.tissue_sensor.as_ref()?.serial(),
+            Part::Tracker | Part::Pedal => None,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::config::RigConfig;
+
+    fn known(change: impl FnOnce(&mut Settings)) -> Known {
+        let mut settings = RigConfig::load("paper").unwrap().devices.unwrap();
+        change(&mut settings);
+        Known::of(&settings)
+    }
+
+    fn checked() -> Checked {
+        let serials = [
+            (Part::Sensor(Side::Right), "SN000853"),
+            (Part::Sensor(Side::Left), "SN000854"),
+            (Part::TissueSensor, "SN000855"),
+            (Part::Arm(Side::Right), "KP-1"),
+            (Part::Arm(Side::Left), "KP-2"),
+        ];
+        let serials = serials.map(|(part, serial)| (part, serial.to_owned())).into();
+        Checked { date: "2026-08-21T10:20:30Z".to_owned(), serials }
+    }
+
+    const SENSOR: Part = Part::Sensor(Side::Right);
+
+    #[test]
+    fn a_ready_check_tells_right_from_left_where_the_file_is_silent() {
+        let known = known(|settings| settings.checked = Some(checked()));
+        let date = Some("2026-08-21T10:20:30Z");
+        assert_eq!(known.whose(SENSOR, "853"), None);
+        assert_eq!(known.whose(SENSOR, "854"), Some((Part::Sensor(Side::Left), date)));
+        assert_eq!(known.whose(SENSOR, "855"), Some((Part::TissueSensor, date)));
+        assert_eq!(known.whose(SENSOR, "856"), None, "a new sensor is nobody's");
+        assert_eq!(known.whose(SENSOR, ""), None);
+        assert_eq!(known.whose(Part::Arm(Side::Left), "KP-1"), Some((Part::Arm(Side::Right), date)));
+        assert_eq!(known.whose(Part::Handle(Side::Left), "853"), None, "of another kind");
+    }
+
+    #[test]
+    fn what_the_file_names_counts_more_than_a_check() {
+        let name = |settings: &mut Settings, serial: &str| {
+            let right = settings.right.as_mut().unwrap().sensor.bota_mut().unwrap();
+            right.serial_number = Some(serial.to_owned());
+        };
+        let moved = known(|settings| {
+            settings.checked = Some(checked());
+            name(settings, "854");
+        });
+        assert_eq!(moved.whose(SENSOR, "SN000854"), None, "the rig file was changed on purpose");
+        assert_eq!(moved.whose(Part::Sensor(Side::Left), "854"), Some((SENSOR, None)));
+        let without_check = known(|settings| name(settings, "853"));
+        assert_eq!(without_check.whose(Part::TissueSensor, "853"), Some((SENSOR, None)));
+    }
+
+    #[test]
+    fn a_rig_of_real_devices_without_their_numbers_requires_the_check() {
+        let mut rig = RigConfig::load("paper").unwrap();
+        assert!(rig.requires_check());
+        let one_arm = |rig: &RigConfig| {
+            let mut rig = rig.clone();
+            rig.devices.as_mut().unwrap().left = None;
+            rig
+        };
+        assert!(!one_arm(&rig).requires_check(), "there is nothing to exchange");
+        let devices = rig.devices.as_mut().unwrap();
+        for (set, serial) in [&mut devices.right, &mut devices.left].into_iter().flatten().zip(["1", "2"]) {
+            set.arm.kinova_mut().unwrap().serial_number = Some(serial.to_owned());
+            set.sensor.bota_mut().unwrap().serial_number = Some(serial.to_owned());
+        }
+        assert!(!rig.requires_check());
+        let left = rig.devices.as_mut().unwrap().left.as_mut().unwrap();
+        left.handle.force_dimension_mut().unwrap().hand = Some(nima_devices::force_dimension::Hand::Right);
+        assert!(rig.requires_check(), "two handles for the same hand");
+        assert!(
+            !RigConfig::load("emulated").unwrap().requires_check()
+                && !RigConfig::load("simulated").unwrap().requires_check()
+        );
+    }
+}

@@ -1,0 +1,135 @@
+//! Why an arm that delivers cannot be engaged from where it is, and what a rig's own geometry tells of right and left that are
+//! exchanged: the other arm's mount or trocar fits where its own does not, or the other one's marker.
+
+use nalgebra::Isometry3;
+use nima_core::kinematics::{Arm, Joints, Rcm, START_MISS_M, StartError};
+
+/// Why an arm that delivers cannot be engaged.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum Obstacle {
+    /// The arm cannot start from its present position.
+    #[error(transparent)]
+    Start(#[from] StartError),
+    /// Something has not been heard of yet: nobody knows whether it is this side's.
+    #[error("{}", .0.words())]
+    Waiting(Awaited),
+    /// Right and left are exchanged.
+    #[error("{}", .0.words())]
+    Exchanged(Exchange),
+}
+
+/// What must have told its side before an engagement, and does not belong to the path of force.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Awaited {
+    /// The servos, until they are open or found missing.
+    Servos,
+    /// The markers by which the tracker joins hand and tip.
+    Markers,
+}
+
+impl Awaited {
+    const fn words(self) -> &'static str {
+        match self {
+            Self::Servos => "the servos have not answered yet",
+            Self::Markers => "the tracker has not seen the markers of both instruments yet",
+        }
+    }
+}
+
+/// What is exchanged between right and left.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Exchange {
+    /// One handle moves when the other one is asked for.
+    Handles,
+    /// The arms, or how they are mounted.
+    Arms,
+    /// The wrist sensors.
+    Sensors,
+    /// The servos of the instruments.
+    Servos,
+    /// The markers on the instruments.
+    Markers,
+    /// The trocars.
+    Trocars,
+}
+
+impl Exchange {
+    /// What is exchanged, a clause without a full stop.
+    pub const fn words(self) -> &'static str {
+        match self {
+            Self::Handles => "the right and the left handle are exchanged",
+            Self::Arms => "the right and the left arm, or their mounts in the rig file, are exchanged",
+            Self::Sensors => "the right and the left sensor are exchanged",
+            Self::Servos => "the servos of the right and the left instrument are exchanged",
+            Self::Markers => "the markers of the right and the left instrument are exchanged",
+            Self::Trocars => "the right and the left trocar are exchanged, or the instruments stand in each other's",
+        }
+    }
+}
+
+/// Where a marker should be, by the arm: from the hand-eye calibration.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct HandEye {
+    pub(super) s1_from_m: Isometry3<f64>,
+    pub(super) base_from_c: Isometry3<f64>,
+}
+
+/// What an arm and its marker show now.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Shown {
+    pub(super) mount: Arm,
+    pub(super) rcm: Rcm,
+    pub(super) joints: Joints,
+    pub(super) base_from_s1: Isometry3<f64>,
+    pub(super) hand_eye: Option<HandEye>,
+    pub(super) c_from_m: Option<Isometry3<f64>>,
+}
+
+/// A marker is where it should be within this (m, rad), ...
+const NEAR: (f64, f64) = (0.020, 0.15);
+/// ... and surely not beyond this.
+const FAR: (f64, f64) = (0.050, 0.35);
+
+impl Shown {
+    /// What is exchanged with the other arm, if its own settings contradict what it shows and those of the other one do not.
+    pub(super) fn exchange(&self, other: &Self) -> Option<Exchange> {
+        self.exchanged_place(other).or_else(|| self.exchanged_marker(other))
+    }
+
+    /// Whether the marker can be compared with where it should be, and is seen.
+    pub(super) const fn is_marked(&self) -> bool {
+        self.hand_eye.is_none() || self.c_from_m.is_some()
+    }
+
+    fn exchanged_place(&self, other: &Self) -> Option<Exchange> {
+        let passes = |mount: &Arm, rcm: &Rcm| {
+            let (pose, trocar_m) = (mount.pose(&self.joints), &rcm.settings().trocar_m);
+            pose.axis_miss_m(trocar_m).norm() <= START_MISS_M && pose.insertion_m(trocar_m) > 0.0
+        };
+        if passes(&self.mount, &self.rcm) {
+            return None;
+        }
+        let by_mount = passes(&other.mount, &self.rcm) || passes(&other.mount, &other.rcm);
+        let by_trocar = || passes(&self.mount, &other.rcm).then_some(Exchange::Trocars);
+        by_mount.then_some(Exchange::Arms).or_else(by_trocar)
+    }
+
+    fn exchanged_marker(&self, other: &Self) -> Option<Exchange> {
+        let (own, others) = (self.hand_eye?, other.hand_eye?);
+        let (seen, others_seen) = (self.c_from_m?, other.c_from_m?);
+        let off = |hand_eye: HandEye, seen: &Isometry3<f64>| {
+            let c_from_m = hand_eye.base_from_c.inverse() * self.base_from_s1 * hand_eye.s1_from_m;
+            let place_m = (c_from_m.translation.vector - seen.translation.vector).norm();
+            (place_m, c_from_m.rotation.angle_to(&seen.rotation))
+        };
+        let is_near = |(place_m, turn_rad): (f64, f64)| place_m <= NEAR.0 && turn_rad <= NEAR.1;
+        let is_far = |(place_m, turn_rad): (f64, f64)| place_m > FAR.0 || turn_rad > FAR.1;
+        if !is_far(off(own, &seen)) {
+            return None;
+        }
+        let marker = HandEye { s1_from_m: others.s1_from_m, ..own };
+        let camera = HandEye { base_from_c: others.base_from_c, ..own };
+        let by_file = [marker, camera, others].into_iter().any(|hand_eye| is_near(off(hand_eye, &seen)));
+        (by_file || is_near(off(own, &others_seen))).then_some(Exchange::Markers)
+    }
+}

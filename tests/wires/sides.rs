@@ -1,0 +1,397 @@
+//! Right and left exchanged, place by place: at the wire where that is possible, else in the rig file. Each exchange must be told
+//! by name, with what to do, before any force; and where nothing is exchanged, nothing is told.
+#![cfg(target_os = "linux")]
+use std::{
+    path::Path,
+    time::{Duration, Instant},
+};
+
+use nalgebra::Isometry3;
+use nima_core::frames::to_roll_pitch_yaw_deg;
+use nima_devices::{Standing, Trouble, bota};
+use nima_machine::{
+    config::RigConfig,
+    messages::{Command, Event, LoopState, Refusal},
+    rig::{ArmSet, Exchange, Healths, Obstacle, Part, Settings, Side},
+    runtime::Handle,
+};
+use nima_recording::store::{CheckedDevice, ReadyRecord};
+use nima_testing::real_time::{alone, judged, too_busy};
+use nima_tests::emulated::{at_tip, started};
+use nima_world::{
+    Plan,
+    emulated::{EmulatedRig, Truth},
+    scene::Scene,
+};
+
+const TIMEOUT: Duration = Duration::from_secs(12);
+const DATE: &str = "2026-08-21T10:20:30Z";
+
+/// What is exchanged: at the wires (the devices as they stand there), in the rig file, or on the instruments.
+struct Row {
+    place: &'static str,
+    wire: fn(&mut Settings),
+    file: fn(&mut Settings),
+    markers: bool,
+    told: Told,
+}
+
+/// Who tells it.
+enum Told {
+    /// The devices of these parts are not let in.
+    Kept(&'static [&'static str]),
+    /// The arms cannot be engaged.
+    Obstacle(Exchange),
+    /// Nobody: the devices are found by themselves, and each is where it belongs.
+    Harmless,
+}
+
+fn row(place: &'static str, told: Told) -> Row {
+    Row { place, wire: |_| (), file: |_| (), markers: false, told }
+}
+
+fn sets(devices: &mut Settings) -> [&mut ArmSet; 2] {
+    [devices.right.as_mut().unwrap(), devices.left.as_mut().unwrap()]
+}
+
+/// The built-in rig on other ports, with a tissue sensor of the wrist sensors' generation; its trocars stand beside each other.
+fn rig(folder: &Path) -> Settings {
+    let mut devices = at_tip(folder);
+    let tissue = devices.tissue_sensor.as_mut().unwrap().bota_mut().unwrap();
+    (tissue.transport, tissue.mode, tissue.rate_hz) = (bota::Transport::GenA, 2, 1000);
+    tissue.port = folder.join("ttyACM-tissue-sensor").display().to_string();
+    devices
+}
+
+fn hand_eye(set: &mut ArmSet, truth: &Truth) {
+    let base = nima_core::kinematics::Arm::new(&set.mount).unwrap();
+    let base = Isometry3::from_parts(base.world_from_base().translation, base.world_from_base().rotation.into());
+    let base_from_c = base.inverse() * truth.world_from_c;
+    set.s1_from_m_m = Some(truth.s1_from_m.translation.vector);
+    set.s1_from_m_deg = Some(to_roll_pitch_yaw_deg(&truth.s1_from_m.rotation));
+    set.base_from_c_m = Some(base_from_c.translation.vector);
+    set.base_from_c_deg = Some(to_roll_pitch_yaw_deg(&base_from_c.rotation));
+}
+
+/// The cables of right and left at each other's places: the device and its world stay, its address changes.
+fn exchange_sensors(devices: &mut Settings) {
+    let [right, left] = sets(devices);
+    std::mem::swap(&mut right.sensor, &mut left.sensor);
+    let (right, left) = (right.sensor.bota_mut().unwrap(), left.sensor.bota_mut().unwrap());
+    std::mem::swap(&mut right.serial_number, &mut left.serial_number);
+}
+
+fn exchange_arms(devices: &mut Settings) {
+    let [right, left] = sets(devices);
+    let (right, left) = (right.arm.kinova_mut().unwrap(), left.arm.kinova_mut().unwrap());
+    std::mem::swap(&mut right.tcp_port, &mut left.tcp_port);
+    std::mem::swap(&mut right.udp_port, &mut left.udp_port);
+}
+
+fn exchange_with_tissue(devices: &mut Settings) {
+    let tissue = devices.tissue_sensor.as_mut().unwrap().bota_mut().unwrap();
+    let right = devices.right.as_mut().unwrap().sensor.bota_mut().unwrap();
+    std::mem::swap(&mut right.port, &mut tissue.port);
+}
+
+fn exchange_servos(devices: &mut Settings) {
+    let [right, left] = sets(devices);
+    std::mem::swap(&mut right.servos.as_mut().unwrap().port, &mut left.servos.as_mut().unwrap().port);
+}
+
+fn nameless_arms(devices: &mut Settings) {
+    for set in sets(devices) {
+        set.arm.kinova_mut().unwrap().serial_number = None;
+    }
+}
+
+fn nameless_sensors(devices: &mut Settings) {
+    for set in sets(devices) {
+        set.sensor.bota_mut().unwrap().serial_number = None;
+    }
+    devices.tissue_sensor.as_mut().unwrap().bota_mut().unwrap().serial_number = None;
+}
+
+/// As after a passed ready check with everything in its place.
+fn checked(devices: &mut Settings) {
+    let serials = [
+        ("right handle", "4711"),
+        ("right arm", "EMULATED-1"),
+        ("right sensor", "SN000901"),
+        ("left handle", "4712"),
+        ("left arm", "EMULATED-2"),
+        ("left sensor", "SN000902"),
+        ("tissue sensor", "SN000903"),
+    ];
+    let device = |(name, serial): (&str, &str)| CheckedDevice {
+        name: name.to_owned(),
+        driver: String::new(),
+        serial: serial.to_owned(),
+    };
+    let record = ReadyRecord {
+        kind: nima_recording::store::READY_CHECK.to_owned(),
+        date: DATE.to_owned(),
+        software: String::new(),
+        rig: String::new(),
+        rig_file: String::new(),
+        by: String::new(),
+        passed: true,
+        took_s: 30.0,
+        devices: serials.map(device).into(),
+        items: Vec::new(),
+    };
+    devices.checked = Some(nima_machine::rig::Checked::of(&record));
+}
+
+fn rows() -> Vec<Row> {
+    vec![
+        Row {
+            wire: |devices| {
+                let [right, left] = sets(devices);
+                let (right, left) = (right.handle.force_dimension_mut(), left.handle.force_dimension_mut());
+                std::mem::swap(&mut right.unwrap().emulator, &mut left.unwrap().emulator);
+            },
+            ..row("cables of the handles", Told::Harmless)
+        },
+        Row {
+            file: |devices| {
+                let [right, left] = sets(devices);
+                let (right, left) = (right.handle.force_dimension_mut(), left.handle.force_dimension_mut());
+                std::mem::swap(&mut right.unwrap().serial, &mut left.unwrap().serial);
+            },
+            ..row("serial numbers of the handles in the file", Told::Kept(&["right handle", "left handle"]))
+        },
+        Row { wire: exchange_arms, ..row("cables of the arms", Told::Kept(&["right arm", "left arm"])) },
+        Row { file: exchange_arms, ..row("addresses of the arms in the file", Told::Kept(&["right arm", "left arm"])) },
+        Row {
+            wire: exchange_arms,
+            file: |devices| {
+                nameless_arms(devices);
+                checked(devices);
+            },
+            ..row("cables of arms that only a ready check knows", Told::Kept(&["right arm", "left arm"]))
+        },
+        Row {
+            wire: exchange_arms,
+            file: nameless_arms,
+            ..row("cables of arms that nobody knows", Told::Obstacle(Exchange::Arms))
+        },
+        Row { wire: exchange_sensors, ..row("cables of the sensors", Told::Kept(&["right sensor", "left sensor"])) },
+        Row {
+            wire: exchange_sensors,
+            file: |devices| {
+                nameless_sensors(devices);
+                checked(devices);
+            },
+            ..row("cables of sensors that only a ready check knows", Told::Kept(&["right sensor", "left sensor"]))
+        },
+        Row {
+            wire: exchange_with_tissue,
+            ..row("cables of wrist and tissue sensor", Told::Kept(&["right sensor", "tissue sensor"]))
+        },
+        Row {
+            wire: exchange_with_tissue,
+            file: |devices| {
+                nameless_sensors(devices);
+                checked(devices);
+            },
+            ..row("the same, known by a ready check only", Told::Kept(&["right sensor", "tissue sensor"]))
+        },
+        Row { wire: exchange_servos, ..row("cables of the servos", Told::Kept(&["right servos", "left servos"])) },
+        Row { markers: true, ..row("markers on the instruments", Told::Obstacle(Exchange::Markers)) },
+        Row {
+            file: |devices| {
+                let [right, left] = sets(devices);
+                std::mem::swap(&mut right.s1_from_m_deg, &mut left.s1_from_m_deg);
+                std::mem::swap(&mut right.s1_from_m_m, &mut left.s1_from_m_m);
+            },
+            ..row("values of the markers in the file", Told::Obstacle(Exchange::Markers))
+        },
+        Row {
+            file: |devices| {
+                let [right, left] = sets(devices);
+                std::mem::swap(&mut right.base_from_c_m, &mut left.base_from_c_m);
+                std::mem::swap(&mut right.base_from_c_deg, &mut left.base_from_c_deg);
+            },
+            ..row("values of the camera in the file", Told::Obstacle(Exchange::Markers))
+        },
+        Row {
+            file: |devices| {
+                let [right, left] = sets(devices);
+                std::mem::swap(&mut right.mount, &mut left.mount);
+            },
+            ..row("mounts of the arms in the file", Told::Obstacle(Exchange::Arms))
+        },
+        Row {
+            file: |devices| {
+                let [right, left] = sets(devices);
+                std::mem::swap(&mut right.rcm, &mut left.rcm);
+            },
+            ..row("trocars in the file", Told::Obstacle(Exchange::Trocars))
+        },
+    ]
+}
+
+/// A running machine, and what it has told.
+struct Machine {
+    handle: Handle,
+    healths: Healths,
+    refusals: Vec<Refusal>,
+    engaged: bool,
+    most_n: f64,
+    tick_count: u64,
+}
+
+impl Machine {
+    fn start(devices: Settings) -> Self {
+        let rig = RigConfig { devices: Some(devices), ..RigConfig::load("emulated").unwrap() };
+        rig.validate().unwrap();
+        let scene = Scene::load("peg_transfer").unwrap();
+        let plan = Plan { rig, scene, calibrations: Default::default(), engage: false };
+        let handle = nima_world::start(&plan).unwrap();
+        let healths = Healths::default();
+        Self { handle, healths, refusals: Vec::new(), engaged: false, most_n: 0.0, tick_count: 0 }
+    }
+
+    /// Takes in what was sent, and asks for an engagement.
+    fn look(&mut self) {
+        std::thread::sleep(Duration::from_millis(10));
+        let Self { handle, healths, refusals, engaged, most_n, tick_count } = self;
+        let mut latched = false;
+        handle.drain_ticks(|tick| {
+            latched |= tick.state.is_latched();
+            *engaged |= tick.state == LoopState::Engaged;
+            *most_n = most_n.max(tick.rendered_n.norm());
+            *tick_count += 1;
+        });
+        handle.drain_events(|event| {
+            if let Event::CommandRefused { why, .. } = event {
+                refusals.push(*why);
+            }
+        });
+        *healths = handle.healths().unwrap_or(*healths);
+        // On a busy machine a device may seem silent for a moment: whoever insists releases that too.
+        handle.send(if latched { Command::ReleaseStop } else { Command::Engage });
+    }
+
+    fn until(&mut self, what: &str, good: impl Fn(&Self) -> bool) {
+        let begin = Instant::now();
+        while !good(self) {
+            if begin.elapsed() > TIMEOUT {
+                eprintln!(
+                    "never: {what}; {:?}; {:?}; {:?}",
+                    self.troubles(),
+                    self.healths.obstacles,
+                    self.refusals.last()
+                );
+                too_busy();
+            }
+            self.look();
+        }
+    }
+
+    fn troubles(&self) -> Vec<(String, Trouble)> {
+        let trouble = |entry: &nima_machine::rig::RosterEntry| Some((entry.name.clone(), entry.view.report().trouble?));
+        self.handle.roster().iter().filter_map(trouble).collect()
+    }
+
+    fn all_connected(&self) -> bool {
+        let devices = &self.healths.devices[..self.handle.roster().len()];
+        devices.iter().all(|health| health.standing == Standing::Connected)
+    }
+
+    fn told(&mut self, row: &Row) -> Vec<String> {
+        match row.told {
+            Told::Kept(parts) => {
+                let kept = |machine: &Self| {
+                    let is_exchanged = |(_, trouble): &(String, Trouble)| trouble.cure().contains("xchange");
+                    let names: Vec<_> =
+                        machine.troubles().into_iter().filter(is_exchanged).map(|(name, _)| name).collect();
+                    parts.iter().all(|part| names.iter().any(|name| name == part))
+                };
+                self.until(row.place, kept);
+                let words = |(name, trouble): (String, Trouble)| {
+                    assert!(parts.contains(&name.as_str()), "{}: only they are kept out: {name}", row.place);
+                    format!("{name}: {trouble}: {}", trouble.cure())
+                };
+                let told: Vec<_> = self.troubles().into_iter().map(words).collect();
+                assert!(told.iter().all(|words| words.contains("xchange")), "{told:?}");
+                told
+            }
+            Told::Obstacle(exchange) => {
+                let named = Obstacle::Exchanged(exchange);
+                self.until(row.place, |machine| {
+                    machine.healths.obstacles == [Some(named); 2]
+                        && machine.refusals.contains(&Refusal::Obstacle(named))
+                });
+                vec![named.to_string()]
+            }
+            Told::Harmless => {
+                self.until(row.place, |machine| machine.all_connected() && machine.most_n > 0.0);
+                let serial = |part: Part| {
+                    let entry = self.handle.roster().iter().find(|entry| entry.part == Some(part)).unwrap();
+                    entry.view.report().identity.unwrap().serial
+                };
+                assert_eq!(Side::ALL.map(|side| serial(Part::Handle(side))), ["4711", "4712"]);
+                Vec::new()
+            }
+        }
+    }
+}
+
+fn start(row: &Row, folder: &Path) -> (EmulatedRig, Machine) {
+    let good = rig(folder);
+    let mut wired = good.clone();
+    (row.wire)(&mut wired);
+    let emulated = started(&wired);
+    if row.markers {
+        emulated.exchange_markers();
+    }
+    let mut named = good;
+    for (set, side) in sets(&mut named).into_iter().zip(Side::ALL) {
+        hand_eye(set, &emulated.truth(side).unwrap());
+    }
+    (row.file)(&mut named);
+    (emulated, Machine::start(named))
+}
+
+#[test]
+fn right_and_left_exchanged_at_any_place_are_told_before_any_force() {
+    let _alone = alone();
+    for row in rows() {
+        judged(|| {
+            let folder = tempfile::tempdir().unwrap();
+            let (_emulated, mut machine) = start(&row, folder.path());
+            let told = machine.told(&row);
+            println!("{}: {told:?}", row.place);
+            if !matches!(row.told, Told::Harmless) {
+                // Whoever insists gets nothing.
+                let end = Instant::now() + Duration::from_millis(200);
+                while Instant::now() < end {
+                    machine.look();
+                }
+                assert!(!machine.engaged && machine.most_n == 0.0 && machine.tick_count > 0, "{}", row.place);
+            }
+        });
+    }
+}
+
+#[test]
+fn where_nothing_is_exchanged_nothing_is_told() {
+    let _alone = alone();
+    judged(|| {
+        let folder = tempfile::tempdir().unwrap();
+        let row = Row { file: checked, ..row("nothing", Told::Harmless) };
+        let (_emulated, mut machine) = start(&row, folder.path());
+        machine.until("force", |machine| machine.most_n > 0.0);
+        let end = Instant::now() + Duration::from_secs(1);
+        while Instant::now() < end {
+            machine.look();
+            assert_eq!(machine.troubles(), []);
+            let is_exchanged = |obstacle: &Option<Obstacle>| matches!(obstacle, Some(Obstacle::Exchanged(_)));
+            assert!(!machine.healths.obstacles.iter().any(is_exchanged), "{:?}", machine.healths.obstacles);
+        }
+        let exchanged = |why: &&Refusal| matches!(why, Refusal::Obstacle(Obstacle::Exchanged(_)));
+        assert_eq!(machine.refusals.iter().find(exchanged), None);
+    });
+}

@@ -1,0 +1,74 @@
+//! The ready check over the wires tells right from left by what moves: the technician moves the right instrument, and its own arm
+//! and marker must follow. The rig has no hand-eye calibration, so nothing else can tell.
+#![cfg(target_os = "linux")]
+use std::time::{Duration, Instant};
+
+use nima_machine::{
+    config::RigConfig,
+    messages::LoopState,
+    ready::{Arm, Ask, Cause, Check, Session, State, Subject},
+    rig::{Exchange, Prompt, SIDES, Side},
+};
+use nima_testing::real_time::{alone, judged, too_busy};
+use nima_tests::emulated::{at_tip, started};
+use nima_world::{
+    Plan,
+    emulated::{Screen, Task},
+    scene::Scene,
+};
+
+const TIMEOUT: Duration = Duration::from_secs(40);
+const OWN: Check = Check::Own(Side::Right);
+
+/// What comes of the point, with the markers exchanged or not.
+fn found(are_exchanged: bool) -> State {
+    let folder = tempfile::tempdir().unwrap();
+    let devices = at_tip(folder.path());
+    let emulated = started(&devices);
+    if are_exchanged {
+        emulated.exchange_markers();
+    }
+    let rig = RigConfig { devices: Some(devices), ..RigConfig::load("emulated").unwrap() };
+    let scene = Scene::load("peg_transfer").unwrap();
+    let plan = Plan { rig: rig.clone(), scene, calibrations: Default::default(), engage: false };
+    let handle = nima_world::start(&plan).unwrap();
+    let arms = [(); SIDES].map(|()| Some(Arm { at_wrist: false, gravity: None, has_person: true }));
+    let parts = handle.roster().iter().map(|entry| entry.part).collect();
+    let gates_in_file = Some(rig.gates);
+    let mut session = Session::new(Subject { rig, arms, parts, gates_in_file, is_date_behind: false });
+    let (technician, begin) = (emulated.technician(), Instant::now());
+    loop {
+        std::thread::sleep(Duration::from_millis(5));
+        handle.drain_ticks(|tick| {
+            assert!(tick.rendered_n.norm() == 0.0 && tick.state != LoopState::Engaged);
+            session.tick(tick);
+        });
+        handle.gauges().for_each(|gauges| session.gauges(&gauges));
+        if let Some(healths) = handle.healths() {
+            session.healths(&healths);
+        }
+        session.look(begin.elapsed().as_secs_f64());
+        let task = if session.ask() == Ask::Move(Side::Right) { Task::Gravity } else { Task::Surgery };
+        technician.reads(&Screen { side: Side::Right, task, prompt: Prompt::Rest });
+        let state = session.list().iter().find(|entry| entry.check == OWN).unwrap().state;
+        if matches!(state, State::Passed(_) | State::Failed(_)) {
+            return state;
+        }
+        if begin.elapsed() > TIMEOUT {
+            eprintln!("{:?}", session.list());
+            too_busy();
+        }
+    }
+}
+
+#[test]
+fn a_marker_that_follows_the_other_instrument_is_told_as_exchanged() {
+    let _alone = alone();
+    judged(|| assert_eq!(found(true), State::Failed(Cause::Exchanged(Exchange::Markers))));
+}
+
+#[test]
+fn an_instrument_with_its_own_arm_and_marker_passes() {
+    let _alone = alone();
+    judged(|| assert!(matches!(found(false), State::Passed(_))));
+}

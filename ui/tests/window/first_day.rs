@@ -75,7 +75,7 @@ impl<'a> Day<'a> {
         let [left, right] = [places.iter().map(|(x, _)| *x).min()?, places.iter().map(|(x, _)| *x).max()?];
         let [top, bottom] = [places.iter().map(|(_, y)| *y).min()?, places.iter().map(|(_, y)| *y).max()?];
         assert!(2 * places.len() > (right - left) * (bottom - top), "more than one button stands out");
-        Some(((left + right) as i32 / 2, (top + bottom) as i32 / 2))
+        Some((i32::try_from((left + right) / 2).ok()?, i32::try_from((top + bottom) / 2).ok()?))
     }
 
     /// Follows the button until `good`.

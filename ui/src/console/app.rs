@@ -271,6 +271,7 @@ impl ConsoleApp {
         Panel::top("top_bar").exact_size(72.0).resizable(false).frame(bar).show(ui, |ui| {
             let calibrating = self.wizards.open.is_some() || self.checking.is_open();
             let before = self.role();
+            self.top_bar.asked = self.checking.ask();
             let wants_start = top_bar_ui(
                 ui,
                 &self.live,

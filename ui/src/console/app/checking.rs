@@ -5,6 +5,7 @@ use std::time::{Duration, Instant, SystemTime};
 use egui::{CentralPanel, Frame, Margin, Panel, ScrollArea, Ui};
 use nima_machine::{
     messages::{Command, LoopState},
+    ready::Ask,
     rig::Roster,
 };
 use nima_world::scene::Scene;
@@ -13,7 +14,7 @@ use super::ConsoleApp;
 use crate::console::{
     chain,
     desk::Panel as Tile,
-    panels::{Page, calibrations_ui},
+    panels::{CalibrationWish, Page, calibrations_ui},
     ready::{Run, Wish, devices_of, ready_ui, record, subject},
     text, theme,
     widgets::card,
@@ -46,6 +47,11 @@ impl Checking {
 
     pub(super) const fn run_mut(&mut self) -> Option<&mut Run> {
         self.run.as_mut()
+    }
+
+    /// What the check asks for.
+    pub(super) fn ask(&self) -> Option<Ask> {
+        self.run.as_ref().map(|run| run.session.ask())
     }
 
     /// Another loop is started: what was found out belongs to the one before.
@@ -173,6 +179,7 @@ impl ConsoleApp {
                 }
             }
             Some(Wish::Whole) => self.checking.begin_anew(),
+            Some(Wish::Close) => wish = Some(CalibrationWish::Close),
             None => {}
         }
         self.obey_calibrations(wish);

@@ -1,8 +1,9 @@
 //! The top bar, always visible: identity, state of the loop, problems, and the stop button.
 
-use egui::{Align, Align2, Area, Button, Id, Label, Layout, Order, RichText, Sense, Ui, vec2};
+use egui::{Align, Align2, Area, Button, Id, Label, Layout, Order, RichText, Sense, Stroke, Ui, vec2};
 use nima_machine::{
     messages::{Command, LoopState, Refusal},
+    ready::Ask,
     rig::Side,
 };
 
@@ -17,7 +18,7 @@ use crate::{
         scene3d::side_name,
         settings::Settings,
         text, theme,
-        widgets::{Sign, sign, small, weak},
+        widgets::{Sign, next_button, sign, small, weak},
     },
     words::{cure_of_refusal, refused_because},
 };
@@ -36,6 +37,8 @@ pub struct TopBarState {
     seen: Option<(LoopState, f64)>,
     /// Present and past alarms; their strip is below the bar.
     pub alarms: Alarms,
+    /// What the ready check asks for: one of the bar's buttons stands out then.
+    pub(in crate::console) asked: Option<Ask>,
 }
 
 /// The bar, with role switch and menu. While a person guides the arm (`calibrating`), it cannot be engaged. Returns true when the start
@@ -69,9 +72,10 @@ pub fn top_bar_ui(
         state_ui(ui, live, now);
         ui.add_space(10.0);
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-            stop_ui(ui, now, outbox);
+            stop_ui(ui, now, state.asked == Some(Ask::PressStop), outbox);
             let blocked = calibrating && now == LoopState::Idle;
-            step_ui(ui, now, since_s >= STEP_WAITS_S && !blocked, outbox);
+            let next = state.asked == Some(Ask::Release);
+            step_ui(ui, now, [since_s >= STEP_WAITS_S && !blocked, next], outbox);
             ui.add_space(6.0);
             refusal_ui(ui, live);
         });
@@ -150,14 +154,17 @@ fn state_lines(live: &Live, state: LoopState) -> Vec<String> {
 }
 
 /// Always in the same place, above every window, menu and tooltip, and always enabled: pressing it twice does no harm.
-fn stop_ui(ui: &mut Ui, state: LoopState, outbox: &mut Outbox) {
+fn stop_ui(ui: &mut Ui, state: LoopState, next: bool, outbox: &mut Outbox) {
     let latched = matches!(state, LoopState::Stopped | LoopState::Faulted(_));
     let (fill, ink) = if latched {
         (theme::now().control, theme::now().text_weak)
     } else {
         (theme::now().stop, theme::now().background)
     };
-    let button = Button::new("").min_size(theme::STOP_SIZE).fill(fill).corner_radius(theme::CORNER);
+    let mut button = Button::new("").min_size(theme::STOP_SIZE).fill(fill).corner_radius(theme::CORNER);
+    if next {
+        button = button.stroke(Stroke::new(6.0, theme::now().primary));
+    }
     let (place, _) = ui.allocate_exact_size(theme::STOP_SIZE, Sense::hover());
     let area = Area::new(Id::unique("stop")).order(Order::TOP).fixed_pos(place.min).default_size(place.size());
     let response =
@@ -178,7 +185,7 @@ fn stop_button(ui: &mut Ui, button: Button<'_>, ink: egui::Color32) -> egui::Res
 }
 
 /// The button for the next step, beside the stop button and never below it.
-fn step_ui(ui: &mut Ui, state: LoopState, ready: bool, outbox: &mut Outbox) {
+fn step_ui(ui: &mut Ui, state: LoopState, [ready, next]: [bool; 2], outbox: &mut Outbox) {
     let (name, command, meaning) = match state {
         LoopState::Idle => (text::top_bar::ENGAGE, Command::Engage, text::top_bar::ENGAGE_HOVER),
         LoopState::Stopped => (text::top_bar::RELEASE_STOP, Command::ReleaseStop, text::top_bar::RELEASE_STOP_HOVER),
@@ -191,7 +198,7 @@ fn step_ui(ui: &mut Ui, state: LoopState, ready: bool, outbox: &mut Outbox) {
         }
     };
     let text = RichText::new(name).font(theme::strong(17.0));
-    let button = Button::new(text).min_size(theme::STOP_SIZE).corner_radius(theme::CORNER);
+    let button = next_button(text, next).min_size(theme::STOP_SIZE).corner_radius(theme::CORNER);
     if ui.add_enabled(ready, button).on_hover_text(meaning).clicked() {
         outbox.push(command);
     }

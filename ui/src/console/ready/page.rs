@@ -1,6 +1,6 @@
 //! The page of the ready check: what is to be done now, the list, and what to do with its result.
 
-use egui::{Button, Label, RichText, TextEdit, Ui, vec2};
+use egui::{Label, RichText, TextEdit, Ui, vec2};
 use nima_machine::{
     ready::{Ask, Entry, State},
     rig::Roster,
@@ -10,7 +10,7 @@ use super::Run;
 use crate::{
     console::{
         text, theme,
-        widgets::{Sign, card, sign_ui, small},
+        widgets::{Sign, card, next_button, sign_ui, small},
     },
     words::{ask_words, cause_words, check_name, figure_words, lacks_words},
 };
@@ -22,6 +22,8 @@ pub(crate) enum Wish {
     Again,
     /// The whole list again.
     Whole,
+    /// Back to the monitor.
+    Close,
 }
 
 /// Draws the page; `saved` tells where the record is.
@@ -79,11 +81,14 @@ fn end_ui(ui: &mut Ui, run: &Run, saved: Option<&str>) -> Option<Wish> {
     let mut wish = None;
     ui.horizontal(|ui| {
         let mut offer = |name: &str, meaning: &str, wanted: Wish| {
-            if ui.add(Button::new(name).min_size(vec2(200.0, 34.0))).on_hover_text(meaning).clicked() {
+            let button = next_button(name, wanted != Wish::Whole).min_size(vec2(200.0, 34.0));
+            if ui.add(button).on_hover_text(meaning).clicked() {
                 wish = Some(wanted);
             }
         };
-        if !passed {
+        if passed {
+            offer(text::ready::CLOSE, text::ready::CLOSE_HOVER, Wish::Close);
+        } else {
             offer(text::ready::AGAIN, text::ready::AGAIN_HOVER, Wish::Again);
         }
         offer(text::ready::WHOLE, text::ready::WHOLE_HOVER, Wish::Whole);

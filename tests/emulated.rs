@@ -94,9 +94,9 @@ pub fn right_arm(folder: &Path) -> Settings {
     Settings { left: None, tissue_sensor: None, tracker: None, endoscope: None, pedal: None, ..at_tip(folder) }
 }
 
-/// Starts the emulated devices of that rig, in the peg-transfer scene.
+/// Starts the emulated devices of that rig, in the scene of two arms: its pegs are where each arm reaches.
 pub fn started(devices: &Settings) -> EmulatedRig {
-    started_in(&Scene::load("peg_transfer").unwrap(), devices)
+    started_in(&Scene::load("bimanual").unwrap(), devices)
 }
 
 /// The same in another scene.

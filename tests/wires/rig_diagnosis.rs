@@ -135,7 +135,7 @@ fn wrong_settings_are_reported_with_the_device_that_answers() {
             "left handle" => Trouble::Absent { .. },
             "left sensor" => Trouble::OtherSerial { .. },
             "tissue sensor" => Trouble::WrongBaud { .. },
-            "tracker" => Trouble::Setting { .. },
+            "tracker" => Trouble::File { .. },
         );
         let mut other = devices;
         other.right.as_mut().unwrap().servos.as_mut().unwrap().servos[2].model = Some("XM540-W270".to_owned());

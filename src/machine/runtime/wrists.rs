@@ -136,7 +136,7 @@ mod tests {
     use crate::{
         config::RigConfig,
         messages::{Command, ForceSource, LoopState},
-        rig::{Inputs, Part, Sensed, Switches, View},
+        rig::{Awaited, Inputs, Obstacle, Part, Sensed, Switches, View},
         teleop::Timing,
     };
 
@@ -263,6 +263,23 @@ mod tests {
             }
             assert_eq!(bench.control.pair(Side::Right).unwrap().state(), LoopState::Engaged, "after {after} ticks");
         }
+    }
+
+    #[test]
+    fn an_arm_that_was_waited_for_is_engaged_a_tick_after_it_was_heard_of() {
+        let mut bench = Bench::new();
+        bench.sensor_is(Standing::Connected);
+        bench.tick();
+        assert!(bench.door.put_in_force(bench.door.change(Side::Right), &calibrated()));
+        for _ in 0..3 {
+            bench.tick();
+        }
+        let heard = at_wrist(0.0, bench.t_s);
+        let waiting = Inputs { obstacle: Some(Obstacle::Waiting(Awaited::Servos)), ..heard };
+        bench.control.step([Some(waiting), None], &Timing { now_s: bench.t_s, ..Timing::default() });
+        assert!(!bench.control.is_idle_with(&[Some(heard), None]), "it would be refused by what it knew a tick ago");
+        bench.tick();
+        assert!(bench.control.is_idle_with(&[Some(heard), None]));
     }
 
     #[test]

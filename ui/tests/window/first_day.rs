@@ -71,7 +71,7 @@ impl<'a> Day<'a> {
         }
         let [left, right] = [places.iter().map(|(x, _)| *x).min()?, places.iter().map(|(x, _)| *x).max()?];
         let [top, bottom] = [places.iter().map(|(_, y)| *y).min()?, places.iter().map(|(_, y)| *y).max()?];
-        Some((i32::try_from((left + right) / 2).ok()?, i32::try_from((top + bottom) / 2).ok()?))
+        Some((i32::try_from(usize::midpoint(left, right)).ok()?, i32::try_from(usize::midpoint(top, bottom)).ok()?))
     }
 
     /// Follows the button until `good`.

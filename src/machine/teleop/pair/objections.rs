@@ -5,7 +5,7 @@ use nima_core::safety::Seen;
 use super::Pair;
 use crate::{
     messages::{Fault, LoopState, Refusal},
-    rig::{Inputs, View},
+    rig::{Inputs, Obstacle, View},
     teleop::Link,
 };
 
@@ -29,6 +29,11 @@ impl<L: Link> Pair<L> {
             Some(obstacle) => Err(Refusal::Obstacle(obstacle)),
             None => Ok(()),
         }
+    }
+
+    /// Whether an engagement would be refused now, because something has not been heard of yet.
+    pub(in crate::teleop) fn is_waiting(&self) -> bool {
+        matches!(self.last_inputs.and_then(|seen| seen.obstacle), Some(Obstacle::Waiting(_)))
     }
 
     /// A stop and a fault are not released while a cause of a fault is present.

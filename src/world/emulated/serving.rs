@@ -74,10 +74,12 @@ fn handle(side: Side, set: &ArmSet, shared: &Shared) -> Served {
         return Err(EmulatedRigError::Place { device: name, place: "no address".to_owned(), wanted });
     };
     places::local(&name, &address.ip().to_string())?;
+    let left_handed = chosen.hand.map_or(side == Side::Left, |hand| hand == force_dimension::Hand::Left);
     let usual = emulators::force_dimension::Emulated::default();
     let emulated = emulators::force_dimension::Emulated {
         serial: chosen.serial.unwrap_or(usual.serial + side.index() as u16),
-        kind: force_dimension::Kind::Omega7 { left_handed: side == Side::Left },
+        // As the rig file has it, which may have the left one on the right side on purpose.
+        kind: force_dimension::Kind::Omega7 { left_handed },
         port: address.port(),
         ..usual
     };

@@ -275,16 +275,13 @@ fn a_sensor_that_is_lost_for_a_moment_costs_no_recording_and_another_one_does() 
     console.press("Next");
     console.press("Start recording");
     console.record(300);
-    let known = console.window.state().binding.clone();
-    let store = known.store.clone();
-    console.window.state_mut().binding = Binding { date: utc_now(), store, ..Binding::default() };
+    let known = std::mem::take(&mut console.window.state_mut().binding);
     console.window.step();
-    console.window.state_mut().binding = known.clone();
+    console.window.state_mut().binding = known;
     console.record(600);
     assert!(!console.shows("was discarded"));
     console.window.state_mut().binding.sensor = "another one".to_owned();
     console.read("was discarded");
-    assert!(!console.shows("Pause"));
 }
 
 #[test]

@@ -147,6 +147,14 @@ impl TipForceWizard {
         self.recording.as_ref().map_or(0, |take| take.recorder.rows())
     }
 
+    fn is_checking(&self) -> bool {
+        self.judging.is_some() || self.proof.as_ref().is_some_and(|take| take.running)
+    }
+
+    fn is_recording(&self) -> bool {
+        self.recording.as_ref().is_some_and(|take| take.running)
+    }
+
     /// Whether a training is running.
     const fn is_training(&self) -> bool {
         self.training.is_some()
@@ -333,19 +341,9 @@ impl Wizard for TipForceWizard {
         let done = self.is_done();
         match self.frame.step {
             _ if done => {}
-            RECORD => {
-                let running = self.recording.as_ref().is_some_and(|take| take.running);
-                if !running && self.may_record(binding).is_ok() {
-                    self.start_recording(binding);
-                }
-            }
+            RECORD if !self.is_recording() && self.may_record(binding).is_ok() => self.start_recording(binding),
             TRAIN if !self.is_training() && self.told.is_none() => self.start_training(binding),
-            CHECK => {
-                let running = self.judging.is_some() || self.proof.as_ref().is_some_and(|take| take.running);
-                if !running && self.told.is_none() {
-                    self.start_check(binding);
-                }
-            }
+            CHECK if !self.is_checking() && self.told.is_none() => self.start_check(binding),
             _ => {}
         }
         done

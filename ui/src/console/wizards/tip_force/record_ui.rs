@@ -25,7 +25,7 @@ const PAPER_ROWS: usize = 30_000;
 impl TipForceWizard {
     /// Returns the request to train although not all requirements are met.
     pub(super) fn record_ui(&mut self, ui: &mut Ui, binding: &Binding) -> Option<Wish> {
-        let (running, rows) = (self.recording.as_ref().is_some_and(|take| take.running), self.rows());
+        let (running, rows) = (self.is_recording(), self.rows());
         let mut wish = None;
         let meaning = text::tip_force::RECORD_HOVER;
         card(ui, text::tip_force::RECORD_TITLE, meaning, |ui| {

@@ -148,6 +148,6 @@ fn from_an_empty_folder_to_both_arms_engaged() {
         thread::sleep(Duration::from_secs(8));
         println!("engaged after {:.0} s and {} clicks", began.elapsed().as_secs_f64(), day.clicks.get());
         let summary = day.end();
-        assert_eq!(summary["final_state"], "Engaged", "{summary}");
+        assert_eq!(summary["final_state"], "engaged", "{summary}");
     });
 }

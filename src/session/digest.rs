@@ -68,7 +68,9 @@ impl Check {
         for side in Side::ALL {
             let i = side.index();
             let digests = of_side(&outputs[i], ticks[i].as_ref());
-            digests.iter().for_each(|digest| all.word(*digest));
+            for digest in digests {
+                all.word(digest);
+            }
             stages[i] = digests.map(|digest| digest as u16);
         }
         Self { all: all.end(), stages }
@@ -83,6 +85,10 @@ impl Check {
             .map(|(_, side, stage)| (side, stage))
             .next()
     }
+}
+
+macro_rules! put_all {
+    ($to:ident: $($value:ident),*) => { $($value.put($to);)* };
 }
 
 fn of_side(outputs: &Outputs, tick: Option<&Tick>) -> [u64; STAGES] {
@@ -121,18 +127,12 @@ fn of_side(outputs: &Outputs, tick: Option<&Tick>) -> [u64; STAGES] {
             // Counted by the queue to the screen, not made by the loop.
             dropped: _,
         } = tick;
-        force.put(force_path);
-        measured_n.put(force_path);
-        identification.put(identifies);
-        delayed_n.put(renders);
-        asked_n.put(renders);
-        gates.put(gated);
-        gate_settings.put(gated);
-        rendered_n.put(gated);
-        (index.put(stated), side.put(stated), t_s.put(stated), state.put(stated));
-        (mode.put(stated), delay_s.put(stated), leader_m.put(stated), tip_m.put(stated));
-        (wrist.put(stated), frames.put(stated), view.put(stated), prompt.put(stated), guide_m.put(stated));
-        (wake_s.put(stated), work_s.put(stated), sample_to_force_s.put(stated), missed.put(stated));
+        put_all!(force_path: force, measured_n);
+        put_all!(identifies: identification);
+        put_all!(renders: delayed_n, asked_n);
+        put_all!(gated: gates, gate_settings, rendered_n);
+        put_all!(stated: index, side, t_s, state, mode, delay_s, leader_m, tip_m, wrist, frames, view, prompt, guide_m);
+        put_all!(stated: wake_s, work_s, sample_to_force_s, missed);
     }
     digests.map(Digest::end)
 }

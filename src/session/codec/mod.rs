@@ -189,7 +189,9 @@ impl<T: Put, const N: usize> Put for [T; N] {
     const COLUMNS: usize = N * T::COLUMNS;
 
     fn put(&self, to: &mut impl Sink) {
-        self.iter().for_each(|value| value.put(to));
+        for value in self {
+            value.put(to);
+        }
     }
 }
 

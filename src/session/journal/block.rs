@@ -140,7 +140,9 @@ impl BlockWriter {
             noted.put(&mut words);
             number(&mut bytes, before as u64);
             number(&mut bytes, words.len() as u64);
-            words.iter().for_each(|word| number(&mut bytes, *word));
+            for word in words {
+                number(&mut bytes, word);
+            }
         }
         self.columns.pack(&mut bytes);
         self.columns.clear();

@@ -5,5 +5,6 @@
 #![warn(missing_docs)]
 
 pub mod csv;
+pub mod session;
 pub mod store;
 pub mod tip_force;

@@ -29,8 +29,7 @@ pub const STAGES: usize = 5;
 
 impl Stage {
     /// Every stage, in the order of the loop.
-    pub const ALL: [Self; STAGES] =
-        [Self::ForcePath, Self::Identification, Self::Rendering, Self::Gates, Self::State];
+    pub const ALL: [Self; STAGES] = [Self::ForcePath, Self::Identification, Self::Rendering, Self::Gates, Self::State];
 
     /// Its name, for a message.
     pub const fn name(self) -> &'static str {

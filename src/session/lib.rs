@@ -12,5 +12,6 @@
 mod codec;
 pub mod digest;
 pub mod journal;
+pub mod recorder;
 pub mod replay;
 pub mod scribe;

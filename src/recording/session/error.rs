@@ -50,9 +50,7 @@ impl WriteError {
 fn cure(kind: io::ErrorKind) -> &'static str {
     match kind {
         io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded => "free some space or record to another disk",
-        io::ErrorKind::ReadOnlyFilesystem | io::ErrorKind::PermissionDenied => {
-            "choose a folder that you may write to"
-        }
+        io::ErrorKind::ReadOnlyFilesystem | io::ErrorKind::PermissionDenied => "choose a folder that you may write to",
         io::ErrorKind::FileTooLarge => "record to a disk that takes larger files",
         _ => "check the disk or record to another one",
     }

@@ -58,8 +58,7 @@ impl Layout {
         format::header(&mut begin, "", library);
         let data_end = keep_whole(&mut begin, 0);
         let footer_at = pages(data_end + GROWTH) - END as u64;
-        let mut layout =
-            Self { file, data_end, room_end: 0, statistics_at: 0, footer_at, written: 0, failed: false };
+        let mut layout = Self { file, data_end, room_end: 0, statistics_at: 0, footer_at, written: 0, failed: false };
         let at = footer_at - SPARE - summary.room();
         let statistics_at = layout.write_tail(summary, at, footer_at)?;
         begin.extend_from_slice(&head(kind::ROOM, at - data_end - HEAD as u64));

@@ -312,9 +312,7 @@ impl Writer {
 }
 
 fn same_schema(one: &Encoding, other: &Encoding) -> bool {
-    one.schema == other.schema
-        && one.schema_encoding == other.schema_encoding
-        && one.schema_data == other.schema_data
+    one.schema == other.schema && one.schema_encoding == other.schema_encoding && one.schema_data == other.schema_data
 }
 
 /// The empty file is laid out under another name, and appears whole.

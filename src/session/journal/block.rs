@@ -12,8 +12,8 @@ use crate::{
     digest::Check,
 };
 
-/// Ticks of a full block: a quarter of a second at 1 kHz.
-pub const BLOCK_TICKS: usize = 250;
+/// Ticks of a full block: 0.2 s at 1 kHz.
+pub const BLOCK_TICKS: usize = 200;
 /// Most ticks, and most operations, that a block is read with.
 const MOST: u64 = 4096;
 

@@ -29,7 +29,9 @@ pub enum JournalError {
     #[error("it is no journal of a session of this program")]
     Foreign,
     /// Another version.
-    #[error("its journal has version {found}, this program reads version {VERSION}: replay it with the program that recorded it")]
+    #[error(
+        "its journal has version {found}, this program reads version {VERSION}: replay it with the program that recorded it"
+    )]
     Version {
         /// That version.
         found: u16,

@@ -136,4 +136,3 @@ pub fn replay<I: Iterator<Item = Result<Vec<u8>, ReplayError>>>(
     })?;
     Ok(outcome)
 }
-

@@ -1,0 +1,5 @@
+//! Sessions: recorded and replayed, bit for bit.
+#![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+mod bench;
+mod round_trip;

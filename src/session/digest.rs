@@ -136,6 +136,16 @@ fn of_side(outputs: &Outputs, tick: Option<&Tick>) -> [u64; STAGES] {
     digests.map(Digest::end)
 }
 
+/// The digest of bytes.
+pub(crate) fn digest_of_bytes(bytes: &[u8]) -> u64 {
+    let mut digest = Digest::default();
+    for chunk in bytes.chunks(8) {
+        digest.word(chunk.iter().rev().fold(0, |word, byte| word << 8 | u64::from(*byte)));
+    }
+    digest.word(bytes.len() as u64);
+    digest.end()
+}
+
 /// Words mixed into 64 bits. Two lanes, so that one does not wait for the other.
 #[derive(Clone, Copy, Debug)]
 struct Digest {

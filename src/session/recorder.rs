@@ -18,6 +18,7 @@ use std::{
 
 use crossbeam_channel::{Receiver, RecvTimeoutError, Sender, bounded};
 use nima_machine::{
+    rig::Side,
     runtime::{Entry, Passed, TapEnd},
     teleop::Origin,
 };
@@ -25,6 +26,7 @@ use nima_recording::session::{ChannelId, Encoding, WriteError, Writer};
 
 use crate::{
     journal::{End, JournalError, Start},
+    kept::described,
     scribe::{Scribe, Written},
 };
 
@@ -215,7 +217,12 @@ struct Session {
 
 impl Session {
     fn create(path: &Path, about: About, origin: Origin) -> Result<Self, RecordError> {
-        let About { program, started_ns, metadata, files } = about;
+        let About { program, started_ns, mut metadata, files } = about;
+        for (side, known) in Side::ALL.into_iter().zip(&origin.calibrations) {
+            if let Some(known) = known {
+                metadata.insert(format!("calibrations {}", side.word()), described(known));
+            }
+        }
         let (scribe, first) = Scribe::new(&Start { program: program.clone(), origin })?;
         let mut writer = Writer::create(path, &program)?;
         for (name, entries) in &metadata {

@@ -13,7 +13,7 @@ use crate::journal::{BlockWriter, Encoder, End, JournalError, Noted, Start};
 /// A message of the journal, and the loop time that it belongs to (s).
 #[derive(Clone, Debug)]
 pub struct Written {
-    /// Loop time of its first tick, s.
+    /// Loop time of its last tick, s: it never falls, so that the messages keep their order.
     pub t_s: f64,
     /// Its bytes.
     pub bytes: Vec<u8>,
@@ -24,7 +24,6 @@ pub struct Written {
 pub struct Scribe {
     encoder: Encoder,
     block: BlockWriter,
-    block_s: f64,
     events: Vec<Event>,
     /// Calibrations that were handed over and that no operation has named yet.
     filed: BTreeMap<u64, Calibrations>,
@@ -46,7 +45,6 @@ impl Scribe {
         let scribe = Self {
             encoder,
             block: BlockWriter::default(),
-            block_s: 0.0,
             events: Vec::new(),
             filed: BTreeMap::new(),
             next: 0,
@@ -96,9 +94,6 @@ impl Scribe {
             Passed::Stepped(stepped) => {
                 let row = BlockWriter::row(&stepped, self.events.iter());
                 self.t_s = stepped.timing.now_s;
-                if self.block.is_empty() {
-                    self.block_s = self.t_s;
-                }
                 self.block.tick(&row);
                 self.ticks += 1;
                 let told = tick(&stepped, &self.events);
@@ -125,9 +120,7 @@ impl Scribe {
     }
 
     fn block(&mut self) -> Written {
-        let written = Written { t_s: self.block_s, bytes: self.encoder.block(&mut self.block) };
-        self.block_s = self.t_s;
-        written
+        Written { t_s: self.t_s, bytes: self.encoder.block(&mut self.block) }
     }
 
     /// Notes a hole if entries before this number were dropped.

@@ -6,6 +6,8 @@
 
 mod block;
 mod parts;
+#[cfg(test)]
+mod tests;
 
 use nima_machine::teleop::Calibrations;
 

@@ -16,6 +16,8 @@ pub use machine::Machine;
 pub use steps::{Journal, Step};
 pub use what_if::{Change, Compared, Difference, compare};
 
+use nima_recording::session::ReadError;
+
 use crate::{
     digest::{Check, Stage},
     journal::{JournalError, Row},
@@ -44,8 +46,8 @@ pub enum ReplayError {
     #[error(transparent)]
     Settings(#[from] SettingsError),
     /// The file itself.
-    #[error("{0}")]
-    File(String),
+    #[error(transparent)]
+    File(#[from] ReadError),
 }
 
 /// One tick of a replay.

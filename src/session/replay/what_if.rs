@@ -106,7 +106,7 @@ pub struct Compared {
 pub fn compare<I: Iterator<Item = Result<Vec<u8>, ReplayError>>>(
     journal: &mut Journal<I>,
     change: &Change,
-    mut each: impl FnMut(&Tick, &Tick) -> Result<(), ReplayError>,
+    mut each: impl FnMut(&Tick, &Tick),
 ) -> Result<([Option<Compared>; SIDES], u64, Option<Hole>), ReplayError> {
     let origin = &journal.start().origin;
     let (mut recorded, mut changed) = (Machine::new(origin)?, Machine::new(&change.origin(origin))?);
@@ -136,7 +136,7 @@ pub fn compare<I: Iterator<Item = Result<Vec<u8>, ReplayError>>>(
                 for side in Side::ALL {
                     if let (Some(was), Some(would)) = (&as_was[side.index()], &as_if[side.index()]) {
                         add(sides[side.index()].get_or_insert_default(), was, would);
-                        each(was, would)?;
+                        each(was, would);
                     }
                 }
             }

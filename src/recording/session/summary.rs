@@ -1,7 +1,7 @@
 //! The summary: what a reader needs to know before it reads a chunk. Kept as encoded records, one buffer for each kind.
 
-use super::format::{self, END, Statistics, kind, record};
 use super::format::Put as _;
+use super::format::{self, END, Statistics, kind, record};
 
 #[derive(Default)]
 pub(super) struct Summary {

@@ -55,3 +55,35 @@ fn cure(kind: io::ErrorKind) -> &'static str {
         _ => "check the disk or record to another one",
     }
 }
+
+/// Why a session file could not be read.
+#[derive(Debug, thiserror::Error)]
+#[expect(missing_docs, reason = "the messages say it")]
+pub enum ReadError {
+    /// It could not be opened or read.
+    #[error("cannot read session {path}: {reason}")]
+    Open { path: PathBuf, reason: String },
+    #[error("session {path} is empty: nothing was recorded in it")]
+    Empty { path: PathBuf },
+    #[error("session {path} ends within its first bytes: nothing was recorded in it")]
+    Cut { path: PathBuf },
+    #[error("{path} is not a session: it is not in the format MCAP; is it the right file?")]
+    Foreign { path: PathBuf },
+    #[error(
+        "session {path} is in version {version} of the format MCAP, only version 0 is read; it needs a newer program"
+    )]
+    Version { path: PathBuf, version: String },
+    /// A part of it does not say what it should.
+    #[error("session {path} is damaged at byte {at}: {what}")]
+    Damaged { path: PathBuf, at: u64, what: String },
+}
+
+impl ReadError {
+    pub(super) fn open(path: &Path, error: &io::Error) -> Self {
+        Self::Open { path: path.to_owned(), reason: error.to_string() }
+    }
+
+    pub(super) fn damaged(path: &Path, at: u64, what: &str) -> Self {
+        Self::Damaged { path: path.to_owned(), at, what: what.to_owned() }
+    }
+}

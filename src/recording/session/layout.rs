@@ -31,12 +31,13 @@ const PAGE: u64 = 4096;
 /// Free room is kept for a summary and so much more.
 const SPARE: u64 = 64 << 10;
 /// The file grows by so much at least; a hole takes no disk.
-const GROWTH: u64 = 16 << 20;
+pub(super) const GROWTH: u64 = 16 << 20;
 /// And by so many summaries, as each growth writes two.
-const GROWTH_IN_SUMMARIES: u64 = 16;
+const GROWTH_IN_SUMMARIES: u64 = 32;
 
 pub(super) struct Layout {
     file: File,
+    growth: u64,
     /// Where the data ends and the free room begins.
     data_end: u64,
     /// Where the free room ends: the record that ends the data.
@@ -49,16 +50,29 @@ pub(super) struct Layout {
     written: u64,
     /// The file could not be led to what was written: what stands where is not known any more.
     failed: bool,
+    #[cfg(test)]
+    pub(super) log: Vec<(u64, Vec<u8>)>,
 }
 
 impl Layout {
     /// Lays out a new, empty file that nobody else sees yet.
-    pub(super) fn new(file: File, library: &str, summary: &Summary) -> io::Result<Self> {
+    pub(super) fn new(file: File, library: &str, growth: u64, summary: &Summary) -> io::Result<Self> {
         let mut begin = format::MAGIC.to_vec();
         format::header(&mut begin, "", library);
         let data_end = keep_whole(&mut begin, 0);
-        let footer_at = pages(data_end + GROWTH) - END as u64;
-        let mut layout = Self { file, data_end, room_end: 0, statistics_at: 0, footer_at, written: 0, failed: false };
+        let footer_at = pages(data_end + growth) - END as u64;
+        let mut layout = Self {
+            file,
+            growth,
+            data_end,
+            room_end: 0,
+            statistics_at: 0,
+            footer_at,
+            written: 0,
+            failed: false,
+            #[cfg(test)]
+            log: Vec::new(),
+        };
         let at = footer_at - SPARE - summary.room();
         let statistics_at = layout.write_tail(summary, at, footer_at)?;
         begin.extend_from_slice(&head(kind::ROOM, at - data_end - HEAD as u64));
@@ -150,7 +164,7 @@ impl Layout {
 
     fn grow(&mut self, needed: u64, summary: &Summary) -> io::Result<()> {
         let room = summary.room();
-        let more = (needed + 2 * room + 2 * SPARE).max(GROWTH).max(GROWTH_IN_SUMMARIES * room);
+        let more = (needed + 2 * room + 2 * SPARE).max(self.growth).max(GROWTH_IN_SUMMARIES * room);
         let footer_at = pages(self.footer_at + more) - END as u64;
         // The same summary in the room that is left, with room behind it up to the new footer.
         let at = self.before_room_end(room)?;
@@ -209,6 +223,8 @@ impl Layout {
     fn write(&mut self, bytes: &[u8], at: u64) -> io::Result<()> {
         at::write_all(&self.file, bytes, at)?;
         self.written += bytes.len() as u64;
+        #[cfg(test)]
+        self.log.push((at, bytes.to_vec()));
         Ok(())
     }
 }

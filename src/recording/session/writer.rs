@@ -12,7 +12,7 @@ use super::{
     chunk::{Chunk, Closed},
     error::WriteError,
     format::{self, Put as _, Statistics, kind, record},
-    layout::Layout,
+    layout::{GROWTH, Layout},
     summary::Summary,
 };
 
@@ -28,7 +28,7 @@ const RECORD_MAX: u64 = 1 << 31;
 pub struct ChannelId(pub(super) u16);
 
 /// How the messages of a channel are to be understood; see [`crate::messages`].
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Encoding {
     /// Name of the kind of message, such as `sensor_msgs/msg/JointState`; empty with the next two for none.
     pub schema: String,
@@ -92,8 +92,12 @@ impl Writer {
     /// # Errors
     /// A file of this name, no such folder, no right to write, no space.
     pub fn create(path: &Path, library: &str) -> Result<Self, WriteError> {
+        Self::create_growing_by(path, library, GROWTH)
+    }
+
+    pub(super) fn create_growing_by(path: &Path, library: &str, growth: u64) -> Result<Self, WriteError> {
         let summary = Summary::default();
-        let layout = create(path, library, &summary).map_err(|error| WriteError::create(path, &error))?;
+        let layout = create(path, library, growth, &summary).map_err(|error| WriteError::create(path, &error))?;
         Ok(Self {
             path: path.to_owned(),
             layout,
@@ -270,6 +274,11 @@ impl Writer {
         Ok(self.summary.statistics)
     }
 
+    #[cfg(test)]
+    pub(super) fn layout(&self) -> &Layout {
+        &self.layout
+    }
+
     /// Writes the chunk into the data.
     fn place(&mut self, chunk: &Closed) -> Result<u64, WriteError> {
         let of_index = 128 + 10 * chunk.indexes.len();
@@ -316,7 +325,7 @@ fn same_schema(one: &Encoding, other: &Encoding) -> bool {
 }
 
 /// The empty file is laid out under another name, and appears whole.
-fn create(path: &Path, library: &str, summary: &Summary) -> io::Result<Layout> {
+fn create(path: &Path, library: &str, growth: u64, summary: &Summary) -> io::Result<Layout> {
     if path.symlink_metadata().is_ok() {
         return Err(io::Error::new(ErrorKind::AlreadyExists, "something of this name is there"));
     }
@@ -325,7 +334,7 @@ fn create(path: &Path, library: &str, summary: &Summary) -> io::Result<Layout> {
     #[cfg(unix)]
     new.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
     let new = new.tempfile_in(folder).map_err(|error| io::Error::new(error.kind(), plain(&error)))?;
-    let layout = Layout::new(new.as_file().try_clone()?, library, summary)?;
+    let layout = Layout::new(new.as_file().try_clone()?, library, growth, summary)?;
     new.persist_noclobber(path).map_err(|error| error.error)?;
     Ok(layout)
 }

@@ -5,6 +5,7 @@
 #![warn(missing_docs)]
 
 pub mod csv;
+pub mod messages;
 pub mod session;
 pub mod store;
 pub mod tip_force;

@@ -7,7 +7,6 @@
 mod counting;
 
 use std::{
-    convert::Infallible,
     thread,
     time::{Duration, Instant},
 };
@@ -20,25 +19,18 @@ use nima_machine::{
     runtime::{TapEnd, tap},
     teleop::{Calibrations, Loop, Origin, Timing},
 };
-use nima_session::{
-    journal::{JournalError, Start},
-    scribe::Scribe,
-};
+use nima_session::{journal::Start, scribe::Scribe};
 use nima_world::{Worlds, scene::Scene};
 
-/// Writes the journal into the void; returns its bytes, ticks and lost entries.
+/// Writes the journal into memory; returns its bytes, ticks and lost entries.
 fn read(start: &Start, end: &TapEnd) -> (usize, u64, u64) {
     let (mut scribe, _) = Scribe::new(start).unwrap();
-    let mut bytes = 0;
+    let mut kept = Vec::new();
     while let Ok(entry) = end.entries.recv() {
-        let written = |written: nima_session::scribe::Written| {
-            bytes += written.bytes.len();
-            Ok::<_, JournalError>(())
-        };
-        scribe.take(entry, end, |_, _| Ok(()), written).unwrap();
+        scribe.take(entry, end, &mut kept).unwrap();
     }
-    let end = scribe.end(end, |_| Ok::<_, Infallible>(())).unwrap();
-    (bytes, end.ticks, end.lost)
+    let end = scribe.end(end, &mut kept).unwrap();
+    (kept.iter().map(Vec::len).sum(), end.ticks, end.lost)
 }
 
 fn run(ticks: u64, pause: Duration, words: &str) {

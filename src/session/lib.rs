@@ -19,3 +19,6 @@ mod kept;
 pub mod recorder;
 pub mod replay;
 pub mod scribe;
+mod topics;
+
+pub use topics::Words;

@@ -18,16 +18,18 @@ use std::{
 
 use crossbeam_channel::{Receiver, RecvTimeoutError, Sender, bounded};
 use nima_machine::{
-    rig::Side,
-    runtime::{Entry, Passed, TapEnd},
-    teleop::Origin,
+    messages::Event,
+    rig::{SIDES, Side},
+    runtime::{Entry, Operation, Passed, Stepped, TapEnd},
+    teleop::{Calibrations, Origin},
 };
 use nima_recording::session::{ChannelId, Encoding, WriteError, Writer};
 
 use crate::{
     journal::{End, JournalError, Start},
     kept::described,
-    scribe::{Scribe, Written},
+    scribe::{Pages, Scribe, Written},
+    topics::{Topics, Words},
 };
 
 /// Topic of the journal.
@@ -43,7 +45,7 @@ const LOOK_EVERY: Duration = Duration::from_millis(100);
 const BLOCKS_PER_CHUNK: u32 = 2;
 
 /// What is told of a session beside what happened in it.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub struct About {
     /// Name and version of the program.
     pub program: String,
@@ -53,6 +55,8 @@ pub struct About {
     pub metadata: BTreeMap<String, BTreeMap<String, String>>,
     /// Whole files.
     pub files: Vec<Attached>,
+    /// Sentences for the events of the log.
+    pub words: Words,
 }
 
 /// A file inside a session file.
@@ -119,14 +123,14 @@ impl Recorder {
     /// [`RecordError`] if the file cannot be created or its beginning cannot be written.
     pub fn start(path: &Path, about: About, origin: Origin, tap: TapEnd) -> Result<Self, RecordError> {
         let failed = |source| RecordError::System { path: path.to_owned(), source };
-        let mut file = Session::create(path, about, origin)?;
+        let mut session = Session::create(path, about, origin)?;
         let shared = Arc::<Shared>::default();
-        shared.bytes.store(file.writer.bytes().1, Ordering::Relaxed);
+        shared.bytes.store(session.file.writer.bytes().1, Ordering::Relaxed);
         let (told, sync) =
-            (Arc::clone(&shared), Sync::start(path, file.writer.sync_handle().map_err(failed)?, &shared)?);
+            (Arc::clone(&shared), Sync::start(path, session.file.writer.sync_handle().map_err(failed)?, &shared)?);
         let run = move || {
-            let ran = file.run(&tap, &told);
-            if let Err(error) = ran.and_then(|()| file.close(&tap, &told)) {
+            let ran = session.run(&tap, &told);
+            if let Err(error) = ran.and_then(|()| session.close(&tap, &told)) {
                 told.trouble.set(error).ok();
                 drain(&tap, &told);
             }
@@ -206,27 +210,73 @@ fn next(tap: &TapEnd, shared: &Shared) -> Next {
     }
 }
 
-/// The file and what is written into it.
+/// The file and who writes into it.
 struct Session {
-    writer: Writer,
-    journal: ChannelId,
-    scribe: Option<Scribe>,
-    started_ns: u64,
-    blocks: u32,
+    scribe: Scribe,
+    file: SessionFile,
 }
 
 impl Session {
     fn create(path: &Path, about: About, origin: Origin) -> Result<Self, RecordError> {
-        let About { program, started_ns, mut metadata, files } = about;
-        for (side, known) in Side::ALL.into_iter().zip(&origin.calibrations) {
-            if let Some(known) = known {
-                metadata.insert(format!("calibrations {}", side.word()), described(known));
+        let sides = origin.calibrations.each_ref().map(Option::is_some);
+        let of = |(side, known): (Side, &Option<Calibrations>)| Some((side, described(known.as_ref()?)));
+        let known: Vec<_> = Side::ALL.into_iter().zip(&origin.calibrations).filter_map(of).collect();
+        let (scribe, first) = Scribe::new(&Start { program: about.program.clone(), origin })?;
+        let mut file = SessionFile::create(path, about, &known, sides)?;
+        file.write(&first)?;
+        file.writer.flush()?;
+        Ok(Self { scribe, file })
+    }
+
+    fn run(&mut self, tap: &TapEnd, shared: &Shared) -> Result<(), RecordError> {
+        loop {
+            match next(tap, shared) {
+                Next::Entry(entry) => self.scribe.take(entry, tap, &mut self.file)?,
+                // The loop rests: nobody shall wait for what is known.
+                Next::Nothing => self.file.writer.flush()?,
+                Next::End => return Ok(()),
             }
+            shared.ticks.store(self.scribe.ticks(), Ordering::Relaxed);
+            shared.lost.store(self.scribe.lost(), Ordering::Relaxed);
+            shared.bytes.store(self.file.writer.bytes().1, Ordering::Relaxed);
         }
-        let (scribe, first) = Scribe::new(&Start { program: program.clone(), origin })?;
+    }
+
+    fn close(self, tap: &TapEnd, shared: &Shared) -> Result<(), RecordError> {
+        let Self { scribe, mut file } = self;
+        let End { ticks, lost } = scribe.end(tap, &mut file)?;
+        file.writer.flush()?;
+        shared.ticks.store(ticks, Ordering::Relaxed);
+        shared.lost.store(lost, Ordering::Relaxed);
+        shared.bytes.store(file.writer.bytes().1, Ordering::Relaxed);
+        file.writer.finish()?;
+        Ok(())
+    }
+}
+
+/// The file and its channels.
+struct SessionFile {
+    writer: Writer,
+    journal: ChannelId,
+    topics: Topics,
+    started_ns: u64,
+    blocks: u32,
+}
+
+impl SessionFile {
+    fn create(
+        path: &Path,
+        about: About,
+        known: &[(Side, BTreeMap<String, String>)],
+        sides: [bool; SIDES],
+    ) -> Result<Self, RecordError> {
+        let About { program, started_ns, metadata, files, words } = about;
         let mut writer = Writer::create(path, &program)?;
         for (name, entries) in &metadata {
             writer.metadata(name, entries)?;
+        }
+        for (side, entries) in known {
+            writer.metadata(&format!("calibrations {}", side.word()), entries)?;
         }
         for Attached { name, media_type, data } in &files {
             writer.attachment(name, media_type, started_ns, data)?;
@@ -239,37 +289,17 @@ impl Session {
             message_encoding: JOURNAL_ENCODING.to_owned(),
         };
         let journal = writer.channel(JOURNAL_TOPIC, encoding)?;
-        let mut this = Self { writer, journal, scribe: Some(scribe), started_ns, blocks: 0 };
-        this.write(&first)?;
-        this.writer.flush()?;
-        Ok(this)
+        let topics = Topics::new(&mut writer, sides, words)?;
+        Ok(Self { writer, journal, topics, started_ns, blocks: 0 })
     }
 
-    fn run(&mut self, tap: &TapEnd, shared: &Shared) -> Result<(), RecordError> {
-        loop {
-            match next(tap, shared) {
-                Next::Entry(entry) => self.take(entry, tap)?,
-                Next::Nothing => self.writer.flush()?,
-                Next::End => return Ok(()),
-            }
-            self.tell(shared);
-        }
+    fn log_time_ns(&self, t_s: f64) -> u64 {
+        self.started_ns + (t_s.max(0.0) * 1e9).round() as u64
     }
+}
 
-    fn tell(&self, shared: &Shared) {
-        if let Some(scribe) = &self.scribe {
-            shared.ticks.store(scribe.ticks(), Ordering::Relaxed);
-            shared.lost.store(scribe.lost(), Ordering::Relaxed);
-        }
-        shared.bytes.store(self.writer.bytes().1, Ordering::Relaxed);
-    }
-
-    fn take(&mut self, entry: Entry, tap: &TapEnd) -> Result<(), RecordError> {
-        let Some(mut scribe) = self.scribe.take() else { return Ok(()) };
-        let taken = scribe.take(entry, tap, |_, _| Ok::<_, RecordError>(()), |written| self.write(&written));
-        self.scribe = Some(scribe);
-        taken
-    }
+impl Pages for SessionFile {
+    type Error = RecordError;
 
     fn write(&mut self, Written { t_s, bytes }: &Written) -> Result<(), RecordError> {
         self.writer.message(self.journal, self.log_time_ns(*t_s), bytes)?;
@@ -280,20 +310,14 @@ impl Session {
         Ok(())
     }
 
-    fn log_time_ns(&self, t_s: f64) -> u64 {
-        self.started_ns + (t_s.max(0.0) * 1e9).round() as u64
+    fn tick(&mut self, stepped: &Stepped, events: &[Event]) -> Result<(), RecordError> {
+        let time_ns = self.log_time_ns(stepped.timing.now_s);
+        Ok(self.topics.tick(&mut self.writer, time_ns, stepped, events)?)
     }
 
-    fn close(mut self, tap: &TapEnd, shared: &Shared) -> Result<(), RecordError> {
-        if let Some(scribe) = self.scribe.take() {
-            let End { ticks, lost } = scribe.end(tap, |written| self.write(&written))?;
-            shared.ticks.store(ticks, Ordering::Relaxed);
-            shared.lost.store(lost, Ordering::Relaxed);
-        }
-        self.writer.flush()?;
-        shared.bytes.store(self.writer.bytes().1, Ordering::Relaxed);
-        self.writer.finish()?;
-        Ok(())
+    fn operation(&mut self, operation: &Operation, t_s: f64) -> Result<(), RecordError> {
+        let time_ns = self.log_time_ns(t_s);
+        Ok(self.topics.operation(&mut self.writer, time_ns, operation)?)
     }
 }
 

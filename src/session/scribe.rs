@@ -19,6 +19,44 @@ pub struct Written {
     pub bytes: Vec<u8>,
 }
 
+/// What takes a journal, and what else is told of a session.
+pub trait Pages {
+    /// Why it takes no more.
+    type Error: From<JournalError>;
+
+    /// Takes a message of the journal.
+    ///
+    /// # Errors
+    /// Why it does not.
+    fn write(&mut self, written: &Written) -> Result<(), Self::Error>;
+
+    /// Takes a tick, and the events in it.
+    ///
+    /// # Errors
+    /// Why it does not.
+    fn tick(&mut self, _stepped: &Stepped, _events: &[Event]) -> Result<(), Self::Error> {
+        Ok(())
+    }
+
+    /// Takes what was done to the loop after the tick at `t_s` (s).
+    ///
+    /// # Errors
+    /// Why it does not.
+    fn operation(&mut self, _operation: &Operation, _t_s: f64) -> Result<(), Self::Error> {
+        Ok(())
+    }
+}
+
+/// The messages of the journal alone, in memory.
+impl Pages for Vec<Vec<u8>> {
+    type Error = JournalError;
+
+    fn write(&mut self, written: &Written) -> Result<(), JournalError> {
+        self.push(written.bytes.clone());
+        Ok(())
+    }
+}
+
 /// Writes a journal.
 #[derive(Debug)]
 pub struct Scribe {
@@ -70,52 +108,47 @@ impl Scribe {
         self.t_s
     }
 
-    /// Takes one entry. `tick` is called with a tick and the events in it, `write` with each message that is ready.
+    /// Takes one entry.
     ///
     /// # Errors
-    /// What `write` returns, or [`JournalError::Part`] for calibrations that cannot be written.
-    pub fn take<E: From<JournalError>>(
-        &mut self,
-        entry: Entry,
-        tap: &TapEnd,
-        mut tick: impl FnMut(&Stepped, &[Event]) -> Result<(), E>,
-        mut write: impl FnMut(Written) -> Result<(), E>,
-    ) -> Result<(), E> {
+    /// What `pages` return, or [`JournalError::Part`] for calibrations that cannot be written.
+    pub fn take<P: Pages>(&mut self, entry: Entry, tap: &TapEnd, pages: &mut P) -> Result<(), P::Error> {
         self.missed_until(entry.number);
         self.next = entry.number + 1;
         match entry.passed {
             Passed::Event(event) => self.events.push(event),
             Passed::Operation(operation) => {
                 if let Operation::Calibrations { number, .. } = operation {
-                    self.calibrations(number, tap, &mut write)?;
+                    self.calibrations(number, tap, pages)?;
                 }
                 self.block.note(Noted::Operation(operation));
+                pages.operation(&operation, self.t_s)?;
             }
             Passed::Stepped(stepped) => {
                 let row = BlockWriter::row(&stepped, self.events.iter());
                 self.t_s = stepped.timing.now_s;
                 self.block.tick(&row);
                 self.ticks += 1;
-                let told = tick(&stepped, &self.events);
+                let told = pages.tick(&stepped, &self.events);
                 self.events.clear();
                 tap.give_back(stepped);
                 told?;
             }
         }
-        if self.block.is_full() { write(self.block()) } else { Ok(()) }
+        if self.block.is_full() { pages.write(&self.block()) } else { Ok(()) }
     }
 
     /// Ends the journal.
     ///
     /// # Errors
-    /// What `write` returns.
-    pub fn end<E>(mut self, tap: &TapEnd, mut write: impl FnMut(Written) -> Result<(), E>) -> Result<End, E> {
+    /// What `pages` return.
+    pub fn end<P: Pages>(mut self, tap: &TapEnd, pages: &mut P) -> Result<End, P::Error> {
         self.missed_until(tap.offered());
         if !self.block.is_empty() {
-            write(self.block())?;
+            pages.write(&self.block())?;
         }
         let end = End { ticks: self.ticks, lost: self.lost };
-        write(Written { t_s: self.t_s, bytes: self.encoder.end(&end) })?;
+        pages.write(&Written { t_s: self.t_s, bytes: self.encoder.end(&end) })?;
         Ok(end)
     }
 
@@ -134,17 +167,12 @@ impl Scribe {
         }
     }
 
-    fn calibrations<E: From<JournalError>>(
-        &mut self,
-        number: u64,
-        tap: &TapEnd,
-        write: &mut impl FnMut(Written) -> Result<(), E>,
-    ) -> Result<(), E> {
+    fn calibrations<P: Pages>(&mut self, number: u64, tap: &TapEnd, pages: &mut P) -> Result<(), P::Error> {
         self.filed.extend(tap.calibrations());
         // Those with a lower number were not taken by the loop.
         self.filed = self.filed.split_off(&number);
         let Some(calibrations) = self.filed.remove(&number) else { return Ok(()) };
         let bytes = self.encoder.calibrations(number, &calibrations)?;
-        write(Written { t_s: self.t_s, bytes })
+        pages.write(&Written { t_s: self.t_s, bytes })
     }
 }

@@ -1,13 +1,13 @@
 //! A loop whose tap is read into the memory.
 
-use std::{convert::Infallible, thread};
+use std::thread;
 
 use nima_machine::{
     messages::{Command, Tick},
     runtime::{self, Assembly, TapEnd, tap},
 };
 use nima_session::{
-    journal::{JournalError, Start},
+    journal::Start,
     replay::{Journal, Outcome, ReplayError, replay},
     scribe::{Scribe, Written},
 };
@@ -23,17 +23,9 @@ impl Kept {
         let (mut scribe, Written { bytes, .. }) = Scribe::new(start).unwrap();
         let mut kept = vec![bytes];
         while let Ok(entry) = end.entries.recv() {
-            let written = |written: Written| {
-                kept.push(written.bytes);
-                Ok::<_, JournalError>(())
-            };
-            scribe.take(entry, end, |_, _| Ok(()), written).unwrap();
+            scribe.take(entry, end, &mut kept).unwrap();
         }
-        let last = |written: Written| {
-            kept.push(written.bytes);
-            Ok::<_, Infallible>(())
-        };
-        scribe.end(end, last).unwrap();
+        scribe.end(end, &mut kept).unwrap();
         Self(kept)
     }
 

@@ -14,7 +14,7 @@ use nima_core::{
     frames::{GRAVITY_M_S2, Wrench, WristSample},
     kinematics::Hand,
 };
-use nima_devices::{Device, Health, Identity, Loss, Slot, Standing, Stamped};
+use nima_devices::{Device, Health, Identity, Loss, Slot, Stamped, Standing};
 use nima_machine::{
     config::{RigConfig, SchedulingClass},
     messages::{Command, Fault, ForceSource, LoopState},

@@ -11,6 +11,8 @@ use nima_recording::store::utc_now;
 use nima_session::recorder::{About, Attached, RecordError, Recorder};
 use nima_world::Plan;
 
+use crate::words::event;
+
 /// Name and version of this program.
 pub(crate) const PROGRAM: &str = concat!("nima ", env!("CARGO_PKG_VERSION"));
 
@@ -50,5 +52,6 @@ fn about(plan: &Plan, clock: &str) -> About {
         started_ns,
         metadata: BTreeMap::from([("session".to_owned(), session)]),
         files: texts.into_iter().filter_map(file).collect(),
+        words: event,
     }
 }

@@ -85,11 +85,9 @@ fn without_checked(rig: &RigConfig) -> RigConfig {
 }
 
 fn read_rig(text: &str) -> Result<RigConfig, JournalError> {
-    let part = |why: String| JournalError::Part { what: "rig", why };
-    let rig: RigConfig = toml::from_str(text).map_err(|error| part(error.message().to_owned()))?;
-    // The same limits as those of a rig file: rings and windows are made by them.
-    rig.validate().map_err(|error| part(error.to_string()))?;
-    Ok(rig)
+    // With the limits of a rig file: rings and windows are made by them.
+    let read = RigConfig::parse("in the journal".as_ref(), text);
+    read.map_err(|error| JournalError::Part { what: "rig", why: error.to_string() })
 }
 
 pub(super) fn put_calibrations(calibrations: &Calibrations, to: &mut Bytes) -> Result<(), JournalError> {

@@ -46,7 +46,7 @@ fn wrench() -> impl Strategy<Value = Wrench> {
     (vector(), vector()).prop_map(|(force_n, torque_nm)| Wrench { force_n, torque_nm })
 }
 
-fn sensed() -> impl Strategy<Value = Sensed> {
+fn sensed() -> BoxedStrategy<Sensed> {
     let turned = (maybe(rotation()), maybe(rotation()), maybe(rotation()));
     let sample = (wrench(), maybe(vector()), turned, maybe(number()), maybe(vector()));
     let at_wrist = sample.prop_map(|(raw, acceleration_m_s2, turned, insertion_m, tissue_n)| {
@@ -55,90 +55,94 @@ fn sensed() -> impl Strategy<Value = Sensed> {
             WristSample { raw, acceleration_m_s2, world_from_s1, world_from_m, m_from_c, insertion_m, tissue_n };
         Sensed::AtWrist(sample)
     });
-    prop_oneof![vector().prop_map(Sensed::AtTip), at_wrist]
+    prop_oneof![vector().prop_map(Sensed::AtTip), at_wrist].boxed()
 }
 
-fn frames() -> impl Strategy<Value = FrameSample> {
-    ([maybe(pose()), maybe(pose()), maybe(pose()), maybe(pose()), maybe(pose())], maybe(wrench())).prop_map(
-        |([base_from_flange, other_base_from_flange, c_from_m, c_from_other_m, leader_from_handle], wrench)| {
-            FrameSample {
-                base_from_flange,
-                other_base_from_flange,
-                c_from_m,
-                c_from_other_m,
-                leader_from_handle,
-                wrench,
-            }
-        },
-    )
+fn frames() -> BoxedStrategy<FrameSample> {
+    ([maybe(pose()), maybe(pose()), maybe(pose()), maybe(pose()), maybe(pose())], maybe(wrench()))
+        .prop_map(
+            |([base_from_flange, other_base_from_flange, c_from_m, c_from_other_m, leader_from_handle], wrench)| {
+                FrameSample {
+                    base_from_flange,
+                    other_base_from_flange,
+                    c_from_m,
+                    c_from_other_m,
+                    leader_from_handle,
+                    wrench,
+                }
+            },
+        )
+        .boxed()
 }
 
-fn obstacle() -> impl Strategy<Value = Obstacle> {
+fn obstacle() -> BoxedStrategy<Obstacle> {
     let start = prop_oneof![
         number().prop_map(|period_s| StartError::Period { period_s }),
         (number(), number()).prop_map(|(shaft_m, insertion_max_m)| StartError::ShortShaft { shaft_m, insertion_max_m }),
         any::<usize>().prop_map(|joint| StartError::NotFinite { joint }),
-        (any::<usize>(), number(), number())
-            .prop_map(|(joint, angle_deg, limit_deg)| StartError::AtLimit { joint, angle_deg, limit_deg }),
+        (any::<usize>(), number(), number()).prop_map(|(joint, angle_deg, limit_deg)| StartError::AtLimit {
+            joint,
+            angle_deg,
+            limit_deg
+        }),
         (number(), number()).prop_map(|(miss_m, most_m)| StartError::BesideTrocar { miss_m, most_m }),
         number().prop_map(|insertion_m| StartError::NotInserted { insertion_m }),
     ];
-    let exchanged = [
-        Exchange::Handles,
-        Exchange::Arms,
-        Exchange::Sensors,
-        Exchange::Servos,
-        Exchange::Markers,
-        Exchange::Trocars,
-    ];
+    let exchanged =
+        [Exchange::Handles, Exchange::Arms, Exchange::Sensors, Exchange::Servos, Exchange::Markers, Exchange::Trocars];
     prop_oneof![
         start.prop_map(Obstacle::Start),
         prop_oneof![Just(Awaited::Servos), Just(Awaited::Markers)].prop_map(Obstacle::Waiting),
         proptest::sample::select(exchanged.to_vec()).prop_map(Obstacle::Exchanged),
     ]
+    .boxed()
 }
 
-fn inputs() -> impl Strategy<Value = Inputs> {
+fn inputs() -> BoxedStrategy<Inputs> {
     let hand = (vector(), maybe(rotation()), maybe(number()), maybe(number()));
     let tip = (vector(), maybe(rotation()), sensed());
     let view = prop_oneof![Just(View::Fixed), Just(View::Unseen), rotation().prop_map(View::Seen)];
     let rest = (view, frames(), any::<bool>(), maybe(any::<bool>()), any::<bool>(), maybe(obstacle()), number());
-    (hand, tip, rest).prop_map(|(hand, tip, rest)| {
-        let (position_m, orientation, gripper_rad, grip_n) = hand;
-        let (tip_m, world_from_jaws, sensed) = tip;
-        let (view, frames, clutch, presence, powered, obstacle, age_s) = rest;
-        Inputs {
-            hand: Hand { position_m, orientation },
-            gripper_rad,
-            grip_n,
-            tip_m,
-            world_from_jaws,
-            sensed,
-            view,
-            frames,
-            switches: Switches { clutch, presence },
-            powered,
-            obstacle,
-            age_s,
-        }
-    })
+    (hand, tip, rest)
+        .prop_map(|(hand, tip, rest)| {
+            let (position_m, orientation, gripper_rad, grip_n) = hand;
+            let (tip_m, world_from_jaws, sensed) = tip;
+            let (view, frames, clutch, presence, powered, obstacle, age_s) = rest;
+            Inputs {
+                hand: Hand { position_m, orientation },
+                gripper_rad,
+                grip_n,
+                tip_m,
+                world_from_jaws,
+                sensed,
+                view,
+                frames,
+                switches: Switches { clutch, presence },
+                powered,
+                obstacle,
+                age_s,
+            }
+        })
+        .boxed()
 }
 
-fn row() -> impl Strategy<Value = Row> {
+fn row() -> BoxedStrategy<Row> {
     let timing = (number(), number(), number(), maybe(number()), any::<u64>());
     let check = (any::<u64>(), any::<[[u16; STAGES]; 2]>());
-    (timing, maybe(inputs()), maybe(inputs()), check).prop_map(|(timing, right, left, (all, stages))| {
-        let (now_s, wake_s, work_s, sample_to_force_s, missed_now) = timing;
-        let timing = Timing { now_s, wake_s, work_s, sample_to_force_s, missed_now };
-        Row { timing, inputs: [right, left], check: Check { all, stages } }
-    })
+    (timing, maybe(inputs()), maybe(inputs()), check)
+        .prop_map(|(timing, right, left, (all, stages))| {
+            let (now_s, wake_s, work_s, sample_to_force_s, missed_now) = timing;
+            let timing = Timing { now_s, wake_s, work_s, sample_to_force_s, missed_now };
+            Row { timing, inputs: [right, left], check: Check { all, stages } }
+        })
+        .boxed()
 }
 
 fn side() -> impl Strategy<Value = Side> {
     prop_oneof![Just(Side::Right), Just(Side::Left)]
 }
 
-fn prompt() -> impl Strategy<Value = Prompt> {
+fn prompt() -> BoxedStrategy<Prompt> {
     let plain = [
         Prompt::Rest,
         Prompt::Wave,
@@ -156,9 +160,10 @@ fn prompt() -> impl Strategy<Value = Prompt> {
         proptest::sample::select(Move::ALL.to_vec()).prop_map(Prompt::MoveTip),
         proptest::sample::select(Move::ALL.to_vec()).prop_map(Prompt::MoveHandle),
     ]
+    .boxed()
 }
 
-fn command() -> impl Strategy<Value = Command> {
+fn command() -> BoxedStrategy<Command> {
     let modes: Vec<Mode> = Mode::ALL.into_iter().chain(Mode::BASELINES).collect();
     let plain = [Command::Engage, Command::Rest, Command::Stop, Command::ReleaseStop, Command::Shutdown];
     let of_number = [
@@ -185,9 +190,10 @@ fn command() -> impl Strategy<Value = Command> {
         side().prop_map(Command::EngageOne),
         proptest::sample::select(Watchdog::ALL.to_vec()).prop_map(Command::TestWatchdog),
     ]
+    .boxed()
 }
 
-fn noted() -> impl Strategy<Value = Noted> {
+fn noted() -> BoxedStrategy<Noted> {
     let loss = prop_oneof![
         Just(Loss::Disconnected),
         Just(Loss::Silent),
@@ -210,7 +216,7 @@ fn noted() -> impl Strategy<Value = Noted> {
         (side(), any::<u64>()).prop_map(|(side, number)| Operation::Calibrations { side, number }),
         (number(), number()).prop_map(|(silent_s, t_s)| Operation::Stall { silent_s, t_s }),
     ];
-    prop_oneof![operation.prop_map(Noted::Operation), any::<u64>().prop_map(|lost| Noted::Hole { lost })]
+    prop_oneof![operation.prop_map(Noted::Operation), any::<u64>().prop_map(|lost| Noted::Hole { lost })].boxed()
 }
 
 /// A block's steps: what is noted before each row.
@@ -221,7 +227,9 @@ fn steps() -> impl Strategy<Value = Vec<(Vec<Noted>, Row)>> {
 fn encoded(steps: &[(Vec<Noted>, Row)]) -> Vec<u8> {
     let mut writer = BlockWriter::default();
     for (noted, row) in steps {
-        noted.iter().for_each(|noted| writer.note(*noted));
+        for noted in noted {
+            writer.note(*noted);
+        }
         writer.tick(row);
     }
     Encoder::default().block(&mut writer)
@@ -297,7 +305,8 @@ fn every_rig_comes_back_as_it_was() {
     for name in RigConfig::names() {
         let rig = RigConfig::load(name).unwrap();
         let origin = Origin { rig: rig.clone(), ..start().origin };
-        let bytes = Encoder::default().start(&Start { origin, ..start() }).unwrap_or_else(|error| panic!("{name}: {error}"));
+        let bytes =
+            Encoder::default().start(&Start { origin, ..start() }).unwrap_or_else(|error| panic!("{name}: {error}"));
         let (_, Message::Start(Start { origin, program })) = decode(&bytes).unwrap() else { panic!("{name}") };
         assert_eq!((origin.rig, program.as_str()), (rig, "test"), "{name}");
         assert!(origin.suspended && origin.calibrations[0].is_some() && origin.calibrations[1].is_none(), "{name}");

@@ -4,6 +4,7 @@
 //! |---|---|
 //! | `world` | base of the follower arm, z up: the workspace frame of this program |
 //! | `s1` | force-torque sensor at the wrist; its z axis runs along the instrument's shaft towards the tip |
+//! | `shaft` | `s1` turned about the shaft, so that it does not depend on the shaft's roll ([`world_from_shaft`]) |
 //! | `imu` | inertial unit inside the wrist sensor |
 //! | `m` | optical marker on the base of the instrument |
 //! | `c` | tracker camera |
@@ -43,6 +44,26 @@ pub fn to_roll_pitch_yaw_deg(rotation: &UnitQuaternion<f64>) -> Vector3<f64> {
     Vector3::new(roll.to_degrees(), pitch.to_degrees(), yaw.to_degrees())
 }
 
+/// The frame `shaft` of a wrist sensor: z along the instrument's shaft as in `s1`, and otherwise the shortest rotation from the frame of
+/// a shaft that points straight down with its x axis along `world`'s. Undefined for a shaft that points straight up, where x stays.
+///
+/// The posture of a redundant arm rolls the sensor about the shaft while the instrument does the same work. What the tissue and the body
+/// wall do to the instrument does not roll with it.
+///
+/// ```
+/// use nalgebra::{UnitQuaternion, Vector3};
+/// use nima_core::frames::world_from_shaft;
+///
+/// let world_from_s1 = UnitQuaternion::from_euler_angles(2.9, 0.2, 0.4);
+/// let rolled = world_from_s1 * UnitQuaternion::from_axis_angle(&Vector3::z_axis(), 0.7);
+/// assert!(world_from_shaft(&world_from_s1).angle_to(&world_from_shaft(&rolled)) < 1e-9);
+/// ```
+pub fn world_from_shaft(world_from_s1: &UnitQuaternion<f64>) -> UnitQuaternion<f64> {
+    let down = UnitQuaternion::from_axis_angle(&Vector3::x_axis(), std::f64::consts::PI);
+    let tilt = UnitQuaternion::rotation_between(&-Vector3::z(), &(world_from_s1 * Vector3::z()));
+    tilt.unwrap_or_else(|| UnitQuaternion::from_axis_angle(&Vector3::x_axis(), std::f64::consts::PI)) * down
+}
+
 /// A wrench on a sensor, in that sensor's frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Wrench {
@@ -53,6 +74,12 @@ pub struct Wrench {
 }
 
 impl Wrench {
+    /// The same wrench in a frame with the same origin.
+    #[must_use]
+    pub fn turned(&self, target_from_source: &UnitQuaternion<f64>) -> Self {
+        Self { force_n: target_from_source * self.force_n, torque_nm: target_from_source * self.torque_nm }
+    }
+
     /// Whether every number in it is finite.
     pub fn is_finite(&self) -> bool {
         self.force_n.iter().chain(self.torque_nm.iter()).all(|x| x.is_finite())

@@ -113,7 +113,7 @@ fn a_wrong_file_is_refused_in_one_line_and_never_read_as_a_model() {
         bytes[at..at + to.len()].copy_from_slice(to.as_bytes());
         bytes
     };
-    assert!(refused(&swapped("nima tip force 1", "nima tip force 9")).contains("this version reads"));
+    assert!(refused(&swapped("nima tip force 2", "nima tip force 9")).contains("this version reads"));
     assert!(refused(&swapped("doubt.centres", "doubt.central")).contains("doubt.centres is absent"));
     assert!(refused(&swapped("\"nima\"", "\"nina\"")).contains("metadata"));
     // A key that may be left out is not taken for one that is.

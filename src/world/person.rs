@@ -2,6 +2,7 @@
 //! mistake.
 
 mod handling;
+mod workspace;
 
 use std::f64::consts::TAU;
 
@@ -9,7 +10,10 @@ use nalgebra::{UnitQuaternion, UnitVector3, Vector3};
 use nima_core::noise::Noise;
 use nima_machine::rig::Prompt;
 
-use self::handling::{Handling, is_handling};
+use self::{
+    handling::{Handling, is_handling},
+    workspace::Workspace,
+};
 use super::{hand::Move, trocar::shaft, world::Touch, wrist::along_shaft};
 use crate::scene::{Flaw, Person as PersonConfig, Scene};
 
@@ -22,11 +26,8 @@ const PUSH_S: [f64; 4] = [0.45, 0.5, 0.35, 0.4];
 const PUSH_N: [f64; 2] = [2.0, 4.0];
 /// Error of a push's direction, rad (standard deviation).
 const PUSH_MISSES_RAD: f64 = 0.08;
-/// Working space of the tip around the middle of the tissue: half widths, m.
-const WORK_M: [f64; 2] = [0.035, 0.030];
-/// Height at which the tip is moved, and depth to which it presses, m.
+/// Height at which the tip is moved, m.
 const CARRY_M: [f64; 2] = [0.004, 0.025];
-const PRESS_M: [f64; 2] = [0.002, 0.010];
 /// Range of the duration of one movement while working, s: slow enough that inertia can be neglected.
 const REACH_S: [f64; 2] = [0.5, 1.6];
 /// Time in which the tip is lifted off the tissue when work ends, s.
@@ -39,6 +40,7 @@ pub(super) struct Person {
     noise: Noise,
     wall_m: Option<Vector3<f64>>,
     surface_z_m: f64,
+    workspace: Workspace,
     prompt: Prompt,
     time_s: f64,
     world_from_s1: UnitQuaternion<f64>,
@@ -71,6 +73,7 @@ impl Person {
             noise,
             wall_m,
             surface_z_m,
+            workspace: Workspace::of(scene),
             prompt: Prompt::Rest,
             time_s: 0.0,
             world_from_s1: down,
@@ -257,16 +260,20 @@ impl Person {
     fn work(&mut self, contact: bool, dt_s: f64) {
         self.in_reach_s += dt_s;
         if self.in_reach_s >= self.reach.seconds {
-            let z_m =
-                if contact && self.noise.uniform() < 0.6 { -self.between(PRESS_M) } else { self.between(CARRY_M) };
+            let z_m = if contact && self.noise.uniform() < 0.6 {
+                -self.between(self.workspace.press_m)
+            } else {
+                self.between(CARRY_M)
+            };
             if self.flaw == Some(Flaw::LeansOnTheStand) {
                 self.lean();
             }
-            let [x_m, y_m] = WORK_M.map(|half_m| half_m * (2.0 * self.noise.uniform() - 1.0));
             // Sometimes pauses, so that static friction of the seal is recorded too.
             let stay = self.noise.uniform() < 0.2;
             let reach = if self.flaw == Some(Flaw::WorksInOnePlace) { 0.1 } else { 1.0 };
-            let [x_m, y_m] = [x_m * reach, y_m * reach];
+            let [x_m, y_m] = self.workspace.across_m.map(|[low_m, high_m]| {
+                f64::midpoint(low_m, high_m) + reach * (high_m - low_m) * (self.noise.uniform() - 0.5)
+            });
             let to_m = if stay { self.tip_m } else { Vector3::new(x_m, y_m, self.surface_z_m + z_m) };
             self.reach = Move { from_m: self.tip_m, to_m, seconds: self.between(REACH_S) };
             self.in_reach_s = 0.0;

@@ -4,6 +4,7 @@ import csv
 import pathlib
 import subprocess
 import tempfile
+import time
 
 from harness import Peer
 
@@ -121,9 +122,38 @@ def protobuf_peer(path):
     return peer
 
 
+def killed_peer(writer, folder):
+    """A process that writes is killed; its files are read by the index and one record after the other, unrepaired."""
+    from mcap.reader import make_reader
+    from mcap.records import Message
+    from mcap.stream_reader import StreamReader
+
+    peer = Peer("mcap 1.6.0 (files of killed processes)")
+    for number in range(10):
+        path = pathlib.Path(folder) / f"killed{number}.mcap"
+        process = subprocess.Popen([writer, path, "600"], stdout=subprocess.DEVNULL)
+        while not path.exists():
+            time.sleep(0.001)
+        time.sleep(0.1 + 0.037 * number)
+        process.kill()
+        process.wait()
+        with open(path, "rb") as file:
+            reader = make_reader(file, validate_crcs=True)
+            counted = reader.get_summary().statistics.message_count
+            times = [message.log_time for *_, message in reader.iter_messages(topics=["/inputs"])]
+            peer.check("killed: every tick up to the end", times == list(range(times[0], times[0] + len(times) * 10**6, 10**6)))
+            total = sum(1 for _ in reader.iter_messages())
+            peer.check("killed: by the index", total == counted, (total, counted))
+        with open(path, "rb") as file:
+            linear = sum(isinstance(record, Message) for record in StreamReader(file, validate_crcs=True).records)
+        # A chunk may be in the data before it is in the index.
+        peer.check("killed: one after the other", counted <= linear <= counted + 3_000, (counted, linear))
+    return peer
+
+
 def run(nima):
     writer = pathlib.Path(nima).with_name("examples") / "session"
     with tempfile.TemporaryDirectory() as folder:
         path = pathlib.Path(folder) / "session.mcap"
         subprocess.run([writer, path], check=True, stdout=subprocess.DEVNULL)
-        return [file_peer(path), ros2_peer(path), protobuf_peer(path)]
+        return [file_peer(path), ros2_peer(path), protobuf_peer(path), killed_peer(writer, folder)]

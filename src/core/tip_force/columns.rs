@@ -1,12 +1,12 @@
 //! The columns of a data set, and their conversion to the features of a network.
 //!
-//! An orientation is given as a quaternion (`qw, qx, qy, qz`, `world_from_s1`); q and -q are the same rotation. The
+//! An orientation is given as a quaternion (`qw, qx, qy, qz`); q and -q are the same rotation. The
 //! network therefore uses the nine entries of the rotation matrix, which are products of two components and so
 //! identical for both signs. A quaternion of length zero gives numbers that are not finite, which the estimator
 //! refuses.
 
-/// Default inputs, as far as a data set contains them: gravity-free wrench at the wrist (`s1`; N, Nm), orientation
-/// (`world_from_s1`), depth through the trocar (m), its speed (m/s), and the state of the seal: its stretch (m) and its
+/// Default inputs, as far as a data set contains them: gravity-free wrench at the wrist (`shaft`; N, Nm), orientation
+/// (`world_from_shaft`), depth through the trocar (m), its speed (m/s), and the state of the seal: its stretch (m) and its
 /// past sliding speed (m/s); see [`super::Features`].
 pub const DEFAULT_INPUTS: [&str; 15] = [
     "fx_n",
@@ -26,7 +26,7 @@ pub const DEFAULT_INPUTS: [&str; 15] = [
     "slip_m_s",
 ];
 
-/// Default outputs: the force of the tissue on the tip (`s1`, N).
+/// Default outputs: the force of the tissue on the tip (`shaft`, N).
 pub const DEFAULT_OUTPUTS: [&str; 3] = ["tip_fx_n", "tip_fy_n", "tip_fz_n"];
 
 /// Most outputs of a model.

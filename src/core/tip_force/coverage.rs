@@ -1,7 +1,7 @@
 //! How well a recording covers the conditions of use: tilt, force, travel, friction in both directions, with and
 //! without contact.
 //!
-//! Takes rows of [`super::DEFAULT_INPUTS`] with the force at the tip (N, `s1`); returns maps to draw and, as text, what
+//! Takes rows of [`super::DEFAULT_INPUTS`] with the force at the tip (N, `shaft`); returns maps to draw and, as text, what
 //! is still missing.
 
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};

@@ -82,8 +82,11 @@ pub struct TipForce {
     far: Lasting,
     unsure: Option<Unsure>,
     share: f64,
-    held_n: Vector3<f64>,
-    held_s: f64,
+    /// Share of the wrist force in the fallback; the remainder is the held force.
+    wrist_share: f64,
+    /// The last reliable force, `None` before the first one, and the share of it that has not faded.
+    held_n: Option<Vector3<f64>>,
+    held_share: f64,
     last_t_s: Option<f64>,
 }
 
@@ -111,8 +114,9 @@ impl TipForce {
             far: Lasting { is: true, ..Lasting::default() },
             unsure: Some(Unsure::NotMoved),
             share: 0.0,
-            held_n: Vector3::zeros(),
-            held_s: f64::INFINITY,
+            wrist_share: 0.0,
+            held_n: None,
+            held_share: 0.0,
             last_t_s: None,
         })
     }
@@ -122,9 +126,14 @@ impl TipForce {
         self.estimator.model()
     }
 
-    /// Force to use while the network is uncertain.
-    pub const fn fallback(&self) -> Fallback {
-        self.fallback
+    /// Force that is used now while the network is uncertain. Before the network was sure for the first time there is none to hold, and
+    /// until the instrument has moved the wrist force is as much friction as tissue, of unknown sign: then no force is the better answer.
+    pub fn fallback(&self) -> Fallback {
+        if self.held_n.is_none() && self.unsure == Some(Unsure::NotMoved) {
+            Fallback::HoldAndFade
+        } else {
+            self.fallback
+        }
     }
 
     /// The force for this sample. Must be called with every sample, in order.
@@ -133,25 +142,31 @@ impl TipForce {
         self.last_t_s = Some(t_s);
         let (answer_n, doubt, reason) = match self.features.step(t_s, gravity_free, sample) {
             Ok(row) => {
-                self.inputs.iter_mut().zip(&self.columns).for_each(|(to, column)| *to = row[*column]);
+                self.inputs.iter_mut().zip(&self.columns).for_each(|(to, column)| *to = row.inputs[*column]);
                 let estimate = self.estimator.estimate(&self.inputs);
                 let [x, y, z, ..] = estimate.output.map(f64::from);
                 let reason = (estimate.doubt > FAR_OUTSIDE).then_some(Unsure::OutsideTraining);
-                (Some(Vector3::new(x, y, z)), estimate.doubt, reason)
+                (Some(row.shaft_from_s1.inverse() * Vector3::new(x, y, z)), estimate.doubt, reason)
             }
             Err(NoRow::Missing) => (None, f32::INFINITY, Some(Unsure::Missing)),
             Err(NoRow::NotMoved) => (None, f32::INFINITY, Some(Unsure::NotMoved)),
         };
         let extrapolates = self.outside.step(doubt > 1.0, dt_s);
         self.judge(reason, answer_n.is_none(), dt_s);
-        self.held_s += dt_s;
-        if let (Some(answer_n), None, None) = (answer_n, reason, self.unsure) {
-            (self.held_n, self.held_s) = (answer_n, 0.0);
+        if let (Some(_), None, None) = (answer_n, reason, self.unsure) {
+            self.held_n = answer_n;
         }
         let target = if self.unsure.is_none() { 1.0 } else { 0.0 };
-        self.share += (target - self.share).clamp(-dt_s / HANDOVER_S, dt_s / HANDOVER_S);
+        let most = dt_s / HANDOVER_S;
+        self.share += (target - self.share).clamp(-most, most);
+        if self.unsure.is_some() {
+            let wrist = if self.fallback() == Fallback::WristForce { 1.0 } else { 0.0 };
+            self.wrist_share += (wrist - self.wrist_share).clamp(-most, most);
+        }
+        self.held_share += (target - self.held_share).clamp(-dt_s / HOLD_S, most);
         // A single uncertain prediction is replaced by the last reliable one.
-        let force_s1_n = self.held_n * self.share + self.fallback_n(gravity_free) * (1.0 - self.share);
+        let held_n = self.held_n.unwrap_or_else(Vector3::zeros);
+        let force_s1_n = held_n * self.share + self.fallback_n(gravity_free) * (1.0 - self.share);
         TipForceReport { force_s1_n, network_share: self.share, unsure: self.unsure, extrapolates, doubt }
     }
 
@@ -165,11 +180,9 @@ impl TipForce {
     }
 
     fn fallback_n(&self, gravity_free: &Wrench) -> Vector3<f64> {
-        match self.fallback {
-            Fallback::WristForce if gravity_free.is_finite() => gravity_free.force_n,
-            Fallback::WristForce => Vector3::zeros(),
-            Fallback::HoldAndFade => self.held_n * (1.0 - self.held_s / HOLD_S).max(0.0),
-        }
+        let wrist_n = if gravity_free.is_finite() { gravity_free.force_n } else { Vector3::zeros() };
+        let held_n = self.held_n.unwrap_or_else(Vector3::zeros) * self.held_share;
+        wrist_n * self.wrist_share + held_n * (1.0 - self.wrist_share)
     }
 }
 

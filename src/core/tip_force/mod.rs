@@ -1,7 +1,7 @@
 //! Estimates the force at the tip from the wrist sensor: a small network removes the friction in the trocar.
 //!
 //! Takes named columns (wrist force in N, torque in Nm, orientation, motion through the trocar); returns the force at
-//! the tip in the frame of the wrist sensor (`s1`, N), and flags inputs outside the training data. The same code can
+//! the tip in the frame of the wrist sensor without its roll (`shaft`, N), and flags inputs outside the training data. The same code can
 //! learn other named columns, for other instruments. [`Estimator`] allocates nothing; training is in the crate
 //! `nima-training`.
 
@@ -24,7 +24,7 @@ pub use columns::{DEFAULT_INPUTS, DEFAULT_OUTPUTS, Expansion, MAX_FEATURES, MAX_
 pub use coverage::{Coverage, DEPTH_M, FORCE_N, Goal, MAP, Map, SPEED_M_S, Span, TILT};
 pub use doubt::{Doubt, FALSE_ALARMS};
 pub use estimator::{Estimate, Estimator};
-pub use features::{FeatureSettings, Features, LIVE_INPUTS, NoRow};
+pub use features::{FeatureSettings, Features, LIVE_INPUTS, NoRow, Row};
 pub use history::{Derived, Memory};
 pub use live::{Fallback, NotLive, TipForce, TipForceReport, Unsure};
 pub use model::Model;

@@ -73,7 +73,7 @@ pub struct Check {
     pub date: String,
     /// Number of rows of the check.
     pub rows: usize,
-    /// Mean absolute error per axis, N (`s1`).
+    /// Mean absolute error per axis, N (`shaft`).
     pub mae_n: [f64; 3],
     /// Standard deviation of the error per axis, N.
     pub sd_n: [f64; 3],

@@ -1,8 +1,7 @@
 //! Writes a session of made-up signals as a recording of a rig would be: two arms with 150 signals each at 1 kHz, frames, arrows, a log.
 //!
-//! `session FILE.mcap [SECONDS]` writes the file; beside it `FILE.csv`, `FILE.poses.csv` and `FILE.log.csv` with what was meant, for the comparison with what others
-//! read. Prints bytes and time of the processor.
-//! Up to one second everything is in the tables, later only the file goes on.
+//! `session FILE.mcap [SECONDS]` writes the file and looks at random ticks of it; beside it `FILE.csv`, `FILE.poses.csv` and `FILE.log.csv` with what was meant, for the comparison with what others
+//! read. Prints bytes and times. Up to one second everything is in the tables, later only the file goes on.
 
 use std::{
     collections::BTreeMap,
@@ -10,7 +9,8 @@ use std::{
     fs::{self, File},
     io::{BufWriter, Write as _},
     path::Path,
-    time::Duration,
+    process::ExitCode,
+    time::{Duration, Instant},
 };
 
 use nima_recording::{
@@ -21,7 +21,7 @@ use nima_recording::{
             SceneUpdate, Timestamp, Vector3,
         },
     },
-    session::{ChannelId, Encoding, Writer},
+    session::{ChannelId, Encoding, Reader, Writer},
 };
 use prost::Message as _;
 
@@ -31,7 +31,17 @@ const TICK_NS: u64 = 1_000_000;
 const BEGIN_NS: u64 = 1_790_000_000_000_000_000;
 const IN_TABLES: u64 = 1_000;
 
-fn main() -> Result<(), Box<dyn Error>> {
+fn main() -> ExitCode {
+    match write_and_look() {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("{error}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn write_and_look() -> Result<(), Box<dyn Error>> {
     let mut arguments = std::env::args().skip(1);
     let path = arguments.next().ok_or("name the file to write: session FILE.mcap [SECONDS]")?;
     let seconds: u64 = arguments.next().map_or(Ok(5), |text| text.parse())?;
@@ -61,6 +71,25 @@ fn main() -> Result<(), Box<dyn Error>> {
         written as f64 * 1e-6 * per_minute,
         spent.as_secs_f64() * per_minute
     );
+    look(path, seconds)
+}
+
+/// Opens the file and reads single ticks anywhere in it.
+fn look(path: &Path, seconds: u64) -> Result<(), Box<dyn Error>> {
+    let begin = Instant::now();
+    let reader = Reader::open(path)?;
+    let opened = begin.elapsed();
+    let mut random = fastrand::Rng::with_seed(1);
+    let mut times = Vec::new();
+    for _ in 0..100 {
+        let at = BEGIN_NS + random.u64(..seconds * 1_000) * TICK_NS;
+        let begin = Instant::now();
+        let found = reader.messages(&["/left/signals"], at..at + 1).collect::<Result<Vec<_>, _>>()?;
+        times.push(begin.elapsed());
+        assert!(found.len() == 1 && found[0].log_time_ns() == at, "the tick is there");
+    }
+    times.sort_unstable();
+    println!("opened in {opened:.1?}; a tick anywhere: median {:.1?}, longest {:.1?}", times[50], times[99]);
     Ok(())
 }
 

@@ -18,7 +18,7 @@ use super::TipForceError;
 mod keeping;
 
 /// Format name in the file.
-const FORMAT: &str = "nima tip force 1";
+const FORMAT: &str = "nima tip force 2";
 const KEY: &str = "nima";
 
 /// The metadata.

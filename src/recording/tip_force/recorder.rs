@@ -2,7 +2,7 @@
 //!
 //! Takes the gravity-free wrench (N, Nm, `s1`), the [`WristSample`] with the sensor under the tissue, and the time (s).
 //! Stores a row for one in several samples: the network's inputs ([`DEFAULT_INPUTS`]) and the force at the tip from the
-//! sensor under the tissue, transformed to the wrist's frame with the calibrated correspondence. Memory is bounded and
+//! sensor under the tissue, transformed with the calibrated correspondence to the frame of the inputs (`shaft`). Memory is bounded and
 //! allocated at the start.
 
 use std::{io, path::Path};
@@ -11,7 +11,7 @@ use nalgebra::Vector3;
 use nima_core::{
     calibration::correspondence::Correspondence,
     frames::{Wrench, WristSample},
-    tip_force::{Coverage, DEFAULT_INPUTS, DEFAULT_OUTPUTS, FeatureSettings, Features, LIVE_INPUTS, NoRow},
+    tip_force::{Coverage, DEFAULT_INPUTS, DEFAULT_OUTPUTS, FeatureSettings, Features, LIVE_INPUTS, NoRow, Row},
 };
 use nima_files::write_atomically;
 
@@ -72,12 +72,12 @@ pub struct Recorder {
     next_row_s: f64,
     trajectory: u32,
     trajectory_ends_s: f64,
-    rows: Vec<Row>,
+    rows: Vec<Kept>,
     coverage: Coverage,
 }
 
 #[derive(Clone, Copy, Debug)]
-struct Row {
+struct Kept {
     t_s: f64,
     trajectory: u32,
     contact: bool,
@@ -152,8 +152,8 @@ impl Recorder {
         }
         let dt_s = self.last_t_s.map_or(0.0, |last| (t_s - last).max(0.0));
         self.smooth_tip_n += (tip_n - self.smooth_tip_n) * (1.0 - (-dt_s / CONTACT_S).exp());
-        let inputs = match self.features.step(t_s, wrench, sample) {
-            Ok(inputs) => inputs,
+        let Row { inputs, shaft_from_s1 } = match self.features.step(t_s, wrench, sample) {
+            Ok(row) => row,
             Err(NoRow::Missing) => return RecorderPhase::Lacks(Lack::Pose),
             Err(NoRow::NotMoved) => return RecorderPhase::NotMoved,
         };
@@ -167,9 +167,10 @@ impl Recorder {
                 self.trajectory += 1;
             }
             let contact = self.smooth_tip_n.norm() > CONTACT_N;
+            let tip_n = shaft_from_s1 * tip_n;
             let tip_n: [f32; 3] = [tip_n.x as f32, tip_n.y as f32, tip_n.z as f32];
             self.coverage.add(&inputs, &tip_n, contact);
-            self.rows.push(Row { t_s, trajectory: self.trajectory, contact, inputs, tip_n });
+            self.rows.push(Kept { t_s, trajectory: self.trajectory, contact, inputs, tip_n });
         }
         RecorderPhase::Recording
     }

@@ -44,6 +44,9 @@ impl Words for ForceSource {
             Self::InDoubt { fallback: Fallback::WristForce, .. } => {
                 "network in doubt: wrist force with trocar friction is used"
             }
+            Self::InDoubt { unsure: Unsure::NotMoved, fallback: Fallback::HoldAndFade } => {
+                "not known before the instrument has moved: no force"
+            }
             Self::InDoubt { fallback: Fallback::HoldAndFade, .. } => {
                 "network in doubt: the last reliable force fades out"
             }

@@ -75,6 +75,8 @@ pub enum Implausible {
 pub struct Observed {
     /// Loop time, s.
     pub t_s: f64,
+    /// Age of the oldest part of it, s.
+    pub age_s: f64,
     /// The force sensor's numbers as they were read (force, torque, acceleration); NaN where there is none.
     pub sensed: [f64; CHANNELS],
     /// Force at the tip made of them, N.
@@ -210,7 +212,8 @@ impl Plausibility {
         let settles = seen.t_s - *self.began_s.get_or_insert(seen.t_s) < SETTLE_S;
         let most_n = if settles { f64::INFINITY } else { FORCE_SLACK_N + STIFFEST_N_M * widest_m };
         let (force_n, force_jumped) = self.force.admit(&seen.force_n, most_n);
-        let frozen = self.frozen.look(&seen.sensed, seen.t_s);
+        // A sensor that sends nothing is late, not frozen: its last reading grows old, and other watches tell so.
+        let frozen = self.frozen.look(&seen.sensed, seen.t_s - seen.age_s);
         let along = self.opposed.look(&force_n, seen.least_n, self.tip.moved(), seen.command_m.is_some());
         let turned = seen.world_from_s1.is_some_and(|turn| self.turn.admit(&axes(&turn), TURN_MAX).1);
         let doubts = [

@@ -21,6 +21,7 @@ impl Bench {
         let at_m = Vector3::new((3.0 * t_s).sin(), (2.0 * t_s).cos(), (5.0 * t_s).sin()) * 0.02;
         Observed {
             t_s,
+            age_s: 0.0,
             sensed,
             force_n,
             least_n: 0.1,
@@ -47,6 +48,18 @@ fn after(edit: impl FnMut(u32, &mut Observed)) -> Option<(u32, Implausible)> {
     let mut bench = Bench::new();
     assert_eq!(bench.run(11_000, |_, _| {}), None);
     bench.run(500, edit)
+}
+
+#[test]
+fn a_sensor_that_sends_nothing_is_late_and_not_frozen() {
+    let mut kept = None;
+    let told = after(|k, seen| {
+        if k <= 19 {
+            seen.sensed = *kept.get_or_insert(seen.sensed);
+            seen.age_s = f64::from(k - 1) * 1e-3;
+        }
+    });
+    assert_eq!(told, None);
 }
 
 #[test]

@@ -24,6 +24,7 @@ impl<L: Link> Pair<L> {
         }
         let admitted = self.plausibility.step(&Observed {
             t_s: now_s,
+            age_s: inputs.age_s,
             sensed: numbers(&inputs.sensed),
             force_n: self.force.tip_n,
             least_n: self.force.source.least_n(),

@@ -60,8 +60,11 @@ impl Contents {
         let mut walk = Walk::new(source, footer.summary_start, end);
         let mut told = None;
         while let Some(place) = walk.step()? {
-            if place.kind == kind::FOOTER {
-                break;
+            match place.kind {
+                kind::FOOTER => break,
+                // What was never written is zero: the power failed.
+                0 => return Ok(Err("its summary is damaged")),
+                _ => {}
             }
             if place.kind == kind::STATISTICS {
                 told = parse::statistics(walk.content(place, u64::MAX)?);

@@ -82,6 +82,14 @@ pub fn open_table(path: &Path) -> io::Result<Input> {
     Ok(Input { file, pipe: pipe.then_some(PIPE_TIMEOUT), taken: 0, line: 0 })
 }
 
+/// Opens a regular file that is read in parts, wherever they stand; gives its size too, which may be any.
+///
+/// # Errors
+/// No such file, or not a regular one.
+pub fn open_file(path: &Path) -> io::Result<(File, u64)> {
+    open(path, false).map(|(file, metadata)| (file, metadata.len()))
+}
+
 /// A table that is being read.
 #[derive(Debug)]
 pub struct Input {

@@ -45,6 +45,9 @@ fn what_is_no_plain_file_of_a_plausible_size_is_refused_at_once() {
         let error = soon(move || read_text(&path, CONFIG_MAX)).unwrap_err().to_string();
         assert!(error.contains(words), "{words}: {error}");
     }
+    let size = open_file(&place("large")).unwrap().1;
+    assert_eq!(size, 2 << 30, "what is read in parts may be large");
+    assert!(open_file(Path::new("/dev/zero")).unwrap_err().to_string().contains("a device"));
 }
 
 #[test]

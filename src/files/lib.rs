@@ -1,4 +1,4 @@
-//! Files that a user names. Read with checks and limits ([`read`], [`open_table`]), written so that nothing half-written is ever
+//! Files that a user names. Read with checks and limits ([`read`], [`open_table`], [`open_file`]), written so that nothing half-written is ever
 //! seen ([`write_atomically`]), quoted in messages at a bounded length ([`quoted`]).
 //!
 //! Bad input is an `io::Error` that says what is wrong and what to do; the caller adds which file it was.
@@ -8,6 +8,6 @@ mod input;
 mod output;
 mod quote;
 
-pub use input::{CONFIG_MAX, Input, MODEL_MAX, TABLE_MAX, open_table, read, read_text};
+pub use input::{CONFIG_MAX, Input, MODEL_MAX, TABLE_MAX, open_file, open_table, read, read_text};
 pub use output::{check_output, copy_atomically, write_atomically};
 pub use quote::{PASSAGE, QUOTE, quoted, shortened};

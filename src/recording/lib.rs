@@ -1,9 +1,12 @@
-//! Files: recordings of motion and force, data sets, trained networks, calibrations.
+//! Files: recordings of motion and force, sessions, data sets, trained networks, calibrations.
 //!
 //! Converts between bytes and the checked types of `nima-core`. Every reader refuses what it does not understand and
-//! reports the position; every writer writes a temporary file first and renames it.
+//! reports the position; every writer writes a temporary file first and renames it, but that of a session, whose file is valid at
+//! every moment while it grows.
 #![warn(missing_docs)]
 
 pub mod csv;
+pub mod messages;
+pub mod session;
 pub mod store;
 pub mod tip_force;

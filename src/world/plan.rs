@@ -6,7 +6,7 @@ use nima_machine::{
     messages::{Command, Tick},
     rig::{DeviceRig, Rig, RigError, Roster, SIDES, Side},
     runtime::{self, Assembly, Clock, Handle, StartError, Summary},
-    teleop::{Calibrations, Loop},
+    teleop::{Calibrations, Loop, Origin},
 };
 
 #[cfg(unix)]
@@ -48,22 +48,38 @@ impl Plan {
         follows && Side::ALL.into_iter().all(|side| !self.is_at_wrist(side) || knowable(side))
     }
 
+    /// What the loop of this plan is made of.
+    pub fn origin(&self) -> Origin {
+        // Cross-talk is identified only if the scene contains it.
+        let mut rig = self.rig.clone();
+        rig.identification.cross_talk |= self.scene.cross_talk;
+        let calibrations = Side::ALL.map(|side| self.has(side).then(|| self.calibrations[side.index()].clone()));
+        Origin { rig, calibrations, suspended: self.rig.devices.is_some() }
+    }
+
     /// Creates the loop for this plan.
     ///
     /// # Errors
     /// [`SettingsError`] if the settings of the identification are invalid.
     pub fn control(&self) -> Result<Loop, SettingsError> {
-        // Cross-talk is identified only if the scene contains it.
-        let mut rig = self.rig.clone();
-        rig.identification.cross_talk |= self.scene.cross_talk;
-        let known = Side::ALL.map(|side| self.has(side).then(|| self.calibrations[side.index()].clone()));
-        let mut control = Loop::new(&rig, &known)?;
-        if self.rig.devices.is_some() {
-            for side in Side::ALL {
-                control.suspend_calibrations(side);
-            }
-        }
-        Ok(control)
+        self.origin().control()
+    }
+
+    /// The loop of this plan with its rig, ready to start.
+    ///
+    /// # Errors
+    /// [`StartError`] if settings or devices are invalid.
+    pub fn assembly(&self) -> Result<Assembly, StartError> {
+        let (rig, roster) = self.rig()?;
+        Ok(self.on(rig, roster)?)
+    }
+
+    /// The same with the simulated world of this plan in place of its devices.
+    ///
+    /// # Errors
+    /// [`SettingsError`] if the settings of the identification are invalid.
+    pub fn simulated(&self) -> Result<Assembly, SettingsError> {
+        self.on(Box::new(self.worlds()), Roster::new())
     }
 
     /// Creates the rig and the list of its devices.
@@ -86,7 +102,8 @@ impl Plan {
     /// Combines the loop of this plan with a given rig.
     fn on(&self, rig: Box<dyn Rig>, roster: Roster) -> Result<Assembly, SettingsError> {
         let (rate_hz, scheduling, engage) = (self.rig.rate_hz, self.rig.scheduling, self.engage);
-        Ok(Assembly { control: self.control()?, rig, roster, rate_hz, clock: Clock::Real, scheduling, engage })
+        let control = self.control()?;
+        Ok(Assembly { control, rig, roster, rate_hz, clock: Clock::Real, scheduling, engage, tap: None })
     }
 }
 
@@ -95,8 +112,7 @@ impl Plan {
 /// # Errors
 /// [`StartError`] if settings or devices are invalid, or a thread cannot be created.
 pub fn start(plan: &Plan) -> Result<Handle, StartError> {
-    let (rig, roster) = plan.rig()?;
-    start_on(plan, rig, roster)
+    runtime::start(plan.assembly()?)
 }
 
 /// The same with a given rig, for instance one with injected faults.
@@ -113,7 +129,7 @@ pub fn start_on(plan: &Plan, rig: Box<dyn Rig>, roster: Roster) -> Result<Handle
 /// # Errors
 /// As [`start`].
 pub fn start_simulated(plan: &Plan, speed: f64) -> Result<Handle, StartError> {
-    let assembly = plan.on(Box::new(plan.worlds()), Roster::new())?;
+    let assembly = plan.simulated()?;
     let scheduling = SchedulingClass::Ordinary;
     runtime::start(Assembly { clock: Clock::Simulated { speed }, scheduling, ..assembly })
 }
@@ -148,7 +164,7 @@ pub fn run_virtual(
     seconds: f64,
     each: impl FnMut(&Tick) -> Option<Command>,
 ) -> Result<Summary, SettingsError> {
-    Ok(runtime::run_virtual(plan.on(Box::new(plan.worlds()), Roster::new())?, seconds, each))
+    Ok(runtime::run_virtual(plan.simulated()?, seconds, each))
 }
 
 #[cfg(test)]

@@ -9,6 +9,7 @@ use nima_machine::{
     config::RigConfig,
     messages::Command,
     rig::Rig as _,
+    runtime::{Passed, TICKS_TAPPED_MAX, tap},
     teleop::{Calibrations, Loop, Timing},
 };
 use nima_testing::real_time::alone;
@@ -86,8 +87,11 @@ fn a_tick_of_the_whole_loop_and_of_the_simulation_allocates_nothing() {
     let rig = RigConfig::load("simulated").unwrap();
     let mut control = Loop::new(&rig, &[Some(Calibrations::default()), Some(Calibrations::default())]).unwrap();
     let mut world = Worlds::new(&Scene::load("bimanual").unwrap(), rig.rate_hz);
+    // Its other end is read for a while, then forgotten, then gone: nothing of that may cost a tick an allocation.
+    let (mut tap, end) = tap();
+    let mut end = Some(end);
     control.obey(Command::Engage, 0.0);
-    let before = calls();
+    let mut before = calls();
     for k in 0..10_000_u32 {
         let now_s = f64::from(k) * 1e-3;
         control.clear_events();
@@ -101,8 +105,25 @@ fn a_tick_of_the_whole_loop_and_of_the_simulation_allocates_nothing() {
         }
         // Missing samples at intervals, and at the end for long enough to cause a fault.
         let inputs = world.read(now_s).map(|inputs| inputs.filter(|_| k % 1000 > 5 && k < 9000));
-        let (outputs, _) = control.step(inputs, &Timing { now_s, ..Timing::default() });
+        let timing = Timing { now_s, ..Timing::default() };
+        let (outputs, ticks) = control.step(inputs, &timing);
         world.write(now_s, &outputs);
+        tap.tick(control.events(), &timing, &inputs, &outputs, &ticks);
+        if k == 9000 {
+            let end = end.take().unwrap();
+            assert!(end.entries.len() >= TICKS_TAPPED_MAX, "it was full");
+            assert!(end.offered() > 9000, "{} were offered", end.offered());
+            let freed = calls();
+            drop(end);
+            before += calls() - freed;
+        }
+        if let Some(end) = end.as_ref().filter(|_| k < 4000) {
+            for entry in end.entries.try_iter() {
+                if let Passed::Stepped(stepped) = entry.passed {
+                    end.give_back(stepped);
+                }
+            }
+        }
     }
     assert_eq!(calls() - before, 0);
 }

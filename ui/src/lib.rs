@@ -6,5 +6,6 @@ pub mod command;
 pub mod console;
 mod emulators;
 pub mod leaving;
+mod recording;
 pub mod telling;
 mod words;

@@ -9,12 +9,14 @@
 mod os;
 mod summary;
 mod supervisor;
+mod tap;
 mod thread;
 mod virtual_clock;
 mod wrists;
 
 pub use summary::{ArmEnd, CauseAndCure, CpuShare, DeviceFigures, Histograms, ModeError, Summary};
 pub use supervisor::STALL_MAX_S;
+pub use tap::{Entry, Operation, Passed, Stepped, TICKS_TAPPED_MAX, Tap, TapEnd, tap};
 pub use thread::{Ender, Handle, StartError, TICKS_WAITING_MAX, start};
 pub use virtual_clock::run_virtual;
 pub use wrists::WristChange;
@@ -55,4 +57,6 @@ pub struct Assembly {
     pub scheduling: SchedulingClass,
     /// Engage as soon as every device delivers.
     pub engage: bool,
+    /// Takes what enters the loop and what comes out of it, for a recording.
+    pub tap: Option<Tap>,
 }

@@ -14,6 +14,7 @@ use super::{
     Assembly, Clock, Summary, os,
     summary::{CpuShare, DeviceFigures, Meters},
     supervisor::{Pulse, Supervisor},
+    tap::{Operation, Tap},
     wrists::{self, WristChange, WristDoor, Wrists},
 };
 use crate::{
@@ -73,14 +74,14 @@ pub struct Handle {
 /// # Errors
 /// [`StartError::Thread`] if the operating system cannot create the thread.
 pub fn start(assembly: Assembly) -> Result<Handle, StartError> {
-    let Assembly { control, rig, roster, rate_hz, clock, scheduling, engage } = assembly;
+    let Assembly { control, rig, roster, rate_hz, clock, scheduling, engage, tap } = assembly;
     let (pulse, levers) = (Arc::new(Pulse::default()), rig.levers());
     let (commands, commands_in) = bounded(COMMANDS_WAITING_MAX);
     let (ticks_out, ticks) = bounded(TICKS_WAITING_MAX);
     let (events_out, events) = bounded(EVENTS_WAITING_MAX);
     let (healths_out, healths) = bounded(1);
     let (gauges_out, gauges) = bounded(if roster.is_empty() { 1 } else { GAUGES_WAITING_MAX });
-    let (wrists, wrist_door) = wrists::ends(&roster, 1.0 / rate_hz);
+    let (wrists, wrist_door) = wrists::ends(&roster, 1.0 / rate_hz, tap.as_ref().map(Tap::filing));
     let realtime = Realtime {
         control,
         rig,
@@ -97,6 +98,7 @@ pub fn start(assembly: Assembly) -> Result<Handle, StartError> {
         gauges: gauges_out,
         meters: Meters::default(),
         pulse: Arc::clone(&pulse),
+        tap,
     };
     let supervisor = Supervisor::start(pulse, levers, scheduling != SchedulingClass::Ordinary)?;
     let thread = Builder::new().name("realtime".to_owned()).spawn(move || realtime.run())?;
@@ -226,6 +228,7 @@ struct Realtime {
     gauges: Sender<Gauges>,
     meters: Meters,
     pulse: Arc<Pulse>,
+    tap: Option<Tap>,
 }
 
 impl Realtime {
@@ -296,29 +299,36 @@ impl Realtime {
         for _ in 0..COMMANDS_PER_TICK_MAX {
             match self.commands.try_recv() {
                 Ok(Command::Shutdown) | Err(TryRecvError::Disconnected) => return false,
-                Ok(command) => self.control.obey(command, now_s),
+                Ok(command) => self.obey(command, now_s),
                 Err(TryRecvError::Empty) => break,
             }
         }
         true
     }
 
+    fn obey(&mut self, command: Command, t_s: f64) {
+        tell(&mut self.tap, Operation::Command { command, t_s });
+        self.control.obey(command, t_s);
+    }
+
     fn tick(&mut self, timing: &mut Timing, woke_ns: u64) {
         let inputs = self.rig.read(timing.now_s);
         let read_ns = os::monotonic_ns();
         if let Some(silent_s) = self.pulse.take_pulled() {
+            tell(&mut self.tap, Operation::Stall { silent_s, t_s: timing.now_s });
             self.control.notice_stall(silent_s, timing.now_s);
         }
         for _ in 0..DEVICE_EVENTS_PER_TICK_MAX {
             let Some(event) = self.rig.event() else { break };
+            tell(&mut self.tap, Operation::Device(event));
             self.control.notice(&event);
-            self.wrists.notice(&event, &mut self.control);
+            self.wrists.notice(&event, &mut self.control, &mut self.tap);
             self.events.try_send(Event::Device(event)).ok();
         }
-        self.wrists.put_in_force(&mut self.control);
+        self.wrists.put_in_force(&mut self.control, &mut self.tap);
         if self.engage && self.control.is_idle_with(&inputs) {
             self.engage = false;
-            self.control.obey(Command::Engage, timing.now_s);
+            self.obey(Command::Engage, timing.now_s);
         }
         let (outputs, ticks) = self.control.step(inputs, timing);
         let worked_ns = os::monotonic_ns();
@@ -329,6 +339,10 @@ impl Realtime {
             self.pulse.withhold();
         } else {
             self.pulse.beat(written_ns, stalls && outputs.iter().any(|outputs| outputs.drives));
+        }
+        // After the force was given to the device, so that it does not wait for the tap.
+        if let Some(tap) = &mut self.tap {
+            tap.tick(self.control.events(), timing, &inputs, &outputs, &ticks);
         }
         timing.work_s = (worked_ns - read_ns) as f64 * 1e-9;
         self.meters.wake.record(timing.wake_s);
@@ -357,5 +371,12 @@ impl Realtime {
                 self.meters.dropped += 1;
             }
         }
+    }
+}
+
+/// Tells a tap of an operation.
+pub(super) fn tell(tap: &mut Option<Tap>, operation: Operation) {
+    if let Some(tap) = tap {
+        tap.operation(operation);
     }
 }

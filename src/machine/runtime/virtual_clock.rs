@@ -2,14 +2,20 @@
 
 use std::time::Instant;
 
-use super::{Assembly, Summary, summary::Meters};
+use super::{
+    Assembly, Summary,
+    summary::Meters,
+    tap::{Operation, Tap},
+    thread::tell,
+};
 use crate::messages::{Command, Scheduling, Tick};
 use crate::teleop::Timing;
 
 /// Runs the loop for `seconds` of loop time. `each` is called with every tick of every side; it may return a command
 /// for the next tick, and ends the run by returning [`Command::Shutdown`].
 pub fn run_virtual(assembly: Assembly, seconds: f64, mut each: impl FnMut(&Tick) -> Option<Command>) -> Summary {
-    let Assembly { mut control, mut rig, rate_hz, engage, .. } = assembly;
+    let Assembly { mut control, mut rig, rate_hz, engage, tap, .. } = assembly;
+    let mut tap = tap.map(Tap::waiting);
     let period_s = 1.0 / rate_hz;
     let ticks = (seconds * rate_hz).round() as u64;
     let mut meters = Meters::default();
@@ -23,11 +29,16 @@ pub fn run_virtual(assembly: Assembly, seconds: f64, mut each: impl FnMut(&Tick)
         let read = Instant::now();
         control.clear_events();
         if let Some(command) = command.take() {
+            tell(&mut tap, Operation::Command { command, t_s: now_s });
             control.obey(command, now_s);
         }
-        let (outputs, ticks) = control.step(inputs, &Timing { now_s, work_s, ..Timing::default() });
+        let timing = Timing { now_s, work_s, ..Timing::default() };
+        let (outputs, ticks) = control.step(inputs, &timing);
         work_s = read.elapsed().as_secs_f64();
         rig.write(now_s, &outputs);
+        if let Some(tap) = &mut tap {
+            tap.tick(control.events(), &timing, &inputs, &outputs, &ticks);
+        }
         meters.rig.record((read - before).as_secs_f64());
         meters.work.record(work_s);
         meters.ticks += 1;

@@ -12,6 +12,10 @@ use std::sync::{
 use crossbeam_channel::{Receiver, Sender, bounded};
 use nima_devices::Standing;
 
+use super::{
+    tap::{Filing, Operation, Tap},
+    thread::tell,
+};
 use crate::{
     rig::{DEVICES_MAX, DeviceEvent, RosterEntry, SIDES, Side},
     teleop::{Calibrations, ForcePath, Loop},
@@ -44,6 +48,8 @@ impl WristChange {
 struct Prepared {
     change: WristChange,
     path: Box<ForcePath>,
+    /// Number of the calibrations at the tap.
+    number: Option<u64>,
 }
 
 type Counts = Arc<[AtomicU64; SIDES]>;
@@ -64,33 +70,38 @@ pub(super) struct WristDoor {
     prepared: Sender<Prepared>,
     spent: Receiver<Prepared>,
     period_s: f64,
+    filing: Option<Filing>,
 }
 
 /// Creates both parts, for a loop of this period (s) on these devices.
-pub(super) fn ends(roster: &[RosterEntry], period_s: f64) -> (Wrists, WristDoor) {
+pub(super) fn ends(roster: &[RosterEntry], period_s: f64, filing: Option<Filing>) -> (Wrists, WristDoor) {
     let counts = Counts::default();
     let (prepare, prepared) = bounded(WAITING_MAX);
     // The other part empties this queue before it sends, so there are never twice as many.
     let (spend, spent) = bounded(2 * WAITING_MAX);
     let of_device = std::array::from_fn(|device| roster.get(device).and_then(RosterEntry::force_sensor_of));
     let wrists = Wrists { counts: Arc::clone(&counts), of_device, prepared, spent: spend };
-    (wrists, WristDoor { counts, prepared: prepare, spent, period_s })
+    (wrists, WristDoor { counts, prepared: prepare, spent, period_s, filing })
 }
 
 impl Wrists {
     /// Handles the connection or loss of a device.
-    pub(super) fn notice(&self, event: &DeviceEvent, control: &mut Loop) {
+    pub(super) fn notice(&self, event: &DeviceEvent, control: &mut Loop, tap: &mut Option<Tap>) {
         if let Some(side) = self.of_device.get(usize::from(event.device)).copied().flatten() {
+            tell(tap, Operation::Suspend(side));
             control.suspend_calibrations(side);
             self.count_on(side, event.standing == Standing::Connected);
         }
     }
 
     /// Applies the calibrations that were prepared for the connected sensor.
-    pub(super) fn put_in_force(&self, control: &mut Loop) {
+    pub(super) fn put_in_force(&self, control: &mut Loop, tap: &mut Option<Tap>) {
         let Ok(mut prepared) = self.prepared.try_recv() else { return };
         let WristChange { side, count } = prepared.change;
         let now = self.counts[side.index()].load(Ordering::Acquire);
+        if let (true, Some(number)) = (now == count, prepared.number) {
+            tell(tap, Operation::Calibrations { side, number });
+        }
         if now == count && !control.exchange_force_path(side, &mut prepared.path) {
             // Drives are on, so the calibrations cannot change now. A new count makes the caller see that they are not
             // in force and try again.
@@ -115,7 +126,8 @@ impl WristDoor {
     pub(super) fn put_in_force(&self, change: WristChange, calibrations: &Calibrations) -> bool {
         self.spent.try_iter().for_each(drop);
         let path = Box::new(ForcePath::new(calibrations, self.period_s));
-        self.prepared.try_send(Prepared { change, path }).is_ok()
+        let number = self.filing.as_ref().map(|filing| filing.file(calibrations));
+        self.prepared.try_send(Prepared { change, path, number }).is_ok()
     }
 }
 
@@ -167,7 +179,7 @@ mod tests {
             let rig = RigConfig::load("simulated").unwrap();
             let slot = Slot::start("test", || Ok(Silent(Health::default(), Identity::default()))).unwrap();
             let entry = RosterEntry::of(Part::Sensor(Side::Right), "", slot.view());
-            let (wrists, door) = ends(&[entry], 1e-3);
+            let (wrists, door) = ends(&[entry], 1e-3, None);
             let mut control = Loop::new(&rig, &[Some(calibrated()), None]).unwrap();
             control.suspend_calibrations(Side::Right);
             Self { control, wrists, door, t_s: 0.0, load_n: 0.0 }
@@ -175,7 +187,7 @@ mod tests {
 
         fn tick(&mut self) -> ForceSource {
             self.t_s += 1e-3;
-            self.wrists.put_in_force(&mut self.control);
+            self.wrists.put_in_force(&mut self.control, &mut None);
             let (_, [tick, _]) = self
                 .control
                 .step([Some(at_wrist(self.load_n, self.t_s)), None], &Timing { now_s: self.t_s, ..Timing::default() });
@@ -184,7 +196,7 @@ mod tests {
 
         fn sensor_is(&mut self, standing: Standing) {
             let event = DeviceEvent { t_s: self.t_s, device: 0, standing, of_side: [true, false] };
-            self.wrists.notice(&event, &mut self.control);
+            self.wrists.notice(&event, &mut self.control, &mut None);
         }
     }
 
@@ -288,7 +300,7 @@ mod tests {
         bench.sensor_is(Standing::Connected);
         bench.tick();
         assert!(bench.door.put_in_force(bench.door.change(Side::Right), &calibrated()));
-        bench.wrists.put_in_force(&mut bench.control);
+        bench.wrists.put_in_force(&mut bench.control, &mut None);
         let inputs = [Some(at_wrist(0.0, bench.t_s)), None];
         assert!(!bench.control.is_idle_with(&inputs), "it would be refused now, and the other arm would not");
         bench.tick();

@@ -9,6 +9,7 @@
 mod accuracy;
 mod force_path;
 mod link;
+mod origin;
 mod pair;
 mod tracking;
 
@@ -22,6 +23,7 @@ pub use crate::{
 pub use accuracy::{Accuracy, ErrorStats};
 pub use force_path::{Calibrations, ForcePath};
 pub use link::{Link, ProgrammedLink};
+pub use origin::Origin;
 pub use pair::{EVENTS_PER_TICK_MAX, Pair, Timing};
 pub use tracking::Tracking;
 

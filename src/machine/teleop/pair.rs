@@ -42,7 +42,7 @@ const RAMP_S: f64 = 0.2;
 const AT_REST_M: f64 = 0.2e-3;
 
 /// Times measured by the caller: the pair never reads a clock.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Timing {
     /// Loop time of this tick, s.
     pub now_s: f64,

@@ -41,13 +41,22 @@ struct Header {
 /// [`TipForceError`] if the file cannot be written.
 pub fn save_model(model: &Model, path: &Path) -> Result<(), TipForceError> {
     let wrong = |reason: String| TipForceError::Write { path: path.to_owned(), reason };
+    let file = model_to_bytes(model).map_err(wrong)?;
+    write_atomically(path, |to| to.write_all(&file)).map_err(|error| wrong(error.to_string()))
+}
+
+/// The bytes of such a file.
+///
+/// # Errors
+/// Why there are none, in words.
+pub fn model_to_bytes(model: &Model) -> Result<Vec<u8>, String> {
     let tensors: Vec<(String, Vec<usize>, Vec<u8>)> =
         tensors_of(model).into_iter().map(|(name, shape, values)| (name, shape, bytes(&values))).collect();
     let views = tensors
         .iter()
         .map(|(name, shape, data)| TensorView::new(Dtype::F32, shape.clone(), data).map(|view| (name, view)))
         .collect::<Result<Vec<_>, _>>()
-        .map_err(|error| wrong(error.to_string()))?;
+        .map_err(|error| error.to_string())?;
     let header = Header {
         format: FORMAT.to_owned(),
         inputs: model.inputs.clone(),
@@ -58,10 +67,9 @@ pub fn save_model(model: &Model, path: &Path) -> Result<(), TipForceError> {
         baselines: model.baselines.clone(),
         origin: model.origin.clone(),
     };
-    let text = serde_json::to_string(&header).map_err(|error| wrong(error.to_string()))?;
+    let text = serde_json::to_string(&header).map_err(|error| error.to_string())?;
     let metadata = [(KEY.to_owned(), text)].into_iter().collect();
-    let file = safetensors::serialize(views, Some(metadata)).map_err(|error| wrong(error.to_string()))?;
-    write_atomically(path, |to| to.write_all(&file)).map_err(|error| wrong(error.to_string()))
+    safetensors::serialize(views, Some(metadata)).map_err(|error| error.to_string())
 }
 
 fn tensors_of(model: &Model) -> Vec<(String, Vec<usize>, Vec<f32>)> {
@@ -104,10 +112,14 @@ pub fn load_model(path: &Path) -> Result<Model, TipForceError> {
     let open = |error: std::io::Error| TipForceError::Open { path: path.to_owned(), reason: error.to_string() };
     let file = nima_files::read(path, nima_files::MODEL_MAX).map_err(open)?;
     let unusable = |reason: String| TipForceError::Model { path: path.to_owned(), reason: shortened(&reason, PASSAGE) };
-    from_bytes(&file).map_err(unusable)
+    model_from_bytes(&file).map_err(unusable)
 }
 
-fn from_bytes(file: &[u8]) -> Result<Model, String> {
+/// Reads and checks the bytes of such a file.
+///
+/// # Errors
+/// What is wrong with them, in words.
+pub fn model_from_bytes(file: &[u8]) -> Result<Model, String> {
     let (_, metadata) = SafeTensors::read_metadata(file).map_err(|error| format!("no safetensors file ({error})"))?;
     let tensors = SafeTensors::deserialize(file).map_err(|error| format!("no safetensors file ({error})"))?;
     let text = metadata.metadata().as_ref().and_then(|texts| texts.get(KEY)).ok_or("it has no metadata of ours")?;

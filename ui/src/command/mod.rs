@@ -9,6 +9,7 @@ mod ending;
 mod evaluate;
 mod identify;
 mod output;
+mod replay;
 mod run;
 mod setup;
 mod study;
@@ -39,6 +40,8 @@ enum Command {
     Console(console::Arguments),
     /// Run the same control loop without a window, then print its timing and errors
     Run(run::Arguments),
+    /// Replay a recorded session through the same loop and compare every tick, or change one thing in it
+    Replay(replay::Arguments),
     /// Identify impedance on a recording, sample by sample, from past data only
     Identify(identify::Arguments),
     /// List connected devices and test them; for each failure, print its cause and what to do
@@ -90,6 +93,7 @@ pub fn main() -> ExitCode {
     let result = match command {
         Command::Console(arguments) => console::run(&arguments),
         Command::Run(arguments) => run::run(&arguments),
+        Command::Replay(arguments) => replay::run(&arguments),
         Command::Identify(arguments) => identify::run(&arguments),
         Command::Devices(arguments) => devices::run(&arguments),
         Command::Emulate(arguments) => emulate::run(&arguments),

@@ -1,9 +1,11 @@
 //! `nima run`: the loop without a window, with a live status line and figures at the end.
 
+mod record;
 mod status;
 mod words;
 
 use std::{
+    path::PathBuf,
     thread,
     time::{Duration, Instant},
 };
@@ -14,13 +16,14 @@ use nima_core::{calibration::gravity::Drift, impedance::Mode};
 use nima_machine::{
     config::SchedulingClass,
     messages::{Command, Tick},
-    runtime::Summary,
+    runtime::{self, Assembly, Summary, Tap},
 };
 use nima_recording::store::WristId;
 use nima_world::{Plan, emulated::TipError};
 use serde::Serialize;
 
 use self::{
+    record::{Recorded, Recording},
     status::{StatusLine, Troubles},
     words::in_words,
 };
@@ -68,6 +71,9 @@ pub(super) struct Arguments {
     /// Scheduling class to request for the loop: ordinary, fifo or deadline (default: the rig's)
     #[arg(long, value_name = "CLASS")]
     scheduling: Option<SchedulingClass>,
+    /// Record the session into a new file, from which `nima replay` repeats it bit for bit
+    #[arg(long, value_name = "FILE.mcap")]
+    record: Option<PathBuf>,
     /// Print the results as one JSON object
     #[arg(long)]
     json: bool,
@@ -119,14 +125,16 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
             plan.scene.name
         );
     }
+    let (tap, mut recording) = Recording::begin(arguments.record.as_deref(), &plan, arguments.virtual_clock)?;
     let mut summary = if arguments.virtual_clock {
-        nima_world::run_virtual(&plan, arguments.seconds.unwrap_or(60.0), |tick| {
+        runtime::run_virtual(Assembly { tap, ..plan.simulated()? }, arguments.seconds.unwrap_or(60.0), |tick| {
             let command = start.watch(tick);
-            if leave.is_asked() { Some(Command::Shutdown) } else { command }
-        })?
+            if leave.is_asked() || recording.is_over() { Some(Command::Shutdown) } else { command }
+        })
     } else {
-        on_the_real_clock(&plan, &mut start, &leave, arguments)?
+        on_the_real_clock(&plan, tap, &mut start, &mut recording, &leave, arguments)?
     };
+    let recorded = recording.end();
     drop(start.emulators.take());
     let tip_error = start.comparison.figures();
     summary.explain(|fault| [fault.cause(), fault.cure()]);
@@ -135,12 +143,18 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         if let Some(drift @ Drift::Moved { .. }) = drift {
             tell(format_args!("warning: the bias of the wrist sensor has {}", drift_in_words(drift)));
         }
-        output::json(&Told { summary: &summary, tip_error })?;
+        output::json(&Told {
+            summary: &summary,
+            tip_error,
+            recorded: recorded.as_ref().ok().and_then(Option::as_ref),
+        })?;
     } else {
         let bias =
             drift.map_or_else(String::new, |drift| format!("\nbias of the wrist sensor: {}", drift_in_words(drift)));
-        output::line(&(in_words(&plan, &summary) + &truth::in_words(&tip_error) + &bias))?;
+        let kept = recorded.as_ref().ok().and_then(Option::as_ref).map_or_else(String::new, Recorded::in_words);
+        output::line(&(in_words(&plan, &summary) + &truth::in_words(&tip_error) + &bias + &kept))?;
     }
+    recorded?;
     // Without its calibrations an emulated rig does what it can, and has said what it lacks.
     let was_to_engage = by_itself && start.in_force.uncalibrated().is_none();
     start.reasons.of(&summary, was_to_engage).map_or(Ok(()), |why| Err(anyhow::anyhow!(why)))
@@ -153,6 +167,8 @@ struct Told<'a> {
     summary: &'a Summary,
     #[serde(skip_serializing_if = "Vec::is_empty")]
     tip_error: Vec<TipError>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    recorded: Option<&'a Recorded>,
 }
 
 /// Engages after the bias of the wrist sensor has been checked, whatever the result.
@@ -203,8 +219,15 @@ impl Start {
     }
 }
 
-fn on_the_real_clock(plan: &Plan, start: &mut Start, leave: &Leave, arguments: &Arguments) -> anyhow::Result<Summary> {
-    let handle = nima_world::start(plan)?;
+fn on_the_real_clock(
+    plan: &Plan,
+    tap: Option<Tap>,
+    start: &mut Start,
+    recording: &mut Recording,
+    leave: &Leave,
+    arguments: &Arguments,
+) -> anyhow::Result<Summary> {
+    let handle = runtime::start(Assembly { tap, ..plan.assembly()? })?;
     let ender = handle.ender();
     leave.at_once(move || ender.end());
     let mut status = StatusLine::new(!arguments.json);
@@ -225,6 +248,9 @@ fn on_the_real_clock(plan: &Plan, start: &mut Start, leave: &Leave, arguments: &
                 status.tell(&words);
             }
         });
+        if let Some(words) = recording.newly_over() {
+            status.tell(&words);
+        }
         troubles.look(&handle, &status);
         start.in_force.meet(&handle, &plan.rig);
         start.compare();

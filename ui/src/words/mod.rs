@@ -5,6 +5,7 @@
 //! Causes are sentences; cures say what the operator can do; reasons start in lower case, because they follow a colon.
 
 mod calibration;
+mod events;
 mod faults;
 mod force;
 mod frames;
@@ -13,6 +14,7 @@ mod refusals;
 mod sides;
 
 pub(crate) use calibration::{drift, refusal};
+pub(crate) use events::event;
 pub(crate) use frames::{axes_words, cause, phase};
 pub(crate) use ready::{ask_words, cause_words, check_name, figure_words, lacks_words, unit};
 pub(crate) use refusals::{cure_of_refusal, refused_because};

@@ -1,0 +1,123 @@
+//! One chunk while it is being filled: messages with an index for each channel, compressed when it is closed.
+
+use std::io::{self, Write as _};
+
+use lz4_flex::frame::{BlockMode, BlockSize, FrameEncoder, FrameInfo};
+
+use super::format::{self, HEAD, Put as _, kind, record};
+
+/// The name of the compression in the file.
+pub(super) const LZ4: &str = "lz4";
+
+#[derive(Default)]
+pub(super) struct Chunk {
+    /// The records.
+    raw: Vec<u8>,
+    /// Time and place of each message, by the number of its channel.
+    index: Vec<Vec<u8>>,
+    times_ns: Option<(u64, u64)>,
+    messages: u64,
+}
+
+/// A chunk as it stands in the file, with its message indexes behind it.
+pub(super) struct Closed {
+    pub(super) bytes: Vec<u8>,
+    /// Bytes of the chunk's own record.
+    chunk: usize,
+    /// Channel, where its index begins in `bytes`, messages.
+    pub(super) indexes: Vec<(u16, usize, u64)>,
+    compressed: u64,
+    uncompressed: u64,
+    pub(super) times_ns: Option<(u64, u64)>,
+    pub(super) messages: u64,
+}
+
+impl Chunk {
+    /// A schema or a channel.
+    pub(super) fn put_record(&mut self, record: &[u8]) {
+        self.raw.extend_from_slice(record);
+    }
+
+    pub(super) fn put_message(&mut self, channel: u16, sequence: u32, time_ns: u64, data: &[u8]) {
+        let number = usize::from(channel);
+        if self.index.len() <= number {
+            self.index.resize_with(number + 1, Vec::new);
+        }
+        self.index[number].u64(time_ns);
+        self.index[number].u64(self.raw.len() as u64);
+        format::message(&mut self.raw, channel, sequence, time_ns, data);
+        let (first, last) = self.times_ns.unwrap_or((time_ns, time_ns));
+        self.times_ns = Some((first.min(time_ns), last.max(time_ns)));
+        self.messages += 1;
+    }
+
+    pub(super) fn len(&self) -> usize {
+        self.raw.len()
+    }
+
+    /// How long it would be with a message of this time, ns.
+    pub(super) fn span_ns(&self, time_ns: u64) -> u64 {
+        self.times_ns.map_or(0, |(first, last)| last.max(time_ns) - first.min(time_ns))
+    }
+
+    /// The finished bytes; the chunk is empty again and keeps its memory.
+    pub(super) fn close(&mut self) -> io::Result<Closed> {
+        let (first, last) = self.times_ns.unwrap_or_default();
+        let mut bytes = Vec::with_capacity(self.raw.len() / 3 + 1024);
+        bytes.extend_from_slice(&format::head(kind::CHUNK, 0));
+        bytes.u64(first);
+        bytes.u64(last);
+        bytes.u64(self.raw.len() as u64);
+        bytes.u32(crc32fast::hash(&self.raw));
+        bytes.text(LZ4);
+        bytes.u64(0);
+        let begin = bytes.len();
+        let mut bytes = self.compress(bytes)?;
+        let chunk = bytes.len();
+        let compressed = (chunk - begin) as u64;
+        bytes[begin - 8..begin].copy_from_slice(&compressed.to_le_bytes());
+        bytes[1..HEAD].copy_from_slice(&((chunk - HEAD) as u64).to_le_bytes());
+        let mut indexes = Vec::new();
+        for (channel, entries) in self.index.iter_mut().enumerate().filter(|(_, entries)| !entries.is_empty()) {
+            indexes.push((channel as u16, bytes.len(), (entries.len() / 16) as u64));
+            record(&mut bytes, kind::MESSAGE_INDEX, |out| {
+                out.u16(channel as u16);
+                out.bytes(entries);
+            });
+            entries.clear();
+        }
+        let uncompressed = self.raw.len() as u64;
+        self.raw.clear();
+        let (times_ns, messages) = (self.times_ns.take(), std::mem::take(&mut self.messages));
+        Ok(Closed { bytes, chunk, indexes, compressed, uncompressed, times_ns, messages })
+    }
+
+    fn compress(&self, into: Vec<u8>) -> io::Result<Vec<u8>> {
+        let info = FrameInfo::new().block_size(BlockSize::Max1MB).block_mode(BlockMode::Linked);
+        let mut encoder = FrameEncoder::with_frame_info(info, into);
+        encoder.write_all(&self.raw)?;
+        encoder.finish().map_err(io::Error::other)
+    }
+}
+
+impl Closed {
+    /// Its entry in the summary, where it stands at `at`.
+    pub(super) fn put_index(&self, out: &mut Vec<u8>, at: u64) {
+        let (first, last) = self.times_ns.unwrap_or_default();
+        record(out, kind::CHUNK_INDEX, |out| {
+            out.u64(first);
+            out.u64(last);
+            out.u64(at);
+            out.u64(self.chunk as u64);
+            out.u32((self.indexes.len() * 10) as u32);
+            for &(channel, begin, _) in &self.indexes {
+                out.u16(channel);
+                out.u64(at + begin as u64);
+            }
+            out.u64((self.bytes.len() - self.chunk) as u64);
+            out.text(LZ4);
+            out.u64(self.compressed);
+            out.u64(self.uncompressed);
+        });
+    }
+}

@@ -1,0 +1,21 @@
+//! The file of a recorded session: MCAP (<https://mcap.dev/spec>) that is valid at every moment.
+//!
+//! [`Writer`] makes it, [`Reader`] reads it and those of others. Not with the crate `mcap`: its writer makes a file valid at its end
+//! only, and compresses through C libraries; our tests read with it. docs/sessions.md compares the two and has the figures.
+
+mod at;
+mod chunk;
+mod error;
+mod format;
+mod layout;
+mod reader;
+mod summary;
+mod writer;
+
+pub use error::{ReadError, WriteError};
+pub use format::Statistics;
+pub use reader::{Attachment, Channel, Message, Messages, Reader};
+pub use writer::{CHUNK_BYTES, CHUNK_NS, ChannelId, Encoding, Writer};
+
+#[cfg(test)]
+mod tests;

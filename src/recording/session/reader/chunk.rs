@@ -1,0 +1,78 @@
+//! The records of one chunk, decompressed and checked.
+
+use std::io::{self, Read as _};
+
+use lz4_flex::frame::FrameDecoder;
+
+use super::{parse, source::Source};
+use crate::session::{
+    chunk::LZ4,
+    format::{HEAD, kind},
+};
+
+pub(super) struct Chunk {
+    pub(super) records: Vec<u8>,
+    pub(super) times_ns: (u64, u64),
+}
+
+/// A byte of LZ4 stands for so many at most: what claims more is not believed.
+const MOST_FOR_A_BYTE: u64 = 255;
+
+/// The chunk at this place; or what is wrong with it.
+pub(super) fn read(source: &Source, at: u64, length: u64) -> io::Result<Result<Chunk, String>> {
+    let bytes = match source.read(at, length) {
+        Err(error) if error.kind() == io::ErrorKind::UnexpectedEof => return Ok(Err("it is beyond the file".into())),
+        read => read?,
+    };
+    let found = parse::first_record(&bytes).filter(|&(kind, _, behind)| kind == kind::CHUNK && behind.is_empty());
+    let Some((head, compressed)) = found.and_then(|(_, content, _)| parse::chunk(content)) else {
+        return Ok(Err("it is not a whole chunk".into()));
+    };
+    Ok(decompress(&head, compressed).and_then(|records| {
+        if head.crc == 0 || crc32fast::hash(&records) == head.crc {
+            Ok(Chunk { records, times_ns: head.times_ns })
+        } else {
+            Err("its checksum does not agree: bits have changed".into())
+        }
+    }))
+}
+
+fn decompress(head: &parse::ChunkHead, compressed: &[u8]) -> Result<Vec<u8>, String> {
+    let most = match head.compression.as_str() {
+        "" => compressed.len() as u64,
+        LZ4 => compressed.len() as u64 * MOST_FOR_A_BYTE,
+        other => {
+            let other = nima_files::quoted(other);
+            return Err(format!("it is compressed with {other}; convert the file: mcap compress --compression lz4"));
+        }
+    };
+    if head.uncompressed > most {
+        return Err("it claims to be longer than it can be".into());
+    }
+    // What it claims is believed as far as it is likely.
+    let likely = head.uncompressed.min(8 * compressed.len() as u64);
+    let mut records = Vec::with_capacity(likely as usize);
+    if head.compression.is_empty() {
+        records.extend_from_slice(compressed);
+    } else {
+        let mut decoder = FrameDecoder::new(compressed);
+        let read = decoder.by_ref().take(head.uncompressed + 1).read_to_end(&mut records);
+        read.map_err(|error| format!("it cannot be decompressed: {error}"))?;
+    }
+    if records.len() as u64 == head.uncompressed {
+        Ok(records)
+    } else {
+        Err("it has not the length that it claims".into())
+    }
+}
+
+/// Kind, content and place of each record; ends where the bytes are no record.
+pub(super) fn records(bytes: &[u8]) -> impl Iterator<Item = (u8, &[u8], usize)> {
+    let mut left = bytes;
+    std::iter::from_fn(move || {
+        let (kind, content, behind) = parse::first_record(left)?;
+        let at = bytes.len() - left.len() + HEAD;
+        left = behind;
+        Some((kind, content, at))
+    })
+}

@@ -1,0 +1,129 @@
+//! Messages in the order of their times.
+
+use std::{
+    cmp::Reverse,
+    collections::{BTreeSet, BinaryHeap},
+    ops::Range,
+    sync::Arc,
+};
+
+use super::{
+    Reader, chunk, contents,
+    parse::{self, MESSAGE_HEAD, MessageHead},
+};
+use crate::session::{ReadError, format::kind, writer::ChannelId};
+
+/// One message; its data is shared with the others of its chunk.
+#[derive(Clone)]
+pub struct Message {
+    head: MessageHead,
+    records: Arc<Vec<u8>>,
+    data: Range<usize>,
+}
+
+impl Message {
+    /// Whose it is.
+    pub fn channel(&self) -> ChannelId {
+        ChannelId(self.head.channel)
+    }
+
+    /// Its number in its channel, from 0.
+    pub fn sequence(&self) -> u32 {
+        self.head.sequence
+    }
+
+    /// Time of its sample, ns.
+    pub fn log_time_ns(&self) -> u64 {
+        self.head.log_time_ns
+    }
+
+    /// Time when it was published, ns: the same in our files.
+    pub fn publish_time_ns(&self) -> u64 {
+        self.head.publish_time_ns
+    }
+
+    /// As its channel's encoding says.
+    pub fn data(&self) -> &[u8] {
+        &self.records[self.data.clone()]
+    }
+}
+
+/// The messages that were asked for, in the order of their times; after a damaged chunk, which gives one error, those behind it.
+pub struct Messages<'a> {
+    reader: &'a Reader,
+    /// None for all.
+    wanted: Option<BTreeSet<u16>>,
+    times_ns: Range<u64>,
+    /// By their beginnings.
+    places: Vec<&'a contents::Messages>,
+    next_place: usize,
+    /// Messages of chunks that are open.
+    open: BinaryHeap<Reverse<InOrder>>,
+}
+
+/// Time, place of the chunk, place in it.
+struct InOrder((u64, u64, usize), Message);
+
+impl PartialEq for InOrder {
+    fn eq(&self, other: &Self) -> bool {
+        self.0 == other.0
+    }
+}
+impl Eq for InOrder {}
+impl PartialOrd for InOrder {
+    fn partial_cmp(&self, other: &Self) -> Option<std::cmp::Ordering> {
+        Some(self.cmp(other))
+    }
+}
+impl Ord for InOrder {
+    fn cmp(&self, other: &Self) -> std::cmp::Ordering {
+        self.0.cmp(&other.0)
+    }
+}
+
+impl<'a> Messages<'a> {
+    pub(super) fn new(reader: &'a Reader, wanted: Option<BTreeSet<u16>>, times_ns: Range<u64>) -> Self {
+        let may_hold = |one: &&contents::Messages| {
+            let (first, last) = one.times_ns;
+            let theirs = wanted.as_ref().is_none_or(|wanted| {
+                one.channels.is_empty() || one.channels.iter().any(|channel| wanted.contains(channel))
+            });
+            theirs && first < times_ns.end && last >= times_ns.start
+        };
+        let mut places: Vec<_> = reader.contents.messages.iter().filter(may_hold).collect();
+        places.sort_by_key(|one| (one.times_ns.0, one.at));
+        Self { reader, wanted, times_ns, places, next_place: 0, open: BinaryHeap::new() }
+    }
+
+    fn open(&mut self, place: &contents::Messages) -> Result<(), ReadError> {
+        let records = Arc::new(self.reader.records(place)?);
+        for (kind, content, at) in chunk::records(&records) {
+            let Some(head) = parse::message(content).filter(|_| kind == kind::MESSAGE) else { continue };
+            let wanted = self.wanted.as_ref().is_none_or(|wanted| wanted.contains(&head.channel));
+            if wanted && self.times_ns.contains(&head.log_time_ns) {
+                let data = at + MESSAGE_HEAD..at + content.len();
+                let message = Message { head, records: records.clone(), data };
+                self.open.push(Reverse(InOrder((head.log_time_ns, place.at, at), message)));
+            }
+        }
+        Ok(())
+    }
+}
+
+impl Iterator for Messages<'_> {
+    type Item = Result<Message, ReadError>;
+
+    fn next(&mut self) -> Option<Self::Item> {
+        while let Some(&place) = self.places.get(self.next_place) {
+            let first = self.open.peek().map(|Reverse(first)| first.0.0);
+            if first.is_some_and(|first| first < place.times_ns.0) {
+                break;
+            }
+            self.next_place += 1;
+            if let Err(error) = self.open(place) {
+                return Some(Err(error));
+            }
+        }
+        self.open.pop().map(|Reverse(InOrder(_, message))| Ok(message))
+    }
+}

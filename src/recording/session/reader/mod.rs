@@ -1,0 +1,237 @@
+//! Reading a session, ours or somebody else's.
+
+mod chunk;
+mod contents;
+mod messages;
+mod parse;
+mod source;
+
+use std::{
+    collections::BTreeMap,
+    io,
+    ops::Range,
+    path::{Path, PathBuf},
+};
+
+use contents::Contents;
+use source::Source;
+
+pub use messages::{Message, Messages};
+pub use parse::Attachment;
+
+use super::{
+    error::ReadError,
+    format::{MAGIC, Statistics, kind},
+    writer::{ChannelId, Encoding},
+};
+
+/// An open session. Reads where it is asked to; keeps the index and, while messages are read, the chunks that these are in.
+///
+/// Never takes more memory than the file can stand for, whatever its bytes say.
+///
+/// ```
+/// use nima_recording::session::{Encoding, Reader, Writer};
+///
+/// let folder = tempfile::tempdir()?;
+/// let path = folder.path().join("session.mcap");
+/// let mut writer = Writer::create(&path, "an example")?;
+/// let text = Encoding { message_encoding: "text".into(), ..Encoding::default() };
+/// let words = writer.channel("words", text)?;
+/// for (time_ns, word) in [(1, "one"), (2, "two"), (3, "three")] {
+///     writer.message(words, time_ns, word.as_bytes())?;
+/// }
+/// writer.flush()?;
+///
+/// let reader = Reader::open(&path)?;
+/// let read: Result<Vec<_>, _> = reader.messages(&["words"], 2..4).collect();
+/// let read: Vec<_> = read?.iter().map(|message| message.data().to_vec()).collect();
+/// assert_eq!(read, [b"two".to_vec(), b"three".to_vec()]);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub struct Reader {
+    path: PathBuf,
+    source: Source,
+    library: String,
+    contents: Contents,
+    channels: Vec<Channel>,
+}
+
+/// A channel of a session that is read.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Channel {
+    /// Its number.
+    pub id: ChannelId,
+    /// Its topic.
+    pub topic: String,
+    /// How its messages are to be understood.
+    pub encoding: Encoding,
+    /// How many there are, where the file says so.
+    pub messages: Option<u64>,
+}
+
+impl Reader {
+    /// Opens a file and reads its summary. Without a sound summary all records are looked at, which takes as long as reading the
+    /// file; [`Reader::notes`] says so.
+    ///
+    /// # Errors
+    /// No file, an empty one, another format, a version that is not known, damage before the first record.
+    pub fn open(path: &Path) -> Result<Self, ReadError> {
+        let (file, size) = nima_files::open_file(path).map_err(|error| ReadError::open(path, &error))?;
+        Self::of_source(path, Source::File(file, size))
+    }
+
+    /// The same of bytes in memory; `name` stands for the path in messages.
+    ///
+    /// # Errors
+    /// Those of [`Reader::open`].
+    pub fn of_bytes(name: &str, bytes: Vec<u8>) -> Result<Self, ReadError> {
+        Self::of_source(Path::new(name), Source::Bytes(bytes))
+    }
+
+    fn of_source(path: &Path, source: Source) -> Result<Self, ReadError> {
+        let failed = |error: io::Error| ReadError::open(path, &error);
+        if source.size() == 0 {
+            return Err(ReadError::Empty { path: path.to_owned() });
+        }
+        let magic = source.read(0, source.size().min(MAGIC.len() as u64)).map_err(failed)?;
+        check_magic(path, &magic)?;
+        let damaged = |what: &str| ReadError::damaged(path, MAGIC.len() as u64, what);
+        let mut walk = source::Walk::new(&source, MAGIC.len() as u64, source.size());
+        let header = walk.step().map_err(failed)?.filter(|place| place.kind == kind::HEADER);
+        let header = header.ok_or_else(|| damaged("there is no header"))?;
+        let library = {
+            let mut fields = parse::Fields(walk.content(header, u64::MAX).map_err(failed)?);
+            fields.text().and_then(|_| fields.text()).ok_or_else(|| damaged("the header is damaged"))?
+        };
+        let contents = match Contents::of_summary(&source).map_err(failed)? {
+            Ok(contents) => contents,
+            Err(why) => {
+                let mut contents = Contents::of_records(&source, walk.at).map_err(failed)?;
+                contents.notes.insert(0, format!("{why}: all its records were looked at instead"));
+                contents
+            }
+        };
+        let channels = contents.channels.values().map(|channel| of_channel(channel, &contents)).collect();
+        Ok(Self { path: path.to_owned(), source, library, contents, channels })
+    }
+
+    /// The program that wrote it.
+    pub fn library(&self) -> &str {
+        &self.library
+    }
+
+    /// What is wrong with the file, one line each; nothing with a sound one.
+    pub fn notes(&self) -> &[String] {
+        &self.contents.notes
+    }
+
+    /// All channels, by their numbers.
+    pub fn channels(&self) -> &[Channel] {
+        &self.channels
+    }
+
+    /// What it holds, as the file says or as it was found.
+    pub fn statistics(&self) -> &Statistics {
+        &self.contents.statistics
+    }
+
+    /// Times of the first and the last message, ns.
+    pub fn times_ns(&self) -> Option<(u64, u64)> {
+        let times = self.contents.messages.iter().map(|one| one.times_ns);
+        times.reduce(|all, one| (all.0.min(one.0), all.1.max(one.1)))
+    }
+
+    /// The messages of these topics (of all where there is none) with times in this range, in the order of their times. Only the
+    /// chunks that may hold some are read.
+    pub fn messages(&self, topics: &[&str], times_ns: Range<u64>) -> Messages<'_> {
+        let wanted = (!topics.is_empty()).then(|| {
+            let channels = self.channels.iter().filter(|channel| topics.contains(&channel.topic.as_str()));
+            channels.map(|channel| channel.id.0).collect()
+        });
+        Messages::new(self, wanted, times_ns)
+    }
+
+    /// All attachments, without their data.
+    pub fn attachments(&self) -> &[Attachment] {
+        &self.contents.attachments
+    }
+
+    /// The data of an attachment.
+    ///
+    /// # Errors
+    /// What the system says; a record that is not one, or a checksum that does not agree.
+    pub fn attachment(&self, attachment: &Attachment) -> Result<Vec<u8>, ReadError> {
+        let (at, length) = attachment.place;
+        let damaged =
+            || ReadError::damaged(&self.path, at, &format!("attachment {}", nima_files::quoted(&attachment.name)));
+        let bytes = self.source.read(at, length).map_err(|_| damaged())?;
+        let record = parse::first_record(&bytes).filter(|&(kind, ..)| kind == kind::ATTACHMENT);
+        match record.and_then(|(_, content, _)| parse::attachment_data(content)) {
+            Some((data, true)) => Ok(data.to_vec()),
+            _ => Err(damaged()),
+        }
+    }
+
+    /// All metadata: name and values.
+    ///
+    /// # Errors
+    /// What the system says; a record that is not one.
+    pub fn metadata(&self) -> Result<Vec<(String, BTreeMap<String, String>)>, ReadError> {
+        let read = |&(at, length): &(u64, u64)| {
+            let damaged = || ReadError::damaged(&self.path, at, "metadata");
+            let bytes = self.source.read(at, length).map_err(|_| damaged())?;
+            let record = parse::first_record(&bytes).filter(|&(kind, ..)| kind == kind::METADATA);
+            record.and_then(|(_, content, _)| parse::metadata(content)).ok_or_else(damaged)
+        };
+        self.contents.metadata.iter().map(read).collect()
+    }
+
+    #[cfg(test)]
+    pub(super) fn chunk_places(&self) -> impl Iterator<Item = (u64, u64)> {
+        self.contents.messages.iter().map(|one| (one.at, one.length))
+    }
+
+    /// The records of one chunk, or of a row of messages outside of one.
+    fn records(&self, place: &contents::Messages) -> Result<Vec<u8>, ReadError> {
+        let failed = |error: io::Error| ReadError::open(&self.path, &error);
+        if !place.is_chunk {
+            return self.source.read(place.at, place.length).map_err(failed);
+        }
+        let chunk = chunk::read(&self.source, place.at, place.length).map_err(failed)?.and_then(|chunk| {
+            let agree = chunk.times_ns == place.times_ns;
+            if agree { Ok(chunk) } else { Err("its times are not those of its index".to_owned()) }
+        });
+        let seconds = |ns: u64| ns as f64 * 1e-9;
+        let what = |why: String| {
+            let (first, last) = place.times_ns;
+            format!("the chunk from {:.3} s to {:.3} s: {why}", seconds(first), seconds(last))
+        };
+        chunk.map(|chunk| chunk.records).map_err(|why| ReadError::damaged(&self.path, place.at, &what(why)))
+    }
+}
+
+fn check_magic(path: &Path, magic: &[u8]) -> Result<(), ReadError> {
+    let path = path.to_owned();
+    match (MAGIC.starts_with(magic), magic) {
+        (true, magic) if magic.len() == MAGIC.len() => Ok(()),
+        (true, _) => Err(ReadError::Cut { path }),
+        (false, &[a, b, c, d, e, version, ..]) if [a, b, c, d, e] == MAGIC[..5] && version != MAGIC[5] => {
+            Err(ReadError::Version { path, version: char::from(version).escape_default().to_string() })
+        }
+        _ => Err(ReadError::Foreign { path }),
+    }
+}
+
+fn of_channel(channel: &parse::RawChannel, contents: &Contents) -> Channel {
+    let schema = contents.schemas.get(&channel.schema);
+    let text = |of: fn(&parse::Schema) -> &String| schema.map(of).cloned().unwrap_or_default();
+    let encoding = Encoding {
+        schema: text(|schema| &schema.name),
+        schema_encoding: text(|schema| &schema.encoding),
+        schema_data: schema.map(|schema| schema.data.clone()).unwrap_or_default(),
+        message_encoding: channel.encoding.clone(),
+    };
+    let told = &contents.statistics.by_channel;
+    let messages = (!told.is_empty()).then(|| told.get(&channel.id).copied().unwrap_or_default());
+    Channel { id: ChannelId(channel.id), topic: channel.topic.clone(), encoding, messages }
+}

@@ -1,0 +1,237 @@
+//! The fields of records, taken from bytes that may be anything.
+
+use std::collections::BTreeMap;
+
+use crate::session::format::{HEAD, Statistics};
+
+/// What is left of a record.
+pub(super) struct Fields<'a>(pub(super) &'a [u8]);
+
+impl<'a> Fields<'a> {
+    pub(super) fn take(&mut self, count: usize) -> Option<&'a [u8]> {
+        let (taken, left) = self.0.split_at_checked(count)?;
+        self.0 = left;
+        Some(taken)
+    }
+
+    fn array<const N: usize>(&mut self) -> Option<[u8; N]> {
+        self.take(N)?.try_into().ok()
+    }
+
+    pub(super) fn u16(&mut self) -> Option<u16> {
+        self.array().map(u16::from_le_bytes)
+    }
+
+    pub(super) fn u32(&mut self) -> Option<u32> {
+        self.array().map(u32::from_le_bytes)
+    }
+
+    pub(super) fn u64(&mut self) -> Option<u64> {
+        self.array().map(u64::from_le_bytes)
+    }
+
+    pub(super) fn bytes(&mut self) -> Option<&'a [u8]> {
+        let count = self.u32()?;
+        self.take(usize::try_from(count).ok()?)
+    }
+
+    pub(super) fn long_bytes(&mut self) -> Option<&'a [u8]> {
+        let count = self.u64()?;
+        self.take(usize::try_from(count).ok()?)
+    }
+
+    pub(super) fn text(&mut self) -> Option<String> {
+        self.bytes().and_then(|bytes| str::from_utf8(bytes).ok()).map(str::to_owned)
+    }
+
+    /// A map, as what `entry` makes of each of its entries.
+    fn map<T>(&mut self, entry: impl Fn(&mut Self) -> Option<T>) -> Option<Vec<T>> {
+        let mut inside = Self(self.bytes()?);
+        let mut entries = Vec::new();
+        while !inside.0.is_empty() {
+            entries.push(entry(&mut inside)?);
+        }
+        Some(entries)
+    }
+
+    pub(super) fn texts(&mut self) -> Option<BTreeMap<String, String>> {
+        self.map(|inside| Some((inside.text()?, inside.text()?))).map(|entries| entries.into_iter().collect())
+    }
+}
+
+/// The first record of `bytes`: kind, content, and what follows.
+pub(super) fn first_record(bytes: &[u8]) -> Option<(u8, &[u8], &[u8])> {
+    let (kind, length) = head(bytes)?;
+    let (content, behind) = bytes.get(HEAD..)?.split_at_checked(usize::try_from(length).ok()?)?;
+    Some((kind, content, behind))
+}
+
+pub(super) fn head(bytes: &[u8]) -> Option<(u8, u64)> {
+    let mut fields = Fields(bytes);
+    Some((fields.take(1)?[0], fields.u64()?))
+}
+
+pub(super) struct Schema {
+    pub(super) id: u16,
+    pub(super) name: String,
+    pub(super) encoding: String,
+    pub(super) data: Vec<u8>,
+}
+
+pub(super) fn schema(content: &[u8]) -> Option<Schema> {
+    let mut fields = Fields(content);
+    let id = fields.u16().filter(|&id| id != 0)?;
+    Some(Schema { id, name: fields.text()?, encoding: fields.text()?, data: fields.bytes()?.to_vec() })
+}
+
+pub(super) struct RawChannel {
+    pub(super) id: u16,
+    pub(super) schema: u16,
+    pub(super) topic: String,
+    pub(super) encoding: String,
+}
+
+pub(super) fn channel(content: &[u8]) -> Option<RawChannel> {
+    let mut fields = Fields(content);
+    let (id, schema) = (fields.u16()?, fields.u16()?);
+    let (topic, encoding) = (fields.text()?, fields.text()?);
+    fields.texts()?;
+    Some(RawChannel { id, schema, topic, encoding })
+}
+
+/// All of a message but its data.
+#[derive(Clone, Copy)]
+pub(super) struct MessageHead {
+    pub(super) channel: u16,
+    pub(super) sequence: u32,
+    pub(super) log_time_ns: u64,
+    pub(super) publish_time_ns: u64,
+}
+
+/// Bytes of that.
+pub(super) const MESSAGE_HEAD: usize = 2 + 4 + 8 + 8;
+
+pub(super) fn message(content: &[u8]) -> Option<MessageHead> {
+    let mut fields = Fields(content);
+    let (channel, sequence) = (fields.u16()?, fields.u32()?);
+    Some(MessageHead { channel, sequence, log_time_ns: fields.u64()?, publish_time_ns: fields.u64()? })
+}
+
+/// What stands before the records of a chunk.
+pub(super) struct ChunkHead {
+    pub(super) times_ns: (u64, u64),
+    pub(super) uncompressed: u64,
+    pub(super) crc: u32,
+    pub(super) compression: String,
+}
+
+pub(super) fn chunk(content: &[u8]) -> Option<(ChunkHead, &[u8])> {
+    let mut fields = Fields(content);
+    let head = ChunkHead {
+        times_ns: (fields.u64()?, fields.u64()?),
+        uncompressed: fields.u64()?,
+        crc: fields.u32()?,
+        compression: fields.text()?,
+    };
+    Some((head, fields.long_bytes()?))
+}
+
+pub(super) struct ChunkIndex {
+    pub(super) times_ns: (u64, u64),
+    pub(super) at: u64,
+    pub(super) length: u64,
+    pub(super) channels: Vec<u16>,
+}
+
+pub(super) fn chunk_index(content: &[u8]) -> Option<ChunkIndex> {
+    let mut fields = Fields(content);
+    let times_ns = (fields.u64()?, fields.u64()?);
+    let (at, length) = (fields.u64()?, fields.u64()?);
+    let channels = fields.map(|inside| {
+        let channel = inside.u16()?;
+        inside.u64().map(|_| channel)
+    })?;
+    Some(ChunkIndex { times_ns, at, length, channels })
+}
+
+/// An attachment without its data, as the summary and the record itself tell it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Attachment {
+    /// Its name.
+    pub name: String,
+    /// What its data is, such as `text/plain`.
+    pub media_type: String,
+    /// When it was recorded, ns.
+    pub log_time_ns: u64,
+    /// Bytes of its data.
+    pub size: u64,
+    /// Where its record stands, and its length.
+    pub(super) place: (u64, u64),
+}
+
+pub(super) fn attachment_index(content: &[u8]) -> Option<Attachment> {
+    let mut fields = Fields(content);
+    let place = (fields.u64()?, fields.u64()?);
+    let log_time_ns = fields.u64()?;
+    fields.u64()?;
+    let size = fields.u64()?;
+    Some(Attachment { place, log_time_ns, size, name: fields.text()?, media_type: fields.text()? })
+}
+
+/// What stands before the data of an attachment of which `place` says where it stands; `size` is that of its data.
+pub(super) fn attachment_head(content: &[u8], place: (u64, u64)) -> Option<Attachment> {
+    let mut fields = Fields(content);
+    let log_time_ns = fields.u64()?;
+    fields.u64()?;
+    Some(Attachment { place, log_time_ns, name: fields.text()?, media_type: fields.text()?, size: fields.u64()? })
+}
+
+/// Its data, and whether the checksum agrees.
+pub(super) fn attachment_data(content: &[u8]) -> Option<(&[u8], bool)> {
+    let (checked, mut crc) =
+        content.split_at_checked(content.len().checked_sub(4)?).map(|(all, crc)| (all, Fields(crc)))?;
+    let crc = crc.u32()?;
+    let mut fields = Fields(checked);
+    fields.take(16)?;
+    fields.bytes()?;
+    fields.bytes()?;
+    let data = fields.long_bytes()?;
+    Some((data, crc == 0 || crc == crc32fast::hash(checked)))
+}
+
+/// Where a record of metadata stands, and its length.
+pub(super) fn metadata_index(content: &[u8]) -> Option<(u64, u64)> {
+    let mut fields = Fields(content);
+    Some((fields.u64()?, fields.u64()?))
+}
+
+pub(super) fn metadata(content: &[u8]) -> Option<(String, BTreeMap<String, String>)> {
+    let mut fields = Fields(content);
+    Some((fields.text()?, fields.texts()?))
+}
+
+pub(super) fn statistics(content: &[u8]) -> Option<Statistics> {
+    let mut fields = Fields(content);
+    Some(Statistics {
+        messages: fields.u64()?,
+        schemas: fields.u16()?,
+        channels: fields.u32()?,
+        attachments: fields.u32()?,
+        metadata: fields.u32()?,
+        chunks: fields.u32()?,
+        times_ns: (fields.u64()?, fields.u64()?),
+        by_channel: fields.map(|inside| Some((inside.u16()?, inside.u64()?)))?.into_iter().collect(),
+    })
+}
+
+pub(super) struct Footer {
+    pub(super) summary_start: u64,
+    pub(super) crc: u32,
+}
+
+pub(super) fn footer(content: &[u8]) -> Option<Footer> {
+    let mut fields = Fields(content);
+    let summary_start = fields.u64()?;
+    fields.u64()?;
+    Some(Footer { summary_start, crc: fields.u32()? })
+}

@@ -1,0 +1,93 @@
+//! The bytes of a session: a file, or memory.
+
+use std::{
+    fs::File,
+    io::{self, ErrorKind},
+};
+
+use super::parse;
+use crate::session::{at, format::HEAD};
+
+pub(super) enum Source {
+    File(File, u64),
+    Bytes(Vec<u8>),
+}
+
+impl Source {
+    pub(super) fn size(&self) -> u64 {
+        match self {
+            Self::File(_, size) => *size,
+            Self::Bytes(bytes) => bytes.len() as u64,
+        }
+    }
+
+    /// These bytes; never more memory than the file is long.
+    pub(super) fn read(&self, from: u64, length: u64) -> io::Result<Vec<u8>> {
+        let end = from.checked_add(length).filter(|&end| end <= self.size()).ok_or(ErrorKind::UnexpectedEof)?;
+        match self {
+            Self::File(file, _) => {
+                let mut bytes = vec![0; length as usize];
+                at::read_exact(file, &mut bytes, from)?;
+                Ok(bytes)
+            }
+            Self::Bytes(bytes) => Ok(bytes[from as usize..end as usize].to_vec()),
+        }
+    }
+}
+
+/// Walks over records and reads only what is asked for, in windows.
+pub(super) struct Walk<'a> {
+    source: &'a Source,
+    /// Where the next record stands.
+    pub(super) at: u64,
+    end: u64,
+    window: Vec<u8>,
+    window_at: u64,
+}
+
+/// One record in its place.
+#[derive(Clone, Copy)]
+pub(super) struct Place {
+    pub(super) kind: u8,
+    pub(super) at: u64,
+    /// With its head.
+    pub(super) length: u64,
+}
+
+const WINDOW: u64 = 64 << 10;
+
+impl<'a> Walk<'a> {
+    pub(super) fn new(source: &'a Source, at: u64, end: u64) -> Self {
+        Self { source, at, end: end.min(source.size()), window: Vec::new(), window_at: 0 }
+    }
+
+    /// The next record, whole or not; `None` at the end, and where the rest is no whole record.
+    pub(super) fn step(&mut self) -> io::Result<Option<Place>> {
+        if self.end.saturating_sub(self.at) < HEAD as u64 {
+            return Ok(None);
+        }
+        let at = self.at;
+        let Some((kind, length)) = parse::head(self.bytes(at, HEAD as u64)?) else { return Ok(None) };
+        let Some(length) = length.checked_add(HEAD as u64).filter(|&length| length <= self.end - at) else {
+            return Ok(None);
+        };
+        self.at += length;
+        Ok(Some(Place { kind, at, length }))
+    }
+
+    /// The content of a record, or the first `most` bytes of it.
+    pub(super) fn content(&mut self, place: Place, most: u64) -> io::Result<&[u8]> {
+        self.bytes(place.at + HEAD as u64, (place.length - HEAD as u64).min(most))
+    }
+
+    fn bytes(&mut self, at: u64, length: u64) -> io::Result<&[u8]> {
+        let inside = at >= self.window_at && at + length <= self.window_at + self.window.len() as u64;
+        if !inside {
+            let more = length.max(WINDOW).min(self.source.size().saturating_sub(at));
+            self.window = self.source.read(at, more.max(length))?;
+            self.window_at = at;
+        }
+        let begin = (at - self.window_at) as usize;
+        Ok(&self.window[begin..begin + length as usize])
+    }
+}

@@ -1,0 +1,217 @@
+//! Files that are cut, damaged, foreign or made up.
+
+use std::fs;
+
+use super::*;
+
+/// A small finished session with everything in it.
+fn small() -> Vec<u8> {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("session.mcap");
+    let mut writer = Writer::create(&path, "nima test").unwrap();
+    let channels = [writer.channel("a", json("A")).unwrap(), writer.channel("b", plain_text()).unwrap()];
+    writer.metadata("session", &values()).unwrap();
+    writer.attachment("rig.toml", "text/plain", 5, b"mode = \"best\"").unwrap();
+    for tick in 0..30_u64 {
+        writer
+            .message(channels[tick as usize % 2], tick * 100_000_000, format!("{{\"tick\": {tick}}}").as_bytes())
+            .unwrap();
+    }
+    writer.finish().unwrap();
+    fs::read(path).unwrap()
+}
+
+/// The same without chunks, summary and index, as others write it.
+fn of_others() -> Vec<u8> {
+    let mut bytes = std::io::Cursor::new(Vec::new());
+    let options = mcap::WriteOptions::new().compression(None).use_chunks(false).emit_summary_records(false);
+    let mut writer = options.create(&mut bytes).unwrap();
+    let channel = writer.add_channel(0, "a", "text", &BTreeMap::new()).unwrap();
+    for time in 0..10 {
+        let header =
+            mcap::records::MessageHeader { channel_id: channel, sequence: 0, log_time: time, publish_time: time };
+        writer.write_to_known_channel(&header, b"word").unwrap();
+    }
+    writer.finish().unwrap();
+    drop(writer);
+    bytes.into_inner()
+}
+
+#[test]
+fn what_is_no_session_gets_one_clear_line() {
+    let read = |bytes: &[u8]| Reader::of_bytes("x.mcap", bytes.to_vec()).err().map(|error| error.to_string());
+    let whole = small();
+    let mut newer = whole.clone();
+    newer[5] = b'1';
+    let cases: [(&[u8], &str); 6] = [
+        (b"", "session x.mcap is empty: nothing was recorded in it"),
+        (&whole[..5], "ends within its first bytes"),
+        (&whole[..20], "damaged at byte 8: there is no header"),
+        (b"t_s,x_m\n0.0,0.1\n", "x.mcap is not a session"),
+        (b"\x89PNG\r\n\x1a\n", "x.mcap is not a session"),
+        (&newer, "version 1 of the format MCAP, only version 0 is read"),
+    ];
+    for (bytes, words) in cases {
+        let line = read(bytes).expect(words);
+        assert!(line.contains(words) && !line.contains('\n'), "{words}: {line}");
+    }
+    let folder = tempfile::tempdir().unwrap();
+    for (path, words) in [(folder.path().join("none"), "No such file"), (folder.path().to_owned(), "a folder")] {
+        let line = Reader::open(&path).err().unwrap().to_string();
+        assert!(line.contains(words), "{line}");
+    }
+}
+
+#[test]
+fn a_file_that_is_cut_anywhere_is_read_up_to_there() {
+    let whole = small();
+    let all = ours(&Reader::of_bytes("whole", whole.clone()).unwrap());
+    assert_eq!(all.len(), 30);
+    let mut most = 0;
+    for length in 60..whole.len() {
+        let reader = Reader::of_bytes("cut", whole[..length].to_vec()).unwrap();
+        let read = ours(&reader);
+        assert!(
+            reader.notes()[0].starts_with("it is cut short: all its records were looked at"),
+            "{:?}",
+            reader.notes()
+        );
+        assert!(read[..] == all[..read.len()] && read.len() >= most, "cut at {length}");
+        most = read.len();
+    }
+    assert_eq!(most, 30);
+}
+
+#[test]
+fn a_file_of_others_without_chunks_and_summary_is_read() {
+    let reader = Reader::of_bytes("others", of_others()).unwrap();
+    assert_eq!(reader.notes(), ["it has no summary: all its records were looked at instead"]);
+    let read = ours(&reader);
+    assert_eq!(read.len(), 10);
+    assert_eq!(read[7], ("a".to_owned(), 7, b"word".to_vec()));
+}
+
+#[test]
+fn every_flipped_bit_of_a_chunk_is_found_and_the_rest_is_read() {
+    let whole = small();
+    let reader = Reader::of_bytes("whole", whole.clone()).unwrap();
+    let all = ours(&reader);
+    let places: Vec<(u64, u64)> = reader.chunk_places().collect();
+    let (mut named, mut seen) = (0, 0);
+    for (at, length) in places {
+        for byte in at..at + length {
+            let mut bytes = whole.clone();
+            bytes[byte as usize] ^= 1 << (byte % 8);
+            let reader = Reader::of_bytes("flipped", bytes).unwrap();
+            let read: Vec<_> = reader.messages(&[], 0..u64::MAX).collect();
+            let errors: Vec<_> = read.iter().filter_map(|one| one.as_ref().err()).map(ToString::to_string).collect();
+            seen += 1;
+            if let [error] = &errors[..] {
+                assert!(error.contains(&format!("damaged at byte {at}: the chunk from")), "{error}");
+                assert!(read.len() >= 25, "the other chunks are read");
+                named += 1;
+            } else {
+                // The frame's own marks say nothing about the messages.
+                assert!(errors.is_empty() && ours(&reader) == all, "byte {} of the chunk at {at}", byte - at);
+            }
+        }
+    }
+    println!("{named} of {seen} flipped bits were named");
+    assert!(named * 100 > seen * 98);
+}
+
+#[test]
+fn flipped_bits_in_what_is_beside_the_messages_are_found() {
+    let whole = small();
+    let flipped = |needle: &[u8], nth: usize| {
+        let mut bytes = whole.clone();
+        let found = bytes.windows(needle.len()).enumerate().filter(|(_, window)| *window == needle).nth(nth).unwrap().0;
+        bytes[found] ^= 2;
+        Reader::of_bytes("flipped", bytes).unwrap()
+    };
+    let reader = flipped(b"mode =", 0);
+    let error = reader.attachment(&reader.attachments()[0]).unwrap_err().to_string();
+    assert!(error.contains("attachment rig.toml"), "{error}");
+    let reader = flipped(b"rig.toml", 1);
+    assert!(reader.notes()[0].starts_with("its summary is damaged: "), "{:?}", reader.notes());
+    assert_eq!(ours(&reader).len(), 30);
+}
+
+#[test]
+fn what_claims_to_be_huge_takes_no_memory() {
+    let whole = small();
+    let reader = Reader::of_bytes("whole", whole.clone()).unwrap();
+    let (at, _) = reader.chunk_places().next().unwrap();
+    for claimed in [u64::MAX, 1 << 40, 100_000] {
+        let mut bytes = whole.clone();
+        // The length before compression stands behind the two times.
+        bytes[at as usize + 9 + 16..][..8].copy_from_slice(&claimed.to_le_bytes());
+        let reader = Reader::of_bytes("huge", bytes).unwrap();
+        let error = reader.messages(&[], 0..u64::MAX).find_map(Result::err).unwrap().to_string();
+        assert!(error.contains("longer than it can be") || error.contains("the length that it claims"), "{error}");
+    }
+}
+
+/// Everything that can be asked of a file.
+fn ask(bytes: Vec<u8>) -> usize {
+    let size = bytes.len() as u64;
+    let Ok(reader) = Reader::of_bytes("mutated", bytes) else { return 0 };
+    for attachment in reader.attachments() {
+        if let Ok(data) = reader.attachment(attachment) {
+            assert!(data.len() as u64 <= size);
+        }
+    }
+    let _ = reader.metadata();
+    assert!(reader.notes().iter().all(|line| !line.contains('\n')));
+    reader.messages(&["a"], 0..1 << 40).count() + reader.messages(&[], 0..u64::MAX).flatten().count()
+}
+
+fn mutated(original: &[u8], random: &mut fastrand::Rng) -> Vec<u8> {
+    let mut bytes = original.to_vec();
+    for _ in 0..random.usize(1..6) {
+        let at = random.usize(..bytes.len());
+        match random.u8(..8) {
+            0 => bytes.truncate(at.max(1)),
+            1 => bytes[at] = [0, 1, 0x7f, 0x80, 0xff][random.usize(..5)],
+            2 => bytes[at] ^= 1 << random.u8(..8),
+            // A length or a place.
+            3 => {
+                let value =
+                    if random.bool() { random.u64(..2 * original.len() as u64) } else { u64::MAX - random.u64(..64) };
+                let end = (at + 8).min(bytes.len());
+                bytes[at..end].copy_from_slice(&value.to_le_bytes()[..end - at]);
+            }
+            4 => {
+                let end = random.usize(at..=bytes.len().min(at + 100));
+                let part = bytes[at..end].to_vec();
+                let to = random.usize(..bytes.len());
+                bytes.splice(to..to, part);
+            }
+            5 => drop(bytes.drain(at..(at + random.usize(..50)).min(bytes.len()))),
+            6 => bytes[at] = random.u8(..16),
+            _ => bytes[at] = random.u8(..),
+        }
+        if bytes.is_empty() {
+            break;
+        }
+    }
+    bytes
+}
+
+fn fuzz(rounds: u64, seed: u64) {
+    let mut random = fastrand::Rng::with_seed(seed);
+    let originals = [small(), of_others()];
+    let read: usize = (0..rounds).map(|round| ask(mutated(&originals[round as usize % 2], &mut random))).sum();
+    assert!(read > rounds as usize, "most mutated files still give something: {read} of {rounds}");
+}
+
+#[test]
+fn mutated_files_are_read_or_refused() {
+    fuzz(5_000, 0x5e55_1011);
+}
+
+#[test]
+#[ignore = "`./dev fuzz` runs it for as long as told"]
+fn fuzz_sessions() {
+    nima_testing::fuzz::rounds(|seed| fuzz(200_000, seed));
+}

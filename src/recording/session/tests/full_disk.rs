@@ -1,0 +1,106 @@
+//! A disk that is full: a limit of the process, which cuts writes short, and a real file system.
+#![cfg(target_os = "linux")]
+
+use std::{
+    fs,
+    path::Path,
+    process::{Command, Output},
+};
+
+use super::*;
+
+/// Names the file of the process that fills the disk.
+const FILE: &str = "NIMA_TEST_SMALL_DISK";
+/// Bytes of a message, 25 of them in half a second.
+const MESSAGE: usize = 50_000;
+
+#[test]
+#[ignore = "run by the tests below in a process of its own"]
+fn of_a_process_with_a_small_disk() {
+    let Ok(path) = std::env::var(FILE) else { return };
+    let mut writer = match Writer::create(path.as_ref(), "") {
+        Ok(writer) => writer,
+        Err(error) => return println!("{error}"),
+    };
+    let channel = writer.channel("a", plain_text()).unwrap();
+    let mut random = fastrand::Rng::with_seed(5);
+    let mut taken = 0_u64;
+    let error = loop {
+        let noise: Vec<u8> = std::iter::repeat_with(|| random.u8(..)).take(MESSAGE).collect();
+        if let Err(error) = writer.message(channel, taken * 20_000_000, &noise) {
+            break error;
+        }
+        taken += 1;
+    };
+    println!("taken {taken}: {error}");
+    let again = writer.flush().unwrap_err();
+    assert_eq!(again.kind(), error.kind(), "it goes on failing");
+    let ended = writer.finish().unwrap_err();
+    assert_eq!(ended.kind(), error.kind());
+}
+
+/// Runs that in a shell: `$0` is the program, `$@` its arguments.
+fn filled(script: &str, path: &Path) -> Output {
+    let name = format!("{}::of_a_process_with_a_small_disk", module_path!().split_once("::").unwrap().1);
+    Command::new("bash")
+        .args(["-c", script])
+        .arg(std::env::current_exe().unwrap())
+        .args([name.as_str(), "--exact", "--ignored", "--nocapture"])
+        .env(FILE, path)
+        .output()
+        .unwrap()
+}
+
+fn text(output: &Output) -> String {
+    assert!(output.status.success(), "{output:?}");
+    String::from_utf8(output.stdout.clone()).unwrap()
+}
+
+/// What was taken is in the file but for half a second.
+fn check(told: &str, path: &Path) {
+    assert!(told.contains("what was written before stays readable"), "{told}");
+    let taken: usize = told.split("taken ").nth(1).unwrap().split(':').next().unwrap().parse().unwrap();
+    let read = ours(&Reader::open(path).unwrap());
+    println!("{taken} taken, {} read", read.len());
+    assert!(taken > 100 && read.len() + 26 > taken, "half a second is missing at most: {} of {taken}", read.len());
+    let bytes = fs::read(path).unwrap();
+    assert!(peer::indexed(&bytes).unwrap() == read && peer::linear(&bytes).unwrap() == read);
+}
+
+#[test]
+fn a_file_that_may_not_grow_stays_readable() {
+    let folder = tempfile::tempdir().unwrap();
+    // The limit of the shell is in KiB; the signal that comes with it is ignored.
+    let run =
+        |kib: u32, path: &Path| text(&filled(&format!("trap '' XFSZ; ulimit -f {kib}; exec \"$0\" \"$@\""), path));
+    assert!(run(10_000, &folder.path().join("none.mcap")).contains("cannot create session"));
+    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0, "nothing is left behind");
+    for kib in [17_000, 33_000, 40_001] {
+        let path = folder.path().join(format!("{kib}.mcap"));
+        check(&run(kib, &path), &path);
+    }
+}
+
+#[test]
+fn a_file_on_a_full_disk_stays_readable() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("disk/session.mcap");
+    let kept = folder.path().join("kept.mcap");
+    for kib in [9_000, 17_001, 30_000, 30_002] {
+        // A file system of this size that nobody else sees, for as long as the shell runs.
+        let (disk, copy) = (path.parent().unwrap(), kept.display());
+        fs::create_dir_all(disk).unwrap();
+        let script = format!(
+            "mount -t tmpfs -o size={kib}k none {disk} || exit 99; \"$0\" \"$@\" && cp {disk}/session.mcap {copy}",
+            disk = disk.display()
+        );
+        let output = filled(&format!("exec unshare -rm bash -c '{script}' \"$0\" \"$@\""), &path);
+        if matches!(output.status.code(), Some(1 | 99 | 127)) && output.stdout.is_empty() {
+            println!("left out: this system lets nobody mount a small disk");
+            return;
+        }
+        let told = text(&output);
+        assert!(told.contains("No space left on device") && told.contains("record to another disk"), "{told}");
+        check(&told, &kept);
+    }
+}

@@ -1,0 +1,52 @@
+//! Files as they come, as they break, and as others read them.
+
+mod bad_files;
+mod files;
+mod full_disk;
+mod killed;
+mod peer;
+mod torn;
+
+use std::collections::BTreeMap;
+
+use super::*;
+
+/// Text messages.
+fn plain_text() -> Encoding {
+    Encoding { message_encoding: "text".into(), ..Encoding::default() }
+}
+
+/// JSON messages with a schema.
+fn json(schema: &str) -> Encoding {
+    let schema_data = br#"{"type": "object"}"#.to_vec();
+    Encoding {
+        schema: schema.into(),
+        schema_encoding: "jsonschema".into(),
+        schema_data,
+        message_encoding: "json".into(),
+    }
+}
+
+fn values() -> BTreeMap<String, String> {
+    [("rig", "emulated"), ("scene", "foam")].map(|(key, value)| (key.to_owned(), value.to_owned())).into()
+}
+
+/// Everything that our reader gives, checked against what it says of itself.
+fn ours(reader: &Reader) -> peer::Told {
+    let told: Result<peer::Told, ReadError> = reader
+        .messages(&[], 0..u64::MAX)
+        .map(|message| {
+            message.map(|message| {
+                let channel = reader.channels().iter().find(|channel| channel.id == message.channel()).unwrap();
+                (channel.topic.clone(), message.log_time_ns(), message.data().to_vec())
+            })
+        })
+        .collect();
+    let told = told.unwrap();
+    for attachment in reader.attachments() {
+        assert_eq!(reader.attachment(attachment).unwrap().len() as u64, attachment.size);
+    }
+    assert_eq!(reader.metadata().unwrap().len(), reader.statistics().metadata as usize);
+    assert_eq!(told.len() as u64, reader.statistics().messages);
+    told
+}

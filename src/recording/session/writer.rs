@@ -1,0 +1,346 @@
+//! Writing a session: messages into chunks, chunks into a file that is valid at every moment.
+
+use std::{
+    collections::BTreeMap,
+    fs::File,
+    io::{self, ErrorKind},
+    path::{Path, PathBuf},
+};
+
+use super::{
+    at,
+    chunk::{Chunk, Closed},
+    error::WriteError,
+    format::{self, Put as _, Statistics, kind, record},
+    layout::{GROWTH, Layout},
+    summary::Summary,
+};
+
+/// A chunk is closed before it spans so much time, ns: so much is lost at most when the process is killed.
+pub const CHUNK_NS: u64 = 500_000_000;
+/// And when its records take so many bytes before compression.
+pub const CHUNK_BYTES: usize = 8 << 20;
+/// Most bytes of a message, an attachment or the records of a kind of metadata: lengths have 32 bit.
+const RECORD_MAX: u64 = 1 << 31;
+
+/// A channel of one file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct ChannelId(pub(super) u16);
+
+/// How the messages of a channel are to be understood; see [`crate::messages`].
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Encoding {
+    /// Name of the kind of message, such as `sensor_msgs/msg/JointState`; empty with the next two for none.
+    pub schema: String,
+    /// How the kind is described, such as `ros2msg`.
+    pub schema_encoding: String,
+    /// The description.
+    pub schema_data: Vec<u8>,
+    /// How a message is encoded, such as `cdr`.
+    pub message_encoding: String,
+}
+
+/// Writes a session file (MCAP, chunks compressed with LZ4). Owned by one thread, which waits for the disk.
+///
+/// The file is valid at every moment: whatever stops the process, `kill -9` or a full disk, every reader of MCAP opens it
+/// unrepaired. Missing is at most what was not in a closed chunk yet, so a thread that hears nothing for a while calls
+/// [`Writer::flush`]. Against the loss of power somebody calls `fdatasync` now and then ([`Writer::sync_handle`]).
+///
+/// A message whose writing gave an error is not in the file, and the next call tries again.
+///
+/// ```
+/// use nima_recording::session::{Encoding, Writer};
+///
+/// let folder = tempfile::tempdir()?;
+/// let path = folder.path().join("session.mcap");
+/// let mut writer = Writer::create(&path, "an example")?;
+/// let json = Encoding {
+///     schema: "Force".into(),
+///     schema_encoding: "jsonschema".into(),
+///     schema_data: br#"{"type": "object", "properties": {"force_n": {"type": "number"}}}"#.to_vec(),
+///     message_encoding: "json".into(),
+/// };
+/// let forces = writer.channel("forces", json)?;
+/// writer.message(forces, 1_000_000, br#"{"force_n": 1.5}"#)?;
+/// assert_eq!(writer.finish()?.messages, 1);
+/// assert!(Writer::create(&path, "an example").is_err(), "a session is never overwritten");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub struct Writer {
+    path: PathBuf,
+    layout: Layout,
+    summary: Summary,
+    /// The summary in the file lacks more than can be appended.
+    summary_changed: bool,
+    chunk: Chunk,
+    /// A closed chunk that could not be written yet.
+    waiting: Option<Closed>,
+    /// By number.
+    channels: Vec<OfChannel>,
+    schemas: Vec<Encoding>,
+}
+
+struct OfChannel {
+    topic: String,
+    encoding: Encoding,
+    sequence: u32,
+}
+
+impl Writer {
+    /// Begins a new file; `library` names the program and its version.
+    ///
+    /// # Errors
+    /// A file of this name, no such folder, no right to write, no space.
+    pub fn create(path: &Path, library: &str) -> Result<Self, WriteError> {
+        Self::create_growing_by(path, library, GROWTH)
+    }
+
+    pub(super) fn create_growing_by(path: &Path, library: &str, growth: u64) -> Result<Self, WriteError> {
+        let summary = Summary::default();
+        let layout = create(path, library, growth, &summary).map_err(|error| WriteError::create(path, &error))?;
+        Ok(Self {
+            path: path.to_owned(),
+            layout,
+            summary,
+            summary_changed: false,
+            chunk: Chunk::default(),
+            waiting: None,
+            channels: Vec::new(),
+            schemas: Vec::new(),
+        })
+    }
+
+    /// A new channel, or the one that has this topic and encoding already.
+    ///
+    /// # Errors
+    /// More than 65 535 channels; what the system says while the file grows.
+    pub fn channel(&mut self, topic: &str, encoding: Encoding) -> Result<ChannelId, WriteError> {
+        if let Some(id) = self.channels.iter().position(|one| one.topic == topic && one.encoding == encoding) {
+            return Ok(ChannelId(id as u16));
+        }
+        self.check("more channels", self.channels.len() as u64 + 1, u64::from(u16::MAX))?;
+        self.check("a larger schema", encoding.schema_data.len() as u64, RECORD_MAX)?;
+        let id = self.channels.len() as u16;
+        let known = self.schemas.iter().position(|known| same_schema(known, &encoding));
+        let (mut schema, mut channel) = (Vec::new(), Vec::new());
+        let number = match known {
+            _ if encoding.schema_encoding.is_empty() => 0,
+            Some(known) => known as u16 + 1,
+            None => {
+                let number = self.schemas.len() as u16 + 1;
+                format::schema(&mut schema, number, &encoding.schema, &encoding.schema_encoding, &encoding.schema_data);
+                number
+            }
+        };
+        format::channel(&mut channel, id, number, topic, &encoding.message_encoding);
+        self.reserve(0, (schema.len() + channel.len()) as u64)?;
+        if !schema.is_empty() {
+            self.schemas.push(encoding.clone());
+            self.summary.statistics.schemas += 1;
+        }
+        // In the chunk too, for who reads from the beginning.
+        for (record, in_summary) in [(schema, &mut self.summary.schemas), (channel, &mut self.summary.channels)] {
+            self.chunk.put_record(&record);
+            in_summary.extend_from_slice(&record);
+        }
+        self.summary.statistics.channels += 1;
+        self.summary_changed = true;
+        self.channels.push(OfChannel { topic: topic.to_owned(), encoding, sequence: 0 });
+        Ok(ChannelId(id))
+    }
+
+    /// Takes a message; `log_time_ns` is the time of its sample. Times should rise, and a chunk is closed before it spans more
+    /// than [`CHUNK_NS`].
+    ///
+    /// # Errors
+    /// What the system says while a chunk is written. The message is not taken then.
+    pub fn message(&mut self, channel: ChannelId, log_time_ns: u64, data: &[u8]) -> Result<(), WriteError> {
+        self.check("a larger message", data.len() as u64, RECORD_MAX)?;
+        self.check("a channel of another file", u64::from(channel.0) + 1, self.channels.len() as u64)?;
+        let full = self.chunk.len() + data.len() > CHUNK_BYTES && self.chunk.len() > 0;
+        if self.waiting.is_some() || full || self.chunk.span_ns(log_time_ns) >= CHUNK_NS {
+            self.flush()?;
+        }
+        let of_channel = &mut self.channels[usize::from(channel.0)];
+        self.chunk.put_message(channel.0, of_channel.sequence, log_time_ns, data);
+        of_channel.sequence = of_channel.sequence.wrapping_add(1);
+        Ok(())
+    }
+
+    /// Writes a whole file into this one, beside the messages.
+    ///
+    /// # Errors
+    /// More than 2 GiB; what the system says while it is written.
+    pub fn attachment(
+        &mut self,
+        name: &str,
+        media_type: &str,
+        log_time_ns: u64,
+        data: &[u8],
+    ) -> Result<(), WriteError> {
+        self.check("a larger attachment", data.len() as u64, RECORD_MAX)?;
+        let mut bytes = Vec::with_capacity(data.len() + 256);
+        format::attachment(&mut bytes, name, media_type, log_time_ns, data);
+        let (length, of_index) = (bytes.len() as u64, 128 + name.len() + media_type.len());
+        let at = self.reserve(length, of_index as u64)?;
+        self.layout.append(&bytes).map_err(|error| WriteError::write(&self.path, &error))?;
+        record(&mut self.summary.attachments, kind::ATTACHMENT_INDEX, |out| {
+            out.u64(at);
+            out.u64(length);
+            out.u64(log_time_ns);
+            out.u64(log_time_ns);
+            out.u64(data.len() as u64);
+            out.text(name);
+            out.text(media_type);
+        });
+        self.summary.statistics.attachments += 1;
+        self.renew_summary()
+    }
+
+    /// Writes named values.
+    ///
+    /// # Errors
+    /// What the system says while they are written.
+    pub fn metadata(&mut self, name: &str, entries: &BTreeMap<String, String>) -> Result<(), WriteError> {
+        let size: usize = entries.iter().map(|(key, value)| 8 + key.len() + value.len()).sum();
+        self.check("larger metadata", size as u64, RECORD_MAX)?;
+        let mut bytes = Vec::new();
+        format::metadata(&mut bytes, name, entries);
+        let length = bytes.len() as u64;
+        let at = self.reserve(length, 64 + name.len() as u64)?;
+        self.layout.append(&bytes).map_err(|error| WriteError::write(&self.path, &error))?;
+        record(&mut self.summary.metadata, kind::METADATA_INDEX, |out| {
+            out.u64(at);
+            out.u64(length);
+            out.text(name);
+        });
+        self.summary.statistics.metadata += 1;
+        self.renew_summary()
+    }
+
+    /// Closes the chunk now and writes it.
+    ///
+    /// # Errors
+    /// What the system says; the chunk is kept, and written by the next call that succeeds.
+    pub fn flush(&mut self) -> Result<(), WriteError> {
+        if self.waiting.is_none() && self.chunk.len() > 0 {
+            self.waiting = Some(self.chunk.close().map_err(|error| WriteError::write(&self.path, &error))?);
+        }
+        let chunk = match self.waiting.take() {
+            Some(chunk) => chunk,
+            None if self.summary_changed => return self.renew_summary(),
+            None => return Ok(()),
+        };
+        let mut index = Vec::new();
+        match self.place(&chunk) {
+            Ok(at) => chunk.put_index(&mut index, at),
+            Err(error) => {
+                self.waiting = Some(chunk);
+                return Err(error);
+            }
+        }
+        self.count(&chunk);
+        self.summary.chunks.extend_from_slice(&index);
+        if self.summary_changed {
+            return self.renew_summary();
+        }
+        // Until it is in the file.
+        self.summary_changed = true;
+        self.layout.append_index(&index, &self.summary).map_err(|error| WriteError::write(&self.path, &error))?;
+        self.summary_changed = false;
+        Ok(())
+    }
+
+    /// The same file, for a thread that calls `sync_data` each second.
+    ///
+    /// # Errors
+    /// What the system says.
+    pub fn sync_handle(&self) -> io::Result<File> {
+        self.layout.file().try_clone()
+    }
+
+    /// Bytes handed to the system so far, and bytes of data that stand in the file; the rest is what keeps it valid.
+    pub fn bytes(&self) -> (u64, u64) {
+        self.layout.written()
+    }
+
+    /// Closes the chunk, writes the last summary with its checksum, cuts off the free room and waits for the disk.
+    ///
+    /// # Errors
+    /// What the system says; the file is as readable as before.
+    pub fn finish(mut self) -> Result<Statistics, WriteError> {
+        self.flush()?;
+        self.layout.finish(&self.summary).map_err(|error| WriteError::write(&self.path, &error))?;
+        Ok(self.summary.statistics)
+    }
+
+    #[cfg(test)]
+    pub(super) fn layout(&self) -> &Layout {
+        &self.layout
+    }
+
+    /// Writes the chunk into the data.
+    fn place(&mut self, chunk: &Closed) -> Result<u64, WriteError> {
+        let of_index = 128 + 10 * chunk.indexes.len();
+        let at = self.reserve(chunk.bytes.len() as u64, of_index as u64)?;
+        self.layout.append(&chunk.bytes).map_err(|error| WriteError::write(&self.path, &error))?;
+        Ok(at)
+    }
+
+    fn reserve(&mut self, data: u64, in_summary: u64) -> Result<u64, WriteError> {
+        if at::is_deleted(self.layout.file()).map_err(|error| WriteError::write(&self.path, &error))? {
+            return Err(WriteError::Deleted { path: self.path.clone() });
+        }
+        self.layout.reserve(data, in_summary, &self.summary).map_err(|error| WriteError::write(&self.path, &error))
+    }
+
+    fn renew_summary(&mut self) -> Result<(), WriteError> {
+        self.summary_changed = true;
+        self.layout.renew(&self.summary).map_err(|error| WriteError::write(&self.path, &error))?;
+        self.summary_changed = false;
+        Ok(())
+    }
+
+    fn count(&mut self, chunk: &Closed) {
+        let statistics = &mut self.summary.statistics;
+        statistics.chunks += 1;
+        statistics.messages += chunk.messages;
+        if let Some((first, last)) = chunk.times_ns {
+            let (begin, end) = statistics.times_ns;
+            let none = statistics.messages == chunk.messages;
+            statistics.times_ns = if none { (first, last) } else { (begin.min(first), end.max(last)) };
+        }
+        for &(channel, _, messages) in &chunk.indexes {
+            *statistics.by_channel.entry(channel).or_default() += messages;
+        }
+    }
+
+    fn check(&self, what: &'static str, value: u64, most: u64) -> Result<(), WriteError> {
+        if value > most { Err(WriteError::TooMuch { path: self.path.clone(), what, most }) } else { Ok(()) }
+    }
+}
+
+fn same_schema(one: &Encoding, other: &Encoding) -> bool {
+    one.schema == other.schema && one.schema_encoding == other.schema_encoding && one.schema_data == other.schema_data
+}
+
+/// The empty file is laid out under another name, and appears whole.
+fn create(path: &Path, library: &str, growth: u64, summary: &Summary) -> io::Result<Layout> {
+    if path.symlink_metadata().is_ok() {
+        return Err(io::Error::new(ErrorKind::AlreadyExists, "something of this name is there"));
+    }
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or_else(|| Path::new("."));
+    let mut new = tempfile::Builder::new();
+    #[cfg(unix)]
+    new.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
+    let new = new.tempfile_in(folder).map_err(|error| io::Error::new(error.kind(), plain(&error)))?;
+    let layout = Layout::new(new.as_file().try_clone()?, library, growth, summary)?;
+    new.persist_noclobber(path).map_err(|error| error.error)?;
+    Ok(layout)
+}
+
+/// Without the name of a file that nobody asked for.
+fn plain(error: &io::Error) -> String {
+    let text = error.to_string();
+    text.split(" at path ").next().unwrap_or_default().to_owned()
+}

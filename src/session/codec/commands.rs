@@ -1,0 +1,102 @@
+//! What is done to the loop between two ticks.
+
+use nalgebra::{UnitQuaternion, UnitVector3, Vector3};
+use nima_core::{
+    calibration::frames::Move,
+    impedance::{Baseline, Mode},
+};
+use nima_devices::{Loss, Standing};
+use nima_machine::{
+    messages::{Command, Watchdog},
+    rig::{DeviceEvent, Prompt, Side},
+    runtime::Operation,
+};
+
+use super::{Put, Sink, Source, Take, Wrong, choice, record};
+
+choice!(Operation {
+    0 => Command { command: command: Command, t_s: t_s: f64 },
+    1 => Device { 0: event: DeviceEvent },
+    2 => Suspend { 0: side: Side },
+    3 => Calibrations { side: side: Side, number: number: u64 },
+    4 => Stall { silent_s: silent_s: f64, t_s: t_s: f64 },
+});
+
+choice!(Command {
+    0 => SetMode { 0: mode: Mode },
+    1 => Compare { 0: compares: bool },
+    2 => SetGain { 0: gain: f64 },
+    3 => SetGainAboveOne { 0: gain: f64 },
+    4 => SetDelay { 0: delay_s: f64 },
+    5 => SetDeadBand { 0: speed_m_s: f64 },
+    6 => SetStaticHold { 0: holds: bool },
+    7 => Prompt { 0: side: Side, 1: prompt: Prompt },
+    8 => Guide { 0: guide_m: Option<Vector3<f64>> },
+    9 => LetGo { 0: lets_go: bool },
+    10 => SetGovernor { 0: on: bool },
+    11 => SetScale { 0: scale: f64 },
+    12 => Engage {},
+    13 => EngageOne { 0: side: Side },
+    14 => Rest {},
+    15 => Stop {},
+    16 => ReleaseStop {},
+    17 => TestWatchdog { 0: watchdog: Watchdog },
+    18 => Checked { 0: passed: bool },
+    19 => Shutdown {},
+});
+
+choice!(Side { 0 => Right {}, 1 => Left {} });
+choice!(Watchdog { 0 => Loop {}, 1 => Source {}, 2 => Link {} });
+
+choice!(Mode {
+    0 => Literal {},
+    1 => Linear {},
+    2 => Dfr {},
+    3 => Anchored {},
+    4 => Matched {},
+    5 => Nima {},
+    6 => Best {},
+    7 => Baseline { 0: baseline: Baseline },
+});
+
+choice!(Baseline {
+    0 => ModelMediated {},
+    1 => Waves {},
+    2 => Passivity {},
+    3 => Kalman {},
+    4 => Autoregressive {},
+});
+
+choice!(Prompt {
+    0 => Rest {},
+    1 => Hold { world_from_s1: world_from_s1: UnitQuaternion<f64> },
+    2 => Wave {},
+    3 => Push { direction: direction: UnitVector3<f64> },
+    4 => Work {},
+    5 => WorkFree {},
+    6 => PivotInDimple {},
+    7 => Turn {},
+    8 => PivotInTrocar {},
+    9 => Touch { point: point: u8 },
+    10 => MoveTip { 0: to: Move },
+    11 => MoveHandle { 0: to: Move },
+});
+
+choice!(Move { 0 => Right {}, 1 => Up {}, 2 => Deeper {}, 3 => Left {}, 4 => Down {}, 5 => Back {} });
+
+record!(DeviceEvent { t_s: f64, device: u8, standing: Standing, of_side: [bool; 2] });
+
+choice!(Standing {
+    0 => Closed {},
+    1 => Opening {},
+    2 => Connected {},
+    3 => Lost { 0: loss: Loss },
+});
+
+choice!(Loss {
+    0 => Disconnected {},
+    1 => Silent {},
+    2 => Corrupt {},
+    3 => Implausible {},
+    4 => Device { code: code: u32 },
+});

@@ -1,0 +1,91 @@
+//! What the loop is fed in each tick.
+
+use nalgebra::{Isometry3, UnitQuaternion, Vector3};
+use nima_core::{
+    calibration::frames::FrameSample,
+    frames::{Wrench, WristSample},
+    kinematics::{Hand, StartError},
+};
+use nima_machine::{
+    rig::{Awaited, Exchange, Inputs, Obstacle, Sensed, Switches, View},
+    teleop::Timing,
+};
+
+use super::{Put, Sink, Source, Take, Wrong, choice, record};
+
+record!(Timing { now_s: f64, wake_s: f64, work_s: f64, sample_to_force_s: Option<f64>, missed_now: u64 });
+
+record!(Inputs {
+    hand: Hand,
+    gripper_rad: Option<f64>,
+    grip_n: Option<f64>,
+    tip_m: Vector3<f64>,
+    world_from_jaws: Option<UnitQuaternion<f64>>,
+    sensed: Sensed,
+    view: View,
+    frames: FrameSample,
+    switches: Switches,
+    powered: bool,
+    obstacle: Option<Obstacle>,
+    age_s: f64,
+});
+
+record!(Hand { position_m: Vector3<f64>, orientation: Option<UnitQuaternion<f64>> });
+record!(Switches { clutch: bool, presence: Option<bool> });
+record!(Wrench { force_n: Vector3<f64>, torque_nm: Vector3<f64> });
+
+choice!(Sensed {
+    0 => AtTip { 0: force_n: Vector3<f64> },
+    1 => AtWrist { 0: sample: WristSample },
+});
+
+choice!(View {
+    0 => Fixed {},
+    1 => Unseen {},
+    2 => Seen { 0: world_from_view: UnitQuaternion<f64> },
+});
+
+record!(WristSample {
+    raw: Wrench,
+    acceleration_m_s2: Option<Vector3<f64>>,
+    world_from_s1: Option<UnitQuaternion<f64>>,
+    world_from_m: Option<UnitQuaternion<f64>>,
+    m_from_c: Option<UnitQuaternion<f64>>,
+    insertion_m: Option<f64>,
+    tissue_n: Option<Vector3<f64>>,
+});
+
+record!(FrameSample {
+    base_from_flange: Option<Isometry3<f64>>,
+    other_base_from_flange: Option<Isometry3<f64>>,
+    c_from_m: Option<Isometry3<f64>>,
+    c_from_other_m: Option<Isometry3<f64>>,
+    leader_from_handle: Option<Isometry3<f64>>,
+    wrench: Option<Wrench>,
+});
+
+choice!(Obstacle {
+    0 => Start { 0: error: StartError },
+    1 => Waiting { 0: awaited: Awaited },
+    2 => Exchanged { 0: exchange: Exchange },
+});
+
+choice!(Awaited { 0 => Servos {}, 1 => Markers {} });
+
+choice!(Exchange {
+    0 => Handles {},
+    1 => Arms {},
+    2 => Sensors {},
+    3 => Servos {},
+    4 => Markers {},
+    5 => Trocars {},
+});
+
+choice!(StartError {
+    0 => Period { period_s: period_s: f64 },
+    1 => ShortShaft { shaft_m: shaft_m: f64, insertion_max_m: insertion_max_m: f64 },
+    2 => NotFinite { joint: joint: usize },
+    3 => AtLimit { joint: joint: usize, angle_deg: angle_deg: f64, limit_deg: limit_deg: f64 },
+    4 => BesideTrocar { miss_m: miss_m: f64, most_m: most_m: f64 },
+    5 => NotInserted { insertion_m: insertion_m: f64 },
+});

@@ -1,0 +1,335 @@
+//! Values of the loop as words of 64 bits, and back, exact to the bit.
+//!
+//! Every value is taken apart into words in a fixed order; a structure is taken apart by all its fields, so that one which is
+//! added later does not compile until it is handled. The same words go into the columns of a journal and into the digest that
+//! a replay compares. A value that is absent leaves its columns out: each field has columns of its own.
+
+mod columns;
+mod commands;
+mod inputs;
+mod shown;
+
+pub(crate) use columns::{Columns, Unpacked, bytes, number, take_number};
+
+use nalgebra::{Isometry3, Quaternion, Translation3, UnitQuaternion, UnitVector3, Vector3};
+
+/// Where words go.
+pub(crate) trait Sink {
+    /// Takes the next word.
+    fn word(&mut self, word: u64);
+
+    /// Leaves these columns out.
+    fn skip(&mut self, columns: usize);
+}
+
+/// Where words come from.
+pub(crate) trait Source {
+    /// The next word.
+    ///
+    /// # Errors
+    /// [`Wrong::Short`] if there is none.
+    fn word(&mut self) -> Result<u64, Wrong>;
+
+    /// Passes over columns that were left out.
+    fn skip(&mut self, columns: usize);
+}
+
+/// Why words are not what they should be.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum Wrong {
+    /// Words are missing.
+    #[error("it is shorter than it says")]
+    Short,
+    /// Words are left over.
+    #[error("it is longer than it says")]
+    Long,
+    /// A word that stands for nothing.
+    #[error("it holds a value that does not exist")]
+    NoSuchValue,
+}
+
+/// What can be taken apart into words.
+pub(crate) trait Put {
+    /// Columns that it takes, whether they are used or not.
+    const COLUMNS: usize;
+
+    /// Hands its words over.
+    fn put(&self, to: &mut impl Sink);
+}
+
+/// What can be put together again.
+pub(crate) trait Take: Put + Sized {
+    /// The value of the next words.
+    ///
+    /// # Errors
+    /// [`Wrong`] if they are none.
+    fn take(from: &mut impl Source) -> Result<Self, Wrong>;
+}
+
+/// Rows of words, one after the other: for what is rare.
+impl Sink for Vec<u64> {
+    fn word(&mut self, word: u64) {
+        self.push(word);
+    }
+
+    fn skip(&mut self, _: usize) {}
+}
+
+impl Source for std::vec::IntoIter<u64> {
+    fn word(&mut self) -> Result<u64, Wrong> {
+        self.next().ok_or(Wrong::Short)
+    }
+
+    fn skip(&mut self, _: usize) {}
+}
+
+/// Numbers that are words.
+macro_rules! numbers {
+    ($($number:ty),*) => { $(
+        impl Put for $number {
+            const COLUMNS: usize = 1;
+
+            fn put(&self, to: &mut impl Sink) {
+                #[allow(clippy::cast_lossless, reason = "one of them is as wide as a word")]
+                to.word(*self as u64);
+            }
+        }
+
+        impl Take for $number {
+            fn take(from: &mut impl Source) -> Result<Self, Wrong> {
+                let word = from.word()?;
+                #[allow(clippy::cast_lossless, reason = "one of them is as wide as a word")]
+                let number = word as Self;
+                #[allow(clippy::cast_lossless, reason = "one of them is as wide as a word")]
+                if number as u64 == word { Ok(number) } else { Err(Wrong::NoSuchValue) }
+            }
+        }
+    )* };
+}
+
+numbers!(u8, u16, u64, usize);
+
+impl Put for f64 {
+    const COLUMNS: usize = 1;
+
+    fn put(&self, to: &mut impl Sink) {
+        to.word(self.to_bits());
+    }
+}
+
+impl Take for f64 {
+    fn take(from: &mut impl Source) -> Result<Self, Wrong> {
+        from.word().map(Self::from_bits)
+    }
+}
+
+impl Put for f32 {
+    const COLUMNS: usize = 1;
+
+    fn put(&self, to: &mut impl Sink) {
+        to.word(u64::from(self.to_bits()));
+    }
+}
+
+impl Put for u32 {
+    const COLUMNS: usize = 1;
+
+    fn put(&self, to: &mut impl Sink) {
+        to.word(u64::from(*self));
+    }
+}
+
+impl Take for u32 {
+    fn take(from: &mut impl Source) -> Result<Self, Wrong> {
+        Self::try_from(from.word()?).map_err(|_| Wrong::NoSuchValue)
+    }
+}
+
+impl Put for bool {
+    const COLUMNS: usize = 1;
+
+    fn put(&self, to: &mut impl Sink) {
+        to.word(u64::from(*self));
+    }
+}
+
+impl Take for bool {
+    fn take(from: &mut impl Source) -> Result<Self, Wrong> {
+        match from.word()? {
+            0 => Ok(false),
+            1 => Ok(true),
+            _ => Err(Wrong::NoSuchValue),
+        }
+    }
+}
+
+impl<T: Put> Put for Option<T> {
+    const COLUMNS: usize = 1 + T::COLUMNS;
+
+    fn put(&self, to: &mut impl Sink) {
+        self.is_some().put(to);
+        match self {
+            Some(value) => value.put(to),
+            None => to.skip(T::COLUMNS),
+        }
+    }
+}
+
+impl<T: Take> Take for Option<T> {
+    fn take(from: &mut impl Source) -> Result<Self, Wrong> {
+        if bool::take(from)? {
+            return T::take(from).map(Some);
+        }
+        from.skip(T::COLUMNS);
+        Ok(None)
+    }
+}
+
+impl<T: Put, const N: usize> Put for [T; N] {
+    const COLUMNS: usize = N * T::COLUMNS;
+
+    fn put(&self, to: &mut impl Sink) {
+        for value in self {
+            value.put(to);
+        }
+    }
+}
+
+impl<T: Take + Copy + Default, const N: usize> Take for [T; N] {
+    fn take(from: &mut impl Source) -> Result<Self, Wrong> {
+        let mut values = [T::default(); N];
+        for value in &mut values {
+            *value = T::take(from)?;
+        }
+        Ok(values)
+    }
+}
+
+impl Put for Vector3<f64> {
+    const COLUMNS: usize = 3;
+
+    fn put(&self, to: &mut impl Sink) {
+        self.iter().for_each(|x| x.put(to));
+    }
+}
+
+impl Take for Vector3<f64> {
+    fn take(from: &mut impl Source) -> Result<Self, Wrong> {
+        Ok(Self::new(f64::take(from)?, f64::take(from)?, f64::take(from)?))
+    }
+}
+
+impl Put for UnitVector3<f64> {
+    const COLUMNS: usize = 3;
+
+    fn put(&self, to: &mut impl Sink) {
+        self.as_ref().put(to);
+    }
+}
+
+impl Take for UnitVector3<f64> {
+    fn take(from: &mut impl Source) -> Result<Self, Wrong> {
+        // To the bit: not normalised anew.
+        Vector3::take(from).map(Self::new_unchecked)
+    }
+}
+
+impl Put for UnitQuaternion<f64> {
+    const COLUMNS: usize = 4;
+
+    fn put(&self, to: &mut impl Sink) {
+        self.coords.iter().for_each(|x| x.put(to));
+    }
+}
+
+impl Take for UnitQuaternion<f64> {
+    fn take(from: &mut impl Source) -> Result<Self, Wrong> {
+        let [i, j, k, w] = <[f64; 4]>::take(from)?;
+        // To the bit: not normalised anew.
+        Ok(Self::new_unchecked(Quaternion::new(w, i, j, k)))
+    }
+}
+
+impl Put for Isometry3<f64> {
+    const COLUMNS: usize = 7;
+
+    fn put(&self, to: &mut impl Sink) {
+        let Self { rotation, translation } = self;
+        translation.vector.put(to);
+        rotation.put(to);
+    }
+}
+
+impl Take for Isometry3<f64> {
+    fn take(from: &mut impl Source) -> Result<Self, Wrong> {
+        let translation = Translation3::from(Vector3::take(from)?);
+        Ok(Self::from_parts(translation, UnitQuaternion::take(from)?))
+    }
+}
+
+/// A structure: all its fields, in this order.
+macro_rules! record {
+    (put $type:ty { $($field:ident: $kind:ty),* $(,)? }) => {
+        impl Put for $type {
+            const COLUMNS: usize = 0 $(+ <$kind as Put>::COLUMNS)*;
+
+            fn put(&self, to: &mut impl Sink) {
+                // Without `..`: a field that is added does not compile until it is handled here.
+                let Self { $($field),* } = self;
+                $($field.put(to);)*
+            }
+        }
+    };
+    ($type:ty { $($field:ident: $kind:ty),* $(,)? }) => {
+        record!(put $type { $($field: $kind),* });
+
+        impl Take for $type {
+            fn take(from: &mut impl Source) -> Result<Self, Wrong> {
+                Ok(Self { $($field: <$kind as Take>::take(from)?),* })
+            }
+        }
+    };
+}
+
+/// A choice: the number of the variant, then the columns of every variant, of which one's are used.
+macro_rules! choice {
+    (put $type:ty { $($tag:literal => $variant:ident { $($field:tt: $name:ident: $kind:ty),* }),* $(,)? }) => {
+        impl Put for $type {
+            const COLUMNS: usize = 1 $($(+ <$kind as Put>::COLUMNS)*)*;
+
+            #[allow(unused_variables, reason = "variants without fields, and the number alone")]
+            fn put(&self, to: &mut impl Sink) {
+                // Without `_` and `..`: what is added does not compile until it is handled here.
+                let tag: u64 = match self { $(Self::$variant { $($field: $name),* } => $tag),* };
+                to.word(tag);
+                $(
+                    if let Self::$variant { $($field: $name),* } = self {
+                        $($name.put(to);)*
+                    } else {
+                        to.skip(0 $(+ <$kind as Put>::COLUMNS)*);
+                    }
+                )*
+            }
+        }
+    };
+    ($type:ty { $($tag:literal => $variant:ident { $($field:tt: $name:ident: $kind:ty),* }),* $(,)? }) => {
+        choice!(put $type { $($tag => $variant { $($field: $name: $kind),* }),* });
+
+        impl Take for $type {
+            fn take(from: &mut impl Source) -> Result<Self, Wrong> {
+                let tag = from.word()?;
+                let mut made = None;
+                $(
+                    if tag == $tag {
+                        made = Some(Self::$variant { $($field: <$kind as Take>::take(from)?),* });
+                    } else {
+                        from.skip(0 $(+ <$kind as Put>::COLUMNS)*);
+                    }
+                )*
+                made.ok_or(Wrong::NoSuchValue)
+            }
+        }
+    };
+}
+
+pub(crate) use {choice, record};

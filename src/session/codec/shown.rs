@@ -1,0 +1,212 @@
+//! What comes out of the loop. It is compared and never put together again, so it only has one way.
+
+use nalgebra::{UnitQuaternion, Vector3};
+use nima_core::{
+    frames::Wrench,
+    impedance::{Excitation, MAX_DEGREE, Mode, ModeSet, Report, SLOTS},
+    safety::{ChainSettings, EnergyMode, GATES, GateCounts, GateReport, Implausible, Reason, State, Why},
+    tip_force::{Fallback, TipForceReport, Unsure},
+};
+use nima_devices::Loss;
+use nima_machine::{
+    messages::{Command, Event, Fault, ForceReport, ForceSource, Refusal, Scheduling},
+    rig::{DeviceEvent, Obstacle, Outputs, Prompt, Side},
+};
+
+use super::{Put, Sink, choice, record};
+
+record!(put Outputs {
+    drives: bool,
+    tip_command_m: Option<Vector3<f64>>,
+    world_from_jaws: Option<UnitQuaternion<f64>>,
+    hand_force_n: Vector3<f64>,
+    gripper_n: f64,
+    prompt: Prompt,
+    guide_m: Option<Vector3<f64>>,
+    lets_go: bool,
+});
+
+record!(put ForceReport {
+    source: ForceSource,
+    tip_n: Vector3<f64>,
+    gravity_free: Option<Wrench>,
+    tip_force: Option<TipForceReport>,
+});
+
+choice!(put ForceSource {
+    0 => AtTip {},
+    1 => Wrist {},
+    2 => Network {},
+    3 => Extrapolated {},
+    4 => InDoubt { unsure: unsure: Unsure, fallback: fallback: Fallback },
+    5 => Uncalibrated {},
+    6 => NoOrientation {},
+    7 => Poisoned {},
+});
+
+choice!(put Unsure { 0 => OutsideTraining {}, 1 => NotMoved {}, 2 => Missing {} });
+choice!(put Fallback { 0 => WristForce {}, 1 => HoldAndFade {} });
+
+record!(put TipForceReport {
+    force_s1_n: Vector3<f64>,
+    network_share: f64,
+    unsure: Option<Unsure>,
+    extrapolates: bool,
+    doubt: f32,
+});
+
+record!(put Report {
+    t_s: f64,
+    modes: ModeSet,
+    resting: bool,
+    learnt: u64,
+    prediction_n: [Vector3<f64>; SLOTS],
+    prediction_valid: [bool; SLOTS],
+    reconstruction_n: [Vector3<f64>; MAX_DEGREE],
+    paper_degree: u8,
+    degree: u8,
+    matched_degree: u8,
+    nima_degree: u8,
+    columns: u8,
+    gain: f64,
+    condition: f64,
+    rank: u8,
+    excitation: Excitation,
+    rejected: u64,
+    restarts: u64,
+    literal_failures: u64,
+    horizon_error_n: [f64; SLOTS],
+});
+
+record!(put Excitation { position_m: Vector3<f64>, velocity_m_s: Vector3<f64>, acceleration_m_s2: Vector3<f64> });
+
+impl Put for ModeSet {
+    const COLUMNS: usize = 1;
+
+    fn put(&self, to: &mut impl Sink) {
+        let bits = Mode::ALL.into_iter().chain(Mode::BASELINES).map(|mode| u64::from(self.contains(mode)));
+        to.word(bits.fold(0, |word, bit| word << 1 | bit));
+    }
+}
+
+record!(put GateReport {
+    reasons: [Reason; GATES],
+    withheld_n: f64,
+    governed: f64,
+    gain: f64,
+    stored_j: f64,
+    counts: GateCounts,
+});
+
+record!(put GateCounts { ticks: u64, acted: [u64; GATES], last: [Reason; GATES] });
+
+choice!(put Reason {
+    0 => Open {},
+    1 => NotPermitted {},
+    2 => NothingAsked {},
+    3 => NotFinite {},
+    4 => Implausible {},
+    5 => Ageing {},
+    6 => TooOld {},
+    7 => HandSlow {},
+    8 => SpeedUnknown {},
+    9 => GainZero {},
+    10 => GainRamping {},
+    11 => ChangeTooFast {},
+    12 => EnergySpent {},
+    13 => AboveCeiling {},
+    14 => AboveDeviceLimit {},
+    15 => RunsAway {},
+    16 => HandGone {},
+});
+
+record!(put ChainSettings {
+    gain: f64,
+    gain_rate_per_s: f64,
+    ceiling_n: f64,
+    device_limit_n: f64,
+    slew_n_per_s: f64,
+    fade_after_s: f64,
+    zero_after_s: f64,
+    dead_band_m_s: f64,
+    static_hold: bool,
+    energy: EnergyMode,
+    handle_kg: f64,
+    handle_n_s_m: f64,
+    handle_step_m: f64,
+    brake_n_s_m: f64,
+});
+
+choice!(put EnergyMode { 0 => Off {}, 1 => Observe {}, 2 => Control {} });
+
+choice!(put State<Fault> {
+    0 => Disconnected {},
+    1 => Idle {},
+    2 => Ready {},
+    3 => Engaged {},
+    4 => Clutched {},
+    5 => Stopped {},
+    6 => Faulted { 0: fault: Fault },
+});
+
+choice!(put Fault {
+    0 => SourceSilent {},
+    1 => LoopStalled { periods: periods: u64 },
+    2 => ForceUnknown {},
+    3 => DeviceLost { device: device: u8, loss: loss: Loss },
+    4 => DrivesOff {},
+    5 => OtherArm {},
+    6 => SamplesLost {},
+    7 => LinkSilent {},
+    8 => ClockJumped {},
+    9 => Implausible { what: what: Implausible },
+});
+
+choice!(put Implausible {
+    0 => ForceFrozen {},
+    1 => ForceJumped {},
+    2 => ForceAlong {},
+    3 => LinkFrozen {},
+    4 => HandleJumped {},
+    5 => HandleFrozen {},
+    6 => TipJumped {},
+    7 => ArmAstray {},
+});
+
+choice!(put Event {
+    0 => StateChanged { t_s: t_s: f64, side: side: Side, from: from: State<Fault>, to: into: State<Fault>, why: why: Why },
+    1 => FaultRaised { t_s: t_s: f64, side: side: Side, fault: fault: Fault },
+    2 => CommandRefused { t_s: t_s: f64, side: side: Side, command: command: Command, why: why: Refusal },
+    3 => Device { 0: event: DeviceEvent },
+    4 => Scheduling { 0: granted: Scheduling },
+});
+
+choice!(put Why {
+    0 => Asked {},
+    1 => Connected {},
+    2 => Disconnected {},
+    3 => Agreed {},
+    4 => Clutch {},
+    5 => Late {},
+    6 => Absent {},
+    7 => Fault {},
+});
+
+record!(put Scheduling { fifo: bool, deadline: bool, memory_locked: bool });
+
+choice!(put Refusal {
+    0 => State { 0: state: State<Fault> },
+    1 => StillPresent { 0: fault: Fault },
+    2 => ForceUnknown {},
+    3 => Implausible { 0: what: Implausible },
+    4 => Obstacle { 0: obstacle: Obstacle },
+    5 => EndoscopeUnseen {},
+    6 => DrivesOff {},
+    7 => Moving {},
+    8 => HandAbsent {},
+    9 => ClutchPressed {},
+    10 => NotChecked {},
+    11 => OutOfRange {},
+    12 => SimulatedOnly {},
+    13 => NoSuchArm {},
+});

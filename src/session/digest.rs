@@ -1,0 +1,224 @@
+//! The digest of what comes out of a tick: equal digests mean equal bits.
+//!
+//! A digest of our own, because it is written into files: it must be the same in every build and every version.
+
+use nima_machine::{
+    messages::{Event, Tick},
+    rig::{Outputs, SIDES, Side},
+};
+
+use crate::codec::{Put, Sink, Source, Take, Wrong, record};
+
+/// A part of a tick, in the order in which the loop makes them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Stage {
+    /// The force at the tip, from the sensor and its calibrations.
+    ForcePath,
+    /// The identification at the follower.
+    Identification,
+    /// The forces that the leader makes.
+    Rendering,
+    /// The gates, and the force that they let through.
+    Gates,
+    /// State, motion, settings, events and the commands to the devices.
+    State,
+}
+
+/// Number of stages.
+pub const STAGES: usize = 5;
+
+impl Stage {
+    /// Every stage, in the order of the loop.
+    pub const ALL: [Self; STAGES] = [Self::ForcePath, Self::Identification, Self::Rendering, Self::Gates, Self::State];
+
+    /// Its name, for a message.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::ForcePath => "force at the tip",
+            Self::Identification => "identification",
+            Self::Rendering => "rendering",
+            Self::Gates => "gates",
+            Self::State => "state and commands",
+        }
+    }
+}
+
+/// What a journal keeps of the outputs of a tick.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Check {
+    /// Digest of everything.
+    pub all: u64,
+    /// Sixteen bits of the digest of each stage of each side: they only tell where a difference is.
+    pub stages: [[u16; STAGES]; SIDES],
+}
+
+record!(Check { all: u64, stages: [[u16; STAGES]; SIDES] });
+
+impl Check {
+    /// The digest of a tick.
+    pub fn of<'a>(
+        events: impl Iterator<Item = &'a Event>,
+        outputs: &[Outputs; SIDES],
+        ticks: &[Option<Tick>; SIDES],
+    ) -> Self {
+        let mut all = Digest::default();
+        events.for_each(|event| event.put(&mut all));
+        let mut stages = [[0; STAGES]; SIDES];
+        for side in Side::ALL {
+            let i = side.index();
+            let digests = of_side(&outputs[i], ticks[i].as_ref());
+            for digest in digests {
+                all.word(digest);
+            }
+            stages[i] = digests.map(|digest| digest as u16);
+        }
+        Self { all: all.end(), stages }
+    }
+
+    /// The first stage, in the order of the loop, whose digest differs, and its side. Where only the sum of all differs, it is
+    /// an event, or a stage whose sixteen bits are the same by chance: then nothing.
+    pub fn differs(&self, other: &Self) -> Option<(Side, Stage)> {
+        let places = Stage::ALL.into_iter().enumerate().flat_map(|(k, stage)| Side::ALL.map(|side| (k, side, stage)));
+        places
+            .filter(|(k, side, _)| self.stages[side.index()][*k] != other.stages[side.index()][*k])
+            .map(|(_, side, stage)| (side, stage))
+            .next()
+    }
+}
+
+macro_rules! put_all {
+    ($to:ident: $($value:ident),*) => { $($value.put($to);)* };
+}
+
+fn of_side(outputs: &Outputs, tick: Option<&Tick>) -> [u64; STAGES] {
+    let mut digests: [Digest; STAGES] = Default::default();
+    let [force_path, identifies, renders, gated, stated] = &mut digests;
+    outputs.put(stated);
+    tick.is_some().put(stated);
+    if let Some(tick) = tick {
+        // Without `..`: a field that is added does not compile until it is handled here.
+        let Tick {
+            index,
+            side,
+            t_s,
+            state,
+            mode,
+            delay_s,
+            leader_m,
+            tip_m,
+            measured_n,
+            force,
+            wrist,
+            frames,
+            view,
+            prompt,
+            guide_m,
+            delayed_n,
+            asked_n,
+            rendered_n,
+            gates,
+            gate_settings,
+            identification,
+            wake_s,
+            work_s,
+            sample_to_force_s,
+            missed,
+            // Counted by the queue to the screen, not made by the loop.
+            dropped: _,
+        } = tick;
+        put_all!(force_path: force, measured_n);
+        put_all!(identifies: identification);
+        put_all!(renders: delayed_n, asked_n);
+        put_all!(gated: gates, gate_settings, rendered_n);
+        put_all!(stated: index, side, t_s, state, mode, delay_s, leader_m, tip_m, wrist, frames, view, prompt, guide_m);
+        put_all!(stated: wake_s, work_s, sample_to_force_s, missed);
+    }
+    digests.map(Digest::end)
+}
+
+/// The digest of bytes.
+pub(crate) fn digest_of_bytes(bytes: &[u8]) -> u64 {
+    let mut digest = Digest::default();
+    for chunk in bytes.chunks(8) {
+        digest.word(chunk.iter().rev().fold(0, |word, byte| word << 8 | u64::from(*byte)));
+    }
+    digest.word(bytes.len() as u64);
+    digest.end()
+}
+
+/// Words mixed into 64 bits. Two lanes, so that one does not wait for the other.
+#[derive(Clone, Copy, Debug)]
+struct Digest {
+    lanes: [u64; 2],
+    count: u64,
+}
+
+/// Odd, with half of its bits set: the fraction of the golden ratio.
+const GOLDEN: u64 = 0x9e37_79b9_7f4a_7c15;
+
+impl Default for Digest {
+    fn default() -> Self {
+        Self { lanes: [GOLDEN, GOLDEN.rotate_left(32)], count: 0 }
+    }
+}
+
+impl Sink for Digest {
+    fn word(&mut self, word: u64) {
+        let lane = &mut self.lanes[(self.count & 1) as usize];
+        let mixed = (*lane ^ word).wrapping_mul(GOLDEN);
+        *lane = mixed ^ mixed >> 29;
+        self.count += 1;
+    }
+
+    fn skip(&mut self, _: usize) {}
+}
+
+impl Digest {
+    fn end(self) -> u64 {
+        let [first, second] = self.lanes;
+        let mut end = first ^ second.rotate_left(23) ^ self.count;
+        for shift in [31, 29, 32] {
+            end = (end ^ end >> shift).wrapping_mul(GOLDEN);
+        }
+        end ^ end >> 32
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn digest(words: &[u64]) -> u64 {
+        let mut digest = Digest::default();
+        for word in words {
+            digest.word(*word);
+        }
+        digest.end()
+    }
+
+    #[test]
+    fn every_bit_and_the_order_count() {
+        let words: Vec<u64> = (0..50).map(|i| f64::from(i).sin().to_bits()).collect();
+        let plain = digest(&words);
+        for at in 0..words.len() {
+            for bit in 0..64 {
+                let mut flipped = words.clone();
+                flipped[at] ^= 1 << bit;
+                assert_ne!(digest(&flipped), plain, "word {at}, bit {bit}");
+            }
+        }
+        let mut swapped = words.clone();
+        swapped.swap(3, 5);
+        assert_ne!(digest(&swapped), plain);
+        assert_ne!(digest(&words[..49]), plain);
+        assert_ne!(digest(&[0]), digest(&[0, 0]));
+    }
+
+    #[test]
+    fn the_digest_is_the_one_that_files_have() {
+        assert_eq!(digest(&[1, 2, 3]), FIRST);
+    }
+
+    /// Of this program's first version with journals: if it changes, the journal's version must.
+    const FIRST: u64 = 14_529_145_522_030_561_626;
+}

@@ -1,0 +1,153 @@
+//! Ticks of a journal, in columns.
+
+use nima_machine::{
+    messages::Event,
+    rig::{Inputs, SIDES},
+    runtime::{Operation, Stepped},
+    teleop::Timing,
+};
+
+use crate::{
+    codec::{Columns, Put, Sink, Source, Take, Unpacked, Wrong, choice, number, record, take_number},
+    digest::Check,
+};
+
+/// Ticks of a full block: 0.2 s at 1 kHz.
+pub const BLOCK_TICKS: usize = 200;
+/// Most ticks, and most operations, that a block is read with.
+const MOST: u64 = 4096;
+
+/// What happened before a tick.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Noted {
+    /// Something was done to the loop.
+    Operation(Operation),
+    /// Entries were dropped here: what comes after cannot be replayed.
+    Hole {
+        /// How many.
+        lost: u64,
+    },
+}
+
+choice!(Noted {
+    0 => Operation { 0: operation: Operation },
+    1 => Hole { lost: lost: u64 },
+});
+
+/// One tick: what the loop was given, and the digest of what it returned.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Row {
+    /// The times that were handed in.
+    pub timing: Timing,
+    /// The measurements of each side.
+    pub inputs: [Option<Inputs>; SIDES],
+    /// The digest.
+    pub check: Check,
+}
+
+record!(Row { timing: Timing, inputs: [Option<Inputs>; SIDES], check: Check });
+
+/// Ticks in order.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Block {
+    /// Number of its first tick among those that are in the journal.
+    pub first_tick: u64,
+    /// What happened before which of the rows, in order; beyond the last row: after it.
+    pub noted: Vec<(usize, Noted)>,
+    /// The ticks.
+    pub rows: Vec<Row>,
+}
+
+impl Block {
+    pub(super) fn take(from: &mut &[u8]) -> Result<Self, Wrong> {
+        let first_tick = take_number(from)?;
+        let rows = take_number(from)?;
+        let noted = take_number(from)?;
+        if rows.max(noted) > MOST {
+            return Err(Wrong::Long);
+        }
+        let noted = (0..noted).map(|_| take_noted(from)).collect::<Result<_, _>>()?;
+        let columns = Unpacked::of(from, Row::COLUMNS)?;
+        let mut source = columns.rows();
+        let mut row = || {
+            source.next_row();
+            Row::take(&mut source)
+        };
+        let rows = (0..rows).map(|_| row()).collect::<Result<_, _>>()?;
+        source.end()?;
+        Ok(Self { first_tick, noted, rows })
+    }
+}
+
+fn take_noted(from: &mut &[u8]) -> Result<(usize, Noted), Wrong> {
+    let before = usize::try_from(take_number(from)?).map_err(|_| Wrong::NoSuchValue)?;
+    let count = take_number(from)?;
+    if count > Noted::COLUMNS as u64 {
+        return Err(Wrong::Long);
+    }
+    let words = (0..count).map(|_| take_number(from)).collect::<Result<Vec<_>, _>>()?;
+    let mut words = words.into_iter();
+    let noted = Noted::take(&mut words)?;
+    if words.len() == 0 { Ok((before, noted)) } else { Err(Wrong::Long) }
+}
+
+/// Collects ticks.
+#[derive(Clone, Debug, Default)]
+pub struct BlockWriter {
+    first_tick: u64,
+    noted: Vec<(usize, Noted)>,
+    columns: Columns,
+    rows: usize,
+}
+
+impl BlockWriter {
+    /// Adds what happens before the next tick.
+    pub fn note(&mut self, noted: Noted) {
+        self.noted.push((self.rows, noted));
+    }
+
+    /// Adds a tick.
+    pub fn tick(&mut self, row: &Row) {
+        self.columns.next_row();
+        row.put(&mut self.columns);
+        self.rows += 1;
+    }
+
+    /// The row of a tick, in which these events were told.
+    pub fn row<'a>(stepped: &Stepped, events: impl Iterator<Item = &'a Event>) -> Row {
+        let check = Check::of(events, &stepped.outputs, &stepped.ticks);
+        Row { timing: stepped.timing, inputs: stepped.inputs, check }
+    }
+
+    /// Whether the block is to be written.
+    pub const fn is_full(&self) -> bool {
+        self.rows >= BLOCK_TICKS || self.noted.len() >= BLOCK_TICKS
+    }
+
+    /// Whether there is nothing in it.
+    pub const fn is_empty(&self) -> bool {
+        self.rows == 0 && self.noted.is_empty()
+    }
+
+    /// Its bytes; it is empty afterwards.
+    pub(super) fn take(&mut self) -> Vec<u8> {
+        let mut bytes = Vec::new();
+        number(&mut bytes, self.first_tick);
+        number(&mut bytes, self.rows as u64);
+        number(&mut bytes, self.noted.len() as u64);
+        for (before, noted) in self.noted.drain(..) {
+            let mut words = Vec::new();
+            noted.put(&mut words);
+            number(&mut bytes, before as u64);
+            number(&mut bytes, words.len() as u64);
+            for word in words {
+                number(&mut bytes, word);
+            }
+        }
+        self.columns.pack(&mut bytes);
+        self.columns.clear();
+        self.first_tick += self.rows as u64;
+        self.rows = 0;
+        bytes
+    }
+}

@@ -1,0 +1,164 @@
+//! The journal of a session: the messages from which the loop is replayed.
+//!
+//! Each message carries the journal's version, its number in the journal and a CRC-32 of its own, so that what is lost or
+//! changed is named wherever it was lost or changed. A [`Start`] comes first, an [`End`] last if the recording was closed;
+//! between them are [`Block`]s of ticks, and calibrations before the block that puts them in force.
+
+mod block;
+mod parts;
+#[cfg(test)]
+mod tests;
+
+use nima_machine::teleop::Calibrations;
+
+pub use block::{BLOCK_TICKS, Block, BlockWriter, Noted, Row};
+pub use parts::{End, Start};
+
+use crate::codec::Wrong;
+use parts::Bytes;
+
+/// Version of the journal that this program writes, and the only one that it reads.
+pub const VERSION: u16 = 1;
+
+const MAGIC: [u8; 4] = *b"NIMJ";
+/// Magic, version, CRC.
+const HEAD: usize = 10;
+
+/// Why a message of a journal cannot be read.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum JournalError {
+    /// It is no message of a journal.
+    #[error("it is no journal of a session of this program")]
+    Foreign,
+    /// Another version.
+    #[error(
+        "its journal has version {found}, this program reads version {VERSION}: replay it with the program that recorded it"
+    )]
+    Version {
+        /// That version.
+        found: u16,
+    },
+    /// The CRC is not that of the content.
+    #[error("its content does not fit its checksum: the file was changed or damaged")]
+    Damaged,
+    /// The content is not what its kind says.
+    #[error("its content is wrong: {0}")]
+    Wrong(#[from] Wrong),
+    /// A text or file inside cannot be used.
+    #[error("its {what} cannot be used: {why}")]
+    Part {
+        /// Which part.
+        what: &'static str,
+        /// Why.
+        why: String,
+    },
+}
+
+/// One message.
+#[derive(Clone, Debug)]
+#[expect(clippy::large_enum_variant, reason = "one at a time")]
+pub enum Message {
+    /// What the loop was made of.
+    Start(Start),
+    /// Calibrations that come into force later, by their number.
+    Calibrations {
+        /// The number by which an operation names them.
+        number: u64,
+        /// The calibrations.
+        calibrations: Calibrations,
+    },
+    /// Ticks.
+    Block(Block),
+    /// The recording was closed.
+    End(End),
+}
+
+const START: u8 = 0;
+const CALIBRATIONS: u8 = 1;
+const BLOCK: u8 = 2;
+const END: u8 = 3;
+
+/// The bytes of messages, numbered.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Encoder {
+    next: u64,
+}
+
+impl Encoder {
+    /// The bytes of what the loop was made of.
+    ///
+    /// # Errors
+    /// [`JournalError::Part`] if a rig or calibration cannot be written so that it reads the same.
+    pub fn start(&mut self, start: &Start) -> Result<Vec<u8>, JournalError> {
+        let mut body = Bytes::default();
+        start.put(&mut body)?;
+        Ok(self.message(START, &body.0))
+    }
+
+    /// The bytes of calibrations.
+    ///
+    /// # Errors
+    /// As [`Encoder::start`].
+    pub fn calibrations(&mut self, number: u64, calibrations: &Calibrations) -> Result<Vec<u8>, JournalError> {
+        let mut body = Bytes::default();
+        body.number(number);
+        parts::put_calibrations(calibrations, &mut body)?;
+        Ok(self.message(CALIBRATIONS, &body.0))
+    }
+
+    /// The bytes of the ticks so far; the writer is empty afterwards.
+    pub fn block(&mut self, block: &mut BlockWriter) -> Vec<u8> {
+        self.message(BLOCK, &block.take())
+    }
+
+    /// The bytes of the end.
+    pub fn end(&mut self, end: &End) -> Vec<u8> {
+        let mut body = Bytes::default();
+        end.put(&mut body);
+        self.message(END, &body.0)
+    }
+
+    fn message(&mut self, kind: u8, body: &[u8]) -> Vec<u8> {
+        let mut content = self.next.to_le_bytes().to_vec();
+        self.next += 1;
+        content.push(kind);
+        content.extend_from_slice(body);
+        let mut all = MAGIC.to_vec();
+        all.extend(VERSION.to_le_bytes());
+        all.extend(crc32fast::hash(&content).to_le_bytes());
+        all.append(&mut content);
+        all
+    }
+}
+
+/// The message of these bytes, and its number.
+///
+/// # Errors
+/// [`JournalError`] if they are none, or damaged.
+pub fn decode(bytes: &[u8]) -> Result<(u64, Message), JournalError> {
+    let (head, content) = bytes.split_at_checked(HEAD).ok_or(JournalError::Foreign)?;
+    if head[..4] != MAGIC {
+        return Err(JournalError::Foreign);
+    }
+    let found = u16::from_le_bytes([head[4], head[5]]);
+    if found != VERSION {
+        return Err(JournalError::Version { found });
+    }
+    if crc32fast::hash(content).to_le_bytes() != head[6..] {
+        return Err(JournalError::Damaged);
+    }
+    let (number, rest) = content.split_first_chunk::<8>().ok_or(Wrong::Short)?;
+    let (kind, mut body) = rest.split_first().ok_or(Wrong::Short)?;
+    let body = &mut body;
+    let message = match *kind {
+        START => Message::Start(Start::take(body)?),
+        CALIBRATIONS => {
+            let number = crate::codec::take_number(body)?;
+            Message::Calibrations { number, calibrations: parts::take_calibrations(body)? }
+        }
+        BLOCK => Message::Block(Block::take(body)?),
+        END => Message::End(End::take(body)?),
+        _ => return Err(Wrong::NoSuchValue.into()),
+    };
+    if body.is_empty() { Ok((u64::from_le_bytes(*number), message)) } else { Err(Wrong::Long.into()) }
+}

@@ -1,0 +1,171 @@
+//! The parts of a journal beside its ticks: what the loop was made of, calibrations, and the end.
+
+use nima_core::{
+    calibration::gravity::GravityModel,
+    tip_force::{Fallback, TipForce},
+};
+use nima_machine::{
+    config::RigConfig,
+    rig::SIDES,
+    teleop::{Calibrations, Origin},
+};
+use nima_recording::tip_force::{model_from_bytes, model_to_bytes};
+
+use super::JournalError;
+use crate::codec::{Wrong, bytes, number, take_number};
+
+/// Bytes that are being written.
+#[derive(Debug, Default)]
+pub(super) struct Bytes(pub(super) Vec<u8>);
+
+impl Bytes {
+    pub(super) fn number(&mut self, value: u64) {
+        number(&mut self.0, value);
+    }
+
+    fn part(&mut self, part: &[u8]) {
+        self.number(part.len() as u64);
+        self.0.extend_from_slice(part);
+    }
+}
+
+/// The beginning of a journal.
+#[derive(Clone, Debug)]
+pub struct Start {
+    /// Version of the program that recorded it.
+    pub program: String,
+    /// What the loop was made of.
+    pub origin: Origin,
+}
+
+impl Start {
+    pub(super) fn put(&self, to: &mut Bytes) -> Result<(), JournalError> {
+        let Self { program, origin } = self;
+        let Origin { rig, calibrations, suspended } = origin;
+        to.part(program.as_bytes());
+        to.part(rig_text(rig)?.as_bytes());
+        to.number(u64::from(*suspended));
+        for of_side in calibrations {
+            to.number(u64::from(of_side.is_some()));
+            if let Some(of_side) = of_side {
+                put_calibrations(of_side, to)?;
+            }
+        }
+        Ok(())
+    }
+
+    pub(super) fn take(from: &mut &[u8]) -> Result<Self, JournalError> {
+        let program = text(from)?;
+        let rig = read_rig(&text(from)?)?;
+        let suspended = flag(from)?;
+        let mut calibrations: [Option<Calibrations>; SIDES] = Default::default();
+        for of_side in &mut calibrations {
+            *of_side = if flag(from)? { Some(take_calibrations(from)?) } else { None };
+        }
+        Ok(Self { program, origin: Origin { rig, calibrations, suspended } })
+    }
+}
+
+/// The text of a rig's settings from which the same rig is read.
+fn rig_text(rig: &RigConfig) -> Result<String, JournalError> {
+    let part = |why: String| JournalError::Part { what: "rig", why };
+    let text = toml::to_string(rig).map_err(|error| part(error.to_string()))?;
+    if read_rig(&text)? == without_checked(rig) {
+        Ok(text)
+    } else {
+        Err(part("it does not read as it was written".to_owned()))
+    }
+}
+
+/// The devices of the last ready check are no part of a rig's text, and nothing in the loop depends on them.
+fn without_checked(rig: &RigConfig) -> RigConfig {
+    let mut rig = rig.clone();
+    rig.remember(None);
+    rig
+}
+
+fn read_rig(text: &str) -> Result<RigConfig, JournalError> {
+    // With the limits of a rig file: rings and windows are made by them.
+    let read = RigConfig::parse("in the journal".as_ref(), text);
+    read.map_err(|error| JournalError::Part { what: "rig", why: error.to_string() })
+}
+
+pub(super) fn put_calibrations(calibrations: &Calibrations, to: &mut Bytes) -> Result<(), JournalError> {
+    let Calibrations { gravity, tip_force } = calibrations;
+    let part = |what: &'static str| move |why: String| JournalError::Part { what, why };
+    let gravity = gravity.as_ref().map(toml::to_string).transpose();
+    let gravity = gravity.map_err(|error| part("gravity calibration")(error.to_string()))?;
+    to.part(gravity.unwrap_or_default().as_bytes());
+    let Some(tip_force) = tip_force else {
+        to.part(&[]);
+        return Ok(());
+    };
+    let model = model_to_bytes(tip_force.model()).map_err(part("network"))?;
+    to.part(&model);
+    to.number(match tip_force.fallback() {
+        Fallback::WristForce => 0,
+        Fallback::HoldAndFade => 1,
+    });
+    Ok(())
+}
+
+pub(super) fn take_calibrations(from: &mut &[u8]) -> Result<Calibrations, JournalError> {
+    let part = |what: &'static str| move |why: String| JournalError::Part { what, why };
+    let gravity = text(from)?;
+    let gravity: Option<GravityModel> = if gravity.is_empty() {
+        None
+    } else {
+        Some(toml::from_str(&gravity).map_err(|error| part("gravity calibration")(error.message().to_owned()))?)
+    };
+    let model = take_part(from)?;
+    let tip_force = if model.is_empty() {
+        None
+    } else {
+        let model = model_from_bytes(model).map_err(part("network"))?;
+        let fallback = match take_number(from)? {
+            0 => Fallback::WristForce,
+            1 => Fallback::HoldAndFade,
+            _ => return Err(Wrong::NoSuchValue.into()),
+        };
+        Some(TipForce::new(model, fallback).map_err(|error| part("network")(error.to_string()))?)
+    };
+    Ok(Calibrations { gravity, tip_force })
+}
+
+/// The end of a journal that was closed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct End {
+    /// Ticks in it.
+    pub ticks: u64,
+    /// Entries that were dropped.
+    pub lost: u64,
+}
+
+impl End {
+    pub(super) fn put(&self, to: &mut Bytes) {
+        let Self { ticks, lost } = *self;
+        to.number(ticks);
+        to.number(lost);
+    }
+
+    pub(super) fn take(from: &mut &[u8]) -> Result<Self, JournalError> {
+        Ok(Self { ticks: take_number(from)?, lost: take_number(from)? })
+    }
+}
+
+fn take_part<'a>(from: &mut &'a [u8]) -> Result<&'a [u8], Wrong> {
+    let length = usize::try_from(take_number(from)?).map_err(|_| Wrong::NoSuchValue)?;
+    bytes(from, length)
+}
+
+fn text(from: &mut &[u8]) -> Result<String, Wrong> {
+    take_part(from).and_then(|part| String::from_utf8(part.to_vec()).map_err(|_| Wrong::NoSuchValue))
+}
+
+fn flag(from: &mut &[u8]) -> Result<bool, Wrong> {
+    match take_number(from)? {
+        0 => Ok(false),
+        1 => Ok(true),
+        _ => Err(Wrong::NoSuchValue),
+    }
+}

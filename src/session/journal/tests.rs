@@ -1,0 +1,322 @@
+//! Whatever the loop can be fed comes back to the bit; whatever is not a journal is refused.
+
+use nalgebra::{Isometry3, Quaternion, Translation3, UnitQuaternion, UnitVector3, Vector3};
+use nima_core::{
+    calibration::frames::{FrameSample, Move},
+    frames::{Wrench, WristSample},
+    impedance::Mode,
+    kinematics::{Hand, StartError},
+};
+use nima_devices::{Loss, Standing};
+use nima_machine::{
+    config::RigConfig,
+    messages::{Command, Watchdog},
+    rig::{Awaited, DeviceEvent, Exchange, Inputs, Obstacle, Prompt, Sensed, Side, Switches, View},
+    runtime::Operation,
+    teleop::{Calibrations, Origin, Timing},
+};
+use proptest::prelude::*;
+
+use super::{BlockWriter, Encoder, End, JournalError, Message, Noted, Row, Start, VERSION, decode};
+use crate::digest::{Check, STAGES};
+
+/// Numbers as a device, and as a fault, may give them. Compared by their bits.
+fn number() -> impl Strategy<Value = f64> {
+    prop_oneof![4 => -10.0..10.0_f64, 1 => any::<u64>().prop_map(f64::from_bits), 1 => Just(0.0), 1 => Just(-0.0)]
+}
+
+fn vector() -> impl Strategy<Value = Vector3<f64>> {
+    [number(), number(), number()].prop_map(Vector3::from)
+}
+
+fn rotation() -> impl Strategy<Value = UnitQuaternion<f64>> {
+    [number(), number(), number(), number()]
+        .prop_map(|[w, x, y, z]| UnitQuaternion::new_unchecked(Quaternion::new(w, x, y, z)))
+}
+
+fn pose() -> impl Strategy<Value = Isometry3<f64>> {
+    (vector(), rotation()).prop_map(|(at_m, turned)| Isometry3::from_parts(Translation3::from(at_m), turned))
+}
+
+fn maybe<T: std::fmt::Debug>(value: impl Strategy<Value = T>) -> impl Strategy<Value = Option<T>> {
+    proptest::option::of(value)
+}
+
+fn wrench() -> impl Strategy<Value = Wrench> {
+    (vector(), vector()).prop_map(|(force_n, torque_nm)| Wrench { force_n, torque_nm })
+}
+
+fn sensed() -> BoxedStrategy<Sensed> {
+    let turned = (maybe(rotation()), maybe(rotation()), maybe(rotation()));
+    let sample = (wrench(), maybe(vector()), turned, maybe(number()), maybe(vector()));
+    let at_wrist = sample.prop_map(|(raw, acceleration_m_s2, turned, insertion_m, tissue_n)| {
+        let (world_from_s1, world_from_m, m_from_c) = turned;
+        let sample =
+            WristSample { raw, acceleration_m_s2, world_from_s1, world_from_m, m_from_c, insertion_m, tissue_n };
+        Sensed::AtWrist(sample)
+    });
+    prop_oneof![vector().prop_map(Sensed::AtTip), at_wrist].boxed()
+}
+
+fn frames() -> BoxedStrategy<FrameSample> {
+    ([maybe(pose()), maybe(pose()), maybe(pose()), maybe(pose()), maybe(pose())], maybe(wrench()))
+        .prop_map(
+            |([base_from_flange, other_base_from_flange, c_from_m, c_from_other_m, leader_from_handle], wrench)| {
+                FrameSample {
+                    base_from_flange,
+                    other_base_from_flange,
+                    c_from_m,
+                    c_from_other_m,
+                    leader_from_handle,
+                    wrench,
+                }
+            },
+        )
+        .boxed()
+}
+
+fn obstacle() -> BoxedStrategy<Obstacle> {
+    let start = prop_oneof![
+        number().prop_map(|period_s| StartError::Period { period_s }),
+        (number(), number()).prop_map(|(shaft_m, insertion_max_m)| StartError::ShortShaft { shaft_m, insertion_max_m }),
+        any::<usize>().prop_map(|joint| StartError::NotFinite { joint }),
+        (any::<usize>(), number(), number()).prop_map(|(joint, angle_deg, limit_deg)| StartError::AtLimit {
+            joint,
+            angle_deg,
+            limit_deg
+        }),
+        (number(), number()).prop_map(|(miss_m, most_m)| StartError::BesideTrocar { miss_m, most_m }),
+        number().prop_map(|insertion_m| StartError::NotInserted { insertion_m }),
+    ];
+    let exchanged =
+        [Exchange::Handles, Exchange::Arms, Exchange::Sensors, Exchange::Servos, Exchange::Markers, Exchange::Trocars];
+    prop_oneof![
+        start.prop_map(Obstacle::Start),
+        prop_oneof![Just(Awaited::Servos), Just(Awaited::Markers)].prop_map(Obstacle::Waiting),
+        proptest::sample::select(exchanged.to_vec()).prop_map(Obstacle::Exchanged),
+    ]
+    .boxed()
+}
+
+fn inputs() -> BoxedStrategy<Inputs> {
+    let hand = (vector(), maybe(rotation()), maybe(number()), maybe(number()));
+    let tip = (vector(), maybe(rotation()), sensed());
+    let view = prop_oneof![Just(View::Fixed), Just(View::Unseen), rotation().prop_map(View::Seen)];
+    let rest = (view, frames(), any::<bool>(), maybe(any::<bool>()), any::<bool>(), maybe(obstacle()), number());
+    (hand, tip, rest)
+        .prop_map(|(hand, tip, rest)| {
+            let (position_m, orientation, gripper_rad, grip_n) = hand;
+            let (tip_m, world_from_jaws, sensed) = tip;
+            let (view, frames, clutch, presence, powered, obstacle, age_s) = rest;
+            Inputs {
+                hand: Hand { position_m, orientation },
+                gripper_rad,
+                grip_n,
+                tip_m,
+                world_from_jaws,
+                sensed,
+                view,
+                frames,
+                switches: Switches { clutch, presence },
+                powered,
+                obstacle,
+                age_s,
+            }
+        })
+        .boxed()
+}
+
+fn row() -> BoxedStrategy<Row> {
+    let timing = (number(), number(), number(), maybe(number()), any::<u64>());
+    let check = (any::<u64>(), any::<[[u16; STAGES]; 2]>());
+    (timing, maybe(inputs()), maybe(inputs()), check)
+        .prop_map(|(timing, right, left, (all, stages))| {
+            let (now_s, wake_s, work_s, sample_to_force_s, missed_now) = timing;
+            let timing = Timing { now_s, wake_s, work_s, sample_to_force_s, missed_now };
+            Row { timing, inputs: [right, left], check: Check { all, stages } }
+        })
+        .boxed()
+}
+
+fn side() -> impl Strategy<Value = Side> {
+    prop_oneof![Just(Side::Right), Just(Side::Left)]
+}
+
+fn prompt() -> BoxedStrategy<Prompt> {
+    let plain = [
+        Prompt::Rest,
+        Prompt::Wave,
+        Prompt::Work,
+        Prompt::WorkFree,
+        Prompt::PivotInDimple,
+        Prompt::Turn,
+        Prompt::PivotInTrocar,
+    ];
+    prop_oneof![
+        proptest::sample::select(plain.to_vec()),
+        rotation().prop_map(|world_from_s1| Prompt::Hold { world_from_s1 }),
+        vector().prop_map(|direction| Prompt::Push { direction: UnitVector3::new_unchecked(direction) }),
+        any::<u8>().prop_map(|point| Prompt::Touch { point }),
+        proptest::sample::select(Move::ALL.to_vec()).prop_map(Prompt::MoveTip),
+        proptest::sample::select(Move::ALL.to_vec()).prop_map(Prompt::MoveHandle),
+    ]
+    .boxed()
+}
+
+fn command() -> BoxedStrategy<Command> {
+    let modes: Vec<Mode> = Mode::ALL.into_iter().chain(Mode::BASELINES).collect();
+    let plain = [Command::Engage, Command::Rest, Command::Stop, Command::ReleaseStop, Command::Shutdown];
+    let of_number = [
+        Command::SetGain as fn(f64) -> Command,
+        Command::SetGainAboveOne,
+        Command::SetDelay,
+        Command::SetDeadBand,
+        Command::SetScale,
+    ];
+    let of_bool = [
+        Command::Compare as fn(bool) -> Command,
+        Command::SetStaticHold,
+        Command::LetGo,
+        Command::SetGovernor,
+        Command::Checked,
+    ];
+    prop_oneof![
+        proptest::sample::select(plain.to_vec()),
+        proptest::sample::select(modes).prop_map(Command::SetMode),
+        (0..of_number.len(), number()).prop_map(move |(i, value)| of_number[i](value)),
+        (0..of_bool.len(), any::<bool>()).prop_map(move |(i, value)| of_bool[i](value)),
+        (side(), prompt()).prop_map(|(side, prompt)| Command::Prompt(side, prompt)),
+        maybe(vector()).prop_map(Command::Guide),
+        side().prop_map(Command::EngageOne),
+        proptest::sample::select(Watchdog::ALL.to_vec()).prop_map(Command::TestWatchdog),
+    ]
+    .boxed()
+}
+
+fn noted() -> BoxedStrategy<Noted> {
+    let loss = prop_oneof![
+        Just(Loss::Disconnected),
+        Just(Loss::Silent),
+        Just(Loss::Corrupt),
+        Just(Loss::Implausible),
+        any::<u32>().prop_map(|code| Loss::Device { code }),
+    ];
+    let standing = prop_oneof![
+        Just(Standing::Closed),
+        Just(Standing::Opening),
+        Just(Standing::Connected),
+        loss.prop_map(Standing::Lost),
+    ];
+    let event = (number(), any::<u8>(), standing, any::<[bool; 2]>())
+        .prop_map(|(t_s, device, standing, of_side)| DeviceEvent { t_s, device, standing, of_side });
+    let operation = prop_oneof![
+        (command(), number()).prop_map(|(command, t_s)| Operation::Command { command, t_s }),
+        event.prop_map(Operation::Device),
+        side().prop_map(Operation::Suspend),
+        (side(), any::<u64>()).prop_map(|(side, number)| Operation::Calibrations { side, number }),
+        (number(), number()).prop_map(|(silent_s, t_s)| Operation::Stall { silent_s, t_s }),
+    ];
+    prop_oneof![operation.prop_map(Noted::Operation), any::<u64>().prop_map(|lost| Noted::Hole { lost })].boxed()
+}
+
+/// A block's steps: what is noted before each row.
+fn steps() -> impl Strategy<Value = Vec<(Vec<Noted>, Row)>> {
+    proptest::collection::vec((proptest::collection::vec(noted(), 0..3), row()), 0..12)
+}
+
+fn encoded(steps: &[(Vec<Noted>, Row)]) -> Vec<u8> {
+    let mut writer = BlockWriter::default();
+    for (noted, row) in steps {
+        for noted in noted {
+            writer.note(*noted);
+        }
+        writer.tick(row);
+    }
+    Encoder::default().block(&mut writer)
+}
+
+fn start() -> Start {
+    let rig = RigConfig::load("simulated").unwrap();
+    Start {
+        program: "test".into(),
+        origin: Origin { rig, calibrations: [Some(Calibrations::default()), None], suspended: true },
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(200))]
+
+    #[test]
+    fn a_block_comes_back_to_the_bit(steps in steps()) {
+        let (number, message) = decode(&encoded(&steps)).unwrap();
+        let Message::Block(block) = message else { panic!("{message:?}") };
+        prop_assert_eq!((number, block.first_tick, block.rows.len()), (0, 0, steps.len()));
+        // NaN differs from itself, so that the words are compared: they are the bits.
+        let mut again = BlockWriter::default();
+        let mut noted = block.noted.iter().peekable();
+        for (i, row) in block.rows.iter().enumerate() {
+            while let Some((_, noted)) = noted.next_if(|(before, _)| *before <= i) {
+                again.note(*noted);
+            }
+            again.tick(row);
+        }
+        prop_assert_eq!(Encoder::default().block(&mut again), encoded(&steps));
+        for (row, (_, given)) in block.rows.iter().zip(&steps) {
+            prop_assert_eq!(format!("{row:?}"), format!("{given:?}"));
+        }
+        let told: Vec<_> = block.noted.iter().map(|(_, noted)| format!("{noted:?}")).collect();
+        let given: Vec<_> = steps.iter().flat_map(|(noted, _)| noted).map(|noted| format!("{noted:?}")).collect();
+        prop_assert_eq!(told, given);
+    }
+
+    #[test]
+    fn a_mutated_block_does_not_panic_and_is_refused(
+        steps in steps(),
+        at in any::<prop::sample::Index>(),
+        bit in 0..8_u8,
+        cut in any::<prop::sample::Index>(),
+    ) {
+        let whole = encoded(&steps);
+        let mut flipped = whole.clone();
+        flipped[at.index(whole.len())] ^= 1 << bit;
+        prop_assert!(decode(&flipped).is_err());
+        prop_assert!(decode(&whole[..cut.index(whole.len())]).is_err());
+        // Whoever mends the checksum gets an error or another block, and no panic.
+        let crc = crc32fast::hash(&flipped[10..]).to_le_bytes();
+        flipped[6..10].copy_from_slice(&crc);
+        decode(&flipped).ok();
+    }
+}
+
+#[test]
+fn what_is_no_journal_of_this_version_is_named() {
+    let mut bytes = Encoder::default().start(&start()).unwrap();
+    assert!(matches!(decode(&bytes), Ok((0, Message::Start(_)))));
+    bytes[20] ^= 4;
+    assert_eq!(decode(&bytes).unwrap_err(), JournalError::Damaged);
+    bytes[4] = VERSION as u8 + 1;
+    assert_eq!(decode(&bytes).unwrap_err(), JournalError::Version { found: VERSION + 1 });
+    assert_eq!(decode(b"time,force\n0,1\n").unwrap_err(), JournalError::Foreign);
+    assert_eq!(decode(&[]).unwrap_err(), JournalError::Foreign);
+}
+
+#[test]
+fn every_rig_comes_back_as_it_was() {
+    for name in RigConfig::names() {
+        let rig = RigConfig::load(name).unwrap();
+        let origin = Origin { rig: rig.clone(), ..start().origin };
+        let bytes =
+            Encoder::default().start(&Start { origin, ..start() }).unwrap_or_else(|error| panic!("{name}: {error}"));
+        let (_, Message::Start(Start { origin, program })) = decode(&bytes).unwrap() else { panic!("{name}") };
+        assert_eq!((origin.rig, program.as_str()), (rig, "test"), "{name}");
+        assert!(origin.suspended && origin.calibrations[0].is_some() && origin.calibrations[1].is_none(), "{name}");
+    }
+}
+
+#[test]
+fn the_end_comes_back() {
+    let mut encoder = Encoder::default();
+    encoder.start(&start()).unwrap();
+    let end = End { ticks: 1 << 40, lost: 7 };
+    assert!(matches!(decode(&encoder.end(&end)), Ok((1, Message::End(told))) if told == end));
+}

@@ -1,0 +1,24 @@
+//! Recorded sessions.
+//!
+//! | module | holds |
+//! |---|---|
+//! | `codec` | values of the loop as words, exact to the bit |
+//! | `digest` | what a replay compares |
+//! | `journal` | the messages from which the loop is replayed |
+//! | `scribe` | what passes the tap of a loop, as these messages |
+//! | `recorder` | the thread that writes them, and what is plotted, into a session file |
+//! | `file` | the journal in a session file |
+//! | `replay` | the same loop, fed from them; and with one thing changed |
+#![warn(missing_docs)]
+
+mod codec;
+pub mod digest;
+pub mod file;
+pub mod journal;
+mod kept;
+pub mod recorder;
+pub mod replay;
+pub mod scribe;
+mod topics;
+
+pub use topics::Words;

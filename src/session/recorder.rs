@@ -1,0 +1,363 @@
+//! Records a session: a thread of its own writes what passes the tap of a loop into a session file.
+//!
+//! The loop never waits for it. Whatever goes wrong, a full disk or a folder that is gone, is told at once by
+//! [`Recorder::trouble`]; then the recording has ended, and what was written stays readable.
+
+use std::{
+    collections::BTreeMap,
+    fs::File,
+    io,
+    path::{Path, PathBuf},
+    sync::{
+        Arc, OnceLock,
+        atomic::{AtomicBool, AtomicU64, Ordering},
+    },
+    thread::{Builder, JoinHandle},
+    time::Duration,
+};
+
+use crossbeam_channel::{Receiver, RecvTimeoutError, Sender, bounded};
+use nima_machine::{
+    messages::Event,
+    rig::{SIDES, Side},
+    runtime::{Entry, Operation, Passed, Stepped, TapEnd},
+    teleop::{Calibrations, Origin},
+};
+use nima_recording::session::{ChannelId, Encoding, WriteError, Writer};
+
+use crate::{
+    journal::{End, JournalError, Start},
+    kept::described,
+    scribe::{Pages, Scribe, Written},
+    topics::{Topics, Words},
+};
+
+/// Topic of the journal.
+pub const JOURNAL_TOPIC: &str = "nima/journal";
+/// How its messages are encoded.
+pub const JOURNAL_ENCODING: &str = "nima-journal";
+
+/// The file is synchronised with the disk this often.
+const SYNC_EVERY: Duration = Duration::from_secs(1);
+/// How long the thread waits for the loop before it looks whether it is to end.
+const LOOK_EVERY: Duration = Duration::from_millis(100);
+/// After so many blocks of the journal the chunk is closed: 0.4 s at 1 kHz, which is what a kill can cost.
+const BLOCKS_PER_CHUNK: u32 = 2;
+
+/// What is told of a session beside what happened in it.
+#[derive(Clone, Debug)]
+pub struct About {
+    /// Name and version of the program.
+    pub program: String,
+    /// When the loop's clock began, ns since 1970 (UTC).
+    pub started_ns: u64,
+    /// Tables of keys and values, by name.
+    pub metadata: BTreeMap<String, BTreeMap<String, String>>,
+    /// Whole files.
+    pub files: Vec<Attached>,
+    /// Sentences for the events of the log.
+    pub words: Words,
+}
+
+/// A file inside a session file.
+#[derive(Clone, Debug)]
+pub struct Attached {
+    /// Its name.
+    pub name: String,
+    /// Its media type.
+    pub media_type: String,
+    /// Its content.
+    pub data: Vec<u8>,
+}
+
+/// Why a recording could not begin, or ended.
+#[derive(Debug, thiserror::Error)]
+pub enum RecordError {
+    /// The file cannot be written.
+    #[error(transparent)]
+    Write(#[from] WriteError),
+    /// Something of the loop cannot be written.
+    #[error("the session cannot be recorded")]
+    Journal(#[from] JournalError),
+    /// The operating system gives no thread, or does not write to the disk.
+    #[error("cannot record session {path}: {source}; check the disk or record to another one")]
+    System {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        source: io::Error,
+    },
+}
+
+/// Figures of a recording so far.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Progress {
+    /// Ticks that were taken.
+    pub ticks: u64,
+    /// Entries that the loop dropped, because this thread came too late.
+    pub lost: u64,
+    /// Bytes in the file.
+    pub bytes: u64,
+}
+
+#[derive(Debug, Default)]
+struct Shared {
+    ticks: AtomicU64,
+    lost: AtomicU64,
+    bytes: AtomicU64,
+    ends: AtomicBool,
+    trouble: OnceLock<RecordError>,
+}
+
+/// A recording that is going on. Dropping it ends it as [`Recorder::finish`] does.
+#[derive(Debug)]
+pub struct Recorder {
+    shared: Arc<Shared>,
+    thread: Option<JoinHandle<()>>,
+}
+
+impl Recorder {
+    /// Begins a new session file with what passes this tap; `origin` is what its loop is made of.
+    ///
+    /// # Errors
+    /// [`RecordError`] if the file cannot be created or its beginning cannot be written.
+    pub fn start(path: &Path, about: About, origin: Origin, tap: TapEnd) -> Result<Self, RecordError> {
+        let failed = |source| RecordError::System { path: path.to_owned(), source };
+        let mut session = Session::create(path, about, origin)?;
+        let shared = Arc::<Shared>::default();
+        shared.bytes.store(session.file.writer.bytes().1, Ordering::Relaxed);
+        let (told, sync) =
+            (Arc::clone(&shared), Sync::start(path, session.file.writer.sync_handle().map_err(failed)?, &shared)?);
+        let run = move || {
+            let ran = session.run(&tap, &told);
+            if let Err(error) = ran.and_then(|()| session.close(&tap, &told)) {
+                told.trouble.set(error).ok();
+                drain(&tap, &told);
+            }
+            drop(sync);
+        };
+        let thread = Builder::new().name("recorder".to_owned()).spawn(run).map_err(failed)?;
+        Ok(Self { shared, thread: Some(thread) })
+    }
+
+    /// Figures so far.
+    pub fn progress(&self) -> Progress {
+        let Shared { ticks, lost, bytes, .. } = &*self.shared;
+        let [ticks, lost, bytes] = [ticks, lost, bytes].map(|count| count.load(Ordering::Relaxed));
+        Progress { ticks, lost, bytes }
+    }
+
+    /// Why the recording has ended, if it has ended by itself.
+    pub fn trouble(&self) -> Option<&RecordError> {
+        self.shared.trouble.get()
+    }
+
+    /// Ends the recording, and the file. To be called when the loop has ended; what a loop that runs on does from now on is
+    /// not recorded.
+    ///
+    /// # Errors
+    /// Why the recording ended before.
+    pub fn finish(mut self) -> Result<Progress, RecordError> {
+        self.join();
+        let progress = self.progress();
+        match Arc::get_mut(&mut self.shared).and_then(|shared| shared.trouble.take()) {
+            Some(trouble) => Err(trouble),
+            None => Ok(progress),
+        }
+    }
+
+    fn join(&mut self) {
+        self.shared.ends.store(true, Ordering::Release);
+        if let Some(thread) = self.thread.take() {
+            thread.join().ok();
+        }
+    }
+}
+
+impl Drop for Recorder {
+    fn drop(&mut self) {
+        self.join();
+    }
+}
+
+/// Goes on emptying the tap of a loop whose recording has ended, so that its boxes go round.
+fn drain(tap: &TapEnd, shared: &Shared) {
+    loop {
+        match next(tap, shared) {
+            Next::Entry(Entry { passed: Passed::Stepped(stepped), .. }) => tap.give_back(stepped),
+            Next::Entry(_) | Next::Nothing => {}
+            Next::End => return,
+        }
+    }
+}
+
+/// What comes out of the tap.
+enum Next {
+    Entry(Entry),
+    /// The loop rests.
+    Nothing,
+    End,
+}
+
+fn next(tap: &TapEnd, shared: &Shared) -> Next {
+    if shared.ends.load(Ordering::Acquire) {
+        return tap.entries.try_recv().map_or(Next::End, Next::Entry);
+    }
+    match tap.entries.recv_timeout(LOOK_EVERY) {
+        Ok(entry) => Next::Entry(entry),
+        Err(RecvTimeoutError::Timeout) => Next::Nothing,
+        Err(RecvTimeoutError::Disconnected) => Next::End,
+    }
+}
+
+/// The file and who writes into it.
+struct Session {
+    scribe: Scribe,
+    file: SessionFile,
+}
+
+impl Session {
+    fn create(path: &Path, about: About, origin: Origin) -> Result<Self, RecordError> {
+        let sides = origin.calibrations.each_ref().map(Option::is_some);
+        let of = |(side, known): (Side, &Option<Calibrations>)| Some((side, described(known.as_ref()?)));
+        let known: Vec<_> = Side::ALL.into_iter().zip(&origin.calibrations).filter_map(of).collect();
+        let (scribe, first) = Scribe::new(&Start { program: about.program.clone(), origin })?;
+        let mut file = SessionFile::create(path, about, &known, sides)?;
+        file.write(&first)?;
+        file.writer.flush()?;
+        Ok(Self { scribe, file })
+    }
+
+    fn run(&mut self, tap: &TapEnd, shared: &Shared) -> Result<(), RecordError> {
+        loop {
+            match next(tap, shared) {
+                Next::Entry(entry) => self.scribe.take(entry, tap, &mut self.file)?,
+                // The loop rests: nobody shall wait for what is known.
+                Next::Nothing => self.file.writer.flush()?,
+                Next::End => return Ok(()),
+            }
+            shared.ticks.store(self.scribe.ticks(), Ordering::Relaxed);
+            shared.lost.store(self.scribe.lost(), Ordering::Relaxed);
+            shared.bytes.store(self.file.writer.bytes().1, Ordering::Relaxed);
+        }
+    }
+
+    fn close(self, tap: &TapEnd, shared: &Shared) -> Result<(), RecordError> {
+        let Self { scribe, mut file } = self;
+        let End { ticks, lost } = scribe.end(tap, &mut file)?;
+        file.writer.flush()?;
+        shared.ticks.store(ticks, Ordering::Relaxed);
+        shared.lost.store(lost, Ordering::Relaxed);
+        shared.bytes.store(file.writer.bytes().1, Ordering::Relaxed);
+        file.writer.finish()?;
+        Ok(())
+    }
+}
+
+/// The file and its channels.
+struct SessionFile {
+    writer: Writer,
+    journal: ChannelId,
+    topics: Topics,
+    started_ns: u64,
+    blocks: u32,
+}
+
+impl SessionFile {
+    fn create(
+        path: &Path,
+        about: About,
+        known: &[(Side, BTreeMap<String, String>)],
+        sides: [bool; SIDES],
+    ) -> Result<Self, RecordError> {
+        let About { program, started_ns, metadata, files, words } = about;
+        let mut writer = Writer::create(path, &program)?;
+        for (name, entries) in &metadata {
+            writer.metadata(name, entries)?;
+        }
+        for (side, entries) in known {
+            writer.metadata(&format!("calibrations {}", side.word()), entries)?;
+        }
+        for Attached { name, media_type, data } in &files {
+            writer.attachment(name, media_type, started_ns, data)?;
+        }
+        let none = String::new;
+        let encoding = Encoding {
+            schema: none(),
+            schema_encoding: none(),
+            schema_data: Vec::new(),
+            message_encoding: JOURNAL_ENCODING.to_owned(),
+        };
+        let journal = writer.channel(JOURNAL_TOPIC, encoding)?;
+        let topics = Topics::new(&mut writer, sides, words)?;
+        Ok(Self { writer, journal, topics, started_ns, blocks: 0 })
+    }
+
+    fn log_time_ns(&self, t_s: f64) -> u64 {
+        self.started_ns + (t_s.max(0.0) * 1e9).round() as u64
+    }
+}
+
+impl Pages for SessionFile {
+    type Error = RecordError;
+
+    fn write(&mut self, Written { t_s, bytes }: &Written) -> Result<(), RecordError> {
+        self.writer.message(self.journal, self.log_time_ns(*t_s), bytes)?;
+        self.blocks += 1;
+        if self.blocks.is_multiple_of(BLOCKS_PER_CHUNK) {
+            self.writer.flush()?;
+        }
+        Ok(())
+    }
+
+    fn tick(&mut self, stepped: &Stepped, events: &[Event]) -> Result<(), RecordError> {
+        let time_ns = self.log_time_ns(stepped.timing.now_s);
+        Ok(self.topics.tick(&mut self.writer, time_ns, stepped, events)?)
+    }
+
+    fn operation(&mut self, operation: &Operation, t_s: f64) -> Result<(), RecordError> {
+        let time_ns = self.log_time_ns(t_s);
+        Ok(self.topics.operation(&mut self.writer, time_ns, operation)?)
+    }
+}
+
+/// The thread that writes the file to the disk each second, so that the loss of power costs no more.
+struct Sync {
+    ends: Option<Sender<()>>,
+    thread: Option<JoinHandle<()>>,
+}
+
+impl Sync {
+    fn start(path: &Path, file: File, shared: &Arc<Shared>) -> Result<Self, RecordError> {
+        let (ends, asked) = bounded(1);
+        let (path, told) = (path.to_owned(), Arc::clone(shared));
+        let at = path.clone();
+        let run = move || {
+            if let Err(source) = sync(&file, &asked) {
+                told.trouble.set(RecordError::System { path, source }).ok();
+            }
+        };
+        let thread = Builder::new().name("recorder-sync".to_owned()).spawn(run);
+        let thread = thread.map_err(|source| RecordError::System { path: at, source })?;
+        Ok(Self { ends: Some(ends), thread: Some(thread) })
+    }
+}
+
+fn sync(file: &File, ends: &Receiver<()>) -> io::Result<()> {
+    loop {
+        let ended = ends.recv_timeout(SYNC_EVERY) != Err(RecvTimeoutError::Timeout);
+        file.sync_data()?;
+        if ended {
+            return Ok(());
+        }
+    }
+}
+
+impl Drop for Sync {
+    fn drop(&mut self) {
+        drop(self.ends.take());
+        if let Some(thread) = self.thread.take() {
+            thread.join().ok();
+        }
+    }
+}

@@ -1,0 +1,69 @@
+//! The loop of a replay.
+
+use std::collections::BTreeMap;
+
+use nima_core::impedance::SettingsError;
+use nima_machine::{
+    messages::{Event, Tick},
+    rig::{Outputs, SIDES},
+    runtime::Operation,
+    teleop::{Calibrations, ForcePath, Loop, Origin},
+};
+
+use super::ReplayError;
+use crate::journal::Row;
+
+/// A loop that is fed from a journal.
+#[derive(Debug)]
+pub struct Machine {
+    control: Loop,
+    calibrations: BTreeMap<u64, Calibrations>,
+    period_s: f64,
+}
+
+impl Machine {
+    /// A loop made of this.
+    ///
+    /// # Errors
+    /// [`SettingsError`] if the settings of the identification are invalid.
+    pub fn new(origin: &Origin) -> Result<Self, SettingsError> {
+        let period_s = 1.0 / origin.rig.rate_hz;
+        Ok(Self { control: origin.control()?, calibrations: BTreeMap::new(), period_s })
+    }
+
+    /// Keeps calibrations that come into force later.
+    pub fn know(&mut self, number: u64, calibrations: Calibrations) {
+        self.calibrations.insert(number, calibrations);
+    }
+
+    /// Does what was done to the loop before this tick.
+    ///
+    /// # Errors
+    /// [`ReplayError::NoCalibrations`] if they were not in the journal.
+    pub fn apply(&mut self, operation: Operation, tick: u64) -> Result<(), ReplayError> {
+        match operation {
+            Operation::Command { command, t_s } => self.control.obey(command, t_s),
+            Operation::Device(event) => self.control.notice(&event),
+            Operation::Suspend(side) => self.control.suspend_calibrations(side),
+            Operation::Calibrations { side, number } => {
+                let known = self.calibrations.remove(&number).ok_or(ReplayError::NoCalibrations { number, tick })?;
+                let mut path = ForcePath::new(&known, self.period_s);
+                self.control.exchange_force_path(side, &mut path);
+            }
+            Operation::Stall { silent_s, t_s } => self.control.notice_stall(silent_s, t_s),
+        }
+        Ok(())
+    }
+
+    /// One tick.
+    pub fn step(&mut self, row: &Row) -> ([Outputs; SIDES], [Option<Tick>; SIDES]) {
+        self.control.step(row.inputs, &row.timing)
+    }
+
+    /// The events of this tick; to be called after every tick.
+    pub fn take_events(&mut self) -> Vec<Event> {
+        let events = self.control.events().copied().collect();
+        self.control.clear_events();
+        events
+    }
+}

@@ -1,0 +1,140 @@
+//! Replays a journal through the loop that recorded it: the same code, the same inputs, so the same bits.
+
+mod machine;
+mod steps;
+mod what_if;
+
+use std::ops::ControlFlow;
+
+use nima_core::impedance::SettingsError;
+use nima_machine::{
+    messages::{Event, Tick},
+    rig::{Outputs, SIDES, Side},
+};
+
+pub use machine::Machine;
+pub use steps::{Journal, Step};
+pub use what_if::{Change, Compared, Difference, compare};
+
+use nima_recording::session::ReadError;
+
+use crate::{
+    digest::{Check, Stage},
+    journal::{JournalError, Row},
+};
+
+/// Why a session cannot be replayed.
+#[derive(Debug, thiserror::Error)]
+#[expect(missing_docs, reason = "the messages say it")]
+pub enum ReplayError {
+    /// A message of the journal cannot be read.
+    #[error("message {place} of its journal: {source}")]
+    Message { place: u64, source: JournalError },
+    /// Messages are missing.
+    #[error("message {place} of its journal is missing: the file was cut or damaged")]
+    Missing { place: u64 },
+    /// There is no beginning.
+    #[error("its journal does not say what the loop was made of: the file was cut or damaged")]
+    NoStart,
+    /// There is no journal at all.
+    #[error("it holds no journal: only a session that was recorded with `nima run --record` can be replayed")]
+    NoJournal,
+    /// An operation names calibrations that are not there.
+    #[error("calibrations number {number} come into force at tick {tick}, and the file does not have them")]
+    NoCalibrations { number: u64, tick: u64 },
+    /// The settings of the rig are not usable, as recorded or as changed.
+    #[error(transparent)]
+    Settings(#[from] SettingsError),
+    /// The file itself.
+    #[error(transparent)]
+    File(#[from] ReadError),
+}
+
+/// One tick of a replay.
+#[derive(Debug)]
+pub struct Replayed<'a> {
+    /// Its number in the journal, from 0.
+    pub number: u64,
+    /// What the loop was given.
+    pub row: &'a Row,
+    /// What it told.
+    pub events: &'a [Event],
+    /// Its commands.
+    pub outputs: &'a [Outputs; SIDES],
+    /// What it shows.
+    pub ticks: &'a [Option<Tick>; SIDES],
+}
+
+/// The first tick that is not as it was recorded.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Differs {
+    /// Its number in the journal, from 0.
+    pub tick: u64,
+    /// Its time on the loop's clock, s.
+    pub t_s: f64,
+    /// The first part of the tick that differs; `None`: an event does.
+    pub place: Option<(Side, Stage)>,
+}
+
+/// Entries that are missing in the journal: from there on nothing can be replayed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Hole {
+    /// Ticks before it.
+    pub tick: u64,
+    /// Entries that were dropped.
+    pub lost: u64,
+}
+
+/// How a replay ended.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Outcome {
+    /// Ticks that were replayed and compared.
+    pub ticks: u64,
+    /// Loop time of the last one, s.
+    pub seconds: f64,
+    /// The first tick that differs; the replay ends there.
+    pub differs: Option<Differs>,
+    /// Where the journal has a hole; the replay ends there.
+    pub hole: Option<Hole>,
+    /// The recording was closed; if not, it was killed, or the file was cut.
+    pub closed: bool,
+}
+
+/// Replays a journal to its end, to its first hole or to the first tick that differs. `each` is called with every tick.
+///
+/// # Errors
+/// [`ReplayError`] if the journal cannot be read.
+pub fn replay<I: Iterator<Item = Result<Vec<u8>, ReplayError>>>(
+    journal: &mut Journal<I>,
+    mut each: impl FnMut(&Replayed<'_>),
+) -> Result<Outcome, ReplayError> {
+    let mut machine = Machine::new(&journal.start().origin)?;
+    let mut outcome = Outcome::default();
+    journal.each_step(|step| {
+        match step {
+            Step::Operation(operation) => machine.apply(operation, outcome.ticks)?,
+            Step::Calibrations { number, calibrations } => machine.know(number, calibrations),
+            Step::Hole { lost } => {
+                outcome.hole = Some(Hole { tick: outcome.ticks, lost });
+                return Ok(ControlFlow::Break(()));
+            }
+            Step::End(_) => outcome.closed = true,
+            Step::Tick(row) => {
+                let number = outcome.ticks;
+                let (outputs, ticks) = machine.step(row);
+                let events = machine.take_events();
+                each(&Replayed { number, row, events: &events, outputs: &outputs, ticks: &ticks });
+                let check = Check::of(events.iter(), &outputs, &ticks);
+                outcome.seconds = row.timing.now_s;
+                if check != row.check {
+                    let place = check.differs(&row.check);
+                    outcome.differs = Some(Differs { tick: number, t_s: row.timing.now_s, place });
+                    return Ok(ControlFlow::Break(()));
+                }
+                outcome.ticks += 1;
+            }
+        }
+        Ok(ControlFlow::Continue(()))
+    })?;
+    Ok(outcome)
+}

@@ -1,0 +1,161 @@
+//! The same session with one thing changed.
+//!
+//! Both loops get the recorded inputs. That is all that a recording can tell: with another force the hand would have moved
+//! otherwise, and so would the tissue's force. What is compared is what the hand would have felt at each moment, had it moved
+//! as it did.
+
+use std::ops::ControlFlow;
+
+use nalgebra::Vector3;
+use nima_core::impedance::Mode;
+use nima_machine::{
+    messages::{Command, LoopState, Tick},
+    rig::{SIDES, Side},
+    runtime::Operation,
+    teleop::Origin,
+};
+
+use super::{Hole, Journal, Machine, ReplayError, Step};
+
+/// What is changed; `None` leaves it as it was. A setting that is changed stays so: commands that would set it are left out.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Change {
+    /// The mode.
+    pub mode: Option<Mode>,
+    /// The delay of the link, s.
+    pub delay_s: Option<f64>,
+    /// The operator's gain, 0 to 1.
+    pub gain: Option<f64>,
+}
+
+impl Change {
+    /// Whether anything is changed.
+    pub fn is_any(&self) -> bool {
+        *self != Self::default()
+    }
+
+    /// What the changed loop is made of.
+    fn origin(&self, origin: &Origin) -> Origin {
+        let mut origin = origin.clone();
+        let rig = &mut origin.rig;
+        rig.mode = self.mode.unwrap_or(rig.mode);
+        rig.delay_s = self.delay_s.unwrap_or(rig.delay_s);
+        rig.gates.gain = self.gain.unwrap_or(rig.gates.gain);
+        origin
+    }
+
+    /// Whether the changed loop gets this command too.
+    const fn lets(&self, command: Command) -> bool {
+        match command {
+            Command::SetMode(_) => self.mode.is_none(),
+            Command::SetDelay(_) => self.delay_s.is_none(),
+            Command::SetGain(_) | Command::SetGainAboveOne(_) => self.gain.is_none(),
+            _ => true,
+        }
+    }
+}
+
+/// Mean, square mean and largest of vectors' lengths, N.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Difference {
+    /// Vectors.
+    pub count: u64,
+    /// Mean length, N.
+    pub mean_n: f64,
+    /// Largest length, N.
+    pub max_n: f64,
+    squares_n2: f64,
+}
+
+impl Difference {
+    fn add(&mut self, difference_n: &Vector3<f64>) {
+        let length_n = difference_n.norm();
+        self.count += 1;
+        self.mean_n += (length_n - self.mean_n) / self.count as f64;
+        self.max_n = self.max_n.max(length_n);
+        self.squares_n2 += (length_n * length_n - self.squares_n2) / self.count as f64;
+    }
+
+    /// Root of the mean square, N.
+    pub fn rms_n(&self) -> f64 {
+        self.squares_n2.sqrt()
+    }
+}
+
+/// One side of a comparison; forces over the ticks in which both loops were engaged.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Compared {
+    /// Ticks in which both were engaged.
+    pub engaged: u64,
+    /// Ticks in which only one was.
+    pub apart: u64,
+    /// Rendered force: changed minus recorded.
+    pub rendered: Difference,
+    /// Rendered force of the recorded session minus the force at the tip at the same instant.
+    pub recorded_error: Difference,
+    /// The same with the change.
+    pub changed_error: Difference,
+}
+
+/// Feeds a journal to the loop that recorded it and to a changed one. `each` is called with both loops' ticks of each side.
+/// Returns the comparison of each side that the rig has, the number of ticks, and the hole at which it ended, if there is one.
+///
+/// # Errors
+/// [`ReplayError`] if the journal cannot be read or the changed settings are not usable.
+#[expect(clippy::type_complexity, reason = "three answers")]
+pub fn compare<I: Iterator<Item = Result<Vec<u8>, ReplayError>>>(
+    journal: &mut Journal<I>,
+    change: &Change,
+    mut each: impl FnMut(&Tick, &Tick),
+) -> Result<([Option<Compared>; SIDES], u64, Option<Hole>), ReplayError> {
+    let origin = &journal.start().origin;
+    let (mut recorded, mut changed) = (Machine::new(origin)?, Machine::new(&change.origin(origin))?);
+    let (mut sides, mut ticks, mut hole) = ([None; SIDES], 0, None);
+    journal.each_step(|step| {
+        match step {
+            Step::Operation(operation) => {
+                recorded.apply(operation, ticks)?;
+                if !matches!(operation, Operation::Command { command, .. } if !change.lets(command)) {
+                    changed.apply(operation, ticks)?;
+                }
+            }
+            Step::Calibrations { number, calibrations } => {
+                recorded.know(number, calibrations.clone());
+                changed.know(number, calibrations);
+            }
+            Step::Hole { lost } => {
+                hole = Some(Hole { tick: ticks, lost });
+                return Ok(ControlFlow::Break(()));
+            }
+            Step::End(_) => {}
+            Step::Tick(row) => {
+                let ((_, as_was), (_, as_if)) = (recorded.step(row), changed.step(row));
+                recorded.take_events();
+                changed.take_events();
+                ticks += 1;
+                for side in Side::ALL {
+                    if let (Some(was), Some(would)) = (&as_was[side.index()], &as_if[side.index()]) {
+                        add(sides[side.index()].get_or_insert_default(), was, would);
+                        each(was, would);
+                    }
+                }
+            }
+        }
+        Ok(ControlFlow::Continue(()))
+    })?;
+    Ok((sides, ticks, hole))
+}
+
+fn add(compared: &mut Compared, was: &Tick, would: &Tick) {
+    let engaged = [was, would].map(|tick| tick.state == LoopState::Engaged);
+    match engaged {
+        [true, true] => {
+            compared.engaged += 1;
+            compared.rendered.add(&(would.rendered_n - was.rendered_n));
+            compared.recorded_error.add(&(was.rendered_n - was.measured_n));
+            compared.changed_error.add(&(would.rendered_n - would.measured_n));
+        }
+        [false, false] => {}
+        _ => compared.apart += 1,
+    }
+}

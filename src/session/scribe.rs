@@ -1,0 +1,178 @@
+//! Turns what passes the tap of a loop into the messages of a journal.
+
+use std::collections::BTreeMap;
+
+use nima_machine::{
+    messages::Event,
+    runtime::{Entry, Operation, Passed, Stepped, TapEnd},
+    teleop::Calibrations,
+};
+
+use crate::journal::{BlockWriter, Encoder, End, JournalError, Noted, Start};
+
+/// A message of the journal, and the loop time that it belongs to (s).
+#[derive(Clone, Debug)]
+pub struct Written {
+    /// Loop time of its last tick, s: it never falls, so that the messages keep their order.
+    pub t_s: f64,
+    /// Its bytes.
+    pub bytes: Vec<u8>,
+}
+
+/// What takes a journal, and what else is told of a session.
+pub trait Pages {
+    /// Why it takes no more.
+    type Error: From<JournalError>;
+
+    /// Takes a message of the journal.
+    ///
+    /// # Errors
+    /// Why it does not.
+    fn write(&mut self, written: &Written) -> Result<(), Self::Error>;
+
+    /// Takes a tick, and the events in it.
+    ///
+    /// # Errors
+    /// Why it does not.
+    fn tick(&mut self, _stepped: &Stepped, _events: &[Event]) -> Result<(), Self::Error> {
+        Ok(())
+    }
+
+    /// Takes what was done to the loop after the tick at `t_s` (s).
+    ///
+    /// # Errors
+    /// Why it does not.
+    fn operation(&mut self, _operation: &Operation, _t_s: f64) -> Result<(), Self::Error> {
+        Ok(())
+    }
+}
+
+/// The messages of the journal alone, in memory.
+impl Pages for Vec<Vec<u8>> {
+    type Error = JournalError;
+
+    fn write(&mut self, written: &Written) -> Result<(), JournalError> {
+        self.push(written.bytes.clone());
+        Ok(())
+    }
+}
+
+/// Writes a journal.
+#[derive(Debug)]
+pub struct Scribe {
+    encoder: Encoder,
+    block: BlockWriter,
+    events: Vec<Event>,
+    /// Calibrations that were handed over and that no operation has named yet.
+    filed: BTreeMap<u64, Calibrations>,
+    /// Number of the next entry, if none is dropped.
+    next: u64,
+    ticks: u64,
+    lost: u64,
+    t_s: f64,
+}
+
+impl Scribe {
+    /// Begins a journal; the first message is that of the start.
+    ///
+    /// # Errors
+    /// [`JournalError::Part`] if what the loop was made of cannot be written so that it reads the same.
+    pub fn new(start: &Start) -> Result<(Self, Written), JournalError> {
+        let mut encoder = Encoder::default();
+        let bytes = encoder.start(start)?;
+        let scribe = Self {
+            encoder,
+            block: BlockWriter::default(),
+            events: Vec::new(),
+            filed: BTreeMap::new(),
+            next: 0,
+            ticks: 0,
+            lost: 0,
+            t_s: 0.0,
+        };
+        Ok((scribe, Written { t_s: 0.0, bytes }))
+    }
+
+    /// Ticks so far.
+    pub const fn ticks(&self) -> u64 {
+        self.ticks
+    }
+
+    /// Entries that were dropped so far.
+    pub const fn lost(&self) -> u64 {
+        self.lost
+    }
+
+    /// Loop time of the last tick, s.
+    pub const fn t_s(&self) -> f64 {
+        self.t_s
+    }
+
+    /// Takes one entry.
+    ///
+    /// # Errors
+    /// What `pages` return, or [`JournalError::Part`] for calibrations that cannot be written.
+    pub fn take<P: Pages>(&mut self, entry: Entry, tap: &TapEnd, pages: &mut P) -> Result<(), P::Error> {
+        self.missed_until(entry.number);
+        self.next = entry.number + 1;
+        match entry.passed {
+            Passed::Event(event) => self.events.push(event),
+            Passed::Operation(operation) => {
+                if let Operation::Calibrations { number, .. } = operation {
+                    self.calibrations(number, tap, pages)?;
+                }
+                self.block.note(Noted::Operation(operation));
+                pages.operation(&operation, self.t_s)?;
+            }
+            Passed::Stepped(stepped) => {
+                let row = BlockWriter::row(&stepped, self.events.iter());
+                self.t_s = stepped.timing.now_s;
+                self.block.tick(&row);
+                self.ticks += 1;
+                let told = pages.tick(&stepped, &self.events);
+                self.events.clear();
+                tap.give_back(stepped);
+                told?;
+            }
+        }
+        if self.block.is_full() { pages.write(&self.block()) } else { Ok(()) }
+    }
+
+    /// Ends the journal.
+    ///
+    /// # Errors
+    /// What `pages` return.
+    pub fn end<P: Pages>(mut self, tap: &TapEnd, pages: &mut P) -> Result<End, P::Error> {
+        self.missed_until(tap.offered());
+        if !self.block.is_empty() {
+            pages.write(&self.block())?;
+        }
+        let end = End { ticks: self.ticks, lost: self.lost };
+        pages.write(&Written { t_s: self.t_s, bytes: self.encoder.end(&end) })?;
+        Ok(end)
+    }
+
+    fn block(&mut self) -> Written {
+        Written { t_s: self.t_s, bytes: self.encoder.block(&mut self.block) }
+    }
+
+    /// Notes a hole if entries before this number were dropped.
+    fn missed_until(&mut self, number: u64) {
+        let lost = number.saturating_sub(self.next);
+        if lost > 0 {
+            self.lost += lost;
+            // The events that are known may be of a tick that was dropped.
+            self.events.clear();
+            self.block.note(Noted::Hole { lost });
+        }
+    }
+
+    fn calibrations<P: Pages>(&mut self, number: u64, tap: &TapEnd, pages: &mut P) -> Result<(), P::Error> {
+        self.filed.extend(tap.calibrations());
+        // Those with a lower number were not taken by the loop.
+        self.filed = self.filed.split_off(&number);
+        let Some(calibrations) = self.filed.remove(&number) else { return Ok(()) };
+        let bytes = self.encoder.calibrations(number, &calibrations)?;
+        pages.write(&Written { t_s: self.t_s, bytes })
+    }
+}

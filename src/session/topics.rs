@@ -1,0 +1,169 @@
+//! What is plotted of a session: forces, poses and gates of each arm, and what happened.
+
+use nima_core::safety::{Gate, State};
+use nima_machine::{
+    messages::{Event, LoopState, Tick},
+    rig::{SIDES, Side},
+    runtime::{Operation, Stepped},
+};
+use nima_recording::{
+    messages::{
+        JointStateEncoder,
+        foxglove::{self, Level, Log},
+    },
+    session::{ChannelId, WriteError, Writer},
+};
+
+/// Sentences for events.
+pub type Words = fn(&Event) -> String;
+
+/// The channels of what is plotted.
+#[derive(Debug)]
+pub(crate) struct Topics {
+    sides: [Option<OfSide>; SIDES],
+    log: ChannelId,
+    words: Words,
+}
+
+#[derive(Debug)]
+struct OfSide {
+    forces: Plot,
+    poses: Plot,
+    gates: Plot,
+}
+
+/// A channel of named numbers.
+#[derive(Debug)]
+struct Plot {
+    channel: ChannelId,
+    encoder: JointStateEncoder,
+    values: Vec<f64>,
+}
+
+const FORCES: [&str; 12] = [
+    "measured_x_n",
+    "measured_y_n",
+    "measured_z_n",
+    "delayed_x_n",
+    "delayed_y_n",
+    "delayed_z_n",
+    "asked_x_n",
+    "asked_y_n",
+    "asked_z_n",
+    "rendered_x_n",
+    "rendered_y_n",
+    "rendered_z_n",
+];
+const POSES: [&str; 6] = ["tip_x_m", "tip_y_m", "tip_z_m", "leader_x_m", "leader_y_m", "leader_z_m"];
+/// Beside one for each gate: 1 where it acted.
+const OF_GATES: [&str; 5] = ["gain", "stored_j", "withheld_n", "governed", "state"];
+
+impl Topics {
+    pub(crate) fn new(writer: &mut Writer, sides: [bool; SIDES], words: Words) -> Result<Self, WriteError> {
+        let mut of = [None, None];
+        for side in Side::ALL.into_iter().filter(|side| sides[side.index()]) {
+            let gates: Vec<&str> = Gate::ALL.iter().map(|gate| gate.name()).chain(OF_GATES).collect();
+            let mut plot = |what: &str, names: &[&str]| Plot::new(writer, side, what, names);
+            of[side.index()] = Some(OfSide {
+                forces: plot("forces", &FORCES)?,
+                poses: plot("poses", &POSES)?,
+                gates: plot("gates", &gates)?,
+            });
+        }
+        let log = writer.channel("log", foxglove::encoding::<Log>())?;
+        Ok(Self { sides: of, log, words })
+    }
+
+    /// Writes a tick and the events in it.
+    pub(crate) fn tick(
+        &mut self,
+        writer: &mut Writer,
+        time_ns: u64,
+        stepped: &Stepped,
+        events: &[Event],
+    ) -> Result<(), WriteError> {
+        for (plots, tick) in self.sides.iter_mut().zip(&stepped.ticks) {
+            if let (Some(plots), Some(tick)) = (plots, tick) {
+                plots.tick(writer, time_ns, tick)?;
+            }
+        }
+        for event in events {
+            let level = match event {
+                Event::FaultRaised { .. } => Level::Error,
+                Event::CommandRefused { .. } => Level::Warning,
+                Event::StateChanged { .. } | Event::Device(_) | Event::Scheduling(_) => Level::Info,
+            };
+            self.log(writer, time_ns, level, (self.words)(event))?;
+        }
+        Ok(())
+    }
+
+    /// Writes what was done to the loop.
+    pub(crate) fn operation(
+        &mut self,
+        writer: &mut Writer,
+        time_ns: u64,
+        operation: &Operation,
+    ) -> Result<(), WriteError> {
+        self.log(writer, time_ns, Level::Info, format!("{operation:?}"))
+    }
+
+    fn log(&self, writer: &mut Writer, time_ns: u64, level: Level, message: String) -> Result<(), WriteError> {
+        let log = Log {
+            timestamp: Some(foxglove::Timestamp::of_ns(time_ns)),
+            level: level as i32,
+            message,
+            name: "nima".to_owned(),
+            ..Log::default()
+        };
+        writer.message(self.log, time_ns, &prost::Message::encode_to_vec(&log))
+    }
+}
+
+impl OfSide {
+    fn tick(&mut self, writer: &mut Writer, time_ns: u64, tick: &Tick) -> Result<(), WriteError> {
+        let asked_n = tick.asked_n[tick.mode.index()];
+        let forces = [tick.measured_n, tick.delayed_n, asked_n, tick.rendered_n];
+        self.forces.values.extend(forces.iter().flatten());
+        self.poses.values.extend([tick.tip_m, tick.leader_m].iter().flatten());
+        let acted = Gate::ALL.map(|gate| f64::from(u8::from(tick.gates.acted(gate))));
+        let gates = &tick.gates;
+        self.gates.values.extend(acted);
+        self.gates.values.extend([gates.gain, gates.stored_j, gates.withheld_n, gates.governed, number_of(tick.state)]);
+        self.forces.write(writer, time_ns, true)?;
+        self.poses.write(writer, time_ns, false)?;
+        self.gates.write(writer, time_ns, false)
+    }
+}
+
+impl Plot {
+    fn new(writer: &mut Writer, side: Side, what: &str, names: &[&str]) -> Result<Self, WriteError> {
+        let channel = writer.channel(&format!("{}/{what}", side.word()), JointStateEncoder::encoding())?;
+        let names: Vec<String> = names.iter().map(|name| format!("{}_{name}", side.word())).collect();
+        let names: Vec<&str> = names.iter().map(String::as_str).collect();
+        Ok(Self { channel, encoder: JointStateEncoder::new("world", &names), values: Vec::new() })
+    }
+
+    /// Writes the values and forgets them; forces are efforts.
+    fn write(&mut self, writer: &mut Writer, time_ns: u64, efforts: bool) -> Result<(), WriteError> {
+        let (position, effort) = if efforts { (&[][..], &self.values[..]) } else { (&self.values[..], &[][..]) };
+        if let Ok(message) = self.encoder.encode(time_ns, position, &[], effort) {
+            writer.message(self.channel, time_ns, message)?;
+        }
+        self.values.clear();
+        Ok(())
+    }
+}
+
+/// The state as a number, in the order of a session.
+const fn number_of(state: LoopState) -> f64 {
+    match state {
+        State::Disconnected => 0.0,
+        State::Idle => 1.0,
+        State::Ready => 2.0,
+        State::Engaged => 3.0,
+        State::Clutched => 4.0,
+        State::Stopped => 5.0,
+        State::Faulted(_) => 6.0,
+    }
+}

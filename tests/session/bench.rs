@@ -1,0 +1,60 @@
+//! A loop whose tap is read into the memory.
+
+use std::thread;
+
+use nima_machine::{
+    messages::{Command, Tick},
+    runtime::{self, Assembly, TapEnd, tap},
+};
+use nima_session::{
+    journal::Start,
+    replay::{Journal, Outcome, ReplayError, replay},
+    scribe::{Scribe, Written},
+};
+use nima_world::Plan;
+
+/// The messages of a journal.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Kept(pub(crate) Vec<Vec<u8>>);
+
+impl Kept {
+    /// Reads a tap until its loop has ended.
+    pub(crate) fn of(start: &Start, end: &TapEnd) -> Self {
+        let (mut scribe, Written { bytes, .. }) = Scribe::new(start).unwrap();
+        let mut kept = vec![bytes];
+        while let Ok(entry) = end.entries.recv() {
+            scribe.take(entry, end, &mut kept).unwrap();
+        }
+        scribe.end(end, &mut kept).unwrap();
+        Self(kept)
+    }
+
+    /// Replays it; every tick is told.
+    pub(crate) fn replayed(&self, mut each: impl FnMut(&Tick)) -> Result<Outcome, ReplayError> {
+        let mut journal = Journal::open(self.0.iter().map(|bytes| Ok(bytes.clone())))?;
+        replay(&mut journal, |replayed| replayed.ticks.iter().flatten().for_each(&mut each))
+    }
+}
+
+pub(crate) fn start_of(plan: &Plan) -> Start {
+    Start { program: "test".to_owned(), origin: plan.origin() }
+}
+
+/// Runs the simulated world of this plan on the virtual clock.
+pub(crate) fn record(plan: &Plan, seconds: f64, each: impl FnMut(&Tick) -> Option<Command>) -> Kept {
+    record_on(plan, plan.simulated().unwrap(), seconds, each)
+}
+
+/// The same with a given rig.
+pub(crate) fn record_on(
+    plan: &Plan,
+    assembly: Assembly,
+    seconds: f64,
+    each: impl FnMut(&Tick) -> Option<Command>,
+) -> Kept {
+    let (tap, end) = tap();
+    let start = start_of(plan);
+    let reader = thread::spawn(move || Kept::of(&start, &end));
+    runtime::run_virtual(Assembly { tap: Some(tap), ..assembly }, seconds, each);
+    reader.join().unwrap()
+}

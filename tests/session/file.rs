@@ -1,0 +1,202 @@
+//! Sessions in files: recorded by the recorder's thread, read again, damaged, and recorded to places that go away.
+
+use std::{
+    collections::BTreeMap,
+    path::Path,
+    time::{Duration, Instant},
+};
+
+use nima_core::impedance::Mode;
+use nima_machine::{
+    config::RigConfig,
+    messages::{Command, Tick},
+    runtime::{self, Assembly, Clock, tap},
+};
+use nima_recording::session::{ReadError, Reader, WriteError, Writer};
+use nima_session::{
+    file::Recorded,
+    recorder::{About, Attached, JOURNAL_TOPIC, Progress, RecordError, Recorder},
+    replay::{Change, Outcome, ReplayError, compare, replay},
+};
+use nima_world::{Plan, scene::Scene};
+
+fn plan(scene: &str) -> Plan {
+    Plan {
+        rig: RigConfig::load("simulated").unwrap(),
+        scene: Scene::load(scene).unwrap(),
+        calibrations: Default::default(),
+        engage: true,
+    }
+}
+
+fn about() -> About {
+    let seed = BTreeMap::from([("seed".to_owned(), "1".to_owned())]);
+    About {
+        program: "test".to_owned(),
+        started_ns: 1_700_000_000_000_000_000,
+        metadata: BTreeMap::from([("session".to_owned(), seed)]),
+        files: vec![Attached {
+            name: "scene.toml".into(),
+            media_type: "application/toml".into(),
+            data: b"name = \"x\"".into(),
+        }],
+        words: |event| format!("{event:?}"),
+    }
+}
+
+fn recorded(path: &Path, plan: &Plan, seconds: f64, each: impl FnMut(&Tick) -> Option<Command>) -> Progress {
+    let (tap, end) = tap();
+    let recorder = Recorder::start(path, about(), plan.origin(), end).unwrap();
+    runtime::run_virtual(Assembly { tap: Some(tap), ..plan.simulated().unwrap() }, seconds, each);
+    recorder.finish().unwrap()
+}
+
+fn replayed(path: &Path) -> Result<Outcome, ReplayError> {
+    let file = Recorded::open(path)?;
+    replay(&mut file.journal()?, |_| {})
+}
+
+#[test]
+fn a_session_file_replays_and_can_be_plotted() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("session.mcap");
+    let told =
+        recorded(&path, &plan("bimanual"), 6.0, |tick| (tick.index == 2000).then_some(Command::SetMode(Mode::Dfr)));
+    assert_eq!((told.ticks, told.lost), (6000, 0));
+    let outcome = replayed(&path).unwrap();
+    assert_eq!((outcome.ticks, outcome.differs, outcome.hole, outcome.closed), (6000, None, None, true));
+    let reader = Reader::open(&path).unwrap();
+    assert!(reader.notes().is_empty(), "{:?}", reader.notes());
+    for topic in ["right/forces", "left/forces", "right/poses", "left/gates"] {
+        let messages: Vec<_> = reader.messages(&[topic], 0..u64::MAX).collect::<Result<_, _>>().unwrap();
+        assert_eq!(messages.len(), 6000, "{topic}");
+        assert_eq!(messages[1500].log_time_ns(), about().started_ns + 1_500_000_000, "the time of the sample");
+    }
+    let log = reader.messages(&["log"], 0..u64::MAX).map(|message| {
+        let message = message.unwrap();
+        String::from_utf8_lossy(message.data()).into_owned()
+    });
+    let log = log.collect::<Vec<_>>().join("\n");
+    assert!(log.contains("SetMode") && log.contains("StateChanged"), "{log}");
+    let bytes = reader.messages(&[JOURNAL_TOPIC], 0..u64::MAX).map(|message| message.unwrap().data().len());
+    println!("{} bytes of journal, {} in the file", bytes.sum::<usize>(), std::fs::metadata(&path).unwrap().len());
+}
+
+#[test]
+fn a_change_differs_where_it_was_made_and_nothing_changed_differs_nowhere() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("session.mcap");
+    recorded(&path, &plan("peg_transfer"), 10.0, |tick| (tick.index == 4000).then_some(Command::SetGain(0.8)));
+    let file = Recorded::open(&path).unwrap();
+    let with = |change: Change| compare(&mut file.journal().unwrap(), &change, |_, _| {}).unwrap();
+    let ([right, left], ticks, hole) = with(Change::default());
+    let same = right.unwrap();
+    assert!(left.is_none() && ticks == 10_000 && hole.is_none());
+    assert!(same.rendered.max_n < f64::EPSILON && same.engaged > 8000 && same.apart == 0, "{same:?}");
+    let none = with(Change { gain: Some(0.0), ..Change::default() }).0[0].unwrap();
+    assert!((none.rendered.mean_n - mean_rendered_n(&file)).abs() < 1e-9, "{none:?}");
+    let late = with(Change { delay_s: Some(0.3), ..Change::default() }).0[0].unwrap();
+    assert!(late.changed_error.mean_n > 1.5 * late.recorded_error.mean_n, "{late:?}");
+    let reflected = with(Change { mode: Some(Mode::Dfr), ..Change::default() }).0[0].unwrap();
+    assert!(reflected.rendered.mean_n > 0.01, "{reflected:?}");
+}
+
+/// Mean of the rendered force while engaged, N.
+fn mean_rendered_n(file: &Recorded) -> f64 {
+    let (mut sum_n, mut count) = (0.0, 0);
+    replay(&mut file.journal().unwrap(), |replayed| {
+        let tick = replayed.ticks[0].as_ref().unwrap();
+        if tick.state == nima_machine::messages::LoopState::Engaged {
+            sum_n += tick.rendered_n.norm();
+            count += 1;
+        }
+    })
+    .unwrap();
+    sum_n / f64::from(count)
+}
+
+#[test]
+fn a_flipped_bit_is_named_or_has_changed_nothing() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("session.mcap");
+    recorded(&path, &plan("peg_transfer"), 2.0, |_| None);
+    let whole = std::fs::read(&path).unwrap();
+    let bad = folder.path().join("bad.mcap");
+    let (mut named, mut random) = (0, fastrand::Rng::with_seed(7));
+    for _ in 0..60 {
+        let mut bytes = whole.clone();
+        bytes[random.usize(..whole.len())] ^= 1 << random.u8(..8);
+        std::fs::write(&bad, &bytes).unwrap();
+        match replayed(&bad) {
+            Err(error) => {
+                let words = error.to_string();
+                assert!(!words.contains('\n') && words.len() > 20, "{words}");
+                named += 1;
+            }
+            Ok(outcome) => assert_eq!((outcome.ticks, outcome.differs, outcome.closed), (2000, None, true)),
+        }
+    }
+    assert!(named > 40, "{named} of 60: nearly all of the file is chunks");
+}
+
+#[test]
+fn files_that_cannot_be_replayed_are_named() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name);
+    std::fs::write(at("empty"), []).unwrap();
+    assert!(matches!(replayed(&at("empty")), Err(ReplayError::File(ReadError::Empty { .. }))));
+    std::fs::write(at("foreign"), "t_s,x_m\n0,1\n").unwrap();
+    assert!(matches!(replayed(&at("foreign")), Err(ReplayError::File(ReadError::Foreign { .. }))));
+    Writer::create(&at("other.mcap"), "another program").unwrap().finish().unwrap();
+    assert!(matches!(replayed(&at("other.mcap")), Err(ReplayError::NoJournal)));
+    recorded(&at("whole"), &plan("peg_transfer"), 4.0, |_| None);
+    let whole = std::fs::read(at("whole")).unwrap();
+    std::fs::write(at("cut"), &whole[..whole.len() / 2]).unwrap();
+    // What is there is replayed, and it is told that the end is missing; or the cut itself is named.
+    match replayed(&at("cut")) {
+        Ok(outcome) => {
+            assert!(outcome.ticks > 500 && outcome.ticks < 4000 && !outcome.closed, "{outcome:?}");
+            assert_eq!(outcome.differs, None);
+        }
+        Err(error) => assert!(error.to_string().contains("cut"), "{error}"),
+    }
+    assert!(
+        matches!(
+            Recorder::start(&at("whole"), about(), plan("peg_transfer").origin(), tap().1),
+            Err(RecordError::Write(WriteError::Create { .. }))
+        ),
+        "a session is never overwritten"
+    );
+}
+
+#[test]
+fn a_folder_that_is_gone_is_told_at_once_and_the_loop_goes_on() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("session.mcap");
+    let plan = plan("peg_transfer");
+    let (tap, end) = tap();
+    let recorder = Recorder::start(&path, about(), plan.origin(), end).unwrap();
+    let assembly = Assembly { tap: Some(tap), clock: Clock::Simulated { speed: 4.0 }, ..plan.simulated().unwrap() };
+    let handle = runtime::start(assembly).unwrap();
+    let begin = Instant::now();
+    let wait_for = |what: &dyn Fn() -> bool| {
+        while !what() {
+            assert!(begin.elapsed() < Duration::from_secs(30));
+            std::thread::sleep(Duration::from_millis(10));
+        }
+    };
+    wait_for(&|| recorder.progress().ticks > 500);
+    drop(folder);
+    wait_for(&|| recorder.trouble().is_some());
+    let words = recorder.trouble().unwrap().to_string();
+    assert!(words.contains("deleted") && words.contains("session.mcap"), "{words}");
+    // The tap is emptied all the same, and the loop runs on.
+    let (before, mut newest) = (Instant::now(), 0);
+    while before.elapsed() < Duration::from_millis(500) {
+        handle.drain_ticks(|tick| newest = tick.index);
+        std::thread::sleep(Duration::from_millis(10));
+    }
+    let summary = handle.stop_and_join().unwrap();
+    assert!(summary.ticks > newest && newest > 500, "{} ticks, {newest}", summary.ticks);
+    assert!(matches!(recorder.finish(), Err(RecordError::Write(WriteError::Deleted { .. }))));
+}

@@ -1,0 +1,7 @@
+//! Sessions: recorded and replayed, bit for bit.
+#![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+mod bench;
+mod faults;
+mod file;
+mod round_trip;

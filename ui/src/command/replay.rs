@@ -1,0 +1,172 @@
+//! `nima replay`: a recorded session once more through the same loop.
+
+mod what_if;
+
+use std::{
+    path::{Path, PathBuf},
+    time::Instant,
+};
+
+use anyhow::{Context as _, bail};
+use clap::Args;
+use nima_core::impedance::{MAX_DELAY_S, Mode};
+use nima_session::{
+    file::Recorded,
+    replay::{Change, Differs, Hole, Outcome, replay},
+};
+use serde::Serialize;
+
+use super::output;
+use crate::{recording::PROGRAM, telling::tell};
+
+#[derive(Debug, Args)]
+pub(super) struct Arguments {
+    /// Session file that `nima run --record` wrote
+    session: PathBuf,
+    /// What if: render with this mode
+    #[arg(long)]
+    mode: Option<Mode>,
+    /// What if: this one-way delay of the link in ms
+    #[arg(long, value_name = "D", value_parser = delay_ms, allow_negative_numbers = true)]
+    delay_ms: Option<f64>,
+    /// What if: this feedback gain, 0 to 1
+    #[arg(long, value_name = "G", value_parser = gain, allow_negative_numbers = true)]
+    gain: Option<f64>,
+    /// Write the forces of both, tick by tick, into this folder (with a change only)
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Print the results as one JSON object
+    #[arg(long)]
+    json: bool,
+}
+
+fn within(text: &str, most: f64, words: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(value) if (0.0..=most).contains(&value) => Ok(value),
+        _ => Err(words.to_owned()),
+    }
+}
+
+fn delay_ms(text: &str) -> Result<f64, String> {
+    within(text, MAX_DELAY_S * 1e3, "give 0 to 1000 ms")
+}
+
+fn gain(text: &str) -> Result<f64, String> {
+    within(text, 1.0, "give 0 to 1")
+}
+
+pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
+    let Arguments { session, mode, delay_ms, gain, out, json } = arguments;
+    let change = Change { mode: *mode, delay_s: delay_ms.map(|delay_ms| delay_ms * 1e-3), gain: *gain };
+    if !change.is_any() && out.is_some() {
+        bail!("--out needs a change: give --mode, --delay-ms or --gain too");
+    }
+    let file = Recorded::open(session)?;
+    for note in file.reader().notes() {
+        tell(format_args!("nima: {note}"));
+    }
+    if change.is_any() {
+        return what_if::run(&file, session, &change, out.as_deref(), *json);
+    }
+    once_more(&file, session, *json)
+}
+
+/// What a replay tells.
+#[derive(Serialize)]
+struct Told<'a> {
+    session: &'a Path,
+    recorded_by: &'a str,
+    rig: &'a str,
+    ticks: u64,
+    seconds: f64,
+    times_real_time: f64,
+    identical: bool,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    differs: Option<Different>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    hole: Option<Missing>,
+    closed: bool,
+}
+
+#[derive(Serialize)]
+struct Different {
+    tick: u64,
+    t_s: f64,
+    side: Option<&'static str>,
+    stage: &'static str,
+}
+
+#[derive(Serialize)]
+struct Missing {
+    after_tick: u64,
+    lost: u64,
+}
+
+fn once_more(file: &Recorded, session: &Path, json: bool) -> anyhow::Result<()> {
+    let damaged = || session.display().to_string();
+    let mut journal = file.journal().with_context(damaged)?;
+    let start = journal.start().clone();
+    let (begin, mut read) = (Instant::now(), 0);
+    let outcome = replay(&mut journal, |_| read += 1);
+    let outcome = outcome.with_context(|| format!("{} ({read} ticks before were replayed)", session.display()))?;
+    let took_s = begin.elapsed().as_secs_f64();
+    let Outcome { ticks, seconds, differs, hole, closed } = outcome;
+    let different = differs.map(|Differs { tick, t_s, place }| Different {
+        tick,
+        t_s,
+        side: place.map(|(side, _)| side.word()),
+        stage: place.map_or("events", |(_, stage)| stage.name()),
+    });
+    let told = Told {
+        session,
+        recorded_by: &start.program,
+        rig: &start.origin.rig.name,
+        ticks,
+        seconds,
+        times_real_time: seconds / took_s.max(1e-9),
+        identical: different.is_none(),
+        differs: different,
+        hole: hole.map(|Hole { tick, lost }| Missing { after_tick: tick, lost }),
+        closed,
+    };
+    if json {
+        output::json(&told)?
+    } else {
+        output::line(&in_words(&told))?
+    }
+    match &told.differs {
+        None => Ok(()),
+        Some(different) => bail!("{}", difference(different, &start.program)),
+    }
+}
+
+fn in_words(told: &Told<'_>) -> String {
+    let Told { session, recorded_by, rig, ticks, seconds, times_real_time, hole, closed, differs, .. } = told;
+    let mut text = format!(
+        "{}: rig \"{rig}\", recorded by {recorded_by}\n{ticks} ticks, {seconds:.1} s, {times_real_time:.0} times real time",
+        session.display(),
+    );
+    if differs.is_none() {
+        text.push_str("\nevery one is as it was recorded, to the last bit");
+    }
+    if let Some(Missing { after_tick, lost }) = hole {
+        let words = format!(
+            "\nafter tick {after_tick} the recording lost {lost} entries: from there on nothing can be replayed, and nothing was compared"
+        );
+        text.push_str(&words);
+    } else if !closed && differs.is_none() {
+        text.push_str("\nthe recording was not closed: it ends where the program was killed or the file was cut");
+    }
+    text
+}
+
+/// The first tick that differs, in words.
+fn difference(Different { tick, t_s, side, stage }: &Different, recorded_by: &str) -> String {
+    let whose = side.map_or_else(String::new, |side| format!(" of the {side} arm"));
+    let versions = if recorded_by == PROGRAM {
+        "the same version of the program recorded it: the file was changed, or this build computes otherwise".to_owned()
+    } else {
+        format!("{recorded_by} recorded it, this is {PROGRAM}")
+    };
+    format!("tick {tick} at {t_s:.3} s is not as it was recorded, first in its {stage}{whose}; {versions}")
+}

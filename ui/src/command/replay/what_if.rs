@@ -1,0 +1,166 @@
+//! A session with one thing changed: how the forces would have been on the same inputs.
+
+use std::{
+    fmt::Write as _,
+    io::{self, Write as _},
+    path::{Path, PathBuf},
+};
+
+use anyhow::Context as _;
+use nima_files::write_atomically;
+use nima_machine::{messages::Tick, rig::Side};
+use nima_session::{
+    file::Recorded,
+    replay::{Change, Compared, Difference, Hole, compare},
+};
+use serde::Serialize;
+
+use super::output;
+
+/// The file with the forces of both.
+const FORCES: &str = "forces.csv";
+const HEADER: &str = "t_s,side,recorded_state,changed_state,recorded_x_n,recorded_y_n,recorded_z_n,\
+changed_x_n,changed_y_n,changed_z_n,measured_x_n,measured_y_n,measured_z_n";
+/// What such a comparison cannot know.
+const LIMIT: &str = "the inputs are those of the recording: with another force the hand would have moved otherwise, and so would \
+the tissue's force; this is what the hand would have felt, had it moved as it did";
+
+#[derive(Serialize)]
+struct Told<'a> {
+    session: &'a Path,
+    changed: String,
+    ticks: u64,
+    arms: Vec<Arm>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    ends_at_hole_after_tick: Option<u64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    forces: Option<PathBuf>,
+    limit: &'static str,
+}
+
+#[derive(Serialize)]
+struct Arm {
+    side: &'static str,
+    engaged_ticks: u64,
+    in_one_engaged_only: u64,
+    difference: Lengths,
+    recorded_error: Lengths,
+    changed_error: Lengths,
+}
+
+#[derive(Serialize)]
+struct Lengths {
+    mean_n: f64,
+    rms_n: f64,
+    max_n: f64,
+}
+
+impl Lengths {
+    fn of(difference: &Difference) -> Self {
+        Self { mean_n: difference.mean_n, rms_n: difference.rms_n(), max_n: difference.max_n }
+    }
+
+    fn in_words(&self, name: &str) -> String {
+        let Self { mean_n, rms_n, max_n } = self;
+        format!("\n  {name:44}  mean {mean_n:8.4} N   rms {rms_n:8.4} N   max {max_n:8.4} N")
+    }
+}
+
+pub(super) fn run(
+    file: &Recorded,
+    session: &Path,
+    change: &Change,
+    out: Option<&Path>,
+    json: bool,
+) -> anyhow::Result<()> {
+    let (compared, ticks, hole) = match out {
+        None => compare(&mut file.journal().with_context(|| session.display().to_string())?, change, |_, _| {})
+            .with_context(|| session.display().to_string())?,
+        Some(out) => with_forces(file, session, change, out)?,
+    };
+    let arm = |side: Side| {
+        let Compared { engaged, apart, rendered, recorded_error, changed_error } = compared[side.index()]?;
+        let [difference, recorded_error, changed_error] =
+            [rendered, recorded_error, changed_error].map(|one| Lengths::of(&one));
+        let (side, engaged_ticks, in_one_engaged_only) = (side.word(), engaged, apart);
+        Some(Arm { side, engaged_ticks, in_one_engaged_only, difference, recorded_error, changed_error })
+    };
+    let told = Told {
+        session,
+        changed: in_words(change),
+        ticks,
+        arms: Side::ALL.into_iter().filter_map(arm).collect(),
+        ends_at_hole_after_tick: hole.map(|Hole { tick, .. }| tick),
+        forces: out.map(|out| out.join(FORCES)),
+        limit: LIMIT,
+    };
+    if json { output::json(&told) } else { output::line(&table(&told)) }
+}
+
+type Answer = ([Option<Compared>; nima_machine::rig::SIDES], u64, Option<Hole>);
+
+/// Compares, and writes the forces of both.
+fn with_forces(file: &Recorded, session: &Path, change: &Change, out: &Path) -> anyhow::Result<Answer> {
+    output::folder(out, &[FORCES], &[session])?;
+    let path = out.join(FORCES);
+    let mut answer = None;
+    let written = write_atomically(&path, |to| {
+        writeln!(to, "{HEADER}")?;
+        let mut written = Ok(());
+        let compared = file.journal().and_then(|mut journal| {
+            compare(&mut journal, change, |was, would| {
+                if written.is_ok() {
+                    written = to.write_all(row(was, would).as_bytes());
+                }
+            })
+        });
+        // Half a table is none.
+        let compared = answer.insert(compared).as_ref();
+        compared.map_or_else(|_| Err(io::Error::other("the session cannot be replayed")), |_| written)
+    });
+    let compared: Answer = answer.transpose().with_context(|| session.display().to_string())?.unwrap_or_default();
+    written.with_context(|| format!("cannot write {}", path.display())).map(|()| compared)
+}
+
+fn row(was: &Tick, would: &Tick) -> String {
+    let mut row = format!("{},{},{},{}", was.t_s, was.side.word(), was.state.word(), would.state.word());
+    for force_n in [&was.rendered_n, &would.rendered_n, &was.measured_n] {
+        for axis in force_n {
+            write!(row, ",{axis}").ok();
+        }
+    }
+    row + "\n"
+}
+
+fn in_words(change: &Change) -> String {
+    let Change { mode, delay_s, gain } = change;
+    let parts = [
+        mode.map(|mode| format!("mode {mode}")),
+        delay_s.map(|delay_s| format!("delay {:.0} ms", delay_s * 1e3)),
+        gain.map(|gain| format!("gain {gain}")),
+    ];
+    parts.into_iter().flatten().collect::<Vec<_>>().join(", ")
+}
+
+fn table(told: &Told<'_>) -> String {
+    let Told { session, changed, ticks, arms, ends_at_hole_after_tick, forces, limit } = told;
+    let mut text = format!("{}: {ticks} ticks with {changed}", session.display());
+    for Arm { side, engaged_ticks, in_one_engaged_only, difference, recorded_error, changed_error } in arms {
+        let apart = match in_one_engaged_only {
+            0 => String::new(),
+            _ => format!(", {in_one_engaged_only} more in only one of both"),
+        };
+        write!(text, "\n{side} arm, {engaged_ticks} ticks engaged{apart}").ok();
+        text += &difference.in_words("rendered force, changed minus recorded");
+        text += &recorded_error.in_words("recorded, minus the force at the tip then");
+        text += &changed_error.in_words("changed, minus the force at the tip then");
+    }
+    if let Some(tick) = ends_at_hole_after_tick {
+        write!(text, "\nthe recording has a hole after tick {tick}: the comparison ends there").ok();
+    }
+    if let Some(forces) = forces {
+        write!(text, "\nforces of both in {}", forces.display()).ok();
+    }
+    write!(text, "\nnote: {limit}").ok();
+    text
+}

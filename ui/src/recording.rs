@@ -1,0 +1,57 @@
+//! Recording what a loop does: begins a session file for a plan, whoever runs it.
+
+use std::{
+    collections::BTreeMap,
+    path::Path,
+    time::{SystemTime, UNIX_EPOCH},
+};
+
+use nima_machine::runtime::{Tap, tap};
+use nima_recording::store::utc_now;
+use nima_session::recorder::{About, Attached, RecordError, Recorder};
+use nima_world::Plan;
+
+use crate::words::event;
+
+/// Name and version of this program.
+pub(crate) const PROGRAM: &str = concat!("nima ", env!("CARGO_PKG_VERSION"));
+
+/// Begins to record a loop of this plan: the tap is for its [`nima_machine::runtime::Assembly`]. `clock` is `real` or `virtual`.
+pub(crate) fn begin(path: &Path, plan: &Plan, clock: &str) -> Result<(Tap, Recorder), RecordError> {
+    let (tap, end) = tap();
+    let recorder = Recorder::start(path, about(plan, clock), plan.origin(), end)?;
+    Ok((tap, recorder))
+}
+
+fn about(plan: &Plan, clock: &str) -> About {
+    let started_ns = SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |since| since.as_nanos() as u64);
+    let Plan { rig, scene, .. } = plan;
+    let build = if cfg!(debug_assertions) { "debug" } else { "release" };
+    let session = [
+        ("program", PROGRAM.to_owned()),
+        ("build", build.to_owned()),
+        ("system", format!("{} {}", std::env::consts::OS, std::env::consts::ARCH)),
+        ("started", utc_now()),
+        ("clock", clock.to_owned()),
+        ("rig", rig.name.clone()),
+        ("scene", scene.name.clone()),
+        ("seed", scene.seed.to_string()),
+        ("rate_hz", rig.rate_hz.to_string()),
+        ("mode", rig.mode.to_string()),
+        ("delay_s", rig.delay_s.to_string()),
+    ];
+    let session = session.into_iter().map(|(key, value)| (key.to_owned(), value)).collect();
+    // As they are in force, with what the command line changed.
+    let texts = [("rig.toml", toml::to_string(rig)), ("scene.toml", toml::to_string(scene))];
+    let file = |(name, text): (&str, Result<String, _>)| {
+        let data = text.ok()?.into_bytes();
+        Some(Attached { name: name.to_owned(), media_type: "application/toml".to_owned(), data })
+    };
+    About {
+        program: PROGRAM.to_owned(),
+        started_ns,
+        metadata: BTreeMap::from([("session".to_owned(), session)]),
+        files: texts.into_iter().filter_map(file).collect(),
+        words: event,
+    }
+}

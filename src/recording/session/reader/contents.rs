@@ -133,9 +133,8 @@ impl Contents {
                 }
                 kind::CHUNK => contents.scan_chunk(source, place)?,
                 kind::SCHEMA | kind::CHANNEL => {
-                    if contents.take_definition(place.kind, walk.content(place, u64::MAX)?).is_none() {
-                        contents.note(|| format!("the definition at byte {at} is damaged"));
-                    }
+                    let taken = contents.take_definition(place.kind, walk.content(place, u64::MAX)?);
+                    taken.unwrap_or_else(|| contents.note(|| format!("the definition at byte {at} is damaged")));
                 }
                 kind::MESSAGE => contents.scan_message(walk.content(place, parse::MESSAGE_HEAD as u64)?, place),
                 kind::ATTACHMENT => {

@@ -74,6 +74,9 @@ impl Contents {
                 return Ok(Err("its summary is damaged"));
             }
         }
+        if contents.has_overlaps() {
+            return Ok(Err("its summary is damaged"));
+        }
         let none = contents.messages.is_empty();
         match told {
             // Messages outside of chunks are in no index.
@@ -100,6 +103,12 @@ impl Contents {
             kind::ATTACHMENT_INDEX => parse::attachment_index(content).map(|index| self.attachments.push(index)),
             _ => parse::metadata_index(content).map(|index| self.metadata.push(index)),
         })
+    }
+
+    /// Chunks are open at once while their times overlap: one that is named a thousand times would take a thousand times its memory.
+    fn has_overlaps(&mut self) -> bool {
+        self.messages.sort_by_key(|one| one.at);
+        self.messages.windows(2).any(|pair| pair[0].at.saturating_add(pair[0].length) > pair[1].at)
     }
 
     fn take_definition(&mut self, kind: u8, content: &[u8]) -> Option<()> {

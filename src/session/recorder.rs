@@ -315,6 +315,10 @@ impl Pages for SessionFile {
         Ok(self.topics.tick(&mut self.writer, time_ns, stepped, events)?)
     }
 
+    fn calibrations(&mut self, number: u64, calibrations: &Calibrations) -> Result<(), RecordError> {
+        Ok(self.writer.metadata(&format!("calibrations {number}"), &described(calibrations))?)
+    }
+
     fn operation(&mut self, operation: &Operation, t_s: f64) -> Result<(), RecordError> {
         let time_ns = self.log_time_ns(t_s);
         Ok(self.topics.operation(&mut self.writer, time_ns, operation)?)

@@ -38,6 +38,14 @@ pub trait Pages {
         Ok(())
     }
 
+    /// Takes calibrations that come into force now, with their number.
+    ///
+    /// # Errors
+    /// Why it does not.
+    fn calibrations(&mut self, _number: u64, _calibrations: &Calibrations) -> Result<(), Self::Error> {
+        Ok(())
+    }
+
     /// Takes what was done to the loop after the tick at `t_s` (s).
     ///
     /// # Errors
@@ -173,6 +181,7 @@ impl Scribe {
         self.filed = self.filed.split_off(&number);
         let Some(calibrations) = self.filed.remove(&number) else { return Ok(()) };
         let bytes = self.encoder.calibrations(number, &calibrations)?;
+        pages.calibrations(number, &calibrations)?;
         pages.write(&Written { t_s: self.t_s, bytes })
     }
 }

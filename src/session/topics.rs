@@ -1,5 +1,7 @@
 //! What is plotted of a session: forces, poses and gates of each arm, and what happened.
 
+mod scene;
+
 use nima_core::safety::{Gate, State};
 use nima_machine::{
     messages::{Event, LoopState, Tick},
@@ -14,6 +16,8 @@ use nima_recording::{
     session::{ChannelId, WriteError, Writer},
 };
 
+use self::scene::Scene;
+
 /// Sentences for events.
 pub type Words = fn(&Event) -> String;
 
@@ -21,6 +25,7 @@ pub type Words = fn(&Event) -> String;
 #[derive(Debug)]
 pub(crate) struct Topics {
     sides: [Option<OfSide>; SIDES],
+    scene: Scene,
     log: ChannelId,
     words: Words,
 }
@@ -41,20 +46,20 @@ struct Plot {
 }
 
 const FORCES: [&str; 12] = [
-    "measured_x_n",
-    "measured_y_n",
-    "measured_z_n",
-    "delayed_x_n",
-    "delayed_y_n",
-    "delayed_z_n",
-    "asked_x_n",
-    "asked_y_n",
-    "asked_z_n",
-    "rendered_x_n",
-    "rendered_y_n",
-    "rendered_z_n",
+    "measured.x_n",
+    "measured.y_n",
+    "measured.z_n",
+    "delayed.x_n",
+    "delayed.y_n",
+    "delayed.z_n",
+    "asked.x_n",
+    "asked.y_n",
+    "asked.z_n",
+    "rendered.x_n",
+    "rendered.y_n",
+    "rendered.z_n",
 ];
-const POSES: [&str; 6] = ["tip_x_m", "tip_y_m", "tip_z_m", "leader_x_m", "leader_y_m", "leader_z_m"];
+const POSES: [&str; 6] = ["tip.x_m", "tip.y_m", "tip.z_m", "leader.x_m", "leader.y_m", "leader.z_m"];
 /// Beside one for each gate: 1 where it acted.
 const OF_GATES: [&str; 5] = ["gain", "stored_j", "withheld_n", "governed", "state"];
 
@@ -71,7 +76,7 @@ impl Topics {
             });
         }
         let log = writer.channel("log", foxglove::encoding::<Log>())?;
-        Ok(Self { sides: of, log, words })
+        Ok(Self { sides: of, scene: Scene::new(writer)?, log, words })
     }
 
     /// Writes a tick and the events in it.
@@ -87,6 +92,8 @@ impl Topics {
                 plots.tick(writer, time_ns, tick)?;
             }
         }
+        let ticks = stepped.ticks.iter().flatten();
+        self.scene.show(writer, time_ns, stepped.timing.now_s, ticks)?;
         for event in events {
             let level = match event {
                 Event::FaultRaised { .. } => Level::Error,
@@ -139,7 +146,7 @@ impl OfSide {
 impl Plot {
     fn new(writer: &mut Writer, side: Side, what: &str, names: &[&str]) -> Result<Self, WriteError> {
         let channel = writer.channel(&format!("{}/{what}", side.word()), JointStateEncoder::encoding())?;
-        let names: Vec<String> = names.iter().map(|name| format!("{}_{name}", side.word())).collect();
+        let names: Vec<String> = names.iter().map(|name| format!("{}.{name}", side.word())).collect();
         let names: Vec<&str> = names.iter().map(String::as_str).collect();
         Ok(Self { channel, encoder: JointStateEncoder::new("world", &names), values: Vec::new() })
     }

@@ -44,14 +44,14 @@ fn about() -> About {
     }
 }
 
-fn recorded(path: &Path, plan: &Plan, seconds: f64, each: impl FnMut(&Tick) -> Option<Command>) -> Progress {
+pub(crate) fn recorded(path: &Path, plan: &Plan, seconds: f64, each: impl FnMut(&Tick) -> Option<Command>) -> Progress {
     let (tap, end) = tap();
     let recorder = Recorder::start(path, about(), plan.origin(), end).unwrap();
     runtime::run_virtual(Assembly { tap: Some(tap), ..plan.simulated().unwrap() }, seconds, each);
     recorder.finish().unwrap()
 }
 
-fn replayed(path: &Path) -> Result<Outcome, ReplayError> {
+pub(crate) fn replayed(path: &Path) -> Result<Outcome, ReplayError> {
     let file = Recorded::open(path)?;
     replay(&mut file.journal()?, |_| {})
 }

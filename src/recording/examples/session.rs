@@ -55,7 +55,7 @@ fn write_and_look() -> Result<(), Box<dyn Error>> {
         for (tick, values) in &ticks {
             session.tick(*tick, values)?;
         }
-        spent += processor_time()? - begin;
+        spent += processor_time()?.saturating_sub(begin);
         for (tick, values) in ticks.iter().filter(|(tick, _)| *tick < IN_TABLES) {
             session.tables.tick(*tick, values)?;
         }

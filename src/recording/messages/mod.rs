@@ -1,6 +1,6 @@
 //! The messages in a session that other programs know: their bytes and their descriptions.
 //!
-//! Foxglove, PlotJuggler and Rerun show them with no set-up. A [`JointState`](JointStateEncoder) is plotted by the names in it,
+//! Foxglove, `PlotJuggler` and Rerun show them with no set-up. A [`JointState`](JointStateEncoder) is plotted by the names in it,
 //! [`foxglove::FrameTransforms`] place what stands where, [`foxglove::Log`] is text with a level, [`foxglove::SceneUpdate`] has
 //! arrows. The time in a message is that of its sample, as the time of the record is.
 

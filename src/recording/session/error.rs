@@ -18,6 +18,8 @@ pub enum WriteError {
     /// Somebody deleted the file, or its folder.
     #[error("session {path} has been deleted while it was written; record to another file")]
     Deleted { path: PathBuf },
+    #[error("session {path} has no channel {number}: it is a channel of another file")]
+    Channel { path: PathBuf, number: u16 },
     /// More than the format can hold.
     #[error("session {path} cannot take this: {what}, at most {most} are possible")]
     TooMuch { path: PathBuf, what: &'static str, most: u64 },
@@ -42,7 +44,7 @@ impl WriteError {
         match self {
             Self::Create { kind, .. } | Self::Write { kind, .. } => Some(*kind),
             Self::Deleted { .. } => Some(io::ErrorKind::NotFound),
-            Self::TooMuch { .. } => None,
+            Self::Channel { .. } | Self::TooMuch { .. } => None,
         }
     }
 }

@@ -153,10 +153,12 @@ impl Writer {
     /// than [`CHUNK_NS`].
     ///
     /// # Errors
-    /// What the system says while a chunk is written. The message is not taken then.
+    /// What the system says while a chunk is written; a channel of another file. The message is not taken then.
     pub fn message(&mut self, channel: ChannelId, log_time_ns: u64, data: &[u8]) -> Result<(), WriteError> {
         self.check("a larger message", data.len() as u64, RECORD_MAX)?;
-        self.check("a channel of another file", u64::from(channel.0) + 1, self.channels.len() as u64)?;
+        if usize::from(channel.0) >= self.channels.len() {
+            return Err(WriteError::Channel { path: self.path.clone(), number: channel.0 });
+        }
         let full = self.chunk.len() + data.len() > CHUNK_BYTES && self.chunk.len() > 0;
         if self.waiting.is_some() || full || self.chunk.span_ns(log_time_ns) >= CHUNK_NS {
             self.flush()?;
@@ -336,6 +338,9 @@ fn create(path: &Path, library: &str, growth: u64, summary: &Summary) -> io::Res
     let new = new.tempfile_in(folder).map_err(|error| io::Error::new(error.kind(), plain(&error)))?;
     let layout = Layout::new(new.as_file().try_clone()?, library, growth, summary)?;
     new.persist_noclobber(path).map_err(|error| error.error)?;
+    // Its name too outlasts a loss of power, where the system can do that.
+    #[cfg(unix)]
+    File::open(folder).and_then(|folder| folder.sync_all()).ok();
     Ok(layout)
 }
 

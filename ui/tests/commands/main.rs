@@ -12,5 +12,6 @@ mod every_command;
 mod hostile_files;
 mod installed;
 mod paper_rig;
+mod replay;
 mod study;
 mod words;

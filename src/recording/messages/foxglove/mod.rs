@@ -46,7 +46,7 @@ impl Timestamp {
     /// ns since the epoch of the session's times.
     pub fn of_ns(ns: u64) -> Self {
         let second = 1_000_000_000;
-        Self { seconds: (ns / second) as i64, nanos: (ns % second) as i32 }
+        Self { seconds: (ns / second).cast_signed(), nanos: (ns % second) as i32 }
     }
 }
 

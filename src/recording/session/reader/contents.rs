@@ -74,6 +74,9 @@ impl Contents {
                 return Ok(Err("its summary is damaged"));
             }
         }
+        if contents.has_overlaps() {
+            return Ok(Err("its summary is damaged"));
+        }
         let none = contents.messages.is_empty();
         match told {
             // Messages outside of chunks are in no index.
@@ -100,6 +103,12 @@ impl Contents {
             kind::ATTACHMENT_INDEX => parse::attachment_index(content).map(|index| self.attachments.push(index)),
             _ => parse::metadata_index(content).map(|index| self.metadata.push(index)),
         })
+    }
+
+    /// Chunks are open at once while their times overlap: one that is named a thousand times would take a thousand times its memory.
+    fn has_overlaps(&mut self) -> bool {
+        self.messages.sort_by_key(|one| one.at);
+        self.messages.windows(2).any(|pair| pair[0].at.saturating_add(pair[0].length) > pair[1].at)
     }
 
     fn take_definition(&mut self, kind: u8, content: &[u8]) -> Option<()> {
@@ -133,9 +142,8 @@ impl Contents {
                 }
                 kind::CHUNK => contents.scan_chunk(source, place)?,
                 kind::SCHEMA | kind::CHANNEL => {
-                    if contents.take_definition(place.kind, walk.content(place, u64::MAX)?).is_none() {
-                        contents.note(|| format!("the definition at byte {at} is damaged"));
-                    }
+                    let taken = contents.take_definition(place.kind, walk.content(place, u64::MAX)?);
+                    taken.unwrap_or_else(|| contents.note(|| format!("the definition at byte {at} is damaged")));
                 }
                 kind::MESSAGE => contents.scan_message(walk.content(place, parse::MESSAGE_HEAD as u64)?, place),
                 kind::ATTACHMENT => {

@@ -56,6 +56,9 @@ pub struct Reader {
     channels: Vec<Channel>,
 }
 
+/// A record of metadata: its name and its values.
+pub type Metadata = (String, BTreeMap<String, String>);
+
 /// A channel of a session that is read.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Channel {
@@ -172,11 +175,11 @@ impl Reader {
         }
     }
 
-    /// All metadata: name and values.
+    /// All metadata.
     ///
     /// # Errors
     /// What the system says; a record that is not one.
-    pub fn metadata(&self) -> Result<Vec<(String, BTreeMap<String, String>)>, ReadError> {
+    pub fn metadata(&self) -> Result<Vec<Metadata>, ReadError> {
         let read = |&(at, length): &(u64, u64)| {
             let damaged = || ReadError::damaged(&self.path, at, "metadata");
             let bytes = self.source.read(at, length).map_err(|_| damaged())?;

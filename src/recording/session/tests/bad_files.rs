@@ -152,6 +152,31 @@ fn what_claims_to_be_huge_takes_no_memory() {
     }
 }
 
+#[test]
+fn a_chunk_that_is_named_twice_is_read_once() {
+    let whole = small();
+    // The index of the first chunk in the place of the second one.
+    let (mut indexes, mut at) = (Vec::new(), 8);
+    while let Some((head, _)) = whole[at..].split_first_chunk::<9>() {
+        let length = 9 + u64::from_le_bytes(head[1..].try_into().unwrap()) as usize;
+        if head[0] == format::kind::CHUNK_INDEX {
+            indexes.push(at..at + length);
+        }
+        if head[0] == format::kind::FOOTER {
+            break;
+        }
+        at += length;
+    }
+    let mut bytes = whole.clone();
+    let first = whole[indexes[1].clone()].to_vec();
+    bytes[indexes[2].clone()].copy_from_slice(&first);
+    let checksum = bytes.len() - 12;
+    bytes[checksum..checksum + 4].fill(0);
+    let reader = Reader::of_bytes("twice", bytes).unwrap();
+    assert!(reader.notes()[0].starts_with("its summary is damaged"), "{:?}", reader.notes());
+    assert_eq!(ours(&reader).len(), 30);
+}
+
 /// Everything that can be asked of a file.
 fn ask(bytes: Vec<u8>) -> usize {
     let size = bytes.len() as u64;

@@ -110,6 +110,8 @@ fn what_cannot_be_created_or_goes_away_is_told_in_one_line() {
     assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1, "nothing else is left behind");
     let channel = writer.channel("a", plain_text()).unwrap();
     writer.message(channel, 0, b"a").unwrap();
+    let foreign = writer.message(ChannelId(1), 0, b"a").unwrap_err().to_string();
+    assert!(foreign.ends_with("session.mcap has no channel 1: it is a channel of another file"), "{foreign}");
     fs::remove_file(&path).unwrap();
     let error = writer.flush().unwrap_err();
     assert!(error.to_string().contains("deleted") && error.kind() == Some(std::io::ErrorKind::NotFound), "{error}");

@@ -1,0 +1,98 @@
+//! The 3-D view of a session: where tip and leader stand, and the forces at the tip as arrows.
+
+use nalgebra::{UnitQuaternion, Vector3};
+use nima_machine::messages::Tick;
+use nima_recording::{
+    messages::foxglove::{
+        self, Arrow, Color, FrameTransform, FrameTransforms, Pose, Quaternion, SceneEntity, SceneUpdate, Timestamp,
+    },
+    session::{ChannelId, WriteError, Writer},
+};
+use prost::Message as _;
+
+/// A picture is written once per this time, s: a screen shows no more.
+const EVERY_S: f64 = 0.02;
+/// Length of an arrow, m/N.
+const LENGTH_M_N: f64 = 0.02;
+const SHAFT_M: f64 = 0.001;
+const HEAD_M: f64 = 0.003;
+const MEASURED: Color = Color { r: 0.1, g: 0.6, b: 0.9, a: 1.0 };
+const RENDERED: Color = Color { r: 0.95, g: 0.5, b: 0.1, a: 1.0 };
+
+/// The channels of the 3-D view.
+#[derive(Debug)]
+pub(super) struct Scene {
+    frames: ChannelId,
+    arrows: ChannelId,
+    due_s: f64,
+}
+
+impl Scene {
+    pub(super) fn new(writer: &mut Writer) -> Result<Self, WriteError> {
+        let frames = writer.channel("frames", foxglove::encoding::<FrameTransforms>())?;
+        let arrows = writer.channel("arrows", foxglove::encoding::<SceneUpdate>())?;
+        Ok(Self { frames, arrows, due_s: f64::NEG_INFINITY })
+    }
+
+    /// Writes a picture of these ticks of one time, if it is due.
+    pub(super) fn show<'a>(
+        &mut self,
+        writer: &mut Writer,
+        time_ns: u64,
+        t_s: f64,
+        ticks: impl Iterator<Item = &'a Tick>,
+    ) -> Result<(), WriteError> {
+        // A clock that went back begins anew.
+        if t_s < self.due_s && t_s > self.due_s - 2.0 * EVERY_S {
+            return Ok(());
+        }
+        self.due_s = t_s + EVERY_S;
+        let timestamp = Some(Timestamp::of_ns(time_ns));
+        let (mut frames, mut scene) = (FrameTransforms::default(), SceneUpdate::default());
+        for tick in ticks {
+            for (name, at_m) in [("tip", tick.tip_m), ("leader", tick.leader_m)] {
+                frames.transforms.push(FrameTransform {
+                    timestamp,
+                    parent_frame_id: "world".to_owned(),
+                    child_frame_id: format!("{}.{name}", tick.side.word()),
+                    translation: Some(vector(&at_m)),
+                    rotation: Some(quaternion(&UnitQuaternion::identity())),
+                });
+            }
+            let arrows = [(tick.measured_n, MEASURED), (tick.rendered_n, RENDERED)];
+            scene.entities.push(SceneEntity {
+                timestamp,
+                frame_id: "world".to_owned(),
+                id: format!("{}.forces", tick.side.word()),
+                arrows: arrows.iter().filter_map(|(force_n, color)| arrow(&tick.tip_m, force_n, *color)).collect(),
+                ..SceneEntity::default()
+            });
+        }
+        writer.message(self.frames, time_ns, &frames.encode_to_vec())?;
+        writer.message(self.arrows, time_ns, &scene.encode_to_vec())
+    }
+}
+
+/// A force (N) at a place (m); none where there is no force.
+fn arrow(at_m: &Vector3<f64>, force_n: &Vector3<f64>, color: Color) -> Option<Arrow> {
+    // An arrow lies along its own x axis; opposite to it every half turn does.
+    let turned = UnitQuaternion::rotation_between(&Vector3::x(), force_n)
+        .unwrap_or_else(|| UnitQuaternion::from_axis_angle(&Vector3::z_axis(), std::f64::consts::PI));
+    let length_m = force_n.norm() * LENGTH_M_N;
+    (length_m > 1e-6).then(|| Arrow {
+        pose: Some(Pose { position: Some(vector(at_m)), orientation: Some(quaternion(&turned)) }),
+        shaft_length: length_m,
+        shaft_diameter: SHAFT_M,
+        head_length: HEAD_M,
+        head_diameter: HEAD_M,
+        color: Some(color),
+    })
+}
+
+fn vector(of: &Vector3<f64>) -> foxglove::Vector3 {
+    foxglove::Vector3 { x: of.x, y: of.y, z: of.z }
+}
+
+fn quaternion(of: &UnitQuaternion<f64>) -> Quaternion {
+    Quaternion { x: of.i, y: of.j, z: of.k, w: of.w }
+}

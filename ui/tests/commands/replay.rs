@@ -1,0 +1,95 @@
+//! `nima run --record` and `nima replay`, as a user would type them.
+use std::{
+    path::Path,
+    process::{Command, Output},
+};
+
+use serde_json::Value;
+
+fn nima(arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_nima"))
+        .args(arguments)
+        // No calibrations of whoever runs the tests.
+        .env("NIMA_DATA_DIR", "no/such/folder")
+        .output()
+        .unwrap()
+}
+
+fn json(arguments: &[&str]) -> Value {
+    let output = nima(arguments);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    serde_json::from_slice(&output.stdout).unwrap()
+}
+
+/// The one line of a command that must fail.
+fn refused(arguments: &[&str]) -> String {
+    let output = nima(arguments);
+    let text = String::from_utf8(output.stderr).unwrap();
+    assert!(!output.status.success() && output.stdout.is_empty(), "{arguments:?} succeeded");
+    assert_eq!(text.lines().count(), 1, "{text}");
+    text
+}
+
+#[test]
+fn a_recorded_run_replays_and_can_be_asked_what_if() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name).display().to_string();
+    let (session, out) = (at("session.mcap"), at("out"));
+    let run = [
+        "run",
+        "--virtual",
+        "--seconds",
+        "8",
+        "--scene",
+        "bimanual",
+        "--delay-ms",
+        "80",
+        "--record",
+        &session,
+        "--json",
+    ];
+    let ran = json(&run);
+    assert_eq!((&ran["recorded"]["ticks"], &ran["recorded"]["lost"]), (&Value::from(8000), &Value::from(0)), "{ran}");
+    let told = json(&["replay", &session, "--json"]);
+    assert_eq!(
+        (&told["ticks"], &told["identical"], &told["closed"]),
+        (&Value::from(8000), &Value::from(true), &Value::from(true))
+    );
+    assert!(told["recorded_by"].as_str().unwrap().starts_with("nima ") && told["differs"].is_null(), "{told}");
+    let words = nima(&["replay", &session]);
+    let words = String::from_utf8(words.stdout).unwrap();
+    assert!(words.contains("8000 ticks") && words.contains("to the last bit"), "{words}");
+    let asked = json(&["replay", &session, "--mode", "dfr", "--delay-ms", "200", "--out", &out, "--json"]);
+    assert_eq!(asked["arms"].as_array().unwrap().len(), 2, "{asked}");
+    assert!(asked["arms"][0]["difference"]["mean_n"].as_f64().unwrap() > 0.01, "{asked}");
+    assert!(asked["limit"].as_str().unwrap().contains("the hand would have moved otherwise"), "{asked}");
+    let forces = std::fs::read_to_string(Path::new(&out).join("forces.csv")).unwrap();
+    assert_eq!(forces.lines().count(), 1 + 2 * 8000);
+    assert!(forces.lines().nth(5000).unwrap().split(',').count() == 13, "{}", forces.lines().nth(5000).unwrap());
+    let again = refused(&run);
+    assert!(again.contains("session.mcap") && again.contains("never overwritten"), "{again}");
+}
+
+#[test]
+fn what_cannot_be_replayed_is_told_in_one_line() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name).display().to_string();
+    std::fs::write(at("empty.mcap"), []).unwrap();
+    std::fs::write(at("foreign.mcap"), "t_s,x_m\n0,1\n").unwrap();
+    for (name, words) in
+        [("empty.mcap", "is empty"), ("foreign.mcap", "is not a session"), ("absent.mcap", "cannot read")]
+    {
+        let line = refused(&["replay", &at(name)]);
+        assert!(line.contains(words) && line.contains(name), "{line}");
+    }
+    for (given, words) in
+        [(["--delay-ms", "-1"], "0 to 1000 ms"), (["--gain", "2"], "0 to 1"), (["--mode", "magic"], "magic")]
+    {
+        let line = refused(&["replay", &at("empty.mcap"), given[0], given[1]]);
+        assert!(line.contains(words), "{line}");
+    }
+    let line = refused(&["replay", &at("empty.mcap"), "--out", &at("out")]);
+    assert!(line.contains("--out needs a change"), "{line}");
+    let line = refused(&["run", "--virtual", "--record", &at("no/such/folder/s.mcap")]);
+    assert!(line.contains("make its folder first"), "{line}");
+}

@@ -12,11 +12,11 @@ use std::{
         Arc, OnceLock,
         atomic::{AtomicBool, AtomicU64, Ordering},
     },
-    thread::{Builder, JoinHandle},
-    time::Duration,
+    thread::{self, Builder, JoinHandle},
+    time::{Duration, Instant},
 };
 
-use crossbeam_channel::{Receiver, RecvTimeoutError, Sender, bounded};
+use crossbeam_channel::{Receiver, RecvTimeoutError, Sender, TryRecvError, bounded};
 use nima_machine::{
     messages::Event,
     rig::{SIDES, Side},
@@ -41,6 +41,8 @@ pub const JOURNAL_ENCODING: &str = "nima-journal";
 const SYNC_EVERY: Duration = Duration::from_secs(1);
 /// How long the thread waits for the loop before it looks whether it is to end.
 const LOOK_EVERY: Duration = Duration::from_millis(100);
+/// How often it asks for what has come meanwhile.
+const POLL_EVERY: Duration = Duration::from_millis(5);
 /// After so many blocks of the journal the chunk is closed: 0.4 s at 1 kHz, which is what a kill can cost.
 const BLOCKS_PER_CHUNK: u32 = 2;
 
@@ -203,10 +205,15 @@ fn next(tap: &TapEnd, shared: &Shared) -> Next {
     if shared.ends.load(Ordering::Acquire) {
         return tap.entries.try_recv().map_or(Next::End, Next::Entry);
     }
-    match tap.entries.recv_timeout(LOOK_EVERY) {
-        Ok(entry) => Next::Entry(entry),
-        Err(RecvTimeoutError::Timeout) => Next::Nothing,
-        Err(RecvTimeoutError::Disconnected) => Next::End,
+    let since = Instant::now();
+    loop {
+        match tap.entries.try_recv() {
+            Ok(entry) => return Next::Entry(entry),
+            Err(TryRecvError::Disconnected) => return Next::End,
+            Err(TryRecvError::Empty) if since.elapsed() >= LOOK_EVERY => return Next::Nothing,
+            // Not a blocking receive: the loop would have to wake this thread, under a lock and with a system call.
+            Err(TryRecvError::Empty) => thread::sleep(POLL_EVERY),
+        }
     }
 }
 

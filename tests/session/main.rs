@@ -1,5 +1,5 @@
 //! Sessions: recorded and replayed, bit for bit.
-#![expect(clippy::unwrap_used, clippy::expect_used, reason = "a test fails by panicking")]
+#![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 mod another_build;
 mod bench;

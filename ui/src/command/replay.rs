@@ -130,9 +130,9 @@ fn once_more(file: &Recorded, session: &Path, json: bool) -> anyhow::Result<()> 
         closed,
     };
     if json {
-        output::json(&told)?
+        output::json(&told)?;
     } else {
-        output::line(&in_words(&told))?
+        output::line(&in_words(&told))?;
     }
     match &told.differs {
         None => Ok(()),

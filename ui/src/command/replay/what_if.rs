@@ -2,7 +2,7 @@
 
 use std::{
     fmt::Write as _,
-    io::{self, Write as _},
+    io,
     path::{Path, PathBuf},
 };
 
@@ -49,6 +49,7 @@ struct Arm {
 }
 
 #[derive(Serialize)]
+#[expect(clippy::struct_field_names, reason = "units")]
 struct Lengths {
     mean_n: f64,
     rms_n: f64,

@@ -161,7 +161,7 @@ mod tests {
     }
 
     #[test]
-    fn every_loop_is_recorded_and_one_that_is_kept_outlives_the_others() {
+    fn every_loop_is_recorded_and_its_session_replays() {
         let folder = tempfile::tempdir().unwrap();
         let mut sessions =
             Sessions { shelf: Some(Shelf::new(folder.path().join("sessions"), 0)), ..Sessions::default() };

@@ -20,7 +20,7 @@ use crossbeam_channel::{Receiver, RecvTimeoutError, Sender, bounded};
 use nima_machine::{
     messages::Event,
     rig::{SIDES, Side},
-    runtime::{Entry, Operation, Passed, Stepped, TapEnd},
+    runtime::{Entry, Next, Operation, Passed, Stepped, TapEnd},
     teleop::{Calibrations, Origin},
 };
 use nima_recording::session::{ChannelId, Encoding, WriteError, Writer};
@@ -191,23 +191,11 @@ fn drain(tap: &TapEnd, shared: &Shared) {
     }
 }
 
-/// What comes out of the tap.
-enum Next {
-    Entry(Entry),
-    /// The loop rests.
-    Nothing,
-    End,
-}
-
 fn next(tap: &TapEnd, shared: &Shared) -> Next {
     if shared.ends.load(Ordering::Acquire) {
         return tap.entries.try_recv().map_or(Next::End, Next::Entry);
     }
-    match tap.entries.recv_timeout(LOOK_EVERY) {
-        Ok(entry) => Next::Entry(entry),
-        Err(RecvTimeoutError::Timeout) => Next::Nothing,
-        Err(RecvTimeoutError::Disconnected) => Next::End,
-    }
+    tap.next(LOOK_EVERY)
 }
 
 /// The file and who writes into it.

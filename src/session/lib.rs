@@ -8,6 +8,7 @@
 //! | `scribe` | what passes the tap of a loop, as these messages |
 //! | `recorder` | the thread that writes them, and what is plotted, into a session file |
 //! | `file` | the journal in a session file |
+//! | `shelf` | the folder of a user's sessions: which are kept, and room for the next |
 //! | `replay` | the same loop, fed from them; and with one thing changed |
 #![warn(missing_docs)]
 
@@ -19,6 +20,7 @@ mod kept;
 pub mod recorder;
 pub mod replay;
 pub mod scribe;
+pub mod shelf;
 mod topics;
 
 pub use topics::Words;

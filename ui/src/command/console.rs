@@ -12,7 +12,10 @@ use nima_world::Plan;
 
 use super::{output, setup::Setup};
 use crate::{
-    console::{self, Begun, Options, in_force::InForce, pictures::Album, roles::Role, wizards::Which},
+    console::{
+        self, Begun, Options, app::start_recorded, in_force::InForce, pictures::Album, roles::Role, sessions::Sessions,
+        wizards::Which,
+    },
     emulators::Emulators,
     telling::tell,
 };
@@ -72,7 +75,10 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     // Nobody can be hurt by a simulated or emulated rig, so the demo starts at once.
     let by_itself = rig.devices.as_ref().is_none_or(|devices| devices.emulated);
     plan.engage = by_itself && !arguments.at_rest && arguments.calibrate.is_none() && plan.may_engage();
-    let handle = nima_world::start(&plan)?;
+    // Pictures are taken of a session that nobody looks for afterwards.
+    let folder = in_force.store().and_then(|store| store.folder().parent()).filter(|_| arguments.pictures.is_none());
+    let mut sessions = Sessions::of_user(folder);
+    let handle = start_recorded(&plan, &mut sessions)?;
     let options = Options {
         exit_after: arguments.exit_after.map(Duration::from_secs_f64),
         screenshot: arguments.screenshot.clone(),
@@ -89,7 +95,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     if let Some(folder) = &arguments.pictures {
         std::fs::create_dir_all(folder).with_context(|| format!("cannot create the folder {}", folder.display()))?;
     }
-    console::run(Begun { choice, emulators, handle, rig, scene }, options)?;
+    console::run(Begun { choice, emulators, handle, rig, scene, sessions }, options)?;
     if leave.is_asked() {
         tell("nima: ended as asked: force and drives are off");
     }

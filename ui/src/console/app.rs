@@ -20,7 +20,7 @@ use nima_machine::{
     config::RigConfig,
     messages::{Command, LoopState, Tick},
     rig::Side,
-    runtime::Handle,
+    runtime::{self, Assembly, Handle, StartError},
 };
 use nima_world::{Plan, emulated::Screen, scene::Scene};
 
@@ -41,6 +41,7 @@ use super::{
     reader::Reader,
     roles::{Panels, Role, Wishes, role_ui},
     scene3d::{SceneView, extras::Extras},
+    sessions::Sessions,
     settings::{Kept, Settings},
     start::{Choice, StartPage},
     theme,
@@ -86,6 +87,7 @@ pub struct ConsoleApp {
     listing: Listing,
     in_force: InForce,
     diary: Diary,
+    sessions: Sessions,
     /// The scene that was shown before a wizard changed it.
     watched: Option<Scene>,
     /// What the technician of an emulated rig has read last.
@@ -104,6 +106,12 @@ pub struct ConsoleApp {
     pictured: bool,
     /// Few frames are drawn, because nothing is engaged.
     calm: bool,
+}
+
+/// Starts the loop of a plan, recorded if sessions are.
+pub(crate) fn start_recorded(plan: &Plan, sessions: &mut Sessions) -> Result<Handle, StartError> {
+    let assembly = plan.assembly()?;
+    runtime::start(Assembly { tap: sessions.begin(plan), ..assembly })
 }
 
 impl ConsoleApp {
@@ -133,6 +141,7 @@ impl ConsoleApp {
             ctx: cc.egui_ctx.clone(),
             in_force,
             diary: Diary::default(),
+            sessions: Sessions::default(),
             wizards: Wizards::default(),
             checking: Checking::default(),
             listing: Listing::default(),
@@ -231,6 +240,7 @@ impl ConsoleApp {
         }
         // End the old loop first: a rig must have one controller only.
         drop(self.door.take());
+        self.sessions.end();
         self.start_loop(rig, scene)
     }
 
@@ -242,7 +252,7 @@ impl ConsoleApp {
         let plan = Plan { rig: rig.clone(), scene: scene.clone(), calibrations, engage: false };
         let started = match self.simulated_speed {
             Some(speed) => nima_world::start_simulated(&plan, speed),
-            None => nima_world::start(&plan),
+            None => start_recorded(&plan, &mut self.sessions),
         };
         let started = started.map_err(|error| text::calibrations::not_started_again(&error));
         let rough_edges = self.live.rough_edges;
@@ -272,6 +282,8 @@ impl ConsoleApp {
             let calibrating = self.wizards.open.is_some() || self.checking.is_open();
             let before = self.role();
             self.top_bar.asked = self.checking.ask();
+            self.sessions.look_after();
+            self.top_bar.recorded = self.sessions.shown();
             let wants_start = top_bar_ui(
                 ui,
                 &self.live,
@@ -281,6 +293,9 @@ impl ConsoleApp {
                 &mut self.help,
                 calibrating,
             );
+            if std::mem::take(&mut self.top_bar.keeps) || keys::keep_pressed(ui.ctx()) {
+                self.sessions.toggle_kept();
+            }
             let pressed = keys::role_pressed(ui.ctx()).filter(|_| !calibrating);
             self.settings.now.role = pressed.unwrap_or(self.role());
             if wants_start && !self.start.is_open {
@@ -289,7 +304,7 @@ impl ConsoleApp {
                 self.start.is_open = false;
             }
         });
-        let signs = self.live.signs(self.outbox.stop_is_stuck());
+        let signs = self.live.signs(self.outbox.stop_is_stuck(), self.sessions.trouble());
         let loop_s = self.live.first_tick().map(|tick| tick.t_s);
         self.top_bar.alarms.strip_ui(ui, &signs, loop_s, self.settings.now.sound);
         let room = ui.available_rect_before_wrap();

@@ -5,6 +5,7 @@
 //! sensor reports its serial number when it is opened; before that nothing is in force, and afterwards
 //! [`InForce::meet`] updates the calibrations whenever a sensor connects or disconnects.
 
+mod in_use;
 mod of_side;
 #[cfg(test)]
 mod tests;

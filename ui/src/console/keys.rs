@@ -33,6 +33,11 @@ pub(super) fn mark_pressed(ctx: &Context) -> bool {
     !ctx.text_edit_focused() && ctx.input(|input| input.key_pressed(Key::E))
 }
 
+/// Whether the key that keeps the session, or no longer keeps it, was pressed.
+pub(super) fn keep_pressed(ctx: &Context) -> bool {
+    !ctx.text_edit_focused() && ctx.input(|input| input.modifiers.is_none() && input.key_pressed(Key::K))
+}
+
 /// Whether the key that acknowledges alarms was pressed.
 pub(super) fn acknowledge_pressed(ctx: &Context) -> bool {
     !ctx.text_edit_focused() && ctx.input(|input| input.modifiers.is_none() && input.key_pressed(Key::A))

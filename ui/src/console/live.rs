@@ -303,7 +303,7 @@ impl Live {
     }
 
     /// The data from which alarms are determined.
-    pub fn signs(&self, stop_is_stuck: bool) -> Signs {
+    pub fn signs(&self, stop_is_stuck: bool, unrecorded: Option<String>) -> Signs {
         Signs {
             missing: self.missing().collect(),
             state: self.first_tick().map(|_| self.state()),
@@ -315,6 +315,7 @@ impl Live {
             stop_is_stuck,
             bias_moved_n: self.bias_moved_n,
             is_unchecked: self.is_unchecked,
+            unrecorded,
         }
     }
 }

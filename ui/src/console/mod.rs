@@ -31,6 +31,7 @@ pub mod roles;
 pub mod rolling;
 pub mod scene3d;
 pub mod screenshot;
+pub(crate) mod sessions;
 pub mod settings;
 pub mod start;
 pub mod stiffness;
@@ -43,6 +44,7 @@ use std::{path::PathBuf, time::Duration};
 
 use nima_machine::{config::RigConfig, runtime::Handle};
 use nima_world::scene::Scene;
+use sessions::Sessions;
 use settings::Kept;
 use start::Choice;
 
@@ -84,6 +86,7 @@ pub(crate) struct Begun {
     pub(crate) handle: Handle,
     pub(crate) rig: RigConfig,
     pub(crate) scene: Scene,
+    pub(crate) sessions: Sessions,
 }
 
 /// Opens the console for a running loop; returns when the window is closed and the loop has ended.
@@ -110,9 +113,9 @@ pub(crate) fn run(begun: Begun, options: Options) -> anyhow::Result<()> {
 
 /// The console with the user's settings; screenshots use the defaults and do not change the settings.
 fn console(cc: &eframe::CreationContext<'_>, begun: Begun, options: Options) -> ConsoleApp {
-    let Begun { choice, emulators, handle, rig, scene } = begun;
+    let Begun { choice, emulators, handle, rig, scene, sessions } = begun;
     let settings = if options.pictures.is_some() { Kept::default() } else { Kept::of_user() };
-    let app = ConsoleApp::new(cc, handle, rig, scene).with_choice(choice, emulators);
+    let app = ConsoleApp::new(cc, handle, rig, scene).with_choice(choice, emulators).with_sessions(sessions);
     app.with_settings(settings).with_options(options)
 }
 

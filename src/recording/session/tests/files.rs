@@ -24,6 +24,7 @@ fn everything_written_is_read_by_us_and_by_others_before_and_after_the_end() {
         }
     }
     writer.flush().unwrap();
+    writer.sync_handle().unwrap().sync_data().unwrap();
     let later = writer.channel("alarms", plain_text()).unwrap();
     writer.message(later, 5_000_000_000, b"late").unwrap();
     expected.push(("alarms".to_owned(), 5_000_000_000, b"late".to_vec()));

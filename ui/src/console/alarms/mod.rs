@@ -81,6 +81,8 @@ pub enum Kind {
     Scheduling,
     /// No ready check of today has passed.
     Unchecked,
+    /// The session is not recorded, or will soon not be.
+    Unrecorded,
 }
 
 /// One alarm.
@@ -134,6 +136,8 @@ pub struct Signs {
     pub bias_moved_n: Option<f64>,
     /// No ready check of today has passed on this rig.
     pub is_unchecked: bool,
+    /// Why the session is not recorded although it should be, or what will soon be in the way.
+    pub unrecorded: Option<String>,
 }
 
 /// Ticks arrive every few milliseconds; half a second without one is an alarm.
@@ -202,6 +206,14 @@ pub fn judge(signs: &Signs) -> Vec<Alarm> {
             priority: Priority::Low,
             cause: text::alarms::UNCHECKED_CAUSE.to_owned(),
             cure: text::alarms::UNCHECKED_CURE.to_owned(),
+        });
+    }
+    if let Some(why) = &signs.unrecorded {
+        alarms.push(Alarm {
+            kind: Kind::Unrecorded,
+            priority: Priority::Low,
+            cause: text::sessions::cause(why),
+            cure: text::sessions::CURE.to_owned(),
         });
     }
     alarms.sort_by_key(|alarm| alarm.priority);

@@ -5,7 +5,8 @@ use std::path::Path;
 use super::{ConsoleApp, WARM_UP};
 use crate::{
     console::{
-        Options, frames::Meter, in_force::InForce, pictures::Photographer, screenshot, settings::Kept, wizards::Wizards,
+        Options, frames::Meter, in_force::InForce, pictures::Photographer, screenshot, sessions::Sessions,
+        settings::Kept, wizards::Wizards,
     },
     telling::tell,
 };
@@ -51,6 +52,13 @@ impl ConsoleApp {
         self.start.set_folder(settings.folder());
         self.settings = settings;
         self.running.remember(&mut self.settings.now.recent);
+        self
+    }
+
+    /// Goes on with the recording of the loop that runs, and records the loops after it.
+    #[must_use]
+    pub(crate) fn with_sessions(mut self, sessions: Sessions) -> Self {
+        self.sessions = sessions;
         self
     }
 

@@ -99,6 +99,7 @@ impl ConsoleApp {
             write_json(path, &meter.figures(&self.renderer));
         }
         let summary = self.door.take().and_then(Door::stop_and_join);
+        self.sessions.end();
         if let (Some(path), Some(summary)) = (&self.options.summary, summary) {
             self.diary.marks = self.live.marks_s.len();
             self.diary.paused = self.panels.forces.is_paused();

@@ -142,6 +142,7 @@ impl ConsoleApp {
         };
         // End the old loop first: a rig must have one controller only, and emulators of the same places cannot run twice.
         drop(self.door.take());
+        self.sessions.end();
         self.serve(None);
         self.start.tell(None);
         let (give, emulators) = channel();

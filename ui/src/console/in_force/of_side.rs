@@ -22,6 +22,7 @@ use nima_recording::{
     tip_force::{keep_model, kept_model},
 };
 
+use super::in_use::InUse;
 use crate::console::{
     overview::{Kept, Line, found_since},
     text,
@@ -59,6 +60,8 @@ pub(super) struct OfSide {
     tip_force: Option<Loaded<Model>>,
     /// Result of the check of the bias since the loop started, and its time.
     drift: Option<(DriftCheck, String)>,
+    /// How the network has done since the loop started.
+    in_use: InUse,
 }
 
 impl OfSide {
@@ -121,8 +124,11 @@ impl OfSide {
                     .map_or_else(String::new, |check| text::overview::newton(check.mae_n.iter().sum::<f64>() / 3.0)),
             }
         });
-        let not_watched = |kept: &Option<Kept>| kept.as_ref().map(|_| text::overview::NOT_WATCHED.to_owned());
-        let (of_correspondence, of_tip_force) = (not_watched(&correspondence), not_watched(&tip_force));
+        let of_correspondence = correspondence.as_ref().map(|_| text::overview::FOR_TRAINING_ONLY.to_owned());
+        let of_tip_force = tip_force.as_ref().map(|_| match self.in_use.shares() {
+            Some(shares) => text::overview::in_use(shares.outside, shares.without),
+            None => text::overview::NOT_USED.to_owned(),
+        });
         [
             (Which::Gravity, gravity, bias),
             (Which::Correspondence, correspondence, of_correspondence),
@@ -179,8 +185,10 @@ impl OfSide {
         })
     }
 
-    /// Adds one tick of this side: in the first seconds, idle and still, it shows whether the bias has changed.
+    /// Adds one tick of this side: in the first seconds, idle and still, it shows whether the bias has changed; engaged, whether the
+    /// network fits the work.
     pub(super) fn watch(&mut self, tick: &Tick) {
+        self.in_use.watch(tick);
         let Some((check, found_at)) = &mut self.drift else { return };
         let idle = match tick.state {
             LoopState::Idle if tick.prompt == Prompt::Rest => true,

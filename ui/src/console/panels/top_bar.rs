@@ -16,6 +16,7 @@ use crate::{
         outbox::Outbox,
         roles::switch_ui,
         scene3d::side_name,
+        sessions::Shown,
         settings::Settings,
         text, theme,
         widgets::{Sign, next_button, sign, small, weak},
@@ -39,6 +40,10 @@ pub struct TopBarState {
     pub alarms: Alarms,
     /// What the ready check asks for: one of the bar's buttons stands out then.
     pub(in crate::console) asked: Option<Ask>,
+    /// The session that is being recorded.
+    pub(in crate::console) recorded: Option<Shown>,
+    /// The button that keeps it was pressed.
+    pub(in crate::console) keeps: bool,
 }
 
 /// The bar, with role switch and menu. While a person guides the arm (`calibrating`), it cannot be engaged. Returns true when the start
@@ -67,7 +72,7 @@ pub fn top_bar_ui(
         }
     };
     ui.horizontal_centered(|ui| {
-        wants_start = identity_ui(ui, live, settings, help, &mut state.alarms, calibrating);
+        wants_start = identity_ui(ui, live, settings, help, state, calibrating);
         ui.add_space(10.0);
         state_ui(ui, live, now);
         ui.add_space(10.0);
@@ -89,7 +94,7 @@ fn identity_ui(
     live: &Live,
     settings: &mut Settings,
     help: &mut Help,
-    alarms: &mut Alarms,
+    state: &mut TopBarState,
     calibrating: bool,
 ) -> bool {
     let mut wants_start = false;
@@ -105,7 +110,8 @@ fn identity_ui(
             let start = Button::new(text::start::OPEN).min_size(vec2(44.0, 30.0));
             let start = ui.add_enabled(!calibrating, start).on_hover_text(text::start::OPEN_HOVER);
             wants_start = start.on_disabled_hover_text(text::start::OPEN_DISABLED_HOVER).clicked();
-            menu_ui(ui, settings, help, alarms);
+            menu_ui(ui, settings, help, &mut state.alarms);
+            recorded_ui(ui, state);
             if ui.ctx().content_rect().width() >= SCENE_FROM {
                 ui.add_space(4.0);
                 ui.label(weak(&live.scene.name))
@@ -114,6 +120,18 @@ fn identity_ui(
         });
     });
     wants_start
+}
+
+/// How long the session has been recorded, on a button that keeps it.
+fn recorded_ui(ui: &mut Ui, state: &mut TopBarState) {
+    let Some(shown) = &state.recorded else { return };
+    let words = text::sessions::recorded_for(shown.seconds);
+    let button =
+        Button::selectable(shown.kept, if shown.kept { format!("{words}, {}", text::sessions::KEPT) } else { words });
+    let response = ui.add(button.frame_when_inactive(true).min_size(vec2(84.0, 30.0)));
+    let name = if shown.kept { text::sessions::NAME_KEPT } else { text::sessions::NAME_KEEP };
+    response.widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, true, shown.kept, name));
+    state.keeps |= response.on_hover_text(text::sessions::hover(shown)).clicked();
 }
 
 /// The state of the arm that needs more attention; where the other arm is in another state, both, one below the other: an idle

@@ -31,6 +31,7 @@ pub(super) mod overview;
 pub(super) mod ready;
 pub(super) mod roles;
 pub(super) mod safety;
+pub(super) mod sessions;
 pub(super) mod settings;
 pub(super) mod start;
 pub(super) mod timing;

@@ -12,6 +12,8 @@ pub(in crate::console) const MAKE: &str = "Calibrate";
 pub(in crate::console) const REDO: &str = "Redo";
 pub(in crate::console) const NEVER: &str = "not calibrated";
 pub(in crate::console) const NOT_WATCHED: &str = "not watched";
+pub(in crate::console) const FOR_TRAINING_ONLY: &str = "used for training only";
+pub(in crate::console) const NOT_USED: &str = "used for less than 10 s since the start";
 pub(in crate::console) const IN_FILE: &str = "in the rig file";
 pub(in crate::console) const OTHER_IN_FILE: &str = "the rig file has other values now";
 pub(in crate::console) const UNCHECKED: &str = "trained but not checked";
@@ -60,6 +62,14 @@ pub(in crate::console) fn overridden(verdict: &str, name: &str) -> String {
 /// What the last ready check has found.
 pub(in crate::console) fn checked(day: &str, found: &str) -> String {
     format!("ready check of {day}: {found}")
+}
+
+/// How much of the time with force a network was outside its training data, as shares; what to do if that is much.
+pub(in crate::console) fn in_use(outside: f64, without: f64) -> String {
+    let shares =
+        format!("outside its training {:.0} % of the time, not used {:.0} %", 100.0 * outside, 100.0 * without);
+    let much = without >= 0.02 || outside >= 0.3;
+    if much { format!("{shares}: record more where you work") } else { shares }
 }
 
 /// A force.

@@ -1,0 +1,207 @@
+//! The folder of a user's sessions: a name for a new one, which of them are kept, and room for the next.
+//!
+//! Every session is recorded without being asked. Those that nobody keeps make room for new ones, the oldest first; one that is kept is
+//! never deleted. It is kept by an empty file beside it (`NAME.mcap.kept`), so that it can be while it is being written.
+
+use std::{
+    fs, io,
+    path::{Path, PathBuf},
+    time::{Duration, SystemTime},
+};
+
+/// Bytes that the sessions which nobody keeps may take: ten hours of two arms.
+pub const MOST_BYTES: u64 = 20_000_000_000;
+/// A file that was written to so lately may be the session of another program that runs now.
+const IN_USE: Duration = Duration::from_mins(1);
+const EXTENSION: &str = "mcap";
+const MARK: &str = "mcap.kept";
+/// Longest part of a rig's name in a file's name, bytes.
+const NAME_MAX: usize = 40;
+
+/// The folder.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Shelf {
+    folder: PathBuf,
+    most_bytes: u64,
+}
+
+/// A session in it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Shelved {
+    /// Its file.
+    pub path: PathBuf,
+    /// Bytes that it takes on the disk.
+    pub bytes: u64,
+    /// When it was written to last.
+    pub written: SystemTime,
+    /// Whether it is never deleted.
+    pub kept: bool,
+}
+
+impl Shelf {
+    /// The sessions in this folder, which is created with the first one; those that nobody keeps take `most_bytes` at most.
+    pub fn new(folder: impl Into<PathBuf>, most_bytes: u64) -> Self {
+        Self { folder: folder.into(), most_bytes }
+    }
+
+    /// Its folder.
+    pub fn folder(&self) -> &Path {
+        &self.folder
+    }
+
+    /// Makes the folder and room in it, and gives the path of a new session: `started` (UTC, ISO 8601) and the rig's name.
+    ///
+    /// # Errors
+    /// I/O errors of the folder.
+    pub fn place(&self, started: &str, rig: &str) -> io::Result<PathBuf> {
+        fs::create_dir_all(&self.folder)?;
+        self.make_room(None)?;
+        let plain = |c: char| if c.is_ascii_alphanumeric() { c } else { '-' };
+        let rig: String = rig.chars().map(plain).take(NAME_MAX).collect();
+        let stem: String = started.chars().filter(char::is_ascii_alphanumeric).collect();
+        let name = |number: u32| match number {
+            0 => format!("{stem}-{rig}.{EXTENSION}"),
+            _ => format!("{stem}-{rig}-{number}.{EXTENSION}"),
+        };
+        let mut free = (0..1000).map(|number| self.folder.join(name(number))).filter(|path| !path.exists());
+        free.next().ok_or_else(|| io::Error::other("a thousand sessions began in this second"))
+    }
+
+    /// The sessions, oldest first.
+    ///
+    /// # Errors
+    /// I/O errors of the folder; one that is not there has no sessions.
+    pub fn sessions(&self) -> io::Result<Vec<Shelved>> {
+        let entries = match fs::read_dir(&self.folder) {
+            Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(Vec::new()),
+            entries => entries?,
+        };
+        let mut all = Vec::new();
+        for entry in entries {
+            let path = entry?.path();
+            if path.extension().is_some_and(|extension| extension == EXTENSION) {
+                // What is deleted meanwhile is none.
+                let Ok(about) = fs::symlink_metadata(&path) else { continue };
+                if about.is_file() {
+                    let kept = mark_of(&path).exists();
+                    all.push(Shelved { bytes: taken(&about), written: about.modified()?, kept, path });
+                }
+            }
+        }
+        all.sort_by(|a, b| a.path.cmp(&b.path));
+        Ok(all)
+    }
+
+    /// Deletes what nobody keeps, the oldest first, until the rest takes no more than it may; never `running`, the session that is
+    /// being recorded, and none that another program may be recording. Returns the bytes that all sessions take.
+    ///
+    /// # Errors
+    /// I/O errors of the folder or of a deletion.
+    pub fn make_room(&self, running: Option<&Path>) -> io::Result<u64> {
+        let sessions = self.sessions()?;
+        let mut all: u64 = sessions.iter().map(|session| session.bytes).sum();
+        let mut loose: u64 = sessions.iter().filter(|session| !session.kept).map(|session| session.bytes).sum();
+        let in_use = |session: &Shelved| session.written.elapsed().is_ok_and(|since| since < IN_USE);
+        for session in sessions.iter().filter(|session| !session.kept && !in_use(session)) {
+            if loose <= self.most_bytes {
+                break;
+            }
+            if Some(session.path.as_path()) == running {
+                continue;
+            }
+            fs::remove_file(&session.path)?;
+            loose -= session.bytes;
+            all -= session.bytes;
+        }
+        Ok(all)
+    }
+}
+
+/// Keeps a session from now on, or leaves it to be deleted.
+///
+/// # Errors
+/// I/O errors.
+pub fn keep(session: &Path, kept: bool) -> io::Result<()> {
+    let mark = mark_of(session);
+    if kept {
+        return fs::write(mark, []);
+    }
+    match fs::remove_file(mark) {
+        Err(error) if error.kind() != io::ErrorKind::NotFound => Err(error),
+        _ => Ok(()),
+    }
+}
+
+fn mark_of(session: &Path) -> PathBuf {
+    session.with_extension(MARK)
+}
+
+/// Bytes on the disk: a session that is being written has free room that takes none.
+#[cfg(unix)]
+fn taken(about: &fs::Metadata) -> u64 {
+    std::os::unix::fs::MetadataExt::blocks(about) * 512
+}
+
+#[cfg(not(unix))]
+fn taken(about: &fs::Metadata) -> u64 {
+    about.len()
+}
+
+/// Bytes that an ordinary user may still write to the disk of this folder; `None` where the system does not say.
+#[cfg(unix)]
+pub fn free_bytes(folder: &Path) -> Option<u64> {
+    let disk = rustix::fs::statvfs(folder).ok()?;
+    Some(disk.f_bavail.saturating_mul(disk.f_frsize))
+}
+
+/// As on Unix; not known here.
+#[cfg(not(unix))]
+pub const fn free_bytes(_: &Path) -> Option<u64> {
+    None
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn session(shelf: &Shelf, name: &str, age: Duration) -> PathBuf {
+        let path = shelf.folder().join(name);
+        fs::write(&path, vec![1; 1 << 20]).unwrap();
+        fs::File::options().write(true).open(&path).unwrap().set_modified(SystemTime::now() - age).unwrap();
+        path
+    }
+
+    #[test]
+    fn the_oldest_that_nobody_keeps_makes_room_and_the_running_one_never() {
+        let folder = tempfile::tempdir().unwrap();
+        let shelf = Shelf::new(folder.path(), 2 << 20);
+        let old = Duration::from_hours(1);
+        let [first, kept, running, other, last] =
+            [("1.mcap", old), ("2.mcap", old), ("3.mcap", old), ("4.mcap", IN_USE / 2), ("5.mcap", old)]
+                .map(|(name, age)| session(&shelf, name, age));
+        fs::write(folder.path().join("notes.txt"), "mine").unwrap();
+        keep(&kept, true).unwrap();
+        assert_eq!(shelf.make_room(Some(&running)).unwrap(), 3 << 20);
+        let there = |path: &Path| path.exists();
+        assert_eq!([&first, &kept, &running, &other, &last].map(|path| there(path)), [false, true, true, true, false]);
+        assert!(there(&folder.path().join("notes.txt")));
+        let kept_ones: Vec<_> = shelf.sessions().unwrap().into_iter().filter(|session| session.kept).collect();
+        assert!(kept_ones.len() == 1 && kept_ones[0].path == kept);
+        keep(&kept, false).unwrap();
+        keep(&kept, false).unwrap();
+        assert!(shelf.sessions().unwrap().iter().all(|session| !session.kept));
+    }
+
+    #[test]
+    fn a_new_session_has_a_name_of_its_own_in_a_folder_that_is_made_for_it() {
+        let folder = tempfile::tempdir().unwrap();
+        let shelf = Shelf::new(folder.path().join("sessions"), MOST_BYTES);
+        assert_eq!(shelf.sessions().unwrap(), []);
+        let place = || shelf.place("2026-11-23T07:29:15Z", "My rig / 2").unwrap();
+        let first = place();
+        assert_eq!(first.file_name().unwrap(), "20261123T072915Z-My-rig---2.mcap");
+        fs::write(&first, []).unwrap();
+        assert_eq!(place().file_name().unwrap(), "20261123T072915Z-My-rig---2-1.mcap");
+        assert_eq!(shelf.sessions().unwrap().len(), 1);
+    }
+}

@@ -1,0 +1,48 @@
+//! Sessions that are recorded.
+
+use std::{io, path::Path, time::Duration};
+
+use crate::console::sessions::Shown;
+
+pub(in crate::console) const KEPT: &str = "Kept";
+pub(in crate::console) const NAME_KEEP: &str = "Keep this session";
+pub(in crate::console) const NAME_KEPT: &str = "This session is kept";
+pub(in crate::console) const CURE: &str = "Free space or change the folder, then start the rig again";
+
+/// On the button that keeps a session: how long it has been recorded.
+pub(in crate::console) fn recorded_for(seconds: u64) -> String {
+    let (hours, minutes, seconds) = (seconds / 3600, seconds / 60 % 60, seconds % 60);
+    if hours > 0 { format!("Rec {hours}:{minutes:02}:{seconds:02}") } else { format!("Rec {minutes}:{seconds:02}") }
+}
+
+/// Below the pointer.
+pub(in crate::console) fn hover(shown: &Shown) -> String {
+    let what = if shown.kept {
+        "This session is kept. Press to let it be deleted when room is needed (key K)"
+    } else {
+        "Every session is recorded; the oldest make room for new ones. Press to keep this one (key K)"
+    };
+    let lost =
+        if shown.lost > 0 { format!("\n{} entries lost: the disk is too slow", shown.lost) } else { String::new() };
+    format!("{what}\n{}\n{:.1} MB{lost}", shown.path.display(), shown.bytes as f64 * 1e-6)
+}
+
+/// The folder cannot be used.
+pub(in crate::console) fn no_folder(folder: &Path, error: &io::Error) -> String {
+    format!("the folder {} cannot be used: {error}", folder.display())
+}
+
+/// The mark cannot be written or removed.
+pub(in crate::console) fn not_kept(path: &Path, error: &io::Error) -> String {
+    format!("whether {} is kept cannot be changed: {error}", path.display())
+}
+
+/// The disk will be full.
+pub(in crate::console) fn full_in(time: Duration) -> String {
+    format!("the disk will be full in {:.0} h at this rate", time.as_secs_f64() / 3600.0)
+}
+
+/// Cause of an alarm.
+pub(in crate::console) fn cause(why: &str) -> String {
+    format!("Recording: {why}")
+}

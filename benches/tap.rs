@@ -16,7 +16,7 @@ use nima_machine::{
     config::RigConfig,
     messages::Command,
     rig::Rig as _,
-    runtime::{TapEnd, tap},
+    runtime::{Next, TapEnd, tap},
     teleop::{Calibrations, Loop, Origin, Timing},
 };
 use nima_session::{journal::Start, scribe::Scribe};
@@ -26,8 +26,12 @@ use nima_world::{Worlds, scene::Scene};
 fn read(start: &Start, end: &TapEnd) -> (usize, u64, u64) {
     let (mut scribe, _) = Scribe::new(start).unwrap();
     let mut kept = Vec::new();
-    while let Ok(entry) = end.entries.recv() {
-        scribe.take(entry, end, &mut kept).unwrap();
+    loop {
+        match end.next(Duration::from_millis(100)) {
+            Next::Entry(entry) => scribe.take(entry, end, &mut kept).unwrap(),
+            Next::Nothing => {}
+            Next::End => break,
+        }
     }
     let end = scribe.end(end, &mut kept).unwrap();
     (kept.iter().map(Vec::len).sum(), end.ticks, end.lost)

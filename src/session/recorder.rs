@@ -12,15 +12,15 @@ use std::{
         Arc, OnceLock,
         atomic::{AtomicBool, AtomicU64, Ordering},
     },
-    thread::{self, Builder, JoinHandle},
-    time::{Duration, Instant},
+    thread::{Builder, JoinHandle},
+    time::Duration,
 };
 
-use crossbeam_channel::{Receiver, RecvTimeoutError, Sender, TryRecvError, bounded};
+use crossbeam_channel::{Receiver, RecvTimeoutError, Sender, bounded};
 use nima_machine::{
     messages::Event,
     rig::{SIDES, Side},
-    runtime::{Entry, Operation, Passed, Stepped, TapEnd},
+    runtime::{Entry, Next, Operation, Passed, Stepped, TapEnd},
     teleop::{Calibrations, Origin},
 };
 use nima_recording::session::{ChannelId, Encoding, WriteError, Writer};
@@ -41,8 +41,6 @@ pub const JOURNAL_ENCODING: &str = "nima-journal";
 const SYNC_EVERY: Duration = Duration::from_secs(1);
 /// How long the thread waits for the loop before it looks whether it is to end.
 const LOOK_EVERY: Duration = Duration::from_millis(100);
-/// How often it asks for what has come meanwhile.
-const POLL_EVERY: Duration = Duration::from_millis(5);
 /// After so many blocks of the journal the chunk is closed: 0.4 s at 1 kHz, which is what a kill can cost.
 const BLOCKS_PER_CHUNK: u32 = 2;
 
@@ -193,28 +191,11 @@ fn drain(tap: &TapEnd, shared: &Shared) {
     }
 }
 
-/// What comes out of the tap.
-enum Next {
-    Entry(Entry),
-    /// The loop rests.
-    Nothing,
-    End,
-}
-
 fn next(tap: &TapEnd, shared: &Shared) -> Next {
     if shared.ends.load(Ordering::Acquire) {
         return tap.entries.try_recv().map_or(Next::End, Next::Entry);
     }
-    let since = Instant::now();
-    loop {
-        match tap.entries.try_recv() {
-            Ok(entry) => return Next::Entry(entry),
-            Err(TryRecvError::Disconnected) => return Next::End,
-            Err(TryRecvError::Empty) if since.elapsed() >= LOOK_EVERY => return Next::Nothing,
-            // Not a blocking receive: the loop would have to wake this thread, under a lock and with a system call.
-            Err(TryRecvError::Empty) => thread::sleep(POLL_EVERY),
-        }
-    }
+    tap.next(LOOK_EVERY)
 }
 
 /// The file and who writes into it.

@@ -1,10 +1,10 @@
 //! A loop whose tap is read into the memory.
 
-use std::thread;
+use std::{thread, time::Duration};
 
 use nima_machine::{
     messages::{Command, Tick},
-    runtime::{self, Assembly, TapEnd, tap},
+    runtime::{self, Assembly, Next, TapEnd, tap},
 };
 use nima_session::{
     journal::Start,
@@ -22,8 +22,12 @@ impl Kept {
     pub(crate) fn of(start: &Start, end: &TapEnd) -> Self {
         let (mut scribe, Written { bytes, .. }) = Scribe::new(start).unwrap();
         let mut kept = vec![bytes];
-        while let Ok(entry) = end.entries.recv() {
-            scribe.take(entry, end, &mut kept).unwrap();
+        loop {
+            match end.next(Duration::from_millis(100)) {
+                Next::Entry(entry) => scribe.take(entry, end, &mut kept).unwrap(),
+                Next::Nothing => {}
+                Next::End => break,
+            }
         }
         scribe.end(end, &mut kept).unwrap();
         Self(kept)

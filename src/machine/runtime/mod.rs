@@ -16,7 +16,7 @@ mod wrists;
 
 pub use summary::{ArmEnd, CauseAndCure, CpuShare, DeviceFigures, Histograms, ModeError, Summary};
 pub use supervisor::STALL_MAX_S;
-pub use tap::{Entry, Operation, Passed, Stepped, TICKS_TAPPED_MAX, Tap, TapEnd, tap};
+pub use tap::{Entry, Next, Operation, Passed, Stepped, TICKS_TAPPED_MAX, Tap, TapEnd, tap};
 pub use thread::{Ender, Handle, StartError, TICKS_WAITING_MAX, start};
 pub use virtual_clock::run_virtual;
 pub use wrists::WristChange;

@@ -4,12 +4,16 @@
 //! can be replayed to the bit. The loop's end of the tap neither waits nor allocates: ticks are copied into boxes that go
 //! round between both ends. What finds no room is dropped; entries are numbered, so that the other end sees the hole.
 
-use std::sync::{
-    Arc,
-    atomic::{AtomicU64, Ordering},
+use std::{
+    sync::{
+        Arc,
+        atomic::{AtomicU64, Ordering},
+    },
+    thread,
+    time::{Duration, Instant},
 };
 
-use crossbeam_channel::{Receiver, Sender, bounded, unbounded};
+use crossbeam_channel::{Receiver, Sender, TryRecvError, bounded, unbounded};
 
 use crate::{
     messages::{Command, Event, Tick},
@@ -21,6 +25,8 @@ use crate::{
 pub const TICKS_TAPPED_MAX: usize = 2048;
 /// Room for operations and events beside the ticks.
 const OTHERS_MAX: usize = 512;
+/// How often the other end looks for entries.
+const LOOK_EVERY: Duration = Duration::from_millis(5);
 
 /// What is done to the loop between two ticks.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -100,6 +106,8 @@ pub struct Entry {
 pub struct Tap {
     entries: Sender<Entry>,
     spare: Receiver<Box<Stepped>>,
+    /// Boxes that have not been needed yet. Those that go round are taken first: they are still in the processor's caches.
+    reserve: Vec<Box<Stepped>>,
     /// A box whose entry found no room: it is kept, because freeing it here would be a call of the allocator.
     kept: Option<Box<Stepped>>,
     offered: Arc<AtomicU64>,
@@ -129,13 +137,12 @@ pub fn tap() -> (Tap, TapEnd) {
     let (entries, entries_out) = bounded(TICKS_TAPPED_MAX + OTHERS_MAX);
     // The loop may hold one more box.
     let (spare, spare_out) = bounded(TICKS_TAPPED_MAX + 1);
-    for _ in 0..TICKS_TAPPED_MAX {
-        spare.try_send(Box::new(Stepped::NOTHING)).ok();
-    }
+    let reserve = (0..TICKS_TAPPED_MAX).map(|_| Box::new(Stepped::NOTHING)).collect();
     touch(&entries, &entries_out);
     let (offered, (file, filed)) = (Arc::<AtomicU64>::default(), unbounded());
     let filing = Filing { next: Arc::default(), calibrations: file };
-    let tap = Tap { entries, spare: spare_out, kept: None, offered: Arc::clone(&offered), waits: false, filing };
+    let tap =
+        Tap { entries, spare: spare_out, reserve, kept: None, offered: Arc::clone(&offered), waits: false, filing };
     (tap, TapEnd { entries: entries_out, calibrations: filed, spare, offered })
 }
 
@@ -174,15 +181,18 @@ impl Tap {
         for event in events {
             self.offer(Passed::Event(*event));
         }
-        let spare =
-            self.kept.take().or_else(|| if self.waits { self.spare.recv().ok() } else { self.spare.try_recv().ok() });
-        let Some(mut stepped) = spare else {
+        let Some(mut stepped) = self.spare() else {
             // Dropped: the number is used up.
             self.number();
             return;
         };
         (stepped.timing, stepped.inputs, stepped.outputs, stepped.ticks) = (*timing, *inputs, *outputs, *ticks);
         self.offer(Passed::Stepped(stepped));
+    }
+
+    fn spare(&mut self) -> Option<Box<Stepped>> {
+        let spare = self.kept.take().or_else(|| self.spare.try_recv().ok()).or_else(|| self.reserve.pop());
+        spare.or_else(|| if self.waits { self.spare.recv().ok() } else { None })
     }
 
     fn number(&self) -> u64 {
@@ -213,7 +223,34 @@ impl Filing {
     }
 }
 
+/// What comes out of a tap.
+#[derive(Debug)]
+pub enum Next {
+    /// An entry.
+    Entry(Entry),
+    /// The loop rests.
+    Nothing,
+    /// The loop has ended.
+    End,
+}
+
 impl TapEnd {
+    /// The next entry; nothing if none comes for this time.
+    ///
+    /// Looks for it now and then. A thread that slept until one comes would have to be woken by the loop, which costs a tick more
+    /// than all the rest of the tap.
+    pub fn next(&self, patience: Duration) -> Next {
+        let begin = Instant::now();
+        loop {
+            match self.entries.try_recv() {
+                Ok(entry) => return Next::Entry(entry),
+                Err(TryRecvError::Disconnected) => return Next::End,
+                Err(TryRecvError::Empty) if begin.elapsed() >= patience => return Next::Nothing,
+                Err(TryRecvError::Empty) => thread::sleep(LOOK_EVERY),
+            }
+        }
+    }
+
     /// Gives a tick's box back to the loop.
     pub fn give_back(&self, stepped: Box<Stepped>) {
         self.spare.try_send(stepped).ok();

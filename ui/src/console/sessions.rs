@@ -19,6 +19,8 @@ use nima_world::Plan;
 use super::{chain, text};
 use crate::recording;
 
+/// A loop that ran for fewer ticks than this was no session: a window that could not be opened, a rig that was changed at once.
+const LEAST_TICKS: u64 = 1000;
 /// How often room is made while a session grows.
 const ROOM_EVERY: Duration = Duration::from_secs(30);
 /// A disk that is full sooner than this is told.
@@ -64,7 +66,7 @@ impl Sessions {
     /// Records into the folder `sessions` of the user's data folder.
     pub(crate) fn of_user(data_folder: Option<&Path>) -> Self {
         let shelf = data_folder.map(|folder| Shelf::new(folder.join("sessions"), MOST_BYTES));
-        Self { shelf, ..Self::default() }
+        Self { shelf, now: None, trouble: None, looked: None, full_in: None }
     }
 
     /// Begins to record a loop of this plan; the tap is for it. `None` if nothing is recorded.
@@ -92,9 +94,12 @@ impl Sessions {
 
     /// Ends the recording; the loop must have ended.
     pub(crate) fn end(&mut self) {
-        let Some(Now { recorder, .. }) = self.now.take() else { return };
-        if let Err(error) = recorder.finish() {
-            self.trouble = Some(chain(&error));
+        let Some(Now { recorder, path, kept, .. }) = self.now.take() else { return };
+        match recorder.finish() {
+            // Whether it can be deleted matters to nobody.
+            Ok(progress) if progress.ticks < LEAST_TICKS && !kept => drop(std::fs::remove_file(path)),
+            Ok(_) => {}
+            Err(error) => self.trouble = Some(chain(&error)),
         }
     }
 
@@ -144,6 +149,12 @@ impl Sessions {
     }
 }
 
+impl Drop for Sessions {
+    fn drop(&mut self) {
+        self.end();
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use nima_machine::{
@@ -163,8 +174,7 @@ mod tests {
     #[test]
     fn every_loop_is_recorded_and_its_session_replays() {
         let folder = tempfile::tempdir().unwrap();
-        let mut sessions =
-            Sessions { shelf: Some(Shelf::new(folder.path().join("sessions"), 0)), ..Sessions::default() };
+        let mut sessions = Sessions::of_user(Some(folder.path()));
         let mut paths = Vec::new();
         for kept in [true, false] {
             let plan = plan();
@@ -172,7 +182,7 @@ mod tests {
             assert!(tap.is_some(), "{:?}", sessions.trouble());
             let handle = start(Assembly { tap, ..plan.assembly().unwrap() }).unwrap();
             let began = Instant::now();
-            while sessions.shown().unwrap().bytes < 100_000 && began.elapsed() < Duration::from_secs(20) {
+            while sessions.shown().unwrap().seconds < 2 && began.elapsed() < Duration::from_secs(20) {
                 std::thread::sleep(Duration::from_millis(20));
             }
             if kept {
@@ -189,6 +199,18 @@ mod tests {
             let outcome = replay(&mut file.journal().unwrap(), |_| ()).unwrap();
             assert!(outcome.differs.is_none() && outcome.closed && outcome.ticks > 0, "{outcome:?}");
         }
+    }
+
+    #[test]
+    fn a_loop_that_ends_at_once_leaves_no_session() {
+        let folder = tempfile::tempdir().unwrap();
+        let mut sessions = Sessions::of_user(Some(folder.path()));
+        let plan = plan();
+        let tap = sessions.begin(&plan);
+        drop(start(Assembly { tap, ..plan.assembly().unwrap() }).unwrap());
+        let path = sessions.shown().unwrap().path;
+        drop(sessions);
+        assert!(!path.exists());
     }
 
     #[test]

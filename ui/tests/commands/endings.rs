@@ -34,7 +34,7 @@ fn nima(arguments: &[&str]) -> Command {
         .env_remove("DISPLAY")
         .env_remove("WAYLAND_DISPLAY")
         // No calibrations of whoever runs the tests.
-        .env("NIMA_DATA_DIR", "no/such/folder")
+        .env("NIMA_DATA_DIR", "/dev/null/no/such/folder")
         .stdin(Stdio::null())
         .stdout(Stdio::piped())
         .stderr(Stdio::piped());

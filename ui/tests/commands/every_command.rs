@@ -13,7 +13,7 @@ fn nima(arguments: &[&str]) -> Output {
         .env_remove("DISPLAY")
         .env_remove("WAYLAND_DISPLAY")
         // No calibrations of whoever runs the tests.
-        .env("NIMA_DATA_DIR", "no/such/folder")
+        .env("NIMA_DATA_DIR", "/dev/null/no/such/folder")
         .output()
         .unwrap()
 }

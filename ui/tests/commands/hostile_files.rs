@@ -18,7 +18,11 @@ const LINE_MAX: usize = 2500;
 
 fn command(arguments: &[&str]) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_nima"));
-    command.args(arguments).env("NIMA_DATA_DIR", "no/such/folder").env_remove("DISPLAY").env_remove("WAYLAND_DISPLAY");
+    command
+        .args(arguments)
+        .env("NIMA_DATA_DIR", "/dev/null/no/such/folder")
+        .env_remove("DISPLAY")
+        .env_remove("WAYLAND_DISPLAY");
     command
 }
 

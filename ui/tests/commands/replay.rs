@@ -10,7 +10,7 @@ fn nima(arguments: &[&str]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_nima"))
         .args(arguments)
         // No calibrations of whoever runs the tests.
-        .env("NIMA_DATA_DIR", "no/such/folder")
+        .env("NIMA_DATA_DIR", "/dev/null/no/such/folder")
         .output()
         .unwrap()
 }

@@ -125,10 +125,10 @@ fn identity_ui(
 /// How long the session has been recorded, on a button that keeps it.
 fn recorded_ui(ui: &mut Ui, state: &mut TopBarState) {
     let Some(shown) = &state.recorded else { return };
-    let words = text::sessions::recorded_for(shown.seconds);
-    let button =
-        Button::selectable(shown.kept, if shown.kept { format!("{words}, {}", text::sessions::KEPT) } else { words });
-    let response = ui.add(button.frame_when_inactive(true).min_size(vec2(84.0, 30.0)));
+    let words = text::sessions::recorded_for(shown.seconds, shown.kept);
+    let button = Button::selectable(shown.kept, words).frame_when_inactive(true);
+    // Wide enough for hours, so that what stands beside it never moves.
+    let response = ui.add(button.min_size(vec2(104.0, 30.0)));
     let name = if shown.kept { text::sessions::NAME_KEPT } else { text::sessions::NAME_KEEP };
     response.widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, true, shown.kept, name));
     state.keeps |= response.on_hover_text(text::sessions::hover(shown)).clicked();

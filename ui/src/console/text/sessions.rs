@@ -4,15 +4,19 @@ use std::{io, path::Path, time::Duration};
 
 use crate::console::sessions::Shown;
 
-pub(in crate::console) const KEPT: &str = "Kept";
 pub(in crate::console) const NAME_KEEP: &str = "Keep this session";
 pub(in crate::console) const NAME_KEPT: &str = "This session is kept";
 pub(in crate::console) const CURE: &str = "Free space or change the folder, then start the rig again";
 
-/// On the button that keeps a session: how long it has been recorded.
-pub(in crate::console) fn recorded_for(seconds: u64) -> String {
+/// On the button that keeps a session: how long it has been recorded, and whether it is kept.
+pub(in crate::console) fn recorded_for(seconds: u64, kept: bool) -> String {
+    let what = if kept { "Kept" } else { "Rec" };
     let (hours, minutes, seconds) = (seconds / 3600, seconds / 60 % 60, seconds % 60);
-    if hours > 0 { format!("Rec {hours}:{minutes:02}:{seconds:02}") } else { format!("Rec {minutes}:{seconds:02}") }
+    if hours > 0 {
+        format!("{what} {hours}:{minutes:02}:{seconds:02}")
+    } else {
+        format!("{what} {minutes}:{seconds:02}")
+    }
 }
 
 /// Below the pointer.

@@ -5,4 +5,5 @@ mod another_build;
 mod bench;
 mod faults;
 mod file;
+mod network;
 mod round_trip;

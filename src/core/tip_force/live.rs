@@ -126,9 +126,14 @@ impl TipForce {
         self.estimator.model()
     }
 
-    /// Force that is used now while the network is uncertain. Before the network was sure for the first time there is none to hold, and
+    /// Force to use while the network is uncertain, as the rig has it.
+    pub const fn fallback(&self) -> Fallback {
+        self.fallback
+    }
+
+    /// Force that is used while the network is uncertain now. Before the network was sure for the first time there is none to hold, and
     /// until the instrument has moved the wrist force is as much friction as tissue, of unknown sign: then no force is the better answer.
-    pub fn fallback(&self) -> Fallback {
+    pub fn fallback_now(&self) -> Fallback {
         if self.held_n.is_none() && self.unsure == Some(Unsure::NotMoved) {
             Fallback::HoldAndFade
         } else {
@@ -160,7 +165,7 @@ impl TipForce {
         let most = dt_s / HANDOVER_S;
         self.share += (target - self.share).clamp(-most, most);
         if self.unsure.is_some() {
-            let wrist = if self.fallback() == Fallback::WristForce { 1.0 } else { 0.0 };
+            let wrist = if self.fallback_now() == Fallback::WristForce { 1.0 } else { 0.0 };
             self.wrist_share += (wrist - self.wrist_share).clamp(-most, most);
         }
         self.held_share += (target - self.held_share).clamp(-dt_s / HOLD_S, most);

@@ -83,7 +83,7 @@ impl ForcePath {
             };
         };
         let report = tip_force.step(t_s, &wrench, sample);
-        let fallback = tip_force.fallback();
+        let fallback = tip_force.fallback_now();
         let source = match report.unsure {
             Some(unsure) => ForceSource::InDoubt { unsure, fallback },
             None if report.extrapolates => ForceSource::Extrapolated,

@@ -79,7 +79,7 @@ pub(in crate::console) const KEYS_HEADING: &str = "Keys";
 pub(in crate::console) const WORDS_HEADING: &str = "Terms";
 
 /// All keys with their functions.
-pub(in crate::console) const KEYS: [(&str, &str); 14] = [
+pub(in crate::console) const KEYS: [(&str, &str); 15] = [
     ("Space, Escape", "Stop, in every view. While you type a name, only Escape."),
     ("F1, F2, F3", "Surgeon, Technician, Demo."),
     ("F4", "This list of keys and terms."),
@@ -87,6 +87,7 @@ pub(in crate::console) const KEYS: [(&str, &str); 14] = [
     ("F6", "Choose a rig and a scene."),
     ("A", "Acknowledge the alarms."),
     ("E", "Mark this moment in the traces."),
+    ("K", "Keep the session that is being recorded, or no longer."),
     ("M", "Drive the instrument by mouse, or let it go."),
     ("Arrow keys", "Move the instrument by a small step while you drive it."),
     ("Page Up, Page Down", "Move the instrument up or down while you drive it."),

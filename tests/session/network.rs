@@ -1,0 +1,78 @@
+//! A loop with every calibration in force: the network for the tip force, with its doubt and its fallback.
+
+use std::sync::atomic::AtomicBool;
+
+use nima_core::{
+    calibration::{Judgement, Verdict},
+    tip_force::{Check, Fallback, FeatureSettings, Model, TipForce, TrainingSettings},
+};
+use nima_machine::{
+    config::RigConfig,
+    messages::{Command, ForceSource},
+    rig::{Prompt, Side},
+    teleop::Calibrations,
+};
+use nima_study::validation::{
+    experiment::Experiment,
+    isolation::{Known, record as recorded},
+};
+use nima_training::train_model;
+use nima_world::Plan;
+
+use crate::bench::record;
+
+const SOMEBODY: &str = "Dr Somebody";
+
+/// A network that somebody has kept although it was not proven.
+fn network(known: &Known) -> Model {
+    let scene = Experiment::scene("isolation", 3).unwrap();
+    let data = recorded(&scene, known, FeatureSettings::default(), 6000, 7.0).unwrap().data(None).unwrap();
+    let settings = TrainingSettings { members: 2, epochs: Some(10), ..TrainingSettings::default() };
+    let mut model = train_model(&data, &settings, [None, None], &AtomicBool::new(false), &|_| {}).unwrap();
+    let judgement = Judgement {
+        override_by: Some(SOMEBODY.to_owned()),
+        override_reason: Some(format!("{SOMEBODY} was in a hurry")),
+        ..Judgement::new(Verdict::PoorData, "too few rows")
+    };
+    model.origin.check = Some(Check {
+        judgement,
+        date: "2026-11-23T08:00:00Z".to_owned(),
+        rows: 1,
+        mae_n: [0.1; 3],
+        sd_n: [0.1; 3],
+        free_mean_n: [0.0; 3],
+        free_sd_n: [0.0; 3],
+        doubt_share: 0.0,
+    });
+    model
+}
+
+#[test]
+fn a_network_in_force_replays_to_the_bit_and_tells_no_name_of_a_person() {
+    let known = Known::calibrate(3).unwrap();
+    let model = network(&known);
+    for fallback in [Fallback::WristForce, Fallback::HoldAndFade] {
+        let tip_force = Some(TipForce::new(model.clone(), fallback).unwrap());
+        let plan = Plan {
+            rig: RigConfig::load("simulated").unwrap(),
+            scene: Experiment::scene("isolation", 4).unwrap(),
+            calibrations: [Calibrations { gravity: Some(known.gravity), tip_force }, Calibrations::default()],
+            engage: false,
+        };
+        let (mut by_network, mut by_fallback) = (0, 0);
+        let kept = record(&plan, 8.0, |tick| {
+            by_network += u32::from(tick.force.source == ForceSource::Network);
+            by_fallback += u32::from(matches!(tick.force.source, ForceSource::InDoubt { .. }));
+            match tick.index {
+                50 => Some(Command::Prompt(Side::Right, Prompt::Work)),
+                6000 => Some(Command::Prompt(Side::Right, Prompt::WorkFree)),
+                _ => None,
+            }
+        });
+        assert!(by_network > 1000 && by_fallback > 30, "{by_network} by the network, {by_fallback} by the fallback");
+        let outcome = kept.replayed(|_| {}).unwrap();
+        assert_eq!((outcome.ticks, outcome.differs, outcome.closed), (8000, None, true), "{fallback:?}");
+        let tells = |name: &[u8]| kept.0.iter().any(|message| message.windows(name.len()).any(|part| part == name));
+        assert!(tells(b"(withheld)") && !tells(SOMEBODY.as_bytes()));
+    }
+}

@@ -1,5 +1,6 @@
 //! `nima run`: the loop without a window, with a live status line and figures at the end.
 
+mod engaging;
 mod record;
 mod status;
 mod words;
@@ -23,6 +24,7 @@ use nima_world::{Plan, emulated::TipError};
 use serde::Serialize;
 
 use self::{
+    engaging::Engaging,
     record::{Recorded, Recording},
     status::{StatusLine, Troubles},
     words::in_words,
@@ -113,7 +115,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let plan = Plan { rig, scene, calibrations, engage };
     let mut start = Start {
         in_force,
-        engaged: plan.engage || !by_itself,
+        engaging: Engaging::left_to_others(plan.engage || !by_itself),
         reasons: Reasons::default(),
         emulators,
         comparison: Comparison::default(),
@@ -174,7 +176,7 @@ struct Told<'a> {
 /// Engages after the bias of the wrist sensor has been checked, whatever the result.
 struct Start {
     in_force: InForce,
-    engaged: bool,
+    engaging: Engaging,
     reasons: Reasons,
     emulators: Option<Emulators>,
     comparison: Comparison,
@@ -187,9 +189,8 @@ impl Start {
         self.in_force.watch(tick);
         self.reasons.watch(tick);
         let known = !self.in_force.is_waiting() && self.in_force.uncalibrated().is_none();
-        let go = !self.engaged && known && self.in_force.drift() != Some(Drift::Waiting);
-        self.engaged |= go;
-        go.then_some(Command::Engage)
+        let ready = known && self.in_force.drift() != Some(Drift::Waiting);
+        self.engaging.asks(ready, tick.t_s).then_some(Command::Engage)
     }
 
     /// Compares the forces at the tips with the true ones, where they are known.
@@ -244,6 +245,7 @@ fn on_the_real_clock(
             command = start.watch(tick).or(command);
         });
         handle.drain_events(|event| {
+            start.engaging.hears(event);
             if let Some(words) = start.reasons.take(event) {
                 status.tell(&words);
             }

@@ -1,0 +1,63 @@
+//! Engages by command, once all is known that the command line can know.
+
+use nima_machine::{
+    messages::{Event, Refusal},
+    rig::Obstacle,
+};
+
+/// After a refusal because something had not been heard of yet, it asks again after this time, s.
+const AGAIN_S: f64 = 0.3;
+
+/// The one engagement of a run without a person.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Engaging {
+    asked: bool,
+    again_s: Option<f64>,
+}
+
+impl Engaging {
+    /// Somebody else engages, or nobody may.
+    pub(super) const fn left_to_others(others: bool) -> Self {
+        Self { asked: others, again_s: None }
+    }
+
+    /// Whether to ask for an engagement now (s on the loop's clock), if all is `ready`.
+    pub(super) fn asks(&mut self, ready: bool, now_s: f64) -> bool {
+        if self.again_s.take_if(|again_s| now_s >= *again_s).is_some() {
+            self.asked = false;
+        }
+        let asks = ready && !self.asked;
+        self.asked |= asks;
+        asks
+    }
+
+    /// A device that comes later than the others, as a tracker does, is no reason to stay idle for good.
+    pub(super) fn hears(&mut self, event: &Event) {
+        if let Event::CommandRefused { t_s, why: Refusal::Obstacle(Obstacle::Waiting(_)), .. } = event {
+            self.again_s = Some(t_s + AGAIN_S);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use nima_machine::{
+        messages::Command,
+        rig::{Awaited, Side},
+    };
+
+    use super::*;
+
+    #[test]
+    fn it_asks_once_and_again_only_when_it_came_too_early() {
+        let mut engaging = Engaging::default();
+        assert!(!engaging.asks(false, 0.0) && engaging.asks(true, 0.1) && !engaging.asks(true, 0.2));
+        let refused =
+            |t_s: f64, why: Refusal| Event::CommandRefused { t_s, side: Side::Right, command: Command::Engage, why };
+        engaging.hears(&refused(0.2, Refusal::DrivesOff));
+        assert!(!engaging.asks(true, 5.0), "a person has to see to that");
+        engaging.hears(&refused(5.0, Refusal::Obstacle(Obstacle::Waiting(Awaited::Markers))));
+        assert!(!engaging.asks(true, 5.1) && engaging.asks(true, 5.3) && !engaging.asks(true, 9.0));
+        assert!(!Engaging::left_to_others(true).asks(true, 1.0));
+    }
+}

@@ -11,6 +11,8 @@ use std::{
 
 /// Bytes that the sessions which nobody keeps may take: ten hours of two arms.
 pub const MOST_BYTES: u64 = 20_000_000_000;
+/// Bytes of the disk that sessions which nobody keeps leave free for everything else.
+pub const LEFT_BYTES: u64 = 2_000_000_000;
 /// A file that was written to so lately may be the session of another program that runs now.
 const IN_USE: Duration = Duration::from_mins(1);
 const EXTENSION: &str = "mcap";
@@ -92,28 +94,29 @@ impl Shelf {
         Ok(all)
     }
 
-    /// Deletes what nobody keeps, the oldest first, until the rest takes no more than it may; never `running`, the session that is
-    /// being recorded, and none that another program may be recording. Returns the bytes that all sessions take.
+    /// Deletes what nobody keeps, the oldest first, until the rest takes no more than it may and leaves [`LEFT_BYTES`] of the disk free;
+    /// never `running`, the session that is being recorded, and none that another program may be recording. Returns the bytes that can
+    /// still be had in this way.
     ///
     /// # Errors
     /// I/O errors of the folder or of a deletion.
     pub fn make_room(&self, running: Option<&Path>) -> io::Result<u64> {
         let sessions = self.sessions()?;
-        let mut all: u64 = sessions.iter().map(|session| session.bytes).sum();
         let mut loose: u64 = sessions.iter().filter(|session| !session.kept).map(|session| session.bytes).sum();
+        let free = free_bytes(&self.folder).unwrap_or(u64::MAX);
+        let most = self.most_bytes.min(loose.saturating_add(free).saturating_sub(LEFT_BYTES));
         let in_use = |session: &Shelved| session.written.elapsed().is_ok_and(|since| since < IN_USE);
-        for session in sessions.iter().filter(|session| !session.kept && !in_use(session)) {
-            if loose <= self.most_bytes {
-                break;
+        let may_go = |session: &&Shelved| !session.kept && !in_use(session) && Some(session.path.as_path()) != running;
+        let mut left = 0;
+        for session in sessions.iter().filter(may_go) {
+            if loose > most {
+                fs::remove_file(&session.path)?;
+                loose -= session.bytes;
+            } else {
+                left += session.bytes;
             }
-            if Some(session.path.as_path()) == running {
-                continue;
-            }
-            fs::remove_file(&session.path)?;
-            loose -= session.bytes;
-            all -= session.bytes;
         }
-        Ok(all)
+        Ok(left)
     }
 }
 
@@ -181,7 +184,7 @@ mod tests {
                 .map(|(name, age)| session(&shelf, name, age));
         fs::write(folder.path().join("notes.txt"), "mine").unwrap();
         keep(&kept, true).unwrap();
-        assert_eq!(shelf.make_room(Some(&running)).unwrap(), 3 << 20);
+        assert_eq!(shelf.make_room(Some(&running)).unwrap(), 0, "nothing is left that might be deleted");
         let there = |path: &Path| path.exists();
         assert_eq!([&first, &kept, &running, &other, &last].map(|path| there(path)), [false, true, true, true, false]);
         assert!(there(&folder.path().join("notes.txt")));

@@ -23,8 +23,8 @@ use crate::recording;
 const LEAST_TICKS: u64 = 1000;
 /// How often room is made while a session grows.
 const ROOM_EVERY: Duration = Duration::from_secs(30);
-/// A disk that is full sooner than this is told.
-const WARN_BEFORE: Duration = Duration::from_hours(24);
+/// A disk on which there is room for less than a working day is told.
+const WARN_BEFORE: Duration = Duration::from_hours(8);
 /// A session must have run for this long before its growth says anything of a day.
 const GROWN: Duration = Duration::from_mins(1);
 
@@ -112,7 +112,7 @@ impl Sessions {
         }
     }
 
-    /// Why nothing is recorded although it should be, or what will be in the way within a day.
+    /// Why nothing is recorded although it should be, or what will be in the way within a working day.
     pub(crate) fn trouble(&self) -> Option<String> {
         let ended = self.now.as_ref().and_then(|now| now.recorder.trouble()).map(|error| chain(error));
         let full = || self.full_in.filter(|time| *time < WARN_BEFORE).map(text::sessions::full_in);
@@ -139,13 +139,17 @@ impl Sessions {
             return;
         }
         self.looked = Some(Instant::now());
-        if let Err(error) = shelf.make_room(Some(&now.path)) {
-            self.trouble = Some(text::sessions::no_folder(shelf.folder(), &error));
-        }
+        let others = match shelf.make_room(Some(&now.path)) {
+            Ok(others) => others,
+            Err(error) => {
+                self.trouble = Some(text::sessions::no_folder(shelf.folder(), &error));
+                0
+            }
+        };
         let grown = now.began.elapsed();
         let per_s = now.recorder.progress().bytes as f64 / grown.as_secs_f64().max(1.0);
         let free = free_bytes(shelf.folder()).filter(|_| grown >= GROWN);
-        self.full_in = free.map(|free| Duration::from_secs_f64(free as f64 / per_s.max(1.0)));
+        self.full_in = free.map(|free| Duration::from_secs_f64((free + others) as f64 / per_s.max(1.0)));
     }
 }
 

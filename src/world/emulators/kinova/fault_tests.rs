@@ -10,6 +10,8 @@ use nima_devices::{
     kinova::{Driver, Settings, faults, open},
 };
 
+use nima_testing::real_time::judged;
+
 use super::driver_tests::{Ticking, patient, started};
 use crate::emulators::EmulatedFault;
 
@@ -66,20 +68,23 @@ fn until(slot: &mut Slot<Driver>, begin: Instant, good: impl Fn(&mut Slot<Driver
 
 #[test]
 fn every_fault_is_noticed_and_passes_without_a_restart() {
-    let (serving, settings) = started(patient());
-    let settings = Settings { timeout_s: 0.4, ..settings };
-    let mut slot = Slot::start("kinova", move || open(&settings)).unwrap();
-    let begin = Instant::now();
-    let connected = |slot: &mut Slot<Driver>| slot.health().standing == Standing::Connected;
-    for fault in EmulatedFault::ALL {
-        assert!(until(&mut slot, begin, connected), "before {fault:?}: {:?}", slot.view().report());
-        let before = *slot.health();
-        serving.faults.set(fault);
-        let noticed = |slot: &mut Slot<Driver>| is_noticed(fault, slot.health(), &before);
-        assert!(until(&mut slot, begin, noticed), "{fault:?}: {:?}", slot.health());
-        serving.faults.set(EmulatedFault::None);
-    }
-    assert!(until(&mut slot, begin, connected), "after all");
+    // What a busy machine holds up is silent first, whatever else it is: then it was lost for another reason.
+    judged(|| {
+        let (serving, settings) = started(patient());
+        let settings = Settings { timeout_s: 0.4, ..settings };
+        let mut slot = Slot::start("kinova", move || open(&settings)).unwrap();
+        let begin = Instant::now();
+        let connected = |slot: &mut Slot<Driver>| slot.health().standing == Standing::Connected;
+        for fault in EmulatedFault::ALL {
+            assert!(until(&mut slot, begin, connected), "before {fault:?}: {:?}", slot.view().report());
+            let before = *slot.health();
+            serving.faults.set(fault);
+            let noticed = |slot: &mut Slot<Driver>| is_noticed(fault, slot.health(), &before);
+            assert!(until(&mut slot, begin, noticed), "{fault:?}: {:?}", slot.health());
+            serving.faults.set(EmulatedFault::None);
+        }
+        assert!(until(&mut slot, begin, connected), "after all");
+    });
 }
 
 #[test]

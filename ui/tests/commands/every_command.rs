@@ -7,7 +7,8 @@ use std::{
 use nima_core::impedance::Mode;
 use serde_json::Value;
 
-fn nima(arguments: &[&str]) -> Output {
+/// Runs the program without a display.
+pub(crate) fn nima(arguments: &[&str]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_nima"))
         .args(arguments)
         .env_remove("DISPLAY")
@@ -18,7 +19,8 @@ fn nima(arguments: &[&str]) -> Output {
         .unwrap()
 }
 
-fn json(arguments: &[&str]) -> Value {
+/// What a command prints, which must succeed.
+pub(crate) fn json(arguments: &[&str]) -> Value {
     let output = nima(arguments);
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     serde_json::from_slice(&output.stdout).unwrap()

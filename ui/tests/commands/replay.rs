@@ -1,25 +1,9 @@
 //! `nima run --record` and `nima replay`, as a user would type them.
-use std::{
-    path::Path,
-    process::{Command, Output},
-};
+use std::path::Path;
 
 use serde_json::Value;
 
-fn nima(arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_nima"))
-        .args(arguments)
-        // No calibrations of whoever runs the tests.
-        .env("NIMA_DATA_DIR", "/dev/null/no/such/folder")
-        .output()
-        .unwrap()
-}
-
-fn json(arguments: &[&str]) -> Value {
-    let output = nima(arguments);
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    serde_json::from_slice(&output.stdout).unwrap()
-}
+use crate::every_command::{json, nima};
 
 /// The one line of a command that must fail.
 fn refused(arguments: &[&str]) -> String {

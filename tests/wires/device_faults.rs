@@ -150,8 +150,10 @@ struct Row {
 impl Row {
     /// What is wrong with the result, if anything.
     fn verdict(&self) -> Result<(), String> {
-        let Self { device, fault, told_ms, zero_ms, state, back_s, by_itself, .. } = self;
-        let wrong = |what: String| Err(format!("{device}, {fault}: {what}"));
+        let Self { device, fault, told, told_ms, zero_ms, state, back_s, by_itself } = self;
+        let seen =
+            format!("{told:?} after {told_ms:?} ms, no force after {zero_ms:?} ms, {state}, back after {back_s:?} s");
+        let wrong = |what: String| Err(format!("{device}, {fault}: {what} ({seen})"));
         let limit_ms = SLACK_MS + if *device == "tracker" { TRACKER_TOLD_MS } else { TOLD_MS };
         let carries_force = !["pedal", "right servos", "tissue sensor", "tracker"].contains(device);
         // Frames are affected at random: while enough good ones arrive they are only counted, and the device is lost when

@@ -4,12 +4,11 @@
 use std::{
     cell::Cell,
     path::PathBuf,
-    process::{Child, Stdio},
     thread,
     time::{Duration, Instant},
 };
 
-use crate::server::{Xvfb, wait_until};
+use crate::{console::Console, server::Xvfb};
 
 /// Where things stand in a window of 1600 x 1000.
 const EMULATED_RIG: (i32, i32) = (270, 268);
@@ -23,47 +22,25 @@ const PIXELS_MIN: usize = 600;
 const PATIENCE: Duration = Duration::from_mins(4);
 
 struct Day<'a> {
-    x: &'a Xvfb,
-    console: Child,
-    folder: tempfile::TempDir,
+    console: Console<'a>,
     clicks: Cell<u32>,
 }
 
 impl<'a> Day<'a> {
     fn begin(x: &'a Xvfb) -> Self {
-        let folder = tempfile::tempdir().unwrap();
-        let console = x
-            .command(env!("CARGO_BIN_EXE_nima"))
-            .env("XDG_RUNTIME_DIR", folder.path())
-            .env("NIMA_DATA_DIR", folder.path())
-            .args(["console", "--summary"])
-            .arg(folder.path().join("summary.json"))
-            .stdout(Stdio::null())
-            .spawn()
-            .unwrap();
-        wait_until("the window", 30, || x.window_is_open());
-        thread::sleep(Duration::from_millis(1500));
-        let day = Self { x, console, folder, clicks: Cell::new(0) };
-        // No window manager gives the keyboard to the window.
-        day.tool(&["search", "--name", "NIMA Console", "windowfocus"]);
-        day
+        Self { console: Console::begin(x, tempfile::tempdir().unwrap(), &[]), clicks: Cell::new(0) }
     }
 
-    fn tool(&self, arguments: &[&str]) {
-        assert!(self.x.command("xdotool").args(arguments).status().unwrap().success(), "{arguments:?}");
-        thread::sleep(Duration::from_millis(500));
-    }
-
-    fn click(&self, (x, y): (i32, i32)) {
+    fn click(&self, place: (i32, i32)) {
         self.clicks.set(self.clicks.get() + 1);
-        self.tool(&["mousemove", &x.to_string(), &y.to_string(), "sleep", "0.2", "click", "1"]);
-        self.tool(&["mousemove", &NOTHING.0.to_string(), &NOTHING.1.to_string()]);
+        self.console.click(place);
+        self.console.move_to(NOTHING);
     }
 
     /// The middle of the button that stands out.
     fn next(&self) -> Option<(i32, i32)> {
-        let picture =
-            self.x.command("import").args(["-window", "root", "-depth", "8", "rgb:-"]).output().unwrap().stdout;
+        let mut import = self.console.x.command("import");
+        let picture = import.args(["-window", "root", "-depth", "8", "rgb:-"]).output().unwrap().stdout;
         let places = picture.chunks_exact(3).enumerate().filter(|(_, pixel)| *pixel == NEXT);
         let places: Vec<_> = places.map(|(place, _)| (place % WIDTH, place / WIDTH)).collect();
         if places.len() < PIXELS_MIN {
@@ -91,7 +68,7 @@ impl<'a> Day<'a> {
     }
 
     fn files(&self, folder: &str) -> Vec<PathBuf> {
-        let entries = std::fs::read_dir(self.folder.path().join(folder));
+        let entries = std::fs::read_dir(self.console.folder.path().join(folder));
         entries.into_iter().flatten().flatten().map(|entry| entry.path()).collect()
     }
 
@@ -105,20 +82,6 @@ impl<'a> Day<'a> {
                 && names.iter().any(|name| name.ends_with(&format!("/tip-force-{serial}.safetensors")))
         })
     }
-
-    /// Ends the console as a service manager does; gives what it writes.
-    fn end(mut self) -> serde_json::Value {
-        self.x.command("kill").args(["-TERM", &self.console.id().to_string()]).status().unwrap();
-        assert!(self.console.wait().unwrap().success(), "the console closes with success");
-        serde_json::from_slice(&std::fs::read(self.folder.path().join("summary.json")).unwrap()).unwrap()
-    }
-}
-
-impl Drop for Day<'_> {
-    fn drop(&mut self) {
-        self.console.kill().ok();
-        self.console.wait().ok();
-    }
 }
 
 #[test]
@@ -128,10 +91,10 @@ fn from_an_empty_folder_to_both_arms_engaged() {
     let Some(x) = Xvfb::start() else { return };
     nima_testing::real_time::judged(|| {
         let began = Instant::now();
-        let day = Day::begin(&x);
+        let mut day = Day::begin(&x);
         // The tour, which ends in the monitor.
         day.follow("the tour", |day| day.next().is_none());
-        day.tool(&["key", "F6"]);
+        day.console.key("F6");
         day.click(EMULATED_RIG);
         day.follow("the calibrations", Day::has_all_calibrations);
         println!("calibrated after {:.0} s and {} clicks", began.elapsed().as_secs_f64(), day.clicks.get());
@@ -147,7 +110,7 @@ fn from_an_empty_folder_to_both_arms_engaged() {
         day.click(ENGAGE);
         thread::sleep(Duration::from_secs(8));
         println!("engaged after {:.0} s and {} clicks", began.elapsed().as_secs_f64(), day.clicks.get());
-        let summary = day.end();
+        let summary = day.console.end();
         assert_eq!(summary["final_state"], "engaged", "{summary}");
     });
 }

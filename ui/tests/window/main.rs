@@ -1,6 +1,7 @@
 //! The real window on an X server without a screen.
 #![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
 
+mod console;
 mod first_day;
 mod real_window;
 mod server;

@@ -238,5 +238,5 @@ fn mutated_files_are_read_or_refused() {
 #[test]
 #[ignore = "`./dev fuzz` runs it for as long as told"]
 fn fuzz_sessions() {
-    nima_testing::fuzz::rounds(|seed| fuzz(200_000, seed));
+    nima_testing::fuzz::rounds(|seed| fuzz(20_000, seed));
 }

@@ -8,15 +8,19 @@
 //! | `scribe` | what passes the tap of a loop, as these messages |
 //! | `recorder` | the thread that writes them, and what is plotted, into a session file |
 //! | `file` | the journal in a session file |
+//! | `plotted` | the plots of a session file, tick by tick, and what `nima identify` needs of them |
+//! | `cut` | a stretch of a session as a session file of its own |
 //! | `shelf` | the folder of a user's sessions: which are kept, and room for the next |
 //! | `replay` | the same loop, fed from them; and with one thing changed |
 #![warn(missing_docs)]
 
 mod codec;
+pub mod cut;
 pub mod digest;
 pub mod file;
 pub mod journal;
 mod kept;
+pub mod plotted;
 pub mod recorder;
 pub mod replay;
 pub mod scribe;

@@ -9,6 +9,8 @@ use std::{
     time::{Duration, SystemTime},
 };
 
+use nima_recording::session::is_being_written;
+
 /// Bytes that the sessions which nobody keeps may take: ten hours of two arms.
 pub const MOST_BYTES: u64 = 20_000_000_000;
 /// Bytes of the disk that sessions which nobody keeps leave free for everything else.
@@ -38,6 +40,8 @@ pub struct Shelved {
     pub written: SystemTime,
     /// Whether it is never deleted.
     pub kept: bool,
+    /// Whether a process is writing it now.
+    pub writing: bool,
 }
 
 impl Shelf {
@@ -86,7 +90,12 @@ impl Shelf {
                 let Ok(about) = fs::symlink_metadata(&path) else { continue };
                 if about.is_file() {
                     let kept = mark_of(&path).exists();
-                    all.push(Shelved { bytes: taken(&about), written: about.modified()?, kept, path });
+                    let written = about.modified()?;
+                    // Where that cannot be known, what was written to lately may be.
+                    let lately = || written.elapsed().is_ok_and(|since| since < IN_USE);
+                    let writing = is_being_written(&path)
+                        .map_or_else(|_| lately(), |writes| writes || cfg!(not(unix)) && lately());
+                    all.push(Shelved { bytes: taken(&about), written, kept, writing, path });
                 }
             }
         }
@@ -105,7 +114,7 @@ impl Shelf {
         let mut loose: u64 = sessions.iter().filter(|session| !session.kept).map(|session| session.bytes).sum();
         let free = free_bytes(&self.folder).unwrap_or(u64::MAX);
         let most = self.most_bytes.min(loose.saturating_add(free).saturating_sub(LEFT_BYTES));
-        let in_use = |session: &Shelved| session.written.elapsed().is_ok_and(|since| since < IN_USE);
+        let in_use = |session: &Shelved| session.writing || session.written.elapsed().is_ok_and(|since| since < IN_USE);
         let may_go = |session: &&Shelved| !session.kept && !in_use(session) && Some(session.path.as_path()) != running;
         let mut left = 0;
         for session in sessions.iter().filter(may_go) {

@@ -145,6 +145,14 @@ impl Recording {
             }
             samples.push(Sample { t_s, position_m, force_n });
         }
+        Self::of_samples(path, axes, samples)
+    }
+
+    /// The same of samples that were read already; their times rise.
+    ///
+    /// # Errors
+    /// [`RecordingError::TooShort`] for fewer than three.
+    pub fn of_samples(path: &Path, axes: Vec<usize>, samples: Vec<Sample>) -> Result<Self, RecordingError> {
         let too_short = |found| RecordingError::TooShort { path: path.to_owned(), found, needed: 3 };
         let rate_hz = rate_hz(&samples).ok_or_else(|| too_short(samples.len()))?;
         Ok(Self { path: path.to_owned(), axes, rate_hz, samples })

@@ -7,4 +7,4 @@
 pub mod foxglove;
 mod joint_state;
 
-pub use joint_state::{JointStateEncoder, WrongLength};
+pub use joint_state::{JointState, JointStateEncoder, WrongLength};

@@ -36,6 +36,30 @@ pub(super) fn read_exact(file: &File, mut bytes: &mut [u8], mut at: u64) -> io::
     Ok(())
 }
 
+/// Locks a file for as long as it is open. Only where locks do not keep others from reading; a file system without them does without.
+#[cfg(unix)]
+pub(super) fn lock(file: &File) {
+    file.try_lock().ok();
+}
+
+#[cfg(not(unix))]
+pub(super) fn lock(_: &File) {}
+
+/// Whether another open file holds the lock.
+#[cfg(unix)]
+pub(super) fn is_locked(file: &File) -> io::Result<bool> {
+    match file.try_lock_shared() {
+        Ok(()) => Ok(false),
+        Err(std::fs::TryLockError::WouldBlock) => Ok(true),
+        Err(std::fs::TryLockError::Error(error)) => Err(error),
+    }
+}
+
+#[cfg(not(unix))]
+pub(super) fn is_locked(_: &File) -> io::Result<bool> {
+    Ok(false)
+}
+
 /// Whether the file has been deleted while it is open: what is written now is lost as soon as it is closed.
 #[cfg(unix)]
 pub(super) fn is_deleted(file: &File) -> io::Result<bool> {

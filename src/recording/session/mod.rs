@@ -15,7 +15,7 @@ mod writer;
 pub use error::{ReadError, WriteError};
 pub use format::Statistics;
 pub use reader::{Attachment, Channel, Message, Messages, Metadata, Reader};
-pub use writer::{CHUNK_BYTES, CHUNK_NS, ChannelId, Encoding, Writer};
+pub use writer::{CHUNK_BYTES, CHUNK_NS, ChannelId, Encoding, Writer, is_being_written};
 
 #[cfg(test)]
 mod tests;

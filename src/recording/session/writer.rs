@@ -322,6 +322,14 @@ impl Writer {
     }
 }
 
+/// Whether a process is writing this session now: it holds a lock on the file, which the system takes from it however it ends.
+///
+/// # Errors
+/// I/O errors of the file.
+pub fn is_being_written(path: &Path) -> io::Result<bool> {
+    at::is_locked(&File::open(path)?)
+}
+
 fn same_schema(one: &Encoding, other: &Encoding) -> bool {
     one.schema == other.schema && one.schema_encoding == other.schema_encoding && one.schema_data == other.schema_data
 }
@@ -337,6 +345,7 @@ fn create(path: &Path, library: &str, growth: u64, summary: &Summary) -> io::Res
     new.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
     let new = new.tempfile_in(folder).map_err(|error| io::Error::new(error.kind(), plain(&error)))?;
     let layout = Layout::new(new.as_file().try_clone()?, library, growth, summary)?;
+    at::lock(layout.file());
     new.persist_noclobber(path).map_err(|error| error.error)?;
     // Its name too outlasts a loss of power, where the system can do that.
     #[cfg(unix)]

@@ -10,16 +10,20 @@ use anyhow::Context as _;
 use clap::Args;
 use nima_core::impedance::{Choice, MAX_DEGREE, Mode, Reading, Recipe};
 use nima_files::write_atomically;
-use nima_recording::csv::{AXIS_NAMES, Mapping, Recording};
+use nima_machine::rig::Side;
+use nima_recording::csv::{AXIS_NAMES, Recording};
 use nima_study::replay::{Figures, Options, Row, replay};
 use serde::de::{DeserializeOwned, IntoDeserializer as _, value::Error};
 
-use super::output;
+use super::{motion, output};
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
-    /// CSV file with `t_s`, `x_m, y_m, z_m`, `fx_n, fy_n, fz_n` (one to three axes)
+    /// CSV file with `t_s`, `x_m, y_m, z_m`, `fx_n, fy_n, fz_n` (one to three axes), or a recorded session (.mcap)
     recording: PathBuf,
+    /// Which arm of a session, right or left (needed if it has both)
+    #[arg(long, value_name = "ARM", value_parser = motion::side)]
+    arm: Option<Side>,
     /// Other column names, with an optional factor: `x=px_mm*0.001`
     #[arg(long, value_name = "NAME=COLUMN[*SCALE]")]
     map: Vec<String>,
@@ -64,7 +68,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     if let Some(out) = &arguments.out {
         output::check(out, &[&arguments.recording])?;
     }
-    let recording = Recording::read(&arguments.recording, &Mapping::parse(&arguments.map)?)?;
+    let recording = motion::read(&arguments.recording, &arguments.map, arguments.arm)?;
     let options = Options {
         mode: arguments.mode,
         window_s: arguments.window_ms * 1e-3,

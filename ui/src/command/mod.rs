@@ -7,10 +7,13 @@ mod devices;
 mod emulate;
 mod ending;
 mod evaluate;
+mod export;
 mod identify;
+mod motion;
 mod output;
 mod replay;
 mod run;
+mod sessions;
 mod setup;
 mod study;
 mod train;
@@ -42,6 +45,10 @@ enum Command {
     Run(run::Arguments),
     /// Replay a recorded session through the same loop and compare every tick, or change one thing in it
     Replay(replay::Arguments),
+    /// Write a recorded session as a table, or a stretch of it as a session of its own
+    Export(export::Arguments),
+    /// List the sessions that the console recorded, keep one or delete one
+    Sessions(sessions::Arguments),
     /// Identify impedance on a recording, sample by sample, from past data only
     Identify(identify::Arguments),
     /// List connected devices and test them; for each failure, print its cause and what to do
@@ -94,6 +101,8 @@ pub fn main() -> ExitCode {
         Command::Console(arguments) => console::run(&arguments),
         Command::Run(arguments) => run::run(&arguments),
         Command::Replay(arguments) => replay::run(&arguments),
+        Command::Export(arguments) => export::run(&arguments),
+        Command::Sessions(arguments) => sessions::run(&arguments),
         Command::Identify(arguments) => identify::run(&arguments),
         Command::Devices(arguments) => devices::run(&arguments),
         Command::Emulate(arguments) => emulate::run(&arguments),

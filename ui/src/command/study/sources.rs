@@ -5,18 +5,24 @@ use std::path::PathBuf;
 use anyhow::{Context as _, bail};
 use clap::Args;
 use nima_core::impedance::MAX_DELAY_S;
-use nima_recording::csv::{Mapping, Recording};
+use nima_machine::rig::Side;
+use nima_recording::csv::Mapping;
 use nima_study::tradeoff::Source;
 use nima_world::scene::Scene;
+
+use super::super::motion;
 
 /// Rate of a scene, Hz.
 pub(super) const RATE_HZ: f64 = 1000.0;
 
 #[derive(Debug, Args)]
 pub(super) struct Sources {
-    /// CSV file with motion and force, as for `nima identify`; one or several
+    /// CSV file with motion and force, or session, as for `nima identify`; one or several
     #[arg(long, value_name = "FILE", num_args = 1..)]
     recording: Vec<PathBuf>,
+    /// Which arm of the sessions, right or left (needed where one has both)
+    #[arg(long, value_name = "ARM", value_parser = motion::side)]
+    arm: Option<Side>,
     /// Other column names in the recordings, with an optional factor: `x=px_mm*0.001`
     #[arg(long, value_name = "NAME=COLUMN[*SCALE]")]
     map: Vec<String>,
@@ -41,10 +47,13 @@ impl Sources {
         if !self.map.is_empty() && self.recording.is_empty() {
             bail!("--map names columns of a recording: give one with --recording");
         }
+        if self.arm.is_some() && self.recording.is_empty() {
+            bail!("--arm chooses an arm of a session: give one with --recording");
+        }
         let mapping = Mapping::parse(&self.map)?;
         let forces = ["fx_n", "fy_n", "fz_n"];
         let unit = if forces.into_iter().any(|force| mapping.names(force)) { "recorded unit" } else { "N" };
-        let read = |path: &PathBuf| Ok(Source::from_recording(Recording::read(path, &mapping)?, unit));
+        let read = |path: &PathBuf| Ok(Source::from_recording(motion::read(path, &self.map, self.arm)?, unit));
         self.recording.iter().map(read).collect()
     }
 

@@ -1,0 +1,128 @@
+//! A stretch of a session as a session file of its own.
+//!
+//! A journal can be replayed from its beginning only: a stretch that begins with the first tick keeps it up to the cut, any other one
+//! leaves it out.
+
+use std::{collections::BTreeMap, ops::Range, path::Path};
+
+use nima_recording::session::{ChannelId, ReadError, Reader, WriteError, Writer};
+
+use crate::{plotted, recorder::JOURNAL_TOPIC};
+
+/// The table that tells where a stretch was cut from.
+const TABLE: &str = "cut";
+/// In it: when the session began, ns, so that times stay those of the whole session.
+pub(crate) const BEGINNING: &str = "session_begins_ns";
+const SESSION: &str = "session";
+
+/// Why a stretch cannot be cut out.
+#[derive(Debug, thiserror::Error)]
+pub enum CutError {
+    /// The session cannot be read.
+    #[error(transparent)]
+    Read(#[from] ReadError),
+    /// The stretch cannot be written.
+    #[error(transparent)]
+    Write(#[from] WriteError),
+}
+
+/// What was written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Cut {
+    /// Messages.
+    pub messages: u64,
+    /// What became of the journal.
+    pub journal: Kept,
+}
+
+/// What became of a journal.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kept {
+    /// It is there up to the cut.
+    Yes,
+    /// The stretch does not begin with the first tick.
+    LeftOut,
+    /// There was none.
+    None,
+}
+
+impl Kept {
+    const fn word(self) -> &'static str {
+        match self {
+            Self::Yes => "kept up to the end of the stretch",
+            Self::LeftOut => "left out: it can be replayed from its beginning only",
+            Self::None => "none",
+        }
+    }
+}
+
+/// Writes the messages between these times (ns) into a new file, with all attachments and tables. `name` is what the session is called
+/// in the table that tells where the stretch was cut from.
+///
+/// # Errors
+/// [`CutError`] if the session cannot be read or the file cannot be written; it is to be deleted then.
+pub fn write(reader: &Reader, name: &str, times_ns: &Range<u64>, to: &Path) -> Result<Cut, CutError> {
+    let begin_ns = plotted::beginning_ns(reader)?;
+    let journal = journal(reader, times_ns.start)?;
+    // What the loop was made of stands before the first tick.
+    let start_ns = if journal == Kept::Yes { 0 } else { times_ns.start };
+    let mut writer = Writer::create(to, reader.library())?;
+    let mut tables = reader.metadata()?;
+    let before = tables.iter().position(|(name, _)| name == TABLE).map(|place| tables.remove(place).1);
+    tables.push((TABLE.to_owned(), table(name, begin_ns, times_ns, journal, before.as_ref())));
+    for (name, entries) in &tables {
+        writer.metadata(name, entries)?;
+    }
+    for attachment in reader.attachments() {
+        let data = reader.attachment(attachment)?;
+        writer.attachment(&attachment.name, &attachment.media_type, attachment.log_time_ns, &data)?;
+    }
+    let mut channels: BTreeMap<ChannelId, ChannelId> = BTreeMap::new();
+    for channel in reader.channels() {
+        if journal != Kept::LeftOut || channel.topic != JOURNAL_TOPIC {
+            channels.insert(channel.id, writer.channel(&channel.topic, channel.encoding.clone())?);
+        }
+    }
+    for message in reader.messages(&[], start_ns..times_ns.end) {
+        let message = message?;
+        if let Some(channel) = channels.get(&message.channel()) {
+            writer.message(*channel, message.log_time_ns(), message.data())?;
+        }
+    }
+    Ok(Cut { messages: writer.finish()?.messages, journal })
+}
+
+/// Whether the journal can be kept by a stretch that begins here.
+fn journal(reader: &Reader, start_ns: u64) -> Result<Kept, ReadError> {
+    if reader.channels().iter().all(|channel| channel.topic != JOURNAL_TOPIC) {
+        return Ok(Kept::None);
+    }
+    let topics: Vec<String> = plotted::arms(reader).into_iter().map(|arm| plotted::topic(arm, "forces")).collect();
+    let topics: Vec<&str> = topics.iter().map(String::as_str).collect();
+    let first = reader.messages(&topics, 0..u64::MAX).next().transpose()?;
+    let is_first = first.is_none_or(|first| start_ns <= first.log_time_ns());
+    Ok(if is_first { Kept::Yes } else { Kept::LeftOut })
+}
+
+fn table(
+    name: &str,
+    begin_ns: u64,
+    times_ns: &Range<u64>,
+    journal: Kept,
+    before: Option<&BTreeMap<String, String>>,
+) -> BTreeMap<String, String> {
+    let seconds = |time_ns: u64| match time_ns {
+        u64::MAX => "the end".to_owned(),
+        time_ns => (time_ns.saturating_sub(begin_ns) as f64 / 1e9).to_string(),
+    };
+    // A stretch of a stretch is one of the session.
+    let session = before.and_then(|before| before.get(SESSION)).map_or(name, String::as_str);
+    let entries = [
+        (SESSION, session.to_owned()),
+        ("from_s", seconds(times_ns.start)),
+        ("to_s", seconds(times_ns.end)),
+        (BEGINNING, begin_ns.to_string()),
+        ("journal", journal.word().to_owned()),
+    ];
+    entries.into_iter().map(|(key, value)| (key.to_owned(), value)).collect()
+}

@@ -1,0 +1,158 @@
+//! `nima export`: a recorded session as a table, or a stretch of it as a session of its own.
+
+use std::{
+    fmt::Write as _,
+    io,
+    ops::Range,
+    path::{Path, PathBuf},
+};
+
+use anyhow::{Context as _, bail};
+use clap::Args;
+use nima_files::write_atomically;
+use nima_machine::rig::Side;
+use nima_recording::session::Reader;
+use nima_session::{
+    cut::{self, Cut, Kept},
+    plotted::{self, PlottedError, PlottedTick},
+};
+
+use super::{motion, output};
+use crate::telling::tell;
+
+const HEADER: &str = "t_s,time_ns,x_m,y_m,z_m,fx_n,fy_n,fz_n,leader_x_m,leader_y_m,leader_z_m,\
+delayed_x_n,delayed_y_n,delayed_z_n,asked_x_n,asked_y_n,asked_z_n,rendered_x_n,rendered_y_n,rendered_z_n,state";
+
+#[derive(Debug, Args)]
+pub(super) struct Arguments {
+    /// Session file
+    session: PathBuf,
+    /// New file: a table that `nima identify` reads (.csv), or a session (.mcap)
+    #[arg(long, value_name = "FILE")]
+    out: PathBuf,
+    /// Where to begin, in seconds since the session began
+    #[arg(long, value_name = "S", value_parser = seconds, allow_negative_numbers = true)]
+    from: Option<f64>,
+    /// Where to end; what happens at this time is left out
+    #[arg(long, value_name = "S", value_parser = seconds, allow_negative_numbers = true)]
+    to: Option<f64>,
+    /// Which arm comes into the table, right or left (needed if the session has both)
+    #[arg(long, value_name = "ARM", value_parser = motion::side)]
+    arm: Option<Side>,
+}
+
+/// A time in a session.
+fn seconds(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(seconds) if (0.0..=1e9).contains(&seconds) => Ok(seconds),
+        _ => Err("give a number of seconds from 0".to_owned()),
+    }
+}
+
+pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
+    let Arguments { session, out, arm, .. } = arguments;
+    let is = |extension: &str| out.extension().is_some_and(|one| one.eq_ignore_ascii_case(extension));
+    if !is("csv") && !is("mcap") {
+        bail!("--out {}: give a name that ends in .csv or .mcap", out.display());
+    }
+    if is("mcap") && arm.is_some() {
+        bail!("--arm is for tables: a session that is cut out keeps both arms");
+    }
+    if out.symlink_metadata().is_ok() {
+        bail!("cannot write {}: it is there already; choose another name", out.display());
+    }
+    output::check(out, &[session])?;
+    let reader = Reader::open(session)?;
+    for note in reader.notes() {
+        tell(format_args!("nima: {note}"));
+    }
+    let times_ns = stretch(&reader, arguments)?;
+    if is("csv") { table(&reader, times_ns, arguments) } else { cut_out(&reader, &times_ns, session, out) }
+}
+
+/// The times that were asked for, ns.
+fn stretch(reader: &Reader, arguments: &Arguments) -> anyhow::Result<Range<u64>> {
+    let Arguments { session, from, to, .. } = arguments;
+    let begin_ns = plotted::beginning_ns(reader)?;
+    let (first_ns, last_ns) = reader.statistics().times_ns;
+    let [first_s, last_s] = [first_ns, last_ns].map(|time_ns| time_ns.saturating_sub(begin_ns) as f64 / 1e9);
+    if let (Some(from), Some(to)) = (from, to)
+        && from >= to
+    {
+        bail!("--from {from} is not before --to {to}");
+    }
+    let reaches = format!("session {} goes from {first_s:.3} s to {last_s:.3} s", session.display());
+    if let Some(from) = from.filter(|from| *from > last_s) {
+        bail!("--from {from} is beyond the end: {reaches}");
+    }
+    if let Some(to) = to.filter(|to| *to <= first_s) {
+        bail!("--to {to} is before the beginning: {reaches}");
+    }
+    let time_ns = |seconds: f64| begin_ns + (seconds * 1e9).round() as u64;
+    Ok(from.map_or(0, time_ns)..to.map_or(u64::MAX, time_ns))
+}
+
+/// Why a table was not finished.
+enum Failed {
+    Session(PlottedError),
+    File(io::Error),
+}
+
+impl From<PlottedError> for Failed {
+    fn from(error: PlottedError) -> Self {
+        Self::Session(error)
+    }
+}
+
+fn table(reader: &Reader, times_ns: Range<u64>, arguments: &Arguments) -> anyhow::Result<()> {
+    let Arguments { session, out, arm, .. } = arguments;
+    let arm = plotted::arm(reader, session, *arm)?;
+    let (mut rows, mut trouble) = (0_u64, None);
+    let written = write_atomically(out, |file| {
+        writeln!(file, "{HEADER}")?;
+        let filled = plotted::each_tick(reader, session, arm, times_ns, |tick| {
+            rows += 1;
+            file.write_all(row(&tick).as_bytes()).map_err(Failed::File)
+        });
+        match filled {
+            Err(Failed::File(error)) => Err(error),
+            // Half a table is none.
+            Err(Failed::Session(error)) => Err(io::Error::other(trouble.insert(error).to_string())),
+            Ok(()) if rows == 0 => Err(io::Error::other("the session has no tick in this stretch")),
+            Ok(()) => Ok(()),
+        }
+    });
+    if let Some(trouble) = trouble {
+        return Err(trouble.into());
+    }
+    written.with_context(|| format!("cannot write {}", out.display()))?;
+    output::line(&format!("{rows} ticks of the {} arm in {}", arm.word(), out.display()))
+}
+
+/// The fewest digits from which the same numbers are read.
+fn row(tick: &PlottedTick) -> String {
+    let PlottedTick { time_ns, t_s, tip_m, leader_m, measured_n, delayed_n, asked_n, rendered_n, state } = tick;
+    let mut row = format!("{t_s},{time_ns}");
+    for value in [tip_m, measured_n, leader_m, delayed_n, asked_n, rendered_n].into_iter().flatten() {
+        write!(row, ",{value}").ok();
+    }
+    writeln!(row, ",{state}").ok();
+    row
+}
+
+/// In a folder beside the file first, so that nothing half-written has its name.
+fn cut_out(reader: &Reader, times_ns: &Range<u64>, session: &Path, out: &Path) -> anyhow::Result<()> {
+    let failed = || format!("cannot write {}", out.display());
+    let folder = out.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or_else(|| Path::new("."));
+    let beside = tempfile::Builder::new().prefix(".nima-export-").tempdir_in(folder).with_context(failed)?;
+    let new = beside.path().join("session.mcap");
+    let name = session.file_name().unwrap_or_default().to_string_lossy();
+    let Cut { messages, journal } = cut::write(reader, &name, times_ns, &new)?;
+    std::fs::rename(&new, out).with_context(failed)?;
+    let journal = match journal {
+        Kept::Yes => "with the journal up to the cut: `nima replay` repeats it",
+        Kept::LeftOut => "without the journal, which can be replayed from its beginning only",
+        Kept::None => "the session has no journal",
+    };
+    output::line(&format!("{messages} messages in {}, {journal}", out.display()))
+}

@@ -1,0 +1,205 @@
+//! `nima sessions`: the user's folder of sessions, and what is done with one of them.
+
+use std::{fmt::Write as _, path::PathBuf};
+
+use anyhow::{Context as _, bail};
+use clap::Args;
+use nima_files::quoted;
+use nima_recording::{session::ReadError, store::Store};
+use nima_session::{
+    file::Recorded,
+    plotted,
+    shelf::{MOST_BYTES, Shelf, Shelved, keep},
+};
+use serde::Serialize;
+
+use super::output;
+
+#[derive(Debug, Args)]
+pub(super) struct Arguments {
+    /// Delete this session
+    #[arg(long, value_name = "NAME", group = "one")]
+    delete: Option<String>,
+    /// Keep this session: it makes no room for new ones
+    #[arg(long, value_name = "NAME", group = "one")]
+    keep: Option<String>,
+    /// Keep this session no longer
+    #[arg(long, value_name = "NAME", group = "one")]
+    unkeep: Option<String>,
+    /// Print the list as one JSON object
+    #[arg(long, conflicts_with = "one")]
+    json: bool,
+}
+
+pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
+    let store = Store::of_user()?;
+    let folder = store.folder().parent().context("no folder for your files was found; set NIMA_DATA_DIR")?;
+    let shelf = Shelf::new(folder.join("sessions"), MOST_BYTES);
+    let Arguments { delete, keep: kept, unkeep, json } = arguments;
+    if let Some(name) = delete {
+        return delete_one(&shelf, name);
+    }
+    if let Some((name, kept)) = kept.as_ref().map(|name| (name, true)).or(unkeep.as_ref().map(|name| (name, false))) {
+        let session = find(&shelf, name)?;
+        keep(&session.path, kept).with_context(|| format!("cannot mark session {}", session.path.display()))?;
+        let words = if kept { "is kept" } else { "is not kept any more: it makes room for new ones" };
+        return output::line(&format!("{} {words}", session.path.display()));
+    }
+    let listed = Listed::of(&shelf)?;
+    if *json { output::json(&listed) } else { output::line(&listed.in_words()) }
+}
+
+/// A session by the name of its file, with or without its extension.
+fn find(shelf: &Shelf, name: &str) -> anyhow::Result<Shelved> {
+    let is_it = |session: &Shelved| {
+        let path = &session.path;
+        [path.file_name(), path.file_stem()].into_iter().flatten().any(|known| known == name)
+    };
+    let found = sessions(shelf)?.into_iter().find(is_it);
+    found.with_context(|| {
+        format!("there is no session \"{}\" in {}; `nima sessions` lists them", quoted(name), shelf.folder().display())
+    })
+}
+
+fn sessions(shelf: &Shelf) -> anyhow::Result<Vec<Shelved>> {
+    shelf.sessions().with_context(|| format!("cannot read the folder {}", shelf.folder().display()))
+}
+
+fn delete_one(shelf: &Shelf, name: &str) -> anyhow::Result<()> {
+    let Shelved { path, kept, writing, .. } = find(shelf, name)?;
+    if writing {
+        bail!("session {} is being recorded: end the program that records it first", path.display());
+    }
+    if kept {
+        bail!("session {} is kept: use --unkeep first", path.display());
+    }
+    std::fs::remove_file(&path).with_context(|| format!("cannot delete session {}", path.display()))?;
+    output::line(&format!("{} is deleted", path.display()))
+}
+
+#[derive(Serialize)]
+struct Listed {
+    folder: PathBuf,
+    sessions: Vec<One>,
+    bytes: u64,
+    /// Of those that nobody keeps.
+    loose_bytes: u64,
+    most_loose_bytes: u64,
+}
+
+#[derive(Serialize)]
+struct One {
+    name: String,
+    bytes: u64,
+    kept: bool,
+    /// `recording`, `closed`, `not closed` or `damaged`.
+    state: &'static str,
+    #[serde(flatten)]
+    about: Option<About>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    trouble: Option<String>,
+}
+
+#[derive(Serialize)]
+struct About {
+    started: Option<String>,
+    rig: Option<String>,
+    seconds: f64,
+    last_fault: Option<LastFault>,
+    closed: bool,
+}
+
+#[derive(Serialize)]
+struct LastFault {
+    t_s: f64,
+    words: String,
+}
+
+impl Listed {
+    fn of(shelf: &Shelf) -> anyhow::Result<Self> {
+        let all = sessions(shelf)?;
+        let sum = |sessions: &mut dyn Iterator<Item = &Shelved>| sessions.map(|session| session.bytes).sum();
+        Ok(Self {
+            folder: shelf.folder().to_owned(),
+            bytes: sum(&mut all.iter()),
+            loose_bytes: sum(&mut all.iter().filter(|session| !session.kept)),
+            most_loose_bytes: MOST_BYTES,
+            sessions: all.iter().map(One::of).collect(),
+        })
+    }
+
+    fn in_words(&self) -> String {
+        let Self { folder, sessions, bytes, loose_bytes, most_loose_bytes } = self;
+        let mut text = String::new();
+        for session in sessions {
+            text += &session.in_words();
+        }
+        let megabytes = |bytes: u64| bytes as f64 * 1e-6;
+        write!(
+            text,
+            "{} sessions in {}, {:.1} MB; those that nobody keeps take {:.1} of {:.0} MB",
+            sessions.len(),
+            folder.display(),
+            megabytes(*bytes),
+            megabytes(*loose_bytes),
+            megabytes(*most_loose_bytes),
+        )
+        .ok();
+        text
+    }
+}
+
+impl One {
+    fn of(session: &Shelved) -> Self {
+        let Shelved { path, bytes, kept, writing, .. } = session;
+        let read = About::of(session);
+        let state = match &read {
+            _ if *writing => "recording",
+            Ok(about) if about.closed => "closed",
+            Ok(_) => "not closed",
+            Err(_) => "damaged",
+        };
+        let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        let trouble = read.as_ref().err().map(ToString::to_string);
+        Self { name, bytes: *bytes, kept: *kept, state, about: read.ok(), trouble }
+    }
+
+    fn in_words(&self) -> String {
+        let Self { name, bytes, kept, state, about, trouble } = self;
+        let mut text = format!("{name}: {state}, {:.1} MB", *bytes as f64 * 1e-6);
+        if *kept {
+            text += ", kept";
+        }
+        if let Some(About { started, rig, seconds, last_fault, .. }) = about {
+            let [started, rig] =
+                [started, rig].map(|told| told.as_deref().map_or_else(|| "unknown".to_owned(), quoted));
+            write!(text, ", {seconds:.1} s, started {started}, rig \"{rig}\"").ok();
+            if let Some(LastFault { t_s, words }) = last_fault {
+                write!(text, ", last fault at {t_s:.1} s: {}", quoted(words)).ok();
+            }
+        }
+        if let Some(trouble) = trouble {
+            write!(text, ": {trouble}").ok();
+        }
+        text + "\n"
+    }
+}
+
+impl About {
+    fn of(session: &Shelved) -> Result<Self, ReadError> {
+        let file = Recorded::open(&session.path)?;
+        let reader = file.reader();
+        let begin_ns = plotted::beginning_ns(reader)?;
+        let since = |time_ns: u64| time_ns.saturating_sub(begin_ns) as f64 / 1e9;
+        let tables = reader.metadata()?;
+        let told = tables.into_iter().find(|(name, _)| name == "session").map(|(_, table)| table).unwrap_or_default();
+        let fault = file.last_fault()?.map(|(time_ns, words)| LastFault { t_s: since(time_ns), words });
+        Ok(Self {
+            started: told.get("started").cloned(),
+            rig: told.get("rig").cloned(),
+            seconds: since(reader.statistics().times_ns.1),
+            last_fault: fault,
+            closed: file.is_closed()?,
+        })
+    }
+}

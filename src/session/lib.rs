@@ -9,6 +9,7 @@
 //! | `recorder` | the thread that writes them, and what is plotted, into a session file |
 //! | `file` | the journal in a session file |
 //! | `shelf` | the folder of a user's sessions: which are kept, and room for the next |
+//! | `report` | the figures of a session, from what is plotted of it |
 //! | `replay` | the same loop, fed from them; and with one thing changed |
 #![warn(missing_docs)]
 
@@ -19,6 +20,7 @@ pub mod journal;
 mod kept;
 pub mod recorder;
 pub mod replay;
+pub mod report;
 pub mod scribe;
 pub mod shelf;
 mod topics;

@@ -20,7 +20,7 @@ uint32 nanosec
 ";
 
 /// Little-endian CDR, without options. Numbers are aligned from behind it.
-const REPRESENTATION: [u8; 4] = [0, 1, 0, 0];
+pub(super) const REPRESENTATION: [u8; 4] = [0, 1, 0, 0];
 /// Where the time stands.
 const STAMP: usize = REPRESENTATION.len();
 

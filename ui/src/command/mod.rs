@@ -8,8 +8,9 @@ mod emulate;
 mod ending;
 mod evaluate;
 mod identify;
-mod output;
+pub(crate) mod output;
 mod replay;
+mod report;
 mod run;
 mod setup;
 mod study;
@@ -42,6 +43,8 @@ enum Command {
     Run(run::Arguments),
     /// Replay a recorded session through the same loop and compare every tick, or change one thing in it
     Replay(replay::Arguments),
+    /// Write a page that tells what happened in recorded sessions, when, and what went wrong
+    Report(report::Arguments),
     /// Identify impedance on a recording, sample by sample, from past data only
     Identify(identify::Arguments),
     /// List connected devices and test them; for each failure, print its cause and what to do
@@ -94,6 +97,7 @@ pub fn main() -> ExitCode {
         Command::Console(arguments) => console::run(&arguments),
         Command::Run(arguments) => run::run(&arguments),
         Command::Replay(arguments) => replay::run(&arguments),
+        Command::Report(arguments) => report::run(&arguments),
         Command::Identify(arguments) => identify::run(&arguments),
         Command::Devices(arguments) => devices::run(&arguments),
         Command::Emulate(arguments) => emulate::run(&arguments),

@@ -11,6 +11,7 @@
 //! | `plotted` | the plots of a session file, tick by tick, and what `nima identify` needs of them |
 //! | `cut` | a stretch of a session as a session file of its own |
 //! | `shelf` | the folder of a user's sessions: which are kept, and room for the next |
+//! | `report` | the figures of a session, from what is plotted of it |
 //! | `replay` | the same loop, fed from them; and with one thing changed |
 #![warn(missing_docs)]
 
@@ -23,6 +24,7 @@ mod kept;
 pub mod plotted;
 pub mod recorder;
 pub mod replay;
+pub mod report;
 pub mod scribe;
 pub mod shelf;
 mod topics;

@@ -13,7 +13,7 @@ use nima_machine::{
 };
 use nima_recording::{
     csv::{Recording, RecordingError},
-    messages::JointState,
+    messages::JointStateDecoder,
     session::{Message, ReadError, Reader},
 };
 
@@ -108,6 +108,7 @@ pub fn each_tick<E: From<PlottedError>>(
     let channels = topics.map(channel_of);
     // The last message of each topic.
     let mut parts: [Option<Message>; 3] = Default::default();
+    let mut decoders: [JointStateDecoder; 3] = Default::default();
     for message in reader.messages(&topics, times_ns) {
         let message = message.map_err(PlottedError::from)?;
         let time_ns = message.log_time_ns();
@@ -119,7 +120,8 @@ pub fn each_tick<E: From<PlottedError>>(
             continue;
         }
         let t_s = time_ns.saturating_sub(begin_ns) as f64 / 1e9;
-        let tick = tick(arm, (time_ns, t_s), [forces, poses, gates]);
+        let parts_read = decoders.iter_mut().zip([forces, poses, gates]).all(|(one, part)| one.decode(part.data()));
+        let tick = parts_read.then(|| tick(arm, (time_ns, t_s), &decoders)).flatten();
         parts = Default::default();
         each(tick.ok_or_else(|| PlottedError::Foreign { path: path.to_owned(), arm, t_s })?)?;
     }
@@ -155,31 +157,27 @@ pub(crate) fn topic(side: Side, what: &str) -> String {
     format!("{}/{what}", side.word())
 }
 
-fn tick(arm: Side, (time_ns, t_s): (u64, f64), parts: [&Message; 3]) -> Option<PlottedTick> {
-    let [forces, poses, gates] = parts.map(|part| JointState::decode(part.data()));
-    let [forces, poses, gates] = [forces?, poses?, gates?];
-    let vector = |names: &[String], values: &[f64], name: &str, unit: &str| {
-        let [x, y, z] = ["x", "y", "z"].map(|axis| value(names, values, arm, &format!("{name}.{axis}_{unit}")));
+fn tick(arm: Side, (time_ns, t_s): (u64, f64), [forces, poses, gates]: &[JointStateDecoder; 3]) -> Option<PlottedTick> {
+    let vector = |of: &JointStateDecoder, name: &str, unit: &str| {
+        let [x, y, z] = ["x", "y", "z"].map(|axis| value(of, arm, &format!("{name}.{axis}_{unit}")));
         Some(Vector3::new(x?, y?, z?))
     };
-    let force = |name: &str| vector(&forces.names, &forces.effort, name, "n");
-    let place = |name: &str| vector(&poses.names, &poses.position, name, "m");
     Some(PlottedTick {
         time_ns,
         t_s,
-        tip_m: place("tip")?,
-        leader_m: place("leader")?,
-        measured_n: force("measured")?,
-        delayed_n: force("delayed")?,
-        asked_n: force("asked")?,
-        rendered_n: force("rendered")?,
-        state: state(value(&gates.names, &gates.position, arm, "state")?)?,
+        tip_m: vector(poses, "tip", "m")?,
+        leader_m: vector(poses, "leader", "m")?,
+        measured_n: vector(forces, "measured", "n")?,
+        delayed_n: vector(forces, "delayed", "n")?,
+        asked_n: vector(forces, "asked", "n")?,
+        rendered_n: vector(forces, "rendered", "n")?,
+        state: state(value(gates, arm, "state")?)?,
     })
 }
 
-fn value(names: &[String], values: &[f64], arm: Side, name: &str) -> Option<f64> {
+fn value(of: &JointStateDecoder, arm: Side, name: &str) -> Option<f64> {
     let is_it = |full: &String| full.strip_prefix(arm.word()).and_then(|rest| rest.strip_prefix('.')) == Some(name);
-    values.get(names.iter().position(is_it)?).copied()
+    of.values().get(of.names().iter().position(is_it)?).copied()
 }
 
 /// The word of a state, from its number in the plots.

@@ -1,6 +1,9 @@
 //! What is plotted of a session: forces, poses and gates of each arm, and what happened.
 
+mod identification;
+mod plot;
 mod scene;
+mod timing;
 
 use nima_core::safety::{Gate, State};
 use nima_machine::{
@@ -9,23 +12,32 @@ use nima_machine::{
     runtime::{Operation, Stepped},
 };
 use nima_recording::{
-    messages::{
-        JointStateEncoder,
-        foxglove::{self, Level, Log},
-    },
+    messages::foxglove::{self, Level, Log},
     session::{ChannelId, WriteError, Writer},
 };
 
-use self::scene::Scene;
+pub(crate) use timing::{TIMES, TIMING_TOPIC};
 
-/// Sentences for events.
-pub type Words = fn(&Event) -> String;
+use self::{identification::Identified, plot::Plot, scene::Scene, timing::Times};
+
+/// Sentences of the log.
+#[derive(Clone, Copy, Debug)]
+pub struct Words {
+    /// For what the loop tells.
+    pub event: fn(&Event) -> String,
+    /// For what is done to the loop.
+    pub operation: fn(&Operation) -> String,
+}
+
+/// Topic of the log.
+pub(crate) const LOG_TOPIC: &str = "log";
 
 /// The channels of what is plotted.
 #[derive(Debug)]
 pub(crate) struct Topics {
     sides: [Option<OfSide>; SIDES],
     scene: Scene,
+    times: Times,
     log: ChannelId,
     words: Words,
 }
@@ -35,14 +47,7 @@ struct OfSide {
     forces: Plot,
     poses: Plot,
     gates: Plot,
-}
-
-/// A channel of named numbers.
-#[derive(Debug)]
-struct Plot {
-    channel: ChannelId,
-    encoder: JointStateEncoder,
-    values: Vec<f64>,
+    identified: Identified,
 }
 
 const FORCES: [&str; 12] = [
@@ -68,15 +73,17 @@ impl Topics {
         let mut of = [None, None];
         for side in Side::ALL.into_iter().filter(|side| sides[side.index()]) {
             let gates: Vec<&str> = Gate::ALL.iter().map(|gate| gate.name()).chain(OF_GATES).collect();
-            let mut plot = |what: &str, names: &[&str]| Plot::new(writer, side, what, names);
+            let mut plot = |what: &str, names: &[&str]| Plot::of_side(writer, side, what, names);
             of[side.index()] = Some(OfSide {
                 forces: plot("forces", &FORCES)?,
                 poses: plot("poses", &POSES)?,
                 gates: plot("gates", &gates)?,
+                identified: Identified::new(writer, side)?,
             });
         }
-        let log = writer.channel("log", foxglove::encoding::<Log>())?;
-        Ok(Self { sides: of, scene: Scene::new(writer)?, log, words })
+        let times = Times::new(writer)?;
+        let log = writer.channel(LOG_TOPIC, foxglove::encoding::<Log>())?;
+        Ok(Self { sides: of, scene: Scene::new(writer)?, times, log, words })
     }
 
     /// Writes a tick and the events in it.
@@ -94,13 +101,14 @@ impl Topics {
         }
         let ticks = stepped.ticks.iter().flatten();
         self.scene.show(writer, time_ns, stepped.timing.now_s, ticks)?;
+        self.times.tick(writer, time_ns, &stepped.timing)?;
         for event in events {
             let level = match event {
                 Event::FaultRaised { .. } => Level::Error,
                 Event::CommandRefused { .. } => Level::Warning,
                 Event::StateChanged { .. } | Event::Device(_) | Event::Scheduling(_) => Level::Info,
             };
-            self.log(writer, time_ns, level, (self.words)(event))?;
+            self.log(writer, time_ns, level, (self.words.event)(event))?;
         }
         Ok(())
     }
@@ -112,7 +120,7 @@ impl Topics {
         time_ns: u64,
         operation: &Operation,
     ) -> Result<(), WriteError> {
-        self.log(writer, time_ns, Level::Info, format!("{operation:?}"))
+        self.log(writer, time_ns, Level::Info, (self.words.operation)(operation))
     }
 
     fn log(&self, writer: &mut Writer, time_ns: u64, level: Level, message: String) -> Result<(), WriteError> {
@@ -139,26 +147,8 @@ impl OfSide {
         self.gates.values.extend([gates.gain, gates.stored_j, gates.withheld_n, gates.governed, number_of(tick.state)]);
         self.forces.write(writer, time_ns, true)?;
         self.poses.write(writer, time_ns, false)?;
-        self.gates.write(writer, time_ns, false)
-    }
-}
-
-impl Plot {
-    fn new(writer: &mut Writer, side: Side, what: &str, names: &[&str]) -> Result<Self, WriteError> {
-        let channel = writer.channel(&format!("{}/{what}", side.word()), JointStateEncoder::encoding())?;
-        let names: Vec<String> = names.iter().map(|name| format!("{}.{name}", side.word())).collect();
-        let names: Vec<&str> = names.iter().map(String::as_str).collect();
-        Ok(Self { channel, encoder: JointStateEncoder::new("world", &names), values: Vec::new() })
-    }
-
-    /// Writes the values and forgets them; forces are efforts.
-    fn write(&mut self, writer: &mut Writer, time_ns: u64, efforts: bool) -> Result<(), WriteError> {
-        let (position, effort) = if efforts { (&[][..], &self.values[..]) } else { (&self.values[..], &[][..]) };
-        if let Ok(message) = self.encoder.encode(time_ns, position, &[], effort) {
-            writer.message(self.channel, time_ns, message)?;
-        }
-        self.values.clear();
-        Ok(())
+        self.gates.write(writer, time_ns, false)?;
+        self.identified.tick(writer, time_ns, tick)
     }
 }
 

@@ -14,6 +14,7 @@ use nima_machine::{
 };
 use nima_recording::session::{ReadError, Reader, WriteError, Writer};
 use nima_session::{
+    Words,
     file::Recorded,
     recorder::{About, Attached, JOURNAL_TOPIC, Progress, RecordError, Recorder},
     replay::{Change, Outcome, ReplayError, compare, replay},
@@ -40,7 +41,7 @@ fn about() -> About {
             media_type: "application/toml".into(),
             data: b"name = \"x\"".into(),
         }],
-        words: |event| format!("{event:?}"),
+        words: Words { event: |event| format!("{event:?}"), operation: |operation| format!("{operation:?}") },
     }
 }
 

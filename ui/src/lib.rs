@@ -7,5 +7,6 @@ pub mod console;
 mod emulators;
 pub mod leaving;
 mod recording;
+mod report;
 pub mod telling;
 mod words;

@@ -8,10 +8,13 @@ use std::{
 
 use nima_machine::runtime::{Tap, tap};
 use nima_recording::store::utc_now;
-use nima_session::recorder::{About, Attached, RecordError, Recorder};
+use nima_session::{
+    Words,
+    recorder::{About, Attached, RecordError, Recorder},
+};
 use nima_world::Plan;
 
-use crate::words::event;
+use crate::words::{event, operation};
 
 /// Name and version of this program.
 pub(crate) const PROGRAM: &str = concat!("nima ", env!("CARGO_PKG_VERSION"));
@@ -52,6 +55,6 @@ fn about(plan: &Plan, clock: &str) -> About {
         started_ns,
         metadata: BTreeMap::from([("session".to_owned(), session)]),
         files: texts.into_iter().filter_map(file).collect(),
-        words: event,
+        words: Words { event, operation },
     }
 }

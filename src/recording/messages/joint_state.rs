@@ -20,7 +20,7 @@ uint32 nanosec
 ";
 
 /// Little-endian CDR, without options. Numbers are aligned from behind it.
-const REPRESENTATION: [u8; 4] = [0, 1, 0, 0];
+pub(super) const REPRESENTATION: [u8; 4] = [0, 1, 0, 0];
 /// Where the time stands.
 const STAMP: usize = REPRESENTATION.len();
 
@@ -110,73 +110,6 @@ impl JointStateEncoder {
     }
 }
 
-/// A message of named numbers, as it is read.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct JointState {
-    /// Time of its sample, ns.
-    pub time_ns: u64,
-    /// The coordinates that its values are in.
-    pub frame: String,
-    /// A name for each value.
-    pub names: Vec<String>,
-    /// One for each name, or none.
-    pub position: Vec<f64>,
-    /// The same.
-    pub velocity: Vec<f64>,
-    /// The same.
-    pub effort: Vec<f64>,
-}
-
-impl JointState {
-    /// Reads what [`JointStateEncoder`] writes; `None` for other bytes.
-    pub fn decode(message: &[u8]) -> Option<Self> {
-        let mut fields = Fields { bytes: message.strip_prefix(&REPRESENTATION)?, at: 0 };
-        let time_ns = u64::from(fields.u32()?) * 1_000_000_000 + u64::from(fields.u32()?);
-        let frame = fields.text()?;
-        let count = fields.u32()?;
-        let names = (0..count).map(|_| fields.text()).collect::<Option<Vec<_>>>()?;
-        let [position, velocity, effort] = [fields.numbers()?, fields.numbers()?, fields.numbers()?];
-        let fits = |list: &Vec<f64>| list.is_empty() || list.len() == names.len();
-        let whole = fits(&position) && fits(&velocity) && fits(&effort) && fields.at == fields.bytes.len();
-        whole.then_some(Self { time_ns, frame, names, position, velocity, effort })
-    }
-}
-
-/// CDR that is being read, behind its representation.
-struct Fields<'a> {
-    bytes: &'a [u8],
-    at: usize,
-}
-
-impl<'a> Fields<'a> {
-    fn take(&mut self, count: usize, alignment: usize) -> Option<&'a [u8]> {
-        let begin = self.at.next_multiple_of(alignment);
-        let taken = self.bytes.get(begin..begin.checked_add(count)?)?;
-        self.at = begin + count;
-        Some(taken)
-    }
-
-    fn u32(&mut self) -> Option<u32> {
-        self.take(4, 4)?.try_into().ok().map(u32::from_le_bytes)
-    }
-
-    fn text(&mut self) -> Option<String> {
-        let length = self.u32()? as usize;
-        let text = self.take(length, 1)?.strip_suffix(&[0])?;
-        str::from_utf8(text).ok().map(str::to_owned)
-    }
-
-    fn numbers(&mut self) -> Option<Vec<f64>> {
-        let count = self.u32()? as usize;
-        if count == 0 {
-            return Some(Vec::new());
-        }
-        let bytes = self.take(count.checked_mul(8)?, 8)?;
-        let number = |bytes: &[u8]| bytes.try_into().ok().map(f64::from_le_bytes);
-        bytes.chunks_exact(8).map(number).collect()
-    }
-}
-
 fn align(message: &mut Vec<u8>, to: usize) {
     let length = (message.len() - REPRESENTATION.len()).next_multiple_of(to);
     message.resize(REPRESENTATION.len() + length, 0);
@@ -229,27 +162,5 @@ mod tests {
             JointStateEncoder::new("", &[]).encode(0, &[], &[], &[]).unwrap().len(),
             4 + 8 + (4 + 1 + 3) + 4 + 3 * 4
         );
-    }
-
-    #[test]
-    fn what_was_encoded_is_read_to_the_last_bit_and_nothing_else_is() {
-        let mut encoder = JointStateEncoder::new("world", &["right.x_n", "right.y_n", "right.z_n"]);
-        let values = [0.1, -0.0, f64::MIN_POSITIVE / 3.0];
-        let message = encoder.encode(1_700_000_000_123_456_789, &values, &[], &[1.0, f64::INFINITY, 2.5]).unwrap();
-        let read = JointState::decode(message).unwrap();
-        assert_eq!(
-            (read.time_ns, read.frame.as_str(), read.names[2].as_str()),
-            (1_700_000_000_123_456_789, "world", "right.z_n")
-        );
-        assert_eq!(read.position.iter().map(|value| value.to_bits()).collect::<Vec<_>>(), values.map(f64::to_bits));
-        assert_eq!((read.velocity, read.effort), (vec![], vec![1.0, f64::INFINITY, 2.5]));
-        for length in 0..message.len() {
-            assert_eq!(JointState::decode(&message[..length]), None, "{length} bytes");
-        }
-        let longer = [message, &[0]].concat();
-        assert_eq!(JointState::decode(&longer), None);
-        let mut huge = message.to_vec();
-        huge[24..28].copy_from_slice(&u32::MAX.to_le_bytes());
-        assert_eq!(JointState::decode(&huge), None, "more names than there are bytes");
     }
 }

@@ -6,5 +6,7 @@
 
 pub mod foxglove;
 mod joint_state;
+mod joint_state_decoder;
 
-pub use joint_state::{JointState, JointStateEncoder, WrongLength};
+pub use joint_state::{JointStateEncoder, WrongLength};
+pub use joint_state_decoder::JointStateDecoder;

@@ -60,13 +60,7 @@ pub struct Block {
 
 impl Block {
     pub(super) fn take(from: &mut &[u8]) -> Result<Self, Wrong> {
-        let first_tick = take_number(from)?;
-        let rows = take_number(from)?;
-        let noted = take_number(from)?;
-        if rows.max(noted) > MOST {
-            return Err(Wrong::Long);
-        }
-        let noted = (0..noted).map(|_| take_noted(from)).collect::<Result<_, _>>()?;
+        let (first_tick, rows, noted) = take_head(from)?;
         let columns = Unpacked::of(from, Row::COLUMNS)?;
         let mut source = columns.rows();
         let mut row = || {
@@ -77,6 +71,28 @@ impl Block {
         source.end()?;
         Ok(Self { first_tick, noted, rows })
     }
+}
+
+/// What happened before which of the rows.
+type Before = Vec<(usize, Noted)>;
+
+/// Number of the first tick, number of rows, and what is noted.
+fn take_head(from: &mut &[u8]) -> Result<(u64, u64, Before), Wrong> {
+    let first_tick = take_number(from)?;
+    let rows = take_number(from)?;
+    let noted = take_number(from)?;
+    if rows.max(noted) > MOST {
+        return Err(Wrong::Long);
+    }
+    let noted = (0..noted).map(|_| take_noted(from)).collect::<Result<_, _>>()?;
+    Ok((first_tick, rows, noted))
+}
+
+/// Entries that were dropped, for each hole in the block with this body.
+pub(super) fn holes(mut body: &[u8]) -> Result<Vec<u64>, Wrong> {
+    let (.., noted) = take_head(&mut body)?;
+    let lost = |(_, noted): (usize, Noted)| if let Noted::Hole { lost } = noted { Some(lost) } else { None };
+    Ok(noted.into_iter().filter_map(lost).collect())
 }
 
 fn take_noted(from: &mut &[u8]) -> Result<(usize, Noted), Wrong> {

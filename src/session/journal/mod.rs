@@ -131,11 +131,59 @@ impl Encoder {
     }
 }
 
+/// What a message is, without its ticks and calibrations.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Outline {
+    /// What the loop was made of.
+    Start,
+    /// Calibrations that come into force later.
+    Calibrations,
+    /// Ticks.
+    Block {
+        /// Entries that were dropped, for each hole.
+        lost: Vec<u64>,
+    },
+    /// The recording was closed.
+    End(End),
+}
+
+/// The outline of the message of these bytes, for readers that do not replay it.
+///
+/// # Errors
+/// Those of [`decode`], except for ticks and calibrations, which are not read.
+pub fn outline(bytes: &[u8]) -> Result<Outline, JournalError> {
+    let (_, kind, body) = opened(bytes)?;
+    Ok(match kind {
+        START => Outline::Start,
+        CALIBRATIONS => Outline::Calibrations,
+        BLOCK => Outline::Block { lost: block::holes(body)? },
+        END => Outline::End(End::take(&mut &*body)?),
+        _ => return Err(Wrong::NoSuchValue.into()),
+    })
+}
+
 /// The message of these bytes, and its number.
 ///
 /// # Errors
 /// [`JournalError`] if they are none, or damaged.
 pub fn decode(bytes: &[u8]) -> Result<(u64, Message), JournalError> {
+    let (number, kind, mut body) = opened(bytes)?;
+    let body = &mut body;
+    let message = match kind {
+        START => Message::Start(Start::take(body)?),
+        CALIBRATIONS => {
+            let number = crate::codec::take_number(body)?;
+            Message::Calibrations { number, calibrations: parts::take_calibrations(body)? }
+        }
+        BLOCK => Message::Block(Block::take(body)?),
+        END => Message::End(End::take(body)?),
+        _ => return Err(Wrong::NoSuchValue.into()),
+    };
+    if body.is_empty() { Ok((number, message)) } else { Err(Wrong::Long.into()) }
+}
+
+/// Number, kind and body of a message.
+fn opened(bytes: &[u8]) -> Result<(u64, u8, &[u8]), JournalError> {
     let (head, content) = bytes.split_at_checked(HEAD).ok_or(JournalError::Foreign)?;
     if head[..4] != MAGIC {
         return Err(JournalError::Foreign);
@@ -148,17 +196,6 @@ pub fn decode(bytes: &[u8]) -> Result<(u64, Message), JournalError> {
         return Err(JournalError::Damaged);
     }
     let (number, rest) = content.split_first_chunk::<8>().ok_or(Wrong::Short)?;
-    let (kind, mut body) = rest.split_first().ok_or(Wrong::Short)?;
-    let body = &mut body;
-    let message = match *kind {
-        START => Message::Start(Start::take(body)?),
-        CALIBRATIONS => {
-            let number = crate::codec::take_number(body)?;
-            Message::Calibrations { number, calibrations: parts::take_calibrations(body)? }
-        }
-        BLOCK => Message::Block(Block::take(body)?),
-        END => Message::End(End::take(body)?),
-        _ => return Err(Wrong::NoSuchValue.into()),
-    };
-    if body.is_empty() { Ok((u64::from_le_bytes(*number), message)) } else { Err(Wrong::Long.into()) }
+    let (kind, body) = rest.split_first().ok_or(Wrong::Short)?;
+    Ok((u64::from_le_bytes(*number), *kind, body))
 }

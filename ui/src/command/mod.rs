@@ -10,8 +10,9 @@ mod evaluate;
 mod export;
 mod identify;
 mod motion;
-mod output;
+pub(crate) mod output;
 mod replay;
+mod report;
 mod run;
 mod sessions;
 mod setup;
@@ -49,6 +50,8 @@ enum Command {
     Export(export::Arguments),
     /// List the sessions that the console recorded, keep one or delete one
     Sessions(sessions::Arguments),
+    /// Write a page that tells what happened in recorded sessions, when, and what went wrong
+    Report(report::Arguments),
     /// Identify impedance on a recording, sample by sample, from past data only
     Identify(identify::Arguments),
     /// List connected devices and test them; for each failure, print its cause and what to do
@@ -103,6 +106,7 @@ pub fn main() -> ExitCode {
         Command::Replay(arguments) => replay::run(&arguments),
         Command::Export(arguments) => export::run(&arguments),
         Command::Sessions(arguments) => sessions::run(&arguments),
+        Command::Report(arguments) => report::run(&arguments),
         Command::Identify(arguments) => identify::run(&arguments),
         Command::Devices(arguments) => devices::run(&arguments),
         Command::Emulate(arguments) => emulate::run(&arguments),

@@ -27,13 +27,13 @@ pub(super) fn check(out: &Path, inputs: &[&Path]) -> anyhow::Result<()> {
 }
 
 /// Creates the folder for results if necessary, and checks that files of these names can be written into it.
-pub(super) fn folder(out: &Path, names: &[&str], inputs: &[&Path]) -> anyhow::Result<()> {
+pub(crate) fn folder(out: &Path, names: &[&str], inputs: &[&Path]) -> anyhow::Result<()> {
     std::fs::create_dir_all(out).with_context(|| format!("cannot create the folder {}", out.display()))?;
     names.iter().try_for_each(|name| check(&out.join(name), inputs))
 }
 
 /// Writes one result into its folder.
-pub(super) fn write(folder: &Path, name: &str, text: &str) -> anyhow::Result<()> {
+pub(crate) fn write(folder: &Path, name: &str, text: &str) -> anyhow::Result<()> {
     let path = folder.join(name);
     nima_files::write_atomically(&path, |file| file.write_all(text.as_bytes()))
         .with_context(|| format!("cannot write {}", path.display()))

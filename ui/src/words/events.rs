@@ -1,9 +1,9 @@
 //! Sentences for the events of the loop, for the log of a session.
 
 use nima_devices::Standing;
-use nima_machine::messages::Event;
+use nima_machine::{messages::Event, rig::DeviceEvent};
 
-use super::{Remedy as _, refused_because};
+use super::{Remedy as _, commands, refused_because};
 
 /// What happened.
 pub(crate) fn event(event: &Event) -> String {
@@ -13,19 +13,22 @@ pub(crate) fn event(event: &Event) -> String {
         }
         Event::FaultRaised { side, fault, .. } => format!("{} arm: fault: {}", side.word(), fault.cause()),
         Event::CommandRefused { side, command, why, .. } => {
-            format!("{} arm: refused {command:?}: {}", side.word(), refused_because(why))
+            format!("{} arm: refused: {}: {}", side.word(), commands::command(command), refused_because(why))
         }
-        Event::Device(device) => {
-            let standing = match device.standing {
-                Standing::Closed => "closed",
-                Standing::Opening => "is being opened",
-                Standing::Connected => "connected",
-                Standing::Lost(loss) => loss.cause(),
-            };
-            format!("device {}: {standing}", device.device)
-        }
+        Event::Device(event) => device(&event),
         Event::Scheduling(granted) => {
             granted.advice().map_or_else(|| "real-time scheduling granted".to_owned(), str::to_owned)
         }
     }
+}
+
+/// What became of a device.
+pub(super) fn device(event: &DeviceEvent) -> String {
+    let standing = match event.standing {
+        Standing::Closed => "closed",
+        Standing::Opening => "is being opened",
+        Standing::Connected => "connected",
+        Standing::Lost(loss) => loss.cause(),
+    };
+    format!("device {}: {standing}", event.device)
 }

@@ -5,6 +5,7 @@
 //! Causes are sentences; cures say what the operator can do; reasons start in lower case, because they follow a colon.
 
 mod calibration;
+mod commands;
 mod events;
 mod faults;
 mod force;
@@ -14,6 +15,7 @@ mod refusals;
 mod sides;
 
 pub(crate) use calibration::{drift, refusal};
+pub(crate) use commands::operation;
 pub(crate) use events::event;
 pub(crate) use frames::{axes_words, cause, phase};
 pub(crate) use ready::{ask_words, cause_words, check_name, figure_words, lacks_words, unit};

@@ -1,0 +1,284 @@
+//! The figures of one arm.
+
+use nalgebra::Vector3;
+use nima_core::{
+    impedance::{MAX_DEGREE, MODES, SLOTS},
+    safety::{GATES, Gate},
+};
+use serde::Serialize;
+
+use super::{
+    force::{ForceFigures, Measured},
+    trace::Trace,
+};
+
+/// Numbers of the states in the file that figures depend on.
+const ENGAGED: u8 = 3;
+/// States, from disconnected to faulted.
+pub const STATES: usize = 7;
+/// Samples this much farther apart do not follow each other, s: some are missing.
+const HOLE_S: f64 = 0.02;
+/// Columns of the degrees in the file: anchored, matched, nima, the paper's choice.
+pub const DEGREE_COLUMNS: [&str; 4] = ["anchored", "matched", "nima", "paper"];
+
+/// One state, from its beginning to its end.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Span {
+    /// Its number: 0 disconnected, 1 idle, 2 ready, 3 engaged, 4 clutched, 5 stopped, 6 faulted.
+    pub state: u8,
+    /// Its beginning, s from that of the session.
+    pub from_s: f64,
+    /// Its end, s.
+    pub to_s: f64,
+}
+
+/// What one gate did.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct GateShare {
+    /// The gate.
+    pub gate: Gate,
+    /// Share of the engaged time in which it acted, 0 to 1; the first gate: of all time.
+    pub share: f64,
+}
+
+/// What the identification and the network say of themselves, while engaged.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Identified {
+    /// Mean error at the horizon of each mode that was computed, N; the last one is the baseline.
+    pub error_n: [Option<f64>; SLOTS],
+    /// Shares of the degrees 0 to 5 for each of [`DEGREE_COLUMNS`], where they were computed.
+    pub degree_shares: [Option<[f64; MAX_DEGREE + 1]>; DEGREE_COLUMNS.len()],
+    /// Share of the time in which there was nothing to learn from, 0 to 1.
+    pub resting_share: f64,
+    /// The network, if there was one.
+    pub network: Option<NetworkFigures>,
+}
+
+/// How sure the network was, while engaged.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct NetworkFigures {
+    /// Its mean share in the force, 0 to 1.
+    pub share: f64,
+    /// Share of the time outside of its training, 0 to 1.
+    pub outside_share: f64,
+    /// Largest distance from its training, 1 at its limit.
+    pub doubt_max: f64,
+}
+
+/// All figures of an arm.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ArmFigures {
+    /// `right` or `left`.
+    pub side: &'static str,
+    /// Its states in order.
+    pub states: Vec<Span>,
+    /// Time in each state, s.
+    pub seconds: [f64; STATES],
+    /// Measured, delayed and rendered force while engaged.
+    pub forces: [Option<ForceFigures>; 3],
+    /// Lengths of these forces over time, N.
+    pub traces: [Trace; 3],
+    /// The gates.
+    pub gates: Vec<GateShare>,
+    /// Least energy that the hand might still get back, J.
+    pub stored_least_j: f64,
+    /// Mean force that the dead band withheld while engaged, N.
+    pub withheld_mean_n: f64,
+    /// The largest, N.
+    pub withheld_max_n: f64,
+    /// The identification, where the file has it.
+    pub identified: Option<Identified>,
+}
+
+/// Names of the forces in [`ArmFigures::forces`].
+pub const FORCES: [&str; 3] = ["measured", "delayed", "rendered"];
+
+/// Collects the figures of an arm.
+pub(super) struct Arm {
+    figures: ArmFigures,
+    period_s: f64,
+    forces: [Measured; 3],
+    newest: Option<(f64, [Vector3<f64>; 3])>,
+    last_s: Option<f64>,
+    last_engaged: bool,
+    ticks: u64,
+    engaged: u64,
+    acted: [u64; GATES],
+    withheld_sum_n: f64,
+    identified: Sampled,
+}
+
+impl Arm {
+    pub(super) fn new(side: &'static str, length_s: f64, period_s: f64) -> Self {
+        let figures = ArmFigures {
+            side,
+            states: Vec::new(),
+            seconds: [0.0; STATES],
+            forces: [None; 3],
+            traces: [0; 3].map(|_| Trace::over(length_s)),
+            gates: Vec::new(),
+            stored_least_j: f64::INFINITY,
+            withheld_mean_n: 0.0,
+            withheld_max_n: 0.0,
+            identified: None,
+        };
+        Self {
+            figures,
+            period_s,
+            forces: Default::default(),
+            newest: None,
+            last_s: None,
+            last_engaged: false,
+            ticks: 0,
+            engaged: 0,
+            acted: [0; GATES],
+            withheld_sum_n: 0.0,
+            identified: Sampled::default(),
+        }
+    }
+
+    /// Takes measured, delayed, asked and rendered force of a tick, N; its gates follow.
+    pub(super) fn forces(&mut self, t_s: f64, values: &[f64]) {
+        if let [mx, my, mz, dx, dy, dz, _, _, _, rx, ry, rz] = *values {
+            let forces = [Vector3::new(mx, my, mz), Vector3::new(dx, dy, dz), Vector3::new(rx, ry, rz)];
+            for (trace, force) in self.figures.traces.iter_mut().zip(&forces) {
+                trace.add(t_s, force.norm());
+            }
+            self.newest = Some((t_s, forces));
+        }
+    }
+
+    /// Takes the gates and the state of a tick.
+    pub(super) fn gates(&mut self, t_s: f64, values: &[f64]) {
+        let Some((acted, &[_gain, stored_j, withheld_n, _governed, state])) = values.split_at_checked(GATES) else {
+            return;
+        };
+        let state = (state as u8).min(STATES as u8 - 1);
+        let follows = self.last_s.is_some_and(|last_s| t_s - last_s < HOLE_S);
+        let dt_s = self.last_s.filter(|_| follows).map_or(self.period_s, |last_s| t_s - last_s);
+        self.last_s = Some(t_s);
+        self.state(t_s, dt_s, state, follows);
+        self.ticks += 1;
+        self.acted[Gate::Permission.index()] += u64::from(acted[Gate::Permission.index()] > 0.5);
+        let was_engaged = std::mem::replace(&mut self.last_engaged, state == ENGAGED);
+        if state != ENGAGED {
+            return;
+        }
+        self.engaged += 1;
+        for (count, acted) in self.acted.iter_mut().zip(acted).skip(1) {
+            *count += u64::from(*acted > 0.5);
+        }
+        self.figures.stored_least_j = self.figures.stored_least_j.min(stored_j);
+        self.figures.withheld_max_n = self.figures.withheld_max_n.max(withheld_n);
+        self.withheld_sum_n += withheld_n;
+        if let Some((_, forces)) = self.newest.filter(|&(of_s, _)| of_s.total_cmp(&t_s).is_eq()) {
+            for (measured, force_n) in self.forces.iter_mut().zip(forces) {
+                measured.add(t_s, dt_s, force_n, !(follows && was_engaged));
+            }
+        }
+    }
+
+    fn state(&mut self, t_s: f64, dt_s: f64, state: u8, follows: bool) {
+        self.figures.seconds[usize::from(state)] += dt_s;
+        match self.figures.states.last_mut() {
+            Some(span) if span.state == state && follows => span.to_s = t_s,
+            last => {
+                if let (Some(span), true) = (last, follows) {
+                    span.to_s = t_s;
+                }
+                self.figures.states.push(Span { state, from_s: t_s, to_s: t_s });
+            }
+        }
+    }
+
+    /// Takes what the identification says, ten times a second.
+    pub(super) fn identified(&mut self, values: &[f64]) {
+        self.identified.is_there = true;
+        if self.last_engaged {
+            self.identified.add(values);
+        }
+    }
+
+    pub(super) fn figures(self) -> ArmFigures {
+        let mut figures = self.figures;
+        figures.forces = self.forces.each_ref().map(Measured::figures);
+        let of_all = |gate: Gate| if gate == Gate::Permission { self.ticks } else { self.engaged };
+        let share = |gate: Gate| self.acted[gate.index()] as f64 / of_all(gate).max(1) as f64;
+        figures.gates = Gate::ALL.iter().map(|&gate| GateShare { gate, share: share(gate) }).collect();
+        figures.withheld_mean_n = self.withheld_sum_n / self.engaged.max(1) as f64;
+        if !figures.stored_least_j.is_finite() {
+            figures.stored_least_j = 0.0;
+        }
+        figures.identified = self.identified.figures();
+        figures
+    }
+}
+
+/// Sums of numbers that are there.
+#[derive(Clone, Copy, Debug, Default)]
+struct Mean {
+    sum: f64,
+    count: u64,
+}
+
+impl Mean {
+    fn add(&mut self, value: f64) {
+        if value.is_finite() {
+            self.sum += value;
+            self.count += 1;
+        }
+    }
+
+    fn mean(self) -> Option<f64> {
+        (self.count > 0).then(|| self.sum / self.count as f64)
+    }
+}
+
+/// What was sampled of the identification.
+#[derive(Clone, Debug, Default)]
+struct Sampled {
+    is_there: bool,
+    errors_n: [Mean; SLOTS],
+    degrees: [[u64; MAX_DEGREE + 1]; DEGREE_COLUMNS.len()],
+    resting: Mean,
+    network: [Mean; 2],
+    doubt_max: f64,
+}
+
+impl Sampled {
+    fn add(&mut self, values: &[f64]) {
+        let Some((errors_n, &[a, m, n, p, resting, share, outside, doubt])) = values.split_at_checked(MODES + 1) else {
+            return;
+        };
+        for (mean, error_n) in self.errors_n.iter_mut().zip(errors_n) {
+            mean.add(*error_n);
+        }
+        for (counts, degree) in self.degrees.iter_mut().zip([a, m, n, p]) {
+            if let Some(count) = counts.get_mut(degree as usize).filter(|_| degree >= 0.0) {
+                *count += 1;
+            }
+        }
+        self.resting.add(resting);
+        self.network[0].add(share);
+        self.network[1].add(outside);
+        self.doubt_max = self.doubt_max.max(doubt);
+    }
+
+    fn figures(&self) -> Option<Identified> {
+        let shares = |counts: &[u64; MAX_DEGREE + 1]| {
+            let total: u64 = counts.iter().sum();
+            (total > 0).then(|| counts.map(|count| count as f64 / total as f64))
+        };
+        let network = self.network[0].mean().map(|share| NetworkFigures {
+            share,
+            outside_share: self.network[1].mean().unwrap_or_default(),
+            doubt_max: self.doubt_max,
+        });
+        self.is_there.then(|| Identified {
+            error_n: self.errors_n.map(Mean::mean),
+            degree_shares: self.degrees.each_ref().map(shares),
+            resting_share: self.resting.mean().unwrap_or_default(),
+            network,
+        })
+    }
+}

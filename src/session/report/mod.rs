@@ -1,0 +1,288 @@
+//! The figures of a session, from what is plotted of it: nothing is replayed.
+
+mod arm;
+mod force;
+#[cfg(test)]
+mod tests;
+mod trace;
+
+use std::{collections::BTreeMap, path::Path};
+
+use nima_machine::rig::Side;
+use nima_recording::{
+    messages::{
+        JointStateDecoder,
+        foxglove::{Level, Log},
+    },
+    session::{Message, ReadError, Reader},
+};
+use prost::Message as _;
+use serde::Serialize;
+
+pub use arm::{ArmFigures, DEGREE_COLUMNS, FORCES, GateShare, Identified, NetworkFigures, STATES, Span};
+pub use force::ForceFigures;
+pub use trace::{BUCKETS, Trace};
+
+use crate::{
+    journal::{Outline, outline},
+    recorder::JOURNAL_TOPIC,
+    topics::{LOG_TOPIC, TIMES, TIMING_TOPIC},
+};
+use arm::Arm;
+
+/// Most notes on damage that are kept; the others are counted.
+const NOTES: usize = 20;
+
+/// Why a session has no report.
+#[derive(Debug, thiserror::Error)]
+pub enum ReportError {
+    /// The file cannot be read.
+    #[error(transparent)]
+    File(#[from] ReadError),
+    /// It holds nothing of ours.
+    #[error(
+        "{path} holds neither the journal nor the plots of a session of this program; give a file that `nima run --record` or the console wrote"
+    )]
+    Foreign {
+        /// The file.
+        path: String,
+    },
+}
+
+/// All figures of a session.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Figures {
+    /// Its file.
+    pub file: String,
+    /// What is wrong with the file or not in it, one line each.
+    pub notes: Vec<String>,
+    /// What the recorder says of the session: program, build, system, start, clock, rig, scene, seed and others.
+    pub about: BTreeMap<String, String>,
+    /// Tables of calibrations: `right`, `left`, and by number those that came into force later.
+    pub calibrations: BTreeMap<String, BTreeMap<String, String>>,
+    /// Length, s.
+    pub length_s: f64,
+    /// Whether the recording was closed; if not, the program was killed or the file was cut. None without a journal.
+    pub closed: Option<bool>,
+    /// Holes in the journal.
+    pub holes: Vec<Missing>,
+    /// Its arms.
+    pub arms: Vec<ArmFigures>,
+    /// What happened, in order.
+    pub marks: Vec<Mark>,
+    /// The timing of the loop, where the file has it.
+    pub timing: Option<Times>,
+}
+
+/// A hole in the journal.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Missing {
+    /// End of the block with the hole, s from the beginning of the session.
+    pub until_s: f64,
+    /// Entries that are missing.
+    pub lost: u64,
+}
+
+/// What happened once.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Mark {
+    /// When, s from the beginning of the session.
+    pub t_s: f64,
+    /// How much it matters: `error`, `warning` or `info`.
+    pub level: &'static str,
+    /// What.
+    pub words: String,
+}
+
+/// Timing of the loop.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Times {
+    /// Periods that were missed.
+    pub missed: u64,
+    /// The seconds in which some were missed: their ends, s, and how many.
+    pub missed_in: Vec<(f64, u64)>,
+    /// Median, 99 %, 99.9 % and largest, us, of waking up late, of the work, and from sample to force; none where nothing was timed.
+    pub times_us: [Option<[f64; 4]>; TIMES.len()],
+}
+
+impl Figures {
+    /// Reads a session.
+    ///
+    /// # Errors
+    /// [`ReportError`] if it is no session of this program.
+    pub fn read(path: &Path) -> Result<Self, ReportError> {
+        let reader = Reader::open(path)?;
+        Self::of(&path.display().to_string(), &reader)
+    }
+
+    fn of(file: &str, reader: &Reader) -> Result<Self, ReportError> {
+        let has = |topic: &str| reader.channels().iter().any(|channel| channel.topic == topic);
+        let sides: Vec<Side> =
+            Side::ALL.into_iter().filter(|side| has(&topic(*side, "forces")) && has(&topic(*side, "gates"))).collect();
+        if !has(JOURNAL_TOPIC) && sides.is_empty() {
+            return Err(ReportError::Foreign { path: file.to_owned() });
+        }
+        let mut figures = Self { file: file.to_owned(), notes: reader.notes().to_vec(), ..Self::default() };
+        figures.tables(reader);
+        let (first_ns, last_ns) = reader.times_ns().unwrap_or_default();
+        figures.length_s = last_ns.saturating_sub(first_ns) as f64 * 1e-9;
+        figures.closed = has(JOURNAL_TOPIC).then_some(false);
+        if sides.is_empty() {
+            figures.notes.push("it has no plots: forces, states and gates are not known".to_owned());
+        }
+        let rate_hz = figures.about.get("rate_hz").and_then(|rate| rate.parse().ok()).filter(|rate: &f64| *rate > 0.0);
+        let mut reading = Reading::new(reader, first_ns, &sides, figures.length_s, 1.0 / rate_hz.unwrap_or(1000.0));
+        reading.all(&mut figures);
+        figures.arms = reading.arms.into_iter().map(|(_, arm)| arm.figures()).collect();
+        if sides.iter().any(|side| !has(&topic(*side, "identification"))) || !has(TIMING_TOPIC) {
+            let note =
+                "an older version recorded it: errors of the modes, degrees, doubt and timing are not in the file";
+            figures.notes.push(note.to_owned());
+        }
+        Ok(figures)
+    }
+
+    fn tables(&mut self, reader: &Reader) {
+        match reader.metadata() {
+            Err(error) => self.notes.push(error.to_string()),
+            Ok(tables) => {
+                for (name, table) in tables {
+                    if let Some(of) = name.strip_prefix("calibrations ") {
+                        self.calibrations.insert(of.to_owned(), table);
+                    } else if name == "session" {
+                        self.about = table;
+                    }
+                }
+            }
+        }
+    }
+}
+
+fn topic(side: Side, what: &str) -> String {
+    format!("{}/{what}", side.word())
+}
+
+/// What a message is to an arm, or to all.
+#[derive(Clone, Copy)]
+enum Kind {
+    Forces(usize),
+    Gates(usize),
+    Identification(usize),
+    Timing,
+    Log,
+    Journal,
+}
+
+struct Channel {
+    id: nima_recording::session::ChannelId,
+    kind: Kind,
+    decoder: JointStateDecoder,
+}
+
+/// One pass over the file.
+struct Reading<'a> {
+    reader: &'a Reader,
+    first_ns: u64,
+    channels: Vec<Channel>,
+    arms: Vec<(Side, Arm)>,
+    damaged: usize,
+}
+
+impl<'a> Reading<'a> {
+    fn new(reader: &'a Reader, first_ns: u64, sides: &[Side], length_s: f64, period_s: f64) -> Self {
+        let mut kinds = vec![
+            (TIMING_TOPIC.to_owned(), Kind::Timing),
+            (LOG_TOPIC.to_owned(), Kind::Log),
+            (JOURNAL_TOPIC.to_owned(), Kind::Journal),
+        ];
+        for (arm, &side) in sides.iter().enumerate() {
+            kinds.push((topic(side, "forces"), Kind::Forces(arm)));
+            kinds.push((topic(side, "gates"), Kind::Gates(arm)));
+            kinds.push((topic(side, "identification"), Kind::Identification(arm)));
+        }
+        let of = |channel: &nima_recording::session::Channel| {
+            let &(_, kind) = kinds.iter().find(|(topic, _)| *topic == channel.topic)?;
+            Some(Channel { id: channel.id, kind, decoder: JointStateDecoder::default() })
+        };
+        let channels = reader.channels().iter().filter_map(of).collect();
+        let arms = sides.iter().map(|&side| (side, Arm::new(side.word(), length_s, period_s))).collect();
+        Self { reader, first_ns, channels, arms, damaged: 0 }
+    }
+
+    fn all(&mut self, figures: &mut Figures) {
+        let topics: Vec<&str> = self.reader.channels().iter().map(|channel| channel.topic.as_str()).collect();
+        let skipped = ["frames", "arrows", "right/poses", "left/poses"];
+        let topics: Vec<&str> = topics.into_iter().filter(|topic| !skipped.contains(topic)).collect();
+        for message in self.reader.messages(&topics, 0..u64::MAX) {
+            match message {
+                Ok(message) => self.message(&message, figures),
+                Err(error) => {
+                    self.damaged += 1;
+                    if self.damaged <= NOTES {
+                        figures.notes.push(error.to_string());
+                    }
+                }
+            }
+        }
+        if self.damaged > NOTES {
+            figures.notes.push(format!("{} more places are damaged", self.damaged - NOTES));
+        }
+    }
+
+    fn message(&mut self, message: &Message, figures: &mut Figures) {
+        let Some(channel) = self.channels.iter_mut().find(|channel| channel.id == message.channel()) else { return };
+        let t_s = message.log_time_ns().saturating_sub(self.first_ns) as f64 * 1e-9;
+        let data = message.data();
+        match channel.kind {
+            Kind::Journal => journal(t_s, data, figures),
+            Kind::Log => figures.marks.extend(mark(t_s, data)),
+            Kind::Timing if channel.decoder.decode(data) => timing(t_s, channel.decoder.values(), figures),
+            Kind::Forces(arm) if channel.decoder.decode(data) => self.arms[arm].1.forces(t_s, channel.decoder.values()),
+            Kind::Gates(arm) if channel.decoder.decode(data) => self.arms[arm].1.gates(t_s, channel.decoder.values()),
+            Kind::Identification(arm) if channel.decoder.decode(data) => {
+                self.arms[arm].1.identified(channel.decoder.values());
+            }
+            _ => {}
+        }
+    }
+}
+
+fn journal(t_s: f64, data: &[u8], figures: &mut Figures) {
+    match outline(data) {
+        Ok(Outline::Start | Outline::Calibrations) => {}
+        Ok(Outline::Block { lost }) => {
+            figures.holes.extend(lost.into_iter().map(|lost| Missing { until_s: t_s, lost }));
+        }
+        Ok(Outline::End(_)) => figures.closed = Some(true),
+        Err(error) => {
+            let note = format!("its journal: {error}");
+            // One line for all messages of another version.
+            if !figures.notes.contains(&note) {
+                figures.notes.push(note);
+            }
+        }
+    }
+}
+
+fn mark(t_s: f64, data: &[u8]) -> Option<Mark> {
+    let log = Log::decode(data).ok()?;
+    let level = match log.level {
+        level if level >= Level::Error as i32 => "error",
+        level if level == Level::Warning as i32 => "warning",
+        _ => "info",
+    };
+    Some(Mark { t_s, level, words: log.message })
+}
+
+fn timing(t_s: f64, values: &[f64], figures: &mut Figures) {
+    let Some((&missed, times_us)) = values.split_first() else { return };
+    let times = figures.timing.get_or_insert_default();
+    let missed = missed as u64;
+    if missed > times.missed {
+        times.missed_in.push((t_s, missed - times.missed));
+    }
+    times.missed = missed;
+    for (time_us, values) in times.times_us.iter_mut().zip(times_us.chunks_exact(4)) {
+        *time_us = values.try_into().ok().filter(|values: &[f64; 4]| values.iter().all(|value| value.is_finite()));
+    }
+}

@@ -1,0 +1,56 @@
+//! A quantity over time, small enough for a page: the smallest and the largest value of each bucket.
+
+use serde::Serialize;
+
+/// Buckets of a trace.
+pub const BUCKETS: usize = 600;
+
+/// The smallest and the largest value of each bucket; none where there is no value.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Trace {
+    /// Length of a bucket, s; the first begins with the session.
+    pub step_s: f64,
+    /// Smallest and largest value.
+    pub buckets: Vec<Option<[f64; 2]>>,
+}
+
+impl Trace {
+    /// For a session of this length.
+    pub(super) fn over(length_s: f64) -> Self {
+        Self { step_s: length_s.max(1e-3) / BUCKETS as f64, buckets: vec![None; BUCKETS] }
+    }
+
+    /// Takes a value; one that is not finite is left out.
+    pub(super) fn add(&mut self, t_s: f64, value: f64) {
+        if value.is_finite() {
+            let place = ((t_s / self.step_s).max(0.0) as usize).min(BUCKETS - 1);
+            let bucket = self.buckets[place].get_or_insert([value; 2]);
+            *bucket = [bucket[0].min(value), bucket[1].max(value)];
+        }
+    }
+
+    /// The largest value.
+    pub fn largest(&self) -> f64 {
+        self.buckets.iter().flatten().fold(0.0, |largest, bucket| bucket[1].max(largest))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn no_peak_is_lost() {
+        let mut trace = Trace::over(60.0);
+        for i in 0..60_000 {
+            trace.add(f64::from(i) * 1e-3, if i == 12_345 { 9.0 } else { 1.0 });
+        }
+        trace.add(1.0, f64::NAN);
+        trace.add(1e9, 2.0);
+        assert_eq!(
+            (trace.buckets[123], trace.buckets[122], trace.largest()),
+            (Some([1.0, 9.0]), Some([1.0, 1.0]), 9.0)
+        );
+        assert_eq!(trace.buckets[BUCKETS - 1], Some([1.0, 2.0]));
+    }
+}

@@ -1,0 +1,100 @@
+//! What the identification and the network say of themselves, ten times a second.
+
+use nima_core::{
+    impedance::{Mode, SLOTS},
+    tip_force::TipForceReport,
+};
+use nima_machine::{messages::Tick, rig::Side};
+use nima_recording::session::{WriteError, Writer};
+
+use super::plot::Plot;
+
+/// Written once per this time, s: an error is a mean over half a second.
+const EVERY_S: f64 = 0.1;
+/// Behind one for each mode, in the order of [`Mode::index`]. What is not computed is no number.
+const NAMES: [&str; 9] = [
+    "baseline.error_n",
+    "anchored.degree",
+    "matched.degree",
+    "nima.degree",
+    "paper.degree",
+    "resting",
+    "network.share",
+    "network.outside_share",
+    "network.doubt_max",
+];
+
+/// The channel of one arm.
+#[derive(Debug)]
+pub(super) struct Identified {
+    plot: Plot,
+    due_s: f64,
+    network: Network,
+}
+
+/// The network since the last message.
+#[derive(Debug, Default)]
+struct Network {
+    ticks: u32,
+    share: f64,
+    outside: u32,
+    doubt_max: f32,
+}
+
+impl Identified {
+    pub(super) fn new(writer: &mut Writer, side: Side) -> Result<Self, WriteError> {
+        let errors = Mode::ALL.map(|mode| format!("{}.error_n", mode.name()));
+        let names: Vec<&str> = errors.iter().map(String::as_str).chain(NAMES).collect();
+        let plot = Plot::of_side(writer, side, "identification", &names)?;
+        Ok(Self { plot, due_s: f64::NEG_INFINITY, network: Network::default() })
+    }
+
+    /// Takes a tick, and writes a message if one is due.
+    pub(super) fn tick(&mut self, writer: &mut Writer, time_ns: u64, tick: &Tick) -> Result<(), WriteError> {
+        if let Some(report) = &tick.force.tip_force {
+            self.network.add(report);
+        }
+        // A clock that went back begins anew.
+        if tick.t_s < self.due_s && tick.t_s > self.due_s - 2.0 * EVERY_S {
+            return Ok(());
+        }
+        self.due_s = tick.t_s + EVERY_S;
+        let report = &tick.identification;
+        let mut errors_n = [f64::NAN; SLOTS];
+        for mode in Mode::ALL.into_iter().chain(report.modes.baseline().map(Mode::Baseline)) {
+            if report.modes.contains(mode) {
+                errors_n[mode.index()] = report.horizon_error_n[mode.index()];
+            }
+        }
+        let compares = report.modes.contains(Mode::Literal);
+        let degree = |is_made: bool, degree: u8| if is_made { f64::from(degree) } else { f64::NAN };
+        self.plot.values.extend(errors_n);
+        self.plot.values.extend([
+            degree(report.modes.contains(Mode::Anchored), report.degree),
+            degree(report.modes.contains(Mode::Matched), report.matched_degree),
+            degree(report.modes.contains(Mode::Nima), report.nima_degree),
+            degree(compares, report.paper_degree),
+            f64::from(u8::from(report.resting)),
+        ]);
+        self.plot.values.extend(std::mem::take(&mut self.network).values());
+        self.plot.write(writer, time_ns, false)
+    }
+}
+
+impl Network {
+    fn add(&mut self, report: &TipForceReport) {
+        self.ticks += 1;
+        self.share += report.network_share;
+        self.outside += u32::from(report.extrapolates);
+        self.doubt_max = self.doubt_max.max(report.doubt);
+    }
+
+    /// Mean share in the force, share of the ticks outside its training, largest doubt; no numbers without a network.
+    fn values(&self) -> [f64; 3] {
+        if self.ticks == 0 {
+            return [f64::NAN; 3];
+        }
+        let ticks = f64::from(self.ticks);
+        [self.share / ticks, f64::from(self.outside) / ticks, f64::from(self.doubt_max)]
+    }
+}

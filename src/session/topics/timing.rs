@@ -1,0 +1,64 @@
+//! The timing of the loop, once a second: periods that were missed so far, and percentiles of all times so far.
+
+use nima_core::statistics::{Percentiles, Quantiles};
+use nima_machine::teleop::Timing;
+use nima_recording::session::{WriteError, Writer};
+
+use super::plot::Plot;
+
+/// Written once per this time, s.
+const EVERY_S: f64 = 1.0;
+/// Topic of the timing.
+pub(crate) const TIMING_TOPIC: &str = "timing";
+/// The times, each with `p50_us`, `p99_us`, `p999_us` and `max_us`.
+pub(crate) const TIMES: [&str; 3] = ["wake", "work", "sample_to_force"];
+
+/// The channel.
+#[derive(Debug)]
+pub(super) struct Times {
+    plot: Plot,
+    due_s: f64,
+    missed: u64,
+    durations: [Percentiles; TIMES.len()],
+}
+
+impl Times {
+    pub(super) fn new(writer: &mut Writer) -> Result<Self, WriteError> {
+        let of = |time: &str| ["p50_us", "p99_us", "p999_us", "max_us"].map(|what| format!("{time}.{what}"));
+        let names: Vec<String> =
+            std::iter::once("missed".to_owned()).chain(TIMES.iter().flat_map(|time| of(time))).collect();
+        let names: Vec<&str> = names.iter().map(String::as_str).collect();
+        let plot = Plot::new(writer, TIMING_TOPIC, &names)?;
+        Ok(Self { plot, due_s: EVERY_S, missed: 0, durations: Default::default() })
+    }
+
+    /// Takes a tick, and writes a message if one is due.
+    pub(super) fn tick(&mut self, writer: &mut Writer, time_ns: u64, timing: &Timing) -> Result<(), WriteError> {
+        let Timing { now_s, wake_s, work_s, sample_to_force_s, missed_now } = *timing;
+        self.missed += missed_now;
+        for (percentiles, time_s) in self.durations.iter_mut().zip([Some(wake_s), Some(work_s), sample_to_force_s]) {
+            if let Some(time_s) = time_s {
+                percentiles.record(time_s);
+            }
+        }
+        // A clock that went back begins anew.
+        if now_s < self.due_s && now_s > self.due_s - 2.0 * EVERY_S {
+            return Ok(());
+        }
+        self.due_s = now_s + EVERY_S;
+        self.plot.values.push(self.missed as f64);
+        for percentiles in &self.durations {
+            self.plot.values.extend(values(percentiles));
+        }
+        self.plot.write(writer, time_ns, false)
+    }
+}
+
+/// No numbers where nothing was timed.
+fn values(percentiles: &Percentiles) -> [f64; 4] {
+    if percentiles.count() == 0 {
+        return [f64::NAN; 4];
+    }
+    let Quantiles { p50, p99, p999, max } = percentiles.quantiles();
+    [p50, p99, p999, max]
+}

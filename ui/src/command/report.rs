@@ -1,0 +1,36 @@
+//! `nima report`: a page that tells what happened in a session, or compares several.
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+use super::output;
+use crate::{report, telling::tell};
+
+#[derive(Debug, Args)]
+pub(super) struct Arguments {
+    /// Session files that `nima run --record` or the console wrote; several are compared
+    #[arg(required = true, value_name = "SESSION.mcap")]
+    sessions: Vec<PathBuf>,
+    /// Write report.html into this folder (made if absent; replaces the file, whose mode stays; follows links; refuses inputs, devices and
+    /// pipes)
+    #[arg(long, value_name = "DIR", required_unless_present = "json")]
+    out: Option<PathBuf>,
+    /// Print the figures as one JSON object
+    #[arg(long)]
+    json: bool,
+}
+
+pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
+    let Arguments { sessions, out, json } = arguments;
+    if let (Some(out), false) = (out, json) {
+        let page = report::write(sessions, out)?;
+        return output::line(&format!("written: {}", page.display()));
+    }
+    let figures = report::read(sessions)?;
+    if let Some(out) = out {
+        let page = report::write_figures(&figures, sessions, out)?;
+        tell(format_args!("nima: written: {}", page.display()));
+    }
+    output::json(&serde_json::json!({ "sessions": figures }))
+}

@@ -1,0 +1,135 @@
+//! The report of sessions: one page that needs nothing beside it.
+
+mod arms;
+mod html;
+mod overall;
+mod plots;
+
+use std::{
+    fmt::Write as _,
+    path::{Path, PathBuf},
+};
+
+use anyhow::Context as _;
+use nima_session::report::Figures;
+
+use crate::command::output;
+use html::{escape, table};
+
+/// Name of the page in its folder.
+pub(crate) const PAGE: &str = "report.html";
+const STYLE: &str = include_str!("style.css");
+
+/// Reads the sessions and writes their page into this folder, which is made if it is missing.
+pub(crate) fn write(sessions: &[PathBuf], folder: &Path) -> anyhow::Result<PathBuf> {
+    write_figures(&read(sessions)?, sessions, folder)
+}
+
+/// The figures of these sessions.
+pub(crate) fn read(sessions: &[PathBuf]) -> anyhow::Result<Vec<Figures>> {
+    sessions.iter().map(|path| Ok(Figures::read(path)?)).collect()
+}
+
+/// Writes the page of these figures.
+pub(crate) fn write_figures(figures: &[Figures], sessions: &[PathBuf], folder: &Path) -> anyhow::Result<PathBuf> {
+    let inputs: Vec<&Path> = sessions.iter().map(PathBuf::as_path).collect();
+    output::folder(folder, &[PAGE], &inputs)?;
+    output::write(folder, PAGE, &page(figures)).context("the report")?;
+    Ok(folder.join(PAGE))
+}
+
+/// The whole page.
+fn page(sessions: &[Figures]) -> String {
+    let title = match sessions {
+        [one] => format!("Session {}", name(one)),
+        _ => format!("{} sessions", sessions.len()),
+    };
+    let mut page = format!(
+        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
+         <meta name=\"viewport\" content=\"width=device-width\">\n<title>{0}</title>\n<style>\n{STYLE}</style>\n</head>\n<body>\n<h1>{0}</h1>\n\
+         <p class=\"note\">NIMA Console, research use only. Forces are those of the tissue on the instrument's tip. Times are seconds \
+         from the beginning of the session.</p>\n",
+        escape(&title)
+    );
+    if sessions.len() > 1 {
+        page.push_str("<section>\n<h2>Comparison</h2>\n");
+        page.push_str(&overall::comparison(sessions));
+        page.push_str("</section>\n");
+    }
+    for session in sessions {
+        if sessions.len() > 1 {
+            writeln!(page, "<h1>Session {}</h1>", escape(&name(session))).ok();
+        }
+        page.push_str(&overall::summary(session));
+        for arm in &session.arms {
+            page.push_str(&arms::arm(session, arm));
+        }
+        page.push_str(&overall::timing(session));
+        page.push_str(&overall::marks(session));
+        page.push_str(&overall::calibrations(session));
+    }
+    page.push_str(&definitions());
+    page.push_str("</body>\n</html>\n");
+    page
+}
+
+/// Name of the session's file without its folder.
+fn name(session: &Figures) -> String {
+    Path::new(&session.file)
+        .file_name()
+        .map_or_else(|| session.file.clone(), |name| name.to_string_lossy().into_owned())
+}
+
+fn definitions() -> String {
+    let rows = [
+        ["peak, mean", "largest and mean length of the force vector"],
+        ["integral", "the length of the force, integrated over time"],
+        [
+            "force volume",
+            "volume of the ellipsoid whose half axes are the standard deviations of the force along its three principal axes \
+             (after Horeman et al. 2012, doi 10.1109/TOH.2011.60); zero if the force stays on a line or in a plane",
+        ],
+        [
+            "rate",
+            "change of the force vector from one sample to the next, over the time between them; sensor noise adds to it",
+        ],
+        [
+            "error at the horizon",
+            "how wrong each mode is about the force one link delay ahead; the delayed force is \"Direct (DFR)\"",
+        ],
+        ["gates", "the checks between a mode's force and the hand; each can reduce the force"],
+    ];
+    let rows: Vec<Vec<String>> = rows.iter().map(|row| row.iter().map(|cell| escape(cell)).collect()).collect();
+    format!("<section>\n<h2>Definitions</h2>\n{}</section>\n", table(&["word", "meaning"], &rows))
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeMap;
+
+    use nima_session::report::Mark;
+
+    use super::*;
+
+    fn session(rig: &str) -> Figures {
+        Figures {
+            file: format!("/tmp/{rig}.mcap"),
+            about: BTreeMap::from([("rig".to_owned(), rig.to_owned()), ("<k>".to_owned(), rig.to_owned())]),
+            calibrations: BTreeMap::from([(
+                rig.to_owned(),
+                BTreeMap::from([("network_tool".to_owned(), rig.to_owned())]),
+            )]),
+            notes: vec![rig.to_owned()],
+            marks: vec![Mark { t_s: 1.0, level: "error", words: rig.to_owned() }],
+            ..Figures::default()
+        }
+    }
+
+    #[test]
+    fn no_text_of_a_file_becomes_markup() {
+        let page = page(&[session("<script>alert('x')</script>"), session("a & \"b\"")]);
+        assert!(!page.contains("<script") && !page.contains("<k>"), "{page}");
+        assert!(page.contains("&lt;script&gt;") && page.contains("a &amp; &quot;b&quot;"), "{page}");
+        assert!(!page.contains("http://") && !page.contains("https://"), "nothing is loaded from elsewhere");
+    }
+}

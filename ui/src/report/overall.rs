@@ -1,0 +1,202 @@
+//! What the page says of a session as a whole, and of several beside each other.
+
+use std::fmt::Write as _;
+
+use nima_session::report::{ArmFigures, Figures, Mark};
+
+use super::{
+    html::{digits, escape, percent, table, time},
+    name,
+};
+
+/// Most rows of the list of what happened.
+const MARKS: usize = 1000;
+const ABOUT: [(&str, &str); 11] = [
+    ("started", "started (UTC)"),
+    ("program", "program"),
+    ("build", "build"),
+    ("system", "system"),
+    ("rig", "rig"),
+    ("scene", "scene"),
+    ("seed", "seed"),
+    ("clock", "clock"),
+    ("rate_hz", "rate (Hz)"),
+    ("mode", "mode at the start"),
+    ("delay_s", "delay of the link at the start (s)"),
+];
+
+/// What it is, and whether anything went wrong.
+pub(super) fn summary(session: &Figures) -> String {
+    let mut rows =
+        vec![vec!["file".to_owned(), escape(&session.file)], vec!["length".to_owned(), time(session.length_s)]];
+    for (key, words) in ABOUT {
+        if let Some(value) = session.about.get(key) {
+            rows.push(vec![words.to_owned(), escape(value)]);
+        }
+    }
+    rows.push(vec!["end".to_owned(), end(session).to_owned()]);
+    rows.push(vec!["holes in the journal".to_owned(), holes(session)]);
+    let faults = of_level(session, "error").count();
+    rows.push(vec!["faults".to_owned(), faults.to_string()]);
+    let mut out = format!(
+        "<section>\n<h2>What it is</h2>\n{}",
+        table(&["", ""], &rows).replace("<table>", "<table class=\"about\">")
+    );
+    for note in &session.notes {
+        writeln!(out, "<p class=\"warning\">Note: {}</p>", escape(note)).ok();
+    }
+    for fault in of_level(session, "error").take(10) {
+        writeln!(out, "<p class=\"error\">{}: {}</p>", time(fault.t_s), escape(&fault.words)).ok();
+    }
+    out.push_str("</section>\n");
+    out
+}
+
+fn end(session: &Figures) -> &'static str {
+    match session.closed {
+        Some(true) => "closed properly",
+        Some(false) => "not closed: the program was killed or the file was cut; the last half second may be missing",
+        None => "not known: there is no journal",
+    }
+}
+
+fn holes(session: &Figures) -> String {
+    if session.closed.is_none() {
+        return "not known".to_owned();
+    }
+    let told = session.holes.iter().map(|hole| format!("{} entries before {}", hole.lost, time(hole.until_s)));
+    let told: Vec<_> = told.collect();
+    if told.is_empty() { "none".to_owned() } else { told.join("; ") }
+}
+
+fn of_level<'a>(session: &'a Figures, level: &'a str) -> impl Iterator<Item = &'a Mark> {
+    session.marks.iter().filter(move |mark| mark.level == level)
+}
+
+/// Everything that happened, in order.
+pub(super) fn marks(session: &Figures) -> String {
+    let row = |mark: &Mark| vec![time(mark.t_s), mark.level.to_owned(), escape(&mark.words)];
+    let rows: Vec<_> = session.marks.iter().take(MARKS).map(row).collect();
+    let more = session.marks.len().saturating_sub(MARKS);
+    let more = if more == 0 { String::new() } else { format!("<p>{more} more are not listed; use --json</p>\n") };
+    let body = if rows.is_empty() {
+        "<p>Nothing was told.</p>\n".to_owned()
+    } else {
+        table(&["time", "level", "what"], &rows)
+    };
+    format!("<section>\n<h2>What happened</h2>\n{body}{more}</section>\n")
+}
+
+/// Calibrations that were in force.
+pub(super) fn calibrations(session: &Figures) -> String {
+    let mut rows = Vec::new();
+    for (of, table) in &session.calibrations {
+        let whose = match of.as_str() {
+            "right" | "left" => format!("{of}, from the start"),
+            number => format!("number {number}, put in force later"),
+        };
+        for (key, value) in table {
+            rows.push(vec![
+                escape(&whose),
+                escape(&key.replace('_', " ")),
+                format!("<pre>{}</pre>", escape(value.trim())),
+            ]);
+        }
+        if table.is_empty() {
+            rows.push(vec![escape(&whose), "none".to_owned(), String::new()]);
+        }
+    }
+    let body = if rows.is_empty() {
+        "<p>The file has no tables of calibrations.</p>\n".to_owned()
+    } else {
+        table(&["for", "what", "value"], &rows)
+    };
+    format!("<section>\n<h2>Calibrations in force</h2>\n{body}</section>\n")
+}
+
+/// Periods missed, and percentiles.
+pub(super) fn timing(session: &Figures) -> String {
+    let Some(timing) = &session.timing else { return String::new() };
+    let names = ["woken late (us)", "work of a tick (us)", "sample to force (us)"];
+    let row = |(name, times): (&&str, &Option<[f64; 4]>)| {
+        let times = times.map_or_else(|| [const { String::new() }; 4], |times| times.map(digits));
+        std::iter::once((*name).to_owned()).chain(times).collect()
+    };
+    let rows: Vec<Vec<String>> = names.iter().zip(&timing.times_us).map(row).collect();
+    let missed: Vec<_> = timing
+        .missed_in
+        .iter()
+        .take(20)
+        .map(|(until_s, missed)| format!("{missed} before {}", time(*until_s)))
+        .collect();
+    let missed = if missed.is_empty() { String::new() } else { format!(": {}", missed.join(", ")) };
+    let clock = if session.about.get("clock").is_some_and(|clock| clock == "virtual") {
+        "<p class=\"note\">On the virtual clock nothing is late.</p>\n"
+    } else {
+        ""
+    };
+    format!(
+        "<section>\n<h2>Timing</h2>\n<p>Periods missed: {}{missed}</p>\n{}{clock}</section>\n",
+        timing.missed,
+        table(&["", "median", "99 %", "99.9 %", "largest"], &rows)
+    )
+}
+
+/// A column for each session.
+pub(super) fn comparison(sessions: &[Figures]) -> String {
+    let names: Vec<String> = sessions.iter().map(|session| escape(&name(session))).collect();
+    let heads: Vec<&str> = std::iter::once("").chain(names.iter().map(String::as_str)).collect();
+    let about = |key: &'static str| {
+        move |session: &Figures| session.about.get(key).map_or_else(|| "-".to_owned(), |value| escape(value))
+    };
+    let mut rows = vec![
+        row("started (UTC)", sessions, about("started")),
+        row("length", sessions, |session| time(session.length_s)),
+        row("rig", sessions, about("rig")),
+        row("scene", sessions, about("scene")),
+        row("mode at the start", sessions, about("mode")),
+        row("delay at the start (s)", sessions, about("delay_s")),
+        row("end", sessions, |session| end(session).split(':').next().unwrap_or_default().to_owned()),
+        row("faults", sessions, |session| of_level(session, "error").count().to_string()),
+        row("periods missed", sessions, |session| {
+            session.timing.as_ref().map_or_else(|| "-".to_owned(), |of| of.missed.to_string())
+        }),
+    ];
+    for side in ["right", "left"] {
+        rows.extend(of_arm(side, sessions));
+    }
+    table(&heads, &rows)
+}
+
+/// A number of an arm, where there is one.
+type OfArm = (&'static str, fn(&ArmFigures) -> Option<String>);
+
+const OF_ARM: [OfArm; 8] = [
+    ("engaged (s)", |arm| Some(format!("{:.1}", arm.seconds[3]))),
+    ("measured peak (N)", |arm| arm.forces[0].map(|force| digits(force.peak_n))),
+    ("measured mean (N)", |arm| arm.forces[0].map(|force| digits(force.mean_n))),
+    ("force volume (N<sup>3</sup>)", |arm| arm.forces[0].map(|force| digits(force.volume_n3))),
+    ("rendered peak (N)", |arm| arm.forces[2].map(|force| digits(force.peak_n))),
+    ("rendered mean (N)", |arm| arm.forces[2].map(|force| digits(force.mean_n))),
+    ("rendered rate RMS (N/s)", |arm| arm.forces[2].map(|force| digits(force.rate_rms_n_s))),
+    ("ceiling acted", |arm| {
+        Some(percent(arm.gates.iter().find(|of| of.gate == nima_core::safety::Gate::Ceiling)?.share))
+    }),
+];
+
+fn of_arm(side: &'static str, sessions: &[Figures]) -> Vec<Vec<String>> {
+    let arm = |session: &Figures| session.arms.iter().find(|arm| arm.side == side).cloned();
+    if !sessions.iter().any(|session| arm(session).is_some()) {
+        return Vec::new();
+    }
+    let figure = |(words, figure): &OfArm| {
+        row(&format!("{side}: {words}"), sessions, |session| {
+            arm(session).and_then(|arm| figure(&arm)).unwrap_or_else(|| "-".to_owned())
+        })
+    };
+    OF_ARM.iter().map(figure).collect()
+}
+
+fn row(words: &str, sessions: &[Figures], figure: impl Fn(&Figures) -> String) -> Vec<String> {
+    std::iter::once(words.to_owned()).chain(sessions.iter().map(figure)).collect()
+}

@@ -1,0 +1,90 @@
+//! Sentences for what is done to the loop: commands of the operator, devices, calibrations.
+
+use nima_core::impedance::Mode;
+use nima_machine::{
+    messages::{Command, Watchdog},
+    runtime::Operation,
+};
+
+use super::events::device;
+use crate::console::mode_name;
+
+/// What was done to the loop.
+pub(crate) fn operation(operation: &Operation) -> String {
+    match *operation {
+        Operation::Command { command: of, .. } => format!("command: {}", command(of)),
+        Operation::Device(event) => device(&event),
+        Operation::Suspend(side) => format!("{} arm: calibrations suspended, the sensor is not known", side.word()),
+        Operation::Calibrations { side, number } => {
+            format!("{} arm: calibrations number {number} handed to the loop", side.word())
+        }
+        Operation::Stall { silent_s, .. } => format!("the loop was silent for {:.0} ms", silent_s * 1e3),
+    }
+}
+
+/// What the operator asked for.
+pub(crate) fn command(command: Command) -> String {
+    match command {
+        Command::SetMode(mode) => format!("mode {}", name_of(mode)),
+        Command::Compare(true) => "compute all modes to compare them".to_owned(),
+        Command::Compare(false) => "compute the mode in use only".to_owned(),
+        Command::SetGain(gain) => format!("gain {gain:.2}"),
+        Command::SetGainAboveOne(gain) => format!("gain {gain:.2}, confirmed above 1"),
+        Command::SetDelay(delay_s) => format!("delay of the link {:.0} ms", delay_s * 1e3),
+        Command::SetDeadBand(speed_m_s) => format!("dead band {:.1} mm/s", speed_m_s * 1e3),
+        Command::SetStaticHold(true) => "keep the force at standstill".to_owned(),
+        Command::SetStaticHold(false) => "fade the force out at standstill".to_owned(),
+        Command::Prompt(side, _) => format!("instruction to the person at the {} arm", side.word()),
+        Command::Guide(Some(at_m)) => {
+            let [x, y, z] = [at_m.x, at_m.y, at_m.z].map(|m| m * 1e3);
+            format!("lead the handle to {x:.0}, {y:.0}, {z:.0} mm")
+        }
+        Command::Guide(None) => "lead the handle no longer".to_owned(),
+        Command::LetGo(true) => "the simulated hand lets go".to_owned(),
+        Command::LetGo(false) => "the simulated hand takes hold".to_owned(),
+        Command::SetGovernor(true) => "governor on".to_owned(),
+        Command::SetGovernor(false) => "governor off".to_owned(),
+        Command::SetScale(scale) => format!("scale of motion {scale:.2}"),
+        Command::Engage => "engage".to_owned(),
+        Command::EngageOne(side) => format!("engage the {} arm", side.word()),
+        Command::Rest => "rest".to_owned(),
+        Command::Stop => "stop".to_owned(),
+        Command::ReleaseStop => "release the stop".to_owned(),
+        Command::TestWatchdog(watchdog) => format!("fire the watchdog of the {}", watched(watchdog)),
+        Command::Checked(true) => "the ready check of today has passed".to_owned(),
+        Command::Checked(false) => "no ready check of today has passed".to_owned(),
+        Command::Shutdown => "end the loop".to_owned(),
+    }
+}
+
+fn name_of(mode: Mode) -> String {
+    format!("\"{}\"", mode_name(mode))
+}
+
+const fn watched(watchdog: Watchdog) -> &'static str {
+    match watchdog {
+        Watchdog::Loop => "loop",
+        Watchdog::Source => "measurements",
+        Watchdog::Link => "link",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::Vector3;
+    use nima_machine::rig::Side;
+
+    use super::*;
+
+    #[test]
+    fn commands_are_told_in_words_with_their_values() {
+        let told = |of: Command| operation(&Operation::Command { command: of, t_s: 1.0 });
+        assert_eq!(told(Command::SetMode(Mode::Dfr)), "command: mode \"Direct (DFR)\"");
+        assert_eq!(told(Command::SetDelay(0.05)), "command: delay of the link 50 ms");
+        assert_eq!(
+            told(Command::Guide(Some(Vector3::new(0.01, 0.0, -0.002)))),
+            "command: lead the handle to 10, 0, -2 mm"
+        );
+        assert_eq!(told(Command::EngageOne(Side::Left)), "command: engage the left arm");
+    }
+}

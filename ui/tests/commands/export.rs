@@ -2,7 +2,7 @@
 use std::{collections::BTreeMap, path::Path};
 
 use nima_recording::{
-    messages::JointState,
+    messages::JointStateDecoder,
     session::{Encoding, Reader, Writer},
 };
 use serde_json::Value;
@@ -31,9 +31,9 @@ fn record(path: &str, scene: &str, seconds: &str) {
 /// What a topic of an arm says at each time: values by their names.
 fn values(reader: &Reader, topic: &str) -> BTreeMap<u64, BTreeMap<String, f64>> {
     let message = |message: nima_recording::session::Message| {
-        let JointState { names, position, effort, .. } = JointState::decode(message.data()).unwrap();
-        let values = if effort.is_empty() { position } else { effort };
-        (message.log_time_ns(), names.into_iter().zip(values).collect())
+        let mut read = JointStateDecoder::default();
+        assert!(read.decode(message.data()), "{topic}");
+        (message.log_time_ns(), read.names().iter().cloned().zip(read.values().iter().copied()).collect())
     };
     reader.messages(&[topic], 0..u64::MAX).map(|read| message(read.unwrap())).collect()
 }

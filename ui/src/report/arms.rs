@@ -110,13 +110,18 @@ fn identification(of: &Identified) -> String {
     };
     let names = Mode::ALL.iter().map(|mode| mode_name(*mode)).chain(["the rig's method of others"]);
     let rows: Vec<_> = names.zip(&of.error_n).filter_map(|(name, error_n)| row(name, error_n)).collect();
+    if rows.is_empty() {
+        return "<p>No mode predicted a force.</p>\n".to_owned();
+    }
     let mut out = table(&["mode, where computed", "mean error at the horizon (N)", "over direct (DFR)"], &rows);
     let shares = |(name, shares): (&&str, &Option<[f64; 6]>)| {
         let shares = (*shares)?;
         Some(std::iter::once((*name).to_owned()).chain(shares.map(percent)).collect())
     };
     let rows: Vec<Vec<String>> = DEGREE_COLUMNS.iter().zip(&of.degree_shares).filter_map(shares).collect();
-    out.push_str(&table(&["degree chosen by", "none", "1", "2", "3", "4", "5"], &rows));
+    if !rows.is_empty() {
+        out.push_str(&table(&["degree chosen by", "none", "1", "2", "3", "4", "5"], &rows));
+    }
     writeln!(out, "<p>Without contact, so that nothing was learnt: {} of engaged time.</p>", percent(of.resting_share))
         .ok();
     if let Some(network) = of.network {

@@ -80,7 +80,7 @@ pub(super) fn marks(session: &Figures) -> String {
     let more = session.marks.len().saturating_sub(MARKS);
     let more = if more == 0 { String::new() } else { format!("<p>{more} more are not listed; use --json</p>\n") };
     let body = if rows.is_empty() {
-        "<p>Nothing was told.</p>\n".to_owned()
+        "<p>No event and no command was recorded.</p>\n".to_owned()
     } else {
         table(&["time", "level", "what"], &rows)
     };

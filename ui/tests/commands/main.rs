@@ -14,6 +14,7 @@ mod hostile_files;
 mod installed;
 mod paper_rig;
 mod replay;
+mod report;
 mod sessions;
 mod study;
 mod words;

@@ -92,8 +92,10 @@ impl Chunk {
         Ok(Closed { bytes, chunk, indexes, compressed, uncompressed, times_ns, messages })
     }
 
+    /// In the smallest blocks, linked, which make the file 0.1 % larger than those of 1 MB: whoever reads it takes buffers of three blocks for
+    /// each chunk, and a report of ten minutes spent two thirds of its time on their pages.
     fn compress(&self, into: Vec<u8>) -> io::Result<Vec<u8>> {
-        let info = FrameInfo::new().block_size(BlockSize::Max1MB).block_mode(BlockMode::Linked);
+        let info = FrameInfo::new().block_size(BlockSize::Max64KB).block_mode(BlockMode::Linked);
         let mut encoder = FrameEncoder::with_frame_info(info, into);
         encoder.write_all(&self.raw)?;
         encoder.finish().map_err(io::Error::other)

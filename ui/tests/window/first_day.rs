@@ -18,6 +18,7 @@ const WIDTH: usize = 1600;
 /// Colour of the button that stands out (`theme::Palette::primary`), and fewer pixels of it than any such button has.
 const NEXT: [u8; 3] = [0x24, 0x62, 0xc8];
 const PIXELS_MIN: usize = 600;
+const CHECKS_MAX: usize = 3;
 /// A step that nothing follows for so long has failed.
 const PATIENCE: Duration = Duration::from_mins(4);
 
@@ -72,6 +73,15 @@ impl<'a> Day<'a> {
         entries.into_iter().flatten().flatten().map(|entry| entry.path()).collect()
     }
 
+    /// The records of the ready checks so far.
+    fn checks(&self) -> Vec<String> {
+        self.files("checks").iter().map(|path| std::fs::read_to_string(path).unwrap()).collect()
+    }
+
+    fn is_ready(&self) -> bool {
+        self.checks().iter().any(|record| record.contains("passed = true"))
+    }
+
     fn has_all_calibrations(&self) -> bool {
         let names: Vec<_> = self.files("calibrations").iter().map(|path| path.display().to_string()).collect();
         let kinds =
@@ -98,12 +108,11 @@ fn from_an_empty_folder_to_both_arms_engaged() {
         day.click(EMULATED_RIG);
         day.follow("the calibrations", Day::has_all_calibrations);
         println!("calibrated after {:.0} s and {} clicks", began.elapsed().as_secs_f64(), day.clicks.get());
-        // From the last page straight to the ready check and through it: its stop and its releases stand out too.
-        day.follow("the ready check", |day| !day.files("checks").is_empty());
-        let record = std::fs::read_to_string(&day.files("checks")[0]).unwrap();
-        // A machine that is too busy for the rates does not pass, and is not judged.
-        if !record.contains("passed = true") {
-            println!("{record}");
+        // From the last page straight to the ready check and through it: its stop and its releases stand out too. What fails is checked
+        // again, as its cure says; a machine that is too busy for the rates never passes, and is not judged.
+        day.follow("the ready check", |day| day.checks().len() >= CHECKS_MAX || day.is_ready());
+        if !day.is_ready() {
+            println!("{}", day.checks().join("\n\n"));
             nima_testing::real_time::too_busy();
         }
         day.follow("the monitor", |day| day.next().is_none());

@@ -29,4 +29,4 @@ pub mod scribe;
 pub mod shelf;
 mod topics;
 
-pub use topics::Words;
+pub use topics::{STATES, Words};

@@ -7,17 +7,14 @@ use std::{
 
 use nalgebra::Vector3;
 use nima_core::impedance::{AXES, Sample};
-use nima_machine::{
-    messages::{Fault, LoopState},
-    rig::Side,
-};
+use nima_machine::rig::Side;
 use nima_recording::{
     csv::{Recording, RecordingError},
     messages::JointStateDecoder,
     session::{Message, ReadError, Reader},
 };
 
-use crate::cut::BEGINNING;
+use crate::{cut::BEGINNING, topics::STATES};
 
 /// Why the plots of a session cannot be read.
 #[derive(Debug, thiserror::Error)]
@@ -182,15 +179,6 @@ fn value(of: &JointStateDecoder, arm: Side, name: &str) -> Option<f64> {
 
 /// The word of a state, from its number in the plots.
 fn state(number: f64) -> Option<&'static str> {
-    let states = [
-        LoopState::Disconnected,
-        LoopState::Idle,
-        LoopState::Ready,
-        LoopState::Engaged,
-        LoopState::Clutched,
-        LoopState::Stopped,
-        LoopState::Faulted(Fault::OtherArm),
-    ];
     let index = (number >= 0.0 && number.fract() == 0.0).then_some(number as usize)?;
-    states.get(index).map(|state| state.word())
+    STATES.get(index).map(|state| state.word())
 }

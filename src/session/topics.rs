@@ -7,7 +7,7 @@ mod timing;
 
 use nima_core::safety::{Gate, State};
 use nima_machine::{
-    messages::{Event, LoopState, Tick},
+    messages::{Event, Fault, LoopState, Tick},
     rig::{SIDES, Side},
     runtime::{Operation, Stepped},
 };
@@ -152,7 +152,17 @@ impl OfSide {
     }
 }
 
-/// The state as a number, in the order of a session.
+/// The states in the order of a session, one fault for all: a state is plotted as its place here.
+pub const STATES: [LoopState; 7] = [
+    State::Disconnected,
+    State::Idle,
+    State::Ready,
+    State::Engaged,
+    State::Clutched,
+    State::Stopped,
+    State::Faulted(Fault::OtherArm),
+];
+
 const fn number_of(state: LoopState) -> f64 {
     match state {
         State::Disconnected => 0.0,
@@ -162,5 +172,15 @@ const fn number_of(state: LoopState) -> f64 {
         State::Clutched => 4.0,
         State::Stopped => 5.0,
         State::Faulted(_) => 6.0,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_state_is_plotted_as_its_place() {
+        assert_eq!(STATES.map(|state| number_of(state) as usize), [0, 1, 2, 3, 4, 5, 6]);
     }
 }

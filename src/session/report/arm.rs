@@ -15,7 +15,7 @@ use super::{
 /// Numbers of the states in the file that figures depend on.
 const ENGAGED: u8 = 3;
 /// States, from disconnected to faulted.
-pub const STATES: usize = 7;
+pub const STATES: usize = crate::topics::STATES.len();
 /// Samples this much farther apart do not follow each other, s: some are missing.
 const HOLE_S: f64 = 0.02;
 /// Columns of the degrees in the file: anchored, matched, nima, the paper's choice.

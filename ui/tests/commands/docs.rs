@@ -8,7 +8,6 @@ use std::{
 };
 
 use nima_core::{impedance::Mode, safety::Gate};
-use nima_machine::messages::{Fault, LoopState};
 
 fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap().to_path_buf()
@@ -132,18 +131,9 @@ fn every_file_that_the_pages_name_is_there() {
 #[test]
 fn the_glossary_has_every_gate_mode_and_state() {
     let glossary = std::fs::read_to_string(root().join("docs/glossary.md")).unwrap();
-    let states = [
-        LoopState::Disconnected,
-        LoopState::Idle,
-        LoopState::Ready,
-        LoopState::Engaged,
-        LoopState::Clutched,
-        LoopState::Stopped,
-        LoopState::Faulted(Fault::OtherArm),
-    ];
     let gates = Gate::ALL.into_iter().map(|gate| format!("| `{}` |", gate.name()));
     let modes = Mode::ALL.into_iter().chain(Mode::BASELINES).map(|mode| format!("| `{}` |", mode.name()));
-    let states = states.into_iter().map(|state| format!("| {} |", state.word()));
+    let states = nima_session::STATES.into_iter().map(|state| format!("| {} |", state.word()));
     let missing: Vec<String> =
         gates.chain(modes).chain(states).filter(|row| !glossary.contains(row.as_str())).collect();
     assert!(missing.is_empty(), "not in docs/glossary.md: {missing:?}");

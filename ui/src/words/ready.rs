@@ -196,7 +196,10 @@ pub(crate) fn cause_words(cause: &Cause, roster: &Roster) -> [String; 2] {
         }
         Cause::NoRigFile => ["The rig file cannot be read", "Put the rig file back, then start the console again"],
         Cause::NoStop => ["No stop was seen", STOP_CURE],
-        Cause::NotReleased => {
+        Cause::NotReleased(Some(why)) => {
+            return [format!("The release was refused: {}", refused_because(why)), capital(cure_of_refusal(why))];
+        }
+        Cause::NotReleased(None) => {
             ["The stop or the fault was not released in time", "Press Release stop, then check again"]
         }
         Cause::NoBite(Watchdog::Loop) => {

@@ -194,6 +194,7 @@ impl Bench {
             Ask::Release => self.control.obey(Command::ReleaseStop, now_s),
             Ask::Nothing | Ask::LeaveAlone(_) | Ask::LetGo(_) => {}
         }
+        self.control.events().for_each(|event| self.session.event(event));
     }
 
     /// 1 mm in 10 ms.

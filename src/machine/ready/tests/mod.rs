@@ -172,7 +172,14 @@ fn a_dead_stop_fails_and_a_second_look_after_its_repair_keeps_the_rest() {
 
 #[test]
 fn a_stop_that_the_loop_does_not_release_fails_with_its_reason() {
-    let mut bench = Bench::new(subject(), Flaws { silent_when_stopped: true, ..Flaws::default() });
+    let late = Flaws { silent_when_stopped: true, obeys: |ask| *ask != Ask::Release, ..Flaws::default() };
+    let mut bench = Bench::new(subject(), late);
+    while bench.session.ask() != Ask::Release {
+        bench.step();
+    }
+    // Until the loop knows that nothing is measured any more.
+    (0..500).for_each(|_| bench.step());
+    bench.flaws.obeys = |_| true;
     bench.run();
     let cause = Cause::NotReleased(Some(Refusal::StillPresent(Fault::SourceSilent)));
     assert_eq!(state_of(&bench.session, Check::Stop), State::Failed(cause));

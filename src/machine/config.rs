@@ -1,5 +1,6 @@
 //! Rig files (TOML). An unknown key is an error.
 
+mod anonymous;
 mod files;
 mod identification;
 mod mounted;
@@ -18,6 +19,7 @@ use nima_core::{
 use nima_recording::store::ReadyRecord;
 use serde::{Deserialize, Serialize};
 
+pub use anonymous::ANONYMOUS;
 pub(crate) use files::parse_with;
 pub use files::{ConfigError, Ranges, parse, text};
 pub use identification::Identification;

@@ -3,14 +3,14 @@
 //! A journal can be replayed from its beginning only: a stretch that begins with the first tick keeps it up to the cut, any other one
 //! leaves it out.
 
-use std::{collections::BTreeMap, ops::Range, path::Path};
+use std::{collections::BTreeMap, io, ops::Range, path::Path};
 
 use nima_recording::session::{ChannelId, ReadError, Reader, WriteError, Writer};
 
 use crate::{plotted, recorder::JOURNAL_TOPIC};
 
 /// The table that tells where a stretch was cut from.
-const TABLE: &str = "cut";
+pub(crate) const TABLE: &str = "cut";
 /// In it: when the session began, ns, so that times stay those of the whole session.
 pub(crate) const BEGINNING: &str = "session_begins_ns";
 const SESSION: &str = "session";
@@ -24,6 +24,9 @@ pub enum CutError {
     /// The stretch cannot be written.
     #[error(transparent)]
     Write(#[from] WriteError),
+    /// The times of its file cannot be set.
+    #[error("the times of the file cannot be set")]
+    Times(#[source] io::Error),
 }
 
 /// What was written.
@@ -104,6 +107,7 @@ fn journal(reader: &Reader, start_ns: u64) -> Result<Kept, ReadError> {
     Ok(if is_first { Kept::Yes } else { Kept::LeftOut })
 }
 
+/// The table of a stretch of the session with this name.
 fn table(
     name: &str,
     begin_ns: u64,
@@ -111,18 +115,22 @@ fn table(
     journal: Kept,
     before: Option<&BTreeMap<String, String>>,
 ) -> BTreeMap<String, String> {
+    // A stretch of a stretch is one of the session.
+    let session = before.and_then(|before| before.get(SESSION)).map_or(name, String::as_str);
+    let mut table = stretch(begin_ns, times_ns);
+    for (key, value) in [(SESSION, session), ("journal", journal.word())] {
+        table.insert(key.to_owned(), value.to_owned());
+    }
+    table
+}
+
+/// The table of a stretch: its times (s) in a session that begins at `begin_ns`.
+pub(crate) fn stretch(begin_ns: u64, times_ns: &Range<u64>) -> BTreeMap<String, String> {
     let seconds = |time_ns: u64| match time_ns {
         u64::MAX => "the end".to_owned(),
         time_ns => (time_ns.saturating_sub(begin_ns) as f64 / 1e9).to_string(),
     };
-    // A stretch of a stretch is one of the session.
-    let session = before.and_then(|before| before.get(SESSION)).map_or(name, String::as_str);
-    let entries = [
-        (SESSION, session.to_owned()),
-        ("from_s", seconds(times_ns.start)),
-        ("to_s", seconds(times_ns.end)),
-        (BEGINNING, begin_ns.to_string()),
-        ("journal", journal.word().to_owned()),
-    ];
+    let entries =
+        [("from_s", seconds(times_ns.start)), ("to_s", seconds(times_ns.end)), (BEGINNING, begin_ns.to_string())];
     entries.into_iter().map(|(key, value)| (key.to_owned(), value)).collect()
 }

@@ -1,7 +1,8 @@
 //! What is plotted of a session: forces, poses and gates of each arm, and what happened.
 
 mod identification;
-mod plot;
+pub(crate) mod plot;
+pub(crate) mod redrawn;
 mod scene;
 mod timing;
 
@@ -16,6 +17,7 @@ use nima_recording::{
     session::{ChannelId, WriteError, Writer},
 };
 
+pub(crate) use scene::{ARROWS_TOPIC, FRAMES_TOPIC};
 pub(crate) use timing::{TIMES, TIMING_TOPIC};
 
 use self::{identification::Identified, plot::Plot, scene::Scene, timing::Times};
@@ -68,11 +70,33 @@ const POSES: [&str; 6] = ["tip.x_m", "tip.y_m", "tip.z_m", "leader.x_m", "leader
 /// Beside one for each gate: 1 where it acted.
 const OF_GATES: [&str; 5] = ["gain", "stored_j", "withheld_n", "governed", "state"];
 
+/// Every topic of named numbers of this program: its name, the names of its numbers, and whether they are forces.
+pub(crate) fn plots() -> Vec<(String, Vec<String>, bool)> {
+    let of_side = |side: Side| {
+        let parts = [
+            ("forces", FORCES.map(str::to_owned).to_vec(), true),
+            ("poses", POSES.map(str::to_owned).to_vec(), false),
+            ("gates", gates().map(str::to_owned).collect(), false),
+            ("identification", identification::names(), false),
+        ];
+        parts.map(|(what, names, forces)| {
+            let names = names.iter().map(|name| format!("{}.{name}", side.word())).collect();
+            (format!("{}/{what}", side.word()), names, forces)
+        })
+    };
+    let timing = (TIMING_TOPIC.to_owned(), timing::names(), false);
+    Side::ALL.into_iter().flat_map(of_side).chain([timing]).collect()
+}
+
+fn gates() -> impl Iterator<Item = &'static str> {
+    Gate::ALL.iter().map(|gate| gate.name()).chain(OF_GATES)
+}
+
 impl Topics {
     pub(crate) fn new(writer: &mut Writer, sides: [bool; SIDES], words: Words) -> Result<Self, WriteError> {
         let mut of = [None, None];
         for side in Side::ALL.into_iter().filter(|side| sides[side.index()]) {
-            let gates: Vec<&str> = Gate::ALL.iter().map(|gate| gate.name()).chain(OF_GATES).collect();
+            let gates: Vec<&str> = gates().collect();
             let mut plot = |what: &str, names: &[&str]| Plot::of_side(writer, side, what, names);
             of[side.index()] = Some(OfSide {
                 forces: plot("forces", &FORCES)?,
@@ -124,15 +148,20 @@ impl Topics {
     }
 
     fn log(&self, writer: &mut Writer, time_ns: u64, level: Level, message: String) -> Result<(), WriteError> {
-        let log = Log {
-            timestamp: Some(foxglove::Timestamp::of_ns(time_ns)),
-            level: level as i32,
-            message,
-            name: "nima".to_owned(),
-            ..Log::default()
-        };
-        writer.message(self.log, time_ns, &prost::Message::encode_to_vec(&log))
+        writer.message(self.log, time_ns, &line(time_ns, level, message))
     }
+}
+
+/// A line of the log.
+pub(crate) fn line(time_ns: u64, level: Level, message: String) -> Vec<u8> {
+    let log = Log {
+        timestamp: Some(foxglove::Timestamp::of_ns(time_ns)),
+        level: level as i32,
+        message,
+        name: "nima".to_owned(),
+        ..Log::default()
+    };
+    prost::Message::encode_to_vec(&log)
 }
 
 impl OfSide {

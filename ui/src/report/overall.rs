@@ -2,7 +2,10 @@
 
 use std::fmt::Write as _;
 
-use nima_session::report::{ArmFigures, Figures, Mark};
+use nima_session::{
+    anonymous::ANONYMOUS,
+    report::{ArmFigures, Figures, Mark},
+};
 
 use super::{
     html::{digits, escape, percent, table, time},
@@ -28,7 +31,7 @@ const ABOUT: [(&str, &str); 11] = [
 /// What it is, and whether anything went wrong.
 pub(super) fn summary(session: &Figures) -> String {
     let mut rows =
-        vec![vec!["file".to_owned(), escape(&session.file)], vec!["length".to_owned(), time(session.length_s)]];
+        vec![vec!["file".to_owned(), escape(&name(session))], vec!["length".to_owned(), time(session.length_s)]];
     for (key, words) in ABOUT {
         if let Some(value) = session.about.get(key) {
             rows.push(vec![words.to_owned(), escape(value)]);
@@ -42,6 +45,11 @@ pub(super) fn summary(session: &Figures) -> String {
         "<section>\n<h2>What it is</h2>\n{}",
         table(&["", ""], &rows).replace("<table>", "<table class=\"about\">")
     );
+    if session.about.contains_key(ANONYMOUS) {
+        out.push_str(
+            "<p class=\"note\">An anonymous session: names, devices, calibrations, the journal and the date were left out.</p>\n",
+        );
+    }
     for note in &session.notes {
         writeln!(out, "<p class=\"warning\">Note: {}</p>", escape(note)).ok();
     }

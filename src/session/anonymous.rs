@@ -19,7 +19,7 @@ use crate::{
     cut::{self, CutError, stretch},
     plotted,
     recorder::Attached,
-    topics::{ARROWS_TOPIC, FRAMES_TOPIC, LOG_TOPIC, line, plot::Plot, plots, redrawn},
+    topics::{ALARM_LINE, ARROWS_TOPIC, FRAMES_TOPIC, LINE, LOG_TOPIC, MARK_LINE, line, plot::Plot, plots, redrawn},
 };
 
 /// Stands for what is withheld.
@@ -139,7 +139,8 @@ impl Topic {
                     return Ok(());
                 }
                 // Other columns are left out.
-                let column = |(name, value): (&String, &f64)| Some((names.iter().find(|known| *known == name)?, *value));
+                let column =
+                    |(name, value): (&String, &f64)| Some((names.iter().find(|known| *known == name)?, *value));
                 let columns: Vec<(&String, f64)> =
                     decoder.names().iter().zip(decoder.values()).filter_map(column).collect();
                 if columns.is_empty() {
@@ -167,8 +168,9 @@ impl Topic {
             Self::Log(channel) => {
                 if let Ok(log) = Log::decode(data) {
                     let level = Level::try_from(log.level).unwrap_or(Level::Info);
+                    let name = [MARK_LINE, ALARM_LINE].into_iter().find(|name| *name == log.name).unwrap_or(LINE);
                     let words = if (known.is_ours)(&log.message) { log.message } else { WITHHELD.to_owned() };
-                    writer.message(*channel, time_ns, &line(time_ns, level, words))?;
+                    writer.message(*channel, time_ns, &line(time_ns, level, name, words))?;
                 }
             }
         }

@@ -20,6 +20,8 @@ use nima_recording::{
 pub(crate) use scene::{ARROWS_TOPIC, FRAMES_TOPIC};
 pub(crate) use timing::{TIMES, TIMING_TOPIC};
 
+use crate::recorder::{Note, NoteKind};
+
 use self::{identification::Identified, plot::Plot, scene::Scene, timing::Times};
 
 /// Sentences of the log.
@@ -33,6 +35,12 @@ pub struct Words {
 
 /// Topic of the log.
 pub(crate) const LOG_TOPIC: &str = "log";
+/// Names of its lines: of the loop, ...
+pub(crate) const LINE: &str = "nima";
+/// ... a moment that the operator marked, ...
+pub(crate) const MARK_LINE: &str = "mark";
+/// ... and an alarm of the screen.
+pub(crate) const ALARM_LINE: &str = "alarm";
 
 /// The channels of what is plotted.
 #[derive(Debug)]
@@ -148,17 +156,28 @@ impl Topics {
     }
 
     fn log(&self, writer: &mut Writer, time_ns: u64, level: Level, message: String) -> Result<(), WriteError> {
-        writer.message(self.log, time_ns, &line(time_ns, level, message))
+        writer.message(self.log, time_ns, &line(time_ns, level, LINE, message))
+    }
+
+    /// Writes what a screen adds to the log.
+    pub(crate) fn note(&self, writer: &mut Writer, time_ns: u64, note: Note) -> Result<(), WriteError> {
+        let Note { kind, warns, words } = note;
+        let level = if warns { Level::Warning } else { Level::Info };
+        let name = match kind {
+            NoteKind::Mark => MARK_LINE,
+            NoteKind::Alarm => ALARM_LINE,
+        };
+        writer.message(self.log, time_ns, &line(time_ns, level, name, words))
     }
 }
 
 /// A line of the log.
-pub(crate) fn line(time_ns: u64, level: Level, message: String) -> Vec<u8> {
+pub(crate) fn line(time_ns: u64, level: Level, name: &str, message: String) -> Vec<u8> {
     let log = Log {
         timestamp: Some(foxglove::Timestamp::of_ns(time_ns)),
         level: level as i32,
         message,
-        name: "nima".to_owned(),
+        name: name.to_owned(),
         ..Log::default()
     };
     prost::Message::encode_to_vec(&log)

@@ -26,7 +26,7 @@ pub use trace::{BUCKETS, Trace};
 use crate::{
     journal::{Outline, outline},
     recorder::JOURNAL_TOPIC,
-    topics::{LOG_TOPIC, TIMES, TIMING_TOPIC},
+    topics::{LOG_TOPIC, MARK_LINE, TIMES, TIMING_TOPIC},
 };
 use arm::Arm;
 
@@ -88,7 +88,7 @@ pub struct Missing {
 pub struct Mark {
     /// When, s from the beginning of the session.
     pub t_s: f64,
-    /// How much it matters: `error`, `warning` or `info`.
+    /// How much it matters: `error`, `warning` or `info`; `mark` for a moment that the operator marked.
     pub level: &'static str,
     /// What.
     pub words: String,
@@ -267,6 +267,7 @@ fn journal(t_s: f64, data: &[u8], figures: &mut Figures) {
 fn mark(t_s: f64, data: &[u8]) -> Option<Mark> {
     let log = Log::decode(data).ok()?;
     let level = match log.level {
+        _ if log.name == MARK_LINE => "mark",
         level if level >= Level::Error as i32 => "error",
         level if level == Level::Warning as i32 => "warning",
         _ => "info",

@@ -41,6 +41,11 @@ pub(super) fn summary(session: &Figures) -> String {
     rows.push(vec!["holes in the journal".to_owned(), holes(session)]);
     let faults = of_level(session, "error").count();
     rows.push(vec!["faults".to_owned(), faults.to_string()]);
+    let marked: Vec<_> = of_level(session, "mark").take(20).map(|mark| time(mark.t_s)).collect();
+    rows.push(vec![
+        "marks of the operator".to_owned(),
+        if marked.is_empty() { "none".into() } else { marked.join(", ") },
+    ]);
     let mut out = format!(
         "<section>\n<h2>What it is</h2>\n{}",
         table(&["", ""], &rows).replace("<table>", "<table class=\"about\">")

@@ -19,6 +19,7 @@ use nima_machine::{
 use nima_session::STATES;
 
 use super::{commands::operation, events::event};
+use crate::console::sessions;
 
 /// The lines of the log that are free of names.
 pub(crate) struct Lines(BTreeSet<String>);
@@ -39,6 +40,7 @@ impl Lines {
         lines.extend(granted.map(|(fifo, memory_locked)| {
             shape(&event(&Event::Scheduling(Scheduling { fifo, deadline: false, memory_locked })))
         }));
+        lines.extend(sessions::lines().iter().map(|line| shape(line)));
         Self(lines)
     }
 
@@ -178,11 +180,14 @@ mod tests {
             "command: lead the handle to 10, 0, -2 mm",
             "right arm: refused: engage the right arm: nobody holds the handle",
             "the loop was silent for 612 ms",
+            "mark 12",
+            "alarm: The control loop misses 2.4 % of its periods",
+            "alarm over: No ready check of the last 12 hours has passed with these devices",
         ] {
             assert!(lines.has(line), "{line}");
         }
         for line in
-            ["", "command: gain high", "command: gain 0.35 by Jane", "Jane: from Ready to Engaged"]
+            ["", "command: gain high", "command: gain 0.35 by Jane", "Jane: from Ready to Engaged", "mark of Jane"]
         {
             assert!(!lines.has(line), "{line}");
         }

@@ -3,9 +3,10 @@
 //! Nothing is copied. Messages of known topics are made anew from their numbers, under this program's own names and with times that begin
 //! in 1970; everything else is left out. So what a later version adds to a session stays out until it is handled here.
 
-use std::{collections::BTreeMap, fs, ops::Range, path::Path, time::UNIX_EPOCH};
+use std::{collections::BTreeMap, fs, ops::Range, path::Path, sync::atomic::AtomicBool, time::UNIX_EPOCH};
 
 use nima_core::impedance::Mode;
+use nima_machine::rig::Side;
 use nima_recording::{
     messages::{
         JointStateDecoder,
@@ -17,6 +18,7 @@ use prost::Message as _;
 
 use crate::{
     cut::{self, CutError, stretch},
+    kept::{FIGURES, VERDICTS, verdicts},
     plotted,
     recorder::Attached,
     topics::{ALARM_LINE, ARROWS_TOPIC, FRAMES_TOPIC, LINE, LOG_TOPIC, MARK_LINE, line, plot::Plot, plots, redrawn},
@@ -29,6 +31,8 @@ pub const ANONYMOUS: &str = "anonymous";
 /// The table of the session, and the entries of it that are kept as they are where their value is one of these.
 const TABLE: &str = "session";
 const WORDS: [(&str, &[&str]); 2] = [("clock", &["real", "virtual"]), ("build", &["debug", "release"])];
+/// The tables of calibrations begin with this.
+const CALIBRATIONS: &str = "calibrations ";
 /// And those that are kept where they are numbers.
 const NUMBERS: [&str; 2] = ["rate_hz", "delay_s"];
 
@@ -49,15 +53,24 @@ impl std::fmt::Debug for Known<'_> {
 }
 
 /// Writes what is not personal of the messages between these times (ns) into a new file, and returns how many messages there are in it.
+/// `asked` ends it early.
 ///
 /// # Errors
 /// [`CutError`] if the session cannot be read or the file cannot be written; it is to be deleted then.
-pub fn write(reader: &Reader, known: &Known<'_>, times_ns: &Range<u64>, to: &Path) -> Result<u64, CutError> {
+pub fn write(
+    reader: &Reader,
+    known: &Known<'_>,
+    times_ns: &Range<u64>,
+    to: &Path,
+    asked: &AtomicBool,
+) -> Result<u64, CutError> {
     let begin_ns = plotted::beginning_ns(reader)?;
     let mut writer = Writer::create(to, known.program)?;
     for (name, entries) in reader.metadata()? {
         if name == TABLE {
             writer.metadata(TABLE, &about(&entries))?;
+        } else if name.strip_prefix(CALIBRATIONS).is_some_and(is_ours) {
+            writer.metadata(&name, &kept(&entries, &VERDICTS.map(|key| (key, verdicts().collect())), &FIGURES))?;
         }
     }
     writer
@@ -72,7 +85,7 @@ pub fn write(reader: &Reader, known: &Known<'_>, times_ns: &Range<u64>, to: &Pat
         }
     }
     for message in reader.messages(&[], times_ns.clone()) {
-        let message = message?;
+        let message = cut::unless(asked, message)?;
         if let Some(topic) = topics.get_mut(&message.channel()) {
             topic.pass(&mut writer, since(message.log_time_ns(), begin_ns), &message, known)?;
         }
@@ -90,13 +103,25 @@ const fn since(time_ns: u64, begin_ns: u64) -> u64 {
 
 /// The entries of the table of a session that tell nothing of persons, places and dates.
 fn about(table: &BTreeMap<String, String>) -> BTreeMap<String, String> {
-    let words = WORDS
-        .iter()
-        .filter_map(|(key, words)| Some((*key, table.get(*key).filter(|has| words.contains(&&***has))?.clone())));
-    let number = |key: &'static str| Some((key, table.get(key)?.parse::<f64>().ok()?.to_string()));
+    let words = WORDS.map(|(key, words)| (key, words.to_vec()));
     let mode = table.get("mode").and_then(|mode| mode.parse::<Mode>().ok()).map(|mode| ("mode", mode.to_string()));
-    let kept = words.chain(NUMBERS.into_iter().filter_map(number)).chain(mode);
-    kept.chain([(ANONYMOUS, "yes".to_owned())]).map(|(key, value)| (key.to_owned(), value)).collect()
+    let mut about = kept(table, &words, &NUMBERS);
+    about.extend(mode.into_iter().chain([(ANONYMOUS, "yes".to_owned())]).map(|(key, value)| (key.to_owned(), value)));
+    about
+}
+
+/// The entries of a table with these keys: those whose values are among these words, and those that are numbers.
+fn kept(table: &BTreeMap<String, String>, words: &[(&str, Vec<&str>)], numbers: &[&str]) -> BTreeMap<String, String> {
+    let word = |(key, words): &(&str, Vec<&str>)| {
+        Some(((*key).to_owned(), table.get(*key).filter(|value| words.contains(&value.as_str()))?.clone()))
+    };
+    let number = |key: &&str| Some(((*key).to_owned(), table.get(*key)?.parse::<f64>().ok()?.to_string()));
+    words.iter().filter_map(word).chain(numbers.iter().filter_map(number)).collect()
+}
+
+/// Whether calibrations are those of a side, or have a number.
+fn is_ours(of: &str) -> bool {
+    Side::ALL.iter().any(|side| side.word() == of) || of.parse::<u32>().is_ok()
 }
 
 /// A topic that is written anew.

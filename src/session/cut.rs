@@ -3,9 +3,15 @@
 //! A journal can be replayed from its beginning only: a stretch that begins with the first tick keeps it up to the cut, any other one
 //! leaves it out.
 
-use std::{collections::BTreeMap, io, ops::Range, path::Path};
+use std::{
+    collections::BTreeMap,
+    io,
+    ops::Range,
+    path::Path,
+    sync::atomic::{AtomicBool, Ordering},
+};
 
-use nima_recording::session::{ChannelId, ReadError, Reader, WriteError, Writer};
+use nima_recording::session::{ChannelId, Message, ReadError, Reader, WriteError, Writer};
 
 use crate::{plotted, recorder::JOURNAL_TOPIC};
 
@@ -27,6 +33,9 @@ pub enum CutError {
     /// The times of its file cannot be set.
     #[error("the times of the file cannot be set")]
     Times(#[source] io::Error),
+    /// The process was asked to end.
+    #[error("ended as asked: nothing was written")]
+    Asked,
 }
 
 /// What was written.
@@ -60,11 +69,17 @@ impl Kept {
 }
 
 /// Writes the messages between these times (ns) into a new file, with all attachments and tables. `name` is what the session is called
-/// in the table that tells where the stretch was cut from.
+/// in the table that tells where the stretch was cut from. `asked` ends it early.
 ///
 /// # Errors
 /// [`CutError`] if the session cannot be read or the file cannot be written; it is to be deleted then.
-pub fn write(reader: &Reader, name: &str, times_ns: &Range<u64>, to: &Path) -> Result<Cut, CutError> {
+pub fn write(
+    reader: &Reader,
+    name: &str,
+    times_ns: &Range<u64>,
+    to: &Path,
+    asked: &AtomicBool,
+) -> Result<Cut, CutError> {
     let begin_ns = plotted::beginning_ns(reader)?;
     let journal = journal(reader, times_ns.start)?;
     // What the loop was made of stands before the first tick.
@@ -87,12 +102,17 @@ pub fn write(reader: &Reader, name: &str, times_ns: &Range<u64>, to: &Path) -> R
         }
     }
     for message in reader.messages(&[], start_ns..times_ns.end) {
-        let message = message?;
+        let message = unless(asked, message)?;
         if let Some(channel) = channels.get(&message.channel()) {
             writer.message(*channel, message.log_time_ns(), message.data())?;
         }
     }
     Ok(Cut { messages: writer.finish()?.messages, journal })
+}
+
+/// The message, unless the process was asked to end.
+pub(crate) fn unless(asked: &AtomicBool, message: Result<Message, ReadError>) -> Result<Message, CutError> {
+    if asked.load(Ordering::Relaxed) { Err(CutError::Asked) } else { Ok(message?) }
 }
 
 /// Whether the journal can be kept by a stretch that begins here.

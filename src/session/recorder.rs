@@ -240,8 +240,9 @@ impl Session {
         let sides = origin.calibrations.each_ref().map(Option::is_some);
         let of = |(side, known): (Side, &Option<Calibrations>)| Some((side, described(known.as_ref()?)));
         let known: Vec<_> = Side::ALL.into_iter().zip(&origin.calibrations).filter_map(of).collect();
+        let devices = origin.rig.device_names();
         let (scribe, first) = Scribe::new(&Start { program: about.program.clone(), origin })?;
-        let mut file = SessionFile::create(path, about, &known, sides)?;
+        let mut file = SessionFile::create(path, about, &known, sides, devices)?;
         file.write(&first)?;
         file.writer.flush()?;
         Ok(Self { scribe, file, noted, waiting: None })
@@ -305,6 +306,7 @@ impl SessionFile {
         about: About,
         known: &[(Side, BTreeMap<String, String>)],
         sides: [bool; SIDES],
+        devices: Vec<String>,
     ) -> Result<Self, RecordError> {
         let About { program, started_ns, metadata, files, words } = about;
         let mut writer = Writer::create(path, &program)?;
@@ -325,7 +327,7 @@ impl SessionFile {
             message_encoding: JOURNAL_ENCODING.to_owned(),
         };
         let journal = writer.channel(JOURNAL_TOPIC, encoding)?;
-        let topics = Topics::new(&mut writer, sides, words)?;
+        let topics = Topics::new(&mut writer, sides, words, devices)?;
         Ok(Self { writer, journal, topics, started_ns, blocks: 0 })
     }
 

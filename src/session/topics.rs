@@ -1,5 +1,6 @@
 //! What is plotted of a session: forces, poses and gates of each arm, and what happened.
 
+pub(crate) mod columns;
 mod identification;
 pub(crate) mod plot;
 pub(crate) mod redrawn;
@@ -27,10 +28,10 @@ use self::{identification::Identified, plot::Plot, scene::Scene, timing::Times};
 /// Sentences of the log.
 #[derive(Clone, Copy, Debug)]
 pub struct Words {
-    /// For what the loop tells.
-    pub event: fn(&Event) -> String,
-    /// For what is done to the loop.
-    pub operation: fn(&Operation) -> String,
+    /// For what the loop tells, with the names of the rig's devices in the order of its roster.
+    pub event: fn(&Event, &[String]) -> String,
+    /// For what is done to the loop, with the same names.
+    pub operation: fn(&Operation, &[String]) -> String,
 }
 
 /// Topic of the log.
@@ -50,6 +51,7 @@ pub(crate) struct Topics {
     times: Times,
     log: ChannelId,
     words: Words,
+    devices: Vec<String>,
 }
 
 #[derive(Debug)]
@@ -76,7 +78,7 @@ const FORCES: [&str; 12] = [
 ];
 const POSES: [&str; 6] = ["tip.x_m", "tip.y_m", "tip.z_m", "leader.x_m", "leader.y_m", "leader.z_m"];
 /// Beside one for each gate: 1 where it acted.
-const OF_GATES: [&str; 5] = ["gain", "stored_j", "withheld_n", "governed", "state"];
+const OF_GATES: [&str; 5] = ["gain_value", "stored_j", "withheld_n", "governed", "state"];
 
 /// Every topic of named numbers of this program: its name, the names of its numbers, and whether they are forces.
 pub(crate) fn plots() -> Vec<(String, Vec<String>, bool)> {
@@ -101,7 +103,12 @@ fn gates() -> impl Iterator<Item = &'static str> {
 }
 
 impl Topics {
-    pub(crate) fn new(writer: &mut Writer, sides: [bool; SIDES], words: Words) -> Result<Self, WriteError> {
+    pub(crate) fn new(
+        writer: &mut Writer,
+        sides: [bool; SIDES],
+        words: Words,
+        devices: Vec<String>,
+    ) -> Result<Self, WriteError> {
         let mut of = [None, None];
         for side in Side::ALL.into_iter().filter(|side| sides[side.index()]) {
             let gates: Vec<&str> = gates().collect();
@@ -115,7 +122,7 @@ impl Topics {
         }
         let times = Times::new(writer)?;
         let log = writer.channel(LOG_TOPIC, foxglove::encoding::<Log>())?;
-        Ok(Self { sides: of, scene: Scene::new(writer)?, times, log, words })
+        Ok(Self { sides: of, scene: Scene::new(writer)?, times, log, words, devices })
     }
 
     /// Writes a tick and the events in it.
@@ -140,7 +147,7 @@ impl Topics {
                 Event::CommandRefused { .. } => Level::Warning,
                 Event::StateChanged { .. } | Event::Device(_) | Event::Scheduling(_) => Level::Info,
             };
-            self.log(writer, time_ns, level, (self.words.event)(event))?;
+            self.log(writer, time_ns, level, (self.words.event)(event, &self.devices))?;
         }
         Ok(())
     }
@@ -152,7 +159,7 @@ impl Topics {
         time_ns: u64,
         operation: &Operation,
     ) -> Result<(), WriteError> {
-        self.log(writer, time_ns, Level::Info, (self.words.operation)(operation))
+        self.log(writer, time_ns, Level::Info, (self.words.operation)(operation, &self.devices))
     }
 
     fn log(&self, writer: &mut Writer, time_ns: u64, level: Level, message: String) -> Result<(), WriteError> {

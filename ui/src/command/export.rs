@@ -14,7 +14,7 @@ use nima_machine::{config::RigConfig, rig::Side};
 use nima_recording::session::Reader;
 use nima_session::{
     anonymous::{self, Known},
-    cut::{self, Cut, Kept},
+    cut::{self, Cut, CutError, Kept},
     plotted::{self, PlottedError, PlottedTick},
     recorder::Attached,
 };
@@ -22,6 +22,7 @@ use nima_world::scene::Scene;
 
 use super::{motion, output};
 use crate::{
+    leaving::Leave,
     recording::{PROGRAM, RIG, SCENE, toml_file},
     telling::tell,
     words::Lines,
@@ -80,13 +81,15 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         tell(format_args!("nima: {note}"));
     }
     let times_ns = stretch(&reader, arguments)?;
+    // Whatever is half-written goes away before the end.
+    let leave = Leave::on_signals()?;
     if is("csv") {
-        return table(&reader, times_ns, arguments);
+        return table(&reader, times_ns, arguments, &leave);
     }
     let words = if *anonymous {
-        whole(out, |new| anonymously(&reader, &times_ns, new))?
+        whole(out, |new| anonymously(&reader, &times_ns, new, &leave))?
     } else {
-        whole(out, |new| cut_out(&reader, &times_ns, session, new))?
+        whole(out, |new| cut_out(&reader, &times_ns, session, new, &leave))?
     };
     output::line(&format!("{} in {}, {}", words.0, out.display(), words.1))
 }
@@ -125,7 +128,7 @@ impl From<PlottedError> for Failed {
     }
 }
 
-fn table(reader: &Reader, times_ns: Range<u64>, arguments: &Arguments) -> anyhow::Result<()> {
+fn table(reader: &Reader, times_ns: Range<u64>, arguments: &Arguments, leave: &Leave) -> anyhow::Result<()> {
     let Arguments { session, out, arm, .. } = arguments;
     let arm = plotted::arm(reader, session, *arm)?;
     let (mut rows, mut trouble) = (0_u64, None);
@@ -133,6 +136,9 @@ fn table(reader: &Reader, times_ns: Range<u64>, arguments: &Arguments) -> anyhow
         writeln!(file, "{HEADER}")?;
         let filled = plotted::each_tick(reader, session, arm, times_ns, |tick| {
             rows += 1;
+            if leave.is_asked() {
+                return Err(Failed::File(io::Error::other(CutError::Asked)));
+            }
             file.write_all(row(&tick).as_bytes()).map_err(Failed::File)
         });
         match filled {
@@ -175,9 +181,9 @@ fn whole(out: &Path, write: impl FnOnce(&Path) -> anyhow::Result<Told>) -> anyho
     Ok(told)
 }
 
-fn cut_out(reader: &Reader, times_ns: &Range<u64>, session: &Path, new: &Path) -> anyhow::Result<Told> {
+fn cut_out(reader: &Reader, times_ns: &Range<u64>, session: &Path, new: &Path, leave: &Leave) -> anyhow::Result<Told> {
     let name = session.file_name().unwrap_or_default().to_string_lossy();
-    let Cut { messages, journal } = cut::write(reader, &name, times_ns, new)?;
+    let Cut { messages, journal } = cut::write(reader, &name, times_ns, new, leave.flag())?;
     let journal = match journal {
         Kept::Yes => "with the journal up to the cut: `nima replay` repeats it",
         Kept::LeftOut => "without the journal, which can be replayed from its beginning only",
@@ -186,10 +192,10 @@ fn cut_out(reader: &Reader, times_ns: &Range<u64>, session: &Path, new: &Path) -
     Ok((format!("{messages} messages"), journal))
 }
 
-fn anonymously(reader: &Reader, times_ns: &Range<u64>, new: &Path) -> anyhow::Result<Told> {
+fn anonymously(reader: &Reader, times_ns: &Range<u64>, new: &Path, leave: &Leave) -> anyhow::Result<Told> {
     let lines = Lines::all();
     let known = Known { program: PROGRAM, files: &files(reader)?, is_ours: &|line| lines.has(line) };
-    let messages = anonymous::write(reader, &known, times_ns, new)?;
+    let messages = anonymous::write(reader, &known, times_ns, new, leave.flag())?;
     Ok((format!("{messages} messages"), "anonymous, without the journal: see what remains in docs/sessions.md"))
 }
 

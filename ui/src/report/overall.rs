@@ -28,6 +28,17 @@ const ABOUT: [(&str, &str); 11] = [
     ("delay_s", "delay of the link at the start (s)"),
 ];
 
+/// What tables of calibrations tell of how good these are.
+const CALIBRATIONS: [(&str, &str); 7] = [
+    ("gravity_verdict", "verdict on gravity"),
+    ("network_verdict", "verdict on the network"),
+    ("gravity_error_n", "gravity: mean error on poses not used for it (N)"),
+    ("gravity_poses", "gravity: still poses"),
+    ("network_error_n", "network: mean error on data recorded after its training (N)"),
+    ("network_rows", "network: rows of that check"),
+    ("network_doubt_share", "network: share of that check outside its training"),
+];
+
 /// What it is, and whether anything went wrong.
 pub(super) fn summary(session: &Figures) -> String {
     let mut rows =
@@ -108,10 +119,13 @@ pub(super) fn calibrations(session: &Figures) -> String {
             "right" | "left" => format!("{of}, from the start"),
             number => format!("number {number}, put in force later"),
         };
-        for (key, value) in table {
+        // Whether it may be used comes first.
+        let (verdicts, others): (Vec<_>, Vec<_>) = table.iter().partition(|(key, _)| key.ends_with("_verdict"));
+        for (key, value) in verdicts.into_iter().chain(others) {
+            let known = CALIBRATIONS.iter().find(|(known, _)| known == key);
             rows.push(vec![
                 escape(&whose),
-                escape(&key.replace('_', " ")),
+                known.map_or_else(|| escape(&key.replace('_', " ")), |(_, words)| (*words).to_owned()),
                 format!("<pre>{}</pre>", escape(value.trim())),
             ]);
         }

@@ -13,7 +13,7 @@ use nima_core::{
 use nima_devices::{Loss, Standing};
 use nima_machine::{
     messages::{Command, Event, Fault, LoopState, Refusal, Scheduling, Watchdog},
-    rig::{Awaited, DeviceEvent, Exchange, Obstacle, Prompt, SIDES, Side},
+    rig::{Awaited, DeviceEvent, Exchange, Obstacle, Part, Prompt, SIDES, Side},
     runtime::Operation,
 };
 use nima_session::STATES;
@@ -29,16 +29,23 @@ impl Lines {
     pub(crate) fn all() -> Self {
         let mut lines = BTreeSet::new();
         for side in Side::ALL {
-            lines.extend(of_side(side).map(|of| shape(&event(&of))));
-            lines.insert(shape(&operation(&Operation::Suspend(side))));
-            lines.insert(shape(&operation(&Operation::Calibrations { side, number: 0 })));
+            lines.extend(of_side(side).map(|of| shape(&event(&of, &[]))));
+            lines.insert(shape(&operation(&Operation::Suspend(side), &[])));
+            lines.insert(shape(&operation(&Operation::Calibrations { side, number: 0 }, &[])));
         }
-        lines.extend(commands().map(|command| shape(&operation(&Operation::Command { command, t_s: 0.0 }))));
-        lines.extend(devices().map(|of| shape(&operation(&Operation::Device(of)))));
-        lines.insert(shape(&operation(&Operation::Stall { silent_s: 0.0, t_s: 0.0 })));
+        lines.extend(commands().map(|command| shape(&operation(&Operation::Command { command, t_s: 0.0 }, &[]))));
+        lines.insert(shape(&operation(&Operation::Stall { silent_s: 0.0, t_s: 0.0 }, &[])));
+        for name in device_names() {
+            let name = std::slice::from_ref(&name);
+            lines.extend(devices().map(|of| shape(&operation(&Operation::Device(of), name))));
+            let lost =
+                |(side, loss)| Event::FaultRaised { t_s: 0.0, side, fault: Fault::DeviceLost { device: 0, loss } };
+            let lost = Side::ALL.into_iter().flat_map(|side| losses().map(|loss| (side, loss))).map(lost);
+            lines.extend(lost.map(|of| shape(&event(&of, name))));
+        }
         let granted = [(true, true), (true, false), (false, true)];
         lines.extend(granted.map(|(fifo, memory_locked)| {
-            shape(&event(&Event::Scheduling(Scheduling { fifo, deadline: false, memory_locked })))
+            shape(&event(&Event::Scheduling(Scheduling { fifo, deadline: false, memory_locked }), &[]))
         }));
         lines.extend(sessions::lines().iter().map(|line| shape(line)));
         Self(lines)
@@ -160,6 +167,12 @@ fn commands() -> impl Iterator<Item = Command> {
     modes.chain(switches).chain(sides).chain(others).chain(Watchdog::ALL.map(Command::TestWatchdog))
 }
 
+/// Every name that a device can have: role and make, and by number those of older sessions.
+fn device_names() -> impl Iterator<Item = String> {
+    let of = |part: Part| part.makes().iter().map(move |make| part.name_of_make(make)).chain([part.name().to_owned()]);
+    Part::ALL.into_iter().flat_map(of).chain(["cap".to_owned(), "device 0".to_owned()])
+}
+
 fn devices() -> impl Iterator<Item = DeviceEvent> {
     let standings = [Standing::Closed, Standing::Opening, Standing::Connected].into_iter();
     let standings = standings.chain(losses().map(Standing::Lost));
@@ -180,15 +193,23 @@ mod tests {
             "command: lead the handle to 10, 0, -2 mm",
             "right arm: refused: engage the right arm: nobody holds the handle",
             "the loop was silent for 612 ms",
+            "right handle (Force Dimension): connected",
+            "device 3: it sends no data",
+            "left arm: fault of the left arm (Kinova): A device was lost: it sends no data",
             "mark 12",
             "alarm: The control loop misses 2.4 % of its periods",
             "alarm over: No ready check of the last 12 hours has passed with these devices",
         ] {
             assert!(lines.has(line), "{line}");
         }
-        for line in
-            ["", "command: gain high", "command: gain 0.35 by Jane", "Jane: from Ready to Engaged", "mark of Jane"]
-        {
+        for line in [
+            "",
+            "command: gain high",
+            "command: gain 0.35 by Jane",
+            "Jane: from Ready to Engaged",
+            "mark of Jane",
+            "right handle (Jane): connected",
+        ] {
             assert!(!lines.has(line), "{line}");
         }
     }

@@ -66,6 +66,14 @@ fn planted(session: &str, to: &Path) {
     for name in ["calibrations right", "calibrations 4", "cut", "notes", PLANTED[7]] {
         tables.push((name.to_owned(), entries.clone()));
     }
+    let verdict = |key: &str, value: &str| (key.to_owned(), value.to_owned());
+    let verdicts = [
+        verdict("gravity_verdict", "accepted"),
+        verdict("gravity_error_n", "0.25"),
+        verdict("gravity_poses", PLANTED[2]),
+        verdict("network_verdict", PLANTED[3]),
+    ];
+    tables.push(("calibrations left".to_owned(), entries.clone().into_iter().chain(verdicts).collect()));
     for (name, table) in &tables {
         writer.metadata(name, table).unwrap();
     }
@@ -196,6 +204,10 @@ fn no_name_and_no_date_is_left_and_every_force_is() {
     for topic in ["frames", "arrows", "right/identification", "log"] {
         assert!(of(&anonymous, topic) > 5 && of(&anonymous, topic) + 2 >= of(&whole, topic), "{topic}");
     }
+    let tables = anonymous.metadata().unwrap();
+    let left = &tables.iter().rev().find(|(name, _)| name == "calibrations left").unwrap().1;
+    let told: Vec<_> = left.iter().map(|(key, value)| (key.as_str(), value.as_str())).collect();
+    assert_eq!(told, [("gravity_error_n", "0.25"), ("gravity_verdict", "accepted")]);
     let lines: Vec<Log> = anonymous
         .messages(&["log"], 0..u64::MAX)
         .map(|message| Log::decode(message.unwrap().data()).unwrap())

@@ -80,12 +80,13 @@ pub(super) fn states(session: &Figures, arm: &ArmFigures) -> String {
         let x = across(mark.t_s, session.length_s);
         if mark.level == "mark" {
             number += 1;
+            // At the right edge the number stands on the other side.
+            let (at, anchor) = if x < WIDTH - 40.0 { (x + 3.0, "start") } else { (x - 3.0, "end") };
             writeln!(
                 out,
                 "<g><path d=\"M{x:.1} {}V{bottom}\" stroke=\"#000000\" stroke-width=\"2\"/>\
-                 <text x=\"{:.1}\" y=\"{}\" font-weight=\"bold\">{number}</text><title>{}</title></g>",
+                 <text x=\"{at:.1}\" y=\"{}\" text-anchor=\"{anchor}\" font-weight=\"bold\">{number}</text><title>{}</title></g>",
                 top - 12.0,
-                x + 3.0,
                 top - 3.0,
                 escape(&mark.words)
             )

@@ -126,7 +126,10 @@ pub(super) fn calibrations(session: &Figures) -> String {
             rows.push(vec![
                 escape(&whose),
                 known.map_or_else(|| escape(&key.replace('_', " ")), |(_, words)| (*words).to_owned()),
-                format!("<pre>{}</pre>", escape(value.trim())),
+                match value.parse::<f64>() {
+                    Ok(number) if known.is_some() && number.fract() != 0.0 => digits(number),
+                    _ => format!("<pre>{}</pre>", escape(value.trim())),
+                },
             ]);
         }
         if table.is_empty() {

@@ -307,6 +307,7 @@ impl ConsoleApp {
         let signs = self.live.signs(self.outbox.stop_is_stuck(), self.sessions.trouble());
         let loop_s = self.live.first_tick().map(|tick| tick.t_s);
         self.top_bar.alarms.strip_ui(ui, &signs, loop_s, self.settings.now.sound);
+        self.sessions.tell(&self.live.marks_s, &self.top_bar.alarms.log, loop_s);
         let room = ui.available_rect_before_wrap();
         if self.checking.is_open() {
             self.check_layout(ui);
@@ -369,7 +370,7 @@ impl eframe::App for ConsoleApp {
         }
         self.help.glossary ^= keys::glossary_pressed(&ctx);
         self.obey_start_key(&ctx);
-        if keys::mark_pressed(&ctx) {
+        if std::mem::take(&mut self.top_bar.marks) || keys::mark_pressed(&ctx) {
             self.live.mark();
         }
         self.layout(ui);

@@ -98,7 +98,7 @@ pub(super) struct Bench {
 
 impl Bench {
     pub(super) fn new(subject: Subject, flaws: Flaws) -> Self {
-        let calibrations = Calibrations { gravity: Some(gravity()), tip_force: None };
+        let calibrations = Calibrations { gravity: Some(gravity()), ..Calibrations::default() };
         let mut standing = Health::default();
         standing.accept(0.0);
         Self {

@@ -44,6 +44,8 @@ pub struct TopBarState {
     pub(in crate::console) recorded: Option<Shown>,
     /// The button that keeps it was pressed.
     pub(in crate::console) keeps: bool,
+    /// The operator marks this moment.
+    pub(in crate::console) marks: bool,
 }
 
 /// The bar, with role switch and menu. While a person guides the arm (`calibrating`), it cannot be engaged. Returns true when the start
@@ -110,7 +112,7 @@ fn identity_ui(
             let start = Button::new(text::start::OPEN).min_size(vec2(44.0, 30.0));
             let start = ui.add_enabled(!calibrating, start).on_hover_text(text::start::OPEN_HOVER);
             wants_start = start.on_disabled_hover_text(text::start::OPEN_DISABLED_HOVER).clicked();
-            menu_ui(ui, settings, help, &mut state.alarms);
+            state.marks |= menu_ui(ui, settings, help, &mut state.alarms);
             recorded_ui(ui, state);
             if ui.ctx().content_rect().width() >= SCENE_FROM {
                 ui.add_space(4.0);

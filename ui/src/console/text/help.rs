@@ -86,7 +86,7 @@ pub(in crate::console) const KEYS: [(&str, &str); 15] = [
     ("F5", "The list of the last alarms."),
     ("F6", "Choose a rig and a scene."),
     ("A", "Acknowledge the alarms."),
-    ("E", "Mark this moment in the traces."),
+    ("E", "Mark this moment in the traces and in the session that is being recorded."),
     ("K", "Keep the session that is being recorded, or no longer."),
     ("M", "Drive the instrument by mouse, or let it go."),
     ("Arrow keys", "Move the instrument by a small step while you drive it."),

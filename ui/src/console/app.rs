@@ -286,7 +286,7 @@ impl ConsoleApp {
             self.top_bar.recorded = self.sessions.shown();
             let wants_start = top_bar_ui(
                 ui,
-                &self.live,
+                &mut self.live,
                 &mut self.top_bar,
                 &mut self.outbox,
                 &mut self.settings.now,
@@ -370,7 +370,7 @@ impl eframe::App for ConsoleApp {
         }
         self.help.glossary ^= keys::glossary_pressed(&ctx);
         self.obey_start_key(&ctx);
-        if std::mem::take(&mut self.top_bar.marks) || keys::mark_pressed(&ctx) {
+        if keys::mark_pressed(&ctx) {
             self.live.mark();
         }
         self.layout(ui);

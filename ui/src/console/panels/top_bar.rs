@@ -44,15 +44,13 @@ pub struct TopBarState {
     pub(in crate::console) recorded: Option<Shown>,
     /// The button that keeps it was pressed.
     pub(in crate::console) keeps: bool,
-    /// The operator marks this moment.
-    pub(in crate::console) marks: bool,
 }
 
 /// The bar, with role switch and menu. While a person guides the arm (`calibrating`), it cannot be engaged. Returns true when the start
 /// page is wanted.
 pub fn top_bar_ui(
     ui: &mut Ui,
-    live: &Live,
+    live: &mut Live,
     state: &mut TopBarState,
     outbox: &mut Outbox,
     settings: &mut Settings,
@@ -93,7 +91,7 @@ pub fn top_bar_ui(
 /// Name of the program, and below it the role switch, the button of the start page, and the menu. Returns true when that is pressed.
 fn identity_ui(
     ui: &mut Ui,
-    live: &Live,
+    live: &mut Live,
     settings: &mut Settings,
     help: &mut Help,
     state: &mut TopBarState,
@@ -112,7 +110,9 @@ fn identity_ui(
             let start = Button::new(text::start::OPEN).min_size(vec2(44.0, 30.0));
             let start = ui.add_enabled(!calibrating, start).on_hover_text(text::start::OPEN_HOVER);
             wants_start = start.on_disabled_hover_text(text::start::OPEN_DISABLED_HOVER).clicked();
-            state.marks |= menu_ui(ui, settings, help, &mut state.alarms);
+            if menu_ui(ui, settings, help, &mut state.alarms) {
+                live.mark();
+            }
             recorded_ui(ui, state);
             if ui.ctx().content_rect().width() >= SCENE_FROM {
                 ui.add_space(4.0);

@@ -9,13 +9,28 @@ use nima_recording::{
 use prost::Message as _;
 
 use crate::{
-    journal::{Message, decode},
+    journal::{Message, Start, decode},
+    plotted,
     recorder::JOURNAL_TOPIC,
-    replay::{Journal, ReplayError},
+    replay::{Cursor, Journal, Keyframe, Messages, ReplayError},
 };
 
 /// A session file.
 pub struct Recorded(Reader);
+
+/// The chunk of a keyframe's last block is found by its time; rounding must not miss it.
+const MARGIN_NS: u64 = 1_000_000;
+
+/// What a session file tells of itself at once.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct About {
+    /// When it began (UTC, ISO 8601).
+    pub started: Option<String>,
+    /// Name of the rig.
+    pub rig: Option<String>,
+    /// Its length, s.
+    pub seconds: f64,
+}
 
 impl Recorded {
     /// Opens it.
@@ -29,6 +44,18 @@ impl Recorded {
     /// The file.
     pub const fn reader(&self) -> &Reader {
         &self.0
+    }
+
+    /// When and on what it was recorded, and how long it is.
+    ///
+    /// # Errors
+    /// [`ReadError`] if its tables cannot be read.
+    pub fn about(&self) -> Result<About, ReadError> {
+        let begin_ns = plotted::beginning_ns(&self.0)?;
+        let tables = self.0.metadata()?;
+        let told = tables.into_iter().find(|(name, _)| name == "session").map(|(_, table)| table).unwrap_or_default();
+        let seconds = self.0.statistics().times_ns.1.saturating_sub(begin_ns) as f64 / 1e9;
+        Ok(About { started: told.get("started").cloned(), rig: told.get("rig").cloned(), seconds })
     }
 
     /// Whether the recording was closed: if not, it goes on, or the program was killed, or the file was cut.
@@ -62,5 +89,12 @@ impl Recorded {
     pub fn journal(&self) -> Result<Journal<impl Iterator<Item = Result<Vec<u8>, ReplayError>> + '_>, ReplayError> {
         let messages = self.0.messages(&[JOURNAL_TOPIC], 0..u64::MAX);
         Journal::open(messages.map(|message| Ok(message?.data().to_vec())))
+    }
+
+    /// A loop at this keyframe of its journal, which begins like this. `begin_ns` is when the session began.
+    pub fn cursor(&self, start: &Start, keyframe: Keyframe, begin_ns: u64) -> Cursor<Messages<'_>> {
+        let from_ns = (begin_ns + (keyframe.t_s() * 1e9) as u64).saturating_sub(MARGIN_NS);
+        let messages = self.0.messages(&[JOURNAL_TOPIC], from_ns..u64::MAX);
+        keyframe.cursor(start.clone(), messages.map(|message| Ok(message?.data().to_vec())))
     }
 }

@@ -30,6 +30,9 @@ pub(super) struct Arguments {
     /// Open this calibration wizard at the start
     #[arg(long, value_name = "WIZARD")]
     calibrate: Option<Which>,
+    /// Show this recorded session at the start
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["calibrate", "pictures"])]
+    session: Option<PathBuf>,
     /// Close after this many seconds
     #[arg(long, visible_alias = "seconds", value_name = "S", value_parser = super::run::positive_seconds)]
     exit_after: Option<f64>,
@@ -84,6 +87,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         screenshot: arguments.screenshot.clone(),
         pictures: arguments.pictures.as_deref().map(Album::new),
         role: arguments.role,
+        session: arguments.session.clone(),
         wizard: arguments.calibrate,
         summary: arguments.summary.clone(),
         frames: arguments.frames.clone(),

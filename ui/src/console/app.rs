@@ -6,6 +6,7 @@ mod connecting;
 mod listing;
 mod opening;
 mod pace;
+mod reviewing;
 mod starting;
 
 use std::{
@@ -37,6 +38,7 @@ use super::{
     menu,
     outbox::Outbox,
     panels::{ForcesState, TopBarState, TradeoffState, top_bar_ui},
+    past::{Past, list::List},
     pictures::Photographer,
     reader::Reader,
     roles::{Panels, Role, Wishes, role_ui},
@@ -85,6 +87,9 @@ pub struct ConsoleApp {
     wizards: Wizards,
     checking: Checking,
     listing: Listing,
+    list: List,
+    /// A recorded session that is on the screen instead of the machine.
+    past: Option<Past>,
     in_force: InForce,
     diary: Diary,
     sessions: Sessions,
@@ -145,6 +150,8 @@ impl ConsoleApp {
             wizards: Wizards::default(),
             checking: Checking::default(),
             listing: Listing::default(),
+            list: List::default(),
+            past: None,
             watched: None,
             read: None,
             live,
@@ -282,6 +289,7 @@ impl ConsoleApp {
             let calibrating = self.wizards.open.is_some() || self.checking.is_open();
             let before = self.role();
             self.top_bar.asked = self.checking.ask();
+            self.top_bar.past = self.past.is_some();
             self.sessions.look_after();
             self.top_bar.recorded = self.sessions.shown();
             let wants_start = top_bar_ui(
@@ -302,13 +310,21 @@ impl ConsoleApp {
                 self.open_start();
             } else if self.starting.is_none() && (wants_start || pressed.is_some() || self.role() != before) {
                 self.start.is_open = false;
+                self.list.is_open = false;
+            }
+            if std::mem::take(&mut self.top_bar.wants_sessions) && !calibrating {
+                self.toggle_list();
             }
         });
         let signs = self.live.signs(self.outbox.stop_is_stuck(), self.sessions.trouble());
         let loop_s = self.live.first_tick().map(|tick| tick.t_s);
         self.top_bar.alarms.strip_ui(ui, &signs, loop_s, self.settings.now.sound);
         let room = ui.available_rect_before_wrap();
-        if self.checking.is_open() {
+        if self.past.is_some() {
+            self.past_layout(ui);
+        } else if self.list.is_open {
+            self.list_layout(ui);
+        } else if self.checking.is_open() {
             self.check_layout(ui);
         } else if self.listing.is_open() {
             self.listing_layout(ui);
@@ -369,11 +385,15 @@ impl eframe::App for ConsoleApp {
         }
         self.help.glossary ^= keys::glossary_pressed(&ctx);
         self.obey_start_key(&ctx);
-        if keys::mark_pressed(&ctx) {
+        self.obey_past_keys(&ctx, f64::from(ui.input(|input| input.stable_dt)).min(0.1));
+        if keys::mark_pressed(&ctx) && self.past.is_none() {
             self.live.mark();
         }
         self.layout(ui);
         self.settings.save();
+        if self.past.is_some() {
+            self.outbox.only_stop();
+        }
         self.outbox.flush(self.door.as_ref().map(Door::handle));
         self.obey_options(&ctx);
         self.rest(&ctx);

@@ -200,7 +200,7 @@ mod tests {
         }
         for path in &paths {
             let file = Recorded::open(path).unwrap();
-            let outcome = replay(&mut file.journal().unwrap(), |_| ()).unwrap();
+            let outcome = replay(file.journal().unwrap(), |_| ()).unwrap();
             assert!(outcome.differs.is_none() && outcome.closed && outcome.ticks > 0, "{outcome:?}");
         }
     }

@@ -1,6 +1,6 @@
 //! The journal in a session file.
 
-use std::path::Path;
+use std::{ops::Range, path::Path};
 
 use nima_recording::{
     messages::foxglove::{Level, Log},
@@ -20,6 +20,30 @@ pub struct Recorded(Reader);
 
 /// The chunk of a keyframe's last block is found by its time; rounding must not miss it.
 const MARGIN_NS: u64 = 1_000_000;
+
+/// A line of the log of a session.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Line {
+    /// Its time, ns since 1970 (UTC).
+    pub time_ns: u64,
+    /// What it is about.
+    pub kind: LineKind,
+    /// What happened.
+    pub words: String,
+}
+
+/// What a line of the log is about, the most urgent first.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum LineKind {
+    /// A fault.
+    Fault,
+    /// A moment that the operator marked.
+    Mark,
+    /// A warning: a command that was refused, or an alarm of the screen.
+    Warning,
+    /// A change of state, a command, a device that came or went.
+    Told,
+}
 
 /// What a session file tells of itself at once.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -66,6 +90,25 @@ impl Recorded {
         let last_ns = self.0.statistics().times_ns.1;
         let end = self.0.messages(&[JOURNAL_TOPIC], last_ns..u64::MAX).last().transpose()?;
         Ok(end.is_some_and(|end| matches!(decode(end.data()), Ok((_, Message::End(_))))))
+    }
+
+    /// The lines of the log between these times (ns).
+    ///
+    /// # Errors
+    /// [`ReadError`] if the log cannot be read.
+    pub fn log(&self, times_ns: Range<u64>) -> Result<Vec<Line>, ReadError> {
+        let line = |message: Result<nima_recording::session::Message, ReadError>| {
+            let message = message?;
+            let Ok(line) = Log::decode(message.data()) else { return Ok(None) };
+            let kind = match (line.level(), line.name.as_str()) {
+                (_, "mark") => LineKind::Mark,
+                (Level::Error | Level::Fatal, _) => LineKind::Fault,
+                (Level::Warning, _) => LineKind::Warning,
+                _ => LineKind::Told,
+            };
+            Ok(Some(Line { time_ns: message.log_time_ns(), kind, words: line.message }))
+        };
+        self.0.messages(&["log"], times_ns).map(line).filter_map(Result::transpose).collect()
     }
 
     /// Time (ns) and words of the last error in the log.

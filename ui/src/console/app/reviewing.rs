@@ -69,7 +69,7 @@ impl ConsoleApp {
             self.close_past();
         }
         if let Some(past) = &mut self.past {
-            past.step(dt_s);
+            past.step(dt_s, self.live.state().permits().drives);
         }
     }
 

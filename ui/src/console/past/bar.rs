@@ -5,10 +5,11 @@ use egui::{
     Sense, Stroke, Ui, WidgetInfo, pos2, vec2,
 };
 use nima_machine::messages::LoopState;
+use nima_session::file::LineKind;
 
 use super::{
     Past, SPEEDS,
-    overview::{BUCKET_S, Bucket, Kind, Note, Overview},
+    overview::{BUCKET_S, Bucket, Note, Overview},
 };
 use crate::console::{
     alarms::judge,
@@ -193,10 +194,7 @@ fn strip_ui(ui: &mut Ui, past: &mut Past) {
         painter.vline(x_of(*edge_s), strip.y_range(), Stroke::new(1.5, theme::now().past));
     }
     // The most urgent ones last, over the others.
-    for note in past.overview.notes.iter().rev().filter(|note| note.kind == Kind::Change) {
-        mark(&painter, strip, x_of(note.t_s), note.kind);
-    }
-    for kind in [Kind::Warning, Kind::Fault] {
+    for kind in [LineKind::Told, LineKind::Warning, LineKind::Mark, LineKind::Fault] {
         for note in past.overview.notes.iter().filter(|note| note.kind == kind) {
             mark(&painter, strip, x_of(note.t_s), kind);
         }
@@ -240,13 +238,16 @@ fn point(past: &mut Past, response: Response, strip: Rect, end_s: f64) {
     });
 }
 
-fn mark(painter: &egui::Painter, strip: Rect, x: f32, kind: Kind) {
+fn mark(painter: &egui::Painter, strip: Rect, x: f32, kind: LineKind) {
     let colour = match kind {
-        Kind::Fault => theme::now().alarm_high,
-        Kind::Warning => theme::now().alarm_medium,
-        Kind::Change => theme::now().text_weak,
+        LineKind::Fault => theme::now().alarm_high,
+        LineKind::Warning => theme::now().alarm_medium,
+        LineKind::Mark => theme::now().text,
+        LineKind::Told => theme::now().text_weak,
     };
-    painter.vline(x, strip.top()..=strip.top() + MARKS, Stroke::new(2.0, colour));
+    // The operator's own marks go through, as in the traces.
+    let foot = if kind == LineKind::Mark { strip.bottom() } else { strip.top() + MARKS };
+    painter.vline(x, strip.top()..=foot, Stroke::new(2.0, colour));
 }
 
 /// The largest forces and the states, a column for each point of the strip.

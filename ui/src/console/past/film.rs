@@ -12,10 +12,18 @@ use nima_machine::{
     rig::{SIDES, Side},
     teleop::{Calibrations, Loop, Timing},
 };
-use nima_session::{file::Recorded, journal::Start, plotted, replay::Keyframe};
+use nima_session::{
+    file::{Line, LineKind, Recorded},
+    journal::Start,
+    plotted,
+    replay::Keyframe,
+};
 use nima_world::scene::Scene;
 
-use super::feed::{Feed, Frame, Reached, plots};
+use super::{
+    feed::{Feed, Frame, Reached, plots},
+    overview::Note,
+};
 use crate::console::{
     chain,
     history::CHANNELS,
@@ -35,6 +43,8 @@ const KEYFRAMES: usize = 40;
 const SAMPLE_S: f64 = 0.1;
 /// Length of a column of the traces, s.
 const COLUMN_S: f64 = 0.016;
+/// The log is read in stretches of this length, s, because each is a look into all chunks of its time.
+const LOG_S: f64 = 4.0;
 /// A moment without a tick is that of the next one within this time, s.
 const NEXT_S: f64 = 0.05;
 
@@ -66,6 +76,10 @@ impl File {
         };
         let (scene, arms) = (attached(&recorded, "scene.toml")?, plotted::arms(recorded.reader()));
         Ok(Self { path: path.to_owned(), recorded, begin_ns, end_s, arms, rig, scene, start })
+    }
+
+    fn t_s(&self, time_ns: u64) -> f64 {
+        time_ns.saturating_sub(self.begin_ns) as f64 / 1e9
     }
 
     pub(super) fn time_ns(&self, t_s: f64) -> u64 {
@@ -116,6 +130,10 @@ pub(super) struct Film<'a> {
     samples: [Vec<Tick>; SIDES],
     columns: [Vec<Column>; SIDES],
     events: Vec<(f64, Event)>,
+    /// Marks of the operator, s.
+    marks_s: Vec<f64>,
+    /// The log was read up to this time, s.
+    log_s: f64,
     /// Everything before this time was read, s.
     read_s: f64,
     /// Everything before this time was replayed as it was recorded, s.
@@ -145,6 +163,8 @@ impl<'a> Film<'a> {
             samples: Default::default(),
             columns: Default::default(),
             events: Vec::new(),
+            marks_s: Vec::new(),
+            log_s: 0.0,
             read_s: 0.0,
             exact_s: 0.0,
             why: None,
@@ -203,6 +223,22 @@ impl<'a> Film<'a> {
         self.reading.is_some()
     }
 
+    /// What the log tells of what was read, as soon as it is worth a look.
+    pub(super) fn notes(&mut self) -> Vec<Note> {
+        if self.reading.is_some() && self.read_s < self.log_s + LOG_S {
+            return Vec::new();
+        }
+        let to_ns = if self.reading.is_some() { self.file.time_ns(self.read_s) } else { u64::MAX };
+        let times_ns = self.file.time_ns(self.log_s)..to_ns;
+        self.log_s = self.read_s;
+        // A log that cannot be read has nothing to tell; the damage is told by what is replayed or plotted.
+        let lines = self.file.recorded.log(times_ns).unwrap_or_default();
+        let note = |Line { time_ns, kind, words }| Note { t_s: self.file.t_s(time_ns), kind, words };
+        let notes: Vec<Note> = lines.into_iter().map(note).collect();
+        self.marks_s.extend(notes.iter().filter(|note| note.kind == LineKind::Mark).map(|note| note.t_s));
+        notes
+    }
+
     fn keep(&mut self, frame: &Frame, is_replay: bool) {
         let Frame { t_s, events, ticks } = frame;
         self.read_s = *t_s;
@@ -246,6 +282,8 @@ impl<'a> Film<'a> {
     fn live(&self, t_s: f64) -> Live {
         let mut live = Live::of_past(self.file.rig.clone(), self.file.scene.clone());
         live.replay(self.events.iter().take_while(|(at_s, _)| *at_s < t_s).map(|(_, event)| event), &[None; SIDES]);
+        // Those to come lie beyond the end of the traces.
+        live.marks_s.extend(&self.marks_s);
         for (columns, history) in self.columns.iter().zip(&mut live.history) {
             let from = columns.partition_point(|column| begin_s(column) < t_s - TRACES_S);
             for column in columns[from..].iter().take_while(|column| begin_s(column) + COLUMN_S <= t_s) {

@@ -105,8 +105,9 @@ impl Past {
         }
     }
 
-    /// Takes in what is there of the session, and plays it on by `dt_s`.
-    pub(crate) fn step(&mut self, dt_s: f64) {
+    /// Takes in what is there of the session, and plays it on by `dt_s`; `driven` tells whether a machine is driven meanwhile.
+    pub(crate) fn step(&mut self, dt_s: f64, driven: bool) {
+        self.worker.go_gently(driven);
         while let Some(answer) = self.worker.answer() {
             self.take(answer);
         }

@@ -1,12 +1,9 @@
 //! A whole session in little: its largest forces, its states, and what happened, along its time.
 
-use nima_machine::{
-    messages::{Event, LoopState, attention},
-    rig::Side,
-};
+use nima_machine::messages::{LoopState, attention};
+use nima_session::file::LineKind;
 
 use super::feed::Frame;
-use crate::words::event as words_of;
 
 /// Length of a bucket, s.
 pub(super) const BUCKET_S: f64 = 0.5;
@@ -23,19 +20,8 @@ pub(super) struct Bucket {
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Note {
     pub(super) t_s: f64,
-    pub(super) kind: Kind,
+    pub(super) kind: LineKind,
     pub(super) words: String,
-}
-
-/// How it is shown, the most urgent first.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) enum Kind {
-    /// A fault.
-    Fault,
-    /// A device that came or went, or a command that was refused.
-    Warning,
-    /// A change of state.
-    Change,
 }
 
 /// What has been read of a session.
@@ -64,7 +50,6 @@ impl Overview {
             let (measured_n, rendered_n) = (tick.measured_n.norm() as f32, tick.rendered_n.norm() as f32);
             self.buckets[place].merge(&Bucket { measured_n, rendered_n, state });
         }
-        self.notes.extend(frame.events.iter().filter_map(|event| note(frame.t_s, event)));
         self.read_s = frame.t_s;
     }
 
@@ -87,15 +72,4 @@ impl Bucket {
         self.rendered_n = self.rendered_n.max(other.rendered_n);
         self.state = self.state.into_iter().chain(other.state).max_by_key(|state| attention(*state));
     }
-}
-
-fn note(t_s: f64, event: &Event) -> Option<Note> {
-    let kind = match event {
-        Event::FaultRaised { .. } => Kind::Fault,
-        Event::CommandRefused { .. } | Event::Device(_) => Kind::Warning,
-        // Both arms change together, but for a fault.
-        Event::StateChanged { side: Side::Right, .. } => Kind::Change,
-        Event::StateChanged { .. } | Event::Scheduling(_) => return None,
-    };
-    Some(Note { t_s, kind, words: words_of(event) })
 }

@@ -12,10 +12,15 @@ use nima_machine::{
     runtime::{self, Assembly},
 };
 use nima_recording::session::Reader;
-use nima_session::{cut, file::Recorded, plotted, replay::replay};
+use nima_session::{
+    cut,
+    file::{LineKind, Recorded},
+    plotted,
+    replay::replay,
+};
 use nima_world::{Plan, scene::Scene};
 
-use super::{Past, overview::Kind};
+use super::Past;
 use crate::{console::scene3d::SceneView, recording};
 
 const TIMEOUT: Duration = Duration::from_mins(3);
@@ -48,7 +53,7 @@ fn until(past: &mut Past, what: &str, good: impl Fn(&Past) -> bool) {
     while !good(past) {
         assert!(began.elapsed() < TIMEOUT, "never: {what}, {:?}", past.told);
         thread::sleep(Duration::from_millis(2));
-        past.step(0.0);
+        past.step(0.0, false);
     }
 }
 
@@ -112,7 +117,7 @@ fn a_session_is_played_tick_by_tick() {
     past.toggle();
     for frame in 0..40 {
         let before = past.shown_s();
-        past.step(0.02);
+        past.step(0.02, false);
         until(&mut past, "went on", |past| past.shown_s() > before);
         let live = past.live.as_ref().unwrap();
         let number = (live.ticks[0].unwrap().t_s * 1e3).round() as usize;
@@ -120,12 +125,12 @@ fn a_session_is_played_tick_by_tick() {
     }
     assert!((past.shown_s() - 1.8).abs() < 0.05, "{} s", past.shown_s());
     past.toggle();
-    past.step(1.0);
+    past.step(1.0, true);
     assert!(!past.moves());
     settled(&mut past, 5.9);
     past.toggle();
     for _ in 0..200 {
-        past.step(0.01);
+        past.step(0.01, false);
         thread::sleep(Duration::from_millis(2));
     }
     assert!(!past.moves(), "it ends with the session");
@@ -142,10 +147,10 @@ fn what_happened_is_marked_along_the_time() {
     });
     let mut past = open(&path);
     until(&mut past, "read", |past| past.read_share() > 0.999);
-    let at = |kind: Kind, t_s: f64| {
+    let at = |kind: LineKind, t_s: f64| {
         past.overview.notes.iter().any(|note| note.kind == kind && (note.t_s - t_s).abs() < 0.01)
     };
-    assert!(at(Kind::Change, 2.0) && at(Kind::Warning, 3.0), "{:?}", past.overview.notes);
+    assert!(at(LineKind::Told, 2.0) && at(LineKind::Warning, 3.0), "{:?}", past.overview.notes);
     assert_eq!(past.overview.buckets.len(), 10);
     let most_n = replayed(&path).iter().map(|ticks| ticks[0].unwrap().measured_n.norm()).fold(0.0, f64::max);
     let shown_n = past.overview.buckets.iter().map(|bucket| f64::from(bucket.measured_n)).fold(0.0, f64::max);

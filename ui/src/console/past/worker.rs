@@ -2,7 +2,11 @@
 
 use std::{
     path::Path,
-    sync::mpsc::{Receiver, RecvTimeoutError, Sender, TryRecvError, channel},
+    sync::{
+        Arc,
+        atomic::{AtomicBool, Ordering},
+        mpsc::{Receiver, RecvTimeoutError, Sender, TryRecvError, channel},
+    },
     thread,
     time::{Duration, Instant},
 };
@@ -63,6 +67,8 @@ pub(super) enum Answer {
 /// The window's end of the thread; dropping it ends the thread.
 #[derive(Debug)]
 pub(super) struct Worker {
+    /// A machine is driven by this computer.
+    gently: Arc<AtomicBool>,
     wishes: Sender<Wish>,
     answers: Receiver<Answer>,
 }
@@ -71,16 +77,17 @@ impl Worker {
     /// Opens a session; `wake` is called whenever there is an answer.
     pub(super) fn start(path: &Path, wake: impl Fn() + Send + 'static) -> Self {
         let ((wishes, wanted), (tell, answers)) = (channel(), channel());
-        let path = path.to_path_buf();
+        let (path, gently) = (path.to_path_buf(), Arc::<AtomicBool>::default());
+        let of_thread = Arc::clone(&gently);
         let work = move || {
-            let told = Told { answers: tell, wake: Box::new(wake) };
+            let told = Told { answers: tell, wake: Box::new(wake), gently: of_thread };
             if let Err(why) = run(&path, &wanted, &told) {
                 told.tell(Answer::Refused(why));
             }
         };
         // If no thread can be created, the answers end at once.
         thread::Builder::new().name("past".to_owned()).spawn(work).ok();
-        Self { wishes, answers }
+        Self { gently, wishes, answers }
     }
 
     /// Shows this time, s. Only the newest wish counts.
@@ -93,6 +100,11 @@ impl Worker {
         self.wishes.send(Wish::GoOn(to_s)).ok();
     }
 
+    /// Sets whether a machine is driven by this computer, to which the first reading leaves half of the time.
+    pub(super) fn go_gently(&self, gently: bool) {
+        self.gently.store(gently, Ordering::Relaxed);
+    }
+
     /// The next answer, if there is one.
     pub(super) fn answer(&self) -> Option<Answer> {
         self.answers.try_recv().ok()
@@ -103,6 +115,7 @@ impl Worker {
 struct Told {
     answers: Sender<Answer>,
     wake: Box<dyn Fn() + Send>,
+    gently: Arc<AtomicBool>,
 }
 
 impl Told {
@@ -173,7 +186,7 @@ struct Reading {
     told_at: Instant,
     limited: bool,
     goes_on: bool,
-    /// How long the last step took: as long a rest follows, because a machine may be running on this computer.
+    /// How long the last step took, if a machine is driven by this computer: as long a rest follows.
     took: Duration,
 }
 
@@ -181,7 +194,8 @@ impl Reading {
     fn go_on(&mut self, film: &mut Film<'_>, told: &Told) {
         let began = Instant::now();
         self.goes_on = film.read(|frame| self.part.take(frame));
-        self.took = began.elapsed();
+        self.part.notes.extend(film.notes());
+        self.took = if told.gently.load(Ordering::Relaxed) { began.elapsed() } else { Duration::ZERO };
         if let Some(why) = film.why.as_ref().filter(|_| !self.limited) {
             told.tell(Answer::Limited(why.clone()));
             self.limited = true;

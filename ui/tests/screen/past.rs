@@ -231,3 +231,44 @@ fn sessions_are_listed_kept_deleted_and_opened() {
     until_whole(&mut harness);
     assert_eq!(harness.state().past().unwrap().0, one);
 }
+
+#[test]
+fn two_sessions_stand_side_by_side_on_one_clock() {
+    let folder = tempfile::tempdir().unwrap();
+    let sessions = folder.path().join("sessions");
+    std::fs::create_dir_all(&sessions).unwrap();
+    let [one, other] = ["1.mcap", "2.mcap"].map(|name| sessions.join(name));
+    record(&one, "bimanual", "5");
+    record(&other, "peg_transfer", "3");
+    let mut harness = listed(folder.path());
+    until_listed(&mut harness, "1.mcap");
+    press(&mut harness, "Open 1.mcap");
+    until_whole(&mut harness);
+    press(&mut harness, "Compare");
+    until_listed(&mut harness, "2.mcap");
+    press(&mut harness, "Open 2.mcap");
+    let shown = |harness: &mut Harness<'_, ConsoleApp>, t_s: f64, expected_s: [f64; 2]| {
+        harness.state_mut().show_past(t_s);
+        let began = Instant::now();
+        loop {
+            harness.step();
+            let both = [harness.state().past(), harness.state().past_beside()].map(|one| one.map_or(-1.0, |one| one.1));
+            if both.iter().zip(expected_s).all(|(now_s, expected_s)| (now_s - expected_s).abs() < 1.5e-3) {
+                return;
+            }
+            assert!(began.elapsed() < TIMEOUT, "{both:?} at {t_s} s");
+            thread::sleep(Duration::from_millis(5));
+        }
+    };
+    shown(&mut harness, 2.0, [2.0, 2.0]);
+    // The shorter one stays at its last tick.
+    shown(&mut harness, 4.0, [4.0, 2.999]);
+    assert_eq!(harness.state().past_beside().unwrap().0, other);
+    for size in [[1100.0, 680.0], SIZE] {
+        harness.set_size(size.into());
+        harness.run_steps(4);
+        assert_eq!(harness.query_all_by_label("Operating field").count(), 2);
+    }
+    press(&mut harness, "Compare");
+    assert!(harness.state().past_beside().is_none() && harness.state().past().is_some());
+}

@@ -10,7 +10,7 @@ use super::ConsoleApp;
 use crate::console::{
     door::Door,
     keys,
-    past::{FRAME, Past, bar_ui, head_ui},
+    past::{FRAME, Past, bar_ui, both_ui, head_ui},
     roles::role_ui,
     text, theme,
     widgets::weak,
@@ -27,6 +27,12 @@ impl ConsoleApp {
     /// The session on the screen, and the time of it, s.
     pub fn past(&self) -> Option<(&Path, f64)> {
         self.past.as_ref().map(|past| (past.path.as_path(), past.shown_s()))
+    }
+
+    /// The session beside it, and the time of that one, s.
+    pub fn past_beside(&self) -> Option<(&Path, f64)> {
+        let beside = self.past.as_ref()?.beside.as_ref().filter(|beside| beside.live.is_some())?;
+        Some((beside.path.as_path(), beside.shown_s()))
     }
 
     /// The ticks of the past on the screen, once every figure is as it was.
@@ -47,13 +53,14 @@ impl ConsoleApp {
         self.panels.demo.leave(&mut self.outbox);
         self.panels.scene.let_go(&mut self.outbox);
         self.outbox.flush(self.door.as_ref().map(Door::handle));
-        self.start.is_open = false;
+        (self.start.is_open, self.list.is_open) = (false, false);
         self.past = Some(Past::open(session, &self.ctx, self.panels.scene.twin()));
     }
 
     /// The screen shows the machine again.
     pub(super) fn close_past(&mut self) {
         self.past = None;
+        self.list.is_open = false;
     }
 
     /// Whether the operator does something at the machine with the help of the screen: then the past is not shown.
@@ -94,20 +101,34 @@ impl ConsoleApp {
         let room = ui.available_rect_before_wrap();
         let live_again = head_ui(ui, past);
         bar_ui(ui, past);
+        let (wants_beside, smooth) = (std::mem::take(&mut past.wants_beside), self.panels.scene.smooth);
         CentralPanel::no_frame().show(ui, |ui| {
+            if self.list.is_open {
+                if let Some(session) = self.list.ui(ui) {
+                    past.set_beside(Past::open(&session, &self.ctx, self.panels.scene.twin()));
+                }
+                return;
+            }
+            if past.beside.is_some() {
+                return both_ui(ui, past, smooth);
+            }
             let Some(live) = &mut past.live else {
                 let words = past.refused().unwrap_or(text::past::OPENING);
                 ui.centered_and_justified(|ui| ui.label(weak(words)));
                 return;
             };
             live.rough_edges = self.live.rough_edges;
-            past.panels.scene.smooth = self.panels.scene.smooth;
+            past.panels.scene.smooth = smooth;
             // What the views wish for the machine is left undone.
             role_ui(ui, &mut self.settings.now, live, &mut past.panels, &past.in_force, &mut past.outbox);
             past.outbox.forget();
         });
         let stroke = Stroke::new(FRAME, theme::now().past);
         ui.painter().rect_stroke(room, 0.0, stroke, StrokeKind::Inside);
+        if wants_beside {
+            self.list.open(&self.ctx, self.settings.folder());
+            self.list.for_beside = true;
+        }
         if live_again {
             self.close_past();
         }

@@ -167,6 +167,13 @@ fn buttons_ui(ui: &mut Ui, past: &mut Past) {
     if ui.add_enabled(free, report).on_hover_text(text::past::REPORT_HOVER).clicked() {
         past.report(&ctx);
     }
+    let other = past.beside.is_some();
+    let compare = Button::selectable(other, text::past::COMPARE).frame_when_inactive(true);
+    let compare = ui.add(compare.min_size(vec2(80.0, BUTTON))).on_hover_text(text::past::COMPARE_HOVER);
+    if compare.clicked() {
+        past.wants_beside = !other;
+        past.beside = None;
+    }
     let share = past.read_share();
     let reading = (share < 0.999 && past.told.refused.is_none()).then(|| text::past::read(share));
     let words = past.told.job.clone().or_else(|| past.told.limited.clone()).or(reading);

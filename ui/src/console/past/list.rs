@@ -24,6 +24,8 @@ const BUTTON: egui::Vec2 = vec2(74.0, 28.0);
 #[derive(Debug, Default)]
 pub(crate) struct List {
     pub(crate) is_open: bool,
+    /// A session is chosen to be shown beside the one on the screen.
+    pub(crate) for_beside: bool,
     folder: Option<PathBuf>,
     rows: Vec<Row>,
     reading: Option<Receiver<Result<Vec<Row>, String>>>,
@@ -52,6 +54,7 @@ impl List {
     /// Shows the page; the folder of sessions is in `data_folder`.
     pub(crate) fn open(&mut self, ctx: &Context, data_folder: Option<&Path>) {
         self.is_open = true;
+        self.for_beside = false;
         self.told = None;
         self.folder = data_folder.map(|folder| folder.join("sessions"));
         self.read(ctx);
@@ -99,7 +102,8 @@ impl List {
                     self.is_open = false;
                 }
                 ui.add_space(8.0);
-                ui.label(RichText::new(text::past::LIST).font(theme::strong(19.0)));
+                let heading = if self.for_beside { text::past::BESIDE } else { text::past::LIST };
+                ui.label(RichText::new(heading).font(theme::strong(19.0)));
                 let folder = self.folder.as_ref().map(|folder| folder.display().to_string());
                 ui.add(Label::new(small(folder.unwrap_or_else(|| text::past::NO_SHELF.to_owned()))).truncate());
             });

@@ -4,6 +4,7 @@
 //! on the machine until the operator returns to it.
 
 mod bar;
+mod beside;
 mod feed;
 mod film;
 mod job;
@@ -25,6 +26,7 @@ use self::{
 use super::{in_force::InForce, live::Live, outbox::Outbox, roles::Panels, scene3d::SceneView, text};
 
 pub(crate) use bar::{FRAME, bar_ui, head_ui};
+pub(crate) use beside::both_ui;
 
 /// How fast a session can be played.
 const SPEEDS: [f64; 6] = [0.1, 0.25, 0.5, 1.0, 2.0, 4.0];
@@ -51,6 +53,10 @@ pub(crate) struct Past {
     wanted_s: f64,
     play: Play,
     stretch_s: [Option<f64>; 2],
+    /// Another session on the same clock: the times since both began are the same.
+    pub(super) beside: Option<Box<Self>>,
+    /// Another session is wanted beside this one.
+    pub(super) wants_beside: bool,
     job: Option<Job>,
     told: Told,
 }
@@ -100,6 +106,8 @@ impl Past {
             wanted_s: 0.0,
             play: Play { runs: false, speed: 1.0, unsettled_s: 0.0 },
             stretch_s: [None; 2],
+            beside: None,
+            wants_beside: false,
             job: None,
             told: Told::default(),
         }
@@ -116,6 +124,9 @@ impl Past {
             self.wanted_s = (self.wanted_s + dt_s * self.play.speed).min(most_s);
             self.worker.go_on(self.wanted_s);
         }
+        if let Some(beside) = &mut self.beside {
+            beside.follow(self.play.runs.then_some(self.wanted_s), driven);
+        }
         if let Some((words, over)) = self.job.as_ref().map(Job::told) {
             self.told.job = Some(words);
             if over {
@@ -124,12 +135,33 @@ impl Past {
         }
     }
 
+    /// Takes in what is there of a session beside another one, and goes on up to this time, s.
+    fn follow(&mut self, to_s: Option<f64>, driven: bool) {
+        self.worker.go_gently(driven);
+        while let Some(answer) = self.worker.answer() {
+            self.take(answer);
+        }
+        if let Some(to_s) = to_s {
+            self.wanted_s = to_s.min(self.about.map_or(to_s, |about| about.end_s));
+            self.worker.go_on(self.wanted_s);
+        }
+    }
+
+    /// Shows another session beside this one.
+    pub(crate) fn set_beside(&mut self, mut beside: Self) {
+        beside.show(self.shown_s());
+        self.beside = Some(Box::new(beside));
+    }
+
     fn take(&mut self, answer: Answer) {
         match answer {
             Answer::Opened(opened) => {
                 let Opened { begin_ns, end_s, calibrations } = *opened;
                 self.about = Some(About { begin_ns, end_s });
                 self.in_force = InForce::of_past(calibrations);
+                if self.wanted_s > end_s {
+                    self.show(end_s);
+                }
             }
             Answer::Refused(why) => self.told.refused = Some(text::past::refused(&why)),
             Answer::Read(part) => self.overview.add(part),
@@ -157,10 +189,13 @@ impl Past {
 
     /// Shows this time, s, and no longer plays.
     pub(crate) fn show(&mut self, t_s: f64) {
-        let end_s = self.about.map_or(0.0, |about| about.end_s);
+        let end_s = self.about.map_or(f64::INFINITY, |about| about.end_s);
         self.play.runs = false;
         self.wanted_s = t_s.clamp(0.0, end_s);
         self.worker.show(self.wanted_s);
+        if let Some(beside) = &mut self.beside {
+            beside.show(t_s);
+        }
     }
 
     /// Plays, or holds.

@@ -50,6 +50,10 @@ pub(in crate::console) const PLAY: &str = "Play";
 pub(in crate::console) const PAUSE: &str = "Pause";
 pub(in crate::console) const PLAY_HOVER: &str = "Plays the session or holds it. Key P";
 pub(in crate::console) const SPEED_HOVER: &str = "How fast the session is played";
+pub(in crate::console) const COMPARE: &str = "Compare";
+pub(in crate::console) const COMPARE_HOVER: &str =
+    "Shows another session beside this one, at the same time since its beginning; press again to end it";
+pub(in crate::console) const BESIDE: &str = "Choose the session to show beside";
 pub(in crate::console) const FROM: &str = "From";
 pub(in crate::console) const FROM_HOVER: &str = "The stretch to save begins at this moment";
 pub(in crate::console) const TO: &str = "To";
@@ -114,6 +118,11 @@ pub(in crate::console) fn alarm_then(word: &str, cause: &str) -> String {
 /// Below the pointer on the time line.
 pub(in crate::console) fn at(t_s: f64, words: &str) -> String {
     format!("{}  {words}", clock(t_s))
+}
+
+/// One of two sessions that are compared, and its time.
+pub(in crate::console) fn half(name: &str, position: &str) -> String {
+    format!("{name}  \u{b7}  {position}")
 }
 
 /// Largest forces in a short time, N.

@@ -30,7 +30,7 @@ pub(super) struct Arguments {
     /// Open this calibration wizard at the start
     #[arg(long, value_name = "WIZARD")]
     calibrate: Option<Which>,
-    /// Show this recorded session at the start
+    /// Show this recorded session at the start; the rig starts idle
     #[arg(long, value_name = "FILE", conflicts_with_all = ["calibrate", "pictures"])]
     session: Option<PathBuf>,
     /// Close after this many seconds
@@ -77,7 +77,8 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let mut plan = Plan { rig: rig.clone(), scene: scene.clone(), calibrations, engage: false };
     // Nobody can be hurt by a simulated or emulated rig, so the demo starts at once.
     let by_itself = rig.devices.as_ref().is_none_or(|devices| devices.emulated);
-    plan.engage = by_itself && !arguments.at_rest && arguments.calibrate.is_none() && plan.may_engage();
+    let by_itself = by_itself && !arguments.at_rest && arguments.calibrate.is_none() && arguments.session.is_none();
+    plan.engage = by_itself && plan.may_engage();
     // Pictures are taken of a session that nobody looks for afterwards.
     let folder = in_force.store().and_then(|store| store.folder().parent()).filter(|_| arguments.pictures.is_none());
     let mut sessions = Sessions::of_user(folder);

@@ -8,6 +8,7 @@ mod opening;
 mod pace;
 mod reviewing;
 mod starting;
+mod views;
 
 use std::{
     path::PathBuf,
@@ -41,7 +42,7 @@ use super::{
     past::{Past, list::List},
     pictures::Photographer,
     reader::Reader,
-    roles::{Panels, Role, Wishes, role_ui},
+    roles::{Panels, Role},
     scene3d::{SceneView, extras::Extras},
     sessions::Sessions,
     settings::{Kept, Settings},
@@ -320,42 +321,9 @@ impl ConsoleApp {
         let loop_s = self.live.first_tick().map(|tick| tick.t_s);
         self.top_bar.alarms.strip_ui(ui, &signs, loop_s, self.settings.now.sound);
         let room = ui.available_rect_before_wrap();
-        if self.past.is_some() {
-            self.past_layout(ui);
-        } else if self.list.is_open {
-            self.list_layout(ui);
-        } else if self.checking.is_open() {
-            self.check_layout(ui);
-        } else if self.listing.is_open() {
-            self.listing_layout(ui);
-        } else if self.wizards.open.is_some() {
-            self.wizard_layout(ui);
-        } else if self.start.is_open {
-            self.start_layout(ui);
-        } else {
-            self.monitor_layout(ui);
-        }
+        self.page_layout(ui);
         self.top_bar.alarms.list_ui(ui.ctx(), room);
         self.settings.now.toured |= self.help.ui(ui.ctx(), room);
-    }
-
-    fn monitor_layout(&mut self, ui: &mut Ui) {
-        self.panels.devices.is_seen = false;
-        self.panels.devices.is_starting = self.starting.is_some();
-        let Wishes { restart, calibration, devices } =
-            role_ui(ui, &mut self.settings.now, &mut self.live, &mut self.panels, &self.in_force, &mut self.outbox);
-        // At the end of the frame, after everything was drawn with the old loop. A stop requested in the same frame
-        // takes precedence.
-        if self.outbox.holds_stop() {
-            return;
-        }
-        if let Some(rig) = restart {
-            self.apply_tradeoff(rig);
-        }
-        if let Some(change) = devices {
-            self.connect(&change);
-        }
-        self.obey_calibrations(calibration);
     }
 }
 

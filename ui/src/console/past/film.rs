@@ -295,14 +295,15 @@ impl<'a> Film<'a> {
     }
 
     /// The moment at this time, s, at once: as far as it is plotted, the rest from the last sample.
-    pub(super) fn at_once(&self, t_s: f64) -> Result<Live, String> {
+    pub(super) fn at_once(&self, t_s: f64) -> Live {
         let like = self.like(t_s);
-        let frames = plots(self.file, &like, t_s, t_s + NEXT_S).map_err(|error| chain(&error))?;
+        // What cannot be read there is told when it is read in its turn.
+        let frames = plots(self.file, &like, t_s, t_s + NEXT_S).unwrap_or_default();
         let frame = frames.into_iter().next();
         let mut live = self.live(t_s);
         live.replay(std::iter::empty(), &frame.map_or(like, |frame| frame.ticks));
         live.settle(0.0);
-        Ok(live)
+        live
     }
 
     /// Begins to replay up to the first tick at this time, s, or after it.
@@ -333,6 +334,10 @@ impl<'a> Chase<'a> {
 
     /// What is shown, and where it goes on.
     pub(super) fn end(mut self) -> (Live, View<'a>) {
+        if self.live.ticks.iter().all(Option::is_none) {
+            // Nothing could be read here.
+            self.live.replay(std::iter::empty(), &self.like);
+        }
         self.live.settle(self.to_s - self.from_s);
         let like = std::array::from_fn(|side| self.live.ticks[side].or(self.like[side]));
         (self.live, View { feed: self.feed, like })

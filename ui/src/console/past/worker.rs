@@ -149,7 +149,7 @@ fn run(path: &Path, wanted: &Receiver<Wish>, told: &Told) -> Result<(), String> 
             Err(Gone) => return Ok(()),
         };
         match wish {
-            Some(Wish::Show(t_s)) => shown.show(&film, t_s.clamp(0.0, file.end_s), told)?,
+            Some(Wish::Show(t_s)) => shown.show(&film, t_s.clamp(0.0, file.end_s), told),
             Some(Wish::GoOn(to_s)) => shown.go_on(&film, to_s, told),
             None if shown.chase.is_some() => shown.chase_on(&film, told),
             None => {
@@ -218,11 +218,10 @@ struct Shown<'a> {
 }
 
 impl<'a> Shown<'a> {
-    fn show(&mut self, film: &Film<'a>, t_s: f64, told: &Told) -> Result<(), String> {
-        let live = film.at_once(t_s)?;
+    fn show(&mut self, film: &Film<'a>, t_s: f64, told: &Told) {
+        let live = film.at_once(t_s);
         told.tell(Answer::Shown(Box::new(live), Extent::Plotted, t_s));
         (self.view, self.chase, self.early_s) = (None, Some((film.chase(t_s), t_s)), None);
-        Ok(())
     }
 
     fn chase_on(&mut self, film: &Film<'a>, told: &Told) {

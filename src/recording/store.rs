@@ -284,7 +284,12 @@ pub fn read<R: Record>(path: &Path) -> Result<Option<R>, StoreError> {
 
 /// The present time, UTC, ISO 8601 to the second: the date of a record.
 pub fn utc_now() -> String {
-    date::format(seconds(SystemTime::now()))
+    utc_of(SystemTime::now())
+}
+
+/// A time in UTC, ISO 8601, for example `2026-08-21T10:20:30Z`.
+pub fn utc_of(time: SystemTime) -> String {
+    date::format(seconds(time))
 }
 
 /// Whole days from a date (UTC, ISO 8601) to `now`; `None` if it is not a valid date. Zero for one in the future.

@@ -1,6 +1,6 @@
 //! The journal in a session file.
 
-use std::path::Path;
+use std::{ops::Range, path::Path};
 
 use nima_recording::{
     messages::foxglove::{Level, Log},
@@ -9,13 +9,52 @@ use nima_recording::{
 use prost::Message as _;
 
 use crate::{
-    journal::{Message, decode},
+    journal::{Message, Start, decode},
+    plotted,
     recorder::JOURNAL_TOPIC,
-    replay::{Journal, ReplayError},
+    replay::{Cursor, Journal, Keyframe, Messages, ReplayError},
 };
 
 /// A session file.
 pub struct Recorded(Reader);
+
+/// The chunk of a keyframe's last block is found by its time; rounding must not miss it.
+const MARGIN_NS: u64 = 1_000_000;
+
+/// A line of the log of a session.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Line {
+    /// Its time, ns since 1970 (UTC).
+    pub time_ns: u64,
+    /// What it is about.
+    pub kind: LineKind,
+    /// What happened.
+    pub words: String,
+}
+
+/// What a line of the log is about, the most urgent first.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum LineKind {
+    /// A fault.
+    Fault,
+    /// A moment that the operator marked.
+    Mark,
+    /// A warning: a command that was refused, or an alarm of the screen.
+    Warning,
+    /// A change of state, a command, a device that came or went.
+    Told,
+}
+
+/// What a session file tells of itself at once.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct About {
+    /// When it began (UTC, ISO 8601).
+    pub started: Option<String>,
+    /// Name of the rig.
+    pub rig: Option<String>,
+    /// Its length, s.
+    pub seconds: f64,
+}
 
 impl Recorded {
     /// Opens it.
@@ -31,6 +70,18 @@ impl Recorded {
         &self.0
     }
 
+    /// When and on what it was recorded, and how long it is.
+    ///
+    /// # Errors
+    /// [`ReadError`] if its tables cannot be read.
+    pub fn about(&self) -> Result<About, ReadError> {
+        let begin_ns = plotted::beginning_ns(&self.0)?;
+        let tables = self.0.metadata()?;
+        let told = tables.into_iter().find(|(name, _)| name == "session").map(|(_, table)| table).unwrap_or_default();
+        let seconds = self.0.statistics().times_ns.1.saturating_sub(begin_ns) as f64 / 1e9;
+        Ok(About { started: told.get("started").cloned(), rig: told.get("rig").cloned(), seconds })
+    }
+
     /// Whether the recording was closed: if not, it goes on, or the program was killed, or the file was cut.
     ///
     /// # Errors
@@ -39,6 +90,25 @@ impl Recorded {
         let last_ns = self.0.statistics().times_ns.1;
         let end = self.0.messages(&[JOURNAL_TOPIC], last_ns..u64::MAX).last().transpose()?;
         Ok(end.is_some_and(|end| matches!(decode(end.data()), Ok((_, Message::End(_))))))
+    }
+
+    /// The lines of the log between these times (ns).
+    ///
+    /// # Errors
+    /// [`ReadError`] if the log cannot be read.
+    pub fn log(&self, times_ns: Range<u64>) -> Result<Vec<Line>, ReadError> {
+        let line = |message: Result<nima_recording::session::Message, ReadError>| {
+            let message = message?;
+            let Ok(line) = Log::decode(message.data()) else { return Ok(None) };
+            let kind = match (line.level(), line.name.as_str()) {
+                (_, "mark") => LineKind::Mark,
+                (Level::Error | Level::Fatal, _) => LineKind::Fault,
+                (Level::Warning, _) => LineKind::Warning,
+                _ => LineKind::Told,
+            };
+            Ok(Some(Line { time_ns: message.log_time_ns(), kind, words: line.message }))
+        };
+        self.0.messages(&["log"], times_ns).map(line).filter_map(Result::transpose).collect()
     }
 
     /// Time (ns) and words of the last error in the log.
@@ -62,5 +132,12 @@ impl Recorded {
     pub fn journal(&self) -> Result<Journal<impl Iterator<Item = Result<Vec<u8>, ReplayError>> + '_>, ReplayError> {
         let messages = self.0.messages(&[JOURNAL_TOPIC], 0..u64::MAX);
         Journal::open(messages.map(|message| Ok(message?.data().to_vec())))
+    }
+
+    /// A loop at this keyframe of its journal, which begins like this. `begin_ns` is when the session began.
+    pub fn cursor(&self, start: &Start, keyframe: Keyframe, begin_ns: u64) -> Cursor<Messages<'_>> {
+        let from_ns = (begin_ns + (keyframe.t_s() * 1e9) as u64).saturating_sub(MARGIN_NS);
+        let messages = self.0.messages(&[JOURNAL_TOPIC], from_ns..u64::MAX);
+        keyframe.cursor(start.clone(), messages.map(|message| Ok(message?.data().to_vec())))
     }
 }

@@ -35,8 +35,8 @@ impl Kept {
 
     /// Replays it; every tick is told.
     pub(crate) fn replayed(&self, mut each: impl FnMut(&Tick)) -> Result<Outcome, ReplayError> {
-        let mut journal = Journal::open(self.0.iter().map(|bytes| Ok(bytes.clone())))?;
-        replay(&mut journal, |replayed| replayed.ticks.iter().flatten().for_each(&mut each))
+        let journal = Journal::open(self.0.iter().map(|bytes| Ok(bytes.clone())))?;
+        replay(journal, |replayed| replayed.ticks.iter().flatten().for_each(&mut each))
     }
 }
 

@@ -54,7 +54,7 @@ pub(crate) fn recorded(path: &Path, plan: &Plan, seconds: f64, each: impl FnMut(
 
 pub(crate) fn replayed(path: &Path) -> Result<Outcome, ReplayError> {
     let file = Recorded::open(path)?;
-    replay(&mut file.journal()?, |_| {})
+    replay(file.journal()?, |_| {})
 }
 
 #[test]
@@ -105,7 +105,7 @@ fn a_change_differs_where_it_was_made_and_nothing_changed_differs_nowhere() {
 /// Mean of the rendered force while engaged, N.
 fn mean_rendered_n(file: &Recorded) -> f64 {
     let (mut sum_n, mut count) = (0.0, 0);
-    replay(&mut file.journal().unwrap(), |replayed| {
+    replay(file.journal().unwrap(), |replayed| {
         let tick = replayed.ticks[0].as_ref().unwrap();
         if tick.state == nima_machine::messages::LoopState::Engaged {
             sum_n += tick.rendered_n.norm();

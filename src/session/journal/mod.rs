@@ -162,6 +162,14 @@ pub fn outline(bytes: &[u8]) -> Result<Outline, JournalError> {
     })
 }
 
+/// The number of the message of these bytes in its journal.
+///
+/// # Errors
+/// Those of [`decode`], except for the content, which is not read.
+pub fn number(bytes: &[u8]) -> Result<u64, JournalError> {
+    opened(bytes).map(|(number, ..)| number)
+}
+
 /// The message of these bytes, and its number.
 ///
 /// # Errors

@@ -14,7 +14,7 @@ use super::ReplayError;
 use crate::journal::Row;
 
 /// A loop that is fed from a journal.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Machine {
     control: Loop,
     calibrations: BTreeMap<u64, Calibrations>,

@@ -1,27 +1,21 @@
 //! Replays a journal through the loop that recorded it: the same code, the same inputs, so the same bits.
 
+mod cursor;
 mod machine;
 mod steps;
 mod what_if;
 
-use std::ops::ControlFlow;
-
 use nima_core::impedance::SettingsError;
-use nima_machine::{
-    messages::{Event, Tick},
-    rig::{Outputs, SIDES, Side},
-};
+use nima_machine::rig::Side;
 
+pub use cursor::{Cursor, Keyframe, Moment, Passed};
 pub use machine::Machine;
-pub use steps::{Journal, Step};
+pub use steps::{Journal, Messages, Step};
 pub use what_if::{Change, Compared, Difference, compare};
 
 use nima_recording::session::ReadError;
 
-use crate::{
-    digest::{Check, Stage},
-    journal::{JournalError, Row},
-};
+use crate::{digest::Stage, journal::JournalError};
 
 /// Why a session cannot be replayed.
 #[derive(Debug, thiserror::Error)]
@@ -48,21 +42,6 @@ pub enum ReplayError {
     /// The file itself.
     #[error(transparent)]
     File(#[from] ReadError),
-}
-
-/// One tick of a replay.
-#[derive(Debug)]
-pub struct Replayed<'a> {
-    /// Its number in the journal, from 0.
-    pub number: u64,
-    /// What the loop was given.
-    pub row: &'a Row,
-    /// What it told.
-    pub events: &'a [Event],
-    /// Its commands.
-    pub outputs: &'a [Outputs; SIDES],
-    /// What it shows.
-    pub ticks: &'a [Option<Tick>; SIDES],
 }
 
 /// The first tick that is not as it was recorded.
@@ -105,36 +84,28 @@ pub struct Outcome {
 /// # Errors
 /// [`ReplayError`] if the journal cannot be read.
 pub fn replay<I: Iterator<Item = Result<Vec<u8>, ReplayError>>>(
-    journal: &mut Journal<I>,
-    mut each: impl FnMut(&Replayed<'_>),
+    journal: Journal<I>,
+    mut each: impl FnMut(&Moment),
 ) -> Result<Outcome, ReplayError> {
-    let mut machine = Machine::new(&journal.start().origin)?;
+    let mut cursor = Cursor::new(journal)?;
     let mut outcome = Outcome::default();
-    journal.each_step(|step| {
-        match step {
-            Step::Operation(operation) => machine.apply(operation, outcome.ticks)?,
-            Step::Calibrations { number, calibrations } => machine.know(number, calibrations),
-            Step::Hole { lost } => {
-                outcome.hole = Some(Hole { tick: outcome.ticks, lost });
-                return Ok(ControlFlow::Break(()));
+    while let Some(passed) = cursor.step()? {
+        match passed {
+            Passed::Closed => outcome.closed = true,
+            Passed::Hole(hole) => {
+                outcome.hole = Some(hole);
+                break;
             }
-            Step::End(_) => outcome.closed = true,
-            Step::Tick(row) => {
-                let number = outcome.ticks;
-                let (outputs, ticks) = machine.step(row);
-                let events = machine.take_events();
-                each(&Replayed { number, row, events: &events, outputs: &outputs, ticks: &ticks });
-                let check = Check::of(events.iter(), &outputs, &ticks);
-                outcome.seconds = row.timing.now_s;
-                if check != row.check {
-                    let place = check.differs(&row.check);
-                    outcome.differs = Some(Differs { tick: number, t_s: row.timing.now_s, place });
-                    return Ok(ControlFlow::Break(()));
+            Passed::Tick(moment) => {
+                each(&moment);
+                outcome.seconds = moment.row.timing.now_s;
+                outcome.differs = moment.differs();
+                if outcome.differs.is_some() {
+                    break;
                 }
                 outcome.ticks += 1;
             }
         }
-        Ok(ControlFlow::Continue(()))
-    })?;
+    }
     Ok(outcome)
 }

@@ -1,16 +1,15 @@
 //! The journal of a session, step by step.
 
-use std::ops::ControlFlow;
+use std::{iter::Peekable, vec};
 
 use nima_machine::{runtime::Operation, teleop::Calibrations};
 
 use super::ReplayError;
-use crate::journal::{Block, End, Message, Noted, Row, Start, decode};
+use crate::journal::{Block, End, Message, Noted, Row, Start, decode, number};
 
 /// One step of a journal.
 #[derive(Debug)]
-#[expect(clippy::large_enum_variant, reason = "one at a time")]
-pub enum Step<'a> {
+pub enum Step {
     /// Something is done to the loop.
     Operation(Operation),
     /// Calibrations that come into force later.
@@ -21,7 +20,7 @@ pub enum Step<'a> {
         calibrations: Calibrations,
     },
     /// The loop is stepped.
-    Tick(&'a Row),
+    Tick(Row),
     /// Entries are missing here.
     Hole {
         /// How many.
@@ -31,12 +30,21 @@ pub enum Step<'a> {
     End(End),
 }
 
-/// A journal whose beginning has been read.
+/// A journal whose beginning has been read: its steps.
 #[derive(Debug)]
 pub struct Journal<I> {
     messages: I,
     read: u64,
     start: Start,
+    open: Option<Open>,
+}
+
+/// A block that is being read.
+#[derive(Debug)]
+struct Open {
+    rows: vec::IntoIter<Row>,
+    noted: Peekable<vec::IntoIter<(usize, Noted)>>,
+    passed: usize,
 }
 
 impl<I: Iterator<Item = Result<Vec<u8>, ReplayError>>> Journal<I> {
@@ -47,7 +55,7 @@ impl<I: Iterator<Item = Result<Vec<u8>, ReplayError>>> Journal<I> {
     pub fn open(mut messages: I) -> Result<Self, ReplayError> {
         let mut read = 0;
         match next_message(&mut messages, &mut read)? {
-            Some(Message::Start(start)) => Ok(Self { messages, read, start }),
+            Some(Message::Start(start)) => Ok(Self { messages, read, start, open: None }),
             Some(_) => Err(ReplayError::NoStart),
             None => Err(ReplayError::NoJournal),
         }
@@ -58,54 +66,77 @@ impl<I: Iterator<Item = Result<Vec<u8>, ReplayError>>> Journal<I> {
         &self.start
     }
 
-    /// Calls `each` with every step, until it breaks or the journal ends.
-    ///
-    /// # Errors
-    /// [`ReplayError`] if a message cannot be read, or what `each` returns.
-    pub fn each_step(
-        &mut self,
-        mut each: impl FnMut(Step<'_>) -> Result<ControlFlow<()>, ReplayError>,
-    ) -> Result<(), ReplayError> {
-        while let Some(message) = next_message(&mut self.messages, &mut self.read)? {
-            let flow = match message {
-                Message::Start(_) => return Err(ReplayError::NoStart),
-                Message::Calibrations { number, calibrations } => each(Step::Calibrations { number, calibrations })?,
-                Message::Block(block) => each_of_block(&block, &mut each)?,
-                Message::End(end) => each(Step::End(end))?,
-            };
-            if flow.is_break() {
-                break;
-            }
-        }
-        Ok(())
+    /// Messages that were read, if all their steps were taken: a place from which [`go_on`] can read.
+    pub const fn between_blocks(&self) -> Option<u64> {
+        if self.open.is_none() { Some(self.read) } else { None }
     }
 }
 
-fn each_of_block(
-    block: &Block,
-    each: &mut impl FnMut(Step<'_>) -> Result<ControlFlow<()>, ReplayError>,
-) -> Result<ControlFlow<()>, ReplayError> {
-    let mut noted = block.noted.iter().peekable();
-    for (i, row) in block.rows.iter().enumerate() {
-        while let Some((_, noted)) = noted.next_if(|(before, _)| *before <= i) {
-            if each(step_of(noted))?.is_break() {
-                return Ok(ControlFlow::Break(()));
-            }
-        }
-        if each(Step::Tick(row))?.is_break() {
-            return Ok(ControlFlow::Break(()));
-        }
-    }
-    for (_, noted) in noted {
-        if each(step_of(noted))?.is_break() {
-            return Ok(ControlFlow::Break(()));
-        }
-    }
-    Ok(ControlFlow::Continue(()))
+/// Messages of a journal from anywhere.
+pub type Messages<'a> = Box<dyn Iterator<Item = Result<Vec<u8>, ReplayError>> + 'a>;
+
+/// The steps of a journal with this beginning behind its first `read` messages; `messages` may begin with some of those.
+pub(super) fn go_on<'a>(
+    messages: impl Iterator<Item = Result<Vec<u8>, ReplayError>> + 'a,
+    start: Start,
+    read: u64,
+) -> Journal<Messages<'a>> {
+    let is_read = move |bytes: &Result<Vec<u8>, ReplayError>| {
+        bytes.as_ref().is_ok_and(|bytes| number(bytes).is_ok_and(|number| number < read))
+    };
+    Journal { messages: Box::new(messages.skip_while(is_read)), read, start, open: None }
 }
 
-const fn step_of(noted: &Noted) -> Step<'static> {
-    match *noted {
+impl<I: Iterator<Item = Result<Vec<u8>, ReplayError>>> Iterator for Journal<I> {
+    type Item = Result<Step, ReplayError>;
+
+    fn next(&mut self) -> Option<Self::Item> {
+        loop {
+            if let Some(open) = &mut self.open {
+                let step = open.next();
+                if open.is_read() {
+                    self.open = None;
+                }
+                if let Some(step) = step {
+                    return Some(Ok(step));
+                }
+            }
+            return Some(Ok(match next_message(&mut self.messages, &mut self.read).transpose()? {
+                Err(error) => return Some(Err(error)),
+                Ok(Message::Start(_)) => return Some(Err(ReplayError::NoStart)),
+                Ok(Message::Calibrations { number, calibrations }) => Step::Calibrations { number, calibrations },
+                Ok(Message::End(end)) => Step::End(end),
+                Ok(Message::Block(block)) => {
+                    self.open = Some(Open::of(block));
+                    continue;
+                }
+            }));
+        }
+    }
+}
+
+impl Open {
+    fn of(block: Block) -> Self {
+        let Block { rows, noted, .. } = block;
+        Self { rows: rows.into_iter(), noted: noted.into_iter().peekable(), passed: 0 }
+    }
+
+    fn is_read(&self) -> bool {
+        self.rows.len() == 0 && self.noted.len() == 0
+    }
+
+    fn next(&mut self) -> Option<Step> {
+        let (passed, last) = (self.passed, self.rows.len() == 0);
+        if let Some((_, noted)) = self.noted.next_if(|(before, _)| last || *before <= passed) {
+            return Some(step_of(noted));
+        }
+        self.passed += 1;
+        self.rows.next().map(Step::Tick)
+    }
+}
+
+const fn step_of(noted: Noted) -> Step {
+    match noted {
         Noted::Operation(operation) => Step::Operation(operation),
         Noted::Hole { lost } => Step::Hole { lost },
     }

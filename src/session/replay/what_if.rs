@@ -4,8 +4,6 @@
 //! otherwise, and so would the tissue's force. What is compared is what the hand would have felt at each moment, had it moved
 //! as it did.
 
-use std::ops::ControlFlow;
-
 use nalgebra::Vector3;
 use nima_core::impedance::Mode;
 use nima_machine::{
@@ -111,8 +109,8 @@ pub fn compare<I: Iterator<Item = Result<Vec<u8>, ReplayError>>>(
     let origin = &journal.start().origin;
     let (mut recorded, mut changed) = (Machine::new(origin)?, Machine::new(&change.origin(origin))?);
     let (mut sides, mut ticks, mut hole) = ([None; SIDES], 0, None);
-    journal.each_step(|step| {
-        match step {
+    for step in journal {
+        match step? {
             Step::Operation(operation) => {
                 recorded.apply(operation, ticks)?;
                 if !matches!(operation, Operation::Command { command, .. } if !change.lets(command)) {
@@ -125,11 +123,11 @@ pub fn compare<I: Iterator<Item = Result<Vec<u8>, ReplayError>>>(
             }
             Step::Hole { lost } => {
                 hole = Some(Hole { tick: ticks, lost });
-                return Ok(ControlFlow::Break(()));
+                break;
             }
             Step::End(_) => {}
             Step::Tick(row) => {
-                let ((_, as_was), (_, as_if)) = (recorded.step(row), changed.step(row));
+                let ((_, as_was), (_, as_if)) = (recorded.step(&row), changed.step(&row));
                 recorded.take_events();
                 changed.take_events();
                 ticks += 1;
@@ -141,8 +139,7 @@ pub fn compare<I: Iterator<Item = Result<Vec<u8>, ReplayError>>>(
                 }
             }
         }
-        Ok(ControlFlow::Continue(()))
-    })?;
+    }
     Ok((sides, ticks, hole))
 }
 

@@ -30,6 +30,9 @@ pub(super) struct Arguments {
     /// Open this calibration wizard at the start
     #[arg(long, value_name = "WIZARD")]
     calibrate: Option<Which>,
+    /// Show this recorded session at the start; the rig starts idle
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["calibrate", "pictures"])]
+    session: Option<PathBuf>,
     /// Close after this many seconds
     #[arg(long, visible_alias = "seconds", value_name = "S", value_parser = super::run::positive_seconds)]
     exit_after: Option<f64>,
@@ -74,7 +77,8 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let mut plan = Plan { rig: rig.clone(), scene: scene.clone(), calibrations, engage: false };
     // Nobody can be hurt by a simulated or emulated rig, so the demo starts at once.
     let by_itself = rig.devices.as_ref().is_none_or(|devices| devices.emulated);
-    plan.engage = by_itself && !arguments.at_rest && arguments.calibrate.is_none() && plan.may_engage();
+    let by_itself = by_itself && !arguments.at_rest && arguments.calibrate.is_none() && arguments.session.is_none();
+    plan.engage = by_itself && plan.may_engage();
     // Pictures are taken of a session that nobody looks for afterwards.
     let folder = in_force.store().and_then(|store| store.folder().parent()).filter(|_| arguments.pictures.is_none());
     let mut sessions = Sessions::of_user(folder);
@@ -84,6 +88,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         screenshot: arguments.screenshot.clone(),
         pictures: arguments.pictures.as_deref().map(Album::new),
         role: arguments.role,
+        session: arguments.session.clone(),
         wizard: arguments.calibrate,
         summary: arguments.summary.clone(),
         frames: arguments.frames.clone(),

@@ -104,10 +104,10 @@ struct Missing {
 
 fn once_more(file: &Recorded, session: &Path, json: bool) -> anyhow::Result<()> {
     let damaged = || session.display().to_string();
-    let mut journal = file.journal().with_context(damaged)?;
+    let journal = file.journal().with_context(damaged)?;
     let start = journal.start().clone();
     let (begin, mut read) = (Instant::now(), 0);
-    let outcome = replay(&mut journal, |_| read += 1);
+    let outcome = replay(journal, |_| read += 1);
     let outcome = outcome.with_context(|| format!("{} ({read} ticks before were replayed)", session.display()))?;
     let took_s = begin.elapsed().as_secs_f64();
     let Outcome { ticks, seconds, differs, hole, closed } = outcome;

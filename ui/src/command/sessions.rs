@@ -7,7 +7,7 @@ use clap::Args;
 use nima_files::quoted;
 use nima_recording::{session::ReadError, store::Store};
 use nima_session::{
-    file::Recorded,
+    file::{self, Recorded},
     plotted,
     shelf::{MOST_BYTES, Shelf, Shelved, keep},
 };
@@ -192,15 +192,8 @@ impl About {
         let reader = file.reader();
         let begin_ns = plotted::beginning_ns(reader)?;
         let since = |time_ns: u64| time_ns.saturating_sub(begin_ns) as f64 / 1e9;
-        let tables = reader.metadata()?;
-        let told = tables.into_iter().find(|(name, _)| name == "session").map(|(_, table)| table).unwrap_or_default();
+        let file::About { started, rig, seconds } = file.about()?;
         let fault = file.last_fault()?.map(|(time_ns, words)| LastFault { t_s: since(time_ns), words });
-        Ok(Self {
-            started: told.get("started").cloned(),
-            rig: told.get("rig").cloned(),
-            seconds: since(reader.statistics().times_ns.1),
-            last_fault: fault,
-            closed: file.is_closed()?,
-        })
+        Ok(Self { started, rig, seconds, last_fault: fault, closed: file.is_closed()? })
     }
 }

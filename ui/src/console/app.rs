@@ -6,7 +6,9 @@ mod connecting;
 mod listing;
 mod opening;
 mod pace;
+mod reviewing;
 mod starting;
+mod views;
 
 use std::{
     path::PathBuf,
@@ -37,9 +39,10 @@ use super::{
     menu,
     outbox::Outbox,
     panels::{ForcesState, TopBarState, TradeoffState, top_bar_ui},
+    past::{Past, list::List},
     pictures::Photographer,
     reader::Reader,
-    roles::{Panels, Role, Wishes, role_ui},
+    roles::{Panels, Role},
     scene3d::{SceneView, extras::Extras},
     sessions::Sessions,
     settings::{Kept, Settings},
@@ -85,6 +88,9 @@ pub struct ConsoleApp {
     wizards: Wizards,
     checking: Checking,
     listing: Listing,
+    list: List,
+    /// A recorded session that is on the screen instead of the machine.
+    past: Option<Past>,
     in_force: InForce,
     diary: Diary,
     sessions: Sessions,
@@ -145,6 +151,8 @@ impl ConsoleApp {
             wizards: Wizards::default(),
             checking: Checking::default(),
             listing: Listing::default(),
+            list: List::default(),
+            past: None,
             watched: None,
             read: None,
             live,
@@ -282,6 +290,7 @@ impl ConsoleApp {
             let calibrating = self.wizards.open.is_some() || self.checking.is_open();
             let before = self.role();
             self.top_bar.asked = self.checking.ask();
+            self.top_bar.past = self.past.is_some();
             self.sessions.look_after();
             self.top_bar.recorded = self.sessions.shown();
             let wants_start = top_bar_ui(
@@ -302,6 +311,10 @@ impl ConsoleApp {
                 self.open_start();
             } else if self.starting.is_none() && (wants_start || pressed.is_some() || self.role() != before) {
                 self.start.is_open = false;
+                self.list.is_open = false;
+            }
+            if std::mem::take(&mut self.top_bar.wants_sessions) && !calibrating {
+                self.toggle_list();
             }
         });
         let signs = self.live.signs(self.outbox.stop_is_stuck(), self.sessions.trouble());
@@ -309,38 +322,9 @@ impl ConsoleApp {
         self.top_bar.alarms.strip_ui(ui, &signs, loop_s, self.settings.now.sound);
         self.sessions.tell(&self.live.marks_s, &self.top_bar.alarms.log, loop_s);
         let room = ui.available_rect_before_wrap();
-        if self.checking.is_open() {
-            self.check_layout(ui);
-        } else if self.listing.is_open() {
-            self.listing_layout(ui);
-        } else if self.wizards.open.is_some() {
-            self.wizard_layout(ui);
-        } else if self.start.is_open {
-            self.start_layout(ui);
-        } else {
-            self.monitor_layout(ui);
-        }
+        self.page_layout(ui);
         self.top_bar.alarms.list_ui(ui.ctx(), room);
         self.settings.now.toured |= self.help.ui(ui.ctx(), room);
-    }
-
-    fn monitor_layout(&mut self, ui: &mut Ui) {
-        self.panels.devices.is_seen = false;
-        self.panels.devices.is_starting = self.starting.is_some();
-        let Wishes { restart, calibration, devices } =
-            role_ui(ui, &mut self.settings.now, &mut self.live, &mut self.panels, &self.in_force, &mut self.outbox);
-        // At the end of the frame, after everything was drawn with the old loop. A stop requested in the same frame
-        // takes precedence.
-        if self.outbox.holds_stop() {
-            return;
-        }
-        if let Some(rig) = restart {
-            self.apply_tradeoff(rig);
-        }
-        if let Some(change) = devices {
-            self.connect(&change);
-        }
-        self.obey_calibrations(calibration);
     }
 }
 
@@ -370,11 +354,15 @@ impl eframe::App for ConsoleApp {
         }
         self.help.glossary ^= keys::glossary_pressed(&ctx);
         self.obey_start_key(&ctx);
-        if keys::mark_pressed(&ctx) {
+        self.obey_past_keys(&ctx, f64::from(ui.input(|input| input.stable_dt)).min(0.1));
+        if keys::mark_pressed(&ctx) && self.past.is_none() {
             self.live.mark();
         }
         self.layout(ui);
         self.settings.save();
+        if self.past.is_some() {
+            self.outbox.only_stop();
+        }
         self.outbox.flush(self.door.as_ref().map(Door::handle));
         self.obey_options(&ctx);
         self.rest(&ctx);

@@ -43,15 +43,22 @@ pub struct InForce {
     /// The arm that is calibrated by the wizards.
     side: Side,
     told: Option<String>,
+    /// Those of a recorded session, one line each.
+    past: Vec<String>,
 }
 
 impl InForce {
     /// Loads the calibrations for the sensors and tools of this rig from the store in `folder` (or the user's own).
     pub fn load(folder: Option<&Path>, rig: &RigConfig, scene: &Scene) -> Self {
         let store = folder.map_or_else(|| Store::of_user().ok(), |folder| Some(Store::open(folder)));
-        let mut this = Self { store, sides: Default::default(), side: Side::Right, told: None };
+        let mut this = Self { store, sides: Default::default(), side: Side::Right, told: None, past: Vec::new() };
         this.bind(rig, scene);
         this
+    }
+
+    /// Those of a recorded session, as its file tells them: nothing can be changed.
+    pub fn of_past(lines: Vec<String>) -> Self {
+        Self { store: None, sides: Default::default(), side: Side::Right, told: None, past: lines }
     }
 
     /// Prepares for a loop of this rig and scene that is about to start.
@@ -293,6 +300,9 @@ impl InForce {
 
     /// One line for each calibration that matters for this rig.
     pub fn lines(&self) -> Vec<String> {
+        if !self.past.is_empty() {
+            return self.past.clone();
+        }
         let at_wrist = |side: &Side| self.sides[side.index()].bound != Bound::Nothing;
         let sides: Vec<_> = Side::ALL.into_iter().filter(at_wrist).collect();
         let name = |side: Side| (sides.len() > 1).then(|| side_name(side));

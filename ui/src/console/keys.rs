@@ -53,6 +53,16 @@ pub(super) fn start_pressed(ctx: &Context) -> bool {
     ctx.input(|input| input.key_pressed(Key::F6))
 }
 
+/// Whether the key for the list of recorded sessions was pressed.
+pub(super) fn sessions_pressed(ctx: &Context) -> bool {
+    ctx.input(|input| input.key_pressed(Key::F7))
+}
+
+/// Whether the key that leaves the past was pressed.
+pub(super) fn live_pressed(ctx: &Context) -> bool {
+    !ctx.text_edit_focused() && ctx.input(|input| input.modifiers.is_none() && input.key_pressed(Key::L))
+}
+
 /// Whether the key for the glossary was pressed.
 pub(super) fn glossary_pressed(ctx: &Context) -> bool {
     ctx.input(|input| input.key_pressed(Key::F4))

@@ -2,6 +2,8 @@
 
 mod intake;
 
+pub(in crate::console) use intake::forces_of;
+
 use std::{
     collections::VecDeque,
     time::{Duration, Instant},
@@ -51,6 +53,15 @@ const BLOCKS_KEPT: usize = 40;
 /// How long a refused command is displayed.
 const REFUSAL_SHOWN: Duration = Duration::from_secs(6);
 
+/// What is on the screen.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Of {
+    /// The loop that runs.
+    Now,
+    /// A moment of a recorded session: nothing may act on the machine.
+    Past,
+}
+
 /// A command that was refused.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Refused {
@@ -69,6 +80,8 @@ pub struct Live {
     pub rig: RigConfig,
     /// The scene.
     pub scene: Scene,
+    /// What it is the state of.
+    pub of: Of,
     /// Newest tick of each side.
     pub ticks: [Option<Tick>; SIDES],
     /// Forces over time, of each side.
@@ -140,6 +153,7 @@ impl Live {
         Self {
             rig,
             scene,
+            of: Of::Now,
             ticks: [None; SIDES],
             history: Default::default(),
             clouds: Default::default(),
@@ -180,6 +194,16 @@ impl Live {
             tick_at: now,
             running: true,
         }
+    }
+
+    /// Before the first tick of a recorded session.
+    pub fn of_past(rig: RigConfig, scene: Scene) -> Self {
+        Self { of: Of::Past, ..Self::new(rig, scene) }
+    }
+
+    /// Whether this is a moment of a recorded session.
+    pub fn is_past(&self) -> bool {
+        self.of == Of::Past
     }
 
     /// Records that a tick arrived at this moment and waits to be read: the loop is not silent.
@@ -309,7 +333,7 @@ impl Live {
             state: self.first_tick().map(|_| self.state()),
             first_fault: self.first_fault,
             running: self.running,
-            silence: self.tick_at.elapsed(),
+            silence: if self.is_past() { Duration::ZERO } else { self.tick_at.elapsed() },
             missed_share: self.missed_share.get(),
             scheduling: self.scheduling,
             stop_is_stuck,

@@ -23,6 +23,7 @@ mod menu;
 pub mod outbox;
 pub(crate) mod overview;
 pub mod panels;
+pub(crate) mod past;
 pub mod pictures;
 pub mod reader;
 pub mod readings;
@@ -69,6 +70,8 @@ pub struct Options {
     pub pictures: Option<pictures::Album>,
     /// Start in this role instead of the last one.
     pub role: Option<roles::Role>,
+    /// Show this recorded session at the start.
+    pub session: Option<PathBuf>,
     /// Open this wizard at the start.
     pub wizard: Option<wizards::Which>,
     /// Write the loop's figures to this file when the window is closed.

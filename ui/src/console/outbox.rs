@@ -33,6 +33,16 @@ impl Outbox {
         self.stop_refused = self.holds_stop();
     }
 
+    /// Leaves out all waiting commands but a stop.
+    pub fn only_stop(&mut self) {
+        self.waiting.retain(|command| *command == Command::Stop);
+    }
+
+    /// Leaves out all waiting commands.
+    pub fn forget(&mut self) {
+        self.waiting.clear();
+    }
+
     /// Whether a stop is waiting.
     pub fn holds_stop(&self) -> bool {
         self.waiting.contains(&Command::Stop)

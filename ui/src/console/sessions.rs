@@ -265,7 +265,7 @@ mod tests {
         }
         for path in &paths {
             let file = Recorded::open(path).unwrap();
-            let outcome = replay(&mut file.journal().unwrap(), |_| ()).unwrap();
+            let outcome = replay(file.journal().unwrap(), |_| ()).unwrap();
             assert!(outcome.differs.is_none() && outcome.closed && outcome.ticks > 0, "{outcome:?}");
         }
     }
@@ -317,7 +317,7 @@ mod tests {
         assert!((over_s - marks_s[2]).abs() < 1e-6);
         let file = Recorded::open(&path).unwrap();
         assert!(file.is_closed().unwrap());
-        let outcome = replay(&mut file.journal().unwrap(), |_| ()).unwrap();
+        let outcome = replay(file.journal().unwrap(), |_| ()).unwrap();
         assert!(outcome.differs.is_none() && outcome.closed && outcome.ticks > 0, "{outcome:?}");
     }
 

@@ -47,6 +47,8 @@ pub struct Palette {
     pub reference: Color32,
     /// Several lines in one plot: axes x, y, z, or the members of an ensemble. They also differ in lightness.
     pub series: [Color32; 4],
+    /// The frame of what is recorded, and nothing else.
+    pub past: Color32,
     /// The loop runs and feeds force back.
     pub engaged: Color32,
     /// The loop is at rest.
@@ -82,6 +84,7 @@ pub const DARK: Palette = Palette {
     rendered: rgb(0x6c_9dff),
     reference: rgb(0x87_919d),
     series: [rgb(0xf3_e9d2), rgb(0x6c_9dff), rgb(0x63_c28c), rgb(0xc0_7ad8)],
+    past: rgb(0xd0_6ae0),
     engaged: rgb(0x63_c28c),
     at_rest: rgb(0xc3_cad2),
     alarm_high: rgb(0xff_4d4d),
@@ -108,6 +111,7 @@ pub const LIGHT: Palette = Palette {
     rendered: rgb(0x1c_63dd),
     reference: rgb(0x6c_7783),
     series: [rgb(0x5d_4715), rgb(0x1c_63dd), rgb(0x1f_8a53), rgb(0x8a_3ba8)],
+    past: rgb(0x93_2fa8),
     engaged: rgb(0x1f_8a53),
     at_rest: rgb(0x5a_646f),
     alarm_high: rgb(0xc9_1f2a),

@@ -8,6 +8,7 @@ mod console;
 mod desk;
 mod drift;
 mod instruments;
+mod past;
 mod ready;
 mod roles;
 mod starting;

@@ -18,7 +18,10 @@ use nima_console::console::{
 };
 use nima_machine::messages::LoopState;
 
-use crate::bench::{self, console_of, until};
+use crate::{
+    bench::{self, console_of, until},
+    past,
+};
 
 /// Points: the smallest window, the sizes of common screens, and with them those screens at a scale of 150 or 200 %.
 const SIZES: [[f32; 2]; 4] = [[1100.0, 680.0], [1280.0, 720.0], [1920.0, 1080.0], [3840.0, 2160.0]];
@@ -207,6 +210,49 @@ fn nothing_is_cut_or_overlaps_on_the_start_page() {
     for size in SIZES {
         let faults = faults(&mut harness, size, true);
         all.extend(faults.into_iter().map(|fault| format!("{size:?}: {fault}")));
+    }
+    assert!(all.is_empty(), "{} faults:\n{}", all.len(), all.join("\n"));
+}
+
+#[test]
+fn nothing_is_cut_or_overlaps_in_the_past_and_in_the_list_of_sessions() {
+    let folder = tempfile::tempdir().unwrap();
+    let data = folder.path().to_path_buf();
+    let sessions = data.join("sessions");
+    fs::create_dir_all(&sessions).unwrap();
+    let path = sessions.join("20261123T131415Z-Simulated-rig.mcap");
+    past::record(&path, "bimanual", "3");
+    let mut harness = console_of("peg_transfer", SIZES[0], move |app| {
+        let mut kept = Kept::open(&data);
+        kept.now.toured = true;
+        app.with_settings(kept)
+    });
+    until(&mut harness, "any tick", |_| true);
+    let mut all = Vec::new();
+    bench::press(&mut harness, "Sessions");
+    past::until_listed(&mut harness, "20261123T131415Z-Simulated-rig.mcap");
+    for size in SIZES {
+        let faults = faults(&mut harness, size, true);
+        all.extend(faults.into_iter().map(|fault| format!("list {size:?}: {fault}")));
+    }
+    bench::press(&mut harness, "Open 20261123T131415Z-Simulated-rig.mcap");
+    past::until_whole(&mut harness);
+    for (role, front) in VIEWS {
+        for size in SIZES {
+            for light in [false, true] {
+                let settings = harness.state_mut().settings_mut();
+                (settings.role, settings.light) = (role, light);
+                settings.layout = Layout { front: front.to_vec(), ..Layout::default() };
+                // On a small screen the technician's panels scroll more: what is scrolled away lies nowhere.
+                let faults = if role == Role::Technician && size[1] < 1000.0 {
+                    let (texts, window, field) = seen(&mut harness, size);
+                    faults_of_texts(&texts, window, field, true, false)
+                } else {
+                    faults(&mut harness, size, role == Role::Technician)
+                };
+                all.extend(faults.into_iter().map(|fault| format!("past {role:?} {front:?} {size:?}: {fault}")));
+            }
+        }
     }
     assert!(all.is_empty(), "{} faults:\n{}", all.len(), all.join("\n"));
 }

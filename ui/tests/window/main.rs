@@ -3,6 +3,7 @@
 
 mod console;
 mod first_day;
+mod past;
 mod real_window;
 mod server;
 mod sessions;

@@ -25,6 +25,9 @@ impl ConsoleApp {
         if let Some(which) = self.options.wizard {
             self.open_wizard(which);
         }
+        if let Some(session) = self.options.session.clone() {
+            self.open_past(&session);
+        }
         self.leave_when_asked();
         self
     }

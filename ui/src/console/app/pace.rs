@@ -10,7 +10,7 @@ use nima_machine::messages::LoopState;
 
 use super::ConsoleApp;
 use crate::{
-    console::{Options, diary::WithScreen, door::Door, frames::Picture},
+    console::{Options, diary::WithScreen, door::Door, frames::Picture, past::Past},
     telling::tell,
 };
 
@@ -34,8 +34,9 @@ impl ConsoleApp {
     pub(super) fn rest(&mut self, ctx: &egui::Context) {
         let moves = !(self.live.state().is_latched() || self.live.state() == LoopState::Idle);
         let asks = self.wizards.open.is_some() || self.checking.is_open();
+        let plays = self.past.as_ref().is_some_and(Past::moves);
         let devices = &self.panels.devices;
-        if moves || devices.is_testing() || asks || self.live.first_tick().is_none() {
+        if moves || plays || devices.is_testing() || asks || self.live.first_tick().is_none() {
             self.moved = Instant::now();
         }
         self.calm = self.moved.elapsed() > SETTLED;

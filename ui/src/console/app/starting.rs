@@ -91,7 +91,7 @@ impl ConsoleApp {
 
     /// Opens and closes the start page by its key.
     pub(super) fn obey_start_key(&mut self, ctx: &egui::Context) {
-        let asks = self.wizards.open.is_some() || self.checking.is_open();
+        let asks = self.wizards.open.is_some() || self.checking.is_open() || self.past.is_some();
         if keys::start_pressed(ctx) && !asks && self.starting.is_none() {
             if self.start.is_open {
                 self.start.is_open = false;
@@ -102,6 +102,7 @@ impl ConsoleApp {
     }
 
     pub(super) fn open_start(&mut self) {
+        self.list.is_open = false;
         self.start.open(&self.running, &self.settings.now.recent);
     }
 

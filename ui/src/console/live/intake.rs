@@ -5,7 +5,7 @@ use std::time::Instant;
 use nima_core::{impedance::Mode, statistics::Quantiles};
 use nima_machine::{
     messages::{Event, LoopState, Tick},
-    rig::{Gauges, Side},
+    rig::{Gauges, SIDES, Side},
 };
 
 use super::{BLOCKS_KEPT, FIGURES_EVERY, Live, READINGS_EVERY, Refused, TRAIL_S, TRAIL_STEP_S, TREND_S};
@@ -45,6 +45,22 @@ impl Live {
         }
         self.running = handle.is_running();
         self.refresh_figures();
+    }
+
+    /// Takes in what a recorded session tells of a tick.
+    pub(in crate::console) fn replay<'a>(
+        &mut self,
+        events: impl Iterator<Item = &'a Event>,
+        ticks: &[Option<Tick>; SIDES],
+    ) {
+        events.for_each(|event| self.event(event));
+        ticks.iter().flatten().for_each(|tick| self.tick(tick));
+    }
+
+    /// Brings the figures up to date with the ticks of a recorded session, which took this time, s.
+    pub(in crate::console) fn settle(&mut self, seconds: f64) {
+        self.refresh_readings();
+        self.refresh_others(seconds);
     }
 
     fn event(&mut self, event: &Event) {
@@ -120,8 +136,7 @@ impl Live {
     fn follow(&mut self, tick: &Tick, before: Option<&Tick>) {
         let (side, dt_s) = (tick.side.index(), before.map_or(0.0, |before| (tick.t_s - before.t_s).max(0.0)));
         let (m, r) = (tick.measured_n, tick.rendered_n);
-        let values: [f32; CHANNELS] = [m.x, m.y, m.z, r.x, r.y, r.z].map(|x| x as f32);
-        self.history[side].push(tick.t_s, &values);
+        self.history[side].push(tick.t_s, &forces_of(tick));
         self.measured[side].push(m.norm(), dt_s, 0.05);
         self.rendered[side].push(r.norm(), dt_s, 0.05);
         self.gates[side].push(tick, dt_s);
@@ -138,20 +153,28 @@ impl Live {
 
     fn refresh_figures(&mut self) {
         if self.readings_at.elapsed() >= READINGS_EVERY {
-            self.figures.measured_n = self.measured.map(Fading::get);
-            self.figures.rendered_n = self.rendered.map(Fading::get);
-            self.readings_at = Instant::now();
+            self.refresh_readings();
         }
         let since = self.figures_at.elapsed();
-        if since < FIGURES_EVERY {
-            return;
+        if since >= FIGURES_EVERY {
+            self.refresh_others(since.as_secs_f64());
         }
+    }
+
+    fn refresh_readings(&mut self) {
+        self.figures.measured_n = self.measured.map(Fading::get);
+        self.figures.rendered_n = self.rendered.map(Fading::get);
+        self.readings_at = Instant::now();
+    }
+
+    /// All other figures; the ticks since the last time took so many seconds.
+    fn refresh_others(&mut self, seconds: f64) {
         self.figures = Figures {
             horizon_n: self.horizon.map(Fading::get),
             wake_us: self.wake.quantiles(),
             work_us: self.work.quantiles(),
             sample_to_force_us: self.sample_to_force.quantiles(),
-            rate_hz: self.ticks_counted as f64 / since.as_secs_f64(),
+            rate_hz: if seconds > 0.0 { self.ticks_counted as f64 / seconds } else { 0.0 },
             frame_ms: {
                 let Quantiles { p50, p99, .. } = self.frames.quantiles();
                 [p50 * 1e-3, p99 * 1e-3]
@@ -162,4 +185,10 @@ impl Live {
         self.ticks_counted = 0;
         self.figures_at = Instant::now();
     }
+}
+
+/// The forces of a tick, N, in the order of their channels.
+pub(in crate::console) fn forces_of(tick: &Tick) -> [f32; CHANNELS] {
+    let (m, r) = (tick.measured_n, tick.rendered_n);
+    [m.x, m.y, m.z, r.x, r.y, r.z].map(|x| x as f32)
 }

@@ -25,7 +25,9 @@ pub fn horizon_ui(ui: &mut Ui, live: &Live, outbox: &mut Outbox) {
     let dfr_n = live.figures.horizon_n[Mode::Dfr.index()];
     ui.label(small(text::horizon::ahead(live.delay_s() * 1e3)));
     let mut compares = live.compares();
-    if ui.checkbox(&mut compares, text::horizon::COMPARE).on_hover_text(text::horizon::COMPARE_HOVER).changed() {
+    let compare = egui::Checkbox::new(&mut compares, text::horizon::COMPARE);
+    let compare = ui.add_enabled(!live.is_past(), compare).on_hover_text(text::horizon::COMPARE_HOVER);
+    if compare.on_disabled_hover_text(text::past::BLOCKED).changed() {
         outbox.push(Command::Compare(compares));
     }
     ui.add_space(2.0);

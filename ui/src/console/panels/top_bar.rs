@@ -44,6 +44,10 @@ pub struct TopBarState {
     pub(in crate::console) recorded: Option<Shown>,
     /// The button that keeps it was pressed.
     pub(in crate::console) keeps: bool,
+    /// The list of recorded sessions is wanted.
+    pub(in crate::console) wants_sessions: bool,
+    /// The past is on the screen: nothing but stop acts on the machine.
+    pub(in crate::console) past: bool,
 }
 
 /// The bar, with role switch and menu. While a person guides the arm (`calibrating`), it cannot be engaged. Returns true when the start
@@ -78,9 +82,9 @@ pub fn top_bar_ui(
         ui.add_space(10.0);
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             stop_ui(ui, now, state.asked == Some(Ask::PressStop), outbox);
-            let blocked = calibrating && now == LoopState::Idle;
+            let blocked = state.past || calibrating && now == LoopState::Idle;
             let next = state.asked == Some(Ask::Release);
-            step_ui(ui, now, [since_s >= STEP_WAITS_S && !blocked, next], outbox);
+            step_ui(ui, now, [since_s >= STEP_WAITS_S && !blocked, next], state.past, outbox);
             ui.add_space(6.0);
             refusal_ui(ui, live);
         });
@@ -108,11 +112,16 @@ fn identity_ui(
         ui.horizontal(|ui| {
             switch_ui(ui, &mut settings.role, !calibrating);
             let start = Button::new(text::start::OPEN).min_size(vec2(44.0, 30.0));
-            let start = ui.add_enabled(!calibrating, start).on_hover_text(text::start::OPEN_HOVER);
-            wants_start = start.on_disabled_hover_text(text::start::OPEN_DISABLED_HOVER).clicked();
-            if menu_ui(ui, settings, help, &mut state.alarms) {
+            let why = if state.past { text::past::BLOCKED } else { text::start::OPEN_DISABLED_HOVER };
+            let free = !calibrating && !state.past;
+            let start = ui.add_enabled(free, start).on_hover_text(text::start::OPEN_HOVER);
+            wants_start = start.on_disabled_hover_text(why).clicked();
+            if menu_ui(ui, settings, help, &mut state.alarms) && !state.past {
                 live.mark();
             }
+            let sessions = Button::new(text::past::SESSIONS).min_size(vec2(72.0, 30.0));
+            let sessions = ui.add_enabled(free, sessions).on_hover_text(text::past::SESSIONS_HOVER);
+            state.wants_sessions |= sessions.on_disabled_hover_text(why).clicked();
             recorded_ui(ui, state);
             if ui.ctx().content_rect().width() >= SCENE_FROM {
                 ui.add_space(4.0);
@@ -205,7 +214,7 @@ fn stop_button(ui: &mut Ui, button: Button<'_>, ink: egui::Color32) -> egui::Res
 }
 
 /// The button for the next step, beside the stop button and never below it.
-fn step_ui(ui: &mut Ui, state: LoopState, [ready, next]: [bool; 2], outbox: &mut Outbox) {
+fn step_ui(ui: &mut Ui, state: LoopState, [ready, next]: [bool; 2], past: bool, outbox: &mut Outbox) {
     let (name, command, meaning) = match state {
         LoopState::Idle => (text::top_bar::ENGAGE, Command::Engage, text::top_bar::ENGAGE_HOVER),
         LoopState::Stopped => (text::top_bar::RELEASE_STOP, Command::ReleaseStop, text::top_bar::RELEASE_STOP_HOVER),
@@ -219,7 +228,9 @@ fn step_ui(ui: &mut Ui, state: LoopState, [ready, next]: [bool; 2], outbox: &mut
     };
     let text = RichText::new(name).font(theme::strong(17.0));
     let button = next_button(text, next).min_size(theme::STOP_SIZE).corner_radius(theme::CORNER);
-    if ui.add_enabled(ready, button).on_hover_text(meaning).clicked() {
+    let response = ui.add_enabled(ready, button).on_hover_text(meaning);
+    let response = if past { response.on_disabled_hover_text(text::past::BLOCKED) } else { response };
+    if response.clicked() {
         outbox.push(command);
     }
 }

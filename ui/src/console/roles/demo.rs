@@ -278,19 +278,18 @@ fn may_show(live: &Live, step: &Step) -> bool {
 
 /// Draws the view.
 pub(super) fn demo_ui(ui: &mut Ui, live: &mut Live, panels: &mut Panels, outbox: &mut Outbox) {
-    if may_play(live) {
+    if may_play(live) && !live.is_past() {
         let dt_s = f64::from(ui.input(|input| input.stable_dt)).min(0.1);
         panels.demo.play(live, panels.scene.is_led(), dt_s, outbox);
     }
     let side = Frame::new().fill(theme::now().panel).inner_margin(Margin::same(8));
     let height = if ui.available_width() < ONE_ROW { 176.0 } else { 140.0 };
-    Panel::bottom("caption")
-        .exact_size(height)
-        .resizable(false)
-        .frame(side.inner_margin(Margin::symmetric(18, 12)))
-        .show(ui, |ui| {
-            caption_ui(ui, live, &mut panels.demo);
-        });
+    // The script is not what happened in the past.
+    if !live.is_past() {
+        let frame = side.inner_margin(Margin::symmetric(18, 12));
+        let caption = Panel::bottom("caption").exact_size(height).resizable(false).frame(frame);
+        caption.show(ui, |ui| caption_ui(ui, live, &mut panels.demo));
+    }
     Panel::right("figures").exact_size(348.0).resizable(false).frame(side).show(ui, |ui| {
         let panel = desk::Panel::Horizon;
         card(ui, panel.title(), panel.meaning(), |ui| horizon_ui(ui, live, outbox));

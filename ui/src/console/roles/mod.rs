@@ -136,6 +136,11 @@ pub fn role_ui(
     }
 }
 
+/// Draws controls that act on the machine: not while the past is shown.
+fn acts<R>(ui: &mut Ui, past: bool, controls: impl FnOnce(&mut Ui) -> R) -> R {
+    ui.add_enabled_ui(!past, controls).inner
+}
+
 /// One button for each role.
 pub fn switch_ui(ui: &mut Ui, now: &mut Role, allowed: bool) {
     ui.spacing_mut().item_spacing.x = 4.0;

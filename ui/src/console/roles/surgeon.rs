@@ -4,7 +4,7 @@
 use egui::{Align2, CentralPanel, Frame, Margin, Panel, Rect, Sense, Ui, pos2, vec2};
 use nima_machine::rig::Side;
 
-use super::Panels;
+use super::{Panels, acts};
 use crate::console::{
     live::Live,
     outbox::Outbox,
@@ -21,6 +21,7 @@ const BEYOND_CEILING: f64 = 1.25;
 
 /// Draws the view.
 pub(super) fn surgeon_ui(ui: &mut Ui, live: &mut Live, panels: &mut Panels, outbox: &mut Outbox) {
+    let past = live.is_past();
     let strip = Frame::new().fill(theme::now().panel).inner_margin(Margin::same(8));
     Panel::bottom("strip").exact_size(STRIP).resizable(false).frame(strip).show(ui, |ui| {
         let room = ui.available_rect_before_wrap();
@@ -36,7 +37,7 @@ pub(super) fn surgeon_ui(ui: &mut Ui, live: &mut Live, panels: &mut Panels, outb
         ui.scope_builder(egui::UiBuilder::new().max_rect(gain), |ui| {
             theme::card().show(ui, |ui| {
                 ui.set_min_size(ui.available_size());
-                calm_gain_ui(ui, live, &mut panels.feedback, outbox);
+                acts(ui, past, |ui| calm_gain_ui(ui, live, &mut panels.feedback, outbox));
                 ui.add(egui::Label::new(small(told(live))).wrap());
             });
         });

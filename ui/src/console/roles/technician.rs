@@ -2,7 +2,7 @@
 
 use egui::{Frame, Margin, Ui};
 
-use super::{Panels, Wishes};
+use super::{Panels, Wishes, acts};
 use crate::console::{
     desk::{Layout, Panel},
     in_force::InForce,
@@ -24,7 +24,7 @@ pub(super) fn technician_ui(
     in_force: &InForce,
     outbox: &mut Outbox,
 ) -> Wishes {
-    let mut wishes = Wishes::default();
+    let (mut wishes, past) = (Wishes::default(), live.is_past());
     let mut desk = std::mem::take(&mut panels.desk);
     desk.ui(ui, layout, &mut |ui, panel| match panel {
         Panel::Field => scene_ui(ui, live, &mut panels.scene, outbox),
@@ -33,15 +33,15 @@ pub(super) fn technician_ui(
             let Panels { forces, space, .. } = &mut *panels;
             force_space_ui(ui, live, forces.side(), space, forces.cursor_at_s(live));
         }
-        Panel::Feedback => feedback_ui(ui, live, &mut panels.feedback, outbox),
-        Panel::Devices => wishes.devices = devices_ui(ui, live, &mut panels.devices),
-        Panel::Calibrations => wishes.calibration = calibrations_ui(ui, live, in_force, None),
+        Panel::Feedback => acts(ui, past, |ui| feedback_ui(ui, live, &mut panels.feedback, outbox)),
+        Panel::Devices => wishes.devices = acts(ui, past, |ui| devices_ui(ui, live, &mut panels.devices)),
+        Panel::Calibrations => wishes.calibration = acts(ui, past, |ui| calibrations_ui(ui, live, in_force, None)),
         Panel::Gates => gates_ui(ui, live, &mut panels.gates),
         Panel::Safety => safety_ui(ui, live),
         Panel::Horizon => horizon_ui(ui, live, outbox),
         Panel::Degrees => degrees_ui(ui, live),
         Panel::Timing => timing_ui(ui, live, &mut panels.timing),
-        Panel::Tradeoff => wishes.restart = tradeoff_ui(ui, live, &mut panels.tradeoff, outbox),
+        Panel::Tradeoff => wishes.restart = acts(ui, past, |ui| tradeoff_ui(ui, live, &mut panels.tradeoff, outbox)),
     });
     panels.desk = desk;
     wishes

@@ -30,6 +30,13 @@ impl Lead {
         self.at_m.is_some()
     }
 
+    /// Ends the leading.
+    pub(super) fn let_go(&mut self, outbox: &mut Outbox) {
+        if self.at_m.take().is_some() {
+            outbox.push(Command::Guide(None));
+        }
+    }
+
     /// The switch in the view, and the handling of mouse and keys while it is on. Returns true while it is on.
     pub(super) fn ui(
         &mut self,
@@ -40,7 +47,7 @@ impl Lead {
         camera: &Camera,
         outbox: &mut Outbox,
     ) -> bool {
-        let runs = matches!(live.state(), LoopState::Idle | LoopState::Engaged);
+        let runs = matches!(live.state(), LoopState::Idle | LoopState::Engaged) && !live.is_past();
         if self.is_on() && !runs {
             // The loop has ended the leading already.
             self.at_m = None;

@@ -96,6 +96,16 @@ impl SceneView {
         }
     }
 
+    /// Another view that draws with the same objects on the GPU, with a camera of its own; this one releases them.
+    pub(super) fn twin(&self) -> Self {
+        Self { renderer: self.renderer.clone(), problem: self.problem.clone(), ..Self::default() }
+    }
+
+    /// The instrument is no longer led from the window.
+    pub(super) fn let_go(&mut self, outbox: &mut Outbox) {
+        self.lead.let_go(outbox);
+    }
+
     /// Whether the instrument is led from the window.
     pub const fn is_led(&self) -> bool {
         self.lead.is_on()

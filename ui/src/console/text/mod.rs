@@ -28,6 +28,7 @@ pub(super) mod horizon;
 pub(super) mod menu;
 pub(super) mod modes;
 pub(super) mod overview;
+pub(super) mod past;
 pub(super) mod ready;
 pub(super) mod roles;
 pub(super) mod safety;

@@ -1,0 +1,136 @@
+//! The console while the past is shown: the list of sessions, and one that is open.
+//!
+//! The machine runs on, its alarms are told and its stop works; nothing else on the screen reaches it.
+
+use std::path::Path;
+
+use egui::{CentralPanel, Stroke, StrokeKind, Ui};
+
+use super::ConsoleApp;
+use crate::console::{
+    door::Door,
+    keys,
+    past::{FRAME, Past, bar_ui, both_ui, head_ui},
+    roles::role_ui,
+    text, theme,
+    widgets::weak,
+};
+
+impl ConsoleApp {
+    /// Shows this session; the machine runs on.
+    #[must_use]
+    pub fn with_session(mut self, session: &Path) -> Self {
+        self.open_past(session);
+        self
+    }
+
+    /// The session on the screen, and the time of it, s.
+    pub fn past(&self) -> Option<(&Path, f64)> {
+        self.past.as_ref().map(|past| (past.path.as_path(), past.shown_s()))
+    }
+
+    /// The session beside it, and the time of that one, s.
+    pub fn past_beside(&self) -> Option<(&Path, f64)> {
+        let beside = self.past.as_ref()?.beside.as_ref().filter(|beside| beside.live.is_some())?;
+        Some((beside.path.as_path(), beside.shown_s()))
+    }
+
+    /// The ticks of the past on the screen, once every figure is as it was.
+    pub fn past_ticks(&self) -> Option<&[Option<nima_machine::messages::Tick>]> {
+        let past = self.past.as_ref().filter(|past| past.is_whole())?;
+        past.live.as_ref().map(|live| live.ticks.as_slice())
+    }
+
+    /// Shows this time of the session on the screen, s.
+    pub fn show_past(&mut self, t_s: f64) {
+        if let Some(past) = &mut self.past {
+            past.show(t_s);
+        }
+    }
+
+    /// Opens a session. What the screen does to the machine by itself, a demonstration or leading by mouse, ends before.
+    pub(super) fn open_past(&mut self, session: &Path) {
+        self.panels.demo.leave(&mut self.outbox);
+        self.panels.scene.let_go(&mut self.outbox);
+        self.outbox.flush(self.door.as_ref().map(Door::handle));
+        (self.start.is_open, self.list.is_open) = (false, false);
+        self.past = Some(Past::open(session, &self.ctx, self.panels.scene.twin()));
+    }
+
+    /// The screen shows the machine again.
+    pub(super) fn close_past(&mut self) {
+        self.past = None;
+        self.list.is_open = false;
+    }
+
+    /// Whether the operator does something at the machine with the help of the screen: then the past is not shown.
+    fn is_at_work(&self) -> bool {
+        self.wizards.open.is_some() || self.checking.is_open() || self.starting.is_some()
+    }
+
+    pub(super) fn obey_past_keys(&mut self, ctx: &egui::Context, dt_s: f64) {
+        if keys::sessions_pressed(ctx) && self.past.is_none() && !self.is_at_work() {
+            self.toggle_list();
+        }
+        if keys::live_pressed(ctx) {
+            self.close_past();
+        }
+        if let Some(past) = &mut self.past {
+            past.step(dt_s, self.live.state().permits().drives);
+        }
+    }
+
+    pub(super) fn toggle_list(&mut self) {
+        if self.list.is_open {
+            self.list.is_open = false;
+        } else {
+            self.start.is_open = false;
+            self.list.open(&self.ctx, self.settings.folder());
+        }
+    }
+
+    pub(super) fn list_layout(&mut self, ui: &mut Ui) {
+        if let Some(session) = self.list.ui(ui) {
+            self.open_past(&session);
+        }
+    }
+
+    /// The same views as of the machine, in a frame of their own colour.
+    pub(super) fn past_layout(&mut self, ui: &mut Ui) {
+        let Some(past) = &mut self.past else { return };
+        let room = ui.available_rect_before_wrap();
+        let live_again = head_ui(ui, past);
+        bar_ui(ui, past);
+        let (wants_beside, smooth) = (std::mem::take(&mut past.wants_beside), self.panels.scene.smooth);
+        CentralPanel::no_frame().show(ui, |ui| {
+            if self.list.is_open {
+                if let Some(session) = self.list.ui(ui) {
+                    past.set_beside(Past::open(&session, &self.ctx, self.panels.scene.twin()));
+                }
+                return;
+            }
+            if past.beside.is_some() {
+                return both_ui(ui, past, smooth);
+            }
+            let Some(live) = &mut past.live else {
+                let words = past.refused().unwrap_or(text::past::OPENING);
+                ui.centered_and_justified(|ui| ui.label(weak(words)));
+                return;
+            };
+            live.rough_edges = self.live.rough_edges;
+            past.panels.scene.smooth = smooth;
+            // What the views wish for the machine is left undone.
+            role_ui(ui, &mut self.settings.now, live, &mut past.panels, &past.in_force, &mut past.outbox);
+            past.outbox.forget();
+        });
+        let stroke = Stroke::new(FRAME, theme::now().past);
+        ui.painter().rect_stroke(room, 0.0, stroke, StrokeKind::Inside);
+        if wants_beside {
+            self.list.open(&self.ctx, self.settings.folder());
+            self.list.for_beside = true;
+        }
+        if live_again {
+            self.close_past();
+        }
+    }
+}

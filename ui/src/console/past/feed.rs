@@ -1,0 +1,155 @@
+//! The ticks of a session from some time on: replayed, or as far as they are plotted in its file.
+
+use std::collections::BTreeMap;
+
+use nima_machine::{
+    messages::{Event, LoopState, Tick},
+    rig::{SIDES, Side},
+};
+use nima_session::{
+    STATES,
+    plotted::{self, PlottedError, PlottedTick},
+    replay::{Cursor, Differs, Keyframe, Messages, Passed, ReplayError},
+};
+
+use super::film::File;
+use crate::console::{chain, text};
+
+/// What is plotted is read in stretches of this length, s: about a chunk of the file.
+const STRETCH_S: f64 = 0.4;
+
+/// One tick of a session.
+#[derive(Clone, Debug)]
+pub(super) struct Frame {
+    pub(super) t_s: f64,
+    pub(super) events: Vec<Event>,
+    pub(super) ticks: [Option<Tick>; SIDES],
+}
+
+/// Where ticks come from.
+#[expect(clippy::large_enum_variant, reason = "two at most")]
+pub(super) enum Feed<'a> {
+    /// The loop that was recorded.
+    Replay(Cursor<Messages<'a>>),
+    /// The plots of the file, from this time on, s.
+    Plots(f64),
+}
+
+/// Where a feed has come to.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Reached {
+    /// To the limit, or beyond it by less than a tick.
+    Limit,
+    /// Not yet: there is more.
+    More,
+    /// The end; why, if it is not the end of the session.
+    End(Option<String>),
+}
+
+impl Feed<'_> {
+    /// Moves on by a block, or to the first tick at `limit_s` or after it. `like` are ticks from which what is not plotted is taken.
+    pub(super) fn slice(
+        &mut self,
+        file: &File,
+        like: &[Option<Tick>; SIDES],
+        limit_s: f64,
+        mut each: impl FnMut(Frame),
+    ) -> Reached {
+        match self {
+            Self::Replay(cursor) => {
+                replay(cursor, limit_s, &mut each).unwrap_or_else(|error| Reached::End(Some(chain(&error))))
+            }
+            Self::Plots(at_s) => {
+                let to_s = *at_s + STRETCH_S;
+                let frames = match plots(file, like, *at_s, to_s) {
+                    Ok(frames) => frames,
+                    Err(error) => return Reached::End(Some(chain(&error))),
+                };
+                for frame in frames {
+                    *at_s = frame.t_s + 1e-6;
+                    let reached = frame.t_s >= limit_s;
+                    each(frame);
+                    if reached {
+                        return Reached::Limit;
+                    }
+                }
+                *at_s = at_s.max(to_s);
+                if *at_s > file.end_s { Reached::End(None) } else { Reached::More }
+            }
+        }
+    }
+
+    /// The loop as it is now, if it is replayed and a block of the journal has just been passed.
+    pub(super) fn keyframe(&self) -> Option<Keyframe> {
+        match self {
+            Self::Replay(cursor) => cursor.keyframe(),
+            Self::Plots(_) => None,
+        }
+    }
+}
+
+fn replay(
+    cursor: &mut Cursor<Messages<'_>>,
+    limit_s: f64,
+    each: &mut impl FnMut(Frame),
+) -> Result<Reached, ReplayError> {
+    loop {
+        match cursor.step()? {
+            None | Some(Passed::Closed) => return Ok(Reached::End(None)),
+            Some(Passed::Hole(hole)) => return Ok(Reached::End(Some(text::past::hole(hole.lost)))),
+            Some(Passed::Tick(moment)) => {
+                if let Some(Differs { t_s, .. }) = moment.differs() {
+                    return Ok(Reached::End(Some(text::past::differs(t_s))));
+                }
+                let t_s = moment.row.timing.now_s;
+                each(Frame { t_s, events: moment.events, ticks: moment.ticks });
+                if t_s >= limit_s {
+                    return Ok(Reached::Limit);
+                }
+                if cursor.is_between_blocks() {
+                    return Ok(Reached::More);
+                }
+            }
+        }
+    }
+}
+
+/// What is plotted from `from_s` up to `to_s`, as ticks.
+pub(super) fn plots(
+    file: &File,
+    like: &[Option<Tick>; SIDES],
+    from_s: f64,
+    to_s: f64,
+) -> Result<Vec<Frame>, PlottedError> {
+    let mut frames: BTreeMap<u64, Frame> = BTreeMap::new();
+    let times_ns = file.time_ns(from_s)..file.time_ns(to_s);
+    for arm in &file.arms {
+        let Some(like) = &like[arm.index()] else { continue };
+        plotted::each_tick(file.recorded.reader(), &file.path, *arm, times_ns.clone(), |plotted| {
+            let none = || Frame { t_s: plotted.t_s, events: Vec::new(), ticks: [None; SIDES] };
+            frames.entry(plotted.time_ns).or_insert_with(none).ticks[arm.index()] = Some(tick(like, *arm, &plotted));
+            Ok::<_, PlottedError>(())
+        })?;
+    }
+    Ok(frames.into_values().collect())
+}
+
+/// A tick like this one, with all that is plotted.
+fn tick(like: &Tick, side: Side, plotted: &PlottedTick) -> Tick {
+    let PlottedTick { time_ns: _, t_s, tip_m, leader_m, measured_n, delayed_n, asked_n, rendered_n, state } = plotted;
+    let is_it = |known: &LoopState| known.word() == *state;
+    let state = Some(like.state).filter(is_it).or_else(|| STATES.into_iter().find(is_it)).unwrap_or(like.state);
+    let mut tick = Tick {
+        side,
+        state,
+        t_s: *t_s,
+        tip_m: *tip_m,
+        leader_m: *leader_m,
+        measured_n: *measured_n,
+        delayed_n: *delayed_n,
+        rendered_n: *rendered_n,
+        ..*like
+    };
+    tick.asked_n[tick.mode.index()] = *asked_n;
+    tick
+}

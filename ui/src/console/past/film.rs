@@ -1,0 +1,386 @@
+//! A recorded session while it is shown: read once from its beginning to its end, and again from near any moment.
+//!
+//! The first reading leaves loops to go on from (keyframes), samples, the extremes of the traces and what happened. A moment is shown at
+//! once from these and from what is plotted of it in the file; then the loop is replayed up to it from some seconds before, so that
+//! every panel shows what it showed then. What cannot be replayed is shown as far as it is plotted.
+
+use std::path::{Path, PathBuf};
+
+use nima_machine::{
+    config::RigConfig,
+    messages::{Event, Tick},
+    rig::{SIDES, Side},
+    teleop::{Calibrations, Loop, Timing},
+};
+use nima_session::{
+    file::{Line, LineKind, Recorded},
+    journal::Start,
+    plotted,
+    replay::Keyframe,
+};
+use nima_world::scene::Scene;
+
+use super::{
+    feed::{Feed, Frame, Reached, plots},
+    overview::Note,
+};
+use crate::console::{
+    chain,
+    history::CHANNELS,
+    live::{Live, forces_of},
+    text,
+};
+
+/// A moment is replayed from this time before it, s, so that traces and figures have their past.
+const LEAD_S: f64 = 10.0;
+/// Traces reach back to this time before it, s.
+const TRACES_S: f64 = 120.0;
+/// Least time between keyframes, s; doubled whenever there are too many.
+const KEYFRAME_S: f64 = 1.5;
+/// Most keyframes that are kept: each is a whole loop, 17 MB with one arm and 27 MB with two.
+const KEYFRAMES: usize = 40;
+/// Time between samples, s.
+const SAMPLE_S: f64 = 0.1;
+/// Length of a column of the traces, s.
+const COLUMN_S: f64 = 0.016;
+/// The log is read in stretches of this length, s, because each is a look into all chunks of its time.
+const LOG_S: f64 = 4.0;
+/// A moment without a tick is that of the next one within this time, s.
+const NEXT_S: f64 = 0.05;
+
+/// The file of a session.
+pub(super) struct File {
+    pub(super) path: PathBuf,
+    pub(super) recorded: Recorded,
+    pub(super) begin_ns: u64,
+    /// Time of its last message, s.
+    pub(super) end_s: f64,
+    /// The arms that are plotted.
+    pub(super) arms: Vec<Side>,
+    pub(super) rig: RigConfig,
+    pub(super) scene: Scene,
+    /// How its journal begins, or why it cannot be replayed.
+    start: Result<Start, String>,
+}
+
+impl File {
+    /// Opens it; one line if it cannot be shown at all.
+    pub(super) fn open(path: &Path) -> Result<Self, String> {
+        let recorded = Recorded::open(path).map_err(|error| chain(&error))?;
+        let begin_ns = plotted::beginning_ns(recorded.reader()).map_err(|error| chain(&error))?;
+        let end_s = recorded.about().map_err(|error| chain(&error))?.seconds;
+        let start = recorded.journal().map(|journal| journal.start().clone()).map_err(|error| chain(&error));
+        let rig = match &start {
+            Ok(start) => start.origin.rig.clone(),
+            Err(_) => attached(&recorded, "rig.toml")?,
+        };
+        let (scene, arms) = (attached(&recorded, "scene.toml")?, plotted::arms(recorded.reader()));
+        Ok(Self { path: path.to_owned(), recorded, begin_ns, end_s, arms, rig, scene, start })
+    }
+
+    fn t_s(&self, time_ns: u64) -> f64 {
+        time_ns.saturating_sub(self.begin_ns) as f64 / 1e9
+    }
+
+    pub(super) fn time_ns(&self, t_s: f64) -> u64 {
+        self.begin_ns + (t_s.max(0.0) * 1e9).round() as u64
+    }
+
+    /// The calibrations in force at the beginning, one line each.
+    pub(super) fn calibrations(&self) -> Vec<String> {
+        let tables = self.recorded.reader().metadata().unwrap_or_default();
+        let of_side = |side: Side| {
+            let (_, table) = tables.iter().find(|(name, _)| *name == format!("calibrations {}", side.word()))?;
+            Some(text::past::calibrations(side.word(), table))
+        };
+        Side::ALL.into_iter().filter_map(of_side).collect()
+    }
+
+    /// A tick of each arm in which nothing is known.
+    fn blank(&self) -> Result<[Option<Tick>; SIDES], String> {
+        let known = Side::ALL.map(|side| self.arms.contains(&side).then(Calibrations::default));
+        let mut control = Loop::new(&self.rig, &known).map_err(|error| chain(&error))?;
+        Ok(control.step([None; SIDES], &Timing::default()).1)
+    }
+}
+
+/// A table of a session's settings that is kept in its file.
+fn attached<T: serde::de::DeserializeOwned>(recorded: &Recorded, name: &str) -> Result<T, String> {
+    let reader = recorded.reader();
+    let place = reader.attachments().iter().find(|one| one.name == name).ok_or_else(|| text::past::without(name))?;
+    let bytes = reader.attachment(place).map_err(|error| chain(&error))?;
+    toml::from_str(&String::from_utf8_lossy(&bytes)).map_err(|error| text::past::unusable(name, error.message()))
+}
+
+/// Extremes of the forces in a short time.
+#[derive(Clone, Copy, Debug)]
+struct Column {
+    number: u64,
+    low: [f32; CHANNELS],
+    high: [f32; CHANNELS],
+}
+
+/// What the first reading has left so far.
+pub(super) struct Film<'a> {
+    pub(super) file: &'a File,
+    blank: [Option<Tick>; SIDES],
+    reading: Option<Feed<'a>>,
+    keyframes: Vec<Keyframe>,
+    keyframe_s: f64,
+    samples: [Vec<Tick>; SIDES],
+    columns: [Vec<Column>; SIDES],
+    events: Vec<(f64, Event)>,
+    /// Marks of the operator, s.
+    marks_s: Vec<f64>,
+    /// The log was read up to this time, s.
+    log_s: f64,
+    /// Everything before this time was read, s.
+    read_s: f64,
+    /// Everything before this time was replayed as it was recorded, s.
+    exact_s: f64,
+    /// Why what comes after that is only plotted.
+    pub(super) why: Option<String>,
+}
+
+/// A moment that is being replayed.
+pub(super) struct Chase<'a> {
+    feed: Feed<'a>,
+    live: Live,
+    like: [Option<Tick>; SIDES],
+    from_s: f64,
+    to_s: f64,
+}
+
+impl<'a> Film<'a> {
+    /// Nothing is read yet.
+    pub(super) fn new(file: &'a File) -> Result<Self, String> {
+        let mut film = Self {
+            file,
+            blank: file.blank()?,
+            reading: Some(Feed::Plots(0.0)),
+            keyframes: Vec::new(),
+            keyframe_s: KEYFRAME_S,
+            samples: Default::default(),
+            columns: Default::default(),
+            events: Vec::new(),
+            marks_s: Vec::new(),
+            log_s: 0.0,
+            read_s: 0.0,
+            exact_s: 0.0,
+            why: None,
+        };
+        let first = file.start.as_ref().map_err(Clone::clone).and_then(|start| {
+            let first = Keyframe::first(start).map_err(|error| chain(&error))?;
+            Ok((start, first))
+        });
+        match first {
+            Ok((start, first)) => {
+                film.reading = Some(Feed::Replay(file.recorded.cursor(start, first.clone(), file.begin_ns)));
+                film.keyframes.push(first);
+            }
+            Err(why) => film.why = Some(why),
+        }
+        Ok(film)
+    }
+
+    /// Time up to which it was read, s.
+    pub(super) const fn read_s(&self) -> f64 {
+        self.read_s
+    }
+
+    /// Whether the loop can be replayed up to this time, s.
+    pub(super) fn is_exact(&self, t_s: f64) -> bool {
+        t_s <= self.exact_s
+    }
+
+    /// Reads on for a moment; false at the end. Everything that was read is told to `each`.
+    pub(super) fn read(&mut self, mut each: impl FnMut(&Frame)) -> bool {
+        let Some(mut reading) = self.reading.take() else { return false };
+        let mut frames = Vec::new();
+        let like = self.like(self.read_s);
+        let reached = reading.slice(self.file, &like, f64::INFINITY, |frame| frames.push(frame));
+        let is_replay = matches!(reading, Feed::Replay(_));
+        for frame in frames {
+            self.keep(&frame, is_replay);
+            each(&frame);
+        }
+        match (reached, is_replay) {
+            (Reached::End(why), true) => {
+                // A recording that was cut has more plots than journal.
+                self.why = self.why.take().or(why);
+                let has_more = self.read_s + NEXT_S < self.file.end_s;
+                self.reading = has_more.then_some(Feed::Plots(self.read_s + 1e-6));
+            }
+            (Reached::End(why), false) => {
+                self.why = self.why.take().or(why);
+                self.read_s = self.file.end_s;
+            }
+            (Reached::More | Reached::Limit, _) => self.reading = Some(reading),
+        }
+        if let Some(reading) = &self.reading {
+            self.keep_loop(reading.keyframe());
+        }
+        self.reading.is_some()
+    }
+
+    /// What the log tells of what was read, as soon as it is worth a look.
+    pub(super) fn notes(&mut self) -> Vec<Note> {
+        if self.reading.is_some() && self.read_s < self.log_s + LOG_S {
+            return Vec::new();
+        }
+        let to_ns = if self.reading.is_some() { self.file.time_ns(self.read_s) } else { u64::MAX };
+        let times_ns = self.file.time_ns(self.log_s)..to_ns;
+        self.log_s = self.read_s;
+        // A log that cannot be read has nothing to tell; the damage is told by what is replayed or plotted.
+        let lines = self.file.recorded.log(times_ns).unwrap_or_default();
+        let note = |Line { time_ns, kind, words }| Note { t_s: self.file.t_s(time_ns), kind, words };
+        let notes: Vec<Note> = lines.into_iter().map(note).collect();
+        self.marks_s.extend(notes.iter().filter(|note| note.kind == LineKind::Mark).map(|note| note.t_s));
+        notes
+    }
+
+    fn keep(&mut self, frame: &Frame, is_replay: bool) {
+        let Frame { t_s, events, ticks } = frame;
+        self.read_s = *t_s;
+        if is_replay {
+            self.exact_s = *t_s;
+        }
+        self.events.extend(events.iter().map(|event| (*t_s, *event)));
+        for tick in ticks.iter().flatten() {
+            let side = tick.side.index();
+            if self.samples[side].last().is_none_or(|last| *t_s >= last.t_s + SAMPLE_S) {
+                self.samples[side].push(*tick);
+            }
+            add(&mut self.columns[side], *t_s, &forces_of(tick));
+        }
+    }
+
+    fn keep_loop(&mut self, keyframe: Option<Keyframe>) {
+        let due_s = self.keyframes.last().map_or(0.0, |last| last.t_s() + self.keyframe_s);
+        let Some(keyframe) = keyframe.filter(|keyframe| keyframe.t_s() >= due_s) else { return };
+        self.keyframes.push(keyframe);
+        if self.keyframes.len() > KEYFRAMES {
+            let mut number = 0;
+            self.keyframes.retain(|_| {
+                number += 1;
+                number % 2 == 1
+            });
+            self.keyframe_s *= 2.0;
+        }
+    }
+
+    /// The last samples before this time, s, for what is not plotted.
+    fn like(&self, t_s: f64) -> [Option<Tick>; SIDES] {
+        Side::ALL.map(|side| {
+            let samples = &self.samples[side.index()];
+            let before = samples.partition_point(|tick| tick.t_s <= t_s);
+            before.checked_sub(1).map(|last| samples[last]).or(self.blank[side.index()])
+        })
+    }
+
+    /// The state of the window before this time, s: traces and events.
+    fn live(&self, t_s: f64) -> Live {
+        let mut live = Live::of_past(self.file.rig.clone(), self.file.scene.clone());
+        live.replay(self.events.iter().take_while(|(at_s, _)| *at_s < t_s).map(|(_, event)| event), &[None; SIDES]);
+        // Those to come lie beyond the end of the traces.
+        live.marks_s.extend(&self.marks_s);
+        for (columns, history) in self.columns.iter().zip(&mut live.history) {
+            let from = columns.partition_point(|column| begin_s(column) < t_s - TRACES_S);
+            for column in columns[from..].iter().take_while(|column| begin_s(column) + COLUMN_S <= t_s) {
+                history.push(begin_s(column), &column.low);
+                history.push(begin_s(column), &column.high);
+            }
+        }
+        live
+    }
+
+    /// The moment at this time, s, at once: as far as it is plotted, the rest from the last sample.
+    pub(super) fn at_once(&self, t_s: f64) -> Live {
+        let like = self.like(t_s);
+        // What cannot be read there is told when it is read in its turn.
+        let frames = plots(self.file, &like, t_s, t_s + NEXT_S).unwrap_or_default();
+        let frame = frames.into_iter().next();
+        let mut live = self.live(t_s);
+        live.replay(std::iter::empty(), &frame.map_or(like, |frame| frame.ticks));
+        live.settle(0.0);
+        live
+    }
+
+    /// Begins to replay up to the first tick at this time, s, or after it.
+    pub(super) fn chase(&self, to_s: f64) -> Chase<'a> {
+        let from_s = (to_s - LEAD_S).max(0.0);
+        let keyframe = self.keyframes.iter().rfind(|keyframe| keyframe.t_s() <= from_s);
+        let feed = match (keyframe, &self.file.start) {
+            (Some(keyframe), Ok(start)) if self.is_exact(to_s) => {
+                Feed::Replay(self.file.recorded.cursor(start, keyframe.clone(), self.file.begin_ns))
+            }
+            _ => Feed::Plots(from_s),
+        };
+        Chase { feed, live: self.live(from_s), like: self.like(from_s), from_s, to_s }
+    }
+}
+
+impl<'a> Chase<'a> {
+    /// Goes on for a moment; true when the moment is reached.
+    pub(super) fn go_on(&mut self, file: &File) -> bool {
+        let Self { feed, live, like, from_s, to_s } = self;
+        let reached = feed.slice(file, like, *to_s, |frame| {
+            if frame.t_s >= *from_s {
+                live.replay(frame.events.iter(), &frame.ticks);
+            }
+        });
+        reached != Reached::More
+    }
+
+    /// What is shown, and where it goes on.
+    pub(super) fn end(mut self) -> (Live, View<'a>) {
+        if self.live.ticks.iter().all(Option::is_none) {
+            // Nothing could be read here.
+            self.live.replay(std::iter::empty(), &self.like);
+        }
+        self.live.settle(self.to_s - self.from_s);
+        let like = std::array::from_fn(|side| self.live.ticks[side].or(self.like[side]));
+        (self.live, View { feed: self.feed, like })
+    }
+}
+
+/// The moment that is shown, from which it goes on.
+pub(super) struct View<'a> {
+    feed: Feed<'a>,
+    like: [Option<Tick>; SIDES],
+}
+
+impl View<'_> {
+    /// Whether everything is as it was, not only what is plotted.
+    pub(super) const fn is_exact(&self) -> bool {
+        matches!(self.feed, Feed::Replay(_))
+    }
+
+    /// The ticks up to this time, s; `None` at the end.
+    pub(super) fn go_on(&mut self, file: &File, to_s: f64) -> Option<Vec<Frame>> {
+        let mut frames = Vec::new();
+        loop {
+            match self.feed.slice(file, &self.like, to_s, |frame| frames.push(frame)) {
+                Reached::More => {}
+                Reached::Limit => return Some(frames),
+                Reached::End(_) => return (!frames.is_empty()).then_some(frames),
+            }
+        }
+    }
+}
+
+fn begin_s(column: &Column) -> f64 {
+    column.number as f64 * COLUMN_S
+}
+
+fn add(columns: &mut Vec<Column>, t_s: f64, values: &[f32; CHANNELS]) {
+    let number = (t_s / COLUMN_S) as u64;
+    if columns.last().is_none_or(|last| last.number != number) {
+        columns.push(Column { number, low: *values, high: *values });
+    }
+    let Some(column) = columns.last_mut() else { return };
+    for ((low, high), value) in column.low.iter_mut().zip(&mut column.high).zip(values) {
+        *low = low.min(*value);
+        *high = high.max(*value);
+    }
+}

@@ -1,0 +1,132 @@
+//! Work on a session that takes a while, in a thread of its own: a report, a stretch of it.
+
+use std::{
+    ops::Range,
+    path::{Path, PathBuf},
+    process::{Command, Stdio},
+    sync::{
+        Arc,
+        atomic::{AtomicBool, Ordering},
+        mpsc::{Receiver, TryRecvError, channel},
+    },
+    thread,
+};
+
+use egui::Context;
+use nima_recording::session::Reader;
+use nima_session::{cut, plotted, shelf::keep};
+
+use crate::console::{chain, text};
+
+/// Folder of the reports, beside the sessions.
+const REPORTS: &str = "reports";
+
+/// What is being done, and where its words come.
+#[derive(Debug)]
+pub(super) struct Job {
+    doing: &'static str,
+    told: Receiver<String>,
+    /// Set when nobody waits for it any more.
+    left: Arc<AtomicBool>,
+}
+
+impl Drop for Job {
+    fn drop(&mut self) {
+        self.left.store(true, Ordering::Relaxed);
+    }
+}
+
+impl Job {
+    /// What is being done, or what came of it; true when it is over.
+    pub(super) fn told(&self) -> (String, bool) {
+        match self.told.try_recv() {
+            Ok(words) => (words, true),
+            Err(TryRecvError::Empty) => (self.doing.to_owned(), false),
+            Err(TryRecvError::Disconnected) => (text::past::NO_THREAD.to_owned(), true),
+        }
+    }
+
+    fn start(ctx: &Context, doing: &'static str, work: impl FnOnce(&AtomicBool) -> String + Send + 'static) -> Self {
+        let (tell, told) = channel();
+        let ctx = ctx.clone();
+        let left = Arc::new(AtomicBool::new(false));
+        let seen = Arc::clone(&left);
+        let work = move || {
+            tell.send(work(&seen)).ok();
+            ctx.request_repaint();
+        };
+        // If no thread can be created, `tell` is dropped, and that is told.
+        thread::Builder::new().name("session".to_owned()).spawn(work).ok();
+        Self { doing, told, left }
+    }
+
+    /// Writes the page of a session and opens it, if this computer has a program for it.
+    pub(super) fn report(ctx: &Context, session: &Path) -> Self {
+        let session = session.to_path_buf();
+        Self::start(ctx, text::past::REPORTING, move |_| {
+            let folder = beside(&session).join(REPORTS).join(session.file_stem().unwrap_or_default());
+            match crate::report::write(&[session], &folder) {
+                Ok(page) => {
+                    open(&page);
+                    text::past::reported(&page)
+                }
+                Err(error) => text::past::not_reported(&format!("{error:#}")),
+            }
+        })
+    }
+
+    /// Saves the stretch between these times (s) beside the session, and keeps it.
+    pub(super) fn cut(ctx: &Context, session: &Path, times_s: Range<f64>) -> Self {
+        let session = session.to_path_buf();
+        Self::start(ctx, text::past::CUTTING, move |left| match save(&session, &times_s, left) {
+            Ok(path) => text::past::saved(&path),
+            Err(why) => text::past::not_saved(&why),
+        })
+    }
+}
+
+fn beside(session: &Path) -> &Path {
+    session.parent().unwrap_or_else(|| Path::new(""))
+}
+
+fn save(session: &Path, times_s: &Range<f64>, left: &AtomicBool) -> Result<PathBuf, String> {
+    let stem = session.file_stem().unwrap_or_default().to_string_lossy();
+    let to = session.with_file_name(format!("{stem}-{:.1}-{:.1}.mcap", times_s.start, times_s.end));
+    if to.symlink_metadata().is_ok() {
+        return Err(text::past::taken(&to));
+    }
+    let part = to.with_extension("part");
+    let written = cut_out(session, times_s, &part, left)
+        .and_then(|()| std::fs::rename(&part, &to).and_then(|()| keep(&to, true)).map_err(|error| error.to_string()));
+    if written.is_err() {
+        std::fs::remove_file(&part).ok();
+    }
+    written.map(|()| to)
+}
+
+fn cut_out(session: &Path, times_s: &Range<f64>, part: &Path, left: &AtomicBool) -> Result<(), String> {
+    let reader = Reader::open(session).map_err(|error| chain(&error))?;
+    let begin_ns = plotted::beginning_ns(&reader).map_err(|error| chain(&error))?;
+    let time_ns = |seconds: f64| begin_ns + (seconds * 1e9).round() as u64;
+    let name = session.file_name().unwrap_or_default().to_string_lossy();
+    let times_ns = time_ns(times_s.start)..time_ns(times_s.end);
+    cut::write(&reader, &name, &times_ns, part, left).map_err(|error| chain(&error))?;
+    Ok(())
+}
+
+/// Opens a file with the user's program for it. Where there is none, the words on the screen say where the file is.
+fn open(path: &Path) {
+    let mut command = if cfg!(target_os = "macos") {
+        Command::new("open")
+    } else if cfg!(windows) {
+        let mut command = Command::new("cmd");
+        command.args(["/C", "start", ""]);
+        command
+    } else {
+        Command::new("xdg-open")
+    };
+    command.arg(path).stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());
+    if let Ok(mut opener) = command.spawn() {
+        opener.wait().ok();
+    }
+}

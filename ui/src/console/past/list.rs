@@ -1,0 +1,210 @@
+//! The page with the user's recorded sessions.
+
+use std::{
+    path::{Path, PathBuf},
+    sync::mpsc::{Receiver, channel},
+    thread,
+};
+
+use egui::{Button, CentralPanel, Context, Frame, Grid, Label, Margin, RichText, ScrollArea, Ui, vec2};
+use nima_session::{
+    file::{About, Recorded},
+    shelf::{MOST_BYTES, Shelf, Shelved, keep},
+};
+
+use super::job::Job;
+use crate::console::{
+    chain, text, theme,
+    widgets::{small, weak},
+};
+
+const BUTTON: egui::Vec2 = vec2(74.0, 28.0);
+
+/// State of the page.
+#[derive(Debug, Default)]
+pub(crate) struct List {
+    pub(crate) is_open: bool,
+    /// A session is chosen to be shown beside the one on the screen.
+    pub(crate) for_beside: bool,
+    folder: Option<PathBuf>,
+    rows: Vec<Row>,
+    reading: Option<Receiver<Result<Vec<Row>, String>>>,
+    /// The one that may be deleted by the next press.
+    asked: Option<PathBuf>,
+    job: Option<Job>,
+    told: Option<String>,
+}
+
+#[derive(Debug)]
+struct Row {
+    shelved: Shelved,
+    about: Result<About, String>,
+}
+
+/// What is to be done with a session.
+enum Wish {
+    Open(PathBuf),
+    Keep(PathBuf, bool),
+    Ask(PathBuf),
+    Delete(PathBuf),
+    Report(PathBuf),
+}
+
+impl List {
+    /// Shows the page; the folder of sessions is in `data_folder`.
+    pub(crate) fn open(&mut self, ctx: &Context, data_folder: Option<&Path>) {
+        self.is_open = true;
+        self.for_beside = false;
+        self.told = None;
+        self.folder = data_folder.map(|folder| folder.join("sessions"));
+        self.read(ctx);
+    }
+
+    fn read(&mut self, ctx: &Context) {
+        self.asked = None;
+        let Some(folder) = self.folder.clone() else { return };
+        let (give, rows) = channel();
+        let ctx = ctx.clone();
+        let work = move || {
+            give.send(read(&folder)).ok();
+            ctx.request_repaint();
+        };
+        // If no thread can be created, nothing comes, and the list stays as it was.
+        thread::Builder::new().name("sessions".to_owned()).spawn(work).ok();
+        self.reading = Some(rows);
+    }
+
+    fn take_in(&mut self) {
+        if let Some(read) = self.reading.as_ref().and_then(|reading| reading.try_recv().ok()) {
+            self.reading = None;
+            match read {
+                Ok(rows) => self.rows = rows,
+                Err(why) => self.told = Some(why),
+            }
+        }
+        if let Some((words, over)) = self.job.as_ref().map(Job::told) {
+            self.told = Some(words);
+            if over {
+                self.job = None;
+            }
+        }
+    }
+
+    /// Draws the page; returns the session that is to be opened.
+    pub(crate) fn ui(&mut self, ui: &mut Ui) -> Option<PathBuf> {
+        self.take_in();
+        let mut wish = None;
+        let frame = Frame::new().inner_margin(Margin::symmetric(18, 14));
+        CentralPanel::default().frame(frame).show(ui, |ui| {
+            ui.horizontal(|ui| {
+                let back = Button::new(text::past::BACK).min_size(vec2(150.0, 36.0));
+                if ui.add(back).clicked() {
+                    self.is_open = false;
+                }
+                ui.add_space(8.0);
+                let heading = if self.for_beside { text::past::BESIDE } else { text::past::LIST };
+                ui.label(RichText::new(heading).font(theme::strong(19.0)));
+                let folder = self.folder.as_ref().map(|folder| folder.display().to_string());
+                ui.add(Label::new(small(folder.unwrap_or_else(|| text::past::NO_SHELF.to_owned()))).truncate());
+            });
+            // A line of its own, so that what is below never moves.
+            ui.label(weak(self.told.clone().unwrap_or_default()));
+            ui.add_space(4.0);
+            if self.rows.is_empty() && self.folder.is_some() {
+                let words = if self.reading.is_some() { text::past::LOOKING } else { text::past::EMPTY };
+                ui.label(weak(words));
+            }
+            ScrollArea::both().auto_shrink(false).show(ui, |ui| {
+                Grid::new("sessions").spacing(vec2(16.0, 6.0)).striped(true).show(ui, |ui| {
+                    for row in &self.rows {
+                        let is_asked = self.asked.as_ref() == Some(&row.shelved.path);
+                        wish = row_ui(ui, row, is_asked, self.job.is_none()).or(wish.take());
+                        ui.end_row();
+                    }
+                });
+            });
+        });
+        self.obey(ui.ctx(), wish?)
+    }
+
+    fn obey(&mut self, ctx: &Context, wish: Wish) -> Option<PathBuf> {
+        match wish {
+            Wish::Open(path) => {
+                self.is_open = false;
+                return Some(path);
+            }
+            Wish::Ask(path) => self.asked = Some(path),
+            Wish::Report(path) => self.job = Some(Job::report(ctx, &path)),
+            Wish::Keep(path, kept) => {
+                self.told = keep(&path, kept).err().map(|error| text::sessions::not_kept(&path, &error));
+                self.read(ctx);
+            }
+            Wish::Delete(path) => {
+                self.told = std::fs::remove_file(&path).err().map(|error| text::past::not_deleted(&path, &error));
+                self.read(ctx);
+            }
+        }
+        None
+    }
+}
+
+/// The sessions of this folder, the newest first.
+fn read(folder: &Path) -> Result<Vec<Row>, String> {
+    let shelf = Shelf::new(folder, MOST_BYTES);
+    let sessions = shelf.sessions().map_err(|error| text::sessions::no_folder(folder, &error))?;
+    let about = |path: &Path| Recorded::open(path).and_then(|file| file.about()).map_err(|error| chain(&error));
+    Ok(sessions.into_iter().rev().map(|shelved| Row { about: about(&shelved.path), shelved }).collect())
+}
+
+fn row_ui(ui: &mut Ui, row: &Row, is_asked: bool, free: bool) -> Option<Wish> {
+    let Row { shelved: Shelved { path, kept, writing, .. }, about } = row;
+    about_ui(ui, row);
+    let mut wish = None;
+    let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+    let mut button = |ui: &mut Ui, words: &str, enabled: bool, selected: bool, hover: [&str; 2], then: Wish| {
+        let button = Button::selectable(selected, words).frame_when_inactive(true).min_size(BUTTON);
+        let response = ui.add_enabled(enabled, button).on_hover_text(hover[0]).on_disabled_hover_text(hover[1]);
+        let of = format!("{words} {name}");
+        response.widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, enabled, selected, &of));
+        if response.clicked() {
+            wish = Some(then);
+        }
+    };
+    ui.horizontal(|ui| {
+        ui.spacing_mut().item_spacing.x = 4.0;
+        let usable = about.is_ok();
+        button(ui, text::past::OPEN, usable, false, [text::past::OPEN_HOVER; 2], Wish::Open(path.clone()));
+        let keep = if *kept { text::past::KEPT } else { text::past::KEEP };
+        button(ui, keep, true, *kept, [text::past::KEEP_HOVER; 2], Wish::Keep(path.clone(), !kept));
+        let report = Wish::Report(path.clone());
+        button(ui, text::past::REPORT, usable && free, false, [text::past::REPORT_HOVER; 2], report);
+        let why = if *writing { text::past::DELETE_RUNNING_HOVER } else { text::past::DELETE_KEPT_HOVER };
+        let (words, hover, then) = if is_asked {
+            (text::past::DELETE_NOW, text::past::DELETE_NOW_HOVER, Wish::Delete(path.clone()))
+        } else {
+            (text::past::DELETE, text::past::DELETE_HOVER, Wish::Ask(path.clone()))
+        };
+        button(ui, words, !kept && !writing, is_asked, [hover, why], then);
+    });
+    wish
+}
+
+/// When it was recorded, how long it is, on which rig.
+fn about_ui(ui: &mut Ui, Row { shelved, about }: &Row) {
+    let Shelved { path, bytes, writing, .. } = shelved;
+    let strong = |words: String| RichText::new(words).font(theme::strong(14.0));
+    match about {
+        Ok(About { started, rig, seconds }) => {
+            ui.label(strong(text::past::began(started.as_deref()))).on_hover_text(path.display().to_string());
+            ui.label(text::past::short_clock(*seconds));
+            ui.label(rig.as_deref().unwrap_or_default());
+        }
+        Err(why) => {
+            ui.label(strong(path.file_name().unwrap_or_default().to_string_lossy().into_owned()));
+            ui.label("");
+            ui.label(small(why));
+        }
+    }
+    ui.label(weak(text::past::megabytes(*bytes)));
+    ui.label(weak(if *writing { text::past::RECORDING } else { "" }));
+}

@@ -1,0 +1,255 @@
+//! The past on the screen: a recorded session at any moment, in the same views as the machine.
+//!
+//! The views get a state of their own ([`Live`]) that is fed from the session, and an outbox that is never sent: nothing on the screen acts
+//! on the machine until the operator returns to it.
+
+mod bar;
+mod beside;
+mod feed;
+mod film;
+mod job;
+pub(crate) mod list;
+mod overview;
+#[cfg(test)]
+mod tests;
+mod worker;
+
+use std::path::{Path, PathBuf};
+
+use egui::Context;
+
+use self::{
+    job::Job,
+    overview::Overview,
+    worker::{Answer, Extent, Opened, Worker},
+};
+use super::{in_force::InForce, live::Live, outbox::Outbox, roles::Panels, scene3d::SceneView, text};
+
+pub(crate) use bar::{FRAME, bar_ui, head_ui};
+pub(crate) use beside::both_ui;
+
+/// How fast a session can be played.
+const SPEEDS: [f64; 6] = [0.1, 0.25, 0.5, 1.0, 2.0, 4.0];
+/// The screen is at most this much ahead of the ticks that it waits for, s.
+const AHEAD_S: f64 = 0.3;
+/// Figures are brought up to date after so many seconds of the session.
+const SETTLED_S: f64 = 0.02;
+
+/// A session that is open.
+#[derive(Debug)]
+pub(crate) struct Past {
+    pub(super) path: PathBuf,
+    worker: Worker,
+    about: Option<About>,
+    /// What the views show; `None` until the first moment is there.
+    pub(super) live: Option<Box<Live>>,
+    pub(super) panels: Panels,
+    pub(super) in_force: InForce,
+    /// Takes what the views would tell the machine; it is never sent.
+    pub(super) outbox: Outbox,
+    overview: Overview,
+    extent: Extent,
+    /// Time that is wanted on the screen, s.
+    wanted_s: f64,
+    play: Play,
+    stretch_s: [Option<f64>; 2],
+    /// Another session on the same clock: the times since both began are the same.
+    pub(super) beside: Option<Box<Self>>,
+    /// Another session is wanted beside this one.
+    pub(super) wants_beside: bool,
+    job: Option<Job>,
+    told: Told,
+}
+
+/// What is known when a session is open.
+#[derive(Clone, Copy, Debug)]
+struct About {
+    begin_ns: u64,
+    end_s: f64,
+}
+
+#[derive(Debug)]
+struct Play {
+    runs: bool,
+    speed: f64,
+    /// Time that has passed since the figures were brought up to date, s.
+    unsettled_s: f64,
+}
+
+/// Lines for the operator.
+#[derive(Debug, Default)]
+struct Told {
+    /// Why the session cannot be shown.
+    refused: Option<String>,
+    /// Why a part of it is only plotted.
+    limited: Option<String>,
+    /// What came of the last report or stretch.
+    job: Option<String>,
+}
+
+impl Past {
+    /// Opens a session at its beginning; `scene` draws the operating field.
+    pub(crate) fn open(path: &Path, ctx: &Context, scene: SceneView) -> Self {
+        let ctx = ctx.clone();
+        let worker = Worker::start(path, move || ctx.request_repaint());
+        worker.show(0.0);
+        Self {
+            path: path.to_path_buf(),
+            worker,
+            about: None,
+            live: None,
+            panels: Panels { scene, ..Panels::default() },
+            in_force: InForce::of_past(Vec::new()),
+            outbox: Outbox::default(),
+            overview: Overview::default(),
+            extent: Extent::Plotted,
+            wanted_s: 0.0,
+            play: Play { runs: false, speed: 1.0, unsettled_s: 0.0 },
+            stretch_s: [None; 2],
+            beside: None,
+            wants_beside: false,
+            job: None,
+            told: Told::default(),
+        }
+    }
+
+    /// Takes in what is there of the session, and plays it on by `dt_s`; `driven` tells whether a machine is driven meanwhile.
+    pub(crate) fn step(&mut self, dt_s: f64, driven: bool) {
+        self.worker.go_gently(driven);
+        while let Some(answer) = self.worker.answer() {
+            self.take(answer);
+        }
+        if self.play.runs && self.live.is_some() {
+            let most_s = self.shown_s() + AHEAD_S;
+            self.wanted_s = (self.wanted_s + dt_s * self.play.speed).min(most_s);
+            self.worker.go_on(self.wanted_s);
+        }
+        if let Some(beside) = &mut self.beside {
+            beside.follow(self.play.runs.then_some(self.wanted_s), driven);
+        }
+        if let Some((words, over)) = self.job.as_ref().map(Job::told) {
+            self.told.job = Some(words);
+            if over {
+                self.job = None;
+            }
+        }
+    }
+
+    /// Takes in what is there of a session beside another one, and goes on up to this time, s.
+    fn follow(&mut self, to_s: Option<f64>, driven: bool) {
+        self.worker.go_gently(driven);
+        while let Some(answer) = self.worker.answer() {
+            self.take(answer);
+        }
+        if let Some(to_s) = to_s {
+            self.wanted_s = to_s.min(self.about.map_or(to_s, |about| about.end_s));
+            self.worker.go_on(self.wanted_s);
+        }
+    }
+
+    /// Shows another session beside this one.
+    pub(crate) fn set_beside(&mut self, mut beside: Self) {
+        beside.show(self.shown_s());
+        self.beside = Some(Box::new(beside));
+    }
+
+    fn take(&mut self, answer: Answer) {
+        match answer {
+            Answer::Opened(opened) => {
+                let Opened { begin_ns, end_s, calibrations } = *opened;
+                self.about = Some(About { begin_ns, end_s });
+                self.in_force = InForce::of_past(calibrations);
+                if self.wanted_s > end_s {
+                    self.show(end_s);
+                }
+            }
+            Answer::Refused(why) => self.told.refused = Some(text::past::refused(&why)),
+            Answer::Read(part) => self.overview.add(part),
+            Answer::Limited(why) => self.told.limited = Some(text::past::limited(&why)),
+            // A moment that is no longer wanted comes too late.
+            Answer::Shown(live, extent, t_s) if (t_s - self.wanted_s).abs() < 1e-9 => {
+                self.extent = extent;
+                self.live = Some(live);
+            }
+            Answer::Shown(..) => {}
+            Answer::WentOn(None) => self.play.runs = false,
+            Answer::WentOn(Some(frames)) => {
+                let Some(live) = &mut self.live else { return };
+                let before_s = shown_s(live);
+                for frame in &frames {
+                    live.replay(frame.events.iter(), &frame.ticks);
+                }
+                self.play.unsettled_s += shown_s(live) - before_s;
+                if self.play.unsettled_s >= SETTLED_S {
+                    live.settle(std::mem::take(&mut self.play.unsettled_s));
+                }
+            }
+        }
+    }
+
+    /// Shows this time, s, and no longer plays.
+    pub(crate) fn show(&mut self, t_s: f64) {
+        let end_s = self.about.map_or(f64::INFINITY, |about| about.end_s);
+        self.play.runs = false;
+        self.wanted_s = t_s.clamp(0.0, end_s);
+        self.worker.show(self.wanted_s);
+        if let Some(beside) = &mut self.beside {
+            beside.show(t_s);
+        }
+    }
+
+    /// Plays, or holds.
+    pub(crate) fn toggle(&mut self) {
+        self.play.runs = !self.play.runs && self.live.is_some();
+        self.wanted_s = self.shown_s();
+    }
+
+    /// Time on the screen, s.
+    pub(crate) fn shown_s(&self) -> f64 {
+        self.live.as_ref().map_or(self.wanted_s, |live| shown_s(live))
+    }
+
+    /// Whether something is about to change on the screen.
+    pub(crate) const fn moves(&self) -> bool {
+        self.play.runs || self.job.is_some()
+    }
+
+    /// Whether every figure on the screen is as it was at that moment.
+    pub(crate) fn is_whole(&self) -> bool {
+        self.extent == Extent::Whole
+    }
+
+    /// Which share of the session was read, 0 to 1.
+    fn read_share(&self) -> f64 {
+        self.about.map_or(0.0, |about| if about.end_s > 0.0 { self.overview.read_s / about.end_s } else { 1.0 })
+    }
+
+    /// Why the session cannot be shown.
+    pub(super) fn refused(&self) -> Option<&str> {
+        self.told.refused.as_deref()
+    }
+
+    /// Writes the report of this session.
+    fn report(&mut self, ctx: &Context) {
+        if self.job.is_none() {
+            self.job = Some(Job::report(ctx, &self.path));
+        }
+    }
+
+    /// The stretch that can be saved, s.
+    fn stretch_s(&self) -> Option<std::ops::Range<f64>> {
+        let [Some(from_s), Some(to_s)] = self.stretch_s else { return None };
+        (from_s < to_s).then_some(from_s..to_s)
+    }
+
+    fn save(&mut self, ctx: &Context) {
+        if let (Some(times_s), None) = (self.stretch_s(), &self.job) {
+            self.job = Some(Job::cut(ctx, &self.path, times_s));
+        }
+    }
+}
+
+/// Time of the newest tick, s.
+fn shown_s(live: &Live) -> f64 {
+    live.ticks.iter().flatten().map(|tick| tick.t_s).fold(0.0, f64::max)
+}

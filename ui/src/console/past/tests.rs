@@ -1,0 +1,267 @@
+use std::{
+    ops::Range,
+    path::Path,
+    sync::atomic::AtomicBool,
+    thread,
+    time::{Duration, Instant},
+};
+
+use egui::Context;
+use nima_machine::{
+    config::RigConfig,
+    messages::{Command, Tick},
+    runtime::{self, Assembly},
+};
+use nima_recording::session::Reader;
+use nima_session::{
+    cut,
+    file::{LineKind, Recorded},
+    plotted,
+    replay::replay,
+};
+use nima_world::{Plan, scene::Scene};
+
+use super::Past;
+use crate::{console::scene3d::SceneView, recording};
+
+const TIMEOUT: Duration = Duration::from_mins(3);
+
+/// A session of this scene, with a command after so many ticks of the right arm.
+fn record(path: &Path, scene: &str, seconds: f64, command: impl Fn(u64) -> Option<Command>) {
+    let (rig, scene) = (RigConfig::load("simulated").unwrap(), Scene::load(scene).unwrap());
+    let plan = Plan { rig, scene, calibrations: Default::default(), engage: true };
+    let (tap, recorder) = recording::begin(path, &plan, "virtual").unwrap();
+    runtime::run_virtual(Assembly { tap: Some(tap), ..plan.simulated().unwrap() }, seconds, |tick| {
+        (tick.side.index() == 0).then(|| command(tick.index)).flatten()
+    });
+    recorder.finish().unwrap();
+}
+
+/// All ticks of the right arm, and of the left.
+fn replayed(path: &Path) -> Vec<[Option<Tick>; 2]> {
+    let mut all = Vec::new();
+    let outcome = replay(Recorded::open(path).unwrap().journal().unwrap(), |moment| all.push(moment.ticks)).unwrap();
+    assert!(outcome.closed && outcome.differs.is_none());
+    all
+}
+
+fn open(path: &Path) -> Past {
+    Past::open(path, &Context::default(), SceneView::default())
+}
+
+fn until(past: &mut Past, what: &str, good: impl Fn(&Past) -> bool) {
+    let began = Instant::now();
+    while !good(past) {
+        assert!(began.elapsed() < TIMEOUT, "never: {what}, {:?}", past.told);
+        thread::sleep(Duration::from_millis(2));
+        past.step(0.0, false);
+    }
+}
+
+/// Shows a moment until every figure is as it was.
+fn settled(past: &mut Past, t_s: f64) {
+    past.show(t_s);
+    past.extent = super::Extent::Plotted;
+    until(past, "replayed", |past| past.is_whole() && (past.shown_s() - past.wanted_s).abs() < 0.01);
+}
+
+fn same(shown: &[Option<Tick>; 2], replayed: &[Option<Tick>; 2]) -> bool {
+    // Also what is not a number must be the same.
+    format!("{shown:?}") == format!("{replayed:?}")
+}
+
+#[test]
+fn a_moment_on_the_screen_is_the_tick_of_the_replay() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("session.mcap");
+    record(&path, "bimanual", 14.0, |tick| (tick == 6000).then_some(Command::SetGain(0.5)));
+    let ticks = replayed(&path);
+    let mut past = open(&path);
+    until(&mut past, "read", |past| past.read_share() > 0.999);
+    for number in [0, 1, 13_999].into_iter().chain((1..12).map(|turn| turn * 5471 % ticks.len())) {
+        settled(&mut past, number as f64 * 1e-3);
+        let live = past.live.as_ref().unwrap();
+        assert!(same(&live.ticks, &ticks[number]), "tick {number}");
+        let latest_s = live.history[0].latest_s();
+        assert!((latest_s - number as f64 * 1e-3).abs() < 1e-9, "the traces end at {latest_s} s");
+    }
+    assert!(past.told.limited.is_none(), "{:?}", past.told);
+}
+
+#[test]
+fn what_is_shown_at_once_has_the_forces_and_places_of_that_tick() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("session.mcap");
+    record(&path, "peg_transfer", 8.0, |_| None);
+    let ticks = replayed(&path);
+    let mut past = open(&path);
+    until(&mut past, "read", |past| past.read_share() > 0.999);
+    for number in [3210, 7777, 42] {
+        past.show(number as f64 * 1e-3);
+        past.live = None;
+        until(&mut past, "shown", |past| past.live.is_some());
+        let (shown, was) = (past.live.as_ref().unwrap().ticks[0].unwrap(), ticks[number][0].unwrap());
+        assert_eq!((shown.measured_n, shown.rendered_n, shown.tip_m), (was.measured_n, was.rendered_n, was.tip_m));
+        assert_eq!((shown.leader_m, shown.delayed_n, shown.state), (was.leader_m, was.delayed_n, was.state));
+    }
+}
+
+#[test]
+fn a_session_is_played_tick_by_tick() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("session.mcap");
+    record(&path, "peg_transfer", 6.0, |_| None);
+    let ticks = replayed(&path);
+    let mut past = open(&path);
+    until(&mut past, "read", |past| past.read_share() > 0.999);
+    settled(&mut past, 1.0);
+    past.toggle();
+    for frame in 0..40 {
+        let before = past.shown_s();
+        past.step(0.02, false);
+        until(&mut past, "went on", |past| past.shown_s() > before);
+        let live = past.live.as_ref().unwrap();
+        let number = (live.ticks[0].unwrap().t_s * 1e3).round() as usize;
+        assert!(same(&live.ticks, &ticks[number]), "tick {number} in frame {frame}");
+    }
+    assert!((past.shown_s() - 1.8).abs() < 0.05, "{} s", past.shown_s());
+    past.toggle();
+    past.step(1.0, true);
+    assert!(!past.moves());
+    settled(&mut past, 5.9);
+    past.toggle();
+    for _ in 0..200 {
+        past.step(0.01, false);
+        thread::sleep(Duration::from_millis(2));
+    }
+    assert!(!past.moves(), "it ends with the session");
+}
+
+#[test]
+fn what_happened_is_marked_along_the_time() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("session.mcap");
+    record(&path, "peg_transfer", 5.0, |tick| match tick {
+        2000 => Some(Command::Stop),
+        3000 => Some(Command::SetGain(9.0)),
+        _ => None,
+    });
+    let mut past = open(&path);
+    until(&mut past, "read", |past| past.read_share() > 0.999);
+    let at = |kind: LineKind, t_s: f64| {
+        past.overview.notes.iter().any(|note| note.kind == kind && (note.t_s - t_s).abs() < 0.01)
+    };
+    assert!(at(LineKind::Told, 2.0) && at(LineKind::Warning, 3.0), "{:?}", past.overview.notes);
+    assert_eq!(past.overview.buckets.len(), 10);
+    let most_n = replayed(&path).iter().map(|ticks| ticks[0].unwrap().measured_n.norm()).fold(0.0, f64::max);
+    let shown_n = past.overview.buckets.iter().map(|bucket| f64::from(bucket.measured_n)).fold(0.0, f64::max);
+    assert!((most_n - shown_n).abs() < 1e-4, "{shown_n} N of {most_n} N");
+}
+
+fn stretch(from: &Path, to: &Path, seconds: Range<f64>) {
+    let reader = Reader::open(from).unwrap();
+    let begin_ns = plotted::beginning_ns(&reader).unwrap();
+    let at = |seconds: f64| begin_ns + (seconds * 1e9) as u64;
+    cut::write(&reader, "session", &(at(seconds.start)..at(seconds.end)), to, &AtomicBool::new(false)).unwrap();
+}
+
+#[test]
+fn a_stretch_without_a_journal_is_shown_as_far_as_it_is_plotted() {
+    let folder = tempfile::tempdir().unwrap();
+    let [path, part] = ["session.mcap", "part.mcap"].map(|name| folder.path().join(name));
+    record(&path, "bimanual", 5.0, |_| None);
+    stretch(&path, &part, 2.0..4.0);
+    let ticks = replayed(&path);
+    let mut past = open(&part);
+    until(&mut past, "read", |past| past.read_share() > 0.999);
+    assert!(past.told.limited.as_ref().is_some_and(|why| why.contains("journal")), "{:?}", past.told);
+    past.show(3.5);
+    past.live = None;
+    until(&mut past, "shown", |past| past.live.as_ref().is_some_and(|live| live.ticks[1].is_some()));
+    let shown = past.live.as_ref().unwrap().ticks[1].unwrap();
+    assert_eq!((shown.t_s, shown.rendered_n), (3.5, ticks[3500][1].unwrap().rendered_n));
+    assert!(!past.is_whole());
+}
+
+#[test]
+fn a_stretch_is_saved_beside_its_session_and_kept() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("session.mcap");
+    record(&path, "peg_transfer", 4.0, |_| None);
+    let mut past = open(&path);
+    until(&mut past, "shown", |past| past.live.is_some());
+    past.stretch_s = [Some(0.0), Some(2.5)];
+    for expected in ["Saved", "already"] {
+        past.save(&Context::default());
+        until(&mut past, "saved", |past| past.job.is_none());
+        assert!(past.told.job.as_ref().is_some_and(|words| words.contains(expected)), "{:?}", past.told);
+    }
+    let saved = folder.path().join("session-0.0-2.5.mcap");
+    assert!(folder.path().join("session-0.0-2.5.mcap.kept").exists());
+    let outcome = replay(Recorded::open(&saved).unwrap().journal().unwrap(), |_| ()).unwrap();
+    assert!(outcome.ticks >= 2200 && outcome.differs.is_none(), "{outcome:?}");
+    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 3, "no half a file is left");
+}
+
+#[test]
+fn damage_costs_what_is_damaged_and_is_told() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("session.mcap");
+    record(&path, "peg_transfer", 10.0, |_| None);
+    let ticks = replayed(&path);
+    let mut bytes = std::fs::read(&path).unwrap();
+    let middle = bytes.len() * 6 / 10;
+    bytes[middle..middle + 64].fill(0xa5);
+    std::fs::write(&path, bytes).unwrap();
+    let mut past = open(&path);
+    until(&mut past, "read", |past| past.read_share() > 0.999);
+    assert!(past.told.limited.is_some() && past.refused().is_none(), "{:?}", past.told);
+    settled(&mut past, 2.0);
+    assert!(same(&past.live.as_ref().unwrap().ticks, &ticks[2000]));
+    past.show(9.0);
+    past.live = None;
+    until(&mut past, "shown behind the damage", |past| past.live.is_some());
+    let shown = past.live.as_ref().unwrap().ticks[0].unwrap();
+    assert_eq!((shown.t_s, shown.measured_n), (9.0, ticks[9000][0].unwrap().measured_n));
+}
+
+#[test]
+fn what_is_no_session_is_refused_in_one_line() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("session.mcap");
+    for content in ["", "not a session at all"] {
+        std::fs::write(&path, content).unwrap();
+        let mut past = open(&path);
+        until(&mut past, "refused", |past| past.refused().is_some());
+        assert!(!past.refused().unwrap().contains('\n') && past.live.is_none());
+    }
+}
+
+/// Prints how long it takes until a random moment is on the screen, and until every figure is as it was.
+#[test]
+#[ignore = "needs a long session: NIMA_SESSION=FILE"]
+fn figures_of_scrubbing() {
+    let path = std::env::var_os("NIMA_SESSION").unwrap();
+    let mut past = open(Path::new(&path));
+    let began = Instant::now();
+    until(&mut past, "read", |past| past.read_share() > 0.999);
+    let end_s = past.about.unwrap().end_s;
+    eprintln!("{end_s:.0} s read in {:.1} s", began.elapsed().as_secs_f64());
+    let [mut shown, mut whole] = [Vec::new(), Vec::new()];
+    for turn in 0..200 {
+        let began = Instant::now();
+        past.show((f64::from(turn) * 0.618_034).fract() * end_s);
+        (past.live, past.extent) = (None, super::Extent::Plotted);
+        until(&mut past, "shown", |past| past.live.is_some());
+        shown.push(began.elapsed().as_secs_f64() * 1e3);
+        if turn % 4 == 0 {
+            until(&mut past, "replayed", Past::is_whole);
+            whole.push(began.elapsed().as_secs_f64() * 1e3);
+        }
+    }
+    for (what, all) in [("shown", &mut shown), ("whole", &mut whole)] {
+        all.sort_by(f64::total_cmp);
+        let [median, late, worst] = [0.5, 0.95, 1.0].map(|share| all[((all.len() - 1) as f64 * share) as usize]);
+        eprintln!("{what}: median {median:.1} ms, 95 % {late:.1} ms, worst {worst:.1} ms of {}", all.len());
+    }
+}

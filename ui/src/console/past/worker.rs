@@ -1,0 +1,253 @@
+//! The thread that reads a session and makes its moments.
+
+use std::{
+    path::Path,
+    sync::{
+        Arc,
+        atomic::{AtomicBool, Ordering},
+        mpsc::{Receiver, RecvTimeoutError, Sender, TryRecvError, channel},
+    },
+    thread,
+    time::{Duration, Instant},
+};
+
+use super::{
+    feed::Frame,
+    film::{Chase, File, Film, View},
+    overview::Overview,
+};
+use crate::console::live::Live;
+
+/// What was read is told this often.
+const TELL_EVERY: Duration = Duration::from_millis(60);
+
+/// What the window wants to see.
+#[derive(Clone, Copy, Debug)]
+enum Wish {
+    /// This time of the session, s.
+    Show(f64),
+    /// The moment on the screen to go on up to this time, s.
+    GoOn(f64),
+}
+
+/// What a session tells of itself when it is opened.
+#[derive(Debug)]
+pub(super) struct Opened {
+    pub(super) begin_ns: u64,
+    pub(super) end_s: f64,
+    pub(super) calibrations: Vec<String>,
+}
+
+/// How much of a moment is as it was.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Extent {
+    /// Forces, places and states; the rest is at most a tenth of a second older, if the session was read so far.
+    Plotted,
+    /// Every figure, with those of the seconds before.
+    Whole,
+}
+
+/// What the thread tells.
+#[derive(Debug)]
+pub(super) enum Answer {
+    /// The session is open.
+    Opened(Box<Opened>),
+    /// It cannot be shown, and why.
+    Refused(String),
+    /// More of it was read.
+    Read(Overview),
+    /// What comes after the part that was read is only plotted, and why.
+    Limited(String),
+    /// A moment.
+    Shown(Box<Live>, Extent, f64),
+    /// The moment went on by these ticks; `None` at the end of the session.
+    WentOn(Option<Vec<Frame>>),
+}
+
+/// The window's end of the thread; dropping it ends the thread.
+#[derive(Debug)]
+pub(super) struct Worker {
+    /// A machine is driven by this computer.
+    gently: Arc<AtomicBool>,
+    wishes: Sender<Wish>,
+    answers: Receiver<Answer>,
+}
+
+impl Worker {
+    /// Opens a session; `wake` is called whenever there is an answer.
+    pub(super) fn start(path: &Path, wake: impl Fn() + Send + 'static) -> Self {
+        let ((wishes, wanted), (tell, answers)) = (channel(), channel());
+        let (path, gently) = (path.to_path_buf(), Arc::<AtomicBool>::default());
+        let of_thread = Arc::clone(&gently);
+        let work = move || {
+            let told = Told { answers: tell, wake: Box::new(wake), gently: of_thread };
+            if let Err(why) = run(&path, &wanted, &told) {
+                told.tell(Answer::Refused(why));
+            }
+        };
+        // If no thread can be created, the answers end at once.
+        thread::Builder::new().name("past".to_owned()).spawn(work).ok();
+        Self { gently, wishes, answers }
+    }
+
+    /// Shows this time, s. Only the newest wish counts.
+    pub(super) fn show(&self, t_s: f64) {
+        self.wishes.send(Wish::Show(t_s)).ok();
+    }
+
+    /// Lets the moment go on up to this time, s.
+    pub(super) fn go_on(&self, to_s: f64) {
+        self.wishes.send(Wish::GoOn(to_s)).ok();
+    }
+
+    /// Sets whether a machine is driven by this computer, to which the first reading leaves half of the time.
+    pub(super) fn go_gently(&self, gently: bool) {
+        self.gently.store(gently, Ordering::Relaxed);
+    }
+
+    /// The next answer, if there is one.
+    pub(super) fn answer(&self) -> Option<Answer> {
+        self.answers.try_recv().ok()
+    }
+}
+
+/// The thread's end of the answers.
+struct Told {
+    answers: Sender<Answer>,
+    wake: Box<dyn Fn() + Send>,
+    gently: Arc<AtomicBool>,
+}
+
+impl Told {
+    fn tell(&self, answer: Answer) {
+        self.answers.send(answer).ok();
+        (self.wake)();
+    }
+}
+
+fn run(path: &Path, wanted: &Receiver<Wish>, told: &Told) -> Result<(), String> {
+    let file = File::open(path)?;
+    let opened = Opened { begin_ns: file.begin_ns, end_s: file.end_s, calibrations: file.calibrations() };
+    told.tell(Answer::Opened(Box::new(opened)));
+    let mut reading = Reading {
+        part: Overview::default(),
+        told_at: Instant::now(),
+        limited: false,
+        goes_on: true,
+        took: Duration::ZERO,
+    };
+    let mut film = Film::new(&file)?;
+    let mut shown = Shown::default();
+    loop {
+        let patience = match (&shown.chase, reading.goes_on) {
+            (Some(_), _) => Some(Duration::ZERO),
+            (None, true) => Some(reading.took),
+            (None, false) => None,
+        };
+        let wish = match newest(wanted, patience) {
+            Ok(wish) => wish,
+            Err(Gone) => return Ok(()),
+        };
+        match wish {
+            Some(Wish::Show(t_s)) => shown.show(&film, t_s.clamp(0.0, file.end_s), told),
+            Some(Wish::GoOn(to_s)) => shown.go_on(&film, to_s, told),
+            None if shown.chase.is_some() => shown.chase_on(&film, told),
+            None => {
+                reading.go_on(&mut film, told);
+                shown.again(&film);
+            }
+        }
+    }
+}
+
+/// The window has closed the session.
+struct Gone;
+
+/// The newest wish; waits for one so long, or if there is nothing else to do until there is one.
+fn newest(wanted: &Receiver<Wish>, patience: Option<Duration>) -> Result<Option<Wish>, Gone> {
+    let mut newest = match patience.map(|patience| wanted.recv_timeout(patience)) {
+        None => Some(wanted.recv().map_err(|_| Gone)?),
+        Some(Ok(wish)) => Some(wish),
+        Some(Err(RecvTimeoutError::Timeout)) => None,
+        Some(Err(RecvTimeoutError::Disconnected)) => return Err(Gone),
+    };
+    loop {
+        match wanted.try_recv() {
+            Ok(wish) => newest = Some(wish),
+            Err(TryRecvError::Empty) => return Ok(newest),
+            Err(TryRecvError::Disconnected) => return Err(Gone),
+        }
+    }
+}
+
+/// The first reading.
+struct Reading {
+    part: Overview,
+    told_at: Instant,
+    limited: bool,
+    goes_on: bool,
+    /// How long the last step took, if a machine is driven by this computer: as long a rest follows.
+    took: Duration,
+}
+
+impl Reading {
+    fn go_on(&mut self, film: &mut Film<'_>, told: &Told) {
+        let began = Instant::now();
+        self.goes_on = film.read(|frame| self.part.take(frame));
+        self.part.notes.extend(film.notes());
+        self.took = if told.gently.load(Ordering::Relaxed) { began.elapsed() } else { Duration::ZERO };
+        if let Some(why) = film.why.as_ref().filter(|_| !self.limited) {
+            told.tell(Answer::Limited(why.clone()));
+            self.limited = true;
+        }
+        if !self.goes_on || self.told_at.elapsed() > TELL_EVERY {
+            self.part.read_s = film.read_s();
+            told.tell(Answer::Read(std::mem::take(&mut self.part)));
+            self.told_at = Instant::now();
+        }
+    }
+}
+
+/// What is on the screen, and what is on its way there.
+#[derive(Default)]
+struct Shown<'a> {
+    view: Option<View<'a>>,
+    chase: Option<(Chase<'a>, f64)>,
+    /// A time that was shown before it was read, s.
+    early_s: Option<f64>,
+}
+
+impl<'a> Shown<'a> {
+    fn show(&mut self, film: &Film<'a>, t_s: f64, told: &Told) {
+        let live = film.at_once(t_s);
+        told.tell(Answer::Shown(Box::new(live), Extent::Plotted, t_s));
+        (self.view, self.chase, self.early_s) = (None, Some((film.chase(t_s), t_s)), None);
+    }
+
+    fn chase_on(&mut self, film: &Film<'a>, told: &Told) {
+        let Some((mut chase, t_s)) = self.chase.take() else { return };
+        if !chase.go_on(film.file) {
+            self.chase = Some((chase, t_s));
+            return;
+        }
+        let (live, view) = chase.end();
+        let extent = if view.is_exact() { Extent::Whole } else { Extent::Plotted };
+        self.early_s = (extent == Extent::Plotted).then_some(t_s);
+        self.view = Some(view);
+        told.tell(Answer::Shown(Box::new(live), extent, t_s));
+    }
+
+    /// What was shown before it was read is shown again, now as it was.
+    fn again(&mut self, film: &Film<'a>) {
+        if let Some(t_s) = self.early_s.take_if(|t_s| film.is_exact(*t_s)) {
+            self.chase = Some((film.chase(t_s), t_s));
+        }
+    }
+
+    fn go_on(&mut self, film: &Film<'a>, to_s: f64, told: &Told) {
+        if let Some(view) = &mut self.view {
+            self.early_s = None;
+            told.tell(Answer::WentOn(view.go_on(film.file, to_s)));
+        }
+    }
+}

@@ -1,0 +1,274 @@
+//! Recorded sessions on the screen: the list, the past in every view, and the machine that none of it reaches.
+
+use std::{
+    path::{Path, PathBuf},
+    process::Command as Program,
+    sync::{Arc, Mutex},
+    thread,
+    time::{Duration, Instant},
+};
+
+use egui::{Key, accesskit::Role as Kind};
+use egui_kittest::{
+    Harness,
+    kittest::{NodeT as _, Queryable as _},
+};
+use nima_console::console::{ConsoleApp, roles::Role, settings::Kept};
+use nima_machine::{
+    config::{RigConfig, SchedulingClass},
+    messages::{Command, LoopState},
+    runtime::{self, Assembly, Clock, Next, Operation, Passed, TapEnd, tap},
+};
+use nima_world::{Plan, scene::Scene};
+
+use crate::bench::{TIMEOUT, console_of, press, until};
+
+const SIZE: [f32; 2] = [1600.0, 1000.0];
+
+pub(crate) fn record(path: &Path, scene: &str, seconds: &str) {
+    let arguments = ["run", "--virtual", "--scene", scene, "--seconds", seconds, "--record"];
+    let recorded = Program::new(env!("CARGO_BIN_EXE_nima")).args(arguments).arg(path).output().unwrap();
+    assert!(recorded.status.success(), "{}", String::from_utf8_lossy(&recorded.stderr));
+}
+
+/// Steps the window until the past on the screen is as it was.
+pub(crate) fn until_whole(harness: &mut Harness<'_, ConsoleApp>) {
+    let began = Instant::now();
+    while harness.state().past_ticks().is_none() {
+        assert!(began.elapsed() < TIMEOUT, "the session was never replayed");
+        thread::sleep(Duration::from_millis(5));
+        harness.step();
+    }
+    harness.run_steps(3);
+}
+
+/// The commands that reach a loop, from its tap.
+fn watched(plan: &Plan) -> (runtime::Handle, Arc<Mutex<Vec<Command>>>) {
+    let (tap, end) = tap();
+    let commands = Arc::<Mutex<Vec<Command>>>::default();
+    let seen = Arc::clone(&commands);
+    thread::spawn(move || watch(&end, &seen));
+    let (clock, scheduling) = (Clock::Simulated { speed: 1.0 }, SchedulingClass::Ordinary);
+    let assembly = Assembly { clock, scheduling, tap: Some(tap), ..plan.simulated().unwrap() };
+    (runtime::start(assembly).unwrap(), commands)
+}
+
+fn watch(end: &TapEnd, seen: &Mutex<Vec<Command>>) {
+    loop {
+        match end.next(Duration::from_millis(100)) {
+            Next::Nothing => {}
+            Next::End => return,
+            Next::Entry(entry) => match entry.passed {
+                Passed::Stepped(stepped) => end.give_back(stepped),
+                Passed::Operation(Operation::Command { command, .. }) => seen.lock().unwrap().push(command),
+                Passed::Operation(_) | Passed::Event(_) => {}
+            },
+        }
+    }
+}
+
+/// Presses everything that can be pressed, and drags the field and the traces; the keys of the views too.
+fn do_everything(harness: &mut Harness<'_, ConsoleApp>) -> usize {
+    let is_control = |kind: Kind| {
+        matches!(
+            kind,
+            Kind::Button | Kind::CheckBox | Kind::RadioButton | Kind::Slider | Kind::SpinButton | Kind::Canvas
+        )
+    };
+    let mut places: Vec<_> = harness
+        .get_all_by(move |node| is_control(node.role()))
+        .filter(|node| {
+            let name = node.accesskit_node().label().unwrap_or_default();
+            // What leaves the past, stops, or opens something over the rest is pressed elsewhere.
+            !["Stop", "Live again (L)", "Close", "View", "Report", "Save the stretch"].contains(&name.as_str())
+        })
+        .map(|node| node.rect().center())
+        .collect();
+    places.dedup();
+    for place in &places {
+        harness.drag_at(*place);
+        harness.step();
+        harness.drop_at(*place);
+        harness.step();
+    }
+    for key in
+        [Key::M, Key::PageUp, Key::ArrowLeft, Key::E, Key::A, Key::P, Key::P, Key::F6, Key::F7, Key::Enter, Key::Tab]
+    {
+        harness.key_press(key);
+        harness.step();
+    }
+    places.len()
+}
+
+#[test]
+fn nothing_in_the_past_reaches_the_machine_but_a_stop() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("session.mcap");
+    record(&path, "bimanual", "6");
+    let (rig, scene) = (RigConfig::load("simulated").unwrap(), Scene::load("peg_transfer").unwrap());
+    let plan = Plan { rig: rig.clone(), scene: scene.clone(), calibrations: Default::default(), engage: true };
+    let (handle, commands) = watched(&plan);
+    let mut harness = Harness::builder()
+        .with_size(SIZE)
+        .with_step_dt(1.0 / 30.0)
+        .build_eframe(move |cc| ConsoleApp::new(cc, handle, rig, scene).with_simulated_time(1.0).with_session(&path));
+    until(&mut harness, "engaged", |tick| tick.state == LoopState::Engaged);
+    until_whole(&mut harness);
+    commands.lock().unwrap().clear();
+    let mut pressed = 0;
+    for role in Role::ALL {
+        harness.state_mut().settings_mut().role = role;
+        harness.run_steps(3);
+        pressed += do_everything(&mut harness);
+        assert!(harness.state().past().is_some(), "{role:?}");
+    }
+    assert!(pressed > 60, "{pressed} controls");
+    harness.run_steps(10);
+    assert_eq!(*commands.lock().unwrap(), []);
+    until(&mut harness, "still engaged", |tick| tick.state == LoopState::Engaged);
+    harness.key_press(Key::Space);
+    harness.step();
+    until(&mut harness, "stopped", |tick| tick.state == LoopState::Stopped);
+    assert_eq!(*commands.lock().unwrap(), [Command::Stop]);
+    harness.run_steps(30);
+    let release = harness.get_by_role_and_label(Kind::Button, "Release stop");
+    assert!(release.accesskit_node().is_disabled(), "not while the past is shown");
+    harness.key_press(Key::L);
+    harness.step();
+    assert!(harness.state().past().is_none());
+    press(&mut harness, "Release stop");
+    until(&mut harness, "idle", |tick| tick.state == LoopState::Idle);
+}
+
+#[test]
+fn the_past_looks_like_the_past_and_one_key_leaves_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("session.mcap");
+    record(&path, "peg_transfer", "5");
+    let mut harness = console_of("peg_transfer", SIZE, move |app| app.with_session(&path));
+    until_whole(&mut harness);
+    for role in Role::ALL {
+        harness.state_mut().settings_mut().role = role;
+        harness.run_steps(3);
+        assert!(harness.query_by_label("PAST").is_some() && harness.query_by_label("Time of the session").is_some());
+    }
+    harness.state_mut().show_past(2.5);
+    harness.step();
+    until_whole(&mut harness);
+    let (_, shown_s) = harness.state().past().unwrap();
+    assert!((shown_s - 2.5).abs() < 1e-9, "{shown_s}");
+    // Pressing the middle of the time line shows the middle of the session.
+    let line = harness.get_by_label("Time of the session").rect();
+    harness.drag_at(line.center());
+    harness.step();
+    harness.drop_at(line.center());
+    harness.step();
+    until_whole(&mut harness);
+    let (_, shown_s) = harness.state().past().unwrap();
+    assert!((shown_s - 2.5).abs() < 0.01, "{shown_s}");
+    harness.key_press(Key::L);
+    harness.step();
+    harness.run_steps(2);
+    assert!(harness.query_by_label("PAST").is_none() && harness.state().past().is_none());
+}
+
+/// Steps the window until this session is in the list and its row stands still.
+pub(crate) fn until_listed(harness: &mut Harness<'_, ConsoleApp>, name: &str) {
+    let began = Instant::now();
+    while harness.query_by_role_and_label(Kind::Button, &format!("Open {name}")).is_none() {
+        assert!(began.elapsed() < TIMEOUT, "{name} is not listed");
+        thread::sleep(Duration::from_millis(5));
+        harness.step();
+    }
+    harness.run_steps(4);
+}
+
+fn listed(folder: &Path) -> Harness<'static, ConsoleApp> {
+    let folder = folder.to_path_buf();
+    let mut harness = console_of("free_motion", SIZE, move |app| {
+        let mut kept = Kept::open(&folder);
+        kept.now.toured = true;
+        app.with_settings(kept)
+    });
+    until(&mut harness, "any tick", |_| true);
+    harness.key_press(Key::F7);
+    harness.step();
+    harness
+}
+
+#[test]
+fn sessions_are_listed_kept_deleted_and_opened() {
+    let folder = tempfile::tempdir().unwrap();
+    let sessions = folder.path().join("sessions");
+    std::fs::create_dir_all(&sessions).unwrap();
+    let [one, other, bad]: [PathBuf; 3] = ["1.mcap", "2.mcap", "3.mcap"].map(|name| sessions.join(name));
+    record(&one, "peg_transfer", "3");
+    record(&other, "peg_transfer", "2");
+    std::fs::write(&bad, "no session").unwrap();
+    let mut harness = listed(folder.path());
+    until_listed(&mut harness, "1.mcap");
+    press(&mut harness, "Keep 1.mcap");
+    press(&mut harness, "Kept 1.mcap");
+    press(&mut harness, "Keep 1.mcap");
+    press(&mut harness, "Delete 2.mcap");
+    assert!(other.exists(), "it is asked once");
+    press(&mut harness, "Delete it? 2.mcap");
+    press(&mut harness, "Report 1.mcap");
+    let page = sessions.join("reports/1/report.html");
+    let began = Instant::now();
+    while !page.exists() {
+        assert!(began.elapsed() < TIMEOUT, "no report");
+        thread::sleep(Duration::from_millis(10));
+        harness.step();
+    }
+    assert!(sessions.join("1.mcap.kept").exists() && !other.exists() && bad.exists());
+    harness.run_steps(5);
+    let delete = harness.get_by_role_and_label(Kind::Button, "Delete 1.mcap");
+    assert!(delete.accesskit_node().is_disabled(), "a kept one is never deleted");
+    let open = harness.get_by_role_and_label(Kind::Button, "Open 3.mcap");
+    assert!(open.accesskit_node().is_disabled(), "what cannot be read is not opened");
+    press(&mut harness, "Open 1.mcap");
+    until_whole(&mut harness);
+    assert_eq!(harness.state().past().unwrap().0, one);
+}
+
+#[test]
+fn two_sessions_stand_side_by_side_on_one_clock() {
+    let folder = tempfile::tempdir().unwrap();
+    let sessions = folder.path().join("sessions");
+    std::fs::create_dir_all(&sessions).unwrap();
+    let [one, other] = ["1.mcap", "2.mcap"].map(|name| sessions.join(name));
+    record(&one, "bimanual", "5");
+    record(&other, "peg_transfer", "3");
+    let mut harness = listed(folder.path());
+    until_listed(&mut harness, "1.mcap");
+    press(&mut harness, "Open 1.mcap");
+    until_whole(&mut harness);
+    press(&mut harness, "Compare");
+    until_listed(&mut harness, "2.mcap");
+    press(&mut harness, "Open 2.mcap");
+    let shown = |harness: &mut Harness<'_, ConsoleApp>, t_s: f64, expected_s: [f64; 2]| {
+        harness.state_mut().show_past(t_s);
+        let began = Instant::now();
+        loop {
+            harness.step();
+            let both = [harness.state().past(), harness.state().past_beside()].map(|one| one.map_or(-1.0, |one| one.1));
+            if both.iter().zip(expected_s).all(|(now_s, expected_s)| (now_s - expected_s).abs() < 1.5e-3) {
+                return;
+            }
+            assert!(began.elapsed() < TIMEOUT, "{both:?} at {t_s} s");
+            thread::sleep(Duration::from_millis(5));
+        }
+    };
+    shown(&mut harness, 2.0, [2.0, 2.0]);
+    // The shorter one stays at its last tick.
+    shown(&mut harness, 4.0, [4.0, 2.999]);
+    assert_eq!(harness.state().past_beside().unwrap().0, other);
+    for size in [[1100.0, 680.0], SIZE] {
+        harness.set_size(size.into());
+        harness.run_steps(4);
+        assert_eq!(harness.query_all_by_label("Operating field").count(), 2);
+    }
+    press(&mut harness, "Compare");
+    assert!(harness.state().past_beside().is_none() && harness.state().past().is_some());
+}

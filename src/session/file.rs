@@ -9,6 +9,7 @@ use nima_recording::{
 use prost::Message as _;
 
 use crate::{
+    cut,
     journal::{Message, Start, decode},
     plotted,
     recorder::JOURNAL_TOPIC,
@@ -52,8 +53,17 @@ pub struct About {
     pub started: Option<String>,
     /// Name of the rig.
     pub rig: Option<String>,
-    /// Its length, s.
+    /// Its end, s since it began.
     pub seconds: f64,
+    /// Of a stretch of a session: where it begins, s since the session began.
+    pub stretch_from_s: Option<f64>,
+}
+
+impl About {
+    /// The length of what is in the file, s.
+    pub fn length_s(&self) -> f64 {
+        self.seconds - self.stretch_from_s.unwrap_or_default()
+    }
 }
 
 impl Recorded {
@@ -77,9 +87,12 @@ impl Recorded {
     pub fn about(&self) -> Result<About, ReadError> {
         let begin_ns = plotted::beginning_ns(&self.0)?;
         let tables = self.0.metadata()?;
-        let told = tables.into_iter().find(|(name, _)| name == "session").map(|(_, table)| table).unwrap_or_default();
-        let seconds = self.0.statistics().times_ns.1.saturating_sub(begin_ns) as f64 / 1e9;
-        Ok(About { started: told.get("started").cloned(), rig: told.get("rig").cloned(), seconds })
+        let table = |wanted: &str| tables.iter().find(|(name, _)| name == wanted).map(|(_, table)| table);
+        let told = |key: &str| table("session").and_then(|told| told.get(key)).cloned();
+        let [first_s, seconds] =
+            <[u64; 2]>::from(self.0.statistics().times_ns).map(|time_ns| time_ns.saturating_sub(begin_ns) as f64 / 1e9);
+        let stretch_from_s = table(cut::TABLE).map(|_| first_s);
+        Ok(About { started: told("started"), rig: told("rig"), seconds, stretch_from_s })
     }
 
     /// Whether the recording was closed: if not, it goes on, or the program was killed, or the file was cut.

@@ -21,6 +21,7 @@ pub use force::ForceFigures;
 pub use trace::{BUCKETS, Trace};
 
 use crate::{
+    cut,
     journal::{Outline, outline},
     recorder::JOURNAL_TOPIC,
     topics::{LOG_TOPIC, MARK_LINE, TIMES, TIMING_TOPIC, columns::Columns},
@@ -61,6 +62,8 @@ pub struct Figures {
     pub length_s: f64,
     /// Whether the recording was closed; if not, the program was killed or the file was cut. None without a journal.
     pub closed: Option<bool>,
+    /// Whether it is a stretch of a session.
+    pub stretch: bool,
     /// Holes in the journal.
     pub holes: Vec<Missing>,
     /// Its arms.
@@ -148,6 +151,8 @@ impl Figures {
                         self.calibrations.insert(of.to_owned(), table);
                     } else if name == "session" {
                         self.about = table;
+                    } else if name == cut::TABLE {
+                        self.stretch = true;
                     }
                 }
             }

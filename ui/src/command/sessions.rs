@@ -92,7 +92,7 @@ struct One {
     name: String,
     bytes: u64,
     kept: bool,
-    /// `recording`, `closed`, `not closed` or `damaged`.
+    /// `recording`, `closed`, `stretch`, `not closed` or `damaged`.
     state: &'static str,
     #[serde(flatten)]
     about: Option<About>,
@@ -104,7 +104,11 @@ struct One {
 struct About {
     started: Option<String>,
     rig: Option<String>,
+    /// Length of what is in the file.
     seconds: f64,
+    /// Where a stretch begins in its session.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    stretch_from_s: Option<f64>,
     last_fault: Option<LastFault>,
     closed: bool,
 }
@@ -157,6 +161,7 @@ impl One {
         let state = match &read {
             _ if *writing => "recording",
             Ok(about) if about.closed => "closed",
+            Ok(about) if about.stretch_from_s.is_some() => "stretch",
             Ok(_) => "not closed",
             Err(_) => "damaged",
         };
@@ -192,8 +197,10 @@ impl About {
         let reader = file.reader();
         let begin_ns = plotted::beginning_ns(reader)?;
         let since = |time_ns: u64| time_ns.saturating_sub(begin_ns) as f64 / 1e9;
-        let file::About { started, rig, seconds } = file.about()?;
+        let about = file.about()?;
+        let seconds = about.length_s();
+        let file::About { started, rig, stretch_from_s, .. } = about;
         let fault = file.last_fault()?.map(|(time_ns, words)| LastFault { t_s: since(time_ns), words });
-        Ok(Self { started, rig, seconds, last_fault: fault, closed: file.is_closed()? })
+        Ok(Self { started, rig, seconds, stretch_from_s, last_fault: fault, closed: file.is_closed()? })
     }
 }

@@ -79,6 +79,7 @@ pub(super) fn summary(session: &Figures) -> String {
 fn end(session: &Figures) -> &'static str {
     match session.closed {
         Some(true) => "closed properly",
+        _ if session.stretch => "a stretch that was cut out of a session",
         Some(false) => "not closed: the program was killed or the file was cut; the last half second may be missing",
         None => "not known: there is no journal",
     }

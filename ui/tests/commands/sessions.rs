@@ -33,6 +33,8 @@ fn sessions_are_listed_kept_and_deleted_and_nothing_else_is() {
         let path = at(name).display().to_string();
         done(data, &["run", "--virtual", "--seconds", "2", "--scene", "peg_transfer", "--record", &path]);
     }
+    let (whole, part) = (at("b.mcap").display().to_string(), at("part.mcap").display().to_string());
+    done(data, &["export", &whole, "--out", &part, "--from", "0.5", "--to", "1.5"]);
     std::fs::write(at("empty.mcap"), []).unwrap();
     // As a process that records leaves it when it is killed: not finished.
     let mut killed = Writer::create(&at("killed.mcap"), "a program").unwrap();
@@ -49,6 +51,10 @@ fn sessions_are_listed_kept_and_deleted_and_nothing_else_is() {
     assert!(first["seconds"].as_f64().unwrap() > 1.9 && first["started"].as_str().unwrap().ends_with('Z'), "{first}");
     assert_eq!((&first["rig"], &first["last_fault"]), (&Value::from("Simulated rig"), &Value::Null));
     assert_eq!(one("empty.mcap").unwrap()["state"], "damaged");
+    let stretch = one("part.mcap").unwrap();
+    let [from_s, seconds] = ["stretch_from_s", "seconds"].map(|key| stretch[key].as_f64().unwrap());
+    let is_right = (0.5..0.51).contains(&from_s) && (0.98..1.0).contains(&seconds);
+    assert!(stretch["state"] == "stretch" && is_right, "{stretch}");
     assert_eq!(one("link.mcap"), None);
     #[cfg(unix)]
     {

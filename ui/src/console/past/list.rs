@@ -194,9 +194,9 @@ fn about_ui(ui: &mut Ui, Row { shelved, about }: &Row) {
     let Shelved { path, bytes, writing, .. } = shelved;
     let strong = |words: String| RichText::new(words).font(theme::strong(14.0));
     match about {
-        Ok(About { started, rig, seconds }) => {
+        Ok(about @ About { started, rig, .. }) => {
             ui.label(strong(text::past::began(started.as_deref()))).on_hover_text(path.display().to_string());
-            ui.label(text::past::short_clock(*seconds));
+            ui.label(text::past::short_clock(about.length_s()));
             ui.label(rig.as_deref().unwrap_or_default());
         }
         Err(why) => {
@@ -206,5 +206,10 @@ fn about_ui(ui: &mut Ui, Row { shelved, about }: &Row) {
         }
     }
     ui.label(weak(text::past::megabytes(*bytes)));
-    ui.label(weak(if *writing { text::past::RECORDING } else { "" }));
+    let stretch_from_s = about.as_ref().ok().and_then(|about| about.stretch_from_s);
+    ui.label(weak(match stretch_from_s {
+        _ if *writing => text::past::RECORDING.to_owned(),
+        Some(from_s) => text::past::stretch(from_s),
+        None => String::new(),
+    }));
 }

@@ -100,6 +100,11 @@ pub(in crate::console) fn began(utc: Option<&str>) -> String {
     utc.map_or_else(|| "unknown date".to_owned(), |utc| utc.replace('T', "  ").replace('Z', " UTC"))
 }
 
+/// A stretch of a session that begins at this time, s.
+pub(in crate::console) fn stretch(from_s: f64) -> String {
+    format!("from {}", short_clock(from_s))
+}
+
 /// Size of a file.
 pub(in crate::console) fn megabytes(bytes: u64) -> String {
     format!("{:.0} MB", bytes as f64 * 1e-6)

@@ -1,5 +1,6 @@
 //! Rig files (TOML). An unknown key is an error.
 
+mod anonymous;
 mod files;
 mod identification;
 mod mounted;
@@ -18,6 +19,7 @@ use nima_core::{
 use nima_recording::store::ReadyRecord;
 use serde::{Deserialize, Serialize};
 
+pub use anonymous::ANONYMOUS;
 pub(crate) use files::parse_with;
 pub use files::{ConfigError, Ranges, parse, text};
 pub use identification::Identification;
@@ -26,7 +28,7 @@ pub use own_copy::{change_rig, own_copy};
 pub use rig_file::{Chosen, RigFile, RigFileError};
 pub use teleoperation::{LeaderMount, Teleoperation};
 
-use crate::rig;
+use crate::rig::{self, Part};
 
 /// The settings of a rig: its loop, and its devices if it has any.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -177,6 +179,16 @@ impl RigConfig {
     pub fn requires_check(&self) -> bool {
         let unnamed = |devices: &rig::Settings| !devices.emulated && !devices.tells_sides();
         self.ready_check == ReadyCheck::Required || self.devices.as_ref().is_some_and(unnamed)
+    }
+
+    /// Names and makes of the devices, in the order of the roster.
+    pub fn device_names(&self) -> Vec<String> {
+        let parts = self.devices.iter().flat_map(|devices| {
+            Part::ALL.into_iter().filter(|part| part.is_in(devices)).map(|part| part.name_and_make(devices))
+        });
+        let desk =
+            self.desk.iter().flat_map(|desk| [desk.cap.as_ref().map(|_| "cap"), desk.pedal.as_ref().map(|_| "pedal")]);
+        parts.chain(desk.flatten().map(str::to_owned)).collect()
     }
 
     /// Adds the devices of the last passed ready check, by which exchanged ones are told; `None` forgets them.

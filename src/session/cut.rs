@@ -3,14 +3,20 @@
 //! A journal can be replayed from its beginning only: a stretch that begins with the first tick keeps it up to the cut, any other one
 //! leaves it out.
 
-use std::{collections::BTreeMap, ops::Range, path::Path};
+use std::{
+    collections::BTreeMap,
+    io,
+    ops::Range,
+    path::Path,
+    sync::atomic::{AtomicBool, Ordering},
+};
 
-use nima_recording::session::{ChannelId, ReadError, Reader, WriteError, Writer};
+use nima_recording::session::{ChannelId, Message, ReadError, Reader, WriteError, Writer};
 
 use crate::{plotted, recorder::JOURNAL_TOPIC};
 
 /// The table that tells where a stretch was cut from.
-const TABLE: &str = "cut";
+pub(crate) const TABLE: &str = "cut";
 /// In it: when the session began, ns, so that times stay those of the whole session.
 pub(crate) const BEGINNING: &str = "session_begins_ns";
 const SESSION: &str = "session";
@@ -24,6 +30,12 @@ pub enum CutError {
     /// The stretch cannot be written.
     #[error(transparent)]
     Write(#[from] WriteError),
+    /// The times of its file cannot be set.
+    #[error("the times of the file cannot be set")]
+    Times(#[source] io::Error),
+    /// The process was asked to end.
+    #[error("ended as asked: nothing was written")]
+    Asked,
 }
 
 /// What was written.
@@ -57,11 +69,17 @@ impl Kept {
 }
 
 /// Writes the messages between these times (ns) into a new file, with all attachments and tables. `name` is what the session is called
-/// in the table that tells where the stretch was cut from.
+/// in the table that tells where the stretch was cut from. `asked` ends it early.
 ///
 /// # Errors
 /// [`CutError`] if the session cannot be read or the file cannot be written; it is to be deleted then.
-pub fn write(reader: &Reader, name: &str, times_ns: &Range<u64>, to: &Path) -> Result<Cut, CutError> {
+pub fn write(
+    reader: &Reader,
+    name: &str,
+    times_ns: &Range<u64>,
+    to: &Path,
+    asked: &AtomicBool,
+) -> Result<Cut, CutError> {
     let begin_ns = plotted::beginning_ns(reader)?;
     let journal = journal(reader, times_ns.start)?;
     // What the loop was made of stands before the first tick.
@@ -84,12 +102,17 @@ pub fn write(reader: &Reader, name: &str, times_ns: &Range<u64>, to: &Path) -> R
         }
     }
     for message in reader.messages(&[], start_ns..times_ns.end) {
-        let message = message?;
+        let message = unless(asked, message)?;
         if let Some(channel) = channels.get(&message.channel()) {
             writer.message(*channel, message.log_time_ns(), message.data())?;
         }
     }
     Ok(Cut { messages: writer.finish()?.messages, journal })
+}
+
+/// The message, unless the process was asked to end.
+pub(crate) fn unless(asked: &AtomicBool, message: Result<Message, ReadError>) -> Result<Message, CutError> {
+    if asked.load(Ordering::Relaxed) { Err(CutError::Asked) } else { Ok(message?) }
 }
 
 /// Whether the journal can be kept by a stretch that begins here.
@@ -104,6 +127,7 @@ fn journal(reader: &Reader, start_ns: u64) -> Result<Kept, ReadError> {
     Ok(if is_first { Kept::Yes } else { Kept::LeftOut })
 }
 
+/// The table of a stretch of the session with this name.
 fn table(
     name: &str,
     begin_ns: u64,
@@ -111,18 +135,22 @@ fn table(
     journal: Kept,
     before: Option<&BTreeMap<String, String>>,
 ) -> BTreeMap<String, String> {
+    // A stretch of a stretch is one of the session.
+    let session = before.and_then(|before| before.get(SESSION)).map_or(name, String::as_str);
+    let mut table = stretch(begin_ns, times_ns);
+    for (key, value) in [(SESSION, session), ("journal", journal.word())] {
+        table.insert(key.to_owned(), value.to_owned());
+    }
+    table
+}
+
+/// The table of a stretch: its times (s) in a session that begins at `begin_ns`.
+pub(crate) fn stretch(begin_ns: u64, times_ns: &Range<u64>) -> BTreeMap<String, String> {
     let seconds = |time_ns: u64| match time_ns {
         u64::MAX => "the end".to_owned(),
         time_ns => (time_ns.saturating_sub(begin_ns) as f64 / 1e9).to_string(),
     };
-    // A stretch of a stretch is one of the session.
-    let session = before.and_then(|before| before.get(SESSION)).map_or(name, String::as_str);
-    let entries = [
-        (SESSION, session.to_owned()),
-        ("from_s", seconds(times_ns.start)),
-        ("to_s", seconds(times_ns.end)),
-        (BEGINNING, begin_ns.to_string()),
-        ("journal", journal.word().to_owned()),
-    ];
+    let entries =
+        [("from_s", seconds(times_ns.start)), ("to_s", seconds(times_ns.end)), (BEGINNING, begin_ns.to_string())];
     entries.into_iter().map(|(key, value)| (key.to_owned(), value)).collect()
 }

@@ -10,11 +10,13 @@
 //! | `file` | the journal in a session file |
 //! | `plotted` | the plots of a session file, tick by tick, and what `nima identify` needs of them |
 //! | `cut` | a stretch of a session as a session file of its own |
+//! | `anonymous` | a session without what tells who recorded it, where and when |
 //! | `shelf` | the folder of a user's sessions: which are kept, and room for the next |
 //! | `report` | the figures of a session, from what is plotted of it |
 //! | `replay` | the same loop, fed from them; and with one thing changed |
 #![warn(missing_docs)]
 
+pub mod anonymous;
 mod codec;
 pub mod cut;
 pub mod digest;

@@ -10,11 +10,13 @@ use nima_core::impedance::{AXES, Sample};
 use nima_machine::rig::Side;
 use nima_recording::{
     csv::{Recording, RecordingError},
-    messages::JointStateDecoder,
     session::{Message, ReadError, Reader},
 };
 
-use crate::{cut::BEGINNING, topics::STATES};
+use crate::{
+    cut::BEGINNING,
+    topics::{STATES, columns::Columns},
+};
 
 /// Why the plots of a session cannot be read.
 #[derive(Debug, thiserror::Error)]
@@ -105,7 +107,9 @@ pub fn each_tick<E: From<PlottedError>>(
     let channels = topics.map(channel_of);
     // The last message of each topic.
     let mut parts: [Option<Message>; 3] = Default::default();
-    let mut decoders: [JointStateDecoder; 3] = Default::default();
+    let Some(mut columns) = Columns::of(topics[0]).zip(Columns::of(topics[1])).zip(Columns::of(topics[2])) else {
+        return Ok(());
+    };
     for message in reader.messages(&topics, times_ns) {
         let message = message.map_err(PlottedError::from)?;
         let time_ns = message.log_time_ns();
@@ -117,8 +121,10 @@ pub fn each_tick<E: From<PlottedError>>(
             continue;
         }
         let t_s = time_ns.saturating_sub(begin_ns) as f64 / 1e9;
-        let parts_read = decoders.iter_mut().zip([forces, poses, gates]).all(|(one, part)| one.decode(part.data()));
-        let tick = parts_read.then(|| tick(arm, (time_ns, t_s), &decoders)).flatten();
+        let ((of_forces, of_poses), of_gates) = &mut columns;
+        let [forces, poses, gates] =
+            [of_forces.read(forces.data()), of_poses.read(poses.data()), of_gates.read(gates.data())];
+        let tick = tick((time_ns, t_s), forces, poses, gates);
         parts = Default::default();
         each(tick.ok_or_else(|| PlottedError::Foreign { path: path.to_owned(), arm, t_s })?)?;
     }
@@ -154,27 +160,18 @@ pub(crate) fn topic(side: Side, what: &str) -> String {
     format!("{}/{what}", side.word())
 }
 
-fn tick(arm: Side, (time_ns, t_s): (u64, f64), [forces, poses, gates]: &[JointStateDecoder; 3]) -> Option<PlottedTick> {
-    let vector = |of: &JointStateDecoder, name: &str, unit: &str| {
-        let [x, y, z] = ["x", "y", "z"].map(|axis| value(of, arm, &format!("{name}.{axis}_{unit}")));
-        Some(Vector3::new(x?, y?, z?))
-    };
-    Some(PlottedTick {
-        time_ns,
-        t_s,
-        tip_m: vector(poses, "tip", "m")?,
-        leader_m: vector(poses, "leader", "m")?,
-        measured_n: vector(forces, "measured", "n")?,
-        delayed_n: vector(forces, "delayed", "n")?,
-        asked_n: vector(forces, "asked", "n")?,
-        rendered_n: vector(forces, "rendered", "n")?,
-        state: state(value(gates, arm, "state")?)?,
-    })
-}
-
-fn value(of: &JointStateDecoder, arm: Side, name: &str) -> Option<f64> {
-    let is_it = |full: &String| full.strip_prefix(arm.word()).and_then(|rest| rest.strip_prefix('.')) == Some(name);
-    of.values().get(of.names().iter().position(is_it)?).copied()
+/// A tick of what its messages say, in the order in which they are written.
+fn tick(
+    (time_ns, t_s): (u64, f64),
+    forces: Option<&[f64]>,
+    poses: Option<&[f64]>,
+    gates: Option<&[f64]>,
+) -> Option<PlottedTick> {
+    let vectors = |of: &[f64]| of.chunks_exact(3).map(Vector3::from_column_slice).collect::<Vec<_>>();
+    let &[measured_n, delayed_n, asked_n, rendered_n] = &vectors(forces?)[..] else { return None };
+    let &[tip_m, leader_m] = &vectors(poses?)[..] else { return None };
+    let state = state(*gates?.last()?)?;
+    Some(PlottedTick { time_ns, t_s, tip_m, leader_m, measured_n, delayed_n, asked_n, rendered_n, state })
 }
 
 /// The word of a state, from its number in the plots.

@@ -3,9 +3,10 @@
 //! The loop never waits for it. Whatever goes wrong, a full disk or a folder that is gone, is told at once by
 //! [`Recorder::trouble`]; then the recording has ended, and what was written stays readable.
 
+mod sync;
+
 use std::{
     collections::BTreeMap,
-    fs::File,
     io,
     path::{Path, PathBuf},
     sync::{
@@ -16,7 +17,7 @@ use std::{
     time::Duration,
 };
 
-use crossbeam_channel::{Receiver, RecvTimeoutError, Sender, bounded};
+use crossbeam_channel::{Receiver, Sender, unbounded};
 use nima_machine::{
     messages::Event,
     rig::{SIDES, Side},
@@ -25,6 +26,7 @@ use nima_machine::{
 };
 use nima_recording::session::{ChannelId, Encoding, WriteError, Writer};
 
+use self::sync::Sync;
 use crate::{
     journal::{End, JournalError, Start},
     kept::described,
@@ -37,8 +39,6 @@ pub const JOURNAL_TOPIC: &str = "nima/journal";
 /// How its messages are encoded.
 pub const JOURNAL_ENCODING: &str = "nima-journal";
 
-/// The file is synchronised with the disk this often.
-const SYNC_EVERY: Duration = Duration::from_secs(1);
 /// How long the thread waits for the loop before it looks whether it is to end.
 const LOOK_EVERY: Duration = Duration::from_millis(100);
 /// After so many blocks of the journal the chunk is closed: 0.4 s at 1 kHz, which is what a kill can cost.
@@ -89,6 +89,26 @@ pub enum RecordError {
     },
 }
 
+/// What a screen adds to the log of a session: it does not pass the loop.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Note {
+    /// Of what kind.
+    pub kind: NoteKind,
+    /// How much it matters: information, or a warning.
+    pub warns: bool,
+    /// What.
+    pub words: String,
+}
+
+/// What a note is about.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum NoteKind {
+    /// A moment that the operator marked.
+    Mark,
+    /// An alarm of the screen.
+    Alarm,
+}
+
 /// Figures of a recording so far.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Progress {
@@ -113,6 +133,7 @@ struct Shared {
 #[derive(Debug)]
 pub struct Recorder {
     shared: Arc<Shared>,
+    notes: Sender<(f64, Note)>,
     thread: Option<JoinHandle<()>>,
 }
 
@@ -123,7 +144,8 @@ impl Recorder {
     /// [`RecordError`] if the file cannot be created or its beginning cannot be written.
     pub fn start(path: &Path, about: About, origin: Origin, tap: TapEnd) -> Result<Self, RecordError> {
         let failed = |source| RecordError::System { path: path.to_owned(), source };
-        let mut session = Session::create(path, about, origin)?;
+        let (notes, noted) = unbounded();
+        let mut session = Session::create(path, about, origin, noted)?;
         let shared = Arc::<Shared>::default();
         shared.bytes.store(session.file.writer.bytes().1, Ordering::Relaxed);
         let (told, sync) =
@@ -137,7 +159,13 @@ impl Recorder {
             drop(sync);
         };
         let thread = Builder::new().name("recorder".to_owned()).spawn(run).map_err(failed)?;
-        Ok(Self { shared, thread: Some(thread) })
+        Ok(Self { shared, notes, thread: Some(thread) })
+    }
+
+    /// Adds a line to the log at this time of the loop (s), or at its last tick if that is earlier.
+    pub fn note(&self, t_s: f64, note: Note) {
+        // A recording that has ended by itself takes no more.
+        self.notes.send((t_s, note)).ok();
     }
 
     /// Figures so far.
@@ -202,18 +230,22 @@ fn next(tap: &TapEnd, shared: &Shared) -> Next {
 struct Session {
     scribe: Scribe,
     file: SessionFile,
+    noted: Receiver<(f64, Note)>,
+    /// The note whose time has not come yet.
+    waiting: Option<(f64, Note)>,
 }
 
 impl Session {
-    fn create(path: &Path, about: About, origin: Origin) -> Result<Self, RecordError> {
+    fn create(path: &Path, about: About, origin: Origin, noted: Receiver<(f64, Note)>) -> Result<Self, RecordError> {
         let sides = origin.calibrations.each_ref().map(Option::is_some);
         let of = |(side, known): (Side, &Option<Calibrations>)| Some((side, described(known.as_ref()?)));
         let known: Vec<_> = Side::ALL.into_iter().zip(&origin.calibrations).filter_map(of).collect();
+        let devices = origin.rig.device_names();
         let (scribe, first) = Scribe::new(&Start { program: about.program.clone(), origin })?;
-        let mut file = SessionFile::create(path, about, &known, sides)?;
+        let mut file = SessionFile::create(path, about, &known, sides, devices)?;
         file.write(&first)?;
         file.writer.flush()?;
-        Ok(Self { scribe, file })
+        Ok(Self { scribe, file, noted, waiting: None })
     }
 
     fn run(&mut self, tap: &TapEnd, shared: &Shared) -> Result<(), RecordError> {
@@ -221,17 +253,34 @@ impl Session {
             match next(tap, shared) {
                 Next::Entry(entry) => self.scribe.take(entry, tap, &mut self.file)?,
                 // The loop rests: nobody shall wait for what is known.
-                Next::Nothing => self.file.writer.flush()?,
-                Next::End => return Ok(()),
+                Next::Nothing => {
+                    self.notes(f64::INFINITY)?;
+                    self.file.writer.flush()?;
+                }
+                Next::End => return self.notes(f64::INFINITY),
             }
+            self.notes(self.scribe.t_s())?;
             shared.ticks.store(self.scribe.ticks(), Ordering::Relaxed);
             shared.lost.store(self.scribe.lost(), Ordering::Relaxed);
             shared.bytes.store(self.file.writer.bytes().1, Ordering::Relaxed);
         }
     }
 
+    /// Writes the notes up to this time (s) of the loop, none behind its last tick: the end of the journal is the last message.
+    fn notes(&mut self, until_s: f64) -> Result<(), RecordError> {
+        while let Some((t_s, note)) = self.waiting.take().or_else(|| self.noted.try_recv().ok()) {
+            if t_s > until_s {
+                self.waiting = Some((t_s, note));
+                return Ok(());
+            }
+            let time_ns = self.file.log_time_ns(t_s.min(self.scribe.t_s()));
+            self.file.topics.note(&mut self.file.writer, time_ns, note)?;
+        }
+        Ok(())
+    }
+
     fn close(self, tap: &TapEnd, shared: &Shared) -> Result<(), RecordError> {
-        let Self { scribe, mut file } = self;
+        let Self { scribe, mut file, .. } = self;
         let End { ticks, lost } = scribe.end(tap, &mut file)?;
         file.writer.flush()?;
         shared.ticks.store(ticks, Ordering::Relaxed);
@@ -257,6 +306,7 @@ impl SessionFile {
         about: About,
         known: &[(Side, BTreeMap<String, String>)],
         sides: [bool; SIDES],
+        devices: Vec<String>,
     ) -> Result<Self, RecordError> {
         let About { program, started_ns, metadata, files, words } = about;
         let mut writer = Writer::create(path, &program)?;
@@ -277,7 +327,7 @@ impl SessionFile {
             message_encoding: JOURNAL_ENCODING.to_owned(),
         };
         let journal = writer.channel(JOURNAL_TOPIC, encoding)?;
-        let topics = Topics::new(&mut writer, sides, words)?;
+        let topics = Topics::new(&mut writer, sides, words, devices)?;
         Ok(Self { writer, journal, topics, started_ns, blocks: 0 })
     }
 
@@ -310,46 +360,5 @@ impl Pages for SessionFile {
     fn operation(&mut self, operation: &Operation, t_s: f64) -> Result<(), RecordError> {
         let time_ns = self.log_time_ns(t_s);
         Ok(self.topics.operation(&mut self.writer, time_ns, operation)?)
-    }
-}
-
-/// The thread that writes the file to the disk each second, so that the loss of power costs no more.
-struct Sync {
-    ends: Option<Sender<()>>,
-    thread: Option<JoinHandle<()>>,
-}
-
-impl Sync {
-    fn start(path: &Path, file: File, shared: &Arc<Shared>) -> Result<Self, RecordError> {
-        let (ends, asked) = bounded(1);
-        let (path, told) = (path.to_owned(), Arc::clone(shared));
-        let at = path.clone();
-        let run = move || {
-            if let Err(source) = sync(&file, &asked) {
-                told.trouble.set(RecordError::System { path, source }).ok();
-            }
-        };
-        let thread = Builder::new().name("recorder-sync".to_owned()).spawn(run);
-        let thread = thread.map_err(|source| RecordError::System { path: at, source })?;
-        Ok(Self { ends: Some(ends), thread: Some(thread) })
-    }
-}
-
-fn sync(file: &File, ends: &Receiver<()>) -> io::Result<()> {
-    loop {
-        let ended = ends.recv_timeout(SYNC_EVERY) != Err(RecvTimeoutError::Timeout);
-        file.sync_data()?;
-        if ended {
-            return Ok(());
-        }
-    }
-}
-
-impl Drop for Sync {
-    fn drop(&mut self) {
-        drop(self.ends.take());
-        if let Some(thread) = self.thread.take() {
-            thread.join().ok();
-        }
     }
 }

@@ -1,7 +1,9 @@
 //! What is plotted of a session: forces, poses and gates of each arm, and what happened.
 
+pub(crate) mod columns;
 mod identification;
-mod plot;
+pub(crate) mod plot;
+pub(crate) mod redrawn;
 mod scene;
 mod timing;
 
@@ -16,21 +18,30 @@ use nima_recording::{
     session::{ChannelId, WriteError, Writer},
 };
 
+pub(crate) use scene::{ARROWS_TOPIC, FRAMES_TOPIC};
 pub(crate) use timing::{TIMES, TIMING_TOPIC};
+
+use crate::recorder::{Note, NoteKind};
 
 use self::{identification::Identified, plot::Plot, scene::Scene, timing::Times};
 
 /// Sentences of the log.
 #[derive(Clone, Copy, Debug)]
 pub struct Words {
-    /// For what the loop tells.
-    pub event: fn(&Event) -> String,
-    /// For what is done to the loop.
-    pub operation: fn(&Operation) -> String,
+    /// For what the loop tells, with the names of the rig's devices in the order of its roster.
+    pub event: fn(&Event, &[String]) -> String,
+    /// For what is done to the loop, with the same names.
+    pub operation: fn(&Operation, &[String]) -> String,
 }
 
 /// Topic of the log.
 pub(crate) const LOG_TOPIC: &str = "log";
+/// Names of its lines: of the loop, ...
+pub(crate) const LINE: &str = "nima";
+/// ... a moment that the operator marked, ...
+pub(crate) const MARK_LINE: &str = "mark";
+/// ... and an alarm of the screen.
+pub(crate) const ALARM_LINE: &str = "alarm";
 
 /// The channels of what is plotted.
 #[derive(Debug)]
@@ -40,6 +51,7 @@ pub(crate) struct Topics {
     times: Times,
     log: ChannelId,
     words: Words,
+    devices: Vec<String>,
 }
 
 #[derive(Debug)]
@@ -66,13 +78,40 @@ const FORCES: [&str; 12] = [
 ];
 const POSES: [&str; 6] = ["tip.x_m", "tip.y_m", "tip.z_m", "leader.x_m", "leader.y_m", "leader.z_m"];
 /// Beside one for each gate: 1 where it acted.
-const OF_GATES: [&str; 5] = ["gain", "stored_j", "withheld_n", "governed", "state"];
+const OF_GATES: [&str; 5] = ["gain_value", "stored_j", "withheld_n", "governed", "state"];
+
+/// Every topic of named numbers of this program: its name, the names of its numbers, and whether they are forces.
+pub(crate) fn plots() -> Vec<(String, Vec<String>, bool)> {
+    let of_side = |side: Side| {
+        let parts = [
+            ("forces", FORCES.map(str::to_owned).to_vec(), true),
+            ("poses", POSES.map(str::to_owned).to_vec(), false),
+            ("gates", gates().map(str::to_owned).collect(), false),
+            ("identification", identification::names(), false),
+        ];
+        parts.map(|(what, names, forces)| {
+            let names = names.iter().map(|name| format!("{}.{name}", side.word())).collect();
+            (format!("{}/{what}", side.word()), names, forces)
+        })
+    };
+    let timing = (TIMING_TOPIC.to_owned(), timing::names(), false);
+    Side::ALL.into_iter().flat_map(of_side).chain([timing]).collect()
+}
+
+fn gates() -> impl Iterator<Item = &'static str> {
+    Gate::ALL.iter().map(|gate| gate.name()).chain(OF_GATES)
+}
 
 impl Topics {
-    pub(crate) fn new(writer: &mut Writer, sides: [bool; SIDES], words: Words) -> Result<Self, WriteError> {
+    pub(crate) fn new(
+        writer: &mut Writer,
+        sides: [bool; SIDES],
+        words: Words,
+        devices: Vec<String>,
+    ) -> Result<Self, WriteError> {
         let mut of = [None, None];
         for side in Side::ALL.into_iter().filter(|side| sides[side.index()]) {
-            let gates: Vec<&str> = Gate::ALL.iter().map(|gate| gate.name()).chain(OF_GATES).collect();
+            let gates: Vec<&str> = gates().collect();
             let mut plot = |what: &str, names: &[&str]| Plot::of_side(writer, side, what, names);
             of[side.index()] = Some(OfSide {
                 forces: plot("forces", &FORCES)?,
@@ -83,7 +122,7 @@ impl Topics {
         }
         let times = Times::new(writer)?;
         let log = writer.channel(LOG_TOPIC, foxglove::encoding::<Log>())?;
-        Ok(Self { sides: of, scene: Scene::new(writer)?, times, log, words })
+        Ok(Self { sides: of, scene: Scene::new(writer)?, times, log, words, devices })
     }
 
     /// Writes a tick and the events in it.
@@ -108,7 +147,7 @@ impl Topics {
                 Event::CommandRefused { .. } => Level::Warning,
                 Event::StateChanged { .. } | Event::Device(_) | Event::Scheduling(_) => Level::Info,
             };
-            self.log(writer, time_ns, level, (self.words.event)(event))?;
+            self.log(writer, time_ns, level, (self.words.event)(event, &self.devices))?;
         }
         Ok(())
     }
@@ -120,19 +159,35 @@ impl Topics {
         time_ns: u64,
         operation: &Operation,
     ) -> Result<(), WriteError> {
-        self.log(writer, time_ns, Level::Info, (self.words.operation)(operation))
+        self.log(writer, time_ns, Level::Info, (self.words.operation)(operation, &self.devices))
     }
 
     fn log(&self, writer: &mut Writer, time_ns: u64, level: Level, message: String) -> Result<(), WriteError> {
-        let log = Log {
-            timestamp: Some(foxglove::Timestamp::of_ns(time_ns)),
-            level: level as i32,
-            message,
-            name: "nima".to_owned(),
-            ..Log::default()
-        };
-        writer.message(self.log, time_ns, &prost::Message::encode_to_vec(&log))
+        writer.message(self.log, time_ns, &line(time_ns, level, LINE, message))
     }
+
+    /// Writes what a screen adds to the log.
+    pub(crate) fn note(&self, writer: &mut Writer, time_ns: u64, note: Note) -> Result<(), WriteError> {
+        let Note { kind, warns, words } = note;
+        let level = if warns { Level::Warning } else { Level::Info };
+        let name = match kind {
+            NoteKind::Mark => MARK_LINE,
+            NoteKind::Alarm => ALARM_LINE,
+        };
+        writer.message(self.log, time_ns, &line(time_ns, level, name, words))
+    }
+}
+
+/// A line of the log.
+pub(crate) fn line(time_ns: u64, level: Level, name: &str, message: String) -> Vec<u8> {
+    let log = Log {
+        timestamp: Some(foxglove::Timestamp::of_ns(time_ns)),
+        level: level as i32,
+        message,
+        name: name.to_owned(),
+        ..Log::default()
+    };
+    prost::Message::encode_to_vec(&log)
 }
 
 impl OfSide {

@@ -3,9 +3,11 @@
 mod mounted;
 mod wrist;
 
+use std::path::Path;
+
 use nalgebra::Vector3;
 use nima_machine::{
-    config::{ConfigError, Ranges, parse, text},
+    config::{ANONYMOUS, ConfigError, Ranges, parse, text},
     rig::Side,
 };
 use serde::{Deserialize, Serialize};
@@ -184,9 +186,59 @@ impl Scene {
     /// ```
     pub fn load(name: &str) -> Result<Self, ConfigError> {
         let (path, text) = text("scene", name, &SCENES)?;
-        let scene: Self = parse("scene", &path, &text).map_err(mounted::moved_to_the_rig)?;
+        Self::parse(&path, &text)
+    }
+
+    /// The scene that this text of a file describes.
+    ///
+    /// # Errors
+    /// As [`load`](Self::load).
+    pub fn parse(path: &Path, text: &str) -> Result<Self, ConfigError> {
+        let scene: Self = parse("scene", path, text).map_err(mounted::moved_to_the_rig)?;
         scene.validate()?;
         Ok(scene)
+    }
+
+    /// The same without its texts.
+    #[must_use]
+    pub fn anonymous(self) -> Self {
+        // Without `..`: a field that is added does not compile until somebody decides whether it may tell who or where.
+        let Self {
+            name: _,
+            description: _,
+            seed,
+            hand,
+            targets_m,
+            trocar_m,
+            left,
+            cross_talk,
+            tissue,
+            leader,
+            follower,
+            sensor,
+            wrist,
+            trocar,
+            tissue_sensor,
+            person,
+        } = self;
+        Self {
+            name: ANONYMOUS.to_owned(),
+            description: String::new(),
+            seed,
+            hand,
+            targets_m,
+            trocar_m,
+            left,
+            cross_talk,
+            tissue,
+            leader,
+            follower,
+            sensor,
+            wrist,
+            trocar,
+            tissue_sensor,
+            person,
+        }
     }
 
     /// The names of the built-in scenes.

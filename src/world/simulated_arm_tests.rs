@@ -10,6 +10,7 @@ use nima_machine::{
     config::RigConfig,
     rig::{DeviceRig, FollowerSettings, Inputs, Outputs, Rig as _, SIDES, SensorSettings, Settings},
 };
+use nima_testing::real_time::judged;
 
 use crate::{
     emulated::provide_handles,
@@ -72,40 +73,42 @@ fn until(
 
 #[test]
 fn a_rig_leads_an_arm_of_another_make_that_its_file_names() {
-    let folder = tempfile::tempdir().unwrap();
-    let (settings, _serving) = devices(folder.path());
-    let (mut rig, roster) = DeviceRig::start(&settings, 1e-3, [false; SIDES]).unwrap();
-    let drivers: Vec<_> = roster.iter().map(|entry| (entry.name.as_str(), entry.driver.as_str())).collect();
-    assert_eq!(drivers[1], ("right arm", "simulated arm"));
-    assert!(drivers[0].1.starts_with("Force Dimension omega.7") && drivers[2].1.starts_with("Bota sensor"));
-    let begin = Instant::now();
-    let mut home_m = None;
-    let mut target_m = Vector3::zeros();
-    let led = |inputs: &Inputs| {
-        let home_m: Vector3<f64> = *home_m.get_or_insert_with(|| {
-            target_m = inputs.tip_m;
-            inputs.tip_m
-        });
-        assert_eq!(inputs.obstacle, None);
-        // Drives on first; then small steps to the end of the path.
-        if inputs.powered {
-            target_m += (home_m + WAY_M - target_m).cap_magnitude(SPEED_M_S * 1e-3);
-        }
-        Outputs { drives: true, tip_command_m: inputs.powered.then_some(target_m), ..Outputs::SAFE }
-    };
-    let tip_m = settings.right.as_ref().unwrap().rcm.trocar_m
-        + settings.right.as_ref().unwrap().rcm.inward.normalize() * 0.12
-        + WAY_M;
-    assert!(
-        until(&mut rig, begin, led, |inputs| inputs.powered && (inputs.tip_m - tip_m).norm() < 5e-4),
-        "not led there"
-    );
-    // Drives off: the arm brakes and no longer follows.
-    assert!(until(&mut rig, begin, |_| Outputs::SAFE, |inputs| !inputs.powered), "drives stay on");
-    let still = |inputs: &Inputs| (inputs.tip_m - tip_m).norm() < 1e-3;
-    assert!(until(&mut rig, begin, |_| Outputs::SAFE, still), "does not rest");
-    // Its lever is among those that the supervisor pulls, and its health is reported at its index.
-    assert_eq!(rig.levers().len(), 2);
-    let arm = rig.health().devices[1];
-    assert!(arm.standing == Standing::Connected && arm.refused == 0, "{arm:?}");
+    judged(|| {
+        let folder = tempfile::tempdir().unwrap();
+        let (settings, _serving) = devices(folder.path());
+        let (mut rig, roster) = DeviceRig::start(&settings, 1e-3, [false; SIDES]).unwrap();
+        let drivers: Vec<_> = roster.iter().map(|entry| (entry.name.as_str(), entry.driver.as_str())).collect();
+        assert_eq!(drivers[1], ("right arm", "simulated arm"));
+        assert!(drivers[0].1.starts_with("Force Dimension omega.7") && drivers[2].1.starts_with("Bota sensor"));
+        let begin = Instant::now();
+        let mut home_m = None;
+        let mut target_m = Vector3::zeros();
+        let led = |inputs: &Inputs| {
+            let home_m: Vector3<f64> = *home_m.get_or_insert_with(|| {
+                target_m = inputs.tip_m;
+                inputs.tip_m
+            });
+            assert_eq!(inputs.obstacle, None);
+            // Drives on first; then small steps to the end of the path.
+            if inputs.powered {
+                target_m += (home_m + WAY_M - target_m).cap_magnitude(SPEED_M_S * 1e-3);
+            }
+            Outputs { drives: true, tip_command_m: inputs.powered.then_some(target_m), ..Outputs::SAFE }
+        };
+        let tip_m = settings.right.as_ref().unwrap().rcm.trocar_m
+            + settings.right.as_ref().unwrap().rcm.inward.normalize() * 0.12
+            + WAY_M;
+        assert!(
+            until(&mut rig, begin, led, |inputs| inputs.powered && (inputs.tip_m - tip_m).norm() < 5e-4),
+            "not led there"
+        );
+        // Drives off: the arm brakes and no longer follows.
+        assert!(until(&mut rig, begin, |_| Outputs::SAFE, |inputs| !inputs.powered), "drives stay on");
+        let still = |inputs: &Inputs| (inputs.tip_m - tip_m).norm() < 1e-3;
+        assert!(until(&mut rig, begin, |_| Outputs::SAFE, still), "does not rest");
+        // Its lever is among those that the supervisor pulls, and its health is reported at its index.
+        assert_eq!(rig.levers().len(), 2);
+        let arm = rig.health().devices[1];
+        assert!(arm.standing == Standing::Connected && arm.refused == 0, "{arm:?}");
+    });
 }

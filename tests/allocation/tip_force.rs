@@ -58,7 +58,7 @@ fn the_loop_with_a_network_in_it_allocates_nothing() {
     let model = train_model(&data, &settings, [None, None], &AtomicBool::new(false), &|_| {}).unwrap();
     let tip_force = Some(TipForce::new(model, Fallback::HoldAndFade).unwrap());
     let rig = RigConfig::load("simulated").unwrap();
-    let calibrations = Calibrations { gravity: Some(known.gravity), tip_force };
+    let calibrations = Calibrations { gravity: Some(known.gravity), tip_force, ..Calibrations::default() };
     let mut control = Pair::new(&rig, Side::Right, &calibrations).unwrap();
     let mut world = World::new(&Scene::load("palpation").unwrap(), rig.rate_hz);
     let mut outputs = Outputs::SAFE;

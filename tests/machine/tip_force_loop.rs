@@ -31,7 +31,7 @@ fn trained() -> &'static (Known, Model) {
 fn path(fallback: Option<Fallback>) -> ForcePath {
     let (known, model) = trained();
     let tip_force = fallback.map(|fallback| TipForce::new(model.clone(), fallback).unwrap());
-    ForcePath::new(&Calibrations { gravity: Some(known.gravity), tip_force }, 1e-3)
+    ForcePath::new(&Calibrations { gravity: Some(known.gravity), tip_force, ..Calibrations::default() }, 1e-3)
 }
 
 /// The result of a path for each sample, and the true force, N (`world`), during work on the tissue.

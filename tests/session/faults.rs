@@ -176,7 +176,10 @@ impl Rig for AtWrist {
 fn calibrated(mass_kg: f64) -> Calibrations {
     let s1_from_source_wxyz = [1.0, 0.0, 0.0, 0.0];
     let parameters = Parameters::Physical { mass_kg, s1_from_source_wxyz, bias_n: [0.1, 0.2, 0.3], torque: None };
-    Calibrations { gravity: Some(GravityModel { source: Source::Imu, imu_sign: 1, parameters }), tip_force: None }
+    Calibrations {
+        gravity: Some(GravityModel { source: Source::Imu, imu_sign: 1, parameters }),
+        ..Calibrations::default()
+    }
 }
 
 #[test]

@@ -41,7 +41,7 @@ fn about() -> About {
             media_type: "application/toml".into(),
             data: b"name = \"x\"".into(),
         }],
-        words: Words { event: |event| format!("{event:?}"), operation: |operation| format!("{operation:?}") },
+        words: Words { event: |event, _| format!("{event:?}"), operation: |operation, _| format!("{operation:?}") },
     }
 }
 

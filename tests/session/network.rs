@@ -56,7 +56,10 @@ fn a_network_in_force_replays_to_the_bit_and_tells_no_name_of_a_person() {
         let plan = Plan {
             rig: RigConfig::load("simulated").unwrap(),
             scene: Experiment::scene("isolation", 4).unwrap(),
-            calibrations: [Calibrations { gravity: Some(known.gravity), tip_force }, Calibrations::default()],
+            calibrations: [
+                Calibrations { gravity: Some(known.gravity), tip_force, ..Calibrations::default() },
+                Calibrations::default(),
+            ],
             engage: false,
         };
         let (mut by_network, mut by_fallback) = (0, 0);

@@ -19,6 +19,16 @@ use crate::words::{event, operation};
 /// Name and version of this program.
 pub(crate) const PROGRAM: &str = concat!("nima ", env!("CARGO_PKG_VERSION"));
 
+/// Names of the attached files: rig and scene.
+pub(crate) const RIG: &str = "rig.toml";
+/// See [`RIG`].
+pub(crate) const SCENE: &str = "scene.toml";
+
+/// A file to attach.
+pub(crate) fn toml_file(name: &str, text: String) -> Attached {
+    Attached { name: name.to_owned(), media_type: "application/toml".to_owned(), data: text.into_bytes() }
+}
+
 /// Begins to record a loop of this plan: the tap is for its [`nima_machine::runtime::Assembly`]. `clock` is `real` or `virtual`.
 pub(crate) fn begin(path: &Path, plan: &Plan, clock: &str) -> Result<(Tap, Recorder), RecordError> {
     let (tap, end) = tap();
@@ -45,11 +55,8 @@ fn about(plan: &Plan, clock: &str) -> About {
     ];
     let session = session.into_iter().map(|(key, value)| (key.to_owned(), value)).collect();
     // As they are in force, with what the command line changed.
-    let texts = [("rig.toml", toml::to_string(rig)), ("scene.toml", toml::to_string(scene))];
-    let file = |(name, text): (&str, Result<String, _>)| {
-        let data = text.ok()?.into_bytes();
-        Some(Attached { name: name.to_owned(), media_type: "application/toml".to_owned(), data })
-    };
+    let texts = [(RIG, toml::to_string(rig)), (SCENE, toml::to_string(scene))];
+    let file = |(name, text): (&str, Result<String, _>)| Some(toml_file(name, text.ok()?));
     About {
         program: PROGRAM.to_owned(),
         started_ns,

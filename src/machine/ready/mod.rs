@@ -280,8 +280,8 @@ pub enum Cause {
         /// N.
         force_n: f64,
     },
-    /// The stop or the fault was not released.
-    NotReleased,
+    /// The stop or the fault was not released; why the loop refused it, if somebody tried.
+    NotReleased(Option<Refusal>),
     /// The watchdog raised no fault.
     NoBite(Watchdog),
     /// It took too long.

@@ -17,7 +17,7 @@ use super::{
     watchdog::Watchdog,
 };
 use crate::{
-    messages::{Command, Event, LoopState, Tick},
+    messages::{Command, Event, LoopState, Refusal, Tick},
     rig::{Gauges, Healths, Side},
 };
 
@@ -42,6 +42,8 @@ pub struct Session {
     work: Option<(Box<dyn Item>, f64)>,
     /// Since when something is latched that no point expects, s.
     latched_s: Option<f64>,
+    /// Why the loop refused the last release.
+    not_released: Option<Refusal>,
     began_s: Option<f64>,
     took_s: f64,
 }
@@ -50,7 +52,7 @@ impl Session {
     /// The whole list for this rig.
     pub fn new(subject: Subject) -> Self {
         let (list, arms) = (subject.list(), Arms::of(&subject));
-        Self { subject, list, arms, work: None, latched_s: None, began_s: None, took_s: 0.0 }
+        Self { subject, list, arms, work: None, latched_s: None, not_released: None, began_s: None, took_s: 0.0 }
     }
 
     /// What is checked.
@@ -95,7 +97,7 @@ impl Session {
         for entry in self.list.iter_mut().filter(|entry| matches!(entry.state, State::Failed(_))) {
             entry.state = State::Waiting;
         }
-        (self.work, self.latched_s) = (None, None);
+        (self.work, self.latched_s, self.not_released) = (None, None, None);
     }
 
     /// Adds one tick of any side.
@@ -122,10 +124,11 @@ impl Session {
 
     /// Adds an event of the loop.
     pub fn event(&mut self, event: &Event) {
-        if let (Some((work, _)), Event::CommandRefused { command: Command::TestWatchdog(_), why, .. }) =
-            (&mut self.work, event)
-        {
-            work.refused(*why);
+        let Event::CommandRefused { command, why, .. } = event else { return };
+        match (command, &mut self.work) {
+            (Command::TestWatchdog(_), Some((work, _))) => work.refused(*why),
+            (Command::ReleaseStop, _) => self.not_released = Some(*why),
+            _ => {}
         }
     }
 
@@ -150,13 +153,17 @@ impl Session {
         if matches!(state, State::Asking(_)) && now_s - since_s > work.patience_s() {
             state = State::Failed(work.late());
         }
-        self.list[place].state = state;
         if matches!(state, State::Asking(_)) {
             self.work = Some((work, since_s));
         } else {
+            let refusal = self.not_released.take();
+            if let State::Failed(Cause::NotReleased(why)) = &mut state {
+                *why = refusal;
+            }
             // Everybody has the same time again, also after a pause before a second look.
             self.began_s = self.began_s.filter(|_| !self.is_finished());
         }
+        self.list[place].state = state;
         command
     }
 
@@ -172,7 +179,7 @@ impl Session {
         }
         let since_s = *self.latched_s.get_or_insert(now_s);
         let late = now_s - since_s > RELEASE_WITHIN_S;
-        Some(if late { State::Failed(Cause::NotReleased) } else { State::Asking(Ask::Release) })
+        Some(if late { State::Failed(Cause::NotReleased(None)) } else { State::Asking(Ask::Release) })
     }
 }
 

@@ -59,7 +59,7 @@ impl Item for Stop {
     }
 
     fn late(&self) -> Cause {
-        if self.last_s.is_some() { Cause::NotReleased } else { Cause::NoStop }
+        if self.last_s.is_some() { Cause::NotReleased(None) } else { Cause::NoStop }
     }
 
     fn expects_latch(&self) -> bool {

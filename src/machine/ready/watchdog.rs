@@ -88,7 +88,7 @@ impl Item for Watchdog {
     }
 
     fn late(&self) -> Cause {
-        if self.bitten_s.is_some() { Cause::NotReleased } else { Cause::NoBite(self.which) }
+        if self.bitten_s.is_some() { Cause::NotReleased(None) } else { Cause::NoBite(self.which) }
     }
 
     fn command(&mut self) -> Option<Command> {

@@ -102,6 +102,32 @@ impl Part {
         }
     }
 
+    /// Makes of it that the program knows.
+    pub const fn makes(self) -> &'static [&'static str] {
+        match self.kind() {
+            PartKind::Handle => &["Force Dimension"],
+            PartKind::Arm => &["Kinova", "simulated"],
+            PartKind::Sensor => &["Bota"],
+            PartKind::Servos => &["DYNAMIXEL"],
+            PartKind::Tracker => &["NDI"],
+            PartKind::Pedal => &[],
+        }
+    }
+
+    /// Its name and make in a rig with these devices: `right handle (Force Dimension)`.
+    pub fn name_and_make(self, devices: &Settings) -> String {
+        let make = match self {
+            Self::Arm(side) if devices.arm(side).is_some_and(|set| set.arm.kinova().is_none()) => Some("simulated"),
+            _ => self.makes().first().copied(),
+        };
+        make.map_or_else(|| self.name().to_owned(), |make| self.name_of_make(make))
+    }
+
+    /// Its name with this make.
+    pub fn name_of_make(self, make: &str) -> String {
+        format!("{} ({make})", self.name())
+    }
+
     /// Key of its table in a rig file.
     pub const fn key(self) -> &'static str {
         match self {

@@ -231,7 +231,10 @@ mod tests {
     fn calibrated() -> Calibrations {
         let s1_from_source_wxyz = [1.0, 0.0, 0.0, 0.0];
         let parameters = Parameters::Physical { mass_kg: 0.4, s1_from_source_wxyz, bias_n: [0.0; 3], torque: None };
-        Calibrations { gravity: Some(GravityModel { source: Source::Imu, imu_sign: 1, parameters }), tip_force: None }
+        Calibrations {
+            gravity: Some(GravityModel { source: Source::Imu, imu_sign: 1, parameters }),
+            ..Calibrations::default()
+        }
     }
 
     #[test]

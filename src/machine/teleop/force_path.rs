@@ -5,7 +5,10 @@
 //! says why.
 
 use nima_core::{
-    calibration::gravity::{Compensator, DEFAULT_TIME_CONSTANT_S, GravityModel},
+    calibration::{
+        Verdict,
+        gravity::{Compensator, DEFAULT_TIME_CONSTANT_S, GravityModel, GravityRecord},
+    },
     frames::WristSample,
     safety::PLAUSIBLE_N,
     tip_force::TipForce,
@@ -23,6 +26,34 @@ pub struct Calibrations {
     pub gravity: Option<GravityModel>,
     /// Network that removes the trocar's friction.
     pub tip_force: Option<TipForce>,
+    /// How good the gravity calibration is, where that is known. Only told: nothing in the loop depends on it.
+    pub gravity_check: Option<GravityCheck>,
+}
+
+/// How good a gravity calibration was when it was made.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct GravityCheck {
+    /// Its verdict.
+    pub verdict: Verdict,
+    /// A person uses it in spite of its verdict.
+    pub is_overridden: bool,
+    /// Mean error on poses that were not used for the fit, N.
+    pub held_out_n: f64,
+    /// Still poses.
+    pub poses: usize,
+}
+
+impl GravityCheck {
+    /// From its record.
+    pub fn of(record: &GravityRecord) -> Self {
+        let GravityRecord { judgement, residuals, poses, .. } = record;
+        Self {
+            verdict: judgement.verdict,
+            is_overridden: judgement.override_by.is_some(),
+            held_out_n: residuals.held_out.mean_mae(),
+            poses: *poses,
+        }
+    }
 }
 
 /// The calibrations as they are applied to each sample.

@@ -21,7 +21,7 @@ pub use crate::{
     rig::{DeviceEvent, GUIDE_MAX_M, Inputs, Obstacle, Outputs, SIDES, Side},
 };
 pub use accuracy::{Accuracy, ErrorStats};
-pub use force_path::{Calibrations, ForcePath};
+pub use force_path::{Calibrations, ForcePath, GravityCheck};
 pub use link::{Link, ProgrammedLink};
 pub use origin::Origin;
 pub use pair::{EVENTS_PER_TICK_MAX, Pair, Timing};

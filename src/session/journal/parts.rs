@@ -94,7 +94,8 @@ fn read_rig(text: &str) -> Result<RigConfig, JournalError> {
 const WITHHELD: &str = "(withheld)";
 
 pub(super) fn put_calibrations(calibrations: &Calibrations, to: &mut Bytes) -> Result<(), JournalError> {
-    let Calibrations { gravity, tip_force } = calibrations;
+    // How good a calibration is told to be changes nothing in the loop.
+    let Calibrations { gravity, tip_force, gravity_check: _ } = calibrations;
     let part = |what: &'static str| move |why: String| JournalError::Part { what, why };
     let gravity = gravity.as_ref().map(toml::to_string).transpose();
     let gravity = gravity.map_err(|error| part("gravity calibration")(error.to_string()))?;
@@ -139,7 +140,7 @@ pub(super) fn take_calibrations(from: &mut &[u8]) -> Result<Calibrations, Journa
         };
         Some(TipForce::new(model, fallback).map_err(|error| part("network")(error.to_string()))?)
     };
-    Ok(Calibrations { gravity, tip_force })
+    Ok(Calibrations { gravity, tip_force, gravity_check: None })
 }
 
 /// The end of a journal that was closed.

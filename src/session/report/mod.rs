@@ -10,10 +10,7 @@ use std::{collections::BTreeMap, path::Path};
 
 use nima_machine::rig::Side;
 use nima_recording::{
-    messages::{
-        JointStateDecoder,
-        foxglove::{Level, Log},
-    },
+    messages::foxglove::{Level, Log},
     session::{Message, ReadError, Reader},
 };
 use prost::Message as _;
@@ -26,7 +23,7 @@ pub use trace::{BUCKETS, Trace};
 use crate::{
     journal::{Outline, outline},
     recorder::JOURNAL_TOPIC,
-    topics::{LOG_TOPIC, TIMES, TIMING_TOPIC},
+    topics::{LOG_TOPIC, MARK_LINE, TIMES, TIMING_TOPIC, columns::Columns},
 };
 use arm::Arm;
 
@@ -88,7 +85,7 @@ pub struct Missing {
 pub struct Mark {
     /// When, s from the beginning of the session.
     pub t_s: f64,
-    /// How much it matters: `error`, `warning` or `info`.
+    /// How much it matters: `error`, `warning` or `info`; `mark` for a moment that the operator marked.
     pub level: &'static str,
     /// What.
     pub words: String,
@@ -176,7 +173,8 @@ enum Kind {
 struct Channel {
     id: nima_recording::session::ChannelId,
     kind: Kind,
-    decoder: JointStateDecoder,
+    /// Of a topic of numbers.
+    columns: Option<Columns>,
 }
 
 /// One pass over the file.
@@ -202,7 +200,7 @@ impl<'a> Reading<'a> {
         }
         let of = |channel: &nima_recording::session::Channel| {
             let &(_, kind) = kinds.iter().find(|(topic, _)| *topic == channel.topic)?;
-            Some(Channel { id: channel.id, kind, decoder: JointStateDecoder::default() })
+            Some(Channel { id: channel.id, kind, columns: Columns::of(&channel.topic) })
         };
         let channels = reader.channels().iter().filter_map(of).collect();
         let arms = sides.iter().map(|&side| (side, Arm::new(side.word(), length_s, period_s))).collect();
@@ -234,15 +232,17 @@ impl<'a> Reading<'a> {
         let t_s = message.log_time_ns().saturating_sub(self.first_ns) as f64 * 1e-9;
         let data = message.data();
         match channel.kind {
-            Kind::Journal => journal(t_s, data, figures),
-            Kind::Log => figures.marks.extend(mark(t_s, data)),
-            Kind::Timing if channel.decoder.decode(data) => timing(t_s, channel.decoder.values(), figures),
-            Kind::Forces(arm) if channel.decoder.decode(data) => self.arms[arm].1.forces(t_s, channel.decoder.values()),
-            Kind::Gates(arm) if channel.decoder.decode(data) => self.arms[arm].1.gates(t_s, channel.decoder.values()),
-            Kind::Identification(arm) if channel.decoder.decode(data) => {
-                self.arms[arm].1.identified(channel.decoder.values());
-            }
+            Kind::Journal => return journal(t_s, data, figures),
+            Kind::Log => return figures.marks.extend(mark(t_s, data)),
             _ => {}
+        }
+        let Some(values) = channel.columns.as_mut().and_then(|columns| columns.read(data)) else { return };
+        match channel.kind {
+            Kind::Timing => timing(t_s, values, figures),
+            Kind::Forces(arm) => self.arms[arm].1.forces(t_s, values),
+            Kind::Gates(arm) => self.arms[arm].1.gates(t_s, values),
+            Kind::Identification(arm) => self.arms[arm].1.identified(values),
+            Kind::Journal | Kind::Log => {}
         }
     }
 }
@@ -267,6 +267,7 @@ fn journal(t_s: f64, data: &[u8], figures: &mut Figures) {
 fn mark(t_s: f64, data: &[u8]) -> Option<Mark> {
     let log = Log::decode(data).ok()?;
     let level = match log.level {
+        _ if log.name == MARK_LINE => "mark",
         level if level >= Level::Error as i32 => "error",
         level if level == Level::Warning as i32 => "warning",
         _ => "info",

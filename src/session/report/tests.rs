@@ -9,6 +9,7 @@ use nima_recording::{
 };
 
 use super::*;
+use crate::topics::plots;
 
 const START_NS: u64 = 1_700_000_000_000_000_000;
 
@@ -21,8 +22,11 @@ fn made(path: &Path) {
     let forces = writer.channel("right/forces", JointStateEncoder::encoding()).unwrap();
     let gates = writer.channel("right/gates", JointStateEncoder::encoding()).unwrap();
     let log = writer.channel("log", foxglove::encoding::<Log>()).unwrap();
-    let mut force = JointStateEncoder::new("world", &["x"; 12]);
-    let mut gate = JointStateEncoder::new("world", &["x"; 14]);
+    let encoder = |topic: &str| {
+        let (_, names, _) = plots().into_iter().find(|(name, ..)| name == topic).unwrap();
+        JointStateEncoder::new("world", &names.iter().map(String::as_str).collect::<Vec<_>>())
+    };
+    let (mut force, mut gate) = (encoder("right/forces"), encoder("right/gates"));
     for i in 0..10_000_u32 {
         let t_s = f64::from(i) * 1e-3;
         let time_ns = START_NS + u64::from(i) * 1_000_000;

@@ -24,6 +24,12 @@ const NAMES: [&str; 9] = [
     "network.doubt_max",
 ];
 
+/// Names of its numbers.
+pub(super) fn names() -> Vec<String> {
+    let errors = Mode::ALL.map(|mode| format!("{}.error_n", mode.name()));
+    errors.into_iter().chain(NAMES.map(str::to_owned)).collect()
+}
+
 /// The channel of one arm.
 #[derive(Debug)]
 pub(super) struct Identified {
@@ -43,8 +49,8 @@ struct Network {
 
 impl Identified {
     pub(super) fn new(writer: &mut Writer, side: Side) -> Result<Self, WriteError> {
-        let errors = Mode::ALL.map(|mode| format!("{}.error_n", mode.name()));
-        let names: Vec<&str> = errors.iter().map(String::as_str).chain(NAMES).collect();
+        let names = names();
+        let names: Vec<&str> = names.iter().map(String::as_str).collect();
         let plot = Plot::of_side(writer, side, "identification", &names)?;
         Ok(Self { plot, due_s: f64::NEG_INFINITY, network: Network::default() })
     }

@@ -8,26 +8,26 @@ use nima_recording::{
 
 /// A channel, and the values of its next message.
 #[derive(Debug)]
-pub(super) struct Plot {
+pub(crate) struct Plot {
     channel: ChannelId,
     encoder: JointStateEncoder,
-    pub(super) values: Vec<f64>,
+    pub(crate) values: Vec<f64>,
 }
 
 impl Plot {
-    pub(super) fn of_side(writer: &mut Writer, side: Side, what: &str, names: &[&str]) -> Result<Self, WriteError> {
+    pub(crate) fn of_side(writer: &mut Writer, side: Side, what: &str, names: &[&str]) -> Result<Self, WriteError> {
         let names: Vec<String> = names.iter().map(|name| format!("{}.{name}", side.word())).collect();
         let names: Vec<&str> = names.iter().map(String::as_str).collect();
         Self::new(writer, &format!("{}/{what}", side.word()), &names)
     }
 
-    pub(super) fn new(writer: &mut Writer, topic: &str, names: &[&str]) -> Result<Self, WriteError> {
+    pub(crate) fn new(writer: &mut Writer, topic: &str, names: &[&str]) -> Result<Self, WriteError> {
         let channel = writer.channel(topic, JointStateEncoder::encoding())?;
         Ok(Self { channel, encoder: JointStateEncoder::new("world", names), values: Vec::new() })
     }
 
     /// Writes the values and forgets them; forces are efforts.
-    pub(super) fn write(&mut self, writer: &mut Writer, time_ns: u64, efforts: bool) -> Result<(), WriteError> {
+    pub(crate) fn write(&mut self, writer: &mut Writer, time_ns: u64, efforts: bool) -> Result<(), WriteError> {
         let (position, effort) = if efforts { (&[][..], &self.values[..]) } else { (&self.values[..], &[][..]) };
         if let Ok(message) = self.encoder.encode(time_ns, position, &[], effort) {
             writer.message(self.channel, time_ns, message)?;

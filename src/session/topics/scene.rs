@@ -1,7 +1,7 @@
 //! The 3-D view of a session: where tip and leader stand, and the forces at the tip as arrows.
 
 use nalgebra::{UnitQuaternion, Vector3};
-use nima_machine::messages::Tick;
+use nima_machine::{messages::Tick, rig::Side};
 use nima_recording::{
     messages::foxglove::{
         self, Arrow, Color, FrameTransform, FrameTransforms, Pose, Quaternion, SceneEntity, SceneUpdate, Timestamp,
@@ -19,6 +19,26 @@ const HEAD_M: f64 = 0.003;
 const MEASURED: Color = Color { r: 0.1, g: 0.6, b: 0.9, a: 1.0 };
 const RENDERED: Color = Color { r: 0.95, g: 0.5, b: 0.1, a: 1.0 };
 
+/// Topic of the frames.
+pub(crate) const FRAMES_TOPIC: &str = "frames";
+/// Topic of the arrows.
+pub(crate) const ARROWS_TOPIC: &str = "arrows";
+
+/// The frame of all the others.
+pub(super) const WORLD: &str = "world";
+/// What is drawn of a side, as a frame.
+pub(super) const DRAWN: [&str; 2] = ["tip", "leader"];
+
+/// Name of a frame of a side.
+pub(super) fn name_of_frame(side: Side, what: &str) -> String {
+    format!("{}.{what}", side.word())
+}
+
+/// Name of the arrows of a side.
+pub(super) fn name_of_arrows(side: Side) -> String {
+    name_of_frame(side, "forces")
+}
+
 /// The channels of the 3-D view.
 #[derive(Debug)]
 pub(super) struct Scene {
@@ -29,8 +49,8 @@ pub(super) struct Scene {
 
 impl Scene {
     pub(super) fn new(writer: &mut Writer) -> Result<Self, WriteError> {
-        let frames = writer.channel("frames", foxglove::encoding::<FrameTransforms>())?;
-        let arrows = writer.channel("arrows", foxglove::encoding::<SceneUpdate>())?;
+        let frames = writer.channel(FRAMES_TOPIC, foxglove::encoding::<FrameTransforms>())?;
+        let arrows = writer.channel(ARROWS_TOPIC, foxglove::encoding::<SceneUpdate>())?;
         Ok(Self { frames, arrows, due_s: f64::NEG_INFINITY })
     }
 
@@ -50,11 +70,11 @@ impl Scene {
         let timestamp = Some(Timestamp::of_ns(time_ns));
         let (mut frames, mut scene) = (FrameTransforms::default(), SceneUpdate::default());
         for tick in ticks {
-            for (name, at_m) in [("tip", tick.tip_m), ("leader", tick.leader_m)] {
+            for (name, at_m) in DRAWN.into_iter().zip([tick.tip_m, tick.leader_m]) {
                 frames.transforms.push(FrameTransform {
                     timestamp,
-                    parent_frame_id: "world".to_owned(),
-                    child_frame_id: format!("{}.{name}", tick.side.word()),
+                    parent_frame_id: WORLD.to_owned(),
+                    child_frame_id: name_of_frame(tick.side, name),
                     translation: Some(vector(&at_m)),
                     rotation: Some(quaternion(&UnitQuaternion::identity())),
                 });
@@ -62,8 +82,8 @@ impl Scene {
             let arrows = [(tick.measured_n, MEASURED), (tick.rendered_n, RENDERED)];
             scene.entities.push(SceneEntity {
                 timestamp,
-                frame_id: "world".to_owned(),
-                id: format!("{}.forces", tick.side.word()),
+                frame_id: WORLD.to_owned(),
+                id: name_of_arrows(tick.side),
                 arrows: arrows.iter().filter_map(|(force_n, color)| arrow(&tick.tip_m, force_n, *color)).collect(),
                 ..SceneEntity::default()
             });

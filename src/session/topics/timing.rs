@@ -13,6 +13,12 @@ pub(crate) const TIMING_TOPIC: &str = "timing";
 /// The times, each with `p50_us`, `p99_us`, `p999_us` and `max_us`.
 pub(crate) const TIMES: [&str; 3] = ["wake", "work", "sample_to_force"];
 
+/// Names of its numbers.
+pub(super) fn names() -> Vec<String> {
+    let of = |time: &str| ["p50_us", "p99_us", "p999_us", "max_us"].map(|what| format!("{time}.{what}"));
+    std::iter::once("missed".to_owned()).chain(TIMES.iter().flat_map(|time| of(time))).collect()
+}
+
 /// The channel.
 #[derive(Debug)]
 pub(super) struct Times {
@@ -24,9 +30,7 @@ pub(super) struct Times {
 
 impl Times {
     pub(super) fn new(writer: &mut Writer) -> Result<Self, WriteError> {
-        let of = |time: &str| ["p50_us", "p99_us", "p999_us", "max_us"].map(|what| format!("{time}.{what}"));
-        let names: Vec<String> =
-            std::iter::once("missed".to_owned()).chain(TIMES.iter().flat_map(|time| of(time))).collect();
+        let names = names();
         let names: Vec<&str> = names.iter().map(String::as_str).collect();
         let plot = Plot::new(writer, TIMING_TOPIC, &names)?;
         Ok(Self { plot, due_s: EVERY_S, missed: 0, durations: Default::default() })

@@ -61,7 +61,7 @@ fn poisoned(model: &GravityModel, by: f64) -> GravityModel {
 fn in_memory(what: &str, gravity: &GravityModel) -> Result<Special, FaultsError> {
     let mut config = RigConfig::load("simulated")?;
     config.mode = Mode::Dfr;
-    let known = Calibrations { gravity: Some(*gravity), tip_force: None };
+    let known = Calibrations { gravity: Some(*gravity), ..Calibrations::default() };
     let mut control = Loop::new(&config, &[Some(known), None])?;
     let mut worlds = Worlds::new(&Scene::load(SensorAt::Wrist.scene())?, config.rate_hz);
     let mut force = false;

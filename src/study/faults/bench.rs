@@ -80,7 +80,7 @@ impl Bench {
             SensorAt::Tip => None,
             SensorAt::Wrist => Some(experiment::gravity(1)?),
         };
-        let known = Calibrations { gravity, tip_force: None };
+        let known = Calibrations { gravity, ..Calibrations::default() };
         let machine = Loop::over(&config, &[Some(known), None], ImpairedLink::new)?;
         let rig = Faulty::new(Worlds::new(&scene, config.rate_hz));
         let outputs = [Outputs::SAFE; SIDES];

@@ -41,7 +41,7 @@ pub(super) fn runs(seconds: f64) -> Result<Calm, FaultsError> {
             for delay_s in DELAYS_S {
                 let mut rig = RigConfig::load("simulated")?;
                 (rig.mode, rig.delay_s, rig.gates.static_hold) = (mode, delay_s, calm.runs % 2 == 0);
-                let known = Calibrations { gravity: Some(gravity), tip_force: None };
+                let known = Calibrations { gravity: Some(gravity), ..Calibrations::default() };
                 let scene = Scene::load(scene)?;
                 // Every run has another seed: other tremor, noise and start.
                 let scene = Scene { seed: scene.seed + 1000 * calm.runs as u64, ..scene };

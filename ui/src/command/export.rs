@@ -10,15 +10,23 @@ use std::{
 use anyhow::{Context as _, bail};
 use clap::Args;
 use nima_files::write_atomically;
-use nima_machine::rig::Side;
+use nima_machine::{config::RigConfig, rig::Side};
 use nima_recording::session::Reader;
 use nima_session::{
-    cut::{self, Cut, Kept},
+    anonymous::{self, Known},
+    cut::{self, Cut, CutError, Kept},
     plotted::{self, PlottedError, PlottedTick},
+    recorder::Attached,
 };
+use nima_world::scene::Scene;
 
 use super::{motion, output};
-use crate::telling::tell;
+use crate::{
+    leaving::Leave,
+    recording::{PROGRAM, RIG, SCENE, toml_file},
+    telling::tell,
+    words::Lines,
+};
 
 const HEADER: &str = "t_s,time_ns,x_m,y_m,z_m,fx_n,fy_n,fz_n,leader_x_m,leader_y_m,leader_z_m,\
 delayed_x_n,delayed_y_n,delayed_z_n,asked_x_n,asked_y_n,asked_z_n,rendered_x_n,rendered_y_n,rendered_z_n,state";
@@ -39,6 +47,9 @@ pub(super) struct Arguments {
     /// Which arm comes into the table, right or left (needed if the session has both)
     #[arg(long, value_name = "ARM", value_parser = motion::side)]
     arm: Option<Side>,
+    /// Leave out what tells who recorded it, where and when (.mcap only)
+    #[arg(long)]
+    anonymous: bool,
 }
 
 /// A time in a session.
@@ -50,13 +61,16 @@ fn seconds(text: &str) -> Result<f64, String> {
 }
 
 pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
-    let Arguments { session, out, arm, .. } = arguments;
+    let Arguments { session, out, arm, anonymous, .. } = arguments;
     let is = |extension: &str| out.extension().is_some_and(|one| one.eq_ignore_ascii_case(extension));
     if !is("csv") && !is("mcap") {
         bail!("--out {}: give a name that ends in .csv or .mcap", out.display());
     }
     if is("mcap") && arm.is_some() {
         bail!("--arm is for tables: a session that is cut out keeps both arms");
+    }
+    if is("csv") && *anonymous {
+        bail!("--anonymous is for a session (.mcap); a table of an anonymous session is anonymous too");
     }
     if out.symlink_metadata().is_ok() {
         bail!("cannot write {}: it is there already; choose another name", out.display());
@@ -67,7 +81,17 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         tell(format_args!("nima: {note}"));
     }
     let times_ns = stretch(&reader, arguments)?;
-    if is("csv") { table(&reader, times_ns, arguments) } else { cut_out(&reader, &times_ns, session, out) }
+    // Whatever is half-written goes away before the end.
+    let leave = Leave::on_signals()?;
+    if is("csv") {
+        return table(&reader, times_ns, arguments, &leave);
+    }
+    let words = if *anonymous {
+        whole(out, |new| anonymously(&reader, &times_ns, new, &leave))?
+    } else {
+        whole(out, |new| cut_out(&reader, &times_ns, session, new, &leave))?
+    };
+    output::line(&format!("{} in {}, {}", words.0, out.display(), words.1))
 }
 
 /// The times that were asked for, ns.
@@ -104,7 +128,7 @@ impl From<PlottedError> for Failed {
     }
 }
 
-fn table(reader: &Reader, times_ns: Range<u64>, arguments: &Arguments) -> anyhow::Result<()> {
+fn table(reader: &Reader, times_ns: Range<u64>, arguments: &Arguments, leave: &Leave) -> anyhow::Result<()> {
     let Arguments { session, out, arm, .. } = arguments;
     let arm = plotted::arm(reader, session, *arm)?;
     let (mut rows, mut trouble) = (0_u64, None);
@@ -112,6 +136,9 @@ fn table(reader: &Reader, times_ns: Range<u64>, arguments: &Arguments) -> anyhow
         writeln!(file, "{HEADER}")?;
         let filled = plotted::each_tick(reader, session, arm, times_ns, |tick| {
             rows += 1;
+            if leave.is_asked() {
+                return Err(Failed::File(io::Error::other(CutError::Asked)));
+            }
             file.write_all(row(&tick).as_bytes()).map_err(Failed::File)
         });
         match filled {
@@ -140,19 +167,50 @@ fn row(tick: &PlottedTick) -> String {
     row
 }
 
+/// What was written, and what is to be said of it.
+type Told = (String, &'static str);
+
 /// In a folder beside the file first, so that nothing half-written has its name.
-fn cut_out(reader: &Reader, times_ns: &Range<u64>, session: &Path, out: &Path) -> anyhow::Result<()> {
+fn whole(out: &Path, write: impl FnOnce(&Path) -> anyhow::Result<Told>) -> anyhow::Result<Told> {
     let failed = || format!("cannot write {}", out.display());
     let folder = out.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or_else(|| Path::new("."));
     let beside = tempfile::Builder::new().prefix(".nima-export-").tempdir_in(folder).with_context(failed)?;
     let new = beside.path().join("session.mcap");
-    let name = session.file_name().unwrap_or_default().to_string_lossy();
-    let Cut { messages, journal } = cut::write(reader, &name, times_ns, &new)?;
+    let told = write(&new)?;
     std::fs::rename(&new, out).with_context(failed)?;
+    Ok(told)
+}
+
+fn cut_out(reader: &Reader, times_ns: &Range<u64>, session: &Path, new: &Path, leave: &Leave) -> anyhow::Result<Told> {
+    let name = session.file_name().unwrap_or_default().to_string_lossy();
+    let Cut { messages, journal } = cut::write(reader, &name, times_ns, new, leave.flag())?;
     let journal = match journal {
         Kept::Yes => "with the journal up to the cut: `nima replay` repeats it",
         Kept::LeftOut => "without the journal, which can be replayed from its beginning only",
         Kept::None => "the session has no journal",
     };
-    output::line(&format!("{messages} messages in {}, {journal}", out.display()))
+    Ok((format!("{messages} messages"), journal))
+}
+
+fn anonymously(reader: &Reader, times_ns: &Range<u64>, new: &Path, leave: &Leave) -> anyhow::Result<Told> {
+    let lines = Lines::all();
+    let known = Known { program: PROGRAM, files: &files(reader)?, is_ours: &|line| lines.has(line) };
+    let messages = anonymous::write(reader, &known, times_ns, new, leave.flag())?;
+    Ok((format!("{messages} messages"), "anonymous, without the journal: see what remains in docs/sessions.md"))
+}
+
+/// Rig and scene of the session without their names; one that this program cannot read is left out.
+fn files(reader: &Reader) -> anyhow::Result<Vec<Attached>> {
+    let mut files = Vec::new();
+    for attachment in reader.attachments() {
+        let Ok(text) = String::from_utf8(reader.attachment(attachment)?) else { continue };
+        let path = Path::new(&attachment.name);
+        let (name, text) = match &*attachment.name {
+            RIG => (RIG, RigConfig::parse(path, &text).ok().map(|rig| toml::to_string(&rig.anonymous()))),
+            SCENE => (SCENE, Scene::parse(path, &text).ok().map(|scene| toml::to_string(&scene.anonymous()))),
+            _ => continue,
+        };
+        files.extend(text.transpose()?.map(|text| toml_file(name, text)));
+    }
+    Ok(files)
 }

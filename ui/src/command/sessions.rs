@@ -137,8 +137,9 @@ impl Listed {
         let megabytes = |bytes: u64| bytes as f64 * 1e-6;
         write!(
             text,
-            "{} sessions in {}, {:.1} MB; those that nobody keeps take {:.1} of {:.0} MB",
+            "{} session{} in {}, {:.1} MB; those that nobody keeps take {:.1} of {:.0} MB",
             sessions.len(),
+            if sessions.len() == 1 { "" } else { "s" },
             folder.display(),
             megabytes(*bytes),
             megabytes(*loose_bytes),

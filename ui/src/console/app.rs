@@ -295,7 +295,7 @@ impl ConsoleApp {
             self.top_bar.recorded = self.sessions.shown();
             let wants_start = top_bar_ui(
                 ui,
-                &self.live,
+                &mut self.live,
                 &mut self.top_bar,
                 &mut self.outbox,
                 &mut self.settings.now,
@@ -320,6 +320,7 @@ impl ConsoleApp {
         let signs = self.live.signs(self.outbox.stop_is_stuck(), self.sessions.trouble());
         let loop_s = self.live.first_tick().map(|tick| tick.t_s);
         self.top_bar.alarms.strip_ui(ui, &signs, loop_s, self.settings.now.sound);
+        self.sessions.tell(&self.live.marks_s, &self.top_bar.alarms.log, loop_s);
         let room = ui.available_rect_before_wrap();
         self.page_layout(ui);
         self.top_bar.alarms.list_ui(ui.ctx(), room);

@@ -15,8 +15,9 @@ use super::{
 const NEEDED: egui::Vec2 = vec2(1100.0, 680.0);
 const STEPS_PERCENT: [u16; 5] = [100, 125, 150, 175, 200];
 
-/// The menu in the top bar.
-pub(super) fn menu_ui(ui: &mut Ui, settings: &mut Settings, help: &mut Help, alarms: &mut Alarms) {
+/// The menu in the top bar. Returns true when the operator marks this moment.
+pub(super) fn menu_ui(ui: &mut Ui, settings: &mut Settings, help: &mut Help, alarms: &mut Alarms) -> bool {
+    let mut marks = false;
     let button = Button::new(text::menu::VIEW).min_size(vec2(52.0, 30.0));
     let menu = egui::containers::menu::MenuButton::from_button(button);
     let (response, _) = menu.ui(ui, |ui| {
@@ -59,8 +60,11 @@ pub(super) fn menu_ui(ui: &mut Ui, settings: &mut Settings, help: &mut Help, ala
                 help.begin_tour();
             }
         });
+        let mark = ui.add(Button::new(text::menu::MARK).min_size(vec2(300.0, 30.0)));
+        marks = mark.on_hover_text(text::menu::MARK_HOVER).clicked();
     });
     response.on_hover_text(text::menu::VIEW_HOVER);
+    marks
 }
 
 /// Switch for alarm sounds, and why they cannot be played.

@@ -4,19 +4,23 @@
 //! that is gone) is told, and the loop runs on.
 
 use std::{
+    collections::VecDeque,
     path::{Path, PathBuf},
     time::{Duration, Instant},
 };
 
-use nima_machine::runtime::Tap;
+use nima_machine::{messages::Scheduling, runtime::Tap};
 use nima_recording::store::utc_now;
 use nima_session::{
-    recorder::Recorder,
+    recorder::{Note, NoteKind, Recorder},
     shelf::{MOST_BYTES, Shelf, free_bytes, keep},
 };
 use nima_world::Plan;
 
-use super::{chain, text};
+use super::{
+    alarms::{Alarm, Kind, Priority, Signs, judge, log::AlarmLog},
+    chain, text,
+};
 use crate::recording;
 
 /// A loop that ran for fewer ticks than this was no session: a window that could not be opened, a rig that was changed at once.
@@ -48,6 +52,17 @@ struct Now {
     path: PathBuf,
     began: Instant,
     kept: bool,
+    told: Told,
+}
+
+/// What of the screen is in the session already.
+#[derive(Debug, Default)]
+struct Told {
+    /// Number of marks, and the time of the last one, s on the loop's clock.
+    marks: usize,
+    last_mark_s: Option<f64>,
+    /// Alarms whose causes are present.
+    alarms: Vec<Alarm>,
 }
 
 /// What the screen shows of a recording.
@@ -60,6 +75,8 @@ pub(crate) struct Shown {
     pub(crate) bytes: u64,
     /// Entries that were lost, because the disk was slower than the loop.
     pub(crate) lost: u64,
+    /// Marks in it.
+    pub(crate) marks: usize,
 }
 
 impl Sessions {
@@ -78,7 +95,7 @@ impl Sessions {
             shelf.place(&utc_now(), &plan.rig.name).map_err(|error| text::sessions::no_folder(shelf.folder(), &error));
         let begun = place.and_then(|path| {
             let (tap, recorder) = recording::begin(&path, plan, "real").map_err(|error| chain(&error))?;
-            Ok((tap, Now { recorder, path, began: Instant::now(), kept: false }))
+            Ok((tap, Now { recorder, path, began: Instant::now(), kept: false, told: Told::default() }))
         });
         match begun {
             Ok((tap, now)) => {
@@ -112,6 +129,35 @@ impl Sessions {
         }
     }
 
+    /// Adds to the session the marks (s on the loop's clock) and the alarms of the screen that it has not: each alarm when its cause
+    /// appears, and when that ends. `now_s` is the time of the last tick; faults are in the session anyway.
+    pub(crate) fn tell(&mut self, marks_s: &VecDeque<f64>, alarms: &AlarmLog, now_s: Option<f64>) {
+        let (Some(Now { recorder, told, .. }), Some(now_s)) = (&mut self.now, now_s) else { return };
+        let before_s = told.last_mark_s;
+        for &t_s in marks_s.iter().filter(|t_s| before_s.is_none_or(|last_s| **t_s > last_s)) {
+            told.marks += 1;
+            told.last_mark_s = Some(t_s);
+            let words = text::sessions::mark(told.marks);
+            recorder.note(t_s, Note { kind: NoteKind::Mark, warns: false, words });
+        }
+        let live: Vec<&Alarm> = alarms.live().into_iter().map(|entry| &entry.alarm).collect();
+        let alarm = |warns, words| recorder.note(now_s, Note { kind: NoteKind::Alarm, warns, words });
+        told.alarms.retain(|before| {
+            let stays = live.iter().any(|alarm| alarm.kind == before.kind);
+            if !stays {
+                alarm(false, text::sessions::alarm_over(&before.cause));
+            }
+            stays
+        });
+        for new in live {
+            let known = told.alarms.iter().any(|alarm| alarm.kind == new.kind);
+            if !known && !matches!(new.kind, Kind::Fault(_)) {
+                alarm(new.priority < Priority::Low, text::sessions::alarm(&new.cause));
+                told.alarms.push(new.clone());
+            }
+        }
+    }
+
     /// Why nothing is recorded although it should be, or what will be in the way within a working day.
     pub(crate) fn trouble(&self) -> Option<String> {
         let ended = self.now.as_ref().and_then(|now| now.recorder.trouble()).map(|error| chain(error));
@@ -129,6 +175,7 @@ impl Sessions {
             path: now.path.clone(),
             bytes: progress.bytes,
             lost: progress.lost,
+            marks: now.told.marks,
         })
     }
 
@@ -153,6 +200,22 @@ impl Sessions {
     }
 }
 
+/// The lines that this adds to a log, as far as there is no name in them.
+pub(crate) fn lines() -> Vec<String> {
+    let scheduling = [(false, false), (true, false)];
+    let signs = scheduling.map(|(fifo, memory_locked)| Signs {
+        stop_is_stuck: true,
+        missed_share: 1.0,
+        scheduling: Some(Scheduling { fifo, deadline: false, memory_locked }),
+        bias_moved_n: Some(0.0),
+        is_unchecked: true,
+        ..Signs::default()
+    });
+    let alarms = signs.iter().flat_map(judge).map(|alarm| alarm.cause);
+    let both = alarms.flat_map(|cause| [text::sessions::alarm(&cause), text::sessions::alarm_over(&cause)]);
+    both.chain([text::sessions::mark(1)]).collect()
+}
+
 impl Drop for Sessions {
     fn drop(&mut self) {
         self.end();
@@ -165,8 +228,10 @@ mod tests {
         config::RigConfig,
         runtime::{Assembly, start},
     };
-    use nima_session::{file::Recorded, replay::replay};
+    use nima_session::{file::Recorded, replay::replay, report::Figures};
     use nima_world::scene::Scene;
+
+    use crate::console::alarms::log::Moment;
 
     use super::*;
 
@@ -203,6 +268,57 @@ mod tests {
             let outcome = replay(file.journal().unwrap(), |_| ()).unwrap();
             assert!(outcome.differs.is_none() && outcome.closed && outcome.ticks > 0, "{outcome:?}");
         }
+    }
+
+    #[test]
+    fn marks_and_alarms_of_the_screen_are_in_the_session_at_their_moments_and_it_replays() {
+        let folder = tempfile::tempdir().unwrap();
+        let mut sessions = Sessions::of_user(Some(folder.path()));
+        let plan = plan();
+        let tap = sessions.begin(&plan);
+        let handle = start(Assembly { tap, ..plan.assembly().unwrap() }).unwrap();
+        // However short it is, it is not deleted.
+        sessions.toggle_kept();
+        let (mut marks_s, mut log) = (VecDeque::new(), AlarmLog::default());
+        let began = Instant::now();
+        let newest_s = || {
+            let mut newest_s = None;
+            handle.drain_ticks(|tick| newest_s = Some(tick.t_s));
+            newest_s
+        };
+        while marks_s.len() < 3 && began.elapsed() < Duration::from_secs(20) {
+            std::thread::sleep(Duration::from_millis(300));
+            let Some(now_s) = newest_s() else { continue };
+            marks_s.push_back(now_s);
+            let present = if marks_s.len() == 2 { Some(0.41) } else { None };
+            let signs = Signs { running: true, bias_moved_n: present, ..Signs::default() };
+            log.update(&judge(&signs), &Moment::now(Some(now_s), now_s));
+            // Told once, however often the window is drawn.
+            sessions.tell(&marks_s, &log, Some(now_s));
+            sessions.tell(&marks_s, &log, Some(now_s));
+        }
+        let path = sessions.shown().unwrap().path;
+        handle.stop_and_join().unwrap();
+        sessions.end();
+        let figures = Figures::read(&path).unwrap();
+        let of = |start: &str| {
+            let those = figures.marks.iter().filter(|mark| mark.words.starts_with(start));
+            those.map(|mark| (mark.t_s, mark.level, mark.words.clone())).collect::<Vec<_>>()
+        };
+        let told = of("mark ");
+        assert_eq!(told.len(), 3, "{told:?}");
+        for (number, ((t_s, level, words), expected_s)) in told.iter().zip(&marks_s).enumerate() {
+            assert!((t_s - expected_s).abs() < 1e-6, "{t_s} s, it was {expected_s} s");
+            assert_eq!((*level, words.as_str()), ("mark", &*format!("mark {}", number + 1)));
+        }
+        let [(raised_s, level, words)] = &of("alarm: ")[..] else { panic!("{:?}", figures.marks) };
+        assert!((raised_s - marks_s[1]).abs() < 1e-6 && *level == "warning" && words.contains("0.41 N"), "{words}");
+        let [(over_s, ..)] = &of("alarm over: ")[..] else { panic!("{:?}", figures.marks) };
+        assert!((over_s - marks_s[2]).abs() < 1e-6);
+        let file = Recorded::open(&path).unwrap();
+        assert!(file.is_closed().unwrap());
+        let outcome = replay(file.journal().unwrap(), |_| ()).unwrap();
+        assert!(outcome.differs.is_none() && outcome.closed && outcome.ticks > 0, "{outcome:?}");
     }
 
     #[test]

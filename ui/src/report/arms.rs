@@ -15,7 +15,7 @@ pub(super) fn arm(session: &Figures, arm: &ArmFigures) -> String {
     let mut out = format!("<section>\n<h2>The {} arm</h2>\n", arm.side);
     out.push_str("<h3>States</h3>\n");
     out.push_str(&plots::states(session, arm));
-    out.push_str("<p class=\"note\">Triangles: black for faults, white for refused commands.</p>\n");
+    out.push_str("<p class=\"note\">Triangles: black for faults, white for refused commands and alarms. Numbered lines: marks of the operator.</p>\n");
     out.push_str(&seconds(session, arm));
     out.push_str("<h3>Forces</h3>\n");
     out.push_str(&plots::forces(session, arm));

@@ -126,6 +126,16 @@ mod tests {
     }
 
     #[test]
+    fn a_mark_is_told_with_its_time_and_is_no_fault() {
+        let mark = |t_s, level, words: &str| Mark { t_s, level, words: words.to_owned() };
+        let marks =
+            vec![mark(1.5, "mark", "mark 1"), mark(2.0, "warning", "alarm: late"), mark(3.25, "mark", "mark 2")];
+        let page = page(&[Figures { marks, ..session("rig") }]);
+        assert!(page.contains("<td>marks of the operator</td><td>1.500 s, 3.250 s</td>"), "{page}");
+        assert!(page.contains("<td>faults</td><td>0</td>") && page.contains("alarm: late"), "{page}");
+    }
+
+    #[test]
     fn no_text_of_a_file_becomes_markup() {
         let page = page(&[session("<script>alert('x')</script>"), session("a & \"b\"")]);
         assert!(!page.contains("<script") && !page.contains("<k>"), "{page}");

@@ -2,7 +2,10 @@
 
 use std::fmt::Write as _;
 
-use nima_session::report::{ArmFigures, Figures, Mark};
+use nima_session::{
+    anonymous::ANONYMOUS,
+    report::{ArmFigures, Figures, Mark},
+};
 
 use super::{
     html::{digits, escape, percent, table, time},
@@ -25,10 +28,21 @@ const ABOUT: [(&str, &str); 11] = [
     ("delay_s", "delay of the link at the start (s)"),
 ];
 
+/// What tables of calibrations tell of how good these are.
+const CALIBRATIONS: [(&str, &str); 7] = [
+    ("gravity_verdict", "verdict on gravity"),
+    ("network_verdict", "verdict on the network"),
+    ("gravity_error_n", "gravity: mean error on poses not used for it (N)"),
+    ("gravity_poses", "gravity: still poses"),
+    ("network_error_n", "network: mean error on data recorded after its training (N)"),
+    ("network_rows", "network: rows of that check"),
+    ("network_doubt_share", "network: share of that check outside its training"),
+];
+
 /// What it is, and whether anything went wrong.
 pub(super) fn summary(session: &Figures) -> String {
     let mut rows =
-        vec![vec!["file".to_owned(), escape(&session.file)], vec!["length".to_owned(), time(session.length_s)]];
+        vec![vec!["file".to_owned(), escape(&name(session))], vec!["length".to_owned(), time(session.length_s)]];
     for (key, words) in ABOUT {
         if let Some(value) = session.about.get(key) {
             rows.push(vec![words.to_owned(), escape(value)]);
@@ -38,10 +52,20 @@ pub(super) fn summary(session: &Figures) -> String {
     rows.push(vec!["holes in the journal".to_owned(), holes(session)]);
     let faults = of_level(session, "error").count();
     rows.push(vec!["faults".to_owned(), faults.to_string()]);
+    let marked: Vec<_> = of_level(session, "mark").take(20).map(|mark| time(mark.t_s)).collect();
+    rows.push(vec![
+        "marks of the operator".to_owned(),
+        if marked.is_empty() { "none".into() } else { marked.join(", ") },
+    ]);
     let mut out = format!(
         "<section>\n<h2>What it is</h2>\n{}",
         table(&["", ""], &rows).replace("<table>", "<table class=\"about\">")
     );
+    if session.about.contains_key(ANONYMOUS) {
+        out.push_str(
+            "<p class=\"note\">An anonymous session: names, devices, calibrations, the journal and the date were left out.</p>\n",
+        );
+    }
     for note in &session.notes {
         writeln!(out, "<p class=\"warning\">Note: {}</p>", escape(note)).ok();
     }
@@ -95,11 +119,17 @@ pub(super) fn calibrations(session: &Figures) -> String {
             "right" | "left" => format!("{of}, from the start"),
             number => format!("number {number}, put in force later"),
         };
-        for (key, value) in table {
+        // Whether it may be used comes first.
+        let (verdicts, others): (Vec<_>, Vec<_>) = table.iter().partition(|(key, _)| key.ends_with("_verdict"));
+        for (key, value) in verdicts.into_iter().chain(others) {
+            let known = CALIBRATIONS.iter().find(|(known, _)| known == key);
             rows.push(vec![
                 escape(&whose),
-                escape(&key.replace('_', " ")),
-                format!("<pre>{}</pre>", escape(value.trim())),
+                known.map_or_else(|| escape(&key.replace('_', " ")), |(_, words)| (*words).to_owned()),
+                match value.parse::<f64>() {
+                    Ok(number) if known.is_some() && number.fract() != 0.0 => digits(number),
+                    _ => format!("<pre>{}</pre>", escape(value.trim())),
+                },
             ]);
         }
         if table.is_empty() {

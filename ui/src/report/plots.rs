@@ -12,6 +12,8 @@ const LEFT: f64 = 64.0;
 const RIGHT: f64 = 14.0;
 const BAND: f64 = 26.0;
 const PLOT: f64 = 130.0;
+/// Most marks in a band: more would hide it.
+const MARKS: usize = 200;
 
 /// Name, colour and whether it is hatched: no two states differ by colour alone.
 pub(super) const STATE: [(&str, &str, bool); STATES] = [
@@ -58,7 +60,7 @@ fn time_axis(out: &mut String, length_s: f64, top: f64, bottom: f64) {
     writeln!(out, "<text x=\"{}\" y=\"{}\" text-anchor=\"end\">time (s)</text>", LEFT - 8.0, bottom + 15.0).ok();
 }
 
-/// The states of an arm as a band, with a mark at each warning and each error.
+/// The states of an arm as a band, with a triangle at each warning and each error, and a numbered line at each mark of the operator.
 pub(super) fn states(session: &Figures, arm: &ArmFigures) -> String {
     let (top, bottom) = (16.0, 16.0 + BAND);
     let mut out = begin(bottom + 22.0, &format!("States of the {} arm over time", arm.side));
@@ -73,8 +75,24 @@ pub(super) fn states(session: &Figures, arm: &ArmFigures) -> String {
                 .ok();
         }
     }
-    for mark in session.marks.iter().filter(|mark| mark.level != "info").take(200) {
+    let mut number = 0;
+    for mark in session.marks.iter().filter(|mark| mark.level != "info").take(MARKS) {
         let x = across(mark.t_s, session.length_s);
+        if mark.level == "mark" {
+            number += 1;
+            // At the right edge the number stands on the other side.
+            let (at, anchor) = if x < WIDTH - 40.0 { (x + 3.0, "start") } else { (x - 3.0, "end") };
+            writeln!(
+                out,
+                "<g><path d=\"M{x:.1} {}V{bottom}\" stroke=\"#000000\" stroke-width=\"2\"/>\
+                 <text x=\"{at:.1}\" y=\"{}\" text-anchor=\"{anchor}\" font-weight=\"bold\">{number}</text><title>{}</title></g>",
+                top - 12.0,
+                top - 3.0,
+                escape(&mark.words)
+            )
+            .ok();
+            continue;
+        }
         let fill = if mark.level == "error" { "#000000" } else { "#ffffff" };
         writeln!(
             out,

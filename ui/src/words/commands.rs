@@ -9,11 +9,11 @@ use nima_machine::{
 use super::events::device;
 use crate::console::mode_name;
 
-/// What was done to the loop.
-pub(crate) fn operation(operation: &Operation) -> String {
+/// What was done to the loop; `devices` as for an [`event`](super::event).
+pub(crate) fn operation(operation: &Operation, devices: &[String]) -> String {
     match *operation {
         Operation::Command { command: of, .. } => format!("command: {}", command(of)),
-        Operation::Device(event) => device(&event),
+        Operation::Device(event) => device(&event, devices),
         Operation::Suspend(side) => format!("{} arm: calibrations suspended, the sensor is not known", side.word()),
         Operation::Calibrations { side, number } => {
             format!("{} arm: calibrations number {number} handed to the loop", side.word())
@@ -78,7 +78,7 @@ mod tests {
 
     #[test]
     fn commands_are_told_in_words_with_their_values() {
-        let told = |of: Command| operation(&Operation::Command { command: of, t_s: 1.0 });
+        let told = |of: Command| operation(&Operation::Command { command: of, t_s: 1.0 }, &[]);
         assert_eq!(told(Command::SetMode(Mode::Dfr)), "command: mode \"Direct (DFR)\"");
         assert_eq!(told(Command::SetDelay(0.05)), "command: delay of the link 50 ms");
         assert_eq!(

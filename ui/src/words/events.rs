@@ -1,21 +1,30 @@
 //! Sentences for the events of the loop, for the log of a session.
 
 use nima_devices::Standing;
-use nima_machine::{messages::Event, rig::DeviceEvent};
+use nima_machine::{
+    messages::{Event, Fault},
+    rig::DeviceEvent,
+};
 
 use super::{Remedy as _, commands, refused_because};
 
-/// What happened.
-pub(crate) fn event(event: &Event) -> String {
+/// What happened; `devices` are the names of the rig's devices, in the order of its roster.
+pub(crate) fn event(event: &Event, devices: &[String]) -> String {
     match *event {
         Event::StateChanged { side, from, to, .. } => {
             format!("{} arm: from {} to {}", side.word(), from.word(), to.word())
         }
-        Event::FaultRaised { side, fault, .. } => format!("{} arm: fault: {}", side.word(), fault.cause()),
+        Event::FaultRaised { side, fault, .. } => {
+            let of = match fault {
+                Fault::DeviceLost { device, .. } => format!(" of the {}", name_of(device, devices)),
+                _ => String::new(),
+            };
+            format!("{} arm: fault{of}: {}", side.word(), fault.cause())
+        }
         Event::CommandRefused { side, command, why, .. } => {
             format!("{} arm: refused: {}: {}", side.word(), commands::command(command), refused_because(why))
         }
-        Event::Device(event) => device(&event),
+        Event::Device(event) => device(&event, devices),
         Event::Scheduling(granted) => {
             granted.advice().map_or_else(|| "real-time scheduling granted".to_owned(), str::to_owned)
         }
@@ -23,12 +32,57 @@ pub(crate) fn event(event: &Event) -> String {
 }
 
 /// What became of a device.
-pub(super) fn device(event: &DeviceEvent) -> String {
+pub(super) fn device(event: &DeviceEvent, devices: &[String]) -> String {
     let standing = match event.standing {
         Standing::Closed => "closed",
         Standing::Opening => "is being opened",
         Standing::Connected => "connected",
         Standing::Lost(loss) => loss.cause(),
     };
-    format!("device {}: {standing}", event.device)
+    format!("{}: {standing}", name_of(event.device, devices))
+}
+
+/// The name of a device by its place in the roster.
+fn name_of(device: u8, devices: &[String]) -> String {
+    devices.get(usize::from(device)).cloned().unwrap_or_else(|| format!("device {device}"))
+}
+
+#[cfg(test)]
+mod tests {
+    use nima_devices::Loss;
+    use nima_machine::{
+        config::RigConfig,
+        rig::{SIDES, Side},
+    };
+
+    use nima_world::{Plan, scene::Scene};
+
+    use super::*;
+
+    #[test]
+    fn the_names_stand_in_the_order_of_the_roster() {
+        for name in ["emulated", "paper", "desk"] {
+            let rig = RigConfig::load(name).unwrap();
+            let (names, scene) = (rig.device_names(), Scene::load("bimanual").unwrap());
+            let plan = Plan { rig, scene, calibrations: Default::default(), engage: false };
+            let roster = plan.assembly().unwrap().roster;
+            assert_eq!(names.len(), roster.len(), "{name}: {names:?}");
+            assert!(names.iter().zip(&roster).all(|(name, entry)| name.starts_with(&entry.name)), "{name}: {names:?}");
+        }
+    }
+
+    #[test]
+    fn a_device_is_told_by_its_role_and_make() {
+        let devices = RigConfig::load("paper").unwrap().device_names();
+        let told = |place: u8| {
+            let standing = Standing::Lost(Loss::Silent);
+            event(&Event::Device(DeviceEvent { t_s: 0.0, device: place, standing, of_side: [true; SIDES] }), &devices)
+        };
+        assert_eq!(told(0), "right handle (Force Dimension): it sends no data");
+        assert_eq!(told(6), "left sensor (Bota): it sends no data");
+        assert_eq!(told(200), "device 200: it sends no data", "no such device");
+        let fault = Fault::DeviceLost { device: 1, loss: Loss::Silent };
+        let raised = event(&Event::FaultRaised { t_s: 0.0, side: Side::Right, fault }, &devices);
+        assert_eq!(raised, "right arm: fault of the right arm (Kinova): A device was lost: it sends no data");
+    }
 }

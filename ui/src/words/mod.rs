@@ -10,6 +10,7 @@ mod events;
 mod faults;
 mod force;
 mod frames;
+mod known;
 mod ready;
 mod refusals;
 mod sides;
@@ -18,6 +19,7 @@ pub(crate) use calibration::{drift, refusal};
 pub(crate) use commands::operation;
 pub(crate) use events::event;
 pub(crate) use frames::{axes_words, cause, phase};
+pub(crate) use known::Lines;
 pub(crate) use ready::{ask_words, cause_words, check_name, figure_words, lacks_words, unit};
 pub(crate) use refusals::{cure_of_refusal, refused_because};
 

@@ -2,7 +2,7 @@
 
 use nima_core::{calibration::gravity::NotChecked, kinematics::START_MISS_M};
 use nima_machine::{
-    messages::Watchdog,
+    messages::{Refusal, Watchdog},
     ready::{Ask, Cause, Check, Figure, Lacks, Unit},
     rig::{Roster, Side},
 };
@@ -196,9 +196,7 @@ pub(crate) fn cause_words(cause: &Cause, roster: &Roster) -> [String; 2] {
         }
         Cause::NoRigFile => ["The rig file cannot be read", "Put the rig file back, then start the console again"],
         Cause::NoStop => ["No stop was seen", STOP_CURE],
-        Cause::NotReleased => {
-            ["The stop or the fault was not released in time", "Press Release stop, then check again"]
-        }
+        Cause::NotReleased(why) => return not_released(why),
         Cause::NoBite(Watchdog::Loop) => {
             ["The loop was silent on purpose, and the supervisor did nothing", "Do not engage; start the console again"]
         }
@@ -210,6 +208,16 @@ pub(crate) fn cause_words(cause: &Cause, roster: &Roster) -> [String; 2] {
         }
     };
     [what, cure].map(str::to_owned)
+}
+
+fn not_released(why: Option<Refusal>) -> [String; 2] {
+    let Some(why) = why else {
+        return with(
+            "The stop or the fault was not released in time".to_owned(),
+            "Press Release stop, then check again",
+        );
+    };
+    [format!("The release was refused: {}", refused_because(why)), capital(cure_of_refusal(why))]
 }
 
 const CLOSE_PROGRAMS: &str = "Close other programs or grant real-time priority (panel Timing), then check again";

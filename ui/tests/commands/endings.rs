@@ -233,6 +233,30 @@ fn is_alive(pid: u32) -> bool {
 }
 
 #[test]
+fn an_export_that_is_ended_leaves_nothing_behind() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name).display().to_string();
+    let session = at("session.mcap");
+    let record = ["run", "--virtual", "--seconds", "60", "--scene", "bimanual", "--record", &session];
+    assert!(nima(&record).output().unwrap().status.success());
+    let there = || -> Vec<String> {
+        let entries = fs::read_dir(folder.path()).unwrap();
+        entries.map(|entry| entry.unwrap().file_name().to_string_lossy().into_owned()).collect()
+    };
+    for (out, more) in [("a.mcap", &[][..]), ("b.mcap", &["--anonymous"]), ("c.csv", &["--arm", "left"])] {
+        let out = at(out);
+        let mut export = Running(nima(&[&["export", &session, "--out", &out], more].concat()).spawn().unwrap());
+        until("a file that is being written", || there().len() > 1);
+        export.signal("-TERM");
+        let status = export.ended();
+        let mut told = String::new();
+        export.0.stderr.take().unwrap().read_to_string(&mut told).unwrap();
+        assert!(!status.success() && told.lines().count() == 1 && told.contains("ended as asked"), "{out}: {told}");
+        assert_eq!(there(), ["session.mcap"]);
+    }
+}
+
+#[test]
 fn a_timing_study_that_is_killed_leaves_no_loop_behind() {
     let mut study = Running(nima(&["study", "timing", "--seconds", "50"]).spawn().unwrap());
     let pid = study.0.id();

@@ -10,7 +10,7 @@ use serde_json::Value;
 use crate::every_command::{json, nima};
 
 /// The one line of a command that must fail and leave no file.
-fn refused(arguments: &[&str], words: &str) {
+pub(crate) fn refused(arguments: &[&str], words: &str) {
     let output = nima(arguments);
     let text = String::from_utf8(output.stderr).unwrap();
     assert!(!output.status.success() && output.stdout.is_empty(), "{arguments:?} succeeded");
@@ -18,7 +18,7 @@ fn refused(arguments: &[&str], words: &str) {
     assert!(text.contains(words), "\"{words}\" is not in: {text}");
 }
 
-fn done(arguments: &[&str]) -> String {
+pub(crate) fn done(arguments: &[&str]) -> String {
     let output = nima(arguments);
     assert!(output.status.success(), "{arguments:?}: {}", String::from_utf8_lossy(&output.stderr));
     String::from_utf8(output.stdout).unwrap()
@@ -29,7 +29,7 @@ fn record(path: &str, scene: &str, seconds: &str) {
 }
 
 /// What a topic of an arm says at each time: values by their names.
-fn values(reader: &Reader, topic: &str) -> BTreeMap<u64, BTreeMap<String, f64>> {
+pub(crate) fn values(reader: &Reader, topic: &str) -> BTreeMap<u64, BTreeMap<String, f64>> {
     let message = |message: nima_recording::session::Message| {
         let mut read = JointStateDecoder::default();
         assert!(read.decode(message.data()), "{topic}");

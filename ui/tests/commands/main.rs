@@ -1,6 +1,7 @@
 //! The command line as a user types it, and the pages and sources that must agree with it.
 #![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
 
+mod anonymous;
 mod calibrate_correspondence;
 mod calibrate_gravity;
 mod calibrate_rig;

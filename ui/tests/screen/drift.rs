@@ -31,7 +31,7 @@ fn console(store: &Path, step_n: f64) -> Harness<'static, ConsoleApp> {
     let record = gravity();
     Store::open(store).save(&record).unwrap();
     let (rig, scene) = (RigConfig::load("simulated").unwrap(), free_scene(step_n));
-    let calibrations = Calibrations { gravity: Some(record.model), tip_force: None };
+    let calibrations = Calibrations { gravity: Some(record.model), ..Calibrations::default() };
     let calibrations = [calibrations, Calibrations::default()];
     let store = store.to_owned();
     shown(&Plan { rig, scene, calibrations, engage: false }, [1600.0, 1000.0], move |app| app.with_store(&store))

@@ -52,8 +52,13 @@ fn one_key_marks_a_moment_also_while_the_traces_are_paused() {
     press(&mut harness, "Pause");
     until(&mut harness, "later", |tick| tick.t_s > 0.5);
     press(&mut harness, "Mark (E)");
+    until(&mut harness, "later still", |tick| tick.t_s > 0.7);
+    press(&mut harness, "View");
+    press(&mut harness, "Mark this moment (E)");
+    harness.step();
     let marks_s: Vec<f64> = harness.state().marks_s().collect();
-    assert_eq!(marks_s.len(), 2);
+    assert_eq!(marks_s.len(), 3);
+    assert!(marks_s[2] >= 0.7, "{marks_s:?}");
     assert!(marks_s[1] >= 0.5 && marks_s[0] < marks_s[1], "{marks_s:?}");
     harness.get_by_role_and_label(accesskit::Role::Button, "Go on");
     harness.get_by_label_contains("Force space.");

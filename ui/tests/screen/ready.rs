@@ -20,7 +20,8 @@ type Console = Harness<'static, ConsoleApp>;
 fn console(store: &Path) -> Console {
     let record = gravity();
     Store::open(store).save(&record).unwrap();
-    let calibrations = [Calibrations { gravity: Some(record.model), tip_force: None }, Calibrations::default()];
+    let calibrations =
+        [Calibrations { gravity: Some(record.model), ..Calibrations::default() }, Calibrations::default()];
     let (rig, scene) = (RigConfig::load("simulated").unwrap(), Scene::load("correspondence").unwrap());
     let store = store.to_owned();
     let plan = Plan { rig, scene, calibrations, engage: false };

@@ -129,7 +129,7 @@ fn pushes_along_one_line_are_kept_only_under_a_name() {
     let mut scene = Scene::load("correspondence").unwrap();
     scene.person.as_mut().unwrap().flaw = Some(Flaw::PushesOneLine);
     let mut harness =
-        console(scene.clone(), folder.path(), Calibrations { gravity: Some(record.model), tip_force: None });
+        console(scene.clone(), folder.path(), Calibrations { gravity: Some(record.model), ..Calibrations::default() });
     press(&mut harness, "Calibrate correspondence…");
     press(&mut harness, "Next");
     press(&mut harness, "Next");
@@ -163,7 +163,7 @@ fn a_sensor_of_the_opposite_sign_is_named_and_the_switch_cures_it_without_new_pu
     let mut scene = Scene::load("correspondence").unwrap();
     scene.tissue_sensor.as_mut().unwrap().reads_tissue = true;
     let mut harness =
-        console(scene.clone(), folder.path(), Calibrations { gravity: Some(record.model), tip_force: None });
+        console(scene.clone(), folder.path(), Calibrations { gravity: Some(record.model), ..Calibrations::default() });
     press(&mut harness, "Calibrate correspondence…");
     press(&mut harness, "Next");
     read(&mut harness, "Pushes: 9 recorded of 9");

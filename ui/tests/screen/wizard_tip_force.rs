@@ -69,7 +69,7 @@ impl Console {
         let (gravity, correspondence) = records();
         let mut scene = Scene::load("isolation").unwrap();
         scene.person.as_mut().unwrap().flaw = flaw;
-        let calibrations = Calibrations { gravity: Some(gravity.model), tip_force: None };
+        let calibrations = Calibrations { gravity: Some(gravity.model), ..Calibrations::default() };
         let bench = Bench {
             wizards: Wizards::at(Which::TipForce),
             binding: Binding {

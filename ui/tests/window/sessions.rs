@@ -1,7 +1,10 @@
 //! One session of each role in the real window, by mouse and keyboard from outside: what a person does must be found in what the program
 //! writes when it ends.
 #![cfg(target_os = "linux")]
-use std::{thread, time::Duration};
+use std::{path::Path, thread, time::Duration};
+
+use nima_recording::{messages::foxglove::Log, session::Reader};
+use prost::Message as _;
 
 use crate::{
     console::{Console, read},
@@ -24,8 +27,8 @@ fn begin<'a>(x: &'a Xvfb, role: &str) -> Console<'a> {
     Console::begin(x, folder, &["--role", role])
 }
 
-/// Ends the program, when the last action is done; what it wrote: the loop's figures and the settings.
-fn end(mut console: Console) -> [serde_json::Value; 2] {
+/// Ends the program, when the last action is done; what it wrote: the loop's figures, the settings, and the marks in its sessions.
+fn end(mut console: Console) -> [serde_json::Value; 3] {
     thread::sleep(Duration::from_millis(1200));
     let summary = console.end();
     let settings = read(&console.folder.path().join("console.json"));
@@ -33,7 +36,19 @@ fn end(mut console: Console) -> [serde_json::Value; 2] {
     if states(&summary).contains(&"Fault") {
         nima_testing::real_time::too_busy();
     }
-    [summary, settings]
+    [summary, settings, marks(console.folder.path())]
+}
+
+/// The lines of the marks in all sessions in this folder of a user.
+fn marks(folder: &Path) -> serde_json::Value {
+    let mut words = Vec::new();
+    for entry in std::fs::read_dir(folder.join("sessions")).unwrap() {
+        let path = entry.unwrap().path();
+        let reader = Reader::open(&path).unwrap();
+        let lines = reader.messages(&["log"], 0..u64::MAX).map(|line| Log::decode(line.unwrap().data()).unwrap());
+        words.extend(lines.filter(|line| line.name == "mark").map(|line| line.message));
+    }
+    words.into()
 }
 
 fn states(summary: &serde_json::Value) -> Vec<&str> {
@@ -49,7 +64,7 @@ fn surgeon(x: &Xvfb) {
     session.click(STOP);
     thread::sleep(Duration::from_millis(1200));
     session.click(STEP);
-    let [summary, settings] = end(session);
+    let [summary, settings, _] = end(session);
     assert!(states(&summary).ends_with(&["Engaged", "Stopped", "Idle"]), "{:?}", states(&summary));
     assert!((summary["screen"]["gain"].as_f64().unwrap() - 0.8).abs() < 1e-6, "{}", summary["screen"]);
     assert_eq!(settings["role"], "surgeon");
@@ -65,11 +80,12 @@ fn technician(x: &Xvfb) {
     session.key("e");
     session.key("e");
     session.click(PAUSE);
-    let [summary, settings] = end(session);
+    let [summary, settings, marks] = end(session);
     let screen = &summary["screen"];
     assert_eq!(states(&summary).last(), Some(&"Idle"), "the wizard set the loop to idle, and nothing engages it again");
     assert!(!states(&summary).contains(&"Stopped"));
     assert_eq!((screen["marks"].as_u64(), screen["paused"].as_bool()), (Some(2), Some(true)), "{screen}");
+    assert_eq!(marks, serde_json::json!(["mark 1", "mark 2"]), "in the recorded session too");
     let places = settings["layout"]["places"].to_string();
     let together = places.split("\"tabs\":").any(|group| {
         let group = group.split(']').next().unwrap_or_default();
@@ -85,7 +101,7 @@ fn demo(x: &Xvfb) {
     session.key("Page_Down");
     session.key("m");
     session.key("F2");
-    let [summary, settings] = end(session);
+    let [summary, settings, _] = end(session);
     let led = summary["screen"]["led_ticks"].as_u64().unwrap();
     let ticks = summary["ticks"].as_u64().unwrap();
     assert!((300..ticks / 2).contains(&led), "led for {led} of {ticks} ticks");

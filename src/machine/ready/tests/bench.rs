@@ -44,6 +44,8 @@ pub(super) struct Flaws {
     pub(super) missed_every: u64,
     pub(super) obeys: fn(&Ask) -> bool,
     pub(super) supervised: bool,
+    /// While the arm is stopped nothing is measured.
+    pub(super) silent_when_stopped: bool,
 }
 
 impl Default for Flaws {
@@ -59,6 +61,7 @@ impl Default for Flaws {
             missed_every: u64::MAX,
             obeys: |_| true,
             supervised: true,
+            silent_when_stopped: false,
         }
     }
 }
@@ -95,7 +98,7 @@ pub(super) struct Bench {
 
 impl Bench {
     pub(super) fn new(subject: Subject, flaws: Flaws) -> Self {
-        let calibrations = Calibrations { gravity: Some(gravity()), tip_force: None };
+        let calibrations = Calibrations { gravity: Some(gravity()), ..Calibrations::default() };
         let mut standing = Health::default();
         standing.accept(0.0);
         Self {
@@ -155,7 +158,8 @@ impl Bench {
     fn tick(&mut self, missed_now: u64) {
         let now_s = self.now_s();
         self.handle_m.y += self.flaws.pulls_m_s * 1e-3;
-        let inputs = self.inputs();
+        let is_stopped = self.control.pair(SIDE).is_some_and(|pair| pair.state() == LoopState::Stopped);
+        let inputs = Some(self.inputs()).filter(|_| !(self.flaws.silent_when_stopped && is_stopped));
         self.control.clear_events();
         // As the supervisor does.
         self.silent_s = if self.control.withholds_beat() && self.flaws.supervised { self.silent_s + 1e-3 } else { 0.0 };
@@ -163,7 +167,7 @@ impl Bench {
             self.control.notice_stall(self.silent_s, now_s);
         }
         let timing = Timing { now_s, missed_now, ..Timing::default() };
-        let (outputs, [tick, _]) = self.control.step([Some(inputs), None], &timing);
+        let (outputs, [tick, _]) = self.control.step([inputs, None], &timing);
         let tick = tick.unwrap();
         assert!(outputs[0].hand_force_n.norm() == 0.0 || tick.state == LoopState::Engaged, "{now_s} s: {outputs:?}");
         self.session.tick(&tick);
@@ -190,6 +194,7 @@ impl Bench {
             Ask::Release => self.control.obey(Command::ReleaseStop, now_s),
             Ask::Nothing | Ask::LeaveAlone(_) | Ask::LetGo(_) => {}
         }
+        self.control.events().for_each(|event| self.session.event(event));
     }
 
     /// 1 mm in 10 ms.

@@ -10,7 +10,7 @@ use self::bench::{Bench, Flaws, SIDE, state_of, subject};
 use super::{Ask, Cause, Check, Lacks, Session, State, Subject};
 use crate::{
     config::RigConfig,
-    messages::{Command, LoopState, Watchdog},
+    messages::{Command, Fault, LoopState, Refusal, Watchdog},
     rig::{SIDES, checkup::Finding},
 };
 
@@ -171,6 +171,21 @@ fn a_dead_stop_fails_and_a_second_look_after_its_repair_keeps_the_rest() {
 }
 
 #[test]
+fn a_stop_that_the_loop_does_not_release_fails_with_its_reason() {
+    let late = Flaws { silent_when_stopped: true, obeys: |ask| *ask != Ask::Release, ..Flaws::default() };
+    let mut bench = Bench::new(subject(), late);
+    while bench.session.ask() != Ask::Release {
+        bench.step();
+    }
+    // Until the loop knows that nothing is measured any more.
+    (0..500).for_each(|_| bench.step());
+    bench.flaws.obeys = |_| true;
+    bench.run();
+    let cause = Cause::NotReleased(Some(Refusal::StillPresent(Fault::SourceSilent)));
+    assert_eq!(state_of(&bench.session, Check::Stop), State::Failed(cause));
+}
+
+#[test]
 fn a_watchdog_that_does_not_bite_fails() {
     let cause = Cause::NoBite(Watchdog::Loop);
     assert_eq!(failure_of(Flaws { supervised: false, ..Flaws::default() }), (Check::Watchdog(Watchdog::Loop), cause));
@@ -189,7 +204,7 @@ fn a_fault_that_is_not_released_is_waited_for_and_then_told() {
     (0..50).for_each(|_| bench.step());
     bench.control.obey(Command::Stop, bench.now_s());
     bench.run();
-    assert_eq!(state_of(&bench.session, Check::Devices), State::Failed(Cause::NotReleased));
+    assert_eq!(state_of(&bench.session, Check::Devices), State::Failed(Cause::NotReleased(None)));
 }
 
 #[test]

@@ -15,7 +15,7 @@ use nima_machine::{
     ready::Check,
     rig::{Prompt, Side},
     runtime::WristChange,
-    teleop::Calibrations,
+    teleop::{Calibrations, GravityCheck},
 };
 use nima_recording::{
     store::{Age, Loaded, ReadyRecord, Store, WristId, utc_now},
@@ -214,6 +214,7 @@ impl OfSide {
         Calibrations {
             gravity: self.gravity.as_ref().map(|loaded| loaded.record.model),
             tip_force: usable(text::calibrations::TIP_FORCE, tip_force, &mut self.unusable),
+            gravity_check: self.gravity.as_ref().map(|loaded| GravityCheck::of(&loaded.record)),
         }
     }
 

@@ -54,7 +54,7 @@ pub struct TopBarState {
 /// page is wanted.
 pub fn top_bar_ui(
     ui: &mut Ui,
-    live: &Live,
+    live: &mut Live,
     state: &mut TopBarState,
     outbox: &mut Outbox,
     settings: &mut Settings,
@@ -95,7 +95,7 @@ pub fn top_bar_ui(
 /// Name of the program, and below it the role switch, the button of the start page, and the menu. Returns true when that is pressed.
 fn identity_ui(
     ui: &mut Ui,
-    live: &Live,
+    live: &mut Live,
     settings: &mut Settings,
     help: &mut Help,
     state: &mut TopBarState,
@@ -116,7 +116,10 @@ fn identity_ui(
             let free = !calibrating && !state.past;
             let start = ui.add_enabled(free, start).on_hover_text(text::start::OPEN_HOVER);
             wants_start = start.on_disabled_hover_text(why).clicked();
-            menu_ui(ui, settings, help, &mut state.alarms);
+            // The machine's traces are not on the screen while the past is.
+            if menu_ui(ui, settings, help, &mut state.alarms) && !state.past {
+                live.mark();
+            }
             let sessions = Button::new(text::past::SESSIONS).min_size(vec2(72.0, 30.0));
             let sessions = ui.add_enabled(free, sessions).on_hover_text(text::past::SESSIONS_HOVER);
             state.wants_sessions |= sessions.on_disabled_hover_text(why).clicked();

@@ -4,7 +4,10 @@ use std::{
     ops::Range,
     path::{Path, PathBuf},
     process::{Command, Stdio},
-    sync::mpsc::{Receiver, TryRecvError, channel},
+    sync::{
+        atomic::AtomicBool,
+        mpsc::{Receiver, TryRecvError, channel},
+    },
     thread,
 };
 
@@ -95,7 +98,9 @@ fn cut_out(session: &Path, times_s: &Range<f64>, part: &Path) -> Result<(), Stri
     let begin_ns = plotted::beginning_ns(&reader).map_err(|error| chain(&error))?;
     let time_ns = |seconds: f64| begin_ns + (seconds * 1e9).round() as u64;
     let name = session.file_name().unwrap_or_default().to_string_lossy();
-    cut::write(&reader, &name, &(time_ns(times_s.start)..time_ns(times_s.end)), part).map_err(|error| chain(&error))?;
+    let times_ns = time_ns(times_s.start)..time_ns(times_s.end);
+    // Nothing ends it early.
+    cut::write(&reader, &name, &times_ns, part, &AtomicBool::new(false)).map_err(|error| chain(&error))?;
     Ok(())
 }
 

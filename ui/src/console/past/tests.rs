@@ -1,6 +1,7 @@
 use std::{
     ops::Range,
     path::Path,
+    sync::atomic::AtomicBool,
     thread,
     time::{Duration, Instant},
 };
@@ -161,7 +162,8 @@ fn stretch(from: &Path, to: &Path, seconds: Range<f64>) {
     let reader = Reader::open(from).unwrap();
     let begin_ns = plotted::beginning_ns(&reader).unwrap();
     let at = |seconds: f64| begin_ns + (seconds * 1e9) as u64;
-    cut::write(&reader, "session", &(at(seconds.start)..at(seconds.end)), to).unwrap();
+    let times_ns = at(seconds.start)..at(seconds.end);
+    cut::write(&reader, "session", &times_ns, to, &AtomicBool::new(false)).unwrap();
 }
 
 #[test]

@@ -3,7 +3,7 @@
 mod page;
 mod record;
 
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use nima_machine::{
     config::RigConfig,
@@ -37,18 +37,22 @@ pub(crate) fn subject(name: &str, rig: &RigConfig, scene: &Scene, roster: &Roste
     }
 }
 
+/// Between two looks no more than this counts: a window or a machine that stood still took nobody's time to press something.
+const BETWEEN_LOOKS_MOST: Duration = Duration::from_secs(1);
+
 /// A check that goes on, and the clock that it is given.
 #[derive(Debug)]
 pub(crate) struct Run {
     pub(crate) session: Session,
-    began: Instant,
+    looked: Instant,
+    clock: Duration,
     /// The arm at which something was asked for last.
     side: Side,
 }
 
 impl Run {
     pub(crate) fn new(subject: Subject) -> Self {
-        Self { session: Session::new(subject), began: Instant::now(), side: Side::Right }
+        Self { session: Session::new(subject), looked: Instant::now(), clock: Duration::ZERO, side: Side::Right }
     }
 
     /// Adds something that came from the loop.
@@ -62,7 +66,9 @@ impl Run {
 
     /// Goes on; returns a command for the loop.
     pub(crate) fn look(&mut self) -> Option<Command> {
-        let command = self.session.look(self.began.elapsed().as_secs_f64());
+        let last = std::mem::replace(&mut self.looked, Instant::now());
+        self.clock += (self.looked - last).min(BETWEEN_LOOKS_MOST);
+        let command = self.session.look(self.clock.as_secs_f64());
         self.side = self.session.ask().side().unwrap_or(self.side);
         command
     }

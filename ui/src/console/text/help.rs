@@ -89,7 +89,7 @@ pub(in crate::console) const KEYS: [(&str, &str); 18] = [
     ("L", "Leave the recorded session: the screen shows the machine again."),
     ("P, Left, Right", "In a recorded session: play or hold it; a second back or on (with Shift 10 ms)."),
     ("A", "Acknowledge the alarms."),
-    ("E", "Mark this moment in the traces."),
+    ("E", "Mark this moment in the traces and in the session that is being recorded."),
     ("K", "Keep the session that is being recorded, or no longer."),
     ("M", "Drive the instrument by mouse, or let it go."),
     ("Arrow keys", "Move the instrument by a small step while you drive it."),

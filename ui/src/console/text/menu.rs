@@ -9,6 +9,8 @@ pub(in crate::console) const SIZE_NOTE: &str = "Limited to what fits into this w
 pub(in crate::console) const ALARMS: &str = "Alarms (F5)";
 pub(in crate::console) const GLOSSARY: &str = "Glossary (F4)";
 pub(in crate::console) const TOUR: &str = "Tour";
+pub(in crate::console) const MARK: &str = "Mark this moment (E)";
+pub(in crate::console) const MARK_HOVER: &str = "In the traces and in the session that is being recorded";
 pub(in crate::console) const VIEW_HOVER: &str = "Light or dark colours, size, sound, alarms, glossary, tour and panels";
 pub(in crate::console) const SOUND_HOVER: &str =
     "Ten pulses for an alarm, three for a warning, repeated until it is acknowledged";

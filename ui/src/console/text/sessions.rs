@@ -28,7 +28,8 @@ pub(in crate::console) fn hover(shown: &Shown) -> String {
     };
     let lost =
         if shown.lost > 0 { format!("\n{} entries lost: the disk is too slow", shown.lost) } else { String::new() };
-    format!("{what}\n{}\n{:.1} MB{lost}", shown.path.display(), shown.bytes as f64 * 1e-6)
+    let (path, megabytes) = (shown.path.display(), shown.bytes as f64 * 1e-6);
+    format!("{what}\n{path}\n{megabytes:.1} MB, marks: {} (key E sets one){lost}", shown.marks)
 }
 
 /// The folder cannot be used.
@@ -49,4 +50,19 @@ pub(in crate::console) fn full_in(time: Duration) -> String {
 /// Cause of an alarm.
 pub(in crate::console) fn cause(why: &str) -> String {
     format!("Recording: {why}")
+}
+
+/// In the log of a session: a moment that the operator marked.
+pub(in crate::console) fn mark(number: usize) -> String {
+    format!("mark {number}")
+}
+
+/// The cause of an alarm has appeared.
+pub(in crate::console) fn alarm(cause: &str) -> String {
+    format!("alarm: {cause}")
+}
+
+/// And it has ended.
+pub(in crate::console) fn alarm_over(cause: &str) -> String {
+    format!("alarm over: {cause}")
 }

@@ -1,0 +1,204 @@
+//! A session without what tells who recorded it, where and when.
+//!
+//! Nothing is copied. Messages of known topics are made anew from their numbers, under this program's own names and with times that begin
+//! in 1970; everything else is left out. So what a later version adds to a session stays out until it is handled here.
+
+use std::{collections::BTreeMap, fs, ops::Range, path::Path, sync::atomic::AtomicBool, time::UNIX_EPOCH};
+
+use nima_core::impedance::Mode;
+use nima_machine::rig::Side;
+use nima_recording::{
+    messages::{
+        JointStateDecoder,
+        foxglove::{self, FrameTransforms, Level, Log, SceneUpdate},
+    },
+    session::{ChannelId, Message, Reader, Writer},
+};
+use prost::Message as _;
+
+use crate::{
+    cut::{self, CutError, stretch},
+    kept::{FIGURES, VERDICTS, verdicts},
+    plotted,
+    recorder::Attached,
+    topics::{ALARM_LINE, ARROWS_TOPIC, FRAMES_TOPIC, LINE, LOG_TOPIC, MARK_LINE, line, plot::Plot, plots, redrawn},
+};
+
+/// Stands for what is withheld.
+pub const WITHHELD: &str = "(withheld)";
+/// In the table of the session: that it is anonymous.
+pub const ANONYMOUS: &str = "anonymous";
+/// The table of the session, and the entries of it that are kept as they are where their value is one of these.
+const TABLE: &str = "session";
+const WORDS: [(&str, &[&str]); 2] = [("clock", &["real", "virtual"]), ("build", &["debug", "release"])];
+/// The tables of calibrations begin with this.
+const CALIBRATIONS: &str = "calibrations ";
+/// And those that are kept where they are numbers.
+const NUMBERS: [&str; 2] = ["rate_hz", "delay_s"];
+
+/// What the caller knows of a session beside its numbers.
+pub struct Known<'a> {
+    /// Name and version of this program.
+    pub program: &'a str,
+    /// Files to attach, in place of those that are in the session.
+    pub files: &'a [Attached],
+    /// Whether a line of the log is this program's own, without a name that a person gave.
+    pub is_ours: &'a dyn Fn(&str) -> bool,
+}
+
+impl std::fmt::Debug for Known<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Known").field("files", &self.files).finish_non_exhaustive()
+    }
+}
+
+/// Writes what is not personal of the messages between these times (ns) into a new file, and returns how many messages there are in it.
+/// `asked` ends it early.
+///
+/// # Errors
+/// [`CutError`] if the session cannot be read or the file cannot be written; it is to be deleted then.
+pub fn write(
+    reader: &Reader,
+    known: &Known<'_>,
+    times_ns: &Range<u64>,
+    to: &Path,
+    asked: &AtomicBool,
+) -> Result<u64, CutError> {
+    let begin_ns = plotted::beginning_ns(reader)?;
+    let mut writer = Writer::create(to, known.program)?;
+    for (name, entries) in reader.metadata()? {
+        if name == TABLE {
+            writer.metadata(TABLE, &about(&entries))?;
+        } else if name.strip_prefix(CALIBRATIONS).is_some_and(is_ours) {
+            writer.metadata(&name, &kept(&entries, &VERDICTS.map(|key| (key, verdicts().collect())), &FIGURES))?;
+        }
+    }
+    writer
+        .metadata(cut::TABLE, &stretch(0, &(times_ns.start.saturating_sub(begin_ns)..since(times_ns.end, begin_ns))))?;
+    for Attached { name, media_type, data } in known.files {
+        writer.attachment(name, media_type, 0, data)?;
+    }
+    let mut topics: BTreeMap<ChannelId, Topic> = BTreeMap::new();
+    for channel in reader.channels() {
+        if let Some(topic) = Topic::named(&channel.topic, &mut writer)? {
+            topics.insert(channel.id, topic);
+        }
+    }
+    for message in reader.messages(&[], times_ns.clone()) {
+        let message = cut::unless(asked, message)?;
+        if let Some(topic) = topics.get_mut(&message.channel()) {
+            topic.pass(&mut writer, since(message.log_time_ns(), begin_ns), &message, known)?;
+        }
+    }
+    let messages = writer.finish()?.messages;
+    // When it was written tells when it was looked at.
+    let times = fs::FileTimes::new().set_modified(UNIX_EPOCH).set_accessed(UNIX_EPOCH);
+    fs::File::options().write(true).open(to).and_then(|file| file.set_times(times)).map_err(CutError::Times)?;
+    Ok(messages)
+}
+
+const fn since(time_ns: u64, begin_ns: u64) -> u64 {
+    if time_ns == u64::MAX { time_ns } else { time_ns.saturating_sub(begin_ns) }
+}
+
+/// The entries of the table of a session that tell nothing of persons, places and dates.
+fn about(table: &BTreeMap<String, String>) -> BTreeMap<String, String> {
+    let words = WORDS.map(|(key, words)| (key, words.to_vec()));
+    let mode = table.get("mode").and_then(|mode| mode.parse::<Mode>().ok()).map(|mode| ("mode", mode.to_string()));
+    let mut about = kept(table, &words, &NUMBERS);
+    about.extend(mode.into_iter().chain([(ANONYMOUS, "yes".to_owned())]).map(|(key, value)| (key.to_owned(), value)));
+    about
+}
+
+/// The entries of a table with these keys: those whose values are among these words, and those that are numbers.
+fn kept(table: &BTreeMap<String, String>, words: &[(&str, Vec<&str>)], numbers: &[&str]) -> BTreeMap<String, String> {
+    let word = |(key, words): &(&str, Vec<&str>)| {
+        Some(((*key).to_owned(), table.get(*key).filter(|value| words.contains(&value.as_str()))?.clone()))
+    };
+    let number = |key: &&str| Some(((*key).to_owned(), table.get(*key)?.parse::<f64>().ok()?.to_string()));
+    words.iter().filter_map(word).chain(numbers.iter().filter_map(number)).collect()
+}
+
+/// Whether calibrations are those of a side, or have a number.
+fn is_ours(of: &str) -> bool {
+    Side::ALL.iter().any(|side| side.word() == of) || of.parse::<u32>().is_ok()
+}
+
+/// A topic that is written anew.
+enum Topic {
+    Numbers { topic: String, names: Vec<String>, forces: bool, decoder: JointStateDecoder, plot: Option<Plot> },
+    Frames(ChannelId),
+    Arrows(ChannelId),
+    Log(ChannelId),
+}
+
+impl Topic {
+    /// The one of this name; `None` for one that is left out.
+    fn named(name: &str, writer: &mut Writer) -> Result<Option<Self>, CutError> {
+        Ok(match name {
+            FRAMES_TOPIC => Some(Self::Frames(writer.channel(name, foxglove::encoding::<FrameTransforms>())?)),
+            ARROWS_TOPIC => Some(Self::Arrows(writer.channel(name, foxglove::encoding::<SceneUpdate>())?)),
+            LOG_TOPIC => Some(Self::Log(writer.channel(name, foxglove::encoding::<Log>())?)),
+            _ => plots().into_iter().find(|(topic, ..)| topic == name).map(|(topic, names, forces)| Self::Numbers {
+                topic,
+                names,
+                forces,
+                decoder: JointStateDecoder::default(),
+                plot: None,
+            }),
+        })
+    }
+
+    /// Writes the message anew; one that cannot be read is left out.
+    fn pass(
+        &mut self,
+        writer: &mut Writer,
+        time_ns: u64,
+        message: &Message,
+        known: &Known<'_>,
+    ) -> Result<(), CutError> {
+        let data = message.data();
+        match self {
+            Self::Numbers { topic, names, forces, decoder, plot } => {
+                if !decoder.decode(data) {
+                    return Ok(());
+                }
+                // Other columns are left out.
+                let column =
+                    |(name, value): (&String, &f64)| Some((names.iter().find(|known| *known == name)?, *value));
+                let columns: Vec<(&String, f64)> =
+                    decoder.names().iter().zip(decoder.values()).filter_map(column).collect();
+                if columns.is_empty() {
+                    return Ok(());
+                }
+                let plot = if let Some(plot) = plot {
+                    plot
+                } else {
+                    let names: Vec<&str> = columns.iter().map(|(name, _)| name.as_str()).collect();
+                    plot.insert(Plot::new(writer, topic, &names)?)
+                };
+                plot.values.extend(columns.iter().map(|(_, value)| value));
+                plot.write(writer, time_ns, *forces)?;
+            }
+            Self::Frames(channel) => {
+                if let Ok(frames) = FrameTransforms::decode(data) {
+                    writer.message(*channel, time_ns, &redrawn::frames(time_ns, &frames).encode_to_vec())?;
+                }
+            }
+            Self::Arrows(channel) => {
+                if let Ok(scene) = SceneUpdate::decode(data) {
+                    writer.message(*channel, time_ns, &redrawn::arrows(time_ns, &scene).encode_to_vec())?;
+                }
+            }
+            Self::Log(channel) => {
+                if let Ok(log) = Log::decode(data) {
+                    let level = Level::try_from(log.level).unwrap_or(Level::Info);
+                    let name = [MARK_LINE, ALARM_LINE].into_iter().find(|name| *name == log.name).unwrap_or(LINE);
+                    let words = if (known.is_ours)(&log.message) { log.message } else { WITHHELD.to_owned() };
+                    writer.message(*channel, time_ns, &line(time_ns, level, name, words))?;
+                }
+            }
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,34 @@
+//! Recorded frames and arrows anew, at another time: the numbers of what this program draws, and nothing else.
+
+use nima_machine::rig::Side;
+use nima_recording::messages::foxglove::{FrameTransform, FrameTransforms, SceneEntity, SceneUpdate, Timestamp};
+
+use super::scene::{DRAWN, WORLD, name_of_arrows, name_of_frame};
+
+/// The frames of tips and leaders.
+pub(crate) fn frames(time_ns: u64, of: &FrameTransforms) -> FrameTransforms {
+    let names = Side::ALL.into_iter().flat_map(|side| DRAWN.map(|name| name_of_frame(side, name)));
+    let anew = |name: String| {
+        let FrameTransform { translation, rotation, .. } =
+            *of.transforms.iter().find(|frame| frame.child_frame_id == name)?;
+        let timestamp = Some(Timestamp::of_ns(time_ns));
+        Some(FrameTransform {
+            timestamp,
+            parent_frame_id: WORLD.to_owned(),
+            child_frame_id: name,
+            translation,
+            rotation,
+        })
+    };
+    FrameTransforms { transforms: names.filter_map(anew).collect() }
+}
+
+/// The arrows of the forces.
+pub(crate) fn arrows(time_ns: u64, of: &SceneUpdate) -> SceneUpdate {
+    let anew = |id: String| {
+        let arrows = of.entities.iter().find(|entity| entity.id == id)?.arrows.clone();
+        let (timestamp, frame_id) = (Some(Timestamp::of_ns(time_ns)), WORLD.to_owned());
+        Some(SceneEntity { timestamp, frame_id, id, arrows, ..SceneEntity::default() })
+    };
+    SceneUpdate { entities: Side::ALL.into_iter().map(name_of_arrows).filter_map(anew).collect() }
+}

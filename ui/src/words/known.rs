@@ -1,0 +1,216 @@
+//! Which lines of a session's log this program makes, whatever the names in a rig or a scene are.
+//!
+//! A line is compared with all that the tables of words give, its numbers left open. A sentence that is missing in the lists here is
+//! withheld from an anonymous session, so that forgetting one tells nobody anything.
+
+use std::collections::BTreeSet;
+
+use nalgebra::Vector3;
+use nima_core::{
+    impedance::Mode,
+    safety::{Implausible, Why},
+};
+use nima_devices::{Loss, Standing};
+use nima_machine::{
+    messages::{Command, Event, Fault, LoopState, Refusal, Scheduling, Watchdog},
+    rig::{Awaited, DeviceEvent, Exchange, Obstacle, Part, Prompt, SIDES, Side},
+    runtime::Operation,
+};
+use nima_session::STATES;
+
+use super::{commands::operation, events::event};
+use crate::console::sessions;
+
+/// The lines of the log that are free of names.
+pub(crate) struct Lines(BTreeSet<String>);
+
+impl Lines {
+    /// All of them.
+    pub(crate) fn all() -> Self {
+        let mut lines = BTreeSet::new();
+        for side in Side::ALL {
+            lines.extend(of_side(side).map(|of| shape(&event(&of, &[]))));
+            lines.insert(shape(&operation(&Operation::Suspend(side), &[])));
+            lines.insert(shape(&operation(&Operation::Calibrations { side, number: 0 }, &[])));
+        }
+        lines.extend(commands().map(|command| shape(&operation(&Operation::Command { command, t_s: 0.0 }, &[]))));
+        lines.insert(shape(&operation(&Operation::Stall { silent_s: 0.0, t_s: 0.0 }, &[])));
+        for name in device_names() {
+            let name = std::slice::from_ref(&name);
+            lines.extend(devices().map(|of| shape(&operation(&Operation::Device(of), name))));
+            let lost =
+                |(side, loss)| Event::FaultRaised { t_s: 0.0, side, fault: Fault::DeviceLost { device: 0, loss } };
+            let lost = Side::ALL.into_iter().flat_map(|side| losses().map(|loss| (side, loss))).map(lost);
+            lines.extend(lost.map(|of| shape(&event(&of, name))));
+        }
+        let granted = [(true, true), (true, false), (false, true)];
+        lines.extend(granted.map(|(fifo, memory_locked)| {
+            shape(&event(&Event::Scheduling(Scheduling { fifo, deadline: false, memory_locked }), &[]))
+        }));
+        lines.extend(sessions::lines().iter().map(|line| shape(line)));
+        Self(lines)
+    }
+
+    /// Whether this is one.
+    pub(crate) fn has(&self, line: &str) -> bool {
+        self.0.contains(&shape(line))
+    }
+}
+
+/// A line with `#` in place of each number.
+fn shape(line: &str) -> String {
+    let mut shape = String::with_capacity(line.len());
+    for (letter, next) in line.chars().zip(line.chars().skip(1).map(Some).chain([None])) {
+        let next_is_digit = next.is_some_and(|next| next.is_ascii_digit());
+        let is_number = letter.is_ascii_digit() || matches!(letter, '-' | '.') && next_is_digit;
+        match is_number {
+            true if shape.ends_with('#') => {}
+            true => shape.push('#'),
+            false => shape.push(letter),
+        }
+    }
+    shape
+}
+
+/// Events of a side.
+fn of_side(side: Side) -> impl Iterator<Item = Event> {
+    let changed = STATES
+        .into_iter()
+        .flat_map(move |from| STATES.map(|to| Event::StateChanged { t_s: 0.0, side, from, to, why: Why::Asked }));
+    let raised = faults().map(move |fault| Event::FaultRaised { t_s: 0.0, side, fault });
+    let refused = commands()
+        .flat_map(move |command| refusals().map(move |why| Event::CommandRefused { t_s: 0.0, side, command, why }));
+    changed.chain(raised).chain(refused)
+}
+
+fn faults() -> impl Iterator<Item = Fault> {
+    let implausible = implausible().map(|what| Fault::Implausible { what });
+    let lost = losses().map(|loss| Fault::DeviceLost { device: 0, loss });
+    let others = [
+        Fault::SourceSilent,
+        Fault::LoopStalled { periods: 0 },
+        Fault::ForceUnknown,
+        Fault::DrivesOff,
+        Fault::OtherArm,
+        Fault::SamplesLost,
+        Fault::LinkSilent,
+        Fault::ClockJumped,
+    ];
+    others.into_iter().chain(lost).chain(implausible)
+}
+
+const fn losses() -> [Loss; 5] {
+    [Loss::Disconnected, Loss::Silent, Loss::Corrupt, Loss::Implausible, Loss::Device { code: 0 }]
+}
+
+const fn implausible() -> [Implausible; 8] {
+    [
+        Implausible::ForceFrozen,
+        Implausible::ForceJumped,
+        Implausible::ForceAlong,
+        Implausible::LinkFrozen,
+        Implausible::HandleJumped,
+        Implausible::HandleFrozen,
+        Implausible::TipJumped,
+        Implausible::ArmAstray,
+    ]
+}
+
+fn refusals() -> impl Iterator<Item = Refusal> {
+    let exchanged =
+        [Exchange::Handles, Exchange::Arms, Exchange::Sensors, Exchange::Servos, Exchange::Markers, Exchange::Trocars];
+    let others = [
+        Refusal::ForceUnknown,
+        Refusal::EndoscopeUnseen,
+        Refusal::DrivesOff,
+        Refusal::Moving,
+        Refusal::HandAbsent,
+        Refusal::ClutchPressed,
+        Refusal::NotChecked,
+        Refusal::OutOfRange,
+        Refusal::SimulatedOnly,
+        Refusal::NoSuchArm,
+    ];
+    let waiting = [Awaited::Servos, Awaited::Markers].map(Obstacle::Waiting);
+    let obstacles = exchanged.map(Obstacle::Exchanged).into_iter().chain(waiting).map(Refusal::Obstacle);
+    let states = STATES.map(|state: LoopState| Refusal::State(state));
+    let present = faults().map(Refusal::StillPresent).chain(implausible().map(Refusal::Implausible));
+    others.into_iter().chain(states).chain(obstacles).chain(present)
+}
+
+fn commands() -> impl Iterator<Item = Command> {
+    let modes = Mode::ALL.into_iter().chain(Mode::BASELINES).map(Command::SetMode);
+    let switches = [true, false].into_iter().flat_map(|on| {
+        [
+            Command::Compare(on),
+            Command::SetStaticHold(on),
+            Command::LetGo(on),
+            Command::SetGovernor(on),
+            Command::Checked(on),
+        ]
+    });
+    let sides = Side::ALL.into_iter().flat_map(|side| [Command::EngageOne(side), Command::Prompt(side, Prompt::Rest)]);
+    let others = [
+        Command::SetGain(0.0),
+        Command::SetGainAboveOne(0.0),
+        Command::SetDelay(0.0),
+        Command::SetDeadBand(0.0),
+        Command::SetScale(0.0),
+        Command::Guide(Some(Vector3::zeros())),
+        Command::Guide(None),
+        Command::Engage,
+        Command::Rest,
+        Command::Stop,
+        Command::ReleaseStop,
+        Command::Shutdown,
+    ];
+    modes.chain(switches).chain(sides).chain(others).chain(Watchdog::ALL.map(Command::TestWatchdog))
+}
+
+/// Every name that a device can have: role and make, and by number those of older sessions.
+fn device_names() -> impl Iterator<Item = String> {
+    let of = |part: Part| part.makes().iter().map(move |make| part.name_of_make(make)).chain([part.name().to_owned()]);
+    Part::ALL.into_iter().flat_map(of).chain(["cap".to_owned(), "device 0".to_owned()])
+}
+
+fn devices() -> impl Iterator<Item = DeviceEvent> {
+    let standings = [Standing::Closed, Standing::Opening, Standing::Connected].into_iter();
+    let standings = standings.chain(losses().map(Standing::Lost));
+    standings.map(|standing| DeviceEvent { t_s: 0.0, device: 0, standing, of_side: [false; SIDES] })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn our_own_lines_are_known_with_any_number_and_no_other_line() {
+        let lines = Lines::all();
+        for line in [
+            "right arm: from Ready to Engaged",
+            "left arm: fault: The control loop was blocked: drives and force were switched off",
+            "command: gain 0.35",
+            "command: lead the handle to 10, 0, -2 mm",
+            "right arm: refused: engage the right arm: nobody holds the handle",
+            "the loop was silent for 612 ms",
+            "right handle (Force Dimension): connected",
+            "device 3: it sends no data",
+            "left arm: fault of the left arm (Kinova): A device was lost: it sends no data",
+            "mark 12",
+            "alarm: The control loop misses 2.4 % of its periods",
+            "alarm over: No ready check of the last 12 hours has passed with these devices",
+        ] {
+            assert!(lines.has(line), "{line}");
+        }
+        for line in [
+            "",
+            "command: gain high",
+            "command: gain 0.35 by Jane",
+            "Jane: from Ready to Engaged",
+            "mark of Jane",
+            "right handle (Jane): connected",
+        ] {
+            assert!(!lines.has(line), "{line}");
+        }
+    }
+}

@@ -116,6 +116,7 @@ fn identity_ui(
             let free = !calibrating && !state.past;
             let start = ui.add_enabled(free, start).on_hover_text(text::start::OPEN_HOVER);
             wants_start = start.on_disabled_hover_text(why).clicked();
+            // The machine's traces are not on the screen while the past is.
             if menu_ui(ui, settings, help, &mut state.alarms) && !state.past {
                 live.mark();
             }

@@ -13,6 +13,8 @@ use crate::console::{
         safety_ui, timing_ui, tradeoff_ui,
     },
     scene3d::scene_ui,
+    text,
+    widgets::weak,
 };
 
 /// Draws the view.
@@ -34,7 +36,11 @@ pub(super) fn technician_ui(
             force_space_ui(ui, live, forces.side(), space, forces.cursor_at_s(live));
         }
         Panel::Feedback => acts(ui, past, |ui| feedback_ui(ui, live, &mut panels.feedback, outbox)),
-        Panel::Devices => wishes.devices = acts(ui, past, |ui| devices_ui(ui, live, &mut panels.devices)),
+        // How they were is not in a session.
+        Panel::Devices if past => {
+            ui.label(weak(text::past::NO_DEVICES));
+        }
+        Panel::Devices => wishes.devices = devices_ui(ui, live, &mut panels.devices),
         Panel::Calibrations => wishes.calibration = acts(ui, past, |ui| calibrations_ui(ui, live, in_force, None)),
         Panel::Gates => gates_ui(ui, live, &mut panels.gates),
         Panel::Safety => safety_ui(ui, live),

@@ -45,6 +45,8 @@ pub(in crate::console) const OPENING: &str = "Opening the session";
 pub(in crate::console) const WHOLE: &str = "Replayed to the last bit";
 pub(in crate::console) const PLOTTED: &str = "Forces, positions and states; the rest follows";
 pub(in crate::console) const PLOTTED_ONLY: &str = "Only forces, positions and states";
+pub(in crate::console) const NO_DEVICES: &str =
+    "A session tells in its log which devices came and went, and nothing else of them";
 pub(in crate::console) const TIMELINE: &str = "Time of the session";
 pub(in crate::console) const PLAY: &str = "Play";
 pub(in crate::console) const PAUSE: &str = "Pause";

@@ -324,7 +324,7 @@ impl ConsoleApp {
         let room = ui.available_rect_before_wrap();
         self.page_layout(ui);
         self.top_bar.alarms.list_ui(ui.ctx(), room);
-        self.settings.now.toured |= self.help.ui(ui.ctx(), room);
+        self.settings.now.toured |= self.help.ui(ui.ctx(), room, !self.list.is_open);
     }
 }
 

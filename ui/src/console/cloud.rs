@@ -58,7 +58,7 @@ impl Cloud {
     }
 
     /// The stored pairs, oldest first.
-    pub fn pairs(&self) -> impl DoubleEndedIterator<Item = &Pair> {
+    pub fn pairs(&self) -> impl DoubleEndedIterator<Item = &Pair> + ExactSizeIterator {
         self.pairs.iter()
     }
 

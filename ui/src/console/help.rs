@@ -26,10 +26,10 @@ impl Help {
         self.tour = Some(0);
     }
 
-    /// Draws the open windows into `room`; returns true in the frame in which the tour ends.
-    pub(super) fn ui(&mut self, ctx: &Context, room: Rect) -> bool {
+    /// Draws the open windows into `room`, the tour only over a view (`on_view`); returns true in the frame in which it ends.
+    pub(super) fn ui(&mut self, ctx: &Context, room: Rect, on_view: bool) -> bool {
         self.glossary_ui(ctx, room);
-        let Some(step) = self.tour else { return false };
+        let Some(step) = self.tour.filter(|_| on_view) else { return false };
         let (heading, words) = TOUR[step];
         let window = Window::new(TOUR_WINDOW).title_bar(false).resizable(false).movable(false).constrain_to(room);
         let window = window.anchor(Align2::CENTER_TOP, vec2(0.0, room.top() + 12.0)).fixed_size(vec2(440.0, 0.0));

@@ -27,13 +27,13 @@ pub struct ForceSpaceState {
     yaw: f32,
     pitch: f32,
     reach_n: f32,
-    /// The error's ellipsoid, and the time at which it was computed, s.
-    ellipsoid: (f64, Option<Ellipsoid>),
+    /// The error's ellipsoid, and of how many samples until when (s) it was computed: more of the past may come later.
+    ellipsoid: (usize, f64, Option<Ellipsoid>),
 }
 
 impl Default for ForceSpaceState {
     fn default() -> Self {
-        Self { yaw: 0.6, pitch: 0.35, reach_n: LEAST_N, ellipsoid: (f64::NEG_INFINITY, None) }
+        Self { yaw: 0.6, pitch: 0.35, reach_n: LEAST_N, ellipsoid: (0, f64::NEG_INFINITY, None) }
     }
 }
 
@@ -60,10 +60,11 @@ pub fn force_space_ui(ui: &mut Ui, live: &Live, side: Side, state: &mut ForceSpa
     let cloud = &live.clouds[side.index()];
     let newest_s = cloud.pairs().next_back().map_or(0.0, |pair| pair.t_s);
     let shown_s = stepped(newest_s, live.least_step_s());
-    if state.ellipsoid.0.total_cmp(&shown_s).is_ne() {
-        state.ellipsoid = (shown_s, cloud.ellipsoid());
+    let (count, until_s, _) = state.ellipsoid;
+    if count != cloud.pairs().len() || until_s.total_cmp(&shown_s).is_ne() {
+        state.ellipsoid = (cloud.pairs().len(), shown_s, cloud.ellipsoid());
     }
-    let ellipsoid = state.ellipsoid.1;
+    let ellipsoid = state.ellipsoid.2;
     // Slightly less than what is stored: the oldest samples are dropped between two frames.
     let shown = (shown_s - SECONDS + 2.0 * live.least_step_s())..=shown_s;
     let pairs = || cloud.pairs().filter(|pair| shown.contains(&pair.t_s));

@@ -270,11 +270,11 @@ fn plot_ui(
             plot.vline(VLine::new(name, at_s).color(theme::now().text).width(1.2).style(dashed).allow_hover(false));
             if axis == 0 || only {
                 let text = RichText::new((number + 1).to_string()).font(theme::strong(13.0));
-                let place = PlotPoint::new(at_s, high_n - 0.12 * (high_n - low_n));
+                let place = PlotPoint::new(at_s, high_n);
                 plot.text(
                     Text::new("marks", place, text)
                         .color(theme::now().text)
-                        .anchor(Align2::LEFT_CENTER)
+                        .anchor(Align2::LEFT_TOP)
                         .allow_hover(false),
                 );
             }

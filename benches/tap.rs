@@ -41,7 +41,7 @@ fn run(ticks: u64, pause: Duration, words: &str) {
     let rig = RigConfig::load("simulated").unwrap();
     let origin = Origin {
         rig: rig.clone(),
-        calibrations: [const { Some(Calibrations { gravity: None, tip_force: None }) }; 2],
+        calibrations: [const { Some(Calibrations { gravity: None, gravity_check: None, tip_force: None }) }; 2],
         suspended: false,
     };
     let mut control: Loop = origin.control().unwrap();

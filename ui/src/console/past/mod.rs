@@ -192,6 +192,8 @@ impl Past {
         let end_s = self.about.map_or(f64::INFINITY, |about| about.end_s);
         self.play.runs = false;
         self.wanted_s = t_s.clamp(0.0, end_s);
+        // What is on the screen until then is another moment.
+        self.extent = Extent::Plotted;
         self.worker.show(self.wanted_s);
         if let Some(beside) = &mut self.beside {
             beside.show(t_s);

@@ -127,6 +127,8 @@ impl Session {
         let Event::CommandRefused { command, why, .. } = event else { return };
         match (command, &mut self.work) {
             (Command::TestWatchdog(_), Some((work, _))) => work.refused(*why),
+            // The other arm needs none.
+            (Command::ReleaseStop, _) if matches!(why, Refusal::State(_)) => {}
             (Command::ReleaseStop, _) => self.not_released = Some(*why),
             _ => {}
         }

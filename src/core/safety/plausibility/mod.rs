@@ -255,8 +255,11 @@ impl Plausibility {
     }
 
     /// Takes in the force that the link delivered, N, with its own time stamp, s.
+    ///
+    /// No force at all is no number that repeats itself: before an instrument has moved, a network answers so for as long as it takes.
     pub fn delivered(&mut self, force_n: &Vector3<f64>, stamp_s: f64) {
-        self.link_doubt = self.link_frozen.look(force_n.as_ref(), stamp_s);
+        let told_n = if *force_n == Vector3::zeros() { Vector3::repeat(f64::NAN) } else { *force_n };
+        self.link_doubt = self.link_frozen.look(told_n.as_ref(), stamp_s);
     }
 }
 

@@ -194,3 +194,20 @@ fn what_stands_while_its_cause_moves_is_stuck() {
     let told = after(|_, seen| seen.command_m = Some(seen.tip_m + Vector3::x() * 0.05));
     assert!(matches!(told, Some((1, Implausible::ArmAstray))), "{told:?}");
 }
+
+/// Whether the link is in doubt after four seconds of noise and then this force for half a second, N.
+fn link_doubted_after(force_n: Vector3<f64>) -> bool {
+    let mut looks = Plausibility::new(1e-3);
+    let mut noise = crate::noise::Noise::new(5);
+    for k in 0..4500 {
+        let lively = Vector3::from_fn(|_, _| 0.01 * noise.gaussian());
+        looks.delivered(&if k < 4000 { lively } else { force_n }, f64::from(k) * 1e-3);
+    }
+    looks.doubt() == Some(Implausible::LinkFrozen)
+}
+
+#[test]
+fn a_link_that_repeats_a_force_is_frozen_and_one_without_any_force_is_not() {
+    assert!(link_doubted_after(Vector3::new(0.4, 0.0, -1.2)));
+    assert!(!link_doubted_after(Vector3::zeros()));
+}

@@ -32,7 +32,7 @@ pub(in crate::console) const DELETE_NOW_HOVER: &str = "Deletes the file for good
 pub(in crate::console) const BACK: &str = "Back to the view";
 pub(in crate::console) const REPORTING: &str = "Writing the report";
 pub(in crate::console) const CUTTING: &str = "Saving the stretch";
-pub(in crate::console) const NO_THREAD: &str = "The system gives no thread";
+pub(in crate::console) const NO_THREAD: &str = "The system cannot start another thread";
 
 pub(in crate::console) const PAST: &str = "PAST";
 pub(in crate::console) const PAST_HOVER: &str =
@@ -55,7 +55,7 @@ pub(in crate::console) const SPEED_HOVER: &str = "How fast the session is played
 pub(in crate::console) const COMPARE: &str = "Compare";
 pub(in crate::console) const COMPARE_HOVER: &str =
     "Shows another session beside this one, at the same time since its beginning; press again to end it";
-pub(in crate::console) const BESIDE: &str = "Choose the session to show beside";
+pub(in crate::console) const BESIDE: &str = "Choose the session to show beside this one";
 pub(in crate::console) const FROM: &str = "From";
 pub(in crate::console) const FROM_HOVER: &str = "The stretch to save begins at this moment";
 pub(in crate::console) const TO: &str = "To";

@@ -201,44 +201,29 @@ impl Scene {
 
     /// The same without its texts.
     #[must_use]
-    pub fn anonymous(self) -> Self {
+    pub fn anonymous(mut self) -> Self {
         // Without `..`: a field that is added does not compile until somebody decides whether it may tell who or where.
         let Self {
-            name: _,
-            description: _,
-            seed,
-            hand,
-            targets_m,
-            trocar_m,
-            left,
-            cross_talk,
-            tissue,
-            leader,
-            follower,
-            sensor,
-            wrist,
-            trocar,
-            tissue_sensor,
-            person,
-        } = self;
-        Self {
-            name: ANONYMOUS.to_owned(),
-            description: String::new(),
-            seed,
-            hand,
-            targets_m,
-            trocar_m,
-            left,
-            cross_talk,
-            tissue,
-            leader,
-            follower,
-            sensor,
-            wrist,
-            trocar,
-            tissue_sensor,
-            person,
-        }
+            name,
+            description,
+            seed: _,
+            hand: _,
+            targets_m: _,
+            trocar_m: _,
+            left: _,
+            cross_talk: _,
+            tissue: _,
+            leader: _,
+            follower: _,
+            sensor: _,
+            wrist: _,
+            trocar: _,
+            tissue_sensor: _,
+            person: _,
+        } = &mut self;
+        ANONYMOUS.clone_into(name);
+        description.clear();
+        self
     }
 
     /// The names of the built-in scenes.

@@ -152,9 +152,11 @@ fn seen(harness: &mut Harness<'_, ConsoleApp>, size: [f32; 2]) -> (Vec<Text>, Re
     (texts(harness), window, field)
 }
 
-fn walk(scene: &str) {
-    let mut harness = console_of(scene, SIZES[0], |app| app);
-    until(&mut harness, "a contact", |tick| tick.t_s > 1.5);
+/// What is found in each view at each size, dark and light.
+fn in_each_view(
+    harness: &mut Harness<'_, ConsoleApp>,
+    find: impl Fn(&mut Harness<'_, ConsoleApp>, Role, [f32; 2]) -> Vec<String>,
+) -> Vec<String> {
     let mut all = Vec::new();
     for (role, front) in VIEWS {
         for size in SIZES {
@@ -162,13 +164,20 @@ fn walk(scene: &str) {
                 let settings = harness.state_mut().settings_mut();
                 (settings.role, settings.light) = (role, light);
                 settings.layout = Layout { front: front.to_vec(), ..Layout::default() };
-                let faults = faults(&mut harness, size, role == Role::Technician);
+                let found = find(harness, role, size);
                 all.extend(
-                    faults.into_iter().map(|fault| format!("{role:?} {front:?} {size:?} light {light}: {fault}")),
+                    found.into_iter().map(|fault| format!("{role:?} {front:?} {size:?} light {light}: {fault}")),
                 );
             }
         }
     }
+    all
+}
+
+fn walk(scene: &str) {
+    let mut harness = console_of(scene, SIZES[0], |app| app);
+    until(&mut harness, "a contact", |tick| tick.t_s > 1.5);
+    let all = in_each_view(&mut harness, |harness, role, size| faults(harness, size, role == Role::Technician));
     assert!(all.is_empty(), "{} faults:\n{}", all.len(), all.join("\n"));
 }
 
@@ -237,23 +246,15 @@ fn nothing_is_cut_or_overlaps_in_the_past_and_in_the_list_of_sessions() {
     }
     bench::press(&mut harness, "Open 20261123T131415Z-Simulated-rig.mcap");
     past::until_whole(&mut harness);
-    for (role, front) in VIEWS {
-        for size in SIZES {
-            for light in [false, true] {
-                let settings = harness.state_mut().settings_mut();
-                (settings.role, settings.light) = (role, light);
-                settings.layout = Layout { front: front.to_vec(), ..Layout::default() };
-                // On a small screen the technician's panels scroll more: what is scrolled away lies nowhere.
-                let faults = if role == Role::Technician && size[1] < 1000.0 {
-                    let (texts, window, field) = seen(&mut harness, size);
-                    faults_of_texts(&texts, window, field, true, false)
-                } else {
-                    faults(&mut harness, size, role == Role::Technician)
-                };
-                all.extend(faults.into_iter().map(|fault| format!("past {role:?} {front:?} {size:?}: {fault}")));
-            }
+    all.extend(in_each_view(&mut harness, |harness, role, size| {
+        // On a small screen the technician's panels scroll more: what is scrolled away lies nowhere.
+        if role == Role::Technician && size[1] < 1000.0 {
+            let (texts, window, field) = seen(harness, size);
+            faults_of_texts(&texts, window, field, true, false)
+        } else {
+            faults(harness, size, role == Role::Technician)
         }
-    }
+    }));
     assert!(all.is_empty(), "{} faults:\n{}", all.len(), all.join("\n"));
 }
 

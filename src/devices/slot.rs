@@ -228,6 +228,8 @@ impl<D: Device> Keeper<D> {
 mod tests {
     use std::{sync::atomic::AtomicU64, time::Instant};
 
+    use nima_testing::real_time::judged;
+
     use super::*;
     use crate::Loss;
 
@@ -295,48 +297,52 @@ mod tests {
 
     #[test]
     fn slots_that_retire_together_close_their_devices_at_once() {
-        let [closing, together] = [(); 2].map(|()| Arc::new(AtomicU64::new(0)));
-        let mut slots = [(); 2].map(|()| {
-            let (closing, together) = (Arc::clone(&closing), Arc::clone(&together));
-            let flaky = || Flaky { health: Health::default(), identity: Identity::default(), left: u32::MAX };
-            Slot::start("slow", move || Ok(Slow(flaky(), Arc::clone(&closing), Arc::clone(&together)))).unwrap()
-        });
-        let begin = Instant::now();
-        while !slots.iter_mut().all(|slot| slot.device().is_some()) && begin.elapsed() < Duration::from_secs(5) {
-            for slot in &mut slots {
-                slot.poll(0.0);
+        judged(|| {
+            let [closing, together] = [(); 2].map(|()| Arc::new(AtomicU64::new(0)));
+            let mut slots = [(); 2].map(|()| {
+                let (closing, together) = (Arc::clone(&closing), Arc::clone(&together));
+                let flaky = || Flaky { health: Health::default(), identity: Identity::default(), left: u32::MAX };
+                Slot::start("slow", move || Ok(Slow(flaky(), Arc::clone(&closing), Arc::clone(&together)))).unwrap()
+            });
+            let begin = Instant::now();
+            while !slots.iter_mut().all(|slot| slot.device().is_some()) && begin.elapsed() < Duration::from_secs(5) {
+                for slot in &mut slots {
+                    slot.poll(0.0);
+                }
+                std::thread::sleep(Duration::from_millis(1));
             }
-            std::thread::sleep(Duration::from_millis(1));
-        }
-        slots.iter_mut().for_each(Slot::retire);
-        drop(slots);
-        assert_eq!(together.load(Ordering::Acquire), 2, "one after the other: the second arm would miss its cycle");
+            slots.iter_mut().for_each(Slot::retire);
+            drop(slots);
+            assert_eq!(together.load(Ordering::Acquire), 2, "one after the other: the second arm would miss its cycle");
+        });
     }
 
     #[test]
     fn a_lost_device_comes_back_and_trouble_is_told() {
-        let attempts = Arc::new(AtomicU64::new(0));
-        let count = Arc::clone(&attempts);
-        let mut slot = Slot::start("flaky", move || match count.fetch_add(1, Ordering::Relaxed) {
-            0 => Err(Trouble::Absent { place: "/dev/ttyX".to_owned() }),
-            _ => Ok(Flaky { health: Health::default(), identity: Identity::default(), left: 3 }),
-        })
-        .unwrap();
-        let view = slot.view();
-        assert_eq!(slot.health().standing, Standing::Opening);
-        assert!(until(&mut slot, |_, reading| reading.is_some()));
-        assert!(until(&mut slot, |slot, _| slot.health().standing == Standing::Lost(Loss::Silent)));
-        assert!(until(&mut slot, |_, _| view.report().opened >= 2), "it is opened again");
-        assert!(until(&mut slot, |_, reading| reading.is_some()), "and delivers");
-        assert!(view.report().trouble.is_none());
-        assert!(slot.health().outages >= 1 && slot.health().longest_outage_s > 0.0, "an outage is not forgotten");
-        let outages = slot.health().outages;
-        assert!(until(&mut slot, |slot, _| slot.health().outages > outages), "the next one is counted");
-        // The device is not there at this moment; disconnecting it makes it closed, not lost.
-        view.want(false);
-        assert!(until(&mut slot, |slot, _| slot.health().standing == Standing::Closed));
-        let opened = view.report().opened;
-        std::thread::sleep(Duration::from_millis(50));
-        assert_eq!(view.report().opened, opened, "not wanted, not opened");
+        judged(|| {
+            let attempts = Arc::new(AtomicU64::new(0));
+            let count = Arc::clone(&attempts);
+            let mut slot = Slot::start("flaky", move || match count.fetch_add(1, Ordering::Relaxed) {
+                0 => Err(Trouble::Absent { place: "/dev/ttyX".to_owned() }),
+                _ => Ok(Flaky { health: Health::default(), identity: Identity::default(), left: 3 }),
+            })
+            .unwrap();
+            let view = slot.view();
+            assert_eq!(slot.health().standing, Standing::Opening);
+            assert!(until(&mut slot, |_, reading| reading.is_some()));
+            assert!(until(&mut slot, |slot, _| slot.health().standing == Standing::Lost(Loss::Silent)));
+            assert!(until(&mut slot, |_, _| view.report().opened >= 2), "it is opened again");
+            assert!(until(&mut slot, |_, reading| reading.is_some()), "and delivers");
+            assert!(view.report().trouble.is_none());
+            assert!(slot.health().outages >= 1 && slot.health().longest_outage_s > 0.0, "an outage is not forgotten");
+            let outages = slot.health().outages;
+            assert!(until(&mut slot, |slot, _| slot.health().outages > outages), "the next one is counted");
+            // The device is not there at this moment; disconnecting it makes it closed, not lost.
+            view.want(false);
+            assert!(until(&mut slot, |slot, _| slot.health().standing == Standing::Closed));
+            let opened = view.report().opened;
+            std::thread::sleep(Duration::from_millis(50));
+            assert_eq!(view.report().opened, opened, "not wanted, not opened");
+        });
     }
 }

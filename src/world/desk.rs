@@ -149,6 +149,8 @@ mod tests {
 
     use nima_devices::hid::{CapSettings, PedalSettings};
 
+    use nima_testing::real_time::judged;
+
     use super::*;
     use crate::{
         emulators::hid::{CapBody, CapModel, PedalBody, PedalModel, cap, pedal},
@@ -157,50 +159,52 @@ mod tests {
 
     #[test]
     fn a_cap_leads_the_hand_and_a_pedal_is_the_clutch() {
-        let push = CapReading { translation: Vector3::new(0.5, 0.0, 0.0), ..CapReading::default() };
-        // Released for a while, then pushed to the right.
-        let cap = cap(
-            None,
-            CapModel::default(),
-            CapBody::moved_by(move |t_s| if t_s > 1.0 { push } else { CapReading::default() }),
-        )
-        .serve()
-        .unwrap();
-        let pedal = pedal(
-            None,
-            PedalModel::default(),
-            PedalBody::pressed_by(|t_s| PedalReading { pressed: u32::from(t_s > 1.0) }),
-        )
-        .serve()
-        .unwrap();
-        let source = |endpoint: &str| {
-            if endpoint.starts_with("emulated:") { endpoint.to_owned() } else { format!("emulated:{endpoint}") }
-        };
-        let settings = DeskSettings {
-            cap: Some(CapSettings { source: source(&cap.endpoint), ..CapSettings::default() }),
-            pedal: Some(PedalSettings { source: source(&pedal.endpoint), ..PedalSettings::default() }),
-            speed_m_s: 0.06,
-        };
-        let worlds = Worlds::new(&Scene::load("free_motion").unwrap(), 1000.0);
-        let (mut desk, roster) = Desk::start(&settings, worlds).unwrap();
-        assert_eq!(roster.len(), 2);
-        let begin = Instant::now();
-        let (mut first_m, mut led_s, mut clutched) = (None, 0.0, false);
-        while begin.elapsed() < Duration::from_secs(6) && led_s < 0.8 {
-            let now_s = begin.elapsed().as_secs_f64();
-            let outputs = Outputs { tip_command_m: Some(desk.hand_m), ..Outputs::SAFE };
-            desk.write(now_s, &[outputs; SIDES]);
-            let inputs = desk.read(now_s);
-            clutched |= inputs[0].is_some_and(|inputs| inputs.switches.clutch);
-            if let Some(at_m) = desk.at_m {
-                let (from_s, from_m): (f64, Vector3<f64>) = *first_m.get_or_insert((now_s, at_m));
-                led_s = now_s - from_s;
-                // Half deflection: 30 mm/s to the right, no motion along the other axes.
-                let way_m = at_m - from_m;
-                assert!(way_m.y.abs() < 1e-9 && (way_m.x - 0.03 * led_s).abs() < 6e-3, "{way_m} after {led_s} s");
+        judged(|| {
+            let push = CapReading { translation: Vector3::new(0.5, 0.0, 0.0), ..CapReading::default() };
+            // Released for a while, then pushed to the right.
+            let cap = cap(
+                None,
+                CapModel::default(),
+                CapBody::moved_by(move |t_s| if t_s > 1.0 { push } else { CapReading::default() }),
+            )
+            .serve()
+            .unwrap();
+            let pedal = pedal(
+                None,
+                PedalModel::default(),
+                PedalBody::pressed_by(|t_s| PedalReading { pressed: u32::from(t_s > 1.0) }),
+            )
+            .serve()
+            .unwrap();
+            let source = |endpoint: &str| {
+                if endpoint.starts_with("emulated:") { endpoint.to_owned() } else { format!("emulated:{endpoint}") }
+            };
+            let settings = DeskSettings {
+                cap: Some(CapSettings { source: source(&cap.endpoint), ..CapSettings::default() }),
+                pedal: Some(PedalSettings { source: source(&pedal.endpoint), ..PedalSettings::default() }),
+                speed_m_s: 0.06,
+            };
+            let worlds = Worlds::new(&Scene::load("free_motion").unwrap(), 1000.0);
+            let (mut desk, roster) = Desk::start(&settings, worlds).unwrap();
+            assert_eq!(roster.len(), 2);
+            let begin = Instant::now();
+            let (mut first_m, mut led_s, mut clutched) = (None, 0.0, false);
+            while begin.elapsed() < Duration::from_secs(6) && led_s < 0.8 {
+                let now_s = begin.elapsed().as_secs_f64();
+                let outputs = Outputs { tip_command_m: Some(desk.hand_m), ..Outputs::SAFE };
+                desk.write(now_s, &[outputs; SIDES]);
+                let inputs = desk.read(now_s);
+                clutched |= inputs[0].is_some_and(|inputs| inputs.switches.clutch);
+                if let Some(at_m) = desk.at_m {
+                    let (from_s, from_m): (f64, Vector3<f64>) = *first_m.get_or_insert((now_s, at_m));
+                    led_s = now_s - from_s;
+                    // Half deflection: 30 mm/s to the right, no motion along the other axes.
+                    let way_m = at_m - from_m;
+                    assert!(way_m.y.abs() < 1e-9 && (way_m.x - 0.03 * led_s).abs() < 6e-3, "{way_m} after {led_s} s");
+                }
+                std::thread::sleep(Duration::from_millis(1));
             }
-            std::thread::sleep(Duration::from_millis(1));
-        }
-        assert!(led_s >= 0.8 && clutched, "led for {led_s} s, clutch {clutched}");
+            assert!(led_s >= 0.8 && clutched, "led for {led_s} s, clutch {clutched}");
+        });
     }
 }

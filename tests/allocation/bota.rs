@@ -7,7 +7,7 @@ use nima_devices::{
     Device as _, Standing,
     bota::{Driver, Settings, Transport},
 };
-use nima_testing::real_time::alone;
+use nima_testing::real_time::{alone, judged};
 use nima_world::emulators::{
     EmulatedFault,
     bota::{Emulated, slow_motion},
@@ -18,19 +18,21 @@ use crate::counting::calls;
 #[test]
 fn polling_allocates_nothing_also_in_a_damaged_stream_and_when_the_sensor_is_lost() {
     let _alone = alone();
-    let serving = Emulated::default().with(slow_motion()).serve().unwrap();
-    let mut driver = Driver::open(&Settings::new(Transport::GenA, serving.endpoint.clone())).unwrap();
-    let begin = Instant::now();
-    for fault in [EmulatedFault::None, EmulatedFault::Garbage, EmulatedFault::Reorder, EmulatedFault::BadChecksum] {
-        serving.faults.set(fault);
-        let before = calls();
-        for _ in 0..200 {
-            driver.poll(begin.elapsed().as_secs_f64());
-            std::thread::sleep(Duration::from_millis(1));
+    judged(|| {
+        let serving = Emulated::default().with(slow_motion()).serve().unwrap();
+        let mut driver = Driver::open(&Settings::new(Transport::GenA, serving.endpoint.clone())).unwrap();
+        let begin = Instant::now();
+        for fault in [EmulatedFault::None, EmulatedFault::Garbage, EmulatedFault::Reorder, EmulatedFault::BadChecksum] {
+            serving.faults.set(fault);
+            let before = calls();
+            for _ in 0..200 {
+                driver.poll(begin.elapsed().as_secs_f64());
+                std::thread::sleep(Duration::from_millis(1));
+            }
+            assert_eq!(calls() - before, 0, "{fault:?}");
         }
-        assert_eq!(calls() - before, 0, "{fault:?}");
-    }
-    let health = driver.health();
-    assert!(health.readings > 50 && health.damaged > 0, "{health:?}");
-    assert!(matches!(health.standing, Standing::Lost(_)));
+        let health = driver.health();
+        assert!(health.readings > 50 && health.damaged > 0, "{health:?}");
+        assert!(matches!(health.standing, Standing::Lost(_)));
+    });
 }

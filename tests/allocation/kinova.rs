@@ -8,7 +8,7 @@ use nima_devices::{
     Device as _,
     kinova::{Driver, Settings, ToolTwist, open},
 };
-use nima_testing::real_time::alone;
+use nima_testing::real_time::{alone, judged};
 use nima_world::emulators::{
     EmulatedFault,
     kinova::{Emulated, StandIn},
@@ -33,30 +33,32 @@ fn allocations(driver: &mut Driver, now_s: &mut f64, ticks: u32, mut command: im
 #[test]
 fn a_tick_of_the_arm_allocates_nothing() {
     let _alone = alone();
-    let arm = Emulated { watchdog_ms: 5_000.0, ..Emulated::default() };
-    let serving = arm.with(StandIn::swaying()).serve().unwrap();
-    let mut driver = open(&Settings::at(&serving.endpoint).unwrap()).unwrap();
-    let mut now_s = 0.0;
-    // Long enough for several keep-alive messages on both connections.
-    assert_eq!(allocations(&mut driver, &mut now_s, 400, |_| {}), 0, "reading");
-    let twist = ToolTwist { linear_m_s: Vector3::new(0.0, 0.02, 0.0), ..ToolTwist::default() };
-    let moving = |driver: &mut Driver| driver.twist(&twist).unwrap();
-    assert_eq!(allocations(&mut driver, &mut now_s, 100, moving), 0, "twist");
-    driver.stop();
-    let before = calls();
-    driver.enter_low_level().unwrap();
-    assert_eq!(calls() - before, 0);
-    let mut served = 0;
-    let servoing = |driver: &mut Driver| {
-        let angles = *driver.command_rad();
-        served += u32::from(driver.aim(&angles).is_ok());
-    };
-    assert_eq!(allocations(&mut driver, &mut now_s, 400, servoing), 0, "servoing");
-    assert!(served > 200, "{served}");
-    let before = *driver.health();
-    for fault in [EmulatedFault::Loss, EmulatedFault::Reorder, EmulatedFault::Garbage, EmulatedFault::BadChecksum] {
-        serving.faults.set(fault);
-        assert_eq!(allocations(&mut driver, &mut now_s, 100, |_| {}), 0, "{fault:?}");
-    }
-    assert!(driver.health().damaged > before.damaged && driver.health().readings > 500, "{:?}", driver.health());
+    judged(|| {
+        let arm = Emulated { watchdog_ms: 5_000.0, ..Emulated::default() };
+        let serving = arm.with(StandIn::swaying()).serve().unwrap();
+        let mut driver = open(&Settings::at(&serving.endpoint).unwrap()).unwrap();
+        let mut now_s = 0.0;
+        // Long enough for several keep-alive messages on both connections.
+        assert_eq!(allocations(&mut driver, &mut now_s, 400, |_| {}), 0, "reading");
+        let twist = ToolTwist { linear_m_s: Vector3::new(0.0, 0.02, 0.0), ..ToolTwist::default() };
+        let moving = |driver: &mut Driver| driver.twist(&twist).unwrap();
+        assert_eq!(allocations(&mut driver, &mut now_s, 100, moving), 0, "twist");
+        driver.stop();
+        let before = calls();
+        driver.enter_low_level().unwrap();
+        assert_eq!(calls() - before, 0);
+        let mut served = 0;
+        let servoing = |driver: &mut Driver| {
+            let angles = *driver.command_rad();
+            served += u32::from(driver.aim(&angles).is_ok());
+        };
+        assert_eq!(allocations(&mut driver, &mut now_s, 400, servoing), 0, "servoing");
+        assert!(served > 200, "{served}");
+        let before = *driver.health();
+        for fault in [EmulatedFault::Loss, EmulatedFault::Reorder, EmulatedFault::Garbage, EmulatedFault::BadChecksum] {
+            serving.faults.set(fault);
+            assert_eq!(allocations(&mut driver, &mut now_s, 100, |_| {}), 0, "{fault:?}");
+        }
+        assert!(driver.health().damaged > before.damaged && driver.health().readings > 500, "{:?}", driver.health());
+    });
 }

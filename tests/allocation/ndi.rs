@@ -6,7 +6,7 @@ use nima_devices::{
     Device as _,
     ndi::{Driver, Settings},
 };
-use nima_testing::real_time::alone;
+use nima_testing::real_time::{alone, judged};
 use nima_world::emulators::ndi::{Profile, wandering};
 
 use crate::counting::calls;
@@ -33,16 +33,18 @@ fn allocations(settings: &Settings) -> u64 {
 #[test]
 fn polling_allocates_nothing() {
     let _alone = alone();
-    let folder = tempfile::tempdir().unwrap();
-    let tool = folder.path().join("tool.rom");
-    std::fs::write(&tool, [&b"NDI\0"[..], &[0; 748]].concat()).unwrap();
-    let settings = Settings { tools: vec![tool], ..Settings::default() };
-    for firmware in ["Polaris Vega 014", "Polaris Vega 008"] {
-        let profile = Profile { firmware: firmware.to_owned(), ..Profile::default() };
-        let served = profile.on_network(0, wandering).serve().unwrap();
-        let settings = Settings { address: Some(served.endpoint.clone()), ..settings.clone() };
-        assert_eq!(allocations(&settings), 0, "{firmware}");
-    }
-    let served = Profile::default().on_line(None, wandering).serve().unwrap();
-    assert_eq!(allocations(&Settings { port: Some(served.endpoint.clone()), ..settings }), 0, "line");
+    judged(|| {
+        let folder = tempfile::tempdir().unwrap();
+        let tool = folder.path().join("tool.rom");
+        std::fs::write(&tool, [&b"NDI\0"[..], &[0; 748]].concat()).unwrap();
+        let settings = Settings { tools: vec![tool], ..Settings::default() };
+        for firmware in ["Polaris Vega 014", "Polaris Vega 008"] {
+            let profile = Profile { firmware: firmware.to_owned(), ..Profile::default() };
+            let served = profile.on_network(0, wandering).serve().unwrap();
+            let settings = Settings { address: Some(served.endpoint.clone()), ..settings.clone() };
+            assert_eq!(allocations(&settings), 0, "{firmware}");
+        }
+        let served = Profile::default().on_line(None, wandering).serve().unwrap();
+        assert_eq!(allocations(&Settings { port: Some(served.endpoint.clone()), ..settings }), 0, "line");
+    });
 }

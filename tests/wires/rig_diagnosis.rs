@@ -181,24 +181,27 @@ fn silence_and_faults_of_every_device_are_reported() {
 #[test]
 fn a_device_in_use_and_one_that_waits_for_calibration_are_reported() {
     let _alone = alone();
-    let folder = tempfile::tempdir().unwrap();
-    let mut devices = Settings { left: None, tracker: None, endoscope: None, pedal: None, ..elsewhere(folder.path()) };
-    let rig = started(&devices);
-    let right = devices.right.as_ref().unwrap();
-    let sensor = bota::Driver::open(right.sensor.bota().unwrap()).unwrap();
-    let held = (sensor, force_dimension::open(right.handle.force_dimension().unwrap()).unwrap());
-    assert_told!(tried(&devices),
-        "right sensor" => Trouble::Busy { .. },
-        "right handle" => Trouble::Busy { .. },
-    );
-    drop((held, rig));
-    let waiting = nima_world::emulators::force_dimension::Emulated {
-        serial: 77,
-        reset: true,
-        ..nima_world::emulators::force_dimension::Emulated::default()
-    };
-    let serving = waiting.with(Held::default().body()).serve().unwrap();
-    let handle = devices.right.as_mut().unwrap().handle.force_dimension_mut().unwrap();
-    (handle.serial, handle.emulator) = (Some(77), Some(serving.endpoint.parse().unwrap()));
-    assert_told!(tried(&devices), "right handle" => Trouble::NotReady { .. });
+    judged(|| {
+        let folder = tempfile::tempdir().unwrap();
+        let mut devices =
+            Settings { left: None, tracker: None, endoscope: None, pedal: None, ..elsewhere(folder.path()) };
+        let rig = started(&devices);
+        let right = devices.right.as_ref().unwrap();
+        let sensor = bota::Driver::open(right.sensor.bota().unwrap()).unwrap();
+        let held = (sensor, force_dimension::open(right.handle.force_dimension().unwrap()).unwrap());
+        assert_told!(tried(&devices),
+            "right sensor" => Trouble::Busy { .. },
+            "right handle" => Trouble::Busy { .. },
+        );
+        drop((held, rig));
+        let waiting = nima_world::emulators::force_dimension::Emulated {
+            serial: 77,
+            reset: true,
+            ..nima_world::emulators::force_dimension::Emulated::default()
+        };
+        let serving = waiting.with(Held::default().body()).serve().unwrap();
+        let handle = devices.right.as_mut().unwrap().handle.force_dimension_mut().unwrap();
+        (handle.serial, handle.emulator) = (Some(77), Some(serving.endpoint.parse().unwrap()));
+        assert_told!(tried(&devices), "right handle" => Trouble::NotReady { .. });
+    });
 }

@@ -49,29 +49,33 @@ mod tests {
     use nalgebra::Vector3;
     use nima_devices::{Device as _, force_dimension::Settings};
 
+    use nima_testing::real_time::judged;
+
     use super::*;
     use crate::emulators::force_dimension::{Emulated, Held};
 
     #[test]
     fn an_emulated_handle_is_reached_without_a_library_file() {
-        provide_handles();
-        let held = Held { radius_m: 0.0, rest_m: Vector3::new(0.03, 0.0, 0.0), ..Held::default() };
-        let serving = Emulated { serial: 4321, ..Emulated::default() }.with(held.body()).serve().unwrap();
-        let emulator = Some(serving.endpoint.parse().unwrap());
-        let mut driver =
-            force_dimension::open(&Settings { serial: Some(4321), emulator, ..Settings::default() }).unwrap();
-        assert_eq!((driver.identity().product.as_str(), driver.identity().serial.as_str()), ("omega.7", "4321"));
-        driver.enable_force();
-        // The hand gives way to the force like a spring of 500 N/m.
-        let begin = Instant::now();
-        let mut pushed_m = 0.0;
-        while pushed_m < 0.001 && begin.elapsed() < Duration::from_secs(10) {
-            driver.set_force(Vector3::y(), 0.0);
-            let reading = driver.poll(begin.elapsed().as_secs_f64());
-            pushed_m = reading.map_or(pushed_m, |reading| reading.value.position_m.y);
-            std::thread::sleep(Duration::from_millis(1));
-        }
-        assert!(pushed_m >= 0.001, "{pushed_m} m, {:?}", driver.health());
+        judged(|| {
+            provide_handles();
+            let held = Held { radius_m: 0.0, rest_m: Vector3::new(0.03, 0.0, 0.0), ..Held::default() };
+            let serving = Emulated { serial: 4321, ..Emulated::default() }.with(held.body()).serve().unwrap();
+            let emulator = Some(serving.endpoint.parse().unwrap());
+            let mut driver =
+                force_dimension::open(&Settings { serial: Some(4321), emulator, ..Settings::default() }).unwrap();
+            assert_eq!((driver.identity().product.as_str(), driver.identity().serial.as_str()), ("omega.7", "4321"));
+            driver.enable_force();
+            // The hand gives way to the force like a spring of 500 N/m.
+            let begin = Instant::now();
+            let mut pushed_m = 0.0;
+            while pushed_m < 0.001 && begin.elapsed() < Duration::from_secs(10) {
+                driver.set_force(Vector3::y(), 0.0);
+                let reading = driver.poll(begin.elapsed().as_secs_f64());
+                pushed_m = reading.map_or(pushed_m, |reading| reading.value.position_m.y);
+                std::thread::sleep(Duration::from_millis(1));
+            }
+            assert!(pushed_m >= 0.001, "{pushed_m} m, {:?}", driver.health());
+        });
     }
 
     /// A library of the manufacturer's that is loaded later calls its own functions by these names: in a program that exported

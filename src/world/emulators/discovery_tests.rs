@@ -19,6 +19,7 @@ use nima_devices::{
     },
     force_dimension,
 };
+use nima_testing::real_time::judged;
 
 /// A device that does what a test says.
 struct Fake {
@@ -111,44 +112,46 @@ fn a_device_that_works_tells_who_it_is_and_how_fast() {
 
 #[test]
 fn twelve_causes_come_out_each_with_a_cure_of_its_own() {
-    let fail = |trouble: Trouble| of_fake(move || Err(trouble.clone()));
-    let place = || "/dev/fake".to_owned();
-    let denied = std::io::Error::from(std::io::ErrorKind::PermissionDenied);
-    let timed_out = std::io::Error::from(std::io::ErrorKind::TimedOut);
-    let probes: Vec<Box<dyn Probe>> = vec![
-        probe_named("serial=/dev/no-such-port@460800").unwrap(),
-        fail(Trouble::of_port(std::path::Path::new("/dev/fake"), &denied, &rules::of_serial(None))),
-        fail(Trouble::Busy { place: place() }),
-        fail(Trouble::WrongProduct { place: place(), expected: "one".to_owned(), found: "other".to_owned() }),
-        fail(Trouble::WrongBaud { place: place(), baud: 9600 }),
-        of_fake(|| Ok(Fake::new(1.0, Some(Loss::Silent)))),
-        fail(Trouble::of_address("192.168.1.10:10000", &timed_out)),
-        probe_named(&format!("tcp={}", free_address())).unwrap(),
-        fail(Trouble::RefusedLogin { place: place(), user: "admin".to_owned() }),
-        nima_devices::discovery::probes::handle(
-            "handle",
-            force_dimension::Settings { library: Some("/no/such/file".into()), ..Default::default() },
-        ),
-        fail(Trouble::NotReady { place: place(), mode: "calibration".to_owned(), cure: "Press reset.".to_owned() }),
-        of_fake(|| Ok(Fake::new(1.0, Some(Loss::Device { code: 0x20 })))),
-    ];
-    let count = probes.len();
-    let begin = Instant::now();
-    let found = diagnose(probes, TIMEOUT);
-    assert!(begin.elapsed() < Duration::from_secs(2), "they are tried at the same time");
-    let (mut kinds, mut causes, mut cures) = (BTreeSet::new(), BTreeSet::new(), BTreeSet::new());
-    for diagnosis in &found {
-        let text = serde_json::to_value(diagnosis).unwrap();
-        assert_eq!(text["state"], "trouble", "{text}");
-        let word = |key: &str| text[key].as_str().unwrap().to_owned();
-        assert!(word("cure").len() > 10 && word("cure").lines().count() == 1, "{text}");
-        kinds.insert(word("trouble"));
-        causes.insert(word("cause"));
-        cures.insert(word("cure"));
-    }
-    assert_eq!((kinds.len(), causes.len(), cures.len()), (count, count, count), "{kinds:?}\n{cures:?}");
-    let wanted = ["absent", "busy", "device_fault", "nobody_listens", "not_ready", "permission", "refused_login"];
-    assert!(wanted.iter().all(|wanted| kinds.contains(*wanted)), "{kinds:?}");
+    judged(|| {
+        let fail = |trouble: Trouble| of_fake(move || Err(trouble.clone()));
+        let place = || "/dev/fake".to_owned();
+        let denied = std::io::Error::from(std::io::ErrorKind::PermissionDenied);
+        let timed_out = std::io::Error::from(std::io::ErrorKind::TimedOut);
+        let probes: Vec<Box<dyn Probe>> = vec![
+            probe_named("serial=/dev/no-such-port@460800").unwrap(),
+            fail(Trouble::of_port(std::path::Path::new("/dev/fake"), &denied, &rules::of_serial(None))),
+            fail(Trouble::Busy { place: place() }),
+            fail(Trouble::WrongProduct { place: place(), expected: "one".to_owned(), found: "other".to_owned() }),
+            fail(Trouble::WrongBaud { place: place(), baud: 9600 }),
+            of_fake(|| Ok(Fake::new(1.0, Some(Loss::Silent)))),
+            fail(Trouble::of_address("192.168.1.10:10000", &timed_out)),
+            probe_named(&format!("tcp={}", free_address())).unwrap(),
+            fail(Trouble::RefusedLogin { place: place(), user: "admin".to_owned() }),
+            nima_devices::discovery::probes::handle(
+                "handle",
+                force_dimension::Settings { library: Some("/no/such/file".into()), ..Default::default() },
+            ),
+            fail(Trouble::NotReady { place: place(), mode: "calibration".to_owned(), cure: "Press reset.".to_owned() }),
+            of_fake(|| Ok(Fake::new(1.0, Some(Loss::Device { code: 0x20 })))),
+        ];
+        let count = probes.len();
+        let begin = Instant::now();
+        let found = diagnose(probes, TIMEOUT);
+        assert!(begin.elapsed() < Duration::from_secs(2), "they are tried at the same time");
+        let (mut kinds, mut causes, mut cures) = (BTreeSet::new(), BTreeSet::new(), BTreeSet::new());
+        for diagnosis in &found {
+            let text = serde_json::to_value(diagnosis).unwrap();
+            assert_eq!(text["state"], "trouble", "{text}");
+            let word = |key: &str| text[key].as_str().unwrap().to_owned();
+            assert!(word("cure").len() > 10 && word("cure").lines().count() == 1, "{text}");
+            kinds.insert(word("trouble"));
+            causes.insert(word("cause"));
+            cures.insert(word("cure"));
+        }
+        assert_eq!((kinds.len(), causes.len(), cures.len()), (count, count, count), "{kinds:?}\n{cures:?}");
+        let wanted = ["absent", "busy", "device_fault", "nobody_listens", "not_ready", "permission", "refused_login"];
+        assert!(wanted.iter().all(|wanted| kinds.contains(*wanted)), "{kinds:?}");
+    });
 }
 
 /// An address at which nobody listens any more.
@@ -184,23 +187,25 @@ fn an_address_without_a_way_is_unreachable() {
 
 #[test]
 fn one_that_hangs_and_one_that_fails_are_told_so_and_hold_up_nobody() {
-    struct Hangs;
-    impl Probe for Hangs {
-        fn name(&self) -> &'static str {
-            "hangs"
+    judged(|| {
+        struct Hangs;
+        impl Probe for Hangs {
+            fn name(&self) -> &'static str {
+                "hangs"
+            }
+            fn probe(&mut self, _: Duration) -> Result<Found, Trouble> {
+                std::thread::sleep(Duration::from_secs(3));
+                Ok(Found::default())
+            }
         }
-        fn probe(&mut self, _: Duration) -> Result<Found, Trouble> {
-            std::thread::sleep(Duration::from_secs(3));
-            Ok(Found::default())
-        }
-    }
-    let short = Duration::from_millis(600);
-    let begin = Instant::now();
-    let found = diagnose(vec![Box::new(Hangs), of_fake(|| Ok(Fake::new(100.0, None)))], short);
-    assert!(begin.elapsed() < Duration::from_secs(2));
-    let [hanging, working] = &found[..] else { panic!("{found:?}") };
-    assert!(matches!(&hanging.outcome, Outcome::Trouble { cause, .. } if cause.contains("no answer within 0.6 s")));
-    assert!(matches!(working.outcome, Outcome::Connected(_)), "{working:?}");
+        let short = Duration::from_millis(600);
+        let begin = Instant::now();
+        let found = diagnose(vec![Box::new(Hangs), of_fake(|| Ok(Fake::new(100.0, None)))], short);
+        assert!(begin.elapsed() < Duration::from_secs(2));
+        let [hanging, working] = &found[..] else { panic!("{found:?}") };
+        assert!(matches!(&hanging.outcome, Outcome::Trouble { cause, .. } if cause.contains("no answer within 0.6 s")));
+        assert!(matches!(working.outcome, Outcome::Connected(_)), "{working:?}");
+    });
 }
 
 #[cfg(unix)]
@@ -359,12 +364,14 @@ fn what_is_plugged_in_is_read_from_the_kernels_files() {
 #[cfg(target_os = "linux")]
 #[test]
 fn an_emulated_cap_and_pedal_are_diagnosed_over_their_sockets() {
-    use crate::emulators::hid::{CapBody, CapModel, PedalBody, PedalModel, cap, pedal};
-    let cap = cap(None, CapModel::Split, CapBody::alone()).serve().unwrap();
-    let pedal = pedal(None, PedalModel::Switches, PedalBody::alone()).serve().unwrap();
-    let named = |kind: &str, place: &str| probe_named(&format!("{kind}={place}")).unwrap();
-    let found = one(named("spacemouse", &cap.endpoint)).unwrap();
-    assert!(found.identity.product.contains("046d:c626") && found.damaged == 0, "{found:?}");
-    assert!(one(named("pedal", &pedal.endpoint)).is_ok());
-    assert!(matches!(one(named("pedal", &cap.endpoint)), Err(Trouble::WrongProduct { .. })));
+    judged(|| {
+        use crate::emulators::hid::{CapBody, CapModel, PedalBody, PedalModel, cap, pedal};
+        let cap = cap(None, CapModel::Split, CapBody::alone()).serve().unwrap();
+        let pedal = pedal(None, PedalModel::Switches, PedalBody::alone()).serve().unwrap();
+        let named = |kind: &str, place: &str| probe_named(&format!("{kind}={place}")).unwrap();
+        let found = one(named("spacemouse", &cap.endpoint)).unwrap();
+        assert!(found.identity.product.contains("046d:c626") && found.damaged == 0, "{found:?}");
+        assert!(one(named("pedal", &pedal.endpoint)).is_ok());
+        assert!(matches!(one(named("pedal", &cap.endpoint)), Err(Trouble::WrongProduct { .. })));
+    });
 }

@@ -32,9 +32,11 @@ fn the_interlock_of_each_hand_shows_its_state_and_the_reason() {
 
 #[test]
 fn the_gain_tells_where_it_is_stable_once_there_was_a_contact() {
-    let mut harness = console_of("peg_transfer", SIZE, |app| app);
-    harness.step();
+    // Where nothing is touched it never becomes known.
+    let mut harness = console_of("free_motion", SIZE, |app| app);
+    until(&mut harness, "the first ticks", |tick| tick.t_s > 0.1);
     harness.get_by_label("Highest stable gain: known after the first contact");
+    let mut harness = console_of("peg_transfer", SIZE, |app| app);
     until(&mut harness, "a contact that lasts", |tick| tick.t_s > 3.5);
     harness.step();
     let told = harness.get_by_label_contains("stable up to").accesskit_node().value().unwrap();

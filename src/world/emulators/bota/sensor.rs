@@ -117,6 +117,8 @@ mod tests {
         time::Duration,
     };
 
+    use nima_testing::real_time::judged;
+
     use super::*;
     use crate::emulators::{Serving, bota::slow_motion};
 
@@ -144,25 +146,27 @@ mod tests {
 
     #[test]
     fn neither_garbage_nor_silence_keeps_the_next_client_waiting() {
-        let serving = sensor();
-        let mut garbage = client(&serving);
-        garbage.set_nonblocking(true).unwrap();
-        let mut random = fastrand::Rng::with_seed(3);
-        let noise: Vec<u8> = (0..65536).map(|_| random.u8(..)).collect();
-        // As much as the connection takes, and it stays open.
-        let mut sent = 0;
-        let stopped = loop {
-            match garbage.write(&noise) {
-                Ok(count) if sent < 64 << 20 => sent += count,
-                Ok(_) => panic!("the emulator takes in everything"),
-                Err(error) => break error.kind(),
-            }
-        };
-        println!("{sent} bytes of garbage, then {stopped:?}");
-        assert_eq!(ask(&mut client(&serving)).unwrap(), "rh,0,0\n");
-        let silent = client(&serving);
-        assert_eq!(ask(&mut client(&serving)).unwrap(), "rh,0,0\n");
-        drop(silent);
+        judged(|| {
+            let serving = sensor();
+            let mut garbage = client(&serving);
+            garbage.set_nonblocking(true).unwrap();
+            let mut random = fastrand::Rng::with_seed(3);
+            let noise: Vec<u8> = (0..65536).map(|_| random.u8(..)).collect();
+            // As much as the connection takes, and it stays open.
+            let mut sent = 0;
+            let stopped = loop {
+                match garbage.write(&noise) {
+                    Ok(count) if sent < 64 << 20 => sent += count,
+                    Ok(_) => panic!("the emulator takes in everything"),
+                    Err(error) => break error.kind(),
+                }
+            };
+            println!("{sent} bytes of garbage, then {stopped:?}");
+            assert_eq!(ask(&mut client(&serving)).unwrap(), "rh,0,0\n");
+            let silent = client(&serving);
+            assert_eq!(ask(&mut client(&serving)).unwrap(), "rh,0,0\n");
+            drop(silent);
+        });
     }
 
     #[test]

@@ -16,6 +16,7 @@ use nima_devices::{
     Device, HandleReading, Stamped, Standing,
     force_dimension::{Driver, ForceAnswer, HandleEvent, Settings, open, status::ForceOffCause},
 };
+use nima_testing::real_time::judged;
 
 use super::*;
 use crate::emulators::Serving;
@@ -111,159 +112,180 @@ fn push(driver: &mut Driver, hand: &Hand) {
 
 #[test]
 fn it_connects_and_reads_what_the_hand_does_without_a_gap() {
-    let (_serving, hand, settings) = rig(Emulated { serial: 4711, ..Emulated::default() });
-    let turn = UnitQuaternion::from_euler_angles(0.3, -0.2, 0.5);
-    hand.set(|state| {
-        state.position_m = Vector3::new(0.01, -0.02, 0.03);
-        state.orientation = turn;
-        state.gripper_rad = 0.25;
-        state.buttons = 4;
+    judged(|| {
+        let (_serving, hand, settings) = rig(Emulated { serial: 4711, ..Emulated::default() });
+        let turn = UnitQuaternion::from_euler_angles(0.3, -0.2, 0.5);
+        hand.set(|state| {
+            state.position_m = Vector3::new(0.01, -0.02, 0.03);
+            state.orientation = turn;
+            state.gripper_rad = 0.25;
+            state.buttons = 4;
+        });
+        let mut driver = open(&settings).unwrap();
+        assert_eq!(driver.identity().product, "omega.7");
+        assert_eq!((driver.identity().serial.as_str(), driver.identity().firmware.as_str()), ("4711", "3.2"));
+        assert_eq!(driver.velocity_threshold(), Some(2000), "the threshold of the device is left as it is");
+        assert_eq!(hand.applied().mode, Mode::Brake, "connected is not engaged");
+        let mut newest = None;
+        assert!(until(&mut driver, |driver, reading| {
+            newest = reading.or(newest);
+            driver.health().readings > 600
+        }));
+        let reading = newest.unwrap().value;
+        assert!((reading.position_m - Vector3::new(0.01, -0.02, 0.03)).norm() < 1e-6);
+        assert!(reading.orientation.unwrap().angle_to(&turn) < 1e-7);
+        assert!((reading.gripper_rad.unwrap() - 0.25).abs() < 1e-12);
+        assert!(reading.velocity_m_s.unwrap().norm() < 1e-3);
+        assert_eq!(reading.buttons, 4);
+        assert_eq!((driver.health().standing, driver.health().lost), (Standing::Connected, 0));
+        assert!(driver.status().brake && !driver.status().force && driver.status().gravity);
+        println!("{:?} {:?}", driver.health(), driver.counters());
     });
-    let mut driver = open(&settings).unwrap();
-    assert_eq!(driver.identity().product, "omega.7");
-    assert_eq!((driver.identity().serial.as_str(), driver.identity().firmware.as_str()), ("4711", "3.2"));
-    assert_eq!(driver.velocity_threshold(), Some(2000), "the threshold of the device is left as it is");
-    assert_eq!(hand.applied().mode, Mode::Brake, "connected is not engaged");
-    let mut newest = None;
-    assert!(until(&mut driver, |driver, reading| {
-        newest = reading.or(newest);
-        driver.health().readings > 600
-    }));
-    let reading = newest.unwrap().value;
-    assert!((reading.position_m - Vector3::new(0.01, -0.02, 0.03)).norm() < 1e-6);
-    assert!(reading.orientation.unwrap().angle_to(&turn) < 1e-7);
-    assert!((reading.gripper_rad.unwrap() - 0.25).abs() < 1e-12);
-    assert!(reading.velocity_m_s.unwrap().norm() < 1e-3);
-    assert_eq!(reading.buttons, 4);
-    assert_eq!((driver.health().standing, driver.health().lost), (Standing::Connected, 0));
-    assert!(driver.status().brake && !driver.status().force && driver.status().gravity);
-    println!("{:?} {:?}", driver.health(), driver.counters());
 }
 
 #[test]
 fn velocity_is_that_of_the_hand() {
-    let emulator = Emulated::default();
-    let moving = |now_s: f64, _: &Applied| HandState {
-        position_m: Vector3::new(0.3 * (now_s % 0.4 - 0.2), 0.0, 0.0),
-        ..HandState::default()
-    };
-    let serving = emulator.with(moving).serve().unwrap();
-    let emulator = Some(serving.endpoint.parse().unwrap());
-    let mut driver = open(&Settings { library: Some(library()), emulator, ..Settings::default() }).unwrap();
-    let mut speeds = Vec::new();
-    assert!(until(&mut driver, |_, reading| {
-        speeds.extend(reading.and_then(|reading| reading.value.velocity_m_s).map(|velocity| velocity.x));
-        speeds.len() > 300
-    }));
-    speeds.sort_by(f64::total_cmp);
-    let middle = speeds[speeds.len() / 2];
-    assert!((middle - 0.3).abs() < 0.01, "{middle} m/s");
+    judged(|| {
+        let emulator = Emulated::default();
+        let moving = |now_s: f64, _: &Applied| HandState {
+            position_m: Vector3::new(0.3 * (now_s % 0.4 - 0.2), 0.0, 0.0),
+            ..HandState::default()
+        };
+        let serving = emulator.with(moving).serve().unwrap();
+        let emulator = Some(serving.endpoint.parse().unwrap());
+        let mut driver = open(&Settings { library: Some(library()), emulator, ..Settings::default() }).unwrap();
+        let mut speeds = Vec::new();
+        assert!(until(&mut driver, |_, reading| {
+            speeds.extend(reading.and_then(|reading| reading.value.velocity_m_s).map(|velocity| velocity.x));
+            speeds.len() > 300
+        }));
+        speeds.sort_by(f64::total_cmp);
+        let middle = speeds[speeds.len() / 2];
+        assert!((middle - 0.3).abs() < 0.01, "{middle} m/s");
+    });
 }
 
 #[test]
 fn a_left_handed_gripper_opens_in_the_positive_sense_too() {
-    let (_serving, hand, settings) = rig(Emulated { kind: Kind::Omega7 { left_handed: true }, ..Emulated::default() });
-    hand.set(|state| state.gripper_rad = 0.25);
-    let mut driver = open(&settings).unwrap();
-    assert!(until(&mut driver, |_, reading| {
-        reading.is_some_and(|reading| (reading.value.gripper_rad.unwrap() - 0.25).abs() < 1e-12)
-    }));
+    judged(|| {
+        let (_serving, hand, settings) =
+            rig(Emulated { kind: Kind::Omega7 { left_handed: true }, ..Emulated::default() });
+        hand.set(|state| state.gripper_rad = 0.25);
+        let mut driver = open(&settings).unwrap();
+        assert!(until(&mut driver, |_, reading| {
+            reading.is_some_and(|reading| (reading.value.gripper_rad.unwrap() - 0.25).abs() < 1e-12)
+        }));
+    });
 }
 
 #[test]
 fn force_reaches_the_hand_only_while_it_is_enabled_and_never_beyond_the_limits() {
-    let (_serving, hand, settings) = rig(Emulated::default());
-    let mut driver = open(&settings).unwrap();
-    let pushed = Vector3::new(1.0, -2.0, 0.5);
-    for _ in 0..30 {
-        assert_eq!(driver.set_force(pushed, 1.0), ForceAnswer::Taken);
-        driver.poll(now_s());
-        std::thread::sleep(Duration::from_millis(1));
-    }
-    assert_eq!(hand.applied().force_n.norm(), 0.0, "not enabled, no force");
-    turn_on(&mut driver);
-    assert_eq!((hand.applied().mode, hand.applied().force_n.norm()), (Mode::Force, 0.0), "on, and zero until asked");
-    assert!(until(&mut driver, |driver, _| {
-        driver.set_force(pushed, 1.0);
-        hand.applied().force_n == pushed && hand.applied().gripper_n == 1.0
-    }));
-    for huge in [20.0, 1e18, f64::MAX] {
-        assert_eq!(driver.set_force(Vector3::new(0.0, huge, 0.0), -huge), ForceAnswer::Clamped);
-    }
-    assert!(until(&mut driver, |driver, _| {
-        driver.set_force(Vector3::new(0.0, 1e18, 0.0), -1e18);
-        (hand.applied().force_n - Vector3::new(0.0, 12.0, 0.0)).norm() < 1e-9 && hand.applied().gripper_n == -8.0
-    }));
-    assert_eq!(driver.set_force(Vector3::new(f64::NAN, 0.0, 0.0), 0.0), ForceAnswer::NotFinite);
-    assert_eq!(driver.set_force(Vector3::zeros(), f64::INFINITY), ForceAnswer::NotFinite);
-    assert!(until(&mut driver, |driver, _| {
-        driver.set_force(Vector3::new(f64::NAN, 0.0, 0.0), 0.0);
-        hand.applied().force_n.norm() == 0.0
-    }));
-    driver.disable_force();
-    assert!(until(&mut driver, |_, _| hand.applied().mode == Mode::Brake));
-    let off = HandleEvent::ForceOff { cause: ForceOffCause::Software };
-    assert!(until(&mut driver, |driver, _| driver.take_event() == Some(off)));
-    drop(driver);
+    judged(|| {
+        let (_serving, hand, settings) = rig(Emulated::default());
+        let mut driver = open(&settings).unwrap();
+        let pushed = Vector3::new(1.0, -2.0, 0.5);
+        for _ in 0..30 {
+            assert_eq!(driver.set_force(pushed, 1.0), ForceAnswer::Taken);
+            driver.poll(now_s());
+            std::thread::sleep(Duration::from_millis(1));
+        }
+        assert_eq!(hand.applied().force_n.norm(), 0.0, "not enabled, no force");
+        turn_on(&mut driver);
+        assert_eq!(
+            (hand.applied().mode, hand.applied().force_n.norm()),
+            (Mode::Force, 0.0),
+            "on, and zero until asked"
+        );
+        assert!(until(&mut driver, |driver, _| {
+            driver.set_force(pushed, 1.0);
+            hand.applied().force_n == pushed && hand.applied().gripper_n == 1.0
+        }));
+        for huge in [20.0, 1e18, f64::MAX] {
+            assert_eq!(driver.set_force(Vector3::new(0.0, huge, 0.0), -huge), ForceAnswer::Clamped);
+        }
+        assert!(until(&mut driver, |driver, _| {
+            driver.set_force(Vector3::new(0.0, 1e18, 0.0), -1e18);
+            (hand.applied().force_n - Vector3::new(0.0, 12.0, 0.0)).norm() < 1e-9 && hand.applied().gripper_n == -8.0
+        }));
+        assert_eq!(driver.set_force(Vector3::new(f64::NAN, 0.0, 0.0), 0.0), ForceAnswer::NotFinite);
+        assert_eq!(driver.set_force(Vector3::zeros(), f64::INFINITY), ForceAnswer::NotFinite);
+        assert!(until(&mut driver, |driver, _| {
+            driver.set_force(Vector3::new(f64::NAN, 0.0, 0.0), 0.0);
+            hand.applied().force_n.norm() == 0.0
+        }));
+        driver.disable_force();
+        assert!(until(&mut driver, |_, _| hand.applied().mode == Mode::Brake));
+        let off = HandleEvent::ForceOff { cause: ForceOffCause::Software };
+        assert!(until(&mut driver, |driver, _| driver.take_event() == Some(off)));
+        drop(driver);
+    });
 }
 
 #[test]
 fn a_force_that_is_not_said_again_ends() {
-    let (_serving, hand, settings) = rig(Emulated::default());
-    let mut driver = open(&settings).unwrap();
-    push(&mut driver, &hand);
-    assert!(until(&mut driver, |_, _| hand.applied().force_n.norm() == 0.0));
-    assert_eq!(hand.applied().mode, Mode::Force, "zero, not off: the device is still spoken to");
-    assert!(until(&mut driver, |driver, _| driver.counters().stale_commands > 0));
+    judged(|| {
+        let (_serving, hand, settings) = rig(Emulated::default());
+        let mut driver = open(&settings).unwrap();
+        push(&mut driver, &hand);
+        assert!(until(&mut driver, |_, _| hand.applied().force_n.norm() == 0.0));
+        assert_eq!(hand.applied().mode, Mode::Force, "zero, not off: the device is still spoken to");
+        assert!(until(&mut driver, |driver, _| driver.counters().stale_commands > 0));
+    });
 }
 
 #[test]
 fn saturated_motors_are_counted_and_are_no_failure() {
-    let (_serving, hand, settings) = rig(Emulated { motor_limit_n: 5.0, ..Emulated::default() });
-    let mut driver = open(&settings).unwrap();
-    turn_on(&mut driver);
-    assert!(until(&mut driver, |driver, _| {
-        driver.set_force(Vector3::new(0.0, 0.0, 9.0), 0.0);
-        driver.counters().saturated > 3
-    }));
-    assert!((hand.applied().force_n.norm() - 5.0).abs() < 1e-9);
-    assert_eq!(driver.health().standing, Standing::Connected);
+    judged(|| {
+        let (_serving, hand, settings) = rig(Emulated { motor_limit_n: 5.0, ..Emulated::default() });
+        let mut driver = open(&settings).unwrap();
+        turn_on(&mut driver);
+        assert!(until(&mut driver, |driver, _| {
+            driver.set_force(Vector3::new(0.0, 0.0, 9.0), 0.0);
+            driver.counters().saturated > 3
+        }));
+        assert!((hand.applied().force_n.norm() - 5.0).abs() < 1e-9);
+        assert_eq!(driver.health().standing, Standing::Connected);
+    });
 }
 
 #[test]
 fn the_device_takes_force_away_and_says_why_and_only_a_command_brings_it_back() {
-    let (_serving, hand, settings) = rig(Emulated::default());
-    let mut driver = open(&settings).unwrap();
-    turn_on(&mut driver);
-    hand.set(|state| state.force_button = true);
-    let button = HandleEvent::ForceOff { cause: ForceOffCause::Button };
-    assert!(until(&mut driver, |driver, _| driver.take_event() == Some(button)));
-    assert!(!driver.is_force_wanted() && hand.applied().mode == Mode::Brake);
-    hand.set(|state| state.force_button = false);
-    turn_on(&mut driver);
-    let begin = Instant::now();
-    let fast = HandleEvent::ForceOff { cause: ForceOffCause::Velocity };
-    assert!(until(&mut driver, |driver, _| {
-        let moved_m = 2.5 * begin.elapsed().as_secs_f64();
-        hand.set(|state| state.position_m.x = moved_m.min(0.8));
-        driver.take_event() == Some(fast)
-    }));
-    assert!(until(&mut driver, |driver, _| driver.counters().force_cut == 2));
-    assert_eq!(driver.health().standing, Standing::Connected);
+    judged(|| {
+        let (_serving, hand, settings) = rig(Emulated::default());
+        let mut driver = open(&settings).unwrap();
+        turn_on(&mut driver);
+        hand.set(|state| state.force_button = true);
+        let button = HandleEvent::ForceOff { cause: ForceOffCause::Button };
+        assert!(until(&mut driver, |driver, _| driver.take_event() == Some(button)));
+        assert!(!driver.is_force_wanted() && hand.applied().mode == Mode::Brake);
+        hand.set(|state| state.force_button = false);
+        turn_on(&mut driver);
+        let begin = Instant::now();
+        let fast = HandleEvent::ForceOff { cause: ForceOffCause::Velocity };
+        assert!(until(&mut driver, |driver, _| {
+            let moved_m = 2.5 * begin.elapsed().as_secs_f64();
+            hand.set(|state| state.position_m.x = moved_m.min(0.8));
+            driver.take_event() == Some(fast)
+        }));
+        assert!(until(&mut driver, |driver, _| driver.counters().force_cut == 2));
+        assert_eq!(driver.health().standing, Standing::Connected);
+    });
 }
 
 #[test]
 fn two_devices_are_told_apart_by_their_serial_numbers() {
-    let (_one, one_hand, settings) = rig(Emulated { serial: 1, ..Emulated::default() });
-    let two_hand = Hand::default();
-    let two = Emulated { serial: 2, ..Emulated::default() }.with(two_hand.body()).serve().unwrap();
-    let mut first = open(&Settings { serial: Some(1), ..settings.clone() }).unwrap();
-    let emulator = Some(two.endpoint.parse().unwrap());
-    let mut second = open(&Settings { serial: Some(2), emulator, ..settings }).unwrap();
-    one_hand.set(|state| state.position_m.x = 0.01);
-    two_hand.set(|state| state.position_m.x = 0.02);
-    for (driver, x) in [(&mut first, 0.01), (&mut second, 0.02)] {
-        assert!(until(driver, |_, reading| reading.is_some_and(|reading| reading.value.position_m.x == x)));
-    }
-    assert_eq!((first.identity().serial.as_str(), second.identity().serial.as_str()), ("1", "2"));
+    judged(|| {
+        let (_one, one_hand, settings) = rig(Emulated { serial: 1, ..Emulated::default() });
+        let two_hand = Hand::default();
+        let two = Emulated { serial: 2, ..Emulated::default() }.with(two_hand.body()).serve().unwrap();
+        let mut first = open(&Settings { serial: Some(1), ..settings.clone() }).unwrap();
+        let emulator = Some(two.endpoint.parse().unwrap());
+        let mut second = open(&Settings { serial: Some(2), emulator, ..settings }).unwrap();
+        one_hand.set(|state| state.position_m.x = 0.01);
+        two_hand.set(|state| state.position_m.x = 0.02);
+        for (driver, x) in [(&mut first, 0.01), (&mut second, 0.02)] {
+            assert!(until(driver, |_, reading| reading.is_some_and(|reading| reading.value.position_m.x == x)));
+        }
+        assert_eq!((first.identity().serial.as_str(), second.identity().serial.as_str()), ("1", "2"));
+    });
 }

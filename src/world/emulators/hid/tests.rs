@@ -12,6 +12,7 @@ use nima_devices::{
     hid::{CapDriver, CapSettings, Held, HidIdentity, PedalDriver, PedalSettings, RELEASE_AFTER_S},
     transport::{Datagrams as _, MemoryDatagrams},
 };
+use nima_testing::real_time::judged;
 
 use crate::emulators::{
     EmulatedFault, Serving,
@@ -72,90 +73,101 @@ fn until_slot<D: Device + 'static>(
 
 #[test]
 fn both_kinds_of_cap_arrive_whole_at_their_rates() {
-    for (model, rate_hz) in [(CapModel::Split, 125.0), (CapModel::Combined, 62.5)] {
-        let serving = still_cap(model);
-        let mut driver = CapDriver::open(&cap_settings(&serving)).unwrap();
-        assert_eq!(driver.health().standing, Standing::Connected);
-        assert!(driver.identity().product.contains("Space") && driver.identity().serial == "EMULATED");
-        let mut newest = CapReading::default();
-        until(&mut driver, |driver, reading| {
-            newest = reading.map_or(newest, |reading| reading.value);
-            driver.health().rate_hz > 0.0
-        })
-        .unwrap();
-        // A client that is told the buttons only when they change misses what was before it.
-        assert!(same(&newest, &CapReading { buttons: newest.buttons, ..deflected() }), "{newest:?}");
-        let Health { rate_hz: rate, lost, damaged, refused, .. } = *driver.health();
-        assert!(rate > 0.5 * rate_hz && rate < 1.3 * rate_hz, "{model:?}: {rate} Hz");
-        assert_eq!((lost, damaged, refused), (0, 0, 0));
-    }
+    judged(|| {
+        for (model, rate_hz) in [(CapModel::Split, 125.0), (CapModel::Combined, 62.5)] {
+            let serving = still_cap(model);
+            let mut driver = CapDriver::open(&cap_settings(&serving)).unwrap();
+            assert_eq!(driver.health().standing, Standing::Connected);
+            assert!(driver.identity().product.contains("Space") && driver.identity().serial == "EMULATED");
+            let mut newest = CapReading::default();
+            until(&mut driver, |driver, reading| {
+                newest = reading.map_or(newest, |reading| reading.value);
+                driver.health().rate_hz > 0.0
+            })
+            .unwrap();
+            // A client that is told the buttons only when they change misses what was before it.
+            assert!(same(&newest, &CapReading { buttons: newest.buttons, ..deflected() }), "{newest:?}");
+            let Health { rate_hz: rate, lost, damaged, refused, .. } = *driver.health();
+            assert!(rate > 0.5 * rate_hz && rate < 1.3 * rate_hz, "{model:?}: {rate} Hz");
+            assert_eq!((lost, damaged, refused), (0, 0, 0));
+        }
+    });
 }
 
 #[test]
 fn every_axis_may_be_turned_the_other_way() {
-    let serving = still_cap(CapModel::Combined);
-    let settings = CapSettings { invert: [true, false, false, false, false, true], ..cap_settings(&serving) };
-    let mut driver = CapDriver::open(&settings).unwrap();
-    let mut expected = deflected();
-    expected.translation.x *= -1.0;
-    expected.rotation.z *= -1.0;
-    let found = |_: &mut CapDriver, reading: Option<Stamped<CapReading>>| {
-        reading.is_some_and(|reading| same(&CapReading { buttons: 2, ..reading.value }, &expected))
-    };
-    assert!(until(&mut driver, found).is_some());
+    judged(|| {
+        let serving = still_cap(CapModel::Combined);
+        let settings = CapSettings { invert: [true, false, false, false, false, true], ..cap_settings(&serving) };
+        let mut driver = CapDriver::open(&settings).unwrap();
+        let mut expected = deflected();
+        expected.translation.x *= -1.0;
+        expected.rotation.z *= -1.0;
+        let found = |_: &mut CapDriver, reading: Option<Stamped<CapReading>>| {
+            reading.is_some_and(|reading| same(&CapReading { buttons: 2, ..reading.value }, &expected))
+        };
+        assert!(until(&mut driver, found).is_some());
+    });
 }
 
 #[test]
 fn a_cap_that_falls_silent_while_deflected_lets_go_within_the_watchdogs_time() {
-    let serving = still_cap(CapModel::Split);
-    let mut driver = CapDriver::open(&cap_settings(&serving)).unwrap();
-    let both = |reading: &CapReading| reading.translation != Vector3::zeros() && reading.rotation != Vector3::zeros();
-    until(&mut driver, |_, reading| reading.is_some_and(|reading| both(&reading.value))).unwrap();
-    serving.faults.set(EmulatedFault::Silence);
-    let took_s = until(&mut driver, |_, reading| {
-        reading.is_some_and(|reading| CapReading { buttons: 0, ..reading.value } == CapReading::default())
+    judged(|| {
+        let serving = still_cap(CapModel::Split);
+        let mut driver = CapDriver::open(&cap_settings(&serving)).unwrap();
+        let both =
+            |reading: &CapReading| reading.translation != Vector3::zeros() && reading.rotation != Vector3::zeros();
+        until(&mut driver, |_, reading| reading.is_some_and(|reading| both(&reading.value))).unwrap();
+        serving.faults.set(EmulatedFault::Silence);
+        let took_s = until(&mut driver, |_, reading| {
+            reading.is_some_and(|reading| CapReading { buttons: 0, ..reading.value } == CapReading::default())
+        });
+        assert!(took_s.unwrap() > RELEASE_AFTER_S * 0.5);
+        assert_eq!(driver.health().lost, 2, "both halves");
+        assert_eq!(driver.health().standing, Standing::Connected, "silence at rest is no loss");
+        serving.faults.set(EmulatedFault::None);
+        assert!(until(&mut driver, |_, reading| reading.is_some_and(|reading| both(&reading.value))).is_some());
     });
-    assert!(took_s.unwrap() > RELEASE_AFTER_S * 0.5);
-    assert_eq!(driver.health().lost, 2, "both halves");
-    assert_eq!(driver.health().standing, Standing::Connected, "silence at rest is no loss");
-    serving.faults.set(EmulatedFault::None);
-    assert!(until(&mut driver, |_, reading| reading.is_some_and(|reading| both(&reading.value))).is_some());
 }
 
 #[test]
 fn a_cap_at_rest_says_zero_and_then_nothing_and_the_watchdog_stays_quiet() {
-    let body = |now_s: f64| if now_s < 0.3 { deflected() } else { CapReading::default() };
-    let serving = cap(None, CapModel::Combined, CapBody::moved_by(body)).serve().unwrap();
-    let mut driver = CapDriver::open(&cap_settings(&serving)).unwrap();
-    let mut newest = CapReading::default();
-    let mut readings = 0;
-    let begin = Instant::now();
-    while begin.elapsed() < Duration::from_millis(600) {
-        if let Some(reading) = driver.poll(begin.elapsed().as_secs_f64()) {
-            newest = reading.value;
-            readings += 1;
+    judged(|| {
+        let body = |now_s: f64| if now_s < 0.3 { deflected() } else { CapReading::default() };
+        let serving = cap(None, CapModel::Combined, CapBody::moved_by(body)).serve().unwrap();
+        let mut driver = CapDriver::open(&cap_settings(&serving)).unwrap();
+        let mut newest = CapReading::default();
+        let mut readings = 0;
+        let begin = Instant::now();
+        while begin.elapsed() < Duration::from_millis(600) {
+            if let Some(reading) = driver.poll(begin.elapsed().as_secs_f64()) {
+                newest = reading.value;
+                readings += 1;
+            }
+            std::thread::sleep(Duration::from_millis(1));
         }
-        std::thread::sleep(Duration::from_millis(1));
-    }
-    assert!(readings > 5 && readings < 40, "{readings}");
-    assert_eq!(newest, CapReading::default());
-    assert_eq!(driver.health().lost, 0);
+        assert!(readings > 5 && readings < 40, "{readings}");
+        assert_eq!(newest, CapReading::default());
+        assert_eq!(driver.health().lost, 0);
+    });
 }
 
 #[test]
 fn the_light_is_on_while_connected() {
-    let light = Arc::new(AtomicU32::new(9));
-    let seen = Arc::clone(&light);
-    let body = CapBody {
-        now: Box::new(|_| deflected()),
-        light: Box::new(move |on| seen.store(u32::from(on), Ordering::Release)),
-    };
-    let serving = cap(None, CapModel::Split, body).serve().unwrap();
-    let mut driver = CapDriver::open(&cap_settings(&serving)).unwrap();
-    assert!(until(&mut driver, |_, _| light.load(Ordering::Acquire) == 1).is_some());
-    drop(driver);
-    std::thread::sleep(Duration::from_millis(60));
-    assert_eq!(light.load(Ordering::Acquire), 0);
+    judged(|| {
+        let light = Arc::new(AtomicU32::new(9));
+        let seen = Arc::clone(&light);
+        let body = CapBody {
+            now: Box::new(|_| deflected()),
+            light: Box::new(move |on| seen.store(u32::from(on), Ordering::Release)),
+        };
+        let serving = cap(None, CapModel::Split, body).serve().unwrap();
+        let mut driver = CapDriver::open(&cap_settings(&serving)).unwrap();
+        assert!(until(&mut driver, |_, _| light.load(Ordering::Acquire) == 1).is_some());
+        drop(driver);
+        std::thread::sleep(Duration::from_millis(60));
+        assert_eq!(light.load(Ordering::Acquire), 0);
+    });
 }
 
 /// What a driver must come to under a fault.
@@ -173,60 +185,69 @@ const CAP_FAULTS: [(EmulatedFault, Expected); 6] = [
 
 #[test]
 fn a_cap_comes_back_from_every_fault_without_a_restart() {
-    let serving = still_cap(CapModel::Split);
-    let settings = cap_settings(&serving);
-    let mut slot = Slot::start("cap", move || CapDriver::open(&settings)).unwrap();
-    let begin = Instant::now();
-    let mut held = Held::<CapReading>::default();
-    for (fault, expected) in CAP_FAULTS {
-        assert!(until_slot(&mut slot, begin, |_, reading| reading.is_some()), "before {fault:?}");
-        serving.faults.set(fault);
-        let set = Instant::now();
-        assert!(until_slot(&mut slot, begin, |health, _| expected(health)), "{fault:?}: {:?}", slot.health());
-        eprintln!("cap: {fault:?} was seen after {:.0} ms", set.elapsed().as_secs_f64() * 1e3);
-        if slot.health().standing != Standing::Connected {
-            assert_eq!(held.update(None, slot.health()), CapReading::default(), "a lost cap is at rest");
+    judged(|| {
+        let serving = still_cap(CapModel::Split);
+        let settings = cap_settings(&serving);
+        let mut slot = Slot::start("cap", move || CapDriver::open(&settings)).unwrap();
+        let begin = Instant::now();
+        let mut held = Held::<CapReading>::default();
+        for (fault, expected) in CAP_FAULTS {
+            assert!(until_slot(&mut slot, begin, |_, reading| reading.is_some()), "before {fault:?}");
+            serving.faults.set(fault);
+            let set = Instant::now();
+            assert!(until_slot(&mut slot, begin, |health, _| expected(health)), "{fault:?}: {:?}", slot.health());
+            eprintln!("cap: {fault:?} was seen after {:.0} ms", set.elapsed().as_secs_f64() * 1e3);
+            if slot.health().standing != Standing::Connected {
+                assert_eq!(held.update(None, slot.health()), CapReading::default(), "a lost cap is at rest");
+            }
+            serving.faults.set(EmulatedFault::None);
+            let moves = |reading: CapReading| reading.translation != Vector3::zeros();
+            assert!(
+                until_slot(&mut slot, begin, |health, reading| moves(held.update(reading, health))),
+                "it does not come back from {fault:?}"
+            );
         }
-        serving.faults.set(EmulatedFault::None);
-        let moves = |reading: CapReading| reading.translation != Vector3::zeros();
-        assert!(
-            until_slot(&mut slot, begin, |health, reading| moves(held.update(reading, health))),
-            "it does not come back from {fault:?}"
-        );
-    }
+    });
 }
 
 #[test]
 fn late_lost_and_reordered_reports_leave_a_cap_connected_with_its_values() {
-    for fault in [EmulatedFault::Delay, EmulatedFault::Loss, EmulatedFault::Reorder] {
-        let serving = still_cap(CapModel::Combined);
-        serving.faults.set(fault);
-        let mut driver = CapDriver::open(&cap_settings(&serving)).unwrap();
-        let mut good = 0;
-        let enough = |driver: &mut CapDriver, reading: Option<Stamped<CapReading>>| {
-            good += u32::from(
-                reading.is_some_and(|reading| same(&CapReading { buttons: 2, ..reading.value }, &deflected())),
-            );
-            driver.health().standing == Standing::Connected && good > 10
-        };
-        assert!(until(&mut driver, enough).is_some(), "{fault:?}");
-    }
+    judged(|| {
+        for fault in [EmulatedFault::Delay, EmulatedFault::Loss, EmulatedFault::Reorder] {
+            let serving = still_cap(CapModel::Combined);
+            serving.faults.set(fault);
+            let mut driver = CapDriver::open(&cap_settings(&serving)).unwrap();
+            let mut good = 0;
+            let enough = |driver: &mut CapDriver, reading: Option<Stamped<CapReading>>| {
+                good += u32::from(
+                    reading.is_some_and(|reading| same(&CapReading { buttons: 2, ..reading.value }, &deflected())),
+                );
+                driver.health().standing == Standing::Connected && good > 10
+            };
+            assert!(until(&mut driver, enough).is_some(), "{fault:?}");
+        }
+    });
 }
 
 #[test]
 fn the_daemon_gives_the_same_values_as_the_cap_itself() {
-    let serving = spacenavd(
-        None,
-        CapBody::moved_by(|now_s| if now_s < 0.4 { CapReading { buttons: 0, ..deflected() } } else { deflected() }),
-    )
-    .serve()
-    .unwrap();
-    let mut driver = CapDriver::open(&cap_settings(&serving)).unwrap();
-    assert!(
-        until(&mut driver, |_, reading| reading.is_some_and(|reading| same(&reading.value, &deflected()))).is_some()
-    );
-    serving.faults.set(EmulatedFault::Disconnect);
-    assert!(until(&mut driver, |driver, _| driver.health().standing == Standing::Lost(Loss::Disconnected)).is_some());
+    judged(|| {
+        let serving = spacenavd(
+            None,
+            CapBody::moved_by(|now_s| if now_s < 0.4 { CapReading { buttons: 0, ..deflected() } } else { deflected() }),
+        )
+        .serve()
+        .unwrap();
+        let mut driver = CapDriver::open(&cap_settings(&serving)).unwrap();
+        assert!(
+            until(&mut driver, |_, reading| reading.is_some_and(|reading| same(&reading.value, &deflected())))
+                .is_some()
+        );
+        serving.faults.set(EmulatedFault::Disconnect);
+        assert!(
+            until(&mut driver, |driver, _| driver.health().standing == Standing::Lost(Loss::Disconnected)).is_some()
+        );
+    });
 }
 
 /// A pedal whose switches follow a number.
@@ -239,81 +260,90 @@ fn pedal(model: PedalModel) -> (Serving, Arc<AtomicU32>) {
 
 #[test]
 fn both_kinds_of_pedal_tell_presses_and_releases_in_time() {
-    for model in [PedalModel::Keyboard, PedalModel::Switches] {
-        let (serving, foot) = pedal(model);
-        let settings = PedalSettings { presence: Some(1), ..pedal_settings(&serving) };
-        let mut driver = PedalDriver::open(&settings).unwrap();
-        let roles = driver.roles();
-        std::thread::sleep(Duration::from_millis(30));
-        for pressed in [0b01, 0b11, 0b10, 0b100, 0] {
-            foot.store(pressed, Ordering::Release);
-            let told = |_: &mut PedalDriver, reading: Option<Stamped<PedalReading>>| {
-                reading.is_some_and(|reading| {
-                    let PedalReading { pressed: got } = reading.value;
-                    assert_eq!(roles.clutch(reading.value), got & 1 == 1);
-                    assert_eq!(roles.presence(reading.value), Some(got & 2 == 2));
-                    got == pressed
-                })
-            };
-            assert!(until(&mut driver, told).is_some(), "{model:?}: {pressed:#b}");
+    judged(|| {
+        for model in [PedalModel::Keyboard, PedalModel::Switches] {
+            let (serving, foot) = pedal(model);
+            let settings = PedalSettings { presence: Some(1), ..pedal_settings(&serving) };
+            let mut driver = PedalDriver::open(&settings).unwrap();
+            let roles = driver.roles();
+            std::thread::sleep(Duration::from_millis(30));
+            for pressed in [0b01, 0b11, 0b10, 0b100, 0] {
+                foot.store(pressed, Ordering::Release);
+                let told = |_: &mut PedalDriver, reading: Option<Stamped<PedalReading>>| {
+                    reading.is_some_and(|reading| {
+                        let PedalReading { pressed: got } = reading.value;
+                        assert_eq!(roles.clutch(reading.value), got & 1 == 1);
+                        assert_eq!(roles.presence(reading.value), Some(got & 2 == 2));
+                        got == pressed
+                    })
+                };
+                assert!(until(&mut driver, told).is_some(), "{model:?}: {pressed:#b}");
+            }
+            assert_eq!(driver.health().damaged + driver.health().refused + driver.health().lost, 0);
         }
-        assert_eq!(driver.health().damaged + driver.health().refused + driver.health().lost, 0);
-    }
+    });
 }
 
 #[test]
 fn a_pressed_pedal_that_is_unplugged_or_broken_is_released_and_stays_so_until_it_speaks_again() {
-    for (fault, loss) in [
-        (EmulatedFault::Disconnect, Loss::Disconnected),
-        (EmulatedFault::WrongFrame, Loss::Corrupt),
-        (EmulatedFault::NotANumber, Loss::Implausible),
-    ] {
-        let (serving, foot) = pedal(PedalModel::Keyboard);
-        let settings = pedal_settings(&serving);
-        let mut slot = Slot::start("pedal", move || PedalDriver::open(&settings)).unwrap();
-        let (begin, mut held) = (Instant::now(), Held::<PedalReading>::default());
-        assert!(until_slot(&mut slot, begin, |health, _| health.standing == Standing::Connected));
-        foot.store(1, Ordering::Release);
-        assert!(until_slot(&mut slot, begin, |health, reading| held.update(reading, health).pressed == 1));
-        serving.faults.set(fault);
-        let mut lost = false;
-        assert!(
-            until_slot(&mut slot, begin, |health, reading| {
-                lost |= health.standing == Standing::Lost(loss);
-                lost && held.update(reading, health).pressed == 0
-            }),
-            "{fault:?}: {:?}",
-            slot.health()
-        );
-        serving.faults.set(EmulatedFault::None);
-        assert!(until_slot(&mut slot, begin, |health, reading| {
-            assert_eq!(held.update(reading, health).pressed, 0, "it must be pressed anew");
-            health.standing == Standing::Connected
-        }));
-        foot.store(0, Ordering::Release);
-        std::thread::sleep(Duration::from_millis(30));
-        foot.store(1, Ordering::Release);
-        assert!(until_slot(&mut slot, begin, |health, reading| held.update(reading, health).pressed == 1), "{fault:?}");
-    }
+    judged(|| {
+        for (fault, loss) in [
+            (EmulatedFault::Disconnect, Loss::Disconnected),
+            (EmulatedFault::WrongFrame, Loss::Corrupt),
+            (EmulatedFault::NotANumber, Loss::Implausible),
+        ] {
+            let (serving, foot) = pedal(PedalModel::Keyboard);
+            let settings = pedal_settings(&serving);
+            let mut slot = Slot::start("pedal", move || PedalDriver::open(&settings)).unwrap();
+            let (begin, mut held) = (Instant::now(), Held::<PedalReading>::default());
+            assert!(until_slot(&mut slot, begin, |health, _| health.standing == Standing::Connected));
+            foot.store(1, Ordering::Release);
+            assert!(until_slot(&mut slot, begin, |health, reading| held.update(reading, health).pressed == 1));
+            serving.faults.set(fault);
+            let mut lost = false;
+            assert!(
+                until_slot(&mut slot, begin, |health, reading| {
+                    lost |= health.standing == Standing::Lost(loss);
+                    lost && held.update(reading, health).pressed == 0
+                }),
+                "{fault:?}: {:?}",
+                slot.health()
+            );
+            serving.faults.set(EmulatedFault::None);
+            assert!(until_slot(&mut slot, begin, |health, reading| {
+                assert_eq!(held.update(reading, health).pressed, 0, "it must be pressed anew");
+                health.standing == Standing::Connected
+            }));
+            foot.store(0, Ordering::Release);
+            std::thread::sleep(Duration::from_millis(30));
+            foot.store(1, Ordering::Release);
+            assert!(
+                until_slot(&mut slot, begin, |health, reading| held.update(reading, health).pressed == 1),
+                "{fault:?}"
+            );
+        }
+    });
 }
 
 #[test]
 fn one_report_that_is_not_understood_releases_everything_at_once() {
-    let [here, mut there] = MemoryDatagrams::pair();
-    let identity = HidIdentity { vendor: 0x05f3, product: 0x00ff, ..HidIdentity::default() };
-    let mut driver = PedalDriver::over(Box::new(here), &identity, &PedalSettings::default()).unwrap();
-    there.send(&[1, 0]).unwrap();
-    assert_eq!(driver.poll(0.0).unwrap().value.pressed, 1);
-    assert!(driver.poll(0.1).is_none(), "a foot that does not move says nothing");
-    there.send(&[0xf1, 0]).unwrap();
-    assert_eq!(driver.poll(0.2).unwrap().value.pressed, 0);
-    assert_eq!((driver.health().refused, driver.health().standing), (1, Standing::Connected));
-    there.send(&[1, 0]).unwrap();
-    assert_eq!(driver.poll(0.3).unwrap().value.pressed, 1);
-    there.cut();
-    assert_eq!(driver.poll(0.4).unwrap().value.pressed, 0, "gone is released");
-    assert!(driver.poll(0.5).is_none());
-    assert_eq!(driver.health().standing, Standing::Lost(Loss::Disconnected));
+    judged(|| {
+        let [here, mut there] = MemoryDatagrams::pair();
+        let identity = HidIdentity { vendor: 0x05f3, product: 0x00ff, ..HidIdentity::default() };
+        let mut driver = PedalDriver::over(Box::new(here), &identity, &PedalSettings::default()).unwrap();
+        there.send(&[1, 0]).unwrap();
+        assert_eq!(driver.poll(0.0).unwrap().value.pressed, 1);
+        assert!(driver.poll(0.1).is_none(), "a foot that does not move says nothing");
+        there.send(&[0xf1, 0]).unwrap();
+        assert_eq!(driver.poll(0.2).unwrap().value.pressed, 0);
+        assert_eq!((driver.health().refused, driver.health().standing), (1, Standing::Connected));
+        there.send(&[1, 0]).unwrap();
+        assert_eq!(driver.poll(0.3).unwrap().value.pressed, 1);
+        there.cut();
+        assert_eq!(driver.poll(0.4).unwrap().value.pressed, 0, "gone is released");
+        assert!(driver.poll(0.5).is_none());
+        assert_eq!(driver.health().standing, Standing::Lost(Loss::Disconnected));
+    });
 }
 
 #[test]

@@ -20,6 +20,7 @@ use nima_devices::{
         session::{Failure, Lines},
     },
 };
+use nima_testing::real_time::judged;
 
 use crate::emulators::{
     EmulatedFault, Serving,
@@ -134,246 +135,267 @@ fn logged() -> (Log, impl Body) {
 
 #[test]
 fn it_connects_and_loses_nothing() {
-    let (_serving, settings) = started(patient());
-    let mut ticking = Ticking::open(&settings);
-    assert_eq!(ticking.driver.identity().serial, "EMULATED-1");
-    assert_eq!(ticking.driver.identity().firmware, "0x02050002");
-    for _ in 0..800 {
-        ticking.tick();
-    }
-    let health = ticking.driver.health();
-    assert!(health.readings > 700, "{health:?}");
-    assert_eq!((health.lost, health.damaged, health.out_of_order, health.refused), (0, 0, 0, 0), "{health:?}");
-    assert_eq!(health.standing, Standing::Connected);
-    let reading = ticking.latest();
-    assert!(!reading.servoing && reading.joint_rad.iter().zip(&HOME_RAD).all(|(is, was)| (is - was).abs() < 1e-6));
-    let told = ticking.driver.tool();
-    let expected = tool(&HOME_RAD);
-    assert!((told.position_m - expected.translation.vector).amax() < 1e-6);
-    assert!(told.orientation.angle_to(&expected.rotation) < 1e-5);
-    assert_eq!(ticking.driver.aim(&HOME_RAD), Err(Refusal::NotServoing));
+    judged(|| {
+        let (_serving, settings) = started(patient());
+        let mut ticking = Ticking::open(&settings);
+        assert_eq!(ticking.driver.identity().serial, "EMULATED-1");
+        assert_eq!(ticking.driver.identity().firmware, "0x02050002");
+        for _ in 0..800 {
+            ticking.tick();
+        }
+        let health = ticking.driver.health();
+        assert!(health.readings > 700, "{health:?}");
+        assert_eq!((health.lost, health.damaged, health.out_of_order, health.refused), (0, 0, 0, 0), "{health:?}");
+        assert_eq!(health.standing, Standing::Connected);
+        let reading = ticking.latest();
+        assert!(!reading.servoing && reading.joint_rad.iter().zip(&HOME_RAD).all(|(is, was)| (is - was).abs() < 1e-6));
+        let told = ticking.driver.tool();
+        let expected = tool(&HOME_RAD);
+        assert!((told.position_m - expected.translation.vector).amax() < 1e-6);
+        assert!(told.orientation.angle_to(&expected.rotation) < 1e-5);
+        assert_eq!(ticking.driver.aim(&HOME_RAD), Err(Refusal::NotServoing));
+    });
 }
 
 #[test]
 fn low_level_moves_to_targets_over_the_turn_without_jumps() {
-    let (log, body) = logged();
-    let (serving, settings) = started_with(patient(), body);
-    let mut ticking = Ticking::open(&settings);
-    ticking.enter_low_level();
-    assert_eq!(ticking.driver.twist(&ToolTwist::default()), Err(Refusal::NotSingleLevel));
-    assert_eq!(ticking.driver.aim(&[f64::NAN; ARM_JOINTS]), Err(Refusal::NotFinite));
-    // The first joint crosses from 0 to 360 degrees on the wire, the third from below half a turn to above it.
-    let mut target = HOME_RAD;
-    (target[0], target[2], target[6]) = (-0.15, 3.3, 1.2);
-    let near = |reading: &ArmReading| reading.joint_rad.iter().zip(&target).all(|(is, to)| (is - to).abs() < 1e-3);
-    let arrived = (0..2000).any(|_| {
-        ticking.lead(&target);
-        near(&ticking.latest())
-    });
-    assert!(arrived, "{:?}", ticking.latest());
-    for _ in 0..100 {
-        ticking.lead(&HOME_RAD);
-    }
-    // Dropped in full motion.
-    assert_eq!(ticking.driver.health().lost, 0);
-    drop(ticking);
-    assert_eq!(mode(&settings), 2, "back in single level");
-    let log = log.lock().unwrap().clone();
-    let mut last = HOME_RAD;
-    for asked in &log {
-        if let Asked::Joints(angles) = asked {
-            for j in 0..ARM_JOINTS {
-                let step = (angles[j] - last[j]).abs();
-                // On a busy machine some commands come between two steps of the body.
-                assert!(step <= GEN3[j].speed_rad_s * STEP_MAX_S * 20.0, "joint {j} jumps by {step}");
-            }
-            last = *angles;
+    judged(|| {
+        let (log, body) = logged();
+        let (serving, settings) = started_with(patient(), body);
+        let mut ticking = Ticking::open(&settings);
+        ticking.enter_low_level();
+        assert_eq!(ticking.driver.twist(&ToolTwist::default()), Err(Refusal::NotSingleLevel));
+        assert_eq!(ticking.driver.aim(&[f64::NAN; ARM_JOINTS]), Err(Refusal::NotFinite));
+        // The first joint crosses from 0 to 360 degrees on the wire, the third from below half a turn to above it.
+        let mut target = HOME_RAD;
+        (target[0], target[2], target[6]) = (-0.15, 3.3, 1.2);
+        let near = |reading: &ArmReading| reading.joint_rad.iter().zip(&target).all(|(is, to)| (is - to).abs() < 1e-3);
+        let arrived = (0..2000).any(|_| {
+            ticking.lead(&target);
+            near(&ticking.latest())
+        });
+        assert!(arrived, "{:?}", ticking.latest());
+        for _ in 0..100 {
+            ticking.lead(&HOME_RAD);
         }
-    }
-    assert_eq!(log.last(), Some(&Asked::Rest));
-    assert!(serving.is_serving());
-    let mut lines = raw(&settings);
-    assert!(lines.ask(Rpc::ARM_STATE, &()).is_ok_and(|payload| payload == [8, 7]), "ready, without a fault");
+        // Dropped in full motion.
+        assert_eq!(ticking.driver.health().lost, 0);
+        drop(ticking);
+        assert_eq!(mode(&settings), 2, "back in single level");
+        let log = log.lock().unwrap().clone();
+        let mut last = HOME_RAD;
+        for asked in &log {
+            if let Asked::Joints(angles) = asked {
+                for j in 0..ARM_JOINTS {
+                    let step = (angles[j] - last[j]).abs();
+                    // On a busy machine some commands come between two steps of the body.
+                    assert!(step <= GEN3[j].speed_rad_s * STEP_MAX_S * 20.0, "joint {j} jumps by {step}");
+                }
+                last = *angles;
+            }
+        }
+        assert_eq!(log.last(), Some(&Asked::Rest));
+        assert!(serving.is_serving());
+        let mut lines = raw(&settings);
+        assert!(lines.ask(Rpc::ARM_STATE, &()).is_ok_and(|payload| payload == [8, 7]), "ready, without a fault");
+    });
 }
 
 #[test]
 fn a_command_beyond_the_limits_is_refused_counted_and_ends_the_servoing() {
-    let (_serving, settings) = started(patient());
-    let mut ticking = Ticking::open(&Settings { speed_fraction: 0.3, ..settings });
-    ticking.enter_low_level();
-    let mut jump = *ticking.driver.command_rad();
-    jump[4] += 0.02;
-    let refused = Err(Refusal::Beyond { joint: 5, beyond: Beyond::Speed });
-    assert_eq!(ticking.driver.aim(&jump), refused);
-    assert_eq!(ticking.driver.health().refused, 1);
-    assert!(ticking.until(1000, |ticking| !ticking.latest().servoing));
-    assert!(
-        ticking.latest().joint_rad.iter().zip(&HOME_RAD).all(|(is, was)| (is - was).abs() < 1e-6),
-        "it did not move"
-    );
-    assert_eq!(ticking.driver.health().standing, Standing::Connected);
-    ticking.enter_low_level();
+    judged(|| {
+        let (_serving, settings) = started(patient());
+        let mut ticking = Ticking::open(&Settings { speed_fraction: 0.3, ..settings });
+        ticking.enter_low_level();
+        let mut jump = *ticking.driver.command_rad();
+        jump[4] += 0.02;
+        let refused = Err(Refusal::Beyond { joint: 5, beyond: Beyond::Speed });
+        assert_eq!(ticking.driver.aim(&jump), refused);
+        assert_eq!(ticking.driver.health().refused, 1);
+        assert!(ticking.until(1000, |ticking| !ticking.latest().servoing));
+        assert!(
+            ticking.latest().joint_rad.iter().zip(&HOME_RAD).all(|(is, was)| (is - was).abs() < 1e-6),
+            "it did not move"
+        );
+        assert_eq!(ticking.driver.health().standing, Standing::Connected);
+        ticking.enter_low_level();
+    });
 }
 
 #[test]
 fn leaving_brakes_first_and_the_arm_can_be_taken_over_by_others() {
-    let (_serving, settings) = started(patient());
-    let mut ticking = Ticking::open(&settings);
-    ticking.enter_low_level();
-    for _ in 0..50 {
-        ticking.lead(&[0.3; ARM_JOINTS]);
-    }
-    ticking.driver.leave_low_level();
-    assert!(ticking.until(1000, |ticking| !ticking.latest().servoing));
-    assert!(ticking.until(1000, |_| mode(&settings) == 2));
-    ticking.enter_low_level();
-    // Somebody else takes the arm back to the single level.
-    let mut other = raw(&settings);
-    other.ask(Rpc::SET_SERVOING_MODE, &Number { value: 2 }).unwrap();
-    assert!(ticking.until(500, |ticking| ticking.driver.ousted() == 1));
-    assert!(ticking.until(500, |ticking| !ticking.latest().servoing));
-    assert_eq!(ticking.driver.health().standing, Standing::Connected);
-    assert_eq!(ticking.driver.answer().unwrap().sub_error, sub::WRONG_SERVOING_MODE);
+    judged(|| {
+        let (_serving, settings) = started(patient());
+        let mut ticking = Ticking::open(&settings);
+        ticking.enter_low_level();
+        for _ in 0..50 {
+            ticking.lead(&[0.3; ARM_JOINTS]);
+        }
+        ticking.driver.leave_low_level();
+        assert!(ticking.until(1000, |ticking| !ticking.latest().servoing));
+        assert!(ticking.until(1000, |_| mode(&settings) == 2));
+        ticking.enter_low_level();
+        // Somebody else takes the arm back to the single level.
+        let mut other = raw(&settings);
+        other.ask(Rpc::SET_SERVOING_MODE, &Number { value: 2 }).unwrap();
+        assert!(ticking.until(500, |ticking| ticking.driver.ousted() == 1));
+        assert!(ticking.until(500, |ticking| !ticking.latest().servoing));
+        assert_eq!(ticking.driver.health().standing, Standing::Connected);
+        assert_eq!(ticking.driver.answer().unwrap().sub_error, sub::WRONG_SERVOING_MODE);
+    });
 }
 
 #[test]
 fn a_twist_moves_the_tool_and_ends_when_it_is_not_renewed() {
-    let (log, body) = logged();
-    let (_serving, settings) = started_with(patient(), body);
-    let settings = Settings { twist_m_s: 0.05, ..settings };
-    let mut ticking = Ticking::open(&settings);
-    assert!(ticking.until(500, |ticking| ticking.reading.is_some()));
-    let begin_m = ticking.driver.tool().position_m;
-    let twist = ToolTwist { linear_m_s: Vector3::new(0.0, 0.0, 3.0), ..ToolTwist::default() };
-    for _ in 0..300 {
+    judged(|| {
+        let (log, body) = logged();
+        let (_serving, settings) = started_with(patient(), body);
+        let settings = Settings { twist_m_s: 0.05, ..settings };
+        let mut ticking = Ticking::open(&settings);
+        assert!(ticking.until(500, |ticking| ticking.reading.is_some()));
+        let begin_m = ticking.driver.tool().position_m;
+        let twist = ToolTwist { linear_m_s: Vector3::new(0.0, 0.0, 3.0), ..ToolTwist::default() };
+        for _ in 0..300 {
+            ticking.driver.twist(&twist).unwrap();
+            ticking.tick();
+        }
+        assert_eq!(ticking.driver.enter_low_level(), Err(Refusal::Moving));
+        let moved_m = ticking.driver.tool().position_m - begin_m;
+        assert!(moved_m.z > 0.005 && moved_m.xy().amax() < 0.2 * moved_m.z, "{moved_m}");
+        let moving = Asked::Twist {
+            frame: TwistFrame::Base,
+            linear_m_s: Vector3::new(0.0, 0.0, f64::from(0.05_f32)),
+            angular_rad_s: Vector3::zeros(),
+        };
+        assert_eq!(log.lock().unwrap().last(), Some(&moving), "cut to the setting");
+        assert!(ticking.until(1000, |_| log.lock().unwrap().last() == Some(&Asked::Rest)), "not renewed");
         ticking.driver.twist(&twist).unwrap();
-        ticking.tick();
-    }
-    assert_eq!(ticking.driver.enter_low_level(), Err(Refusal::Moving));
-    let moved_m = ticking.driver.tool().position_m - begin_m;
-    assert!(moved_m.z > 0.005 && moved_m.xy().amax() < 0.2 * moved_m.z, "{moved_m}");
-    let moving = Asked::Twist {
-        frame: TwistFrame::Base,
-        linear_m_s: Vector3::new(0.0, 0.0, f64::from(0.05_f32)),
-        angular_rad_s: Vector3::zeros(),
-    };
-    assert_eq!(log.lock().unwrap().last(), Some(&moving), "cut to the setting");
-    assert!(ticking.until(1000, |_| log.lock().unwrap().last() == Some(&Asked::Rest)), "not renewed");
-    ticking.driver.twist(&twist).unwrap();
-    assert!(ticking.until(500, |_| log.lock().unwrap().last() == Some(&moving)));
-    ticking.driver.stop();
-    assert!(ticking.until(50, |_| log.lock().unwrap().last() == Some(&Asked::Rest)), "stopped");
-    ticking.driver.twist(&twist).unwrap();
-    assert!(ticking.until(500, |_| log.lock().unwrap().last() == Some(&moving)));
-    drop(ticking);
-    let end = Instant::now() + Duration::from_secs(2);
-    while log.lock().unwrap().last() != Some(&Asked::Rest) {
-        assert!(Instant::now() < end, "released when dropped");
-        sleep(Duration::from_millis(1));
-    }
+        assert!(ticking.until(500, |_| log.lock().unwrap().last() == Some(&moving)));
+        ticking.driver.stop();
+        assert!(ticking.until(50, |_| log.lock().unwrap().last() == Some(&Asked::Rest)), "stopped");
+        ticking.driver.twist(&twist).unwrap();
+        assert!(ticking.until(500, |_| log.lock().unwrap().last() == Some(&moving)));
+        drop(ticking);
+        let end = Instant::now() + Duration::from_secs(2);
+        while log.lock().unwrap().last() != Some(&Asked::Rest) {
+            assert!(Instant::now() < end, "released when dropped");
+            sleep(Duration::from_millis(1));
+        }
+    });
 }
 
 #[test]
 fn the_emulator_refuses_what_the_arm_refuses() {
-    let (_serving, settings) = started(patient());
-    let mut stranger = Lines::connect(&settings).unwrap();
-    assert_eq!(stranger.ask(Rpc::ARM_STATE, &()), Err(Failure::Refused(3, sub::INVALID_SESSION)));
-    let mut lines = raw(&settings);
-    let wrong_mode = Err(Failure::Refused(3, sub::WRONG_SERVOING_MODE));
-    assert_eq!(lines.ask_cyclic(Rpc::REFRESH, &refresh(1, &HOME_RAD)), wrong_mode);
-    assert_eq!(lines.ask_cyclic(Rpc::ARM_STATE, &()), Err(Failure::Refused(1, sub::UNSUPPORTED_SERVICE)));
-    assert_eq!(lines.ask(Rpc { service: 2, function: 160 }, &()), Err(Failure::Refused(1, sub::UNSUPPORTED_METHOD)));
-    lines.ask(Rpc::SET_SERVOING_MODE, &Number { value: 3 }).unwrap();
-    assert!(lines.ask_cyclic(Rpc::REFRESH, &refresh(1, &HOME_RAD)).is_ok());
-    assert_eq!(lines.ask(Rpc::SEND_TWIST, &nima_devices::kinova::messages::TwistCommand::default()), wrong_mode);
-    // A jump trips the following error, and stays until it is cleared.
-    let mut jump = HOME_RAD;
-    jump[4] += 0.2;
-    lines.ask_cyclic(Rpc::REFRESH, &refresh(2, &jump)).unwrap();
-    let payload = lines.ask_cyclic(Rpc::REFRESH, &refresh(3, &HOME_RAD)).unwrap();
-    let told = nima_devices::kinova::feedback::Feedback::decode(&payload).unwrap();
-    assert_eq!(told.actuators[4].banks.fault[0], faults::FOLLOWING_ERROR);
-    assert!((unwrapped(told.actuators[4].position_deg, 0.0) - HOME_RAD[4]).abs() < 1e-6, "it did not move");
-    assert_eq!(told.state, nima_devices::kinova::messages::ArmState::IN_FAULT);
-    lines.ask(Rpc::SET_SERVOING_MODE, &Number { value: 2 }).unwrap();
-    let in_fault = Err(Failure::Refused(3, sub::IN_FAULT));
-    assert_eq!(lines.ask(Rpc::SET_SERVOING_MODE, &Number { value: 3 }), in_fault);
-    lines.ask(Rpc::CLEAR_FAULTS, &()).unwrap();
-    assert!(lines.ask(Rpc::SET_SERVOING_MODE, &Number { value: 3 }).is_ok());
+    judged(|| {
+        let (_serving, settings) = started(patient());
+        let mut stranger = Lines::connect(&settings).unwrap();
+        assert_eq!(stranger.ask(Rpc::ARM_STATE, &()), Err(Failure::Refused(3, sub::INVALID_SESSION)));
+        let mut lines = raw(&settings);
+        let wrong_mode = Err(Failure::Refused(3, sub::WRONG_SERVOING_MODE));
+        assert_eq!(lines.ask_cyclic(Rpc::REFRESH, &refresh(1, &HOME_RAD)), wrong_mode);
+        assert_eq!(lines.ask_cyclic(Rpc::ARM_STATE, &()), Err(Failure::Refused(1, sub::UNSUPPORTED_SERVICE)));
+        assert_eq!(
+            lines.ask(Rpc { service: 2, function: 160 }, &()),
+            Err(Failure::Refused(1, sub::UNSUPPORTED_METHOD))
+        );
+        lines.ask(Rpc::SET_SERVOING_MODE, &Number { value: 3 }).unwrap();
+        assert!(lines.ask_cyclic(Rpc::REFRESH, &refresh(1, &HOME_RAD)).is_ok());
+        assert_eq!(lines.ask(Rpc::SEND_TWIST, &nima_devices::kinova::messages::TwistCommand::default()), wrong_mode);
+        // A jump trips the following error, and stays until it is cleared.
+        let mut jump = HOME_RAD;
+        jump[4] += 0.2;
+        lines.ask_cyclic(Rpc::REFRESH, &refresh(2, &jump)).unwrap();
+        let payload = lines.ask_cyclic(Rpc::REFRESH, &refresh(3, &HOME_RAD)).unwrap();
+        let told = nima_devices::kinova::feedback::Feedback::decode(&payload).unwrap();
+        assert_eq!(told.actuators[4].banks.fault[0], faults::FOLLOWING_ERROR);
+        assert!((unwrapped(told.actuators[4].position_deg, 0.0) - HOME_RAD[4]).abs() < 1e-6, "it did not move");
+        assert_eq!(told.state, nima_devices::kinova::messages::ArmState::IN_FAULT);
+        lines.ask(Rpc::SET_SERVOING_MODE, &Number { value: 2 }).unwrap();
+        let in_fault = Err(Failure::Refused(3, sub::IN_FAULT));
+        assert_eq!(lines.ask(Rpc::SET_SERVOING_MODE, &Number { value: 3 }), in_fault);
+        lines.ask(Rpc::CLEAR_FAULTS, &()).unwrap();
+        assert!(lines.ask(Rpc::SET_SERVOING_MODE, &Number { value: 3 }).is_ok());
+    });
 }
 
 #[test]
 fn a_missed_cycle_is_a_fault_that_only_a_command_clears() {
-    let (_serving, settings) = started(Emulated { watchdog_ms: 200.0, ..Emulated::default() });
-    let mut ticking = Ticking::open(&settings);
-    ticking.enter_low_level();
-    sleep(Duration::from_millis(400));
-    assert!(ticking.until(100, |ticking| matches!(ticking.driver.health().standing, Standing::Lost(_))));
-    let lost = Standing::Lost(Loss::Device { code: faults::COMMUNICATION_TICK_LOST });
-    assert_eq!(ticking.driver.health().standing, lost);
-    assert!(ticking.driver.faults().to_string().contains("joint 7: cyclic command missed (0x400000)"));
-    assert_eq!(ticking.driver.aim(&HOME_RAD), Err(Refusal::Lost));
-    drop(ticking);
-    let clearing = FaultClearing::default();
-    for _ in 0..2 {
-        let trouble = open_clearing(&settings, &clearing).unwrap_err();
-        assert!(matches!(&trouble, Trouble::DeviceFault { words, .. } if words.contains("missed")), "{trouble}");
-    }
-    clearing.command();
-    let mut ticking = Ticking { driver: open_clearing(&settings, &clearing).unwrap(), now_s: 0.0, reading: None };
-    ticking.enter_low_level();
+    judged(|| {
+        let (_serving, settings) = started(Emulated { watchdog_ms: 200.0, ..Emulated::default() });
+        let mut ticking = Ticking::open(&settings);
+        ticking.enter_low_level();
+        sleep(Duration::from_millis(400));
+        assert!(ticking.until(100, |ticking| matches!(ticking.driver.health().standing, Standing::Lost(_))));
+        let lost = Standing::Lost(Loss::Device { code: faults::COMMUNICATION_TICK_LOST });
+        assert_eq!(ticking.driver.health().standing, lost);
+        assert!(ticking.driver.faults().to_string().contains("joint 7: cyclic command missed (0x400000)"));
+        assert_eq!(ticking.driver.aim(&HOME_RAD), Err(Refusal::Lost));
+        drop(ticking);
+        let clearing = FaultClearing::default();
+        for _ in 0..2 {
+            let trouble = open_clearing(&settings, &clearing).unwrap_err();
+            assert!(matches!(&trouble, Trouble::DeviceFault { words, .. } if words.contains("missed")), "{trouble}");
+        }
+        clearing.command();
+        let mut ticking = Ticking { driver: open_clearing(&settings, &clearing).unwrap(), now_s: 0.0, reading: None };
+        ticking.enter_low_level();
+    });
 }
 
 #[test]
 fn every_trouble_while_opening_has_its_cause() {
-    let trouble = |arm: Emulated, change: fn(&mut Settings)| {
-        let (serving, mut settings) = started(arm);
-        settings.timeout_s = 0.5;
-        change(&mut settings);
-        let trouble = open(&settings).map(|_| ()).unwrap_err();
-        assert!(serving.is_serving() && !trouble.cure().is_empty());
-        trouble
-    };
-    let same = |_: &mut Settings| {};
-    let refused = trouble(patient(), |settings| settings.password = "wrong".to_owned());
-    assert!(matches!(refused, Trouble::RefusedLogin { user, .. } if user == "admin"));
-    let refused = trouble(patient(), |settings| settings.user = "nobody".to_owned());
-    assert!(matches!(refused, Trouble::RefusedLogin { user, .. } if user == "nobody"));
-    let other = trouble(Emulated { joints: 6, ..patient() }, same);
-    assert!(matches!(other, Trouble::WrongProduct { found, .. } if found == "arm with 6 joints"));
-    let exchanged = trouble(Emulated { serial: "KP-2".to_owned(), ..patient() }, |settings| {
-        settings.serial_number = Some("KP-1".to_owned());
+    judged(|| {
+        let trouble = |arm: Emulated, change: fn(&mut Settings)| {
+            let (serving, mut settings) = started(arm);
+            settings.timeout_s = 0.5;
+            change(&mut settings);
+            let trouble = open(&settings).map(|_| ()).unwrap_err();
+            assert!(serving.is_serving() && !trouble.cure().is_empty());
+            trouble
+        };
+        let same = |_: &mut Settings| {};
+        let refused = trouble(patient(), |settings| settings.password = "wrong".to_owned());
+        assert!(matches!(refused, Trouble::RefusedLogin { user, .. } if user == "admin"));
+        let refused = trouble(patient(), |settings| settings.user = "nobody".to_owned());
+        assert!(matches!(refused, Trouble::RefusedLogin { user, .. } if user == "nobody"));
+        let other = trouble(Emulated { joints: 6, ..patient() }, same);
+        assert!(matches!(other, Trouble::WrongProduct { found, .. } if found == "arm with 6 joints"));
+        let exchanged = trouble(Emulated { serial: "KP-2".to_owned(), ..patient() }, |settings| {
+            settings.serial_number = Some("KP-1".to_owned());
+        });
+        assert!(matches!(exchanged, Trouble::OtherSerial { found, .. } if found == "KP-2"));
+        let starting = trouble(Emulated { idle_state: 3, ..patient() }, same);
+        assert!(matches!(starting, Trouble::NotReady { mode, .. } if mode == "initialisation"));
+        let nobody = |change: fn(&mut Settings)| matches!(trouble(patient(), change), Trouble::NobodyListens { .. });
+        assert!(nobody(|settings| settings.tcp_port = 1) && nobody(|settings| settings.udp_port = 1));
+        let setting = |change: fn(&mut Settings)| matches!(trouble(patient(), change), Trouble::Setting { .. });
+        assert!(setting(|settings| settings.speed_fraction = 1.5) && setting(|settings| settings.lead_rad = f64::NAN));
     });
-    assert!(matches!(exchanged, Trouble::OtherSerial { found, .. } if found == "KP-2"));
-    let starting = trouble(Emulated { idle_state: 3, ..patient() }, same);
-    assert!(matches!(starting, Trouble::NotReady { mode, .. } if mode == "initialisation"));
-    let nobody = |change: fn(&mut Settings)| matches!(trouble(patient(), change), Trouble::NobodyListens { .. });
-    assert!(nobody(|settings| settings.tcp_port = 1) && nobody(|settings| settings.udp_port = 1));
-    let setting = |change: fn(&mut Settings)| matches!(trouble(patient(), change), Trouble::Setting { .. });
-    assert!(setting(|settings| settings.speed_fraction = 1.5) && setting(|settings| settings.lead_rad = f64::NAN));
 }
 
 #[test]
 fn a_silent_arm_and_a_stranger_at_its_port_are_told_apart() {
-    let (serving, settings) = started(patient());
-    let settings = Settings { timeout_s: 0.3, ..settings };
-    serving.faults.set(EmulatedFault::Silence);
-    assert!(matches!(open(&settings).unwrap_err(), Trouble::Silent { .. }));
-    serving.faults.set(EmulatedFault::DeviceFault);
-    let fault = open(&settings).unwrap_err();
-    assert!(
-        matches!(&fault, Trouble::DeviceFault { words, .. } if words.contains("joint 3: too much torque")),
-        "{fault}"
-    );
-    let stranger = TcpListener::bind(("127.0.0.1", 0)).unwrap();
-    let tcp_port = stranger.local_addr().unwrap().port();
-    let answering = std::thread::spawn(move || {
-        let (mut stream, _) = stranger.accept().unwrap();
-        let mut buffer = [0; 256];
-        assert!(stream.read(&mut buffer).unwrap() > 0);
-        stream.write_all(b"HTTP/1.1 400 Bad Request\r\n\r\n").unwrap();
+    judged(|| {
+        let (serving, settings) = started(patient());
+        let settings = Settings { timeout_s: 0.3, ..settings };
+        serving.faults.set(EmulatedFault::Silence);
+        assert!(matches!(open(&settings).unwrap_err(), Trouble::Silent { .. }));
+        serving.faults.set(EmulatedFault::DeviceFault);
+        let fault = open(&settings).unwrap_err();
+        assert!(
+            matches!(&fault, Trouble::DeviceFault { words, .. } if words.contains("joint 3: too much torque")),
+            "{fault}"
+        );
+        let stranger = TcpListener::bind(("127.0.0.1", 0)).unwrap();
+        let tcp_port = stranger.local_addr().unwrap().port();
+        let answering = std::thread::spawn(move || {
+            let (mut stream, _) = stranger.accept().unwrap();
+            let mut buffer = [0; 256];
+            assert!(stream.read(&mut buffer).unwrap() > 0);
+            stream.write_all(b"HTTP/1.1 400 Bad Request\r\n\r\n").unwrap();
+        });
+        let trouble = open(&Settings { tcp_port, ..settings }).unwrap_err();
+        assert!(matches!(&trouble, Trouble::WrongProduct { .. }), "{trouble}");
+        answering.join().unwrap();
     });
-    let trouble = open(&Settings { tcp_port, ..settings }).unwrap_err();
-    assert!(matches!(&trouble, Trouble::WrongProduct { .. }), "{trouble}");
-    answering.join().unwrap();
 }

@@ -14,6 +14,7 @@ use nima_devices::kinova::{
     frame::{Header, NOTIFICATION, PacketReader, REQUEST, RESPONSE, encode_packet},
     messages::{CreateSessionInfo, ErrorInfo, JointAngles, Number, Rpc, sub},
 };
+use nima_testing::real_time::judged;
 use prost::Message;
 
 use super::{
@@ -135,39 +136,43 @@ const fn of(service: u16, function: u16) -> Rpc {
 
 #[test]
 fn each_device_answers_for_itself_and_keeps_what_is_set() {
-    let serving = arm(HOME_DEG);
-    let mut client = Client::connect(&serving);
-    let kinds: Vec<u32> = (0..9).map(|device| client.read::<Number>(device, of(9, 3), &()).value).collect();
-    assert_eq!(kinds, [1, 3, 3, 3, 3, 4, 4, 4, 5]);
-    for function in [4, 5, 6, 7, 8, 9, 12] {
-        assert!((0..9).all(|device| !client.ask(device, of(9, function), &()).unwrap().is_empty()), "{function}");
-    }
-    client.ask(6, of(10, 7), &Number { value: 6 }).unwrap();
-    assert_eq!(client.ask(6, of(10, 7), &Number { value: 7 }), Err(INVALID_PARAM));
-    let modes: Vec<u32> = (1..8).map(|device| client.read::<Number>(device, of(10, 6), &()).value).collect();
-    assert_eq!(modes, [1, 1, 1, 1, 1, 6, 1]);
-    assert!(client.ask(3, of(10, 25), &()).is_ok());
-    assert_eq!(client.ask(8, of(10, 25), &()), Err((1, sub::UNSUPPORTED_SERVICE)));
-    assert_eq!(client.ask(3, Rpc::ARM_STATE, &()), Err((1, sub::UNSUPPORTED_SERVICE)));
-    assert_eq!(client.ask(9, Rpc::SERIAL_NUMBER, &()), Err((3, 50)));
+    judged(|| {
+        let serving = arm(HOME_DEG);
+        let mut client = Client::connect(&serving);
+        let kinds: Vec<u32> = (0..9).map(|device| client.read::<Number>(device, of(9, 3), &()).value).collect();
+        assert_eq!(kinds, [1, 3, 3, 3, 3, 4, 4, 4, 5]);
+        for function in [4, 5, 6, 7, 8, 9, 12] {
+            assert!((0..9).all(|device| !client.ask(device, of(9, function), &()).unwrap().is_empty()), "{function}");
+        }
+        client.ask(6, of(10, 7), &Number { value: 6 }).unwrap();
+        assert_eq!(client.ask(6, of(10, 7), &Number { value: 7 }), Err(INVALID_PARAM));
+        let modes: Vec<u32> = (1..8).map(|device| client.read::<Number>(device, of(10, 6), &()).value).collect();
+        assert_eq!(modes, [1, 1, 1, 1, 1, 6, 1]);
+        assert!(client.ask(3, of(10, 25), &()).is_ok());
+        assert_eq!(client.ask(8, of(10, 25), &()), Err((1, sub::UNSUPPORTED_SERVICE)));
+        assert_eq!(client.ask(3, Rpc::ARM_STATE, &()), Err((1, sub::UNSUPPORTED_SERVICE)));
+        assert_eq!(client.ask(9, Rpc::SERIAL_NUMBER, &()), Err((3, 50)));
+    });
 }
 
 #[test]
 fn limits_are_kept_per_mode_and_set_back_and_never_above_the_arms() {
-    let serving = arm(HOME_DEG);
-    let mut client = Client::connect(&serving);
-    let hard: KinematicLimits = client.read(0, of(16, 18), &());
-    assert_eq!((hard.linear_m_s, hard.joint_deg_s.len(), hard.joint_deg_s2.len()), (0.5, 7, 7));
-    let limit = |value| TwistLimit { mode: 5, value };
-    client.ask(0, of(16, 15), &limit(0.2)).unwrap();
-    assert_eq!(client.ask(0, of(16, 15), &limit(0.6)), Err(ABOVE_MAXIMUM));
-    assert_eq!(client.ask(0, of(16, 15), &limit(f32::NAN)), Err(INVALID_PARAM));
-    assert_eq!(client.ask(0, of(16, 14), &JointsLimit { mode: 1, values: vec![1.0; 6] }), Err(JOINT_COUNT));
-    let soft = |client: &mut Client, mode: u32| {
-        client.read::<KinematicLimits>(0, of(16, 19), &Number { value: mode }).linear_m_s
-    };
-    assert_eq!((soft(&mut client, 5), soft(&mut client, 2)), (0.2, 0.5));
-    assert_eq!(client.read::<TwistLimit>(0, of(16, 29), &Number { value: 5 }), limit(0.5));
-    assert_eq!((soft(&mut client, 5), soft(&mut client, 1)), (0.5, 0.5));
-    assert_eq!(client.ask(0, of(16, 19), &Number { value: 3 }), Err(INVALID_PARAM));
+    judged(|| {
+        let serving = arm(HOME_DEG);
+        let mut client = Client::connect(&serving);
+        let hard: KinematicLimits = client.read(0, of(16, 18), &());
+        assert_eq!((hard.linear_m_s, hard.joint_deg_s.len(), hard.joint_deg_s2.len()), (0.5, 7, 7));
+        let limit = |value| TwistLimit { mode: 5, value };
+        client.ask(0, of(16, 15), &limit(0.2)).unwrap();
+        assert_eq!(client.ask(0, of(16, 15), &limit(0.6)), Err(ABOVE_MAXIMUM));
+        assert_eq!(client.ask(0, of(16, 15), &limit(f32::NAN)), Err(INVALID_PARAM));
+        assert_eq!(client.ask(0, of(16, 14), &JointsLimit { mode: 1, values: vec![1.0; 6] }), Err(JOINT_COUNT));
+        let soft = |client: &mut Client, mode: u32| {
+            client.read::<KinematicLimits>(0, of(16, 19), &Number { value: mode }).linear_m_s
+        };
+        assert_eq!((soft(&mut client, 5), soft(&mut client, 2)), (0.2, 0.5));
+        assert_eq!(client.read::<TwistLimit>(0, of(16, 29), &Number { value: 5 }), limit(0.5));
+        assert_eq!((soft(&mut client, 5), soft(&mut client, 1)), (0.5, 0.5));
+        assert_eq!(client.ask(0, of(16, 19), &Number { value: 3 }), Err(INVALID_PARAM));
+    });
 }

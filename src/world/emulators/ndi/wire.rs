@@ -164,34 +164,38 @@ mod tests {
 
     use nima_devices::transport::{Bytes as _, Serial, SerialSettings};
 
+    use nima_testing::real_time::judged;
+
     use super::{super::wandering, *};
 
     /// At the line's first speed each reply to nothing takes 15 ms: twenty thousand would keep the unit speaking for minutes.
     #[test]
     fn a_flood_of_empty_commands_takes_the_line_for_no_longer_than_a_reply() {
-        let serving = Profile::default().on_line(None, wandering).serve().unwrap();
-        let mut host = Serial::open(&SerialSettings { port: serving.endpoint.clone(), baud: FIRST_BAUD }).unwrap();
-        let begin = Instant::now();
-        let mut rest = 20_000_usize;
-        while rest > 0 && begin.elapsed() < Duration::from_mins(1) {
-            // A full line takes none.
-            let flood = [b'\r'; 64];
-            rest = rest.saturating_sub(if host.send(&flood).is_ok() { flood.len() } else { 0 });
-            host.receive(&mut [0; 4096]).unwrap();
-            std::thread::sleep(Duration::from_micros(100));
-        }
-        assert_eq!(rest, 0, "a busy machine had the line full for a minute");
-        let (begin, mut heard) = (Instant::now(), Vec::new());
-        while !String::from_utf8_lossy(&heard).contains("Polaris Vega") {
-            assert!(begin.elapsed() < Duration::from_secs(30), "{}", String::from_utf8_lossy(&heard));
-            // What is asked while the unit speaks is lost.
-            host.send(b"VER 0\r").unwrap();
-            for _ in 0..500 {
-                let mut buffer = [0; 4096];
-                let count = host.receive(&mut buffer).unwrap();
-                heard.extend(&buffer[..count]);
-                std::thread::sleep(Duration::from_millis(1));
+        judged(|| {
+            let serving = Profile::default().on_line(None, wandering).serve().unwrap();
+            let mut host = Serial::open(&SerialSettings { port: serving.endpoint.clone(), baud: FIRST_BAUD }).unwrap();
+            let begin = Instant::now();
+            let mut rest = 20_000_usize;
+            while rest > 0 && begin.elapsed() < Duration::from_mins(1) {
+                // A full line takes none.
+                let flood = [b'\r'; 64];
+                rest = rest.saturating_sub(if host.send(&flood).is_ok() { flood.len() } else { 0 });
+                host.receive(&mut [0; 4096]).unwrap();
+                std::thread::sleep(Duration::from_micros(100));
             }
-        }
+            assert_eq!(rest, 0, "a busy machine had the line full for a minute");
+            let (begin, mut heard) = (Instant::now(), Vec::new());
+            while !String::from_utf8_lossy(&heard).contains("Polaris Vega") {
+                assert!(begin.elapsed() < Duration::from_secs(30), "{}", String::from_utf8_lossy(&heard));
+                // What is asked while the unit speaks is lost.
+                host.send(b"VER 0\r").unwrap();
+                for _ in 0..500 {
+                    let mut buffer = [0; 4096];
+                    let count = host.receive(&mut buffer).unwrap();
+                    heard.extend(&buffer[..count]);
+                    std::thread::sleep(Duration::from_millis(1));
+                }
+            }
+        });
     }
 }

@@ -6,6 +6,7 @@ use nima_devices::{
     Device as _, Loss, Slot, Standing, Trouble,
     dynamixel::{Driver, Reboots, Settings, open, open_with},
 };
+use nima_testing::real_time::judged;
 
 use super::{
     super::Emulated,
@@ -23,24 +24,26 @@ fn serving(settings_of: &Emulated) -> (Serving, Settings) {
 
 #[test]
 fn it_delivers_over_the_terminal_without_a_loss() {
-    let (_serving, settings) = serving(&emulated());
-    let mut driver = open(&settings).unwrap();
-    assert!(driver.uses_fast_sync_read());
-    let begin = Instant::now();
-    let mut last = None;
-    while begin.elapsed() < Duration::from_millis(800) {
-        let now_s = begin.elapsed().as_secs_f64();
-        if let Some(reading) = driver.poll(now_s) {
-            assert!(last.is_none_or(|last_s| reading.device_s.unwrap() >= last_s));
-            last = reading.device_s;
+    judged(|| {
+        let (_serving, settings) = serving(&emulated());
+        let mut driver = open(&settings).unwrap();
+        assert!(driver.uses_fast_sync_read());
+        let begin = Instant::now();
+        let mut last = None;
+        while begin.elapsed() < Duration::from_millis(800) {
+            let now_s = begin.elapsed().as_secs_f64();
+            if let Some(reading) = driver.poll(now_s) {
+                assert!(last.is_none_or(|last_s| reading.device_s.unwrap() >= last_s));
+                last = reading.device_s;
+            }
+            std::thread::sleep(Duration::from_micros(50));
         }
-        std::thread::sleep(Duration::from_micros(50));
-    }
-    let health = driver.health();
-    assert!(health.readings > 50, "{health:?}");
-    assert_eq!((health.damaged, health.refused, health.skipped_bytes), (0, 0, 0));
-    // A pause of this machine can make an answer late; more than a few are ours.
-    assert!(health.lost + health.out_of_order <= 4, "{health:?}");
+        let health = driver.health();
+        assert!(health.readings > 50, "{health:?}");
+        assert_eq!((health.damaged, health.refused, health.skipped_bytes), (0, 0, 0));
+        // A pause of this machine can make an answer late; more than a few are ours.
+        assert!(health.lost + health.out_of_order <= 4, "{health:?}");
+    });
 }
 
 /// Not a test of anything but this machine: the figures that the documentation gives.

@@ -1,6 +1,7 @@
 //! Every emulated fault: what the driver makes of it, and that it comes back through its slot without a restart.
 
 use nima_devices::{Loss, Slot};
+use nima_testing::real_time::judged;
 
 use super::*;
 use crate::emulators::EmulatedFault;
@@ -104,7 +105,9 @@ fn lateness_and_damage_are_noticed_and_overcome() {
 
 #[test]
 fn wrong_frames_and_a_pulled_cable_are_noticed_and_overcome() {
-    goes_through(&[EmulatedFault::WrongFrame, EmulatedFault::Disconnect]);
+    judged(|| {
+        goes_through(&[EmulatedFault::WrongFrame, EmulatedFault::Disconnect]);
+    });
 }
 
 #[test]

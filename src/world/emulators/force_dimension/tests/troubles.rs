@@ -3,6 +3,7 @@
 use std::process::{Command, Stdio};
 
 use nima_devices::Trouble;
+use nima_testing::real_time::judged;
 
 use super::*;
 use crate::emulators::EmulatedFault;
@@ -20,14 +21,16 @@ fn a_library_that_is_not_there_is_told_with_where_it_was_looked_for() {
 
 #[test]
 fn a_real_handle_gets_no_stand_in_even_where_its_file_is_named_or_found() {
-    let told = trouble(&Settings { library: Some(library()), ..Settings::default() });
-    assert!(matches!(&told, Trouble::SdkUnusable { reason, .. } if reason.contains("emulates")), "{told:?}");
-    // Cargo has the system search its own folders, where the stand-in lies under the library's name.
-    match open(&Settings::default()) {
-        Err(Trouble::SdkMissing { searched, .. }) => assert!(searched.contains("libdrd")),
-        // A machine with the real SDK and no device.
-        other => assert!(nima_devices::force_dimension::installed_library().is_some(), "{other:?}"),
-    }
+    judged(|| {
+        let told = trouble(&Settings { library: Some(library()), ..Settings::default() });
+        assert!(matches!(&told, Trouble::SdkUnusable { reason, .. } if reason.contains("emulates")), "{told:?}");
+        // Cargo has the system search its own folders, where the stand-in lies under the library's name.
+        match open(&Settings::default()) {
+            Err(Trouble::SdkMissing { searched, .. }) => assert!(searched.contains("libdrd")),
+            // A machine with the real SDK and no device.
+            other => assert!(nima_devices::force_dimension::installed_library().is_some(), "{other:?}"),
+        }
+    });
 }
 
 #[test]
@@ -54,36 +57,40 @@ fn a_library_that_does_not_fit_is_told_with_the_reason() {
 
 #[test]
 fn devices_that_are_absent_taken_or_others_are_told_apart() {
-    let (_serving, _hand, settings) = rig(Emulated { serial: 7, ..Emulated::default() });
-    let Trouble::Absent { place } = trouble(&Settings { serial: Some(8), ..settings.clone() }) else { panic!() };
-    assert_eq!(place, "omega.7 with serial number 8 (1 attached)");
-    let nobody = std::net::UdpSocket::bind("127.0.0.1:0").unwrap().local_addr().unwrap();
-    let no_device = Settings { emulator: Some(nobody), library: Some(library()), ..settings.clone() };
-    assert_eq!(trouble(&no_device), Trouble::Absent { place: "omega.7 (0 attached)".to_owned() });
-    let first = open(&settings).unwrap();
-    // Another copy of the library is another program to the device.
-    let other = Settings { library: Some(library()), serial: Some(7), ..settings.clone() };
-    assert_eq!(trouble(&other), Trouble::Busy { place: "omega.7 with serial number 7".to_owned() });
-    drop(first);
-    drop(open(&other).unwrap());
-    let (_sigma, _hand, settings) = rig(Emulated { kind: Kind::Other(104), ..Emulated::default() });
-    assert!(matches!(trouble(&settings), Trouble::WrongProduct { found, .. } if found == "sigma.7"));
+    judged(|| {
+        let (_serving, _hand, settings) = rig(Emulated { serial: 7, ..Emulated::default() });
+        let Trouble::Absent { place } = trouble(&Settings { serial: Some(8), ..settings.clone() }) else { panic!() };
+        assert_eq!(place, "omega.7 with serial number 8 (1 attached)");
+        let nobody = std::net::UdpSocket::bind("127.0.0.1:0").unwrap().local_addr().unwrap();
+        let no_device = Settings { emulator: Some(nobody), library: Some(library()), ..settings.clone() };
+        assert_eq!(trouble(&no_device), Trouble::Absent { place: "omega.7 (0 attached)".to_owned() });
+        let first = open(&settings).unwrap();
+        // Another copy of the library is another program to the device.
+        let other = Settings { library: Some(library()), serial: Some(7), ..settings.clone() };
+        assert_eq!(trouble(&other), Trouble::Busy { place: "omega.7 with serial number 7".to_owned() });
+        drop(first);
+        drop(open(&other).unwrap());
+        let (_sigma, _hand, settings) = rig(Emulated { kind: Kind::Other(104), ..Emulated::default() });
+        assert!(matches!(trouble(&settings), Trouble::WrongProduct { found, .. } if found == "sigma.7"));
+    });
 }
 
 #[test]
 fn devices_that_are_not_ready_or_broken_are_told_apart() {
-    let (_serving, _hand, settings) = rig(Emulated { reset: true, ..Emulated::default() });
-    assert!(matches!(trouble(&settings), Trouble::NotReady { mode, .. } if mode.starts_with("reset")));
-    let (serving, _hand, settings) = rig(Emulated::default());
-    serving.faults.set(EmulatedFault::DeviceFault);
-    assert!(matches!(trouble(&settings), Trouble::DeviceFault { words, .. } if words.contains("code 109")));
-    serving.faults.set(EmulatedFault::NotANumber);
-    assert!(matches!(trouble(&settings), Trouble::DeviceFault { .. }));
-    serving.faults.set(EmulatedFault::Silence);
-    // The emulator looks at its faults once in a while.
-    std::thread::sleep(Duration::from_millis(20));
-    let told = trouble(&settings);
-    assert!(matches!(told, Trouble::Absent { .. }), "who does not answer is not attached: {told:?}");
+    judged(|| {
+        let (_serving, _hand, settings) = rig(Emulated { reset: true, ..Emulated::default() });
+        assert!(matches!(trouble(&settings), Trouble::NotReady { mode, .. } if mode.starts_with("reset")));
+        let (serving, _hand, settings) = rig(Emulated::default());
+        serving.faults.set(EmulatedFault::DeviceFault);
+        assert!(matches!(trouble(&settings), Trouble::DeviceFault { words, .. } if words.contains("code 109")));
+        serving.faults.set(EmulatedFault::NotANumber);
+        assert!(matches!(trouble(&settings), Trouble::DeviceFault { .. }));
+        serving.faults.set(EmulatedFault::Silence);
+        // The emulator looks at its faults once in a while.
+        std::thread::sleep(Duration::from_millis(20));
+        let told = trouble(&settings);
+        assert!(matches!(told, Trouble::Absent { .. }), "who does not answer is not attached: {told:?}");
+    });
 }
 
 #[test]
@@ -137,23 +144,25 @@ fn pushes_and_leaves() {
 
 #[test]
 fn every_way_out_of_the_program_leaves_the_brakes_on() {
-    for (end, cause) in
-        [("exit", ForceOffCause::Software), ("panic", ForceOffCause::Software), ("abort", ForceOffCause::Watchdog)]
-    {
-        let (_serving, hand, settings) = rig(Emulated::default());
-        let mut child = child("pushes_and_leaves", &settings, ("NIMA_TEST_END", end));
-        let begin = Instant::now();
-        let wait = |good: &dyn Fn(Applied) -> bool| {
-            while !good(hand.applied()) {
-                assert!(begin.elapsed() < Duration::from_secs(5), "{end}: {:?}", hand.applied());
-                std::thread::sleep(Duration::from_millis(1));
-            }
-        };
-        wait(&|applied| applied.force_n.x == 2.0);
-        wait(&|applied| applied.mode == Mode::Brake);
-        assert_eq!((hand.applied().cause, hand.applied().force_n.norm()), (cause, 0.0), "{end}");
-        child.wait().unwrap();
-    }
+    judged(|| {
+        for (end, cause) in
+            [("exit", ForceOffCause::Software), ("panic", ForceOffCause::Software), ("abort", ForceOffCause::Watchdog)]
+        {
+            let (_serving, hand, settings) = rig(Emulated::default());
+            let mut child = child("pushes_and_leaves", &settings, ("NIMA_TEST_END", end));
+            let begin = Instant::now();
+            let wait = |good: &dyn Fn(Applied) -> bool| {
+                while !good(hand.applied()) {
+                    assert!(begin.elapsed() < Duration::from_secs(5), "{end}: {:?}", hand.applied());
+                    std::thread::sleep(Duration::from_millis(1));
+                }
+            };
+            wait(&|applied| applied.force_n.x == 2.0);
+            wait(&|applied| applied.mode == Mode::Brake);
+            assert_eq!((hand.applied().cause, hand.applied().force_n.norm()), (cause, 0.0), "{end}");
+            child.wait().unwrap();
+        }
+    });
 }
 
 #[test]
@@ -165,17 +174,21 @@ fn finds_an_old_library() {
 
 #[test]
 fn a_library_that_is_too_old_is_refused() {
-    let settings = Settings { library: Some(library()), ..Settings::default() };
-    let mut child = child("finds_an_old_library", &settings, ("NIMA_EMULATED_SDK_VERSION", "3.10.0.0"));
-    assert!(child.wait().unwrap().success());
+    judged(|| {
+        let settings = Settings { library: Some(library()), ..Settings::default() };
+        let mut child = child("finds_an_old_library", &settings, ("NIMA_EMULATED_SDK_VERSION", "3.10.0.0"));
+        assert!(child.wait().unwrap().success());
+    });
 }
 
 #[test]
 fn dropping_the_driver_brakes_the_hand() {
-    let (_serving, hand, settings) = rig(Emulated::default());
-    let mut driver = open(&settings).unwrap();
-    push(&mut driver, &hand);
-    drop(driver);
-    let applied = hand.applied();
-    assert_eq!((applied.mode, applied.cause, applied.force_n.norm()), (Mode::Brake, ForceOffCause::Software, 0.0));
+    judged(|| {
+        let (_serving, hand, settings) = rig(Emulated::default());
+        let mut driver = open(&settings).unwrap();
+        push(&mut driver, &hand);
+        drop(driver);
+        let applied = hand.applied();
+        assert_eq!((applied.mode, applied.cause, applied.force_n.norm()), (Mode::Brake, ForceOffCause::Software, 0.0));
+    });
 }

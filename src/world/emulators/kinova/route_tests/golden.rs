@@ -3,6 +3,7 @@
 use std::io::Write as _;
 
 use nima_devices::kinova::frame::{Frame, encode, encode_written, packed};
+use nima_testing::real_time::judged;
 use prost::Message as _;
 
 use super::{Client, HOME_DEG, arm};
@@ -176,31 +177,33 @@ fn bytes(hex: &str) -> Vec<u8> {
 
 #[test]
 fn requests_of_the_device_route_are_answered_byte_for_byte() {
-    let serving = arm(HOME_DEG);
-    let mut client = Client::connect(&serving);
-    assert_eq!(client.session, 1);
-    let exchange = |client: &mut Client, name: &str, request: &str, answer: &str| {
-        let mut out = Vec::new();
-        packed(&mut out, |out| out.extend(bytes(request)));
-        client.stream.write_all(&out).unwrap();
-        let (header, payload) = client.answer();
-        let mut told = Vec::new();
-        encode_written(&header, &payload, &mut told);
-        assert_eq!(told, bytes(answer), "{name}: {header:?}");
-        // The other way: this crate writes the same request.
-        let whole = bytes(request);
-        let frame = Frame::decode(&whole).unwrap();
+    judged(|| {
+        let serving = arm(HOME_DEG);
+        let mut client = Client::connect(&serving);
+        assert_eq!(client.session, 1);
+        let exchange = |client: &mut Client, name: &str, request: &str, answer: &str| {
+            let mut out = Vec::new();
+            packed(&mut out, |out| out.extend(bytes(request)));
+            client.stream.write_all(&out).unwrap();
+            let (header, payload) = client.answer();
+            let mut told = Vec::new();
+            encode_written(&header, &payload, &mut told);
+            assert_eq!(told, bytes(answer), "{name}: {header:?}");
+            // The other way: this crate writes the same request.
+            let whole = bytes(request);
+            let frame = Frame::decode(&whole).unwrap();
+            let mut written = Vec::new();
+            encode_written(&frame.header, frame.payload, &mut written);
+            assert_eq!(written, whole, "{name}");
+        };
+        for (name, request, answer) in EXCHANGES {
+            exchange(&mut client, name, request, answer);
+        }
+        exchange(&mut client, "ExecuteActionFromReference", HOME[0], HOME[1]);
+        let (header, payload) = client.frame();
+        let told = ActionTold::decode(payload.as_slice()).unwrap();
         let mut written = Vec::new();
-        encode_written(&frame.header, frame.payload, &mut written);
-        assert_eq!(written, whole, "{name}");
-    };
-    for (name, request, answer) in EXCHANGES {
-        exchange(&mut client, name, request, answer);
-    }
-    exchange(&mut client, "ExecuteActionFromReference", HOME[0], HOME[1]);
-    let (header, payload) = client.frame();
-    let told = ActionTold::decode(payload.as_slice()).unwrap();
-    let mut written = Vec::new();
-    encode(&header, &told, &mut written);
-    assert_eq!(written, bytes(HOME[2]), "{told:?}");
+        encode(&header, &told, &mut written);
+        assert_eq!(written, bytes(HOME[2]), "{told:?}");
+    });
 }

@@ -103,11 +103,13 @@ impl Drop for Stop {
 
 #[test]
 fn a_device_that_works_tells_who_it_is_and_how_fast() {
-    let found = one(of_fake(|| Ok(Fake::new(100.0, None)))).unwrap();
-    assert_eq!((found.identity.serial.as_str(), found.standing, found.lost), ("7", Standing::Connected, 0));
-    let rate_hz = found.rate_hz.unwrap();
-    assert!((80.0..120.0).contains(&rate_hz), "{rate_hz}");
-    assert!(found.latency_s.unwrap() < 0.5);
+    judged(|| {
+        let found = one(of_fake(|| Ok(Fake::new(100.0, None)))).unwrap();
+        assert_eq!((found.identity.serial.as_str(), found.standing, found.lost), ("7", Standing::Connected, 0));
+        let rate_hz = found.rate_hz.unwrap();
+        assert!((80.0..120.0).contains(&rate_hz), "{rate_hz}");
+        assert!(found.latency_s.unwrap() < 0.5);
+    });
 }
 
 #[test]
@@ -162,15 +164,17 @@ fn free_address() -> String {
 
 #[test]
 fn a_listener_is_found_and_a_wrong_port_and_a_wrong_name_are_told_apart() {
-    let listener = TcpListener::bind("127.0.0.1:0").unwrap();
-    let address = listener.local_addr().unwrap().to_string();
-    let found = one(Box::new(TcpProbe::new(&address).unwrap())).unwrap();
-    assert!(found.latency_s.unwrap() < 0.5);
-    drop(listener);
-    assert!(matches!(one(Box::new(TcpProbe::new(&address).unwrap())), Err(Trouble::NobodyListens { .. })));
-    for wrong in ["localhost", "localhost:x", ":80", "localhost:99999"] {
-        assert!(matches!(TcpProbe::new(wrong), Err(Trouble::Setting { .. })), "{wrong}");
-    }
+    judged(|| {
+        let listener = TcpListener::bind("127.0.0.1:0").unwrap();
+        let address = listener.local_addr().unwrap().to_string();
+        let found = one(Box::new(TcpProbe::new(&address).unwrap())).unwrap();
+        assert!(found.latency_s.unwrap() < 0.5);
+        drop(listener);
+        assert!(matches!(one(Box::new(TcpProbe::new(&address).unwrap())), Err(Trouble::NobodyListens { .. })));
+        for wrong in ["localhost", "localhost:x", ":80", "localhost:99999"] {
+            assert!(matches!(TcpProbe::new(wrong), Err(Trouble::Setting { .. })), "{wrong}");
+        }
+    });
 }
 
 #[test]
@@ -211,22 +215,26 @@ fn one_that_hangs_and_one_that_fails_are_told_so_and_hold_up_nobody() {
 #[cfg(unix)]
 #[test]
 fn a_port_that_another_program_holds_is_busy() {
-    use serialport::SerialPort as _;
-    let (_device, mut port) = serialport::TTYPort::pair().unwrap();
-    let text = format!("serial={}@460800", port.name().unwrap());
-    // What a second program does on opening, on any port: it locks it. A pair is not locked by itself.
-    port.set_exclusive(true).unwrap();
-    let held = serialport::new(port.name().unwrap(), 460_800).open_native();
-    let trouble = one(probe_named(&text).unwrap());
-    assert!(matches!(trouble, Err(Trouble::Busy { .. })), "{trouble:?} {}", held.is_ok());
+    judged(|| {
+        use serialport::SerialPort as _;
+        let (_device, mut port) = serialport::TTYPort::pair().unwrap();
+        let text = format!("serial={}@460800", port.name().unwrap());
+        // What a second program does on opening, on any port: it locks it. A pair is not locked by itself.
+        port.set_exclusive(true).unwrap();
+        let held = serialport::new(port.name().unwrap(), 460_800).open_native();
+        let trouble = one(probe_named(&text).unwrap());
+        assert!(matches!(trouble, Err(Trouble::Busy { .. })), "{trouble:?} {}", held.is_ok());
+    });
 }
 
 #[cfg(unix)]
 #[test]
 fn a_silent_port_is_trouble_unless_its_device_speaks_only_when_asked() {
-    let (port, _stop) = talking(Vec::new);
-    assert!(matches!(one(probe_named(&format!("serial={port}@460800")).unwrap()), Err(Trouble::Silent { .. })));
-    assert!(one(probe_named(&format!("serial={port}@460800,quiet")).unwrap()).is_ok());
+    judged(|| {
+        let (port, _stop) = talking(Vec::new);
+        assert!(matches!(one(probe_named(&format!("serial={port}@460800")).unwrap()), Err(Trouble::Silent { .. })));
+        assert!(one(probe_named(&format!("serial={port}@460800,quiet")).unwrap()).is_ok());
+    });
 }
 
 #[cfg(unix)]

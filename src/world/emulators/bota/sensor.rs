@@ -171,28 +171,32 @@ mod tests {
 
     #[test]
     fn a_client_that_was_answered_is_not_pushed_aside() {
-        let serving = sensor();
-        let mut first = client(&serving);
-        assert_eq!(ask(&mut first).unwrap(), "rh,0,0\n");
-        let mut second = client(&serving);
-        second.write_all(b"rh,1,2,\n").unwrap();
-        for _ in 0..20 {
+        judged(|| {
+            let serving = sensor();
+            let mut first = client(&serving);
             assert_eq!(ask(&mut first).unwrap(), "rh,0,0\n");
-        }
-        drop(first);
-        let mut buffer = [0; 64];
-        let count = second.read(&mut buffer).unwrap();
-        assert_eq!(&buffer[..count], b"rh,0,0\n", "it is the next one's turn");
+            let mut second = client(&serving);
+            second.write_all(b"rh,1,2,\n").unwrap();
+            for _ in 0..20 {
+                assert_eq!(ask(&mut first).unwrap(), "rh,0,0\n");
+            }
+            drop(first);
+            let mut buffer = [0; 64];
+            let count = second.read(&mut buffer).unwrap();
+            assert_eq!(&buffer[..count], b"rh,0,0\n", "it is the next one's turn");
+        });
     }
 
     #[test]
     fn a_client_that_takes_no_answers_is_cut_off() {
-        let serving = sensor();
-        let mut deaf = client(&serving);
-        deaf.set_write_timeout(Some(LONG)).unwrap();
-        let questions = b"rh,24,1,\n".repeat(1000);
-        let cut = std::iter::repeat_with(|| deaf.write(&questions)).take(7000).find_map(Result::err);
-        let kind = cut.map(|error| error.kind());
-        assert!(matches!(kind, Some(ErrorKind::ConnectionReset | ErrorKind::BrokenPipe)), "{kind:?}");
+        judged(|| {
+            let serving = sensor();
+            let mut deaf = client(&serving);
+            deaf.set_write_timeout(Some(LONG)).unwrap();
+            let questions = b"rh,24,1,\n".repeat(1000);
+            let cut = std::iter::repeat_with(|| deaf.write(&questions)).take(7000).find_map(Result::err);
+            let kind = cut.map(|error| error.kind());
+            assert!(matches!(kind, Some(ErrorKind::ConnectionReset | ErrorKind::BrokenPipe)), "{kind:?}");
+        });
     }
 }

@@ -5,7 +5,6 @@ use nima_devices::{
     dynamixel::{Driver, Fault, HardwareError, Pace as _, Taken},
     transport::MemoryBytes,
 };
-use nima_testing::real_time::judged;
 
 use super::world::Bench;
 use crate::emulators::EmulatedFault;
@@ -33,66 +32,60 @@ fn until_lost(bench: &Bench, driver: &mut Driver<MemoryBytes>) -> Option<(Loss, 
 
 #[test]
 fn each_fault_is_told_in_time_and_a_new_opening_brings_it_back() {
-    judged(|| {
-        let overload = Fault { id: 1, error: HardwareError(HardwareError::OVERLOAD) };
-        for (fault, expected) in [
-            (EmulatedFault::Delay, Loss::Silent),
-            (EmulatedFault::Freeze, Loss::Silent),
-            (EmulatedFault::Silence, Loss::Silent),
-            (EmulatedFault::BadChecksum, Loss::Corrupt),
-            (EmulatedFault::WrongFrame, Loss::Corrupt),
-            (EmulatedFault::DeviceFault, Loss::Device { code: overload.code() }),
-            (EmulatedFault::NotANumber, Loss::Implausible),
-        ] {
-            let (mut bench, mut driver) = running();
-            bench.fault(fault);
-            let (loss, after_s) = until_lost(&bench, &mut driver).unwrap();
-            assert_eq!(loss, expected, "{fault:?}");
-            assert!(after_s <= 0.0225, "{fault:?} after {after_s} s");
-            assert!(bench.poll(&mut driver, 1e-3).is_none(), "lost stays lost");
-            drop(driver);
-            bench.fault(EmulatedFault::None);
-            bench.world.borrow_mut().pass(0.1);
-            if fault == EmulatedFault::DeviceFault {
-                assert!(bench.open().is_err(), "a servo that shut down needs the command");
-                bench.reboots.ask(0);
-            }
-            let mut driver = bench.open().unwrap();
-            assert!(bench.run(&mut driver, 0.1).is_some(), "{fault:?}");
+    let overload = Fault { id: 1, error: HardwareError(HardwareError::OVERLOAD) };
+    for (fault, expected) in [
+        (EmulatedFault::Delay, Loss::Silent),
+        (EmulatedFault::Freeze, Loss::Silent),
+        (EmulatedFault::Silence, Loss::Silent),
+        (EmulatedFault::BadChecksum, Loss::Corrupt),
+        (EmulatedFault::WrongFrame, Loss::Corrupt),
+        (EmulatedFault::DeviceFault, Loss::Device { code: overload.code() }),
+        (EmulatedFault::NotANumber, Loss::Implausible),
+    ] {
+        let (mut bench, mut driver) = running();
+        bench.fault(fault);
+        let (loss, after_s) = until_lost(&bench, &mut driver).unwrap();
+        assert_eq!(loss, expected, "{fault:?}");
+        assert!(after_s <= 0.0225, "{fault:?} after {after_s} s");
+        assert!(bench.poll(&mut driver, 1e-3).is_none(), "lost stays lost");
+        drop(driver);
+        bench.fault(EmulatedFault::None);
+        bench.world.borrow_mut().pass(0.1);
+        if fault == EmulatedFault::DeviceFault {
+            assert!(bench.open().is_err(), "a servo that shut down needs the command");
+            bench.reboots.ask(0);
         }
-    });
+        let mut driver = bench.open().unwrap();
+        assert!(bench.run(&mut driver, 0.1).is_some(), "{fault:?}");
+    }
 }
 
 #[test]
 fn faults_that_spare_some_answers_are_counted() {
-    judged(|| {
-        let (bench, mut driver) = running();
-        bench.fault(EmulatedFault::Loss);
-        bench.run(&mut driver, 0.05);
-        // Two in a row may be missing, three make it silent; either way they are counted.
-        until_lost(&bench, &mut driver);
-        assert!(driver.health().lost > 0, "{:?}", driver.health());
+    let (bench, mut driver) = running();
+    bench.fault(EmulatedFault::Loss);
+    bench.run(&mut driver, 0.05);
+    // Two in a row may be missing, three make it silent; either way they are counted.
+    until_lost(&bench, &mut driver);
+    assert!(driver.health().lost > 0, "{:?}", driver.health());
 
-        let (bench, mut driver) = running();
-        bench.fault(EmulatedFault::Garbage);
-        until_lost(&bench, &mut driver);
-        assert!(driver.health().skipped_bytes > 0, "{:?}", driver.health());
+    let (bench, mut driver) = running();
+    bench.fault(EmulatedFault::Garbage);
+    until_lost(&bench, &mut driver);
+    assert!(driver.health().skipped_bytes > 0, "{:?}", driver.health());
 
-        let (bench, mut driver) = running();
-        bench.fault(EmulatedFault::Reorder);
-        until_lost(&bench, &mut driver);
-        assert!(driver.health().out_of_order > 0 && driver.health().lost > 0, "{:?}", driver.health());
-    });
+    let (bench, mut driver) = running();
+    bench.fault(EmulatedFault::Reorder);
+    until_lost(&bench, &mut driver);
+    assert!(driver.health().out_of_order > 0 && driver.health().lost > 0, "{:?}", driver.health());
 }
 
 #[test]
 fn a_cut_line_is_told_at_once() {
-    judged(|| {
-        let (bench, mut driver) = running();
-        bench.world.borrow().end.cut();
-        assert!(bench.poll(&mut driver, 1e-3).is_none());
-        assert_eq!(driver.health().standing, Standing::Lost(Loss::Disconnected));
-    });
+    let (bench, mut driver) = running();
+    bench.world.borrow().end.cut();
+    assert!(bench.poll(&mut driver, 1e-3).is_none());
+    assert_eq!(driver.health().standing, Standing::Lost(Loss::Disconnected));
 }
 
 #[test]
@@ -107,36 +100,32 @@ fn a_caller_that_pauses_has_not_lost_the_servos() {
 
 #[test]
 fn a_bus_that_falls_quiet_stops_the_servos_and_that_is_told() {
-    judged(|| {
-        let (bench, mut driver) = running();
-        driver.set_torque(true);
-        bench.run(&mut driver, 0.3);
-        assert!(driver.is_torque_on());
-        assert_eq!(driver.set_goals(&[1.0; 4]), Taken::AsAsked);
-        // The caller stalls for longer than the watchdog waits.
-        for _ in 0..300 {
-            bench.world.borrow_mut().pass(1e-3);
-        }
-        let stopped_rad = bench.world.borrow().emulator.shaft(0).unwrap().angle_rad;
-        bench.world.borrow_mut().pass(0.1);
-        let later_rad = bench.world.borrow().emulator.shaft(0).unwrap().angle_rad;
-        assert!((later_rad - stopped_rad).abs() < 0.05 && later_rad < 0.9, "{stopped_rad} {later_rad}");
-        let (loss, _) = until_lost(&bench, &mut driver).unwrap();
-        let Loss::Device { code } = loss else { panic!("{loss:?}") };
-        assert_eq!(Fault::of_code(code).error.to_string(), "its bus watchdog expired");
-    });
+    let (bench, mut driver) = running();
+    driver.set_torque(true);
+    bench.run(&mut driver, 0.3);
+    assert!(driver.is_torque_on());
+    assert_eq!(driver.set_goals(&[1.0; 4]), Taken::AsAsked);
+    // The caller stalls for longer than the watchdog waits.
+    for _ in 0..300 {
+        bench.world.borrow_mut().pass(1e-3);
+    }
+    let stopped_rad = bench.world.borrow().emulator.shaft(0).unwrap().angle_rad;
+    bench.world.borrow_mut().pass(0.1);
+    let later_rad = bench.world.borrow().emulator.shaft(0).unwrap().angle_rad;
+    assert!((later_rad - stopped_rad).abs() < 0.05 && later_rad < 0.9, "{stopped_rad} {later_rad}");
+    let (loss, _) = until_lost(&bench, &mut driver).unwrap();
+    let Loss::Device { code } = loss else { panic!("{loss:?}") };
+    assert_eq!(Fault::of_code(code).error.to_string(), "its bus watchdog expired");
 }
 
 #[test]
 fn a_servo_that_restarts_by_itself_is_not_driven_on_unnoticed() {
-    judged(|| {
-        let (bench, mut driver) = running();
-        driver.set_torque(true);
-        bench.run(&mut driver, 0.5);
-        let now_s = bench.now_s();
-        bench.world.borrow_mut().emulator.interrupt(2, now_s);
-        assert!(until_lost(&bench, &mut driver).is_some(), "it does not answer, or its torque is off");
-    });
+    let (bench, mut driver) = running();
+    driver.set_torque(true);
+    bench.run(&mut driver, 0.5);
+    let now_s = bench.now_s();
+    bench.world.borrow_mut().emulator.interrupt(2, now_s);
+    assert!(until_lost(&bench, &mut driver).is_some(), "it does not answer, or its torque is off");
 }
 
 #[test]

@@ -10,7 +10,6 @@ use nima_devices::{
     },
     transport::{Bytes, MemoryBytes},
 };
-use nima_testing::real_time::judged;
 
 use super::{
     super::{Bus, Emulated},
@@ -42,90 +41,81 @@ fn number(bytes: &[u8]) -> i32 {
 
 #[test]
 fn the_servos_become_what_the_settings_say() {
-    judged(|| {
-        let mut wanted = settings();
-        let servo = &mut wanted.servos[2];
-        servo.reverse = true;
-        servo.homing_offset_rad = 0.5;
-        servo.operating_mode = OperatingMode::CurrentBasedPosition;
-        servo.goal_current_a = Some(0.269);
-        servo.gains.position_d = 77;
-        servo.profile_acceleration_rad_s2 = 0.01;
-        let mut bench = Bench::new(Bus::new(&emulated(), None).unwrap(), wanted);
-        let driver = bench.open().unwrap();
-        assert_eq!(driver.identity().product, "XM430-W350 XM430-W350 XM430-W350 XM430-W350");
-        assert_eq!((driver.identity().serial.as_str(), driver.health().standing), ("ids 1 2 3 4", Standing::Opening));
-        assert!(driver.uses_fast_sync_read());
-        for (id, address, count, value) in [
-            (1, 9, 1, 0),
-            (1, 10, 1, 0),
-            (1, 11, 1, 3),
-            // 1.5 rad are 977.8 ticks.
-            (1, 48, 4, 2048 + 977),
-            (1, 52, 4, 2048 - 977),
-            (1, 38, 2, 743),
-            (1, 84, 2, 800),
-            (1, 112, 4, 167),
-            (3, 10, 1, 1),
-            (3, 11, 1, 5),
-            (3, 20, 4, 326),
-            (3, 80, 2, 77),
-            (3, 102, 2, 100),
-            // Less than one step is still a limit.
-            (3, 108, 4, 1),
-            (3, 64, 1, 0),
-        ] {
-            assert_eq!(number(&peek(&bench, id, address, count)), value, "servo {id}, register {address}");
-        }
-    });
+    let mut wanted = settings();
+    let servo = &mut wanted.servos[2];
+    servo.reverse = true;
+    servo.homing_offset_rad = 0.5;
+    servo.operating_mode = OperatingMode::CurrentBasedPosition;
+    servo.goal_current_a = Some(0.269);
+    servo.gains.position_d = 77;
+    servo.profile_acceleration_rad_s2 = 0.01;
+    let mut bench = Bench::new(Bus::new(&emulated(), None).unwrap(), wanted);
+    let driver = bench.open().unwrap();
+    assert_eq!(driver.identity().product, "XM430-W350 XM430-W350 XM430-W350 XM430-W350");
+    assert_eq!((driver.identity().serial.as_str(), driver.health().standing), ("ids 1 2 3 4", Standing::Opening));
+    assert!(driver.uses_fast_sync_read());
+    for (id, address, count, value) in [
+        (1, 9, 1, 0),
+        (1, 10, 1, 0),
+        (1, 11, 1, 3),
+        // 1.5 rad are 977.8 ticks.
+        (1, 48, 4, 2048 + 977),
+        (1, 52, 4, 2048 - 977),
+        (1, 38, 2, 743),
+        (1, 84, 2, 800),
+        (1, 112, 4, 167),
+        (3, 10, 1, 1),
+        (3, 11, 1, 5),
+        (3, 20, 4, 326),
+        (3, 80, 2, 77),
+        (3, 102, 2, 100),
+        // Less than one step is still a limit.
+        (3, 108, 4, 1),
+        (3, 64, 1, 0),
+    ] {
+        assert_eq!(number(&peek(&bench, id, address, count)), value, "servo {id}, register {address}");
+    }
 }
 
 #[test]
 fn an_old_firmware_is_asked_one_by_one() {
-    judged(|| {
-        let settings_of = Emulated { fast: false, ..emulated() };
-        let mut bench = Bench::new(Bus::new(&settings_of, None).unwrap(), settings());
-        let mut driver = bench.open().unwrap();
-        assert!(!driver.uses_fast_sync_read());
-        assert!(bench.run(&mut driver, 1.0).is_some());
-        assert_eq!((driver.health().lost, driver.health().out_of_order), (0, 0));
-        assert!(driver.health().readings > 450, "{:?}", driver.health());
-    });
+    let settings_of = Emulated { fast: false, ..emulated() };
+    let mut bench = Bench::new(Bus::new(&settings_of, None).unwrap(), settings());
+    let mut driver = bench.open().unwrap();
+    assert!(!driver.uses_fast_sync_read());
+    assert!(bench.run(&mut driver, 1.0).is_some());
+    assert_eq!((driver.health().lost, driver.health().out_of_order), (0, 0));
+    assert!(driver.health().readings > 450, "{:?}", driver.health());
 }
 
 #[test]
 fn servos_that_answer_to_reads_alone_are_told_to_answer() {
-    judged(|| {
-        let mut bench = Bench::usual();
-        drop(bench.open().unwrap());
-        let mut out = Outgoing::new(64);
-        Instruction::Write { address: 68, data: &[1] }.encode(2, &mut out);
-        let now_s = bench.now_s();
-        bench.world.borrow_mut().emulator.receive(now_s, out.bytes());
-        assert!(bench.open().is_ok());
-    });
+    let mut bench = Bench::usual();
+    drop(bench.open().unwrap());
+    let mut out = Outgoing::new(64);
+    Instruction::Write { address: 68, data: &[1] }.encode(2, &mut out);
+    let now_s = bench.now_s();
+    bench.world.borrow_mut().emulator.receive(now_s, out.bytes());
+    assert!(bench.open().is_ok());
 }
 
 #[test]
 fn what_is_missing_or_another_is_named() {
-    judged(|| {
-        let opened = |emulator: Emulated, settings: Settings| {
-            Bench::new(Bus::new(&emulator, None).unwrap(), settings).open().err()
-        };
-        let missing = opened(Emulated { ids: vec![1, 2, 4], ..emulated() }, settings());
-        assert_eq!(missing, Some(Trouble::Absent { place: "servo 3 on test".to_owned() }));
-        let nobody = opened(Emulated { ids: vec![], ..emulated() }, settings());
-        assert_eq!(nobody, Some(Trouble::Silent { place: "test".to_owned() }));
-        let mut wanted = settings();
-        wanted.servos[1].model = Some("XM540-W270".to_owned());
-        let other = opened(emulated(), wanted);
-        let found = ("servo 2 on test".to_owned(), "XM540-W270".to_owned(), "XM430-W350".to_owned());
-        assert_eq!(other, Some(Trouble::WrongProduct { place: found.0, expected: found.1, found: found.2 }));
-        let mut weak = settings();
-        weak.servos.iter_mut().for_each(|servo| servo.current_limit_a = 1.8);
-        let small = opened(Emulated { model: 1200, ..emulated() }, weak);
-        assert!(matches!(&small, Some(Trouble::Setting { key, .. }) if key == "current_limit_a"), "{small:?}");
-    });
+    let opened =
+        |emulator: Emulated, settings: Settings| Bench::new(Bus::new(&emulator, None).unwrap(), settings).open().err();
+    let missing = opened(Emulated { ids: vec![1, 2, 4], ..emulated() }, settings());
+    assert_eq!(missing, Some(Trouble::Absent { place: "servo 3 on test".to_owned() }));
+    let nobody = opened(Emulated { ids: vec![], ..emulated() }, settings());
+    assert_eq!(nobody, Some(Trouble::Silent { place: "test".to_owned() }));
+    let mut wanted = settings();
+    wanted.servos[1].model = Some("XM540-W270".to_owned());
+    let other = opened(emulated(), wanted);
+    let found = ("servo 2 on test".to_owned(), "XM540-W270".to_owned(), "XM430-W350".to_owned());
+    assert_eq!(other, Some(Trouble::WrongProduct { place: found.0, expected: found.1, found: found.2 }));
+    let mut weak = settings();
+    weak.servos.iter_mut().for_each(|servo| servo.current_limit_a = 1.8);
+    let small = opened(Emulated { model: 1200, ..emulated() }, weak);
+    assert!(matches!(&small, Some(Trouble::Setting { key, .. }) if key == "current_limit_a"), "{small:?}");
 }
 
 #[test]
@@ -157,17 +147,15 @@ fn impossible_settings_are_refused_by_key() {
 
 #[test]
 fn a_servo_that_shut_down_opens_after_a_restart_by_command_only() {
-    judged(|| {
-        let mut bench = Bench::usual();
-        bench.world.borrow_mut().emulator.fail(1, HardwareError(0x24));
-        let told = bench.open().err();
-        let words = "servo 2: overheated, overload".to_owned();
-        assert!(matches!(&told, Some(Trouble::DeviceFault { words: told, .. }) if *told == words), "{told:?}");
-        assert!(told.unwrap().cure().contains("servo 2"));
-        bench.reboots.ask(1);
-        let mut driver = bench.open().unwrap();
-        assert!(bench.run(&mut driver, 0.1).is_some() && !bench.reboots.is_any());
-    });
+    let mut bench = Bench::usual();
+    bench.world.borrow_mut().emulator.fail(1, HardwareError(0x24));
+    let told = bench.open().err();
+    let words = "servo 2: overheated, overload".to_owned();
+    assert!(matches!(&told, Some(Trouble::DeviceFault { words: told, .. }) if *told == words), "{told:?}");
+    assert!(told.unwrap().cure().contains("servo 2"));
+    bench.reboots.ask(1);
+    let mut driver = bench.open().unwrap();
+    assert!(bench.run(&mut driver, 0.1).is_some() && !bench.reboots.is_any());
 }
 
 /// A line on which somebody else switches the torque of servo 1 on again and again.

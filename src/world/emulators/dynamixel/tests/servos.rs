@@ -9,7 +9,6 @@ use nima_devices::{
     },
     transport::MemoryBytes,
 };
-use nima_testing::real_time::judged;
 
 use super::{
     super::{Bus, Emulated, Surroundings},
@@ -296,37 +295,33 @@ fn dropping_the_driver_lets_the_torque_go() {
 
 #[test]
 fn a_lost_torque_command_is_given_again() {
-    judged(|| {
-        let mut bench = Bench::usual();
-        let mut driver = bench.open().unwrap();
-        bench.run(&mut driver, 0.1);
-        driver.set_torque(true);
-        // What is sent now never arrives.
-        let begin_s = bench.now_s();
-        while !driver.is_torque_on() {
-            bench.poll(&mut driver, 1e-3);
-            assert!(bench.now_s() - begin_s < 0.1);
-        }
-        let mut lost = [0; 1024];
-        nima_devices::transport::Bytes::receive(&mut bench.world.borrow_mut().end, &mut lost).unwrap();
-        bench.run(&mut driver, 0.5);
-        assert!((0..4).all(|index| bench.world.borrow().emulator.shaft(index).unwrap().torque_on));
-    });
+    let mut bench = Bench::usual();
+    let mut driver = bench.open().unwrap();
+    bench.run(&mut driver, 0.1);
+    driver.set_torque(true);
+    // What is sent now never arrives.
+    let begin_s = bench.now_s();
+    while !driver.is_torque_on() {
+        bench.poll(&mut driver, 1e-3);
+        assert!(bench.now_s() - begin_s < 0.1);
+    }
+    let mut lost = [0; 1024];
+    nima_devices::transport::Bytes::receive(&mut bench.world.borrow_mut().end, &mut lost).unwrap();
+    bench.run(&mut driver, 0.5);
+    assert!((0..4).all(|index| bench.world.borrow().emulator.shaft(index).unwrap().torque_on));
 }
 
 #[test]
 fn a_reboot_by_command_leads_through_a_new_opening() {
-    judged(|| {
-        let mut bench = Bench::usual();
-        let mut driver = held(&mut bench);
-        driver.reboot(2);
-        bench.run(&mut driver, 0.05);
-        assert_eq!(driver.health().standing, Standing::Lost(Loss::Silent));
-        drop(driver);
-        let mut driver = bench.open().unwrap();
-        assert!(!bench.reboots.is_any() && bench.run(&mut driver, 0.2).is_some());
-        bench.world.borrow_mut().emulator.fail(0, HardwareError(0x01));
-        bench.run(&mut driver, 0.02);
-        assert!(matches!(driver.health().standing, Standing::Lost(Loss::Device { .. })));
-    });
+    let mut bench = Bench::usual();
+    let mut driver = held(&mut bench);
+    driver.reboot(2);
+    bench.run(&mut driver, 0.05);
+    assert_eq!(driver.health().standing, Standing::Lost(Loss::Silent));
+    drop(driver);
+    let mut driver = bench.open().unwrap();
+    assert!(!bench.reboots.is_any() && bench.run(&mut driver, 0.2).is_some());
+    bench.world.borrow_mut().emulator.fail(0, HardwareError(0x01));
+    bench.run(&mut driver, 0.02);
+    assert!(matches!(driver.health().standing, Standing::Lost(Loss::Device { .. })));
 }

@@ -83,42 +83,46 @@ fn until(slot: &mut Slot<Driver>, begin: Instant, good: impl Fn(&Slot<Driver>) -
 
 #[test]
 fn a_slot_brings_it_back_after_faults_and_a_cut_line() {
-    let (serving, mut settings) = serving(&emulated());
-    settings.silence_s = 0.1;
-    let reboots = Reboots::default();
-    let (wanted, asked) = (settings, reboots.clone());
-    let mut slot = Slot::start("servos", move || open_with(&wanted, &asked)).unwrap();
-    let begin = Instant::now();
-    let connected = |slot: &Slot<Driver>| slot.health().standing == Standing::Connected;
-    assert!(until(&mut slot, begin, connected));
-    for fault in [EmulatedFault::Disconnect, EmulatedFault::BadChecksum, EmulatedFault::DeviceFault] {
-        serving.faults.set(fault);
-        assert!(until(&mut slot, begin, |slot| matches!(slot.health().standing, Standing::Lost(_))), "{fault:?}");
-        let Standing::Lost(loss) = slot.health().standing else { unreachable!() };
-        match fault {
-            EmulatedFault::Disconnect => assert_eq!(loss, Loss::Disconnected),
-            EmulatedFault::BadChecksum => assert_eq!(loss, Loss::Corrupt),
-            _ => assert!(matches!(loss, Loss::Device { .. })),
+    judged(|| {
+        let (serving, mut settings) = serving(&emulated());
+        settings.silence_s = 0.1;
+        let reboots = Reboots::default();
+        let (wanted, asked) = (settings, reboots.clone());
+        let mut slot = Slot::start("servos", move || open_with(&wanted, &asked)).unwrap();
+        let begin = Instant::now();
+        let connected = |slot: &Slot<Driver>| slot.health().standing == Standing::Connected;
+        assert!(until(&mut slot, begin, connected));
+        for fault in [EmulatedFault::Disconnect, EmulatedFault::BadChecksum, EmulatedFault::DeviceFault] {
+            serving.faults.set(fault);
+            assert!(until(&mut slot, begin, |slot| matches!(slot.health().standing, Standing::Lost(_))), "{fault:?}");
+            let Standing::Lost(loss) = slot.health().standing else { unreachable!() };
+            match fault {
+                EmulatedFault::Disconnect => assert_eq!(loss, Loss::Disconnected),
+                EmulatedFault::BadChecksum => assert_eq!(loss, Loss::Corrupt),
+                _ => assert!(matches!(loss, Loss::Device { .. })),
+            }
+            serving.faults.set(EmulatedFault::None);
+            if fault == EmulatedFault::DeviceFault {
+                reboots.ask(0);
+            }
+            assert!(until(&mut slot, begin, connected), "{fault:?}: {:?}", slot.view().report().trouble);
         }
-        serving.faults.set(EmulatedFault::None);
-        if fault == EmulatedFault::DeviceFault {
-            reboots.ask(0);
-        }
-        assert!(until(&mut slot, begin, connected), "{fault:?}: {:?}", slot.view().report().trouble);
-    }
-    assert!(slot.view().report().opened >= 4);
+        assert!(slot.view().report().opened >= 4);
+    });
 }
 
 #[test]
 fn why_it_cannot_be_opened_is_told() {
-    let (serving, settings) = serving(&emulated());
-    let wrong = Settings { baud: 57_600, ..settings.clone() };
-    assert_eq!(open(&wrong).err(), Some(Trouble::WrongBaud { place: settings.port.clone(), baud: 57_600 }));
-    let driver = open(&settings).unwrap();
-    assert!(matches!(open(&settings).err(), Some(Trouble::Busy { .. })));
-    drop(driver);
-    serving.faults.set(EmulatedFault::Silence);
-    assert!(matches!(open(&settings).err(), Some(Trouble::Silent { .. })));
-    drop(serving);
-    assert_eq!(open(&settings).err(), Some(Trouble::Absent { place: settings.port.clone() }));
+    judged(|| {
+        let (serving, settings) = serving(&emulated());
+        let wrong = Settings { baud: 57_600, ..settings.clone() };
+        assert_eq!(open(&wrong).err(), Some(Trouble::WrongBaud { place: settings.port.clone(), baud: 57_600 }));
+        let driver = open(&settings).unwrap();
+        assert!(matches!(open(&settings).err(), Some(Trouble::Busy { .. })));
+        drop(driver);
+        serving.faults.set(EmulatedFault::Silence);
+        assert!(matches!(open(&settings).err(), Some(Trouble::Silent { .. })));
+        drop(serving);
+        assert_eq!(open(&settings).err(), Some(Trouble::Absent { place: settings.port.clone() }));
+    });
 }

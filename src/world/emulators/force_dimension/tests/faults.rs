@@ -40,18 +40,20 @@ fn wait(slot: &mut Slot<Driver>, good: impl Fn(&Slot<Driver>, bool) -> bool) -> 
 const ATTEMPTS: u32 = 6;
 
 fn goes_through(faults: &[EmulatedFault]) {
-    let (serving, hand, settings) = rig(Emulated::default());
-    let mut slot = Slot::start("handle", move || open(&settings)).unwrap();
-    for fault in faults {
-        let mut seen = Vec::new();
-        let found = (0..ATTEMPTS).any(|_| {
-            let found = shows(&mut slot, &hand, &serving, *fault, &mut seen);
-            serving.faults.set(EmulatedFault::None);
-            found
-        });
-        assert!(found, "{fault:?} was never seen as it should be: {seen:?}");
-    }
-    assert!(wait(&mut slot, |_, reading| reading), "delivers again: {:?}", slot.view().report().trouble);
+    judged(|| {
+        let (serving, hand, settings) = rig(Emulated::default());
+        let mut slot = Slot::start("handle", move || open(&settings)).unwrap();
+        for fault in faults {
+            let mut seen = Vec::new();
+            let found = (0..ATTEMPTS).any(|_| {
+                let found = shows(&mut slot, &hand, &serving, *fault, &mut seen);
+                serving.faults.set(EmulatedFault::None);
+                found
+            });
+            assert!(found, "{fault:?} was never seen as it should be: {seen:?}");
+        }
+        assert!(wait(&mut slot, |_, reading| reading), "delivers again: {:?}", slot.view().report().trouble);
+    });
 }
 
 /// Sets one fault on a handle that pushes; whether it shows as expected.
@@ -105,9 +107,7 @@ fn lateness_and_damage_are_noticed_and_overcome() {
 
 #[test]
 fn wrong_frames_and_a_pulled_cable_are_noticed_and_overcome() {
-    judged(|| {
-        goes_through(&[EmulatedFault::WrongFrame, EmulatedFault::Disconnect]);
-    });
+    goes_through(&[EmulatedFault::WrongFrame, EmulatedFault::Disconnect]);
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! Which of the nested window solutions foretells the change of force best at the true delay.
+//! Which of the nested window solutions predicts the change of force best at the true delay.
 
 use super::{
     factor::column_start,

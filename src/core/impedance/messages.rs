@@ -266,7 +266,7 @@ pub struct Report {
     pub matched_degree: u8,
     /// The same in the paper's columns.
     pub nima_degree: u8,
-    /// Motion columns of the nested solution on the window which foretells force best at the horizon, 0 (none) to 15: three per
+    /// Motion columns of the nested solution on the window which predicts force best at the horizon, 0 (none) to 15: three per
     /// degree (x, v, a). This, condition, rank and excitation are made only where anchored and literal are compared.
     pub columns: u8,
     /// How much of a full correction anchored rendering makes, 0 (plain reflection) to 1.

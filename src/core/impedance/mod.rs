@@ -14,7 +14,7 @@
 //! | `window`, `factor`, `solution` | sliding window at a constant cost; triangular factor; all its nested solutions |
 //! | `paper`, `gram`, `literal` | the paper's normal equations, all degrees, in-window choice |
 //! | `recipe` | how the paper is read where it leaves a choice; the choice by what comes after the window |
-//! | `degrees`, `horizon` | the nested solution that foretells force best at the true delay, where modes are compared |
+//! | `degrees`, `horizon` | the nested solution that predicts force best at the true delay, where modes are compared |
 //! | `anchored`, `regressors`, `regression`, `mixture` | anchored rendering: experts and their trust |
 //! | `best` | a softmin over anchored and matched rendering, judged by the leader |
 //! | `matched` | matched rendering: the force from the hand's own motion, by parameters alone |

@@ -116,7 +116,7 @@ impl Renderer {
     /// Changes the programmed delay, exact to one sample, at most [`MAX_DELAY_S`].
     pub fn set_delay(&mut self, delay_s: f64) {
         self.delay_ticks = self.settings.delay_ticks(delay_s);
-        // Over a longer link older parcels come than before; they are new all the same.
+        // A longer link delivers parcels with earlier time stamps than the last one that came: they are still new.
         self.parcel_t_s = f64::NEG_INFINITY;
         self.waiting = 0;
     }

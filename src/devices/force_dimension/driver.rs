@@ -49,7 +49,9 @@ pub enum HandleEvent {
 /// Counters of the driver since it was opened.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Counters {
-    /// Calls of the SDK that failed.
+    /// Calls of the SDK that the device did not answer in time: by chance, or because this computer is busy.
+    pub timed_out_calls: u64,
+    /// Calls of the SDK that failed for another reason.
     pub failed_calls: u64,
     /// Readings that repeated the last one (`DHD_TIMEGUARD`).
     pub time_guarded: u64,
@@ -238,7 +240,8 @@ impl Driver {
 
     fn take(&mut self, report: &Report, now_s: f64) -> Option<HandleReading> {
         let missing = self.cycle.map_or(0, |last| report.cycle.saturating_sub(last + 1));
-        self.health.lost += missing;
+        let timed_out = report.counters.timed_out_calls - self.counters.timed_out_calls;
+        self.health.lost += missing + timed_out;
         self.cycle = Some(report.cycle);
         (self.status, self.counters) = (report.status, report.counters);
         self.health.damaged = report.counters.failed_calls;

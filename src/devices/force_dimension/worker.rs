@@ -178,7 +178,12 @@ impl Worker {
     }
 
     fn fail(&mut self, error: SdkError) {
-        self.counters.failed_calls += 1;
+        let calls = if error == SdkError::TIMED_OUT {
+            &mut self.counters.timed_out_calls
+        } else {
+            &mut self.counters.failed_calls
+        };
+        *calls += 1;
         self.failure = Some(error);
         if error.is_final() {
             self.loss.get_or_insert(error.loss());

@@ -12,7 +12,7 @@ pub const BLOCKS: usize = 21;
 pub const RATE_OFF: f64 = 0.05;
 /// Share of the readings that may be lost.
 const LOST_MAX: f64 = 0.005;
-/// Share that may be damaged: a late call of a handle's library counts as one, and a busy computer makes some.
+/// Share that may be damaged.
 const DAMAGED_MAX: f64 = 0.001;
 /// A reading may be as old as this many periods of the device, and as this many ticks, s.
 const AGE_PERIODS: f64 = 2.0;

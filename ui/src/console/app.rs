@@ -20,7 +20,7 @@ use eframe::glow;
 use egui::{Frame, Margin, Panel, Ui};
 use nima_machine::{
     config::RigConfig,
-    messages::{Command, LoopState, Tick},
+    messages::{Command, Tick},
     rig::Side,
     runtime::{self, Assembly, Handle, StartError},
 };
@@ -243,8 +243,8 @@ impl ConsoleApp {
     fn restart(&mut self, rig: RigConfig, scene: Scene) -> Result<(), String> {
         rig.validate().and_then(|()| scene.validate()).map_err(|error| error.to_string())?;
         self.take_in();
-        if !matches!(self.live.state(), LoopState::Idle | LoopState::Engaged) {
-            return Err(text::calibrations::LOOP_STOPPED.to_owned());
+        if let Some(why) = text::calibrations::closed(self.live.state()) {
+            return Err(why.to_owned());
         }
         // End the old loop first: a rig must have one controller only.
         drop(self.door.take());

@@ -182,7 +182,7 @@ impl Calibration for Table {
         }
         let Some(found) = examined(&Touches, &points) else { return collinear(0.0) };
         let kept: Vec<Vector3<f64>> = found.kept.iter().map(|&i| points[i]).collect();
-        // The points that define the axes must be on the plane, and no other point may be alone beside a line.
+        // The points that define the axes must be on the plane, and the others must not lie on a line with a single point beside it.
         let alone = (0..kept.len()).any(|i| {
             let others: Vec<Vector3<f64>> = kept.iter().enumerate().filter(|(j, _)| *j != i).map(|(_, p)| *p).collect();
             kept.len() > 3 && second_spread_m(&others) < 0.5 * LEAST_SPREAD_M

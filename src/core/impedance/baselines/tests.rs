@@ -59,7 +59,7 @@ fn kalman_follows_a_ramp_and_extrapolates_it_as_far_as_a_rate_lasts() {
 }
 
 #[test]
-fn an_autoregressive_model_foretells_an_oscillation() {
+fn an_autoregressive_model_predicts_an_oscillation() {
     let mut follower = Autoregressive::new(RATE_HZ, 100);
     let wave = |k: i32| 1.0 + (9.0 * f64::from(k) * 1e-3).sin();
     let mut worst_n = 0.0_f64;

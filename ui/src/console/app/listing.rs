@@ -3,14 +3,13 @@
 use std::time::{Duration, Instant};
 
 use egui::{CentralPanel, Frame, Margin, Panel, ScrollArea, Ui};
-use nima_machine::messages::LoopState;
 
 use super::ConsoleApp;
 use crate::console::{
     desk::Panel as Tile,
     overview::{OfArm, overview, overview_ui},
     panels::{Page, calibrations_ui},
-    theme,
+    text, theme,
     widgets::card,
 };
 
@@ -53,11 +52,11 @@ impl ConsoleApp {
                 calibrations_ui(ui, &self.live, &self.in_force, Some(Page::All))
             });
         });
-        let free = matches!(self.live.state(), LoopState::Idle | LoopState::Engaged);
+        let closed = text::calibrations::closed(self.live.state());
         let mut wanted = None;
         CentralPanel::default().frame(Frame::new().inner_margin(Margin::symmetric(18, 14))).show(ui, |ui| {
             ScrollArea::both().auto_shrink(false).show(ui, |ui| {
-                wanted = self.listing.0.as_ref().and_then(|(arms, _)| overview_ui(ui, arms, free));
+                wanted = self.listing.0.as_ref().and_then(|(arms, _)| overview_ui(ui, arms, closed));
             });
         });
         match wanted {

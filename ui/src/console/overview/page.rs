@@ -13,15 +13,15 @@ use crate::console::{
 /// Widths of the columns of words.
 const WIDTHS: [f32; 3] = [150.0, 260.0, 260.0];
 
-/// Draws the page; returns the calibration that is to be made. With `free` false none can be.
-pub(crate) fn overview_ui(ui: &mut Ui, arms: &[OfArm], free: bool) -> Option<Wanted> {
+/// Draws the page; returns the calibration that is to be made. With a reason in `closed` none can be.
+pub(crate) fn overview_ui(ui: &mut Ui, arms: &[OfArm], closed: Option<&str>) -> Option<Wanted> {
     ui.label(RichText::new(text::overview::TITLE).font(theme::strong(22.0)));
     ui.label(small(text::overview::MEANING));
     ui.add_space(theme::GAP);
     if arms.is_empty() {
         ui.label(text::calibrations::NOT_NEEDED);
     }
-    let mut wish = following_ui(ui, arms, free);
+    let mut wish = following_ui(ui, arms, closed);
     for arm in arms {
         let name = side_name(arm.side);
         let head = arm.wrist.as_ref().map_or_else(
@@ -41,7 +41,7 @@ pub(crate) fn overview_ui(ui: &mut Ui, arms: &[OfArm], free: bool) -> Option<Wan
             }
             ui.end_row();
             for line in &arm.lines {
-                if line_ui(ui, line, name, free) {
+                if line_ui(ui, line, name, closed) {
                     wish = Some(line.wanted);
                 }
                 ui.end_row();
@@ -53,16 +53,18 @@ pub(crate) fn overview_ui(ui: &mut Ui, arms: &[OfArm], free: bool) -> Option<Wan
 }
 
 /// The button that opens what is to be calibrated next.
-fn following_ui(ui: &mut Ui, arms: &[OfArm], free: bool) -> Option<Wanted> {
+fn following_ui(ui: &mut Ui, arms: &[OfArm], closed: Option<&str>) -> Option<Wanted> {
     let wanted = following(arms, None)?;
     let name = RichText::new(GoOn::Calibrate(wanted).words()).font(theme::strong(15.0));
+    let free = closed.is_none();
     let button = ui.add_enabled(free, next_button(name, free).min_size(vec2(300.0, 34.0)));
+    ui.label(small(closed.unwrap_or(text::calibrations::SETS_IDLE)));
     ui.add_space(theme::GAP);
-    button.on_disabled_hover_text(text::calibrations::OPEN_DISABLED_HOVER).clicked().then_some(wanted)
+    button.on_disabled_hover_text(closed.unwrap_or_default()).clicked().then_some(wanted)
 }
 
 /// One line; returns whether it is to be repeated.
-fn line_ui(ui: &mut Ui, line: &Line, arm: &str, free: bool) -> bool {
+fn line_ui(ui: &mut Ui, line: &Line, arm: &str, closed: Option<&str>) -> bool {
     let (what, colour) = if line.is_in_order() {
         (Sign::Disc, theme::now().engaged)
     } else {
@@ -82,8 +84,9 @@ fn line_ui(ui: &mut Ui, line: &Line, arm: &str, free: bool) -> bool {
         });
     }
     let verb = if line.kept == Ok(None) { text::overview::MAKE } else { text::overview::REDO };
+    let free = closed.is_none();
     let button = ui.add_enabled(free, Button::new(verb).min_size(vec2(84.0, 24.0)));
     let name = text::overview::button(verb, arm, &line.wanted.name().to_lowercase());
     button.widget_info(|| WidgetInfo::labeled(egui::Role::Button, free, name.clone()));
-    button.on_disabled_hover_text(text::calibrations::OPEN_DISABLED_HOVER).clicked()
+    button.on_disabled_hover_text(closed.unwrap_or_default()).clicked()
 }

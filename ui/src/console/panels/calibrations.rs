@@ -1,7 +1,7 @@
 //! The calibrations in force between wrist sensor and tip force, shown in every view; and buttons that open the
 //! wizards.
 
-use egui::{Button, RichText, Ui, vec2};
+use egui::{Button, Label, RichText, Ui, vec2};
 use nima_machine::{
     messages::{ForceSource, LoopState},
     rig::Side,
@@ -48,7 +48,7 @@ pub enum Page {
 
 /// The panel; `open` is the page that is open beside it.
 pub fn calibrations_ui(ui: &mut Ui, live: &Live, in_force: &InForce, open: Option<Page>) -> Option<CalibrationWish> {
-    let free = is_free(live);
+    let closed = text::calibrations::closed(live.state());
     let mut wish = rig_ui(ui, live, open);
     ui.add_space(2.0);
     source_ui(ui, live);
@@ -66,9 +66,9 @@ pub fn calibrations_ui(ui: &mut Ui, live: &Live, in_force: &InForce, open: Optio
         let is_open = open == Some(Page::Wizard(which));
         let button =
             Button::selectable(is_open, text).frame_when_inactive(true).min_size(vec2(ui.available_width(), 28.0));
-        let response = ui.add_enabled(free && !is_open, button);
+        let response = ui.add_enabled(closed.is_none() && !is_open, button);
         let response = response.on_hover_text(text::calibrations::opens(which.meaning()));
-        if response.on_disabled_hover_text(text::calibrations::OPEN_DISABLED_HOVER).clicked() {
+        if response.on_disabled_hover_text(closed.unwrap_or(text::calibrations::IS_OPEN)).clicked() {
             wish = Some(CalibrationWish::Open(which));
         }
     }
@@ -90,7 +90,7 @@ pub fn calibrations_ui(ui: &mut Ui, live: &Live, in_force: &InForce, open: Optio
 /// before it can be engaged.
 fn rig_ui(ui: &mut Ui, live: &Live, open: Option<Page>) -> Option<CalibrationWish> {
     let mut wish = None;
-    let free = is_free(live);
+    let closed = text::calibrations::closed(live.state());
     let is_known = live.first_tick().is_some_and(|tick| tick.force.source.is_usable());
     let next = (live.rig.devices.is_some() && live.state() == LoopState::Idle && open.is_none())
         .then_some(if is_known { Page::Check } else { Page::All })
@@ -104,18 +104,16 @@ fn rig_ui(ui: &mut Ui, live: &Live, open: Option<Page>) -> Option<CalibrationWis
             let (is_open, next) = (open == Some(page), next == Some(page));
             let button =
                 next_button(name, next).selected(is_open).frame_when_inactive(true).min_size(vec2(width, 28.0));
-            let button = ui.add_enabled((free || page == Page::All) && !is_open, button).on_hover_text(meaning);
-            if button.on_disabled_hover_text(text::calibrations::OPEN_DISABLED_HOVER).clicked() {
+            let can_open = closed.is_none() || page == Page::All;
+            let button = ui.add_enabled(can_open && !is_open, button).on_hover_text(meaning);
+            if button.on_disabled_hover_text(closed.unwrap_or(text::calibrations::IS_OPEN)).clicked() {
                 wish = Some(opens);
             }
         }
     });
+    // One line in every state, so that the buttons below do not move under a hand.
+    ui.add(Label::new(small(closed.unwrap_or(text::calibrations::SETS_IDLE))).truncate());
     wish
-}
-
-/// Whether a page may be opened that sets the loop to idle.
-fn is_free(live: &Live) -> bool {
-    matches!(live.state(), LoopState::Idle | LoopState::Engaged)
 }
 
 /// Selection of the arm to calibrate.
@@ -141,7 +139,7 @@ fn source_ui(ui: &mut Ui, live: &Live) {
     ui.horizontal(|ui| {
         sign_ui(ui, what, 5.0, colour);
         let words = RichText::new(text::calibrations::source(source.words())).font(theme::strong(14.0));
-        ui.add(egui::Label::new(words).wrap()).on_hover_text(sentence(source.words()));
+        ui.add(Label::new(words).wrap()).on_hover_text(sentence(source.words()));
     });
     if let Some(unsure) = source.doubt() {
         ui.label(small(sentence(unsure.words())));

@@ -10,7 +10,7 @@ use std::{
 };
 
 use egui::{Button, ProgressBar, Ui, vec2};
-use nima_machine::{config::RigConfig, messages::LoopState};
+use nima_machine::config::RigConfig;
 use nima_study::tradeoff::{Choice, Method, Plan, Point, Source, SourceFigures, Study, SweepError, sweep};
 
 use super::{mode_meaning, mode_name, tradeoff_apply::Apply, tradeoff_plot::plot_ui};
@@ -188,14 +188,14 @@ fn apply_ui(
     let apply = Apply::of(live, mode, &point.choice);
     let restart = matches!(apply, Apply::Restart(_));
     // After a restart the loop is idle, so it must not be a way out of a stop or a fault.
-    let allowed = !restart || matches!(live.state(), LoopState::Idle | LoopState::Engaged);
+    let closed = text::calibrations::closed(live.state()).filter(|_| restart);
     let size = vec2(ui.available_width(), 30.0);
-    let button = ui.add_enabled(allowed, Button::new(text::tradeoff::APPLY).min_size(size));
+    let button = ui.add_enabled(closed.is_none(), Button::new(text::tradeoff::APPLY).min_size(size));
     let note = if restart { text::tradeoff::APPLY_BY_RESTART } else { text::tradeoff::APPLY_AT_ONCE };
     ui.label(small(format!("{}. {note}", name(point))));
     let clicked = button
         .on_hover_text(format!("{}\n{}\n{note}", words(point), mode_meaning(mode)))
-        .on_disabled_hover_text(text::tradeoff::APPLY_DISABLED_HOVER)
+        .on_disabled_hover_text(closed.unwrap_or_default())
         .clicked();
     if !clicked {
         return None;

@@ -1,10 +1,11 @@
 //! The calibration panel: what is calibrated, how well, and the buttons that open the wizards.
 
+use nima_machine::messages::LoopState;
 use nima_recording::store::WristId;
 
 pub(in crate::console) const NOT_OF_A_SENSOR: &str = "these numbers belong into the rig file";
-pub(in crate::console) const OPEN_DISABLED_HOVER: &str =
-    "Already open, or the loop is stopped: press Release stop first";
+pub(in crate::console) const SETS_IDLE: &str = "Each of these sets the loop to idle";
+pub(in crate::console) const IS_OPEN: &str = "Already open";
 pub(in crate::console) const CLOSE_WIZARD: &str = "Back to the monitor";
 pub(in crate::console) const CLOSE_WIZARD_HOVER: &str =
     "The data recorded so far are kept until the wizard is opened again";
@@ -18,7 +19,6 @@ pub(in crate::console) const CORRESPONDENCE_NONE: &str = "Correspondence: not ca
 pub(in crate::console) const TIP_FORCE_NONE: &str = "Tip force: not calibrated";
 pub(in crate::console) const TIP_FORCE_UNCHECKED: &str = "Tip force: trained but not checked";
 pub(in crate::console) const REMARK_FUTURE_DATE: &str = "; dated in the future, check this computer's clock";
-pub(in crate::console) const LOOP_STOPPED: &str = "the loop is stopped; press Release stop first";
 pub(in crate::console) const SENSOR_NOT_CONNECTED: &str =
     "The wrist sensor is not connected: its serial number decides which calibrations are in force";
 pub(in crate::console) const SENSOR_WITHOUT_SERIAL: &str =
@@ -28,6 +28,17 @@ pub(in crate::console) const RIG_WITHOUT_SENSOR: &str =
 pub(in crate::console) const NO_SENSOR_TO_SAVE_FOR: &str =
     "the serial number of the wrist sensor is not known; save again once the sensor is connected";
 pub(in crate::console) const ARM_TO_CALIBRATE: &str = "The wizards calibrate the wrist sensor of this arm";
+
+/// Why nothing that sets the loop to idle can be opened in this state, and what to do; `None` where it can.
+pub(in crate::console) const fn closed(state: LoopState) -> Option<&'static str> {
+    match state {
+        LoopState::Idle | LoopState::Engaged => None,
+        LoopState::Stopped | LoopState::Faulted(_) => Some("The loop is stopped: press Release stop"),
+        LoopState::Disconnected => Some("A device is missing: see the panel Devices"),
+        LoopState::Ready => Some("About to engage: align hand and tip, or Stop"),
+        LoopState::Clutched => Some("The clutch is pressed: let the pedal go"),
+    }
+}
 
 /// Button that opens a wizard; the wizard's name is in lower case.
 pub(in crate::console) fn calibrate(wizard: &str) -> String {

@@ -17,8 +17,6 @@ pub(in crate::console) const APPLY: &str = "Apply";
 pub(in crate::console) const APPLY_BY_RESTART: &str = "Degree or window differ from those in use: the loop restarts and is then idle, without force. Press \
     Engage when you are ready.";
 pub(in crate::console) const APPLY_AT_ONCE: &str = "Applied to the running loop at once";
-pub(in crate::console) const APPLY_DISABLED_HOVER: &str =
-    "Press Release stop first: a restart must not clear a stop or a fault";
 pub(in crate::console) const ON_FRONT: &str = "\nNo other choice is both faster and more accurate";
 pub(in crate::console) const TIME_AXIS: &str = "One tick (µs)";
 pub(in crate::console) const APPLIED_BY_RESTART: &str =

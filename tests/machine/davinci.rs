@@ -67,7 +67,7 @@ fn unseen_recordings_meet_the_goal_within_the_trained_loads_and_below_them_and_d
 }
 
 #[test]
-#[ignore = "minutes: the table of docs/calibration.md"]
+#[ignore = "takes minutes, prints the table of docs/calibration.md: `./dev figures` runs it"]
 fn all_fifteen_splits_with_the_default_settings() {
     if absent() {
         return;

@@ -311,7 +311,7 @@ fn table(rows: &[Row]) -> String {
 }
 
 #[test]
-#[ignore = "minutes in real time: `./dev test` runs it"]
+#[ignore = "a minute in real time: `./dev test` runs it alone"]
 fn every_fault_of_every_device_is_told_takes_the_force_away_and_passes() {
     let _alone = alone();
     let folder = tempfile::tempdir().unwrap();

@@ -25,7 +25,7 @@ pub struct Rendering {
     pub unit_difference: Option<f64>,
 }
 
-/// One of these modes after a long run, beside one that started [`Endurance::FRESH`] ticks before its end.
+/// One of these modes after a long run, beside one that started [`Endurance::FRESH`] ticks before its end, or a little earlier.
 #[derive(Clone, Debug, Serialize)]
 pub struct Endurance {
     /// The mode.
@@ -41,8 +41,11 @@ pub struct Endurance {
 
 impl Endurance {
     /// After so many ticks (500 s at 1 kHz; the longest memory has 20 s) only rounding can tell how long a run was.
-    const FRESH: u64 = 500_000;
+    pub(super) const FRESH: u64 = 500_000;
     const COMPARED: u64 = 1000;
+    /// Runs that begin so many ticks apart, or a multiple, begin at the same place, which they keep as their origin, and renew their fits,
+    /// each every 7, 14 or 5 ticks, in the same ticks: only then must they be equal to the last digits.
+    const ALIKE: u64 = 7 * Self::PERIOD;
     /// Ticks after which the motion repeats.
     const PERIOD: u64 = 10_000;
 }
@@ -106,7 +109,7 @@ pub(super) fn endurance(ticks: u64) -> Result<Vec<Endurance>, SettingsError> {
 fn long_run(ticks: u64, mode: Mode) -> Result<Endurance, SettingsError> {
     let mut old = Identifier::new(&settings(1.0, mode))?;
     let mut fresh = old.clone();
-    let fresh_from = ticks.checked_sub(Endurance::FRESH);
+    let fresh_from = ticks.checked_sub(Endurance::FRESH).map(|from| from - from % Endurance::ALIKE);
     let (mut endurance, mut started) = (Endurance { mode, ticks, not_finite: 0, difference: None }, false);
     let (mut off_n, mut squares_n2) = (None, 0.0);
     for tick in 0..ticks {

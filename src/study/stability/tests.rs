@@ -26,6 +26,13 @@ fn ours_holds_at_the_extremes() {
 }
 
 #[test]
+fn a_long_run_answers_as_one_that_began_later() {
+    for endurance in rendering::endurance(Endurance::FRESH + 80_001).unwrap() {
+        assert!(endurance.not_finite == 0 && endurance.difference.unwrap() <= TARGET, "{endurance:?}");
+    }
+}
+
+#[test]
 fn too_few_ticks_are_refused() {
     let error = study(&Options { ticks: 9, quick: true }, |_, _, _| {}).unwrap_err();
     assert_eq!(error.to_string(), "9 ticks were asked for; it must be 10000 to 1000000000");

@@ -146,7 +146,7 @@ fn judge(figures: &Value) {
 }
 
 #[test]
-#[ignore = "ten minutes in real time: `./dev test` runs it alone"]
+#[ignore = "ten minutes in real time: `./dev walk` runs it"]
 fn from_boxes_to_first_touch() {
     let _alone = alone();
     let home = Home::new(&rig());

@@ -335,10 +335,9 @@ fn a_record_reads_back_and_one_that_cannot_be_used_is_refused() {
     assert!(refused("coverage", "covfefe").contains("coverage"));
 }
 
-/// Not asserted: run times of a debug build on a shared computer mean little. Run with `--ignored --nocapture
-/// --release`.
+/// Not asserted: run times of a debug build on a shared computer mean little.
 #[test]
-#[ignore = "a measurement"]
+#[ignore = "prints times: `./dev figures` runs it"]
 fn how_long_a_fit_and_a_compensation_take() {
     let mut tool = Tool::new(13, 0.4);
     let poses = tool.imu_poses(100);

@@ -133,7 +133,7 @@ fn a_killed_process_leaves_a_file_that_opens() {
 }
 
 #[test]
-#[ignore = "takes minutes; run by hand when the writer changes"]
+#[ignore = "takes minutes: `./dev figures` runs it"]
 fn a_thousand_killed_processes_leave_files_that_open() {
     kill(1_000, fastrand::u64(..));
 }

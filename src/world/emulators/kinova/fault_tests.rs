@@ -90,7 +90,7 @@ fn every_fault_is_noticed_and_passes_without_a_restart() {
 }
 
 #[test]
-#[ignore = "prints figures; takes ten seconds"]
+#[ignore = "prints figures, takes ten seconds: `./dev figures` runs it"]
 fn figures_of_the_cycle() {
     let (_serving, settings) = started(patient());
     let mut driver = open(&settings).unwrap();

@@ -134,7 +134,7 @@ fn a_weaker_brake_takes_longer() {
 }
 
 #[test]
-#[ignore = "half a minute: every force, every kind of handle, every brake"]
+#[ignore = "half a minute, every force, kind of handle and brake: `./dev figures` runs it"]
 fn figures_of_letting_go() {
     for force_n in [5.0, 4.0, 3.0, 2.0, 1.0, 0.5] {
         for brake_n_s_m in [30.0, 15.0, 5.0] {
@@ -205,7 +205,7 @@ fn no_hand_that_is_there_is_declared_gone_and_little_is_withheld() {
 }
 
 #[test]
-#[ignore = "ten seconds: 1500 people at least"]
+#[ignore = "ten seconds, 1500 people at least: `./dev fuzz` runs it"]
 fn fuzz_hands_that_are_there() {
     nima_testing::fuzz::rounds(|seed| {
         let lost = judge_present(1500, seed, 0.02);
@@ -235,7 +235,7 @@ fn no_requests_give_a_lone_handle_more_than_the_bound() {
 }
 
 #[test]
-#[ignore = "ten million requests a round"]
+#[ignore = "ten million requests a round: `./dev fuzz` runs it"]
 fn fuzz_no_requests_give_a_lone_handle_more_than_the_bound() {
     nima_testing::fuzz::rounds(|seed| {
         let [with_j, bare_j] = judge_adversary(10_000_000, seed);

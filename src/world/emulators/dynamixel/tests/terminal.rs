@@ -48,7 +48,7 @@ fn it_delivers_over_the_terminal_without_a_loss() {
 
 /// Not a test of anything but this machine: the figures that the documentation gives.
 #[test]
-#[ignore = "measures; takes 20 s"]
+#[ignore = "prints rates, takes 20 s: `./dev figures` runs it"]
 fn measure_rate_and_losses() {
     for baud in [1_000_000, 4_000_000] {
         for fast in [true, false] {

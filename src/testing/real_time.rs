@@ -12,7 +12,7 @@ use std::{
 };
 
 const ATTEMPTS: usize = 5;
-/// No attempt begins later than this after the first: what the machine holds up for so long is better judged when nothing else runs.
+/// What a busy machine has held up for so long is better judged when nothing else runs.
 const PATIENCE: Duration = Duration::from_mins(1);
 /// Failures on a machine that was not busy. One may be chance: the machine can hold up the emulators' threads alone.
 const FAILURES_MAX: usize = 2;
@@ -41,10 +41,11 @@ pub fn too_busy() -> ! {
 /// Runs a test in real time. A failure on a busy machine is not judged, and the test is tried again; two failures on a quiet one fail it.
 /// A test that never ran on a quiet machine is named, so that it can be run again (`./dev test` does, when all else has ended).
 pub fn judged(test: impl Fn()) {
-    let is_judged = judged_on(test, || {
+    let watch = || {
         let watch = Watch::start();
         move || watch.was_busy()
-    });
+    };
+    let is_judged = judged_on(test, watch, PATIENCE);
     if !is_judged {
         // Not `eprintln!`, which is kept from view when the test passes.
         let _ = writeln!(std::io::stderr(), "too busy to judge: {}", current().name().unwrap_or("a test"));
@@ -53,17 +54,18 @@ pub fn judged(test: impl Fn()) {
 
 /// `watch` starts to watch the machine, and what it gives tells at the end of an attempt whether the machine was busy. `false` if the test
 /// neither passed nor failed.
-fn judged_on<Busy: FnOnce() -> bool>(test: impl Fn(), watch: impl Fn() -> Busy) -> bool {
+fn judged_on<Busy: FnOnce() -> bool>(test: impl Fn(), watch: impl Fn() -> Busy, patience: Duration) -> bool {
     let (begin, mut failures) = (Instant::now(), 0);
-    for attempt in 0..ATTEMPTS {
-        if attempt > 0 && begin.elapsed() > PATIENCE {
-            break;
-        }
+    for _ in 0..ATTEMPTS {
         let was_busy = watch();
         let Err(cause) = catch_unwind(AssertUnwindSafe(&test)) else { return true };
-        failures += usize::from(!was_busy() && !cause.is::<TooBusy>());
+        let busy = was_busy() || cause.is::<TooBusy>();
+        failures += usize::from(!busy);
         if failures == FAILURES_MAX {
             resume_unwind(cause);
+        }
+        if busy && begin.elapsed() >= patience {
+            return false;
         }
     }
     false
@@ -132,13 +134,13 @@ mod tests {
 
     /// Attempts that are made of a test which fails until attempt `good`, on a machine that is busy or not, and whether it was judged;
     /// `None` if it failed.
-    fn attempts(good: usize, busy: bool) -> Option<(usize, bool)> {
+    fn attempts(good: usize, busy: bool, patience: Duration) -> Option<(usize, bool)> {
         let made = Cell::new(0);
         let test = || {
             made.set(made.get() + 1);
             assert!(made.get() >= good, "attempt {}", made.get());
         };
-        let judged = catch_unwind(AssertUnwindSafe(|| judged_on(test, || move || busy))).ok()?;
+        let judged = catch_unwind(AssertUnwindSafe(|| judged_on(test, || move || busy, patience))).ok()?;
         Some((made.get(), judged))
     }
 
@@ -159,16 +161,17 @@ mod tests {
             made.set(made.get() + 1);
             too_busy();
         };
-        assert!(!judged_on(held_up, || || false));
+        assert!(!judged_on(held_up, || || false, PATIENCE));
         assert_eq!(made.get(), ATTEMPTS);
     }
 
     #[test]
     fn two_failures_on_a_quiet_machine_fail_and_none_on_a_busy_one_does() {
-        assert_eq!([1, 2, 3].map(|good| attempts(good, false)), [Some((1, true)), Some((2, true)), None]);
-        assert_eq!(
-            [1, 3, 9].map(|good| attempts(good, true)),
-            [Some((1, true)), Some((3, true)), Some((ATTEMPTS, false))]
-        );
+        let on_quiet = |patience| [1, 2, 3].map(|good| attempts(good, false, patience));
+        assert_eq!(on_quiet(PATIENCE), [Some((1, true)), Some((2, true)), None]);
+        assert_eq!(on_quiet(Duration::ZERO), on_quiet(PATIENCE), "a failure on a quiet machine is never put off");
+        let on_busy = |patience| [1, 3, 9].map(|good| attempts(good, true, patience));
+        assert_eq!(on_busy(PATIENCE), [Some((1, true)), Some((3, true)), Some((ATTEMPTS, false))]);
+        assert_eq!(on_busy(Duration::ZERO), [Some((1, true)), Some((1, false)), Some((1, false))]);
     }
 }

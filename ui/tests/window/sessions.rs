@@ -15,8 +15,8 @@ use crate::{
 const STOP: (i32, i32) = (1519, 36);
 const STEP: (i32, i32) = (1380, 36);
 const LOWER_THE_GAIN: (i32, i32) = (873, 868);
-const CALIBRATE_GRAVITY: (i32, i32) = (150, 621);
-const BACK_TO_THE_MONITOR: (i32, i32) = (150, 302);
+const CALIBRATE_GRAVITY: (i32, i32) = (150, 641);
+const BACK_TO_THE_MONITOR: (i32, i32) = (150, 322);
 const TIMING: (i32, i32) = (1283, 691);
 const BESIDE_TRADEOFF: (i32, i32) = (1430, 377);
 const PAUSE: (i32, i32) = (888, 614);

@@ -4,7 +4,7 @@ use nima_machine::messages::LoopState;
 use nima_recording::store::WristId;
 
 pub(in crate::console) const NOT_OF_A_SENSOR: &str = "these numbers belong into the rig file";
-pub(in crate::console) const SETS_IDLE: &str = "Each of these sets the loop to idle";
+pub(in crate::console) const SETS_IDLE: &str = "The check and the wizards set the loop to idle";
 pub(in crate::console) const IS_OPEN: &str = "Already open";
 pub(in crate::console) const CLOSE_WIZARD: &str = "Back to the monitor";
 pub(in crate::console) const CLOSE_WIZARD_HOVER: &str =

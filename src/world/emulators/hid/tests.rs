@@ -19,6 +19,8 @@ use crate::emulators::{
     hid::{self, CapBody, CapModel, PedalBody, PedalModel, cap, spacenavd},
 };
 
+mod pedals;
+
 fn deflected() -> CapReading {
     CapReading { translation: Vector3::new(0.5, -0.2, 0.8), rotation: Vector3::new(0.1, 0.4, -1.0), buttons: 2 }
 }
@@ -28,6 +30,14 @@ fn same(one: &CapReading, other: &CapReading) -> bool {
     (one.translation - other.translation).amax() < 2e-3
         && (one.rotation - other.rotation).amax() < 2e-3
         && one.buttons == other.buttons
+}
+
+/// A pedal whose switches follow a number.
+fn pedal(model: PedalModel) -> (Serving, Arc<AtomicU32>) {
+    let pressed = Arc::new(AtomicU32::new(0));
+    let foot = Arc::clone(&pressed);
+    let body = PedalBody::pressed_by(move |_| PedalReading { pressed: foot.load(Ordering::Acquire) });
+    (hid::pedal(None, model, body).serve().unwrap(), pressed)
 }
 
 fn still_cap(model: CapModel) -> Serving {
@@ -247,102 +257,6 @@ fn the_daemon_gives_the_same_values_as_the_cap_itself() {
         assert!(
             until(&mut driver, |driver, _| driver.health().standing == Standing::Lost(Loss::Disconnected)).is_some()
         );
-    });
-}
-
-/// A pedal whose switches follow a number.
-fn pedal(model: PedalModel) -> (Serving, Arc<AtomicU32>) {
-    let pressed = Arc::new(AtomicU32::new(0));
-    let foot = Arc::clone(&pressed);
-    let body = PedalBody::pressed_by(move |_| PedalReading { pressed: foot.load(Ordering::Acquire) });
-    (hid::pedal(None, model, body).serve().unwrap(), pressed)
-}
-
-#[test]
-fn both_kinds_of_pedal_tell_presses_and_releases_in_time() {
-    judged(|| {
-        for model in [PedalModel::Keyboard, PedalModel::Switches] {
-            let (serving, foot) = pedal(model);
-            let settings = PedalSettings { presence: Some(1), ..pedal_settings(&serving) };
-            let mut driver = PedalDriver::open(&settings).unwrap();
-            let roles = driver.roles();
-            std::thread::sleep(Duration::from_millis(30));
-            for pressed in [0b01, 0b11, 0b10, 0b100, 0] {
-                foot.store(pressed, Ordering::Release);
-                let told = |_: &mut PedalDriver, reading: Option<Stamped<PedalReading>>| {
-                    reading.is_some_and(|reading| {
-                        let PedalReading { pressed: got } = reading.value;
-                        assert_eq!(roles.clutch(reading.value), got & 1 == 1);
-                        assert_eq!(roles.presence(reading.value), Some(got & 2 == 2));
-                        got == pressed
-                    })
-                };
-                assert!(until(&mut driver, told).is_some(), "{model:?}: {pressed:#b}");
-            }
-            assert_eq!(driver.health().damaged + driver.health().refused + driver.health().lost, 0);
-        }
-    });
-}
-
-#[test]
-fn a_pressed_pedal_that_is_unplugged_or_broken_is_released_and_stays_so_until_it_speaks_again() {
-    judged(|| {
-        for (fault, loss) in [
-            (EmulatedFault::Disconnect, Loss::Disconnected),
-            (EmulatedFault::WrongFrame, Loss::Corrupt),
-            (EmulatedFault::NotANumber, Loss::Implausible),
-        ] {
-            let (serving, foot) = pedal(PedalModel::Keyboard);
-            let settings = pedal_settings(&serving);
-            let mut slot = Slot::start("pedal", move || PedalDriver::open(&settings)).unwrap();
-            let (begin, mut held) = (Instant::now(), Held::<PedalReading>::default());
-            assert!(until_slot(&mut slot, begin, |health, _| health.standing == Standing::Connected));
-            foot.store(1, Ordering::Release);
-            assert!(until_slot(&mut slot, begin, |health, reading| held.update(reading, health).pressed == 1));
-            serving.faults.set(fault);
-            let mut lost = false;
-            assert!(
-                until_slot(&mut slot, begin, |health, reading| {
-                    lost |= health.standing == Standing::Lost(loss);
-                    lost && held.update(reading, health).pressed == 0
-                }),
-                "{fault:?}: {:?}",
-                slot.health()
-            );
-            serving.faults.set(EmulatedFault::None);
-            assert!(until_slot(&mut slot, begin, |health, reading| {
-                assert_eq!(held.update(reading, health).pressed, 0, "it must be pressed anew");
-                health.standing == Standing::Connected
-            }));
-            foot.store(0, Ordering::Release);
-            std::thread::sleep(Duration::from_millis(30));
-            foot.store(1, Ordering::Release);
-            assert!(
-                until_slot(&mut slot, begin, |health, reading| held.update(reading, health).pressed == 1),
-                "{fault:?}"
-            );
-        }
-    });
-}
-
-#[test]
-fn one_report_that_is_not_understood_releases_everything_at_once() {
-    judged(|| {
-        let [here, mut there] = MemoryDatagrams::pair();
-        let identity = HidIdentity { vendor: 0x05f3, product: 0x00ff, ..HidIdentity::default() };
-        let mut driver = PedalDriver::over(Box::new(here), &identity, &PedalSettings::default()).unwrap();
-        there.send(&[1, 0]).unwrap();
-        assert_eq!(driver.poll(0.0).unwrap().value.pressed, 1);
-        assert!(driver.poll(0.1).is_none(), "a foot that does not move says nothing");
-        there.send(&[0xf1, 0]).unwrap();
-        assert_eq!(driver.poll(0.2).unwrap().value.pressed, 0);
-        assert_eq!((driver.health().refused, driver.health().standing), (1, Standing::Connected));
-        there.send(&[1, 0]).unwrap();
-        assert_eq!(driver.poll(0.3).unwrap().value.pressed, 1);
-        there.cut();
-        assert_eq!(driver.poll(0.4).unwrap().value.pressed, 0, "gone is released");
-        assert!(driver.poll(0.5).is_none());
-        assert_eq!(driver.health().standing, Standing::Lost(Loss::Disconnected));
     });
 }
 

@@ -1,4 +1,4 @@
-//! The driver against the emulator over real sockets. Loop time is counted in ticks, so that a busy machine changes nothing.
+//! The driver against the emulator over real sockets. Loop time is counted in ticks, but what the emulator waits for is real.
 
 use std::{
     io::{Read as _, Write as _},

@@ -32,8 +32,8 @@ impl Noise {
         if let Some(spare) = self.spare.take() {
             return spare;
         }
-        let radius = (-2.0 * (1.0 - self.rng.f64()).ln()).sqrt();
-        let (sin, cos) = (std::f64::consts::TAU * self.rng.f64()).sin_cos();
+        let radius = (-2.0 * libm::log(1.0 - self.rng.f64())).sqrt();
+        let (sin, cos) = libm::sincos(std::f64::consts::TAU * self.rng.f64());
         self.spare = Some(radius * sin);
         radius * cos
     }

@@ -91,7 +91,7 @@ impl Anchored {
         if let Some(then) = self.moments.get(d).filter(|then| d > 0 && learn && good && then.good).copied() {
             let q = then.background.regressors(stance, &then.stance);
             let change = force_n - then.background.force_n;
-            let forget = (-1.0 / ((2.0 * d as f64).max(0.5 * self.rate_hz))).exp();
+            let forget = libm::exp(-1.0 / (2.0 * d as f64).max(0.5 * self.rate_hz));
             self.largest_change_n = settled(self.largest_change_n * forget).max(change.norm());
             if self.tick > d {
                 self.judge(&q, change);

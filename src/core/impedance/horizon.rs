@@ -47,7 +47,7 @@ impl Horizon {
         let blank = Past { features: [Lanes::ZERO; MOTION_COLUMNS], force_n: Lanes::ZERO, bound_n: 0.0 };
         let max_delay = (MAX_DELAY_S * rate_hz).ceil() as usize;
         let every = ((rate_hz / RENEW_HZ).round() as usize).max(1);
-        let forget = 1.0 - (-1.0 / (MEMORY_S * rate_hz)).exp();
+        let forget = 1.0 - libm::exp(-1.0 / (MEMORY_S * rate_hz));
         let renewals = max_delay / every + 1;
         Self {
             solutions: DelayLine::new(renewals, [Lanes::ZERO; PRODUCTS]),

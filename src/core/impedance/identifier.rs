@@ -122,7 +122,7 @@ impl Identifier {
             }),
             slip: Slip::default(),
             sent: DelayLine::new(max_delay, (Parcel::BLANK, Posture::BLANK)),
-            forget: 1.0 - (-1.0 / (ERROR_MEMORY_S * settings.rate_hz)).exp(),
+            forget: 1.0 - libm::exp(-1.0 / (ERROR_MEMORY_S * settings.rate_hz)),
             parcel: Parcel { modes: settings.modes, ..Parcel::BLANK },
             report: Report { modes: settings.modes, ..Report::BLANK },
             settings: settings.clone(),

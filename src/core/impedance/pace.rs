@@ -25,7 +25,7 @@ pub(super) struct Clock {
 
 impl Clock {
     pub(super) fn new(rate_hz: f64) -> Self {
-        let release = -(-1.0 / (HOLD_S * rate_hz)).exp_m1();
+        let release = -libm::expm1(-1.0 / (HOLD_S * rate_hz));
         Self { rate_hz, release, largest_m: Lanes::ZERO, mean_m: Lanes::ZERO, pace: 0.0, passed: 0.0 }
     }
 

@@ -50,7 +50,7 @@ impl Regression {
     pub(super) fn new(rate_hz: f64) -> Self {
         Self {
             rate_hz,
-            forget: (-1.0 / (MEMORY_S * rate_hz)).exp(),
+            forget: libm::exp(-1.0 / (MEMORY_S * rate_hz)),
             gram: [Lanes::ZERO; ELEMENTS],
             right: [Lanes::ZERO; REGRESSORS],
             mean_squares: [Lanes::ZERO; REGRESSORS],

@@ -79,7 +79,7 @@ pub(super) fn position_bank(settings: &Settings) -> LowPassBank {
 
 /// What a low-pass of the bank's shortest time constant takes up of a change in one sample.
 pub(super) fn shortest_share(settings: &Settings) -> f64 {
-    -(-1.0 / (BANK_S[0] * settings.rate_hz).max(1.0)).exp_m1()
+    -libm::expm1(-1.0 / (BANK_S[0] * settings.rate_hz).max(1.0))
 }
 
 /// `u / (|u| + knee)`: the sign of the motion, smoothed.
@@ -138,7 +138,7 @@ impl Surroundings {
     pub(super) fn new(settings: &Settings) -> Self {
         Self {
             force_bank: LowPassBank::new(BANK_S[0], BANK_S[1], settings.rate_hz),
-            share: -(-1.0 / (SLOW_S * settings.rate_hz)).exp_m1(),
+            share: -libm::expm1(-1.0 / (SLOW_S * settings.rate_hz)),
             centre: Lanes::ZERO,
             force_level: Lanes::ZERO,
             speed: Lanes::ZERO,

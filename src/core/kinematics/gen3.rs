@@ -109,7 +109,7 @@ impl Chain {
 
 /// `rotation * Rz(angle)`.
 fn turned_about_z(rotation: &Matrix3<f64>, angle_rad: f64) -> Matrix3<f64> {
-    let (sin, cos) = angle_rad.sin_cos();
+    let (sin, cos) = libm::sincos(angle_rad);
     let [x, y, z] = [0, 1, 2].map(|i| rotation.column(i).into_owned());
     Matrix3::from_columns(&[x * cos + y * sin, y * cos - x * sin, z])
 }

@@ -159,7 +159,7 @@ impl Inverse {
     /// Uses these limits instead of the arm's speed limits alone.
     #[must_use]
     pub fn within(self, limits: JointLimits) -> Self {
-        Self { limits, change_rad: limits.acceleration_rad_s2 * self.period_s.powi(2), ..self }
+        Self { limits, change_rad: limits.acceleration_rad_s2 * (self.period_s * self.period_s), ..self }
     }
 
     /// Updates the measured joint angles (rad, finite): a joint too far behind its command is not commanded further
@@ -269,7 +269,7 @@ impl Inverse {
     fn twist_share(&self, motion_m: &Vector3<f64>, insertion_m: f64) -> f64 {
         let turn_rad = motion_m.xy().norm() / LENGTH_M;
         let insertion_m = insertion_m.max(self.pose.insertion_m(&self.rcm.settings().trocar_m));
-        let tip = (TIP_SPEED_M_S * self.period_s) / (turn_rad * insertion_m).hypot(motion_m.z);
+        let tip = (TIP_SPEED_M_S * self.period_s) / libm::hypot(turn_rad * insertion_m, motion_m.z);
         let shaft = (TURN_SPEED_RAD_S * self.period_s) / turn_rad;
         tip.min(shaft).min(1.0)
     }

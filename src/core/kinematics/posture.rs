@@ -32,12 +32,13 @@ fn null_space_cost(pose: &Pose, joint_rad: &Joints, rcm: &Rcm) -> f64 {
     let limits: f64 = joint_rad.iter().zip(LIMIT_RAD).map(|(q, limit)| lack(limit - q.abs(), SOFT_RAD)).sum();
     let low: f64 = heights_m(pose, rcm).iter().map(|height_m| lack(*height_m, CLEARANCE_M)).sum();
     let squared = Task::new(pose, &rcm.settings().trocar_m).manipulability_squared().max(0.0);
-    limits + CLEARANCE_WEIGHT * low - 0.5 * MANIPULABILITY_WEIGHT * (squared + LOST).ln()
+    limits + CLEARANCE_WEIGHT * low - 0.5 * MANIPULABILITY_WEIGHT * libm::log(squared + LOST)
 }
 
 /// Half the squared deficit of `have` against `enough`, relative to `enough`.
 fn lack(have: f64, enough: f64) -> f64 {
-    0.5 * ((enough - have).max(0.0) / enough).powi(2)
+    let deficit = (enough - have).max(0.0) / enough;
+    0.5 * (deficit * deficit)
 }
 
 fn heights_m(pose: &Pose, rcm: &Rcm) -> [f64; HIGH_JOINTS.len()] {

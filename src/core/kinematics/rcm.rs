@@ -201,7 +201,7 @@ impl Rcm {
             confined.outside_cone = true;
             // Project onto the cone, so that the tip slides along it; behind its apex the projection is the apex.
             let excess_rad = tilt_rad - self.cone_rad;
-            (self.on_the_cone(&way_m), length_m * excess_rad.cos().max(0.0))
+            (self.on_the_cone(&way_m), length_m * libm::cos(excess_rad).max(0.0))
         } else {
             (way_m / length_m, length_m)
         };
@@ -220,14 +220,14 @@ impl Rcm {
             let other = if self.inward.x.abs() < 0.9 { Vector3::x() } else { Vector3::y() };
             self.inward.cross(&other).normalize()
         };
-        let (sin, cos) = self.cone_rad.sin_cos();
+        let (sin, cos) = libm::sincos(self.cone_rad);
         self.inward * cos + side * sin
     }
 }
 
 /// Angle between two directions of any length, rad; accurate for small angles.
 pub(super) fn angle_rad(a: &Vector3<f64>, b: &Vector3<f64>) -> f64 {
-    a.cross(b).norm().atan2(a.dot(b))
+    libm::atan2(a.cross(b).norm(), a.dot(b))
 }
 
 #[cfg(test)]

@@ -261,9 +261,9 @@ pub(super) fn trial_places(rcm: &Rcm) -> Vec<Vector3<f64>> {
     let side = inward.cross(&other).normalize();
     let up = inward.cross(&side);
     // Slightly inside the edge, so that rounding does not put it outside.
-    let (sin, cos) = (settings.cone_deg.to_radians() * 0.999).sin_cos();
+    let (sin, cos) = libm::sincos(settings.cone_deg.to_radians() * 0.999);
     let rim = (0..AROUND).map(|i| {
-        let (s, c) = (TAU * i as f64 / AROUND as f64).sin_cos();
+        let (s, c) = libm::sincos(TAU * i as f64 / AROUND as f64);
         inward * cos + (side * c + up * s) * sin
     });
     let directions: Vec<Vector3<f64>> = std::iter::once(inward).chain(rim).collect();

@@ -174,8 +174,8 @@ pub(super) fn towards(pose: &Pose, tip_m: &Vector3<f64>, direction: &Vector3<f64
 /// Rotation from the shaft's direction to another one, along `Pose::across`, rad.
 pub(super) fn turn_towards(pose: &Pose, direction: &Vector3<f64>) -> Vector2<f64> {
     let [x, y] = pose.across.map(|across| across.dot(direction));
-    let sideways = x.hypot(y);
-    let angle_rad = sideways.atan2(pose.direction.dot(direction));
+    let sideways = libm::hypot(x, y);
+    let angle_rad = libm::atan2(sideways, pose.direction.dot(direction));
     if sideways > TINY {
         Vector2::new(x, y) * (angle_rad / sideways)
     } else {

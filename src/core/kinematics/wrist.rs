@@ -28,9 +28,9 @@ impl Jaws {
     /// [`PITCH_MAX_RAD`].
     pub fn of(s1_from_jaws: &UnitQuaternion<f64>, near: &Self) -> Self {
         let r: Rotation3<f64> = s1_from_jaws.to_rotation_matrix();
-        let pitch_rad = r[(2, 1)].clamp(-1.0, 1.0).asin();
-        let roll_rad = (-r[(0, 1)]).atan2(r[(1, 1)]);
-        let yaw_rad = (-r[(2, 0)]).atan2(r[(2, 2)]);
+        let pitch_rad = libm::asin(r[(2, 1)].clamp(-1.0, 1.0));
+        let roll_rad = libm::atan2(-r[(0, 1)], r[(1, 1)]);
+        let yaw_rad = libm::atan2(-r[(2, 0)], r[(2, 2)]);
         Self {
             roll_rad: nearest(roll_rad, near.roll_rad),
             pitch_rad: pitch_rad.clamp(-PITCH_MAX_RAD, PITCH_MAX_RAD),

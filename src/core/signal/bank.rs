@@ -30,9 +30,9 @@ impl LowPassBank {
     pub fn new(shortest_s: f64, longest_s: f64, rate_hz: f64) -> Self {
         let period_s = rate_hz.recip();
         let shortest_s = shortest_s.max(period_s);
-        let step = (longest_s.max(4.0 * shortest_s) / shortest_s).cbrt();
+        let step = libm::cbrt(longest_s.max(4.0 * shortest_s) / shortest_s);
         let tau_s = [1.0, step, step * step, step * step * step].map(|factor| factor * shortest_s);
-        Self { share: tau_s.map(|tau_s| -(-period_s / tau_s).exp_m1()), low: [Lanes::ZERO; BANK], started: false }
+        Self { share: tau_s.map(|tau_s| -libm::expm1(-period_s / tau_s)), low: [Lanes::ZERO; BANK], started: false }
     }
 
     /// Adds the newest value; returns its difference from each low-pass, the shortest time constant first. The first

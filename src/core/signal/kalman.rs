@@ -29,7 +29,8 @@ impl Kalman {
         // Time in units of one period: the transition matrix then contains only factorials, and all numbers are near
         // one.
         let step = TAU * bandwidth_hz * period_s;
-        let (a, q) = (transition(1.0), process_noise(step.powi(8)));
+        let fourth = step * step * (step * step);
+        let (a, q) = (transition(1.0), process_noise(fourth * fourth));
         let mut p = Matrix4::identity();
         for _ in 0..20_000 {
             let predicted = a * p * a.transpose() + q;
@@ -43,7 +44,7 @@ impl Kalman {
         }
         let predicted = a * p * a.transpose() + q;
         let k = predicted.column(0) / (predicted[(0, 0)] + 1.0);
-        let gain = [k[0], k[1] * rate_hz, k[2] * rate_hz.powi(2), k[3] * rate_hz.powi(3)];
+        let gain = [k[0], k[1] * rate_hz, k[2] * (rate_hz * rate_hz), k[3] * (rate_hz * rate_hz * rate_hz)];
         let settling_ticks = (rate_hz / bandwidth_hz).ceil() as usize;
         Self { gain, period_s, state: [Lanes::ZERO; 4], ticks: 0, settling_ticks }
     }

@@ -76,7 +76,7 @@ impl Expansion {
         let rows = (x.len() / inputs.len().max(1)).max(1) as f64;
         let mut square = vec![0.0_f64; inputs.len()];
         for row in x.chunks_exact(inputs.len().max(1)) {
-            square.iter_mut().zip(row).for_each(|(sum, value)| *sum += f64::from(*value).powi(2) / rows);
+            square.iter_mut().zip(row).for_each(|(sum, value)| *sum += f64::from(*value) * f64::from(*value) / rows);
         }
         let soft: Vec<f32> = square.into_iter().map(|s| (SOFT_SHARE * s.sqrt() as f32).max(1e-9)).collect();
         Self::new(inputs, &soft).unwrap_or_else(|| Self {

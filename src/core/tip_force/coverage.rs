@@ -127,7 +127,7 @@ impl Coverage {
         let [_, _, _, _, _, _, w, x, y, z, depth_m, speed_m_s, _, travel_m, _] = *inputs;
         let shaft = UnitQuaternion::from_quaternion(Quaternion::new(w, x, y, z)) * Vector3::z();
         self.tilt.add([shaft.x, shaft.y], [[-TILT, TILT]; 2]);
-        let across_n = tip_n[0].hypot(tip_n[1]);
+        let across_n = libm::hypotf(tip_n[0], tip_n[1]);
         self.force.add([across_n, tip_n[2]], [[0.0, FORCE_N], [-FORCE_N, FORCE_N]]);
         self.travel.add([depth_m, speed_m_s], [DEPTH_M, [-SPEED_M_S, SPEED_M_S]]);
         self.tilt_span.iter_mut().zip([shaft.x, shaft.y]).for_each(|(span, value)| span.add(value));

@@ -145,7 +145,7 @@ impl Features {
         let FeatureSettings { smoothing_s, presliding_m, slip_m } = self.settings;
         let dt_s = t_s - last.t_s;
         // First-order low-pass, exact for an input that is constant over the step.
-        let share = 1.0 - (-dt_s / smoothing_s).exp();
+        let share = 1.0 - libm::exp(-dt_s / smoothing_s);
         let way_m = (insertion_m - last.insertion_m) * share;
         let length_m = way_m.abs();
         // Semi-implicit, so that it is stable for steps of any length.

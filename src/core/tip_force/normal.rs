@@ -33,7 +33,8 @@ impl Normalisation {
         }
         for row in rows {
             for ((variance, mean), value) in variance.iter_mut().zip(&mean).zip(&values[row * width..]) {
-                *variance += (f64::from(*value) - mean).powi(2) / count;
+                let off = f64::from(*value) - mean;
+                *variance += off * off / count;
             }
         }
         let inverse = |(variance, mean): (&f64, &f64)| {

@@ -393,7 +393,9 @@ pub fn prepare_thread() {
     // SAFETY: plain system calls on the calling thread with valid, initialised arguments.
     unsafe {
         libc::prctl(libc::PR_SET_TIMERSLACK, 1_usize);
-        let parameter = libc::sched_param { sched_priority: PRIORITY };
+        // Field by field: some C libraries have more of them.
+        let mut parameter: libc::sched_param = std::mem::zeroed();
+        parameter.sched_priority = PRIORITY;
         libc::pthread_setschedparam(libc::pthread_self(), libc::SCHED_FIFO, &raw const parameter);
     }
 }

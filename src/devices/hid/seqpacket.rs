@@ -39,7 +39,7 @@ fn address(path: &Path) -> io::Result<(libc::sockaddr_un, libc::socklen_t)> {
     if bytes.is_empty() || bytes.len() >= address.sun_path.len() || bytes.contains(&0) {
         return Err(io::Error::new(ErrorKind::InvalidInput, "the path of a socket has 1 to 107 bytes"));
     }
-    address.sun_path.iter_mut().zip(bytes).for_each(|(to, from)| *to = from.cast_signed());
+    address.sun_path.iter_mut().zip(bytes).for_each(|(to, from)| *to = libc::c_char::from_ne_bytes([*from]));
     let length = offset_of!(libc::sockaddr_un, sun_path) + bytes.len() + 1;
     Ok((address, length as libc::socklen_t))
 }

@@ -370,5 +370,5 @@ impl Subject {
 /// Angle between two directions, degrees; 180 if one of them is none.
 fn angle_deg(one: &Vector3<f64>, other: &Vector3<f64>) -> f64 {
     let lengths = one.norm() * other.norm();
-    if lengths > 0.0 { (one.dot(other) / lengths).clamp(-1.0, 1.0).acos().to_degrees() } else { 180.0 }
+    if lengths > 0.0 { libm::acos((one.dot(other) / lengths).clamp(-1.0, 1.0)).to_degrees() } else { 180.0 }
 }

@@ -52,7 +52,9 @@ pub(super) fn prepare_supervisor() {
     #[cfg(target_os = "linux")]
     // SAFETY: a plain system call on the calling thread with a valid, initialised argument.
     unsafe {
-        let parameter = libc::sched_param { sched_priority: PRIORITY + 5 };
+        // Field by field: some C libraries have more of them.
+        let mut parameter: libc::sched_param = std::mem::zeroed();
+        parameter.sched_priority = PRIORITY + 5;
         libc::pthread_setschedparam(libc::pthread_self(), libc::SCHED_FIFO, &raw const parameter);
     }
 }
@@ -101,7 +103,9 @@ fn granted(period_ns: Option<u64>) -> Scheduling {
     // SAFETY: plain system calls on the calling thread with valid, initialised arguments.
     unsafe {
         libc::prctl(libc::PR_SET_TIMERSLACK, 1_usize);
-        let parameter = libc::sched_param { sched_priority: PRIORITY };
+        // Field by field: some C libraries have more of them.
+        let mut parameter: libc::sched_param = std::mem::zeroed();
+        parameter.sched_priority = PRIORITY;
         let fifo =
             !deadline && libc::pthread_setschedparam(libc::pthread_self(), libc::SCHED_FIFO, &raw const parameter) == 0;
         // Lock only without a limit: with a finite one the process soon fails to map memory.

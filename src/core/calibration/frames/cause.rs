@@ -184,7 +184,7 @@ impl SignedAxes {
         for (row, axis) in axes.iter_mut().enumerate() {
             let values = measured_from_expected.row(row);
             let column = values.transpose().iamax();
-            let near = values[column].abs() >= Self::NEAR_DEG.to_radians().cos();
+            let near = values[column].abs() >= libm::cos(Self::NEAR_DEG.to_radians());
             if !near || std::mem::replace(&mut taken[column], true) {
                 return None;
             }

@@ -156,7 +156,7 @@ impl Problem for Weighing {
 
     /// The error of the force as an angle of the weight.
     fn miss(&self, weighed: &Weighed, row: &Row) -> Miss {
-        Miss::of_angle((weighed.error_n(row).norm() / weighed.weight_n).atan())
+        Miss::of_angle(libm::atan(weighed.error_n(row).norm() / weighed.weight_n))
     }
 }
 

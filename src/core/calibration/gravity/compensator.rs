@@ -31,7 +31,7 @@ pub struct Compensator {
 impl Compensator {
     /// For a loop of this period (s). A time constant (s) that is zero, negative or not finite means no filter.
     pub fn new(model: GravityModel, time_constant_s: f64, period_s: f64) -> Self {
-        let share = -(-period_s / time_constant_s).exp_m1();
+        let share = -libm::expm1(-period_s / time_constant_s);
         // The arm's orientation has almost no noise; a filter would only add delay.
         let usable = model.source == Source::Imu
             && time_constant_s > 0.0

@@ -23,7 +23,7 @@ fn point(i: usize) -> Vector3<f64> {
     let z = 1.0 - (2.0 * i as f64 + 1.0) / POINTS as f64;
     let turn = std::f64::consts::PI * (3.0 - 5_f64.sqrt()) * i as f64;
     let radius = (1.0 - z * z).sqrt();
-    Vector3::new(radius * turn.cos(), radius * turn.sin(), z)
+    Vector3::new(radius * libm::cos(turn), radius * libm::sin(turn), z)
 }
 
 /// Condition number of the rows `(u / g, 1)`: 1.7 for directions all over the sphere; larger if they lie in a cone or

@@ -176,8 +176,8 @@ pub(super) fn arm_field_m_s2(world_from_s1: &UnitQuaternion<f64>) -> Vector3<f64
 /// `b = atan2(-ax, sqrt(ay^2 + az^2))` of `-u`. Sines and cosines are computed as ratios, without the angles.
 pub(super) fn paper_row(field_m_s2: &Vector3<f64>) -> SVector<f64, 5> {
     let support = -field_m_s2;
-    let across = support.y.hypot(support.z);
-    let whole = support.x.hypot(across);
+    let across = libm::hypot(support.y, support.z);
+    let whole = libm::hypot(support.x, across);
     // Along x the roll is undefined; the formula gives atan2(0, 0) = 0.
     let (sin_a, cos_a) = if across > 0.0 { (support.y / across, support.z / across) } else { (0.0, 1.0) };
     let (sin_b, cos_b) = if whole > 0.0 { (-support.x / whole, across / whole) } else { (0.0, 1.0) };

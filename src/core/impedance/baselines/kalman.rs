@@ -17,7 +17,7 @@ const BANDWIDTH_HZ: f64 = 100.0;
 
 /// The force that this state leads to after a time.
 pub(super) fn extrapolated(force_n: Lanes, rate_n_s: Lanes, age_s: f64) -> Lanes {
-    force_n - rate_n_s * (LASTING_S * (-age_s / LASTING_S).exp_m1())
+    force_n - rate_n_s * (LASTING_S * libm::expm1(-age_s / LASTING_S))
 }
 
 #[derive(Clone, Debug)]
@@ -31,7 +31,7 @@ pub(super) struct Kalman {
 impl Kalman {
     pub(super) fn new(rate_hz: f64) -> Self {
         let period_s = rate_hz.recip();
-        Self { period_s, lasting: (-period_s / LASTING_S).exp(), gain: gain(rate_hz), state: None }
+        Self { period_s, lasting: libm::exp(-period_s / LASTING_S), gain: gain(rate_hz), state: None }
     }
 
     pub(super) fn step(&mut self, force_n: Option<Lanes>) -> BaselineModel {
@@ -57,8 +57,9 @@ impl Kalman {
 /// The steady-state gain for force and rate (1, 1/s). Computed in periods, so that all numbers are near one.
 fn gain(rate_hz: f64) -> [f64; 2] {
     let (tau, bandwidth_hz) = (LASTING_S * rate_hz, BANDWIDTH_HZ.min(0.1 * rate_hz));
-    let (way, lasting) = (-tau * (-1.0 / tau).exp_m1(), (-1.0 / tau).exp());
-    let q = (std::f64::consts::TAU * bandwidth_hz / rate_hz).powi(4);
+    let (way, lasting) = (-tau * libm::expm1(-1.0 / tau), libm::exp(-1.0 / tau));
+    let step = std::f64::consts::TAU * bandwidth_hz / rate_hz;
+    let q = step * step * (step * step);
     // Covariances of force, of both, of rate; the measurement's is one.
     let (mut ff, mut fr, mut rr) = (1.0, 0.0, 1.0);
     let mut gain = [1.0, 0.0];

@@ -170,5 +170,5 @@ fn motion(posture: &Posture, scales: &Scales) -> Motion {
 
 /// `exp(-1 / memory)`: what a memory of this length (s) keeps over one tick.
 fn kept(memory_s: f64, rate_hz: f64) -> f64 {
-    (-1.0 / (memory_s * rate_hz)).exp()
+    libm::exp(-1.0 / (memory_s * rate_hz))
 }

@@ -45,7 +45,7 @@ impl Drift {
         let Some(then_n) = self.residuals_n.get(delay - 1).copied() else { return };
         let size = (unexplained_n - sent_n).map(f64::abs) + self.mean_n * FLATTEN;
         let weighted = then_n * size.recip_or_zero();
-        let fade = (-1.0 / (SHARE_S * self.rate_hz)).exp();
+        let fade = libm::exp(-1.0 / (SHARE_S * self.rate_hz));
         self.products = (self.products * fade + weighted * then_n).settled();
         self.right = (self.right * fade + weighted * unexplained_n).settled();
         let share = self.right * (self.products * (1.0 + RIDGE)).recip_or_zero();

@@ -60,7 +60,7 @@ impl Sums {
         self.mean_error_n = (self.mean_error_n + (size_n - self.mean_error_n) * of_errors).settled();
         let weight =
             size_n.zip(self.mean_error_n, |size, mean| if mean > 0.0 { pace / (size / mean + FLATTEN) } else { pace });
-        let fade = (-pace / (self.memory_s * self.rate_hz)).exp();
+        let fade = libm::exp(-pace / (self.memory_s * self.rate_hz));
         let columns = self.columns;
         accumulate(&mut self.gram, &mut self.right[..columns], &row[..columns], force_n, weight, fade);
     }

@@ -46,7 +46,7 @@ impl<const D: usize> Observer<D> {
     /// Of this handle, in a loop of this period (s).
     pub(super) fn new(handle: Handle, period_s: f64) -> Self {
         let mass_kg = handle.mass_kg.max(LEAST_KG);
-        let pole = (-POLE_RAD_S * period_s).exp();
+        let pole = libm::exp(-POLE_RAD_S * period_s);
         let rest = 1.0 - pole;
         Self {
             mass_kg,
@@ -54,9 +54,9 @@ impl<const D: usize> Observer<D> {
             damping_n_s_m: handle.damping_n_s_m.clamp(0.0, 0.5 * mass_kg / period_s),
             period_s,
             gains: [
-                1.0 - pole.powi(3),
+                1.0 - pole * pole * pole,
                 1.5 * rest * rest * (1.0 + pole) / period_s,
-                mass_kg * rest.powi(3) / (period_s * period_s),
+                mass_kg * (rest * rest * rest) / (period_s * period_s),
             ],
             last: None,
         }

@@ -40,7 +40,7 @@ struct Touch {
 impl Opposed {
     /// Nothing touched, for a loop of this period (s).
     pub fn new(period_s: f64) -> Self {
-        let share = -(-period_s / SMOOTHING_S).exp_m1();
+        let share = -libm::expm1(-period_s / SMOOTHING_S);
         Self { period_s, share, force_n: Vector3::zeros(), free_s: 0.0, touch: None }
     }
 

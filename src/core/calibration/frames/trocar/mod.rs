@@ -159,7 +159,10 @@ fn tilt_deg(lines: impl Iterator<Item = ShaftLine>) -> f64 {
         sum += across(&line.direction);
         count += 1.0;
     }
-    if count == 0.0 { 0.0 } else { (sum / count).symmetric_eigenvalues().min().max(0.0).sqrt().asin().to_degrees() }
+    if count == 0.0 {
+        return 0.0;
+    }
+    libm::asin((sum / count).symmetric_eigenvalues().min().max(0.0).sqrt()).to_degrees()
 }
 
 impl Calibration for Trocar {

@@ -74,7 +74,7 @@ impl TrocarWatch {
         match (finite, self.last_s, follows) {
             (false, ..) | (true, Some(_), None) => return self.state,
             (true, Some(last_s), Some(_)) if t_s - last_s <= GAP_S => {
-                self.average(line, 1.0 - (-(t_s - last_s) / AVERAGE_S).exp());
+                self.average(line, 1.0 - libm::exp(-(t_s - last_s) / AVERAGE_S));
             }
             _ => {
                 (self.normal, self.right_m, self.since_s) = (Matrix3::zeros(), Vector3::zeros(), t_s);

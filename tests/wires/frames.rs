@@ -68,15 +68,6 @@ fn true_tip_m(arm: &Arm) -> Vector3<f64> {
 }
 
 #[test]
-fn what_arm_and_tracker_deliver_together_gives_the_hand_eye_within_half_a_millimetre() {
-    let _alone = alone();
-    let folder = tempfile::tempdir().unwrap();
-    let devices = elsewhere(folder.path());
-    let arm = Arm::new(&devices.arm(SIDE).unwrap().mount).unwrap();
-    judged(|| find_hand_eye(&mut Bench::start(started(&devices), &devices), &arm, true_tip_m(&arm)));
-}
-
-#[test]
 #[ignore = "two minutes in real time: `./dev walk` runs it"]
 fn tip_hand_eye_and_trocar_are_found_within_half_a_millimetre() {
     let _alone = alone();

@@ -51,12 +51,15 @@ pub(crate) fn shown_at(
         .build_eframe(move |cc| prepare(ConsoleApp::new(cc, handle, rig, scene).with_simulated_time(speed)))
 }
 
+/// As a window that draws fifty times a second: drawing all the time would only slow down what it waits for.
+const FRAME: Duration = Duration::from_millis(20);
+
 /// Steps the window until the newest tick on the screen is as wanted. The window never settles, so `run` is of no use.
 pub(crate) fn until(harness: &mut Harness<'_, ConsoleApp>, what: &str, good: impl Fn(&Tick) -> bool) {
     let began = Instant::now();
     while !harness.state().tick().is_some_and(&good) {
         assert!(began.elapsed() < TIMEOUT, "the loop never was: {what}");
-        std::thread::sleep(Duration::from_millis(5));
+        std::thread::sleep(FRAME);
         harness.step();
     }
 }
@@ -73,7 +76,7 @@ pub(crate) fn press(harness: &mut Harness<'_, ConsoleApp>, label: &str) {
             break;
         }
         assert!(began.elapsed() < TIMEOUT, "no button \"{label}\" that can be pressed");
-        std::thread::sleep(Duration::from_millis(5));
+        std::thread::sleep(FRAME);
     }
     harness.step();
     harness.step();

@@ -101,7 +101,7 @@ fn saved(path: &Path) -> Settings {
 }
 
 #[test]
-#[ignore = "an emulated rig in real time: `./dev test` runs it beside another one"]
+#[ignore = "an emulated rig in real time: `./dev test` runs it alone"]
 fn another_handle_is_chosen_by_its_serial_number_and_sensors_are_exchanged_by_one_click() {
     let _alone = alone();
     judged(|| {
@@ -139,7 +139,7 @@ fn another_handle_is_chosen_by_its_serial_number_and_sensors_are_exchanged_by_on
 }
 
 #[test]
-#[ignore = "an emulated rig in real time: `./dev test` runs it beside another one"]
+#[ignore = "an emulated rig in real time: `./dev test` runs it alone"]
 fn every_device_is_tested_and_its_figures_are_told() {
     let _alone = alone();
     judged(|| {
@@ -164,7 +164,7 @@ fn every_device_is_tested_and_its_figures_are_told() {
 }
 
 #[test]
-#[ignore = "an emulated rig in real time: `./dev test` runs it beside another one"]
+#[ignore = "an emulated rig in real time: `./dev test` runs it alone"]
 fn nothing_is_changed_while_the_drives_are_on_and_a_rig_without_devices_says_so() {
     let folder = tempfile::tempdir().unwrap();
     let harness = console(folder.path());

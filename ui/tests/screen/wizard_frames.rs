@@ -112,7 +112,7 @@ fn shaft_m(rig: &str) -> f64 {
 }
 
 #[test]
-#[ignore = "an emulated rig in real time: `./dev test` runs it beside another one"]
+#[ignore = "an emulated rig for half a minute in real time: `./dev walk` runs it"]
 fn a_technician_finds_the_tip_sees_the_change_saves_it_and_undoes_it() {
     let _alone = alone();
     judged(|| {

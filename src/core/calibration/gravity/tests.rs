@@ -251,7 +251,7 @@ fn a_sensor_that_does_not_feel_the_tool_is_refused_with_its_cause() {
         ("more noise", |tool| tool.vector(0.06)),
     ];
     for (name, force) in forces {
-        for seed in 0..50 {
+        for seed in 0..12 {
             let mut tool = Tool::new(7000 + seed, 0.4);
             let mut sets = [tool.imu_poses(12), tool.arm_poses(24)];
             for pose in sets.iter_mut().flatten() {

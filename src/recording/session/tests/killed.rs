@@ -129,7 +129,7 @@ fn kill(count: usize, seed: u64) {
 
 #[test]
 fn a_killed_process_leaves_a_file_that_opens() {
-    kill(30, 8);
+    kill(6, 8);
 }
 
 #[test]

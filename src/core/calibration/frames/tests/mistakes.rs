@@ -5,7 +5,7 @@ use nalgebra::{Matrix3, Vector3};
 use super::{rig::*, scenes::*};
 use crate::calibration::frames::*;
 
-const SEEDS: u64 = 200;
+const SEEDS: u64 = 50;
 
 /// In how many sets of samples this mistake is named. Undoing a mistake twice makes it.
 fn named<C: Calibration>(

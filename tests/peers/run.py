@@ -1,28 +1,19 @@
 """Third-party clients against our emulators: `python run.py NIMA_BINARY`. Fails at the first check that does not hold.
 
-Every module `peer_*.py` beside this file has `run(nima) -> [Peer, ...]`. Their clients have time limits of their own, and one may give up
-on a busy machine: what failed is tried once more when all others are done.
+Every module `peer_*.py` beside this file has `run(nima) -> [Peer, ...]`.
 """
 
 import importlib
 import pathlib
 import sys
-import traceback
 
 
 def main(nima):
     here = pathlib.Path(__file__).parent
     sys.path.insert(0, str(here))
-    peers, failed = [], []
+    peers = []
     for module in sorted(here.glob("peer_*.py")):
-        try:
-            peers += importlib.import_module(module.stem).run(nima)
-        except (Exception, SystemExit):
-            traceback.print_exc()
-            failed.append(module.stem)
-    for name in failed:
-        print(f"once more: {name}", flush=True)
-        peers += importlib.import_module(name).run(nima)
+        peers += importlib.import_module(module.stem).run(nima)
     for peer in peers:
         print(f"peer {peer.name}: " + (f"SKIPPED, {peer.skipped}" if peer.skipped else f"{peer.passed} checks"))
     ran = [peer for peer in peers if not peer.skipped]

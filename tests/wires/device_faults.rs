@@ -309,9 +309,14 @@ fn table(rows: &[Row]) -> String {
     out
 }
 
-/// One fault of each kind: what is sent is spoilt, wrong, or not sent at all.
-const SOME: [EmulatedFault; 4] =
-    [EmulatedFault::Garbage, EmulatedFault::BadChecksum, EmulatedFault::Disconnect, EmulatedFault::NotANumber];
+/// One fault of each kind: data that come late, are spoilt now and then, always spoilt, not sent, or impossible.
+const SOME: [EmulatedFault; 5] = [
+    EmulatedFault::Delay,
+    EmulatedFault::Garbage,
+    EmulatedFault::BadChecksum,
+    EmulatedFault::Disconnect,
+    EmulatedFault::NotANumber,
+];
 
 #[test]
 #[ignore = "half a minute in real time: `./dev test` runs it alone"]

@@ -22,6 +22,7 @@ use nima_world::scene::Scene;
 
 use super::{motion, output};
 use crate::{
+    console::sessions,
     leaving::Leave,
     recording::{PROGRAM, RIG, SCENE, toml_file},
     telling::tell,
@@ -193,7 +194,7 @@ fn cut_out(reader: &Reader, times_ns: &Range<u64>, session: &Path, new: &Path, l
 }
 
 fn anonymously(reader: &Reader, times_ns: &Range<u64>, new: &Path, leave: &Leave) -> anyhow::Result<Told> {
-    let lines = Lines::all();
+    let lines = Lines::all(&sessions::lines());
     let known = Known { program: PROGRAM, files: &files(reader)?, is_ours: &|line| lines.has(line) };
     let messages = anonymous::write(reader, &known, times_ns, new, leave.flag())?;
     Ok((format!("{messages} messages"), "anonymous, without the journal: see what remains in docs/sessions.md"))

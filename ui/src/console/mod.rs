@@ -50,14 +50,8 @@ use settings::Kept;
 use start::Choice;
 
 pub use app::ConsoleApp;
-pub(crate) use panels::{finding_words, mode_name};
 
 use crate::{emulators::Emulators, leaving::Leave};
-
-/// Name and meaning of a gate, for pages outside of the window.
-pub(crate) const fn gate_words(gate: nima_core::safety::Gate) -> [&'static str; 2] {
-    text::gates::of(gate)
-}
 
 /// Options of the window, for screenshots and tests. By default it stays open until it is closed.
 #[derive(Clone, Debug, Default)]

@@ -9,7 +9,7 @@ use super::{
     html::{digits, escape, percent, table, time},
     plots,
 };
-use crate::console::{gate_words, mode_name};
+use crate::words::{gate_words, mode_name};
 
 pub(super) fn arm(session: &Figures, arm: &ArmFigures) -> String {
     let mut out = format!("<section>\n<h2>The {} arm</h2>\n", arm.side);

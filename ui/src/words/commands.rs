@@ -7,7 +7,7 @@ use nima_machine::{
 };
 
 use super::events::device;
-use crate::console::mode_name;
+use super::modes::mode_name;
 
 /// What was done to the loop; `devices` as for an [`event`](super::event).
 pub(crate) fn operation(operation: &Operation, devices: &[String]) -> String {

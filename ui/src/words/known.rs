@@ -19,14 +19,13 @@ use nima_machine::{
 use nima_session::STATES;
 
 use super::{commands::operation, events::event};
-use crate::console::sessions;
 
 /// The lines of the log that are free of names.
 pub(crate) struct Lines(BTreeSet<String>);
 
 impl Lines {
-    /// All of them.
-    pub(crate) fn all() -> Self {
+    /// All of them, with those that the console adds to a log.
+    pub(crate) fn all(of_console: &[String]) -> Self {
         let mut lines = BTreeSet::new();
         for side in Side::ALL {
             lines.extend(of_side(side).map(|of| shape(&event(&of, &[]))));
@@ -47,7 +46,7 @@ impl Lines {
         lines.extend(granted.map(|(fifo, memory_locked)| {
             shape(&event(&Event::Scheduling(Scheduling { fifo, deadline: false, memory_locked }), &[]))
         }));
-        lines.extend(sessions::lines().iter().map(|line| shape(line)));
+        lines.extend(of_console.iter().map(|line| shape(line)));
         Self(lines)
     }
 
@@ -185,7 +184,7 @@ mod tests {
 
     #[test]
     fn our_own_lines_are_known_with_any_number_and_no_other_line() {
-        let lines = Lines::all();
+        let lines = Lines::all(&crate::console::sessions::lines());
         for line in [
             "right arm: from Ready to Engaged",
             "left arm: fault: The control loop was blocked: drives and force were switched off",

@@ -5,21 +5,31 @@
 //! Causes are sentences; cures say what the operator can do; reasons start in lower case, because they follow a colon.
 
 mod calibration;
+mod channels;
 mod commands;
 mod events;
 mod faults;
+mod findings;
 mod force;
 mod frames;
+mod gates;
 mod known;
+mod modes;
+mod numbers;
 mod ready;
 mod refusals;
 mod sides;
 
 pub(crate) use calibration::{drift, refusal};
+pub(crate) use channels::{channel_group, channel_name, marker};
 pub(crate) use commands::operation;
 pub(crate) use events::event;
+pub(crate) use findings::finding_words;
 pub(crate) use frames::{axes_words, cause, phase};
+pub(crate) use gates::gate_words;
 pub(crate) use known::Lines;
+pub(crate) use modes::{mode_meaning, mode_name};
+pub(crate) use numbers::three_digits;
 pub(crate) use ready::{ask_words, cause_words, check_name, figure_words, lacks_words, unit};
 pub(crate) use refusals::{cure_of_refusal, refused_because};
 

@@ -7,11 +7,11 @@ use nima_machine::{
     rig::{Roster, Side},
 };
 
+use super::findings::finding_words;
 use super::{
     Remedy as _, Words as _, cure_of_refusal, refused_because,
     sides::{arm_stuck, exchanged, marker_stuck, no_push},
 };
-use crate::console::finding_words;
 
 /// Name of a point.
 pub(crate) fn check_name(check: Check) -> String {

@@ -1,8 +1,6 @@
 //! The driver against the emulator over real sockets. Loop time is counted in ticks, but what the emulator waits for is real.
 
 use std::{
-    io::{Read as _, Write as _},
-    net::TcpListener,
     sync::{Arc, Mutex},
     thread::sleep,
     time::{Duration, Instant},
@@ -23,7 +21,7 @@ use nima_devices::{
 use nima_testing::real_time::judged;
 
 use crate::emulators::{
-    EmulatedFault, Serving,
+    Serving,
     kinova::{Asked, Body, Emulated, StandIn},
 };
 
@@ -339,63 +337,5 @@ fn a_missed_cycle_is_a_fault_that_only_a_command_clears() {
         clearing.command();
         let mut ticking = Ticking { driver: open_clearing(&settings, &clearing).unwrap(), now_s: 0.0, reading: None };
         ticking.enter_low_level();
-    });
-}
-
-#[test]
-fn every_trouble_while_opening_has_its_cause() {
-    judged(|| {
-        let trouble = |arm: Emulated, change: fn(&mut Settings)| {
-            let (serving, mut settings) = started(arm);
-            settings.timeout_s = 0.5;
-            change(&mut settings);
-            let trouble = open(&settings).map(|_| ()).unwrap_err();
-            assert!(serving.is_serving() && !trouble.cure().is_empty());
-            trouble
-        };
-        let same = |_: &mut Settings| {};
-        let refused = trouble(patient(), |settings| settings.password = "wrong".to_owned());
-        assert!(matches!(refused, Trouble::RefusedLogin { user, .. } if user == "admin"));
-        let refused = trouble(patient(), |settings| settings.user = "nobody".to_owned());
-        assert!(matches!(refused, Trouble::RefusedLogin { user, .. } if user == "nobody"));
-        let other = trouble(Emulated { joints: 6, ..patient() }, same);
-        assert!(matches!(other, Trouble::WrongProduct { found, .. } if found == "arm with 6 joints"));
-        let exchanged = trouble(Emulated { serial: "KP-2".to_owned(), ..patient() }, |settings| {
-            settings.serial_number = Some("KP-1".to_owned());
-        });
-        assert!(matches!(exchanged, Trouble::OtherSerial { found, .. } if found == "KP-2"));
-        let starting = trouble(Emulated { idle_state: 3, ..patient() }, same);
-        assert!(matches!(starting, Trouble::NotReady { mode, .. } if mode == "initialisation"));
-        let nobody = |change: fn(&mut Settings)| matches!(trouble(patient(), change), Trouble::NobodyListens { .. });
-        assert!(nobody(|settings| settings.tcp_port = 1) && nobody(|settings| settings.udp_port = 1));
-        let setting = |change: fn(&mut Settings)| matches!(trouble(patient(), change), Trouble::Setting { .. });
-        assert!(setting(|settings| settings.speed_fraction = 1.5) && setting(|settings| settings.lead_rad = f64::NAN));
-    });
-}
-
-#[test]
-fn a_silent_arm_and_a_stranger_at_its_port_are_told_apart() {
-    judged(|| {
-        let (serving, settings) = started(patient());
-        let settings = Settings { timeout_s: 0.3, ..settings };
-        serving.faults.set(EmulatedFault::Silence);
-        assert!(matches!(open(&settings).unwrap_err(), Trouble::Silent { .. }));
-        serving.faults.set(EmulatedFault::DeviceFault);
-        let fault = open(&settings).unwrap_err();
-        assert!(
-            matches!(&fault, Trouble::DeviceFault { words, .. } if words.contains("joint 3: too much torque")),
-            "{fault}"
-        );
-        let stranger = TcpListener::bind(("127.0.0.1", 0)).unwrap();
-        let tcp_port = stranger.local_addr().unwrap().port();
-        let answering = std::thread::spawn(move || {
-            let (mut stream, _) = stranger.accept().unwrap();
-            let mut buffer = [0; 256];
-            assert!(stream.read(&mut buffer).unwrap() > 0);
-            stream.write_all(b"HTTP/1.1 400 Bad Request\r\n\r\n").unwrap();
-        });
-        let trouble = open(&Settings { tcp_port, ..settings }).unwrap_err();
-        assert!(matches!(&trouble, Trouble::WrongProduct { .. }), "{trouble}");
-        answering.join().unwrap();
     });
 }

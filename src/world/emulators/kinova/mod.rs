@@ -25,6 +25,8 @@ mod interconnect;
 mod interface;
 mod motion;
 mod moves;
+#[cfg(test)]
+mod opening_tests;
 mod robot;
 #[cfg(test)]
 mod route_tests;

@@ -8,8 +8,9 @@ use crate::console::{
     live::{DEGREES_S, Live},
     rolling::DEGREES,
     theme,
-    widgets::{figure, small, three_digits},
+    widgets::{figure, small},
 };
+use crate::words::three_digits;
 
 const CHART_HEIGHT: f32 = 92.0;
 

@@ -9,8 +9,11 @@ use egui::{Button, DragValue, RichText, Slider, SliderClamping, Ui, vec2};
 use nima_core::impedance::Mode;
 use nima_machine::messages::Command;
 
-use super::{mode_meaning, mode_name, stable_gain::stable_gain_ui};
-use crate::console::{live::Live, outbox::Outbox, text, theme, widgets::small};
+use super::stable_gain::stable_gain_ui;
+use crate::{
+    console::{live::Live, outbox::Outbox, text, theme, widgets::small},
+    words::{mode_meaning, mode_name},
+};
 
 /// How long a control shows the requested value before it shows the value in force again, s: the gain ramps at 2 per
 /// second.

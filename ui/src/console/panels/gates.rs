@@ -14,7 +14,7 @@ use crate::{
         text, theme,
         widgets::{Sign, sign_ui, small},
     },
-    words::Words as _,
+    words::{Words as _, gate_words},
 };
 
 /// A smaller force is not considered a contact, N.
@@ -122,7 +122,7 @@ impl Gate {
 pub(super) fn gates(live: &Live, side: Side) -> [Gate; GATES] {
     let gates = &live.gates[side.index()];
     Which::ALL.map(|which| {
-        let [name, meaning] = text::gates::of(which);
+        let [name, meaning] = gate_words(which);
         let share = match which {
             // A ramp of the gain does not count as a closed gate; a gain of zero does.
             Which::Gain => f64::from(u8::from(live.gain() < 0.01)),

@@ -4,13 +4,13 @@ use egui::{Align2, Rect, Sense, Ui, vec2};
 use nima_core::impedance::{Mode, ModeSet};
 use nima_machine::messages::Command;
 
-use super::{mode_meaning, mode_name};
 use crate::console::{
     live::{Live, TREND_S},
     outbox::Outbox,
     text, theme,
-    widgets::{Sign, bar, sign, small, three_digits},
+    widgets::{Sign, bar, sign, small},
 };
+use crate::words::{mode_meaning, mode_name, three_digits};
 
 /// Upper end of the bars, as a multiple of the error of delayed DFR.
 const LONGEST: f64 = 2.5;

@@ -13,13 +13,9 @@ use egui::{Button, ProgressBar, Ui, vec2};
 use nima_machine::config::RigConfig;
 use nima_study::tradeoff::{Choice, Method, Plan, Point, Source, SourceFigures, Study, SweepError, sweep};
 
-use super::{mode_meaning, mode_name, tradeoff_apply::Apply, tradeoff_plot::plot_ui};
-use crate::console::{
-    live::Live,
-    outbox::Outbox,
-    text,
-    widgets::{small, three_digits},
-};
+use super::{tradeoff_apply::Apply, tradeoff_plot::plot_ui};
+use crate::console::{live::Live, outbox::Outbox, text, widgets::small};
+use crate::words::{mode_meaning, mode_name, three_digits};
 
 /// Duration of the scene on which it is measured, s.
 const SCENE_S: f64 = 6.0;

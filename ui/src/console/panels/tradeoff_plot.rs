@@ -7,8 +7,11 @@ use egui_plot::{
 use nima_core::impedance::Mode;
 use nima_study::tradeoff::{Point, SourceFigures};
 
-use super::{mode_name, tradeoff::words};
-use crate::console::{text, theme, widgets::three_digits};
+use super::tradeoff::words;
+use crate::{
+    console::{text, theme},
+    words::{mode_name, three_digits},
+};
 
 const HEIGHT: f32 = 230.0;
 /// A point is selected if the pointer is closer to it than this share of the plot.

@@ -8,11 +8,12 @@ use super::{Panels, acts};
 use crate::console::{
     live::Live,
     outbox::Outbox,
-    panels::{calm_gain_ui, mode_name, why_no_force},
+    panels::{calm_gain_ui, why_no_force},
     scene3d::{scene_ui, side_name},
     text, theme,
     widgets::{bar, force_sign, small},
 };
+use crate::words::mode_name;
 
 const STRIP: f32 = 176.0;
 const GAIN_WIDTH: f32 = 330.0;

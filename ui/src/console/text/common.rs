@@ -4,7 +4,6 @@ pub(in crate::console) const RIGHT: &str = "Right";
 pub(in crate::console) const LEFT: &str = "Left";
 pub(in crate::console) const MEASURED: &str = "Measured";
 pub(in crate::console) const RENDERED: &str = "Rendered";
-pub(in crate::console) const NOT_FINITE: &str = "not finite";
 
 /// Name of a hand, as in "Right hand".
 pub(in crate::console) fn hand(side: &str) -> String {

@@ -26,7 +26,6 @@ pub(super) mod gravity;
 pub(super) mod help;
 pub(super) mod horizon;
 pub(super) mod menu;
-pub(super) mod modes;
 pub(super) mod overview;
 pub(super) mod past;
 pub(super) mod ready;

@@ -22,9 +22,9 @@ use crate::{
     console::{
         alarms::sentence,
         text, theme,
-        widgets::{card, figure, small, three_digits},
+        widgets::{card, figure, small},
     },
-    words::{self, Words as _},
+    words::{self, Words as _, three_digits},
 };
 
 /// Fewest pushes for which a fit is shown.

@@ -25,9 +25,9 @@ use super::{
 use crate::{
     console::{
         text, theme,
-        widgets::{card, figure, small, three_digits},
+        widgets::{card, figure, small},
     },
-    words::Words as _,
+    words::{Words as _, three_digits},
 };
 
 /// Limit of the 95th percentile of the force in free motion, N; includes the noise of a sample.

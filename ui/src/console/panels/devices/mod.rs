@@ -24,7 +24,6 @@ use crate::console::{
     widgets::{small, weak},
 };
 use choosing::Chooser;
-pub(crate) use report::sentences as finding_words;
 use row::row_ui;
 
 /// Width from which left and right stand side by side.

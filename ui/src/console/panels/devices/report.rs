@@ -4,13 +4,16 @@ use egui::{Grid, Label, RichText, Ui};
 use nalgebra::Vector3;
 use nima_machine::rig::{
     PartKind,
-    checkup::{Checkup, Finding, Measured},
+    checkup::{Checkup, Measured},
 };
 
-use crate::console::{
-    text::{self, checkup as words},
-    theme,
-    widgets::{Sign, sign_ui, small, three_digits},
+use crate::{
+    console::{
+        text::{self, checkup as words},
+        theme,
+        widgets::{Sign, sign_ui, small},
+    },
+    words::{channel_group, finding_words, three_digits},
 };
 
 /// Draws the result of a test.
@@ -30,7 +33,7 @@ fn result_ui(ui: &mut Ui, checkup: &Checkup) {
         ui.label(RichText::new(verdict).font(theme::strong(14.0)));
     });
     for finding in &checkup.findings {
-        let [cause, cure] = sentences(checkup.part.kind(), finding);
+        let [cause, cure] = finding_words(checkup.part.kind(), finding);
         ui.add(Label::new(cause).wrap());
         ui.add(Label::new(small(cure)).wrap());
     }
@@ -80,7 +83,7 @@ type Group<'a> = (&'static str, &'static str, f64, Vec<&'a Measured>);
 fn groups(checkup: &Checkup) -> Vec<Group<'_>> {
     let mut groups: Vec<Group<'_>> = Vec::new();
     for one in &checkup.measured {
-        let Some((name, unit, scale)) = text::devices::group(checkup.part.kind(), one.channel) else { continue };
+        let Some((name, unit, scale)) = channel_group(checkup.part.kind(), one.channel) else { continue };
         match groups.last_mut().filter(|(last, ..)| *last == name) {
             Some((.., members)) => members.push(one),
             None => groups.push((name, unit, scale, vec![one])),
@@ -126,34 +129,6 @@ fn nearest_axis(up: &Vector3<f64>) -> Option<(&'static str, f64, f64)> {
         (_, true) => "-z",
     };
     Some((name, (up[axis].abs() / size).min(1.0).acos().to_degrees(), size))
-}
-
-/// Cause and cure.
-pub(crate) fn sentences(kind: PartKind, finding: &Finding) -> [String; 2] {
-    let with_unit = |channel: usize, value: f64| {
-        let (_, unit, scale) = text::devices::group(kind, channel).unwrap_or_default();
-        format!("{} {unit}", three_digits(value * scale))
-    };
-    match *finding {
-        Finding::Silent => words::SILENT.map(str::to_owned),
-        Finding::Reopened => words::REOPENED.map(str::to_owned),
-        Finding::Frozen => words::FROZEN.map(str::to_owned),
-        Finding::Rate { hz, nominal_hz } => words::wrong_rate(hz, nominal_hz),
-        Finding::Lost { count } => words::lost(count),
-        Finding::Damaged { count } => words::damaged(count),
-        Finding::Refused { count } => words::refused(count),
-        Finding::Late { p99_s, most_s } => words::late(kind, p99_s, most_s),
-        Finding::Moved { channel } => words::moved(kind, channel),
-        Finding::Noisy { channel, deviation, most } => {
-            words::noisy(kind, channel, &with_unit(channel, deviation), &with_unit(channel, most))
-        }
-        Finding::Gravity { size_m_s2 } => words::gravity(size_m_s2),
-        Finding::AtTheEnd { channel, value, range: [low, high] } => {
-            let range = format!("{} \u{2026} {}", with_unit(channel, low), with_unit(channel, high));
-            words::at_the_end(kind, channel, &with_unit(channel, value), &range)
-        }
-        Finding::Hidden { tool, share } => words::hidden(tool, share),
-    }
 }
 
 #[cfg(test)]

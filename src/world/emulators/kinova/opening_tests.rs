@@ -1,0 +1,73 @@
+//! What goes wrong while the driver connects: each has its own cause.
+
+use std::{
+    io::{Read as _, Write as _},
+    net::TcpListener,
+};
+
+use nima_devices::{
+    Trouble,
+    kinova::{Settings, open},
+};
+use nima_testing::real_time::judged;
+
+use super::driver_tests::{patient, started};
+use crate::emulators::{EmulatedFault, kinova::Emulated};
+
+#[test]
+fn every_trouble_while_opening_has_its_cause() {
+    judged(|| {
+        let trouble = |arm: Emulated, change: fn(&mut Settings)| {
+            let (serving, mut settings) = started(arm);
+            settings.timeout_s = 0.5;
+            change(&mut settings);
+            let trouble = open(&settings).map(|_| ()).unwrap_err();
+            assert!(serving.is_serving() && !trouble.cure().is_empty());
+            trouble
+        };
+        let same = |_: &mut Settings| {};
+        let refused = trouble(patient(), |settings| settings.password = "wrong".to_owned());
+        assert!(matches!(refused, Trouble::RefusedLogin { user, .. } if user == "admin"));
+        let refused = trouble(patient(), |settings| settings.user = "nobody".to_owned());
+        assert!(matches!(refused, Trouble::RefusedLogin { user, .. } if user == "nobody"));
+        let other = trouble(Emulated { joints: 6, ..patient() }, same);
+        assert!(matches!(other, Trouble::WrongProduct { found, .. } if found == "arm with 6 joints"));
+        let exchanged = trouble(Emulated { serial: "KP-2".to_owned(), ..patient() }, |settings| {
+            settings.serial_number = Some("KP-1".to_owned());
+        });
+        assert!(matches!(exchanged, Trouble::OtherSerial { found, .. } if found == "KP-2"));
+        let starting = trouble(Emulated { idle_state: 3, ..patient() }, same);
+        assert!(matches!(starting, Trouble::NotReady { mode, .. } if mode == "initialisation"));
+        let nobody = |change: fn(&mut Settings)| matches!(trouble(patient(), change), Trouble::NobodyListens { .. });
+        assert!(nobody(|settings| settings.tcp_port = 1) && nobody(|settings| settings.udp_port = 1));
+        let setting = |change: fn(&mut Settings)| matches!(trouble(patient(), change), Trouble::Setting { .. });
+        assert!(setting(|settings| settings.speed_fraction = 1.5) && setting(|settings| settings.lead_rad = f64::NAN));
+    });
+}
+
+#[test]
+fn a_silent_arm_and_a_stranger_at_its_port_are_told_apart() {
+    judged(|| {
+        let (serving, settings) = started(patient());
+        let settings = Settings { timeout_s: 0.3, ..settings };
+        serving.faults.set(EmulatedFault::Silence);
+        assert!(matches!(open(&settings).unwrap_err(), Trouble::Silent { .. }));
+        serving.faults.set(EmulatedFault::DeviceFault);
+        let fault = open(&settings).unwrap_err();
+        assert!(
+            matches!(&fault, Trouble::DeviceFault { words, .. } if words.contains("joint 3: too much torque")),
+            "{fault}"
+        );
+        let stranger = TcpListener::bind(("127.0.0.1", 0)).unwrap();
+        let tcp_port = stranger.local_addr().unwrap().port();
+        let answering = std::thread::spawn(move || {
+            let (mut stream, _) = stranger.accept().unwrap();
+            let mut buffer = [0; 256];
+            assert!(stream.read(&mut buffer).unwrap() > 0);
+            stream.write_all(b"HTTP/1.1 400 Bad Request\r\n\r\n").unwrap();
+        });
+        let trouble = open(&Settings { tcp_port, ..settings }).unwrap_err();
+        assert!(matches!(&trouble, Trouble::WrongProduct { .. }), "{trouble}");
+        answering.join().unwrap();
+    });
+}

@@ -5,7 +5,7 @@ use std::{
     panic::{AssertUnwindSafe, catch_unwind, panic_any, resume_unwind},
     sync::{
         Arc, Mutex, MutexGuard, PoisonError,
-        atomic::{AtomicBool, Ordering::Relaxed},
+        atomic::{AtomicBool, AtomicU64, Ordering::Relaxed},
     },
     thread::{JoinHandle, current, sleep, spawn},
     time::{Duration, Instant},
@@ -14,6 +14,10 @@ use std::{
 const ATTEMPTS: usize = 5;
 /// What a busy machine has held up for so long is better judged when nothing else runs.
 const PATIENCE: Duration = Duration::from_mins(1);
+/// And all tests of a program together: from then on each has one attempt.
+const PATIENCE_OF_ALL: Duration = Duration::from_mins(2);
+/// Attempts on a busy machine have taken so much, ms.
+static HELD_UP_MS: AtomicU64 = AtomicU64::new(0);
 /// Failures on a machine that was not busy. One may be chance: the machine can hold up the emulators' threads alone.
 const FAILURES_MAX: usize = 2;
 const NAP: Duration = Duration::from_millis(1);
@@ -45,8 +49,11 @@ pub fn judged(test: impl Fn()) {
         let watch = Watch::start();
         move || watch.was_busy()
     };
-    let is_judged = judged_on(test, watch, PATIENCE);
+    let left = PATIENCE_OF_ALL.saturating_sub(Duration::from_millis(HELD_UP_MS.load(Relaxed)));
+    let begin = Instant::now();
+    let is_judged = judged_on(test, watch, PATIENCE.min(left));
     if !is_judged {
+        HELD_UP_MS.fetch_add(begin.elapsed().as_millis() as u64, Relaxed);
         // Not `eprintln!`, which is kept from view when the test passes.
         let _ = writeln!(std::io::stderr(), "too busy to judge: {}", current().name().unwrap_or("a test"));
     }

@@ -19,6 +19,8 @@ use prost::Message as _;
 use crate::{
     cut::{self, CutError, stretch},
     kept::{FIGURES, VERDICTS, verdicts},
+    layouts::layouts,
+    outlet::{Channel, Outlet},
     plotted,
     recorder::Attached,
     topics::{ALARM_LINE, ARROWS_TOPIC, FRAMES_TOPIC, LINE, LOG_TOPIC, MARK_LINE, line, plot::Plot, plots, redrawn},
@@ -75,22 +77,26 @@ pub fn write(
     }
     writer
         .metadata(cut::TABLE, &stretch(0, &(times_ns.start.saturating_sub(begin_ns)..since(times_ns.end, begin_ns))))?;
-    for Attached { name, media_type, data } in known.files {
+    let forces = Side::ALL.map(|side| format!("{}/forces", side.word()));
+    let sides = forces.map(|topic| reader.channels().iter().any(|channel| channel.topic == topic));
+    for Attached { name, media_type, data } in known.files.iter().chain(&layouts(sides)) {
         writer.attachment(name, media_type, 0, data)?;
     }
+    let mut out = Outlet::of(writer);
     let mut topics: BTreeMap<ChannelId, Topic> = BTreeMap::new();
     for channel in reader.channels() {
-        if let Some(topic) = Topic::named(&channel.topic, &mut writer)? {
+        if let Some(topic) = Topic::named(&channel.topic, &mut out)? {
             topics.insert(channel.id, topic);
         }
     }
     for message in reader.messages(&[], times_ns.clone()) {
         let message = cut::unless(asked, message)?;
         if let Some(topic) = topics.get_mut(&message.channel()) {
-            topic.pass(&mut writer, since(message.log_time_ns(), begin_ns), &message, known)?;
+            topic.pass(&mut out, since(message.log_time_ns(), begin_ns), &message, known)?;
         }
     }
-    let messages = writer.finish()?.messages;
+    let written = out.file.map(Writer::finish).transpose()?;
+    let messages = written.map_or(0, |written| written.messages);
     // When it was written tells when it was looked at.
     let times = fs::FileTimes::new().set_modified(UNIX_EPOCH).set_accessed(UNIX_EPOCH);
     fs::File::options().write(true).open(to).and_then(|file| file.set_times(times)).map_err(CutError::Times)?;
@@ -127,18 +133,18 @@ fn is_ours(of: &str) -> bool {
 /// A topic that is written anew.
 enum Topic {
     Numbers { topic: String, names: Vec<String>, forces: bool, decoder: JointStateDecoder, plot: Option<Plot> },
-    Frames(ChannelId),
-    Arrows(ChannelId),
-    Log(ChannelId),
+    Frames(Channel),
+    Arrows(Channel),
+    Log(Channel),
 }
 
 impl Topic {
     /// The one of this name; `None` for one that is left out.
-    fn named(name: &str, writer: &mut Writer) -> Result<Option<Self>, CutError> {
+    fn named(name: &str, out: &mut Outlet) -> Result<Option<Self>, CutError> {
         Ok(match name {
-            FRAMES_TOPIC => Some(Self::Frames(writer.channel(name, foxglove::encoding::<FrameTransforms>())?)),
-            ARROWS_TOPIC => Some(Self::Arrows(writer.channel(name, foxglove::encoding::<SceneUpdate>())?)),
-            LOG_TOPIC => Some(Self::Log(writer.channel(name, foxglove::encoding::<Log>())?)),
+            FRAMES_TOPIC => Some(Self::Frames(out.channel(name, foxglove::encoding::<FrameTransforms>())?)),
+            ARROWS_TOPIC => Some(Self::Arrows(out.channel(name, foxglove::encoding::<SceneUpdate>())?)),
+            LOG_TOPIC => Some(Self::Log(out.channel(name, foxglove::encoding::<Log>())?)),
             _ => plots().into_iter().find(|(topic, ..)| topic == name).map(|(topic, names, forces)| Self::Numbers {
                 topic,
                 names,
@@ -150,13 +156,7 @@ impl Topic {
     }
 
     /// Writes the message anew; one that cannot be read is left out.
-    fn pass(
-        &mut self,
-        writer: &mut Writer,
-        time_ns: u64,
-        message: &Message,
-        known: &Known<'_>,
-    ) -> Result<(), CutError> {
+    fn pass(&mut self, out: &mut Outlet, time_ns: u64, message: &Message, known: &Known<'_>) -> Result<(), CutError> {
         let data = message.data();
         match self {
             Self::Numbers { topic, names, forces, decoder, plot } => {
@@ -175,19 +175,19 @@ impl Topic {
                     plot
                 } else {
                     let names: Vec<&str> = columns.iter().map(|(name, _)| name.as_str()).collect();
-                    plot.insert(Plot::new(writer, topic, &names)?)
+                    plot.insert(Plot::new(out, topic, &names)?)
                 };
                 plot.values.extend(columns.iter().map(|(_, value)| value));
-                plot.write(writer, time_ns, *forces)?;
+                plot.write(out, time_ns, *forces)?;
             }
             Self::Frames(channel) => {
                 if let Ok(frames) = FrameTransforms::decode(data) {
-                    writer.message(*channel, time_ns, &redrawn::frames(time_ns, &frames).encode_to_vec())?;
+                    out.message(*channel, time_ns, &redrawn::frames(time_ns, &frames).encode_to_vec())?;
                 }
             }
             Self::Arrows(channel) => {
                 if let Ok(scene) = SceneUpdate::decode(data) {
-                    writer.message(*channel, time_ns, &redrawn::arrows(time_ns, &scene).encode_to_vec())?;
+                    out.message(*channel, time_ns, &redrawn::arrows(time_ns, &scene).encode_to_vec())?;
                 }
             }
             Self::Log(channel) => {
@@ -195,7 +195,7 @@ impl Topic {
                     let level = Level::try_from(log.level).unwrap_or(Level::Info);
                     let name = [MARK_LINE, ALARM_LINE].into_iter().find(|name| *name == log.name).unwrap_or(LINE);
                     let words = if (known.is_ours)(&log.message) { log.message } else { WITHHELD.to_owned() };
-                    writer.message(*channel, time_ns, &line(time_ns, level, name, words))?;
+                    out.message(*channel, time_ns, &line(time_ns, level, name, words))?;
                 }
             }
         }

@@ -7,6 +7,8 @@
 //! | `journal` | the messages from which the loop is replayed |
 //! | `scribe` | what passes the tap of a loop, as these messages |
 //! | `recorder` | the thread that writes them, and what is plotted, into a session file |
+//! | `layouts` | what a viewer shows of a session at first |
+//! | `outlet` | where that goes: into the file, and to those who watch while it happens |
 //! | `file` | the journal in a session file |
 //! | `plotted` | the plots of a session file, tick by tick, and what `nima identify` needs of them |
 //! | `cut` | a stretch of a session as a session file of its own |
@@ -23,6 +25,8 @@ pub mod digest;
 pub mod file;
 pub mod journal;
 mod kept;
+pub mod layouts;
+pub mod outlet;
 pub mod plotted;
 pub mod recorder;
 pub mod replay;

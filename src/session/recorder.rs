@@ -30,6 +30,8 @@ use self::sync::Sync;
 use crate::{
     journal::{End, JournalError, Start},
     kept::described,
+    layouts::layouts,
+    outlet::{Destination, Outlet},
     scribe::{Pages, Scribe, Written},
     topics::{Topics, Words},
 };
@@ -79,7 +81,10 @@ pub enum RecordError {
     /// Something of the loop cannot be written.
     #[error("the session cannot be recorded")]
     Journal(#[from] JournalError),
-    /// The operating system gives no thread, or does not write to the disk.
+    /// The operating system gives no thread.
+    #[error("cannot start the thread that records: {0}; end other programs, then try again")]
+    Thread(#[source] io::Error),
+    /// The operating system does not write to the disk.
     #[error("cannot record session {path}: {source}; check the disk or record to another one")]
     System {
         /// The file.
@@ -138,18 +143,17 @@ pub struct Recorder {
 }
 
 impl Recorder {
-    /// Begins a new session file with what passes this tap; `origin` is what its loop is made of.
+    /// Begins a session with what passes this tap; `origin` is what its loop is made of.
     ///
     /// # Errors
     /// [`RecordError`] if the file cannot be created or its beginning cannot be written.
-    pub fn start(path: &Path, about: About, origin: Origin, tap: TapEnd) -> Result<Self, RecordError> {
-        let failed = |source| RecordError::System { path: path.to_owned(), source };
+    pub fn start(to: Destination<'_>, about: About, origin: Origin, tap: TapEnd) -> Result<Self, RecordError> {
         let (notes, noted) = unbounded();
-        let mut session = Session::create(path, about, origin, noted)?;
+        let path = to.file;
+        let mut session = Session::create(to, about, origin, noted)?;
         let shared = Arc::<Shared>::default();
-        shared.bytes.store(session.file.writer.bytes().1, Ordering::Relaxed);
-        let (told, sync) =
-            (Arc::clone(&shared), Sync::start(path, session.file.writer.sync_handle().map_err(failed)?, &shared)?);
+        shared.bytes.store(session.file.out.bytes(), Ordering::Relaxed);
+        let (told, sync) = (Arc::clone(&shared), synchronised(path, &session.file.out, &shared)?);
         let run = move || {
             let ran = session.run(&tap, &told);
             if let Err(error) = ran.and_then(|()| session.close(&tap, &told)) {
@@ -158,7 +162,7 @@ impl Recorder {
             }
             drop(sync);
         };
-        let thread = Builder::new().name("recorder".to_owned()).spawn(run).map_err(failed)?;
+        let thread = Builder::new().name("recorder".to_owned()).spawn(run).map_err(RecordError::Thread)?;
         Ok(Self { shared, notes, thread: Some(thread) })
     }
 
@@ -208,6 +212,13 @@ impl Drop for Recorder {
     }
 }
 
+/// Keeps the file, if there is one, on the disk.
+fn synchronised(path: Option<&Path>, out: &Outlet, shared: &Arc<Shared>) -> Result<Option<Sync>, RecordError> {
+    let (Some(path), Some(file)) = (path, &out.file) else { return Ok(None) };
+    let failed = |source| RecordError::System { path: path.to_owned(), source };
+    Sync::start(path, file.sync_handle().map_err(failed)?, shared).map(Some)
+}
+
 /// Goes on emptying the tap of a loop whose recording has ended, so that its boxes go round.
 fn drain(tap: &TapEnd, shared: &Shared) {
     loop {
@@ -236,15 +247,20 @@ struct Session {
 }
 
 impl Session {
-    fn create(path: &Path, about: About, origin: Origin, noted: Receiver<(f64, Note)>) -> Result<Self, RecordError> {
+    fn create(
+        to: Destination<'_>,
+        about: About,
+        origin: Origin,
+        noted: Receiver<(f64, Note)>,
+    ) -> Result<Self, RecordError> {
         let sides = origin.calibrations.each_ref().map(Option::is_some);
         let of = |(side, known): (Side, &Option<Calibrations>)| Some((side, described(known.as_ref()?)));
         let known: Vec<_> = Side::ALL.into_iter().zip(&origin.calibrations).filter_map(of).collect();
         let devices = origin.rig.device_names();
         let (scribe, first) = Scribe::new(&Start { program: about.program.clone(), origin })?;
-        let mut file = SessionFile::create(path, about, &known, sides, devices)?;
+        let mut file = SessionFile::create(to, about, &known, sides, devices)?;
         file.write(&first)?;
-        file.writer.flush()?;
+        file.out.flush()?;
         Ok(Self { scribe, file, noted, waiting: None })
     }
 
@@ -255,14 +271,14 @@ impl Session {
                 // The loop rests: nobody shall wait for what is known.
                 Next::Nothing => {
                     self.notes(f64::INFINITY)?;
-                    self.file.writer.flush()?;
+                    self.file.out.flush()?;
                 }
                 Next::End => return self.notes(f64::INFINITY),
             }
             self.notes(self.scribe.t_s())?;
             shared.ticks.store(self.scribe.ticks(), Ordering::Relaxed);
             shared.lost.store(self.scribe.lost(), Ordering::Relaxed);
-            shared.bytes.store(self.file.writer.bytes().1, Ordering::Relaxed);
+            shared.bytes.store(self.file.out.bytes(), Ordering::Relaxed);
         }
     }
 
@@ -274,7 +290,7 @@ impl Session {
                 return Ok(());
             }
             let time_ns = self.file.log_time_ns(t_s.min(self.scribe.t_s()));
-            self.file.topics.note(&mut self.file.writer, time_ns, note)?;
+            self.file.topics.note(&mut self.file.out, time_ns, note)?;
         }
         Ok(())
     }
@@ -282,19 +298,20 @@ impl Session {
     fn close(self, tap: &TapEnd, shared: &Shared) -> Result<(), RecordError> {
         let Self { scribe, mut file, .. } = self;
         let End { ticks, lost } = scribe.end(tap, &mut file)?;
-        file.writer.flush()?;
+        file.out.flush()?;
         shared.ticks.store(ticks, Ordering::Relaxed);
         shared.lost.store(lost, Ordering::Relaxed);
-        shared.bytes.store(file.writer.bytes().1, Ordering::Relaxed);
-        file.writer.finish()?;
+        shared.bytes.store(file.out.bytes(), Ordering::Relaxed);
+        file.out.file.map(Writer::finish).transpose()?;
         Ok(())
     }
 }
 
 /// The file and its channels.
 struct SessionFile {
-    writer: Writer,
-    journal: ChannelId,
+    out: Outlet,
+    /// In the file alone.
+    journal: Option<ChannelId>,
     topics: Topics,
     started_ns: u64,
     blocks: u32,
@@ -302,33 +319,30 @@ struct SessionFile {
 
 impl SessionFile {
     fn create(
-        path: &Path,
+        to: Destination<'_>,
         about: About,
         known: &[(Side, BTreeMap<String, String>)],
         sides: [bool; SIDES],
         devices: Vec<String>,
     ) -> Result<Self, RecordError> {
         let About { program, started_ns, metadata, files, words } = about;
-        let mut writer = Writer::create(path, &program)?;
-        for (name, entries) in &metadata {
-            writer.metadata(name, entries)?;
+        let mut out = Outlet::create(to, &program)?;
+        let mut journal = None;
+        if let Some(file) = &mut out.file {
+            for (name, entries) in &metadata {
+                file.metadata(name, entries)?;
+            }
+            for (side, entries) in known {
+                file.metadata(&format!("calibrations {}", side.word()), entries)?;
+            }
+            for Attached { name, media_type, data } in files.iter().chain(&layouts(sides)) {
+                file.attachment(name, media_type, started_ns, data)?;
+            }
+            let encoding = Encoding { message_encoding: JOURNAL_ENCODING.to_owned(), ..Encoding::default() };
+            journal = Some(file.channel(JOURNAL_TOPIC, encoding)?);
         }
-        for (side, entries) in known {
-            writer.metadata(&format!("calibrations {}", side.word()), entries)?;
-        }
-        for Attached { name, media_type, data } in &files {
-            writer.attachment(name, media_type, started_ns, data)?;
-        }
-        let none = String::new;
-        let encoding = Encoding {
-            schema: none(),
-            schema_encoding: none(),
-            schema_data: Vec::new(),
-            message_encoding: JOURNAL_ENCODING.to_owned(),
-        };
-        let journal = writer.channel(JOURNAL_TOPIC, encoding)?;
-        let topics = Topics::new(&mut writer, sides, words, devices)?;
-        Ok(Self { writer, journal, topics, started_ns, blocks: 0 })
+        let topics = Topics::new(&mut out, sides, words, devices)?;
+        Ok(Self { out, journal, topics, started_ns, blocks: 0 })
     }
 
     fn log_time_ns(&self, t_s: f64) -> u64 {
@@ -340,25 +354,28 @@ impl Pages for SessionFile {
     type Error = RecordError;
 
     fn write(&mut self, Written { t_s, bytes }: &Written) -> Result<(), RecordError> {
-        self.writer.message(self.journal, self.log_time_ns(*t_s), bytes)?;
+        let time_ns = self.log_time_ns(*t_s);
+        let (Some(file), Some(journal)) = (&mut self.out.file, self.journal) else { return Ok(()) };
+        file.message(journal, time_ns, bytes)?;
         self.blocks += 1;
         if self.blocks.is_multiple_of(BLOCKS_PER_CHUNK) {
-            self.writer.flush()?;
+            file.flush()?;
         }
         Ok(())
     }
 
     fn tick(&mut self, stepped: &Stepped, events: &[Event]) -> Result<(), RecordError> {
         let time_ns = self.log_time_ns(stepped.timing.now_s);
-        Ok(self.topics.tick(&mut self.writer, time_ns, stepped, events)?)
+        Ok(self.topics.tick(&mut self.out, time_ns, stepped, events)?)
     }
 
     fn calibrations(&mut self, number: u64, calibrations: &Calibrations) -> Result<(), RecordError> {
-        Ok(self.writer.metadata(&format!("calibrations {number}"), &described(calibrations))?)
+        let Some(file) = &mut self.out.file else { return Ok(()) };
+        Ok(file.metadata(&format!("calibrations {number}"), &described(calibrations))?)
     }
 
     fn operation(&mut self, operation: &Operation, t_s: f64) -> Result<(), RecordError> {
         let time_ns = self.log_time_ns(t_s);
-        Ok(self.topics.operation(&mut self.writer, time_ns, operation)?)
+        Ok(self.topics.operation(&mut self.out, time_ns, operation)?)
     }
 }

@@ -15,13 +15,16 @@ use nima_machine::{
 };
 use nima_recording::{
     messages::foxglove::{self, Level, Log},
-    session::{ChannelId, WriteError, Writer},
+    session::WriteError,
 };
 
 pub(crate) use scene::{ARROWS_TOPIC, FRAMES_TOPIC};
 pub(crate) use timing::{TIMES, TIMING_TOPIC};
 
-use crate::recorder::{Note, NoteKind};
+use crate::{
+    outlet::{Channel, Outlet},
+    recorder::{Note, NoteKind},
+};
 
 use self::{identification::Identified, plot::Plot, scene::Scene, timing::Times};
 
@@ -49,7 +52,7 @@ pub(crate) struct Topics {
     sides: [Option<OfSide>; SIDES],
     scene: Scene,
     times: Times,
-    log: ChannelId,
+    log: Channel,
     words: Words,
     devices: Vec<String>,
 }
@@ -62,7 +65,7 @@ struct OfSide {
     identified: Identified,
 }
 
-const FORCES: [&str; 12] = [
+pub(crate) const FORCES: [&str; 12] = [
     "measured.x_n",
     "measured.y_n",
     "measured.z_n",
@@ -78,7 +81,7 @@ const FORCES: [&str; 12] = [
 ];
 const POSES: [&str; 6] = ["tip.x_m", "tip.y_m", "tip.z_m", "leader.x_m", "leader.y_m", "leader.z_m"];
 /// Beside one for each gate: 1 where it acted.
-const OF_GATES: [&str; 5] = ["gain_value", "stored_j", "withheld_n", "governed", "state"];
+pub(crate) const OF_GATES: [&str; 5] = ["gain_value", "stored_j", "withheld_n", "governed", "state"];
 
 /// Every topic of named numbers of this program: its name, the names of its numbers, and whether they are forces.
 pub(crate) fn plots() -> Vec<(String, Vec<String>, bool)> {
@@ -98,13 +101,13 @@ pub(crate) fn plots() -> Vec<(String, Vec<String>, bool)> {
     Side::ALL.into_iter().flat_map(of_side).chain([timing]).collect()
 }
 
-fn gates() -> impl Iterator<Item = &'static str> {
+pub(crate) fn gates() -> impl Iterator<Item = &'static str> {
     Gate::ALL.iter().map(|gate| gate.name()).chain(OF_GATES)
 }
 
 impl Topics {
     pub(crate) fn new(
-        writer: &mut Writer,
+        out: &mut Outlet,
         sides: [bool; SIDES],
         words: Words,
         devices: Vec<String>,
@@ -112,42 +115,42 @@ impl Topics {
         let mut of = [None, None];
         for side in Side::ALL.into_iter().filter(|side| sides[side.index()]) {
             let gates: Vec<&str> = gates().collect();
-            let mut plot = |what: &str, names: &[&str]| Plot::of_side(writer, side, what, names);
+            let mut plot = |what: &str, names: &[&str]| Plot::of_side(out, side, what, names);
             of[side.index()] = Some(OfSide {
                 forces: plot("forces", &FORCES)?,
                 poses: plot("poses", &POSES)?,
                 gates: plot("gates", &gates)?,
-                identified: Identified::new(writer, side)?,
+                identified: Identified::new(out, side)?,
             });
         }
-        let times = Times::new(writer)?;
-        let log = writer.channel(LOG_TOPIC, foxglove::encoding::<Log>())?;
-        Ok(Self { sides: of, scene: Scene::new(writer)?, times, log, words, devices })
+        let times = Times::new(out)?;
+        let log = out.channel(LOG_TOPIC, foxglove::encoding::<Log>())?;
+        Ok(Self { sides: of, scene: Scene::new(out)?, times, log, words, devices })
     }
 
     /// Writes a tick and the events in it.
     pub(crate) fn tick(
         &mut self,
-        writer: &mut Writer,
+        out: &mut Outlet,
         time_ns: u64,
         stepped: &Stepped,
         events: &[Event],
     ) -> Result<(), WriteError> {
         for (plots, tick) in self.sides.iter_mut().zip(&stepped.ticks) {
             if let (Some(plots), Some(tick)) = (plots, tick) {
-                plots.tick(writer, time_ns, tick)?;
+                plots.tick(out, time_ns, tick)?;
             }
         }
         let ticks = stepped.ticks.iter().flatten();
-        self.scene.show(writer, time_ns, stepped.timing.now_s, ticks)?;
-        self.times.tick(writer, time_ns, &stepped.timing)?;
+        self.scene.show(out, time_ns, stepped.timing.now_s, ticks)?;
+        self.times.tick(out, time_ns, &stepped.timing)?;
         for event in events {
             let level = match event {
                 Event::FaultRaised { .. } => Level::Error,
                 Event::CommandRefused { .. } => Level::Warning,
                 Event::StateChanged { .. } | Event::Device(_) | Event::Scheduling(_) => Level::Info,
             };
-            self.log(writer, time_ns, level, (self.words.event)(event, &self.devices))?;
+            self.log(out, time_ns, level, (self.words.event)(event, &self.devices))?;
         }
         Ok(())
     }
@@ -155,26 +158,26 @@ impl Topics {
     /// Writes what was done to the loop.
     pub(crate) fn operation(
         &mut self,
-        writer: &mut Writer,
+        out: &mut Outlet,
         time_ns: u64,
         operation: &Operation,
     ) -> Result<(), WriteError> {
-        self.log(writer, time_ns, Level::Info, (self.words.operation)(operation, &self.devices))
+        self.log(out, time_ns, Level::Info, (self.words.operation)(operation, &self.devices))
     }
 
-    fn log(&self, writer: &mut Writer, time_ns: u64, level: Level, message: String) -> Result<(), WriteError> {
-        writer.message(self.log, time_ns, &line(time_ns, level, LINE, message))
+    fn log(&self, out: &mut Outlet, time_ns: u64, level: Level, message: String) -> Result<(), WriteError> {
+        out.message(self.log, time_ns, &line(time_ns, level, LINE, message))
     }
 
     /// Writes what a screen adds to the log.
-    pub(crate) fn note(&self, writer: &mut Writer, time_ns: u64, note: Note) -> Result<(), WriteError> {
+    pub(crate) fn note(&self, out: &mut Outlet, time_ns: u64, note: Note) -> Result<(), WriteError> {
         let Note { kind, warns, words } = note;
         let level = if warns { Level::Warning } else { Level::Info };
         let name = match kind {
             NoteKind::Mark => MARK_LINE,
             NoteKind::Alarm => ALARM_LINE,
         };
-        writer.message(self.log, time_ns, &line(time_ns, level, name, words))
+        out.message(self.log, time_ns, &line(time_ns, level, name, words))
     }
 }
 
@@ -191,7 +194,7 @@ pub(crate) fn line(time_ns: u64, level: Level, name: &str, message: String) -> V
 }
 
 impl OfSide {
-    fn tick(&mut self, writer: &mut Writer, time_ns: u64, tick: &Tick) -> Result<(), WriteError> {
+    fn tick(&mut self, out: &mut Outlet, time_ns: u64, tick: &Tick) -> Result<(), WriteError> {
         let asked_n = tick.asked_n[tick.mode.index()];
         let forces = [tick.measured_n, tick.delayed_n, asked_n, tick.rendered_n];
         self.forces.values.extend(forces.iter().flatten());
@@ -200,10 +203,10 @@ impl OfSide {
         let gates = &tick.gates;
         self.gates.values.extend(acted);
         self.gates.values.extend([gates.gain, gates.stored_j, gates.withheld_n, gates.governed, number_of(tick.state)]);
-        self.forces.write(writer, time_ns, true)?;
-        self.poses.write(writer, time_ns, false)?;
-        self.gates.write(writer, time_ns, false)?;
-        self.identified.tick(writer, time_ns, tick)
+        self.forces.write(out, time_ns, true)?;
+        self.poses.write(out, time_ns, false)?;
+        self.gates.write(out, time_ns, false)?;
+        self.identified.tick(out, time_ns, tick)
     }
 }
 

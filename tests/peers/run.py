@@ -1,4 +1,4 @@
-"""Third-party clients against our emulators: `python run.py NIMA_BINARY`. Fails at the first check that does not hold.
+"""Third-party clients against this program: `python run.py NIMA_BINARY [NAME]`, all of them or one. Fails at the first check that does not hold.
 
 Every module `peer_*.py` beside this file has `run(nima) -> [Peer, ...]`.
 """
@@ -8,11 +8,11 @@ import pathlib
 import sys
 
 
-def main(nima):
+def main(nima, name="*"):
     here = pathlib.Path(__file__).parent
     sys.path.insert(0, str(here))
     peers = []
-    for module in sorted(here.glob("peer_*.py")):
+    for module in sorted(here.glob(f"peer_{name}.py")):
         peers += importlib.import_module(module.stem).run(nima)
     for peer in peers:
         print(f"peer {peer.name}: " + (f"SKIPPED, {peer.skipped}" if peer.skipped else f"{peer.passed} checks"))
@@ -21,4 +21,4 @@ def main(nima):
 
 
 if __name__ == "__main__":
-    main(sys.argv[1])
+    main(*sys.argv[1:])

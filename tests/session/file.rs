@@ -16,6 +16,7 @@ use nima_recording::session::{ReadError, Reader, WriteError, Writer};
 use nima_session::{
     Words,
     file::Recorded,
+    outlet::Destination,
     recorder::{About, Attached, JOURNAL_TOPIC, Progress, RecordError, Recorder},
     replay::{Change, Outcome, ReplayError, compare, replay},
 };
@@ -47,7 +48,7 @@ fn about() -> About {
 
 pub(crate) fn recorded(path: &Path, plan: &Plan, seconds: f64, each: impl FnMut(&Tick) -> Option<Command>) -> Progress {
     let (tap, end) = tap();
-    let recorder = Recorder::start(path, about(), plan.origin(), end).unwrap();
+    let recorder = Recorder::start(Destination::file(path), about(), plan.origin(), end).unwrap();
     runtime::run_virtual(Assembly { tap: Some(tap), ..plan.simulated().unwrap() }, seconds, each);
     recorder.finish().unwrap()
 }
@@ -163,7 +164,7 @@ fn files_that_cannot_be_replayed_are_named() {
     }
     assert!(
         matches!(
-            Recorder::start(&at("whole"), about(), plan("peg_transfer").origin(), tap().1),
+            Recorder::start(Destination::file(&at("whole")), about(), plan("peg_transfer").origin(), tap().1),
             Err(RecordError::Write(WriteError::Create { .. }))
         ),
         "a session is never overwritten"
@@ -176,7 +177,7 @@ fn a_folder_that_is_gone_is_told_at_once_and_the_loop_goes_on() {
     let path = folder.path().join("session.mcap");
     let plan = plan("peg_transfer");
     let (tap, end) = tap();
-    let recorder = Recorder::start(&path, about(), plan.origin(), end).unwrap();
+    let recorder = Recorder::start(Destination::file(&path), about(), plan.origin(), end).unwrap();
     let assembly = Assembly { tap: Some(tap), clock: Clock::Simulated { speed: 4.0 }, ..plan.simulated().unwrap() };
     let handle = runtime::start(assembly).unwrap();
     let begin = Instant::now();

@@ -6,6 +6,7 @@ pub mod command;
 pub mod console;
 mod emulators;
 pub mod leaving;
+mod live;
 mod recording;
 mod report;
 pub mod telling;

@@ -2,7 +2,6 @@
 
 use std::{
     collections::BTreeMap,
-    path::Path,
     time::{SystemTime, UNIX_EPOCH},
 };
 
@@ -10,6 +9,7 @@ use nima_machine::runtime::{Tap, tap};
 use nima_recording::store::utc_now;
 use nima_session::{
     Words,
+    outlet::Destination,
     recorder::{About, Attached, RecordError, Recorder},
 };
 use nima_world::Plan;
@@ -30,9 +30,9 @@ pub(crate) fn toml_file(name: &str, text: String) -> Attached {
 }
 
 /// Begins to record a loop of this plan: the tap is for its [`nima_machine::runtime::Assembly`]. `clock` is `real` or `virtual`.
-pub(crate) fn begin(path: &Path, plan: &Plan, clock: &str) -> Result<(Tap, Recorder), RecordError> {
+pub(crate) fn begin(to: Destination<'_>, plan: &Plan, clock: &str) -> Result<(Tap, Recorder), RecordError> {
     let (tap, end) = tap();
-    let recorder = Recorder::start(path, about(plan, clock), plan.origin(), end)?;
+    let recorder = Recorder::start(to, about(plan, clock), plan.origin(), end)?;
     Ok((tap, recorder))
 }
 

@@ -26,14 +26,13 @@ impl Sync {
     pub(super) fn start(path: &Path, file: File, shared: &Arc<Shared>) -> Result<Self, RecordError> {
         let (ends, asked) = bounded(1);
         let (path, told) = (path.to_owned(), Arc::clone(shared));
-        let at = path.clone();
         let run = move || {
             if let Err(source) = sync(&file, &asked) {
                 told.trouble.set(RecordError::System { path, source }).ok();
             }
         };
         let thread = Builder::new().name("recorder-sync".to_owned()).spawn(run);
-        let thread = thread.map_err(|source| RecordError::System { path: at, source })?;
+        let thread = thread.map_err(RecordError::Thread)?;
         Ok(Self { ends: Some(ends), thread: Some(thread) })
     }
 }

@@ -5,9 +5,10 @@ use nima_core::{
     tip_force::TipForceReport,
 };
 use nima_machine::{messages::Tick, rig::Side};
-use nima_recording::session::{WriteError, Writer};
+use nima_recording::session::WriteError;
 
 use super::plot::Plot;
+use crate::outlet::Outlet;
 
 /// Written once per this time, s: an error is a mean over half a second.
 const EVERY_S: f64 = 0.1;
@@ -48,15 +49,15 @@ struct Network {
 }
 
 impl Identified {
-    pub(super) fn new(writer: &mut Writer, side: Side) -> Result<Self, WriteError> {
+    pub(super) fn new(out: &mut Outlet, side: Side) -> Result<Self, WriteError> {
         let names = names();
         let names: Vec<&str> = names.iter().map(String::as_str).collect();
-        let plot = Plot::of_side(writer, side, "identification", &names)?;
+        let plot = Plot::of_side(out, side, "identification", &names)?;
         Ok(Self { plot, due_s: f64::NEG_INFINITY, network: Network::default() })
     }
 
     /// Takes a tick, and writes a message if one is due.
-    pub(super) fn tick(&mut self, writer: &mut Writer, time_ns: u64, tick: &Tick) -> Result<(), WriteError> {
+    pub(super) fn tick(&mut self, out: &mut Outlet, time_ns: u64, tick: &Tick) -> Result<(), WriteError> {
         if let Some(report) = &tick.force.tip_force {
             self.network.add(report);
         }
@@ -83,7 +84,7 @@ impl Identified {
             f64::from(u8::from(report.resting)),
         ]);
         self.plot.values.extend(std::mem::take(&mut self.network).values());
-        self.plot.write(writer, time_ns, false)
+        self.plot.write(out, time_ns, false)
     }
 }
 

@@ -1,36 +1,35 @@
 //! A channel of named numbers.
 
 use nima_machine::rig::Side;
-use nima_recording::{
-    messages::JointStateEncoder,
-    session::{ChannelId, WriteError, Writer},
-};
+use nima_recording::{messages::JointStateEncoder, session::WriteError};
+
+use crate::outlet::{Channel, Outlet};
 
 /// A channel, and the values of its next message.
 #[derive(Debug)]
 pub(crate) struct Plot {
-    channel: ChannelId,
+    channel: Channel,
     encoder: JointStateEncoder,
     pub(crate) values: Vec<f64>,
 }
 
 impl Plot {
-    pub(crate) fn of_side(writer: &mut Writer, side: Side, what: &str, names: &[&str]) -> Result<Self, WriteError> {
+    pub(crate) fn of_side(out: &mut Outlet, side: Side, what: &str, names: &[&str]) -> Result<Self, WriteError> {
         let names: Vec<String> = names.iter().map(|name| format!("{}.{name}", side.word())).collect();
         let names: Vec<&str> = names.iter().map(String::as_str).collect();
-        Self::new(writer, &format!("{}/{what}", side.word()), &names)
+        Self::new(out, &format!("{}/{what}", side.word()), &names)
     }
 
-    pub(crate) fn new(writer: &mut Writer, topic: &str, names: &[&str]) -> Result<Self, WriteError> {
-        let channel = writer.channel(topic, JointStateEncoder::encoding())?;
+    pub(crate) fn new(out: &mut Outlet, topic: &str, names: &[&str]) -> Result<Self, WriteError> {
+        let channel = out.channel(topic, JointStateEncoder::encoding())?;
         Ok(Self { channel, encoder: JointStateEncoder::new("world", names), values: Vec::new() })
     }
 
     /// Writes the values and forgets them; forces are efforts.
-    pub(crate) fn write(&mut self, writer: &mut Writer, time_ns: u64, efforts: bool) -> Result<(), WriteError> {
+    pub(crate) fn write(&mut self, out: &mut Outlet, time_ns: u64, efforts: bool) -> Result<(), WriteError> {
         let (position, effort) = if efforts { (&[][..], &self.values[..]) } else { (&self.values[..], &[][..]) };
         if let Ok(message) = self.encoder.encode(time_ns, position, &[], effort) {
-            writer.message(self.channel, time_ns, message)?;
+            out.message(self.channel, time_ns, message)?;
         }
         self.values.clear();
         Ok(())

@@ -6,8 +6,10 @@ use nima_recording::{
     messages::foxglove::{
         self, Arrow, Color, FrameTransform, FrameTransforms, Pose, Quaternion, SceneEntity, SceneUpdate, Timestamp,
     },
-    session::{ChannelId, WriteError, Writer},
+    session::WriteError,
 };
+
+use crate::outlet::{Channel, Outlet};
 use prost::Message as _;
 
 /// A picture is written once per this time, s: a screen shows no more.
@@ -42,22 +44,22 @@ pub(super) fn name_of_arrows(side: Side) -> String {
 /// The channels of the 3-D view.
 #[derive(Debug)]
 pub(super) struct Scene {
-    frames: ChannelId,
-    arrows: ChannelId,
+    frames: Channel,
+    arrows: Channel,
     due_s: f64,
 }
 
 impl Scene {
-    pub(super) fn new(writer: &mut Writer) -> Result<Self, WriteError> {
-        let frames = writer.channel(FRAMES_TOPIC, foxglove::encoding::<FrameTransforms>())?;
-        let arrows = writer.channel(ARROWS_TOPIC, foxglove::encoding::<SceneUpdate>())?;
+    pub(super) fn new(out: &mut Outlet) -> Result<Self, WriteError> {
+        let frames = out.channel(FRAMES_TOPIC, foxglove::encoding::<FrameTransforms>())?;
+        let arrows = out.channel(ARROWS_TOPIC, foxglove::encoding::<SceneUpdate>())?;
         Ok(Self { frames, arrows, due_s: f64::NEG_INFINITY })
     }
 
     /// Writes a picture of these ticks of one time, if it is due.
     pub(super) fn show<'a>(
         &mut self,
-        writer: &mut Writer,
+        out: &mut Outlet,
         time_ns: u64,
         t_s: f64,
         ticks: impl Iterator<Item = &'a Tick>,
@@ -88,8 +90,8 @@ impl Scene {
                 ..SceneEntity::default()
             });
         }
-        writer.message(self.frames, time_ns, &frames.encode_to_vec())?;
-        writer.message(self.arrows, time_ns, &scene.encode_to_vec())
+        out.message(self.frames, time_ns, &frames.encode_to_vec())?;
+        out.message(self.arrows, time_ns, &scene.encode_to_vec())
     }
 }
 

@@ -2,9 +2,10 @@
 
 use nima_core::statistics::{Percentiles, Quantiles};
 use nima_machine::teleop::Timing;
-use nima_recording::session::{WriteError, Writer};
+use nima_recording::session::WriteError;
 
 use super::plot::Plot;
+use crate::outlet::Outlet;
 
 /// Written once per this time, s.
 const EVERY_S: f64 = 1.0;
@@ -29,15 +30,15 @@ pub(super) struct Times {
 }
 
 impl Times {
-    pub(super) fn new(writer: &mut Writer) -> Result<Self, WriteError> {
+    pub(super) fn new(out: &mut Outlet) -> Result<Self, WriteError> {
         let names = names();
         let names: Vec<&str> = names.iter().map(String::as_str).collect();
-        let plot = Plot::new(writer, TIMING_TOPIC, &names)?;
+        let plot = Plot::new(out, TIMING_TOPIC, &names)?;
         Ok(Self { plot, due_s: EVERY_S, missed: 0, durations: Default::default() })
     }
 
     /// Takes a tick, and writes a message if one is due.
-    pub(super) fn tick(&mut self, writer: &mut Writer, time_ns: u64, timing: &Timing) -> Result<(), WriteError> {
+    pub(super) fn tick(&mut self, out: &mut Outlet, time_ns: u64, timing: &Timing) -> Result<(), WriteError> {
         let Timing { now_s, wake_s, work_s, sample_to_force_s, missed_now } = *timing;
         self.missed += missed_now;
         for (percentiles, time_s) in self.durations.iter_mut().zip([Some(wake_s), Some(work_s), sample_to_force_s]) {
@@ -54,7 +55,7 @@ impl Times {
         for percentiles in &self.durations {
             self.plot.values.extend(values(percentiles));
         }
-        self.plot.write(writer, time_ns, false)
+        self.plot.write(out, time_ns, false)
     }
 }
 

@@ -17,6 +17,7 @@ use crate::{
         wizards::Which,
     },
     emulators::Emulators,
+    live::Live,
     telling::tell,
 };
 
@@ -24,6 +25,8 @@ use crate::{
 pub(super) struct Arguments {
     #[command(flatten)]
     setup: Setup,
+    #[command(flatten)]
+    live: Live,
     /// Start in this view (default: the one used last)
     #[arg(long)]
     role: Option<Role>,
@@ -43,7 +46,7 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "CLASS")]
     scheduling: Option<SchedulingClass>,
     /// Save a screenshot of every view (PNG) in this folder, then close
-    #[arg(long, value_name = "DIR", conflicts_with_all = ["exit_after", "calibrate", "role"])]
+    #[arg(long, value_name = "DIR", conflicts_with_all = ["exit_after", "calibrate", "role", "live"])]
     pictures: Option<PathBuf>,
     /// Write the loop's timing and errors (JSON) to this file when the window closes
     #[arg(long, value_name = "FILE")]
@@ -81,7 +84,12 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     plan.engage = by_itself && plan.may_engage();
     // Pictures are taken of a session that nobody looks for afterwards.
     let folder = in_force.store().and_then(|store| store.folder().parent()).filter(|_| arguments.pictures.is_none());
-    let mut sessions = Sessions::of_user(folder);
+    let live = arguments.live.start()?;
+    anyhow::ensure!(
+        live.is_none() || folder.is_some(),
+        "live viewing shows what is recorded, and there is no folder for sessions: set NIMA_DATA_DIR"
+    );
+    let mut sessions = Sessions::of_user(folder, live);
     let handle = start_recorded(&plan, &mut sessions)?;
     let options = Options {
         exit_after: arguments.exit_after.map(Duration::from_secs_f64),

@@ -15,6 +15,7 @@ use nima_recording::session::Reader;
 use nima_session::{
     anonymous::{self, Known},
     cut::{self, Cut, CutError, Kept},
+    layouts,
     plotted::{self, PlottedError, PlottedTick},
     recorder::Attached,
 };
@@ -32,11 +33,15 @@ use crate::{
 const HEADER: &str = "t_s,time_ns,x_m,y_m,z_m,fx_n,fy_n,fz_n,leader_x_m,leader_y_m,leader_z_m,\
 delayed_x_n,delayed_y_n,delayed_z_n,asked_x_n,asked_y_n,asked_z_n,rendered_x_n,rendered_y_n,rendered_z_n,state";
 
+/// Extensions of the layouts for viewers, and the attachments that they are.
+const LAYOUTS: [(&str, &str); 2] = [("json", layouts::FOXGLOVE), ("xml", layouts::PLOTJUGGLER)];
+
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
     /// Session file
     session: PathBuf,
-    /// New file: a table that `nima identify` reads (.csv), or a session (.mcap)
+    /// New file: a table that `nima identify` reads (.csv), a session (.mcap), or a layout for Foxglove (.json)
+    /// or `PlotJuggler` (.xml)
     #[arg(long, value_name = "FILE")]
     out: PathBuf,
     /// Where to begin, in seconds since the session began
@@ -64,8 +69,12 @@ fn seconds(text: &str) -> Result<f64, String> {
 pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let Arguments { session, out, arm, anonymous, .. } = arguments;
     let is = |extension: &str| out.extension().is_some_and(|one| one.eq_ignore_ascii_case(extension));
-    if !is("csv") && !is("mcap") {
-        bail!("--out {}: give a name that ends in .csv or .mcap", out.display());
+    let layout = LAYOUTS.iter().find(|(extension, _)| is(extension)).map(|(_, name)| *name);
+    if !is("csv") && !is("mcap") && layout.is_none() {
+        bail!("--out {}: give a name that ends in .csv, .mcap, .json or .xml", out.display());
+    }
+    if layout.is_some() && (arm.is_some() || *anonymous || arguments.from.is_some() || arguments.to.is_some()) {
+        bail!("a layout is the same for the whole session: leave out --arm, --anonymous, --from and --to");
     }
     if is("mcap") && arm.is_some() {
         bail!("--arm is for tables: a session that is cut out keeps both arms");
@@ -81,6 +90,9 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     for note in reader.notes() {
         tell(format_args!("nima: {note}"));
     }
+    if let Some(name) = layout {
+        return laid_out(&reader, session, name, out);
+    }
     let times_ns = stretch(&reader, arguments)?;
     // Whatever is half-written goes away before the end.
     let leave = Leave::on_signals()?;
@@ -93,6 +105,20 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         whole(out, |new| cut_out(&reader, &times_ns, session, new, &leave))?
     };
     output::line(&format!("{} in {}, {}", words.0, out.display(), words.1))
+}
+
+/// Writes an attached layout into a file of its own, which viewers import.
+fn laid_out(reader: &Reader, session: &Path, name: &str, out: &Path) -> anyhow::Result<()> {
+    let attachment = reader.attachments().iter().find(|attachment| attachment.name == name);
+    let attachment = attachment.with_context(|| {
+        format!(
+            "session {} has no {name}: an older program recorded it; take the layout of a newer session",
+            session.display()
+        )
+    })?;
+    let data = reader.attachment(attachment)?;
+    write_atomically(out, |file| file.write_all(&data)).with_context(|| format!("cannot write {}", out.display()))?;
+    output::line(&format!("{name} in {}: import it as a layout", out.display()))
 }
 
 /// The times that were asked for, ns.

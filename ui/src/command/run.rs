@@ -20,6 +20,7 @@ use nima_machine::{
     runtime::{self, Assembly, Summary, Tap},
 };
 use nima_recording::store::WristId;
+use nima_session::outlet::Destination;
 use nima_world::{Plan, emulated::TipError};
 use serde::Serialize;
 
@@ -39,6 +40,7 @@ use crate::{
     console::in_force::InForce,
     emulators::Emulators,
     leaving::Leave,
+    live::{Live, Server},
     telling::tell,
     words::{Remedy as _, drift as drift_in_words},
 };
@@ -68,7 +70,7 @@ pub(super) struct Arguments {
     #[arg(long)]
     compare: bool,
     /// Run on a virtual clock, as fast as this computer can
-    #[arg(long = "virtual")]
+    #[arg(long = "virtual", conflicts_with = "live")]
     virtual_clock: bool,
     /// Scheduling class to request for the loop: ordinary, fifo or deadline (default: the rig's)
     #[arg(long, value_name = "CLASS")]
@@ -76,6 +78,8 @@ pub(super) struct Arguments {
     /// Record the session into a new file, from which `nima replay` repeats it bit for bit
     #[arg(long, value_name = "FILE.mcap")]
     record: Option<PathBuf>,
+    #[command(flatten)]
+    live: Live,
     /// Print the results as one JSON object
     #[arg(long)]
     json: bool,
@@ -127,7 +131,9 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
             plan.scene.name
         );
     }
-    let (tap, mut recording) = Recording::begin(arguments.record.as_deref(), &plan, arguments.virtual_clock)?;
+    let live = arguments.live.start()?;
+    let to = Destination { file: arguments.record.as_deref(), audience: live.as_ref().map(Server::audience) };
+    let (tap, mut recording) = Recording::begin(to, &plan, arguments.virtual_clock)?;
     let mut summary = if arguments.virtual_clock {
         runtime::run_virtual(Assembly { tap, ..plan.simulated()? }, arguments.seconds.unwrap_or(60.0), |tick| {
             let command = start.watch(tick);

@@ -5,6 +5,7 @@
 
 use std::{
     collections::VecDeque,
+    net::SocketAddr,
     path::{Path, PathBuf},
     time::{Duration, Instant},
 };
@@ -12,6 +13,7 @@ use std::{
 use nima_machine::{messages::Scheduling, runtime::Tap};
 use nima_recording::store::utc_now;
 use nima_session::{
+    outlet::Destination,
     recorder::{Note, NoteKind, Recorder},
     shelf::{MOST_BYTES, Shelf, free_bytes, keep},
 };
@@ -21,7 +23,7 @@ use super::{
     alarms::{Alarm, Kind, Priority, Signs, judge, log::AlarmLog},
     chain, text,
 };
-use crate::recording;
+use crate::{live::Server, recording};
 
 /// A loop that ran for fewer ticks than this was no session: a window that could not be opened, a rig that was changed at once.
 const LEAST_TICKS: u64 = 1000;
@@ -37,6 +39,8 @@ const GROWN: Duration = Duration::from_mins(1);
 pub(crate) struct Sessions {
     /// `None`: nothing is recorded.
     shelf: Option<Shelf>,
+    /// Those who watch.
+    live: Option<Server>,
     now: Option<Now>,
     /// Why the last recording could not begin, or ended by itself.
     trouble: Option<String>,
@@ -77,13 +81,15 @@ pub(crate) struct Shown {
     pub(crate) lost: u64,
     /// Marks in it.
     pub(crate) marks: usize,
+    /// Where others can watch, and how many do.
+    pub(crate) live: Option<(SocketAddr, usize)>,
 }
 
 impl Sessions {
-    /// Records into the folder `sessions` of the user's data folder.
-    pub(crate) fn of_user(data_folder: Option<&Path>) -> Self {
+    /// Records into the folder `sessions` of the user's data folder, and lets those of this server watch.
+    pub(crate) fn of_user(data_folder: Option<&Path>, live: Option<Server>) -> Self {
         let shelf = data_folder.map(|folder| Shelf::new(folder.join("sessions"), MOST_BYTES));
-        Self { shelf, now: None, trouble: None, looked: None, full_in: None }
+        Self { shelf, live, now: None, trouble: None, looked: None, full_in: None }
     }
 
     /// Begins to record a loop of this plan; the tap is for it. `None` if nothing is recorded.
@@ -94,7 +100,8 @@ impl Sessions {
         let place =
             shelf.place(&utc_now(), &plan.rig.name).map_err(|error| text::sessions::no_folder(shelf.folder(), &error));
         let begun = place.and_then(|path| {
-            let (tap, recorder) = recording::begin(&path, plan, "real").map_err(|error| chain(&error))?;
+            let to = Destination { file: Some(&path), audience: self.live.as_ref().map(Server::audience) };
+            let (tap, recorder) = recording::begin(to, plan, "real").map_err(|error| chain(&error))?;
             Ok((tap, Now { recorder, path, began: Instant::now(), kept: false, told: Told::default() }))
         });
         match begun {
@@ -176,6 +183,7 @@ impl Sessions {
             bytes: progress.bytes,
             lost: progress.lost,
             marks: now.told.marks,
+            live: self.live.as_ref().map(|live| (live.address(), live.viewers())),
         })
     }
 
@@ -243,7 +251,7 @@ mod tests {
     #[test]
     fn every_loop_is_recorded_and_its_session_replays() {
         let folder = tempfile::tempdir().unwrap();
-        let mut sessions = Sessions::of_user(Some(folder.path()));
+        let mut sessions = Sessions::of_user(Some(folder.path()), None);
         let mut paths = Vec::new();
         for kept in [true, false] {
             let plan = plan();
@@ -273,7 +281,7 @@ mod tests {
     #[test]
     fn marks_and_alarms_of_the_screen_are_in_the_session_at_their_moments_and_it_replays() {
         let folder = tempfile::tempdir().unwrap();
-        let mut sessions = Sessions::of_user(Some(folder.path()));
+        let mut sessions = Sessions::of_user(Some(folder.path()), None);
         let plan = plan();
         let tap = sessions.begin(&plan);
         let handle = start(Assembly { tap, ..plan.assembly().unwrap() }).unwrap();
@@ -324,7 +332,7 @@ mod tests {
     #[test]
     fn a_loop_that_ends_at_once_leaves_no_session() {
         let folder = tempfile::tempdir().unwrap();
-        let mut sessions = Sessions::of_user(Some(folder.path()));
+        let mut sessions = Sessions::of_user(Some(folder.path()), None);
         let plan = plan();
         let tap = sessions.begin(&plan);
         drop(start(Assembly { tap, ..plan.assembly().unwrap() }).unwrap());
@@ -337,7 +345,7 @@ mod tests {
     fn a_folder_that_cannot_be_made_is_told_and_the_loop_runs_without_a_recording() {
         let folder = tempfile::tempdir().unwrap();
         std::fs::write(folder.path().join("sessions"), "a file").unwrap();
-        let mut sessions = Sessions::of_user(Some(folder.path()));
+        let mut sessions = Sessions::of_user(Some(folder.path()), None);
         assert!(sessions.begin(&plan()).is_none());
         let trouble = sessions.trouble().unwrap();
         assert!(trouble.contains("sessions"), "{trouble}");

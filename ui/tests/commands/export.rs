@@ -101,7 +101,7 @@ fn a_table_has_the_values_of_the_messages_and_identify_makes_the_same_of_both() 
     refused(&["export", &session, "--out", &at("new.csv")], "choose one with --arm");
     refused(&["identify", &session], "choose one with --arm");
     refused(&["export", &session, "--out", &left, "--arm", "left"], "it is there already");
-    refused(&["export", &session, "--out", &at("new.txt")], "ends in .csv or .mcap");
+    refused(&["export", &session, "--out", &at("new.txt")], "ends in .csv, .mcap, .json or .xml");
     refused(&["export", &session, "--out", &at("new.mcap"), "--arm", "left"], "keeps both arms");
     refused(&["export", &session, "--out", &at("new.csv"), "--arm", "middle"], "right or left");
     refused(&["export", &session, "--out", &at("new.csv"), "--from", "4.5"], "beyond the end");
@@ -110,6 +110,25 @@ fn a_table_has_the_values_of_the_messages_and_identify_makes_the_same_of_both() 
     refused(&["identify", &left, "--arm", "left"], "is a table");
     refused(&["identify", &session, "--map", "x=a"], "is a session");
     assert!(!Path::new(&at("new.csv")).exists() && !Path::new(&at("new.mcap")).exists());
+}
+
+#[test]
+fn a_layout_for_viewers_comes_out_of_a_session_and_stays_in_an_anonymous_one() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name).display().to_string();
+    let (session, shared) = (at("s.mcap"), at("shared.mcap"));
+    record(&session, "peg_transfer", "1");
+    done(&["export", &session, "--out", &shared, "--anonymous"]);
+    for (name, begin) in [("layout.json", "{"), ("layout.xml", "<?xml")] {
+        let (of_session, of_shared) = (at(name), at(&format!("shared-{name}")));
+        done(&["export", &session, "--out", &of_session]);
+        done(&["export", &shared, "--out", &of_shared]);
+        let text = std::fs::read_to_string(of_session).unwrap();
+        assert!(text.starts_with(begin) && text.contains("right") && !text.contains("left"), "{text:.300}");
+        assert!(text == std::fs::read_to_string(of_shared).unwrap(), "{name} differs in the anonymous session");
+    }
+    refused(&["export", &session, "--out", &at("layout.json")], "it is there already");
+    refused(&["export", &session, "--out", &at("other.json"), "--from", "1"], "leave out --arm");
 }
 
 #[test]

@@ -1,19 +1,22 @@
-//! `nima run --record`: the session file of a run.
+//! `nima run --record`: the session file of a run; `--live`: who watches it.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use anyhow::Context as _;
 use nima_machine::runtime::Tap;
-use nima_session::recorder::{Progress, Recorder};
+use nima_session::{
+    outlet::Destination,
+    recorder::{Progress, Recorder},
+};
 use nima_world::Plan;
 use serde::Serialize;
 
 use crate::recording::begin;
 
-/// A recording, if one was asked for.
+/// A recording, if one was asked for. Without a file there are only those who watch.
 #[derive(Default)]
 pub(super) struct Recording {
-    recorder: Option<(Recorder, PathBuf)>,
+    recorder: Option<(Recorder, Option<PathBuf>)>,
     told: bool,
 }
 
@@ -28,10 +31,13 @@ pub(super) struct Recorded {
 
 impl Recording {
     /// Begins it; the tap is for the loop.
-    pub(super) fn begin(path: Option<&Path>, plan: &Plan, is_virtual: bool) -> anyhow::Result<(Option<Tap>, Self)> {
-        let Some(path) = path else { return Ok((None, Self::default())) };
-        let (tap, recorder) = begin(path, plan, if is_virtual { "virtual" } else { "real" })?;
-        Ok((Some(tap), Self { recorder: Some((recorder, path.to_owned())), told: false }))
+    pub(super) fn begin(to: Destination<'_>, plan: &Plan, is_virtual: bool) -> anyhow::Result<(Option<Tap>, Self)> {
+        if to.file.is_none() && to.audience.is_none() {
+            return Ok((None, Self::default()));
+        }
+        let file = to.file.map(ToOwned::to_owned);
+        let (tap, recorder) = begin(to, plan, if is_virtual { "virtual" } else { "real" })?;
+        Ok((Some(tap), Self { recorder: Some((recorder, file)), told: false }))
     }
 
     /// Whether it has ended by itself.
@@ -50,7 +56,7 @@ impl Recording {
     pub(super) fn end(self) -> anyhow::Result<Option<Recorded>> {
         let Some((recorder, file)) = self.recorder else { return Ok(None) };
         let Progress { ticks, lost, bytes } = recorder.finish().context("the recording has ended before the run")?;
-        Ok(Some(Recorded { file, ticks, lost, bytes }))
+        Ok(file.map(|file| Recorded { file, ticks, lost, bytes }))
     }
 }
 

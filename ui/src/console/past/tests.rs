@@ -16,6 +16,7 @@ use nima_recording::session::Reader;
 use nima_session::{
     cut,
     file::{LineKind, Recorded},
+    outlet::Destination,
     plotted,
     replay::replay,
 };
@@ -30,7 +31,7 @@ const TIMEOUT: Duration = Duration::from_mins(3);
 fn record(path: &Path, scene: &str, seconds: f64, command: impl Fn(u64) -> Option<Command>) {
     let (rig, scene) = (RigConfig::load("simulated").unwrap(), Scene::load(scene).unwrap());
     let plan = Plan { rig, scene, calibrations: Default::default(), engage: true };
-    let (tap, recorder) = recording::begin(path, &plan, "virtual").unwrap();
+    let (tap, recorder) = recording::begin(Destination::file(path), &plan, "virtual").unwrap();
     runtime::run_virtual(Assembly { tap: Some(tap), ..plan.simulated().unwrap() }, seconds, |tick| {
         (tick.side.index() == 0).then(|| command(tick.index)).flatten()
     });

@@ -3,7 +3,8 @@
 #![cfg(target_os = "linux")]
 use std::{
     cell::{Cell, RefCell},
-    path::PathBuf,
+    path::{Path, PathBuf},
+    process::Command,
     thread,
     time::{Duration, Instant},
 };
@@ -105,6 +106,14 @@ impl<'a> Day<'a> {
     }
 }
 
+/// What the console recorded of the day, wizards and the ready check in it, is repeated to the last bit.
+fn replays(session: &Path) {
+    let replayed = Command::new(env!("CARGO_BIN_EXE_nima")).arg("replay").arg(session).output().unwrap();
+    let [told, errors] = [&replayed.stdout, &replayed.stderr].map(|bytes| String::from_utf8_lossy(bytes));
+    println!("{told}");
+    assert!(replayed.status.success(), "{}: {told}{errors}", session.display());
+}
+
 #[test]
 #[ignore = "a quarter of an hour in real time: `./dev walk` runs it"]
 fn from_an_empty_folder_to_both_arms_engaged() {
@@ -138,6 +147,10 @@ fn from_an_empty_folder_to_both_arms_engaged() {
         println!("engaged after {:.0} s and {} clicks", began.elapsed().as_secs_f64(), day.clicks.get());
         let summary = day.console.end();
         assert_eq!(summary["final_state"], "engaged", "{summary}");
+        let sessions = day.files("sessions");
+        println!("sessions of the day: {}", sessions.len());
+        assert!(!sessions.is_empty());
+        sessions.iter().for_each(|session| replays(session));
     });
     assert!(wrong.borrow().is_empty(), "{}", wrong.borrow().join("\n"));
 }

@@ -150,7 +150,9 @@ fn from_an_empty_folder_to_both_arms_engaged() {
         let sessions = day.files("sessions");
         println!("sessions of the day: {}", sessions.len());
         assert!(!sessions.is_empty());
-        sessions.iter().for_each(|session| replays(session));
+        for session in &sessions {
+            replays(session);
+        }
     });
     assert!(wrong.borrow().is_empty(), "{}", wrong.borrow().join("\n"));
 }

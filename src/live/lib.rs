@@ -15,7 +15,7 @@ use foxglove::{ChannelBuilder, Context, FoxgloveError, PartialMetadata, RawChann
 use nima_recording::session::Encoding;
 use nima_session::outlet::Audience;
 
-/// Messages that wait for a viewer, at most: a second of two arms at 1 kHz.
+/// Messages that wait for a viewer, at most: more than two seconds of two arms, which give 6 100 in a second.
 const BACKLOG: usize = 16_384;
 
 /// Why nobody can watch.

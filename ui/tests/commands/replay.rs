@@ -54,6 +54,26 @@ fn a_recorded_run_replays_and_can_be_asked_what_if() {
     assert!(again.contains("session.mcap") && again.contains("never overwritten"), "{again}");
 }
 
+#[cfg(not(feature = "live"))]
+#[test]
+fn without_its_feature_live_viewing_says_how_to_build_it() {
+    for arguments in [&["run", "--live", "--seconds", "1"][..], &["run", "--live", "127.0.0.1:0", "--seconds", "1"]] {
+        assert!(refused(arguments).contains("--features live"));
+    }
+}
+
+#[test]
+fn live_viewing_needs_an_address_and_the_real_clock() {
+    for (arguments, words) in [
+        (["run", "--live", "here", "--seconds"], "invalid socket address"),
+        (["run", "--live", "--virtual", "--seconds"], "cannot be used with"),
+    ] {
+        let told = nima(&[&arguments[..], &["1"]].concat());
+        let text = String::from_utf8(told.stderr).unwrap();
+        assert!(!told.status.success() && text.contains(words), "{text}");
+    }
+}
+
 #[test]
 fn what_cannot_be_replayed_is_told_in_one_line() {
     let folder = tempfile::tempdir().unwrap();

@@ -1,6 +1,14 @@
 //! The paper's rig where none of its devices is there, in a network namespace that this test makes: nothing is sent to an address outside.
 #![cfg(target_os = "linux")]
-use std::process::{Command, Output};
+use std::{
+    path::Path,
+    process::{Command, Output},
+};
+
+use nima_machine::config::RigFile;
+use nima_testing::real_time::{alone as one_rig_at_a_time, judged, too_busy};
+use nima_tests::emulated::{elsewhere, rig_file, started_in};
+use nima_world::scene::Scene;
 
 const DEVICES: [&str; 10] = [
     "right handle",
@@ -62,4 +70,63 @@ fn a_run_names_the_first_device_and_ends_with_its_cause() {
     for device in DEVICES {
         assert!(refused.contains(&format!("{device}: ")), "{device} is not in:\n{refused}");
     }
+}
+
+/// Where nothing is, for this device of the rig; `None` for a name that is not in the list above.
+fn take_away(file: &mut RigFile, device: &str, folder: &Path) -> Option<()> {
+    let nowhere = folder.join("ttyACM-nothing-here").display().to_string();
+    // Bound and closed again: nobody listens there.
+    let closed = || std::net::TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap();
+    let (side, part) = device.split_once(' ').unwrap_or(("", device));
+    match part {
+        "handle" => file.set(&format!("devices.{side}.handle.emulator"), closed().to_string()),
+        "arm" => file.set(&format!("devices.{side}.arm.tcp_port"), i64::from(closed().port())),
+        "sensor" if side == "tissue" => file.set("devices.tissue_sensor.port", &nowhere),
+        "sensor" if device == "left sensor" => file.set("devices.left.sensor.port", closed().to_string()),
+        "sensor" | "servos" => file.set(&format!("devices.{side}.{part}.port"), &nowhere),
+        "tracker" => file.set("devices.tracker.address", closed().to_string()),
+        "pedal" => file.set("devices.pedal.source", format!("emulated:{nowhere}")),
+        _ => return None,
+    }
+    Some(())
+}
+
+/// All others are there, on their wires.
+#[test]
+#[ignore = "opens a rig of ten devices ten times: `./dev walk` runs it"]
+fn the_one_device_that_is_missing_is_the_one_that_is_named() {
+    let _alone = one_rig_at_a_time();
+    let folder = tempfile::tempdir().unwrap();
+    let devices = elsewhere(folder.path());
+    let _emulated = started_in(&Scene::load("bimanual").unwrap(), &devices);
+    let rig = folder.path().join("rig.toml");
+    let tested = || {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_nima"));
+        let output = command.args(["devices", "--rig"]).arg(&rig).env("NIMA_DATA_DIR", folder.path()).output().unwrap();
+        let [told, refused] = [output.stdout, output.stderr].map(|bytes| String::from_utf8(bytes).unwrap());
+        (output.status.success(), told, refused)
+    };
+    judged(|| {
+        std::fs::write(&rig, rig_file(&devices).text()).unwrap();
+        if !tested().0 {
+            too_busy();
+        }
+        // The emulated rig has servos on both sides.
+        for device in DEVICES.into_iter().chain(["left servos"]) {
+            let mut file = rig_file(&devices);
+            take_away(&mut file, device, folder.path()).unwrap();
+            std::fs::write(&rig, file.text()).unwrap();
+            let (all_there, told, refused) = tested();
+            assert!(!all_there && !told.is_empty(), "{device}:\n{told}{refused}");
+            let lines: Vec<_> = told.lines().collect();
+            let troubled: Vec<_> = (0..lines.len()).filter(|at| lines[*at].contains("problem: ")).collect();
+            let [at] = troubled[..] else {
+                assert!(troubled.iter().any(|at| lines[*at].trim_start().starts_with(device)), "{device}:\n{told}");
+                too_busy()
+            };
+            assert!(lines[at].trim_start().starts_with(device), "{device} is missing:\n{told}");
+            assert!(refused.contains("1 of 11 devices cannot be used"), "{refused}");
+            println!("{}\n{}", lines[at].trim(), lines[at + 1].trim());
+        }
+    });
 }

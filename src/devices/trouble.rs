@@ -134,7 +134,9 @@ impl Trouble {
     /// What to do about it, in one sentence.
     pub fn cure(&self) -> String {
         match self {
-            Self::Absent { .. } => "Plug it in and switch it on, or correct its port, serial number or id in the rig file.".to_owned(),
+            Self::Absent { .. } => {
+                "Plug it in and switch it on, or correct its port, serial number or id in the rig file.".to_owned()
+            }
             Self::Permission { udev, .. } => format!(
                 "Add this line to /etc/udev/rules.d/70-nima.rules, run `sudo udevadm control --reload`, plug it in again: {udev}"
             ),

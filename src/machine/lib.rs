@@ -5,6 +5,7 @@
 //! | `config` | rig files, and how files of settings are read |
 //! | `rig` | the hardware interface of the loop, and its implementation with the devices of a rig file |
 //! | `messages` | commands in; ticks and events out |
+//! | `remote` | the same over a network: one half of the rig here, the other one there |
 //! | `ready` | the ready check before the first engagement of the day |
 //! | `teleop` | one tick of the whole loop for both arm pairs |
 //! | `runtime` | the real-time thread, its supervisor, the virtual clock |
@@ -14,6 +15,7 @@
 pub mod config;
 pub mod messages;
 pub mod ready;
+pub mod remote;
 pub mod rig;
 pub mod runtime;
 pub mod teleop;

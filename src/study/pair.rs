@@ -198,7 +198,7 @@ impl Pair {
         let read_m = self.handle_m.map(|x| (x / RESOLUTION_M).round() * RESOLUTION_M);
         self.speed_m_s = self.speed.step(now_s, read_m);
         self.command(&read_m);
-        let follower_m = self.tracking.step(&self.command_m, &self.tip_m);
+        let follower_m = self.tracking.step(&self.command_m, &self.tip_m, 0);
         let motion_m = match self.trial.own_motion {
             OwnMotion::Follower => follower_m,
             OwnMotion::Handle => read_m,

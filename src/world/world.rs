@@ -246,10 +246,7 @@ impl World {
     fn measure(&mut self) -> Inputs {
         let sensed = self.sense();
         // This world has no arm of joints, and its tracker tells no places.
-        let wrench = match &sensed {
-            Sensed::AtWrist(sample) => Some(sample.raw),
-            Sensed::AtTip(_) => None,
-        };
+        let wrench = sensed.wrist().map(|sample| sample.raw);
         let hand_m = self.hand.position_m();
         let leader_m = self
             .leader
@@ -267,6 +264,7 @@ impl World {
             powered: true,
             obstacle: None,
             age_s: 0.0,
+            silent_s: 0.0,
         }
     }
 }
@@ -278,7 +276,7 @@ mod tests {
     fn force_n(inputs: &Inputs) -> Vector3<f64> {
         match inputs.sensed {
             Sensed::AtTip(force_n) => force_n,
-            Sensed::AtWrist(sample) => panic!("a wrist in a scene without one: {sample:?}"),
+            sensed => panic!("not at the tip: {sensed:?}"),
         }
     }
 

@@ -4,6 +4,7 @@
 mod bimanual;
 mod davinci;
 mod letting_go;
+mod over_a_network;
 mod ready_check;
 mod simulated_calibration;
 mod simulated_experiments;

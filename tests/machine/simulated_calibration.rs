@@ -32,7 +32,7 @@ impl Bench {
         self.t_s += 1e-3;
         match self.world.exchange(self.t_s, &Outputs { prompt, ..Outputs::SAFE }).unwrap().sensed {
             Sensed::AtWrist(sample) => sample,
-            Sensed::AtTip(force_n) => panic!("a calibration scene without a wrist: {force_n}"),
+            sensed => panic!("a calibration scene without a wrist: {sensed:?}"),
         }
     }
 }

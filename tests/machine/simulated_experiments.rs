@@ -19,7 +19,7 @@ fn samples(world: &mut World, from_s: f64, seconds: f64, prompt: Prompt) -> Vec<
             let inputs = world.exchange(from_s + f64::from(i) * 1e-3, &outputs).unwrap();
             match inputs.sensed {
                 Sensed::AtWrist(sample) => (sample, world.true_tip_n()),
-                Sensed::AtTip(_) => panic!("a calibration scene without a wrist"),
+                sensed => panic!("a calibration scene without a wrist: {sensed:?}"),
             }
         })
         .collect()

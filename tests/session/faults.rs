@@ -159,6 +159,7 @@ impl Rig for AtWrist {
             powered: true,
             obstacle: None,
             age_s: 0.0,
+            silent_s: 0.0,
         };
         [Some(right), None]
     }

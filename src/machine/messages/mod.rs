@@ -1,5 +1,6 @@
 //! All communication between the loop and the screen: commands in, ticks and events out.
 
+mod bulletin;
 mod force;
 mod refusal;
 mod scheduling;
@@ -14,6 +15,7 @@ use nima_core::{
 };
 use nima_devices::Loss;
 
+pub use bulletin::{Bulletin, FarStop};
 pub use force::{ForceReport, ForceSource};
 pub use refusal::Refusal;
 pub use scheduling::Scheduling;
@@ -169,6 +171,8 @@ pub enum Fault {
     ClockJumped,
     /// Measurements are timely and finite, but not plausible.
     Implausible { what: Implausible },
+    /// The machine at the other end of the network is stopped.
+    FarEnd { stop: FarStop },
 }
 
 /// Priority of a state for display: of two arm pairs the one with the larger number is shown first.

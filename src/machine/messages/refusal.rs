@@ -33,6 +33,8 @@ pub enum Refusal {
     NotChecked,
     /// The value is outside its range.
     OutOfRange,
+    /// The follower is at the other end of a network, whose delay is measured and not set.
+    DelayIsMeasured,
     /// A person may hold the handle: this is for simulated rigs.
     SimulatedOnly,
     /// The rig has no arm on this side.

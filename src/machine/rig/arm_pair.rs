@@ -15,14 +15,14 @@ use nima_devices::{
 };
 
 use super::{
-    ArmSet, Gauge, Part, RigError,
+    ArmSet, Ends, Gauge, Part, RigError,
     devices::{OLDEST_S, is_there},
     jaws::JawsControl,
     known::{Known, ServosKnown},
     obstacle::{Awaited, HandEye, Obstacle, Shown},
     starting::{servos_opener, start},
 };
-use crate::rig::{Inputs, Outputs, Roster, Sensed, Side, Switches, View};
+use crate::rig::{Inputs, Outputs, Roster, Sensed, Side, View};
 
 /// Readings of the devices that both sides share.
 #[derive(Clone, Copy, Debug, Default)]
@@ -44,13 +44,21 @@ fn rigid(pose: &IsometryMatrix3<f64>) -> Isometry3<f64> {
     Isometry3::from_parts(pose.translation, UnitQuaternion::from_rotation_matrix(&pose.rotation))
 }
 
+/// The arm and its sensor.
+#[derive(Debug)]
+struct FollowerSlots {
+    arm: Slot<Box<dyn Follower>>,
+    sensor: Slot<Box<dyn ForceSensor>>,
+}
+
 /// The devices of one side.
 #[derive(Debug)]
 pub struct ArmPair {
     levers: [Lever; 2],
-    handle: Slot<Box<dyn Leader>>,
-    arm: Slot<Box<dyn Follower>>,
-    sensor: Slot<Box<dyn ForceSensor>>,
+    /// `None` where the handle is at another machine.
+    handle: Option<Slot<Box<dyn Leader>>>,
+    /// `None` where arm and sensor are at another machine.
+    follower: Option<FollowerSlots>,
     servos: Option<(Slot<dynamixel::Driver>, JawsControl)>,
     servos_known: ServosKnown,
     hand: Option<Stamped<HandleReading>>,
@@ -83,6 +91,7 @@ impl ArmPair {
         set: &ArmSet,
         period_s: f64,
         at_wrist: bool,
+        ends: Ends,
         known: &Known,
         roster: &mut Roster,
     ) -> Result<Self, RigError> {
@@ -92,19 +101,24 @@ impl ArmPair {
         let levers = [Lever::default(), Lever::default()];
         let [of_handle, of_arm] = levers.clone();
         let leader = if known.has_both_sides() { set.handle.for_hand_of(side) } else { set.handle.clone() };
-        let handle =
-            start(Part::Handle(side), leader.opener(), known, roster, move |handle| handle.attach(&of_handle))?;
-        let arm = start(Part::Arm(side), set.arm.opener(), known, roster, move |arm| arm.attach(&of_arm))?;
-        let sensor = start(Part::Sensor(side), set.sensor.opener(), known, roster, |_| ())?;
-        let servos = set.servos.clone().map(|settings| {
+        let handle = ends.have_leader().then(|| {
+            start(Part::Handle(side), leader.opener(), known, roster, move |handle| handle.attach(&of_handle))
+        });
+        let handle = handle.transpose()?;
+        let follower = ends.have_follower().then(|| {
+            let arm = start(Part::Arm(side), set.arm.opener(), known, roster, move |arm| arm.attach(&of_arm))?;
+            let sensor = start(Part::Sensor(side), set.sensor.opener(), known, roster, |_| ())?;
+            Ok::<_, std::io::Error>(FollowerSlots { arm, sensor })
+        });
+        let follower = follower.transpose()?;
+        let servos = set.servos.clone().filter(|_| ends.have_follower()).map(|settings| {
             let slot = start(Part::Servos(side), servos_opener(settings), known, roster, |_| ())?;
             Ok::<_, std::io::Error>((slot, JawsControl::new(set.jaws, period_s)))
         });
         Ok(Self {
             levers,
             handle,
-            arm,
-            sensor,
+            follower,
             servos: servos.transpose()?,
             servos_known: known.servos_of(side),
             hand: None,
@@ -131,17 +145,17 @@ impl ArmPair {
     /// Reads what the devices have sent.
     pub(super) fn poll(&mut self, now_s: f64) {
         let [of_handle, of_arm, of_sensor, of_servos] = &mut self.gauges;
-        if let Some(reading) = self.handle.poll(now_s) {
+        if let Some(reading) = self.handle.as_mut().and_then(|slot| slot.poll(now_s)) {
             let from = self.held_from.get_or_insert(reading.value.orientation.unwrap_or_default());
             of_handle.handle(&reading.value, from);
             self.hand = Some(reading);
         }
-        if let Some(reading) = self.arm.poll(now_s) {
+        if let Some(reading) = self.follower.as_mut().and_then(|slots| slots.arm.poll(now_s)) {
             of_arm.arm(&reading.value);
             self.pose = Some(self.mount.pose(&Joints::from(reading.value.joint_rad)));
             self.joints = Some(reading);
         }
-        if let Some(reading) = self.sensor.poll(now_s) {
+        if let Some(reading) = self.follower.as_mut().and_then(|slots| slots.sensor.poll(now_s)) {
             of_sensor.sensor(&reading.value);
             self.force = Some(reading).filter(|reading| reading.value.status.is_usable());
         }
@@ -151,17 +165,20 @@ impl ArmPair {
             of_servos.servos(&reading.value);
             self.turned = Some(reading);
         }
-        of_handle.tick(self.handle.health(), now_s, self.period_s);
-        of_arm.tick(self.arm.health(), now_s, self.period_s);
-        of_sensor.tick(self.sensor.health(), now_s, self.period_s);
+        if let Some(handle) = &self.handle {
+            of_handle.tick(handle.health(), now_s, self.period_s);
+        }
+        if let Some(FollowerSlots { arm, sensor }) = &self.follower {
+            of_arm.tick(arm.health(), now_s, self.period_s);
+            of_sensor.tick(sensor.health(), now_s, self.period_s);
+        }
         if let Some((slot, _)) = &self.servos {
             of_servos.tick(slot.health(), now_s, self.period_s);
         }
-        let mut on = self.force_is_on && is_there(&self.handle);
-        if let Some(changed) = self.handle.device().and_then(|handle| handle.force_change()) {
-            on = changed;
+        if let Some(slot) = &mut self.handle {
+            let changed = slot.device().and_then(|handle| handle.force_change());
+            self.force_is_on = changed.unwrap_or(self.force_is_on && is_there(slot));
         }
-        self.force_is_on = on;
         if !self.driven {
             let begin = |joints: Stamped<ArmReading>| self.begin(&joints.value.joint_rad.into()).err();
             let of_servos = self.servos.as_ref().and_then(|_| self.servos_known.obstacle());
@@ -192,32 +209,52 @@ impl ArmPair {
         Inverse::new(self.mount, self.rcm, self.period_s, joint_rad).map(|inverse| inverse.within(self.limits))
     }
 
-    /// The measurements; `None` unless every device of the force path delivers and none of its readings is too old.
+    /// The measurements; `None` unless every device of the force path delivers and none of its readings is too old. What is at
+    /// another machine is at rest in them, and has no force.
     pub(super) fn inputs(&self, now_s: f64, shared: &Shared) -> Option<Inputs> {
-        let (hand, joints, force) = (self.hand?, self.joints?, self.force?);
-        let pose = self.pose.as_ref()?;
-        let age_s = [hand.arrival_s, joints.arrival_s, force.arrival_s].map(|at_s| now_s - at_s);
-        let age_s = age_s.into_iter().fold(0.0, f64::max);
-        let there = is_there(&self.handle) && is_there(&self.arm) && is_there(&self.sensor);
-        if !there || age_s > OLDEST_S {
-            return None;
-        }
+        let led = match &self.handle {
+            Some(slot) => Some(self.hand.filter(|hand| is_there(slot) && now_s - hand.arrival_s <= OLDEST_S)?),
+            None => None,
+        };
+        let inputs = match &self.follower {
+            Some(slots) => self.follower_inputs(now_s, slots, shared)?,
+            None => Inputs { powered: true, ..Inputs::NOTHING },
+        };
+        let Some(hand) = led else { return Some(inputs) };
         let HandleReading { position_m, orientation, gripper_rad, .. } = hand.value;
-        let world_from_s1 = pose.orientation();
-        let jaws = self.measured_jaws();
+        let turn = orientation.unwrap_or_else(UnitQuaternion::identity);
+        let leader_from_handle = Some(Isometry3::from_parts(position_m.into(), turn));
         Some(Inputs {
             hand: Hand { position_m, orientation },
             gripper_rad,
+            frames: FrameSample { leader_from_handle, ..inputs.frames },
+            powered: inputs.powered && self.force_is_on,
+            age_s: inputs.age_s.max(now_s - hand.arrival_s),
+            ..inputs
+        })
+    }
+
+    /// The measurements of arm and sensor.
+    fn follower_inputs(&self, now_s: f64, slots: &FollowerSlots, shared: &Shared) -> Option<Inputs> {
+        let (joints, force) = (self.joints?, self.force?);
+        let pose = self.pose.as_ref()?;
+        let age_s = [joints.arrival_s, force.arrival_s].map(|at_s| now_s - at_s).into_iter().fold(0.0, f64::max);
+        if !(is_there(&slots.arm) && is_there(&slots.sensor)) || age_s > OLDEST_S {
+            return None;
+        }
+        let world_from_s1 = pose.orientation();
+        let jaws = self.measured_jaws();
+        Some(Inputs {
             grip_n: self.servos.as_ref().zip(self.turned).and_then(|((_, jaws), turned)| jaws.grip_n(&turned.value)),
             tip_m: pose.tip_m,
             world_from_jaws: jaws.map(|jaws| world_from_s1 * jaws.s1_from_jaws()),
             sensed: self.sensed(&force.value, pose, &world_from_s1, shared),
             view: self.view(&world_from_s1, shared),
-            frames: self.frames(&hand.value, pose, &force.value, shared),
-            switches: Switches::default(),
-            powered: self.force_is_on && joints.value.servoing && self.obstacle.is_none(),
+            frames: self.frames(pose, &force.value, shared),
+            powered: joints.value.servoing && self.obstacle.is_none(),
             obstacle: self.obstacle,
             age_s,
+            ..Inputs::NOTHING
         })
     }
 
@@ -229,13 +266,11 @@ impl ArmPair {
     }
 
     /// What the frame calibrations are made of; the other side's poses are added by the rig.
-    fn frames(&self, hand: &HandleReading, pose: &Pose, force: &ForceReading, shared: &Shared) -> FrameSample {
+    fn frames(&self, pose: &Pose, force: &ForceReading, shared: &Shared) -> FrameSample {
         let base_from_flange = self.mount.world_from_base().inverse() * pose.chain.world_from_flange;
-        let handle_turn = hand.orientation.unwrap_or_else(UnitQuaternion::identity);
         FrameSample {
             base_from_flange: Some(rigid(&base_from_flange)),
             c_from_m: shared.c_from_m,
-            leader_from_handle: Some(Isometry3::from_parts(hand.position_m.into(), handle_turn)),
             wrench: Some(force.wrench),
             ..FrameSample::default()
         }
@@ -277,7 +312,7 @@ impl ArmPair {
             self.switch_drives(outputs.drives);
         }
         if outputs.drives
-            && let Some(handle) = self.handle.device()
+            && let Some(handle) = self.handle.as_mut().and_then(Slot::device)
         {
             handle.set_force(outputs.hand_force_n, outputs.gripper_n);
         }
@@ -289,10 +324,10 @@ impl ArmPair {
     /// engagement.
     fn switch_drives(&mut self, on: bool) {
         // When switched off, the arm leaves servoing only after it has come to rest.
-        if let (true, Some(arm)) = (on, self.arm.device()) {
+        if let (true, Some(arm)) = (on, self.follower.as_mut().and_then(|slots| slots.arm.device())) {
             arm.enter_servoing();
         }
-        if let Some(handle) = self.handle.device() {
+        if let Some(handle) = self.handle.as_mut().and_then(Slot::device) {
             handle.switch_force(on);
         }
         if let Some((slot, control)) = &mut self.servos {
@@ -305,7 +340,8 @@ impl ArmPair {
 
     /// One step of the joints: towards the tip's target, or, without a target, braking along a path through the trocar.
     fn lead(&mut self, tip_command_m: Option<Vector3<f64>>) {
-        let (Some(arm), Some(joints)) = (self.arm.device(), self.joints) else {
+        let arm = self.follower.as_mut().and_then(|slots| slots.arm.device());
+        let (Some(arm), Some(joints)) = (arm, self.joints) else {
             self.inverse = None;
             return;
         };
@@ -318,7 +354,7 @@ impl ArmPair {
                 Err(obstacle) => self.obstacle = Some(Obstacle::Start(obstacle)),
             }
         }
-        let Some(arm) = self.arm.device() else { return };
+        let Some(arm) = self.follower.as_mut().and_then(|slots| slots.arm.device()) else { return };
         if let Some(inverse) = &mut self.inverse {
             inverse.observe(&measured_rad);
             let step = match tip_command_m {
@@ -351,9 +387,11 @@ impl ArmPair {
 
     /// Begins to close all devices; see [`Slot::retire`].
     pub(super) fn retire(&mut self) {
-        self.arm.retire();
-        self.handle.retire();
-        self.sensor.retire();
+        if let Some(FollowerSlots { arm, sensor }) = &mut self.follower {
+            arm.retire();
+            sensor.retire();
+        }
+        self.handle.iter_mut().for_each(Slot::retire);
         if let Some((slot, _)) = &mut self.servos {
             slot.retire();
         }
@@ -372,15 +410,21 @@ impl ArmPair {
     /// What the devices have delivered, in the order of the roster; begins anew.
     pub(super) fn take_gauges(&mut self) -> [Option<Gauge>; 4] {
         let [handle, arm, sensor, servos] = std::mem::replace(&mut self.gauges, [Gauge::NONE; 4]);
-        [Some(handle), Some(arm), Some(sensor), self.servos.as_ref().map(|_| servos)]
+        let [leads, follows] = [self.handle.is_some(), self.follower.is_some()];
+        [
+            leads.then_some(handle),
+            follows.then_some(arm),
+            follows.then_some(sensor),
+            self.servos.as_ref().map(|_| servos),
+        ]
     }
 
     /// Health of the devices in the order of the roster, and whether the force path needs each of them.
     pub(super) fn healths(&self) -> [Option<(&Health, bool)>; 4] {
         [
-            Some((self.handle.health(), true)),
-            Some((self.arm.health(), true)),
-            Some((self.sensor.health(), true)),
+            self.handle.as_ref().map(|slot| (slot.health(), true)),
+            self.follower.as_ref().map(|slots| (slots.arm.health(), true)),
+            self.follower.as_ref().map(|slots| (slots.sensor.health(), true)),
             self.servos.as_ref().map(|(slot, _)| (slot.health(), false)),
         ]
     }

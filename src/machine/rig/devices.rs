@@ -111,25 +111,27 @@ impl DeviceRig {
         let mut pairs = [None, None];
         for side in Side::ALL {
             if let Some(set) = settings.arm(side) {
-                let pair = ArmPair::start(side, set, period_s, at_wrist[side.index()], &known, &mut roster)?;
+                let pair =
+                    ArmPair::start(side, set, period_s, at_wrist[side.index()], settings.ends, &known, &mut roster)?;
                 pairs[side.index()] = Some(Box::new(pair));
             }
         }
-        let tissue = settings.tissue_sensor.as_ref().map(|sensor| {
+        let at_follower = settings.ends.have_follower();
+        let tissue = settings.tissue_sensor.as_ref().filter(|_| at_follower).map(|sensor| {
             let Opener { driver, mut open, .. } = sensor.opener();
             let known = known.clone();
             let slot = Slot::start(Part::TissueSensor.name(), move || known.admit(Part::TissueSensor, open()))?;
             enrol(&mut roster, Part::TissueSensor, driver, &slot);
             Ok::<_, io::Error>(slot)
         });
-        let tracker = settings.tracker.clone().map(|tracker| {
+        let tracker = settings.tracker.clone().filter(|_| at_follower).map(|tracker| {
             let place = tracker.place();
             let open = move || ndi::Driver::open(&tracker).map(|driver| Box::new(driver) as Box<dyn Tracker>);
             let slot = Slot::start(Part::Tracker.name(), open)?;
             enrol(&mut roster, Part::Tracker, format!("NDI tracker, {place}"), &slot);
             Ok::<_, io::Error>(slot)
         });
-        let pedal = settings.pedal.clone().map(|pedal| {
+        let pedal = settings.pedal.clone().filter(|_| settings.ends.have_leader()).map(|pedal| {
             let setting = |trouble| RigError::Setting { device: "pedal".to_owned(), trouble };
             let roles = pedal.roles().map_err(setting)?;
             let place = pedal.source.clone();

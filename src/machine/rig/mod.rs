@@ -10,6 +10,7 @@ mod checkup_tests;
 mod devices;
 mod flaws;
 mod gauge;
+mod identified;
 mod jaws;
 #[cfg(test)]
 mod joint_limits_tests;
@@ -30,10 +31,13 @@ use nalgebra::{UnitQuaternion, Vector3};
 use nima_core::{calibration::frames::FrameSample, frames::WristSample, kinematics::Hand};
 use nima_devices::{ClearFaults, Health, Lever, SlotView, Standing};
 
+use crate::messages::{Bulletin, Command};
+
 pub use arm_pair::ArmPair;
 pub use devices::{DeviceRig, RigError};
 pub use flaws::Flaws;
 pub use gauge::{AGES, CHANNELS, Gauge, Gauges, Spread};
+pub use identified::Identified;
 pub use jaws::JawsSettings;
 pub use known::Checked;
 pub use makes::{FollowerSettings, LeaderSettings, SensorSettings};
@@ -44,7 +48,7 @@ pub use part::{Part, PartKind};
 pub use probes::rig_probes;
 pub use prompt::Prompt;
 pub use seeking::{Offer, Sought, seek};
-pub use settings::{ArmSet, DeskSettings, EndoscopeSettings, SensorPlace, Settings};
+pub use settings::{ArmSet, DeskSettings, EndoscopeSettings, Ends, SensorPlace, Settings};
 pub use side::{SIDES, Side};
 pub use watch::Watch;
 
@@ -56,6 +60,18 @@ pub enum Sensed {
     AtTip(Vector3<f64>),
     /// At the wrist: includes weight, trocar friction and bias, which the calibrations remove.
     AtWrist(WristSample),
+    /// By the machine at the other end of a network, which identifies it there.
+    FarEnd(Identified),
+}
+
+impl Sensed {
+    /// The sample of a sensor at the wrist.
+    pub const fn wrist(&self) -> Option<&WristSample> {
+        match self {
+            Self::AtWrist(sample) => Some(sample),
+            Self::AtTip(_) | Self::FarEnd(_) => None,
+        }
+    }
 }
 
 /// State of the pedals and of the handle's presence detection.
@@ -106,14 +122,41 @@ pub struct Inputs {
     pub obstacle: Option<Obstacle>,
     /// Age of the oldest part, s: the devices sample at their own clocks. Zero in a simulation.
     pub age_s: f64,
+    /// Since something last came over the network that joins the two halves of the rig, s; zero for a rig in one place.
+    pub silent_s: f64,
 }
 
 impl Inputs {
+    /// Nothing measured: everything is at rest at the origin, without a force, and switched off.
+    pub const NOTHING: Self = Self {
+        hand: Hand::at(Vector3::new(0.0, 0.0, 0.0)),
+        gripper_rad: None,
+        grip_n: None,
+        tip_m: Vector3::new(0.0, 0.0, 0.0),
+        world_from_jaws: None,
+        sensed: Sensed::AtTip(Vector3::new(0.0, 0.0, 0.0)),
+        view: View::Fixed,
+        frames: FrameSample {
+            base_from_flange: None,
+            other_base_from_flange: None,
+            c_from_m: None,
+            c_from_other_m: None,
+            leader_from_handle: None,
+            wrench: None,
+        },
+        switches: Switches { clutch: false, presence: None },
+        powered: false,
+        obstacle: None,
+        age_s: 0.0,
+        silent_s: 0.0,
+    };
+
     /// Whether every number in it is finite.
     pub fn is_finite(&self) -> bool {
         let sensed = match &self.sensed {
             Sensed::AtTip(force_n) => force_n.iter().all(|x| x.is_finite()),
             Sensed::AtWrist(sample) => sample.is_finite(),
+            Sensed::FarEnd(identified) => identified.is_finite(),
         };
         sensed
             && self.hand.is_finite()
@@ -123,6 +166,7 @@ impl Inputs {
             && self.grip_n.is_none_or(f64::is_finite)
             && !matches!(self.view, View::Seen(q) if !q.coords.iter().all(|x| x.is_finite()))
             && self.age_s.is_finite()
+            && self.silent_s.is_finite()
     }
 }
 
@@ -179,6 +223,17 @@ pub trait Rig: Send {
     /// Must not block and must not allocate.
     fn write(&mut self, now_s: f64, outputs: &[Outputs; SIDES]);
 
+    /// Hears what the pairs have to tell the machine at the other end of a network, once a tick, after [`Rig::write`]. A rig in
+    /// one place does nothing with it.
+    ///
+    /// Must not block and must not allocate.
+    fn hear(&mut self, _now_s: f64, _bulletins: &[Option<Bulletin<'_>>; SIDES]) {}
+
+    /// What the operator at the other end of a network has commanded; call until it returns `None`.
+    fn command(&mut self) -> Option<Command> {
+        None
+    }
+
     /// The next device that connected or was lost; call until it returns `None`. Rigs without devices have none.
     fn event(&mut self) -> Option<DeviceEvent> {
         None
@@ -199,6 +254,40 @@ pub trait Rig: Send {
     /// Must not block and must not allocate.
     fn gauges(&mut self, _now_s: f64) -> Option<Gauges> {
         None
+    }
+}
+
+impl<R: Rig + ?Sized> Rig for Box<R> {
+    fn read(&mut self, now_s: f64) -> [Option<Inputs>; SIDES] {
+        (**self).read(now_s)
+    }
+
+    fn write(&mut self, now_s: f64, outputs: &[Outputs; SIDES]) {
+        (**self).write(now_s, outputs);
+    }
+
+    fn hear(&mut self, now_s: f64, bulletins: &[Option<Bulletin<'_>>; SIDES]) {
+        (**self).hear(now_s, bulletins);
+    }
+
+    fn command(&mut self) -> Option<Command> {
+        (**self).command()
+    }
+
+    fn event(&mut self) -> Option<DeviceEvent> {
+        (**self).event()
+    }
+
+    fn levers(&self) -> Vec<Lever> {
+        (**self).levers()
+    }
+
+    fn health(&self) -> Healths {
+        (**self).health()
+    }
+
+    fn gauges(&mut self, now_s: f64) -> Option<Gauges> {
+        (**self).gauges(now_s)
     }
 }
 

@@ -16,6 +16,9 @@ pub enum Obstacle {
     /// Right and left are exchanged.
     #[error("{}", .0.words())]
     Exchanged(Exchange),
+    /// Something at the other end of a network, where the screen says what.
+    #[error("the follower's machine says that it cannot: its own screen names the reason")]
+    FarEnd,
 }
 
 /// What must have told its side before an engagement, and does not belong to the path of force.

@@ -145,8 +145,16 @@ impl Part {
         }
     }
 
-    /// Whether a rig with these devices has it.
+    /// Whether a rig with these devices has it at this machine.
     pub const fn is_in(self, devices: &Settings) -> bool {
+        let is_here = match self {
+            Self::Handle(_) | Self::Pedal => devices.ends.have_leader(),
+            _ => devices.ends.have_follower(),
+        };
+        is_here && self.is_listed(devices)
+    }
+
+    const fn is_listed(self, devices: &Settings) -> bool {
         match self {
             Self::Handle(side) | Self::Arm(side) | Self::Sensor(side) => devices.arm(side).is_some(),
             Self::Servos(side) => match devices.arm(side) {

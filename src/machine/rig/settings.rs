@@ -39,6 +39,33 @@ pub struct Settings {
     /// the file.
     #[serde(skip)]
     pub checked: Option<Checked>,
+    /// Which of the devices are at this machine. Not in the file, which is the same at both ends of a network.
+    #[serde(skip)]
+    pub ends: Ends,
+}
+
+/// Which devices of a rig file are at this machine.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Ends {
+    /// All of them.
+    #[default]
+    Both,
+    /// Handles and pedals.
+    Leader,
+    /// Arms, sensors, servos, the tracker.
+    Follower,
+}
+
+impl Ends {
+    /// Whether handles and pedals are here.
+    pub const fn have_leader(self) -> bool {
+        matches!(self, Self::Both | Self::Leader)
+    }
+
+    /// Whether arms and sensors are here.
+    pub const fn have_follower(self) -> bool {
+        matches!(self, Self::Both | Self::Follower)
+    }
 }
 
 /// A marker of the tracker on the endoscope.

@@ -326,6 +326,10 @@ impl Realtime {
             self.events.try_send(Event::Device(event)).ok();
         }
         self.wrists.put_in_force(&mut self.control, &mut self.tap);
+        for _ in 0..COMMANDS_PER_TICK_MAX {
+            let Some(command) = self.rig.command() else { break };
+            self.obey(command, timing.now_s);
+        }
         if self.engage && self.control.is_idle_with(&inputs) {
             self.engage = false;
             self.obey(Command::Engage, timing.now_s);
@@ -334,6 +338,7 @@ impl Realtime {
         let worked_ns = os::monotonic_ns();
         self.rig.write(timing.now_s, &outputs);
         let written_ns = os::monotonic_ns();
+        self.rig.hear(timing.now_s, &self.control.bulletins());
         let stalls = self.clock == Clock::Real;
         if self.control.withholds_beat() {
             self.pulse.withhold();

@@ -32,10 +32,15 @@ pub fn run_virtual(assembly: Assembly, seconds: f64, mut each: impl FnMut(&Tick)
             tell(&mut tap, Operation::Command { command, t_s: now_s });
             control.obey(command, now_s);
         }
+        while let Some(command) = rig.command() {
+            tell(&mut tap, Operation::Command { command, t_s: now_s });
+            control.obey(command, now_s);
+        }
         let timing = Timing { now_s, work_s, ..Timing::default() };
         let (outputs, ticks) = control.step(inputs, &timing);
         work_s = read.elapsed().as_secs_f64();
         rig.write(now_s, &outputs);
+        rig.hear(now_s, &control.bulletins());
         if let Some(tap) = &mut tap {
             tap.tick(control.events(), &timing, &inputs, &outputs, &ticks);
         }

@@ -225,6 +225,7 @@ mod tests {
             powered: true,
             obstacle: None,
             age_s: 0.0,
+            silent_s: 0.0,
         }
     }
 

@@ -80,7 +80,11 @@ impl ForcePath {
 
     /// Whether a force at the tip can be computed from such a sample.
     pub const fn knows(&self, sensed: &Sensed) -> bool {
-        matches!(sensed, Sensed::AtTip(_)) || (self.gravity.is_some() && !self.suspended)
+        match sensed {
+            Sensed::AtTip(_) => true,
+            Sensed::AtWrist(_) => self.gravity.is_some() && !self.suspended,
+            Sensed::FarEnd(identified) => identified.source.is_usable(),
+        }
     }
 
     /// The tip force of this sample, taken at `t_s` (s).
@@ -96,6 +100,10 @@ impl ForcePath {
         match sensed {
             Sensed::AtTip(tip_n) => ForceReport { tip_n: *tip_n, ..ForceReport::none(ForceSource::AtTip, None) },
             Sensed::AtWrist(sample) => self.at_wrist(t_s, sample),
+            // Computed at the other machine already.
+            Sensed::FarEnd(identified) => {
+                ForceReport { tip_n: identified.force_n, ..ForceReport::none(identified.source, None) }
+            }
         }
     }
 

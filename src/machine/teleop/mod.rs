@@ -17,7 +17,7 @@ use nima_core::impedance::SettingsError;
 
 pub use crate::{
     config::RigConfig,
-    messages::{Command, Event, Fault, LoopState, Refusal, Tick, Watchdog},
+    messages::{Bulletin, Command, Event, Fault, LoopState, Refusal, Tick, Watchdog},
     rig::{DeviceEvent, GUIDE_MAX_M, Inputs, Obstacle, Outputs, SIDES, Side},
 };
 pub use accuracy::{Accuracy, ErrorStats};
@@ -81,6 +81,11 @@ impl<L: Link> Loop<L> {
     /// The pairs of the rig.
     pub fn pairs(&self) -> impl Iterator<Item = &Pair<L>> {
         self.pairs.iter().flatten().map(Box::as_ref)
+    }
+
+    /// What the machine at the other end of a network has to know of each pair.
+    pub fn bulletins(&self) -> [Option<Bulletin<'_>>; SIDES] {
+        self.pairs.each_ref().map(|pair| pair.as_ref().map(|pair| pair.bulletin()))
     }
 
     /// Events since [`Loop::clear_events`], oldest first for each pair.

@@ -1,6 +1,7 @@
 //! One arm pair: handle, arm, force sensor, and the loop between them.
 
 mod commands;
+mod far;
 mod objections;
 mod told;
 mod watch;
@@ -17,7 +18,10 @@ use nima_core::{
 };
 use nima_devices::Standing;
 
-use self::told::{NO_FORCE_YET, NOTHING_YET, NOWHERE};
+use self::{
+    far::Far,
+    told::{NO_FORCE_YET, NOWHERE},
+};
 use super::{Accuracy, Calibrations, ForcePath, Link, ProgrammedLink, Tracking};
 use crate::{
     config::{RigConfig, Teleoperation},
@@ -83,6 +87,8 @@ pub struct Pair<L: Link = ProgrammedLink> {
     /// Whether the simulated hand has let go of the handle; `None` where the handle is a device, which a person may hold.
     lets_go: Option<bool>,
     link: L,
+    /// What the machine at the other end of a network tells.
+    far: Box<Far>,
     tracking: Tracking,
     plausibility: Plausibility,
     chain: Chain,
@@ -104,6 +110,8 @@ pub struct Pair<L: Link = ProgrammedLink> {
     missed: u64,
     /// Whether a ready check has passed; `None` where none is required.
     checked: Option<bool>,
+    /// How often a stop was released.
+    releases: u8,
     /// A watchdog is being fired on purpose.
     watchdog_test: Option<watchdog_test::WatchdogTest>,
     events: [Option<Event>; EVENTS_PER_TICK_MAX],
@@ -148,6 +156,7 @@ impl<L: Link> Pair<L> {
             guide_m: None,
             lets_go: rig.devices.is_none().then_some(false),
             link,
+            far: Far::none(),
             tracking: Tracking::new(rig.rate_hz),
             plausibility: Plausibility::new(1.0 / rig.rate_hz),
             chain: Chain::new(rig.gates, 1.0 / rig.rate_hz),
@@ -166,6 +175,7 @@ impl<L: Link> Pair<L> {
             ticks: 0,
             missed: 0,
             checked: rig.requires_check().then_some(false),
+            releases: 0,
             watchdog_test: None,
             events: [None; EVENTS_PER_TICK_MAX],
         };
@@ -265,7 +275,7 @@ impl<L: Link> Pair<L> {
         let inputs = inputs.filter(|inputs| inputs.is_finite() && !self.withholds(Watchdog::Source));
         let moved_m = inputs.zip(self.last_inputs).map_or(0.0, |(now, last)| (now.tip_m - last.tip_m).norm());
         let inputs = inputs.map(|inputs| self.take_in(inputs, now_s));
-        if inputs.is_none() {
+        if inputs.is_none() && !self.far.is_there {
             // The identification needs evenly spaced samples: it interpolates a missing one, and no parcel is sent for
             // it.
             self.identifier.step(&Sample { t_s: now_s, position_m: NOWHERE, force_n: NOWHERE });
@@ -273,11 +283,11 @@ impl<L: Link> Pair<L> {
         self.watch(inputs.as_ref(), moved_m, timing);
         // No new sample: the link keeps delivering what is under way, which grows older, and the age gate removes the
         // force.
-        let seen = self.last_inputs.unwrap_or(NOTHING_YET);
+        let seen = self.last_inputs.unwrap_or(Inputs::NOTHING);
         let target = self.hand_eye.step(&seen.hand);
         let tip_command_m = self.follow(&seen, &target);
         let motion_m = self.motion_at_leader(&seen, &target.tip_m, tip_command_m);
-        let parcel = self.link.receive(now_s);
+        let parcel = if self.far.is_there { Some(&self.far.parcel) } else { self.link.receive(now_s) };
         if let Some(parcel) = parcel {
             self.plausibility.delivered(&parcel.force_n, parcel.t_s);
         }
@@ -304,7 +314,8 @@ impl<L: Link> Pair<L> {
         });
         self.hand_is_gone |= gates.reason(Gate::Governor) == Reason::HandGone;
         let gripper_n = self.grip(inputs.as_ref(), age_s, permitted);
-        if inputs.is_some() {
+        // Over a network the force of now is not known here: the other machine judges.
+        if inputs.is_some() && !self.far.is_there {
             self.accuracy.add(&rendered, self.identifier.report().modes, &self.force.tip_n);
         }
         let outputs = Outputs {
@@ -374,7 +385,7 @@ impl<L: Link> Pair<L> {
         tip_command_m: Option<Vector3<f64>>,
     ) -> Vector3<f64> {
         if let Some(command_m) = tip_command_m {
-            let follower_m = self.tracking.step(&command_m, &seen.tip_m);
+            let follower_m = self.tracking.step(&command_m, &seen.tip_m, self.far.behind);
             return match self.settings.own_motion {
                 OwnMotion::Follower => follower_m,
                 OwnMotion::Handle => *handle_m,

@@ -3,9 +3,11 @@
 //!
 //! An impedance identified from the follower's motion must be rendered with the follower's motion, but the leader knows
 //! only its own command. The lag is the time shift between command and tip with the least mean square difference over
-//! the last seconds of motion, refined by a parabola through the minimum.
+//! the last seconds of motion, refined by a parabola through the minimum. Where a network lies between them, the tip is
+//! compared with the commands of one round trip ago, so that the lag is the follower's alone.
 
 use nalgebra::Vector3;
+use nima_core::impedance::MAX_DELAY_S;
 
 /// Number of time shifts compared.
 const CANDIDATES: usize = 64;
@@ -35,8 +37,9 @@ impl Tracking {
     /// Starts without a known lag, for a loop of this rate (Hz).
     pub fn new(rate_hz: f64) -> Self {
         let stride = ((LAG_MAX_S * rate_hz / CANDIDATES as f64).round() as usize).max(1);
+        let far = (MAX_DELAY_S * rate_hz).ceil() as usize;
         Self {
-            ring: vec![Vector3::zeros(); stride * CANDIDATES + 1],
+            ring: vec![Vector3::zeros(); stride * CANDIDATES + 1 + far],
             newest: 0,
             filled: 0,
             stride,
@@ -64,28 +67,34 @@ impl Tracking {
         &self.ring[(self.newest + room - samples.min(self.filled.saturating_sub(1))) % room]
     }
 
-    /// Adds the command (m) and the tip (m) of this tick; returns the estimate of the tip's present position, m.
-    pub fn step(&mut self, command_m: &Vector3<f64>, tip_m: &Vector3<f64>) -> Vector3<f64> {
+    /// The command of so many ticks ago, m, if it was followed then.
+    pub fn command_m(&self, ago: usize) -> Option<Vector3<f64>> {
+        (ago < self.filled).then(|| *self.back(ago))
+    }
+
+    /// Adds the command (m) of this tick, and the tip (m), measured when the command of `behind` ticks ago was in force; returns the
+    /// estimate of where the present command puts the tip, m: in one place that is where it is now.
+    pub fn step(&mut self, command_m: &Vector3<f64>, tip_m: &Vector3<f64>, behind: usize) -> Vector3<f64> {
         self.newest = (self.newest + 1) % self.ring.len();
         self.ring[self.newest] = *command_m;
         self.filled = (self.filled + 1).min(self.ring.len());
         let span = self.stride * 4;
         let moving = (command_m - self.back(span)).norm() > self.step_min_m * span as f64;
-        if moving && self.filled == self.ring.len() {
-            self.compare(tip_m);
+        if moving && self.filled > behind + self.stride * CANDIDATES {
+            self.compare(tip_m, behind);
         }
         let whole = self.lag_samples.floor();
         let (late, later) = (self.back(whole as usize), self.back(whole as usize + 1));
         late + (later - late) * (self.lag_samples - whole)
     }
 
-    fn compare(&mut self, tip_m: &Vector3<f64>) {
+    fn compare(&mut self, tip_m: &Vector3<f64>, behind: usize) {
         self.moving_ticks += 1;
         // A plain mean until the averaging time is reached, then an exponentially weighted one.
         let weight = self.forget.max(1.0 / self.moving_ticks as f64);
         let mut best = 0;
         for candidate in 0..CANDIDATES {
-            let difference_m2 = (self.back(candidate * self.stride) - tip_m).norm_squared();
+            let difference_m2 = (self.back(behind + candidate * self.stride) - tip_m).norm_squared();
             self.cost_m2[candidate] += (difference_m2 - self.cost_m2[candidate]) * weight;
             if self.cost_m2[candidate] < self.cost_m2[best] {
                 best = candidate;
@@ -125,7 +134,7 @@ mod tests {
                 for i in 0..(4.0 * rate_hz) as usize {
                     let t_s = i as f64 / rate_hz;
                     let tip_m = command(t_s - lag_s);
-                    error_m = (tracking.step(&command(t_s), &tip_m) - tip_m).norm();
+                    error_m = (tracking.step(&command(t_s), &tip_m, 0) - tip_m).norm();
                 }
                 assert!(error_m < 0.2e-3, "{rate_hz} Hz, lag {lag_s} s: {error_m} m, {} ticks", tracking.lag_samples());
             }
@@ -133,10 +142,24 @@ mod tests {
     }
 
     #[test]
+    fn over_a_network_the_lag_is_still_the_followers_alone() {
+        for behind in [1, 40, 600] {
+            let (mut tracking, lag_s, mut error_m) = (Tracking::new(1000.0), 0.021, 0.0);
+            for i in 0..5000 {
+                let t_s = f64::from(i) * 1e-3;
+                let seen_m = command(t_s - behind as f64 * 1e-3 - lag_s);
+                error_m = (tracking.step(&command(t_s), &seen_m, behind) - command(t_s - lag_s)).norm();
+            }
+            assert!(error_m < 0.2e-3, "{behind}: {error_m} m, {} ticks", tracking.lag_samples());
+            assert_eq!(tracking.command_m(behind), Some(command((4999 - behind) as f64 * 1e-3)));
+        }
+    }
+
+    #[test]
     fn standstill_teaches_nothing_and_breaks_nothing() {
         let mut tracking = Tracking::new(1000.0);
         for _ in 0..5000 {
-            let at = tracking.step(&Vector3::repeat(0.01), &Vector3::repeat(0.02));
+            let at = tracking.step(&Vector3::repeat(0.01), &Vector3::repeat(0.02), 0);
             assert!(at == Vector3::repeat(0.01));
         }
         assert!(tracking.lag_samples().abs() < f64::EPSILON);

@@ -4,10 +4,12 @@ use nalgebra::{Isometry3, UnitQuaternion, Vector3};
 use nima_core::{
     calibration::frames::FrameSample,
     frames::{Wrench, WristSample},
+    impedance::{ModeSet, PACKED_MAX, Packed},
     kinematics::{Hand, StartError},
 };
 use nima_machine::{
-    rig::{Awaited, Exchange, Inputs, Obstacle, Sensed, Switches, View},
+    messages::{FarStop, ForceSource},
+    rig::{Awaited, Exchange, Identified, Inputs, Obstacle, Sensed, Switches, View},
     teleop::Timing,
 };
 
@@ -28,6 +30,7 @@ record!(Inputs {
     powered: bool,
     obstacle: Option<Obstacle>,
     age_s: f64,
+    silent_s: f64,
 });
 
 record!(Hand { position_m: Vector3<f64>, orientation: Option<UnitQuaternion<f64>> });
@@ -37,6 +40,35 @@ record!(Wrench { force_n: Vector3<f64>, torque_nm: Vector3<f64> });
 choice!(Sensed {
     0 => AtTip { 0: force_n: Vector3<f64> },
     1 => AtWrist { 0: sample: WristSample },
+    2 => FarEnd { 0: identified: Identified },
+});
+
+record!(Identified {
+    t_s: f64,
+    delay_s: f64,
+    force_n: Vector3<f64>,
+    source: ForceSource,
+    fresh: bool,
+    resting: bool,
+    modes: ModeSet,
+    packed: Packed,
+    stop: Option<FarStop>,
+});
+
+record!(Packed { slot: u8, len: u8, numbers: [f32; PACKED_MAX] });
+
+choice!(FarStop {
+    0 => Stopped {},
+    1 => SourceSilent {},
+    2 => LoopStalled {},
+    3 => ForceUnknown {},
+    4 => DeviceLost {},
+    5 => DrivesOff {},
+    6 => SamplesLost {},
+    7 => LinkSilent {},
+    8 => ClockJumped {},
+    9 => Implausible {},
+    10 => Other {},
 });
 
 choice!(View {
@@ -68,6 +100,7 @@ choice!(Obstacle {
     0 => Start { 0: error: StartError },
     1 => Waiting { 0: awaited: Awaited },
     2 => Exchanged { 0: exchange: Exchange },
+    3 => FarEnd {},
 });
 
 choice!(Awaited { 0 => Servos {}, 1 => Markers {} });

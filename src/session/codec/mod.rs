@@ -131,6 +131,12 @@ impl Put for f32 {
     }
 }
 
+impl Take for f32 {
+    fn take(from: &mut impl Source) -> Result<Self, Wrong> {
+        u32::take(from).map(Self::from_bits)
+    }
+}
+
 impl Put for u32 {
     const COLUMNS: usize = 1;
 

@@ -1,4 +1,4 @@
-//! What comes out of the loop. It is compared and never put together again, so it only has one way.
+//! What comes out of the loop. Most of it is compared and never put together again, so that it only has one way.
 
 use nalgebra::{UnitQuaternion, Vector3};
 use nima_core::{
@@ -9,11 +9,11 @@ use nima_core::{
 };
 use nima_devices::Loss;
 use nima_machine::{
-    messages::{Command, Event, Fault, ForceReport, ForceSource, Refusal, Scheduling},
+    messages::{Command, Event, FarStop, Fault, ForceReport, ForceSource, Refusal, Scheduling},
     rig::{DeviceEvent, Obstacle, Outputs, Prompt, Side},
 };
 
-use super::{Put, Sink, choice, record};
+use super::{Put, Sink, Source, Take, Wrong, choice, record};
 
 record!(put Outputs {
     drives: bool,
@@ -33,7 +33,7 @@ record!(put ForceReport {
     tip_force: Option<TipForceReport>,
 });
 
-choice!(put ForceSource {
+choice!(ForceSource {
     0 => AtTip {},
     1 => Wrist {},
     2 => Network {},
@@ -44,8 +44,8 @@ choice!(put ForceSource {
     7 => Poisoned {},
 });
 
-choice!(put Unsure { 0 => OutsideTraining {}, 1 => NotMoved {}, 2 => Missing {} });
-choice!(put Fallback { 0 => WristForce {}, 1 => HoldAndFade {} });
+choice!(Unsure { 0 => OutsideTraining {}, 1 => NotMoved {}, 2 => Missing {} });
+choice!(Fallback { 0 => WristForce {}, 1 => HoldAndFade {} });
 
 record!(put TipForceReport {
     force_s1_n: Vector3<f64>,
@@ -86,6 +86,19 @@ impl Put for ModeSet {
     fn put(&self, to: &mut impl Sink) {
         let bits = Mode::ALL.into_iter().chain(Mode::BASELINES).map(|mode| u64::from(self.contains(mode)));
         to.word(bits.fold(0, |word, bit| word << 1 | bit));
+    }
+}
+
+impl Take for ModeSet {
+    fn take(from: &mut impl Source) -> Result<Self, Wrong> {
+        let word = from.word()?;
+        let modes = || Mode::ALL.into_iter().chain(Mode::BASELINES);
+        let last = modes().count() - 1;
+        let asked = modes().enumerate().filter(|(place, _)| word >> (last - place) & 1 == 1);
+        let set = asked.fold(Self::only(Mode::Dfr), |set, (_, mode)| set.with(mode));
+        let mut again = Vec::new();
+        set.put(&mut again);
+        if again == [word] { Ok(set) } else { Err(Wrong::NoSuchValue) }
     }
 }
 
@@ -160,6 +173,7 @@ choice!(put Fault {
     7 => LinkSilent {},
     8 => ClockJumped {},
     9 => Implausible { what: what: Implausible },
+    10 => FarEnd { stop: stop: FarStop },
 });
 
 choice!(put Implausible {
@@ -209,4 +223,5 @@ choice!(put Refusal {
     11 => OutOfRange {},
     12 => SimulatedOnly {},
     13 => NoSuchArm {},
+    14 => DelayIsMeasured {},
 });

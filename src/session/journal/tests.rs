@@ -4,14 +4,15 @@ use nalgebra::{Isometry3, Quaternion, Translation3, UnitQuaternion, UnitVector3,
 use nima_core::{
     calibration::frames::{FrameSample, Move},
     frames::{Wrench, WristSample},
-    impedance::Mode,
+    impedance::{Mode, ModeSet, PACKED_MAX, Packed},
     kinematics::{Hand, StartError},
+    tip_force::{Fallback, Unsure},
 };
 use nima_devices::{Loss, Standing};
 use nima_machine::{
     config::RigConfig,
-    messages::{Command, Watchdog},
-    rig::{Awaited, DeviceEvent, Exchange, Inputs, Obstacle, Prompt, Sensed, Side, Switches, View},
+    messages::{Command, FarStop, ForceSource, Watchdog},
+    rig::{Awaited, DeviceEvent, Exchange, Identified, Inputs, Obstacle, Prompt, Sensed, Side, Switches, View},
     runtime::Operation,
     teleop::{Calibrations, Origin, Timing},
 };
@@ -55,7 +56,7 @@ fn sensed() -> BoxedStrategy<Sensed> {
             WristSample { raw, acceleration_m_s2, world_from_s1, world_from_m, m_from_c, insertion_m, tissue_n };
         Sensed::AtWrist(sample)
     });
-    prop_oneof![vector().prop_map(Sensed::AtTip), at_wrist].boxed()
+    prop_oneof![vector().prop_map(Sensed::AtTip), at_wrist, identified().prop_map(Sensed::FarEnd)].boxed()
 }
 
 fn frames() -> BoxedStrategy<FrameSample> {
@@ -94,20 +95,47 @@ fn obstacle() -> BoxedStrategy<Obstacle> {
         start.prop_map(Obstacle::Start),
         prop_oneof![Just(Awaited::Servos), Just(Awaited::Markers)].prop_map(Obstacle::Waiting),
         proptest::sample::select(exchanged.to_vec()).prop_map(Obstacle::Exchanged),
+        Just(Obstacle::FarEnd),
     ]
     .boxed()
+}
+
+fn identified() -> BoxedStrategy<Identified> {
+    let sources = [
+        ForceSource::AtTip,
+        ForceSource::InDoubt { unsure: Unsure::Missing, fallback: Fallback::HoldAndFade },
+        ForceSource::Poisoned,
+    ];
+    let times = (number(), number(), vector());
+    let flags = (any::<bool>(), any::<bool>(), maybe(proptest::sample::select(FarStop::ALL.to_vec())));
+    let modes = proptest::sample::select(Mode::ALL.into_iter().chain(Mode::BASELINES).collect::<Vec<_>>());
+    let numbers = proptest::collection::vec(any::<f32>(), PACKED_MAX);
+    (times, proptest::sample::select(sources.to_vec()), flags, modes, any::<[u8; 2]>(), numbers)
+        .prop_map(|((t_s, delay_s, force_n), source, (fresh, resting, stop), mode, [slot, len], numbers)| Identified {
+            t_s,
+            delay_s,
+            force_n,
+            source,
+            fresh,
+            resting,
+            modes: ModeSet::only(mode),
+            packed: Packed { slot, len, numbers: numbers.try_into().unwrap() },
+            stop,
+        })
+        .boxed()
 }
 
 fn inputs() -> BoxedStrategy<Inputs> {
     let hand = (vector(), maybe(rotation()), maybe(number()), maybe(number()));
     let tip = (vector(), maybe(rotation()), sensed());
     let view = prop_oneof![Just(View::Fixed), Just(View::Unseen), rotation().prop_map(View::Seen)];
-    let rest = (view, frames(), any::<bool>(), maybe(any::<bool>()), any::<bool>(), maybe(obstacle()), number());
+    let age = (number(), number());
+    let rest = (view, frames(), any::<bool>(), maybe(any::<bool>()), any::<bool>(), maybe(obstacle()), age);
     (hand, tip, rest)
         .prop_map(|(hand, tip, rest)| {
             let (position_m, orientation, gripper_rad, grip_n) = hand;
             let (tip_m, world_from_jaws, sensed) = tip;
-            let (view, frames, clutch, presence, powered, obstacle, age_s) = rest;
+            let (view, frames, clutch, presence, powered, obstacle, (age_s, silent_s)) = rest;
             Inputs {
                 hand: Hand { position_m, orientation },
                 gripper_rad,
@@ -121,6 +149,7 @@ fn inputs() -> BoxedStrategy<Inputs> {
                 powered,
                 obstacle,
                 age_s,
+                silent_s,
             }
         })
         .boxed()

@@ -9,6 +9,7 @@ use crate::journal::{Block, End, Message, Noted, Row, Start, decode, number};
 
 /// One step of a journal.
 #[derive(Debug)]
+#[expect(clippy::large_enum_variant, reason = "nearly every step is a tick, and is used at once")]
 pub enum Step {
     /// Something is done to the loop.
     Operation(Operation),

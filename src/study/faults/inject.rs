@@ -5,7 +5,7 @@ use std::collections::VecDeque;
 use nalgebra::{UnitQuaternion, Vector3};
 use nima_core::noise::Noise;
 use nima_devices::{Loss, Standing};
-use nima_machine::rig::{DeviceEvent, Inputs, Outputs, Rig, SIDES, Sensed};
+use nima_machine::rig::{DeviceEvent, Identified, Inputs, Outputs, Rig, SIDES, Sensed};
 
 use super::Kind;
 
@@ -220,14 +220,14 @@ fn exchanged(v: Vector3<f64>) -> Vector3<f64> {
 /// Force read by the force sensor, N.
 pub(super) fn force_of(sensed: &Sensed) -> Vector3<f64> {
     match sensed {
-        Sensed::AtTip(force_n) => *force_n,
+        Sensed::AtTip(force_n) | Sensed::FarEnd(Identified { force_n, .. }) => *force_n,
         Sensed::AtWrist(sample) => sample.raw.force_n,
     }
 }
 
 fn set_force(sensed: &mut Sensed, force_n: Vector3<f64>) {
     match sensed {
-        Sensed::AtTip(at) => *at = force_n,
+        Sensed::AtTip(at) | Sensed::FarEnd(Identified { force_n: at, .. }) => *at = force_n,
         Sensed::AtWrist(sample) => sample.raw.force_n = force_n,
     }
 }

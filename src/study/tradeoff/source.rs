@@ -31,7 +31,7 @@ impl Source {
                 // tip force.
                 let force_n = match inputs.sensed {
                     Sensed::AtTip(force_n) => force_n,
-                    Sensed::AtWrist(_) => world.true_tip_n(),
+                    Sensed::AtWrist(_) | Sensed::FarEnd(_) => world.true_tip_n(),
                 };
                 samples.push(Sample { t_s, position_m: inputs.tip_m, force_n });
             }

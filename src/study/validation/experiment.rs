@@ -9,7 +9,7 @@ use nima_core::{
     },
     frames::{Wrench, WristSample},
 };
-use nima_machine::rig::{Outputs, Prompt, Sensed};
+use nima_machine::rig::{Outputs, Prompt};
 use nima_world::{World, scene::Scene};
 
 use super::ValidationError;
@@ -54,10 +54,7 @@ impl Experiment {
     pub fn sample(&mut self, prompt: Prompt) -> Option<WristSample> {
         self.ticks += 1;
         let outputs = Outputs { prompt, ..Outputs::SAFE };
-        match self.world.exchange(self.t_s(), &outputs)?.sensed {
-            Sensed::AtWrist(sample) => Some(sample),
-            Sensed::AtTip(_) => None,
-        }
+        self.world.exchange(self.t_s(), &outputs)?.sensed.wrist().copied()
     }
 
     /// True force on the tip in that sample, N (`s1`).

@@ -10,7 +10,7 @@ use nima_core::{
     kinematics::{Arm, Joints, view_from_omega},
 };
 use nima_devices::{ARM_JOINTS, ForceReading, ForceStatus, Tracked};
-use nima_machine::rig::{ArmSet, EndoscopeSettings, Flaws, Outputs, Prompt, Sensed};
+use nima_machine::rig::{ArmSet, EndoscopeSettings, Flaws, Identified, Outputs, Prompt, Sensed};
 
 use super::{HandFrame, Task, flawed::Flawed, seen::Camera, technician::Technician};
 use crate::{
@@ -172,7 +172,9 @@ impl SideWorld {
         let support = self.imu_from_s1 * (s1_from_world * Vector3::new(0.0, 0.0, GRAVITY_M_S2));
         let (wrench, measured) = match &self.sensed {
             Sensed::AtWrist(sample) => (sample.raw, sample.acceleration_m_s2),
-            Sensed::AtTip(tip_n) => (Wrench { force_n: s1_from_world * tip_n, torque_nm: Vector3::zeros() }, None),
+            Sensed::AtTip(tip_n) | Sensed::FarEnd(Identified { force_n: tip_n, .. }) => {
+                (Wrench { force_n: s1_from_world * tip_n, torque_nm: Vector3::zeros() }, None)
+            }
         };
         let more = self.flawed.wrench(now_s, self.body.joint_rad[ARM_JOINTS - 1]);
         ForceReading {
@@ -187,19 +189,13 @@ impl SideWorld {
     /// Share of this side in what the sensor under the tissue reads, N.
     pub(super) fn press(&mut self, now_s: f64) -> Vector3<f64> {
         self.advance(now_s);
-        match &self.sensed {
-            Sensed::AtWrist(sample) => sample.tissue_n.unwrap_or_else(|| self.world.true_tip_n()),
-            Sensed::AtTip(_) => self.world.true_tip_n(),
-        }
+        self.sensed.wrist().and_then(|sample| sample.tissue_n).unwrap_or_else(|| self.world.true_tip_n())
     }
 
     /// What the tracker tells of the marker on the instrument.
     pub(super) fn marker(&mut self, now_s: f64) -> Tracked {
         self.advance(now_s);
-        let noisy = match &self.sensed {
-            Sensed::AtWrist(sample) => sample.m_from_c.map(|m_from_c| m_from_c.inverse()),
-            Sensed::AtTip(_) => None,
-        };
+        let noisy = self.sensed.wrist().and_then(|sample| sample.m_from_c).map(|m_from_c| m_from_c.inverse());
         let sensor_m = self.tip_m - self.world_from_s1 * Vector3::new(0.0, 0.0, self.arm.shaft_m());
         let marker = self.camera.marker(&self.world_from_s1, &sensor_m, noisy);
         self.flawed.tracked(now_s, marker)

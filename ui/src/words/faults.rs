@@ -2,7 +2,7 @@
 
 use nima_core::safety::Implausible;
 use nima_devices::Loss;
-use nima_machine::messages::Fault;
+use nima_machine::messages::{FarStop, Fault};
 
 use super::Remedy;
 
@@ -25,6 +25,7 @@ impl Remedy for Fault {
             Self::LinkSilent => "No data came over the link for 0.1 s",
             Self::ClockJumped => "The clock of the control loop jumped or stopped",
             Self::Implausible { what } => what.cause(),
+            Self::FarEnd { stop } => stop.cause(),
         }
     }
 
@@ -48,6 +49,36 @@ impl Remedy for Fault {
             Self::LinkSilent => "Check the link to the follower, then release the stop and engage again",
             Self::ClockJumped => "Find out what changes this computer's clock, then release the stop and engage again",
             Self::Implausible { what } => what.cure(),
+            Self::FarEnd { stop } => stop.cure(),
+        }
+    }
+}
+
+impl Remedy for FarStop {
+    fn cause(self) -> &'static str {
+        match self {
+            Self::Stopped => "Somebody stopped the follower's machine",
+            Self::SourceSilent => "The follower's machine gets no data, from its devices or from here",
+            Self::LoopStalled => "The control loop of the follower's machine was blocked",
+            Self::ForceUnknown => "The follower's machine does not know the force at the tip",
+            Self::DeviceLost => "A device of the follower's machine was lost",
+            Self::DrivesOff => "The arm at the follower's machine does not follow its commands",
+            Self::SamplesLost => {
+                "The follower's machine loses too many samples of its devices, or of what is sent from here"
+            }
+            Self::LinkSilent => "No data came over a link within the follower's machine",
+            Self::ClockJumped => "The clock of the follower's machine jumped or stopped",
+            Self::Implausible => "A measurement at the follower's machine is not plausible",
+            Self::Other => "The other arm of the follower's machine has a fault",
+        }
+    }
+
+    fn cure(self) -> &'static str {
+        match self {
+            Self::Stopped => "Ask there whether it is safe, then release the stop and engage again",
+            _ => {
+                "See the screen or the output of the follower's machine for the cause; then release the stop and engage again"
+            }
         }
     }
 }

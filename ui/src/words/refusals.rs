@@ -15,6 +15,7 @@ pub(crate) fn refused_because(why: Refusal) -> String {
         Refusal::ForceUnknown => "the force at the tip is not known".to_owned(),
         Refusal::Implausible(what) => format!("a measurement is not plausible: {}", lower(what.cause())),
         Refusal::Obstacle(waiting @ Obstacle::Waiting(_)) => waiting.to_string(),
+        Refusal::Obstacle(obstacle @ Obstacle::FarEnd) => obstacle.to_string(),
         Refusal::Obstacle(Obstacle::Exchanged(exchange)) => exchange.words().to_owned(),
         Refusal::Obstacle(obstacle) => format!("the arm cannot start from where it is: {obstacle}"),
         Refusal::EndoscopeUnseen => "the tracker does not see the endoscope".to_owned(),
@@ -24,6 +25,7 @@ pub(crate) fn refused_because(why: Refusal) -> String {
         Refusal::ClutchPressed => "the clutch is pressed".to_owned(),
         Refusal::NotChecked => "this rig requires a ready check, and none of the last 12 hours has passed".to_owned(),
         Refusal::OutOfRange => "the value is outside its range".to_owned(),
+        Refusal::DelayIsMeasured => "the delay is that of the network, which is measured and not set".to_owned(),
         Refusal::SimulatedOnly => "a person may hold the handle of this rig".to_owned(),
         Refusal::NoSuchArm => "this rig has no arm on that side".to_owned(),
     }
@@ -51,6 +53,7 @@ pub(crate) const fn cure_of_refusal(why: Refusal) -> &'static str {
         Refusal::ClutchPressed => "release the clutch, then engage again",
         Refusal::NotChecked => "press Ready check in the panel Calibration",
         Refusal::OutOfRange => "choose a value within the range",
+        Refusal::DelayIsMeasured => "see the link for what the network takes",
         Refusal::SimulatedOnly => "choose a simulated rig",
         Refusal::NoSuchArm => "choose another arm",
     }

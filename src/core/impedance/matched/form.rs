@@ -12,7 +12,7 @@ use super::{
 use crate::signal::Lanes;
 
 /// Columns of the largest form.
-pub(super) const COLUMNS: usize = 25;
+pub(in super::super) const COLUMNS: usize = 25;
 
 /// The columns of one tick, or their parameters, one lane per axis.
 pub(super) type Row = [Lanes; COLUMNS];

@@ -18,13 +18,14 @@ mod sums;
 #[cfg(test)]
 mod tests;
 
+pub(super) use form::COLUMNS;
 pub use form::Form;
 pub use model::MatchedModel;
 pub(super) use slip::Slip;
 
 use self::{
     drift::Drift,
-    form::{COLUMNS, Row, product},
+    form::{Row, product},
     slip::{Held, SLIPS, Stretch, Usual},
     sums::Sums,
 };

@@ -262,6 +262,7 @@ impl Bench {
             powered: true,
             obstacle: None,
             age_s: 0.0,
+            silent_s: 0.0,
         }
     }
 }

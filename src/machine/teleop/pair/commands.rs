@@ -38,6 +38,7 @@ impl<L: Link> Pair<L> {
             Command::SetGainAboveOne(gain) if (0.0..=MAX_GAIN).contains(&gain) => {
                 self.chain.set_gain_above_one(gain);
             }
+            Command::SetDelay(_) if self.far.is_there => return Err(Refusal::DelayIsMeasured),
             Command::SetDelay(delay_s) if (0.0..=MAX_DELAY_S).contains(&delay_s) => self.set_delay(delay_s),
             Command::SetDeadBand(speed_m_s) if (0.0..=0.1).contains(&speed_m_s) => self.chain.set_dead_band(speed_m_s),
             Command::SetStaticHold(hold) => self.chain.set_static_hold(hold),
@@ -67,8 +68,12 @@ impl<L: Link> Pair<L> {
             Command::Rest => return self.ask(Wish::Rest, t_s),
             Command::Stop => return self.ask(Wish::Stop, t_s),
             Command::ReleaseStop => {
+                if let Some(answer) = self.release_far() {
+                    return answer;
+                }
                 self.may_release(t_s)?;
-                return self.ask(Wish::Release, t_s);
+                self.ask(Wish::Release, t_s)?;
+                self.releases = self.releases.wrapping_add(1);
             }
             Command::Checked(passed) => self.checked = self.checked.map(|_| passed),
             Command::TestWatchdog(watchdog) => return self.test_watchdog(watchdog, t_s),

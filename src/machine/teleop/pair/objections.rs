@@ -25,6 +25,9 @@ impl<L: Link> Pair<L> {
         if let Some(what) = self.plausibility.doubt() {
             return Err(Refusal::Implausible(what));
         }
+        if let Some(fault) = self.far_fault() {
+            return Err(Refusal::StillPresent(fault));
+        }
         match self.last_inputs.and_then(|seen| seen.obstacle) {
             Some(obstacle) => Err(Refusal::Obstacle(obstacle)),
             None => Ok(()),

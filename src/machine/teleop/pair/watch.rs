@@ -1,16 +1,16 @@
 //! Checks of a pair's measurements and of the time before they are used: short impossible jumps are bridged,
 //! implausible values are faults.
 
-use nalgebra::UnitQuaternion;
+use nalgebra::Vector3;
 use nima_core::{
     impedance::Sample,
     safety::{CHANNELS, Observed, Seen, Why},
 };
 
-use super::{AT_REST_M, Pair, STALLED_AFTER_S, Timing};
+use super::{AT_REST_M, LINK_SILENT_AFTER_S, Pair, STALLED_AFTER_S, Timing};
 use crate::{
     messages::{Command, Event, Fault, Watchdog},
-    rig::{Inputs, Sensed, Switches, View},
+    rig::{Identified, Inputs, Sensed, Switches, View},
     teleop::{Link, LoopState},
 };
 
@@ -18,7 +18,10 @@ impl<L: Link> Pair<L> {
     /// Checks a sample; returns it with impossible jumps replaced by the last plausible value.
     pub(super) fn take_in(&mut self, mut inputs: Inputs, now_s: f64) -> Inputs {
         let was_known = self.force.source.is_usable();
-        self.force = self.force_path.step(now_s, &inputs.sensed);
+        self.force = match &inputs.sensed {
+            Sensed::FarEnd(identified) => self.hear(identified),
+            sensed => self.force_path.step(now_s, sensed),
+        };
         if self.force.source.is_usable() && !was_known {
             self.plausibility.force_is_new();
         }
@@ -28,22 +31,35 @@ impl<L: Link> Pair<L> {
             sensed: numbers(&inputs.sensed),
             force_n: self.force.tip_n,
             least_n: self.force.source.least_n(),
-            world_from_s1: orientation(&inputs.sensed),
+            world_from_s1: inputs.sensed.wrist().and_then(|sample| sample.world_from_s1),
             tip_m: inputs.tip_m,
             hand_m: inputs.hand.position_m,
-            command_m: self.command_m,
+            command_m: self.command_in_force(),
             hand_force_n: self.hand_force_n,
             guided: self.guide_m.is_some(),
         });
         (self.force.tip_n, inputs.tip_m, inputs.hand.position_m) = (admitted.force_n, admitted.tip_m, admitted.hand_m);
         self.hand_speed_m_s = self.speed.step(now_s - inputs.age_s, inputs.hand.position_m);
-        self.identifier.step(&Sample { t_s: now_s, position_m: inputs.tip_m, force_n: self.force.tip_n });
-        if !self.withholds(Watchdog::Link) {
-            self.link.send(self.identifier.parcel());
+        if self.far.is_there {
+            self.far.parcel.force_n = self.force.tip_n;
+        } else {
+            self.identifier.step(&Sample { t_s: now_s, position_m: inputs.tip_m, force_n: self.force.tip_n });
+            if !self.withholds(Watchdog::Link) {
+                self.link.send(self.identifier.parcel());
+            }
         }
         self.last_inputs = Some(inputs);
         self.last_input_s = now_s - inputs.age_s;
         inputs
+    }
+
+    /// The command that the follower had when the tip was measured, m.
+    fn command_in_force(&self) -> Option<Vector3<f64>> {
+        match self.far.behind {
+            0 => self.command_m,
+            // The newest one is of the tick before.
+            behind => self.command_m.and_then(|_| self.tracking.command_m(behind - 1)),
+        }
     }
 
     /// Time must advance by whole periods: one plus the number missed. Otherwise it is a fault, and the identification
@@ -77,6 +93,12 @@ impl<L: Link> Pair<L> {
         let coupled = matches!(self.state(), LoopState::Engaged | LoopState::Clutched);
         if self.loses_samples(inputs.is_some()) {
             self.fail_if_driven(Fault::SamplesLost, now_s);
+        }
+        if inputs.is_some_and(|inputs| inputs.silent_s > LINK_SILENT_AFTER_S) {
+            self.fail_if_driven(Fault::LinkSilent, now_s);
+        }
+        if let Some(fault) = self.far_fault() {
+            self.fail_if_driven(fault, now_s);
         }
         if coupled && !self.force.source.is_usable() {
             self.fail(Fault::ForceUnknown, now_s);
@@ -121,19 +143,13 @@ impl<L: Link> Pair<L> {
     }
 }
 
-/// Orientation of the wrist sensor, from the arm's kinematics.
-fn orientation(sensed: &Sensed) -> Option<UnitQuaternion<f64>> {
-    match sensed {
-        Sensed::AtTip(_) => None,
-        Sensed::AtWrist(sample) => sample.world_from_s1,
-    }
-}
-
 /// The raw numbers of a force sensor, for the plausibility check; NaN for channels that it does not have.
 fn numbers(sensed: &Sensed) -> [f64; CHANNELS] {
     let mut all = [f64::NAN; CHANNELS];
     match sensed {
-        Sensed::AtTip(force_n) => all[..3].copy_from_slice(force_n.as_slice()),
+        Sensed::AtTip(force_n) | Sensed::FarEnd(Identified { force_n, .. }) => {
+            all[..3].copy_from_slice(force_n.as_slice());
+        }
         Sensed::AtWrist(sample) => {
             all[..3].copy_from_slice(sample.raw.force_n.as_slice());
             all[3..6].copy_from_slice(sample.raw.torque_nm.as_slice());

@@ -1,0 +1,233 @@
+//! The operator's rig: the handle here, the arm and its sensor at the other end of a network.
+
+use nima_core::{
+    calibration::frames::FrameSample,
+    impedance::{Mode, Packed},
+};
+
+use super::{
+    GONE_AFTER_S, MESSAGE_MAX, Wire,
+    follower_message::{FollowerMessage, FollowerSide},
+    leader_message::{Intent, LeaderMessage, LeaderSide},
+};
+use crate::{
+    messages::{Bulletin, LoopState},
+    rig::{DeviceEvent, Gauges, Healths, Identified, Inputs, Obstacle, Outputs, Rig, SIDES, Sensed, Side, View},
+};
+use nima_devices::Lever;
+
+/// Joins a rig's handles with arms at another machine. What the rig itself measures of arms and sensors is not used.
+#[derive(Debug)]
+pub struct FarFollower<R, W> {
+    local: R,
+    wire: W,
+    rate_hz: f64,
+    heard: Option<Heard>,
+    sides: [Told; SIDES],
+    buffer: [u8; MESSAGE_MAX],
+}
+
+/// What the other machine told last.
+#[derive(Clone, Copy, Debug)]
+struct Heard {
+    message: FollowerMessage,
+    /// When it was played out, s.
+    at_s: f64,
+    delay: RoundTrip,
+}
+
+/// What this machine tells of one side.
+#[derive(Clone, Copy, Debug, Default)]
+struct Told {
+    state: Option<LoopState>,
+    engagements: u8,
+    /// Opening of the gripper when it was last read.
+    gripper_rad: Option<f64>,
+    outputs: Option<Outputs>,
+}
+
+/// The time from a command to the answer to it, in whole ticks. Play-out keeps it constant but for slow changes.
+#[derive(Clone, Copy, Debug)]
+struct RoundTrip {
+    mean_s: f64,
+    ticks: u16,
+}
+
+impl RoundTrip {
+    /// Averaging, in messages.
+    const MEMORY: f64 = 200.0;
+
+    fn first(seconds: f64, rate_hz: f64) -> Self {
+        Self { mean_s: seconds, ticks: (seconds * rate_hz).round() as u16 }
+    }
+
+    /// It moves on by whole ticks, and only when the mean is clearly nearer to another one: each change makes the follower begin
+    /// its judgement of the past anew.
+    fn step(&mut self, seconds: f64, rate_hz: f64) {
+        self.mean_s += (seconds - self.mean_s) / Self::MEMORY;
+        let ticks = self.mean_s * rate_hz;
+        if (ticks - f64::from(self.ticks)).abs() > 0.75 {
+            self.ticks = ticks.round() as u16;
+        }
+    }
+}
+
+impl<R: Rig, W: Wire> FarFollower<R, W> {
+    /// Joins the handles of `local` with the arms behind `wire`, for a loop of this rate (Hz).
+    pub fn new(local: R, wire: W, rate_hz: f64) -> Self {
+        Self { local, wire, rate_hz, heard: None, sides: [Told::default(); SIDES], buffer: [0; MESSAGE_MAX] }
+    }
+
+    /// What carries the messages.
+    pub const fn wire(&self) -> &W {
+        &self.wire
+    }
+
+    /// What carries the messages.
+    pub const fn wire_mut(&mut self) -> &mut W {
+        &mut self.wire
+    }
+
+    fn receive(&mut self, now_s: f64) {
+        let (heard, rate_hz) = (&mut self.heard, self.rate_hz);
+        self.wire.receive(now_s, &mut |bytes| {
+            let Some(mut message) = FollowerMessage::unpack(bytes) else { return };
+            let round_trip_s = now_s - message.t_s;
+            if round_trip_s < 0.0 {
+                return;
+            }
+            let Some(last) = heard else {
+                *heard = Some(Heard { message, at_s: now_s, delay: RoundTrip::first(round_trip_s, rate_hz) });
+                return;
+            };
+            if message.t_s <= last.message.t_s {
+                return;
+            }
+            // Two messages may come in one tick: the parameters of the first are not lost.
+            if last.at_s >= now_s {
+                keep_parameters(&mut message.sides, &last.message.sides);
+            }
+            (last.message, last.at_s) = (message, now_s);
+            last.delay.step(round_trip_s, rate_hz);
+        });
+        if self.heard.is_some_and(|heard| now_s - heard.at_s > GONE_AFTER_S) {
+            self.heard = None;
+        }
+    }
+
+    fn join(&self, side: Side, here: &Inputs, now_s: f64) -> Option<Inputs> {
+        let heard = self.heard.as_ref()?;
+        let far = heard.message.sides[side.index()]?;
+        let identified = Identified {
+            t_s: heard.message.t_s,
+            delay_s: f64::from(heard.delay.ticks) / self.rate_hz,
+            force_n: far.force_n,
+            source: far.source,
+            fresh: far.fresh,
+            resting: far.resting,
+            modes: far.modes,
+            packed: far.packed.unwrap_or(Packed::NONE),
+            stop: far.stop,
+        };
+        Some(Inputs {
+            hand: here.hand,
+            gripper_rad: here.gripper_rad,
+            grip_n: far.grip_n,
+            tip_m: far.tip_m,
+            world_from_jaws: far.world_from_jaws,
+            sensed: Sensed::FarEnd(identified),
+            view: View::Fixed,
+            frames: FrameSample { leader_from_handle: here.frames.leader_from_handle, ..FrameSample::default() },
+            switches: here.switches,
+            powered: here.powered && far.powered,
+            obstacle: far.is_obstructed.then_some(Obstacle::FarEnd),
+            age_s: here.age_s,
+            silent_s: now_s - heard.at_s,
+        })
+    }
+}
+
+fn keep_parameters(now: &mut [Option<FollowerSide>; SIDES], before: &[Option<FollowerSide>; SIDES]) {
+    for (now, before) in now.iter_mut().zip(before) {
+        if let (Some(now), Some(before)) = (now, before) {
+            now.packed = now.packed.or(before.packed);
+        }
+    }
+}
+
+impl<R: Rig, W: Wire> Rig for FarFollower<R, W> {
+    fn read(&mut self, now_s: f64) -> [Option<Inputs>; SIDES] {
+        let here = self.local.read(now_s);
+        self.receive(now_s);
+        let mut inputs = [None; SIDES];
+        for side in Side::ALL {
+            let Some(here) = &here[side.index()] else { continue };
+            self.sides[side.index()].gripper_rad = here.gripper_rad;
+            inputs[side.index()] = self.join(side, here, now_s);
+        }
+        inputs
+    }
+
+    fn write(&mut self, now_s: f64, outputs: &[Outputs; SIDES]) {
+        self.local.write(now_s, outputs);
+        for (told, outputs) in self.sides.iter_mut().zip(outputs) {
+            told.outputs = Some(*outputs);
+        }
+    }
+
+    fn hear(&mut self, now_s: f64, bulletins: &[Option<Bulletin<'_>>; SIDES]) {
+        let mut message =
+            LeaderMessage { t_s: now_s, delay_ticks: 0, mode: Mode::Dfr, compares: false, sides: [None; SIDES] };
+        message.delay_ticks = self.heard.map_or(0, |heard| heard.delay.ticks);
+        for bulletin in bulletins.iter().flatten() {
+            let side = bulletin.side.index();
+            (message.mode, message.compares) = (bulletin.mode, bulletin.compares);
+            let far = self.heard.and_then(|heard| heard.message.sides[side]);
+            message.sides[side] = Some(self.sides[side].tell(bulletin, far.as_ref()));
+        }
+        if let Some(bytes) = message.pack(&mut self.buffer) {
+            self.wire.send(now_s, bytes);
+        }
+    }
+
+    fn event(&mut self) -> Option<DeviceEvent> {
+        self.local.event()
+    }
+
+    fn levers(&self) -> Vec<Lever> {
+        self.local.levers()
+    }
+
+    fn health(&self) -> Healths {
+        self.local.health()
+    }
+
+    fn gauges(&mut self, now_s: f64) -> Option<Gauges> {
+        self.local.gauges(now_s)
+    }
+}
+
+impl Told {
+    fn tell(&mut self, bulletin: &Bulletin<'_>, far: Option<&FollowerSide>) -> LeaderSide {
+        let was_driven = self.state.is_some_and(|state| state.permits().drives);
+        if bulletin.state.permits().drives && !was_driven {
+            self.engagements = self.engagements.wrapping_add(1);
+        }
+        self.state = Some(bulletin.state);
+        let commanded = self.outputs.and_then(|outputs| outputs.tip_command_m);
+        let turned = self.outputs.and_then(|outputs| outputs.world_from_jaws);
+        LeaderSide {
+            intent: match bulletin.state {
+                LoopState::Disconnected | LoopState::Idle => Intent::Rest,
+                LoopState::Ready | LoopState::Clutched => Intent::Hold,
+                LoopState::Engaged => Intent::Follow,
+                LoopState::Stopped | LoopState::Faulted(_) => Intent::Stop,
+            },
+            engagements: self.engagements,
+            releases: bulletin.releases,
+            tip_m: commanded.or(far.map(|far| far.tip_m)).unwrap_or_default(),
+            world_from_jaws: turned.or(far.and_then(|far| far.world_from_jaws)),
+            gripper_rad: self.gripper_rad,
+        }
+    }
+}

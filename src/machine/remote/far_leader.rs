@@ -1,0 +1,237 @@
+//! The follower's rig: arm and sensor here, the hand at the other end of a network.
+
+use nalgebra::Vector3;
+use nima_core::{impedance::Packed, kinematics::Hand, safety::ChainSettings};
+use nima_devices::Lever;
+
+use super::{
+    GONE_AFTER_S, MESSAGE_MAX, Wire,
+    follower_message::{FollowerMessage, FollowerSide},
+    leader_message::{Intent, LeaderMessage, LeaderSide},
+};
+use crate::{
+    config::{RigConfig, Teleoperation},
+    messages::{Bulletin, Command, FarStop, LoopState},
+    rig::{DeviceEvent, Gauges, Healths, Inputs, Outputs, Rig, SIDES, Side, Switches, View},
+};
+
+/// The parameters of one rendering are sent every so many ticks, in turn where several are computed. Fits are renewed 200 times a
+/// second.
+const PARAMETERS_EVERY: u64 = 10;
+/// Answers go on for so long after the last message, s: so the other machine hears why this one stopped.
+const ANSWERS_FOR_S: f64 = 1.0;
+/// Most commands that follow from one message.
+const COMMANDS_MAX: usize = 8;
+
+/// The rig file as the follower's machine uses it: the commanded tip comes in the frame of the world already, and no hand here feels a
+/// force.
+#[must_use]
+pub fn at_follower(rig: &RigConfig) -> RigConfig {
+    let gates = ChainSettings { gain: 0.0, ..rig.gates.without_governor() };
+    RigConfig { teleoperation: Teleoperation::default(), gates, ..rig.clone() }
+}
+
+/// Joins a rig's arms with hands at another machine. What the rig itself measures of handles is not used, and they get no force.
+#[derive(Debug)]
+pub struct FarLeader<R, W> {
+    local: R,
+    wire: W,
+    rate_hz: f64,
+    heard: Option<Heard>,
+    /// What this machine's pairs were last.
+    states: [Option<LoopState>; SIDES],
+    inputs: [Option<Inputs>; SIDES],
+    commands: [Option<Command>; COMMANDS_MAX],
+    ticks: u64,
+    buffer: [u8; MESSAGE_MAX],
+}
+
+/// What the operator's machine told last.
+#[derive(Clone, Copy, Debug)]
+struct Heard {
+    message: LeaderMessage,
+    /// When it was played out, s.
+    at_s: f64,
+}
+
+impl<R: Rig, W: Wire> FarLeader<R, W> {
+    /// Joins the arms of `local` with the hands behind `wire`, for a loop of this rate (Hz) that is made of [`at_follower`].
+    pub const fn new(local: R, wire: W, rate_hz: f64) -> Self {
+        Self {
+            local,
+            wire,
+            rate_hz,
+            heard: None,
+            states: [None; SIDES],
+            inputs: [None; SIDES],
+            commands: [None; COMMANDS_MAX],
+            ticks: 0,
+            buffer: [0; MESSAGE_MAX],
+        }
+    }
+
+    /// What the rig here measured last: the hands there have no part in it.
+    pub const fn measured(&self) -> &[Option<Inputs>; SIDES] {
+        &self.inputs
+    }
+
+    /// What carries the messages.
+    pub const fn wire(&self) -> &W {
+        &self.wire
+    }
+
+    /// What carries the messages.
+    pub const fn wire_mut(&mut self) -> &mut W {
+        &mut self.wire
+    }
+
+    fn receive(&mut self, now_s: f64) {
+        let before = self.heard.filter(|heard| now_s - heard.at_s <= ANSWERS_FOR_S);
+        let mut newest = before;
+        self.wire.receive(now_s, &mut |bytes| {
+            let Some(message) = LeaderMessage::unpack(bytes) else { return };
+            if newest.is_none_or(|heard| message.t_s > heard.message.t_s) {
+                newest = Some(Heard { message, at_s: now_s });
+            }
+        });
+        self.heard = newest;
+        self.commands = [None; COMMANDS_MAX];
+        if let Some(heard) = newest.filter(|heard| heard.at_s >= now_s) {
+            self.follow(&heard.message, before.map(|heard| heard.message).as_ref());
+        }
+    }
+
+    /// The commands that follow from a message; `before`: the one before it. Without one nothing begins: only what both messages count
+    /// differently was asked for in between.
+    fn follow(&mut self, now: &LeaderMessage, before: Option<&LeaderMessage>) {
+        if before.is_none_or(|before| before.mode != now.mode) {
+            self.push(Command::SetMode(now.mode));
+        }
+        if before.is_none_or(|before| before.compares != now.compares) {
+            self.push(Command::Compare(now.compares));
+        }
+        if before.is_none_or(|before| before.delay_ticks != now.delay_ticks) {
+            self.push(Command::SetDelay(f64::from(now.delay_ticks) / self.rate_hz));
+        }
+        let told = |side: Side| now.sides[side.index()].zip(before.and_then(|before| before.sides[side.index()]));
+        let moved_on = |count: fn(&LeaderSide) -> u8, side: Side| {
+            told(side).is_some_and(|(now, before)| count(&now) != count(&before))
+        };
+        let intents = now.sides.map(|side| side.map_or(Intent::Rest, |side| side.intent));
+        let is_driven = |side: &Side| self.states[side.index()].is_some_and(|state| state.permits().drives);
+        let is_latched = |side: &Side| self.states[side.index()].is_some_and(LoopState::is_latched);
+        let to_stop = Side::ALL.iter().any(|side| intents[side.index()] == Intent::Stop && !is_latched(side));
+        let to_rest = Side::ALL.iter().any(|side| intents[side.index()] == Intent::Rest && is_driven(side));
+        let engaged = Side::ALL.map(|side| moved_on(|side| side.engagements, side));
+        let released = Side::ALL.into_iter().any(|side| moved_on(|side| side.releases, side));
+        if to_stop {
+            self.push(Command::Stop);
+        } else if released {
+            self.push(Command::ReleaseStop);
+        } else if to_rest {
+            self.push(Command::Rest);
+        }
+        for side in Side::ALL {
+            let intent = intents[side.index()];
+            if engaged[side.index()] && matches!(intent, Intent::Hold | Intent::Follow) {
+                self.push(Command::EngageOne(side));
+            }
+        }
+    }
+
+    fn push(&mut self, command: Command) {
+        if let Some(free) = self.commands.iter_mut().find(|slot| slot.is_none()) {
+            *free = Some(command);
+        }
+    }
+}
+
+impl<R: Rig, W: Wire> Rig for FarLeader<R, W> {
+    fn read(&mut self, now_s: f64) -> [Option<Inputs>; SIDES] {
+        self.inputs = self.local.read(now_s);
+        self.receive(now_s);
+        let heard = self.heard.filter(|heard| now_s - heard.at_s <= GONE_AFTER_S);
+        let mut inputs = [None; SIDES];
+        for side in Side::ALL.map(Side::index) {
+            let told = heard.and_then(|heard| heard.message.sides[side]);
+            inputs[side] = self.inputs[side].zip(told).map(|(here, told)| join(&here, &told));
+            if let (Some(inputs), Some(heard)) = (&mut inputs[side], heard) {
+                inputs.silent_s = now_s - heard.at_s;
+            }
+        }
+        inputs
+    }
+
+    fn command(&mut self) -> Option<Command> {
+        self.commands.iter_mut().find_map(Option::take)
+    }
+
+    fn write(&mut self, now_s: f64, outputs: &[Outputs; SIDES]) {
+        let without_force = |outputs: &Outputs| Outputs { hand_force_n: Vector3::zeros(), gripper_n: 0.0, ..*outputs };
+        self.local.write(now_s, &outputs.each_ref().map(without_force));
+    }
+
+    fn hear(&mut self, now_s: f64, bulletins: &[Option<Bulletin<'_>>; SIDES]) {
+        for (state, bulletin) in self.states.iter_mut().zip(bulletins) {
+            *state = bulletin.as_ref().map(|bulletin| bulletin.state);
+        }
+        self.ticks += 1;
+        let Some(heard) = self.heard.filter(|heard| now_s - heard.at_s <= ANSWERS_FOR_S) else { return };
+        let turn = (self.ticks.is_multiple_of(PARAMETERS_EVERY)).then_some(self.ticks / PARAMETERS_EVERY);
+        // Since the command came it has grown older here.
+        let t_s = heard.message.t_s + (now_s - heard.at_s);
+        let mut message = FollowerMessage { t_s, sides: [None; SIDES] };
+        for bulletin in bulletins.iter().flatten() {
+            let side = bulletin.side.index();
+            message.sides[side] = self.inputs[side].map(|inputs| answer(&inputs, bulletin, turn));
+        }
+        if let Some(bytes) = message.pack(&mut self.buffer) {
+            self.wire.send(now_s, bytes);
+        }
+    }
+
+    fn event(&mut self) -> Option<DeviceEvent> {
+        self.local.event()
+    }
+
+    fn levers(&self) -> Vec<Lever> {
+        self.local.levers()
+    }
+
+    fn health(&self) -> Healths {
+        self.local.health()
+    }
+
+    fn gauges(&mut self, now_s: f64) -> Option<Gauges> {
+        self.local.gauges(now_s)
+    }
+}
+
+fn join(here: &Inputs, told: &LeaderSide) -> Inputs {
+    Inputs {
+        hand: Hand { position_m: told.tip_m, orientation: told.world_from_jaws },
+        gripper_rad: told.gripper_rad,
+        view: View::Fixed,
+        // The follower moves only while the operator's pair is engaged; who holds the handle is judged there.
+        switches: Switches { clutch: told.intent != Intent::Follow, presence: None },
+        ..*here
+    }
+}
+
+fn answer(inputs: &Inputs, bulletin: &Bulletin<'_>, turn: Option<u64>) -> FollowerSide {
+    let parcel = bulletin.parcel;
+    FollowerSide {
+        tip_m: inputs.tip_m,
+        world_from_jaws: inputs.world_from_jaws,
+        grip_n: inputs.grip_n,
+        powered: inputs.powered,
+        is_obstructed: inputs.obstacle.is_some(),
+        stop: FarStop::of(bulletin.state),
+        source: bulletin.source,
+        force_n: parcel.force_n,
+        fresh: parcel.fresh,
+        resting: parcel.resting,
+        modes: parcel.modes,
+        packed: turn.and_then(|turn| Packed::of(parcel, turn as usize)),
+    }
+}

@@ -1,0 +1,189 @@
+//! What the follower's machine answers in every tick.
+
+use nalgebra::{UnitQuaternion, Vector3};
+use nima_core::{
+    impedance::{Mode, ModeSet, PACKED_MAX, Packed},
+    tip_force::{Fallback, Unsure},
+};
+
+use super::{
+    leader_message::{modes, number_of},
+    packing::{Packer, Unpacker},
+};
+use crate::{
+    messages::{FarStop, ForceSource},
+    rig::{SIDES, Side},
+};
+
+/// What is told of one side.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[expect(clippy::struct_excessive_bools, reason = "independent facts, each with its own reader")]
+pub(super) struct FollowerSide {
+    pub(super) tip_m: Vector3<f64>,
+    pub(super) world_from_jaws: Option<UnitQuaternion<f64>>,
+    pub(super) grip_n: Option<f64>,
+    /// The arm follows its commands.
+    pub(super) powered: bool,
+    /// The arm cannot be engaged from where it is.
+    pub(super) is_obstructed: bool,
+    pub(super) stop: Option<FarStop>,
+    pub(super) source: ForceSource,
+    pub(super) force_n: Vector3<f64>,
+    pub(super) fresh: bool,
+    pub(super) resting: bool,
+    pub(super) modes: ModeSet,
+    pub(super) packed: Option<Packed>,
+}
+
+/// A message of the follower's machine.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct FollowerMessage {
+    /// When the command was given that was in force, by the clock of the operator's loop, s.
+    pub(super) t_s: f64,
+    pub(super) sides: [Option<FollowerSide>; SIDES],
+}
+
+const UNSURE: [Unsure; 3] = [Unsure::OutsideTraining, Unsure::NotMoved, Unsure::Missing];
+const PLAIN: [ForceSource; 7] = [
+    ForceSource::AtTip,
+    ForceSource::Wrist,
+    ForceSource::Network,
+    ForceSource::Extrapolated,
+    ForceSource::Uncalibrated,
+    ForceSource::NoOrientation,
+    ForceSource::Poisoned,
+];
+
+fn number_of_source(source: ForceSource) -> u8 {
+    let ForceSource::InDoubt { unsure, fallback } = source else {
+        return PLAIN.iter().position(|other| *other == source).unwrap_or(0) as u8;
+    };
+    let why = UNSURE.iter().position(|other| *other == unsure).unwrap_or(0);
+    (PLAIN.len() + 2 * why) as u8 + u8::from(fallback == Fallback::HoldAndFade)
+}
+
+fn source_of(number: u8) -> Option<ForceSource> {
+    let number = usize::from(number);
+    PLAIN.get(number).copied().or_else(|| {
+        let doubt = number - PLAIN.len();
+        let fallback = if doubt.is_multiple_of(2) { Fallback::WristForce } else { Fallback::HoldAndFade };
+        Some(ForceSource::InDoubt { unsure: *UNSURE.get(doubt / 2)?, fallback })
+    })
+}
+
+fn bits_of(set: ModeSet) -> u16 {
+    modes().filter(|mode| set.contains(*mode)).fold(0, |bits, mode| bits | 1 << number_of(mode))
+}
+
+fn set_of(bits: u16) -> ModeSet {
+    let asked = modes().filter(|mode| bits >> number_of(*mode) & 1 == 1);
+    asked.fold(ModeSet::only(Mode::Dfr), ModeSet::with)
+}
+
+impl FollowerMessage {
+    pub(super) fn pack<'a>(&self, buffer: &'a mut [u8]) -> Option<&'a [u8]> {
+        let mut to = Packer::new(buffer);
+        to.double(self.t_s);
+        for side in Side::ALL {
+            if let Some(told) = &self.sides[side.index()] {
+                told.pack(side, &mut to);
+            }
+        }
+        to.done()
+    }
+
+    pub(super) fn unpack(message: &[u8]) -> Option<Self> {
+        let mut from = Unpacker::new(message);
+        let mut told = Self { t_s: from.double()?, sides: [None; SIDES] };
+        while !from.is_empty() {
+            let side = from.byte()?;
+            let place = told.sides.get_mut(usize::from(side)).filter(|place| place.is_none())?;
+            *place = Some(FollowerSide::unpack(&mut from)?);
+        }
+        Some(told)
+    }
+}
+
+impl FollowerSide {
+    fn pack(&self, side: Side, to: &mut Packer<'_>) {
+        let flags = [
+            self.world_from_jaws.is_some(),
+            self.grip_n.is_some(),
+            self.powered,
+            self.is_obstructed,
+            self.fresh,
+            self.resting,
+            self.packed.is_some(),
+        ];
+        to.byte(side.index() as u8);
+        to.byte(flags.iter().rev().fold(0, |bits, flag| bits << 1 | u8::from(*flag)));
+        let stop = self.stop.and_then(|stop| FarStop::ALL.iter().position(|other| *other == stop));
+        to.byte(stop.map_or(0, |place| place as u8 + 1));
+        to.byte(number_of_source(self.source));
+        to.vector(&self.tip_m);
+        self.world_from_jaws.iter().for_each(|turn| to.turn(turn));
+        self.grip_n.iter().for_each(|grip_n| to.single(*grip_n as f32));
+        to.vector(&self.force_n);
+        to.short(bits_of(self.modes));
+        if let Some(packed) = &self.packed {
+            to.byte(packed.slot);
+            to.byte(packed.len);
+            packed.used().iter().for_each(|number| to.single(*number));
+        }
+    }
+
+    fn unpack(from: &mut Unpacker<'_>) -> Option<Self> {
+        let flags = from.byte()?;
+        let flag = |place: u8| flags >> place & 1 == 1;
+        let stop = match from.byte()?.checked_sub(1) {
+            None => None,
+            Some(place) => Some(*FarStop::ALL.get(usize::from(place))?),
+        };
+        Some(Self {
+            stop,
+            source: source_of(from.byte()?)?,
+            tip_m: from.vector()?,
+            world_from_jaws: if flag(0) { Some(from.turn()?) } else { None },
+            grip_n: if flag(1) { Some(f64::from(from.single()?)) } else { None },
+            powered: flag(2),
+            is_obstructed: flag(3),
+            fresh: flag(4),
+            resting: flag(5),
+            force_n: from.vector()?,
+            modes: set_of(from.short()?),
+            packed: if flag(6) { Some(packed_of(from)?) } else { None },
+        })
+    }
+}
+
+fn packed_of(from: &mut Unpacker<'_>) -> Option<Packed> {
+    let mut packed = Packed { slot: from.byte()?, len: from.byte()?, ..Packed::NONE };
+    if usize::from(packed.len) > PACKED_MAX {
+        return None;
+    }
+    for place in packed.numbers.iter_mut().take(usize::from(packed.len)) {
+        *place = from.single()?;
+    }
+    Some(packed)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_source_and_every_set_has_a_number() {
+        let doubts = UNSURE.into_iter().flat_map(|unsure| {
+            [Fallback::WristForce, Fallback::HoldAndFade].map(|fallback| ForceSource::InDoubt { unsure, fallback })
+        });
+        for source in PLAIN.into_iter().chain(doubts) {
+            assert_eq!(source_of(number_of_source(source)), Some(source));
+        }
+        assert_eq!(source_of(13), None);
+        for mode in modes() {
+            let set = ModeSet::only(mode);
+            assert_eq!(set_of(bits_of(set)), set, "{mode}");
+        }
+        assert_eq!(set_of(bits_of(ModeSet::ALL)), ModeSet::ALL);
+    }
+}

@@ -1,0 +1,101 @@
+//! What the operator's machine tells the follower's in every tick.
+
+use nalgebra::{UnitQuaternion, Vector3};
+use nima_core::impedance::Mode;
+
+use super::packing::{Packer, Unpacker};
+use crate::rig::{SIDES, Side};
+
+/// What the operator's pair wants of the follower.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) enum Intent {
+    /// Drives off.
+    #[default]
+    Rest,
+    /// Drives on, at rest: an engagement has begun, or the clutch is pressed.
+    Hold,
+    /// Follow.
+    Follow,
+    /// Stopped, by the operator or by a fault.
+    Stop,
+}
+
+impl Intent {
+    const ALL: [Self; 4] = [Self::Rest, Self::Hold, Self::Follow, Self::Stop];
+}
+
+/// What is told of one side.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct LeaderSide {
+    pub(super) intent: Intent,
+    /// Engagements and releases so far, counting on from 255 to 0.
+    pub(super) engagements: u8,
+    pub(super) releases: u8,
+    /// Commanded tip, m; while nothing is commanded, the tip as it was last told.
+    pub(super) tip_m: Vector3<f64>,
+    pub(super) world_from_jaws: Option<UnitQuaternion<f64>>,
+    pub(super) gripper_rad: Option<f64>,
+}
+
+/// A message of the operator's machine.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct LeaderMessage {
+    /// Time of its loop, s.
+    pub(super) t_s: f64,
+    /// From a command to the answer to it, ticks of the loop.
+    pub(super) delay_ticks: u16,
+    pub(super) mode: Mode,
+    pub(super) compares: bool,
+    pub(super) sides: [Option<LeaderSide>; SIDES],
+}
+
+/// Every mode by its number on the wire.
+pub(super) fn modes() -> impl Iterator<Item = Mode> {
+    Mode::ALL.into_iter().chain(Mode::BASELINES)
+}
+
+pub(super) fn number_of(mode: Mode) -> u8 {
+    modes().position(|other| other == mode).unwrap_or(0) as u8
+}
+
+impl LeaderMessage {
+    pub(super) fn pack<'a>(&self, buffer: &'a mut [u8]) -> Option<&'a [u8]> {
+        let mut to = Packer::new(buffer);
+        to.double(self.t_s);
+        to.short(self.delay_ticks);
+        to.byte(number_of(self.mode) | u8::from(self.compares) << 7);
+        for side in Side::ALL {
+            let Some(told) = &self.sides[side.index()] else { continue };
+            let intent = Intent::ALL.iter().position(|intent| *intent == told.intent).unwrap_or(0) as u8;
+            let turned = u8::from(told.world_from_jaws.is_some()) << 4;
+            let gripped = u8::from(told.gripper_rad.is_some()) << 5;
+            to.byte(side.index() as u8 | intent << 2 | turned | gripped);
+            to.byte(told.engagements);
+            to.byte(told.releases);
+            to.vector(&told.tip_m);
+            told.world_from_jaws.iter().for_each(|turn| to.turn(turn));
+            told.gripper_rad.iter().for_each(|rad| to.single(*rad as f32));
+        }
+        to.done()
+    }
+
+    pub(super) fn unpack(message: &[u8]) -> Option<Self> {
+        let mut from = Unpacker::new(message);
+        let (t_s, delay_ticks, first) = (from.double()?, from.short()?, from.byte()?);
+        let mode = modes().nth(usize::from(first & 0x7f))?;
+        let mut told = Self { t_s, delay_ticks, mode, compares: first >> 7 == 1, sides: [None; SIDES] };
+        while !from.is_empty() {
+            let first = from.byte()?;
+            let place = told.sides.get_mut(usize::from(first & 3)).filter(|place| place.is_none())?;
+            *place = Some(LeaderSide {
+                intent: Intent::ALL[usize::from(first >> 2 & 3)],
+                engagements: from.byte()?,
+                releases: from.byte()?,
+                tip_m: from.vector()?,
+                world_from_jaws: if first >> 4 & 1 == 1 { Some(from.turn()?) } else { None },
+                gripper_rad: if first >> 5 & 1 == 1 { Some(f64::from(from.single()?)) } else { None },
+            });
+        }
+        Some(told)
+    }
+}

@@ -1,0 +1,297 @@
+//! Two whole loops, one with the handle and one with the arm, and nothing but messages between them.
+use std::{
+    cell::RefCell,
+    collections::VecDeque,
+    sync::{Arc, Mutex},
+};
+
+use nalgebra::Vector3;
+use nima_core::{impedance::Mode, safety::Implausible};
+use nima_machine::{
+    config::RigConfig,
+    messages::{Command, Event, FarStop, Fault, LoopState, Refusal, Tick},
+    remote::{FarFollower, FarLeader, Wire, at_follower},
+    rig::Rig,
+    teleop::{Calibrations, Loop, Timing},
+};
+use nima_world::{Plan, Worlds, run_virtual, scene::Scene};
+
+/// Messages under way in one direction, with the time at which they arrive, s.
+type Way = Arc<Mutex<VecDeque<(f64, Vec<u8>)>>>;
+
+/// A wire with a constant delay; `ahead_s` is how far this end's clock is ahead of the other's.
+struct Constant {
+    out: Way,
+    back: Way,
+    delay_s: f64,
+    ahead_s: f64,
+    is_cut: Arc<Mutex<bool>>,
+}
+
+impl Wire for Constant {
+    fn send(&mut self, now_s: f64, message: &[u8]) {
+        if !*self.is_cut.lock().unwrap() {
+            self.out.lock().unwrap().push_back((now_s - self.ahead_s + self.delay_s, message.to_vec()));
+        }
+    }
+
+    fn receive(&mut self, now_s: f64, take: &mut dyn FnMut(&[u8])) {
+        let mut back = self.back.lock().unwrap();
+        while back.front().is_some_and(|(due_s, _)| *due_s <= now_s - self.ahead_s + 1e-6) {
+            let (_, message) = back.pop_front().unwrap();
+            take(&message);
+        }
+    }
+}
+
+/// One machine: a loop and its rig.
+struct Machine<R> {
+    control: Loop,
+    rig: R,
+    tick: Option<Tick>,
+    ahead_s: f64,
+    events: Vec<Event>,
+}
+
+impl<R: Rig> Machine<R> {
+    fn step(&mut self, command: Option<Command>, at_s: f64) {
+        let now_s = at_s + self.ahead_s;
+        let inputs = self.rig.read(now_s);
+        self.control.clear_events();
+        for command in command.into_iter().chain(std::iter::from_fn(|| self.rig.command())) {
+            self.control.obey(command, now_s);
+        }
+        let (outputs, ticks) = self.control.step(inputs, &Timing { now_s, ..Timing::default() });
+        self.rig.write(now_s, &outputs);
+        self.rig.hear(now_s, &self.control.bulletins());
+        self.tick = ticks[0];
+        self.events.extend(self.control.events().copied());
+    }
+
+    fn state(&self) -> LoopState {
+        self.tick.unwrap().state
+    }
+}
+
+/// Both machines, on one virtual clock.
+struct Bench {
+    leader: Machine<FarFollower<Worlds, Constant>>,
+    follower: Machine<FarLeader<Worlds, Constant>>,
+    is_cut: Arc<Mutex<bool>>,
+    ticks: u64,
+}
+
+impl Bench {
+    /// With this delay each way, s; the clocks are half an hour apart.
+    fn new(delay_s: f64, mode: Mode) -> Self {
+        let mut rig = RigConfig::load("simulated").unwrap();
+        (rig.mode, rig.delay_s) = (mode, 0.0);
+        let worlds = || Worlds::new(&Scene::load("peg_transfer").unwrap(), rig.rate_hz);
+        let (there, back): (Way, Way) = Default::default();
+        let is_cut = Arc::<Mutex<bool>>::default();
+        let wire = |out: &Way, back: &Way, ahead_s| Constant {
+            out: out.clone(),
+            back: back.clone(),
+            delay_s,
+            ahead_s,
+            is_cut: is_cut.clone(),
+        };
+        let control = |rig: &RigConfig| Loop::new(rig, &[Some(Calibrations::default()), None]).unwrap();
+        let leader = FarFollower::new(worlds(), wire(&there, &back, 0.0), rig.rate_hz);
+        let follower = FarLeader::new(worlds(), wire(&back, &there, 1800.0), rig.rate_hz);
+        Self {
+            leader: Machine { control: control(&rig), rig: leader, tick: None, ahead_s: 0.0, events: Vec::new() },
+            follower: Machine {
+                control: control(&at_follower(&rig)),
+                rig: follower,
+                tick: None,
+                ahead_s: 1800.0,
+                events: Vec::new(),
+            },
+            is_cut,
+            ticks: 0,
+        }
+    }
+
+    fn step_with(&mut self, at_leader: Option<Command>, at_follower: Option<Command>) {
+        let at_s = self.ticks as f64 * 1e-3;
+        self.leader.step(at_leader, at_s);
+        self.follower.step(at_follower, at_s);
+        self.ticks += 1;
+    }
+
+    fn run(&mut self, ticks: usize) {
+        (0..ticks).for_each(|_| self.step_with(None, None));
+    }
+
+    fn engaged(delay_s: f64, mode: Mode) -> Self {
+        let mut bench = Self::new(delay_s, mode);
+        bench.run(300 + (4e3 * delay_s) as usize);
+        assert_eq!(bench.states(), [LoopState::Idle; 2]);
+        bench.step_with(Some(Command::Engage), None);
+        bench.run(100 + (8e3 * delay_s) as usize);
+        assert_eq!(bench.states(), [LoopState::Engaged; 2], "{:?} {:?}", bench.leader.events, bench.follower.events);
+        bench
+    }
+
+    fn states(&self) -> [LoopState; 2] {
+        [self.leader.state(), self.follower.state()]
+    }
+
+    /// Where the tip is.
+    fn tip_m(&self) -> Vector3<f64> {
+        self.follower.rig.measured()[0].unwrap().tip_m
+    }
+
+    fn cut(&self, is_cut: bool) {
+        *self.is_cut.lock().unwrap() = is_cut;
+    }
+}
+
+fn rms_n(errors: &[f64]) -> f64 {
+    (errors.iter().map(|error| error * error).sum::<f64>() / errors.len() as f64).sqrt()
+}
+
+/// Rms error of the force at the hand, N, against the force at the tip when the follower has the present command, and the largest
+/// force.
+fn over_a_network(delay_s: f64, mode: Mode) -> [f64; 2] {
+    let mut bench = Bench::engaged(delay_s, mode);
+    let (mut felt_n, mut tip_n) = (Vec::new(), Vec::new());
+    for _ in 0..20_000 {
+        bench.run(1);
+        felt_n.push(bench.leader.tick.unwrap().asked_n[mode.index()]);
+        tip_n.push(bench.follower.tick.unwrap().measured_n);
+    }
+    let ahead = (delay_s * 1e3).round() as usize;
+    let errors: Vec<f64> = felt_n.iter().zip(&tip_n[ahead..]).skip(4000).map(|(a, b)| (a - b).norm()).collect();
+    [rms_n(&errors), tip_n.iter().map(Vector3::norm).fold(0.0, f64::max)]
+}
+
+/// The same with everything in one place and the whole delay on the way back.
+fn in_one_place(delay_s: f64, mode: Mode) -> f64 {
+    let mut rig = RigConfig::load("simulated").unwrap();
+    (rig.mode, rig.delay_s) = (mode, delay_s);
+    let scene = Scene::load("peg_transfer").unwrap();
+    let plan = Plan { rig, scene, calibrations: Default::default(), engage: true };
+    let errors = RefCell::new(Vec::new());
+    run_virtual(&plan, 20.5, |tick| {
+        if tick.t_s > 4.5 {
+            errors.borrow_mut().push((tick.asked_n[mode.index()] - tick.measured_n).norm());
+        }
+        None
+    })
+    .unwrap();
+    rms_n(&errors.into_inner())
+}
+
+#[test]
+fn the_force_is_as_good_as_over_the_same_delay_in_one_place() {
+    for (mode, delay_s) in [(Mode::Dfr, 0.025), (Mode::Best, 0.005), (Mode::Best, 0.072), (Mode::Matched, 0.025)] {
+        let [apart_n, peak_n] = over_a_network(delay_s, mode);
+        let together_n = in_one_place(2.0 * delay_s, mode);
+        println!("{mode} {delay_s} s each way: {apart_n:.3} N apart, {together_n:.3} N together, peak {peak_n:.2} N");
+        assert!(peak_n > 0.5, "{peak_n} N: nothing was touched");
+        assert!(apart_n < 1.15 * together_n, "{mode}, {delay_s} s: {apart_n} N, in one place {together_n} N");
+    }
+}
+
+#[test]
+fn either_end_stops_both_and_neither_resumes_by_itself() {
+    let mut bench = Bench::engaged(0.02, Mode::Best);
+    bench.step_with(Some(Command::Stop), None);
+    bench.run(60);
+    assert_eq!(bench.states(), [LoopState::Stopped; 2]);
+    bench.run(2000);
+    assert_eq!(bench.states(), [LoopState::Stopped; 2]);
+    bench.step_with(Some(Command::ReleaseStop), None);
+    bench.run(60);
+    assert_eq!(bench.states(), [LoopState::Idle; 2]);
+    bench.step_with(Some(Command::Engage), None);
+    bench.run(200);
+    assert_eq!(bench.states(), [LoopState::Engaged; 2]);
+
+    bench.step_with(None, Some(Command::Stop));
+    bench.run(60);
+    let stopped = LoopState::Faulted(Fault::FarEnd { stop: FarStop::Stopped });
+    assert_eq!(bench.states(), [stopped, LoopState::Stopped]);
+    bench.step_with(Some(Command::ReleaseStop), None);
+    bench.run(100);
+    assert_eq!(bench.states(), [LoopState::Idle; 2]);
+    bench.step_with(Some(Command::Engage), None);
+    bench.run(200);
+    bench.step_with(Some(Command::Rest), None);
+    bench.run(60);
+    assert_eq!(bench.states(), [LoopState::Idle; 2]);
+}
+
+#[test]
+fn a_stop_while_nothing_is_engaged_is_told_and_released_from_the_screen() {
+    let mut bench = Bench::new(0.02, Mode::Best);
+    bench.run(300);
+    bench.step_with(None, Some(Command::Stop));
+    bench.run(60);
+    assert_eq!(bench.states(), [LoopState::Idle, LoopState::Stopped]);
+    bench.step_with(Some(Command::Engage), None);
+    let refused = Refusal::StillPresent(Fault::FarEnd { stop: FarStop::Stopped });
+    assert!(
+        bench.leader.events.iter().any(|event| matches!(event, Event::CommandRefused { why, .. } if *why == refused)),
+        "{:?}",
+        bench.leader.events
+    );
+    bench.step_with(Some(Command::ReleaseStop), None);
+    bench.run(60);
+    assert_eq!(bench.states(), [LoopState::Idle; 2]);
+}
+
+#[test]
+fn a_cut_takes_the_force_within_20_ms_and_what_comes_back_resumes_nothing() {
+    let mut bench = Bench::engaged(0.02, Mode::Best);
+    let mut waited = 0;
+    while bench.leader.tick.unwrap().rendered_n.norm() < 0.3 && waited < 20_000 {
+        bench.run(1);
+        waited += 1;
+    }
+    bench.cut(true);
+    // What is under way still arrives.
+    bench.run(20);
+    let before_m = bench.tip_m();
+    bench.run(21);
+    assert!(bench.leader.tick.unwrap().rendered_n.norm() < 1e-9, "{:?}", bench.leader.tick.unwrap().rendered_n);
+    bench.run(200);
+    assert_eq!(bench.states(), [LoopState::Faulted(Fault::LinkSilent); 2]);
+    let held_m = bench.tip_m();
+    assert!((held_m - before_m).norm() < 0.03, "{held_m:?}: the tip went on");
+    bench.run(2000);
+    assert!((bench.tip_m() - held_m).norm() < 1e-4, "the tip is held");
+    bench.cut(false);
+    let mut step_m = 0.0_f64;
+    for _ in 0..1000 {
+        let at_m = bench.tip_m();
+        bench.run(1);
+        step_m = step_m.max((bench.tip_m() - at_m).norm());
+        assert!(bench.leader.tick.unwrap().rendered_n.norm() < 1e-9);
+    }
+    assert!(bench.states().iter().all(|state| state.is_latched()), "{:?}", bench.states());
+    assert!(step_m < 0.2e-3, "{step_m} m");
+}
+
+#[test]
+fn garbage_and_silence_move_nothing() {
+    let mut bench = Bench::engaged(0.01, Mode::Best);
+    for ticks in 0..400_usize {
+        // Messages cut and with turned bits, put into both ways.
+        for way in [&bench.leader.rig.wire().out, &bench.follower.rig.wire().out] {
+            let mut way = way.lock().unwrap();
+            if let Some((due_s, message)) = way.back().cloned() {
+                let mut bad = message.clone();
+                bad.truncate(ticks % message.len());
+                way.push_back((due_s, bad));
+            }
+        }
+        bench.run(1);
+    }
+    assert_eq!(bench.states(), [LoopState::Engaged; 2]);
+    assert!(!bench.leader.events.iter().any(|event| {
+        matches!(event, Event::FaultRaised { fault: Fault::Implausible { what: Implausible::LinkFrozen }, .. })
+    }));
+}

@@ -9,6 +9,7 @@
 
 pub mod clock;
 pub mod control;
+pub mod endpoint;
 pub mod figures;
 pub mod keys;
 pub mod playout;
@@ -16,5 +17,6 @@ pub mod rate;
 pub mod redundancy;
 pub mod replay;
 pub mod secure;
+mod socket;
 pub mod stream;
 pub mod wire;

@@ -201,6 +201,13 @@ impl Playout {
         self.awaited = AGAIN_COUNT;
     }
 
+    /// Begins anew with the next payload: nothing that has come before is handed over.
+    pub fn begin(&mut self) {
+        self.next = self.end;
+        self.parts = [EMPTY; PARTS];
+        (self.part_begin_s, self.first_s, self.delay_s, self.wanted_s) = (None, None, None, None);
+    }
+
     /// Takes a payload that has arrived: its number, when it was sent (s, their clock) and when it came (s, ours), and whether it is
     /// the newest of its datagram. One that came before is ignored.
     pub fn insert(&mut self, number: u64, sent_s: f64, arrived_s: f64, is_newest: bool, bytes: &[u8]) {

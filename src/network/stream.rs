@@ -245,6 +245,11 @@ impl Stream {
         }
     }
 
+    /// Begins anew with the next payload of the other side.
+    pub fn begin(&mut self) {
+        self.playout.begin();
+    }
+
     /// Moves the play-out delay; once per tick, before payloads are taken.
     pub fn advance(&mut self, now_s: f64) {
         self.playout.advance(now_s);

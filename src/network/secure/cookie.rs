@@ -4,7 +4,7 @@ use std::net::{IpAddr, SocketAddr};
 
 use blake2::{
     Blake2sMac,
-    digest::{KeyInit as _, Mac as _, consts::U16},
+    digest::{KeyInit, Mac as _, consts::U16},
 };
 
 use crate::keys::KeyError;
@@ -34,7 +34,7 @@ fn random() -> Result<[u8; 32], KeyError> {
 }
 
 fn mac(secret: &[u8; 32], from: SocketAddr, token: u64) -> Blake2sMac<U16> {
-    let mut mac = <Blake2sMac<U16>>::new(secret.into());
+    let mut mac = <Blake2sMac<U16> as KeyInit>::new(secret.into());
     match from.ip() {
         IpAddr::V4(ip) => mac.update(&ip.octets()),
         IpAddr::V6(ip) => mac.update(&ip.octets()),

@@ -107,6 +107,8 @@ pub struct Reception {
     all: Bucket,
     answers: Bucket,
     addresses: Vec<(IpAddr, Bucket)>,
+    /// No more consoles are admitted now.
+    pub is_full: bool,
 }
 
 impl Reception {
@@ -122,6 +124,7 @@ impl Reception {
             all: Bucket::new(PER_S, PER_S),
             answers: Bucket::new(ANSWERS_PER_S, ANSWERS_PER_S / 10.0),
             addresses: Vec::with_capacity(ADDRESSES),
+            is_full: false,
         })
     }
 
@@ -173,6 +176,10 @@ impl Reception {
         }
         if !self.may_compute(from.ip(), now_s) {
             return Heard::trouble(Trouble::Flooded);
+        }
+        if self.is_full {
+            let answer = write(out, Kind::Refusal, token, &Refusal::Full.bytes());
+            return Heard { answer, ..Heard::trouble(Trouble::Refused) };
         }
         match self.agree(message) {
             Some((agreed, response, len)) => {
@@ -288,7 +295,11 @@ impl Approach {
                 None => Heard::trouble(Trouble::Malformed),
             },
             (Ok(Kind::Response), Waits::Response { .. }) => match self.finish(content) {
-                Some(agreed) => Heard { answer: 0, trouble: None, agreed: Some(Box::new(agreed)) },
+                Some(agreed) => {
+                    // Time for the session to be taken over, before another is asked for.
+                    (self.next_s, self.pause_s) = (now_s + AGAIN_MAX_S, AGAIN_S);
+                    Heard { answer: 0, trouble: None, agreed: Some(Box::new(agreed)) }
+                }
                 None => Heard::trouble(Trouble::Refused),
             },
             (Ok(Kind::Refusal), _) => {
@@ -326,7 +337,6 @@ impl Approach {
         let Waits::Response { noise, .. } = std::mem::replace(&mut self.waits, Waits::Cookie) else { return None };
         let keys = noise.into_stateless_transport_mode().ok()?;
         self.begin_again().ok()?;
-        (self.next_s, self.pause_s) = (f64::MIN, AGAIN_S);
         Some(Agreed { keys, peer: self.follower, theirs: u32::from_le_bytes(theirs), ours })
     }
 }

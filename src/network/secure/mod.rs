@@ -12,7 +12,7 @@ mod handshake;
 
 pub use cookie::Cookies;
 pub(crate) use handshake::Agreed;
-pub use handshake::{Approach, Heard, NOISE, Reception};
+pub use handshake::{Approach, Heard, NOISE, Reception, Trouble};
 
 #[cfg(test)]
 mod tests;

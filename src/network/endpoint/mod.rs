@@ -583,7 +583,7 @@ impl Drop for Endpoint {
 }
 
 /// The address that a socket for datagrams to this one is bound to: what is on this machine is not reached through the network.
-fn towards(to: &SocketAddr) -> SocketAddr {
+pub(crate) fn towards(to: &SocketAddr) -> SocketAddr {
     match to {
         SocketAddr::V4(v4) if v4.ip().is_loopback() => (Ipv4Addr::LOCALHOST, 0).into(),
         SocketAddr::V4(_) => (Ipv4Addr::UNSPECIFIED, 0).into(),

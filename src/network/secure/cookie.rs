@@ -10,7 +10,7 @@ use blake2::{
 use crate::keys::KeyError;
 
 /// Length of a cookie, bytes.
-pub const COOKIE_LEN: usize = 16;
+pub(super) const COOKIE_LEN: usize = 16;
 /// A secret is exchanged after this, s; the one before still counts.
 const SECRET_S: f64 = 60.0;
 

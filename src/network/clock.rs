@@ -16,6 +16,8 @@ const WINDOWS: usize = 100;
 const WINDOWS_MIN: usize = 4;
 /// Least step that is told, s; half of it must be exceeded by the estimate of two windows.
 pub const STEP_MIN_S: f64 = 5e-3;
+/// A window is compared with this many before it.
+const REFERENCE: usize = 5;
 /// A step exceeds the usual deviation of a window this many times.
 const STEP_DEVIATIONS: f64 = 6.0;
 /// Usual deviation of a crystal's rate, as share, and of a window's estimate, s: what the skew is shrunk by.
@@ -106,6 +108,19 @@ impl Line {
     }
 }
 
+/// What a window is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Verdict {
+    /// Like those before it.
+    Usual,
+    /// Unlike them; the next one tells why.
+    Suspect,
+    /// The way has become longer or shorter in one direction.
+    OtherWay,
+    /// A clock was set.
+    Step(f64),
+}
+
 /// Estimates the offset between two clocks.
 #[derive(Clone, Debug)]
 pub struct Clock {
@@ -116,8 +131,10 @@ pub struct Clock {
     line: Option<Line>,
     /// Least half round trip of the kept windows, s.
     half_s: f64,
-    /// What a window deviated by, if it looked like a step.
-    suspected_s: Option<f64>,
+    /// The windows from this one on are compared with the next.
+    reference_from: usize,
+    /// By what the last window deviated, offset and half round trip, s, if it looked like a step.
+    suspect: Option<(f64, f64)>,
     step: Option<Step>,
     steps: u32,
 }
@@ -130,7 +147,8 @@ impl Default for Clock {
             open: None,
             line: None,
             half_s: f64::INFINITY,
-            suspected_s: None,
+            reference_from: 0,
+            suspect: None,
             step: None,
             steps: 0,
         }
@@ -185,48 +203,65 @@ impl Clock {
     }
 
     fn close(&mut self, window: Window) -> Option<Step> {
-        let step = self.judge(&window);
-        if let Some(by_s) = step {
-            *self = Self { steps: self.steps + 1, ..Self::default() };
-            self.step = Some(Step { found_s: window.last_s, by_s });
-        } else if self.suspected_s.is_some() {
+        let step = match self.judge(&window) {
+            Verdict::Usual => None,
             // Neither taken nor thrown away: the next window tells.
-            return None;
-        }
+            Verdict::Suspect => return None,
+            Verdict::OtherWay => {
+                self.reference_from = self.closed;
+                None
+            }
+            Verdict::Step(by_s) => {
+                let step = Step { found_s: window.last_s, by_s };
+                *self = Self { steps: self.steps + 1, step: Some(step), ..Self::default() };
+                Some(step)
+            }
+        };
         self.windows[self.closed % WINDOWS] = window;
         self.closed += 1;
         self.fit(window.last_s);
-        self.step.filter(|_| step.is_some())
+        step
     }
 
-    /// The step that this window and the one before show.
-    fn judge(&mut self, window: &Window) -> Option<f64> {
-        let line = self.line.filter(|_| self.kept().len() >= WINDOWS_MIN)?;
-        let deviation_s = window.offset_s() - line.at(window.middle_s());
-        let longer_s = window.half_s() - self.half_s;
+    /// The last windows that were taken, newest first, at most this many.
+    fn last(&self, count: usize) -> impl Iterator<Item = &Window> {
+        let count = count.min(self.closed).min(WINDOWS);
+        (1..=count).map(|back| &self.windows[(self.closed - back) % WINDOWS])
+    }
+
+    /// Compares a window with those just before it. A longer or shorter way in one direction moves the middle by as much as half the round
+    /// trip; a step leaves the round trip as it was. A window in which it happened shows something between: only two in a row that agree
+    /// are judged.
+    fn judge(&mut self, window: &Window) -> Verdict {
+        let count = REFERENCE.min(self.closed - self.reference_from);
+        if self.closed < WINDOWS_MIN || count == 0 {
+            return Verdict::Usual;
+        }
+        let mean = |of: fn(&Window) -> f64| self.last(count).map(of).sum::<f64>() / count as f64;
+        let by_s = window.offset_s() - mean(Window::offset_s);
+        let longer_s = window.half_s() - mean(Window::half_s);
         // Few windows know their own deviation badly.
-        let deviations = STEP_DEVIATIONS * (1.0 + WINDOWS_MIN as f64 / self.kept().len() as f64);
-        let least_s = (STEP_MIN_S / 2.0).max(deviations * self.usual_deviation_s(&line));
-        // A longer way in one direction moves the middle by as much as half the round trip. A window in which the step
-        // happened has a shorter round trip than is possible.
-        let is_suspect = deviation_s.abs() > least_s && (longer_s.abs() < 0.4 * deviation_s.abs() || window.half_s() < 0.0);
-        let before_s = self.suspected_s.take();
-        if !is_suspect {
-            return None;
+        let deviations = STEP_DEVIATIONS * (1.0 + WINDOWS_MIN as f64 / self.closed.min(WINDOWS) as f64);
+        let before = self.suspect.take();
+        if by_s.abs() <= (STEP_MIN_S / 2.0).max(deviations * self.deviation_s()) {
+            return Verdict::Usual;
         }
-        let confirms = |before_s: f64| (before_s - deviation_s).abs() < 0.3 * deviation_s.abs();
-        if before_s.is_some_and(confirms) {
-            return Some(deviation_s);
+        let agrees = |(before_s, before_longer_s): (f64, f64)| {
+            (before_s - by_s).abs().max((before_longer_s - longer_s).abs()) < 0.3 * by_s.abs()
+        };
+        if !before.is_some_and(agrees) {
+            self.suspect = Some((by_s, longer_s));
+            return Verdict::Suspect;
         }
-        self.suspected_s = Some(deviation_s);
-        None
+        if longer_s.abs() < 0.4 * by_s.abs() { Verdict::Step(by_s) } else { Verdict::OtherWay }
     }
 
-    /// Mean absolute deviation of the kept windows from the line, as standard deviation, s.
-    fn usual_deviation_s(&self, line: &Line) -> f64 {
-        let kept = self.kept();
-        let sum_s: f64 = kept.iter().map(|w| (w.offset_s() - line.at(w.middle_s())).abs()).sum();
-        1.25 * sum_s / (kept.len().max(1) as f64)
+    /// Usual deviation of a window, s: from how much two in a row differ.
+    fn deviation_s(&self) -> f64 {
+        let differences = self.last(WINDOWS).zip(self.last(WINDOWS).skip(1));
+        let (sum_s, count) =
+            differences.fold((0.0, 0.0), |(sum, n), (a, b)| (sum + (a.offset_s() - b.offset_s()).abs(), n + 1.0));
+        1.25 / std::f64::consts::SQRT_2 * sum_s / f64::max(count, 1.0)
     }
 
     /// The straight line through the kept windows, with a skew that is shrunk towards none.

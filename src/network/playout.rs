@@ -199,6 +199,11 @@ impl Playout {
         self.wanted_s = self.delay_s;
         self.parts = [EMPTY; PARTS];
         self.awaited = AGAIN_COUNT;
+        let room = self.slots.len() as u64;
+        for number in self.next..self.end {
+            let slot = &mut self.slots[(number % room) as usize];
+            slot.sent_s += by_s;
+        }
     }
 
     /// Begins anew with the next payload: nothing that has come before is handed over.
@@ -225,7 +230,7 @@ impl Playout {
             self.slots[index].mark = self.slots[index].mark.max(number + 1);
             return;
         }
-        if number >= self.next + room {
+        if number >= self.next.saturating_add(room) {
             let next = number + 1 - room;
             self.counts.lost += next - self.next;
             self.next = next;
@@ -276,13 +281,23 @@ impl Playout {
         let Some(percentile_s) = self.percentile_s(count) else { return };
         let wanted_s = percentile_s + self.settings.margin_s;
         self.wanted_s = Some(wanted_s);
-        self.delay_s = match self.delay_s {
-            Some(delay_s) => {
-                let most_s = self.settings.rate * passed_s;
-                Some(delay_s + (wanted_s - delay_s).clamp(-most_s, most_s))
-            }
-            None => self.first_s.filter(|first_s| now_s - first_s >= FIRST_S).map(|_| wanted_s),
+        if let Some(delay_s) = self.delay_s {
+            let most_s = self.settings.rate * passed_s;
+            self.delay_s = Some(delay_s + (wanted_s - delay_s).clamp(-most_s, most_s));
+        } else if self.first_s.is_some_and(|first_s| now_s - first_s >= FIRST_S) {
+            self.delay_s = Some(wanted_s);
+            self.leave_out(now_s - wanted_s);
+        }
+    }
+
+    /// Before the first payload: those that were sent before this (s, their clock) only served to measure.
+    fn leave_out(&mut self, before_s: f64) {
+        let room = self.slots.len() as u64;
+        let is_wanted = |number: &u64| {
+            let slot = &self.slots[(number % room) as usize];
+            slot.mark == number + 1 && slot.sent_s >= before_s
         };
+        self.next = (self.next..self.end).find(is_wanted).unwrap_or(self.end);
     }
 
     /// The next payload that is due; `offset_s` is their clock minus ours.

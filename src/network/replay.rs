@@ -2,7 +2,8 @@
 
 /// Numbers in the window.
 pub const WINDOW: u64 = 2048;
-const WORDS: usize = (WINDOW / 64) as usize;
+/// One more than its length needs: it begins and ends within words.
+const WORDS: usize = (WINDOW / 64) as usize + 1;
 
 /// Why a number is refused.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -181,10 +181,7 @@ mod stamps {
 
 #[cfg(test)]
 mod tests {
-    use std::{
-        thread::sleep,
-        time::{Duration, Instant},
-    };
+    use std::{thread::sleep, time::Duration};
 
     use super::*;
 
@@ -193,17 +190,21 @@ mod tests {
         for home in ["127.0.0.1:0", "[::1]:0"] {
             let Ok(one) = Socket::open(home.parse().unwrap(), None) else { continue };
             let two = Socket::open(home.parse().unwrap(), Some(one.address().unwrap())).unwrap();
-            assert!(two.send(&[7; 100], one.address().unwrap()));
-            let begin = Instant::now();
-            sleep(Duration::from_millis(20));
             let mut buffer = [0; 60];
-            let arrival = one.receive(&mut buffer).unwrap();
-            assert_eq!((arrival.from, buffer), (two.address().unwrap(), [7; 60]));
-            if cfg!(target_os = "linux") {
-                assert_eq!(arrival.len, 100, "longer than the buffer");
-                let waited_s = begin.elapsed().as_secs_f64();
-                assert!((0.019..waited_s + 0.02).contains(&arrival.age_s), "{} of {waited_s}", arrival.age_s);
+            let mut age_s = 0.0;
+            // The first socket of a system that wants stamps gets them a little later.
+            for _ in 0..50 {
+                assert!(two.send(&[7; 100], one.address().unwrap()));
+                sleep(Duration::from_millis(20));
+                let arrival = one.receive(&mut buffer).unwrap();
+                assert_eq!((arrival.from, buffer), (two.address().unwrap(), [7; 60]));
+                assert!(!cfg!(target_os = "linux") || arrival.len == 100, "longer than the buffer");
+                age_s = arrival.age_s;
+                if age_s > 0.019 {
+                    break;
+                }
             }
+            assert!(!cfg!(target_os = "linux") || (0.019..1.0).contains(&age_s), "{age_s}");
             assert!(one.receive(&mut buffer).is_none());
         }
     }

@@ -7,10 +7,12 @@ use snow::StatelessTransportState;
 use crate::{
     clock::{Clock, Exchange, Step},
     figures::{Copies, Figures, Limit, Meter},
+    keys::KeyError,
     playout::{Payload, Playout, PlayoutSettings},
     rate::Bucket,
     redundancy::{History, Losses, copies_for},
     replay::{Refused, Window},
+    secure,
     wire::{self, DATAGRAM_MAX, HEAD_LEN, Head, OUTER_LEN, PAYLOAD_MAX, RECORD_LEN, TAG_LEN, UDP_LEN},
 };
 
@@ -112,7 +114,7 @@ fn byte(share: f64) -> u8 {
 
 impl Stream {
     /// A stream with the keys of a handshake; `session` is its number at the other side. All memory is allocated here.
-    pub fn new(keys: StatelessTransportState, session: u32, settings: &StreamSettings) -> Self {
+    pub(crate) fn new(keys: StatelessTransportState, session: u32, settings: &StreamSettings) -> Self {
         let payload_max = settings.payload_max.min(PAYLOAD_MAX);
         Self {
             keys,
@@ -132,6 +134,36 @@ impl Stream {
             held: 0,
             plain: [0; DATAGRAM_MAX],
         }
+    }
+
+    /// Both ends of a session, for a virtual clock: there is no network between them but what the caller makes.
+    ///
+    /// # Errors
+    /// [`KeyError::Random`] if the system gives no random numbers.
+    ///
+    /// ```
+    /// use nima_network::{stream::{Sent, Stream, StreamSettings}, wire::DATAGRAM_MAX};
+    ///
+    /// let (mut console, mut follower) = Stream::pair(&StreamSettings::default())?;
+    /// let mut datagram = [0; DATAGRAM_MAX];
+    /// let mut got = 0;
+    /// for tick in 0..1000 {
+    ///     let now_s = f64::from(tick) * 1e-3;
+    ///     if let Sent::Datagram(len) = console.send(now_s, Some(b"hello"), 0, &mut datagram) {
+    ///         follower.receive(&datagram[..len], now_s).expect("authentic");
+    ///     }
+    ///     follower.advance(now_s);
+    ///     while let Some(payload) = follower.take(now_s) {
+    ///         assert_eq!(payload.bytes, b"hello");
+    ///         got += 1;
+    ///     }
+    /// }
+    /// assert!(got > 850, "the first tenth of a second only measures: {got}");
+    /// # Ok::<(), nima_network::keys::KeyError>(())
+    /// ```
+    pub fn pair(settings: &StreamSettings) -> Result<(Self, Self), KeyError> {
+        let [one, other] = secure::both_ends()?;
+        Ok((Self::new(one.keys, one.theirs, settings), Self::new(other.keys, other.theirs, settings)))
     }
 
     /// Makes a datagram with this payload and the last ones before it; without a payload, one that keeps the session alive.

@@ -10,9 +10,40 @@
 mod cookie;
 mod handshake;
 
+use std::net::Ipv4Addr;
+
 pub use cookie::Cookies;
 pub(crate) use handshake::Agreed;
 pub use handshake::{Approach, Heard, NOISE, Reception, Trouble};
+
+use crate::{
+    keys::{KeyError, Keys, Peers},
+    wire::HANDSHAKE_MAX,
+};
+
+/// Both ends of a session between two machines that were made up, without a network.
+pub(crate) fn both_ends() -> Result<[Agreed; 2], KeyError> {
+    let (console, follower) = (Keys::random()?, Keys::random()?);
+    let mut consoles = Peers::default();
+    consoles.add("console", console.public())?;
+    let from = (Ipv4Addr::LOCALHOST, 1).into();
+    let mut reception = Reception::new(follower.clone(), consoles, 0.0)?;
+    let mut approach = Approach::new(console, follower.public())?;
+    let (mut there, mut back) = ([0; HANDSHAKE_MAX], [0; HANDSHAKE_MAX]);
+    let mut len = approach.due(0.0, &mut there);
+    let mut theirs = None;
+    // Two round trips.
+    for _ in 0..2 {
+        let heard = reception.hear(&there[..len], from, 0.0, &mut back);
+        theirs = heard.agreed;
+        let heard = approach.hear(&back[..heard.answer], 0.0, &mut there);
+        len = heard.answer;
+        if let (Some(ours), Some(theirs)) = (heard.agreed, theirs.take()) {
+            return Ok([*ours, *theirs]);
+        }
+    }
+    Err(KeyError::Random)
+}
 
 #[cfg(test)]
 mod tests;

@@ -110,7 +110,7 @@ fn the_limit_of_the_rate_is_kept_and_named() {
         let figures = link.figures(0);
         assert_eq!(figures.copies.limit, Limit::Rate, "{figures:?}");
         let rate_bit_s = figures.sent.bytes as f64 * 8.0 / 10.0;
-        assert!(rate_bit_s < 1.002 * rate_max_bit_s && rate_bit_s > 0.8 * rate_max_bit_s, "{rate_bit_s} of {rate_max_bit_s}");
+        assert!(rate_bit_s < rate_max_bit_s + 1e3 && rate_bit_s > 0.8 * rate_max_bit_s, "{rate_bit_s} of {rate_max_bit_s}");
         // What could not be sent alone goes with the next.
         assert!(len == 40 || figures.held > 100, "{figures:?}");
     }

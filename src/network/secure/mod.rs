@@ -31,14 +31,12 @@ pub(crate) fn both_ends() -> Result<[Agreed; 2], KeyError> {
     let mut approach = Approach::new(console, follower.public())?;
     let (mut there, mut back) = ([0; HANDSHAKE_MAX], [0; HANDSHAKE_MAX]);
     let mut len = approach.due(0.0, &mut there);
-    let mut theirs = None;
     // Two round trips.
     for _ in 0..2 {
-        let heard = reception.hear(&there[..len], from, 0.0, &mut back);
-        theirs = heard.agreed;
-        let heard = approach.hear(&back[..heard.answer], 0.0, &mut there);
+        let answer = reception.hear(&there[..len], from, 0.0, &mut back);
+        let heard = approach.hear(&back[..answer.answer], 0.0, &mut there);
         len = heard.answer;
-        if let (Some(ours), Some(theirs)) = (heard.agreed, theirs.take()) {
+        if let (Some(ours), Some(theirs)) = (heard.agreed, answer.agreed) {
             return Ok([*ours, *theirs]);
         }
     }

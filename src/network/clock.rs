@@ -182,7 +182,12 @@ impl Clock {
         let Some(line) = self.line else {
             let open = self.open.as_ref()?;
             let half_s = open.half_s().max(0.0);
-            return Some(Estimate { offset_s: open.offset_s(), bound_s: half_s, round_trip_s: 2.0 * half_s, skew: 0.0 });
+            return Some(Estimate {
+                offset_s: open.offset_s(),
+                bound_s: half_s,
+                round_trip_s: 2.0 * half_s,
+                skew: 0.0,
+            });
         };
         let half_s = self.half_s.max(0.0);
         Some(Estimate { offset_s: line.at(now_s), bound_s: half_s, round_trip_s: 2.0 * half_s, skew: line.skew })

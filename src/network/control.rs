@@ -41,7 +41,7 @@ impl FromFollower {
             Standing::Waits => 2,
             Standing::Free => 3,
         };
-        standing | (self.asked & 3) << 2 | (self.is_denied as u8) << 4 | self.goodbye as u8 * GOODBYE
+        standing | ((self.asked & 3) << 2) | ((self.is_denied as u8) << 4) | (self.goodbye as u8 * GOODBYE)
     }
 
     pub(crate) const fn from_byte(byte: u8) -> Self {
@@ -51,7 +51,7 @@ impl FromFollower {
             3 => Standing::Free,
             _ => Standing::Unknown,
         };
-        Self { standing, asked: byte >> 2 & 3, is_denied: byte >> 4 & 1 != 0, goodbye: byte & GOODBYE != 0 }
+        Self { standing, asked: (byte >> 2) & 3, is_denied: (byte >> 4) & 1 != 0, goodbye: byte & GOODBYE != 0 }
     }
 }
 
@@ -70,16 +70,11 @@ pub(crate) struct FromConsole {
 
 impl FromConsole {
     pub(crate) const fn byte(self) -> u8 {
-        self.asks as u8 | (self.consents as u8) << 1 | (self.answers & 3) << 2 | self.goodbye as u8 * GOODBYE
+        self.asks as u8 | ((self.consents as u8) << 1) | ((self.answers & 3) << 2) | (self.goodbye as u8 * GOODBYE)
     }
 
     pub(crate) const fn from_byte(byte: u8) -> Self {
-        Self {
-            asks: byte & 1 != 0,
-            consents: byte & 2 != 0,
-            answers: byte >> 2 & 3,
-            goodbye: byte & GOODBYE != 0,
-        }
+        Self { asks: byte & 1 != 0, consents: byte & 2 != 0, answers: (byte >> 2) & 3, goodbye: byte & GOODBYE != 0 }
     }
 }
 

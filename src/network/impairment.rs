@@ -96,7 +96,11 @@ impl Settings {
     /// The sentence, with key, value and what is allowed.
     pub fn check(&self) -> Result<(), String> {
         let share = |name: &str, value: f64| {
-            if (0.0..=1.0).contains(&value) { Ok(()) } else { Err(format!("{name} = {value}: a share is between 0 and 1")) }
+            if (0.0..=1.0).contains(&value) {
+                Ok(())
+            } else {
+                Err(format!("{name} = {value}: a share is between 0 and 1"))
+            }
         };
         let time = |name: &str, value: f64| {
             let allowed = (0.0..=60.0).contains(&value);
@@ -160,7 +164,14 @@ impl Impairment {
     /// The same seed gives the same fates.
     pub fn new(settings: Settings, seed: u64) -> Self {
         let noise = Noise::new(seed);
-        Self { settings, noise, is_bad: false, until_s: f64::NEG_INFINITY, last_s: f64::NEG_INFINITY, busy_s: f64::NEG_INFINITY }
+        Self {
+            settings,
+            noise,
+            is_bad: false,
+            until_s: f64::NEG_INFINITY,
+            last_s: f64::NEG_INFINITY,
+            busy_s: f64::NEG_INFINITY,
+        }
     }
 
     /// What happens to a datagram of this length (bytes, with all headers) that is sent at `now_s`; times must not go back.

@@ -225,8 +225,9 @@ impl Peers {
             // Made with its mode, which replacing it keeps.
             write_new(&path, "")?;
         }
-        let text: String = self.list.iter().map(|peer| format!("{} {}\n", peer.key, peer.name)).collect();
-        let written = nima_files::write_atomically(&path, |file| file.write_all(text.as_bytes()));
+        let written = nima_files::write_atomically(&path, |file| {
+            self.list.iter().try_for_each(|peer| writeln!(file, "{} {}", peer.key, peer.name))
+        });
         written.map_err(|source| KeyError::File { path, source })
     }
 

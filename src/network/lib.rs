@@ -13,6 +13,7 @@ pub mod endpoint;
 pub mod figures;
 pub mod impairment;
 pub mod keys;
+pub mod pairing;
 pub mod playout;
 pub mod rate;
 pub mod redundancy;

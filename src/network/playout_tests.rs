@@ -96,7 +96,7 @@ fn the_delay_moves_by_one_millisecond_per_second_at_most() {
 #[test]
 fn duplicates_reordering_and_loss_are_counted_and_harmless() {
     let mut playout = playout();
-    let got = run(&mut playout, 0, 5000, |i| (i % 10 != 3).then(|| 10e-3 + if i % 7 == 0 { 4e-3 } else { 0.0 }));
+    let got = run(&mut playout, 0, 5000, |i| (i % 10 != 3).then_some(10e-3 + if i % 7 == 0 { 4e-3 } else { 0.0 }));
     for back in 1..50 {
         playout.insert(4950 - back, 0.0, 5.0, true, b"again");
     }

@@ -86,7 +86,9 @@ impl Relay {
         let address = socket.address()?;
         let shared = Arc::new(Shared::default());
         let theirs = Arc::clone(&shared);
-        let thread = Builder::new().name("relay".into()).spawn(move || Work { socket, settings, clients: Vec::new(), made: 0 }.run(&theirs))?;
+        let thread = Builder::new()
+            .name("relay".into())
+            .spawn(move || Work { socket, settings, clients: Vec::new(), made: 0 }.run(&theirs))?;
         Ok(Self { address, shared, thread: Some(thread) })
     }
 
@@ -145,7 +147,8 @@ impl Work {
                 }
             }
             self.count(shared);
-            let is_busy = now_s - busy_s < REST_AFTER_S || self.clients.iter().any(|c| c.there.due_s().or(c.back.due_s()).is_some());
+            let is_busy = now_s - busy_s < REST_AFTER_S
+                || self.clients.iter().any(|c| c.there.due_s().or(c.back.due_s()).is_some());
             sleep(if is_busy { BUSY } else { REST });
         }
     }

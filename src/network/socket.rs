@@ -99,13 +99,7 @@ mod stamps {
         let len = size_of::<libc::c_int>() as libc::socklen_t;
         // SAFETY: the pointer and the length are those of `on`. Without stamps, ages are 0.
         unsafe {
-            libc::setsockopt(
-                socket.as_raw_fd(),
-                libc::SOL_SOCKET,
-                libc::SO_TIMESTAMPNS,
-                (&raw const on).cast(),
-                len,
-            );
+            libc::setsockopt(socket.as_raw_fd(), libc::SOL_SOCKET, libc::SO_TIMESTAMPNS, (&raw const on).cast(), len);
         }
     }
 

@@ -197,7 +197,9 @@ impl Stream {
         let sent_us = micros(now_s);
         let head = Head {
             sent_us,
-            echo: self.newest.map(|(sent_us, came_s)| (sent_us as u32, micros((now_s - came_s).clamp(0.0, 4000.0)) as u32)),
+            echo: self
+                .newest
+                .map(|(sent_us, came_s)| (sent_us as u32, micros((now_s - came_s).clamp(0.0, 4000.0)) as u32)),
             loss: byte(self.losses.shares().0),
             loss_again: byte(self.losses.shares().1),
             control,
@@ -271,7 +273,9 @@ impl Stream {
         let newest = wire::whole(self.playout.end(), head.newest);
         let sent_s = seconds(head.sent_us);
         for back in 0..u64::from(head.count) {
-            let (Some((record, rest)), Some(number)) = (wire::record(records), newest.checked_sub(back)) else { return };
+            let (Some((record, rest)), Some(number)) = (wire::record(records), newest.checked_sub(back)) else {
+                return;
+            };
             records = rest;
             self.playout.insert(number, sent_s - record.age_s, arrived_s, back == 0, record.bytes);
         }

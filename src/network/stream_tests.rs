@@ -3,7 +3,7 @@ use crate::impairment::{Flap, Jitter, Line, Loss, Settings};
 
 /// Two streams with a line in each direction, on a virtual clock of 1 kHz.
 struct Link {
-    ends: [Stream; 2],
+    ends: [Box<Stream>; 2],
     /// From each end to the other.
     lines: [Line; 2],
     /// Payloads that each end got: number and age (s).
@@ -19,7 +19,15 @@ impl Link {
     fn new(settings: Settings, stream: StreamSettings, len: usize) -> Self {
         let (one, other) = Stream::pair(&stream).unwrap();
         let lines = [Line::new(settings, 1), Line::new(settings, 2)];
-        Self { ends: [one, other], lines, got: [vec![], vec![]], steps: [0; 2], offset_s: 100.0, tick: 0, len }
+        Self {
+            ends: [Box::new(one), Box::new(other)],
+            lines,
+            got: [vec![], vec![]],
+            steps: [0; 2],
+            offset_s: 100.0,
+            tick: 0,
+            len,
+        }
     }
 
     fn run(&mut self, length_s: f64) {
@@ -110,7 +118,10 @@ fn the_limit_of_the_rate_is_kept_and_named() {
         let figures = link.figures(0);
         assert_eq!(figures.copies.limit, Limit::Rate, "{figures:?}");
         let rate_bit_s = figures.sent.bytes as f64 * 8.0 / 10.0;
-        assert!(rate_bit_s < rate_max_bit_s + 1e3 && rate_bit_s > 0.8 * rate_max_bit_s, "{rate_bit_s} of {rate_max_bit_s}");
+        assert!(
+            rate_bit_s < rate_max_bit_s + 1e3 && rate_bit_s > 0.8 * rate_max_bit_s,
+            "{rate_bit_s} of {rate_max_bit_s}"
+        );
         // What could not be sent alone goes with the next.
         assert!(len == 40 || figures.held > 100, "{figures:?}");
     }
@@ -142,7 +153,8 @@ fn duplicates_reordering_and_jitter_change_nothing_but_the_delay() {
 #[test]
 fn a_step_of_a_clock_is_named_within_a_second_by_both() {
     for by_s in [50e-3, -50e-3, 5e-3] {
-        let settings = Settings { delay_s: 15e-3, jitter: Jitter::Normal { deviation_s: 0.5e-3 }, ..Settings::default() };
+        let settings =
+            Settings { delay_s: 15e-3, jitter: Jitter::Normal { deviation_s: 0.5e-3 }, ..Settings::default() };
         let mut link = Link::new(settings, stream(1e6), 40);
         link.run(5.0);
         assert_eq!(link.steps, [0; 2]);
@@ -177,7 +189,8 @@ fn after_an_outage_the_stream_goes_on_where_it_is() {
 fn directions_can_differ() {
     let mut link = Link::new(Settings::default(), stream(2e6), 40);
     link.lines[0] = Line::new(Settings { delay_s: 30e-3, ..Settings::default() }, 1);
-    link.lines[1] = Line::new(Settings { delay_s: 10e-3, loss: Loss::Independent { share: 0.1 }, ..Settings::default() }, 2);
+    link.lines[1] =
+        Line::new(Settings { delay_s: 10e-3, loss: Loss::Independent { share: 0.1 }, ..Settings::default() }, 2);
     link.run(10.0);
     let [one, other] = [link.figures(0), link.figures(1)];
     assert!(one.loss > 0.08 && one.loss_there < 0.01 && other.loss < 0.01 && other.loss_there > 0.08);

@@ -62,15 +62,8 @@ pub enum Kind {
 }
 
 impl Kind {
-    const ALL: [Self; 7] = [
-        Self::Hello,
-        Self::Cookie,
-        Self::Initiation,
-        Self::Response,
-        Self::Refusal,
-        Self::Data,
-        Self::Pairing,
-    ];
+    const ALL: [Self; 7] =
+        [Self::Hello, Self::Cookie, Self::Initiation, Self::Response, Self::Refusal, Self::Data, Self::Pairing];
 
     const fn number(self) -> u8 {
         match self {

@@ -8,7 +8,10 @@
 //! be connected and ask the holder for control.
 
 mod clerk;
+mod config;
+mod hearing;
 mod holding;
+mod keeping;
 mod session;
 
 use std::{
@@ -17,20 +20,22 @@ use std::{
     sync::atomic::Ordering::Relaxed,
 };
 
+pub use self::config::{Config, Control, LinkState, OpenError, Outcome, Role};
 use self::{
-    clerk::{Clerk, News, Side},
+    clerk::{Clerk, Side},
+    config::Wish,
     holding::Holding,
     session::Session,
 };
 use crate::{
-    control::{Cause, FromConsole, FromFollower, Refusal, Standing},
+    control::{Cause, Refusal, Standing},
     figures::{Dropped, Figures},
-    keys::{KeyError, Keys, Peers, PublicKey},
+    keys::PublicKey,
     playout::Payload,
     secure::{Approach, Reception},
-    socket::{Arrival, Socket},
-    stream::{Sent, StreamSettings, Unaccepted},
-    wire::{self, DATAGRAM_MAX, Kind, Unreadable},
+    socket::Socket,
+    stream::Sent,
+    wire::DATAGRAM_MAX,
 };
 
 /// Where a follower listens unless told otherwise.
@@ -54,107 +59,6 @@ const REFUSED_TOLD_S: f64 = 5.0;
 /// How often a goodbye is said: datagrams may be lost.
 const GOODBYES: usize = 3;
 
-/// Which end it is.
-#[derive(Clone, Debug)]
-pub enum Role {
-    /// The end with the arm.
-    Follower {
-        /// Where it listens; `None` for [`PORT`] of loopback, so that nobody outside can reach it.
-        at: Option<SocketAddr>,
-        /// The consoles that it admits.
-        consoles: Peers,
-    },
-    /// The end with the handle.
-    Console {
-        /// Where the follower listens.
-        follower: SocketAddr,
-        /// The follower's key.
-        key: PublicKey,
-    },
-}
-
-/// What an endpoint is made with.
-#[derive(Clone, Debug)]
-pub struct Config {
-    /// Which end.
-    pub role: Role,
-    /// The key of this machine.
-    pub keys: Keys,
-    /// The stream.
-    pub stream: StreamSettings,
-    /// Without a datagram for this long the link is silent, s.
-    pub silent_after_s: f64,
-    /// A follower forgets a console that is silent for this long, s; it is then free for others.
-    pub forget_after_s: f64,
-}
-
-impl Config {
-    /// With the usual settings.
-    pub fn new(role: Role, keys: Keys) -> Self {
-        Self { role, keys, stream: StreamSettings::default(), silent_after_s: 0.1, forget_after_s: 5.0 }
-    }
-}
-
-/// Why an endpoint cannot be opened.
-#[derive(Debug, thiserror::Error)]
-pub enum OpenError {
-    /// The address cannot be used.
-    #[error("cannot use the UDP address {address}: {source}; is another nima running, or is it another machine's address?")]
-    Address {
-        /// The address.
-        address: SocketAddr,
-        /// Why.
-        source: io::Error,
-    },
-    /// No thread can be started.
-    #[error("cannot start a thread: {0}")]
-    Thread(io::Error),
-    /// Keys.
-    #[error(transparent)]
-    Keys(#[from] KeyError),
-}
-
-/// What a link is now.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum LinkState {
-    /// Nobody has been there yet.
-    Waiting,
-    /// Payloads pass.
-    Open,
-    /// They do not, or not as they should.
-    Down(Cause),
-}
-
-/// What came of sending a payload.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Outcome {
-    /// It is under way.
-    Sent,
-    /// It goes with the next datagram: the rate's limit leaves no room.
-    Held,
-    /// There is nobody to send it to, or another console holds the follower.
-    NotOpen,
-    /// It is longer than the settings allow.
-    TooLong,
-}
-
-/// A console's part in who holds the follower.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Control {
-    /// Not connected.
-    None,
-    /// It holds the follower.
-    Holds,
-    /// It holds the follower, and another console asks for control: [`Endpoint::answer`].
-    HoldsAsked,
-    /// Another console, or nobody, holds it.
-    Waits,
-    /// It waits for an answer.
-    Asks,
-    /// The holder has refused. It may ask again.
-    Denied,
-}
-
 /// One end of a link.
 #[derive(Debug)]
 pub struct Endpoint {
@@ -168,9 +72,8 @@ pub struct Endpoint {
     active: Option<usize>,
     /// A follower's.
     holding: Holding,
-    /// A console's: it asks for control, was denied, and what it answers to the question with a number.
-    asks: bool,
-    is_denied: bool,
+    /// A console's: whether it asks for control, and what it answers to the question with a number.
+    wish: Wish,
     answer: Option<(u8, bool)>,
     dropped: Dropped,
     now_s: f64,
@@ -211,8 +114,7 @@ impl Endpoint {
             sessions: [const { None }; SESSIONS],
             active: None,
             holding: Holding::default(),
-            asks: false,
-            is_denied: false,
+            wish: Wish::None,
             answer: None,
             dropped: Dropped::default(),
             now_s: 0.0,
@@ -323,13 +225,14 @@ impl Endpoint {
     }
 
     /// Asks for control of the follower, until it is given or refused. Nobody has to consent if nobody holds it.
-    pub const fn ask_for_control(&mut self) {
-        (self.asks, self.is_denied) = (true, false);
+    pub fn ask_for_control(&mut self) {
+        let is_stale = self.session().is_some_and(|session| session.from_follower.is_denied);
+        self.wish = if is_stale { Wish::AsksAgain } else { Wish::Asks };
     }
 
     /// Does not ask any more.
     pub const fn withdraw(&mut self) {
-        self.asks = false;
+        self.wish = Wish::None;
     }
 
     /// Answers the console that asks for control ([`Control::HoldsAsked`]); with `true` control goes to it.
@@ -347,9 +250,11 @@ impl Endpoint {
             Standing::Unknown => Control::None,
             Standing::Holds if session.from_follower.asked != 0 && self.answer.is_none() => Control::HoldsAsked,
             Standing::Holds => Control::Holds,
-            _ if self.asks => Control::Asks,
-            _ if self.is_denied => Control::Denied,
-            _ => Control::Waits,
+            _ => match self.wish {
+                Wish::Asks | Wish::AsksAgain => Control::Asks,
+                Wish::Denied => Control::Denied,
+                Wish::None => Control::Waits,
+            },
         }
     }
 
@@ -381,198 +286,6 @@ impl Endpoint {
 
     fn carries(&self) -> bool {
         self.standing() == Standing::Holds
-    }
-
-    fn hear(&mut self) {
-        for _ in 0..RECEIVE_MAX {
-            let Some(arrival) = self.socket.receive(&mut self.buffer) else { return };
-            self.take(arrival);
-        }
-    }
-
-    fn take(&mut self, arrival: Arrival) {
-        let Some(datagram) = self.buffer.get(..arrival.len).filter(|datagram| datagram.len() <= DATAGRAM_MAX) else {
-            self.dropped.malformed += 1;
-            return;
-        };
-        match wire::kind(datagram) {
-            Ok(Kind::Data) => self.take_data(arrival),
-            Ok(Kind::Pairing) | Err(Unreadable::Malformed) => self.dropped.malformed += 1,
-            // The thread answers a foreign version.
-            Ok(_) | Err(Unreadable::ForeignVersion(_)) => {
-                if !self.clerk.give(datagram, arrival.from) {
-                    self.dropped.flooded += 1;
-                }
-            }
-        }
-    }
-
-    fn take_data(&mut self, arrival: Arrival) {
-        let datagram = &self.buffer[..arrival.len];
-        let number = wire::open_outer(datagram).map(|(session, ..)| session);
-        let is_it = |session: &Option<Box<Session>>| session.as_ref().is_some_and(|s| Some(s.ours) == number);
-        let Some(at) = self.sessions.iter().position(is_it) else {
-            self.dropped.unknown_session += 1;
-            return;
-        };
-        let Some(session) = self.sessions[at].as_mut() else { return };
-        let accepted = match session.stream.receive(datagram, self.now_s - arrival.age_s) {
-            Ok(accepted) => accepted,
-            Err(cause) => {
-                *match cause {
-                    Unaccepted::Forged => &mut self.dropped.forged,
-                    Unaccepted::Replayed => &mut self.dropped.replayed,
-                    Unaccepted::Old => &mut self.dropped.old,
-                    Unaccepted::Malformed => &mut self.dropped.malformed,
-                } += 1;
-                return;
-            }
-        };
-        if let Some(step) = accepted.step.filter(|_| self.active == Some(at)) {
-            self.jumped = Some((self.now_s, step.by_s));
-        }
-        if !accepted.is_newest {
-            return;
-        }
-        session.heard_s = self.now_s;
-        session.at = arrival.from;
-        if self.is_follower {
-            session.from_console = FromConsole::from_byte(accepted.control);
-            self.heard_console(at);
-        } else {
-            let before = session.from_follower.standing;
-            session.from_follower = FromFollower::from_byte(accepted.control);
-            session.is_confirmed = true;
-            if matches!(before, Standing::Waits | Standing::Free) && session.from_follower.standing == Standing::Holds {
-                session.stream.begin();
-            }
-            self.heard_follower(at);
-        }
-    }
-
-    /// What a console does with the byte of its follower.
-    fn heard_follower(&mut self, at: usize) {
-        let Some(said) = self.sessions[at].as_ref().map(|session| session.from_follower) else { return };
-        self.heard_s = Some(self.now_s);
-        if said.goodbye {
-            self.is_closed = true;
-            self.end(at);
-            return;
-        }
-        if said.asked == 0 || self.answer.is_some_and(|(number, _)| number != said.asked) {
-            self.answer = None;
-        }
-        if said.standing == Standing::Holds {
-            (self.asks, self.is_denied) = (false, false);
-        }
-        if said.is_denied && self.asks {
-            (self.asks, self.is_denied) = (false, true);
-        }
-    }
-
-    fn take_news(&mut self) {
-        for _ in 0..SESSIONS {
-            match self.clerk.news() {
-                Some(News::Opened(session)) => self.opened(session),
-                Some(News::Refused(refusal)) => self.refused = Some((self.now_s, refusal)),
-                None => return,
-            }
-        }
-    }
-
-    /// A session of a handshake that has ended. A console uses it from now on, a follower when it is confirmed.
-    fn opened(&mut self, mut session: Box<Session>) {
-        (session.opened_s, session.heard_s) = (self.now_s, self.now_s);
-        if !self.is_follower {
-            if let Some(old) = self.active {
-                self.end(old);
-            }
-            (self.refused, self.is_closed, self.answer) = (None, false, None);
-        }
-        let free = self.sessions.iter().position(Option::is_none);
-        let unconfirmed = |session: &Option<Box<Session>>| session.as_ref().is_some_and(|s| !s.is_confirmed);
-        match free.or_else(|| self.sessions.iter().position(unconfirmed)) {
-            Some(at) => {
-                self.end(at);
-                if self.sessions[at].is_none() {
-                    self.sessions[at] = Some(session);
-                    if !self.is_follower {
-                        self.active = Some(at);
-                    }
-                }
-            }
-            // It is freed by the thread; if that is behind, here: nothing is lost but time.
-            None => drop(self.clerk.free(session)),
-        }
-    }
-
-    /// Ends a session; its memory goes back to the thread.
-    fn end(&mut self, at: usize) {
-        if self.active == Some(at) {
-            self.active = None;
-        }
-        self.holding.forget(at);
-        if let Some(session) = self.sessions[at].take() {
-            self.sessions[at] = self.clerk.free(session);
-        }
-    }
-
-    fn look_after_sessions(&mut self) {
-        for at in 0..SESSIONS {
-            let Some(session) = self.sessions[at].as_ref() else { continue };
-            let silent_s = self.now_s - session.heard_s;
-            let is_over = if !self.is_follower {
-                self.active != Some(at)
-            } else if session.is_confirmed {
-                silent_s > self.forget_after_s
-            } else {
-                self.now_s - session.opened_s > CONFIRM_S
-            };
-            if is_over {
-                self.end(at);
-            }
-        }
-        if self.is_follower {
-            self.hand_over();
-            let connected = self.sessions.iter().flatten().filter(|session| session.is_confirmed).count();
-            self.clerk.shared.is_full.store(connected >= CONSOLES_MAX, Relaxed);
-        }
-    }
-
-    fn keep_alive(&mut self) {
-        for at in 0..SESSIONS {
-            let Some(session) = self.sessions[at].as_ref() else { continue };
-            let pause_s = if self.active == Some(at) && self.carries() { ALIVE_S } else { ALIVE_WAITING_S };
-            // A follower says nothing in a session that its console has not confirmed.
-            if (session.is_confirmed || !self.is_follower) && self.now_s - session.sent_s >= pause_s {
-                self.send_to(at, self.now_s, None);
-            }
-        }
-    }
-
-    fn send_to(&mut self, at: usize, now_s: f64, payload: Option<&[u8]>) -> Sent {
-        self.send_with(at, now_s, payload, false)
-    }
-
-    fn send_with(&mut self, at: usize, now_s: f64, payload: Option<&[u8]>, goodbye: bool) -> Sent {
-        let control = self.control_byte(at, goodbye);
-        let Some(session) = self.sessions[at].as_mut() else { return Sent::Held };
-        let sent = session.stream.send(now_s, payload, control, &mut self.out);
-        if let Sent::Datagram(len) = sent {
-            session.sent_s = now_s;
-            if !self.socket.send(&self.out[..len], session.at) {
-                self.dropped.unsent += 1;
-            }
-        }
-        sent
-    }
-
-    fn control_byte(&self, at: usize, goodbye: bool) -> u8 {
-        if self.is_follower {
-            return FromFollower { goodbye, ..self.told_to(at) }.byte();
-        }
-        let (answers, consents) = self.answer.unwrap_or_default();
-        FromConsole { asks: self.asks, answers, consents, goodbye }.byte()
     }
 }
 

@@ -10,8 +10,9 @@ use nima_testing::real_time::{alone, judged};
 use super::*;
 use crate::{
     impairment::{Loss, Settings},
+    keys::{Keys, Peers},
     relay::{Relay, RelaySettings},
-    wire::{HELLO_LEN, VERSION},
+    wire::{self, HELLO_LEN, Kind, VERSION},
 };
 
 const HOME: (Ipv4Addr, u16) = (Ipv4Addr::LOCALHOST, 0);
@@ -167,7 +168,9 @@ fn silence_is_told_with_its_length_and_ends_without_a_new_session() {
         let (time, mut far, mut near, ..) = pair();
         let before = near.endpoint.handshake_datagrams();
         time.run(&mut [&mut near], 0.3);
-        let LinkState::Down(Cause::Silent { for_s }) = near.endpoint.state() else { panic!("{:?}", near.endpoint.state()) };
+        let LinkState::Down(Cause::Silent { for_s }) = near.endpoint.state() else {
+            panic!("{:?}", near.endpoint.state())
+        };
         assert!((0.25..0.4).contains(&for_s), "{for_s}");
         assert!(time.until(&mut [&mut far, &mut near], are_open).expect("open again") < 0.1);
         assert_eq!(near.endpoint.handshake_datagrams(), before);
@@ -258,7 +261,10 @@ fn a_stranger_and_another_version_are_refused() {
         time.run(&mut [&mut far, &mut near], 0.1);
         let mut answer = [0; 100];
         let len = socket.recv(&mut answer).unwrap();
-        assert_eq!((wire::kind(&answer[..len]), &answer[wire::HANDSHAKE_LEN..len]), (Ok(Kind::Refusal), &[1, VERSION][..]));
+        assert_eq!(
+            (wire::kind(&answer[..len]), &answer[wire::HANDSHAKE_LEN..len]),
+            (Ok(Kind::Refusal), &[1, VERSION][..])
+        );
         let dropped = far.endpoint.dropped();
         assert!(dropped.foreign_version == 1 && dropped.refused > 0, "{dropped:?}");
         assert!(are_open(&[&mut far, &mut near]));
@@ -317,7 +323,10 @@ fn a_flood_of_handshakes_and_noise_does_not_stop_the_stream() {
         time.run(&mut [&mut far, &mut near], 0.2);
         assert!(are_open(&[&mut far, &mut near]));
         let (dropped, figures) = (far.endpoint.dropped(), far.endpoint.figures());
-        assert!(dropped.flooded + dropped.refused > sent / 4 && dropped.unknown_session > sent / 8, "{dropped:?} of {sent}");
+        assert!(
+            dropped.flooded + dropped.refused > sent / 4 && dropped.unknown_session > sent / 8,
+            "{dropped:?} of {sent}"
+        );
         assert!(figures.counts.lost < 20 && figures.counts.delivered > 800, "{:?}", figures.counts);
         assert_eq!(far.endpoint.sessions.iter().flatten().count(), 1, "no state");
     });
@@ -330,7 +339,8 @@ fn a_relay_makes_the_line_bad_and_repeated_datagrams_are_dropped() {
         let (theirs, ours) = (keys(), keys());
         let mut far = End::new(follower(&theirs, &[&ours], HOME.into()));
         let to = far.endpoint.address().unwrap();
-        let line = Settings { delay_s: 0.02, loss: Loss::Independent { share: 0.05 }, duplicate: 0.2, ..Settings::default() };
+        let line =
+            Settings { delay_s: 0.02, loss: Loss::Independent { share: 0.05 }, duplicate: 0.2, ..Settings::default() };
         let there = Settings { delay_s: 0.03, ..line };
         let relay = Relay::start(RelaySettings { at: HOME.into(), to, there, back: line, seed: 3 }).unwrap();
         let mut near = End::new(console(&ours, theirs.public(), relay.address()));

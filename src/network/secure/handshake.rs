@@ -181,15 +181,12 @@ impl Reception {
             let answer = write(out, Kind::Refusal, token, &Refusal::Full.bytes());
             return Heard { answer, ..Heard::trouble(Trouble::Refused) };
         }
-        match self.agree(message) {
-            Some((agreed, response, len)) => {
-                let answer = write(out, Kind::Response, token, &response[..len]);
-                Heard { answer, trouble: None, agreed: Some(Box::new(agreed)) }
-            }
-            None => {
-                let answer = write(out, Kind::Refusal, token, &Refusal::Key.bytes());
-                Heard { answer, ..Heard::trouble(Trouble::Refused) }
-            }
+        if let Some((agreed, response, len)) = self.agree(message) {
+            let answer = write(out, Kind::Response, token, &response[..len]);
+            Heard { answer, trouble: None, agreed: Some(Box::new(agreed)) }
+        } else {
+            let answer = write(out, Kind::Refusal, token, &Refusal::Key.bytes());
+            Heard { answer, ..Heard::trouble(Trouble::Refused) }
         }
     }
 
@@ -227,7 +224,7 @@ impl Reception {
 #[derive(Debug)]
 enum Waits {
     Cookie,
-    Response { noise: Box<HandshakeState>, ours: u32, sent: [u8; HANDSHAKE_MAX], len: usize },
+    Response { noise: Box<HandshakeState>, ours: u32, sent: Box<[u8; HANDSHAKE_MAX]>, len: usize },
 }
 
 /// The console's side: one attempt after the other until a session is made.
@@ -265,16 +262,15 @@ impl Approach {
             return 0;
         }
         // The same initiation again as long as the follower still knows the cookie: its response may have been lost. Then from the start.
-        let is_first = self.next_s == f64::MIN;
         self.next_s = now_s + self.pause_s;
-        self.pause_s = if is_first { AGAIN_S } else { (2.0 * self.pause_s).min(AGAIN_MAX_S) };
+        self.pause_s = (2.0 * self.pause_s).min(AGAIN_MAX_S);
         if self.pause_s >= AGAIN_MAX_S && self.begin_again().is_err() {
             return 0;
         }
         match &self.waits {
             Waits::Cookie => write(out, Kind::Hello, self.token, &[0; HELLO_LEN - HANDSHAKE_LEN]),
             Waits::Response { sent, len, .. } => {
-                out.copy_from_slice(sent);
+                out.copy_from_slice(&sent[..]);
                 *len
             }
         }
@@ -324,7 +320,7 @@ impl Approach {
         let len = COOKIE_LEN + noise.write_message(&ours, &mut content[COOKIE_LEN..]).ok()?;
         let answer = write(out, Kind::Initiation, self.token, &content[..len]);
         let ours = u32::from_le_bytes(ours);
-        self.waits = Waits::Response { noise: Box::new(noise), ours, sent: *out, len: answer };
+        self.waits = Waits::Response { noise: Box::new(noise), ours, sent: Box::new(*out), len: answer };
         Some(answer)
     }
 

@@ -24,7 +24,12 @@ fn from(number: u32) -> SocketAddr {
 }
 
 /// Lets them talk at `now_s`; the datagrams that were sent, and what the console was told in the end.
-fn talk(reception: &mut Reception, console: &mut Approach, from: SocketAddr, now_s: f64) -> (usize, bool, Option<Trouble>) {
+fn talk(
+    reception: &mut Reception,
+    console: &mut Approach,
+    from: SocketAddr,
+    now_s: f64,
+) -> (usize, bool, Option<Trouble>) {
     let (mut there, mut back): (Datagram, Datagram) = ([0; HANDSHAKE_MAX], [0; HANDSHAKE_MAX]);
     let mut len = console.due(now_s, &mut there);
     let mut sent = 0;
@@ -160,6 +165,9 @@ fn random_and_mutated_datagrams_lead_to_nothing() {
         let cut = rng.usize(..initiation);
         assert!(!reception.hear(&there[..cut], from(1), f64::from(i), &mut waste).is_agreed());
         assert!(!console.hear(&mutated[..cut], f64::from(i), &mut waste).is_agreed());
-        assert!(!reception.hear(&there[..initiation], from(2), f64::from(i), &mut waste).is_agreed(), "another address");
+        assert!(
+            !reception.hear(&there[..initiation], from(2), f64::from(i), &mut waste).is_agreed(),
+            "another address"
+        );
     }
 }

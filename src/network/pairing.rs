@@ -180,7 +180,9 @@ impl Part {
 
 fn hash(parts: &[&[u8]]) -> [u8; 32] {
     let mut hash = Blake2s256::new();
-    parts.iter().for_each(|part| hash.update(part));
+    for part in parts {
+        hash.update(part);
+    }
     hash.finalize().into()
 }
 

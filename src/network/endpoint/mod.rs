@@ -321,3 +321,5 @@ impl Received<'_> {
 
 #[cfg(test)]
 mod tests;
+#[cfg(test)]
+mod two_hosts_tests;

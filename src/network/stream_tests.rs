@@ -242,13 +242,13 @@ fn attack(rounds: u32, seed: u64) -> u64 {
 
 #[test]
 fn forged_changed_and_repeated_datagrams_are_never_accepted() {
-    assert_eq!(attack(20_000, 1), 0);
+    assert_eq!(attack(300_000, 1), 0);
 }
 
 #[test]
-#[ignore = "a million datagrams"]
-fn a_million_forged_changed_and_repeated_datagrams_are_never_accepted() {
-    assert_eq!(attack(1_000_000, 2), 0);
+#[ignore = "a minute: ./dev figures"]
+fn figures_of_a_hundred_million_forged_datagrams() {
+    assert_eq!(attack(100_000_000, 2), 0);
 }
 
 #[test]
